@@ -1,0 +1,2 @@
+//! The appell command.
+fn main() {}

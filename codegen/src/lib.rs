@@ -1,0 +1,1 @@
+//! Gibbs-Appell derivation and code generation.

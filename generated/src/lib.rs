@@ -1,0 +1,1 @@
+//! Mechanisms shipped with appell, generated from their specs.

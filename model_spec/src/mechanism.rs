@@ -1,0 +1,373 @@
+//! A checked mechanism: what the text of a spec means, ready for the derivation.
+//!
+//! Everything here is in SI units. References between items are indices into the lists of
+//! [`Mechanism`]; the checks of this crate guarantee that they are in range, that parents come
+//! before children, and that every expression has the dimension its place asks for.
+
+use crate::expr::Expr;
+use crate::units::Unit;
+
+/// Index of a parameter in [`Mechanism::parameters`].
+pub type ParameterId = usize;
+/// Index of a coordinate in [`Mechanism::coordinates`].
+pub type CoordinateId = usize;
+/// Index of an input in [`Mechanism::inputs`].
+pub type InputId = usize;
+/// Index of a signal in [`Mechanism::signals`].
+pub type SignalId = usize;
+/// Index of a frame in [`Mechanism::frames`]; [`GROUND`] is the inertial frame.
+pub type FrameId = usize;
+/// Index of a point in [`Mechanism::points`]; [`ORIGIN`] is fixed in the ground.
+pub type PointId = usize;
+/// Index of a body in [`Mechanism::bodies`].
+pub type BodyId = usize;
+/// Index of a pseudo-velocity in [`Mechanism::pseudo_velocities`].
+pub type SpeedId = usize;
+
+/// The inertial frame, named `ground` in a spec.
+pub const GROUND: FrameId = 0;
+/// The origin of the ground, named `O` in a spec.
+pub const ORIGIN: PointId = 0;
+
+/// Three components in some frame.
+pub type Components = [Expr; 3];
+
+/// A mechanism whose names, references and units have been checked.
+#[derive(Debug, Clone)]
+pub struct Mechanism {
+    /// Name, a valid identifier.
+    pub name: String,
+    /// One line for people.
+    pub title: String,
+    /// Where the model comes from.
+    pub source: Option<String>,
+    /// Name of the spec file, for messages and comments in emitted code.
+    pub file: String,
+    /// Constants of the mechanism.
+    pub parameters: Vec<Parameter>,
+    /// Generalised coordinates.
+    pub coordinates: Vec<Coordinate>,
+    /// Inputs that a controller or a recording supplies.
+    pub inputs: Vec<Input>,
+    /// Known functions of time, given as data.
+    pub signals: Vec<Signal>,
+    /// Frames, parents first; the first is the ground.
+    pub frames: Vec<Frame>,
+    /// Points, origins first; the first is the origin of the ground.
+    pub points: Vec<Point>,
+    /// Rigid bodies and point masses.
+    pub bodies: Vec<Body>,
+    /// Constraints on velocities and positions.
+    pub constraints: Vec<Constraint>,
+    /// Pseudo-velocities, the speeds of Appell's equations.
+    pub pseudo_velocities: Vec<PseudoVelocity>,
+    /// Applied forces and torques.
+    pub loads: Vec<Load>,
+    /// Named quantities of interest.
+    pub outputs: Vec<Output>,
+}
+
+/// What every named quantity carries.
+#[derive(Debug, Clone)]
+pub struct Label {
+    /// Identifier in the spec.
+    pub name: String,
+    /// One sentence for people; empty when the spec gives none.
+    pub about: String,
+    /// Unit in which people read and write it.
+    pub unit: Unit,
+    /// Line of the definition in the spec, from 1.
+    pub line: usize,
+}
+
+/// A constant of the mechanism.
+#[derive(Debug, Clone)]
+pub struct Parameter {
+    /// Name, sentence and unit.
+    pub label: Label,
+    /// Value in SI.
+    pub value: f64,
+    /// Smallest admissible value in SI.
+    pub at_least: Option<f64>,
+    /// Largest admissible value in SI.
+    pub at_most: Option<f64>,
+}
+
+/// A generalised coordinate.
+#[derive(Debug, Clone)]
+pub struct Coordinate {
+    /// Name, sentence and unit.
+    pub label: Label,
+    /// Declared range in SI, ends included; the equations hold inside it.
+    pub range: Option<[f64; 2]>,
+    /// Initial value in SI.
+    pub initial: f64,
+}
+
+/// An input.
+#[derive(Debug, Clone)]
+pub struct Input {
+    /// Name, sentence and unit.
+    pub label: Label,
+}
+
+/// A known function of time, tabulated.
+#[derive(Debug, Clone)]
+pub struct Signal {
+    /// Name, sentence and unit.
+    pub label: Label,
+    /// Sampling times in seconds, strictly increasing.
+    pub times: Vec<f64>,
+    /// Values in SI, one per time.
+    pub values: Vec<f64>,
+    /// What happens between two samples.
+    pub interpolation: Interpolation,
+}
+
+/// How a signal runs between two samples; outside the table the end values hold.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Interpolation {
+    /// Constant until the next sample.
+    Hold,
+    /// Straight lines.
+    Linear,
+    /// Natural cubic spline: two continuous derivatives, as an imposed motion needs.
+    Cubic,
+}
+
+/// A frame, turned from its parent by a chain of rotations about coordinate axes.
+#[derive(Debug, Clone)]
+pub struct Frame {
+    /// Identifier.
+    pub name: String,
+    /// One sentence for people.
+    pub about: String,
+    /// Parent frame; `None` for the ground.
+    pub parent: Option<FrameId>,
+    /// Rotations, first the one next to the parent.
+    pub turns: Vec<Turn>,
+    /// Line of the definition, from 1; 0 for the ground.
+    pub line: usize,
+}
+
+/// One rotation about a coordinate axis.
+#[derive(Debug, Clone)]
+pub struct Turn {
+    /// Axis of rotation.
+    pub axis: Axis,
+    /// Whether the rotation is about the negative axis.
+    pub negative: bool,
+    /// Angle, right-handed about the axis; depends on coordinates, parameters, signals, time.
+    pub angle: Expr,
+}
+
+/// A coordinate axis.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Axis {
+    /// First axis.
+    X,
+    /// Second axis.
+    Y,
+    /// Third axis.
+    Z,
+}
+
+/// A point, placed from another point.
+#[derive(Debug, Clone)]
+pub struct Point {
+    /// Identifier.
+    pub name: String,
+    /// One sentence for people.
+    pub about: String,
+    /// The point it is placed from; `None` for the origin of the ground.
+    pub from: Option<PointId>,
+    /// Frame in which `at` is written.
+    pub frame: FrameId,
+    /// Position from `from`, components in `frame`.
+    pub at: Components,
+    /// Line of the definition, from 1; 0 for the origin.
+    pub line: usize,
+}
+
+/// A rigid body or a point mass.
+#[derive(Debug, Clone)]
+pub struct Body {
+    /// Identifier.
+    pub name: String,
+    /// One sentence for people.
+    pub about: String,
+    /// Frame fixed in the body; `None` for a point mass.
+    pub frame: Option<FrameId>,
+    /// Centre of mass.
+    pub centre: PointId,
+    /// Mass.
+    pub mass: Expr,
+    /// Inertia about the centre of mass; `None` for a point mass.
+    pub inertia: Option<Inertia>,
+    /// Line of the definition, from 1.
+    pub line: usize,
+}
+
+/// Inertia tensor about a centre of mass.
+#[derive(Debug, Clone)]
+pub struct Inertia {
+    /// Frame in which the components are written. Where it is not the body's own, the tensor must
+    /// not change with the rotation between the two; the derivation checks that.
+    pub frame: FrameId,
+    /// Symmetric matrix, products of inertia with their sign (`I_xy = -∫xy dm`).
+    pub matrix: [[Expr; 3]; 3],
+    /// Line of the definition, from 1.
+    pub line: usize,
+}
+
+/// A constraint.
+#[derive(Debug, Clone)]
+pub struct Constraint {
+    /// Identifier.
+    pub name: String,
+    /// One sentence for people.
+    pub about: String,
+    /// What it demands.
+    pub kind: ConstraintKind,
+    /// Line of the definition, from 1.
+    pub line: usize,
+}
+
+/// What a constraint demands.
+#[derive(Debug, Clone)]
+pub enum ConstraintKind {
+    /// The material point of `body` at `contact` is at rest in the ground.
+    Rolling {
+        /// The rolling body.
+        body: BodyId,
+        /// Contact point.
+        contact: PointId,
+    },
+    /// `zero = equals`, `zero` linear in the generalised velocities, `equals` a function of
+    /// coordinates, parameters, signals and time.
+    Velocity {
+        /// Expression in the generalised velocities.
+        zero: Expr,
+        /// Prescribed value, of the same dimension.
+        equals: Expr,
+    },
+    /// The velocity of `point` along `direction` equals `equals`.
+    FixedVelocity {
+        /// The point; the material point of `body` there when a body is named.
+        point: PointId,
+        /// Body whose material point is meant.
+        body: Option<BodyId>,
+        /// Frame in which `direction` is written.
+        frame: FrameId,
+        /// Direction, dimensionless.
+        direction: Components,
+        /// Prescribed velocity.
+        equals: Expr,
+    },
+    /// `zero = 0`, an equation between coordinates (reserved: the derivation does not take it yet).
+    Position {
+        /// Expression in the coordinates.
+        zero: Expr,
+    },
+}
+
+/// A pseudo-velocity: a linear combination of generalised velocities.
+#[derive(Debug, Clone)]
+pub struct PseudoVelocity {
+    /// Name, sentence and unit.
+    pub label: Label,
+    /// Definition, linear in `dot(q)`.
+    pub definition: Expr,
+    /// Initial value in SI.
+    pub initial: f64,
+}
+
+/// An applied force or torque.
+#[derive(Debug, Clone)]
+pub struct Load {
+    /// Identifier.
+    pub name: String,
+    /// One sentence for people.
+    pub about: String,
+    /// What acts.
+    pub kind: LoadKind,
+    /// Line of the definition, from 1.
+    pub line: usize,
+}
+
+/// What a load does.
+#[derive(Debug, Clone)]
+pub enum LoadKind {
+    /// Weight of every body.
+    Gravity {
+        /// Direction of the weight, a unit vector of the ground.
+        down: [i8; 3],
+        /// Acceleration of free fall.
+        acceleration: Expr,
+    },
+    /// A force on a point, with the opposite force on another point when one is named.
+    Force {
+        /// Point of attack.
+        on: PointId,
+        /// Body whose material point at `on` is meant; without it the point itself moves.
+        body: Option<BodyId>,
+        /// Point that feels the reaction.
+        reaction_on: Option<PointId>,
+        /// Frame in which `vector` is written.
+        frame: FrameId,
+        /// Components of the force.
+        vector: Components,
+    },
+    /// A torque on a body, with the opposite torque on another body when one is named.
+    Torque {
+        /// Body.
+        on: BodyId,
+        /// Body that feels the reaction.
+        reaction_on: Option<BodyId>,
+        /// Frame in which `vector` is written.
+        frame: FrameId,
+        /// Components of the torque.
+        vector: Components,
+    },
+    /// A linear spring.
+    Spring {
+        /// What it connects.
+        between: Connection,
+        /// Stiffness.
+        stiffness: Expr,
+        /// Length or angle at which it is relaxed.
+        relaxed: Expr,
+    },
+    /// A linear damper.
+    Damper {
+        /// What it connects.
+        between: Connection,
+        /// Damping coefficient.
+        damping: Expr,
+    },
+    /// A generalised force on a coordinate: its power is `force * dot(coordinate)`.
+    Generalized {
+        /// Coordinate.
+        coordinate: CoordinateId,
+        /// Generalised force.
+        force: Expr,
+    },
+}
+
+/// What a spring or damper connects.
+#[derive(Debug, Clone)]
+pub enum Connection {
+    /// Acts along the line between two points.
+    Points(PointId, PointId),
+    /// Acts on a coordinate.
+    Coordinate(CoordinateId),
+}
+
+/// A named quantity of interest.
+#[derive(Debug, Clone)]
+pub struct Output {
+    /// Name, sentence and unit.
+    pub label: Label,
+    /// Value from coordinates, pseudo-velocities, parameters, inputs, signals and time.
+    pub value: Expr,
+}

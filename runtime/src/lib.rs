@@ -1,0 +1,12 @@
+//! Models, integration and trajectories for appell.
+//!
+//! Without the feature `std` this crate is `no_std` and holds what emitted code needs: the scalar
+//! trait [`Real`], dual numbers and lanes that implement it, and small dense factorisations.
+
+#![cfg_attr(not(feature = "std"), no_std)]
+
+#[cfg(feature = "std")]
+pub mod model;
+pub mod real;
+
+pub use real::Real;

@@ -1,0 +1,175 @@
+//! Differentiation on the graph.
+
+use rustc_hash::FxHashMap;
+
+use super::node::{Expr, Function, Node, SymbolId};
+use super::{Graph, Rational};
+
+/// Partial derivatives with respect to one symbol, remembered between calls.
+#[derive(Debug)]
+pub struct Derivatives {
+    symbol: SymbolId,
+    known: FxHashMap<Expr, Expr>,
+}
+
+impl Derivatives {
+    /// Derivatives with respect to `symbol`.
+    pub fn with_respect_to(symbol: SymbolId) -> Self {
+        Self { symbol, known: FxHashMap::default() }
+    }
+
+    /// `∂expr/∂symbol`
+    pub fn of(&mut self, graph: &mut Graph, expr: Expr) -> Expr {
+        if let Some(&known) = self.known.get(&expr) {
+            return known;
+        }
+        for part in graph.in_order(&[expr]) {
+            if !self.known.contains_key(&part) {
+                let derivative = self.step(graph, part);
+                self.known.insert(part, derivative);
+            }
+        }
+        self.known[&expr]
+    }
+
+    /// Derivative of one node; those of its parts are known.
+    fn step(&mut self, graph: &mut Graph, expr: Expr) -> Expr {
+        match graph.node(expr).clone() {
+            Node::Number(_) => Graph::ZERO,
+            Node::Symbol(symbol) => {
+                if symbol == self.symbol {
+                    Graph::ONE
+                } else {
+                    Graph::ZERO
+                }
+            }
+            Node::Named(id) => {
+                let value = graph.definition(id).value;
+                let derivative = self.known[&value];
+                self.name_derivative(graph, id, derivative)
+            }
+            Node::Sum(terms) => {
+                let parts: Vec<(Rational, Expr)> =
+                    terms.iter().map(|t| (t.coefficient.clone(), self.known[&t.expr])).collect();
+                graph.linear_combination(&parts)
+            }
+            Node::Product(factors) => {
+                // Σ n · base' · (product / base)
+                let mut sum = Vec::new();
+                for factor in &factors {
+                    let inner = self.known[&factor.base];
+                    if inner != Graph::ZERO {
+                        let without = graph.div(expr, factor.base);
+                        sum.push((i64::from(factor.exponent).into(), graph.mul(inner, without)));
+                    }
+                }
+                graph.linear_combination(&sum)
+            }
+            Node::Function(function, argument) => {
+                let inner = self.known[&argument];
+                if inner == Graph::ZERO {
+                    return Graph::ZERO;
+                }
+                let outer = outer_derivative(graph, function, argument, expr);
+                graph.mul(outer, inner)
+            }
+            Node::Atan2(y, x) => {
+                let (dy, dx) = (self.known[&y], self.known[&x]);
+                let squares = [graph.square(x), graph.square(y)];
+                let radius_squared = graph.sum(&squares);
+                let (x_dy, y_dx) = (graph.mul(x, dy), graph.mul(y, dx));
+                let numerator = graph.sub(x_dy, y_dx);
+                graph.div(numerator, radius_squared)
+            }
+            Node::Power(base, exponent) => {
+                // a^b (b' ln a + b a'/a)
+                let (da, db) = (self.known[&base], self.known[&exponent]);
+                let growth = if db == Graph::ZERO {
+                    Graph::ZERO
+                } else {
+                    let logarithm = graph.function(Function::Ln, base);
+                    graph.mul(db, logarithm)
+                };
+                let quotient = graph.div(da, base);
+                let scaled = graph.mul(exponent, quotient);
+                let sum = graph.add(growth, scaled);
+                graph.mul(expr, sum)
+            }
+            Node::Choice { relation, compared, branches } => {
+                graph.choice(relation, compared, branches.map(|b| self.known[&b]))
+            }
+            Node::Solution { system, row } => {
+                // A x = b gives A x' = b' - A' x.
+                let system_now = graph.system(system).clone();
+                let size = system_now.right.len();
+                let unknowns: Vec<Expr> = (0..size)
+                    .map(|r| graph.intern(Node::Solution { system, row: u32::try_from(r).unwrap_or(0) }))
+                    .collect();
+                let right = (0..size)
+                    .map(|i| {
+                        let mut parts = vec![self.known[&system_now.right[i]]];
+                        for j in 0..size {
+                            let entry = self.known[&system_now.matrix[i * size + j]];
+                            let product = graph.mul(entry, unknowns[j]);
+                            parts.push(graph.neg(product));
+                        }
+                        graph.sum(&parts)
+                    })
+                    .collect();
+                graph.solve_numerically(system_now.matrix.to_vec(), right)[row as usize]
+            }
+        }
+    }
+
+    /// The derivative of a named quantity keeps a name of its own where it is worth one.
+    fn name_derivative(&self, graph: &mut Graph, id: u32, derivative: Expr) -> Expr {
+        let worth_a_name = match graph.node(derivative) {
+            Node::Sum(terms) => terms.len() > 1,
+            _ => false,
+        };
+        if !worth_a_name {
+            return derivative;
+        }
+        let name = format!("d_{}_d_{}", graph.definition(id).name, graph.symbol_name(self.symbol));
+        graph.name(&name, derivative)
+    }
+}
+
+/// Derivative of a function by its argument; `value` is the function's node.
+fn outer_derivative(graph: &mut Graph, function: Function, x: Expr, value: Expr) -> Expr {
+    let one = Graph::ONE;
+    match function {
+        Function::Sin => graph.cos(x),
+        Function::Cos => {
+            let sin = graph.sin(x);
+            graph.neg(sin)
+        }
+        Function::Asin | Function::Acos => {
+            let square = graph.square(x);
+            let rest = graph.sub(one, square);
+            let root = graph.sqrt(rest);
+            let derivative = graph.pow(root, -1);
+            if function == Function::Asin { derivative } else { graph.neg(derivative) }
+        }
+        Function::Atan => {
+            let square = graph.square(x);
+            let sum = graph.add(one, square);
+            graph.pow(sum, -1)
+        }
+        Function::Sinh => graph.function(Function::Cosh, x),
+        Function::Cosh => graph.function(Function::Sinh, x),
+        Function::Tanh => {
+            let square = graph.square(value);
+            graph.sub(one, square)
+        }
+        Function::Exp => value,
+        Function::Ln => graph.pow(x, -1),
+        Function::Sqrt => {
+            let reciprocal = graph.pow(value, -1);
+            graph.scale(&Rational::new(1, 2), reciprocal)
+        }
+        Function::Abs => graph.function(Function::Sign, x),
+        // The jump at zero has no derivative; elsewhere it is zero.
+        Function::Sign => Graph::ZERO,
+    }
+}

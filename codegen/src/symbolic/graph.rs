@@ -1,0 +1,200 @@
+//! The shared graph: every distinct expression is stored once.
+
+use rustc_hash::FxHashMap;
+
+use super::node::{Definition, Expr, Node, SymbolId, System};
+use super::Rational;
+
+/// Owner of all expressions of a derivation.
+#[derive(Debug, Clone)]
+pub struct Graph {
+    nodes: Vec<Node>,
+    index: FxHashMap<Node, Expr>,
+    symbols: Vec<String>,
+    definitions: Vec<Definition>,
+    systems: Vec<System>,
+    system_index: FxHashMap<System, u32>,
+}
+
+impl Default for Graph {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl Graph {
+    /// The number 0.
+    pub const ZERO: Expr = Expr(0);
+    /// The number 1.
+    pub const ONE: Expr = Expr(1);
+
+    /// A graph that holds the numbers 0 and 1.
+    pub fn new() -> Self {
+        let mut graph = Self {
+            nodes: Vec::new(),
+            index: FxHashMap::default(),
+            symbols: Vec::new(),
+            definitions: Vec::new(),
+            systems: Vec::new(),
+            system_index: FxHashMap::default(),
+        };
+        graph.intern(Node::Number(Rational::ZERO));
+        graph.intern(Node::Number(Rational::ONE));
+        graph
+    }
+
+    /// The expression of a node that is already canonical.
+    pub(super) fn intern(&mut self, node: Node) -> Expr {
+        if let Some(&expr) = self.index.get(&node) {
+            return expr;
+        }
+        let id = u32::try_from(self.nodes.len()).expect("fewer than 2^32 expressions fit in memory");
+        self.nodes.push(node.clone());
+        self.index.insert(node, Expr(id));
+        Expr(id)
+    }
+
+    /// What an expression is.
+    pub fn node(&self, expr: Expr) -> &Node {
+        &self.nodes[expr.0 as usize]
+    }
+
+    /// How many expressions the graph holds.
+    pub fn len(&self) -> usize {
+        self.nodes.len()
+    }
+
+    /// Never: a graph holds at least two numbers.
+    pub fn is_empty(&self) -> bool {
+        self.nodes.is_empty()
+    }
+
+    /// A new symbol. Two symbols of the same name are different symbols.
+    pub fn symbol(&mut self, name: &str) -> Expr {
+        let id = u32::try_from(self.symbols.len()).expect("fewer than 2^32 symbols fit in memory");
+        self.symbols.push(name.to_owned());
+        self.intern(Node::Symbol(SymbolId(id)))
+    }
+
+    /// Name of a symbol.
+    pub fn symbol_name(&self, symbol: SymbolId) -> &str {
+        &self.symbols[symbol.0 as usize]
+    }
+
+    /// How many symbols there are; their ids count from 0.
+    pub fn symbol_count(&self) -> usize {
+        self.symbols.len()
+    }
+
+    /// The symbol an expression is, if it is one.
+    pub fn as_symbol(&self, expr: Expr) -> Option<SymbolId> {
+        match self.node(expr) {
+            Node::Symbol(id) => Some(*id),
+            _ => None,
+        }
+    }
+
+    /// The number an expression is, if it is one.
+    pub fn as_number(&self, expr: Expr) -> Option<&Rational> {
+        match self.node(expr) {
+            Node::Number(value) => Some(value),
+            _ => None,
+        }
+    }
+
+    /// Gives an intermediate quantity a name, which emitted code and printed equations use.
+    ///
+    /// Numbers, symbols and what already has a name stay as they are: a second name would only
+    /// make people look twice. A multiple of one of these keeps its form as well.
+    pub fn name(&mut self, name: &str, value: Expr) -> Expr {
+        let plain = |graph: &Self, expr: Expr| {
+            matches!(graph.node(expr), Node::Number(_) | Node::Symbol(_) | Node::Named(_))
+        };
+        let core = match self.node(value) {
+            Node::Sum(terms) if terms.len() == 1 => terms[0].expr,
+            _ => value,
+        };
+        if plain(self, core) {
+            return value;
+        }
+        let id = u32::try_from(self.definitions.len()).expect("fewer than 2^32 names fit in memory");
+        self.definitions.push(Definition { name: name.to_owned(), value });
+        self.intern(Node::Named(id))
+    }
+
+    /// Definition behind the index of [`Node::Named`].
+    pub fn definition(&self, index: u32) -> &Definition {
+        &self.definitions[index as usize]
+    }
+
+    /// Unknowns of `matrix · unknowns = right`, solved with pivoting when evaluated.
+    pub fn solve_numerically(&mut self, matrix: Vec<Expr>, right: Vec<Expr>) -> Vec<Expr> {
+        assert_eq!(matrix.len(), right.len() * right.len(), "the system is square");
+        if right.iter().all(|&r| r == Self::ZERO) {
+            return right;
+        }
+        let rows = u32::try_from(right.len()).expect("a system is small");
+        let system = System { matrix: matrix.into(), right: right.into() };
+        let id = match self.system_index.get(&system) {
+            Some(&id) => id,
+            None => {
+                let id = u32::try_from(self.systems.len()).expect("fewer than 2^32 systems fit in memory");
+                self.systems.push(system.clone());
+                self.system_index.insert(system, id);
+                id
+            }
+        };
+        (0..rows).map(|row| self.intern(Node::Solution { system: id, row })).collect()
+    }
+
+    /// System behind the index of [`Node::Solution`].
+    pub fn system(&self, index: u32) -> &System {
+        &self.systems[index as usize]
+    }
+
+    /// Calls `visit` with every expression that `expr` is built from directly. Definitions of
+    /// names and the systems of solutions count as parts.
+    pub fn for_each_part(&self, expr: Expr, mut visit: impl FnMut(Expr)) {
+        match self.node(expr) {
+            Node::Number(_) | Node::Symbol(_) => {}
+            Node::Named(id) => visit(self.definition(*id).value),
+            Node::Sum(terms) => terms.iter().for_each(|t| visit(t.expr)),
+            Node::Product(factors) => factors.iter().for_each(|f| visit(f.base)),
+            Node::Function(_, a) => visit(*a),
+            Node::Atan2(a, b) | Node::Power(a, b) => [*a, *b].into_iter().for_each(visit),
+            Node::Choice { compared, branches, .. } => {
+                compared.iter().chain(branches).for_each(|&e| visit(e));
+            }
+            Node::Solution { system, .. } => {
+                let system = self.system(*system);
+                system.matrix.iter().chain(&system.right).for_each(|&e| visit(e));
+            }
+        }
+    }
+
+    /// All expressions that `roots` are built from, parts before wholes, each once.
+    pub fn in_order(&self, roots: &[Expr]) -> Vec<Expr> {
+        let mut order = Vec::new();
+        let mut seen = rustc_hash::FxHashSet::default();
+        // Explicit stack: a deep expression must not overflow the machine's.
+        let mut stack: Vec<(Expr, bool)> = roots.iter().rev().map(|&r| (r, false)).collect();
+        while let Some((expr, parts_done)) = stack.pop() {
+            if parts_done {
+                order.push(expr);
+            } else if seen.insert(expr) {
+                stack.push((expr, true));
+                self.for_each_part(expr, |part| {
+                    if !seen.contains(&part) {
+                        stack.push((part, false));
+                    }
+                });
+            }
+        }
+        order
+    }
+
+    /// Whether any of `symbols` occurs in `expr` as it is written.
+    pub fn mentions(&self, expr: Expr, symbols: &[SymbolId]) -> bool {
+        self.in_order(&[expr]).iter().any(|&e| self.as_symbol(e).is_some_and(|s| symbols.contains(&s)))
+    }
+}

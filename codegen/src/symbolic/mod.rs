@@ -1,0 +1,20 @@
+//! Exact symbolic algebra on a shared graph; it knows no mechanics.
+//!
+//! Expressions are canonical: equal sums and products of the same parts are the same node, so
+//! equality is comparison of two indices. Nothing is expanded, and the local identities that are
+//! applied never make an expression larger. Equality across different spellings is decided by
+//! evaluation in a finite field ([`identity`]).
+
+mod build;
+mod differentiate;
+mod graph;
+mod node;
+mod rational;
+mod substitute;
+pub mod vector;
+
+pub use differentiate::Derivatives;
+pub use graph::Graph;
+pub use node::{Definition, Expr, Factor, Function, Node, Relation, SymbolId, System, Term};
+pub use rational::Rational;
+pub use substitute::Substitution;

@@ -1,0 +1,115 @@
+//! The nodes of the expression graph.
+
+use super::Rational;
+
+/// An expression: the index of a canonical node in its [`Graph`](super::Graph).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Expr(pub(super) u32);
+
+/// A symbol: a parameter, a coordinate, anything without a definition.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct SymbolId(pub u32);
+
+/// What an expression is.
+#[derive(Debug, Clone, PartialEq, Eq, Hash)]
+pub enum Node {
+    /// An exact number.
+    Number(Rational),
+    /// A symbol.
+    Symbol(SymbolId),
+    /// An intermediate quantity with a name and a definition; see
+    /// [`Graph::name`](super::Graph::name). Sums and products do not flatten through it.
+    Named(u32),
+    /// `Σ coefficient · expr`, ordered by `expr`. The constant is the coefficient of the number 1.
+    /// A lone term has a coefficient other than 1.
+    Sum(Box<[Term]>),
+    /// `Π base^exponent`, ordered by `base`, without a numeric coefficient. A lone factor has an
+    /// exponent other than 1. Sums among the bases are primitive with a positive first coefficient.
+    Product(Box<[Factor]>),
+    /// A function of one argument.
+    Function(Function, Expr),
+    /// `atan2(y, x)`.
+    Atan2(Expr, Expr),
+    /// `base^exponent` with an exponent that is not an integer.
+    Power(Expr, Expr),
+    /// `then` where the relation holds between the two compared expressions, else `otherwise`.
+    Choice {
+        /// Relation.
+        relation: Relation,
+        /// Left and right side of the relation.
+        compared: [Expr; 2],
+        /// Value where it holds, value elsewhere.
+        branches: [Expr; 2],
+    },
+    /// One unknown of a linear system that is solved numerically.
+    Solution {
+        /// Index of the system; see [`Graph::system`](super::Graph::system).
+        system: u32,
+        /// Which unknown.
+        row: u32,
+    },
+}
+
+/// A term of a sum.
+#[derive(Debug, Clone, PartialEq, Eq, Hash)]
+pub struct Term {
+    /// What is multiplied; the number 1 for the constant.
+    pub expr: Expr,
+    /// Its coefficient, not zero.
+    pub coefficient: Rational,
+}
+
+/// A factor of a product.
+#[derive(Debug, Clone, PartialEq, Eq, Hash)]
+pub struct Factor {
+    /// What is raised.
+    pub base: Expr,
+    /// Its exponent, not zero.
+    pub exponent: i32,
+}
+
+/// Functions of one argument. The tangent is a quotient of sine and cosine.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[expect(missing_docs, reason = "each variant is the function of that name")]
+pub enum Function {
+    Sin,
+    Cos,
+    Asin,
+    Acos,
+    Atan,
+    Sinh,
+    Cosh,
+    Tanh,
+    Exp,
+    Ln,
+    Sqrt,
+    Abs,
+    Sign,
+}
+
+/// Comparisons of a choice.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Relation {
+    /// `<`
+    Less,
+    /// `<=`
+    LessOrEqual,
+}
+
+/// A named intermediate quantity.
+#[derive(Debug, Clone)]
+pub struct Definition {
+    /// Its name, an ASCII identifier.
+    pub name: String,
+    /// What it stands for.
+    pub value: Expr,
+}
+
+/// A square linear system, solved with pivoting when the equations are evaluated.
+#[derive(Debug, Clone, PartialEq, Eq, Hash)]
+pub struct System {
+    /// Matrix, row by row.
+    pub matrix: Box<[Expr]>,
+    /// Right-hand side.
+    pub right: Box<[Expr]>,
+}

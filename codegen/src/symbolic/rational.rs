@@ -1,0 +1,214 @@
+//! Exact rational numbers: machine integers while they fit, big integers beyond.
+
+use std::cmp::Ordering;
+use std::fmt;
+use std::ops::{Add, Mul, Neg};
+
+use num_bigint::BigInt;
+use num_rational::{BigRational, Ratio};
+use num_traits::{One, Signed, ToPrimitive, Zero};
+
+/// An exact rational number in lowest terms.
+///
+/// `Big` is used only where `Small` cannot hold the value, so equal numbers are equal variants and
+/// the derived comparisons are those of the numbers.
+#[derive(Clone, PartialEq, Eq, Hash)]
+pub struct Rational(Repr);
+
+#[derive(Clone, PartialEq, Eq, Hash)]
+enum Repr {
+    Small(Ratio<i64>),
+    Big(Box<BigRational>),
+}
+
+impl Rational {
+    /// Zero.
+    pub const ZERO: Self = Self(Repr::Small(Ratio::new_raw(0, 1)));
+    /// One.
+    pub const ONE: Self = Self(Repr::Small(Ratio::new_raw(1, 1)));
+    /// Minus one.
+    pub const MINUS_ONE: Self = Self(Repr::Small(Ratio::new_raw(-1, 1)));
+
+    /// `numerator / denominator`; the denominator must not be zero.
+    pub fn new(numerator: i64, denominator: i64) -> Self {
+        Self::from_big(BigRational::new(numerator.into(), denominator.into()))
+    }
+
+    /// From a big rational, stored small where it fits.
+    pub fn from_big(value: BigRational) -> Self {
+        // i64::MIN has no negative and no absolute value; it stays big.
+        let small = |n: &BigInt| n.to_i64().filter(|&n| n != i64::MIN);
+        match (small(value.numer()), small(value.denom())) {
+            (Some(n), Some(d)) => Self(Repr::Small(Ratio::new_raw(n, d))),
+            _ => Self(Repr::Big(Box::new(value))),
+        }
+    }
+
+    /// As a big rational.
+    pub fn to_big(&self) -> BigRational {
+        match &self.0 {
+            Repr::Small(r) => BigRational::new_raw((*r.numer()).into(), (*r.denom()).into()),
+            Repr::Big(r) => (**r).clone(),
+        }
+    }
+
+    /// Numerator and denominator where both are machine integers.
+    pub fn as_small(&self) -> Option<(i64, i64)> {
+        match &self.0 {
+            Repr::Small(r) => Some((*r.numer(), *r.denom())),
+            Repr::Big(_) => None,
+        }
+    }
+
+    /// The integer it is, if it is one.
+    pub fn as_integer(&self) -> Option<i64> {
+        self.as_small().filter(|&(_, d)| d == 1).map(|(n, _)| n)
+    }
+
+    /// Nearest double.
+    pub fn to_f64(&self) -> f64 {
+        match &self.0 {
+            // Both exact in a double: the quotient is correctly rounded.
+            Repr::Small(r) if r.numer().abs() < (1 << 53) && *r.denom() < (1 << 53) => {
+                *r.numer() as f64 / *r.denom() as f64
+            }
+            _ => self.to_big().to_f64().unwrap_or(f64::NAN),
+        }
+    }
+
+    /// Whether it is zero.
+    pub fn is_zero(&self) -> bool {
+        *self == Self::ZERO
+    }
+
+    /// Whether it is one.
+    pub fn is_one(&self) -> bool {
+        *self == Self::ONE
+    }
+
+    /// Whether it is below zero.
+    pub fn is_negative(&self) -> bool {
+        match &self.0 {
+            Repr::Small(r) => *r.numer() < 0,
+            Repr::Big(r) => r.is_negative(),
+        }
+    }
+
+    /// Absolute value.
+    #[must_use]
+    pub fn abs(&self) -> Self {
+        if self.is_negative() { -self } else { self.clone() }
+    }
+
+    /// One over it; the number must not be zero.
+    #[must_use]
+    pub fn recip(&self) -> Self {
+        match &self.0 {
+            Repr::Small(r) => Self(Repr::Small(r.recip())),
+            Repr::Big(r) => Self::from_big(r.recip()),
+        }
+    }
+
+    /// Integer power. `None` for zero to a negative exponent and where the result would need more
+    /// than some thousands of digits.
+    pub fn checked_pow(&self, exponent: i32) -> Option<Self> {
+        const MOST_BITS: u64 = 1 << 14;
+        if exponent == 1 || self.is_one() {
+            return Some(self.clone());
+        }
+        if self.is_zero() && exponent < 0 {
+            return None;
+        }
+        let base = self.to_big();
+        let bits = base.numer().bits().max(base.denom().bits());
+        (bits * u64::from(exponent.unsigned_abs()) <= MOST_BITS || bits <= 1)
+            .then(|| Self::from_big(num_traits::Pow::pow(base, exponent)))
+    }
+
+    /// The positive number by which all of `values` are integers without a common divisor.
+    pub fn content<'a>(values: impl Iterator<Item = &'a Self>) -> Self {
+        use num_integer::Integer;
+        let (mut numerator, mut denominator) = (BigInt::zero(), BigInt::one());
+        for value in values {
+            let value = value.to_big();
+            numerator = numerator.gcd(value.numer());
+            denominator = denominator.lcm(value.denom());
+        }
+        if numerator.is_zero() { Self::ONE } else { Self::from_big(BigRational::new(numerator, denominator)) }
+    }
+}
+
+impl Add for &Rational {
+    type Output = Rational;
+
+    fn add(self, other: Self) -> Rational {
+        if let (Repr::Small(a), Repr::Small(b)) = (&self.0, &other.0)
+            && let Some(sum) = num_traits::CheckedAdd::checked_add(a, b)
+            && *sum.numer() != i64::MIN
+        {
+            return Rational(Repr::Small(sum));
+        }
+        Rational::from_big(self.to_big() + other.to_big())
+    }
+}
+
+impl Mul for &Rational {
+    type Output = Rational;
+
+    fn mul(self, other: Self) -> Rational {
+        if let (Repr::Small(a), Repr::Small(b)) = (&self.0, &other.0)
+            && let Some(product) = num_traits::CheckedMul::checked_mul(a, b)
+            && *product.numer() != i64::MIN
+        {
+            return Rational(Repr::Small(product));
+        }
+        Rational::from_big(self.to_big() * other.to_big())
+    }
+}
+
+impl Neg for &Rational {
+    type Output = Rational;
+
+    fn neg(self) -> Rational {
+        match &self.0 {
+            Repr::Small(r) => Rational(Repr::Small(-r)),
+            Repr::Big(r) => Rational::from_big(-(**r).clone()),
+        }
+    }
+}
+
+impl From<i64> for Rational {
+    fn from(value: i64) -> Self {
+        Self::from_big(BigRational::from_integer(value.into()))
+    }
+}
+
+impl PartialOrd for Rational {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl Ord for Rational {
+    fn cmp(&self, other: &Self) -> Ordering {
+        match (&self.0, &other.0) {
+            (Repr::Small(a), Repr::Small(b)) => a.cmp(b),
+            _ => self.to_big().cmp(&other.to_big()),
+        }
+    }
+}
+
+impl fmt::Display for Rational {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match &self.0 {
+            Repr::Small(r) => r.fmt(f),
+            Repr::Big(r) => r.fmt(f),
+        }
+    }
+}
+
+impl fmt::Debug for Rational {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        fmt::Display::fmt(self, f)
+    }
+}

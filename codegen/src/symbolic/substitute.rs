@@ -1,0 +1,68 @@
+//! Replacing symbols by expressions.
+
+use rustc_hash::FxHashMap;
+
+use super::node::{Expr, Node, SymbolId};
+use super::Graph;
+
+/// A simultaneous replacement of symbols, remembered between calls. Names dissolve: what they stood
+/// for may have changed.
+#[derive(Debug, Default)]
+pub struct Substitution {
+    known: FxHashMap<Expr, Expr>,
+}
+
+impl Substitution {
+    /// Replaces each symbol by its expression.
+    pub fn new(graph: &mut Graph, replacements: &[(SymbolId, Expr)]) -> Self {
+        let known = replacements
+            .iter()
+            .map(|&(symbol, value)| (graph.intern(Node::Symbol(symbol)), value))
+            .collect();
+        Self { known }
+    }
+
+    /// `expr` with the symbols replaced, in canonical form again. `None` where a number is divided
+    /// by zero on the way.
+    pub fn apply(&mut self, graph: &mut Graph, expr: Expr) -> Option<Expr> {
+        for part in graph.in_order(&[expr]) {
+            if !self.known.contains_key(&part) {
+                let replaced = self.step(graph, part)?;
+                self.known.insert(part, replaced);
+            }
+        }
+        Some(self.known[&expr])
+    }
+
+    fn step(&self, graph: &mut Graph, expr: Expr) -> Option<Expr> {
+        let new = |e: &Expr| self.known[e];
+        Some(match graph.node(expr).clone() {
+            Node::Number(_) | Node::Symbol(_) => expr,
+            Node::Named(id) => new(&graph.definition(id).value),
+            Node::Sum(terms) => {
+                let parts: Vec<_> = terms.iter().map(|t| (t.coefficient.clone(), new(&t.expr))).collect();
+                graph.linear_combination(&parts)
+            }
+            Node::Product(factors) => {
+                if factors.iter().any(|f| f.exponent < 0 && new(&f.base) == Graph::ZERO) {
+                    return None;
+                }
+                let powers: Vec<_> =
+                    factors.iter().map(|f| graph.pow(new(&f.base), f.exponent)).collect();
+                graph.product(&powers)
+            }
+            Node::Function(function, argument) => graph.function(function, new(&argument)),
+            Node::Atan2(y, x) => graph.atan2(new(&y), new(&x)),
+            Node::Power(base, exponent) => graph.power(new(&base), new(&exponent)),
+            Node::Choice { relation, compared, branches } => {
+                graph.choice(relation, compared.map(|e| new(&e)), branches.map(|e| new(&e)))
+            }
+            Node::Solution { system, row } => {
+                let system = graph.system(system).clone();
+                let matrix = system.matrix.iter().map(new).collect();
+                let right = system.right.iter().map(new).collect();
+                graph.solve_numerically(matrix, right)[row as usize]
+            }
+        })
+    }
+}

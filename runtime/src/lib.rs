@@ -5,8 +5,15 @@
 
 #![cfg_attr(not(feature = "std"), no_std)]
 
+pub mod dense;
 #[cfg(feature = "std")]
 pub mod model;
 pub mod real;
+#[cfg(feature = "std")]
+pub mod signal;
 
-pub use real::Real;
+#[cfg(any(feature = "std", feature = "libm"))]
+pub use real::Lanes;
+pub use real::{Dual, Real};
+#[cfg(feature = "std")]
+pub use signal::Signal;

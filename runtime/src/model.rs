@@ -25,6 +25,43 @@ pub struct Quantity {
     pub range: [f64; 2],
 }
 
+impl Quantity {
+    /// A value in SI, in the unit for people.
+    pub fn to_unit(&self, si: f64) -> f64 {
+        si / self.scale
+    }
+
+    /// A value in the unit for people, in SI.
+    pub fn to_si(&self, value: f64) -> f64 {
+        value * self.scale
+    }
+}
+
+/// How a tabulated signal runs between its rows. Before the first and after the last row every
+/// signal keeps the end value.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Interpolation {
+    /// Constant from a row's time up to the next row's.
+    Hold,
+    /// Straight from row to row.
+    Linear,
+    /// Natural cubic spline: two continuous derivatives, no curvature at the ends.
+    Cubic,
+}
+
+/// A function of time given by its values, in SI. [`crate::Signal`] evaluates it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SignalTable {
+    /// Identifier in the spec.
+    pub name: Text,
+    /// Times in seconds, strictly increasing.
+    pub times: List<f64>,
+    /// Values in SI, one per time.
+    pub values: List<f64>,
+    /// How the signal runs between the times.
+    pub interpolation: Interpolation,
+}
+
 /// What a model is made of, in the order of its vectors.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ModelInfo {
@@ -42,6 +79,11 @@ pub struct ModelInfo {
     pub inputs: List<Quantity>,
     /// How many of the inputs are declared; the others are signals and their rates.
     pub declared_inputs: usize,
+    /// Tabulated functions of time.
+    pub signals: List<SignalTable>,
+    /// What the inputs after the declared ones are: an index into `signals` and the order of the
+    /// time derivative, 0, 1 or 2.
+    pub signal_inputs: List<(usize, u8)>,
     /// Parameters.
     pub parameters: List<Quantity>,
     /// Outputs.
@@ -52,6 +94,75 @@ pub struct ModelInfo {
     pub reactions: List<Text>,
     /// Whether the equations depend on time explicitly.
     pub explicit_time: bool,
+}
+
+impl ModelInfo {
+    /// Number of states, n.
+    pub fn state_len(&self) -> usize {
+        self.states.len()
+    }
+
+    /// Number of inputs with the signals, m.
+    pub fn input_len(&self) -> usize {
+        self.inputs.len()
+    }
+
+    /// Number of parameters, k.
+    pub fn parameter_len(&self) -> usize {
+        self.parameters.len()
+    }
+
+    /// Number of outputs.
+    pub fn output_len(&self) -> usize {
+        self.outputs.len()
+    }
+
+    /// The spec's parameter values in SI.
+    pub fn default_parameters(&self) -> Vec<f64> {
+        self.parameters
+            .iter()
+            .map(|parameter| parameter.value)
+            .collect()
+    }
+
+    /// The spec's initial state in SI.
+    pub fn initial_state(&self) -> Vec<f64> {
+        self.states.iter().map(|state| state.value).collect()
+    }
+
+    /// Position of a pseudo-velocity or coordinate in the state.
+    pub fn state_index(&self, name: &str) -> Option<usize> {
+        index_of(&self.states, name)
+    }
+
+    /// Position of an input or signal in the inputs.
+    pub fn input_index(&self, name: &str) -> Option<usize> {
+        index_of(&self.inputs, name)
+    }
+
+    /// Position of a parameter.
+    pub fn parameter_index(&self, name: &str) -> Option<usize> {
+        index_of(&self.parameters, name)
+    }
+
+    /// Position of an output.
+    pub fn output_index(&self, name: &str) -> Option<usize> {
+        index_of(&self.outputs, name)
+    }
+
+    /// The pseudo-velocities, the first part of the state.
+    pub fn speed_quantities(&self) -> &[Quantity] {
+        &self.states[..self.speeds.min(self.states.len())]
+    }
+
+    /// The coordinates, the last part of the state.
+    pub fn coordinate_quantities(&self) -> &[Quantity] {
+        &self.states[self.speeds.min(self.states.len())..]
+    }
+}
+
+fn index_of(quantities: &[Quantity], name: &str) -> Option<usize> {
+    quantities.iter().position(|quantity| quantity.name == name)
 }
 
 /// Where a model is evaluated. All slices in SI, in the order of [`ModelInfo`].

@@ -7,6 +7,8 @@
 
 pub mod dense;
 #[cfg(feature = "std")]
+pub mod integrate;
+#[cfg(feature = "std")]
 pub mod model;
 pub mod real;
 #[cfg(feature = "std")]

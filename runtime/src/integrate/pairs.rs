@@ -1,0 +1,187 @@
+//! The embedded pairs of Dormand and Prince.
+
+use super::dense_output::DenseOutput;
+use super::dop853_coefficients as dop853;
+use super::step_size::Control;
+use super::tableau::{Row, Stages, Tableau};
+
+/// What distinguishes one embedded pair from another. Sealed: implemented by [`Dopri5`] and
+/// [`Dop853`].
+#[allow(private_interfaces)]
+pub trait EmbeddedPair: sealed::Sealed {
+    /// Nodes, rows and weights.
+    #[doc(hidden)]
+    const TABLEAU: Tableau;
+    /// Stages with the rates at the new state and those of the interpolant.
+    #[doc(hidden)]
+    const ALL_STAGES: usize;
+    /// Coefficients of the interpolant.
+    #[doc(hidden)]
+    const INTERIOR_COEFFICIENTS: usize;
+    /// Whether the error estimate needs the rates at the new state.
+    #[doc(hidden)]
+    const ERROR_USES_NEW_RATES: bool;
+    /// Order in the choice of the first step.
+    #[doc(hidden)]
+    const ORDER: f64;
+    /// Constants of the step-size control.
+    #[doc(hidden)]
+    const CONTROL: Control;
+    /// The estimated error over the tolerances, at most 1 for a step to be accepted.
+    #[doc(hidden)]
+    fn error(stages: &Stages, h: f64, scale: &[f64]) -> f64;
+    /// Completes the interpolant, which already holds the cubic Hermite polynomial, and returns
+    /// the number of evaluations spent.
+    #[doc(hidden)]
+    fn interior<F>(
+        f: &mut F,
+        t: f64,
+        h: f64,
+        stages: &mut Stages,
+        dense: &mut DenseOutput,
+    ) -> usize
+    where
+        F: FnMut(f64, &[f64], &mut [f64]);
+}
+
+mod sealed {
+    pub trait Sealed {}
+    impl Sealed for super::Dopri5 {}
+    impl Sealed for super::Dop853 {}
+}
+
+/// Order 5(4) with an interpolant of order 4 (Hairer, Nørsett and Wanner, table II.5.2, equation
+/// II.6.11 and the authors' program). For tolerances down to about 1e-6.
+#[derive(Debug, Clone, Copy)]
+pub struct Dopri5;
+
+const DOPRI5_WEIGHTS: Row = &[
+    (0, 35.0 / 384.0),
+    (2, 500.0 / 1113.0),
+    (3, 125.0 / 192.0),
+    (4, -2187.0 / 6784.0),
+    (5, 11.0 / 84.0),
+];
+
+/// Solution of order 5 less the embedded one of order 4.
+const DOPRI5_ERROR: Row = &[
+    (0, 71.0 / 57600.0),
+    (2, -71.0 / 16695.0),
+    (3, 71.0 / 1920.0),
+    (4, -17253.0 / 339_200.0),
+    (5, 22.0 / 525.0),
+    (6, -1.0 / 40.0),
+];
+
+/// The last coefficient of the interpolant over h.
+const DOPRI5_INTERIOR: Row = &[
+    (0, -12_715_105_075.0 / 11_282_082_432.0),
+    (2, 87_487_479_700.0 / 32_700_410_799.0),
+    (3, -10_690_763_975.0 / 1_880_347_072.0),
+    (4, 701_980_252_875.0 / 199_316_789_632.0),
+    (5, -1_453_857_185.0 / 822_651_844.0),
+    (6, 69_997_945.0 / 29_380_423.0),
+];
+
+#[allow(private_interfaces)]
+impl EmbeddedPair for Dopri5 {
+    const TABLEAU: Tableau = Tableau {
+        nodes: &[1.0 / 5.0, 3.0 / 10.0, 4.0 / 5.0, 8.0 / 9.0, 1.0],
+        rows: &[
+            &[(0, 1.0 / 5.0)],
+            &[(0, 3.0 / 40.0), (1, 9.0 / 40.0)],
+            &[(0, 44.0 / 45.0), (1, -56.0 / 15.0), (2, 32.0 / 9.0)],
+            &[
+                (0, 19372.0 / 6561.0),
+                (1, -25360.0 / 2187.0),
+                (2, 64448.0 / 6561.0),
+                (3, -212.0 / 729.0),
+            ],
+            &[
+                (0, 9017.0 / 3168.0),
+                (1, -355.0 / 33.0),
+                (2, 46732.0 / 5247.0),
+                (3, 49.0 / 176.0),
+                (4, -5103.0 / 18656.0),
+            ],
+        ],
+        weights: DOPRI5_WEIGHTS,
+    };
+    const ALL_STAGES: usize = 7;
+    const INTERIOR_COEFFICIENTS: usize = 5;
+    const ERROR_USES_NEW_RATES: bool = true;
+    const ORDER: f64 = 5.0;
+    const CONTROL: Control = Control {
+        exponent: 0.2,
+        integral_gain: 0.04,
+        integral_correction: 0.75,
+        safety: 0.9,
+        smallest_factor: 0.2,
+        largest_factor: 10.0,
+    };
+
+    fn error(stages: &Stages, h: f64, scale: &[f64]) -> f64 {
+        h * stages.mean_square(DOPRI5_ERROR, scale).sqrt()
+    }
+
+    fn interior<F>(_: &mut F, _: f64, h: f64, stages: &mut Stages, dense: &mut DenseOutput) -> usize
+    where
+        F: FnMut(f64, &[f64], &mut [f64]),
+    {
+        for i in 0..stages.x().len() {
+            dense.set(4, i, h * stages.combination(DOPRI5_INTERIOR, i));
+        }
+        0
+    }
+}
+
+/// Order 8 with embedded errors of order 5 and 3 and an interpolant of order 7 (Hairer, Nørsett
+/// and Wanner, section II.10). The method of choice for smooth motions at tolerances below 1e-6.
+#[derive(Debug, Clone, Copy)]
+pub struct Dop853;
+
+#[allow(private_interfaces)]
+impl EmbeddedPair for Dop853 {
+    const TABLEAU: Tableau = dop853::TABLEAU;
+    const ALL_STAGES: usize = 16;
+    const INTERIOR_COEFFICIENTS: usize = 8;
+    const ERROR_USES_NEW_RATES: bool = false;
+    const ORDER: f64 = 8.0;
+    const CONTROL: Control = Control {
+        exponent: 0.125,
+        integral_gain: 0.0,
+        integral_correction: 0.2,
+        safety: 0.9,
+        smallest_factor: 0.333,
+        largest_factor: 6.0,
+    };
+
+    /// Equation (10.17): E₅² / √(E₅² + 0.01 E₃²), an estimate of order 8 that vanishes only with
+    /// both differences.
+    fn error(stages: &Stages, h: f64, scale: &[f64]) -> f64 {
+        let square_5 = stages.mean_square(dop853::ERROR_5, scale);
+        let square_3 = stages.mean_square(dop853::ERROR_3, scale);
+        let denominator = square_5 + 0.01 * square_3;
+        if denominator == 0.0 {
+            0.0
+        } else {
+            h * square_5 / denominator.sqrt()
+        }
+    }
+
+    fn interior<F>(f: &mut F, t: f64, h: f64, stages: &mut Stages, dense: &mut DenseOutput) -> usize
+    where
+        F: FnMut(f64, &[f64], &mut [f64]),
+    {
+        let first = Self::TABLEAU.new_rates() + 1;
+        for (i, &(node, row)) in dop853::INTERIOR_STAGES.iter().enumerate() {
+            stages.evaluate(f, first + i, t + node * h, h, row);
+        }
+        for (c, &row) in dop853::INTERIOR.iter().enumerate() {
+            for i in 0..stages.x().len() {
+                dense.set(4 + c, i, h * stages.combination(row, i));
+            }
+        }
+        dop853::INTERIOR_STAGES.len()
+    }
+}

@@ -1,0 +1,100 @@
+//! How long the next step may be.
+
+/// Constants of the proportional-integral control (Hairer and Wanner, *Solving Ordinary
+/// Differential Equations II*, section IV.2; Hairer, Nørsett and Wanner, section II.4).
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Control {
+    /// Exponent of the error without the integral part: 1 / (order of the error estimate).
+    pub(super) exponent: f64,
+    /// β, the exponent of the previous error.
+    pub(super) integral_gain: f64,
+    /// How much of β is taken off the exponent.
+    pub(super) integral_correction: f64,
+    /// Part of the step that the error would allow.
+    pub(super) safety: f64,
+    /// Bounds on the ratio of successive steps.
+    pub(super) smallest_factor: f64,
+    /// See `smallest_factor`.
+    pub(super) largest_factor: f64,
+}
+
+/// Shortening of a step whose rates were not finite.
+const FACTOR_NOT_FINITE: f64 = 0.25;
+
+/// The control with its memory of the previous step.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct StepSize {
+    control: Control,
+    previous_error: f64,
+    after_rejection: bool,
+}
+
+impl StepSize {
+    pub(super) fn new(control: Control) -> Self {
+        Self {
+            control,
+            previous_error: 1e-4,
+            after_rejection: false,
+        }
+    }
+
+    /// Factor on the step after it was accepted with `error` ≤ 1.
+    pub(super) fn accepted(&mut self, error: f64) -> f64 {
+        let c = &self.control;
+        let exponent = c.exponent - c.integral_gain * c.integral_correction;
+        let correction = self.previous_error.powf(c.integral_gain);
+        let factor = c.safety * correction / error.powf(exponent);
+        let largest = if self.after_rejection {
+            1.0
+        } else {
+            c.largest_factor
+        };
+        self.previous_error = error.max(1e-4);
+        self.after_rejection = false;
+        factor.clamp(c.smallest_factor, largest)
+    }
+
+    /// Factor on the step after it was rejected with `error` > 1 or an error that is no number.
+    pub(super) fn rejected(&mut self, error: f64) -> f64 {
+        let c = &self.control;
+        self.after_rejection = true;
+        if !error.is_finite() {
+            return FACTOR_NOT_FINITE;
+        }
+        let exponent = c.exponent - c.integral_gain * c.integral_correction;
+        (c.safety / error.powf(exponent)).clamp(c.smallest_factor, 1.0)
+    }
+}
+
+/// Root mean square of `values` over `scale`.
+pub(super) fn norm(values: impl Iterator<Item = f64>, scale: &[f64]) -> f64 {
+    let sum: f64 = values
+        .zip(scale)
+        .map(|(value, scale)| (value / scale).powi(2))
+        .sum();
+    (sum / scale.len().max(1) as f64).sqrt()
+}
+
+/// A first guess of the step from the sizes of x and ẋ (Hairer, Nørsett and Wanner, section II.4,
+/// *Starting step size*, steps a and b).
+pub(super) fn first_guess(x_norm: f64, rates_norm: f64) -> f64 {
+    let too_small = 1e-5;
+    if x_norm < too_small || rates_norm < too_small {
+        1e-6
+    } else {
+        0.01 * x_norm / rates_norm
+    }
+}
+
+/// The first step from the guess, the size of ẋ and an estimate of ẍ (steps d to f).
+pub(super) fn first_step(guess: f64, rates_norm: f64, second_norm: f64, order: f64) -> f64 {
+    let largest = rates_norm.max(second_norm);
+    let step = if !second_norm.is_finite() {
+        1e-3 * guess
+    } else if largest <= 1e-15 {
+        f64::max(1e-6, 1e-3 * guess)
+    } else {
+        (0.01 / largest).powf(1.0 / order)
+    };
+    step.min(100.0 * guess)
+}

@@ -1,0 +1,235 @@
+//! Events, switching times and ranges.
+
+// A failed integration fails the test.
+#![allow(clippy::unwrap_used)]
+
+use appell_runtime::integrate::{
+    Direction, Dop853, Dopri5, Ending, Event, IntegrationError, NoObserver, Options, Range, Rk4,
+    Solver, Step, Watch,
+};
+use std::f64::consts::PI;
+use std::ops::ControlFlow;
+
+fn oscillator(_: f64, x: &[f64], rates: &mut [f64]) {
+    rates[0] = x[1];
+    rates[1] = -x[0];
+}
+
+/// Free fall under 1 m/s²: height, velocity.
+fn free_fall(_: f64, x: &[f64], rates: &mut [f64]) {
+    rates[0] = x[1];
+    rates[1] = -1.0;
+}
+
+/// ẋ = 1, so that x measures time.
+fn clock(_: f64, _: &[f64], rates: &mut [f64]) {
+    rates[0] = 1.0;
+}
+
+/// Times of a linear or quadratic motion are found to the spacing of `f64`.
+const EVENT_TOLERANCE: f64 = 1e-13;
+
+#[test]
+fn a_bouncing_ball_hits_the_ground_on_time() {
+    let mut x = [1.0, 0.0];
+    let (mut t, mut speed) = (0.0, 2f64.sqrt());
+    let mut solver = Solver::<Dop853>::new();
+    let mut exact = 2f64.sqrt();
+    for _ in 0..8 {
+        let events = vec![Event::terminal(Direction::Falling, |_, x: &[f64]| x[0])];
+        let mut watch = Watch {
+            events,
+            ..Watch::default()
+        };
+        let outcome = solver
+            .integrate(
+                free_fall,
+                [t, 100.0],
+                &mut x,
+                &Options::default(),
+                &mut watch,
+                &mut NoObserver,
+            )
+            .unwrap();
+        assert_eq!(outcome.ending, Ending::Event(0));
+        assert!(
+            (outcome.t - exact).abs() < EVENT_TOLERANCE * 10.0,
+            "{} {exact}",
+            outcome.t
+        );
+        t = outcome.t;
+        speed *= 0.8;
+        exact += 2.0 * speed;
+        x[1] *= -0.8;
+    }
+}
+
+#[test]
+fn an_event_in_the_first_step_is_found() {
+    let mut x = [0.0];
+    let events = vec![Event::new(Direction::Rising, |_, x: &[f64]| x[0] - 1e-3)];
+    let mut watch = Watch {
+        events,
+        ..Watch::default()
+    };
+    let options = Options {
+        first_step: Some(1.0),
+        ..Options::default()
+    };
+    let outcome = Solver::<Dop853>::new()
+        .integrate(
+            clock,
+            [0.0, 5.0],
+            &mut x,
+            &options,
+            &mut watch,
+            &mut NoObserver,
+        )
+        .unwrap();
+    assert_eq!(outcome.hits.len(), 1);
+    assert!((outcome.hits[0].t - 1e-3).abs() < EVENT_TOLERANCE);
+}
+
+#[test]
+fn two_events_in_one_step_come_in_the_order_of_time() {
+    let mut x = [0.0];
+    let events = vec![
+        Event::new(Direction::Either, |_, x: &[f64]| x[0] - 0.75),
+        Event::new(Direction::Either, |_, x: &[f64]| {
+            (x[0] - 0.25) * (x[0] - 0.5)
+        }),
+        Event::terminal(Direction::Falling, |_, x: &[f64]| 0.875 - x[0]),
+        Event::new(Direction::Rising, |_, x: &[f64]| 0.875 - x[0]),
+    ];
+    let mut watch = Watch {
+        events,
+        ..Watch::default()
+    };
+    let options = Options {
+        first_step: Some(1.1),
+        ..Options::default()
+    };
+    let outcome = Solver::<Dopri5>::new()
+        .integrate(
+            clock,
+            [0.0, 1.0],
+            &mut x,
+            &options,
+            &mut watch,
+            &mut NoObserver,
+        )
+        .unwrap();
+    assert_eq!(outcome.statistics.steps, 1);
+    let order: Vec<usize> = outcome.hits.iter().map(|hit| hit.event).collect();
+    assert_eq!(order, [1, 1, 0, 2]);
+    for (hit, t) in outcome.hits.iter().zip([0.25, 0.5, 0.75, 0.875]) {
+        assert!((hit.t - t).abs() < EVENT_TOLERANCE, "{} {t}", hit.t);
+        assert!((hit.state[0] - t).abs() < EVENT_TOLERANCE);
+    }
+    assert_eq!(outcome.ending, Ending::Event(2));
+    assert!((x[0] - 0.875).abs() < EVENT_TOLERANCE);
+}
+
+#[test]
+fn a_zero_at_the_start_is_no_crossing() {
+    let mut x = [0.0, 1.0];
+    let events = vec![Event::terminal(Direction::Either, |_, x: &[f64]| x[0])];
+    let mut watch = Watch {
+        events,
+        ..Watch::default()
+    };
+    let outcome = Solver::<Dop853>::new()
+        .integrate(
+            oscillator,
+            [0.0, 9.0],
+            &mut x,
+            &Options::default(),
+            &mut watch,
+            &mut NoObserver,
+        )
+        .unwrap();
+    // The tolerance of the motion, not that of the root.
+    assert!((outcome.t - PI).abs() < 1e-8, "{}", outcome.t);
+}
+
+#[test]
+fn steps_end_exactly_at_switching_times() {
+    let force = |t: f64, _: &[f64], rates: &mut [f64]| {
+        rates[0] = if t < 0.3 {
+            1.0
+        } else if t < 0.7 {
+            -2.0
+        } else {
+            5.0
+        };
+    };
+    let switching_times = [0.7, 0.3, 2.0, -1.0];
+    let mut ends = Vec::new();
+    let mut observer = |step: &Step<'_>| {
+        ends.push(step.t);
+        ControlFlow::Continue(())
+    };
+    let exact = 0.3 - 0.8 + 1.5;
+    let options = Options::default();
+    let mut watch = Watch {
+        switching_times: &switching_times,
+        ..Watch::default()
+    };
+    let mut x = [0.0];
+    let outcome = Solver::<Dop853>::new()
+        .integrate(
+            force,
+            [0.0, 1.0],
+            &mut x,
+            &options,
+            &mut watch,
+            &mut observer,
+        )
+        .unwrap();
+    // A polynomial of degree 1 is integrated exactly by every method.
+    assert!((x[0] - exact).abs() < 1e-14, "{}", x[0]);
+    assert_eq!(outcome.statistics.rejected, 0);
+    for t in [0.3, 0.7, 1.0] {
+        assert!(ends.contains(&t), "{ends:?}");
+    }
+    let mut x = [0.0];
+    Rk4::new()
+        .integrate(force, [0.0, 1.0], &mut x, 0.25, &mut watch, &mut NoObserver)
+        .unwrap();
+    assert!((x[0] - exact).abs() < 1e-14, "{}", x[0]);
+}
+
+#[test]
+fn leaving_a_range_is_a_typed_error_at_the_limit() {
+    let mut x = [1.0, 0.0];
+    let ranges = [Range {
+        component: 0,
+        limits: [0.5, f64::INFINITY],
+    }];
+    let mut watch = Watch {
+        ranges: &ranges,
+        ..Watch::default()
+    };
+    let error = Solver::<Dop853>::new()
+        .integrate(
+            free_fall,
+            [0.0, 9.0],
+            &mut x,
+            &Options::default(),
+            &mut watch,
+            &mut NoObserver,
+        )
+        .unwrap_err();
+    let IntegrationError::OutOfRange {
+        t,
+        coordinate: 0,
+        value,
+        ..
+    } = error
+    else {
+        panic!("{error}")
+    };
+    assert!((t - 1.0).abs() < EVENT_TOLERANCE);
+    assert!((value - 0.5).abs() < EVENT_TOLERANCE);
+    assert!((x[0] - 0.5).abs() < EVENT_TOLERANCE);
+}

@@ -122,3 +122,99 @@ pub enum Function {
     /// `smooth_max(a, b, w)`: the larger of two, rounded over the width `w`.
     SmoothMax,
 }
+
+impl Function {
+    /// Every function with its name and number of arguments.
+    pub const ALL: &'static [(Self, &'static str, usize)] = &[
+        (Self::Sin, "sin", 1),
+        (Self::Cos, "cos", 1),
+        (Self::Tan, "tan", 1),
+        (Self::Asin, "asin", 1),
+        (Self::Acos, "acos", 1),
+        (Self::Atan, "atan", 1),
+        (Self::Atan2, "atan2", 2),
+        (Self::Sinh, "sinh", 1),
+        (Self::Cosh, "cosh", 1),
+        (Self::Tanh, "tanh", 1),
+        (Self::Exp, "exp", 1),
+        (Self::Ln, "ln", 1),
+        (Self::Sqrt, "sqrt", 1),
+        (Self::Abs, "abs", 1),
+        (Self::Sign, "sign", 1),
+        (Self::Hypot, "hypot", 2),
+        (Self::Min, "min", 2),
+        (Self::Max, "max", 2),
+        (Self::SmoothAbs, "smooth_abs", 2),
+        (Self::SmoothSign, "smooth_sign", 2),
+        (Self::SmoothMin, "smooth_min", 3),
+        (Self::SmoothMax, "smooth_max", 3),
+    ];
+
+    /// The function of a name.
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.iter().find(|row| row.1 == name).map(|row| row.0)
+    }
+
+    /// Name in a spec.
+    pub fn name(self) -> &'static str {
+        Self::ALL
+            .iter()
+            .find(|row| row.0 == self)
+            .map_or("", |row| row.1)
+    }
+
+    /// Number of arguments.
+    pub fn arity(self) -> usize {
+        Self::ALL
+            .iter()
+            .find(|row| row.0 == self)
+            .map_or(0, |row| row.2)
+    }
+}
+
+impl BinaryOp {
+    /// As written in a spec.
+    pub const fn symbol(self) -> char {
+        match self {
+            Self::Add => '+',
+            Self::Subtract => '-',
+            Self::Multiply => '*',
+            Self::Divide => '/',
+            Self::Power => '^',
+        }
+    }
+}
+
+impl Relation {
+    /// As written in a spec.
+    pub const fn symbol(self) -> &'static str {
+        match self {
+            Self::Less => "<",
+            Self::LessOrEqual => "<=",
+            Self::Greater => ">",
+            Self::GreaterOrEqual => ">=",
+        }
+    }
+}
+
+impl Expr {
+    /// Calls `seen` with every quantity of the expression, from left to right.
+    pub fn visit(&self, seen: &mut dyn FnMut(Quantity)) {
+        match &self.kind {
+            ExprKind::Number(_) => {}
+            ExprKind::Quantity(quantity) => seen(*quantity),
+            ExprKind::Negate(a) => a.visit(seen),
+            ExprKind::Binary(_, a, b) => {
+                a.visit(seen);
+                b.visit(seen);
+            }
+            ExprKind::Call(_, arguments) => arguments.iter().for_each(|a| a.visit(seen)),
+            ExprKind::Choice {
+                compared, branches, ..
+            } => compared
+                .iter()
+                .chain(branches.iter())
+                .for_each(|a| a.visit(seen)),
+        }
+    }
+}

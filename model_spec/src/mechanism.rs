@@ -4,7 +4,7 @@
 //! [`Mechanism`]; the checks of this crate guarantee that they are in range, that parents come
 //! before children, and that every expression has the dimension its place asks for.
 
-use crate::expr::Expr;
+use crate::expr::{Expr, Span};
 use crate::units::Unit;
 
 /// Index of a parameter in [`Mechanism::parameters`].
@@ -78,6 +78,8 @@ pub struct Label {
     pub unit: Unit,
     /// Line of the definition in the spec, from 1.
     pub line: usize,
+    /// Place of the definition in the spec text; empty for what the language supplies.
+    pub span: Span,
 }
 
 /// A constant of the mechanism.
@@ -148,6 +150,8 @@ pub struct Frame {
     pub turns: Vec<Turn>,
     /// Line of the definition, from 1; 0 for the ground.
     pub line: usize,
+    /// Place of the definition in the spec text; empty for what the language supplies.
+    pub span: Span,
 }
 
 /// One rotation about a coordinate axis.
@@ -187,6 +191,8 @@ pub struct Point {
     pub at: Components,
     /// Line of the definition, from 1; 0 for the origin.
     pub line: usize,
+    /// Place of the definition in the spec text; empty for what the language supplies.
+    pub span: Span,
 }
 
 /// A rigid body or a point mass.
@@ -206,6 +212,8 @@ pub struct Body {
     pub inertia: Option<Inertia>,
     /// Line of the definition, from 1.
     pub line: usize,
+    /// Place of the definition in the spec text; empty for what the language supplies.
+    pub span: Span,
 }
 
 /// Inertia tensor about a centre of mass.
@@ -218,6 +226,8 @@ pub struct Inertia {
     pub matrix: [[Expr; 3]; 3],
     /// Line of the definition, from 1.
     pub line: usize,
+    /// Place of the definition in the spec text; empty for what the language supplies.
+    pub span: Span,
 }
 
 /// A constraint.
@@ -231,6 +241,8 @@ pub struct Constraint {
     pub kind: ConstraintKind,
     /// Line of the definition, from 1.
     pub line: usize,
+    /// Place of the definition in the spec text; empty for what the language supplies.
+    pub span: Span,
 }
 
 /// What a constraint demands.
@@ -293,6 +305,8 @@ pub struct Load {
     pub kind: LoadKind,
     /// Line of the definition, from 1.
     pub line: usize,
+    /// Place of the definition in the spec text; empty for what the language supplies.
+    pub span: Span,
 }
 
 /// What a load does.

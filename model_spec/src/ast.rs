@@ -1,0 +1,196 @@
+//! The syntax tree: what the text says, before names are looked up.
+
+use num_rational::BigRational;
+
+use crate::expr::{BinaryOp, Function, Relation, Span};
+use crate::language::{Key, Kind, Section};
+use crate::units::Unit;
+
+/// A value and where it stands.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Spanned<T> {
+    /// The value.
+    pub value: T,
+    /// Where it stands in the text.
+    pub span: Span,
+}
+
+/// A whole spec, section by section in the order of the text.
+#[derive(Debug, Clone)]
+pub struct SpecAst {
+    /// The sections.
+    pub sections: Vec<SectionAst>,
+    /// Whether parts of the text could not be read; what they define is not known.
+    pub broken: bool,
+}
+
+/// A section.
+#[derive(Debug, Clone)]
+pub struct SectionAst {
+    /// Which one.
+    pub section: &'static Section,
+    /// Where its name stands.
+    pub span: Span,
+    /// Its items in the order of the text; a section that is one table has one item.
+    pub items: Vec<ItemAst>,
+}
+
+/// One definition: a name and a table of keys.
+#[derive(Debug, Clone)]
+pub struct ItemAst {
+    /// Name of what is defined.
+    pub name: Spanned<String>,
+    /// Which kind it is, where the section has several.
+    pub kind: Option<&'static Kind>,
+    /// The keys and their values.
+    pub entries: Vec<Entry>,
+    /// Whether everything in the table could be read.
+    pub intact: bool,
+}
+
+/// A key with its value.
+#[derive(Debug, Clone)]
+pub struct Entry {
+    /// Which key.
+    pub key: &'static Key,
+    /// Where the value stands.
+    pub span: Span,
+    /// The value.
+    pub value: ValueAst,
+}
+
+/// The forms of a value.
+#[derive(Debug, Clone)]
+pub enum ValueAst {
+    /// A sentence, a name or a word.
+    Text(String),
+    /// A number in the unit of the item.
+    Number(BigRational),
+    /// Several numbers.
+    Numbers(Vec<Spanned<BigRational>>),
+    /// A unit.
+    Unit(Unit),
+    /// An expression.
+    Expression(ExprAst),
+    /// Three expressions.
+    Components(Box<[ExprAst; 3]>),
+    /// Nine expressions, row by row.
+    Matrix(Box<[[ExprAst; 3]; 3]>),
+    /// Two names.
+    Pair([Spanned<String>; 2]),
+    /// A list of tables.
+    Tables(Vec<ItemAst>),
+    /// A table.
+    Table(Box<ItemAst>),
+}
+
+/// An expression.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ExprAst {
+    /// What it is.
+    pub kind: ExprAstKind,
+    /// Where it stands in the text.
+    pub span: Span,
+}
+
+/// The forms of an expression.
+#[derive(Debug, Clone, PartialEq)]
+pub enum ExprAstKind {
+    /// A number, with a unit where one is written.
+    Number(BigRational, Option<Box<Unit>>),
+    /// A name.
+    Name(String),
+    /// `dot(name)`
+    Rate(Spanned<String>),
+    /// `-a`
+    Negate(Box<ExprAst>),
+    /// `a ∘ b`
+    Binary(BinaryOp, Box<ExprAst>, Box<ExprAst>),
+    /// A function.
+    Call(Function, Vec<ExprAst>),
+    /// `if(a < b, then, otherwise)`
+    Choice {
+        /// Relation between the compared expressions.
+        relation: Relation,
+        /// Left and right side.
+        compared: Box<[ExprAst; 2]>,
+        /// Value where the relation holds, and value elsewhere.
+        branches: Box<[ExprAst; 2]>,
+    },
+    /// A part that could not be read; the parser has said so.
+    Broken,
+}
+
+impl SpecAst {
+    /// The items of a section, in the order of the text.
+    pub fn items(&self, section: &str) -> &[ItemAst] {
+        self.sections
+            .iter()
+            .find(|s| s.section.name == section)
+            .map_or(&[], |s| &s.items)
+    }
+}
+
+impl ItemAst {
+    /// The entry under a key.
+    pub fn entry(&self, key: &str) -> Option<&Entry> {
+        self.entries.iter().find(|e| e.key.name == key)
+    }
+
+    /// The text under a key: a sentence, a name or a word.
+    pub fn text(&self, key: &str) -> Option<Spanned<&str>> {
+        self.entry(key).and_then(|e| match &e.value {
+            ValueAst::Text(text) => Some(Spanned {
+                value: text.as_str(),
+                span: e.span.clone(),
+            }),
+            _ => None,
+        })
+    }
+
+    /// The number under a key.
+    pub fn number(&self, key: &str) -> Option<Spanned<&BigRational>> {
+        self.entry(key).and_then(|e| match &e.value {
+            ValueAst::Number(number) => Some(Spanned {
+                value: number,
+                span: e.span.clone(),
+            }),
+            _ => None,
+        })
+    }
+
+    /// The numbers under a key.
+    pub fn numbers(&self, key: &str) -> Option<&[Spanned<BigRational>]> {
+        self.entry(key).and_then(|e| match &e.value {
+            ValueAst::Numbers(numbers) => Some(numbers.as_slice()),
+            _ => None,
+        })
+    }
+
+    /// The unit under a key.
+    pub fn unit(&self, key: &str) -> Option<Spanned<&Unit>> {
+        self.entry(key).and_then(|e| match &e.value {
+            ValueAst::Unit(unit) => Some(Spanned {
+                value: unit,
+                span: e.span.clone(),
+            }),
+            _ => None,
+        })
+    }
+
+    /// The expression under a key.
+    pub fn expression(&self, key: &str) -> Option<&ExprAst> {
+        self.entry(key).and_then(|e| match &e.value {
+            ValueAst::Expression(expression) => Some(expression),
+            _ => None,
+        })
+    }
+
+    /// The components under a key.
+    pub fn components(&self, key: &str) -> Option<&[ExprAst; 3]> {
+        self.entry(key).and_then(|e| match &e.value {
+            ValueAst::Components(components) => Some(components.as_ref()),
+            _ => None,
+        })
+    }
+}

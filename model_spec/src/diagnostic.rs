@@ -1,0 +1,154 @@
+//! What is wrong with a spec, where, and what to write instead.
+
+mod codes;
+mod render;
+
+use crate::expr::Span;
+
+pub use codes::{CODES, Code, CodeInfo, Stage};
+
+/// Most diagnostics shown for one file.
+pub const MAX_SHOWN: usize = 100;
+
+/// How much a diagnostic matters.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Severity {
+    /// The spec cannot be used.
+    Error,
+    /// The spec can be used, but something looks unintended.
+    Warning,
+}
+
+/// One finding.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Diagnostic {
+    /// Which rule of the table of codes is broken.
+    pub code: Code,
+    /// How much it matters.
+    pub severity: Severity,
+    /// What is wrong, in one line.
+    pub message: String,
+    /// Places in the spec text with a few words each; the first is the place to look at.
+    pub labels: Vec<(Span, String)>,
+    /// What to write instead.
+    pub help: Option<String>,
+}
+
+impl Diagnostic {
+    /// An error.
+    pub fn error(code: Code, message: impl Into<String>) -> Self {
+        Self {
+            code,
+            severity: Severity::Error,
+            message: message.into(),
+            labels: Vec::new(),
+            help: None,
+        }
+    }
+
+    /// A warning.
+    pub fn warning(code: Code, message: impl Into<String>) -> Self {
+        Self {
+            severity: Severity::Warning,
+            ..Self::error(code, message)
+        }
+    }
+
+    /// Points at a place; the first call names the main one.
+    #[must_use]
+    pub fn at(mut self, span: Span, words: impl Into<String>) -> Self {
+        self.labels.push((span, words.into()));
+        self
+    }
+
+    /// Says what to write instead.
+    #[must_use]
+    pub fn help(mut self, help: impl Into<String>) -> Self {
+        self.help = Some(help.into());
+        self
+    }
+
+    /// Says what to write instead, where that is known.
+    #[must_use]
+    pub fn maybe_help(mut self, help: Option<String>) -> Self {
+        self.help = help.or(self.help);
+        self
+    }
+
+    fn start(&self) -> usize {
+        self.labels.first().map_or(0, |(span, _)| span.start)
+    }
+}
+
+/// Everything that was found in one file, with the text to show it in.
+#[derive(Debug, Clone)]
+pub struct Report {
+    file: String,
+    text: String,
+    diagnostics: Vec<Diagnostic>,
+}
+
+impl Report {
+    /// A report on `text`, read from `file`; the order becomes that of the text.
+    pub fn new(
+        file: impl Into<String>,
+        text: impl Into<String>,
+        mut diagnostics: Vec<Diagnostic>,
+    ) -> Self {
+        diagnostics.sort_by_key(Diagnostic::start);
+        Self {
+            file: file.into(),
+            text: text.into(),
+            diagnostics,
+        }
+    }
+
+    /// Name of the file.
+    pub fn file(&self) -> &str {
+        &self.file
+    }
+
+    /// The findings, in the order of the text.
+    pub fn diagnostics(&self) -> &[Diagnostic] {
+        &self.diagnostics
+    }
+
+    /// Whether one of the findings is an error.
+    pub fn has_errors(&self) -> bool {
+        self.diagnostics
+            .iter()
+            .any(|d| d.severity == Severity::Error)
+    }
+
+    /// Line and column of a place, both from 1; the column counts characters.
+    pub fn line_column(&self, at: usize) -> (usize, usize) {
+        line_column(&self.text, at)
+    }
+
+    /// The report as plain text.
+    pub fn plain(&self) -> String {
+        render::render(self, false)
+    }
+
+    /// The report with terminal colours.
+    pub fn coloured(&self) -> String {
+        render::render(self, true)
+    }
+}
+
+impl std::fmt::Display for Report {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(&self.plain())
+    }
+}
+
+impl std::error::Error for Report {}
+
+/// Line and column of a byte of `text`, both from 1.
+pub(crate) fn line_column(text: &str, at: usize) -> (usize, usize) {
+    let at = text.floor_char_boundary(at);
+    let before = &text[..at];
+    let line = before.bytes().filter(|b| *b == b'\n').count() + 1;
+    let start = before.rfind('\n').map_or(0, |i| i + 1);
+    (line, before[start..].chars().count() + 1)
+}

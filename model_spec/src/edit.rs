@@ -1,0 +1,1 @@
+//! Writing parameter values back.

@@ -1,0 +1,235 @@
+//! Text to syntax tree.
+
+mod expression;
+mod items;
+mod lexer;
+mod source;
+mod values;
+
+use toml::de::{DeTable, DeValue};
+
+use crate::ast::{SectionAst, SpecAst};
+use crate::diagnostic::{Code, Diagnostic};
+use crate::expr::Span;
+use crate::language::{SECTIONS, Section};
+use crate::limits::MAX_FILE;
+use crate::suggest;
+
+pub(crate) use expression::zero;
+
+/// Most diagnostics collected; more would help nobody.
+const MAX_FINDINGS: usize = 1000;
+
+/// A key of a TOML table, with its place.
+type TomlKey<'a> = toml::Spanned<std::borrow::Cow<'a, str>>;
+/// A value of a TOML table, with its place.
+type TomlValue<'a> = toml::Spanned<DeValue<'a>>;
+
+/// Reads a spec; what could not be read is left out of the tree and told in the diagnostics.
+pub fn parse(text: &str) -> (SpecAst, Vec<Diagnostic>) {
+    let mut reader = Reader {
+        text,
+        findings: Vec::new(),
+        broken: false,
+        incomplete: false,
+    };
+    let mut sections = Vec::new();
+    if text.len() > MAX_FILE {
+        reader.broken = true;
+        reader.tell(Diagnostic::error(
+            Code::LimitExceeded,
+            format!(
+                "a spec has at most {MAX_FILE} bytes, this one has {}",
+                text.len()
+            ),
+        ));
+    } else {
+        reader.characters();
+        let (table, errors) = DeTable::parse_recoverable(text);
+        let broken_lines = reader.syntax_errors(&errors);
+        sections = reader.sections(table.get_ref());
+        reader.forget_findings_on(&broken_lines);
+    }
+    let ast = SpecAst {
+        sections,
+        broken: reader.broken || reader.incomplete,
+    };
+    (ast, reader.findings)
+}
+
+struct Reader<'a> {
+    text: &'a str,
+    findings: Vec<Diagnostic>,
+    /// The TOML itself is broken: whatever is missing may only be unread.
+    broken: bool,
+    /// Some definition was refused: its name may be used without being known.
+    incomplete: bool,
+}
+
+impl Reader<'_> {
+    fn tell(&mut self, diagnostic: Diagnostic) {
+        if self.findings.len() < MAX_FINDINGS {
+            self.findings.push(diagnostic);
+        }
+    }
+
+    /// Refuses what cannot be seen or reorders what is seen, comments included.
+    fn characters(&mut self) {
+        let hidden: Vec<(usize, char)> = self
+            .text
+            .char_indices()
+            .filter(|(at, c)| is_forbidden(*c) && !(*at == 0 && *c == '\u{feff}'))
+            .collect();
+        for (at, c) in hidden.into_iter().take(5) {
+            self.tell(
+                Diagnostic::error(
+                    Code::ForbiddenCharacter,
+                    format!("the character U+{:04X} is not allowed", u32::from(c)),
+                )
+                .at(at..at + c.len_utf8(), "hidden here")
+                .help("remove it"),
+            );
+        }
+    }
+
+    /// Tells what is wrong with the TOML, once a line; returns the lines.
+    fn syntax_errors(&mut self, errors: &[toml::de::Error]) -> Vec<Span> {
+        let mut lines: Vec<Span> = Vec::new();
+        for error in errors {
+            self.broken = true;
+            let at = error.span().unwrap_or(0..0);
+            if lines.iter().any(|line| line.contains(&at.start)) {
+                continue;
+            }
+            lines.push(self.line(at.start));
+            let message = error.message().lines().next().unwrap_or_default();
+            let diagnostic = if message.contains("duplicate key") {
+                Diagnostic::error(Code::DuplicateName, "this name is already defined above")
+            } else {
+                Diagnostic::error(Code::TomlSyntax, message)
+            };
+            self.tell(diagnostic.at(at, ""));
+        }
+        lines
+    }
+
+    /// What follows from broken TOML on the same line is not worth telling.
+    fn forget_findings_on(&mut self, lines: &[Span]) {
+        self.findings.retain(|finding| {
+            matches!(finding.code, Code::TomlSyntax | Code::DuplicateName)
+                || !finding
+                    .labels
+                    .first()
+                    .is_some_and(|(at, _)| lines.iter().any(|line| line.contains(&at.start)))
+        });
+    }
+
+    /// The line around a place, its line break included.
+    fn line(&self, at: usize) -> Span {
+        let at = self.text.floor_char_boundary(at);
+        let start = self.text[..at].rfind('\n').map_or(0, |i| i + 1);
+        let end = self.text[at..]
+            .find('\n')
+            .map_or(self.text.len() + 1, |i| at + i + 1);
+        start..end
+    }
+
+    fn sections(&mut self, table: &DeTable<'_>) -> Vec<SectionAst> {
+        let mut sections = Vec::new();
+        for (key, value) in in_text_order(table) {
+            let name = key.get_ref().as_ref();
+            let Some(section) = SECTIONS.iter().find(|s| s.name == name) else {
+                self.unknown_section(name, key.span());
+                continue;
+            };
+            if let DeValue::Table(table) = value.get_ref() {
+                sections.push(SectionAst {
+                    section,
+                    span: key.span(),
+                    items: self.items(section, key, table),
+                });
+            } else {
+                self.wrong_type(value, "a table");
+            }
+        }
+        if !self.broken && !self.incomplete {
+            self.missing_sections(&sections);
+        }
+        sections
+    }
+
+    fn unknown_section(&mut self, name: &str, at: Span) {
+        let known = || SECTIONS.iter().map(|s: &Section| s.name);
+        let help = match suggest::closest(name, known()) {
+            Some(similar) => format!("did you mean `[{similar}]`?"),
+            None => format!(
+                "the sections are {}",
+                known().collect::<Vec<_>>().join(", ")
+            ),
+        };
+        let shown: String = name.chars().take(80).collect();
+        self.incomplete = true;
+        self.tell(
+            Diagnostic::error(Code::UnknownSection, format!("unknown section `{shown}`"))
+                .at(at, "")
+                .help(help),
+        );
+    }
+
+    fn missing_sections(&mut self, found: &[SectionAst]) {
+        for section in SECTIONS.iter().filter(|s| s.required) {
+            let present = found.iter().find(|s| s.section.name == section.name);
+            if present.is_none_or(|s| s.items.is_empty()) {
+                let at = present.map_or(0..0, |s| s.span.clone());
+                let state = if present.is_some() {
+                    "empty"
+                } else {
+                    "missing"
+                };
+                self.tell(
+                    Diagnostic::error(
+                        Code::MissingSection,
+                        format!("the section `[{}]` is {state}", section.name),
+                    )
+                    .at(at, "")
+                    .help(section.about),
+                );
+            }
+        }
+    }
+
+    fn wrong_type(&mut self, value: &TomlValue<'_>, wanted: &str) {
+        let found = words(value.get_ref());
+        self.tell(
+            Diagnostic::error(Code::WrongType, format!("expected {wanted}, found {found}"))
+                .at(value.span(), found),
+        );
+    }
+}
+
+/// The entries of a table as they stand in the text; the table itself sorts them by name.
+fn in_text_order<'t, 'a>(table: &'t DeTable<'a>) -> Vec<(&'t TomlKey<'a>, &'t TomlValue<'a>)> {
+    let mut entries: Vec<_> = table.iter().collect();
+    entries.sort_by_key(|(key, _)| key.span().start);
+    entries
+}
+
+/// A value for people.
+fn words(value: &DeValue<'_>) -> &'static str {
+    match value {
+        DeValue::String(_) => "a string",
+        DeValue::Integer(_) | DeValue::Float(_) => "a number",
+        DeValue::Boolean(_) => "a truth value",
+        DeValue::Datetime(_) => "a date or time",
+        DeValue::Array(_) => "a list",
+        DeValue::Table(_) => "a table",
+    }
+}
+
+/// Control characters, and marks that hide or reorder text.
+fn is_forbidden(c: char) -> bool {
+    (c.is_control() && !matches!(c, '\n' | '\r' | '\t'))
+        || matches!(c,
+            '\u{ad}' | '\u{61c}' | '\u{180e}' | '\u{200b}'..='\u{200f}' | '\u{2028}'..='\u{202e}'
+            | '\u{2060}'..='\u{206f}' | '\u{feff}' | '\u{fff9}'..='\u{fffb}' | '\u{e0000}'..='\u{e007f}')
+}

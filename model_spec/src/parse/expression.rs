@@ -1,0 +1,354 @@
+//! Expressions, by precedence climbing.
+
+use num_rational::BigRational;
+
+use crate::ast::{ExprAst, ExprAstKind, Spanned};
+use crate::diagnostic::{Code, Diagnostic};
+use crate::expr::{BinaryOp, Function};
+use crate::limits::MAX_DEPTH;
+use crate::number::{NumberError, exact};
+use crate::suggest;
+use crate::units;
+
+use super::lexer::{Located, Token, tokens};
+use super::source::Source;
+use super::values::unit_diagnostic;
+
+/// Binding power of a sign: as strong as a product, weaker than a power.
+const SIGN: u8 = 3;
+
+/// Reads an expression; the first thing that is wrong ends it.
+pub(super) fn parse(source: &Source<'_>) -> Result<ExprAst, Diagnostic> {
+    let tokens = tokens(source)?;
+    let mut parser = Parser {
+        source,
+        tokens,
+        at: 0,
+        depth: 0,
+    };
+    if parser.peek().token == Token::End {
+        return Err(
+            Diagnostic::error(Code::ExpressionSyntax, "the expression is empty")
+                .at(source.whole.clone(), ""),
+        );
+    }
+    let tree = parser.expression(0)?;
+    if parser.peek().token == Token::End {
+        Ok(tree.expr)
+    } else {
+        Err(parser.stray())
+    }
+}
+
+/// An expression and its height; deep trees would overflow the stack of whoever walks them.
+struct Tree {
+    expr: ExprAst,
+    height: usize,
+    /// Place in the text of the expression, to join places before they become places in the file.
+    start: usize,
+    end: usize,
+}
+
+struct Parser<'s, 'a> {
+    source: &'s Source<'a>,
+    tokens: Vec<Located<'a>>,
+    at: usize,
+    depth: usize,
+}
+
+impl<'a> Parser<'_, 'a> {
+    /// The next token; the list ends with [`Token::End`], which is never passed.
+    fn peek(&self) -> Located<'a> {
+        self.tokens[self.at.min(self.tokens.len() - 1)]
+    }
+
+    fn next(&mut self) -> Located<'a> {
+        let token = self.peek();
+        self.at += 1;
+        token
+    }
+
+    fn error(&self, at: Located<'_>, message: impl Into<String>) -> Diagnostic {
+        Diagnostic::error(Code::ExpressionSyntax, message)
+            .at(self.source.span(at.start..at.end), "")
+    }
+
+    /// A token that cannot follow what stands before it.
+    fn stray(&self) -> Diagnostic {
+        let found = self.peek();
+        let words = found.token.words();
+        match found.token {
+            Token::Number(_) | Token::Name(_) | Token::Symbol('(') => self
+                .error(found, format!("expected an operator before {words}"))
+                .help("a product is written with `*`"),
+            Token::Relation(_) => self
+                .error(found, format!("{words} is allowed only inside `if(…)`"))
+                .help("write `if(a < b, x, y)`"),
+            Token::Unit(_) => self
+                .error(found, "a unit may only follow a number")
+                .help("write `5 [N]`"),
+            _ => self.error(found, format!("{words} is not expected here")),
+        }
+    }
+
+    fn expect(&mut self, symbol: char, after: &str) -> Result<Located<'a>, Diagnostic> {
+        let found = self.peek();
+        if found.token == Token::Symbol(symbol) {
+            return Ok(self.next());
+        }
+        let words = found.token.words();
+        Err(self.error(
+            found,
+            format!("expected `{symbol}` after {after}, found {words}"),
+        ))
+    }
+
+    fn node(
+        &self,
+        kind: ExprAstKind,
+        start: usize,
+        end: usize,
+        height: usize,
+    ) -> Result<Tree, Diagnostic> {
+        if height > MAX_DEPTH {
+            return Err(self.too_deep());
+        }
+        Ok(Tree {
+            expr: ExprAst {
+                kind,
+                span: self.source.span(start..end),
+            },
+            height,
+            start,
+            end,
+        })
+    }
+
+    fn too_deep(&self) -> Diagnostic {
+        Diagnostic::error(
+            Code::LimitExceeded,
+            format!("an expression nests at most {MAX_DEPTH} operations"),
+        )
+        .at(self.source.whole.clone(), "")
+    }
+
+    fn expression(&mut self, least: u8) -> Result<Tree, Diagnostic> {
+        self.depth += 1;
+        if self.depth > MAX_DEPTH {
+            return Err(self.too_deep());
+        }
+        let mut left = self.prefix(least)?;
+        while let Some((op, binds_left, binds_right)) = operator(self.peek().token) {
+            if binds_left < least {
+                break;
+            }
+            self.next();
+            let right = self.expression(binds_right)?;
+            let (start, end) = (left.start, right.end);
+            let height = 1 + left.height.max(right.height);
+            let kind = ExprAstKind::Binary(op, Box::new(left.expr), Box::new(right.expr));
+            left = self.node(kind, start, end, height)?;
+        }
+        self.depth -= 1;
+        Ok(left)
+    }
+
+    fn prefix(&mut self, least: u8) -> Result<Tree, Diagnostic> {
+        let first = self.next();
+        match first.token {
+            Token::Number(text) => self.number(first, text),
+            Token::Name(name) => self.name(first, name),
+            Token::Symbol('-') => {
+                // In `2^-1*x` the sign ends where the power ends.
+                let inner = self.expression(SIGN.max(least))?;
+                let (end, height) = (inner.end, inner.height + 1);
+                let kind = ExprAstKind::Negate(Box::new(inner.expr));
+                self.node(kind, first.start, end, height)
+            }
+            Token::Symbol('(') => {
+                let inner = self.expression(0)?;
+                let close = self.expect(')', "the expression in parentheses")?;
+                // The parentheses belong to the place, not to the tree.
+                Ok(Tree {
+                    start: first.start,
+                    end: close.end,
+                    ..inner
+                })
+            }
+            Token::End => Err(self.error(first, "the expression ends too early")),
+            other => Err(self.error(
+                first,
+                format!("expected a number, a name or `(`, found {}", other.words()),
+            )),
+        }
+    }
+
+    fn number(&mut self, first: Located<'_>, text: &str) -> Result<Tree, Diagnostic> {
+        let value = exact(text).map_err(|e| {
+            number_diagnostic(e, text).at(self.source.span(first.start..first.end), "")
+        })?;
+        let mut end = first.end;
+        let mut unit = None;
+        let next = self.peek();
+        if let Token::Unit(text) = next.token {
+            self.next();
+            end = next.end;
+            let parsed = units::parse(text).map_err(|e| {
+                unit_diagnostic(&e, |at| {
+                    self.source
+                        .span(next.start + 1 + at.start..next.start + 1 + at.end)
+                })
+            })?;
+            unit = Some(Box::new(parsed));
+        }
+        self.node(ExprAstKind::Number(value, unit), first.start, end, 1)
+    }
+
+    fn name(&mut self, first: Located<'a>, name: &str) -> Result<Tree, Diagnostic> {
+        if self.peek().token != Token::Symbol('(') {
+            let kind = ExprAstKind::Name(name.to_owned());
+            return self.node(kind, first.start, first.end, 1);
+        }
+        match name {
+            "dot" => self.rate(first),
+            "if" => self.choice(first),
+            _ => match Function::from_name(name) {
+                Some(function) => self.call(first, function),
+                None => Err(self.unknown_function(first, name)),
+            },
+        }
+    }
+
+    fn rate(&mut self, first: Located<'a>) -> Result<Tree, Diagnostic> {
+        self.expect('(', "`dot`")?;
+        let inner = self.next();
+        let Token::Name(name) = inner.token else {
+            return Err(self
+                .error(inner, "`dot` takes the name of a coordinate")
+                .help("write out derivatives of expressions, such as `2*q*dot(q)`"));
+        };
+        let close = self.expect(')', "the coordinate")?;
+        let kind = ExprAstKind::Rate(Spanned {
+            value: name.to_owned(),
+            span: self.source.span(inner.start..inner.end),
+        });
+        self.node(kind, first.start, close.end, 1)
+    }
+
+    fn call(&mut self, first: Located<'a>, function: Function) -> Result<Tree, Diagnostic> {
+        let open = self.expect('(', "the function")?;
+        let mut arguments = Vec::new();
+        let mut height = 0;
+        if self.peek().token != Token::Symbol(')') {
+            loop {
+                let argument = self.expression(0)?;
+                height = height.max(argument.height);
+                arguments.push(argument.expr);
+                if self.peek().token != Token::Symbol(',') {
+                    break;
+                }
+                self.next();
+            }
+        }
+        let close = self.expect(')', "the arguments")?;
+        let (name, arity) = (function.name(), function.arity());
+        if arguments.len() != arity {
+            let plural = if arity == 1 { "" } else { "s" };
+            return Err(Diagnostic::error(
+                Code::WrongArity,
+                format!(
+                    "`{name}` takes {arity} argument{plural}, found {}",
+                    arguments.len()
+                ),
+            )
+            .at(self.source.span(open.start..close.end), ""));
+        }
+        let kind = ExprAstKind::Call(function, arguments);
+        self.node(kind, first.start, close.end, height + 1)
+    }
+
+    fn choice(&mut self, first: Located<'a>) -> Result<Tree, Diagnostic> {
+        self.expect('(', "`if`")?;
+        let left = self.expression(0)?;
+        let relation = self.next();
+        let Token::Relation(symbol) = relation.token else {
+            return Err(self
+                .error(relation, "`if` starts with a comparison")
+                .help("write `if(a < b, x, y)`"));
+        };
+        let right = self.expression(0)?;
+        self.expect(',', "the comparison")?;
+        let then = self.expression(0)?;
+        self.expect(',', "the value where the comparison holds")?;
+        let otherwise = self.expression(0)?;
+        let close = self.expect(')', "the value elsewhere")?;
+        let height = [&left, &right, &then, &otherwise]
+            .iter()
+            .map(|tree| tree.height)
+            .max()
+            .unwrap_or(0);
+        let kind = ExprAstKind::Choice {
+            relation: symbol,
+            compared: Box::new([left.expr, right.expr]),
+            branches: Box::new([then.expr, otherwise.expr]),
+        };
+        self.node(kind, first.start, close.end, height + 1)
+    }
+
+    fn unknown_function(&self, at: Located<'_>, name: &str) -> Diagnostic {
+        let known = Function::ALL.iter().map(|row| row.1).chain(["dot", "if"]);
+        let familiar = match name {
+            "log" => Some("ln"),
+            "arctan" => Some("atan"),
+            "arcsin" => Some("asin"),
+            "arccos" => Some("acos"),
+            "arctan2" => Some("atan2"),
+            "sgn" | "signum" => Some("sign"),
+            "der" | "diff" | "ddt" => Some("dot"),
+            "pow" => Some("^"),
+            _ => suggest::closest(name, known),
+        };
+        Diagnostic::error(Code::UnknownFunction, format!("unknown function `{name}`"))
+            .at(self.source.span(at.start..at.end), "")
+            .maybe_help(familiar.map(|f| format!("did you mean `{f}`?")))
+    }
+}
+
+/// An operator with its binding powers to the left and to the right.
+fn operator(token: Token<'_>) -> Option<(BinaryOp, u8, u8)> {
+    match token {
+        Token::Symbol('+') => Some((BinaryOp::Add, 1, 2)),
+        Token::Symbol('-') => Some((BinaryOp::Subtract, 1, 2)),
+        Token::Symbol('*') => Some((BinaryOp::Multiply, 3, 4)),
+        Token::Symbol('/') => Some((BinaryOp::Divide, 3, 4)),
+        // To the right alike: a^b^c is a^(b^c).
+        Token::Symbol('^') => Some((BinaryOp::Power, 6, 5)),
+        _ => None,
+    }
+}
+
+/// What a refused number is told; the caller adds the place.
+pub(super) fn number_diagnostic(error: NumberError, text: &str) -> Diagnostic {
+    // A hostile number may be a megabyte long.
+    let short: String = text.chars().take(30).collect();
+    match error {
+        NumberError::NotFinite => {
+            Diagnostic::error(Code::NotFinite, format!("`{short}` is not a finite number"))
+        }
+        NumberError::TooLarge => Diagnostic::error(
+            Code::LimitExceeded,
+            "the number has too many digits or too large an exponent",
+        ),
+        NumberError::Syntax => {
+            Diagnostic::error(Code::ExpressionSyntax, format!("`{short}` is not a number"))
+        }
+    }
+}
+
+/// The number zero, for what is left out.
+pub(crate) fn zero(span: crate::expr::Span) -> ExprAst {
+    ExprAst {
+        kind: ExprAstKind::Number(BigRational::from_integer(0.into()), None),
+        span,
+    }
+}

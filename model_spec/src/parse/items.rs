@@ -1,0 +1,347 @@
+//! Sections, items and tables of keys.
+
+use toml::de::{DeTable, DeValue};
+
+use crate::ast::{Entry, ItemAst, Spanned, ValueAst};
+use crate::diagnostic::{Code, Diagnostic};
+use crate::expr::Span;
+use crate::language::{Form, Key, Kind, Need, Section, Shape};
+use crate::limits::{MAX_ITEMS, MAX_NAME};
+use crate::suggest;
+
+use super::{Reader, TomlKey, TomlValue, in_text_order};
+
+/// The form of every value in a section of numbers.
+static STATE_VALUE: Key = Key {
+    name: "value",
+    form: Form::Number,
+    need: Need::Always,
+    about: "Initial value in the unit of the state.",
+};
+
+/// Name and place of the thing that a table defines.
+struct Owner<'a> {
+    name: &'a str,
+    span: Span,
+}
+
+impl Reader<'_> {
+    pub(super) fn items(
+        &mut self,
+        section: &'static Section,
+        key: &TomlKey<'_>,
+        table: &DeTable<'_>,
+    ) -> Vec<ItemAst> {
+        if let Shape::Table(keys) = section.shape {
+            let owner = Owner {
+                name: section.name,
+                span: key.span(),
+            };
+            return vec![self.keys(&owner, keys, None, table)];
+        }
+        if table.len() > MAX_ITEMS {
+            self.tell(
+                Diagnostic::error(
+                    Code::LimitExceeded,
+                    format!("`[{}]` has at most {MAX_ITEMS} items", section.name),
+                )
+                .at(key.span(), format!("{} items", table.len())),
+            );
+        }
+        let mut items = Vec::new();
+        for (key, value) in in_text_order(table).into_iter().take(MAX_ITEMS) {
+            if self.is_valid_name(key.get_ref(), key.span()) {
+                items.extend(self.item(section, key, value));
+            } else {
+                self.incomplete = true;
+            }
+        }
+        items
+    }
+
+    fn item(
+        &mut self,
+        section: &'static Section,
+        key: &TomlKey<'_>,
+        value: &TomlValue<'_>,
+    ) -> Option<ItemAst> {
+        let owner = Owner {
+            name: key.get_ref(),
+            span: key.span(),
+        };
+        let item = match (&section.shape, value.get_ref()) {
+            (Shape::Items(keys, _), DeValue::Table(table)) => self.keys(&owner, keys, None, table),
+            (Shape::Items(keys, Some(only)), _) => {
+                let key = keys.iter().find(|k| k.name == *only)?;
+                self.single(&owner, key, value)
+            }
+            (Shape::States, _) => self.single(&owner, &STATE_VALUE, value),
+            (Shape::Kinds(kinds), DeValue::Table(table)) => self.kind(&owner, kinds, table),
+            _ => {
+                self.wrong_type(value, "a table");
+                self.empty(&owner)
+            }
+        };
+        Some(item)
+    }
+
+    /// An item that is written as one bare value.
+    fn single(&mut self, owner: &Owner<'_>, key: &'static Key, value: &TomlValue<'_>) -> ItemAst {
+        let mut item = self.empty(owner);
+        if let Some(read) = self.value(key, value) {
+            item.entries.push(Entry {
+                key,
+                span: value.span(),
+                value: read,
+            });
+            item.intact = true;
+        }
+        item
+    }
+
+    /// An item of which nothing is known but the name.
+    #[expect(clippy::unused_self, reason = "reads like its neighbours")]
+    fn empty(&self, owner: &Owner<'_>) -> ItemAst {
+        ItemAst {
+            name: Spanned {
+                value: owner.name.to_owned(),
+                span: owner.span.clone(),
+            },
+            kind: None,
+            entries: Vec::new(),
+            intact: false,
+        }
+    }
+
+    /// An item whose keys depend on its kind.
+    fn kind(&mut self, owner: &Owner<'_>, kinds: &'static [Kind], table: &DeTable<'_>) -> ItemAst {
+        let list = || kinds.iter().map(|k| k.word).collect::<Vec<_>>().join(", ");
+        let Some(value) = table.get("kind") else {
+            self.missing_key(owner, "kind", &format!("the kinds are {}", list()));
+            return self.empty(owner);
+        };
+        let DeValue::String(word) = value.get_ref() else {
+            self.wrong_type(value, "one of the kinds, as a string");
+            return self.empty(owner);
+        };
+        let Some(kind) = kinds.iter().find(|k| k.word == word.as_ref()) else {
+            let help = suggest::closest(word, kinds.iter().map(|k| k.word)).map_or_else(
+                || format!("the kinds are {}", list()),
+                |similar| format!("did you mean `{similar}`?"),
+            );
+            self.unknown_word(word, "kind", value.span(), help);
+            return self.empty(owner);
+        };
+        self.keys(owner, kind.keys, Some((kind, kinds)), table)
+    }
+
+    pub(super) fn unknown_word(&mut self, word: &str, what: &str, at: Span, help: String) {
+        let shown: String = word.chars().take(80).collect();
+        self.tell(
+            Diagnostic::error(Code::UnknownWord, format!("unknown {what} `{shown}`"))
+                .at(at, "")
+                .help(help),
+        );
+    }
+
+    fn keys(
+        &mut self,
+        owner: &Owner<'_>,
+        keys: &'static [Key],
+        kind: Option<(&'static Kind, &'static [Kind])>,
+        table: &DeTable<'_>,
+    ) -> ItemAst {
+        let mut item = self.empty(owner);
+        item.kind = kind.map(|k| k.0);
+        item.intact = true;
+        let mut meant: Vec<&str> = Vec::new();
+        for (name, value) in in_text_order(table) {
+            let text = name.get_ref().as_ref();
+            if kind.is_some() && text == "kind" {
+                continue;
+            }
+            let Some(key) = keys.iter().find(|k| k.name == text) else {
+                item.intact = false;
+                meant.extend(self.unknown_key(text, name.span(), keys, kind));
+                continue;
+            };
+            match self.value(key, value) {
+                Some(read) => item.entries.push(Entry {
+                    key,
+                    span: value.span(),
+                    value: read,
+                }),
+                None => item.intact = false,
+            }
+        }
+        let present = |key: &Key| table.contains_key(key.name) || meant.contains(&key.name);
+        item.intact &= self.required(owner, keys, present);
+        item
+    }
+
+    /// Tells about a key that does not exist; returns the one that was probably meant.
+    fn unknown_key(
+        &mut self,
+        name: &str,
+        at: Span,
+        keys: &'static [Key],
+        kind: Option<(&'static Kind, &'static [Kind])>,
+    ) -> Option<&'static str> {
+        let similar = suggest::closest(name, keys.iter().map(|k| k.name));
+        let elsewhere = kind.and_then(|(_, kinds)| {
+            kinds
+                .iter()
+                .find(|k| k.keys.iter().any(|key| key.name == name))
+        });
+        let help = match (similar, elsewhere) {
+            (Some(similar), _) => format!("did you mean `{similar}`?"),
+            (None, Some(other)) => format!("`{name}` belongs to the kind `{}`", other.word),
+            (None, None) => {
+                let names: Vec<&str> = keys.iter().map(|k| k.name).collect();
+                format!("the keys are {}", names.join(", "))
+            }
+        };
+        let shown: String = name.chars().take(80).collect();
+        self.tell(
+            Diagnostic::error(Code::UnknownKey, format!("unknown key `{shown}`"))
+                .at(at, "")
+                .help(help),
+        );
+        similar
+    }
+
+    /// Whether every required key is there, and only one of several ways to say a thing.
+    fn required(
+        &mut self,
+        owner: &Owner<'_>,
+        keys: &'static [Key],
+        present: impl Fn(&Key) -> bool,
+    ) -> bool {
+        let mut complete = true;
+        for key in keys.iter().filter(|k| k.need == Need::Always) {
+            if !present(key) {
+                self.missing_key(owner, key.name, key.about);
+                complete = false;
+            }
+        }
+        let way = |n: u8| keys.iter().filter(move |k| k.need == Need::Way(n));
+        let ways: Vec<u8> = (0..3).filter(|n| way(*n).next().is_some()).collect();
+        let chosen: Vec<u8> = ways
+            .iter()
+            .copied()
+            .filter(|n| way(*n).any(&present))
+            .collect();
+        match chosen.as_slice() {
+            [] if ways.is_empty() => {}
+            [] => {
+                let texts: Vec<String> = ways
+                    .iter()
+                    .map(|n| join(way(*n).map(|k| k.name), " with "))
+                    .collect();
+                self.missing_key(
+                    owner,
+                    way(ways[0]).next().map_or("", |k| k.name),
+                    &format!("write {}", texts.join(", or ")),
+                );
+                complete = false;
+            }
+            [one] => {
+                for key in way(*one) {
+                    if !present(key) {
+                        self.missing_key(owner, key.name, key.about);
+                        complete = false;
+                    }
+                }
+            }
+            [first, second, ..] => {
+                self.conflict(
+                    owner,
+                    &join(way(*first).map(|k| k.name), " with "),
+                    &join(way(*second).map(|k| k.name), " with "),
+                );
+                complete = false;
+            }
+        }
+        complete
+    }
+
+    fn missing_key(&mut self, owner: &Owner<'_>, key: &str, help: &str) {
+        if self.broken {
+            return;
+        }
+        self.tell(
+            Diagnostic::error(Code::MissingKey, format!("`{}` has no `{key}`", owner.name))
+                .at(owner.span.clone(), format!("`{key}` is missing"))
+                .help(help),
+        );
+    }
+
+    fn conflict(&mut self, owner: &Owner<'_>, first: &str, second: &str) {
+        self.tell(
+            Diagnostic::error(
+                Code::ConflictingKeys,
+                format!("`{}` has both {first} and {second}", owner.name),
+            )
+            .at(owner.span.clone(), "said twice")
+            .help(format!("keep either {first} or {second}")),
+        );
+    }
+
+    /// Whether a name may be defined; `false` where that has been told.
+    pub(super) fn is_valid_name(&mut self, name: &str, at: Span) -> bool {
+        let mut bytes = name.bytes();
+        let valid = bytes.next().is_some_and(|b| b.is_ascii_alphabetic())
+            && bytes.all(|b| b.is_ascii_alphanumeric() || b == b'_')
+            && name.len() <= MAX_NAME;
+        if valid {
+            return true;
+        }
+        let shown: String = name.chars().take(80).collect();
+        self.tell(
+            Diagnostic::error(
+                Code::InvalidName,
+                format!("`{}` is not a valid name", shown.escape_debug()),
+            )
+            .at(at, "")
+            .help(format!(
+                "a name is a letter, then letters, digits and `_`, at most {MAX_NAME} in all"
+            )),
+        );
+        false
+    }
+
+    /// A table inside a value.
+    pub(super) fn inner_table(
+        &mut self,
+        name: &str,
+        keys: &'static [Key],
+        value: &TomlValue<'_>,
+    ) -> Option<ValueAst> {
+        self.table_item(name, keys, value)
+            .map(|item| ValueAst::Table(Box::new(item)))
+    }
+
+    pub(super) fn table_item(
+        &mut self,
+        name: &str,
+        keys: &'static [Key],
+        value: &TomlValue<'_>,
+    ) -> Option<ItemAst> {
+        let DeValue::Table(table) = value.get_ref() else {
+            self.wrong_type(value, "a table");
+            return None;
+        };
+        let owner = Owner {
+            name,
+            span: value.span(),
+        };
+        Some(self.keys(&owner, keys, None, table))
+    }
+}
+
+fn join<'a>(names: impl Iterator<Item = &'a str>, with: &str) -> String {
+    names
+        .map(|name| format!("`{name}`"))
+        .collect::<Vec<_>>()
+        .join(with)
+}

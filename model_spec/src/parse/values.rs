@@ -1,0 +1,326 @@
+//! Values: numbers, units, names, sentences, and what is made of expressions.
+
+use std::ops::Range;
+
+use num_bigint::BigInt;
+use num_rational::BigRational;
+use num_traits::Num;
+use toml::de::DeValue;
+
+use crate::ast::{ExprAst, ExprAstKind, Spanned, ValueAst};
+use crate::diagnostic::{Code, Diagnostic};
+use crate::expr::Span;
+use crate::language::{Form, Key};
+use crate::limits::{MAX_DIGITS, MAX_SAMPLES, MAX_SENTENCE, MAX_TURNS};
+use crate::number::{NumberError, exact};
+use crate::suggest;
+use crate::units::{self, UnitError};
+
+use super::source::Source;
+use super::{Reader, TomlValue, expression, is_forbidden};
+
+impl Reader<'_> {
+    /// Reads the value of a key; `None` where it could not be read, which has been told.
+    pub(super) fn value(&mut self, key: &'static Key, value: &TomlValue<'_>) -> Option<ValueAst> {
+        match &key.form {
+            Form::Text => self.sentence(value).map(ValueAst::Text),
+            Form::Name => {
+                let name = self.string(value, "a name")?;
+                self.is_valid_name(name, value.span())
+                    .then(|| ValueAst::Text(name.to_owned()))
+            }
+            Form::Reference(target) => self
+                .string(value, &format!("the name of a {}", target.word()))
+                .map(|name| ValueAst::Text(name.to_owned())),
+            Form::Unit => self.unit(value).map(ValueAst::Unit),
+            Form::Number => self.number(value).map(ValueAst::Number),
+            Form::Numbers => self.numbers(value, None).map(ValueAst::Numbers),
+            Form::Range => self.numbers(value, Some(2)).map(ValueAst::Numbers),
+            Form::Expression => Some(ValueAst::Expression(self.expression(value))),
+            Form::Components => self
+                .components(value)
+                .map(|c| ValueAst::Components(Box::new(c))),
+            Form::Matrix => {
+                let [a, b, c] = self.elements::<3>(value, "three rows")?;
+                let rows = [self.components(a), self.components(b), self.components(c)];
+                let [Some(a), Some(b), Some(c)] = rows else {
+                    return None;
+                };
+                Some(ValueAst::Matrix(Box::new([a, b, c])))
+            }
+            Form::TwoPoints => {
+                let [a, b] = self.elements::<2>(value, "the names of two points")?;
+                let names = [a, b].map(|v| {
+                    let name = self.string(v, "the name of a point")?;
+                    Some(Spanned {
+                        value: name.to_owned(),
+                        span: v.span(),
+                    })
+                });
+                let [Some(a), Some(b)] = names else {
+                    return None;
+                };
+                Some(ValueAst::Pair([a, b]))
+            }
+            Form::Word(words) => self.word(key, words, value).map(ValueAst::Text),
+            Form::Table(keys) => self.inner_table(key.name, keys, value),
+            Form::Tables(keys) => {
+                let DeValue::Array(array) = value.get_ref() else {
+                    self.wrong_type(value, "a list of tables");
+                    return None;
+                };
+                if array.is_empty() || array.len() > MAX_TURNS {
+                    self.tell(
+                        Diagnostic::error(
+                            Code::LimitExceeded,
+                            format!("`{}` has between 1 and {MAX_TURNS} entries", key.name),
+                        )
+                        .at(value.span(), format!("{} entries", array.len())),
+                    );
+                    return None;
+                }
+                let tables = array
+                    .iter()
+                    .map(|v| self.table_item(key.name, keys, v))
+                    .collect::<Vec<_>>();
+                tables
+                    .into_iter()
+                    .collect::<Option<Vec<_>>>()
+                    .map(ValueAst::Tables)
+            }
+        }
+    }
+
+    fn string<'v>(&mut self, value: &'v TomlValue<'_>, wanted: &str) -> Option<&'v str> {
+        let text = value.get_ref().as_str();
+        if text.is_none() {
+            self.wrong_type(value, wanted);
+        }
+        text
+    }
+
+    /// One line of prose: it ends up in comments, tables and labels.
+    fn sentence(&mut self, value: &TomlValue<'_>) -> Option<String> {
+        let text = self.string(value, "a string")?;
+        if text.len() > MAX_SENTENCE {
+            self.tell(
+                Diagnostic::error(
+                    Code::LimitExceeded,
+                    format!("a sentence has at most {MAX_SENTENCE} bytes"),
+                )
+                .at(value.span(), format!("{} bytes", text.len())),
+            );
+            return None;
+        }
+        // Escapes such as `\u202E` appear only in the decoded text.
+        if let Some(c) = text.chars().find(|c| is_forbidden(*c) || c.is_control()) {
+            self.tell(
+                Diagnostic::error(
+                    Code::ForbiddenCharacter,
+                    format!("the character U+{:04X} is not allowed here", u32::from(c)),
+                )
+                .at(value.span(), "")
+                .help("write one line of plain text"),
+            );
+            return None;
+        }
+        Some(text.to_owned())
+    }
+
+    fn unit(&mut self, value: &TomlValue<'_>) -> Option<units::Unit> {
+        let text = self.string(value, "a unit, as a string")?;
+        let source = Source::new(self.text, text, value.span());
+        match units::parse(text) {
+            Ok(unit) => Some(unit),
+            Err(error) => {
+                self.tell(unit_diagnostic(&error, |at| source.span(at)));
+                None
+            }
+        }
+    }
+
+    fn number(&mut self, value: &TomlValue<'_>) -> Option<BigRational> {
+        let result = match value.get_ref() {
+            DeValue::Integer(_) | DeValue::Float(_) => number_of(value.get_ref()),
+            other => {
+                let quoted = other
+                    .as_str()
+                    .is_some_and(|text| exact(text.trim()).is_ok());
+                self.wrong_type(value, "a number");
+                if quoted && let Some(last) = self.findings.last_mut() {
+                    last.help = Some("write the number without quotes".to_owned());
+                }
+                return None;
+            }
+        };
+        match result {
+            Ok(number) => Some(number),
+            Err(error) => {
+                let text = self.text.get(value.span()).unwrap_or_default();
+                let diagnostic = expression::number_diagnostic(error, text);
+                self.tell(diagnostic.at(value.span(), ""));
+                None
+            }
+        }
+    }
+
+    fn numbers(
+        &mut self,
+        value: &TomlValue<'_>,
+        length: Option<usize>,
+    ) -> Option<Vec<Spanned<BigRational>>> {
+        let wanted = if length.is_some() {
+            "the two ends, as a list of two numbers"
+        } else {
+            "a list of numbers"
+        };
+        let DeValue::Array(array) = value.get_ref() else {
+            self.wrong_type(value, wanted);
+            return None;
+        };
+        if length.is_some_and(|n| array.len() != n) {
+            self.wrong_length(value, wanted, array.len());
+            return None;
+        }
+        if array.len() > MAX_SAMPLES {
+            self.tell(
+                Diagnostic::error(
+                    Code::LimitExceeded,
+                    format!("a signal has at most {MAX_SAMPLES} samples"),
+                )
+                .at(value.span(), format!("{} samples", array.len())),
+            );
+            return None;
+        }
+        let read: Vec<_> = array
+            .iter()
+            .map(|v| {
+                Some(Spanned {
+                    value: self.number(v)?,
+                    span: v.span(),
+                })
+            })
+            .collect();
+        read.into_iter().collect()
+    }
+
+    fn wrong_length(&mut self, value: &TomlValue<'_>, wanted: &str, found: usize) {
+        let plural = if found == 1 { "y" } else { "ies" };
+        self.tell(
+            Diagnostic::error(
+                Code::WrongType,
+                format!("expected {wanted}, found a list of {found}"),
+            )
+            .at(value.span(), format!("{found} entr{plural}")),
+        );
+    }
+
+    fn elements<'v, const N: usize>(
+        &mut self,
+        value: &'v TomlValue<'_>,
+        wanted: &str,
+    ) -> Option<[&'v TomlValue<'v>; N]> {
+        let DeValue::Array(array) = value.get_ref() else {
+            self.wrong_type(value, &format!("{wanted}, as a list"));
+            return None;
+        };
+        let elements: Vec<&TomlValue<'_>> = array.iter().take(N + 1).collect();
+        let found = array.len();
+        elements
+            .try_into()
+            .inspect_err(|_| self.wrong_length(value, wanted, found))
+            .ok()
+    }
+
+    fn components(&mut self, value: &TomlValue<'_>) -> Option<[ExprAst; 3]> {
+        self.elements::<3>(value, "three components")
+            .map(|elements| elements.map(|v| self.expression(v)))
+    }
+
+    /// An expression; where it cannot be read, a broken one that nobody complains about again.
+    fn expression(&mut self, value: &TomlValue<'_>) -> ExprAst {
+        let broken = ExprAst {
+            kind: ExprAstKind::Broken,
+            span: value.span(),
+        };
+        match value.get_ref() {
+            DeValue::String(text) => {
+                let source = Source::new(self.text, text, value.span());
+                match expression::parse(&source) {
+                    Ok(expression) => expression,
+                    Err(diagnostic) => {
+                        self.tell(diagnostic);
+                        broken
+                    }
+                }
+            }
+            DeValue::Integer(_) | DeValue::Float(_) => match self.number(value) {
+                Some(number) => ExprAst {
+                    kind: ExprAstKind::Number(number, None),
+                    span: value.span(),
+                },
+                None => broken,
+            },
+            _ => {
+                self.wrong_type(value, "an expression, as a string");
+                broken
+            }
+        }
+    }
+
+    fn word(
+        &mut self,
+        key: &Key,
+        words: &'static [&'static str],
+        value: &TomlValue<'_>,
+    ) -> Option<String> {
+        let word = self.string(value, "a word, as a string")?;
+        if words.contains(&word) {
+            return Some(word.to_owned());
+        }
+        let help = suggest::closest(word, words.iter().copied()).map_or_else(
+            || format!("write one of {}", words.join(", ")),
+            |similar| format!("did you mean `{similar}`?"),
+        );
+        self.unknown_word(
+            word,
+            &format!("word for `{}`:", key.name),
+            value.span(),
+            help,
+        );
+        None
+    }
+}
+
+fn number_of(value: &DeValue<'_>) -> Result<BigRational, NumberError> {
+    match value {
+        DeValue::Float(float) => exact(float.as_str()),
+        DeValue::Integer(integer) if integer.radix() == 10 => exact(integer.as_str()),
+        DeValue::Integer(integer) if integer.as_str().len() <= MAX_DIGITS => {
+            BigInt::from_str_radix(integer.as_str(), integer.radix())
+                .map(BigRational::from_integer)
+                .map_err(|_| NumberError::Syntax)
+        }
+        DeValue::Integer(_) => Err(NumberError::TooLarge),
+        _ => Err(NumberError::Syntax),
+    }
+}
+
+/// What a refused unit is told; `place` maps places in the unit text to places in the file.
+pub(super) fn unit_diagnostic(
+    error: &UnitError,
+    place: impl Fn(Range<usize>) -> Span,
+) -> Diagnostic {
+    match error {
+        UnitError::Unknown {
+            symbol,
+            at,
+            similar,
+        } => Diagnostic::error(Code::UnknownUnit, format!("unknown unit `{symbol}`"))
+            .at(place(at.clone()), "")
+            .maybe_help(similar.as_ref().map(|s| format!("did you mean `{s}`?"))),
+        UnitError::Syntax { message, at } => {
+            Diagnostic::error(Code::UnitSyntax, message.as_str()).at(place(at.clone()), "")
+        }
+    }
+}

@@ -1,0 +1,155 @@
+//! Bodies and their inertia.
+
+use crate::ast::{ItemAst, ValueAst};
+use crate::diagnostic::{Code, Diagnostic};
+use crate::expr::{Expr, ExprKind};
+use crate::language::Target;
+use crate::mechanism::{Body, Inertia};
+use crate::units::Dimension;
+
+use super::Resolver;
+use super::dimensions::Dim;
+use super::place::Place;
+
+const MASS: Place = Place::constant("a mass");
+const INERTIA: Place = Place::constant("a moment of inertia");
+
+impl Resolver<'_> {
+    pub(super) fn bodies(&mut self) -> Vec<Body> {
+        let ast = self.ast;
+        for (id, item) in ast.items("bodies").iter().enumerate() {
+            self.bodies.insert(item.name.value.as_str(), id);
+        }
+        ast.items("bodies")
+            .iter()
+            .map(|item| self.body(item))
+            .collect()
+    }
+
+    fn body(&mut self, item: &ItemAst) -> Body {
+        let frame = self.optional_reference(item, "frame", Target::Frame);
+        let inertia = match item.entry("inertia").map(|e| &e.value) {
+            Some(ValueAst::Table(table)) => self.inertia(table),
+            _ => None,
+        };
+        if let Some(inertia) = &inertia
+            && item.entry("frame").is_none()
+            && item.intact
+        {
+            self.tell(
+                Diagnostic::error(
+                    Code::BodyWithoutFrame,
+                    format!("`{}` has an inertia but no frame", item.name.value),
+                )
+                .at(item.name.span.clone(), "`frame` is missing")
+                .at(inertia.span.clone(), "inertia of what turns with the frame")
+                .help("name the frame that is fixed in the body"),
+            );
+        }
+        Body {
+            name: item.name.value.clone(),
+            about: Self::about(item),
+            frame,
+            centre: self.reference(item, "centre", Target::Point),
+            mass: self.expression_of(item, "mass", &MASS, Dim::Known(Dimension::MASS)),
+            inertia,
+            line: self.line(&item.name.span),
+            span: item.name.span.clone(),
+        }
+    }
+
+    fn inertia(&mut self, item: &ItemAst) -> Option<Inertia> {
+        let wanted = Dim::Known(Dimension::INERTIA);
+        let frame = self.reference(item, "in", Target::Frame);
+        let matrix = if let Some(ValueAst::Matrix(rows)) = item.entry("matrix").map(|e| &e.value) {
+            let rows = rows
+                .each_ref()
+                .map(|row| row.each_ref().map(|e| self.expression(e, &INERTIA, wanted)));
+            self.symmetric(item, &rows);
+            rows
+        } else {
+            let zero = Expr {
+                kind: ExprKind::Number(num_rational::BigRational::from_integer(0.into())),
+                span: item.name.span.clone(),
+            };
+            let key = if item.components("diagonal").is_some() {
+                "diagonal"
+            } else {
+                "moments"
+            };
+            item.components(key)?;
+            let [xx, yy, zz] = self.components_of(item, key, &INERTIA, wanted);
+            let [xy, xz, yz] = if item.components("products").is_some() {
+                self.components_of(item, "products", &INERTIA, wanted)
+            } else {
+                [zero.clone(), zero.clone(), zero]
+            };
+            [
+                [xx, xy.clone(), xz.clone()],
+                [xy, yy, yz.clone()],
+                [xz, yz, zz],
+            ]
+        };
+        Some(Inertia {
+            frame,
+            matrix,
+            line: self.line(&item.name.span),
+            span: item.name.span.clone(),
+        })
+    }
+
+    /// The two halves of a written tensor must read the same.
+    fn symmetric(&mut self, item: &ItemAst, rows: &[[Expr; 3]; 3]) {
+        for (i, j) in [(0, 1), (0, 2), (1, 2)] {
+            if !same(&rows[i][j], &rows[j][i]) {
+                let axes = ["x", "y", "z"];
+                self.tell(
+                    Diagnostic::error(
+                        Code::ConflictingKeys,
+                        format!(
+                            "the inertia is not symmetric: `I_{0}{1}` differs from `I_{1}{0}`",
+                            axes[i], axes[j]
+                        ),
+                    )
+                    .at(rows[j][i].span.clone(), "this")
+                    .at(rows[i][j].span.clone(), "and this")
+                    .help("write both the same, or use `moments` with `products`"),
+                );
+                return;
+            }
+        }
+        let _ = item;
+    }
+}
+
+/// Whether two expressions read the same, wherever they stand.
+fn same(a: &Expr, b: &Expr) -> bool {
+    match (&a.kind, &b.kind) {
+        (ExprKind::Number(x), ExprKind::Number(y)) => x == y,
+        (ExprKind::Quantity(x), ExprKind::Quantity(y)) => x == y,
+        (ExprKind::Negate(x), ExprKind::Negate(y)) => same(x, y),
+        (ExprKind::Binary(p, a, b), ExprKind::Binary(q, c, d)) => {
+            p == q && same(a, c) && same(b, d)
+        }
+        (ExprKind::Call(f, a), ExprKind::Call(g, b)) => {
+            f == g && a.len() == b.len() && a.iter().zip(b).all(|(a, b)| same(a, b))
+        }
+        (
+            ExprKind::Choice {
+                relation: r,
+                compared: a,
+                branches: b,
+            },
+            ExprKind::Choice {
+                relation: s,
+                compared: c,
+                branches: d,
+            },
+        ) => {
+            r == s
+                && a.iter().zip(c.iter()).all(|(a, c)| same(a, c))
+                && b.iter().zip(d.iter()).all(|(b, d)| same(b, d))
+        }
+        _ => false,
+    }
+}

@@ -1,0 +1,130 @@
+//! Constraints.
+
+use crate::ast::ItemAst;
+use crate::diagnostic::{Code, Diagnostic};
+use crate::language::Target;
+use crate::mechanism::{Body, Constraint, ConstraintKind};
+use crate::parse::zero;
+use crate::units::Dimension;
+
+use super::Resolver;
+use super::dimensions::Dim;
+use super::place::Place;
+
+const PRESCRIBED: Place = Place::prescribed("the prescribed velocity");
+const DIRECTION: Place = Place::prescribed("a direction");
+const CLOSURE: Place = Place::geometry("a position constraint");
+
+impl Resolver<'_> {
+    pub(super) fn constraints(&mut self, bodies: &[Body]) -> Vec<Constraint> {
+        let ast = self.ast;
+        let mut constraints = Vec::new();
+        for item in ast.items("constraints") {
+            let Some(kind) = item.kind else { continue };
+            let kind = match kind.word {
+                "rolling" => self.rolling(item, bodies),
+                "velocity" => self.velocity(item),
+                "fixed_velocity" => self.fixed_velocity(item, bodies),
+                _ => self.position(item),
+            };
+            constraints.push(Constraint {
+                name: item.name.value.clone(),
+                about: Self::about(item),
+                kind,
+                line: self.line(&item.name.span),
+                span: item.name.span.clone(),
+            });
+        }
+        constraints
+    }
+
+    fn rolling(&mut self, item: &ItemAst, bodies: &[Body]) -> ConstraintKind {
+        let body = self.reference(item, "body", Target::Body);
+        self.needs_frame(item, "body", bodies, "roll");
+        ConstraintKind::Rolling {
+            body,
+            contact: self.reference(item, "contact", Target::Point),
+        }
+    }
+
+    fn velocity(&mut self, item: &ItemAst) -> ConstraintKind {
+        let span = item.name.span.clone();
+        let ast = item.expression("zero").cloned();
+        let left = self.elaborate(&ast.unwrap_or_else(|| zero(span.clone())), &Place::RATE_ROW);
+        if item.intact && left.degree != Some(1) && left.dim != Dim::Unknown {
+            self.not_linear(
+                &Place::RATE_ROW,
+                "no rate at all",
+                left.span(),
+                "no `dot(q)` here",
+            );
+        }
+        let right = item.expression("equals").cloned();
+        let right = self.elaborate(&right.unwrap_or_else(|| zero(span)), &PRESCRIBED);
+        self.unify(&left, &right, "equate");
+        ConstraintKind::Velocity {
+            zero: left.expr,
+            equals: right.expr,
+        }
+    }
+
+    fn fixed_velocity(&mut self, item: &ItemAst, bodies: &[Body]) -> ConstraintKind {
+        let body = self.optional_reference(item, "body", Target::Body);
+        self.needs_frame(item, "body", bodies, "carry a material point");
+        ConstraintKind::FixedVelocity {
+            point: self.reference(item, "point", Target::Point),
+            body,
+            frame: self.reference(item, "in", Target::Frame),
+            direction: self.components_of(item, "direction", &DIRECTION, Dim::NONE),
+            equals: self.expression_of(
+                item,
+                "equals",
+                &PRESCRIBED,
+                Dim::Known(Dimension::VELOCITY),
+            ),
+        }
+    }
+
+    fn position(&mut self, item: &ItemAst) -> ConstraintKind {
+        let ast = item.expression("zero").cloned();
+        let ast = ast.unwrap_or_else(|| zero(item.name.span.clone()));
+        let typed = self.elaborate(&ast, &CLOSURE);
+        self.tell(
+            Diagnostic::error(
+                Code::PositionConstraintReserved,
+                "position constraints are not supported yet",
+            )
+            .at(item.name.span.clone(), "of kind `position`")
+            .help(
+                "choose coordinates that satisfy it, or write its time derivative as a \
+                 `velocity` constraint",
+            ),
+        );
+        ConstraintKind::Position { zero: typed.expr }
+    }
+
+    /// Tells where a point mass is asked to do what only a rigid body can.
+    pub(super) fn needs_frame(&mut self, item: &ItemAst, key: &str, bodies: &[Body], what: &str) {
+        let Some(name) = item.text(key) else { return };
+        let Some(body) = bodies.iter().find(|b| b.name == name.value) else {
+            return;
+        };
+        let given = self
+            .ast
+            .items("bodies")
+            .iter()
+            .any(|b| b.name.value == body.name && (b.entry("frame").is_some() || !b.intact));
+        if body.frame.is_some() || given {
+            return;
+        }
+        self.tell(
+            Diagnostic::error(
+                Code::BodyWithoutFrame,
+                format!("`{}` is a point mass, it cannot {what}", body.name),
+            )
+            .at(name.span, "")
+            .at(body.span.clone(), "has no frame")
+            .help("give the body a `frame`"),
+        );
+    }
+}

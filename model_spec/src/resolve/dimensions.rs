@@ -1,0 +1,161 @@
+//! What is known of the dimension of an expression.
+
+use num_rational::BigRational;
+use num_traits::ToPrimitive;
+
+use crate::diagnostic::{Code, Diagnostic};
+use crate::expr::{Expr, ExprKind, Span};
+use crate::units::{Dimension, Exponent, Unit, quantity_name};
+
+use super::Resolver;
+use super::place::Place;
+
+/// The dimension of an expression, as far as it is known.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Dim {
+    /// A literal zero: fits everywhere.
+    Any,
+    /// Something else is wrong with it, which has been told.
+    Unknown,
+    /// This one.
+    Known(Dimension),
+}
+
+/// An expression with what the checks need to know of it.
+#[derive(Debug, Clone)]
+pub(super) struct Typed {
+    pub(super) expr: Expr,
+    pub(super) dim: Dim,
+    /// Degree in the rates; `None` for a literal zero, which has every degree.
+    pub(super) degree: Option<u8>,
+    /// Value, where it is made of numbers only.
+    pub(super) constant: Option<BigRational>,
+    /// Bound on the polynomial degree, against hostile powers.
+    pub(super) size: u32,
+}
+
+impl Typed {
+    /// An expression that failed; its users stay silent.
+    pub(super) fn poisoned(span: Span) -> Self {
+        Self {
+            expr: Expr {
+                kind: ExprKind::Number(BigRational::from_integer(0.into())),
+                span,
+            },
+            dim: Dim::Unknown,
+            degree: None,
+            constant: None,
+            size: 1,
+        }
+    }
+
+    pub(super) fn span(&self) -> Span {
+        self.expr.span.clone()
+    }
+}
+
+impl Dim {
+    pub(super) const NONE: Self = Self::Known(Dimension::NONE);
+
+    /// Combines two known dimensions; an unknown one stays unknown.
+    pub(super) fn product(
+        self,
+        other: Self,
+        combine: impl Fn(&Dimension, &Dimension) -> Option<Dimension>,
+    ) -> Option<Self> {
+        match (self, other) {
+            (Self::Unknown, _) | (_, Self::Unknown) => Some(Self::Unknown),
+            (Self::Any, _) | (_, Self::Any) => Some(Self::Any),
+            (Self::Known(a), Self::Known(b)) => combine(&a, &b).map(Self::Known),
+        }
+    }
+
+    pub(super) fn known(self) -> Option<Dimension> {
+        match self {
+            Self::Known(dimension) => Some(dimension),
+            Self::Any | Self::Unknown => None,
+        }
+    }
+
+    /// The dimension of a quantity divided by this one, as far as both are known.
+    pub(super) fn per(self, divisor: Option<Dimension>) -> Self {
+        match (self, divisor) {
+            (Self::Known(a), Some(b)) => a.over(&b).map_or(Self::Unknown, Self::Known),
+            _ => Self::Unknown,
+        }
+    }
+
+    pub(super) fn times(self, factor: Option<Dimension>) -> Self {
+        match (self, factor) {
+            (Self::Known(a), Some(b)) => a.times(&b).map_or(Self::Unknown, Self::Known),
+            _ => Self::Unknown,
+        }
+    }
+}
+
+/// A constant exponent as an exponent of dimensions.
+pub(super) fn exponent(value: &BigRational) -> Option<Exponent> {
+    let numerator = value.numer().to_i32()?;
+    let denominator = value.denom().to_i32()?;
+    Some(Exponent::new(numerator, denominator))
+}
+
+/// A dimension in the words of a label: `N*m`.
+pub(super) fn unit_words(dimension: Dimension) -> String {
+    format!("unit `{}`", Unit::si(dimension).text)
+}
+
+impl Resolver<'_> {
+    /// Tells where an expression does not have the dimension that its place asks for.
+    pub(super) fn expect(&mut self, typed: &Typed, wanted: Dim, place: &Place) {
+        let (Dim::Known(found), Dim::Known(wanted)) = (typed.dim, wanted) else {
+            return;
+        };
+        if found == wanted {
+            return;
+        }
+        let mut diagnostic = Diagnostic::error(
+            Code::UnitMismatch,
+            format!(
+                "{} must be {}, found {}",
+                place.what,
+                quantity_name(&wanted),
+                quantity_name(&found)
+            ),
+        )
+        .at(typed.span(), unit_words(found));
+        let unit = Unit::si(wanted).text;
+        if typed.constant.is_some() && found.is_none() {
+            diagnostic = diagnostic.help(format!("write the unit after the number: `[{unit}]`"));
+        } else {
+            diagnostic = diagnostic.help(format!("the expected unit is `{unit}`"));
+        }
+        self.tell(diagnostic);
+    }
+
+    /// The common dimension of two sides; tells where they differ.
+    pub(super) fn unify(&mut self, a: &Typed, b: &Typed, doing: &str) -> Dim {
+        match (a.dim, b.dim) {
+            (Dim::Unknown, _) | (_, Dim::Unknown) => Dim::Unknown,
+            (Dim::Any, other) | (other, Dim::Any) => other,
+            (Dim::Known(left), Dim::Known(right)) => {
+                if left == right {
+                    return a.dim;
+                }
+                self.tell(
+                    Diagnostic::error(
+                        Code::UnitMismatch,
+                        format!(
+                            "cannot {doing} {} and {}",
+                            quantity_name(&left),
+                            quantity_name(&right)
+                        ),
+                    )
+                    .at(b.span(), unit_words(right))
+                    .at(a.span(), unit_words(left)),
+                );
+                Dim::Unknown
+            }
+        }
+    }
+}

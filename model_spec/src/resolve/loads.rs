@@ -1,0 +1,172 @@
+//! Forces, torques, springs and dampers.
+
+use crate::ast::{ItemAst, ValueAst};
+use crate::diagnostic::{Code, Diagnostic};
+use crate::expr::{Quantity, Span};
+use crate::language::Target;
+use crate::mechanism::{Axis, Body, Connection, Load, LoadKind};
+use crate::units::Dimension;
+
+use super::Resolver;
+use super::dimensions::Dim;
+use super::place::Place;
+use super::placement::axis;
+
+const ACCELERATION: Place = Place::constant("the acceleration of free fall");
+const FORCE: Place = Place::anything("a component of a force");
+const TORQUE: Place = Place::anything("a component of a torque");
+const STIFFNESS: Place = Place::scheduled("a stiffness");
+const RELAXED: Place = Place::scheduled("the relaxed length");
+const DAMPING: Place = Place::anything("a damping coefficient");
+const GENERALIZED: Place = Place::anything("a generalised force");
+
+impl Resolver<'_> {
+    pub(super) fn loads(&mut self, bodies: &[Body]) -> Vec<Load> {
+        let ast = self.ast;
+        let mut loads = Vec::new();
+        for item in ast.items("loads") {
+            let Some(kind) = item.kind else { continue };
+            let kind = match kind.word {
+                "gravity" => self.gravity(item),
+                "force" => self.force(item, bodies),
+                "torque" => self.torque(item, bodies),
+                "spring" => self.spring(item),
+                "damper" => self.damper(item),
+                _ => self.generalized(item),
+            };
+            loads.push(Load {
+                name: item.name.value.clone(),
+                about: Self::about(item),
+                kind,
+                line: self.line(&item.name.span),
+                span: item.name.span.clone(),
+            });
+        }
+        loads
+    }
+
+    fn gravity(&mut self, item: &ItemAst) -> LoadKind {
+        let (direction, negative) = axis(item.text("down").map_or("-z", |w| w.value));
+        let step = if negative { -1 } else { 1 };
+        LoadKind::Gravity {
+            down: match direction {
+                Axis::X => [step, 0, 0],
+                Axis::Y => [0, step, 0],
+                Axis::Z => [0, 0, step],
+            },
+            acceleration: self.expression_of(
+                item,
+                "acceleration",
+                &ACCELERATION,
+                Dim::Known(Dimension::ACCELERATION),
+            ),
+        }
+    }
+
+    fn force(&mut self, item: &ItemAst, bodies: &[Body]) -> LoadKind {
+        let on = self.reference(item, "on", Target::Point);
+        let body = self.optional_reference(item, "body", Target::Body);
+        self.needs_frame(item, "body", bodies, "carry a material point");
+        let reaction_on = self.optional_reference(item, "reaction_on", Target::Point);
+        self.on_itself(item);
+        LoadKind::Force {
+            on,
+            body,
+            reaction_on,
+            frame: self.reference(item, "in", Target::Frame),
+            vector: self.components_of(item, "vector", &FORCE, Dim::Known(Dimension::FORCE)),
+        }
+    }
+
+    fn torque(&mut self, item: &ItemAst, bodies: &[Body]) -> LoadKind {
+        let on = self.reference(item, "on", Target::Body);
+        let reaction_on = self.optional_reference(item, "reaction_on", Target::Body);
+        self.needs_frame(item, "on", bodies, "feel a torque");
+        self.needs_frame(item, "reaction_on", bodies, "feel a torque");
+        self.on_itself(item);
+        LoadKind::Torque {
+            on,
+            reaction_on,
+            frame: self.reference(item, "in", Target::Frame),
+            vector: self.components_of(item, "vector", &TORQUE, Dim::Known(Dimension::TORQUE)),
+        }
+    }
+
+    fn on_itself(&mut self, item: &ItemAst) {
+        if let (Some(on), Some(reaction)) = (item.text("on"), item.text("reaction_on"))
+            && on.value == reaction.value
+        {
+            self.connected_to_itself(on.value, reaction.span, on.span);
+        }
+    }
+
+    fn connected_to_itself(&mut self, name: &str, span: Span, first: Span) {
+        self.tell(
+            Diagnostic::error(
+                Code::SelfReaction,
+                format!("`{name}` acts on itself, which changes nothing"),
+            )
+            .at(span, "the same again")
+            .at(first, "here")
+            .help("name two different items"),
+        );
+    }
+
+    /// What a spring or damper connects, and the dimension of its displacement.
+    fn connection(&mut self, item: &ItemAst) -> (Connection, Option<Dimension>) {
+        if let Some(ValueAst::Pair([a, b])) = item.entry("between").map(|e| &e.value) {
+            let first = self.find(Target::Point, &a.value, &a.span).unwrap_or(0);
+            let second = self.find(Target::Point, &b.value, &b.span).unwrap_or(0);
+            if a.value == b.value {
+                self.connected_to_itself(&a.value, b.span.clone(), a.span.clone());
+            }
+            return (Connection::Points(first, second), Some(Dimension::LENGTH));
+        }
+        let (id, dimension) = self.coordinate_under(item);
+        (Connection::Coordinate(id), dimension)
+    }
+
+    fn coordinate_under(&mut self, item: &ItemAst) -> (usize, Option<Dimension>) {
+        let Some(name) = item.text("coordinate") else {
+            return (0, None);
+        };
+        let Some(id) = self.find(Target::Coordinate, name.value, &name.span) else {
+            return (0, None);
+        };
+        self.used.add(Quantity::Coordinate(id));
+        let dimension = self.names.get(name.value).and_then(|n| n.dimension);
+        (id, dimension)
+    }
+
+    fn spring(&mut self, item: &ItemAst) -> LoadKind {
+        let (between, displacement) = self.connection(item);
+        let force = Dim::Known(Dimension::TORQUE).per(displacement);
+        let stiffness = force.per(displacement);
+        let relaxed = displacement.map_or(Dim::Unknown, Dim::Known);
+        LoadKind::Spring {
+            between,
+            stiffness: self.expression_of(item, "stiffness", &STIFFNESS, stiffness),
+            relaxed: self.expression_of(item, "relaxed", &RELAXED, relaxed),
+        }
+    }
+
+    fn damper(&mut self, item: &ItemAst) -> LoadKind {
+        let (between, displacement) = self.connection(item);
+        let force = Dim::Known(Dimension::TORQUE).per(displacement);
+        let damping = force.per(displacement).times(Some(Dimension::TIME));
+        LoadKind::Damper {
+            between,
+            damping: self.expression_of(item, "damping", &DAMPING, damping),
+        }
+    }
+
+    fn generalized(&mut self, item: &ItemAst) -> LoadKind {
+        let (coordinate, displacement) = self.coordinate_under(item);
+        // Force times rate is a power, whatever the coordinate measures.
+        let force = Dim::Known(Dimension::TORQUE).per(displacement);
+        LoadKind::Generalized {
+            coordinate,
+            force: self.expression_of(item, "force", &GENERALIZED, force),
+        }
+    }
+}

@@ -1,0 +1,210 @@
+//! Names: what they may be, and what they mean.
+
+use std::collections::BTreeSet;
+
+use crate::ast::{ItemAst, Spanned};
+use crate::diagnostic::{Code, Diagnostic};
+use crate::expr::{Function, Quantity, Span};
+use crate::language::Target;
+use crate::mechanism::Label;
+use crate::suggest;
+use crate::units::{Dimension, Unit};
+
+use super::Resolver;
+
+/// What a name in an expression means.
+#[derive(Debug, Clone)]
+pub(super) struct Named {
+    pub(super) meaning: Meaning,
+    /// `None` while it is not known.
+    pub(super) dimension: Option<Dimension>,
+    pub(super) span: Span,
+}
+
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Meaning {
+    Quantity(Quantity),
+    /// Outputs share the names, but expressions cannot use them.
+    Output,
+}
+
+/// Indices of what occurs in expressions.
+#[derive(Debug, Default)]
+pub(super) struct Used {
+    pub(super) parameters: BTreeSet<usize>,
+    pub(super) coordinates: BTreeSet<usize>,
+    pub(super) inputs: BTreeSet<usize>,
+    pub(super) signals: BTreeSet<usize>,
+}
+
+impl Used {
+    pub(super) fn add(&mut self, quantity: Quantity) {
+        match quantity {
+            Quantity::Parameter(id) => self.parameters.insert(id),
+            Quantity::Coordinate(id) | Quantity::Rate(id) => self.coordinates.insert(id),
+            Quantity::Input(id) => self.inputs.insert(id),
+            Quantity::Signal(id) => self.signals.insert(id),
+            Quantity::PseudoVelocity(_) | Quantity::Time | Quantity::Pi => false,
+        };
+    }
+}
+
+/// Names that the language keeps for itself.
+fn is_reserved(name: &str) -> bool {
+    matches!(name, "t" | "pi" | "dot" | "if") || Function::from_name(name).is_some()
+}
+
+impl<'a> Resolver<'a> {
+    /// Gives a name its meaning; tells where the name is taken.
+    pub(super) fn define(
+        &mut self,
+        name: &'a Spanned<String>,
+        meaning: Meaning,
+        dimension: Option<Dimension>,
+    ) {
+        let text = name.value.as_str();
+        if is_reserved(text) {
+            self.tell(
+                Diagnostic::error(
+                    Code::ReservedName,
+                    format!("`{text}` has a meaning of its own in expressions"),
+                )
+                .at(name.span.clone(), "")
+                .help("choose another name"),
+            );
+            return;
+        }
+        if let Some(first) = self.names.get(text) {
+            let diagnostic = Diagnostic::error(
+                Code::DuplicateName,
+                format!("the name `{text}` is defined twice"),
+            )
+            .at(name.span.clone(), "again here")
+            .at(first.span.clone(), "first here")
+            .help("quantities share one set of names; rename one of them");
+            self.tell(diagnostic);
+            return;
+        }
+        let named = Named {
+            meaning,
+            dimension,
+            span: name.span.clone(),
+        };
+        self.names.insert(text, named);
+    }
+
+    /// Defines the names of a section before anything in it has been looked at.
+    pub(super) fn announce(&mut self, section: &str) {
+        let ast = self.ast;
+        for (id, item) in ast.items(section).iter().enumerate() {
+            let meaning = if section == "outputs" {
+                Meaning::Output
+            } else {
+                Meaning::Quantity(Quantity::PseudoVelocity(id))
+            };
+            self.define(&item.name, meaning, None);
+        }
+    }
+
+    /// The label of a quantity. The unit falls back to `1` where an error has been told.
+    pub(super) fn label(&self, item: &ItemAst, unit: Option<&Unit>) -> Label {
+        Label {
+            name: item.name.value.clone(),
+            about: Self::about(item),
+            unit: unit.cloned().unwrap_or_else(|| Unit::si(Dimension::NONE)),
+            line: self.line(&item.name.span),
+            span: item.name.span.clone(),
+        }
+    }
+
+    /// Tells of an unknown name once; further uses become labels of the same message.
+    pub(super) fn unknown(
+        &mut self,
+        kind: &'static str,
+        name: &str,
+        span: &Span,
+        diagnostic: impl FnOnce(&Self) -> Diagnostic,
+    ) {
+        // What defines it may stand in a part that could not be read.
+        if self.ast.broken {
+            return;
+        }
+        let key = (kind, name.to_owned());
+        if let Some(index) = self.told.get(&key) {
+            if let Some(first) = self.findings.get_mut(*index)
+                && first.labels.len() < 4
+            {
+                first.labels.push((span.clone(), "and here".to_owned()));
+            }
+            return;
+        }
+        let diagnostic = diagnostic(self);
+        self.told.insert(key, self.findings.len());
+        self.tell(diagnostic);
+    }
+
+    /// Index of what a key refers to; 0 where it refers to nothing, which has been told.
+    pub(super) fn reference(&mut self, item: &ItemAst, key: &str, target: Target) -> usize {
+        item.text(key).map_or(0, |name| {
+            self.find(target, name.value, &name.span).unwrap_or(0)
+        })
+    }
+
+    /// Like [`Self::reference`], for a key that may be left out.
+    pub(super) fn optional_reference(
+        &mut self,
+        item: &ItemAst,
+        key: &str,
+        target: Target,
+    ) -> Option<usize> {
+        let name = item.text(key)?;
+        self.find(target, name.value, &name.span)
+    }
+
+    pub(super) fn find(&mut self, target: Target, name: &str, span: &Span) -> Option<usize> {
+        let found = match target {
+            Target::Frame => self.frames.get(name).copied(),
+            Target::Point => self.points.get(name).copied(),
+            Target::Body => self.bodies.get(name).copied(),
+            Target::Coordinate => self.names.get(name).and_then(|named| match named.meaning {
+                Meaning::Quantity(Quantity::Coordinate(id)) => Some(id),
+                _ => None,
+            }),
+        };
+        if found.is_none() {
+            self.unknown(target.word(), name, span, |this| {
+                this.unknown_reference(target, name, span)
+            });
+        }
+        found
+    }
+
+    fn unknown_reference(&self, target: Target, name: &str, span: &Span) -> Diagnostic {
+        let word = target.word();
+        let shown: String = name.chars().take(80).collect();
+        let known: Vec<&str> = match target {
+            Target::Frame => self.frames.keys().copied().collect(),
+            Target::Point => self.points.keys().copied().collect(),
+            Target::Body => self.bodies.keys().copied().collect(),
+            Target::Coordinate => self
+                .names
+                .iter()
+                .filter(|(_, n)| matches!(n.meaning, Meaning::Quantity(Quantity::Coordinate(_))))
+                .map(|(name, _)| *name)
+                .collect(),
+        };
+        let help = match suggest::closest(name, known.iter().copied()) {
+            Some(similar) => format!("did you mean `{similar}`?"),
+            None if !known.is_empty() && known.len() <= 12 => {
+                format!("`[{}]` knows {}", target.section(), known.join(", "))
+            }
+            None => format!("define it in `[{}]`", target.section()),
+        };
+        Diagnostic::error(
+            Code::UnknownReference,
+            format!("there is no {word} `{shown}`"),
+        )
+        .at(span.clone(), "")
+        .help(help)
+    }
+}

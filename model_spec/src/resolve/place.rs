@@ -1,0 +1,131 @@
+//! Where an expression stands, and what it may depend on there.
+
+use crate::expr::Quantity;
+use crate::mechanism::Interpolation;
+
+/// A place for an expression.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Place {
+    /// The place for people: `the angle of a frame`.
+    pub(super) what: &'static str,
+    /// Which quantities may occur, besides parameters and `pi`.
+    allows: u8,
+    /// How smooth a signal must be here.
+    pub(super) smooth: Smooth,
+    /// Whether the expression must be linear in the rates.
+    pub(super) linear: bool,
+}
+
+/// How smooth a signal must be.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Smooth {
+    /// Not at all.
+    Any,
+    /// It is differentiated once.
+    Once,
+    /// It is differentiated twice.
+    Twice,
+}
+
+const COORDINATES: u8 = 1;
+const RATES: u8 = 2;
+const SPEEDS: u8 = 4;
+const INPUTS: u8 = 8;
+const TIME: u8 = 16;
+
+impl Place {
+    const fn new(what: &'static str, allows: u8, smooth: Smooth) -> Self {
+        Self {
+            what,
+            allows,
+            smooth,
+            linear: false,
+        }
+    }
+
+    const fn linear(what: &'static str) -> Self {
+        Self {
+            linear: true,
+            ..Self::new(what, COORDINATES | RATES | TIME, Smooth::Once)
+        }
+    }
+
+    /// A property of a body or of the surroundings.
+    pub(super) const fn constant(what: &'static str) -> Self {
+        Self::new(what, 0, Smooth::Any)
+    }
+
+    /// A position or an angle.
+    pub(super) const fn geometry(what: &'static str) -> Self {
+        Self::new(what, COORDINATES | TIME, Smooth::Twice)
+    }
+
+    /// A prescribed velocity.
+    pub(super) const fn prescribed(what: &'static str) -> Self {
+        Self::new(what, COORDINATES | TIME, Smooth::Once)
+    }
+
+    /// A property that may be scheduled in time.
+    pub(super) const fn scheduled(what: &'static str) -> Self {
+        Self::new(what, TIME, Smooth::Any)
+    }
+
+    /// A force, or a quantity of interest.
+    pub(super) const fn anything(what: &'static str) -> Self {
+        let all = COORDINATES | RATES | SPEEDS | INPUTS | TIME;
+        Self::new(what, all, Smooth::Any)
+    }
+
+    /// Definition of a pseudo-velocity.
+    pub(super) const SPEED: Self = Self::linear("a pseudo-velocity");
+    /// Left side of a velocity constraint.
+    pub(super) const RATE_ROW: Self = Self::linear("a velocity constraint");
+
+    pub(super) fn allows(&self, quantity: Quantity) -> bool {
+        let asked = match quantity {
+            Quantity::Parameter(_) | Quantity::Pi => 0,
+            Quantity::Coordinate(_) => COORDINATES,
+            Quantity::Rate(_) => RATES,
+            Quantity::PseudoVelocity(_) => SPEEDS,
+            Quantity::Input(_) => INPUTS,
+            Quantity::Signal(_) | Quantity::Time => TIME,
+        };
+        self.allows & asked == asked
+    }
+
+    /// What may occur here, for people.
+    pub(super) fn allowed_words(&self) -> String {
+        let mut words = vec!["parameters"];
+        for (flag, word) in [
+            (COORDINATES, "coordinates"),
+            (RATES, "rates"),
+            (SPEEDS, "pseudo-velocities"),
+            (INPUTS, "inputs"),
+            (TIME, "signals and time"),
+        ] {
+            if self.allows & flag != 0 {
+                words.push(word);
+            }
+        }
+        words.join(", ")
+    }
+}
+
+impl Smooth {
+    pub(super) fn admits(self, interpolation: Interpolation) -> bool {
+        match self {
+            Self::Any => true,
+            Self::Once => interpolation != Interpolation::Hold,
+            Self::Twice => interpolation == Interpolation::Cubic,
+        }
+    }
+
+    /// The interpolation that would do.
+    pub(super) const fn remedy(self) -> &'static str {
+        match self {
+            Self::Any => "hold",
+            Self::Once => "linear",
+            Self::Twice => "cubic",
+        }
+    }
+}

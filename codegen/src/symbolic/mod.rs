@@ -7,14 +7,23 @@
 
 mod build;
 mod differentiate;
+mod evaluate;
+mod expand;
+mod factor;
+mod field;
 mod graph;
+pub mod identity;
+mod interval;
 mod node;
 mod rational;
 mod substitute;
 pub mod vector;
 
 pub use differentiate::Derivatives;
+pub use evaluate::evaluate;
 pub use graph::Graph;
+pub use identity::IdentityTest;
+pub use interval::{Interval, Intervals};
 pub use node::{Definition, Expr, Factor, Function, Node, Relation, SymbolId, System, Term};
 pub use rational::Rational;
 pub use substitute::Substitution;

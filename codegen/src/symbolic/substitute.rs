@@ -5,8 +5,8 @@ use rustc_hash::FxHashMap;
 use super::node::{Expr, Node, SymbolId};
 use super::Graph;
 
-/// A simultaneous replacement of symbols, remembered between calls. Names dissolve: what they stood
-/// for may have changed.
+/// A simultaneous replacement of symbols, remembered between calls. A name whose definition changes
+/// dissolves: it would stand for something else.
 #[derive(Debug, Default)]
 pub struct Substitution {
     known: FxHashMap<Expr, Expr>,
@@ -38,7 +38,10 @@ impl Substitution {
         let new = |e: &Expr| self.known[e];
         Some(match graph.node(expr).clone() {
             Node::Number(_) | Node::Symbol(_) => expr,
-            Node::Named(id) => new(&graph.definition(id).value),
+            Node::Named(id) => {
+                let value = graph.definition(id).value;
+                if new(&value) == value { expr } else { new(&value) }
+            }
             Node::Sum(terms) => {
                 let parts: Vec<_> = terms.iter().map(|t| (t.coefficient.clone(), new(&t.expr))).collect();
                 graph.linear_combination(&parts)

@@ -1,0 +1,83 @@
+//! The graph with the tools that every stage of the derivation uses on it.
+
+use crate::symbolic::{Derivatives, Expr, Graph, IdentityTest, Substitution, SymbolId};
+use crate::symbolic::vector::Vec3;
+
+use super::symbols::{Symbols, ids};
+
+/// Products with more terms than this are not multiplied out.
+const MOST_TERMS: usize = 200;
+
+/// Graph, identity test and remembered derivatives.
+pub struct Algebra {
+    /// Owner of the expressions.
+    pub graph: Graph,
+    /// Decides equality across spellings.
+    pub test: IdentityTest,
+    coordinates: Vec<SymbolId>,
+    derivatives: Vec<(SymbolId, Derivatives)>,
+}
+
+impl Algebra {
+    /// Tools for the expressions in `graph`.
+    pub fn new(graph: Graph, symbols: &Symbols, seed: u64) -> Self {
+        let coordinates = ids(&graph, &symbols.coordinates);
+        Self { graph, test: IdentityTest::new(seed), coordinates, derivatives: Vec::new() }
+    }
+
+    /// `∂expr/∂symbol`; zero where `symbol` is not a symbol.
+    pub fn derivative(&mut self, expr: Expr, symbol: Expr) -> Expr {
+        let Some(symbol) = self.graph.as_symbol(symbol) else { return Graph::ZERO };
+        let place = match self.derivatives.iter().position(|(s, _)| *s == symbol) {
+            Some(place) => place,
+            None => {
+                self.derivatives.push((symbol, Derivatives::with_respect_to(symbol)));
+                self.derivatives.len() - 1
+            }
+        };
+        self.derivatives[place].1.of(&mut self.graph, expr)
+    }
+
+    /// The same value in the fewest operations that the tools here find.
+    ///
+    /// A coordinate that provably does not matter is set to zero: the velocity of a wheel in its
+    /// own frame, written with the yaw angle, is the same at every yaw. Then the products are
+    /// multiplied out where that pays.
+    pub fn shortest(&mut self, expr: Expr) -> Expr {
+        if self.graph.operations(&[expr]) == 0 {
+            return expr;
+        }
+        if self.test.is_zero(&self.graph, expr) {
+            return Graph::ZERO;
+        }
+        let mut best = self.without_idle_coordinates(expr);
+        if let Some(expanded) = self.graph.expand(best, MOST_TERMS) {
+            best = self.graph.shorter(best, expanded);
+        }
+        let factored = self.graph.take_out_common_factors(best);
+        self.graph.shorter(best, factored)
+    }
+
+    /// [`Algebra::shortest`] of each component.
+    pub fn shortest3(&mut self, v: Vec3) -> Vec3 {
+        v.map(|component| self.shortest(component))
+    }
+
+    fn without_idle_coordinates(&mut self, expr: Expr) -> Expr {
+        let mentioned: Vec<SymbolId> = self
+            .coordinates
+            .iter()
+            .copied()
+            .filter(|&c| self.graph.mentions(expr, &[c]))
+            .collect();
+        let mut best = expr;
+        for coordinate in mentioned {
+            if self.test.independent_of(&self.graph, best, coordinate) {
+                let at_zero = Substitution::new(&mut self.graph, &[(coordinate, Graph::ZERO)])
+                    .apply(&mut self.graph, best);
+                best = at_zero.unwrap_or(best);
+            }
+        }
+        best
+    }
+}

@@ -1,0 +1,263 @@
+//! The derived equations as the functions of a program.
+
+use appell_runtime::model::{Interpolation, ModelInfo, Quantity, SignalTable};
+use appell_spec::mechanism::{self, Label, Mechanism, Signal};
+
+use super::Derivation;
+use super::finding::{Item, Stage};
+use super::gibbs_appell::{acceleration_energy, kinetic_energy};
+use super::kinematics::division_by_zero;
+use super::linear::ImplicitMotion;
+use super::lower::Lowering;
+use super::reactions;
+use super::symbols::ids;
+use crate::program::{Arguments, Array, Function, FunctionKind, Layout, Program};
+use crate::symbolic::Expr;
+
+/// All functions, in the order of emitted code.
+pub const ALL: [FunctionKind; 12] = [
+    FunctionKind::Kinematics,
+    FunctionKind::AccelerationEnergy,
+    FunctionKind::MassMatrix,
+    FunctionKind::Bias,
+    FunctionKind::GeneralizedForces,
+    FunctionKind::Rates,
+    FunctionKind::Jacobians,
+    FunctionKind::AllJacobians,
+    FunctionKind::Energies,
+    FunctionKind::ConstraintResidual,
+    FunctionKind::ConstraintForces,
+    FunctionKind::Outputs,
+];
+
+/// The program of a derivation, with the functions `kinds`.
+pub fn program(mut derivation: Derivation, mechanism: &Mechanism, kinds: &[FunctionKind]) -> Stage<Program> {
+    let mut functions = Vec::with_capacity(kinds.len());
+    for &kind in kinds {
+        functions.push(Function { kind, results: derivation.results(mechanism, kind)? });
+    }
+    let signals = derivation.tabulated_inputs();
+    let symbols = &derivation.symbols;
+    let graph = &derivation.algebra.graph;
+    let mut input_symbols = symbols.inputs.clone();
+    input_symbols.extend(signals.iter().map(|&(signal, order)| symbols.signals[signal][usize::from(order)]));
+    let arguments = Arguments {
+        time: ids(graph, &[symbols.time])[0],
+        states: ids(graph, &[symbols.speeds.as_slice(), &symbols.coordinates].concat()),
+        inputs: ids(graph, &input_symbols),
+        parameters: ids(graph, &symbols.parameters),
+    };
+    let explicit_time = functions
+        .iter()
+        .flat_map(|f| &f.results)
+        .flat_map(|r| &r.entries)
+        .any(|&e| graph.mentions(e, &[arguments.time]));
+    let info = info(&derivation, mechanism, &signals, explicit_time);
+    Ok(Program { info, file: mechanism.file.clone(), graph: derivation.algebra.graph, arguments, functions })
+}
+
+impl Derivation {
+    /// The results of one function.
+    fn results(&mut self, mechanism: &Mechanism, kind: FunctionKind) -> Stage<Vec<Array>> {
+        let speeds = self.symbols.speeds.len();
+        let array = |name: &str, layout: Layout, entries: Vec<Expr>| Array {
+            name: name.to_owned(),
+            layout,
+            entries,
+        };
+        Ok(match kind {
+            FunctionKind::Kinematics => {
+                vec![array("coordinate_rates", Layout::Coordinates, self.coordinate_rates.clone())]
+            }
+            FunctionKind::AccelerationEnergy => {
+                let mut results = Vec::new();
+                for body in self.bodies.clone() {
+                    let s = acceleration_energy(&mut self.algebra, &body, &self.accelerations);
+                    let s = self.algebra.graph.name(&format!("s_{}", body.name), s);
+                    results.push(array(&body.name, Layout::Scalar, vec![s]));
+                }
+                let parts: Vec<Expr> = results.iter().map(|r| r.entries[0]).collect();
+                let total = self.algebra.graph.sum(&parts);
+                results.insert(0, array("total", Layout::Scalar, vec![total]));
+                results
+            }
+            FunctionKind::MassMatrix => {
+                let entries = self.gibbs.mass_matrix.concat();
+                vec![array("mass_matrix", Layout::Matrix(speeds, speeds), entries)]
+            }
+            FunctionKind::Bias => vec![array("bias", Layout::Speeds, self.gibbs.bias.clone())],
+            FunctionKind::GeneralizedForces => {
+                vec![array("generalized_forces", Layout::Speeds, self.forces.clone())]
+            }
+            FunctionKind::Rates => vec![array("rates", Layout::State, self.rates())],
+            FunctionKind::Jacobians => self.jacobians(false),
+            FunctionKind::AllJacobians => self.jacobians(true),
+            FunctionKind::Energies => {
+                let kinetic: Vec<Expr> =
+                    self.bodies.clone().iter().map(|body| kinetic_energy(&mut self.algebra, body)).collect();
+                let kinetic = self.algebra.graph.sum(&kinetic);
+                let potential: Vec<Expr> = self.loads.iter().filter_map(|load| load.potential).collect();
+                let potential = self.algebra.graph.sum(&potential);
+                let power: Vec<Expr> = self
+                    .loads
+                    .iter()
+                    .filter(|load| load.potential.is_none())
+                    .map(|load| load.power(&mut self.algebra.graph))
+                    .collect();
+                let power = self.algebra.graph.sum(&power);
+                [("kinetic", kinetic), ("potential", potential), ("power", power)]
+                    .map(|(name, value)| array(name, Layout::Scalar, vec![value]))
+                    .into()
+            }
+            FunctionKind::ConstraintResidual => {
+                let graph = &mut self.algebra.graph;
+                let residual = reactions::residual(graph, &self.constraints, &self.coordinate_rates);
+                vec![array("residual", Layout::Vector(residual.len()), residual)]
+            }
+            FunctionKind::ConstraintForces => {
+                let forces = reactions::reactions(
+                    &mut self.algebra,
+                    mechanism,
+                    &self.symbols,
+                    &self.constraints,
+                    &self.velocities.violating,
+                    &self.bodies,
+                    &self.accelerations,
+                )?;
+                vec![array("forces", Layout::Matrix(forces.len(), 3), forces.concat())]
+            }
+            FunctionKind::Outputs => {
+                let lowering = Lowering { symbols: &self.symbols, rates: &self.coordinate_rates };
+                let mut values = Vec::with_capacity(mechanism.outputs.len());
+                for (index, output) in mechanism.outputs.iter().enumerate() {
+                    let value = lowering
+                        .lower(&mut self.algebra.graph, &output.value)
+                        .map_err(|_| vec![division_by_zero(Item::Output(index))])?;
+                    values.push(value);
+                }
+                vec![array("outputs", Layout::Outputs, values)]
+            }
+        })
+    }
+
+    /// ẋ: pseudo-accelerations, then generalised velocities.
+    fn rates(&self) -> Vec<Expr> {
+        [self.accelerations.as_slice(), &self.coordinate_rates].concat()
+    }
+
+    /// ẋ, A, B and, when asked for, P.
+    fn jacobians(&mut self, parameters: bool) -> Vec<Array> {
+        let implicit = ImplicitMotion {
+            mass_matrix: &self.gibbs.mass_matrix,
+            bias: &self.gibbs.bias,
+            forces: &self.forces,
+            factorization: &self.factorization,
+            accelerations: &self.accelerations,
+            coordinate_rates: &self.coordinate_rates,
+        };
+        let rates = self.rates();
+        let residual = implicit.residual(&mut self.algebra, &self.symbols);
+        let states = [self.symbols.speeds.as_slice(), &self.symbols.coordinates].concat();
+        let tabulated = self.tabulated_inputs();
+        let tabulated = tabulated.iter().map(|&(signal, order)| self.symbols.signals[signal][usize::from(order)]);
+        let inputs: Vec<Expr> = self.symbols.inputs.iter().copied().chain(tabulated).collect();
+        let mut variables = vec![("a", states), ("b", inputs)];
+        if parameters {
+            variables.push(("p", self.symbols.parameters.clone()));
+        }
+        let mut results = vec![Array { name: "rates".to_owned(), layout: Layout::State, entries: rates.clone() }];
+        for (name, variables) in variables {
+            let columns = implicit.jacobian(&mut self.algebra, &self.symbols, &residual, &variables);
+            let entries = (0..rates.len())
+                .flat_map(|row| columns.iter().map(move |column| column[row]))
+                .collect();
+            let layout = Layout::Matrix(rates.len(), variables.len());
+            results.push(Array { name: name.to_owned(), layout, entries });
+        }
+        results
+    }
+
+    /// Signals, and the orders of their derivatives that the motion depends on.
+    fn tabulated_inputs(&self) -> Vec<(usize, u8)> {
+        let graph = &self.algebra.graph;
+        let mentioned = |symbol: Expr| {
+            let symbol = ids(graph, &[symbol]);
+            self.rates().iter().any(|&rate| graph.mentions(rate, &symbol))
+        };
+        let mut found = Vec::new();
+        for (signal, orders) in self.symbols.signals.iter().enumerate() {
+            for (order, &symbol) in (0u8..).zip(orders) {
+                if order == 0 || mentioned(symbol) {
+                    found.push((signal, order));
+                }
+            }
+        }
+        found
+    }
+}
+
+fn info(
+    derivation: &Derivation,
+    mechanism: &Mechanism,
+    signals: &[(usize, u8)],
+    explicit_time: bool,
+) -> ModelInfo {
+    let everywhere = [f64::NEG_INFINITY, f64::INFINITY];
+    let speeds = mechanism.pseudo_velocities.iter().map(|w| quantity(&w.label, w.initial, everywhere));
+    let coordinates =
+        mechanism.coordinates.iter().map(|q| quantity(&q.label, q.initial, q.range.unwrap_or(everywhere)));
+    let declared = mechanism.inputs.iter().map(|u| quantity(&u.label, 0.0, everywhere));
+    let tabulated = signals.iter().map(|&(signal, order)| {
+        let mut input = quantity(&mechanism.signals[signal].label, 0.0, everywhere);
+        if order > 0 {
+            input.name = format!("{}_{}dot", input.name, "d".repeat(usize::from(order) - 1)).into();
+            input.unit = format!("({})/s^{order}", input.unit).into();
+        }
+        input
+    });
+    let parameters = mechanism.parameters.iter().map(|p| {
+        let range = [p.at_least.unwrap_or(f64::NEG_INFINITY), p.at_most.unwrap_or(f64::INFINITY)];
+        quantity(&p.label, p.value, range)
+    });
+    let rows = derivation.constraints.rows.iter().filter(|r| !r.is_embedded());
+    ModelInfo {
+        name: mechanism.name.clone().into(),
+        title: mechanism.title.clone().into(),
+        source: mechanism.source.clone().unwrap_or_default().into(),
+        states: speeds.chain(coordinates).collect(),
+        speeds: mechanism.pseudo_velocities.len(),
+        inputs: declared.chain(tabulated).collect(),
+        declared_inputs: mechanism.inputs.len(),
+        signals: mechanism.signals.iter().map(signal_table).collect(),
+        signal_inputs: signals.to_vec().into(),
+        parameters: parameters.collect(),
+        outputs: mechanism.outputs.iter().map(|y| quantity(&y.label, 0.0, everywhere)).collect(),
+        constraint_rows: rows.map(|r| r.name.clone().into()).collect(),
+        reactions: derivation.constraints.reactions.iter().map(|r| r.clone().into()).collect(),
+        explicit_time,
+    }
+}
+
+fn quantity(label: &Label, value: f64, range: [f64; 2]) -> Quantity {
+    Quantity {
+        name: label.name.clone().into(),
+        about: label.about.clone().into(),
+        unit: label.unit.text.clone().into(),
+        scale: label.unit.scale,
+        value,
+        range,
+    }
+}
+
+fn signal_table(signal: &Signal) -> SignalTable {
+    SignalTable {
+        name: signal.label.name.clone().into(),
+        times: signal.times.clone().into(),
+        values: signal.values.clone().into(),
+        interpolation: match signal.interpolation {
+            mechanism::Interpolation::Hold => Interpolation::Hold,
+            mechanism::Interpolation::Linear => Interpolation::Linear,
+            mechanism::Interpolation::Cubic => Interpolation::Cubic,
+        },
+    }
+}

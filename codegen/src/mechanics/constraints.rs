@@ -1,0 +1,225 @@
+//! Constraints as rows that are linear in the generalised velocities.
+
+use appell_spec::mechanism::{ConstraintKind, GROUND, Mechanism, PointId};
+
+use super::algebra::Algebra;
+use super::finding::{Finding, Item, Stage};
+use super::kinematics::{Carried, Kinematics, division_by_zero, root_of};
+use super::lower::Lowering;
+use super::symbols::Symbols;
+use crate::symbolic::vector::{self, Vec3};
+use crate::symbolic::{Expr, Graph};
+
+/// One scalar constraint: `Σ coefficient · q̇ + rest = 0`.
+#[derive(Debug, Clone)]
+pub struct Row {
+    /// Name for people, such as `rolling.x`.
+    pub name: String,
+    /// Index of the constraint in the mechanism.
+    pub constraint: usize,
+    /// The whole row, with symbols for the generalised velocities.
+    pub value: Expr,
+    /// Coefficients of the generalised velocities.
+    pub coefficients: Vec<Expr>,
+    /// What remains without generalised velocities.
+    pub rest: Expr,
+    /// Where its reaction is reported, and along which direction of the ground a unit of it acts.
+    pub reaction: Reaction,
+    /// Coefficients of the imagined motions, one per entry of [`Constraints::carried`].
+    pub carried: Vec<Expr>,
+    /// The imagined motion that stands in for the row where geometry already embeds it.
+    pub stand_in: Option<usize>,
+}
+
+/// How the reaction of a row is reported.
+#[derive(Debug, Clone)]
+pub struct Reaction {
+    /// Index into [`Constraints::reactions`].
+    pub place: usize,
+    /// Direction in the ground; a row without a point reports its multiplier as first component.
+    pub direction: Vec3,
+}
+
+/// All constraints of a mechanism.
+#[derive(Debug, Clone)]
+pub struct Constraints {
+    /// Scalar rows in the order of the spec.
+    pub rows: Vec<Row>,
+    /// Names of the places with reactions.
+    pub reactions: Vec<String>,
+    /// Imagined motions: a point and the axis of the ground along which it is carried.
+    pub carried: Vec<(PointId, usize)>,
+}
+
+impl Row {
+    /// Whether the coordinates satisfy the row by themselves.
+    pub fn is_embedded(&self) -> bool {
+        self.stand_in.is_some()
+    }
+}
+
+/// Constraint rows with symbols for q̇, tested for rows that geometry already embeds.
+pub fn constraints(algebra: &mut Algebra, mechanism: &Mechanism, symbols: &Symbols) -> Stage<Constraints> {
+    let carried = imagined_motions(mechanism);
+    let carried_rates: Vec<Expr> =
+        carried.iter().map(|(point, axis)| algebra.graph.symbol(&format!("carry_{point}_{axis}"))).collect();
+    let motions = motions_along(&carried, &carried_rates);
+    let kinematics = Kinematics::new(algebra, mechanism, symbols, &symbols.rates, &motions)?;
+    let mut reactions: Vec<String> = Vec::new();
+    let mut rows = Vec::new();
+    for (index, constraint) in mechanism.constraints.iter().enumerate() {
+        let item = Item::Constraint(index);
+        let lowering = Lowering { symbols, rates: &symbols.rates };
+        let zero = |_| vec![division_by_zero(item)];
+        let graph = &mut algebra.graph;
+        // Name, value and direction of each scalar row.
+        let (place, scalars): (&str, Vec<(String, Expr, Vec3)>) = match &constraint.kind {
+            ConstraintKind::Rolling { body, contact } => {
+                let v = kinematics.material_velocity(graph, mechanism, *body, *contact, GROUND);
+                let scalars = ["x", "y", "z"]
+                    .iter()
+                    .enumerate()
+                    .map(|(k, axis)| (format!("{}.{axis}", constraint.name), v[k], vector::IDENTITY[k]))
+                    .collect();
+                (&mechanism.points[*contact].name, scalars)
+            }
+            ConstraintKind::Velocity { zero: left, equals } => {
+                let left = lowering.lower(graph, left).map_err(zero)?;
+                let right = lowering.lower(graph, equals).map_err(zero)?;
+                let value = graph.sub(left, right);
+                (&constraint.name, vec![(constraint.name.clone(), value, vector::IDENTITY[0])])
+            }
+            ConstraintKind::FixedVelocity { point, body, frame, direction, equals } => {
+                let along = lowering.lower_all(graph, direction).map_err(zero)?;
+                let right = lowering.lower(graph, equals).map_err(zero)?;
+                let v = match body {
+                    Some(body) => kinematics.material_velocity(graph, mechanism, *body, *point, *frame),
+                    None => kinematics.frames.express(graph, kinematics.velocity(*point), *frame),
+                };
+                let left = graph.dot(along, v);
+                let value = graph.sub(left, right);
+                let in_ground = super::frames::FrameVector { frame: *frame, v: along };
+                let in_ground = kinematics.frames.express(graph, in_ground, GROUND);
+                let name = &mechanism.points[*point].name;
+                (name, vec![(constraint.name.clone(), value, in_ground)])
+            }
+            ConstraintKind::Position { .. } => {
+                return Err(vec![Finding {
+                    code: "position-constraint-reserved",
+                    message: "constraints between positions are not supported yet".to_owned(),
+                    item,
+                    help: "choose coordinates that satisfy the constraint by themselves".to_owned(),
+                }]);
+            }
+        };
+        let place = match reactions.iter().position(|r| r == place) {
+            Some(place) => place,
+            None => {
+                reactions.push(place.to_owned());
+                reactions.len() - 1
+            }
+        };
+        for (name, value, direction) in scalars {
+            let reaction = Reaction { place, direction };
+            rows.push(row(algebra, symbols, &carried_rates, name, index, value, reaction));
+        }
+    }
+    stand_ins(mechanism, &mut rows)?;
+    Ok(Constraints { rows, reactions, carried })
+}
+
+/// Splits a row into its coefficients.
+fn row(
+    algebra: &mut Algebra,
+    symbols: &Symbols,
+    carried_rates: &[Expr],
+    name: String,
+    constraint: usize,
+    value: Expr,
+    reaction: Reaction,
+) -> Row {
+    let mut coefficients_of = |unknowns: &[Expr]| -> Vec<Expr> {
+        unknowns
+            .iter()
+            .map(|&unknown| {
+                let coefficient = algebra.derivative(value, unknown);
+                algebra.shortest(coefficient)
+            })
+            .collect()
+    };
+    let coefficients = coefficients_of(&symbols.rates);
+    let carried = coefficients_of(carried_rates);
+    let rest = without(algebra, value, &[&symbols.rates, carried_rates].concat());
+    Row { name, constraint, value, coefficients, rest, reaction, carried, stand_in: None }
+}
+
+/// `expr` with some symbols set to zero. The rows are linear in them, so no denominator holds one.
+fn without(algebra: &mut Algebra, expr: Expr, symbols: &[Expr]) -> Expr {
+    let zeros: Vec<_> = super::symbols::ids(&algebra.graph, symbols)
+        .into_iter()
+        .map(|symbol| (symbol, Graph::ZERO))
+        .collect();
+    let rest = crate::symbolic::Substitution::new(&mut algebra.graph, &zeros)
+        .apply(&mut algebra.graph, expr)
+        .unwrap_or(Graph::ZERO);
+    algebra.shortest(rest)
+}
+
+/// One motion per axis of the ground and per point from which a rolling contact hangs.
+fn imagined_motions(mechanism: &Mechanism) -> Vec<(PointId, usize)> {
+    let mut carried = Vec::new();
+    for constraint in &mechanism.constraints {
+        if let ConstraintKind::Rolling { body, .. } = &constraint.kind {
+            let root = root_of(mechanism, mechanism.bodies[*body].centre);
+            if !carried.contains(&(root, 0)) {
+                carried.extend((0..3).map(|axis| (root, axis)));
+            }
+        }
+    }
+    carried
+}
+
+/// The imagined motions with given velocities.
+pub fn motions_along(carried: &[(PointId, usize)], rates: &[Expr]) -> Vec<Carried> {
+    carried
+        .iter()
+        .zip(rates)
+        .map(|(&(root, axis), &rate)| {
+            let mut v = vector::ZERO;
+            v[axis] = rate;
+            Carried { root, v }
+        })
+        .collect()
+}
+
+/// Finds the rows without any generalised velocity. Those of a rolling contact hold by geometry and
+/// get an imagined motion; others contradict the spec or say nothing.
+fn stand_ins(mechanism: &Mechanism, rows: &mut [Row]) -> Stage<()> {
+    let mut findings = Vec::new();
+    for row in rows.iter_mut() {
+        if row.coefficients.iter().any(|&c| c != Graph::ZERO) {
+            continue;
+        }
+        let item = Item::Constraint(row.constraint);
+        if row.rest != Graph::ZERO {
+            findings.push(Finding {
+                code: "inconsistent-constraint",
+                message: format!("`{}` cannot hold: no generalised velocity appears in it", row.name),
+                item,
+                help: "let a coordinate take part in the motion that the constraint prescribes".to_owned(),
+            });
+            continue;
+        }
+        row.stand_in = row.carried.iter().position(|&c| c == Graph::ONE);
+        if row.stand_in.is_none() {
+            let name = &mechanism.constraints[row.constraint].name;
+            findings.push(Finding {
+                code: "redundant-constraint",
+                message: format!("`{name}` always holds: no generalised velocity appears in it"),
+                item,
+                help: "remove the constraint".to_owned(),
+            });
+        }
+    }
+    if findings.is_empty() { Ok(()) } else { Err(findings) }
+}

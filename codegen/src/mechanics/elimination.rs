@@ -1,0 +1,272 @@
+//! Constraints and definitions of the pseudo-velocities, solved for the generalised velocities.
+
+use appell_spec::mechanism::Mechanism;
+
+use super::algebra::Algebra;
+use super::constraints::Constraints;
+use super::finding::{Finding, Item, Stage};
+use super::lower::Lowering;
+use super::symbols::Symbols;
+use crate::symbolic::{Expr, Graph, Intervals};
+
+/// The generalised velocities in terms of the pseudo-velocities.
+#[derive(Debug, Clone)]
+pub struct GeneralizedVelocities {
+    /// q̇ in the motions that the constraints allow.
+    pub rates: Vec<Expr>,
+    /// q̇ when every constraint row may be violated at a rate of its own.
+    pub violating: Violation,
+    /// Coordinates whose rates need a pivoted solve at run time.
+    pub solved_numerically: Vec<usize>,
+}
+
+/// Motions that violate the constraints, for their reactions.
+#[derive(Debug, Clone)]
+pub struct Violation {
+    /// Rate at which each row is violated, a symbol per row.
+    pub rates: Vec<Expr>,
+    /// q̇ in terms of pseudo-velocities and those rates.
+    pub coordinate_rates: Vec<Expr>,
+    /// Rates of the imagined motions, in the order of [`Constraints::carried`].
+    pub carried_rates: Vec<Expr>,
+}
+
+/// An equation `Σ coefficient · q̇ = right`.
+struct Equation {
+    coefficients: Vec<Expr>,
+    right: Expr,
+}
+
+/// Solves for q̇. Pivots are taken where they cannot vanish in the declared ranges; what is left
+/// without such a pivot goes into one small system that is solved with pivoting at run time.
+pub fn eliminate(
+    algebra: &mut Algebra,
+    mechanism: &Mechanism,
+    symbols: &Symbols,
+    constraints: &Constraints,
+    intervals: &mut Intervals,
+) -> Stage<GeneralizedVelocities> {
+    let violation_rates: Vec<Expr> = constraints
+        .rows
+        .iter()
+        .map(|row| algebra.graph.symbol(&format!("violation_{}", row.name)))
+        .collect();
+    let mut carried_rates = vec![Graph::ZERO; constraints.carried.len()];
+    for (row, &violation) in constraints.rows.iter().zip(&violation_rates) {
+        if let Some(motion) = row.stand_in {
+            carried_rates[motion] = violation;
+        }
+    }
+
+    let mut equations = Vec::new();
+    for (index, speed) in mechanism.pseudo_velocities.iter().enumerate() {
+        equations.push(definition(algebra, symbols, index, &speed.definition)?);
+    }
+    for (row, &violation) in constraints.rows.iter().zip(&violation_rates) {
+        if row.is_embedded() {
+            continue;
+        }
+        // Σ C q̇ = violation - rest - what the imagined motions contribute
+        let mut parts = vec![violation, algebra.graph.neg(row.rest)];
+        for (&coefficient, &rate) in row.carried.iter().zip(&carried_rates) {
+            let contribution = algebra.graph.mul(coefficient, rate);
+            parts.push(algebra.graph.neg(contribution));
+        }
+        let right = algebra.graph.sum(&parts);
+        equations.push(Equation { coefficients: row.coefficients.clone(), right });
+    }
+    check_count(mechanism, constraints, equations.len())?;
+
+    let (violating, solved_numerically) = solve(algebra, mechanism, equations, intervals)?;
+    let zeros: Vec<_> = super::symbols::ids(&algebra.graph, &violation_rates)
+        .into_iter()
+        .map(|s| (s, Graph::ZERO))
+        .collect();
+    let mut no_violation = crate::symbolic::Substitution::new(&mut algebra.graph, &zeros);
+    let rates = violating
+        .iter()
+        .map(|&rate| {
+            let allowed = no_violation.apply(&mut algebra.graph, rate).unwrap_or(rate);
+            algebra.shortest(allowed)
+        })
+        .collect();
+    let violating =
+        Violation { rates: violation_rates, coordinate_rates: violating, carried_rates };
+    Ok(GeneralizedVelocities { rates, violating, solved_numerically })
+}
+
+/// The definition of a pseudo-velocity as an equation for q̇.
+fn definition(
+    algebra: &mut Algebra,
+    symbols: &Symbols,
+    index: usize,
+    definition: &appell_spec::expr::Expr,
+) -> Stage<Equation> {
+    let lowering = Lowering { symbols, rates: &symbols.rates };
+    let value = lowering
+        .lower(&mut algebra.graph, definition)
+        .map_err(|_| vec![super::kinematics::division_by_zero(Item::PseudoVelocity(index))])?;
+    let mut coefficients = Vec::with_capacity(symbols.rates.len());
+    let mut parts = vec![symbols.speeds[index], algebra.graph.neg(value)];
+    for &rate in &symbols.rates {
+        let coefficient = algebra.derivative(value, rate);
+        coefficients.push(algebra.shortest(coefficient));
+        parts.push(algebra.graph.mul(coefficient, rate));
+    }
+    // ω minus what the definition holds besides the generalised velocities.
+    let right = algebra.graph.sum(&parts);
+    let right = algebra.shortest(right);
+    Ok(Equation { coefficients, right })
+}
+
+fn check_count(mechanism: &Mechanism, constraints: &Constraints, equations: usize) -> Stage<()> {
+    let coordinates = mechanism.coordinates.len();
+    if equations == coordinates {
+        return Ok(());
+    }
+    let rows = constraints.rows.iter().filter(|r| !r.is_embedded()).count();
+    let speeds = mechanism.pseudo_velocities.len();
+    let needed = coordinates.saturating_sub(rows);
+    Err(vec![Finding {
+        code: if speeds < needed { "missing-pseudo-velocities" } else { "too-many-pseudo-velocities" },
+        message: format!(
+            "{coordinates} coordinates under {rows} velocity constraints need {needed} \
+             pseudo-velocities, found {speeds}"
+        ),
+        item: Item::Mechanism,
+        help: if rows > coordinates {
+            "remove constraints: there are more of them than coordinates".to_owned()
+        } else {
+            format!("define exactly {needed} pseudo-velocities")
+        },
+    }])
+}
+
+/// A solved unknown: `q̇_column = right - Σ coefficient · q̇_later`.
+struct Solved {
+    column: usize,
+    coefficients: Vec<(usize, Expr)>,
+    right: Expr,
+}
+
+fn solve(
+    algebra: &mut Algebra,
+    mechanism: &Mechanism,
+    mut equations: Vec<Equation>,
+    intervals: &mut Intervals,
+) -> Stage<(Vec<Expr>, Vec<usize>)> {
+    let unknowns = equations.len();
+    let mut open: Vec<usize> = (0..unknowns).collect();
+    let mut solved: Vec<Solved> = Vec::new();
+    while let Some((row, column)) = safest_pivot(algebra, &equations, &open, intervals) {
+        let Equation { coefficients, right } = equations.swap_remove(row);
+        let pivot = coefficients[column];
+        let right = algebra.graph.div(right, pivot);
+        let right = algebra.shortest(right);
+        let mut rest = Vec::new();
+        for &other in open.iter().filter(|&&c| c != column && coefficients[c] != Graph::ZERO) {
+            let ratio = algebra.graph.div(coefficients[other], pivot);
+            rest.push((other, algebra.shortest(ratio)));
+        }
+        for equation in &mut equations {
+            let factor = equation.coefficients[column];
+            if factor == Graph::ZERO {
+                continue;
+            }
+            for &(other, ratio) in &rest {
+                let change = algebra.graph.mul(factor, ratio);
+                let value = algebra.graph.sub(equation.coefficients[other], change);
+                equation.coefficients[other] = algebra.shortest(value);
+            }
+            let change = algebra.graph.mul(factor, right);
+            equation.right = algebra.graph.sub(equation.right, change);
+            equation.coefficients[column] = Graph::ZERO;
+        }
+        open.retain(|&c| c != column);
+        solved.push(Solved { column, coefficients: rest, right });
+    }
+    if !open.is_empty() {
+        check_rank(algebra, mechanism, &equations, &open)?;
+    }
+
+    let mut rates = vec![Graph::ZERO; unknowns];
+    if !open.is_empty() {
+        let matrix = equations.iter().flat_map(|e| open.iter().map(|&c| e.coefficients[c])).collect();
+        let right = equations.iter().map(|e| e.right).collect();
+        let solution = algebra.graph.solve_numerically(matrix, right);
+        for (&column, unknown) in open.iter().zip(solution) {
+            rates[column] = unknown;
+        }
+    }
+    for Solved { column, coefficients, right } in solved.into_iter().rev() {
+        let mut parts = vec![right];
+        for (other, coefficient) in coefficients {
+            let part = algebra.graph.mul(coefficient, rates[other]);
+            parts.push(algebra.graph.neg(part));
+        }
+        let rate = algebra.graph.sum(&parts);
+        rates[column] = algebra.shortest(rate);
+    }
+    Ok((rates, open))
+}
+
+/// The pivot that fills in least, among those that cannot vanish.
+fn safest_pivot(
+    algebra: &mut Algebra,
+    equations: &[Equation],
+    open: &[usize],
+    intervals: &mut Intervals,
+) -> Option<(usize, usize)> {
+    let filled = |coefficients: &[Expr]| open.iter().filter(|&&c| coefficients[c] != Graph::ZERO).count();
+    let mut best: Option<((usize, usize), (usize, usize))> = None;
+    for (row, equation) in equations.iter().enumerate() {
+        let in_row = filled(&equation.coefficients);
+        for &column in open {
+            let pivot = equation.coefficients[column];
+            if pivot == Graph::ZERO || !intervals.cannot_vanish(&algebra.graph, pivot) {
+                continue;
+            }
+            let in_column = equations.iter().filter(|e| e.coefficients[column] != Graph::ZERO).count();
+            let fill = (in_row - 1) * (in_column - 1);
+            let cost = (fill, algebra.graph.operations(&[pivot]));
+            if best.is_none_or(|(least, _)| cost < least) {
+                best = Some((cost, (row, column)));
+            }
+        }
+    }
+    best.map(|(_, place)| place)
+}
+
+/// Fails where the remaining equations are dependent everywhere, by fraction-free elimination.
+fn check_rank(algebra: &mut Algebra, mechanism: &Mechanism, equations: &[Equation], open: &[usize]) -> Stage<()> {
+    let mut rows: Vec<Vec<Expr>> =
+        equations.iter().map(|e| open.iter().map(|&c| e.coefficients[c]).collect()).collect();
+    for column in 0..open.len() {
+        let pivot = (column..rows.len()).find(|&r| {
+            let entry = rows[r][column];
+            entry != Graph::ZERO && !algebra.test.is_zero(&algebra.graph, entry)
+        });
+        let Some(pivot) = pivot else {
+            let coordinate = &mechanism.coordinates[open[column]].label.name;
+            return Err(vec![Finding {
+                code: "dependent-pseudo-velocities",
+                message: format!(
+                    "pseudo-velocities and constraints do not determine `dot({coordinate})`"
+                ),
+                item: Item::Mechanism,
+                help: "define pseudo-velocities that are independent of each other and of the \
+                       constraints"
+                    .to_owned(),
+            }]);
+        };
+        rows.swap(column, pivot);
+        for r in column + 1..rows.len() {
+            let factor = algebra.graph.div(rows[r][column], rows[column][column]);
+            for c in column..open.len() {
+                let change = algebra.graph.mul(factor, rows[column][c]);
+                rows[r][c] = algebra.graph.sub(rows[r][c], change);
+            }
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,38 @@
+//! What the derivation finds wrong with a mechanism.
+
+/// The item of a spec that a finding is about.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Item {
+    /// The mechanism as a whole.
+    Mechanism,
+    /// A frame, by index.
+    Frame(usize),
+    /// A point, by index.
+    Point(usize),
+    /// A body, by index.
+    Body(usize),
+    /// A constraint, by index.
+    Constraint(usize),
+    /// A pseudo-velocity, by index.
+    PseudoVelocity(usize),
+    /// A load, by index.
+    Load(usize),
+    /// An output, by index.
+    Output(usize),
+}
+
+/// A mistake that only the derivation can see.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Finding {
+    /// Diagnostic code.
+    pub code: &'static str,
+    /// What is wrong, one sentence.
+    pub message: String,
+    /// Where.
+    pub item: Item,
+    /// What to write instead.
+    pub help: String,
+}
+
+/// Result of a stage of the derivation.
+pub type Stage<T> = Result<T, Vec<Finding>>;

@@ -1,0 +1,133 @@
+//! Frames: rotations by chains and angular velocities without differentiating matrices.
+
+use appell_spec::mechanism::{Axis, FrameId, GROUND, Mechanism};
+
+use super::algebra::Algebra;
+use super::lower::{DivisionByZero, Lowering};
+use super::time::TimeDerivative;
+use crate::symbolic::vector::{self, Vec3};
+use crate::symbolic::{Expr, Graph};
+
+/// A vector and the frame of its components.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct FrameVector {
+    /// Frame of the components.
+    pub frame: FrameId,
+    /// Components.
+    pub v: Vec3,
+}
+
+/// One rotation about a coordinate axis.
+#[derive(Debug, Clone, Copy)]
+struct Turn {
+    axis: usize,
+    sin: Expr,
+    cos: Expr,
+}
+
+#[derive(Debug, Clone)]
+struct Frame {
+    parent: Option<FrameId>,
+    turns: Vec<Turn>,
+    /// Angular velocity from the ground, in this frame.
+    w: Vec3,
+}
+
+/// The frames of a mechanism.
+#[derive(Debug, Clone)]
+pub struct Frames {
+    frames: Vec<Frame>,
+}
+
+impl Frames {
+    /// Frames with their angular velocities: ω_child = Rᵀ ω_parent + axis · dα/dt for each turn.
+    pub fn new(
+        algebra: &mut Algebra,
+        mechanism: &Mechanism,
+        lowering: &Lowering<'_>,
+        time: &TimeDerivative<'_>,
+    ) -> Result<Self, DivisionByZero> {
+        let mut frames: Vec<Frame> = Vec::with_capacity(mechanism.frames.len());
+        for frame in &mechanism.frames {
+            let mut w = frame.parent.map_or(vector::ZERO, |parent| frames[parent].w);
+            let mut turns = Vec::with_capacity(frame.turns.len());
+            for turn in &frame.turns {
+                let mut angle = lowering.lower(&mut algebra.graph, &turn.angle)?;
+                if turn.negative {
+                    angle = algebra.graph.neg(angle);
+                }
+                let axis = match turn.axis {
+                    Axis::X => 0,
+                    Axis::Y => 1,
+                    Axis::Z => 2,
+                };
+                let elementary =
+                    Turn { axis, sin: algebra.graph.sin(angle), cos: algebra.graph.cos(angle) };
+                w = elementary.into_child(&mut algebra.graph, w);
+                let rate = time.of(algebra, angle);
+                w[axis] = algebra.graph.add(w[axis], rate);
+                turns.push(elementary);
+            }
+            let w = algebra.shortest3(w);
+            frames.push(Frame { parent: frame.parent, turns, w });
+        }
+        Ok(Self { frames })
+    }
+
+    /// Angular velocity of a frame from the ground, in its own components.
+    pub fn angular_velocity(&self, frame: FrameId) -> FrameVector {
+        FrameVector { frame, v: self.frames[frame].w }
+    }
+
+    /// The same vector in the components of another frame.
+    pub fn express(&self, graph: &mut Graph, vector: FrameVector, to: FrameId) -> Vec3 {
+        let (up, down) = (self.ancestors(vector.frame), self.ancestors(to));
+        let shared = up.iter().rev().zip(down.iter().rev()).take_while(|(a, b)| a == b).count();
+        let mut v = vector.v;
+        for &frame in &up[..up.len() - shared] {
+            for turn in self.frames[frame].turns.iter().rev() {
+                v = turn.into_parent(graph, v);
+            }
+        }
+        for &frame in down[..down.len() - shared].iter().rev() {
+            for turn in &self.frames[frame].turns {
+                v = turn.into_child(graph, v);
+            }
+        }
+        v
+    }
+
+    /// The frame and its ancestors up to the ground.
+    pub fn ancestors(&self, frame: FrameId) -> Vec<FrameId> {
+        std::iter::successors(Some(frame), |&f| self.frames[f].parent).collect()
+    }
+
+    /// How many frames there are.
+    pub fn count(&self) -> usize {
+        self.frames.len().max(GROUND + 1)
+    }
+}
+
+impl Turn {
+    /// R v: from the turned frame into the one before the turn.
+    fn into_parent(self, graph: &mut Graph, v: Vec3) -> Vec3 {
+        self.rotate(graph, v, self.sin)
+    }
+
+    /// Rᵀ v: into the turned frame.
+    fn into_child(self, graph: &mut Graph, v: Vec3) -> Vec3 {
+        let sin = graph.neg(self.sin);
+        self.rotate(graph, v, sin)
+    }
+
+    /// Rotation about one axis; the next two axes in cyclic order take part.
+    fn rotate(self, graph: &mut Graph, v: Vec3, sin: Expr) -> Vec3 {
+        let (i, j) = ((self.axis + 1) % 3, (self.axis + 2) % 3);
+        let mut rotated = v;
+        let (ci, sj) = (graph.mul(self.cos, v[i]), graph.mul(sin, v[j]));
+        rotated[i] = graph.sub(ci, sj);
+        let (si, cj) = (graph.mul(sin, v[i]), graph.mul(self.cos, v[j]));
+        rotated[j] = graph.add(si, cj);
+        rotated
+    }
+}

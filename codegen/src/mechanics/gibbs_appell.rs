@@ -1,0 +1,283 @@
+//! The acceleration energy and its derivatives: mass matrix and bias of Appell's equations.
+
+use appell_spec::mechanism::Mechanism;
+
+use super::algebra::Algebra;
+use super::finding::{Finding, Item, Stage};
+use super::frames::FrameVector;
+use super::kinematics::{Kinematics, division_by_zero};
+use super::lower::Lowering;
+use super::symbols::Symbols;
+use super::time::TimeDerivative;
+use crate::symbolic::vector::{self, Mat3, Vec3};
+use crate::symbolic::{Expr, Graph, Rational};
+
+/// Motion of one body, linear in the pseudo-accelerations.
+#[derive(Debug, Clone)]
+pub struct BodyMotion {
+    /// Name of the body.
+    pub name: String,
+    /// Mass.
+    pub mass: Expr,
+    /// Motion of the centre of mass.
+    pub centre: Translation,
+    /// Rotation; `None` for a point mass.
+    pub rotation: Option<Rotation>,
+}
+
+/// Motion of a centre of mass, in a frame of its own.
+#[derive(Debug, Clone)]
+pub struct Translation {
+    /// Velocity.
+    pub velocity: FrameVector,
+    /// Partial velocities ∂v/∂ω, one per pseudo-velocity.
+    pub partial: Vec<Vec3>,
+    /// Acceleration where all pseudo-accelerations vanish.
+    pub bias: Vec3,
+}
+
+/// Rotation of a rigid body, in the frame of its inertia tensor.
+#[derive(Debug, Clone)]
+pub struct Rotation {
+    /// Angular velocity of the body.
+    pub velocity: FrameVector,
+    /// Partial angular velocities ∂ω/∂ω, one per pseudo-velocity.
+    pub partial: Vec<Vec3>,
+    /// Inertia about the centre of mass.
+    pub inertia: Mat3,
+    /// Angular acceleration where all pseudo-accelerations vanish.
+    pub bias: Vec3,
+    /// Rate of the angular momentum there: I ω̇ + Ω × I ω.
+    pub momentum_rate: Vec3,
+}
+
+/// Motions of all bodies for the speeds `directions`.
+pub fn body_motions(
+    algebra: &mut Algebra,
+    mechanism: &Mechanism,
+    symbols: &Symbols,
+    kinematics: &Kinematics,
+    rates: &[Expr],
+) -> Stage<Vec<BodyMotion>> {
+    let lowering = Lowering { symbols, rates };
+    let time = TimeDerivative { symbols, rates };
+    let mut motions = Vec::with_capacity(mechanism.bodies.len());
+    for (index, body) in mechanism.bodies.iter().enumerate() {
+        let item = Item::Body(index);
+        let mass = lowering
+            .lower(&mut algebra.graph, &body.mass)
+            .map_err(|_| vec![division_by_zero(item)])?;
+        let velocity = kinematics.velocity(body.centre);
+        let partial = partial_velocities(algebra, velocity.v, &symbols.speeds);
+        let w_frame = frame_rate(algebra, mechanism, kinematics, velocity.frame);
+        let mut bias = time.of3(algebra, velocity.v);
+        let turning = algebra.graph.cross(w_frame, velocity.v);
+        bias = algebra.graph.add3(bias, turning);
+        let bias = algebra.shortest3(bias);
+        let bias = named3(algebra, &format!("a0_{}", mechanism.points[body.centre].name), bias);
+        let centre = Translation { velocity, partial, bias };
+        let rotation = match (body.frame, &body.inertia) {
+            (Some(frame), Some(inertia)) => {
+                let mut matrix = [[Graph::ZERO; 3]; 3];
+                for (target, row) in matrix.iter_mut().zip(&inertia.matrix) {
+                    *target = lowering
+                        .lower_all(&mut algebra.graph, row)
+                        .map_err(|_| vec![division_by_zero(item)])?;
+                }
+                if frame != inertia.frame {
+                    check_invariance(algebra, mechanism, kinematics, index, &matrix)?;
+                }
+                let w = kinematics.frames.angular_velocity(frame);
+                let v = kinematics.frames.express(&mut algebra.graph, w, inertia.frame);
+                let velocity = FrameVector { frame: inertia.frame, v: algebra.shortest3(v) };
+                Some(rotation(algebra, mechanism, symbols, kinematics, &time, &body.name, velocity, matrix))
+            }
+            _ => None,
+        };
+        motions.push(BodyMotion { name: body.name.clone(), mass, centre, rotation });
+    }
+    Ok(motions)
+}
+
+#[expect(clippy::too_many_arguments, reason = "everything a rotation depends on, once")]
+fn rotation(
+    algebra: &mut Algebra,
+    mechanism: &Mechanism,
+    symbols: &Symbols,
+    kinematics: &Kinematics,
+    time: &TimeDerivative<'_>,
+    body: &str,
+    velocity: FrameVector,
+    inertia: Mat3,
+) -> Rotation {
+    let partial = partial_velocities(algebra, velocity.v, &symbols.speeds);
+    let w_frame = frame_rate(algebra, mechanism, kinematics, velocity.frame);
+    let componentwise = time.of3(algebra, velocity.v);
+    let componentwise = algebra.shortest3(componentwise);
+    // In the frame of the tensor its components are constant, so ḣ = I ω̇ + Ω × h.
+    let momentum = algebra.graph.mat_vec(&inertia, velocity.v);
+    let growth = algebra.graph.mat_vec(&inertia, componentwise);
+    let turning = algebra.graph.cross(w_frame, momentum);
+    let rate = algebra.graph.add3(growth, turning);
+    let rate = algebra.shortest3(rate);
+    let momentum_rate = named3(algebra, &format!("h0_{body}"), rate);
+    let turning = algebra.graph.cross(w_frame, velocity.v);
+    let bias = algebra.graph.add3(componentwise, turning);
+    let bias = algebra.shortest3(bias);
+    Rotation { velocity, partial, inertia, bias, momentum_rate }
+}
+
+/// Angular velocity of a frame with names for its components.
+fn frame_rate(
+    algebra: &mut Algebra,
+    mechanism: &Mechanism,
+    kinematics: &Kinematics,
+    frame: usize,
+) -> Vec3 {
+    let w = kinematics.frames.angular_velocity(frame).v;
+    named3(algebra, &format!("w_{}", mechanism.frames[frame].name), w)
+}
+
+fn named3(algebra: &mut Algebra, name: &str, v: Vec3) -> Vec3 {
+    let mut named = v;
+    for (component, axis) in named.iter_mut().zip(["x", "y", "z"]) {
+        *component = algebra.graph.name(&format!("{name}_{axis}"), *component);
+    }
+    named
+}
+
+/// Partial velocities: coefficients of the directions in a velocity.
+pub fn partial_velocities(algebra: &mut Algebra, v: Vec3, directions: &[Expr]) -> Vec<Vec3> {
+    directions
+        .iter()
+        .map(|&direction| {
+            let partial = v.map(|component| algebra.derivative(component, direction));
+            algebra.shortest3(partial)
+        })
+        .collect()
+}
+
+/// A tensor written in a frame that is not the body's must not change with the rotation between.
+fn check_invariance(
+    algebra: &mut Algebra,
+    mechanism: &Mechanism,
+    kinematics: &Kinematics,
+    body: usize,
+    inertia: &Mat3,
+) -> Stage<()> {
+    let item = &mechanism.bodies[body];
+    let (Some(body_frame), Some(written)) = (item.frame, item.inertia.as_ref().map(|i| i.frame)) else {
+        return Ok(());
+    };
+    // I is invariant where R I = I R; the columns of R are the body's axes.
+    let mut axes = [vector::ZERO; 3];
+    for (axis, unit) in axes.iter_mut().zip(vector::IDENTITY) {
+        let unit = FrameVector { frame: body_frame, v: unit };
+        *axis = kinematics.frames.express(&mut algebra.graph, unit, written);
+    }
+    let r = vector::transpose(&axes);
+    let (left, right) = (algebra.graph.mat_mat(&r, inertia), algebra.graph.mat_mat(inertia, &r));
+    let differs = left.iter().flatten().zip(right.iter().flatten()).any(|(&a, &b)| {
+        a != b && !algebra.test.are_equal(&algebra.graph, a, b)
+    });
+    if !differs {
+        return Ok(());
+    }
+    Err(vec![Finding {
+        code: "inertia-not-invariant",
+        message: format!(
+            "the inertia of `{}` is written in `{}`, but the body turns against that frame and the \
+             tensor changes with it",
+            item.name, mechanism.frames[written].name
+        ),
+        item: Item::Body(body),
+        help: format!("write the inertia in `{}`", mechanism.frames[body_frame].name),
+    }])
+}
+
+/// The coefficients of Appell's equations `M ω̇ + b = Π`: `M` and `b` are those of ∂S/∂ω̇.
+#[derive(Debug, Clone)]
+pub struct GibbsForm {
+    /// M, row by row.
+    pub mass_matrix: Vec<Vec<Expr>>,
+    /// b.
+    pub bias: Vec<Expr>,
+}
+
+/// ∂S/∂ω̇ by body: `Σ m v_i · a + w_i · ḣ`, `v_i` and `w_i` the partial velocities.
+pub fn gibbs_form(algebra: &mut Algebra, bodies: &[BodyMotion], speeds: usize) -> GibbsForm {
+    let mut mass_matrix = vec![vec![Graph::ZERO; speeds]; speeds];
+    let mut bias = Vec::with_capacity(speeds);
+    for i in 0..speeds {
+        for j in 0..=i {
+            let mut parts = Vec::new();
+            for body in bodies {
+                let product = algebra.graph.dot(body.centre.partial[i], body.centre.partial[j]);
+                parts.push(algebra.graph.mul(body.mass, product));
+                if let Some(rotation) = &body.rotation {
+                    let momentum = algebra.graph.mat_vec(&rotation.inertia, rotation.partial[j]);
+                    parts.push(algebra.graph.dot(rotation.partial[i], momentum));
+                }
+            }
+            let entry = algebra.graph.sum(&parts);
+            let entry = algebra.shortest(entry);
+            mass_matrix[i][j] = entry;
+            mass_matrix[j][i] = entry;
+        }
+        let mut parts = Vec::new();
+        for body in bodies {
+            let inertial = algebra.graph.dot(body.centre.partial[i], body.centre.bias);
+            parts.push(algebra.graph.mul(body.mass, inertial));
+            if let Some(rotation) = &body.rotation {
+                parts.push(algebra.graph.dot(rotation.partial[i], rotation.momentum_rate));
+            }
+        }
+        let entry = algebra.graph.sum(&parts);
+        bias.push(algebra.shortest(entry));
+    }
+    GibbsForm { mass_matrix, bias }
+}
+
+/// The acceleration energy of a body without the terms free of accelerations:
+/// `S = ½ m a·a + ½ α·I α + α·(ω × I ω)`, for given pseudo-accelerations.
+pub fn acceleration_energy(algebra: &mut Algebra, body: &BodyMotion, accelerations: &[Expr]) -> Expr {
+    let graph = &mut algebra.graph;
+    let a = along(graph, body.centre.bias, &body.centre.partial, accelerations);
+    let square = graph.dot(a, a);
+    let mut parts = vec![graph.product(&[body.mass, square])];
+    if let Some(rotation) = &body.rotation {
+        let alpha = along(graph, rotation.bias, &rotation.partial, accelerations);
+        let moment = graph.mat_vec(&rotation.inertia, alpha);
+        parts.push(graph.dot(alpha, moment));
+        let momentum = graph.mat_vec(&rotation.inertia, rotation.velocity.v);
+        let gyroscopic = graph.cross(rotation.velocity.v, momentum);
+        let coupling = graph.dot(alpha, gyroscopic);
+        parts.push(graph.scale(&2.into(), coupling));
+    }
+    let twice = graph.sum(&parts);
+    graph.scale(&Rational::new(1, 2), twice)
+}
+
+/// `bias + Σ partial ω̇`
+pub fn along(graph: &mut Graph, bias: Vec3, partial: &[Vec3], accelerations: &[Expr]) -> Vec3 {
+    let mut a = bias;
+    for (&direction, &acceleration) in partial.iter().zip(accelerations) {
+        let part = graph.scale3(acceleration, direction);
+        a = graph.add3(a, part);
+    }
+    a
+}
+
+/// Kinetic energy `½ m v·v + ½ ω·I ω` of a body.
+pub fn kinetic_energy(algebra: &mut Algebra, body: &BodyMotion) -> Expr {
+    let v = body.centre.velocity.v;
+    let square = algebra.graph.dot(v, v);
+    let mut parts = vec![algebra.graph.mul(body.mass, square)];
+    if let Some(rotation) = &body.rotation {
+        let momentum = algebra.graph.mat_vec(&rotation.inertia, rotation.velocity.v);
+        parts.push(algebra.graph.dot(rotation.velocity.v, momentum));
+    }
+    let twice = algebra.graph.sum(&parts);
+    let half = algebra.graph.scale(&Rational::new(1, 2), twice);
+    algebra.shortest(half)
+}

@@ -1,0 +1,173 @@
+//! Velocities of points and bodies for given generalised velocities.
+
+use appell_spec::mechanism::{BodyId, FrameId, GROUND, Mechanism, ORIGIN, PointId};
+
+use super::algebra::Algebra;
+use super::finding::{Finding, Item, Stage};
+use super::frames::{FrameVector, Frames};
+use super::lower::Lowering;
+use super::symbols::Symbols;
+use super::time::TimeDerivative;
+use crate::symbolic::vector::{self, Vec3};
+use crate::symbolic::{Expr, Graph};
+
+/// Positions and velocities of a mechanism.
+#[derive(Debug, Clone)]
+pub struct Kinematics {
+    /// Frames and their angular velocities.
+    pub frames: Frames,
+    /// Position of each point from the point it is placed from.
+    offsets: Vec<FrameVector>,
+    /// Velocity of each point from the ground.
+    velocities: Vec<FrameVector>,
+}
+
+/// An imagined motion that the coordinates do not have: the points placed from the origin by way of
+/// `root` are carried along with a velocity of the ground's components.
+///
+/// Where geometry already embeds a constraint, this is the motion against which its reaction works.
+#[derive(Debug, Clone, Copy)]
+pub struct Carried {
+    /// The point next to the origin that everything carried hangs from.
+    pub root: PointId,
+    /// Velocity, in the ground.
+    pub v: Vec3,
+}
+
+impl Kinematics {
+    /// Velocities for the generalised velocities `rates`, with imagined motions added.
+    pub fn new(
+        algebra: &mut Algebra,
+        mechanism: &Mechanism,
+        symbols: &Symbols,
+        rates: &[Expr],
+        carried: &[Carried],
+    ) -> Stage<Self> {
+        let lowering = Lowering { symbols, rates };
+        let time = TimeDerivative { symbols, rates };
+        let frames = Frames::new(algebra, mechanism, &lowering, &time)
+            .map_err(|_| vec![division_by_zero(Item::Mechanism)])?;
+        let mut offsets = Vec::with_capacity(mechanism.points.len());
+        let mut velocities: Vec<FrameVector> = Vec::with_capacity(mechanism.points.len());
+        for (id, point) in mechanism.points.iter().enumerate() {
+            let at = lowering
+                .lower_all(&mut algebra.graph, &point.at)
+                .map_err(|_| vec![division_by_zero(Item::Point(id))])?;
+            offsets.push(FrameVector { frame: point.frame, v: at });
+            let Some(from) = point.from else {
+                velocities.push(FrameVector { frame: GROUND, v: vector::ZERO });
+                continue;
+            };
+            // v_P = v_from + (dr/dt in the frame) + ω × r
+            let mut v = frames.express(&mut algebra.graph, velocities[from], point.frame);
+            for motion in carried.iter().filter(|c| c.root == id) {
+                let carried = FrameVector { frame: GROUND, v: motion.v };
+                let carried = frames.express(&mut algebra.graph, carried, point.frame);
+                v = algebra.graph.add3(v, carried);
+            }
+            let relative = time.of3(algebra, at);
+            let turning = algebra.graph.cross(frames.angular_velocity(point.frame).v, at);
+            v = algebra.graph.add3(v, relative);
+            v = algebra.graph.add3(v, turning);
+            let velocity = FrameVector { frame: point.frame, v: algebra.shortest3(v) };
+            velocities.push(frames.simplest(algebra, velocity));
+        }
+        Ok(Self { frames, offsets, velocities })
+    }
+
+    /// Velocity of a point.
+    pub fn velocity(&self, point: PointId) -> FrameVector {
+        self.velocities[point]
+    }
+
+    /// Velocity of the material point of a body that is at `point` now: v_C + ω × r_CP.
+    pub fn material_velocity(
+        &self,
+        graph: &mut Graph,
+        mechanism: &Mechanism,
+        body: BodyId,
+        point: PointId,
+        frame: FrameId,
+    ) -> Vec3 {
+        let body = &mechanism.bodies[body];
+        let centre = self.frames.express(graph, self.velocities[body.centre], frame);
+        let Some(body_frame) = body.frame else { return centre };
+        let w = self.frames.express(graph, self.frames.angular_velocity(body_frame), frame);
+        let arm = self.between(graph, mechanism, body.centre, point, frame);
+        let turning = graph.cross(w, arm);
+        graph.add3(centre, turning)
+    }
+
+    /// Position of `to` from `from`.
+    pub fn between(
+        &self,
+        graph: &mut Graph,
+        mechanism: &Mechanism,
+        from: PointId,
+        to: PointId,
+        frame: FrameId,
+    ) -> Vec3 {
+        let chain = |point| -> Vec<PointId> {
+            std::iter::successors(Some(point), |&p: &PointId| mechanism.points[p].from).collect()
+        };
+        let (a, b) = (chain(from), chain(to));
+        // Parts of the way that both share cancel; leaving them out keeps the vector short.
+        let shared = a.iter().rev().zip(b.iter().rev()).take_while(|(p, q)| p == q).count();
+        let mut v = vector::ZERO;
+        for &point in &b[..b.len() - shared] {
+            let step = self.frames.express(graph, self.offsets[point], frame);
+            v = graph.add3(v, step);
+        }
+        for &point in &a[..a.len() - shared] {
+            let step = self.frames.express(graph, self.offsets[point], frame);
+            v = graph.sub3(v, step);
+        }
+        v
+    }
+
+    /// Position of a point from the origin, in the ground.
+    pub fn position(&self, graph: &mut Graph, mechanism: &Mechanism, point: PointId) -> Vec3 {
+        self.between(graph, mechanism, ORIGIN, point, GROUND)
+    }
+}
+
+impl Frames {
+    /// The same vector in the frame where its components take the fewest operations.
+    pub fn simplest(&self, algebra: &mut Algebra, vector: FrameVector) -> FrameVector {
+        let mut best = vector;
+        let mut cost = algebra.graph.operations(&best.v);
+        for frame in 0..self.count() {
+            if cost == 0 || frame == best.frame {
+                continue;
+            }
+            let v = self.express(&mut algebra.graph, vector, frame);
+            let v = algebra.shortest3(v);
+            let operations = algebra.graph.operations(&v);
+            if operations < cost {
+                (best, cost) = (FrameVector { frame, v }, operations);
+            }
+        }
+        best
+    }
+}
+
+/// The point next to the origin on the way to `point`.
+pub fn root_of(mechanism: &Mechanism, point: PointId) -> PointId {
+    let mut root = point;
+    while let Some(from) = mechanism.points[root].from
+        && from != ORIGIN
+    {
+        root = from;
+    }
+    root
+}
+
+/// A spec expression that divides by the number zero.
+pub fn division_by_zero(item: Item) -> Finding {
+    Finding {
+        code: "division-by-zero",
+        message: "an expression divides by zero".to_owned(),
+        item,
+        help: "write the expression without the zero denominator".to_owned(),
+    }
+}

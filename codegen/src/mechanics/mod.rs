@@ -1,0 +1,135 @@
+//! From a mechanism to its equations of motion by the Gibbs-Appell method.
+//!
+//! The files are the steps, in order: [`symbols`], [`frames`], [`kinematics`], [`constraints`],
+//! [`elimination`], [`gibbs_appell`], [`loads`], [`motion`], [`linear`], [`reactions`],
+//! [`assemble`].
+
+pub mod algebra;
+pub mod assemble;
+pub mod constraints;
+pub mod elimination;
+pub mod finding;
+pub mod frames;
+pub mod gibbs_appell;
+pub mod kinematics;
+pub mod linear;
+pub mod loads;
+pub mod lower;
+pub mod motion;
+pub mod reactions;
+pub mod symbols;
+pub mod time;
+
+use appell_spec::mechanism::Mechanism;
+
+use crate::symbolic::{Expr, Graph, Intervals};
+use algebra::Algebra;
+use constraints::Constraints;
+use elimination::GeneralizedVelocities;
+use finding::Stage;
+use gibbs_appell::{BodyMotion, GibbsForm};
+use kinematics::Kinematics;
+use loads::AppliedLoad;
+use motion::Factorization;
+use symbols::{Symbols, ids};
+
+/// The derivation of one mechanism, every stage kept for reading.
+pub struct Derivation {
+    /// Graph and tools.
+    pub algebra: Algebra,
+    /// Symbols of the mechanism.
+    pub symbols: Symbols,
+    /// Constraint rows.
+    pub constraints: Constraints,
+    /// q̇ in terms of the pseudo-velocities.
+    pub velocities: GeneralizedVelocities,
+    /// Velocities of points and frames.
+    pub kinematics: Kinematics,
+    /// Motions of the bodies.
+    pub bodies: Vec<BodyMotion>,
+    /// M and b.
+    pub gibbs: GibbsForm,
+    /// Applied loads.
+    pub loads: Vec<AppliedLoad>,
+    /// Π.
+    pub forces: Vec<Expr>,
+    /// Factorised M.
+    pub factorization: Factorization,
+    /// ω̇, named.
+    pub accelerations: Vec<Expr>,
+    /// q̇, named.
+    pub coordinate_rates: Vec<Expr>,
+}
+
+/// Derives the equations of motion of a mechanism.
+pub fn derive(mechanism: &Mechanism) -> Stage<Derivation> {
+    let mut graph = Graph::new();
+    let symbols = Symbols::new(&mut graph, mechanism);
+    let mut algebra = Algebra::new(graph, &symbols, seed(mechanism));
+    let mut intervals = declared_ranges(&algebra.graph, mechanism, &symbols);
+
+    let constraints = constraints::constraints(&mut algebra, mechanism, &symbols)?;
+    let velocities =
+        elimination::eliminate(&mut algebra, mechanism, &symbols, &constraints, &mut intervals)?;
+    let rates = &velocities.rates;
+    let kinematics = Kinematics::new(&mut algebra, mechanism, &symbols, rates, &[])?;
+    let bodies = gibbs_appell::body_motions(&mut algebra, mechanism, &symbols, &kinematics, rates)?;
+    let gibbs = gibbs_appell::gibbs_form(&mut algebra, &bodies, symbols.speeds.len());
+    let loads = loads::applied_loads(&mut algebra, mechanism, &symbols, &kinematics, rates)?;
+    let forces = loads::generalized_forces(&mut algebra, &loads, &symbols.speeds);
+
+    let factorization = motion::factorize(&mut algebra, mechanism, &gibbs.mass_matrix)?;
+    let right: Vec<Expr> =
+        forces.iter().zip(&gibbs.bias).map(|(&force, &bias)| algebra.graph.sub(force, bias)).collect();
+    let names: Vec<String> =
+        mechanism.pseudo_velocities.iter().map(|w| format!("{}_dot", w.label.name)).collect();
+    let accelerations = factorization.solve(&mut algebra, &right, Some(&names));
+    let coordinate_rates = mechanism
+        .coordinates
+        .iter()
+        .zip(rates)
+        .map(|(q, &rate)| algebra.graph.name(&format!("{}_dot", q.label.name), rate))
+        .collect();
+    Ok(Derivation {
+        algebra,
+        symbols,
+        constraints,
+        velocities,
+        kinematics,
+        bodies,
+        gibbs,
+        loads,
+        forces,
+        factorization,
+        accelerations,
+        coordinate_rates,
+    })
+}
+
+/// Ranges inside which a pivot must not vanish. A parameter keeps the sign of its value: a wheel of
+/// radius zero is another mechanism.
+fn declared_ranges(graph: &Graph, mechanism: &Mechanism, symbols: &Symbols) -> Intervals {
+    let coordinates = ids(graph, &symbols.coordinates).into_iter().zip(&mechanism.coordinates).filter_map(
+        |(symbol, coordinate)| coordinate.range.map(|[low, high]| (symbol, low, high)),
+    );
+    let parameters =
+        ids(graph, &symbols.parameters).into_iter().zip(&mechanism.parameters).filter_map(|(symbol, p)| {
+            let (low, high) = match p.value {
+                v if v > 0.0 => (f64::MIN_POSITIVE, f64::INFINITY),
+                v if v < 0.0 => (f64::NEG_INFINITY, -f64::MIN_POSITIVE),
+                _ => return None,
+            };
+            let low = p.at_least.map_or(low, |least| low.max(least));
+            let high = p.at_most.map_or(high, |most| high.min(most));
+            Some((symbol, low, high))
+        });
+    Intervals::new(graph, coordinates.chain(parameters).collect())
+}
+
+/// The identity test draws its points from the spec, so that every run draws the same.
+fn seed(mechanism: &Mechanism) -> u64 {
+    // FNV-1a: short, fixed for all time, and nobody attacks his own spec.
+    mechanism.name.bytes().fold(0xcbf2_9ce4_8422_2325, |hash, byte| {
+        (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3)
+    })
+}

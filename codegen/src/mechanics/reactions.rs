@@ -1,0 +1,86 @@
+//! Constraint forces by auxiliary pseudo-velocities.
+//!
+//! Every constraint row gets a speed at which it would be violated. In the motions along these
+//! speeds the constraint does work, so Appell's equations for them give its reaction.
+
+use appell_spec::mechanism::Mechanism;
+
+use super::algebra::Algebra;
+use super::constraints::{Constraints, motions_along};
+use super::elimination::Violation;
+use super::finding::Stage;
+use super::gibbs_appell::{BodyMotion, along, partial_velocities};
+use super::kinematics::Kinematics;
+use super::loads::{applied_loads, generalized_forces};
+use super::symbols::Symbols;
+use crate::symbolic::vector::{self, Vec3};
+use crate::symbolic::{Expr, Graph};
+
+/// Reaction at every place of [`Constraints::reactions`], in the ground.
+pub fn reactions(
+    algebra: &mut Algebra,
+    mechanism: &Mechanism,
+    symbols: &Symbols,
+    constraints: &Constraints,
+    violation: &Violation,
+    bodies: &[BodyMotion],
+    accelerations: &[Expr],
+) -> Stage<Vec<Vec3>> {
+    let carried = motions_along(&constraints.carried, &violation.carried_rates);
+    let rates = &violation.coordinate_rates;
+    let kinematics = Kinematics::new(algebra, mechanism, symbols, rates, &carried)?;
+    let loads = applied_loads(algebra, mechanism, symbols, &kinematics, rates)?;
+    let applied = generalized_forces(algebra, &loads, &violation.rates);
+
+    // Inertial forces, shared by all reactions.
+    let mut inertial = Vec::with_capacity(bodies.len());
+    for body in bodies {
+        let a = along(&mut algebra.graph, body.centre.bias, &body.centre.partial, accelerations);
+        let force = algebra.graph.scale3(body.mass, a);
+        let moment = body.rotation.as_ref().map(|rotation| {
+            let alpha = along(&mut algebra.graph, vector::ZERO, &rotation.partial, accelerations);
+            let growth = algebra.graph.mat_vec(&rotation.inertia, alpha);
+            algebra.graph.add3(growth, rotation.momentum_rate)
+        });
+        inertial.push((force, moment));
+    }
+
+    let mut totals = vec![vector::ZERO; constraints.reactions.len()];
+    for ((row, &rate), applied) in constraints.rows.iter().zip(&violation.rates).zip(applied) {
+        let mut parts = vec![algebra.graph.neg(applied)];
+        for ((body, motion), (force, moment)) in mechanism.bodies.iter().zip(bodies).zip(&inertial) {
+            let frame = motion.centre.velocity.frame;
+            let v = kinematics.frames.express(&mut algebra.graph, kinematics.velocity(body.centre), frame);
+            let partial = partial_velocities(algebra, v, &[rate])[0];
+            parts.push(algebra.graph.dot(*force, partial));
+            if let (Some(body_frame), Some(rotation), Some(moment)) = (body.frame, &motion.rotation, moment) {
+                let w = kinematics.frames.angular_velocity(body_frame);
+                let w = kinematics.frames.express(&mut algebra.graph, w, rotation.velocity.frame);
+                let partial = partial_velocities(algebra, w, &[rate])[0];
+                parts.push(algebra.graph.dot(*moment, partial));
+            }
+        }
+        let magnitude = algebra.graph.sum(&parts);
+        let magnitude = algebra.shortest(magnitude);
+        let contribution = algebra.graph.scale3(magnitude, row.reaction.direction);
+        let total = &mut totals[row.reaction.place];
+        *total = algebra.graph.add3(*total, contribution);
+    }
+    Ok(totals)
+}
+
+/// Constraint rows with given generalised velocities: zero up to rounding.
+pub fn residual(graph: &mut Graph, constraints: &Constraints, rates: &[Expr]) -> Vec<Expr> {
+    constraints
+        .rows
+        .iter()
+        .filter(|row| !row.is_embedded())
+        .map(|row| {
+            let mut parts = vec![row.rest];
+            for (&coefficient, &rate) in row.coefficients.iter().zip(rates) {
+                parts.push(graph.mul(coefficient, rate));
+            }
+            graph.sum(&parts)
+        })
+        .collect()
+}

@@ -1,0 +1,57 @@
+//! The symbols of a mechanism.
+
+use appell_spec::mechanism::Mechanism;
+
+use crate::symbolic::{Expr, Graph, SymbolId};
+
+/// One symbol per named quantity, and those of their derivatives that the equations need.
+#[derive(Debug, Clone)]
+pub struct Symbols {
+    /// Parameters.
+    pub parameters: Vec<Expr>,
+    /// Coordinates q.
+    pub coordinates: Vec<Expr>,
+    /// Generalised velocities q̇ while they are unknowns.
+    pub rates: Vec<Expr>,
+    /// Pseudo-velocities ω.
+    pub speeds: Vec<Expr>,
+    /// Pseudo-accelerations ω̇ while they are unknowns.
+    pub accelerations: Vec<Expr>,
+    /// Inputs.
+    pub inputs: Vec<Expr>,
+    /// Signals with their first and second derivatives.
+    pub signals: Vec<[Expr; 3]>,
+    /// Time.
+    pub time: Expr,
+    /// The circle constant.
+    pub pi: Expr,
+}
+
+impl Symbols {
+    /// Makes the symbols; parameters first, so that canonical products start with them.
+    pub fn new(graph: &mut Graph, mechanism: &Mechanism) -> Self {
+        let mut all = |names: &mut dyn Iterator<Item = String>| -> Vec<Expr> {
+            names.map(|name| graph.symbol(&name)).collect()
+        };
+        let parameters = all(&mut mechanism.parameters.iter().map(|p| p.label.name.clone()));
+        let coordinates = all(&mut mechanism.coordinates.iter().map(|c| c.label.name.clone()));
+        let speeds = all(&mut mechanism.pseudo_velocities.iter().map(|w| w.label.name.clone()));
+        let inputs = all(&mut mechanism.inputs.iter().map(|u| u.label.name.clone()));
+        let rates = all(&mut mechanism.coordinates.iter().map(|c| format!("{}_dot", c.label.name)));
+        let accelerations =
+            all(&mut mechanism.pseudo_velocities.iter().map(|w| format!("{}_dot", w.label.name)));
+        let signals = mechanism
+            .signals
+            .iter()
+            .map(|s| ["", "_dot", "_ddot"].map(|suffix| graph.symbol(&format!("{}{suffix}", s.label.name))))
+            .collect();
+        let time = graph.symbol("t");
+        let pi = graph.symbol("pi");
+        Self { parameters, coordinates, rates, speeds, accelerations, inputs, signals, time, pi }
+    }
+}
+
+/// The symbols behind a list of expressions that are symbols.
+pub fn ids(graph: &Graph, symbols: &[Expr]) -> Vec<SymbolId> {
+    symbols.iter().filter_map(|&s| graph.as_symbol(s)).collect()
+}

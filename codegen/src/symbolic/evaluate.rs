@@ -1,0 +1,90 @@
+//! Reference evaluation in double precision.
+
+use super::{Expr, Function, Graph, Node, Relation};
+
+/// Values of `roots` where the symbol with id `i` has the value `values[i]`. A symbol without a value
+/// is NaN.
+pub fn evaluate(g: &Graph, values: &[f64], roots: &[Expr]) -> Vec<f64> {
+    let mut known = vec![f64::NAN; g.len()];
+    let mut solutions: Vec<(u32, Vec<f64>)> = Vec::new();
+    for expr in g.in_order(roots) {
+        let of = |e: Expr| known[e.0 as usize];
+        let value = match g.node(expr) {
+            Node::Number(n) => n.to_f64(),
+            Node::Symbol(symbol) => values.get(symbol.0 as usize).copied().unwrap_or(f64::NAN),
+            Node::Named(id) => of(g.definition(*id).value),
+            Node::Sum(terms) => terms.iter().map(|t| t.coefficient.to_f64() * of(t.expr)).sum(),
+            Node::Product(factors) => factors.iter().map(|f| of(f.base).powi(f.exponent)).product(),
+            Node::Function(function, x) => apply(*function, of(*x)),
+            Node::Atan2(y, x) => of(*y).atan2(of(*x)),
+            Node::Power(base, exponent) => of(*base).powf(of(*exponent)),
+            Node::Choice { relation, compared, branches } => {
+                let [left, right] = compared.map(of);
+                let holds = match relation {
+                    Relation::Less => left < right,
+                    Relation::LessOrEqual => left <= right,
+                };
+                of(branches[usize::from(!holds)])
+            }
+            Node::Solution { system, row } => {
+                let place = match solutions.iter().position(|(id, _)| id == system) {
+                    Some(place) => place,
+                    None => {
+                        let equations = g.system(*system);
+                        let matrix = equations.matrix.iter().map(|&e| of(e)).collect();
+                        let right = equations.right.iter().map(|&e| of(e)).collect();
+                        solutions.push((*system, solve(matrix, right)));
+                        solutions.len() - 1
+                    }
+                };
+                solutions[place].1[*row as usize]
+            }
+        };
+        known[expr.0 as usize] = value;
+    }
+    roots.iter().map(|&root| known[root.0 as usize]).collect()
+}
+
+fn apply(function: Function, x: f64) -> f64 {
+    match function {
+        Function::Sin => x.sin(),
+        Function::Cos => x.cos(),
+        Function::Asin => x.asin(),
+        Function::Acos => x.acos(),
+        Function::Atan => x.atan(),
+        Function::Sinh => x.sinh(),
+        Function::Cosh => x.cosh(),
+        Function::Tanh => x.tanh(),
+        Function::Exp => x.exp(),
+        Function::Ln => x.ln(),
+        Function::Sqrt => x.sqrt(),
+        Function::Abs => x.abs(),
+        Function::Sign if x == 0.0 => 0.0,
+        Function::Sign => x.signum(),
+    }
+}
+
+/// Elimination with the largest pivot of each column. A singular matrix gives values that are not
+/// finite.
+fn solve(mut a: Vec<f64>, mut b: Vec<f64>) -> Vec<f64> {
+    let n = b.len();
+    for k in 0..n {
+        let pivot = (k..n).max_by(|&i, &j| a[i * n + k].abs().total_cmp(&a[j * n + k].abs())).unwrap_or(k);
+        for j in 0..n {
+            a.swap(k * n + j, pivot * n + j);
+        }
+        b.swap(k, pivot);
+        for i in k + 1..n {
+            let factor = a[i * n + k] / a[k * n + k];
+            for j in k..n {
+                a[i * n + j] -= factor * a[k * n + j];
+            }
+            b[i] -= factor * b[k];
+        }
+    }
+    for k in (0..n).rev() {
+        let known: f64 = (k + 1..n).map(|j| a[k * n + j] * b[j]).sum();
+        b[k] = (b[k] - known) / a[k * n + k];
+    }
+    b
+}

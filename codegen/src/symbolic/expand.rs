@@ -1,0 +1,142 @@
+//! Multiplying out, and counting what an expression costs.
+
+use rustc_hash::{FxHashMap, FxHashSet};
+
+use super::node::{Expr, Factor, Node, Term};
+use super::{Graph, Rational};
+
+impl Graph {
+    /// Multiplies out products and positive powers of sums. Names, functions and denominators stay as
+    /// they are. `None` where a sum would have more than `limit` terms.
+    pub fn expand(&mut self, expr: Expr, limit: usize) -> Option<Expr> {
+        let mut known: FxHashMap<Expr, Expr> = FxHashMap::default();
+        let mut stack = vec![expr];
+        while let Some(&top) = stack.last() {
+            if known.contains_key(&top) {
+                stack.pop();
+                continue;
+            }
+            let height = stack.len();
+            match self.node(top) {
+                Node::Sum(terms) => {
+                    stack.extend(terms.iter().map(|t| t.expr).filter(|e| !known.contains_key(e)));
+                }
+                Node::Product(factors) => {
+                    let sums = factors.iter().filter(|f| self.can_be_multiplied_out(f)).map(|f| f.base);
+                    stack.extend(sums.filter(|e| !known.contains_key(e)));
+                }
+                _ => {}
+            }
+            if stack.len() == height {
+                let expanded = match self.node(top).clone() {
+                    Node::Sum(terms) => {
+                        let parts: Vec<(Rational, Expr)> =
+                            terms.iter().map(|t| (t.coefficient.clone(), known[&t.expr])).collect();
+                        self.linear_combination(&parts)
+                    }
+                    Node::Product(factors) => self.multiply_out(&factors, &known, limit)?,
+                    _ => top,
+                };
+                if self.terms(expanded).len() > limit {
+                    return None;
+                }
+                known.insert(top, expanded);
+                stack.pop();
+            }
+        }
+        Some(known[&expr])
+    }
+
+    fn can_be_multiplied_out(&self, factor: &Factor) -> bool {
+        factor.exponent > 0 && matches!(self.node(factor.base), Node::Sum(_))
+    }
+
+    /// Product of factors of which the sums are known multiplied out.
+    fn multiply_out(
+        &mut self,
+        factors: &[Factor],
+        known: &FxHashMap<Expr, Expr>,
+        limit: usize,
+    ) -> Option<Expr> {
+        let (sums, others): (Vec<&Factor>, Vec<&Factor>) =
+            factors.iter().partition(|f| self.can_be_multiplied_out(f));
+        let powers: Vec<Expr> = others.iter().map(|f| self.pow(f.base, f.exponent)).collect();
+        let mut product = self.product(&powers);
+        for factor in sums {
+            let sum = known[&factor.base];
+            for _ in 0..factor.exponent {
+                let (left, right) = (self.terms(product), self.terms(sum));
+                // A bound on the work: like terms may still meet.
+                if left.len().saturating_mul(right.len()) > limit.saturating_mul(limit) {
+                    return None;
+                }
+                let mut parts = Vec::with_capacity(left.len() * right.len());
+                for a in &left {
+                    for b in &right {
+                        parts.push((&a.coefficient * &b.coefficient, self.mul(a.expr, b.expr)));
+                    }
+                }
+                product = self.linear_combination(&parts);
+                if self.terms(product).len() > limit {
+                    return None;
+                }
+            }
+        }
+        Some(product)
+    }
+
+    /// The terms of an expression as a sum.
+    fn terms(&self, expr: Expr) -> Vec<Term> {
+        match self.node(expr) {
+            Node::Sum(terms) => terms.to_vec(),
+            Node::Number(n) if n.is_zero() => Vec::new(),
+            Node::Number(n) => vec![Term { expr: Self::ONE, coefficient: n.clone() }],
+            _ => vec![Term { expr, coefficient: Rational::ONE }],
+        }
+    }
+
+    /// The one of two expressions with fewer operations, the first if they have equally many.
+    pub fn shorter(&self, a: Expr, b: Expr) -> Expr {
+        if a != b && self.operations(&[b]) < self.operations(&[a]) { b } else { a }
+    }
+
+    /// How many additions, multiplications, divisions and function calls compute `roots`, each shared
+    /// part once. Names cost nothing and hide nothing. Signs are free, a comparison counts as one.
+    pub fn operations(&self, roots: &[Expr]) -> usize {
+        let mut systems = FxHashSet::default();
+        let mut count = 0;
+        for expr in self.in_order(roots) {
+            count += match self.node(expr) {
+                Node::Number(_) | Node::Symbol(_) | Node::Named(_) => 0,
+                Node::Sum(terms) => {
+                    let scaled = terms.iter().filter(|t| t.expr != Self::ONE && !is_unit(&t.coefficient));
+                    terms.len() - 1 + scaled.count()
+                }
+                Node::Product(factors) => {
+                    let (over, under): (Vec<&Factor>, Vec<&Factor>) =
+                        factors.iter().partition(|f| f.exponent > 0);
+                    let powers: usize = factors.iter().map(|f| power_cost(f.exponent)).sum();
+                    let joins = over.len().saturating_sub(1) + under.len().saturating_sub(1);
+                    powers + joins + usize::from(!under.is_empty())
+                }
+                Node::Function(..) | Node::Atan2(..) | Node::Power(..) | Node::Choice { .. } => 1,
+                Node::Solution { system, .. } => {
+                    let n = self.system(*system).right.len();
+                    // Elimination and back substitution, once for all unknowns.
+                    if systems.insert(*system) { (2 * n * n * n).div_ceil(3) + 2 * n * n } else { 0 }
+                }
+            };
+        }
+        count
+    }
+}
+
+fn is_unit(coefficient: &Rational) -> bool {
+    coefficient.is_one() || *coefficient == Rational::MINUS_ONE
+}
+
+/// Multiplications of an integer power by repeated squaring.
+fn power_cost(exponent: i32) -> usize {
+    let n = exponent.unsigned_abs().max(1);
+    (n.ilog2() + n.count_ones() - 1) as usize
+}

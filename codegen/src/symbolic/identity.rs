@@ -1,0 +1,271 @@
+//! Equality of expressions, decided by evaluation at random points of a finite field.
+//!
+//! Two spellings of one rational function have the same value wherever both are defined. Two
+//! different rational functions of degree `D` agree at no more than `D / p` of the points of a field
+//! with `p` elements (Schwartz and Zippel). So a few random points decide, and the arithmetic is
+//! exact. The field has `p = 2^61 - 1` elements.
+//!
+//! What is not rational is modelled so that its identities hold exactly:
+//!
+//! - **Sine and cosine.** An angle is split into atoms, `Σ coefficient · atom`. The *value* of an atom
+//!   keys a pseudo-random point of the unit circle; equal atoms get equal points however they are
+//!   written. The circle is a cyclic group of `2^61` elements. The point that is drawn stands for
+//!   `atom / 2^8`; a coefficient `n / (2^a d)` with odd `d` and `a ≤ 8` multiplies it by
+//!   `n 2^(8-a) / d`, where `1/d` is taken modulo the group's order. That is a homomorphism from the
+//!   angles to the circle, hence all addition theorems, multiples and parts of angles are exact. A
+//!   coefficient with `n d > 2^24` or `a > 8` joins its atom: then nothing relates the angle to other
+//!   multiples of the atom. Angles are not multiplied out: `x (y + z)` and `x y + x z` are different
+//!   atoms.
+//! - **exp, sinh, cosh, tanh.** The same with the multiplicative group and parts of `1/720`.
+//! - **Square root.** The root that is a square itself. Where the radicand is not a square, the point is
+//!   skipped. Of a radicand that is never found to be a non-square, such as `a²`, the sign of the root
+//!   cannot be told apart from that of `a`: nothing is claimed about such expressions.
+//! - **Choice.** `otherwise + w (then - otherwise)`, where `w` is a random function of the difference
+//!   of the compared expressions. Linear in the branches; that `w² = w` is not known.
+//! - **Everything else** is a random function of the values of its arguments, odd where the function is
+//!   odd. `|x|` is `x sign(x)`.
+//! - **Unknowns of a linear system** are solved for.
+//!
+//! Each of these models satisfies every identity it claims, so equal expressions can look different
+//! (a theorem that is not modelled), but different ones look equal only by the bad luck that
+//! [`IdentityTest::error_bound`] bounds. Division by zero leaves a value undefined; questions about
+//! expressions that are undefined at every point are answered with "no".
+
+mod bound;
+mod cone;
+mod point;
+
+use rustc_hash::FxHashMap;
+
+use self::cone::Cones;
+use self::point::{Point, Redraw, symbol_bit};
+use super::field::{Element, keyed};
+use super::{Expr, Graph, SymbolId};
+
+/// Points at which an identity must hold.
+const TRIALS: usize = 2;
+/// Points that are tried for an expression without square roots.
+const MOST_POINTS: usize = TRIALS + 2;
+/// Points that are tried for an expression with square roots. Each independent root is defined at
+/// every second point.
+const MOST_POINTS_WITH_ROOTS: usize = 128;
+
+/// Identity testing on one graph, which may grow between the questions.
+///
+/// Values are remembered by expression: the questions about all expressions of a graph together cost
+/// one evaluation of it per trial. The answers depend on the seed and the graph only.
+#[derive(Debug)]
+pub struct IdentityTest {
+    seed: u64,
+    points: Vec<Point>,
+    cones: Cones,
+    /// For [`IdentityTest::independent_of`]: the first points with one symbol drawn again.
+    redrawn: FxHashMap<(SymbolId, usize), Point>,
+    /// Sets of radicands that are known to be independent, or not.
+    independent: FxHashMap<u32, bool>,
+}
+
+impl IdentityTest {
+    /// A test whose random points follow from `seed`.
+    pub fn new(seed: u64) -> Self {
+        Self {
+            seed,
+            points: Vec::new(),
+            cones: Cones::default(),
+            redrawn: FxHashMap::default(),
+            independent: FxHashMap::default(),
+        }
+    }
+
+    /// Whether `e` is zero wherever it is defined.
+    pub fn is_zero(&mut self, g: &Graph, e: Expr) -> bool {
+        e == Graph::ZERO || self.are_equal(g, e, Graph::ZERO)
+    }
+
+    /// Whether `a` and `b` are the same function.
+    pub fn are_equal(&mut self, g: &Graph, a: Expr, b: Expr) -> bool {
+        if a == b {
+            return true;
+        }
+        self.cones.extend(g);
+        let roots = self.cones.union(self.cones.roots(a), self.cones.roots(b));
+        let mut agreed = 0;
+        for index in 0..most_points(roots) {
+            if let (Some(a), Some(b)) = (self.value(g, index, a), self.value(g, index, b)) {
+                if a != b {
+                    return false;
+                }
+                agreed += 1;
+                if agreed == TRIALS {
+                    return self.roots_are_independent(g, roots);
+                }
+            }
+        }
+        false
+    }
+
+    /// Whether the value of `e` stays the same when only `symbol` changes.
+    pub fn independent_of(&mut self, g: &Graph, e: Expr, symbol: SymbolId) -> bool {
+        self.cones.extend(g);
+        if self.cones.symbols(e) & symbol_bit(symbol) == 0 {
+            return true;
+        }
+        let roots = self.cones.roots(e);
+        let mut agreed = 0;
+        for index in 0..most_points(roots) {
+            let Some(before) = self.value(g, index, e) else { continue };
+            let Self { points, redrawn, cones, .. } = &mut *self;
+            let original = &points[index];
+            let redraw = Redraw { original, symbol, symbols: cones.all_symbols() };
+            let other = redrawn.entry((symbol, index)).or_insert_with(|| original.sibling());
+            if let Some(after) = other.evaluate(g, e, Some(redraw)) {
+                if before != after {
+                    return false;
+                }
+                agreed += 1;
+                if agreed == TRIALS {
+                    return self.roots_are_independent(g, roots);
+                }
+            }
+        }
+        false
+    }
+
+    /// A number that equal expressions share and different ones do not. `None` where nothing can be
+    /// said.
+    ///
+    /// Expressions with square roots share it only if the same radicands occur in them.
+    pub fn fingerprint(&mut self, g: &Graph, e: Expr) -> Option<u128> {
+        self.cones.extend(g);
+        let roots = self.cones.roots(e);
+        let mut values = [Element::ZERO; TRIALS];
+        let mut places = [0; TRIALS];
+        let mut found = 0;
+        for index in 0..most_points(roots) {
+            if let Some(value) = self.value(g, index, e) {
+                values[found] = value;
+                places[found] = index;
+                found += 1;
+                if found == TRIALS {
+                    break;
+                }
+            }
+        }
+        if found < TRIALS {
+            return None;
+        }
+        let mut halves = values.map(Element::get);
+        if roots != Cones::NO_ROOTS {
+            if !self.roots_are_independent(g, roots) {
+                return None;
+            }
+            for (half, place) in halves.iter_mut().zip(places) {
+                let radicands = self.cones.radicands(roots).to_vec();
+                let mut radicands: Vec<Option<Element>> =
+                    radicands.into_iter().map(|r| self.value(g, place, r)).collect();
+                radicands.sort_unstable();
+                radicands.dedup();
+                for radicand in radicands {
+                    let radicand = radicand.map_or(u64::MAX, Element::get);
+                    *half = keyed(self.seed, place as u64, [*half, radicand]).get();
+                }
+            }
+        }
+        Some(u128::from(halves[0]) << 64 | u128::from(halves[1]))
+    }
+
+    /// Bound on the probability that [`IdentityTest::is_zero`] calls `e` zero though it is not, over
+    /// the choice of the seed. For `are_equal(a, b)` ask about `a - b`.
+    ///
+    /// With `D` the degree of `e` in the drawn elements (numerator and denominator added, over a
+    /// common denominator), `m` the number of random functions drawn in it and `A` the sum of their
+    /// arguments' degrees, two different arguments have the same value with probability at most
+    /// `m A / s` and else `e` vanishes with probability at most `D / s`. Here `s = p / 2^8 / 90` counts
+    /// the values that a drawn element takes when angles and exponents come in whole multiples. Each
+    /// of `k` square roots at most halves the defined points and doubles the degree. So a trial errs
+    /// with probability at most `4^k (D + m A) / s`, and two trials with its square.
+    pub fn error_bound(&self, g: &Graph, e: Expr) -> f64 {
+        bound::per_trial(g, e).powi(i32::try_from(TRIALS).unwrap_or(1)).min(1.0)
+    }
+
+    /// Value at a point that may be new.
+    fn value(&mut self, g: &Graph, index: usize, e: Expr) -> Option<Element> {
+        while self.points.len() <= index {
+            let key = keyed(self.seed, self.points.len() as u64, [0, 0]).get();
+            self.points.push(Point::new(key));
+        }
+        self.points[index].evaluate(g, e, None)
+    }
+
+    /// Whether the radicands are independent: each is no square of what can be built with the roots
+    /// of those before it.
+    ///
+    /// A point proves this for a radicand if it is no square there while all radicands before it are.
+    /// Then an expression in the roots that is zero at random points is zero for every sign of them.
+    fn roots_are_independent(&mut self, g: &Graph, roots: u32) -> bool {
+        if roots == Cones::NO_ROOTS {
+            return true;
+        }
+        if let Some(&known) = self.independent.get(&roots) {
+            return known;
+        }
+        let mut radicands = self.cones.radicands(roots).to_vec();
+        self.drop_equal(g, &mut radicands);
+        let mut proven = vec![false; radicands.len()];
+        for index in 0..MOST_POINTS_WITH_ROOTS {
+            for (radicand, proven) in radicands.iter().zip(&mut proven) {
+                match self.value(g, index, *radicand) {
+                    None => break,
+                    Some(value) if value.square_root().is_none() => {
+                        *proven = true;
+                        break;
+                    }
+                    Some(_) => {}
+                }
+            }
+            if proven.iter().all(|&p| p) {
+                break;
+            }
+        }
+        let independent = proven.iter().all(|&p| p);
+        self.independent.insert(roots, independent);
+        independent
+    }
+
+    /// Keeps one of radicands that are the same function.
+    fn drop_equal(&mut self, g: &Graph, radicands: &mut Vec<Expr>) {
+        let all = std::mem::take(radicands);
+        for candidate in all {
+            let mut known = false;
+            for &other in radicands.iter() {
+                known = known || self.agree(g, candidate, other);
+            }
+            if !known {
+                radicands.push(candidate);
+            }
+        }
+    }
+
+    /// Whether two expressions agree wherever both are defined, square roots taken at face value.
+    fn agree(&mut self, g: &Graph, a: Expr, b: Expr) -> bool {
+        let mut agreed = 0;
+        for index in 0..MOST_POINTS_WITH_ROOTS {
+            if let (Some(a), Some(b)) = (self.value(g, index, a), self.value(g, index, b)) {
+                if a != b {
+                    return false;
+                }
+                agreed += 1;
+                // Numbers of roots are small; the extra points guard against a root's sign.
+                if agreed == 8 * TRIALS {
+                    return true;
+                }
+            }
+        }
+        false
+    }
+}
+
+/// How many points are tried for an expression with a set of square roots.
+fn most_points(roots: u32) -> usize {
+    if roots == Cones::NO_ROOTS { MOST_POINTS } else { MOST_POINTS_WITH_ROOTS }
+}

@@ -1,0 +1,447 @@
+//! Evaluation of a graph at one random point of the field.
+
+use rustc_hash::FxHashMap;
+
+use super::super::field::{Element, PRIME, Rotation, keyed};
+use super::super::{Expr, Function, Graph, Node, Rational, Relation, SymbolId};
+
+/// What a pseudo-random value is drawn for.
+mod tag {
+    pub(super) const SYMBOL: u64 = 1;
+    pub(super) const REDRAWN: u64 = 2;
+    pub(super) const ANGLE: u64 = 3;
+    pub(super) const EXPONENT: u64 = 4;
+    pub(super) const CONDITION: u64 = 5;
+    pub(super) const ATAN2: u64 = 6;
+    pub(super) const ROOT: u64 = 7;
+    pub(super) const FUNCTION: u64 = 64;
+}
+
+/// Angles are multiples of `atom / 2^HALVINGS`, so that half angles exist.
+pub(super) const HALVINGS: u32 = 8;
+/// A coefficient `n / (2^a d)` of an angle takes part in addition theorems up to this `n d`.
+const MOST_TURNS: u64 = 1 << 24;
+/// Exponents are multiples of `atom / EXPONENT_PARTS`.
+pub(super) const EXPONENT_PARTS: i64 = 720;
+/// The largest such multiple that takes part in `exp(a + b) = exp a exp b`.
+const MOST_EXPONENT_PARTS: i64 = 1 << 24;
+
+/// A remembered value.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+struct Cell(u64);
+
+impl Cell {
+    const UNKNOWN: Self = Self(u64::MAX);
+    const UNDEFINED: Self = Self(u64::MAX - 1);
+
+    fn value(self) -> Option<Element> {
+        (self.0 < PRIME).then(|| Element::new(self.0))
+    }
+}
+
+impl From<Option<Element>> for Cell {
+    fn from(value: Option<Element>) -> Self {
+        value.map_or(Self::UNDEFINED, |v| Self(v.get()))
+    }
+}
+
+/// One random point with the values of all expressions that were asked for.
+#[derive(Debug)]
+pub(super) struct Point {
+    key: u64,
+    cells: Vec<Cell>,
+    rotations: FxHashMap<Expr, Option<Rotation>>,
+    solutions: FxHashMap<u32, Option<Box<[Element]>>>,
+    inverses: FxHashMap<i64, Element>,
+    stack: Vec<Expr>,
+    parts: Vec<(Rational, Expr)>,
+}
+
+/// The point that another one differs from in one symbol.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Redraw<'a> {
+    /// The original; it knows all values of the expression that is evaluated.
+    pub(super) original: &'a Point,
+    /// The symbol with another value.
+    pub(super) symbol: SymbolId,
+    /// By node: a set of symbols that holds all the node depends on.
+    pub(super) symbols: &'a [u64],
+}
+
+/// The bit of a symbol in a set of symbols; sixty-four symbols apart share one.
+pub(super) fn symbol_bit(symbol: SymbolId) -> u64 {
+    1 << (symbol.0 % 64)
+}
+
+impl Point {
+    pub(super) fn new(key: u64) -> Self {
+        Self {
+            key,
+            cells: Vec::new(),
+            rotations: FxHashMap::default(),
+            solutions: FxHashMap::default(),
+            inverses: FxHashMap::default(),
+            stack: Vec::new(),
+            parts: Vec::new(),
+        }
+    }
+
+    /// Another point with the same pseudo-random functions.
+    pub(super) fn sibling(&self) -> Self {
+        Self::new(self.key)
+    }
+
+    /// The value of an expression; `None` where it has none at this point.
+    pub(super) fn evaluate(&mut self, g: &Graph, root: Expr, redraw: Option<Redraw<'_>>) -> Option<Element> {
+        if self.cells.len() < g.len() {
+            self.cells.resize(g.len(), Cell::UNKNOWN);
+        }
+        let mut stack = std::mem::take(&mut self.stack);
+        stack.push(root);
+        while let Some(&expr) = stack.last() {
+            let index = expr.0 as usize;
+            if self.cells[index] != Cell::UNKNOWN {
+                stack.pop();
+                continue;
+            }
+            if let Some(redraw) = redraw
+                && redraw.symbols[index] & symbol_bit(redraw.symbol) == 0
+            {
+                self.cells[index] = redraw.original.cells[index];
+                stack.pop();
+                continue;
+            }
+            let height = stack.len();
+            g.for_each_part(expr, |part| {
+                if self.cells[part.0 as usize] == Cell::UNKNOWN {
+                    stack.push(part);
+                }
+            });
+            if stack.len() == height {
+                self.cells[index] = self.step(g, expr, redraw).into();
+                stack.pop();
+            }
+        }
+        self.stack = stack;
+        self.cells[root.0 as usize].value()
+    }
+
+    /// The value of a part. A part of what was copied from the original is only known there.
+    fn part(&self, expr: Expr, redraw: Option<Redraw<'_>>) -> Option<Element> {
+        let cell = self.cells[expr.0 as usize];
+        match redraw {
+            Some(redraw) if cell == Cell::UNKNOWN => redraw.original.cells[expr.0 as usize].value(),
+            _ => cell.value(),
+        }
+    }
+
+    /// The value of a node whose parts are known.
+    fn step(&mut self, g: &Graph, expr: Expr, redraw: Option<Redraw<'_>>) -> Option<Element> {
+        match g.node(expr) {
+            Node::Number(n) => Element::from_rational(n),
+            Node::Symbol(symbol) => {
+                let tag = match redraw {
+                    Some(redraw) if redraw.symbol == *symbol => tag::REDRAWN,
+                    _ => tag::SYMBOL,
+                };
+                Some(keyed(self.key, tag, [u64::from(symbol.0), 0]))
+            }
+            Node::Named(id) => self.part(g.definition(*id).value, redraw),
+            Node::Sum(terms) => {
+                let mut sum = Element::ZERO;
+                for term in terms {
+                    let value = self.part(term.expr, redraw)?;
+                    sum = sum + self.scaled(&term.coefficient, value)?;
+                }
+                Some(sum)
+            }
+            Node::Product(factors) => {
+                let (mut over, mut under) = (Element::ONE, Element::ONE);
+                for factor in factors {
+                    let value = self.part(factor.base, redraw)?;
+                    let side = if factor.exponent < 0 { &mut under } else { &mut over };
+                    *side = *side
+                        * match factor.exponent.unsigned_abs() {
+                            1 => value,
+                            2 => value * value,
+                            n => value.pow(n.into()),
+                        };
+                }
+                Some(if under == Element::ONE { over } else { over * under.inverse()? })
+            }
+            Node::Function(function, argument) => self.function(g, *function, *argument, redraw),
+            Node::Atan2(y, x) => {
+                let (y, x) = (self.part(*y, redraw)?, self.part(*x, redraw)?);
+                Some(keyed(self.key, tag::ATAN2, [y.get(), x.get()]))
+            }
+            Node::Power(base, exponent) => self.power(g, *base, *exponent, redraw),
+            Node::Choice { relation, compared, branches } => {
+                let [left, right] = [self.part(compared[0], redraw)?, self.part(compared[1], redraw)?];
+                let [then, otherwise] = [self.part(branches[0], redraw)?, self.part(branches[1], redraw)?];
+                // A weight instead of a decision: nothing looks equal only because the branch in
+                // which it differs was not taken.
+                let positive =
+                    |key, d: Element| keyed(key, tag::CONDITION, [d.get(), 0]);
+                let holds = match relation {
+                    Relation::Less => positive(self.key, right - left),
+                    Relation::LessOrEqual => Element::ONE - positive(self.key, left - right),
+                };
+                Some(otherwise + holds * (then - otherwise))
+            }
+            Node::Solution { system, row } => self.solution(g, *system, *row, redraw),
+        }
+    }
+
+    /// `coefficient · value`
+    fn scaled(&mut self, coefficient: &Rational, value: Element) -> Option<Element> {
+        match coefficient.as_small() {
+            Some((1, 1)) => Some(value),
+            Some((-1, 1)) => Some(-value),
+            Some((n, d)) => {
+                let numerator = value * Element::from_signed(n);
+                Some(match d {
+                    1 => numerator,
+                    2 => numerator * Element::HALF,
+                    _ => {
+                        let inverse = match self.inverses.get(&d) {
+                            Some(&known) => known,
+                            None => {
+                                let inverse = Element::from_signed(d).inverse()?;
+                                self.inverses.insert(d, inverse);
+                                inverse
+                            }
+                        };
+                        numerator * inverse
+                    }
+                })
+            }
+            None => Some(value * Element::from_rational(coefficient)?),
+        }
+    }
+
+    fn function(&mut self, g: &Graph, function: Function, x: Expr, redraw: Option<Redraw<'_>>) -> Option<Element> {
+        let value = self.part(x, redraw)?;
+        match function {
+            Function::Sin => self.rotation(g, x, redraw).map(|r| r.sin),
+            Function::Cos => self.rotation(g, x, redraw).map(|r| r.cos),
+            Function::Exp => self.exponential(g, x, redraw),
+            Function::Sinh | Function::Cosh | Function::Tanh => {
+                let up = self.exponential(g, x, redraw)?;
+                let down = up.inverse()?;
+                match function {
+                    Function::Sinh => Some((up - down) * Element::HALF),
+                    Function::Cosh => Some((up + down) * Element::HALF),
+                    _ => Some((up - down) * (up + down).inverse()?),
+                }
+            }
+            Function::Sqrt => value.square_root(),
+            Function::Asin | Function::Atan => Some(self.odd(function, value)),
+            // |x| = x sign x; the sign is an odd function about which nothing else is known.
+            Function::Sign => Some(self.odd(function, value)),
+            Function::Abs => Some(value * self.odd(Function::Sign, value)),
+            Function::Acos | Function::Ln => {
+                Some(keyed(self.key, tag::FUNCTION + function as u64, [value.get(), 0]))
+            }
+        }
+    }
+
+    /// An uninterpreted odd function.
+    fn odd(&self, function: Function, value: Element) -> Element {
+        if value.is_zero() {
+            return value;
+        }
+        let (magnitude, negative) = value.without_sign();
+        let image = keyed(self.key, tag::FUNCTION + function as u64, [magnitude.get(), 0]);
+        if negative { -image } else { image }
+    }
+
+    /// Splits an expression into `Σ coefficient · atom`, where no atom is a sum or a name.
+    fn split(&mut self, g: &Graph, expr: Expr) -> Vec<(Rational, Expr)> {
+        let mut atoms = std::mem::take(&mut self.parts);
+        atoms.clear();
+        atoms.push((Rational::ONE, expr));
+        let mut next = 0;
+        while next < atoms.len() {
+            let (factor, part) = atoms[next].clone();
+            match g.node(part) {
+                Node::Named(id) => atoms[next].1 = g.definition(*id).value,
+                Node::Sum(terms) => {
+                    atoms.swap_remove(next);
+                    atoms.extend(terms.iter().map(|t| (&factor * &t.coefficient, t.expr)));
+                }
+                Node::Number(n) if *n != Rational::ONE => {
+                    atoms[next] = (&factor * n, Graph::ONE);
+                }
+                _ => next += 1,
+            }
+        }
+        atoms
+    }
+
+    /// Cosine and sine of an angle, by the addition theorems from those of its atoms.
+    fn rotation(&mut self, g: &Graph, angle: Expr, redraw: Option<Redraw<'_>>) -> Option<Rotation> {
+        if let Some(&known) = self.rotations.get(&angle) {
+            return known;
+        }
+        let atoms = self.split(g, angle);
+        let mut total = Some(Rotation::NONE);
+        for (coefficient, atom) in &atoms {
+            let turn = self.turn(coefficient, *atom, redraw);
+            total = total.zip(turn).map(|(sum, turn)| sum.then(turn));
+        }
+        self.parts = atoms;
+        self.rotations.insert(angle, total);
+        total
+    }
+
+    /// Cosine and sine of `coefficient · atom`.
+    fn turn(&mut self, coefficient: &Rational, atom: Expr, redraw: Option<Redraw<'_>>) -> Option<Rotation> {
+        let value = self.part(atom, redraw)?;
+        // A coefficient without useful multiples belongs to the atom.
+        let (value, multiple, backwards) = match turns(coefficient) {
+            Some((multiple, backwards)) => (value, multiple, backwards),
+            None => (self.scaled(coefficient, value)?, 1 << HALVINGS, false),
+        };
+        if value.is_zero() {
+            return Some(Rotation::NONE);
+        }
+        let (magnitude, negative) = value.without_sign();
+        let unit = Rotation::from_parameter(keyed(self.key, tag::ANGLE, [magnitude.get(), 0]));
+        let turn = unit.times(multiple);
+        Some(if negative == backwards { turn } else { turn.reversed() })
+    }
+
+    /// `exp` of a sum as a product over its atoms.
+    fn exponential(&mut self, g: &Graph, exponent: Expr, redraw: Option<Redraw<'_>>) -> Option<Element> {
+        self.growth(g, exponent, 0, redraw)
+    }
+
+    /// `Π growth(base, atom)^coefficient` over the atoms of the exponent.
+    fn growth(&mut self, g: &Graph, exponent: Expr, base: u64, redraw: Option<Redraw<'_>>) -> Option<Element> {
+        let atoms = self.split(g, exponent);
+        let mut product = Some(Element::ONE);
+        for (coefficient, atom) in &atoms {
+            // The numeric part of a power's exponent is the caller's.
+            if base != 0 && *atom == Graph::ONE {
+                continue;
+            }
+            let power = self.growth_of_atom(coefficient, *atom, base, redraw);
+            product = product.zip(power).map(|(a, b)| a * b);
+        }
+        self.parts = atoms;
+        product
+    }
+
+    fn growth_of_atom(
+        &mut self,
+        coefficient: &Rational,
+        atom: Expr,
+        base: u64,
+        redraw: Option<Redraw<'_>>,
+    ) -> Option<Element> {
+        let value = self.part(atom, redraw)?;
+        let parts = (coefficient * &EXPONENT_PARTS.into())
+            .as_integer()
+            .filter(|parts| parts.abs() <= MOST_EXPONENT_PARTS);
+        let (value, parts) = match parts {
+            Some(parts) => (value, parts),
+            None => (self.scaled(coefficient, value)?, EXPONENT_PARTS),
+        };
+        if value.is_zero() {
+            return Some(Element::ONE);
+        }
+        let (magnitude, negative) = value.without_sign();
+        let unit = keyed(self.key, tag::EXPONENT, [magnitude.get(), base]);
+        let power = unit.pow(parts.unsigned_abs());
+        if negative == (parts < 0) { Some(power) } else { power.inverse() }
+    }
+
+    /// `base^exponent`: the numeric part of the exponent acts on the base, the rest is an
+    /// uninterpreted homomorphism of the exponent.
+    fn power(&mut self, g: &Graph, base: Expr, exponent: Expr, redraw: Option<Redraw<'_>>) -> Option<Element> {
+        let value = self.part(base, redraw)?;
+        if value.is_zero() {
+            return None;
+        }
+        let atoms = self.split(g, exponent);
+        let constant =
+            atoms.iter().filter(|(_, atom)| *atom == Graph::ONE).fold(Rational::ZERO, |sum, (c, _)| &sum + c);
+        self.parts = atoms;
+        // Shifted by one, since the exponential's base is 0.
+        let symbolic = self.growth(g, exponent, value.get() + 1, redraw)?;
+        Some(symbolic * self.rational_power(value, &constant)?)
+    }
+
+    fn rational_power(&self, value: Element, exponent: &Rational) -> Option<Element> {
+        let Some((n, d)) = exponent.as_small() else {
+            let exponent = Element::from_rational(exponent)?;
+            return Some(keyed(self.key, tag::ROOT, [value.get(), exponent.get()]));
+        };
+        let root = match d {
+            1 => value,
+            2 => value.square_root()?,
+            // An uninterpreted root: x^(1/d) to the power d is not known to be x, but whole powers
+            // of x are taken out first.
+            _ => keyed(self.key, tag::ROOT, [value.get(), d.unsigned_abs()]),
+        };
+        let (whole, rest) = (n.div_euclid(d), n.rem_euclid(d));
+        let whole_power = value.pow(whole.unsigned_abs());
+        let whole_power = if whole < 0 { whole_power.inverse()? } else { whole_power };
+        Some(whole_power * root.pow(rest.unsigned_abs()))
+    }
+
+    fn solution(&mut self, g: &Graph, system: u32, row: u32, redraw: Option<Redraw<'_>>) -> Option<Element> {
+        if !self.solutions.contains_key(&system) {
+            let equations = g.system(system);
+            let values = |exprs: &[Expr]| -> Option<Vec<Element>> {
+                exprs.iter().map(|&e| self.part(e, redraw)).collect()
+            };
+            let solved = match (values(&equations.matrix), values(&equations.right)) {
+                (Some(matrix), Some(right)) => solve(matrix, right),
+                _ => None,
+            };
+            self.solutions.insert(system, solved);
+        }
+        self.solutions[&system].as_ref().map(|unknowns| unknowns[row as usize])
+    }
+}
+
+/// `coefficient · 2^HALVINGS` modulo the order `2^61` of the circle, and whether it is negative.
+///
+/// Odd denominators are units modulo the order, so a third of an angle is exact.
+fn turns(coefficient: &Rational) -> Option<(u64, bool)> {
+    let (n, d) = coefficient.as_small()?;
+    let halvings = d.trailing_zeros();
+    let (count, odd) = (n.unsigned_abs(), d.unsigned_abs() >> halvings);
+    if halvings > HALVINGS || count.checked_mul(odd)? > MOST_TURNS {
+        return None;
+    }
+    // Newton's iteration doubles the correct bits, from three to more than sixty-one.
+    let inverse = (0..5).fold(odd, |x, _| x.wrapping_mul(2u64.wrapping_sub(odd.wrapping_mul(x))));
+    let multiple = (count << (HALVINGS - halvings)).wrapping_mul(inverse) & PRIME;
+    Some((multiple, n < 0))
+}
+
+/// Gauss's elimination; `None` for a singular matrix.
+fn solve(mut a: Vec<Element>, mut b: Vec<Element>) -> Option<Box<[Element]>> {
+    let n = b.len();
+    for k in 0..n {
+        let pivot = (k..n).find(|&i| !a[i * n + k].is_zero())?;
+        for j in 0..n {
+            a.swap(k * n + j, pivot * n + j);
+        }
+        b.swap(k, pivot);
+        let inverse = a[k * n + k].inverse()?;
+        for i in 0..n {
+            let factor = a[i * n + k] * inverse;
+            if i == k || factor.is_zero() {
+                continue;
+            }
+            for j in k..n {
+                a[i * n + j] = a[i * n + j] - factor * a[k * n + j];
+            }
+            b[i] = b[i] - factor * b[k];
+        }
+    }
+    (0..n).map(|k| Some(b[k] * a[k * n + k].inverse()?)).collect()
+}

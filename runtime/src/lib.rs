@@ -7,15 +7,25 @@
 
 pub mod dense;
 #[cfg(feature = "std")]
+pub mod inputs;
+#[cfg(feature = "std")]
 pub mod integrate;
 #[cfg(feature = "std")]
 pub mod model;
 pub mod real;
 #[cfg(feature = "std")]
 pub mod signal;
+#[cfg(feature = "std")]
+pub mod simulate;
+#[cfg(feature = "std")]
+pub mod trajectory;
 
 #[cfg(any(feature = "std", feature = "libm"))]
 pub use real::Lanes;
 pub use real::{Dual, Real};
 #[cfg(feature = "std")]
 pub use signal::Signal;
+#[cfg(feature = "std")]
+pub use simulate::Simulation;
+#[cfg(feature = "std")]
+pub use trajectory::Trajectory;

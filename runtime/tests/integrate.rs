@@ -8,7 +8,7 @@ use appell_runtime::integrate::{
     Solver, Statistics, Step, Watch,
 };
 use std::cell::Cell;
-use std::f64::consts::{FRAC_PI_2, PI, TAU};
+use std::f64::consts::{FRAC_PI_2, TAU};
 use std::ops::ControlFlow;
 
 fn oscillator(_: f64, x: &[f64], rates: &mut [f64]) {

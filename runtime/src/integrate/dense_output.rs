@@ -15,11 +15,24 @@ pub struct DenseOutput {
 }
 
 impl DenseOutput {
-    /// The state at `t`, written to `x`. Meant for times within the step; elsewhere the
-    /// polynomial is extrapolated.
+    /// The state at `t`, written to `x`, as long as the state. Meant for times within the step;
+    /// elsewhere the polynomial is extrapolated.
     pub fn state(&self, t: f64, x: &mut [f64]) {
-        for (i, x) in x.iter_mut().enumerate().take(self.n) {
-            *x = self.component(t, i);
+        let factors = self.factors(t);
+        let mut coefficients = self
+            .coefficients
+            .chunks_exact(self.n.max(1))
+            .enumerate()
+            .rev();
+        if let Some((_, highest)) = coefficients.next() {
+            for (x, highest) in x.iter_mut().zip(highest) {
+                *x = *highest;
+            }
+        }
+        for (c, coefficients) in coefficients {
+            for (x, coefficient) in x.iter_mut().zip(coefficients) {
+                *x = coefficient + factors[c % 2] * *x;
+            }
         }
     }
 
@@ -28,16 +41,20 @@ impl DenseOutput {
     /// # Panics
     ///
     /// If `i` is not below the number of states.
-    #[inline]
     pub fn component(&self, t: f64, i: usize) -> f64 {
-        let theta = (t - self.t_old) / self.h;
-        let factors = [1.0 - theta, theta];
-        let count = self.coefficients.len() / self.n;
-        let mut value = self.coefficients[(count - 1) * self.n + i];
-        for c in (0..count - 1).rev() {
-            value = self.coefficients[c * self.n + i] + factors[(c + 1) % 2] * value;
+        let factors = self.factors(t);
+        let highest = self.coefficients.len() / self.n - 1;
+        let mut value = self.coefficients[highest * self.n + i];
+        for c in (0..highest).rev() {
+            value = self.coefficients[c * self.n + i] + factors[c % 2] * value;
         }
         value
+    }
+
+    /// What multiplies everything after coefficients 0, 2, … and after 1, 3, …: θ and θ̄.
+    fn factors(&self, t: f64) -> [f64; 2] {
+        let theta = (t - self.t_old) / self.h;
+        [theta, 1.0 - theta]
     }
 
     /// Sizes the polynomial for `n` states and `count` coefficients.
@@ -62,8 +79,8 @@ impl DenseOutput {
         }
     }
 
-    /// Sets coefficient `c` of component `i`.
-    pub(super) fn set(&mut self, c: usize, i: usize, value: f64) {
-        self.coefficients[c * self.n + i] = value;
+    /// Coefficient `c`, one number per state.
+    pub(super) fn coefficient(&mut self, c: usize) -> &mut [f64] {
+        &mut self.coefficients[c * self.n..][..self.n]
     }
 }

@@ -128,9 +128,7 @@ impl EmbeddedPair for Dopri5 {
     where
         F: FnMut(f64, &[f64], &mut [f64]),
     {
-        for i in 0..stages.x().len() {
-            dense.set(4, i, h * stages.combination(DOPRI5_INTERIOR, i));
-        }
+        stages.combination(h, DOPRI5_INTERIOR, dense.coefficient(4));
         0
     }
 }
@@ -178,9 +176,7 @@ impl EmbeddedPair for Dop853 {
             stages.evaluate(f, first + i, t + node * h, h, row);
         }
         for (c, &row) in dop853::INTERIOR.iter().enumerate() {
-            for i in 0..stages.x().len() {
-                dense.set(4 + c, i, h * stages.combination(row, i));
-            }
+            stages.combination(h, row, dense.coefficient(4 + c));
         }
         dop853::INTERIOR_STAGES.len()
     }

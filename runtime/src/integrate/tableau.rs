@@ -142,12 +142,14 @@ impl Stages {
         self.rates.copy_within(start..start + self.stride, 0);
     }
 
-    /// Component `i` of Σ w k.
-    #[inline]
-    pub(super) fn combination(&self, row: Row, i: usize) -> f64 {
-        row.iter()
-            .map(|&(stage, weight)| weight * self.rates[stage * self.stride + i])
-            .sum()
+    /// `out` = h Σ w k, one number per state.
+    pub(super) fn combination(&self, h: f64, row: Row, out: &mut [f64]) {
+        for (block, out) in out.chunks_mut(BLOCK).enumerate() {
+            let sum = block_combination(row, &self.rates, self.stride, block * BLOCK);
+            for (out, sum) in out.iter_mut().zip(sum) {
+                *out = h * sum;
+            }
+        }
     }
 
     /// Mean square of Σ w k over `scale`.

@@ -1,0 +1,239 @@
+//! What drives a model: inputs as functions of time and state.
+
+use crate::model::{Interpolation, ModelInfo, SignalTable};
+use crate::signal::{Signal, SignalError};
+
+/// The declared inputs of a model as functions of time and state.
+///
+/// At a time where an input jumps the right-hand limit is wanted; the integrator evaluates the
+/// left-hand limit just before it, provided the time is among [`InputSource::switching_times`].
+pub trait InputSource {
+    /// Writes the declared inputs at `t` in s and state `x`, all in SI.
+    fn inputs(&self, t: f64, x: &[f64], u: &mut [f64]);
+
+    /// Times in s at which the inputs jump or lose smoothness, in any order.
+    fn switching_times(&self) -> Vec<f64> {
+        Vec::new()
+    }
+}
+
+/// A smooth function of time and state is a source.
+impl<F: Fn(f64, &[f64], &mut [f64])> InputSource for F {
+    fn inputs(&self, t: f64, x: &[f64], u: &mut [f64]) {
+        self(t, x, u);
+    }
+}
+
+/// All inputs zero.
+#[derive(Debug, Clone, Copy)]
+pub struct ZeroInputs;
+
+impl InputSource for ZeroInputs {
+    fn inputs(&self, _: f64, _: &[f64], u: &mut [f64]) {
+        u.fill(0.0);
+    }
+}
+
+/// A function of time and state with switching times.
+#[derive(Debug, Clone)]
+pub struct SwitchedInputs<F> {
+    /// Writes the inputs, see [`InputSource::inputs`].
+    pub function: F,
+    /// See [`InputSource::switching_times`].
+    pub switching_times: Vec<f64>,
+}
+
+impl<F: Fn(f64, &[f64], &mut [f64])> InputSource for SwitchedInputs<F> {
+    fn inputs(&self, t: f64, x: &[f64], u: &mut [f64]) {
+        (self.function)(t, x, u);
+    }
+
+    fn switching_times(&self) -> Vec<f64> {
+        self.switching_times.clone()
+    }
+}
+
+/// One tabulated signal per input; inputs without one are zero.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TabulatedInputs {
+    signals: Vec<Signal>,
+}
+
+impl TabulatedInputs {
+    /// Inputs in the order of the model.
+    pub fn new(signals: Vec<Signal>) -> Self {
+        Self { signals }
+    }
+
+    /// Zero-order hold: `columns[i][k]` is input i from `times[k]` up to `times[k + 1]`. The first
+    /// row also holds before, the last one after.
+    pub fn held(times: &[f64], columns: &[Vec<f64>]) -> Result<Self, SignalError> {
+        let signal = |(i, values): (usize, &Vec<f64>)| {
+            Signal::new(&SignalTable {
+                name: format!("input {i}").into(),
+                times: times.to_vec().into(),
+                values: values.clone().into(),
+                interpolation: Interpolation::Hold,
+            })
+        };
+        let signals = columns
+            .iter()
+            .enumerate()
+            .map(signal)
+            .collect::<Result<_, _>>()?;
+        Ok(Self { signals })
+    }
+}
+
+impl InputSource for TabulatedInputs {
+    fn inputs(&self, t: f64, _: &[f64], u: &mut [f64]) {
+        u.fill(0.0);
+        for (u, signal) in u.iter_mut().zip(&self.signals) {
+            *u = signal.value(t);
+        }
+    }
+
+    fn switching_times(&self) -> Vec<f64> {
+        let mut times: Vec<f64> = self
+            .signals
+            .iter()
+            .flat_map(Signal::knots)
+            .copied()
+            .collect();
+        times.sort_by(f64::total_cmp);
+        times.dedup();
+        times
+    }
+}
+
+/// A wanted value as a function of time, in pieces.
+pub struct Reference {
+    /// The value at t in s.
+    pub value: Box<dyn Fn(f64) -> f64 + Send + Sync>,
+    /// Times in s between which it is smooth.
+    pub switching_times: Vec<f64>,
+}
+
+impl Reference {
+    /// A value that never changes.
+    pub fn constant(value: f64) -> Self {
+        Self {
+            value: Box::new(move |_| value),
+            switching_times: Vec::new(),
+        }
+    }
+
+    /// A function of time that is smooth between `switching_times`.
+    pub fn new(
+        switching_times: Vec<f64>,
+        value: impl Fn(f64) -> f64 + Send + Sync + 'static,
+    ) -> Self {
+        Self {
+            value: Box::new(value),
+            switching_times,
+        }
+    }
+}
+
+impl std::fmt::Debug for Reference {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        formatter
+            .debug_struct("Reference")
+            .field("switching_times", &self.switching_times)
+            .finish_non_exhaustive()
+    }
+}
+
+/// u = u₀ − K (y − `y_des(t)`), y being some of the states.
+#[derive(Debug)]
+pub struct StateFeedback {
+    /// u₀, one number per input.
+    pub offset: Vec<f64>,
+    /// K row by row, one row per input, one column per selected state.
+    pub gains: Vec<f64>,
+    /// Indices of the selected states.
+    pub selected: Vec<usize>,
+    /// Their wanted values.
+    pub references: Vec<Reference>,
+}
+
+impl InputSource for StateFeedback {
+    fn inputs(&self, t: f64, x: &[f64], u: &mut [f64]) {
+        u.fill(0.0);
+        for (u, offset) in u.iter_mut().zip(&self.offset) {
+            *u = *offset;
+        }
+        for (column, (&state, reference)) in self.selected.iter().zip(&self.references).enumerate()
+        {
+            let deviation = x[state] - (reference.value)(t);
+            let columns = self.selected.len();
+            for (u, row) in u.iter_mut().zip(self.gains.chunks(columns)) {
+                *u -= row[column] * deviation;
+            }
+        }
+    }
+
+    fn switching_times(&self) -> Vec<f64> {
+        self.references
+            .iter()
+            .flat_map(|reference| &reference.switching_times)
+            .copied()
+            .collect()
+    }
+}
+
+/// All inputs of a model: the declared ones from a source, the signals from the model's tables.
+pub struct ModelInputs<'a> {
+    source: &'a dyn InputSource,
+    signals: Vec<Signal>,
+    /// Signal and order of its derivative for each input after the declared ones.
+    signal_inputs: &'a [(usize, u8)],
+    declared: usize,
+}
+
+impl<'a> ModelInputs<'a> {
+    /// Prepares the model's signals.
+    pub fn new(info: &'a ModelInfo, source: &'a dyn InputSource) -> Result<Self, SignalError> {
+        let signals = info
+            .signals
+            .iter()
+            .map(Signal::new)
+            .collect::<Result<_, _>>()?;
+        Ok(Self {
+            source,
+            signals,
+            signal_inputs: &info.signal_inputs,
+            declared: info.declared_inputs,
+        })
+    }
+
+    /// Writes all inputs of the model at `t` in s and state `x`, in SI. A signal that does not
+    /// exist is NaN.
+    pub fn fill(&self, t: f64, x: &[f64], u: &mut [f64]) {
+        let (declared, signals) = u.split_at_mut(self.declared.min(u.len()));
+        self.source.inputs(t, x, declared);
+        for (u, &(signal, order)) in signals.iter_mut().zip(self.signal_inputs) {
+            *u = self
+                .signals
+                .get(signal)
+                .map_or(f64::NAN, |signal| signal.derivative(t, order));
+        }
+    }
+
+    /// Times in s at which an input jumps or loses smoothness.
+    pub fn switching_times(&self) -> Vec<f64> {
+        let mut times = self.source.switching_times();
+        times.extend(self.signals.iter().flat_map(Signal::knots));
+        times
+    }
+}
+
+impl std::fmt::Debug for ModelInputs<'_> {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        formatter
+            .debug_struct("ModelInputs")
+            .field("signals", &self.signals)
+            .field("declared", &self.declared)
+            .finish_non_exhaustive()
+    }
+}

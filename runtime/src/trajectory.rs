@@ -1,0 +1,302 @@
+//! The recorded course of a motion.
+
+use crate::integrate::{Ending, EventHit, Statistics};
+use crate::model::{At, Model, ModelInfo, Quantity};
+use std::io::{self, Write};
+
+/// What is recorded besides states and inputs.
+// Four independent switches.
+#[allow(clippy::struct_excessive_bools)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Extras {
+    /// The outputs of the spec.
+    pub outputs: bool,
+    /// `kinetic_energy`, `potential_energy` in J and the `power` of the other loads in W.
+    pub energies: bool,
+    /// `reaction_<name>_x`, `_y`, `_z` in the ground: N, or N m for couples.
+    pub reactions: bool,
+    /// `residual_<name>` of each velocity constraint.
+    pub residuals: bool,
+}
+
+/// Rows over time; each row holds the state, the inputs, and the extras asked for. All in SI.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Trajectory {
+    info: ModelInfo,
+    parameters: Vec<f64>,
+    times: Vec<f64>,
+    columns: Vec<Quantity>,
+    rows: Vec<f64>,
+    /// Why the motion ended; nothing if it failed.
+    pub ending: Option<Ending>,
+    /// Events found.
+    pub events: Vec<EventHit>,
+    /// Cost of the integration.
+    pub statistics: Statistics,
+}
+
+impl Trajectory {
+    /// Evaluates the columns of a motion given by its states, `times.len()` rows of n numbers.
+    ///
+    /// `fill_inputs(t, x, u)` writes all inputs of the model. The lengths of `states` and
+    /// `parameters` are those of the model, or the model panics.
+    pub fn evaluate(
+        model: &dyn Model,
+        parameters: &[f64],
+        times: Vec<f64>,
+        states: &[f64],
+        fill_inputs: impl Fn(f64, &[f64], &mut [f64]),
+        extras: Extras,
+    ) -> Self {
+        let info = model.info().clone();
+        let columns = columns(&info, extras);
+        let n = info.state_len();
+        let mut rows = Vec::with_capacity(times.len() * columns.len());
+        let mut inputs = vec![0.0; info.input_len()];
+        let mut outputs = vec![0.0; info.output_len()];
+        let mut reactions = vec![0.0; 3 * info.reactions.len()];
+        let mut residuals = vec![0.0; info.constraint_rows.len()];
+        for (row, &t) in times.iter().enumerate() {
+            let x = &states[row * n..][..n];
+            fill_inputs(t, x, &mut inputs);
+            let at = At {
+                t,
+                x,
+                u: &inputs,
+                p: parameters,
+            };
+            rows.extend_from_slice(x);
+            rows.extend_from_slice(&inputs);
+            if extras.outputs {
+                model.outputs(at, &mut outputs);
+                rows.extend_from_slice(&outputs);
+            }
+            if extras.energies {
+                let energies = model.energies(at);
+                rows.extend([energies.kinetic, energies.potential, energies.power]);
+            }
+            if extras.reactions {
+                model.constraint_forces(at, &mut reactions);
+                rows.extend_from_slice(&reactions);
+            }
+            if extras.residuals {
+                model.constraint_residual(at, &mut residuals);
+                rows.extend_from_slice(&residuals);
+            }
+        }
+        Self {
+            info,
+            parameters: parameters.to_vec(),
+            times,
+            columns,
+            rows,
+            ending: None,
+            events: Vec::new(),
+            statistics: Statistics::default(),
+        }
+    }
+
+    /// The model it belongs to.
+    pub fn info(&self) -> &ModelInfo {
+        &self.info
+    }
+
+    /// The parameters it was made with, in SI.
+    pub fn parameters(&self) -> &[f64] {
+        &self.parameters
+    }
+
+    /// Number of rows.
+    pub fn len(&self) -> usize {
+        self.times.len()
+    }
+
+    /// Whether there is no row.
+    pub fn is_empty(&self) -> bool {
+        self.times.is_empty()
+    }
+
+    /// Times in s, increasing.
+    pub fn times(&self) -> &[f64] {
+        &self.times
+    }
+
+    /// What the columns are, without the time.
+    pub fn columns(&self) -> &[Quantity] {
+        &self.columns
+    }
+
+    /// All columns of a row.
+    ///
+    /// # Panics
+    ///
+    /// Like the other accessors of rows, if there is no such row.
+    pub fn row(&self, row: usize) -> &[f64] {
+        &self.rows[row * self.columns.len()..][..self.columns.len()]
+    }
+
+    /// The state of a row.
+    pub fn state(&self, row: usize) -> &[f64] {
+        &self.row(row)[..self.info.state_len()]
+    }
+
+    /// The inputs of a row, signals included.
+    pub fn inputs(&self, row: usize) -> &[f64] {
+        &self.row(row)[self.info.state_len()..][..self.info.input_len()]
+    }
+
+    /// The state of the last row; empty without rows.
+    pub fn last_state(&self) -> &[f64] {
+        self.len().checked_sub(1).map_or(&[], |row| self.state(row))
+    }
+
+    /// Position of a column.
+    pub fn column_index(&self, name: &str) -> Option<usize> {
+        self.columns.iter().position(|column| column.name == name)
+    }
+
+    /// A column over time in SI.
+    pub fn column(&self, name: &str) -> Option<Vec<f64>> {
+        let index = self.column_index(name)?;
+        Some((0..self.len()).map(|row| self.row(row)[index]).collect())
+    }
+
+    /// A column over time in its unit for people.
+    pub fn column_in_unit(&self, name: &str) -> Option<Vec<f64>> {
+        let quantity = &self.columns[self.column_index(name)?];
+        Some(
+            self.column(name)?
+                .into_iter()
+                .map(|value| quantity.to_unit(value))
+                .collect(),
+        )
+    }
+
+    /// Writes a header row `t,<names>` and one row per time.
+    ///
+    /// Values are in the units of the spec, `t` in s. Numbers have the shortest form that reads
+    /// back to the same number; what is not finite is written as `nan`. With
+    /// [`CsvOptions::comments`] lines that begin with `#` and tell the mechanism, the parameters
+    /// and the units precede the header.
+    pub fn write_csv(&self, mut to: impl Write, options: CsvOptions) -> io::Result<()> {
+        if options.comments {
+            self.write_comments(&mut to)?;
+        }
+        write!(to, "t")?;
+        for column in &self.columns {
+            write!(to, ",{}", column.name)?;
+        }
+        writeln!(to)?;
+        for (row, &t) in self.times.iter().enumerate() {
+            write_number(&mut to, t)?;
+            for (column, &value) in self.columns.iter().zip(self.row(row)) {
+                write!(to, ",")?;
+                write_number(&mut to, column.to_unit(value))?;
+            }
+            writeln!(to)?;
+        }
+        Ok(())
+    }
+
+    fn write_comments(&self, to: &mut impl Write) -> io::Result<()> {
+        writeln!(to, "# mechanism: {}", self.info.name)?;
+        write!(to, "# parameters:")?;
+        for (i, (parameter, &value)) in self
+            .info
+            .parameters
+            .iter()
+            .zip(&self.parameters)
+            .enumerate()
+        {
+            let separator = if i == 0 { "" } else { "," };
+            write!(to, "{separator} {} = ", parameter.name)?;
+            write_number(to, parameter.to_unit(value))?;
+            if !parameter.unit.is_empty() {
+                write!(to, " {}", parameter.unit)?;
+            }
+        }
+        writeln!(to)?;
+        write!(to, "# units: s")?;
+        for column in &self.columns {
+            write!(
+                to,
+                ", {}",
+                if column.unit.is_empty() {
+                    "1"
+                } else {
+                    &column.unit
+                }
+            )?;
+        }
+        writeln!(to)
+    }
+}
+
+/// How a trajectory is written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct CsvOptions {
+    /// Whether comment lines precede the header.
+    pub comments: bool,
+}
+
+impl Default for CsvOptions {
+    /// With comments, so that the file tells its units.
+    fn default() -> Self {
+        Self { comments: true }
+    }
+}
+
+fn write_number(to: &mut impl Write, value: f64) -> io::Result<()> {
+    if value.is_finite() {
+        // `Debug` is the shortest form that reads back, with an exponent where that is shorter.
+        write!(to, "{value:?}")
+    } else {
+        write!(to, "nan")
+    }
+}
+
+fn columns(info: &ModelInfo, extras: Extras) -> Vec<Quantity> {
+    let mut columns = info.states.to_vec();
+    columns.extend_from_slice(&info.inputs);
+    if extras.outputs {
+        columns.extend_from_slice(&info.outputs);
+    }
+    if extras.energies {
+        columns.push(si("kinetic_energy".into(), "kinetic energy", "J"));
+        columns.push(si("potential_energy".into(), "potential energy", "J"));
+        columns.push(si(
+            "power".into(),
+            "power of the loads without potential",
+            "W",
+        ));
+    }
+    if extras.reactions {
+        for reaction in info.reactions.iter() {
+            for axis in ["x", "y", "z"] {
+                let name = format!("reaction_{reaction}_{axis}");
+                columns.push(si(name, "reaction in the ground", ""));
+            }
+        }
+    }
+    if extras.residuals {
+        for row in info.constraint_rows.iter() {
+            columns.push(si(
+                format!("residual_{row}"),
+                "residual of the constraint",
+                "",
+            ));
+        }
+    }
+    columns
+}
+
+fn si(name: String, about: &'static str, unit: &'static str) -> Quantity {
+    Quantity {
+        name: name.into(),
+        about: about.into(),
+        unit: unit.into(),
+        scale: 1.0,
+        value: 0.0,
+        range: [f64::NEG_INFINITY, f64::INFINITY],
+    }
+}

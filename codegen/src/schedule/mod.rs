@@ -3,7 +3,37 @@
 //! The emitted Rust, the in-process compiler and the interpreter all follow a [`Schedule`] to the
 //! letter: same operations, same order, so they agree to the last bits of the elementary functions.
 
+mod bind;
+mod cost;
+mod dag;
+mod divide;
+mod dump;
+mod factor;
+mod interpret;
+mod lower;
+pub(crate) mod names;
+pub(crate) mod piece;
+mod rebuild;
+mod search;
+mod share;
+
+pub use cost::OperationCount;
+pub use interpret::interpret;
+
+use crate::program::{self, Program};
 use crate::symbolic::{Function, Rational, Relation};
+
+/// The operations of one function of a program, as few as are found.
+///
+/// # Panics
+///
+/// If an expression contains a symbol that is not an argument of the program, which the derivation
+/// must not let happen.
+pub fn schedule(program: &Program, function: &program::Function) -> Schedule {
+    let derived = lower::lower(program, function);
+    let cheapest = search::cheapest(&derived);
+    bind::bind(program, function, &cheapest)
+}
 
 /// The operations of one function, in order.
 #[derive(Debug, Clone)]
@@ -129,4 +159,11 @@ pub struct ResultArray {
     pub name: String,
     /// Entries, row by row: constants, arguments or values (possibly negated).
     pub entries: Vec<Tree>,
+}
+
+impl Schedule {
+    /// The steps as text, one a line.
+    pub fn dump(&self, program: &Program) -> String {
+        dump::dump(self, &names::ArgumentNames::of(program))
+    }
 }

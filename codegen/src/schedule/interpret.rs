@@ -1,0 +1,128 @@
+//! Executes a schedule step by step: the reference for emitted and compiled code.
+
+use appell_runtime::dense::lu_solve_in_place;
+use appell_runtime::real::Real;
+
+use super::{Argument, Operation, Schedule, Step, Tree, Value};
+use crate::symbolic::{Function, Relation};
+
+/// The results of a schedule at time `t`, state `x`, inputs `u` and parameters `p`, one list per
+/// result array. Operations and their order are those of the schedule.
+///
+/// # Panics
+///
+/// If `x`, `u` or `p` are shorter than the arguments that the schedule uses.
+pub fn interpret(schedule: &Schedule, t: f64, x: &[f64], u: &[f64], p: &[f64]) -> Vec<Vec<f64>> {
+    let mut machine = Machine {
+        t,
+        x,
+        u,
+        p,
+        values: vec![f64::NAN; schedule.names.len()],
+        matrices: Vec::new(),
+    };
+    for step in &schedule.steps {
+        machine.step(step);
+    }
+    let arrays = schedule.results.iter();
+    arrays.map(|array| machine.all(&array.entries)).collect()
+}
+
+struct Machine<'a> {
+    t: f64,
+    x: &'a [f64],
+    u: &'a [f64],
+    p: &'a [f64],
+    values: Vec<f64>,
+    /// Matrices by factorisation. They are factorised anew with every right-hand side, which gives
+    /// the same bits.
+    matrices: Vec<Vec<f64>>,
+}
+
+impl Machine<'_> {
+    fn set(&mut self, value: Value, number: f64) {
+        self.values[value.0 as usize] = number;
+    }
+
+    fn all(&self, trees: &[Tree]) -> Vec<f64> {
+        trees.iter().map(|tree| self.tree(tree)).collect()
+    }
+
+    fn step(&mut self, step: &Step) {
+        match step {
+            Step::Let { value, tree } => self.set(*value, self.tree(tree)),
+            Step::SinCos { sin, cos, angle } => {
+                let (sine, cosine) = Real::sin_cos(self.tree(angle));
+                self.set(*sin, sine);
+                self.set(*cos, cosine);
+            }
+            Step::Factor { factorisation, matrix, .. } => {
+                let place = *factorisation as usize;
+                if self.matrices.len() <= place {
+                    self.matrices.resize(place + 1, Vec::new());
+                }
+                self.matrices[place] = self.all(matrix);
+            }
+            Step::Solve { factorisation, values, right } => {
+                let mut matrix = self.matrices[*factorisation as usize].clone();
+                let mut unknowns = self.all(right);
+                lu_solve_in_place(&mut matrix, &mut unknowns, values.len());
+                for (value, number) in values.iter().zip(unknowns) {
+                    self.set(*value, number);
+                }
+            }
+            Step::Paragraph { .. } => {}
+        }
+    }
+
+    // Trees are at most one printed line deep.
+    fn tree(&self, tree: &Tree) -> f64 {
+        match tree {
+            Tree::Value(value) => self.values[value.0 as usize],
+            Tree::Argument(Argument::Time) => self.t,
+            Tree::Argument(Argument::State(i)) => self.x[*i as usize],
+            Tree::Argument(Argument::Input(i)) => self.u[*i as usize],
+            Tree::Argument(Argument::Parameter(i)) => self.p[*i as usize],
+            Tree::Constant(value) => value.to_f64(),
+            Tree::Negate(a) => -self.tree(a),
+            Tree::Binary(operation, a, b) => {
+                let (a, b) = (self.tree(a), self.tree(b));
+                match operation {
+                    Operation::Add => a + b,
+                    Operation::Subtract => a - b,
+                    Operation::Multiply => a * b,
+                    Operation::Divide => a / b,
+                }
+            }
+            Tree::Function(function, a) => apply(*function, self.tree(a)),
+            Tree::Atan2(y, x) => Real::atan2(self.tree(y), self.tree(x)),
+            Tree::Power(base, exponent) => Real::powf(self.tree(base), self.tree(exponent)),
+            Tree::Choice { relation, compared, branches } => {
+                let [left, right] = [&compared[0], &compared[1]].map(|tree| self.tree(tree));
+                let [then, otherwise] = [&branches[0], &branches[1]].map(|tree| self.tree(tree));
+                match relation {
+                    Relation::Less => Real::if_less(left, right, then, otherwise),
+                    Relation::LessOrEqual => Real::if_less_or_equal(left, right, then, otherwise),
+                }
+            }
+        }
+    }
+}
+
+fn apply(function: Function, x: f64) -> f64 {
+    match function {
+        Function::Sin => Real::sin(x),
+        Function::Cos => Real::cos(x),
+        Function::Asin => Real::asin(x),
+        Function::Acos => Real::acos(x),
+        Function::Atan => Real::atan(x),
+        Function::Sinh => Real::sinh(x),
+        Function::Cosh => Real::cosh(x),
+        Function::Tanh => Real::tanh(x),
+        Function::Exp => Real::exp(x),
+        Function::Ln => Real::ln(x),
+        Function::Sqrt => Real::sqrt(x),
+        Function::Abs => Real::abs(x),
+        Function::Sign => Real::sign(x),
+    }
+}

@@ -1,0 +1,202 @@
+//! Identifiers: of arguments, of constants, and of values that the derivation did not name.
+
+use rustc_hash::FxHashSet;
+
+use super::Argument;
+use crate::program::{FunctionKind, Layout, Program};
+use crate::symbolic::Rational;
+
+/// Longest name made up here.
+const LONGEST: usize = 24;
+
+/// Words that cannot name a value in Rust, in any edition.
+const KEYWORDS: &[&str] = &[
+    "Self", "_", "abstract", "as", "async", "await", "become", "box", "break", "const", "continue",
+    "crate", "do", "dyn", "else", "enum", "extern", "false", "final", "fn", "for", "gen", "if",
+    "impl", "in", "let", "loop", "macro", "match", "mod", "move", "mut", "override", "priv", "pub",
+    "ref", "return", "self", "static", "struct", "super", "trait", "true", "try", "type", "typeof",
+    "unsafe", "unsized", "use", "virtual", "where", "while", "yield",
+];
+
+/// Statics of the emitted text, which a local must not shadow.
+const STATICS: &[&str] = &[
+    "INFO", "SPEC", "STATES", "INPUTS", "PARAMETERS", "OUTPUTS", "SIGNALS", "SIGNAL_INPUTS",
+    "CONSTRAINT_ROWS", "REACTIONS",
+];
+
+/// A valid identifier that is `text` where `text` is one. Anything else is spelled in ASCII
+/// letters, digits and underscores; keywords get an underscore at the end.
+pub(crate) fn identifier(text: &str) -> String {
+    let mut name: String = text
+        .chars()
+        .map(|c| if c.is_ascii_alphanumeric() { c } else { '_' })
+        .collect();
+    if !name.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_') {
+        name.insert(0, '_');
+    }
+    // `_` alone and `__` are no names for people.
+    if name.chars().all(|c| c == '_') {
+        name.push_str("unnamed");
+    }
+    if KEYWORDS.contains(&name.as_str()) || STATICS.contains(&name.as_str()) {
+        name.push('_');
+    }
+    name
+}
+
+/// Names in use in one function.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Names {
+    taken: FxHashSet<String>,
+}
+
+impl Names {
+    /// A name like `wanted` that nothing else has.
+    pub(super) fn fresh(&mut self, wanted: &str) -> String {
+        let wanted = identifier(wanted);
+        let mut name = wanted.clone();
+        let mut number = 2;
+        while !self.taken.insert(name.clone()) {
+            name = format!("{wanted}_{number}");
+            number += 1;
+        }
+        name
+    }
+
+    /// Keeps a name from being given away.
+    pub(super) fn reserve(&mut self, name: &str) {
+        self.taken.insert(name.to_owned());
+    }
+
+    /// Whether something has this name.
+    pub(super) fn is_taken(&self, name: &str) -> bool {
+        self.taken.contains(name)
+    }
+}
+
+/// Identifiers of the arguments of a program, no two equal. They name the fields of the argument
+/// structs and the locals of every function.
+#[derive(Debug, Clone)]
+pub(crate) struct ArgumentNames {
+    /// Time.
+    pub(crate) time: String,
+    /// States.
+    pub(crate) states: Vec<String>,
+    /// Inputs.
+    pub(crate) inputs: Vec<String>,
+    /// Parameters.
+    pub(crate) parameters: Vec<String>,
+}
+
+impl ArgumentNames {
+    /// The identifiers for a program.
+    pub(crate) fn of(program: &Program) -> Self {
+        let mut names = Names::default();
+        let info = &program.info;
+        let mut all = |quantities: &[appell_runtime::model::Quantity]| -> Vec<String> {
+            quantities.iter().map(|quantity| names.fresh(&quantity.name)).collect()
+        };
+        let (states, inputs) = (all(&info.states), all(&info.inputs));
+        let parameters = all(&info.parameters);
+        let time = names.fresh("t");
+        Self { time, states, inputs, parameters }
+    }
+
+    /// Name of an argument.
+    pub(crate) fn get(&self, argument: Argument) -> &str {
+        match argument {
+            Argument::Time => &self.time,
+            Argument::State(i) => &self.states[i as usize],
+            Argument::Input(i) => &self.inputs[i as usize],
+            Argument::Parameter(i) => &self.parameters[i as usize],
+        }
+    }
+
+    /// All names.
+    pub(super) fn iter(&self) -> impl Iterator<Item = &String> {
+        let lists = self.states.iter().chain(&self.inputs).chain(&self.parameters);
+        std::iter::once(&self.time).chain(lists)
+    }
+
+    /// Name of a number as a local: `half`, `three_quarters`, `c_17_over_35`. Equal names are
+    /// equal numbers, and none is the name of an argument.
+    pub(crate) fn constant(&self, value: &Rational) -> String {
+        let mut name = number_in_words(value);
+        while self.iter().any(|argument| *argument == name) {
+            name.insert_str(0, "number_");
+        }
+        name
+    }
+}
+
+/// `two`, `half`, `minus_three_quarters`, `c_17_over_35`.
+fn number_in_words(value: &Rational) -> String {
+    const WHOLE: [&str; 13] = [
+        "zero", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten",
+        "eleven", "twelve",
+    ];
+    const PART: [&str; 9] =
+        ["", "", "half", "third", "quarter", "fifth", "sixth", "seventh", "eighth"];
+    if value.is_negative() {
+        return format!("minus_{}", number_in_words(&value.abs()));
+    }
+    let small = |n: i64| usize::try_from(n).ok();
+    if let Some((numerator, denominator)) = value.as_small()
+        && let (Some(n), Some(d)) = (small(numerator), small(denominator))
+    {
+        match (WHOLE.get(n), PART.get(d)) {
+            (Some(whole), _) if d == 1 => return (*whole).to_owned(),
+            (Some(_), Some(part)) if d > 1 && n == 1 => return (*part).to_owned(),
+            (Some(whole), Some(part)) if d > 2 => return format!("{whole}_{part}s"),
+            (Some(whole), Some(_)) if d == 2 => return format!("{whole}_halves"),
+            _ => {}
+        }
+    }
+    format!("c_{}", value.to_string().replace('/', "_over_"))
+}
+
+/// What an entry of a result is called: `omega_1_dot`, `M_speed_pitch`, `a_omega_1_theta`.
+pub(super) fn result_label(
+    program: &Program,
+    names: &ArgumentNames,
+    kind: FunctionKind,
+    array: &crate::program::Array,
+    entry: usize,
+) -> String {
+    let info = &program.info;
+    let speeds = info.speeds.min(names.states.len());
+    let outputs = |i: usize| info.outputs.get(i).map_or_else(|| i.to_string(), |o| o.name.to_string());
+    let row = |i: usize| names.states.get(i).map_or_else(|| i.to_string(), Clone::clone);
+    let prefix = array.name.as_str();
+    match (kind, array.layout) {
+        (FunctionKind::Rates | FunctionKind::Jacobians | FunctionKind::AllJacobians, Layout::State) => {
+            format!("{}_dot", row(entry))
+        }
+        (FunctionKind::Kinematics, Layout::Coordinates) => format!("{}_dot", row(speeds + entry)),
+        (_, Layout::Scalar) => prefix.to_owned(),
+        (_, Layout::State | Layout::Speeds) => format!("{prefix}_{}", row(entry)),
+        (_, Layout::Coordinates) => format!("{prefix}_{}", row(speeds + entry)),
+        (_, Layout::Outputs) => outputs(entry),
+        (_, Layout::Vector(_)) => format!("{prefix}_{entry}"),
+        (_, Layout::Matrix(rows, columns)) => {
+            let (i, j) = (entry / columns.max(1), entry % columns.max(1));
+            let all = names.states.len();
+            let column = match (columns, prefix) {
+                (n, "a" | "mass_matrix") if n <= all => row(j),
+                (_, "b") => names.inputs.get(j).map_or_else(|| j.to_string(), Clone::clone),
+                (_, "p") => names.parameters.get(j).map_or_else(|| j.to_string(), Clone::clone),
+                _ => j.to_string(),
+            };
+            let prefix = if prefix == "mass_matrix" { "M" } else { prefix };
+            let by_state = rows <= all && matches!(prefix, "a" | "b" | "p" | "M");
+            let line = if by_state { row(i) } else { i.to_string() };
+            format!("{prefix}_{line}_{column}")
+        }
+    }
+}
+
+/// `a` and `b` in one name, if that is short enough to read.
+pub(super) fn joined(parts: &[&str]) -> Option<String> {
+    let name = parts.join("_");
+    (name.len() <= LONGEST && !name.contains("_part_")).then_some(name)
+}

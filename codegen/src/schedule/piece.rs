@@ -1,0 +1,199 @@
+//! Trees under construction, with the width they have in print.
+
+use super::names::{ArgumentNames, joined};
+use super::{Operation, Schedule, Tree, Value};
+use crate::symbolic::{Function, Rational};
+
+/// How tightly the outermost operation of a tree binds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Level {
+    Sum,
+    Product,
+    Sign,
+    Atom,
+}
+
+/// A tree, and how it prints.
+#[derive(Debug, Clone)]
+pub(super) struct Piece {
+    pub(super) tree: Tree,
+    pub(super) width: usize,
+    pub(super) level: Level,
+}
+
+impl Piece {
+    /// Something that prints as a name.
+    pub(super) fn name(tree: Tree, name: &str) -> Self {
+        Self { tree, width: name.len(), level: Level::Atom }
+    }
+
+    /// Width where something that binds as tightly as `level` is needed.
+    fn width_at(&self, level: Level) -> usize {
+        self.width + if self.level < level { 2 } else { 0 }
+    }
+
+    /// `self ∘ right`
+    pub(super) fn binary(self, operation: Operation, right: Self) -> Self {
+        let (level, right_level) = match operation {
+            Operation::Add => (Level::Sum, Level::Product),
+            Operation::Subtract => (Level::Sum, Level::Product),
+            Operation::Multiply | Operation::Divide => (Level::Product, Level::Sign),
+        };
+        Self {
+            width: self.width_at(level) + 3 + right.width_at(right_level),
+            tree: Tree::Binary(operation, Box::new(self.tree), Box::new(right.tree)),
+            level,
+        }
+    }
+
+    /// `-self`
+    pub(super) fn negated(self) -> Self {
+        Self {
+            width: 1 + self.width_at(Level::Atom),
+            tree: Tree::Negate(Box::new(self.tree)),
+            level: Level::Sign,
+        }
+    }
+
+    /// `self.function()`
+    pub(super) fn function(self, function: Function) -> Self {
+        Self {
+            width: self.width_at(Level::Atom) + method(function).len() + 3,
+            tree: Tree::Function(function, Box::new(self.tree)),
+            level: Level::Atom,
+        }
+    }
+
+    /// `self.atan2(x)`
+    pub(super) fn atan2(self, x: Self) -> Self {
+        Self {
+            width: self.width_at(Level::Atom) + x.width + ".atan2()".len(),
+            tree: Tree::Atan2(Box::new(self.tree), Box::new(x.tree)),
+            level: Level::Atom,
+        }
+    }
+
+    /// `self.powf(exponent)`
+    pub(super) fn power(self, exponent: Self) -> Self {
+        Self {
+            width: self.width_at(Level::Atom) + exponent.width + ".powf()".len(),
+            tree: Tree::Power(Box::new(self.tree), Box::new(exponent.tree)),
+            level: Level::Atom,
+        }
+    }
+}
+
+/// Name of a function as a method.
+pub(crate) fn method(function: Function) -> &'static str {
+    match function {
+        Function::Sin => "sin",
+        Function::Cos => "cos",
+        Function::Asin => "asin",
+        Function::Acos => "acos",
+        Function::Atan => "atan",
+        Function::Sinh => "sinh",
+        Function::Cosh => "cosh",
+        Function::Tanh => "tanh",
+        Function::Exp => "exp",
+        Function::Ln => "ln",
+        Function::Sqrt => "sqrt",
+        Function::Abs => "abs",
+        Function::Sign => "sign",
+    }
+}
+
+/// A name that says how a value is made, where a short one does: `R_squared`, `m_R`, `inv_D`,
+/// `tan_theta`, `a_minus_b`.
+pub(super) fn describe(tree: &Tree, values: &[String], arguments: &ArgumentNames) -> Option<String> {
+    let inner = |tree: &Tree| describe(tree, values, arguments);
+    match tree {
+        Tree::Value(Value(value)) => joined(&[values.get(*value as usize)?]),
+        Tree::Argument(argument) => joined(&[arguments.get(*argument)]),
+        Tree::Constant(value) => joined(&[&arguments.constant(value)]),
+        Tree::Negate(a) => joined(&["minus", &inner(a)?]),
+        Tree::Function(function, a) => joined(&[method(*function), &inner(a)?]),
+        Tree::Binary(operation, a, b) => {
+            let left = inner(a)?;
+            let right = inner(b)?;
+            match operation {
+                Operation::Add => joined(&[&left, "plus", &right]),
+                Operation::Subtract => joined(&[&left, "minus", &right]),
+                Operation::Multiply if left == right => joined(&[&left, "squared"]),
+                Operation::Multiply => {
+                    match left.strip_suffix("_squared") {
+                        Some(root) if root == right => joined(&[&right, "cubed"]),
+                        _ => joined(&[&left, &right]),
+                    }
+                }
+                Operation::Divide if **a == Tree::Constant(Rational::ONE) => joined(&["inv", &right]),
+                Operation::Divide => match (left.strip_prefix("sin_"), right.strip_prefix("cos_")) {
+                    (Some(angle), Some(same)) if angle == same => joined(&["tan", angle]),
+                    _ => joined(&[&left, "over", &right]),
+                },
+            }
+        }
+        Tree::Atan2(..) | Tree::Power(..) | Tree::Choice { .. } => None,
+    }
+}
+
+/// A tree as text, for comments and dumps.
+pub(crate) fn text(tree: &Tree, schedule: &Schedule, arguments: &ArgumentNames) -> String {
+    let mut out = String::new();
+    write(&mut out, tree, Level::Sum, &schedule.names, arguments);
+    out
+}
+
+fn write(out: &mut String, tree: &Tree, least: Level, values: &[String], arguments: &ArgumentNames) {
+    let level = match tree {
+        Tree::Binary(Operation::Add | Operation::Subtract, ..) => Level::Sum,
+        Tree::Binary(..) => Level::Product,
+        Tree::Negate(_) => Level::Sign,
+        _ => Level::Atom,
+    };
+    let parentheses = level < least;
+    if parentheses {
+        out.push('(');
+    }
+    match tree {
+        Tree::Value(Value(value)) => out.push_str(&values[*value as usize]),
+        Tree::Argument(argument) => out.push_str(arguments.get(*argument)),
+        Tree::Constant(value) => out.push_str(&value.to_string()),
+        Tree::Negate(a) => {
+            out.push('-');
+            write(out, a, Level::Atom, values, arguments);
+        }
+        Tree::Binary(operation, a, b) => {
+            let (sign, right) = match operation {
+                Operation::Add => (" + ", Level::Product),
+                Operation::Subtract => (" - ", Level::Product),
+                Operation::Multiply => (" ", Level::Sign),
+                Operation::Divide => ("/", Level::Sign),
+            };
+            write(out, a, level, values, arguments);
+            out.push_str(sign);
+            write(out, b, right, values, arguments);
+        }
+        Tree::Function(function, a) => call(out, method(*function), &[a], values, arguments),
+        Tree::Atan2(y, x) => call(out, "atan2", &[y, x], values, arguments),
+        Tree::Power(base, exponent) => call(out, "pow", &[base, exponent], values, arguments),
+        Tree::Choice { compared, branches, .. } => {
+            let all = [&compared[0], &compared[1], &branches[0], &branches[1]];
+            call(out, "if_less", &all, values, arguments);
+        }
+    }
+    if parentheses {
+        out.push(')');
+    }
+}
+
+fn call(out: &mut String, name: &str, of: &[&Tree], values: &[String], arguments: &ArgumentNames) {
+    out.push_str(name);
+    out.push('(');
+    for (i, tree) in of.iter().enumerate() {
+        if i > 0 {
+            out.push_str(", ");
+        }
+        write(out, tree, Level::Sum, values, arguments);
+    }
+    out.push(')');
+}

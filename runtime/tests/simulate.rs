@@ -22,7 +22,7 @@ fn cart_rates(at: At<'_>, rates: &mut [f64]) {
 }
 
 fn cart(signal: SignalTable) -> HandWritten {
-    let states = vec![in_unit("v", "km/h", 1.0 / 3.6, 0.0), si("x", "m", 1.0)];
+    let states = vec![in_unit("v", "cm/s", 0.01, 0.0), si("x", "m", 1.0)];
     let inputs = vec![
         si("F", "N", 0.0),
         si("w", "m", 0.0),
@@ -32,7 +32,7 @@ fn cart(signal: SignalTable) -> HandWritten {
     info.declared_inputs = 1;
     info.signals = vec![signal].into();
     info.signal_inputs = vec![(0, 0), (0, 2)].into();
-    info.outputs = vec![in_unit("speed", "km/h", 1.0 / 3.6, 0.0)].into();
+    info.outputs = vec![in_unit("speed", "cm/s", 0.01, 0.0)].into();
     HandWritten {
         info,
         rates: cart_rates,
@@ -248,13 +248,13 @@ fn a_trajectory_is_written_in_the_units_of_the_spec() {
     let bare = "\
 t,v,x,F,w,w_ddot,speed,kinetic_energy,potential_energy,power
 0.0,0.0,1.0,4.0,nan,1e-7,0.0,0.0,0.0,0.0
-0.1,1.8,1e20,4.0,nan,1e-7,1.8,0.125,0.0,0.0
+0.1,50.0,1e20,4.0,nan,1e-7,50.0,0.125,0.0,0.0
 ";
     assert_eq!(written(CsvOptions { comments: false }), bare);
     let comments = "\
 # mechanism: cart
 # parameters: m = 2.0 kg
-# units: s, km/h, m, N, m, m/s^2, km/h, J, J, W
+# units: s, cm/s, m, N, m, m/s^2, cm/s, J, J, W
 ";
     assert_eq!(written(CsvOptions::default()), format!("{comments}{bare}"));
     assert_eq!(

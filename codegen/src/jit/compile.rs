@@ -1,0 +1,394 @@
+//! A checked schedule to the compiler's intermediate language.
+//!
+//! A schedule has no branches, so the function is a single block. The compiler removes what no
+//! result needs and chooses the order; it neither fuses nor reorders floating-point arithmetic.
+
+use cranelift_codegen::ir::condcodes::FloatCC;
+use cranelift_codegen::ir::types::F64;
+use cranelift_codegen::ir::{
+    self, AbiParam, InstBuilder, MemFlagsData, SigRef, Signature, StackSlot, StackSlotData,
+    StackSlotKind, Type,
+};
+use cranelift_codegen::isa::{CallConv, TargetFrontendConfig};
+use cranelift_frontend::{FunctionBuilder, FunctionBuilderContext};
+use rustc_hash::FxHashMap;
+
+use super::check::Checked;
+use super::dense::Routines;
+use super::elementary;
+use crate::schedule::{Argument, Operation, Step, Tree, Value};
+use crate::symbolic::{Function, Relation};
+
+/// Signature of compiled functions: `t`, then the addresses of states, inputs, parameters and of a
+/// list with the address of each result.
+pub(super) fn signature(config: TargetFrontendConfig) -> Signature {
+    let pointer = config.pointer_type();
+    let parameters = [F64, pointer, pointer, pointer, pointer];
+    signature_of(config.default_call_conv, &parameters, &[])
+}
+
+/// Writes the body of a function with [`signature`].
+pub(super) fn translate(
+    checked: &Checked<'_>,
+    config: TargetFrontendConfig,
+    function: &mut ir::Function,
+) {
+    let mut context = FunctionBuilderContext::new();
+    let mut translation = Translation::new(checked, config, function, &mut context);
+    for step in &checked.schedule.steps {
+        translation.step(step);
+    }
+    for (index, result) in checked.schedule.results.iter().enumerate() {
+        translation.result(index, &result.entries);
+    }
+    translation.builder.ins().return_(&[]);
+    translation.builder.finalize(config);
+}
+
+struct Translation<'a> {
+    builder: FunctionBuilder<'a>,
+    config: TargetFrontendConfig,
+    received: Received,
+    /// Results of the steps.
+    values: Vec<ir::Value>,
+    /// Arguments that are loaded already.
+    arguments: FxHashMap<Argument, ir::Value>,
+    /// Signatures that are declared already.
+    signatures: FxHashMap<Shape, SigRef>,
+    /// Sine and cosine.
+    pair: StackSlot,
+    /// A matrix on its way into a factorisation.
+    matrix: StackSlot,
+    /// A right-hand side, then the unknowns.
+    right: StackSlot,
+    factorisations: FxHashMap<u32, Factorisation>,
+}
+
+/// What the compiled function receives; see [`signature`].
+struct Received {
+    time: ir::Value,
+    states: ir::Value,
+    inputs: ir::Value,
+    parameters: ir::Value,
+    results: ir::Value,
+}
+
+/// Shapes of the functions that the code calls.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+enum Shape {
+    /// `f64 -> f64`
+    Unary,
+    /// `(f64, f64) -> f64`
+    Binary,
+    /// `(f64, address of two numbers)`
+    Pair,
+    /// `(address, address, length)`
+    System,
+}
+
+#[derive(Debug, Clone, Copy)]
+struct Factorisation {
+    routines: Routines,
+    rows: usize,
+    slot: StackSlot,
+}
+
+impl<'a> Translation<'a> {
+    fn new(
+        checked: &Checked<'_>,
+        config: TargetFrontendConfig,
+        function: &'a mut ir::Function,
+        context: &'a mut FunctionBuilderContext,
+    ) -> Self {
+        let mut builder = FunctionBuilder::new(function, context);
+        let block = builder.create_block();
+        builder.append_block_params_for_function_params(block);
+        builder.switch_to_block(block);
+        builder.seal_block(block);
+        let received = Received {
+            time: builder.block_params(block)[0],
+            states: builder.block_params(block)[1],
+            inputs: builder.block_params(block)[2],
+            parameters: builder.block_params(block)[3],
+            results: builder.block_params(block)[4],
+        };
+        // A checked schedule defines values before it uses them; zero stands in until then.
+        let zero = builder.ins().f64const(0.0);
+        let rows = checked.rows.values().copied().max().unwrap_or(0);
+        let [pair, matrix, right] =
+            [2, rows * rows, rows].map(|numbers| slot(&mut builder, numbers * size_of::<f64>()));
+        Self {
+            builder,
+            config,
+            received,
+            values: vec![zero; checked.schedule.names.len()],
+            arguments: FxHashMap::default(),
+            signatures: FxHashMap::default(),
+            pair,
+            matrix,
+            right,
+            factorisations: FxHashMap::default(),
+        }
+    }
+
+    fn step(&mut self, step: &Step) {
+        match step {
+            Step::Let { value, tree } => {
+                let computed = self.tree(tree);
+                self.define(*value, computed);
+            }
+            Step::SinCos { sin, cos, angle } => {
+                let angle = self.tree(angle);
+                self.sin_cos(*sin, *cos, angle);
+            }
+            Step::Factor {
+                factorisation,
+                size,
+                matrix,
+            } => self.factor(*factorisation, *size, matrix),
+            Step::Solve {
+                factorisation,
+                values,
+                right,
+            } => self.solve(*factorisation, values, right),
+            Step::Paragraph { .. } => {}
+        }
+    }
+
+    fn define(&mut self, value: Value, computed: ir::Value) {
+        self.values[value.0 as usize] = computed;
+    }
+
+    fn sin_cos(&mut self, sin: Value, cos: Value, angle: ir::Value) {
+        // Through memory: as fast as two result registers, and the same on every platform.
+        let pointer = self.config.pointer_type();
+        let pair = self.pair;
+        let to = self.builder.ins().stack_addr(pointer, pair, 0);
+        let routine = elementary::sin_cos as *const ();
+        self.call(Shape::Pair, routine, &[angle, to]);
+        for (index, value) in [sin, cos].into_iter().enumerate() {
+            self.load(value, pair, index);
+        }
+    }
+
+    fn factor(&mut self, factorisation: u32, rows: usize, matrix: &[Tree]) {
+        let from = self.matrix;
+        let routines = Routines::new(rows);
+        let slot = slot(&mut self.builder, routines.bytes);
+        self.store_all(from, matrix);
+        let arguments = self.system_arguments(from, slot, rows);
+        self.call(Shape::System, routines.factor as *const (), &arguments);
+        let factored = Factorisation {
+            routines,
+            rows,
+            slot,
+        };
+        self.factorisations.insert(factorisation, factored);
+    }
+
+    fn solve(&mut self, factorisation: u32, values: &[Value], right: &[Tree]) {
+        let to = self.right;
+        let Factorisation {
+            routines,
+            rows,
+            slot,
+        } = self.factorisations[&factorisation];
+        self.store_all(to, right);
+        let arguments = self.system_arguments(slot, to, rows);
+        self.call(Shape::System, routines.solve as *const (), &arguments);
+        for (row, value) in values.iter().enumerate() {
+            self.load(*value, to, row);
+        }
+    }
+
+    /// Defines a value as what a routine has left in a slot.
+    fn load(&mut self, value: Value, slot: StackSlot, index: usize) {
+        let pointer = self.config.pointer_type();
+        let instruction = self.builder.ins();
+        let loaded = instruction.stack_load(pointer, F64, slot, offset(index));
+        self.define(value, loaded);
+    }
+
+    fn store_all(&mut self, slot: StackSlot, trees: &[Tree]) {
+        // All are computed before the first is stored: computing may call functions, and what is
+        // stored may stay in registers until then.
+        let pointer = self.config.pointer_type();
+        let entries: Vec<_> = trees.iter().map(|tree| self.tree(tree)).collect();
+        for (index, entry) in entries.into_iter().enumerate() {
+            self.builder
+                .ins()
+                .stack_store(pointer, entry, slot, offset(index));
+        }
+    }
+
+    fn system_arguments(&mut self, from: StackSlot, to: StackSlot, rows: usize) -> [ir::Value; 3] {
+        let pointer = self.config.pointer_type();
+        let from = self.builder.ins().stack_addr(pointer, from, 0);
+        let to = self.builder.ins().stack_addr(pointer, to, 0);
+        let rows = self.address(rows);
+        [from, to, rows]
+    }
+
+    fn result(&mut self, index: usize, entries: &[Tree]) {
+        let pointer = self.config.pointer_type();
+        let array = self.builder.ins().load(
+            pointer,
+            MemFlagsData::trusted().with_readonly(),
+            self.received.results,
+            offset(index),
+        );
+        for (index, tree) in entries.iter().enumerate() {
+            let entry = self.tree(tree);
+            self.builder
+                .ins()
+                .store(MemFlagsData::trusted(), entry, array, offset(index));
+        }
+    }
+
+    fn tree(&mut self, tree: &Tree) -> ir::Value {
+        match tree {
+            Tree::Value(value) => self.values[value.0 as usize],
+            Tree::Argument(argument) => self.argument(*argument),
+            Tree::Constant(number) => self.builder.ins().f64const(number.to_f64()),
+            Tree::Negate(a) => {
+                let a = self.tree(a);
+                self.builder.ins().fneg(a)
+            }
+            Tree::Binary(operation, a, b) => {
+                let (a, b) = (self.tree(a), self.tree(b));
+                let instruction = self.builder.ins();
+                match operation {
+                    Operation::Add => instruction.fadd(a, b),
+                    Operation::Subtract => instruction.fsub(a, b),
+                    Operation::Multiply => instruction.fmul(a, b),
+                    Operation::Divide => instruction.fdiv(a, b),
+                }
+            }
+            Tree::Function(function, a) => {
+                let a = self.tree(a);
+                self.function(*function, a)
+            }
+            Tree::Atan2(y, x) => {
+                let arguments = [self.tree(y), self.tree(x)];
+                self.call(Shape::Binary, elementary::atan2 as *const (), &arguments)[0]
+            }
+            Tree::Power(base, exponent) => {
+                let arguments = [self.tree(base), self.tree(exponent)];
+                self.call(Shape::Binary, elementary::powf as *const (), &arguments)[0]
+            }
+            Tree::Choice {
+                relation,
+                compared,
+                branches,
+            } => {
+                let compared = compared.each_ref().map(|tree| self.tree(tree));
+                let branches = branches.each_ref().map(|tree| self.tree(tree));
+                let condition = match relation {
+                    Relation::Less => FloatCC::LessThan,
+                    Relation::LessOrEqual => FloatCC::LessThanOrEqual,
+                };
+                self.choose(condition, compared, branches)
+            }
+        }
+    }
+
+    /// `branches[0]` where `compared` are ordered as asked, `branches[1]` elsewhere and for NaN.
+    fn choose(
+        &mut self,
+        condition: FloatCC,
+        [left, right]: [ir::Value; 2],
+        [then, otherwise]: [ir::Value; 2],
+    ) -> ir::Value {
+        let holds = self.builder.ins().fcmp(condition, left, right);
+        self.builder.ins().select(holds, then, otherwise)
+    }
+
+    fn function(&mut self, function: Function, a: ir::Value) -> ir::Value {
+        if let Some(routine) = elementary::unary(function) {
+            return self.call(Shape::Unary, routine as *const (), &[a])[0];
+        }
+        match function {
+            Function::Sqrt => self.builder.ins().sqrt(a),
+            Function::Abs => self.builder.ins().fabs(a),
+            // Zeros stay zero and NaN stays NaN, as in the runtime.
+            _ => {
+                let [zero, one, minus_one] =
+                    [0.0, 1.0, -1.0].map(|number| self.builder.ins().f64const(number));
+                let below = self.choose(FloatCC::LessThan, [a, zero], [minus_one, a]);
+                self.choose(FloatCC::GreaterThan, [a, zero], [one, below])
+            }
+        }
+    }
+
+    fn argument(&mut self, argument: Argument) -> ir::Value {
+        let (array, index) = match argument {
+            Argument::Time => return self.received.time,
+            Argument::State(index) => (self.received.states, index),
+            Argument::Input(index) => (self.received.inputs, index),
+            Argument::Parameter(index) => (self.received.parameters, index),
+        };
+        let builder = &mut self.builder;
+        *self.arguments.entry(argument).or_insert_with(|| {
+            // Results never overlap arguments: the caller holds them by exclusive references.
+            let flags = MemFlagsData::trusted().with_readonly();
+            builder
+                .ins()
+                .load(F64, flags, array, offset(index as usize))
+        })
+    }
+
+    /// Calls a function of this process by its address.
+    fn call(&mut self, shape: Shape, routine: *const (), arguments: &[ir::Value]) -> &[ir::Value] {
+        let config = self.config;
+        let builder = &mut self.builder;
+        let signature = *self
+            .signatures
+            .entry(shape)
+            .or_insert_with(|| builder.import_signature(shape.signature(config)));
+        let routine = self.address(routine.addr());
+        let call = self
+            .builder
+            .ins()
+            .call_indirect(signature, routine, arguments);
+        self.builder.inst_results(call)
+    }
+
+    fn address(&mut self, address: usize) -> ir::Value {
+        let pointer = self.config.pointer_type();
+        self.builder
+            .ins()
+            .iconst(pointer, address.cast_signed() as i64)
+    }
+}
+
+impl Shape {
+    fn signature(self, config: TargetFrontendConfig) -> Signature {
+        let pointer = config.pointer_type();
+        let convention = config.default_call_conv;
+        match self {
+            Self::Unary => signature_of(convention, &[F64], &[F64]),
+            Self::Binary => signature_of(convention, &[F64, F64], &[F64]),
+            Self::Pair => signature_of(convention, &[F64, pointer], &[]),
+            Self::System => signature_of(convention, &[pointer; 3], &[]),
+        }
+    }
+}
+
+fn signature_of(convention: CallConv, parameters: &[Type], results: &[Type]) -> Signature {
+    let mut signature = Signature::new(convention);
+    signature.params = parameters.iter().copied().map(AbiParam::new).collect();
+    signature.returns = results.iter().copied().map(AbiParam::new).collect();
+    signature
+}
+
+/// Offset of an entry; the checked limits keep it within 32 bits.
+fn offset(index: usize) -> i32 {
+    i32::try_from(index * size_of::<f64>()).unwrap_or(i32::MAX)
+}
+
+fn slot(builder: &mut FunctionBuilder<'_>, bytes: usize) -> StackSlot {
+    // The checked limits keep every slot below a mebibyte.
+    let bytes = u32::try_from(bytes).unwrap_or(u32::MAX);
+    let kind = StackSlotKind::ExplicitSlot;
+    builder.create_sized_stack_slot(StackSlotData::new(kind, bytes, 3))
+}

@@ -1,0 +1,108 @@
+//! What can go wrong between a schedule and its machine code.
+
+use cranelift_codegen::CodegenError;
+use cranelift_codegen::settings::SetError;
+use cranelift_module::ModuleError;
+use thiserror::Error;
+
+use crate::program::FunctionKind;
+
+/// A schedule or program that could not be compiled.
+#[derive(Debug, Error)]
+pub enum JitError {
+    /// No code can be made for this processor.
+    #[error("no machine code for this processor: {reason}")]
+    Host {
+        /// What the compiler says.
+        reason: &'static str,
+    },
+    /// The compiler refused its settings.
+    #[error("the compiler refused its settings")]
+    Settings(#[from] SetError),
+    /// The compiler refused this processor.
+    #[error("the compiler refused this processor")]
+    Target(#[from] CodegenError),
+    /// The function is too long to be compiled in reasonable time and stack.
+    #[error("the function has {operations} operations; at most {most} are compiled")]
+    TooManyOperations {
+        /// Operations counted, at least.
+        operations: usize,
+        /// The limit.
+        most: usize,
+    },
+    /// An expression is nested too deeply.
+    #[error("an expression is nested more than {most} levels deep")]
+    TooDeep {
+        /// The limit.
+        most: usize,
+    },
+    /// A linear system is too large for the stack.
+    #[error("a linear system has {rows} unknowns; at most {most} are compiled")]
+    TooManyRows {
+        /// Unknowns of the system.
+        rows: usize,
+        /// The limit.
+        most: usize,
+    },
+    /// A value is used before any step defines it, or has no name.
+    #[error("value {value} is not defined where it is used")]
+    UndefinedValue {
+        /// Number of the value.
+        value: u32,
+    },
+    /// A system is solved before its matrix is factorised.
+    #[error("factorisation {factorisation} is not defined where it is used")]
+    UndefinedFactorisation {
+        /// Number of the factorisation.
+        factorisation: u32,
+    },
+    /// A system whose numbers of entries, unknowns and right-hand sides do not fit.
+    #[error("factorisation {factorisation}: {found} entries where {expected} belong")]
+    SystemShape {
+        /// Number of the factorisation.
+        factorisation: u32,
+        /// Entries that fit its size.
+        expected: usize,
+        /// Entries found.
+        found: usize,
+    },
+    /// An argument that the model does not have.
+    #[error("the function uses {what} {index}, but the model has {len}")]
+    UnknownArgument {
+        /// State, input or parameter.
+        what: &'static str,
+        /// Its index.
+        index: usize,
+        /// How many there are.
+        len: usize,
+    },
+    /// The program lacks a function that its sizes ask for.
+    #[error("the program has no function {kind:?}")]
+    MissingFunction {
+        /// Which one.
+        kind: FunctionKind,
+    },
+    /// The function lacks a result.
+    #[error("function {kind:?} has no result `{result}`")]
+    MissingResult {
+        /// Which function.
+        kind: FunctionKind,
+        /// Name of the result.
+        result: &'static str,
+    },
+    /// A result has a size that contradicts the model's.
+    #[error("result `{result}` of {kind:?} has {found} entries where {expected} belong")]
+    ResultLength {
+        /// Which function.
+        kind: FunctionKind,
+        /// Name of the result.
+        result: &'static str,
+        /// Entries that fit the model.
+        expected: usize,
+        /// Entries found.
+        found: usize,
+    },
+    /// The compiler failed, or the system gave no memory for code.
+    #[error("compilation failed")]
+    Compilation(#[from] Box<ModuleError>),
+}

@@ -1,0 +1,29 @@
+//! Schedules compiled to machine code in this process.
+//!
+//! [`NativeFunction`] is one compiled [`Schedule`](crate::schedule::Schedule), [`JitModel`] a whole
+//! [`Program`](crate::program::Program) behind the trait of all models. The code follows the
+//! schedule operation by operation, without fused or reordered arithmetic, and calls the
+//! elementary functions of the Rust standard library. Its results are those of the emitted Rust
+//! and of the interpreter, bit for bit.
+//!
+//! The stages: `check` makes sure that a schedule can be compiled at all, `compile` translates
+//! it, `native` owns the machine code. `elementary` and `dense` are what the code calls.
+
+// Machine code is reached by pointers. Only `native`, `elementary` and `dense` use unsafe blocks;
+// the interface of the module is safe.
+#![allow(unsafe_code)]
+
+mod check;
+mod compile;
+mod dense;
+mod elementary;
+mod error;
+mod host;
+mod model;
+mod native;
+mod part;
+
+pub use check::{MOST_DEPTH, MOST_OPERATIONS, MOST_ROWS, Sizes};
+pub use error::JitError;
+pub use model::JitModel;
+pub use native::NativeFunction;

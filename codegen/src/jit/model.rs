@@ -1,0 +1,194 @@
+//! A program in machine code, behind the trait of all models.
+
+use std::fmt;
+use std::slice::from_mut;
+
+use appell_runtime::model::{At, Energies, Model, ModelInfo};
+
+use super::part::Part;
+use super::{JitError, Sizes};
+use crate::program::{FunctionKind, Program};
+
+/// A model compiled in this process.
+///
+/// The rates are compiled at once, every other function when it is first used: most users need
+/// few of them, and finding a short schedule for all derivatives takes longer than compiling it.
+/// Threads that ask for the same function meanwhile wait for it. A function that cannot be
+/// compiled, because it is too long, is interpreted with the same results; [`Self::interpreted`]
+/// lists these.
+pub struct JitModel {
+    program: Program,
+    sizes: Sizes,
+    /// By [`FunctionKind`], in the order of its variants.
+    parts: Vec<Part>,
+}
+
+/// All functions, in the order of the variants.
+const KINDS: [FunctionKind; 12] = [
+    FunctionKind::Kinematics,
+    FunctionKind::AccelerationEnergy,
+    FunctionKind::MassMatrix,
+    FunctionKind::Bias,
+    FunctionKind::GeneralizedForces,
+    FunctionKind::Rates,
+    FunctionKind::Jacobians,
+    FunctionKind::AllJacobians,
+    FunctionKind::Energies,
+    FunctionKind::ConstraintResidual,
+    FunctionKind::ConstraintForces,
+    FunctionKind::Outputs,
+];
+
+/// The results that the trait asks for, with their lengths.
+///
+/// What a function computes beyond them is left out of the machine code. The numbers that remain
+/// do not change: the schedule is that of the whole function.
+fn results(kind: FunctionKind, info: &ModelInfo) -> Vec<(&'static str, usize)> {
+    let (n, m, k) = (info.state_len(), info.input_len(), info.parameter_len());
+    let speeds = info.speeds;
+    match kind {
+        // The rates contain them.
+        FunctionKind::Kinematics => vec![],
+        FunctionKind::AccelerationEnergy => vec![("total", 1)],
+        FunctionKind::MassMatrix => vec![("mass_matrix", speeds * speeds)],
+        FunctionKind::Bias => vec![("bias", speeds)],
+        FunctionKind::GeneralizedForces => vec![("generalized_forces", speeds)],
+        FunctionKind::Rates => vec![("rates", n)],
+        FunctionKind::Jacobians => vec![("rates", n), ("a", n * n), ("b", n * m)],
+        // The other Jacobians come from the function without parameters.
+        FunctionKind::AllJacobians => vec![("p", n * k)],
+        FunctionKind::Energies => vec![("kinetic", 1), ("potential", 1), ("power", 1)],
+        FunctionKind::ConstraintResidual => vec![("residual", info.constraint_rows.len())],
+        FunctionKind::ConstraintForces => vec![("forces", 3 * info.reactions.len())],
+        FunctionKind::Outputs => vec![("outputs", info.output_len())],
+    }
+}
+
+impl JitModel {
+    /// Compiles the rates of a program and prepares its other functions.
+    pub fn new(program: &Program) -> Result<Self, JitError> {
+        let sizes = Sizes::from(&program.info);
+        let parts = KINDS
+            .iter()
+            .map(|&kind| Part::new(program, kind, results(kind, &program.info)))
+            .collect::<Result<_, _>>()?;
+        let model = Self {
+            program: program.clone(),
+            sizes,
+            parts,
+        };
+        // A processor without a compiler shows here and not in the middle of a simulation.
+        model.part(FunctionKind::Rates).compile(program, sizes)?;
+        Ok(model)
+    }
+
+    /// Compiles all functions now instead of at their first use.
+    pub fn compile_all(&self) {
+        for part in &self.parts {
+            part.ready(&self.program, self.sizes);
+        }
+    }
+
+    /// The functions used so far that are interpreted, with the reason.
+    pub fn interpreted(&self) -> impl Iterator<Item = (FunctionKind, &JitError)> {
+        KINDS
+            .into_iter()
+            .zip(&self.parts)
+            .filter_map(|(kind, part)| Some((kind, part.reason()?)))
+    }
+
+    fn part(&self, kind: FunctionKind) -> &Part {
+        &self.parts[kind as usize]
+    }
+
+    fn evaluate<const N: usize>(&self, kind: FunctionKind, at: At<'_>, results: [&mut [f64]; N]) {
+        self.part(kind)
+            .ready(&self.program, self.sizes)
+            .call(at, results);
+    }
+}
+
+/// Every method panics where a slice has another length than the trait asks for.
+impl Model for JitModel {
+    fn info(&self) -> &ModelInfo {
+        &self.program.info
+    }
+
+    fn rates(&self, at: At<'_>, rates: &mut [f64]) {
+        self.evaluate(FunctionKind::Rates, at, [rates]);
+    }
+
+    fn jacobians(&self, at: At<'_>, rates: &mut [f64], a: &mut [f64], b: &mut [f64]) {
+        self.evaluate(FunctionKind::Jacobians, at, [rates, a, b]);
+    }
+
+    fn parameter_jacobian(&self, at: At<'_>, p: &mut [f64]) {
+        self.evaluate(FunctionKind::AllJacobians, at, [p]);
+    }
+
+    fn appell(&self, at: At<'_>, mass: &mut [f64], bias: &mut [f64], forces: &mut [f64]) {
+        self.evaluate(FunctionKind::MassMatrix, at, [mass]);
+        self.evaluate(FunctionKind::Bias, at, [bias]);
+        self.evaluate(FunctionKind::GeneralizedForces, at, [forces]);
+    }
+
+    fn energies(&self, at: At<'_>) -> Energies {
+        let mut energies = Energies::default();
+        let Energies {
+            kinetic,
+            potential,
+            power,
+            acceleration,
+        } = &mut energies;
+        let scalars = [kinetic, potential, power].map(from_mut);
+        self.evaluate(
+            FunctionKind::Energies,
+            at,
+            scalars.map(|scalar| &mut scalar[..]),
+        );
+        self.evaluate(
+            FunctionKind::AccelerationEnergy,
+            at,
+            [from_mut(acceleration)],
+        );
+        energies
+    }
+
+    fn constraint_residual(&self, at: At<'_>, residual: &mut [f64]) {
+        self.evaluate(FunctionKind::ConstraintResidual, at, [residual]);
+    }
+
+    fn constraint_forces(&self, at: At<'_>, forces: &mut [f64]) {
+        self.evaluate(FunctionKind::ConstraintForces, at, [forces]);
+    }
+
+    fn outputs(&self, at: At<'_>, outputs: &mut [f64]) {
+        self.evaluate(FunctionKind::Outputs, at, [outputs]);
+    }
+}
+
+impl fmt::Debug for JitModel {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("JitModel")
+            .field("name", &self.program.info.name)
+            .finish_non_exhaustive()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn kinds_are_their_own_indices() {
+        for (index, kind) in KINDS.into_iter().enumerate() {
+            assert_eq!(kind as usize, index);
+        }
+    }
+
+    #[test]
+    fn models_are_shared_between_threads() {
+        fn shared<T: Send + Sync>() {}
+        shared::<JitModel>();
+    }
+}

@@ -1,0 +1,130 @@
+//! Machine code and its life.
+
+use std::fmt;
+use std::sync::Mutex;
+
+use appell_runtime::model::At;
+use cranelift_jit::{JITBuilder, JITModule};
+use cranelift_module::{Module, ModuleError, default_libcall_names};
+
+use super::check::{Sizes, check};
+use super::compile::{signature, translate};
+use super::part::lengths;
+use super::{JitError, host};
+use crate::schedule::Schedule;
+
+/// `t`, states, inputs, parameters, addresses of the results.
+type Entry = unsafe extern "C" fn(f64, *const f64, *const f64, *const f64, *const *mut f64);
+
+/// One schedule in machine code. The code lives as long as this value; several threads may call it
+/// at the same time.
+#[derive(Debug)]
+pub struct NativeFunction {
+    entry: Entry,
+    sizes: Sizes,
+    /// Lengths of the results.
+    results: Vec<usize>,
+    _code: Code,
+}
+
+impl NativeFunction {
+    /// Compiles a schedule of a model with arguments of these sizes.
+    pub fn compile(schedule: &Schedule, sizes: Sizes) -> Result<Self, JitError> {
+        let checked = check(schedule, sizes)?;
+        let target = host::target()?;
+        let builder = JITBuilder::with_isa(target, default_libcall_names());
+        let mut module = JITModule::new(builder);
+        let config = module.target_config();
+        let mut context = module.make_context();
+        context.func.signature = signature(config);
+        translate(&checked, config, &mut context.func);
+        let defined = define(&mut module, &mut context);
+        // From here on the memory is freed, also where something failed.
+        let code = Code(Mutex::new(Some(Box::new(module))));
+        let entry = defined?;
+        Ok(Self {
+            // SAFETY: the code was compiled with `signature`, which is that of `Entry`.
+            entry: unsafe { std::mem::transmute::<*const u8, Entry>(entry) },
+            sizes,
+            results: lengths(schedule),
+            _code: code,
+        })
+    }
+
+    /// Evaluates the function: one slice for each result of the schedule, in its order.
+    ///
+    /// # Panics
+    ///
+    /// Where a slice has another length than the schedule's results and the sizes it was compiled
+    /// for; no code runs then.
+    #[inline]
+    pub fn call<const N: usize>(&self, at: At<'_>, results: [&mut [f64]; N]) {
+        check_lengths(at, self.sizes, &results, &self.results);
+        let results = results.map(<[f64]>::as_mut_ptr);
+        // SAFETY: the schedule's check bounds every read by `sizes`, and the translation writes
+        // each result from its start to its length; both were compared above. The references promise that the
+        // memory is valid and that results overlap neither each other nor the arguments. The code
+        // is alive while `self` is.
+        unsafe {
+            (self.entry)(
+                at.t,
+                at.x.as_ptr(),
+                at.u.as_ptr(),
+                at.p.as_ptr(),
+                results.as_ptr(),
+            );
+        }
+    }
+}
+
+/// Refuses slices of other lengths than a function was made for.
+#[inline]
+pub(super) fn check_lengths(at: At<'_>, sizes: Sizes, out: &[&mut [f64]], results: &[usize]) {
+    let found = Sizes {
+        states: at.x.len(),
+        inputs: at.u.len(),
+        parameters: at.p.len(),
+    };
+    assert!(
+        found == sizes,
+        "arguments: {found:?} given, {sizes:?} expected"
+    );
+    assert!(
+        out.iter()
+            .map(|result| result.len())
+            .eq(results.iter().copied()),
+        "results: lengths {results:?} expected"
+    );
+}
+
+/// Makes the function executable and returns its address.
+fn define(
+    module: &mut JITModule,
+    context: &mut cranelift_codegen::Context,
+) -> Result<*const u8, Box<ModuleError>> {
+    let id = module.declare_anonymous_function(&context.func.signature)?;
+    module.define_function(id, context)?;
+    module.finalize_definitions()?;
+    Ok(module.get_finalized_function(id))
+}
+
+/// Owner of the memory that holds the code. The lock is never contended: it only makes the
+/// compiler's state, which nobody uses after compilation, shareable between threads.
+struct Code(Mutex<Option<Box<JITModule>>>);
+
+impl Drop for Code {
+    fn drop(&mut self) {
+        let module = self.0.get_mut().map(Option::take);
+        if let Ok(Some(module)) = module {
+            // SAFETY: a `NativeFunction` owns its code and only runs it during `call`, which
+            // borrows it, so no code runs now and none will.
+            unsafe { module.free_memory() }
+        }
+    }
+}
+
+impl fmt::Debug for Code {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("Code")
+    }
+}

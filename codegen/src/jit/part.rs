@@ -1,0 +1,171 @@
+//! One function of a model, from its place in the program to code that runs.
+
+use std::sync::OnceLock;
+
+use appell_runtime::model::At;
+
+use super::native::check_lengths;
+use super::{JitError, NativeFunction, Sizes};
+use crate::program::{Function, FunctionKind, Program};
+use crate::schedule::{ResultArray, Schedule, interpret, schedule};
+
+/// A result that is asked of a function: its name and its length.
+pub(super) type Wanted = (&'static str, usize);
+
+/// Some results of a function of a program. The code is made when it is first asked for.
+pub(super) struct Part {
+    kind: FunctionKind,
+    wanted: Vec<Wanted>,
+    ready: OnceLock<Ready>,
+}
+
+/// A function that can be evaluated.
+pub(super) enum Ready {
+    /// In machine code.
+    Native(NativeFunction),
+    /// Step by step, because it could not be compiled.
+    Interpreted {
+        /// The function, with the wanted results only.
+        schedule: Schedule,
+        /// Lengths of the arguments.
+        sizes: Sizes,
+        /// Lengths of the results.
+        results: Vec<usize>,
+        /// Why it was not compiled.
+        reason: JitError,
+    },
+}
+
+impl Part {
+    /// The wanted results of a function. A program may leave out what has no entries.
+    pub(super) fn new(
+        program: &Program,
+        kind: FunctionKind,
+        wanted: Vec<Wanted>,
+    ) -> Result<Self, JitError> {
+        let function = find(program, kind);
+        for &(result, expected) in wanted.iter().filter(|(_, len)| *len > 0) {
+            let function = function.ok_or(JitError::MissingFunction { kind })?;
+            let array = function
+                .results
+                .iter()
+                .find(|array| array.name == result)
+                .ok_or(JitError::MissingResult { kind, result })?;
+            let found = array.entries.len();
+            if found != expected {
+                return Err(JitError::ResultLength {
+                    kind,
+                    result,
+                    expected,
+                    found,
+                });
+            }
+        }
+        Ok(Self {
+            kind,
+            wanted,
+            ready: OnceLock::new(),
+        })
+    }
+
+    /// Compiles the function now, or says why it cannot be compiled.
+    pub(super) fn compile(&self, program: &Program, sizes: Sizes) -> Result<(), JitError> {
+        let native = NativeFunction::compile(&self.schedule(program), sizes)?;
+        self.ready.get_or_init(|| Ready::Native(native));
+        Ok(())
+    }
+
+    /// The function, made when it is first asked for.
+    #[inline]
+    pub(super) fn ready(&self, program: &Program, sizes: Sizes) -> &Ready {
+        self.ready.get_or_init(|| self.make(program, sizes))
+    }
+
+    /// Why the function is interpreted, if it is.
+    pub(super) fn reason(&self) -> Option<&JitError> {
+        match self.ready.get()? {
+            Ready::Native(_) => None,
+            Ready::Interpreted { reason, .. } => Some(reason),
+        }
+    }
+
+    #[cold]
+    fn make(&self, program: &Program, sizes: Sizes) -> Ready {
+        let schedule = self.schedule(program);
+        match NativeFunction::compile(&schedule, sizes) {
+            Ok(native) => Ready::Native(native),
+            Err(reason) => Ready::Interpreted {
+                results: lengths(&schedule),
+                schedule,
+                sizes,
+                reason,
+            },
+        }
+    }
+
+    /// The steps of the whole function, so that numbers do not depend on what is wanted, with the
+    /// wanted results. The compiler drops the steps that these do not need.
+    fn schedule(&self, program: &Program) -> Schedule {
+        let whole =
+            find(program, self.kind).filter(|_| self.wanted.iter().any(|&(_, len)| len > 0));
+        let mut schedule = match whole {
+            Some(function) => schedule(program, function),
+            None => Schedule {
+                arguments: Vec::new(),
+                steps: Vec::new(),
+                results: Vec::new(),
+                names: Vec::new(),
+            },
+        };
+        let mut all = std::mem::take(&mut schedule.results);
+        let wanted = self.wanted.iter().map(|&(name, _)| {
+            match all.iter().position(|result| result.name == name) {
+                Some(index) => all.swap_remove(index),
+                None => ResultArray {
+                    name: name.to_owned(),
+                    entries: Vec::new(),
+                },
+            }
+        });
+        schedule.results = wanted.collect();
+        schedule
+    }
+}
+
+impl Ready {
+    /// Evaluates the function; see [`NativeFunction::call`].
+    #[inline]
+    pub(super) fn call<const N: usize>(&self, at: At<'_>, out: [&mut [f64]; N]) {
+        match self {
+            Self::Native(native) => native.call(at, out),
+            Self::Interpreted {
+                schedule,
+                sizes,
+                results,
+                ..
+            } => {
+                check_lengths(at, *sizes, &out, results);
+                let computed = interpret(schedule, at.t, at.x, at.u, at.p);
+                for (out, computed) in out.into_iter().zip(computed) {
+                    out.copy_from_slice(&computed);
+                }
+            }
+        }
+    }
+}
+
+fn find(program: &Program, kind: FunctionKind) -> Option<&Function> {
+    program
+        .functions
+        .iter()
+        .find(|function| function.kind == kind)
+}
+
+/// Lengths of the results of a schedule.
+pub(super) fn lengths(schedule: &Schedule) -> Vec<usize> {
+    schedule
+        .results
+        .iter()
+        .map(|result| result.entries.len())
+        .collect()
+}

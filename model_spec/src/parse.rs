@@ -9,7 +9,7 @@ mod values;
 use toml::de::{DeTable, DeValue};
 
 use crate::ast::{SectionAst, SpecAst};
-use crate::diagnostic::{Code, Diagnostic};
+use crate::diagnostic::{Code, Diagnostic, MAX_SHOWN};
 use crate::expr::Span;
 use crate::language::{SECTIONS, Section};
 use crate::limits::MAX_FILE;
@@ -97,6 +97,9 @@ impl Reader<'_> {
         let mut lines: Vec<Span> = Vec::new();
         for error in errors {
             self.broken = true;
+            if lines.len() >= MAX_SHOWN {
+                break;
+            }
             let at = error.span().unwrap_or(0..0);
             if lines.iter().any(|line| line.contains(&at.start)) {
                 continue;
@@ -104,7 +107,9 @@ impl Reader<'_> {
             lines.push(self.line(at.start));
             let message = error.message().lines().next().unwrap_or_default();
             let diagnostic = if message.contains("duplicate key") {
-                Diagnostic::error(Code::DuplicateName, "this name is already defined above")
+                let name = self.text.get(at.clone()).unwrap_or_default();
+                Diagnostic::error(Code::DuplicateName, format!("`{name}` is defined twice"))
+                    .help("names are unique within a section; rename or remove one")
             } else {
                 Diagnostic::error(Code::TomlSyntax, message)
             };
@@ -115,12 +120,15 @@ impl Reader<'_> {
 
     /// What follows from broken TOML on the same line is not worth telling.
     fn forget_findings_on(&mut self, lines: &[Span]) {
+        if lines.is_empty() {
+            return;
+        }
         self.findings.retain(|finding| {
             matches!(finding.code, Code::TomlSyntax | Code::DuplicateName)
-                || !finding
-                    .labels
-                    .first()
-                    .is_some_and(|(at, _)| lines.iter().any(|line| line.contains(&at.start)))
+                // What the parser supplied for an unread value stands nowhere.
+                || !finding.labels.first().is_some_and(|(at, _)| {
+                    *at == (0..0) || lines.iter().any(|line| line.contains(&at.start))
+                })
         });
     }
 
@@ -192,7 +200,7 @@ impl Reader<'_> {
                         format!("the section `[{}]` is {state}", section.name),
                     )
                     .at(at, "")
-                    .help(section.about),
+                    .help(phrase(section.about)),
                 );
             }
         }
@@ -232,4 +240,16 @@ fn is_forbidden(c: char) -> bool {
         || matches!(c,
             '\u{ad}' | '\u{61c}' | '\u{180e}' | '\u{200b}'..='\u{200f}' | '\u{2028}'..='\u{202e}'
             | '\u{2060}'..='\u{206f}' | '\u{feff}' | '\u{fff9}'..='\u{fffb}' | '\u{e0000}'..='\u{e007f}')
+}
+
+/// A sentence as the end of another one.
+fn phrase(sentence: &str) -> String {
+    let mut letters = sentence.chars();
+    let first = letters.next().map(|c| c.to_ascii_lowercase());
+    first
+        .into_iter()
+        .chain(letters)
+        .collect::<String>()
+        .trim_end_matches('.')
+        .to_owned()
 }

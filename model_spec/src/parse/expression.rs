@@ -308,9 +308,16 @@ impl<'a> Parser<'_, 'a> {
             "pow" => Some("^"),
             _ => suggest::closest(name, known),
         };
+        let help = familiar.map_or_else(
+            || {
+                let names: Vec<&str> = Function::ALL.iter().map(|row| row.1).collect();
+                format!("the functions are {}", names.join(", "))
+            },
+            |similar| format!("did you mean `{similar}`?"),
+        );
         Diagnostic::error(Code::UnknownFunction, format!("unknown function `{name}`"))
             .at(self.source.span(at.start..at.end), "")
-            .maybe_help(familiar.map(|f| format!("did you mean `{f}`?")))
+            .help(help)
     }
 }
 

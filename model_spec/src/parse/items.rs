@@ -9,7 +9,7 @@ use crate::language::{Form, Key, Kind, Need, Section, Shape};
 use crate::limits::{MAX_ITEMS, MAX_NAME};
 use crate::suggest;
 
-use super::{Reader, TomlKey, TomlValue, in_text_order};
+use super::{Reader, TomlKey, TomlValue, in_text_order, phrase};
 
 /// The form of every value in a section of numbers.
 static STATE_VALUE: Key = Key {
@@ -129,16 +129,16 @@ impl Reader<'_> {
                 || format!("the kinds are {}", list()),
                 |similar| format!("did you mean `{similar}`?"),
             );
-            self.unknown_word(word, "kind", value.span(), help);
+            let shown: String = word.chars().take(80).collect();
+            self.unknown_word(format!("unknown kind `{shown}`"), value.span(), help);
             return self.empty(owner);
         };
         self.keys(owner, kind.keys, Some((kind, kinds)), table)
     }
 
-    pub(super) fn unknown_word(&mut self, word: &str, what: &str, at: Span, help: String) {
-        let shown: String = word.chars().take(80).collect();
+    pub(super) fn unknown_word(&mut self, message: String, at: Span, help: String) {
         self.tell(
-            Diagnostic::error(Code::UnknownWord, format!("unknown {what} `{shown}`"))
+            Diagnostic::error(Code::UnknownWord, message)
                 .at(at, "")
                 .help(help),
         );
@@ -220,7 +220,7 @@ impl Reader<'_> {
         let mut complete = true;
         for key in keys.iter().filter(|k| k.need == Need::Always) {
             if !present(key) {
-                self.missing_key(owner, key.name, key.about);
+                self.missing_key(owner, key.name, &phrase(key.about));
                 complete = false;
             }
         }
@@ -248,7 +248,7 @@ impl Reader<'_> {
             [one] => {
                 for key in way(*one) {
                     if !present(key) {
-                        self.missing_key(owner, key.name, key.about);
+                        self.missing_key(owner, key.name, &phrase(key.about));
                         complete = false;
                     }
                 }

@@ -114,6 +114,11 @@ impl Reader<'_> {
         }
         // Escapes such as `\u202E` appear only in the decoded text.
         if let Some(c) = text.chars().find(|c| is_forbidden(*c) || c.is_control()) {
+            let written = self.text.get(value.span()).unwrap_or_default();
+            if is_forbidden(c) && written.contains(c) {
+                // Told when the file was looked at as a whole.
+                return None;
+            }
             self.tell(
                 Diagnostic::error(
                     Code::ForbiddenCharacter,
@@ -282,12 +287,9 @@ impl Reader<'_> {
             || format!("write one of {}", words.join(", ")),
             |similar| format!("did you mean `{similar}`?"),
         );
-        self.unknown_word(
-            word,
-            &format!("word for `{}`:", key.name),
-            value.span(),
-            help,
-        );
+        let shown: String = word.chars().take(80).collect();
+        let message = format!("`{}` cannot be `{shown}`", key.name);
+        self.unknown_word(message, value.span(), help);
         None
     }
 }

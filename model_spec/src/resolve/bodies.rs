@@ -11,7 +11,7 @@ use super::Resolver;
 use super::dimensions::Dim;
 use super::place::Place;
 
-const MASS: Place = Place::constant("a mass");
+const MASS: Place = Place::constant("the mass of a body");
 const INERTIA: Place = Place::constant("a moment of inertia");
 
 impl Resolver<'_> {

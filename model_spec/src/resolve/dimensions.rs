@@ -114,23 +114,26 @@ impl Resolver<'_> {
         if found == wanted {
             return;
         }
-        let mut diagnostic = Diagnostic::error(
-            Code::UnitMismatch,
-            format!(
-                "{} must be {}, found {}",
-                place.what,
-                quantity_name(&wanted),
-                quantity_name(&found)
-            ),
-        )
-        .at(typed.span(), unit_words(found));
         let unit = Unit::si(wanted).text;
-        if typed.constant.is_some() && found.is_none() {
-            diagnostic = diagnostic.help(format!("write the unit after the number: `[{unit}]`"));
+        let must = if wanted.is_none() {
+            format!("be {}", quantity_name(&wanted))
         } else {
-            diagnostic = diagnostic.help(format!("the expected unit is `{unit}`"));
-        }
-        self.tell(diagnostic);
+            format!("have the unit `{unit}`")
+        };
+        let bare_number = typed.constant.is_some() && found.is_none();
+        let help = bare_number.then(|| format!("write the unit after the number: `[{unit}]`"));
+        self.tell(
+            Diagnostic::error(
+                Code::UnitMismatch,
+                format!(
+                    "{} must {must}, found {}",
+                    place.what,
+                    quantity_name(&found)
+                ),
+            )
+            .at(typed.span(), unit_words(found))
+            .maybe_help(help),
+        );
     }
 
     /// The common dimension of two sides; tells where they differ.

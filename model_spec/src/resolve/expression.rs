@@ -359,6 +359,10 @@ impl Resolver<'_> {
             }
             (None, dim) => dim,
         };
+        if dim == Dim::Unknown {
+            // Told already; a large degree is only another side of it.
+            size = a.size;
+        }
         let degree = if a.degree.is_none() {
             None
         } else {

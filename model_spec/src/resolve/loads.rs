@@ -15,9 +15,9 @@ use super::placement::axis;
 const ACCELERATION: Place = Place::constant("the acceleration of free fall");
 const FORCE: Place = Place::anything("a component of a force");
 const TORQUE: Place = Place::anything("a component of a torque");
-const STIFFNESS: Place = Place::scheduled("a stiffness");
+const STIFFNESS: Place = Place::scheduled("the stiffness of a spring");
 const RELAXED: Place = Place::scheduled("the relaxed length");
-const DAMPING: Place = Place::anything("a damping coefficient");
+const DAMPING: Place = Place::anything("the damping of a damper");
 const GENERALIZED: Place = Place::anything("a generalised force");
 
 impl Resolver<'_> {
@@ -114,13 +114,15 @@ impl Resolver<'_> {
 
     /// What a spring or damper connects, and the dimension of its displacement.
     fn connection(&mut self, item: &ItemAst) -> (Connection, Option<Dimension>) {
+        let both = item.entry("between").is_some() && item.entry("coordinate").is_some();
         if let Some(ValueAst::Pair([a, b])) = item.entry("between").map(|e| &e.value) {
             let first = self.find(Target::Point, &a.value, &a.span).unwrap_or(0);
             let second = self.find(Target::Point, &b.value, &b.span).unwrap_or(0);
             if a.value == b.value {
                 self.connected_to_itself(&a.value, b.span.clone(), a.span.clone());
             }
-            return (Connection::Points(first, second), Some(Dimension::LENGTH));
+            let displacement = Some(Dimension::LENGTH).filter(|_| !both);
+            return (Connection::Points(first, second), displacement);
         }
         let (id, dimension) = self.coordinate_under(item);
         (Connection::Coordinate(id), dimension)

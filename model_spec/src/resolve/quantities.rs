@@ -302,7 +302,10 @@ impl<'a> Resolver<'a> {
                 )
                 .at(written.span, super::dimensions::unit_words(wanted))
                 .at(typed.span(), super::dimensions::unit_words(found))
-                .help(format!("write `unit = \"{}\"`", Unit::si(found).text)),
+                .help(format!(
+                    "write `unit = \"{}\"`",
+                    natural_unit(found, &typed.expr, coordinates).text
+                )),
             );
         }
         (Some(written.value.clone()), typed.expr)

@@ -1,0 +1,165 @@
+//! Damaged specs are refused or read, never with a panic and never slowly.
+
+use std::fmt::Write as _;
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+use appell_spec::edit::set_parameters;
+use appell_spec::{Report, load};
+
+/// How many bytes are changed in all.
+const MUTATED_BYTES: usize = 1_000_000;
+/// Far below a second, with room for a busy machine.
+const SLOWEST: Duration = Duration::from_millis(500);
+
+/// A small generator of pseudo-random numbers (`SplitMix64`): the same damage in every run.
+struct Dice(u64);
+
+impl Dice {
+    fn next(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        z ^ (z >> 31)
+    }
+
+    /// A number below `n`.
+    fn below(&mut self, n: usize) -> usize {
+        usize::try_from(self.next() % (n.max(1) as u64)).unwrap()
+    }
+}
+
+/// Bytes that mean something to TOML or to expressions.
+const TELLING: &[u8] = b"[]{}()=,.\"'\\\n#+-*/^<> 0e9_xtdu\xc3\xa9\xe2\x80\xae";
+
+/// Damages a text; returns how many bytes it changed.
+fn mutate(bytes: &mut Vec<u8>, others: &[Vec<u8>], dice: &mut Dice) -> usize {
+    let at = dice.below(bytes.len());
+    let length = 1 + dice.below(24);
+    let end = (at + length).min(bytes.len());
+    match dice.below(6) {
+        0 if !bytes.is_empty() => {
+            bytes[at] ^= 1 << dice.below(8);
+            1
+        }
+        1 if !bytes.is_empty() => {
+            bytes[at] = TELLING[dice.below(TELLING.len())];
+            1
+        }
+        2 => {
+            bytes.insert(at, TELLING[dice.below(TELLING.len())]);
+            1
+        }
+        3 => {
+            bytes.drain(at..end);
+            end - at
+        }
+        4 => {
+            let copy = bytes[at..end].to_vec();
+            let to = dice.below(bytes.len() + 1);
+            bytes.splice(to..to, copy);
+            end - at
+        }
+        _ => {
+            let other = &others[dice.below(others.len())];
+            let from = dice.below(other.len());
+            let piece = &other[from..(from + length).min(other.len())];
+            let changed = piece.len().max(end - at);
+            bytes.splice(at..end, piece.iter().copied());
+            changed
+        }
+    }
+}
+
+fn shipped() -> Vec<Vec<u8>> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../generated/mechanisms");
+    let mut files: Vec<_> = std::fs::read_dir(folder)
+        .unwrap()
+        .map(|entry| entry.unwrap().path())
+        .collect();
+    files.sort();
+    files.iter().map(|f| std::fs::read(f).unwrap()).collect()
+}
+
+/// Reads a text and shows what was found.
+fn exercise(text: &str) -> Duration {
+    let start = Instant::now();
+    let report = match load("fuzz.toml", text) {
+        Ok(checked) => Report::new("fuzz.toml", text, checked.warnings),
+        Err(report) => {
+            assert!(report.has_errors());
+            report
+        }
+    };
+    let _ = report.plain();
+    let _ = set_parameters(text, &[("m", 1.25), ("g", 9.8)]);
+    start.elapsed()
+}
+
+#[test]
+fn a_million_damaged_bytes_do_no_harm() {
+    let specs = shipped();
+    let mut dice = Dice(20);
+    let mut changed = 0;
+    let mut slowest = Duration::ZERO;
+    let mut round = 0;
+    while changed < MUTATED_BYTES {
+        let mut bytes = specs[round % specs.len()].clone();
+        // From one slip of the pen to a wreck.
+        let hits = [1, 2, 4, 16, 64, 256][round % 6];
+        for _ in 0..hits {
+            changed += mutate(&mut bytes, &specs, &mut dice);
+        }
+        let text = String::from_utf8_lossy(&bytes);
+        slowest = slowest.max(exercise(&text));
+        round += 1;
+    }
+    assert!(slowest < SLOWEST, "slowest load took {slowest:?}");
+}
+
+#[test]
+fn hostile_texts_are_refused_quickly() {
+    let mut texts = vec![
+        "[".repeat(100_000),
+        "a.".repeat(100_000),
+        format!("x = {}", "[".repeat(100_000)),
+        format!("x = {}", "{a=".repeat(50_000)),
+        format!(
+            "[coordinates]\nx = {{ unit = \"{}\" }}",
+            "(".repeat(100_000)
+        ),
+        format!("[signals.s]\nt = [{}]", "1,".repeat(200_000)),
+        format!("[outputs]\n{} = {{ value = \"x\" }}", "n".repeat(500_000)),
+        format!("[outputs]\na = {{ value = {} }}", "9".repeat(500_000)),
+        format!("[outputs]\na = {{ value = \"{}\" }}", "x+".repeat(200_000)),
+        format!("[outputs]\na = {{ value = \"{}\" }}", "-".repeat(4000)),
+        format!("[outputs]\na = {{ value = \"{}x\" }}", "2^".repeat(2000)),
+        format!("[outputs]\na = {{ value = \"{}x\" }}", "sin(".repeat(1000)),
+        "\u{202e}".repeat(100_000),
+        "\"\"\"".repeat(50_000),
+        "a = 1\n".repeat(100_000),
+        "x".repeat(2_000_000),
+    ];
+    let mut many = "[outputs]\n".to_owned();
+    for i in 0..20_000 {
+        writeln!(many, "a{i} = {{ value = \"unknown_{i} + 1 [m]\" }}").unwrap();
+    }
+    texts.push(many);
+    let mut chain = "[frames]\n".to_owned();
+    for i in 0..256 {
+        let parent = (i + 1) % 256;
+        writeln!(
+            chain,
+            "f{i} = {{ parent = \"f{parent}\", about_axis = \"x\", by = 1 }}"
+        )
+        .unwrap();
+    }
+    texts.push(chain);
+    for text in texts {
+        let start: String = text.chars().take(40).collect();
+        let took = exercise(&text);
+        assert!(took < 2 * SLOWEST, "{start}: {took:?}");
+        assert!(load("hostile.toml", &text).is_err(), "{start}");
+    }
+}

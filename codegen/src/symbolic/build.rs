@@ -371,19 +371,24 @@ impl Factors {
         if self.coefficient.is_zero() {
             return Graph::ZERO;
         }
-        // √x to an even power is a power of x, which may meet other powers of x.
-        let mut roots: Vec<(Expr, Expr, i32)> = self
-            .exponents
-            .iter()
-            .filter_map(|(&base, &exponent)| match graph.node(base) {
-                Node::Function(Function::Sqrt, x) if exponent.abs() >= 2 => Some((base, *x, exponent)),
-                _ => None,
-            })
-            .collect();
-        roots.sort_unstable();
-        for (root, x, exponent) in roots {
-            self.exponents.insert(root, exponent % 2);
-            self.multiply(graph, x, exponent / 2);
+        // √x to an even power is a power of x, which may meet other powers of x or be a root itself.
+        loop {
+            let mut roots: Vec<(Expr, Expr, i32)> = self
+                .exponents
+                .iter()
+                .filter_map(|(&base, &exponent)| match graph.node(base) {
+                    Node::Function(Function::Sqrt, x) if exponent.abs() >= 2 => Some((base, *x, exponent)),
+                    _ => None,
+                })
+                .collect();
+            if roots.is_empty() {
+                break;
+            }
+            roots.sort_unstable();
+            for (root, x, exponent) in roots {
+                self.exponents.insert(root, exponent % 2);
+                self.multiply(graph, x, exponent / 2);
+            }
         }
         let mut factors: Vec<Factor> = self
             .exponents

@@ -1,12 +1,14 @@
 //! Reference evaluation in double precision.
 
+use rustc_hash::FxHashMap;
+
 use super::{Expr, Function, Graph, Node, Relation};
 
 /// Values of `roots` where the symbol with id `i` has the value `values[i]`. A symbol without a value
 /// is NaN.
 pub fn evaluate(g: &Graph, values: &[f64], roots: &[Expr]) -> Vec<f64> {
     let mut known = vec![f64::NAN; g.len()];
-    let mut solutions: Vec<(u32, Vec<f64>)> = Vec::new();
+    let mut solutions: FxHashMap<u32, Vec<f64>> = FxHashMap::default();
     for expr in g.in_order(roots) {
         let of = |e: Expr| known[e.0 as usize];
         let value = match g.node(expr) {
@@ -27,17 +29,13 @@ pub fn evaluate(g: &Graph, values: &[f64], roots: &[Expr]) -> Vec<f64> {
                 of(branches[usize::from(!holds)])
             }
             Node::Solution { system, row } => {
-                let place = match solutions.iter().position(|(id, _)| id == system) {
-                    Some(place) => place,
-                    None => {
-                        let equations = g.system(*system);
-                        let matrix = equations.matrix.iter().map(|&e| of(e)).collect();
-                        let right = equations.right.iter().map(|&e| of(e)).collect();
-                        solutions.push((*system, solve(matrix, right)));
-                        solutions.len() - 1
-                    }
-                };
-                solutions[place].1[*row as usize]
+                if !solutions.contains_key(system) {
+                    let equations = g.system(*system);
+                    let matrix = equations.matrix.iter().map(|&e| of(e)).collect();
+                    let right = equations.right.iter().map(|&e| of(e)).collect();
+                    solutions.insert(*system, solve(matrix, right));
+                }
+                solutions[system][*row as usize]
             }
         };
         known[expr.0 as usize] = value;

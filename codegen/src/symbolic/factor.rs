@@ -37,6 +37,17 @@ impl Graph {
         self.mul(common, rest)
     }
 
+    /// Numerator and denominator of a product; the numeric coefficient goes with the numerator.
+    pub fn split_fraction(&mut self, expr: Expr) -> (Expr, Expr) {
+        let (coefficient, rest) = self.split_coefficient(expr);
+        let (mut over, mut under) = (vec![self.number(coefficient)], Vec::new());
+        for factor in self.factors_of(rest) {
+            let power = self.pow(factor.base, factor.exponent.abs());
+            if factor.exponent > 0 { over.push(power) } else { under.push(power) }
+        }
+        (self.product(&over), self.product(&under))
+    }
+
     fn factors_of(&self, expr: Expr) -> Vec<Factor> {
         match self.node(expr) {
             Node::Product(factors) => factors.to_vec(),

@@ -127,6 +127,14 @@ impl Graph {
         &self.definitions[index as usize]
     }
 
+    /// What a named expression stands for.
+    pub fn named_value(&self, expr: Expr) -> Option<Expr> {
+        match self.node(expr) {
+            Node::Named(id) => Some(self.definition(*id).value),
+            _ => None,
+        }
+    }
+
     /// Unknowns of `matrix · unknowns = right`, solved with pivoting when evaluated.
     pub fn solve_numerically(&mut self, matrix: Vec<Expr>, right: Vec<Expr>) -> Vec<Expr> {
         assert_eq!(matrix.len(), right.len() * right.len(), "the system is square");

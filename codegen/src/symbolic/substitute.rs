@@ -22,6 +22,11 @@ impl Substitution {
         Self { known }
     }
 
+    /// Replaces whole expressions, wherever they stand as parts.
+    pub fn of_parts(replacements: &[(Expr, Expr)]) -> Self {
+        Self { known: replacements.iter().copied().collect() }
+    }
+
     /// `expr` with the symbols replaced, in canonical form again. `None` where a number is divided
     /// by zero on the way.
     pub fn apply(&mut self, graph: &mut Graph, expr: Expr) -> Option<Expr> {
@@ -56,7 +61,14 @@ impl Substitution {
             }
             Node::Function(function, argument) => graph.function(function, new(&argument)),
             Node::Atan2(y, x) => graph.atan2(new(&y), new(&x)),
-            Node::Power(base, exponent) => graph.power(new(&base), new(&exponent)),
+            Node::Power(base, exponent) => {
+                let (base, exponent) = (new(&base), new(&exponent));
+                if base == Graph::ZERO && graph.leads_with_minus(exponent) && graph.as_number(exponent).is_some()
+                {
+                    return None;
+                }
+                graph.power(base, exponent)
+            }
             Node::Choice { relation, compared, branches } => {
                 graph.choice(relation, compared.map(|e| new(&e)), branches.map(|e| new(&e)))
             }

@@ -3,8 +3,8 @@
 use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::super::field::PRIME;
-use super::super::{Expr, Function, Graph, Node};
-use super::point::{EXPONENT_PARTS, HALVINGS};
+use super::super::{Expr, Function, Graph, Node, Rational};
+use super::point::HALVINGS;
 
 /// Degrees of numerator and denominator.
 #[derive(Debug, Clone, Copy)]
@@ -43,7 +43,7 @@ impl Degree {
 /// [`IdentityTest::error_bound`](super::IdentityTest::error_bound).
 pub(super) fn per_trial(g: &Graph, root: Expr) -> f64 {
     let order = g.in_order(&[root]);
-    let parts_of_angles = finest_part(g, &order);
+    let unit = finest_part(g, &order);
     let mut degrees: FxHashMap<Expr, Degree> = FxHashMap::default();
     let mut roots: FxHashSet<Expr> = FxHashSet::default();
     let (mut drawn, mut arguments) = (0.0, 0.0);
@@ -61,13 +61,15 @@ pub(super) fn per_trial(g: &Graph, root: Expr) -> f64 {
                 drawn += 1.0;
                 arguments += of(*x).total();
                 match function {
-                    // Numerator and denominator of the parametrisation are quadratic.
-                    Function::Sin | Function::Cos => {
-                        let turns = 2.0 * multiples(g, *x) * parts_of_angles;
-                        Degree { over: turns, under: turns }
-                    }
-                    Function::Exp | Function::Sinh | Function::Cosh | Function::Tanh => {
-                        let parts = 2.0 * multiples(g, *x);
+                    // The parametrisation of the circle is quadratic above and below, and so is
+                    // the hyperbolic sine in the exponential.
+                    Function::Sin
+                    | Function::Cos
+                    | Function::Exp
+                    | Function::Sinh
+                    | Function::Cosh
+                    | Function::Tanh => {
+                        let parts = 2.0 * multiples(g, *x, unit);
                         Degree { over: parts, under: parts }
                     }
                     Function::Sqrt => {
@@ -87,7 +89,7 @@ pub(super) fn per_trial(g: &Graph, root: Expr) -> f64 {
                 drawn += 1.0;
                 arguments += of(*base).total() + of(*exponent).total();
                 roots.insert(*base);
-                let n = multiples(g, *exponent);
+                let n = multiples(g, *exponent, unit);
                 let parts = Degree { over: n, under: n };
                 Degree { over: n * of(*base).total(), under: n * of(*base).total() }.times(parts)
             }
@@ -115,41 +117,47 @@ pub(super) fn per_trial(g: &Graph, root: Expr) -> f64 {
     (4f64.powf(roots.len() as f64) * (degree + drawn * arguments) / values).min(1.0)
 }
 
-/// `Σ |n|` of the coefficients `n / d` in an angle or an exponent, names looked through, at least 1.
-fn multiples(g: &Graph, argument: Expr) -> f64 {
-    let mut total: f64 = 0.0;
-    let mut pending = vec![(1.0, argument)];
-    while let Some((factor, expr)) = pending.pop() {
-        match g.node(expr) {
-            Node::Named(id) => pending.push((factor, g.definition(*id).value)),
-            Node::Sum(terms) => {
-                for t in terms {
-                    let n = t.coefficient.as_small().map_or(1.0, |(n, _)| n.unsigned_abs() as f64);
-                    pending.push((factor * n, t.expr));
-                }
-            }
-            _ => total += factor,
-        }
-    }
-    // The unit of exponents may be any of 720 parts; a whole one is counted by the caller's scale.
-    total.clamp(1.0, EXPONENT_PARTS as f64 * f64::from(1 << 24))
+/// How often the unit of which all multiples in the expression are whole fits into the coefficients
+/// of an angle or an exponent: `Σ |coefficient| · unit`, at least 1.
+fn multiples(g: &Graph, argument: Expr, unit: f64) -> f64 {
+    let sum: f64 = coefficients(g, argument).iter().map(|c| c.abs().to_f64()).sum();
+    (sum * unit).max(1.0)
 }
 
-/// The odd part of the common denominator of all coefficients in angles, since the drawn unit is
-/// divided by it, times the common power of two.
+/// The common denominator of all coefficients in angles and exponents.
 fn finest_part(g: &Graph, order: &[Expr]) -> f64 {
     use num_integer::Integer;
     let mut common: u64 = 1;
     for &expr in order {
-        let Node::Function(Function::Sin | Function::Cos | Function::Exp, x) = g.node(expr) else { continue };
-        if let Node::Sum(terms) = g.node(*x) {
-            for (_, d) in terms.iter().filter_map(|t| t.coefficient.as_small()) {
-                let d = d.unsigned_abs();
-                if let Some(lcm) = (common / common.gcd(&d)).checked_mul(d) {
-                    common = lcm;
-                }
+        let argument = match g.node(expr) {
+            Node::Function(Function::Sqrt, _) => continue,
+            Node::Function(_, x) | Node::Power(_, x) => *x,
+            _ => continue,
+        };
+        for (_, d) in coefficients(g, argument).iter().filter_map(Rational::as_small) {
+            let d = d.unsigned_abs();
+            // What does not fit here is beyond any multiple that is related to others.
+            if let Some(multiple) = (common / common.gcd(&d)).checked_mul(d) {
+                common = multiple;
             }
         }
     }
     common as f64
+}
+
+/// The coefficients of the atoms of a sum, names looked through.
+fn coefficients(g: &Graph, argument: Expr) -> Vec<Rational> {
+    let mut found = Vec::new();
+    let mut pending = vec![(Rational::ONE, argument)];
+    while let Some((factor, expr)) = pending.pop() {
+        match g.node(expr) {
+            Node::Named(id) => pending.push((factor, g.definition(*id).value)),
+            Node::Sum(terms) => {
+                pending.extend(terms.iter().map(|t| (&factor * &t.coefficient, t.expr)));
+            }
+            Node::Number(n) => found.push(&factor * n),
+            _ => found.push(factor),
+        }
+    }
+    found
 }

@@ -203,14 +203,11 @@ impl Point {
                     1 => numerator,
                     2 => numerator * Element::HALF,
                     _ => {
-                        let inverse = match self.inverses.get(&d) {
-                            Some(&known) => known,
-                            None => {
-                                let inverse = Element::from_signed(d).inverse()?;
-                                self.inverses.insert(d, inverse);
-                                inverse
-                            }
-                        };
+                        if let Some(&inverse) = self.inverses.get(&d) {
+                            return Some(numerator * inverse);
+                        }
+                        let inverse = Element::from_signed(d).inverse()?;
+                        self.inverses.insert(d, inverse);
                         numerator * inverse
                     }
                 })
@@ -235,9 +232,8 @@ impl Point {
                 }
             }
             Function::Sqrt => value.square_root(),
-            Function::Asin | Function::Atan => Some(self.odd(function, value)),
             // |x| = x sign x; the sign is an odd function about which nothing else is known.
-            Function::Sign => Some(self.odd(function, value)),
+            Function::Asin | Function::Atan | Function::Sign => Some(self.odd(function, value)),
             Function::Abs => Some(value * self.odd(Function::Sign, value)),
             Function::Acos | Function::Ln => {
                 Some(keyed(self.key, tag::FUNCTION + function as u64, [value.get(), 0]))

@@ -203,7 +203,7 @@ fn stand_ins(mechanism: &Mechanism, rows: &mut [Row]) -> Stage<()> {
         let item = Item::Constraint(row.constraint);
         if row.rest != Graph::ZERO {
             findings.push(Finding {
-                code: "inconsistent-constraint",
+                code: "dependent-constraints",
                 message: format!("`{}` cannot hold: no generalised velocity appears in it", row.name),
                 item,
                 help: "let a coordinate take part in the motion that the constraint prescribes".to_owned(),

@@ -128,7 +128,7 @@ fn check_count(mechanism: &Mechanism, constraints: &Constraints, equations: usiz
     let speeds = mechanism.pseudo_velocities.len();
     let needed = coordinates.saturating_sub(rows);
     Err(vec![Finding {
-        code: if speeds < needed { "missing-pseudo-velocities" } else { "too-many-pseudo-velocities" },
+        code: "missing-pseudo-velocities",
         message: format!(
             "{coordinates} coordinates under {rows} velocity constraints need {needed} \
              pseudo-velocities, found {speeds}"
@@ -249,7 +249,7 @@ fn check_rank(algebra: &mut Algebra, mechanism: &Mechanism, equations: &[Equatio
         let Some(pivot) = pivot else {
             let coordinate = &mechanism.coordinates[open[column]].label.name;
             return Err(vec![Finding {
-                code: "dependent-pseudo-velocities",
+                code: "singular-pseudo-velocities",
                 message: format!(
                     "pseudo-velocities and constraints do not determine `dot({coordinate})`"
                 ),

@@ -1,11 +1,27 @@
 //! Models, integration and trajectories for appell.
 //!
-//! Without the feature `std` this crate is `no_std` and holds what emitted code needs: the scalar
-//! trait [`Real`], dual numbers and lanes that implement it, and small dense factorisations.
+//! With the feature `std`, the default:
+//!
+//! - [`model`]: the trait that emitted models and models made at run time implement;
+//! - [`signal`] and [`inputs`]: what drives a model;
+//! - [`integrate`]: initial value problems, events, typed failures;
+//! - [`simulate`] and [`trajectory`]: motions of a model and their files;
+//! - [`figure`]: plots as SVG.
+//!
+//! Without it the crate is `no_std` and holds what emitted code needs: the scalar trait [`Real`],
+//! dual numbers and lanes that implement it, and small dense systems in [`dense`]. `f32` and
+//! `f64` are then scalars with the feature `libm`. Both are checked by
+//!
+//! ```text
+//! cargo check -p appell-runtime --no-default-features
+//! cargo check -p appell-runtime --no-default-features --features libm
+//! ```
 
 #![cfg_attr(not(feature = "std"), no_std)]
 
 pub mod dense;
+#[cfg(feature = "std")]
+pub mod figure;
 #[cfg(feature = "std")]
 pub mod inputs;
 #[cfg(feature = "std")]

@@ -257,10 +257,7 @@ t,v,x,F,w,w_ddot,speed,kinetic_energy,potential_energy,power
 # units: s, cm/s, m, N, m, m/s^2, cm/s, J, J, W
 ";
     assert_eq!(written(CsvOptions::default()), format!("{comments}{bare}"));
-    assert_eq!(
-        trajectory.column_in_unit("v").unwrap()[2].to_string(),
-        "3.6"
-    );
+    assert_eq!(trajectory.column_in_unit("v").unwrap()[1].to_string(), "50");
 }
 
 #[test]

@@ -1,0 +1,95 @@
+//! From the text of a spec to its program, with every mistake told at its place in the text.
+
+use appell_spec::mechanism::Mechanism;
+use appell_spec::{Code, Diagnostic, Report};
+
+use crate::mechanics::finding::{Finding, Item};
+use crate::mechanics::{Derivation, assemble, derive};
+use crate::program::{FunctionKind, Program};
+
+/// A mechanism whose equations of motion have been derived.
+pub struct Derived {
+    /// The mechanism.
+    pub mechanism: Mechanism,
+    /// The derivation, stage by stage.
+    pub derivation: Derivation,
+    /// What looks unintended in the spec.
+    pub warnings: Vec<Diagnostic>,
+}
+
+/// Reads a spec and derives its equations of motion; `file` is its name in messages and in
+/// emitted code.
+pub fn derived(file: &str, text: &str) -> Result<Derived, Report> {
+    let checked = appell_spec::load(file, text)?;
+    match derive(&checked.mechanism) {
+        Ok(derivation) => {
+            Ok(Derived { mechanism: checked.mechanism, derivation, warnings: checked.warnings })
+        }
+        Err(findings) => Err(report(&checked.mechanism, text, &findings)),
+    }
+}
+
+/// Reads a spec and makes the program with the functions `kinds`.
+pub fn compile(file: &str, text: &str, kinds: &[FunctionKind]) -> Result<Program, Report> {
+    let Derived { mechanism, derivation, .. } = derived(file, text)?;
+    assemble::program(derivation, &mechanism, kinds).map_err(|findings| report(&mechanism, text, &findings))
+}
+
+/// What the derivation found wrong, at its place in the text of the spec.
+pub fn report(mechanism: &Mechanism, text: &str, findings: &[Finding]) -> Report {
+    let diagnostics = findings.iter().map(|finding| diagnostic(mechanism, text, finding)).collect();
+    Report::new(mechanism.file.as_str(), text, diagnostics)
+}
+
+fn diagnostic(mechanism: &Mechanism, text: &str, finding: &Finding) -> Diagnostic {
+    // The tests hold every code of a finding to the table.
+    let code = Code::from_text(finding.code).unwrap_or(Code::SingularPseudoVelocities);
+    let item = match finding.item {
+        Item::Mechanism => None,
+        Item::Frame(i) => mechanism.frames.get(i).map(|x| &x.span),
+        Item::Point(i) => mechanism.points.get(i).map(|x| &x.span),
+        Item::Body(i) => mechanism.bodies.get(i).map(|x| &x.span),
+        Item::Constraint(i) => mechanism.constraints.get(i).map(|x| &x.span),
+        Item::PseudoVelocity(i) => mechanism.pseudo_velocities.get(i).map(|x| &x.label.span),
+        Item::Load(i) => mechanism.loads.get(i).map(|x| &x.span),
+        Item::Output(i) => mechanism.outputs.get(i).map(|x| &x.label.span),
+    };
+    let span = item.cloned().filter(|span| !span.is_empty()).or_else(|| {
+        // What concerns the whole mechanism concerns the choice of its pseudo-velocities.
+        let (ast, _) = appell_spec::parse::parse(text);
+        let section = |name: &str| ast.sections.iter().find(|s| s.section.name == name).map(|s| s.span.clone());
+        section("pseudo_velocities").or_else(|| section("mechanism"))
+    });
+    let diagnostic = Diagnostic::error(code, finding.message.as_str()).help(finding.help.as_str());
+    diagnostic.at(span.unwrap_or_default(), "")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_finding_is_told_at_its_place() {
+        let text = "\
+[mechanism]
+name = 'free'
+title = 'a mass without a speed'
+[parameters]
+m = { value = 1, unit = 'kg' }
+[coordinates]
+x = { unit = 'm' }
+y = { unit = 'm' }
+[points]
+P = { from = 'O', in = 'ground', at = ['x', 'y', 0] }
+[bodies]
+b = { centre = 'P', mass = 'm' }
+[pseudo_velocities]
+v = { value = 'dot(x)', unit = 'm/s' }
+";
+        let Err(report) = compile("free.toml", text, &assemble::ALL) else { panic!("it was accepted") };
+        let shown = report.plain();
+        assert!(shown.contains("missing-pseudo-velocities"), "{shown}");
+        assert!(shown.contains("free.toml:13:2"), "{shown}");
+        assert!(shown.contains("2 coordinates under 0 velocity constraints need 2"), "{shown}");
+    }
+}

@@ -1,0 +1,96 @@
+//! A program executed step by step, behind the trait of all models.
+//!
+//! It is slow and has no requirements: the yardstick for emitted and compiled code, and the way
+//! out where no machine code can be made.
+
+use std::sync::OnceLock;
+
+use appell_runtime::model::{At, Energies, Model, ModelInfo};
+
+use crate::program::{FunctionKind, Program};
+use crate::schedule::{Schedule, interpret, schedule};
+
+/// A model that interprets its schedules. Functions that the program lacks give NaN.
+#[derive(Debug)]
+pub struct InterpretedModel {
+    program: Program,
+    /// By function of the program; made at the first use.
+    schedules: Vec<OnceLock<Schedule>>,
+}
+
+impl InterpretedModel {
+    /// Takes a program.
+    pub fn new(program: Program) -> Self {
+        let schedules = program.functions.iter().map(|_| OnceLock::new()).collect();
+        Self { program, schedules }
+    }
+
+    /// Fills each slice with the result of its name.
+    fn evaluate(&self, kind: FunctionKind, at: At<'_>, wanted: &mut [(&str, &mut [f64])]) {
+        let functions = self.program.functions.iter().zip(&self.schedules);
+        let Some((function, lazy)) = functions.into_iter().find(|(f, _)| f.kind == kind) else {
+            wanted.iter_mut().for_each(|(_, to)| to.fill(f64::NAN));
+            return;
+        };
+        let schedule = lazy.get_or_init(|| schedule(&self.program, function));
+        let results = interpret(schedule, at.t, at.x, at.u, at.p);
+        for (name, to) in wanted {
+            match schedule.results.iter().position(|r| r.name == *name) {
+                Some(i) => to.copy_from_slice(&results[i]),
+                None => to.fill(f64::NAN),
+            }
+        }
+    }
+
+    fn scalar(&self, kind: FunctionKind, at: At<'_>, name: &str) -> f64 {
+        let mut value = [f64::NAN];
+        self.evaluate(kind, at, &mut [(name, &mut value)]);
+        value[0]
+    }
+}
+
+impl Model for InterpretedModel {
+    fn info(&self) -> &ModelInfo {
+        &self.program.info
+    }
+
+    fn rates(&self, at: At<'_>, rates: &mut [f64]) {
+        self.evaluate(FunctionKind::Rates, at, &mut [("rates", rates)]);
+    }
+
+    fn jacobians(&self, at: At<'_>, rates: &mut [f64], a: &mut [f64], b: &mut [f64]) {
+        let wanted = &mut [("rates", rates), ("a", a), ("b", b)];
+        self.evaluate(FunctionKind::Jacobians, at, wanted);
+    }
+
+    fn parameter_jacobian(&self, at: At<'_>, p: &mut [f64]) {
+        self.evaluate(FunctionKind::AllJacobians, at, &mut [("p", p)]);
+    }
+
+    fn appell(&self, at: At<'_>, mass: &mut [f64], bias: &mut [f64], forces: &mut [f64]) {
+        self.evaluate(FunctionKind::MassMatrix, at, &mut [("mass_matrix", mass)]);
+        self.evaluate(FunctionKind::Bias, at, &mut [("bias", bias)]);
+        self.evaluate(FunctionKind::GeneralizedForces, at, &mut [("generalized_forces", forces)]);
+    }
+
+    fn energies(&self, at: At<'_>) -> Energies {
+        Energies {
+            kinetic: self.scalar(FunctionKind::Energies, at, "kinetic"),
+            potential: self.scalar(FunctionKind::Energies, at, "potential"),
+            power: self.scalar(FunctionKind::Energies, at, "power"),
+            acceleration: self.scalar(FunctionKind::AccelerationEnergy, at, "total"),
+        }
+    }
+
+    fn constraint_residual(&self, at: At<'_>, residual: &mut [f64]) {
+        self.evaluate(FunctionKind::ConstraintResidual, at, &mut [("residual", residual)]);
+    }
+
+    fn constraint_forces(&self, at: At<'_>, forces: &mut [f64]) {
+        self.evaluate(FunctionKind::ConstraintForces, at, &mut [("forces", forces)]);
+    }
+
+    fn outputs(&self, at: At<'_>, outputs: &mut [f64]) {
+        self.evaluate(FunctionKind::Outputs, at, &mut [("outputs", outputs)]);
+    }
+}

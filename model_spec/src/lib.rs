@@ -24,6 +24,7 @@ pub mod units;
 
 pub use diagnostic::{Code, Diagnostic, Report, Severity};
 pub use mechanism::Mechanism;
+pub use resolve::{Scope, Snippet, formula};
 pub use starter::{NameError, starter};
 
 /// A mechanism that passed every check of this crate.

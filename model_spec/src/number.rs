@@ -63,10 +63,6 @@ mod tests {
     use num_traits::ToPrimitive;
 
     #[test]
-    #[expect(
-        clippy::float_cmp,
-        reason = "both sides are rounded once from the same decimal"
-    )]
     fn decimals_are_exact_and_round_like_the_standard_library() {
         let tenth = BigRational::new(BigInt::from(1), BigInt::from(10));
         assert_eq!(exact("0.1"), Ok(tenth));

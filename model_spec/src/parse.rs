@@ -8,7 +8,7 @@ mod values;
 
 use toml::de::{DeTable, DeValue};
 
-use crate::ast::{SectionAst, SpecAst};
+use crate::ast::{ExprAst, SectionAst, SpecAst};
 use crate::diagnostic::{Code, Diagnostic, MAX_SHOWN};
 use crate::expr::Span;
 use crate::language::{SECTIONS, Section};
@@ -55,6 +55,11 @@ pub fn parse(text: &str) -> (SpecAst, Vec<Diagnostic>) {
         broken: reader.broken || reader.incomplete,
     };
     (ast, reader.findings)
+}
+
+/// Reads an expression that stands at `whole` in a document.
+pub(crate) fn expression_in(document: &str, text: &str, whole: Span) -> Result<ExprAst, Diagnostic> {
+    expression::parse(&source::Source::new(document, text, whole))
 }
 
 struct Reader<'a> {

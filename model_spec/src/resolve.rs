@@ -4,6 +4,7 @@ mod bodies;
 mod constraints;
 mod dimensions;
 mod expression;
+mod formula;
 mod loads;
 mod names;
 mod place;
@@ -17,6 +18,8 @@ use crate::diagnostic::{Code, Diagnostic};
 use crate::expr::{Expr, Span};
 use crate::mechanism::{Coordinate, Interpolation, Mechanism};
 use crate::parse::zero;
+
+pub use formula::{Scope, Snippet, formula};
 
 use dimensions::Dim;
 use names::{Named, Used};

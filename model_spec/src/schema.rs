@@ -16,19 +16,19 @@ pub fn json_schema() -> String {
     for section in SECTIONS {
         let mut schema = match &section.shape {
             Shape::Table(keys) => table(keys, None),
-            Shape::Items(keys, None) => items(table(keys, None)),
+            Shape::Items(keys, None) => items(&table(keys, None)),
             Shape::Items(keys, Some(only)) => {
                 let bare = keys.iter().find(|k| k.name == *only).map(|k| form(&k.form));
                 let alternatives: Vec<Value> =
                     bare.into_iter().chain([table(keys, None)]).collect();
-                items(json!({ "anyOf": alternatives }))
+                items(&json!({ "anyOf": alternatives }))
             }
             Shape::Kinds(kinds) => {
                 let alternatives: Vec<Value> =
                     kinds.iter().map(|k| table(k.keys, Some(k))).collect();
-                items(json!({ "oneOf": alternatives }))
+                items(&json!({ "oneOf": alternatives }))
             }
-            Shape::States => items(json!({ "type": "number" })),
+            Shape::States => items(&json!({ "type": "number" })),
         };
         schema["description"] = json!(section.about);
         properties.insert(section.name.to_owned(), schema);
@@ -49,7 +49,7 @@ pub fn json_schema() -> String {
     format!("{schema:#}\n")
 }
 
-fn items(item: Value) -> Value {
+fn items(item: &Value) -> Value {
     json!({
         "type": "object",
         "patternProperties": { NAME: item },

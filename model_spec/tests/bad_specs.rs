@@ -1,6 +1,8 @@
 //! Every rule has a spec that breaks it, a message that is worth reading, and a place in the
 //! manual.
 
+#![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
+
 use std::path::{Path, PathBuf};
 
 use appell_spec::diagnostic::{CODES, Stage};

@@ -1,5 +1,7 @@
 //! Expressions mean what a mathematician reads.
 
+#![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
+
 use appell_spec::expr::{BinaryOp, Expr, ExprKind, Function, Quantity, Relation};
 use appell_spec::load;
 use num_traits::ToPrimitive;

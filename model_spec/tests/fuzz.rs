@@ -1,5 +1,7 @@
 //! Damaged specs are refused or read, never with a panic and never slowly.
 
+#![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
+
 use std::fmt::Write as _;
 use std::path::Path;
 use std::time::{Duration, Instant};
@@ -8,7 +10,7 @@ use appell_spec::edit::set_parameters;
 use appell_spec::{Report, load};
 
 /// How many bytes are changed in all.
-const MUTATED_BYTES: usize = 1_000_000;
+const MUTATED_BYTES: usize = 4_000_000;
 /// Far below a second, with room for a busy machine.
 const SLOWEST: Duration = Duration::from_millis(500);
 
@@ -98,7 +100,7 @@ fn exercise(text: &str) -> Duration {
 }
 
 #[test]
-fn a_million_damaged_bytes_do_no_harm() {
+fn millions_of_damaged_bytes_do_no_harm() {
     let specs = shipped();
     let mut dice = Dice(20);
     let mut changed = 0;

@@ -76,6 +76,11 @@ impl Place {
         Self::new(what, all, Smooth::Any)
     }
 
+    /// A feedback law.
+    pub(super) const fn law(what: &'static str) -> Self {
+        Self::new(what, COORDINATES | SPEEDS | TIME, Smooth::Any)
+    }
+
     /// Definition of a pseudo-velocity.
     pub(super) const SPEED: Self = Self::linear("a pseudo-velocity");
     /// Left side of a velocity constraint.

@@ -1,0 +1,235 @@
+//! The kinds of constraints and loads, and their keys.
+
+use super::sections::{ABOUT, AXES, IN, key};
+use super::{Form, Kind, Need, Target};
+
+pub(super) static CONSTRAINTS: &[Kind] = &[
+    Kind {
+        word: "rolling",
+        about: "The material point of a body at the contact is at rest.",
+        keys: &[
+            key(
+                "body",
+                Form::Reference(Target::Body),
+                Need::Always,
+                "Rolling body.",
+            ),
+            key(
+                "contact",
+                Form::Reference(Target::Point),
+                Need::Always,
+                "Contact point.",
+            ),
+            ABOUT,
+        ],
+    },
+    Kind {
+        word: "velocity",
+        about: "A combination of rates has a prescribed value.",
+        keys: &[
+            key(
+                "zero",
+                Form::Expression,
+                Need::Always,
+                "Combination, linear in the rates `dot(q)`.",
+            ),
+            key(
+                "equals",
+                Form::Expression,
+                Need::Optional,
+                "Prescribed value; 0 when left out.",
+            ),
+            ABOUT,
+        ],
+    },
+    Kind {
+        word: "fixed_velocity",
+        about: "A point has a prescribed velocity along a direction.",
+        keys: &[
+            key(
+                "point",
+                Form::Reference(Target::Point),
+                Need::Always,
+                "The point.",
+            ),
+            key(
+                "body",
+                Form::Reference(Target::Body),
+                Need::Optional,
+                "Body whose material point is meant.",
+            ),
+            key(
+                "direction",
+                Form::Components,
+                Need::Always,
+                "Direction; its length scales the velocity.",
+            ),
+            IN,
+            key(
+                "equals",
+                Form::Expression,
+                Need::Optional,
+                "Prescribed velocity; 0 when left out.",
+            ),
+            ABOUT,
+        ],
+    },
+    Kind {
+        word: "position",
+        about: "Reserved: an equation between coordinates.",
+        keys: &[
+            key(
+                "zero",
+                Form::Expression,
+                Need::Always,
+                "Combination of coordinates that stays zero.",
+            ),
+            ABOUT,
+        ],
+    },
+];
+
+pub(super) static LOADS: &[Kind] = &[
+    Kind {
+        word: "gravity",
+        about: "Weight of every body.",
+        keys: &[
+            key(
+                "down",
+                Form::Word(AXES),
+                Need::Always,
+                "Direction of the weight, an axis of the ground.",
+            ),
+            key(
+                "acceleration",
+                Form::Expression,
+                Need::Always,
+                "Acceleration of free fall.",
+            ),
+            ABOUT,
+        ],
+    },
+    Kind {
+        word: "force",
+        about: "A force on a point.",
+        keys: &[
+            key(
+                "on",
+                Form::Reference(Target::Point),
+                Need::Always,
+                "Point of attack.",
+            ),
+            key(
+                "body",
+                Form::Reference(Target::Body),
+                Need::Optional,
+                "Body whose material point is meant.",
+            ),
+            key(
+                "reaction_on",
+                Form::Reference(Target::Point),
+                Need::Optional,
+                "Point that feels the opposite force.",
+            ),
+            IN,
+            key(
+                "vector",
+                Form::Components,
+                Need::Always,
+                "Components of the force.",
+            ),
+            ABOUT,
+        ],
+    },
+    Kind {
+        word: "torque",
+        about: "A torque on a body.",
+        keys: &[
+            key("on", Form::Reference(Target::Body), Need::Always, "Body."),
+            key(
+                "reaction_on",
+                Form::Reference(Target::Body),
+                Need::Optional,
+                "Body that feels the opposite torque.",
+            ),
+            IN,
+            key(
+                "vector",
+                Form::Components,
+                Need::Always,
+                "Components of the torque.",
+            ),
+            ABOUT,
+        ],
+    },
+    Kind {
+        word: "spring",
+        about: "A linear spring.",
+        keys: &[
+            key(
+                "between",
+                Form::TwoPoints,
+                Need::Way(0),
+                "The two points it connects.",
+            ),
+            key(
+                "coordinate",
+                Form::Reference(Target::Coordinate),
+                Need::Way(1),
+                "Coordinate on which it acts.",
+            ),
+            key("stiffness", Form::Expression, Need::Always, "Stiffness."),
+            key(
+                "relaxed",
+                Form::Expression,
+                Need::Optional,
+                "Length or coordinate at which it is relaxed; 0 when left out.",
+            ),
+            ABOUT,
+        ],
+    },
+    Kind {
+        word: "damper",
+        about: "A linear damper.",
+        keys: &[
+            key(
+                "between",
+                Form::TwoPoints,
+                Need::Way(0),
+                "The two points it connects.",
+            ),
+            key(
+                "coordinate",
+                Form::Reference(Target::Coordinate),
+                Need::Way(1),
+                "Coordinate on which it acts.",
+            ),
+            key(
+                "damping",
+                Form::Expression,
+                Need::Always,
+                "Damping coefficient.",
+            ),
+            ABOUT,
+        ],
+    },
+    Kind {
+        word: "generalized",
+        about: "A generalised force: its power is `force * dot(coordinate)`.",
+        keys: &[
+            key(
+                "coordinate",
+                Form::Reference(Target::Coordinate),
+                Need::Always,
+                "Coordinate.",
+            ),
+            key(
+                "force",
+                Form::Expression,
+                Need::Always,
+                "Generalised force.",
+            ),
+            ABOUT,
+        ],
+    },
+];

@@ -1,0 +1,340 @@
+//! The sections and their keys.
+
+use super::kinds::{CONSTRAINTS, LOADS};
+use super::{Form, Key, Need, Section, Shape, Target};
+
+pub(super) const fn key(name: &'static str, form: Form, need: Need, about: &'static str) -> Key {
+    Key {
+        name,
+        form,
+        need,
+        about,
+    }
+}
+
+pub(super) const ABOUT: Key = key(
+    "about",
+    Form::Text,
+    Need::Optional,
+    "One sentence for people.",
+);
+const UNIT: Key = key(
+    "unit",
+    Form::Unit,
+    Need::Always,
+    "Unit in which people read and write the quantity; `1` for a pure number.",
+);
+const UNIT_CHECKED: Key = key(
+    "unit",
+    Form::Unit,
+    Need::Optional,
+    "Unit in which people read the quantity; it must fit the value. SI when left out.",
+);
+pub(super) const IN: Key = key(
+    "in",
+    Form::Reference(Target::Frame),
+    Need::Always,
+    "Frame in which the components are written.",
+);
+
+/// The words for a coordinate axis.
+pub const AXES: &[&str] = &["x", "y", "z", "-x", "-y", "-z"];
+
+/// Every section, in the order of a well-told spec.
+pub static SECTIONS: &[Section] = &[
+    Section {
+        name: "mechanism",
+        about: "Name and origin of the mechanism.",
+        required: true,
+        shape: Shape::Table(&[
+            key(
+                "name",
+                Form::Name,
+                Need::Always,
+                "Name of the mechanism, a valid identifier.",
+            ),
+            key("title", Form::Text, Need::Always, "One line for people."),
+            key(
+                "source",
+                Form::Text,
+                Need::Optional,
+                "Where the model comes from: paper and equations.",
+            ),
+        ]),
+    },
+    Section {
+        name: "parameters",
+        about: "Constants of the mechanism.",
+        required: false,
+        shape: Shape::Items(
+            &[
+                key(
+                    "value",
+                    Form::Number,
+                    Need::Always,
+                    "Value in the parameter's unit.",
+                ),
+                UNIT,
+                ABOUT,
+                key(
+                    "at_least",
+                    Form::Number,
+                    Need::Optional,
+                    "Smallest admissible value.",
+                ),
+                key(
+                    "at_most",
+                    Form::Number,
+                    Need::Optional,
+                    "Largest admissible value.",
+                ),
+            ],
+            None,
+        ),
+    },
+    Section {
+        name: "coordinates",
+        about: "Generalised coordinates.",
+        required: true,
+        shape: Shape::Items(
+            &[
+                UNIT,
+                ABOUT,
+                key(
+                    "range",
+                    Form::Range,
+                    Need::Optional,
+                    "Range in which the equations hold.",
+                ),
+                key(
+                    "initial",
+                    Form::Number,
+                    Need::Optional,
+                    "Initial value; 0 when left out.",
+                ),
+            ],
+            None,
+        ),
+    },
+    Section {
+        name: "inputs",
+        about: "Quantities that a controller or a recording supplies.",
+        required: false,
+        shape: Shape::Items(&[UNIT, ABOUT], None),
+    },
+    Section {
+        name: "signals",
+        about: "Known functions of time, given as data.",
+        required: false,
+        shape: Shape::Items(
+            &[
+                key(
+                    "t",
+                    Form::Numbers,
+                    Need::Always,
+                    "Times in seconds, strictly increasing.",
+                ),
+                key(
+                    "value",
+                    Form::Numbers,
+                    Need::Always,
+                    "One value for each time.",
+                ),
+                UNIT,
+                key(
+                    "interpolation",
+                    Form::Word(&["hold", "linear", "cubic"]),
+                    Need::Optional,
+                    "Course between two samples; `linear` when left out.",
+                ),
+                ABOUT,
+            ],
+            None,
+        ),
+    },
+    Section {
+        name: "frames",
+        about: "Frames, each turned from its parent.",
+        required: false,
+        shape: Shape::Items(
+            &[
+                key(
+                    "parent",
+                    Form::Reference(Target::Frame),
+                    Need::Always,
+                    "Frame from which this one is turned.",
+                ),
+                key(
+                    "about_axis",
+                    Form::Word(AXES),
+                    Need::Way(0),
+                    "Axis of the rotation.",
+                ),
+                key(
+                    "by",
+                    Form::Expression,
+                    Need::Way(0),
+                    "Angle of the rotation, right-handed about the axis.",
+                ),
+                key(
+                    "turns",
+                    Form::Tables(&[
+                        key(
+                            "about_axis",
+                            Form::Word(AXES),
+                            Need::Always,
+                            "Axis of the rotation.",
+                        ),
+                        key(
+                            "by",
+                            Form::Expression,
+                            Need::Always,
+                            "Angle of the rotation.",
+                        ),
+                    ]),
+                    Need::Way(1),
+                    "Several rotations, first the one next to the parent.",
+                ),
+                ABOUT,
+            ],
+            None,
+        ),
+    },
+    Section {
+        name: "points",
+        about: "Points, each placed from another.",
+        required: false,
+        shape: Shape::Items(
+            &[
+                key(
+                    "from",
+                    Form::Reference(Target::Point),
+                    Need::Always,
+                    "Point from which this one is placed.",
+                ),
+                IN,
+                key(
+                    "at",
+                    Form::Components,
+                    Need::Always,
+                    "Position from that point.",
+                ),
+                ABOUT,
+            ],
+            None,
+        ),
+    },
+    Section {
+        name: "bodies",
+        about: "Rigid bodies and point masses.",
+        required: true,
+        shape: Shape::Items(
+            &[
+                key(
+                    "frame",
+                    Form::Reference(Target::Frame),
+                    Need::Optional,
+                    "Frame fixed in the body; a point mass has none.",
+                ),
+                key(
+                    "centre",
+                    Form::Reference(Target::Point),
+                    Need::Always,
+                    "Centre of mass.",
+                ),
+                key("mass", Form::Expression, Need::Always, "Mass."),
+                key(
+                    "inertia",
+                    Form::Table(INERTIA),
+                    Need::Optional,
+                    "Inertia about the centre of mass.",
+                ),
+                ABOUT,
+            ],
+            None,
+        ),
+    },
+    Section {
+        name: "constraints",
+        about: "Constraints on velocities.",
+        required: false,
+        shape: Shape::Kinds(CONSTRAINTS),
+    },
+    Section {
+        name: "pseudo_velocities",
+        about: "The speeds of Appell's equations.",
+        required: false,
+        shape: Shape::Items(
+            &[
+                key(
+                    "value",
+                    Form::Expression,
+                    Need::Always,
+                    "Definition, linear in the rates `dot(q)`.",
+                ),
+                UNIT_CHECKED,
+                ABOUT,
+                key(
+                    "initial",
+                    Form::Number,
+                    Need::Optional,
+                    "Initial value; 0 when left out.",
+                ),
+            ],
+            Some("value"),
+        ),
+    },
+    Section {
+        name: "loads",
+        about: "Applied forces and torques.",
+        required: false,
+        shape: Shape::Kinds(LOADS),
+    },
+    Section {
+        name: "outputs",
+        about: "Named quantities of interest.",
+        required: false,
+        shape: Shape::Items(
+            &[
+                key("value", Form::Expression, Need::Always, "Value."),
+                UNIT_CHECKED,
+                ABOUT,
+            ],
+            None,
+        ),
+    },
+    Section {
+        name: "initial",
+        about: "Initial values of coordinates and pseudo-velocities, each in its unit.",
+        required: false,
+        shape: Shape::States,
+    },
+];
+
+static INERTIA: &[Key] = &[
+    IN,
+    key(
+        "diagonal",
+        Form::Components,
+        Need::Way(0),
+        "Principal moments; the axes of the frame are principal axes.",
+    ),
+    key(
+        "matrix",
+        Form::Matrix,
+        Need::Way(1),
+        "The tensor, row by row.",
+    ),
+    key(
+        "moments",
+        Form::Components,
+        Need::Way(2),
+        "`[I_xx, I_yy, I_zz]`.",
+    ),
+    key(
+        "products",
+        Form::Components,
+        Need::Way(2),
+        "`[I_xy, I_xz, I_yz]` with `I_xy = -∫ x y dm`.",
+    ),
+];

@@ -63,6 +63,27 @@ impl Algebra {
         v.map(|component| self.shortest(component))
     }
 
+    /// A quotient as `whole + over / under` without common factors, with `parts` written out:
+    /// `[whole, over, under]`. `None` where writing it out takes too many terms.
+    pub fn cancelled(
+        &mut self,
+        numerator: Expr,
+        denominator: Expr,
+        parts: &[(Expr, Expr)],
+    ) -> Option<[Expr; 3]> {
+        let mut written_out = Substitution::of_parts(parts);
+        let over = written_out.apply(&mut self.graph, numerator)?;
+        let over = self.graph.expand(over, MOST_TERMS)?;
+        let under = self.graph.expand(denominator, MOST_TERMS)?;
+        let (over, under) =
+            (self.graph.take_out_common_factors(over), self.graph.take_out_common_factors(under));
+        let quotient = self.graph.div(over, under);
+        let (over, under) = self.graph.split_fraction(quotient);
+        let (over, under) = (self.graph.expand(over, MOST_TERMS)?, self.graph.expand(under, MOST_TERMS)?);
+        let (whole, rest) = self.graph.divide_out(over, under);
+        Some([whole, rest, under].map(|part| self.graph.nest(part)))
+    }
+
     fn without_idle_coordinates(&mut self, expr: Expr) -> Expr {
         let mentioned: Vec<SymbolId> = self
             .coordinates

@@ -72,7 +72,7 @@ impl Derivation {
             FunctionKind::AccelerationEnergy => {
                 let mut results = Vec::new();
                 for body in self.bodies.clone() {
-                    let s = acceleration_energy(&mut self.algebra, &body, &self.accelerations);
+                    let s = acceleration_energy(&mut self.algebra, &body, &self.motion.accelerations);
                     let s = self.algebra.graph.name(&format!("s_{}", body.name), s);
                     results.push(array(&body.name, Layout::Scalar, vec![s]));
                 }
@@ -122,7 +122,7 @@ impl Derivation {
                     &self.constraints,
                     &self.velocities.violating,
                     &self.bodies,
-                    &self.accelerations,
+                    &self.motion.accelerations,
                 )?;
                 vec![array("forces", Layout::Matrix(forces.len(), 3), forces.concat())]
             }
@@ -142,17 +142,15 @@ impl Derivation {
 
     /// ẋ: pseudo-accelerations, then generalised velocities.
     fn rates(&self) -> Vec<Expr> {
-        [self.accelerations.as_slice(), &self.coordinate_rates].concat()
+        [self.motion.accelerations.as_slice(), &self.coordinate_rates].concat()
     }
 
     /// ẋ, A, B and, when asked for, P.
     fn jacobians(&mut self, parameters: bool) -> Vec<Array> {
         let implicit = ImplicitMotion {
-            mass_matrix: &self.gibbs.mass_matrix,
-            bias: &self.gibbs.bias,
+            gibbs: &self.gibbs,
             forces: &self.forces,
-            factorization: &self.factorization,
-            accelerations: &self.accelerations,
+            motion: &self.motion,
             coordinate_rates: &self.coordinate_rates,
         };
         let rates = self.rates();

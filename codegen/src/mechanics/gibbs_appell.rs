@@ -146,6 +146,18 @@ fn named3(algebra: &mut Algebra, name: &str, v: Vec3) -> Vec3 {
     named
 }
 
+/// The named parts of the bodies' motions with their definitions; the rates of the frames stay.
+pub fn named_parts(graph: &Graph, bodies: &[BodyMotion]) -> Vec<(Expr, Expr)> {
+    bodies
+        .iter()
+        .flat_map(|body| {
+            let rotation = body.rotation.iter().flat_map(|rotation| rotation.momentum_rate);
+            body.centre.bias.into_iter().chain(rotation)
+        })
+        .filter_map(|part| graph.named_value(part).map(|value| (part, value)))
+        .collect()
+}
+
 /// Partial velocities: coefficients of the directions in a velocity.
 pub fn partial_velocities(algebra: &mut Algebra, v: Vec3, directions: &[Expr]) -> Vec<Vec3> {
     directions

@@ -1,43 +1,58 @@
-//! Jacobians of the rates by implicit differentiation.
+//! Jacobians of the rates by implicit differentiation: the equations of motion are differentiated
+//! with the accelerations held as unknowns, and solved with the pivots that solve the motion.
 
 use super::algebra::Algebra;
-use super::motion::Factorization;
+use super::gibbs_appell::GibbsForm;
+use super::motion::{Block, Motion};
 use super::symbols::{Symbols, ids};
 use crate::symbolic::{Expr, Graph, Substitution};
 
-/// What the accelerations solve: `r(x, u, p, ω̇) = Π - b - M ω̇ = 0`.
+/// What the accelerations solve.
 pub struct ImplicitMotion<'a> {
-    /// M.
-    pub mass_matrix: &'a [Vec<Expr>],
-    /// b.
-    pub bias: &'a [Expr],
+    /// M and b.
+    pub gibbs: &'a GibbsForm,
     /// Π.
     pub forces: &'a [Expr],
-    /// Factorised M.
-    pub factorization: &'a Factorization,
-    /// The accelerations themselves.
-    pub accelerations: &'a [Expr],
+    /// The solved equations.
+    pub motion: &'a Motion,
     /// q̇.
     pub coordinate_rates: &'a [Expr],
 }
 
 impl ImplicitMotion<'_> {
-    /// Residual of Appell's equations with symbols for the accelerations.
+    /// Residual of every equation with symbols for the accelerations. Eliminated equations:
+    /// `right - pivot (ω̇ - whole + Σ coupling ω̇_other)`; others: `Π - b - M ω̇`.
     pub fn residual(&self, algebra: &mut Algebra, symbols: &Symbols) -> Vec<Expr> {
-        (0..self.bias.len())
-            .map(|i| {
-                let mut parts = vec![self.forces[i], algebra.graph.neg(self.bias[i])];
-                for (&entry, &acceleration) in self.mass_matrix[i].iter().zip(&symbols.accelerations) {
-                    let inertial = algebra.graph.mul(entry, acceleration);
-                    parts.push(algebra.graph.neg(inertial));
+        let unknowns = &symbols.accelerations;
+        let mut residual = vec![Graph::ZERO; unknowns.len()];
+        for block in &self.motion.blocks {
+            match block {
+                Block::Eliminated(equations) => {
+                    for equation in equations {
+                        let minus: Vec<Expr> = unknowns.iter().map(|&u| algebra.graph.neg(u)).collect();
+                        let own = algebra.graph.sub(unknowns[equation.speed], equation.whole);
+                        let sum = equation.less_couplings(algebra, own, &minus);
+                        let inertial = algebra.graph.mul(equation.pivot, sum);
+                        residual[equation.speed] = algebra.graph.sub(equation.right, inertial);
+                    }
                 }
-                algebra.graph.sum(&parts)
-            })
-            .collect()
+                Block::Factorized(block) => {
+                    for &i in &block.speeds {
+                        let mut terms = vec![self.forces[i], algebra.graph.neg(self.gibbs.bias[i])];
+                        for (&entry, &unknown) in self.gibbs.mass_matrix[i].iter().zip(unknowns) {
+                            let inertial = algebra.graph.mul(entry, unknown);
+                            terms.push(algebra.graph.neg(inertial));
+                        }
+                        residual[i] = algebra.graph.sum(&terms);
+                    }
+                }
+            }
+        }
+        residual
     }
 
-    /// Derivatives of all rates, one column per variable: `M ∂ω̇/∂z = ∂r/∂z`, with ω̇ put in after
-    /// the differentiation, and ∂q̇/∂z directly.
+    /// Derivatives of all rates, one column per variable: those of ω̇ from `∂residual/∂z` with the
+    /// accelerations put in after the differentiation, those of q̇ directly.
     pub fn jacobian(
         &self,
         algebra: &mut Algebra,
@@ -47,25 +62,35 @@ impl ImplicitMotion<'_> {
     ) -> Vec<Vec<Expr>> {
         let replacements: Vec<_> = ids(&algebra.graph, &symbols.accelerations)
             .into_iter()
-            .zip(self.accelerations.iter().copied())
+            .zip(self.motion.accelerations.iter().copied())
             .collect();
         let mut actual = Substitution::new(&mut algebra.graph, &replacements);
-        variables
-            .iter()
-            .map(|&variable| {
-                let right: Vec<Expr> = residual
-                    .iter()
-                    .map(|&r| {
-                        let partial = algebra.derivative(r, variable);
-                        actual.apply(&mut algebra.graph, partial).unwrap_or(Graph::ZERO)
-                    })
-                    .collect();
-                let mut column = self.factorization.solve(algebra, &right, None);
-                for &rate in self.coordinate_rates {
-                    column.push(algebra.derivative(rate, variable));
+        let mut columns = Vec::with_capacity(variables.len());
+        for &variable in variables {
+            let right: Vec<Expr> = residual
+                .iter()
+                .map(|&r| {
+                    let partial = algebra.derivative(r, variable);
+                    actual.apply(&mut algebra.graph, partial).unwrap_or(Graph::ZERO)
+                })
+                .collect();
+            let mut column = vec![Graph::ZERO; right.len()];
+            for block in &self.motion.blocks {
+                match block {
+                    Block::Eliminated(equations) => {
+                        for equation in equations {
+                            let own = algebra.graph.div(right[equation.speed], equation.pivot);
+                            column[equation.speed] = equation.less_couplings(algebra, own, &column);
+                        }
+                    }
+                    Block::Factorized(block) => block.solve(algebra, &right, &mut column),
                 }
-                column
-            })
-            .collect()
+            }
+            for &rate in self.coordinate_rates {
+                column.push(algebra.derivative(rate, variable));
+            }
+            columns.push(column);
+        }
+        columns
     }
 }

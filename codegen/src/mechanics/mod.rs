@@ -8,6 +8,7 @@ pub mod algebra;
 pub mod assemble;
 pub mod constraints;
 pub mod elimination;
+pub mod factorized;
 pub mod finding;
 pub mod frames;
 pub mod gibbs_appell;
@@ -30,7 +31,7 @@ use finding::Stage;
 use gibbs_appell::{BodyMotion, GibbsForm};
 use kinematics::Kinematics;
 use loads::AppliedLoad;
-use motion::Factorization;
+use motion::Motion;
 use symbols::{Symbols, ids};
 
 /// The derivation of one mechanism, every stage kept for reading.
@@ -53,10 +54,8 @@ pub struct Derivation {
     pub loads: Vec<AppliedLoad>,
     /// Π.
     pub forces: Vec<Expr>,
-    /// Factorised M.
-    pub factorization: Factorization,
-    /// ω̇, named.
-    pub accelerations: Vec<Expr>,
+    /// Solved equations, with ω̇.
+    pub motion: Motion,
     /// q̇, named.
     pub coordinate_rates: Vec<Expr>,
 }
@@ -78,12 +77,8 @@ pub fn derive(mechanism: &Mechanism) -> Stage<Derivation> {
     let loads = loads::applied_loads(&mut algebra, mechanism, &symbols, &kinematics, rates)?;
     let forces = loads::generalized_forces(&mut algebra, &loads, &symbols.speeds);
 
-    let factorization = motion::factorize(&mut algebra, mechanism, &gibbs.mass_matrix)?;
-    let right: Vec<Expr> =
-        forces.iter().zip(&gibbs.bias).map(|(&force, &bias)| algebra.graph.sub(force, bias)).collect();
-    let names: Vec<String> =
-        mechanism.pseudo_velocities.iter().map(|w| format!("{}_dot", w.label.name)).collect();
-    let accelerations = factorization.solve(&mut algebra, &right, Some(&names));
+    let parts = gibbs_appell::named_parts(&algebra.graph, &bodies);
+    let motion = motion::solve(&mut algebra, mechanism, &gibbs, &forces, &parts)?;
     let coordinate_rates = mechanism
         .coordinates
         .iter()
@@ -100,8 +95,7 @@ pub fn derive(mechanism: &Mechanism) -> Stage<Derivation> {
         gibbs,
         loads,
         forces,
-        factorization,
-        accelerations,
+        motion,
         coordinate_rates,
     })
 }

@@ -1,41 +1,129 @@
-//! Appell's equations `M ω̇ = Π - b`, solved for the pseudo-accelerations.
+//! Appell's equations `M ω̇ = Π - b`, solved for the pseudo-accelerations block by block.
+//!
+//! M is positive definite, so every order of elimination is stable and the simplest pivot is taken.
 
 use appell_spec::mechanism::Mechanism;
 
 use super::algebra::Algebra;
+use super::factorized::FactorizedBlock;
 use super::finding::{Finding, Item, Stage};
+use super::gibbs_appell::GibbsForm;
 use crate::symbolic::{Expr, Graph};
 
-/// Blocks up to this size are solved by explicit formulas, simplified entry by entry; larger ones
-/// by an unrolled factorisation with named entries.
+/// Blocks up to this size are eliminated by formulas, each in its shortest form; larger ones by an
+/// unrolled factorisation with named entries.
 const LARGEST_EXPLICIT_BLOCK: usize = 3;
 
-/// `Pᵀ M P = L D Lᵀ`, block by block. M is positive definite, so every order of pivots is stable
-/// and the simplest one is taken.
+/// The solved equations of motion.
 #[derive(Debug, Clone)]
-pub struct Factorization {
-    /// Independent blocks of speeds, each in its order of elimination.
+pub struct Motion {
+    /// Speeds that no entry of the mass matrix couples, and how each such block is solved.
     pub blocks: Vec<Block>,
+    /// ω̇, named.
+    pub accelerations: Vec<Expr>,
 }
 
 /// A block of the mass matrix.
 #[derive(Debug, Clone)]
-pub struct Block {
-    /// Speeds in the order of elimination.
-    pub speeds: Vec<usize>,
-    /// `lower[i][j]`, `j < i`.
-    lower: Vec<Vec<Expr>>,
-    /// Pivots.
-    pivots: Vec<Expr>,
+pub enum Block {
+    /// Equations after elimination; each needs only accelerations of earlier ones.
+    Eliminated(Vec<Eliminated>),
+    /// An unrolled factorisation.
+    Factorized(FactorizedBlock),
 }
 
-/// Factorises the mass matrix.
-pub fn factorize(algebra: &mut Algebra, mechanism: &Mechanism, mass_matrix: &[Vec<Expr>]) -> Stage<Factorization> {
+/// One equation after elimination: `pivot · (ω̇_speed - whole + Σ coupling · ω̇_other) = right`.
+#[derive(Debug, Clone)]
+pub struct Eliminated {
+    /// The speed it determines.
+    pub speed: usize,
+    /// Its pivot.
+    pub pivot: Expr,
+    /// What the pivot divides without a rest.
+    pub whole: Expr,
+    /// Its right-hand side.
+    pub right: Expr,
+    /// Accelerations that are known by then, with their coefficients.
+    pub couplings: Vec<(usize, Expr)>,
+}
+
+/// Solves the equations of motion. `parts` are the names that may be written out where that lets a
+/// mass or a length cancel.
+pub fn solve(
+    algebra: &mut Algebra,
+    mechanism: &Mechanism,
+    gibbs: &GibbsForm,
+    forces: &[Expr],
+    parts: &[(Expr, Expr)],
+) -> Stage<Motion> {
+    let names: Vec<String> =
+        mechanism.pseudo_velocities.iter().map(|w| format!("{}_dot", w.label.name)).collect();
+    let right: Vec<Expr> =
+        forces.iter().zip(&gibbs.bias).map(|(&force, &bias)| algebra.graph.sub(force, bias)).collect();
+    let mut accelerations = vec![Graph::ZERO; right.len()];
     let mut blocks = Vec::new();
-    for speeds in independent_blocks(mass_matrix) {
-        blocks.push(factorize_block(algebra, mechanism, mass_matrix, speeds)?);
+    for speeds in independent_blocks(&gibbs.mass_matrix) {
+        let block = if speeds.len() <= LARGEST_EXPLICIT_BLOCK {
+            let eliminated = eliminate(algebra, mechanism, &gibbs.mass_matrix, &right, &speeds)?;
+            let values = substitute_back(algebra, &eliminated, &accelerations);
+            let written_out = quotients(algebra, &gibbs.mass_matrix, &right, &speeds, parts);
+            let other = substitute_back(algebra, &written_out, &accelerations);
+            let shorter = std::env::var("Q").is_ok_and(|q| q == format!("{speeds:?}")) || !written_out.is_empty()
+                && algebra.graph.operations(&other) <= algebra.graph.operations(&values);
+            Block::Eliminated(if shorter { written_out } else { eliminated })
+        } else {
+            let block = FactorizedBlock::new(algebra, mechanism, &gibbs.mass_matrix, &speeds)?;
+            Block::Factorized(block)
+        };
+        match &block {
+            Block::Eliminated(equations) => {
+                for equation in equations {
+                    let value = equation.solved(algebra, &accelerations);
+                    accelerations[equation.speed] = algebra.graph.name(&names[equation.speed], value);
+                }
+            }
+            Block::Factorized(block) => {
+                block.solve(algebra, &right, &mut accelerations);
+                for speed in speeds {
+                    let value = accelerations[speed];
+                    accelerations[speed] = algebra.graph.name(&names[speed], value);
+                }
+            }
+        }
+        blocks.push(block);
     }
-    Ok(Factorization { blocks })
+    Ok(Motion { blocks, accelerations })
+}
+
+impl Eliminated {
+    /// `right / pivot + whole - Σ coupling · ω̇_other`
+    pub fn solved(&self, algebra: &mut Algebra, accelerations: &[Expr]) -> Expr {
+        let own = algebra.graph.div(self.right, self.pivot);
+        let own = algebra.graph.add(own, self.whole);
+        self.less_couplings(algebra, own, accelerations)
+    }
+
+    /// `own - Σ coupling · x_other`
+    pub fn less_couplings(&self, algebra: &mut Algebra, own: Expr, x: &[Expr]) -> Expr {
+        let mut terms = vec![own];
+        for &(other, coupling) in &self.couplings {
+            let term = algebra.graph.mul(coupling, x[other]);
+            terms.push(algebra.graph.neg(term));
+        }
+        algebra.graph.sum(&terms)
+    }
+}
+
+/// Accelerations of a block, without names.
+fn substitute_back(algebra: &mut Algebra, equations: &[Eliminated], known: &[Expr]) -> Vec<Expr> {
+    let mut x = known.to_vec();
+    equations
+        .iter()
+        .map(|equation| {
+            x[equation.speed] = equation.solved(algebra, &x);
+            x[equation.speed]
+        })
+        .collect()
 }
 
 /// Sets of speeds that no entry of the mass matrix couples.
@@ -64,111 +152,101 @@ pub fn independent_blocks(mass_matrix: &[Vec<Expr>]) -> Vec<Vec<usize>> {
     blocks
 }
 
-fn factorize_block(
+/// Gaussian elimination, symmetric, the simplest pivot first.
+fn eliminate(
     algebra: &mut Algebra,
     mechanism: &Mechanism,
     mass_matrix: &[Vec<Expr>],
-    mut open: Vec<usize>,
-) -> Stage<Block> {
-    let size = open.len();
-    let explicit = size <= LARGEST_EXPLICIT_BLOCK;
-    let name = |speed: usize| mechanism.pseudo_velocities[speed].label.name.as_str();
+    right: &[Expr],
+    speeds: &[usize],
+) -> Stage<Vec<Eliminated>> {
     let mut schur = mass_matrix.to_vec();
-    let mut block = Block { speeds: Vec::new(), lower: Vec::new(), pivots: Vec::new() };
-    // Column of L per eliminated speed, indexed by speed.
-    let mut columns: Vec<Vec<Expr>> = Vec::new();
+    let mut right = right.to_vec();
+    let mut open = speeds.to_vec();
+    let mut equations = Vec::with_capacity(speeds.len());
     while !open.is_empty() {
-        let (place, _) = open
-            .iter()
-            .enumerate()
-            .map(|(place, &k)| (place, algebra.graph.operations(&[schur[k][k]])))
-            .min_by_key(|&(place, operations)| (operations, place))
-            .unwrap_or((0, 0));
-        let k = open.remove(place);
-        let pivot = schur[k][k];
-        if algebra.test.is_zero(&algebra.graph, pivot) {
-            return Err(vec![Finding {
-                code: "singular-mass-matrix",
-                message: format!("`{}` can change without moving any mass", name(k)),
-                item: Item::PseudoVelocity(k),
-                help: "give a mass or an inertia to what it moves, or constrain it".to_owned(),
-            }]);
-        }
-        let pivot = if open.is_empty() && size == 1 {
-            pivot
-        } else {
-            algebra.graph.name(&format!("pivot_{}", name(k)), pivot)
-        };
-        let mut column = vec![Graph::ZERO; mass_matrix.len()];
+        let k = simplest_pivot(algebra, mechanism, &schur, &mut open)?;
+        let name = format!("pivot_{}", mechanism.pseudo_velocities[k].label.name);
+        let pivot = algebra.graph.name(&name, schur[k][k]);
+        let mut couplings = Vec::with_capacity(open.len());
         for &i in &open {
-            let mut ratio = algebra.graph.div(schur[i][k], schur[k][k]);
-            if explicit {
-                ratio = algebra.shortest(ratio);
-            } else if ratio != Graph::ZERO {
-                ratio = algebra.graph.div(schur[i][k], pivot);
-                ratio = algebra.graph.name(&format!("l_{}_{}", name(i), name(k)), ratio);
-            }
-            column[i] = ratio;
+            // The pivot itself may cancel; where it does not, its name is shorter.
+            let cancelled = algebra.graph.div(schur[i][k], schur[k][k]);
+            let cancelled = algebra.shortest(cancelled);
+            let named = algebra.graph.div(schur[i][k], pivot);
+            couplings.push((i, algebra.graph.shorter(named, cancelled)));
         }
-        for (a, &i) in open.iter().enumerate() {
-            for &j in &open[..=a] {
-                let change = algebra.graph.mul(column[i], schur[j][k]);
-                let mut entry = algebra.graph.sub(schur[i][j], change);
-                if explicit {
-                    entry = algebra.shortest(entry);
-                } else if change != Graph::ZERO && i != j {
-                    entry = algebra.graph.name(&format!("m_{}_{}", name(i), name(j)), entry);
-                }
+        for (a, &(i, ratio)) in couplings.iter().enumerate() {
+            for &(j, _) in &couplings[..=a] {
+                let change = algebra.graph.mul(ratio, schur[j][k]);
+                let entry = algebra.graph.sub(schur[i][j], change);
+                let entry = algebra.shortest(entry);
                 schur[i][j] = entry;
                 schur[j][i] = entry;
             }
+            let change = algebra.graph.mul(ratio, right[k]);
+            let value = algebra.graph.sub(right[i], change);
+            right[i] = algebra.shortest(value);
         }
-        block.lower.push(columns.iter().map(|column| column[k]).collect());
-        block.pivots.push(pivot);
-        block.speeds.push(k);
-        columns.push(column);
+        couplings.retain(|&(_, coupling)| coupling != Graph::ZERO);
+        equations.push(Eliminated { speed: k, pivot, whole: Graph::ZERO, right: right[k], couplings });
     }
-    Ok(block)
+    equations.reverse();
+    Ok(equations)
 }
 
-impl Factorization {
-    /// Unknowns of `M x = right`. With names, one per speed, every step is brought to its shortest
-    /// form and the unknowns are named: that pays for the accelerations themselves, not for every
-    /// column of a Jacobian.
-    pub fn solve(&self, algebra: &mut Algebra, right: &[Expr], names: Option<&[String]>) -> Vec<Expr> {
-        let mut x = vec![Graph::ZERO; right.len()];
-        for block in &self.blocks {
-            block.solve(algebra, right, names, &mut x);
-        }
-        x
+/// Takes the diagonal entry with the fewest operations out of the open ones.
+pub fn simplest_pivot(
+    algebra: &mut Algebra,
+    mechanism: &Mechanism,
+    schur: &[Vec<Expr>],
+    open: &mut Vec<usize>,
+) -> Stage<usize> {
+    let cost = |place: usize| algebra.graph.operations(&[schur[open[place]][open[place]]]);
+    let place = (0..open.len()).min_by_key(|&place| (cost(place), place)).unwrap_or(0);
+    let k = open.remove(place);
+    if !algebra.test.is_zero(&algebra.graph, schur[k][k]) {
+        return Ok(k);
     }
+    let name = &mechanism.pseudo_velocities[k].label.name;
+    Err(vec![Finding {
+        code: "singular-mass-matrix",
+        message: format!("`{name}` can change without moving any mass"),
+        item: Item::PseudoVelocity(k),
+        help: "give a mass or an inertia to what it moves, or constrain it".to_owned(),
+    }])
 }
 
-impl Block {
-    /// Forward substitution, pivots, back substitution.
-    fn solve(&self, algebra: &mut Algebra, right: &[Expr], names: Option<&[String]>, x: &mut [Expr]) {
-        let explicit = names.is_some() && self.speeds.len() <= LARGEST_EXPLICIT_BLOCK;
-        let mut z: Vec<Expr> = Vec::with_capacity(self.speeds.len());
-        for (i, &speed) in self.speeds.iter().enumerate() {
-            let mut parts = vec![right[speed]];
-            for (j, &done) in z.iter().enumerate() {
-                let part = algebra.graph.mul(self.lower[i][j], done);
-                parts.push(algebra.graph.neg(part));
-            }
-            let value = algebra.graph.sum(&parts);
-            z.push(if explicit { algebra.shortest(value) } else { value });
+/// Blocks of one or two speeds by Cramer's rule, everything written out: what numerator and
+/// denominator have in common then cancels. Empty for larger blocks.
+fn quotients(
+    algebra: &mut Algebra,
+    mass_matrix: &[Vec<Expr>],
+    right: &[Expr],
+    speeds: &[usize],
+    parts: &[(Expr, Expr)],
+) -> Vec<Eliminated> {
+    let pairs: Vec<(Expr, Expr)> = match *speeds {
+        [i] => vec![(right[i], mass_matrix[i][i])],
+        [i, j] => {
+            let minor = |algebra: &mut Algebra, a, b, c, d| {
+                let (ad, bc) = (algebra.graph.mul(a, d), algebra.graph.mul(b, c));
+                algebra.graph.sub(ad, bc)
+            };
+            let (m_ii, m_ij, m_jj) = (mass_matrix[i][i], mass_matrix[i][j], mass_matrix[j][j]);
+            let determinant = minor(algebra, m_ii, m_ij, m_ij, m_jj);
+            let first = minor(algebra, right[i], right[j], m_ij, m_jj);
+            let second = minor(algebra, m_ii, m_ij, right[i], right[j]);
+            vec![(first, determinant), (second, determinant)]
         }
-        for i in (0..self.speeds.len()).rev() {
-            let speed = self.speeds[i];
-            let mut parts = vec![algebra.graph.div(z[i], self.pivots[i])];
-            for j in i + 1..self.speeds.len() {
-                let part = algebra.graph.mul(self.lower[j][i], x[self.speeds[j]]);
-                parts.push(algebra.graph.neg(part));
-            }
-            x[speed] = algebra.graph.sum(&parts);
-            if let Some(names) = names {
-                x[speed] = algebra.graph.name(&names[speed], x[speed]);
-            }
-        }
+        _ => return Vec::new(),
+    };
+    let mut equations = Vec::with_capacity(pairs.len());
+    for (&speed, (numerator, denominator)) in speeds.iter().zip(pairs) {
+        let Some([whole, right, pivot]) = algebra.cancelled(numerator, denominator, parts) else {
+            return Vec::new();
+        };
+        equations.push(Eliminated { speed, pivot, whole, right, couplings: Vec::new() });
     }
+    equations
 }

@@ -12,6 +12,7 @@ pub struct Graph {
     index: FxHashMap<Node, Expr>,
     symbols: Vec<String>,
     definitions: Vec<Definition>,
+    names: FxHashMap<Expr, Expr>,
     systems: Vec<System>,
     system_index: FxHashMap<System, u32>,
 }
@@ -35,6 +36,7 @@ impl Graph {
             index: FxHashMap::default(),
             symbols: Vec::new(),
             definitions: Vec::new(),
+            names: FxHashMap::default(),
             systems: Vec::new(),
             system_index: FxHashMap::default(),
         };
@@ -104,8 +106,8 @@ impl Graph {
 
     /// Gives an intermediate quantity a name, which emitted code and printed equations use.
     ///
-    /// Numbers, symbols and what already has a name stay as they are: a second name would only
-    /// make people look twice. A multiple of one of these keeps its form as well.
+    /// Numbers, symbols and multiples of them stay as they are, and what already has a name keeps
+    /// it: a second name would only make people look twice.
     pub fn name(&mut self, name: &str, value: Expr) -> Expr {
         let plain = |graph: &Self, expr: Expr| {
             matches!(graph.node(expr), Node::Number(_) | Node::Symbol(_) | Node::Named(_))
@@ -117,9 +119,14 @@ impl Graph {
         if plain(self, core) {
             return value;
         }
+        if let Some(&named) = self.names.get(&value) {
+            return named;
+        }
         let id = u32::try_from(self.definitions.len()).expect("fewer than 2^32 names fit in memory");
         self.definitions.push(Definition { name: name.to_owned(), value });
-        self.intern(Node::Named(id))
+        let named = self.intern(Node::Named(id));
+        self.names.insert(value, named);
+        named
     }
 
     /// Definition behind the index of [`Node::Named`].

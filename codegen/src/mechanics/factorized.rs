@@ -1,0 +1,88 @@
+//! Large blocks of the mass matrix: `Pᵀ M P = L D Lᵀ`, unrolled into named entries.
+
+use appell_spec::mechanism::Mechanism;
+
+use super::algebra::Algebra;
+use super::finding::Stage;
+use super::motion::simplest_pivot;
+use crate::symbolic::{Expr, Graph};
+
+/// A factorised block.
+#[derive(Debug, Clone)]
+pub struct FactorizedBlock {
+    /// Speeds in the order of elimination.
+    pub speeds: Vec<usize>,
+    /// `lower[i][j]`, `j < i`.
+    lower: Vec<Vec<Expr>>,
+    /// Diagonal of D.
+    pivots: Vec<Expr>,
+}
+
+impl FactorizedBlock {
+    /// Factorises the block of `speeds`.
+    pub fn new(
+        algebra: &mut Algebra,
+        mechanism: &Mechanism,
+        mass_matrix: &[Vec<Expr>],
+        speeds: &[usize],
+    ) -> Stage<Self> {
+        let name = |speed: usize| mechanism.pseudo_velocities[speed].label.name.as_str();
+        let mut schur = mass_matrix.to_vec();
+        let mut open = speeds.to_vec();
+        let mut block = Self { speeds: Vec::new(), lower: Vec::new(), pivots: Vec::new() };
+        // Columns of L in the order of elimination, indexed by speed.
+        let mut columns: Vec<Vec<Expr>> = Vec::new();
+        while !open.is_empty() {
+            let k = simplest_pivot(algebra, mechanism, &schur, &mut open)?;
+            let pivot = algebra.graph.name(&format!("pivot_{}", name(k)), schur[k][k]);
+            let mut column = vec![Graph::ZERO; mass_matrix.len()];
+            for &i in &open {
+                let ratio = algebra.graph.div(schur[i][k], pivot);
+                column[i] = algebra.graph.name(&format!("l_{}_{}", name(i), name(k)), ratio);
+            }
+            for (a, &i) in open.iter().enumerate() {
+                for &j in &open[..=a] {
+                    let change = algebra.graph.mul(column[i], schur[j][k]);
+                    if change == Graph::ZERO {
+                        continue;
+                    }
+                    let entry = algebra.graph.sub(schur[i][j], change);
+                    let entry = if i == j {
+                        entry
+                    } else {
+                        algebra.graph.name(&format!("m_{}_{}", name(i), name(j)), entry)
+                    };
+                    schur[i][j] = entry;
+                    schur[j][i] = entry;
+                }
+            }
+            block.lower.push(columns.iter().map(|column| column[k]).collect());
+            block.pivots.push(pivot);
+            block.speeds.push(k);
+            columns.push(column);
+        }
+        Ok(block)
+    }
+
+    /// Unknowns of `M x = right` for the speeds of the block.
+    pub fn solve(&self, algebra: &mut Algebra, right: &[Expr], x: &mut [Expr]) {
+        let graph = &mut algebra.graph;
+        let mut z: Vec<Expr> = Vec::with_capacity(self.speeds.len());
+        for (&speed, lower) in self.speeds.iter().zip(&self.lower) {
+            let mut terms = vec![right[speed]];
+            for (&entry, &done) in lower.iter().zip(&z) {
+                let term = graph.mul(entry, done);
+                terms.push(graph.neg(term));
+            }
+            z.push(graph.sum(&terms));
+        }
+        for i in (0..self.speeds.len()).rev() {
+            let mut terms = vec![graph.div(z[i], self.pivots[i])];
+            for j in i + 1..self.speeds.len() {
+                let term = graph.mul(self.lower[j][i], x[self.speeds[j]]);
+                terms.push(graph.neg(term));
+            }
+            x[self.speeds[i]] = graph.sum(&terms);
+        }
+    }
+}

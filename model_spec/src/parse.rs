@@ -58,7 +58,11 @@ pub fn parse(text: &str) -> (SpecAst, Vec<Diagnostic>) {
 }
 
 /// Reads an expression that stands at `whole` in a document.
-pub(crate) fn expression_in(document: &str, text: &str, whole: Span) -> Result<ExprAst, Diagnostic> {
+pub(crate) fn expression_in(
+    document: &str,
+    text: &str,
+    whole: Span,
+) -> Result<ExprAst, Diagnostic> {
     expression::parse(&source::Source::new(document, text, whole))
 }
 

@@ -37,7 +37,11 @@ pub struct Snippet<'a> {
 impl<'a> Snippet<'a> {
     /// An expression without anything around it.
     pub fn alone(text: &'a str) -> Self {
-        Self { document: text, text, whole: 0..text.len() }
+        Self {
+            document: text,
+            text,
+            whole: 0..text.len(),
+        }
     }
 }
 
@@ -76,7 +80,11 @@ pub fn formula(
     if has_bare_number(&ast) {
         findings.retain(|finding| finding.code != Code::UnitMismatch);
     }
-    if findings.is_empty() { Ok(expr) } else { Err(findings) }
+    if findings.is_empty() {
+        Ok(expr)
+    } else {
+        Err(findings)
+    }
 }
 
 /// Whether a number stands without a unit; zero fits everywhere.
@@ -87,9 +95,9 @@ fn has_bare_number(ast: &ExprAst) -> bool {
         ExprAstKind::Negate(a) => has_bare_number(a),
         ExprAstKind::Binary(_, a, b) => has_bare_number(a) || has_bare_number(b),
         ExprAstKind::Call(_, arguments) => arguments.iter().any(has_bare_number),
-        ExprAstKind::Choice { compared, branches, .. } => {
-            compared.iter().chain(branches.iter()).any(has_bare_number)
-        }
+        ExprAstKind::Choice {
+            compared, branches, ..
+        } => compared.iter().chain(branches.iter()).any(has_bare_number),
     }
 }
 
@@ -110,8 +118,13 @@ v = { value = 'dot(x)', unit = 'm/s' }
 
     fn read(text: &str, scope: Scope) -> Result<Expr, String> {
         let force = crate::units::parse("N").map(|unit| unit.dimension).ok();
-        formula(SPEC, &Snippet::alone(text), "an input", scope, force)
-            .map_err(|findings| findings.iter().map(|f| f.message.clone()).collect::<Vec<_>>().join("; "))
+        formula(SPEC, &Snippet::alone(text), "an input", scope, force).map_err(|findings| {
+            findings
+                .iter()
+                .map(|f| f.message.clone())
+                .collect::<Vec<_>>()
+                .join("; ")
+        })
     }
 
     #[test]
@@ -122,7 +135,10 @@ v = { value = 'dot(x)', unit = 'm/s' }
 
     #[test]
     fn units_and_names_are_checked() {
-        assert_eq!(read("R", Scope::Law), Err("an input must be a force, found a length".to_owned()));
+        assert_eq!(
+            read("R", Scope::Law),
+            Err("an input must have the unit `N`, found a length".to_owned())
+        );
         assert!(read("2*y", Scope::Law).is_err());
         assert!(read("2*u", Scope::Law).is_err());
         assert!(read("2*x", Scope::Schedule).is_err());

@@ -6,6 +6,7 @@
 
 mod axis;
 
+use crate::model::Quantity;
 use crate::trajectory::Trajectory;
 use axis::{Axis, number};
 use std::fmt::Write as _;
@@ -100,29 +101,35 @@ impl Figure {
         }
     }
 
-    /// All states and inputs over time: a panel per unit among the coordinates, the
-    /// pseudo-velocities and the inputs.
+    /// All states and inputs over time. Coordinates, pseudo-velocities and inputs of one unit
+    /// share a panel, unless one is so much larger that the others would look flat.
     pub fn of_states_and_inputs(trajectory: &Trajectory) -> Self {
         let info = trajectory.info();
-        let groups = [
+        let mut panels: Vec<Vec<&str>> = Vec::new();
+        for group in [
             info.coordinate_quantities(),
             info.speed_quantities(),
             &info.inputs,
-        ];
-        let mut panels: Vec<Vec<&str>> = Vec::new();
-        for group in groups {
-            let mut units: Vec<&str> = group.iter().map(|quantity| &*quantity.unit).collect();
-            units.sort_unstable();
-            units.dedup();
-            let mut in_order: Vec<Vec<&str>> = units
-                .into_iter()
-                .map(|unit| {
-                    let of_unit = group.iter().filter(|quantity| quantity.unit == unit);
-                    of_unit.map(|quantity| &*quantity.name).collect()
-                })
-                .collect();
-            in_order.sort_by_key(|names| group.iter().position(|q| q.name == names[0]));
-            panels.append(&mut in_order);
+        ] {
+            let mut shared: Vec<SharedPanel<'_>> = Vec::new();
+            for quantity in group {
+                let size = trajectory
+                    .column(&quantity.name)
+                    .map_or(0.0, |y| largest(&y));
+                let fitting = shared.iter_mut().find(|panel| panel.suits(quantity, size));
+                match fitting {
+                    Some(panel) => {
+                        panel.names.push(&quantity.name);
+                        panel.size = panel.size.max(size);
+                    }
+                    None => shared.push(SharedPanel {
+                        unit: &quantity.unit,
+                        size,
+                        names: vec![&quantity.name],
+                    }),
+                }
+            }
+            panels.extend(shared.into_iter().map(|panel| panel.names));
         }
         Self::over_time(trajectory, &panels)
     }
@@ -233,6 +240,27 @@ impl Figure {
     }
 }
 
+/// Quantities that are drawn together.
+struct SharedPanel<'a> {
+    unit: &'a str,
+    size: f64,
+    names: Vec<&'a str>,
+}
+
+impl SharedPanel<'_> {
+    /// Whether a quantity of this size has the unit and is seen beside the others.
+    fn suits(&self, quantity: &Quantity, size: f64) -> bool {
+        let similar = size <= 12.0 * self.size && self.size <= 12.0 * size;
+        quantity.unit == self.unit && (similar || size == 0.0 || self.size == 0.0)
+    }
+}
+
+/// The largest finite absolute value; 0 without one.
+fn largest(values: &[f64]) -> f64 {
+    let finite = values.iter().filter(|value| value.is_finite());
+    finite.fold(0.0, |largest, value| value.abs().max(largest))
+}
+
 impl Panel {
     /// Samples of the lines with their names, then the unit.
     fn legend(&self, svg: &mut String, y: f64) {
@@ -267,7 +295,7 @@ impl Area {
             // Writing to a string cannot fail.
             let _ = write!(grid, "M{x:.1} {:.1}v{:.1}", self.top, self.height);
         }
-        let count = if self.height > PANEL_HEIGHT { 8 } else { 4 };
+        let count = if self.height > PANEL_HEIGHT { 8 } else { 5 };
         for tick in y_axis.ticks(count) {
             let y = self.top + self.height * (1.0 - y_axis.part(tick));
             let _ = write!(grid, "M{LEFT:.1} {y:.1}h{:.1}", self.width);

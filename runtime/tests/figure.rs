@@ -108,7 +108,7 @@ fn gaps_constants_and_nothing_are_drawn_without_nan() {
         .nth(2)
         .and_then(|d| d.split('"').next());
     assert_eq!(line.map(|line| line.matches('M').count()), Some(2));
-    assert!(texts(&svg).contains(&"1.0e7"), "{:?}", texts(&svg));
+    assert!(texts(&svg).contains(&"1.00e7"), "{:?}", texts(&svg));
     let nothing = Figure {
         panels: Vec::new(),
         ..figure(Vec::new())

@@ -7,6 +7,7 @@
 
 mod common;
 
+use appell_runtime::figure::Figure;
 use appell_runtime::inputs::{Reference, StateFeedback};
 use appell_runtime::integrate::{IntegrationError, Options};
 use appell_runtime::model::At;
@@ -282,6 +283,44 @@ fn the_turn_at_five_metres_per_second_ends_where_published() {
         final_state,
         greatest,
     );
+}
+
+#[test]
+fn a_figure_keeps_small_motions_apart_from_large_ones() {
+    let model = unicycle(5.0);
+    let feedback = feedback(&turn_gains(5.0), FRAC_PI_4);
+    let trajectory = Simulation {
+        inputs: &feedback,
+        ..Simulation::new(&model)
+    }
+    .run()
+    .unwrap();
+    let figure = Figure::of_states_and_inputs(&trajectory);
+    let panels: Vec<String> = figure
+        .panels
+        .iter()
+        .map(|panel| {
+            let labels: Vec<&str> = panel.series.iter().map(|series| &*series.label).collect();
+            format!("{} [{}]", labels.join(" "), panel.unit)
+        })
+        .collect();
+    assert_eq!(
+        panels,
+        [
+            "theta [rad]",
+            "r [m]",
+            "psi [rad]",
+            "phi [rad]",
+            "x_G y_G [m]",
+            "omega_1 omega_3 [rad/s]",
+            "omega_2 [rad/s]",
+            "sigma [m/s]",
+            "u [N]",
+        ]
+    );
+    let path = Figure::path(&trajectory, "x_G", "y_G").unwrap();
+    assert_eq!((path.x_label.as_str(), path.equal_axes), ("x_G [m]", true));
+    assert_eq!(Figure::path(&trajectory, "x_G", "nowhere"), None);
 }
 
 /// State ω₁ ω₂ ω₃, θ ψ φ x y of a thin disc.

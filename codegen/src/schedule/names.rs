@@ -113,7 +113,7 @@ impl ArgumentNames {
     }
 
     /// All names.
-    pub(super) fn iter(&self) -> impl Iterator<Item = &String> {
+    pub(crate) fn iter(&self) -> impl Iterator<Item = &String> {
         let lists = self.states.iter().chain(&self.inputs).chain(&self.parameters);
         std::iter::once(&self.time).chain(lists)
     }

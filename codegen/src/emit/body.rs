@@ -1,0 +1,321 @@
+//! The body of a function: its schedule, statement by statement.
+
+use std::collections::BTreeSet;
+
+use syn::{Attribute, BinOp, Expr, Stmt, token};
+
+use super::layout;
+use super::syntax as s;
+use super::types::Types;
+use crate::program::{Function, Layout};
+use crate::schedule::piece::method;
+use crate::schedule::{Argument, Operation, Schedule, Step, Tree, Value};
+use crate::symbolic::{Rational, Relation};
+
+/// The statements of a function; the last one is its result.
+pub(super) fn body(types: &Types<'_>, function: &Function, schedule: &Schedule) -> Vec<Stmt> {
+    let mut body = Body { types, schedule, statements: Vec::new(), attributes: Vec::new() };
+    body.arguments();
+    body.constants(function);
+    for step in &schedule.steps {
+        body.step(step);
+    }
+    body.results(function);
+    body.statements
+}
+
+struct Body<'a> {
+    types: &'a Types<'a>,
+    schedule: &'a Schedule,
+    statements: Vec<Stmt>,
+    /// Comments and blank lines before the next statement.
+    attributes: Vec<Attribute>,
+}
+
+impl Body<'_> {
+    fn push(&mut self, pattern: syn::Pat, value: Expr) {
+        let attributes = std::mem::take(&mut self.attributes);
+        self.statements.push(s::let_(attributes, pattern, value));
+    }
+
+    /// `let &Parameters { m, g, .. } = p;`
+    fn arguments(&mut self) {
+        for group in self.types.groups() {
+            let used: Vec<&str> = self
+                .schedule
+                .arguments
+                .iter()
+                .filter(|&&argument| group.holds(argument))
+                .map(|&argument| self.types.names.get(argument))
+                .collect();
+            if !used.is_empty() {
+                let pattern = s::borrowed_fields(group.type_name, &used, used.len() == group.len);
+                self.push(pattern, s::name(&group.argument));
+            }
+        }
+    }
+
+    /// `let half = T::constant(0.5);`
+    fn constants(&mut self, function: &Function) {
+        let mut constants = BTreeSet::new();
+        let entries = self.schedule.results.iter().flat_map(|array| &array.entries);
+        for tree in trees(&self.schedule.steps).chain(entries) {
+            collect_constants(tree, &mut constants);
+        }
+        let zero_filled = function.results.iter().zip(&self.schedule.results);
+        if zero_filled.into_iter().any(|(array, result)| is_sparse(array.layout, &result.entries)) {
+            constants.insert(Rational::ZERO);
+        }
+        for value in constants {
+            let name = self.types.names.constant(&value);
+            self.push(s::binding(&name), s::associated("constant", vec![constant(&value)]));
+        }
+    }
+
+    fn value(&self, value: Value) -> &str {
+        &self.schedule.names[value.0 as usize]
+    }
+
+    fn step(&mut self, step: &Step) {
+        match step {
+            Step::Let { value, tree } => self.push(s::binding(self.value(*value)), self.tree(tree)),
+            Step::SinCos { sin, cos, angle } => {
+                let pattern = s::tuple_pattern(&[self.value(*sin), self.value(*cos)]);
+                self.push(pattern, s::method(self.tree(angle), "sin_cos", Vec::new()));
+            }
+            Step::Factor { factorisation, size, matrix } => {
+                let rows = matrix.chunks(*size).map(|row| s::array(self.all(row))).collect();
+                let factors = s::call("lu_factor", vec![s::array(rows)]);
+                self.push(s::binding(&self.factors(*factorisation)), factors);
+            }
+            Step::Solve { factorisation, values, right } => {
+                let used = self.used();
+                let names: Vec<Option<&str>> = values
+                    .iter()
+                    .map(|value| used.contains(value).then(|| self.value(*value)))
+                    .collect();
+                let factors = s::borrowed(s::name(&self.factors(*factorisation)));
+                let right = s::array(self.all(right));
+                let solved = s::call("lu_solve", vec![factors, right]);
+                self.push(s::array_pattern(&names), solved);
+            }
+            Step::Paragraph { title } => {
+                self.attributes.push(layout::blank());
+                if !title.is_empty() {
+                    self.attributes.push(layout::comment(title));
+                }
+            }
+        }
+    }
+
+    /// Name of a factorisation, not that of a value.
+    fn factors(&self, factorisation: u32) -> String {
+        let mut name = format!("lu_{}", factorisation + 1);
+        let taken = |name: &String| {
+            self.schedule.names.contains(name) || self.types.names.iter().any(|other| other == name)
+        };
+        while taken(&name) {
+            name.push('_');
+        }
+        name
+    }
+
+    /// Values that something uses.
+    fn used(&self) -> BTreeSet<Value> {
+        let entries = self.schedule.results.iter().flat_map(|array| &array.entries);
+        let mut used = BTreeSet::new();
+        let mut rest: Vec<&Tree> = trees(&self.schedule.steps).chain(entries).collect();
+        while let Some(tree) = rest.pop() {
+            if let Tree::Value(value) = tree {
+                used.insert(*value);
+            }
+            rest.extend(parts(tree));
+        }
+        used
+    }
+
+    fn all(&self, trees: &[Tree]) -> Vec<Expr> {
+        trees.iter().map(|tree| self.tree(tree)).collect()
+    }
+
+    // Trees are at most one printed line deep.
+    fn tree(&self, tree: &Tree) -> Expr {
+        match tree {
+            Tree::Value(value) => s::name(self.value(*value)),
+            Tree::Argument(argument) => s::name(self.types.names.get(*argument)),
+            Tree::Constant(value) => s::name(&self.types.names.constant(value)),
+            Tree::Negate(a) => s::negated(self.tree(a)),
+            Tree::Binary(operation, a, b) => {
+                let operator = match operation {
+                    Operation::Add => BinOp::Add(token::Plus::default()),
+                    Operation::Subtract => BinOp::Sub(token::Minus::default()),
+                    Operation::Multiply => BinOp::Mul(token::Star::default()),
+                    Operation::Divide => BinOp::Div(token::Slash::default()),
+                };
+                s::binary(self.tree(a), operator, self.tree(b))
+            }
+            Tree::Function(function, a) => s::method(self.tree(a), method(*function), Vec::new()),
+            Tree::Atan2(y, x) => s::method(self.tree(y), "atan2", vec![self.tree(x)]),
+            Tree::Power(base, exponent) => {
+                s::method(self.tree(base), "powf", vec![self.tree(exponent)])
+            }
+            Tree::Choice { relation, compared, branches } => {
+                let function = match relation {
+                    Relation::Less => "if_less",
+                    Relation::LessOrEqual => "if_less_or_equal",
+                };
+                let all = compared.iter().chain(branches.iter());
+                s::associated(function, all.map(|tree| self.tree(tree)).collect())
+            }
+        }
+    }
+
+    /// The arrays, and the expression that holds them all.
+    fn results(&mut self, function: &Function) {
+        let mut fields = Vec::new();
+        let structure = self.types.result_struct(function);
+        for (array, result) in function.results.iter().zip(&self.schedule.results) {
+            let value = self.result(array.layout, &array.name, &result.entries);
+            fields.push((array.name.as_str(), value));
+        }
+        let value = match (structure, fields.len()) {
+            (None, 1) => fields.remove(0).1,
+            (structure, _) => {
+                let fields = fields.iter().map(|(name, value)| (*name, value.clone())).collect();
+                s::structure(structure.unwrap_or_default(), fields)
+            }
+        };
+        let mut value = value;
+        if !self.statements.is_empty() {
+            self.attributes.push(layout::blank());
+        }
+        attach(&mut value, std::mem::take(&mut self.attributes));
+        self.statements.push(Stmt::Expr(value, None));
+    }
+
+    fn result(&mut self, layout: Layout, name: &str, entries: &[Tree]) -> Expr {
+        match layout {
+            Layout::Scalar => match entries {
+                [entry, ..] => self.tree(entry),
+                [] => s::associated("constant", vec![s::number(0.0)]),
+            },
+            Layout::State | Layout::Speeds | Layout::Coordinates | Layout::Outputs => {
+                let (type_name, labels) = self.types.labelled(layout);
+                let values = self.all(entries);
+                s::structure(type_name, labels.iter().map(String::as_str).zip(values).collect())
+            }
+            Layout::Vector(_) => s::array(self.all(entries)),
+            Layout::Matrix(rows, columns) => {
+                if is_sparse(layout, entries) {
+                    self.sparse(name, rows, columns, entries)
+                } else {
+                    let lines = entries.chunks(columns.max(1));
+                    s::array(lines.map(|line| s::array(self.all(line))).collect())
+                }
+            }
+        }
+    }
+
+    /// A matrix that starts with zeros and gets the entries that are none.
+    fn sparse(&mut self, name: &str, rows: usize, columns: usize, entries: &[Tree]) -> Expr {
+        let zero = self.types.names.constant(&Rational::ZERO);
+        let mut local = name.to_owned();
+        while self.schedule.names.contains(&local) || self.types.is_argument(&local) {
+            local.push('_');
+        }
+        self.attributes.push(layout::blank());
+        self.push(s::mutable(&local), s::repeated(s::repeated(s::name(&zero), columns), rows));
+        for (index, tree) in entries.iter().enumerate() {
+            if *tree != Tree::Constant(Rational::ZERO) {
+                let place = s::entry(s::name(&local), &[index / columns, index % columns]);
+                self.statements.push(s::assign(place, self.tree(tree)));
+            }
+        }
+        s::name(&local)
+    }
+}
+
+/// Whether a matrix is written entry by entry instead of as a whole.
+fn is_sparse(layout: Layout, entries: &[Tree]) -> bool {
+    let zeros = entries.iter().filter(|&tree| *tree == Tree::Constant(Rational::ZERO)).count();
+    matches!(layout, Layout::Matrix(_, columns) if columns > 4 || 2 * zeros > entries.len())
+}
+
+/// Comments before an expression.
+fn attach(value: &mut Expr, attributes: Vec<Attribute>) {
+    match value {
+        Expr::Struct(inner) => inner.attrs = attributes,
+        Expr::Array(inner) => inner.attrs = attributes,
+        Expr::Path(inner) => inner.attrs = attributes,
+        Expr::Call(inner) => inner.attrs = attributes,
+        Expr::Unary(inner) => inner.attrs = attributes,
+        _ => {}
+    }
+}
+
+/// The trees of all steps.
+fn trees(steps: &[Step]) -> impl Iterator<Item = &Tree> {
+    steps.iter().flat_map(|step| match step {
+        Step::Let { tree, .. } => std::slice::from_ref(tree),
+        Step::SinCos { angle, .. } => std::slice::from_ref(angle),
+        Step::Factor { matrix, .. } => matrix,
+        Step::Solve { right, .. } => right,
+        Step::Paragraph { .. } => &[],
+    })
+}
+
+/// What a tree is made of.
+fn parts(tree: &Tree) -> Vec<&Tree> {
+    match tree {
+        Tree::Value(_) | Tree::Argument(_) | Tree::Constant(_) => Vec::new(),
+        Tree::Negate(a) | Tree::Function(_, a) => vec![a],
+        Tree::Binary(_, a, b) | Tree::Atan2(a, b) | Tree::Power(a, b) => vec![a, b],
+        Tree::Choice { compared, branches, .. } => compared.iter().chain(branches.iter()).collect(),
+    }
+}
+
+fn collect_constants(tree: &Tree, constants: &mut BTreeSet<Rational>) {
+    let mut rest = vec![tree];
+    while let Some(tree) = rest.pop() {
+        if let Tree::Constant(value) = tree {
+            constants.insert(value.clone());
+        }
+        rest.extend(parts(tree));
+    }
+}
+
+/// The number as Rust computes it: rounded once.
+fn constant(value: &Rational) -> Expr {
+    const EXACT: u64 = 1 << 53;
+    match value.as_small() {
+        // Both are exact as doubles, so the quotient is rounded once.
+        Some((numerator, denominator))
+            if denominator > 1
+                && numerator.unsigned_abs() < EXACT
+                && denominator.unsigned_abs() < EXACT
+                && !denominator.unsigned_abs().is_power_of_two() =>
+        {
+            let over = BinOp::Div(token::Slash::default());
+            s::binary(s::number(numerator as f64), over, s::number(denominator as f64))
+        }
+        _ => s::number(value.to_f64()),
+    }
+}
+
+/// Which arguments a struct holds.
+pub(super) struct Group {
+    /// Name of the struct.
+    pub(super) type_name: &'static str,
+    /// Name of the function's argument.
+    pub(super) argument: String,
+    /// Number of fields.
+    pub(super) len: usize,
+    /// One of its arguments.
+    pub(super) like: Argument,
+}
+
+impl Group {
+    fn holds(&self, argument: Argument) -> bool {
+        std::mem::discriminant(&argument) == std::mem::discriminant(&self.like)
+    }
+}

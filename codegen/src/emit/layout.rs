@@ -1,0 +1,85 @@
+//! Comments and blank lines, which syntax trees cannot hold.
+//!
+//! The printer writes `#[comment = "…"]` as a comment. A comment of its own kind marks the place
+//! of a blank line; no text of a spec can spell it, because every other comment starts with a
+//! space.
+
+use proc_macro2::{Literal, TokenStream};
+use quote::quote;
+use syn::{Attribute, Expr, Meta, token};
+
+/// What the marker is printed as.
+const BLANK_LINE: &str = "//%blank";
+const BLANK: &str = "%blank";
+
+/// An attribute that is printed as a comment of one line.
+pub(super) fn comment(text: &str) -> Attribute {
+    attribute("comment", &format!(" {}", one_line(text)))
+}
+
+/// An attribute that is printed as a blank line.
+pub(super) fn blank() -> Attribute {
+    attribute("comment", BLANK)
+}
+
+/// [`blank`] as tokens.
+pub(super) fn blank_tokens() -> TokenStream {
+    quote!(#[comment = #BLANK])
+}
+
+/// Rustdoc lines as tokens.
+pub(super) fn docs(lines: &[String]) -> TokenStream {
+    let lines = lines.iter().map(|line| match one_line(line) {
+        line if line.is_empty() => line,
+        line => format!(" {line}"),
+    });
+    quote!(#(#[doc = #lines])*)
+}
+
+fn attribute(name: &str, text: &str) -> Attribute {
+    let value = syn::Lit::new(Literal::string(text));
+    Attribute {
+        pound_token: token::Pound::default(),
+        style: syn::AttrStyle::Outer,
+        bracket_token: token::Bracket::default(),
+        meta: Meta::NameValue(syn::MetaNameValue {
+            path: super::syntax::path(name),
+            eq_token: token::Eq::default(),
+            value: Expr::Lit(syn::ExprLit { attrs: Vec::new(), lit: value }),
+        }),
+    }
+}
+
+/// A text on one line, without characters that steer the display: they could make code look like
+/// a comment.
+pub(super) fn one_line(text: &str) -> String {
+    let steers = |c: char| matches!(c, '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}' | '\u{2028}' | '\u{2029}' | '\u{200e}' | '\u{200f}');
+    let words = text.chars().filter(|&c| !steers(c)).map(|c| if c.is_control() { ' ' } else { c });
+    words.collect::<String>().trim_end().to_owned()
+}
+
+/// A sentence of a spec inside rustdoc: no links, no tags, no emphasis.
+pub(super) fn escaped(text: &str) -> String {
+    let mut escaped = String::with_capacity(text.len());
+    for c in one_line(text).chars() {
+        if matches!(c, '[' | ']' | '<' | '>' | '`' | '*' | '\\') {
+            escaped.push('\\');
+        }
+        escaped.push(c);
+    }
+    escaped
+}
+
+/// Printed code with its blank lines.
+pub(super) fn with_blank_lines(printed: &str) -> String {
+    let mut text = String::with_capacity(printed.len());
+    for line in printed.lines() {
+        if line.trim_start() != BLANK_LINE {
+            text.push_str(line);
+        } else if text.is_empty() || text.ends_with("\n\n") || text.ends_with("{\n") {
+            continue;
+        }
+        text.push('\n');
+    }
+    text
+}

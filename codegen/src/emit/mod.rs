@@ -1,0 +1,141 @@
+//! Readable Rust from a program. Nothing else in this crate knows how Rust is written.
+//!
+//! The files: [`types`] writes the structs, [`function`] signatures and rustdoc, [`body`] turns a
+//! schedule into statements, [`model`] implements the run-time trait, [`picture`] draws small
+//! matrices, [`layout`] places comments and blank lines, [`markdown`] writes the page about the
+//! model, and [`syntax`] holds short constructors.
+
+mod body;
+mod function;
+mod layout;
+mod markdown;
+mod model;
+mod picture;
+mod syntax;
+mod types;
+
+use quote::quote;
+use thiserror::Error;
+
+use crate::program::{FunctionKind, Program};
+use crate::schedule::{OperationCount, schedule};
+use types::Types;
+
+/// What to emit.
+#[derive(Debug, Clone)]
+pub struct Options {
+    /// The functions; empty for all that the program has.
+    pub functions: Vec<FunctionKind>,
+    /// Path of the run-time crate in the emitted text.
+    pub runtime: String,
+    /// Whether to emit `INFO` and the implementation of `Model`, which need the standard library
+    /// and all functions.
+    pub model_impl: bool,
+    /// Text of the spec, kept in the constant `SPEC`.
+    pub spec: Option<String>,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self {
+            functions: Vec::new(),
+            runtime: "::appell_runtime".to_owned(),
+            model_impl: true,
+            spec: None,
+        }
+    }
+}
+
+/// Emitted text.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Emitted {
+    /// Rust, to be included in a module that allows `non_snake_case`.
+    pub source: String,
+    /// The page about the model, in Markdown.
+    pub docs: String,
+    /// Operations of every function.
+    pub costs: Vec<(FunctionKind, OperationCount)>,
+}
+
+/// Why nothing was emitted.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+pub enum Error {
+    /// The path of the run-time crate is no path.
+    #[error("`{0}` is not the path of a crate or module")]
+    RuntimePath(String),
+    /// The implementation of `Model` needs a function that the program does not have.
+    #[error("`impl Model` needs the function {0:?}")]
+    MissingFunction(FunctionKind),
+    /// The number of entries contradicts the layout.
+    #[error("{kind:?}: `{array}` has {found} entries where its layout has {expected}")]
+    Shape {
+        /// Function.
+        kind: FunctionKind,
+        /// Result array.
+        array: String,
+        /// Entries of the layout.
+        expected: usize,
+        /// Entries of the array.
+        found: usize,
+    },
+    /// The text is not Rust, which is an error of this module.
+    #[error("emitted text does not parse: {0}")]
+    Syntax(String),
+}
+
+/// Emits the functions `kinds` and the structs they need, without the implementation of `Model`.
+pub fn emit_functions(program: &Program, kinds: &[FunctionKind]) -> Result<Emitted, Error> {
+    let options = Options { functions: kinds.to_vec(), model_impl: false, ..Options::default() };
+    emit(program, &options)
+}
+
+/// Emits a model.
+pub fn emit(program: &Program, options: &Options) -> Result<Emitted, Error> {
+    let runtime: syn::Path = syn::parse_str(&options.runtime)
+        .map_err(|_| Error::RuntimePath(options.runtime.clone()))?;
+    let types = Types::new(program);
+    let mut functions: Vec<_> = program
+        .functions
+        .iter()
+        .filter(|function| options.functions.is_empty() || options.functions.contains(&function.kind))
+        .collect();
+    functions.sort_by_key(|function| function.kind);
+
+    let mut costs = Vec::new();
+    let mut results = Vec::new();
+    let mut items = Vec::new();
+    let mut solves = false;
+    for function in functions {
+        let schedule = schedule(program, function);
+        let cost = OperationCount::of(&schedule);
+        solves |= cost.solves > 0;
+        results.extend(types.results_struct(function));
+        items.push(syn::Item::Fn(function::function(&types, function, &schedule, &cost)?));
+        costs.push((function.kind, cost));
+    }
+
+    let lu = solves.then(|| quote!(use #runtime::dense::{lu_factor, lu_solve};));
+    let info = options.model_impl.then(|| model::info(&program.info, &runtime));
+    let structs = types.argument_structs();
+    let head = quote! {
+        #lu
+        use #runtime::Real;
+        #info
+        #(#structs)*
+        #(#results)*
+    };
+    let mut file: syn::File = parse(head)?;
+    file.items.extend(items);
+    if options.model_impl {
+        let tail: syn::File = parse(model::implementation(&types, &runtime)?)?;
+        file.items.extend(tail.items);
+    }
+    let mut source = options.spec.as_deref().map(markdown::spec_constant).unwrap_or_default();
+    source.push_str(&layout::with_blank_lines(&prettyplease::unparse(&file)));
+    let docs = markdown::page(&types, &costs);
+    Ok(Emitted { source, docs, costs })
+}
+
+fn parse(tokens: proc_macro2::TokenStream) -> Result<syn::File, Error> {
+    syn::parse2(tokens).map_err(|error| Error::Syntax(error.to_string()))
+}

@@ -1,0 +1,245 @@
+//! Short constructors for the syntax that function bodies are made of.
+//!
+//! Bodies are built as syntax trees directly: parsing hundreds of small token streams would take
+//! longer than everything else.
+
+use proc_macro2::{Ident, Literal, Span};
+use syn::punctuated::Punctuated;
+use syn::{Attribute, BinOp, Expr, Member, Pat, Path, Stmt, UnOp, token};
+
+use crate::schedule::names::identifier;
+
+/// An identifier. Whatever the text is, the result is one identifier and nothing else.
+pub(super) fn ident(name: &str) -> Ident {
+    Ident::new(&identifier(name), Span::call_site())
+}
+
+/// The path of a local, a field's type or a function.
+pub(super) fn path(name: &str) -> Path {
+    Path::from(ident(name))
+}
+
+/// A name as an expression.
+pub(super) fn name(name: &str) -> Expr {
+    Expr::Path(syn::ExprPath { attrs: Vec::new(), qself: None, path: path(name) })
+}
+
+/// `T::function(arguments)`
+pub(super) fn associated(function: &str, arguments: Vec<Expr>) -> Expr {
+    let mut function_path = path("T");
+    function_path.segments.push(ident(function).into());
+    let function = Expr::Path(syn::ExprPath { attrs: Vec::new(), qself: None, path: function_path });
+    called(function, arguments)
+}
+
+/// `function(arguments)`
+pub(super) fn call(function: &str, arguments: Vec<Expr>) -> Expr {
+    called(name(function), arguments)
+}
+
+fn called(function: Expr, arguments: Vec<Expr>) -> Expr {
+    Expr::Call(syn::ExprCall {
+        attrs: Vec::new(),
+        func: Box::new(function),
+        paren_token: token::Paren::default(),
+        args: arguments.into_iter().collect(),
+    })
+}
+
+/// `receiver.method(arguments)`
+pub(super) fn method(receiver: Expr, method: &str, arguments: Vec<Expr>) -> Expr {
+    Expr::MethodCall(syn::ExprMethodCall {
+        attrs: Vec::new(),
+        receiver: Box::new(receiver),
+        dot_token: token::Dot::default(),
+        method: ident(method),
+        turbofish: None,
+        paren_token: token::Paren::default(),
+        args: arguments.into_iter().collect(),
+    })
+}
+
+/// `left operator right`; the printer adds the parentheses.
+pub(super) fn binary(left: Expr, op: BinOp, right: Expr) -> Expr {
+    Expr::Binary(syn::ExprBinary { attrs: Vec::new(), left: Box::new(left), op, right: Box::new(right) })
+}
+
+/// `-inner`
+pub(super) fn negated(inner: Expr) -> Expr {
+    let op = UnOp::Neg(token::Minus::default());
+    Expr::Unary(syn::ExprUnary { attrs: Vec::new(), op, expr: Box::new(inner) })
+}
+
+/// `&inner`
+pub(super) fn borrowed(inner: Expr) -> Expr {
+    Expr::Reference(syn::ExprReference {
+        attrs: Vec::new(),
+        and_token: token::And::default(),
+        mutability: None,
+        expr: Box::new(inner),
+    })
+}
+
+/// `[elements]`
+pub(super) fn array(elements: Vec<Expr>) -> Expr {
+    Expr::Array(syn::ExprArray {
+        attrs: Vec::new(),
+        bracket_token: token::Bracket::default(),
+        elems: elements.into_iter().collect(),
+    })
+}
+
+/// `[element; count]`
+pub(super) fn repeated(element: Expr, count: usize) -> Expr {
+    Expr::Repeat(syn::ExprRepeat {
+        attrs: Vec::new(),
+        bracket_token: token::Bracket::default(),
+        expr: Box::new(element),
+        semi_token: token::Semi::default(),
+        len: Box::new(index_number(count)),
+    })
+}
+
+/// A double, exactly.
+pub(super) fn number(value: f64) -> Expr {
+    let literal = literal(Literal::f64_unsuffixed(value.abs()));
+    if value.is_sign_negative() { negated(literal) } else { literal }
+}
+
+/// `17` as an index or a length.
+pub(super) fn index_number(value: usize) -> Expr {
+    literal(Literal::usize_unsuffixed(value))
+}
+
+fn literal(literal: Literal) -> Expr {
+    Expr::Lit(syn::ExprLit { attrs: Vec::new(), lit: syn::Lit::new(literal) })
+}
+
+/// `array[i][j]`
+pub(super) fn entry(array: Expr, indices: &[usize]) -> Expr {
+    indices.iter().fold(array, |array, &index| {
+        Expr::Index(syn::ExprIndex {
+            attrs: Vec::new(),
+            expr: Box::new(array),
+            bracket_token: token::Bracket::default(),
+            index: Box::new(index_number(index)),
+        })
+    })
+}
+
+/// `left = right;`
+pub(super) fn assign(left: Expr, right: Expr) -> Stmt {
+    let assign = syn::ExprAssign {
+        attrs: Vec::new(),
+        left: Box::new(left),
+        eq_token: token::Eq::default(),
+        right: Box::new(right),
+    };
+    Stmt::Expr(Expr::Assign(assign), Some(token::Semi::default()))
+}
+
+/// `Type { field: value, … }`, short where field and value have the same name.
+pub(super) fn structure(type_name: &str, fields: Vec<(&str, Expr)>) -> Expr {
+    let fields = fields.into_iter().map(|(field, value)| {
+        let field = ident(field);
+        let same = matches!(&value, Expr::Path(value) if value.path.is_ident(&field));
+        syn::FieldValue {
+            attrs: Vec::new(),
+            member: Member::Named(field),
+            colon_token: (!same).then(token::Colon::default),
+            expr: value,
+        }
+    });
+    Expr::Struct(syn::ExprStruct {
+        attrs: Vec::new(),
+        qself: None,
+        path: path(type_name),
+        brace_token: token::Brace::default(),
+        fields: fields.collect(),
+        dot2_token: None,
+        rest: None,
+    })
+}
+
+/// A name as a pattern.
+pub(super) fn binding(name: &str) -> Pat {
+    Pat::Ident(syn::PatIdent {
+        attrs: Vec::new(),
+        by_ref: None,
+        mutability: None,
+        ident: ident(name),
+        subpat: None,
+    })
+}
+
+/// `mut name`
+pub(super) fn mutable(name: &str) -> Pat {
+    Pat::Ident(syn::PatIdent {
+        attrs: Vec::new(),
+        by_ref: None,
+        mutability: Some(token::Mut::default()),
+        ident: ident(name),
+        subpat: None,
+    })
+}
+
+/// `(a, b)`
+pub(super) fn tuple_pattern(names: &[&str]) -> Pat {
+    Pat::Tuple(syn::PatTuple {
+        attrs: Vec::new(),
+        paren_token: token::Paren::default(),
+        elems: names.iter().map(|name| binding(name)).collect(),
+    })
+}
+
+/// `[a, _, b]`
+pub(super) fn array_pattern(names: &[Option<&str>]) -> Pat {
+    let wild = || {
+        Pat::Wild(syn::PatWild { attrs: Vec::new(), underscore_token: token::Underscore::default() })
+    };
+    Pat::Slice(syn::PatSlice {
+        attrs: Vec::new(),
+        bracket_token: token::Bracket::default(),
+        elems: names.iter().map(|name| name.map_or_else(wild, binding)).collect(),
+    })
+}
+
+/// `&Type { fields, .. }`, with the dots if the type has other fields.
+pub(super) fn borrowed_fields(type_name: &str, fields: &[&str], all: bool) -> Pat {
+    let fields: Punctuated<syn::FieldPat, token::Comma> = fields
+        .iter()
+        .map(|name| syn::FieldPat {
+            attrs: Vec::new(),
+            member: Member::Named(ident(name)),
+            colon_token: None,
+            pat: Box::new(binding(name)),
+        })
+        .collect();
+    let pattern = Pat::Struct(syn::PatStruct {
+        attrs: Vec::new(),
+        qself: None,
+        path: path(type_name),
+        brace_token: token::Brace::default(),
+        fields,
+        rest: (!all)
+            .then(|| syn::PatRest { attrs: Vec::new(), dot2_token: token::DotDot::default() }),
+    });
+    Pat::Reference(syn::PatReference {
+        attrs: Vec::new(),
+        and_token: token::And::default(),
+        mutability: None,
+        pat: Box::new(pattern),
+    })
+}
+
+/// `let pattern = value;`
+pub(super) fn let_(attrs: Vec<Attribute>, pattern: Pat, value: Expr) -> Stmt {
+    Stmt::Local(syn::Local {
+        attrs,
+        let_token: token::Let::default(),
+        modifiers: syn::LocalModifiers::default(),
+        pat: pattern,
+        init: Some(syn::LocalInit { eq_token: token::Eq::default(), expr: Box::new(value), diverge: None }),
+        semi_token: token::Semi::default(),
+    })
+}

@@ -1,6 +1,8 @@
 //! Reports as text, in the manner of a compiler.
 
-use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet, normalize_untrusted_str};
+use annotate_snippets::{
+    AnnotationKind, Group, Level, Origin, Renderer, Snippet, normalize_untrusted_str,
+};
 
 use super::{Diagnostic, MAX_SHOWN, Report, Severity};
 use crate::expr::Span;
@@ -33,9 +35,11 @@ fn render_one(renderer: &Renderer, report: &Report, diagnostic: &Diagnostic) -> 
         .primary_title(diagnostic.message.as_str())
         .id(diagnostic.code.text());
     let mut group = Group::with_title(title);
-    if !diagnostic.labels.is_empty() {
-        group = group.element(snippet(report, diagnostic));
-    }
+    group = if diagnostic.labels.is_empty() {
+        group.element(Origin::path(report.file.as_str()))
+    } else {
+        group.element(snippet(report, diagnostic))
+    };
     if let Some(help) = &diagnostic.help {
         group = group.element(Level::HELP.message(normalize_untrusted_str(help)));
     }

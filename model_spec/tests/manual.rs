@@ -188,7 +188,7 @@ fn renewed(text: &str) -> String {
         let what = mark.strip_prefix("<!-- generated: ").unwrap();
         let what = what.strip_suffix(" -->").unwrap();
         let end = after.find("<!-- end -->").unwrap();
-        write!(result, "{before}{mark}\n{}", generated(what)).unwrap();
+        write!(result, "{before}{mark}\n\n{}\n", generated(what)).unwrap();
         rest = &after[end..];
     }
     result + rest

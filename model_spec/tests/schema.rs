@@ -169,7 +169,7 @@ fn every_key_of_the_schema_is_known_to_the_parser_and_no_other() {
                     format!("{} = {{ kind = \"{kind}\", {key} = 0 }}", &table[1..])
                 }
                 None if path.is_empty() => format!("{key} = 0"),
-                None if path.ends_with(".turns") => {
+                None if path.rsplit('.').next() == Some("turns") => {
                     format!("{} = [{{ {key} = 0 }}]", &path[1..])
                 }
                 None => format!("{} = {{ {key} = 0 }}", &path[1..]),

@@ -82,7 +82,8 @@ fn snippet<'a>(
                     annotation.label(words.as_str())
                 }
             });
-    Snippet::source(&text[from..to])
+    // A carriage return would be shown as a symbol; a blank keeps the places.
+    Snippet::source(text[from..to].replace('\r', " "))
         .line_start(super::line_column(text, from).0)
         .path(report.file.as_str())
         .annotations(annotations)

@@ -169,7 +169,9 @@ fn constraints_and_loads_refer_to_their_items() {
         panic!("{:?}", mechanism.loads[1]);
     };
     let mut seen = Vec::new();
-    vector.iter().for_each(|c| c.visit(&mut |q| seen.push(q)));
+    for component in vector {
+        component.visit(&mut |q| seen.push(q));
+    }
     assert_eq!(
         seen,
         [
@@ -259,7 +261,7 @@ fn one_mistake_gives_one_message_however_often_it_is_used() {
         codes.dedup();
         let expected = vec![code];
         // A missing coordinate is missing in references too.
-        let also = vec![Code::UnknownName, Code::UnknownReference];
+        let also = [Code::UnknownName, Code::UnknownReference];
         let renamed = to.starts_with("theeta");
         assert!(
             codes == expected || renamed && codes.iter().all(|c| also.contains(c)),

@@ -145,6 +145,9 @@ impl std::fmt::Debug for Reference {
 }
 
 /// u = u₀ − K (y − `y_des(t)`), y being some of the states.
+///
+/// Inputs without an offset start from 0, those without a full row of gains are not fed back, and
+/// a state that does not exist makes the inputs NaN.
 #[derive(Debug)]
 pub struct StateFeedback {
     /// u₀, one number per input.
@@ -159,16 +162,16 @@ pub struct StateFeedback {
 
 impl InputSource for StateFeedback {
     fn inputs(&self, t: f64, x: &[f64], u: &mut [f64]) {
-        u.fill(0.0);
-        for (u, offset) in u.iter_mut().zip(&self.offset) {
-            *u = *offset;
+        let columns = self.selected.len();
+        let offsets = self.offset.iter().copied().chain(std::iter::repeat(0.0));
+        for (u, offset) in u.iter_mut().zip(offsets) {
+            *u = offset;
         }
         for (column, (&state, reference)) in self.selected.iter().zip(&self.references).enumerate()
         {
-            let deviation = x[state] - (reference.value)(t);
-            let columns = self.selected.len();
-            for (u, row) in u.iter_mut().zip(self.gains.chunks(columns)) {
-                *u -= row[column] * deviation;
+            let deviation = x.get(state).copied().unwrap_or(f64::NAN) - (reference.value)(t);
+            for (u, gains) in u.iter_mut().zip(self.gains.chunks_exact(columns)) {
+                *u -= gains[column] * deviation;
             }
         }
     }

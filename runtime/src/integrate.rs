@@ -48,7 +48,7 @@ pub struct Options {
     pub atol: f64,
     /// First step in s; chosen from the rates where absent.
     pub first_step: Option<f64>,
-    /// Longest step in s.
+    /// Longest step in s. The last step before a switching time or the end may be 1 % longer.
     pub max_step: f64,
     /// Accepted and rejected steps after which the integration is given up.
     pub max_steps: usize,
@@ -75,6 +75,12 @@ impl Options {
             atol,
             ..Self::default()
         }
+    }
+
+    /// The tolerated error of a state of this size; never zero, so that a state that stays zero
+    /// has no error even without `atol`.
+    fn scale(&self, size: f64) -> f64 {
+        (self.atol + self.rtol * size).max(f64::MIN_POSITIVE)
     }
 
     fn check(&self, span: [f64; 2]) -> Result<(), IntegrationError> {

@@ -343,7 +343,7 @@ pub fn describe(cause: &IntegrationError, info: &ModelInfo) -> String {
     };
     let reason = match cause {
         IntegrationError::NonFinite { component, .. } => {
-            format!("the rate of `{}` is not finite", name(*component))
+            format!("`{}` or its rate is not finite", name(*component))
         }
         IntegrationError::StepTooSmall { h, .. } => format!(
             "the step shrank to {h:.1e} s: the motion is singular here, or too stiff for the method"

@@ -316,7 +316,7 @@ fn a_singular_motion_ends_in_a_typed_error() {
     );
     assert_eq!(
         error.to_string(),
-        "the rate of state 0 is not finite at t = 0.5 s, x = [1.470497]"
+        "state 0 or its rate is not finite at t = 0.5 s, x = [1.470497]"
     );
 }
 
@@ -346,8 +346,46 @@ fn the_limit_on_steps_and_bad_arguments_are_typed_errors() {
     );
     let error = run([1.0, 0.0], &options);
     assert_eq!(error.to_string(), "end of the interval cannot be 0");
+    let error = run([0.0, f64::NAN], &options);
+    assert_eq!(error.to_string(), "end of the interval cannot be NaN");
     let error = run([0.0, 1.0], &Options::with_tolerances(-1.0, 0.0));
     assert_eq!(error.to_string(), "rtol cannot be -1");
+}
+
+#[test]
+fn a_start_that_is_no_number_is_a_typed_error() {
+    let mut x = [0.0, f64::NAN];
+    let options = Options::default();
+    let error = Solver::<Dop853>::new()
+        .integrate(
+            oscillator,
+            [0.0, 1.0],
+            &mut x,
+            &options,
+            &mut Watch::default(),
+            &mut NoObserver,
+        )
+        .unwrap_err();
+    assert!(
+        matches!(error, IntegrationError::NonFinite { component: 1, .. }),
+        "{error}"
+    );
+}
+
+#[test]
+fn a_state_at_rest_needs_no_absolute_tolerance() {
+    let mut x = [0.0, 0.0];
+    let outcome = Solver::<Dop853>::new()
+        .integrate(
+            oscillator,
+            [0.0, 9.0],
+            &mut x,
+            &Options::with_tolerances(1e-9, 0.0),
+            &mut Watch::default(),
+            &mut NoObserver,
+        )
+        .unwrap();
+    assert_eq!(outcome.ending, Ending::Finished);
 }
 
 #[test]

@@ -5,9 +5,9 @@ use std::fmt::Write as _;
 /// The time, the state and the reason of a failed integration. Times in s, states in SI.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum IntegrationError {
-    /// The rates stopped being numbers, however short the step.
+    /// The rates stopped being numbers, however short the step, or the start is none.
     #[error(
-        "the rate of state {component} is not finite at t = {t} s, x = {}",
+        "state {component} or its rate is not finite at t = {t} s, x = {}",
         list(state)
     )]
     NonFinite {
@@ -15,7 +15,7 @@ pub enum IntegrationError {
         t: f64,
         /// State at that time.
         state: Vec<f64>,
-        /// The first state whose rate, or whose new value, is infinite or not a number.
+        /// The first state whose rate, or whose value, is infinite or not a number.
         component: usize,
     },
     /// The tolerances ask for a step that no longer changes the time.

@@ -235,7 +235,7 @@ impl<P: EmbeddedPair> Solver<P> {
             return h.min(largest);
         }
         for (scale, x) in self.scale.iter_mut().zip(self.stages.x()) {
-            *scale = options.atol + options.rtol * x.abs();
+            *scale = options.scale(x.abs());
         }
         let x_norm = norm(self.stages.x().iter().copied(), &self.scale);
         let rates_norm = norm(self.stages.rates(0).iter().copied(), &self.scale);
@@ -252,7 +252,7 @@ impl<P: EmbeddedPair> Solver<P> {
     fn set_scale(&mut self, options: &Options) {
         let (x, x_new) = (self.stages.x(), self.stages.x_new());
         for (scale, (x, x_new)) in self.scale.iter_mut().zip(x.iter().zip(x_new)) {
-            *scale = options.atol + options.rtol * x.abs().max(x_new.abs());
+            *scale = options.scale(x.abs().max(x_new.abs()));
         }
     }
 

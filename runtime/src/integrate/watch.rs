@@ -94,13 +94,20 @@ pub(super) struct Watcher<'w, 'a, O> {
 }
 
 impl<'w, 'a, O: Observer> Watcher<'w, 'a, O> {
-    /// Checks the ranges and takes the signs of the events at the start.
+    /// Checks the state, the ranges and takes the signs of the events at the start.
     pub(super) fn start(
         watch: &'w mut Watch<'a>,
         observer: &'w mut O,
         t: f64,
         x: &[f64],
     ) -> Result<Self, IntegrationError> {
+        if let Some(component) = x.iter().position(|value| !value.is_finite()) {
+            return Err(IntegrationError::NonFinite {
+                t,
+                state: x.to_vec(),
+                component,
+            });
+        }
         let mut crossings = Crossings::default();
         crossings.start(&mut watch.events, t, x);
         let watcher = Self {

@@ -14,7 +14,7 @@
 //!
 //! ```text
 //! cargo check -p appell-runtime --no-default-features
-//! cargo check -p appell-runtime --no-default-features --features libm
+//! cargo test  -p appell-runtime --no-default-features --features libm
 //! ```
 
 #![cfg_attr(not(feature = "std"), no_std)]

@@ -111,6 +111,7 @@ fn lanes_equal_scalars_bit_by_bit() {
     }
 }
 
+#[cfg(feature = "std")]
 #[test]
 fn sine_and_cosine_are_those_of_the_standard_library() {
     for x in ARGUMENTS {

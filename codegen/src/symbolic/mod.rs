@@ -15,6 +15,7 @@ mod graph;
 pub mod identity;
 mod interval;
 mod node;
+pub mod print;
 mod rational;
 mod substitute;
 pub mod vector;

@@ -3,6 +3,7 @@
 // A failed integration fails the test.
 #![allow(clippy::unwrap_used)]
 
+use appell_runtime::Lanes;
 use appell_runtime::integrate::{
     Dop853, Dopri5, EmbeddedPair, Ending, IntegrationError, NoObserver, Options, Outcome, Rk4,
     Solver, Statistics, Step, Watch,
@@ -464,4 +465,29 @@ fn evaluations_are_counted_truly() {
             evaluations: 2330
         }
     );
+}
+
+#[test]
+fn an_ensemble_in_lanes_follows_its_own_motions() {
+    // Eight oscillators, each with its frequency: state i of lane k at x[8 i + k].
+    let frequencies = Lanes(std::array::from_fn::<f64, 8, _>(|lane| {
+        1.0 + 0.1 * lane as f64
+    }));
+    let mut x: Vec<f64> = [1.0; 8].into_iter().chain([0.0; 8]).collect();
+    let together = |_: f64, x: &[f64], rates: &mut [f64]| {
+        let (x, _) = x.as_chunks::<8>();
+        let (rates, _) = rates.as_chunks_mut::<8>();
+        rates[0] = x[1];
+        rates[1] = (-(frequencies * frequencies * Lanes(x[0]))).0;
+    };
+    integrate::<Dop853>(together, [0.0, 20.0], &mut x, 1e-10);
+    for lane in 0..8 {
+        let exact = (20.0 * frequencies.0[lane]).cos();
+        // The tolerance per step times some hundred steps and the growth of phase errors.
+        assert!(
+            (x[lane] - exact).abs() < 1e-7,
+            "{lane}: {} {exact}",
+            x[lane]
+        );
+    }
 }

@@ -12,7 +12,10 @@ use std::marker::PhantomData;
 /// An adaptive integrator with its work arrays.
 ///
 /// The arrays are sized at the first use and kept, so that repeated integrations of the same size
-/// allocate nothing but events found and errors.
+/// allocate nothing but switching times, events found and errors.
+///
+/// An ensemble with a common step is one system: state i of member k at `x[members * i + k]`, with
+/// rates computed in [`Lanes`](crate::Lanes). Its error is the root mean square over all members.
 #[derive(Debug, Clone)]
 pub struct Solver<P> {
     stages: Stages,

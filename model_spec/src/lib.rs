@@ -26,6 +26,7 @@ pub use diagnostic::{Code, Diagnostic, Report, Severity};
 pub use mechanism::Mechanism;
 pub use resolve::{Scope, Snippet, formula};
 pub use starter::{NameError, starter};
+pub use suggest::closest;
 
 /// A mechanism that passed every check of this crate.
 #[derive(Debug, Clone)]

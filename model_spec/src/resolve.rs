@@ -7,6 +7,7 @@ mod expression;
 mod formula;
 mod loads;
 mod names;
+mod nominal;
 mod place;
 mod placement;
 mod quantities;
@@ -63,6 +64,7 @@ pub fn resolve(ast: &SpecAst, file: &str, text: &str) -> (Mechanism, Vec<Diagnos
         outputs,
     };
     resolver.initial(&mut mechanism);
+    resolver.physical(&mechanism.bodies, &mechanism.parameters);
     resolver.unused(&mechanism);
     (mechanism, resolver.findings)
 }

@@ -4,10 +4,7 @@
 const MAX_LENGTH: usize = 64;
 
 /// The candidate that a slip of the pen turns into `word`, if there is one.
-pub(crate) fn closest<'a>(
-    word: &str,
-    candidates: impl IntoIterator<Item = &'a str>,
-) -> Option<&'a str> {
+pub fn closest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     if word.len() > MAX_LENGTH {
         return None;
     }

@@ -40,6 +40,7 @@ impl Reader<'_> {
             return vec![self.keys(&owner, keys, None, table)];
         }
         if table.len() > MAX_ITEMS {
+            self.incomplete = true;
             self.tell(
                 Diagnostic::error(
                     Code::LimitExceeded,
@@ -175,7 +176,7 @@ impl Reader<'_> {
             }
         }
         let present = |key: &Key| table.contains_key(key.name) || meant.contains(&key.name);
-        item.intact &= self.required(owner, keys, present);
+        item.intact &= self.required(owner, keys, table, present);
         item
     }
 
@@ -215,6 +216,7 @@ impl Reader<'_> {
         &mut self,
         owner: &Owner<'_>,
         keys: &'static [Key],
+        table: &DeTable<'_>,
         present: impl Fn(&Key) -> bool,
     ) -> bool {
         let mut complete = true;
@@ -254,11 +256,14 @@ impl Reader<'_> {
                 }
             }
             [first, second, ..] => {
-                self.conflict(
-                    owner,
-                    &join(way(*first).map(|k| k.name), " with "),
-                    &join(way(*second).map(|k| k.name), " with "),
-                );
+                let [first, second] = [*first, *second].map(|n| {
+                    let place = in_text_order(table)
+                        .into_iter()
+                        .find(|(name, _)| way(n).any(|k| k.name == name.get_ref().as_ref()))
+                        .map_or_else(|| owner.span.clone(), |(name, _)| name.span());
+                    (join(way(n).map(|k| k.name), " with "), place)
+                });
+                self.conflict(owner, first, second);
                 complete = false;
             }
         }
@@ -276,14 +281,21 @@ impl Reader<'_> {
         );
     }
 
-    fn conflict(&mut self, owner: &Owner<'_>, first: &str, second: &str) {
+    /// Tells of two ways to say one thing; the later one is the one too many.
+    fn conflict(&mut self, owner: &Owner<'_>, a: (String, Span), b: (String, Span)) {
+        let (first, second) = if a.1.start <= b.1.start {
+            (a, b)
+        } else {
+            (b, a)
+        };
         self.tell(
             Diagnostic::error(
                 Code::ConflictingKeys,
-                format!("`{}` has both {first} and {second}", owner.name),
+                format!("`{}` has both {} and {}", owner.name, first.0, second.0),
             )
-            .at(owner.span.clone(), "said twice")
-            .help(format!("keep either {first} or {second}")),
+            .at(second.1, "said again")
+            .at(first.1, "said here")
+            .help(format!("keep either {} or {}", first.0, second.0)),
         );
     }
 

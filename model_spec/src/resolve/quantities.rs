@@ -352,6 +352,11 @@ impl<'a> Resolver<'a> {
                     let limit = item.entry("range").map(|e| e.span.clone());
                     self.outside(&coordinate.label.name, side, span, limit);
                 }
+            } else if coordinate
+                .range
+                .is_some_and(|[low, high]| low > 0.0 || high < 0.0)
+            {
+                self.start_outside(item);
             }
         }
         let items = ast.items("pseudo_velocities").iter();
@@ -360,6 +365,22 @@ impl<'a> Resolver<'a> {
                 speed.initial = value;
             }
         }
+    }
+
+    /// Tells that 0, the initial value of what is left out, is not in the range.
+    fn start_outside(&mut self, item: &ItemAst) {
+        self.tell(
+            Diagnostic::error(
+                Code::ValueOutsideLimits,
+                format!("`{}` would start at 0, outside its range", item.name.value),
+            )
+            .at(item.name.span.clone(), "has no initial value")
+            .at(
+                item.entry("range").map_or(0..0, |e| e.span.clone()),
+                "this range",
+            )
+            .help("write `initial = …` with a value inside the range"),
+        );
     }
 
     fn initial_value(&mut self, item: &ItemAst, unit: &Unit) -> Option<(f64, Span)> {

@@ -1,0 +1,216 @@
+//! What the parameters' values make of masses and inertias.
+
+use num_traits::ToPrimitive;
+
+use crate::diagnostic::{Code, Diagnostic, Severity};
+use crate::expr::{BinaryOp, Expr, ExprKind, Function, Quantity, Relation};
+use crate::mechanism::{Body, Inertia, Parameter};
+
+use super::Resolver;
+
+/// Rounding of a moment, relative to the largest: a thin disc lies exactly on the edge.
+const ROUNDING: f64 = 1e-9;
+
+impl Resolver<'_> {
+    /// Tells of masses and inertias that no body can have.
+    pub(super) fn physical(&mut self, bodies: &[Body], parameters: &[Parameter]) {
+        // Values that could not be read are placeholders; nothing follows from them.
+        if self.ast.broken || self.findings.iter().any(|f| f.severity == Severity::Error) {
+            return;
+        }
+        for body in bodies {
+            self.physical_mass(body, parameters);
+            if let Some(inertia) = &body.inertia {
+                self.physical_inertia(body, inertia, parameters);
+            }
+        }
+    }
+
+    fn physical_mass(&mut self, body: &Body, parameters: &[Parameter]) {
+        let mass = value(&body.mass, parameters);
+        let diagnostic = if !mass.is_finite() {
+            not_finite("mass", body, &body.mass)
+        } else if mass < 0.0 {
+            Diagnostic::error(
+                Code::NotPhysical,
+                format!("the mass of `{}` is negative: {mass} kg", body.name),
+            )
+            .at(body.mass.span.clone(), "with the values of this spec")
+        } else {
+            return;
+        };
+        self.tell(diagnostic);
+    }
+
+    fn physical_inertia(&mut self, body: &Body, inertia: &Inertia, parameters: &[Parameter]) {
+        let entries = inertia.matrix.each_ref();
+        let matrix = entries.map(|row| row.each_ref().map(|e| value(e, parameters)));
+        for (row, values) in entries.iter().zip(&matrix) {
+            for (entry, value) in row.iter().zip(values) {
+                if !value.is_finite() {
+                    self.tell(not_finite("inertia", body, entry));
+                    return;
+                }
+            }
+        }
+        if !is_physical(&matrix) {
+            self.tell(
+                Diagnostic::warning(
+                    Code::NotPhysical,
+                    format!("no body can have the inertia of `{}`", body.name),
+                )
+                .at(inertia.span.clone(), "with the values of this spec")
+                .help("each principal moment is at most the sum of the other two"),
+            );
+        }
+    }
+}
+
+fn not_finite(what: &str, body: &Body, entry: &Expr) -> Diagnostic {
+    Diagnostic::error(
+        Code::NotFinite,
+        format!("the {what} of `{}` is not finite", body.name),
+    )
+    .at(entry.span.clone(), "with the values of this spec")
+}
+
+/// Whether a tensor belongs to some distribution of mass: its second moments, `tr(I)/2 - I`, form
+/// a matrix without negative eigenvalue, which its principal minors tell.
+fn is_physical(inertia: &[[f64; 3]; 3]) -> bool {
+    let half_trace = (inertia[0][0] + inertia[1][1] + inertia[2][2]) / 2.0;
+    if half_trace <= 0.0 {
+        return half_trace == 0.0 && inertia.iter().flatten().all(|entry| *entry == 0.0);
+    }
+    // Relative to the trace, so that rounding means the same for a watch and for a ship.
+    let mut s = inertia.map(|row| row.map(|entry| -entry / half_trace));
+    for i in 0..3 {
+        s[i][i] += 1.0;
+    }
+    let minor = |i: usize, j: usize| s[i][i] * s[j][j] - s[i][j] * s[j][i];
+    let determinant = s[0][0] * minor(1, 2) - s[0][1] * (s[1][0] * s[2][2] - s[1][2] * s[2][0])
+        + s[0][2] * (s[1][0] * s[2][1] - s[1][1] * s[2][0]);
+    let minors = [
+        s[0][0],
+        s[1][1],
+        s[2][2],
+        minor(0, 1),
+        minor(0, 2),
+        minor(1, 2),
+        determinant,
+    ];
+    minors.iter().all(|m| *m >= -ROUNDING)
+}
+
+/// The value of a constant expression; `NaN` where it has none.
+fn value(expr: &Expr, parameters: &[Parameter]) -> f64 {
+    let of = |e: &Expr| value(e, parameters);
+    match &expr.kind {
+        ExprKind::Number(number) => number.to_f64().unwrap_or(f64::NAN),
+        ExprKind::Quantity(Quantity::Parameter(id)) => {
+            parameters.get(*id).map_or(f64::NAN, |p| p.value)
+        }
+        ExprKind::Quantity(Quantity::Pi) => std::f64::consts::PI,
+        ExprKind::Quantity(_) => f64::NAN,
+        ExprKind::Negate(a) => -of(a),
+        ExprKind::Binary(op, a, b) => {
+            let (a, b) = (of(a), of(b));
+            match op {
+                BinaryOp::Add => a + b,
+                BinaryOp::Subtract => a - b,
+                BinaryOp::Multiply => a * b,
+                BinaryOp::Divide => a / b,
+                BinaryOp::Power => a.powf(b),
+            }
+        }
+        ExprKind::Call(function, arguments) => {
+            let values: Vec<f64> = arguments.iter().map(of).collect();
+            call(*function, &values)
+        }
+        ExprKind::Choice {
+            relation,
+            compared,
+            branches,
+        } => {
+            let [a, b] = compared.each_ref().map(of);
+            let holds = match relation {
+                Relation::Less => a < b,
+                Relation::LessOrEqual => a <= b,
+                Relation::Greater => a > b,
+                Relation::GreaterOrEqual => a >= b,
+            };
+            of(&branches[usize::from(!holds)])
+        }
+    }
+}
+
+fn call(function: Function, values: &[f64]) -> f64 {
+    let smooth_abs = |a: f64, w: f64| a.hypot(w);
+    match (function, values) {
+        (Function::Sin, [a]) => a.sin(),
+        (Function::Cos, [a]) => a.cos(),
+        (Function::Tan, [a]) => a.tan(),
+        (Function::Asin, [a]) => a.asin(),
+        (Function::Acos, [a]) => a.acos(),
+        (Function::Atan, [a]) => a.atan(),
+        (Function::Sinh, [a]) => a.sinh(),
+        (Function::Cosh, [a]) => a.cosh(),
+        (Function::Tanh, [a]) => a.tanh(),
+        (Function::Exp, [a]) => a.exp(),
+        (Function::Ln, [a]) => a.ln(),
+        (Function::Sqrt, [a]) => a.sqrt(),
+        (Function::Abs, [a]) => a.abs(),
+        (Function::Sign, [a]) => f64::from(i8::from(*a > 0.0) - i8::from(*a < 0.0)),
+        (Function::Atan2, [a, b]) => a.atan2(*b),
+        (Function::Hypot, [a, b]) => a.hypot(*b),
+        (Function::Min, [a, b]) => a.min(*b),
+        (Function::Max, [a, b]) => a.max(*b),
+        (Function::SmoothAbs, [a, w]) => smooth_abs(*a, *w),
+        (Function::SmoothSign, [a, w]) => (a / w).tanh(),
+        (Function::SmoothMin, [a, b, w]) => f64::midpoint(a + b, -smooth_abs(a - b, *w)),
+        (Function::SmoothMax, [a, b, w]) => f64::midpoint(a + b, smooth_abs(a - b, *w)),
+        _ => f64::NAN,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn diagonal(moments: [f64; 3]) -> [[f64; 3]; 3] {
+        let mut matrix = [[0.0; 3]; 3];
+        for i in 0..3 {
+            matrix[i][i] = moments[i];
+        }
+        matrix
+    }
+
+    #[test]
+    fn discs_rods_and_points_are_bodies_and_a_lone_moment_is_not() {
+        for moments in [
+            [1.0, 2.0, 1.0],
+            [0.1, 0.3, 0.2],
+            [1.0, 1.0, 0.0],
+            [0.0, 0.0, 0.0],
+        ] {
+            assert!(is_physical(&diagonal(moments)), "{moments:?}");
+        }
+        for moments in [
+            [0.0, 1.0, 0.0],
+            [1.0, 2.1, 1.0],
+            [-1.0, 1.0, 1.0],
+            [-1.0, -1.0, -1.0],
+        ] {
+            assert!(!is_physical(&diagonal(moments)), "{moments:?}");
+        }
+    }
+
+    #[test]
+    fn products_of_inertia_count() {
+        let mut matrix = diagonal([1.0, 1.0, 1.0]);
+        for (product, expected) in [(0.4, true), (0.6, false)] {
+            matrix[0][1] = product;
+            matrix[1][0] = product;
+            assert_eq!(is_physical(&matrix), expected, "{product}");
+        }
+    }
+}

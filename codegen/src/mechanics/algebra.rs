@@ -1,7 +1,7 @@
 //! The graph with the tools that every stage of the derivation uses on it.
 
-use crate::symbolic::{Derivatives, Expr, Graph, IdentityTest, Substitution, SymbolId};
 use crate::symbolic::vector::Vec3;
+use crate::symbolic::{Derivatives, Expr, Graph, IdentityTest, Substitution, SymbolId};
 
 use super::symbols::{Symbols, ids};
 
@@ -22,16 +22,24 @@ impl Algebra {
     /// Tools for the expressions in `graph`.
     pub fn new(graph: Graph, symbols: &Symbols, seed: u64) -> Self {
         let coordinates = ids(&graph, &symbols.coordinates);
-        Self { graph, test: IdentityTest::new(seed), coordinates, derivatives: Vec::new() }
+        Self {
+            graph,
+            test: IdentityTest::new(seed),
+            coordinates,
+            derivatives: Vec::new(),
+        }
     }
 
     /// `∂expr/∂symbol`; zero where `symbol` is not a symbol.
     pub fn derivative(&mut self, expr: Expr, symbol: Expr) -> Expr {
-        let Some(symbol) = self.graph.as_symbol(symbol) else { return Graph::ZERO };
+        let Some(symbol) = self.graph.as_symbol(symbol) else {
+            return Graph::ZERO;
+        };
         let place = match self.derivatives.iter().position(|(s, _)| *s == symbol) {
             Some(place) => place,
             None => {
-                self.derivatives.push((symbol, Derivatives::with_respect_to(symbol)));
+                self.derivatives
+                    .push((symbol, Derivatives::with_respect_to(symbol)));
                 self.derivatives.len() - 1
             }
         };
@@ -71,15 +79,20 @@ impl Algebra {
         denominator: Expr,
         parts: &[(Expr, Expr)],
     ) -> Option<[Expr; 3]> {
-        let mut written_out = Substitution::of_parts(parts);
+        let mut written_out = Substitution::of_parts(&self.graph, parts);
         let over = written_out.apply(&mut self.graph, numerator)?;
         let over = self.graph.expand(over, MOST_TERMS)?;
         let under = self.graph.expand(denominator, MOST_TERMS)?;
-        let (over, under) =
-            (self.graph.take_out_common_factors(over), self.graph.take_out_common_factors(under));
+        let (over, under) = (
+            self.graph.take_out_common_factors(over),
+            self.graph.take_out_common_factors(under),
+        );
         let quotient = self.graph.div(over, under);
         let (over, under) = self.graph.split_fraction(quotient);
-        let (over, under) = (self.graph.expand(over, MOST_TERMS)?, self.graph.expand(under, MOST_TERMS)?);
+        let (over, under) = (
+            self.graph.expand(over, MOST_TERMS)?,
+            self.graph.expand(under, MOST_TERMS)?,
+        );
         let (whole, rest) = self.graph.divide_out(over, under);
         Some([whole, rest, under].map(|part| self.graph.nest(part)))
     }

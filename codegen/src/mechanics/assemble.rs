@@ -31,19 +31,33 @@ pub const ALL: [FunctionKind; 12] = [
 ];
 
 /// The program of a derivation, with the functions `kinds`.
-pub fn program(mut derivation: Derivation, mechanism: &Mechanism, kinds: &[FunctionKind]) -> Stage<Program> {
+pub fn program(
+    mut derivation: Derivation,
+    mechanism: &Mechanism,
+    kinds: &[FunctionKind],
+) -> Stage<Program> {
     let mut functions = Vec::with_capacity(kinds.len());
     for &kind in kinds {
-        functions.push(Function { kind, results: derivation.results(mechanism, kind)? });
+        functions.push(Function {
+            kind,
+            results: derivation.results(mechanism, kind)?,
+        });
     }
     let signals = derivation.tabulated_inputs();
     let symbols = &derivation.symbols;
     let graph = &derivation.algebra.graph;
     let mut input_symbols = symbols.inputs.clone();
-    input_symbols.extend(signals.iter().map(|&(signal, order)| symbols.signals[signal][usize::from(order)]));
+    input_symbols.extend(
+        signals
+            .iter()
+            .map(|&(signal, order)| symbols.signals[signal][usize::from(order)]),
+    );
     let arguments = Arguments {
         time: ids(graph, &[symbols.time])[0],
-        states: ids(graph, &[symbols.speeds.as_slice(), &symbols.coordinates].concat()),
+        states: ids(
+            graph,
+            &[symbols.speeds.as_slice(), &symbols.coordinates].concat(),
+        ),
         inputs: ids(graph, &input_symbols),
         parameters: ids(graph, &symbols.parameters),
     };
@@ -53,7 +67,13 @@ pub fn program(mut derivation: Derivation, mechanism: &Mechanism, kinds: &[Funct
         .flat_map(|r| &r.entries)
         .any(|&e| graph.mentions(e, &[arguments.time]));
     let info = info(&derivation, mechanism, &signals, explicit_time);
-    Ok(Program { info, file: mechanism.file.clone(), graph: derivation.algebra.graph, arguments, functions })
+    Ok(Program {
+        info,
+        file: mechanism.file.clone(),
+        graph: derivation.algebra.graph,
+        arguments,
+        functions,
+    })
 }
 
 impl Derivation {
@@ -67,12 +87,17 @@ impl Derivation {
         };
         Ok(match kind {
             FunctionKind::Kinematics => {
-                vec![array("coordinate_rates", Layout::Coordinates, self.coordinate_rates.clone())]
+                vec![array(
+                    "coordinate_rates",
+                    Layout::Coordinates,
+                    self.coordinate_rates.clone(),
+                )]
             }
             FunctionKind::AccelerationEnergy => {
                 let mut results = Vec::new();
                 for body in self.bodies.clone() {
-                    let s = acceleration_energy(&mut self.algebra, &body, &self.motion.accelerations);
+                    let s =
+                        acceleration_energy(&mut self.algebra, &body, &self.motion.accelerations);
                     let s = self.algebra.graph.name(&format!("s_{}", body.name), s);
                     results.push(array(&body.name, Layout::Scalar, vec![s]));
                 }
@@ -83,20 +108,36 @@ impl Derivation {
             }
             FunctionKind::MassMatrix => {
                 let entries = self.gibbs.mass_matrix.concat();
-                vec![array("mass_matrix", Layout::Matrix(speeds, speeds), entries)]
+                vec![array(
+                    "mass_matrix",
+                    Layout::Matrix(speeds, speeds),
+                    entries,
+                )]
             }
             FunctionKind::Bias => vec![array("bias", Layout::Speeds, self.gibbs.bias.clone())],
             FunctionKind::GeneralizedForces => {
-                vec![array("generalized_forces", Layout::Speeds, self.forces.clone())]
+                vec![array(
+                    "generalized_forces",
+                    Layout::Speeds,
+                    self.forces.clone(),
+                )]
             }
             FunctionKind::Rates => vec![array("rates", Layout::State, self.rates())],
             FunctionKind::Jacobians => self.jacobians(false),
             FunctionKind::AllJacobians => self.jacobians(true),
             FunctionKind::Energies => {
-                let kinetic: Vec<Expr> =
-                    self.bodies.clone().iter().map(|body| kinetic_energy(&mut self.algebra, body)).collect();
+                let kinetic: Vec<Expr> = self
+                    .bodies
+                    .clone()
+                    .iter()
+                    .map(|body| kinetic_energy(&mut self.algebra, body))
+                    .collect();
                 let kinetic = self.algebra.graph.sum(&kinetic);
-                let potential: Vec<Expr> = self.loads.iter().filter_map(|load| load.potential).collect();
+                let potential: Vec<Expr> = self
+                    .loads
+                    .iter()
+                    .filter_map(|load| load.potential)
+                    .collect();
                 let potential = self.algebra.graph.sum(&potential);
                 let power: Vec<Expr> = self
                     .loads
@@ -105,13 +146,18 @@ impl Derivation {
                     .map(|load| load.power(&mut self.algebra.graph))
                     .collect();
                 let power = self.algebra.graph.sum(&power);
-                [("kinetic", kinetic), ("potential", potential), ("power", power)]
-                    .map(|(name, value)| array(name, Layout::Scalar, vec![value]))
-                    .into()
+                [
+                    ("kinetic", kinetic),
+                    ("potential", potential),
+                    ("power", power),
+                ]
+                .map(|(name, value)| array(name, Layout::Scalar, vec![value]))
+                .into()
             }
             FunctionKind::ConstraintResidual => {
                 let graph = &mut self.algebra.graph;
-                let residual = reactions::residual(graph, &self.constraints, &self.coordinate_rates);
+                let residual =
+                    reactions::residual(graph, &self.constraints, &self.coordinate_rates);
                 vec![array("residual", Layout::Vector(residual.len()), residual)]
             }
             FunctionKind::ConstraintForces => {
@@ -124,10 +170,17 @@ impl Derivation {
                     &self.bodies,
                     &self.motion.accelerations,
                 )?;
-                vec![array("forces", Layout::Matrix(forces.len(), 3), forces.concat())]
+                vec![array(
+                    "forces",
+                    Layout::Matrix(forces.len(), 3),
+                    forces.concat(),
+                )]
             }
             FunctionKind::Outputs => {
-                let lowering = Lowering { symbols: &self.symbols, rates: &self.coordinate_rates };
+                let lowering = Lowering {
+                    symbols: &self.symbols,
+                    rates: &self.coordinate_rates,
+                };
                 let mut values = Vec::with_capacity(mechanism.outputs.len());
                 for (index, output) in mechanism.outputs.iter().enumerate() {
                     let value = lowering
@@ -157,20 +210,37 @@ impl Derivation {
         let residual = implicit.residual(&mut self.algebra, &self.symbols);
         let states = [self.symbols.speeds.as_slice(), &self.symbols.coordinates].concat();
         let tabulated = self.tabulated_inputs();
-        let tabulated = tabulated.iter().map(|&(signal, order)| self.symbols.signals[signal][usize::from(order)]);
-        let inputs: Vec<Expr> = self.symbols.inputs.iter().copied().chain(tabulated).collect();
+        let tabulated = tabulated
+            .iter()
+            .map(|&(signal, order)| self.symbols.signals[signal][usize::from(order)]);
+        let inputs: Vec<Expr> = self
+            .symbols
+            .inputs
+            .iter()
+            .copied()
+            .chain(tabulated)
+            .collect();
         let mut variables = vec![("a", states), ("b", inputs)];
         if parameters {
             variables.push(("p", self.symbols.parameters.clone()));
         }
-        let mut results = vec![Array { name: "rates".to_owned(), layout: Layout::State, entries: rates.clone() }];
+        let mut results = vec![Array {
+            name: "rates".to_owned(),
+            layout: Layout::State,
+            entries: rates.clone(),
+        }];
         for (name, variables) in variables {
-            let columns = implicit.jacobian(&mut self.algebra, &self.symbols, &residual, &variables);
+            let columns =
+                implicit.jacobian(&mut self.algebra, &self.symbols, &residual, &variables);
             let entries = (0..rates.len())
                 .flat_map(|row| columns.iter().map(move |column| column[row]))
                 .collect();
             let layout = Layout::Matrix(rates.len(), variables.len());
-            results.push(Array { name: name.to_owned(), layout, entries });
+            results.push(Array {
+                name: name.to_owned(),
+                layout,
+                entries,
+            });
         }
         results
     }
@@ -180,7 +250,9 @@ impl Derivation {
         let graph = &self.algebra.graph;
         let mentioned = |symbol: Expr| {
             let symbol = ids(graph, &[symbol]);
-            self.rates().iter().any(|&rate| graph.mentions(rate, &symbol))
+            self.rates()
+                .iter()
+                .any(|&rate| graph.mentions(rate, &symbol))
         };
         let mut found = Vec::new();
         for (signal, orders) in self.symbols.signals.iter().enumerate() {
@@ -201,10 +273,18 @@ fn info(
     explicit_time: bool,
 ) -> ModelInfo {
     let everywhere = [f64::NEG_INFINITY, f64::INFINITY];
-    let speeds = mechanism.pseudo_velocities.iter().map(|w| quantity(&w.label, w.initial, everywhere));
-    let coordinates =
-        mechanism.coordinates.iter().map(|q| quantity(&q.label, q.initial, q.range.unwrap_or(everywhere)));
-    let declared = mechanism.inputs.iter().map(|u| quantity(&u.label, 0.0, everywhere));
+    let speeds = mechanism
+        .pseudo_velocities
+        .iter()
+        .map(|w| quantity(&w.label, w.initial, everywhere));
+    let coordinates = mechanism
+        .coordinates
+        .iter()
+        .map(|q| quantity(&q.label, q.initial, q.range.unwrap_or(everywhere)));
+    let declared = mechanism
+        .inputs
+        .iter()
+        .map(|u| quantity(&u.label, 0.0, everywhere));
     let tabulated = signals.iter().map(|&(signal, order)| {
         let mut input = quantity(&mechanism.signals[signal].label, 0.0, everywhere);
         if order > 0 {
@@ -214,10 +294,17 @@ fn info(
         input
     });
     let parameters = mechanism.parameters.iter().map(|p| {
-        let range = [p.at_least.unwrap_or(f64::NEG_INFINITY), p.at_most.unwrap_or(f64::INFINITY)];
+        let range = [
+            p.at_least.unwrap_or(f64::NEG_INFINITY),
+            p.at_most.unwrap_or(f64::INFINITY),
+        ];
         quantity(&p.label, p.value, range)
     });
-    let rows = derivation.constraints.rows.iter().filter(|r| !r.is_embedded());
+    let rows = derivation
+        .constraints
+        .rows
+        .iter()
+        .filter(|r| !r.is_embedded());
     ModelInfo {
         name: mechanism.name.clone().into(),
         title: mechanism.title.clone().into(),
@@ -229,9 +316,18 @@ fn info(
         signals: mechanism.signals.iter().map(signal_table).collect(),
         signal_inputs: signals.to_vec().into(),
         parameters: parameters.collect(),
-        outputs: mechanism.outputs.iter().map(|y| quantity(&y.label, 0.0, everywhere)).collect(),
+        outputs: mechanism
+            .outputs
+            .iter()
+            .map(|y| quantity(&y.label, 0.0, everywhere))
+            .collect(),
         constraint_rows: rows.map(|r| r.name.clone().into()).collect(),
-        reactions: derivation.constraints.reactions.iter().map(|r| r.clone().into()).collect(),
+        reactions: derivation
+            .constraints
+            .reactions
+            .iter()
+            .map(|r| r.clone().into())
+            .collect(),
         explicit_time,
     }
 }

@@ -4,7 +4,7 @@ use appell_spec::mechanism::{ConstraintKind, GROUND, Mechanism, PointId};
 
 use super::algebra::Algebra;
 use super::finding::{Finding, Item, Stage};
-use super::kinematics::{Carried, Kinematics, division_by_zero, root_of};
+use super::kinematics::{Carried, Effort, Kinematics, division_by_zero, root_of};
 use super::lower::Lowering;
 use super::symbols::Symbols;
 use crate::symbolic::vector::{self, Vec3};
@@ -59,17 +59,33 @@ impl Row {
 }
 
 /// Constraint rows with symbols for q̇, tested for rows that geometry already embeds.
-pub fn constraints(algebra: &mut Algebra, mechanism: &Mechanism, symbols: &Symbols) -> Stage<Constraints> {
+pub fn constraints(
+    algebra: &mut Algebra,
+    mechanism: &Mechanism,
+    symbols: &Symbols,
+) -> Stage<Constraints> {
     let carried = imagined_motions(mechanism);
-    let carried_rates: Vec<Expr> =
-        carried.iter().map(|(point, axis)| algebra.graph.symbol(&format!("carry_{point}_{axis}"))).collect();
+    let carried_rates: Vec<Expr> = carried
+        .iter()
+        .map(|(point, axis)| algebra.graph.symbol(&format!("carry_{point}_{axis}")))
+        .collect();
     let motions = motions_along(&carried, &carried_rates);
-    let kinematics = Kinematics::new(algebra, mechanism, symbols, &symbols.rates, &motions)?;
+    let kinematics = Kinematics::new(
+        algebra,
+        mechanism,
+        symbols,
+        &symbols.rates,
+        &motions,
+        Effort::Plain,
+    )?;
     let mut reactions: Vec<String> = Vec::new();
     let mut rows = Vec::new();
     for (index, constraint) in mechanism.constraints.iter().enumerate() {
         let item = Item::Constraint(index);
-        let lowering = Lowering { symbols, rates: &symbols.rates };
+        let lowering = Lowering {
+            symbols,
+            rates: &symbols.rates,
+        };
         let zero = |_| vec![division_by_zero(item)];
         let graph = &mut algebra.graph;
         // Name, value and direction of each scalar row.
@@ -79,7 +95,13 @@ pub fn constraints(algebra: &mut Algebra, mechanism: &Mechanism, symbols: &Symbo
                 let scalars = ["x", "y", "z"]
                     .iter()
                     .enumerate()
-                    .map(|(k, axis)| (format!("{}.{axis}", constraint.name), v[k], vector::IDENTITY[k]))
+                    .map(|(k, axis)| {
+                        (
+                            format!("{}.{axis}", constraint.name),
+                            v[k],
+                            vector::IDENTITY[k],
+                        )
+                    })
                     .collect();
                 (&mechanism.points[*contact].name, scalars)
             }
@@ -87,18 +109,34 @@ pub fn constraints(algebra: &mut Algebra, mechanism: &Mechanism, symbols: &Symbo
                 let left = lowering.lower(graph, left).map_err(zero)?;
                 let right = lowering.lower(graph, equals).map_err(zero)?;
                 let value = graph.sub(left, right);
-                (&constraint.name, vec![(constraint.name.clone(), value, vector::IDENTITY[0])])
+                (
+                    &constraint.name,
+                    vec![(constraint.name.clone(), value, vector::IDENTITY[0])],
+                )
             }
-            ConstraintKind::FixedVelocity { point, body, frame, direction, equals } => {
+            ConstraintKind::FixedVelocity {
+                point,
+                body,
+                frame,
+                direction,
+                equals,
+            } => {
                 let along = lowering.lower_all(graph, direction).map_err(zero)?;
                 let right = lowering.lower(graph, equals).map_err(zero)?;
                 let v = match body {
-                    Some(body) => kinematics.material_velocity(graph, mechanism, *body, *point, *frame),
-                    None => kinematics.frames.express(graph, kinematics.velocity(*point), *frame),
+                    Some(body) => {
+                        kinematics.material_velocity(graph, mechanism, *body, *point, *frame)
+                    }
+                    None => kinematics
+                        .frames
+                        .express(graph, kinematics.velocity(*point), *frame),
                 };
                 let left = graph.dot(along, v);
                 let value = graph.sub(left, right);
-                let in_ground = super::frames::FrameVector { frame: *frame, v: along };
+                let in_ground = super::frames::FrameVector {
+                    frame: *frame,
+                    v: along,
+                };
                 let in_ground = kinematics.frames.express(graph, in_ground, GROUND);
                 let name = &mechanism.points[*point].name;
                 (name, vec![(constraint.name.clone(), value, in_ground)])
@@ -121,11 +159,23 @@ pub fn constraints(algebra: &mut Algebra, mechanism: &Mechanism, symbols: &Symbo
         };
         for (name, value, direction) in scalars {
             let reaction = Reaction { place, direction };
-            rows.push(row(algebra, symbols, &carried_rates, name, index, value, reaction));
+            rows.push(row(
+                algebra,
+                symbols,
+                &carried_rates,
+                name,
+                index,
+                value,
+                reaction,
+            ));
         }
     }
     stand_ins(mechanism, &mut rows)?;
-    Ok(Constraints { rows, reactions, carried })
+    Ok(Constraints {
+        rows,
+        reactions,
+        carried,
+    })
 }
 
 /// Splits a row into its coefficients.
@@ -150,7 +200,16 @@ fn row(
     let coefficients = coefficients_of(&symbols.rates);
     let carried = coefficients_of(carried_rates);
     let rest = without(algebra, value, &[&symbols.rates, carried_rates].concat());
-    Row { name, constraint, value, coefficients, rest, reaction, carried, stand_in: None }
+    Row {
+        name,
+        constraint,
+        value,
+        coefficients,
+        rest,
+        reaction,
+        carried,
+        stand_in: None,
+    }
 }
 
 /// `expr` with some symbols set to zero. The rows are linear in them, so no denominator holds one.
@@ -204,9 +263,13 @@ fn stand_ins(mechanism: &Mechanism, rows: &mut [Row]) -> Stage<()> {
         if row.rest != Graph::ZERO {
             findings.push(Finding {
                 code: "dependent-constraints",
-                message: format!("`{}` cannot hold: no generalised velocity appears in it", row.name),
+                message: format!(
+                    "`{}` cannot hold: no generalised velocity appears in it",
+                    row.name
+                ),
                 item,
-                help: "let a coordinate take part in the motion that the constraint prescribes".to_owned(),
+                help: "let a coordinate take part in the motion that the constraint prescribes"
+                    .to_owned(),
             });
             continue;
         }
@@ -221,5 +284,9 @@ fn stand_ins(mechanism: &Mechanism, rows: &mut [Row]) -> Stage<()> {
             });
         }
     }
-    if findings.is_empty() { Ok(()) } else { Err(findings) }
+    if findings.is_empty() {
+        Ok(())
+    } else {
+        Err(findings)
+    }
 }

@@ -73,7 +73,10 @@ pub fn eliminate(
             parts.push(algebra.graph.neg(contribution));
         }
         let right = algebra.graph.sum(&parts);
-        equations.push(Equation { coefficients: row.coefficients.clone(), right });
+        equations.push(Equation {
+            coefficients: row.coefficients.clone(),
+            right,
+        });
     }
     check_count(mechanism, constraints, equations.len())?;
 
@@ -90,9 +93,16 @@ pub fn eliminate(
             algebra.shortest(allowed)
         })
         .collect();
-    let violating =
-        Violation { rates: violation_rates, coordinate_rates: violating, carried_rates };
-    Ok(GeneralizedVelocities { rates, violating, solved_numerically })
+    let violating = Violation {
+        rates: violation_rates,
+        coordinate_rates: violating,
+        carried_rates,
+    };
+    Ok(GeneralizedVelocities {
+        rates,
+        violating,
+        solved_numerically,
+    })
 }
 
 /// The definition of a pseudo-velocity as an equation for q̇.
@@ -102,10 +112,17 @@ fn definition(
     index: usize,
     definition: &appell_spec::expr::Expr,
 ) -> Stage<Equation> {
-    let lowering = Lowering { symbols, rates: &symbols.rates };
+    let lowering = Lowering {
+        symbols,
+        rates: &symbols.rates,
+    };
     let value = lowering
         .lower(&mut algebra.graph, definition)
-        .map_err(|_| vec![super::kinematics::division_by_zero(Item::PseudoVelocity(index))])?;
+        .map_err(|_| {
+            vec![super::kinematics::division_by_zero(Item::PseudoVelocity(
+                index,
+            ))]
+        })?;
     let mut coefficients = Vec::with_capacity(symbols.rates.len());
     let mut parts = vec![symbols.speeds[index], algebra.graph.neg(value)];
     for &rate in &symbols.rates {
@@ -116,7 +133,10 @@ fn definition(
     // ω minus what the definition holds besides the generalised velocities.
     let right = algebra.graph.sum(&parts);
     let right = algebra.shortest(right);
-    Ok(Equation { coefficients, right })
+    Ok(Equation {
+        coefficients,
+        right,
+    })
 }
 
 fn check_count(mechanism: &Mechanism, constraints: &Constraints, equations: usize) -> Stage<()> {
@@ -159,12 +179,18 @@ fn solve(
     let mut open: Vec<usize> = (0..unknowns).collect();
     let mut solved: Vec<Solved> = Vec::new();
     while let Some((row, column)) = safest_pivot(algebra, &equations, &open, intervals) {
-        let Equation { coefficients, right } = equations.swap_remove(row);
+        let Equation {
+            coefficients,
+            right,
+        } = equations.swap_remove(row);
         let pivot = coefficients[column];
         let right = algebra.graph.div(right, pivot);
         let right = algebra.shortest(right);
         let mut rest = Vec::new();
-        for &other in open.iter().filter(|&&c| c != column && coefficients[c] != Graph::ZERO) {
+        for &other in open
+            .iter()
+            .filter(|&&c| c != column && coefficients[c] != Graph::ZERO)
+        {
             let ratio = algebra.graph.div(coefficients[other], pivot);
             rest.push((other, algebra.shortest(ratio)));
         }
@@ -183,7 +209,11 @@ fn solve(
             equation.coefficients[column] = Graph::ZERO;
         }
         open.retain(|&c| c != column);
-        solved.push(Solved { column, coefficients: rest, right });
+        solved.push(Solved {
+            column,
+            coefficients: rest,
+            right,
+        });
     }
     if !open.is_empty() {
         check_rank(algebra, mechanism, &equations, &open)?;
@@ -191,14 +221,22 @@ fn solve(
 
     let mut rates = vec![Graph::ZERO; unknowns];
     if !open.is_empty() {
-        let matrix = equations.iter().flat_map(|e| open.iter().map(|&c| e.coefficients[c])).collect();
+        let matrix = equations
+            .iter()
+            .flat_map(|e| open.iter().map(|&c| e.coefficients[c]))
+            .collect();
         let right = equations.iter().map(|e| e.right).collect();
         let solution = algebra.graph.solve_numerically(matrix, right);
         for (&column, unknown) in open.iter().zip(solution) {
             rates[column] = unknown;
         }
     }
-    for Solved { column, coefficients, right } in solved.into_iter().rev() {
+    for Solved {
+        column,
+        coefficients,
+        right,
+    } in solved.into_iter().rev()
+    {
         let mut parts = vec![right];
         for (other, coefficient) in coefficients {
             let part = algebra.graph.mul(coefficient, rates[other]);
@@ -217,7 +255,11 @@ fn safest_pivot(
     open: &[usize],
     intervals: &mut Intervals,
 ) -> Option<(usize, usize)> {
-    let filled = |coefficients: &[Expr]| open.iter().filter(|&&c| coefficients[c] != Graph::ZERO).count();
+    let filled = |coefficients: &[Expr]| {
+        open.iter()
+            .filter(|&&c| coefficients[c] != Graph::ZERO)
+            .count()
+    };
     let mut best: Option<((usize, usize), (usize, usize))> = None;
     for (row, equation) in equations.iter().enumerate() {
         let in_row = filled(&equation.coefficients);
@@ -226,7 +268,10 @@ fn safest_pivot(
             if pivot == Graph::ZERO || !intervals.cannot_vanish(&algebra.graph, pivot) {
                 continue;
             }
-            let in_column = equations.iter().filter(|e| e.coefficients[column] != Graph::ZERO).count();
+            let in_column = equations
+                .iter()
+                .filter(|e| e.coefficients[column] != Graph::ZERO)
+                .count();
             let fill = (in_row - 1) * (in_column - 1);
             let cost = (fill, algebra.graph.operations(&[pivot]));
             if best.is_none_or(|(least, _)| cost < least) {
@@ -238,9 +283,16 @@ fn safest_pivot(
 }
 
 /// Fails where the remaining equations are dependent everywhere, by fraction-free elimination.
-fn check_rank(algebra: &mut Algebra, mechanism: &Mechanism, equations: &[Equation], open: &[usize]) -> Stage<()> {
-    let mut rows: Vec<Vec<Expr>> =
-        equations.iter().map(|e| open.iter().map(|&c| e.coefficients[c]).collect()).collect();
+fn check_rank(
+    algebra: &mut Algebra,
+    mechanism: &Mechanism,
+    equations: &[Equation],
+    open: &[usize],
+) -> Stage<()> {
+    let mut rows: Vec<Vec<Expr>> = equations
+        .iter()
+        .map(|e| open.iter().map(|&c| e.coefficients[c]).collect())
+        .collect();
     for column in 0..open.len() {
         let pivot = (column..rows.len()).find(|&r| {
             let entry = rows[r][column];

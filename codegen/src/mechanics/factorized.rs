@@ -29,16 +29,24 @@ impl FactorizedBlock {
         let name = |speed: usize| mechanism.pseudo_velocities[speed].label.name.as_str();
         let mut schur = mass_matrix.to_vec();
         let mut open = speeds.to_vec();
-        let mut block = Self { speeds: Vec::new(), lower: Vec::new(), pivots: Vec::new() };
+        let mut block = Self {
+            speeds: Vec::new(),
+            lower: Vec::new(),
+            pivots: Vec::new(),
+        };
         // Columns of L in the order of elimination, indexed by speed.
         let mut columns: Vec<Vec<Expr>> = Vec::new();
         while !open.is_empty() {
             let k = simplest_pivot(algebra, mechanism, &schur, &mut open)?;
-            let pivot = algebra.graph.name(&format!("pivot_{}", name(k)), schur[k][k]);
+            let pivot = algebra
+                .graph
+                .name(&format!("pivot_{}", name(k)), schur[k][k]);
             let mut column = vec![Graph::ZERO; mass_matrix.len()];
             for &i in &open {
                 let ratio = algebra.graph.div(schur[i][k], pivot);
-                column[i] = algebra.graph.name(&format!("l_{}_{}", name(i), name(k)), ratio);
+                column[i] = algebra
+                    .graph
+                    .name(&format!("l_{}_{}", name(i), name(k)), ratio);
             }
             for (a, &i) in open.iter().enumerate() {
                 for &j in &open[..=a] {
@@ -50,13 +58,17 @@ impl FactorizedBlock {
                     let entry = if i == j {
                         entry
                     } else {
-                        algebra.graph.name(&format!("m_{}_{}", name(i), name(j)), entry)
+                        algebra
+                            .graph
+                            .name(&format!("m_{}_{}", name(i), name(j)), entry)
                     };
                     schur[i][j] = entry;
                     schur[j][i] = entry;
                 }
             }
-            block.lower.push(columns.iter().map(|column| column[k]).collect());
+            block
+                .lower
+                .push(columns.iter().map(|column| column[k]).collect());
             block.pivots.push(pivot);
             block.speeds.push(k);
             columns.push(column);

@@ -61,28 +61,43 @@ impl Frames {
                     Axis::Y => 1,
                     Axis::Z => 2,
                 };
-                let elementary =
-                    Turn { axis, sin: algebra.graph.sin(angle), cos: algebra.graph.cos(angle) };
+                let elementary = Turn {
+                    axis,
+                    sin: algebra.graph.sin(angle),
+                    cos: algebra.graph.cos(angle),
+                };
                 w = elementary.into_child(&mut algebra.graph, w);
                 let rate = time.of(algebra, angle);
                 w[axis] = algebra.graph.add(w[axis], rate);
                 turns.push(elementary);
             }
             let w = algebra.shortest3(w);
-            frames.push(Frame { parent: frame.parent, turns, w });
+            frames.push(Frame {
+                parent: frame.parent,
+                turns,
+                w,
+            });
         }
         Ok(Self { frames })
     }
 
     /// Angular velocity of a frame from the ground, in its own components.
     pub fn angular_velocity(&self, frame: FrameId) -> FrameVector {
-        FrameVector { frame, v: self.frames[frame].w }
+        FrameVector {
+            frame,
+            v: self.frames[frame].w,
+        }
     }
 
     /// The same vector in the components of another frame.
     pub fn express(&self, graph: &mut Graph, vector: FrameVector, to: FrameId) -> Vec3 {
         let (up, down) = (self.ancestors(vector.frame), self.ancestors(to));
-        let shared = up.iter().rev().zip(down.iter().rev()).take_while(|(a, b)| a == b).count();
+        let shared = up
+            .iter()
+            .rev()
+            .zip(down.iter().rev())
+            .take_while(|(a, b)| a == b)
+            .count();
         let mut v = vector.v;
         for &frame in &up[..up.len() - shared] {
             for turn in self.frames[frame].turns.iter().rev() {

@@ -74,8 +74,16 @@ pub fn body_motions(
         let turning = algebra.graph.cross(w_frame, velocity.v);
         bias = algebra.graph.add3(bias, turning);
         let bias = algebra.shortest3(bias);
-        let bias = named3(algebra, &format!("a0_{}", mechanism.points[body.centre].name), bias);
-        let centre = Translation { velocity, partial, bias };
+        let bias = named3(
+            algebra,
+            &format!("a0_{}", mechanism.points[body.centre].name),
+            bias,
+        );
+        let centre = Translation {
+            velocity,
+            partial,
+            bias,
+        };
         let rotation = match (body.frame, &body.inertia) {
             (Some(frame), Some(inertia)) => {
                 let mut matrix = [[Graph::ZERO; 3]; 3];
@@ -88,18 +96,33 @@ pub fn body_motions(
                     check_invariance(algebra, mechanism, kinematics, index, &matrix)?;
                 }
                 let w = kinematics.frames.angular_velocity(frame);
-                let v = kinematics.frames.express(&mut algebra.graph, w, inertia.frame);
-                let velocity = FrameVector { frame: inertia.frame, v: algebra.shortest3(v) };
-                Some(rotation(algebra, mechanism, symbols, kinematics, &time, &body.name, velocity, matrix))
+                let v = kinematics
+                    .frames
+                    .express(&mut algebra.graph, w, inertia.frame);
+                let velocity = FrameVector {
+                    frame: inertia.frame,
+                    v: algebra.shortest3(v),
+                };
+                Some(rotation(
+                    algebra, mechanism, symbols, kinematics, &time, &body.name, velocity, matrix,
+                ))
             }
             _ => None,
         };
-        motions.push(BodyMotion { name: body.name.clone(), mass, centre, rotation });
+        motions.push(BodyMotion {
+            name: body.name.clone(),
+            mass,
+            centre,
+            rotation,
+        });
     }
     Ok(motions)
 }
 
-#[expect(clippy::too_many_arguments, reason = "everything a rotation depends on, once")]
+#[expect(
+    clippy::too_many_arguments,
+    reason = "everything a rotation depends on, once"
+)]
 fn rotation(
     algebra: &mut Algebra,
     mechanism: &Mechanism,
@@ -124,7 +147,13 @@ fn rotation(
     let turning = algebra.graph.cross(w_frame, velocity.v);
     let bias = algebra.graph.add3(componentwise, turning);
     let bias = algebra.shortest3(bias);
-    Rotation { velocity, partial, inertia, bias, momentum_rate }
+    Rotation {
+        velocity,
+        partial,
+        inertia,
+        bias,
+        momentum_rate,
+    }
 }
 
 /// Angular velocity of a frame with names for its components.
@@ -151,7 +180,10 @@ pub fn named_parts(graph: &Graph, bodies: &[BodyMotion]) -> Vec<(Expr, Expr)> {
     bodies
         .iter()
         .flat_map(|body| {
-            let rotation = body.rotation.iter().flat_map(|rotation| rotation.momentum_rate);
+            let rotation = body
+                .rotation
+                .iter()
+                .flat_map(|rotation| rotation.momentum_rate);
             body.centre.bias.into_iter().chain(rotation)
         })
         .filter_map(|part| graph.named_value(part).map(|value| (part, value)))
@@ -178,20 +210,29 @@ fn check_invariance(
     inertia: &Mat3,
 ) -> Stage<()> {
     let item = &mechanism.bodies[body];
-    let (Some(body_frame), Some(written)) = (item.frame, item.inertia.as_ref().map(|i| i.frame)) else {
+    let (Some(body_frame), Some(written)) = (item.frame, item.inertia.as_ref().map(|i| i.frame))
+    else {
         return Ok(());
     };
     // I is invariant where R I = I R; the columns of R are the body's axes.
     let mut axes = [vector::ZERO; 3];
     for (axis, unit) in axes.iter_mut().zip(vector::IDENTITY) {
-        let unit = FrameVector { frame: body_frame, v: unit };
+        let unit = FrameVector {
+            frame: body_frame,
+            v: unit,
+        };
         *axis = kinematics.frames.express(&mut algebra.graph, unit, written);
     }
     let r = vector::transpose(&axes);
-    let (left, right) = (algebra.graph.mat_mat(&r, inertia), algebra.graph.mat_mat(inertia, &r));
-    let differs = left.iter().flatten().zip(right.iter().flatten()).any(|(&a, &b)| {
-        a != b && !algebra.test.are_equal(&algebra.graph, a, b)
-    });
+    let (left, right) = (
+        algebra.graph.mat_mat(&r, inertia),
+        algebra.graph.mat_mat(inertia, &r),
+    );
+    let differs = left
+        .iter()
+        .flatten()
+        .zip(right.iter().flatten())
+        .any(|(&a, &b)| a != b && !algebra.test.are_equal(&algebra.graph, a, b));
     if !differs {
         return Ok(());
     }
@@ -203,7 +244,10 @@ fn check_invariance(
             item.name, mechanism.frames[written].name
         ),
         item: Item::Body(body),
-        help: format!("write the inertia in `{}`", mechanism.frames[body_frame].name),
+        help: format!(
+            "write the inertia in `{}`",
+            mechanism.frames[body_frame].name
+        ),
     }])
 }
 
@@ -224,10 +268,14 @@ pub fn gibbs_form(algebra: &mut Algebra, bodies: &[BodyMotion], speeds: usize) -
         for j in 0..=i {
             let mut parts = Vec::new();
             for body in bodies {
-                let product = algebra.graph.dot(body.centre.partial[i], body.centre.partial[j]);
+                let product = algebra
+                    .graph
+                    .dot(body.centre.partial[i], body.centre.partial[j]);
                 parts.push(algebra.graph.mul(body.mass, product));
                 if let Some(rotation) = &body.rotation {
-                    let momentum = algebra.graph.mat_vec(&rotation.inertia, rotation.partial[j]);
+                    let momentum = algebra
+                        .graph
+                        .mat_vec(&rotation.inertia, rotation.partial[j]);
                     parts.push(algebra.graph.dot(rotation.partial[i], momentum));
                 }
             }
@@ -241,7 +289,11 @@ pub fn gibbs_form(algebra: &mut Algebra, bodies: &[BodyMotion], speeds: usize) -
             let inertial = algebra.graph.dot(body.centre.partial[i], body.centre.bias);
             parts.push(algebra.graph.mul(body.mass, inertial));
             if let Some(rotation) = &body.rotation {
-                parts.push(algebra.graph.dot(rotation.partial[i], rotation.momentum_rate));
+                parts.push(
+                    algebra
+                        .graph
+                        .dot(rotation.partial[i], rotation.momentum_rate),
+                );
             }
         }
         let entry = algebra.graph.sum(&parts);
@@ -252,7 +304,11 @@ pub fn gibbs_form(algebra: &mut Algebra, bodies: &[BodyMotion], speeds: usize) -
 
 /// The acceleration energy of a body without the terms free of accelerations:
 /// `S = ½ m a·a + ½ α·I α + α·(ω × I ω)`, for given pseudo-accelerations.
-pub fn acceleration_energy(algebra: &mut Algebra, body: &BodyMotion, accelerations: &[Expr]) -> Expr {
+pub fn acceleration_energy(
+    algebra: &mut Algebra,
+    body: &BodyMotion,
+    accelerations: &[Expr],
+) -> Expr {
     let graph = &mut algebra.graph;
     let a = along(graph, body.centre.bias, &body.centre.partial, accelerations);
     let square = graph.dot(a, a);
@@ -286,7 +342,9 @@ pub fn kinetic_energy(algebra: &mut Algebra, body: &BodyMotion) -> Expr {
     let square = algebra.graph.dot(v, v);
     let mut parts = vec![algebra.graph.mul(body.mass, square)];
     if let Some(rotation) = &body.rotation {
-        let momentum = algebra.graph.mat_vec(&rotation.inertia, rotation.velocity.v);
+        let momentum = algebra
+            .graph
+            .mat_vec(&rotation.inertia, rotation.velocity.v);
         parts.push(algebra.graph.dot(rotation.velocity.v, momentum));
     }
     let twice = algebra.graph.sum(&parts);

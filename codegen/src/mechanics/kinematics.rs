@@ -22,6 +22,15 @@ pub struct Kinematics {
     velocities: Vec<FrameVector>,
 }
 
+/// How much work goes into short velocities.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Effort {
+    /// As they come: for velocities that are used up at once.
+    Plain,
+    /// Each in its shortest form and in the frame where that is shortest: for the equations.
+    Shortest,
+}
+
 /// An imagined motion that the coordinates do not have: the points placed from the origin by way of
 /// `root` are carried along with a velocity of the ground's components.
 ///
@@ -42,6 +51,7 @@ impl Kinematics {
         symbols: &Symbols,
         rates: &[Expr],
         carried: &[Carried],
+        effort: Effort,
     ) -> Stage<Self> {
         let lowering = Lowering { symbols, rates };
         let time = TimeDerivative { symbols, rates };
@@ -53,26 +63,48 @@ impl Kinematics {
             let at = lowering
                 .lower_all(&mut algebra.graph, &point.at)
                 .map_err(|_| vec![division_by_zero(Item::Point(id))])?;
-            offsets.push(FrameVector { frame: point.frame, v: at });
+            offsets.push(FrameVector {
+                frame: point.frame,
+                v: at,
+            });
             let Some(from) = point.from else {
-                velocities.push(FrameVector { frame: GROUND, v: vector::ZERO });
+                velocities.push(FrameVector {
+                    frame: GROUND,
+                    v: vector::ZERO,
+                });
                 continue;
             };
             // v_P = v_from + (dr/dt in the frame) + ω × r
             let mut v = frames.express(&mut algebra.graph, velocities[from], point.frame);
             for motion in carried.iter().filter(|c| c.root == id) {
-                let carried = FrameVector { frame: GROUND, v: motion.v };
+                let carried = FrameVector {
+                    frame: GROUND,
+                    v: motion.v,
+                };
                 let carried = frames.express(&mut algebra.graph, carried, point.frame);
                 v = algebra.graph.add3(v, carried);
             }
             let relative = time.of3(algebra, at);
-            let turning = algebra.graph.cross(frames.angular_velocity(point.frame).v, at);
+            let turning = algebra
+                .graph
+                .cross(frames.angular_velocity(point.frame).v, at);
             v = algebra.graph.add3(v, relative);
             v = algebra.graph.add3(v, turning);
-            let velocity = FrameVector { frame: point.frame, v: algebra.shortest3(v) };
-            velocities.push(frames.simplest(algebra, velocity));
+            let mut velocity = FrameVector {
+                frame: point.frame,
+                v,
+            };
+            if effort == Effort::Shortest {
+                velocity.v = algebra.shortest3(v);
+                velocity = frames.simplest(algebra, velocity);
+            }
+            velocities.push(velocity);
         }
-        Ok(Self { frames, offsets, velocities })
+        Ok(Self {
+            frames,
+            offsets,
+            velocities,
+        })
     }
 
     /// Velocity of a point.
@@ -90,9 +122,15 @@ impl Kinematics {
         frame: FrameId,
     ) -> Vec3 {
         let body = &mechanism.bodies[body];
-        let centre = self.frames.express(graph, self.velocities[body.centre], frame);
-        let Some(body_frame) = body.frame else { return centre };
-        let w = self.frames.express(graph, self.frames.angular_velocity(body_frame), frame);
+        let centre = self
+            .frames
+            .express(graph, self.velocities[body.centre], frame);
+        let Some(body_frame) = body.frame else {
+            return centre;
+        };
+        let w = self
+            .frames
+            .express(graph, self.frames.angular_velocity(body_frame), frame);
         let arm = self.between(graph, mechanism, body.centre, point, frame);
         let turning = graph.cross(w, arm);
         graph.add3(centre, turning)
@@ -112,7 +150,12 @@ impl Kinematics {
         };
         let (a, b) = (chain(from), chain(to));
         // Parts of the way that both share cancel; leaving them out keeps the vector short.
-        let shared = a.iter().rev().zip(b.iter().rev()).take_while(|(p, q)| p == q).count();
+        let shared = a
+            .iter()
+            .rev()
+            .zip(b.iter().rev())
+            .take_while(|(p, q)| p == q)
+            .count();
         let mut v = vector::ZERO;
         for &point in &b[..b.len() - shared] {
             let step = self.frames.express(graph, self.offsets[point], frame);

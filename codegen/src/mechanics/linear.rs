@@ -29,7 +29,8 @@ impl ImplicitMotion<'_> {
             match block {
                 Block::Eliminated(equations) => {
                     for equation in equations {
-                        let minus: Vec<Expr> = unknowns.iter().map(|&u| algebra.graph.neg(u)).collect();
+                        let minus: Vec<Expr> =
+                            unknowns.iter().map(|&u| algebra.graph.neg(u)).collect();
                         let own = algebra.graph.sub(unknowns[equation.speed], equation.whole);
                         let sum = equation.less_couplings(algebra, own, &minus);
                         let inertial = algebra.graph.mul(equation.pivot, sum);
@@ -71,7 +72,9 @@ impl ImplicitMotion<'_> {
                 .iter()
                 .map(|&r| {
                     let partial = algebra.derivative(r, variable);
-                    actual.apply(&mut algebra.graph, partial).unwrap_or(Graph::ZERO)
+                    actual
+                        .apply(&mut algebra.graph, partial)
+                        .unwrap_or(Graph::ZERO)
                 })
                 .collect();
             let mut column = vec![Graph::ZERO; right.len()];

@@ -29,13 +29,21 @@ pub struct AppliedLoad {
 impl AppliedLoad {
     /// Power of the load.
     pub fn power(&self, graph: &mut Graph) -> Expr {
-        let parts: Vec<Expr> = self.work.iter().map(|w| graph.mul(w.force, w.velocity)).collect();
+        let parts: Vec<Expr> = self
+            .work
+            .iter()
+            .map(|w| graph.mul(w.force, w.velocity))
+            .collect();
         graph.sum(&parts)
     }
 }
 
 /// Π: virtual power of all loads, one force per direction.
-pub fn generalized_forces(algebra: &mut Algebra, loads: &[AppliedLoad], directions: &[Expr]) -> Vec<Expr> {
+pub fn generalized_forces(
+    algebra: &mut Algebra,
+    loads: &[AppliedLoad],
+    directions: &[Expr],
+) -> Vec<Expr> {
     directions
         .iter()
         .map(|&direction| {
@@ -58,7 +66,11 @@ pub fn applied_loads(
     kinematics: &Kinematics,
     rates: &[Expr],
 ) -> Stage<Vec<AppliedLoad>> {
-    let context = Context { mechanism, kinematics, lowering: Lowering { symbols, rates } };
+    let context = Context {
+        mechanism,
+        kinematics,
+        lowering: Lowering { symbols, rates },
+    };
     let mut loads = Vec::with_capacity(mechanism.loads.len());
     for (index, load) in mechanism.loads.iter().enumerate() {
         let applied = context
@@ -81,11 +93,21 @@ impl Context<'_> {
     fn apply(&self, algebra: &mut Algebra, kind: &LoadKind) -> Lowered<AppliedLoad> {
         match kind {
             LoadKind::Gravity { down, acceleration } => self.gravity(algebra, *down, acceleration),
-            LoadKind::Force { on, body, reaction_on, frame, vector } => {
+            LoadKind::Force {
+                on,
+                body,
+                reaction_on,
+                frame,
+                vector,
+            } => {
                 let force = self.lowering.lower_all(&mut algebra.graph, vector)?;
                 let mut v = match body {
                     Some(body) => self.kinematics.material_velocity(
-                        &mut algebra.graph, self.mechanism, *body, *on, *frame,
+                        &mut algebra.graph,
+                        self.mechanism,
+                        *body,
+                        *on,
+                        *frame,
                     ),
                     None => self.point_velocity(algebra, *on, *frame),
                 };
@@ -95,7 +117,12 @@ impl Context<'_> {
                 }
                 Ok(working(algebra, force, v))
             }
-            LoadKind::Torque { on, reaction_on, frame, vector } => {
+            LoadKind::Torque {
+                on,
+                reaction_on,
+                frame,
+                vector,
+            } => {
                 let torque = self.lowering.lower_all(&mut algebra.graph, vector)?;
                 let mut w = self.body_rate(algebra, *on, *frame);
                 if let Some(other) = reaction_on {
@@ -104,7 +131,11 @@ impl Context<'_> {
                 }
                 Ok(working(algebra, torque, w))
             }
-            LoadKind::Spring { between, stiffness, relaxed } => {
+            LoadKind::Spring {
+                between,
+                stiffness,
+                relaxed,
+            } => {
                 let k = self.lowering.lower(&mut algebra.graph, stiffness)?;
                 let relaxed = self.lowering.lower(&mut algebra.graph, relaxed)?;
                 Ok(self.spring(algebra, between, k, relaxed))
@@ -116,13 +147,21 @@ impl Context<'_> {
             LoadKind::Generalized { coordinate, force } => {
                 let force = self.lowering.lower(&mut algebra.graph, force)?;
                 let velocity = self.lowering.rates[*coordinate];
-                Ok(AppliedLoad { work: vec![Work { force, velocity }], potential: None })
+                Ok(AppliedLoad {
+                    work: vec![Work { force, velocity }],
+                    potential: None,
+                })
             }
         }
     }
 
     /// The weight of every body; its potential counts from the origin of the ground.
-    fn gravity(&self, algebra: &mut Algebra, down: [i8; 3], g: &appell_spec::expr::Expr) -> Lowered<AppliedLoad> {
+    fn gravity(
+        &self,
+        algebra: &mut Algebra,
+        down: [i8; 3],
+        g: &appell_spec::expr::Expr,
+    ) -> Lowered<AppliedLoad> {
         let g = self.lowering.lower(&mut algebra.graph, g)?;
         let down = down.map(|c| algebra.graph.integer(c.into()));
         let (mut work, mut heights) = (Vec::new(), Vec::new());
@@ -132,55 +171,88 @@ impl Context<'_> {
             let v = self.kinematics.velocity(body.centre);
             let direction = self.kinematics.frames.express(
                 &mut algebra.graph,
-                FrameVector { frame: GROUND, v: down },
+                FrameVector {
+                    frame: GROUND,
+                    v: down,
+                },
                 v.frame,
             );
             let force = algebra.graph.scale3(weight, direction);
             work.extend(pairs(force, v.v));
-            let position = self.kinematics.position(&mut algebra.graph, self.mechanism, body.centre);
+            let position =
+                self.kinematics
+                    .position(&mut algebra.graph, self.mechanism, body.centre);
             let fallen = algebra.graph.dot(down, position);
             let energy = algebra.graph.mul(weight, fallen);
             heights.push(algebra.graph.neg(energy));
         }
         let potential = algebra.graph.sum(&heights);
-        Ok(AppliedLoad { work, potential: Some(algebra.shortest(potential)) })
+        Ok(AppliedLoad {
+            work,
+            potential: Some(algebra.shortest(potential)),
+        })
     }
 
-    fn spring(&self, algebra: &mut Algebra, between: &Connection, k: Expr, relaxed: Expr) -> AppliedLoad {
+    fn spring(
+        &self,
+        algebra: &mut Algebra,
+        between: &Connection,
+        k: Expr,
+        relaxed: Expr,
+    ) -> AppliedLoad {
         let (length, work) = self.extension(algebra, between);
         let extension = algebra.graph.sub(length, relaxed);
         let tension = algebra.graph.mul(k, extension);
         let square = algebra.graph.square(extension);
         let twice = algebra.graph.mul(k, square);
         let potential = algebra.graph.scale(&Rational::new(1, 2), twice);
-        AppliedLoad { work: resisting(algebra, tension, &work), potential: Some(potential) }
+        AppliedLoad {
+            work: resisting(algebra, tension, &work),
+            potential: Some(potential),
+        }
     }
 
     fn damper(&self, algebra: &mut Algebra, between: &Connection, c: Expr) -> AppliedLoad {
         let (_, work) = self.extension(algebra, between);
-        let parts: Vec<Expr> =
-            work.iter().map(|w| algebra.graph.mul(w.force, w.velocity)).collect();
+        let parts: Vec<Expr> = work
+            .iter()
+            .map(|w| algebra.graph.mul(w.force, w.velocity))
+            .collect();
         let speed = algebra.graph.sum(&parts);
         let tension = algebra.graph.mul(c, speed);
-        AppliedLoad { work: resisting(algebra, tension, &work), potential: None }
+        AppliedLoad {
+            work: resisting(algebra, tension, &work),
+            potential: None,
+        }
     }
 
     /// Length of a connection, and the pairs whose power is the rate of the length.
     fn extension(&self, algebra: &mut Algebra, between: &Connection) -> (Expr, Vec<Work>) {
         match *between {
             Connection::Coordinate(q) => {
-                let unit = Work { force: Graph::ONE, velocity: self.lowering.rates[q] };
+                let unit = Work {
+                    force: Graph::ONE,
+                    velocity: self.lowering.rates[q],
+                };
                 (self.lowering.symbols.coordinates[q], vec![unit])
             }
             Connection::Points(a, b) => {
                 let graph = &mut algebra.graph;
                 let d = self.kinematics.between(graph, self.mechanism, a, b, GROUND);
-                let d = self.kinematics.frames.simplest(algebra, FrameVector { frame: GROUND, v: d });
+                let d = self.kinematics.frames.simplest(
+                    algebra,
+                    FrameVector {
+                        frame: GROUND,
+                        v: d,
+                    },
+                );
                 let square = algebra.graph.dot(d.v, d.v);
                 let square = algebra.shortest(square);
                 let length = algebra.graph.sqrt(square);
-                let (v_a, v_b) =
-                    (self.point_velocity(algebra, a, d.frame), self.point_velocity(algebra, b, d.frame));
+                let (v_a, v_b) = (
+                    self.point_velocity(algebra, a, d.frame),
+                    self.point_velocity(algebra, b, d.frame),
+                );
                 let v = algebra.graph.sub3(v_b, v_a);
                 let inverse = algebra.graph.pow(length, -1);
                 let direction = algebra.graph.scale3(inverse, d.v);
@@ -190,19 +262,27 @@ impl Context<'_> {
     }
 
     fn point_velocity(&self, algebra: &mut Algebra, point: PointId, frame: usize) -> Vec3 {
-        self.kinematics.frames.express(&mut algebra.graph, self.kinematics.velocity(point), frame)
+        self.kinematics
+            .frames
+            .express(&mut algebra.graph, self.kinematics.velocity(point), frame)
     }
 
     fn body_rate(&self, algebra: &mut Algebra, body: usize, frame: usize) -> Vec3 {
         // A torque on a point mass does no work; the checks of the spec refuse it.
-        let Some(body_frame) = self.mechanism.bodies[body].frame else { return [Graph::ZERO; 3] };
+        let Some(body_frame) = self.mechanism.bodies[body].frame else {
+            return [Graph::ZERO; 3];
+        };
         let w = self.kinematics.frames.angular_velocity(body_frame);
         self.kinematics.frames.express(&mut algebra.graph, w, frame)
     }
 }
 
 fn pairs(force: Vec3, velocity: Vec3) -> Vec<Work> {
-    force.into_iter().zip(velocity).map(|(force, velocity)| Work { force, velocity }).collect()
+    force
+        .into_iter()
+        .zip(velocity)
+        .map(|(force, velocity)| Work { force, velocity })
+        .collect()
 }
 
 fn working(algebra: &mut Algebra, force: Vec3, velocity: Vec3) -> AppliedLoad {
@@ -211,7 +291,10 @@ fn working(algebra: &mut Algebra, force: Vec3, velocity: Vec3) -> AppliedLoad {
     for w in &mut work {
         w.velocity = algebra.shortest(w.velocity);
     }
-    AppliedLoad { work, potential: None }
+    AppliedLoad {
+        work,
+        potential: None,
+    }
 }
 
 /// A tension works against the growth of the length.
@@ -219,6 +302,9 @@ fn resisting(algebra: &mut Algebra, tension: Expr, extension: &[Work]) -> Vec<Wo
     let pull = algebra.graph.neg(tension);
     extension
         .iter()
-        .map(|w| Work { force: algebra.graph.mul(pull, w.force), velocity: w.velocity })
+        .map(|w| Work {
+            force: algebra.graph.mul(pull, w.force),
+            velocity: w.velocity,
+        })
         .collect()
 }

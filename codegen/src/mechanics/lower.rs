@@ -1,6 +1,8 @@
 //! From the expressions of a spec to expressions of the graph.
 
-use appell_spec::expr::{BinaryOp, Expr as Spec, ExprKind, Function as SpecFunction, Quantity, Relation as SpecRelation};
+use appell_spec::expr::{
+    BinaryOp, Expr as Spec, ExprKind, Function as SpecFunction, Quantity, Relation as SpecRelation,
+};
 
 use super::symbols::Symbols;
 use crate::symbolic::{Expr, Function, Graph, Rational, Relation};
@@ -51,7 +53,11 @@ impl Lowering<'_> {
                 }
                 call(graph, *function, &lowered)?
             }
-            ExprKind::Choice { relation, compared, branches } => {
+            ExprKind::Choice {
+                relation,
+                compared,
+                branches,
+            } => {
                 let [left, right] = self.lower_all(graph, compared)?;
                 let branches = self.lower_all(graph, branches)?;
                 let (relation, compared) = match relation {
@@ -94,7 +100,11 @@ impl Lowering<'_> {
 }
 
 /// The functions of the language in terms of those of the graph.
-fn call(graph: &mut Graph, function: SpecFunction, arguments: &[Expr]) -> Result<Expr, DivisionByZero> {
+fn call(
+    graph: &mut Graph,
+    function: SpecFunction,
+    arguments: &[Expr],
+) -> Result<Expr, DivisionByZero> {
     use SpecFunction as F;
     let a = arguments[0];
     let b = arguments.get(1).copied().unwrap_or(Graph::ZERO);

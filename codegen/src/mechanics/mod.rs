@@ -29,7 +29,7 @@ use constraints::Constraints;
 use elimination::GeneralizedVelocities;
 use finding::Stage;
 use gibbs_appell::{BodyMotion, GibbsForm};
-use kinematics::Kinematics;
+use kinematics::{Effort, Kinematics};
 use loads::AppliedLoad;
 use motion::Motion;
 use symbols::{Symbols, ids};
@@ -68,10 +68,22 @@ pub fn derive(mechanism: &Mechanism) -> Stage<Derivation> {
     let mut intervals = declared_ranges(&algebra.graph, mechanism, &symbols);
 
     let constraints = constraints::constraints(&mut algebra, mechanism, &symbols)?;
-    let velocities =
-        elimination::eliminate(&mut algebra, mechanism, &symbols, &constraints, &mut intervals)?;
+    let velocities = elimination::eliminate(
+        &mut algebra,
+        mechanism,
+        &symbols,
+        &constraints,
+        &mut intervals,
+    )?;
     let rates = &velocities.rates;
-    let kinematics = Kinematics::new(&mut algebra, mechanism, &symbols, rates, &[])?;
+    let kinematics = Kinematics::new(
+        &mut algebra,
+        mechanism,
+        &symbols,
+        rates,
+        &[],
+        Effort::Shortest,
+    )?;
     let bodies = gibbs_appell::body_motions(&mut algebra, mechanism, &symbols, &kinematics, rates)?;
     let gibbs = gibbs_appell::gibbs_form(&mut algebra, &bodies, symbols.speeds.len());
     let loads = loads::applied_loads(&mut algebra, mechanism, &symbols, &kinematics, rates)?;
@@ -103,11 +115,14 @@ pub fn derive(mechanism: &Mechanism) -> Stage<Derivation> {
 /// Ranges inside which a pivot must not vanish. A parameter keeps the sign of its value: a wheel of
 /// radius zero is another mechanism.
 fn declared_ranges(graph: &Graph, mechanism: &Mechanism, symbols: &Symbols) -> Intervals {
-    let coordinates = ids(graph, &symbols.coordinates).into_iter().zip(&mechanism.coordinates).filter_map(
-        |(symbol, coordinate)| coordinate.range.map(|[low, high]| (symbol, low, high)),
-    );
-    let parameters =
-        ids(graph, &symbols.parameters).into_iter().zip(&mechanism.parameters).filter_map(|(symbol, p)| {
+    let coordinates = ids(graph, &symbols.coordinates)
+        .into_iter()
+        .zip(&mechanism.coordinates)
+        .filter_map(|(symbol, coordinate)| coordinate.range.map(|[low, high]| (symbol, low, high)));
+    let parameters = ids(graph, &symbols.parameters)
+        .into_iter()
+        .zip(&mechanism.parameters)
+        .filter_map(|(symbol, p)| {
             let (low, high) = match p.value {
                 v if v > 0.0 => (f64::MIN_POSITIVE, f64::INFINITY),
                 v if v < 0.0 => (f64::NEG_INFINITY, -f64::MIN_POSITIVE),
@@ -123,7 +138,10 @@ fn declared_ranges(graph: &Graph, mechanism: &Mechanism, symbols: &Symbols) -> I
 /// The identity test draws its points from the spec, so that every run draws the same.
 fn seed(mechanism: &Mechanism) -> u64 {
     // FNV-1a: short, fixed for all time, and nobody attacks his own spec.
-    mechanism.name.bytes().fold(0xcbf2_9ce4_8422_2325, |hash, byte| {
-        (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3)
-    })
+    mechanism
+        .name
+        .bytes()
+        .fold(0xcbf2_9ce4_8422_2325, |hash, byte| {
+            (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3)
+        })
 }

@@ -56,10 +56,16 @@ pub fn solve(
     forces: &[Expr],
     parts: &[(Expr, Expr)],
 ) -> Stage<Motion> {
-    let names: Vec<String> =
-        mechanism.pseudo_velocities.iter().map(|w| format!("{}_dot", w.label.name)).collect();
-    let right: Vec<Expr> =
-        forces.iter().zip(&gibbs.bias).map(|(&force, &bias)| algebra.graph.sub(force, bias)).collect();
+    let names: Vec<String> = mechanism
+        .pseudo_velocities
+        .iter()
+        .map(|w| format!("{}_dot", w.label.name))
+        .collect();
+    let right: Vec<Expr> = forces
+        .iter()
+        .zip(&gibbs.bias)
+        .map(|(&force, &bias)| algebra.graph.sub(force, bias))
+        .collect();
     let mut accelerations = vec![Graph::ZERO; right.len()];
     let mut blocks = Vec::new();
     for speeds in independent_blocks(&gibbs.mass_matrix) {
@@ -68,8 +74,9 @@ pub fn solve(
             let values = substitute_back(algebra, &eliminated, &accelerations);
             let written_out = quotients(algebra, &gibbs.mass_matrix, &right, &speeds, parts);
             let other = substitute_back(algebra, &written_out, &accelerations);
-            let shorter = std::env::var("Q").is_ok_and(|q| q == format!("{speeds:?}")) || !written_out.is_empty()
-                && algebra.graph.operations(&other) <= algebra.graph.operations(&values);
+            let shorter = std::env::var("Q").is_ok_and(|q| q == format!("{speeds:?}"))
+                || !written_out.is_empty()
+                    && algebra.graph.operations(&other) <= algebra.graph.operations(&values);
             Block::Eliminated(if shorter { written_out } else { eliminated })
         } else {
             let block = FactorizedBlock::new(algebra, mechanism, &gibbs.mass_matrix, &speeds)?;
@@ -79,7 +86,8 @@ pub fn solve(
             Block::Eliminated(equations) => {
                 for equation in equations {
                     let value = equation.solved(algebra, &accelerations);
-                    accelerations[equation.speed] = algebra.graph.name(&names[equation.speed], value);
+                    accelerations[equation.speed] =
+                        algebra.graph.name(&names[equation.speed], value);
                 }
             }
             Block::Factorized(block) => {
@@ -92,7 +100,10 @@ pub fn solve(
         }
         blocks.push(block);
     }
-    Ok(Motion { blocks, accelerations })
+    Ok(Motion {
+        blocks,
+        accelerations,
+    })
 }
 
 impl Eliminated {
@@ -189,7 +200,13 @@ fn eliminate(
             right[i] = algebra.shortest(value);
         }
         couplings.retain(|&(_, coupling)| coupling != Graph::ZERO);
-        equations.push(Eliminated { speed: k, pivot, whole: Graph::ZERO, right: right[k], couplings });
+        equations.push(Eliminated {
+            speed: k,
+            pivot,
+            whole: Graph::ZERO,
+            right: right[k],
+            couplings,
+        });
     }
     equations.reverse();
     Ok(equations)
@@ -203,7 +220,9 @@ pub fn simplest_pivot(
     open: &mut Vec<usize>,
 ) -> Stage<usize> {
     let cost = |place: usize| algebra.graph.operations(&[schur[open[place]][open[place]]]);
-    let place = (0..open.len()).min_by_key(|&place| (cost(place), place)).unwrap_or(0);
+    let place = (0..open.len())
+        .min_by_key(|&place| (cost(place), place))
+        .unwrap_or(0);
     let k = open.remove(place);
     if !algebra.test.is_zero(&algebra.graph, schur[k][k]) {
         return Ok(k);
@@ -246,7 +265,13 @@ fn quotients(
         let Some([whole, right, pivot]) = algebra.cancelled(numerator, denominator, parts) else {
             return Vec::new();
         };
-        equations.push(Eliminated { speed, pivot, whole, right, couplings: Vec::new() });
+        equations.push(Eliminated {
+            speed,
+            pivot,
+            whole,
+            right,
+            couplings: Vec::new(),
+        });
     }
     equations
 }

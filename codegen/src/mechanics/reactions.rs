@@ -10,7 +10,7 @@ use super::constraints::{Constraints, motions_along};
 use super::elimination::Violation;
 use super::finding::Stage;
 use super::gibbs_appell::{BodyMotion, along, partial_velocities};
-use super::kinematics::Kinematics;
+use super::kinematics::{Effort, Kinematics};
 use super::loads::{applied_loads, generalized_forces};
 use super::symbols::Symbols;
 use crate::symbolic::vector::{self, Vec3};
@@ -28,17 +28,27 @@ pub fn reactions(
 ) -> Stage<Vec<Vec3>> {
     let carried = motions_along(&constraints.carried, &violation.carried_rates);
     let rates = &violation.coordinate_rates;
-    let kinematics = Kinematics::new(algebra, mechanism, symbols, rates, &carried)?;
+    let kinematics = Kinematics::new(algebra, mechanism, symbols, rates, &carried, Effort::Plain)?;
     let loads = applied_loads(algebra, mechanism, symbols, &kinematics, rates)?;
     let applied = generalized_forces(algebra, &loads, &violation.rates);
 
     // Inertial forces, shared by all reactions.
     let mut inertial = Vec::with_capacity(bodies.len());
     for body in bodies {
-        let a = along(&mut algebra.graph, body.centre.bias, &body.centre.partial, accelerations);
+        let a = along(
+            &mut algebra.graph,
+            body.centre.bias,
+            &body.centre.partial,
+            accelerations,
+        );
         let force = algebra.graph.scale3(body.mass, a);
         let moment = body.rotation.as_ref().map(|rotation| {
-            let alpha = along(&mut algebra.graph, vector::ZERO, &rotation.partial, accelerations);
+            let alpha = along(
+                &mut algebra.graph,
+                vector::ZERO,
+                &rotation.partial,
+                accelerations,
+            );
             let growth = algebra.graph.mat_vec(&rotation.inertia, alpha);
             algebra.graph.add3(growth, rotation.momentum_rate)
         });
@@ -48,14 +58,23 @@ pub fn reactions(
     let mut totals = vec![vector::ZERO; constraints.reactions.len()];
     for ((row, &rate), applied) in constraints.rows.iter().zip(&violation.rates).zip(applied) {
         let mut parts = vec![algebra.graph.neg(applied)];
-        for ((body, motion), (force, moment)) in mechanism.bodies.iter().zip(bodies).zip(&inertial) {
+        for ((body, motion), (force, moment)) in mechanism.bodies.iter().zip(bodies).zip(&inertial)
+        {
             let frame = motion.centre.velocity.frame;
-            let v = kinematics.frames.express(&mut algebra.graph, kinematics.velocity(body.centre), frame);
+            let v = kinematics.frames.express(
+                &mut algebra.graph,
+                kinematics.velocity(body.centre),
+                frame,
+            );
             let partial = partial_velocities(algebra, v, &[rate])[0];
             parts.push(algebra.graph.dot(*force, partial));
-            if let (Some(body_frame), Some(rotation), Some(moment)) = (body.frame, &motion.rotation, moment) {
+            if let (Some(body_frame), Some(rotation), Some(moment)) =
+                (body.frame, &motion.rotation, moment)
+            {
                 let w = kinematics.frames.angular_velocity(body_frame);
-                let w = kinematics.frames.express(&mut algebra.graph, w, rotation.velocity.frame);
+                let w = kinematics
+                    .frames
+                    .express(&mut algebra.graph, w, rotation.velocity.frame);
                 let partial = partial_velocities(algebra, w, &[rate])[0];
                 parts.push(algebra.graph.dot(*moment, partial));
             }

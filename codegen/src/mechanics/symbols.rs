@@ -35,19 +35,40 @@ impl Symbols {
         };
         let parameters = all(&mut mechanism.parameters.iter().map(|p| p.label.name.clone()));
         let coordinates = all(&mut mechanism.coordinates.iter().map(|c| c.label.name.clone()));
-        let speeds = all(&mut mechanism.pseudo_velocities.iter().map(|w| w.label.name.clone()));
+        let speeds = all(&mut mechanism
+            .pseudo_velocities
+            .iter()
+            .map(|w| w.label.name.clone()));
         let inputs = all(&mut mechanism.inputs.iter().map(|u| u.label.name.clone()));
-        let rates = all(&mut mechanism.coordinates.iter().map(|c| format!("{}_dot", c.label.name)));
-        let accelerations =
-            all(&mut mechanism.pseudo_velocities.iter().map(|w| format!("{}_dot", w.label.name)));
+        let rates = all(&mut mechanism
+            .coordinates
+            .iter()
+            .map(|c| format!("{}_dot", c.label.name)));
+        let accelerations = all(&mut mechanism
+            .pseudo_velocities
+            .iter()
+            .map(|w| format!("{}_dot", w.label.name)));
         let signals = mechanism
             .signals
             .iter()
-            .map(|s| ["", "_dot", "_ddot"].map(|suffix| graph.symbol(&format!("{}{suffix}", s.label.name))))
+            .map(|s| {
+                ["", "_dot", "_ddot"]
+                    .map(|suffix| graph.symbol(&format!("{}{suffix}", s.label.name)))
+            })
             .collect();
         let time = graph.symbol("t");
         let pi = graph.symbol("pi");
-        Self { parameters, coordinates, rates, speeds, accelerations, inputs, signals, time, pi }
+        Self {
+            parameters,
+            coordinates,
+            rates,
+            speeds,
+            accelerations,
+            inputs,
+            signals,
+            time,
+            pi,
+        }
     }
 }
 

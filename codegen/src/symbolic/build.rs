@@ -1,7 +1,5 @@
 //! Canonical construction: every function here returns the one node of its value's normal form.
 
-use rustc_hash::FxHashMap;
-
 use super::node::{Expr, Factor, Function, Node, Relation, Term};
 use super::{Graph, Rational};
 
@@ -180,14 +178,20 @@ impl Graph {
         if branches[0] == branches[1] {
             return branches[0];
         }
-        if let (Some(left), Some(right)) = (self.as_number(compared[0]), self.as_number(compared[1])) {
+        if let (Some(left), Some(right)) =
+            (self.as_number(compared[0]), self.as_number(compared[1]))
+        {
             let holds = match relation {
                 Relation::Less => left < right,
                 Relation::LessOrEqual => left <= right,
             };
             return branches[usize::from(!holds)];
         }
-        self.intern(Node::Choice { relation, compared, branches })
+        self.intern(Node::Choice {
+            relation,
+            compared,
+            branches,
+        })
     }
 
     /// Whether the canonical form starts with a negative coefficient.
@@ -219,14 +223,6 @@ impl Graph {
             _ => (Rational::ONE, expr),
         }
     }
-
-    /// Factors of an expression without numeric coefficient.
-    fn factors(&self, expr: Expr) -> Vec<Factor> {
-        match self.node(expr) {
-            Node::Product(factors) => factors.to_vec(),
-            _ => vec![Factor { base: expr, exponent: 1 }],
-        }
-    }
 }
 
 /// The root of a perfect square.
@@ -236,10 +232,10 @@ fn exact_square_root(number: &Rational) -> Option<Rational> {
     Some(Rational::new(root(n)?, root(d)?))
 }
 
-/// A sum under construction: like terms meet.
+/// A sum under construction: like terms meet when it is sorted.
 #[derive(Default)]
 struct Terms {
-    terms: FxHashMap<Expr, Rational>,
+    terms: Vec<Term>,
 }
 
 impl Terms {
@@ -256,19 +252,23 @@ impl Terms {
     }
 
     fn collect(&mut self, expr: Expr, coefficient: &Rational) {
-        let entry = self.terms.entry(expr).or_insert(Rational::ZERO);
-        *entry = &*entry + coefficient;
+        self.terms.push(Term {
+            expr,
+            coefficient: coefficient.clone(),
+        });
     }
 
-    fn sorted(self) -> Vec<Term> {
-        let mut terms: Vec<Term> = self
-            .terms
-            .into_iter()
-            .filter(|(_, coefficient)| !coefficient.is_zero())
-            .map(|(expr, coefficient)| Term { expr, coefficient })
-            .collect();
-        terms.sort_unstable_by_key(|t| t.expr);
-        terms
+    fn sorted(mut self) -> Vec<Term> {
+        self.terms.sort_unstable_by_key(|t| t.expr);
+        self.terms.dedup_by(|next, first| {
+            let like = next.expr == first.expr;
+            if like {
+                first.coefficient = &first.coefficient + &next.coefficient;
+            }
+            like
+        });
+        self.terms.retain(|t| !t.coefficient.is_zero());
+        self.terms
     }
 
     fn into_expr(self, graph: &mut Graph) -> Expr {
@@ -278,7 +278,9 @@ impl Terms {
         }
         match terms.as_slice() {
             [] => Graph::ZERO,
-            [Term { expr, coefficient }] if *expr == Graph::ONE => graph.number(coefficient.clone()),
+            [Term { expr, coefficient }] if *expr == Graph::ONE => {
+                graph.number(coefficient.clone())
+            }
             [Term { expr, coefficient }] if coefficient.is_one() => *expr,
             _ => graph.intern(Node::Sum(terms.into())),
         }
@@ -289,7 +291,9 @@ impl Terms {
 /// `kX - k s²X = k c²X` and the same with the roles exchanged.
 fn pythagoras(graph: &mut Graph, terms: &[Term]) -> Option<Vec<Term>> {
     for (i, term) in terms.iter().enumerate() {
-        let Node::Product(factors) = graph.node(term.expr) else { continue };
+        let Node::Product(factors) = graph.node(term.expr) else {
+            continue;
+        };
         let squares: Vec<(Expr, Function, Expr)> = factors
             .iter()
             .filter(|f| f.exponent >= 2)
@@ -301,7 +305,11 @@ fn pythagoras(graph: &mut Graph, terms: &[Term]) -> Option<Vec<Term>> {
             })
             .collect();
         for (square, kind, angle) in squares {
-            let cofunction = if kind == Function::Sin { Function::Cos } else { Function::Sin };
+            let cofunction = if kind == Function::Sin {
+                Function::Cos
+            } else {
+                Function::Sin
+            };
             let partner_base = graph.function(cofunction, angle);
             let rest = {
                 let inverse_square = graph.pow(square, -2);
@@ -339,12 +347,15 @@ fn pythagoras(graph: &mut Graph, terms: &[Term]) -> Option<Vec<Term>> {
 /// A product under construction: powers of the same base meet.
 struct Factors {
     coefficient: Rational,
-    exponents: FxHashMap<Expr, i32>,
+    factors: Vec<Factor>,
 }
 
 impl Factors {
     fn new() -> Self {
-        Self { coefficient: Rational::ONE, exponents: FxHashMap::default() }
+        Self {
+            coefficient: Rational::ONE,
+            factors: Vec::new(),
+        }
     }
 
     /// Multiplies by `expr^exponent`.
@@ -355,48 +366,69 @@ impl Factors {
             // A number too long to write out stays a factor of its own.
             None => {
                 let number = graph.number(coefficient);
-                *self.exponents.entry(number).or_insert(0) += exponent;
+                self.factors.push(Factor {
+                    base: number,
+                    exponent,
+                });
             }
         }
         if rest == Graph::ONE || self.coefficient.is_zero() {
             return;
         }
-        for factor in graph.factors(rest) {
-            let total = self.exponents.entry(factor.base).or_insert(0);
-            *total = total.saturating_add(factor.exponent.saturating_mul(exponent));
+        match graph.node(rest) {
+            Node::Product(factors) => self.factors.extend(factors.iter().map(|f| Factor {
+                base: f.base,
+                exponent: f.exponent.saturating_mul(exponent),
+            })),
+            _ => self.factors.push(Factor {
+                base: rest,
+                exponent,
+            }),
         }
+    }
+
+    /// Powers of the same base meet.
+    fn merge(&mut self) {
+        self.factors.sort_unstable_by_key(|f| f.base);
+        self.factors.dedup_by(|next, first| {
+            let same = next.base == first.base;
+            if same {
+                first.exponent = first.exponent.saturating_add(next.exponent);
+            }
+            same
+        });
+        self.factors.retain(|f| f.exponent != 0);
     }
 
     fn into_expr(mut self, graph: &mut Graph) -> Expr {
         if self.coefficient.is_zero() {
             return Graph::ZERO;
         }
+        self.merge();
         // √x to an even power is a power of x, which may meet other powers of x or be a root itself.
         loop {
-            let mut roots: Vec<(Expr, Expr, i32)> = self
-                .exponents
-                .iter()
-                .filter_map(|(&base, &exponent)| match graph.node(base) {
-                    Node::Function(Function::Sqrt, x) if exponent.abs() >= 2 => Some((base, *x, exponent)),
+            let roots: Vec<(Expr, i32)> = self
+                .factors
+                .iter_mut()
+                .filter(|f| f.exponent.abs() >= 2)
+                .filter_map(|f| match graph.node(f.base) {
+                    Node::Function(Function::Sqrt, x) => {
+                        let whole = f.exponent / 2;
+                        f.exponent %= 2;
+                        Some((*x, whole))
+                    }
                     _ => None,
                 })
                 .collect();
             if roots.is_empty() {
                 break;
             }
-            roots.sort_unstable();
-            for (root, x, exponent) in roots {
-                self.exponents.insert(root, exponent % 2);
-                self.multiply(graph, x, exponent / 2);
+            for (x, exponent) in roots {
+                self.multiply(graph, x, exponent);
             }
+            self.merge();
         }
-        let mut factors: Vec<Factor> = self
-            .exponents
-            .into_iter()
-            .filter(|&(_, exponent)| exponent != 0)
-            .map(|(base, exponent)| Factor { base, exponent })
-            .collect();
-        factors.sort_unstable_by_key(|f| f.base);
+        let factors = self.factors;
         let product = match factors.as_slice() {
             [] => Graph::ONE,
             [Factor { base, exponent: 1 }] => *base,

@@ -15,21 +15,26 @@ pub struct Derivatives {
 impl Derivatives {
     /// Derivatives with respect to `symbol`.
     pub fn with_respect_to(symbol: SymbolId) -> Self {
-        Self { symbol, known: FxHashMap::default() }
+        Self {
+            symbol,
+            known: FxHashMap::default(),
+        }
     }
 
     /// `∂expr/∂symbol`
     pub fn of(&mut self, graph: &mut Graph, expr: Expr) -> Expr {
-        if let Some(&known) = self.known.get(&expr) {
-            return known;
+        let unknown =
+            |e: Expr| graph.support(e).may_hold(self.symbol) && !self.known.contains_key(&e);
+        for part in graph.in_order_where(&[expr], unknown) {
+            let derivative = self.step(graph, part);
+            self.known.insert(part, derivative);
         }
-        for part in graph.in_order(&[expr]) {
-            if !self.known.contains_key(&part) {
-                let derivative = self.step(graph, part);
-                self.known.insert(part, derivative);
-            }
-        }
-        self.known[&expr]
+        self.get(expr)
+    }
+
+    /// A derivative that is known: what does not hold the symbol has the derivative zero.
+    fn get(&self, expr: Expr) -> Expr {
+        self.known.get(&expr).copied().unwrap_or(Graph::ZERO)
     }
 
     /// Derivative of one node; those of its parts are known.
@@ -45,19 +50,21 @@ impl Derivatives {
             }
             Node::Named(id) => {
                 let value = graph.definition(id).value;
-                let derivative = self.known[&value];
+                let derivative = self.get(value);
                 self.name_derivative(graph, id, derivative)
             }
             Node::Sum(terms) => {
-                let parts: Vec<(Rational, Expr)> =
-                    terms.iter().map(|t| (t.coefficient.clone(), self.known[&t.expr])).collect();
+                let parts: Vec<(Rational, Expr)> = terms
+                    .iter()
+                    .map(|t| (t.coefficient.clone(), self.get(t.expr)))
+                    .collect();
                 graph.linear_combination(&parts)
             }
             Node::Product(factors) => {
                 // Σ n · base' · (product / base)
                 let mut sum = Vec::new();
                 for factor in &factors {
-                    let inner = self.known[&factor.base];
+                    let inner = self.get(factor.base);
                     if inner != Graph::ZERO {
                         let without = graph.div(expr, factor.base);
                         sum.push((i64::from(factor.exponent).into(), graph.mul(inner, without)));
@@ -66,7 +73,7 @@ impl Derivatives {
                 graph.linear_combination(&sum)
             }
             Node::Function(function, argument) => {
-                let inner = self.known[&argument];
+                let inner = self.get(argument);
                 if inner == Graph::ZERO {
                     return Graph::ZERO;
                 }
@@ -74,7 +81,7 @@ impl Derivatives {
                 graph.mul(outer, inner)
             }
             Node::Atan2(y, x) => {
-                let (dy, dx) = (self.known[&y], self.known[&x]);
+                let (dy, dx) = (self.get(y), self.get(x));
                 let squares = [graph.square(x), graph.square(y)];
                 let radius_squared = graph.sum(&squares);
                 let (x_dy, y_dx) = (graph.mul(x, dy), graph.mul(y, dx));
@@ -83,7 +90,7 @@ impl Derivatives {
             }
             Node::Power(base, exponent) => {
                 // a^b (b' ln a + b a'/a)
-                let (da, db) = (self.known[&base], self.known[&exponent]);
+                let (da, db) = (self.get(base), self.get(exponent));
                 let growth = if db == Graph::ZERO {
                     Graph::ZERO
                 } else {
@@ -95,21 +102,28 @@ impl Derivatives {
                 let sum = graph.add(growth, scaled);
                 graph.mul(expr, sum)
             }
-            Node::Choice { relation, compared, branches } => {
-                graph.choice(relation, compared, branches.map(|b| self.known[&b]))
-            }
+            Node::Choice {
+                relation,
+                compared,
+                branches,
+            } => graph.choice(relation, compared, branches.map(|b| self.get(b))),
             Node::Solution { system, row } => {
                 // A x = b gives A x' = b' - A' x.
                 let system_now = graph.system(system).clone();
                 let size = system_now.right.len();
                 let unknowns: Vec<Expr> = (0..size)
-                    .map(|r| graph.intern(Node::Solution { system, row: u32::try_from(r).unwrap_or(0) }))
+                    .map(|r| {
+                        graph.intern(Node::Solution {
+                            system,
+                            row: u32::try_from(r).unwrap_or(0),
+                        })
+                    })
                     .collect();
                 let right = (0..size)
                     .map(|i| {
-                        let mut parts = vec![self.known[&system_now.right[i]]];
+                        let mut parts = vec![self.get(system_now.right[i])];
                         for j in 0..size {
-                            let entry = self.known[&system_now.matrix[i * size + j]];
+                            let entry = self.get(system_now.matrix[i * size + j]);
                             let product = graph.mul(entry, unknowns[j]);
                             parts.push(graph.neg(product));
                         }
@@ -130,7 +144,11 @@ impl Derivatives {
         if !worth_a_name {
             return derivative;
         }
-        let name = format!("d_{}_d_{}", graph.definition(id).name, graph.symbol_name(self.symbol));
+        let name = format!(
+            "d_{}_d_{}",
+            graph.definition(id).name,
+            graph.symbol_name(self.symbol)
+        );
         graph.name(&name, derivative)
     }
 }
@@ -149,7 +167,11 @@ fn outer_derivative(graph: &mut Graph, function: Function, x: Expr, value: Expr)
             let rest = graph.sub(one, square);
             let root = graph.sqrt(rest);
             let derivative = graph.pow(root, -1);
-            if function == Function::Asin { derivative } else { graph.neg(derivative) }
+            if function == Function::Asin {
+                derivative
+            } else {
+                graph.neg(derivative)
+            }
         }
         Function::Atan => {
             let square = graph.square(x);

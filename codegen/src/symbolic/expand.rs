@@ -9,6 +9,9 @@ impl Graph {
     /// Multiplies out products and positive powers of sums. Names, functions and denominators stay as
     /// they are. `None` where a sum would have more than `limit` terms.
     pub fn expand(&mut self, expr: Expr, limit: usize) -> Option<Expr> {
+        if self.is_expanded(expr) {
+            return Some(expr);
+        }
         let mut known: FxHashMap<Expr, Expr> = FxHashMap::default();
         let mut stack = vec![expr];
         while let Some(&top) = stack.last() {
@@ -19,10 +22,18 @@ impl Graph {
             let height = stack.len();
             match self.node(top) {
                 Node::Sum(terms) => {
-                    stack.extend(terms.iter().map(|t| t.expr).filter(|e| !known.contains_key(e)));
+                    stack.extend(
+                        terms
+                            .iter()
+                            .map(|t| t.expr)
+                            .filter(|e| !known.contains_key(e)),
+                    );
                 }
                 Node::Product(factors) => {
-                    let sums = factors.iter().filter(|f| self.can_be_multiplied_out(f)).map(|f| f.base);
+                    let sums = factors
+                        .iter()
+                        .filter(|f| self.can_be_multiplied_out(f))
+                        .map(|f| f.base);
                     stack.extend(sums.filter(|e| !known.contains_key(e)));
                 }
                 _ => {}
@@ -30,8 +41,10 @@ impl Graph {
             if stack.len() == height {
                 let expanded = match self.node(top).clone() {
                     Node::Sum(terms) => {
-                        let parts: Vec<(Rational, Expr)> =
-                            terms.iter().map(|t| (t.coefficient.clone(), known[&t.expr])).collect();
+                        let parts: Vec<(Rational, Expr)> = terms
+                            .iter()
+                            .map(|t| (t.coefficient.clone(), known[&t.expr]))
+                            .collect();
                         self.linear_combination(&parts)
                     }
                     Node::Product(factors) => self.multiply_out(&factors, &known, limit)?,
@@ -47,6 +60,18 @@ impl Graph {
         Some(known[&expr])
     }
 
+    /// Whether no term is a product of sums.
+    fn is_expanded(&self, expr: Expr) -> bool {
+        let flat = |e: Expr| match self.node(e) {
+            Node::Product(factors) => !factors.iter().any(|f| self.can_be_multiplied_out(f)),
+            _ => true,
+        };
+        match self.node(expr) {
+            Node::Sum(terms) => terms.iter().all(|t| flat(t.expr)),
+            _ => flat(expr),
+        }
+    }
+
     fn can_be_multiplied_out(&self, factor: &Factor) -> bool {
         factor.exponent > 0 && matches!(self.node(factor.base), Node::Sum(_))
     }
@@ -60,7 +85,10 @@ impl Graph {
     ) -> Option<Expr> {
         let (sums, others): (Vec<&Factor>, Vec<&Factor>) =
             factors.iter().partition(|f| self.can_be_multiplied_out(f));
-        let powers: Vec<Expr> = others.iter().map(|f| self.pow(f.base, f.exponent)).collect();
+        let powers: Vec<Expr> = others
+            .iter()
+            .map(|f| self.pow(f.base, f.exponent))
+            .collect();
         let mut product = self.product(&powers);
         for factor in sums {
             let sum = known[&factor.base];
@@ -90,14 +118,24 @@ impl Graph {
         match self.node(expr) {
             Node::Sum(terms) => terms.to_vec(),
             Node::Number(n) if n.is_zero() => Vec::new(),
-            Node::Number(n) => vec![Term { expr: Self::ONE, coefficient: n.clone() }],
-            _ => vec![Term { expr, coefficient: Rational::ONE }],
+            Node::Number(n) => vec![Term {
+                expr: Self::ONE,
+                coefficient: n.clone(),
+            }],
+            _ => vec![Term {
+                expr,
+                coefficient: Rational::ONE,
+            }],
         }
     }
 
     /// The one of two expressions with fewer operations, the first if they have equally many.
     pub fn shorter(&self, a: Expr, b: Expr) -> Expr {
-        if a != b && self.operations(&[b]) < self.operations(&[a]) { b } else { a }
+        if a != b && self.operations(&[b]) < self.operations(&[a]) {
+            b
+        } else {
+            a
+        }
     }
 
     /// How many additions, multiplications, divisions and function calls compute `roots`, each shared
@@ -109,7 +147,9 @@ impl Graph {
             count += match self.node(expr) {
                 Node::Number(_) | Node::Symbol(_) | Node::Named(_) => 0,
                 Node::Sum(terms) => {
-                    let scaled = terms.iter().filter(|t| t.expr != Self::ONE && !is_unit(&t.coefficient));
+                    let scaled = terms
+                        .iter()
+                        .filter(|t| t.expr != Self::ONE && !is_unit(&t.coefficient));
                     terms.len() - 1 + scaled.count()
                 }
                 Node::Product(factors) => {
@@ -123,7 +163,11 @@ impl Graph {
                 Node::Solution { system, .. } => {
                     let n = self.system(*system).right.len();
                     // Elimination and back substitution, once for all unknowns.
-                    if systems.insert(*system) { (2 * n * n * n).div_ceil(3) + 2 * n * n } else { 0 }
+                    if systems.insert(*system) {
+                        (2 * n * n * n).div_ceil(3) + 2 * n * n
+                    } else {
+                        0
+                    }
                 }
             };
         }

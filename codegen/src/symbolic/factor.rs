@@ -7,7 +7,9 @@ impl Graph {
     /// Takes the factors that all terms of a sum share in front of it: `a b + a c = a (b + c)`.
     /// Anything but such a sum stays as it is.
     pub fn take_out_common_factors(&mut self, expr: Expr) -> Expr {
-        let Node::Sum(terms) = self.node(expr) else { return expr };
+        let Node::Sum(terms) = self.node(expr) else {
+            return expr;
+        };
         if terms.len() < 2 {
             return expr;
         }
@@ -29,10 +31,15 @@ impl Graph {
         if shared.is_empty() {
             return expr;
         }
-        let powers: Vec<Expr> = shared.iter().map(|f| self.pow(f.base, f.exponent)).collect();
+        let powers: Vec<Expr> = shared
+            .iter()
+            .map(|f| self.pow(f.base, f.exponent))
+            .collect();
         let common = self.product(&powers);
-        let rest: Vec<_> =
-            terms.iter().map(|t| (t.coefficient.clone(), self.div(t.expr, common))).collect();
+        let rest: Vec<_> = terms
+            .iter()
+            .map(|t| (t.coefficient.clone(), self.div(t.expr, common)))
+            .collect();
         let rest = self.linear_combination(&rest);
         self.mul(common, rest)
     }
@@ -40,7 +47,9 @@ impl Graph {
     /// Nests a sum: the factor that most terms share is taken out of these, and both parts are
     /// nested in turn. `a x + b x + c y = x (a + b) + c y`.
     pub fn nest(&mut self, expr: Expr) -> Expr {
-        let Node::Sum(terms) = self.node(expr) else { return expr };
+        let Node::Sum(terms) = self.node(expr) else {
+            return expr;
+        };
         if terms.len() < 2 {
             return expr;
         }
@@ -55,8 +64,15 @@ impl Graph {
             }
         }
         let most = shared_by.iter().max_by_key(|&&(base, count)| (count, base));
-        let Some(&(base, count)) = most.filter(|&&(_, count)| count >= 2) else { return expr };
-        let holds = |graph: &Self, e: Expr| graph.factors_of(e).iter().any(|f| f.base == base && f.exponent > 0);
+        let Some(&(base, count)) = most.filter(|&&(_, count)| count >= 2) else {
+            return expr;
+        };
+        let holds = |graph: &Self, e: Expr| {
+            graph
+                .factors_of(e)
+                .iter()
+                .any(|f| f.base == base && f.exponent > 0)
+        };
         let (mut inside, mut outside) = (Vec::with_capacity(count), Vec::new());
         for term in &terms {
             if holds(self, term.expr) {
@@ -65,7 +81,10 @@ impl Graph {
                 outside.push((term.coefficient.clone(), term.expr));
             }
         }
-        let (inside, outside) = (self.linear_combination(&inside), self.linear_combination(&outside));
+        let (inside, outside) = (
+            self.linear_combination(&inside),
+            self.linear_combination(&outside),
+        );
         let (inside, outside) = (self.nest(inside), self.nest(outside));
         let product = self.mul(base, inside);
         self.add(product, outside)
@@ -74,7 +93,8 @@ impl Graph {
     /// `dividend = quotient · divisor + rest` for sums of products, as far as whole multiples of the
     /// divisor stand in the dividend.
     pub fn divide_out(&mut self, dividend: Expr, divisor: Expr) -> (Expr, Expr) {
-        let (Node::Sum(parts), Node::Sum(pattern)) = (self.node(dividend), self.node(divisor)) else {
+        let (Node::Sum(parts), Node::Sum(pattern)) = (self.node(dividend), self.node(divisor))
+        else {
             return (Self::ZERO, dividend);
         };
         let (candidates, pattern) = (parts.clone(), pattern.clone());
@@ -83,14 +103,18 @@ impl Graph {
         }
         let (mut quotient, mut rest) = (Self::ZERO, dividend);
         for candidate in &candidates {
-            let Node::Sum(left) = self.node(rest) else { break };
+            let Node::Sum(left) = self.node(rest) else {
+                break;
+            };
             let left = left.clone();
             let find = |e: Expr| left.iter().find(|t| t.expr == e);
             let ratio = self.div(candidate.expr, pattern[0].expr);
             if self.factors_of(ratio).iter().any(|f| f.exponent < 0) {
                 continue;
             }
-            let Some(first) = find(candidate.expr) else { continue };
+            let Some(first) = find(candidate.expr) else {
+                continue;
+            };
             let multiple = &first.coefficient * &pattern[0].coefficient.recip();
             let whole = pattern.iter().all(|term| {
                 let expected = self.mul(ratio, term.expr);
@@ -99,8 +123,10 @@ impl Graph {
             if whole {
                 let share = self.scale(&multiple, ratio);
                 quotient = self.add(quotient, share);
-                let terms: Vec<_> =
-                    pattern.iter().map(|t| (-&(&multiple * &t.coefficient), self.mul(ratio, t.expr))).collect();
+                let terms: Vec<_> = pattern
+                    .iter()
+                    .map(|t| (-&(&multiple * &t.coefficient), self.mul(ratio, t.expr)))
+                    .collect();
                 let minus = self.linear_combination(&terms);
                 rest = self.add(rest, minus);
             }
@@ -114,7 +140,11 @@ impl Graph {
         let (mut over, mut under) = (vec![self.number(coefficient)], Vec::new());
         for factor in self.factors_of(rest) {
             let power = self.pow(factor.base, factor.exponent.abs());
-            if factor.exponent > 0 { over.push(power) } else { under.push(power) }
+            if factor.exponent > 0 {
+                over.push(power)
+            } else {
+                under.push(power)
+            }
         }
         (self.product(&over), self.product(&under))
     }
@@ -123,7 +153,10 @@ impl Graph {
         match self.node(expr) {
             Node::Product(factors) => factors.to_vec(),
             Node::Number(_) => Vec::new(),
-            _ => vec![Factor { base: expr, exponent: 1 }],
+            _ => vec![Factor {
+                base: expr,
+                exponent: 1,
+            }],
         }
     }
 }

@@ -2,13 +2,15 @@
 
 use rustc_hash::FxHashMap;
 
-use super::node::{Definition, Expr, Node, SymbolId, System};
 use super::Rational;
+use super::node::{Definition, Expr, Node, SymbolId, System};
 
 /// Owner of all expressions of a derivation.
 #[derive(Debug, Clone)]
 pub struct Graph {
     nodes: Vec<Node>,
+    /// Which symbols each node contains.
+    supports: Vec<Support>,
     index: FxHashMap<Node, Expr>,
     symbols: Vec<String>,
     definitions: Vec<Definition>,
@@ -33,6 +35,7 @@ impl Graph {
     pub fn new() -> Self {
         let mut graph = Self {
             nodes: Vec::new(),
+            supports: Vec::new(),
             index: FxHashMap::default(),
             symbols: Vec::new(),
             definitions: Vec::new(),
@@ -50,8 +53,11 @@ impl Graph {
         if let Some(&expr) = self.index.get(&node) {
             return expr;
         }
-        let id = u32::try_from(self.nodes.len()).expect("fewer than 2^32 expressions fit in memory");
+        let id =
+            u32::try_from(self.nodes.len()).expect("fewer than 2^32 expressions fit in memory");
         self.nodes.push(node.clone());
+        let support = self.support_of_new(Expr(id));
+        self.supports.push(support);
         self.index.insert(node, Expr(id));
         Expr(id)
     }
@@ -110,7 +116,10 @@ impl Graph {
     /// it: a second name would only make people look twice.
     pub fn name(&mut self, name: &str, value: Expr) -> Expr {
         let plain = |graph: &Self, expr: Expr| {
-            matches!(graph.node(expr), Node::Number(_) | Node::Symbol(_) | Node::Named(_))
+            matches!(
+                graph.node(expr),
+                Node::Number(_) | Node::Symbol(_) | Node::Named(_)
+            )
         };
         let core = match self.node(value) {
             Node::Sum(terms) if terms.len() == 1 => terms[0].expr,
@@ -122,8 +131,12 @@ impl Graph {
         if let Some(&named) = self.names.get(&value) {
             return named;
         }
-        let id = u32::try_from(self.definitions.len()).expect("fewer than 2^32 names fit in memory");
-        self.definitions.push(Definition { name: name.to_owned(), value });
+        let id =
+            u32::try_from(self.definitions.len()).expect("fewer than 2^32 names fit in memory");
+        self.definitions.push(Definition {
+            name: name.to_owned(),
+            value,
+        });
         let named = self.intern(Node::Named(id));
         self.names.insert(value, named);
         named
@@ -144,22 +157,32 @@ impl Graph {
 
     /// Unknowns of `matrix · unknowns = right`, solved with pivoting when evaluated.
     pub fn solve_numerically(&mut self, matrix: Vec<Expr>, right: Vec<Expr>) -> Vec<Expr> {
-        assert_eq!(matrix.len(), right.len() * right.len(), "the system is square");
+        assert_eq!(
+            matrix.len(),
+            right.len() * right.len(),
+            "the system is square"
+        );
         if right.iter().all(|&r| r == Self::ZERO) {
             return right;
         }
         let rows = u32::try_from(right.len()).expect("a system is small");
-        let system = System { matrix: matrix.into(), right: right.into() };
+        let system = System {
+            matrix: matrix.into(),
+            right: right.into(),
+        };
         let id = match self.system_index.get(&system) {
             Some(&id) => id,
             None => {
-                let id = u32::try_from(self.systems.len()).expect("fewer than 2^32 systems fit in memory");
+                let id = u32::try_from(self.systems.len())
+                    .expect("fewer than 2^32 systems fit in memory");
                 self.systems.push(system.clone());
                 self.system_index.insert(system, id);
                 id
             }
         };
-        (0..rows).map(|row| self.intern(Node::Solution { system: id, row })).collect()
+        (0..rows)
+            .map(|row| self.intern(Node::Solution { system: id, row }))
+            .collect()
     }
 
     /// System behind the index of [`Node::Solution`].
@@ -177,29 +200,46 @@ impl Graph {
             Node::Product(factors) => factors.iter().for_each(|f| visit(f.base)),
             Node::Function(_, a) => visit(*a),
             Node::Atan2(a, b) | Node::Power(a, b) => [*a, *b].into_iter().for_each(visit),
-            Node::Choice { compared, branches, .. } => {
+            Node::Choice {
+                compared, branches, ..
+            } => {
                 compared.iter().chain(branches).for_each(|&e| visit(e));
             }
             Node::Solution { system, .. } => {
                 let system = self.system(*system);
-                system.matrix.iter().chain(&system.right).for_each(|&e| visit(e));
+                system
+                    .matrix
+                    .iter()
+                    .chain(&system.right)
+                    .for_each(|&e| visit(e));
             }
         }
     }
 
     /// All expressions that `roots` are built from, parts before wholes, each once.
     pub fn in_order(&self, roots: &[Expr]) -> Vec<Expr> {
+        self.in_order_where(roots, |_| true)
+    }
+
+    /// [`Graph::in_order`] without the expressions that fail `wanted` and what lies below them.
+    pub(super) fn in_order_where(
+        &self,
+        roots: &[Expr],
+        wanted: impl Fn(Expr) -> bool,
+    ) -> Vec<Expr> {
+        // Parts are older than wholes, so no index exceeds the roots'.
+        let newest = roots.iter().max().map_or(0, |root| root.0 as usize);
+        let mut visited = Marks(vec![0; newest / 64 + 1]);
         let mut order = Vec::new();
-        let mut seen = rustc_hash::FxHashSet::default();
         // Explicit stack: a deep expression must not overflow the machine's.
         let mut stack: Vec<(Expr, bool)> = roots.iter().rev().map(|&r| (r, false)).collect();
         while let Some((expr, parts_done)) = stack.pop() {
             if parts_done {
                 order.push(expr);
-            } else if seen.insert(expr) {
+            } else if wanted(expr) && visited.set(expr) {
                 stack.push((expr, true));
                 self.for_each_part(expr, |part| {
-                    if !seen.contains(&part) {
+                    if !visited.holds(part) {
                         stack.push((part, false));
                     }
                 });
@@ -210,6 +250,73 @@ impl Graph {
 
     /// Whether any of `symbols` occurs in `expr` as it is written.
     pub fn mentions(&self, expr: Expr, symbols: &[SymbolId]) -> bool {
-        self.in_order(&[expr]).iter().any(|&e| self.as_symbol(e).is_some_and(|s| symbols.contains(&s)))
+        let support = self.support(expr);
+        symbols.iter().any(|&s| {
+            support.may_hold(s)
+                && (Support::is_exact(s) || {
+                    let found = |&e: &Expr| self.as_symbol(e) == Some(s);
+                    self.in_order(&[expr]).iter().any(found)
+                })
+        })
+    }
+
+    /// Which symbols an expression contains.
+    pub(super) fn support(&self, expr: Expr) -> Support {
+        self.supports[expr.0 as usize]
+    }
+
+    fn support_of_new(&self, expr: Expr) -> Support {
+        if let Node::Symbol(symbol) = self.node(expr) {
+            return Support::of(*symbol);
+        }
+        let mut support = Support::default();
+        self.for_each_part(expr, |part| support = support.union(self.support(part)));
+        support
+    }
+}
+
+/// A set of symbols: exact for the first 127, the others share a place.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub(super) struct Support(u128);
+
+impl Support {
+    const SHARED_PLACE: u32 = 127;
+
+    pub(super) fn of(symbol: SymbolId) -> Self {
+        Self(1 << symbol.0.min(Self::SHARED_PLACE))
+    }
+
+    fn union(self, other: Self) -> Self {
+        Self(self.0 | other.0)
+    }
+
+    fn is_exact(symbol: SymbolId) -> bool {
+        symbol.0 < Self::SHARED_PLACE
+    }
+
+    /// Exact for symbols with a place of their own.
+    pub(super) fn may_hold(self, symbol: SymbolId) -> bool {
+        self.contains(Self::of(symbol))
+    }
+
+    /// Whether an expression with this support can have a part with the other.
+    pub(super) fn contains(self, other: Self) -> bool {
+        self.0 & other.0 == other.0
+    }
+}
+
+/// A set of expressions, one bit each.
+struct Marks(Vec<u64>);
+
+impl Marks {
+    fn holds(&self, Expr(index): Expr) -> bool {
+        self.0[index as usize / 64] >> (index % 64) & 1 == 1
+    }
+
+    /// Adds an expression; false where it was there before.
+    fn set(&mut self, expr: Expr) -> bool {
+        let fresh = !self.holds(expr);
+        self.0[expr.0 as usize / 64] |= 1 << (expr.0 % 64);
+        fresh
     }
 }

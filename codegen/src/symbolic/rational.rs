@@ -6,7 +6,7 @@ use std::ops::{Add, Mul, Neg};
 
 use num_bigint::BigInt;
 use num_rational::{BigRational, Ratio};
-use num_traits::{One, Signed, ToPrimitive, Zero};
+use num_traits::{Signed, ToPrimitive, Zero};
 
 /// An exact rational number in lowest terms.
 ///
@@ -97,7 +97,11 @@ impl Rational {
     /// Absolute value.
     #[must_use]
     pub fn abs(&self) -> Self {
-        if self.is_negative() { -self } else { self.clone() }
+        if self.is_negative() {
+            -self
+        } else {
+            self.clone()
+        }
     }
 
     /// One over it; the number must not be zero.
@@ -128,20 +132,56 @@ impl Rational {
     /// The positive number by which all of `values` are integers without a common divisor.
     pub fn content<'a>(values: impl Iterator<Item = &'a Self>) -> Self {
         use num_integer::Integer;
-        let (mut numerator, mut denominator) = (BigInt::zero(), BigInt::one());
+        let mut small = (0_i64, 1_i64);
+        let mut values = values;
+        let mut left = None;
+        for value in values.by_ref() {
+            let joined = value.as_small().and_then(|(n, d)| {
+                let denominator = (small.1 / small.1.gcd(&d)).checked_mul(d)?;
+                Some((small.0.gcd(&n), denominator))
+            });
+            match joined {
+                Some(joined) => small = joined,
+                None => {
+                    left = Some(value);
+                    break;
+                }
+            }
+        }
+        let Some(value) = left else {
+            return if small.0 == 0 {
+                Self::ONE
+            } else {
+                Self(Repr::Small(Ratio::new(small.0, small.1)))
+            };
+        };
+        let values = std::iter::once(value).chain(values);
+        let (mut numerator, mut denominator) = (BigInt::from(small.0), BigInt::from(small.1));
         for value in values {
             let value = value.to_big();
             numerator = numerator.gcd(value.numer());
             denominator = denominator.lcm(value.denom());
         }
-        if numerator.is_zero() { Self::ONE } else { Self::from_big(BigRational::new(numerator, denominator)) }
+        if numerator.is_zero() {
+            Self::ONE
+        } else {
+            Self::from_big(BigRational::new(numerator, denominator))
+        }
     }
+}
+
+/// Both numbers, where they are integers: the common case needs no common denominator.
+fn integers(a: &Rational, b: &Rational) -> Option<(i64, i64)> {
+    Some((a.as_integer()?, b.as_integer()?))
 }
 
 impl Add for &Rational {
     type Output = Rational;
 
     fn add(self, other: Self) -> Rational {
+        if let Some(sum) = integers(self, other).and_then(|(a, b)| a.checked_add(b)) {
+            return Rational::from(sum);
+        }
         if let (Repr::Small(a), Repr::Small(b)) = (&self.0, &other.0)
             && let Some(sum) = num_traits::CheckedAdd::checked_add(a, b)
             && *sum.numer() != i64::MIN
@@ -156,6 +196,9 @@ impl Mul for &Rational {
     type Output = Rational;
 
     fn mul(self, other: Self) -> Rational {
+        if let Some(product) = integers(self, other).and_then(|(a, b)| a.checked_mul(b)) {
+            return Rational::from(product);
+        }
         if let (Repr::Small(a), Repr::Small(b)) = (&self.0, &other.0)
             && let Some(product) = num_traits::CheckedMul::checked_mul(a, b)
             && *product.numer() != i64::MIN
@@ -179,7 +222,10 @@ impl Neg for &Rational {
 
 impl From<i64> for Rational {
     fn from(value: i64) -> Self {
-        Self::from_big(BigRational::from_integer(value.into()))
+        if value == i64::MIN {
+            return Self::from_big(BigRational::from_integer(value.into()));
+        }
+        Self(Repr::Small(Ratio::new_raw(value, 1)))
     }
 }
 

@@ -2,76 +2,113 @@
 
 use rustc_hash::FxHashMap;
 
-use super::node::{Expr, Node, SymbolId};
 use super::Graph;
+use super::graph::Support;
+use super::node::{Expr, Node, SymbolId};
 
 /// A simultaneous replacement of symbols, remembered between calls. A name whose definition changes
 /// dissolves: it would stand for something else.
 #[derive(Debug, Default)]
 pub struct Substitution {
     known: FxHashMap<Expr, Expr>,
+    /// What is replaced; an expression that cannot hold any of it stays as it is.
+    targets: Vec<Support>,
 }
 
 impl Substitution {
     /// Replaces each symbol by its expression.
     pub fn new(graph: &mut Graph, replacements: &[(SymbolId, Expr)]) -> Self {
-        let known = replacements
+        let parts: Vec<(Expr, Expr)> = replacements
             .iter()
             .map(|&(symbol, value)| (graph.intern(Node::Symbol(symbol)), value))
             .collect();
-        Self { known }
+        Self::of_parts(graph, &parts)
     }
 
     /// Replaces whole expressions, wherever they stand as parts.
-    pub fn of_parts(replacements: &[(Expr, Expr)]) -> Self {
-        Self { known: replacements.iter().copied().collect() }
+    pub fn of_parts(graph: &Graph, replacements: &[(Expr, Expr)]) -> Self {
+        let targets = replacements
+            .iter()
+            .map(|&(part, _)| graph.support(part))
+            .collect();
+        Self {
+            known: replacements.iter().copied().collect(),
+            targets,
+        }
     }
 
     /// `expr` with the symbols replaced, in canonical form again. `None` where a number is divided
     /// by zero on the way.
     pub fn apply(&mut self, graph: &mut Graph, expr: Expr) -> Option<Expr> {
-        for part in graph.in_order(&[expr]) {
-            if !self.known.contains_key(&part) {
-                let replaced = self.step(graph, part)?;
-                self.known.insert(part, replaced);
-            }
+        let unknown = |e: Expr| {
+            let support = graph.support(e);
+            self.targets.iter().any(|&target| support.contains(target))
+                && !self.known.contains_key(&e)
+        };
+        for part in graph.in_order_where(&[expr], unknown) {
+            let replaced = self.step(graph, part)?;
+            self.known.insert(part, replaced);
         }
-        Some(self.known[&expr])
+        Some(self.get(expr))
+    }
+
+    fn get(&self, expr: Expr) -> Expr {
+        self.known.get(&expr).copied().unwrap_or(expr)
     }
 
     fn step(&self, graph: &mut Graph, expr: Expr) -> Option<Expr> {
-        let new = |e: &Expr| self.known[e];
+        let new = |e: &Expr| self.get(*e);
         Some(match graph.node(expr).clone() {
             Node::Number(_) | Node::Symbol(_) => expr,
             Node::Named(id) => {
                 let value = graph.definition(id).value;
-                if new(&value) == value { expr } else { new(&value) }
+                if new(&value) == value {
+                    expr
+                } else {
+                    new(&value)
+                }
             }
             Node::Sum(terms) => {
-                let parts: Vec<_> = terms.iter().map(|t| (t.coefficient.clone(), new(&t.expr))).collect();
+                let parts: Vec<_> = terms
+                    .iter()
+                    .map(|t| (t.coefficient.clone(), new(&t.expr)))
+                    .collect();
                 graph.linear_combination(&parts)
             }
             Node::Product(factors) => {
-                if factors.iter().any(|f| f.exponent < 0 && new(&f.base) == Graph::ZERO) {
+                if factors
+                    .iter()
+                    .any(|f| f.exponent < 0 && new(&f.base) == Graph::ZERO)
+                {
                     return None;
                 }
-                let powers: Vec<_> =
-                    factors.iter().map(|f| graph.pow(new(&f.base), f.exponent)).collect();
+                let powers: Vec<_> = factors
+                    .iter()
+                    .map(|f| graph.pow(new(&f.base), f.exponent))
+                    .collect();
                 graph.product(&powers)
             }
             Node::Function(function, argument) => graph.function(function, new(&argument)),
             Node::Atan2(y, x) => graph.atan2(new(&y), new(&x)),
             Node::Power(base, exponent) => {
                 let (base, exponent) = (new(&base), new(&exponent));
-                if base == Graph::ZERO && graph.leads_with_minus(exponent) && graph.as_number(exponent).is_some()
+                if base == Graph::ZERO
+                    && graph.leads_with_minus(exponent)
+                    && graph.as_number(exponent).is_some()
                 {
                     return None;
                 }
                 graph.power(base, exponent)
             }
-            Node::Choice { relation, compared, branches } => {
-                graph.choice(relation, compared.map(|e| new(&e)), branches.map(|e| new(&e)))
-            }
+            Node::Choice {
+                relation,
+                compared,
+                branches,
+            } => graph.choice(
+                relation,
+                compared.map(|e| new(&e)),
+                branches.map(|e| new(&e)),
+            ),
             Node::Solution { system, row } => {
                 let system = graph.system(system).clone();
                 let matrix = system.matrix.iter().map(new).collect();

@@ -119,7 +119,7 @@ impl<'a> Resolver<'a> {
             .partition_point(|start| *start <= span.start)
     }
 
-    fn heading(&mut self) -> (String, String, Option<String>) {
+    fn heading(&self) -> (String, String, Option<String>) {
         let item = self.ast.items("mechanism").first();
         let text = |key| {
             item.and_then(|i: &ItemAst| i.text(key))

@@ -5,7 +5,7 @@
 
 use std::path::{Path, PathBuf};
 
-use appell_spec::diagnostic::{CODES, Stage};
+use appell_spec::diagnostic::{CODES, MAX_SHOWN, Stage};
 use appell_spec::{Report, load};
 
 /// The bad specs: `<code>.toml` or `<code>.<variant>.toml`.
@@ -119,4 +119,28 @@ fn a_coloured_report_says_the_same() {
         }
     }
     assert_eq!(plain, report.plain());
+}
+
+#[test]
+fn a_long_report_is_cut_short() {
+    let lines: Vec<String> = (0..150)
+        .map(|i| format!("o{i} = {{ value = \"1 +\" }}\n"))
+        .collect();
+    let text = format!("[outputs]\n{}", lines.concat());
+    let report = load("long.toml", &text).unwrap_err();
+    let hidden = report.diagnostics().len() - MAX_SHOWN;
+    let shown = report.plain();
+    assert_eq!(shown.matches("error[").count(), MAX_SHOWN);
+    assert!(shown.ends_with(&format!("… and {hidden} more")), "{shown}");
+}
+
+#[test]
+fn a_file_that_is_too_large_is_named() {
+    let report = load("large.toml", &"#".repeat(2_000_000)).unwrap_err();
+    assert_eq!(report.diagnostics().len(), 1);
+    let shown = report.plain();
+    assert!(
+        shown.contains("error[limit-exceeded]") && shown.contains("large.toml"),
+        "{shown}"
+    );
 }

@@ -80,7 +80,7 @@ impl Reader<'_> {
             (Shape::Kinds(kinds), DeValue::Table(table)) => self.kind(&owner, kinds, table),
             _ => {
                 self.wrong_type(value, "a table");
-                self.empty(&owner)
+                empty(&owner)
             }
         };
         Some(item)
@@ -88,7 +88,7 @@ impl Reader<'_> {
 
     /// An item that is written as one bare value.
     fn single(&mut self, owner: &Owner<'_>, key: &'static Key, value: &TomlValue<'_>) -> ItemAst {
-        let mut item = self.empty(owner);
+        let mut item = empty(owner);
         if let Some(read) = self.value(key, value) {
             item.entries.push(Entry {
                 key,
@@ -100,30 +100,16 @@ impl Reader<'_> {
         item
     }
 
-    /// An item of which nothing is known but the name.
-    #[expect(clippy::unused_self, reason = "reads like its neighbours")]
-    fn empty(&self, owner: &Owner<'_>) -> ItemAst {
-        ItemAst {
-            name: Spanned {
-                value: owner.name.to_owned(),
-                span: owner.span.clone(),
-            },
-            kind: None,
-            entries: Vec::new(),
-            intact: false,
-        }
-    }
-
     /// An item whose keys depend on its kind.
     fn kind(&mut self, owner: &Owner<'_>, kinds: &'static [Kind], table: &DeTable<'_>) -> ItemAst {
         let list = || kinds.iter().map(|k| k.word).collect::<Vec<_>>().join(", ");
         let Some(value) = table.get("kind") else {
             self.missing_key(owner, "kind", &format!("the kinds are {}", list()));
-            return self.empty(owner);
+            return empty(owner);
         };
         let DeValue::String(word) = value.get_ref() else {
             self.wrong_type(value, "one of the kinds, as a string");
-            return self.empty(owner);
+            return empty(owner);
         };
         let Some(kind) = kinds.iter().find(|k| k.word == word.as_ref()) else {
             let help = suggest::closest(word, kinds.iter().map(|k| k.word)).map_or_else(
@@ -132,7 +118,7 @@ impl Reader<'_> {
             );
             let shown: String = word.chars().take(80).collect();
             self.unknown_word(format!("unknown kind `{shown}`"), value.span(), help);
-            return self.empty(owner);
+            return empty(owner);
         };
         self.keys(owner, kind.keys, Some((kind, kinds)), table)
     }
@@ -152,7 +138,7 @@ impl Reader<'_> {
         kind: Option<(&'static Kind, &'static [Kind])>,
         table: &DeTable<'_>,
     ) -> ItemAst {
-        let mut item = self.empty(owner);
+        let mut item = empty(owner);
         item.kind = kind.map(|k| k.0);
         item.intact = true;
         let mut meant: Vec<&str> = Vec::new();
@@ -348,6 +334,19 @@ impl Reader<'_> {
             span: value.span(),
         };
         Some(self.keys(&owner, keys, None, table))
+    }
+}
+
+/// An item of which nothing is known but the name.
+fn empty(owner: &Owner<'_>) -> ItemAst {
+    ItemAst {
+        name: Spanned {
+            value: owner.name.to_owned(),
+            span: owner.span.clone(),
+        },
+        kind: None,
+        entries: Vec::new(),
+        intact: false,
     }
 }
 

@@ -65,7 +65,7 @@ impl Resolver<'_> {
             let rows = rows
                 .each_ref()
                 .map(|row| row.each_ref().map(|e| self.expression(e, &INERTIA, wanted)));
-            self.symmetric(item, &rows);
+            self.symmetric(&rows);
             rows
         } else {
             let zero = Expr {
@@ -99,7 +99,7 @@ impl Resolver<'_> {
     }
 
     /// The two halves of a written tensor must read the same.
-    fn symmetric(&mut self, item: &ItemAst, rows: &[[Expr; 3]; 3]) {
+    fn symmetric(&mut self, rows: &[[Expr; 3]; 3]) {
         for (i, j) in [(0, 1), (0, 2), (1, 2)] {
             if !same(&rows[i][j], &rows[j][i]) {
                 let axes = ["x", "y", "z"];
@@ -118,7 +118,6 @@ impl Resolver<'_> {
                 return;
             }
         }
-        let _ = item;
     }
 }
 

@@ -366,7 +366,7 @@ impl Resolver<'_> {
         let degree = if a.degree.is_none() {
             None
         } else {
-            self.degree_of_power(&a, &b)
+            degree_of_power(&a, &b)
         };
         let typed = Typed {
             expr: Expr {
@@ -379,12 +379,6 @@ impl Resolver<'_> {
             size,
         };
         self.bounded(typed)
-    }
-
-    #[expect(clippy::unused_self, reason = "reads like its neighbours")]
-    fn degree_of_power(&self, a: &Typed, b: &Typed) -> Option<u8> {
-        let first = b.constant.as_ref().is_some_and(One::is_one);
-        if first { a.degree } else { Some(0) }
     }
 
     fn exponent_not_constant(&mut self, base: &Typed, dimension: Dimension, exponent: &Typed) {
@@ -561,6 +555,12 @@ fn measured(value: &BigRational, unit: &Unit, span: &Span) -> Typed {
         constant: None,
         size: 1,
     }
+}
+
+/// A first power keeps the degree; any other has been refused if it held a rate.
+fn degree_of_power(a: &Typed, b: &Typed) -> Option<u8> {
+    let first = b.constant.as_ref().is_some_and(One::is_one);
+    if first { a.degree } else { Some(0) }
 }
 
 fn is_short(value: &BigRational) -> bool {

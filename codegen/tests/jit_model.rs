@@ -1,0 +1,357 @@
+//! A program in machine code behaves like every model.
+#![cfg(feature = "jit")]
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::thread;
+
+use appell_codegen::jit::{JitError, JitModel};
+use appell_codegen::program::{Arguments, Array, Function, FunctionKind, Layout, Program};
+use appell_codegen::schedule::{interpret, schedule};
+use appell_codegen::symbolic::{Expr, Graph};
+use appell_runtime::model::{At, Model, ModelInfo, Quantity};
+
+/// A driven pendulum ẇ = (u - g l sin θ - c w |w|) / l², θ̇ = w. Its derivatives are written out.
+fn pendulum() -> Program {
+    let mut graph = Graph::new();
+    let g = &mut graph;
+    let [t, w, theta, u, l, c] = ["t", "w", "theta", "u", "l", "c"].map(|name| g.symbol(name));
+    let (sin, cos) = (g.sin(theta), g.cos(theta));
+    let speed = g.function(appell_codegen::symbolic::Function::Abs, w);
+    let drag = g.product(&[c, w, speed]);
+    let weight = g.mul(l, sin);
+    let force = g.sum(&[u]);
+    let loads = g.sub(force, drag);
+    let loads = g.sub(loads, weight);
+    let inertia = g.square(l);
+    let w_dot = g.div(loads, inertia);
+    let a_ww = {
+        let twice = g.integer(-2);
+        let slope = g.product(&[twice, c, speed]);
+        g.div(slope, inertia)
+    };
+    let a_wt = {
+        let slope = g.div(cos, l);
+        g.neg(slope)
+    };
+    let b_w = g.pow(l, -2);
+    let p_wl = {
+        let cube = g.pow(l, -3);
+        let twice = g.integer(-2);
+        let first = g.product(&[twice, loads, cube]);
+        let second = g.div(sin, inertia);
+        g.sub(first, second)
+    };
+    let p_wc = {
+        let square = g.mul(w, speed);
+        let slope = g.div(square, inertia);
+        g.neg(slope)
+    };
+    let (zero, one) = (Graph::ZERO, Graph::ONE);
+    let kinetic = {
+        let square = g.square(w);
+        let twice = g.mul(inertia, square);
+        let half = g.fraction(1, 2);
+        g.mul(half, twice)
+    };
+    let total = {
+        let square = g.square(w_dot);
+        let twice = g.mul(inertia, square);
+        let half = g.fraction(1, 2);
+        g.mul(half, twice)
+    };
+    let potential = {
+        let height = g.mul(l, cos);
+        g.neg(height)
+    };
+    let power = g.mul(u, w);
+    let function = |kind, results: Vec<(&str, Vec<Expr>)>| Function {
+        kind,
+        results: results
+            .into_iter()
+            .map(|(name, entries)| Array {
+                name: name.to_owned(),
+                layout: Layout::Vector(entries.len()),
+                entries,
+            })
+            .collect(),
+    };
+    let rates = ("rates", vec![w_dot, w]);
+    let (a, b) = (("a", vec![a_ww, a_wt, one, zero]), ("b", vec![b_w, zero]));
+    let p = ("p", vec![p_wl, p_wc, zero, zero]);
+    let functions = vec![
+        function(
+            FunctionKind::Kinematics,
+            vec![("coordinate_rates", vec![w])],
+        ),
+        function(
+            FunctionKind::AccelerationEnergy,
+            vec![("total", vec![total]), ("bob", vec![total])],
+        ),
+        function(
+            FunctionKind::MassMatrix,
+            vec![("mass_matrix", vec![inertia])],
+        ),
+        function(FunctionKind::Bias, vec![("bias", vec![zero])]),
+        function(
+            FunctionKind::GeneralizedForces,
+            vec![("generalized_forces", vec![loads])],
+        ),
+        function(FunctionKind::Rates, vec![rates.clone()]),
+        function(
+            FunctionKind::Jacobians,
+            vec![rates.clone(), a.clone(), b.clone()],
+        ),
+        function(FunctionKind::AllJacobians, vec![rates, a, b, p]),
+        function(
+            FunctionKind::Energies,
+            vec![
+                ("kinetic", vec![kinetic]),
+                ("potential", vec![potential]),
+                ("power", vec![power]),
+            ],
+        ),
+        function(FunctionKind::Outputs, vec![("outputs", vec![sin])]),
+    ];
+    let symbol = |expr| graph.as_symbol(expr).unwrap();
+    let arguments = Arguments {
+        time: symbol(t),
+        states: vec![symbol(w), symbol(theta)],
+        inputs: vec![symbol(u)],
+        parameters: vec![symbol(l), symbol(c)],
+    };
+    let quantities = |names: &[&str]| -> Vec<Quantity> {
+        let quantity = |name: &&str| Quantity {
+            name: (*name).to_owned().into(),
+            about: "".into(),
+            unit: "1".into(),
+            scale: 1.0,
+            value: 0.0,
+            range: [f64::NEG_INFINITY, f64::INFINITY],
+        };
+        names.iter().map(quantity).collect()
+    };
+    let info = ModelInfo {
+        name: "pendulum".into(),
+        title: "A driven pendulum.".into(),
+        source: "".into(),
+        states: quantities(&["w", "theta"]).into(),
+        speeds: 1,
+        inputs: quantities(&["u"]).into(),
+        declared_inputs: 1,
+        signals: vec![].into(),
+        signal_inputs: vec![].into(),
+        parameters: quantities(&["l", "c"]).into(),
+        outputs: quantities(&["height"]).into(),
+        constraint_rows: vec![].into(),
+        reactions: vec![].into(),
+        explicit_time: false,
+    };
+    Program {
+        info,
+        file: "pendulum.toml".to_owned(),
+        graph,
+        arguments,
+        functions,
+    }
+}
+
+const AT: At<'static> = At {
+    t: 0.0,
+    x: &[-0.8, 0.6],
+    u: &[0.3],
+    p: &[1.7, 0.2],
+};
+
+/// A function of the program, step by step.
+fn interpreted(program: &Program, kind: FunctionKind) -> Vec<Vec<f64>> {
+    let function = program
+        .functions
+        .iter()
+        .find(|function| function.kind == kind)
+        .unwrap();
+    interpret(&schedule(program, function), AT.t, AT.x, AT.u, AT.p)
+}
+
+#[test]
+fn every_method_agrees_with_the_interpreter() {
+    let program = pendulum();
+    let model = JitModel::new(&program).unwrap();
+    assert_eq!(model.info(), &program.info);
+
+    let mut rates = [9.0; 2];
+    model.rates(AT, &mut rates);
+    assert_eq!(
+        vec![rates.to_vec()],
+        interpreted(&program, FunctionKind::Rates)
+    );
+
+    let (mut rates, mut a, mut b) = ([9.0; 2], [9.0; 4], [9.0; 2]);
+    model.jacobians(AT, &mut rates, &mut a, &mut b);
+    let found = vec![rates.to_vec(), a.to_vec(), b.to_vec()];
+    assert_eq!(found, interpreted(&program, FunctionKind::Jacobians));
+
+    let mut p = [9.0; 4];
+    model.parameter_jacobian(AT, &mut p);
+    assert_eq!(
+        p.to_vec(),
+        interpreted(&program, FunctionKind::AllJacobians)[3]
+    );
+
+    let (mut mass, mut bias, mut forces) = ([9.0; 1], [9.0; 1], [9.0; 1]);
+    model.appell(AT, &mut mass, &mut bias, &mut forces);
+    assert_eq!(
+        vec![mass.to_vec()],
+        interpreted(&program, FunctionKind::MassMatrix)
+    );
+    assert_eq!(bias, [0.0]);
+    assert_eq!(
+        vec![forces.to_vec()],
+        interpreted(&program, FunctionKind::GeneralizedForces)
+    );
+
+    let energies = model.energies(AT);
+    let expected = interpreted(&program, FunctionKind::Energies);
+    let found = [energies.kinetic, energies.potential, energies.power];
+    assert_eq!(found.map(|energy| vec![energy]).to_vec(), expected);
+    let total = interpreted(&program, FunctionKind::AccelerationEnergy)[0][0];
+    assert_eq!(energies.acceleration.to_bits(), total.to_bits());
+
+    let mut outputs = [9.0; 1];
+    model.outputs(AT, &mut outputs);
+    assert_eq!(
+        vec![outputs.to_vec()],
+        interpreted(&program, FunctionKind::Outputs)
+    );
+    assert_eq!(model.interpreted().count(), 0);
+}
+
+#[test]
+fn functions_without_entries_may_be_missing() {
+    let model = JitModel::new(&pendulum()).unwrap();
+    model.compile_all();
+    model.constraint_residual(AT, &mut []);
+    model.constraint_forces(AT, &mut []);
+}
+
+#[test]
+fn slices_of_wrong_length_are_refused() {
+    let model = JitModel::new(&pendulum()).unwrap();
+    let refused = |call: &dyn Fn()| catch_unwind(AssertUnwindSafe(call)).is_err();
+    assert!(refused(&|| model.rates(AT, &mut [0.0; 1])));
+    assert!(refused(
+        &|| model.rates(At { x: &[0.0; 3], ..AT }, &mut [0.0; 2])
+    ));
+    assert!(refused(&|| model.jacobians(
+        AT,
+        &mut [0.0; 2],
+        &mut [0.0; 4],
+        &mut [0.0; 3]
+    )));
+    assert!(refused(&|| model.constraint_forces(AT, &mut [0.0; 3])));
+}
+
+#[test]
+fn first_uses_from_several_threads_agree() {
+    let program = pendulum();
+    let model = JitModel::new(&program).unwrap();
+    let expected = interpreted(&program, FunctionKind::AllJacobians).remove(3);
+    thread::scope(|scope| {
+        for _ in 0..4 {
+            scope.spawn(|| {
+                let mut p = [0.0; 4];
+                model.parameter_jacobian(AT, &mut p);
+                assert_eq!(p.to_vec(), expected);
+            });
+        }
+    });
+}
+
+#[test]
+fn functions_that_cannot_be_compiled_are_interpreted() {
+    let mut program = pendulum();
+    // More unknowns than machine code takes.
+    let rows = 65;
+    let entry = |kind: FunctionKind| {
+        let function = program
+            .functions
+            .iter()
+            .find(|function| function.kind == kind);
+        function.unwrap().results[0].entries[0]
+    };
+    let (w, inertia) = (
+        entry(FunctionKind::Kinematics),
+        entry(FunctionKind::MassMatrix),
+    );
+    let matrix = (0..rows * rows).map(|k| {
+        if k % (rows + 1) == 0 {
+            inertia
+        } else {
+            Graph::ZERO
+        }
+    });
+    let unknowns = program
+        .graph
+        .solve_numerically(matrix.collect(), vec![w; rows]);
+    let outputs = program.functions.last_mut().unwrap();
+    outputs.results[0].entries[0] = unknowns[7];
+
+    let model = JitModel::new(&program).unwrap();
+    assert_eq!(model.interpreted().count(), 0, "nothing was used yet");
+    let mut outputs = [9.0; 1];
+    model.outputs(AT, &mut outputs);
+    assert_eq!(outputs, [AT.x[0] / (AT.p[0] * AT.p[0])]);
+    let (kind, reason) = model.interpreted().next().unwrap();
+    assert_eq!(kind, FunctionKind::Outputs);
+    assert!(matches!(reason, JitError::TooManyRows { rows: 65, .. }));
+    let wrong = AssertUnwindSafe(|| model.outputs(AT, &mut []));
+    assert!(catch_unwind(wrong).is_err());
+}
+
+#[test]
+fn programs_that_contradict_themselves_are_refused() {
+    let broken = |change: &dyn Fn(&mut Program)| {
+        let mut program = pendulum();
+        change(&mut program);
+        JitModel::new(&program).unwrap_err()
+    };
+    let missing = broken(&|program| {
+        program
+            .functions
+            .retain(|function| function.kind != FunctionKind::Outputs);
+    });
+    assert!(matches!(
+        missing,
+        JitError::MissingFunction {
+            kind: FunctionKind::Outputs
+        }
+    ));
+    let renamed = broken(&|program| {
+        for function in &mut program.functions {
+            function.results.retain(|array| array.name != "potential");
+        }
+    });
+    assert!(matches!(
+        renamed,
+        JitError::MissingResult {
+            result: "potential",
+            ..
+        }
+    ));
+    let short = broken(&|program| {
+        for function in &mut program.functions {
+            function
+                .results
+                .iter_mut()
+                .for_each(|array| array.entries.truncate(3));
+        }
+    });
+    assert!(matches!(
+        short,
+        JitError::ResultLength {
+            kind: FunctionKind::Jacobians,
+            result: "a",
+            expected: 4,
+            found: 3
+        }
+    ));
+}

@@ -1,2 +1,40 @@
-//! The appell command.
-fn main() {}
+//! `appell`: from a mechanism spec to equations of motion, numbers and motions.
+
+mod commands;
+mod engine;
+mod failure;
+mod feedback;
+mod files;
+mod formula;
+mod progress;
+mod recorded;
+mod setup;
+mod source;
+mod summary;
+mod table;
+
+use std::process::ExitCode;
+
+use clap::Parser;
+
+/// Equations of motion from a declarative mechanism spec, by the Gibbs-Appell method.
+///
+/// MODEL is the name of a shipped mechanism (`appell list`) or the path of a spec file; a spec
+/// file works at once. Exit status: 0 done, 2 bad usage, 3 bad spec or data, 4 the computation
+/// failed.
+#[derive(Debug, Parser)]
+#[command(name = "appell", version, propagate_version = true)]
+struct Arguments {
+    #[command(subcommand)]
+    command: commands::Command,
+}
+
+fn main() -> ExitCode {
+    match commands::run(Arguments::parse().command) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            failure.print();
+            failure.exit_code()
+        }
+    }
+}

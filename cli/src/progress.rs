@@ -1,0 +1,27 @@
+//! Progress on standard error, where a person watches.
+
+use std::time::Duration;
+
+use indicatif::{ProgressBar, ProgressStyle};
+
+/// Something is being done, and nobody knows how long it takes.
+pub(crate) fn spinner(doing: &str) -> ProgressBar {
+    let bar = ProgressBar::new_spinner().with_message(doing.to_owned());
+    bar.enable_steady_tick(Duration::from_millis(120));
+    bar
+}
+
+/// Time of a simulation, in milliseconds.
+pub(crate) fn clock(until_s: f64) -> ProgressBar {
+    let bar = ProgressBar::new(milliseconds(until_s));
+    // The template is constant, so it parses; without it the bar only looks different.
+    if let Ok(style) = ProgressStyle::with_template("{bar:40} {percent} %  {elapsed}") {
+        bar.set_style(style);
+    }
+    bar
+}
+
+#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a float saturates, which is right here")]
+pub(crate) fn milliseconds(t: f64) -> u64 {
+    (t * 1e3) as u64
+}

@@ -1,0 +1,255 @@
+//! For build scripts: specs in, Rust modules in `OUT_DIR` out.
+//!
+//! ```no_run
+//! // build.rs
+//! fn main() {
+//!     appell_codegen::build("mechanisms/furuta.toml");
+//! }
+//! ```
+//!
+//! ```ignore
+//! // src/main.rs
+//! mod furuta {
+//!     #![doc = include_str!(concat!(env!("OUT_DIR"), "/furuta.md"))]
+//!     #![allow(non_snake_case)]
+//!     include!(concat!(env!("OUT_DIR"), "/furuta.rs"));
+//! }
+//! ```
+
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+
+use thiserror::Error;
+
+use crate::compile::compile;
+use crate::emit::{self, Emitted, Options, emit};
+use crate::mechanics::assemble::ALL;
+use crate::program::Program;
+
+/// Compiles one spec. Where it is wrong, prints what to change and ends the build script.
+pub fn build(spec: impl Into<PathBuf>) {
+    Build::new().spec(spec).run();
+}
+
+/// What a build script wants.
+#[derive(Debug, Clone, Default)]
+pub struct Build {
+    specs: Vec<PathBuf>,
+    out_dir: Option<PathBuf>,
+    options: Options,
+}
+
+/// A mechanism that was compiled.
+#[derive(Debug)]
+pub struct Generated {
+    /// Its spec.
+    pub spec: PathBuf,
+    /// The text of the spec.
+    pub text: String,
+    /// Its functions.
+    pub program: Program,
+    /// Rust, page and costs.
+    pub emitted: Emitted,
+}
+
+/// Why nothing was compiled.
+#[derive(Debug, Error)]
+pub enum BuildError {
+    /// A file or folder cannot be read or written.
+    #[error("{}: {cause}", path.display())]
+    Io {
+        /// The file.
+        path: PathBuf,
+        /// What the system says.
+        cause: io::Error,
+    },
+    /// The specs are wrong: one report after the other.
+    #[error("{reports}")]
+    Specs {
+        /// Rendered.
+        reports: String,
+    },
+    /// A program cannot be written as Rust.
+    #[error("{}: {cause}", spec.display())]
+    Emit {
+        /// Its spec.
+        spec: PathBuf,
+        /// Why.
+        cause: emit::Error,
+    },
+    /// Two specs describe mechanisms of the same name, so that their modules collide.
+    #[error("{} and {} both describe a mechanism `{name}`; rename one of them", first.display(), second.display())]
+    SameName {
+        /// The name.
+        name: String,
+        /// One spec.
+        first: PathBuf,
+        /// The other.
+        second: PathBuf,
+    },
+    /// No folder to write to.
+    #[error(
+        "`OUT_DIR` is not set: call this from a build script, or choose a folder with `out_dir`"
+    )]
+    NoOutDir,
+}
+
+impl Build {
+    /// Nothing yet.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Adds a spec; the path is relative to the crate.
+    #[must_use]
+    pub fn spec(mut self, path: impl Into<PathBuf>) -> Self {
+        self.specs.push(path.into());
+        self
+    }
+
+    /// Adds specs.
+    #[must_use]
+    pub fn specs(mut self, paths: impl IntoIterator<Item = PathBuf>) -> Self {
+        self.specs.extend(paths);
+        self
+    }
+
+    /// Writes to another folder than `OUT_DIR`.
+    #[must_use]
+    pub fn out_dir(mut self, folder: impl Into<PathBuf>) -> Self {
+        self.out_dir = Some(folder.into());
+        self
+    }
+
+    /// Path of the run-time crate in the emitted text, `::appell_runtime` unless changed.
+    #[must_use]
+    pub fn runtime(mut self, path: &str) -> Self {
+        path.clone_into(&mut self.options.runtime);
+        self
+    }
+
+    /// Compiles every spec to `NAME.rs` and `NAME.md`. All wrong specs are reported together.
+    ///
+    /// With the environment variable `GENERATED_DIR` a copy goes to that folder, for reading.
+    pub fn generate(&self) -> Result<Vec<Generated>, BuildError> {
+        println!("cargo::rerun-if-env-changed=GENERATED_DIR");
+        let out_dir = match (&self.out_dir, std::env::var_os("OUT_DIR")) {
+            (Some(folder), _) => folder.clone(),
+            (None, Some(folder)) => PathBuf::from(folder),
+            (None, None) => return Err(BuildError::NoOutDir),
+        };
+        let mut folders = vec![out_dir];
+        folders.extend(std::env::var_os("GENERATED_DIR").map(|dir| copies(Path::new(&dir))));
+
+        let mut compiled: Vec<Generated> = Vec::new();
+        let mut reports = Vec::new();
+        for spec in &self.specs {
+            println!("cargo::rerun-if-changed={}", spec.display());
+            let text = fs::read_to_string(spec).map_err(|cause| BuildError::Io {
+                path: spec.clone(),
+                cause,
+            })?;
+            // The same name in messages and comments on every system.
+            let file = spec.to_string_lossy().replace('\\', "/");
+            match compile(&file, &text, &ALL) {
+                Ok(program) => compiled.push(self.emitted(spec, text, program)?),
+                Err(report) => reports.push(report.plain()),
+            }
+        }
+        if !reports.is_empty() {
+            return Err(BuildError::Specs {
+                reports: reports.join("\n"),
+            });
+        }
+        for (i, second) in compiled.iter().enumerate() {
+            let name = &second.program.info.name;
+            if let Some(first) = compiled[..i].iter().find(|c| c.program.info.name == *name) {
+                let (first, second) = (first.spec.clone(), second.spec.clone());
+                return Err(BuildError::SameName {
+                    name: name.to_string(),
+                    first,
+                    second,
+                });
+            }
+        }
+        for folder in &folders {
+            for one in &compiled {
+                let name = &one.program.info.name;
+                write(&folder.join(format!("{name}.rs")), &one.emitted.source)?;
+                write(&folder.join(format!("{name}.md")), &one.emitted.docs)?;
+            }
+        }
+        Ok(compiled)
+    }
+
+    fn emitted(
+        &self,
+        spec: &Path,
+        text: String,
+        program: Program,
+    ) -> Result<Generated, BuildError> {
+        let options = Options {
+            spec: Some(text.clone()),
+            ..self.options.clone()
+        };
+        let emitted = emit(&program, &options).map_err(|cause| BuildError::Emit {
+            spec: spec.to_owned(),
+            cause,
+        })?;
+        Ok(Generated {
+            spec: spec.to_owned(),
+            text,
+            program,
+            emitted,
+        })
+    }
+
+    /// [`Build::generate`] for a `main` without error handling: prints mistakes in full, then ends
+    /// the build script.
+    pub fn run(&self) -> Vec<Generated> {
+        match self.generate() {
+            Ok(generated) => generated,
+            Err(error) => {
+                // Cargo shows what a failed build script wrote to standard error.
+                eprintln!("{error}");
+                std::process::exit(1)
+            }
+        }
+    }
+}
+
+/// Cargo runs build scripts in the folder of their crate; a relative folder for copies is one of
+/// the place where Cargo was called, which the crates of a workspace share.
+fn copies(folder: &Path) -> PathBuf {
+    let called = || std::env::var_os("PWD").map(PathBuf::from);
+    if folder.is_absolute() {
+        folder.to_owned()
+    } else {
+        called().unwrap_or_default().join(folder)
+    }
+}
+
+/// Writes a file at once or not at all, and only where its text changes.
+pub fn write(path: &Path, text: &str) -> Result<(), BuildError> {
+    if fs::read(path).is_ok_and(|old| old == text.as_bytes()) {
+        return Ok(());
+    }
+    let told = |cause| BuildError::Io {
+        path: path.to_owned(),
+        cause,
+    };
+    if let Some(folder) = path.parent() {
+        fs::create_dir_all(folder).map_err(told)?;
+    }
+    let mut name = path.file_name().unwrap_or_default().to_owned();
+    name.push(format!(".{}.tmp", std::process::id()));
+    let draft = path.with_file_name(name);
+    fs::write(&draft, text)
+        .and_then(|()| fs::rename(&draft, path))
+        .map_err(|cause| {
+            // The draft is of no use; that it cannot be removed would only hide the cause.
+            let _ = fs::remove_file(&draft);
+            told(cause)
+        })
+}

@@ -1,5 +1,7 @@
 //! Schedules in machine code compute what the interpreter computes, bit for bit.
 #![cfg(feature = "jit")]
+#![allow(clippy::float_cmp, reason = "agreement is bit for bit")]
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
 mod jit_support;
 

@@ -1,5 +1,7 @@
 //! A program in machine code behaves like every model.
 #![cfg(feature = "jit")]
+#![allow(clippy::float_cmp, reason = "agreement is bit for bit")]
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::thread;
@@ -11,6 +13,7 @@ use appell_codegen::symbolic::{Expr, Graph};
 use appell_runtime::model::{At, Model, ModelInfo, Quantity};
 
 /// A driven pendulum ẇ = (u - g l sin θ - c w |w|) / l², θ̇ = w. Its derivatives are written out.
+#[expect(clippy::too_many_lines, reason = "one mechanism, equation by equation")]
 fn pendulum() -> Program {
     let mut graph = Graph::new();
     let g = &mut graph;

@@ -1,5 +1,6 @@
 //! Random schedules: machine code and interpreter agree bit for bit.
 #![cfg(feature = "jit")]
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
 mod jit_support;
 

@@ -1,5 +1,7 @@
 //! Machine code refuses what it cannot handle, is shared between threads, and is freed.
 #![cfg(feature = "jit")]
+#![allow(clippy::float_cmp, reason = "agreement is bit for bit")]
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
 mod jit_support;
 

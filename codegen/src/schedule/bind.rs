@@ -3,6 +3,7 @@
 use super::dag::{Dag, Id, Item, Op};
 use super::names::{ArgumentNames, Names, result_label};
 use super::piece::{Level, Piece, describe};
+use super::signs::choose_signs;
 use super::{Argument, Operation, ResultArray, Schedule, Step, Tree, Value};
 use crate::program::{Function, Program};
 use crate::symbolic::{Function as Elementary, Rational};
@@ -49,7 +50,7 @@ struct Binding<'a> {
     /// Sine and cosine of the same angle: the partner.
     partner: Vec<Option<Id>>,
     /// What the node is called if it is a result.
-    labels: Vec<Option<String>>,
+    labels: Vec<Option<(String, bool)>>,
     /// What the node is for: the name of the first named value or result that it feeds.
     feeds: Vec<Option<Id>>,
     parts: Vec<u32>,
@@ -83,7 +84,7 @@ impl<'a> Binding<'a> {
             dag,
             uses: dag.uses(),
             bound: vec![false; dag.len()],
-            minus: vec![false; dag.len()],
+            minus: choose_signs(dag, &order),
             partner: vec![None; dag.len()],
             labels: vec![None; dag.len()],
             feeds: vec![None; dag.len()],
@@ -100,7 +101,6 @@ impl<'a> Binding<'a> {
         binding.label_results(function);
         binding.pair_sines(&order);
         binding.choose_bound(&order);
-        binding.choose_signs(&order);
         binding.find_feeds(&order);
         binding
     }
@@ -113,7 +113,7 @@ impl<'a> Binding<'a> {
                 if label.is_none() {
                     let text =
                         result_label(self.program, &self.arguments, function.kind, array, entry);
-                    *label = Some(text);
+                    *label = Some((text, result.flip));
                 }
                 self.bound[result.id.index()] = true;
             }
@@ -124,7 +124,9 @@ impl<'a> Binding<'a> {
         let mut sines: Vec<(Item, Elementary, Id)> = order
             .iter()
             .filter_map(|&id| match self.dag.op(id) {
-                Op::Function(kind @ (Elementary::Sin | Elementary::Cos), angle) => Some((*angle, *kind, id)),
+                Op::Function(kind @ (Elementary::Sin | Elementary::Cos), angle) => {
+                    Some((*angle, *kind, id))
+                }
                 _ => None,
             })
             .collect();
@@ -157,47 +159,10 @@ impl<'a> Binding<'a> {
                 _ => 1,
             };
             let worth_reading = self.dag.names[i].is_some() && parts > 2;
-            self.bound[i] |=
-                self.uses[i] >= 2 || worth_reading || parts == usize::MAX || self.partner[i].is_some();
-        }
-    }
-
-    /// Lets nodes that are mostly wanted negative be computed negative, where that is free.
-    fn choose_signs(&mut self, order: &[Id]) {
-        let mut votes = vec![0_i32; self.dag.len()];
-        let mut vote = |item: Item| votes[item.id.index()] += if item.flip { 1 } else { -1 };
-        for &result in &self.dag.results {
-            vote(result);
-        }
-        for &id in order {
-            if !matches!(self.dag.op(id), Op::Sum(_) | Op::Product(_)) {
-                self.dag.for_each_part(id, &mut vote);
-            }
-        }
-        for &id in order.iter().rev() {
-            let wanted = match self.dag.names[id.index()] {
-                Some(name) => name.negative,
-                None => self.minus[id.index()] || votes[id.index()] > 0,
-            };
-            if !wanted {
-                continue;
-            }
-            match self.dag.op(id) {
-                Op::Sum(terms) => self.minus[id.index()] = terms.iter().any(|term| term.flip),
-                Op::Product(factors) => {
-                    self.minus[id.index()] = true;
-                    let has_number = factors.iter().any(|f| self.dag.as_number(f.id).is_some());
-                    let absorbs = |factor: &&Item| {
-                        let i = factor.id.index();
-                        let mixed = matches!(self.dag.op(factor.id), Op::Sum(terms) if terms.iter().any(|t| t.flip));
-                        mixed && self.uses[i] == 1 && self.dag.names[i].is_none()
-                    };
-                    if !has_number && let Some(sum) = factors.iter().find(absorbs) {
-                        self.minus[sum.id.index()] = true;
-                    }
-                }
-                _ => {}
-            }
+            self.bound[i] |= self.uses[i] >= 2
+                || worth_reading
+                || parts == usize::MAX
+                || self.partner[i].is_some();
         }
     }
 
@@ -209,7 +174,8 @@ impl<'a> Binding<'a> {
                 self.feeds[id.index()] = Some(id);
             }
             let feed = self.feeds[id.index()];
-            self.dag.for_each_part(id, |part| self.feeds[part.id.index()] = feed);
+            self.dag
+                .for_each_part(id, |part| self.feeds[part.id.index()] = feed);
         }
     }
 
@@ -218,8 +184,10 @@ impl<'a> Binding<'a> {
         let order = self.dag.order();
         let mut only_parameters = vec![false; self.dag.len()];
         for &id in &order {
-            let mut all = !matches!(self.dag.op(id), Op::Argument(a) if !matches!(a, Argument::Parameter(_)));
-            self.dag.for_each_part(id, |part| all &= only_parameters[part.id.index()]);
+            let mut all =
+                !matches!(self.dag.op(id), Op::Argument(a) if !matches!(a, Argument::Parameter(_)));
+            self.dag
+                .for_each_part(id, |part| all &= only_parameters[part.id.index()]);
             only_parameters[id.index()] = all;
         }
         let sines = order.iter().copied().filter(|id| match self.dag.op(*id) {
@@ -234,7 +202,10 @@ impl<'a> Binding<'a> {
             .filter(|id| only_parameters[id.index()] && self.bound[id.index()]);
         let mut paragraphs = vec![
             ("Sines and cosines.".to_owned(), sines.collect()),
-            ("Combinations of parameters.".to_owned(), parameters.collect()),
+            (
+                "Combinations of parameters.".to_owned(),
+                parameters.collect(),
+            ),
         ];
         let mut results = self.dag.results.iter();
         for array in &function.results {
@@ -244,11 +215,18 @@ impl<'a> Binding<'a> {
                 "p" => "Derivatives by the parameters.".to_owned(),
                 name => {
                     let mut title = name.replace('_', " ");
-                    title.get_mut(..1).map(str::make_ascii_uppercase).unwrap_or_default();
+                    title
+                        .get_mut(..1)
+                        .map(str::make_ascii_uppercase)
+                        .unwrap_or_default();
                     title + "."
                 }
             };
-            let roots = results.by_ref().take(array.entries.len()).map(|item| item.id).collect();
+            let roots = results
+                .by_ref()
+                .take(array.entries.len())
+                .map(|item| item.id)
+                .collect();
             paragraphs.push((title, roots));
         }
         paragraphs
@@ -278,7 +256,12 @@ impl<'a> Binding<'a> {
             })
             .collect();
         used.sort_unstable();
-        Schedule { arguments: used, steps: self.steps, results, names: self.values }
+        Schedule {
+            arguments: used,
+            steps: self.steps,
+            results,
+            names: self.values,
+        }
     }
 
     /// The piece of an item whose flip is a sign, and whether it is to be negated.
@@ -291,7 +274,10 @@ impl<'a> Binding<'a> {
     }
 
     fn constant(&self, value: &Rational) -> Piece {
-        Piece::name(Tree::Constant(value.clone()), &self.arguments.constant(value))
+        Piece::name(
+            Tree::Constant(value.clone()),
+            &self.arguments.constant(value),
+        )
     }
 
     /// The piece of an item, with its sign.
@@ -310,9 +296,10 @@ impl<'a> Binding<'a> {
         }
         let (piece, negative) = match self.dag.op(id) {
             Op::Number(value) => (self.constant(value), false),
-            Op::Argument(argument) => {
-                (Piece::name(Tree::Argument(*argument), self.arguments.get(*argument)), false)
-            }
+            Op::Argument(argument) => (
+                Piece::name(Tree::Argument(*argument), self.arguments.get(*argument)),
+                false,
+            ),
             Op::Sum(terms) => self.sum(id, terms),
             Op::Product(factors) => self.product(id, factors),
             Op::Function(_, angle) if self.partner[id.index()].is_some() => {
@@ -320,7 +307,9 @@ impl<'a> Binding<'a> {
             }
             Op::Function(function, argument) => (self.signed(*argument).function(*function), false),
             Op::Atan2([y, x]) => (self.signed(*y).atan2(self.signed(*x)), false),
-            Op::Power([base, exponent]) => (self.signed(*base).power(self.signed(*exponent)), false),
+            Op::Power([base, exponent]) => {
+                (self.signed(*base).power(self.signed(*exponent)), false)
+            }
             Op::Choice(relation, items) => {
                 let [left, right, then, otherwise] = items.map(|item| self.signed(item));
                 let widths = left.width + right.width + then.width + otherwise.width;
@@ -330,7 +319,14 @@ impl<'a> Binding<'a> {
                     branches: Box::new([then.tree, otherwise.tree]),
                 };
                 let width = widths + "T::if_less_or_equal(, , , )".len();
-                (Piece { tree, width, level: Level::Atom }, false)
+                (
+                    Piece {
+                        tree,
+                        width,
+                        level: Level::Atom,
+                    },
+                    false,
+                )
             }
             Op::Solution { system, .. } => return self.solve(*system),
         };
@@ -373,12 +369,19 @@ impl<'a> Binding<'a> {
                     } else {
                         sum
                     };
-                    let operation = if minus { Operation::Subtract } else { Operation::Add };
+                    let operation = if minus {
+                        Operation::Subtract
+                    } else {
+                        Operation::Add
+                    };
                     sum.binary(operation, part)
                 }
             });
         }
-        (sum.unwrap_or_else(|| self.constant(&Rational::ZERO)), negative)
+        (
+            sum.unwrap_or_else(|| self.constant(&Rational::ZERO)),
+            negative,
+        )
     }
 
     fn product(&mut self, id: Id, factors: &[Item]) -> (Piece, bool) {
@@ -387,12 +390,19 @@ impl<'a> Binding<'a> {
         for factor in factors {
             let (piece, minus) = self.part(Item::plain(factor.id));
             natural ^= minus;
-            if factor.flip { below.push(piece) } else { above.push(piece) }
+            if factor.flip {
+                below.push(piece)
+            } else {
+                above.push(piece)
+            }
         }
         above.sort_by_key(|piece| reading_order(&piece.tree));
         below.sort_by_key(|piece| reading_order(&piece.tree));
         let mut negative = natural;
-        if let Some(Piece { tree: Tree::Constant(value), .. }) = above.first()
+        if let Some(Piece {
+            tree: Tree::Constant(value),
+            ..
+        }) = above.first()
             && natural != self.minus[id.index()]
         {
             above[0] = self.constant(&-value);
@@ -444,7 +454,9 @@ impl<'a> Binding<'a> {
     }
 
     fn sine_and_cosine(&mut self, id: Id, angle: Item) {
-        let Some(partner) = self.partner[id.index()] else { return };
+        let Some(partner) = self.partner[id.index()] else {
+            return;
+        };
         let (sin, cos) = match self.dag.op(id) {
             Op::Function(Elementary::Sin, _) => (id, partner),
             _ => (partner, id),
@@ -458,11 +470,18 @@ impl<'a> Binding<'a> {
                 (None, None) => self.fallback(of, prefix),
             };
             let (value, piece) = self.new_value(&wanted);
-            self.built[of.index()] = Some(Built { piece, negative: false });
+            self.built[of.index()] = Some(Built {
+                piece,
+                negative: false,
+            });
             value
         };
         let (sin, cos) = (value(sin, "sin"), value(cos, "cos"));
-        self.push(Step::SinCos { sin, cos, angle: angle.tree });
+        self.push(Step::SinCos {
+            sin,
+            cos,
+            angle: angle.tree,
+        });
     }
 
     fn solve(&mut self, system: u32) {
@@ -479,7 +498,11 @@ impl<'a> Binding<'a> {
         if known.is_none() {
             self.factorisations.push(system);
             let matrix = matrix.iter().map(|&item| self.signed(item).tree).collect();
-            self.push(Step::Factor { factorisation, size: right.len(), matrix });
+            self.push(Step::Factor {
+                factorisation,
+                size: right.len(),
+                matrix,
+            });
         }
         let right = right.iter().map(|&item| self.signed(item).tree).collect();
         let unknowns = self.unknowns(system);
@@ -492,12 +515,19 @@ impl<'a> Binding<'a> {
                     .unwrap_or_else(|| format!("solution_{}_{}", system + 1, row + 1));
                 let (value, piece) = self.new_value(&wanted);
                 if let Some(id) = unknown {
-                    self.built[id.index()] = Some(Built { piece, negative: false });
+                    self.built[id.index()] = Some(Built {
+                        piece,
+                        negative: false,
+                    });
                 }
                 value
             })
             .collect();
-        self.push(Step::Solve { factorisation, values, right });
+        self.push(Step::Solve {
+            factorisation,
+            values,
+            right,
+        });
     }
 
     /// The nodes of the unknowns of a system, row by row.
@@ -519,17 +549,17 @@ impl<'a> Binding<'a> {
     fn given_name(&self, id: Id) -> Option<String> {
         let derived = self.dag.names[id.index()]
             .map(|name| self.program.graph.definition(name.definition).name.clone());
-        derived.or_else(|| self.labels[id.index()].clone())
+        derived.or_else(|| self.labels[id.index()].as_ref().map(|label| label.0.clone()))
     }
 
     /// Name for a value that gets a binding.
     fn value_name(&mut self, id: Id, tree: &Tree, negative: bool) -> String {
-        let name = self.dag.names[id.index()];
-        let label = self.labels[id.index()].clone().filter(|_| !negative);
-        match name.filter(|name| name.negative == negative) {
-            Some(name) => self.program.graph.definition(name.definition).name.clone(),
-            None => label
-                .or_else(|| describe(tree, &self.values, &self.arguments))
+        let derived = self.dag.names[id.index()].map(|name| name.negative);
+        let of_result = self.labels[id.index()].as_ref().map(|label| label.1);
+        match (self.given_name(id), derived.or(of_result)) {
+            (Some(name), Some(sign)) if sign == negative => name,
+            (Some(name), _) => format!("minus_{name}"),
+            (None, _) => describe(tree, &self.values, &self.arguments)
                 .unwrap_or_else(|| self.fallback(id, "part")),
         }
     }
@@ -537,7 +567,9 @@ impl<'a> Binding<'a> {
     /// `consumer_part_2`
     fn fallback(&mut self, id: Id, word: &str) -> String {
         let feed = self.feeds[id.index()];
-        let consumer = feed.and_then(|feed| self.given_name(feed)).unwrap_or_else(|| "result".to_owned());
+        let consumer = feed
+            .and_then(|feed| self.given_name(feed))
+            .unwrap_or_else(|| "result".to_owned());
         let count = &mut self.parts[feed.unwrap_or(id).index()];
         *count += 1;
         format!("{consumer}_{word}_{count}")

@@ -83,7 +83,9 @@ impl OperationCount {
                     self.functions += 1;
                     rest.extend([&**a, &**b]);
                 }
-                Tree::Choice { compared, branches, .. } => {
+                Tree::Choice {
+                    compared, branches, ..
+                } => {
                     self.selects += 1;
                     rest.extend(compared.iter().chain(branches.iter()));
                 }
@@ -97,9 +99,12 @@ impl fmt::Display for OperationCount {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}", self.total())?;
         let mut separator = " (";
-        for (count, sign) in
-            [(self.add, "+"), (self.multiply, "×"), (self.divide, "÷"), (self.negate, "sign")]
-        {
+        for (count, sign) in [
+            (self.add, "+"),
+            (self.multiply, "×"),
+            (self.divide, "÷"),
+            (self.negate, "sign"),
+        ] {
             if count > 0 {
                 write!(f, "{separator}{count} {sign}")?;
                 separator = ", ";

@@ -202,7 +202,11 @@ impl Dag {
         let mut coefficient = Rational::ONE;
         factors.retain(|factor| match self.as_number(factor.id) {
             Some(value) if !(factor.flip && value.is_zero()) => {
-                let value = if factor.flip { value.recip() } else { value.clone() };
+                let value = if factor.flip {
+                    value.recip()
+                } else {
+                    value.clone()
+                };
                 coefficient = &coefficient * &value;
                 false
             }
@@ -258,7 +262,12 @@ impl Dag {
             Op::Choice(_, items) => items.iter().copied().for_each(visit),
             Op::Solution { system, .. } => {
                 let system = &self.systems[*system as usize];
-                system.matrix.iter().chain(&system.right).copied().for_each(visit);
+                system
+                    .matrix
+                    .iter()
+                    .chain(&system.right)
+                    .copied()
+                    .for_each(visit);
             }
         }
     }

@@ -14,8 +14,14 @@ pub(super) fn share_reciprocals(dag: &mut Dag) {
     }
     for id in order {
         let shared = |base: Id| wholes.get(base.index()).is_some_and(|&count| count >= 2);
-        let Op::Product(factors) = dag.op(id) else { continue };
-        if factors.len() < 2 || !factors.iter().any(|factor| factor.flip && shared(factor.id)) {
+        let Op::Product(factors) = dag.op(id) else {
+            continue;
+        };
+        if factors.len() < 2
+            || !factors
+                .iter()
+                .any(|factor| factor.flip && shared(factor.id))
+        {
             continue;
         }
         let factors = factors.clone();
@@ -35,9 +41,14 @@ pub(super) fn share_reciprocals(dag: &mut Dag) {
 
 /// What a node divides by, each once.
 fn denominators(dag: &Dag, id: Id) -> Vec<Id> {
-    let Op::Product(factors) = dag.op(id) else { return Vec::new() };
-    let mut below: Vec<Id> =
-        factors.iter().filter(|factor| factor.flip).map(|factor| factor.id).collect();
+    let Op::Product(factors) = dag.op(id) else {
+        return Vec::new();
+    };
+    let mut below: Vec<Id> = factors
+        .iter()
+        .filter(|factor| factor.flip)
+        .map(|factor| factor.id)
+        .collect();
     below.dedup();
     below
 }

@@ -18,12 +18,24 @@ pub(super) fn dump(schedule: &Schedule, arguments: &ArgumentNames) -> String {
             Step::SinCos { sin, cos, angle } => {
                 format!("{}, {} = sin_cos({})", name(sin), name(cos), one(angle))
             }
-            Step::Factor { factorisation, matrix, .. } => {
+            Step::Factor {
+                factorisation,
+                matrix,
+                ..
+            } => {
                 format!("lu_{factorisation} = factor({})", all(matrix))
             }
-            Step::Solve { factorisation, values, right } => {
+            Step::Solve {
+                factorisation,
+                values,
+                right,
+            } => {
                 let unknowns: Vec<&str> = values.iter().map(name).collect();
-                format!("{} = lu_{factorisation} \\ ({})", unknowns.join(", "), all(right))
+                format!(
+                    "{} = lu_{factorisation} \\ ({})",
+                    unknowns.join(", "),
+                    all(right)
+                )
             }
             Step::Paragraph { title } => format!("\n# {title}"),
         };

@@ -5,13 +5,13 @@ use super::search::Preference;
 
 /// Takes factors out of all sums, the most frequent first. Only products that nothing else uses
 /// are opened: every step saves multiplications.
-pub(super) fn factor(dag: &mut Dag, preference: Preference) {
+pub(super) fn factor(dag: &mut Dag, preference: Preference, least: usize) {
     let mut uses = dag.uses();
     let order = dag.order();
     for id in order {
         let mut sums = vec![id];
         while let Some(sum) = sums.pop() {
-            while let Some((factor, members)) = best_factor(dag, &uses, sum, preference) {
+            while let Some((factor, members)) = best_factor(dag, &uses, sum, preference, least) {
                 sums.extend(take_out(dag, &mut uses, sum, factor, &members));
             }
         }
@@ -25,8 +25,11 @@ fn best_factor(
     uses: &[u32],
     sum: Id,
     preference: Preference,
+    least: usize,
 ) -> Option<(Item, Vec<usize>)> {
-    let Op::Sum(terms) = dag.op(sum) else { return None };
+    let Op::Sum(terms) = dag.op(sum) else {
+        return None;
+    };
     let mut occurrences: Vec<(Item, usize)> = Vec::new();
     for (position, term) in terms.iter().enumerate() {
         if let Some(factors) = opened(dag, uses, term.id) {
@@ -38,9 +41,12 @@ fn best_factor(
     occurrences.dedup();
     let best = occurrences
         .chunk_by(|a, b| a.0 == b.0)
-        .filter(|group| group.len() >= 2)
+        .filter(|group| group.len() >= least)
         .max_by_key(|group| (group.len(), preference.rank(group[0].0)))?;
-    Some((best[0].0, best.iter().map(|&(_, position)| position).collect()))
+    Some((
+        best[0].0,
+        best.iter().map(|&(_, position)| position).collect(),
+    ))
 }
 
 /// The factors of a product that belongs to one sum alone.
@@ -58,8 +64,16 @@ fn opened<'a>(dag: &'a Dag, uses: &[u32], id: Id) -> Option<&'a [Item]> {
 }
 
 /// Rewrites `sum` with `factor` taken out of `members`, and returns the sum in the parentheses.
-fn take_out(dag: &mut Dag, uses: &mut Vec<u32>, sum: Id, factor: Item, members: &[usize]) -> Option<Id> {
-    let Op::Sum(terms) = dag.op(sum).clone() else { return None };
+fn take_out(
+    dag: &mut Dag,
+    uses: &mut Vec<u32>,
+    sum: Id,
+    factor: Item,
+    members: &[usize],
+) -> Option<Id> {
+    let Op::Sum(terms) = dag.op(sum).clone() else {
+        return None;
+    };
     let mut inner = Vec::with_capacity(members.len());
     let mut outer = Vec::with_capacity(terms.len());
     for (position, term) in terms.iter().enumerate() {
@@ -83,7 +97,9 @@ fn take_out(dag: &mut Dag, uses: &mut Vec<u32>, sum: Id, factor: Item, members: 
 
 /// The factors of a product without one occurrence of `factor`.
 fn without(dag: &Dag, product: Id, factor: Item) -> Vec<Item> {
-    let Op::Product(factors) = dag.op(product) else { return Vec::new() };
+    let Op::Product(factors) = dag.op(product) else {
+        return Vec::new();
+    };
     let mut rest = factors.clone();
     if let Some(position) = rest.iter().position(|&other| other == factor) {
         rest.remove(position);

@@ -56,14 +56,22 @@ impl Machine<'_> {
                 self.set(*sin, sine);
                 self.set(*cos, cosine);
             }
-            Step::Factor { factorisation, matrix, .. } => {
+            Step::Factor {
+                factorisation,
+                matrix,
+                ..
+            } => {
                 let place = *factorisation as usize;
                 if self.matrices.len() <= place {
                     self.matrices.resize(place + 1, Vec::new());
                 }
                 self.matrices[place] = self.all(matrix);
             }
-            Step::Solve { factorisation, values, right } => {
+            Step::Solve {
+                factorisation,
+                values,
+                right,
+            } => {
                 let mut matrix = self.matrices[*factorisation as usize].clone();
                 let mut unknowns = self.all(right);
                 lu_solve_in_place(&mut matrix, &mut unknowns, values.len());
@@ -97,7 +105,11 @@ impl Machine<'_> {
             Tree::Function(function, a) => apply(*function, self.tree(a)),
             Tree::Atan2(y, x) => Real::atan2(self.tree(y), self.tree(x)),
             Tree::Power(base, exponent) => Real::powf(self.tree(base), self.tree(exponent)),
-            Tree::Choice { relation, compared, branches } => {
+            Tree::Choice {
+                relation,
+                compared,
+                branches,
+            } => {
                 let [left, right] = [&compared[0], &compared[1]].map(|tree| self.tree(tree));
                 let [then, otherwise] = [&branches[0], &branches[1]].map(|tree| self.tree(tree));
                 match relation {

@@ -42,7 +42,10 @@ fn arguments(program: &Program) -> FxHashMap<SymbolId, Argument> {
         symbols: &[SymbolId],
         argument: fn(u32) -> Argument,
     ) -> impl Iterator<Item = (SymbolId, Argument)> {
-        symbols.iter().zip(0..).map(move |(&symbol, i)| (symbol, argument(i)))
+        symbols
+            .iter()
+            .zip(0..)
+            .map(move |(&symbol, i)| (symbol, argument(i)))
     }
     let of = &program.arguments;
     std::iter::once((of.time, Argument::Time))
@@ -68,7 +71,10 @@ impl Lowering<'_> {
             Node::Number(value) => self.dag.number(value),
             Node::Symbol(symbol) => {
                 let Some(&argument) = self.arguments.get(symbol) else {
-                    panic!("`{}` is not an argument of the program", self.graph.symbol_name(*symbol));
+                    panic!(
+                        "`{}` is not an argument of the program",
+                        self.graph.symbol_name(*symbol)
+                    );
                 };
                 Item::plain(self.dag.intern(Op::Argument(argument)))
             }
@@ -102,7 +108,11 @@ impl Lowering<'_> {
                 let items = [self.known[base], self.known[exponent]];
                 Item::plain(self.dag.intern(Op::Power(items)))
             }
-            Node::Choice { relation, compared, branches } => {
+            Node::Choice {
+                relation,
+                compared,
+                branches,
+            } => {
                 let items = [compared[0], compared[1], branches[0], branches[1]];
                 let items = items.map(|part| self.known[&part]);
                 Item::plain(self.dag.intern(Op::Choice(*relation, items)))
@@ -134,7 +144,9 @@ impl Lowering<'_> {
         let number = self.dag.number(&coefficient.abs());
         let mut factors = vec![number];
         match self.dag.op(value.id) {
-            Op::Product(inner) if self.dag.names[value.id.index()].is_none() => factors.extend(inner),
+            Op::Product(inner) if self.dag.names[value.id.index()].is_none() => {
+                factors.extend(inner)
+            }
             _ => factors.push(Item::plain(value.id)),
         }
         self.dag.product(factors).flipped_if(negative)

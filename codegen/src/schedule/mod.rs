@@ -4,6 +4,7 @@
 //! letter: same operations, same order, so they agree to the last bits of the elementary functions.
 
 mod bind;
+mod cancel;
 mod cost;
 mod dag;
 mod divide;
@@ -14,8 +15,10 @@ mod lower;
 pub(crate) mod names;
 pub(crate) mod piece;
 mod rebuild;
+mod scale;
 mod search;
 mod share;
+mod signs;
 
 pub use cost::OperationCount;
 pub use interpret::interpret;

@@ -20,8 +20,16 @@ const KEYWORDS: &[&str] = &[
 
 /// Statics of the emitted text, which a local must not shadow.
 const STATICS: &[&str] = &[
-    "INFO", "SPEC", "STATES", "INPUTS", "PARAMETERS", "OUTPUTS", "SIGNALS", "SIGNAL_INPUTS",
-    "CONSTRAINT_ROWS", "REACTIONS",
+    "INFO",
+    "SPEC",
+    "STATES",
+    "INPUTS",
+    "PARAMETERS",
+    "OUTPUTS",
+    "SIGNALS",
+    "SIGNAL_INPUTS",
+    "CONSTRAINT_ROWS",
+    "REACTIONS",
 ];
 
 /// A valid identifier that is `text` where `text` is one. Anything else is spelled in ASCII
@@ -94,12 +102,20 @@ impl ArgumentNames {
         let mut names = Names::default();
         let info = &program.info;
         let mut all = |quantities: &[appell_runtime::model::Quantity]| -> Vec<String> {
-            quantities.iter().map(|quantity| names.fresh(&quantity.name)).collect()
+            quantities
+                .iter()
+                .map(|quantity| names.fresh(&quantity.name))
+                .collect()
         };
         let (states, inputs) = (all(&info.states), all(&info.inputs));
         let parameters = all(&info.parameters);
         let time = names.fresh("t");
-        Self { time, states, inputs, parameters }
+        Self {
+            time,
+            states,
+            inputs,
+            parameters,
+        }
     }
 
     /// Name of an argument.
@@ -114,7 +130,11 @@ impl ArgumentNames {
 
     /// All names.
     pub(crate) fn iter(&self) -> impl Iterator<Item = &String> {
-        let lists = self.states.iter().chain(&self.inputs).chain(&self.parameters);
+        let lists = self
+            .states
+            .iter()
+            .chain(&self.inputs)
+            .chain(&self.parameters);
         std::iter::once(&self.time).chain(lists)
     }
 
@@ -135,8 +155,9 @@ fn number_in_words(value: &Rational) -> String {
         "zero", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten",
         "eleven", "twelve",
     ];
-    const PART: [&str; 9] =
-        ["", "", "half", "third", "quarter", "fifth", "sixth", "seventh", "eighth"];
+    const PART: [&str; 9] = [
+        "", "", "half", "third", "quarter", "fifth", "sixth", "seventh", "eighth",
+    ];
     if value.is_negative() {
         return format!("minus_{}", number_in_words(&value.abs()));
     }
@@ -165,11 +186,23 @@ pub(super) fn result_label(
 ) -> String {
     let info = &program.info;
     let speeds = info.speeds.min(names.states.len());
-    let outputs = |i: usize| info.outputs.get(i).map_or_else(|| i.to_string(), |o| o.name.to_string());
-    let row = |i: usize| names.states.get(i).map_or_else(|| i.to_string(), Clone::clone);
+    let outputs = |i: usize| {
+        info.outputs
+            .get(i)
+            .map_or_else(|| i.to_string(), |o| o.name.to_string())
+    };
+    let row = |i: usize| {
+        names
+            .states
+            .get(i)
+            .map_or_else(|| i.to_string(), Clone::clone)
+    };
     let prefix = array.name.as_str();
     match (kind, array.layout) {
-        (FunctionKind::Rates | FunctionKind::Jacobians | FunctionKind::AllJacobians, Layout::State) => {
+        (
+            FunctionKind::Rates | FunctionKind::Jacobians | FunctionKind::AllJacobians,
+            Layout::State,
+        ) => {
             format!("{}_dot", row(entry))
         }
         (FunctionKind::Kinematics, Layout::Coordinates) => format!("{}_dot", row(speeds + entry)),
@@ -183,8 +216,14 @@ pub(super) fn result_label(
             let all = names.states.len();
             let column = match (columns, prefix) {
                 (n, "a" | "mass_matrix") if n <= all => row(j),
-                (_, "b") => names.inputs.get(j).map_or_else(|| j.to_string(), Clone::clone),
-                (_, "p") => names.parameters.get(j).map_or_else(|| j.to_string(), Clone::clone),
+                (_, "b") => names
+                    .inputs
+                    .get(j)
+                    .map_or_else(|| j.to_string(), Clone::clone),
+                (_, "p") => names
+                    .parameters
+                    .get(j)
+                    .map_or_else(|| j.to_string(), Clone::clone),
                 _ => j.to_string(),
             };
             let prefix = if prefix == "mass_matrix" { "M" } else { prefix };

@@ -24,7 +24,11 @@ pub(super) struct Piece {
 impl Piece {
     /// Something that prints as a name.
     pub(super) fn name(tree: Tree, name: &str) -> Self {
-        Self { tree, width: name.len(), level: Level::Atom }
+        Self {
+            tree,
+            width: name.len(),
+            level: Level::Atom,
+        }
     }
 
     /// Width where something that binds as tightly as `level` is needed.
@@ -104,7 +108,11 @@ pub(crate) fn method(function: Function) -> &'static str {
 
 /// A name that says how a value is made, where a short one does: `R_squared`, `m_R`, `inv_D`,
 /// `tan_theta`, `a_minus_b`.
-pub(super) fn describe(tree: &Tree, values: &[String], arguments: &ArgumentNames) -> Option<String> {
+pub(super) fn describe(
+    tree: &Tree,
+    values: &[String],
+    arguments: &ArgumentNames,
+) -> Option<String> {
     let inner = |tree: &Tree| describe(tree, values, arguments);
     match tree {
         Tree::Value(Value(value)) => joined(&[values.get(*value as usize)?]),
@@ -119,17 +127,19 @@ pub(super) fn describe(tree: &Tree, values: &[String], arguments: &ArgumentNames
                 Operation::Add => joined(&[&left, "plus", &right]),
                 Operation::Subtract => joined(&[&left, "minus", &right]),
                 Operation::Multiply if left == right => joined(&[&left, "squared"]),
-                Operation::Multiply => {
-                    match left.strip_suffix("_squared") {
-                        Some(root) if root == right => joined(&[&right, "cubed"]),
-                        _ => joined(&[&left, &right]),
+                Operation::Multiply => match left.strip_suffix("_squared") {
+                    Some(root) if root == right => joined(&[&right, "cubed"]),
+                    _ => joined(&[&left, &right]),
+                },
+                Operation::Divide if **a == Tree::Constant(Rational::ONE) => {
+                    joined(&["inv", &right])
+                }
+                Operation::Divide => {
+                    match (left.strip_prefix("sin_"), right.strip_prefix("cos_")) {
+                        (Some(angle), Some(same)) if angle == same => joined(&["tan", angle]),
+                        _ => joined(&[&left, "over", &right]),
                     }
                 }
-                Operation::Divide if **a == Tree::Constant(Rational::ONE) => joined(&["inv", &right]),
-                Operation::Divide => match (left.strip_prefix("sin_"), right.strip_prefix("cos_")) {
-                    (Some(angle), Some(same)) if angle == same => joined(&["tan", angle]),
-                    _ => joined(&[&left, "over", &right]),
-                },
             }
         }
         Tree::Atan2(..) | Tree::Power(..) | Tree::Choice { .. } => None,
@@ -143,7 +153,13 @@ pub(crate) fn text(tree: &Tree, schedule: &Schedule, arguments: &ArgumentNames) 
     out
 }
 
-fn write(out: &mut String, tree: &Tree, least: Level, values: &[String], arguments: &ArgumentNames) {
+fn write(
+    out: &mut String,
+    tree: &Tree,
+    least: Level,
+    values: &[String],
+    arguments: &ArgumentNames,
+) {
     let level = match tree {
         Tree::Binary(Operation::Add | Operation::Subtract, ..) => Level::Sum,
         Tree::Binary(..) => Level::Product,
@@ -176,7 +192,9 @@ fn write(out: &mut String, tree: &Tree, least: Level, values: &[String], argumen
         Tree::Function(function, a) => call(out, method(*function), &[a], values, arguments),
         Tree::Atan2(y, x) => call(out, "atan2", &[y, x], values, arguments),
         Tree::Power(base, exponent) => call(out, "pow", &[base, exponent], values, arguments),
-        Tree::Choice { compared, branches, .. } => {
+        Tree::Choice {
+            compared, branches, ..
+        } => {
             let all = [&compared[0], &compared[1], &branches[0], &branches[1]];
             call(out, "if_less", &all, values, arguments);
         }

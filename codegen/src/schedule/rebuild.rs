@@ -27,7 +27,11 @@ pub(super) fn rebuild(dag: &Dag, dissolve: Dissolve) -> Dag {
         rebuilding.known[id.index()] = Some(item);
         rebuilding.hand_on_name(id, item);
     }
-    let results = dag.results.iter().map(|&result| rebuilding.item(result)).collect();
+    let results = dag
+        .results
+        .iter()
+        .map(|&result| rebuilding.item(result))
+        .collect();
     let mut new = rebuilding.new;
     new.results = results;
     new
@@ -45,7 +49,9 @@ struct Rebuilding<'a> {
 impl Rebuilding<'_> {
     /// The new item of an old item whose flip is a sign.
     fn item(&self, old: Item) -> Item {
-        self.known[old.id.index()].unwrap_or(old).flipped_if(old.flip)
+        self.known[old.id.index()]
+            .unwrap_or(old)
+            .flipped_if(old.flip)
     }
 
     /// Whether a part has no life of its own.
@@ -81,7 +87,10 @@ impl Rebuilding<'_> {
                         Op::Product(inner) if self.dissolves(factor.id) => {
                             product.extend(inner.iter().map(|part| part.flipped_if(factor.flip)));
                         }
-                        _ => product.push(Item { id: item.id, flip: factor.flip }),
+                        _ => product.push(Item {
+                            id: item.id,
+                            flip: factor.flip,
+                        }),
                     }
                 }
                 return self.new.product(product).flipped_if(negative);
@@ -93,7 +102,10 @@ impl Rebuilding<'_> {
             Op::Atan2(items) => Op::Atan2(items.map(|item| self.item(item))),
             Op::Power(items) => Op::Power(items.map(|item| self.item(item))),
             Op::Choice(relation, items) => Op::Choice(*relation, items.map(|item| self.item(item))),
-            Op::Solution { system, row } => Op::Solution { system: self.system(*system), row: *row },
+            Op::Solution { system, row } => Op::Solution {
+                system: self.system(*system),
+                row: *row,
+            },
         };
         Item::plain(self.new.intern(op))
     }
@@ -104,7 +116,10 @@ impl Rebuilding<'_> {
         }
         let old = &self.old.systems[index as usize];
         let items = |parts: &[Item]| parts.iter().map(|&part| self.item(part)).collect();
-        let system = System { matrix: items(&old.matrix), right: items(&old.right) };
+        let system = System {
+            matrix: items(&old.matrix),
+            right: items(&old.right),
+        };
         let known = self.new.systems.iter().position(|other| *other == system);
         let position = known.unwrap_or_else(|| {
             self.new.systems.push(system);
@@ -116,7 +131,9 @@ impl Rebuilding<'_> {
     }
 
     fn hand_on_name(&mut self, old: Id, new: Item) {
-        let Some(name) = self.old.names[old.index()] else { return };
+        let Some(name) = self.old.names[old.index()] else {
+            return;
+        };
         let place = &mut self.new.names[new.id.index()];
         if place.is_none() {
             *place = Some(Name {

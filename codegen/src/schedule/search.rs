@@ -39,22 +39,38 @@ const DIVISION: usize = 4;
 /// Rounds of all passes; later rounds find almost nothing.
 const ROUNDS: usize = 4;
 
-/// The cheapest equivalent graph found. What is cheaper by nothing stays as derived.
+
 pub(super) fn cheapest(derived: &Dag) -> Dag {
     use Pass::{Factor, Products, Sums};
     const ORDERS: [[Pass; 3]; 3] =
-        [[Factor, Products, Sums], [Products, Factor, Sums], [Factor, Sums, Products]];
+        [[Factor, Products, Sums], [Products, Factor, Sums], [Sums, Products, Factor]];
+    const LEVELS: [&[u32]; 5] = [&[2], &[3, 2], &[4, 3, 2], &[6, 4, 3, 2], &[8, 6, 5, 4, 3, 2]];
     let mut best = finish(&rebuild(derived, Dissolve::Unnamed));
     let mut least = best.weight(DIVISION);
+    let dbg = std::env::var("DBG").is_ok();
+    if dbg { eprintln!("{least}"); }
     for dissolve in [Dissolve::Unnamed, Dissolve::Named] {
-        let start = rebuild(derived, dissolve);
+        let mut start = rebuild(derived, dissolve);
+        if std::env::var("NOCANCEL").is_err() {
+        super::cancel::cancel(&mut start);
+        start = rebuild(&start, dissolve);
+        }
+        if std::env::var("NOSCALE").is_err() {
+        super::scale::scale(&mut start);
+        start = rebuild(&start, dissolve);
+        }
         for passes in ORDERS {
             for preference in [Preference::Early, Preference::Late] {
-                let candidate = finish(&rewritten(&start, passes, preference));
+              if dbg { eprint!("{dissolve:?} {passes:?} {preference:?}"); }
+              for levels in LEVELS {
+                let candidate = finish(&rewritten(&start, passes, preference, levels));
                 let weight = candidate.weight(DIVISION);
+                if dbg { eprint!(" {weight}"); }
                 if weight < least {
                     (best, least) = (candidate, weight);
                 }
+              }
+              if dbg { eprintln!(); }
             }
         }
     }
@@ -62,23 +78,21 @@ pub(super) fn cheapest(derived: &Dag) -> Dag {
 }
 
 /// All passes, again and again while they help.
-fn rewritten(start: &Dag, passes: [Pass; 3], preference: Preference) -> Dag {
+fn rewritten(start: &Dag, passes: [Pass; 3], preference: Preference, levels: &[u32]) -> Dag {
     let mut dag = start.clone();
-    let mut weight = dag.weight(DIVISION);
+    for &level in levels {
     for _ in 0..ROUNDS {
+        let before = dag.weight(1);
         for pass in passes {
             match pass {
-                Pass::Factor => factor(&mut dag, preference),
-                Pass::Products => share(&mut dag, Within::Products, preference),
-                Pass::Sums => share(&mut dag, Within::Sums, preference),
+                Pass::Factor => factor(&mut dag, preference, level as usize),
+                Pass::Products => share(&mut dag, Within::Products, preference, level),
+                Pass::Sums => share(&mut dag, Within::Sums, preference, level),
             }
             dag = rebuild(&dag, Dissolve::Unnamed);
         }
-        let now = dag.weight(DIVISION);
-        if now >= weight {
-            break;
-        }
-        weight = now;
+        if dag.weight(1) >= before { break; }
+    }
     }
     dag
 }

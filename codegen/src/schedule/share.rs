@@ -25,10 +25,11 @@ pub(super) enum Within {
 const LONGEST: usize = 64;
 
 /// Shares the common parts of all sums, or of all products.
-pub(super) fn share(dag: &mut Dag, within: Within, preference: Preference) {
+pub(super) fn share(dag: &mut Dag, within: Within, preference: Preference, least: u32) {
     let mut sharing = Sharing {
         within,
         preference,
+        least,
         owners: Vec::new(),
         lists: Vec::new(),
         pairs: FxHashMap::default(),
@@ -75,6 +76,8 @@ struct Occurrences {
 struct Sharing {
     within: Within,
     preference: Preference,
+    /// Pairs that occur less often are left alone.
+    least: u32,
     owners: Vec<Id>,
     lists: Vec<Vec<Item>>,
     pairs: FxHashMap<Pair, Occurrences>,
@@ -113,7 +116,7 @@ impl Sharing {
             let occurrences = self.pairs.entry(pair).or_default();
             occurrences.count += count;
             occurrences.lists.push(list);
-            if occurrences.count >= 2 {
+            if occurrences.count >= self.least {
                 let rank = (self.preference.rank(pair[0]), self.preference.rank(pair[1]));
                 self.queue.push((occurrences.count, rank, pair));
             }
@@ -133,11 +136,14 @@ impl Sharing {
 
     fn most_frequent(&mut self) -> Option<Pair> {
         while let Some((count, rank, pair)) = self.queue.pop() {
-            let now = self.pairs.get(&pair).map_or(0, |occurrences| occurrences.count);
+            let now = self
+                .pairs
+                .get(&pair)
+                .map_or(0, |occurrences| occurrences.count);
             if now == count {
                 return Some(pair);
             }
-            if now >= 2 {
+            if now >= self.least {
                 // Counts only sink between two entries.
                 self.queue.push((now, rank, pair));
             }
@@ -151,7 +157,9 @@ impl Sharing {
             Within::Sums => dag.sum(pair.to_vec()),
             Within::Products => dag.product(pair.to_vec()),
         };
-        let Some(occurrences) = self.pairs.remove(&pair) else { return };
+        let Some(occurrences) = self.pairs.remove(&pair) else {
+            return;
+        };
         let mut lists = occurrences.lists;
         lists.sort_unstable();
         lists.dedup();
@@ -176,7 +184,11 @@ impl Sharing {
         let mut replaced = false;
         loop {
             let find = |wanted: Item| items.iter().position(|&item| item == wanted);
-            let flips: &[bool] = if self.within == Within::Sums { &[false, true] } else { &[false] };
+            let flips: &[bool] = if self.within == Within::Sums {
+                &[false, true]
+            } else {
+                &[false]
+            };
             let found = flips.iter().find_map(|&flip| {
                 let first = find(pair[0].flipped_if(flip))?;
                 let second = if pair[0] == pair[1] {
@@ -186,7 +198,9 @@ impl Sharing {
                 };
                 Some((flip, first, second?))
             });
-            let Some((flip, first, second)) = found else { break };
+            let Some((flip, first, second)) = found else {
+                break;
+            };
             items.remove(first.max(second));
             items.remove(first.min(second));
             let new = node.flipped_if(flip);

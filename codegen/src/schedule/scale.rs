@@ -1,0 +1,172 @@
+//! Moves numeric factors between sums and what they are multiplied with.
+//!
+//! `x/(4·a + 12·b)·8` has three multiplications by numbers; `2·x/(a + 3·b)` has two. For every
+//! sum the factor is taken out that leaves the fewest numbers in its terms and around it.
+
+use super::dag::{Dag, Id, Item, Op};
+use crate::symbolic::Rational;
+
+/// Takes a number out of every unnamed sum where that saves multiplications.
+pub(super) fn scale(dag: &mut Dag) {
+    let order = dag.order();
+    let scales = Scales::choose(dag, &order);
+    if scales.taken_out.iter().all(Option::is_none) {
+        return;
+    }
+    for id in order {
+        scales.rewrite(dag, id);
+    }
+    for place in 0..dag.results.len() {
+        let result = dag.results[place];
+        dag.results[place] = scales.whole(dag, result);
+    }
+}
+
+struct Scales {
+    /// The number taken out of a sum: the sum is this number times what replaces it.
+    taken_out: Vec<Option<Rational>>,
+}
+
+impl Scales {
+    fn choose(dag: &Dag, order: &[Id]) -> Self {
+        let mut taken_out = vec![None; dag.len()];
+        let mut coefficients: Vec<Rational> = vec![Rational::ONE; dag.len()];
+        let mut wholes: Vec<Vec<Id>> = vec![Vec::new(); dag.len()];
+        for &id in order {
+            if let Some(value) = coefficient(dag, id) {
+                coefficients[id.index()] = value.clone();
+            }
+            dag.for_each_part(id, |part| wholes[part.id.index()].push(id));
+        }
+        for result in &dag.results {
+            // As a result a sum stands alone.
+            wholes[result.id.index()].push(result.id);
+        }
+        for &id in order {
+            let Op::Sum(terms) = dag.op(id) else { continue };
+            if dag.names[id.index()].is_some() {
+                continue;
+            }
+            let inside: Vec<&Rational> = terms.iter().map(|term| &coefficients[term.id.index()]).collect();
+            let mut around: Vec<(Rational, i32)> = Vec::new();
+            let mut wholes_once = wholes[id.index()].clone();
+            wholes_once.dedup();
+            for whole in &wholes_once {
+                around.push((coefficients[whole.index()].clone(), exponent(dag, *whole, id)));
+            }
+            let cost = |taken: &Rational| {
+                let inside = inside.iter().filter(|&&value| value != taken).count();
+                let outside = around.iter().filter(|(value, exponent)| !times(value, taken, *exponent).is_one());
+                inside + outside.count()
+            };
+            let mut best = (cost(&Rational::ONE), Rational::ONE);
+            let candidates = inside.iter().map(|&value| value.clone());
+            let inverses = around.iter().filter(|(_, e)| e.abs() == 1).map(|(value, exponent)| {
+                if *exponent > 0 { value.recip() } else { value.clone() }
+            });
+            for candidate in candidates.chain(inverses) {
+                let cost = cost(&candidate);
+                if cost < best.0 {
+                    best = (cost, candidate);
+                }
+            }
+            if !best.1.is_one() {
+                for (whole, (value, exponent)) in wholes_once.iter().zip(&around) {
+                    if *exponent != 0 {
+                        coefficients[whole.index()] = times(value, &best.1, *exponent);
+                    }
+                }
+                taken_out[id.index()] = Some(best.1);
+            }
+        }
+        Self { taken_out }
+    }
+
+    fn taken_out(&self, id: Id) -> Option<&Rational> {
+        self.taken_out.get(id.index()).and_then(Option::as_ref)
+    }
+
+    /// An item whose flip is a sign, with the number that was taken out of it.
+    fn whole(&self, dag: &mut Dag, item: Item) -> Item {
+        let Some(scale) = self.taken_out(item.id) else { return item };
+        let number = dag.number(scale);
+        dag.product(vec![number, Item::plain(item.id)]).flipped_if(item.flip)
+    }
+
+    fn rewrite(&self, dag: &mut Dag, id: Id) {
+        let op = dag.op(id).clone();
+        let new = match op {
+            Op::Number(_) | Op::Argument(_) | Op::Solution { .. } => return,
+            Op::Sum(terms) => {
+                let own = self.taken_out(id).map(Rational::recip);
+                let mut sum = Vec::with_capacity(terms.len());
+                for term in terms {
+                    let mut item = self.whole(dag, term);
+                    if let Some(own) = &own {
+                        item = multiplied(dag, item, own);
+                    }
+                    sum.push(item);
+                }
+                Op::Sum(sum)
+            }
+            Op::Product(factors) => {
+                let scaled = factors.iter().filter(|factor| self.taken_out(factor.id).is_some());
+                let mut number = Rational::ONE;
+                for factor in scaled {
+                    if let Some(scale) = self.taken_out(factor.id) {
+                        number = &number * &if factor.flip { scale.recip() } else { scale.clone() };
+                    }
+                }
+                if number.is_one() {
+                    return;
+                }
+                let number = dag.number(&number);
+                let mut factors = factors;
+                factors.push(number);
+                Op::Sum(vec![dag.product(factors)])
+            }
+            Op::Function(function, argument) => Op::Function(function, self.whole(dag, argument)),
+            Op::Atan2(items) => Op::Atan2(items.map(|item| self.whole(dag, item))),
+            Op::Power(items) => Op::Power(items.map(|item| self.whole(dag, item))),
+            Op::Choice(relation, items) => {
+                Op::Choice(relation, items.map(|item| self.whole(dag, item)))
+            }
+        };
+        dag.replace(id, new);
+    }
+}
+
+/// The number among the factors of a product, or the number a node is.
+fn coefficient(dag: &Dag, id: Id) -> Option<&Rational> {
+    match dag.op(id) {
+        Op::Product(factors) => factors.iter().find_map(|factor| dag.as_number(factor.id)),
+        Op::Number(value) => Some(value),
+        _ => None,
+    }
+}
+
+/// How often `part` is a factor of `whole`.
+fn exponent(dag: &Dag, whole: Id, part: Id) -> i32 {
+    let Op::Product(factors) = dag.op(whole) else { return 1 };
+    let same = factors.iter().filter(|factor| factor.id == part);
+    same.map(|factor| if factor.flip { -1 } else { 1 }).sum()
+}
+
+/// `value · base^exponent`, where the power is short enough to write.
+fn times(value: &Rational, base: &Rational, exponent: i32) -> Rational {
+    match base.checked_pow(exponent) {
+        Some(power) => value * &power,
+        None => value.clone(),
+    }
+}
+
+/// `number · item`, the number among the factors of a product.
+fn multiplied(dag: &mut Dag, item: Item, number: &Rational) -> Item {
+    let number = dag.number(number);
+    let mut factors = vec![number];
+    match dag.op(item.id) {
+        Op::Product(inner) if dag.names[item.id.index()].is_none() => factors.extend(inner),
+        _ => factors.push(Item::plain(item.id)),
+    }
+    dag.product(factors).flipped_if(item.flip)
+}

@@ -3,8 +3,8 @@
 #![allow(clippy::unwrap_used, reason = "tests")]
 
 use appell_codegen::symbolic::{
-    Derivatives, Expr, Function, Graph, Intervals, Node, Rational, Relation, Substitution, SymbolId,
-    evaluate,
+    Derivatives, Expr, Function, Graph, Intervals, Node, Rational, Relation, Substitution,
+    SymbolId, evaluate,
 };
 
 fn symbols<const N: usize>(g: &mut Graph, names: [&str; N]) -> [Expr; N] {
@@ -68,7 +68,10 @@ fn functions_take_out_signs_and_know_exact_values() {
     assert_eq!(g.sqrt(ratio), root);
     let three = g.integer(3);
     let irrational = g.sqrt(three);
-    assert!(matches!(g.node(irrational), Node::Function(Function::Sqrt, _)));
+    assert!(matches!(
+        g.node(irrational),
+        Node::Function(Function::Sqrt, _)
+    ));
     let five = g.integer(-5);
     assert_eq!(g.function(Function::Abs, five), g.integer(5));
     assert_eq!(g.function(Function::Sign, five), g.integer(-1));
@@ -93,8 +96,14 @@ fn even_powers_of_roots_are_powers() {
 fn choices_between_numbers_are_decided() {
     let mut g = Graph::new();
     let [x, y] = symbols(&mut g, ["x", "y"]);
-    assert_eq!(g.choice(Relation::Less, [Graph::ONE, Graph::ONE], [x, y]), y);
-    assert_eq!(g.choice(Relation::LessOrEqual, [Graph::ONE, Graph::ONE], [x, y]), x);
+    assert_eq!(
+        g.choice(Relation::Less, [Graph::ONE, Graph::ONE], [x, y]),
+        y
+    );
+    assert_eq!(
+        g.choice(Relation::LessOrEqual, [Graph::ONE, Graph::ONE], [x, y]),
+        x
+    );
     assert_eq!(g.choice(Relation::Less, [x, y], [y, y]), y);
 }
 
@@ -147,7 +156,11 @@ fn parts_come_before_wholes() {
     let mut deep = x;
     // Deep enough to overflow the stack of a recursion.
     for i in 0..200_000 {
-        let next = if i % 2 == 0 { g.sin(deep) } else { g.add(deep, y) };
+        let next = if i % 2 == 0 {
+            g.sin(deep)
+        } else {
+            g.add(deep, y)
+        };
         deep = next;
     }
     let order = g.in_order(&[deep]);
@@ -173,7 +186,11 @@ fn operations_count_shared_parts_once() {
     assert_eq!(g.operations(&[product, s, sum]), 3);
     let minus = g.sub(a, b);
     assert_eq!(g.operations(&[minus]), 1);
-    let scaled = g.linear_combination(&[(2.into(), a), (Rational::new(-1, 3), b), (5.into(), Graph::ONE)]);
+    let scaled = g.linear_combination(&[
+        (2.into(), a),
+        (Rational::new(-1, 3), b),
+        (5.into(), Graph::ONE),
+    ]);
     assert_eq!(g.operations(&[scaled]), 4);
     let power = g.pow(a, 5);
     assert_eq!(g.operations(&[power]), 3);
@@ -249,7 +266,17 @@ fn positive_parts_make_positive_wholes() {
     let scaled = g.product(&[m2, cos, named]);
     let below = g.neg(inertia);
     let tiny = g.pow(m, 9);
-    for positive in [m, m2, inertia, reciprocal, exponential, cos, scaled, below, tiny] {
+    for positive in [
+        m,
+        m2,
+        inertia,
+        reciprocal,
+        exponential,
+        cos,
+        scaled,
+        below,
+        tiny,
+    ] {
         assert!(intervals.cannot_vanish(&g, positive));
     }
     let two = g.integer(2);

@@ -12,7 +12,10 @@ struct Bench {
 
 impl Bench {
     fn new() -> Self {
-        Self { g: Graph::new(), test: IdentityTest::new(7) }
+        Self {
+            g: Graph::new(),
+            test: IdentityTest::new(7),
+        }
     }
 
     fn symbols<const N: usize>(&mut self, names: [&str; N]) -> [Expr; N] {
@@ -24,7 +27,10 @@ impl Bench {
         let difference = self.g.sub(a, b);
         assert!(self.test.are_equal(&self.g, a, b));
         assert!(self.test.is_zero(&self.g, difference));
-        assert_eq!(self.test.fingerprint(&self.g, a), self.test.fingerprint(&self.g, b));
+        assert_eq!(
+            self.test.fingerprint(&self.g, a),
+            self.test.fingerprint(&self.g, b)
+        );
         assert!(self.test.fingerprint(&self.g, a).is_some());
         assert!(self.test.error_bound(&self.g, difference) < 1e-12);
     }
@@ -33,7 +39,10 @@ impl Bench {
         let difference = self.g.sub(a, b);
         assert!(!self.test.are_equal(&self.g, a, b));
         assert!(!self.test.is_zero(&self.g, difference));
-        let (a, b) = (self.test.fingerprint(&self.g, a), self.test.fingerprint(&self.g, b));
+        let (a, b) = (
+            self.test.fingerprint(&self.g, a),
+            self.test.fingerprint(&self.g, b),
+        );
         assert!(a != b || a.is_none());
     }
 }
@@ -283,7 +292,14 @@ fn choices_are_linear_and_can_be_turned_round() {
 fn other_functions_depend_on_values_only() {
     let mut b = Bench::new();
     let [x, y] = b.symbols(["x", "y"]);
-    for function in [Function::Asin, Function::Acos, Function::Atan, Function::Ln, Function::Abs, Function::Sign] {
+    for function in [
+        Function::Asin,
+        Function::Acos,
+        Function::Atan,
+        Function::Ln,
+        Function::Abs,
+        Function::Sign,
+    ] {
         let g = &mut b.g;
         let (sum, difference) = (g.add(x, y), g.sub(x, y));
         let product = g.mul(sum, difference);
@@ -402,5 +418,90 @@ fn answers_depend_on_seed_and_graph_only() {
     let (mut second, same, x) = build();
     // Other questions in between change nothing.
     second.test.fingerprint(&second.g, x);
-    assert_eq!(first.test.fingerprint(&first.g, root), second.test.fingerprint(&second.g, same));
+    assert_eq!(
+        first.test.fingerprint(&first.g, root),
+        second.test.fingerprint(&second.g, same)
+    );
+}
+
+#[test]
+fn roots_of_numbers_are_constants() {
+    let mut b = Bench::new();
+    let [x] = b.symbols(["x"]);
+    let g = &mut b.g;
+    let (two, three, six) = (g.integer(2), g.integer(3), g.integer(6));
+    let [r2, r3, r6] = [two, three, six].map(|n| g.sqrt(n));
+    let product = g.mul(r2, r3);
+    b.equal(product, r6);
+    b.different(r2, r3);
+    // (x + √3)(x - √3) = x² - 3
+    let g = &mut b.g;
+    let (plus, minus) = (g.add(x, r3), g.sub(x, r3));
+    let product = g.mul(plus, minus);
+    let square = g.square(x);
+    let right = g.sub(square, three);
+    b.equal(product, right);
+    b.different(plus, minus);
+    // 47 has no root in the field: less is known, nothing wrong is claimed.
+    let g = &mut b.g;
+    let prime = g.integer(47);
+    let root = g.sqrt(prime);
+    let (left, right) = (g.mul(root, plus), g.mul(root, minus));
+    b.different(left, right);
+    assert!(b.test.fingerprint(&b.g, left).is_some());
+    let minus_three = b.g.integer(-3);
+    let imaginary = b.g.sqrt(minus_three);
+    assert_eq!(b.test.fingerprint(&b.g, imaginary), None);
+}
+
+#[test]
+fn multiples_of_pi_are_constants() {
+    let mut b = Bench::new();
+    let [pi, x] = b.symbols(["pi", "x"]);
+    let id = b.g.as_symbol(pi).unwrap();
+    b.test = IdentityTest::new(11).with_pi(id);
+    let g = &mut b.g;
+    let part = |g: &mut Graph, n: i64, d: i64| g.scale(&Rational::new(n, d), pi);
+    let (third, quarter, sixth) = (part(g, 1, 3), part(g, 1, 4), part(g, 1, 6));
+    let [half, minus_one] = [(1, 2), (-1, 1)].map(|(n, d)| g.fraction(n, d));
+    let (three, two) = (g.integer(3), g.integer(2));
+    let (r3, r2) = (g.sqrt(three), g.sqrt(two));
+    let (half_r3, half_r2) = (
+        g.scale(&Rational::new(1, 2), r3),
+        g.scale(&Rational::new(1, 2), r2),
+    );
+    let [cos_pi, cos3, sin3, cos4, sin4, sin6] = [
+        g.cos(pi),
+        g.cos(third),
+        g.sin(third),
+        g.cos(quarter),
+        g.sin(quarter),
+        g.sin(sixth),
+    ];
+    b.equal(cos_pi, minus_one);
+    b.equal(cos3, half);
+    b.equal(sin3, half_r3);
+    b.equal(cos4, half_r2);
+    b.equal(sin4, half_r2);
+    b.equal(sin6, half);
+
+    // Three directions, a third of a turn apart.
+    let g = &mut b.g;
+    let directions: Vec<Expr> = (0..3)
+        .map(|k| {
+            let offset = g.scale(&Rational::new(2 * k, 3), pi);
+            let angle = g.add(x, offset);
+            g.cos(angle)
+        })
+        .collect();
+    let sum = g.sum(&directions);
+    b.equal(sum, Graph::ZERO);
+    b.different(directions[0], directions[1]);
+
+    // π itself is a number like any other, and its fifth is not confused with it.
+    let g = &mut b.g;
+    let fifth = part(g, 1, 5);
+    let cos5 = g.cos(fifth);
+    b.different(cos5, minus_one);
+    b.different(pi, three);
 }

@@ -24,90 +24,131 @@ fn close(a: f64, b: f64, tolerance: f64) -> bool {
 #[test]
 fn derivatives_agree_with_finite_differences() {
     let judged = Cell::new(0);
-    check(3000, &(programs(14), values(), 0..SYMBOLS), |(program, point, by)| {
-        let (mut g, symbols) = graph();
-        let expr = build(&mut g, &symbols, Kind::Any, &program);
-        let derivative = Derivatives::with_respect_to(symbol(by)).of(&mut g, expr);
-        let exact = evaluate(&g, &point, &[derivative])[0];
-        let difference = |h: f64| {
-            let at = |offset: f64| {
-                let mut moved = point;
-                moved[by as usize] += offset;
-                evaluate(&g, &moved, &[expr])[0]
+    check(
+        3000,
+        &(programs(14), values(), 0..SYMBOLS),
+        |(program, point, by)| {
+            let (mut g, symbols) = graph();
+            let expr = build(&mut g, &symbols, Kind::Any, &program);
+            let derivative = Derivatives::with_respect_to(symbol(by)).of(&mut g, expr);
+            let exact = evaluate(&g, &point, &[derivative])[0];
+            let difference = |h: f64| {
+                let at = |offset: f64| {
+                    let mut moved = point;
+                    moved[by as usize] += offset;
+                    evaluate(&g, &moved, &[expr])[0]
+                };
+                (at(h) - at(-h)) / (2.0 * h)
             };
-            (at(h) - at(-h)) / (2.0 * h)
-        };
-        // A kink, a pole or cancellation shows in the disagreement of two steps.
-        let (wide, narrow) = (difference(2e-4), difference(1e-4));
-        if !narrow.is_finite() || !close(wide, narrow, 1e-6) || narrow.abs() > 1e6 {
-            return Ok(());
-        }
-        // Rounding hides the derivative of a large value.
-        if evaluate(&g, &point, &[expr])[0].abs() > 1e3 {
-            return Ok(());
-        }
-        judged.set(judged.get() + 1);
-        prop_assert!(close(exact, narrow, 1e-5), "{} against {}: {}", exact, narrow, show(&g, expr));
-        Ok(())
-    });
-    assert!(judged.get() > 1500, "only {} cases were smooth", judged.get());
+            // A kink, a pole or cancellation shows in the disagreement of two steps.
+            let (wide, narrow) = (difference(2e-4), difference(1e-4));
+            if !narrow.is_finite() || !close(wide, narrow, 1e-6) || narrow.abs() > 1e6 {
+                return Ok(());
+            }
+            // Rounding hides the derivative of a large value.
+            if evaluate(&g, &point, &[expr])[0].abs() > 1e3 {
+                return Ok(());
+            }
+            judged.set(judged.get() + 1);
+            prop_assert!(
+                close(exact, narrow, 1e-5),
+                "{} against {}: {}",
+                exact,
+                narrow,
+                show(&g, expr)
+            );
+            Ok(())
+        },
+    );
+    assert!(
+        judged.get() > 1500,
+        "only {} cases were smooth",
+        judged.get()
+    );
 }
 
 #[test]
 fn derivatives_of_unknowns_agree_with_finite_differences() {
-    check(300, &(programs(6), programs(6), values()), |(first, second, point)| {
-        let (mut g, symbols) = graph();
-        let a = build(&mut g, &symbols, Kind::Circular, &first);
-        let b = build(&mut g, &symbols, Kind::Circular, &second);
-        let six = g.integer(6);
-        let corner = g.sin(b);
-        let diagonal = g.add(six, corner);
-        let (low, high) = (g.cos(a), g.sin(a));
-        let unknowns = g.solve_numerically(vec![six, low, high, diagonal], vec![a, b]);
-        let derivative = Derivatives::with_respect_to(symbol(0)).of(&mut g, unknowns[1]);
-        let second = Derivatives::with_respect_to(symbol(0)).of(&mut g, derivative);
-        for (value, slope) in [(unknowns[1], derivative), (derivative, second)] {
-            let at = |h: f64| evaluate(&g, &[point[0] + h, point[1], point[2]], &[value])[0];
-            let (wide, narrow) = ((at(2e-4) - at(-2e-4)) / 4e-4, (at(1e-4) - at(-1e-4)) / 2e-4);
-            let exact = evaluate(&g, &point, &[slope])[0];
-            if narrow.is_finite() && close(wide, narrow, 1e-6) && at(0.0).abs() < 1e3 {
-                prop_assert!(close(exact, narrow, 1e-5), "{} against {}", exact, narrow);
+    check(
+        300,
+        &(programs(6), programs(6), values()),
+        |(first, second, point)| {
+            let (mut g, symbols) = graph();
+            let a = build(&mut g, &symbols, Kind::Circular, &first);
+            let b = build(&mut g, &symbols, Kind::Circular, &second);
+            let six = g.integer(6);
+            let corner = g.sin(b);
+            let diagonal = g.add(six, corner);
+            let (low, high) = (g.cos(a), g.sin(a));
+            let unknowns = g.solve_numerically(vec![six, low, high, diagonal], vec![a, b]);
+            let derivative = Derivatives::with_respect_to(symbol(0)).of(&mut g, unknowns[1]);
+            let second = Derivatives::with_respect_to(symbol(0)).of(&mut g, derivative);
+            for (value, slope) in [(unknowns[1], derivative), (derivative, second)] {
+                let at = |h: f64| evaluate(&g, &[point[0] + h, point[1], point[2]], &[value])[0];
+                let (wide, narrow) = ((at(2e-4) - at(-2e-4)) / 4e-4, (at(1e-4) - at(-1e-4)) / 2e-4);
+                let exact = evaluate(&g, &point, &[slope])[0];
+                if narrow.is_finite() && close(wide, narrow, 1e-6) && at(0.0).abs() < 1e3 {
+                    prop_assert!(close(exact, narrow, 1e-5), "{} against {}", exact, narrow);
+                }
             }
-        }
-        Ok(())
-    });
+            Ok(())
+        },
+    );
 }
 
 #[test]
 fn substitution_commutes_with_evaluation() {
-    check(1500, &(programs(12), programs(5), values()), |(program, inner, point)| {
-        let (mut g, symbols) = graph();
-        let expr = build(&mut g, &symbols, Kind::Any, &program);
-        let value = build(&mut g, &symbols, Kind::Circular, &inner);
-        let replaced = Substitution::new(&mut g, &[(symbol(0), value)]).apply(&mut g, expr);
-        let Some(replaced) = replaced else { return Ok(()) };
-        let mut moved = point;
-        moved[0] = evaluate(&g, &point, &[value])[0];
-        let (direct, indirect) =
-            (evaluate(&g, &moved, &[expr])[0], evaluate(&g, &point, &[replaced])[0]);
-        // Cancellation and functions at a jump: judged where the neighbourhood is tame.
-        moved[0] *= 1.0 + 1e-9;
-        let nearby = evaluate(&g, &moved, &[expr])[0];
-        if direct.is_finite() && indirect.is_finite() && close(direct, nearby, 1e-6) {
-            prop_assert!(close(direct, indirect, 1e-5), "{} against {}", direct, indirect);
-        }
-        Ok(())
-    });
+    check(
+        1500,
+        &(programs(12), programs(5), values()),
+        |(program, inner, point)| {
+            let (mut g, symbols) = graph();
+            let expr = build(&mut g, &symbols, Kind::Any, &program);
+            let value = build(&mut g, &symbols, Kind::Circular, &inner);
+            let replaced = Substitution::new(&mut g, &[(symbol(0), value)]).apply(&mut g, expr);
+            let Some(replaced) = replaced else {
+                return Ok(());
+            };
+            let mut moved = point;
+            moved[0] = evaluate(&g, &point, &[value])[0];
+            let (direct, indirect) = (
+                evaluate(&g, &moved, &[expr])[0],
+                evaluate(&g, &point, &[replaced])[0],
+            );
+            // Cancellation and functions at a jump: judged where the neighbourhood is tame.
+            moved[0] *= 1.0 + 1e-9;
+            let nearby = evaluate(&g, &moved, &[expr])[0];
+            if direct.is_finite() && indirect.is_finite() && close(direct, nearby, 1e-6) {
+                prop_assert!(
+                    close(direct, indirect, 1e-5),
+                    "{} against {}",
+                    direct,
+                    indirect
+                );
+            }
+            Ok(())
+        },
+    );
 }
 
 #[test]
 fn values_stay_in_their_intervals() {
     let bounded = Cell::new(0);
-    let strategy = (programs(12), prop::array::uniform3((-3.0..3.0, 0.0..2.0)), prop::array::uniform3(0.0..1.0));
+    let strategy = (
+        programs(12),
+        prop::array::uniform3((-3.0..3.0, 0.0..2.0)),
+        prop::array::uniform3(0.0..1.0),
+    );
     check(3000, &strategy, |(program, boxes, place)| {
         let (mut g, symbols) = graph();
         let expr = build(&mut g, &symbols, Kind::Any, &program);
-        let ranges = (0..3).map(|i| (symbol(i), boxes[i as usize].0, boxes[i as usize].0 + boxes[i as usize].1));
+        let ranges = (0..3).map(|i| {
+            (
+                symbol(i),
+                boxes[i as usize].0,
+                boxes[i as usize].0 + boxes[i as usize].1,
+            )
+        });
         let mut intervals = Intervals::new(&g, ranges.collect());
         let point: Vec<f64> = (0..3).map(|i| boxes[i].0 + place[i] * boxes[i].1).collect();
         let order = g.in_order(&[expr]);
@@ -118,7 +159,13 @@ fn values_stay_in_their_intervals() {
                 break;
             }
             let interval = intervals.of(&g, part);
-            prop_assert!(interval.contains(value), "{:?} misses {}: {}", interval, value, show(&g, part));
+            prop_assert!(
+                interval.contains(value),
+                "{:?} misses {}: {}",
+                interval,
+                value,
+                show(&g, part)
+            );
             if interval.lo > -1e3 && interval.hi < 1e3 {
                 bounded.set(bounded.get() + 1);
             }
@@ -133,9 +180,12 @@ fn values_stay_in_their_intervals() {
 }
 
 fn grows_exponentially(g: &Graph, root: Expr) -> bool {
-    g.in_order(&[root])
-        .iter()
-        .any(|&e| matches!(g.node(e), Node::Power(..) | Node::Function(Function::Exp, _)))
+    g.in_order(&[root]).iter().any(|&e| {
+        matches!(
+            g.node(e),
+            Node::Power(..) | Node::Function(Function::Exp, _)
+        )
+    })
 }
 
 /// Random pairs that differ in double precision must differ in the field, and pairs that are equal in
@@ -143,7 +193,12 @@ fn grows_exponentially(g: &Graph, root: Expr) -> bool {
 #[test]
 fn unequal_expressions_are_never_called_equal() {
     let (unequal, equal) = (Cell::new(0), Cell::new(0));
-    let strategy = (programs(9), programs(9), prop::array::uniform4(values()), any::<u64>());
+    let strategy = (
+        programs(9),
+        programs(9),
+        prop::array::uniform4(values()),
+        any::<u64>(),
+    );
     check(4000, &strategy, |(first, second, points, seed)| {
         let (mut g, symbols) = graph();
         let a = build(&mut g, &symbols, Kind::Any, &first);
@@ -154,7 +209,8 @@ fn unequal_expressions_are_never_called_equal() {
         let same_print = prints.0.is_some() && prints.0 == prints.1;
         for point in points {
             let pair = evaluate(&g, &point, &[a, b]);
-            if pair.iter().all(|v| v.is_finite() && v.abs() < 1e6) && !close(pair[0], pair[1], 1e-6) {
+            if pair.iter().all(|v| v.is_finite() && v.abs() < 1e6) && !close(pair[0], pair[1], 1e-6)
+            {
                 unequal.set(unequal.get() + 1);
                 prop_assert!(!claimed && !same_print, "{:?}", pair);
             }
@@ -164,7 +220,12 @@ fn unequal_expressions_are_never_called_equal() {
         }
         Ok(())
     });
-    assert!(unequal.get() > 5000 && equal.get() > 0, "{} {}", unequal.get(), equal.get());
+    assert!(
+        unequal.get() > 5000 && equal.get() > 0,
+        "{} {}",
+        unequal.get(),
+        equal.get()
+    );
 }
 
 /// One expression written twice: multiplied out, and with a symbol moved there and back.
@@ -207,9 +268,10 @@ fn other_spellings_are_found_equal() {
 
 fn angles_hold_products(g: &Graph, roots: &[Expr]) -> bool {
     g.in_order(roots).iter().any(|&e| match g.node(e) {
-        Node::Function(_, x) => {
-            g.in_order(&[*x]).iter().any(|&p| matches!(g.node(p), Node::Product(_)))
-        }
+        Node::Function(_, x) => g
+            .in_order(&[*x])
+            .iter()
+            .any(|&p| matches!(g.node(p), Node::Product(_))),
         _ => false,
     })
 }
@@ -219,7 +281,9 @@ fn expansion_leaves_no_product_of_sums() {
     check(500, &programs(10), |program| {
         let (mut g, symbols) = graph();
         let expr = build(&mut g, &symbols, Kind::Rational, &program);
-        let Some(expanded) = g.expand(expr, 100) else { return Ok(()) };
+        let Some(expanded) = g.expand(expr, 100) else {
+            return Ok(());
+        };
         let terms = match g.node(expanded) {
             Node::Sum(terms) => terms.iter().map(|t| t.expr).collect(),
             _ => vec![expanded],
@@ -237,20 +301,27 @@ fn expansion_leaves_no_product_of_sums() {
 
 #[test]
 fn dependence_is_what_finite_differences_see() {
-    check(1500, &(programs(10), prop::array::uniform2(values()), 0..SYMBOLS), |(program, points, by)| {
-        let (mut g, symbols) = graph();
-        let expr = build(&mut g, &symbols, Kind::Any, &program);
-        let mut test = IdentityTest::new(5);
-        if !test.independent_of(&g, expr, symbol(by)) {
-            return Ok(());
-        }
-        let [point, other] = points;
-        let mut moved = point;
-        moved[by as usize] = other[by as usize];
-        let (before, after) = (evaluate(&g, &point, &[expr])[0], evaluate(&g, &moved, &[expr])[0]);
-        if before.is_finite() && after.is_finite() && before.abs() < 1e6 {
-            prop_assert!(close(before, after, 1e-6), "{} against {}", before, after);
-        }
-        Ok(())
-    });
+    check(
+        1500,
+        &(programs(10), prop::array::uniform2(values()), 0..SYMBOLS),
+        |(program, points, by)| {
+            let (mut g, symbols) = graph();
+            let expr = build(&mut g, &symbols, Kind::Any, &program);
+            let mut test = IdentityTest::new(5);
+            if !test.independent_of(&g, expr, symbol(by)) {
+                return Ok(());
+            }
+            let [point, other] = points;
+            let mut moved = point;
+            moved[by as usize] = other[by as usize];
+            let (before, after) = (
+                evaluate(&g, &point, &[expr])[0],
+                evaluate(&g, &moved, &[expr])[0],
+            );
+            if before.is_finite() && after.is_finite() && before.abs() < 1e6 {
+                prop_assert!(close(before, after, 1e-6), "{} against {}", before, after);
+            }
+            Ok(())
+        },
+    );
 }

@@ -1,4 +1,4 @@
-//! What people read: text, LaTeX and MathML.
+//! What people read: text, `LaTeX` and `MathML`.
 
 #![allow(clippy::unwrap_used, reason = "tests")]
 
@@ -34,7 +34,11 @@ fn names_become_letters() {
         ("k_rear", "k_rear", "k_{\\mathrm{rear}}"),
         ("wheel_radius", "wheel_radius", "\\mathit{wheel\\_radius}"),
         ("mu", "μ", "\\mu"),
-        ("d_lever_d_theta", "∂lever/∂θ", "\\frac{\\partial\\mathit{lever}}{\\partial\\theta}"),
+        (
+            "d_lever_d_theta",
+            "∂lever/∂θ",
+            "\\frac{\\partial\\mathit{lever}}{\\partial\\theta}",
+        ),
     ];
     for (name, expected_text, expected_latex) in cases {
         let symbol = g.symbol(name);
@@ -55,10 +59,17 @@ fn products_read_from_parameters_to_functions() {
     assert_eq!(latex(&g, e), "m_B\\,l\\,\\omega_1^2\\,\\sin\\theta");
     let half = g.scale(&Rational::new(-3, 2), e);
     assert_eq!(text(&g, half), "−(3·m_B·l·ω₁²·sin θ)/2");
-    assert_eq!(latex(&g, half), "-\\frac{3\\,m_B\\,l\\,\\omega_1^2\\,\\sin\\theta}{2}");
-    let ordered = Printer::new(&g, Text).with_order(&[SymbolId(2), SymbolId(1)]).expression(e);
+    assert_eq!(
+        latex(&g, half),
+        "-\\frac{3\\,m_B\\,l\\,\\omega_1^2\\,\\sin\\theta}{2}"
+    );
+    let ordered = Printer::new(&g, Text)
+        .with_order(&[SymbolId(2), SymbolId(1)])
+        .expression(e);
     assert_eq!(ordered, "ω₁²·l·m_B·sin θ");
-    let renamed = Printer::new(&g, Text).with_name(SymbolId(2), "phi_dot").expression(squared);
+    let renamed = Printer::new(&g, Text)
+        .with_name(SymbolId(2), "phi_dot")
+        .expression(squared);
     assert_eq!(renamed, "φ̇²");
 }
 
@@ -73,7 +84,11 @@ fn sums_start_with_what_is_added() {
     let product = g.mul(c, minus);
     assert_eq!(text(&g, product), "−c·(a + b)");
     let (cos, square) = (g.cos(a), g.square(b));
-    let constant = g.linear_combination(&[(1.into(), Graph::ONE), ((-1).into(), cos), (1.into(), square)]);
+    let constant = g.linear_combination(&[
+        (1.into(), Graph::ONE),
+        ((-1).into(), cos),
+        (1.into(), square),
+    ]);
     assert_eq!(text(&g, constant), "1 + b² − cos a");
 }
 
@@ -127,7 +142,10 @@ fn functions_are_upright_and_take_parentheses_where_needed() {
     assert_eq!(text(&g, square), "|x + θ|²");
     let angle = g.atan2(y, sum);
     assert_eq!(text(&g, angle), "atan2(θ, x + θ)");
-    assert_eq!(latex(&g, angle), "\\operatorname{atan2}\\left(\\theta, x + \\theta\\right)");
+    assert_eq!(
+        latex(&g, angle),
+        "\\operatorname{atan2}\\left(\\theta, x + \\theta\\right)"
+    );
     let power = g.power(sum, double);
     assert_eq!(text(&g, power), "(x + θ)^(2·θ)");
     assert_eq!(latex(&g, power), "\\left(x + \\theta\\right)^{2\\,\\theta}");
@@ -194,7 +212,10 @@ fn long_sums_break_before_signs() {
         "x = term_1·(term_1 + term_2 + term_3\n    + term_4 + term_5 + term_6 + term_7\n    + term_8)"
     );
     let source = Printer::new(&g, Latex).equation("x", sum, 30);
-    assert!(source.starts_with("\\begin{aligned}\nx ={}& \\mathit{term}_1 {}+ "), "{source}");
+    assert!(
+        source.starts_with("\\begin{aligned}\nx ={}& \\mathit{term}_1 {}+ "),
+        "{source}"
+    );
     assert_eq!(source.matches("\\\\").count(), 3, "{source}");
     let markup = Printer::new(&g, MathMl).equation("x", sum, 30);
     assert_eq!(markup.matches("<mtr>").count(), 2, "{markup}");
@@ -230,7 +251,9 @@ fn well_formed(markup: &str) -> bool {
     let mut open = Vec::new();
     let mut rest = markup;
     while let Some(start) = rest.find('<') {
-        let Some(end) = rest[start..].find('>') else { return false };
+        let Some(end) = rest[start..].find('>') else {
+            return false;
+        };
         let tag = &rest[start + 1..start + end];
         if let Some(name) = tag.strip_prefix('/') {
             if open.pop() != Some(name.to_owned()) {
@@ -252,7 +275,11 @@ fn hostile_names_stay_names() {
     assert!(!t.contains('\n') && !t.contains('\u{202e}'));
     assert!(!l.contains("\\input") && !l.contains('\n'), "{l}");
     let markup = g.symbol("<script>");
-    assert!(!Printer::new(&g, MathMl).expression(markup).contains("<script"));
+    assert!(
+        !Printer::new(&g, MathMl)
+            .expression(markup)
+            .contains("<script")
+    );
     for name in ["", "_", "__dot", "dot_dot_dot", "d__d_", "d_d_d_d_d"] {
         let symbol = g.symbol(name);
         text(&g, symbol);
@@ -298,7 +325,10 @@ fn lists_stand_below_each_other() {
     let [x, y] = symbols(&mut g, ["x", "y"]);
     let sum = g.add(x, y);
     let list = [("omega_1_dot", sum), ("b", x)];
-    assert_eq!(Printer::new(&g, Text).equations(&list, 80), "ω̇₁ = x + y\nb = x");
+    assert_eq!(
+        Printer::new(&g, Text).equations(&list, 80),
+        "ω̇₁ = x + y\nb = x"
+    );
     assert_eq!(
         Printer::new(&g, Latex).equations(&list, 80),
         "\\begin{gathered}\n\\dot\\omega_1 = x + y \\\\\nb = x\n\\end{gathered}"

@@ -15,12 +15,22 @@ pub fn evaluate(g: &Graph, values: &[f64], roots: &[Expr]) -> Vec<f64> {
             Node::Number(n) => n.to_f64(),
             Node::Symbol(symbol) => values.get(symbol.0 as usize).copied().unwrap_or(f64::NAN),
             Node::Named(id) => of(g.definition(*id).value),
-            Node::Sum(terms) => terms.iter().map(|t| t.coefficient.to_f64() * of(t.expr)).sum(),
-            Node::Product(factors) => factors.iter().map(|f| of(f.base).powi(f.exponent)).product(),
+            Node::Sum(terms) => terms
+                .iter()
+                .map(|t| t.coefficient.to_f64() * of(t.expr))
+                .sum(),
+            Node::Product(factors) => factors
+                .iter()
+                .map(|f| of(f.base).powi(f.exponent))
+                .product(),
             Node::Function(function, x) => apply(*function, of(*x)),
             Node::Atan2(y, x) => of(*y).atan2(of(*x)),
             Node::Power(base, exponent) => of(*base).powf(of(*exponent)),
-            Node::Choice { relation, compared, branches } => {
+            Node::Choice {
+                relation,
+                compared,
+                branches,
+            } => {
                 let [left, right] = compared.map(of);
                 let holds = match relation {
                     Relation::Less => left < right,
@@ -67,7 +77,9 @@ fn apply(function: Function, x: f64) -> f64 {
 fn solve(mut a: Vec<f64>, mut b: Vec<f64>) -> Vec<f64> {
     let n = b.len();
     for k in 0..n {
-        let pivot = (k..n).max_by(|&i, &j| a[i * n + k].abs().total_cmp(&a[j * n + k].abs())).unwrap_or(k);
+        let pivot = (k..n)
+            .max_by(|&i, &j| a[i * n + k].abs().total_cmp(&a[j * n + k].abs()))
+            .unwrap_or(k);
         for j in 0..n {
             a.swap(k * n + j, pivot * n + j);
         }

@@ -1,12 +1,14 @@
-//! Arithmetic in the prime field of `2^61 - 1` elements and on its unit circle.
+//! Arithmetic in a prime field and on its unit circle.
 //!
-//! The prime is a Mersenne number, so a product is reduced by one addition. It is 3 modulo 4, which
-//! has two consequences that [`identity`](super::identity) rests on:
+//! The prime `p = 2^61 - 6157521` lies close below a power of two, so a product is reduced without a
+//! division. It was chosen for four more properties that [`identity`](super::identity) rests on:
 //!
-//! - `-1` has no square root, hence `1 + t²` is never zero and the rational parametrisation of the
-//!   unit circle is defined for every `t`;
-//! - the unit circle `c² + s² = 1` is a cyclic group of `p + 1 = 2^61` elements, so an angle can be
-//!   divided by every odd number in exactly one way.
+//! - `-1` has no square root. So `1 + t²` is never zero and the rational parametrisation of the unit
+//!   circle is defined for every `t`.
+//! - All primes up to 31 have square roots: `√2`, `√3` and the like are field elements.
+//! - The unit circle `c² + s² = 1` is a cyclic group of `p + 1 = 2^4 · 3 · q` elements with a large prime
+//!   `q`. So an angle can be divided by every number without factors 2 and 3 in exactly one way.
+//! - The circle has points of order 48: sine and cosine of `π/24`.
 
 use std::ops::{Add, Mul, Neg, Sub};
 
@@ -15,8 +17,14 @@ use num_traits::ToPrimitive;
 
 use super::Rational;
 
+/// How far the prime lies below `2^61`.
+const GAP: u64 = 6_157_521;
 /// The prime.
-pub(super) const PRIME: u64 = (1 << 61) - 1;
+pub(super) const PRIME: u64 = (1 << 61) - GAP;
+/// `p - 2 = 2^23 (2^38 - 1) + TAIL`, the exponent of inversion.
+const TAIL: u64 = (1 << 23) - GAP - 2;
+/// The lowest 61 bits.
+const LOW: u64 = (1 << 61) - 1;
 
 /// An element of the field, below [`PRIME`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -26,12 +34,17 @@ impl Element {
     pub(super) const ZERO: Self = Self(0);
     pub(super) const ONE: Self = Self(1);
     /// `1/2`
-    pub(super) const HALF: Self = Self(1 << 60);
+    pub(super) const HALF: Self = Self(PRIME.div_ceil(2));
 
     /// The residue of any 64-bit number.
     pub(super) const fn new(value: u64) -> Self {
-        let folded = (value & PRIME) + (value >> 61);
-        Self(if folded >= PRIME { folded - PRIME } else { folded })
+        // 2^61 = GAP
+        let folded = (value & LOW) + (value >> 61) * GAP;
+        Self(if folded >= PRIME {
+            folded - PRIME
+        } else {
+            folded
+        })
     }
 
     /// Its representative below the prime.
@@ -48,7 +61,10 @@ impl Element {
     /// The residue of a big integer.
     fn from_big(value: &BigInt) -> Self {
         use num_integer::Integer;
-        value.mod_floor(&PRIME.into()).to_u64().map_or(Self::ZERO, Self)
+        value
+            .mod_floor(&PRIME.into())
+            .to_u64()
+            .map_or(Self::ZERO, Self)
     }
 
     /// A rational number; `None` where the prime divides its denominator.
@@ -69,7 +85,11 @@ impl Element {
 
     /// The one of `±self` in the lower half, and whether the sign changed.
     pub(super) fn without_sign(self) -> (Self, bool) {
-        if self.0 > PRIME / 2 { (-self, true) } else { (self, false) }
+        if self.0 > PRIME / 2 {
+            (-self, true)
+        } else {
+            (self, false)
+        }
     }
 
     /// `self^(2^times)`
@@ -98,23 +118,28 @@ impl Element {
         if self == Self::ONE {
             return Some(self);
         }
-        // self^(p-2), where p - 2 = 4 (2^59 - 1) + 1; `ones_n` is self^(2^n - 1).
+        // self^(p-2), where p - 2 = 2^23 (2^38 - 1) + TAIL; `ones_n` is self^(2^n - 1).
         let ones_2 = self.squared(1) * self;
-        let ones_3 = ones_2.squared(1) * self;
-        let ones_6 = ones_3.squared(3) * ones_3;
-        let ones_7 = ones_6.squared(1) * self;
-        let ones_14 = ones_7.squared(7) * ones_7;
-        let ones_28 = ones_14.squared(14) * ones_14;
-        let ones_29 = ones_28.squared(1) * self;
-        let ones_58 = ones_29.squared(29) * ones_29;
-        let ones_59 = ones_58.squared(1) * self;
-        Some(ones_59.squared(2) * self)
+        let ones_4 = ones_2.squared(2) * ones_2;
+        let ones_8 = ones_4.squared(4) * ones_4;
+        let ones_9 = ones_8.squared(1) * self;
+        let ones_18 = ones_9.squared(9) * ones_9;
+        let ones_19 = ones_18.squared(1) * self;
+        let ones_38 = ones_19.squared(19) * ones_19;
+        let mut power = ones_38;
+        for bit in (0..23).rev() {
+            power = power * power;
+            if TAIL >> bit & 1 == 1 {
+                power = power * self;
+            }
+        }
+        Some(power)
     }
 
     /// The square root that is a square itself; `None` for half of the elements.
     pub(super) fn square_root(self) -> Option<Self> {
-        // (p + 1) / 4 = 2^59
-        Some(self.squared(59)).filter(|&root| root * root == self)
+        // p is 3 modulo 4.
+        Some(self.pow(PRIME.div_ceil(4))).filter(|&root| root * root == self)
     }
 }
 
@@ -146,11 +171,16 @@ impl Neg for Element {
 impl Mul for Element {
     type Output = Self;
 
-    #[expect(clippy::cast_possible_truncation, reason = "both halves are below 2^61")]
+    #[expect(
+        clippy::cast_possible_truncation,
+        reason = "what is cut off is in the other half"
+    )]
     fn mul(self, other: Self) -> Self {
         let product = u128::from(self.0) * u128::from(other.0);
-        let sum = (product as u64 & PRIME) + (product >> 61) as u64;
-        Self(if sum >= PRIME { sum - PRIME } else { sum })
+        // 2^61 = GAP, twice: below 2^122, then below 2^85, then below 2^62.
+        let once = u128::from(product as u64 & LOW) + (product >> 61) * u128::from(GAP);
+        let twice = (once as u64 & LOW) + (once >> 61) as u64 * GAP;
+        Self(if twice >= PRIME { twice - PRIME } else { twice })
     }
 }
 
@@ -163,14 +193,26 @@ pub(super) struct Rotation {
 
 impl Rotation {
     /// No turn.
-    pub(super) const NONE: Self = Self { cos: Element::ONE, sin: Element::ZERO };
+    pub(super) const NONE: Self = Self {
+        cos: Element::ONE,
+        sin: Element::ZERO,
+    };
+    /// `π/24`: the point of order 48 with `2 cos(π/6) = √3` and `2 cos(π/4) = √2`, where the roots are
+    /// those of [`Element::square_root`].
+    pub(super) const PI_OVER_24: Self = Self {
+        cos: Element(1_819_118_944_632_605_801),
+        sin: Element(1_757_308_138_299_105_798),
+    };
 
     /// The point `((1 - t²) / (1 + t²), 2t / (1 + t²))`.
     pub(super) fn from_parameter(t: Element) -> Self {
         let square = t * t;
         // 1 + t² = 0 has no solution; see the module's head.
         let scale = (Element::ONE + square).inverse().unwrap_or(Element::ONE);
-        Self { cos: (Element::ONE - square) * scale, sin: (t + t) * scale }
+        Self {
+            cos: (Element::ONE - square) * scale,
+            sin: (t + t) * scale,
+        }
     }
 
     /// The angles added.
@@ -183,7 +225,10 @@ impl Rotation {
 
     /// The opposite angle.
     pub(super) fn reversed(self) -> Self {
-        Self { cos: self.cos, sin: -self.sin }
+        Self {
+            cos: self.cos,
+            sin: -self.sin,
+        }
     }
 
     /// A multiple of the angle.
@@ -206,8 +251,14 @@ impl Rotation {
 pub(super) fn keyed(key: u64, tag: u64, arguments: [u64; 2]) -> Element {
     let mut state = mix(key ^ 0x9e37_79b9_7f4a_7c15, tag ^ 0xd1b5_4a32_d192_ed03);
     for argument in arguments {
-        state = mix(state ^ argument, 0xa076_1d64_78bd_642f ^ state.rotate_left(23));
-        state = mix(state ^ 0xe703_7ed1_a0b4_28db, state.rotate_right(29) ^ argument);
+        state = mix(
+            state ^ argument,
+            0xa076_1d64_78bd_642f ^ state.rotate_left(23),
+        );
+        state = mix(
+            state ^ 0xe703_7ed1_a0b4_28db,
+            state.rotate_right(29) ^ argument,
+        );
     }
     Element::new(state)
 }
@@ -258,13 +309,59 @@ mod tests {
     }
 
     #[test]
-    fn the_circle_is_a_group_of_a_power_of_two() {
+    fn the_circle_is_a_cyclic_group() {
         for t in sample() {
             let point = Rotation::from_parameter(t);
             assert_eq!(point.cos * point.cos + point.sin * point.sin, Element::ONE);
-            assert_eq!(point.times(1 << 61), Rotation::NONE);
+            assert_eq!(point.times(PRIME + 1), Rotation::NONE);
             assert_eq!(point.then(point.reversed()), Rotation::NONE);
             assert_eq!(point.times(3), point.then(point).then(point));
         }
+    }
+
+    #[test]
+    fn parts_of_pi_and_square_roots_agree() {
+        let multiple = |n| Rotation::PI_OVER_24.times(n);
+        let root = |n| Element::new(n).square_root().unwrap();
+        let twice = |x: Element| x + x;
+        assert_eq!(
+            multiple(24),
+            Rotation {
+                cos: -Element::ONE,
+                sin: Element::ZERO
+            }
+        );
+        assert_eq!(
+            multiple(12),
+            Rotation {
+                cos: Element::ZERO,
+                sin: Element::ONE
+            }
+        );
+        assert_eq!(
+            (twice(multiple(8).cos), twice(multiple(8).sin)),
+            (Element::ONE, root(3))
+        );
+        assert_eq!(
+            (twice(multiple(6).cos), twice(multiple(6).sin)),
+            (root(2), root(2))
+        );
+        assert_eq!(root(2) * root(3), root(6));
+        for prime in [2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31] {
+            assert!(Element::new(prime).square_root().is_some());
+        }
+    }
+
+    #[test]
+    fn products_are_reduced_at_the_edges() {
+        let big = |v: u64| num_bigint::BigInt::from(v);
+        for a in [0, 1, 2, GAP, PRIME / 2, PRIME - 2, PRIME - 1] {
+            for b in [0, 1, 3, GAP, PRIME / 2 + 1, PRIME - 1] {
+                let product = big(a) * big(b) % big(PRIME);
+                assert_eq!(big((Element(a) * Element(b)).get()), product);
+            }
+        }
+        assert_eq!(Element::new(u64::MAX).get(), u64::MAX % PRIME);
+        assert_eq!(Element::new(PRIME).get(), 0);
     }
 }

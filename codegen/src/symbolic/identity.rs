@@ -3,23 +3,25 @@
 //! Two spellings of one rational function have the same value wherever both are defined. Two
 //! different rational functions of degree `D` agree at no more than `D / p` of the points of a field
 //! with `p` elements (Schwartz and Zippel). So a few random points decide, and the arithmetic is
-//! exact. The field has `p = 2^61 - 1` elements.
+//! exact. The field has nearly `2^61` elements; its prime is chosen in `field.rs`.
 //!
 //! What is not rational is modelled so that its identities hold exactly:
 //!
 //! - **Sine and cosine.** An angle is split into atoms, `Σ coefficient · atom`. The *value* of an atom
 //!   keys a pseudo-random point of the unit circle; equal atoms get equal points however they are
-//!   written. The circle is a cyclic group of `2^61` elements. The point that is drawn stands for
-//!   `atom / 2^8`; a coefficient `n / (2^a d)` with odd `d` and `a ≤ 8` multiplies it by
-//!   `n 2^(8-a) / d`, where `1/d` is taken modulo the group's order. That is a homomorphism from the
-//!   angles to the circle, hence all addition theorems, multiples and parts of angles are exact. A
-//!   coefficient with `n d > 2^24` or `a > 8` joins its atom: then nothing relates the angle to other
-//!   multiples of the atom. Angles are not multiplied out: `x (y + z)` and `x y + x z` are different
-//!   atoms.
+//!   written. The circle is a cyclic group of `p + 1 = 48 q` elements. The point that is drawn stands for
+//!   `atom / 2304`; a coefficient `n / d` multiplies it by `2304 n / d`, where the part of `d` that does
+//!   not divide 2304 is divided by modulo the group's order. That is a homomorphism from the angles to
+//!   the circle, hence all addition theorems, multiples and parts of angles are exact. A coefficient
+//!   with `n d > 2^24`, or with more factors 2 and 3 in `d` than 2304 has, joins its atom: then nothing
+//!   relates the angle to other multiples of the atom. Angles are not multiplied out: `x (y + z)` and
+//!   `x y + x z` are different atoms. If the test is told which symbol is π, multiples of `π/24` are
+//!   the constants that they are, in agreement with `√2` and `√3`.
 //! - **exp, sinh, cosh, tanh.** The same with the multiplicative group and parts of `1/720`.
 //! - **Square root.** The root that is a square itself. Where the radicand is not a square, the point is
 //!   skipped. Of a radicand that is never found to be a non-square, such as `a²`, the sign of the root
-//!   cannot be told apart from that of `a`: nothing is claimed about such expressions.
+//!   cannot be told apart from that of `a`: nothing is claimed about such expressions. Roots of numbers
+//!   are constants of the field, if only primes up to 31 occur in them.
 //! - **Choice.** `otherwise + w (then - otherwise)`, where `w` is a random function of the difference
 //!   of the compared expressions. Linear in the branches; that `w² = w` is not known.
 //! - **Everything else** is a random function of the values of its arguments, odd where the function is
@@ -28,7 +30,8 @@
 //!
 //! Each of these models satisfies every identity it claims, so equal expressions can look different
 //! (a theorem that is not modelled), but different ones look equal only by the bad luck that
-//! [`IdentityTest::error_bound`] bounds. Division by zero leaves a value undefined; questions about
+//! [`IdentityTest::error_bound`] bounds; that holds for coefficients which the prime does not divide, as
+//! it divides no number that people write. Division by zero leaves a value undefined; questions about
 //! expressions that are undefined at every point are answered with "no".
 
 mod bound;
@@ -57,6 +60,7 @@ const MOST_POINTS_WITH_ROOTS: usize = 128;
 #[derive(Debug)]
 pub struct IdentityTest {
     seed: u64,
+    pi: Option<SymbolId>,
     points: Vec<Point>,
     cones: Cones,
     /// For [`IdentityTest::independent_of`]: the first points with one symbol drawn again.
@@ -70,10 +74,20 @@ impl IdentityTest {
     pub fn new(seed: u64) -> Self {
         Self {
             seed,
+            pi: None,
             points: Vec::new(),
             cones: Cones::default(),
             redrawn: FxHashMap::default(),
             independent: FxHashMap::default(),
+        }
+    }
+
+    /// The same test with one symbol known to be the circle constant.
+    #[must_use]
+    pub fn with_pi(self, pi: SymbolId) -> Self {
+        Self {
+            pi: Some(pi),
+            ..Self::new(self.seed)
         }
     }
 
@@ -113,11 +127,24 @@ impl IdentityTest {
         let roots = self.cones.roots(e);
         let mut agreed = 0;
         for index in 0..most_points(roots) {
-            let Some(before) = self.value(g, index, e) else { continue };
-            let Self { points, redrawn, cones, .. } = &mut *self;
+            let Some(before) = self.value(g, index, e) else {
+                continue;
+            };
+            let Self {
+                points,
+                redrawn,
+                cones,
+                ..
+            } = &mut *self;
             let original = &points[index];
-            let redraw = Redraw { original, symbol, symbols: cones.all_symbols() };
-            let other = redrawn.entry((symbol, index)).or_insert_with(|| original.sibling());
+            let redraw = Redraw {
+                original,
+                symbol,
+                symbols: cones.all_symbols(),
+            };
+            let other = redrawn
+                .entry((symbol, index))
+                .or_insert_with(|| original.sibling());
             if let Some(after) = other.evaluate(g, e, Some(redraw)) {
                 if before != after {
                     return false;
@@ -161,8 +188,10 @@ impl IdentityTest {
             }
             for (half, place) in halves.iter_mut().zip(places) {
                 let radicands = self.cones.radicands(roots).to_vec();
-                let mut radicands: Vec<Option<Element>> =
-                    radicands.into_iter().map(|r| self.value(g, place, r)).collect();
+                let mut radicands: Vec<Option<Element>> = radicands
+                    .into_iter()
+                    .map(|r| self.value(g, place, r))
+                    .collect();
                 radicands.sort_unstable();
                 radicands.dedup();
                 for radicand in radicands {
@@ -180,19 +209,21 @@ impl IdentityTest {
     /// With `D` the degree of `e` in the drawn elements (numerator and denominator added, over a
     /// common denominator), `m` the number of random functions drawn in it and `A` the sum of their
     /// arguments' degrees, two different arguments have the same value with probability at most
-    /// `m A / s` and else `e` vanishes with probability at most `D / s`. Here `s = p / 2^8 / 90` counts
-    /// the values that a drawn element takes when angles and exponents come in whole multiples. Each
-    /// of `k` square roots at most halves the defined points and doubles the degree. So a trial errs
-    /// with probability at most `4^k (D + m A) / s`, and two trials with its square.
+    /// `m A / s` and else `e` vanishes with probability at most `D / s`. Here `s = p / 48` counts the
+    /// values that a drawn element takes when angles and exponents come in whole multiples. Each of
+    /// `k` square roots at most halves the defined points and doubles the degree. So a trial errs with
+    /// probability at most `4^k (D + m A) / s`, and two trials with its square.
     pub fn error_bound(&self, g: &Graph, e: Expr) -> f64 {
-        bound::per_trial(g, e).powi(i32::try_from(TRIALS).unwrap_or(1)).min(1.0)
+        bound::per_trial(g, e)
+            .powi(i32::try_from(TRIALS).unwrap_or(1))
+            .min(1.0)
     }
 
     /// Value at a point that may be new.
     fn value(&mut self, g: &Graph, index: usize, e: Expr) -> Option<Element> {
         while self.points.len() <= index {
             let key = keyed(self.seed, self.points.len() as u64, [0, 0]).get();
-            self.points.push(Point::new(key));
+            self.points.push(Point::new(key, self.pi));
         }
         self.points[index].evaluate(g, e, None)
     }
@@ -267,5 +298,9 @@ impl IdentityTest {
 
 /// How many points are tried for an expression with a set of square roots.
 fn most_points(roots: u32) -> usize {
-    if roots == Cones::NO_ROOTS { MOST_POINTS } else { MOST_POINTS_WITH_ROOTS }
+    if roots == Cones::NO_ROOTS {
+        MOST_POINTS
+    } else {
+        MOST_POINTS_WITH_ROOTS
+    }
 }

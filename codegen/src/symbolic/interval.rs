@@ -43,7 +43,11 @@ impl Intervals {
                 *place = Interval { lo, hi };
             }
         }
-        Self { symbols, known: Vec::new(), stack: Vec::new() }
+        Self {
+            symbols,
+            known: Vec::new(),
+            stack: Vec::new(),
+        }
     }
 
     /// An interval that holds every value of `e`.
@@ -93,9 +97,12 @@ impl Intervals {
     fn step(&self, g: &Graph, expr: Expr) -> Range {
         match g.node(expr) {
             Node::Number(n) => Range::number(n.to_f64(), n.is_zero()),
-            Node::Symbol(symbol) => {
-                Range::of(self.symbols.get(symbol.0 as usize).copied().unwrap_or(Interval::ALL))
-            }
+            Node::Symbol(symbol) => Range::of(
+                self.symbols
+                    .get(symbol.0 as usize)
+                    .copied()
+                    .unwrap_or(Interval::ALL),
+            ),
             Node::Named(id) => self.at(g.definition(*id).value),
             Node::Sum(terms) => {
                 let mut sum = Range::number(0.0, true);
@@ -106,13 +113,20 @@ impl Intervals {
                 }
                 sum
             }
-            Node::Product(factors) => factors
-                .iter()
-                .fold(Range::number(1.0, false), |p, f| p.times(self.at(f.base).power(f.exponent))),
+            Node::Product(factors) => factors.iter().fold(Range::number(1.0, false), |p, f| {
+                p.times(self.at(f.base).power(f.exponent))
+            }),
             Node::Function(function, x) => self.at(*x).function(*function),
-            Node::Atan2(..) => Range::of(Interval { lo: -PI_UP, hi: PI_UP }),
+            Node::Atan2(..) => Range::of(Interval {
+                lo: -PI_UP,
+                hi: PI_UP,
+            }),
             Node::Power(base, exponent) => self.at(*base).real_power(self.at(*exponent)),
-            Node::Choice { relation, compared, branches } => {
+            Node::Choice {
+                relation,
+                compared,
+                branches,
+            } => {
                 let [left, right] = compared.map(|e| self.at(e).interval);
                 let [then, otherwise] = branches.map(|e| self.at(e));
                 let (always, never) = match relation {
@@ -145,7 +159,10 @@ const HALF_PI_UP: f64 = 1.570_796_326_794_896_8;
 
 impl Interval {
     /// The whole line.
-    pub const ALL: Self = Self { lo: f64::NEG_INFINITY, hi: f64::INFINITY };
+    pub const ALL: Self = Self {
+        lo: f64::NEG_INFINITY,
+        hi: f64::INFINITY,
+    };
 
     /// Whether `x` lies in it.
     pub fn contains(self, x: f64) -> bool {
@@ -154,39 +171,70 @@ impl Interval {
 
     /// Wider by one rounding on each side. An undefined bound is no bound.
     fn widened(self) -> Self {
-        let lo = if self.lo.is_nan() { f64::NEG_INFINITY } else { self.lo.next_down() };
-        let hi = if self.hi.is_nan() { f64::INFINITY } else { self.hi.next_up() };
+        let lo = if self.lo.is_nan() {
+            f64::NEG_INFINITY
+        } else {
+            self.lo.next_down()
+        };
+        let hi = if self.hi.is_nan() {
+            f64::INFINITY
+        } else {
+            self.hi.next_up()
+        };
         Self { lo, hi }
     }
 
     /// Wider by the errors of the elementary functions in a mathematical library.
     fn loosened(self) -> Self {
         let margin = |x: f64| x.abs() * 4.0 * f64::EPSILON + f64::MIN_POSITIVE;
-        Self { lo: self.lo - margin(self.lo), hi: self.hi + margin(self.hi) }.widened()
+        Self {
+            lo: self.lo - margin(self.lo),
+            hi: self.hi + margin(self.hi),
+        }
+        .widened()
     }
 
     fn meet(self, lo: f64, hi: f64) -> Self {
-        Self { lo: self.lo.max(lo), hi: self.hi.min(hi) }
+        Self {
+            lo: self.lo.max(lo),
+            hi: self.hi.min(hi),
+        }
     }
 
     /// Image under an increasing function.
     fn map(self, f: impl Fn(f64) -> f64) -> Self {
-        Self { lo: f(self.lo), hi: f(self.hi) }.loosened()
+        Self {
+            lo: f(self.lo),
+            hi: f(self.hi),
+        }
+        .loosened()
     }
 }
 
 impl Range {
-    const ANY: Self = Self { interval: Interval::ALL, nonzero: false };
+    const ANY: Self = Self {
+        interval: Interval::ALL,
+        nonzero: false,
+    };
 
     fn of(interval: Interval) -> Self {
-        Self { interval, nonzero: interval.lo > 0.0 || interval.hi < 0.0 }
+        Self {
+            interval,
+            nonzero: interval.lo > 0.0 || interval.hi < 0.0,
+        }
     }
 
     fn number(value: f64, is_zero: bool) -> Self {
         let exact = value.fract() == 0.0 && value.abs() < 9e15;
-        let interval = Interval { lo: value, hi: value };
+        let interval = Interval {
+            lo: value,
+            hi: value,
+        };
         let interval = if exact { interval } else { interval.widened() };
-        Self { interval, nonzero: !is_zero }
+        Self {
+            interval,
+            nonzero: !is_zero,
+        }
     }
 
     fn is_nonnegative(self) -> bool {
@@ -198,12 +246,21 @@ impl Range {
     }
 
     fn negated(self) -> Self {
-        Self { interval: Interval { lo: -self.interval.hi, hi: -self.interval.lo }, ..self }
+        Self {
+            interval: Interval {
+                lo: -self.interval.hi,
+                hi: -self.interval.lo,
+            },
+            ..self
+        }
     }
 
     fn plus(self, other: Self) -> Self {
         let (a, b) = (self.interval, other.interval);
-        let mut interval = Interval { lo: a.lo + b.lo, hi: a.hi + b.hi };
+        let mut interval = Interval {
+            lo: a.lo + b.lo,
+            hi: a.hi + b.hi,
+        };
         // Adding nothing rounds nothing.
         let zero = Interval { lo: 0.0, hi: 0.0 };
         if a != zero && b != zero {
@@ -218,14 +275,22 @@ impl Range {
             same_sign = true;
         }
         let nonzero = same_sign && (self.nonzero || other.nonzero);
-        Self { interval, nonzero: nonzero || Self::of(interval).nonzero }
+        Self {
+            interval,
+            nonzero: nonzero || Self::of(interval).nonzero,
+        }
     }
 
     fn times(self, other: Self) -> Self {
         let (a, b) = (self.interval, other.interval);
         // A bound of infinity stands for large numbers, and those times zero are zero.
         let mul = |x: f64, y: f64| if x == 0.0 || y == 0.0 { 0.0 } else { x * y };
-        let corners = [mul(a.lo, b.lo), mul(a.lo, b.hi), mul(a.hi, b.lo), mul(a.hi, b.hi)];
+        let corners = [
+            mul(a.lo, b.lo),
+            mul(a.lo, b.hi),
+            mul(a.hi, b.lo),
+            mul(a.hi, b.hi),
+        ];
         let mut interval = Interval {
             lo: corners.iter().copied().fold(f64::INFINITY, f64::min),
             hi: corners.iter().copied().fold(f64::NEG_INFINITY, f64::max),
@@ -244,20 +309,36 @@ impl Range {
         if opposite {
             interval = interval.meet(f64::NEG_INFINITY, 0.0);
         }
-        Self { interval, nonzero: self.nonzero && other.nonzero }
+        Self {
+            interval,
+            nonzero: self.nonzero && other.nonzero,
+        }
     }
 
     fn reciprocal(self) -> Self {
         let Interval { lo, hi } = self.interval;
         let interval = if lo >= 0.0 {
-            Interval { lo: 1.0 / hi, hi: 1.0 / lo.abs() }.widened().meet(0.0, f64::INFINITY)
+            Interval {
+                lo: 1.0 / hi,
+                hi: 1.0 / lo.abs(),
+            }
+            .widened()
+            .meet(0.0, f64::INFINITY)
         } else if hi <= 0.0 {
             // -0.0 would send the bound to the other infinity.
-            Interval { lo: -1.0 / hi.abs(), hi: 1.0 / lo }.widened().meet(f64::NEG_INFINITY, 0.0)
+            Interval {
+                lo: -1.0 / hi.abs(),
+                hi: 1.0 / lo,
+            }
+            .widened()
+            .meet(f64::NEG_INFINITY, 0.0)
         } else {
             Interval::ALL
         };
-        Self { interval, nonzero: true }
+        Self {
+            interval,
+            nonzero: true,
+        }
     }
 
     fn power(self, exponent: i32) -> Self {
@@ -272,14 +353,28 @@ impl Range {
         let margin = 1.0 + f64::from(exponent) * f64::EPSILON;
         let outwards = |x: f64, up: bool| {
             let y = x.powi(exponent);
-            if (y > 0.0) == up { y * margin } else { y / margin }
+            if (y > 0.0) == up {
+                y * margin
+            } else {
+                y / margin
+            }
         };
         let interval = if exponent % 2 == 1 {
-            Interval { lo: outwards(lo, false), hi: outwards(hi, true) }
+            Interval {
+                lo: outwards(lo, false),
+                hi: outwards(hi, true),
+            }
         } else {
             let far = lo.abs().max(hi.abs());
-            let near = if lo <= 0.0 && hi >= 0.0 { 0.0 } else { lo.abs().min(hi.abs()) };
-            Interval { lo: outwards(near, false), hi: outwards(far, true) }
+            let near = if lo <= 0.0 && hi >= 0.0 {
+                0.0
+            } else {
+                lo.abs().min(hi.abs())
+            };
+            Interval {
+                lo: outwards(near, false),
+                hi: outwards(far, true),
+            }
         };
         let mut interval = interval.widened();
         if exponent % 2 == 0 || lo >= 0.0 {
@@ -287,15 +382,26 @@ impl Range {
         } else if hi <= 0.0 {
             interval = interval.meet(f64::NEG_INFINITY, 0.0);
         }
-        Self { interval, nonzero: self.nonzero }
+        Self {
+            interval,
+            nonzero: self.nonzero,
+        }
     }
 
     /// `a^b` of a base that is not negative, where the power is real.
     fn real_power(self, exponent: Self) -> Self {
         let base = self.interval.meet(0.0, f64::INFINITY);
         let e = exponent.interval;
-        let corners = [base.lo.powf(e.lo), base.lo.powf(e.hi), base.hi.powf(e.lo), base.hi.powf(e.hi)];
-        let mut interval = Interval { lo: 0.0, hi: f64::INFINITY };
+        let corners = [
+            base.lo.powf(e.lo),
+            base.lo.powf(e.hi),
+            base.hi.powf(e.lo),
+            base.hi.powf(e.hi),
+        ];
+        let mut interval = Interval {
+            lo: 0.0,
+            hi: f64::INFINITY,
+        };
         if corners.iter().all(|c| c.is_finite()) && base.lo > 0.0 {
             // Monotonic in each argument: the extremes are at corners.
             interval = Interval {
@@ -305,22 +411,41 @@ impl Range {
             .loosened()
             .meet(0.0, f64::INFINITY);
         }
-        Self { interval, nonzero: self.nonzero }
+        Self {
+            interval,
+            nonzero: self.nonzero,
+        }
     }
 
     fn function(self, function: Function) -> Self {
         let x = self.interval;
-        let always = |interval: Interval| Self { interval, nonzero: true };
-        let as_argument = |interval: Interval| Self { interval, nonzero: self.nonzero };
+        let always = |interval: Interval| Self {
+            interval,
+            nonzero: true,
+        };
+        let as_argument = |interval: Interval| Self {
+            interval,
+            nonzero: self.nonzero,
+        };
         match function {
             Function::Sin => self.circular(HALF_PI_UP),
             Function::Cos => self.circular(0.0),
             Function::Asin => as_argument(
-                x.meet(-1.0, 1.0).map(f64::asin).signed_as(x).meet(-HALF_PI_UP, HALF_PI_UP),
+                x.meet(-1.0, 1.0)
+                    .map(f64::asin)
+                    .signed_as(x)
+                    .meet(-HALF_PI_UP, HALF_PI_UP),
             ),
             Function::Acos => {
                 let Interval { lo, hi } = x.meet(-1.0, 1.0);
-                Self::of(Interval { lo: hi.acos(), hi: lo.acos() }.loosened().meet(0.0, PI_UP))
+                Self::of(
+                    Interval {
+                        lo: hi.acos(),
+                        hi: lo.acos(),
+                    }
+                    .loosened()
+                    .meet(0.0, PI_UP),
+                )
             }
             Function::Atan => {
                 as_argument(x.map(f64::atan).signed_as(x).meet(-HALF_PI_UP, HALF_PI_UP))
@@ -329,12 +454,21 @@ impl Range {
             Function::Tanh => as_argument(x.map(f64::tanh).signed_as(x).meet(-1.0, 1.0)),
             Function::Cosh => {
                 let Interval { lo, hi } = self.magnitude();
-                always(Interval { lo: lo.cosh(), hi: hi.cosh() }.loosened().meet(1.0, f64::INFINITY))
+                always(
+                    Interval {
+                        lo: lo.cosh(),
+                        hi: hi.cosh(),
+                    }
+                    .loosened()
+                    .meet(1.0, f64::INFINITY),
+                )
             }
             Function::Exp => always(x.map(f64::exp).meet(0.0, f64::INFINITY)),
             Function::Ln => Self::of(x.meet(0.0, f64::INFINITY).map(f64::ln)),
             Function::Sqrt => as_argument(
-                x.meet(0.0, f64::INFINITY).map(f64::sqrt).meet(0.0, f64::INFINITY),
+                x.meet(0.0, f64::INFINITY)
+                    .map(f64::sqrt)
+                    .meet(0.0, f64::INFINITY),
             ),
             Function::Abs => as_argument(self.magnitude()),
             Function::Sign => {
@@ -365,7 +499,10 @@ impl Range {
         } else if hi <= 0.0 {
             self.negated().interval
         } else {
-            Interval { lo: 0.0, hi: hi.max(-lo) }
+            Interval {
+                lo: 0.0,
+                hi: hi.max(-lo),
+            }
         }
     }
 
@@ -381,21 +518,44 @@ impl Range {
             return Self::of(Interval { lo: -1.0, hi: 1.0 });
         }
         let (start, end) = ((lo - peak) / (2.0 * PI), (hi - peak) / (2.0 * PI));
-        let passes = |offset: f64| (end - offset + SLACK).floor() >= (start - offset - SLACK).ceil();
+        let passes =
+            |offset: f64| (end - offset + SLACK).floor() >= (start - offset - SLACK).ceil();
         let ends = [(lo - peak).cos(), (hi - peak).cos()];
-        let top = if passes(0.0) { 1.0 } else { ends[0].max(ends[1]) + SLACK * SLACK };
-        let bottom = if passes(0.5) { -1.0 } else { ends[0].min(ends[1]) - SLACK * SLACK };
+        let top = if passes(0.0) {
+            1.0
+        } else {
+            ends[0].max(ends[1]) + SLACK * SLACK
+        };
+        let bottom = if passes(0.5) {
+            -1.0
+        } else {
+            ends[0].min(ends[1]) - SLACK * SLACK
+        };
         // The shift by the peak is exact to a few units in the last place of the angle.
         let blur = (lo.abs().max(hi.abs()) + 4.0) * f64::EPSILON;
-        Self::of(Interval { lo: bottom - blur, hi: top + blur }.meet(-1.0, 1.0))
+        Self::of(
+            Interval {
+                lo: bottom - blur,
+                hi: top + blur,
+            }
+            .meet(-1.0, 1.0),
+        )
     }
 }
 
 impl Interval {
     /// Odd increasing functions keep the sign of their argument.
     fn signed_as(self, argument: Self) -> Self {
-        let lo = if argument.lo >= 0.0 { self.lo.max(0.0) } else { self.lo };
-        let hi = if argument.hi <= 0.0 { self.hi.min(0.0) } else { self.hi };
+        let lo = if argument.lo >= 0.0 {
+            self.lo.max(0.0)
+        } else {
+            self.lo
+        };
+        let hi = if argument.hi <= 0.0 {
+            self.hi.min(0.0)
+        } else {
+            self.hi
+        };
         Self { lo, hi }
     }
 }

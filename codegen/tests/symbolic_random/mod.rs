@@ -50,7 +50,11 @@ pub(crate) fn check<S: Strategy>(
 ) where
     S::Value: std::fmt::Debug,
 {
-    let config = Config { cases, failure_persistence: None, ..Config::default() };
+    let config = Config {
+        cases,
+        failure_persistence: None,
+        ..Config::default()
+    };
     let rng = TestRng::deterministic_rng(RngAlgorithm::ChaCha);
     if let Err(error) = TestRunner::new_with_rng(config, rng).run(strategy, test) {
         panic!("{error}");
@@ -97,7 +101,11 @@ pub(crate) fn build(g: &mut Graph, symbols: &[Expr], kind: Kind, program: &[Step
             12 => g.atan2(a, b),
             13 => {
                 let exponent = g.fraction(number.into(), 3);
-                if a == Graph::ZERO { a } else { g.power(a, exponent) }
+                if a == Graph::ZERO {
+                    a
+                } else {
+                    g.power(a, exponent)
+                }
             }
             14 if a != Graph::ZERO => g.power(a, b),
             15 => g.choice(Relation::Less, [a, b], [b, third]),
@@ -123,26 +131,43 @@ pub(crate) fn show(g: &Graph, e: Expr) -> String {
         Node::Symbol(s) => g.symbol_name(*s).to_owned(),
         Node::Named(id) => format!("[{}]", show(g, g.definition(*id).value)),
         Node::Sum(terms) => {
-            let parts: Vec<String> =
-                terms.iter().map(|t| format!("{}*{}", t.coefficient, show(g, t.expr))).collect();
+            let parts: Vec<String> = terms
+                .iter()
+                .map(|t| format!("{}*{}", t.coefficient, show(g, t.expr)))
+                .collect();
             format!("({})", parts.join(" + "))
         }
         Node::Product(factors) => {
-            let parts: Vec<String> =
-                factors.iter().map(|f| format!("{}^{}", show(g, f.base), f.exponent)).collect();
+            let parts: Vec<String> = factors
+                .iter()
+                .map(|f| format!("{}^{}", show(g, f.base), f.exponent))
+                .collect();
             format!("({})", parts.join(" "))
         }
         Node::Function(f, x) => format!("{f:?}({})", show(g, *x)),
         Node::Power(a, b) => format!("({} ** {})", show(g, *a), show(g, *b)),
         Node::Atan2(a, b) => format!("atan2({}, {})", show(g, *a), show(g, *b)),
-        Node::Choice { relation, compared: [a, b], branches: [c, d] } => {
+        Node::Choice {
+            relation,
+            compared: [a, b],
+            branches: [c, d],
+        } => {
             let [a, b, c, d] = [a, b, c, d].map(|e| show(g, *e));
             format!("({a} {relation:?} {b} ? {c} : {d})")
         }
         Node::Solution { system, row } => {
             let system = g.system(*system);
-            let show = |all: &[Expr]| all.iter().map(|&e| show(g, e)).collect::<Vec<_>>().join(", ");
-            format!("solve({} | {})[{row}]", show(&system.matrix), show(&system.right))
+            let show = |all: &[Expr]| {
+                all.iter()
+                    .map(|&e| show(g, e))
+                    .collect::<Vec<_>>()
+                    .join(", ")
+            };
+            format!(
+                "solve({} | {})[{row}]",
+                show(&system.matrix),
+                show(&system.right)
+            )
         }
     }
 }

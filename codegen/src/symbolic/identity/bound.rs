@@ -4,7 +4,6 @@ use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::super::field::PRIME;
 use super::super::{Expr, Function, Graph, Node, Rational};
-use super::point::HALVINGS;
 
 /// Degrees of numerator and denominator.
 #[derive(Debug, Clone, Copy)]
@@ -14,8 +13,14 @@ struct Degree {
 }
 
 impl Degree {
-    const CONSTANT: Self = Self { over: 0.0, under: 0.0 };
-    const DRAWN: Self = Self { over: 1.0, under: 0.0 };
+    const CONSTANT: Self = Self {
+        over: 0.0,
+        under: 0.0,
+    };
+    const DRAWN: Self = Self {
+        over: 1.0,
+        under: 0.0,
+    };
 
     fn total(self) -> f64 {
         self.over + self.under
@@ -29,13 +34,23 @@ impl Degree {
     }
 
     fn times(self, other: Self) -> Self {
-        Self { over: self.over + other.over, under: self.under + other.under }
+        Self {
+            over: self.over + other.over,
+            under: self.under + other.under,
+        }
     }
 
     fn power(self, exponent: i32) -> Self {
         let n = f64::from(exponent.unsigned_abs());
         let (over, under) = (n * self.over, n * self.under);
-        if exponent < 0 { Self { over: under, under: over } } else { Self { over, under } }
+        if exponent < 0 {
+            Self {
+                over: under,
+                under: over,
+            }
+        } else {
+            Self { over, under }
+        }
     }
 }
 
@@ -54,9 +69,9 @@ pub(super) fn per_trial(g: &Graph, root: Expr) -> f64 {
             Node::Symbol(_) => Degree::DRAWN,
             Node::Named(id) => of(g.definition(*id).value),
             Node::Sum(terms) => Degree::sum(terms.iter().map(|t| of(t.expr))),
-            Node::Product(factors) => factors
-                .iter()
-                .fold(Degree::CONSTANT, |p, f| p.times(of(f.base).power(f.exponent))),
+            Node::Product(factors) => factors.iter().fold(Degree::CONSTANT, |p, f| {
+                p.times(of(f.base).power(f.exponent))
+            }),
             Node::Function(function, x) => {
                 drawn += 1.0;
                 arguments += of(*x).total();
@@ -70,10 +85,15 @@ pub(super) fn per_trial(g: &Graph, root: Expr) -> f64 {
                     | Function::Cosh
                     | Function::Tanh => {
                         let parts = 2.0 * multiples(g, *x, unit);
-                        Degree { over: parts, under: parts }
+                        Degree {
+                            over: parts,
+                            under: parts,
+                        }
                     }
                     Function::Sqrt => {
-                        roots.insert(*x);
+                        if g.as_number(*x).is_none() {
+                            roots.insert(*x);
+                        }
                         of(*x)
                     }
                     Function::Abs => of(*x).times(Degree::DRAWN),
@@ -91,9 +111,15 @@ pub(super) fn per_trial(g: &Graph, root: Expr) -> f64 {
                 roots.insert(*base);
                 let n = multiples(g, *exponent, unit);
                 let parts = Degree { over: n, under: n };
-                Degree { over: n * of(*base).total(), under: n * of(*base).total() }.times(parts)
+                Degree {
+                    over: n * of(*base).total(),
+                    under: n * of(*base).total(),
+                }
+                .times(parts)
             }
-            Node::Choice { compared, branches, .. } => {
+            Node::Choice {
+                compared, branches, ..
+            } => {
                 drawn += 1.0;
                 arguments += of(compared[0]).total() + of(compared[1]).total();
                 let [then, otherwise] = branches.map(of);
@@ -107,12 +133,16 @@ pub(super) fn per_trial(g: &Graph, root: Expr) -> f64 {
                     all.fold((0.0_f64, 0.0), |(o, u), d| (o.max(d.over), u + d.under));
                 let size = system.right.len() as f64;
                 let minor = size * (over + under);
-                Degree { over: minor, under: minor }
+                Degree {
+                    over: minor,
+                    under: minor,
+                }
             }
         };
         degrees.insert(expr, degree);
     }
-    let values = PRIME as f64 / f64::from(1 << HALVINGS) / 90.0;
+    // Common divisors of the units that are taken and the orders of the groups, 48 and 10.
+    let values = PRIME as f64 / 48.0;
     let degree = degrees.get(&root).map_or(0.0, |d| d.total());
     (4f64.powf(roots.len() as f64) * (degree + drawn * arguments) / values).min(1.0)
 }
@@ -120,7 +150,10 @@ pub(super) fn per_trial(g: &Graph, root: Expr) -> f64 {
 /// How often the unit of which all multiples in the expression are whole fits into the coefficients
 /// of an angle or an exponent: `Σ |coefficient| · unit`, at least 1.
 fn multiples(g: &Graph, argument: Expr, unit: f64) -> f64 {
-    let sum: f64 = coefficients(g, argument).iter().map(|c| c.abs().to_f64()).sum();
+    let sum: f64 = coefficients(g, argument)
+        .iter()
+        .map(|c| c.abs().to_f64())
+        .sum();
     (sum * unit).max(1.0)
 }
 
@@ -134,7 +167,10 @@ fn finest_part(g: &Graph, order: &[Expr]) -> f64 {
             Node::Function(_, x) | Node::Power(_, x) => *x,
             _ => continue,
         };
-        for (_, d) in coefficients(g, argument).iter().filter_map(Rational::as_small) {
+        for (_, d) in coefficients(g, argument)
+            .iter()
+            .filter_map(Rational::as_small)
+        {
             let d = d.unsigned_abs();
             // What does not fit here is beyond any multiple that is related to others.
             if let Some(multiple) = (common / common.gcd(&d)).checked_mul(d) {

@@ -44,12 +44,10 @@ impl Cones {
             });
             match g.node(expr) {
                 Node::Symbol(symbol) => symbols |= symbol_bit(*symbol),
-                Node::Function(Function::Sqrt, radicand) => {
-                    let own = self.set([*radicand].into());
-                    roots = self.union(roots, own);
-                }
-                // A half may hide in the exponent, behind names.
-                Node::Power(base, _) => {
+                // A half may hide in the exponent, behind names. Roots of numbers are constants.
+                Node::Function(Function::Sqrt, base) | Node::Power(base, _)
+                    if g.as_number(*base).is_none() =>
+                {
                     let own = self.set([*base].into());
                     roots = self.union(roots, own);
                 }

@@ -14,15 +14,18 @@ mod tag {
     pub(super) const CONDITION: u64 = 5;
     pub(super) const ATAN2: u64 = 6;
     pub(super) const ROOT: u64 = 7;
+    pub(super) const ROOT_OF_NUMBER: u64 = 8;
     pub(super) const FUNCTION: u64 = 64;
 }
 
-/// Angles are multiples of `atom / 2^HALVINGS`, so that half angles exist.
-pub(super) const HALVINGS: u32 = 8;
-/// A coefficient `n / (2^a d)` of an angle takes part in addition theorems up to this `n d`.
+/// Angles are multiples of `atom / ANGLE_PARTS`, so that parts of angles exist.
+const ANGLE_PARTS: u64 = 2304;
+/// A coefficient `n / d` of an angle takes part in addition theorems up to this `n d`.
 const MOST_TURNS: u64 = 1 << 24;
+/// The angle π in units of [`Rotation::PI_OVER_24`].
+const HALF_TURN: i64 = 24;
 /// Exponents are multiples of `atom / EXPONENT_PARTS`.
-pub(super) const EXPONENT_PARTS: i64 = 720;
+const EXPONENT_PARTS: i64 = 720;
 /// The largest such multiple that takes part in `exp(a + b) = exp a exp b`.
 const MOST_EXPONENT_PARTS: i64 = 1 << 24;
 
@@ -49,6 +52,8 @@ impl From<Option<Element>> for Cell {
 #[derive(Debug)]
 pub(super) struct Point {
     key: u64,
+    /// The symbol that stands for π.
+    pi: Option<SymbolId>,
     cells: Vec<Cell>,
     rotations: FxHashMap<Expr, Option<Rotation>>,
     solutions: FxHashMap<u32, Option<Box<[Element]>>>,
@@ -74,9 +79,10 @@ pub(super) fn symbol_bit(symbol: SymbolId) -> u64 {
 }
 
 impl Point {
-    pub(super) fn new(key: u64) -> Self {
+    pub(super) fn new(key: u64, pi: Option<SymbolId>) -> Self {
         Self {
             key,
+            pi,
             cells: Vec::new(),
             rotations: FxHashMap::default(),
             solutions: FxHashMap::default(),
@@ -88,11 +94,16 @@ impl Point {
 
     /// Another point with the same pseudo-random functions.
     pub(super) fn sibling(&self) -> Self {
-        Self::new(self.key)
+        Self::new(self.key, self.pi)
     }
 
     /// The value of an expression; `None` where it has none at this point.
-    pub(super) fn evaluate(&mut self, g: &Graph, root: Expr, redraw: Option<Redraw<'_>>) -> Option<Element> {
+    pub(super) fn evaluate(
+        &mut self,
+        g: &Graph,
+        root: Expr,
+        redraw: Option<Redraw<'_>>,
+    ) -> Option<Element> {
         if self.cells.len() < g.len() {
             self.cells.resize(g.len(), Cell::UNKNOWN);
         }
@@ -159,7 +170,11 @@ impl Point {
                 let (mut over, mut under) = (Element::ONE, Element::ONE);
                 for factor in factors {
                     let value = self.part(factor.base, redraw)?;
-                    let side = if factor.exponent < 0 { &mut under } else { &mut over };
+                    let side = if factor.exponent < 0 {
+                        &mut under
+                    } else {
+                        &mut over
+                    };
                     *side = *side
                         * match factor.exponent.unsigned_abs() {
                             1 => value,
@@ -167,7 +182,11 @@ impl Point {
                             n => value.pow(n.into()),
                         };
                 }
-                Some(if under == Element::ONE { over } else { over * under.inverse()? })
+                Some(if under == Element::ONE {
+                    over
+                } else {
+                    over * under.inverse()?
+                })
             }
             Node::Function(function, argument) => self.function(g, *function, *argument, redraw),
             Node::Atan2(y, x) => {
@@ -175,13 +194,22 @@ impl Point {
                 Some(keyed(self.key, tag::ATAN2, [y.get(), x.get()]))
             }
             Node::Power(base, exponent) => self.power(g, *base, *exponent, redraw),
-            Node::Choice { relation, compared, branches } => {
-                let [left, right] = [self.part(compared[0], redraw)?, self.part(compared[1], redraw)?];
-                let [then, otherwise] = [self.part(branches[0], redraw)?, self.part(branches[1], redraw)?];
+            Node::Choice {
+                relation,
+                compared,
+                branches,
+            } => {
+                let [left, right] = [
+                    self.part(compared[0], redraw)?,
+                    self.part(compared[1], redraw)?,
+                ];
+                let [then, otherwise] = [
+                    self.part(branches[0], redraw)?,
+                    self.part(branches[1], redraw)?,
+                ];
                 // A weight instead of a decision: nothing looks equal only because the branch in
                 // which it differs was not taken.
-                let positive =
-                    |key, d: Element| keyed(key, tag::CONDITION, [d.get(), 0]);
+                let positive = |key, d: Element| keyed(key, tag::CONDITION, [d.get(), 0]);
                 let holds = match relation {
                     Relation::Less => positive(self.key, right - left),
                     Relation::LessOrEqual => Element::ONE - positive(self.key, left - right),
@@ -216,7 +244,13 @@ impl Point {
         }
     }
 
-    fn function(&mut self, g: &Graph, function: Function, x: Expr, redraw: Option<Redraw<'_>>) -> Option<Element> {
+    fn function(
+        &mut self,
+        g: &Graph,
+        function: Function,
+        x: Expr,
+        redraw: Option<Redraw<'_>>,
+    ) -> Option<Element> {
         let value = self.part(x, redraw)?;
         match function {
             Function::Sin => self.rotation(g, x, redraw).map(|r| r.sin),
@@ -231,14 +265,26 @@ impl Point {
                     _ => Some((up - down) * (up + down).inverse()?),
                 }
             }
-            Function::Sqrt => value.square_root(),
+            Function::Sqrt => self.square_root(g, x, value),
             // |x| = x sign x; the sign is an odd function about which nothing else is known.
             Function::Asin | Function::Atan | Function::Sign => Some(self.odd(function, value)),
             Function::Abs => Some(value * self.odd(Function::Sign, value)),
-            Function::Acos | Function::Ln => {
-                Some(keyed(self.key, tag::FUNCTION + function as u64, [value.get(), 0]))
-            }
+            Function::Acos | Function::Ln => Some(keyed(
+                self.key,
+                tag::FUNCTION + function as u64,
+                [value.get(), 0],
+            )),
         }
+    }
+
+    /// The root that is a square itself. A number without one in this field has a transcendental
+    /// stand-in, which hides that its square is the number.
+    fn square_root(&self, g: &Graph, radicand: Expr, value: Element) -> Option<Element> {
+        value.square_root().or_else(|| {
+            let number = g.as_number(radicand).filter(|n| !n.is_negative())?;
+            let stand_in = keyed(self.key, tag::ROOT_OF_NUMBER, [value.get(), 0]);
+            (!number.is_zero()).then_some(stand_in)
+        })
     }
 
     /// An uninterpreted odd function.
@@ -247,7 +293,11 @@ impl Point {
             return value;
         }
         let (magnitude, negative) = value.without_sign();
-        let image = keyed(self.key, tag::FUNCTION + function as u64, [magnitude.get(), 0]);
+        let image = keyed(
+            self.key,
+            tag::FUNCTION + function as u64,
+            [magnitude.get(), 0],
+        );
         if negative { -image } else { image }
     }
 
@@ -282,7 +332,7 @@ impl Point {
         let atoms = self.split(g, angle);
         let mut total = Some(Rotation::NONE);
         for (coefficient, atom) in &atoms {
-            let turn = self.turn(coefficient, *atom, redraw);
+            let turn = self.turn(g, coefficient, *atom, redraw);
             total = total.zip(turn).map(|(sum, turn)| sum.then(turn));
         }
         self.parts = atoms;
@@ -291,12 +341,25 @@ impl Point {
     }
 
     /// Cosine and sine of `coefficient · atom`.
-    fn turn(&mut self, coefficient: &Rational, atom: Expr, redraw: Option<Redraw<'_>>) -> Option<Rotation> {
+    fn turn(
+        &mut self,
+        g: &Graph,
+        coefficient: &Rational,
+        atom: Expr,
+        redraw: Option<Redraw<'_>>,
+    ) -> Option<Rotation> {
+        if self.pi.is_some() && g.as_symbol(atom) == self.pi {
+            let steps = (coefficient * &HALF_TURN.into()).as_integer();
+            if let Some(steps) = steps.and_then(|n| u64::try_from(n.rem_euclid(2 * HALF_TURN)).ok())
+            {
+                return Some(Rotation::PI_OVER_24.times(steps));
+            }
+        }
         let value = self.part(atom, redraw)?;
         // A coefficient without useful multiples belongs to the atom.
         let (value, multiple, backwards) = match turns(coefficient) {
             Some((multiple, backwards)) => (value, multiple, backwards),
-            None => (self.scaled(coefficient, value)?, 1 << HALVINGS, false),
+            None => (self.scaled(coefficient, value)?, ANGLE_PARTS, false),
         };
         if value.is_zero() {
             return Some(Rotation::NONE);
@@ -304,16 +367,31 @@ impl Point {
         let (magnitude, negative) = value.without_sign();
         let unit = Rotation::from_parameter(keyed(self.key, tag::ANGLE, [magnitude.get(), 0]));
         let turn = unit.times(multiple);
-        Some(if negative == backwards { turn } else { turn.reversed() })
+        Some(if negative == backwards {
+            turn
+        } else {
+            turn.reversed()
+        })
     }
 
     /// `exp` of a sum as a product over its atoms.
-    fn exponential(&mut self, g: &Graph, exponent: Expr, redraw: Option<Redraw<'_>>) -> Option<Element> {
+    fn exponential(
+        &mut self,
+        g: &Graph,
+        exponent: Expr,
+        redraw: Option<Redraw<'_>>,
+    ) -> Option<Element> {
         self.growth(g, exponent, 0, redraw)
     }
 
     /// `Π growth(base, atom)^coefficient` over the atoms of the exponent.
-    fn growth(&mut self, g: &Graph, exponent: Expr, base: u64, redraw: Option<Redraw<'_>>) -> Option<Element> {
+    fn growth(
+        &mut self,
+        g: &Graph,
+        exponent: Expr,
+        base: u64,
+        redraw: Option<Redraw<'_>>,
+    ) -> Option<Element> {
         let atoms = self.split(g, exponent);
         let mut product = Some(Element::ONE);
         for (coefficient, atom) in &atoms {
@@ -349,44 +427,72 @@ impl Point {
         let (magnitude, negative) = value.without_sign();
         let unit = keyed(self.key, tag::EXPONENT, [magnitude.get(), base]);
         let power = unit.pow(parts.unsigned_abs());
-        if negative == (parts < 0) { Some(power) } else { power.inverse() }
+        if negative == (parts < 0) {
+            Some(power)
+        } else {
+            power.inverse()
+        }
     }
 
     /// `base^exponent`: the numeric part of the exponent acts on the base, the rest is an
     /// uninterpreted homomorphism of the exponent.
-    fn power(&mut self, g: &Graph, base: Expr, exponent: Expr, redraw: Option<Redraw<'_>>) -> Option<Element> {
+    fn power(
+        &mut self,
+        g: &Graph,
+        base: Expr,
+        exponent: Expr,
+        redraw: Option<Redraw<'_>>,
+    ) -> Option<Element> {
         let value = self.part(base, redraw)?;
         if value.is_zero() {
             return None;
         }
         let atoms = self.split(g, exponent);
-        let constant =
-            atoms.iter().filter(|(_, atom)| *atom == Graph::ONE).fold(Rational::ZERO, |sum, (c, _)| &sum + c);
+        let constant = atoms
+            .iter()
+            .filter(|(_, atom)| *atom == Graph::ONE)
+            .fold(Rational::ZERO, |sum, (c, _)| &sum + c);
         self.parts = atoms;
         // Shifted by one, since the exponential's base is 0.
         let symbolic = self.growth(g, exponent, value.get() + 1, redraw)?;
-        Some(symbolic * self.rational_power(value, &constant)?)
+        Some(symbolic * self.rational_power(g, base, value, &constant)?)
     }
 
-    fn rational_power(&self, value: Element, exponent: &Rational) -> Option<Element> {
+    fn rational_power(
+        &self,
+        g: &Graph,
+        base: Expr,
+        value: Element,
+        exponent: &Rational,
+    ) -> Option<Element> {
         let Some((n, d)) = exponent.as_small() else {
             let exponent = Element::from_rational(exponent)?;
             return Some(keyed(self.key, tag::ROOT, [value.get(), exponent.get()]));
         };
         let root = match d {
             1 => value,
-            2 => value.square_root()?,
+            2 => self.square_root(g, base, value)?,
             // An uninterpreted root: x^(1/d) to the power d is not known to be x, but whole powers
             // of x are taken out first.
             _ => keyed(self.key, tag::ROOT, [value.get(), d.unsigned_abs()]),
         };
         let (whole, rest) = (n.div_euclid(d), n.rem_euclid(d));
         let whole_power = value.pow(whole.unsigned_abs());
-        let whole_power = if whole < 0 { whole_power.inverse()? } else { whole_power };
+        let whole_power = if whole < 0 {
+            whole_power.inverse()?
+        } else {
+            whole_power
+        };
         Some(whole_power * root.pow(rest.unsigned_abs()))
     }
 
-    fn solution(&mut self, g: &Graph, system: u32, row: u32, redraw: Option<Redraw<'_>>) -> Option<Element> {
+    fn solution(
+        &mut self,
+        g: &Graph,
+        system: u32,
+        row: u32,
+        redraw: Option<Redraw<'_>>,
+    ) -> Option<Element> {
         if !self.solutions.contains_key(&system) {
             let equations = g.system(system);
             let values = |exprs: &[Expr]| -> Option<Vec<Element>> {
@@ -398,24 +504,36 @@ impl Point {
             };
             self.solutions.insert(system, solved);
         }
-        self.solutions[&system].as_ref().map(|unknowns| unknowns[row as usize])
+        self.solutions[&system]
+            .as_ref()
+            .map(|unknowns| unknowns[row as usize])
     }
 }
 
-/// `coefficient · 2^HALVINGS` modulo the order `2^61` of the circle, and whether it is negative.
+/// `|coefficient| · ANGLE_PARTS` modulo the order `p + 1` of the circle, and whether the coefficient is
+/// negative.
 ///
-/// Odd denominators are units modulo the order, so a third of an angle is exact.
+/// Denominators without factors 2 and 3 are units modulo the order, so a fifth of an angle is exact.
 fn turns(coefficient: &Rational) -> Option<(u64, bool)> {
+    use num_integer::Integer;
     let (n, d) = coefficient.as_small()?;
-    let halvings = d.trailing_zeros();
-    let (count, odd) = (n.unsigned_abs(), d.unsigned_abs() >> halvings);
-    if halvings > HALVINGS || count.checked_mul(odd)? > MOST_TURNS {
+    let (count, d) = (n.unsigned_abs(), d.unsigned_abs());
+    if count.checked_mul(d)? > MOST_TURNS {
         return None;
     }
-    // Newton's iteration doubles the correct bits, from three to more than sixty-one.
-    let inverse = (0..5).fold(odd, |x, _| x.wrapping_mul(2u64.wrapping_sub(odd.wrapping_mul(x))));
-    let multiple = (count << (HALVINGS - halvings)).wrapping_mul(inverse) & PRIME;
-    Some((multiple, n < 0))
+    let shared = d.gcd(&ANGLE_PARTS);
+    let multiple = count * (ANGLE_PARTS / shared);
+    let rest = d / shared;
+    if rest == 1 {
+        return Some((multiple, n < 0));
+    }
+    let order = i128::from(PRIME) + 1;
+    let divisor = i128::from(rest).extended_gcd(&order);
+    if divisor.gcd != 1 {
+        return None;
+    }
+    let quotient = (i128::from(multiple) * divisor.x.rem_euclid(order)).rem_euclid(order);
+    Some((u64::try_from(quotient).ok()?, n < 0))
 }
 
 /// Gauss's elimination; `None` for a singular matrix.
@@ -439,5 +557,7 @@ fn solve(mut a: Vec<Element>, mut b: Vec<Element>) -> Option<Box<[Element]>> {
             b[i] = b[i] - factor * b[k];
         }
     }
-    (0..n).map(|k| Some(b[k] * a[k * n + k].inverse()?)).collect()
+    (0..n)
+        .map(|k| Some(b[k] * a[k * n + k].inverse()?))
+        .collect()
 }

@@ -31,27 +31,42 @@ fn escaped(word: &str) -> String {
 fn word(word: &str, font: &str) -> String {
     match greek(word) {
         Some(_) => format!("\\{word}"),
-        None if word.chars().count() == 1 || word.bytes().all(|b| b.is_ascii_digit()) => escaped(word),
+        None if word.chars().count() == 1 || word.bytes().all(|b| b.is_ascii_digit()) => {
+            escaped(word)
+        }
         None => format!("\\{font}{{{}}}", escaped(word)),
     }
 }
 
 fn grouped(piece: &Piece, least: Level) -> String {
-    if piece.level < least { Latex.group(&piece.text) } else { piece.text.clone() }
+    if piece.level < least {
+        Latex.group(&piece.text)
+    } else {
+        piece.text.clone()
+    }
 }
 
 /// `x^2`, `x^{10}`, `x^{a}`
 fn braced(text: &str) -> String {
-    if text.len() == 1 { text.to_owned() } else { format!("{{{text}}}") }
+    if text.len() == 1 {
+        text.to_owned()
+    } else {
+        format!("{{{text}}}")
+    }
 }
 
 /// A control word must not swallow the letter after it.
 fn joined(left: &str, right: &str) -> String {
     let swallows = left.ends_with(|c: char| c.is_ascii_alphabetic())
-        && left.rsplit(|c: char| !c.is_ascii_alphabetic()).next().is_some_and(|w| {
-            left.len() > w.len() && left[..left.len() - w.len()].ends_with('\\')
-        });
-    let space = if swallows && right.starts_with(|c: char| c.is_ascii_alphabetic()) { " " } else { "" };
+        && left
+            .rsplit(|c: char| !c.is_ascii_alphabetic())
+            .next()
+            .is_some_and(|w| left.len() > w.len() && left[..left.len() - w.len()].ends_with('\\'));
+    let space = if swallows && right.starts_with(|c: char| c.is_ascii_alphabetic()) {
+        " "
+    } else {
+        ""
+    };
     format!("{left}{space}{right}")
 }
 
@@ -82,15 +97,37 @@ impl Notation for Latex {
 
     fn name(&self, name: &Name) -> Piece {
         if let Some(by) = &name.by {
-            let over = joined("\\partial", &self.name(&Name { by: None, ..name.clone() }).text);
+            let over = joined(
+                "\\partial",
+                &self
+                    .name(&Name {
+                        by: None,
+                        ..name.clone()
+                    })
+                    .text,
+            );
             let under = joined("\\partial", &self.name(by).text);
             return Piece::new(format!("\\frac{{{over}}}{{{under}}}"), Level::Product);
         }
         let base = word(&name.base, "mathit");
         let base = match name.dots {
             0 => base,
-            1 => joined("\\dot", &if base.starts_with('\\') { base } else { format!("{{{base}}}") }),
-            _ => joined("\\ddot", &if base.starts_with('\\') { base } else { format!("{{{base}}}") }),
+            1 => joined(
+                "\\dot",
+                &if base.starts_with('\\') {
+                    base
+                } else {
+                    format!("{{{base}}}")
+                },
+            ),
+            _ => joined(
+                "\\ddot",
+                &if base.starts_with('\\') {
+                    base
+                } else {
+                    format!("{{{base}}}")
+                },
+            ),
         };
         if name.subscripts.is_empty() {
             return Piece::new(base, Level::Atom);
@@ -128,12 +165,18 @@ impl Notation for Latex {
             [single] => single.text.clone(),
             _ => self.product(factors),
         };
-        Piece::new(format!("\\frac{{{}}}{{{}}}", side(over), side(under)), Level::Product)
+        Piece::new(
+            format!("\\frac{{{}}}{{{}}}", side(over), side(under)),
+            Level::Product,
+        )
     }
 
     fn power(&self, base: &Piece, exponent: u32) -> Piece {
         let exponent = braced(&exponent.to_string());
-        Piece::new(format!("{}^{exponent}", grouped(base, Level::Atom)), Level::Power)
+        Piece::new(
+            format!("{}^{exponent}", grouped(base, Level::Atom)),
+            Level::Power,
+        )
     }
 
     fn general_power(&self, base: &Piece, exponent: &Piece) -> Piece {
@@ -143,7 +186,9 @@ impl Notation for Latex {
 
     fn function(&self, function: Function, exponent: u32, argument: &Piece) -> Piece {
         match function {
-            Function::Sqrt => return Piece::new(format!("\\sqrt{{{}}}", argument.text), Level::Atom),
+            Function::Sqrt => {
+                return Piece::new(format!("\\sqrt{{{}}}", argument.text), Level::Atom);
+            }
             Function::Abs => {
                 return Piece::new(format!("\\left|{}\\right|", argument.text), Level::Atom);
             }
@@ -156,17 +201,28 @@ impl Notation for Latex {
         if argument.level == Level::Atom {
             Piece::new(joined(&name, &argument.text), Level::Prefix)
         } else {
-            Piece::new(format!("{name}{}", self.group(&argument.text)), Level::Power)
+            Piece::new(
+                format!("{name}{}", self.group(&argument.text)),
+                Level::Power,
+            )
         }
     }
 
     fn call(&self, function: &str, arguments: &[Piece]) -> Piece {
         let arguments: Vec<&str> = arguments.iter().map(|a| a.text.as_str()).collect();
         let arguments = self.group(&arguments.join(", "));
-        Piece::new(format!("\\operatorname{{{function}}}{arguments}"), Level::Power)
+        Piece::new(
+            format!("\\operatorname{{{function}}}{arguments}"),
+            Level::Power,
+        )
     }
 
-    fn choice(&self, relation: Relation, [left, right]: [&Piece; 2], [then, otherwise]: [&Piece; 2]) -> Piece {
+    fn choice(
+        &self,
+        relation: Relation,
+        [left, right]: [&Piece; 2],
+        [then, otherwise]: [&Piece; 2],
+    ) -> Piece {
         let sign = match relation {
             Relation::Less => "<",
             Relation::LessOrEqual => "\\le",
@@ -211,7 +267,10 @@ impl Notation for Latex {
         if let [single] = equations {
             return single.clone();
         }
-        format!("\\begin{{gathered}}\n{}\n\\end{{gathered}}", equations.join(" \\\\\n"))
+        format!(
+            "\\begin{{gathered}}\n{}\n\\end{{gathered}}",
+            equations.join(" \\\\\n")
+        )
     }
 }
 

@@ -47,7 +47,11 @@ fn row(text: &str) -> String {
 }
 
 fn grouped(piece: &Piece, least: Level) -> String {
-    if piece.level < least { MathMl.group(&piece.text) } else { piece.text.clone() }
+    if piece.level < least {
+        MathMl.group(&piece.text)
+    } else {
+        piece.text.clone()
+    }
 }
 
 fn sign(first: bool, negative: bool) -> &'static str {
@@ -83,10 +87,16 @@ impl Notation for MathMl {
 
     fn name(&self, name: &Name) -> Piece {
         if let Some(by) = &name.by {
-            let over = self.name(&Name { by: None, ..name.clone() }).text;
+            let over = self
+                .name(&Name {
+                    by: None,
+                    ..name.clone()
+                })
+                .text;
             let under = self.name(by).text;
-            let text =
-                format!("<mfrac><mrow><mo>∂</mo>{over}</mrow><mrow><mo>∂</mo>{under}</mrow></mfrac>");
+            let text = format!(
+                "<mfrac><mrow><mo>∂</mo>{over}</mrow><mrow><mo>∂</mo>{under}</mrow></mfrac>"
+            );
             return Piece::new(text, Level::Product);
         }
         let mut text = word(&name.base);
@@ -128,22 +138,33 @@ impl Notation for MathMl {
             [single] => single.text.clone(),
             _ => self.product(factors),
         };
-        Piece::new(format!("<mfrac>{}{}</mfrac>", side(over), side(under)), Level::Product)
+        Piece::new(
+            format!("<mfrac>{}{}</mfrac>", side(over), side(under)),
+            Level::Product,
+        )
     }
 
     fn power(&self, base: &Piece, exponent: u32) -> Piece {
         let base = grouped(base, Level::Atom);
-        Piece::new(format!("<msup>{base}<mn>{exponent}</mn></msup>"), Level::Power)
+        Piece::new(
+            format!("<msup>{base}<mn>{exponent}</mn></msup>"),
+            Level::Power,
+        )
     }
 
     fn general_power(&self, base: &Piece, exponent: &Piece) -> Piece {
         let base = grouped(base, Level::Atom);
-        Piece::new(format!("<msup>{base}{}</msup>", exponent.text), Level::Power)
+        Piece::new(
+            format!("<msup>{base}{}</msup>", exponent.text),
+            Level::Power,
+        )
     }
 
     fn function(&self, function: Function, exponent: u32, argument: &Piece) -> Piece {
         match function {
-            Function::Sqrt => return Piece::new(format!("<msqrt>{}</msqrt>", argument.text), Level::Atom),
+            Function::Sqrt => {
+                return Piece::new(format!("<msqrt>{}</msqrt>", argument.text), Level::Atom);
+            }
             Function::Abs => {
                 let text = format!("<mrow><mo>|</mo>{}<mo>|</mo></mrow>", argument.text);
                 return Piece::new(text, Level::Atom);
@@ -154,23 +175,39 @@ impl Notation for MathMl {
         if exponent > 1 {
             name = format!("<msup>{name}<mn>{exponent}</mn></msup>");
         }
-        let level = if argument.level == Level::Atom { Level::Prefix } else { Level::Power };
-        Piece::new(row(&format!("{name}{APPLY}{}", grouped(argument, Level::Atom))), level)
+        let level = if argument.level == Level::Atom {
+            Level::Prefix
+        } else {
+            Level::Power
+        };
+        Piece::new(
+            row(&format!("{name}{APPLY}{}", grouped(argument, Level::Atom))),
+            level,
+        )
     }
 
     fn call(&self, function: &str, arguments: &[Piece]) -> Piece {
         let arguments: Vec<&str> = arguments.iter().map(|a| a.text.as_str()).collect();
         let arguments = self.group(&arguments.join("<mo>,</mo>"));
-        Piece::new(row(&format!("<mi>{}</mi>{APPLY}{arguments}", escaped(function))), Level::Power)
+        Piece::new(
+            row(&format!("<mi>{}</mi>{APPLY}{arguments}", escaped(function))),
+            Level::Power,
+        )
     }
 
-    fn choice(&self, relation: Relation, [left, right]: [&Piece; 2], [then, otherwise]: [&Piece; 2]) -> Piece {
+    fn choice(
+        &self,
+        relation: Relation,
+        [left, right]: [&Piece; 2],
+        [then, otherwise]: [&Piece; 2],
+    ) -> Piece {
         let sign = match relation {
             Relation::Less => "&lt;",
             Relation::LessOrEqual => "&#x2264;",
         };
         let condition = row(&format!("{}<mo>{sign}</mo>{}", left.text, right.text));
-        let case = |value: &str, when: &str| format!("<mtr><mtd>{value}</mtd><mtd>{when}</mtd></mtr>");
+        let case =
+            |value: &str, when: &str| format!("<mtr><mtd>{value}</mtd><mtd>{when}</mtd></mtr>");
         let text = format!(
             "<mrow><mo>{{</mo><mtable columnalign=\"left left\">{}{}</mtable></mrow>",
             case(&then.text, &condition),

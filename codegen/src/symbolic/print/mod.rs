@@ -56,7 +56,11 @@ pub struct Piece {
 impl Piece {
     /// A piece about which nothing else is known.
     pub fn new(text: String, level: Level) -> Self {
-        Self { text, level, first: u32::MAX }
+        Self {
+            text,
+            level,
+            first: u32::MAX,
+        }
     }
 }
 
@@ -104,7 +108,13 @@ pub struct Printer<'a, N> {
 impl<'a, N: Notation> Printer<'a, N> {
     /// A printer that writes symbols and named quantities by their names.
     pub fn new(graph: &'a Graph, notation: N) -> Self {
-        Self { graph, notation, names: FxHashMap::default(), ranks: Vec::new(), inline: false }
+        Self {
+            graph,
+            notation,
+            names: FxHashMap::default(),
+            ranks: Vec::new(),
+            inline: false,
+        }
     }
 
     /// Writes a symbol by another name, such as `omega_1_dot`; see [`Name::parse`].
@@ -140,7 +150,9 @@ impl<'a, N: Notation> Printer<'a, N> {
     /// An expression on one line.
     pub fn expression(&self, expr: Expr) -> String {
         let pieces = self.pieces(expr);
-        pieces.get(&expr).map_or_else(String::new, |piece| piece.text.clone())
+        pieces
+            .get(&expr)
+            .map_or_else(String::new, |piece| piece.text.clone())
     }
 
     /// A name in this notation; see [`Name::parse`].
@@ -154,24 +166,33 @@ impl<'a, N: Notation> Printer<'a, N> {
         let pieces = self.pieces(expr);
         let terms = match self.graph.node(expr) {
             Node::Sum(terms) if terms.len() > 1 => self.terms(expr, &pieces),
-            _ => pieces.get(&expr).map(|piece| vec![(false, piece.clone())]).unwrap_or_default(),
+            _ => pieces
+                .get(&expr)
+                .map(|piece| vec![(false, piece.clone())])
+                .unwrap_or_default(),
         };
         self.notation.equation(&left, &terms, width)
     }
 
     /// Equations below each other.
     pub fn equations(&self, list: &[(&str, Expr)], width: usize) -> String {
-        let equations: Vec<String> =
-            list.iter().map(|(name, expr)| self.equation(name, *expr, width)).collect();
+        let equations: Vec<String> = list
+            .iter()
+            .map(|(name, expr)| self.equation(name, *expr, width))
+            .collect();
         self.notation.list(&equations)
     }
 
     /// The definitions of all named quantities in `roots`, parts before wholes.
     pub fn definitions(&self, roots: &[Expr], width: usize) -> String {
-        let definitions = self.graph.in_order(roots).into_iter().filter_map(|e| match self.graph.node(e) {
-            Node::Named(id) => Some(self.graph.definition(*id)),
-            _ => None,
-        });
+        let definitions =
+            self.graph
+                .in_order(roots)
+                .into_iter()
+                .filter_map(|e| match self.graph.node(e) {
+                    Node::Named(id) => Some(self.graph.definition(*id)),
+                    _ => None,
+                });
         let list: Vec<(&str, Expr)> = definitions.map(|d| (d.name.as_str(), d.value)).collect();
         self.equations(&list, width)
     }
@@ -193,7 +214,10 @@ impl<'a, N: Notation> Printer<'a, N> {
                     unknown
                 } else {
                     let coefficient = self.whole(entry);
-                    Piece::new(self.notation.product(&[coefficient, unknown]), Level::Product)
+                    Piece::new(
+                        self.notation.product(&[coefficient, unknown]),
+                        Level::Product,
+                    )
                 };
                 terms.push((false, piece));
             }
@@ -201,14 +225,18 @@ impl<'a, N: Notation> Printer<'a, N> {
                 terms.push((false, self.number(&Rational::ZERO)));
             }
             let left = Piece::new(self.notation.sum(&terms), Level::Sum);
-            rows.push(self.notation.equation(&left, &[(false, self.whole(right))], width));
+            rows.push(
+                self.notation
+                    .equation(&left, &[(false, self.whole(right))], width),
+            );
         }
         self.notation.list(&rows)
     }
 
     fn unknown(&self, system: u32, row: u32) -> Piece {
         let (system, row) = (u64::from(system) + 1, u64::from(row) + 1);
-        self.notation.name(&Name::parse(&format!("solution_{system}_{row}")))
+        self.notation
+            .name(&Name::parse(&format!("solution_{system}_{row}")))
     }
 
     fn whole(&self, expr: Expr) -> Piece {
@@ -228,9 +256,17 @@ impl<'a, N: Notation> Printer<'a, N> {
             if parts_done {
                 let mut piece = self.piece(expr, &pieces);
                 written += piece.text.len();
-                let most = if written > MOST_BYTES_TOGETHER { FEW_BYTES } else { MOST_BYTES };
+                let most = if written > MOST_BYTES_TOGETHER {
+                    FEW_BYTES
+                } else {
+                    MOST_BYTES
+                };
                 if piece.text.len() > most {
-                    piece = Piece { level: Level::Atom, text: self.notation.digits("…"), ..piece };
+                    piece = Piece {
+                        level: Level::Atom,
+                        text: self.notation.digits("…"),
+                        ..piece
+                    };
                 }
                 pieces.insert(expr, piece);
                 continue;
@@ -242,7 +278,8 @@ impl<'a, N: Notation> Printer<'a, N> {
                 _ => false,
             };
             if !is_leaf {
-                self.graph.for_each_part(expr, |part| stack.push((part, false)));
+                self.graph
+                    .for_each_part(expr, |part| stack.push((part, false)));
             }
         }
         pieces
@@ -256,9 +293,15 @@ impl<'a, N: Notation> Printer<'a, N> {
             Node::Symbol(symbol) => {
                 let mut piece = match self.names.get(symbol) {
                     Some(name) => self.notation.name(name),
-                    None => self.notation.name(&Name::parse(self.graph.symbol_name(*symbol))),
+                    None => self
+                        .notation
+                        .name(&Name::parse(self.graph.symbol_name(*symbol))),
                 };
-                piece.first = self.ranks.get(symbol.0 as usize).copied().unwrap_or(symbol.0);
+                piece.first = self
+                    .ranks
+                    .get(symbol.0 as usize)
+                    .copied()
+                    .unwrap_or(symbol.0);
                 return piece;
             }
             Node::Named(id) => {
@@ -280,9 +323,14 @@ impl<'a, N: Notation> Printer<'a, N> {
             Node::Function(function, x) => self.notation.function(*function, 1, at(x)),
             Node::Atan2(y, x) => self.notation.call("atan2", &[at(y).clone(), at(x).clone()]),
             Node::Power(base, exponent) => self.notation.general_power(at(base), at(exponent)),
-            Node::Choice { relation, compared, branches } => {
+            Node::Choice {
+                relation,
+                compared,
+                branches,
+            } => {
                 let ([a, b], [c, d]) = (compared, branches);
-                self.notation.choice(*relation, [at(a), at(b)], [at(c), at(d)])
+                self.notation
+                    .choice(*relation, [at(a), at(b)], [at(c), at(d)])
             }
             Node::Solution { system, row } => self.unknown(*system, *row),
         };
@@ -295,12 +343,18 @@ impl<'a, N: Notation> Printer<'a, N> {
 
     /// The terms of a sum in the order in which people write them.
     fn terms(&self, sum: Expr, pieces: &FxHashMap<Expr, Piece>) -> Vec<(bool, Piece)> {
-        let Node::Sum(terms) = self.graph.node(sum) else { return Vec::new() };
+        let Node::Sum(terms) = self.graph.node(sum) else {
+            return Vec::new();
+        };
         let mut terms: Vec<_> = terms
             .iter()
             .map(|term| {
                 let factors = order::factors(self.graph, term.expr, pieces);
-                (order::term_key(self.graph, term, &factors, pieces), term, factors)
+                (
+                    order::term_key(self.graph, term, &factors, pieces),
+                    term,
+                    factors,
+                )
             })
             .collect();
         terms.sort_by(|a, b| a.0.cmp(&b.0));
@@ -340,7 +394,11 @@ impl<'a, N: Notation> Printer<'a, N> {
         order::sort_factors(self.graph, &mut factors, pieces);
         for factor in &factors {
             let power = self.power(factor, pieces);
-            if factor.exponent < 0 { under.push(power) } else { over.push(power) }
+            if factor.exponent < 0 {
+                under.push(power);
+            } else {
+                over.push(power);
+            }
         }
         if over.is_empty() {
             over.push(Piece::new(self.notation.digits("1"), Level::Atom));
@@ -359,7 +417,9 @@ impl<'a, N: Notation> Printer<'a, N> {
         let exponent = factor.exponent.unsigned_abs();
         match self.graph.node(factor.base) {
             _ if exponent == 1 => pieces[&factor.base].clone(),
-            Node::Function(function, x) if *function != Function::Sqrt && *function != Function::Abs => {
+            Node::Function(function, x)
+                if *function != Function::Sqrt && *function != Function::Abs =>
+            {
                 self.notation.function(*function, exponent, &pieces[x])
             }
             _ => self.notation.power(&pieces[&factor.base], exponent),
@@ -386,5 +446,10 @@ fn decimal(value: &Rational) -> Option<String> {
     let digits = (1..=MOST_DIGITS).find(|&k| 10i64.pow(k) % d == 0)?;
     let scaled = n.checked_mul(10i64.pow(digits) / d)?;
     let one = 10i64.pow(digits);
-    Some(format!("{}.{:0width$}", scaled / one, scaled % one, width = digits as usize))
+    Some(format!(
+        "{}.{:0width$}",
+        scaled / one,
+        scaled % one,
+        width = digits as usize
+    ))
 }

@@ -52,7 +52,10 @@ const GREEK: [(&str, char); 33] = [
 
 /// The Greek letter of a name.
 pub(super) fn greek(word: &str) -> Option<char> {
-    GREEK.iter().find(|(name, _)| *name == word).map(|&(_, letter)| letter)
+    GREEK
+        .iter()
+        .find(|(name, _)| *name == word)
+        .map(|&(_, letter)| letter)
 }
 
 impl Name {
@@ -61,10 +64,15 @@ impl Name {
     /// Parts `dot` and `ddot` are dots. Digits at the end of a letter are a subscript, as in `x1`. A
     /// word as a base keeps its underscores: `wheel_radius` is one word. `d_a_d_b` is ∂a/∂b.
     pub fn parse(identifier: &str) -> Self {
-        if let Some((name, by)) = identifier.strip_prefix("d_").and_then(|rest| rest.split_once("_d_"))
+        if let Some((name, by)) = identifier
+            .strip_prefix("d_")
+            .and_then(|rest| rest.split_once("_d_"))
             && !by.contains("_d_")
         {
-            return Self { by: Some(Box::new(Self::plain(by))), ..Self::plain(name) };
+            return Self {
+                by: Some(Box::new(Self::plain(by))),
+                ..Self::plain(name)
+            };
         }
         Self::plain(identifier)
     }
@@ -88,13 +96,21 @@ impl Name {
             let is_word = is_regular && !letters.is_empty();
             // Numbers at the end of a word are subscripts, its other parts belong to it.
             let numbers = if is_word {
-                parts.iter().rev().take_while(|p| p.bytes().all(|b| b.is_ascii_digit())).count()
+                parts
+                    .iter()
+                    .rev()
+                    .take_while(|p| p.bytes().all(|b| b.is_ascii_digit()))
+                    .count()
             } else {
                 0
             };
             let (word, subscripts) = parts.split_at(parts.len() - numbers);
             return Self {
-                base: if is_word { word.join("_") } else { identifier.to_owned() },
+                base: if is_word {
+                    word.join("_")
+                } else {
+                    identifier.to_owned()
+                },
                 dots: if is_word { dots } else { 0 },
                 subscripts: subscripts.iter().map(|&s| s.to_owned()).collect(),
                 by: None,
@@ -105,7 +121,12 @@ impl Name {
             subscripts.push(first[letters.len()..].to_owned());
         }
         subscripts.extend(parts[1..].iter().map(|&s| s.to_owned()));
-        Self { base: letters.to_owned(), dots, subscripts, by: None }
+        Self {
+            base: letters.to_owned(),
+            dots,
+            subscripts,
+            by: None,
+        }
     }
 
     /// Whether the base is one letter, Greek or not.
@@ -128,7 +149,11 @@ mod tests {
     #[test]
     fn identifiers_come_apart_at_underscores() {
         let expect = |base: &str, dots, subscripts: &[&str]| {
-            (base.to_owned(), dots, subscripts.iter().map(|&s| s.to_owned()).collect())
+            (
+                base.to_owned(),
+                dots,
+                subscripts.iter().map(|&s| s.to_owned()).collect(),
+            )
         };
         assert_eq!(parts("theta"), expect("theta", 0, &[]));
         assert_eq!(parts("omega_1_dot"), expect("omega", 1, &["1"]));
@@ -136,7 +161,10 @@ mod tests {
         assert_eq!(parts("x12"), expect("x", 0, &["12"]));
         assert_eq!(parts("I_B_xx"), expect("I", 0, &["B", "xx"]));
         assert_eq!(parts("wheel_radius"), expect("wheel_radius", 0, &[]));
-        assert_eq!(parts("wheel_radius_2_dot"), expect("wheel_radius", 1, &["2"]));
+        assert_eq!(
+            parts("wheel_radius_2_dot"),
+            expect("wheel_radius", 1, &["2"])
+        );
         assert_eq!(parts("dot"), expect("dot", 0, &[]));
         assert_eq!(parts("__"), expect("__", 0, &[]));
         assert_eq!(parts("7"), expect("7", 0, &[]));

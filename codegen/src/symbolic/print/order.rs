@@ -13,7 +13,10 @@ pub(super) fn factors(graph: &Graph, expr: Expr, pieces: &FxHashMap<Expr, Piece>
     let mut factors = match graph.node(expr) {
         Node::Product(factors) => factors.to_vec(),
         _ if expr == Graph::ONE => Vec::new(),
-        _ => vec![Factor { base: expr, exponent: 1 }],
+        _ => vec![Factor {
+            base: expr,
+            exponent: 1,
+        }],
     };
     sort_factors(graph, &mut factors, pieces);
     factors
@@ -31,7 +34,10 @@ pub(super) fn term_key(
     factors: &[Factor],
     pieces: &FxHashMap<Expr, Piece>,
 ) -> (bool, Vec<FactorKey>) {
-    let keys = factors.iter().map(|f| factor_key(graph, f, pieces)).collect();
+    let keys = factors
+        .iter()
+        .map(|f| factor_key(graph, f, pieces))
+        .collect();
     (term.coefficient.is_negative(), keys)
 }
 

@@ -12,7 +12,11 @@ const MINUS: &str = "−";
 
 fn superscript(number: u32) -> String {
     const DIGITS: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
-    number.to_string().bytes().map(|b| DIGITS[usize::from(b - b'0') % 10]).collect()
+    number
+        .to_string()
+        .bytes()
+        .map(|b| DIGITS[usize::from(b - b'0') % 10])
+        .collect()
 }
 
 /// A short subscript in small letters, if all of its letters exist. Words read better in full size.
@@ -44,19 +48,32 @@ fn subscript(word: &str) -> Option<String> {
     word.chars()
         .map(|c| match c.to_digit(10) {
             Some(digit) => char::from_u32('₀' as u32 + digit),
-            None => LETTERS.iter().find(|(plain, _)| *plain == c).map(|&(_, small)| small),
+            None => LETTERS
+                .iter()
+                .find(|(plain, _)| *plain == c)
+                .map(|&(_, small)| small),
         })
         .collect()
 }
 
 /// A word without characters that could break or turn the line.
 fn harmless(word: &str) -> String {
-    let shown = |c: char| if c.is_alphanumeric() || c.is_ascii_graphic() { c } else { '\u{fffd}' };
+    let shown = |c: char| {
+        if c.is_alphanumeric() || c.is_ascii_graphic() {
+            c
+        } else {
+            '\u{fffd}'
+        }
+    };
     greek(word).map_or_else(|| word.chars().map(shown).collect(), String::from)
 }
 
 fn grouped(piece: &Piece, least: Level) -> String {
-    if piece.level < least { format!("({})", piece.text) } else { piece.text.clone() }
+    if piece.level < least {
+        format!("({})", piece.text)
+    } else {
+        piece.text.clone()
+    }
 }
 
 fn function_name(function: Function) -> &'static str {
@@ -84,12 +101,23 @@ impl Notation for Text {
 
     fn name(&self, name: &Name) -> Piece {
         if let Some(by) = &name.by {
-            let over = self.name(&Name { by: None, ..name.clone() });
-            return Piece::new(format!("∂{}/∂{}", over.text, self.name(by).text), Level::Fraction);
+            let over = self.name(&Name {
+                by: None,
+                ..name.clone()
+            });
+            return Piece::new(
+                format!("∂{}/∂{}", over.text, self.name(by).text),
+                Level::Fraction,
+            );
         }
         let mut text = harmless(&name.base);
         if name.is_letter() {
-            text.push_str(["", "\u{307}", "\u{308}"].get(name.dots).copied().unwrap_or_default());
+            text.push_str(
+                ["", "\u{307}", "\u{308}"]
+                    .get(name.dots)
+                    .copied()
+                    .unwrap_or_default(),
+            );
         } else if name.dots > 0 {
             text.push_str(if name.dots == 1 { "_dot" } else { "_ddot" });
         }
@@ -148,7 +176,10 @@ impl Notation for Text {
     }
 
     fn power(&self, base: &Piece, exponent: u32) -> Piece {
-        Piece::new(format!("{}{}", grouped(base, Level::Atom), superscript(exponent)), Level::Power)
+        Piece::new(
+            format!("{}{}", grouped(base, Level::Atom), superscript(exponent)),
+            Level::Power,
+        )
     }
 
     fn general_power(&self, base: &Piece, exponent: &Piece) -> Piece {
@@ -160,11 +191,18 @@ impl Notation for Text {
         if function == Function::Abs {
             return Piece::new(format!("|{}|", argument.text), Level::Atom);
         }
-        let raised = if exponent == 1 { String::new() } else { superscript(exponent) };
+        let raised = if exponent == 1 {
+            String::new()
+        } else {
+            superscript(exponent)
+        };
         let space = if function == Function::Sqrt { "" } else { " " };
         let name = function_name(function);
         if argument.level == Level::Atom {
-            Piece::new(format!("{name}{raised}{space}{}", argument.text), Level::Prefix)
+            Piece::new(
+                format!("{name}{raised}{space}{}", argument.text),
+                Level::Prefix,
+            )
         } else {
             // The parentheses leave no doubt where the argument ends.
             Piece::new(format!("{name}{raised}({})", argument.text), Level::Power)
@@ -176,13 +214,20 @@ impl Notation for Text {
         Piece::new(format!("{function}({})", arguments.join(", ")), Level::Atom)
     }
 
-    fn choice(&self, relation: Relation, [left, right]: [&Piece; 2], [then, otherwise]: [&Piece; 2]) -> Piece {
+    fn choice(
+        &self,
+        relation: Relation,
+        [left, right]: [&Piece; 2],
+        [then, otherwise]: [&Piece; 2],
+    ) -> Piece {
         let sign = match relation {
             Relation::Less => "<",
             Relation::LessOrEqual => "≤",
         };
-        let text =
-            format!("({} if {} {sign} {} else {})", then.text, left.text, right.text, otherwise.text);
+        let text = format!(
+            "({} if {} {sign} {} else {})",
+            then.text, left.text, right.text, otherwise.text
+        );
         Piece::new(text, Level::Atom)
     }
 
@@ -204,7 +249,9 @@ pub(super) fn lines(line: &str, width: usize) -> Vec<String> {
     let mut rest = line.to_owned();
     let mut indent = 0;
     while columns(&rest) + indent > width {
-        let Some(cut) = best_cut(&rest, width.saturating_sub(indent)) else { break };
+        let Some(cut) = best_cut(&rest, width.saturating_sub(indent)) else {
+            break;
+        };
         done.push(format!("{:indent$}{}", "", rest[..cut].trim_end()));
         rest = rest[cut..].trim_start().to_owned();
         indent = INDENT;
@@ -215,7 +262,9 @@ pub(super) fn lines(line: &str, width: usize) -> Vec<String> {
 
 /// Columns of a line: combining marks take none.
 fn columns(text: &str) -> usize {
-    text.chars().filter(|c| !('\u{300}'..'\u{370}').contains(c)).count()
+    text.chars()
+        .filter(|c| !('\u{300}'..'\u{370}').contains(c))
+        .count()
 }
 
 /// The last place outside of as many parentheses as possible at which the first part fits, else the

@@ -49,6 +49,10 @@ fn derivatives_agree_with_finite_differences() {
             if evaluate(&g, &point, &[expr])[0].abs() > 1e3 {
                 return Ok(());
             }
+            // Zero times infinity, from parts that leave the range of doubles.
+            if exact.is_nan() {
+                return Ok(());
+            }
             judged.set(judged.get() + 1);
             prop_assert!(
                 close(exact, narrow, 1e-5),
@@ -169,8 +173,7 @@ fn values_stay_in_their_intervals() {
             if interval.lo > -1e3 && interval.hi < 1e3 {
                 bounded.set(bounded.get() + 1);
             }
-            // Exponentials underflow to zero.
-            if value == 0.0 && !grows_exponentially(&g, part) {
+            if value == 0.0 && !can_underflow(&g, part) {
                 prop_assert!(!intervals.cannot_vanish(&g, part), "{}", show(&g, part));
             }
         }
@@ -179,12 +182,12 @@ fn values_stay_in_their_intervals() {
     assert!(bounded.get() > 3000);
 }
 
-fn grows_exponentially(g: &Graph, root: Expr) -> bool {
-    g.in_order(&[root]).iter().any(|&e| {
-        matches!(
-            g.node(e),
-            Node::Power(..) | Node::Function(Function::Exp, _)
-        )
+/// Exponentials and high powers, which underflow.
+fn can_underflow(g: &Graph, root: Expr) -> bool {
+    g.in_order(&[root]).iter().any(|&e| match g.node(e) {
+        Node::Power(..) | Node::Function(Function::Exp, _) => true,
+        Node::Product(factors) => factors.iter().any(|f| f.exponent.abs() > 16),
+        _ => false,
     })
 }
 

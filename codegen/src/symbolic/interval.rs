@@ -388,9 +388,15 @@ impl Range {
         }
     }
 
-    /// `a^b` of a base that is not negative, where the power is real.
+    /// `a^b`. The exponent may be an integer by chance, so a negative base has a power.
     fn real_power(self, exponent: Self) -> Self {
-        let base = self.interval.meet(0.0, f64::INFINITY);
+        let base = self.interval;
+        if base.lo < 0.0 {
+            return Self {
+                interval: Interval::ALL,
+                nonzero: self.nonzero,
+            };
+        }
         let e = exponent.interval;
         let corners = [
             base.lo.powf(e.lo),

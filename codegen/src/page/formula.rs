@@ -1,0 +1,319 @@
+//! Expressions of the graph as formulas for people.
+
+use rustc_hash::FxHashMap;
+
+use super::letters::Letter;
+use super::lexicon::{Lexicon, Rank};
+use super::math::Math;
+use crate::symbolic::{Expr, Factor, Function, Graph, Node, Rational, Relation, Term};
+
+/// A part that would print wider than this becomes a letter of its own, defined apart.
+const WIDEST_PART: usize = 160;
+/// A part that nests deeper than this becomes a letter of its own.
+const DEEPEST_PART: usize = 12;
+
+/// A formula and what it takes for granted.
+#[derive(Debug, Clone)]
+pub(super) struct Set {
+    /// The formula.
+    pub(super) math: Math,
+    /// Named quantities and parts with letters that occur in it, in order of appearance.
+    pub(super) wants: Vec<Expr>,
+    width: usize,
+    depth: usize,
+}
+
+/// Sets expressions as formulas.
+#[derive(Debug, Clone)]
+pub(super) struct Setter {
+    lexicon: Lexicon,
+    /// Parts that got a letter, by first use.
+    parts: FxHashMap<Expr, usize>,
+}
+
+impl Setter {
+    pub(super) fn new(lexicon: Lexicon) -> Self {
+        Self { lexicon, parts: FxHashMap::default() }
+    }
+
+    /// Letters of symbols and names.
+    pub(super) fn lexicon(&self) -> &Lexicon {
+        &self.lexicon
+    }
+
+    /// Letter of a symbol, a name, an unknown or a part.
+    pub(super) fn letter(&mut self, graph: &Graph, expr: Expr) -> Letter {
+        match graph.node(expr) {
+            Node::Named(_) | Node::Symbol(_) => self.lexicon.letter(graph, expr),
+            Node::Solution { system, row } => {
+                Letter::plain("z").above(&(system + 1).to_string()).below(&(row + 1).to_string())
+            }
+            _ => {
+                let next = self.parts.len() + 1;
+                let number = *self.parts.entry(expr).or_insert(next);
+                Letter::plain("c").below(&number.to_string())
+            }
+        }
+    }
+
+    /// The formula of an expression; what is large inside gets letters.
+    pub(super) fn set(&mut self, graph: &Graph, expr: Expr) -> Set {
+        let mut known: FxHashMap<Expr, Set> = FxHashMap::default();
+        for part in visible(graph, expr) {
+            let set = self.step(graph, part, &known);
+            let large = part != expr && (set.width > WIDEST_PART || set.depth > DEEPEST_PART);
+            let set = if large { self.leaf(graph, part, true) } else { set };
+            known.insert(part, set);
+        }
+        known.remove(&expr).unwrap_or_else(|| self.leaf(graph, expr, false))
+    }
+
+    fn leaf(&mut self, graph: &Graph, expr: Expr, wanted: bool) -> Set {
+        let math = Math::Letter(self.letter(graph, expr));
+        let width = math.width();
+        Set { math, wants: if wanted { vec![expr] } else { Vec::new() }, width, depth: 0 }
+    }
+
+    fn step(&mut self, graph: &Graph, expr: Expr, known: &FxHashMap<Expr, Set>) -> Set {
+        let math = |e: Expr| known[&e].math.clone();
+        let formula = match graph.node(expr) {
+            Node::Symbol(_) => return self.leaf(graph, expr, false),
+            Node::Named(_) | Node::Solution { .. } => return self.leaf(graph, expr, true),
+            Node::Number(n) => signed(n, |digits| digits),
+            Node::Sum(terms) => self.sum(graph, terms, known),
+            Node::Product(factors) => self.product(graph, &Rational::ONE, factors, known),
+            Node::Function(Function::Sqrt, a) => Math::Root(Box::new(math(*a))),
+            Node::Function(Function::Abs, a) => Math::Size(Box::new(math(*a))),
+            Node::Function(f, a) => Math::Call(function_name(*f), 1, Box::new(math(*a))),
+            Node::Atan2(y, x) => Math::Call(
+                "atan2",
+                1,
+                Box::new(Math::Vector { components: vec![math(*y), math(*x)], frame: None, column: false }),
+            ),
+            Node::Power(base, exponent) => power(math(*base), math(*exponent)),
+            Node::Choice { relation, compared, branches } => {
+                let sign = match relation {
+                    Relation::Less => "<",
+                    Relation::LessOrEqual => "≤",
+                };
+                let condition =
+                    Math::Row(vec![math(compared[0]), Math::Sign(sign), math(compared[1])]);
+                Math::Cases {
+                    value: Box::new(math(branches[0])),
+                    condition: Box::new(condition),
+                    otherwise: Box::new(math(branches[1])),
+                }
+            }
+        };
+        let mut wants: Vec<Expr> = Vec::new();
+        let mut depth = 0;
+        each_visible_part(graph, expr, |part| {
+            depth = depth.max(known[&part].depth + 1);
+            for &want in &known[&part].wants {
+                if !wants.contains(&want) {
+                    wants.push(want);
+                }
+            }
+        });
+        let width = formula.width();
+        Set { math: formula, wants, width, depth }
+    }
+
+    fn sum(&self, graph: &Graph, terms: &[Term], known: &FxHashMap<Expr, Set>) -> Math {
+        let mut ordered: Vec<&Term> = terms.iter().collect();
+        ordered.sort_by_cached_key(|term| self.reading_key(graph, term.expr));
+        let mut signed_terms: Vec<(bool, Math)> = ordered
+            .into_iter()
+            .map(|term| {
+                let minus = term.coefficient.is_negative();
+                let size = term.coefficient.abs();
+                let math = match graph.node(term.expr) {
+                    Node::Number(_) => signed(&size, |digits| digits),
+                    Node::Product(factors) => self.product(graph, &size, factors, known),
+                    _ if size.is_one() => known[&term.expr].math.clone(),
+                    _ => {
+                        let factor = [Factor { base: term.expr, exponent: 1 }];
+                        self.product(graph, &size, &factor, known)
+                    }
+                };
+                (minus, math)
+            })
+            .collect();
+        // A sum that can start with a plus does.
+        if signed_terms[0].0
+            && let Some(place) = signed_terms.iter().position(|(minus, _)| !minus)
+        {
+            let first = signed_terms.remove(place);
+            signed_terms.insert(0, first);
+        }
+        Math::Sum(signed_terms)
+    }
+
+    fn product(
+        &self,
+        graph: &Graph,
+        coefficient: &Rational,
+        factors: &[Factor],
+        known: &FxHashMap<Expr, Set>,
+    ) -> Math {
+        let mut factors: Vec<Factor> = factors.to_vec();
+        let tangents = take_tangents(graph, &mut factors);
+        let mut ordered: Vec<(Place, i32, Math)> = factors
+            .iter()
+            .map(|f| (self.place(graph, f.base), f.exponent, known[&f.base].math.clone()))
+            .collect();
+        ordered.sort_by_key(|row| row.0);
+        let (mut above, mut below) = (Vec::new(), Vec::new());
+        for (_, exponent, base) in ordered {
+            let target = if exponent > 0 { &mut above } else { &mut below };
+            target.push(raised(base, exponent.unsigned_abs()));
+        }
+        for (angle, exponent) in tangents {
+            above.push(Math::Call("tan", exponent, Box::new(known[&angle].math.clone())));
+        }
+        assemble(coefficient, above, below)
+    }
+
+    /// Terms follow the order of their first letters; a number comes last.
+    fn reading_key(&self, graph: &Graph, term: Expr) -> Vec<(Place, i32)> {
+        let mut key: Vec<(Place, i32)> = match graph.node(term) {
+            Node::Product(factors) => {
+                factors.iter().map(|f| (self.place(graph, f.base), -f.exponent)).collect()
+            }
+            Node::Number(_) => return vec![(Place(u8::MAX, term), 0)],
+            _ => vec![(self.place(graph, term), -1)],
+        };
+        key.sort_unstable();
+        key
+    }
+
+    /// Where a factor stands: sums, then symbols by rank, names, functions.
+    fn place(&self, graph: &Graph, base: Expr) -> Place {
+        let group = match graph.node(base) {
+            Node::Sum(_) => 0,
+            Node::Symbol(_) => match self.lexicon.rank(base) {
+                Rank::Constant => 1,
+                Rank::Position => 2,
+                Rank::Input => 3,
+                Rank::Velocity => 4,
+                Rank::Acceleration => 6,
+            },
+            Node::Named(_) | Node::Solution { .. } => 5,
+            _ => 7,
+        };
+        Place(group, base)
+    }
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+struct Place(u8, Expr);
+
+/// `coefficient · above / below`
+pub(super) fn assemble(coefficient: &Rational, mut above: Vec<Math>, mut below: Vec<Math>) -> Math {
+    if below.is_empty() {
+        if !coefficient.is_one() || above.is_empty() {
+            above.insert(0, signed(coefficient, |digits| digits));
+        }
+        return Math::product(above);
+    }
+    let number = coefficient.to_big();
+    let (n, d) = (number.numer().to_string(), number.denom().to_string());
+    if n != "1" || above.is_empty() {
+        above.insert(0, Math::Integer(n));
+    }
+    if d != "1" {
+        below.insert(0, Math::Integer(d));
+    }
+    Math::fraction(Math::product(above), Math::product(below))
+}
+
+/// A number; `wrap` gets its digits. Only a number that stands alone can be negative.
+pub(super) fn signed(number: &Rational, wrap: impl Fn(Math) -> Math) -> Math {
+    let big = number.abs().to_big();
+    let digits = if big.is_integer() {
+        Math::Integer(big.numer().to_string())
+    } else {
+        Math::Ratio(big.numer().to_string(), big.denom().to_string())
+    };
+    let size = wrap(digits);
+    if number.is_negative() { Math::Sum(vec![(true, size)]) } else { size }
+}
+
+fn raised(base: Math, exponent: u32) -> Math {
+    match base {
+        base if exponent == 1 => base,
+        Math::Call(name, 1, argument) => Math::Call(name, exponent, argument),
+        base => power(base, Math::Integer(exponent.to_string())),
+    }
+}
+
+fn power(base: Math, exponent: Math) -> Math {
+    let base = match base {
+        simple @ (Math::Letter(_) | Math::Integer(_) | Math::Root(_) | Math::Size(_)) => simple,
+        other => Math::Brackets(Box::new(other)),
+    };
+    Math::Power(Box::new(base), Box::new(exponent))
+}
+
+/// Takes `sin^a cos^-b` of the same angle together: angles with the exponents of their tangents.
+fn take_tangents(graph: &Graph, factors: &mut Vec<Factor>) -> Vec<(Expr, u32)> {
+    let angle = |base: Expr, kind: Function| match graph.node(base) {
+        Node::Function(function, angle) if *function == kind => Some(*angle),
+        _ => None,
+    };
+    let mut tangents = Vec::new();
+    for i in 0..factors.len() {
+        let Some(of) = angle(factors[i].base, Function::Sin).filter(|_| factors[i].exponent > 0) else {
+            continue;
+        };
+        let cosine = |f: &Factor| f.exponent < 0 && angle(f.base, Function::Cos) == Some(of);
+        let Some(j) = factors.iter().position(cosine) else { continue };
+        let shared = factors[i].exponent.min(-factors[j].exponent);
+        factors[i].exponent -= shared;
+        factors[j].exponent += shared;
+        tangents.push((of, shared.unsigned_abs()));
+    }
+    factors.retain(|f| f.exponent != 0);
+    tangents
+}
+
+/// The parts that are printed with an expression: not those behind names and numeric solutions.
+fn each_visible_part(graph: &Graph, expr: Expr, visit: impl FnMut(Expr)) {
+    if !matches!(graph.node(expr), Node::Named(_) | Node::Solution { .. }) {
+        graph.for_each_part(expr, visit);
+    }
+}
+
+/// The printed parts of an expression, parts before wholes.
+pub(super) fn visible(graph: &Graph, root: Expr) -> Vec<Expr> {
+    let mut order = Vec::new();
+    let mut seen = rustc_hash::FxHashSet::default();
+    let mut stack = vec![(root, false)];
+    while let Some((expr, parts_done)) = stack.pop() {
+        if parts_done {
+            order.push(expr);
+        } else if seen.insert(expr) {
+            stack.push((expr, true));
+            each_visible_part(graph, expr, |part| stack.push((part, false)));
+        }
+    }
+    order
+}
+
+fn function_name(function: Function) -> &'static str {
+    match function {
+        Function::Sin => "sin",
+        Function::Cos => "cos",
+        Function::Asin => "arcsin",
+        Function::Acos => "arccos",
+        Function::Atan => "arctan",
+        Function::Sinh => "sinh",
+        Function::Cosh => "cosh",
+        Function::Tanh => "tanh",
+        Function::Exp => "exp",
+        Function::Ln => "ln",
+        Function::Sqrt => "sqrt",
+        Function::Abs => "abs",
+        Function::Sign => "sgn",
+    }
+}

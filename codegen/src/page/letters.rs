@@ -1,0 +1,213 @@
+//! Letters: how a name is written in a formula.
+//!
+//! `omega_1` is ω with index 1, `theta` is θ, `x_G` is x with the label G, `m0` is m with index 0,
+//! `gamma_dot` is γ with a dot: names come apart as in [`crate::symbolic::print`].
+
+use crate::symbolic::print::Name;
+
+/// Greek names with their Unicode letter and their LaTeX command.
+pub(super) const GREEK: &[(&str, char, &str)] = &[
+    ("alpha", 'α', "alpha"),
+    ("beta", 'β', "beta"),
+    ("gamma", 'γ', "gamma"),
+    ("delta", 'δ', "delta"),
+    ("epsilon", 'ε', "varepsilon"),
+    ("zeta", 'ζ', "zeta"),
+    ("eta", 'η', "eta"),
+    ("theta", 'θ', "theta"),
+    ("iota", 'ι', "iota"),
+    ("kappa", 'κ', "kappa"),
+    ("lambda", 'λ', "lambda"),
+    ("mu", 'μ', "mu"),
+    ("nu", 'ν', "nu"),
+    ("xi", 'ξ', "xi"),
+    ("pi", 'π', "pi"),
+    ("rho", 'ρ', "rho"),
+    ("sigma", 'σ', "sigma"),
+    ("tau", 'τ', "tau"),
+    ("upsilon", 'υ', "upsilon"),
+    ("phi", 'φ', "varphi"),
+    ("chi", 'χ', "chi"),
+    ("psi", 'ψ', "psi"),
+    ("omega", 'ω', "omega"),
+    ("Gamma", 'Γ', "Gamma"),
+    ("Delta", 'Δ', "Delta"),
+    ("Theta", 'Θ', "Theta"),
+    ("Lambda", 'Λ', "Lambda"),
+    ("Xi", 'Ξ', "Xi"),
+    ("Pi", 'Π', "Pi"),
+    ("Sigma", 'Σ', "Sigma"),
+    ("Phi", 'Φ', "Phi"),
+    ("Psi", 'Ψ', "Psi"),
+    ("Omega", 'Ω', "Omega"),
+];
+
+/// A letter with its dots, index and exponent-like mark.
+#[derive(Debug, Clone, PartialEq, Eq, Hash, Default)]
+pub struct Letter {
+    /// What is written: one letter, Greek or Latin, or a word.
+    pub base: String,
+    /// Whether it names a vector or a matrix.
+    pub bold: bool,
+    /// Dots above: derivatives by time.
+    pub dots: u8,
+    /// Labels below, in order.
+    pub below: Vec<String>,
+    /// Mark above, such as the 0 of a⁰.
+    pub above: Option<String>,
+    /// δ before a virtual quantity, d before a differential, ∂ before a partial one.
+    pub before: Option<char>,
+}
+
+impl Letter {
+    /// A letter as it stands.
+    pub fn plain(base: &str) -> Self {
+        Self { base: base.to_owned(), ..Self::default() }
+    }
+
+    /// A bold letter: a vector or a matrix.
+    pub fn bold(base: &str) -> Self {
+        Self { bold: true, ..Self::plain(base) }
+    }
+
+    /// The letter of an identifier.
+    pub fn of(name: &str) -> Self {
+        let name = Name::parse(name);
+        Self {
+            base: label(&name.base),
+            dots: u8::try_from(name.dots).unwrap_or(u8::MAX),
+            below: name.subscripts.iter().map(|part| label(part)).collect(),
+            ..Self::default()
+        }
+    }
+
+    /// With a label below.
+    #[must_use]
+    pub fn below(mut self, name: &str) -> Self {
+        self.below.push(name.to_owned());
+        self
+    }
+
+    /// With the labels that another letter is written with, base included.
+    #[must_use]
+    pub fn below_letter(mut self, other: &Self) -> Self {
+        self.below.push(other.to_string());
+        self
+    }
+
+    /// With a mark above.
+    #[must_use]
+    pub fn above(mut self, mark: &str) -> Self {
+        self.above = Some(mark.to_owned());
+        self
+    }
+
+    /// With δ, d or ∂ before it.
+    #[must_use]
+    pub fn before(mut self, sign: char) -> Self {
+        self.before = Some(sign);
+        self
+    }
+
+    /// One dot more.
+    #[must_use]
+    pub fn dot(mut self) -> Self {
+        self.dots = self.dots.saturating_add(1);
+        self
+    }
+
+    /// Whether the base is a word rather than a letter.
+    pub fn is_word(&self) -> bool {
+        self.base.chars().nth(1).is_some()
+    }
+}
+
+/// A Greek name as its letter, anything else as it is.
+fn label(part: &str) -> String {
+    GREEK.iter().find(|row| row.0 == part).map_or_else(|| part.to_owned(), |row| row.1.to_string())
+}
+
+/// The LaTeX command of a Greek letter.
+pub(super) fn greek_command(letter: char) -> Option<&'static str> {
+    GREEK.iter().find(|row| row.1 == letter).map(|row| row.2)
+}
+
+/// Unicode text: `ω̇₁`, `x_G`, `a⁰_A,x`.
+impl std::fmt::Display for Letter {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        if let Some(sign) = self.before {
+            write!(f, "{sign}")?;
+        }
+        f.write_str(&self.base)?;
+        match self.dots {
+            0 => {}
+            1 => f.write_str("\u{307}")?,
+            2 => f.write_str("\u{308}")?,
+            _ => f.write_str("\u{20db}")?,
+        }
+        if let Some(mark) = &self.above {
+            f.write_str(&mark.chars().map(superscript).collect::<String>())?;
+        }
+        if self.below.is_empty() {
+            return Ok(());
+        }
+        let digits = |part: &String| part == "i" || part.chars().all(|c| c.is_ascii_digit());
+        let numbers = self.below.iter().take_while(|part| digits(part)).count();
+        // Digits sit below the line while only digits came before them.
+        if numbers > 0 {
+            let joined = self.below[..numbers].join(",");
+            f.write_str(&joined.chars().map(subscript).collect::<String>())?;
+        }
+        if numbers < self.below.len() {
+            write!(f, "_{}", self.below[numbers..].join(","))?;
+        }
+        Ok(())
+    }
+}
+
+fn subscript(c: char) -> char {
+    match c.to_digit(10) {
+        Some(digit) => char::from_u32(0x2080 + digit).unwrap_or(c),
+        None if c == 'i' => 'ᵢ',
+        None => c,
+    }
+}
+
+/// Superscript form of digits and signs.
+pub(super) fn superscript(c: char) -> char {
+    match c {
+        '1' => '¹',
+        '2' => '²',
+        '3' => '³',
+        '-' | '−' => '⁻',
+        'T' => 'ᵀ',
+        _ => match c.to_digit(10) {
+            Some(digit) => char::from_u32(0x2070 + digit).unwrap_or(c),
+            None => c,
+        },
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Letter;
+
+    #[test]
+    fn names_become_letters() {
+        let cases = [
+            ("omega_1", "ω₁"),
+            ("theta", "θ"),
+            ("x_G", "x_G"),
+            ("m0", "m₀"),
+            ("M_d", "M_d"),
+            ("gamma_dot", "γ\u{307}"),
+            ("gamma_dot_dot", "γ\u{308}"),
+            ("omega_1_dot", "ω\u{307}₁"),
+            ("x_G_dot", "x\u{307}_G"),
+            ("speed", "speed"),
+        ];
+        for (name, written) in cases {
+            assert_eq!(Letter::of(name).to_string(), written, "{name}");
+        }
+    }
+}

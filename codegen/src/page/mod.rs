@@ -1,0 +1,115 @@
+//! The derivation as a page for people: Unicode text, LaTeX, HTML.
+//!
+//! [`page`] writes the derivation of a mechanism from its frames to its equations. A [`Page`] knows
+//! neither its format nor the graph behind it; [`text()`], [`latex()`] and [`html()`] set it.
+
+mod explicit;
+mod formula;
+mod html;
+mod latex;
+mod letters;
+mod lexicon;
+mod math;
+mod mathml;
+mod picture;
+mod present;
+mod sections;
+mod text;
+mod units;
+mod writer;
+
+use appell_spec::mechanism::Mechanism;
+
+pub use html::html;
+pub use latex::latex;
+pub use letters::Letter;
+pub use math::{Equation, Math};
+pub use text::text;
+
+use crate::mechanics::{Derivation, finding};
+use writer::Writer;
+
+/// How far a page reads. Each stage holds everything before it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Stage {
+    /// Frames, constraints, velocities, accelerations.
+    Kinematics,
+    /// Acceleration energy, mass matrix, bias.
+    Energy,
+    /// Pseudo-forces, Appell's equations, accelerations, energies.
+    Equations,
+    /// Jacobians of the motion.
+    Jacobians,
+    /// Constraint forces and outputs as well.
+    All,
+}
+
+/// A page: what it is about, and its sections.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Page {
+    /// What it is about.
+    pub title: String,
+    /// Where the model comes from.
+    pub source: Option<String>,
+    /// Its sections, in reading order.
+    pub sections: Vec<Section>,
+}
+
+/// A section.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Section {
+    /// Its idea, in a few words.
+    pub heading: Vec<Span>,
+    /// What it says.
+    pub blocks: Vec<Block>,
+}
+
+/// A part of a section.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Block {
+    /// A short text.
+    Sentence(Vec<Span>),
+    /// Quantities with what they mean.
+    Table(Table),
+    /// Frames, each turned from the one before.
+    Chain(Chain),
+    /// Displayed equations, aligned.
+    Equations(Vec<Equation>),
+}
+
+/// Text, or a formula in the text.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Span {
+    /// Text as it is: each format escapes it.
+    Text(String),
+    /// A formula.
+    Math(Math),
+}
+
+/// Rows of cells without a head: the columns explain themselves.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Table {
+    /// What is listed; empty where the text before says it.
+    pub title: String,
+    /// Rows of cells.
+    pub rows: Vec<Vec<Vec<Span>>>,
+}
+
+/// A chain of frames.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Chain {
+    /// Where it starts.
+    pub start: String,
+    /// What is turned, and the frame that this gives.
+    pub links: Vec<(Vec<Span>, String)>,
+}
+
+/// Writes the derivation of a mechanism, up to a stage.
+///
+/// The derivation is the one of this mechanism; it only grows by the expressions that the page
+/// shows. Findings are those of the reactions, at [`Stage::All`] alone.
+pub fn page(mechanism: &Mechanism, derivation: &mut Derivation, stage: Stage) -> finding::Stage<Page> {
+    let mut writer = Writer::new(mechanism, derivation);
+    let sections = sections::sections(&mut writer, stage)?;
+    Ok(Page { title: mechanism.title.clone(), source: mechanism.source.clone(), sections })
+}

@@ -1,0 +1,48 @@
+//! Accelerations of centres of mass, angular accelerations of bodies.
+
+use super::super::letters::Letter;
+use super::super::math::{Equation, Math};
+use super::super::writer::Writer;
+use super::super::{Block, Section};
+use super::{math, with, words};
+use crate::mechanics::gibbs_appell::along;
+use crate::symbolic::vector;
+
+/// Accelerations, linear in the pseudo-accelerations.
+pub(super) fn section(w: &mut Writer<'_>) -> Section {
+    let mut equations = Vec::new();
+    let mut shown = Vec::new();
+    let accelerations = w.derivation.symbols.accelerations.clone();
+    for (index, body) in w.derivation.bodies.clone().into_iter().enumerate() {
+        let centre = w.mechanism.bodies[index].centre;
+        if !shown.contains(&centre) {
+            shown.push(centre);
+            let a = along(w.graph(), body.centre.bias, &body.centre.partial, &accelerations);
+            let left = Math::Letter(Letter::bold("a").below(w.point(centre)));
+            equations.push(Equation::new(left, w.vector(a, body.centre.velocity.frame)));
+        }
+        if let Some(rotation) = body.rotation
+            && rotation.velocity.v != vector::ZERO
+        {
+            let alpha = along(w.graph(), rotation.bias, &rotation.partial, &accelerations);
+            let left = Math::Letter(Letter::bold("α").below(&body.name));
+            equations.push(Equation::new(left, w.vector(alpha, rotation.velocity.frame)));
+        }
+    }
+    let rule = Math::Row(vec![
+        Math::Letter(Letter::bold("a")),
+        Math::Sign("="),
+        Math::Letter(Letter::bold("v").dot()),
+        Math::Sign("+"),
+        Math::Letter(Letter::bold("Ω")),
+        Math::Sign("×"),
+        Math::Letter(Letter::bold("v")),
+    ]);
+    let mut blocks = vec![Block::Sentence(vec![
+        words("In a turning frame "),
+        math(rule),
+        words(", with the components differentiated one by one; angular accelerations likewise."),
+    ])];
+    blocks.extend(with(w, "", equations));
+    super::section("Accelerations", blocks)
+}

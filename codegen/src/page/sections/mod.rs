@@ -1,0 +1,93 @@
+//! The sections of the page, in reading order.
+
+mod accelerations;
+mod constraints;
+mod energy;
+mod equations;
+mod forces;
+mod jacobians;
+mod placement;
+mod quantities;
+mod reactions;
+mod velocities;
+
+use super::math::{Equation, Math};
+use super::writer::Writer;
+use super::{Block, Section, Span, Stage};
+use crate::mechanics::finding;
+
+/// The sections up to a stage.
+pub(super) fn sections(w: &mut Writer<'_>, stage: Stage) -> finding::Stage<Vec<Section>> {
+    let mut sections = vec![
+        quantities::section(w),
+        placement::section(w),
+        constraints::section(w),
+        velocities::section(w),
+        accelerations::section(w),
+    ];
+    if stage >= Stage::Energy {
+        sections.push(energy::section(w));
+        sections.push(energy::derivatives(w));
+    }
+    if stage >= Stage::Equations {
+        sections.push(forces::section(w));
+        sections.push(equations::appell(w));
+        sections.push(equations::motion(w));
+        sections.push(equations::energies(w));
+    }
+    if stage >= Stage::Jacobians {
+        sections.push(jacobians::section(w));
+    }
+    if stage >= Stage::All {
+        sections.extend(reactions::section(w)?);
+        sections.extend(quantities::outputs(w));
+    }
+    Ok(sections)
+}
+
+/// A section with a heading of words.
+fn section(heading: &str, blocks: Vec<Block>) -> Section {
+    Section { heading: vec![words(heading)], blocks }
+}
+
+fn words(text: &str) -> Span {
+    Span::Text(text.to_owned())
+}
+
+fn sentence(text: &str) -> Block {
+    Block::Sentence(vec![words(text)])
+}
+
+fn math(math: Math) -> Span {
+    Span::Math(math)
+}
+
+/// `left = right` in the text.
+fn equality(left: Math, right: Math) -> Span {
+    Span::Math(Math::Row(vec![left, Math::Sign("="), right]))
+}
+
+/// Definitions of what the equations use, then the equations after their sentence.
+fn with(w: &mut Writer<'_>, lead: &str, equations: Vec<Equation>) -> Vec<Block> {
+    let mut blocks = w.definitions();
+    if !lead.is_empty() {
+        blocks.push(sentence(lead));
+    }
+    if !equations.is_empty() {
+        blocks.push(Block::Equations(equations));
+    }
+    blocks
+}
+
+/// `a, b and c`
+fn listed(items: Vec<Vec<Span>>) -> Vec<Span> {
+    let count = items.len();
+    let mut out = Vec::new();
+    for (k, item) in items.into_iter().enumerate() {
+        if k > 0 {
+            out.push(words(if k + 1 == count { " and " } else { ", " }));
+        }
+        out.extend(item);
+    }
+    out
+}

@@ -1,0 +1,58 @@
+//! What the letters mean: parameters, coordinates, inputs, signals, outputs.
+
+use appell_spec::mechanism::Label;
+
+use super::super::letters::Letter;
+use super::super::math::Math;
+use super::super::units::{unit, value};
+use super::super::writer::Writer;
+use super::super::{Block, Section, Span, Table};
+use super::{equality, math, words};
+use crate::mechanics::lower::Lowering;
+
+/// Tables of the quantities.
+pub(super) fn section(w: &mut Writer<'_>) -> Section {
+    let m = w.mechanism;
+    let plain = |label: &Label, second: String| {
+        vec![
+            vec![math(Math::Letter(Letter::of(&label.name)))],
+            vec![words(&second)],
+            vec![words(&label.about)],
+        ]
+    };
+    let mut blocks = Vec::new();
+    let mut table = |title: &str, rows: Vec<Vec<Vec<Span>>>| {
+        if !rows.is_empty() {
+            blocks.push(Block::Table(Table { title: title.to_owned(), rows }));
+        }
+    };
+    table("Parameters", m.parameters.iter().map(|p| plain(&p.label, value(&p.label, p.value))).collect());
+    table("Coordinates q", m.coordinates.iter().map(|q| plain(&q.label, unit(&q.label))).collect());
+    table("Inputs", m.inputs.iter().map(|u| plain(&u.label, unit(&u.label))).collect());
+    table("Known functions of time", m.signals.iter().map(|s| plain(&s.label, unit(&s.label))).collect());
+    super::section("Quantities", blocks)
+}
+
+/// The outputs of the spec.
+pub(super) fn outputs(w: &mut Writer<'_>) -> Option<Section> {
+    let mechanism = w.mechanism;
+    let mut rows = Vec::new();
+    for output in &mechanism.outputs {
+        let derivation = &mut *w.derivation;
+        let lowering = Lowering { symbols: &derivation.symbols, rates: &derivation.symbols.rates };
+        let Ok(expr) = lowering.lower(&mut derivation.algebra.graph, &output.value) else { continue };
+        let right = w.set(expr);
+        let left = Math::Letter(Letter::of(&output.label.name));
+        rows.push(vec![
+            vec![equality(left, right)],
+            vec![words(&unit(&output.label))],
+            vec![words(&output.label.about)],
+        ]);
+    }
+    if rows.is_empty() {
+        return None;
+    }
+    let mut blocks = w.definitions();
+    blocks.push(Block::Table(Table { title: String::new(), rows }));
+    Some(super::section("Outputs", blocks))
+}

@@ -1,0 +1,81 @@
+//! Angular velocities of frames and bodies, velocities of points.
+
+use appell_spec::mechanism::{Connection, FrameId, GROUND, LoadKind, PointId};
+
+use super::super::Section;
+use super::super::letters::Letter;
+use super::super::math::{Equation, Math};
+use super::super::writer::Writer;
+use super::{sentence, with};
+use crate::mechanics::frames::FrameVector;
+
+/// Velocities, each in the frame where it is shortest.
+pub(super) fn section(w: &mut Writer<'_>) -> Section {
+    let mut equations = Vec::new();
+    for frame in written_frames(w) {
+        let v = w.derivation.kinematics.frames.angular_velocity(frame);
+        equations.push(equation(w, frame_rate(&w.frame(frame)), v));
+    }
+    for body in w.derivation.bodies.clone() {
+        if let Some(rotation) = body.rotation {
+            equations.push(equation(w, Letter::bold("ω").below(&body.name), rotation.velocity));
+        }
+    }
+    for point in moving_points(w) {
+        let v = w.derivation.kinematics.velocity(point);
+        equations.push(equation(w, Letter::bold("v").below(w.point(point)), v));
+    }
+    let mut blocks = vec![sentence(
+        "Ω turns a frame, ω a body; each vector is written in the frame where it is shortest.",
+    )];
+    blocks.extend(with(w, "", equations));
+    super::section("Velocities", blocks)
+}
+
+/// Ω of a frame.
+pub(super) fn frame_rate(frame: &str) -> Letter {
+    Letter::bold("Ω").below(frame)
+}
+
+fn equation(w: &mut Writer<'_>, left: Letter, v: FrameVector) -> Equation {
+    Equation::new(Math::Letter(left), w.vector(v.v, v.frame))
+}
+
+/// The turning frames in which motions of bodies are written.
+pub(super) fn written_frames(w: &Writer<'_>) -> Vec<FrameId> {
+    let mut frames: Vec<FrameId> = Vec::new();
+    for body in &w.derivation.bodies {
+        let rotation = body.rotation.as_ref().map(|r| r.velocity.frame);
+        for frame in [Some(body.centre.velocity.frame), rotation].into_iter().flatten() {
+            if frame != GROUND && !frames.contains(&frame) {
+                frames.push(frame);
+            }
+        }
+    }
+    frames.sort_unstable();
+    frames
+}
+
+/// Centres of mass, then the other points that loads act on.
+fn moving_points(w: &Writer<'_>) -> Vec<PointId> {
+    let mut points: Vec<PointId> = w.mechanism.bodies.iter().map(|b| b.centre).collect();
+    for load in &w.mechanism.loads {
+        match &load.kind {
+            LoadKind::Force { on, reaction_on, .. } => {
+                points.push(*on);
+                points.extend(*reaction_on);
+            }
+            LoadKind::Spring { between: Connection::Points(a, b), .. }
+            | LoadKind::Damper { between: Connection::Points(a, b), .. } => points.extend([*a, *b]),
+            _ => {}
+        }
+    }
+    let mut once = Vec::new();
+    for point in points {
+        let moves = w.derivation.kinematics.velocity(point).v != crate::symbolic::vector::ZERO;
+        if moves && !once.contains(&point) {
+            once.push(point);
+        }
+    }
+    once
+}

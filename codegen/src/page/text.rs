@@ -1,0 +1,333 @@
+//! Unicode text: the page for a terminal or a plain-text handout.
+
+use super::letters::superscript;
+use super::math::{Equation, Math, Piece, left_width};
+use super::picture::Picture;
+use super::{Block, Chain, Page, Span, Table};
+
+/// Width of the page in characters.
+const WIDTH: usize = 100;
+/// Indent of what is displayed.
+const INDENT: usize = 4;
+
+/// The page as Unicode text.
+pub fn text(page: &Page) -> String {
+    let mut out = String::new();
+    let title = clean(&page.title);
+    line(&mut out, &title);
+    line(&mut out, &"═".repeat(columns(&title)));
+    if let Some(source) = &page.source {
+        line(&mut out, "");
+        paragraph(&mut out, &format!("After: {}", clean(source)));
+    }
+    for (index, section) in page.sections.iter().enumerate() {
+        let heading = format!("{}  {}", index + 1, spans(&section.heading));
+        line(&mut out, "");
+        line(&mut out, &heading);
+        line(&mut out, &"─".repeat(columns(&heading)));
+        for block in &section.blocks {
+            line(&mut out, "");
+            match block {
+                Block::Sentence(sentence) => paragraph(&mut out, &spans(sentence)),
+                Block::Table(t) => table(&mut out, t),
+                Block::Chain(c) => chain(&mut out, c),
+                Block::Equations(all) => equations(&mut out, all),
+            }
+        }
+    }
+    out
+}
+
+fn line(out: &mut String, text: &str) {
+    out.push_str(text.trim_end());
+    out.push('\n');
+}
+
+/// Text without characters that steer a terminal or turn the direction of writing.
+pub(super) fn clean(text: &str) -> String {
+    text.chars()
+        .map(|c| match c {
+            '\u{200b}'..='\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2060}'..='\u{206f}' | '\u{feff}' => '\u{fffd}',
+            c if c.is_control() => ' ',
+            c => c,
+        })
+        .collect()
+}
+
+fn spans(spans: &[Span]) -> String {
+    spans
+        .iter()
+        .map(|span| match span {
+            Span::Text(text) => clean(text),
+            Span::Math(math) => inline(math),
+        })
+        .collect()
+}
+
+/// Columns that a line takes.
+pub(super) fn columns(text: &str) -> usize {
+    text.chars().filter(|&c| !is_combining(c)).count()
+}
+
+/// Whether a character takes no column of its own.
+pub(super) fn is_combining(c: char) -> bool {
+    matches!(c, '\u{300}'..='\u{36f}' | '\u{20d0}'..='\u{20ff}')
+}
+
+/// Words in lines of at most `width` columns, where no word is longer.
+fn wrapped(text: &str, width: usize) -> Vec<String> {
+    let mut lines = vec![String::new()];
+    let mut used = 0;
+    for word in text.split(' ').filter(|word| !word.is_empty()) {
+        if used > 0 && used + 1 + columns(word) > width {
+            lines.push(String::new());
+            used = 0;
+        }
+        if let Some(current) = lines.last_mut() {
+            if used > 0 {
+                current.push(' ');
+                used += 1;
+            }
+            current.push_str(word);
+            used += columns(word);
+        }
+    }
+    lines
+}
+
+fn paragraph(out: &mut String, text: &str) {
+    wrapped(text, WIDTH).iter().for_each(|l| line(out, l));
+}
+
+/// Columns as wide as their cells need; the last one wraps.
+fn table(out: &mut String, table: &Table) {
+    const GAP: usize = 3;
+    let rows: Vec<Vec<String>> =
+        table.rows.iter().map(|row| row.iter().map(|cell| spans(cell)).collect()).collect();
+    let count = rows.iter().map(Vec::len).max().unwrap_or(0);
+    let widths: Vec<usize> = (0..count)
+        .map(|k| rows.iter().filter_map(|row| row.get(k)).map(|cell| columns(cell)).max().unwrap_or(0))
+        .collect();
+    if !table.title.is_empty() {
+        line(out, &format!("  {}", clean(&table.title)));
+    }
+    for row in rows {
+        let Some((last, firsts)) = row.split_last() else { continue };
+        let mut head = " ".repeat(INDENT);
+        for (cell, &width) in firsts.iter().zip(&widths) {
+            head.push_str(cell);
+            head.push_str(&" ".repeat(width + GAP - columns(cell)));
+        }
+        let indent = columns(&head);
+        for (k, part) in wrapped(last, WIDTH.saturating_sub(indent).max(WIDTH / 4)).iter().enumerate() {
+            let start = if k == 0 { head.clone() } else { " ".repeat(indent) };
+            line(out, &format!("{start}{part}"));
+        }
+    }
+}
+
+fn chain(out: &mut String, chain: &Chain) {
+    let mut current = format!("{}{}", " ".repeat(INDENT), clean(&chain.start));
+    for (label, to) in &chain.links {
+        let link = format!(" ──{}─▶ {}", arrow_label(&spans(label)), clean(to));
+        if columns(&current) + columns(&link) > WIDTH {
+            line(out, &current);
+            current = " ".repeat(2 * INDENT);
+        }
+        current.push_str(&link);
+    }
+    line(out, &current);
+}
+
+fn arrow_label(label: &str) -> String {
+    if label.is_empty() { "─".to_owned() } else { format!(" {label} ─") }
+}
+
+/// Equations below each other, aligned at their equality signs.
+fn equations(out: &mut String, equations: &[Equation]) {
+    let left_width = left_width(equations);
+    let mut after_tall = false;
+    for (index, equation) in equations.iter().enumerate() {
+        let display = equation.display(WIDTH - INDENT, left_width);
+        let (head, indent) = match display.left {
+            Some(left) => {
+                let left = picture(left);
+                let pad = " ".repeat(INDENT + left_width.saturating_sub(left.width()));
+                let head = Picture::line(&pad).beside(&left).beside(&Picture::line(" = "));
+                let indent = head.width();
+                (head, indent)
+            }
+            None => (Picture::line(&" ".repeat(INDENT)), 2 * INDENT),
+        };
+        let mut whole: Vec<Picture> = Vec::new();
+        for (k, pieces) in display.lines.iter().enumerate() {
+            let start = if k == 0 { head.clone() } else { Picture::line(&" ".repeat(indent)) };
+            whole.push(start.beside(&pieces_picture(pieces)));
+        }
+        // Air around what is taller than a line.
+        let tall = whole.len() > 1 || whole.iter().any(|p| p.height() > 1);
+        if index > 0 && (tall || after_tall) {
+            line(out, "");
+        }
+        after_tall = tall;
+        for part in whole {
+            part.lines().for_each(|l| line(out, l));
+        }
+    }
+}
+
+fn pieces_picture(pieces: &[Piece<'_>]) -> Picture {
+    let mut picture = Picture::line("");
+    let (mut after_whole, mut after_minus) = (false, false);
+    for piece in pieces {
+        let space = if picture.width() == 0 { "" } else { " " };
+        let next = match piece {
+            Piece::Whole(math) => {
+                let next = self::picture(math);
+                // A minus must not run into the bar of a quotient.
+                let runs_in = after_whole || (next.height() > 1 && after_minus);
+                let gap = if runs_in { " " } else { "" };
+                Picture::line(gap).beside(&next)
+            }
+            Piece::Sign { minus, first: true } => Picture::line(if *minus { "−" } else { "" }),
+            Piece::Sign { minus, .. } => {
+                Picture::line(&format!("{space}{} ", if *minus { "−" } else { "+" }))
+            }
+            Piece::Equals => Picture::line(&format!("{space}= ")),
+            Piece::Open => Picture::line(if after_whole { " (" } else { "(" }),
+            Piece::Close => Picture::line(")"),
+        };
+        after_whole = matches!(piece, Piece::Whole(_) | Piece::Close);
+        after_minus = matches!(piece, Piece::Sign { minus: true, first: true });
+        picture = picture.beside(&next);
+    }
+    picture
+}
+
+/// A formula that may take several lines: matrices, columns and quotients of sums do.
+fn picture(math: &Math) -> Picture {
+    match math {
+        Math::Matrix(rows) => {
+            let cells = rows.iter().map(|row| row.iter().map(inline).collect()).collect();
+            Picture::bracketed(cells)
+        }
+        Math::Vector { components, frame, column: true } => {
+            let cells = components.iter().map(|c| vec![inline(c)]).collect();
+            let mut picture = Picture::bracketed(cells);
+            if let Some(frame) = frame {
+                picture.append_to_last(&format!(" {}", clean(frame)));
+            }
+            picture
+        }
+        Math::Fraction(above, below) if is_tall(above) || is_tall(below) => {
+            Picture::quotient(&inline(above), &inline(below))
+        }
+        Math::Row(factors) => factors.iter().enumerate().fold(Picture::line(""), |picture, (k, factor)| {
+            let gap = if k == 0 { "" } else { " " };
+            picture.beside(&Picture::line(gap)).beside(&self::picture(factor))
+        }),
+        other => Picture::line(&inline(other)),
+    }
+}
+
+fn is_tall(part: &Math) -> bool {
+    matches!(part, Math::Sum(_)) || part.width() > 12
+}
+
+/// A formula on one line.
+pub(super) fn inline(math: &Math) -> String {
+    match math {
+        Math::Integer(digits) => digits.clone(),
+        Math::Ratio(n, d) => ratio(n, d),
+        Math::Letter(letter) => clean(&letter.to_string()),
+        Math::Words(words) => clean(words),
+        Math::Sign(sign) => (*sign).to_owned(),
+        Math::Row(factors) => factors.iter().map(inline).collect::<Vec<_>>().join(" "),
+        Math::Sum(terms) => sum(terms),
+        Math::Fraction(above, below) => {
+            let above = match **above {
+                Math::Sum(_) => format!("({})", inline(above)),
+                _ => inline(above),
+            };
+            format!("{above}/{}", divisor(below))
+        }
+        Math::Power(base, exponent) => match &**exponent {
+            Math::Integer(digits) => {
+                format!("{}{}", inline(base), digits.chars().map(superscript).collect::<String>())
+            }
+            other => format!("{}^({})", inline(base), inline(other)),
+        },
+        Math::Call(name, exponent, argument) => {
+            let raised: String =
+                if *exponent == 1 { String::new() } else { exponent.to_string().chars().map(superscript).collect() };
+            match **argument {
+                Math::Letter(_) => format!("{name}{raised} {}", inline(argument)),
+                Math::Vector { .. } => format!("{name}{raised}{}", inline(argument)),
+                _ => format!("{name}{raised}({})", inline(argument)),
+            }
+        }
+        Math::Root(inner) => match **inner {
+            Math::Letter(_) | Math::Integer(_) => format!("√{}", inline(inner)),
+            _ => format!("√({})", inline(inner)),
+        },
+        Math::Size(inner) => format!("|{}|", inline(inner)),
+        Math::Brackets(inner) => format!("({})", inline(inner)),
+        Math::Vector { components, frame, .. } => {
+            let components: Vec<String> = components.iter().map(inline).collect();
+            match frame {
+                Some(frame) => format!("[{}] {}", components.join(",  "), clean(frame)),
+                None => format!("({})", components.join(", ")),
+            }
+        }
+        Math::Matrix(rows) => {
+            let rows: Vec<String> =
+                rows.iter().map(|row| row.iter().map(inline).collect::<Vec<_>>().join(", ")).collect();
+            format!("[{}]", rows.join("; "))
+        }
+        Math::Cases { value, condition, otherwise } => {
+            format!("({} if {}, else {})", inline(value), inline(condition), inline(otherwise))
+        }
+    }
+}
+
+fn divisor(below: &Math) -> String {
+    match below {
+        Math::Letter(_) | Math::Integer(_) | Math::Power(..) | Math::Call(..) | Math::Brackets(_) => {
+            inline(below)
+        }
+        _ => format!("({})", inline(below)),
+    }
+}
+
+fn sum(terms: &[(bool, Math)]) -> String {
+    let mut out = String::new();
+    for (index, (minus, term)) in terms.iter().enumerate() {
+        match (index, minus) {
+            (0, false) => {}
+            (0, true) => out.push('−'),
+            (_, false) => out.push_str(" + "),
+            (_, true) => out.push_str(" − "),
+        }
+        match term {
+            Math::Sum(_) => out.push_str(&format!("({})", inline(term))),
+            _ => out.push_str(&inline(term)),
+        }
+    }
+    out
+}
+
+fn ratio(n: &str, d: &str) -> String {
+    let known = match (n, d) {
+        ("1", "2") => "½",
+        ("1", "3") => "⅓",
+        ("2", "3") => "⅔",
+        ("1", "4") => "¼",
+        ("3", "4") => "¾",
+        ("1", "8") => "⅛",
+        ("3", "8") => "⅜",
+        ("5", "8") => "⅝",
+        ("7", "8") => "⅞",
+        _ => return format!("{n}/{d}"),
+    };
+    known.to_owned()
+}

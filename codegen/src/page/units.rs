@@ -1,0 +1,34 @@
+//! Numbers and units for people.
+
+use appell_spec::mechanism::Label;
+
+use super::letters::superscript;
+
+/// A unit with raised exponents: `kg*m^2` is `kg m²`.
+pub(super) fn unit(label: &Label) -> String {
+    let mut out = String::new();
+    let mut raised = false;
+    for c in label.unit.text.chars() {
+        raised = c == '^' || raised && (c.is_ascii_digit() || c == '-');
+        match c {
+            '*' => out.push(' '),
+            '^' => {}
+            c if raised => out.push(superscript(c)),
+            c => out.push(c),
+        }
+    }
+    if out == "1" { String::new() } else { out }
+}
+
+/// A value in SI as the number and unit that the spec uses.
+pub(super) fn value(label: &Label, si: f64) -> String {
+    let number = number(label.unit.from_si(si));
+    format!("{number} {}", unit(label)).trim_end().to_owned()
+}
+
+/// Twelve digits: what conversion of units adds beyond them is rounding.
+fn number(value: f64) -> String {
+    let rounded: f64 = format!("{value:.11e}").parse().unwrap_or(value);
+    let size = rounded.abs();
+    if rounded != 0.0 && !(1e-4..1e7).contains(&size) { format!("{rounded:e}") } else { format!("{rounded}") }
+}

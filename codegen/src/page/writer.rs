@@ -1,0 +1,173 @@
+//! What every section needs: formulas of expressions, and definitions before use.
+
+use appell_spec::mechanism::{FrameId, Mechanism, PointId};
+use rustc_hash::FxHashSet;
+
+use super::formula::Setter;
+use super::letters::Letter;
+use super::lexicon::Lexicon;
+use super::math::{Equation, Math};
+use super::{Block, Span};
+use crate::mechanics::Derivation;
+use crate::symbolic::vector::Vec3;
+use crate::symbolic::{Expr, Graph, Node};
+
+/// Writes formulas and remembers what they take for granted.
+pub(super) struct Writer<'a> {
+    /// The mechanism.
+    pub(super) mechanism: &'a Mechanism,
+    /// Its derivation.
+    pub(super) derivation: &'a mut Derivation,
+    pub(super) setter: Setter,
+    /// Names whose definitions the page has shown.
+    defined: FxHashSet<Letter>,
+    /// Names that formulas have used since the last definitions.
+    wanted: Vec<Expr>,
+    /// Pseudo-accelerations, as symbols and as named results.
+    pub(super) accelerations: Vec<Expr>,
+    /// Generalised velocities and pseudo-velocities.
+    pub(super) velocities: Vec<Expr>,
+}
+
+impl<'a> Writer<'a> {
+    pub(super) fn new(mechanism: &'a Mechanism, derivation: &'a mut Derivation) -> Self {
+        let setter = Setter::new(Lexicon::new(mechanism, derivation));
+        let mut accelerations = derivation.symbols.accelerations.clone();
+        accelerations.extend(&derivation.motion.accelerations);
+        let mut velocities = derivation.symbols.rates.clone();
+        velocities.extend(&derivation.symbols.speeds);
+        Self {
+            mechanism,
+            derivation,
+            setter,
+            defined: FxHashSet::default(),
+            wanted: Vec::new(),
+            accelerations,
+            velocities,
+        }
+    }
+
+    /// The graph.
+    pub(super) fn graph(&mut self) -> &mut Graph {
+        &mut self.derivation.algebra.graph
+    }
+
+    /// Letter of a symbol or of a named quantity.
+    pub(super) fn letter(&mut self, expr: Expr) -> Letter {
+        self.setter.letter(&self.derivation.algebra.graph, expr)
+    }
+
+    /// The letter as a formula.
+    pub(super) fn symbol(&mut self, expr: Expr) -> Math {
+        Math::Letter(self.letter(expr))
+    }
+
+    /// Letter of a pseudo-velocity.
+    pub(super) fn speed(&mut self, index: usize) -> Letter {
+        self.letter(self.derivation.symbols.speeds[index])
+    }
+
+    /// Name of a frame.
+    pub(super) fn frame(&self, frame: FrameId) -> String {
+        self.mechanism.frames[frame].name.clone()
+    }
+
+    /// Name of a point.
+    pub(super) fn point(&self, point: PointId) -> &'a str {
+        &self.mechanism.points[point].name
+    }
+
+    /// The formula of an expression as it stands.
+    pub(super) fn set(&mut self, expr: Expr) -> Math {
+        let set = self.setter.set(&self.derivation.algebra.graph, expr);
+        self.wanted.extend(set.wants);
+        set.math
+    }
+
+    /// Components of a vector in the frame that they are written in.
+    pub(super) fn vector(&mut self, v: Vec3, frame: FrameId) -> Math {
+        let components = v.iter().map(|&c| self.explicit(c)).collect();
+        Math::vector(components, &self.mechanism.frames[frame].name)
+    }
+
+    /// Marks a name as defined: a section shows it among its equations.
+    pub(super) fn define(&mut self, letter: Letter) {
+        self.defined.insert(letter);
+    }
+
+    /// Definitions of the names used since the last call, each before its first use.
+    pub(super) fn definitions(&mut self) -> Vec<Block> {
+        let mut equations = Vec::new();
+        let mut stack: Vec<(Expr, Option<Math>)> =
+            std::mem::take(&mut self.wanted).into_iter().rev().map(|e| (e, None)).collect();
+        while let Some((expr, written)) = stack.pop() {
+            let letter = self.letter(expr);
+            if let Some(math) = written {
+                equations.push(Equation::new(self.left(expr, letter), math));
+                continue;
+            }
+            if !self.defined.insert(letter) {
+                continue;
+            }
+            self.define_all_unknowns(expr);
+            let math = self.definition(expr);
+            stack.push((expr, Some(math)));
+            let more = std::mem::take(&mut self.wanted);
+            stack.extend(more.into_iter().rev().map(|e| (e, None)));
+        }
+        if equations.is_empty() {
+            return Vec::new();
+        }
+        vec![Block::Sentence(vec![Span::Text("With".to_owned())]), Block::Equations(equations)]
+    }
+
+    /// One display defines all unknowns of a linear system.
+    fn define_all_unknowns(&mut self, expr: Expr) {
+        let Node::Solution { system, .. } = *self.graph().node(expr) else { return };
+        let mut letter = self.letter(expr);
+        for row in 1..=self.graph().system(system).right.len() {
+            letter.below = vec![row.to_string()];
+            self.defined.insert(letter.clone());
+        }
+    }
+
+    /// What a name stands for; of a linear system, the system.
+    fn definition(&mut self, expr: Expr) -> Math {
+        let graph = self.graph();
+        match graph.node(expr).clone() {
+            Node::Named(id) => {
+                let value = graph.definition(id).value;
+                self.explicit(value)
+            }
+            Node::Solution { system, .. } => {
+                let right = graph.system(system).right.to_vec();
+                let components = right.iter().map(|&r| self.explicit(r)).collect();
+                Math::Vector { components, frame: None, column: true }
+            }
+            _ => self.set_whole(expr),
+        }
+    }
+
+    /// The left-hand side of a definition.
+    fn left(&mut self, expr: Expr, letter: Letter) -> Math {
+        let Node::Solution { system, .. } = *self.graph().node(expr) else { return Math::Letter(letter) };
+        let entries = self.graph().system(system).matrix.to_vec();
+        let size = self.graph().system(system).right.len();
+        let rows: Vec<Vec<Math>> =
+            entries.chunks(size).map(|row| row.iter().map(|&e| self.set(e)).collect()).collect();
+        let mut unknown = letter;
+        let unknowns = (1..=size).map(|row| {
+            unknown.below = vec![row.to_string()];
+            Math::Letter(unknown.clone())
+        });
+        let unknowns = Math::Vector { components: unknowns.collect(), frame: None, column: true };
+        Math::Row(vec![Math::Matrix(rows), unknowns])
+    }
+
+    /// A part with a letter, written out.
+    fn set_whole(&mut self, expr: Expr) -> Math {
+        let set = self.setter.set(&self.derivation.algebra.graph, expr);
+        self.wanted.extend(set.wants.into_iter().filter(|&e| e != expr));
+        set.math
+    }
+}

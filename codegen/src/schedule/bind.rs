@@ -1,7 +1,7 @@
 //! From the working graph to steps: what gets a name, in which order, under which name.
 
 use super::dag::{Dag, Id, Item, Op};
-use super::names::{ArgumentNames, Names, result_label};
+use super::names::{ArgumentNames, LONGEST, Names, result_label};
 use super::piece::{Level, Piece, describe};
 use super::signs::choose_signs;
 use super::{Argument, Operation, ResultArray, Schedule, Step, Tree, Value};
@@ -13,7 +13,7 @@ const COLUMNS: usize = 88;
 /// Columns of `    let `, ` = ` and `;`.
 const FRAME: usize = 12;
 /// Wider trees are not written inside other trees.
-const INLINE: usize = 40;
+const INLINE: usize = 48;
 
 /// The steps of a function.
 pub(super) fn bind(program: &Program, function: &Function, dag: &Dag) -> Schedule {
@@ -82,7 +82,7 @@ impl<'a> Binding<'a> {
         let mut binding = Self {
             program,
             dag,
-            uses: dag.uses(),
+            uses: dag.uses(&order),
             bound: vec![false; dag.len()],
             minus: choose_signs(dag, &order),
             partner: vec![None; dag.len()],
@@ -449,7 +449,11 @@ impl<'a> Binding<'a> {
 
     /// Columns for the tree of a node.
     fn room(&self, id: Id) -> usize {
-        let name = self.given_name(id).map_or(24, |name| name.len() + 2);
+        let made_up = || {
+            let consumer = self.feeds[id.index()].and_then(|feed| self.given_name(feed));
+            consumer.map_or(LONGEST, |name| LONGEST.max(name.len() + "_part_99".len()))
+        };
+        let name = self.given_name(id).map_or_else(made_up, |name| name.len() + "minus__2".len());
         COLUMNS.saturating_sub(FRAME + name).max(INLINE)
     }
 

@@ -4,9 +4,9 @@ use super::dag::{Dag, Id, Item, Op};
 
 /// Distributes a division over a sum where a term loses a factor by that. The reciprocal takes the
 /// place of the product, so nothing is divided that was not divided before.
-pub(super) fn cancel(dag: &mut Dag) {
-    let uses = dag.uses();
-    for id in dag.order() {
+pub(super) fn cancel(dag: &mut Dag, order: &[Id]) {
+    let uses = dag.uses(order);
+    for &id in order {
         while let Some((sum, divisor, terms)) = candidate(dag, &uses, id) {
             distribute(dag, id, sum, divisor, &terms);
         }

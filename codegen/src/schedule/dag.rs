@@ -4,7 +4,9 @@
 //! and products do not flatten on their own, so `m·R·(x + y)` can stay factored. Numbers are plain
 //! factors, so `2·m` is shared like any other product.
 
-use rustc_hash::FxHashMap;
+use std::hash::BuildHasher;
+
+use rustc_hash::{FxBuildHasher, FxHashMap};
 
 use super::Argument;
 use crate::symbolic::{Function, Rational, Relation};
@@ -89,7 +91,8 @@ pub(super) struct Name {
 #[derive(Debug, Clone, Default)]
 pub(super) struct Dag {
     ops: Vec<Op>,
-    index: FxHashMap<Op, Id>,
+    /// Nodes by the hash of their operation; equal hashes follow each other.
+    index: FxHashMap<u64, Id>,
     /// Names, one entry per node.
     pub(super) names: Vec<Option<Name>>,
     /// Linear systems, by the index in [`Op::Solution`].
@@ -114,17 +117,34 @@ impl Dag {
         self.ops[id.index()] = op;
     }
 
+    /// A graph with room for about so many nodes.
+    pub(super) fn with_capacity(nodes: usize) -> Self {
+        let mut dag = Self::default();
+        dag.ops.reserve(nodes);
+        dag.names.reserve(nodes);
+        dag.index.reserve(nodes);
+        dag
+    }
+
     /// The node of an operation.
     pub(super) fn intern(&mut self, op: Op) -> Id {
-        if let Some(&id) = self.index.get(&op)
-            && self.ops[id.index()] == op
-        {
-            return id;
+        let hash = FxBuildHasher.hash_one(&op);
+        let mut slot = hash;
+        while let Some(&id) = self.index.get(&slot) {
+            let known = &self.ops[id.index()];
+            if *known == op {
+                return id;
+            }
+            if FxBuildHasher.hash_one(known) != hash {
+                // The node was rewritten since, or belongs to a neighbouring hash.
+                break;
+            }
+            slot = slot.wrapping_add(1);
         }
         let id = Id(u32::try_from(self.ops.len()).unwrap_or(u32::MAX));
-        self.ops.push(op.clone());
+        self.ops.push(op);
         self.names.push(None);
-        self.index.insert(op, id);
+        self.index.insert(slot, id);
         id
     }
 
@@ -303,10 +323,10 @@ impl Dag {
     }
 
     /// How often each node is a part of a needed node or a result.
-    pub(super) fn uses(&self) -> Vec<u32> {
+    pub(super) fn uses(&self, order: &[Id]) -> Vec<u32> {
         let mut uses = vec![0; self.len()];
         let mut systems_seen = vec![false; self.systems.len()];
-        for id in self.order() {
+        for &id in order {
             if let Op::Solution { system, .. } = self.op(id) {
                 // All unknowns of a system come from one solution.
                 if std::mem::replace(&mut systems_seen[*system as usize], true) {
@@ -322,10 +342,10 @@ impl Dag {
     }
 
     /// Operations of the needed nodes, a division counted as `division` ones.
-    pub(super) fn weight(&self, division: usize) -> usize {
-        self.order()
-            .into_iter()
-            .map(|id| match self.op(id) {
+    pub(super) fn weight(&self, order: &[Id], division: usize) -> usize {
+        order
+            .iter()
+            .map(|&id| match self.op(id) {
                 Op::Sum(terms) => terms.len() - 1,
                 Op::Product(factors) => {
                     let below = factors.iter().filter(|factor| factor.flip).count();

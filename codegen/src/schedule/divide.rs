@@ -4,15 +4,14 @@ use super::dag::{Dag, Id, Item, Op};
 
 /// Replaces divisions by multiplications with shared reciprocals. A denominator that only one
 /// product has stays a division, together with the other denominators of that product.
-pub(super) fn share_reciprocals(dag: &mut Dag) {
-    let order = dag.order();
+pub(super) fn share_reciprocals(dag: &mut Dag, order: &[Id]) {
     let mut wholes = vec![0_u32; dag.len()];
-    for &id in &order {
+    for &id in order {
         for base in denominators(dag, id) {
             wholes[base.index()] += 1;
         }
     }
-    for id in order {
+    for &id in order {
         let shared = |base: Id| wholes.get(base.index()).is_some_and(|&count| count >= 2);
         let Op::Product(factors) = dag.op(id) else {
             continue;

@@ -5,10 +5,9 @@ use super::search::Preference;
 
 /// Takes factors out of all sums, the most frequent first. Only products that nothing else uses
 /// are opened: every step saves multiplications.
-pub(super) fn factor(dag: &mut Dag, preference: Preference, least: usize) {
-    let mut uses = dag.uses();
-    let order = dag.order();
-    for id in order {
+pub(super) fn factor(dag: &mut Dag, order: &[Id], preference: Preference, least: u32) {
+    let mut uses = dag.uses(order);
+    for &id in order {
         let mut sums = vec![id];
         while let Some(sum) = sums.pop() {
             while let Some((factor, members)) = best_factor(dag, &uses, sum, preference, least) {
@@ -25,7 +24,7 @@ fn best_factor(
     uses: &[u32],
     sum: Id,
     preference: Preference,
-    least: usize,
+    least: u32,
 ) -> Option<(Item, Vec<usize>)> {
     let Op::Sum(terms) = dag.op(sum) else {
         return None;
@@ -41,7 +40,7 @@ fn best_factor(
     occurrences.dedup();
     let best = occurrences
         .chunk_by(|a, b| a.0 == b.0)
-        .filter(|group| group.len() >= least)
+        .filter(|group| group.len() >= least.max(2) as usize)
         .max_by_key(|group| (group.len(), preference.rank(group[0].0)))?;
     Some((
         best[0].0,

@@ -7,7 +7,7 @@ use crate::program::{FunctionKind, Layout, Program};
 use crate::symbolic::Rational;
 
 /// Longest name made up here.
-const LONGEST: usize = 24;
+pub(super) const LONGEST: usize = 24;
 
 /// Words that cannot name a value in Rust, in any edition.
 const KEYWORDS: &[&str] = &[
@@ -76,10 +76,6 @@ impl Names {
         self.taken.insert(name.to_owned());
     }
 
-    /// Whether something has this name.
-    pub(super) fn is_taken(&self, name: &str) -> bool {
-        self.taken.contains(name)
-    }
 }
 
 /// Identifiers of the arguments of a program, no two equal. They name the fields of the argument

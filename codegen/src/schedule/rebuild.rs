@@ -14,15 +14,16 @@ pub(super) enum Dissolve {
 
 /// The same results, in order again.
 pub(super) fn rebuild(dag: &Dag, dissolve: Dissolve) -> Dag {
+    let order = dag.order();
     let mut rebuilding = Rebuilding {
         old: dag,
-        uses: dag.uses(),
+        uses: dag.uses(&order),
         dissolve,
-        new: Dag::default(),
+        new: Dag::with_capacity(dag.len()),
         known: vec![None; dag.len()],
         systems: vec![None; dag.systems.len()],
     };
-    for id in dag.order() {
+    for id in order {
         let item = rebuilding.node(id);
         rebuilding.known[id.index()] = Some(item);
         rebuilding.hand_on_name(id, item);

@@ -7,13 +7,12 @@ use super::dag::{Dag, Id, Item, Op};
 use crate::symbolic::Rational;
 
 /// Takes a number out of every unnamed sum where that saves multiplications.
-pub(super) fn scale(dag: &mut Dag) {
-    let order = dag.order();
-    let scales = Scales::choose(dag, &order);
+pub(super) fn scale(dag: &mut Dag, order: &[Id]) {
+    let scales = Scales::choose(dag, order);
     if scales.taken_out.iter().all(Option::is_none) {
         return;
     }
-    for id in order {
+    for &id in order {
         scales.rewrite(dag, id);
     }
     for place in 0..dag.results.len() {

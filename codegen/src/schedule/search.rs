@@ -1,9 +1,11 @@
 //! Tries several orders of rewriting and keeps the cheapest result.
 
+use super::cancel::cancel;
 use super::dag::{Dag, Item};
 use super::divide::share_reciprocals;
 use super::factor::factor;
 use super::rebuild::{Dissolve, rebuild};
+use super::scale::scale;
 use super::share::{Within, share};
 
 /// Which of two equally frequent candidates goes first.
@@ -34,71 +36,95 @@ enum Pass {
     Sums,
 }
 
+/// One way to the goal.
+#[derive(Debug, Clone, Copy)]
+struct Plan {
+    /// Which named values dissolve.
+    dissolve: Dissolve,
+    /// Whether numbers move between sums first.
+    scale: bool,
+    /// Passes of a round.
+    passes: [Pass; 3],
+    preference: Preference,
+    /// Least number of occurrences that is worth a rewriting, round by round.
+    levels: &'static [u32],
+}
+
+const PRODUCTS_FIRST: Plan = Plan {
+    dissolve: Dissolve::Unnamed,
+    scale: true,
+    passes: [Pass::Products, Pass::Factor, Pass::Sums],
+    preference: Preference::Early,
+    levels: &[2, 2],
+};
+const FACTOR_FIRST: Plan =
+    Plan { passes: [Pass::Factor, Pass::Products, Pass::Sums], ..PRODUCTS_FIRST };
+
+/// The plans, the most promising ones first.
+const PLANS: [Plan; 6] = [
+    PRODUCTS_FIRST,
+    Plan { levels: &[4, 3, 2], ..FACTOR_FIRST },
+    Plan { levels: &[3, 2], scale: false, dissolve: Dissolve::Named, ..FACTOR_FIRST },
+    Plan { levels: &[3, 2], ..FACTOR_FIRST },
+    Plan { scale: false, ..FACTOR_FIRST },
+    Plan { preference: Preference::Late, ..PRODUCTS_FIRST },
+];
+
 /// A division takes about as long as so many other operations.
 const DIVISION: usize = 4;
-/// Rounds of all passes; later rounds find almost nothing.
-const ROUNDS: usize = 4;
 
+/// Operations that a name from the derivation is worth.
+const NAME: usize = 1;
+/// Nodes that all plans together may pass over. Small functions try every plan, large ones two.
+const EFFORT: usize = 2500;
 
+/// The cheapest equivalent graph found. What is cheaper by nothing stays as derived.
 pub(super) fn cheapest(derived: &Dag) -> Dag {
-    use Pass::{Factor, Products, Sums};
-    const ORDERS: [[Pass; 3]; 3] =
-        [[Factor, Products, Sums], [Products, Factor, Sums], [Sums, Products, Factor]];
-    const LEVELS: [&[u32]; 5] = [&[2], &[3, 2], &[4, 3, 2], &[6, 4, 3, 2], &[8, 6, 5, 4, 3, 2]];
     let mut best = finish(&rebuild(derived, Dissolve::Unnamed));
-    let mut least = best.weight(DIVISION);
-    let dbg = std::env::var("DBG").is_ok();
-    if dbg { eprintln!("{least}"); }
-    for dissolve in [Dissolve::Unnamed, Dissolve::Named] {
-        let mut start = rebuild(derived, dissolve);
-        if std::env::var("NOCANCEL").is_err() {
-        super::cancel::cancel(&mut start);
-        start = rebuild(&start, dissolve);
+    let mut least = best.weight(&best.order(), DIVISION);
+    let mut effort = 0;
+    for (number, plan) in PLANS.into_iter().enumerate() {
+        effort += derived.len() * plan.levels.len();
+        if number >= 2 && effort > EFFORT {
+            break;
         }
-        if std::env::var("NOSCALE").is_err() {
-        super::scale::scale(&mut start);
-        start = rebuild(&start, dissolve);
-        }
-        for passes in ORDERS {
-            for preference in [Preference::Early, Preference::Late] {
-              if dbg { eprint!("{dissolve:?} {passes:?} {preference:?}"); }
-              for levels in LEVELS {
-                let candidate = finish(&rewritten(&start, passes, preference, levels));
-                let weight = candidate.weight(DIVISION);
-                if dbg { eprint!(" {weight}"); }
-                if weight < least {
-                    (best, least) = (candidate, weight);
-                }
-              }
-              if dbg { eprintln!(); }
-            }
+        let candidate = finish(&follow(derived, plan));
+        let nameless = if plan.dissolve == Dissolve::Named { NAME } else { 0 };
+        let weight = candidate.weight(&candidate.order(), DIVISION) + nameless;
+        if weight < least {
+            (best, least) = (candidate, weight);
         }
     }
     best
 }
 
-/// All passes, again and again while they help.
-fn rewritten(start: &Dag, passes: [Pass; 3], preference: Preference, levels: &[u32]) -> Dag {
-    let mut dag = start.clone();
-    for &level in levels {
-    for _ in 0..ROUNDS {
-        let before = dag.weight(1);
-        for pass in passes {
+fn follow(derived: &Dag, plan: Plan) -> Dag {
+    let mut dag = rebuild(derived, plan.dissolve);
+    let order = dag.order();
+    cancel(&mut dag, &order);
+    dag = rebuild(&dag, plan.dissolve);
+    if plan.scale {
+        let order = dag.order();
+        scale(&mut dag, &order);
+        dag = rebuild(&dag, plan.dissolve);
+    }
+    for &level in plan.levels {
+        for pass in plan.passes {
+            let order = dag.order();
             match pass {
-                Pass::Factor => factor(&mut dag, preference, level as usize),
-                Pass::Products => share(&mut dag, Within::Products, preference, level),
-                Pass::Sums => share(&mut dag, Within::Sums, preference, level),
+                Pass::Factor => factor(&mut dag, &order, plan.preference, level),
+                Pass::Products => share(&mut dag, &order, Within::Products, plan.preference, level),
+                Pass::Sums => share(&mut dag, &order, Within::Sums, plan.preference, level),
             }
             dag = rebuild(&dag, Dissolve::Unnamed);
         }
-        if dag.weight(1) >= before { break; }
-    }
     }
     dag
 }
 
 fn finish(dag: &Dag) -> Dag {
     let mut dag = dag.clone();
-    share_reciprocals(&mut dag);
+    let order = dag.order();
+    share_reciprocals(&mut dag, &order);
     rebuild(&dag, Dissolve::Unnamed)
 }

@@ -24,54 +24,42 @@ pub(super) enum Within {
 /// Longer sums and products are left alone: pairs grow with the square of the length.
 const LONGEST: usize = 64;
 
-/// Shares the common parts of all sums, or of all products.
-pub(super) fn share(dag: &mut Dag, within: Within, preference: Preference, least: u32) {
+/// Shares the parts that at least `least` sums, or products, have in common.
+pub(super) fn share(dag: &mut Dag, order: &[Id], within: Within, preference: Preference, least: u32) {
     let mut sharing = Sharing {
         within,
         preference,
-        least,
+        least: least.max(2),
         owners: Vec::new(),
         lists: Vec::new(),
-        pairs: FxHashMap::default(),
+        holders: vec![Vec::new(); dag.len()],
+        counts: FxHashMap::default(),
         queue: BinaryHeap::new(),
     };
-    for id in dag.order() {
+    for &id in order {
         match (within, dag.op(id)) {
             (Within::Sums, Op::Sum(items)) | (Within::Products, Op::Product(items))
                 if (2..=LONGEST).contains(&items.len()) =>
             {
-                sharing.owners.push(id);
-                sharing.lists.push(items.clone());
+                sharing.add_list(id, items);
             }
             _ => {}
         }
     }
-    for list in 0..sharing.lists.len() {
-        sharing.count(list);
-    }
+    sharing.count_all();
     while let Some(pair) = sharing.most_frequent() {
         sharing.extract(dag, pair);
     }
     for (id, items) in sharing.owners.into_iter().zip(sharing.lists) {
-        let op = match within {
-            Within::Sums => Op::Sum(items),
-            Within::Products => Op::Product(items),
-        };
-        if *dag.op(id) != op {
-            dag.replace(id, op);
+        match (within, dag.op(id)) {
+            (Within::Sums, Op::Sum(old)) | (Within::Products, Op::Product(old)) if *old == items => {}
+            (Within::Sums, _) => dag.replace(id, Op::Sum(items)),
+            (Within::Products, _) => dag.replace(id, Op::Product(items)),
         }
     }
 }
 
-type Pair = [Item; 2];
-
-/// Where a pair occurs.
-#[derive(Default)]
-struct Occurrences {
-    count: u32,
-    /// Lists that held the pair when it was counted; some may have lost it since.
-    lists: Vec<usize>,
-}
+type Pair = (Item, Item);
 
 struct Sharing {
     within: Within,
@@ -80,71 +68,84 @@ struct Sharing {
     least: u32,
     owners: Vec<Id>,
     lists: Vec<Vec<Item>>,
-    pairs: FxHashMap<Pair, Occurrences>,
-    /// Pairs by count; a pair enters again whenever its count grows.
+    /// By node, the lists that hold it, and some that held it once.
+    holders: Vec<Vec<usize>>,
+    /// Occurrences of the pairs that occur often enough. The count of a pair never grows: what
+    /// changes a list takes parts away and puts a new node in.
+    counts: FxHashMap<Pair, u32>,
     queue: BinaryHeap<(u32, (u64, u64), Pair)>,
 }
 
 impl Sharing {
-    /// The pair as it is looked up, and whether both of its terms changed sign for that.
-    fn normal(&self, a: Item, b: Item) -> (Pair, bool) {
+    fn add_list(&mut self, owner: Id, items: &[Item]) {
+        let mut last = None;
+        for item in items {
+            if last != Some(item.id) {
+                self.holders[item.id.index()].push(self.lists.len());
+            }
+            last = Some(item.id);
+        }
+        self.owners.push(owner);
+        self.lists.push(items.to_vec());
+    }
+
+    /// The pair as it is looked up; both terms may have changed sign for that.
+    fn normal(&self, a: Item, b: Item) -> Pair {
         let flip = self.within == Within::Sums && a.flip;
-        ([a.flipped_if(flip), b.flipped_if(flip)], flip)
+        (a.flipped_if(flip), b.flipped_if(flip))
     }
 
-    /// Calls `visit` with every pair of a list and how often it fits in.
-    fn for_each_pair(&self, list: usize, mut visit: impl FnMut(Pair, u32)) {
-        let runs: Vec<(Item, u32)> = self.lists[list]
-            .chunk_by(|a, b| a == b)
-            .map(|run| (run[0], u32::try_from(run.len()).unwrap_or(u32::MAX)))
-            .collect();
-        for (i, &(a, count_a)) in runs.iter().enumerate() {
-            if count_a >= 2 {
-                visit([a, a], count_a / 2);
+    /// Calls `visit` with every pair of a list, as often as it fits in.
+    fn for_each_pair(&self, list: &[Item], mut visit: impl FnMut(Pair)) {
+        let mut i = 0;
+        while i < list.len() {
+            let run = list[i..].iter().take_while(|&&item| item == list[i]).count();
+            for _ in 0..run / 2 {
+                visit((list[i], list[i]));
             }
-            for &(b, count_b) in &runs[i + 1..] {
-                visit(self.normal(a, b).0, count_a.min(count_b));
+            let mut j = i + run;
+            while j < list.len() {
+                let other = list[j..].iter().take_while(|&&item| item == list[j]).count();
+                for _ in 0..run.min(other) {
+                    visit(self.normal(list[i], list[j]));
+                }
+                j += other;
+            }
+            i += run;
+        }
+    }
+
+    fn count_all(&mut self) {
+        let mut pairs = Vec::new();
+        for list in &self.lists {
+            self.for_each_pair(list, |pair| pairs.push(pair));
+        }
+        self.enter(pairs);
+    }
+
+    /// Enters new pairs, one per occurrence.
+    fn enter(&mut self, mut pairs: Vec<Pair>) {
+        pairs.sort_unstable();
+        for same in pairs.chunk_by(|a, b| a == b) {
+            let count = u32::try_from(same.len()).unwrap_or(u32::MAX);
+            if count >= self.least {
+                self.counts.insert(same[0], count);
+                self.queue.push((count, self.rank(same[0]), same[0]));
             }
         }
     }
 
-    /// Counts the pairs of a list.
-    fn count(&mut self, list: usize) {
-        let mut found = Vec::new();
-        self.for_each_pair(list, |pair, count| found.push((pair, count)));
-        for (pair, count) in found {
-            let occurrences = self.pairs.entry(pair).or_default();
-            occurrences.count += count;
-            occurrences.lists.push(list);
-            if occurrences.count >= self.least {
-                let rank = (self.preference.rank(pair[0]), self.preference.rank(pair[1]));
-                self.queue.push((occurrences.count, rank, pair));
-            }
-        }
-    }
-
-    /// Takes the pairs of a list, which is about to change, out of the counts.
-    fn discount(&mut self, list: usize) {
-        let mut found = Vec::new();
-        self.for_each_pair(list, |pair, count| found.push((pair, count)));
-        for (pair, count) in found {
-            if let Some(occurrences) = self.pairs.get_mut(&pair) {
-                occurrences.count -= count;
-            }
-        }
+    fn rank(&self, pair: Pair) -> (u64, u64) {
+        (self.preference.rank(pair.0), self.preference.rank(pair.1))
     }
 
     fn most_frequent(&mut self) -> Option<Pair> {
         while let Some((count, rank, pair)) = self.queue.pop() {
-            let now = self
-                .pairs
-                .get(&pair)
-                .map_or(0, |occurrences| occurrences.count);
+            let now = self.counts.get(&pair).copied().unwrap_or(0);
             if now == count {
                 return Some(pair);
             }
             if now >= self.least {
-                // Counts only sink between two entries.
                 self.queue.push((now, rank, pair));
             }
         }
@@ -153,61 +154,66 @@ impl Sharing {
 
     /// Gives the pair a node, and replaces it in all lists.
     fn extract(&mut self, dag: &mut Dag, pair: Pair) {
+        self.counts.remove(&pair);
         let node = match self.within {
-            Within::Sums => dag.sum(pair.to_vec()),
-            Within::Products => dag.product(pair.to_vec()),
+            Within::Sums => dag.sum(vec![pair.0, pair.1]),
+            Within::Products => dag.product(vec![pair.0, pair.1]),
         };
-        let Some(occurrences) = self.pairs.remove(&pair) else {
-            return;
-        };
-        let mut lists = occurrences.lists;
-        lists.sort_unstable();
-        lists.dedup();
-        for list in lists {
+        if self.holders.len() < dag.len() {
+            self.holders.resize(dag.len(), Vec::new());
+        }
+        let mut new_pairs = Vec::new();
+        for list in self.holders[pair.0.id.index()].clone() {
             if self.owners[list] == node.id {
                 continue;
             }
-            let (items, replaced) = self.replaced(list, pair, node);
-            if replaced {
-                self.discount(list);
-                self.lists[list] = items;
-                self.count(list);
+            let Some(items) = self.replaced(&self.lists[list], pair, node) else { continue };
+            let old = std::mem::take(&mut self.lists[list]);
+            let mut gone = Vec::new();
+            self.for_each_pair(&old, |pair| gone.push(pair));
+            for pair in gone {
+                if let Some(count) = self.counts.get_mut(&pair) {
+                    *count = count.saturating_sub(1);
+                }
             }
+            let mut kept = Vec::new();
+            self.for_each_pair(&items, |pair| kept.push(pair));
+            for pair in kept {
+                if let Some(count) = self.counts.get_mut(&pair) {
+                    *count += 1;
+                } else if pair.0.id == node.id || pair.1.id == node.id {
+                    new_pairs.push(pair);
+                }
+            }
+            self.lists[list] = items;
+            self.holders[node.id.index()].push(list);
         }
-        // What is left of the pair, in the node itself, is not worth another node.
-        self.pairs.remove(&pair);
+        self.enter(new_pairs);
     }
 
-    /// A list with all occurrences of `pair` replaced, and whether there were any.
-    fn replaced(&self, list: usize, pair: Pair, node: Item) -> (Vec<Item>, bool) {
-        let mut items = self.lists[list].clone();
-        let mut replaced = false;
+    /// A list with all occurrences of `pair` replaced. `None` if there are none.
+    fn replaced(&self, list: &[Item], pair: Pair, node: Item) -> Option<Vec<Item>> {
+        let flips: &[bool] = if self.within == Within::Sums { &[false, true] } else { &[false] };
+        let mut items: Option<Vec<Item>> = None;
         loop {
-            let find = |wanted: Item| items.iter().position(|&item| item == wanted);
-            let flips: &[bool] = if self.within == Within::Sums {
-                &[false, true]
-            } else {
-                &[false]
-            };
+            let now = items.as_deref().unwrap_or(list);
+            let find = |wanted: Item| now.iter().position(|&item| item == wanted);
             let found = flips.iter().find_map(|&flip| {
-                let first = find(pair[0].flipped_if(flip))?;
-                let second = if pair[0] == pair[1] {
-                    Some(first + 1).filter(|&next| items.get(next) == items.get(first))
+                let first = find(pair.0.flipped_if(flip))?;
+                let second = if pair.0 == pair.1 {
+                    Some(first + 1).filter(|&next| now.get(next) == now.get(first))
                 } else {
-                    find(pair[1].flipped_if(flip))
+                    find(pair.1.flipped_if(flip))
                 };
                 Some((flip, first, second?))
             });
-            let Some((flip, first, second)) = found else {
-                break;
-            };
+            let Some((flip, first, second)) = found else { return items };
+            let items = items.get_or_insert_with(|| list.to_vec());
             items.remove(first.max(second));
             items.remove(first.min(second));
             let new = node.flipped_if(flip);
             let place = items.partition_point(|&item| item < new);
             items.insert(place, new);
-            replaced = true;
         }
-        (items, replaced)
     }
 }

@@ -361,16 +361,15 @@ impl Factors {
     /// Multiplies by `expr^exponent`.
     fn multiply(&mut self, graph: &mut Graph, expr: Expr, exponent: i32) {
         let (coefficient, rest) = graph.split_coefficient(expr);
-        match coefficient.checked_pow(exponent) {
-            Some(power) => self.coefficient = &self.coefficient * &power,
+        if let Some(power) = coefficient.checked_pow(exponent) {
+            self.coefficient = &self.coefficient * &power;
+        } else {
             // A number too long to write out stays a factor of its own.
-            None => {
-                let number = graph.number(coefficient);
-                self.factors.push(Factor {
-                    base: number,
-                    exponent,
-                });
-            }
+            let number = graph.number(coefficient);
+            self.factors.push(Factor {
+                base: number,
+                exponent,
+            });
         }
         if rest == Graph::ONE || self.coefficient.is_zero() {
             return;

@@ -141,9 +141,9 @@ impl Graph {
         for factor in self.factors_of(rest) {
             let power = self.pow(factor.base, factor.exponent.abs());
             if factor.exponent > 0 {
-                over.push(power)
+                over.push(power);
             } else {
-                under.push(power)
+                under.push(power);
             }
         }
         (self.product(&over), self.product(&under))

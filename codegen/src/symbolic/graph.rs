@@ -78,6 +78,7 @@ impl Graph {
     }
 
     /// A new symbol. Two symbols of the same name are different symbols.
+    #[expect(clippy::missing_panics_doc, reason = "memory ends before the indices")]
     pub fn symbol(&mut self, name: &str) -> Expr {
         let id = u32::try_from(self.symbols.len()).expect("fewer than 2^32 symbols fit in memory");
         self.symbols.push(name.to_owned());
@@ -114,6 +115,7 @@ impl Graph {
     ///
     /// Numbers, symbols and multiples of them stay as they are, and what already has a name keeps
     /// it: a second name would only make people look twice.
+    #[expect(clippy::missing_panics_doc, reason = "memory ends before the indices")]
     pub fn name(&mut self, name: &str, value: Expr) -> Expr {
         let plain = |graph: &Self, expr: Expr| {
             matches!(
@@ -156,6 +158,10 @@ impl Graph {
     }
 
     /// Unknowns of `matrix · unknowns = right`, solved with pivoting when evaluated.
+    ///
+    /// # Panics
+    ///
+    /// If the matrix has not as many rows and columns as there are right-hand sides.
     pub fn solve_numerically(&mut self, matrix: Vec<Expr>, right: Vec<Expr>) -> Vec<Expr> {
         assert_eq!(
             matrix.len(),
@@ -170,15 +176,14 @@ impl Graph {
             matrix: matrix.into(),
             right: right.into(),
         };
-        let id = match self.system_index.get(&system) {
-            Some(&id) => id,
-            None => {
-                let id = u32::try_from(self.systems.len())
-                    .expect("fewer than 2^32 systems fit in memory");
-                self.systems.push(system.clone());
-                self.system_index.insert(system, id);
-                id
-            }
+        let id = if let Some(&id) = self.system_index.get(&system) {
+            id
+        } else {
+            let id =
+                u32::try_from(self.systems.len()).expect("fewer than 2^32 systems fit in memory");
+            self.systems.push(system.clone());
+            self.system_index.insert(system, id);
+            id
         };
         (0..rows)
             .map(|row| self.intern(Node::Solution { system: id, row }))

@@ -140,12 +140,11 @@ impl Rational {
                 let denominator = (small.1 / small.1.gcd(&d)).checked_mul(d)?;
                 Some((small.0.gcd(&n), denominator))
             });
-            match joined {
-                Some(joined) => small = joined,
-                None => {
-                    left = Some(value);
-                    break;
-                }
+            if let Some(joined) = joined {
+                small = joined;
+            } else {
+                left = Some(value);
+                break;
             }
         }
         let Some(value) = left else {

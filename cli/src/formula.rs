@@ -12,6 +12,10 @@ use appell_runtime::signal::SignalError;
 use appell_spec::Mechanism;
 use appell_spec::expr::{Expr as SpecExpr, ExprKind, Quantity};
 
+/// `f64::consts::PI` as a fraction.
+const PI_NUMERATOR: i64 = 884_279_719_003_555;
+const PI_DENOMINATOR: i64 = 281_474_976_710_656;
+
 /// A graph with the names of a mechanism.
 pub(crate) struct Workbench {
     /// The graph.
@@ -24,7 +28,9 @@ impl Workbench {
     /// The names of a mechanism.
     pub(crate) fn new(mechanism: &Mechanism) -> Self {
         let mut graph = Graph::new();
-        let symbols = Symbols::new(&mut graph, mechanism);
+        let mut symbols = Symbols::new(&mut graph, mechanism);
+        // The number of the machine, exactly.
+        symbols.pi = graph.fraction(PI_NUMERATOR, PI_DENOMINATOR);
         Self { graph, symbols }
     }
 
@@ -40,9 +46,6 @@ impl Workbench {
         for (symbol, &value) in ids(&self.graph, &self.symbols.parameters).iter().zip(parameters) {
             values[symbol.0 as usize] = value;
         }
-        for symbol in ids(&self.graph, &[self.symbols.pi]) {
-            values[symbol.0 as usize] = std::f64::consts::PI;
-        }
         appell_codegen::symbolic::evaluate(&self.graph, &values, exprs)
     }
 
@@ -56,6 +59,7 @@ impl Workbench {
 pub(crate) struct StateFunction {
     schedule: Schedule,
     native: Option<NativeFunction>,
+    count: usize,
     declared: usize,
     signals: Vec<Signal>,
 }
@@ -84,7 +88,8 @@ impl StateFunction {
             inputs: ids(&graph, &input_symbols),
             parameters: ids(&graph, &symbols.parameters),
         };
-        let layout = Layout::Vector(exprs.len());
+        let count = exprs.len();
+        let layout = Layout::Vector(count);
         let results = vec![Array { name: "values".to_owned(), layout, entries: exprs }];
         let function = Function { kind: FunctionKind::Outputs, results };
         let sizes = Sizes::from(&info);
@@ -92,11 +97,12 @@ impl StateFunction {
         let schedule = schedule(&program, &program.functions[0]);
         // Without machine code the interpreter gives the same numbers.
         let native = NativeFunction::compile(&schedule, sizes).ok();
-        Ok(Self { schedule, native, declared: model.declared_inputs, signals })
+        Ok(Self { schedule, native, count, declared: model.declared_inputs, signals })
     }
 
-    /// Values at time `t`, state `x` and parameters `p`.
+    /// Values at time `t`, state `x` and parameters `p`, into the first places of `values`.
     pub(crate) fn values(&self, t: f64, x: &[f64], p: &[f64], values: &mut [f64]) {
+        let values = &mut values[..self.count];
         let mut u = vec![0.0; self.declared + self.signals.len()];
         for (u, signal) in u[self.declared..].iter_mut().zip(&self.signals) {
             *u = signal.value(t);

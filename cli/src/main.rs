@@ -1,6 +1,8 @@
 //! `appell`: from a mechanism spec to equations of motion, numbers and motions.
 
+mod cases;
 mod commands;
+mod controller;
 mod engine;
 mod failure;
 mod feedback;

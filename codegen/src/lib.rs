@@ -1,12 +1,16 @@
 //! Gibbs-Appell derivation and code generation.
 
+pub mod build;
 pub mod compile;
+pub mod emit;
 pub mod interpreted;
 #[cfg(feature = "jit")]
 pub mod jit;
 pub mod mechanics;
+pub mod page;
 pub mod program;
 pub mod schedule;
 pub mod symbolic;
 
+pub use build::build;
 pub use compile::{Derived, compile, derived};

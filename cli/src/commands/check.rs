@@ -1,0 +1,144 @@
+//! `appell check`
+
+use std::fmt::Write as _;
+use std::path::PathBuf;
+
+use appell_codegen::mechanics::motion::independent_blocks;
+use appell_codegen::{Derived, derived};
+use appell_spec::Report;
+use serde_json::{Value, json};
+
+use crate::failure::{Failure, shown};
+use crate::source::Source;
+use crate::{files, progress};
+
+/// Validates specs: names, units, frames, constraints, pseudo-velocities, inertias.
+#[derive(Debug, clap::Args)]
+pub(crate) struct Check {
+    /// Names of shipped mechanisms or paths of specs
+    #[arg(required = true, value_name = "MODEL")]
+    models: Vec<String>,
+    /// Write what was found as JSON; `-` is standard output
+    #[arg(long, value_name = "FILE")]
+    json: Option<PathBuf>,
+}
+
+impl Check {
+    pub(super) fn run(&self) -> Result<(), Failure> {
+        let sources = self.models.iter().map(|model| Source::find(model)).collect::<Result<Vec<_>, _>>()?;
+        let quiet = self.json.as_deref().is_some_and(files::is_stdout);
+        let mut failed = Vec::new();
+        let mut found = Vec::new();
+        for source in &sources {
+            let spinner = progress::spinner(&format!("deriving {}", source.file));
+            let derived = derived(&source.file, &source.text);
+            spinner.finish_and_clear();
+            match derived {
+                Ok(derived) => {
+                    let audit = Audit::of(&derived);
+                    if !quiet {
+                        files::print(&audit.text(source))?;
+                    }
+                    let warnings = Report::new(source.file.as_str(), source.text.as_str(), derived.warnings);
+                    if !warnings.diagnostics().is_empty() {
+                        eprint!("{}", shown(&warnings));
+                    }
+                    found.push(audit.json(source, &warnings));
+                }
+                Err(report) => {
+                    found.push(json!({ "file": source.file, "ok": false, "findings": findings(&report) }));
+                    failed.push(report);
+                }
+            }
+        }
+        if let Some(path) = &self.json {
+            files::write_json(path, &json!({ "specs": found }))?;
+        }
+        if failed.is_empty() { Ok(()) } else { Err(Failure::Reports(failed)) }
+    }
+}
+
+fn findings(report: &Report) -> Vec<Value> {
+    let finding = |diagnostic: &appell_spec::Diagnostic| {
+        let at = diagnostic.labels.first().map_or(0, |(span, _)| span.start);
+        let (line, column) = report.line_column(at);
+        json!({
+            "code": diagnostic.code.text(), "message": diagnostic.message, "help": diagnostic.help,
+            "line": line, "column": column,
+        })
+    };
+    report.diagnostics().iter().map(finding).collect()
+}
+
+/// What a derivation tells about a mechanism.
+struct Audit {
+    title: String,
+    speeds: Vec<String>,
+    coordinates: usize,
+    rows: Vec<String>,
+    embedded: Vec<String>,
+    blocks: Vec<Vec<String>>,
+    solved_numerically: Vec<String>,
+}
+
+impl Audit {
+    fn of(derived: &Derived) -> Self {
+        let Derived { mechanism, derivation, .. } = derived;
+        let speeds: Vec<String> = mechanism.pseudo_velocities.iter().map(|w| w.label.name.clone()).collect();
+        let rows = |embedded: bool| {
+            let rows = derivation.constraints.rows.iter().filter(|row| row.is_embedded() == embedded);
+            rows.map(|row| row.name.clone()).collect()
+        };
+        let blocks = independent_blocks(&derivation.gibbs.mass_matrix);
+        let names = |block: &Vec<usize>| block.iter().map(|&speed| speeds[speed].clone()).collect();
+        let blocks = blocks.iter().map(names).collect();
+        let coordinate = |&q: &usize| mechanism.coordinates[q].label.name.clone();
+        Self {
+            title: mechanism.title.clone(),
+            coordinates: mechanism.coordinates.len(),
+            rows: rows(false),
+            embedded: rows(true),
+            blocks,
+            solved_numerically: derivation.velocities.solved_numerically.iter().map(coordinate).collect(),
+            speeds,
+        }
+    }
+
+    fn text(&self, source: &Source) -> String {
+        let mut text = format!("{}: {}\n", source.file, self.title);
+        // Writing to a string cannot fail.
+        let mut line = |label: &str, what: String| {
+            let _ = writeln!(text, "  {label:<22}{what}");
+        };
+        line("degrees of freedom", format!("{}: {}", self.speeds.len(), self.speeds.join(", ")));
+        let rows = |rows: &[String]| {
+            if rows.is_empty() { "none".to_owned() } else { format!("{}: {}", rows.len(), rows.join(", ")) }
+        };
+        line("coordinates", self.coordinates.to_string());
+        line("constraint rows", rows(&self.rows));
+        if !self.embedded.is_empty() {
+            line("held by geometry", rows(&self.embedded));
+        }
+        let blocks: Vec<String> = self.blocks.iter().map(|block| format!("{{{}}}", block.join(", "))).collect();
+        line("blocks of M", blocks.join(" "));
+        line(
+            "coordinate rates",
+            if self.solved_numerically.is_empty() {
+                "in closed form, without division by what can vanish".to_owned()
+            } else {
+                format!("in closed form, except for {} (solved with pivoting)", self.solved_numerically.join(", "))
+            },
+        );
+        text
+    }
+
+    fn json(&self, source: &Source, warnings: &Report) -> Value {
+        json!({
+            "file": source.file, "ok": true, "findings": findings(warnings), "title": self.title,
+            "degrees_of_freedom": self.speeds.len(), "pseudo_velocities": self.speeds,
+            "coordinates": self.coordinates, "constraint_rows": self.rows,
+            "embedded_rows": self.embedded, "mass_matrix_blocks": self.blocks,
+            "solved_numerically": self.solved_numerically,
+        })
+    }
+}

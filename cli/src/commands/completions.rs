@@ -1,0 +1,21 @@
+//! `appell completions`
+
+use clap::CommandFactory as _;
+
+use crate::failure::Failure;
+use crate::files;
+
+/// Shell completions on standard output.
+#[derive(Debug, clap::Args)]
+pub(crate) struct Completions {
+    /// The shell.
+    shell: clap_complete::Shell,
+}
+
+impl Completions {
+    pub(super) fn run(&self) -> Result<(), Failure> {
+        let mut script = Vec::new();
+        clap_complete::generate(self.shell, &mut crate::Arguments::command(), "appell", &mut script);
+        files::print(&String::from_utf8_lossy(&script))
+    }
+}

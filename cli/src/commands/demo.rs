@@ -1,0 +1,67 @@
+//! `appell demo`: the main job in one command.
+
+use std::path::{Path, PathBuf};
+
+use appell_runtime::figure::Figure;
+use appell_runtime::integrate::Options;
+use appell_runtime::simulate::Method;
+
+use super::derive::rust;
+use super::simulate::{Run, csv};
+use crate::controller::Plan;
+use crate::engine::Equations;
+use crate::failure::Failure;
+use crate::setup::Setup;
+use crate::source::Source;
+use crate::{feedback, files, summary};
+
+/// The lane change of the paper at 5 m/s.
+const LANE_CHANGE: &str = include_str!("../../../docs/examples/feedback/lane_change_5_m_s.toml");
+
+/// Derives the unicycle, lets it change lanes under feedback, and draws the motion.
+#[derive(Debug, clap::Args)]
+pub(crate) struct Demo {
+    /// Folder for the files
+    #[arg(long, value_name = "DIR", default_value = "demo")]
+    out: PathBuf,
+}
+
+impl Demo {
+    pub(super) fn run(&self) -> Result<(), Failure> {
+        let source = Source::find("unicycle")?;
+        let equations = Equations::at_hand(&source)?;
+        let mut setup = Setup::new(&source.file, &source.text, equations.model().info())?;
+        let law = feedback::parse("lane_change_5_m_s.toml", LANE_CHANGE, &setup)?;
+        setup.start_from_law(&law)?;
+        let mut plan = Plan::new();
+        plan.feedback(law);
+        let run = Run {
+            equations: &equations,
+            setup: &setup,
+            t_end: 10.0,
+            interval: 0.01,
+            method: Method::Dop853,
+            options: Options::with_tolerances(1e-10, 1e-10),
+            watch_ranges: true,
+        };
+        let (trajectory, failure) = run.run(plan)?;
+        let panels = [vec!["y_G", "r"], vec!["psi", "theta"], vec!["u"]];
+        let figure = Figure::over_time(&trajectory, &panels);
+        let path = Figure::path(&trajectory, "x_G", "y_G");
+
+        let mut told = String::new();
+        let mut write = |name: &str, text: &str, about: &str| {
+            let path = self.out.join(name);
+            told += &format!("  {:<28} {about}\n", Path::new(&path).display());
+            files::write(&path, text)
+        };
+        write("unicycle.rs", &rust(&source)?, "the same equations as Rust, compiled into this program")?;
+        write("lane_change.csv", &csv(&trajectory)?, "the motion: states, input, outputs, energies")?;
+        write("lane_change.svg", &figure.to_svg(), "the motion over time")?;
+        if let Some(path) = path {
+            write("path.svg", &path.to_svg(), "the path of the wheel centre, seen from above")?;
+        }
+        files::print(&format!("{}\nopen:\n{told}", summary::text(&trajectory)))?;
+        failure.map_or(Ok(()), |reason| Err(Failure::Computation(reason)))
+    }
+}

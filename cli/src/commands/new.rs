@@ -1,0 +1,36 @@
+//! `appell new`
+
+use std::fs::OpenOptions;
+use std::io::{ErrorKind, Write as _};
+use std::path::PathBuf;
+
+use crate::failure::Failure;
+use crate::files;
+
+/// A commented spec to start from.
+#[derive(Debug, clap::Args)]
+pub(crate) struct New {
+    /// Name of the mechanism: a letter, then letters, digits and `_`
+    name: String,
+}
+
+impl New {
+    pub(super) fn run(&self) -> Result<(), Failure> {
+        let text = appell_spec::starter(&self.name).map_err(|error| Failure::Usage(error.to_string()))?;
+        let path = PathBuf::from(format!("{}.toml", self.name));
+        // Creation fails where the file exists: nobody's work is overwritten.
+        let created = OpenOptions::new().write(true).create_new(true).open(&path);
+        match created.and_then(|mut file| file.write_all(text.as_bytes())) {
+            Ok(()) => files::print(&format!(
+                "wrote {path}; next:\n  appell check {path}\n  appell simulate {path} --plot {name}.svg\n",
+                path = path.display(),
+                name = self.name
+            )),
+            Err(cause) if cause.kind() == ErrorKind::AlreadyExists => Err(Failure::Usage(format!(
+                "{} exists already; choose another name, or remove the file",
+                path.display()
+            ))),
+            Err(cause) => Err(Failure::writing(&path)(cause)),
+        }
+    }
+}

@@ -1,0 +1,230 @@
+//! `appell simulate`
+
+use std::path::PathBuf;
+
+use appell_runtime::figure::Figure;
+use appell_runtime::integrate::Options;
+use appell_runtime::simulate::{Method, Sampling, SimulationError};
+use appell_runtime::trajectory::{CsvOptions, Extras};
+use appell_runtime::{Simulation, Trajectory};
+
+use crate::controller::Plan;
+use crate::engine::{Engine, Equations};
+use crate::failure::Failure;
+use crate::setup::{Assignment, Setup};
+use crate::source::Source;
+use crate::{feedback, files, progress, recorded, summary};
+
+/// Integrates the equations of motion and tells what happened.
+///
+/// A plain number is in the unit of the spec, `R=30cm` is converted, and `omega_2=5[m/s]/R` uses
+/// parameters. Expressions for inputs know `t`, states and parameters; numbers without a unit in
+/// them are in SI. Inputs, recordings and feedback add up.
+#[derive(Debug, clap::Args)]
+pub(crate) struct Simulate {
+    /// Name of a shipped mechanism or path of a spec
+    model: String,
+    /// End of the motion in s
+    #[arg(long, value_name = "S", default_value_t = 10.0)]
+    t_end_s: f64,
+    /// Interval between the rows of the output in s; the integrator chooses its own steps [default: a thousandth of the motion]
+    #[arg(long, value_name = "S")]
+    dt_s: Option<f64>,
+    /// The integrator
+    #[arg(long, value_enum, default_value_t = Integrator::Dop853)]
+    method: Integrator,
+    /// Tolerated error relative to each state
+    #[arg(long, default_value_t = 1e-9)]
+    rtol: f64,
+    /// Tolerated error of states near zero, in SI
+    #[arg(long, default_value_t = 1e-9)]
+    atol: f64,
+    /// A parameter, such as R=0.3 or R=30cm
+    #[arg(long, value_name = "NAME=VALUE")]
+    set: Vec<Assignment>,
+    /// An initial value; the others are those of the spec
+    #[arg(long, value_name = "NAME=VALUE", allow_hyphen_values = true)]
+    initial: Vec<Assignment>,
+    /// An input as an expression in t, states and parameters
+    #[arg(long, value_name = "NAME=EXPR", allow_hyphen_values = true)]
+    input: Vec<Assignment>,
+    /// Inputs from a CSV file with the columns t and inputs, each value held until the next row
+    #[arg(long, value_name = "FILE.csv")]
+    inputs: Option<PathBuf>,
+    /// A feedback law (docs/examples/feedback)
+    #[arg(long, value_name = "FILE.toml")]
+    feedback: Vec<PathBuf>,
+    /// Let states leave the ranges that the spec declares
+    #[arg(long)]
+    ignore_ranges: bool,
+    /// What evaluates the equations [default: emitted for shipped mechanisms, else jit]
+    #[arg(long, value_enum)]
+    engine: Option<Engine>,
+    /// Write the motion: time, states, inputs, outputs, energies, in the units of the spec
+    #[arg(long, value_name = "FILE.csv")]
+    csv: Option<PathBuf>,
+    /// Draw states and inputs over time
+    #[arg(long, value_name = "FILE.svg")]
+    plot: Option<PathBuf>,
+    /// Write a summary in SI; `-` is standard output
+    #[arg(long, value_name = "FILE")]
+    json: Option<PathBuf>,
+}
+
+/// The integrators.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+enum Integrator {
+    /// Order 8, step-size control
+    Dop853,
+    /// Order 5, step-size control
+    Dopri5,
+    /// Order 4, fixed steps of the output interval
+    Rk4,
+}
+
+impl Simulate {
+    pub(super) fn run(&self) -> Result<(), Failure> {
+        positive("--t-end-s", self.t_end_s)?;
+        let interval = self.dt_s.unwrap_or(self.t_end_s / 1000.0);
+        positive("--dt-s", interval)?;
+        if self.t_end_s / interval > MOST_ROWS {
+            return Err(Failure::Usage(format!(
+                "{} rows are too many; choose a larger `--dt-s` (at most {MOST_ROWS:.0} rows)",
+                self.t_end_s / interval
+            )));
+        }
+        let source = Source::find(&self.model)?;
+        let equations = match self.engine {
+            Some(engine) => Equations::new(&source, engine)?,
+            None => Equations::at_hand(&source)?,
+        };
+        let mut setup = Setup::new(&source.file, &source.text, equations.model().info())?;
+        setup.set(&self.set)?;
+        let mut plan = Plan::new();
+        for file in &self.feedback {
+            let law = feedback::read(file, &setup)?;
+            setup.start_from_law(&law)?;
+            plan.feedback(law);
+        }
+        setup.start(&self.initial)?;
+        for assignment in &self.input {
+            plan.expression(assignment, &setup)?;
+        }
+        if let Some(file) = &self.inputs {
+            let (table, inputs) = recorded::read(file, &setup)?;
+            plan.recording(table, &inputs, &setup)?;
+        }
+        let method = match self.method {
+            Integrator::Dop853 => Method::Dop853,
+            Integrator::Dopri5 => Method::Dopri5,
+            Integrator::Rk4 => Method::Rk4 { step: interval },
+        };
+        let run = Run {
+            equations: &equations,
+            setup: &setup,
+            t_end: self.t_end_s,
+            interval,
+            method,
+            options: Options::with_tolerances(self.rtol, self.atol),
+            watch_ranges: !self.ignore_ranges,
+        };
+        let undriven = plan.is_empty();
+        let (trajectory, failure) = run.run(plan)?;
+
+        if let Some(path) = &self.csv {
+            files::write(path, &csv(&trajectory)?)?;
+        }
+        if let Some(path) = &self.plot {
+            files::write(path, &Figure::of_states_and_inputs(&trajectory).to_svg())?;
+        }
+        if let Some(path) = &self.json {
+            files::write_json(path, &summary::json(&trajectory, failure.as_deref()))?;
+        }
+        if !self.json.as_deref().is_some_and(files::is_stdout) {
+            files::print(&summary::text(&trajectory))?;
+            if undriven && failure.is_none() && summary::rests(&trajectory) {
+                files::print(&format!("  nothing moves: {}\n", hint(&setup)))?;
+            }
+        }
+        match failure {
+            None => Ok(()),
+            Some(reason) => Err(Failure::Computation(reason)),
+        }
+    }
+}
+
+/// Rows of a trajectory that fit into memory anywhere.
+const MOST_ROWS: f64 = 2e6;
+
+fn positive(flag: &str, value: f64) -> Result<(), Failure> {
+    if value.is_finite() && value > 0.0 {
+        return Ok(());
+    }
+    Err(Failure::Usage(format!("`{flag} {value}` must be a positive number of seconds")))
+}
+
+fn hint(setup: &Setup<'_>) -> String {
+    let first = setup.info.coordinate_quantities().last();
+    let name = first.map_or("NAME", |coordinate| coordinate.name.as_ref());
+    format!("the mechanism starts at rest and nothing drives it; try `--initial {name}=0.1`")
+}
+
+/// A motion to be computed.
+pub(super) struct Run<'a> {
+    /// What moves.
+    pub(super) equations: &'a Equations,
+    /// Its numbers.
+    pub(super) setup: &'a Setup<'a>,
+    /// End in s.
+    pub(super) t_end: f64,
+    /// Between the rows of the output, in s.
+    pub(super) interval: f64,
+    /// The integrator.
+    pub(super) method: Method,
+    /// Its tolerances.
+    pub(super) options: Options,
+    /// Whether states must stay in their declared ranges.
+    pub(super) watch_ranges: bool,
+}
+
+impl Run<'_> {
+    /// The motion, and why it ends early if it does.
+    pub(super) fn run(&self, plan: Plan) -> Result<(Trajectory, Option<String>), Failure> {
+        let controller = plan.controller(self.setup)?;
+        let clock = progress::clock(self.t_end);
+        let simulation = Simulation {
+            parameters: self.setup.parameters.clone(),
+            initial_state: self.setup.initial.clone(),
+            inputs: &controller,
+            span: [0.0, self.t_end],
+            method: self.method,
+            options: self.options,
+            sampling: Sampling::Every(self.interval),
+            extras: Extras { outputs: true, energies: true, ..Extras::default() },
+            watch_ranges: self.watch_ranges,
+            progress: Some(Box::new(|t| clock.set_position(progress::milliseconds(t)))),
+            ..Simulation::new(self.equations.model())
+        };
+        let outcome = simulation.run();
+        clock.finish_and_clear();
+        match outcome {
+            Ok(trajectory) => Ok((trajectory, None)),
+            Err(error) => {
+                let reason = error.to_string();
+                match error {
+                    SimulationError::Integration { trajectory, .. } => Ok((*trajectory, Some(reason))),
+                    _ => Err(Failure::Usage(reason)),
+                }
+            }
+        }
+    }
+}
+
+/// A trajectory as CSV.
+pub(super) fn csv(trajectory: &Trajectory) -> Result<String, Failure> {
+    let mut bytes = Vec::new();
+    trajectory
+        .write_csv(&mut bytes, CsvOptions::default())
+        .map_err(Failure::writing("the trajectory".as_ref()))?;
+    Ok(String::from_utf8_lossy(&bytes).into_owned())
+}

@@ -1,0 +1,215 @@
+//! Numbers for a mechanism from the command line: parameters, initial values, inputs.
+
+use appell_runtime::model::ModelInfo;
+use appell_spec::units::{self, Unit};
+use appell_spec::{Mechanism, Report, Scope, Snippet, closest, formula};
+
+use crate::failure::Failure;
+use crate::feedback::Feedback;
+use crate::formula::Workbench;
+
+/// `NAME=VALUE` as it was given.
+#[derive(Debug, Clone)]
+pub(crate) struct Assignment {
+    /// Left side.
+    pub(crate) name: String,
+    /// Right side.
+    pub(crate) value: String,
+}
+
+impl std::str::FromStr for Assignment {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let (name, value) = text.split_once('=').ok_or("write NAME=VALUE, such as R=0.3 or R=30cm")?;
+        let (name, value) = (name.trim().to_owned(), value.trim().to_owned());
+        if name.is_empty() || value.is_empty() {
+            return Err("write NAME=VALUE, with something on both sides".to_owned());
+        }
+        Ok(Self { name, value })
+    }
+}
+
+/// A spec, its mechanism, and the numbers that replace its own.
+pub(crate) struct Setup<'a> {
+    /// Text of the spec.
+    pub(crate) spec: &'a str,
+    /// The mechanism.
+    pub(crate) mechanism: Mechanism,
+    /// The names and sizes of its equations.
+    pub(crate) info: &'a ModelInfo,
+    /// Parameters in SI.
+    pub(crate) parameters: Vec<f64>,
+    /// Initial state in SI.
+    pub(crate) initial: Vec<f64>,
+}
+
+impl<'a> Setup<'a> {
+    /// The numbers of the spec.
+    pub(crate) fn new(file: &str, spec: &'a str, info: &'a ModelInfo) -> Result<Self, Failure> {
+        let checked = appell_spec::load(file, spec).map_err(|report| Failure::Reports(vec![report]))?;
+        let (parameters, initial) = (info.default_parameters(), info.initial_state());
+        Ok(Self { spec, mechanism: checked.mechanism, info, parameters, initial })
+    }
+
+    /// `--set NAME=VALUE`; later values may use earlier ones.
+    pub(crate) fn set(&mut self, assignments: &[Assignment]) -> Result<(), Failure> {
+        unique(assignments, "--set")?;
+        for assignment in assignments {
+            let names = || self.mechanism.parameters.iter().map(|p| p.label.name.as_str());
+            let index = known(&assignment.name, "parameter", names())?;
+            let unit = self.mechanism.parameters[index].label.unit.clone();
+            let value = self.value(&assignment.value, &unit, &format!("--set {}", assignment.name))?;
+            let parameter = &self.mechanism.parameters[index];
+            let low = parameter.at_least.unwrap_or(f64::NEG_INFINITY);
+            let high = parameter.at_most.unwrap_or(f64::INFINITY);
+            inside(&assignment.name, value, [low, high], &unit)?;
+            self.parameters[index] = value;
+        }
+        Ok(())
+    }
+
+    /// `--initial NAME=VALUE`; values may use parameters.
+    pub(crate) fn start(&mut self, assignments: &[Assignment]) -> Result<(), Failure> {
+        unique(assignments, "--initial")?;
+        for assignment in assignments {
+            let index = self.state(&assignment.name)?;
+            let unit = self.unit_of_state(index).clone();
+            let value = self.value(&assignment.value, &unit, &format!("--initial {}", assignment.name))?;
+            inside(&assignment.name, value, self.info.states[index].range, &unit)?;
+            self.initial[index] = value;
+        }
+        Ok(())
+    }
+
+    /// The initial values that a law asks for.
+    pub(crate) fn start_from_law(&mut self, law: &Feedback) -> Result<(), Failure> {
+        for (state, expr) in &law.initial {
+            let mut bench = Workbench::new(&self.mechanism);
+            let name = &self.info.states[*state].name;
+            let value = bench.lower(expr).map(|expr| bench.constants(&[expr], &self.parameters)[0]);
+            let value = value.filter(|value| value.is_finite()).ok_or_else(|| {
+                Failure::Data(format!("the initial value of `{name}` is not a finite number"))
+            })?;
+            inside(name, value, self.info.states[*state].range, self.unit_of_state(*state))?;
+            self.initial[*state] = value;
+        }
+        Ok(())
+    }
+
+    /// Index of a state.
+    pub(crate) fn state(&self, name: &str) -> Result<usize, Failure> {
+        known(name, "state", self.info.states.iter().map(|state| state.name.as_ref()))
+    }
+
+    /// Index of a declared input.
+    pub(crate) fn input(&self, name: &str) -> Result<usize, Failure> {
+        known(name, "input", self.mechanism.inputs.iter().map(|input| input.label.name.as_str()))
+    }
+
+    /// Unit of a state.
+    pub(crate) fn unit_of_state(&self, index: usize) -> &Unit {
+        let speeds = &self.mechanism.pseudo_velocities;
+        match index.checked_sub(speeds.len()) {
+            None => &speeds[index].label.unit,
+            Some(coordinate) => &self.mechanism.coordinates[coordinate].label.unit,
+        }
+    }
+
+    /// A value in SI: a number in the quantity's unit, a number with a unit, or an expression in
+    /// the parameters.
+    fn value(&self, text: &str, unit: &Unit, label: &str) -> Result<f64, Failure> {
+        let text = with_unit(text, unit);
+        let findings = |findings| {
+            Failure::Expression(Box::new(Report::new(label, text.as_str(), findings)))
+        };
+        let wanted = Some(unit.dimension);
+        let expr = formula(self.spec, &Snippet::alone(&text), "the value", Scope::Constant, wanted)
+            .map_err(findings)?;
+        let mut bench = Workbench::new(&self.mechanism);
+        let value = bench.lower(&expr).map(|expr| bench.constants(&[expr], &self.parameters)[0]);
+        match value {
+            Some(value) if value.is_finite() => Ok(value),
+            _ => Err(Failure::Usage(format!("{label}: `{text}` is not a finite number"))),
+        }
+    }
+}
+
+/// `30cm` and `30 cm` become `30[cm]`, a number without unit gets the quantity's; anything else is
+/// an expression as it stands.
+pub(crate) fn with_unit(text: &str, unit: &Unit) -> String {
+    if text.parse::<f64>().is_ok_and(f64::is_finite) {
+        // A sign binds weaker than a unit, which makes no difference here.
+        return format!("{}[{}]", text.trim_start_matches('+'), unit.text);
+    }
+    let split = (1..text.len()).rev().filter(|&at| text.is_char_boundary(at)).find_map(|at| {
+        let (number, unit) = text.split_at(at);
+        let fits = number.trim_end().parse::<f64>().is_ok_and(f64::is_finite)
+            && units::parse(unit.trim()).is_ok()
+            && unit.trim_start().starts_with(|c: char| c.is_alphabetic() || c == '%' || c == '°');
+        fits.then(|| format!("{}[{}]", number.trim_end(), unit.trim()))
+    });
+    split.unwrap_or_else(|| text.to_owned())
+}
+
+/// Position of a name, or what to write instead.
+pub(crate) fn known<'n>(
+    name: &str,
+    what: &str,
+    names: impl Iterator<Item = &'n str> + Clone,
+) -> Result<usize, Failure> {
+    names.clone().position(|other| other == name).ok_or_else(|| Failure::Usage(unknown(name, what, names)))
+}
+
+/// The message for an unknown name.
+pub(crate) fn unknown<'n>(name: &str, what: &str, names: impl Iterator<Item = &'n str> + Clone) -> String {
+    let similar = closest(name, names.clone());
+    let list = names.collect::<Vec<_>>();
+    match similar {
+        Some(similar) => format!("there is no {what} `{name}`; did you mean `{similar}`?"),
+        None if list.is_empty() => format!("there is no {what} `{name}`: the mechanism has none"),
+        None => format!("there is no {what} `{name}`; there are {}", list.join(", ")),
+    }
+}
+
+fn unique(assignments: &[Assignment], flag: &str) -> Result<(), Failure> {
+    for (i, assignment) in assignments.iter().enumerate() {
+        if assignments[..i].iter().any(|other| other.name == assignment.name) {
+            return Err(Failure::Usage(format!("{flag}: `{}` is given twice", assignment.name)));
+        }
+    }
+    Ok(())
+}
+
+fn inside(name: &str, value: f64, [low, high]: [f64; 2], unit: &Unit) -> Result<(), Failure> {
+    if (low..=high).contains(&value) {
+        return Ok(());
+    }
+    let [value, low, high] = [value, low, high].map(|si| unit.from_si(si));
+    Err(Failure::Usage(format!(
+        "`{name}` = {value} {unit} is outside its limits {low} … {high} {unit}",
+        unit = unit.text
+    )))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_get_units() {
+        let metre = units::parse("m").expect("a unit");
+        for (text, expected) in [
+            ("0.3", "0.3[m]"),
+            ("-1e-3", "-1e-3[m]"),
+            ("30cm", "30[cm]"),
+            ("30 cm", "30[cm]"),
+            ("1e3mm", "1e3[mm]"),
+            ("2*l", "2*l"),
+            ("5[m]", "5[m]"),
+            ("l", "l"),
+        ] {
+            assert_eq!(with_unit(text, &metre), expected);
+        }
+    }
+}

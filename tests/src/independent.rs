@@ -1,0 +1,120 @@
+//! Equations of motion by Kane's method and by Lagrange's with multipliers, written a second time.
+//!
+//! Nothing here comes from the derivation: rotation matrices are multiplied out, positions are
+//! differentiated twice along the motion with dual numbers, the Lagrangian is differentiated in the
+//! coordinates, and the linear systems are solved with numbers. What is shared with the tool under
+//! test is the meaning of a spec, [`Mechanism`](appell_spec::Mechanism), and the dual numbers.
+
+pub mod evaluate;
+pub mod kane;
+pub mod lagrange;
+pub mod loads;
+pub mod motion;
+
+use appell_runtime::model::ModelInfo;
+use appell_spec::Mechanism;
+
+use crate::random::Random;
+
+/// A place in state space, in the order of the model.
+#[derive(Debug, Clone)]
+pub struct Point {
+    /// Time in s.
+    pub t: f64,
+    /// State.
+    pub x: Vec<f64>,
+    /// Inputs and signals.
+    pub u: Vec<f64>,
+    /// Parameters.
+    pub p: Vec<f64>,
+}
+
+impl Point {
+    /// A random point inside the declared ranges. Angles and lengths without a range stay within
+    /// ±1.2, velocities within ±2, inputs within ±5; parameters are up to 30 % off the spec's.
+    pub fn random(info: &ModelInfo, random: &mut Random) -> Self {
+        let inside = |[low, high]: [f64; 2], around: f64, width: f64| {
+            [low.max(around - width), high.min(around + width)]
+        };
+        let mut draw = |[low, high]: [f64; 2]| random.between(low, high);
+        let mut x: Vec<f64> = info
+            .speed_quantities()
+            .iter()
+            .map(|_| draw([-2.0, 2.0]))
+            .collect();
+        for coordinate in info.coordinate_quantities() {
+            // The middle nine tenths: at the ends of a range the equations may be singular.
+            let [low, high] = coordinate.range;
+            let middle = if (high - low).is_finite() {
+                f64::midpoint(low, high)
+            } else {
+                0.0
+            };
+            let width = if (high - low).is_finite() {
+                0.45 * (high - low)
+            } else {
+                1.2
+            };
+            x.push(draw(inside(coordinate.range, middle, width)));
+        }
+        let u = info.inputs.iter().map(|_| draw([-5.0, 5.0])).collect();
+        let p = info
+            .parameters
+            .iter()
+            .map(|q| draw(inside(q.range, q.value, 0.3 * q.value.abs())))
+            .collect();
+        let t = draw([0.0, 2.0]);
+        Self { t, x, u, p }
+    }
+
+    /// The same place for the functions of a model.
+    pub fn at(&self) -> appell_runtime::model::At<'_> {
+        appell_runtime::model::At {
+            t: self.t,
+            x: &self.x,
+            u: &self.u,
+            p: &self.p,
+        }
+    }
+}
+
+/// A mechanism at a point.
+#[derive(Debug)]
+pub struct Setting<'a> {
+    /// The mechanism.
+    pub mechanism: &'a Mechanism,
+    /// Time in s.
+    pub t: f64,
+    /// Pseudo-velocities.
+    pub speeds: &'a [f64],
+    /// Coordinates.
+    pub coordinates: &'a [f64],
+    /// Declared inputs.
+    pub inputs: &'a [f64],
+    /// Signals with their first and second derivatives.
+    pub signals: Vec<[f64; 3]>,
+    /// Parameters.
+    pub parameters: &'a [f64],
+}
+
+impl<'a> Setting<'a> {
+    /// The setting of a point of a model of the mechanism.
+    pub fn new(mechanism: &'a Mechanism, info: &ModelInfo, point: &'a Point) -> Self {
+        let (speeds, coordinates) = point.x.split_at(info.speeds);
+        let (inputs, tabulated) = point.u.split_at(info.declared_inputs);
+        // Derivatives that are no inputs of the model do not matter to it.
+        let mut signals = vec![[0.0; 3]; mechanism.signals.len()];
+        for (&(signal, order), &value) in info.signal_inputs.iter().zip(tabulated) {
+            signals[signal][usize::from(order)] = value;
+        }
+        Self {
+            mechanism,
+            t: point.t,
+            speeds,
+            coordinates,
+            inputs,
+            signals,
+            parameters: &point.p,
+        }
+    }
+}

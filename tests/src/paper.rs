@@ -1,0 +1,522 @@
+//! The derived equations of the papers' mechanisms, under the names of the papers.
+
+use std::collections::BTreeMap;
+use std::sync::{LazyLock, Mutex, MutexGuard, PoisonError};
+
+use appell_codegen::mechanics::Derivation;
+use appell_codegen::mechanics::frames::FrameVector;
+use appell_codegen::mechanics::gibbs_appell::{acceleration_energy, along, kinetic_energy};
+use appell_codegen::mechanics::linear::ImplicitMotion;
+use appell_codegen::mechanics::symbols::ids;
+use appell_codegen::symbolic::vector::Vec3;
+use appell_codegen::symbolic::{Expr, Graph, Substitution, SymbolId, evaluate};
+use appell_spec::Mechanism;
+
+use crate::formula::{Scope, formula};
+use crate::random::Random;
+use crate::shipped;
+
+/// A derivation that speaks the language of a paper.
+pub struct Paper {
+    /// The mechanism.
+    pub mechanism: Mechanism,
+    /// Its derivation.
+    pub derivation: Derivation,
+    /// What may stand in a formula.
+    pub scope: Scope,
+    /// What was derived.
+    derived: BTreeMap<String, Expr>,
+}
+
+macro_rules! shared {
+    ($(#[$doc:meta])* $name:ident, $make:expr) => {
+        $(#[$doc])*
+        pub fn $name() -> MutexGuard<'static, Paper> {
+            static SHARED: LazyLock<Mutex<Paper>> = LazyLock::new(|| Mutex::new($make));
+            // A test that failed while it held the lock has not changed what was derived.
+            SHARED.lock().unwrap_or_else(PoisonError::into_inner)
+        }
+    };
+}
+
+shared!(
+    /// Paper 001, section II and appendix A.
+    rolling_wheel,
+    Paper::steering(shipped::mechanism("rolling_wheel"))
+);
+shared!(
+    /// Paper 001, section III and appendices B and C.
+    unicycle,
+    Paper::steering(shipped::mechanism("unicycle"))
+);
+shared!(
+    /// Paper 000, equations (6) to (10).
+    euc_3dof,
+    Paper::euc(shipped::mechanism("euc_3dof"))
+);
+shared!(
+    /// Paper 000, equations (11) to (13).
+    euc_2dof,
+    Paper::euc(shipped::mechanism("euc_2dof"))
+);
+
+/// Paper's name of a state, coordinate or parameter, and the spec's where they differ.
+const STEERING_NAMES: &[(&str, &str)] = &[
+    ("w1", "omega_1"),
+    ("w2", "omega_2"),
+    ("w3", "omega_3"),
+    ("s", "sigma"),
+    ("th", "theta"),
+    ("xG", "x_G"),
+    ("yG", "y_G"),
+];
+const EUC_NAMES: &[(&str, &str)] = &[
+    ("m0", "m_0"),
+    ("mw", "m_w"),
+    ("J0", "J_0"),
+    ("Jw", "J_w"),
+    ("h0", "h_0"),
+    ("l0", "l_0"),
+    ("ga", "gamma"),
+    ("ph", "phi"),
+    ("dx", "v"),
+    ("dga", "gamma_dot"),
+    ("dph", "phi_dot"),
+    ("Md", "M_d"),
+    ("Mh", "M_h"),
+];
+/// States of the linearisations in paper 001.
+const WHEEL_STATES: &[&str] = &["w1", "w2", "w3", "th", "psi", "phi", "xG", "yG"];
+const UNICYCLE_STATES: &[&str] = &["w1", "w2", "w3", "th", "s", "r", "psi", "phi", "xG", "yG"];
+
+impl Paper {
+    /// The wheel or the unicycle of paper 001.
+    pub fn steering(mechanism: Mechanism) -> Self {
+        let mut paper = Self::new(mechanism, STEERING_NAMES);
+        let speeds: &[&str] = if paper.scope.get("s").is_some() {
+            &["w1", "w2", "w3", "s"]
+        } else {
+            &["w1", "w2", "w3"]
+        };
+        paper.rename_accelerations(speeds, |speed| format!("{speed}d"));
+        for (index, coordinate) in paper.mechanism.coordinates.clone().iter().enumerate() {
+            let name = STEERING_NAMES
+                .iter()
+                .find(|(_, spec)| *spec == coordinate.label.name)
+                .map_or(coordinate.label.name.as_str(), |(paper, _)| paper);
+            let rate = paper.derivation.coordinate_rates[index];
+            paper.scope.define(&format!("{name}d"), rate);
+            paper.derive_as(&format!("{name}d"), rate);
+        }
+        paper.appell("b", "Pi");
+        paper.energies();
+        let tilted = paper
+            .mechanism
+            .frames
+            .iter()
+            .position(|f| f.name == "tilted")
+            .unwrap();
+        for (point, name) in [("G", "vG"), ("A", "vA")] {
+            if let Some(point) = paper.mechanism.points.iter().position(|p| p.name == point) {
+                let v = paper.derivation.kinematics.velocity(point);
+                paper.vector(name, v, tilted);
+            }
+        }
+        let graph = &mut paper.derivation.algebra.graph;
+        let g = paper
+            .mechanism
+            .points
+            .iter()
+            .position(|p| p.name == "G")
+            .unwrap();
+        let position = paper
+            .derivation
+            .kinematics
+            .position(graph, &paper.mechanism, g);
+        paper.derive_as("zG", position[2]);
+        paper.accelerations(tilted);
+        paper.linearisation();
+        paper
+    }
+
+    /// One of the two models of paper 000.
+    pub fn euc(mechanism: Mechanism) -> Self {
+        let mut paper = Self::new(mechanism, EUC_NAMES);
+        let speeds: &[&str] = if paper.scope.get("ga").is_some() {
+            &["dx", "dga", "dph"]
+        } else {
+            &["dx", "dph"]
+        };
+        paper.rename_accelerations(speeds, |speed| format!("d{speed}"));
+        paper.appell("h", "Q");
+        paper.energies();
+        paper
+    }
+
+    fn new(mechanism: Mechanism, names: &[(&str, &str)]) -> Self {
+        let derivation = shipped::derive(&mechanism);
+        let mut scope = Scope::default();
+        let symbols = &derivation.symbols;
+        let graph = &derivation.algebra.graph;
+        let groups = [
+            &symbols.parameters,
+            &symbols.coordinates,
+            &symbols.speeds,
+            &symbols.inputs,
+        ];
+        for &symbol in groups.into_iter().flatten() {
+            let spec = graph
+                .symbol_name(graph.as_symbol(symbol).unwrap())
+                .to_owned();
+            let name = names
+                .iter()
+                .find(|(_, other)| *other == spec)
+                .map_or(spec.as_str(), |(name, _)| name);
+            scope.define(name, symbol);
+        }
+        Self {
+            mechanism,
+            derivation,
+            scope,
+            derived: BTreeMap::new(),
+        }
+    }
+
+    /// Pseudo-accelerations as unknowns of formulas, and the derived expressions for them.
+    fn rename_accelerations(&mut self, speeds: &[&str], rename: impl Fn(&str) -> String) {
+        assert_eq!(speeds.len(), self.derivation.symbols.speeds.len());
+        for (index, speed) in speeds.iter().enumerate() {
+            assert_eq!(
+                self.scope.get(speed),
+                Some(self.derivation.symbols.speeds[index]),
+                "{speed}"
+            );
+            self.scope
+                .define(&rename(speed), self.derivation.symbols.accelerations[index]);
+            self.derive_as(&rename(speed), self.derivation.motion.accelerations[index]);
+            self.derive_as(speed, self.derivation.symbols.speeds[index]);
+        }
+    }
+
+    /// Mass matrix, bias, forces, and the left-hand sides of Appell's equations.
+    fn appell(&mut self, bias: &str, force: &str) {
+        let gibbs = self.derivation.gibbs.clone();
+        let accelerations = self.derivation.symbols.accelerations.clone();
+        let letter = if bias == "b" { "M" } else { "m" };
+        for (i, row) in gibbs.mass_matrix.iter().enumerate() {
+            let mut parts = vec![gibbs.bias[i]];
+            for (j, (&entry, &acceleration)) in row.iter().zip(&accelerations).enumerate() {
+                self.derive_as(&format!("{letter}{}{}", i + 1, j + 1), entry);
+                parts.push(self.derivation.algebra.graph.mul(entry, acceleration));
+            }
+            let left = self.derivation.algebra.graph.sum(&parts);
+            self.derive_as(&format!("left{}", i + 1), left);
+            let residual = self
+                .derivation
+                .algebra
+                .graph
+                .sub(left, self.derivation.forces[i]);
+            self.derive_as(&format!("row{}", i + 1), residual);
+            self.derive_as(&format!("{bias}{}", i + 1), gibbs.bias[i]);
+            self.derive_as(&format!("{force}{}", i + 1), self.derivation.forces[i]);
+        }
+    }
+
+    /// S with symbols for the accelerations, T, V, the power of what has no potential, d(T + V)/dt.
+    fn energies(&mut self) {
+        let d = &mut self.derivation;
+        let bodies = d.bodies.clone();
+        let accelerations = d.symbols.accelerations.clone();
+        let parts: Vec<Expr> = bodies
+            .iter()
+            .map(|body| acceleration_energy(&mut d.algebra, body, &accelerations))
+            .collect();
+        let s = d.algebra.graph.sum(&parts);
+        let parts: Vec<Expr> = bodies
+            .iter()
+            .map(|body| kinetic_energy(&mut d.algebra, body))
+            .collect();
+        let kinetic = d.algebra.graph.sum(&parts);
+        let parts: Vec<Expr> = d.loads.iter().filter_map(|load| load.potential).collect();
+        let potential = d.algebra.graph.sum(&parts);
+        let graph = &mut d.algebra.graph;
+        let parts: Vec<Expr> = d
+            .loads
+            .iter()
+            .filter(|load| load.potential.is_none())
+            .map(|load| load.power(graph))
+            .collect();
+        let power = d.algebra.graph.sum(&parts);
+        let total = d.algebra.graph.add(kinetic, potential);
+        let growth = energy_rate(d, total);
+        for (name, value) in [
+            ("S", s),
+            ("T", kinetic),
+            ("V", potential),
+            ("power", power),
+            ("energy_rate", growth),
+        ] {
+            self.derive_as(name, value);
+        }
+        for (i, &acceleration) in accelerations.iter().enumerate() {
+            let derivative = self.derivation.algebra.derivative(s, acceleration);
+            self.derive_as(&format!("dS{}", i + 1), derivative);
+        }
+    }
+
+    /// Accelerations of the bodies, with symbols for the pseudo-accelerations.
+    fn accelerations(&mut self, frame: usize) {
+        let accelerations = self.derivation.symbols.accelerations.clone();
+        for body in self.derivation.bodies.clone() {
+            let centre = &body.centre;
+            let graph = &mut self.derivation.algebra.graph;
+            let a = along(graph, centre.bias, &centre.partial, &accelerations);
+            let name = if body.name == "wheel" { "aG" } else { "aA" };
+            self.vector(
+                name,
+                FrameVector {
+                    frame: centre.velocity.frame,
+                    v: a,
+                },
+                frame,
+            );
+            if let Some(rotation) = &body.rotation {
+                let graph = &mut self.derivation.algebra.graph;
+                let alpha = along(graph, rotation.bias, &rotation.partial, &accelerations);
+                self.vector(
+                    "alpha",
+                    FrameVector {
+                        frame: rotation.velocity.frame,
+                        v: alpha,
+                    },
+                    frame,
+                );
+                self.vector("omega", rotation.velocity, frame);
+            }
+        }
+    }
+
+    fn vector(&mut self, name: &str, vector: FrameVector, frame: usize) {
+        let graph = &mut self.derivation.algebra.graph;
+        let v: Vec3 = self
+            .derivation
+            .kinematics
+            .frames
+            .express(graph, vector, frame);
+        for (axis, component) in v.into_iter().enumerate() {
+            self.derive_as(&format!("{name}{}", axis + 1), component);
+        }
+    }
+
+    /// A and B where w1 = s = 0, in the yaw rate `Pd` and the pitch rate `Fd`.
+    fn linearisation(&mut self) {
+        let states = if self.scope.get("s").is_some() {
+            UNICYCLE_STATES
+        } else {
+            WHEEL_STATES
+        };
+        let (yaw, pitch) = {
+            let graph = &mut self.derivation.algebra.graph;
+            (graph.symbol("Pd"), graph.symbol("Fd"))
+        };
+        self.scope.define("Pd", yaw);
+        self.scope.define("Fd", pitch);
+        let mut variables: Vec<Expr> = states.iter().map(|s| self.scope.get(s).unwrap()).collect();
+        variables.extend(self.scope.get("u"));
+        let d = &mut self.derivation;
+        let implicit = ImplicitMotion {
+            gibbs: &d.gibbs,
+            forces: &d.forces,
+            motion: &d.motion,
+            coordinate_rates: &d.coordinate_rates,
+        };
+        let residual = implicit.residual(&mut d.algebra, &d.symbols);
+        let columns = implicit.jacobian(&mut d.algebra, &d.symbols, &residual, &variables);
+        let order: Vec<Expr> = d
+            .symbols
+            .speeds
+            .iter()
+            .chain(&d.symbols.coordinates)
+            .copied()
+            .collect();
+        let mut steady = vec![("w2", "Pd*sin(th) + Fd"), ("w3", "Pd*cos(th)"), ("w1", "0")];
+        if self.scope.get("s").is_some() {
+            // The paper linearises the motion without control.
+            steady.extend([("s", "0"), ("u", "0")]);
+        }
+        let mut steady = self.substitution(&steady);
+        for (row, state) in variables.iter().take(states.len()).enumerate() {
+            let place = order.iter().position(|s| s == state).unwrap();
+            for (column, entries) in columns.iter().enumerate() {
+                let at_steady = steady
+                    .apply(&mut self.derivation.algebra.graph, entries[place])
+                    .unwrap();
+                let name = if column < states.len() {
+                    format!("A{}{}", row + 1, column + 1)
+                } else {
+                    format!("B{}", row + 1)
+                };
+                self.derive_as(&name, at_steady);
+            }
+        }
+        for name in ["w1d", "sd"] {
+            if let Some(&rate) = self.derived.get(name) {
+                let value = steady
+                    .apply(&mut self.derivation.algebra.graph, rate)
+                    .unwrap();
+                self.derive_as(&format!("steady_{name}"), value);
+            }
+        }
+    }
+
+    fn derive_as(&mut self, name: &str, value: Expr) {
+        self.derived.insert(name.to_owned(), value);
+    }
+
+    /// Replaces symbols, by their names in the paper, by formulas. Unknown names are left out.
+    pub fn substitution(&mut self, replacements: &[(&str, &str)]) -> Substitution {
+        let mut pairs: Vec<(SymbolId, Expr)> = Vec::new();
+        for (name, text) in replacements {
+            if let Some(symbol) = self.scope.get(name) {
+                let symbol = self.derivation.algebra.graph.as_symbol(symbol).unwrap();
+                pairs.push((symbol, self.formula(text)));
+            }
+        }
+        Substitution::new(&mut self.derivation.algebra.graph, &pairs)
+    }
+
+    /// What was derived under a name.
+    pub fn derived(&self, name: &str) -> Expr {
+        self.derived
+            .get(name)
+            .copied()
+            .unwrap_or_else(|| panic!("nothing was derived as `{name}`"))
+    }
+
+    /// Names of everything that was derived.
+    pub fn derived_names(&self) -> Vec<String> {
+        self.derived.keys().cloned().collect()
+    }
+
+    /// The expression of a formula.
+    pub fn formula(&mut self, text: &str) -> Expr {
+        formula(&mut self.derivation.algebra.graph, &self.scope, text)
+    }
+
+    /// Whether two expressions are the same function, by the identity test.
+    pub fn same(&mut self, a: Expr, b: Expr) -> bool {
+        let algebra = &mut self.derivation.algebra;
+        algebra.test.are_equal(&algebra.graph, a, b)
+    }
+
+    /// Whether what was derived under a name is the formula.
+    pub fn agrees(&mut self, name: &str, text: &str) -> bool {
+        let (derived, typed) = (self.derived(name), self.formula(text));
+        self.same(derived, typed)
+    }
+
+    /// Demands that lines `name = formula` are what was derived. A line `let name = formula` is an
+    /// abbreviation for the lines after it.
+    pub fn assert(&mut self, lines: &str) {
+        let before = self.scope.clone();
+        let mut compared = 0;
+        for line in lines.lines().map(str::trim).filter(|line| !line.is_empty()) {
+            let (name, right) = line
+                .split_once('=')
+                .unwrap_or_else(|| panic!("no `=` in `{line}`"));
+            let name = name.trim();
+            if let Some(name) = name.strip_prefix("let ") {
+                let value = self.formula(right);
+                self.scope.define(name.trim(), value);
+                continue;
+            }
+            let (derived, typed) = (self.derived(name), self.formula(right));
+            assert!(
+                self.same(derived, typed),
+                "{line}\n{}",
+                self.difference(derived, typed)
+            );
+            compared += 1;
+        }
+        assert!(compared > 0, "nothing was compared");
+        self.scope = before;
+    }
+
+    /// [`Paper::assert`] for entries of the linearisation; those that are not listed must be zero.
+    pub fn assert_linearisation(&mut self, lines: &str) {
+        self.assert(lines);
+        let listed: Vec<&str> = lines
+            .lines()
+            .filter_map(|line| line.split_once('='))
+            .map(|(name, _)| name.trim())
+            .collect();
+        let entry = |name: &str| {
+            let (letter, digits) = name.split_at(1);
+            (letter == "A" || letter == "B") && digits.bytes().all(|b| b.is_ascii_digit())
+        };
+        for name in self
+            .derived_names()
+            .iter()
+            .filter(|name| entry(name) && !listed.contains(&name.as_str()))
+        {
+            let value = self.derived(name);
+            assert!(
+                self.same(value, Graph::ZERO),
+                "{name} must be zero\n{}",
+                self.difference(value, Graph::ZERO)
+            );
+        }
+    }
+
+    /// Demands that the derived quantity is zero once symbols are replaced.
+    pub fn assert_solves(&mut self, name: &str, replacements: &[(&str, &str)]) {
+        let mut substitution = self.substitution(replacements);
+        let derived = self.derived(name);
+        let value = substitution
+            .apply(&mut self.derivation.algebra.graph, derived)
+            .unwrap();
+        assert!(
+            self.same(value, Graph::ZERO),
+            "{name}\n{}",
+            self.difference(value, Graph::ZERO)
+        );
+    }
+
+    /// Values of two expressions at a random point, for the message of a failure.
+    fn difference(&self, derived: Expr, typed: Expr) -> String {
+        let graph = &self.derivation.algebra.graph;
+        let mut random = Random::of("difference");
+        let values: Vec<f64> = (0..graph.symbol_count())
+            .map(|_| random.between(0.3, 1.2))
+            .collect();
+        let [derived, typed] = [derived, typed].map(|e| evaluate(graph, &values, &[e])[0]);
+        format!("derived and typed at a random point: {derived} and {typed}")
+    }
+}
+
+/// d/dt of a function of states and parameters along the motion.
+pub fn energy_rate(d: &mut Derivation, energy: Expr) -> Expr {
+    let states = d.symbols.speeds.iter().chain(&d.symbols.coordinates);
+    let rates = d.motion.accelerations.iter().chain(&d.coordinate_rates);
+    let pairs: Vec<(Expr, Expr)> = states.copied().zip(rates.copied()).collect();
+    let mut parts = vec![d.algebra.derivative(energy, d.symbols.time)];
+    for (state, rate) in pairs {
+        let partial = d.algebra.derivative(energy, state);
+        parts.push(d.algebra.graph.mul(partial, rate));
+    }
+    for [value, first, second] in d.symbols.signals.clone() {
+        for (symbol, rate) in [(value, first), (first, second)] {
+            let partial = d.algebra.derivative(energy, symbol);
+            parts.push(d.algebra.graph.mul(partial, rate));
+        }
+    }
+    d.algebra.graph.sum(&parts)
+}
+
+/// Symbols of the states, speeds first.
+pub fn states(d: &Derivation) -> Vec<SymbolId> {
+    ids(
+        &d.algebra.graph,
+        &[d.symbols.speeds.as_slice(), &d.symbols.coordinates].concat(),
+    )
+}

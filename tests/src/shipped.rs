@@ -1,0 +1,64 @@
+//! The shipped mechanisms, found by their files.
+
+use std::path::{Path, PathBuf};
+
+use appell_codegen::mechanics::assemble::{self, ALL};
+use appell_codegen::mechanics::{self, Derivation};
+use appell_codegen::program::Program;
+use appell_spec::Mechanism;
+
+/// The root of the workspace.
+pub fn workspace() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+        .parent()
+        .unwrap()
+        .to_path_buf()
+}
+
+/// Names of all shipped mechanisms in alphabetical order.
+pub fn names() -> Vec<String> {
+    let folder = workspace().join("generated/mechanisms");
+    let mut names: Vec<String> = std::fs::read_dir(folder)
+        .unwrap()
+        .map(|entry| entry.unwrap().path())
+        .filter(|path| {
+            path.extension()
+                .is_some_and(|extension| extension == "toml")
+        })
+        .map(|path| path.file_stem().unwrap().to_string_lossy().into_owned())
+        .collect();
+    names.sort();
+    assert!(!names.is_empty(), "no mechanism is shipped");
+    names
+}
+
+/// Text of a shipped spec.
+pub fn text(name: &str) -> String {
+    let file = workspace().join(format!("generated/mechanisms/{name}.toml"));
+    std::fs::read_to_string(file).unwrap()
+}
+
+/// A shipped mechanism.
+pub fn mechanism(name: &str) -> Mechanism {
+    read(&format!("{name}.toml"), &text(name))
+}
+
+/// A mechanism from the text of a spec.
+pub fn read(file: &str, text: &str) -> Mechanism {
+    match appell_spec::load(file, text) {
+        Ok(checked) => checked.mechanism,
+        Err(report) => panic!("{file}: {report}"),
+    }
+}
+
+/// The derivation of a mechanism that must have one.
+pub fn derive(mechanism: &Mechanism) -> Derivation {
+    mechanics::derive(mechanism)
+        .unwrap_or_else(|findings| panic!("{}: {findings:?}", mechanism.file))
+}
+
+/// All functions of a mechanism.
+pub fn program(mechanism: &Mechanism) -> Program {
+    assemble::program(derive(mechanism), mechanism, &ALL)
+        .unwrap_or_else(|findings| panic!("{}: {findings:?}", mechanism.file))
+}

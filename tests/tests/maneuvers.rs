@@ -1,0 +1,1 @@
+//! fn lane_change_at_5_metres_per_second_needs_more_force_than_the_paper_says( fn the_printed_gains_are_the_closed_forms_but_for_one( fn the_reference_paths_are_continuous_as_corrected_and_not_as_printed(

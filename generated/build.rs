@@ -11,7 +11,10 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut specs = Vec::new();
     for entry in std::fs::read_dir("mechanisms")? {
         let path = entry?.path();
-        if path.extension().is_some_and(|extension| extension == "toml") {
+        if path
+            .extension()
+            .is_some_and(|extension| extension == "toml")
+        {
             specs.push(path);
         }
     }
@@ -28,8 +31,15 @@ fn registry(generated: &[Generated]) -> Result<String, Box<dyn Error>> {
     let mut list = String::new();
     for one in generated {
         let name = &one.program.info.name;
-        if Path::new(&one.spec).file_stem().is_none_or(|stem| stem != name.as_ref()) {
-            return Err(format!("{}: the file should be named {name}.toml", one.spec.display()).into());
+        if Path::new(&one.spec)
+            .file_stem()
+            .is_none_or(|stem| stem != name.as_ref())
+        {
+            return Err(format!(
+                "{}: the file should be named {name}.toml",
+                one.spec.display()
+            )
+            .into());
         }
         write!(
             text,

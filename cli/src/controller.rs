@@ -24,7 +24,11 @@ enum Slot {
     /// It is added to an input.
     Input(usize),
     /// It is the desired value of a state: the input falls by the gain times the deviation.
-    Desired { input: usize, state: usize, gain: f64 },
+    Desired {
+        input: usize,
+        state: usize,
+        gain: f64,
+    },
 }
 
 /// Collects what drives the inputs.
@@ -73,18 +77,27 @@ impl Plan {
     }
 
     /// `--input NAME=EXPR`
-    pub(crate) fn expression(&mut self, assignment: &Assignment, setup: &Setup<'_>) -> Result<(), Failure> {
+    pub(crate) fn expression(
+        &mut self,
+        assignment: &Assignment,
+        setup: &Setup<'_>,
+    ) -> Result<(), Failure> {
         let input = setup.input(&assignment.name)?;
         self.take(input, setup)?;
         let unit = &setup.mechanism.inputs[input].label.unit;
         let text = crate::setup::with_unit(&assignment.value, unit);
         let wanted = Some(unit.dimension);
-        let expr = formula(setup.spec, &Snippet::alone(&text), "the input", Scope::Law, wanted).map_err(
-            |findings| {
-                let label = format!("--input {}", assignment.name);
-                Failure::Expression(Box::new(Report::new(label, text.as_str(), findings)))
-            },
-        )?;
+        let expr = formula(
+            setup.spec,
+            &Snippet::alone(&text),
+            "the input",
+            Scope::Law,
+            wanted,
+        )
+        .map_err(|findings| {
+            let label = format!("--input {}", assignment.name);
+            Failure::Expression(Box::new(Report::new(label, text.as_str(), findings)))
+        })?;
         self.push(Slot::Input(input), expr);
         Ok(())
     }
@@ -124,14 +137,20 @@ impl Plan {
         let mut bench = Workbench::new(&setup.mechanism);
         let lowered: Option<Vec<_>> = self.exprs.iter().map(|expr| bench.lower(expr)).collect();
         let Some(lowered) = lowered else {
-            return Err(Failure::Usage("an expression divides by the number zero".to_owned()));
+            return Err(Failure::Usage(
+                "an expression divides by the number zero".to_owned(),
+            ));
         };
         let function = bench
             .function(setup.info, lowered)
             .map_err(|error| Failure::Computation(error.to_string()))?;
         let mut slots = self.slots;
         // Values beyond those of the function are zero.
-        slots.extend(self.zero.into_iter().map(|(input, state, gain)| Slot::Desired { input, state, gain }));
+        slots.extend(
+            self.zero
+                .into_iter()
+                .map(|(input, state, gain)| Slot::Desired { input, state, gain }),
+        );
         Ok(Controller {
             function,
             slots,

@@ -55,7 +55,11 @@ impl Equations {
 
     /// Shipped equations where they exist, which need no derivation; machine code for others.
     pub(crate) fn at_hand(source: &Source) -> Result<Self, Failure> {
-        let engine = if source.shipped.is_some() { Engine::Emitted } else { Engine::Jit };
+        let engine = if source.shipped.is_some() {
+            Engine::Emitted
+        } else {
+            Engine::Jit
+        };
         Self::new(source, engine)
     }
 

@@ -48,7 +48,11 @@ impl Failure {
     }
 
     fn about(doing: &'static str, path: &Path) -> impl FnOnce(std::io::Error) -> Self {
-        move |cause| Self::File { doing, path: path.to_owned(), cause }
+        move |cause| Self::File {
+            doing,
+            path: path.to_owned(),
+            cause,
+        }
     }
 
     /// 2 bad usage, 3 bad spec or data, 4 the computation failed.
@@ -75,9 +79,17 @@ impl Failure {
 /// A report in colour where a person reads it.
 pub(crate) fn shown(report: &Report) -> String {
     let wanted = std::io::stderr().is_terminal() && std::env::var_os("NO_COLOR").is_none();
-    if wanted { report.coloured() } else { report.plain() }
+    if wanted {
+        report.coloured()
+    } else {
+        report.plain()
+    }
 }
 
 fn plain(reports: &[Report]) -> String {
-    reports.iter().map(Report::plain).collect::<Vec<_>>().join("\n")
+    reports
+        .iter()
+        .map(Report::plain)
+        .collect::<Vec<_>>()
+        .join("\n")
 }

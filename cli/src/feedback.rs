@@ -35,8 +35,17 @@ pub(crate) struct Feedback {
     pub(crate) initial: Vec<(usize, Expr)>,
 }
 
-const KEYS: &[&str] =
-    &["about", "mechanism", "input", "offset", "states", "gains", "switching_times_s", "desired", "initial"];
+const KEYS: &[&str] = &[
+    "about",
+    "mechanism",
+    "input",
+    "offset",
+    "states",
+    "gains",
+    "switching_times_s",
+    "desired",
+    "initial",
+];
 
 /// Reads a feedback file.
 pub(crate) fn read(path: &Path, setup: &Setup<'_>) -> Result<Feedback, Failure> {
@@ -45,17 +54,31 @@ pub(crate) fn read(path: &Path, setup: &Setup<'_>) -> Result<Feedback, Failure> 
 
 /// Reads the text of a feedback file.
 pub(crate) fn parse(file: &str, text: &str, setup: &Setup<'_>) -> Result<Feedback, Failure> {
-    let mut reader = Reader { text, setup, findings: Vec::new() };
+    let mut reader = Reader {
+        text,
+        setup,
+        findings: Vec::new(),
+    };
     let (table, errors) = DeTable::parse_recoverable(text);
     for error in &errors {
         let message = error.message().lines().next().unwrap_or_default();
         let at = error.span().unwrap_or(0..0);
-        reader.findings.push(Diagnostic::error(Code::TomlSyntax, message).at(at, ""));
+        reader
+            .findings
+            .push(Diagnostic::error(Code::TomlSyntax, message).at(at, ""));
     }
-    let feedback = if errors.is_empty() { reader.feedback(table.get_ref()) } else { None };
+    let feedback = if errors.is_empty() {
+        reader.feedback(table.get_ref())
+    } else {
+        None
+    };
     match feedback {
         Some(feedback) if reader.findings.is_empty() => Ok(feedback),
-        _ => Err(Failure::Reports(vec![Report::new(file, text, reader.findings)])),
+        _ => Err(Failure::Reports(vec![Report::new(
+            file,
+            text,
+            reader.findings,
+        )])),
     }
 }
 
@@ -70,59 +93,120 @@ struct Reader<'r> {
 impl Reader<'_> {
     fn tell(&mut self, code: Code, message: impl Into<String>, at: Span, help: &str) {
         let diagnostic = Diagnostic::error(code, message).at(at, "");
-        self.findings.push(if help.is_empty() { diagnostic } else { diagnostic.help(help) });
+        self.findings.push(if help.is_empty() {
+            diagnostic
+        } else {
+            diagnostic.help(help)
+        });
     }
 
     /// Everything in the file. What is wrong is told and replaced, so that all of it is told.
     fn feedback(&mut self, table: &DeTable<'_>) -> Option<Feedback> {
-        for key in table.keys().filter(|key| !KEYS.contains(&key.get_ref().as_ref())) {
+        for key in table
+            .keys()
+            .filter(|key| !KEYS.contains(&key.get_ref().as_ref()))
+        {
             let message = format!("unknown key `{}`", key.get_ref());
-            self.tell(Code::UnknownKey, message, key.span(), &format!("the keys are {}", KEYS.join(", ")));
+            self.tell(
+                Code::UnknownKey,
+                message,
+                key.span(),
+                &format!("the keys are {}", KEYS.join(", ")),
+            );
         }
-        for key in ["input", "states", "gains"].into_iter().filter(|key| table.get(*key).is_none()) {
-            self.tell(Code::MissingKey, format!("the key `{key}` is missing"), 0..0, "a law needs `input`, `states` and `gains`");
+        for key in ["input", "states", "gains"]
+            .into_iter()
+            .filter(|key| table.get(*key).is_none())
+        {
+            self.tell(
+                Code::MissingKey,
+                format!("the key `{key}` is missing"),
+                0..0,
+                "a law needs `input`, `states` and `gains`",
+            );
         }
         if let Some(name) = table.get("mechanism").and_then(|value| self.string(value))
             && name.0 != self.setup.mechanism.name
         {
-            let message = format!("the law is for `{}`, not for `{}`", name.0, self.setup.mechanism.name);
+            let message = format!(
+                "the law is for `{}`, not for `{}`",
+                name.0, self.setup.mechanism.name
+            );
             self.tell(Code::UnknownReference, message, name.1, "");
         }
-        let input = table.get("input").and_then(|value| self.string(value)).and_then(|(name, at)| {
-            let inputs = self.setup.mechanism.inputs.iter().map(|input| input.label.name.clone());
-            self.find(&name, "input", &inputs.collect::<Vec<_>>(), at)
-        });
+        let input = table
+            .get("input")
+            .and_then(|value| self.string(value))
+            .and_then(|(name, at)| {
+                let inputs = self
+                    .setup
+                    .mechanism
+                    .inputs
+                    .iter()
+                    .map(|input| input.label.name.clone());
+                self.find(&name, "input", &inputs.collect::<Vec<_>>(), at)
+            });
         let states = self.list(table, "states", Self::state);
         let gains = self.list(table, "gains", Self::number);
         if let (Some(states), Some(gains), Some(at)) = (&states, &gains, table.get("gains"))
             && states.len() != gains.len()
         {
             let message = format!("{} gains for {} states", gains.len(), states.len());
-            self.tell(Code::WrongType, message, at.span(), "write one gain for each state, in the same order");
+            self.tell(
+                Code::WrongType,
+                message,
+                at.span(),
+                "write one gain for each state, in the same order",
+            );
         }
-        let switching_times = self.list(table, "switching_times_s", Self::number).unwrap_or_default();
+        let switching_times = self
+            .list(table, "switching_times_s", Self::number)
+            .unwrap_or_default();
         let desired = self.by_state(table, "desired", Scope::Schedule, "the desired value");
         let initial = self.by_state(table, "initial", Scope::Constant, "the initial value");
         for (state, at) in desired.iter().map(|(state, _, at)| (state, at)) {
-            if states.as_ref().is_some_and(|states| !states.contains(state)) {
+            if states
+                .as_ref()
+                .is_some_and(|states| !states.contains(state))
+            {
                 let message = "a desired value for a state without a gain";
-                self.tell(Code::UnknownReference, message, at.clone(), "add the state to `states`, with its gain");
+                self.tell(
+                    Code::UnknownReference,
+                    message,
+                    at.clone(),
+                    "add the state to `states`, with its gain",
+                );
             }
         }
         let offset = table.get("offset").and_then(|value| {
             let unit = input.map(|input| self.setup.mechanism.inputs[input].label.unit.clone());
-            self.expression(value, Scope::Law, "the offset", unit.map(|unit| unit.dimension), None)
+            self.expression(
+                value,
+                Scope::Law,
+                "the offset",
+                unit.map(|unit| unit.dimension),
+                None,
+            )
         });
         let wanted = |state: usize| {
-            desired.iter().find(|(other, ..)| *other == state).map(|(_, expr, _)| expr.clone())
+            desired
+                .iter()
+                .find(|(other, ..)| *other == state)
+                .map(|(_, expr, _)| expr.clone())
         };
-        let terms = states?.into_iter().zip(gains?).map(|(state, gain)| (state, gain, wanted(state)));
+        let terms = states?
+            .into_iter()
+            .zip(gains?)
+            .map(|(state, gain)| (state, gain, wanted(state)));
         Some(Feedback {
             input: input?,
             offset,
             terms: terms.collect(),
             switching_times,
-            initial: initial.into_iter().map(|(state, expr, _)| (state, expr)).collect(),
+            initial: initial
+                .into_iter()
+                .map(|(state, expr, _)| (state, expr))
+                .collect(),
         })
     }
 
@@ -135,7 +219,12 @@ impl Reader<'_> {
     ) -> Option<Vec<T>> {
         let value = table.get(key)?;
         let DeValue::Array(elements) = value.get_ref() else {
-            self.tell(Code::WrongType, format!("`{key}` must be a list"), value.span(), "write it in brackets");
+            self.tell(
+                Code::WrongType,
+                format!("`{key}` must be a list"),
+                value.span(),
+                "write it in brackets",
+            );
             return None;
         };
         let read: Vec<Option<T>> = elements.iter().map(|value| element(self, value)).collect();
@@ -150,10 +239,17 @@ impl Reader<'_> {
         scope: Scope,
         what: &'static str,
     ) -> Vec<(usize, Expr, Span)> {
-        let Some(value) = table.get(key) else { return Vec::new() };
+        let Some(value) = table.get(key) else {
+            return Vec::new();
+        };
         let DeValue::Table(entries) = value.get_ref() else {
             let help = "write `name = \"expression\"` for each state";
-            self.tell(Code::WrongType, format!("`{key}` must be a table"), value.span(), help);
+            self.tell(
+                Code::WrongType,
+                format!("`{key}` must be a table"),
+                value.span(),
+                help,
+            );
             return Vec::new();
         };
         let mut read = Vec::new();
@@ -161,7 +257,13 @@ impl Reader<'_> {
             let state = self.find(name.get_ref(), "state", &self.states(), name.span());
             let unit = state.map(|state| self.setup.unit_of_state(state).clone());
             let bare = unit.as_ref().filter(|_| scope == Scope::Constant);
-            let expr = self.expression(value, scope, what, unit.as_ref().map(|unit| unit.dimension), bare);
+            let expr = self.expression(
+                value,
+                scope,
+                what,
+                unit.as_ref().map(|unit| unit.dimension),
+                bare,
+            );
             if let (Some(state), Some(expr)) = (state, expr) {
                 read.push((state, expr, name.span()));
             }
@@ -183,12 +285,21 @@ impl Reader<'_> {
             DeValue::String(text) => text.to_string(),
             DeValue::Integer(_) | DeValue::Float(_) => self.text[value.span()].to_owned(),
             _ => {
-                self.tell(Code::WrongType, "expected an expression, as a string", value.span(), "");
+                self.tell(
+                    Code::WrongType,
+                    "expected an expression, as a string",
+                    value.span(),
+                    "",
+                );
                 return None;
             }
         };
         let text = bare.map_or(text.clone(), |unit| with_unit(text.trim(), unit));
-        let snippet = Snippet { document: self.text, text: &text, whole: value.span() };
+        let snippet = Snippet {
+            document: self.text,
+            text: &text,
+            whole: value.span(),
+        };
         match formula(self.setup.spec, &snippet, what, scope, dimension) {
             Ok(expr) => Some(expr),
             Err(findings) => {
@@ -199,7 +310,12 @@ impl Reader<'_> {
     }
 
     fn states(&self) -> Vec<String> {
-        self.setup.info.states.iter().map(|state| state.name.to_string()).collect()
+        self.setup
+            .info
+            .states
+            .iter()
+            .map(|state| state.name.to_string())
+            .collect()
     }
 
     fn state(&mut self, value: &Value<'_>) -> Option<usize> {
@@ -222,7 +338,12 @@ impl Reader<'_> {
         if let DeValue::String(text) = value.get_ref() {
             return Some((text.to_string(), value.span()));
         }
-        self.tell(Code::WrongType, "expected a name, as a string", value.span(), "put it in quotes");
+        self.tell(
+            Code::WrongType,
+            "expected a name, as a string",
+            value.span(),
+            "put it in quotes",
+        );
         None
     }
 
@@ -235,7 +356,12 @@ impl Reader<'_> {
         match text.replace('_', "").parse::<f64>() {
             Ok(number) if number.is_finite() => Some(number),
             _ => {
-                self.tell(Code::WrongType, "expected a finite number", value.span(), "");
+                self.tell(
+                    Code::WrongType,
+                    "expected a finite number",
+                    value.span(),
+                    "",
+                );
                 None
             }
         }

@@ -11,17 +11,22 @@ pub(crate) fn write(path: &Path, text: &str) -> Result<(), Failure> {
     if is_stdout(path) {
         return print(text);
     }
-    if let Some(folder) = path.parent().filter(|folder| !folder.as_os_str().is_empty()) {
+    if let Some(folder) = path
+        .parent()
+        .filter(|folder| !folder.as_os_str().is_empty())
+    {
         fs::create_dir_all(folder).map_err(Failure::writing(folder))?;
     }
     let mut name = path.file_name().unwrap_or_default().to_owned();
     name.push(format!(".{}.tmp", std::process::id()));
     let draft = path.with_file_name(name);
-    fs::write(&draft, text).and_then(|()| fs::rename(&draft, path)).map_err(|cause| {
-        // The draft is of no use; that it cannot be removed would only hide the cause.
-        let _ = fs::remove_file(&draft);
-        Failure::writing(path)(cause)
-    })
+    fs::write(&draft, text)
+        .and_then(|()| fs::rename(&draft, path))
+        .map_err(|cause| {
+            // The draft is of no use; that it cannot be removed would only hide the cause.
+            let _ = fs::remove_file(&draft);
+            Failure::writing(path)(cause)
+        })
 }
 
 /// Writes JSON, one line break at its end.
@@ -49,6 +54,10 @@ pub(crate) fn is_stdout(path: &Path) -> bool {
 
 /// Reads a text file; `-` is standard input.
 pub(crate) fn read(path: &Path) -> Result<String, Failure> {
-    let text = if is_stdout(path) { io::read_to_string(io::stdin()) } else { fs::read_to_string(path) };
+    let text = if is_stdout(path) {
+        io::read_to_string(io::stdin())
+    } else {
+        fs::read_to_string(path)
+    };
     text.map_err(Failure::reading(path))
 }

@@ -36,21 +36,31 @@ impl Workbench {
 
     /// An expression of the spec's language; nothing where it divides by zero.
     pub(crate) fn lower(&mut self, expr: &SpecExpr) -> Option<Expr> {
-        let lowering = Lowering { symbols: &self.symbols, rates: &self.symbols.rates };
+        let lowering = Lowering {
+            symbols: &self.symbols,
+            rates: &self.symbols.rates,
+        };
         lowering.lower(&mut self.graph, expr).ok()
     }
 
     /// Values of expressions in parameters alone.
     pub(crate) fn constants(&self, exprs: &[Expr], parameters: &[f64]) -> Vec<f64> {
         let mut values = vec![f64::NAN; self.graph.len()];
-        for (symbol, &value) in ids(&self.graph, &self.symbols.parameters).iter().zip(parameters) {
+        for (symbol, &value) in ids(&self.graph, &self.symbols.parameters)
+            .iter()
+            .zip(parameters)
+        {
             values[symbol.0 as usize] = value;
         }
         appell_codegen::symbolic::evaluate(&self.graph, &values, exprs)
     }
 
     /// Makes a function of time and state out of expressions.
-    pub(crate) fn function(self, info: &ModelInfo, exprs: Vec<Expr>) -> Result<StateFunction, SignalError> {
+    pub(crate) fn function(
+        self,
+        info: &ModelInfo,
+        exprs: Vec<Expr>,
+    ) -> Result<StateFunction, SignalError> {
         StateFunction::new(self, info, exprs)
     }
 }
@@ -67,37 +77,68 @@ pub(crate) struct StateFunction {
 impl StateFunction {
     fn new(bench: Workbench, model: &ModelInfo, exprs: Vec<Expr>) -> Result<Self, SignalError> {
         let Workbench { graph, symbols } = bench;
-        let signals = model.signals.iter().map(Signal::new).collect::<Result<Vec<_>, _>>()?;
+        let signals = model
+            .signals
+            .iter()
+            .map(Signal::new)
+            .collect::<Result<Vec<_>, _>>()?;
         let mut info = model.clone();
         // The inputs of this function: the model's, which it must not use, and every signal.
         let mut inputs = model.inputs[..model.declared_inputs].to_vec();
-        inputs.extend(model.signals.iter().map(|signal| appell_runtime::model::Quantity {
-            name: signal.name.clone(),
-            about: "".into(),
-            unit: "".into(),
-            scale: 1.0,
-            value: 0.0,
-            range: [f64::NEG_INFINITY, f64::INFINITY],
-        }));
+        inputs.extend(
+            model
+                .signals
+                .iter()
+                .map(|signal| appell_runtime::model::Quantity {
+                    name: signal.name.clone(),
+                    about: "".into(),
+                    unit: "".into(),
+                    scale: 1.0,
+                    value: 0.0,
+                    range: [f64::NEG_INFINITY, f64::INFINITY],
+                }),
+        );
         info.inputs = inputs.into();
         let mut input_symbols = symbols.inputs.clone();
         input_symbols.extend(symbols.signals.iter().map(|orders| orders[0]));
         let arguments = Arguments {
             time: ids(&graph, &[symbols.time])[0],
-            states: ids(&graph, &[symbols.speeds.as_slice(), &symbols.coordinates].concat()),
+            states: ids(
+                &graph,
+                &[symbols.speeds.as_slice(), &symbols.coordinates].concat(),
+            ),
             inputs: ids(&graph, &input_symbols),
             parameters: ids(&graph, &symbols.parameters),
         };
         let count = exprs.len();
         let layout = Layout::Vector(count);
-        let results = vec![Array { name: "values".to_owned(), layout, entries: exprs }];
-        let function = Function { kind: FunctionKind::Outputs, results };
+        let results = vec![Array {
+            name: "values".to_owned(),
+            layout,
+            entries: exprs,
+        }];
+        let function = Function {
+            kind: FunctionKind::Outputs,
+            results,
+        };
         let sizes = Sizes::from(&info);
-        let program = Program { info, file: String::new(), graph, arguments, functions: vec![function] };
+        let program = Program {
+            info,
+            file: String::new(),
+            graph,
+            arguments,
+            functions: vec![function],
+        };
         let schedule = schedule(&program, &program.functions[0]);
         // Without machine code the interpreter gives the same numbers.
         let native = NativeFunction::compile(&schedule, sizes).ok();
-        Ok(Self { schedule, native, count, declared: model.declared_inputs, signals })
+        Ok(Self {
+            schedule,
+            native,
+            count,
+            declared: model.declared_inputs,
+            signals,
+        })
     }
 
     /// Values at time `t`, state `x` and parameters `p`, into the first places of `values`.
@@ -124,14 +165,19 @@ pub(crate) fn switching_times(expr: &SpecExpr, times: &mut Vec<f64>) {
             switching_times(b, times);
         }
         ExprKind::Call(_, arguments) => arguments.iter().for_each(|a| switching_times(a, times)),
-        ExprKind::Choice { compared, branches, .. } => {
+        ExprKind::Choice {
+            compared, branches, ..
+        } => {
             if let (ExprKind::Quantity(Quantity::Time), ExprKind::Number(n))
             | (ExprKind::Number(n), ExprKind::Quantity(Quantity::Time)) =
                 (&compared[0].kind, &compared[1].kind)
             {
                 times.push(appell_codegen::symbolic::Rational::from_big(n.clone()).to_f64());
             }
-            compared.iter().chain(branches.iter()).for_each(|a| switching_times(a, times));
+            compared
+                .iter()
+                .chain(branches.iter())
+                .for_each(|a| switching_times(a, times));
         }
     }
 }

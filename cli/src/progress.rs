@@ -21,7 +21,11 @@ pub(crate) fn clock(until_s: f64) -> ProgressBar {
     bar
 }
 
-#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a float saturates, which is right here")]
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "a float saturates, which is right here"
+)]
 pub(crate) fn milliseconds(t: f64) -> u64 {
     (t * 1e3) as u64
 }

@@ -21,7 +21,9 @@ impl std::str::FromStr for Assignment {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let (name, value) = text.split_once('=').ok_or("write NAME=VALUE, such as R=0.3 or R=30cm")?;
+        let (name, value) = text
+            .split_once('=')
+            .ok_or("write NAME=VALUE, such as R=0.3 or R=30cm")?;
         let (name, value) = (name.trim().to_owned(), value.trim().to_owned());
         if name.is_empty() || value.is_empty() {
             return Err("write NAME=VALUE, with something on both sides".to_owned());
@@ -47,19 +49,35 @@ pub(crate) struct Setup<'a> {
 impl<'a> Setup<'a> {
     /// The numbers of the spec.
     pub(crate) fn new(file: &str, spec: &'a str, info: &'a ModelInfo) -> Result<Self, Failure> {
-        let checked = appell_spec::load(file, spec).map_err(|report| Failure::Reports(vec![report]))?;
+        let checked =
+            appell_spec::load(file, spec).map_err(|report| Failure::Reports(vec![report]))?;
         let (parameters, initial) = (info.default_parameters(), info.initial_state());
-        Ok(Self { spec, mechanism: checked.mechanism, info, parameters, initial })
+        Ok(Self {
+            spec,
+            mechanism: checked.mechanism,
+            info,
+            parameters,
+            initial,
+        })
     }
 
     /// `--set NAME=VALUE`; later values may use earlier ones.
     pub(crate) fn set(&mut self, assignments: &[Assignment]) -> Result<(), Failure> {
         unique(assignments, "--set")?;
         for assignment in assignments {
-            let names = || self.mechanism.parameters.iter().map(|p| p.label.name.as_str());
+            let names = || {
+                self.mechanism
+                    .parameters
+                    .iter()
+                    .map(|p| p.label.name.as_str())
+            };
             let index = known(&assignment.name, "parameter", names())?;
             let unit = self.mechanism.parameters[index].label.unit.clone();
-            let value = self.value(&assignment.value, &unit, &format!("--set {}", assignment.name))?;
+            let value = self.value(
+                &assignment.value,
+                &unit,
+                &format!("--set {}", assignment.name),
+            )?;
             let parameter = &self.mechanism.parameters[index];
             let low = parameter.at_least.unwrap_or(f64::NEG_INFINITY);
             let high = parameter.at_most.unwrap_or(f64::INFINITY);
@@ -75,8 +93,17 @@ impl<'a> Setup<'a> {
         for assignment in assignments {
             let index = self.state(&assignment.name)?;
             let unit = self.unit_of_state(index).clone();
-            let value = self.value(&assignment.value, &unit, &format!("--initial {}", assignment.name))?;
-            inside(&assignment.name, value, self.info.states[index].range, &unit)?;
+            let value = self.value(
+                &assignment.value,
+                &unit,
+                &format!("--initial {}", assignment.name),
+            )?;
+            inside(
+                &assignment.name,
+                value,
+                self.info.states[index].range,
+                &unit,
+            )?;
             self.initial[index] = value;
         }
         Ok(())
@@ -87,11 +114,20 @@ impl<'a> Setup<'a> {
         for (state, expr) in &law.initial {
             let mut bench = Workbench::new(&self.mechanism);
             let name = &self.info.states[*state].name;
-            let value = bench.lower(expr).map(|expr| bench.constants(&[expr], &self.parameters)[0]);
+            let value = bench
+                .lower(expr)
+                .map(|expr| bench.constants(&[expr], &self.parameters)[0]);
             let value = value.filter(|value| value.is_finite()).ok_or_else(|| {
-                Failure::Data(format!("the initial value of `{name}` is not a finite number"))
+                Failure::Data(format!(
+                    "the initial value of `{name}` is not a finite number"
+                ))
             })?;
-            inside(name, value, self.info.states[*state].range, self.unit_of_state(*state))?;
+            inside(
+                name,
+                value,
+                self.info.states[*state].range,
+                self.unit_of_state(*state),
+            )?;
             self.initial[*state] = value;
         }
         Ok(())
@@ -99,12 +135,23 @@ impl<'a> Setup<'a> {
 
     /// Index of a state.
     pub(crate) fn state(&self, name: &str) -> Result<usize, Failure> {
-        known(name, "state", self.info.states.iter().map(|state| state.name.as_ref()))
+        known(
+            name,
+            "state",
+            self.info.states.iter().map(|state| state.name.as_ref()),
+        )
     }
 
     /// Index of a declared input.
     pub(crate) fn input(&self, name: &str) -> Result<usize, Failure> {
-        known(name, "input", self.mechanism.inputs.iter().map(|input| input.label.name.as_str()))
+        known(
+            name,
+            "input",
+            self.mechanism
+                .inputs
+                .iter()
+                .map(|input| input.label.name.as_str()),
+        )
     }
 
     /// Unit of a state.
@@ -120,17 +167,26 @@ impl<'a> Setup<'a> {
     /// the parameters.
     fn value(&self, text: &str, unit: &Unit, label: &str) -> Result<f64, Failure> {
         let text = with_unit(text, unit);
-        let findings = |findings| {
-            Failure::Expression(Box::new(Report::new(label, text.as_str(), findings)))
-        };
+        let findings =
+            |findings| Failure::Expression(Box::new(Report::new(label, text.as_str(), findings)));
         let wanted = Some(unit.dimension);
-        let expr = formula(self.spec, &Snippet::alone(&text), "the value", Scope::Constant, wanted)
-            .map_err(findings)?;
+        let expr = formula(
+            self.spec,
+            &Snippet::alone(&text),
+            "the value",
+            Scope::Constant,
+            wanted,
+        )
+        .map_err(findings)?;
         let mut bench = Workbench::new(&self.mechanism);
-        let value = bench.lower(&expr).map(|expr| bench.constants(&[expr], &self.parameters)[0]);
+        let value = bench
+            .lower(&expr)
+            .map(|expr| bench.constants(&[expr], &self.parameters)[0]);
         match value {
             Some(value) if value.is_finite() => Ok(value),
-            _ => Err(Failure::Usage(format!("{label}: `{text}` is not a finite number"))),
+            _ => Err(Failure::Usage(format!(
+                "{label}: `{text}` is not a finite number"
+            ))),
         }
     }
 }
@@ -142,13 +198,18 @@ pub(crate) fn with_unit(text: &str, unit: &Unit) -> String {
         // A sign binds weaker than a unit, which makes no difference here.
         return format!("{}[{}]", text.trim_start_matches('+'), unit.text);
     }
-    let split = (1..text.len()).rev().filter(|&at| text.is_char_boundary(at)).find_map(|at| {
-        let (number, unit) = text.split_at(at);
-        let fits = number.trim_end().parse::<f64>().is_ok_and(f64::is_finite)
-            && units::parse(unit.trim()).is_ok()
-            && unit.trim_start().starts_with(|c: char| c.is_alphabetic() || c == '%' || c == '°');
-        fits.then(|| format!("{}[{}]", number.trim_end(), unit.trim()))
-    });
+    let split = (1..text.len())
+        .rev()
+        .filter(|&at| text.is_char_boundary(at))
+        .find_map(|at| {
+            let (number, unit) = text.split_at(at);
+            let fits = number.trim_end().parse::<f64>().is_ok_and(f64::is_finite)
+                && units::parse(unit.trim()).is_ok()
+                && unit
+                    .trim_start()
+                    .starts_with(|c: char| c.is_alphabetic() || c == '%' || c == '°');
+            fits.then(|| format!("{}[{}]", number.trim_end(), unit.trim()))
+        });
     split.unwrap_or_else(|| text.to_owned())
 }
 
@@ -158,11 +219,18 @@ pub(crate) fn known<'n>(
     what: &str,
     names: impl Iterator<Item = &'n str> + Clone,
 ) -> Result<usize, Failure> {
-    names.clone().position(|other| other == name).ok_or_else(|| Failure::Usage(unknown(name, what, names)))
+    names
+        .clone()
+        .position(|other| other == name)
+        .ok_or_else(|| Failure::Usage(unknown(name, what, names)))
 }
 
 /// The message for an unknown name.
-pub(crate) fn unknown<'n>(name: &str, what: &str, names: impl Iterator<Item = &'n str> + Clone) -> String {
+pub(crate) fn unknown<'n>(
+    name: &str,
+    what: &str,
+    names: impl Iterator<Item = &'n str> + Clone,
+) -> String {
     let similar = closest(name, names.clone());
     let list = names.collect::<Vec<_>>();
     match similar {
@@ -174,8 +242,14 @@ pub(crate) fn unknown<'n>(name: &str, what: &str, names: impl Iterator<Item = &'
 
 fn unique(assignments: &[Assignment], flag: &str) -> Result<(), Failure> {
     for (i, assignment) in assignments.iter().enumerate() {
-        if assignments[..i].iter().any(|other| other.name == assignment.name) {
-            return Err(Failure::Usage(format!("{flag}: `{}` is given twice", assignment.name)));
+        if assignments[..i]
+            .iter()
+            .any(|other| other.name == assignment.name)
+        {
+            return Err(Failure::Usage(format!(
+                "{flag}: `{}` is given twice",
+                assignment.name
+            )));
         }
     }
     Ok(())

@@ -22,7 +22,11 @@ impl Source {
     pub(crate) fn find(model: &str) -> Result<Self, Failure> {
         if let Some(shipped) = Shipped::find(model) {
             let (file, text) = (shipped.file.to_owned(), shipped.spec.to_owned());
-            return Ok(Self { file, text, shipped: Some(shipped) });
+            return Ok(Self {
+                file,
+                text,
+                shipped: Some(shipped),
+            });
         }
         let path = Path::new(model);
         let is_path = path.components().count() > 1 || path.extension().is_some() || path.is_file();
@@ -32,10 +36,18 @@ impl Source {
         let bytes = std::fs::read(path).map_err(Failure::reading(path))?;
         let text = String::from_utf8(bytes).map_err(|cause| {
             let at = cause.utf8_error().valid_up_to();
-            let line = cause.as_bytes()[..at].iter().filter(|b| **b == b'\n').count() + 1;
+            let line = cause.as_bytes()[..at]
+                .iter()
+                .filter(|b| **b == b'\n')
+                .count()
+                + 1;
             Failure::Data(format!("{model}:{line}: the file is not UTF-8 text"))
         })?;
-        Ok(Self { file: model.replace('\\', "/"), text, shipped: None })
+        Ok(Self {
+            file: model.replace('\\', "/"),
+            text,
+            shipped: None,
+        })
     }
 }
 

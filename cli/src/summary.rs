@@ -9,14 +9,25 @@ use crate::table::{number, table};
 /// Smallest and largest value of a column of the samples, in SI.
 fn extrema(trajectory: &Trajectory, column: usize) -> [f64; 2] {
     let values = (0..trajectory.len()).map(|row| trajectory.row(row)[column]);
-    values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| [low.min(value), high.max(value)])
+    values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| {
+        [low.min(value), high.max(value)]
+    })
 }
 
 /// The rows that a person reads: time, cost, and a table in the units of the spec.
 pub(crate) fn text(trajectory: &Trajectory) -> String {
-    let Some(last) = trajectory.len().checked_sub(1) else { return String::new() };
+    let Some(last) = trajectory.len().checked_sub(1) else {
+        return String::new();
+    };
     let t_end = trajectory.times()[last];
-    let heading = ["", "start", &format!("{} s", number(t_end)), "smallest", "largest", "unit"];
+    let heading = [
+        "",
+        "start",
+        &format!("{} s", number(t_end)),
+        "smallest",
+        "largest",
+        "unit",
+    ];
     let mut rows = vec![heading.map(str::to_owned).to_vec()];
     for (column, quantity) in trajectory.columns().iter().enumerate() {
         let shown = |value: f64| number(quantity.to_unit(value));
@@ -34,7 +45,10 @@ pub(crate) fn text(trajectory: &Trajectory) -> String {
     let cost = if cost.evaluations == 0 {
         String::new()
     } else {
-        format!(": {} steps, {} rejected, {} evaluations", cost.steps, cost.rejected, cost.evaluations)
+        format!(
+            ": {} steps, {} rejected, {} evaluations",
+            cost.steps, cost.rejected, cost.evaluations
+        )
     };
     let title = &trajectory.info().title;
     format!("{title}\n{} s{cost}\n{}", number(t_end), table(&rows, 1..5))
@@ -44,10 +58,19 @@ pub(crate) fn text(trajectory: &Trajectory) -> String {
 pub(crate) fn json(trajectory: &Trajectory, failure: Option<&str>) -> Value {
     let info = trajectory.info();
     let named = |list: &[Quantity], values: &[f64]| -> Map<String, Value> {
-        list.iter().zip(values).map(|(q, &value)| (q.name.to_string(), json!(value))).collect()
+        list.iter()
+            .zip(values)
+            .map(|(q, &value)| (q.name.to_string(), json!(value)))
+            .collect()
     };
     let last = trajectory.len().saturating_sub(1);
-    let row = |row: usize| if trajectory.is_empty() { &[][..] } else { trajectory.row(row) };
+    let row = |row: usize| {
+        if trajectory.is_empty() {
+            &[][..]
+        } else {
+            trajectory.row(row)
+        }
+    };
     let states = info.state_len();
     let all = trajectory.columns();
     let extrema: Map<String, Value> = all
@@ -55,7 +78,10 @@ pub(crate) fn json(trajectory: &Trajectory, failure: Option<&str>) -> Value {
         .enumerate()
         .map(|(column, quantity)| {
             let [min, max] = extrema(trajectory, column);
-            (quantity.name.to_string(), json!({ "min": min, "max": max, "max_abs": max.abs().max(min.abs()) }))
+            (
+                quantity.name.to_string(),
+                json!({ "min": min, "max": max, "max_abs": max.abs().max(min.abs()) }),
+            )
         })
         .collect();
     json!({

@@ -31,7 +31,9 @@ impl Shipped {
 
 impl std::fmt::Debug for Shipped {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Shipped").field("name", &self.name).finish_non_exhaustive()
+        f.debug_struct("Shipped")
+            .field("name", &self.name)
+            .finish_non_exhaustive()
     }
 }
 

@@ -25,7 +25,11 @@ pub(crate) struct Check {
 
 impl Check {
     pub(super) fn run(&self) -> Result<(), Failure> {
-        let sources = self.models.iter().map(|model| Source::find(model)).collect::<Result<Vec<_>, _>>()?;
+        let sources = self
+            .models
+            .iter()
+            .map(|model| Source::find(model))
+            .collect::<Result<Vec<_>, _>>()?;
         let quiet = self.json.as_deref().is_some_and(files::is_stdout);
         let mut failed = Vec::new();
         let mut found = Vec::new();
@@ -39,14 +43,17 @@ impl Check {
                     if !quiet {
                         files::print(&audit.text(source))?;
                     }
-                    let warnings = Report::new(source.file.as_str(), source.text.as_str(), derived.warnings);
+                    let warnings =
+                        Report::new(source.file.as_str(), source.text.as_str(), derived.warnings);
                     if !warnings.diagnostics().is_empty() {
                         eprint!("{}", shown(&warnings));
                     }
                     found.push(audit.json(source, &warnings));
                 }
                 Err(report) => {
-                    found.push(json!({ "file": source.file, "ok": false, "findings": findings(&report) }));
+                    found.push(
+                        json!({ "file": source.file, "ok": false, "findings": findings(&report) }),
+                    );
                     failed.push(report);
                 }
             }
@@ -54,7 +61,11 @@ impl Check {
         if let Some(path) = &self.json {
             files::write_json(path, &json!({ "specs": found }))?;
         }
-        if failed.is_empty() { Ok(()) } else { Err(Failure::Reports(failed)) }
+        if failed.is_empty() {
+            Ok(())
+        } else {
+            Err(Failure::Reports(failed))
+        }
     }
 }
 
@@ -83,10 +94,22 @@ struct Audit {
 
 impl Audit {
     fn of(derived: &Derived) -> Self {
-        let Derived { mechanism, derivation, .. } = derived;
-        let speeds: Vec<String> = mechanism.pseudo_velocities.iter().map(|w| w.label.name.clone()).collect();
+        let Derived {
+            mechanism,
+            derivation,
+            ..
+        } = derived;
+        let speeds: Vec<String> = mechanism
+            .pseudo_velocities
+            .iter()
+            .map(|w| w.label.name.clone())
+            .collect();
         let rows = |embedded: bool| {
-            let rows = derivation.constraints.rows.iter().filter(|row| row.is_embedded() == embedded);
+            let rows = derivation
+                .constraints
+                .rows
+                .iter()
+                .filter(|row| row.is_embedded() == embedded);
             rows.map(|row| row.name.clone()).collect()
         };
         let blocks = independent_blocks(&derivation.gibbs.mass_matrix);
@@ -99,7 +122,12 @@ impl Audit {
             rows: rows(false),
             embedded: rows(true),
             blocks,
-            solved_numerically: derivation.velocities.solved_numerically.iter().map(coordinate).collect(),
+            solved_numerically: derivation
+                .velocities
+                .solved_numerically
+                .iter()
+                .map(coordinate)
+                .collect(),
             speeds,
         }
     }
@@ -110,23 +138,37 @@ impl Audit {
         let mut line = |label: &str, what: String| {
             let _ = writeln!(text, "  {label:<22}{what}");
         };
-        line("degrees of freedom", format!("{}: {}", self.speeds.len(), self.speeds.join(", ")));
+        line(
+            "degrees of freedom",
+            format!("{}: {}", self.speeds.len(), self.speeds.join(", ")),
+        );
         let rows = |rows: &[String]| {
-            if rows.is_empty() { "none".to_owned() } else { format!("{}: {}", rows.len(), rows.join(", ")) }
+            if rows.is_empty() {
+                "none".to_owned()
+            } else {
+                format!("{}: {}", rows.len(), rows.join(", "))
+            }
         };
         line("coordinates", self.coordinates.to_string());
         line("constraint rows", rows(&self.rows));
         if !self.embedded.is_empty() {
             line("held by geometry", rows(&self.embedded));
         }
-        let blocks: Vec<String> = self.blocks.iter().map(|block| format!("{{{}}}", block.join(", "))).collect();
+        let blocks: Vec<String> = self
+            .blocks
+            .iter()
+            .map(|block| format!("{{{}}}", block.join(", ")))
+            .collect();
         line("blocks of M", blocks.join(" "));
         line(
             "coordinate rates",
             if self.solved_numerically.is_empty() {
                 "in closed form, without division by what can vanish".to_owned()
             } else {
-                format!("in closed form, except for {} (solved with pivoting)", self.solved_numerically.join(", "))
+                format!(
+                    "in closed form, except for {} (solved with pivoting)",
+                    self.solved_numerically.join(", ")
+                )
             },
         );
         text

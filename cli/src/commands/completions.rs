@@ -15,7 +15,12 @@ pub(crate) struct Completions {
 impl Completions {
     pub(super) fn run(&self) -> Result<(), Failure> {
         let mut script = Vec::new();
-        clap_complete::generate(self.shell, &mut crate::Arguments::command(), "appell", &mut script);
+        clap_complete::generate(
+            self.shell,
+            &mut crate::Arguments::command(),
+            "appell",
+            &mut script,
+        );
         files::print(&String::from_utf8_lossy(&script))
     }
 }

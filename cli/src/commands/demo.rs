@@ -6,7 +6,7 @@ use appell_runtime::figure::Figure;
 use appell_runtime::integrate::Options;
 use appell_runtime::simulate::Method;
 
-use super::derive::rust;
+use super::derive::{Format, Stage, derivation};
 use super::simulate::{Run, csv};
 use crate::controller::Plan;
 use crate::engine::Equations;
@@ -45,7 +45,13 @@ impl Demo {
             watch_ranges: true,
         };
         let (trajectory, failure) = run.run(plan)?;
-        let panels = [vec!["y_G", "r"], vec!["psi", "theta"], vec!["u"]];
+        let panels = [
+            vec!["y_G"],
+            vec!["psi"],
+            vec!["theta"],
+            vec!["r"],
+            vec!["u"],
+        ];
         let figure = Figure::over_time(&trajectory, &panels);
         let path = Figure::path(&trajectory, "x_G", "y_G");
 
@@ -55,11 +61,30 @@ impl Demo {
             told += &format!("  {:<28} {about}\n", Path::new(&path).display());
             files::write(&path, text)
         };
-        write("unicycle.rs", &rust(&source)?, "the same equations as Rust, compiled into this program")?;
-        write("lane_change.csv", &csv(&trajectory)?, "the motion: states, input, outputs, energies")?;
+        let html = derivation(&source, Format::Html, Stage::All)?;
+        write(
+            "unicycle.html",
+            &html,
+            "the derivation from frames to equations of motion",
+        )?;
+        let rust = derivation(&source, Format::Rust, Stage::All)?;
+        write(
+            "unicycle.rs",
+            &rust,
+            "the same equations as Rust, compiled into this program",
+        )?;
+        write(
+            "lane_change.csv",
+            &csv(&trajectory)?,
+            "the motion: states, input, outputs, energies",
+        )?;
         write("lane_change.svg", &figure.to_svg(), "the motion over time")?;
         if let Some(path) = path {
-            write("path.svg", &path.to_svg(), "the path of the wheel centre, seen from above")?;
+            write(
+                "path.svg",
+                &path.to_svg(),
+                "the path of the wheel centre, seen from above",
+            )?;
         }
         files::print(&format!("{}\nopen:\n{told}", summary::text(&trajectory)))?;
         failure.map_or(Ok(()), |reason| Err(Failure::Computation(reason)))

@@ -48,14 +48,21 @@ impl Evaluate {
             for (u, given) in u.iter_mut().zip(&case.u) {
                 *u = given.unwrap_or(*u);
             }
-            let at = At { t: case.t, x: &case.x, u: &u, p: &case.p };
+            let at = At {
+                t: case.t,
+                x: &case.x,
+                u: &u,
+                p: &case.p,
+            };
             let (answer, finite) = answer(model, at);
             answers.push(answer);
             if !finite {
                 singular.push(describe(index, case, &info.states));
             }
         }
-        let names = |list: &[Quantity]| -> Vec<String> { list.iter().map(|q| q.name.to_string()).collect() };
+        let names = |list: &[Quantity]| -> Vec<String> {
+            list.iter().map(|q| q.name.to_string()).collect()
+        };
         files::write_json(
             &self.json,
             &json!({
@@ -80,15 +87,23 @@ impl Evaluate {
 }
 
 fn describe(index: usize, case: &Case, states: &[Quantity]) -> String {
-    let state: Vec<String> =
-        states.iter().zip(&case.x).map(|(state, value)| format!("{} = {value}", state.name)).collect();
+    let state: Vec<String> = states
+        .iter()
+        .zip(&case.x)
+        .map(|(state, value)| format!("{} = {value}", state.name))
+        .collect();
     format!("  case {index}, t = {} s: {}", case.t, state.join(", "))
 }
 
 /// Everything at one state, and whether all of it is finite.
 fn answer(model: &dyn Model, at: At<'_>) -> (Value, bool) {
     let info = model.info();
-    let (n, s, m, k) = (info.state_len(), info.speeds, info.input_len(), info.parameter_len());
+    let (n, s, m, k) = (
+        info.state_len(),
+        info.speeds,
+        info.input_len(),
+        info.parameter_len(),
+    );
     let mut rates = vec![0.0; n];
     let (mut a, mut b, mut p) = (vec![0.0; n * n], vec![0.0; n * m], vec![0.0; n * k]);
     model.rates(at, &mut rates);
@@ -104,14 +119,30 @@ fn answer(model: &dyn Model, at: At<'_>) -> (Value, bool) {
     let mut outputs = vec![0.0; info.output_len()];
     model.outputs(at, &mut outputs);
 
-    let scalars = [energies.kinetic, energies.potential, energies.power, energies.acceleration];
-    let all = [&rates, &a, &b, &p, &mass, &bias, &forces, &residual, &reactions, &outputs];
-    let finite = all.iter().flat_map(|list| list.iter()).chain(&scalars).all(|value| value.is_finite());
+    let scalars = [
+        energies.kinetic,
+        energies.potential,
+        energies.power,
+        energies.acceleration,
+    ];
+    let all = [
+        &rates, &a, &b, &p, &mass, &bias, &forces, &residual, &reactions, &outputs,
+    ];
+    let finite = all
+        .iter()
+        .flat_map(|list| list.iter())
+        .chain(&scalars)
+        .all(|value| value.is_finite());
     let named = |list: &[Quantity], values: &[f64]| -> Map<String, Value> {
-        list.iter().zip(values).map(|(q, &value)| (q.name.to_string(), json!(value))).collect()
+        list.iter()
+            .zip(values)
+            .map(|(q, &value)| (q.name.to_string(), json!(value)))
+            .collect()
     };
     let rows = |values: &[f64], rows: usize, columns: usize| -> Value {
-        (0..rows).map(|row| json!(&values[row * columns..][..columns])).collect()
+        (0..rows)
+            .map(|row| json!(&values[row * columns..][..columns]))
+            .collect()
     };
     let reactions: Map<String, Value> = info
         .reactions

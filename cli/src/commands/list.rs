@@ -20,7 +20,10 @@ pub(crate) struct List {
 impl List {
     pub(super) fn run(&self) -> Result<(), Failure> {
         if let Some(path) = &self.json {
-            files::write_json(path, &json!({ "mechanisms": ALL.iter().map(entry).collect::<Vec<_>>() }))?;
+            files::write_json(
+                path,
+                &json!({ "mechanisms": ALL.iter().map(entry).collect::<Vec<_>>() }),
+            )?;
             if files::is_stdout(path) {
                 return Ok(());
             }
@@ -44,16 +47,25 @@ impl List {
 /// The work itself, without sections and equation numbers, which the spec tells.
 fn short(source: &str) -> String {
     let work = source.split(", ").next().unwrap_or_default();
-    if work.is_empty() { "-".to_owned() } else { work.to_owned() }
+    if work.is_empty() {
+        "-".to_owned()
+    } else {
+        work.to_owned()
+    }
 }
 
 fn entry(shipped: &appell_models::Shipped) -> Value {
     let info = shipped.model.info();
     let names = |list: &[appell_runtime::model::Quantity]| -> Vec<String> {
-        list.iter().map(|quantity| quantity.name.to_string()).collect()
+        list.iter()
+            .map(|quantity| quantity.name.to_string())
+            .collect()
     };
-    let costs: serde_json::Map<String, Value> =
-        shipped.costs.iter().map(|(function, cost)| ((*function).to_owned(), json!(cost))).collect();
+    let costs: serde_json::Map<String, Value> = shipped
+        .costs
+        .iter()
+        .map(|(function, cost)| ((*function).to_owned(), json!(cost)))
+        .collect();
     json!({
         "name": shipped.name,
         "title": info.title,

@@ -16,7 +16,8 @@ pub(crate) struct New {
 
 impl New {
     pub(super) fn run(&self) -> Result<(), Failure> {
-        let text = appell_spec::starter(&self.name).map_err(|error| Failure::Usage(error.to_string()))?;
+        let text =
+            appell_spec::starter(&self.name).map_err(|error| Failure::Usage(error.to_string()))?;
         let path = PathBuf::from(format!("{}.toml", self.name));
         // Creation fails where the file exists: nobody's work is overwritten.
         let created = OpenOptions::new().write(true).create_new(true).open(&path);

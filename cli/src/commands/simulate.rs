@@ -160,7 +160,9 @@ fn positive(flag: &str, value: f64) -> Result<(), Failure> {
     if value.is_finite() && value > 0.0 {
         return Ok(());
     }
-    Err(Failure::Usage(format!("`{flag} {value}` must be a positive number of seconds")))
+    Err(Failure::Usage(format!(
+        "`{flag} {value}` must be a positive number of seconds"
+    )))
 }
 
 fn hint(setup: &Setup<'_>) -> String {
@@ -200,7 +202,11 @@ impl Run<'_> {
             method: self.method,
             options: self.options,
             sampling: Sampling::Every(self.interval),
-            extras: Extras { outputs: true, energies: true, ..Extras::default() },
+            extras: Extras {
+                outputs: true,
+                energies: true,
+                ..Extras::default()
+            },
             watch_ranges: self.watch_ranges,
             progress: Some(Box::new(|t| clock.set_position(progress::milliseconds(t)))),
             ..Simulation::new(self.equations.model())
@@ -212,7 +218,9 @@ impl Run<'_> {
             Err(error) => {
                 let reason = error.to_string();
                 match error {
-                    SimulationError::Integration { trajectory, .. } => Ok((*trajectory, Some(reason))),
+                    SimulationError::Integration { trajectory, .. } => {
+                        Ok((*trajectory, Some(reason)))
+                    }
                     _ => Err(Failure::Usage(reason)),
                 }
             }

@@ -6,7 +6,7 @@ use syn::{Attribute, BinOp, Expr, Stmt, token};
 
 use super::layout;
 use super::syntax as s;
-use super::types::Types;
+use super::types::{Types, result_struct};
 use crate::program::{Function, Layout};
 use crate::schedule::piece::method;
 use crate::schedule::{Argument, Operation, Schedule, Step, Tree, Value};
@@ -14,7 +14,12 @@ use crate::symbolic::{Rational, Relation};
 
 /// The statements of a function; the last one is its result.
 pub(super) fn body(types: &Types<'_>, function: &Function, schedule: &Schedule) -> Vec<Stmt> {
-    let mut body = Body { types, schedule, statements: Vec::new(), attributes: Vec::new() };
+    let mut body = Body {
+        types,
+        schedule,
+        statements: Vec::new(),
+        attributes: Vec::new(),
+    };
     body.arguments();
     body.constants(function);
     for step in &schedule.steps {
@@ -58,17 +63,27 @@ impl Body<'_> {
     /// `let half = T::constant(0.5);`
     fn constants(&mut self, function: &Function) {
         let mut constants = BTreeSet::new();
-        let entries = self.schedule.results.iter().flat_map(|array| &array.entries);
+        let entries = self
+            .schedule
+            .results
+            .iter()
+            .flat_map(|array| &array.entries);
         for tree in trees(&self.schedule.steps).chain(entries) {
             collect_constants(tree, &mut constants);
         }
         let zero_filled = function.results.iter().zip(&self.schedule.results);
-        if zero_filled.into_iter().any(|(array, result)| is_sparse(array.layout, &result.entries)) {
+        if zero_filled
+            .into_iter()
+            .any(|(array, result)| is_sparse(array.layout, &result.entries))
+        {
             constants.insert(Rational::ZERO);
         }
         for value in constants {
             let name = self.types.names.constant(&value);
-            self.push(s::binding(&name), s::associated("constant", vec![constant(&value)]));
+            self.push(
+                s::binding(&name),
+                s::associated("constant", vec![constant(&value)]),
+            );
         }
     }
 
@@ -83,12 +98,23 @@ impl Body<'_> {
                 let pattern = s::tuple_pattern(&[self.value(*sin), self.value(*cos)]);
                 self.push(pattern, s::method(self.tree(angle), "sin_cos", Vec::new()));
             }
-            Step::Factor { factorisation, size, matrix } => {
-                let rows = matrix.chunks(*size).map(|row| s::array(self.all(row))).collect();
+            Step::Factor {
+                factorisation,
+                size,
+                matrix,
+            } => {
+                let rows = matrix
+                    .chunks(*size)
+                    .map(|row| s::array(self.all(row)))
+                    .collect();
                 let factors = s::call("lu_factor", vec![s::array(rows)]);
                 self.push(s::binding(&self.factors(*factorisation)), factors);
             }
-            Step::Solve { factorisation, values, right } => {
+            Step::Solve {
+                factorisation,
+                values,
+                right,
+            } => {
                 let used = self.used();
                 let names: Vec<Option<&str>> = values
                     .iter()
@@ -122,7 +148,11 @@ impl Body<'_> {
 
     /// Values that something uses.
     fn used(&self) -> BTreeSet<Value> {
-        let entries = self.schedule.results.iter().flat_map(|array| &array.entries);
+        let entries = self
+            .schedule
+            .results
+            .iter()
+            .flat_map(|array| &array.entries);
         let mut used = BTreeSet::new();
         let mut rest: Vec<&Tree> = trees(&self.schedule.steps).chain(entries).collect();
         while let Some(tree) = rest.pop() {
@@ -159,7 +189,11 @@ impl Body<'_> {
             Tree::Power(base, exponent) => {
                 s::method(self.tree(base), "powf", vec![self.tree(exponent)])
             }
-            Tree::Choice { relation, compared, branches } => {
+            Tree::Choice {
+                relation,
+                compared,
+                branches,
+            } => {
                 let function = match relation {
                     Relation::Less => "if_less",
                     Relation::LessOrEqual => "if_less_or_equal",
@@ -173,7 +207,7 @@ impl Body<'_> {
     /// The arrays, and the expression that holds them all.
     fn results(&mut self, function: &Function) {
         let mut fields = Vec::new();
-        let structure = self.types.result_struct(function);
+        let structure = result_struct(function);
         for (array, result) in function.results.iter().zip(&self.schedule.results) {
             let value = self.result(array.layout, &array.name, &result.entries);
             fields.push((array.name.as_str(), value));
@@ -181,7 +215,10 @@ impl Body<'_> {
         let value = match (structure, fields.len()) {
             (None, 1) => fields.remove(0).1,
             (structure, _) => {
-                let fields = fields.iter().map(|(name, value)| (*name, value.clone())).collect();
+                let fields = fields
+                    .iter()
+                    .map(|(name, value)| (*name, value.clone()))
+                    .collect();
                 s::structure(structure.unwrap_or_default(), fields)
             }
         };
@@ -202,14 +239,18 @@ impl Body<'_> {
             Layout::State | Layout::Speeds | Layout::Coordinates | Layout::Outputs => {
                 let (type_name, labels) = self.types.labelled(layout);
                 let values = self.all(entries);
-                s::structure(type_name, labels.iter().map(String::as_str).zip(values).collect())
+                s::structure(
+                    type_name,
+                    labels.iter().map(String::as_str).zip(values).collect(),
+                )
             }
             Layout::Vector(_) => s::array(self.all(entries)),
             Layout::Matrix(rows, columns) => {
                 if is_sparse(layout, entries) {
                     self.sparse(name, rows, columns, entries)
                 } else {
-                    let lines = entries.chunks(columns.max(1));
+                    // A row may be empty: a model without inputs has a B of no columns.
+                    let lines = (0..rows).map(|row| &entries[row * columns..][..columns]);
                     s::array(lines.map(|line| s::array(self.all(line))).collect())
                 }
             }
@@ -224,7 +265,10 @@ impl Body<'_> {
             local.push('_');
         }
         self.attributes.push(layout::blank());
-        self.push(s::mutable(&local), s::repeated(s::repeated(s::name(&zero), columns), rows));
+        self.push(
+            s::mutable(&local),
+            s::repeated(s::repeated(s::name(&zero), columns), rows),
+        );
         for (index, tree) in entries.iter().enumerate() {
             if *tree != Tree::Constant(Rational::ZERO) {
                 let place = s::entry(s::name(&local), &[index / columns, index % columns]);
@@ -237,7 +281,10 @@ impl Body<'_> {
 
 /// Whether a matrix is written entry by entry instead of as a whole.
 fn is_sparse(layout: Layout, entries: &[Tree]) -> bool {
-    let zeros = entries.iter().filter(|&tree| *tree == Tree::Constant(Rational::ZERO)).count();
+    let zeros = entries
+        .iter()
+        .filter(|&tree| *tree == Tree::Constant(Rational::ZERO))
+        .count();
     matches!(layout, Layout::Matrix(_, columns) if columns > 4 || 2 * zeros > entries.len())
 }
 
@@ -270,7 +317,9 @@ fn parts(tree: &Tree) -> Vec<&Tree> {
         Tree::Value(_) | Tree::Argument(_) | Tree::Constant(_) => Vec::new(),
         Tree::Negate(a) | Tree::Function(_, a) => vec![a],
         Tree::Binary(_, a, b) | Tree::Atan2(a, b) | Tree::Power(a, b) => vec![a, b],
-        Tree::Choice { compared, branches, .. } => compared.iter().chain(branches.iter()).collect(),
+        Tree::Choice {
+            compared, branches, ..
+        } => compared.iter().chain(branches.iter()).collect(),
     }
 }
 
@@ -296,7 +345,11 @@ fn constant(value: &Rational) -> Expr {
                 && !denominator.unsigned_abs().is_power_of_two() =>
         {
             let over = BinOp::Div(token::Slash::default());
-            s::binary(s::number(numerator as f64), over, s::number(denominator as f64))
+            s::binary(
+                s::number(numerator as f64),
+                over,
+                s::number(denominator as f64),
+            )
         }
         _ => s::number(value.to_f64()),
     }

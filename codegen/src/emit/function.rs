@@ -7,7 +7,7 @@ use super::Error;
 use super::body::body;
 use super::layout::{blank_tokens, docs, one_line};
 use super::syntax::ident;
-use super::types::Types;
+use super::types::{Types, result_struct};
 use crate::program::{Function, FunctionKind};
 use crate::schedule::{Argument, OperationCount, Schedule};
 
@@ -32,16 +32,28 @@ pub(super) fn function_name(kind: FunctionKind) -> &'static str {
 /// What a function returns, one sentence.
 pub(super) fn about(kind: FunctionKind) -> &'static str {
     match kind {
-        FunctionKind::Kinematics => "Generalised velocities q̇ of pseudo-velocities and coordinates.",
-        FunctionKind::AccelerationEnergy => "Acceleration energy S (Gibbs function) at the actual motion.",
+        FunctionKind::Kinematics => {
+            "Generalised velocities q̇ of pseudo-velocities and coordinates."
+        }
+        FunctionKind::AccelerationEnergy => {
+            "Acceleration energy S (Gibbs function) at the actual motion."
+        }
         FunctionKind::MassMatrix => {
             "Mass matrix M = ∂²S/∂ω̇², symmetric. Rows and columns follow [`Speeds`]."
         }
-        FunctionKind::Bias => "Bias b: what is left of ∂S/∂ω̇ where the pseudo-accelerations vanish.",
-        FunctionKind::GeneralizedForces => "Generalised forces Π: virtual power of the loads per pseudo-velocity.",
-        FunctionKind::Rates => "Rates ẋ of the state by Appell's equations M ω̇ + b = Π and kinematics.",
+        FunctionKind::Bias => {
+            "Bias b: what is left of ∂S/∂ω̇ where the pseudo-accelerations vanish."
+        }
+        FunctionKind::GeneralizedForces => {
+            "Generalised forces Π: virtual power of the loads per pseudo-velocity."
+        }
+        FunctionKind::Rates => {
+            "Rates ẋ of the state by Appell's equations M ω̇ + b = Π and kinematics."
+        }
         FunctionKind::Jacobians => "Rates ẋ with their derivatives by state and inputs.",
-        FunctionKind::AllJacobians => "Rates ẋ with their derivatives by state, inputs and parameters.",
+        FunctionKind::AllJacobians => {
+            "Rates ẋ with their derivatives by state, inputs and parameters."
+        }
         FunctionKind::Energies => "Energies and power.",
         FunctionKind::ConstraintResidual => {
             "Constraint rows at the generalised velocities of the state: zero up to rounding."
@@ -72,16 +84,24 @@ pub(super) fn function(
     let name = ident(function_name(function.kind));
     let mut lines = vec![about(function.kind).to_owned(), String::new()];
     lines.extend(super::picture::picture(types, function, schedule));
-    lines.push(format!("From `{}`.", one_line(&types.program.file).replace('`', "'")));
+    lines.push(format!(
+        "From `{}`.",
+        one_line(&types.program.file).replace('`', "'")
+    ));
     lines.push(format!("Operations: {cost}."));
     let about = docs(&lines);
     let blank = blank_tokens();
     let uses = |like: Argument| {
-        let same = |&other: &Argument| std::mem::discriminant(&other) == std::mem::discriminant(&like);
+        let same =
+            |&other: &Argument| std::mem::discriminant(&other) == std::mem::discriminant(&like);
         schedule.arguments.iter().any(same)
     };
     let argument = |name: &str, used: bool| {
-        if used { ident(name) } else { quote::format_ident!("_{}", ident(name)) }
+        if used {
+            ident(name)
+        } else {
+            quote::format_ident!("_{}", ident(name))
+        }
     };
     let [time, parameters, state, inputs] = types.argument_names();
     let time = types.program.info.explicit_time.then(|| {
@@ -91,7 +111,7 @@ pub(super) fn function(
     let parameters = argument(parameters, uses(Argument::Parameter(0)));
     let state = argument(state, uses(Argument::State(0)));
     let inputs = argument(inputs, uses(Argument::Input(0)));
-    let result = match types.result_struct(function) {
+    let result = match result_struct(function) {
         Some(name) => {
             let name = ident(name);
             quote!(#name<T>)

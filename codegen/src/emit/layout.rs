@@ -45,7 +45,10 @@ fn attribute(name: &str, text: &str) -> Attribute {
         meta: Meta::NameValue(syn::MetaNameValue {
             path: super::syntax::path(name),
             eq_token: token::Eq::default(),
-            value: Expr::Lit(syn::ExprLit { attrs: Vec::new(), lit: value }),
+            value: Expr::Lit(syn::ExprLit {
+                attrs: Vec::new(),
+                lit: value,
+            }),
         }),
     }
 }
@@ -54,7 +57,10 @@ fn attribute(name: &str, text: &str) -> Attribute {
 /// a comment.
 pub(super) fn one_line(text: &str) -> String {
     let steers = |c: char| matches!(c, '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}' | '\u{2028}' | '\u{2029}' | '\u{200e}' | '\u{200f}');
-    let words = text.chars().filter(|&c| !steers(c)).map(|c| if c.is_control() { ' ' } else { c });
+    let words = text
+        .chars()
+        .filter(|&c| !steers(c))
+        .map(|c| if c.is_control() { ' ' } else { c });
     words.collect::<String>().trim_end().to_owned()
 }
 

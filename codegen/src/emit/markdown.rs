@@ -18,17 +18,30 @@ pub(super) fn page(types: &Types<'_>, costs: &[(FunctionKind, OperationCount)]) 
     if !info.source.is_empty() {
         let _ = writeln!(page, "Source: {}\n", escaped(&info.source));
     }
-    let _ = writeln!(page, "Spec: `{}`.", one_line(&types.program.file).replace('`', "'"));
+    let _ = writeln!(
+        page,
+        "Spec: `{}`.",
+        one_line(&types.program.file).replace('`', "'")
+    );
     let speeds = info.speed_quantities();
     table(&mut page, "Pseudo-velocities", "initial", speeds);
-    table(&mut page, "Coordinates", "initial", info.coordinate_quantities());
+    table(
+        &mut page,
+        "Coordinates",
+        "initial",
+        info.coordinate_quantities(),
+    );
     table(&mut page, "Inputs", "", &info.inputs);
     table(&mut page, "Parameters", "value", &info.parameters);
     table(&mut page, "Outputs", "", &info.outputs);
     if !costs.is_empty() {
         page.push_str("\n# Operations\n\n| function | operations |\n|---|---|\n");
         for (kind, cost) in costs {
-            let _ = writeln!(page, "| `{}` | {cost} |", super::function::function_name(*kind));
+            let _ = writeln!(
+                page,
+                "| `{}` | {cost} |",
+                super::function::function_name(*kind)
+            );
         }
     }
     page
@@ -40,9 +53,15 @@ fn table(page: &mut String, title: &str, value: &str, quantities: &[Quantity]) {
     }
     let cell = |text: &str| escaped(text).replace('|', "\\|");
     if value.is_empty() {
-        let _ = writeln!(page, "\n# {title}\n\n| name | meaning | unit |\n|---|---|---|");
+        let _ = writeln!(
+            page,
+            "\n# {title}\n\n| name | meaning | unit |\n|---|---|---|"
+        );
     } else {
-        let _ = writeln!(page, "\n# {title}\n\n| name | meaning | unit | {value} |\n|---|---|---|---|");
+        let _ = writeln!(
+            page,
+            "\n# {title}\n\n| name | meaning | unit | {value} |\n|---|---|---|---|"
+        );
     }
     for quantity in quantities {
         let (name, about) = (cell(&quantity.name), cell(&quantity.about));
@@ -58,7 +77,9 @@ fn table(page: &mut String, title: &str, value: &str, quantities: &[Quantity]) {
 /// The spec as a raw string, or as an escaped one where a raw string cannot hold it.
 pub(super) fn spec_constant(spec: &str) -> String {
     const ABOUT: &str = "/// The spec this module is made from.\npub const SPEC: &str = ";
-    let needs_escapes = spec.chars().any(|c| c == '\r' || one_line(&c.to_string()).is_empty() && !c.is_whitespace());
+    let needs_escapes = spec
+        .chars()
+        .any(|c| c == '\r' || one_line(&c.to_string()).is_empty() && !c.is_whitespace());
     if needs_escapes {
         return format!("{ABOUT}{spec:?};\n\n");
     }

@@ -53,6 +53,8 @@ pub struct Emitted {
     pub source: String,
     /// The page about the model, in Markdown.
     pub docs: String,
+    /// Name of the type that implements `Model`.
+    pub model: String,
     /// Operations of every function.
     pub costs: Vec<(FunctionKind, OperationCount)>,
 }
@@ -85,7 +87,11 @@ pub enum Error {
 
 /// Emits the functions `kinds` and the structs they need, without the implementation of `Model`.
 pub fn emit_functions(program: &Program, kinds: &[FunctionKind]) -> Result<Emitted, Error> {
-    let options = Options { functions: kinds.to_vec(), model_impl: false, ..Options::default() };
+    let options = Options {
+        functions: kinds.to_vec(),
+        model_impl: false,
+        ..Options::default()
+    };
     emit(program, &options)
 }
 
@@ -97,7 +103,9 @@ pub fn emit(program: &Program, options: &Options) -> Result<Emitted, Error> {
     let mut functions: Vec<_> = program
         .functions
         .iter()
-        .filter(|function| options.functions.is_empty() || options.functions.contains(&function.kind))
+        .filter(|function| {
+            options.functions.is_empty() || options.functions.contains(&function.kind)
+        })
         .collect();
     functions.sort_by_key(|function| function.kind);
 
@@ -110,12 +118,16 @@ pub fn emit(program: &Program, options: &Options) -> Result<Emitted, Error> {
         let cost = OperationCount::of(&schedule);
         solves |= cost.solves > 0;
         results.extend(types.results_struct(function));
-        items.push(syn::Item::Fn(function::function(&types, function, &schedule, &cost)?));
+        items.push(syn::Item::Fn(function::function(
+            &types, function, &schedule, &cost,
+        )?));
         costs.push((function.kind, cost));
     }
 
     let lu = solves.then(|| quote!(use #runtime::dense::{lu_factor, lu_solve};));
-    let info = options.model_impl.then(|| model::info(&program.info, &runtime));
+    let info = options
+        .model_impl
+        .then(|| model::info(&program.info, &runtime));
     let structs = types.argument_structs();
     let head = quote! {
         #lu
@@ -130,10 +142,20 @@ pub fn emit(program: &Program, options: &Options) -> Result<Emitted, Error> {
         let tail: syn::File = parse(model::implementation(&types, &runtime)?)?;
         file.items.extend(tail.items);
     }
-    let mut source = options.spec.as_deref().map(markdown::spec_constant).unwrap_or_default();
+    let mut source = options
+        .spec
+        .as_deref()
+        .map(markdown::spec_constant)
+        .unwrap_or_default();
     source.push_str(&layout::with_blank_lines(&prettyplease::unparse(&file)));
     let docs = markdown::page(&types, &costs);
-    Ok(Emitted { source, docs, costs })
+    let model = model::type_name(&types);
+    Ok(Emitted {
+        source,
+        docs,
+        model,
+        costs,
+    })
 }
 
 fn parse(tokens: proc_macro2::TokenStream) -> Result<syn::File, Error> {

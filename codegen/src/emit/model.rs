@@ -13,11 +13,47 @@ use crate::schedule::names::identifier;
 
 /// Types of the emitted text, which the model's own type must not collide with.
 const TYPES: &[&str] = &[
-    "Parameters", "Speeds", "Coordinates", "State", "Inputs", "Outputs", "Jacobians",
-    "AllJacobians", "Energies", "AccelerationEnergy", "Kinematics", "MassMatrix", "Bias",
-    "GeneralizedForces", "Rates", "ConstraintResidual", "ConstraintForces", "OutputArrays", "Real",
-    "T", "Default", "From", "Option", "Result", "Some", "None", "Ok", "Err", "Vec", "Box", "Copy",
-    "Clone", "Debug", "PartialEq", "Model", "ModelInfo", "String", "Send", "Sync", "Fn", "Drop",
+    "Parameters",
+    "Speeds",
+    "Coordinates",
+    "State",
+    "Inputs",
+    "Outputs",
+    "Jacobians",
+    "AllJacobians",
+    "Energies",
+    "AccelerationEnergy",
+    "Kinematics",
+    "MassMatrix",
+    "Bias",
+    "GeneralizedForces",
+    "Rates",
+    "ConstraintResidual",
+    "ConstraintForces",
+    "OutputArrays",
+    "Real",
+    "T",
+    "Default",
+    "From",
+    "Option",
+    "Result",
+    "Some",
+    "None",
+    "Ok",
+    "Err",
+    "Vec",
+    "Box",
+    "Copy",
+    "Clone",
+    "Debug",
+    "PartialEq",
+    "Model",
+    "ModelInfo",
+    "String",
+    "Send",
+    "Sync",
+    "Fn",
+    "Drop",
 ];
 
 /// Name of the model's type: the mechanism's name in camel case.
@@ -48,7 +84,14 @@ pub(super) fn info(info: &ModelInfo, runtime: &syn::Path) -> TokenStream {
         let blank = blank_tokens();
         let count = Literal::usize_unsuffixed(list.len());
         let entries = list.iter().map(|q| {
-            let Quantity { name, about, unit, scale, value, range } = q;
+            let Quantity {
+                name,
+                about,
+                unit,
+                scale,
+                value,
+                range,
+            } = q;
             let [scale, value, low, high] = [*scale, *value, range[0], range[1]].map(double);
             let texts = [name, about, unit].map(|text| borrowed(runtime, text));
             let [name, about, unit] = texts;
@@ -74,8 +117,10 @@ pub(super) fn info(info: &ModelInfo, runtime: &syn::Path) -> TokenStream {
     let parameters = quantities("PARAMETERS", "Parameters.", &info.parameters);
     let outputs = quantities("OUTPUTS", "Outputs.", &info.outputs);
     let signals = signals(info, runtime);
-    let [name, title, source] = [&info.name, &info.title, &info.source].map(|text| borrowed(runtime, text));
-    let [speeds, declared_inputs] = [info.speeds, info.declared_inputs].map(Literal::usize_unsuffixed);
+    let [name, title, source] =
+        [&info.name, &info.title, &info.source].map(|text| borrowed(runtime, text));
+    let [speeds, declared_inputs] =
+        [info.speeds, info.declared_inputs].map(Literal::usize_unsuffixed);
     let texts = |list: &[std::borrow::Cow<'static, str>]| {
         let texts = list.iter().map(|text| borrowed(runtime, text));
         quote!([#(#texts),*])
@@ -85,7 +130,10 @@ pub(super) fn info(info: &ModelInfo, runtime: &syn::Path) -> TokenStream {
     let [row_count, reaction_count] =
         [info.constraint_rows.len(), info.reactions.len()].map(Literal::usize_unsuffixed);
     let orders = info.signal_inputs.iter().map(|&(signal, order)| {
-        let (signal, order) = (Literal::usize_unsuffixed(signal), Literal::u8_unsuffixed(order));
+        let (signal, order) = (
+            Literal::usize_unsuffixed(signal),
+            Literal::u8_unsuffixed(order),
+        );
         quote!((#signal, #order))
     });
     let order_count = Literal::usize_unsuffixed(info.signal_inputs.len());
@@ -165,75 +213,28 @@ fn signals(info: &ModelInfo, runtime: &syn::Path) -> TokenStream {
 
 /// The unit struct and its `impl Model`.
 pub(super) fn implementation(types: &Types<'_>, runtime: &syn::Path) -> Result<TokenStream, Error> {
-    let program = types.program;
     let name = path(&type_name(types));
-    let title = docs(&[escaped(&program.info.title)]);
+    let title = docs(&[escaped(&types.program.info.title)]);
+    let helpers = helpers(&types.program.info, runtime);
+    let bodies = [
+        motion_methods(types)?,
+        appell_method(types)?,
+        energies_method(types, runtime)?,
+        optional_method(
+            types,
+            FunctionKind::ConstraintResidual,
+            "constraint_residual",
+            "residual",
+        )?,
+        optional_method(
+            types,
+            FunctionKind::ConstraintForces,
+            "constraint_forces",
+            "forces",
+        )?,
+        optional_method(types, FunctionKind::Outputs, "outputs", "outputs")?,
+    ];
     let blank = blank_tokens();
-    let rates = {
-        required(program, FunctionKind::Rates)?;
-        let call = call(types, "rates");
-        quote!(write(rates, &<[f64; N]>::from(#call));)
-    };
-    let with_jacobians = {
-        required(program, FunctionKind::Jacobians)?;
-        let call = call(types, "jacobians");
-        quote! {
-            let all = #call;
-            write(rates, &<[f64; N]>::from(all.rates));
-            write(a, all.a.as_flattened());
-            write(b, all.b.as_flattened());
-        }
-    };
-    let parameter_jacobian = {
-        required(program, FunctionKind::AllJacobians)?;
-        let call = call(types, "all_jacobians");
-        quote!(write(p, #call.p.as_flattened());)
-    };
-    let appell = {
-        for kind in [FunctionKind::MassMatrix, FunctionKind::Bias, FunctionKind::GeneralizedForces] {
-            required(program, kind)?;
-        }
-        let [m, b, f] = ["mass_matrix", "bias", "generalized_forces"].map(|name| call(types, name));
-        quote! {
-            write(mass, #m.as_flattened());
-            write(bias, &<[f64; S]>::from(self::#b));
-            write(forces, &<[f64; S]>::from(#f));
-        }
-    };
-    let energies = {
-        required(program, FunctionKind::Energies)?;
-        let acceleration = required(program, FunctionKind::AccelerationEnergy)?;
-        let several = acceleration.results.len() != 1;
-        let [energies, s] = ["energies", "acceleration_energy"].map(|name| call(types, name));
-        let total = several.then(|| quote!(.total));
-        quote! {
-            let all = #energies;
-            #runtime::model::Energies {
-                kinetic: all.kinetic,
-                potential: all.potential,
-                power: all.power,
-                acceleration: #s #total,
-            }
-        }
-    };
-    let residual = optional(types, FunctionKind::ConstraintResidual, "residual")?;
-    let reactions = optional(types, FunctionKind::ConstraintForces, "forces")?;
-    let outputs = optional(types, FunctionKind::Outputs, "outputs")?;
-    let [n, s, m, k] = [
-        program.info.states.len(),
-        program.info.speeds,
-        program.info.inputs.len(),
-        program.info.parameters.len(),
-    ]
-    .map(Literal::usize_unsuffixed);
-    let at = |body: &TokenStream| if body.is_empty() { quote!(_at) } else { quote!(at) };
-    let slot = |body: &TokenStream, name: &str| {
-        let name = ident(name);
-        if body.is_empty() { quote::format_ident!("_{name}") } else { name }
-    };
-    let (residual_at, residual_slot) = (at(&residual), slot(&residual, "residual"));
-    let (reactions_at, reactions_slot) = (at(&reactions), slot(&reactions, "forces"));
-    let (outputs_at, outputs_slot) = (at(&outputs), slot(&outputs, "outputs"));
     Ok(quote! {
         #blank
         #title
@@ -242,93 +243,148 @@ pub(super) fn implementation(types: &Types<'_>, runtime: &syn::Path) -> Result<T
 
         #blank
         const _: () = {
-            use #runtime::model::At;
-
-            #blank
-            const N: usize = #n;
-            const S: usize = #s;
-            const M: usize = #m;
-            const K: usize = #k;
-
-            #blank
-            /// The first numbers of a slice that holds at least as many.
-            fn first<const LEN: usize>(numbers: &[f64]) -> [f64; LEN] {
-                core::array::from_fn(|i| numbers[i])
-            }
-
-            #blank
-            fn parameters(at: &At<'_>) -> Parameters<f64> {
-                first::<K>(at.p).into()
-            }
-
-            #blank
-            fn state(at: &At<'_>) -> State<f64> {
-                first::<N>(at.x).into()
-            }
-
-            #blank
-            fn inputs(at: &At<'_>) -> Inputs<f64> {
-                first::<M>(at.u).into()
-            }
-
-            #blank
-            fn write(to: &mut [f64], from: &[f64]) {
-                to.copy_from_slice(from);
-            }
+            #helpers
 
             #blank
             impl #runtime::model::Model for #name {
                 fn info(&self) -> &#runtime::model::ModelInfo {
                     &INFO
                 }
-
-                #blank
-                fn rates(&self, at: At<'_>, rates: &mut [f64]) {
-                    #rates
-                }
-
-                #blank
-                fn jacobians(&self, at: At<'_>, rates: &mut [f64], a: &mut [f64], b: &mut [f64]) {
-                    #with_jacobians
-                }
-
-                #blank
-                fn parameter_jacobian(&self, at: At<'_>, p: &mut [f64]) {
-                    #parameter_jacobian
-                }
-
-                #blank
-                fn appell(&self, at: At<'_>, mass: &mut [f64], bias: &mut [f64], forces: &mut [f64]) {
-                    #appell
-                }
-
-                #blank
-                fn energies(&self, at: At<'_>) -> #runtime::model::Energies {
-                    #energies
-                }
-
-                #blank
-                fn constraint_residual(&self, #residual_at: At<'_>, #residual_slot: &mut [f64]) {
-                    #residual
-                }
-
-                #blank
-                fn constraint_forces(&self, #reactions_at: At<'_>, #reactions_slot: &mut [f64]) {
-                    #reactions
-                }
-
-                #blank
-                fn outputs(&self, #outputs_at: At<'_>, #outputs_slot: &mut [f64]) {
-                    #outputs
-                }
+                #(#bodies)*
             }
         };
     })
 }
 
+/// Sizes, and conversions between slices and structs.
+fn helpers(info: &ModelInfo, runtime: &syn::Path) -> TokenStream {
+    let [n, s, m, k] = [
+        info.states.len(),
+        info.speeds,
+        info.inputs.len(),
+        info.parameters.len(),
+    ]
+    .map(Literal::usize_unsuffixed);
+    let blank = blank_tokens();
+    quote! {
+        use #runtime::model::At;
+
+        #blank
+        const N: usize = #n;
+        const S: usize = #s;
+        const M: usize = #m;
+        const K: usize = #k;
+
+        #blank
+        /// The first numbers of a slice that holds at least as many.
+        fn first<const LEN: usize>(numbers: &[f64]) -> [f64; LEN] {
+            core::array::from_fn(|i| numbers[i])
+        }
+
+        #blank
+        fn parameters(at: &At<'_>) -> Parameters<f64> {
+            first::<K>(at.p).into()
+        }
+
+        #blank
+        fn state(at: &At<'_>) -> State<f64> {
+            first::<N>(at.x).into()
+        }
+
+        #blank
+        fn inputs(at: &At<'_>) -> Inputs<f64> {
+            first::<M>(at.u).into()
+        }
+
+        #blank
+        fn write(to: &mut [f64], from: &[f64]) {
+            to.copy_from_slice(from);
+        }
+    }
+}
+
+/// Rates and their derivatives.
+fn motion_methods(types: &Types<'_>) -> Result<TokenStream, Error> {
+    for kind in [
+        FunctionKind::Rates,
+        FunctionKind::Jacobians,
+        FunctionKind::AllJacobians,
+    ] {
+        required(types.program, kind)?;
+    }
+    let [rates, jacobians, all_jacobians] =
+        ["rates", "jacobians", "all_jacobians"].map(|name| call(types, name));
+    let blank = blank_tokens();
+    Ok(quote! {
+        #blank
+        fn rates(&self, at: At<'_>, rates: &mut [f64]) {
+            write(rates, &<[f64; N]>::from(self::#rates));
+        }
+
+        #blank
+        fn jacobians(&self, at: At<'_>, rates: &mut [f64], a: &mut [f64], b: &mut [f64]) {
+            let all = #jacobians;
+            write(rates, &<[f64; N]>::from(all.rates));
+            write(a, all.a.as_flattened());
+            write(b, all.b.as_flattened());
+        }
+
+        #blank
+        fn parameter_jacobian(&self, at: At<'_>, p: &mut [f64]) {
+            write(p, #all_jacobians.p.as_flattened());
+        }
+    })
+}
+
+/// Mass matrix, bias and generalised forces.
+fn appell_method(types: &Types<'_>) -> Result<TokenStream, Error> {
+    for kind in [
+        FunctionKind::MassMatrix,
+        FunctionKind::Bias,
+        FunctionKind::GeneralizedForces,
+    ] {
+        required(types.program, kind)?;
+    }
+    let [mass, bias, forces] =
+        ["mass_matrix", "bias", "generalized_forces"].map(|name| call(types, name));
+    let blank = blank_tokens();
+    Ok(quote! {
+        #blank
+        fn appell(&self, at: At<'_>, mass: &mut [f64], bias: &mut [f64], forces: &mut [f64]) {
+            write(mass, #mass.as_flattened());
+            write(bias, &<[f64; S]>::from(self::#bias));
+            write(forces, &<[f64; S]>::from(#forces));
+        }
+    })
+}
+
+/// Energies, the acceleration energy among them.
+fn energies_method(types: &Types<'_>, runtime: &syn::Path) -> Result<TokenStream, Error> {
+    required(types.program, FunctionKind::Energies)?;
+    let acceleration = required(types.program, FunctionKind::AccelerationEnergy)?;
+    let [energies, s] = ["energies", "acceleration_energy"].map(|name| call(types, name));
+    let total = (acceleration.results.len() != 1).then(|| quote!(.total));
+    let blank = blank_tokens();
+    Ok(quote! {
+        #blank
+        fn energies(&self, at: At<'_>) -> #runtime::model::Energies {
+            let all = #energies;
+            #runtime::model::Energies {
+                kinetic: all.kinetic,
+                potential: all.potential,
+                power: all.power,
+                acceleration: #s #total,
+            }
+        }
+    })
+}
+
 /// A function that `impl Model` cannot do without.
 fn required(program: &Program, kind: FunctionKind) -> Result<&crate::program::Function, Error> {
-    let found = program.functions.iter().find(|function| function.kind == kind);
+    let found = program
+        .functions
+        .iter()
+        .find(|function| function.kind == kind);
     found.ok_or(Error::MissingFunction(kind))
 }
 
@@ -336,29 +392,47 @@ fn required(program: &Program, kind: FunctionKind) -> Result<&crate::program::Fu
 fn call(types: &Types<'_>, function: &str) -> TokenStream {
     let function = ident(function);
     let time = types.program.info.explicit_time.then(|| quote!(at.t,));
-    quote!(#function(#time &parameters(&at), &state(&at), &inputs(&at)))
+    quote!(self::#function(#time &parameters(&at), &state(&at), &inputs(&at)))
 }
 
-/// The body of a method whose result may be empty, and whose function may then be missing.
-fn optional(types: &Types<'_>, kind: FunctionKind, slot: &str) -> Result<TokenStream, Error> {
+/// A method whose result may be empty; its function may then be missing.
+fn optional_method(
+    types: &Types<'_>,
+    kind: FunctionKind,
+    method: &str,
+    slot: &str,
+) -> Result<TokenStream, Error> {
     let info = &types.program.info;
     let expected = match kind {
         FunctionKind::ConstraintResidual => info.constraint_rows.len(),
         FunctionKind::ConstraintForces => info.reactions.len(),
         _ => info.outputs.len(),
     };
+    let (method, slot) = (ident(method), ident(slot));
+    let blank = blank_tokens();
     if expected == 0 {
-        return Ok(TokenStream::new());
+        return Ok(quote! {
+            #blank
+            fn #method(&self, _at: At<'_>, _none: &mut [f64]) {}
+        });
     }
     let function = required(types.program, kind)?;
     let call = call(types, super::function::function_name(kind));
-    let slot = ident(slot);
-    let layout = function.results.first().map_or(Layout::Scalar, |array| array.layout);
+    let layout = function
+        .results
+        .first()
+        .map_or(Layout::Scalar, |array| array.layout);
     let count = Literal::usize_unsuffixed(types.len(layout));
-    Ok(match layout {
-        Layout::Matrix(..) => quote!(write(#slot, #call.as_flattened());),
-        Layout::Vector(_) => quote!(write(#slot, &#call);),
-        Layout::Scalar => quote!(write(#slot, &[#call]);),
-        _ => quote!(write(#slot, &<[f64; #count]>::from(#call));),
+    let from = match layout {
+        Layout::Matrix(..) => quote!(self::#call.as_flattened()),
+        Layout::Vector(_) => quote!(&self::#call),
+        Layout::Scalar => quote!(&[self::#call]),
+        _ => quote!(&<[f64; #count]>::from(self::#call)),
+    };
+    Ok(quote! {
+        #blank
+        fn #method(&self, at: At<'_>, #slot: &mut [f64]) {
+            write(#slot, #from);
+        }
     })
 }

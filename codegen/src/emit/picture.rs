@@ -10,13 +10,21 @@ const WIDEST: usize = 84;
 
 /// The mass matrix as rustdoc lines, where it fits on the page.
 pub(super) fn picture(types: &Types<'_>, function: &Function, schedule: &Schedule) -> Vec<String> {
-    let (FunctionKind::MassMatrix, [array], [result]) =
-        (function.kind, function.results.as_slice(), schedule.results.as_slice())
-    else {
+    let (FunctionKind::MassMatrix, [array], [result]) = (
+        function.kind,
+        function.results.as_slice(),
+        schedule.results.as_slice(),
+    ) else {
         return Vec::new();
     };
-    let Layout::Matrix(rows, columns @ 1..=6) = array.layout else { return Vec::new() };
-    let cells: Vec<String> = result.entries.iter().map(|tree| cell(types, schedule, tree)).collect();
+    let Layout::Matrix(rows, columns @ 1..=6) = array.layout else {
+        return Vec::new();
+    };
+    let cells: Vec<String> = result
+        .entries
+        .iter()
+        .map(|tree| cell(types, schedule, tree))
+        .collect();
     let width_of = |column: usize| {
         let column = cells.iter().skip(column).step_by(columns);
         column.map(|cell| cell.chars().count()).max().unwrap_or(0)
@@ -33,8 +41,11 @@ pub(super) fn picture(types: &Types<'_>, function: &Function, schedule: &Schedul
             _ if i + 1 == rows => ('⎣', '⎦'),
             _ => ('⎢', '⎥'),
         };
-        let padded: Vec<String> =
-            row.iter().zip(&widths).map(|(cell, &width)| format!("{cell:<width$}")).collect();
+        let padded: Vec<String> = row
+            .iter()
+            .zip(&widths)
+            .map(|(cell, &width)| format!("{cell:<width$}"))
+            .collect();
         let name = if i == rows / 2 { "M = " } else { "    " };
         lines.push(format!("{name}{left} {} {right}", padded.join("   ")));
     }
@@ -46,7 +57,10 @@ pub(super) fn picture(types: &Types<'_>, function: &Function, schedule: &Schedul
 fn cell(types: &Types<'_>, schedule: &Schedule, tree: &Tree) -> String {
     let definition = |value: &Value| {
         schedule.steps.iter().find_map(|step| match step {
-            Step::Let { value: defined, tree } if defined == value => Some(tree),
+            Step::Let {
+                value: defined,
+                tree,
+            } if defined == value => Some(tree),
             _ => None,
         })
     };

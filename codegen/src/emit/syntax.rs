@@ -21,14 +21,22 @@ pub(super) fn path(name: &str) -> Path {
 
 /// A name as an expression.
 pub(super) fn name(name: &str) -> Expr {
-    Expr::Path(syn::ExprPath { attrs: Vec::new(), qself: None, path: path(name) })
+    Expr::Path(syn::ExprPath {
+        attrs: Vec::new(),
+        qself: None,
+        path: path(name),
+    })
 }
 
 /// `T::function(arguments)`
 pub(super) fn associated(function: &str, arguments: Vec<Expr>) -> Expr {
     let mut function_path = path("T");
     function_path.segments.push(ident(function).into());
-    let function = Expr::Path(syn::ExprPath { attrs: Vec::new(), qself: None, path: function_path });
+    let function = Expr::Path(syn::ExprPath {
+        attrs: Vec::new(),
+        qself: None,
+        path: function_path,
+    });
     called(function, arguments)
 }
 
@@ -61,13 +69,22 @@ pub(super) fn method(receiver: Expr, method: &str, arguments: Vec<Expr>) -> Expr
 
 /// `left operator right`; the printer adds the parentheses.
 pub(super) fn binary(left: Expr, op: BinOp, right: Expr) -> Expr {
-    Expr::Binary(syn::ExprBinary { attrs: Vec::new(), left: Box::new(left), op, right: Box::new(right) })
+    Expr::Binary(syn::ExprBinary {
+        attrs: Vec::new(),
+        left: Box::new(left),
+        op,
+        right: Box::new(right),
+    })
 }
 
 /// `-inner`
 pub(super) fn negated(inner: Expr) -> Expr {
     let op = UnOp::Neg(token::Minus::default());
-    Expr::Unary(syn::ExprUnary { attrs: Vec::new(), op, expr: Box::new(inner) })
+    Expr::Unary(syn::ExprUnary {
+        attrs: Vec::new(),
+        op,
+        expr: Box::new(inner),
+    })
 }
 
 /// `&inner`
@@ -103,7 +120,11 @@ pub(super) fn repeated(element: Expr, count: usize) -> Expr {
 /// A double, exactly.
 pub(super) fn number(value: f64) -> Expr {
     let literal = literal(Literal::f64_unsuffixed(value.abs()));
-    if value.is_sign_negative() { negated(literal) } else { literal }
+    if value.is_sign_negative() {
+        negated(literal)
+    } else {
+        literal
+    }
 }
 
 /// `17` as an index or a length.
@@ -112,7 +133,10 @@ pub(super) fn index_number(value: usize) -> Expr {
 }
 
 fn literal(literal: Literal) -> Expr {
-    Expr::Lit(syn::ExprLit { attrs: Vec::new(), lit: syn::Lit::new(literal) })
+    Expr::Lit(syn::ExprLit {
+        attrs: Vec::new(),
+        lit: syn::Lit::new(literal),
+    })
 }
 
 /// `array[i][j]`
@@ -195,12 +219,18 @@ pub(super) fn tuple_pattern(names: &[&str]) -> Pat {
 /// `[a, _, b]`
 pub(super) fn array_pattern(names: &[Option<&str>]) -> Pat {
     let wild = || {
-        Pat::Wild(syn::PatWild { attrs: Vec::new(), underscore_token: token::Underscore::default() })
+        Pat::Wild(syn::PatWild {
+            attrs: Vec::new(),
+            underscore_token: token::Underscore::default(),
+        })
     };
     Pat::Slice(syn::PatSlice {
         attrs: Vec::new(),
         bracket_token: token::Bracket::default(),
-        elems: names.iter().map(|name| name.map_or_else(wild, binding)).collect(),
+        elems: names
+            .iter()
+            .map(|name| name.map_or_else(wild, binding))
+            .collect(),
     })
 }
 
@@ -221,8 +251,10 @@ pub(super) fn borrowed_fields(type_name: &str, fields: &[&str], all: bool) -> Pa
         path: path(type_name),
         brace_token: token::Brace::default(),
         fields,
-        rest: (!all)
-            .then(|| syn::PatRest { attrs: Vec::new(), dot2_token: token::DotDot::default() }),
+        rest: (!all).then(|| syn::PatRest {
+            attrs: Vec::new(),
+            dot2_token: token::DotDot::default(),
+        }),
     });
     Pat::Reference(syn::PatReference {
         attrs: Vec::new(),
@@ -239,7 +271,11 @@ pub(super) fn let_(attrs: Vec<Attribute>, pattern: Pat, value: Expr) -> Stmt {
         let_token: token::Let::default(),
         modifiers: syn::LocalModifiers::default(),
         pat: pattern,
-        init: Some(syn::LocalInit { eq_token: token::Eq::default(), expr: Box::new(value), diverge: None }),
+        init: Some(syn::LocalInit {
+            eq_token: token::Eq::default(),
+            expr: Box::new(value),
+            diverge: None,
+        }),
         semi_token: token::Semi::default(),
     })
 }

@@ -47,7 +47,12 @@ impl<'a> Types<'a> {
             argument("x", "state"),
             argument("u", "inputs"),
         ];
-        Self { program, names, outputs, arguments }
+        Self {
+            program,
+            names,
+            outputs,
+            arguments,
+        }
     }
 
     /// Names of the arguments of every function: time, parameters, state, inputs.
@@ -71,7 +76,12 @@ impl<'a> Types<'a> {
         };
         let names = &self.names;
         [
-            group("Parameters", parameters, names.parameters.len(), Argument::Parameter(0)),
+            group(
+                "Parameters",
+                parameters,
+                names.parameters.len(),
+                Argument::Parameter(0),
+            ),
             group("State", state, names.states.len(), Argument::State(0)),
             group("Inputs", inputs, names.inputs.len(), Argument::Input(0)),
         ]
@@ -100,24 +110,6 @@ impl<'a> Types<'a> {
             Layout::Matrix(rows, columns) => rows * columns,
             _ => self.labelled(layout).1.len(),
         }
-    }
-
-    /// The struct a function returns, if it returns more than one array.
-    pub(super) fn result_struct(&self, function: &Function) -> Option<&'static str> {
-        (function.results.len() != 1).then_some(match function.kind {
-            FunctionKind::Kinematics => "Kinematics",
-            FunctionKind::AccelerationEnergy => "AccelerationEnergy",
-            FunctionKind::MassMatrix => "MassMatrix",
-            FunctionKind::Bias => "Bias",
-            FunctionKind::GeneralizedForces => "GeneralizedForces",
-            FunctionKind::Rates => "Rates",
-            FunctionKind::Jacobians => "Jacobians",
-            FunctionKind::AllJacobians => "AllJacobians",
-            FunctionKind::Energies => "Energies",
-            FunctionKind::ConstraintResidual => "ConstraintResidual",
-            FunctionKind::ConstraintForces => "ConstraintForces",
-            FunctionKind::Outputs => "OutputArrays",
-        })
     }
 
     /// The type of an array.
@@ -151,12 +143,19 @@ impl<'a> Types<'a> {
             &info.parameters,
         )];
         if !self.names.parameters.is_empty() {
-            items.push(self.defaults("Parameters", &self.names.parameters, &info.parameters));
+            items.push(defaults(
+                "Parameters",
+                &self.names.parameters,
+                &info.parameters,
+            ));
         }
         for (layout, text) in [
             (Layout::Speeds, "One number per pseudo-velocity."),
             (Layout::Coordinates, "One number per coordinate."),
-            (Layout::State, "The state, or its rates: pseudo-velocities, then coordinates. In SI."),
+            (
+                Layout::State,
+                "The state, or its rates: pseudo-velocities, then coordinates. In SI.",
+            ),
         ] {
             let (name, labels) = self.labelled(layout);
             let of = match layout {
@@ -166,35 +165,31 @@ impl<'a> Types<'a> {
             };
             items.push(vector(name, &about(text), labels, of));
         }
-        items.push(vector("Inputs", &about("Inputs, in SI."), &self.names.inputs, &info.inputs));
+        items.push(vector(
+            "Inputs",
+            &about("Inputs, in SI."),
+            &self.names.inputs,
+            &info.inputs,
+        ));
         if !self.outputs.is_empty() {
-            items.push(vector("Outputs", &about("Outputs, in SI."), &self.outputs, &info.outputs));
+            items.push(vector(
+                "Outputs",
+                &about("Outputs, in SI."),
+                &self.outputs,
+                &info.outputs,
+            ));
         }
         items
     }
 
-    /// The values of the spec.
-    fn defaults(&self, name: &str, labels: &[String], quantities: &[Quantity]) -> TokenStream {
-        let type_name = ident(name);
-        let fields = labels.iter().map(|label| ident(label));
-        let values = quantities.iter().map(|quantity| double(quantity.value));
-        let blank = blank_tokens();
-        quote! {
-            #blank
-            impl Default for #type_name<f64> {
-                /// The values of the spec.
-                fn default() -> Self {
-                    Self { #(#fields: #values),* }
-                }
-            }
-        }
-    }
-
     /// The struct of a function with several results.
     pub(super) fn results_struct(&self, function: &Function) -> Option<TokenStream> {
-        let name = ident(self.result_struct(function)?);
+        let name = ident(result_struct(function)?);
         let blank = blank_tokens();
-        let about = docs(&[format!("Result of [`{}`].", super::function::function_name(function.kind))]);
+        let about = docs(&[format!(
+            "Result of [`{}`].",
+            super::function::function_name(function.kind)
+        )]);
         let fields = function.results.iter().map(|array| {
             let text = docs(&[about_result(function.kind, array)]);
             let field = ident(&array.name);
@@ -210,6 +205,24 @@ impl<'a> Types<'a> {
     }
 }
 
+/// The struct a function returns, if it returns more than one array.
+pub(super) fn result_struct(function: &Function) -> Option<&'static str> {
+    (function.results.len() != 1).then_some(match function.kind {
+        FunctionKind::Kinematics => "Kinematics",
+        FunctionKind::AccelerationEnergy => "AccelerationEnergy",
+        FunctionKind::MassMatrix => "MassMatrix",
+        FunctionKind::Bias => "Bias",
+        FunctionKind::GeneralizedForces => "GeneralizedForces",
+        FunctionKind::Rates => "Rates",
+        FunctionKind::Jacobians => "Jacobians",
+        FunctionKind::AllJacobians => "AllJacobians",
+        FunctionKind::Energies => "Energies",
+        FunctionKind::ConstraintResidual => "ConstraintResidual",
+        FunctionKind::ConstraintForces => "ConstraintForces",
+        FunctionKind::Outputs => "OutputArrays",
+    })
+}
+
 fn about_result(kind: FunctionKind, array: &Array) -> String {
     match (kind, array.name.as_str()) {
         (_, "rates") => "ẋ, the rates of the state.".to_owned(),
@@ -218,10 +231,31 @@ fn about_result(kind: FunctionKind, array: &Array) -> String {
         (_, "p") => "P = ∂ẋ/∂p. Rows follow [`State`], columns [`Parameters`].".to_owned(),
         (FunctionKind::Energies, "kinetic") => "Kinetic energy in J.".to_owned(),
         (FunctionKind::Energies, "potential") => "Potential energy in J.".to_owned(),
-        (FunctionKind::Energies, "power") => "Power of the loads without a potential, in W.".to_owned(),
+        (FunctionKind::Energies, "power") => {
+            "Power of the loads without a potential, in W.".to_owned()
+        }
         (FunctionKind::AccelerationEnergy, "total") => "Sum over the bodies, in W/s.".to_owned(),
-        (FunctionKind::AccelerationEnergy, body) => format!("Of `{}`, in W/s.", super::layout::one_line(body)),
+        (FunctionKind::AccelerationEnergy, body) => {
+            format!("Of `{}`, in W/s.", super::layout::one_line(body))
+        }
         (_, name) => super::layout::one_line(name),
+    }
+}
+
+/// `impl Default` with the values of the spec.
+fn defaults(name: &str, labels: &[String], quantities: &[Quantity]) -> TokenStream {
+    let type_name = ident(name);
+    let fields = labels.iter().map(|label| ident(label));
+    let values = quantities.iter().map(|quantity| double(quantity.value));
+    let blank = blank_tokens();
+    quote! {
+        #blank
+        impl Default for #type_name<f64> {
+            /// The values of the spec.
+            fn default() -> Self {
+                Self { #(#fields: #values),* }
+            }
+        }
     }
 }
 
@@ -259,7 +293,7 @@ fn vector(name: &str, about: &[String], labels: &[String], quantities: &[Quantit
             if !text.is_empty() {
                 text.push(' ');
             }
-            text.push_str(&format!("Unit: {}.", escaped(&quantity.unit)));
+            text.extend(["Unit: ", &escaped(&quantity.unit), "."]);
         }
         docs(&[text])
     });

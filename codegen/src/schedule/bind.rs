@@ -363,12 +363,7 @@ impl<'a> Binding<'a> {
             sum = Some(match sum {
                 None => part,
                 Some(sum) => {
-                    let longer = sum.width + 3 + part.width + 2;
-                    let sum = if longer > room && sum.level != Level::Atom {
-                        self.define_part(id, sum)
-                    } else {
-                        sum
-                    };
+                    let (sum, part) = self.fitting(id, room, sum, part);
                     let operation = if minus {
                         Operation::Subtract
                     } else {
@@ -391,9 +386,9 @@ impl<'a> Binding<'a> {
             let (piece, minus) = self.part(Item::plain(factor.id));
             natural ^= minus;
             if factor.flip {
-                below.push(piece)
+                below.push(piece);
             } else {
-                above.push(piece)
+                above.push(piece);
             }
         }
         above.sort_by_key(|piece| reading_order(&piece.tree));
@@ -413,12 +408,8 @@ impl<'a> Binding<'a> {
             (Some(numerator), None) => numerator,
             (numerator, Some(denominator)) => {
                 let numerator = numerator.unwrap_or_else(|| self.constant(&Rational::ONE));
-                let width = numerator.width + denominator.width + 7;
-                let numerator = if width > self.room(id) && numerator.level != Level::Atom {
-                    self.define_part(id, numerator)
-                } else {
-                    numerator
-                };
+                let room = self.room(id);
+                let (numerator, denominator) = self.fitting(id, room, numerator, denominator);
                 numerator.binary(Operation::Divide, denominator)
             }
             (None, None) => self.constant(&Rational::ONE),
@@ -434,17 +425,39 @@ impl<'a> Binding<'a> {
             product = Some(match product {
                 None => factor,
                 Some(product) => {
-                    let longer = product.width + 3 + factor.width + 4;
-                    let product = if longer > room && product.level != Level::Atom {
-                        self.define_part(id, product)
-                    } else {
-                        product
-                    };
+                    let (product, factor) = self.fitting(id, room, product, factor);
                     product.binary(Operation::Multiply, factor)
                 }
             });
         }
         product
+    }
+
+    /// Two operands as they are, or the first one, or both, defined before where the line would be
+    /// too long.
+    fn fitting(&mut self, id: Id, room: usize, left: Piece, right: Piece) -> (Piece, Piece) {
+        const OPERATOR_AND_PARENTHESES: usize = 7;
+        let too_long = |left: &Piece, right: &Piece| {
+            left.width + right.width + OPERATOR_AND_PARENTHESES > room
+        };
+        let mut define = |piece: Piece| {
+            if piece.level == Level::Atom {
+                piece
+            } else {
+                self.define_part(id, piece)
+            }
+        };
+        let left = if too_long(&left, &right) {
+            define(left)
+        } else {
+            left
+        };
+        let right = if too_long(&left, &right) {
+            define(right)
+        } else {
+            right
+        };
+        (left, right)
     }
 
     /// Columns for the tree of a node.
@@ -453,7 +466,9 @@ impl<'a> Binding<'a> {
             let consumer = self.feeds[id.index()].and_then(|feed| self.given_name(feed));
             consumer.map_or(LONGEST, |name| LONGEST.max(name.len() + "_part_99".len()))
         };
-        let name = self.given_name(id).map_or_else(made_up, |name| name.len() + "minus__2".len());
+        let name = self
+            .given_name(id)
+            .map_or_else(made_up, |name| name.len() + "minus__2".len());
         COLUMNS.saturating_sub(FRAME + name).max(INLINE)
     }
 
@@ -553,7 +568,11 @@ impl<'a> Binding<'a> {
     fn given_name(&self, id: Id) -> Option<String> {
         let derived = self.dag.names[id.index()]
             .map(|name| self.program.graph.definition(name.definition).name.clone());
-        derived.or_else(|| self.labels[id.index()].as_ref().map(|label| label.0.clone()))
+        derived.or_else(|| {
+            self.labels[id.index()]
+                .as_ref()
+                .map(|label| label.0.clone())
+        })
     }
 
     /// Name for a value that gets a binding.

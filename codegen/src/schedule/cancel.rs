@@ -19,16 +19,29 @@ fn candidate(dag: &Dag, uses: &[u32], id: Id) -> Option<(Id, Id, Vec<usize>)> {
     let private = |id: Id| {
         uses.get(id.index()).is_none_or(|&uses| uses == 1) && dag.names[id.index()].is_none()
     };
-    let Op::Product(factors) = dag.op(id) else { return None };
+    let Op::Product(factors) = dag.op(id) else {
+        return None;
+    };
     for divisor in factors.iter().filter(|factor| factor.flip) {
-        for sum in factors.iter().filter(|factor| !factor.flip && private(factor.id)) {
-            let Op::Sum(terms) = dag.op(sum.id) else { continue };
+        for sum in factors
+            .iter()
+            .filter(|factor| !factor.flip && private(factor.id))
+        {
+            let Op::Sum(terms) = dag.op(sum.id) else {
+                continue;
+            };
             let divisible = |term: &Item| match dag.op(term.id) {
-                Op::Product(factors) => private(term.id) && factors.contains(&Item::plain(divisor.id)),
+                Op::Product(factors) => {
+                    private(term.id) && factors.contains(&Item::plain(divisor.id))
+                }
                 _ => term.id == divisor.id,
             };
-            let positions: Vec<usize> =
-                terms.iter().enumerate().filter(|(_, term)| divisible(term)).map(|(i, _)| i).collect();
+            let positions: Vec<usize> = terms
+                .iter()
+                .enumerate()
+                .filter(|(_, term)| divisible(term))
+                .map(|(i, _)| i)
+                .collect();
             if !positions.is_empty() {
                 return Some((sum.id, divisor.id, positions));
             }
@@ -38,10 +51,14 @@ fn candidate(dag: &Dag, uses: &[u32], id: Id) -> Option<(Id, Id, Vec<usize>)> {
 }
 
 fn distribute(dag: &mut Dag, product: Id, sum: Id, divisor: Id, positions: &[usize]) {
-    let (Op::Product(factors), Op::Sum(terms)) = (dag.op(product).clone(), dag.op(sum).clone()) else {
+    let (Op::Product(factors), Op::Sum(terms)) = (dag.op(product).clone(), dag.op(sum).clone())
+    else {
         return;
     };
-    let reciprocal = Item { id: divisor, flip: true };
+    let reciprocal = Item {
+        id: divisor,
+        flip: true,
+    };
     let (mut whole, mut rest) = (Vec::new(), Vec::new());
     for (position, term) in terms.into_iter().enumerate() {
         if positions.contains(&position) {
@@ -57,7 +74,10 @@ fn distribute(dag: &mut Dag, product: Id, sum: Id, divisor: Id, positions: &[usi
     }
     if !rest.is_empty() {
         let rest = dag.sum(rest);
-        whole.push(dag.product(vec![Item::plain(rest.id), reciprocal]).flipped_if(rest.flip));
+        whole.push(
+            dag.product(vec![Item::plain(rest.id), reciprocal])
+                .flipped_if(rest.flip),
+        );
     }
     let inner = dag.sum(whole);
     let mut outer: Vec<Item> = factors;

@@ -37,16 +37,23 @@ impl OperationCount {
                     count.sin_cos += 1;
                     count.tree(angle);
                 }
-                Step::Factor { matrix, .. } => matrix.iter().for_each(|tree| count.tree(tree)),
+                Step::Factor { matrix, .. } => {
+                    for tree in matrix {
+                        count.tree(tree);
+                    }
+                }
                 Step::Solve { right, .. } => {
                     count.solves += 1;
-                    right.iter().for_each(|tree| count.tree(tree));
+                    for tree in right {
+                        count.tree(tree);
+                    }
                 }
                 Step::Paragraph { .. } => {}
             }
         }
-        let entries = schedule.results.iter().flat_map(|array| &array.entries);
-        entries.for_each(|tree| count.tree(tree));
+        for tree in schedule.results.iter().flat_map(|array| &array.entries) {
+            count.tree(tree);
+        }
         count
     }
 

@@ -145,7 +145,7 @@ impl Lowering<'_> {
         let mut factors = vec![number];
         match self.dag.op(value.id) {
             Op::Product(inner) if self.dag.names[value.id.index()].is_none() => {
-                factors.extend(inner)
+                factors.extend(inner);
             }
             _ => factors.push(Item::plain(value.id)),
         }

@@ -75,7 +75,6 @@ impl Names {
     pub(super) fn reserve(&mut self, name: &str) {
         self.taken.insert(name.to_owned());
     }
-
 }
 
 /// Identifiers of the arguments of a program, no two equal. They name the fields of the argument

@@ -39,8 +39,7 @@ impl Piece {
     /// `self ∘ right`
     pub(super) fn binary(self, operation: Operation, right: Self) -> Self {
         let (level, right_level) = match operation {
-            Operation::Add => (Level::Sum, Level::Product),
-            Operation::Subtract => (Level::Sum, Level::Product),
+            Operation::Add | Operation::Subtract => (Level::Sum, Level::Product),
             Operation::Multiply | Operation::Divide => (Level::Product, Level::Sign),
         };
         Self {

@@ -46,23 +46,38 @@ impl Scales {
             if dag.names[id.index()].is_some() {
                 continue;
             }
-            let inside: Vec<&Rational> = terms.iter().map(|term| &coefficients[term.id.index()]).collect();
+            let inside: Vec<&Rational> = terms
+                .iter()
+                .map(|term| &coefficients[term.id.index()])
+                .collect();
             let mut around: Vec<(Rational, i32)> = Vec::new();
             let mut wholes_once = wholes[id.index()].clone();
             wholes_once.dedup();
             for whole in &wholes_once {
-                around.push((coefficients[whole.index()].clone(), exponent(dag, *whole, id)));
+                around.push((
+                    coefficients[whole.index()].clone(),
+                    exponent(dag, *whole, id),
+                ));
             }
             let cost = |taken: &Rational| {
                 let inside = inside.iter().filter(|&&value| value != taken).count();
-                let outside = around.iter().filter(|(value, exponent)| !times(value, taken, *exponent).is_one());
+                let outside = around
+                    .iter()
+                    .filter(|(value, exponent)| !times(value, taken, *exponent).is_one());
                 inside + outside.count()
             };
             let mut best = (cost(&Rational::ONE), Rational::ONE);
             let candidates = inside.iter().map(|&value| value.clone());
-            let inverses = around.iter().filter(|(_, e)| e.abs() == 1).map(|(value, exponent)| {
-                if *exponent > 0 { value.recip() } else { value.clone() }
-            });
+            let inverses = around
+                .iter()
+                .filter(|(_, e)| e.abs() == 1)
+                .map(|(value, exponent)| {
+                    if *exponent > 0 {
+                        value.recip()
+                    } else {
+                        value.clone()
+                    }
+                });
             for candidate in candidates.chain(inverses) {
                 let cost = cost(&candidate);
                 if cost < best.0 {
@@ -87,9 +102,12 @@ impl Scales {
 
     /// An item whose flip is a sign, with the number that was taken out of it.
     fn whole(&self, dag: &mut Dag, item: Item) -> Item {
-        let Some(scale) = self.taken_out(item.id) else { return item };
+        let Some(scale) = self.taken_out(item.id) else {
+            return item;
+        };
         let number = dag.number(scale);
-        dag.product(vec![number, Item::plain(item.id)]).flipped_if(item.flip)
+        dag.product(vec![number, Item::plain(item.id)])
+            .flipped_if(item.flip)
     }
 
     fn rewrite(&self, dag: &mut Dag, id: Id) {
@@ -109,11 +127,18 @@ impl Scales {
                 Op::Sum(sum)
             }
             Op::Product(factors) => {
-                let scaled = factors.iter().filter(|factor| self.taken_out(factor.id).is_some());
+                let scaled = factors
+                    .iter()
+                    .filter(|factor| self.taken_out(factor.id).is_some());
                 let mut number = Rational::ONE;
                 for factor in scaled {
                     if let Some(scale) = self.taken_out(factor.id) {
-                        number = &number * &if factor.flip { scale.recip() } else { scale.clone() };
+                        number = &number
+                            * &if factor.flip {
+                                scale.recip()
+                            } else {
+                                scale.clone()
+                            };
                     }
                 }
                 if number.is_one() {
@@ -146,7 +171,9 @@ fn coefficient(dag: &Dag, id: Id) -> Option<&Rational> {
 
 /// How often `part` is a factor of `whole`.
 fn exponent(dag: &Dag, whole: Id, part: Id) -> i32 {
-    let Op::Product(factors) = dag.op(whole) else { return 1 };
+    let Op::Product(factors) = dag.op(whole) else {
+        return 1;
+    };
     let same = factors.iter().filter(|factor| factor.id == part);
     same.map(|factor| if factor.flip { -1 } else { 1 }).sum()
 }

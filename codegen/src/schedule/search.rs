@@ -57,17 +57,36 @@ const PRODUCTS_FIRST: Plan = Plan {
     preference: Preference::Early,
     levels: &[2, 2],
 };
-const FACTOR_FIRST: Plan =
-    Plan { passes: [Pass::Factor, Pass::Products, Pass::Sums], ..PRODUCTS_FIRST };
+const FACTOR_FIRST: Plan = Plan {
+    passes: [Pass::Factor, Pass::Products, Pass::Sums],
+    ..PRODUCTS_FIRST
+};
 
 /// The plans, the most promising ones first.
 const PLANS: [Plan; 6] = [
     PRODUCTS_FIRST,
-    Plan { levels: &[4, 3, 2], ..FACTOR_FIRST },
-    Plan { levels: &[3, 2], scale: false, dissolve: Dissolve::Named, ..FACTOR_FIRST },
-    Plan { levels: &[3, 2], ..FACTOR_FIRST },
-    Plan { scale: false, ..FACTOR_FIRST },
-    Plan { preference: Preference::Late, ..PRODUCTS_FIRST },
+    Plan {
+        levels: &[4, 3, 2],
+        ..FACTOR_FIRST
+    },
+    Plan {
+        levels: &[3, 2],
+        scale: false,
+        dissolve: Dissolve::Named,
+        ..FACTOR_FIRST
+    },
+    Plan {
+        levels: &[3, 2],
+        ..FACTOR_FIRST
+    },
+    Plan {
+        scale: false,
+        ..FACTOR_FIRST
+    },
+    Plan {
+        preference: Preference::Late,
+        ..PRODUCTS_FIRST
+    },
 ];
 
 /// A division takes about as long as so many other operations.
@@ -89,7 +108,11 @@ pub(super) fn cheapest(derived: &Dag) -> Dag {
             break;
         }
         let candidate = finish(&follow(derived, plan));
-        let nameless = if plan.dissolve == Dissolve::Named { NAME } else { 0 };
+        let nameless = if plan.dissolve == Dissolve::Named {
+            NAME
+        } else {
+            0
+        };
         let weight = candidate.weight(&candidate.order(), DIVISION) + nameless;
         if weight < least {
             (best, least) = (candidate, weight);

@@ -25,7 +25,13 @@ pub(super) enum Within {
 const LONGEST: usize = 64;
 
 /// Shares the parts that at least `least` sums, or products, have in common.
-pub(super) fn share(dag: &mut Dag, order: &[Id], within: Within, preference: Preference, least: u32) {
+pub(super) fn share(
+    dag: &mut Dag,
+    order: &[Id],
+    within: Within,
+    preference: Preference,
+    least: u32,
+) {
     let mut sharing = Sharing {
         within,
         preference,
@@ -52,7 +58,8 @@ pub(super) fn share(dag: &mut Dag, order: &[Id], within: Within, preference: Pre
     }
     for (id, items) in sharing.owners.into_iter().zip(sharing.lists) {
         match (within, dag.op(id)) {
-            (Within::Sums, Op::Sum(old)) | (Within::Products, Op::Product(old)) if *old == items => {}
+            (Within::Sums, Op::Sum(old)) | (Within::Products, Op::Product(old))
+                if *old == items => {}
             (Within::Sums, _) => dag.replace(id, Op::Sum(items)),
             (Within::Products, _) => dag.replace(id, Op::Product(items)),
         }
@@ -99,13 +106,19 @@ impl Sharing {
     fn for_each_pair(&self, list: &[Item], mut visit: impl FnMut(Pair)) {
         let mut i = 0;
         while i < list.len() {
-            let run = list[i..].iter().take_while(|&&item| item == list[i]).count();
+            let run = list[i..]
+                .iter()
+                .take_while(|&&item| item == list[i])
+                .count();
             for _ in 0..run / 2 {
                 visit((list[i], list[i]));
             }
             let mut j = i + run;
             while j < list.len() {
-                let other = list[j..].iter().take_while(|&&item| item == list[j]).count();
+                let other = list[j..]
+                    .iter()
+                    .take_while(|&&item| item == list[j])
+                    .count();
                 for _ in 0..run.min(other) {
                     visit(self.normal(list[i], list[j]));
                 }
@@ -167,7 +180,9 @@ impl Sharing {
             if self.owners[list] == node.id {
                 continue;
             }
-            let Some(items) = self.replaced(&self.lists[list], pair, node) else { continue };
+            let Some(items) = self.replaced(&self.lists[list], pair, node) else {
+                continue;
+            };
             let old = std::mem::take(&mut self.lists[list]);
             let mut gone = Vec::new();
             self.for_each_pair(&old, |pair| gone.push(pair));
@@ -193,7 +208,11 @@ impl Sharing {
 
     /// A list with all occurrences of `pair` replaced. `None` if there are none.
     fn replaced(&self, list: &[Item], pair: Pair, node: Item) -> Option<Vec<Item>> {
-        let flips: &[bool] = if self.within == Within::Sums { &[false, true] } else { &[false] };
+        let flips: &[bool] = if self.within == Within::Sums {
+            &[false, true]
+        } else {
+            &[false]
+        };
         let mut items: Option<Vec<Item>> = None;
         loop {
             let now = items.as_deref().unwrap_or(list);
@@ -207,7 +226,9 @@ impl Sharing {
                 };
                 Some((flip, first, second?))
             });
-            let Some((flip, first, second)) = found else { return items };
+            let Some((flip, first, second)) = found else {
+                return items;
+            };
             let items = items.get_or_insert_with(|| list.to_vec());
             items.remove(first.max(second));
             items.remove(first.min(second));

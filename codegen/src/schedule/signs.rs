@@ -13,7 +13,12 @@ const MINUS_NAME: usize = 1;
 
 /// For every node, whether minus its value is wanted.
 pub(super) fn choose_signs(dag: &Dag, order: &[Id]) -> Vec<bool> {
-    let mut signs = Signs { dag, order, wanted: vec![false; dag.len()], built: vec![false; dag.len()] };
+    let mut signs = Signs {
+        dag,
+        order,
+        wanted: vec![false; dag.len()],
+        built: vec![false; dag.len()],
+    };
     for &id in order {
         if let Some(name) = dag.names[id.index()] {
             signs.wanted[id.index()] = name.negative;
@@ -52,20 +57,32 @@ impl Signs<'_> {
                 Op::Number(_) | Op::Argument(_) => continue,
                 Op::Sum(terms) => {
                     let minus = terms.iter().filter(|term| negative(term)).count();
-                    if self.wanted[place] { minus > 0 } else { minus == terms.len() }
+                    if self.wanted[place] {
+                        minus > 0
+                    } else {
+                        minus == terms.len()
+                    }
                 }
                 Op::Product(factors) => {
-                    let numbers = factors.iter().any(|factor| dag.as_number(factor.id).is_some());
+                    let numbers = factors
+                        .iter()
+                        .any(|factor| dag.as_number(factor.id).is_some());
                     if numbers {
                         self.wanted[place]
                     } else {
-                        factors.iter().filter(|factor| self.built[factor.id.index()]).count() % 2 == 1
+                        factors
+                            .iter()
+                            .filter(|factor| self.built[factor.id.index()])
+                            .count()
+                            % 2
+                            == 1
                     }
                 }
                 _ => {
                     let mut negations = 0;
                     dag.for_each_part(id, |part| {
-                        negations += usize::from(negative(&part) && dag.as_number(part.id).is_none());
+                        negations +=
+                            usize::from(negative(&part) && dag.as_number(part.id).is_none());
                     });
                     cost += NEGATION * negations;
                     false
@@ -94,7 +111,12 @@ impl Signs<'_> {
                 dag.for_each_part(id, |part| roots.extend(negative(part).then_some(part.id)));
             }
         }
-        roots.extend(dag.results.iter().filter(|&&result| negative(result)).map(|result| result.id));
+        roots.extend(
+            dag.results
+                .iter()
+                .filter(|&&result| negative(result))
+                .map(|result| result.id),
+        );
         while let Some(id) = roots.pop() {
             if std::mem::replace(&mut seen[id.index()], true) {
                 continue;

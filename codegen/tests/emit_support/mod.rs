@@ -1,8 +1,11 @@
 //! Small programs written by hand, so that scheduling and emission are tested on their own.
-#![allow(dead_code, reason = "every test file uses a part of it")]
+#![allow(dead_code, unreachable_pub, reason = "every test file uses a part of it")]
+#![allow(clippy::unwrap_used, clippy::too_many_lines, reason = "tests may panic")]
 
 use appell_codegen::program::{Arguments, Array, Function, FunctionKind, Layout, Program};
-use appell_codegen::symbolic::{Derivatives, Expr, Graph, Rational, SymbolId};
+use appell_codegen::symbolic::{
+    Derivatives, Expr, Function as SymbolicFunction, Graph, Rational, Relation, SymbolId,
+};
 use appell_runtime::model::{ModelInfo, Quantity};
 
 /// A quantity with a unit.
@@ -67,8 +70,17 @@ impl Sketch {
             explicit_time: false,
         };
         let file = format!("mechanisms/{name}.toml");
-        let program = Program { info, file, graph, arguments, functions: Vec::new() };
-        Self { program, symbols: all }
+        let program = Program {
+            info,
+            file,
+            graph,
+            arguments,
+            functions: Vec::new(),
+        };
+        Self {
+            program,
+            symbols: all,
+        }
     }
 
     pub fn graph(&mut self) -> &mut Graph {
@@ -77,13 +89,21 @@ impl Sketch {
 
     /// The symbol of a state, input or parameter.
     pub fn symbol(&self, name: &str) -> Expr {
-        self.symbols.iter().find(|symbol| symbol.0 == name).unwrap().1
+        self.symbols
+            .iter()
+            .find(|symbol| symbol.0 == name)
+            .unwrap()
+            .1
     }
 
     pub fn function(&mut self, kind: FunctionKind, results: Vec<(&str, Layout, Vec<Expr>)>) {
         let results = results
             .into_iter()
-            .map(|(name, layout, entries)| Array { name: name.to_owned(), layout, entries })
+            .map(|(name, layout, entries)| Array {
+                name: name.to_owned(),
+                layout,
+                entries,
+            })
             .collect();
         self.program.functions.push(Function { kind, results });
         self.program.functions.sort_by_key(|function| function.kind);
@@ -102,7 +122,11 @@ impl Sketch {
             }
             matrix
         };
-        let (a, b, p) = (columns(&of.states), columns(&of.inputs), columns(&of.parameters));
+        let (a, b, p) = (
+            columns(&of.states),
+            columns(&of.inputs),
+            columns(&of.parameters),
+        );
         let (n, m, k) = (of.states.len(), of.inputs.len(), of.parameters.len());
         let by_state_and_input = vec![
             ("rates", Layout::State, rates.clone()),
@@ -122,7 +146,10 @@ pub fn polynomial(graph: &mut Graph, terms: &[(i64, i64, &[Expr])]) -> Expr {
     let parts: Vec<(Rational, Expr)> = terms
         .iter()
         .map(|(numerator, denominator, factors)| {
-            (Rational::new(*numerator, *denominator), graph.product(factors))
+            (
+                Rational::new(*numerator, *denominator),
+                graph.product(factors),
+            )
         })
         .collect();
     graph.linear_combination(&parts)
@@ -155,23 +182,48 @@ pub fn unicycle() -> Program {
             quantity("g", "Gravity.", "m/s²", 9.81),
         ],
     );
-    let names = ["omega_1", "omega_2", "omega_3", "sigma", "theta", "r", "psi", "u", "m", "m0", "R", "g"];
-    let [w1, w2, w3, s, theta, r, psi, u, m, m0, big_r, gravity] = names.map(|name| sketch.symbol(name));
+    let names = [
+        "omega_1", "omega_2", "omega_3", "sigma", "theta", "r", "psi", "u", "m", "m0", "R", "g",
+    ];
+    let [w1, w2, w3, s, theta, r, psi, u, m, m0, big_r, gravity] =
+        names.map(|name| sketch.symbol(name));
     let g = sketch.graph();
     let (sin, cos, tan) = (g.sin(theta), g.cos(theta), g.tan(theta));
     let (sin_psi, cos_psi) = (g.sin(psi), g.cos(psi));
 
     // Mass matrix.
-    let m11 = polynomial(g, &[(5, 4, &[m, big_r, big_r]), (1, 1, &[m0, big_r, big_r]), (1, 1, &[m0, r, r])]);
-    let m22 = polynomial(g, &[(3, 2, &[m, big_r, big_r]), (1, 1, &[m0, big_r, big_r])]);
+    let m11 = polynomial(
+        g,
+        &[
+            (5, 4, &[m, big_r, big_r]),
+            (1, 1, &[m0, big_r, big_r]),
+            (1, 1, &[m0, r, r]),
+        ],
+    );
+    let m22 = polynomial(
+        g,
+        &[(3, 2, &[m, big_r, big_r]), (1, 1, &[m0, big_r, big_r])],
+    );
     let m33 = polynomial(g, &[(1, 4, &[m, big_r, big_r]), (1, 1, &[m0, r, r])]);
     let m14 = polynomial(g, &[(-1, 1, &[m0, big_r])]);
     let m23 = polynomial(g, &[(-1, 1, &[m0, big_r, r])]);
     let mass_matrix = vec![
-        m11, Graph::ZERO, Graph::ZERO, m14,
-        Graph::ZERO, m22, m23, Graph::ZERO,
-        Graph::ZERO, m23, m33, Graph::ZERO,
-        m14, Graph::ZERO, Graph::ZERO, m0,
+        m11,
+        Graph::ZERO,
+        Graph::ZERO,
+        m14,
+        Graph::ZERO,
+        m22,
+        m23,
+        Graph::ZERO,
+        Graph::ZERO,
+        m23,
+        m33,
+        Graph::ZERO,
+        m14,
+        Graph::ZERO,
+        Graph::ZERO,
+        m0,
     ];
     let m11 = g.name("M_11", m11);
     let m22 = g.name("M_22", m22);
@@ -179,37 +231,56 @@ pub fn unicycle() -> Program {
 
     // Bias.
     let w3_tan = g.mul(w3, tan);
-    let b1 = polynomial(g, &[
-        (2, 1, &[w1, s, m0, r]),
-        (1, 1, &[w3, w3, m0, r, r, tan]),
-        (1, 1, &[w3, w3, m0, big_r, r]),
-        (1, 4, &[w3, w3, m, big_r, big_r, tan]),
-        (-3, 2, &[w2, w3, m, big_r, big_r]),
-        (-1, 1, &[w2, w3, m0, big_r, big_r]),
-        (-1, 1, &[w2, w3, m0, big_r, r, tan]),
-    ]);
-    let b2 = polynomial(g, &[
-        (1, 1, &[w1, w3, m, big_r, big_r]),
-        (1, 1, &[w1, w3, m0, big_r, big_r]),
-        (1, 1, &[w1, w3, m0, big_r, r, tan]),
-        (-2, 1, &[w3, s, m0, big_r]),
-    ]);
-    let b3 = polynomial(g, &[
-        (1, 2, &[w1, w2, m, big_r, big_r]),
-        (-1, 4, &[w1, w3_tan, m, big_r, big_r]),
-        (-1, 1, &[w1, w3_tan, m0, r, r]),
-        (-1, 1, &[w1, w3, m0, big_r, r]),
-        (2, 1, &[w3, s, m0, r]),
-    ]);
-    let b4 = polynomial(g, &[(-1, 1, &[m0, w1, w1, r]), (1, 1, &[m0, w2, w3, big_r]), (-1, 1, &[m0, w3, w3, r])]);
+    let b1 = polynomial(
+        g,
+        &[
+            (2, 1, &[w1, s, m0, r]),
+            (1, 1, &[w3, w3, m0, r, r, tan]),
+            (1, 1, &[w3, w3, m0, big_r, r]),
+            (1, 4, &[w3, w3, m, big_r, big_r, tan]),
+            (-3, 2, &[w2, w3, m, big_r, big_r]),
+            (-1, 1, &[w2, w3, m0, big_r, big_r]),
+            (-1, 1, &[w2, w3, m0, big_r, r, tan]),
+        ],
+    );
+    let b2 = polynomial(
+        g,
+        &[
+            (1, 1, &[w1, w3, m, big_r, big_r]),
+            (1, 1, &[w1, w3, m0, big_r, big_r]),
+            (1, 1, &[w1, w3, m0, big_r, r, tan]),
+            (-2, 1, &[w3, s, m0, big_r]),
+        ],
+    );
+    let b3 = polynomial(
+        g,
+        &[
+            (1, 2, &[w1, w2, m, big_r, big_r]),
+            (-1, 4, &[w1, w3_tan, m, big_r, big_r]),
+            (-1, 1, &[w1, w3_tan, m0, r, r]),
+            (-1, 1, &[w1, w3, m0, big_r, r]),
+            (2, 1, &[w3, s, m0, r]),
+        ],
+    );
+    let b4 = polynomial(
+        g,
+        &[
+            (-1, 1, &[m0, w1, w1, r]),
+            (1, 1, &[m0, w2, w3, big_r]),
+            (-1, 1, &[m0, w3, w3, r]),
+        ],
+    );
     let bias = vec![b1, b2, b3, b4];
 
     // Generalised forces.
-    let p1 = polynomial(g, &[
-        (1, 1, &[m, gravity, big_r, sin]),
-        (1, 1, &[m0, gravity, big_r, sin]),
-        (-1, 1, &[m0, gravity, r, cos]),
-    ]);
+    let p1 = polynomial(
+        g,
+        &[
+            (1, 1, &[m, gravity, big_r, sin]),
+            (1, 1, &[m0, gravity, big_r, sin]),
+            (-1, 1, &[m0, gravity, r, cos]),
+        ],
+    );
     let p4 = polynomial(g, &[(1, 1, &[u]), (-1, 1, &[m0, gravity, sin])]);
     let forces = vec![p1, Graph::ZERO, Graph::ZERO, p4];
 
@@ -248,15 +319,151 @@ pub fn unicycle() -> Program {
     // Kinematics.
     let psi_dot = g.div(w3, cos);
     let phi_dot = g.sub(w2, w3_tan);
-    let x_dot = polynomial(g, &[(1, 1, &[w1, big_r, sin_psi, cos]), (1, 1, &[w2, big_r, cos_psi])]);
-    let y_dot = polynomial(g, &[(-1, 1, &[w1, big_r, cos_psi, cos]), (1, 1, &[w2, big_r, sin_psi])]);
+    let x_dot = polynomial(
+        g,
+        &[
+            (1, 1, &[w1, big_r, sin_psi, cos]),
+            (1, 1, &[w2, big_r, cos_psi]),
+        ],
+    );
+    let y_dot = polynomial(
+        g,
+        &[
+            (-1, 1, &[w1, big_r, cos_psi, cos]),
+            (1, 1, &[w2, big_r, sin_psi]),
+        ],
+    );
 
     let kinematics = vec![w1, s, psi_dot, phi_dot, x_dot, y_dot];
-    let rates = vec![w1_dot, w2_dot, w3_dot, s_dot, w1, s, psi_dot, phi_dot, x_dot, y_dot];
-    sketch.function(FunctionKind::Kinematics, vec![("coordinate_rates", Layout::Coordinates, kinematics)]);
-    sketch.function(FunctionKind::MassMatrix, vec![("mass_matrix", Layout::Matrix(4, 4), mass_matrix)]);
+    let rates = vec![
+        w1_dot, w2_dot, w3_dot, s_dot, w1, s, psi_dot, phi_dot, x_dot, y_dot,
+    ];
+    sketch.function(
+        FunctionKind::Kinematics,
+        vec![("coordinate_rates", Layout::Coordinates, kinematics)],
+    );
+    sketch.function(
+        FunctionKind::MassMatrix,
+        vec![("mass_matrix", Layout::Matrix(4, 4), mass_matrix)],
+    );
     sketch.function(FunctionKind::Bias, vec![("bias", Layout::Speeds, bias)]);
-    sketch.function(FunctionKind::GeneralizedForces, vec![("generalized_forces", Layout::Speeds, forces)]);
+    sketch.function(
+        FunctionKind::GeneralizedForces,
+        vec![("generalized_forces", Layout::Speeds, forces)],
+    );
     sketch.rates(rates);
+
+    // Energies of the rolling disc alone: enough for the signatures.
+    let g = sketch.graph();
+    let kinetic = polynomial(g, &[(3, 4, &[m, big_r, big_r, w2, w2])]);
+    let potential = polynomial(g, &[(1, 1, &[m, gravity, big_r, cos])]);
+    let power = g.mul(u, s);
+    let s_wheel = polynomial(g, &[(5, 8, &[m, big_r, big_r, w1_dot, w1_dot])]);
+    let s_wheel = g.name("s_wheel", s_wheel);
+    let scalars = |names: [(&'static str, Expr); 3]| {
+        names
+            .map(|(name, value)| (name, Layout::Scalar, vec![value]))
+            .to_vec()
+    };
+    let energies = scalars([
+        ("kinetic", kinetic),
+        ("potential", potential),
+        ("power", power),
+    ]);
+    sketch.function(FunctionKind::Energies, energies);
+    let acceleration = scalars([
+        ("total", s_wheel),
+        ("wheel", s_wheel),
+        ("mass", Graph::ZERO),
+    ]);
+    sketch.function(FunctionKind::AccelerationEnergy, acceleration);
     sketch.program
+}
+
+/// One of everything that is not a polynomial: functions, choices, numeric solutions, large powers,
+/// time, no inputs, names that are words of Rust.
+pub fn mixture() -> Program {
+    let mut sketch = Sketch::new(
+        "type",
+        1,
+        vec![
+            quantity("type", "A keyword.", "m/s", 0.0),
+            quantity("p", "The name of an argument.", "m", 0.25),
+            quantity("half", "The name of a number.", "m", 0.5),
+        ],
+        vec![],
+        vec![
+            quantity("INFO", "The name of a static.", "", 2.0),
+            quantity("K", "Stiffness.", "N/m", 3.0),
+        ],
+    );
+    sketch.program.info.explicit_time = true;
+    sketch.program.info.outputs = vec![
+        quantity("switch", "A choice.", "m", 0.0),
+        quantity("self", "A power.", "", 0.0),
+        quantity("angle", "An angle.", "rad", 0.0),
+    ]
+    .into();
+    let names = ["type", "p", "half", "INFO", "K", "t"];
+    let [speed, a, b, c, k, t] = names.map(|name| sketch.symbol(name));
+    let g = sketch.graph();
+    let half = g.fraction(1, 2);
+    let seventeenths = g.fraction(17, 35);
+    let functions = [
+        SymbolicFunction::Sin,
+        SymbolicFunction::Asin,
+        SymbolicFunction::Acos,
+        SymbolicFunction::Atan,
+        SymbolicFunction::Sinh,
+        SymbolicFunction::Cosh,
+        SymbolicFunction::Tanh,
+        SymbolicFunction::Exp,
+        SymbolicFunction::Sqrt,
+        SymbolicFunction::Abs,
+        SymbolicFunction::Sign,
+        SymbolicFunction::Ln,
+    ];
+    let parts: Vec<Expr> = functions
+        .iter()
+        .map(|&function| g.function(function, b))
+        .collect();
+    let everything = g.sum(&parts);
+    let everything = g.name("crate", everything);
+    let matrix: Vec<Expr> = [[k, a, b], [a, c, half], [seventeenths, b, k]].concat();
+    let solved = g.solve_numerically(matrix.clone(), vec![speed, t, a]);
+    let again = g.solve_numerically(matrix, vec![a, everything, b]);
+    let difference = g.sub(a, b);
+    let choice = g.choice(Relation::Less, [a, difference], [solved[0], everything]);
+    let other = g.choice(Relation::LessOrEqual, [t, k], [a, speed]);
+    let large = g.pow(k, 19);
+    let negative = g.pow(difference, -3);
+    let power = g.power(k, a);
+    let bent = g.atan2(difference, power);
+    let parts = [choice, large, negative, other];
+    let accelerations = g.sum(&parts);
+    let b_dot = g.sub(again[2], bent);
+    let outputs = vec![other, power, bent];
+    sketch.rates(vec![accelerations, speed, b_dot]);
+    sketch.function(
+        FunctionKind::Outputs,
+        vec![("outputs", Layout::Outputs, outputs)],
+    );
+    sketch.program
+}
+
+/// Reproducible numbers in (0.1, 0.9), where every function of the mixture is defined.
+pub struct Numbers(pub u64);
+
+impl Numbers {
+    pub fn next(&mut self) -> f64 {
+        self.0 = self
+            .0
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
+        0.1 + 0.8 * ((self.0 >> 11) as f64 / (1_u64 << 53) as f64)
+    }
+
+    pub fn list(&mut self, count: usize) -> Vec<f64> {
+        (0..count).map(|_| self.next()).collect()
+    }
 }

@@ -1,0 +1,312 @@
+//! Emitted Rust compiles, computes exactly what the schedule says, and is the same in every run.
+//!
+//! `UPDATE_GOLDEN=1 cargo test -p appell-codegen --test emit` writes the golden files anew. They
+//! are real modules of this test: what is compared is what is compiled.
+
+#![allow(clippy::unwrap_used, reason = "tests may panic")]
+
+mod emit_support;
+
+use std::path::Path;
+
+use appell_codegen::emit::{Emitted, Error, Options, emit, emit_functions};
+use appell_codegen::program::{FunctionKind, Program};
+use appell_codegen::schedule::{interpret, schedule};
+use appell_runtime::Dual;
+use appell_runtime::model::{At, Model};
+use emit_support::{Numbers, mixture, quantity};
+
+#[allow(non_snake_case, dead_code, unreachable_pub, clippy::pedantic)]
+mod unicycle {
+    include!("emit_golden/unicycle.rs");
+}
+#[allow(non_snake_case, dead_code, unreachable_pub, clippy::pedantic)]
+mod mixture_model {
+    include!("emit_golden/mixture.rs");
+}
+
+const SPEC: &str = "# A spec with \"quotes\" and \"#.\nname = 'unicycle'\n";
+
+fn golden_options(model_impl: bool) -> Options {
+    Options {
+        model_impl,
+        spec: model_impl.then(|| SPEC.to_owned()),
+        ..Options::default()
+    }
+}
+
+fn is_golden(name: &str, emitted: &Emitted) {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/emit_golden");
+    for (ending, text) in [("rs", &emitted.source), ("md", &emitted.docs)] {
+        let file = folder.join(format!("{name}.{ending}"));
+        if std::env::var_os("UPDATE_GOLDEN").is_some() {
+            std::fs::create_dir_all(&folder).unwrap();
+            std::fs::write(&file, text).unwrap();
+        }
+        let golden = std::fs::read_to_string(&file).unwrap_or_default();
+        assert!(
+            golden == *text,
+            "{} is not what is emitted; see the head of this test",
+            file.display()
+        );
+    }
+}
+
+#[test]
+fn the_unicycle_is_emitted_as_in_the_golden_file() {
+    is_golden(
+        "unicycle",
+        &emit(&emit_support::unicycle(), &golden_options(true)).unwrap(),
+    );
+}
+
+#[test]
+fn the_mixture_is_emitted_as_in_the_golden_file() {
+    is_golden(
+        "mixture",
+        &emit(&mixture(), &golden_options(false)).unwrap(),
+    );
+}
+
+#[test]
+fn two_runs_emit_the_same_bytes() {
+    let options = golden_options(true);
+    let [first, second] = [(), ()].map(|()| emit(&emit_support::unicycle(), &options).unwrap());
+    assert_eq!(first, second);
+}
+
+/// Results of the interpreter.
+fn interpreted(
+    program: &Program,
+    kind: FunctionKind,
+    t: f64,
+    x: &[f64],
+    u: &[f64],
+    p: &[f64],
+) -> Vec<Vec<f64>> {
+    let function = program
+        .functions
+        .iter()
+        .find(|function| function.kind == kind)
+        .unwrap();
+    interpret(&schedule(program, function), t, x, u, p)
+}
+
+fn bits(numbers: &[f64]) -> Vec<u64> {
+    numbers.iter().map(|number| number.to_bits()).collect()
+}
+
+#[test]
+fn emitted_code_and_interpreter_agree_bit_for_bit() {
+    let program = emit_support::unicycle();
+    let mut numbers = Numbers(7);
+    for _ in 0..200 {
+        let (x, u, p) = (numbers.list(10), numbers.list(1), numbers.list(4));
+        let at = At {
+            t: 0.0,
+            x: &x,
+            u: &u,
+            p: &p,
+        };
+        let (mut rates, mut a, mut b) = ([0.0; 10], [0.0; 100], [0.0; 10]);
+        unicycle::Unicycle.rates(at, &mut rates);
+        let expected = interpreted(&program, FunctionKind::Rates, 0.0, &x, &u, &p);
+        assert_eq!(bits(&rates), bits(&expected[0]));
+        unicycle::Unicycle.jacobians(at, &mut rates, &mut a, &mut b);
+        let expected = interpreted(&program, FunctionKind::Jacobians, 0.0, &x, &u, &p);
+        assert_eq!(
+            [bits(&rates), bits(&a), bits(&b)],
+            [0, 1, 2].map(|i| bits(&expected[i]))
+        );
+        let mut by_parameter = [0.0; 40];
+        unicycle::Unicycle.parameter_jacobian(at, &mut by_parameter);
+        let expected = interpreted(&program, FunctionKind::AllJacobians, 0.0, &x, &u, &p);
+        assert_eq!(bits(&by_parameter), bits(&expected[3]));
+        let (mut mass, mut bias, mut forces) = ([0.0; 16], [0.0; 4], [0.0; 4]);
+        unicycle::Unicycle.appell(at, &mut mass, &mut bias, &mut forces);
+        let expected = interpreted(&program, FunctionKind::MassMatrix, 0.0, &x, &u, &p);
+        assert_eq!(bits(&mass), bits(&expected[0]));
+        let expected = interpreted(&program, FunctionKind::Bias, 0.0, &x, &u, &p);
+        assert_eq!(bits(&bias), bits(&expected[0]));
+    }
+}
+
+#[test]
+fn everything_that_is_no_polynomial_agrees_bit_for_bit() {
+    let program = mixture();
+    let mut numbers = Numbers(11);
+    for _ in 0..200 {
+        let (t, x, p) = (numbers.next(), numbers.list(3), numbers.list(2));
+        let state = mixture_model::State::from([x[0], x[1], x[2]]);
+        let parameters = mixture_model::Parameters::from([p[0], p[1]]);
+        let inputs = mixture_model::Inputs::from([]);
+        let found = mixture_model::jacobians(t, &parameters, &state, &inputs);
+        let expected = interpreted(&program, FunctionKind::Jacobians, t, &x, &[], &p);
+        assert_eq!(bits(&<[f64; 3]>::from(found.rates)), bits(&expected[0]));
+        assert_eq!(bits(found.a.as_flattened()), bits(&expected[1]));
+        let found = mixture_model::outputs(t, &parameters, &state, &inputs);
+        let expected = interpreted(&program, FunctionKind::Outputs, t, &x, &[], &p);
+        assert_eq!(bits(&<[f64; 3]>::from(found)), bits(&expected[0]));
+    }
+}
+
+/// Emitted code is generic: on dual numbers it differentiates itself.
+#[test]
+fn emitted_jacobians_are_the_derivatives_of_the_emitted_rates() {
+    const ROUNDING: f64 = 1e-9;
+    let mut numbers = Numbers(3);
+    let (x, u, p) = (numbers.list(10), numbers.list(1), numbers.list(4));
+    let fixed =
+        |list: &[f64]| -> Vec<Dual<f64, 10>> { list.iter().map(|&v| Dual::fixed(v)).collect() };
+    let (du, dp) = (fixed(&u), fixed(&p));
+    let x: [f64; 10] = x.try_into().unwrap();
+    let rates = unicycle::rates(
+        &unicycle::Parameters::from([dp[0], dp[1], dp[2], dp[3]]),
+        &unicycle::State::from(Dual::variables(x)),
+        &unicycle::Inputs::from([du[0]]),
+    );
+    let found = unicycle::jacobians(
+        &unicycle::Parameters::from([p[0], p[1], p[2], p[3]]),
+        &unicycle::State::from(x),
+        &unicycle::Inputs::from([u[0]]),
+    );
+    for (row, rate) in <[Dual<f64, 10>; 10]>::from(rates).iter().enumerate() {
+        for (column, partial) in rate.partials.iter().enumerate() {
+            let error = (partial - found.a[row][column]).abs() / (1.0 + partial.abs());
+            assert!(error < ROUNDING, "A[{row}][{column}]: {error}");
+        }
+    }
+}
+
+#[test]
+fn the_emitted_model_has_the_info_of_the_program() {
+    assert_eq!(*unicycle::Unicycle.info(), emit_support::unicycle().info);
+    assert_eq!(unicycle::SPEC, SPEC);
+    assert_eq!(unicycle::Parameters::default().R.to_bits(), 0.3_f64.to_bits());
+}
+
+#[test]
+fn lines_are_short_enough_to_read() {
+    for program in [emit_support::unicycle(), mixture()] {
+        let emitted = emit(&program, &golden_options(false)).unwrap();
+        for line in emitted
+            .source
+            .lines()
+            .filter(|line| line.trim_start().starts_with("let "))
+        {
+            assert!(line.chars().count() <= 89, "{line}");
+        }
+    }
+}
+
+/// Names of all items, fields and functions of a text, in order.
+fn skeleton(source: &str) -> Vec<String> {
+    let file = syn::parse_file(source).unwrap();
+    let mut names = Vec::new();
+    for item in file.items {
+        match item {
+            syn::Item::Fn(item) => names.push(format!("fn {}", item.sig.ident)),
+            syn::Item::Struct(item) => {
+                names.push(format!("struct {} {}", item.ident, item.fields.len()));
+            }
+            syn::Item::Static(item) => names.push(format!("static {}", item.ident)),
+            syn::Item::Const(item) => names.push(format!("const {}", item.ident)),
+            syn::Item::Impl(_) => names.push("impl".to_owned()),
+            syn::Item::Use(_) => names.push("use".to_owned()),
+            _ => names.push("something else".to_owned()),
+        }
+    }
+    names
+}
+
+#[test]
+fn hostile_texts_inject_nothing() {
+    const HOSTILE: [&str; 8] = [
+        "x: f64 } fn injected() {",
+        "a\npub fn injected() {}\n//",
+        "*/ pub fn injected() {} /*",
+        "\"; pub fn injected() {} //",
+        "r#\"\"# ] #![allow(x)]",
+        "é\u{202e}\u{2066}hidden",
+        "",
+        "//%blank",
+    ];
+    let expected = skeleton(
+        &emit(&emit_support::unicycle(), &golden_options(true))
+            .unwrap()
+            .source,
+    );
+    for (i, hostile) in HOSTILE.iter().enumerate() {
+        let mut program = emit_support::unicycle();
+        let info = &mut program.info;
+        info.title = (*hostile).into();
+        info.source = (*hostile).into();
+        program.file = (*hostile).to_owned();
+        for list in [&mut info.states, &mut info.inputs, &mut info.parameters] {
+            for (k, entry) in list.to_mut().iter_mut().enumerate() {
+                *entry = quantity(hostile, hostile, hostile, f64::NAN);
+                if k % 2 == 1 {
+                    entry.name = HOSTILE[(i + k) % HOSTILE.len()].into();
+                }
+            }
+        }
+        for function in &mut program.functions {
+            if function.kind == FunctionKind::AccelerationEnergy {
+                function.results[1].name = (*hostile).to_owned();
+            }
+        }
+        let options = Options {
+            spec: Some((*hostile).to_owned()),
+            ..golden_options(true)
+        };
+        let emitted = emit(&program, &options).unwrap();
+        assert_eq!(skeleton(&emitted.source), expected, "{hostile:?}");
+        assert!(
+            !emitted
+                .source
+                .chars()
+                .any(|c| matches!(c, '\u{202e}' | '\u{2066}')),
+            "{hostile:?}"
+        );
+    }
+}
+
+#[test]
+fn what_cannot_be_emitted_is_told() {
+    let program = emit_support::unicycle();
+    let broken = Options {
+        runtime: "no path; fn injected() {}".to_owned(),
+        ..Options::default()
+    };
+    assert!(matches!(
+        emit(&program, &broken),
+        Err(Error::RuntimePath(_))
+    ));
+    let mut without = program.clone();
+    without
+        .functions
+        .retain(|function| function.kind != FunctionKind::Bias);
+    let missing = emit(&without, &Options::default());
+    assert_eq!(missing, Err(Error::MissingFunction(FunctionKind::Bias)));
+    let mut short = program;
+    short.functions[0].results[0].entries.pop();
+    assert!(matches!(
+        emit(&short, &golden_options(false)),
+        Err(Error::Shape {
+            expected: 6,
+            found: 5,
+            ..
+        })
+    ));
+}
+
+#[test]
+fn functions_are_emitted_alone() {
+    let emitted = emit_functions(&emit_support::unicycle(), &[FunctionKind::Rates]).unwrap();
+    let functions: Vec<String> = skeleton(&emitted.source)
+        .into_iter()
+        .filter(|name| name.starts_with("fn "))
+        .collect();
+    assert_eq!(functions, ["fn rates"]);
+    assert!(!emitted.source.contains("std::"));
+}

@@ -190,23 +190,18 @@ impl<'a> Reader<'a> {
         let mut values = vec![None; list.len()];
         let object: Object<'a> = self.parse(raw, "an object of numbers").unwrap_or_default();
         for (name, raw) in object {
-            match list.iter().position(|quantity| quantity.name == name) {
-                Some(index) => values[index] = self.number(raw),
-                None => {
-                    let names = || list.iter().map(|quantity| quantity.name.as_ref());
-                    let help = match closest(&name, names()) {
-                        Some(similar) => format!("did you mean `{similar}`?"),
-                        None if list.is_empty() => "the mechanism has none".to_owned(),
-                        None => format!("there are {}", names().collect::<Vec<_>>().join(", ")),
-                    };
-                    self.tell(
-                        Code::UnknownName,
-                        format!("there is no {what} `{name}`"),
-                        self.span(raw),
-                        help,
-                    );
-                }
+            if let Some(index) = list.iter().position(|quantity| quantity.name == name) {
+                values[index] = self.number(raw);
+                continue;
             }
+            let names = || list.iter().map(|quantity| quantity.name.as_ref());
+            let help = match closest(&name, names()) {
+                Some(similar) => format!("did you mean `{similar}`?"),
+                None if list.is_empty() => "the mechanism has none".to_owned(),
+                None => format!("there are {}", names().collect::<Vec<_>>().join(", ")),
+            };
+            let message = format!("there is no {what} `{name}`");
+            self.tell(Code::UnknownName, message, self.span(raw), help);
         }
         values
     }

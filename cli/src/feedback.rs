@@ -102,112 +102,87 @@ impl Reader<'_> {
 
     /// Everything in the file. What is wrong is told and replaced, so that all of it is told.
     fn feedback(&mut self, table: &DeTable<'_>) -> Option<Feedback> {
-        for key in table
-            .keys()
-            .filter(|key| !KEYS.contains(&key.get_ref().as_ref()))
-        {
-            let message = format!("unknown key `{}`", key.get_ref());
-            self.tell(
-                Code::UnknownKey,
-                message,
-                key.span(),
-                &format!("the keys are {}", KEYS.join(", ")),
-            );
-        }
-        for key in ["input", "states", "gains"]
-            .into_iter()
-            .filter(|key| table.get(*key).is_none())
-        {
-            self.tell(
-                Code::MissingKey,
-                format!("the key `{key}` is missing"),
-                0..0,
-                "a law needs `input`, `states` and `gains`",
-            );
-        }
-        if let Some(name) = table.get("mechanism").and_then(|value| self.string(value))
-            && name.0 != self.setup.mechanism.name
-        {
-            let message = format!(
-                "the law is for `{}`, not for `{}`",
-                name.0, self.setup.mechanism.name
-            );
-            self.tell(Code::UnknownReference, message, name.1, "");
-        }
-        let input = table
-            .get("input")
-            .and_then(|value| self.string(value))
-            .and_then(|(name, at)| {
-                let inputs = self
-                    .setup
-                    .mechanism
-                    .inputs
-                    .iter()
-                    .map(|input| input.label.name.clone());
-                self.find(&name, "input", &inputs.collect::<Vec<_>>(), at)
-            });
+        self.keys(table);
+        let input = self.input(table);
         let states = self.list(table, "states", Self::state);
         let gains = self.list(table, "gains", Self::number);
+        let switching_times = self.list(table, "switching_times_s", Self::number);
+        let desired = self.by_state(table, "desired", Scope::Schedule, "the desired value");
+        let initial = self.by_state(table, "initial", Scope::Constant, "the initial value");
+        let offset = table.get("offset").and_then(|value| {
+            let unit = input.map(|input| self.setup.mechanism.inputs[input].label.unit.dimension);
+            self.expression(value, Scope::Law, "the offset", unit, None)
+        });
         if let (Some(states), Some(gains), Some(at)) = (&states, &gains, table.get("gains"))
             && states.len() != gains.len()
         {
             let message = format!("{} gains for {} states", gains.len(), states.len());
-            self.tell(
-                Code::WrongType,
-                message,
-                at.span(),
-                "write one gain for each state, in the same order",
-            );
+            let help = "write one gain for each state, in the same order";
+            self.tell(Code::WrongType, message, at.span(), help);
         }
-        let switching_times = self
-            .list(table, "switching_times_s", Self::number)
-            .unwrap_or_default();
-        let desired = self.by_state(table, "desired", Scope::Schedule, "the desired value");
-        let initial = self.by_state(table, "initial", Scope::Constant, "the initial value");
-        for (state, at) in desired.iter().map(|(state, _, at)| (state, at)) {
+        for (state, _, at) in &desired {
             if states
                 .as_ref()
                 .is_some_and(|states| !states.contains(state))
             {
                 let message = "a desired value for a state without a gain";
-                self.tell(
-                    Code::UnknownReference,
-                    message,
-                    at.clone(),
-                    "add the state to `states`, with its gain",
-                );
+                let help = "add the state to `states`, with its gain";
+                self.tell(Code::UnknownReference, message, at.clone(), help);
             }
         }
-        let offset = table.get("offset").and_then(|value| {
-            let unit = input.map(|input| self.setup.mechanism.inputs[input].label.unit.clone());
-            self.expression(
-                value,
-                Scope::Law,
-                "the offset",
-                unit.map(|unit| unit.dimension),
-                None,
-            )
-        });
         let wanted = |state: usize| {
-            desired
-                .iter()
-                .find(|(other, ..)| *other == state)
-                .map(|(_, expr, _)| expr.clone())
+            let found = desired.iter().find(|(other, ..)| *other == state);
+            found.map(|(_, expr, _)| expr.clone())
         };
-        let terms = states?
-            .into_iter()
-            .zip(gains?)
-            .map(|(state, gain)| (state, gain, wanted(state)));
+        let terms = states?.into_iter().zip(gains?);
         Some(Feedback {
             input: input?,
             offset,
-            terms: terms.collect(),
-            switching_times,
+            terms: terms
+                .map(|(state, gain)| (state, gain, wanted(state)))
+                .collect(),
+            switching_times: switching_times.unwrap_or_default(),
             initial: initial
                 .into_iter()
                 .map(|(state, expr, _)| (state, expr))
                 .collect(),
         })
+    }
+
+    /// Tells of unknown and missing keys, and of a law for another mechanism.
+    fn keys(&mut self, table: &DeTable<'_>) {
+        for key in table.keys() {
+            if !KEYS.contains(&key.get_ref().as_ref()) {
+                let message = format!("unknown key `{}`", key.get_ref());
+                let help = format!("the keys are {}", KEYS.join(", "));
+                self.tell(Code::UnknownKey, message, key.span(), &help);
+            }
+        }
+        for key in ["input", "states", "gains"] {
+            if table.get(key).is_none() {
+                let message = format!("the key `{key}` is missing");
+                self.tell(
+                    Code::MissingKey,
+                    message,
+                    0..0,
+                    "a law needs `input`, `states` and `gains`",
+                );
+            }
+        }
+        let ours = &self.setup.mechanism.name;
+        if let Some((name, at)) = table.get("mechanism").and_then(|value| self.string(value))
+            && name != *ours
+        {
+            let message = format!("the law is for `{name}`, not for `{ours}`");
+            self.tell(Code::UnknownReference, message, at, "");
+        }
+    }
+
+    fn input(&mut self, table: &DeTable<'_>) -> Option<usize> {
+        let (name, at) = self.string(table.get("input")?)?;
+        let inputs = self.setup.mechanism.inputs.iter();
+        let names: Vec<String> = inputs.map(|input| input.label.name.clone()).collect();
+        self.find(&name, "input", &names, at)
     }
 
     /// A list under a key; nothing where the key or an element is missing or wrong.
@@ -253,7 +228,7 @@ impl Reader<'_> {
             return Vec::new();
         };
         let mut read = Vec::new();
-        for (name, value) in entries.iter() {
+        for (name, value) in entries {
             let state = self.find(name.get_ref(), "state", &self.states(), name.span());
             let unit = state.map(|state| self.setup.unit_of_state(state).clone());
             let bare = unit.as_ref().filter(|_| scope == Scope::Constant);

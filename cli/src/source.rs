@@ -36,11 +36,7 @@ impl Source {
         let bytes = std::fs::read(path).map_err(Failure::reading(path))?;
         let text = String::from_utf8(bytes).map_err(|cause| {
             let at = cause.utf8_error().valid_up_to();
-            let line = cause.as_bytes()[..at]
-                .iter()
-                .filter(|b| **b == b'\n')
-                .count()
-                + 1;
+            let line = cause.as_bytes()[..at].split(|b| *b == b'\n').count();
             Failure::Data(format!("{model}:{line}: the file is not UTF-8 text"))
         })?;
         Ok(Self {

@@ -106,6 +106,6 @@ pub(crate) fn json(trajectory: &Trajectory, failure: Option<&str>) -> Value {
 pub(crate) fn rests(trajectory: &Trajectory) -> bool {
     (0..trajectory.info().state_len()).all(|column| {
         let [low, high] = extrema(trajectory, column);
-        low == high
+        high - low <= 0.0
     })
 }

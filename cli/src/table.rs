@@ -22,7 +22,7 @@ pub(crate) fn table(rows: &[Vec<String>], numbers: std::ops::Range<usize>) -> St
             } else {
                 ("", padding.as_str())
             };
-            line += &format!("  {before}{cell}{after}");
+            line.extend(["  ", before, cell, after]);
         }
         text += line.trim_end();
         text.push('\n');

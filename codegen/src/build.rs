@@ -1,6 +1,6 @@
 //! For build scripts: specs in, Rust modules in `OUT_DIR` out.
 //!
-//! ```no_run
+//! ```ignore
 //! // build.rs
 //! fn main() {
 //!     appell_codegen::build("mechanisms/furuta.toml");
@@ -15,6 +15,9 @@
 //!     include!(concat!(env!("OUT_DIR"), "/furuta.rs"));
 //! }
 //! ```
+
+// A build script is a `main`.
+#![allow(clippy::needless_doctest_main)]
 
 use std::fs;
 use std::io;

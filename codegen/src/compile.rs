@@ -22,22 +22,32 @@ pub struct Derived {
 pub fn derived(file: &str, text: &str) -> Result<Derived, Report> {
     let checked = appell_spec::load(file, text)?;
     match derive(&checked.mechanism) {
-        Ok(derivation) => {
-            Ok(Derived { mechanism: checked.mechanism, derivation, warnings: checked.warnings })
-        }
+        Ok(derivation) => Ok(Derived {
+            mechanism: checked.mechanism,
+            derivation,
+            warnings: checked.warnings,
+        }),
         Err(findings) => Err(report(&checked.mechanism, text, &findings)),
     }
 }
 
 /// Reads a spec and makes the program with the functions `kinds`.
 pub fn compile(file: &str, text: &str, kinds: &[FunctionKind]) -> Result<Program, Report> {
-    let Derived { mechanism, derivation, .. } = derived(file, text)?;
-    assemble::program(derivation, &mechanism, kinds).map_err(|findings| report(&mechanism, text, &findings))
+    let Derived {
+        mechanism,
+        derivation,
+        ..
+    } = derived(file, text)?;
+    assemble::program(derivation, &mechanism, kinds)
+        .map_err(|findings| report(&mechanism, text, &findings))
 }
 
 /// What the derivation found wrong, at its place in the text of the spec.
 pub fn report(mechanism: &Mechanism, text: &str, findings: &[Finding]) -> Report {
-    let diagnostics = findings.iter().map(|finding| diagnostic(mechanism, text, finding)).collect();
+    let diagnostics = findings
+        .iter()
+        .map(|finding| diagnostic(mechanism, text, finding))
+        .collect();
     Report::new(mechanism.file.as_str(), text, diagnostics)
 }
 
@@ -57,7 +67,12 @@ fn diagnostic(mechanism: &Mechanism, text: &str, finding: &Finding) -> Diagnosti
     let span = item.cloned().filter(|span| !span.is_empty()).or_else(|| {
         // What concerns the whole mechanism concerns the choice of its pseudo-velocities.
         let (ast, _) = appell_spec::parse::parse(text);
-        let section = |name: &str| ast.sections.iter().find(|s| s.section.name == name).map(|s| s.span.clone());
+        let section = |name: &str| {
+            ast.sections
+                .iter()
+                .find(|s| s.section.name == name)
+                .map(|s| s.span.clone())
+        };
         section("pseudo_velocities").or_else(|| section("mechanism"))
     });
     let diagnostic = Diagnostic::error(code, finding.message.as_str()).help(finding.help.as_str());
@@ -86,10 +101,15 @@ b = { centre = 'P', mass = 'm' }
 [pseudo_velocities]
 v = { value = 'dot(x)', unit = 'm/s' }
 ";
-        let Err(report) = compile("free.toml", text, &assemble::ALL) else { panic!("it was accepted") };
+        let Err(report) = compile("free.toml", text, &assemble::ALL) else {
+            panic!("it was accepted")
+        };
         let shown = report.plain();
         assert!(shown.contains("missing-pseudo-velocities"), "{shown}");
         assert!(shown.contains("free.toml:13:2"), "{shown}");
-        assert!(shown.contains("2 coordinates under 0 velocity constraints need 2"), "{shown}");
+        assert!(
+            shown.contains("2 coordinates under 0 velocity constraints need 2"),
+            "{shown}"
+        );
     }
 }

@@ -29,7 +29,9 @@ impl InterpretedModel {
     fn evaluate(&self, kind: FunctionKind, at: At<'_>, wanted: &mut [(&str, &mut [f64])]) {
         let functions = self.program.functions.iter().zip(&self.schedules);
         let Some((function, lazy)) = functions.into_iter().find(|(f, _)| f.kind == kind) else {
-            wanted.iter_mut().for_each(|(_, to)| to.fill(f64::NAN));
+            for (_, to) in wanted.iter_mut() {
+                to.fill(f64::NAN);
+            }
             return;
         };
         let schedule = lazy.get_or_init(|| schedule(&self.program, function));
@@ -70,7 +72,11 @@ impl Model for InterpretedModel {
     fn appell(&self, at: At<'_>, mass: &mut [f64], bias: &mut [f64], forces: &mut [f64]) {
         self.evaluate(FunctionKind::MassMatrix, at, &mut [("mass_matrix", mass)]);
         self.evaluate(FunctionKind::Bias, at, &mut [("bias", bias)]);
-        self.evaluate(FunctionKind::GeneralizedForces, at, &mut [("generalized_forces", forces)]);
+        self.evaluate(
+            FunctionKind::GeneralizedForces,
+            at,
+            &mut [("generalized_forces", forces)],
+        );
     }
 
     fn energies(&self, at: At<'_>) -> Energies {
@@ -83,11 +89,19 @@ impl Model for InterpretedModel {
     }
 
     fn constraint_residual(&self, at: At<'_>, residual: &mut [f64]) {
-        self.evaluate(FunctionKind::ConstraintResidual, at, &mut [("residual", residual)]);
+        self.evaluate(
+            FunctionKind::ConstraintResidual,
+            at,
+            &mut [("residual", residual)],
+        );
     }
 
     fn constraint_forces(&self, at: At<'_>, forces: &mut [f64]) {
-        self.evaluate(FunctionKind::ConstraintForces, at, &mut [("forces", forces)]);
+        self.evaluate(
+            FunctionKind::ConstraintForces,
+            at,
+            &mut [("forces", forces)],
+        );
     }
 
     fn outputs(&self, at: At<'_>, outputs: &mut [f64]) {

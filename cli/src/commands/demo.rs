@@ -1,6 +1,7 @@
 //! `appell demo`: the main job in one command.
 
-use std::path::{Path, PathBuf};
+use std::fmt::Write as _;
+use std::path::PathBuf;
 
 use appell_runtime::figure::Figure;
 use appell_runtime::integrate::Options;
@@ -58,7 +59,8 @@ impl Demo {
         let mut told = String::new();
         let mut write = |name: &str, text: &str, about: &str| {
             let path = self.out.join(name);
-            told += &format!("  {:<28} {about}\n", Path::new(&path).display());
+            // Writing to a string cannot fail.
+            let _ = writeln!(told, "  {:<28} {about}", path.display());
             files::write(&path, text)
         };
         let html = derivation(&source, Format::Html, Stage::All)?;

@@ -392,7 +392,7 @@ fn required(program: &Program, kind: FunctionKind) -> Result<&crate::program::Fu
 fn call(types: &Types<'_>, function: &str) -> TokenStream {
     let function = ident(function);
     let time = types.program.info.explicit_time.then(|| quote!(at.t,));
-    quote!(self::#function(#time &parameters(&at), &state(&at), &inputs(&at)))
+    quote!(#function(#time &parameters(&at), &state(&at), &inputs(&at)))
 }
 
 /// A method whose result may be empty; its function may then be missing.

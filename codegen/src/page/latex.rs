@@ -7,11 +7,11 @@ use super::math::{Equation, Math, Piece, left_width};
 use super::{Block, Chain, Page, Span, Table};
 
 /// Width of a line of equations, in characters as [`Math::width`] counts them.
-const WIDTH: usize = 84;
+const WIDTH: usize = 88;
 
 /// What stands before the text. `\other` shows a character where the engine knows all of Unicode,
 /// and its number elsewhere.
-const PREAMBLE: &str = r"\documentclass[10pt,a4paper]{article}
+const PREAMBLE: &str = r"\documentclass[10pt,a4paper,fleqn]{article}
 \usepackage{iftex}
 \ifPDFTeX
   \usepackage[T1]{fontenc}
@@ -25,6 +25,7 @@ const PREAMBLE: &str = r"\documentclass[10pt,a4paper]{article}
 \usepackage{array}
 \setlength{\parindent}{0pt}
 \setlength{\parskip}{5pt}
+\setlength{\mathindent}{2em}
 \setcounter{MaxMatrixCols}{64}
 \allowdisplaybreaks
 \raggedbottom
@@ -41,8 +42,12 @@ pub fn latex(page: &Page) -> String {
     }
     for section in &page.sections {
         let _ = write!(out, "\n\\section{{{}}}\n", spans(&section.heading));
-        for block in &section.blocks {
-            out.push('\n');
+        for (k, block) in section.blocks.iter().enumerate() {
+            // A display belongs to the paragraph before it.
+            let follows = k > 0 && matches!(section.blocks[k - 1], Block::Sentence(_));
+            if !(follows && matches!(block, Block::Equations(_) | Block::Chain(_))) {
+                out.push('\n');
+            }
             match block {
                 Block::Sentence(sentence) => out.push_str(&spans(sentence)),
                 Block::Table(t) => table(&mut out, t),
@@ -184,7 +189,7 @@ fn equations(out: &mut String, equations: &[Equation]) {
 
 fn pieces(pieces: &[Piece<'_>]) -> String {
     // A bracket is as tall as what it holds; lines may break between the two.
-    let tall = pieces.iter().any(|piece| matches!(piece, Piece::Whole(math) if is_tall(math)));
+    let tall = pieces.iter().any(|piece| matches!(piece, Piece::Whole(math) if math.has_fraction()));
     let (open, close) = if tall { ("\\Bigl(", "\\Bigr)") } else { ("\\bigl(", "\\bigr)") };
     let mut out = String::new();
     let mut after_whole = false;
@@ -209,14 +214,6 @@ fn pieces(pieces: &[Piece<'_>]) -> String {
         after_whole = matches!(piece, Piece::Whole(_) | Piece::Close);
     }
     out.trim_start().to_owned()
-}
-
-fn is_tall(math: &Math) -> bool {
-    match math {
-        Math::Fraction(..) => true,
-        Math::Row(factors) => factors.iter().any(|f| matches!(f, Math::Fraction(..))),
-        _ => false,
-    }
 }
 
 fn letter(letter: &Letter) -> String {
@@ -364,7 +361,11 @@ fn sum(terms: &[(bool, Math)]) -> String {
 }
 
 fn bracketed(inner: &Math) -> String {
-    format!("\\left({}\\right)", formula(inner))
+    if inner.has_fraction() {
+        format!("\\left({}\\right)", formula(inner))
+    } else {
+        format!("({})", formula(inner))
+    }
 }
 
 /// A letter with a mark above gets braces before it is raised.

@@ -121,6 +121,19 @@ impl Math {
         Self::Vector { components, frame: Some(frame.to_owned()), column }
     }
 
+    /// Whether a quotient is among its outer parts, which makes it taller than a line.
+    pub(super) fn has_fraction(&self) -> bool {
+        match self {
+            Self::Fraction(..) => true,
+            Self::Row(parts) => parts.iter().any(|p| matches!(p, Self::Fraction(..))),
+            Self::Sum(terms) => terms.iter().any(|(_, term)| match term {
+                Self::Row(parts) => parts.iter().any(|p| matches!(p, Self::Fraction(..))),
+                term => matches!(term, Self::Fraction(..)),
+            }),
+            _ => false,
+        }
+    }
+
     /// How wide it is, roughly, in characters of a line.
     pub fn width(&self) -> usize {
         super::text::inline(self).chars().filter(|&c| !super::text::is_combining(c)).count()
@@ -180,9 +193,10 @@ impl Equation {
             let lines = broken(&pieces, width.saturating_sub(left_width + 3));
             return Display { left: Some(&self.left), lines };
         }
-        flatten(&self.left, 0, &mut pieces);
+        // The equality sign is the best place to break.
+        flatten(&self.left, 1, &mut pieces);
         pieces.push((Piece::Equals, 0));
-        flatten(&self.right, 0, &mut pieces);
+        flatten(&self.right, 1, &mut pieces);
         Display { left: None, lines: broken(&pieces, width) }
     }
 }

@@ -112,8 +112,13 @@ fn row(factors: &[Math]) -> String {
     format!("<mrow>{out}</mrow>")
 }
 
+/// Brackets grow only with what is taller than a line: grown ones bring air of their own.
 fn bracketed(inner: &Math) -> String {
-    format!("<mrow><mo>(</mo>{}<mo>)</mo></mrow>", formula(inner))
+    let stretchy = inner.has_fraction();
+    format!(
+        "<mrow><mo stretchy=\"{stretchy}\">(</mo>{}<mo stretchy=\"{stretchy}\">)</mo></mrow>",
+        formula(inner)
+    )
 }
 
 fn call(name: &str, exponent: u32, argument: &Math) -> String {

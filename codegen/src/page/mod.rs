@@ -3,6 +3,7 @@
 //! [`page`] writes the derivation of a mechanism from its frames to its equations. A [`Page`] knows
 //! neither its format nor the graph behind it; [`text()`], [`latex()`] and [`html()`] set it.
 
+mod angles;
 mod explicit;
 mod formula;
 mod html;

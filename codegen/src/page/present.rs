@@ -1,6 +1,7 @@
 //! How a formula is arranged: names put in where that stays readable, sums ordered by what they
 //! multiply, quotients kept together.
 
+use super::angles::with_compound_angles;
 use super::explicit::{Monomial, collect, collect_turns, dissolve};
 use super::formula::assemble;
 use super::math::Math;
@@ -58,7 +59,8 @@ impl Writer<'_> {
 
     fn multiplied_out(&mut self, expr: Expr, keys: &[&[Expr]], common: bool) -> Math {
         let graph = self.graph();
-        let mut best = graph.expand(expr, MOST_TERMS).unwrap_or(expr);
+        let best = graph.expand(expr, MOST_TERMS).unwrap_or(expr);
+        let mut best = with_compound_angles(graph, best);
         if keys.iter().all(|list| !occurs(graph, best, list)) {
             return self.constant(best);
         }
@@ -158,10 +160,23 @@ impl Writer<'_> {
                     factor
                 } else {
                     let power = self.set(power);
-                    functions_last(Math::product(vec![factor, power]))
+                    match factor {
+                        Math::Sum(mut single) if single.len() == 1 => {
+                            let (inner, factor) = single.remove(0);
+                            Math::Sum(vec![(inner, functions_last(Math::product(vec![factor, power])))])
+                        }
+                        factor => functions_last(Math::product(vec![factor, power])),
+                    }
                 }
             };
-            terms.push((minus, math));
+            // A sign that the formula brings along is the sign of the term.
+            terms.push(match math {
+                Math::Sum(mut single) if single.len() == 1 => {
+                    let (inner, math) = single.remove(0);
+                    (minus != inner, math)
+                }
+                math => (minus, math),
+            });
         }
         plus_first(terms)
     }

@@ -247,6 +247,8 @@ pub(super) fn inline(math: &Math) -> String {
         Math::Fraction(above, below) => {
             let above = match **above {
                 Math::Sum(_) => format!("({})", inline(above)),
+                // `cos φ/a` would read as the cosine of a quotient.
+                _ if ends_with_function(above) => format!("({})", inline(above)),
                 _ => inline(above),
             };
             format!("{above}/{}", divisor(below))
@@ -287,6 +289,14 @@ pub(super) fn inline(math: &Math) -> String {
         Math::Cases { value, condition, otherwise } => {
             format!("({} if {}, else {})", inline(value), inline(condition), inline(otherwise))
         }
+    }
+}
+
+fn ends_with_function(math: &Math) -> bool {
+    match math {
+        Math::Call(..) => true,
+        Math::Row(factors) => factors.last().is_some_and(|f| matches!(f, Math::Call(..))),
+        _ => false,
     }
 }
 

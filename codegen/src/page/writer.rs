@@ -84,6 +84,14 @@ impl<'a> Writer<'a> {
         set.math
     }
 
+    /// The explicit formula, without a promise to define what it uses.
+    pub(super) fn try_explicit(&mut self, expr: Expr) -> Math {
+        let wanted = self.wanted.len();
+        let math = self.explicit(expr);
+        self.wanted.truncate(wanted);
+        math
+    }
+
     /// Components of a vector in the frame that they are written in.
     pub(super) fn vector(&mut self, v: Vec3, frame: FrameId) -> Math {
         let components = v.iter().map(|&c| self.explicit(c)).collect();

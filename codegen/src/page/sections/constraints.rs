@@ -37,15 +37,18 @@ pub(super) fn section(w: &mut Writer<'_>) -> Section {
     super::section("Constraints and pseudo-velocities", blocks)
 }
 
-/// Generalised velocities in terms of the pseudo-velocities.
+/// Generalised velocities in terms of the pseudo-velocities; those with the letter of a
+/// pseudo-velocity go without saying.
 pub(super) fn rates(w: &mut Writer<'_>) -> Vec<Equation> {
-    (0..w.mechanism.coordinates.len())
-        .map(|k| {
-            let left = w.symbol(w.derivation.symbols.rates[k]);
-            let right = w.explicit(w.derivation.velocities.rates[k]);
-            Equation::new(left, right)
-        })
-        .collect()
+    let mut equations = Vec::new();
+    for k in 0..w.mechanism.coordinates.len() {
+        let left = w.symbol(w.derivation.symbols.rates[k]);
+        let right = w.explicit(w.derivation.velocities.rates[k]);
+        if left != right {
+            equations.push(Equation::new(left, right));
+        }
+    }
+    equations
 }
 
 fn constraint(w: &mut Writer<'_>, index: usize) -> Vec<Block> {

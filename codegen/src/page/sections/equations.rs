@@ -4,9 +4,16 @@ use super::super::letters::Letter;
 use super::super::math::{Equation, Math};
 use super::super::writer::Writer;
 use super::super::{Block, Section};
-use super::{constraints, math, with, words};
+use super::solution::{System, force_less_bias};
+use super::{constraints, math, sentence, with, words};
 use crate::mechanics::gibbs_appell::kinetic_energy;
-use crate::symbolic::{Expr, Node};
+use crate::mechanics::motion::independent_blocks;
+use crate::symbolic::{Expr, Graph, Node};
+
+/// A longer acceleration is not written out.
+const LONGEST_READING: usize = 240;
+/// Nor one with a longer denominator.
+const LONGEST_PIVOT: usize = 100;
 
 /// M ω̇ + b = Π, row by row.
 pub(super) fn appell(w: &mut Writer<'_>) -> Section {
@@ -34,32 +41,72 @@ pub(super) fn appell(w: &mut Writer<'_>) -> Section {
 
 /// ω̇ and q̇.
 pub(super) fn motion(w: &mut Writer<'_>) -> Section {
+    let matrix = w.derivation.gibbs.mass_matrix.clone();
     let mut open: Vec<(usize, Expr, Expr)> = Vec::new();
-    for (k, acceleration) in w.derivation.motion.accelerations.clone().into_iter().enumerate() {
-        let value = match w.graph().node(acceleration) {
-            Node::Named(id) => {
-                let id = *id;
-                w.graph().definition(id).value
-            }
-            _ => acceleration,
-        };
-        open.push((k, acceleration, value));
+    let mut equations = Vec::new();
+    let mut left_out = false;
+    for block in independent_blocks(&matrix) {
+        let accelerations: Vec<_> = block.iter().map(|&k| unnamed(w, k)).collect();
+        if is_readable(w, &accelerations) {
+            open.extend(accelerations);
+        } else {
+            let letters: Vec<Math> = (0..matrix.len()).map(|k| Math::Letter(w.speed(k).dot())).collect();
+            let unknown = |k: usize| letters[k].clone();
+            let system = System { matrix: &matrix, unknown: &unknown, right: &force_less_bias };
+            let in_letters = system.solved(&block);
+            left_out |= in_letters.is_empty();
+            equations.extend(in_letters);
+        }
     }
-    for place in reading_order(w, &open) {
+    let order = reading_order(w, &open);
+    for &place in &order {
         let letter = w.speed(open[place].0).dot();
         w.define(letter);
     }
-    let mut equations = Vec::new();
-    for place in reading_order(w, &open) {
+    for place in order {
         let (k, _, value) = open[place];
         let left = Math::Letter(w.speed(k).dot());
         let right = w.explicit(value);
         equations.push(Equation::new(left, right));
     }
+    // Those that are solved in letters are shown as well.
+    for k in 0..matrix.len() {
+        let letter = w.speed(k).dot();
+        w.define(letter);
+    }
     let mut blocks = with(w, "Appell's equations, solved for the accelerations:", equations);
+    if left_out {
+        blocks.push(sentence("Larger blocks are factorised when the equations are evaluated."));
+    }
     let rates = constraints::rates(w);
     blocks.extend(with(w, "The coordinates follow the pseudo-velocities:", rates));
     super::section("Equations of motion", blocks)
+}
+
+/// A speed, its acceleration, and the value behind the name.
+fn unnamed(w: &mut Writer<'_>, k: usize) -> (usize, Expr, Expr) {
+    let acceleration = w.derivation.motion.accelerations[k];
+    let value = match *w.graph().node(acceleration) {
+        Node::Named(id) => w.graph().definition(id).value,
+        _ => acceleration,
+    };
+    (k, acceleration, value)
+}
+
+/// Whether the accelerations of a block, and the pivots they are divided by, are short when they are
+/// written out.
+fn is_readable(w: &mut Writer<'_>, accelerations: &[(usize, Expr, Expr)]) -> bool {
+    let own: Vec<Expr> = accelerations.iter().map(|a| a.1).collect();
+    accelerations.iter().all(|&(_, _, value)| {
+        let parts = w.graph().in_order(&[value]);
+        let named = |graph: &Graph, e: Expr| match *graph.node(e) {
+            Node::Named(id) if !own.contains(&e) => Some(graph.definition(id).value),
+            _ => None,
+        };
+        let pivots: Vec<Expr> = parts.iter().filter_map(|&e| named(w.graph(), e)).collect();
+        w.try_explicit(value).width() <= LONGEST_READING
+            && pivots.into_iter().all(|pivot| w.try_explicit(pivot).width() <= LONGEST_PIVOT)
+    })
 }
 
 /// Accelerations that others are expressed by come first.

@@ -4,57 +4,56 @@ use super::super::letters::Letter;
 use super::super::math::{Equation, Math};
 use super::super::writer::Writer;
 use super::super::{Block, Section};
+use super::solution::System;
 use super::{math, with, words};
-use crate::mechanics::linear::ImplicitMotion;
+use crate::mechanics::motion::independent_blocks;
 use crate::symbolic::{Expr, Graph};
 
-/// The entries of A, B and P that are not zero everywhere.
+/// The derivatives of the residual ρ, how they determine those of ω̇, and the derivatives of q̇.
 pub(super) fn section(w: &mut Writer<'_>) -> Section {
-    let rule = Math::Row(vec![
-        Math::Letter(Letter::bold("M")),
-        Math::partial(Letter::bold("ω").dot(), Letter::plain("z")),
+    let bold = |name: &str| Math::Letter(Letter::bold(name));
+    let rates = || Math::Letter(Letter::bold("ω").dot());
+    let residual_rule = Math::Row(vec![
+        bold("ρ"),
         Math::Sign("="),
-        Math::fraction(Math::Letter(Letter::plain("").before('∂')), Math::Letter(Letter::plain("z").before('∂'))),
-        Math::Brackets(Box::new(Math::sum(vec![
-            (false, Math::Letter(Letter::bold("Π"))),
-            (true, Math::Letter(Letter::bold("b"))),
-            (true, Math::Row(vec![Math::Letter(Letter::bold("M")), Math::Letter(Letter::bold("ω").dot())])),
-        ]))),
+        Math::sum(vec![
+            (false, bold("Π")),
+            (true, bold("b")),
+            (true, Math::Row(vec![bold("M"), rates()])),
+        ]),
+    ]);
+    let derivative = |of: Letter| Math::partial(of, Letter::plain("z"));
+    let rule = Math::Row(vec![
+        bold("M"),
+        derivative(Letter::bold("ω").dot()),
+        Math::Sign("="),
+        derivative(Letter::bold("ρ")),
     ]);
     let mut blocks = vec![Block::Sentence(vec![
-        words("Appell's equations, differentiated by a state, an input or a parameter z: "),
+        words("Appell's equations say that "),
+        math(residual_rule),
+        words(" vanishes. Differentiated by a state, an input or a parameter z they give "),
         math(rule),
-        words(". What is not listed is zero; accelerations stand for their values."),
+        words(", where the derivative of ρ holds the accelerations. What is not listed is zero."),
     ])];
     let symbols = w.derivation.symbols.clone();
-    let derivation = &mut *w.derivation;
-    let implicit = ImplicitMotion {
-        gibbs: &derivation.gibbs,
-        forces: &derivation.forces,
-        motion: &derivation.motion,
-        coordinate_rates: &derivation.coordinate_rates,
-    };
-    let residual = implicit.residual(&mut derivation.algebra, &symbols);
     let signals: Vec<Expr> = symbols.signals.iter().flatten().copied().collect();
-    let inputs = [symbols.inputs.clone(), signals].concat();
     let lists = [
-        ("Of the state, A:", [symbols.speeds.clone(), symbols.coordinates.clone()].concat()),
-        ("Of the inputs, B:", inputs),
-        ("Of the parameters, P:", symbols.parameters.clone()),
+        ("By the state, for A:", [symbols.speeds.clone(), symbols.coordinates.clone()].concat()),
+        ("By the inputs, for B:", [symbols.inputs.clone(), signals].concat()),
+        ("By the parameters, for P:", symbols.parameters.clone()),
     ];
-    let mut columns = Vec::new();
-    for (_, variables) in &lists {
-        columns.push(implicit.jacobian(&mut derivation.algebra, &symbols, &residual, variables));
-    }
-    let rows: Vec<Letter> = {
-        let rates = symbols.accelerations.iter().chain(&symbols.rates);
-        rates.copied().collect::<Vec<_>>().into_iter().map(|rate| w.letter(rate)).collect()
-    };
-    for ((heading, variables), columns) in lists.into_iter().zip(columns) {
+    let mut rows = residual(w);
+    rows.extend((0..symbols.rates.len()).map(|k| {
+        let letter = w.letter(symbols.rates[k]);
+        (letter, w.derivation.velocities.rates[k])
+    }));
+    for (lead, variables) in lists {
         let mut equations = Vec::new();
-        for (row, letter) in rows.iter().enumerate() {
-            for (&variable, column) in variables.iter().zip(&columns) {
-                let entry = w.derivation.algebra.shortest(column[row]);
+        for (letter, value) in &rows {
+            for &variable in &variables {
+                let entry = w.derivation.algebra.derivative(*value, variable);
+                let entry = w.derivation.algebra.shortest(entry);
                 if entry != Graph::ZERO {
                     let by = w.letter(variable);
                     let right = w.explicit(entry);
@@ -62,9 +61,37 @@ pub(super) fn section(w: &mut Writer<'_>) -> Section {
                 }
             }
         }
-        if !equations.is_empty() {
-            blocks.extend(with(w, heading, equations));
-        }
+        blocks.extend(with(w, lead, equations));
     }
+    let solution = solution(w);
+    blocks.extend(with(w, "Solved for the derivatives of the accelerations:", solution));
     super::section("Jacobians", blocks)
+}
+
+/// ρ = Π - b - M ω̇, with letters for the accelerations.
+fn residual(w: &mut Writer<'_>) -> Vec<(Letter, Expr)> {
+    let accelerations = w.derivation.symbols.accelerations.clone();
+    let gibbs = w.derivation.gibbs.clone();
+    let forces = w.derivation.forces.clone();
+    let mut rows = Vec::with_capacity(forces.len());
+    for (i, (&force, &bias)) in forces.iter().zip(&gibbs.bias).enumerate() {
+        let graph = w.graph();
+        let mut parts = vec![force, graph.neg(bias)];
+        for (&entry, &acceleration) in gibbs.mass_matrix[i].iter().zip(&accelerations) {
+            let inertial = graph.mul(entry, acceleration);
+            parts.push(graph.neg(inertial));
+        }
+        rows.push((Letter::plain("ρ").below(&(i + 1).to_string()), graph.sum(&parts)));
+    }
+    rows
+}
+
+fn solution(w: &mut Writer<'_>) -> Vec<Equation> {
+    let matrix = w.derivation.gibbs.mass_matrix.clone();
+    let derivative = |of: Letter| Math::partial(of, Letter::plain("z"));
+    let unknowns: Vec<Math> = (0..matrix.len()).map(|k| derivative(w.speed(k).dot())).collect();
+    let unknown = |k: usize| unknowns[k].clone();
+    let right = |k: usize| derivative(Letter::plain("ρ").below(&(k + 1).to_string()));
+    let system = System { matrix: &matrix, unknown: &unknown, right: &right };
+    independent_blocks(&matrix).iter().flat_map(|block| system.solved(block)).collect()
 }

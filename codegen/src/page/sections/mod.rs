@@ -9,6 +9,7 @@ mod jacobians;
 mod placement;
 mod quantities;
 mod reactions;
+mod solution;
 mod velocities;
 
 use super::math::{Equation, Math};
@@ -70,12 +71,13 @@ fn equality(left: Math, right: Math) -> Span {
 /// Definitions of what the equations use, then the equations after their sentence.
 fn with(w: &mut Writer<'_>, lead: &str, equations: Vec<Equation>) -> Vec<Block> {
     let mut blocks = w.definitions();
+    if equations.is_empty() {
+        return blocks;
+    }
     if !lead.is_empty() {
         blocks.push(sentence(lead));
     }
-    if !equations.is_empty() {
-        blocks.push(Block::Equations(equations));
-    }
+    blocks.push(Block::Equations(equations));
     blocks
 }
 

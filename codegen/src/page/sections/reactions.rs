@@ -4,7 +4,7 @@ use super::super::letters::Letter;
 use super::super::math::{Equation, Math};
 use super::super::writer::Writer;
 use super::super::Section;
-use super::{sentence, with};
+use super::with;
 use crate::mechanics::finding::Stage;
 use crate::mechanics::reactions::reactions;
 use crate::symbolic::Graph;
@@ -37,10 +37,11 @@ pub(super) fn section(w: &mut Writer<'_>) -> Stage<Option<Section>> {
             equations.push(Equation::new(Math::Letter(left), right));
         }
     }
-    let mut blocks = vec![sentence(
+    let blocks = with(
+        w,
         "Each constraint row gets a speed at which it would be violated; Appell's equation for that \
          speed gives its reaction. Components in the ground, accelerations stand for their values:",
-    )];
-    blocks.extend(with(w, "", equations));
+        equations,
+    );
     Ok(Some(super::section("Constraint forces", blocks)))
 }

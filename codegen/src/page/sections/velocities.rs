@@ -14,6 +14,11 @@ pub(super) fn section(w: &mut Writer<'_>) -> Section {
     let mut equations = Vec::new();
     for frame in written_frames(w) {
         let v = w.derivation.kinematics.frames.angular_velocity(frame);
+        // A frame that is fixed in a body turns with it.
+        let rotations = w.derivation.bodies.iter().filter_map(|b| b.rotation.as_ref());
+        if rotations.into_iter().any(|r| r.velocity == v) {
+            continue;
+        }
         equations.push(equation(w, frame_rate(&w.frame(frame)), v));
     }
     for body in w.derivation.bodies.clone() {

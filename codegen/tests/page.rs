@@ -1,0 +1,140 @@
+//! The derivation as a page: what it looks like, and that it is true.
+
+mod page_support;
+
+use appell_codegen::page::{self, Page, Stage};
+use page_support::{page_of, shipped, spec};
+
+/// The handouts under snapshot.
+const HANDOUTS: [&str; 3] = ["unicycle", "euc_3dof", "pendulum"];
+/// Width of the text page, from the module.
+const WIDTH: usize = 100;
+
+#[test]
+fn handouts_read_as_before() {
+    for name in HANDOUTS {
+        let page = page_of(name, Stage::Equations);
+        insta::assert_snapshot!(format!("{name}_text"), page::text(&page));
+        insta::assert_snapshot!(format!("{name}_latex"), page::latex(&page));
+    }
+}
+
+#[test]
+fn everything_about_a_mechanism_reads_as_before() {
+    insta::assert_snapshot!("unicycle_all_text", page::text(&page_of("unicycle", Stage::All)));
+}
+
+#[test]
+fn two_runs_give_the_same_bytes() {
+    for name in HANDOUTS {
+        let formats = |page: &Page| [page::text(page), page::latex(page), page::html(page)];
+        let (first, second) = (page_of(name, Stage::All), page_of(name, Stage::All));
+        assert_eq!(formats(&first), formats(&second), "{name}");
+    }
+}
+
+#[test]
+fn every_stage_holds_the_stages_before_it() {
+    use Stage::{All, Energy, Equations, Jacobians, Kinematics};
+    let stages = [Kinematics, Energy, Equations, Jacobians, All];
+    let pages = stages.map(|stage| page_of("unicycle", stage));
+    for pair in pages.windows(2) {
+        let (shorter, longer) = (&pair[0].sections, &pair[1].sections);
+        assert!(shorter.len() < longer.len());
+        assert_eq!(shorter[..], longer[..shorter.len()]);
+    }
+}
+
+#[test]
+fn text_keeps_its_width() {
+    for name in shipped() {
+        let text = page::text(&page_of(&name, Stage::Equations));
+        for line in text.lines() {
+            let columns = line.chars().filter(|c| !('\u{300}'..='\u{36f}').contains(c)).count();
+            assert!(columns <= WIDTH, "{name}, {columns} columns: {line}");
+        }
+    }
+}
+
+#[test]
+fn latex_closes_what_it_opens() {
+    for name in shipped() {
+        let latex = page::latex(&page_of(&name, Stage::All));
+        let mut depth = 0_i32;
+        let mut escaped = false;
+        for c in latex.chars() {
+            match c {
+                '{' if !escaped => depth += 1,
+                '}' if !escaped => depth -= 1,
+                _ => {}
+            }
+            assert!(depth >= 0, "{name}: a brace closes that was not opened");
+            escaped = c == '\\' && !escaped;
+        }
+        assert_eq!(depth, 0, "{name}");
+        for environment in ["align*", "bmatrix", "tabular", "document", "cases"] {
+            let count = |what: &str| latex.matches(&format!("\\{what}{{{environment}}}")).count();
+            assert_eq!(count("begin"), count("end"), "{name}: {environment}");
+        }
+    }
+}
+
+#[test]
+fn html_is_well_formed_and_needs_no_network() {
+    for name in shipped() {
+        let html = page::html(&page_of(&name, Stage::All));
+        page_support::assert_well_formed(&html);
+        assert!(!html.contains("http"), "{name}: an address");
+        assert!(!html.contains("<script"), "{name}: a script");
+        assert!(!html.contains("src="), "{name}: a file of its own");
+        assert!(html.contains("prefers-color-scheme: dark") && html.contains("@media print"));
+        assert!(html.matches("<section>").count() >= 11, "{name}");
+        assert!(html.contains("<math display=\"block\">"), "{name}");
+    }
+}
+
+#[test]
+fn texts_of_a_spec_are_shown_and_not_obeyed() {
+    // The checks of a spec refuse most of this; the page does not rely on them.
+    let hostile = r#"</title><script>alert(1)</script> \input{/etc/passwd} $x$ % & # ~ ^ _ {"#;
+    let steering = "\u{1b}[2J \u{202e}abc\u{200f} 漢";
+    let page = page_support::page_after(&spec("pendulum"), |m| {
+        m.title = hostile.to_owned();
+        m.source = Some(hostile.to_owned());
+        m.parameters[0].label.about = hostile.to_owned();
+        m.parameters[1].label.name = hostile.to_owned();
+        m.parameters[2].label.unit.text = hostile.to_owned();
+        m.coordinates[0].label.name = steering.to_owned();
+        m.frames[1].name = hostile.to_owned();
+        m.points[1].name = hostile.to_owned();
+        m.bodies[0].name = hostile.to_owned();
+        m.bodies[0].about = steering.to_owned();
+        m.loads[0].name = hostile.to_owned();
+        m.outputs[0].label.name = hostile.to_owned();
+    });
+
+    let html = page::html(&page);
+    page_support::assert_well_formed(&html);
+    assert!(!html.contains("<script"));
+    assert!(html.contains("&lt;script&gt;alert(1)&lt;/script&gt;"));
+
+    let latex = page::latex(&page);
+    assert!(!latex.contains("\\input"));
+    assert!(latex.contains(r"\textbackslash{}input\{/etc/passwd\} \$x\$ \% \& \#"));
+
+    for output in [page::text(&page), latex, html] {
+        let steers = |c: char| (c.is_control() && c != '\n') || ('\u{202a}'..='\u{202e}').contains(&c);
+        assert!(!output.contains(steers));
+        assert!(!output.contains('\u{200f}'));
+    }
+}
+
+#[test]
+fn what_the_page_says_is_true() {
+    // Read as a program, every page of a shipped mechanism is free of contradictions: definitions,
+    // constraints, Appell's equations and their solution hold together.
+    for name in shipped() {
+        let checked = page_support::check(&page_of(&name, Stage::Equations), 7);
+        assert!(checked > 0, "{name}: nothing was checked");
+    }
+}

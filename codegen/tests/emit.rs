@@ -1,20 +1,17 @@
 //! Emitted Rust compiles, computes exactly what the schedule says, and is the same in every run.
 //!
-//! `UPDATE_GOLDEN=1 cargo test -p appell-codegen --test emit` writes the golden files anew. They
-//! are real modules of this test: what is compared is what is compiled.
+//! The golden files are modules of this test; `emit_golden` compares them and writes them anew.
 
 #![allow(clippy::unwrap_used, reason = "tests may panic")]
 
 mod emit_support;
 
-use std::path::Path;
-
-use appell_codegen::emit::{Emitted, Error, Options, emit, emit_functions};
+use appell_codegen::emit::{Error, Options, emit, emit_functions};
 use appell_codegen::program::{FunctionKind, Program};
 use appell_codegen::schedule::{interpret, schedule};
 use appell_runtime::Dual;
 use appell_runtime::model::{At, Model};
-use emit_support::{Numbers, mixture, quantity};
+use emit_support::{Numbers, SPEC, golden_options, mixture, quantity};
 
 #[allow(non_snake_case, dead_code, unreachable_pub, clippy::pedantic)]
 mod unicycle {
@@ -23,49 +20,6 @@ mod unicycle {
 #[allow(non_snake_case, dead_code, unreachable_pub, clippy::pedantic)]
 mod mixture_model {
     include!("emit_golden/mixture.rs");
-}
-
-const SPEC: &str = "# A spec with \"quotes\" and \"#.\nname = 'unicycle'\n";
-
-fn golden_options(model_impl: bool) -> Options {
-    Options {
-        model_impl,
-        spec: model_impl.then(|| SPEC.to_owned()),
-        ..Options::default()
-    }
-}
-
-fn is_golden(name: &str, emitted: &Emitted) {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/emit_golden");
-    for (ending, text) in [("rs", &emitted.source), ("md", &emitted.docs)] {
-        let file = folder.join(format!("{name}.{ending}"));
-        if std::env::var_os("UPDATE_GOLDEN").is_some() {
-            std::fs::create_dir_all(&folder).unwrap();
-            std::fs::write(&file, text).unwrap();
-        }
-        let golden = std::fs::read_to_string(&file).unwrap_or_default();
-        assert!(
-            golden == *text,
-            "{} is not what is emitted; see the head of this test",
-            file.display()
-        );
-    }
-}
-
-#[test]
-fn the_unicycle_is_emitted_as_in_the_golden_file() {
-    is_golden(
-        "unicycle",
-        &emit(&emit_support::unicycle(), &golden_options(true)).unwrap(),
-    );
-}
-
-#[test]
-fn the_mixture_is_emitted_as_in_the_golden_file() {
-    is_golden(
-        "mixture",
-        &emit(&mixture(), &golden_options(false)).unwrap(),
-    );
 }
 
 #[test]

@@ -1531,7 +1531,7 @@ const _: () = {
             write(
                 rates,
                 &<[f64; N]>::from(
-                    self::self::rates(&parameters(&at), &state(&at), &inputs(&at)),
+                    self::rates(&parameters(&at), &state(&at), &inputs(&at)),
                 ),
             );
         }
@@ -1543,7 +1543,7 @@ const _: () = {
             a: &mut [f64],
             b: &mut [f64],
         ) {
-            let all = self::jacobians(&parameters(&at), &state(&at), &inputs(&at));
+            let all = jacobians(&parameters(&at), &state(&at), &inputs(&at));
             write(rates, &<[f64; N]>::from(all.rates));
             write(a, all.a.as_flattened());
             write(b, all.b.as_flattened());
@@ -1552,7 +1552,7 @@ const _: () = {
         fn parameter_jacobian(&self, at: At<'_>, p: &mut [f64]) {
             write(
                 p,
-                self::all_jacobians(&parameters(&at), &state(&at), &inputs(&at))
+                all_jacobians(&parameters(&at), &state(&at), &inputs(&at))
                     .p
                     .as_flattened(),
             );
@@ -1567,30 +1567,29 @@ const _: () = {
         ) {
             write(
                 mass,
-                self::mass_matrix(&parameters(&at), &state(&at), &inputs(&at))
-                    .as_flattened(),
+                mass_matrix(&parameters(&at), &state(&at), &inputs(&at)).as_flattened(),
             );
             write(
                 bias,
                 &<[f64; S]>::from(
-                    self::self::bias(&parameters(&at), &state(&at), &inputs(&at)),
+                    self::bias(&parameters(&at), &state(&at), &inputs(&at)),
                 ),
             );
             write(
                 forces,
                 &<[f64; S]>::from(
-                    self::generalized_forces(&parameters(&at), &state(&at), &inputs(&at)),
+                    generalized_forces(&parameters(&at), &state(&at), &inputs(&at)),
                 ),
             );
         }
 
         fn energies(&self, at: At<'_>) -> ::appell_runtime::model::Energies {
-            let all = self::energies(&parameters(&at), &state(&at), &inputs(&at));
+            let all = energies(&parameters(&at), &state(&at), &inputs(&at));
             ::appell_runtime::model::Energies {
                 kinetic: all.kinetic,
                 potential: all.potential,
                 power: all.power,
-                acceleration: self::acceleration_energy(
+                acceleration: acceleration_energy(
                         &parameters(&at),
                         &state(&at),
                         &inputs(&at),

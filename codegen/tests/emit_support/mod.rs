@@ -2,11 +2,24 @@
 #![allow(dead_code, unreachable_pub, reason = "every test file uses a part of it")]
 #![allow(clippy::unwrap_used, clippy::too_many_lines, reason = "tests may panic")]
 
+use appell_codegen::emit::Options;
 use appell_codegen::program::{Arguments, Array, Function, FunctionKind, Layout, Program};
 use appell_codegen::symbolic::{
     Derivatives, Expr, Function as SymbolicFunction, Graph, Rational, Relation, SymbolId,
 };
 use appell_runtime::model::{ModelInfo, Quantity};
+
+/// A text that is hard to quote.
+pub const SPEC: &str = "# A spec with \"quotes\" and \"#.\nname = 'unicycle'\n";
+
+/// What the golden files are emitted with.
+pub fn golden_options(model_impl: bool) -> Options {
+    Options {
+        model_impl,
+        spec: model_impl.then(|| SPEC.to_owned()),
+        ..Options::default()
+    }
+}
 
 /// A quantity with a unit.
 pub fn quantity(name: &str, about: &str, unit: &str, value: f64) -> Quantity {

@@ -22,9 +22,13 @@ impl Algebra {
     /// Tools for the expressions in `graph`.
     pub fn new(graph: Graph, symbols: &Symbols, seed: u64) -> Self {
         let coordinates = ids(&graph, &symbols.coordinates);
+        let mut test = IdentityTest::new(seed);
+        if let Some(pi) = graph.as_symbol(symbols.pi) {
+            test = test.with_pi(pi);
+        }
         Self {
             graph,
-            test: IdentityTest::new(seed),
+            test,
             coordinates,
             derivatives: Vec::new(),
         }

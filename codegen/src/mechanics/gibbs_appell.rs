@@ -10,7 +10,7 @@ use super::lower::Lowering;
 use super::symbols::Symbols;
 use super::time::TimeDerivative;
 use crate::symbolic::vector::{self, Mat3, Vec3};
-use crate::symbolic::{Expr, Graph, Rational};
+use crate::symbolic::{Expr, Graph, Rational, Substitution};
 
 /// Motion of one body, linear in the pseudo-accelerations.
 #[derive(Debug, Clone)]
@@ -71,7 +71,9 @@ pub fn body_motions(
         let partial = partial_velocities(algebra, velocity.v, &symbols.speeds);
         let w_frame = frame_rate(algebra, mechanism, kinematics, velocity.frame);
         let mut bias = time.of3(algebra, velocity.v);
-        let turning = algebra.graph.cross(w_frame, velocity.v);
+        let point = &mechanism.points[body.centre].name;
+        let named_velocity = named3(algebra, &format!("v_{point}"), velocity.v);
+        let turning = algebra.graph.cross(w_frame, named_velocity);
         bias = algebra.graph.add3(bias, turning);
         let bias = algebra.shortest3(bias);
         let bias = named3(
@@ -175,19 +177,27 @@ fn named3(algebra: &mut Algebra, name: &str, v: Vec3) -> Vec3 {
     named
 }
 
-/// The named parts of the bodies' motions with their definitions; the rates of the frames stay.
-pub fn named_parts(graph: &Graph, bodies: &[BodyMotion]) -> Vec<(Expr, Expr)> {
-    bodies
-        .iter()
-        .flat_map(|body| {
-            let rotation = body
-                .rotation
-                .iter()
-                .flat_map(|rotation| rotation.momentum_rate);
-            body.centre.bias.into_iter().chain(rotation)
-        })
-        .filter_map(|part| graph.named_value(part).map(|value| (part, value)))
-        .collect()
+/// The named parts of the bodies' motions, each with its value written out down to the rates of the
+/// frames.
+pub fn named_parts(graph: &mut Graph, bodies: &[BodyMotion]) -> Vec<(Expr, Expr)> {
+    let velocities = bodies.iter().flat_map(|body| body.centre.velocity.v);
+    let mut parts: Vec<(Expr, Expr)> = velocities
+        .filter_map(|v| Some((graph.name_of(v)?, v)))
+        .collect();
+    let mut written_out = Substitution::of_parts(graph, &parts);
+    for body in bodies {
+        let rotation = body
+            .rotation
+            .iter()
+            .flat_map(|rotation| rotation.momentum_rate);
+        for part in body.centre.bias.into_iter().chain(rotation) {
+            if let Some(value) = graph.named_value(part) {
+                let value = written_out.apply(graph, value).unwrap_or(value);
+                parts.push((part, value));
+            }
+        }
+    }
+    parts
 }
 
 /// Partial velocities: coefficients of the directions in a velocity.

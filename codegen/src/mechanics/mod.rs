@@ -89,7 +89,7 @@ pub fn derive(mechanism: &Mechanism) -> Stage<Derivation> {
     let loads = loads::applied_loads(&mut algebra, mechanism, &symbols, &kinematics, rates)?;
     let forces = loads::generalized_forces(&mut algebra, &loads, &symbols.speeds);
 
-    let parts = gibbs_appell::named_parts(&algebra.graph, &bodies);
+    let parts = gibbs_appell::named_parts(&mut algebra.graph, &bodies);
     let motion = motion::solve(&mut algebra, mechanism, &gibbs, &forces, &parts)?;
     let coordinate_rates = mechanism
         .coordinates

@@ -72,11 +72,17 @@ pub fn solve(
         let block = if speeds.len() <= LARGEST_EXPLICIT_BLOCK {
             let eliminated = eliminate(algebra, mechanism, &gibbs.mass_matrix, &right, &speeds)?;
             let values = substitute_back(algebra, &eliminated, &accelerations);
-            let written_out = quotients(algebra, &gibbs.mass_matrix, &right, &speeds, parts);
+            let written_out = quotients(
+                algebra,
+                mechanism,
+                &gibbs.mass_matrix,
+                &right,
+                &speeds,
+                parts,
+            );
             let other = substitute_back(algebra, &written_out, &accelerations);
-            let shorter = std::env::var("Q").is_ok_and(|q| q == format!("{speeds:?}"))
-                || !written_out.is_empty()
-                    && algebra.graph.operations(&other) <= algebra.graph.operations(&values);
+            let shorter = !written_out.is_empty()
+                && algebra.graph.operations(&other) <= algebra.graph.operations(&values);
             Block::Eliminated(if shorter { written_out } else { eliminated })
         } else {
             let block = FactorizedBlock::new(algebra, mechanism, &gibbs.mass_matrix, &speeds)?;
@@ -177,8 +183,7 @@ fn eliminate(
     let mut equations = Vec::with_capacity(speeds.len());
     while !open.is_empty() {
         let k = simplest_pivot(algebra, mechanism, &schur, &mut open)?;
-        let name = format!("pivot_{}", mechanism.pseudo_velocities[k].label.name);
-        let pivot = algebra.graph.name(&name, schur[k][k]);
+        let pivot = name_pivot(algebra, mechanism, k, schur[k][k]);
         let mut couplings = Vec::with_capacity(open.len());
         for &i in &open {
             // The pivot itself may cancel; where it does not, its name is shorter.
@@ -212,6 +217,11 @@ fn eliminate(
     Ok(equations)
 }
 
+fn name_pivot(algebra: &mut Algebra, mechanism: &Mechanism, speed: usize, pivot: Expr) -> Expr {
+    let name = format!("pivot_{}", mechanism.pseudo_velocities[speed].label.name);
+    algebra.graph.name(&name, pivot)
+}
+
 /// Takes the diagonal entry with the fewest operations out of the open ones.
 pub fn simplest_pivot(
     algebra: &mut Algebra,
@@ -240,6 +250,7 @@ pub fn simplest_pivot(
 /// denominator have in common then cancels. Empty for larger blocks.
 fn quotients(
     algebra: &mut Algebra,
+    mechanism: &Mechanism,
     mass_matrix: &[Vec<Expr>],
     right: &[Expr],
     speeds: &[usize],
@@ -265,6 +276,7 @@ fn quotients(
         let Some([whole, right, pivot]) = algebra.cancelled(numerator, denominator, parts) else {
             return Vec::new();
         };
+        let pivot = name_pivot(algebra, mechanism, speed, pivot);
         equations.push(Eliminated {
             speed,
             pivot,

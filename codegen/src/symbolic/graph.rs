@@ -149,6 +149,11 @@ impl Graph {
         &self.definitions[index as usize]
     }
 
+    /// The named expression that stands for `value`, if it has a name.
+    pub fn name_of(&self, value: Expr) -> Option<Expr> {
+        self.names.get(&value).copied()
+    }
+
     /// What a named expression stands for.
     pub fn named_value(&self, expr: Expr) -> Option<Expr> {
         match self.node(expr) {

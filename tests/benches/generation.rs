@@ -1,0 +1,37 @@
+//! From the text of a spec to Rust source, warm: what a build script pays per mechanism.
+//!
+//! `cargo bench -p appell-tests --bench generation`
+
+use appell_codegen::emit::emit_functions;
+use appell_codegen::mechanics::{assemble, derive};
+use appell_codegen::program::FunctionKind;
+use appell_models::Shipped;
+use criterion::{Criterion, criterion_group, criterion_main};
+
+/// Parses, checks, derives, schedules and prints.
+fn generate(shipped: &Shipped, kinds: &[FunctionKind]) -> usize {
+    let checked = appell_spec::load(shipped.file, shipped.spec).expect("shipped specs are right");
+    let derivation = derive(&checked.mechanism).ok().expect("shipped specs can be derived");
+    let program =
+        assemble::program(derivation, &checked.mechanism, kinds).expect("shipped specs can be assembled");
+    emit_functions(&program, kinds).expect("shipped specs can be emitted").source.len()
+}
+
+fn generation(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("spec text to Rust");
+    for name in ["unicycle", "euc_3dof"] {
+        let shipped = Shipped::find(name).expect("it is shipped");
+        for (what, kinds) in [
+            ("rates", [FunctionKind::Rates].as_slice()),
+            ("rates and Jacobians", &[FunctionKind::Rates, FunctionKind::Jacobians]),
+        ] {
+            group.bench_function(format!("{name}, {what}"), |bencher| {
+                bencher.iter(|| generate(shipped, kinds));
+            });
+        }
+    }
+    group.finish();
+}
+
+criterion_group!(benches, generation);
+criterion_main!(benches);

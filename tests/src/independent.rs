@@ -5,6 +5,7 @@
 //! coordinates, and the linear systems are solved with numbers. What is shared with the tool under
 //! test is the meaning of a spec, [`Mechanism`](appell_spec::Mechanism), and the dual numbers.
 
+pub mod compare;
 pub mod evaluate;
 pub mod kane;
 pub mod lagrange;

@@ -8,7 +8,8 @@
 // Whatever fails here fails a test, which is the point.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::missing_panics_doc)]
 
-//pub mod engine;
+pub mod dual;
+pub mod engine;
 pub mod errata;
 pub mod formula;
 pub mod independent;

@@ -1,0 +1,167 @@
+//! The executions of a schedule: interpreted, emitted, compiled in the process.
+
+use appell_codegen::interpreted::InterpretedModel;
+use appell_codegen::jit::JitModel;
+use appell_codegen::program::Program;
+use appell_models::Shipped;
+use appell_runtime::model::{At, Model};
+use appell_spec::Mechanism;
+
+use crate::shipped;
+
+/// A model and how it is executed.
+pub struct Engine {
+    /// For messages.
+    pub name: &'static str,
+    /// The model.
+    pub model: Box<dyn Model>,
+}
+
+/// Every execution of a shipped mechanism.
+pub fn engines(name: &str) -> Vec<Engine> {
+    let program = shipped::program(&shipped::mechanism(name));
+    let emitted = Shipped::find(name).unwrap_or_else(|| panic!("`{name}` was not emitted"));
+    let mut engines = in_process(program);
+    engines.push(Engine { name: "emitted", model: Box::new(Emitted(emitted.model)) });
+    engines
+}
+
+/// The executions that need no build: of any program.
+pub fn in_process(program: Program) -> Vec<Engine> {
+    let jit = JitModel::new(&program).unwrap_or_else(|error| panic!("{}: {error}", program.info.name));
+    vec![
+        Engine { name: "interpreted", model: Box::new(InterpretedModel::new(program)) },
+        Engine { name: "compiled in the process", model: Box::new(jit) },
+    ]
+}
+
+/// The interpreter of any mechanism.
+pub fn interpreter(mechanism: &Mechanism) -> InterpretedModel {
+    InterpretedModel::new(shipped::program(mechanism))
+}
+
+/// An emitted model, in a box like the others.
+struct Emitted(&'static dyn Model);
+
+impl Model for Emitted {
+    fn info(&self) -> &appell_runtime::model::ModelInfo {
+        self.0.info()
+    }
+    fn rates(&self, at: At<'_>, rates: &mut [f64]) {
+        self.0.rates(at, rates);
+    }
+    fn jacobians(&self, at: At<'_>, rates: &mut [f64], a: &mut [f64], b: &mut [f64]) {
+        self.0.jacobians(at, rates, a, b);
+    }
+    fn parameter_jacobian(&self, at: At<'_>, p: &mut [f64]) {
+        self.0.parameter_jacobian(at, p);
+    }
+    fn appell(&self, at: At<'_>, mass: &mut [f64], bias: &mut [f64], forces: &mut [f64]) {
+        self.0.appell(at, mass, bias, forces);
+    }
+    fn energies(&self, at: At<'_>) -> appell_runtime::model::Energies {
+        self.0.energies(at)
+    }
+    fn constraint_residual(&self, at: At<'_>, residual: &mut [f64]) {
+        self.0.constraint_residual(at, residual);
+    }
+    fn constraint_forces(&self, at: At<'_>, forces: &mut [f64]) {
+        self.0.constraint_forces(at, forces);
+    }
+    fn outputs(&self, at: At<'_>, outputs: &mut [f64]) {
+        self.0.outputs(at, outputs);
+    }
+}
+
+/// Everything a model computes at a point.
+#[derive(Debug, Clone)]
+pub struct Evaluation {
+    /// ẋ.
+    pub rates: Vec<f64>,
+    /// A, row by row.
+    pub a: Vec<f64>,
+    /// B, row by row.
+    pub b: Vec<f64>,
+    /// P, row by row.
+    pub p: Vec<f64>,
+    /// M, row by row.
+    pub mass_matrix: Vec<f64>,
+    /// b of Appell's equations.
+    pub bias: Vec<f64>,
+    /// Π.
+    pub forces: Vec<f64>,
+    /// Kinetic and potential energy, power, acceleration energy.
+    pub energies: Vec<f64>,
+    /// Constraint residual.
+    pub residual: Vec<f64>,
+    /// Reactions.
+    pub reactions: Vec<f64>,
+    /// Outputs.
+    pub outputs: Vec<f64>,
+}
+
+impl Evaluation {
+    /// Calls every function of a model.
+    pub fn of(model: &dyn Model, at: At<'_>) -> Self {
+        let info = model.info();
+        let (n, m, k, s) = (info.state_len(), info.input_len(), info.parameter_len(), info.speeds);
+        let nan = |len: usize| vec![f64::NAN; len];
+        let mut e = Self {
+            rates: nan(n),
+            a: nan(n * n),
+            b: nan(n * m),
+            p: nan(n * k),
+            mass_matrix: nan(s * s),
+            bias: nan(s),
+            forces: nan(s),
+            energies: Vec::new(),
+            residual: nan(info.constraint_rows.len()),
+            reactions: nan(3 * info.reactions.len()),
+            outputs: nan(info.output_len()),
+        };
+        model.jacobians(at, &mut e.rates, &mut e.a, &mut e.b);
+        model.rates(at, &mut e.rates);
+        model.parameter_jacobian(at, &mut e.p);
+        model.appell(at, &mut e.mass_matrix, &mut e.bias, &mut e.forces);
+        let energies = model.energies(at);
+        e.energies = vec![energies.kinetic, energies.potential, energies.power, energies.acceleration];
+        model.constraint_residual(at, &mut e.residual);
+        model.constraint_forces(at, &mut e.reactions);
+        model.outputs(at, &mut e.outputs);
+        e
+    }
+
+    /// Its arrays with their names.
+    pub fn arrays(&self) -> [(&'static str, &[f64]); 11] {
+        [
+            ("rates", &self.rates),
+            ("A", &self.a),
+            ("B", &self.b),
+            ("P", &self.p),
+            ("mass matrix", &self.mass_matrix),
+            ("bias", &self.bias),
+            ("forces", &self.forces),
+            ("energies", &self.energies),
+            ("residual", &self.residual),
+            ("reactions", &self.reactions),
+            ("outputs", &self.outputs),
+        ]
+    }
+}
+
+/// Demands that two arrays agree up to `tolerance` of their largest entry, or of `floor` where all
+/// entries are smaller.
+///
+/// # Panics
+///
+/// Where they do not, with the entry.
+pub fn assert_close(what: &str, got: &[f64], wanted: &[f64], tolerance: f64, floor: f64) {
+    assert_eq!(got.len(), wanted.len(), "{what}: lengths");
+    let scale = got.iter().chain(wanted).fold(floor, |scale, x| scale.max(x.abs()));
+    for (i, (got, wanted)) in got.iter().zip(wanted).enumerate() {
+        let error = (got - wanted).abs();
+        // A difference that is no number fails as well.
+        let close = error <= tolerance * scale;
+        assert!(close, "{what}, entry {i}: {got:e} against {wanted:e}, off by {error:.2e} at a scale of {scale:.2e}");
+    }
+}

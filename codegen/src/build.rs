@@ -23,11 +23,12 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
+use appell_spec::Report;
 use thiserror::Error;
 
-use crate::compile::compile;
+use crate::compile::{Derived, derived, report};
 use crate::emit::{self, Emitted, Options, emit};
-use crate::mechanics::assemble::ALL;
+use crate::mechanics::assemble::{self, ALL};
 use crate::program::Program;
 
 /// Compiles one spec. Where it is wrong, prints what to change and ends the build script.
@@ -155,7 +156,7 @@ impl Build {
             })?;
             // The same name in messages and comments on every system.
             let file = spec.to_string_lossy().replace('\\', "/");
-            match compile(&file, &text, &ALL) {
+            match program(&file, &text) {
                 Ok(program) => compiled.push(self.emitted(spec, text, program)?),
                 Err(report) => reports.push(report.plain()),
             }
@@ -220,6 +221,23 @@ impl Build {
             }
         }
     }
+}
+
+/// The program of a spec; what looks unintended in it is told as warnings of the build.
+fn program(file: &str, text: &str) -> Result<Program, Report> {
+    let Derived {
+        mechanism,
+        derivation,
+        warnings,
+    } = derived(file, text)?;
+    let warnings = Report::new(file, text, warnings);
+    for warning in warnings.diagnostics() {
+        let at = warning.labels.first().map_or(0, |(span, _)| span.start);
+        let (line, column) = warnings.line_column(at);
+        println!("cargo::warning={file}:{line}:{column}: {}", warning.message);
+    }
+    assemble::program(derivation, &mechanism, &ALL)
+        .map_err(|findings| report(&mechanism, text, &findings))
 }
 
 /// Cargo runs build scripts in the folder of their crate; a relative folder for copies is one of

@@ -21,7 +21,10 @@ fn handouts_read_as_before() {
 
 #[test]
 fn everything_about_a_mechanism_reads_as_before() {
-    insta::assert_snapshot!("unicycle_all_text", page::text(&page_of("unicycle", Stage::All)));
+    insta::assert_snapshot!(
+        "unicycle_all_text",
+        page::text(&page_of("unicycle", Stage::All))
+    );
 }
 
 #[test]
@@ -50,7 +53,10 @@ fn text_keeps_its_width() {
     for name in shipped() {
         let text = page::text(&page_of(&name, Stage::Equations));
         for line in text.lines() {
-            let columns = line.chars().filter(|c| !('\u{300}'..='\u{36f}').contains(c)).count();
+            let columns = line
+                .chars()
+                .filter(|c| !('\u{300}'..='\u{36f}').contains(c))
+                .count();
             assert!(columns <= WIDTH, "{name}, {columns} columns: {line}");
         }
     }
@@ -96,7 +102,7 @@ fn html_is_well_formed_and_needs_no_network() {
 #[test]
 fn texts_of_a_spec_are_shown_and_not_obeyed() {
     // The checks of a spec refuse most of this; the page does not rely on them.
-    let hostile = r#"</title><script>alert(1)</script> \input{/etc/passwd} $x$ % & # ~ ^ _ {"#;
+    let hostile = r"</title><script>alert(1)</script> \input{/etc/passwd} $x$ % & # ~ ^ _ {";
     let steering = "\u{1b}[2J \u{202e}abc\u{200f} 漢";
     let page = page_support::page_after(&spec("pendulum"), |m| {
         m.title = hostile.to_owned();
@@ -123,7 +129,8 @@ fn texts_of_a_spec_are_shown_and_not_obeyed() {
     assert!(latex.contains(r"\textbackslash{}input\{/etc/passwd\} \$x\$ \% \& \#"));
 
     for output in [page::text(&page), latex, html] {
-        let steers = |c: char| (c.is_control() && c != '\n') || ('\u{202a}'..='\u{202e}').contains(&c);
+        let steers =
+            |c: char| (c.is_control() && c != '\n') || ('\u{202a}'..='\u{202e}').contains(&c);
         assert!(!output.contains(steers));
         assert!(!output.contains('\u{200f}'));
     }

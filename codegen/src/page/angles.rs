@@ -13,13 +13,21 @@ struct Pair {
 
 /// An expanded sum with pairs of products put together to functions of one angle.
 pub(super) fn with_compound_angles(graph: &mut Graph, expr: Expr) -> Expr {
-    let Node::Sum(terms) = graph.node(expr) else { return expr };
-    let terms: Vec<(Rational, Expr)> = terms.iter().map(|t| (t.coefficient.clone(), t.expr)).collect();
+    let Node::Sum(terms) = graph.node(expr) else {
+        return expr;
+    };
+    let terms: Vec<(Rational, Expr)> = terms
+        .iter()
+        .map(|t| (t.coefficient.clone(), t.expr))
+        .collect();
     let mut used = vec![false; terms.len()];
     let mut sum: Vec<(Rational, Expr)> = Vec::new();
     // Terms that wait for their partner, by what they are multiplied by and by their angles.
     let mut waiting: FxHashMap<(Expr, Expr, Expr), Vec<usize>> = FxHashMap::default();
-    let pairs: Vec<Vec<Pair>> = terms.iter().map(|&(_, term)| pairs_of(graph, term)).collect();
+    let pairs: Vec<Vec<Pair>> = terms
+        .iter()
+        .map(|&(_, term)| pairs_of(graph, term))
+        .collect();
     for (k, candidates) in pairs.iter().enumerate() {
         for pair in candidates {
             let key = (pair.rest, pair.turns[0].1, pair.turns[1].1);
@@ -28,9 +36,14 @@ pub(super) fn with_compound_angles(graph: &mut Graph, expr: Expr) -> Expr {
                 if used[k] || used[partner] {
                     continue;
                 }
-                let other = pairs[partner].iter().find(|p| (p.rest, p.turns[0].1, p.turns[1].1) == key);
+                let other = pairs[partner]
+                    .iter()
+                    .find(|p| (p.rest, p.turns[0].1, p.turns[1].1) == key);
                 let together = other.and_then(|other| {
-                    let (coefficients, turns) = ([&terms[partner].0, &terms[k].0], [&other.turns, &pair.turns]);
+                    let (coefficients, turns) = (
+                        [&terms[partner].0, &terms[k].0],
+                        [&other.turns, &pair.turns],
+                    );
                     compound(graph, coefficients, turns)
                 });
                 if let Some((coefficient, function)) = together {
@@ -46,18 +59,28 @@ pub(super) fn with_compound_angles(graph: &mut Graph, expr: Expr) -> Expr {
     if sum.is_empty() {
         return expr;
     }
-    sum.extend(terms.into_iter().zip(used).filter(|(_, used)| !used).map(|(term, _)| term));
+    sum.extend(
+        terms
+            .into_iter()
+            .zip(used)
+            .filter(|(_, used)| !used)
+            .map(|(term, _)| term),
+    );
     graph.linear_combination(&sum)
 }
 
 /// Every way to take two single turns of different angles out of a product.
 fn pairs_of(graph: &mut Graph, term: Expr) -> Vec<Pair> {
-    let Node::Product(factors) = graph.node(term) else { return Vec::new() };
+    let Node::Product(factors) = graph.node(term) else {
+        return Vec::new();
+    };
     let turns: Vec<(Expr, Function, Expr)> = factors
         .iter()
         .filter(|f| f.exponent == 1)
         .filter_map(|f| match graph.node(f.base) {
-            Node::Function(kind @ (Function::Sin | Function::Cos), angle) => Some((f.base, *kind, *angle)),
+            Node::Function(kind @ (Function::Sin | Function::Cos), angle) => {
+                Some((f.base, *kind, *angle))
+            }
             _ => None,
         })
         .collect();
@@ -69,7 +92,10 @@ fn pairs_of(graph: &mut Graph, term: Expr) -> Vec<Pair> {
             }
             let (a, b) = if a.2 < b.2 { (a, b) } else { (b, a) };
             let both = graph.mul(a.0, b.0);
-            pairs.push(Pair { turns: [(a.1, a.2), (b.1, b.2)], rest: graph.div(term, both) });
+            pairs.push(Pair {
+                turns: [(a.1, a.2), (b.1, b.2)],
+                rest: graph.div(term, both),
+            });
         }
     }
     pairs
@@ -98,8 +124,16 @@ fn compound(
         _ => return None,
     };
     let plus = sine == equal;
-    let angle = if plus { graph.add(a, b) } else { graph.sub(a, b) };
-    let function = if sine { graph.sin(angle) } else { graph.cos(angle) };
+    let angle = if plus {
+        graph.add(a, b)
+    } else {
+        graph.sub(a, b)
+    };
+    let function = if sine {
+        graph.sin(angle)
+    } else {
+        graph.cos(angle)
+    };
     Some((coefficient, function))
 }
 
@@ -113,8 +147,11 @@ mod tests {
         let (a, b, m) = (g.symbol("a"), g.symbol("b"), g.symbol("m"));
         for (angle_sign, sine) in [(1, true), (-1, true), (1, false), (-1, false)] {
             let (sa, ca, sb, cb) = (g.sin(a), g.cos(a), g.sin(b), g.cos(b));
-            let (first, second, sign) =
-                if sine { ([sa, cb], [ca, sb], angle_sign) } else { ([ca, cb], [sa, sb], -angle_sign) };
+            let (first, second, sign) = if sine {
+                ([sa, cb], [ca, sb], angle_sign)
+            } else {
+                ([ca, cb], [sa, sb], -angle_sign)
+            };
             let first = g.product(&[m, first[0], first[1]]);
             let second = g.product(&[m, second[0], second[1]]);
             let sum = g.linear_combination(&[(3.into(), first), ((3 * sign).into(), second)]);
@@ -122,7 +159,11 @@ mod tests {
             let function = if sine { g.sin(angle) } else { g.cos(angle) };
             let expected = g.product(&[m, function]);
             let expected = g.scale(&3.into(), expected);
-            assert_eq!(with_compound_angles(&mut g, sum), expected, "{angle_sign} {sine}");
+            assert_eq!(
+                with_compound_angles(&mut g, sum),
+                expected,
+                "{angle_sign} {sine}"
+            );
         }
     }
 }

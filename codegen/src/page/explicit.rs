@@ -6,7 +6,11 @@ use crate::symbolic::{Expr, Function, Graph, Node, Rational};
 
 /// `expr` with the definitions of its names put in, except for the names that `keeps` accepts.
 /// `None` where a number is divided by zero on the way.
-pub(super) fn dissolve(graph: &mut Graph, expr: Expr, keeps: &dyn Fn(&str) -> bool) -> Option<Expr> {
+pub(super) fn dissolve(
+    graph: &mut Graph,
+    expr: Expr,
+    keeps: &dyn Fn(&str) -> bool,
+) -> Option<Expr> {
     let mut known: FxHashMap<Expr, Expr> = FxHashMap::default();
     for part in graph.in_order(&[expr]) {
         let new = |e: &Expr| known[e];
@@ -14,25 +18,44 @@ pub(super) fn dissolve(graph: &mut Graph, expr: Expr, keeps: &dyn Fn(&str) -> bo
             Node::Number(_) | Node::Symbol(_) | Node::Solution { .. } => part,
             Node::Named(id) => {
                 let definition = graph.definition(id);
-                if keeps(&definition.name) { part } else { new(&definition.value) }
+                if keeps(&definition.name) {
+                    part
+                } else {
+                    new(&definition.value)
+                }
             }
             Node::Sum(terms) => {
-                let parts: Vec<_> = terms.iter().map(|t| (t.coefficient.clone(), new(&t.expr))).collect();
+                let parts: Vec<_> = terms
+                    .iter()
+                    .map(|t| (t.coefficient.clone(), new(&t.expr)))
+                    .collect();
                 graph.linear_combination(&parts)
             }
             Node::Product(factors) => {
-                if factors.iter().any(|f| f.exponent < 0 && new(&f.base) == Graph::ZERO) {
+                if factors
+                    .iter()
+                    .any(|f| f.exponent < 0 && new(&f.base) == Graph::ZERO)
+                {
                     return None;
                 }
-                let powers: Vec<_> = factors.iter().map(|f| graph.pow(new(&f.base), f.exponent)).collect();
+                let powers: Vec<_> = factors
+                    .iter()
+                    .map(|f| graph.pow(new(&f.base), f.exponent))
+                    .collect();
                 graph.product(&powers)
             }
             Node::Function(function, a) => graph.function(function, new(&a)),
             Node::Atan2(y, x) => graph.atan2(new(&y), new(&x)),
             Node::Power(base, exponent) => graph.power(new(&base), new(&exponent)),
-            Node::Choice { relation, compared, branches } => {
-                graph.choice(relation, compared.map(|e| new(&e)), branches.map(|e| new(&e)))
-            }
+            Node::Choice {
+                relation,
+                compared,
+                branches,
+            } => graph.choice(
+                relation,
+                compared.map(|e| new(&e)),
+                branches.map(|e| new(&e)),
+            ),
         };
         known.insert(part, value);
     }
@@ -46,7 +69,10 @@ pub(super) type Monomial = Vec<(usize, i32)>;
 /// is free of all keys last. Keys inside functions and denominators stay in the coefficients.
 pub(super) fn collect(graph: &mut Graph, expr: Expr, keys: &[Expr]) -> Vec<(Monomial, Expr)> {
     let terms: Vec<(Expr, Rational)> = match graph.node(expr) {
-        Node::Sum(terms) => terms.iter().map(|t| (t.expr, t.coefficient.clone())).collect(),
+        Node::Sum(terms) => terms
+            .iter()
+            .map(|t| (t.expr, t.coefficient.clone()))
+            .collect(),
         _ => vec![(expr, Rational::ONE)],
     };
     let mut groups: Vec<(Monomial, Vec<(Rational, Expr)>)> = Vec::new();
@@ -58,7 +84,11 @@ pub(super) fn collect(graph: &mut Graph, expr: Expr, keys: &[Expr]) -> Vec<(Mono
             _ => vec![(term, 1)],
         };
         for (base, exponent) in factors {
-            if let Some(key) = keys.iter().position(|&k| k == base).filter(|_| exponent > 0) {
+            if let Some(key) = keys
+                .iter()
+                .position(|&k| k == base)
+                .filter(|_| exponent > 0)
+            {
                 monomial.push((key, exponent));
                 let power = graph.pow(base, -exponent);
                 rest = graph.mul(rest, power);
@@ -72,17 +102,28 @@ pub(super) fn collect(graph: &mut Graph, expr: Expr, keys: &[Expr]) -> Vec<(Mono
     }
     // Early keys and high powers first; the empty monomial last.
     groups.sort_by_key(|(monomial, _)| {
-        let key: Vec<(usize, i32)> = monomial.iter().map(|&(key, exponent)| (key, -exponent)).collect();
+        let key: Vec<(usize, i32)> = monomial
+            .iter()
+            .map(|&(key, exponent)| (key, -exponent))
+            .collect();
         (monomial.is_empty(), key)
     });
-    groups.into_iter().map(|(monomial, parts)| (monomial, graph.linear_combination(&parts))).collect()
+    groups
+        .into_iter()
+        .map(|(monomial, parts)| (monomial, graph.linear_combination(&parts)))
+        .collect()
 }
 
 /// A sum as `Σ coefficient · turns`, where `turns` is a product of sines and cosines, also below the
 /// fraction line.
 pub(super) fn collect_turns(graph: &mut Graph, expr: Expr) -> Vec<(Expr, Expr)> {
-    let Node::Sum(terms) = graph.node(expr) else { return vec![(Graph::ONE, expr)] };
-    let terms: Vec<(Expr, Rational)> = terms.iter().map(|t| (t.expr, t.coefficient.clone())).collect();
+    let Node::Sum(terms) = graph.node(expr) else {
+        return vec![(Graph::ONE, expr)];
+    };
+    let terms: Vec<(Expr, Rational)> = terms
+        .iter()
+        .map(|t| (t.expr, t.coefficient.clone()))
+        .collect();
     let mut groups: Vec<(Expr, Vec<(Rational, Expr)>)> = Vec::new();
     for (term, coefficient) in terms {
         let factors: Vec<(Expr, i32)> = match graph.node(term) {
@@ -91,7 +132,10 @@ pub(super) fn collect_turns(graph: &mut Graph, expr: Expr) -> Vec<(Expr, Expr)> 
         };
         let mut turns = Graph::ONE;
         for (base, exponent) in factors {
-            if matches!(graph.node(base), Node::Function(Function::Sin | Function::Cos, _)) {
+            if matches!(
+                graph.node(base),
+                Node::Function(Function::Sin | Function::Cos, _)
+            ) {
                 let power = graph.pow(base, exponent);
                 turns = graph.mul(turns, power);
             }
@@ -102,5 +146,8 @@ pub(super) fn collect_turns(graph: &mut Graph, expr: Expr) -> Vec<(Expr, Expr)> 
             None => groups.push((turns, vec![(coefficient, rest)])),
         }
     }
-    groups.into_iter().map(|(turns, parts)| (turns, graph.linear_combination(&parts))).collect()
+    groups
+        .into_iter()
+        .map(|(turns, parts)| (turns, graph.linear_combination(&parts)))
+        .collect()
 }

@@ -33,7 +33,10 @@ pub(super) struct Setter {
 
 impl Setter {
     pub(super) fn new(lexicon: Lexicon) -> Self {
-        Self { lexicon, parts: FxHashMap::default() }
+        Self {
+            lexicon,
+            parts: FxHashMap::default(),
+        }
     }
 
     /// Letters of symbols and names.
@@ -45,9 +48,9 @@ impl Setter {
     pub(super) fn letter(&mut self, graph: &Graph, expr: Expr) -> Letter {
         match graph.node(expr) {
             Node::Named(_) | Node::Symbol(_) => self.lexicon.letter(graph, expr),
-            Node::Solution { system, row } => {
-                Letter::plain("z").above(&(system + 1).to_string()).below(&(row + 1).to_string())
-            }
+            Node::Solution { system, row } => Letter::plain("z")
+                .above(&(system + 1).to_string())
+                .below(&(row + 1).to_string()),
             _ => {
                 let next = self.parts.len() + 1;
                 let number = *self.parts.entry(expr).or_insert(next);
@@ -62,16 +65,27 @@ impl Setter {
         for part in visible(graph, expr) {
             let set = self.step(graph, part, &known);
             let large = part != expr && (set.width > WIDEST_PART || set.depth > DEEPEST_PART);
-            let set = if large { self.leaf(graph, part, true) } else { set };
+            let set = if large {
+                self.leaf(graph, part, true)
+            } else {
+                set
+            };
             known.insert(part, set);
         }
-        known.remove(&expr).unwrap_or_else(|| self.leaf(graph, expr, false))
+        known
+            .remove(&expr)
+            .unwrap_or_else(|| self.leaf(graph, expr, false))
     }
 
     fn leaf(&mut self, graph: &Graph, expr: Expr, wanted: bool) -> Set {
         let math = Math::Letter(self.letter(graph, expr));
         let width = math.width();
-        Set { math, wants: if wanted { vec![expr] } else { Vec::new() }, width, depth: 0 }
+        Set {
+            math,
+            wants: if wanted { vec![expr] } else { Vec::new() },
+            width,
+            depth: 0,
+        }
     }
 
     fn step(&mut self, graph: &Graph, expr: Expr, known: &FxHashMap<Expr, Set>) -> Set {
@@ -88,10 +102,18 @@ impl Setter {
             Node::Atan2(y, x) => Math::Call(
                 "atan2",
                 1,
-                Box::new(Math::Vector { components: vec![math(*y), math(*x)], frame: None, column: false }),
+                Box::new(Math::Vector {
+                    components: vec![math(*y), math(*x)],
+                    frame: None,
+                    column: false,
+                }),
             ),
             Node::Power(base, exponent) => power(math(*base), math(*exponent)),
-            Node::Choice { relation, compared, branches } => {
+            Node::Choice {
+                relation,
+                compared,
+                branches,
+            } => {
                 let sign = match relation {
                     Relation::Less => "<",
                     Relation::LessOrEqual => "≤",
@@ -116,7 +138,12 @@ impl Setter {
             }
         });
         let width = formula.width();
-        Set { math: formula, wants, width, depth }
+        Set {
+            math: formula,
+            wants,
+            width,
+            depth,
+        }
     }
 
     fn sum(&self, graph: &Graph, terms: &[Term], known: &FxHashMap<Expr, Set>) -> Math {
@@ -132,7 +159,10 @@ impl Setter {
                     Node::Product(factors) => self.product(graph, &size, factors, known),
                     _ if size.is_one() => known[&term.expr].math.clone(),
                     _ => {
-                        let factor = [Factor { base: term.expr, exponent: 1 }];
+                        let factor = [Factor {
+                            base: term.expr,
+                            exponent: 1,
+                        }];
                         self.product(graph, &size, &factor, known)
                     }
                 };
@@ -160,7 +190,13 @@ impl Setter {
         let tangents = take_tangents(graph, &mut factors);
         let mut ordered: Vec<(Place, i32, Math)> = factors
             .iter()
-            .map(|f| (self.place(graph, f.base), f.exponent, known[&f.base].math.clone()))
+            .map(|f| {
+                (
+                    self.place(graph, f.base),
+                    f.exponent,
+                    known[&f.base].math.clone(),
+                )
+            })
             .collect();
         ordered.sort_by_key(|row| row.0);
         let (mut above, mut below) = (Vec::new(), Vec::new());
@@ -169,7 +205,11 @@ impl Setter {
             target.push(raised(base, exponent.unsigned_abs()));
         }
         for (angle, exponent) in tangents {
-            above.push(Math::Call("tan", exponent, Box::new(known[&angle].math.clone())));
+            above.push(Math::Call(
+                "tan",
+                exponent,
+                Box::new(known[&angle].math.clone()),
+            ));
         }
         assemble(coefficient, above, below)
     }
@@ -177,9 +217,10 @@ impl Setter {
     /// Terms follow the order of their first letters; a number comes last.
     fn reading_key(&self, graph: &Graph, term: Expr) -> Vec<(Place, i32)> {
         let mut key: Vec<(Place, i32)> = match graph.node(term) {
-            Node::Product(factors) => {
-                factors.iter().map(|f| (self.place(graph, f.base), -f.exponent)).collect()
-            }
+            Node::Product(factors) => factors
+                .iter()
+                .map(|f| (self.place(graph, f.base), -f.exponent))
+                .collect(),
             Node::Number(_) => return vec![(Place(u8::MAX, term), 0)],
             _ => vec![(self.place(graph, term), -1)],
         };
@@ -236,7 +277,11 @@ pub(super) fn signed(number: &Rational, wrap: impl Fn(Math) -> Math) -> Math {
         Math::Ratio(big.numer().to_string(), big.denom().to_string())
     };
     let size = wrap(digits);
-    if number.is_negative() { Math::Sum(vec![(true, size)]) } else { size }
+    if number.is_negative() {
+        Math::Sum(vec![(true, size)])
+    } else {
+        size
+    }
 }
 
 fn raised(base: Math, exponent: u32) -> Math {
@@ -263,11 +308,14 @@ fn take_tangents(graph: &Graph, factors: &mut Vec<Factor>) -> Vec<(Expr, u32)> {
     };
     let mut tangents = Vec::new();
     for i in 0..factors.len() {
-        let Some(of) = angle(factors[i].base, Function::Sin).filter(|_| factors[i].exponent > 0) else {
+        let Some(of) = angle(factors[i].base, Function::Sin).filter(|_| factors[i].exponent > 0)
+        else {
             continue;
         };
         let cosine = |f: &Factor| f.exponent < 0 && angle(f.base, Function::Cos) == Some(of);
-        let Some(j) = factors.iter().position(cosine) else { continue };
+        let Some(j) = factors.iter().position(cosine) else {
+            continue;
+        };
         let shared = factors[i].exponent.min(-factors[j].exponent);
         factors[i].exponent -= shared;
         factors[j].exponent += shared;

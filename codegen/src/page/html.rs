@@ -1,4 +1,4 @@
-//! HTML: one file that opens from disk, with MathML, in light, dark and on paper.
+//! HTML: one file that opens from disk, with `MathML`, in light, dark and on paper.
 
 use std::fmt::Write;
 
@@ -14,10 +14,14 @@ const STYLE: &str = include_str!("page.css");
 
 /// The page as an HTML document of its own.
 pub fn html(page: &Page) -> String {
-    let mut out = String::from("<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n");
+    let mut out =
+        String::from("<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n");
     out.push_str("<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n");
     let title = escaped(&page.title);
-    let _ = write!(out, "<title>{title}</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n<main>\n");
+    let _ = write!(
+        out,
+        "<title>{title}</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n<main>\n"
+    );
     let _ = writeln!(out, "<h1>{title}</h1>");
     if let Some(source) = &page.source {
         let _ = writeln!(out, "<p class=\"source\">After: {}</p>", escaped(source));
@@ -71,7 +75,11 @@ fn table(out: &mut String, table: &Table) {
 }
 
 fn chain(out: &mut String, chain: &Chain) {
-    let _ = write!(out, "<p class=\"chain\"><span class=\"frame\">{}</span>", escaped(&chain.start));
+    let _ = write!(
+        out,
+        "<p class=\"chain\"><span class=\"frame\">{}</span>",
+        escaped(&chain.start)
+    );
     for (label, to) in &chain.links {
         let _ = write!(
             out,
@@ -87,7 +95,9 @@ fn chain(out: &mut String, chain: &Chain) {
 /// spans all of them.
 fn equations(out: &mut String, equations: &[Equation]) {
     let left_width = left_width(equations);
-    out.push_str("<div class=\"equations\"><math display=\"block\"><mtable displaystyle=\"true\">\n");
+    out.push_str(
+        "<div class=\"equations\"><math display=\"block\"><mtable displaystyle=\"true\">\n",
+    );
     for equation in equations {
         let display = equation.display(WIDTH, left_width);
         for (k, line) in display.lines.iter().enumerate() {
@@ -95,7 +105,7 @@ fn equations(out: &mut String, equations: &[Equation]) {
             let _ = match (display.left, k) {
                 (Some(left), 0) => writeln!(
                     out,
-                    "<mtr class=\"first\"><mtd class=\"left\">{}</mtd><mtd><mo>=</mo></mtd>\
+                    "<mtr class=\"first\"><mtd class=\"left\">{}</mtd><mtd class=\"sign\"><mo>=</mo></mtd>\
                      <mtd class=\"right\">{right}</mtd></mtr>",
                     formula(left)
                 ),

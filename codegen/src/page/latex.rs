@@ -1,4 +1,4 @@
-//! LaTeX: a document of its own that compiles with pdfTeX, XeTeX and LuaTeX.
+//! LaTeX: a document of its own that compiles with `pdftex`, `xetex` and `luatex`.
 
 use std::fmt::Write;
 
@@ -36,9 +36,17 @@ const PREAMBLE: &str = r"\documentclass[10pt,a4paper,fleqn]{article}
 /// The page as a LaTeX document.
 pub fn latex(page: &Page) -> String {
     let mut out = String::from(PREAMBLE);
-    let _ = write!(out, "\\begin{{document}}\n\n{{\\LARGE\\bfseries {}\\par}}\n", escaped(&page.title));
+    let _ = write!(
+        out,
+        "\\begin{{document}}\n\n{{\\LARGE\\bfseries {}\\par}}\n",
+        escaped(&page.title)
+    );
     if let Some(source) = &page.source {
-        let _ = write!(out, "\\smallskip\n{{\\small After: {}\\par}}\n", escaped(source));
+        let _ = write!(
+            out,
+            "\\smallskip\n{{\\small After: {}\\par}}\n",
+            escaped(source)
+        );
     }
     for section in &page.sections {
         let _ = write!(out, "\n\\section{{{}}}\n", spans(&section.heading));
@@ -94,7 +102,9 @@ fn foreign(out: &mut String, c: char) {
         let _ = write!(out, "$\\{command}$");
         return;
     }
-    let raised = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'].iter().position(|&digit| digit == c);
+    let raised = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹']
+        .iter()
+        .position(|&digit| digit == c);
     match (c, raised) {
         (_, Some(digit)) => {
             let _ = write!(out, "$^{{{digit}}}$");
@@ -132,10 +142,23 @@ fn table(out: &mut String, table: &Table) {
     }
     // The last column takes what the others leave.
     let firsts = "l".repeat(columns.saturating_sub(1));
-    let widest = |k: usize| table.rows.iter().filter_map(|row| row.get(k)).map(|cell| width(cell)).max();
-    let used: usize = (0..columns.saturating_sub(1)).map(|k| widest(k).unwrap_or(0) + 3).sum();
-    let share = f64::from(u32::try_from(92_usize.saturating_sub(used).max(24)).unwrap_or(24)) / 100.0;
-    let _ = writeln!(out, "\\begin{{tabular}}{{{firsts}>{{\\raggedright\\arraybackslash}}p{{{share:.2}\\textwidth}}}}");
+    let widest = |k: usize| {
+        table
+            .rows
+            .iter()
+            .filter_map(|row| row.get(k))
+            .map(|cell| width(cell))
+            .max()
+    };
+    let used: usize = (0..columns.saturating_sub(1))
+        .map(|k| widest(k).unwrap_or(0) + 3)
+        .sum();
+    let share =
+        f64::from(u32::try_from(92_usize.saturating_sub(used).max(24)).unwrap_or(24)) / 100.0;
+    let _ = writeln!(
+        out,
+        "\\begin{{tabular}}{{{firsts}>{{\\raggedright\\arraybackslash}}p{{{share:.2}\\textwidth}}}}"
+    );
     for row in &table.rows {
         let cells: Vec<String> = row.iter().map(|cell| spans(cell)).collect();
         let _ = writeln!(out, "{} \\\\", cells.join(" & "));
@@ -163,7 +186,11 @@ fn chain(out: &mut String, chain: &Chain) {
                 Span::Math(math) => formula(math),
             })
             .collect();
-        let _ = write!(out, " \\xrightarrow{{\\;{label}\\;}} \\text{{{}}}", escaped(to));
+        let _ = write!(
+            out,
+            " \\xrightarrow{{\\;{label}\\;}} \\text{{{}}}",
+            escaped(to)
+        );
     }
     out.push_str(" \\]");
 }
@@ -189,8 +216,14 @@ fn equations(out: &mut String, equations: &[Equation]) {
 
 fn pieces(pieces: &[Piece<'_>]) -> String {
     // A bracket is as tall as what it holds; lines may break between the two.
-    let tall = pieces.iter().any(|piece| matches!(piece, Piece::Whole(math) if math.has_fraction()));
-    let (open, close) = if tall { ("\\Bigl(", "\\Bigr)") } else { ("\\bigl(", "\\bigr)") };
+    let tall = pieces
+        .iter()
+        .any(|piece| matches!(piece, Piece::Whole(math) if math.has_fraction()));
+    let (open, close) = if tall {
+        ("\\Bigl(", "\\Bigr)")
+    } else {
+        ("\\bigl(", "\\bigr)")
+    };
     let mut out = String::new();
     let mut after_whole = false;
     for piece in pieces {
@@ -294,17 +327,26 @@ fn formula(math: &Math) -> String {
         },
         Math::Row(factors) => row(factors),
         Math::Sum(terms) => sum(terms),
-        Math::Fraction(above, below) => format!("\\frac{{{}}}{{{}}}", formula(above), formula(below)),
+        Math::Fraction(above, below) => {
+            format!("\\frac{{{}}}{{{}}}", formula(above), formula(below))
+        }
         Math::Power(base, exponent) => format!("{}^{{{}}}", powered(base), formula(exponent)),
         Math::Call(name, exponent, argument) => call(name, *exponent, argument),
         Math::Root(inner) => format!("\\sqrt{{{}}}", formula(inner)),
         Math::Size(inner) => format!("\\left|{}\\right|", formula(inner)),
         Math::Brackets(inner) => bracketed(inner),
-        Math::Vector { components, frame, column } => {
+        Math::Vector {
+            components,
+            frame,
+            column,
+        } => {
             let Some(frame) = frame else {
                 let components: Vec<String> = components.iter().map(formula).collect();
                 return if *column {
-                    format!("\\begin{{bmatrix}} {} \\end{{bmatrix}}", components.join(" \\\\ "))
+                    format!(
+                        "\\begin{{bmatrix}} {} \\end{{bmatrix}}",
+                        components.join(" \\\\ ")
+                    )
                 } else {
                     format!("({})", components.join(",\\, "))
                 };
@@ -319,11 +361,20 @@ fn formula(math: &Math) -> String {
             )
         }
         Math::Matrix(rows) => {
-            let rows: Vec<String> =
-                rows.iter().map(|row| row.iter().map(formula).collect::<Vec<_>>().join(" & ")).collect();
-            format!("\\begin{{bmatrix}} {} \\end{{bmatrix}}", rows.join(" \\\\ "))
+            let rows: Vec<String> = rows
+                .iter()
+                .map(|row| row.iter().map(formula).collect::<Vec<_>>().join(" & "))
+                .collect();
+            format!(
+                "\\begin{{bmatrix}} {} \\end{{bmatrix}}",
+                rows.join(" \\\\ ")
+            )
         }
-        Math::Cases { value, condition, otherwise } => format!(
+        Math::Cases {
+            value,
+            condition,
+            otherwise,
+        } => format!(
             "\\begin{{cases}} {} & {} \\\\ {} & \\text{{otherwise}} \\end{{cases}}",
             formula(value),
             formula(condition),
@@ -335,7 +386,8 @@ fn formula(math: &Math) -> String {
 fn row(factors: &[Math]) -> String {
     let mut out = String::new();
     for (k, factor) in factors.iter().enumerate() {
-        let signs = matches!(factor, Math::Sign(_)) || k == 0 || matches!(factors[k - 1], Math::Sign(_));
+        let signs =
+            matches!(factor, Math::Sign(_)) || k == 0 || matches!(factors[k - 1], Math::Sign(_));
         if !signs {
             // Functions bring their own space.
             let apart = !matches!(factor, Math::Call(..) | Math::Brackets(_));
@@ -382,7 +434,11 @@ fn call(name: &str, exponent: u32, argument: &Math) -> String {
         "diag" | "sgn" | "atan2" => format!("\\operatorname{{{name}}}"),
         name => format!("\\{name}"),
     };
-    let raised = if exponent == 1 { String::new() } else { format!("^{{{exponent}}}") };
+    let raised = if exponent == 1 {
+        String::new()
+    } else {
+        format!("^{{{exponent}}}")
+    };
     match argument {
         Math::Letter(_) => format!("{name}{raised} {}", formula(argument)),
         Math::Vector { .. } => format!("{name}{raised}{}", formula(argument)),

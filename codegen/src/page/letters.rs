@@ -3,44 +3,7 @@
 //! `omega_1` is ω with index 1, `theta` is θ, `x_G` is x with the label G, `m0` is m with index 0,
 //! `gamma_dot` is γ with a dot: names come apart as in [`crate::symbolic::print`].
 
-use crate::symbolic::print::Name;
-
-/// Greek names with their Unicode letter and their LaTeX command.
-pub(super) const GREEK: &[(&str, char, &str)] = &[
-    ("alpha", 'α', "alpha"),
-    ("beta", 'β', "beta"),
-    ("gamma", 'γ', "gamma"),
-    ("delta", 'δ', "delta"),
-    ("epsilon", 'ε', "varepsilon"),
-    ("zeta", 'ζ', "zeta"),
-    ("eta", 'η', "eta"),
-    ("theta", 'θ', "theta"),
-    ("iota", 'ι', "iota"),
-    ("kappa", 'κ', "kappa"),
-    ("lambda", 'λ', "lambda"),
-    ("mu", 'μ', "mu"),
-    ("nu", 'ν', "nu"),
-    ("xi", 'ξ', "xi"),
-    ("pi", 'π', "pi"),
-    ("rho", 'ρ', "rho"),
-    ("sigma", 'σ', "sigma"),
-    ("tau", 'τ', "tau"),
-    ("upsilon", 'υ', "upsilon"),
-    ("phi", 'φ', "varphi"),
-    ("chi", 'χ', "chi"),
-    ("psi", 'ψ', "psi"),
-    ("omega", 'ω', "omega"),
-    ("Gamma", 'Γ', "Gamma"),
-    ("Delta", 'Δ', "Delta"),
-    ("Theta", 'Θ', "Theta"),
-    ("Lambda", 'Λ', "Lambda"),
-    ("Xi", 'Ξ', "Xi"),
-    ("Pi", 'Π', "Pi"),
-    ("Sigma", 'Σ', "Sigma"),
-    ("Phi", 'Φ', "Phi"),
-    ("Psi", 'Ψ', "Psi"),
-    ("Omega", 'Ω', "Omega"),
-];
+use crate::symbolic::print::{GREEK, Name};
 
 /// A letter with its dots, index and exponent-like mark.
 #[derive(Debug, Clone, PartialEq, Eq, Hash, Default)]
@@ -62,12 +25,18 @@ pub struct Letter {
 impl Letter {
     /// A letter as it stands.
     pub fn plain(base: &str) -> Self {
-        Self { base: base.to_owned(), ..Self::default() }
+        Self {
+            base: base.to_owned(),
+            ..Self::default()
+        }
     }
 
     /// A bold letter: a vector or a matrix.
     pub fn bold(base: &str) -> Self {
-        Self { bold: true, ..Self::plain(base) }
+        Self {
+            bold: true,
+            ..Self::plain(base)
+        }
     }
 
     /// The letter of an identifier.
@@ -124,12 +93,22 @@ impl Letter {
 
 /// A Greek name as its letter, anything else as it is.
 fn label(part: &str) -> String {
-    GREEK.iter().find(|row| row.0 == part).map_or_else(|| part.to_owned(), |row| row.1.to_string())
+    GREEK
+        .iter()
+        .find(|row| row.0 == part)
+        .map_or_else(|| part.to_owned(), |row| row.1.to_string())
 }
 
-/// The LaTeX command of a Greek letter.
+/// The LaTeX command of a Greek letter, in the shape that Unicode gives it.
 pub(super) fn greek_command(letter: char) -> Option<&'static str> {
-    GREEK.iter().find(|row| row.1 == letter).map(|row| row.2)
+    GREEK
+        .iter()
+        .find(|row| row.1 == letter)
+        .map(|row| match row.0 {
+            "phi" => "varphi",
+            "epsilon" => "varepsilon",
+            name => name,
+        })
 }
 
 /// Unicode text: `ω̇₁`, `x_G`, `a⁰_A,x`.

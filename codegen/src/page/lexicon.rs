@@ -1,7 +1,7 @@
 //! Which letter stands for which symbol and for which named intermediate quantity.
 
 use appell_spec::mechanism::Mechanism;
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::letters::Letter;
 use crate::mechanics::Derivation;
@@ -28,7 +28,7 @@ pub(super) struct Lexicon {
     symbols: FxHashMap<Expr, (Letter, Rank)>,
     named: FxHashMap<String, Letter>,
     /// Names that stay names in explicit formulas: accelerations and pivots.
-    kept: FxHashMap<String, ()>,
+    kept: FxHashSet<String>,
 }
 
 /// Axes of a frame.
@@ -45,12 +45,20 @@ impl Lexicon {
         for (&expr, p) in s.parameters.iter().zip(&mechanism.parameters) {
             letter(expr, Letter::of(&p.label.name), Rank::Constant);
         }
-        for ((&expr, &rate), q) in s.coordinates.iter().zip(&s.rates).zip(&mechanism.coordinates) {
+        for ((&expr, &rate), q) in s
+            .coordinates
+            .iter()
+            .zip(&s.rates)
+            .zip(&mechanism.coordinates)
+        {
             letter(expr, Letter::of(&q.label.name), Rank::Position);
             letter(rate, Letter::of(&q.label.name).dot(), Rank::Velocity);
         }
-        for ((&expr, &change), w) in
-            s.speeds.iter().zip(&s.accelerations).zip(&mechanism.pseudo_velocities)
+        for ((&expr, &change), w) in s
+            .speeds
+            .iter()
+            .zip(&s.accelerations)
+            .zip(&mechanism.pseudo_velocities)
         {
             letter(expr, Letter::of(&w.label.name), Rank::Velocity);
             letter(change, Letter::of(&w.label.name).dot(), Rank::Acceleration);
@@ -67,7 +75,11 @@ impl Lexicon {
         }
         letter(s.time, Letter::plain("t"), Rank::Position);
         letter(s.pi, Letter::plain("π"), Rank::Constant);
-        let mut lexicon = Self { symbols, named: FxHashMap::default(), kept: FxHashMap::default() };
+        let mut lexicon = Self {
+            symbols,
+            named: FxHashMap::default(),
+            kept: FxHashSet::default(),
+        };
         lexicon.name_intermediates(mechanism);
         lexicon
     }
@@ -76,22 +88,35 @@ impl Lexicon {
         for axis in AXES {
             for point in &mechanism.points {
                 let letter = Letter::plain("a").above("0").below(&point.name).below(axis);
-                self.named.insert(format!("a0_{}_{axis}", point.name), letter);
+                self.named
+                    .insert(format!("a0_{}_{axis}", point.name), letter);
             }
             for frame in &mechanism.frames {
                 let letter = Letter::plain("Ω").below(&frame.name).below(axis);
-                self.named.insert(format!("w_{}_{axis}", frame.name), letter);
+                self.named
+                    .insert(format!("w_{}_{axis}", frame.name), letter);
             }
             for body in &mechanism.bodies {
-                let letter = Letter::plain("h").dot().above("0").below(&body.name).below(axis);
-                self.named.insert(format!("h0_{}_{axis}", body.name), letter);
+                let letter = Letter::plain("h")
+                    .dot()
+                    .above("0")
+                    .below(&body.name)
+                    .below(axis);
+                self.named
+                    .insert(format!("h0_{}_{axis}", body.name), letter);
             }
         }
         for body in &mechanism.bodies {
-            self.named.insert(format!("s_{}", body.name), Letter::plain("S").below(&body.name));
+            self.named.insert(
+                format!("s_{}", body.name),
+                Letter::plain("S").below(&body.name),
+            );
         }
         for q in &mechanism.coordinates {
-            self.named.insert(format!("{}_dot", q.label.name), Letter::of(&q.label.name).dot());
+            self.named.insert(
+                format!("{}_dot", q.label.name),
+                Letter::of(&q.label.name).dot(),
+            );
         }
         for (i, w) in mechanism.pseudo_velocities.iter().enumerate() {
             let (name, number) = (&w.label.name, (i + 1).to_string());
@@ -99,14 +124,20 @@ impl Lexicon {
             self.keep(format!("pivot_{name}"), Letter::plain("D").below(&number));
             for (j, other) in mechanism.pseudo_velocities.iter().enumerate() {
                 let entry = format!("{number},{}", j + 1);
-                self.keep(format!("l_{name}_{}", other.label.name), Letter::plain("L").below(&entry));
-                self.keep(format!("m_{name}_{}", other.label.name), Letter::plain("N").below(&entry));
+                self.keep(
+                    format!("l_{name}_{}", other.label.name),
+                    Letter::plain("L").below(&entry),
+                );
+                self.keep(
+                    format!("m_{name}_{}", other.label.name),
+                    Letter::plain("N").below(&entry),
+                );
             }
         }
     }
 
     fn keep(&mut self, name: String, letter: Letter) {
-        self.kept.insert(name.clone(), ());
+        self.kept.insert(name.clone());
         self.named.insert(name, letter);
     }
 
@@ -114,16 +145,19 @@ impl Lexicon {
     pub(super) fn letter(&self, graph: &Graph, expr: Expr) -> Letter {
         match graph.node(expr) {
             Node::Named(id) => self.of_name(&graph.definition(*id).name),
-            Node::Symbol(id) => self
-                .symbols
-                .get(&expr)
-                .map_or_else(|| Letter::of(graph.symbol_name(*id)), |(letter, _)| letter.clone()),
+            Node::Symbol(id) => self.symbols.get(&expr).map_or_else(
+                || Letter::of(graph.symbol_name(*id)),
+                |(letter, _)| letter.clone(),
+            ),
             _ => Letter::plain("?"),
         }
     }
 
     fn of_name(&self, name: &str) -> Letter {
-        self.named.get(name).cloned().unwrap_or_else(|| Letter::of(name))
+        self.named
+            .get(name)
+            .cloned()
+            .unwrap_or_else(|| Letter::of(name))
     }
 
     /// Rank of a symbol.
@@ -133,6 +167,6 @@ impl Lexicon {
 
     /// Whether explicit formulas keep a name instead of putting its definition in.
     pub(super) fn keeps(&self, name: &str) -> bool {
-        self.kept.contains_key(name)
+        self.kept.contains(name)
     }
 }

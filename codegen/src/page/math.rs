@@ -76,14 +76,20 @@ impl Math {
         for factor in factors {
             match factor {
                 Self::Row(inner) => row.extend(inner),
-                Self::Sum(mut single) if single.len() == 1 && !single[0].0 => row.push(single.remove(0).1),
+                Self::Sum(mut single) if single.len() == 1 && !single[0].0 => {
+                    row.push(single.remove(0).1);
+                }
                 sum @ (Self::Sum(_) | Self::Cases { .. }) if several => {
                     row.push(Self::Brackets(Box::new(sum)));
                 }
                 other => row.push(other),
             }
         }
-        if row.len() == 1 { row.remove(0) } else { Self::Row(row) }
+        if row.len() == 1 {
+            row.remove(0)
+        } else {
+            Self::Row(row)
+        }
     }
 
     /// A sum of signed terms, flat; zero where there is none.
@@ -110,7 +116,10 @@ impl Math {
 
     /// ∂above/∂below
     pub fn partial(above: Letter, below: Letter) -> Self {
-        Self::fraction(Self::Letter(above.before('∂')), Self::Letter(below.before('∂')))
+        Self::fraction(
+            Self::Letter(above.before('∂')),
+            Self::Letter(below.before('∂')),
+        )
     }
 
     /// Components in a frame, side by side where they are short.
@@ -118,7 +127,11 @@ impl Math {
         const LONGEST_ROW: usize = 34;
         let width: usize = components.iter().map(Self::width).sum();
         let column = width > LONGEST_ROW;
-        Self::Vector { components, frame: Some(frame.to_owned()), column }
+        Self::Vector {
+            components,
+            frame: Some(frame.to_owned()),
+            column,
+        }
     }
 
     /// Whether a quotient is among its outer parts, which makes it taller than a line.
@@ -136,7 +149,10 @@ impl Math {
 
     /// How wide it is, roughly, in characters of a line.
     pub fn width(&self) -> usize {
-        super::text::inline(self).chars().filter(|&c| !super::text::is_combining(c)).count()
+        super::text::inline(self)
+            .chars()
+            .filter(|&c| !super::text::is_combining(c))
+            .count()
     }
 }
 
@@ -191,19 +207,30 @@ impl Equation {
         if self.left.width() <= WIDEST_LEFT {
             flatten(&self.right, 0, &mut pieces);
             let lines = broken(&pieces, width.saturating_sub(left_width + 3));
-            return Display { left: Some(&self.left), lines };
+            return Display {
+                left: Some(&self.left),
+                lines,
+            };
         }
         // The equality sign is the best place to break.
         flatten(&self.left, 1, &mut pieces);
         pieces.push((Piece::Equals, 0));
         flatten(&self.right, 1, &mut pieces);
-        Display { left: None, lines: broken(&pieces, width) }
+        Display {
+            left: None,
+            lines: broken(&pieces, width),
+        }
     }
 }
 
 /// How wide the aligned left-hand sides of a list are.
 pub(super) fn left_width(equations: &[Equation]) -> usize {
-    equations.iter().map(|e| e.left.width()).filter(|&w| w <= WIDEST_LEFT).max().unwrap_or(0)
+    equations
+        .iter()
+        .map(|e| e.left.width())
+        .filter(|&w| w <= WIDEST_LEFT)
+        .max()
+        .unwrap_or(0)
 }
 
 /// Lines of pieces, broken before signs so that each fits `width` where possible. A sign outside of
@@ -231,9 +258,15 @@ fn broken<'a>(pieces: &[(Piece<'a>, usize)], width: usize) -> Vec<Vec<Piece<'a>>
         } else {
             let full = places.iter().filter(|&&(_, _, used)| 2 * used >= width);
             let best = full.min_by_key(|&&(place, depth, _)| (depth, std::cmp::Reverse(place)));
-            best.or(places.last()).map_or(pieces.len(), |&(place, _, _)| place)
+            best.or(places.last())
+                .map_or(pieces.len(), |&(place, _, _)| place)
         };
-        lines.push(pieces[start..stop].iter().map(|(piece, _)| *piece).collect());
+        lines.push(
+            pieces[start..stop]
+                .iter()
+                .map(|(piece, _)| *piece)
+                .collect(),
+        );
         start = stop;
     }
     lines
@@ -253,7 +286,13 @@ fn flatten<'a>(math: &'a Math, depth: usize, pieces: &mut Vec<(Piece<'a>, usize)
             for (index, (minus, term)) in terms.iter().enumerate() {
                 let first = index == 0;
                 if !first || *minus {
-                    pieces.push((Piece::Sign { minus: *minus, first }, depth));
+                    pieces.push((
+                        Piece::Sign {
+                            minus: *minus,
+                            first,
+                        },
+                        depth,
+                    ));
                 }
                 flatten(term, depth, pieces);
             }

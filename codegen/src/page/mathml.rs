@@ -1,4 +1,4 @@
-//! Formulas as presentation MathML, within what browsers show by themselves.
+//! Formulas as presentation `MathML`, within what browsers show by themselves.
 
 use std::fmt::Write;
 
@@ -79,20 +79,38 @@ pub(super) fn formula(math: &Math) -> String {
             }
             format!("<mrow>{out}</mrow>")
         }
-        Math::Fraction(above, below) => format!("<mfrac>{}{}</mfrac>", formula(above), formula(below)),
-        Math::Power(base, exponent) => format!("<msup>{}{}</msup>", formula(base), formula(exponent)),
+        Math::Fraction(above, below) => {
+            format!("<mfrac>{}{}</mfrac>", formula(above), formula(below))
+        }
+        Math::Power(base, exponent) => {
+            format!("<msup>{}{}</msup>", formula(base), formula(exponent))
+        }
         Math::Call(name, exponent, argument) => call(name, *exponent, argument),
         Math::Root(inner) => format!("<msqrt>{}</msqrt>", formula(inner)),
         Math::Size(inner) => format!("<mrow><mo>|</mo>{}<mo>|</mo></mrow>", formula(inner)),
         Math::Brackets(inner) => bracketed(inner),
-        Math::Vector { components, frame, column } => vector(components, frame.as_deref(), *column),
+        Math::Vector {
+            components,
+            frame,
+            column,
+        } => vector(components, frame.as_deref(), *column),
         Math::Matrix(rows) => {
-            let rows: Vec<Vec<String>> = rows.iter().map(|row| row.iter().map(formula).collect()).collect();
+            let rows: Vec<Vec<String>> = rows
+                .iter()
+                .map(|row| row.iter().map(formula).collect())
+                .collect();
             format!("<mrow><mo>[</mo>{}<mo>]</mo></mrow>", grid(&rows))
         }
-        Math::Cases { value, condition, otherwise } => {
+        Math::Cases {
+            value,
+            condition,
+            otherwise,
+        } => {
             let rows = [
-                vec![formula(value), format!("<mtext>if </mtext>{}", formula(condition))],
+                vec![
+                    formula(value),
+                    format!("<mtext>if </mtext>{}", formula(condition)),
+                ],
                 vec![formula(otherwise), "<mtext>otherwise</mtext>".to_owned()],
             ];
             format!("<mrow><mo>{{</mo>{}</mrow>", grid(&rows))
@@ -103,7 +121,8 @@ pub(super) fn formula(math: &Math) -> String {
 fn row(factors: &[Math]) -> String {
     let mut out = String::new();
     for (k, factor) in factors.iter().enumerate() {
-        let signs = matches!(factor, Math::Sign(_)) || k == 0 || matches!(factors[k - 1], Math::Sign(_));
+        let signs =
+            matches!(factor, Math::Sign(_)) || k == 0 || matches!(factors[k - 1], Math::Sign(_));
         if !signs {
             out.push_str(TIMES);
         }
@@ -154,13 +173,19 @@ fn vector(components: &[Math], frame: Option<&str>, column: bool) -> String {
             let rows: Vec<Vec<String>> = components.into_iter().map(|c| vec![c]).collect();
             format!("<mrow><mo>[</mo>{}<mo>]</mo></mrow>", grid(&rows))
         } else {
-            format!("<mrow><mo>(</mo>{}<mo>)</mo></mrow>", components.join("<mo>,</mo>"))
+            format!(
+                "<mrow><mo>(</mo>{}<mo>)</mo></mrow>",
+                components.join("<mo>,</mo>")
+            )
         };
     };
     let frame = format!("<mtext>{}</mtext>", escaped(frame));
     if column {
         let rows: Vec<Vec<String>> = components.into_iter().map(|c| vec![c]).collect();
-        return format!("<msub><mrow><mo>[</mo>{}<mo>]</mo></mrow>{frame}</msub>", grid(&rows));
+        return format!(
+            "<msub><mrow><mo>[</mo>{}<mo>]</mo></mrow>{frame}</msub>",
+            grid(&rows)
+        );
     }
     let inside = format!("<mrow><mo>[</mo>{}<mo>]</mo></mrow>", grid(&[components]));
     format!("<msubsup>{inside}{frame}<mi mathvariant=\"normal\">T</mi></msubsup>")
@@ -179,15 +204,23 @@ fn letter(letter: &Letter) -> String {
             2 => "¨",
             _ => "⃛",
         };
-        out = format!("<mover accent=\"true\">{out}<mo stretchy=\"false\">{dots}</mo></mover>");
+        out = format!(
+            "<mover accent=\"true\">{out}<mo class=\"dot\" stretchy=\"false\">{dots}</mo></mover>"
+        );
     }
     let below: Vec<String> = letter.below.iter().map(|part| label(part)).collect();
     let below = match below.as_slice() {
         [] => None,
         [single] => Some(single.clone()),
-        several => Some(format!("<mrow>{}</mrow>", several.join("<mo rspace=\"0.1em\">,</mo>"))),
+        several => Some(format!(
+            "<mrow>{}</mrow>",
+            several.join("<mo rspace=\"0.1em\">,</mo>")
+        )),
     };
-    let above = letter.above.as_ref().map(|mark| format!("<mn>{}</mn>", escaped(mark)));
+    let above = letter
+        .above
+        .as_ref()
+        .map(|mark| format!("<mn>{}</mn>", escaped(mark)));
     out = match (below, above) {
         (None, None) => out,
         (Some(below), None) => format!("<msub>{out}{below}</msub>"),

@@ -109,8 +109,16 @@ pub struct Chain {
 ///
 /// The derivation is the one of this mechanism; it only grows by the expressions that the page
 /// shows. Findings are those of the reactions, at [`Stage::All`] alone.
-pub fn page(mechanism: &Mechanism, derivation: &mut Derivation, stage: Stage) -> finding::Stage<Page> {
+pub fn page(
+    mechanism: &Mechanism,
+    derivation: &mut Derivation,
+    stage: Stage,
+) -> finding::Stage<Page> {
     let mut writer = Writer::new(mechanism, derivation);
     let sections = sections::sections(&mut writer, stage)?;
-    Ok(Page { title: mechanism.title.clone(), source: mechanism.source.clone(), sections })
+    Ok(Page {
+        title: mechanism.title.clone(),
+        source: mechanism.source.clone(),
+        sections,
+    })
 }

@@ -13,12 +13,19 @@ pub(super) struct Picture {
 impl Picture {
     /// One line.
     pub(super) fn line(text: &str) -> Self {
-        Self { lines: vec![text.to_owned()], base: 0 }
+        Self {
+            lines: vec![text.to_owned()],
+            base: 0,
+        }
     }
 
     /// Columns.
     pub(super) fn width(&self) -> usize {
-        self.lines.iter().map(|line| columns(line)).max().unwrap_or(0)
+        self.lines
+            .iter()
+            .map(|line| columns(line))
+            .max()
+            .unwrap_or(0)
     }
 
     /// Lines.
@@ -37,17 +44,30 @@ impl Picture {
         let below = (self.height() - self.base).max(right.height() - right.base);
         let width = self.width();
         let at = |picture: &Self, row: usize| -> String {
-            (row + picture.base).checked_sub(base).and_then(|k| picture.lines.get(k)).cloned().unwrap_or_default()
+            (row + picture.base)
+                .checked_sub(base)
+                .and_then(|k| picture.lines.get(k))
+                .cloned()
+                .unwrap_or_default()
         };
-        let lines = (0..base + below).map(|row| padded(&at(self, row), width) + &at(right, row)).collect();
+        let lines = (0..base + below)
+            .map(|row| padded(&at(self, row), width) + &at(right, row))
+            .collect();
         Self { lines, base }
     }
 
     /// Cells in square brackets, columns aligned to the left.
-    pub(super) fn bracketed(cells: Vec<Vec<String>>) -> Self {
+    pub(super) fn bracketed(cells: &[Vec<String>]) -> Self {
         let count = cells.iter().map(Vec::len).max().unwrap_or(0);
         let widths: Vec<usize> = (0..count)
-            .map(|k| cells.iter().filter_map(|row| row.get(k)).map(|cell| columns(cell)).max().unwrap_or(0))
+            .map(|k| {
+                cells
+                    .iter()
+                    .filter_map(|row| row.get(k))
+                    .map(|cell| columns(cell))
+                    .max()
+                    .unwrap_or(0)
+            })
             .collect();
         let last = cells.len().saturating_sub(1);
         let lines: Vec<String> = cells
@@ -60,18 +80,28 @@ impl Picture {
                     _ if i == last => ("⎣", "⎦"),
                     _ => ("⎢", "⎥"),
                 };
-                let row: Vec<String> =
-                    row.iter().zip(&widths).map(|(cell, &width)| padded(cell, width)).collect();
+                let row: Vec<String> = row
+                    .iter()
+                    .zip(&widths)
+                    .map(|(cell, &width)| padded(cell, width))
+                    .collect();
                 format!("{open} {} {close}", row.join("   "))
             })
             .collect();
-        Self { base: last / 2, lines }
+        Self {
+            base: last / 2,
+            lines,
+        }
     }
 
     /// A quotient with a bar.
     pub(super) fn quotient(above: &str, below: &str) -> Self {
         let width = columns(above).max(columns(below));
-        let lines = vec![centred(above, width), "─".repeat(width), centred(below, width)];
+        let lines = vec![
+            centred(above, width),
+            "─".repeat(width),
+            centred(below, width),
+        ];
         Self { lines, base: 1 }
     }
 
@@ -89,5 +119,9 @@ fn padded(text: &str, width: usize) -> String {
 
 fn centred(text: &str, width: usize) -> String {
     let free = width.saturating_sub(columns(text));
-    format!("{}{text}{}", " ".repeat(free / 2), " ".repeat(free - free / 2))
+    format!(
+        "{}{text}{}",
+        " ".repeat(free / 2),
+        " ".repeat(free - free / 2)
+    )
 }

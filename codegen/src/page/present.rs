@@ -40,7 +40,10 @@ impl Writer<'_> {
         let graph = self.graph();
         // Quotients by sums stay whole; the rest is multiplied out and ordered.
         let terms: Vec<(Rational, Expr)> = match graph.node(readable) {
-            Node::Sum(terms) => terms.iter().map(|t| (t.coefficient.clone(), t.expr)).collect(),
+            Node::Sum(terms) => terms
+                .iter()
+                .map(|t| (t.coefficient.clone(), t.expr))
+                .collect(),
             _ => vec![(Rational::ONE, readable)],
         };
         let (quotients, plain): (Vec<_>, Vec<_>) =
@@ -74,16 +77,27 @@ impl Writer<'_> {
     fn readable(&mut self, expr: Expr) -> Expr {
         let lexicon = self.setter.lexicon().clone();
         let graph = self.graph();
-        let Some(explicit) = dissolve(graph, expr, &|name| lexicon.keeps(name)) else { return expr };
+        let Some(explicit) = dissolve(graph, expr, &|name| lexicon.keeps(name)) else {
+            return expr;
+        };
         match graph.expand(explicit, MOST_EXPLICIT_TERMS) {
             Some(_) => explicit,
             None => expr,
         }
     }
 
+    /// Without names and products of sums; `None` where that is long.
+    pub(super) fn written_out(&mut self, expr: Expr) -> Option<Expr> {
+        let graph = self.graph();
+        let explicit = dissolve(graph, expr, &|_| false)?;
+        graph.expand(explicit, MOST_TERMS)
+    }
+
     /// `coefficient · others · (sum) / below`, with the sum collected by the keys.
     fn present(&mut self, expr: Expr, keys: &[&[Expr]]) -> Math {
-        let Some((outer, rest)) = keys.split_first() else { return self.constant(expr) };
+        let Some((outer, rest)) = keys.split_first() else {
+            return self.constant(expr);
+        };
         let graph = self.graph();
         let (coefficient, core) = graph.split_coefficient(expr);
         let factors = match graph.node(core) {
@@ -95,8 +109,12 @@ impl Writer<'_> {
             _ => return self.set(expr),
         };
         let is_sum = |f: &Factor| f.exponent == 1 && matches!(graph.node(f.base), Node::Sum(_));
-        let with_keys = |f: &Factor| is_sum(f) && keys.iter().any(|list| occurs(graph, f.base, list));
-        let Some(place) = factors.iter().position(with_keys).or_else(|| factors.iter().position(is_sum))
+        let with_keys =
+            |f: &Factor| is_sum(f) && keys.iter().any(|list| occurs(graph, f.base, list));
+        let Some(place) = factors
+            .iter()
+            .position(with_keys)
+            .or_else(|| factors.iter().position(is_sum))
         else {
             return self.set(expr);
         };
@@ -106,7 +124,11 @@ impl Writer<'_> {
         for (k, factor) in factors.iter().enumerate() {
             if k != place {
                 let power = self.graph().pow(factor.base, factor.exponent.abs());
-                if factor.exponent > 0 { above.push(power) } else { below.push(power) }
+                if factor.exponent > 0 {
+                    above.push(power);
+                } else {
+                    below.push(power);
+                }
             }
         }
         let above = self.graph().product(&above);
@@ -125,49 +147,72 @@ impl Writer<'_> {
             self.constant(sum)
         };
         let product = self.quotient(&coefficient.abs(), above, sum, below, holds_keys);
-        if minus { Math::Sum(vec![(true, product)]) } else { product }
+        if minus {
+            Math::Sum(vec![(true, product)])
+        } else {
+            product
+        }
     }
 
-    fn quotient(&mut self, coefficient: &Rational, above: Expr, sum: Math, below: Expr, last: bool) -> Math {
-        let above = if above == Graph::ONE { Vec::new() } else { vec![self.set(above)] };
-        let below = if below == Graph::ONE { Vec::new() } else { vec![self.set(below)] };
+    fn quotient(
+        &mut self,
+        coefficient: &Rational,
+        above: Expr,
+        sum: Math,
+        below: Expr,
+        last: bool,
+    ) -> Math {
+        let above = if above == Graph::ONE {
+            Vec::new()
+        } else {
+            vec![self.set(above)]
+        };
+        let below = if below == Graph::ONE {
+            Vec::new()
+        } else {
+            vec![self.set(below)]
+        };
         let width = sum.width();
         if below.is_empty() || width <= LONGEST_NUMERATOR {
             // A factor of constants goes before the letters, a sum of motions behind them.
-            let above = if last { [above, vec![sum]].concat() } else { [vec![sum], above].concat() };
+            let above = if last {
+                [above, vec![sum]].concat()
+            } else {
+                [vec![sum], above].concat()
+            };
             return assemble(coefficient, above, below);
         }
         let factor = assemble(coefficient, above, below);
         Math::product(vec![factor, Math::Brackets(Box::new(sum))])
     }
 
-    fn groups(&mut self, groups: Vec<(Monomial, Expr)>, keys: &[Expr], rest: &[&[Expr]]) -> Vec<(bool, Math)> {
+    fn groups(
+        &mut self,
+        groups: Vec<(Monomial, Expr)>,
+        keys: &[Expr],
+        rest: &[&[Expr]],
+    ) -> Vec<(bool, Math)> {
         let mut terms = Vec::with_capacity(groups.len());
         for (monomial, coefficient) in groups {
             let graph = self.graph();
-            let powers: Vec<Expr> =
-                monomial.iter().map(|&(key, exponent)| graph.pow(keys[key], exponent)).collect();
+            let powers: Vec<Expr> = monomial
+                .iter()
+                .map(|&(key, exponent)| graph.pow(keys[key], exponent))
+                .collect();
             let power = graph.product(&powers);
             let minus = leads_with_minus(graph, coefficient);
-            let coefficient = if minus { graph.neg(coefficient) } else { coefficient };
+            let coefficient = if minus {
+                graph.neg(coefficient)
+            } else {
+                coefficient
+            };
             let several = matches!(graph.node(coefficient), Node::Sum(t) if t.len() > 1);
-            let math = if !several {
+            let math = if several {
+                let factor = self.present(coefficient, rest);
+                self.times(factor, &monomial, power)
+            } else {
                 let term = self.graph().mul(coefficient, power);
                 self.set(term)
-            } else {
-                let factor = self.present(coefficient, rest);
-                if monomial.is_empty() {
-                    factor
-                } else {
-                    let power = self.set(power);
-                    match factor {
-                        Math::Sum(mut single) if single.len() == 1 => {
-                            let (inner, factor) = single.remove(0);
-                            Math::Sum(vec![(inner, functions_last(Math::product(vec![factor, power])))])
-                        }
-                        factor => functions_last(Math::product(vec![factor, power])),
-                    }
-                }
             };
             // A sign that the formula brings along is the sign of the term.
             terms.push(match math {
@@ -181,11 +226,31 @@ impl Writer<'_> {
         plus_first(terms)
     }
 
+    /// `factor · power`, with the sign of the factor before both.
+    fn times(&mut self, factor: Math, monomial: &Monomial, power: Expr) -> Math {
+        if monomial.is_empty() {
+            return factor;
+        }
+        let power = self.set(power);
+        match factor {
+            Math::Sum(mut single) if single.len() == 1 => {
+                let (minus, factor) = single.remove(0);
+                Math::Sum(vec![(
+                    minus,
+                    functions_last(Math::product(vec![factor, power])),
+                )])
+            }
+            factor => functions_last(Math::product(vec![factor, power])),
+        }
+    }
+
     /// A sum without velocities: ordered by its sines and cosines where that shortens it, with
     /// common factors before it.
     fn constant(&mut self, expr: Expr) -> Math {
         let graph = self.graph();
-        let Node::Sum(terms) = graph.node(expr) else { return self.set(expr) };
+        let Node::Sum(terms) = graph.node(expr) else {
+            return self.set(expr);
+        };
         let count = terms.len();
         let groups = collect_turns(graph, expr);
         if groups.len() > 1 && groups.len() < count {
@@ -193,7 +258,11 @@ impl Writer<'_> {
             for (power, coefficient) in groups {
                 let graph = self.graph();
                 let minus = leads_with_minus(graph, coefficient);
-                let coefficient = if minus { graph.neg(coefficient) } else { coefficient };
+                let coefficient = if minus {
+                    graph.neg(coefficient)
+                } else {
+                    coefficient
+                };
                 let coefficient = graph.take_out_common_factors(coefficient);
                 let term = graph.mul(coefficient, power);
                 terms.push((minus, self.set(term)));
@@ -207,19 +276,29 @@ impl Writer<'_> {
 
 /// Whether a product divides by a sum or by a name.
 fn is_quotient(graph: &Graph, expr: Expr) -> bool {
-    let Node::Product(factors) = graph.node(expr) else { return false };
+    let Node::Product(factors) = graph.node(expr) else {
+        return false;
+    };
     factors.iter().any(|f| {
-        f.exponent < 0 && matches!(graph.node(f.base), Node::Sum(_) | Node::Named(_) | Node::Solution { .. })
+        f.exponent < 0
+            && matches!(
+                graph.node(f.base),
+                Node::Sum(_) | Node::Named(_) | Node::Solution { .. }
+            )
     })
 }
 
 /// Whether one of the keys occurs in an expression, not looking behind names.
 fn occurs(graph: &Graph, expr: Expr, keys: &[Expr]) -> bool {
-    super::formula::visible(graph, expr).iter().any(|e| keys.contains(e))
+    super::formula::visible(graph, expr)
+        .iter()
+        .any(|e| keys.contains(e))
 }
 
 fn has_both_signs(graph: &Graph, sum: Expr) -> bool {
-    let Node::Sum(terms) = graph.node(sum) else { return false };
+    let Node::Sum(terms) = graph.node(sum) else {
+        return false;
+    };
     let negative = terms.iter().filter(|t| t.coefficient.is_negative()).count();
     negative > 0 && negative < terms.len()
 }
@@ -246,8 +325,11 @@ fn plus_first(mut terms: Vec<(bool, Math)>) -> Vec<(bool, Math)> {
 
 /// `(a + b) ω² tan θ`: no letter follows the argument of a function.
 fn functions_last(product: Math) -> Math {
-    let Math::Row(factors) = product else { return product };
-    let (functions, others): (Vec<Math>, Vec<Math>) =
-        factors.into_iter().partition(|f| matches!(f, Math::Call(..)));
+    let Math::Row(factors) = product else {
+        return product;
+    };
+    let (functions, others): (Vec<Math>, Vec<Math>) = factors
+        .into_iter()
+        .partition(|f| matches!(f, Math::Call(..)));
     Math::Row([others, functions].concat())
 }

@@ -47,7 +47,10 @@ fn line(out: &mut String, text: &str) {
 pub(super) fn clean(text: &str) -> String {
     text.chars()
         .map(|c| match c {
-            '\u{200b}'..='\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2060}'..='\u{206f}' | '\u{feff}' => '\u{fffd}',
+            '\u{200b}'..='\u{200f}'
+            | '\u{2028}'..='\u{202e}'
+            | '\u{2060}'..='\u{206f}'
+            | '\u{feff}' => '\u{fffd}',
             c if c.is_control() => ' ',
             c => c,
         })
@@ -96,31 +99,51 @@ fn wrapped(text: &str, width: usize) -> Vec<String> {
 }
 
 fn paragraph(out: &mut String, text: &str) {
-    wrapped(text, WIDTH).iter().for_each(|l| line(out, l));
+    for part in wrapped(text, WIDTH) {
+        line(out, &part);
+    }
 }
 
 /// Columns as wide as their cells need; the last one wraps.
 fn table(out: &mut String, table: &Table) {
     const GAP: usize = 3;
-    let rows: Vec<Vec<String>> =
-        table.rows.iter().map(|row| row.iter().map(|cell| spans(cell)).collect()).collect();
+    let rows: Vec<Vec<String>> = table
+        .rows
+        .iter()
+        .map(|row| row.iter().map(|cell| spans(cell)).collect())
+        .collect();
     let count = rows.iter().map(Vec::len).max().unwrap_or(0);
     let widths: Vec<usize> = (0..count)
-        .map(|k| rows.iter().filter_map(|row| row.get(k)).map(|cell| columns(cell)).max().unwrap_or(0))
+        .map(|k| {
+            rows.iter()
+                .filter_map(|row| row.get(k))
+                .map(|cell| columns(cell))
+                .max()
+                .unwrap_or(0)
+        })
         .collect();
     if !table.title.is_empty() {
         line(out, &format!("  {}", clean(&table.title)));
     }
     for row in rows {
-        let Some((last, firsts)) = row.split_last() else { continue };
+        let Some((last, firsts)) = row.split_last() else {
+            continue;
+        };
         let mut head = " ".repeat(INDENT);
         for (cell, &width) in firsts.iter().zip(&widths) {
             head.push_str(cell);
             head.push_str(&" ".repeat(width + GAP - columns(cell)));
         }
         let indent = columns(&head);
-        for (k, part) in wrapped(last, WIDTH.saturating_sub(indent).max(WIDTH / 4)).iter().enumerate() {
-            let start = if k == 0 { head.clone() } else { " ".repeat(indent) };
+        for (k, part) in wrapped(last, WIDTH.saturating_sub(indent).max(WIDTH / 4))
+            .iter()
+            .enumerate()
+        {
+            let start = if k == 0 {
+                head.clone()
+            } else {
+                " ".repeat(indent)
+            };
             line(out, &format!("{start}{part}"));
         }
     }
@@ -140,7 +163,11 @@ fn chain(out: &mut String, chain: &Chain) {
 }
 
 fn arrow_label(label: &str) -> String {
-    if label.is_empty() { "─".to_owned() } else { format!(" {label} ─") }
+    if label.is_empty() {
+        "─".to_owned()
+    } else {
+        format!(" {label} ─")
+    }
 }
 
 /// Equations below each other, aligned at their equality signs.
@@ -153,7 +180,9 @@ fn equations(out: &mut String, equations: &[Equation]) {
             Some(left) => {
                 let left = picture(left);
                 let pad = " ".repeat(INDENT + left_width.saturating_sub(left.width()));
-                let head = Picture::line(&pad).beside(&left).beside(&Picture::line(" = "));
+                let head = Picture::line(&pad)
+                    .beside(&left)
+                    .beside(&Picture::line(" = "));
                 let indent = head.width();
                 (head, indent)
             }
@@ -161,7 +190,11 @@ fn equations(out: &mut String, equations: &[Equation]) {
         };
         let mut whole: Vec<Picture> = Vec::new();
         for (k, pieces) in display.lines.iter().enumerate() {
-            let start = if k == 0 { head.clone() } else { Picture::line(&" ".repeat(indent)) };
+            let start = if k == 0 {
+                head.clone()
+            } else {
+                Picture::line(&" ".repeat(indent))
+            };
             whole.push(start.beside(&pieces_picture(pieces)));
         }
         // Air around what is taller than a line.
@@ -198,7 +231,13 @@ fn pieces_picture(pieces: &[Piece<'_>]) -> Picture {
             Piece::Close => Picture::line(")"),
         };
         after_whole = matches!(piece, Piece::Whole(_) | Piece::Close);
-        after_minus = matches!(piece, Piece::Sign { minus: true, first: true });
+        after_minus = matches!(
+            piece,
+            Piece::Sign {
+                minus: true,
+                first: true
+            }
+        );
         picture = picture.beside(&next);
     }
     picture
@@ -208,12 +247,19 @@ fn pieces_picture(pieces: &[Piece<'_>]) -> Picture {
 fn picture(math: &Math) -> Picture {
     match math {
         Math::Matrix(rows) => {
-            let cells = rows.iter().map(|row| row.iter().map(inline).collect()).collect();
-            Picture::bracketed(cells)
+            let cells: Vec<Vec<String>> = rows
+                .iter()
+                .map(|row| row.iter().map(inline).collect())
+                .collect();
+            Picture::bracketed(&cells)
         }
-        Math::Vector { components, frame, column: true } => {
-            let cells = components.iter().map(|c| vec![inline(c)]).collect();
-            let mut picture = Picture::bracketed(cells);
+        Math::Vector {
+            components,
+            frame,
+            column: true,
+        } => {
+            let cells: Vec<Vec<String>> = components.iter().map(|c| vec![inline(c)]).collect();
+            let mut picture = Picture::bracketed(&cells);
             if let Some(frame) = frame {
                 picture.append_to_last(&format!(" {}", clean(frame)));
             }
@@ -222,10 +268,17 @@ fn picture(math: &Math) -> Picture {
         Math::Fraction(above, below) if is_tall(above) || is_tall(below) => {
             Picture::quotient(&inline(above), &inline(below))
         }
-        Math::Row(factors) => factors.iter().enumerate().fold(Picture::line(""), |picture, (k, factor)| {
-            let gap = if k == 0 { "" } else { " " };
-            picture.beside(&Picture::line(gap)).beside(&self::picture(factor))
-        }),
+        Math::Row(factors) => {
+            factors
+                .iter()
+                .enumerate()
+                .fold(Picture::line(""), |picture, (k, factor)| {
+                    let gap = if k == 0 { "" } else { " " };
+                    picture
+                        .beside(&Picture::line(gap))
+                        .beside(&self::picture(factor))
+                })
+        }
         other => Picture::line(&inline(other)),
     }
 }
@@ -255,13 +308,20 @@ pub(super) fn inline(math: &Math) -> String {
         }
         Math::Power(base, exponent) => match &**exponent {
             Math::Integer(digits) => {
-                format!("{}{}", inline(base), digits.chars().map(superscript).collect::<String>())
+                format!(
+                    "{}{}",
+                    inline(base),
+                    digits.chars().map(superscript).collect::<String>()
+                )
             }
             other => format!("{}^({})", inline(base), inline(other)),
         },
         Math::Call(name, exponent, argument) => {
-            let raised: String =
-                if *exponent == 1 { String::new() } else { exponent.to_string().chars().map(superscript).collect() };
+            let raised: String = if *exponent == 1 {
+                String::new()
+            } else {
+                exponent.to_string().chars().map(superscript).collect()
+            };
             match **argument {
                 Math::Letter(_) => format!("{name}{raised} {}", inline(argument)),
                 Math::Vector { .. } => format!("{name}{raised}{}", inline(argument)),
@@ -274,7 +334,9 @@ pub(super) fn inline(math: &Math) -> String {
         },
         Math::Size(inner) => format!("|{}|", inline(inner)),
         Math::Brackets(inner) => format!("({})", inline(inner)),
-        Math::Vector { components, frame, .. } => {
+        Math::Vector {
+            components, frame, ..
+        } => {
             let components: Vec<String> = components.iter().map(inline).collect();
             match frame {
                 Some(frame) => format!("[{}] {}", components.join(",  "), clean(frame)),
@@ -282,12 +344,23 @@ pub(super) fn inline(math: &Math) -> String {
             }
         }
         Math::Matrix(rows) => {
-            let rows: Vec<String> =
-                rows.iter().map(|row| row.iter().map(inline).collect::<Vec<_>>().join(", ")).collect();
+            let rows: Vec<String> = rows
+                .iter()
+                .map(|row| row.iter().map(inline).collect::<Vec<_>>().join(", "))
+                .collect();
             format!("[{}]", rows.join("; "))
         }
-        Math::Cases { value, condition, otherwise } => {
-            format!("({} if {}, else {})", inline(value), inline(condition), inline(otherwise))
+        Math::Cases {
+            value,
+            condition,
+            otherwise,
+        } => {
+            format!(
+                "({} if {}, else {})",
+                inline(value),
+                inline(condition),
+                inline(otherwise)
+            )
         }
     }
 }
@@ -302,9 +375,11 @@ fn ends_with_function(math: &Math) -> bool {
 
 fn divisor(below: &Math) -> String {
     match below {
-        Math::Letter(_) | Math::Integer(_) | Math::Power(..) | Math::Call(..) | Math::Brackets(_) => {
-            inline(below)
-        }
+        Math::Letter(_)
+        | Math::Integer(_)
+        | Math::Power(..)
+        | Math::Call(..)
+        | Math::Brackets(_) => inline(below),
         _ => format!("({})", inline(below)),
     }
 }
@@ -319,7 +394,11 @@ fn sum(terms: &[(bool, Math)]) -> String {
             (_, true) => out.push_str(" − "),
         }
         match term {
-            Math::Sum(_) => out.push_str(&format!("({})", inline(term))),
+            Math::Sum(_) => {
+                out.push('(');
+                out.push_str(&inline(term));
+                out.push(')');
+            }
             _ => out.push_str(&inline(term)),
         }
     }

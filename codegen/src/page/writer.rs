@@ -92,6 +92,15 @@ impl<'a> Writer<'a> {
         math
     }
 
+    /// Whether explicit formulas keep the name of an expression.
+    pub(super) fn is_kept(&self, expr: Expr) -> bool {
+        let graph = &self.derivation.algebra.graph;
+        match graph.node(expr) {
+            Node::Named(id) => self.setter.lexicon().keeps(&graph.definition(*id).name),
+            _ => false,
+        }
+    }
+
     /// Components of a vector in the frame that they are written in.
     pub(super) fn vector(&mut self, v: Vec3, frame: FrameId) -> Math {
         let components = v.iter().map(|&c| self.explicit(c)).collect();
@@ -106,8 +115,11 @@ impl<'a> Writer<'a> {
     /// Definitions of the names used since the last call, each before its first use.
     pub(super) fn definitions(&mut self) -> Vec<Block> {
         let mut equations = Vec::new();
-        let mut stack: Vec<(Expr, Option<Math>)> =
-            std::mem::take(&mut self.wanted).into_iter().rev().map(|e| (e, None)).collect();
+        let mut stack: Vec<(Expr, Option<Math>)> = std::mem::take(&mut self.wanted)
+            .into_iter()
+            .rev()
+            .map(|e| (e, None))
+            .collect();
         while let Some((expr, written)) = stack.pop() {
             let letter = self.letter(expr);
             if let Some(math) = written {
@@ -126,12 +138,17 @@ impl<'a> Writer<'a> {
         if equations.is_empty() {
             return Vec::new();
         }
-        vec![Block::Sentence(vec![Span::Text("With".to_owned())]), Block::Equations(equations)]
+        vec![
+            Block::Sentence(vec![Span::Text("With".to_owned())]),
+            Block::Equations(equations),
+        ]
     }
 
     /// One display defines all unknowns of a linear system.
     fn define_all_unknowns(&mut self, expr: Expr) {
-        let Node::Solution { system, .. } = *self.graph().node(expr) else { return };
+        let Node::Solution { system, .. } = *self.graph().node(expr) else {
+            return;
+        };
         let mut letter = self.letter(expr);
         for row in 1..=self.graph().system(system).right.len() {
             letter.below = vec![row.to_string()];
@@ -150,7 +167,11 @@ impl<'a> Writer<'a> {
             Node::Solution { system, .. } => {
                 let right = graph.system(system).right.to_vec();
                 let components = right.iter().map(|&r| self.explicit(r)).collect();
-                Math::Vector { components, frame: None, column: true }
+                Math::Vector {
+                    components,
+                    frame: None,
+                    column: true,
+                }
             }
             _ => self.set_whole(expr),
         }
@@ -158,24 +179,33 @@ impl<'a> Writer<'a> {
 
     /// The left-hand side of a definition.
     fn left(&mut self, expr: Expr, letter: Letter) -> Math {
-        let Node::Solution { system, .. } = *self.graph().node(expr) else { return Math::Letter(letter) };
+        let Node::Solution { system, .. } = *self.graph().node(expr) else {
+            return Math::Letter(letter);
+        };
         let entries = self.graph().system(system).matrix.to_vec();
         let size = self.graph().system(system).right.len();
-        let rows: Vec<Vec<Math>> =
-            entries.chunks(size).map(|row| row.iter().map(|&e| self.set(e)).collect()).collect();
+        let rows: Vec<Vec<Math>> = entries
+            .chunks(size)
+            .map(|row| row.iter().map(|&e| self.set(e)).collect())
+            .collect();
         let mut unknown = letter;
         let unknowns = (1..=size).map(|row| {
             unknown.below = vec![row.to_string()];
             Math::Letter(unknown.clone())
         });
-        let unknowns = Math::Vector { components: unknowns.collect(), frame: None, column: true };
+        let unknowns = Math::Vector {
+            components: unknowns.collect(),
+            frame: None,
+            column: true,
+        };
         Math::Row(vec![Math::Matrix(rows), unknowns])
     }
 
     /// A part with a letter, written out.
     fn set_whole(&mut self, expr: Expr) -> Math {
         let set = self.setter.set(&self.derivation.algebra.graph, expr);
-        self.wanted.extend(set.wants.into_iter().filter(|&e| e != expr));
+        self.wanted
+            .extend(set.wants.into_iter().filter(|&e| e != expr));
         set.math
     }
 }

@@ -1,4 +1,5 @@
 //! Pages of the shipped mechanisms, and a reader that takes them at their word.
+#![expect(clippy::unwrap_used, reason = "a test may stop here")]
 
 use std::collections::HashMap;
 use std::path::PathBuf;
@@ -15,7 +16,7 @@ fn folder() -> PathBuf {
 }
 
 /// Names of the shipped mechanisms.
-pub fn shipped() -> Vec<String> {
+pub(crate) fn shipped() -> Vec<String> {
     let mut names: Vec<String> = std::fs::read_dir(folder())
         .unwrap()
         .filter_map(|entry| Some(entry.unwrap().path().file_stem()?.to_str()?.to_owned()))
@@ -25,36 +26,40 @@ pub fn shipped() -> Vec<String> {
 }
 
 /// Text of a shipped spec.
-pub fn spec(name: &str) -> String {
+pub(crate) fn spec(name: &str) -> String {
     std::fs::read_to_string(folder().join(format!("{name}.toml"))).unwrap()
 }
 
 /// Page of a shipped mechanism.
-pub fn page_of(name: &str, stage: Stage) -> Page {
-    written(mechanism(&spec(name)), stage)
+pub(crate) fn page_of(name: &str, stage: Stage) -> Page {
+    written(&mechanism(&spec(name)), stage)
 }
 
 /// The whole page of a spec after changes that no spec can hold.
-pub fn page_after(text: &str, change: impl FnOnce(&mut Mechanism)) -> Page {
+pub(crate) fn page_after(text: &str, change: impl FnOnce(&mut Mechanism)) -> Page {
     let mut mechanism = mechanism(text);
     change(&mut mechanism);
-    written(mechanism, Stage::All)
+    written(&mechanism, Stage::All)
 }
 
 fn mechanism(text: &str) -> Mechanism {
-    appell_spec::load("spec.toml", text).unwrap_or_else(|report| panic!("{report:?}")).mechanism
+    appell_spec::load("spec.toml", text)
+        .unwrap_or_else(|report| panic!("{report:?}"))
+        .mechanism
 }
 
-fn written(mechanism: Mechanism, stage: Stage) -> Page {
-    let mut derivation = derive(&mechanism).unwrap_or_else(|findings| panic!("{findings:?}"));
-    page::page(&mechanism, &mut derivation, stage).unwrap()
+fn written(mechanism: &Mechanism, stage: Stage) -> Page {
+    let mut derivation = derive(mechanism).unwrap_or_else(|findings| panic!("{findings:?}"));
+    page::page(mechanism, &mut derivation, stage).unwrap()
 }
 
 /// Every element closes, in order.
-pub fn assert_well_formed(html: &str) {
+pub(crate) fn assert_well_formed(html: &str) {
     let mut open: Vec<&str> = Vec::new();
     for part in html.split('<').skip(1) {
-        let Some((tag, _)) = part.split_once('>') else { panic!("`<{part}` does not close") };
+        let Some((tag, _)) = part.split_once('>') else {
+            panic!("`<{part}` does not close")
+        };
         let name = tag.split_whitespace().next().unwrap();
         if let Some(name) = name.strip_prefix('/') {
             assert_eq!(open.pop(), Some(name), "</{name}> closes another element");
@@ -69,11 +74,13 @@ type Values = HashMap<String, f64>;
 
 /// Gives every quantity of the page a value, then reads all equations: what defines a letter gives
 /// it a value, everything else must hold. Returns how many equations were compared.
-pub fn check(page: &Page, seed: u64) -> usize {
+pub(crate) fn check(page: &Page, seed: u64) -> usize {
     let mut values = Values::new();
     let mut state = seed;
     let mut random = move || {
-        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        state = state
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
         0.3 + 0.8 * (state >> 40) as f64 / f64::from(1 << 24)
     };
     let mut given = |letter: &Letter| {
@@ -106,15 +113,19 @@ pub fn check(page: &Page, seed: u64) -> usize {
         .collect();
     loop {
         let before = values.len();
-        equations.iter().for_each(|equation| define(equation, &mut values));
+        for equation in &equations {
+            define(equation, &mut values);
+        }
         if values.len() == before {
             break;
         }
     }
     let mut compared = 0;
     for equation in equations {
-        let (Some(left), Some(right)) = (value(&equation.left, &values), value(&equation.right, &values))
-        else {
+        let (Some(left), Some(right)) = (
+            value(&equation.left, &values),
+            value(&equation.right, &values),
+        ) else {
             continue;
         };
         let scale = 1.0 + left.abs().max(right.abs());
@@ -133,7 +144,9 @@ fn define(equation: &Equation, values: &mut Values) {
         (Math::Letter(letter), Math::Matrix(rows)) if letter.base == "M" => {
             for (i, row) in rows.iter().enumerate() {
                 for (j, entry) in row.iter().enumerate() {
-                    let name = Letter::plain("M").below(&format!("{}{}", i + 1, j + 1)).to_string();
+                    let name = Letter::plain("M")
+                        .below(&format!("{}{}", i + 1, j + 1))
+                        .to_string();
                     if let Some(value) = value(entry, values) {
                         values.entry(name).or_insert(value);
                     }
@@ -185,7 +198,11 @@ fn value(math: &Math, values: &Values) -> Option<f64> {
         Math::Root(inner) => value(inner, values)?.sqrt(),
         Math::Size(inner) => value(inner, values)?.abs(),
         Math::Brackets(inner) => value(inner, values)?,
-        Math::Words(_) | Math::Sign(_) | Math::Vector { .. } | Math::Matrix(_) | Math::Cases { .. } => {
+        Math::Words(_)
+        | Math::Sign(_)
+        | Math::Vector { .. }
+        | Math::Matrix(_)
+        | Math::Cases { .. } => {
             return None;
         }
     })

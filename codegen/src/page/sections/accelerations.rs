@@ -17,7 +17,12 @@ pub(super) fn section(w: &mut Writer<'_>) -> Section {
         let centre = w.mechanism.bodies[index].centre;
         if !shown.contains(&centre) {
             shown.push(centre);
-            let a = along(w.graph(), body.centre.bias, &body.centre.partial, &accelerations);
+            let a = along(
+                w.graph(),
+                body.centre.bias,
+                &body.centre.partial,
+                &accelerations,
+            );
             let left = Math::Letter(Letter::bold("a").below(w.point(centre)));
             equations.push(Equation::new(left, w.vector(a, body.centre.velocity.frame)));
         }
@@ -26,7 +31,10 @@ pub(super) fn section(w: &mut Writer<'_>) -> Section {
         {
             let alpha = along(w.graph(), rotation.bias, &rotation.partial, &accelerations);
             let left = Math::Letter(Letter::bold("α").below(&body.name));
-            equations.push(Equation::new(left, w.vector(alpha, rotation.velocity.frame)));
+            equations.push(Equation::new(
+                left,
+                w.vector(alpha, rotation.velocity.frame),
+            ));
         }
     }
     let rule = Math::Row(vec![

@@ -18,10 +18,18 @@ pub(super) fn section(w: &mut Writer<'_>) -> Section {
     for index in 0..w.mechanism.constraints.len() {
         blocks.extend(constraint(w, index));
     }
-    blocks.push(sentence("The pseudo-velocities are linear in the generalised velocities:"));
+    blocks.push(sentence(
+        "The pseudo-velocities are linear in the generalised velocities:",
+    ));
     let definitions = definitions(w);
     blocks.push(definitions);
-    let by = if w.derivation.constraints.rows.iter().any(|r| !r.is_embedded()) {
+    let by = if w
+        .derivation
+        .constraints
+        .rows
+        .iter()
+        .any(|r| !r.is_embedded())
+    {
         "With the constraints they determine the generalised velocities:"
     } else {
         "They determine the generalised velocities:"
@@ -53,7 +61,11 @@ pub(super) fn rates(w: &mut Writer<'_>) -> Vec<Equation> {
 
 fn constraint(w: &mut Writer<'_>, index: usize) -> Vec<Block> {
     let constraint = &w.mechanism.constraints[index];
-    let about = if constraint.about.is_empty() { &constraint.name } else { &constraint.about };
+    let about = if constraint.about.is_empty() {
+        &constraint.name
+    } else {
+        &constraint.about
+    };
     let mut what = vec![words(&capitalised(about))];
     if let ConstraintKind::Rolling { body, contact } = constraint.kind {
         let centre = w.point(w.mechanism.bodies[body].centre);
@@ -79,11 +91,17 @@ fn constraint(w: &mut Writer<'_>, index: usize) -> Vec<Block> {
             continue;
         }
         if row.is_embedded() {
-            held.push(vec![words(row.name.rsplit('.').next().unwrap_or(&row.name))]);
+            held.push(vec![words(
+                row.name.rsplit('.').next().unwrap_or(&row.name),
+            )]);
             continue;
         }
         let mut parts = vec![row.rest];
-        for (&coefficient, rate) in row.coefficients.iter().zip(w.derivation.symbols.rates.clone()) {
+        for (&coefficient, rate) in row
+            .coefficients
+            .iter()
+            .zip(w.derivation.symbols.rates.clone())
+        {
             parts.push(w.graph().mul(coefficient, rate));
         }
         let left = w.graph().sum(&parts);
@@ -97,7 +115,11 @@ fn constraint(w: &mut Writer<'_>, index: usize) -> Vec<Block> {
     let mut blocks = vec![Block::Sentence(what)];
     blocks.extend(with(w, "", open));
     if !held.is_empty() {
-        let noun = if held.len() == 1 { "Its component along " } else { "Its components along " };
+        let noun = if held.len() == 1 {
+            "Its component along "
+        } else {
+            "Its components along "
+        };
         let mut text = vec![words(noun)];
         let verb = if held.len() == 1 {
             " holds by geometry: the coordinates satisfy it already."
@@ -114,7 +136,9 @@ fn constraint(w: &mut Writer<'_>, index: usize) -> Vec<Block> {
 /// With a capital letter at the start of a sentence.
 fn capitalised(text: &str) -> String {
     let mut letters = text.chars();
-    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
+    letters.next().map_or_else(String::new, |first| {
+        first.to_uppercase().chain(letters).collect()
+    })
 }
 
 fn definitions(w: &mut Writer<'_>) -> Block {
@@ -122,13 +146,23 @@ fn definitions(w: &mut Writer<'_>) -> Block {
     let mut rows = Vec::new();
     for (index, speed) in mechanism.pseudo_velocities.iter().enumerate() {
         let derivation = &mut *w.derivation;
-        let lowering = Lowering { symbols: &derivation.symbols, rates: &derivation.symbols.rates };
-        let value = lowering.lower(&mut derivation.algebra.graph, &speed.definition).unwrap_or(Graph::ZERO);
+        let lowering = Lowering {
+            symbols: &derivation.symbols,
+            rates: &derivation.symbols.rates,
+        };
+        let value = lowering
+            .lower(&mut derivation.algebra.graph, &speed.definition)
+            .unwrap_or(Graph::ZERO);
         let left = Math::Letter(w.speed(index));
         let mut right = w.set(value);
         // A pseudo-velocity with the letter of a generalised velocity: γ̇ = dγ/dt.
         if left == right
-            && let Some(place) = w.derivation.symbols.rates.iter().position(|&rate| rate == value)
+            && let Some(place) = w
+                .derivation
+                .symbols
+                .rates
+                .iter()
+                .position(|&rate| rate == value)
         {
             let coordinate = w.letter(w.derivation.symbols.coordinates[place]);
             right = Math::fraction(
@@ -143,5 +177,8 @@ fn definitions(w: &mut Writer<'_>) -> Block {
         ];
         rows.push(row);
     }
-    Block::Table(Table { title: String::new(), rows })
+    Block::Table(Table {
+        title: String::new(),
+        rows,
+    })
 }

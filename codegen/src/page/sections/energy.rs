@@ -19,15 +19,19 @@ pub(super) fn section(w: &mut Writer<'_>) -> Section {
     let half = || Math::Ratio("1".to_owned(), "2".to_owned());
     let dot = || Math::Sign("·");
     let translation = Math::Row(vec![half(), letter("m"), bold("a"), dot(), bold("a")]);
-    let rotation = Math::Row(vec![half(), bold("α"), dot(), Math::Row(vec![bold("J"), bold("α")])]);
-    let spin = Math::Row(vec![
-        bold("ω"),
-        Math::Sign("×"),
-        bold("J"),
-        bold("ω"),
+    let rotation = Math::Row(vec![
+        half(),
+        bold("α"),
+        dot(),
+        Math::Row(vec![bold("J"), bold("α")]),
     ]);
+    let spin = Math::Row(vec![bold("ω"), Math::Sign("×"), bold("J"), bold("ω")]);
     let gyroscopic = Math::Row(vec![bold("α"), dot(), Math::Brackets(Box::new(spin))]);
-    let whole = Math::sum(vec![(false, translation), (false, rotation), (false, gyroscopic)]);
+    let whole = Math::sum(vec![
+        (false, translation),
+        (false, rotation),
+        (false, gyroscopic),
+    ]);
     let definition = Math::Row(vec![
         letter("S"),
         Math::Sign("="),
@@ -53,7 +57,11 @@ pub(super) fn section(w: &mut Writer<'_>) -> Section {
 /// `½ ω̇ᵀ M ω̇ + bᵀ ω̇` of one body.
 fn energy_of(w: &mut Writer<'_>, body: &crate::mechanics::gibbs_appell::BodyMotion) -> Expr {
     let accelerations = w.derivation.symbols.accelerations.clone();
-    let form = gibbs_form(&mut w.derivation.algebra, std::slice::from_ref(body), accelerations.len());
+    let form = gibbs_form(
+        &mut w.derivation.algebra,
+        std::slice::from_ref(body),
+        accelerations.len(),
+    );
     let graph = w.graph();
     let mut parts = Vec::new();
     for (i, &first) in accelerations.iter().enumerate() {
@@ -76,7 +84,11 @@ pub(super) fn derivatives(w: &mut Writer<'_>) -> Section {
         let right = w.explicit(bias);
         equations.push(Equation::new(numbered("b", i), right));
     }
-    blocks.extend(with(w, "The bias b is what remains where all accelerations vanish:", equations));
+    blocks.extend(with(
+        w,
+        "The bias b is what remains where all accelerations vanish:",
+        equations,
+    ));
     let heading = Math::Row(vec![
         Math::fraction(
             Math::Letter(Letter::plain("S").before('∂')),
@@ -88,13 +100,26 @@ pub(super) fn derivatives(w: &mut Writer<'_>) -> Section {
         Math::Sign("+"),
         Math::Letter(Letter::bold("b")),
     ]);
-    Section { heading: vec![words("Mass matrix and bias: "), math(heading)], blocks }
+    Section {
+        heading: vec![words("Mass matrix and bias: "), math(heading)],
+        blocks,
+    }
 }
 
 fn matrix_blocks(w: &mut Writer<'_>, matrix: &[Vec<Expr>]) -> Vec<Block> {
     let entries: Vec<Vec<Math>> = matrix
         .iter()
-        .map(|row| row.iter().map(|&entry| if entry == Graph::ZERO { Math::zero() } else { w.explicit(entry) }).collect())
+        .map(|row| {
+            row.iter()
+                .map(|&entry| {
+                    if entry == Graph::ZERO {
+                        Math::zero()
+                    } else {
+                        w.explicit(entry)
+                    }
+                })
+                .collect()
+        })
         .collect();
     let width: usize = (0..matrix.len())
         .map(|k| entries.iter().map(|row| row[k].width()).max().unwrap_or(0) + 3)
@@ -124,7 +149,10 @@ fn matrix_blocks(w: &mut Writer<'_>, matrix: &[Vec<Expr>]) -> Vec<Block> {
         }
     }
     let mut blocks = w.definitions();
-    blocks.push(Block::Equations(vec![Equation::new(left, Math::Matrix(pattern))]));
+    blocks.push(Block::Equations(vec![Equation::new(
+        left,
+        Math::Matrix(pattern),
+    )]));
     blocks.push(Block::Equations(equations));
     blocks
 }
@@ -142,11 +170,17 @@ fn couplings(w: &mut Writer<'_>, matrix: &[Vec<Expr>]) -> Vec<Span> {
     let groups: Vec<Vec<Span>> = blocks
         .iter()
         .map(|block| {
-            let letters = block.iter().map(|&k| vec![math(Math::Letter(w.speed(k).dot()))]).collect();
+            let letters = block
+                .iter()
+                .map(|&k| vec![math(Math::Letter(w.speed(k).dot()))])
+                .collect();
             listed(letters)
         })
         .collect();
-    text.push(words(&format!("It falls into {} independent blocks: ", groups.len())));
+    text.push(words(&format!(
+        "It falls into {} independent blocks: ",
+        groups.len()
+    )));
     for (k, group) in groups.into_iter().enumerate() {
         if k > 0 {
             text.push(words("; "));

@@ -43,7 +43,11 @@ pub(super) fn section(w: &mut Writer<'_>) -> Section {
         let item = &w.mechanism.loads[index];
         let letter = Math::Letter(Letter::plain("P").before('δ').below(&item.name));
         rows.push(vec![vec![math(letter.clone())], vec![words(&item.about)]]);
-        let forces = generalized_forces(&mut w.derivation.algebra, std::slice::from_ref(&load), &speeds);
+        let forces = generalized_forces(
+            &mut w.derivation.algebra,
+            std::slice::from_ref(&load),
+            &speeds,
+        );
         let mut terms = Vec::new();
         for (k, &force) in forces.iter().enumerate() {
             if force != Graph::ZERO {
@@ -52,14 +56,21 @@ pub(super) fn section(w: &mut Writer<'_>) -> Section {
                     Math::Sum(mut single) if single.len() == 1 => single.remove(0),
                     other => (false, other),
                 };
-                let factors = if force.is_integer("1") { vec![along] } else { vec![force, along] };
+                let factors = if force.is_integer("1") {
+                    vec![along]
+                } else {
+                    vec![force, along]
+                };
                 terms.push((minus, Math::product(factors)));
             }
         }
         equations.push(Equation::new(letter, Math::sum(terms)));
     }
     if !rows.is_empty() {
-        blocks.push(Block::Table(Table { title: String::new(), rows }));
+        blocks.push(Block::Table(Table {
+            title: String::new(),
+            rows,
+        }));
     }
     blocks.extend(with(w, "", equations));
     let mut equations = Vec::new();
@@ -67,6 +78,10 @@ pub(super) fn section(w: &mut Writer<'_>) -> Section {
         let right = w.explicit(force);
         equations.push(Equation::new(numbered("Π", i), right));
     }
-    blocks.extend(with(w, "The pseudo-forces are the factors of the virtual velocities:", equations));
+    blocks.extend(with(
+        w,
+        "The pseudo-forces are the factors of the virtual velocities:",
+        equations,
+    ));
     super::section("Pseudo-forces Π", blocks)
 }

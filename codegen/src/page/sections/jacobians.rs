@@ -39,8 +39,14 @@ pub(super) fn section(w: &mut Writer<'_>) -> Section {
     let symbols = w.derivation.symbols.clone();
     let signals: Vec<Expr> = symbols.signals.iter().flatten().copied().collect();
     let lists = [
-        ("By the state, for A:", [symbols.speeds.clone(), symbols.coordinates.clone()].concat()),
-        ("By the inputs, for B:", [symbols.inputs.clone(), signals].concat()),
+        (
+            "By the state, for A:",
+            [symbols.speeds.clone(), symbols.coordinates.clone()].concat(),
+        ),
+        (
+            "By the inputs, for B:",
+            [symbols.inputs.clone(), signals].concat(),
+        ),
         ("By the parameters, for P:", symbols.parameters.clone()),
     ];
     let mut rows = residual(w);
@@ -64,7 +70,11 @@ pub(super) fn section(w: &mut Writer<'_>) -> Section {
         blocks.extend(with(w, lead, equations));
     }
     let solution = solution(w);
-    blocks.extend(with(w, "Solved for the derivatives of the accelerations:", solution));
+    blocks.extend(with(
+        w,
+        "Solved for the derivatives of the accelerations:",
+        solution,
+    ));
     super::section("Jacobians", blocks)
 }
 
@@ -81,7 +91,10 @@ fn residual(w: &mut Writer<'_>) -> Vec<(Letter, Expr)> {
             let inertial = graph.mul(entry, acceleration);
             parts.push(graph.neg(inertial));
         }
-        rows.push((Letter::plain("ρ").below(&(i + 1).to_string()), graph.sum(&parts)));
+        rows.push((
+            Letter::plain("ρ").below(&(i + 1).to_string()),
+            graph.sum(&parts),
+        ));
     }
     rows
 }
@@ -89,9 +102,18 @@ fn residual(w: &mut Writer<'_>) -> Vec<(Letter, Expr)> {
 fn solution(w: &mut Writer<'_>) -> Vec<Equation> {
     let matrix = w.derivation.gibbs.mass_matrix.clone();
     let derivative = |of: Letter| Math::partial(of, Letter::plain("z"));
-    let unknowns: Vec<Math> = (0..matrix.len()).map(|k| derivative(w.speed(k).dot())).collect();
+    let unknowns: Vec<Math> = (0..matrix.len())
+        .map(|k| derivative(w.speed(k).dot()))
+        .collect();
     let unknown = |k: usize| unknowns[k].clone();
     let right = |k: usize| derivative(Letter::plain("ρ").below(&(k + 1).to_string()));
-    let system = System { matrix: &matrix, unknown: &unknown, right: &right };
-    independent_blocks(&matrix).iter().flat_map(|block| system.solved(block)).collect()
+    let system = System {
+        matrix: &matrix,
+        unknown: &unknown,
+        right: &right,
+    };
+    independent_blocks(&matrix)
+        .iter()
+        .flat_map(|block| system.solved(block))
+        .collect()
 }

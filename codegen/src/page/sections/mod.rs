@@ -48,7 +48,10 @@ pub(super) fn sections(w: &mut Writer<'_>, stage: Stage) -> finding::Stage<Vec<S
 
 /// A section with a heading of words.
 fn section(heading: &str, blocks: Vec<Block>) -> Section {
-    Section { heading: vec![words(heading)], blocks }
+    Section {
+        heading: vec![words(heading)],
+        blocks,
+    }
 }
 
 fn words(text: &str) -> Span {

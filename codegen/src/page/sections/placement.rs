@@ -24,7 +24,12 @@ pub(super) fn section(w: &mut Writer<'_>) -> Section {
     }
     let frames = mechanism.frames[1..].iter().filter(|f| !f.about.is_empty());
     let rows: Vec<_> = frames
-        .map(|f| vec![vec![math(Math::Words(f.name.clone()))], vec![words(&f.about)]])
+        .map(|f| {
+            vec![
+                vec![math(Math::Words(f.name.clone()))],
+                vec![words(&f.about)],
+            ]
+        })
         .collect();
     table(&mut blocks, "Frames", rows);
     let points = points(w);
@@ -36,15 +41,23 @@ pub(super) fn section(w: &mut Writer<'_>) -> Section {
 
 fn table(blocks: &mut Vec<Block>, title: &str, rows: Vec<Vec<Vec<Span>>>) {
     if !rows.is_empty() {
-        blocks.push(Block::Table(Table { title: title.to_owned(), rows }));
+        blocks.push(Block::Table(Table {
+            title: title.to_owned(),
+            rows,
+        }));
     }
 }
 
 /// An expression of the spec; the derivation has lowered every one of them before.
 fn lowered(w: &mut Writer<'_>, expr: &appell_spec::expr::Expr) -> Expr {
     let derivation = &mut *w.derivation;
-    let lowering = Lowering { symbols: &derivation.symbols, rates: &derivation.symbols.rates };
-    lowering.lower(&mut derivation.algebra.graph, expr).unwrap_or(Graph::ZERO)
+    let lowering = Lowering {
+        symbols: &derivation.symbols,
+        rates: &derivation.symbols.rates,
+    };
+    lowering
+        .lower(&mut derivation.algebra.graph, expr)
+        .unwrap_or(Graph::ZERO)
 }
 
 fn chain(w: &mut Writer<'_>, leaf: FrameId) -> Block {
@@ -64,7 +77,10 @@ fn chain(w: &mut Writer<'_>, leaf: FrameId) -> Block {
         }
         links.push((label, mechanism.frames[frame].name.clone()));
     }
-    Block::Chain(Chain { start: mechanism.frames[GROUND].name.clone(), links })
+    Block::Chain(Chain {
+        start: mechanism.frames[GROUND].name.clone(),
+        links,
+    })
 }
 
 fn axis(turn: &Turn) -> String {
@@ -79,7 +95,11 @@ fn axis(turn: &Turn) -> String {
 /// The letters of two points side by side.
 pub(super) fn from_to(from: &str, to: &str) -> String {
     let single = |name: &str| name.chars().count() == 1;
-    if single(from) && single(to) { format!("{from}{to}") } else { format!("{from},{to}") }
+    if single(from) && single(to) {
+        format!("{from}{to}")
+    } else {
+        format!("{from},{to}")
+    }
 }
 
 fn points(w: &mut Writer<'_>) -> Vec<Vec<Vec<Span>>> {
@@ -91,8 +111,15 @@ fn points(w: &mut Writer<'_>) -> Vec<Vec<Vec<Span>>> {
         let components = components.into_iter().map(|c| w.set(c)).collect();
         let frame = Some(w.frame(point.frame));
         let left = Letter::bold("r").below(&from_to(w.point(from), &point.name));
-        let right = Math::Vector { components, frame, column: false };
-        rows.push(vec![vec![equality(Math::Letter(left), right)], vec![words(&point.about)]]);
+        let right = Math::Vector {
+            components,
+            frame,
+            column: false,
+        };
+        rows.push(vec![
+            vec![equality(Math::Letter(left), right)],
+            vec![words(&point.about)],
+        ]);
     }
     rows
 }
@@ -110,7 +137,11 @@ fn bodies(w: &mut Writer<'_>) -> Vec<Vec<Vec<Span>>> {
             let left = Math::Letter(Letter::bold("J").below(&body.name));
             what.push(equality(left, tensor));
         }
-        rows.push(vec![vec![math(Math::Words(body.name.clone()))], what, vec![words(&body.about)]]);
+        rows.push(vec![
+            vec![math(Math::Words(body.name.clone()))],
+            what,
+            vec![words(&body.about)],
+        ]);
     }
     rows
 }
@@ -125,9 +156,16 @@ fn tensor(w: &mut Writer<'_>, inertia: &Inertia) -> Math {
     let is_diagonal = (0..9).all(|k| k % 4 == 0 || entries[k] == Graph::ZERO);
     if is_diagonal {
         let components = [0, 4, 8].map(|k| w.set(entries[k])).into();
-        let diagonal = Math::Vector { components, frame: None, column: false };
+        let diagonal = Math::Vector {
+            components,
+            frame: None,
+            column: false,
+        };
         return Math::Row(vec![Math::Call("diag", 1, Box::new(diagonal)), frame]);
     }
-    let rows = entries.chunks(3).map(|row| row.iter().map(|&e| w.set(e)).collect()).collect();
+    let rows = entries
+        .chunks(3)
+        .map(|row| row.iter().map(|&e| w.set(e)).collect())
+        .collect();
     Math::Row(vec![Math::Matrix(rows), frame])
 }

@@ -23,13 +23,40 @@ pub(super) fn section(w: &mut Writer<'_>) -> Section {
     let mut blocks = Vec::new();
     let mut table = |title: &str, rows: Vec<Vec<Vec<Span>>>| {
         if !rows.is_empty() {
-            blocks.push(Block::Table(Table { title: title.to_owned(), rows }));
+            blocks.push(Block::Table(Table {
+                title: title.to_owned(),
+                rows,
+            }));
         }
     };
-    table("Parameters", m.parameters.iter().map(|p| plain(&p.label, value(&p.label, p.value))).collect());
-    table("Coordinates q", m.coordinates.iter().map(|q| plain(&q.label, unit(&q.label))).collect());
-    table("Inputs", m.inputs.iter().map(|u| plain(&u.label, unit(&u.label))).collect());
-    table("Known functions of time", m.signals.iter().map(|s| plain(&s.label, unit(&s.label))).collect());
+    table(
+        "Parameters",
+        m.parameters
+            .iter()
+            .map(|p| plain(&p.label, value(&p.label, p.value)))
+            .collect(),
+    );
+    table(
+        "Coordinates q",
+        m.coordinates
+            .iter()
+            .map(|q| plain(&q.label, unit(&q.label)))
+            .collect(),
+    );
+    table(
+        "Inputs",
+        m.inputs
+            .iter()
+            .map(|u| plain(&u.label, unit(&u.label)))
+            .collect(),
+    );
+    table(
+        "Known functions of time",
+        m.signals
+            .iter()
+            .map(|s| plain(&s.label, unit(&s.label)))
+            .collect(),
+    );
     super::section("Quantities", blocks)
 }
 
@@ -39,8 +66,13 @@ pub(super) fn outputs(w: &mut Writer<'_>) -> Option<Section> {
     let mut rows = Vec::new();
     for output in &mechanism.outputs {
         let derivation = &mut *w.derivation;
-        let lowering = Lowering { symbols: &derivation.symbols, rates: &derivation.symbols.rates };
-        let Ok(expr) = lowering.lower(&mut derivation.algebra.graph, &output.value) else { continue };
+        let lowering = Lowering {
+            symbols: &derivation.symbols,
+            rates: &derivation.symbols.rates,
+        };
+        let Ok(expr) = lowering.lower(&mut derivation.algebra.graph, &output.value) else {
+            continue;
+        };
         let right = w.set(expr);
         let left = Math::Letter(Letter::of(&output.label.name));
         rows.push(vec![
@@ -53,6 +85,9 @@ pub(super) fn outputs(w: &mut Writer<'_>) -> Option<Section> {
         return None;
     }
     let mut blocks = w.definitions();
-    blocks.push(Block::Table(Table { title: String::new(), rows }));
+    blocks.push(Block::Table(Table {
+        title: String::new(),
+        rows,
+    }));
     Some(super::section("Outputs", blocks))
 }

@@ -22,7 +22,10 @@ impl System<'_> {
     pub(super) fn solved(&self, block: &[usize]) -> Vec<Equation> {
         match *block {
             [k] => {
-                vec![Equation::new((self.unknown)(k), Math::fraction((self.right)(k), entry("M", k, k)))]
+                vec![Equation::new(
+                    (self.unknown)(k),
+                    Math::fraction((self.right)(k), entry("M", k, k)),
+                )]
             }
             [i, j] => self.by_determinants(i, j),
             _ if block.len() <= LARGEST_BLOCK => self.by_elimination(block),
@@ -45,7 +48,10 @@ impl System<'_> {
                 (true, product(entry("M", i, j), (self.right)(other))),
             ]);
             let left = (self.unknown)(own);
-            equations.push(Equation::new(left, Math::fraction(numerator, determinant.clone())));
+            equations.push(Equation::new(
+                left,
+                Math::fraction(numerator, determinant.clone()),
+            ));
         }
         equations
     }
@@ -57,7 +63,8 @@ impl System<'_> {
         let mut equations = Vec::new();
         for a in 0..n {
             for p in 0..a {
-                let changes: Vec<usize> = (0..p).filter(|&q| filled[a][q] && filled[p][q]).collect();
+                let changes: Vec<usize> =
+                    (0..p).filter(|&q| filled[a][q] && filled[p][q]).collect();
                 let own = self.matrix[block[a]][block[p]] != Graph::ZERO;
                 filled[a][p] = own || !changes.is_empty();
                 if !filled[a][p] {
@@ -82,17 +89,26 @@ impl System<'_> {
             let mut reduced = vec![(false, (self.right)(block[a]))];
             for p in (0..a).filter(|&p| filled[a][p]) {
                 let coupling = entry("L", block[a], block[p]);
-                pivot.push((true, Math::product(vec![square(coupling.clone()), single("D", block[p])])));
+                pivot.push((
+                    true,
+                    Math::product(vec![square(coupling.clone()), single("D", block[p])]),
+                ));
                 reduced.push((true, Math::product(vec![coupling, single("z", block[p])])));
             }
             equations.push(Equation::new(single("D", block[a]), Math::sum(pivot)));
             equations.push(Equation::new(single("z", block[a]), Math::sum(reduced)));
         }
         for a in (0..n).rev() {
-            let mut terms = vec![(false, Math::fraction(single("z", block[a]), single("D", block[a])))];
+            let mut terms = vec![(
+                false,
+                Math::fraction(single("z", block[a]), single("D", block[a])),
+            )];
             for p in (a + 1..n).filter(|&p| filled[p][a]) {
                 let known = (self.unknown)(block[p]);
-                terms.push((true, Math::product(vec![entry("L", block[p], block[a]), known])));
+                terms.push((
+                    true,
+                    Math::product(vec![entry("L", block[p], block[a]), known]),
+                ));
             }
             let left = (self.unknown)(block[a]);
             equations.push(Equation::new(left, Math::sum(terms)));
@@ -103,8 +119,16 @@ impl System<'_> {
 
 /// `M₁₂`, with the smaller index first in a symmetric matrix.
 fn entry(name: &str, i: usize, j: usize) -> Math {
-    let (i, j) = if name == "M" { (i.min(j) + 1, i.max(j) + 1) } else { (i + 1, j + 1) };
-    let place = if i.max(j) > 9 { format!("{i},{j}") } else { format!("{i}{j}") };
+    let (i, j) = if name == "M" {
+        (i.min(j) + 1, i.max(j) + 1)
+    } else {
+        (i + 1, j + 1)
+    };
+    let place = if i.max(j) > 9 {
+        format!("{i},{j}")
+    } else {
+        format!("{i}{j}")
+    };
     Math::Letter(Letter::plain(name).below(&place))
 }
 

@@ -15,7 +15,11 @@ pub(super) fn section(w: &mut Writer<'_>) -> Section {
     for frame in written_frames(w) {
         let v = w.derivation.kinematics.frames.angular_velocity(frame);
         // A frame that is fixed in a body turns with it.
-        let rotations = w.derivation.bodies.iter().filter_map(|b| b.rotation.as_ref());
+        let rotations = w
+            .derivation
+            .bodies
+            .iter()
+            .filter_map(|b| b.rotation.as_ref());
         if rotations.into_iter().any(|r| r.velocity == v) {
             continue;
         }
@@ -23,7 +27,11 @@ pub(super) fn section(w: &mut Writer<'_>) -> Section {
     }
     for body in w.derivation.bodies.clone() {
         if let Some(rotation) = body.rotation {
-            equations.push(equation(w, Letter::bold("ω").below(&body.name), rotation.velocity));
+            equations.push(equation(
+                w,
+                Letter::bold("ω").below(&body.name),
+                rotation.velocity,
+            ));
         }
     }
     for point in moving_points(w) {
@@ -51,7 +59,10 @@ pub(super) fn written_frames(w: &Writer<'_>) -> Vec<FrameId> {
     let mut frames: Vec<FrameId> = Vec::new();
     for body in &w.derivation.bodies {
         let rotation = body.rotation.as_ref().map(|r| r.velocity.frame);
-        for frame in [Some(body.centre.velocity.frame), rotation].into_iter().flatten() {
+        for frame in [Some(body.centre.velocity.frame), rotation]
+            .into_iter()
+            .flatten()
+        {
             if frame != GROUND && !frames.contains(&frame) {
                 frames.push(frame);
             }
@@ -66,12 +77,20 @@ fn moving_points(w: &Writer<'_>) -> Vec<PointId> {
     let mut points: Vec<PointId> = w.mechanism.bodies.iter().map(|b| b.centre).collect();
     for load in &w.mechanism.loads {
         match &load.kind {
-            LoadKind::Force { on, reaction_on, .. } => {
+            LoadKind::Force {
+                on, reaction_on, ..
+            } => {
                 points.push(*on);
                 points.extend(*reaction_on);
             }
-            LoadKind::Spring { between: Connection::Points(a, b), .. }
-            | LoadKind::Damper { between: Connection::Points(a, b), .. } => points.extend([*a, *b]),
+            LoadKind::Spring {
+                between: Connection::Points(a, b),
+                ..
+            }
+            | LoadKind::Damper {
+                between: Connection::Points(a, b),
+                ..
+            } => points.extend([*a, *b]),
             _ => {}
         }
     }

@@ -15,7 +15,7 @@ use super::{Expr, Factor, Function, Graph, Node, Rational, Relation, SymbolId};
 
 pub use latex::Latex;
 pub use mathml::MathMl;
-pub use name::Name;
+pub use name::{GREEK, Name};
 pub use text::Text;
 
 /// Longer parts are cut: shared parts can grow beyond all bounds when they are written out.

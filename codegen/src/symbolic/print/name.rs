@@ -14,7 +14,7 @@ pub struct Name {
 }
 
 /// Greek letters that have names of their own in `LaTeX`.
-const GREEK: [(&str, char); 33] = [
+pub const GREEK: [(&str, char); 33] = [
     ("alpha", 'α'),
     ("beta", 'β'),
     ("gamma", 'γ'),

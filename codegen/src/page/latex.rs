@@ -286,6 +286,9 @@ fn letter(letter: &Letter) -> String {
 
 /// A label below a letter: Greek letters, axes and counters slanted, names upright.
 fn label(part: &str) -> String {
+    if part.chars().all(|c| c.is_ascii_digit() || c == ',') {
+        return part.to_owned();
+    }
     let single = part.chars().next().filter(|_| part.chars().count() == 1);
     match single {
         Some(c) => match greek_command(c) {

@@ -49,7 +49,7 @@ impl Setter {
         match graph.node(expr) {
             Node::Named(_) | Node::Symbol(_) => self.lexicon.letter(graph, expr),
             Node::Solution { system, row } => Letter::plain("z")
-                .above(&(system + 1).to_string())
+                .below(&(system + 1).to_string())
                 .below(&(row + 1).to_string()),
             _ => {
                 let next = self.parts.len() + 1;

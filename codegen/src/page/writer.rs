@@ -5,12 +5,15 @@ use rustc_hash::FxHashSet;
 
 use super::formula::Setter;
 use super::letters::Letter;
-use super::lexicon::Lexicon;
+use super::lexicon::{AXES, Lexicon};
 use super::math::{Equation, Math};
 use super::{Block, Span};
 use crate::mechanics::Derivation;
 use crate::symbolic::vector::Vec3;
 use crate::symbolic::{Expr, Graph, Node};
+
+/// A vector with a wider component is written component by component.
+const WIDEST_COMPONENT: usize = 76;
 
 /// Writes formulas and remembers what they take for granted.
 pub(super) struct Writer<'a> {
@@ -101,10 +104,23 @@ impl<'a> Writer<'a> {
         }
     }
 
-    /// Components of a vector in the frame that they are written in.
-    pub(super) fn vector(&mut self, v: Vec3, frame: FrameId) -> Math {
-        let components = v.iter().map(|&c| self.explicit(c)).collect();
-        Math::vector(components, &self.mechanism.frames[frame].name)
+    /// A vector as one equation, or as one per component where a component fills a line.
+    pub(super) fn vector(&mut self, letter: Letter, v: Vec3, frame: FrameId) -> Vec<Equation> {
+        let components: Vec<Math> = v.iter().map(|&c| self.explicit(c)).collect();
+        let frame = &self.mechanism.frames[frame].name;
+        if components.iter().all(|c| c.width() <= WIDEST_COMPONENT) {
+            let right = Math::vector(components, frame);
+            return vec![Equation::new(Math::Letter(letter), right)];
+        }
+        components
+            .into_iter()
+            .zip(AXES)
+            .map(|(component, axis)| {
+                let mut left = letter.clone().below(&format!("{axis} in {frame}"));
+                left.bold = false;
+                Equation::new(Math::Letter(left), component)
+            })
+            .collect()
     }
 
     /// Marks a name as defined: a section shows it among its equations.
@@ -151,7 +167,8 @@ impl<'a> Writer<'a> {
         };
         let mut letter = self.letter(expr);
         for row in 1..=self.graph().system(system).right.len() {
-            letter.below = vec![row.to_string()];
+            letter.below.pop();
+            letter.below.push(row.to_string());
             self.defined.insert(letter.clone());
         }
     }
@@ -190,7 +207,8 @@ impl<'a> Writer<'a> {
             .collect();
         let mut unknown = letter;
         let unknowns = (1..=size).map(|row| {
-            unknown.below = vec![row.to_string()];
+            unknown.below.pop();
+            unknown.below.push(row.to_string());
             Math::Letter(unknown.clone())
         });
         let unknowns = Math::Vector {

@@ -1,7 +1,7 @@
 //! Accelerations of centres of mass, angular accelerations of bodies.
 
 use super::super::letters::Letter;
-use super::super::math::{Equation, Math};
+use super::super::math::Math;
 use super::super::writer::Writer;
 use super::super::{Block, Section};
 use super::{math, with, words};
@@ -23,18 +23,15 @@ pub(super) fn section(w: &mut Writer<'_>) -> Section {
                 &body.centre.partial,
                 &accelerations,
             );
-            let left = Math::Letter(Letter::bold("a").below(w.point(centre)));
-            equations.push(Equation::new(left, w.vector(a, body.centre.velocity.frame)));
+            let letter = Letter::bold("a").below(w.point(centre));
+            equations.extend(w.vector(letter, a, body.centre.velocity.frame));
         }
         if let Some(rotation) = body.rotation
             && rotation.velocity.v != vector::ZERO
         {
             let alpha = along(w.graph(), rotation.bias, &rotation.partial, &accelerations);
-            let left = Math::Letter(Letter::bold("α").below(&body.name));
-            equations.push(Equation::new(
-                left,
-                w.vector(alpha, rotation.velocity.frame),
-            ));
+            let letter = Letter::bold("α").below(&body.name);
+            equations.extend(w.vector(letter, alpha, rotation.velocity.frame));
         }
     }
     let rule = Math::Row(vec![

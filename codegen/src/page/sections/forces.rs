@@ -42,7 +42,9 @@ pub(super) fn section(w: &mut Writer<'_>) -> Section {
     for (index, load) in w.derivation.loads.clone().into_iter().enumerate() {
         let item = &w.mechanism.loads[index];
         let letter = Math::Letter(Letter::plain("P").before('δ').below(&item.name));
-        rows.push(vec![vec![math(letter.clone())], vec![words(&item.about)]]);
+        if !item.about.is_empty() {
+            rows.push(vec![vec![math(letter.clone())], vec![words(&item.about)]]);
+        }
         let forces = generalized_forces(
             &mut w.derivation.algebra,
             std::slice::from_ref(&load),

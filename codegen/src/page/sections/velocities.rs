@@ -4,10 +4,8 @@ use appell_spec::mechanism::{Connection, FrameId, GROUND, LoadKind, PointId};
 
 use super::super::Section;
 use super::super::letters::Letter;
-use super::super::math::{Equation, Math};
 use super::super::writer::Writer;
 use super::{sentence, with};
-use crate::mechanics::frames::FrameVector;
 
 /// Velocities, each in the frame where it is shortest.
 pub(super) fn section(w: &mut Writer<'_>) -> Section {
@@ -23,20 +21,19 @@ pub(super) fn section(w: &mut Writer<'_>) -> Section {
         if rotations.into_iter().any(|r| r.velocity == v) {
             continue;
         }
-        equations.push(equation(w, frame_rate(&w.frame(frame)), v));
+        let letter = Letter::bold("Ω").below(&w.frame(frame));
+        equations.extend(w.vector(letter, v.v, v.frame));
     }
     for body in w.derivation.bodies.clone() {
         if let Some(rotation) = body.rotation {
-            equations.push(equation(
-                w,
-                Letter::bold("ω").below(&body.name),
-                rotation.velocity,
-            ));
+            let letter = Letter::bold("ω").below(&body.name);
+            equations.extend(w.vector(letter, rotation.velocity.v, rotation.velocity.frame));
         }
     }
     for point in moving_points(w) {
         let v = w.derivation.kinematics.velocity(point);
-        equations.push(equation(w, Letter::bold("v").below(w.point(point)), v));
+        let letter = Letter::bold("v").below(w.point(point));
+        equations.extend(w.vector(letter, v.v, v.frame));
     }
     let mut blocks = vec![sentence(
         "Ω turns a frame, ω a body; each vector is written in the frame where it is shortest.",
@@ -45,17 +42,8 @@ pub(super) fn section(w: &mut Writer<'_>) -> Section {
     super::section("Velocities", blocks)
 }
 
-/// Ω of a frame.
-pub(super) fn frame_rate(frame: &str) -> Letter {
-    Letter::bold("Ω").below(frame)
-}
-
-fn equation(w: &mut Writer<'_>, left: Letter, v: FrameVector) -> Equation {
-    Equation::new(Math::Letter(left), w.vector(v.v, v.frame))
-}
-
 /// The turning frames in which motions of bodies are written.
-pub(super) fn written_frames(w: &Writer<'_>) -> Vec<FrameId> {
+fn written_frames(w: &Writer<'_>) -> Vec<FrameId> {
     let mut frames: Vec<FrameId> = Vec::new();
     for body in &w.derivation.bodies {
         let rotation = body.rotation.as_ref().map(|r| r.velocity.frame);

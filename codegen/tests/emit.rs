@@ -136,7 +136,10 @@ fn emitted_jacobians_are_the_derivatives_of_the_emitted_rates() {
 fn the_emitted_model_has_the_info_of_the_program() {
     assert_eq!(*unicycle::Unicycle.info(), emit_support::unicycle().info);
     assert_eq!(unicycle::SPEC, SPEC);
-    assert_eq!(unicycle::Parameters::default().R.to_bits(), 0.3_f64.to_bits());
+    assert_eq!(
+        unicycle::Parameters::default().R.to_bits(),
+        0.3_f64.to_bits()
+    );
 }
 
 #[test]

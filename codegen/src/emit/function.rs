@@ -83,7 +83,7 @@ pub(super) fn function(
     }
     let name = ident(function_name(function.kind));
     let mut lines = vec![about(function.kind).to_owned(), String::new()];
-    lines.extend(super::picture::picture(types, function, schedule));
+    lines.extend(super::picture::picture(types, function));
     lines.push(format!(
         "From `{}`.",
         one_line(&types.program.file).replace('`', "'")

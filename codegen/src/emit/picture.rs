@@ -1,30 +1,40 @@
 //! Small matrices drawn in characters.
 
+use super::layout::one_line;
 use super::types::Types;
 use crate::program::{Function, FunctionKind, Layout};
-use crate::schedule::piece::text;
-use crate::schedule::{Schedule, Step, Tree, Value};
+use crate::symbolic::Graph;
+use crate::symbolic::print::{Printer, Text};
 
 /// Widest picture, in characters.
-const WIDEST: usize = 84;
+const WIDEST: usize = 92;
+/// Nodes of the largest entry that is worth a try.
+const LARGEST: usize = 60;
 
 /// The mass matrix as rustdoc lines, where it fits on the page.
-pub(super) fn picture(types: &Types<'_>, function: &Function, schedule: &Schedule) -> Vec<String> {
-    let (FunctionKind::MassMatrix, [array], [result]) = (
-        function.kind,
-        function.results.as_slice(),
-        schedule.results.as_slice(),
-    ) else {
+pub(super) fn picture(types: &Types<'_>, function: &Function) -> Vec<String> {
+    let (FunctionKind::MassMatrix, [array]) = (function.kind, function.results.as_slice()) else {
         return Vec::new();
     };
     let Layout::Matrix(rows, columns @ 1..=6) = array.layout else {
         return Vec::new();
     };
-    let cells: Vec<String> = result
-        .entries
-        .iter()
-        .map(|tree| cell(types, schedule, tree))
-        .collect();
+    let at = &types.program.arguments;
+    let printer = Printer::new(&types.program.graph, Text)
+        .with_order(&[at.parameters.as_slice(), &at.states].concat())
+        .with_definitions_inline();
+    let mut cells = Vec::with_capacity(array.entries.len());
+    for &entry in &array.entries {
+        if types.program.graph.in_order(&[entry]).len() > LARGEST {
+            return Vec::new();
+        }
+        let zero = entry == Graph::ZERO;
+        cells.push(if zero {
+            "·".to_owned()
+        } else {
+            one_line(&printer.expression(entry))
+        });
+    }
     let width_of = |column: usize| {
         let column = cells.iter().skip(column).step_by(columns);
         column.map(|cell| cell.chars().count()).max().unwrap_or(0)
@@ -51,25 +61,4 @@ pub(super) fn picture(types: &Types<'_>, function: &Function, schedule: &Schedul
     }
     lines.extend(["```".to_owned(), String::new()]);
     lines
-}
-
-/// An entry, with the value it names written out.
-fn cell(types: &Types<'_>, schedule: &Schedule, tree: &Tree) -> String {
-    let definition = |value: &Value| {
-        schedule.steps.iter().find_map(|step| match step {
-            Step::Let {
-                value: defined,
-                tree,
-            } if defined == value => Some(tree),
-            _ => None,
-        })
-    };
-    match tree {
-        Tree::Value(value) => {
-            let tree = definition(value).unwrap_or(tree);
-            text(tree, schedule, &types.names)
-        }
-        Tree::Constant(value) if value.is_zero() => "·".to_owned(),
-        _ => text(tree, schedule, &types.names),
-    }
 }

@@ -1,7 +1,8 @@
 //! From the working graph to steps: what gets a name, in which order, under which name.
 
 use super::dag::{Dag, Id, Item, Op};
-use super::names::{ArgumentNames, LONGEST, Names, result_label};
+use super::names::{ArgumentNames, LONGEST, Names};
+use super::outline::Outline;
 use super::piece::{Level, Piece, describe};
 use super::signs::choose_signs;
 use super::{Argument, Operation, ResultArray, Schedule, Step, Tree, Value};
@@ -13,13 +14,15 @@ const COLUMNS: usize = 88;
 /// Columns of `    let `, ` = ` and `;`.
 const FRAME: usize = 12;
 /// Wider trees are not written inside other trees.
-const INLINE: usize = 48;
+const INLINE: usize = 60;
+/// Columns that a tree gets after a name of any length.
+const NARROWEST: usize = 30;
 
 /// The steps of a function.
 pub(super) fn bind(program: &Program, function: &Function, dag: &Dag) -> Schedule {
     let mut binding = Binding::new(program, function, dag);
     let mut seen = vec![false; dag.len()];
-    for (title, roots) in binding.paragraphs(function) {
+    for (title, roots) in binding.outline.paragraphs(function) {
         binding.title = Some(title);
         let mut order = Vec::new();
         dag.visit_from(&roots, &mut seen, |id| order.push(id));
@@ -42,17 +45,10 @@ struct Binding<'a> {
     program: &'a Program,
     dag: &'a Dag,
     arguments: ArgumentNames,
-    uses: Vec<u32>,
-    /// Nodes that must not be written inside other trees.
-    bound: Vec<bool>,
+    outline: Outline<'a>,
     /// Nodes wanted with the opposite sign.
     minus: Vec<bool>,
-    /// Sine and cosine of the same angle: the partner.
-    partner: Vec<Option<Id>>,
-    /// What the node is called if it is a result.
-    labels: Vec<Option<(String, bool)>>,
-    /// What the node is for: the name of the first named value or result that it feeds.
-    feeds: Vec<Option<Id>>,
+    /// Parts counted so far, by what they feed.
     parts: Vec<u32>,
     built: Vec<Option<Built>>,
     names: Names,
@@ -71,23 +67,21 @@ impl<'a> Binding<'a> {
         for name in arguments.iter() {
             names.reserve(name);
         }
-        let order = dag.order();
-        for &id in &order {
+        let outline = Outline::new(program, &arguments, function, dag);
+        for &id in &outline.order {
             if let Some(value) = dag.as_number(id) {
                 names.reserve(&arguments.constant(value));
                 names.reserve(&arguments.constant(&-value));
             }
         }
-        names.reserve(&arguments.constant(&Rational::ONE));
-        let mut binding = Self {
+        for value in [Rational::ZERO, Rational::ONE] {
+            names.reserve(&arguments.constant(&value));
+        }
+        Self {
             program,
             dag,
-            uses: dag.uses(&order),
-            bound: vec![false; dag.len()],
-            minus: choose_signs(dag, &order),
-            partner: vec![None; dag.len()],
-            labels: vec![None; dag.len()],
-            feeds: vec![None; dag.len()],
+            minus: choose_signs(dag, &outline.order),
+            outline,
             parts: vec![0; dag.len()],
             built: vec![None; dag.len()],
             names,
@@ -97,139 +91,7 @@ impl<'a> Binding<'a> {
             systems_done: vec![false; dag.systems.len()],
             factorisations: Vec::new(),
             arguments,
-        };
-        binding.label_results(function);
-        binding.pair_sines(&order);
-        binding.choose_bound(&order);
-        binding.find_feeds(&order);
-        binding
-    }
-
-    fn label_results(&mut self, function: &Function) {
-        let mut results = self.dag.results.iter();
-        for array in &function.results {
-            for (entry, result) in (0..array.entries.len()).zip(&mut results) {
-                let label = &mut self.labels[result.id.index()];
-                if label.is_none() {
-                    let text =
-                        result_label(self.program, &self.arguments, function.kind, array, entry);
-                    *label = Some((text, result.flip));
-                }
-                self.bound[result.id.index()] = true;
-            }
         }
-    }
-
-    fn pair_sines(&mut self, order: &[Id]) {
-        let mut sines: Vec<(Item, Elementary, Id)> = order
-            .iter()
-            .filter_map(|&id| match self.dag.op(id) {
-                Op::Function(kind @ (Elementary::Sin | Elementary::Cos), angle) => {
-                    Some((*angle, *kind, id))
-                }
-                _ => None,
-            })
-            .collect();
-        sines.sort_unstable();
-        for pair in sines.windows(2) {
-            if pair[0].0 == pair[1].0 {
-                let (sin, cos) = (pair[0].2, pair[1].2);
-                self.partner[sin.index()] = Some(cos);
-                self.partner[cos.index()] = Some(sin);
-            }
-        }
-    }
-
-    fn choose_bound(&mut self, order: &[Id]) {
-        for &id in order {
-            let i = id.index();
-            let parts = match self.dag.op(id) {
-                Op::Number(_) | Op::Argument(_) => {
-                    self.bound[i] = false;
-                    continue;
-                }
-                Op::Sum(items) | Op::Product(items) => items.len(),
-                Op::Solution { system, .. } => {
-                    let system = &self.dag.systems[*system as usize];
-                    for item in system.matrix.iter().chain(&system.right) {
-                        self.bound[item.id.index()] |= !self.dag.is_leaf(item.id);
-                    }
-                    usize::MAX
-                }
-                _ => 1,
-            };
-            let worth_reading = self.dag.names[i].is_some() && parts > 2;
-            self.bound[i] |= self.uses[i] >= 2
-                || worth_reading
-                || parts == usize::MAX
-                || self.partner[i].is_some();
-        }
-    }
-
-    fn find_feeds(&mut self, order: &[Id]) {
-        for &id in order.iter().rev() {
-            let named = self.bound[id.index()]
-                && (self.dag.names[id.index()].is_some() || self.labels[id.index()].is_some());
-            if named {
-                self.feeds[id.index()] = Some(id);
-            }
-            let feed = self.feeds[id.index()];
-            self.dag
-                .for_each_part(id, |part| self.feeds[part.id.index()] = feed);
-        }
-    }
-
-    /// Titles and the nodes to reach under them.
-    fn paragraphs(&self, function: &Function) -> Vec<(String, Vec<Id>)> {
-        let order = self.dag.order();
-        let mut only_parameters = vec![false; self.dag.len()];
-        for &id in &order {
-            let mut all =
-                !matches!(self.dag.op(id), Op::Argument(a) if !matches!(a, Argument::Parameter(_)));
-            self.dag
-                .for_each_part(id, |part| all &= only_parameters[part.id.index()]);
-            only_parameters[id.index()] = all;
-        }
-        let sines = order.iter().copied().filter(|id| match self.dag.op(*id) {
-            Op::Function(Elementary::Sin | Elementary::Cos, angle) => {
-                self.bound[id.index()] && matches!(self.dag.op(angle.id), Op::Argument(_))
-            }
-            _ => false,
-        });
-        let parameters = order
-            .iter()
-            .copied()
-            .filter(|id| only_parameters[id.index()] && self.bound[id.index()]);
-        let mut paragraphs = vec![
-            ("Sines and cosines.".to_owned(), sines.collect()),
-            (
-                "Combinations of parameters.".to_owned(),
-                parameters.collect(),
-            ),
-        ];
-        let mut results = self.dag.results.iter();
-        for array in &function.results {
-            let title = match array.name.as_str() {
-                "a" => "Derivatives by the state.".to_owned(),
-                "b" => "Derivatives by the inputs.".to_owned(),
-                "p" => "Derivatives by the parameters.".to_owned(),
-                name => {
-                    let mut title = name.replace('_', " ");
-                    title
-                        .get_mut(..1)
-                        .map(str::make_ascii_uppercase)
-                        .unwrap_or_default();
-                    title + "."
-                }
-            };
-            let roots = results
-                .by_ref()
-                .take(array.entries.len())
-                .map(|item| item.id)
-                .collect();
-            paragraphs.push((title, roots));
-        }
-        paragraphs
     }
 
     fn finish(self, function: &Function) -> Schedule {
@@ -247,10 +109,10 @@ impl<'a> Binding<'a> {
             })
             .collect();
         let mut used: Vec<Argument> = self
-            .dag
-            .order()
-            .into_iter()
-            .filter_map(|id| match self.dag.op(id) {
+            .outline
+            .order
+            .iter()
+            .filter_map(|&id| match self.dag.op(id) {
                 Op::Argument(argument) => Some(*argument),
                 _ => None,
             })
@@ -302,42 +164,50 @@ impl<'a> Binding<'a> {
             ),
             Op::Sum(terms) => self.sum(id, terms),
             Op::Product(factors) => self.product(id, factors),
-            Op::Function(_, angle) if self.partner[id.index()].is_some() => {
+            Op::Function(_, angle) if self.outline.partner[id.index()].is_some() => {
                 return self.sine_and_cosine(id, *angle);
             }
-            Op::Function(function, argument) => (self.signed(*argument).function(*function), false),
-            Op::Atan2([y, x]) => (self.signed(*y).atan2(self.signed(*x)), false),
-            Op::Power([base, exponent]) => {
-                (self.signed(*base).power(self.signed(*exponent)), false)
+            Op::Function(function, argument) => {
+                let [argument] = self.operands(id, [*argument]);
+                (argument.function(*function), false)
+            }
+            Op::Atan2(items) => {
+                let [y, x] = self.operands(id, *items);
+                (y.atan2(x), false)
+            }
+            Op::Power(items) => {
+                let [base, exponent] = self.operands(id, *items);
+                (base.power(exponent), false)
             }
             Op::Choice(relation, items) => {
-                let [left, right, then, otherwise] = items.map(|item| self.signed(item));
-                let widths = left.width + right.width + then.width + otherwise.width;
-                let tree = Tree::Choice {
-                    relation: *relation,
-                    compared: Box::new([left.tree, right.tree]),
-                    branches: Box::new([then.tree, otherwise.tree]),
-                };
-                let width = widths + "T::if_less_or_equal(, , , )".len();
-                (
-                    Piece {
-                        tree,
-                        width,
-                        level: Level::Atom,
-                    },
-                    false,
-                )
+                let operands = self.operands(id, *items);
+                (Piece::choice(*relation, operands), false)
             }
             Op::Solution { system, .. } => return self.solve(*system),
         };
         let leaf = self.dag.is_leaf(id);
-        let piece = if !leaf && (self.bound[id.index()] || piece.width > INLINE) {
+        let piece = if !leaf && (self.outline.bound[id.index()] || piece.width > INLINE) {
             let name = self.value_name(id, &piece.tree, negative);
             self.define(&name, piece.tree)
         } else {
             piece
         };
         self.built[id.index()] = Some(Built { piece, negative });
+    }
+
+    /// The operands of a function, with their signs, defined before where they would not all fit on
+    /// the line.
+    fn operands<const N: usize>(&mut self, id: Id, items: [Item; N]) -> [Piece; N] {
+        const CALL: usize = 26;
+        let room = self.room(id).saturating_sub(CALL) / N;
+        items.map(|item| {
+            let piece = self.signed(item);
+            if piece.width > room && piece.level != Level::Atom {
+                self.define_part(id, piece)
+            } else {
+                piece
+            }
+        })
     }
 
     fn sum(&mut self, id: Id, terms: &[Item]) -> (Piece, bool) {
@@ -363,12 +233,12 @@ impl<'a> Binding<'a> {
             sum = Some(match sum {
                 None => part,
                 Some(sum) => {
-                    let (sum, part) = self.fitting(id, room, sum, part);
                     let operation = if minus {
                         Operation::Subtract
                     } else {
                         Operation::Add
                     };
+                    let (sum, part) = self.fitting(id, room, operation, sum, part);
                     sum.binary(operation, part)
                 }
             });
@@ -409,7 +279,8 @@ impl<'a> Binding<'a> {
             (numerator, Some(denominator)) => {
                 let numerator = numerator.unwrap_or_else(|| self.constant(&Rational::ONE));
                 let room = self.room(id);
-                let (numerator, denominator) = self.fitting(id, room, numerator, denominator);
+                let (numerator, denominator) =
+                    self.fitting(id, room, Operation::Divide, numerator, denominator);
                 numerator.binary(Operation::Divide, denominator)
             }
             (None, None) => self.constant(&Rational::ONE),
@@ -425,7 +296,8 @@ impl<'a> Binding<'a> {
             product = Some(match product {
                 None => factor,
                 Some(product) => {
-                    let (product, factor) = self.fitting(id, room, product, factor);
+                    let (product, factor) =
+                        self.fitting(id, room, Operation::Multiply, product, factor);
                     product.binary(Operation::Multiply, factor)
                 }
             });
@@ -435,11 +307,15 @@ impl<'a> Binding<'a> {
 
     /// Two operands as they are, or the first one, or both, defined before where the line would be
     /// too long.
-    fn fitting(&mut self, id: Id, room: usize, left: Piece, right: Piece) -> (Piece, Piece) {
-        const OPERATOR_AND_PARENTHESES: usize = 7;
-        let too_long = |left: &Piece, right: &Piece| {
-            left.width + right.width + OPERATOR_AND_PARENTHESES > room
-        };
+    fn fitting(
+        &mut self,
+        id: Id,
+        room: usize,
+        operation: Operation,
+        left: Piece,
+        right: Piece,
+    ) -> (Piece, Piece) {
+        let too_long = |left: &Piece, right: &Piece| left.width_of_binary(operation, right) > room;
         let mut define = |piece: Piece| {
             if piece.level == Level::Atom {
                 piece
@@ -463,17 +339,21 @@ impl<'a> Binding<'a> {
     /// Columns for the tree of a node.
     fn room(&self, id: Id) -> usize {
         let made_up = || {
-            let consumer = self.feeds[id.index()].and_then(|feed| self.given_name(feed));
-            consumer.map_or(LONGEST, |name| LONGEST.max(name.len() + "_part_99".len()))
+            let consumer = self.outline.feeds[id.index()].and_then(|feed| self.given_name(feed));
+            consumer.map_or(LONGEST, |name| LONGEST.min(name.len() + "_part_10".len()))
+        };
+        let minus = match self.dag.names[id.index()] {
+            Some(name) if name.negative != self.minus[id.index()] => "minus_".len(),
+            _ => 0,
         };
         let name = self
             .given_name(id)
-            .map_or_else(made_up, |name| name.len() + "minus__2".len());
-        COLUMNS.saturating_sub(FRAME + name).max(INLINE)
+            .map_or_else(made_up, |name| name.len() + minus);
+        COLUMNS.saturating_sub(FRAME + name).max(NARROWEST)
     }
 
     fn sine_and_cosine(&mut self, id: Id, angle: Item) {
-        let Some(partner) = self.partner[id.index()] else {
+        let Some(partner) = self.outline.partner[id.index()] else {
             return;
         };
         let (sin, cos) = match self.dag.op(id) {
@@ -553,7 +433,7 @@ impl<'a> Binding<'a> {
     fn unknowns(&self, system: u32) -> Vec<Option<Id>> {
         let rows = self.dag.systems[system as usize].right.len();
         let mut unknowns = vec![None; rows];
-        for id in self.dag.order() {
+        for &id in &self.outline.order {
             if let Op::Solution { system: other, row } = self.dag.op(id)
                 && *other == system
                 && let Some(place) = unknowns.get_mut(*row as usize)
@@ -569,7 +449,7 @@ impl<'a> Binding<'a> {
         let derived = self.dag.names[id.index()]
             .map(|name| self.program.graph.definition(name.definition).name.clone());
         derived.or_else(|| {
-            self.labels[id.index()]
+            self.outline.labels[id.index()]
                 .as_ref()
                 .map(|label| label.0.clone())
         })
@@ -578,7 +458,9 @@ impl<'a> Binding<'a> {
     /// Name for a value that gets a binding.
     fn value_name(&mut self, id: Id, tree: &Tree, negative: bool) -> String {
         let derived = self.dag.names[id.index()].map(|name| name.negative);
-        let of_result = self.labels[id.index()].as_ref().map(|label| label.1);
+        let of_result = self.outline.labels[id.index()]
+            .as_ref()
+            .map(|label| label.1);
         match (self.given_name(id), derived.or(of_result)) {
             (Some(name), Some(sign)) if sign == negative => name,
             (Some(name), _) => format!("minus_{name}"),
@@ -589,7 +471,7 @@ impl<'a> Binding<'a> {
 
     /// `consumer_part_2`
     fn fallback(&mut self, id: Id, word: &str) -> String {
-        let feed = self.feeds[id.index()];
+        let feed = self.outline.feeds[id.index()];
         let consumer = feed
             .and_then(|feed| self.given_name(feed))
             .unwrap_or_else(|| "result".to_owned());

@@ -85,6 +85,8 @@ pub(super) struct Name {
     pub(super) definition: u32,
     /// Whether it stands for minus the node.
     pub(super) negative: bool,
+    /// Whether differentiation made it up: it is of use only where several wholes need the value.
+    pub(super) automatic: bool,
 }
 
 /// The working graph.

@@ -129,9 +129,11 @@ impl Lowering<'_> {
         let value = self.known[&self.graph.definition(definition).value];
         let name = &mut self.dag.names[value.id.index()];
         if name.is_none() {
+            let text = &self.graph.definition(definition).name;
             *name = Some(Name {
                 definition,
                 negative: value.flip,
+                automatic: text.starts_with("d_") && text.contains("_d_"),
             });
         }
         value

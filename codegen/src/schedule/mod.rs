@@ -13,6 +13,7 @@ mod factor;
 mod interpret;
 mod lower;
 pub(crate) mod names;
+mod outline;
 pub(crate) mod piece;
 mod rebuild;
 mod scale;

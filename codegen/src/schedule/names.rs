@@ -18,8 +18,10 @@ const KEYWORDS: &[&str] = &[
     "unsafe", "unsized", "use", "virtual", "where", "while", "yield",
 ];
 
-/// Statics of the emitted text, which a local must not shadow.
+/// Statics and functions of the emitted text, which a local must not shadow.
 const STATICS: &[&str] = &[
+    "lu_factor",
+    "lu_solve",
     "INFO",
     "SPEC",
     "STATES",

@@ -2,7 +2,7 @@
 
 use super::names::{ArgumentNames, joined};
 use super::{Operation, Schedule, Tree, Value};
-use crate::symbolic::{Function, Rational};
+use crate::symbolic::{Function, Rational, Relation};
 
 /// How tightly the outermost operation of a tree binds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -36,16 +36,18 @@ impl Piece {
         self.width + if self.level < level { 2 } else { 0 }
     }
 
+    /// Width of `self ∘ right`.
+    pub(super) fn width_of_binary(&self, operation: Operation, right: &Self) -> usize {
+        let (level, right_level) = levels(operation);
+        self.width_at(level) + 3 + right.width_at(right_level)
+    }
+
     /// `self ∘ right`
     pub(super) fn binary(self, operation: Operation, right: Self) -> Self {
-        let (level, right_level) = match operation {
-            Operation::Add | Operation::Subtract => (Level::Sum, Level::Product),
-            Operation::Multiply | Operation::Divide => (Level::Product, Level::Sign),
-        };
         Self {
-            width: self.width_at(level) + 3 + right.width_at(right_level),
+            width: self.width_of_binary(operation, &right),
             tree: Tree::Binary(operation, Box::new(self.tree), Box::new(right.tree)),
-            level,
+            level: levels(operation).0,
         }
     }
 
@@ -83,6 +85,29 @@ impl Piece {
             tree: Tree::Power(Box::new(self.tree), Box::new(exponent.tree)),
             level: Level::Atom,
         }
+    }
+
+    /// Left, right, value where the relation holds, value elsewhere.
+    pub(super) fn choice(relation: Relation, operands: [Self; 4]) -> Self {
+        let width: usize = operands.iter().map(|operand| operand.width).sum();
+        let [left, right, then, otherwise] = operands.map(|operand| operand.tree);
+        Self {
+            tree: Tree::Choice {
+                relation,
+                compared: Box::new([left, right]),
+                branches: Box::new([then, otherwise]),
+            },
+            width: width + "T::if_less_or_equal(, , , )".len(),
+            level: Level::Atom,
+        }
+    }
+}
+
+/// How tightly the operands of an operation have to bind, left and right.
+fn levels(operation: Operation) -> (Level, Level) {
+    match operation {
+        Operation::Add | Operation::Subtract => (Level::Sum, Level::Product),
+        Operation::Multiply | Operation::Divide => (Level::Product, Level::Sign),
     }
 }
 

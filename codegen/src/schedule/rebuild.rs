@@ -55,10 +55,12 @@ impl Rebuilding<'_> {
             .flipped_if(old.flip)
     }
 
-    /// Whether a part has no life of its own.
+    /// Whether a part has no life of its own. A name alone does not give it one if the part is too
+    /// small to be read under its own name.
     fn dissolves(&self, id: Id) -> bool {
-        self.uses[id.index()] == 1
-            && (self.dissolve == Dissolve::Named || self.old.names[id.index()].is_none())
+        let small = || matches!(self.old.op(id), Op::Product(factors) if factors.len() <= 2);
+        let named = self.old.names[id.index()].is_some_and(|name| !name.automatic);
+        self.uses[id.index()] == 1 && (self.dissolve == Dissolve::Named || !named || small())
     }
 
     fn node(&mut self, id: Id) -> Item {
@@ -139,6 +141,7 @@ impl Rebuilding<'_> {
         if place.is_none() {
             *place = Some(Name {
                 definition: name.definition,
+                automatic: name.automatic,
                 negative: name.negative != new.flip,
             });
         }

@@ -180,24 +180,22 @@ pub fn rates<T: Real>(
 
     // Rates.
     let p_minus_half = p - half;
-    let inv_p_minus_half_cubed = one / (p_minus_half * p_minus_half * p_minus_half);
-    let type__dot_part_2 = K * K_squared * type__dot_part_1;
-    let lu_1 = lu_factor([
+    let lu_1 = lu_factor_([
         [K, p, half],
         [p, INFO_, number_half],
         [c_17_over_35, half, K],
     ]);
-    let [solution_1_1, _, _] = lu_solve(&lu_1, [type_, t, p]);
-    let crate_part_1 = half.ln() + half.sign() + half.abs() + half.sqrt();
-    let crate_part_2 = crate_part_1 + half.exp() + half.tanh() + half.cosh();
-    let crate_part_3 = crate_part_2 + half.sinh() + half.atan() + half.acos();
-    let crate_ = crate_part_3 + half.asin() + half.sin();
-    let type__dot_part_3 = T::if_less(p, p_minus_half, solution_1_1, crate_);
-    let type__dot_part_4 = type__dot_part_2 * type__dot_part_1;
-    let type__dot_part_5 = inv_p_minus_half_cubed + type__dot_part_4;
-    let type__dot_part_6 = type__dot_part_5 + T::if_less_or_equal(t, K, p, type_);
-    let type__dot = type__dot_part_6 + type__dot_part_3;
-    let [_, _, solution_2_3] = lu_solve(&lu_1, [p, crate_, half]);
+    let [solution_1_1, _, _] = lu_solve_(&lu_1, [type_, t, p]);
+    let crate_part_1 = half.ln() + half.sign() + half.abs() + half.sqrt() + half.exp();
+    let crate_part_2 = crate_part_1 + half.tanh() + half.cosh() + half.sinh()
+        + half.atan();
+    let crate_ = crate_part_2 + half.acos() + half.asin() + half.sin();
+    let inv_p_minus_half_cubed = one / (p_minus_half * p_minus_half * p_minus_half);
+    let type__dot_part_2 = K * K_squared * type__dot_part_1 * type__dot_part_1;
+    let type__dot_part_3 = inv_p_minus_half_cubed + type__dot_part_2;
+    let type__dot_part_4 = type__dot_part_3 + T::if_less_or_equal(t, K, p, type_);
+    let type__dot = type__dot_part_4 + T::if_less(p, p_minus_half, solution_1_1, crate_);
+    let [_, _, solution_2_3] = lu_solve_(&lu_1, [p, crate_, half]);
     let half_dot = solution_2_3 - p_minus_half.atan2(K.powf(p));
 
     State {
@@ -239,63 +237,58 @@ pub fn jacobians<T: Real>(
     let p_minus_half = p - half;
     let inv_p_minus_half = one / p_minus_half;
     let inv_p_minus_half_squared = inv_p_minus_half * inv_p_minus_half;
-    let type__dot_part_2 = K * K_squared * type__dot_part_1;
-    let lu_1 = lu_factor([
+    let lu_1 = lu_factor_([
         [K, p, half],
         [p, INFO_, number_half],
         [c_17_over_35, half, K],
     ]);
-    let [solution_1_1, solution_1_2, solution_1_3] = lu_solve(&lu_1, [type_, t, p]);
+    let [solution_1_1, solution_1_2, solution_1_3] = lu_solve_(&lu_1, [type_, t, p]);
     let sqrt_half = half.sqrt();
     let tanh_half = half.tanh();
-    let crate_part_1 = half.sign() + half.exp() + half.cosh();
-    let crate_part_2 = crate_part_1 + half.sinh();
-    let crate_part_3 = half.ln() + half.abs() + sqrt_half + tanh_half;
-    let crate_part_4 = crate_part_3 + half.atan() + half.acos() + half.asin();
-    let crate_ = crate_part_4 + sin_half + crate_part_2;
-    let type__dot_part_3 = T::if_less(p, p_minus_half, solution_1_1, crate_);
-    let type__dot_part_4 = inv_p_minus_half * inv_p_minus_half_squared;
-    let type__dot_part_5 = type__dot_part_4 + type__dot_part_2 * type__dot_part_1;
-    let type__dot_part_6 = type__dot_part_5 + T::if_less_or_equal(t, K, p, type_);
-    let type__dot = type__dot_part_6 + type__dot_part_3;
+    let crate_part_1 = half.sign() + half.exp() + half.cosh() + half.sinh();
+    let crate_part_2 = half.ln() + half.abs() + sqrt_half + tanh_half + half.atan();
+    let crate_ = crate_part_2 + half.acos() + half.asin() + sin_half + crate_part_1;
+    let type__dot_part_2 = inv_p_minus_half * inv_p_minus_half_squared;
+    let type__dot_part_3 = K * K_squared * type__dot_part_1 * type__dot_part_1;
+    let type__dot_part_4 = type__dot_part_2 + type__dot_part_3;
+    let type__dot_part_5 = type__dot_part_4 + T::if_less_or_equal(t, K, p, type_);
+    let type__dot = type__dot_part_5 + T::if_less(p, p_minus_half, solution_1_1, crate_);
     let half_dot_part_1 = K.powf(p);
-    let [solution_2_1, solution_2_2, solution_2_3] = lu_solve(&lu_1, [p, crate_, half]);
+    let [solution_2_1, solution_2_2, solution_2_3] = lu_solve_(&lu_1, [p, crate_, half]);
     let half_dot = solution_2_3 - p_minus_half.atan2(half_dot_part_1);
 
     // Derivatives by the state.
-    let [solution_3_1, _, _] = lu_solve(&lu_1, [one, zero, zero]);
-    let a_type__type__part_1 = T::if_less(p, p_minus_half, solution_3_1, zero);
-    let a_type__type_ = a_type__type__part_1 + T::if_less_or_equal(t, K, zero, one);
-    let [solution_4_1, _, _] = lu_solve(&lu_1, [-solution_1_2, -solution_1_1, one]);
-    let a_type__p_part_1 = T::if_less(p, p_minus_half, solution_4_1, zero);
-    let a_type__p_part_2 = three * inv_p_minus_half_squared;
-    let a_type__p_part_3 = a_type__p_part_2 * inv_p_minus_half_squared;
-    let a_type__p_part_4 = a_type__p_part_1 + T::if_less_or_equal(t, K, one, zero);
-    let a_type__p = a_type__p_part_4 - a_type__p_part_3;
-    let [solution_5_1, _, _] = lu_solve(&lu_1, [-solution_1_3, zero, -solution_1_2]);
-    let d_crate_d_half_part_1 = crate_part_2 + one + cos_half;
-    let d_crate_d_half_part_2 = d_crate_d_half_part_1 + one / (one + half * half);
-    let d_crate_d_half_part_3 = d_crate_d_half_part_2 + one / half;
-    let d_crate_d_half_part_4 = d_crate_d_half_part_3 + number_half / sqrt_half;
-    let d_crate_d_half = d_crate_d_half_part_4 - tanh_half * tanh_half;
+    let [solution_3_1, _, _] = lu_solve_(&lu_1, [one, zero, zero]);
+    let a_type__type_ = T::if_less(p, p_minus_half, solution_3_1, zero)
+        + T::if_less_or_equal(t, K, zero, one);
+    let [solution_4_1, _, _] = lu_solve_(&lu_1, [-solution_1_2, -solution_1_1, one]);
+    let a_type__p_part_1 = three * inv_p_minus_half_squared * inv_p_minus_half_squared;
+    let a_type__p_part_2 = T::if_less(p, p_minus_half, solution_4_1, zero)
+        + T::if_less_or_equal(t, K, one, zero);
+    let a_type__p = a_type__p_part_2 - a_type__p_part_1;
+    let [solution_5_1, _, _] = lu_solve_(&lu_1, [-solution_1_3, zero, -solution_1_2]);
+    let d_crate_d_half_part_1 = crate_part_1 + one + cos_half
+        + one / (one + half * half);
+    let d_crate_d_half_part_2 = d_crate_d_half_part_1 + one / half
+        + number_half / sqrt_half;
+    let d_crate_d_half = d_crate_d_half_part_2 - tanh_half * tanh_half;
     let a_type__half_part_1 = T::if_less(p, p_minus_half, solution_5_1, d_crate_d_half);
-    let a_type__half = a_type__p_part_3 + a_type__half_part_1;
+    let a_type__half = a_type__p_part_1 + a_type__half_part_1;
     let one_minus_solution_2_2 = one - solution_2_2;
-    let [_, _, solution_6_3] = lu_solve(
+    let [_, _, solution_6_3] = lu_solve_(
         &lu_1,
         [one_minus_solution_2_2, -solution_2_1, zero],
     );
-    let a_half_p_part_1 = p_minus_half * half_dot_part_1 * K.ln();
     let p_minus_half_squared = p_minus_half * p_minus_half;
-    let a_half_p_part_2 = half_dot_part_1 * half_dot_part_1;
-    let a_half_p_part_3 = one / (p_minus_half_squared + a_half_p_part_2);
-    let a_half_p_part_4 = half_dot_part_1 - a_half_p_part_1;
-    let a_half_p = solution_6_3 - a_half_p_part_3 * a_half_p_part_4;
-    let [_, _, solution_7_3] = lu_solve(
+    let a_half_p_part_1 = p_minus_half_squared + half_dot_part_1 * half_dot_part_1;
+    let a_half_p_part_2 = one / a_half_p_part_1;
+    let a_half_p_part_3 = half_dot_part_1 - p_minus_half * half_dot_part_1 * K.ln();
+    let a_half_p = solution_6_3 - a_half_p_part_2 * a_half_p_part_3;
+    let [_, _, solution_7_3] = lu_solve_(
         &lu_1,
         [-solution_2_3, d_crate_d_half, one_minus_solution_2_2],
     );
-    let a_half_half = solution_7_3 + half_dot_part_1 * a_half_p_part_3;
+    let a_half_half = solution_7_3 + half_dot_part_1 * a_half_p_part_2;
 
     Jacobians {
         rates: State {
@@ -346,73 +339,68 @@ pub fn all_jacobians<T: Real>(
     let p_minus_half = p - half;
     let inv_p_minus_half = one / p_minus_half;
     let inv_p_minus_half_squared = inv_p_minus_half * inv_p_minus_half;
-    let lu_1 = lu_factor([
+    let lu_1 = lu_factor_([
         [K, p, half],
         [p, INFO_, number_half],
         [c_17_over_35, half, K],
     ]);
-    let [solution_1_1, solution_1_2, solution_1_3] = lu_solve(&lu_1, [type_, t, p]);
+    let [solution_1_1, solution_1_2, solution_1_3] = lu_solve_(&lu_1, [type_, t, p]);
     let sqrt_half = half.sqrt();
     let tanh_half = half.tanh();
-    let crate_part_1 = half.sign() + half.exp() + half.cosh();
-    let crate_part_2 = crate_part_1 + half.sinh();
-    let crate_part_3 = half.ln() + half.abs() + sqrt_half + tanh_half;
-    let crate_part_4 = crate_part_3 + half.atan() + half.acos() + half.asin();
-    let crate_ = crate_part_4 + sin_half + crate_part_2;
-    let type__dot_part_3 = T::if_less(p, p_minus_half, solution_1_1, crate_);
-    let type__dot_part_4 = inv_p_minus_half * inv_p_minus_half_squared;
-    let type__dot_part_5 = type__dot_part_4 + K * type__dot_part_2;
-    let type__dot_part_6 = type__dot_part_5 + T::if_less_or_equal(t, K, p, type_);
-    let type__dot = type__dot_part_6 + type__dot_part_3;
+    let crate_part_1 = half.sign() + half.exp() + half.cosh() + half.sinh();
+    let crate_part_2 = half.ln() + half.abs() + sqrt_half + tanh_half + half.atan();
+    let crate_ = crate_part_2 + half.acos() + half.asin() + sin_half + crate_part_1;
+    let type__dot_part_3 = inv_p_minus_half * inv_p_minus_half_squared
+        + K * type__dot_part_2;
+    let type__dot_part_4 = type__dot_part_3 + T::if_less_or_equal(t, K, p, type_);
+    let type__dot = type__dot_part_4 + T::if_less(p, p_minus_half, solution_1_1, crate_);
     let half_dot_part_1 = K.powf(p);
-    let [solution_2_1, solution_2_2, solution_2_3] = lu_solve(&lu_1, [p, crate_, half]);
+    let [solution_2_1, solution_2_2, solution_2_3] = lu_solve_(&lu_1, [p, crate_, half]);
     let half_dot = solution_2_3 - p_minus_half.atan2(half_dot_part_1);
 
     // Derivatives by the state.
-    let [solution_3_1, _, _] = lu_solve(&lu_1, [one, zero, zero]);
-    let a_type__type__part_1 = T::if_less(p, p_minus_half, solution_3_1, zero);
-    let a_type__type_ = a_type__type__part_1 + T::if_less_or_equal(t, K, zero, one);
-    let [solution_4_1, _, _] = lu_solve(&lu_1, [-solution_1_2, -solution_1_1, one]);
-    let a_type__p_part_1 = T::if_less(p, p_minus_half, solution_4_1, zero);
-    let a_type__p_part_2 = three * inv_p_minus_half_squared;
-    let a_type__p_part_3 = a_type__p_part_2 * inv_p_minus_half_squared;
-    let a_type__p_part_4 = a_type__p_part_1 + T::if_less_or_equal(t, K, one, zero);
-    let a_type__p = a_type__p_part_4 - a_type__p_part_3;
-    let [solution_5_1, _, _] = lu_solve(&lu_1, [-solution_1_3, zero, -solution_1_2]);
-    let d_crate_d_half_part_1 = crate_part_2 + one + cos_half;
-    let d_crate_d_half_part_2 = d_crate_d_half_part_1 + one / (one + half * half);
-    let d_crate_d_half_part_3 = d_crate_d_half_part_2 + one / half;
-    let d_crate_d_half_part_4 = d_crate_d_half_part_3 + number_half / sqrt_half;
-    let d_crate_d_half = d_crate_d_half_part_4 - tanh_half * tanh_half;
+    let [solution_3_1, _, _] = lu_solve_(&lu_1, [one, zero, zero]);
+    let a_type__type_ = T::if_less(p, p_minus_half, solution_3_1, zero)
+        + T::if_less_or_equal(t, K, zero, one);
+    let [solution_4_1, _, _] = lu_solve_(&lu_1, [-solution_1_2, -solution_1_1, one]);
+    let a_type__p_part_1 = three * inv_p_minus_half_squared * inv_p_minus_half_squared;
+    let a_type__p_part_2 = T::if_less(p, p_minus_half, solution_4_1, zero)
+        + T::if_less_or_equal(t, K, one, zero);
+    let a_type__p = a_type__p_part_2 - a_type__p_part_1;
+    let [solution_5_1, _, _] = lu_solve_(&lu_1, [-solution_1_3, zero, -solution_1_2]);
+    let d_crate_d_half_part_1 = crate_part_1 + one + cos_half
+        + one / (one + half * half);
+    let d_crate_d_half_part_2 = d_crate_d_half_part_1 + one / half
+        + number_half / sqrt_half;
+    let d_crate_d_half = d_crate_d_half_part_2 - tanh_half * tanh_half;
     let a_type__half_part_1 = T::if_less(p, p_minus_half, solution_5_1, d_crate_d_half);
-    let a_type__half = a_type__p_part_3 + a_type__half_part_1;
+    let a_type__half = a_type__p_part_1 + a_type__half_part_1;
     let one_minus_solution_2_2 = one - solution_2_2;
-    let [_, _, solution_6_3] = lu_solve(
+    let [_, _, solution_6_3] = lu_solve_(
         &lu_1,
         [one_minus_solution_2_2, -solution_2_1, zero],
     );
     let a_half_p_part_1 = p_minus_half * half_dot_part_1;
     let p_minus_half_squared = p_minus_half * p_minus_half;
-    let a_half_p_part_2 = half_dot_part_1 * half_dot_part_1;
-    let a_half_p_part_3 = one / (p_minus_half_squared + a_half_p_part_2);
+    let a_half_p_part_2 = p_minus_half_squared + half_dot_part_1 * half_dot_part_1;
+    let a_half_p_part_3 = one / a_half_p_part_2;
     let a_half_p_part_4 = half_dot_part_1 - a_half_p_part_1 * K.ln();
     let a_half_p = solution_6_3 - a_half_p_part_3 * a_half_p_part_4;
-    let [_, _, solution_7_3] = lu_solve(
+    let [_, _, solution_7_3] = lu_solve_(
         &lu_1,
         [-solution_2_3, d_crate_d_half, one_minus_solution_2_2],
     );
     let a_half_half = solution_7_3 + half_dot_part_1 * a_half_p_part_3;
 
     // Derivatives by the parameters.
-    let [solution_8_1, _, _] = lu_solve(&lu_1, [zero, -solution_1_2, zero]);
+    let [solution_8_1, _, _] = lu_solve_(&lu_1, [zero, -solution_1_2, zero]);
     let p_type__INFO_ = T::if_less(p, p_minus_half, solution_8_1, zero);
-    let [solution_9_1, _, _] = lu_solve(&lu_1, [-solution_1_1, zero, -solution_1_3]);
-    let p_type__K_part_1 = T::if_less(p, p_minus_half, solution_9_1, zero);
-    let p_type__K = p_type__K_part_1 + c_19 * type__dot_part_2;
-    let [_, _, p_half_INFO_] = lu_solve(&lu_1, [zero, -solution_2_2, zero]);
-    let [_, _, solution_11_3] = lu_solve(&lu_1, [-solution_2_1, zero, -solution_2_3]);
-    let p_half_K_part_1 = a_half_p_part_1 * a_half_p_part_3 * p / K;
-    let p_half_K = solution_11_3 + p_half_K_part_1;
+    let [solution_9_1, _, _] = lu_solve_(&lu_1, [-solution_1_1, zero, -solution_1_3]);
+    let p_type__K_part_1 = c_19 * type__dot_part_2;
+    let p_type__K = T::if_less(p, p_minus_half, solution_9_1, zero) + p_type__K_part_1;
+    let [_, _, p_half_INFO_] = lu_solve_(&lu_1, [zero, -solution_2_2, zero]);
+    let [_, _, solution_11_3] = lu_solve_(&lu_1, [-solution_2_1, zero, -solution_2_3]);
+    let p_half_K = solution_11_3 + a_half_p_part_1 * a_half_p_part_3 * p / K;
 
     AllJacobians {
         rates: State {

@@ -494,21 +494,19 @@ pub fn acceleration_energy<T: Real>(
     let g_sin_theta = g * sin_theta;
     let omega_1_dot_part_1 = R_omega_3_omega_2 + g_sin_theta;
     let omega_1_dot_part_2 = r * (omega_3_squared + omega_1 * omega_1);
-    let f_4 = u + m0 * (omega_1_dot_part_2 - omega_1_dot_part_1);
     let omega_1_dot_part_3 = sin_theta * omega_3 / cos_theta;
     let omega_1_dot_part_4 = g_sin_theta + three_halves * R_omega_3_omega_2;
     let omega_1_dot_part_5 = quarter * R_omega_3 * omega_1_dot_part_3;
-    let omega_1_dot_part_6 = omega_3_squared - omega_1_dot_part_3 * omega_2;
+    let omega_1_dot_part_6 = u + m0 * (omega_1_dot_part_2 - omega_1_dot_part_1);
     let omega_1_dot_part_7 = m * (omega_1_dot_part_4 - omega_1_dot_part_5);
-    let omega_1_dot_part_8 = f_4 + omega_1_dot_part_7;
+    let omega_1_dot_part_8 = omega_1_dot_part_6 + omega_1_dot_part_7;
     let omega_1_dot_part_9 = omega_1_dot_part_8 + m0 * omega_1_dot_part_1;
-    let omega_1_dot_part_10 = omega_1_dot_part_9 - m0_r * omega_1_dot_part_6;
+    let omega_1_dot_part_10 = m0_r * (omega_3_squared - omega_1_dot_part_3 * omega_2);
     let omega_1_dot_part_11 = g * cos_theta + omega_1_dot_part_3 * r * omega_3;
-    let omega_1_dot_part_12 = omega_1_dot_part_11 + two * omega_1 * sigma;
-    let omega_1_dot_part_13 = R * omega_1_dot_part_10;
-    let omega_1_dot_part_14 = omega_1_dot_part_13 - m0_r * omega_1_dot_part_12;
-    let omega_1_dot_part_15 = m0_r * r + five_quarters * m_R_R;
-    let omega_1_dot = omega_1_dot_part_14 / omega_1_dot_part_15;
+    let omega_1_dot_part_12 = R * (omega_1_dot_part_9 - omega_1_dot_part_10);
+    let omega_1_dot_part_13 = m0_r * (omega_1_dot_part_11 + two * omega_1 * sigma);
+    let omega_1_dot_part_14 = omega_1_dot_part_12 - omega_1_dot_part_13;
+    let omega_1_dot = omega_1_dot_part_14 / (m0_r * r + five_quarters * m_R_R);
     let s_wheel = five_eighths * m_R_R * omega_1_dot * omega_1_dot;
 
     AccelerationEnergy {
@@ -519,6 +517,13 @@ pub fn acceleration_energy<T: Real>(
 }
 
 /// Mass matrix M = ∂²S/∂ω̇², symmetric. Rows and columns follow [`Speeds`].
+///
+/// ```text
+///     ⎡ 5·m·R²/4 + m₀·R² + m₀·r²   ·                  ·                −m₀·R ⎤
+///     ⎢ ·                          3·m·R²/2 + m₀·R²   −m₀·R·r          ·     ⎥
+/// M = ⎢ ·                          −m₀·R·r            m·R²/4 + m₀·r²   ·     ⎥
+///     ⎣ −m₀·R                      ·                  ·                m₀    ⎦
+/// ```
 ///
 /// From `mechanisms/unicycle.toml`.
 /// Operations: 18 (4 +, 10 ×, 4 sign).
@@ -546,9 +551,7 @@ pub fn mass_matrix<T: Real>(
     // Mass matrix.
     let m0_r = m0 * r;
     let m0_r_r = m0_r * r;
-    let m0_r_r_plus_m0_R_squared = m0_r_r + m0_R_squared;
-    let M_omega_1_omega_1_part_1 = five_quarters * m_R_squared;
-    let M_omega_1_omega_1 = m0_r_r_plus_m0_R_squared + M_omega_1_omega_1_part_1;
+    let M_omega_1_omega_1 = m0_r_r + m0_R_squared + five_quarters * m_R_squared;
     let minus_M_omega_2_omega_3 = R * m0_r;
     let M_omega_3_omega_3 = m0_r_r + quarter * m_R_squared;
 
@@ -584,31 +587,25 @@ pub fn bias<T: Real>(p: &Parameters<T>, x: &State<T>, _inputs: &Inputs<T>) -> Sp
     let tan_theta = sin_theta / cos_theta;
     let m0_r_omega_3 = m0_r * omega_3;
     let R_omega_3 = R * omega_3;
-    let bias_omega_1_part_1 = m0_r * omega_2 - quarter * m * R_omega_3;
     let R_omega_2 = R * omega_2;
-    let bias_omega_1_part_2 = m0_r_omega_3 - tan_theta * bias_omega_1_part_1;
+    let bias_omega_1_part_1 = tan_theta * (m0_r * omega_2 - quarter * m * R_omega_3);
+    let bias_omega_1_part_2 = m0_r_omega_3 - bias_omega_1_part_1;
     let bias_omega_1_part_3 = R_omega_2 * (m0 + three_halves * m);
     let tan_theta_m0_r_omega_3_r = tan_theta * m0_r_omega_3 * r;
     let bias_omega_1_part_4 = R * (bias_omega_1_part_2 - bias_omega_1_part_3);
     let bias_omega_1_part_5 = tan_theta_m0_r_omega_3_r + bias_omega_1_part_4;
-    let m0_r_omega_1_two_sigma = m0_r_omega_1 * two_sigma;
-    let bias_omega_1_part_6 = omega_3 * bias_omega_1_part_5;
-    let bias_omega_1 = m0_r_omega_1_two_sigma + bias_omega_1_part_6;
+    let bias_omega_1 = m0_r_omega_1 * two_sigma + omega_3 * bias_omega_1_part_5;
     let R_omega_1 = R * omega_1;
     let m_R_omega_1 = m * R_omega_1;
     let bias_omega_2_part_1 = two_sigma - R_omega_1;
     let bias_omega_2_part_2 = m0_r_omega_1 * tan_theta + m_R_omega_1;
-    let bias_omega_2_part_3 = bias_omega_2_part_2 - m0 * bias_omega_2_part_1;
-    let bias_omega_2 = R_omega_3 * bias_omega_2_part_3;
+    let bias_omega_2 = R_omega_3 * (bias_omega_2_part_2 - m0 * bias_omega_2_part_1);
     let bias_omega_3_part_1 = m0_r_omega_1 * r + quarter * R * m_R_omega_1;
     let bias_omega_3_part_2 = m0_r * bias_omega_2_part_1;
-    let bias_omega_3_part_3 = tan_theta * bias_omega_3_part_1;
-    let bias_omega_3_part_4 = bias_omega_3_part_2 - bias_omega_3_part_3;
-    let bias_omega_3_part_5 = half * R_omega_2 * m_R_omega_1;
-    let bias_omega_3 = bias_omega_3_part_5 + omega_3 * bias_omega_3_part_4;
-    let m0_r_omega_1_omega_1 = m0_r_omega_1 * omega_1;
-    let bias_sigma_part_1 = omega_3 * (m0_r_omega_3 - m0 * R_omega_2);
-    let minus_bias_sigma = m0_r_omega_1_omega_1 + bias_sigma_part_1;
+    let bias_omega_3_part_3 = bias_omega_3_part_2 - tan_theta * bias_omega_3_part_1;
+    let bias_omega_3 = half * R_omega_2 * m_R_omega_1 + omega_3 * bias_omega_3_part_3;
+    let minus_bias_sigma = m0_r_omega_1 * omega_1
+        + omega_3 * (m0_r_omega_3 - m0 * R_omega_2);
 
     Speeds {
         omega_1: bias_omega_1,
@@ -689,34 +686,30 @@ pub fn rates<T: Real>(p: &Parameters<T>, x: &State<T>, inputs: &Inputs<T>) -> St
     let R_omega_3_omega_2 = R_omega_3 * omega_2;
     let g_sin_theta = g * sin_theta;
     let f_4_part_1 = R_omega_3_omega_2 + g_sin_theta;
-    let f_4_part_2 = r * (omega_3_squared + omega_1 * omega_1);
-    let f_4 = u + m0 * (f_4_part_2 - f_4_part_1);
+    let f_4_part_2 = m0 * (r * (omega_3_squared + omega_1 * omega_1) - f_4_part_1);
+    let f_4 = u + f_4_part_2;
     let inv_cos_theta = one / cos_theta;
     let sin_theta_inv_cos_theta = sin_theta * inv_cos_theta;
     let omega_1_dot_part_1 = sin_theta_inv_cos_theta * omega_3;
     let omega_1_dot_part_2 = g_sin_theta + three_halves * R_omega_3_omega_2;
     let omega_1_dot_part_3 = quarter * R_omega_3 * omega_1_dot_part_1;
-    let omega_1_dot_part_4 = omega_3_squared - omega_1_dot_part_1 * omega_2;
-    let omega_1_dot_part_5 = m * (omega_1_dot_part_2 - omega_1_dot_part_3);
-    let omega_1_dot_part_6 = f_4 + omega_1_dot_part_5 + m0 * f_4_part_1;
-    let omega_1_dot_part_7 = omega_1_dot_part_6 - m0_r * omega_1_dot_part_4;
+    let omega_1_dot_part_4 = f_4 + m * (omega_1_dot_part_2 - omega_1_dot_part_3);
+    let omega_1_dot_part_5 = omega_1_dot_part_4 + m0 * f_4_part_1;
+    let omega_1_dot_part_6 = m0_r * (omega_3_squared - omega_1_dot_part_1 * omega_2);
     let two_sigma = two * sigma;
-    let omega_1_dot_part_8 = g * cos_theta + omega_1_dot_part_1 * r * omega_3;
-    let omega_1_dot_part_9 = m0_r * (omega_1_dot_part_8 + two_sigma * omega_1);
-    let omega_1_dot_part_10 = R * omega_1_dot_part_7 - omega_1_dot_part_9;
-    let omega_1_dot_part_11 = m0_r_r + five_quarters * m_R_squared;
-    let omega_1_dot = omega_1_dot_part_10 / omega_1_dot_part_11;
+    let omega_1_dot_part_7 = g * cos_theta + omega_1_dot_part_1 * r * omega_3;
+    let omega_1_dot_part_8 = R * (omega_1_dot_part_5 - omega_1_dot_part_6);
+    let omega_1_dot_part_9 = m0_r * (omega_1_dot_part_7 + two_sigma * omega_1);
+    let omega_1_dot_part_10 = omega_1_dot_part_8 - omega_1_dot_part_9;
+    let omega_1_dot = omega_1_dot_part_10 / (m0_r_r + five_quarters * m_R_squared);
     let m_R_squared_omega_1 = m_R_squared * omega_1;
-    let f_3_part_1 = quarter * sin_theta_inv_cos_theta;
     let R_omega_1 = R * omega_1;
-    let f_3_part_2 = two_sigma - R_omega_1;
-    let f_3_part_3 = sin_theta_inv_cos_theta * r * omega_1;
-    let f_3_part_4 = f_3_part_2 - f_3_part_3;
-    let f_3_part_5 = f_3_part_1 * m_R_squared_omega_1;
-    let f_3_part_6 = omega_3 * (f_3_part_5 - m0_r * f_3_part_4);
-    let f_3 = f_3_part_6 - half * m_R_squared_omega_1 * omega_2;
+    let f_3_part_1 = two_sigma - R_omega_1 - sin_theta_inv_cos_theta * r * omega_1;
+    let f_3_part_2 = quarter * sin_theta_inv_cos_theta * m_R_squared_omega_1;
+    let f_3_part_3 = omega_3 * (f_3_part_2 - m0_r * f_3_part_1);
+    let f_3 = f_3_part_3 - half * m_R_squared_omega_1 * omega_2;
     let R_m0_r = R * m0_r;
-    let minus_f_2 = R_omega_3 * (m * R_omega_1 - m0 * f_3_part_4);
+    let minus_f_2 = R_omega_3 * (m * R_omega_1 - m0 * f_3_part_1);
     let M_33 = m0_r_r + quarter * m_R_squared;
     let omega_2_dot_part_1 = one / (M_33 * M_22 - m0_r * m0_r * R_squared);
     let omega_2_dot = omega_2_dot_part_1 * (f_3 * R_m0_r - minus_f_2 * M_33);
@@ -746,7 +739,7 @@ pub fn rates<T: Real>(p: &Parameters<T>, x: &State<T>, inputs: &Inputs<T>) -> St
 /// Rates ẋ with their derivatives by state and inputs.
 ///
 /// From `mechanisms/unicycle.toml`.
-/// Operations: 279 (78 +, 185 ×, 4 ÷, 12 sign), 2 sine-cosine pairs.
+/// Operations: 278 (78 +, 185 ×, 4 ÷, 11 sign), 2 sine-cosine pairs.
 #[must_use]
 #[inline]
 pub fn jacobians<T: Real>(
@@ -757,6 +750,7 @@ pub fn jacobians<T: Real>(
     let &Parameters { m, m0, R, g } = p;
     let &State { omega_1, omega_2, omega_3, sigma, theta, r, psi, .. } = x;
     let &Inputs { u } = inputs;
+    let minus_two = T::constant(-2.0);
     let zero = T::constant(0.0);
     let quarter = T::constant(0.25);
     let half = T::constant(0.5);
@@ -770,146 +764,135 @@ pub fn jacobians<T: Real>(
     let (sin_psi, cos_psi) = psi.sin_cos();
 
     // Combinations of parameters.
+    let R_squared = R * R;
+    let m0_R_squared = m0 * R_squared;
+    let m_R_squared = m * R_squared;
     let R_m = R * m;
-    let half_R_m = half * R_m;
-    let quarter_R_m = quarter * R_m;
-    let R_quarter_R_m = R * quarter_R_m;
-    let m0_R = m0 * R;
-    let three_halves_R_m = three_halves * R_m;
-    let M_22 = R * (m0_R + three_halves_R_m);
+    let quarter_m_R_squared = quarter * m_R_squared;
+    let M_22 = m0_R_squared + three_halves * m_R_squared;
     let inv_m0 = one / m0;
 
     // Rates.
     let m0_r = m0 * r;
     let m0_r_r = m0_r * r;
-    let omega_1_dot_part_1 = one / (m0_r_r + five_quarters * R * R_m);
+    let M_11 = m0_R_squared + m0_r_r + five_quarters * m_R_squared;
+    let omega_1_dot_part_1 = one / (M_11 - m0_R_squared);
     let g_sin_theta = g * sin_theta;
-    let m0_r_omega_3 = m0_r * omega_3;
+    let R_omega_2 = R * omega_2;
+    let R_omega_2_omega_3 = R_omega_2 * omega_3;
+    let omega_1_squared = omega_1 * omega_1;
+    let f_4_part_1 = g_sin_theta + R_omega_2_omega_3;
+    let f_4_part_2 = m0 * (f_4_part_1 - r * (omega_3 * omega_3 + omega_1_squared));
+    let f_4 = u - f_4_part_2;
     let R_omega_3 = R * omega_3;
-    let r_omega_1 = r * omega_1;
-    let f_4_part_1 = g_sin_theta + R_omega_3 * omega_2;
-    let f_4_part_2 = f_4_part_1 - r * omega_3 * omega_3;
-    let f_4 = u - m0 * (f_4_part_2 - r_omega_1 * omega_1);
     let a_psi_omega_3 = one / cos_theta;
+    let minus_a_phi_omega_3 = sin_theta * a_psi_omega_3;
     let psi_dot = a_psi_omega_3 * omega_3;
     let sin_theta_psi_dot = sin_theta * psi_dot;
-    let omega_1_dot_part_2 = quarter * sin_theta_psi_dot;
-    let omega_1_dot_part_3 = omega_1_dot_part_2 - three_halves * omega_2;
-    let omega_1_dot_part_4 = m * (g_sin_theta - R_omega_3 * omega_1_dot_part_3);
-    let m0_R_omega_3 = m0 * R_omega_3;
-    let omega_1_dot_part_5 = m0_R_omega_3 + m0_r * sin_theta_psi_dot;
-    let omega_1_dot_part_6 = m0 * g_sin_theta + f_4 + omega_1_dot_part_4;
-    let omega_1_dot_part_7 = omega_2 * omega_1_dot_part_5;
-    let omega_1_dot_part_8 = omega_1_dot_part_6 + omega_1_dot_part_7;
-    let omega_1_dot_part_9 = R * (omega_1_dot_part_8 - m0_r_omega_3 * omega_3);
     let sin_theta_psi_dot_r = sin_theta_psi_dot * r;
+    let omega_1_dot_part_2 = R_omega_3 + sin_theta_psi_dot_r;
+    let omega_1_dot_part_3 = omega_1_dot_part_2 - R_omega_2 * minus_a_phi_omega_3;
     let g_cos_theta = g * cos_theta;
     let two_sigma = two * sigma;
-    let omega_1_dot_part_10 = g_cos_theta + two_sigma * omega_1;
-    let omega_1_dot_part_11 = sin_theta_psi_dot_r * omega_3;
-    let omega_1_dot_part_12 = m0_r * (omega_1_dot_part_11 + omega_1_dot_part_10);
-    let omega_1_dot_part_13 = omega_1_dot_part_9 - omega_1_dot_part_12;
-    let omega_1_dot = omega_1_dot_part_1 * omega_1_dot_part_13;
+    let omega_1_dot_part_4 = g_cos_theta + two_sigma * omega_1;
+    let omega_1_dot_part_5 = R * g_sin_theta + R_squared * omega_3 * omega_2;
+    let omega_1_dot_part_6 = r * (omega_3 * omega_1_dot_part_3 + omega_1_dot_part_4);
+    let omega_1_dot_part_7 = quarter * sin_theta_psi_dot;
+    let omega_1_dot_part_8 = g_sin_theta + three_halves * R_omega_2_omega_3;
+    let omega_1_dot_part_9 = omega_1_dot_part_8 - R_omega_3 * omega_1_dot_part_7;
+    let f_1 = m0 * (omega_1_dot_part_5 - omega_1_dot_part_6) + R_m * omega_1_dot_part_9;
+    let omega_1_dot = omega_1_dot_part_1 * (R * f_4 + f_1);
     let R_m0_r = R * m0_r;
-    let R_omega_1 = R * omega_1;
-    let R_omega_1_half_R_m = R_omega_1 * half_R_m;
+    let half_m_R_squared_omega_1 = half * m_R_squared * omega_1;
     let R_m0_r_omega_1 = R_m0_r * omega_1;
     let two_m0_r = two * m0_r;
-    let minus_a_phi_omega_3 = sin_theta * a_psi_omega_3;
-    let d_f_3_d_omega_3_part_1 = m0_r * r_omega_1 + R_omega_1 * quarter_R_m;
-    let d_f_3_d_omega_3_part_2 = minus_a_phi_omega_3 * d_f_3_d_omega_3_part_1;
-    let d_f_3_d_omega_3_part_3 = R_m0_r_omega_1 + d_f_3_d_omega_3_part_2;
-    let d_f_3_d_omega_3 = d_f_3_d_omega_3_part_3 - two_m0_r * sigma;
-    let f_3 = d_f_3_d_omega_3 * omega_3 - R_omega_1_half_R_m * omega_2;
+    let a_psi_omega_3_omega_1 = a_psi_omega_3 * omega_1;
+    let d_f_3_d_omega_3_part_1 = sin_theta * a_psi_omega_3_omega_1;
+    let M_33 = m0_r_r + quarter_m_R_squared;
+    let d_f_3_d_omega_3_part_2 = R_m0_r_omega_1 + d_f_3_d_omega_3_part_1 * M_33;
+    let d_f_3_d_omega_3 = d_f_3_d_omega_3_part_2 - two_m0_r * sigma;
+    let f_3 = d_f_3_d_omega_3 * omega_3 - half_m_R_squared_omega_1 * omega_2;
     let f_2_part_1 = sin_theta_psi_dot * omega_1;
-    let R_m_omega_1 = R_m * omega_1;
+    let R_omega_1 = R * omega_1;
+    let m_R_omega_1 = m * R_omega_1;
     let m0_omega_3 = m0 * omega_3;
     let f_2_part_2 = R_omega_1 * m0_omega_3 - two_sigma * m0_omega_3;
-    let f_2_part_3 = m0_r * f_2_part_1 + R_m_omega_1 * omega_3;
-    let minus_f_2 = R * (f_2_part_3 + f_2_part_2);
-    let M_33 = m0_r_r + R_quarter_R_m;
-    let omega_2_dot_part_1 = one / (R_m0_r * R_m0_r - M_33 * M_22);
-    let omega_2_dot = omega_2_dot_part_1 * (minus_f_2 * M_33 - R_m0_r * f_3);
+    let minus_f_2 = R * (m0_r * f_2_part_1 + m_R_omega_1 * omega_3 + f_2_part_2);
+    let R_squared_m0_r = R_squared * m0_r;
+    let m0_r_R_squared_m0_r = m0_r * R_squared_m0_r;
+    let omega_2_dot_part_1 = one / (m0_r_R_squared_m0_r - M_33 * M_22);
+    let omega_2_dot = omega_2_dot_part_1 * (M_33 * minus_f_2 - R_m0_r * f_3);
     let omega_3_dot = omega_2_dot_part_1 * (R_m0_r * minus_f_2 - f_3 * M_22);
     let sigma_dot = f_4 * inv_m0 + R * omega_1_dot;
     let phi_dot = omega_2 - sin_theta_psi_dot;
-    let R_omega_2 = R * omega_2;
     let cos_theta_R_omega_1 = cos_theta * R_omega_1;
-    let x_G_dot = cos_psi * R_omega_2 + sin_psi * cos_theta_R_omega_1;
+    let x_G_dot = R_omega_2 * cos_psi + sin_psi * cos_theta_R_omega_1;
     let y_G_dot = R_omega_2 * sin_psi - cos_psi * cos_theta_R_omega_1;
 
     // Derivatives by the state.
-    let a_omega_1_omega_1_part_1 = R_m0_r_omega_1 - m0_r * sigma;
-    let a_omega_1_omega_1_part_2 = two * omega_1_dot_part_1;
-    let a_omega_1_omega_1 = a_omega_1_omega_1_part_1 * a_omega_1_omega_1_part_2;
+    let a_omega_1_omega_1_part_1 = two * (R_m0_r_omega_1 - m0_r * sigma);
+    let a_omega_1_omega_1 = omega_1_dot_part_1 * a_omega_1_omega_1_part_1;
     let sin_theta_psi_dot_R_m0_r = sin_theta_psi_dot * R_m0_r;
-    let a_omega_1_omega_2_part_1 = R_omega_3 * three_halves_R_m;
+    let m_R_squared_omega_3 = m_R_squared * omega_3;
+    let a_omega_1_omega_2_part_1 = three_halves * m_R_squared_omega_3;
     let a_omega_1_omega_2_part_2 = sin_theta_psi_dot_R_m0_r + a_omega_1_omega_2_part_1;
     let a_omega_1_omega_2 = omega_1_dot_part_1 * a_omega_1_omega_2_part_2;
-    let a_omega_1_omega_3_part_1 = three_halves_R_m + m0_r * minus_a_phi_omega_3;
-    let a_omega_1_omega_3_part_2 = sin_theta_psi_dot * half_R_m;
-    let a_omega_1_omega_3_part_3 = omega_2 * a_omega_1_omega_3_part_1;
+    let m_R_omega_2 = m * R_omega_2;
+    let a_omega_1_omega_3_part_1 = m0_r * minus_a_phi_omega_3 * omega_2;
+    let three_halves_m_R_omega_2 = three_halves * m_R_omega_2;
+    let a_omega_1_omega_3_part_2 = a_omega_1_omega_3_part_1 + three_halves_m_R_omega_2;
+    let a_omega_1_omega_3_part_3 = half * sin_theta_psi_dot * R_m;
     let a_omega_1_omega_3_part_4 = a_omega_1_omega_3_part_2 - a_omega_1_omega_3_part_3;
     let a_omega_1_omega_3_part_5 = sin_theta_psi_dot_r * two_m0_r;
     let a_omega_1_omega_3_part_6 = R * a_omega_1_omega_3_part_4;
-    let a_omega_1_omega_3_part_7 = a_omega_1_omega_3_part_5 + a_omega_1_omega_3_part_6;
+    let a_omega_1_omega_3_part_7 = a_omega_1_omega_3_part_5 - a_omega_1_omega_3_part_6;
     let minus_a_omega_1_omega_3 = omega_1_dot_part_1 * a_omega_1_omega_3_part_7;
-    let minus_a_omega_1_sigma = omega_1_dot_part_1 * two_m0_r * omega_1;
-    let psi_dot_squared = psi_dot * psi_dot;
-    let minus_a_phi_theta = a_psi_omega_3 * psi_dot;
-    let a_omega_1_theta_part_1 = g_sin_theta + R_omega_2 * minus_a_phi_theta;
-    let a_omega_1_theta_part_2 = a_omega_1_theta_part_1 - psi_dot_squared * r;
-    let R_m_g_cos_theta = R_m * g_cos_theta;
-    let a_omega_1_theta_part_3 = R_m_g_cos_theta + m0_r * a_omega_1_theta_part_2;
-    let a_omega_1_theta_part_4 = R_quarter_R_m * psi_dot_squared;
+    let a_omega_1_sigma_part_1 = omega_1_dot_part_1 * omega_1;
+    let minus_a_omega_1_sigma = two_m0_r * a_omega_1_sigma_part_1;
+    let a_omega_1_theta_part_1 = psi_dot * (psi_dot * r - R_omega_2 * a_psi_omega_3);
+    let g_cos_theta_R_m = g_cos_theta * R_m;
+    let a_omega_1_theta_part_2 = m0_r * (g_sin_theta - a_omega_1_theta_part_1);
+    let a_omega_1_theta_part_3 = g_cos_theta_R_m + a_omega_1_theta_part_2;
+    let a_omega_1_theta_part_4 = psi_dot * psi_dot * quarter_m_R_squared;
     let a_omega_1_theta_part_5 = a_omega_1_theta_part_3 - a_omega_1_theta_part_4;
     let a_omega_1_theta = omega_1_dot_part_1 * a_omega_1_theta_part_5;
-    let d_f_4_d_r = m0 * omega_1 * omega_1 + m0_omega_3 * omega_3;
-    let d_omega_1_dot_d_r_part_1 = R_omega_3 + two * sin_theta_psi_dot_r;
-    let d_omega_1_dot_d_r_part_2 = minus_a_phi_omega_3 * R_omega_2;
-    let d_omega_1_dot_d_r_part_3 = d_omega_1_dot_d_r_part_1 - d_omega_1_dot_d_r_part_2;
-    let d_omega_1_dot_d_r_part_4 = d_omega_1_dot_d_r_part_3 * omega_3;
-    let d_omega_1_dot_d_r_part_5 = omega_1_dot_part_10 + d_omega_1_dot_d_r_part_4;
-    let d_omega_1_dot_d_r_part_6 = R * d_f_4_d_r - m0 * d_omega_1_dot_d_r_part_5;
-    let omega_1_dot_two_m0_r = omega_1_dot * two_m0_r;
-    let d_omega_1_dot_d_r_part_7 = d_omega_1_dot_d_r_part_6 - omega_1_dot_two_m0_r;
-    let d_omega_1_dot_d_r = omega_1_dot_part_1 * d_omega_1_dot_d_r_part_7;
-    let R_omega_3_R_m_plus_m0_R = R_omega_3 * (R_m + m0_R);
-    let minus_d_f_2_d_omega_1 = sin_theta_psi_dot_R_m0_r + R_omega_3_R_m_plus_m0_R;
-    let d_f_3_d_omega_1_part_1 = m0_r_omega_3 + sin_theta_psi_dot * quarter_R_m;
-    let d_f_3_d_omega_1_part_2 = R * (d_f_3_d_omega_1_part_1 - half_R_m * omega_2);
-    let m0_r_sin_theta_psi_dot_r = m0_r * sin_theta_psi_dot_r;
-    let d_f_3_d_omega_1 = m0_r_sin_theta_psi_dot_r + d_f_3_d_omega_1_part_2;
+    let d_f_4_d_r = m0 * omega_1_squared + m0_omega_3 * omega_3;
+    let two_r = two * r;
+    let d_omega_1_dot_d_r_part_1 = omega_3 * (R_omega_3 + sin_theta_psi_dot * two_r);
+    let d_omega_1_dot_d_r_part_2 = omega_1_dot_part_4 + d_omega_1_dot_d_r_part_1;
+    let d_omega_1_dot_d_r_part_3 = R_omega_2 * sin_theta_psi_dot;
+    let d_omega_1_dot_d_r_part_4 = d_omega_1_dot_d_r_part_2 - d_omega_1_dot_d_r_part_3;
+    let d_omega_1_dot_d_r_part_5 = R * d_f_4_d_r - m0 * d_omega_1_dot_d_r_part_4;
+    let d_omega_1_dot_d_r_part_6 = d_omega_1_dot_d_r_part_5 - omega_1_dot * two_m0_r;
+    let d_omega_1_dot_d_r = omega_1_dot_part_1 * d_omega_1_dot_d_r_part_6;
+    let d_f_2_d_omega_1_part_1 = sin_theta_psi_dot_R_m0_r + m_R_squared_omega_3;
+    let minus_d_f_2_d_omega_1 = d_f_2_d_omega_1_part_1 + R_squared * m0_omega_3;
+    let m0_r_omega_3 = m0_r * omega_3;
+    let d_f_3_d_omega_1_part_1 = m0_r_omega_3 + omega_1_dot_part_7 * R_m;
+    let m0_r_r_sin_theta_psi_dot = m0_r_r * sin_theta_psi_dot;
+    let d_f_3_d_omega_1_part_2 = R * (d_f_3_d_omega_1_part_1 - half * m_R_omega_2);
+    let d_f_3_d_omega_1 = m0_r_r_sin_theta_psi_dot + d_f_3_d_omega_1_part_2;
     let a_omega_2_omega_1_part_1 = M_33 * minus_d_f_2_d_omega_1;
-    let R_m0_r_d_f_3_d_omega_1 = R_m0_r * d_f_3_d_omega_1;
-    let a_omega_2_omega_1_part_2 = a_omega_2_omega_1_part_1 - R_m0_r_d_f_3_d_omega_1;
+    let a_omega_2_omega_1_part_2 = a_omega_2_omega_1_part_1 - R_m0_r * d_f_3_d_omega_1;
     let a_omega_2_omega_1 = omega_2_dot_part_1 * a_omega_2_omega_1_part_2;
-    let a_omega_2_omega_2_part_1 = R_omega_1_half_R_m * omega_2_dot_part_1;
+    let a_omega_2_omega_2_part_1 = half_m_R_squared_omega_1 * omega_2_dot_part_1;
     let a_omega_2_omega_2 = R_m0_r * a_omega_2_omega_2_part_1;
-    let d_f_2_d_omega_3_part_1 = two_sigma - R_omega_1;
-    let d_f_2_d_omega_3_part_2 = r_omega_1 * minus_a_phi_omega_3;
-    let d_f_2_d_omega_3_part_3 = d_f_2_d_omega_3_part_1 - d_f_2_d_omega_3_part_2;
-    let minus_d_f_2_d_omega_3 = R * (R_m_omega_1 - m0 * d_f_2_d_omega_3_part_3);
+    let d_f_2_d_omega_3_part_1 = two_sigma - R_omega_1 - d_f_3_d_omega_3_part_1 * r;
+    let minus_d_f_2_d_omega_3 = R * (m_R_omega_1 - m0 * d_f_2_d_omega_3_part_1);
     let a_omega_2_omega_3_part_1 = M_33 * minus_d_f_2_d_omega_3;
-    let R_m0_r_d_f_3_d_omega_3 = R_m0_r * d_f_3_d_omega_3;
-    let a_omega_2_omega_3_part_2 = a_omega_2_omega_3_part_1 - R_m0_r_d_f_3_d_omega_3;
+    let a_omega_2_omega_3_part_2 = a_omega_2_omega_3_part_1 - R_m0_r * d_f_3_d_omega_3;
     let a_omega_2_omega_3 = omega_2_dot_part_1 * a_omega_2_omega_3_part_2;
     let a_omega_2_sigma_part_1 = two * omega_2_dot_part_1;
-    let a_omega_2_sigma_part_2 = m0_r_omega_3 * R_m0_r - m0_R_omega_3 * M_33;
+    let a_omega_2_sigma_part_2 = R_m0_r * m0_r_omega_3 - R * M_33 * m0_omega_3;
     let a_omega_2_sigma = a_omega_2_sigma_part_1 * a_omega_2_sigma_part_2;
-    let a_omega_2_theta_part_1 = R_m0_r_omega_1 * minus_a_phi_theta;
-    let d_f_3_d_theta = d_f_3_d_omega_3_part_1 * minus_a_phi_theta;
-    let a_omega_2_theta_part_2 = M_33 * a_omega_2_theta_part_1;
-    let a_omega_2_theta_part_3 = a_omega_2_theta_part_2 - R_m0_r * d_f_3_d_theta;
-    let a_omega_2_theta = omega_2_dot_part_1 * a_omega_2_theta_part_3;
     let d_f_3_d_r = f_2_part_2 + two_m0_r * f_2_part_1;
-    let two_minus_f_2_r = two * minus_f_2 * r;
-    let d_omega_2_dot_d_r_part_1 = R * (f_2_part_1 * M_33 - f_3 - d_f_3_d_r * r);
-    let d_omega_2_dot_d_r_part_2 = m0 * (two_minus_f_2_r + d_omega_2_dot_d_r_part_1);
-    let d_D_2_d_r = two_m0_r * M_22 - two * R_m0_r * m0_R;
-    let omega_2_dot_d_D_2_d_r = omega_2_dot * d_D_2_d_r;
-    let d_omega_2_dot_d_r_part_3 = d_omega_2_dot_d_r_part_2 + omega_2_dot_d_D_2_d_r;
-    let d_omega_2_dot_d_r = omega_2_dot_part_1 * d_omega_2_dot_d_r_part_3;
+    let minus_f_2_two_r = minus_f_2 * two_r;
+    let d_omega_2_dot_d_r_part_1 = R * (M_33 * f_2_part_1 - f_3 - d_f_3_d_r * r);
+    let minus_d_D_2_d_r = two_m0_r * (m0_R_squared - M_22);
+    let d_omega_2_dot_d_r_part_2 = m0 * (minus_f_2_two_r + d_omega_2_dot_d_r_part_1);
+    let d_omega_2_dot_d_r_part_3 = omega_2_dot * minus_d_D_2_d_r;
+    let d_omega_2_dot_d_r_part_4 = d_omega_2_dot_d_r_part_2 - d_omega_2_dot_d_r_part_3;
+    let d_omega_2_dot_d_r = omega_2_dot_part_1 * d_omega_2_dot_d_r_part_4;
     let M_22_d_f_3_d_omega_1 = M_22 * d_f_3_d_omega_1;
     let a_omega_3_omega_1_part_1 = R_m0_r * minus_d_f_2_d_omega_1;
     let a_omega_3_omega_1_part_2 = M_22_d_f_3_d_omega_1 - a_omega_3_omega_1_part_1;
@@ -919,34 +902,30 @@ pub fn jacobians<T: Real>(
     let a_omega_3_omega_3_part_1 = R_m0_r * minus_d_f_2_d_omega_3;
     let a_omega_3_omega_3_part_2 = d_f_3_d_omega_3_M_22 - a_omega_3_omega_3_part_1;
     let minus_a_omega_3_omega_3 = omega_2_dot_part_1 * a_omega_3_omega_3_part_2;
-    let a_omega_3_sigma_part_1 = m0_r_omega_3 * M_22 - m0_R_omega_3 * R_m0_r;
+    let a_omega_3_sigma_part_1 = M_22 * m0_r_omega_3 - m0_omega_3 * R_squared_m0_r;
     let a_omega_3_sigma = a_omega_2_sigma_part_1 * a_omega_3_sigma_part_1;
-    let M_22_d_f_3_d_theta = M_22 * d_f_3_d_theta;
-    let a_omega_3_theta_part_1 = R_m0_r * a_omega_2_theta_part_1;
-    let a_omega_3_theta_part_2 = M_22_d_f_3_d_theta - a_omega_3_theta_part_1;
-    let minus_a_omega_3_theta = omega_2_dot_part_1 * a_omega_3_theta_part_2;
-    let M_22_d_f_3_d_r = M_22 * d_f_3_d_r;
-    let d_omega_3_dot_d_r_part_1 = m0 * R_omega_1 * sin_theta_psi_dot_R_m0_r;
-    let d_omega_3_dot_d_r_part_2 = M_22_d_f_3_d_r - d_omega_3_dot_d_r_part_1;
-    let d_omega_3_dot_d_r_part_3 = d_omega_3_dot_d_r_part_2 - minus_f_2 * m0_R;
-    let omega_3_dot_d_D_2_d_r = omega_3_dot * d_D_2_d_r;
-    let d_omega_3_dot_d_r_part_4 = d_omega_3_dot_d_r_part_3 - omega_3_dot_d_D_2_d_r;
-    let minus_d_omega_3_dot_d_r = omega_2_dot_part_1 * d_omega_3_dot_d_r_part_4;
+    let a_omega_3_theta_part_1 = psi_dot * a_psi_omega_3_omega_1;
+    let a_omega_3_theta_part_2 = M_33 * M_22 * a_omega_3_theta_part_1;
+    let a_omega_3_theta_part_3 = m0_r_R_squared_m0_r * a_omega_3_theta_part_1;
+    let a_omega_3_theta_part_4 = a_omega_3_theta_part_2 - a_omega_3_theta_part_3;
+    let minus_a_omega_3_theta = omega_2_dot_part_1 * a_omega_3_theta_part_4;
+    let d_omega_3_dot_d_r_part_1 = M_22 * d_f_3_d_r + omega_3_dot * minus_d_D_2_d_r;
+    let d_omega_3_dot_d_r_part_2 = m0 * (f_2_part_1 * R_squared_m0_r + R * minus_f_2);
+    let d_omega_3_dot_d_r_part_3 = d_omega_3_dot_d_r_part_1 - d_omega_3_dot_d_r_part_2;
+    let minus_d_omega_3_dot_d_r = omega_2_dot_part_1 * d_omega_3_dot_d_r_part_3;
     let b_omega_1_u = R * omega_1_dot_part_1;
-    let d_sigma_dot_d_omega_1_part_1 = a_omega_1_omega_1_part_1 * b_omega_1_u;
-    let d_sigma_dot_d_omega_1_part_2 = r_omega_1 + d_sigma_dot_d_omega_1_part_1;
-    let d_sigma_dot_d_omega_1 = two * d_sigma_dot_d_omega_1_part_2;
-    let d_sigma_dot_d_omega_2_part_1 = a_omega_1_omega_2_part_2 * b_omega_1_u;
-    let d_sigma_dot_d_omega_2 = d_sigma_dot_d_omega_2_part_1 - R_omega_3;
-    let d_sigma_dot_d_omega_3_part_1 = inv_m0 * (two_m0_r * omega_3 - m0_R * omega_2);
+    let two_r_omega_1 = two_r * omega_1;
+    let d_sigma_dot_d_omega_1 = two_r_omega_1 + a_omega_1_omega_1_part_1 * b_omega_1_u;
+    let d_sigma_dot_d_omega_2 = a_omega_1_omega_2_part_2 * b_omega_1_u - R_omega_3;
+    let d_sigma_dot_d_omega_3_part_1 = inv_m0 * (two_m0_r * omega_3 - m0 * R_omega_2);
     let d_sigma_dot_d_omega_3_part_2 = a_omega_1_omega_3_part_7 * b_omega_1_u;
     let d_sigma_dot_d_omega_3 = d_sigma_dot_d_omega_3_part_1
         - d_sigma_dot_d_omega_3_part_2;
-    let minus_a_sigma_sigma = R_m0_r_omega_1 * a_omega_1_omega_1_part_2;
-    let d_sigma_dot_d_theta_part_1 = a_omega_1_theta_part_5 * b_omega_1_u;
-    let d_sigma_dot_d_theta = d_sigma_dot_d_theta_part_1 - g_cos_theta;
+    let a_sigma_sigma = minus_two * R_m0_r * a_omega_1_sigma_part_1;
+    let d_sigma_dot_d_theta = a_omega_1_theta_part_5 * b_omega_1_u - g_cos_theta;
     let d_sigma_dot_d_r = R * d_omega_1_dot_d_r + inv_m0 * d_f_4_d_r;
     let a_psi_theta = a_psi_omega_3 * sin_theta_psi_dot;
+    let minus_a_phi_theta = a_psi_omega_3 * psi_dot;
     let R_cos_theta = R * cos_theta;
     let a_x_G_omega_1 = sin_psi * R_cos_theta;
     let a_x_G_omega_2 = R * cos_psi;
@@ -957,7 +936,7 @@ pub fn jacobians<T: Real>(
     let a_y_G_theta = cos_psi * sin_theta_R_omega_1;
 
     // Derivatives by the inputs.
-    let d_sigma_dot_d_u = inv_m0 + R * b_omega_1_u;
+    let d_sigma_dot_d_u = inv_m0 + R_squared * omega_1_dot_part_1;
 
     let mut a = [[zero; 10]; 10];
     a[0][0] = a_omega_1_omega_1;
@@ -970,7 +949,6 @@ pub fn jacobians<T: Real>(
     a[1][1] = a_omega_2_omega_2;
     a[1][2] = a_omega_2_omega_3;
     a[1][3] = a_omega_2_sigma;
-    a[1][4] = a_omega_2_theta;
     a[1][5] = d_omega_2_dot_d_r;
     a[2][0] = -minus_a_omega_3_omega_1;
     a[2][1] = a_omega_3_omega_2;
@@ -981,7 +959,7 @@ pub fn jacobians<T: Real>(
     a[3][0] = d_sigma_dot_d_omega_1;
     a[3][1] = d_sigma_dot_d_omega_2;
     a[3][2] = d_sigma_dot_d_omega_3;
-    a[3][3] = -minus_a_sigma_sigma;
+    a[3][3] = a_sigma_sigma;
     a[3][4] = d_sigma_dot_d_theta;
     a[3][5] = d_sigma_dot_d_r;
     a[4][0] = one;
@@ -1025,7 +1003,7 @@ pub fn jacobians<T: Real>(
 /// Rates ẋ with their derivatives by state, inputs and parameters.
 ///
 /// From `mechanisms/unicycle.toml`.
-/// Operations: 463 (151 +, 297 ×, 4 ÷, 11 sign), 2 sine-cosine pairs.
+/// Operations: 454 (141 +, 297 ×, 4 ÷, 12 sign), 2 sine-cosine pairs.
 #[must_use]
 #[inline]
 pub fn all_jacobians<T: Real>(
@@ -1036,6 +1014,8 @@ pub fn all_jacobians<T: Real>(
     let &Parameters { m, m0, R, g } = p;
     let &State { omega_1, omega_2, omega_3, sigma, theta, r, psi, .. } = x;
     let &Inputs { u } = inputs;
+    let minus_five_halves = T::constant(-2.5);
+    let minus_two = T::constant(-2.0);
     let minus_three_halves = T::constant(-1.5);
     let minus_five_quarters = T::constant(-1.25);
     let zero = T::constant(0.0);
@@ -1045,7 +1025,6 @@ pub fn all_jacobians<T: Real>(
     let five_quarters = T::constant(1.25);
     let three_halves = T::constant(1.5);
     let two = T::constant(2.0);
-    let five_halves = T::constant(2.5);
     let three = T::constant(3.0);
 
     // Sines and cosines.
@@ -1069,7 +1048,7 @@ pub fn all_jacobians<T: Real>(
     let m0_r = m0 * r;
     let m0_r_r = m0_r * r;
     let M_11 = m0_R_squared + m0_r_r + five_quarters * R_R_m;
-    let omega_1_dot_part_1 = one / (m0_R_squared - M_11);
+    let omega_1_dot_part_1 = one / (M_11 - m0_R_squared);
     let R_omega_3 = R * omega_3;
     let R_omega_3_omega_2 = R_omega_3 * omega_2;
     let m0_R_omega_3_omega_2 = m0 * R_omega_3_omega_2;
@@ -1077,47 +1056,41 @@ pub fn all_jacobians<T: Real>(
     let g_sin_theta = g * sin_theta;
     let m0_r_omega_3 = m0_r * omega_3;
     let f_4_part_1 = m0 * g_sin_theta - m0_r_omega_3 * omega_3;
-    let f_4_part_2 = m0_r_omega_1 * omega_1 + u - m0_R_omega_3_omega_2;
-    let f_4 = f_4_part_2 - f_4_part_1;
+    let f_4 = m0_r_omega_1 * omega_1 + u - m0_R_omega_3_omega_2 - f_4_part_1;
     let m_R_omega_3 = m * R_omega_3;
     let a_psi_omega_3 = one / cos_theta;
     let minus_a_phi_omega_3 = sin_theta * a_psi_omega_3;
     let f_1_part_1 = quarter * minus_a_phi_omega_3;
     let f_1_part_2 = R_omega_3 * f_1_part_1;
-    let R_g_sin_theta = R * g_sin_theta;
-    let R_R_omega_3_omega_2 = R * R_omega_3_omega_2;
     let two_sigma = two * sigma;
     let r_omega_1 = r * omega_1;
-    let g_cos_theta = g * cos_theta;
-    let d_f_1_d_m0_part_1 = R_omega_3_omega_2 * minus_a_phi_omega_3;
-    let d_f_1_d_m0_part_2 = g_cos_theta - d_f_1_d_m0_part_1;
+    let R_g_sin_theta = R * g_sin_theta;
+    let R_R_omega_3_omega_2 = R * R_omega_3_omega_2;
     let r_omega_3 = r * omega_3;
-    let d_f_1_d_m0_part_3 = minus_a_phi_omega_3 * r_omega_3;
-    let d_f_1_d_m0_part_4 = R_g_sin_theta + R_R_omega_3_omega_2;
-    let d_f_1_d_m0_part_5 = d_f_1_d_m0_part_4 - two_sigma * r_omega_1;
-    let d_f_1_d_m0_part_6 = d_f_1_d_m0_part_5 - d_f_1_d_m0_part_2 * r;
-    let d_f_1_d_m0_part_7 = r_omega_3 * (R_omega_3 + d_f_1_d_m0_part_3);
-    let d_f_1_d_m0 = d_f_1_d_m0_part_6 - d_f_1_d_m0_part_7;
-    let f_1_part_3 = R_m * g_sin_theta + R_omega_3_omega_2 * three_halves_R_m;
-    let f_1 = f_1_part_3 + m0 * d_f_1_d_m0 - m_R_omega_3 * f_1_part_2;
-    let minus_omega_1_dot = omega_1_dot_part_1 * (R * f_4 + f_1);
+    let f_1_part_3 = minus_a_phi_omega_3 * r_omega_3;
+    let minus_a_phi_omega_3_r = minus_a_phi_omega_3 * r;
+    let g_cos_theta = g * cos_theta;
+    let f_1_part_4 = two_sigma * r_omega_1 + r_omega_3 * f_1_part_3;
+    let f_1_part_5 = f_1_part_4 + R_omega_3 * r_omega_3 + g_cos_theta * r;
+    let f_1_part_6 = f_1_part_5 - R_g_sin_theta - R_R_omega_3_omega_2;
+    let f_1_part_7 = f_1_part_6 - R_omega_3_omega_2 * minus_a_phi_omega_3_r;
+    let f_1_part_8 = R_m * g_sin_theta + R_omega_3_omega_2 * three_halves_R_m;
+    let f_1 = f_1_part_8 - m_R_omega_3 * f_1_part_2 - m0 * f_1_part_7;
+    let omega_1_dot = omega_1_dot_part_1 * (R * f_4 + f_1);
     let R_m0_r = R * m0_r;
     let R_omega_1 = R * omega_1;
     let R_omega_1_half_R_m = R_omega_1 * half_R_m;
     let R_m0_r_omega_1 = R_m0_r * omega_1;
-    let d_f_3_d_omega_3_part_1 = m0_r_omega_1 * minus_a_phi_omega_3;
-    let d_f_3_d_omega_3_part_2 = R_m0_r_omega_1 + d_f_3_d_omega_3_part_1 * r;
-    let d_f_3_d_omega_3_part_3 = R_m * f_1_part_1 * R_omega_1;
-    let d_f_3_d_omega_3_part_4 = d_f_3_d_omega_3_part_2 + d_f_3_d_omega_3_part_3;
-    let d_f_3_d_omega_3 = d_f_3_d_omega_3_part_4 - m0_r * two_sigma;
+    let d_f_3_d_omega_3_part_1 = R_m0_r_omega_1 + m0_r_omega_1 * minus_a_phi_omega_3_r;
+    let d_f_3_d_omega_3_part_2 = d_f_3_d_omega_3_part_1 + R_m * f_1_part_1 * R_omega_1;
+    let d_f_3_d_omega_3 = d_f_3_d_omega_3_part_2 - m0_r * two_sigma;
     let f_3 = d_f_3_d_omega_3 * omega_3 - R_omega_1_half_R_m * omega_2;
     let f_2_part_1 = minus_a_phi_omega_3 * omega_3;
     let f_2_part_2 = m0_r_omega_1 * f_2_part_1;
     let R_omega_3_omega_1 = R_omega_3 * omega_1;
     let m_R_omega_3_omega_1 = m * R_omega_3_omega_1;
     let m0_R_omega_3_omega_1 = m0 * R_omega_3_omega_1;
-    let m0_two_sigma = m0 * two_sigma;
-    let m0_two_sigma_omega_3 = m0_two_sigma * omega_3;
+    let m0_two_sigma_omega_3 = m0 * two_sigma * omega_3;
     let f_2_part_3 = m0_R_omega_3_omega_1 - m0_two_sigma_omega_3;
     let minus_f_2 = R * (f_2_part_2 + m_R_omega_3_omega_1 + f_2_part_3);
     let M_33 = m0_r_r + quarter * R_R_m;
@@ -1127,7 +1100,7 @@ pub fn all_jacobians<T: Real>(
     let omega_3_dot_part_1 = R_m0_r * minus_f_2 - f_3 * M_22;
     let omega_3_dot = omega_2_dot_part_2 * omega_3_dot_part_1;
     let f_4_inv_m0 = f_4 * inv_m0;
-    let sigma_dot = f_4_inv_m0 - R * minus_omega_1_dot;
+    let sigma_dot = f_4_inv_m0 + R * omega_1_dot;
     let psi_dot = a_psi_omega_3 * omega_3;
     let phi_dot = omega_2 - f_2_part_1;
     let R_omega_2 = R * omega_2;
@@ -1138,73 +1111,64 @@ pub fn all_jacobians<T: Real>(
 
     // Derivatives by the state.
     let a_omega_1_omega_1_part_1 = m0_r * sigma - R_m0_r_omega_1;
-    let a_omega_1_omega_1_part_2 = two * omega_1_dot_part_1;
+    let a_omega_1_omega_1_part_2 = minus_two * omega_1_dot_part_1;
     let a_omega_1_omega_1 = a_omega_1_omega_1_part_1 * a_omega_1_omega_1_part_2;
-    let R_omega_3_m0_R = R_omega_3 * m0_R;
     let m0_r_R_omega_3 = m0_r * R_omega_3;
     let a_omega_1_omega_2_part_1 = minus_a_phi_omega_3 * m0_r_R_omega_3;
-    let a_omega_1_omega_2_part_2 = R_omega_3_m0_R + a_omega_1_omega_2_part_1;
-    let a_omega_1_omega_2_part_3 = R_omega_3 * three_halves_R_m;
-    let d_f_1_d_omega_2 = a_omega_1_omega_2_part_3 + a_omega_1_omega_2_part_2;
-    let a_omega_1_omega_2_part_4 = R_omega_3_m0_R - d_f_1_d_omega_2;
-    let a_omega_1_omega_2 = omega_1_dot_part_1 * a_omega_1_omega_2_part_4;
+    let a_omega_1_omega_2_part_2 = R_omega_3 * three_halves_R_m;
+    let a_omega_1_omega_2_part_3 = a_omega_1_omega_2_part_1 + a_omega_1_omega_2_part_2;
+    let a_omega_1_omega_2 = omega_1_dot_part_1 * a_omega_1_omega_2_part_3;
     let two_m0_r = two * m0_r;
-    let d_f_4_d_omega_3 = two_m0_r * omega_3 - m0_R * omega_2;
     let a_omega_1_omega_3_part_1 = m0_r * minus_a_phi_omega_3 * omega_2;
     let a_omega_1_omega_3_part_2 = half * m_R_omega_3 * minus_a_phi_omega_3;
     let a_omega_1_omega_3_part_3 = a_omega_1_omega_3_part_1 - a_omega_1_omega_3_part_2;
     let three_halves_R_m_omega_2 = three_halves_R_m * omega_2;
     let a_omega_1_omega_3_part_4 = three_halves_R_m_omega_2 + a_omega_1_omega_3_part_3;
-    let a_omega_1_omega_3_part_5 = R * (a_omega_1_omega_3_part_4 - d_f_4_d_omega_3);
-    let a_omega_1_omega_3_part_6 = d_f_1_d_m0_part_3 * two_m0_r;
-    let d_f_1_d_omega_3 = a_omega_1_omega_3_part_5 - a_omega_1_omega_3_part_6;
-    let a_omega_1_omega_3_part_7 = d_f_1_d_omega_3 + R * d_f_4_d_omega_3;
-    let minus_a_omega_1_omega_3 = omega_1_dot_part_1 * a_omega_1_omega_3_part_7;
+    let a_omega_1_omega_3_part_5 = f_1_part_3 * two_m0_r - R * a_omega_1_omega_3_part_4;
+    let minus_a_omega_1_omega_3 = omega_1_dot_part_1 * a_omega_1_omega_3_part_5;
     let a_omega_1_sigma = m0_r_omega_1 * a_omega_1_omega_1_part_2;
-    let g_cos_theta_m0_R = g_cos_theta * m0_R;
     let a_psi_omega_3_squared = a_psi_omega_3 * a_psi_omega_3;
-    let d_f_1_d_theta_part_1 = quarter * R_omega_3 * m_R_omega_3;
-    let d_f_1_d_theta_part_2 = m0_r * a_psi_omega_3_squared;
-    let d_f_1_d_theta_part_3 = R_omega_3_omega_2 - r_omega_3 * omega_3;
-    let d_f_1_d_theta_part_4 = g_cos_theta_m0_R + R_m * g_cos_theta;
-    let d_f_1_d_theta_part_5 = d_f_1_d_theta_part_4 + m0_r * g_sin_theta;
-    let d_f_1_d_theta_part_6 = d_f_1_d_theta_part_2 * d_f_1_d_theta_part_3;
-    let d_f_1_d_theta_part_7 = d_f_1_d_theta_part_5 + d_f_1_d_theta_part_6;
-    let d_f_1_d_theta_part_8 = d_f_1_d_theta_part_1 * a_psi_omega_3_squared;
-    let d_f_1_d_theta = d_f_1_d_theta_part_7 - d_f_1_d_theta_part_8;
-    let a_omega_1_theta_part_1 = g_cos_theta_m0_R - d_f_1_d_theta;
-    let a_omega_1_theta = omega_1_dot_part_1 * a_omega_1_theta_part_1;
-    let d_omega_1_dot_d_r_part_1 = d_f_1_d_m0_part_2 + R_omega_3 * omega_3;
+    let a_omega_1_theta_part_1 = quarter * R_omega_3 * m_R_omega_3;
+    let a_omega_1_theta_part_2 = m0_r * a_psi_omega_3_squared;
+    let a_omega_1_theta_part_3 = R_omega_3_omega_2 - r_omega_3 * omega_3;
+    let a_omega_1_theta_part_4 = R_m * g_cos_theta + m0_r * g_sin_theta;
+    let a_omega_1_theta_part_5 = a_omega_1_theta_part_2 * a_omega_1_theta_part_3;
+    let a_omega_1_theta_part_6 = a_omega_1_theta_part_4 + a_omega_1_theta_part_5;
+    let a_omega_1_theta_part_7 = a_omega_1_theta_part_1 * a_psi_omega_3_squared;
+    let a_omega_1_theta_part_8 = a_omega_1_theta_part_6 - a_omega_1_theta_part_7;
+    let a_omega_1_theta = omega_1_dot_part_1 * a_omega_1_theta_part_8;
+    let d_f_4_d_r = m0 * (omega_1 * omega_1 + omega_3 * omega_3);
+    let d_omega_1_dot_d_r_part_1 = g_cos_theta + R_omega_3 * omega_3;
     let d_omega_1_dot_d_r_part_2 = two * r_omega_3 * f_2_part_1;
     let d_omega_1_dot_d_r_part_3 = d_omega_1_dot_d_r_part_1 + d_omega_1_dot_d_r_part_2;
-    let minus_d_f_1_d_r = m0 * (d_omega_1_dot_d_r_part_3 + two_sigma * omega_1);
-    let d_f_4_d_r = m0 * (omega_1 * omega_1 + omega_3 * omega_3);
-    let d_omega_1_dot_d_r_part_4 = minus_d_f_1_d_r - R * d_f_4_d_r;
-    let d_omega_1_dot_d_r_part_5 = omega_1_dot_part_1 * minus_omega_1_dot;
-    let d_omega_1_dot_d_r_part_6 = omega_1_dot_part_1 * d_omega_1_dot_d_r_part_4;
-    let d_omega_1_dot_d_r_part_7 = two_m0_r * d_omega_1_dot_d_r_part_5;
-    let d_omega_1_dot_d_r = d_omega_1_dot_d_r_part_6 - d_omega_1_dot_d_r_part_7;
-    let minus_d_f_2_d_omega_1 = a_omega_1_omega_2_part_2 + R_m * R_omega_3;
-    let d_f_3_d_omega_1_part_1 = m0_r_R_omega_3 + m0_r * d_f_1_d_m0_part_3;
-    let d_f_3_d_omega_1_part_2 = d_f_3_d_omega_1_part_1 + R_m * f_1_part_2;
-    let d_f_3_d_omega_1 = d_f_3_d_omega_1_part_2 - half_R_m * R_omega_2;
+    let d_omega_1_dot_d_r_part_4 = d_omega_1_dot_d_r_part_3 + two_sigma * omega_1;
+    let d_omega_1_dot_d_r_part_5 = R_omega_3_omega_2 * minus_a_phi_omega_3;
+    let d_omega_1_dot_d_r_part_6 = d_omega_1_dot_d_r_part_4 - d_omega_1_dot_d_r_part_5;
+    let d_omega_1_dot_d_r_part_7 = R * d_f_4_d_r - m0 * d_omega_1_dot_d_r_part_6;
+    let d_omega_1_dot_d_r_part_8 = omega_1_dot_part_1 * omega_1_dot;
+    let d_omega_1_dot_d_r_part_9 = omega_1_dot_part_1 * d_omega_1_dot_d_r_part_7;
+    let d_omega_1_dot_d_r_part_10 = two_m0_r * d_omega_1_dot_d_r_part_8;
+    let d_omega_1_dot_d_r = d_omega_1_dot_d_r_part_9 - d_omega_1_dot_d_r_part_10;
+    let minus_d_f_2_d_omega_1 = a_omega_1_omega_2_part_1 + R_omega_3 * (R_m + m0_R);
+    let d_f_3_d_omega_1_part_1 = m0_r_R_omega_3 + m0_r * f_1_part_3 + R_m * f_1_part_2;
+    let d_f_3_d_omega_1 = d_f_3_d_omega_1_part_1 - half_R_m * R_omega_2;
     let a_omega_2_omega_1_part_1 = M_33 * minus_d_f_2_d_omega_1;
-    let R_m0_r_d_f_3_d_omega_1 = R_m0_r * d_f_3_d_omega_1;
-    let a_omega_2_omega_1_part_2 = a_omega_2_omega_1_part_1 - R_m0_r_d_f_3_d_omega_1;
+    let a_omega_2_omega_1_part_2 = a_omega_2_omega_1_part_1 - R_m0_r * d_f_3_d_omega_1;
     let a_omega_2_omega_1 = omega_2_dot_part_2 * a_omega_2_omega_1_part_2;
     let a_omega_2_omega_2_part_1 = R_omega_1_half_R_m * omega_2_dot_part_2;
     let a_omega_2_omega_2 = R_m0_r * a_omega_2_omega_2_part_1;
-    let d_f_2_d_omega_3_part_1 = d_f_3_d_omega_3_part_1 + omega_1 * (R_m + m0_R);
-    let minus_d_f_2_d_omega_3 = R * (d_f_2_d_omega_3_part_1 - m0_two_sigma);
+    let R_m_omega_1 = R_m * omega_1;
+    let d_f_2_d_omega_3_part_1 = m0_r_omega_1 * minus_a_phi_omega_3 + R_m_omega_1;
+    let minus_d_f_2_d_omega_3 = R
+        * (d_f_2_d_omega_3_part_1 - m0 * (two_sigma - R_omega_1));
     let a_omega_2_omega_3_part_1 = M_33 * minus_d_f_2_d_omega_3;
-    let R_m0_r_d_f_3_d_omega_3 = R_m0_r * d_f_3_d_omega_3;
-    let a_omega_2_omega_3_part_2 = a_omega_2_omega_3_part_1 - R_m0_r_d_f_3_d_omega_3;
+    let a_omega_2_omega_3_part_2 = a_omega_2_omega_3_part_1 - R_m0_r * d_f_3_d_omega_3;
     let a_omega_2_omega_3 = omega_2_dot_part_2 * a_omega_2_omega_3_part_2;
     let m0_R_omega_3 = m0 * R_omega_3;
     let a_omega_2_sigma_part_1 = two * omega_2_dot_part_2;
     let a_omega_2_sigma_part_2 = m0_r * m0_r_R_omega_3 - M_33 * m0_R_omega_3;
     let a_omega_2_sigma = a_omega_2_sigma_part_1 * a_omega_2_sigma_part_2;
-    let a_omega_2_theta_part_1 = R_omega_3_omega_1 * d_f_1_d_theta_part_2;
+    let a_omega_2_theta_part_1 = R_omega_3_omega_1 * a_omega_1_theta_part_2;
     let m0_r_omega_1_r_omega_3 = m0_r_omega_1 * r_omega_3;
     let d_f_3_d_theta_part_1 = quarter * R_m * R_omega_3_omega_1;
     let d_f_3_d_theta_part_2 = m0_r_omega_1_r_omega_3 + d_f_3_d_theta_part_1;
@@ -1217,15 +1181,14 @@ pub fn all_jacobians<T: Real>(
     let R_r = R * r;
     let d_omega_2_dot_d_r_part_2 = M_33 * d_omega_2_dot_d_r_part_1;
     let d_omega_2_dot_d_r_part_3 = d_omega_2_dot_d_r_part_2 + two * minus_f_2 * r;
-    let d_omega_2_dot_d_r_part_4 = d_omega_2_dot_d_r_part_3 - d_f_3_d_r * R_r;
-    let d_omega_2_dot_d_r_part_5 = m0 * omega_2_dot_part_2;
-    let d_omega_2_dot_d_r_part_6 = d_omega_2_dot_d_r_part_4 - R * f_3;
-    let d_omega_2_dot_d_r_part_7 = d_omega_2_dot_d_r_part_5 * d_omega_2_dot_d_r_part_6;
+    let d_omega_2_dot_d_r_part_4 = m0 * omega_2_dot_part_2;
+    let d_omega_2_dot_d_r_part_5 = d_omega_2_dot_d_r_part_3 - d_f_3_d_r * R_r - R * f_3;
     let d_D_2_d_r = M_22 * two_m0_r - R_m0_r * two_m0_R;
-    let d_omega_2_dot_d_r_part_8 = omega_2_dot_part_2 * omega_2_dot_part_2;
-    let d_omega_2_dot_d_r_part_9 = omega_2_dot_part_1 * d_omega_2_dot_d_r_part_8;
-    let d_omega_2_dot_d_r_part_10 = d_D_2_d_r * d_omega_2_dot_d_r_part_9;
-    let d_omega_2_dot_d_r = d_omega_2_dot_d_r_part_7 + d_omega_2_dot_d_r_part_10;
+    let d_omega_2_dot_d_r_part_6 = omega_2_dot_part_2 * omega_2_dot_part_2;
+    let d_omega_2_dot_d_r_part_7 = omega_2_dot_part_1 * d_omega_2_dot_d_r_part_6;
+    let d_omega_2_dot_d_r_part_8 = d_omega_2_dot_d_r_part_4 * d_omega_2_dot_d_r_part_5;
+    let d_omega_2_dot_d_r_part_9 = d_D_2_d_r * d_omega_2_dot_d_r_part_7;
+    let d_omega_2_dot_d_r = d_omega_2_dot_d_r_part_8 + d_omega_2_dot_d_r_part_9;
     let M_22_d_f_3_d_omega_1 = M_22 * d_f_3_d_omega_1;
     let a_omega_3_omega_1_part_1 = R_m0_r * minus_d_f_2_d_omega_1;
     let a_omega_3_omega_1_part_2 = M_22_d_f_3_d_omega_1 - a_omega_3_omega_1_part_1;
@@ -1238,29 +1201,27 @@ pub fn all_jacobians<T: Real>(
     let a_omega_3_sigma_part_1 = m0_r_omega_3 * M_22 - R_m0_r * m0_R_omega_3;
     let a_omega_3_sigma = a_omega_2_sigma_part_1 * a_omega_3_sigma_part_1;
     let M_22_d_f_3_d_theta = M_22 * d_f_3_d_theta;
-    let a_omega_3_theta_part_1 = R_m0_r * a_omega_2_theta_part_1;
-    let a_omega_3_theta_part_2 = M_22_d_f_3_d_theta - a_omega_3_theta_part_1;
-    let minus_a_omega_3_theta = omega_2_dot_part_2 * a_omega_3_theta_part_2;
+    let a_omega_3_theta_part_1 = M_22_d_f_3_d_theta - R_m0_r * a_omega_2_theta_part_1;
+    let minus_a_omega_3_theta = omega_2_dot_part_2 * a_omega_3_theta_part_1;
     let M_22_d_f_3_d_r = M_22 * d_f_3_d_r;
     let d_omega_3_dot_d_r_part_1 = m0 * R_m0_r * d_omega_2_dot_d_r_part_1;
     let d_omega_3_dot_d_r_part_2 = M_22_d_f_3_d_r - d_omega_3_dot_d_r_part_1;
     let d_omega_3_dot_d_r_part_3 = d_omega_3_dot_d_r_part_2 - minus_f_2 * m0_R;
-    let d_omega_3_dot_d_r_part_4 = omega_3_dot_part_1 * d_omega_2_dot_d_r_part_8;
+    let d_omega_3_dot_d_r_part_4 = omega_3_dot_part_1 * d_omega_2_dot_d_r_part_6;
     let d_omega_3_dot_d_r_part_5 = d_D_2_d_r * d_omega_3_dot_d_r_part_4;
     let d_omega_3_dot_d_r_part_6 = omega_2_dot_part_2 * d_omega_3_dot_d_r_part_3;
     let d_omega_3_dot_d_r = d_omega_3_dot_d_r_part_5 - d_omega_3_dot_d_r_part_6;
-    let minus_b_omega_1_u = R * omega_1_dot_part_1;
-    let d_sigma_dot_d_omega_1_part_1 = a_omega_1_omega_1_part_1 * minus_b_omega_1_u;
-    let d_sigma_dot_d_omega_1_part_2 = r_omega_1 + d_sigma_dot_d_omega_1_part_1;
-    let d_sigma_dot_d_omega_1 = two * d_sigma_dot_d_omega_1_part_2;
-    let d_sigma_dot_d_omega_2_part_1 = a_omega_1_omega_2_part_4 * minus_b_omega_1_u;
-    let d_sigma_dot_d_omega_2 = d_sigma_dot_d_omega_2_part_1 - R_omega_3;
-    let inv_m0_d_f_4_d_omega_3 = inv_m0 * d_f_4_d_omega_3;
-    let d_sigma_dot_d_omega_3_part_1 = a_omega_1_omega_3_part_7 * minus_b_omega_1_u;
-    let d_sigma_dot_d_omega_3 = inv_m0_d_f_4_d_omega_3 - d_sigma_dot_d_omega_3_part_1;
+    let b_omega_1_u = R * omega_1_dot_part_1;
+    let d_sigma_dot_d_omega_1_part_1 = r_omega_1
+        - a_omega_1_omega_1_part_1 * b_omega_1_u;
+    let d_sigma_dot_d_omega_1 = two * d_sigma_dot_d_omega_1_part_1;
+    let d_sigma_dot_d_omega_2 = a_omega_1_omega_2_part_3 * b_omega_1_u - R_omega_3;
+    let d_sigma_dot_d_omega_3_part_1 = inv_m0 * (two_m0_r * omega_3 - m0_R * omega_2);
+    let d_sigma_dot_d_omega_3_part_2 = a_omega_1_omega_3_part_5 * b_omega_1_u;
+    let d_sigma_dot_d_omega_3 = d_sigma_dot_d_omega_3_part_1
+        - d_sigma_dot_d_omega_3_part_2;
     let a_sigma_sigma = R_m0_r_omega_1 * a_omega_1_omega_1_part_2;
-    let d_sigma_dot_d_theta_part_1 = a_omega_1_theta_part_1 * minus_b_omega_1_u;
-    let d_sigma_dot_d_theta = d_sigma_dot_d_theta_part_1 - g_cos_theta;
+    let d_sigma_dot_d_theta = a_omega_1_theta_part_8 * b_omega_1_u - g_cos_theta;
     let d_sigma_dot_d_r = R * d_omega_1_dot_d_r + inv_m0 * d_f_4_d_r;
     let a_psi_theta = a_psi_omega_3 * f_2_part_1;
     let minus_a_phi_theta = a_psi_omega_3_squared * omega_3;
@@ -1273,71 +1234,62 @@ pub fn all_jacobians<T: Real>(
     let a_y_G_theta = cos_psi * sin_theta_R_omega_1;
 
     // Derivatives by the inputs.
-    let d_sigma_dot_d_u = inv_m0 - R_squared * omega_1_dot_part_1;
+    let d_sigma_dot_d_u = inv_m0 + R_squared * omega_1_dot_part_1;
 
     // Derivatives by the parameters.
     let d_f_1_d_m_part_1 = R_g_sin_theta + three_halves * R_R_omega_3_omega_2;
     let d_f_1_d_m = d_f_1_d_m_part_1 - R_omega_3 * f_1_part_2;
     let d_omega_1_dot_d_m_part_1 = minus_five_quarters * R_squared;
-    let d_omega_1_dot_d_m_part_2 = d_omega_1_dot_d_m_part_1 * d_omega_1_dot_d_r_part_5;
-    let d_omega_1_dot_d_m_part_3 = omega_1_dot_part_1 * d_f_1_d_m;
-    let d_omega_1_dot_d_m = d_omega_1_dot_d_m_part_2 - d_omega_1_dot_d_m_part_3;
+    let d_omega_1_dot_d_m_part_2 = omega_1_dot_part_1 * d_f_1_d_m;
+    let d_omega_1_dot_d_m_part_3 = d_omega_1_dot_d_m_part_1 * d_omega_1_dot_d_r_part_8;
+    let d_omega_1_dot_d_m = d_omega_1_dot_d_m_part_2 + d_omega_1_dot_d_m_part_3;
     let r_squared = r * r;
-    let d_omega_1_dot_d_m0_part_1 = R_squared - (R_squared + r_squared);
-    let d_omega_1_dot_d_m0_part_2 = d_omega_1_dot_d_r_part_5 * d_omega_1_dot_d_m0_part_1;
-    let d_f_4_d_m0_part_1 = r_omega_1 * omega_1 - g_sin_theta;
-    let d_f_4_d_m0 = d_f_4_d_m0_part_1 - d_f_1_d_theta_part_3;
-    let d_omega_1_dot_d_m0_part_3 = d_f_1_d_m0 + R * d_f_4_d_m0;
-    let d_omega_1_dot_d_m0_part_4 = omega_1_dot_part_1 * d_omega_1_dot_d_m0_part_3;
-    let d_omega_1_dot_d_m0 = d_omega_1_dot_d_m0_part_2 - d_omega_1_dot_d_m0_part_4;
-    let d_omega_1_dot_d_R_part_1 = two_m0_R - (two_m0_R + five_halves * R_m);
-    let d_omega_1_dot_d_R_part_2 = d_omega_1_dot_d_r_part_5 * d_omega_1_dot_d_R_part_1;
-    let d_f_1_d_R_part_1 = a_omega_1_omega_3_part_3 + d_M_22_d_R * omega_2;
-    let d_f_1_d_R_part_2 = f_4_part_1 + m * g_sin_theta;
-    let d_f_1_d_R = d_f_1_d_R_part_2 + omega_3 * d_f_1_d_R_part_1;
-    let d_omega_1_dot_d_R_part_3 = m0_R_omega_3_omega_2 - f_4 - d_f_1_d_R;
-    let d_omega_1_dot_d_R_part_4 = omega_1_dot_part_1 * d_omega_1_dot_d_R_part_3;
-    let d_omega_1_dot_d_R = d_omega_1_dot_d_R_part_2 + d_omega_1_dot_d_R_part_4;
-    let sin_theta_m0_R = sin_theta * m0_R;
-    let d_f_1_d_g = sin_theta_m0_R + R_m * sin_theta - m0_r * cos_theta;
-    let p_omega_1_g_part_1 = sin_theta_m0_R - d_f_1_d_g;
-    let p_omega_1_g = omega_1_dot_part_1 * p_omega_1_g_part_1;
+    let d_f_4_d_m0 = r_omega_1 * omega_1 - g_sin_theta - a_omega_1_theta_part_3;
+    let d_omega_1_dot_d_m0_part_1 = d_omega_1_dot_d_r_part_8 * r_squared;
+    let d_omega_1_dot_d_m0_part_2 = omega_1_dot_part_1 * (f_1_part_7 - R * d_f_4_d_m0);
+    let minus_d_omega_1_dot_d_m0 = d_omega_1_dot_d_m0_part_1 + d_omega_1_dot_d_m0_part_2;
+    let d_omega_1_dot_d_R_part_1 = a_omega_1_omega_3_part_3 + d_M_22_d_R * omega_2;
+    let d_omega_1_dot_d_R_part_2 = m0_R_omega_3_omega_2 - f_4_part_1 - f_4;
+    let d_omega_1_dot_d_R_part_3 = d_omega_1_dot_d_R_part_2 - m * g_sin_theta;
+    let d_omega_1_dot_d_R_part_4 = omega_3 * d_omega_1_dot_d_R_part_1;
+    let d_omega_1_dot_d_R_part_5 = d_omega_1_dot_d_R_part_3 - d_omega_1_dot_d_R_part_4;
+    let d_omega_1_dot_d_R_part_6 = minus_five_halves * R_m * d_omega_1_dot_d_r_part_8;
+    let d_omega_1_dot_d_R_part_7 = omega_1_dot_part_1 * d_omega_1_dot_d_R_part_5;
+    let d_omega_1_dot_d_R = d_omega_1_dot_d_R_part_6 - d_omega_1_dot_d_R_part_7;
+    let p_omega_1_g_part_1 = m0_r * cos_theta - R_m * sin_theta;
+    let minus_p_omega_1_g = omega_1_dot_part_1 * p_omega_1_g_part_1;
     let d_D_2_d_m = R_squared * (three_halves * M_33 + quarter * M_22);
     let R_R_omega_3_omega_1 = R * R_omega_3_omega_1;
-    let omega_2_omega_1 = omega_2 * omega_1;
     let d_f_3_d_m_part_1 = f_1_part_1 * R_R_omega_3_omega_1;
-    let d_f_3_d_m = d_f_3_d_m_part_1 - half * R_squared * omega_2_omega_1;
+    let d_f_3_d_m = d_f_3_d_m_part_1 - half * R_squared * omega_2 * omega_1;
     let d_omega_2_dot_d_m_part_1 = quarter * R_squared * minus_f_2;
     let M_33_R_R_omega_3_omega_1 = M_33 * R_R_omega_3_omega_1;
     let d_omega_2_dot_d_m_part_2 = d_omega_2_dot_d_m_part_1 + M_33_R_R_omega_3_omega_1;
     let d_omega_2_dot_d_m_part_3 = d_omega_2_dot_d_m_part_2 - R_m0_r * d_f_3_d_m;
-    let d_omega_2_dot_d_m_part_4 = d_omega_2_dot_d_r_part_9 * d_D_2_d_m;
+    let d_omega_2_dot_d_m_part_4 = d_omega_2_dot_d_r_part_7 * d_D_2_d_m;
     let d_omega_2_dot_d_m_part_5 = omega_2_dot_part_2 * d_omega_2_dot_d_m_part_3;
     let d_omega_2_dot_d_m = d_omega_2_dot_d_m_part_4 + d_omega_2_dot_d_m_part_5;
     let d_f_2_d_m0_part_1 = R_omega_3 * two_sigma - R_R_omega_3_omega_1;
     let d_f_2_d_m0 = d_f_2_d_m0_part_1 - d_omega_2_dot_d_r_part_1 * r;
-    let d_f_3_d_m0_part_1 = r_omega_1 * d_f_1_d_m0_part_3 + R_omega_3_omega_1 * r;
+    let d_f_3_d_m0_part_1 = r_omega_1 * f_1_part_3 + R_omega_3_omega_1 * r;
     let d_f_3_d_m0 = d_f_3_d_m0_part_1 - two_sigma * r_omega_3;
     let d_omega_2_dot_d_m0_part_1 = minus_f_2 * r_squared - M_33 * d_f_2_d_m0;
-    let R_m0_r_d_f_3_d_m0 = R_m0_r * d_f_3_d_m0;
-    let d_omega_2_dot_d_m0_part_2 = d_omega_2_dot_d_m0_part_1 - R_m0_r_d_f_3_d_m0;
+    let d_omega_2_dot_d_m0_part_2 = d_omega_2_dot_d_m0_part_1 - R_m0_r * d_f_3_d_m0;
     let d_omega_2_dot_d_m0_part_3 = d_omega_2_dot_d_m0_part_2 - f_3 * R_r;
-    let d_D_2_d_m0_part_1 = R_squared * M_33 + M_22 * r_squared;
-    let d_D_2_d_m0 = d_D_2_d_m0_part_1 - two * R_m0_r * R_r;
+    let d_D_2_d_m0 = R_squared * M_33 + M_22 * r_squared - two * R_m0_r * R_r;
     let d_omega_2_dot_d_m0_part_4 = omega_2_dot_part_2 * d_omega_2_dot_d_m0_part_3;
-    let d_omega_2_dot_d_m0_part_5 = d_omega_2_dot_d_r_part_9 * d_D_2_d_m0;
+    let d_omega_2_dot_d_m0_part_5 = d_omega_2_dot_d_r_part_7 * d_D_2_d_m0;
     let d_omega_2_dot_d_m0 = d_omega_2_dot_d_m0_part_4 + d_omega_2_dot_d_m0_part_5;
     let d_D_2_d_R = M_33 * d_M_22_d_R + half_R_m * M_22 - R_m0_r * two_m0_r;
-    let m0_r_omega_1_omega_3 = m0_r_omega_1 * omega_3;
-    let d_f_3_d_R_part_1 = half * m * d_omega_2_dot_d_r_part_1;
-    let d_f_3_d_R_part_2 = m0_r_omega_1_omega_3 + d_f_3_d_R_part_1;
-    let d_f_3_d_R = d_f_3_d_R_part_2 - R_m * omega_2_omega_1;
-    let d_f_2_d_R_part_1 = two * (m_R_omega_3_omega_1 + m0_R_omega_3_omega_1);
-    let d_f_2_d_R = m0_two_sigma_omega_3 - f_2_part_2 - d_f_2_d_R_part_1;
+    let d_f_3_d_R_part_1 = m0_r_omega_1 * omega_3 + half * m * d_omega_2_dot_d_r_part_1;
+    let d_f_3_d_R = d_f_3_d_R_part_1 - R_m_omega_1 * omega_2;
+    let d_f_2_d_R_part_1 = m0_two_sigma_omega_3 - f_2_part_2;
+    let d_f_2_d_R_part_2 = two * (m_R_omega_3_omega_1 + m0_R_omega_3_omega_1);
+    let d_f_2_d_R = d_f_2_d_R_part_1 - d_f_2_d_R_part_2;
     let d_omega_2_dot_d_R_part_1 = half_R_m * minus_f_2 - m0_r * f_3;
     let d_omega_2_dot_d_R_part_2 = d_omega_2_dot_d_R_part_1 - R_m0_r * d_f_3_d_R;
     let d_omega_2_dot_d_R_part_3 = d_omega_2_dot_d_R_part_2 - M_33 * d_f_2_d_R;
-    let d_omega_2_dot_d_R_part_4 = d_omega_2_dot_d_r_part_9 * d_D_2_d_R;
+    let d_omega_2_dot_d_R_part_4 = d_omega_2_dot_d_r_part_7 * d_D_2_d_R;
     let d_omega_2_dot_d_R_part_5 = omega_2_dot_part_2 * d_omega_2_dot_d_R_part_3;
     let d_omega_2_dot_d_R = d_omega_2_dot_d_R_part_4 + d_omega_2_dot_d_R_part_5;
     let R_squared_f_3 = R_squared * f_3;
@@ -1348,13 +1300,11 @@ pub fn all_jacobians<T: Real>(
     let d_omega_3_dot_d_m_part_5 = d_omega_3_dot_d_r_part_4 * d_D_2_d_m;
     let d_omega_3_dot_d_m_part_6 = omega_2_dot_part_2 * d_omega_3_dot_d_m_part_4;
     let d_omega_3_dot_d_m = d_omega_3_dot_d_m_part_5 + d_omega_3_dot_d_m_part_6;
-    let d_omega_3_dot_d_m0_part_1 = minus_f_2 * R_r - R_squared_f_3;
-    let d_omega_3_dot_d_m0_part_2 = d_omega_3_dot_d_m0_part_1 - M_22 * d_f_3_d_m0;
-    let R_m0_r_d_f_2_d_m0 = R_m0_r * d_f_2_d_m0;
-    let d_omega_3_dot_d_m0_part_3 = d_omega_3_dot_d_m0_part_2 - R_m0_r_d_f_2_d_m0;
-    let d_omega_3_dot_d_m0_part_4 = omega_2_dot_part_2 * d_omega_3_dot_d_m0_part_3;
-    let d_omega_3_dot_d_m0_part_5 = d_omega_3_dot_d_r_part_4 * d_D_2_d_m0;
-    let d_omega_3_dot_d_m0 = d_omega_3_dot_d_m0_part_4 + d_omega_3_dot_d_m0_part_5;
+    let d_omega_3_dot_d_m0_part_1 = minus_f_2 * R_r - R_squared_f_3 - M_22 * d_f_3_d_m0;
+    let d_omega_3_dot_d_m0_part_2 = d_omega_3_dot_d_m0_part_1 - R_m0_r * d_f_2_d_m0;
+    let d_omega_3_dot_d_m0_part_3 = omega_2_dot_part_2 * d_omega_3_dot_d_m0_part_2;
+    let d_omega_3_dot_d_m0_part_4 = d_omega_3_dot_d_r_part_4 * d_D_2_d_m0;
+    let d_omega_3_dot_d_m0 = d_omega_3_dot_d_m0_part_3 + d_omega_3_dot_d_m0_part_4;
     let d_omega_3_dot_d_R_part_1 = m0_r * minus_f_2 - M_22 * d_f_3_d_R;
     let d_omega_3_dot_d_R_part_2 = d_omega_3_dot_d_R_part_1 - f_3 * d_M_22_d_R;
     let d_omega_3_dot_d_R_part_3 = d_omega_3_dot_d_R_part_2 - R_m0_r * d_f_2_d_R;
@@ -1362,13 +1312,10 @@ pub fn all_jacobians<T: Real>(
     let d_omega_3_dot_d_R_part_5 = d_omega_3_dot_d_r_part_4 * d_D_2_d_R;
     let d_omega_3_dot_d_R = d_omega_3_dot_d_R_part_4 + d_omega_3_dot_d_R_part_5;
     let p_sigma_m = R * d_omega_1_dot_d_m;
-    let R_d_omega_1_dot_d_m0 = R * d_omega_1_dot_d_m0;
     let d_sigma_dot_d_m0_part_1 = inv_m0 * (d_f_4_d_m0 - f_4_inv_m0);
-    let d_sigma_dot_d_m0 = R_d_omega_1_dot_d_m0 + d_sigma_dot_d_m0_part_1;
-    let d_sigma_dot_d_R_part_1 = R * d_omega_1_dot_d_R - minus_omega_1_dot;
-    let d_sigma_dot_d_R = d_sigma_dot_d_R_part_1 - omega_2 * omega_3;
-    let d_sigma_dot_d_g_part_1 = minus_b_omega_1_u * p_omega_1_g_part_1;
-    let d_sigma_dot_d_g = d_sigma_dot_d_g_part_1 - sin_theta;
+    let d_sigma_dot_d_m0 = d_sigma_dot_d_m0_part_1 - R * minus_d_omega_1_dot_d_m0;
+    let d_sigma_dot_d_R = omega_1_dot + R * d_omega_1_dot_d_R - omega_2 * omega_3;
+    let minus_d_sigma_dot_d_g = sin_theta + b_omega_1_u * p_omega_1_g_part_1;
     let p_x_G_R = cos_theta_sin_psi * omega_1 + cos_psi * omega_2;
     let p_y_G_R = sin_psi * omega_2 - cos_theta_cos_psi * omega_1;
 
@@ -1414,14 +1361,14 @@ pub fn all_jacobians<T: Real>(
     a[9][6] = x_G_dot;
 
     let mut b = [[zero; 1]; 10];
-    b[0][0] = -minus_b_omega_1_u;
+    b[0][0] = b_omega_1_u;
     b[3][0] = d_sigma_dot_d_u;
 
     let mut p = [[zero; 4]; 10];
     p[0][0] = d_omega_1_dot_d_m;
-    p[0][1] = d_omega_1_dot_d_m0;
+    p[0][1] = -minus_d_omega_1_dot_d_m0;
     p[0][2] = d_omega_1_dot_d_R;
-    p[0][3] = p_omega_1_g;
+    p[0][3] = -minus_p_omega_1_g;
     p[1][0] = d_omega_2_dot_d_m;
     p[1][1] = d_omega_2_dot_d_m0;
     p[1][2] = d_omega_2_dot_d_R;
@@ -1431,13 +1378,13 @@ pub fn all_jacobians<T: Real>(
     p[3][0] = p_sigma_m;
     p[3][1] = d_sigma_dot_d_m0;
     p[3][2] = d_sigma_dot_d_R;
-    p[3][3] = d_sigma_dot_d_g;
+    p[3][3] = -minus_d_sigma_dot_d_g;
     p[8][2] = p_x_G_R;
     p[9][2] = p_y_G_R;
 
     AllJacobians {
         rates: State {
-            omega_1: -minus_omega_1_dot,
+            omega_1: omega_1_dot,
             omega_2: omega_2_dot,
             omega_3: omega_3_dot,
             sigma: sigma_dot,

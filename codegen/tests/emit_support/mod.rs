@@ -1,6 +1,14 @@
 //! Small programs written by hand, so that scheduling and emission are tested on their own.
-#![allow(dead_code, unreachable_pub, reason = "every test file uses a part of it")]
-#![allow(clippy::unwrap_used, clippy::too_many_lines, reason = "tests may panic")]
+#![allow(
+    dead_code,
+    unreachable_pub,
+    reason = "every test file uses a part of it"
+)]
+#![allow(
+    clippy::unwrap_used,
+    clippy::too_many_lines,
+    reason = "tests may panic"
+)]
 
 use appell_codegen::emit::Options;
 use appell_codegen::program::{Arguments, Array, Function, FunctionKind, Layout, Program};

@@ -1,0 +1,181 @@
+//! The plan of a function's text: what gets a binding, what it is for, and in which paragraph.
+
+use super::Argument;
+use super::dag::{Dag, Id, Item, Op};
+use super::names::{ArgumentNames, result_label};
+use crate::program::{Function, Program};
+use crate::symbolic::Function as Elementary;
+
+/// Decisions about every node.
+pub(super) struct Outline<'a> {
+    dag: &'a Dag,
+    /// The nodes, parts before wholes.
+    pub(super) order: Vec<Id>,
+    uses: Vec<u32>,
+    /// Nodes that must not be written inside other trees.
+    pub(super) bound: Vec<bool>,
+    /// Sine and cosine of the same angle: the partner.
+    pub(super) partner: Vec<Option<Id>>,
+    /// What the node is called if it is a result, and whether minus the node is called so.
+    pub(super) labels: Vec<Option<(String, bool)>>,
+    /// The first named value or result that the node is a part of.
+    pub(super) feeds: Vec<Option<Id>>,
+}
+
+impl<'a> Outline<'a> {
+    /// The plan for a function.
+    pub(super) fn new(
+        program: &Program,
+        arguments: &ArgumentNames,
+        function: &Function,
+        dag: &'a Dag,
+    ) -> Self {
+        let order = dag.order();
+        let mut outline = Self {
+            dag,
+            uses: dag.uses(&order),
+            bound: vec![false; dag.len()],
+            partner: vec![None; dag.len()],
+            labels: vec![None; dag.len()],
+            feeds: vec![None; dag.len()],
+            order,
+        };
+        outline.label_results(program, arguments, function);
+        outline.pair_sines();
+        outline.choose_bound();
+        outline.find_feeds();
+        outline
+    }
+
+    /// Results get bindings, and the names of their entries.
+    fn label_results(&mut self, program: &Program, arguments: &ArgumentNames, function: &Function) {
+        let mut results = self.dag.results.iter();
+        for array in &function.results {
+            for (entry, result) in (0..array.entries.len()).zip(&mut results) {
+                let label = &mut self.labels[result.id.index()];
+                if label.is_none() {
+                    let text = result_label(program, arguments, function.kind, array, entry);
+                    *label = Some((text, result.flip));
+                }
+                self.bound[result.id.index()] = true;
+            }
+        }
+    }
+
+    /// Sine and cosine of the same angle are computed together.
+    fn pair_sines(&mut self) {
+        let mut sines: Vec<(Item, Elementary, Id)> = self
+            .order
+            .iter()
+            .filter_map(|&id| match self.dag.op(id) {
+                Op::Function(kind @ (Elementary::Sin | Elementary::Cos), angle) => {
+                    Some((*angle, *kind, id))
+                }
+                _ => None,
+            })
+            .collect();
+        sines.sort_unstable();
+        for pair in sines.windows(2) {
+            if pair[0].0 == pair[1].0 {
+                let (sin, cos) = (pair[0].2, pair[1].2);
+                self.partner[sin.index()] = Some(cos);
+                self.partner[cos.index()] = Some(sin);
+            }
+        }
+    }
+
+    /// What is used twice is computed once; what has a name is worth a line of its own if it is more
+    /// than one operation.
+    fn choose_bound(&mut self) {
+        for &id in &self.order {
+            let i = id.index();
+            let parts = match self.dag.op(id) {
+                Op::Number(_) | Op::Argument(_) => {
+                    self.bound[i] = false;
+                    continue;
+                }
+                Op::Sum(items) | Op::Product(items) => items.len(),
+                Op::Solution { system, .. } => {
+                    let system = &self.dag.systems[*system as usize];
+                    for item in system.matrix.iter().chain(&system.right) {
+                        self.bound[item.id.index()] |= !self.dag.is_leaf(item.id);
+                    }
+                    usize::MAX
+                }
+                _ => 1,
+            };
+            let worth_reading = self.dag.names[i].is_some() && parts > 2;
+            self.bound[i] |= self.uses[i] >= 2
+                || worth_reading
+                || parts == usize::MAX
+                || self.partner[i].is_some();
+        }
+    }
+
+    /// Goes from the results to what they need.
+    fn find_feeds(&mut self) {
+        for &id in self.order.iter().rev() {
+            let named = self.bound[id.index()]
+                && (self.dag.names[id.index()].is_some() || self.labels[id.index()].is_some());
+            if named {
+                self.feeds[id.index()] = Some(id);
+            }
+            let feed = self.feeds[id.index()];
+            self.dag
+                .for_each_part(id, |part| self.feeds[part.id.index()] = feed);
+        }
+    }
+
+    /// Titles and the nodes to reach under them.
+    pub(super) fn paragraphs(&self, function: &Function) -> Vec<(String, Vec<Id>)> {
+        let order = &self.order;
+        let mut only_parameters = vec![false; self.dag.len()];
+        for &id in order {
+            let mut all =
+                !matches!(self.dag.op(id), Op::Argument(a) if !matches!(a, Argument::Parameter(_)));
+            self.dag
+                .for_each_part(id, |part| all &= only_parameters[part.id.index()]);
+            only_parameters[id.index()] = all;
+        }
+        let sines = order.iter().copied().filter(|id| match self.dag.op(*id) {
+            Op::Function(Elementary::Sin | Elementary::Cos, angle) => {
+                self.bound[id.index()] && matches!(self.dag.op(angle.id), Op::Argument(_))
+            }
+            _ => false,
+        });
+        let parameters = order
+            .iter()
+            .copied()
+            .filter(|id| only_parameters[id.index()] && self.bound[id.index()]);
+        let mut paragraphs = vec![
+            ("Sines and cosines.".to_owned(), sines.collect()),
+            (
+                "Combinations of parameters.".to_owned(),
+                parameters.collect(),
+            ),
+        ];
+        let mut results = self.dag.results.iter();
+        for array in &function.results {
+            let title = match array.name.as_str() {
+                "a" => "Derivatives by the state.".to_owned(),
+                "b" => "Derivatives by the inputs.".to_owned(),
+                "p" => "Derivatives by the parameters.".to_owned(),
+                name => {
+                    let mut title = name.replace('_', " ");
+                    title
+                        .get_mut(..1)
+                        .map(str::make_ascii_uppercase)
+                        .unwrap_or_default();
+                    title + "."
+                }
+            };
+            let roots = results
+                .by_ref()
+                .take(array.entries.len())
+                .map(|item| item.id)
+                .collect();
+            paragraphs.push((title, roots));
+        }
+        paragraphs
+    }
+}

@@ -10,6 +10,7 @@ use super::types::{Types, result_struct};
 use crate::program::{Function, Layout};
 use crate::schedule::piece::method;
 use crate::schedule::{Argument, Operation, Schedule, Step, Tree, Value};
+use crate::schedule::pi::parts_of_pi;
 use crate::symbolic::{Rational, Relation};
 
 /// The statements of a function; the last one is its result.
@@ -336,6 +337,12 @@ fn collect_constants(tree: &Tree, constants: &mut BTreeSet<Rational>) {
 /// The number as Rust computes it: rounded once.
 fn constant(value: &Rational) -> Expr {
     const EXACT: u64 = 1 << 53;
+    // Clippy rejects the digits of π.
+    match parts_of_pi(value) {
+        Some((1, 1)) => return syn::parse_quote!(core::f64::consts::PI),
+        Some((-1, 1)) => return syn::parse_quote!(-core::f64::consts::PI),
+        _ => {}
+    }
     match value.as_small() {
         // Both are exact as doubles, so the quotient is rounded once.
         Some((numerator, denominator))

@@ -71,6 +71,9 @@ impl Lowering<'_> {
             Node::Number(value) => self.dag.number(value),
             Node::Symbol(symbol) => {
                 let Some(&argument) = self.arguments.get(symbol) else {
+                    if self.graph.symbol_name(*symbol) == "pi" {
+                        return self.dag.number(&super::pi::pi());
+                    }
                     panic!(
                         "`{}` is not an argument of the program",
                         self.graph.symbol_name(*symbol)

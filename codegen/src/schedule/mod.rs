@@ -14,6 +14,7 @@ mod interpret;
 mod lower;
 pub(crate) mod names;
 mod outline;
+pub(crate) mod pi;
 pub(crate) mod piece;
 mod rebuild;
 mod scale;

@@ -170,7 +170,13 @@ fn number_in_words(value: &Rational) -> String {
             _ => {}
         }
     }
-    format!("c_{}", value.to_string().replace('/', "_over_"))
+    match super::pi::parts_of_pi(value) {
+        Some((1, 1)) => "pi".to_owned(),
+        Some((1, denominator)) => format!("pi_over_{denominator}"),
+        Some((numerator, 1)) => format!("c_{numerator}_pi"),
+        Some((numerator, denominator)) => format!("c_{numerator}_pi_over_{denominator}"),
+        None => format!("c_{}", value.to_string().replace('/', "_over_")),
+    }
 }
 
 /// What an entry of a result is called: `omega_1_dot`, `M_speed_pitch`, `a_omega_1_theta`.

@@ -29,7 +29,7 @@ impl Source {
             });
         }
         let path = Path::new(model);
-        let is_path = path.components().count() > 1 || path.extension().is_some() || path.is_file();
+        let is_path = path.components().count() > 1 || path.extension().is_some() || path.exists();
         if !is_path {
             return Err(Failure::Usage(unknown(model)));
         }

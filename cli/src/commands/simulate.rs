@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use appell_runtime::figure::Figure;
-use appell_runtime::integrate::Options;
+use appell_runtime::integrate::{IntegrationError, Options};
 use appell_runtime::simulate::{Method, Sampling, SimulationError};
 use appell_runtime::trajectory::{CsvOptions, Extras};
 use appell_runtime::{Simulation, Trajectory};
@@ -25,19 +25,24 @@ pub(crate) struct Simulate {
     /// Name of a shipped mechanism or path of a spec
     model: String,
     /// End of the motion in s
-    #[arg(long, value_name = "S", default_value_t = 10.0)]
+    #[arg(
+        long,
+        value_name = "S",
+        default_value_t = 10.0,
+        allow_negative_numbers = true
+    )]
     t_end_s: f64,
     /// Interval between the rows of the output in s; the integrator chooses its own steps [default: a thousandth of the motion]
-    #[arg(long, value_name = "S")]
+    #[arg(long, value_name = "S", allow_negative_numbers = true)]
     dt_s: Option<f64>,
     /// The integrator
     #[arg(long, value_enum, default_value_t = Integrator::Dop853)]
     method: Integrator,
     /// Tolerated error relative to each state
-    #[arg(long, default_value_t = 1e-9)]
+    #[arg(long, default_value_t = 1e-9, allow_negative_numbers = true)]
     rtol: f64,
     /// Tolerated error of states near zero, in SI
-    #[arg(long, default_value_t = 1e-9)]
+    #[arg(long, default_value_t = 1e-9, allow_negative_numbers = true)]
     atol: f64,
     /// A parameter, such as R=0.3 or R=30cm
     #[arg(long, value_name = "NAME=VALUE")]
@@ -190,6 +195,18 @@ pub(super) struct Run<'a> {
 }
 
 impl Run<'_> {
+    /// Outputs, and energies where the spec does not have outputs of these names.
+    fn extras(&self) -> Extras {
+        let taken = ["kinetic_energy", "potential_energy", "power"]
+            .iter()
+            .any(|name| self.setup.info.output_index(name).is_some());
+        Extras {
+            outputs: true,
+            energies: !taken,
+            ..Extras::default()
+        }
+    }
+
     /// The motion, and why it ends early if it does.
     pub(super) fn run(&self, plan: Plan) -> Result<(Trajectory, Option<String>), Failure> {
         let controller = plan.controller(self.setup)?;
@@ -202,11 +219,7 @@ impl Run<'_> {
             method: self.method,
             options: self.options,
             sampling: Sampling::Every(self.interval),
-            extras: Extras {
-                outputs: true,
-                energies: true,
-                ..Extras::default()
-            },
+            extras: self.extras(),
             watch_ranges: self.watch_ranges,
             progress: Some(Box::new(|t| clock.set_position(progress::milliseconds(t)))),
             ..Simulation::new(self.equations.model())
@@ -218,7 +231,9 @@ impl Run<'_> {
             Err(error) => {
                 let reason = error.to_string();
                 match error {
-                    SimulationError::Integration { trajectory, .. } => {
+                    SimulationError::Integration { cause, trajectory }
+                        if !matches!(cause, IntegrationError::InvalidArgument { .. }) =>
+                    {
                         Ok((*trajectory, Some(reason)))
                     }
                     _ => Err(Failure::Usage(reason)),

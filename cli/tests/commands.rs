@@ -1,0 +1,178 @@
+//! The other commands, from a new user's first to the last.
+
+mod support;
+
+use support::Folder;
+
+#[test]
+fn list_names_every_shipped_mechanism() {
+    let folder = Folder::new();
+    let told = folder.done(&["list"]).stdout;
+    folder.done(&["list", "--json", "list.json"]);
+    let list = folder.json("list.json");
+    let all = list["mechanisms"].as_array().expect("a list");
+    assert!(all.len() >= 8);
+    for mechanism in all {
+        assert!(told.contains(mechanism["name"].as_str().expect("a name")));
+    }
+    let unicycle = all
+        .iter()
+        .find(|m| m["name"] == "unicycle")
+        .expect("the unicycle");
+    assert_eq!(unicycle["degrees_of_freedom"], 4);
+    assert_eq!(unicycle["inputs"], serde_json::json!(["u"]));
+}
+
+#[test]
+fn new_writes_a_spec_that_checks_and_never_overwrites() {
+    let folder = Folder::new();
+    folder.done(&["new", "arm"]);
+    let told = folder.done(&["check", "arm.toml"]);
+    assert!(
+        told.stdout.contains("degrees of freedom    2: v, omega"),
+        "{}",
+        told.stdout
+    );
+    assert!(told.stderr.is_empty(), "{}", told.stderr);
+    let before = folder.read("arm.toml");
+    folder.write("arm.toml", &(before + "# mine\n"));
+    folder.fails(2, &["new", "arm"], &["arm.toml exists already"]);
+    assert!(folder.read("arm.toml").ends_with("# mine\n"));
+    folder.fails(2, &["new", "../up"], &["not a valid name"]);
+}
+
+#[test]
+fn check_tells_what_a_mechanism_is() {
+    let folder = Folder::new();
+    let told = folder
+        .done(&["check", "unicycle", "--json", "check.json"])
+        .stdout;
+    for text in [
+        "4: omega_1",
+        "2: rolling.x, rolling.y",
+        "rolling.z",
+        "{omega_1, sigma} {omega_2, omega_3}",
+    ] {
+        assert!(told.contains(text), "{text} is missing in\n{told}");
+    }
+    assert_eq!(
+        folder.json("check.json")["specs"][0]["degrees_of_freedom"],
+        4
+    );
+}
+
+#[test]
+fn check_reports_all_mistakes_of_all_specs() {
+    let folder = Folder::new();
+    folder.done(&["new", "good"]);
+    let good = folder.read("good.toml");
+    folder.write(
+        "units.toml",
+        &good.replace(
+            "l       = { value = 0.4,  unit = \"m\"",
+            "l       = { value = 0.4,  unit = \"kg\"",
+        ),
+    );
+    folder.write(
+        "speeds.toml",
+        &good.replace(
+            "omega = { value = \"dot(theta)\", unit = \"deg/s\"",
+            "omega = { value = \"2*dot(x)\", unit = \"m/s\"",
+        ),
+    );
+    let outcome = folder.fails(
+        3,
+        &[
+            "check",
+            "units.toml",
+            "good.toml",
+            "speeds.toml",
+            "--json",
+            "check.json",
+        ],
+        &[
+            "error[unit-mismatch]",
+            "--> units.toml:",
+            "help:",
+            "error[singular-pseudo-velocities]",
+            "--> speeds.toml:",
+        ],
+    );
+    assert!(outcome.stdout.contains("good.toml"));
+    let specs = folder.json("check.json")["specs"].clone();
+    assert_eq!(specs[0]["ok"], false);
+    assert_eq!(specs[0]["findings"][0]["code"], "unit-mismatch");
+    assert_eq!(specs[1]["ok"], true);
+    assert_eq!(specs[2]["ok"], false);
+}
+
+#[test]
+fn derive_writes_every_format_and_stage() {
+    let folder = Folder::new();
+    let mut last = 0;
+    for stage in ["kinematics", "energy", "equations", "jacobians", "all"] {
+        let page = folder
+            .done(&["derive", "unicycle", "--stage", stage])
+            .stdout;
+        assert!(page.len() > last, "{stage} holds everything before it");
+        last = page.len();
+    }
+    folder.done(&[
+        "derive",
+        "unicycle",
+        "--format",
+        "html",
+        "--out",
+        "page.html",
+    ]);
+    assert!(folder.read("page.html").starts_with("<!"));
+    let latex = folder
+        .done(&["derive", "unicycle", "--format", "latex"])
+        .stdout;
+    assert!(latex.contains("\\documentclass"), "{latex}");
+    let rust = folder
+        .done(&["derive", "unicycle", "--format", "rust"])
+        .stdout;
+    assert!(rust.contains("pub fn mass_matrix<T: Real>"));
+}
+
+#[test]
+fn derived_rust_is_that_of_the_shipped_module() {
+    let folder = Folder::new();
+    let shipped = folder
+        .done(&["derive", "pendulum", "--format", "rust"])
+        .stdout;
+    let spec = support::repository("generated/mechanisms/pendulum.toml");
+    let derived = folder.done(&["derive", &spec, "--format", "rust"]).stdout;
+    // Comments name the file as it was given.
+    assert_eq!(derived.replace(&spec, "mechanisms/pendulum.toml"), shipped);
+}
+
+#[test]
+fn the_demo_writes_what_it_says() {
+    let folder = Folder::new();
+    let told = folder.done(&["demo", "--out", "demo"]).stdout;
+    for name in [
+        "unicycle.html",
+        "unicycle.rs",
+        "lane_change.csv",
+        "lane_change.svg",
+        "path.svg",
+    ] {
+        assert!(told.contains(name), "{name} is missing in\n{told}");
+        assert!(!folder.read(&format!("demo/{name}")).is_empty());
+    }
+    let header = folder.read("demo/lane_change.csv");
+    assert!(header.contains("t,omega_1,omega_2,omega_3,sigma,x_G,y_G"));
+}
+
+#[test]
+fn completions_exist_for_shells() {
+    let folder = Folder::new();
+    assert!(
+        folder
+            .done(&["completions", "bash"])
+            .stdout
+            .contains("simulate")
+    );
+}

@@ -1,0 +1,225 @@
+//! `appell evaluate`: the exchange format, the engines, the mistakes.
+
+mod support;
+
+use serde_json::json;
+use support::{Folder, assert_close, number};
+
+/// Rounding of a handful of operations.
+const ROUNDING: f64 = 1e-14;
+
+const UNICYCLE: &str = r#"{"cases": [
+  {"parameters": {"m": 10.0, "m0": 5.0, "R": 0.3, "g": 9.81},
+   "state": {"theta": 0.1, "psi": 0.0, "phi": 0.0, "x_G": 0.0, "y_G": 0.0, "r": 0.02,
+             "omega_1": 0.0, "omega_2": 3.3, "omega_3": 0.1, "sigma": 0.0},
+   "inputs": {"u": 1.5}},
+  {"state": {"theta": -0.4, "psi": 2.0, "phi": 1.0, "x_G": 3.0, "y_G": -1.0, "r": -0.3,
+             "omega_1": 0.3, "omega_2": -4.0, "omega_3": 1.1, "sigma": 0.7}}
+]}"#;
+
+#[test]
+fn the_pendulum_obeys_its_textbook_equation() {
+    let folder = Folder::new();
+    folder.write(
+        "in.json",
+        r#"{"cases": [{"parameters": {"l": 0.7}, "state": {"omega": 2.0, "theta": 0.6}, "inputs": {"tau": 0.3}}]}"#,
+    );
+    folder.done(&[
+        "evaluate", "pendulum", "--cases", "in.json", "--json", "out.json",
+    ]);
+    let out = folder.json("out.json");
+    assert_eq!(out["state_order"], json!(["omega", "theta"]));
+    assert_eq!(out["input_order"], json!(["tau"]));
+    assert_eq!(out["speed_order"], json!(["omega"]));
+    assert_eq!(out["parameter_order"], json!(["m", "l", "I", "g"]));
+    let case = &out["cases"][0];
+    let (m, l, inertia, g, tau) = (1.0, 0.7, 0.02, 9.81, 0.3);
+    let (sin, cos) = 0.6_f64.sin_cos();
+    let about_pivot = inertia + m * l * l;
+    let acceleration = (tau - m * g * l * sin) / about_pivot;
+    for (path, expected) in [
+        ("rates/omega", acceleration),
+        ("rates/theta", 2.0),
+        ("mass_matrix/0/0", about_pivot),
+        ("bias/0", 0.0),
+        ("generalized_forces/0", tau - m * g * l * sin),
+        ("A/0/0", 0.0),
+        ("A/0/1", -m * g * l * cos / about_pivot),
+        ("A/1/0", 1.0),
+        ("B/0/0", 1.0 / about_pivot),
+        ("P/0/3", -m * l * sin / about_pivot),
+        ("kinetic_energy", about_pivot * 2.0),
+        ("power", tau * 2.0),
+        ("outputs/x_G", l * sin),
+    ] {
+        assert_close(number(case, path), expected, ROUNDING, path);
+    }
+}
+
+#[test]
+fn reactions_carry_the_name_of_the_contact() {
+    let folder = Folder::new();
+    folder.write("in.json", UNICYCLE);
+    folder.done(&[
+        "evaluate", "unicycle", "--cases", "in.json", "--json", "out.json",
+    ]);
+    let out = folder.json("out.json");
+    let case = &out["cases"][0];
+    assert_eq!(
+        case["constraint_forces"]["P"].as_array().map(Vec::len),
+        Some(3)
+    );
+    // The ground carries the weight up to the acceleration of the bodies.
+    let up = number(case, "constraint_forces/P/2");
+    assert!((100.0..200.0).contains(&up), "{up}");
+    for row in 0..2 {
+        assert_close(
+            number(case, &format!("constraint_residual/{row}")),
+            0.0,
+            ROUNDING,
+            "residual",
+        );
+    }
+}
+
+#[test]
+fn the_three_engines_give_the_same_bits() {
+    let folder = Folder::new();
+    folder.write("in.json", UNICYCLE);
+    for engine in ["jit", "emitted", "interpreter"] {
+        let out = format!("{engine}.json");
+        folder.done(&[
+            "evaluate", "unicycle", "--cases", "in.json", "--json", &out, "--engine", engine,
+        ]);
+    }
+    assert_eq!(folder.read("jit.json"), folder.read("emitted.json"));
+    assert_eq!(folder.read("jit.json"), folder.read("interpreter.json"));
+}
+
+#[test]
+fn what_is_left_out_has_the_values_of_the_spec() {
+    let folder = Folder::new();
+    let state = r#""state": {"omega": 2.0, "theta": 0.6}"#;
+    folder.write(
+        "in.json",
+        &format!(
+            r#"{{"cases": [{{{state}}}, {{{state}, "parameters": {{"m": 1, "l": 0.5, "I": 0.02, "g": 9.81}}, "inputs": {{"tau": 0}}}}]}}"#
+        ),
+    );
+    let out = folder
+        .done(&["evaluate", "pendulum", "--cases", "in.json"])
+        .stdout;
+    let out: serde_json::Value = serde_json::from_str(&out).expect("JSON on standard output");
+    assert_eq!(out["cases"][0], out["cases"][1]);
+}
+
+#[test]
+fn a_spec_file_works_at_once() {
+    let folder = Folder::new();
+    folder.done(&["new", "mine"]);
+    folder.write(
+        "in.json",
+        r#"{"cases": [{"state": {"v": 0, "omega": 0, "x": 0.1, "theta": 0.2}}]}"#,
+    );
+    folder.done(&[
+        "evaluate",
+        "mine.toml",
+        "--cases",
+        "in.json",
+        "--json",
+        "out.json",
+    ]);
+    assert!(number(&folder.json("out.json"), "cases/0/rates/v").is_finite());
+    folder.fails(
+        2,
+        &[
+            "evaluate",
+            "mine.toml",
+            "--cases",
+            "in.json",
+            "--engine",
+            "emitted",
+        ],
+        &["`--engine jit`"],
+    );
+}
+
+#[test]
+fn all_mistakes_of_a_file_are_told_with_their_places() {
+    let folder = Folder::new();
+    folder.write(
+        "in.json",
+        r#"{"cases": [
+  {"state": {"omega": 1, "thta": 2}, "parameters": {"mm": 1}},
+  {"state": {"omega": "fast", "theta": 0}, "input": {}},
+  {"parameters": {}}
+]}"#,
+    );
+    let outcome = folder.fails(
+        3,
+        &[
+            "evaluate", "pendulum", "--cases", "in.json", "--json", "out.json",
+        ],
+        &[
+            "the state lacks theta",
+            "there is no state `thta`",
+            "did you mean `theta`?",
+            "there is no parameter `mm`",
+            "this is not a finite number",
+            "unknown key `input`",
+            "the key `state` is missing",
+            "in.json:2:34",
+            "in.json:3:23",
+        ],
+    );
+    assert!(outcome.stdout.is_empty());
+    assert_eq!(folder.files(), ["in.json"]);
+}
+
+#[test]
+fn broken_json_is_shown() {
+    let folder = Folder::new();
+    folder.write("in.json", "{\"cases\": [\n  {\"state\": }\n]}");
+    folder.fails(
+        3,
+        &["evaluate", "pendulum", "--cases", "in.json"],
+        &["in.json:2:13", "{\"state\": }"],
+    );
+    folder.write("in.json", "");
+    folder.fails(
+        3,
+        &["evaluate", "pendulum", "--cases", "in.json"],
+        &["in.json:1"],
+    );
+    folder.write("in.json", "{\"cases\": 3}");
+    folder.fails(
+        3,
+        &["evaluate", "pendulum", "--cases", "in.json"],
+        &["a list of cases"],
+    );
+    folder.fails(
+        3,
+        &["evaluate", "pendulum", "--cases", "no.json"],
+        &["cannot read no.json"],
+    );
+}
+
+#[test]
+fn a_state_without_accelerations_fails_with_its_numbers() {
+    let folder = Folder::new();
+    folder.write(
+        "in.json",
+        r#"{"cases": [{"state": {"omega": 1, "theta": 2}},
+                      {"state": {"omega": 1.5, "theta": 2}, "parameters": {"m": 0, "I": 0}}]}"#,
+    );
+    folder.fails(
+        4,
+        &[
+            "evaluate", "pendulum", "--cases", "in.json", "--json", "out.json",
+        ],
+        &["case 1", "omega = 1.5", "theta = 2"],
+    );
+    let out = folder.json("out.json");
+    assert!(out["cases"][0]["rates"]["omega"].is_number());
+    assert!(out["cases"][1]["rates"]["omega"].is_null());
+}

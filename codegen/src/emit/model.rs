@@ -1,12 +1,12 @@
 //! `INFO` and the implementation of `Model`, which need the standard library.
 
 use appell_runtime::model::{Interpolation, ModelInfo, Quantity};
-use proc_macro2::{Ident, Literal, TokenStream};
+use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 
 use super::Error;
 use super::layout::{blank_tokens, docs, escaped};
-use super::syntax::{ident, path};
+use super::syntax::{ident, known, path};
 use super::types::{Types, double};
 use crate::program::{FunctionKind, Layout, Program};
 use crate::schedule::names::identifier;
@@ -78,8 +78,8 @@ pub(super) fn type_name(types: &Types<'_>) -> String {
 
 /// The statics that `INFO` is made of, and `INFO`.
 pub(super) fn info(info: &ModelInfo, runtime: &syn::Path) -> TokenStream {
-    let quantities = |name: &str, about: &str, list: &[Quantity]| {
-        let name = ident_of_static(name);
+    let quantities = |name: &'static str, about: &str, list: &[Quantity]| {
+        let name = known(name);
         let about = docs(&[about.to_owned()]);
         let blank = blank_tokens();
         let count = Literal::usize_unsuffixed(list.len());
@@ -173,10 +173,6 @@ pub(super) fn info(info: &ModelInfo, runtime: &syn::Path) -> TokenStream {
             explicit_time: #explicit_time,
         };
     }
-}
-
-fn ident_of_static(name: &str) -> Ident {
-    Ident::new(name, proc_macro2::Span::call_site())
 }
 
 fn borrowed(runtime: &syn::Path, text: &str) -> TokenStream {

@@ -14,6 +14,11 @@ pub(super) fn ident(name: &str) -> Ident {
     Ident::new(&identifier(name), Span::call_site())
 }
 
+/// An identifier of this crate's own choice.
+pub(super) fn known(name: &'static str) -> Ident {
+    Ident::new(name, Span::call_site())
+}
+
 /// The path of a local, a field's type or a function.
 pub(super) fn path(name: &str) -> Path {
     Path::from(ident(name))
@@ -21,28 +26,27 @@ pub(super) fn path(name: &str) -> Path {
 
 /// A name as an expression.
 pub(super) fn name(name: &str) -> Expr {
+    path_expression(path(name))
+}
+
+fn path_expression(path: Path) -> Expr {
     Expr::Path(syn::ExprPath {
         attrs: Vec::new(),
         qself: None,
-        path: path(name),
+        path,
     })
 }
 
 /// `T::function(arguments)`
-pub(super) fn associated(function: &str, arguments: Vec<Expr>) -> Expr {
-    let mut function_path = path("T");
-    function_path.segments.push(ident(function).into());
-    let function = Expr::Path(syn::ExprPath {
-        attrs: Vec::new(),
-        qself: None,
-        path: function_path,
-    });
-    called(function, arguments)
+pub(super) fn associated(function: &'static str, arguments: Vec<Expr>) -> Expr {
+    let mut function_path = Path::from(known("T"));
+    function_path.segments.push(known(function).into());
+    called(path_expression(function_path), arguments)
 }
 
 /// `function(arguments)`
-pub(super) fn call(function: &str, arguments: Vec<Expr>) -> Expr {
-    called(name(function), arguments)
+pub(super) fn call(function: &'static str, arguments: Vec<Expr>) -> Expr {
+    called(path_expression(Path::from(known(function))), arguments)
 }
 
 fn called(function: Expr, arguments: Vec<Expr>) -> Expr {
@@ -55,12 +59,12 @@ fn called(function: Expr, arguments: Vec<Expr>) -> Expr {
 }
 
 /// `receiver.method(arguments)`
-pub(super) fn method(receiver: Expr, method: &str, arguments: Vec<Expr>) -> Expr {
+pub(super) fn method(receiver: Expr, method: &'static str, arguments: Vec<Expr>) -> Expr {
     Expr::MethodCall(syn::ExprMethodCall {
         attrs: Vec::new(),
         receiver: Box::new(receiver),
         dot_token: token::Dot::default(),
-        method: ident(method),
+        method: known(method),
         turbofish: None,
         paren_token: token::Paren::default(),
         args: arguments.into_iter().collect(),

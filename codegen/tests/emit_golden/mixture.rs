@@ -180,12 +180,12 @@ pub fn rates<T: Real>(
 
     // Rates.
     let p_minus_half = p - half;
-    let lu_1 = lu_factor_([
+    let lu_1 = lu_factor([
         [K, p, half],
         [p, INFO_, number_half],
         [c_17_over_35, half, K],
     ]);
-    let [solution_1_1, _, _] = lu_solve_(&lu_1, [type_, t, p]);
+    let [solution_1_1, _, _] = lu_solve(&lu_1, [type_, t, p]);
     let crate_part_1 = half.ln() + half.sign() + half.abs() + half.sqrt() + half.exp();
     let crate_part_2 = crate_part_1 + half.tanh() + half.cosh() + half.sinh()
         + half.atan();
@@ -195,7 +195,7 @@ pub fn rates<T: Real>(
     let type__dot_part_3 = inv_p_minus_half_cubed + type__dot_part_2;
     let type__dot_part_4 = type__dot_part_3 + T::if_less_or_equal(t, K, p, type_);
     let type__dot = type__dot_part_4 + T::if_less(p, p_minus_half, solution_1_1, crate_);
-    let [_, _, solution_2_3] = lu_solve_(&lu_1, [p, crate_, half]);
+    let [_, _, solution_2_3] = lu_solve(&lu_1, [p, crate_, half]);
     let half_dot = solution_2_3 - p_minus_half.atan2(K.powf(p));
 
     State {
@@ -237,12 +237,12 @@ pub fn jacobians<T: Real>(
     let p_minus_half = p - half;
     let inv_p_minus_half = one / p_minus_half;
     let inv_p_minus_half_squared = inv_p_minus_half * inv_p_minus_half;
-    let lu_1 = lu_factor_([
+    let lu_1 = lu_factor([
         [K, p, half],
         [p, INFO_, number_half],
         [c_17_over_35, half, K],
     ]);
-    let [solution_1_1, solution_1_2, solution_1_3] = lu_solve_(&lu_1, [type_, t, p]);
+    let [solution_1_1, solution_1_2, solution_1_3] = lu_solve(&lu_1, [type_, t, p]);
     let sqrt_half = half.sqrt();
     let tanh_half = half.tanh();
     let crate_part_1 = half.sign() + half.exp() + half.cosh() + half.sinh();
@@ -254,19 +254,19 @@ pub fn jacobians<T: Real>(
     let type__dot_part_5 = type__dot_part_4 + T::if_less_or_equal(t, K, p, type_);
     let type__dot = type__dot_part_5 + T::if_less(p, p_minus_half, solution_1_1, crate_);
     let half_dot_part_1 = K.powf(p);
-    let [solution_2_1, solution_2_2, solution_2_3] = lu_solve_(&lu_1, [p, crate_, half]);
+    let [solution_2_1, solution_2_2, solution_2_3] = lu_solve(&lu_1, [p, crate_, half]);
     let half_dot = solution_2_3 - p_minus_half.atan2(half_dot_part_1);
 
     // Derivatives by the state.
-    let [solution_3_1, _, _] = lu_solve_(&lu_1, [one, zero, zero]);
+    let [solution_3_1, _, _] = lu_solve(&lu_1, [one, zero, zero]);
     let a_type__type_ = T::if_less(p, p_minus_half, solution_3_1, zero)
         + T::if_less_or_equal(t, K, zero, one);
-    let [solution_4_1, _, _] = lu_solve_(&lu_1, [-solution_1_2, -solution_1_1, one]);
+    let [solution_4_1, _, _] = lu_solve(&lu_1, [-solution_1_2, -solution_1_1, one]);
     let a_type__p_part_1 = three * inv_p_minus_half_squared * inv_p_minus_half_squared;
     let a_type__p_part_2 = T::if_less(p, p_minus_half, solution_4_1, zero)
         + T::if_less_or_equal(t, K, one, zero);
     let a_type__p = a_type__p_part_2 - a_type__p_part_1;
-    let [solution_5_1, _, _] = lu_solve_(&lu_1, [-solution_1_3, zero, -solution_1_2]);
+    let [solution_5_1, _, _] = lu_solve(&lu_1, [-solution_1_3, zero, -solution_1_2]);
     let d_crate_d_half_part_1 = crate_part_1 + one + cos_half
         + one / (one + half * half);
     let d_crate_d_half_part_2 = d_crate_d_half_part_1 + one / half
@@ -275,7 +275,7 @@ pub fn jacobians<T: Real>(
     let a_type__half_part_1 = T::if_less(p, p_minus_half, solution_5_1, d_crate_d_half);
     let a_type__half = a_type__p_part_1 + a_type__half_part_1;
     let one_minus_solution_2_2 = one - solution_2_2;
-    let [_, _, solution_6_3] = lu_solve_(
+    let [_, _, solution_6_3] = lu_solve(
         &lu_1,
         [one_minus_solution_2_2, -solution_2_1, zero],
     );
@@ -284,7 +284,7 @@ pub fn jacobians<T: Real>(
     let a_half_p_part_2 = one / a_half_p_part_1;
     let a_half_p_part_3 = half_dot_part_1 - p_minus_half * half_dot_part_1 * K.ln();
     let a_half_p = solution_6_3 - a_half_p_part_2 * a_half_p_part_3;
-    let [_, _, solution_7_3] = lu_solve_(
+    let [_, _, solution_7_3] = lu_solve(
         &lu_1,
         [-solution_2_3, d_crate_d_half, one_minus_solution_2_2],
     );
@@ -339,12 +339,12 @@ pub fn all_jacobians<T: Real>(
     let p_minus_half = p - half;
     let inv_p_minus_half = one / p_minus_half;
     let inv_p_minus_half_squared = inv_p_minus_half * inv_p_minus_half;
-    let lu_1 = lu_factor_([
+    let lu_1 = lu_factor([
         [K, p, half],
         [p, INFO_, number_half],
         [c_17_over_35, half, K],
     ]);
-    let [solution_1_1, solution_1_2, solution_1_3] = lu_solve_(&lu_1, [type_, t, p]);
+    let [solution_1_1, solution_1_2, solution_1_3] = lu_solve(&lu_1, [type_, t, p]);
     let sqrt_half = half.sqrt();
     let tanh_half = half.tanh();
     let crate_part_1 = half.sign() + half.exp() + half.cosh() + half.sinh();
@@ -355,19 +355,19 @@ pub fn all_jacobians<T: Real>(
     let type__dot_part_4 = type__dot_part_3 + T::if_less_or_equal(t, K, p, type_);
     let type__dot = type__dot_part_4 + T::if_less(p, p_minus_half, solution_1_1, crate_);
     let half_dot_part_1 = K.powf(p);
-    let [solution_2_1, solution_2_2, solution_2_3] = lu_solve_(&lu_1, [p, crate_, half]);
+    let [solution_2_1, solution_2_2, solution_2_3] = lu_solve(&lu_1, [p, crate_, half]);
     let half_dot = solution_2_3 - p_minus_half.atan2(half_dot_part_1);
 
     // Derivatives by the state.
-    let [solution_3_1, _, _] = lu_solve_(&lu_1, [one, zero, zero]);
+    let [solution_3_1, _, _] = lu_solve(&lu_1, [one, zero, zero]);
     let a_type__type_ = T::if_less(p, p_minus_half, solution_3_1, zero)
         + T::if_less_or_equal(t, K, zero, one);
-    let [solution_4_1, _, _] = lu_solve_(&lu_1, [-solution_1_2, -solution_1_1, one]);
+    let [solution_4_1, _, _] = lu_solve(&lu_1, [-solution_1_2, -solution_1_1, one]);
     let a_type__p_part_1 = three * inv_p_minus_half_squared * inv_p_minus_half_squared;
     let a_type__p_part_2 = T::if_less(p, p_minus_half, solution_4_1, zero)
         + T::if_less_or_equal(t, K, one, zero);
     let a_type__p = a_type__p_part_2 - a_type__p_part_1;
-    let [solution_5_1, _, _] = lu_solve_(&lu_1, [-solution_1_3, zero, -solution_1_2]);
+    let [solution_5_1, _, _] = lu_solve(&lu_1, [-solution_1_3, zero, -solution_1_2]);
     let d_crate_d_half_part_1 = crate_part_1 + one + cos_half
         + one / (one + half * half);
     let d_crate_d_half_part_2 = d_crate_d_half_part_1 + one / half
@@ -376,7 +376,7 @@ pub fn all_jacobians<T: Real>(
     let a_type__half_part_1 = T::if_less(p, p_minus_half, solution_5_1, d_crate_d_half);
     let a_type__half = a_type__p_part_1 + a_type__half_part_1;
     let one_minus_solution_2_2 = one - solution_2_2;
-    let [_, _, solution_6_3] = lu_solve_(
+    let [_, _, solution_6_3] = lu_solve(
         &lu_1,
         [one_minus_solution_2_2, -solution_2_1, zero],
     );
@@ -386,20 +386,20 @@ pub fn all_jacobians<T: Real>(
     let a_half_p_part_3 = one / a_half_p_part_2;
     let a_half_p_part_4 = half_dot_part_1 - a_half_p_part_1 * K.ln();
     let a_half_p = solution_6_3 - a_half_p_part_3 * a_half_p_part_4;
-    let [_, _, solution_7_3] = lu_solve_(
+    let [_, _, solution_7_3] = lu_solve(
         &lu_1,
         [-solution_2_3, d_crate_d_half, one_minus_solution_2_2],
     );
     let a_half_half = solution_7_3 + half_dot_part_1 * a_half_p_part_3;
 
     // Derivatives by the parameters.
-    let [solution_8_1, _, _] = lu_solve_(&lu_1, [zero, -solution_1_2, zero]);
+    let [solution_8_1, _, _] = lu_solve(&lu_1, [zero, -solution_1_2, zero]);
     let p_type__INFO_ = T::if_less(p, p_minus_half, solution_8_1, zero);
-    let [solution_9_1, _, _] = lu_solve_(&lu_1, [-solution_1_1, zero, -solution_1_3]);
+    let [solution_9_1, _, _] = lu_solve(&lu_1, [-solution_1_1, zero, -solution_1_3]);
     let p_type__K_part_1 = c_19 * type__dot_part_2;
     let p_type__K = T::if_less(p, p_minus_half, solution_9_1, zero) + p_type__K_part_1;
-    let [_, _, p_half_INFO_] = lu_solve_(&lu_1, [zero, -solution_2_2, zero]);
-    let [_, _, solution_11_3] = lu_solve_(&lu_1, [-solution_2_1, zero, -solution_2_3]);
+    let [_, _, p_half_INFO_] = lu_solve(&lu_1, [zero, -solution_2_2, zero]);
+    let [_, _, solution_11_3] = lu_solve(&lu_1, [-solution_2_1, zero, -solution_2_3]);
     let p_half_K = solution_11_3 + a_half_p_part_1 * a_half_p_part_3 * p / K;
 
     AllJacobians {

@@ -14,8 +14,20 @@ const STATES: usize = 256;
 /// The explicit accelerations of the steering paper, equations (36) and (86), as printed after
 /// correction: one sine-cosine pair per angle, common squares named, nothing else rearranged.
 fn typed_by_hand(x: &State<f64>, u: f64, p: &Parameters<f64>) -> State<f64> {
-    let State { omega_1: w1, omega_2: w2, omega_3: w3, sigma: s, r, .. } = *x;
-    let Parameters { m, m0, R: radius, g } = *p;
+    let State {
+        omega_1: w1,
+        omega_2: w2,
+        omega_3: w3,
+        sigma: s,
+        r,
+        ..
+    } = *x;
+    let Parameters {
+        m,
+        m0,
+        R: radius,
+        g,
+    } = *p;
     let (sin, cos) = x.theta.sin_cos();
     let (sin_psi, cos_psi) = x.psi.sin_cos();
     let tan = sin / cos;
@@ -31,16 +43,18 @@ fn typed_by_hand(x: &State<f64>, u: f64, p: &Parameters<f64>) -> State<f64> {
         + 4.0 * radius * u)
         / d1;
     let omega_2 = 2.0
-        * (-2.0 * m0 * radius * r * w1 * w2
-            - (m * rad2 + m0 * rad2 + 4.0 * m0 * rr) * w1 * w3
+        * (-2.0 * m0 * radius * r * w1 * w2 - (m * rad2 + m0 * rad2 + 4.0 * m0 * rr) * w1 * w3
             + 2.0 * m0 * radius * w3 * s)
         / d2;
     let omega_3 = (-2.0 * (3.0 * m + 2.0 * m0) * rad2 * w1 * w2
-        + (3.0 * m * rad2 * tan + 2.0 * m0 * (rad2 * tan + 2.0 * radius * r + 6.0 * rr * tan)) * w1 * w3
+        + (3.0 * m * rad2 * tan + 2.0 * m0 * (rad2 * tan + 2.0 * radius * r + 6.0 * rr * tan))
+            * w1
+            * w3
         - 24.0 * m0 * r * w3 * s)
         / d2;
     let sigma = ((5.0 * m * rad2 + 4.0 * m0 * (rad2 + rr)) * r * w1 * w1
-        + (5.0 * m * rad2 * r - 4.0 * m0 * radius * rr * tan + 4.0 * m0 * rr * r - m * rad2 * radius * tan)
+        + (5.0 * m * rad2 * r - 4.0 * m0 * radius * rr * tan + 4.0 * m0 * rr * r
+            - m * rad2 * radius * tan)
             * w3
             * w3
         - 8.0 * m0 * radius * r * w1 * s
@@ -67,7 +81,9 @@ fn states() -> Vec<(State<f64>, f64)> {
     // A fixed linear congruential sequence: every run sees the same states.
     let mut seed = 0x2545_f491_4f6c_dd1d_u64;
     let mut next = || {
-        seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        seed = seed
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
         (seed >> 11) as f64 / (1_u64 << 53) as f64 * 2.0 - 1.0
     };
     (0..STATES)
@@ -93,7 +109,10 @@ fn equations(criterion: &mut Criterion) {
     let p = Parameters::default();
     let states = states();
     for (x, u) in &states {
-        let (hand, ours) = (typed_by_hand(x, *u, &p), unicycle::rates(&p, x, &Inputs { u: *u }));
+        let (hand, ours) = (
+            typed_by_hand(x, *u, &p),
+            unicycle::rates(&p, x, &Inputs { u: *u }),
+        );
         let close = |a: f64, b: f64| (a - b).abs() <= 1e-9 * (1.0 + a.abs());
         assert!(close(hand.omega_1, ours.omega_1) && close(hand.omega_2, ours.omega_2));
         assert!(close(hand.omega_3, ours.omega_3) && close(hand.sigma, ours.sigma));
@@ -110,17 +129,28 @@ fn equations(criterion: &mut Criterion) {
     group.bench_function("rates, emitted", |bencher| {
         bencher.iter(|| {
             for (x, u) in &states {
-                black_box(unicycle::rates(black_box(&p), black_box(x), &Inputs { u: *u }));
+                black_box(unicycle::rates(
+                    black_box(&p),
+                    black_box(x),
+                    &Inputs { u: *u },
+                ));
             }
         });
     });
-    group.bench_function("rates and Jacobians in state and input, emitted", |bencher| {
-        bencher.iter(|| {
-            for (x, u) in &states {
-                black_box(unicycle::jacobians(black_box(&p), black_box(x), &Inputs { u: *u }));
-            }
-        });
-    });
+    group.bench_function(
+        "rates and Jacobians in state and input, emitted",
+        |bencher| {
+            bencher.iter(|| {
+                for (x, u) in &states {
+                    black_box(unicycle::jacobians(
+                        black_box(&p),
+                        black_box(x),
+                        &Inputs { u: *u },
+                    ));
+                }
+            });
+        },
+    );
     group.finish();
 }
 

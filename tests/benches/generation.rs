@@ -11,10 +11,15 @@ use criterion::{Criterion, criterion_group, criterion_main};
 /// Parses, checks, derives, schedules and prints.
 fn generate(shipped: &Shipped, kinds: &[FunctionKind]) -> usize {
     let checked = appell_spec::load(shipped.file, shipped.spec).expect("shipped specs are right");
-    let derivation = derive(&checked.mechanism).ok().expect("shipped specs can be derived");
-    let program =
-        assemble::program(derivation, &checked.mechanism, kinds).expect("shipped specs can be assembled");
-    emit_functions(&program, kinds).expect("shipped specs can be emitted").source.len()
+    let derivation = derive(&checked.mechanism)
+        .ok()
+        .expect("shipped specs can be derived");
+    let program = assemble::program(derivation, &checked.mechanism, kinds)
+        .expect("shipped specs can be assembled");
+    emit_functions(&program, kinds)
+        .expect("shipped specs can be emitted")
+        .source
+        .len()
 }
 
 fn generation(criterion: &mut Criterion) {
@@ -23,7 +28,10 @@ fn generation(criterion: &mut Criterion) {
         let shipped = Shipped::find(name).expect("it is shipped");
         for (what, kinds) in [
             ("rates", [FunctionKind::Rates].as_slice()),
-            ("rates and Jacobians", &[FunctionKind::Rates, FunctionKind::Jacobians]),
+            (
+                "rates and Jacobians",
+                &[FunctionKind::Rates, FunctionKind::Jacobians],
+            ),
         ] {
             group.bench_function(format!("{name}, {what}"), |bencher| {
                 bencher.iter(|| generate(shipped, kinds));

@@ -13,11 +13,21 @@ type D = Dual<f64, 1>;
 /// A, B and P of a program, each row by row.
 pub fn jacobians(program: &Program, point: &Point) -> [Vec<f64>; 3] {
     let arguments = &program.arguments;
-    let rates = &program.functions.iter().find(|f| f.kind == FunctionKind::Rates).unwrap().results[0].entries;
+    let rates = &program
+        .functions
+        .iter()
+        .find(|f| f.kind == FunctionKind::Rates)
+        .unwrap()
+        .results[0]
+        .entries;
     let pi = program.info.parameters.iter().position(|p| p.name == "pi");
     assert!(pi.is_none(), "`pi` is reserved");
     let mut values = vec![D::fixed(std::f64::consts::PI); program.graph.symbol_count()];
-    let groups = [(&arguments.states, &point.x), (&arguments.inputs, &point.u), (&arguments.parameters, &point.p)];
+    let groups = [
+        (&arguments.states, &point.x),
+        (&arguments.inputs, &point.u),
+        (&arguments.parameters, &point.p),
+    ];
     for (symbols, numbers) in groups {
         for (symbol, &number) in symbols.iter().zip(numbers) {
             values[symbol.0 as usize] = D::fixed(number);
@@ -34,7 +44,9 @@ pub fn jacobians(program: &Program, point: &Point) -> [Vec<f64>; 3] {
     };
     [&arguments.states, &arguments.inputs, &arguments.parameters].map(|symbols| {
         let columns: Vec<Vec<f64>> = symbols.iter().map(&mut column).collect();
-        (0..rates.len()).flat_map(|row| columns.iter().map(move |column| column[row])).collect()
+        (0..rates.len())
+            .flat_map(|row| columns.iter().map(move |column| column[row]))
+            .collect()
     })
 }
 
@@ -54,13 +66,22 @@ fn evaluate(g: &Graph, order: &[Expr], symbols: &[D], roots: &[Expr]) -> Vec<D> 
             Node::Product(factors) => factors.iter().fold(one, |product, f| {
                 let base = of(&f.base);
                 let power = (0..f.exponent.unsigned_abs()).fold(one, |power, _| power * base);
-                if f.exponent < 0 { product / power } else { product * power }
+                if f.exponent < 0 {
+                    product / power
+                } else {
+                    product * power
+                }
             }),
             Node::Function(function, x) => apply(*function, of(x)),
             Node::Atan2(y, x) => of(y).atan2(of(x)),
             Node::Power(base, exponent) => of(base).powf(of(exponent)),
-            Node::Choice { relation, compared, branches } => {
-                let [[left, right], [then, otherwise]] = [compared, branches].map(|pair| [of(&pair[0]), of(&pair[1])]);
+            Node::Choice {
+                relation,
+                compared,
+                branches,
+            } => {
+                let [[left, right], [then, otherwise]] =
+                    [compared, branches].map(|pair| [of(&pair[0]), of(&pair[1])]);
                 match relation {
                     Relation::Less => D::if_less(left, right, then, otherwise),
                     Relation::LessOrEqual => D::if_less_or_equal(left, right, then, otherwise),
@@ -69,7 +90,10 @@ fn evaluate(g: &Graph, order: &[Expr], symbols: &[D], roots: &[Expr]) -> Vec<D> 
             Node::Solution { system, row } => {
                 let unknowns = solutions.entry(*system).or_insert_with(|| {
                     let system = g.system(*system);
-                    solve(system.matrix.iter().map(of).collect(), system.right.iter().map(of).collect())
+                    solve(
+                        system.matrix.iter().map(of).collect(),
+                        system.right.iter().map(of).collect(),
+                    )
                 });
                 unknowns[*row as usize]
             }

@@ -22,16 +22,26 @@ pub fn engines(name: &str) -> Vec<Engine> {
     let program = shipped::program(&shipped::mechanism(name));
     let emitted = Shipped::find(name).unwrap_or_else(|| panic!("`{name}` was not emitted"));
     let mut engines = in_process(program);
-    engines.push(Engine { name: "emitted", model: Box::new(Emitted(emitted.model)) });
+    engines.push(Engine {
+        name: "emitted",
+        model: Box::new(Emitted(emitted.model)),
+    });
     engines
 }
 
 /// The executions that need no build: of any program.
 pub fn in_process(program: Program) -> Vec<Engine> {
-    let jit = JitModel::new(&program).unwrap_or_else(|error| panic!("{}: {error}", program.info.name));
+    let jit =
+        JitModel::new(&program).unwrap_or_else(|error| panic!("{}: {error}", program.info.name));
     vec![
-        Engine { name: "interpreted", model: Box::new(InterpretedModel::new(program)) },
-        Engine { name: "compiled in the process", model: Box::new(jit) },
+        Engine {
+            name: "interpreted",
+            model: Box::new(InterpretedModel::new(program)),
+        },
+        Engine {
+            name: "compiled in the process",
+            model: Box::new(jit),
+        },
     ]
 }
 
@@ -104,7 +114,12 @@ impl Evaluation {
     /// Calls every function of a model.
     pub fn of(model: &dyn Model, at: At<'_>) -> Self {
         let info = model.info();
-        let (n, m, k, s) = (info.state_len(), info.input_len(), info.parameter_len(), info.speeds);
+        let (n, m, k, s) = (
+            info.state_len(),
+            info.input_len(),
+            info.parameter_len(),
+            info.speeds,
+        );
         let nan = |len: usize| vec![f64::NAN; len];
         let mut e = Self {
             rates: nan(n),
@@ -124,7 +139,12 @@ impl Evaluation {
         model.parameter_jacobian(at, &mut e.p);
         model.appell(at, &mut e.mass_matrix, &mut e.bias, &mut e.forces);
         let energies = model.energies(at);
-        e.energies = vec![energies.kinetic, energies.potential, energies.power, energies.acceleration];
+        e.energies = vec![
+            energies.kinetic,
+            energies.potential,
+            energies.power,
+            energies.acceleration,
+        ];
         model.constraint_residual(at, &mut e.residual);
         model.constraint_forces(at, &mut e.reactions);
         model.outputs(at, &mut e.outputs);
@@ -157,11 +177,17 @@ impl Evaluation {
 /// Where they do not, with the entry.
 pub fn assert_close(what: &str, got: &[f64], wanted: &[f64], tolerance: f64, floor: f64) {
     assert_eq!(got.len(), wanted.len(), "{what}: lengths");
-    let scale = got.iter().chain(wanted).fold(floor, |scale, x| scale.max(x.abs()));
+    let scale = got
+        .iter()
+        .chain(wanted)
+        .fold(floor, |scale, x| scale.max(x.abs()));
     for (i, (got, wanted)) in got.iter().zip(wanted).enumerate() {
         let error = (got - wanted).abs();
         // A difference that is no number fails as well.
         let close = error <= tolerance * scale;
-        assert!(close, "{what}, entry {i}: {got:e} against {wanted:e}, off by {error:.2e} at a scale of {scale:.2e}");
+        assert!(
+            close,
+            "{what}, entry {i}: {got:e} against {wanted:e}, off by {error:.2e} at a scale of {scale:.2e}"
+        );
     }
 }

@@ -15,5 +15,5 @@ pub mod formula;
 pub mod independent;
 pub mod paper;
 pub mod random;
-//pub mod reference;
+pub mod reference;
 pub mod shipped;

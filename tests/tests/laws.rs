@@ -34,7 +34,11 @@ fn everywhere(seed: &str, mut law: impl FnMut(&str, &dyn Model, &Point)) {
         let model = interpreter(&shipped::mechanism(&name));
         let mut random = Random::of(&format!("{seed} {name}"));
         for number in 0..POINTS {
-            law(&format!("{name} at point {number}"), &model, &Point::random(model.info(), &mut random));
+            law(
+                &format!("{name} at point {number}"),
+                &model,
+                &Point::random(model.info(), &mut random),
+            );
         }
     }
 }
@@ -69,7 +73,10 @@ fn mass_matrix_and_bias_are_the_derivatives_of_the_acceleration_energy() {
                 parts.push(d.algebra.graph.mul(entry, other));
             }
             let row = d.algebra.graph.sum(&parts);
-            assert!(d.algebra.test.are_equal(&d.algebra.graph, slope, row), "{name}, equation {i}");
+            assert!(
+                d.algebra.test.are_equal(&d.algebra.graph, slope, row),
+                "{name}, equation {i}"
+            );
         }
     }
 }
@@ -78,8 +85,12 @@ fn mass_matrix_and_bias_are_the_derivatives_of_the_acceleration_energy() {
 fn the_energy_grows_by_the_power_of_the_loads_as_an_identity() {
     for name in shipped::names() {
         let mut d = shipped::derive(&shipped::mechanism(&name));
-        let mut parts: Vec<Expr> =
-            d.bodies.clone().iter().map(|body| kinetic_energy(&mut d.algebra, body)).collect();
+        let mut parts: Vec<Expr> = d
+            .bodies
+            .clone()
+            .iter()
+            .map(|body| kinetic_energy(&mut d.algebra, body))
+            .collect();
         parts.extend(d.loads.iter().filter_map(|load| load.potential));
         let energy = d.algebra.graph.sum(&parts);
         let growth = energy_rate(&mut d, energy);
@@ -90,7 +101,10 @@ fn the_energy_grows_by_the_power_of_the_loads_as_an_identity() {
             power = graph.add(power, part);
         }
         // A constraint that prescribes a velocity does work, too; no shipped mechanism has one.
-        assert!(d.algebra.test.are_equal(&d.algebra.graph, growth, power), "{name}");
+        assert!(
+            d.algebra.test.are_equal(&d.algebra.graph, growth, power),
+            "{name}"
+        );
     }
 }
 
@@ -108,7 +122,8 @@ fn the_energies_of_the_models_grow_by_their_power() {
             energies.kinetic + energies.potential
         };
         if model.info().signal_inputs.is_empty() {
-            let growth = (8.0 * (moved(1.0) - moved(-1.0)) - (moved(2.0) - moved(-2.0))) / (12.0 * STENCIL);
+            let growth =
+                (8.0 * (moved(1.0) - moved(-1.0)) - (moved(2.0) - moved(-2.0))) / (12.0 * STENCIL);
             let scale = moved(0.0).abs() / STENCIL * 1e-3;
             assert_close(place, &[growth], &[e.energies[2]], ENERGY, scale.max(1.0));
         }
@@ -119,7 +134,10 @@ fn the_energies_of_the_models_grow_by_their_power() {
 fn the_constraints_hold_to_rounding() {
     everywhere("constraints", |place, model, point| {
         let e = Evaluation::of(model, point.at());
-        let scale = e.rates.iter().fold(1.0_f64, |scale, rate| scale.max(rate.abs()));
+        let scale = e
+            .rates
+            .iter()
+            .fold(1.0_f64, |scale, rate| scale.max(rate.abs()));
         for residual in e.residual {
             assert!(residual.abs() <= RESIDUAL * scale, "{place}: {residual:e}");
         }
@@ -136,7 +154,10 @@ fn the_jacobians_are_those_of_dual_numbers() {
             let point = Point::random(model.info(), &mut random);
             let e = Evaluation::of(&model, point.at());
             let duals = dual::jacobians(&program, &point);
-            for ((what, derived), dual) in [("A", &e.a), ("B", &e.b), ("P", &e.p)].into_iter().zip(duals) {
+            for ((what, derived), dual) in [("A", &e.a), ("B", &e.b), ("P", &e.p)]
+                .into_iter()
+                .zip(duals)
+            {
                 let what = format!("{what} of {name} at point {number}");
                 assert_close(&what, derived, &dual, JACOBIANS, FLOOR);
             }
@@ -153,13 +174,20 @@ fn rates_and_jacobians_are_linear_in_the_inputs_that_enter_linearly() {
         silent.u.fill(0.0);
         let rest = Evaluation::of(model, silent.at());
         if e.b == rest.b && !point.u.is_empty() {
-            let by_b: Vec<f64> = e
-                .b
-                .chunks(point.u.len())
-                .map(|row| row.iter().zip(&point.u).map(|(b, u)| b * u).sum())
+            let by_b: Vec<f64> =
+                e.b.chunks(point.u.len())
+                    .map(|row| row.iter().zip(&point.u).map(|(b, u)| b * u).sum())
+                    .collect();
+            let by_rates: Vec<f64> = e
+                .rates
+                .iter()
+                .zip(&rest.rates)
+                .map(|(with, without)| with - without)
                 .collect();
-            let by_rates: Vec<f64> = e.rates.iter().zip(&rest.rates).map(|(with, without)| with - without).collect();
-            let scale = e.rates.iter().fold(1.0_f64, |scale, rate| scale.max(rate.abs()));
+            let scale = e
+                .rates
+                .iter()
+                .fold(1.0_f64, |scale, rate| scale.max(rate.abs()));
             assert_close(place, &by_rates, &by_b, JACOBIANS, scale);
         }
     });
@@ -169,9 +197,16 @@ fn rates_and_jacobians_are_linear_in_the_inputs_that_enter_linearly() {
 fn interpreted_emitted_and_compiled_code_give_the_same_numbers() {
     for name in shipped::names() {
         let engines = engines(&name);
-        let [first, others @ ..] = engines.as_slice() else { panic!("no engine") };
+        let [first, others @ ..] = engines.as_slice() else {
+            panic!("no engine")
+        };
         for engine in others {
-            assert_eq!(engine.model.info(), first.model.info(), "{name}, {}", engine.name);
+            assert_eq!(
+                engine.model.info(),
+                first.model.info(),
+                "{name}, {}",
+                engine.name
+            );
         }
         let mut random = Random::of(&format!("engines {name}"));
         for number in 0..POINTS {

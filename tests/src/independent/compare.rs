@@ -22,7 +22,12 @@ pub fn compare(mechanism: &Mechanism, model: &dyn Model, points: usize) {
     let mut random = Random::of(&mechanism.name);
     for number in 0..points {
         let point = Point::random(model.info(), &mut random);
-        compare_at(mechanism, model, &point, &format!("{} at point {number}", mechanism.name));
+        compare_at(
+            mechanism,
+            model,
+            &point,
+            &format!("{} at point {number}", mechanism.name),
+        );
     }
 }
 
@@ -32,25 +37,53 @@ pub fn compare_at(mechanism: &Mechanism, model: &dyn Model, point: &Point, place
     let setting = Setting::new(mechanism, info, point);
     let derived = Evaluation::of(model, point.at());
     let close = |what: &str, got: &[f64], wanted: &[f64]| {
-        assert_close(&format!("{place}, {what}"), got, wanted, FORMULATIONS, FLOOR);
+        assert_close(
+            &format!("{place}, {what}"),
+            got,
+            wanted,
+            FORMULATIONS,
+            FLOOR,
+        );
     };
     let (accelerations, rates) = derived.rates.split_at(info.speeds);
 
     let kane = kane(&setting);
-    close("generalised velocities by Kane", rates, &kane.coordinate_rates);
-    close("mass matrix by Kane", &derived.mass_matrix, kane.mass_matrix.as_slice());
+    close(
+        "generalised velocities by Kane",
+        rates,
+        &kane.coordinate_rates,
+    );
+    close(
+        "mass matrix by Kane",
+        &derived.mass_matrix,
+        kane.mass_matrix.as_slice(),
+    );
     close("bias by Kane", &derived.bias, kane.bias.as_slice());
     close("forces by Kane", &derived.forces, kane.forces.as_slice());
-    close("accelerations by Kane", accelerations, kane.accelerations.as_slice());
+    close(
+        "accelerations by Kane",
+        accelerations,
+        kane.accelerations.as_slice(),
+    );
 
     let lagrange = lagrange(&setting);
-    close("accelerations by Lagrange", accelerations, &lagrange.accelerations);
+    close(
+        "accelerations by Lagrange",
+        accelerations,
+        &lagrange.accelerations,
+    );
 
     // Reactions: each component that Lagrange's multipliers know, and the sum of all by Newton.
-    assert_eq!(lagrange.reactions.len(), info.reactions.len(), "{place}: places with reactions");
+    assert_eq!(
+        lagrange.reactions.len(),
+        info.reactions.len(),
+        "{place}: places with reactions"
+    );
     let (mut got, mut wanted) = (Vec::new(), Vec::new());
-    for ((name, force), (place, derived)) in
-        lagrange.reactions.iter().zip(info.reactions.iter().zip(derived.reactions.chunks(3)))
+    for ((name, force), (place, derived)) in lagrange
+        .reactions
+        .iter()
+        .zip(info.reactions.iter().zip(derived.reactions.chunks(3)))
     {
         assert_eq!(name, place);
         for (known, derived) in force.iter().zip(derived) {

@@ -1,0 +1,126 @@
+//! Operation counts of every function of every shipped mechanism may not rise.
+
+#![allow(clippy::unwrap_used)]
+
+use std::collections::BTreeMap;
+use std::fmt::Write as _;
+
+use appell_codegen::program::FunctionKind;
+use appell_codegen::schedule::{OperationCount, schedule};
+use appell_tests::shipped;
+
+/// What is counted, and how it is called in the baseline.
+const COUNTED: [(&str, fn(&OperationCount) -> usize); 6] = [
+    ("operations", OperationCount::total),
+    ("divisions", |count| count.divide),
+    ("sine_cosine_pairs", |count| count.sin_cos),
+    ("functions", |count| count.functions),
+    ("choices", |count| count.selects),
+    ("linear_systems", |count| count.solves),
+];
+
+type Counts = BTreeMap<String, BTreeMap<String, [usize; 6]>>;
+
+fn name(kind: FunctionKind) -> String {
+    let mut name = String::new();
+    for letter in format!("{kind:?}").chars() {
+        if letter.is_uppercase() && !name.is_empty() {
+            name.push('_');
+        }
+        name.push(letter.to_ascii_lowercase());
+    }
+    name
+}
+
+fn counts() -> Counts {
+    let count = |mechanism: &String| {
+        let program = shipped::program(&shipped::mechanism(mechanism));
+        let functions = program.functions.iter();
+        functions
+            .map(|function| {
+                let count = OperationCount::of(&schedule(&program, function));
+                (name(function.kind), COUNTED.map(|(_, get)| get(&count)))
+            })
+            .collect()
+    };
+    shipped::names()
+        .iter()
+        .map(|mechanism| (mechanism.clone(), count(mechanism)))
+        .collect()
+}
+
+fn write(counts: &Counts) -> String {
+    let mut text = String::from(
+        "# Operation counts that may not rise. `UPDATE_COSTS=1 cargo test -p appell-tests --test cost`\n\
+         # writes this file; a higher count needs a reason.\n",
+    );
+    for (mechanism, functions) in counts {
+        // Writing to a string cannot fail.
+        let _ = writeln!(text, "\n[{mechanism}]");
+        for (function, numbers) in functions {
+            let entries: Vec<String> = COUNTED
+                .iter()
+                .zip(numbers)
+                .filter(|((word, _), number)| **number > 0 || *word == "operations")
+                .map(|((word, _), number)| format!("{word} = {number}"))
+                .collect();
+            let _ = writeln!(text, "{function} = {{ {} }}", entries.join(", "));
+        }
+    }
+    text
+}
+
+#[test]
+fn no_function_of_a_shipped_mechanism_takes_more_operations_than_it_did() {
+    let file = shipped::workspace().join("tests/cost_baseline.toml");
+    let now = counts();
+    if std::env::var_os("UPDATE_COSTS").is_some() {
+        std::fs::write(&file, write(&now)).unwrap();
+    }
+    let baseline: toml::Table = std::fs::read_to_string(&file).unwrap().parse().unwrap();
+    let mut risen = Vec::new();
+    for (mechanism, functions) in &now {
+        for (function, numbers) in functions {
+            let before = baseline.get(mechanism).and_then(|m| m.get(function));
+            let Some(before) = before else {
+                risen.push(format!("{mechanism}.{function} has no baseline"));
+                continue;
+            };
+            for ((word, _), &number) in COUNTED.iter().zip(numbers) {
+                let allowed = before
+                    .get(word)
+                    .and_then(toml::Value::as_integer)
+                    .unwrap_or(0);
+                if i64::try_from(number).unwrap() > allowed {
+                    risen.push(format!(
+                        "{mechanism}.{function}: {word} {allowed} -> {number}"
+                    ));
+                }
+            }
+        }
+    }
+    assert!(
+        risen.is_empty(),
+        "{}\nUPDATE_COSTS=1 accepts this",
+        risen.join("\n")
+    );
+}
+
+#[test]
+fn the_rates_of_the_unicycle_stay_within_115_operations() {
+    let program = shipped::program(&shipped::mechanism("unicycle"));
+    let rates = program
+        .functions
+        .iter()
+        .find(|f| f.kind == FunctionKind::Rates)
+        .unwrap();
+    let count = OperationCount::of(&schedule(&program, rates));
+    assert!(count.total() <= 115, "{count}");
+    assert!(count.divide <= 4, "{count}");
+    assert_eq!(count.sin_cos, 2, "{count}");
+    assert_eq!(
+        (count.functions, count.selects, count.solves),
+        (0, 0, 0),
+        "{count}"
+    );
+}

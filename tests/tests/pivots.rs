@@ -1,0 +1,351 @@
+//! Mechanisms whose velocities are solved with pivoting when they are evaluated, and kinds of
+//! constraints and loads that no shipped mechanism has, against Kane's and Lagrange's equations.
+
+#![allow(clippy::unwrap_used)]
+
+use appell_runtime::model::Model;
+use appell_spec::Mechanism;
+use appell_tests::engine::{Evaluation, assert_close, in_process, interpreter};
+use appell_tests::independent::Point;
+use appell_tests::independent::compare::{FORMULATIONS, compare, compare_at};
+use appell_tests::random::Random;
+use appell_tests::{dual, shipped};
+
+/// Rounding of a pivoted solution in place of a closed form.
+const PIVOTED: f64 = 1e-12;
+/// See `laws.rs`.
+const JACOBIANS: f64 = 1e-11;
+const POINTS: usize = 12;
+
+/// The shipped wheel or unicycle with changes to its text, each of which must apply.
+fn changed(name: &str, changes: &[(&str, &str)]) -> Mechanism {
+    let mut text = shipped::text(name);
+    for (from, to) in changes {
+        assert!(text.contains(from), "`{from}` is not in {name}");
+        text = text.replace(from, to);
+    }
+    shipped::read("changed", &text)
+}
+
+/// No declared range: nothing says that the tilt stays below a right angle.
+const NO_RANGE: (&str, &str) = (", range = [-1.5, 1.5]", "");
+/// Pseudo-velocities in the frame of the heading: no single coefficient keeps its sign.
+const SKEW: [(&str, &str); 2] = [
+    (
+        "omega_1 = { value = \"dot(theta)\"",
+        "omega_1 = { value = \"dot(psi)*sin(theta) + dot(phi)*cos(theta) + dot(theta)\"",
+    ),
+    (
+        "omega_2 = { value = \"dot(psi)*sin(theta) + dot(phi)\"",
+        "omega_2 = { value = \"dot(psi)*cos(theta) - dot(phi)*sin(theta)\"",
+    ),
+];
+const SKEW_THIRD: (&str, &str) = (
+    "omega_3 = { value = \"dot(psi)*cos(theta)\"",
+    "omega_3 = { value = \"dot(theta)*cos(theta) + dot(phi)*sin(theta)\"",
+);
+
+/// The motion in coordinates, which no choice of pseudo-velocities changes: q̇ and its rate. The
+/// pseudo-velocities are those that belong to the generalised velocities.
+fn assert_one_motion(a: (&Mechanism, &dyn Model), b: (&Mechanism, &dyn Model)) {
+    use appell_tests::independent::kane::{Velocities, coordinate_rates, motion};
+    use appell_tests::independent::{Setting, lagrange::lagrange};
+    let mut random = Random::of("one motion");
+    for number in 0..POINTS {
+        let point = Point::random(a.1.info(), &mut random);
+        let setting = Setting::new(a.0, a.1.info(), &point);
+        let rates = coordinate_rates(&setting, &Velocities::new(&setting));
+        // The other's pseudo-velocities in the same motion.
+        let mut other = point.clone();
+        let there = Setting::new(b.0, b.1.info(), &other);
+        let now = motion(&there, &rates, &lagrange(&setting).coordinate_accelerations);
+        let speeds: Vec<f64> = now.speeds.iter().map(|w| w.value).collect();
+        let wanted: Vec<f64> = now.speeds.iter().map(|w| w.partials[0]).collect();
+        let s = speeds.len();
+        other.x[..s].copy_from_slice(&speeds);
+        let e = Evaluation::of(b.1, other.at());
+        assert_close(
+            &format!("accelerations at point {number}"),
+            &e.rates[..s],
+            &wanted,
+            FORMULATIONS,
+            1.0,
+        );
+        assert_close(
+            &format!("velocities at point {number}"),
+            &e.rates[s..],
+            &rates,
+            FORMULATIONS,
+            1.0,
+        );
+    }
+}
+
+/// Kane, Lagrange, duals and the compiled code, at random points.
+fn assert_sound(mechanism: &Mechanism) {
+    let program = shipped::program(mechanism);
+    let engines = in_process(program.clone());
+    let mut random = Random::of(&format!("sound {}", mechanism.name));
+    for engine in &engines {
+        compare(mechanism, &*engine.model, POINTS);
+    }
+    let model = &*engines[0].model;
+    for number in 0..POINTS {
+        let point = Point::random(model.info(), &mut random);
+        let e = Evaluation::of(model, point.at());
+        for ((what, derived), dual) in [("A", &e.a), ("B", &e.b), ("P", &e.p)]
+            .into_iter()
+            .zip(dual::jacobians(&program, &point))
+        {
+            assert_close(
+                &format!("{what} at point {number}"),
+                derived,
+                &dual,
+                JACOBIANS,
+                1e-3,
+            );
+        }
+    }
+}
+
+fn solved_numerically(mechanism: &Mechanism) -> usize {
+    shipped::derive(mechanism)
+        .velocities
+        .solved_numerically
+        .len()
+}
+
+#[test]
+fn a_wheel_without_a_range_of_tilt_moves_like_the_one_with_a_range() {
+    let (shipped_wheel, free) = (
+        shipped::mechanism("rolling_wheel"),
+        changed("rolling_wheel", &[NO_RANGE]),
+    );
+    assert_eq!(solved_numerically(&shipped_wheel), 0);
+    assert!(
+        solved_numerically(&free) > 0,
+        "nothing may be divided by the cosine of an unlimited tilt"
+    );
+    let (a, b) = (interpreter(&shipped_wheel), interpreter(&free));
+    let mut random = Random::of("no range");
+    for number in 0..POINTS {
+        let point = Point::random(a.info(), &mut random);
+        let (wanted, got) = (
+            Evaluation::of(&a, point.at()),
+            Evaluation::of(&b, point.at()),
+        );
+        for ((what, got), (_, wanted)) in got.arrays().into_iter().zip(wanted.arrays()) {
+            if what != "residual" {
+                assert_close(
+                    &format!("{what} at point {number}"),
+                    got,
+                    wanted,
+                    PIVOTED * 10.0,
+                    1.0,
+                );
+            }
+        }
+    }
+    assert_sound(&free);
+}
+
+#[test]
+fn a_unicycle_without_a_range_of_tilt_moves_like_the_one_with_a_range() {
+    let (ranged, free) = (
+        shipped::mechanism("unicycle"),
+        changed("unicycle", &[NO_RANGE]),
+    );
+    let (a, b) = (interpreter(&ranged), interpreter(&free));
+    let mut random = Random::of("no range");
+    for number in 0..POINTS {
+        let point = Point::random(a.info(), &mut random);
+        let (wanted, got) = (
+            Evaluation::of(&a, point.at()),
+            Evaluation::of(&b, point.at()),
+        );
+        assert_close(
+            &format!("rates at point {number}"),
+            &got.rates,
+            &wanted.rates,
+            PIVOTED,
+            0.0,
+        );
+        assert_close(
+            &format!("A at point {number}"),
+            &got.a,
+            &wanted.a,
+            PIVOTED * 10.0,
+            0.0,
+        );
+    }
+    assert_sound(&free);
+}
+
+#[test]
+fn skew_pseudo_velocities_describe_the_same_motion() {
+    let ranged = shipped::mechanism("rolling_wheel");
+    let skew = changed("rolling_wheel", &[SKEW[0], SKEW[1], SKEW_THIRD, NO_RANGE]);
+    assert!(solved_numerically(&skew) > 0, "no entry keeps its sign");
+    assert_sound(&skew);
+    assert_one_motion(
+        (&ranged, &interpreter(&ranged)),
+        (&skew, &interpreter(&skew)),
+    );
+}
+
+#[test]
+fn nothing_is_divided_by_what_vanishes_at_upright() {
+    // Upright sin θ = 0; the entries sin θ of both mechanisms are pivots that must not be taken.
+    for mechanism in [
+        changed("rolling_wheel", &[NO_RANGE]),
+        changed("rolling_wheel", &[SKEW[0], SKEW[1], SKEW_THIRD, NO_RANGE]),
+        changed("unicycle", &[NO_RANGE]),
+    ] {
+        let model = interpreter(&mechanism);
+        let mut random = Random::of("upright");
+        for number in 0..POINTS {
+            let mut point = Point::random(model.info(), &mut random);
+            let info = model.info();
+            point.x[info.state_index("theta").unwrap()] = 0.0;
+            if number % 2 == 0 {
+                // Also where yaw leaves one row of the rolling constraint without a velocity.
+                point.x[info.state_index("psi").unwrap()] = 0.0;
+            }
+            let e = Evaluation::of(&model, point.at());
+            for (what, array) in e.arrays() {
+                assert!(
+                    array.iter().all(|entry| entry.is_finite()),
+                    "{what}: {array:?}"
+                );
+            }
+            compare_at(
+                &mechanism,
+                &model,
+                &point,
+                &format!("upright point {number}"),
+            );
+        }
+    }
+}
+
+/// A planar sledge on a knife edge that is pulled along a curve: a constraint that depends on time,
+/// one that follows data, a fixed velocity, springs and dampers between points.
+const SLEDGE: &str = r#"
+[mechanism]
+name = "sledge"
+title = "Sledge on a knife edge with a tow"
+[parameters]
+m = { value = 3, unit = "kg", at_least = 0 }
+J = { value = 0.4, unit = "kg*m^2", at_least = 0 }
+a = { value = 0.3, unit = "m", at_least = 0 }
+k = { value = 20, unit = "N/m", at_least = 0 }
+d = { value = 2, unit = "N*s/m", at_least = 0 }
+l = { value = 0.5, unit = "m", at_least = 0 }
+w = { value = 1.5, unit = "rad/s", at_least = 0 }
+n = { value = 0.7, unit = "kg", at_least = 0 }
+[coordinates]
+x = { unit = "m" }
+y = { unit = "m" }
+psi = { unit = "rad" }
+z = { unit = "m" }
+[inputs]
+F = { unit = "N" }
+[frames]
+sledge = { parent = "ground", about_axis = "z", by = "psi" }
+[points]
+E = { from = "O", in = "ground", at = ["x", "y", 0] }
+C = { from = "E", in = "sledge", at = ["a", 0, 0] }
+T = { from = "O", in = "ground", at = ["2 [m]", "1 [m]", "z"] }
+[bodies]
+sledge = { frame = "sledge", centre = "C", mass = "m", inertia = { in = "sledge", diagonal = ["J", "J", "J"] } }
+tow = { centre = "T", mass = "n" }
+[constraints]
+edge = { kind = "fixed_velocity", point = "E", in = "sledge", direction = [0, 1, 0] }
+drive = { kind = "velocity", zero = "dot(z) - dot(psi)*a", equals = "a*w*sin(w*t)*z/l" }
+[pseudo_velocities]
+v = { value = "dot(x)*cos(psi) + dot(y)*sin(psi)", unit = "m/s" }
+omega = { value = "dot(psi)", unit = "rad/s" }
+[loads]
+weight = { kind = "gravity", down = "-z", acceleration = "9.81 [m/s^2]" }
+spring = { kind = "spring", between = ["E", "T"], stiffness = "k", relaxed = "l" }
+damper = { kind = "damper", between = ["C", "T"], damping = "d" }
+turn = { kind = "spring", coordinate = "psi", stiffness = "k*a^2/(1 [rad])" }
+brake = { kind = "damper", coordinate = "x", damping = "d" }
+push = { kind = "force", on = "C", body = "sledge", in = "sledge", vector = ["F", "F/2", 0] }
+"#;
+
+#[test]
+fn a_knife_edge_with_prescribed_velocities_springs_and_dampers() {
+    assert_sound(&shipped::read("sledge", SLEDGE));
+}
+
+/// A body with a full inertia tensor on a base that follows recorded data.
+const GYROSCOPE: &str = r#"
+[mechanism]
+name = "gyroscope"
+title = "Heavy top with a crooked body on a moving base"
+[parameters]
+m = { value = 2, unit = "kg", at_least = 0 }
+A = { value = 0.3, unit = "kg*m^2", at_least = 0 }
+B = { value = 0.4, unit = "kg*m^2", at_least = 0 }
+C = { value = 0.5, unit = "kg*m^2", at_least = 0 }
+D = { value = 0.05, unit = "kg*m^2" }
+E = { value = -0.04, unit = "kg*m^2" }
+F = { value = 0.03, unit = "kg*m^2" }
+l = { value = 0.3, unit = "m", at_least = 0 }
+k = { value = 15, unit = "N/m", at_least = 0 }
+g = { value = 9.81, unit = "m/s^2", at_least = 0 }
+[coordinates]
+alpha = { unit = "rad" }
+beta = { unit = "rad", range = [-1.4, 1.4] }
+gamma = { unit = "rad" }
+x = { unit = "m" }
+[inputs]
+M = { unit = "N*m" }
+[signals]
+h = { unit = "m", t = [0, 1, 2, 3], value = [0, 0.2, -0.1, 0.3], interpolation = "cubic" }
+s = { unit = "m/s", t = [0, 1, 2, 3], value = [0, 0.5, 0.2, 0.4], interpolation = "cubic" }
+[frames]
+yaw = { parent = "ground", about_axis = "z", by = "alpha" }
+body = { parent = "yaw", turns = [{ about_axis = "x", by = "beta" }, { about_axis = "-y", by = "gamma" }] }
+[points]
+base = { from = "O", in = "ground", at = ["x", 0, "h"] }
+G = { from = "base", in = "body", at = ["l/5", "-l/7", "l"] }
+H = { from = "O", in = "ground", at = ["0.1 [m]", "0.2 [m]", "1.5 [m]"] }
+[bodies]
+top = { frame = "body", centre = "G", mass = "m", inertia = { in = "body", matrix = [["A", "D", "E"], ["D", "B", "F"], ["E", "F", "C"]] } }
+[constraints]
+shake = { kind = "velocity", zero = "dot(x)", equals = "s" }
+[pseudo_velocities]
+p = { value = "dot(beta)*cos(gamma) + dot(alpha)*cos(beta)*sin(gamma)", unit = "rad/s" }
+q = { value = "dot(alpha)*sin(beta) - dot(gamma)", unit = "rad/s" }
+r = { value = "dot(alpha)*cos(beta)*cos(gamma) - dot(beta)*sin(gamma)", unit = "rad/s" }
+[loads]
+weight = { kind = "gravity", down = "-z", acceleration = "g" }
+spring = { kind = "spring", between = ["H", "G"], stiffness = "k", relaxed = "l" }
+motor = { kind = "torque", on = "top", in = "body", vector = ["M/3", "M", "-M/2"] }
+twist = { kind = "generalized", coordinate = "alpha", force = "M*cos(alpha)" }
+"#;
+
+#[test]
+fn a_crooked_top_on_a_base_that_follows_data() {
+    assert_sound(&shipped::read("gyroscope", GYROSCOPE));
+}
+
+#[test]
+fn a_rolling_disc_that_is_pulled_by_a_spring_and_rolls_on_a_driven_plate() {
+    // The contact's material point moves along with the signal-free but rheonomic fixed velocity.
+    let text = shipped::text("rolling_wheel").replace(
+        "rolling = { kind = \"rolling\", body = \"wheel\", contact = \"P\", about = \"the wheel rolls without slipping\" }",
+        "along = { kind = \"fixed_velocity\", point = \"P\", body = \"wheel\", in = \"ground\", direction = [1, 0, 0], equals = \"R*sin(2 [1/s]*t)*(1 [1/s])\" }\n\
+         across = { kind = \"fixed_velocity\", point = \"P\", body = \"wheel\", in = \"ground\", direction = [0, 1, 0], equals = \"y_G*cos(t*(1 [1/s]))*(1 [1/s])\" }",
+    );
+    let text = text.replace(
+        "[outputs]",
+        "pull = { kind = \"spring\", between = [\"O\", \"G\"], stiffness = \"m*g/R\", relaxed = \"2*R\" }\n\
+         drag = { kind = \"damper\", between = [\"O\", \"G\"], damping = \"m*1 [1/s]\" }\n[outputs]",
+    );
+    let plate = shipped::read("plate", &text);
+    assert_eq!(plate.constraints.len(), 2);
+    assert_sound(&plate);
+}

@@ -1,0 +1,255 @@
+//! Rules of the house that a compiler does not know.
+
+#![allow(clippy::unwrap_used)]
+
+use std::path::{Path, PathBuf};
+
+use appell_tests::shipped;
+
+/// Longer files hold more than one idea.
+const MOST_LINES: usize = 700;
+
+/// Which crates a crate may depend on; [`ARCHITECTURE.md`] tells why.
+const MAY_KNOW: &[(&str, &[&str])] = &[
+    ("model_spec", &[]),
+    ("runtime", &[]),
+    ("codegen", &["appell-spec", "appell-runtime"]),
+    ("generated", &["appell-runtime", "appell-codegen"]),
+];
+
+fn read(path: &Path) -> String {
+    std::fs::read_to_string(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
+}
+
+/// All files below folders, without hidden ones and build products.
+fn files(folders: &[&str], extension: &str) -> Vec<PathBuf> {
+    let mut open: Vec<PathBuf> = folders
+        .iter()
+        .map(|folder| shipped::workspace().join(folder))
+        .collect();
+    let mut found = Vec::new();
+    while let Some(path) = open.pop() {
+        let name = path
+            .file_name()
+            .unwrap_or_default()
+            .to_string_lossy()
+            .into_owned();
+        if name.starts_with('.') || name == "target" {
+            continue;
+        }
+        if path.is_dir() {
+            open.extend(
+                std::fs::read_dir(&path)
+                    .unwrap()
+                    .map(|entry| entry.unwrap().path()),
+            );
+        } else if path.extension().is_some_and(|e| e == extension) {
+            found.push(path);
+        }
+    }
+    assert!(!found.is_empty(), "no {extension} file in {folders:?}");
+    found.sort();
+    found
+}
+
+#[test]
+fn crates_know_only_whom_they_may_know() {
+    for (folder, allowed) in MAY_KNOW {
+        let manifest: toml::Table = read(&shipped::workspace().join(folder).join("Cargo.toml"))
+            .parse()
+            .unwrap();
+        for section in ["dependencies", "build-dependencies"] {
+            let Some(dependencies) = manifest.get(section).and_then(toml::Value::as_table) else {
+                continue;
+            };
+            for name in dependencies
+                .keys()
+                .filter(|name| name.starts_with("appell"))
+            {
+                assert!(
+                    allowed.contains(&name.as_str()),
+                    "{folder} must not know {name}"
+                );
+            }
+        }
+    }
+    let generated: toml::Table = read(&shipped::workspace().join("generated/Cargo.toml"))
+        .parse()
+        .unwrap();
+    let dependencies = generated["dependencies"].as_table().unwrap();
+    assert!(
+        !dependencies.contains_key("appell-codegen"),
+        "codegen is there to build, not to run"
+    );
+}
+
+/// The source without its tests: test modules stand at the end of a file.
+fn without_tests(text: &str) -> &str {
+    text.split("#[cfg(test)]").next().unwrap()
+}
+
+#[test]
+fn no_source_of_the_tool_names_a_shipped_mechanism() {
+    for file in files(&["model_spec/src", "codegen/src", "runtime/src"], "rs") {
+        let text = read(&file);
+        for line in without_tests(&text)
+            .lines()
+            .filter(|line| !line.trim_start().starts_with("//"))
+        {
+            for name in shipped::names() {
+                let words = line.split(|c: char| !c.is_alphanumeric() && c != '_');
+                assert!(
+                    words.clone().all(|word| word != name),
+                    "{}: `{name}` in `{line}`",
+                    file.display()
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn no_file_is_longer_than_700_lines() {
+    for file in files(
+        &[
+            "model_spec",
+            "codegen",
+            "generated",
+            "runtime",
+            "cli",
+            "tests",
+        ],
+        "rs",
+    ) {
+        // Golden files are written by the tool.
+        if file
+            .components()
+            .any(|part| part.as_os_str().to_string_lossy().contains("golden"))
+        {
+            continue;
+        }
+        let lines = read(&file).lines().count();
+        assert!(lines <= MOST_LINES, "{} has {lines} lines", file.display());
+    }
+}
+
+#[test]
+fn every_public_item_is_documented() {
+    let workspace: toml::Table = read(&shipped::workspace().join("Cargo.toml"))
+        .parse()
+        .unwrap();
+    assert_eq!(
+        workspace["workspace"]["lints"]["rust"]["missing_docs"].as_str(),
+        Some("warn")
+    );
+    for member in workspace["workspace"]["members"].as_array().unwrap() {
+        let folder = shipped::workspace().join(member.as_str().unwrap());
+        let manifest: toml::Table = read(&folder.join("Cargo.toml")).parse().unwrap();
+        let inherits = manifest
+            .get("lints")
+            .and_then(|l| l.get("workspace"))
+            .and_then(toml::Value::as_bool);
+        assert_eq!(
+            inherits,
+            Some(true),
+            "{} does not inherit the lints",
+            folder.display()
+        );
+    }
+}
+
+#[test]
+fn nothing_is_left_to_do_and_no_test_is_ignored() {
+    let forbidden = [
+        ["TO", "DO"].concat(),
+        ["FIX", "ME"].concat(),
+        ["#[ig", "nore"].concat(),
+        ["to", "do!("].concat(),
+    ];
+    for file in files(
+        &[
+            "model_spec",
+            "codegen",
+            "generated",
+            "runtime",
+            "cli",
+            "tests",
+        ],
+        "rs",
+    ) {
+        let text = read(&file);
+        for word in &forbidden {
+            assert!(
+                !text.contains(word.as_str()),
+                "{}: `{word}`",
+                file.display()
+            );
+        }
+    }
+}
+
+#[test]
+fn every_link_of_the_documents_leads_somewhere() {
+    let root = shipped::workspace();
+    let mut documents = files(&["docs"], "md");
+    documents.extend(
+        [
+            "README.md",
+            "ARCHITECTURE.md",
+            "CONTRIBUTING.md",
+            "CHANGELOG.md",
+        ]
+        .map(|name| root.join(name))
+        .into_iter()
+        .filter(|path| path.exists()),
+    );
+    for document in documents {
+        let text = read(&document);
+        // Code is not prose: what looks like a link there is an index.
+        let prose: String = text.split("```").step_by(2).collect();
+        let prose: String = prose.split('`').step_by(2).collect();
+        for target in prose
+            .split("](")
+            .skip(1)
+            .filter_map(|rest| rest.split(')').next())
+        {
+            let target = target.split_whitespace().next().unwrap_or_default();
+            if target.contains("://") || target.starts_with("mailto:") {
+                continue;
+            }
+            let (path, anchor) = target.split_once('#').unwrap_or((target, ""));
+            let file = if path.is_empty() {
+                document.clone()
+            } else {
+                document.parent().unwrap().join(path)
+            };
+            assert!(
+                file.exists(),
+                "{}: `{target}` leads nowhere",
+                document.display()
+            );
+            if !anchor.is_empty() && file.extension().is_some_and(|e| e == "md") {
+                let headings: Vec<String> = read(&file)
+                    .lines()
+                    .filter(|line| line.starts_with('#'))
+                    .map(anchor_of)
+                    .collect();
+                assert!(
+                    headings.contains(&anchor.to_owned()),
+                    "{}: no heading `{target}`",
+                    document.display()
+                );
+            }
+        }
+    }
+}
+
+/// The anchor that hosts of repositories give a heading.
+fn anchor_of(heading: &str) -> String {
+    let words = heading.trim_start_matches('#').trim().to_lowercase();
+    words
+        .chars()
+        .filter(|c| c.is_alphanumeric() || *c == ' ' || *c == '-' || *c == '_')
+        .map(|c| if c == ' ' { '-' } else { c })
+        .collect()
+}

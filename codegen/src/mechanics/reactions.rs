@@ -12,9 +12,9 @@ use super::finding::Stage;
 use super::gibbs_appell::{BodyMotion, along, partial_velocities};
 use super::kinematics::{Effort, Kinematics};
 use super::loads::{applied_loads, generalized_forces};
-use super::symbols::Symbols;
+use super::symbols::{Symbols, ids};
 use crate::symbolic::vector::{self, Vec3};
-use crate::symbolic::{Expr, Graph};
+use crate::symbolic::{Expr, Graph, Substitution};
 
 /// Reaction at every place of [`Constraints::reactions`], in the ground.
 pub fn reactions(
@@ -31,6 +31,16 @@ pub fn reactions(
     let kinematics = Kinematics::new(algebra, mechanism, symbols, rates, &carried, Effort::Plain)?;
     let loads = applied_loads(algebra, mechanism, symbols, &kinematics, rates)?;
     let applied = generalized_forces(algebra, &loads, &violation.rates);
+    // The violations only tell directions: a damper resists the motion that happens.
+    let none: Vec<_> = ids(&algebra.graph, &violation.rates)
+        .into_iter()
+        .map(|rate| (rate, Graph::ZERO))
+        .collect();
+    let mut allowed = Substitution::new(&mut algebra.graph, &none);
+    let applied: Vec<Expr> = applied
+        .into_iter()
+        .map(|force| allowed.apply(&mut algebra.graph, force).unwrap_or(force))
+        .collect();
 
     // Inertial forces, shared by all reactions.
     let mut inertial = Vec::with_capacity(bodies.len());

@@ -8,9 +8,9 @@ use super::layout;
 use super::syntax as s;
 use super::types::{Types, result_struct};
 use crate::program::{Function, Layout};
+use crate::schedule::pi::parts_of_pi;
 use crate::schedule::piece::method;
 use crate::schedule::{Argument, Operation, Schedule, Step, Tree, Value};
-use crate::schedule::pi::parts_of_pi;
 use crate::symbolic::{Rational, Relation};
 
 /// The statements of a function; the last one is its result.

@@ -18,7 +18,7 @@ use quote::quote;
 use thiserror::Error;
 
 use crate::program::{FunctionKind, Program};
-use crate::schedule::{OperationCount, schedule};
+use crate::schedule::{OperationCount, Tuning, schedule_tuned};
 use types::Types;
 
 /// What to emit.
@@ -31,6 +31,8 @@ pub struct Options {
     /// Whether to emit `INFO` and the implementation of `Model`, which need the standard library
     /// and all functions.
     pub model_impl: bool,
+    /// What the schedules are made for.
+    pub tuning: Tuning,
     /// Text of the spec, kept in the constant `SPEC`.
     pub spec: Option<String>,
 }
@@ -41,6 +43,7 @@ impl Default for Options {
             functions: Vec::new(),
             runtime: "::appell_runtime".to_owned(),
             model_impl: true,
+            tuning: Tuning::default(),
             spec: None,
         }
     }
@@ -114,7 +117,7 @@ pub fn emit(program: &Program, options: &Options) -> Result<Emitted, Error> {
     let mut items = Vec::new();
     let mut solves = false;
     for function in functions {
-        let schedule = schedule(program, function);
+        let schedule = schedule_tuned(program, function, options.tuning);
         let cost = OperationCount::of(&schedule);
         solves |= cost.solves > 0;
         results.extend(types.results_struct(function));

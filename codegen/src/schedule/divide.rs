@@ -1,4 +1,5 @@
-//! Divisions are dear: what divides more than one product gets one reciprocal.
+//! Divisions are dear: what divides more than one product gets one reciprocal, and independent
+//! denominators share one division.
 
 use super::dag::{Dag, Id, Item, Op};
 
@@ -50,4 +51,98 @@ fn denominators(dag: &Dag, id: Id) -> Vec<Id> {
         .collect();
     below.dedup();
     below
+}
+
+/// Most denominators that share a division. Their product must stay far from overflow, in single
+/// precision too.
+const MOST: usize = 3;
+
+/// Computes the reciprocals of up to three denominators from one: with `j = 1/(a·b)`, `1/a = j·b`
+/// and `1/b = j·a`. Three multiplications replace a division, which takes longer.
+///
+/// Sines, cosines and other functions keep divisions of their own. Where one of them vanishes, a
+/// coordinate is singular, and this must not spoil what does not depend on the coordinate.
+pub(super) fn join_divisions(dag: &mut Dag, order: &[Id]) {
+    let bases = independent_denominators(dag, order);
+    for group in bases.chunks(MOST) {
+        if group.len() >= 2 {
+            let reciprocals = joint_reciprocals(dag, group);
+            for &id in order {
+                put_in(dag, id, &reciprocals);
+            }
+        }
+    }
+}
+
+/// Denominators that may share a division. None of them needs another division first.
+fn independent_denominators(dag: &Dag, order: &[Id]) -> Vec<Id> {
+    let mut divided = vec![false; dag.len()];
+    let mut bases = Vec::new();
+    for &id in order {
+        let mut needs_division = false;
+        dag.for_each_part(id, |part| needs_division |= divided[part.id.index()]);
+        let below = denominators(dag, id);
+        divided[id.index()] = needs_division || !below.is_empty();
+        bases.extend(below);
+    }
+    bases.retain(|&base| {
+        let function = !matches!(dag.op(base), Op::Sum(_) | Op::Product(_) | Op::Argument(_));
+        !function && !divided[base.index()]
+    });
+    // Once each, in the order in which they are needed.
+    let mut seen = vec![false; dag.len()];
+    bases.retain(|base| !std::mem::replace(&mut seen[base.index()], true));
+    bases
+}
+
+/// Each denominator with its reciprocal, all from one division.
+fn joint_reciprocals(dag: &mut Dag, group: &[Id]) -> Vec<(Id, Id)> {
+    let mut products = vec![group[0]];
+    for &base in &group[1..] {
+        let last = products[products.len() - 1];
+        products.push(dag.product(vec![Item::plain(last), Item::plain(base)]).id);
+    }
+    let last = products[products.len() - 1];
+    let mut rest = dag.intern(Op::Product(vec![Item {
+        id: last,
+        flip: true,
+    }]));
+    let mut reciprocals = Vec::with_capacity(group.len());
+    for position in (1..group.len()).rev() {
+        let others = Item::plain(products[position - 1]);
+        let reciprocal = dag.product(vec![Item::plain(rest), others]).id;
+        reciprocals.push((group[position], reciprocal));
+        rest = dag
+            .product(vec![Item::plain(rest), Item::plain(group[position])])
+            .id;
+    }
+    reciprocals.push((group[0], rest));
+    reciprocals
+}
+
+/// Multiplies by the reciprocals where a product divided.
+fn put_in(dag: &mut Dag, id: Id, reciprocals: &[(Id, Id)]) {
+    let Op::Product(factors) = dag.op(id) else {
+        return;
+    };
+    let new: Vec<Item> = factors
+        .iter()
+        .map(|&factor| {
+            let found = reciprocals
+                .iter()
+                .find(|(base, _)| factor.flip && *base == factor.id);
+            found.map_or(factor, |&(_, reciprocal)| Item::plain(reciprocal))
+        })
+        .collect();
+    if new != *factors {
+        // A lone reciprocal becomes another name of the same value.
+        dag.replace(
+            id,
+            if let [only] = new[..] {
+                Op::Sum(vec![only])
+            } else {
+                Op::Product(new)
+            },
+        );
+    }
 }

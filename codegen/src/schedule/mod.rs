@@ -28,6 +28,26 @@ pub use interpret::interpret;
 use crate::program::{self, Program};
 use crate::symbolic::{Function, Rational, Relation};
 
+/// What schedules are made for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Tuning {
+    /// A division takes as long as so many other operations. From about 5 on, independent
+    /// denominators share one division; that pays in vector registers.
+    pub division: usize,
+    /// Nodes that the search may pass over. Small functions try every plan within the default;
+    /// large ones only the two most promising plans.
+    pub effort: usize,
+}
+
+impl Default for Tuning {
+    fn default() -> Self {
+        Self {
+            division: 3,
+            effort: 2500,
+        }
+    }
+}
+
 /// The operations of one function of a program, as few as are found.
 ///
 /// # Panics
@@ -35,8 +55,17 @@ use crate::symbolic::{Function, Rational, Relation};
 /// If an expression contains a symbol that is not an argument of the program, which the derivation
 /// must not let happen.
 pub fn schedule(program: &Program, function: &program::Function) -> Schedule {
+    schedule_tuned(program, function, Tuning::default())
+}
+
+/// [`schedule`] for other costs, or with more patience.
+///
+/// # Panics
+///
+/// As [`schedule`].
+pub fn schedule_tuned(program: &Program, function: &program::Function, tuning: Tuning) -> Schedule {
     let derived = lower::lower(program, function);
-    let cheapest = search::cheapest(&derived);
+    let cheapest = search::cheapest(&derived, tuning);
     bind::bind(program, function, &cheapest)
 }
 

@@ -26,7 +26,10 @@ mod tests {
     fn the_fraction_is_the_number_of_the_machine() {
         assert_eq!(pi().to_f64().to_bits(), std::f64::consts::PI.to_bits());
         assert_eq!(parts_of_pi(&pi()), Some((1, 1)));
-        assert_eq!(parts_of_pi(&(&pi() * &Rational::new(-5, 36))), Some((-5, 36)));
+        assert_eq!(
+            parts_of_pi(&(&pi() * &Rational::new(-5, 36))),
+            Some((-5, 36))
+        );
         assert_eq!(parts_of_pi(&Rational::new(22, 7)), None);
         assert_eq!(parts_of_pi(&Rational::ZERO), None);
     }

@@ -1,8 +1,9 @@
 //! Tries several orders of rewriting and keeps the cheapest result.
 
+use super::Tuning;
 use super::cancel::cancel;
 use super::dag::{Dag, Item};
-use super::divide::share_reciprocals;
+use super::divide::{join_divisions, share_reciprocals};
 use super::factor::factor;
 use super::rebuild::{Dissolve, rebuild};
 use super::scale::scale;
@@ -89,22 +90,18 @@ const PLANS: [Plan; 6] = [
     },
 ];
 
-/// A division takes about as long as so many other operations.
-const DIVISION: usize = 4;
-
 /// Operations that a name from the derivation is worth.
 const NAME: usize = 1;
-/// Nodes that all plans together may pass over. Small functions try every plan, large ones two.
-const EFFORT: usize = 2500;
 
 /// The cheapest equivalent graph found. What is cheaper by nothing stays as derived.
-pub(super) fn cheapest(derived: &Dag) -> Dag {
+pub(super) fn cheapest(derived: &Dag, tuning: Tuning) -> Dag {
+    let weigh = |dag: &Dag| dag.weight(&dag.order(), tuning.division);
     let mut best = finish(&rebuild(derived, Dissolve::Unnamed));
-    let mut least = best.weight(&best.order(), DIVISION);
+    let mut least = weigh(&best);
     let mut effort = 0;
     for (number, plan) in PLANS.into_iter().enumerate() {
         effort += derived.len() * plan.levels.len();
-        if number >= 2 && effort > EFFORT {
+        if number >= 2 && effort > tuning.effort {
             break;
         }
         let candidate = finish(&follow(derived, plan));
@@ -113,12 +110,17 @@ pub(super) fn cheapest(derived: &Dag) -> Dag {
         } else {
             0
         };
-        let weight = candidate.weight(&candidate.order(), DIVISION) + nameless;
+        let weight = weigh(&candidate) + nameless;
         if weight < least {
             (best, least) = (candidate, weight);
         }
     }
-    best
+    let joint = joined(&best);
+    if weigh(&joint) < weigh(&best) {
+        joint
+    } else {
+        best
+    }
 }
 
 fn follow(derived: &Dag, plan: Plan) -> Dag {
@@ -145,9 +147,18 @@ fn follow(derived: &Dag, plan: Plan) -> Dag {
     dag
 }
 
+/// Reciprocals come last: the other passes see through divisions.
 fn finish(dag: &Dag) -> Dag {
     let mut dag = dag.clone();
     let order = dag.order();
     share_reciprocals(&mut dag, &order);
     rebuild(&dag, Dissolve::Unnamed)
+}
+
+/// As few divisions as possible.
+fn joined(dag: &Dag) -> Dag {
+    let mut joint = dag.clone();
+    let order = joint.order();
+    join_divisions(&mut joint, &order);
+    rebuild(&joint, Dissolve::Unnamed)
 }

@@ -223,3 +223,43 @@ fn a_state_without_accelerations_fails_with_its_numbers() {
     assert!(out["cases"][0]["rates"]["omega"].is_number());
     assert!(out["cases"][1]["rates"]["omega"].is_null());
 }
+
+#[test]
+fn degrees_and_pi_in_expressions_are_numbers() {
+    let folder = Folder::new();
+    folder.write(
+        "tilted.toml",
+        r#"[mechanism]
+name = "tilted"
+title = "A pendulum on a stand that is not upright"
+[parameters]
+m = { value = 1, unit = "kg" }
+g = { value = 9.81, unit = "m/s^2" }
+l = { value = 1, unit = "m" }
+[coordinates]
+a = { unit = "deg" }
+[frames]
+f = { parent = "ground", about_axis = "y", by = "a + 5[deg]" }
+[points]
+P = { from = "O", in = "f", at = [0, 0, "-l*pi"] }
+[bodies]
+b = { centre = "P", mass = "m" }
+[pseudo_velocities]
+w = { value = "dot(a)", unit = "rad/s" }
+[loads]
+weight = { kind = "gravity", down = "-z", acceleration = "g" }
+"#,
+    );
+    folder.write("in.json", r#"{"cases": [{"state": {"w": 0, "a": 0.1}}]}"#);
+    folder.done(&[
+        "evaluate",
+        "tilted.toml",
+        "--cases",
+        "in.json",
+        "--json",
+        "out.json",
+    ]);
+    let expected = -9.81 / std::f64::consts::PI * (0.1 + 5.0_f64.to_radians()).sin();
+    let out = folder.json("out.json");
+    assert_close(number(&out, "cases/0/rates/w"), expected, ROUNDING, "w");
+}

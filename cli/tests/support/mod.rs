@@ -9,19 +9,19 @@ use std::sync::atomic::{AtomicU32, Ordering};
 use serde_json::Value;
 
 /// A folder that is removed at the end of the test.
-pub struct Folder(PathBuf);
+pub(crate) struct Folder(PathBuf);
 
 /// What a command did.
-pub struct Outcome {
-    pub status: i32,
-    pub stdout: String,
-    pub stderr: String,
+pub(crate) struct Outcome {
+    pub(crate) status: i32,
+    pub(crate) stdout: String,
+    pub(crate) stderr: String,
 }
 
 static NEXT: AtomicU32 = AtomicU32::new(0);
 
 impl Folder {
-    pub fn new() -> Self {
+    pub(crate) fn new() -> Self {
         let number = NEXT.fetch_add(1, Ordering::Relaxed);
         let name = format!("appell-{}-{number}", std::process::id());
         let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
@@ -29,24 +29,24 @@ impl Folder {
         Self(path)
     }
 
-    pub fn path(&self, name: &str) -> PathBuf {
+    pub(crate) fn path(&self, name: &str) -> PathBuf {
         self.0.join(name)
     }
 
-    pub fn write(&self, name: &str, text: &str) {
+    pub(crate) fn write(&self, name: &str, text: &str) {
         fs::write(self.path(name), text).expect("a file of the test");
     }
 
-    pub fn read(&self, name: &str) -> String {
+    pub(crate) fn read(&self, name: &str) -> String {
         fs::read_to_string(self.path(name)).unwrap_or_else(|cause| panic!("{name}: {cause}"))
     }
 
-    pub fn json(&self, name: &str) -> Value {
+    pub(crate) fn json(&self, name: &str) -> Value {
         serde_json::from_str(&self.read(name)).expect("JSON")
     }
 
     /// Names of all files, sorted.
-    pub fn files(&self) -> Vec<String> {
+    pub(crate) fn files(&self) -> Vec<String> {
         let entries = fs::read_dir(&self.0).expect("the folder of the test");
         let name = |entry: std::io::Result<fs::DirEntry>| {
             entry
@@ -61,7 +61,7 @@ impl Folder {
     }
 
     /// Runs `appell` here.
-    pub fn run(&self, arguments: &[&str]) -> Outcome {
+    pub(crate) fn run(&self, arguments: &[&str]) -> Outcome {
         let output = Command::new(env!("CARGO_BIN_EXE_appell"))
             .args(arguments)
             .current_dir(&self.0)
@@ -76,14 +76,14 @@ impl Folder {
     }
 
     /// Runs `appell` here; it must succeed.
-    pub fn done(&self, arguments: &[&str]) -> Outcome {
+    pub(crate) fn done(&self, arguments: &[&str]) -> Outcome {
         let outcome = self.run(arguments);
         assert_eq!(outcome.status, 0, "{arguments:?}\n{}", outcome.stderr);
         outcome
     }
 
     /// Runs `appell` here; it must end with this status and say all of this.
-    pub fn fails(&self, status: i32, arguments: &[&str], says: &[&str]) -> Outcome {
+    pub(crate) fn fails(&self, status: i32, arguments: &[&str], says: &[&str]) -> Outcome {
         let outcome = self.run(arguments);
         assert_eq!(outcome.status, status, "{arguments:?}\n{}", outcome.stderr);
         for text in says {
@@ -106,13 +106,13 @@ impl Drop for Folder {
 }
 
 /// A number in a JSON value, by the path `a/b/0`.
-pub fn number(value: &Value, path: &str) -> f64 {
+pub(crate) fn number(value: &Value, path: &str) -> f64 {
     let found = value.pointer(&format!("/{path}")).and_then(Value::as_f64);
     found.unwrap_or_else(|| panic!("no number at {path} in {value:#}"))
 }
 
 /// Fails where two numbers differ by more than a tolerance relative to their size, or to 1.
-pub fn assert_close(found: f64, expected: f64, tolerance: f64, what: &str) {
+pub(crate) fn assert_close(found: f64, expected: f64, tolerance: f64, what: &str) {
     let allowed = tolerance * expected.abs().max(1.0);
     assert!(
         (found - expected).abs() <= allowed,
@@ -121,6 +121,6 @@ pub fn assert_close(found: f64, expected: f64, tolerance: f64, what: &str) {
 }
 
 /// A file of the repository.
-pub fn repository(path: &str) -> String {
+pub(crate) fn repository(path: &str) -> String {
     format!("{}/../{path}", env!("CARGO_MANIFEST_DIR"))
 }

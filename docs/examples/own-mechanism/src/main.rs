@@ -2,7 +2,13 @@
 
 mod furuta {
     #![doc = include_str!(concat!(env!("OUT_DIR"), "/furuta.md"))]
-    #![allow(non_snake_case, dead_code, unreachable_pub, clippy::all, clippy::pedantic)]
+    #![allow(
+        non_snake_case,
+        dead_code,
+        unreachable_pub,
+        clippy::all,
+        clippy::pedantic
+    )]
     include!(concat!(env!("OUT_DIR"), "/furuta.rs"));
 }
 

@@ -3,7 +3,7 @@
 //! `x/(4·a + 12·b)·8` has three multiplications by numbers; `2·x/(a + 3·b)` has two. For every
 //! sum the factor is taken out that leaves the fewest numbers in its terms and around it.
 
-use super::dag::{Dag, Id, Item, Op};
+use super::dag::{Dag, Id, Item, Op, System};
 use crate::symbolic::Rational;
 
 /// Takes a number out of every unnamed sum where that saves multiplications.
@@ -12,8 +12,31 @@ pub(super) fn scale(dag: &mut Dag, order: &[Id]) {
     if scales.taken_out.iter().all(Option::is_none) {
         return;
     }
-    for &id in order {
-        scales.rewrite(dag, id);
+    // The sums are about to change their values. Whoever looks for a product with one of them must
+    // not find a node that is yet to be rewritten: it would get the number twice.
+    let compound = |op: &Op| !matches!(op, Op::Number(_) | Op::Argument(_) | Op::Solution { .. });
+    let derived: Vec<(Id, Op)> = order
+        .iter()
+        .map(|&id| (id, dag.op(id).clone()))
+        .filter(|(_, op)| compound(op))
+        .collect();
+    for (id, _) in &derived {
+        dag.replace(*id, Op::Sum(Vec::new()));
+    }
+    for (id, op) in derived {
+        let new = scales.rewritten(dag, id, op);
+        dag.replace(id, new);
+    }
+    for index in 0..dag.systems.len() {
+        let System { matrix, right } = dag.systems[index].clone();
+        let mut whole = |items: Vec<Item>| -> Vec<Item> {
+            items
+                .into_iter()
+                .map(|item| scales.whole(dag, item))
+                .collect()
+        };
+        let (matrix, right) = (whole(matrix), whole(right));
+        dag.systems[index] = System { matrix, right };
     }
     for place in 0..dag.results.len() {
         let result = dag.results[place];
@@ -110,10 +133,10 @@ impl Scales {
             .flipped_if(item.flip)
     }
 
-    fn rewrite(&self, dag: &mut Dag, id: Id) {
-        let op = dag.op(id).clone();
-        let new = match op {
-            Op::Number(_) | Op::Argument(_) | Op::Solution { .. } => return,
+    /// The operation of a node on parts of which numbers were taken out; its own is taken out, too.
+    fn rewritten(&self, dag: &mut Dag, id: Id, op: Op) -> Op {
+        match op {
+            Op::Number(_) | Op::Argument(_) | Op::Solution { .. } => op,
             Op::Sum(terms) => {
                 let own = self.taken_out(id).map(Rational::recip);
                 let mut sum = Vec::with_capacity(terms.len());
@@ -142,7 +165,7 @@ impl Scales {
                     }
                 }
                 if number.is_one() {
-                    return;
+                    return Op::Product(factors);
                 }
                 let number = dag.number(&number);
                 let mut factors = factors;
@@ -155,8 +178,7 @@ impl Scales {
             Op::Choice(relation, items) => {
                 Op::Choice(relation, items.map(|item| self.whole(dag, item)))
             }
-        };
-        dag.replace(id, new);
+        }
     }
 }
 

@@ -3,10 +3,13 @@
 use appell_codegen::interpreted::InterpretedModel;
 use appell_codegen::jit::JitModel;
 use appell_codegen::program::Program;
+use appell_codegen::schedule::{interpret, schedule};
+use appell_codegen::symbolic::evaluate;
 use appell_models::Shipped;
 use appell_runtime::model::{At, Model};
 use appell_spec::Mechanism;
 
+use crate::independent::Point;
 use crate::shipped;
 
 /// A model and how it is executed.
@@ -166,6 +169,39 @@ impl Evaluation {
             ("reactions", &self.reactions),
             ("outputs", &self.outputs),
         ]
+    }
+}
+
+/// Two orders of a thousand operations round differently.
+const SCHEDULES: f64 = 1e-11;
+
+/// Demands that the schedules of a program compute what was derived: every result against the
+/// graph, evaluated expression by expression.
+pub fn assert_schedules(program: &Program, points: &[Point]) {
+    let schedules: Vec<_> = program
+        .functions
+        .iter()
+        .map(|f| (f, schedule(program, f)))
+        .collect();
+    for point in points {
+        let arguments = &program.arguments;
+        // The circle constant is a symbol that is no argument.
+        let mut values = vec![std::f64::consts::PI; program.graph.symbol_count()];
+        let symbols = [&arguments.states, &arguments.inputs, &arguments.parameters];
+        for (symbols, numbers) in symbols.into_iter().zip([&point.x, &point.u, &point.p]) {
+            for (symbol, &number) in symbols.iter().zip(numbers) {
+                values[symbol.0 as usize] = number;
+            }
+        }
+        values[arguments.time.0 as usize] = point.t;
+        for (function, schedule) in &schedules {
+            let results = interpret(schedule, point.t, &point.x, &point.u, &point.p);
+            for (array, scheduled) in function.results.iter().zip(results) {
+                let derived = evaluate(&program.graph, &values, &array.entries);
+                let what = format!("{}, {:?}, {}", program.info.name, function.kind, array.name);
+                assert_close(&what, &scheduled, &derived, SCHEDULES, 1e-3);
+            }
+        }
     }
 }
 

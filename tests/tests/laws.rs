@@ -5,7 +5,7 @@
 use appell_codegen::mechanics::gibbs_appell::{acceleration_energy, kinetic_energy};
 use appell_codegen::symbolic::{Expr, Graph};
 use appell_runtime::model::Model;
-use appell_tests::engine::{Evaluation, assert_close, engines, interpreter};
+use appell_tests::engine::{Evaluation, assert_close, assert_schedules, engines, interpreter};
 use appell_tests::independent::Point;
 use appell_tests::paper::energy_rate;
 use appell_tests::random::Random;
@@ -191,6 +191,18 @@ fn rates_and_jacobians_are_linear_in_the_inputs_that_enter_linearly() {
             assert_close(place, &by_rates, &by_b, JACOBIANS, scale);
         }
     });
+}
+
+#[test]
+fn the_schedules_compute_what_was_derived() {
+    for name in shipped::names() {
+        let program = shipped::program(&shipped::mechanism(&name));
+        let mut random = Random::of(&format!("schedules {name}"));
+        let points: Vec<Point> = (0..POINTS)
+            .map(|_| Point::random(&program.info, &mut random))
+            .collect();
+        assert_schedules(&program, &points);
+    }
 }
 
 #[test]

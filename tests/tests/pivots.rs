@@ -5,7 +5,7 @@
 
 use appell_runtime::model::Model;
 use appell_spec::Mechanism;
-use appell_tests::engine::{Evaluation, assert_close, in_process, interpreter};
+use appell_tests::engine::{Evaluation, assert_close, assert_schedules, in_process, interpreter};
 use appell_tests::independent::Point;
 use appell_tests::independent::compare::{FORMULATIONS, compare, compare_at};
 use appell_tests::random::Random;
@@ -90,6 +90,13 @@ fn assert_sound(mechanism: &Mechanism) {
         compare(mechanism, &*engine.model, POINTS);
     }
     let model = &*engines[0].model;
+    assert_schedules(
+        &program,
+        &[
+            Point::random(model.info(), &mut random),
+            Point::random(model.info(), &mut random),
+        ],
+    );
     for number in 0..POINTS {
         let point = Point::random(model.info(), &mut random);
         let e = Evaluation::of(model, point.at());

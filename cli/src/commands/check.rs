@@ -12,7 +12,10 @@ use crate::failure::{Failure, shown};
 use crate::source::Source;
 use crate::{files, progress};
 
-/// Validates specs: names, units, frames, constraints, pseudo-velocities, inertias.
+/// Validates specs and tells what they describe.
+///
+/// Names, units, frames, constraints, pseudo-velocities and inertias are checked; all mistakes are
+/// told at once, each with its line and what to write instead.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Check {
     /// Names of shipped mechanisms or paths of specs

@@ -5,7 +5,7 @@ use clap::CommandFactory as _;
 use crate::failure::Failure;
 use crate::files;
 
-/// Shell completions on standard output.
+/// Writes shell completions to standard output.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Completions {
     /// The shell.

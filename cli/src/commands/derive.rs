@@ -11,7 +11,9 @@ use crate::failure::Failure;
 use crate::source::Source;
 use crate::{files, progress};
 
-/// The derivation from frames to equations of motion, readable from top to bottom.
+/// Writes the derivation, from frames to equations of motion.
+///
+/// It is readable from top to bottom as text, LaTeX or HTML, or it is Rust.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Derive {
     /// Name of a shipped mechanism or path of a spec

@@ -12,8 +12,11 @@ use crate::failure::Failure;
 use crate::files;
 use crate::source::Source;
 
-/// Numbers at given states, all in SI: rates, Appell's equations, Jacobians, energies, reactions,
-/// outputs.
+/// Evaluates the equations at given states.
+///
+/// All numbers are in SI: rates, Appell's equations, Jacobians, energies, constraint forces,
+/// outputs. A case reads {"state": {"theta": 0.1, …}, "inputs": {…}, "parameters": {…}, "t": 0};
+/// only the state must be complete.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Evaluate {
     /// Name of a shipped mechanism or path of a spec

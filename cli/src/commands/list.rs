@@ -9,7 +9,7 @@ use crate::failure::Failure;
 use crate::files;
 use crate::table::table;
 
-/// Shipped mechanisms.
+/// Shows the shipped mechanisms.
 #[derive(Debug, clap::Args)]
 pub(crate) struct List {
     /// Write the list as JSON; `-` is standard output

@@ -11,24 +11,16 @@ mod simulate;
 
 use crate::failure::Failure;
 
-/// The commands.
+/// The commands; each tells on itself what it does.
 #[derive(Debug, clap::Subcommand)]
 pub(crate) enum Command {
-    /// Shipped mechanisms
     List(list::List),
-    /// Write a commented spec to start from
     New(new::New),
-    /// Validate specs and tell what they describe
     Check(check::Check),
-    /// The equations of motion, as a page or as Rust
     Derive(derive::Derive),
-    /// Numbers at given states: rates, mass matrix, Jacobians, energies, reactions
     Evaluate(evaluate::Evaluate),
-    /// Integrate the equations of motion
     Simulate(simulate::Simulate),
-    /// Derive the unicycle, let it change lanes, draw the motion
     Demo(demo::Demo),
-    /// Shell completions
     #[command(hide = true)]
     Completions(completions::Completions),
 }

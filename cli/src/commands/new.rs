@@ -7,7 +7,7 @@ use std::path::PathBuf;
 use crate::failure::Failure;
 use crate::files;
 
-/// A commented spec to start from.
+/// Writes a commented spec to start from.
 #[derive(Debug, clap::Args)]
 pub(crate) struct New {
     /// Name of the mechanism: a letter, then letters, digits and `_`

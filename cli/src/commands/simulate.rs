@@ -39,10 +39,10 @@ pub(crate) struct Simulate {
     #[arg(long, value_enum, default_value_t = Integrator::Dop853)]
     method: Integrator,
     /// Tolerated error relative to each state
-    #[arg(long, default_value_t = 1e-9, allow_negative_numbers = true)]
+    #[arg(long, default_value = "1e-9", allow_negative_numbers = true)]
     rtol: f64,
     /// Tolerated error of states near zero, in SI
-    #[arg(long, default_value_t = 1e-9, allow_negative_numbers = true)]
+    #[arg(long, default_value = "1e-9", allow_negative_numbers = true)]
     atol: f64,
     /// A parameter, such as R=0.3 or R=30cm
     #[arg(long, value_name = "NAME=VALUE")]

@@ -5,8 +5,11 @@
 //! and every shipped mechanism obeys the laws. A new spec in `generated/mechanisms` is tested by
 //! existing.
 
-// Whatever fails here fails a test, which is the point.
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::missing_panics_doc)]
+#![allow(
+    clippy::unwrap_used,
+    clippy::missing_panics_doc,
+    reason = "whatever fails here fails a test, which is the point"
+)]
 
 pub mod dual;
 pub mod engine;

@@ -1,6 +1,6 @@
 //! Long motions: the free ones keep their energy, the controlled ones are those of the paper.
 
-#![allow(clippy::unwrap_used)]
+#![allow(clippy::unwrap_used, reason = "what is missing fails the test")]
 
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 

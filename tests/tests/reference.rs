@@ -1,6 +1,6 @@
 //! Every execution reproduces the reference vectors.
 
-#![allow(clippy::unwrap_used)]
+#![allow(clippy::unwrap_used, reason = "what is missing fails the test")]
 
 use appell_models::unicycle;
 use appell_runtime::Dual;
@@ -284,15 +284,13 @@ fn euc_with_three_degrees_of_freedom() {
         let info = model.info();
         let point = euc_point(info, case);
         let e = Evaluation::of(model, point.at());
-        // The file counts the potential energy from the axle, the model from the ground.
-        let p = |name: &str| point.p[info.parameter_index(name).unwrap()];
-        let axle = (p("m") + p("m_0") + p("m_w")) * p("g") * p("R");
         for (name, got) in [
             ("M", e.mass_matrix),
             ("h_vec", e.bias),
             ("Q", e.forces),
             ("qdd", e.rates[..3].to_vec()),
             ("kinetic_energy", vec![e.energies[0]]),
+            ("potential_energy", vec![e.energies[1]]),
         ] {
             assert_close(
                 &format!("{place}, {name}"),
@@ -302,14 +300,6 @@ fn euc_with_three_degrees_of_freedom() {
                 0.0,
             );
         }
-        let height = [e.energies[1] - axle];
-        assert_close(
-            &format!("{place}, V"),
-            &height,
-            &numbers(&case["potential_energy"]),
-            REFERENCE,
-            axle,
-        );
     });
 }
 

@@ -5,7 +5,7 @@ use nalgebra::{DMatrix, DVector};
 use super::Setting;
 use super::evaluate::Values;
 use super::loads::{Applied, applied, external_force, power};
-use super::motion::{Motion, V3, add, apply, apply_transposed, cross, dot, scale, subtract};
+use super::motion::{Jet, Motion, V3, add, apply, apply_transposed, cross, dot, scale, subtract};
 
 /// Coefficients and solution of Kane's equations, in the notation of Appell's.
 #[derive(Debug, Clone)]
@@ -90,6 +90,29 @@ impl Velocities {
     }
 }
 
+/// How velocities of the bodies grow with one pseudo-velocity.
+struct Partial {
+    /// Of the centres of mass.
+    v: Vec<V3<f64>>,
+    /// Of the turning.
+    w: Vec<V3<f64>>,
+}
+
+impl Partial {
+    /// From the motion with one unit of the pseudo-velocity and the one without any.
+    fn new(along: &Motion<f64>, rest: &Motion<f64>, bodies: usize) -> Self {
+        let now = |jet: V3<Jet<f64>>| jet.map(|c| c.value);
+        Self {
+            v: (0..bodies)
+                .map(|k| subtract(now(along.centre(k)), now(rest.centre(k))))
+                .collect(),
+            w: (0..bodies)
+                .map(|k| subtract(now(along.body_turning(k)), now(rest.body_turning(k))))
+                .collect(),
+        }
+    }
+}
+
 /// A motion from the setting's coordinates.
 pub fn motion(setting: &Setting<'_>, rates: &[f64], accelerations: &[f64]) -> Motion<f64> {
     Motion::new(setting, setting.coordinates, rates, accelerations, 0.0)
@@ -143,24 +166,15 @@ pub fn kane(setting: &Setting<'_>) -> Kane {
     };
     let coasting = motion(setting, &rates, &accelerate(&vec![0.0; s]));
 
-    // Partial velocities.
+    // Partial velocities of the centres of mass and of the bodies' turning.
     let rest = motion(setting, &zeros, &zeros);
-    let partial: Vec<(Vec<V3<f64>>, Vec<V3<f64>>)> = (0..s)
+    let partial: Vec<Partial> = (0..s)
         .map(|i| {
-            let along = motion(setting, &velocities.direction(i), &zeros);
-            let difference = |a: V3<_>, b: V3<_>| {
-                subtract(
-                    a.map(|c: appell_runtime::Dual<f64, 1>| c.value),
-                    b.map(|c: appell_runtime::Dual<f64, 1>| c.value),
-                )
-            };
-            let v = (0..bodies)
-                .map(|k| difference(along.centre(k), rest.centre(k)))
-                .collect();
-            let w = (0..bodies)
-                .map(|k| difference(along.body_turning(k), rest.body_turning(k)))
-                .collect();
-            (v, w)
+            Partial::new(
+                &motion(setting, &velocities.direction(i), &zeros),
+                &rest,
+                bodies,
+            )
         })
         .collect();
 
@@ -178,13 +192,13 @@ pub fn kane(setting: &Setting<'_>) -> Kane {
     let mut bias = DVector::zeros(s);
     let mut forces = DVector::zeros(s);
     for i in 0..s {
-        let (v, w) = &partial[i];
+        let Partial { v, w } = &partial[i];
         for body in 0..bodies {
             let (force, moment) = inertial(&coasting, body);
             bias[i] += dot(force, v[body]) + dot(moment, w[body]);
             let mass = values.of(&setting.mechanism.bodies[body].mass);
             for j in 0..s {
-                let (vj, wj) = &partial[j];
+                let Partial { v: vj, w: wj } = &partial[j];
                 let spin = momentum(setting, &values, &rest, body, wj[body]);
                 mass_matrix[(i, j)] += mass * dot(v[body], vj[body]) + dot(w[body], spin);
             }

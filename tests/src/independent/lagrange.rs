@@ -152,13 +152,11 @@ fn reactions(
     );
     let mut places: Vec<(String, [Option<f64>; 3])> = Vec::new();
     let mut act = |name: &str, force: [Option<f64>; 3]| {
-        let place = match places.iter().position(|(place, _)| place == name) {
-            Some(place) => place,
-            None => {
-                places.push((name.to_owned(), [Some(0.0); 3]));
-                places.len() - 1
-            }
-        };
+        let known = places.iter().position(|(place, _)| place == name);
+        let place = known.unwrap_or_else(|| {
+            places.push((name.to_owned(), [Some(0.0); 3]));
+            places.len() - 1
+        });
         for (total, part) in places[place].1.iter_mut().zip(force) {
             *total = total.zip(part).map(|(total, part)| total + part);
         }

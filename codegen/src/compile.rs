@@ -1,7 +1,7 @@
 //! From the text of a spec to its program, with every mistake told at its place in the text.
 
 use appell_spec::mechanism::Mechanism;
-use appell_spec::{Code, Diagnostic, Report};
+use appell_spec::{Diagnostic, Report};
 
 use crate::mechanics::finding::{Finding, Item};
 use crate::mechanics::{Derivation, assemble, derive};
@@ -52,8 +52,6 @@ pub fn report(mechanism: &Mechanism, text: &str, findings: &[Finding]) -> Report
 }
 
 fn diagnostic(mechanism: &Mechanism, text: &str, finding: &Finding) -> Diagnostic {
-    // The tests hold every code of a finding to the table.
-    let code = Code::from_text(finding.code).unwrap_or(Code::SingularPseudoVelocities);
     let item = match finding.item {
         Item::Mechanism => None,
         Item::Frame(i) => mechanism.frames.get(i).map(|x| &x.span),
@@ -75,7 +73,7 @@ fn diagnostic(mechanism: &Mechanism, text: &str, finding: &Finding) -> Diagnosti
         };
         section("pseudo_velocities").or_else(|| section("mechanism"))
     });
-    let diagnostic = Diagnostic::error(code, finding.message.as_str()).help(finding.help.as_str());
+    let diagnostic = Diagnostic::error(finding.code, finding.message.as_str()).help(finding.help.as_str());
     diagnostic.at(span.unwrap_or_default(), "")
 }
 

@@ -1,10 +1,15 @@
 //! The graph with the tools that every stage of the derivation uses on it.
 
+use appell_spec::Code;
+
 use crate::symbolic::vector::Vec3;
 use crate::symbolic::{Derivatives, Expr, Graph, IdentityTest, Substitution, SymbolId};
 
+use super::finding::{Finding, Item, Outcome};
 use super::symbols::{Symbols, ids};
 
+/// Expressions that a derivation may hold.
+const MOST_EXPRESSIONS: usize = 1_000_000;
 /// Products with more terms than this are not multiplied out.
 const MOST_TERMS: usize = 200;
 
@@ -32,6 +37,20 @@ impl Algebra {
             coordinates,
             derivatives: Vec::new(),
         }
+    }
+
+    /// Fails where the expressions have grown beyond what a mechanism of bodies needs.
+    pub fn check_size(&self) -> Outcome<()> {
+        if self.graph.len() <= MOST_EXPRESSIONS {
+            return Ok(());
+        }
+        Err(vec![Finding {
+            code: Code::TooLarge,
+            message: format!("the equations need more than {MOST_EXPRESSIONS} expressions"),
+            item: Item::Mechanism,
+            help: "turn frames against the ground instead of against each other, or split the mechanism"
+                .to_owned(),
+        }])
     }
 
     /// `∂expr/∂symbol`; zero where `symbol` is not a symbol.
@@ -113,7 +132,10 @@ impl Algebra {
             if self.test.independent_of(&self.graph, best, coordinate) {
                 let at_zero = Substitution::new(&mut self.graph, &[(coordinate, Graph::ZERO)])
                     .apply(&mut self.graph, best);
-                best = at_zero.unwrap_or(best);
+                // At zero the expression may be undefined although no denominator is the number 0.
+                best = at_zero
+                    .filter(|&at_zero| self.test.are_equal(&self.graph, best, at_zero))
+                    .unwrap_or(best);
             }
         }
         best

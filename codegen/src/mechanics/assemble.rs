@@ -4,7 +4,7 @@ use appell_runtime::model::{Interpolation, ModelInfo, Quantity, SignalTable};
 use appell_spec::mechanism::{self, Label, Mechanism, Signal};
 
 use super::Derivation;
-use super::finding::{Item, Stage};
+use super::finding::{Item, Outcome};
 use super::gibbs_appell::{acceleration_energy, kinetic_energy};
 use super::kinematics::division_by_zero;
 use super::linear::ImplicitMotion;
@@ -35,7 +35,7 @@ pub fn program(
     mut derivation: Derivation,
     mechanism: &Mechanism,
     kinds: &[FunctionKind],
-) -> Stage<Program> {
+) -> Outcome<Program> {
     let mut functions = Vec::with_capacity(kinds.len());
     for &kind in kinds {
         functions.push(Function {
@@ -43,7 +43,7 @@ pub fn program(
             results: derivation.results(mechanism, kind)?,
         });
     }
-    let signals = derivation.tabulated_inputs();
+    let signals = tabulated_inputs(mechanism);
     let symbols = &derivation.symbols;
     let graph = &derivation.algebra.graph;
     let mut input_symbols = symbols.inputs.clone();
@@ -78,7 +78,7 @@ pub fn program(
 
 impl Derivation {
     /// The results of one function.
-    fn results(&mut self, mechanism: &Mechanism, kind: FunctionKind) -> Stage<Vec<Array>> {
+    fn results(&mut self, mechanism: &Mechanism, kind: FunctionKind) -> Outcome<Vec<Array>> {
         let speeds = self.symbols.speeds.len();
         let array = |name: &str, layout: Layout, entries: Vec<Expr>| Array {
             name: name.to_owned(),
@@ -123,8 +123,8 @@ impl Derivation {
                 )]
             }
             FunctionKind::Rates => vec![array("rates", Layout::State, self.rates())],
-            FunctionKind::Jacobians => self.jacobians(false),
-            FunctionKind::AllJacobians => self.jacobians(true),
+            FunctionKind::Jacobians => self.jacobians(mechanism, false),
+            FunctionKind::AllJacobians => self.jacobians(mechanism, true),
             FunctionKind::Energies => {
                 let kinetic: Vec<Expr> = self
                     .bodies
@@ -199,7 +199,7 @@ impl Derivation {
     }
 
     /// ẋ, A, B and, when asked for, P.
-    fn jacobians(&mut self, parameters: bool) -> Vec<Array> {
+    fn jacobians(&mut self, mechanism: &Mechanism, parameters: bool) -> Vec<Array> {
         let implicit = ImplicitMotion {
             gibbs: &self.gibbs,
             forces: &self.forces,
@@ -209,7 +209,7 @@ impl Derivation {
         let rates = self.rates();
         let residual = implicit.residual(&mut self.algebra, &self.symbols);
         let states = [self.symbols.speeds.as_slice(), &self.symbols.coordinates].concat();
-        let tabulated = self.tabulated_inputs();
+        let tabulated = tabulated_inputs(mechanism);
         let tabulated = tabulated
             .iter()
             .map(|&(signal, order)| self.symbols.signals[signal][usize::from(order)]);
@@ -244,26 +244,22 @@ impl Derivation {
         }
         results
     }
+}
 
-    /// Signals, and the orders of their derivatives that the motion depends on.
-    fn tabulated_inputs(&self) -> Vec<(usize, u8)> {
-        let graph = &self.algebra.graph;
-        let mentioned = |symbol: Expr| {
-            let symbol = ids(graph, &[symbol]);
-            self.rates()
-                .iter()
-                .any(|&rate| graph.mentions(rate, &symbol))
-        };
-        let mut found = Vec::new();
-        for (signal, orders) in self.symbols.signals.iter().enumerate() {
-            for (order, &symbol) in (0u8..).zip(orders) {
-                if order == 0 || mentioned(symbol) {
-                    found.push((signal, order));
-                }
-            }
-        }
-        found
-    }
+/// Signals with those of their derivatives that equations may contain: an imposed position enters
+/// with its velocity and acceleration, an imposed velocity with its acceleration.
+fn tabulated_inputs(mechanism: &Mechanism) -> Vec<(usize, u8)> {
+    let highest = |signal: &Signal| match signal.interpolation {
+        mechanism::Interpolation::Hold => 0,
+        mechanism::Interpolation::Linear => 1,
+        mechanism::Interpolation::Cubic => 2,
+    };
+    mechanism
+        .signals
+        .iter()
+        .enumerate()
+        .flat_map(|(signal, table)| (0..=highest(table)).map(move |order| (signal, order)))
+        .collect()
 }
 
 fn info(

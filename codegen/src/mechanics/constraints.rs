@@ -1,14 +1,15 @@
 //! Constraints as rows that are linear in the generalised velocities.
 
+use appell_spec::Code;
 use appell_spec::mechanism::{ConstraintKind, GROUND, Mechanism, PointId};
 
 use super::algebra::Algebra;
-use super::finding::{Finding, Item, Stage};
+use super::finding::{Finding, Item, Outcome};
 use super::kinematics::{Carried, Effort, Kinematics, division_by_zero, root_of};
 use super::lower::Lowering;
 use super::symbols::Symbols;
 use crate::symbolic::vector::{self, Vec3};
-use crate::symbolic::{Expr, Graph};
+use crate::symbolic::{Expr, Graph, Rational};
 
 /// One scalar constraint: `Σ coefficient · q̇ + rest = 0`.
 #[derive(Debug, Clone)]
@@ -28,7 +29,16 @@ pub struct Row {
     /// Coefficients of the imagined motions, one per entry of [`Constraints::carried`].
     pub carried: Vec<Expr>,
     /// The imagined motion that stands in for the row where geometry already embeds it.
-    pub stand_in: Option<usize>,
+    pub stand_in: Option<StandIn>,
+}
+
+/// An imagined motion that violates an embedded row at `coefficient` times its rate.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct StandIn {
+    /// Index into [`Constraints::carried`].
+    pub motion: usize,
+    /// Rate of the row for a unit rate of the motion; not zero.
+    pub coefficient: Rational,
 }
 
 /// How the reaction of a row is reported.
@@ -63,7 +73,7 @@ pub fn constraints(
     algebra: &mut Algebra,
     mechanism: &Mechanism,
     symbols: &Symbols,
-) -> Stage<Constraints> {
+) -> Outcome<Constraints> {
     let carried = imagined_motions(mechanism);
     let carried_rates: Vec<Expr> = carried
         .iter()
@@ -143,7 +153,7 @@ pub fn constraints(
             }
             ConstraintKind::Position { .. } => {
                 return Err(vec![Finding {
-                    code: "position-constraint-reserved",
+                    code: Code::PositionConstraintReserved,
                     message: "constraints between positions are not supported yet".to_owned(),
                     item,
                     help: "choose coordinates that satisfy the constraint by themselves".to_owned(),
@@ -170,7 +180,7 @@ pub fn constraints(
             ));
         }
     }
-    stand_ins(mechanism, &mut rows)?;
+    stand_ins(&algebra.graph, mechanism, &mut rows)?;
     Ok(Constraints {
         rows,
         reactions,
@@ -224,15 +234,23 @@ fn without(algebra: &mut Algebra, expr: Expr, symbols: &[Expr]) -> Expr {
     algebra.shortest(rest)
 }
 
-/// One motion per axis of the ground and per point from which a rolling contact hangs.
+/// One motion per axis of the ground and per point from which a constrained point hangs.
 fn imagined_motions(mechanism: &Mechanism) -> Vec<(PointId, usize)> {
     let mut carried = Vec::new();
     for constraint in &mechanism.constraints {
-        if let ConstraintKind::Rolling { body, .. } = &constraint.kind {
-            let root = root_of(mechanism, mechanism.bodies[*body].centre);
-            if !carried.contains(&(root, 0)) {
-                carried.extend((0..3).map(|axis| (root, axis)));
-            }
+        let carrier = match &constraint.kind {
+            ConstraintKind::Rolling { body, .. }
+            | ConstraintKind::FixedVelocity {
+                body: Some(body), ..
+            } => mechanism.bodies[*body].centre,
+            ConstraintKind::FixedVelocity {
+                point, body: None, ..
+            } => *point,
+            ConstraintKind::Velocity { .. } | ConstraintKind::Position { .. } => continue,
+        };
+        let root = root_of(mechanism, carrier);
+        if !carried.contains(&(root, 0)) {
+            carried.extend((0..3).map(|axis| (root, axis)));
         }
     }
     carried
@@ -253,8 +271,9 @@ pub fn motions_along(carried: &[(PointId, usize)], rates: &[Expr]) -> Vec<Carrie
 
 /// Finds the rows without any generalised velocity. Those of a rolling contact hold by geometry and
 /// get an imagined motion; others contradict the spec or say nothing.
-fn stand_ins(mechanism: &Mechanism, rows: &mut [Row]) -> Stage<()> {
+fn stand_ins(graph: &Graph, mechanism: &Mechanism, rows: &mut [Row]) -> Outcome<()> {
     let mut findings = Vec::new();
+    let mut taken: Vec<usize> = Vec::new();
     for row in rows.iter_mut() {
         if row.coefficients.iter().any(|&c| c != Graph::ZERO) {
             continue;
@@ -262,7 +281,7 @@ fn stand_ins(mechanism: &Mechanism, rows: &mut [Row]) -> Stage<()> {
         let item = Item::Constraint(row.constraint);
         if row.rest != Graph::ZERO {
             findings.push(Finding {
-                code: "dependent-constraints",
+                code: Code::DependentConstraints,
                 message: format!(
                     "`{}` cannot hold: no generalised velocity appears in it",
                     row.name
@@ -273,11 +292,39 @@ fn stand_ins(mechanism: &Mechanism, rows: &mut [Row]) -> Stage<()> {
             });
             continue;
         }
-        row.stand_in = row.carried.iter().position(|&c| c == Graph::ONE);
+        let fitting: Vec<StandIn> = row
+            .carried
+            .iter()
+            .enumerate()
+            .filter_map(|(motion, &c)| Some((motion, graph.as_number(c)?)))
+            .filter(|(_, coefficient)| !coefficient.is_zero())
+            .map(|(motion, coefficient)| StandIn {
+                motion,
+                coefficient: coefficient.clone(),
+            })
+            .collect();
+        row.stand_in = fitting
+            .iter()
+            .find(|fit| !taken.contains(&fit.motion))
+            .cloned();
+        taken.extend(row.stand_in.iter().map(|fit| fit.motion));
+        if row.stand_in.is_none() && !fitting.is_empty() {
+            findings.push(Finding {
+                code: Code::RedundantConstraint,
+                message: format!(
+                    "`{}` holds by geometry, and so does another constraint in the same direction: \
+                     how the two share their reaction cannot be told",
+                    row.name
+                ),
+                item,
+                help: "remove one of the two constraints; the motion stays the same".to_owned(),
+            });
+            continue;
+        }
         if row.stand_in.is_none() {
             let name = &mechanism.constraints[row.constraint].name;
             findings.push(Finding {
-                code: "redundant-constraint",
+                code: Code::RedundantConstraint,
                 message: format!("`{name}` always holds: no generalised velocity appears in it"),
                 item,
                 help: "remove the constraint".to_owned(),

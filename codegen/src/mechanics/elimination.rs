@@ -1,10 +1,11 @@
 //! Constraints and definitions of the pseudo-velocities, solved for the generalised velocities.
 
+use appell_spec::Code;
 use appell_spec::mechanism::Mechanism;
 
 use super::algebra::Algebra;
 use super::constraints::Constraints;
-use super::finding::{Finding, Item, Stage};
+use super::finding::{Finding, Item, Outcome};
 use super::lower::Lowering;
 use super::symbols::Symbols;
 use crate::symbolic::{Expr, Graph, Intervals};
@@ -45,7 +46,7 @@ pub fn eliminate(
     symbols: &Symbols,
     constraints: &Constraints,
     intervals: &mut Intervals,
-) -> Stage<GeneralizedVelocities> {
+) -> Outcome<GeneralizedVelocities> {
     let violation_rates: Vec<Expr> = constraints
         .rows
         .iter()
@@ -53,8 +54,10 @@ pub fn eliminate(
         .collect();
     let mut carried_rates = vec![Graph::ZERO; constraints.carried.len()];
     for (row, &violation) in constraints.rows.iter().zip(&violation_rates) {
-        if let Some(motion) = row.stand_in {
-            carried_rates[motion] = violation;
+        if let Some(stand_in) = &row.stand_in {
+            carried_rates[stand_in.motion] = algebra
+                .graph
+                .scale(&stand_in.coefficient.recip(), violation);
         }
     }
 
@@ -111,7 +114,7 @@ fn definition(
     symbols: &Symbols,
     index: usize,
     definition: &appell_spec::expr::Expr,
-) -> Stage<Equation> {
+) -> Outcome<Equation> {
     let lowering = Lowering {
         symbols,
         rates: &symbols.rates,
@@ -139,7 +142,7 @@ fn definition(
     })
 }
 
-fn check_count(mechanism: &Mechanism, constraints: &Constraints, equations: usize) -> Stage<()> {
+fn check_count(mechanism: &Mechanism, constraints: &Constraints, equations: usize) -> Outcome<()> {
     let coordinates = mechanism.coordinates.len();
     if equations == coordinates {
         return Ok(());
@@ -148,7 +151,7 @@ fn check_count(mechanism: &Mechanism, constraints: &Constraints, equations: usiz
     let speeds = mechanism.pseudo_velocities.len();
     let needed = coordinates.saturating_sub(rows);
     Err(vec![Finding {
-        code: "missing-pseudo-velocities",
+        code: Code::MissingPseudoVelocities,
         message: format!(
             "{coordinates} coordinates under {rows} velocity constraints need {needed} \
              pseudo-velocities, found {speeds}"
@@ -174,7 +177,7 @@ fn solve(
     mechanism: &Mechanism,
     mut equations: Vec<Equation>,
     intervals: &mut Intervals,
-) -> Stage<(Vec<Expr>, Vec<usize>)> {
+) -> Outcome<(Vec<Expr>, Vec<usize>)> {
     let unknowns = equations.len();
     let mut open: Vec<usize> = (0..unknowns).collect();
     let mut solved: Vec<Solved> = Vec::new();
@@ -282,13 +285,13 @@ fn safest_pivot(
     best.map(|(_, place)| place)
 }
 
-/// Fails where the remaining equations are dependent everywhere, by fraction-free elimination.
+/// Fails where the remaining equations are dependent everywhere, by elimination without regard to ranges.
 fn check_rank(
     algebra: &mut Algebra,
     mechanism: &Mechanism,
     equations: &[Equation],
     open: &[usize],
-) -> Stage<()> {
+) -> Outcome<()> {
     let mut rows: Vec<Vec<Expr>> = equations
         .iter()
         .map(|e| open.iter().map(|&c| e.coefficients[c]).collect())
@@ -301,7 +304,7 @@ fn check_rank(
         let Some(pivot) = pivot else {
             let coordinate = &mechanism.coordinates[open[column]].label.name;
             return Err(vec![Finding {
-                code: "singular-pseudo-velocities",
+                code: Code::SingularPseudoVelocities,
                 message: format!(
                     "pseudo-velocities and constraints do not determine `dot({coordinate})`"
                 ),

@@ -3,7 +3,7 @@
 use appell_spec::mechanism::Mechanism;
 
 use super::algebra::Algebra;
-use super::finding::Stage;
+use super::finding::Outcome;
 use super::motion::simplest_pivot;
 use crate::symbolic::{Expr, Graph};
 
@@ -25,7 +25,7 @@ impl FactorizedBlock {
         mechanism: &Mechanism,
         mass_matrix: &[Vec<Expr>],
         speeds: &[usize],
-    ) -> Stage<Self> {
+    ) -> Outcome<Self> {
         let name = |speed: usize| mechanism.pseudo_velocities[speed].label.name.as_str();
         let mut schur = mass_matrix.to_vec();
         let mut open = speeds.to_vec();

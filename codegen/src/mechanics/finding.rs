@@ -1,5 +1,7 @@
 //! What the derivation finds wrong with a mechanism.
 
+use appell_spec::Code;
+
 /// The item of a spec that a finding is about.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Item {
@@ -25,7 +27,7 @@ pub enum Item {
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Finding {
     /// Diagnostic code.
-    pub code: &'static str,
+    pub code: Code,
     /// What is wrong, one sentence.
     pub message: String,
     /// Where.
@@ -35,4 +37,4 @@ pub struct Finding {
 }
 
 /// Result of a stage of the derivation.
-pub type Stage<T> = Result<T, Vec<Finding>>;
+pub type Outcome<T> = Result<T, Vec<Finding>>;

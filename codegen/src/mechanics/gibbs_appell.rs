@@ -1,9 +1,10 @@
 //! The acceleration energy and its derivatives: mass matrix and bias of Appell's equations.
 
+use appell_spec::Code;
 use appell_spec::mechanism::Mechanism;
 
 use super::algebra::Algebra;
-use super::finding::{Finding, Item, Stage};
+use super::finding::{Finding, Item, Outcome};
 use super::frames::FrameVector;
 use super::kinematics::{Kinematics, division_by_zero};
 use super::lower::Lowering;
@@ -58,7 +59,7 @@ pub fn body_motions(
     symbols: &Symbols,
     kinematics: &Kinematics,
     rates: &[Expr],
-) -> Stage<Vec<BodyMotion>> {
+) -> Outcome<Vec<BodyMotion>> {
     let lowering = Lowering { symbols, rates };
     let time = TimeDerivative { symbols, rates };
     let mut motions = Vec::with_capacity(mechanism.bodies.len());
@@ -218,7 +219,7 @@ fn check_invariance(
     kinematics: &Kinematics,
     body: usize,
     inertia: &Mat3,
-) -> Stage<()> {
+) -> Outcome<()> {
     let item = &mechanism.bodies[body];
     let (Some(body_frame), Some(written)) = (item.frame, item.inertia.as_ref().map(|i| i.frame))
     else {
@@ -247,7 +248,7 @@ fn check_invariance(
         return Ok(());
     }
     Err(vec![Finding {
-        code: "inertia-not-invariant",
+        code: Code::InertiaNotInvariant,
         message: format!(
             "the inertia of `{}` is written in `{}`, but the body turns against that frame and the \
              tensor changes with it",

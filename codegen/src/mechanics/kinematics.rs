@@ -1,9 +1,10 @@
 //! Velocities of points and bodies for given generalised velocities.
 
+use appell_spec::Code;
 use appell_spec::mechanism::{BodyId, FrameId, GROUND, Mechanism, ORIGIN, PointId};
 
 use super::algebra::Algebra;
-use super::finding::{Finding, Item, Stage};
+use super::finding::{Finding, Item, Outcome};
 use super::frames::{FrameVector, Frames};
 use super::lower::Lowering;
 use super::symbols::Symbols;
@@ -52,7 +53,7 @@ impl Kinematics {
         rates: &[Expr],
         carried: &[Carried],
         effort: Effort,
-    ) -> Stage<Self> {
+    ) -> Outcome<Self> {
         let lowering = Lowering { symbols, rates };
         let time = TimeDerivative { symbols, rates };
         let frames = Frames::new(algebra, mechanism, &lowering, &time)
@@ -208,7 +209,7 @@ pub fn root_of(mechanism: &Mechanism, point: PointId) -> PointId {
 /// A spec expression that divides by the number zero.
 pub fn division_by_zero(item: Item) -> Finding {
     Finding {
-        code: "division-by-zero",
+        code: Code::DivisionByZero,
         message: "an expression divides by zero".to_owned(),
         item,
         help: "write the expression without the zero denominator".to_owned(),

@@ -3,7 +3,7 @@
 use appell_spec::mechanism::{Connection, GROUND, LoadKind, Mechanism, PointId};
 
 use super::algebra::Algebra;
-use super::finding::{Item, Stage};
+use super::finding::{Item, Outcome};
 use super::frames::FrameVector;
 use super::kinematics::{Kinematics, division_by_zero};
 use super::lower::Lowering;
@@ -65,7 +65,7 @@ pub fn applied_loads(
     symbols: &Symbols,
     kinematics: &Kinematics,
     rates: &[Expr],
-) -> Stage<Vec<AppliedLoad>> {
+) -> Outcome<Vec<AppliedLoad>> {
     let context = Context {
         mechanism,
         kinematics,

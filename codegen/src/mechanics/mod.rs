@@ -27,7 +27,7 @@ use crate::symbolic::{Expr, Graph, Intervals};
 use algebra::Algebra;
 use constraints::Constraints;
 use elimination::GeneralizedVelocities;
-use finding::Stage;
+use finding::Outcome;
 use gibbs_appell::{BodyMotion, GibbsForm};
 use kinematics::{Effort, Kinematics};
 use loads::AppliedLoad;
@@ -61,13 +61,14 @@ pub struct Derivation {
 }
 
 /// Derives the equations of motion of a mechanism.
-pub fn derive(mechanism: &Mechanism) -> Stage<Derivation> {
+pub fn derive(mechanism: &Mechanism) -> Outcome<Derivation> {
     let mut graph = Graph::new();
     let symbols = Symbols::new(&mut graph, mechanism);
     let mut algebra = Algebra::new(graph, &symbols, seed(mechanism));
     let mut intervals = declared_ranges(&algebra.graph, mechanism, &symbols);
 
     let constraints = constraints::constraints(&mut algebra, mechanism, &symbols)?;
+    algebra.check_size()?;
     let velocities = elimination::eliminate(
         &mut algebra,
         mechanism,
@@ -85,10 +86,12 @@ pub fn derive(mechanism: &Mechanism) -> Stage<Derivation> {
         Effort::Shortest,
     )?;
     let bodies = gibbs_appell::body_motions(&mut algebra, mechanism, &symbols, &kinematics, rates)?;
+    algebra.check_size()?;
     let gibbs = gibbs_appell::gibbs_form(&mut algebra, &bodies, symbols.speeds.len());
     let loads = loads::applied_loads(&mut algebra, mechanism, &symbols, &kinematics, rates)?;
     let forces = loads::generalized_forces(&mut algebra, &loads, &symbols.speeds);
 
+    algebra.check_size()?;
     let parts = gibbs_appell::named_parts(&mut algebra.graph, &bodies);
     let motion = motion::solve(&mut algebra, mechanism, &gibbs, &forces, &parts)?;
     let coordinate_rates = mechanism
@@ -112,32 +115,35 @@ pub fn derive(mechanism: &Mechanism) -> Stage<Derivation> {
     })
 }
 
-/// Ranges inside which a pivot must not vanish. A parameter keeps the sign of its value: a wheel of
-/// radius zero is another mechanism.
+/// Ranges inside which a pivot must not vanish. A parameter whose limits admit both signs may be
+/// zero; any other keeps the sign of its value: a wheel of radius zero is another mechanism.
 fn declared_ranges(graph: &Graph, mechanism: &Mechanism, symbols: &Symbols) -> Intervals {
     let coordinates = ids(graph, &symbols.coordinates)
         .into_iter()
         .zip(&mechanism.coordinates)
-        .filter_map(|(symbol, coordinate)| coordinate.range.map(|[low, high]| (symbol, low, high)));
+        .filter_map(|(symbol, q)| q.range.map(|[low, high]| (symbol, low, high)));
     let parameters = ids(graph, &symbols.parameters)
         .into_iter()
         .zip(&mechanism.parameters)
         .filter_map(|(symbol, p)| {
-            let (low, high) = match p.value {
-                v if v > 0.0 => (f64::MIN_POSITIVE, f64::INFINITY),
-                v if v < 0.0 => (f64::NEG_INFINITY, -f64::MIN_POSITIVE),
-                _ => return None,
-            };
-            let low = p.at_least.map_or(low, |least| low.max(least));
-            let high = p.at_most.map_or(high, |most| high.min(most));
-            Some((symbol, low, high))
+            let low = p.at_least.unwrap_or(f64::NEG_INFINITY);
+            let high = p.at_most.unwrap_or(f64::INFINITY);
+            let limited = p.at_least.is_some() || p.at_most.is_some();
+            if limited && low < 0.0 && high > 0.0 {
+                return Some((symbol, low, high));
+            }
+            match p.value {
+                v if v > 0.0 => Some((symbol, low.max(f64::MIN_POSITIVE), high)),
+                v if v < 0.0 => Some((symbol, low, high.min(-f64::MIN_POSITIVE))),
+                _ => None,
+            }
         });
     Intervals::new(graph, coordinates.chain(parameters).collect())
 }
 
 /// The identity test draws its points from the spec, so that every run draws the same.
 fn seed(mechanism: &Mechanism) -> u64 {
-    // FNV-1a: short, fixed for all time, and nobody attacks his own spec.
+    // FNV-1a: short and fixed for all time. A spec made to deceive the test deceives its author only.
     mechanism
         .name
         .bytes()

@@ -2,11 +2,12 @@
 //!
 //! M is positive definite, so every order of elimination is stable and the simplest pivot is taken.
 
+use appell_spec::Code;
 use appell_spec::mechanism::Mechanism;
 
 use super::algebra::Algebra;
 use super::factorized::FactorizedBlock;
-use super::finding::{Finding, Item, Stage};
+use super::finding::{Finding, Item, Outcome};
 use super::gibbs_appell::GibbsForm;
 use crate::symbolic::{Expr, Graph};
 
@@ -55,7 +56,7 @@ pub fn solve(
     gibbs: &GibbsForm,
     forces: &[Expr],
     parts: &[(Expr, Expr)],
-) -> Stage<Motion> {
+) -> Outcome<Motion> {
     let names: Vec<String> = mechanism
         .pseudo_velocities
         .iter()
@@ -176,7 +177,7 @@ fn eliminate(
     mass_matrix: &[Vec<Expr>],
     right: &[Expr],
     speeds: &[usize],
-) -> Stage<Vec<Eliminated>> {
+) -> Outcome<Vec<Eliminated>> {
     let mut schur = mass_matrix.to_vec();
     let mut right = right.to_vec();
     let mut open = speeds.to_vec();
@@ -228,7 +229,7 @@ pub fn simplest_pivot(
     mechanism: &Mechanism,
     schur: &[Vec<Expr>],
     open: &mut Vec<usize>,
-) -> Stage<usize> {
+) -> Outcome<usize> {
     let cost = |place: usize| algebra.graph.operations(&[schur[open[place]][open[place]]]);
     let place = (0..open.len())
         .min_by_key(|&place| (cost(place), place))
@@ -239,7 +240,7 @@ pub fn simplest_pivot(
     }
     let name = &mechanism.pseudo_velocities[k].label.name;
     Err(vec![Finding {
-        code: "singular-mass-matrix",
+        code: Code::SingularMassMatrix,
         message: format!("`{name}` can change without moving any mass"),
         item: Item::PseudoVelocity(k),
         help: "give a mass or an inertia to what it moves, or constrain it".to_owned(),

@@ -8,7 +8,7 @@ use appell_spec::mechanism::Mechanism;
 use super::algebra::Algebra;
 use super::constraints::{Constraints, motions_along};
 use super::elimination::Violation;
-use super::finding::Stage;
+use super::finding::Outcome;
 use super::gibbs_appell::{BodyMotion, along, partial_velocities};
 use super::kinematics::{Effort, Kinematics};
 use super::loads::{applied_loads, generalized_forces};
@@ -25,7 +25,7 @@ pub fn reactions(
     violation: &Violation,
     bodies: &[BodyMotion],
     accelerations: &[Expr],
-) -> Stage<Vec<Vec3>> {
+) -> Outcome<Vec<Vec3>> {
     let carried = motions_along(&constraints.carried, &violation.carried_rates);
     let rates = &violation.coordinate_rates;
     let kinematics = Kinematics::new(algebra, mechanism, symbols, rates, &carried, Effort::Plain)?;

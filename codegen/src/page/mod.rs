@@ -113,7 +113,7 @@ pub fn page(
     mechanism: &Mechanism,
     derivation: &mut Derivation,
     stage: Stage,
-) -> finding::Stage<Page> {
+) -> finding::Outcome<Page> {
     let mut writer = Writer::new(mechanism, derivation);
     let sections = sections::sections(&mut writer, stage)?;
     Ok(Page {

@@ -319,7 +319,7 @@ fn pythagoras(graph: &mut Graph, terms: &[Term]) -> Option<Vec<Term>> {
                 let partner_square = graph.square(partner_base);
                 graph.mul(rest, partner_square)
             };
-            let find = |expr: Expr| terms.iter().position(|t| t.expr == expr);
+            let find = |expr: Expr| terms.binary_search_by_key(&expr, |t| t.expr).ok();
             let (other, replacement, coefficient) = if let Some(j) = find(partner)
                 && terms[j].coefficient == term.coefficient
             {

@@ -95,7 +95,7 @@ impl Graph {
             for _ in 0..factor.exponent {
                 let (left, right) = (self.terms(product), self.terms(sum));
                 // A bound on the work: like terms may still meet.
-                if left.len().saturating_mul(right.len()) > limit.saturating_mul(limit) {
+                if left.len().saturating_mul(right.len()) > limit.saturating_mul(4) {
                     return None;
                 }
                 let mut parts = Vec::with_capacity(left.len() * right.len());

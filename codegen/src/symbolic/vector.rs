@@ -1,7 +1,7 @@
 //! Three components and their products.
 
-use super::node::Expr;
 use super::Graph;
+use super::node::Expr;
 
 /// Three components in a frame.
 pub type Vec3 = [Expr; 3];
@@ -20,12 +20,20 @@ pub const IDENTITY: Mat3 = [
 impl Graph {
     /// `a + b`
     pub fn add3(&mut self, a: Vec3, b: Vec3) -> Vec3 {
-        [self.add(a[0], b[0]), self.add(a[1], b[1]), self.add(a[2], b[2])]
+        [
+            self.add(a[0], b[0]),
+            self.add(a[1], b[1]),
+            self.add(a[2], b[2]),
+        ]
     }
 
     /// `a - b`
     pub fn sub3(&mut self, a: Vec3, b: Vec3) -> Vec3 {
-        [self.sub(a[0], b[0]), self.sub(a[1], b[1]), self.sub(a[2], b[2])]
+        [
+            self.sub(a[0], b[0]),
+            self.sub(a[1], b[1]),
+            self.sub(a[2], b[2]),
+        ]
     }
 
     /// `-a`
@@ -40,7 +48,11 @@ impl Graph {
 
     /// `a · b`
     pub fn dot(&mut self, a: Vec3, b: Vec3) -> Expr {
-        let products = [self.mul(a[0], b[0]), self.mul(a[1], b[1]), self.mul(a[2], b[2])];
+        let products = [
+            self.mul(a[0], b[0]),
+            self.mul(a[1], b[1]),
+            self.mul(a[2], b[2]),
+        ];
         self.sum(&products)
     }
 

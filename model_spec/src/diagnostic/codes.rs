@@ -195,4 +195,7 @@ codes! {
     SingularMassMatrix Derivation "singular-mass-matrix"
         "A motion without inertia"
         "Every pseudo-velocity must move some mass; otherwise its acceleration is not determined."
+    TooLarge Derivation "too-large"
+        "The equations are too large"
+        "The derivation stops before its expressions fill the memory. Frames that turn against the ground instead of against each other often shorten them."
 }

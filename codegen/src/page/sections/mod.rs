@@ -18,7 +18,7 @@ use super::{Block, Section, Span, Stage};
 use crate::mechanics::finding;
 
 /// The sections up to a stage.
-pub(super) fn sections(w: &mut Writer<'_>, stage: Stage) -> finding::Stage<Vec<Section>> {
+pub(super) fn sections(w: &mut Writer<'_>, stage: Stage) -> finding::Outcome<Vec<Section>> {
     let mut sections = vec![
         quantities::section(w),
         placement::section(w),

@@ -5,12 +5,12 @@ use super::super::letters::Letter;
 use super::super::math::{Equation, Math};
 use super::super::writer::Writer;
 use super::with;
-use crate::mechanics::finding::Stage;
+use crate::mechanics::finding::Outcome;
 use crate::mechanics::reactions::reactions;
 use crate::symbolic::Graph;
 
 /// The reaction at every constrained place; none without constraints.
-pub(super) fn section(w: &mut Writer<'_>) -> Stage<Option<Section>> {
+pub(super) fn section(w: &mut Writer<'_>) -> Outcome<Option<Section>> {
     let d = &mut *w.derivation;
     let forces = reactions(
         &mut d.algebra,

@@ -340,15 +340,16 @@ impl<'a> Binding<'a> {
     fn room(&self, id: Id) -> usize {
         let made_up = || {
             let consumer = self.outline.feeds[id.index()].and_then(|feed| self.given_name(feed));
-            consumer.map_or(LONGEST, |name| LONGEST.min(name.len() + "_part_10".len()))
+            consumer.map_or(LONGEST, |name| name.len() + "_part_10".len())
         };
         let minus = match self.dag.names[id.index()] {
-            Some(name) if name.negative != self.minus[id.index()] => "minus_".len(),
-            _ => 0,
+            Some(name) if name.negative == self.minus[id.index()] => 0,
+            _ => "minus_".len(),
         };
-        let name = self
+        let given = self
             .given_name(id)
-            .map_or_else(made_up, |name| name.len() + minus);
+            .filter(|_| self.outline.bound[id.index()]);
+        let name = given.map_or_else(made_up, |name| name.len() + minus);
         COLUMNS.saturating_sub(FRAME + name).max(NARROWEST)
     }
 

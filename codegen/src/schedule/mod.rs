@@ -43,7 +43,7 @@ impl Default for Tuning {
     fn default() -> Self {
         Self {
             division: 3,
-            effort: 2500,
+            effort: 400,
         }
     }
 }

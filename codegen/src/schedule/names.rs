@@ -200,7 +200,10 @@ pub(super) fn result_label(
             .get(i)
             .map_or_else(|| i.to_string(), Clone::clone)
     };
-    let prefix = array.name.as_str();
+    let prefix = match array.name.as_str() {
+        "generalized_forces" => "force",
+        name => name,
+    };
     match (kind, array.layout) {
         (
             FunctionKind::Rates | FunctionKind::Jacobians | FunctionKind::AllJacobians,

@@ -115,8 +115,8 @@ impl<'a> Outline<'a> {
     /// Goes from the results to what they need.
     fn find_feeds(&mut self) {
         for &id in self.order.iter().rev() {
-            let named = self.bound[id.index()]
-                && (self.dag.names[id.index()].is_some() || self.labels[id.index()].is_some());
+            let telling = self.dag.names[id.index()].is_some_and(|name| !name.automatic);
+            let named = self.bound[id.index()] && (telling || self.labels[id.index()].is_some());
             if named {
                 self.feeds[id.index()] = Some(id);
             }

@@ -267,13 +267,11 @@ pub fn jacobians<T: Real>(
         + T::if_less_or_equal(t, K, one, zero);
     let a_type__p = a_type__p_part_2 - a_type__p_part_1;
     let [solution_5_1, _, _] = lu_solve(&lu_1, [-solution_1_3, zero, -solution_1_2]);
-    let d_crate_d_half_part_1 = crate_part_1 + one + cos_half
-        + one / (one + half * half);
-    let d_crate_d_half_part_2 = d_crate_d_half_part_1 + one / half
-        + number_half / sqrt_half;
-    let d_crate_d_half = d_crate_d_half_part_2 - tanh_half * tanh_half;
-    let a_type__half_part_1 = T::if_less(p, p_minus_half, solution_5_1, d_crate_d_half);
-    let a_type__half = a_type__p_part_1 + a_type__half_part_1;
+    let a_type__half_part_1 = crate_part_1 + one + cos_half + one / (one + half * half);
+    let a_type__half_part_2 = a_type__half_part_1 + one / half + number_half / sqrt_half;
+    let d_crate_d_half = a_type__half_part_2 - tanh_half * tanh_half;
+    let a_type__half_part_3 = T::if_less(p, p_minus_half, solution_5_1, d_crate_d_half);
+    let a_type__half = a_type__p_part_1 + a_type__half_part_3;
     let one_minus_solution_2_2 = one - solution_2_2;
     let [_, _, solution_6_3] = lu_solve(
         &lu_1,
@@ -350,10 +348,10 @@ pub fn all_jacobians<T: Real>(
     let crate_part_1 = half.sign() + half.exp() + half.cosh() + half.sinh();
     let crate_part_2 = half.ln() + half.abs() + sqrt_half + tanh_half + half.atan();
     let crate_ = crate_part_2 + half.acos() + half.asin() + sin_half + crate_part_1;
-    let type__dot_part_3 = inv_p_minus_half * inv_p_minus_half_squared
-        + K * type__dot_part_2;
-    let type__dot_part_4 = type__dot_part_3 + T::if_less_or_equal(t, K, p, type_);
-    let type__dot = type__dot_part_4 + T::if_less(p, p_minus_half, solution_1_1, crate_);
+    let type__dot_part_3 = inv_p_minus_half * inv_p_minus_half_squared;
+    let type__dot_part_4 = type__dot_part_3 + K * type__dot_part_2;
+    let type__dot_part_5 = type__dot_part_4 + T::if_less_or_equal(t, K, p, type_);
+    let type__dot = type__dot_part_5 + T::if_less(p, p_minus_half, solution_1_1, crate_);
     let half_dot_part_1 = K.powf(p);
     let [solution_2_1, solution_2_2, solution_2_3] = lu_solve(&lu_1, [p, crate_, half]);
     let half_dot = solution_2_3 - p_minus_half.atan2(half_dot_part_1);
@@ -368,13 +366,11 @@ pub fn all_jacobians<T: Real>(
         + T::if_less_or_equal(t, K, one, zero);
     let a_type__p = a_type__p_part_2 - a_type__p_part_1;
     let [solution_5_1, _, _] = lu_solve(&lu_1, [-solution_1_3, zero, -solution_1_2]);
-    let d_crate_d_half_part_1 = crate_part_1 + one + cos_half
-        + one / (one + half * half);
-    let d_crate_d_half_part_2 = d_crate_d_half_part_1 + one / half
-        + number_half / sqrt_half;
-    let d_crate_d_half = d_crate_d_half_part_2 - tanh_half * tanh_half;
-    let a_type__half_part_1 = T::if_less(p, p_minus_half, solution_5_1, d_crate_d_half);
-    let a_type__half = a_type__p_part_1 + a_type__half_part_1;
+    let a_type__half_part_1 = crate_part_1 + one + cos_half + one / (one + half * half);
+    let a_type__half_part_2 = a_type__half_part_1 + one / half + number_half / sqrt_half;
+    let d_crate_d_half = a_type__half_part_2 - tanh_half * tanh_half;
+    let a_type__half_part_3 = T::if_less(p, p_minus_half, solution_5_1, d_crate_d_half);
+    let a_type__half = a_type__p_part_1 + a_type__half_part_3;
     let one_minus_solution_2_2 = one - solution_2_2;
     let [_, _, solution_6_3] = lu_solve(
         &lu_1,

@@ -599,13 +599,16 @@ pub fn bias<T: Real>(p: &Parameters<T>, x: &State<T>, _inputs: &Inputs<T>) -> Sp
     let m_R_omega_1 = m * R_omega_1;
     let bias_omega_2_part_1 = two_sigma - R_omega_1;
     let bias_omega_2_part_2 = m0_r_omega_1 * tan_theta + m_R_omega_1;
-    let bias_omega_2 = R_omega_3 * (bias_omega_2_part_2 - m0 * bias_omega_2_part_1);
+    let bias_omega_2_part_3 = bias_omega_2_part_2 - m0 * bias_omega_2_part_1;
+    let bias_omega_2 = R_omega_3 * bias_omega_2_part_3;
     let bias_omega_3_part_1 = m0_r_omega_1 * r + quarter * R * m_R_omega_1;
     let bias_omega_3_part_2 = m0_r * bias_omega_2_part_1;
     let bias_omega_3_part_3 = bias_omega_3_part_2 - tan_theta * bias_omega_3_part_1;
-    let bias_omega_3 = half * R_omega_2 * m_R_omega_1 + omega_3 * bias_omega_3_part_3;
-    let minus_bias_sigma = m0_r_omega_1 * omega_1
-        + omega_3 * (m0_r_omega_3 - m0 * R_omega_2);
+    let bias_omega_3_part_4 = half * R_omega_2 * m_R_omega_1;
+    let bias_omega_3 = bias_omega_3_part_4 + omega_3 * bias_omega_3_part_3;
+    let m0_r_omega_1_omega_1 = m0_r_omega_1 * omega_1;
+    let bias_sigma_part_1 = omega_3 * (m0_r_omega_3 - m0 * R_omega_2);
+    let minus_bias_sigma = m0_r_omega_1_omega_1 + bias_sigma_part_1;
 
     Speeds {
         omega_1: bias_omega_1,
@@ -640,22 +643,21 @@ pub fn generalized_forces<T: Real>(
     // Generalized forces.
     let R_sin_theta = R * sin_theta;
     let g_m_R_sin_theta = g * m * R_sin_theta;
-    let generalized_forces_omega_1_part_1 = g_m0 * (R_sin_theta - cos_theta * r);
-    let generalized_forces_omega_1 = g_m_R_sin_theta + generalized_forces_omega_1_part_1;
-    let generalized_forces_sigma = u - sin_theta * g_m0;
+    let force_omega_1 = g_m_R_sin_theta + g_m0 * (R_sin_theta - cos_theta * r);
+    let force_sigma = u - sin_theta * g_m0;
 
     Speeds {
-        omega_1: generalized_forces_omega_1,
+        omega_1: force_omega_1,
         omega_2: zero,
         omega_3: zero,
-        sigma: generalized_forces_sigma,
+        sigma: force_sigma,
     }
 }
 
 /// Rates ẋ of the state by Appell's equations M ω̇ + b = Π and kinematics.
 ///
 /// From `mechanisms/unicycle.toml`.
-/// Operations: 94 (28 +, 62 ×, 4 ÷), 2 sine-cosine pairs.
+/// Operations: 100 (32 +, 64 ×, 4 ÷), 2 sine-cosine pairs.
 #[must_use]
 #[inline]
 pub fn rates<T: Real>(p: &Parameters<T>, x: &State<T>, inputs: &Inputs<T>) -> State<T> {
@@ -674,53 +676,55 @@ pub fn rates<T: Real>(p: &Parameters<T>, x: &State<T>, inputs: &Inputs<T>) -> St
     let (sin_psi, cos_psi) = psi.sin_cos();
 
     // Combinations of parameters.
-    let R_squared = R * R;
-    let m_R_squared = m * R_squared;
-    let M_22 = m0 * R_squared + three_halves * m_R_squared;
+    let R_m0 = R * m0;
+    let R_R_m0 = R * R_m0;
+    let R_m = R * m;
+    let R_R_m = R * R_m;
+    let M_22 = R_R_m0 + three_halves * R_R_m;
 
     // Rates.
     let m0_r = m0 * r;
     let m0_r_r = m0_r * r;
-    let omega_3_squared = omega_3 * omega_3;
+    let M_11 = R_R_m0 + m0_r_r + five_quarters * R_R_m;
+    let m0_r_omega_3 = m0_r * omega_3;
+    let m0_r_omega_3_omega_3 = m0_r_omega_3 * omega_3;
+    let m0_r_omega_1 = m0_r * omega_1;
+    let g_sin_theta = g * sin_theta;
     let R_omega_3 = R * omega_3;
     let R_omega_3_omega_2 = R_omega_3 * omega_2;
-    let g_sin_theta = g * sin_theta;
-    let f_4_part_1 = R_omega_3_omega_2 + g_sin_theta;
-    let f_4_part_2 = m0 * (r * (omega_3_squared + omega_1 * omega_1) - f_4_part_1);
-    let f_4 = u + f_4_part_2;
+    let f_4_part_1 = m0_r_omega_3_omega_3 + m0_r_omega_1 * omega_1 + u;
+    let f_4 = f_4_part_1 - m0 * (g_sin_theta + R_omega_3_omega_2);
     let inv_cos_theta = one / cos_theta;
     let sin_theta_inv_cos_theta = sin_theta * inv_cos_theta;
-    let omega_1_dot_part_1 = sin_theta_inv_cos_theta * omega_3;
-    let omega_1_dot_part_2 = g_sin_theta + three_halves * R_omega_3_omega_2;
-    let omega_1_dot_part_3 = quarter * R_omega_3 * omega_1_dot_part_1;
-    let omega_1_dot_part_4 = f_4 + m * (omega_1_dot_part_2 - omega_1_dot_part_3);
-    let omega_1_dot_part_5 = omega_1_dot_part_4 + m0 * f_4_part_1;
-    let omega_1_dot_part_6 = m0_r * (omega_3_squared - omega_1_dot_part_1 * omega_2);
+    let f_1_part_1 = sin_theta_inv_cos_theta * r;
     let two_sigma = two * sigma;
-    let omega_1_dot_part_7 = g * cos_theta + omega_1_dot_part_1 * r * omega_3;
-    let omega_1_dot_part_8 = R * (omega_1_dot_part_5 - omega_1_dot_part_6);
-    let omega_1_dot_part_9 = m0_r * (omega_1_dot_part_7 + two_sigma * omega_1);
-    let omega_1_dot_part_10 = omega_1_dot_part_8 - omega_1_dot_part_9;
-    let omega_1_dot = omega_1_dot_part_10 / (m0_r_r + five_quarters * m_R_squared);
-    let m_R_squared_omega_1 = m_R_squared * omega_1;
-    let R_omega_1 = R * omega_1;
-    let f_3_part_1 = two_sigma - R_omega_1 - sin_theta_inv_cos_theta * r * omega_1;
-    let f_3_part_2 = quarter * sin_theta_inv_cos_theta * m_R_squared_omega_1;
-    let f_3_part_3 = omega_3 * (f_3_part_2 - m0_r * f_3_part_1);
-    let f_3 = f_3_part_3 - half * m_R_squared_omega_1 * omega_2;
+    let f_1_part_2 = R_m0 + m0_r * sin_theta_inv_cos_theta;
+    let f_1_part_3 = quarter * sin_theta_inv_cos_theta;
+    let f_1_part_4 = R_omega_3_omega_2 * (three_halves * R_m + f_1_part_2);
+    let f_1_part_5 = f_1_part_4 + g_sin_theta * (R_m0 + R_m) - g * m0_r * cos_theta;
+    let f_1_part_6 = f_1_part_5 - m0_r_omega_3_omega_3 * f_1_part_1
+        - m0_r_omega_1 * two_sigma;
+    let f_1 = f_1_part_6 - R_omega_3 * (m0_r_omega_3 + m * R_omega_3 * f_1_part_3);
+    let omega_1_dot = (R * f_4 + f_1) / (M_11 - R_R_m0);
+    let R_omega_3_omega_1 = R_omega_3 * omega_1;
+    let R_m_R_omega_3_omega_1 = R_m * R_omega_3_omega_1;
+    let f_3_part_1 = m0_r * R_omega_3_omega_1 + f_1_part_3 * R_m_R_omega_3_omega_1;
+    let f_3_part_2 = f_3_part_1 - half * R_R_m * omega_1 * omega_2;
+    let f_3 = f_3_part_2 - m0_r_omega_3 * (two_sigma - f_1_part_1 * omega_1);
     let R_m0_r = R * m0_r;
-    let minus_f_2 = R_omega_3 * (m * R_omega_1 - m0 * f_3_part_1);
-    let M_33 = m0_r_r + quarter * m_R_squared;
-    let omega_2_dot_part_1 = one / (M_33 * M_22 - m0_r * m0_r * R_squared);
-    let omega_2_dot = omega_2_dot_part_1 * (f_3 * R_m0_r - minus_f_2 * M_33);
-    let omega_3_dot = omega_2_dot_part_1 * (f_3 * M_22 - R_m0_r * minus_f_2);
+    let f_2_part_1 = m0 * R_omega_3 * two_sigma - R_m_R_omega_3_omega_1;
+    let f_2 = f_2_part_1 - f_1_part_2 * R_omega_3_omega_1;
+    let M_33 = m0_r_r + quarter * R_R_m;
+    let omega_2_dot_part_1 = one / (M_33 * M_22 - R_m0_r * R_m0_r);
+    let omega_2_dot = omega_2_dot_part_1 * (f_3 * R_m0_r + f_2 * M_33);
+    let omega_3_dot = omega_2_dot_part_1 * (R_m0_r * f_2 + f_3 * M_22);
     let sigma_dot = f_4 / m0 + R * omega_1_dot;
     let psi_dot = inv_cos_theta * omega_3;
-    let phi_dot = omega_2 - omega_1_dot_part_1;
+    let phi_dot = omega_2 - sin_theta_inv_cos_theta * omega_3;
     let R_omega_2 = R * omega_2;
-    let cos_theta_R_omega_1 = cos_theta * R_omega_1;
-    let x_G_dot = cos_psi * R_omega_2 + sin_psi * cos_theta_R_omega_1;
-    let y_G_dot = R_omega_2 * sin_psi - cos_psi * cos_theta_R_omega_1;
+    let R_cos_theta_omega_1 = R * cos_theta * omega_1;
+    let x_G_dot = cos_psi * R_omega_2 + sin_psi * R_cos_theta_omega_1;
+    let y_G_dot = R_omega_2 * sin_psi - cos_psi * R_cos_theta_omega_1;
 
     State {
         omega_1: omega_1_dot,
@@ -739,7 +743,7 @@ pub fn rates<T: Real>(p: &Parameters<T>, x: &State<T>, inputs: &Inputs<T>) -> St
 /// Rates ẋ with their derivatives by state and inputs.
 ///
 /// From `mechanisms/unicycle.toml`.
-/// Operations: 278 (78 +, 185 ×, 4 ÷, 11 sign), 2 sine-cosine pairs.
+/// Operations: 285 (79 +, 192 ×, 4 ÷, 10 sign), 2 sine-cosine pairs.
 #[must_use]
 #[inline]
 pub fn jacobians<T: Real>(
@@ -764,134 +768,136 @@ pub fn jacobians<T: Real>(
     let (sin_psi, cos_psi) = psi.sin_cos();
 
     // Combinations of parameters.
-    let R_squared = R * R;
-    let m0_R_squared = m0 * R_squared;
-    let m_R_squared = m * R_squared;
+    let R_m0 = R * m0;
+    let R_R_m0 = R * R_m0;
     let R_m = R * m;
-    let quarter_m_R_squared = quarter * m_R_squared;
-    let M_22 = m0_R_squared + three_halves * m_R_squared;
+    let three_halves_R_m = three_halves * R_m;
+    let half_R_m = half * R_m;
+    let quarter_R_m = quarter * R_m;
+    let M_22 = R_R_m0 + R * three_halves_R_m;
     let inv_m0 = one / m0;
 
     // Rates.
     let m0_r = m0 * r;
     let m0_r_r = m0_r * r;
-    let M_11 = m0_R_squared + m0_r_r + five_quarters * m_R_squared;
-    let omega_1_dot_part_1 = one / (M_11 - m0_R_squared);
+    let M_11 = R_R_m0 + m0_r_r + five_quarters * R * R_m;
+    let inv_M_11_minus_R_R_m0 = one / (M_11 - R_R_m0);
     let g_sin_theta = g * sin_theta;
-    let R_omega_2 = R * omega_2;
-    let R_omega_2_omega_3 = R_omega_2 * omega_3;
-    let omega_1_squared = omega_1 * omega_1;
-    let f_4_part_1 = g_sin_theta + R_omega_2_omega_3;
-    let f_4_part_2 = m0 * (f_4_part_1 - r * (omega_3 * omega_3 + omega_1_squared));
-    let f_4 = u - f_4_part_2;
+    let r_omega_3 = r * omega_3;
+    let r_omega_3_omega_3 = r_omega_3 * omega_3;
     let R_omega_3 = R * omega_3;
+    let R_omega_3_omega_2 = R_omega_3 * omega_2;
+    let r_omega_1 = r * omega_1;
+    let f_4_part_1 = g_sin_theta + R_omega_3_omega_2 - r_omega_3_omega_3;
+    let f_4 = u - m0 * (f_4_part_1 - r_omega_1 * omega_1);
     let a_psi_omega_3 = one / cos_theta;
     let minus_a_phi_omega_3 = sin_theta * a_psi_omega_3;
-    let psi_dot = a_psi_omega_3 * omega_3;
-    let sin_theta_psi_dot = sin_theta * psi_dot;
-    let sin_theta_psi_dot_r = sin_theta_psi_dot * r;
-    let omega_1_dot_part_2 = R_omega_3 + sin_theta_psi_dot_r;
-    let omega_1_dot_part_3 = omega_1_dot_part_2 - R_omega_2 * minus_a_phi_omega_3;
+    let f_1_part_1 = R_omega_3 * minus_a_phi_omega_3;
+    let m_R_omega_3 = m * R_omega_3;
+    let quarter_m_R_omega_3 = quarter * m_R_omega_3;
+    let R_omega_2 = R * omega_2;
+    let f_1_part_2 = minus_a_phi_omega_3 * omega_3;
+    let f_1_part_3 = r_omega_3 * f_1_part_2;
     let g_cos_theta = g * cos_theta;
     let two_sigma = two * sigma;
-    let omega_1_dot_part_4 = g_cos_theta + two_sigma * omega_1;
-    let omega_1_dot_part_5 = R * g_sin_theta + R_squared * omega_3 * omega_2;
-    let omega_1_dot_part_6 = r * (omega_3 * omega_1_dot_part_3 + omega_1_dot_part_4);
-    let omega_1_dot_part_7 = quarter * sin_theta_psi_dot;
-    let omega_1_dot_part_8 = g_sin_theta + three_halves * R_omega_2_omega_3;
-    let omega_1_dot_part_9 = omega_1_dot_part_8 - R_omega_3 * omega_1_dot_part_7;
-    let f_1 = m0 * (omega_1_dot_part_5 - omega_1_dot_part_6) + R_m * omega_1_dot_part_9;
-    let omega_1_dot = omega_1_dot_part_1 * (R * f_4 + f_1);
+    let f_1_part_4 = g_cos_theta + R_omega_3 * omega_3 + two_sigma * omega_1;
+    let f_1_part_5 = f_1_part_4 - f_1_part_1 * omega_2;
+    let f_1_part_6 = R * g_sin_theta + R_omega_3 * R_omega_2;
+    let f_1_part_7 = R_m * g_sin_theta + R_omega_3_omega_2 * three_halves_R_m;
+    let f_1_part_8 = f_1_part_7 + m0 * (f_1_part_6 - r * (f_1_part_3 + f_1_part_5));
+    let f_1 = f_1_part_8 - f_1_part_1 * quarter_m_R_omega_3;
+    let omega_1_dot = inv_M_11_minus_R_R_m0 * (R * f_4 + f_1);
     let R_m0_r = R * m0_r;
-    let half_m_R_squared_omega_1 = half * m_R_squared * omega_1;
+    let R_omega_1 = R * omega_1;
+    let R_omega_1_half_R_m = R_omega_1 * half_R_m;
     let R_m0_r_omega_1 = R_m0_r * omega_1;
     let two_m0_r = two * m0_r;
-    let a_psi_omega_3_omega_1 = a_psi_omega_3 * omega_1;
-    let d_f_3_d_omega_3_part_1 = sin_theta * a_psi_omega_3_omega_1;
-    let M_33 = m0_r_r + quarter_m_R_squared;
-    let d_f_3_d_omega_3_part_2 = R_m0_r_omega_1 + d_f_3_d_omega_3_part_1 * M_33;
-    let d_f_3_d_omega_3 = d_f_3_d_omega_3_part_2 - two_m0_r * sigma;
-    let f_3 = d_f_3_d_omega_3 * omega_3 - half_m_R_squared_omega_1 * omega_2;
-    let f_2_part_1 = sin_theta_psi_dot * omega_1;
-    let R_omega_1 = R * omega_1;
-    let m_R_omega_1 = m * R_omega_1;
-    let m0_omega_3 = m0 * omega_3;
-    let f_2_part_2 = R_omega_1 * m0_omega_3 - two_sigma * m0_omega_3;
-    let minus_f_2 = R * (m0_r * f_2_part_1 + m_R_omega_1 * omega_3 + f_2_part_2);
-    let R_squared_m0_r = R_squared * m0_r;
-    let m0_r_R_squared_m0_r = m0_r * R_squared_m0_r;
-    let omega_2_dot_part_1 = one / (m0_r_R_squared_m0_r - M_33 * M_22);
-    let omega_2_dot = omega_2_dot_part_1 * (M_33 * minus_f_2 - R_m0_r * f_3);
+    let m0_r_omega_1 = m0_r * omega_1;
+    let f_3_part_1 = m0_r_omega_1 * r + R_omega_1 * quarter_R_m;
+    let f_3_part_2 = R_m0_r_omega_1 + minus_a_phi_omega_3 * f_3_part_1;
+    let d_f_3_d_omega_3 = f_3_part_2 - two_m0_r * sigma;
+    let f_3 = d_f_3_d_omega_3 * omega_3 - R_omega_1_half_R_m * omega_2;
+    let f_2_part_1 = f_1_part_2 * m0_r_omega_1;
+    let m0_R_omega_3 = m0 * R_omega_3;
+    let f_2_part_2 = m0_R_omega_3 * omega_1 - m0 * two_sigma * omega_3;
+    let minus_f_2 = R * (f_2_part_1 + m_R_omega_3 * omega_1 + f_2_part_2);
+    let M_33 = m0_r_r + R * quarter_R_m;
+    let omega_2_dot_part_1 = one / (R_m0_r * R_m0_r - M_33 * M_22);
+    let omega_2_dot = omega_2_dot_part_1 * (minus_f_2 * M_33 - R_m0_r * f_3);
     let omega_3_dot = omega_2_dot_part_1 * (R_m0_r * minus_f_2 - f_3 * M_22);
     let sigma_dot = f_4 * inv_m0 + R * omega_1_dot;
-    let phi_dot = omega_2 - sin_theta_psi_dot;
+    let psi_dot = a_psi_omega_3 * omega_3;
+    let phi_dot = omega_2 - f_1_part_2;
     let cos_theta_R_omega_1 = cos_theta * R_omega_1;
     let x_G_dot = R_omega_2 * cos_psi + sin_psi * cos_theta_R_omega_1;
     let y_G_dot = R_omega_2 * sin_psi - cos_psi * cos_theta_R_omega_1;
 
     // Derivatives by the state.
-    let a_omega_1_omega_1_part_1 = two * (R_m0_r_omega_1 - m0_r * sigma);
-    let a_omega_1_omega_1 = omega_1_dot_part_1 * a_omega_1_omega_1_part_1;
-    let sin_theta_psi_dot_R_m0_r = sin_theta_psi_dot * R_m0_r;
-    let m_R_squared_omega_3 = m_R_squared * omega_3;
-    let a_omega_1_omega_2_part_1 = three_halves * m_R_squared_omega_3;
-    let a_omega_1_omega_2_part_2 = sin_theta_psi_dot_R_m0_r + a_omega_1_omega_2_part_1;
-    let a_omega_1_omega_2 = omega_1_dot_part_1 * a_omega_1_omega_2_part_2;
-    let m_R_omega_2 = m * R_omega_2;
-    let a_omega_1_omega_3_part_1 = m0_r * minus_a_phi_omega_3 * omega_2;
-    let three_halves_m_R_omega_2 = three_halves * m_R_omega_2;
-    let a_omega_1_omega_3_part_2 = a_omega_1_omega_3_part_1 + three_halves_m_R_omega_2;
-    let a_omega_1_omega_3_part_3 = half * sin_theta_psi_dot * R_m;
-    let a_omega_1_omega_3_part_4 = a_omega_1_omega_3_part_2 - a_omega_1_omega_3_part_3;
-    let a_omega_1_omega_3_part_5 = sin_theta_psi_dot_r * two_m0_r;
-    let a_omega_1_omega_3_part_6 = R * a_omega_1_omega_3_part_4;
-    let a_omega_1_omega_3_part_7 = a_omega_1_omega_3_part_5 - a_omega_1_omega_3_part_6;
-    let minus_a_omega_1_omega_3 = omega_1_dot_part_1 * a_omega_1_omega_3_part_7;
-    let a_omega_1_sigma_part_1 = omega_1_dot_part_1 * omega_1;
-    let minus_a_omega_1_sigma = two_m0_r * a_omega_1_sigma_part_1;
-    let a_omega_1_theta_part_1 = psi_dot * (psi_dot * r - R_omega_2 * a_psi_omega_3);
-    let g_cos_theta_R_m = g_cos_theta * R_m;
-    let a_omega_1_theta_part_2 = m0_r * (g_sin_theta - a_omega_1_theta_part_1);
-    let a_omega_1_theta_part_3 = g_cos_theta_R_m + a_omega_1_theta_part_2;
-    let a_omega_1_theta_part_4 = psi_dot * psi_dot * quarter_m_R_squared;
-    let a_omega_1_theta_part_5 = a_omega_1_theta_part_3 - a_omega_1_theta_part_4;
-    let a_omega_1_theta = omega_1_dot_part_1 * a_omega_1_theta_part_5;
-    let d_f_4_d_r = m0 * omega_1_squared + m0_omega_3 * omega_3;
-    let two_r = two * r;
-    let d_omega_1_dot_d_r_part_1 = omega_3 * (R_omega_3 + sin_theta_psi_dot * two_r);
-    let d_omega_1_dot_d_r_part_2 = omega_1_dot_part_4 + d_omega_1_dot_d_r_part_1;
-    let d_omega_1_dot_d_r_part_3 = R_omega_2 * sin_theta_psi_dot;
-    let d_omega_1_dot_d_r_part_4 = d_omega_1_dot_d_r_part_2 - d_omega_1_dot_d_r_part_3;
-    let d_omega_1_dot_d_r_part_5 = R * d_f_4_d_r - m0 * d_omega_1_dot_d_r_part_4;
-    let d_omega_1_dot_d_r_part_6 = d_omega_1_dot_d_r_part_5 - omega_1_dot * two_m0_r;
-    let d_omega_1_dot_d_r = omega_1_dot_part_1 * d_omega_1_dot_d_r_part_6;
-    let d_f_2_d_omega_1_part_1 = sin_theta_psi_dot_R_m0_r + m_R_squared_omega_3;
-    let minus_d_f_2_d_omega_1 = d_f_2_d_omega_1_part_1 + R_squared * m0_omega_3;
-    let m0_r_omega_3 = m0_r * omega_3;
-    let d_f_3_d_omega_1_part_1 = m0_r_omega_3 + omega_1_dot_part_7 * R_m;
-    let m0_r_r_sin_theta_psi_dot = m0_r_r * sin_theta_psi_dot;
-    let d_f_3_d_omega_1_part_2 = R * (d_f_3_d_omega_1_part_1 - half * m_R_omega_2);
-    let d_f_3_d_omega_1 = m0_r_r_sin_theta_psi_dot + d_f_3_d_omega_1_part_2;
-    let a_omega_2_omega_1_part_1 = M_33 * minus_d_f_2_d_omega_1;
-    let a_omega_2_omega_1_part_2 = a_omega_2_omega_1_part_1 - R_m0_r * d_f_3_d_omega_1;
-    let a_omega_2_omega_1 = omega_2_dot_part_1 * a_omega_2_omega_1_part_2;
-    let a_omega_2_omega_2_part_1 = half_m_R_squared_omega_1 * omega_2_dot_part_1;
+    let a_omega_1_omega_1_part_1 = m0_r * sigma - R_m0_r_omega_1;
+    let a_omega_1_omega_1_part_2 = minus_two * inv_M_11_minus_R_R_m0;
+    let a_omega_1_omega_1 = a_omega_1_omega_1_part_1 * a_omega_1_omega_1_part_2;
+    let a_omega_1_omega_2_part_1 = m0_r * f_1_part_1;
+    let a_omega_1_omega_2_part_2 = R_omega_3 * three_halves_R_m;
+    let a_omega_1_omega_2_part_3 = a_omega_1_omega_2_part_1 + a_omega_1_omega_2_part_2;
+    let a_omega_1_omega_2 = inv_M_11_minus_R_R_m0 * a_omega_1_omega_2_part_3;
+    let a_omega_1_omega_3_part_1 = f_1_part_2 * r;
+    let a_omega_1_omega_3_part_2 = three_halves_R_m + m0_r * minus_a_phi_omega_3;
+    let a_omega_1_omega_3_part_3 = half * m * f_1_part_1;
+    let a_omega_1_omega_3_part_4 = omega_2 * a_omega_1_omega_3_part_2;
+    let a_omega_1_omega_3_part_5 = a_omega_1_omega_3_part_3 - a_omega_1_omega_3_part_4;
+    let a_omega_1_omega_3_part_6 = two_m0_r * a_omega_1_omega_3_part_1;
+    let a_omega_1_omega_3_part_7 = R * a_omega_1_omega_3_part_5;
+    let a_omega_1_omega_3_part_8 = a_omega_1_omega_3_part_6 + a_omega_1_omega_3_part_7;
+    let minus_a_omega_1_omega_3 = inv_M_11_minus_R_R_m0 * a_omega_1_omega_3_part_8;
+    let a_omega_1_sigma = m0_r_omega_1 * a_omega_1_omega_1_part_2;
+    let a_psi_omega_3_squared = a_psi_omega_3 * a_psi_omega_3;
+    let a_omega_1_theta_part_1 = R_omega_3 * a_psi_omega_3_squared;
+    let a_omega_1_theta_part_2 = g_sin_theta + a_omega_1_theta_part_1 * omega_2;
+    let a_omega_1_theta_part_3 = r_omega_3_omega_3 * a_psi_omega_3_squared;
+    let a_omega_1_theta_part_4 = a_omega_1_theta_part_2 - a_omega_1_theta_part_3;
+    let a_omega_1_theta_part_5 = R_m * g_cos_theta + m0_r * a_omega_1_theta_part_4;
+    let a_omega_1_theta_part_6 = quarter_m_R_omega_3 * a_omega_1_theta_part_1;
+    let a_omega_1_theta_part_7 = a_omega_1_theta_part_5 - a_omega_1_theta_part_6;
+    let a_omega_1_theta = inv_M_11_minus_R_R_m0 * a_omega_1_theta_part_7;
+    let d_f_4_d_r = m0 * (omega_1 * omega_1 + omega_3 * omega_3);
+    let R_d_f_4_d_r = R * d_f_4_d_r;
+    let d_omega_1_dot_d_r_part_1 = R_d_f_4_d_r - m0 * (f_1_part_5 + two * f_1_part_3);
+    let d_omega_1_dot_d_r_part_2 = d_omega_1_dot_d_r_part_1 - omega_1_dot * two_m0_r;
+    let d_omega_1_dot_d_r = inv_M_11_minus_R_R_m0 * d_omega_1_dot_d_r_part_2;
+    let minus_d_f_2_d_omega_1 = a_omega_1_omega_2_part_1 + R_omega_3 * (R_m0 + R_m);
+    let a_omega_2_omega_1_part_1 = f_1_part_1 * quarter_R_m;
+    let a_omega_2_omega_1_part_2 = m0_r * (R_omega_3 + a_omega_1_omega_3_part_1);
+    let a_omega_2_omega_1_part_3 = a_omega_2_omega_1_part_1 + a_omega_2_omega_1_part_2;
+    let d_f_3_d_omega_1 = a_omega_2_omega_1_part_3 - R_omega_2 * half_R_m;
+    let a_omega_2_omega_1_part_4 = M_33 * minus_d_f_2_d_omega_1;
+    let a_omega_2_omega_1_part_5 = a_omega_2_omega_1_part_4 - R_m0_r * d_f_3_d_omega_1;
+    let a_omega_2_omega_1 = omega_2_dot_part_1 * a_omega_2_omega_1_part_5;
+    let a_omega_2_omega_2_part_1 = R_omega_1_half_R_m * omega_2_dot_part_1;
     let a_omega_2_omega_2 = R_m0_r * a_omega_2_omega_2_part_1;
-    let d_f_2_d_omega_3_part_1 = two_sigma - R_omega_1 - d_f_3_d_omega_3_part_1 * r;
-    let minus_d_f_2_d_omega_3 = R * (m_R_omega_1 - m0 * d_f_2_d_omega_3_part_1);
-    let a_omega_2_omega_3_part_1 = M_33 * minus_d_f_2_d_omega_3;
-    let a_omega_2_omega_3_part_2 = a_omega_2_omega_3_part_1 - R_m0_r * d_f_3_d_omega_3;
-    let a_omega_2_omega_3 = omega_2_dot_part_1 * a_omega_2_omega_3_part_2;
+    let a_omega_2_omega_3_part_1 = minus_a_phi_omega_3 * m0_r_omega_1 + R_m * omega_1;
+    let a_omega_2_omega_3_part_2 = m0 * (two_sigma - R_omega_1);
+    let minus_d_f_2_d_omega_3 = R
+        * (a_omega_2_omega_3_part_1 - a_omega_2_omega_3_part_2);
+    let a_omega_2_omega_3_part_3 = M_33 * minus_d_f_2_d_omega_3;
+    let a_omega_2_omega_3_part_4 = a_omega_2_omega_3_part_3 - R_m0_r * d_f_3_d_omega_3;
+    let a_omega_2_omega_3 = omega_2_dot_part_1 * a_omega_2_omega_3_part_4;
     let a_omega_2_sigma_part_1 = two * omega_2_dot_part_1;
-    let a_omega_2_sigma_part_2 = R_m0_r * m0_r_omega_3 - R * M_33 * m0_omega_3;
+    let a_omega_2_sigma_part_2 = m0_r * m0_r * R_omega_3 - m0_R_omega_3 * M_33;
     let a_omega_2_sigma = a_omega_2_sigma_part_1 * a_omega_2_sigma_part_2;
-    let d_f_3_d_r = f_2_part_2 + two_m0_r * f_2_part_1;
-    let minus_f_2_two_r = minus_f_2 * two_r;
-    let d_omega_2_dot_d_r_part_1 = R * (M_33 * f_2_part_1 - f_3 - d_f_3_d_r * r);
-    let minus_d_D_2_d_r = two_m0_r * (m0_R_squared - M_22);
-    let d_omega_2_dot_d_r_part_2 = m0 * (minus_f_2_two_r + d_omega_2_dot_d_r_part_1);
-    let d_omega_2_dot_d_r_part_3 = omega_2_dot * minus_d_D_2_d_r;
-    let d_omega_2_dot_d_r_part_4 = d_omega_2_dot_d_r_part_2 - d_omega_2_dot_d_r_part_3;
+    let a_omega_2_theta_part_1 = m0_r_omega_1 * a_omega_1_theta_part_1;
+    let a_omega_2_theta_part_2 = r_omega_3 * m0_r_omega_1 * a_psi_omega_3_squared;
+    let a_omega_2_theta_part_3 = quarter_R_m * a_omega_1_theta_part_1 * omega_1;
+    let d_f_3_d_theta = a_omega_2_theta_part_2 + a_omega_2_theta_part_3;
+    let a_omega_2_theta_part_4 = M_33 * a_omega_2_theta_part_1;
+    let a_omega_2_theta_part_5 = a_omega_2_theta_part_4 - R_m0_r * d_f_3_d_theta;
+    let a_omega_2_theta = omega_2_dot_part_1 * a_omega_2_theta_part_5;
+    let d_f_3_d_r = f_2_part_2 + two * f_2_part_1;
+    let d_omega_2_dot_d_r_part_1 = f_1_part_1 * M_33 * omega_1 + two * minus_f_2 * r;
+    let R_f_3_plus_d_f_3_d_r_r = R * (f_3 + d_f_3_d_r * r);
+    let d_omega_2_dot_d_r_part_2 = d_omega_2_dot_d_r_part_1 - R_f_3_plus_d_f_3_d_r_r;
+    let d_D_2_d_r = two_m0_r * M_22 - two * R_m0 * R_m0_r;
+    let d_omega_2_dot_d_r_part_3 = m0 * d_omega_2_dot_d_r_part_2;
+    let d_omega_2_dot_d_r_part_4 = d_omega_2_dot_d_r_part_3 + omega_2_dot * d_D_2_d_r;
     let d_omega_2_dot_d_r = omega_2_dot_part_1 * d_omega_2_dot_d_r_part_4;
     let M_22_d_f_3_d_omega_1 = M_22 * d_f_3_d_omega_1;
     let a_omega_3_omega_1_part_1 = R_m0_r * minus_d_f_2_d_omega_1;
@@ -902,30 +908,28 @@ pub fn jacobians<T: Real>(
     let a_omega_3_omega_3_part_1 = R_m0_r * minus_d_f_2_d_omega_3;
     let a_omega_3_omega_3_part_2 = d_f_3_d_omega_3_M_22 - a_omega_3_omega_3_part_1;
     let minus_a_omega_3_omega_3 = omega_2_dot_part_1 * a_omega_3_omega_3_part_2;
-    let a_omega_3_sigma_part_1 = M_22 * m0_r_omega_3 - m0_omega_3 * R_squared_m0_r;
+    let a_omega_3_sigma_part_1 = m0_r * M_22 * omega_3 - R_m0_r * m0_R_omega_3;
     let a_omega_3_sigma = a_omega_2_sigma_part_1 * a_omega_3_sigma_part_1;
-    let a_omega_3_theta_part_1 = psi_dot * a_psi_omega_3_omega_1;
-    let a_omega_3_theta_part_2 = M_33 * M_22 * a_omega_3_theta_part_1;
-    let a_omega_3_theta_part_3 = m0_r_R_squared_m0_r * a_omega_3_theta_part_1;
-    let a_omega_3_theta_part_4 = a_omega_3_theta_part_2 - a_omega_3_theta_part_3;
-    let minus_a_omega_3_theta = omega_2_dot_part_1 * a_omega_3_theta_part_4;
-    let d_omega_3_dot_d_r_part_1 = M_22 * d_f_3_d_r + omega_3_dot * minus_d_D_2_d_r;
-    let d_omega_3_dot_d_r_part_2 = m0 * (f_2_part_1 * R_squared_m0_r + R * minus_f_2);
-    let d_omega_3_dot_d_r_part_3 = d_omega_3_dot_d_r_part_1 - d_omega_3_dot_d_r_part_2;
+    let M_22_d_f_3_d_theta = M_22 * d_f_3_d_theta;
+    let a_omega_3_theta_part_1 = M_22_d_f_3_d_theta - R_m0_r * a_omega_2_theta_part_1;
+    let minus_a_omega_3_theta = omega_2_dot_part_1 * a_omega_3_theta_part_1;
+    let d_omega_3_dot_d_r_part_1 = M_22 * d_f_3_d_r - m0 * f_1_part_1 * R_m0_r_omega_1;
+    let d_omega_3_dot_d_r_part_2 = d_omega_3_dot_d_r_part_1 - R_m0 * minus_f_2;
+    let d_omega_3_dot_d_r_part_3 = d_omega_3_dot_d_r_part_2 - omega_3_dot * d_D_2_d_r;
     let minus_d_omega_3_dot_d_r = omega_2_dot_part_1 * d_omega_3_dot_d_r_part_3;
-    let b_omega_1_u = R * omega_1_dot_part_1;
-    let two_r_omega_1 = two_r * omega_1;
-    let d_sigma_dot_d_omega_1 = two_r_omega_1 + a_omega_1_omega_1_part_1 * b_omega_1_u;
-    let d_sigma_dot_d_omega_2 = a_omega_1_omega_2_part_2 * b_omega_1_u - R_omega_3;
-    let d_sigma_dot_d_omega_3_part_1 = inv_m0 * (two_m0_r * omega_3 - m0 * R_omega_2);
-    let d_sigma_dot_d_omega_3_part_2 = a_omega_1_omega_3_part_7 * b_omega_1_u;
+    let b_omega_1_u = R * inv_M_11_minus_R_R_m0;
+    let d_sigma_dot_d_omega_1_part_1 = a_omega_1_omega_1_part_1 * b_omega_1_u;
+    let d_sigma_dot_d_omega_1 = two * (r_omega_1 - d_sigma_dot_d_omega_1_part_1);
+    let d_sigma_dot_d_omega_2 = a_omega_1_omega_2_part_3 * b_omega_1_u - R_omega_3;
+    let d_sigma_dot_d_omega_3_part_1 = inv_m0 * (two_m0_r * omega_3 - R_m0 * omega_2);
+    let d_sigma_dot_d_omega_3_part_2 = a_omega_1_omega_3_part_8 * b_omega_1_u;
     let d_sigma_dot_d_omega_3 = d_sigma_dot_d_omega_3_part_1
         - d_sigma_dot_d_omega_3_part_2;
-    let a_sigma_sigma = minus_two * R_m0_r * a_omega_1_sigma_part_1;
-    let d_sigma_dot_d_theta = a_omega_1_theta_part_5 * b_omega_1_u - g_cos_theta;
+    let a_sigma_sigma = R_m0_r_omega_1 * a_omega_1_omega_1_part_2;
+    let d_sigma_dot_d_theta = a_omega_1_theta_part_7 * b_omega_1_u - g_cos_theta;
     let d_sigma_dot_d_r = R * d_omega_1_dot_d_r + inv_m0 * d_f_4_d_r;
-    let a_psi_theta = a_psi_omega_3 * sin_theta_psi_dot;
-    let minus_a_phi_theta = a_psi_omega_3 * psi_dot;
+    let a_psi_theta = a_psi_omega_3 * f_1_part_2;
+    let minus_a_phi_theta = a_psi_omega_3_squared * omega_3;
     let R_cos_theta = R * cos_theta;
     let a_x_G_omega_1 = sin_psi * R_cos_theta;
     let a_x_G_omega_2 = R * cos_psi;
@@ -936,19 +940,20 @@ pub fn jacobians<T: Real>(
     let a_y_G_theta = cos_psi * sin_theta_R_omega_1;
 
     // Derivatives by the inputs.
-    let d_sigma_dot_d_u = inv_m0 + R_squared * omega_1_dot_part_1;
+    let d_sigma_dot_d_u = inv_m0 + R * b_omega_1_u;
 
     let mut a = [[zero; 10]; 10];
     a[0][0] = a_omega_1_omega_1;
     a[0][1] = a_omega_1_omega_2;
     a[0][2] = -minus_a_omega_1_omega_3;
-    a[0][3] = -minus_a_omega_1_sigma;
+    a[0][3] = a_omega_1_sigma;
     a[0][4] = a_omega_1_theta;
     a[0][5] = d_omega_1_dot_d_r;
     a[1][0] = a_omega_2_omega_1;
     a[1][1] = a_omega_2_omega_2;
     a[1][2] = a_omega_2_omega_3;
     a[1][3] = a_omega_2_sigma;
+    a[1][4] = a_omega_2_theta;
     a[1][5] = d_omega_2_dot_d_r;
     a[2][0] = -minus_a_omega_3_omega_1;
     a[2][1] = a_omega_3_omega_2;
@@ -1081,9 +1086,8 @@ pub fn all_jacobians<T: Real>(
     let R_omega_1 = R * omega_1;
     let R_omega_1_half_R_m = R_omega_1 * half_R_m;
     let R_m0_r_omega_1 = R_m0_r * omega_1;
-    let d_f_3_d_omega_3_part_1 = R_m0_r_omega_1 + m0_r_omega_1 * minus_a_phi_omega_3_r;
-    let d_f_3_d_omega_3_part_2 = d_f_3_d_omega_3_part_1 + R_m * f_1_part_1 * R_omega_1;
-    let d_f_3_d_omega_3 = d_f_3_d_omega_3_part_2 - m0_r * two_sigma;
+    let f_3_part_1 = R_m0_r_omega_1 + m0_r_omega_1 * minus_a_phi_omega_3_r;
+    let d_f_3_d_omega_3 = f_3_part_1 + R_m * f_1_part_1 * R_omega_1 - m0_r * two_sigma;
     let f_3 = d_f_3_d_omega_3 * omega_3 - R_omega_1_half_R_m * omega_2;
     let f_2_part_1 = minus_a_phi_omega_3 * omega_3;
     let f_2_part_2 = m0_r_omega_1 * f_2_part_1;
@@ -1124,8 +1128,10 @@ pub fn all_jacobians<T: Real>(
     let a_omega_1_omega_3_part_3 = a_omega_1_omega_3_part_1 - a_omega_1_omega_3_part_2;
     let three_halves_R_m_omega_2 = three_halves_R_m * omega_2;
     let a_omega_1_omega_3_part_4 = three_halves_R_m_omega_2 + a_omega_1_omega_3_part_3;
-    let a_omega_1_omega_3_part_5 = f_1_part_3 * two_m0_r - R * a_omega_1_omega_3_part_4;
-    let minus_a_omega_1_omega_3 = omega_1_dot_part_1 * a_omega_1_omega_3_part_5;
+    let a_omega_1_omega_3_part_5 = f_1_part_3 * two_m0_r;
+    let a_omega_1_omega_3_part_6 = R * a_omega_1_omega_3_part_4;
+    let a_omega_1_omega_3_part_7 = a_omega_1_omega_3_part_5 - a_omega_1_omega_3_part_6;
+    let minus_a_omega_1_omega_3 = omega_1_dot_part_1 * a_omega_1_omega_3_part_7;
     let a_omega_1_sigma = m0_r_omega_1 * a_omega_1_omega_1_part_2;
     let a_psi_omega_3_squared = a_psi_omega_3 * a_psi_omega_3;
     let a_omega_1_theta_part_1 = quarter * R_omega_3 * m_R_omega_3;
@@ -1150,45 +1156,47 @@ pub fn all_jacobians<T: Real>(
     let d_omega_1_dot_d_r_part_10 = two_m0_r * d_omega_1_dot_d_r_part_8;
     let d_omega_1_dot_d_r = d_omega_1_dot_d_r_part_9 - d_omega_1_dot_d_r_part_10;
     let minus_d_f_2_d_omega_1 = a_omega_1_omega_2_part_1 + R_omega_3 * (R_m + m0_R);
-    let d_f_3_d_omega_1_part_1 = m0_r_R_omega_3 + m0_r * f_1_part_3 + R_m * f_1_part_2;
-    let d_f_3_d_omega_1 = d_f_3_d_omega_1_part_1 - half_R_m * R_omega_2;
-    let a_omega_2_omega_1_part_1 = M_33 * minus_d_f_2_d_omega_1;
-    let a_omega_2_omega_1_part_2 = a_omega_2_omega_1_part_1 - R_m0_r * d_f_3_d_omega_1;
-    let a_omega_2_omega_1 = omega_2_dot_part_2 * a_omega_2_omega_1_part_2;
+    let a_omega_2_omega_1_part_1 = m0_r_R_omega_3 + m0_r * f_1_part_3 + R_m * f_1_part_2;
+    let d_f_3_d_omega_1 = a_omega_2_omega_1_part_1 - half_R_m * R_omega_2;
+    let a_omega_2_omega_1_part_2 = M_33 * minus_d_f_2_d_omega_1;
+    let a_omega_2_omega_1_part_3 = a_omega_2_omega_1_part_2 - R_m0_r * d_f_3_d_omega_1;
+    let a_omega_2_omega_1 = omega_2_dot_part_2 * a_omega_2_omega_1_part_3;
     let a_omega_2_omega_2_part_1 = R_omega_1_half_R_m * omega_2_dot_part_2;
     let a_omega_2_omega_2 = R_m0_r * a_omega_2_omega_2_part_1;
     let R_m_omega_1 = R_m * omega_1;
-    let d_f_2_d_omega_3_part_1 = m0_r_omega_1 * minus_a_phi_omega_3 + R_m_omega_1;
+    let a_omega_2_omega_3_part_1 = m0_r_omega_1 * minus_a_phi_omega_3 + R_m_omega_1;
+    let a_omega_2_omega_3_part_2 = m0 * (two_sigma - R_omega_1);
     let minus_d_f_2_d_omega_3 = R
-        * (d_f_2_d_omega_3_part_1 - m0 * (two_sigma - R_omega_1));
-    let a_omega_2_omega_3_part_1 = M_33 * minus_d_f_2_d_omega_3;
-    let a_omega_2_omega_3_part_2 = a_omega_2_omega_3_part_1 - R_m0_r * d_f_3_d_omega_3;
-    let a_omega_2_omega_3 = omega_2_dot_part_2 * a_omega_2_omega_3_part_2;
+        * (a_omega_2_omega_3_part_1 - a_omega_2_omega_3_part_2);
+    let a_omega_2_omega_3_part_3 = M_33 * minus_d_f_2_d_omega_3;
+    let a_omega_2_omega_3_part_4 = a_omega_2_omega_3_part_3 - R_m0_r * d_f_3_d_omega_3;
+    let a_omega_2_omega_3 = omega_2_dot_part_2 * a_omega_2_omega_3_part_4;
     let m0_R_omega_3 = m0 * R_omega_3;
     let a_omega_2_sigma_part_1 = two * omega_2_dot_part_2;
     let a_omega_2_sigma_part_2 = m0_r * m0_r_R_omega_3 - M_33 * m0_R_omega_3;
     let a_omega_2_sigma = a_omega_2_sigma_part_1 * a_omega_2_sigma_part_2;
     let a_omega_2_theta_part_1 = R_omega_3_omega_1 * a_omega_1_theta_part_2;
     let m0_r_omega_1_r_omega_3 = m0_r_omega_1 * r_omega_3;
-    let d_f_3_d_theta_part_1 = quarter * R_m * R_omega_3_omega_1;
-    let d_f_3_d_theta_part_2 = m0_r_omega_1_r_omega_3 + d_f_3_d_theta_part_1;
-    let d_f_3_d_theta = a_psi_omega_3_squared * d_f_3_d_theta_part_2;
-    let a_omega_2_theta_part_2 = M_33 * a_omega_2_theta_part_1;
-    let a_omega_2_theta_part_3 = a_omega_2_theta_part_2 - R_m0_r * d_f_3_d_theta;
-    let a_omega_2_theta = omega_2_dot_part_2 * a_omega_2_theta_part_3;
+    let a_omega_2_theta_part_2 = quarter * R_m * R_omega_3_omega_1;
+    let a_omega_2_theta_part_3 = m0_r_omega_1_r_omega_3 + a_omega_2_theta_part_2;
+    let d_f_3_d_theta = a_psi_omega_3_squared * a_omega_2_theta_part_3;
+    let a_omega_2_theta_part_4 = M_33 * a_omega_2_theta_part_1;
+    let a_omega_2_theta_part_5 = a_omega_2_theta_part_4 - R_m0_r * d_f_3_d_theta;
+    let a_omega_2_theta = omega_2_dot_part_2 * a_omega_2_theta_part_5;
     let d_omega_2_dot_d_r_part_1 = minus_a_phi_omega_3 * R_omega_3_omega_1;
     let d_f_3_d_r = f_2_part_3 + two * f_2_part_2;
     let R_r = R * r;
     let d_omega_2_dot_d_r_part_2 = M_33 * d_omega_2_dot_d_r_part_1;
     let d_omega_2_dot_d_r_part_3 = d_omega_2_dot_d_r_part_2 + two * minus_f_2 * r;
-    let d_omega_2_dot_d_r_part_4 = m0 * omega_2_dot_part_2;
-    let d_omega_2_dot_d_r_part_5 = d_omega_2_dot_d_r_part_3 - d_f_3_d_r * R_r - R * f_3;
+    let d_omega_2_dot_d_r_part_4 = d_omega_2_dot_d_r_part_3 - d_f_3_d_r * R_r;
+    let d_omega_2_dot_d_r_part_5 = m0 * omega_2_dot_part_2;
+    let d_omega_2_dot_d_r_part_6 = d_omega_2_dot_d_r_part_4 - R * f_3;
     let d_D_2_d_r = M_22 * two_m0_r - R_m0_r * two_m0_R;
-    let d_omega_2_dot_d_r_part_6 = omega_2_dot_part_2 * omega_2_dot_part_2;
-    let d_omega_2_dot_d_r_part_7 = omega_2_dot_part_1 * d_omega_2_dot_d_r_part_6;
-    let d_omega_2_dot_d_r_part_8 = d_omega_2_dot_d_r_part_4 * d_omega_2_dot_d_r_part_5;
-    let d_omega_2_dot_d_r_part_9 = d_D_2_d_r * d_omega_2_dot_d_r_part_7;
-    let d_omega_2_dot_d_r = d_omega_2_dot_d_r_part_8 + d_omega_2_dot_d_r_part_9;
+    let d_omega_2_dot_d_r_part_7 = omega_2_dot_part_2 * omega_2_dot_part_2;
+    let d_omega_2_dot_d_r_part_8 = omega_2_dot_part_1 * d_omega_2_dot_d_r_part_7;
+    let d_omega_2_dot_d_r_part_9 = d_omega_2_dot_d_r_part_5 * d_omega_2_dot_d_r_part_6;
+    let d_omega_2_dot_d_r_part_10 = d_D_2_d_r * d_omega_2_dot_d_r_part_8;
+    let d_omega_2_dot_d_r = d_omega_2_dot_d_r_part_9 + d_omega_2_dot_d_r_part_10;
     let M_22_d_f_3_d_omega_1 = M_22 * d_f_3_d_omega_1;
     let a_omega_3_omega_1_part_1 = R_m0_r * minus_d_f_2_d_omega_1;
     let a_omega_3_omega_1_part_2 = M_22_d_f_3_d_omega_1 - a_omega_3_omega_1_part_1;
@@ -1207,17 +1215,16 @@ pub fn all_jacobians<T: Real>(
     let d_omega_3_dot_d_r_part_1 = m0 * R_m0_r * d_omega_2_dot_d_r_part_1;
     let d_omega_3_dot_d_r_part_2 = M_22_d_f_3_d_r - d_omega_3_dot_d_r_part_1;
     let d_omega_3_dot_d_r_part_3 = d_omega_3_dot_d_r_part_2 - minus_f_2 * m0_R;
-    let d_omega_3_dot_d_r_part_4 = omega_3_dot_part_1 * d_omega_2_dot_d_r_part_6;
+    let d_omega_3_dot_d_r_part_4 = omega_3_dot_part_1 * d_omega_2_dot_d_r_part_7;
     let d_omega_3_dot_d_r_part_5 = d_D_2_d_r * d_omega_3_dot_d_r_part_4;
     let d_omega_3_dot_d_r_part_6 = omega_2_dot_part_2 * d_omega_3_dot_d_r_part_3;
     let d_omega_3_dot_d_r = d_omega_3_dot_d_r_part_5 - d_omega_3_dot_d_r_part_6;
     let b_omega_1_u = R * omega_1_dot_part_1;
-    let d_sigma_dot_d_omega_1_part_1 = r_omega_1
-        - a_omega_1_omega_1_part_1 * b_omega_1_u;
-    let d_sigma_dot_d_omega_1 = two * d_sigma_dot_d_omega_1_part_1;
+    let d_sigma_dot_d_omega_1_part_1 = a_omega_1_omega_1_part_1 * b_omega_1_u;
+    let d_sigma_dot_d_omega_1 = two * (r_omega_1 - d_sigma_dot_d_omega_1_part_1);
     let d_sigma_dot_d_omega_2 = a_omega_1_omega_2_part_3 * b_omega_1_u - R_omega_3;
     let d_sigma_dot_d_omega_3_part_1 = inv_m0 * (two_m0_r * omega_3 - m0_R * omega_2);
-    let d_sigma_dot_d_omega_3_part_2 = a_omega_1_omega_3_part_5 * b_omega_1_u;
+    let d_sigma_dot_d_omega_3_part_2 = a_omega_1_omega_3_part_7 * b_omega_1_u;
     let d_sigma_dot_d_omega_3 = d_sigma_dot_d_omega_3_part_1
         - d_sigma_dot_d_omega_3_part_2;
     let a_sigma_sigma = R_m0_r_omega_1 * a_omega_1_omega_1_part_2;
@@ -1237,12 +1244,12 @@ pub fn all_jacobians<T: Real>(
     let d_sigma_dot_d_u = inv_m0 + R_squared * omega_1_dot_part_1;
 
     // Derivatives by the parameters.
-    let d_f_1_d_m_part_1 = R_g_sin_theta + three_halves * R_R_omega_3_omega_2;
-    let d_f_1_d_m = d_f_1_d_m_part_1 - R_omega_3 * f_1_part_2;
-    let d_omega_1_dot_d_m_part_1 = minus_five_quarters * R_squared;
-    let d_omega_1_dot_d_m_part_2 = omega_1_dot_part_1 * d_f_1_d_m;
-    let d_omega_1_dot_d_m_part_3 = d_omega_1_dot_d_m_part_1 * d_omega_1_dot_d_r_part_8;
-    let d_omega_1_dot_d_m = d_omega_1_dot_d_m_part_2 + d_omega_1_dot_d_m_part_3;
+    let d_omega_1_dot_d_m_part_1 = R_g_sin_theta + three_halves * R_R_omega_3_omega_2;
+    let d_f_1_d_m = d_omega_1_dot_d_m_part_1 - R_omega_3 * f_1_part_2;
+    let d_omega_1_dot_d_m_part_2 = minus_five_quarters * R_squared;
+    let d_omega_1_dot_d_m_part_3 = omega_1_dot_part_1 * d_f_1_d_m;
+    let d_omega_1_dot_d_m_part_4 = d_omega_1_dot_d_m_part_2 * d_omega_1_dot_d_r_part_8;
+    let d_omega_1_dot_d_m = d_omega_1_dot_d_m_part_3 + d_omega_1_dot_d_m_part_4;
     let r_squared = r * r;
     let d_f_4_d_m0 = r_omega_1 * omega_1 - g_sin_theta - a_omega_1_theta_part_3;
     let d_omega_1_dot_d_m0_part_1 = d_omega_1_dot_d_r_part_8 * r_squared;
@@ -1260,38 +1267,39 @@ pub fn all_jacobians<T: Real>(
     let minus_p_omega_1_g = omega_1_dot_part_1 * p_omega_1_g_part_1;
     let d_D_2_d_m = R_squared * (three_halves * M_33 + quarter * M_22);
     let R_R_omega_3_omega_1 = R * R_omega_3_omega_1;
-    let d_f_3_d_m_part_1 = f_1_part_1 * R_R_omega_3_omega_1;
-    let d_f_3_d_m = d_f_3_d_m_part_1 - half * R_squared * omega_2 * omega_1;
-    let d_omega_2_dot_d_m_part_1 = quarter * R_squared * minus_f_2;
+    let d_omega_2_dot_d_m_part_1 = f_1_part_1 * R_R_omega_3_omega_1;
+    let d_f_3_d_m = d_omega_2_dot_d_m_part_1 - half * R_squared * omega_2 * omega_1;
+    let d_omega_2_dot_d_m_part_2 = quarter * R_squared * minus_f_2;
     let M_33_R_R_omega_3_omega_1 = M_33 * R_R_omega_3_omega_1;
-    let d_omega_2_dot_d_m_part_2 = d_omega_2_dot_d_m_part_1 + M_33_R_R_omega_3_omega_1;
-    let d_omega_2_dot_d_m_part_3 = d_omega_2_dot_d_m_part_2 - R_m0_r * d_f_3_d_m;
-    let d_omega_2_dot_d_m_part_4 = d_omega_2_dot_d_r_part_7 * d_D_2_d_m;
-    let d_omega_2_dot_d_m_part_5 = omega_2_dot_part_2 * d_omega_2_dot_d_m_part_3;
-    let d_omega_2_dot_d_m = d_omega_2_dot_d_m_part_4 + d_omega_2_dot_d_m_part_5;
-    let d_f_2_d_m0_part_1 = R_omega_3 * two_sigma - R_R_omega_3_omega_1;
-    let d_f_2_d_m0 = d_f_2_d_m0_part_1 - d_omega_2_dot_d_r_part_1 * r;
-    let d_f_3_d_m0_part_1 = r_omega_1 * f_1_part_3 + R_omega_3_omega_1 * r;
-    let d_f_3_d_m0 = d_f_3_d_m0_part_1 - two_sigma * r_omega_3;
-    let d_omega_2_dot_d_m0_part_1 = minus_f_2 * r_squared - M_33 * d_f_2_d_m0;
-    let d_omega_2_dot_d_m0_part_2 = d_omega_2_dot_d_m0_part_1 - R_m0_r * d_f_3_d_m0;
-    let d_omega_2_dot_d_m0_part_3 = d_omega_2_dot_d_m0_part_2 - f_3 * R_r;
+    let d_omega_2_dot_d_m_part_3 = d_omega_2_dot_d_m_part_2 + M_33_R_R_omega_3_omega_1;
+    let d_omega_2_dot_d_m_part_4 = d_omega_2_dot_d_m_part_3 - R_m0_r * d_f_3_d_m;
+    let d_omega_2_dot_d_m_part_5 = d_omega_2_dot_d_r_part_8 * d_D_2_d_m;
+    let d_omega_2_dot_d_m_part_6 = omega_2_dot_part_2 * d_omega_2_dot_d_m_part_4;
+    let d_omega_2_dot_d_m = d_omega_2_dot_d_m_part_5 + d_omega_2_dot_d_m_part_6;
+    let d_omega_2_dot_d_m0_part_1 = R_omega_3 * two_sigma - R_R_omega_3_omega_1;
+    let d_f_2_d_m0 = d_omega_2_dot_d_m0_part_1 - d_omega_2_dot_d_r_part_1 * r;
+    let d_omega_2_dot_d_m0_part_2 = r_omega_1 * f_1_part_3 + R_omega_3_omega_1 * r;
+    let d_f_3_d_m0 = d_omega_2_dot_d_m0_part_2 - two_sigma * r_omega_3;
+    let d_omega_2_dot_d_m0_part_3 = minus_f_2 * r_squared - M_33 * d_f_2_d_m0;
+    let d_omega_2_dot_d_m0_part_4 = d_omega_2_dot_d_m0_part_3 - R_m0_r * d_f_3_d_m0;
+    let d_omega_2_dot_d_m0_part_5 = d_omega_2_dot_d_m0_part_4 - f_3 * R_r;
     let d_D_2_d_m0 = R_squared * M_33 + M_22 * r_squared - two * R_m0_r * R_r;
-    let d_omega_2_dot_d_m0_part_4 = omega_2_dot_part_2 * d_omega_2_dot_d_m0_part_3;
-    let d_omega_2_dot_d_m0_part_5 = d_omega_2_dot_d_r_part_7 * d_D_2_d_m0;
-    let d_omega_2_dot_d_m0 = d_omega_2_dot_d_m0_part_4 + d_omega_2_dot_d_m0_part_5;
+    let d_omega_2_dot_d_m0_part_6 = omega_2_dot_part_2 * d_omega_2_dot_d_m0_part_5;
+    let d_omega_2_dot_d_m0_part_7 = d_omega_2_dot_d_r_part_8 * d_D_2_d_m0;
+    let d_omega_2_dot_d_m0 = d_omega_2_dot_d_m0_part_6 + d_omega_2_dot_d_m0_part_7;
     let d_D_2_d_R = M_33 * d_M_22_d_R + half_R_m * M_22 - R_m0_r * two_m0_r;
-    let d_f_3_d_R_part_1 = m0_r_omega_1 * omega_3 + half * m * d_omega_2_dot_d_r_part_1;
-    let d_f_3_d_R = d_f_3_d_R_part_1 - R_m_omega_1 * omega_2;
-    let d_f_2_d_R_part_1 = m0_two_sigma_omega_3 - f_2_part_2;
-    let d_f_2_d_R_part_2 = two * (m_R_omega_3_omega_1 + m0_R_omega_3_omega_1);
-    let d_f_2_d_R = d_f_2_d_R_part_1 - d_f_2_d_R_part_2;
-    let d_omega_2_dot_d_R_part_1 = half_R_m * minus_f_2 - m0_r * f_3;
-    let d_omega_2_dot_d_R_part_2 = d_omega_2_dot_d_R_part_1 - R_m0_r * d_f_3_d_R;
-    let d_omega_2_dot_d_R_part_3 = d_omega_2_dot_d_R_part_2 - M_33 * d_f_2_d_R;
-    let d_omega_2_dot_d_R_part_4 = d_omega_2_dot_d_r_part_7 * d_D_2_d_R;
-    let d_omega_2_dot_d_R_part_5 = omega_2_dot_part_2 * d_omega_2_dot_d_R_part_3;
-    let d_omega_2_dot_d_R = d_omega_2_dot_d_R_part_4 + d_omega_2_dot_d_R_part_5;
+    let d_omega_2_dot_d_R_part_1 = m0_r_omega_1 * omega_3
+        + half * m * d_omega_2_dot_d_r_part_1;
+    let d_f_3_d_R = d_omega_2_dot_d_R_part_1 - R_m_omega_1 * omega_2;
+    let d_omega_2_dot_d_R_part_2 = m0_two_sigma_omega_3 - f_2_part_2;
+    let d_omega_2_dot_d_R_part_3 = two * (m_R_omega_3_omega_1 + m0_R_omega_3_omega_1);
+    let d_f_2_d_R = d_omega_2_dot_d_R_part_2 - d_omega_2_dot_d_R_part_3;
+    let d_omega_2_dot_d_R_part_4 = half_R_m * minus_f_2 - m0_r * f_3;
+    let d_omega_2_dot_d_R_part_5 = d_omega_2_dot_d_R_part_4 - R_m0_r * d_f_3_d_R;
+    let d_omega_2_dot_d_R_part_6 = d_omega_2_dot_d_R_part_5 - M_33 * d_f_2_d_R;
+    let d_omega_2_dot_d_R_part_7 = d_omega_2_dot_d_r_part_8 * d_D_2_d_R;
+    let d_omega_2_dot_d_R_part_8 = omega_2_dot_part_2 * d_omega_2_dot_d_R_part_6;
+    let d_omega_2_dot_d_R = d_omega_2_dot_d_R_part_7 + d_omega_2_dot_d_R_part_8;
     let R_squared_f_3 = R_squared * f_3;
     let d_omega_3_dot_d_m_part_1 = R_m0_r * R_R_omega_3_omega_1;
     let d_omega_3_dot_d_m_part_2 = minus_three_halves * R_squared_f_3;
@@ -1300,11 +1308,12 @@ pub fn all_jacobians<T: Real>(
     let d_omega_3_dot_d_m_part_5 = d_omega_3_dot_d_r_part_4 * d_D_2_d_m;
     let d_omega_3_dot_d_m_part_6 = omega_2_dot_part_2 * d_omega_3_dot_d_m_part_4;
     let d_omega_3_dot_d_m = d_omega_3_dot_d_m_part_5 + d_omega_3_dot_d_m_part_6;
-    let d_omega_3_dot_d_m0_part_1 = minus_f_2 * R_r - R_squared_f_3 - M_22 * d_f_3_d_m0;
-    let d_omega_3_dot_d_m0_part_2 = d_omega_3_dot_d_m0_part_1 - R_m0_r * d_f_2_d_m0;
-    let d_omega_3_dot_d_m0_part_3 = omega_2_dot_part_2 * d_omega_3_dot_d_m0_part_2;
-    let d_omega_3_dot_d_m0_part_4 = d_omega_3_dot_d_r_part_4 * d_D_2_d_m0;
-    let d_omega_3_dot_d_m0 = d_omega_3_dot_d_m0_part_3 + d_omega_3_dot_d_m0_part_4;
+    let d_omega_3_dot_d_m0_part_1 = minus_f_2 * R_r - R_squared_f_3;
+    let d_omega_3_dot_d_m0_part_2 = d_omega_3_dot_d_m0_part_1 - M_22 * d_f_3_d_m0;
+    let d_omega_3_dot_d_m0_part_3 = d_omega_3_dot_d_m0_part_2 - R_m0_r * d_f_2_d_m0;
+    let d_omega_3_dot_d_m0_part_4 = omega_2_dot_part_2 * d_omega_3_dot_d_m0_part_3;
+    let d_omega_3_dot_d_m0_part_5 = d_omega_3_dot_d_r_part_4 * d_D_2_d_m0;
+    let d_omega_3_dot_d_m0 = d_omega_3_dot_d_m0_part_4 + d_omega_3_dot_d_m0_part_5;
     let d_omega_3_dot_d_R_part_1 = m0_r * minus_f_2 - M_22 * d_f_3_d_R;
     let d_omega_3_dot_d_R_part_2 = d_omega_3_dot_d_R_part_1 - f_3 * d_M_22_d_R;
     let d_omega_3_dot_d_R_part_3 = d_omega_3_dot_d_R_part_2 - R_m0_r * d_f_2_d_R;

@@ -430,3 +430,51 @@ push = {{ kind = "force", on = "C", in = "ground", vector = ["F", 0, 0] }}
 fn five_coupled_speeds_are_solved_by_an_unrolled_factorisation() {
     assert_sound(&chain());
 }
+
+/// Frames turned by functions of coordinates and time, smooth and broken functions, loads that
+/// depend on velocities, pseudo-velocities that mix them.
+const MIXED: &str = r#"
+[mechanism]
+name = "mixed"
+title = "Functions of all kinds"
+[parameters]
+m = { value = 2, unit = "kg", at_least = 0 }
+J = { value = 0.3, unit = "kg*m^2", at_least = 0 }
+c = { value = 3, unit = "N", at_least = 0 }
+w = { value = 0.2, unit = "m/s", at_least = 0 }
+l = { value = 0.4, unit = "m", at_least = 0 }
+n = { value = 1.5, unit = "1", at_least = 0 }
+[coordinates]
+x = { unit = "m" }
+a = { unit = "rad" }
+b = { unit = "rad" }
+[inputs]
+F = { unit = "N" }
+[frames]
+p = { parent = "ground", turns = [{ about_axis = "-z", by = "a*pi/3" }, { about_axis = "x", by = "2*b + 0.1*sin(t*(1 [1/s]))" }] }
+q = { parent = "p", about_axis = "-x", by = "b/2" }
+[points]
+A = { from = "O", in = "ground", at = ["x", "l*sin(2*a)", "l*cos(a)^3"] }
+B = { from = "A", in = "p", at = ["l*cos(b)", "l/3", "-l*exp(0.3*sin(b))"] }
+C = { from = "B", in = "q", at = ["l*(1 + 0.2*tanh(a))", 0, "l/2"] }
+[bodies]
+one = { frame = "p", centre = "A", mass = "m", inertia = { in = "p", diagonal = ["J", "2*J", "1.5*J"] } }
+two = { frame = "q", centre = "C", mass = "m/2", inertia = { in = "q", diagonal = ["J", "J", "J/2"] } }
+dot = { centre = "B", mass = "m*n" }
+[pseudo_velocities]
+v = { value = "dot(x) + l*dot(a)*sin(b)", unit = "m/s" }
+f = { value = "dot(a) - dot(b)/2", unit = "rad/s" }
+e = { value = "dot(b) + dot(a)/3", unit = "rad/s" }
+[loads]
+weight = { kind = "gravity", down = "-z", acceleration = "9.81 [m/s^2]" }
+friction = { kind = "force", on = "B", in = "p", vector = ["-c*smooth_sign(v, w)", "if(x < l, F, F/2)", "c*atan2(x, l)/(1 [rad])"] }
+couple = { kind = "torque", on = "one", reaction_on = "two", in = "q", vector = ["c*l*abs(sin(a))", "-F*l*hypot(a, b)", "c*l*smooth_max(f, e, 0.3 [1/s])/(2 [1/s])"] }
+spring = { kind = "spring", between = ["A", "C"], stiffness = "c/l", relaxed = "l/2" }
+[outputs]
+o = { value = "min(x, l)*max(a, b)", unit = "m" }
+"#;
+
+#[test]
+fn smooth_and_broken_functions_in_frames_points_and_loads() {
+    assert_sound(&shipped::read("mixed", MIXED));
+}

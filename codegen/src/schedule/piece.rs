@@ -151,22 +151,27 @@ pub(super) fn describe(
                 Operation::Add => joined(&[&left, "plus", &right]),
                 Operation::Subtract => joined(&[&left, "minus", &right]),
                 Operation::Multiply if left == right => joined(&[&left, "squared"]),
-                Operation::Multiply => match left.strip_suffix("_squared") {
-                    Some(root) if root == right => joined(&[&right, "cubed"]),
-                    _ => joined(&[&left, &right]),
-                },
+                Operation::Multiply => {
+                    match (left.strip_suffix("_squared"), right.strip_prefix("inv_")) {
+                        (Some(root), _) if root == right => joined(&[&right, "cubed"]),
+                        (_, Some(denominator)) => quotient(&left, denominator),
+                        _ => joined(&[&left, &right]),
+                    }
+                }
                 Operation::Divide if **a == Tree::Constant(Rational::ONE) => {
                     joined(&["inv", &right])
                 }
-                Operation::Divide => {
-                    match (left.strip_prefix("sin_"), right.strip_prefix("cos_")) {
-                        (Some(angle), Some(same)) if angle == same => joined(&["tan", angle]),
-                        _ => joined(&[&left, "over", &right]),
-                    }
-                }
+                Operation::Divide => quotient(&left, &right),
             }
         }
         Tree::Atan2(..) | Tree::Power(..) | Tree::Choice { .. } => None,
+    }
+}
+
+fn quotient(above: &str, below: &str) -> Option<String> {
+    match (above.strip_prefix("sin_"), below.strip_prefix("cos_")) {
+        (Some(angle), Some(same)) if angle == same => joined(&["tan", angle]),
+        _ => joined(&[above, "over", below]),
     }
 }
 

@@ -695,32 +695,34 @@ pub fn rates<T: Real>(p: &Parameters<T>, x: &State<T>, inputs: &Inputs<T>) -> St
     let f_4_part_1 = m0_r_omega_3_omega_3 + m0_r_omega_1 * omega_1 + u;
     let f_4 = f_4_part_1 - m0 * (g_sin_theta + R_omega_3_omega_2);
     let inv_cos_theta = one / cos_theta;
-    let sin_theta_inv_cos_theta = sin_theta * inv_cos_theta;
-    let f_1_part_1 = sin_theta_inv_cos_theta * r;
+    let tan_theta = sin_theta * inv_cos_theta;
+    let tan_theta_r = tan_theta * r;
     let two_sigma = two * sigma;
-    let f_1_part_2 = R_m0 + m0_r * sin_theta_inv_cos_theta;
-    let f_1_part_3 = quarter * sin_theta_inv_cos_theta;
-    let f_1_part_4 = R_omega_3_omega_2 * (three_halves * R_m + f_1_part_2);
-    let f_1_part_5 = f_1_part_4 + g_sin_theta * (R_m0 + R_m) - g * m0_r * cos_theta;
-    let f_1_part_6 = f_1_part_5 - m0_r_omega_3_omega_3 * f_1_part_1
-        - m0_r_omega_1 * two_sigma;
-    let f_1 = f_1_part_6 - R_omega_3 * (m0_r_omega_3 + m * R_omega_3 * f_1_part_3);
+    let R_m0_plus_m0_r_tan_theta = R_m0 + m0_r * tan_theta;
+    let f_1_part_1 = three_halves * R_m + R_m0_plus_m0_r_tan_theta;
+    let quarter_tan_theta = quarter * tan_theta;
+    let f_1_part_2 = R_omega_3 * (m0_r_omega_3 + m * R_omega_3 * quarter_tan_theta);
+    let f_1_part_3 = R_omega_3_omega_2 * f_1_part_1 + g_sin_theta * (R_m0 + R_m);
+    let f_1_part_4 = f_1_part_3 - g * m0_r * cos_theta
+        - m0_r_omega_3_omega_3 * tan_theta_r;
+    let f_1 = f_1_part_4 - m0_r_omega_1 * two_sigma - f_1_part_2;
     let omega_1_dot = (R * f_4 + f_1) / (M_11 - R_R_m0);
     let R_omega_3_omega_1 = R_omega_3 * omega_1;
     let R_m_R_omega_3_omega_1 = R_m * R_omega_3_omega_1;
-    let f_3_part_1 = m0_r * R_omega_3_omega_1 + f_1_part_3 * R_m_R_omega_3_omega_1;
+    let f_3_part_1 = m0_r * R_omega_3_omega_1
+        + quarter_tan_theta * R_m_R_omega_3_omega_1;
     let f_3_part_2 = f_3_part_1 - half * R_R_m * omega_1 * omega_2;
-    let f_3 = f_3_part_2 - m0_r_omega_3 * (two_sigma - f_1_part_1 * omega_1);
+    let f_3 = f_3_part_2 - m0_r_omega_3 * (two_sigma - tan_theta_r * omega_1);
     let R_m0_r = R * m0_r;
     let f_2_part_1 = m0 * R_omega_3 * two_sigma - R_m_R_omega_3_omega_1;
-    let f_2 = f_2_part_1 - f_1_part_2 * R_omega_3_omega_1;
+    let f_2 = f_2_part_1 - R_m0_plus_m0_r_tan_theta * R_omega_3_omega_1;
     let M_33 = m0_r_r + quarter * R_R_m;
     let omega_2_dot_part_1 = one / (M_33 * M_22 - R_m0_r * R_m0_r);
     let omega_2_dot = omega_2_dot_part_1 * (f_3 * R_m0_r + f_2 * M_33);
     let omega_3_dot = omega_2_dot_part_1 * (R_m0_r * f_2 + f_3 * M_22);
     let sigma_dot = f_4 / m0 + R * omega_1_dot;
     let psi_dot = inv_cos_theta * omega_3;
-    let phi_dot = omega_2 - sin_theta_inv_cos_theta * omega_3;
+    let phi_dot = omega_2 - tan_theta * omega_3;
     let R_omega_2 = R * omega_2;
     let R_cos_theta_omega_1 = R * cos_theta * omega_1;
     let x_G_dot = cos_psi * R_omega_2 + sin_psi * R_cos_theta_omega_1;
@@ -1103,8 +1105,8 @@ pub fn all_jacobians<T: Real>(
     let omega_2_dot = omega_2_dot_part_1 * omega_2_dot_part_2;
     let omega_3_dot_part_1 = R_m0_r * minus_f_2 - f_3 * M_22;
     let omega_3_dot = omega_2_dot_part_2 * omega_3_dot_part_1;
-    let f_4_inv_m0 = f_4 * inv_m0;
-    let sigma_dot = f_4_inv_m0 + R * omega_1_dot;
+    let f_4_over_m0 = f_4 * inv_m0;
+    let sigma_dot = f_4_over_m0 + R * omega_1_dot;
     let psi_dot = a_psi_omega_3 * omega_3;
     let phi_dot = omega_2 - f_2_part_1;
     let R_omega_2 = R * omega_2;
@@ -1321,7 +1323,7 @@ pub fn all_jacobians<T: Real>(
     let d_omega_3_dot_d_R_part_5 = d_omega_3_dot_d_r_part_4 * d_D_2_d_R;
     let d_omega_3_dot_d_R = d_omega_3_dot_d_R_part_4 + d_omega_3_dot_d_R_part_5;
     let p_sigma_m = R * d_omega_1_dot_d_m;
-    let d_sigma_dot_d_m0_part_1 = inv_m0 * (d_f_4_d_m0 - f_4_inv_m0);
+    let d_sigma_dot_d_m0_part_1 = inv_m0 * (d_f_4_d_m0 - f_4_over_m0);
     let d_sigma_dot_d_m0 = d_sigma_dot_d_m0_part_1 - R * minus_d_omega_1_dot_d_m0;
     let d_sigma_dot_d_R = omega_1_dot + R * d_omega_1_dot_d_R - omega_2 * omega_3;
     let minus_d_sigma_dot_d_g = sin_theta + b_omega_1_u * p_omega_1_g_part_1;

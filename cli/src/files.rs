@@ -6,11 +6,18 @@ use std::path::Path;
 
 use crate::failure::Failure;
 
-/// Writes a file through a draft beside it; `-` is standard output.
+/// Writes a file through a draft beside it; `-` is standard output. What stands there and is no
+/// regular file, such as a pipe or a device, is written to and not replaced.
 pub(crate) fn write(path: &Path, text: &str) -> Result<(), Failure> {
     if is_stdout(path) {
         return print(text);
     }
+    // A link stays a link: its target is what the user means.
+    let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
+    if fs::metadata(&target).is_ok_and(|there| !there.is_file()) {
+        return fs::write(&target, text).map_err(Failure::writing(path));
+    }
+    let path = target.as_path();
     if let Some(folder) = path
         .parent()
         .filter(|folder| !folder.as_os_str().is_empty())

@@ -73,7 +73,8 @@ fn diagnostic(mechanism: &Mechanism, text: &str, finding: &Finding) -> Diagnosti
         };
         section("pseudo_velocities").or_else(|| section("mechanism"))
     });
-    let diagnostic = Diagnostic::error(finding.code, finding.message.as_str()).help(finding.help.as_str());
+    let diagnostic =
+        Diagnostic::error(finding.code, finding.message.as_str()).help(finding.help.as_str());
     diagnostic.at(span.unwrap_or_default(), "")
 }
 

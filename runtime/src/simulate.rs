@@ -189,13 +189,11 @@ impl<'a> Simulation<'a> {
             }
         };
 
-        let (t_end, finished) = match &outcome {
-            Ok(Outcome { t, ending, .. }) => (*t, *ending == crate::integrate::Ending::Finished),
-            Err(cause) => (cause.time(), false),
+        let t_end = match &outcome {
+            Ok(Outcome { t, .. }) => *t,
+            Err(cause) => cause.time(),
         };
-        if !finished {
-            recorder.finish_early(t_end, &x);
-        }
+        recorder.finish(t_end, &x);
         let fill = |t: f64, x: &[f64], u: &mut [f64]| inputs.fill(t, x, u);
         let (times, states) = (recorder.times, recorder.states);
         let mut trajectory =
@@ -291,7 +289,8 @@ impl Recorder<'_> {
         }
     }
 
-    fn finish_early(&mut self, t: f64, x: &[f64]) {
+    /// Records where the motion ended, which need not lie on the grid.
+    fn finish(&mut self, t: f64, x: &[f64]) {
         if self.times.last().is_some_and(|last| *last < t) {
             self.record(t, x);
         }

@@ -103,7 +103,9 @@ impl Derivation {
                 }
                 let parts: Vec<Expr> = results.iter().map(|r| r.entries[0]).collect();
                 let total = self.algebra.graph.sum(&parts);
-                results.insert(0, array("total", Layout::Scalar, vec![total]));
+                let taken = mechanism.bodies.iter().any(|body| body.name == "total");
+                let name = if taken { "total_of_bodies" } else { "total" };
+                results.insert(0, array(name, Layout::Scalar, vec![total]));
                 results
             }
             FunctionKind::MassMatrix => {

@@ -88,7 +88,7 @@ pub fn constraints(
         &motions,
         Effort::Plain,
     )?;
-    let mut reactions: Vec<String> = Vec::new();
+    let mut places: Vec<Place> = Vec::new();
     let mut rows = Vec::new();
     for (index, constraint) in mechanism.constraints.iter().enumerate() {
         let item = Item::Constraint(index);
@@ -99,7 +99,7 @@ pub fn constraints(
         let zero = |_| vec![division_by_zero(item)];
         let graph = &mut algebra.graph;
         // Name, value and direction of each scalar row.
-        let (place, scalars): (&str, Vec<(String, Expr, Vec3)>) = match &constraint.kind {
+        let (place, scalars): (Place, Vec<(String, Expr, Vec3)>) = match &constraint.kind {
             ConstraintKind::Rolling { body, contact } => {
                 let v = kinematics.material_velocity(graph, mechanism, *body, *contact, GROUND);
                 let scalars = ["x", "y", "z"]
@@ -113,14 +113,14 @@ pub fn constraints(
                         )
                     })
                     .collect();
-                (&mechanism.points[*contact].name, scalars)
+                (Place::Point(*contact), scalars)
             }
             ConstraintKind::Velocity { zero: left, equals } => {
                 let left = lowering.lower(graph, left).map_err(zero)?;
                 let right = lowering.lower(graph, equals).map_err(zero)?;
                 let value = graph.sub(left, right);
                 (
-                    &constraint.name,
+                    Place::Constraint(index),
                     vec![(constraint.name.clone(), value, vector::IDENTITY[0])],
                 )
             }
@@ -148,8 +148,8 @@ pub fn constraints(
                     v: along,
                 };
                 let in_ground = kinematics.frames.express(graph, in_ground, GROUND);
-                let name = &mechanism.points[*point].name;
-                (name, vec![(constraint.name.clone(), value, in_ground)])
+                let row = (constraint.name.clone(), value, in_ground);
+                (Place::Point(*point), vec![row])
             }
             ConstraintKind::Position { .. } => {
                 return Err(vec![Finding {
@@ -160,13 +160,13 @@ pub fn constraints(
                 }]);
             }
         };
-        let place = match reactions.iter().position(|r| r == place) {
-            Some(place) => place,
-            None => {
-                reactions.push(place.to_owned());
-                reactions.len() - 1
-            }
-        };
+        let place = places
+            .iter()
+            .position(|&other| other == place)
+            .unwrap_or_else(|| {
+                places.push(place);
+                places.len() - 1
+            });
         for (name, value, direction) in scalars {
             let reaction = Reaction { place, direction };
             rows.push(row(
@@ -183,9 +183,38 @@ pub fn constraints(
     stand_ins(&algebra.graph, mechanism, &mut rows)?;
     Ok(Constraints {
         rows,
-        reactions,
+        reactions: places
+            .into_iter()
+            .map(|place| place.name(mechanism))
+            .collect(),
         carried,
     })
+}
+
+/// Where a reaction acts.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Place {
+    /// At a point.
+    Point(PointId),
+    /// Along a combination of velocities that has no point: a multiplier.
+    Constraint(usize),
+}
+
+impl Place {
+    /// Its name in results. A constraint that is called like a point says that it is none.
+    fn name(self, mechanism: &Mechanism) -> String {
+        match self {
+            Self::Point(point) => mechanism.points[point].name.clone(),
+            Self::Constraint(index) => {
+                let name = &mechanism.constraints[index].name;
+                if mechanism.points.iter().any(|point| point.name == *name) {
+                    format!("constraint_{name}")
+                } else {
+                    name.clone()
+                }
+            }
+        }
+    }
 }
 
 /// Splits a row into its coefficients.

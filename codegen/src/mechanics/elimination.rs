@@ -81,6 +81,7 @@ pub fn eliminate(
             right,
         });
     }
+    independent_rows(algebra, constraints)?;
     check_count(mechanism, constraints, equations.len())?;
 
     let (violating, solved_numerically) = solve(algebra, mechanism, equations, intervals)?;
@@ -283,6 +284,58 @@ fn safest_pivot(
         }
     }
     best.map(|(_, place)| place)
+}
+
+/// Fails where a constraint follows from the others, or contradicts them.
+fn independent_rows(algebra: &mut Algebra, constraints: &Constraints) -> Outcome<()> {
+    // Rows in echelon form: the column of the pivot, the coefficients, the rest.
+    let mut echelon: Vec<(usize, Vec<Expr>, Expr)> = Vec::new();
+    let mut findings = Vec::new();
+    for row in constraints.rows.iter().filter(|row| !row.is_embedded()) {
+        let (mut coefficients, mut rest) = (row.coefficients.clone(), row.rest);
+        for (column, pivots, pivot_rest) in &echelon {
+            if coefficients[*column] == Graph::ZERO {
+                continue;
+            }
+            let factor = algebra.graph.div(coefficients[*column], pivots[*column]);
+            let reduced = coefficients.iter_mut().zip(pivots);
+            for (value, &pivot) in reduced.chain([(&mut rest, pivot_rest)]) {
+                let change = algebra.graph.mul(factor, pivot);
+                *value = algebra.graph.sub(*value, change);
+                if algebra.test.is_zero(&algebra.graph, *value) {
+                    *value = Graph::ZERO;
+                }
+            }
+        }
+        if let Some(column) = coefficients.iter().position(|&c| c != Graph::ZERO) {
+            echelon.push((column, coefficients, rest));
+            continue;
+        }
+        let (code, message, help) = if rest == Graph::ZERO {
+            (
+                Code::RedundantConstraint,
+                "follows from the other constraints",
+                "remove it",
+            )
+        } else {
+            (
+                Code::DependentConstraints,
+                "contradicts the other constraints",
+                "remove one of them",
+            )
+        };
+        findings.push(Finding {
+            code,
+            message: format!("`{}` {message}", row.name),
+            item: Item::Constraint(row.constraint),
+            help: help.to_owned(),
+        });
+    }
+    if findings.is_empty() {
+        Ok(())
+    } else {
+        Err(findings)
+    }
 }
 
 /// Fails where the remaining equations are dependent everywhere, by elimination without regard to ranges.

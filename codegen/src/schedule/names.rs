@@ -22,6 +22,10 @@ const KEYWORDS: &[&str] = &[
 const STATICS: &[&str] = &[
     "lu_factor",
     "lu_solve",
+    "None",
+    "Some",
+    "Ok",
+    "Err",
     "INFO",
     "SPEC",
     "STATES",

@@ -11,9 +11,9 @@ use criterion::{Criterion, criterion_group, criterion_main};
 /// Parses, checks, derives, schedules and prints.
 fn generate(shipped: &Shipped, kinds: &[FunctionKind]) -> usize {
     let checked = appell_spec::load(shipped.file, shipped.spec).expect("shipped specs are right");
-    let derivation = derive(&checked.mechanism)
-        .ok()
-        .expect("shipped specs can be derived");
+    let Ok(derivation) = derive(&checked.mechanism) else {
+        panic!("shipped specs can be derived")
+    };
     let program = assemble::program(derivation, &checked.mechanism, kinds)
         .expect("shipped specs can be assembled");
     emit_functions(&program, kinds)

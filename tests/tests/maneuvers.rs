@@ -155,7 +155,7 @@ fn the_printed_gains_are_the_closed_forms_but_for_one() {
         (TURN, 5.0, vec![106.44, -128.32, 41.49, 73.69, 112.73]),
     ] {
         for (gain, printed) in gains(text, speed).into_iter().zip(printed) {
-            let misprint = printed == 536.67;
+            let misprint = approx::abs_diff_eq!(printed, 536.67);
             assert_eq!(
                 (gain - printed).abs() > PRINTED_GAIN,
                 misprint,

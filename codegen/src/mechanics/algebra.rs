@@ -58,14 +58,12 @@ impl Algebra {
         let Some(symbol) = self.graph.as_symbol(symbol) else {
             return Graph::ZERO;
         };
-        let place = match self.derivatives.iter().position(|(s, _)| *s == symbol) {
-            Some(place) => place,
-            None => {
-                self.derivatives
-                    .push((symbol, Derivatives::with_respect_to(symbol)));
-                self.derivatives.len() - 1
-            }
-        };
+        let known = self.derivatives.iter().position(|(s, _)| *s == symbol);
+        let place = known.unwrap_or_else(|| {
+            self.derivatives
+                .push((symbol, Derivatives::with_respect_to(symbol)));
+            self.derivatives.len() - 1
+        });
         self.derivatives[place].1.of(&mut self.graph, expr)
     }
 

@@ -76,15 +76,19 @@ pub fn program(
     })
 }
 
+fn array(name: &str, layout: Layout, entries: Vec<Expr>) -> Array {
+    let name = name.to_owned();
+    Array {
+        name,
+        layout,
+        entries,
+    }
+}
+
 impl Derivation {
     /// The results of one function.
     fn results(&mut self, mechanism: &Mechanism, kind: FunctionKind) -> Outcome<Vec<Array>> {
         let speeds = self.symbols.speeds.len();
-        let array = |name: &str, layout: Layout, entries: Vec<Expr>| Array {
-            name: name.to_owned(),
-            layout,
-            entries,
-        };
         Ok(match kind {
             FunctionKind::Kinematics => {
                 vec![array(
@@ -93,21 +97,7 @@ impl Derivation {
                     self.coordinate_rates.clone(),
                 )]
             }
-            FunctionKind::AccelerationEnergy => {
-                let mut results = Vec::new();
-                for body in self.bodies.clone() {
-                    let s =
-                        acceleration_energy(&mut self.algebra, &body, &self.motion.accelerations);
-                    let s = self.algebra.graph.name(&format!("s_{}", body.name), s);
-                    results.push(array(&body.name, Layout::Scalar, vec![s]));
-                }
-                let parts: Vec<Expr> = results.iter().map(|r| r.entries[0]).collect();
-                let total = self.algebra.graph.sum(&parts);
-                let taken = mechanism.bodies.iter().any(|body| body.name == "total");
-                let name = if taken { "total_of_bodies" } else { "total" };
-                results.insert(0, array(name, Layout::Scalar, vec![total]));
-                results
-            }
+            FunctionKind::AccelerationEnergy => self.acceleration_energies(mechanism),
             FunctionKind::MassMatrix => {
                 let entries = self.gibbs.mass_matrix.concat();
                 vec![array(
@@ -127,35 +117,7 @@ impl Derivation {
             FunctionKind::Rates => vec![array("rates", Layout::State, self.rates())],
             FunctionKind::Jacobians => self.jacobians(mechanism, false),
             FunctionKind::AllJacobians => self.jacobians(mechanism, true),
-            FunctionKind::Energies => {
-                let kinetic: Vec<Expr> = self
-                    .bodies
-                    .clone()
-                    .iter()
-                    .map(|body| kinetic_energy(&mut self.algebra, body))
-                    .collect();
-                let kinetic = self.algebra.graph.sum(&kinetic);
-                let potential: Vec<Expr> = self
-                    .loads
-                    .iter()
-                    .filter_map(|load| load.potential)
-                    .collect();
-                let potential = self.algebra.graph.sum(&potential);
-                let power: Vec<Expr> = self
-                    .loads
-                    .iter()
-                    .filter(|load| load.potential.is_none())
-                    .map(|load| load.power(&mut self.algebra.graph))
-                    .collect();
-                let power = self.algebra.graph.sum(&power);
-                [
-                    ("kinetic", kinetic),
-                    ("potential", potential),
-                    ("power", power),
-                ]
-                .map(|(name, value)| array(name, Layout::Scalar, vec![value]))
-                .into()
-            }
+            FunctionKind::Energies => self.energies(),
             FunctionKind::ConstraintResidual => {
                 let graph = &mut self.algebra.graph;
                 let residual =
@@ -193,6 +155,46 @@ impl Derivation {
                 vec![array("outputs", Layout::Outputs, values)]
             }
         })
+    }
+
+    /// S at the actual accelerations: the sum, then body by body.
+    fn acceleration_energies(&mut self, mechanism: &Mechanism) -> Vec<Array> {
+        let mut results = Vec::with_capacity(self.bodies.len() + 1);
+        for body in self.bodies.clone() {
+            let s = acceleration_energy(&mut self.algebra, &body, &self.motion.accelerations);
+            let s = self.algebra.graph.name(&format!("s_{}", body.name), s);
+            results.push(array(&body.name, Layout::Scalar, vec![s]));
+        }
+        let parts: Vec<Expr> = results.iter().map(|r| r.entries[0]).collect();
+        let total = self.algebra.graph.sum(&parts);
+        let taken = mechanism.bodies.iter().any(|body| body.name == "total");
+        let name = if taken { "total_of_bodies" } else { "total" };
+        results.insert(0, array(name, Layout::Scalar, vec![total]));
+        results
+    }
+
+    /// T, V and the power of the loads without a potential.
+    fn energies(&mut self) -> Vec<Array> {
+        let bodies = self.bodies.clone();
+        let kinetic: Vec<Expr> = bodies
+            .iter()
+            .map(|body| kinetic_energy(&mut self.algebra, body))
+            .collect();
+        let graph = &mut self.algebra.graph;
+        let potential: Vec<Expr> = self
+            .loads
+            .iter()
+            .filter_map(|load| load.potential)
+            .collect();
+        let others = self.loads.iter().filter(|load| load.potential.is_none());
+        let power: Vec<Expr> = others.map(|load| load.power(graph)).collect();
+        [
+            ("kinetic", kinetic),
+            ("potential", potential),
+            ("power", power),
+        ]
+        .map(|(name, parts)| array(name, Layout::Scalar, vec![graph.sum(&parts)]))
+        .into()
     }
 
     /// ẋ: pseudo-accelerations, then generalised velocities.

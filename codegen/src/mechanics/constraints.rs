@@ -90,76 +90,9 @@ pub fn constraints(
     )?;
     let mut places: Vec<Place> = Vec::new();
     let mut rows = Vec::new();
-    for (index, constraint) in mechanism.constraints.iter().enumerate() {
-        let item = Item::Constraint(index);
-        let lowering = Lowering {
-            symbols,
-            rates: &symbols.rates,
-        };
-        let zero = |_| vec![division_by_zero(item)];
-        let graph = &mut algebra.graph;
-        // Name, value and direction of each scalar row.
-        let (place, scalars): (Place, Vec<(String, Expr, Vec3)>) = match &constraint.kind {
-            ConstraintKind::Rolling { body, contact } => {
-                let v = kinematics.material_velocity(graph, mechanism, *body, *contact, GROUND);
-                let scalars = ["x", "y", "z"]
-                    .iter()
-                    .enumerate()
-                    .map(|(k, axis)| {
-                        (
-                            format!("{}.{axis}", constraint.name),
-                            v[k],
-                            vector::IDENTITY[k],
-                        )
-                    })
-                    .collect();
-                (Place::Point(*contact), scalars)
-            }
-            ConstraintKind::Velocity { zero: left, equals } => {
-                let left = lowering.lower(graph, left).map_err(zero)?;
-                let right = lowering.lower(graph, equals).map_err(zero)?;
-                let value = graph.sub(left, right);
-                (
-                    Place::Constraint(index),
-                    vec![(constraint.name.clone(), value, vector::IDENTITY[0])],
-                )
-            }
-            ConstraintKind::FixedVelocity {
-                point,
-                body,
-                frame,
-                direction,
-                equals,
-            } => {
-                let along = lowering.lower_all(graph, direction).map_err(zero)?;
-                let right = lowering.lower(graph, equals).map_err(zero)?;
-                let v = match body {
-                    Some(body) => {
-                        kinematics.material_velocity(graph, mechanism, *body, *point, *frame)
-                    }
-                    None => kinematics
-                        .frames
-                        .express(graph, kinematics.velocity(*point), *frame),
-                };
-                let left = graph.dot(along, v);
-                let value = graph.sub(left, right);
-                let in_ground = super::frames::FrameVector {
-                    frame: *frame,
-                    v: along,
-                };
-                let in_ground = kinematics.frames.express(graph, in_ground, GROUND);
-                let row = (constraint.name.clone(), value, in_ground);
-                (Place::Point(*point), vec![row])
-            }
-            ConstraintKind::Position { .. } => {
-                return Err(vec![Finding {
-                    code: Code::PositionConstraintReserved,
-                    message: "constraints between positions are not supported yet".to_owned(),
-                    item,
-                    help: "choose coordinates that satisfy the constraint by themselves".to_owned(),
-                }]);
-            }
-        };
+    for index in 0..mechanism.constraints.len() {
+        let (place, scalars) =
+            scalar_rows(&mut algebra.graph, mechanism, symbols, &kinematics, index)?;
         let place = places
             .iter()
             .position(|&other| other == place)
@@ -167,7 +100,12 @@ pub fn constraints(
                 places.push(place);
                 places.len() - 1
             });
-        for (name, value, direction) in scalars {
+        for Scalar {
+            name,
+            value,
+            direction,
+        } in scalars
+        {
             let reaction = Reaction { place, direction };
             rows.push(row(
                 algebra,
@@ -215,6 +153,100 @@ impl Place {
             }
         }
     }
+}
+
+/// A scalar row before it is split into its coefficients.
+struct Scalar {
+    name: String,
+    value: Expr,
+    direction: Vec3,
+}
+
+/// What one constraint demands, row by row, and where its reaction acts.
+fn scalar_rows(
+    graph: &mut Graph,
+    mechanism: &Mechanism,
+    symbols: &Symbols,
+    kinematics: &Kinematics,
+    index: usize,
+) -> Outcome<(Place, Vec<Scalar>)> {
+    let constraint = &mechanism.constraints[index];
+    let item = Item::Constraint(index);
+    let lowering = Lowering {
+        symbols,
+        rates: &symbols.rates,
+    };
+    let zero = |_| vec![division_by_zero(item)];
+    Ok(match &constraint.kind {
+        ConstraintKind::Rolling { body, contact } => {
+            let v = kinematics.material_velocity(graph, mechanism, *body, *contact, GROUND);
+            let scalars = ["x", "y", "z"]
+                .iter()
+                .enumerate()
+                .map(|(k, axis)| Scalar {
+                    name: format!("{}.{axis}", constraint.name),
+                    value: v[k],
+                    direction: vector::IDENTITY[k],
+                })
+                .collect();
+            (Place::Point(*contact), scalars)
+        }
+        ConstraintKind::Velocity { zero: left, equals } => {
+            let left = lowering.lower(graph, left).map_err(zero)?;
+            let right = lowering.lower(graph, equals).map_err(zero)?;
+            let value = graph.sub(left, right);
+            let name = constraint.name.clone();
+            let direction = vector::IDENTITY[0];
+            (
+                Place::Constraint(index),
+                vec![Scalar {
+                    name,
+                    value,
+                    direction,
+                }],
+            )
+        }
+        ConstraintKind::FixedVelocity {
+            point,
+            body,
+            frame,
+            direction,
+            equals,
+        } => {
+            let along = lowering.lower_all(graph, direction).map_err(zero)?;
+            let right = lowering.lower(graph, equals).map_err(zero)?;
+            let v = match body {
+                Some(body) => kinematics.material_velocity(graph, mechanism, *body, *point, *frame),
+                None => kinematics
+                    .frames
+                    .express(graph, kinematics.velocity(*point), *frame),
+            };
+            let left = graph.dot(along, v);
+            let value = graph.sub(left, right);
+            let in_ground = super::frames::FrameVector {
+                frame: *frame,
+                v: along,
+            };
+            let direction = kinematics.frames.express(graph, in_ground, GROUND);
+            let name = constraint.name.clone();
+            (
+                Place::Point(*point),
+                vec![Scalar {
+                    name,
+                    value,
+                    direction,
+                }],
+            )
+        }
+        ConstraintKind::Position { .. } => {
+            return Err(vec![Finding {
+                code: Code::PositionConstraintReserved,
+                message: "constraints between positions are not supported yet".to_owned(),
+                item,
+                help: "choose coordinates that satisfy the constraint by themselves".to_owned(),
+            }]);
+        }
+    })
 }
 
 /// Splits a row into its coefficients.

@@ -40,7 +40,7 @@ pub struct Frames {
 }
 
 impl Frames {
-    /// Frames with their angular velocities: ω_child = Rᵀ ω_parent + axis · dα/dt for each turn.
+    /// Frames with their angular velocities: `ω_child = Rᵀ ω_parent + axis · dα/dt` for each turn.
     pub fn new(
         algebra: &mut Algebra,
         mechanism: &Mechanism,

@@ -113,7 +113,7 @@ impl Kinematics {
         self.velocities[point]
     }
 
-    /// Velocity of the material point of a body that is at `point` now: v_C + ω × r_CP.
+    /// Velocity of the material point of a body that is at `point` now: `v_C + ω × r_CP`.
     pub fn material_velocity(
         &self,
         graph: &mut Graph,

@@ -1,0 +1,163 @@
+//! What the derivation refuses, told at its place, and what it must not refuse.
+
+use std::fmt::Write as _;
+use std::time::{Duration, Instant};
+
+use appell_codegen::compile::{compile, derived};
+use appell_codegen::mechanics::assemble::ALL;
+use appell_codegen::schedule::schedule;
+
+/// A text this long to derive would make an editor wait.
+const LONGEST_WAIT: Duration = Duration::from_secs(20);
+
+fn refusal(text: &str) -> String {
+    match compile("a.toml", text, &ALL) {
+        Ok(_) => panic!("it was accepted"),
+        Err(report) => report.plain(),
+    }
+}
+
+/// A point mass in space with its constraints and pseudo-velocities.
+fn mass(constraints: &str, speeds: &str) -> String {
+    format!(
+        "[mechanism]\nname = 'mass'\ntitle = 'a mass'\n\
+         [parameters]\nm = {{ value = 1, unit = 'kg' }}\n\
+         [coordinates]\nx = {{ unit = 'm' }}\ny = {{ unit = 'm' }}\nz = {{ unit = 'm' }}\n\
+         [points]\nP = {{ from = 'O', in = 'ground', at = ['x', 'y', 'z'] }}\n\
+         [bodies]\nb = {{ centre = 'P', mass = 'm' }}\n\
+         [constraints]\n{constraints}\n[pseudo_velocities]\n{speeds}\n"
+    )
+}
+
+#[test]
+fn a_constraint_that_follows_from_the_others_is_named() {
+    let rows = "first = { kind = 'velocity', zero = 'dot(x) + dot(y)' }\n\
+                second = { kind = 'velocity', zero = 'dot(x) - dot(y)' }\n\
+                third = { kind = 'velocity', zero = '3*dot(x)' }";
+    let shown = refusal(&mass(rows, "w = 'dot(z)'"));
+    assert!(shown.contains("redundant-constraint"), "{shown}");
+    assert!(
+        shown.contains("`third` follows from the other constraints"),
+        "{shown}"
+    );
+}
+
+#[test]
+fn a_constraint_that_contradicts_the_others_is_named() {
+    let rows = "still = { kind = 'velocity', zero = 'dot(x)' }\n\
+                moving = { kind = 'velocity', zero = 'dot(x)', equals = '1 [m/s]' }";
+    let shown = refusal(&mass(rows, "v = 'dot(y)'\nw = 'dot(z)'"));
+    assert!(shown.contains("dependent-constraints"), "{shown}");
+    assert!(
+        shown.contains("`moving` contradicts the other constraints"),
+        "{shown}"
+    );
+}
+
+#[test]
+fn an_imposed_position_brings_its_velocity_and_acceleration() {
+    let text = "[mechanism]\nname = 'lift'\ntitle = 'a mass on a lift'\n\
+         [parameters]\nm = { value = 1, unit = 'kg' }\n\
+         [coordinates]\nx = { unit = 'm' }\n\
+         [signals]\nlift = { t = [0, 1, 2], value = [0, 1, 0], unit = 'm', interpolation = 'cubic' }\n\
+         [points]\nP = { from = 'O', in = 'ground', at = ['x', 0, 'lift'] }\n\
+         [bodies]\nb = { centre = 'P', mass = 'm' }\n\
+         [pseudo_velocities]\nv = 'dot(x)'\n";
+    let program =
+        compile("lift.toml", text, &ALL).unwrap_or_else(|report| panic!("{}", report.plain()));
+    let names: Vec<_> = program
+        .info
+        .inputs
+        .iter()
+        .map(|input| input.name.as_ref())
+        .collect();
+    assert_eq!(names, ["lift", "lift_dot", "lift_ddot"]);
+    for function in &program.functions {
+        schedule(&program, function);
+    }
+}
+
+#[test]
+fn a_parameter_that_may_change_its_sign_is_no_safe_pivot() {
+    let numeric = |limits: &str| {
+        let text = format!(
+            "[mechanism]\nname = 'slide'\ntitle = 'a mass'\n\
+             [parameters]\nm = {{ value = 1, unit = 'kg' }}\na = {{ value = 1, unit = '1'{limits} }}\n\
+             [coordinates]\nx = {{ unit = 'm' }}\n\
+             [points]\nP = {{ from = 'O', in = 'ground', at = ['x', 0, 0] }}\n\
+             [bodies]\nb = {{ centre = 'P', mass = 'm' }}\n\
+             [pseudo_velocities]\nv = 'a*dot(x)'\n"
+        );
+        let derived =
+            derived("slide.toml", &text).unwrap_or_else(|report| panic!("{}", report.plain()));
+        derived.derivation.velocities.solved_numerically
+    };
+    assert!(numeric("").is_empty());
+    assert_eq!(numeric(", at_least = -1, at_most = 2"), [0]);
+}
+
+#[test]
+fn two_contacts_that_share_a_reaction_are_refused() {
+    let text = "[mechanism]\nname = 'axle'\ntitle = 'two wheels on one axle'\n\
+         [parameters]\nm = { value = 1, unit = 'kg' }\nR = { value = 1, unit = 'm' }\n\
+         [coordinates]\nx = { unit = 'm' }\n\
+         [frames]\nwheel = { parent = 'ground', about_axis = 'y', by = 'x/R' }\n\
+         [points]\nC = { from = 'O', in = 'ground', at = ['x', 0, 'R'] }\n\
+         A = { from = 'C', in = 'ground', at = [0, 'R', '-R'] }\n\
+         B = { from = 'C', in = 'ground', at = [0, '-R', '-R'] }\n\
+         [bodies]\nb = { frame = 'wheel', centre = 'C', mass = 'm', inertia = { in = 'ground', diagonal = ['m*R^2/2', 'm*R^2', 'm*R^2/2'] } }\n\
+         [constraints]\nleft = { kind = 'rolling', body = 'b', contact = 'A' }\n\
+         right = { kind = 'rolling', body = 'b', contact = 'B' }\n\
+         [pseudo_velocities]\nv = 'dot(x)'\n";
+    let shown = refusal(text);
+    assert!(
+        shown.contains("how the two share their reaction cannot be told"),
+        "{shown}"
+    );
+}
+
+/// A chain of links that turn against each other about changing axes.
+fn chain(links: usize) -> String {
+    let mut text = String::from(
+        "[mechanism]\nname = 'chain'\ntitle = 'a chain'\n[parameters]\nm = { value = 1, unit = 'kg' }\n\
+         l = { value = 1, unit = 'm' }\n",
+    );
+    let mut section = |name: &str, line: &dyn Fn(usize) -> String| {
+        let _ = writeln!(text, "[{name}]");
+        for i in 1..=links {
+            let _ = writeln!(text, "{}", line(i));
+        }
+    };
+    section("coordinates", &|i| format!("q{i} = {{ unit = 'rad' }}"));
+    section("frames", &|i| {
+        let parent = if i == 1 {
+            "ground".to_owned()
+        } else {
+            format!("F{}", i - 1)
+        };
+        let axis = ["x", "y", "z"][i % 3];
+        format!("F{i} = {{ parent = '{parent}', about_axis = '{axis}', by = 'q{i}' }}")
+    });
+    section("points", &|i| {
+        let from = if i == 1 {
+            "O".to_owned()
+        } else {
+            format!("P{}", i - 1)
+        };
+        format!("P{i} = {{ from = '{from}', in = 'F{i}', at = ['l', 'l', 'l'] }}")
+    });
+    section("bodies", &|i| {
+        format!("b{i} = {{ centre = 'P{i}', mass = 'm' }}")
+    });
+    section("pseudo_velocities", &|i| format!("w{i} = 'dot(q{i})'"));
+    text
+}
+
+#[test]
+fn a_long_chain_neither_hangs_nor_fills_the_memory() {
+    let start = Instant::now();
+    if let Err(report) = derived("chain.toml", &chain(40)) {
+        assert!(report.plain().contains("too-large"), "{}", report.plain());
+    }
+    assert!(start.elapsed() < LONGEST_WAIT, "{:?}", start.elapsed());
+}

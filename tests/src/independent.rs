@@ -3,7 +3,7 @@
 //! Nothing here comes from the derivation: rotation matrices are multiplied out, positions are
 //! differentiated twice along the motion with dual numbers, the Lagrangian is differentiated in the
 //! coordinates, and the linear systems are solved with numbers. What is shared with the tool under
-//! test is the meaning of a spec, [`Mechanism`](appell_spec::Mechanism), and the dual numbers.
+//! test is the meaning of a spec, [`appell_spec::Mechanism`], and the dual numbers.
 
 pub mod compare;
 pub mod evaluate;

@@ -28,6 +28,8 @@ fn generation(criterion: &mut Criterion) {
         let shipped = Shipped::find(name).expect("it is shipped");
         for (what, kinds) in [
             ("rates", [FunctionKind::Rates].as_slice()),
+            // The function returns the rates and both Jacobians, from one graph.
+            ("rates with Jacobians", &[FunctionKind::Jacobians]),
             (
                 "rates and Jacobians",
                 &[FunctionKind::Rates, FunctionKind::Jacobians],

@@ -227,3 +227,35 @@ pub(super) const INTERIOR: [Row; 4] = [
         (15, -149.72683625798564),
     ],
 ];
+
+#[cfg(test)]
+mod tests {
+    use super::{ERROR_3, ERROR_5, TABLEAU};
+
+    /// Rounding of coefficients up to 6.
+    const ROUNDING: f64 = 4e-15;
+
+    /// The other conditions show in steps; see `tests/order_conditions.rs`. These do not, because
+    /// the estimate of order 5 hides that of order 3.
+    #[test]
+    fn the_differences_of_order_three_and_five_vanish_for_all_trees_with_three_nodes() {
+        let c = |stage: usize| {
+            if stage == 0 {
+                0.0
+            } else {
+                TABLEAU.nodes[stage - 1]
+            }
+        };
+        let a_c = |stage: usize| match stage {
+            0 => 0.0,
+            _ => TABLEAU.rows[stage - 1].iter().map(|&(j, a)| a * c(j)).sum(),
+        };
+        let trees: [&dyn Fn(usize) -> f64; 4] = [&|_| 1.0, &c, &|i| c(i) * c(i), &a_c];
+        for (tree, weight) in trees.iter().enumerate() {
+            for row in [ERROR_3, ERROR_5] {
+                let sum: f64 = row.iter().map(|&(i, e)| e * weight(i)).sum();
+                assert!(sum.abs() < ROUNDING, "tree {tree}: {sum:e}");
+            }
+        }
+    }
+}

@@ -4,10 +4,11 @@ use std::collections::BTreeMap;
 
 use appell_runtime::model::{ModelInfo, Quantity};
 use appell_spec::expr::Span;
-use appell_spec::{Code, Diagnostic, Report, closest};
+use appell_spec::{Code, Diagnostic, Report};
 use serde_json::value::RawValue;
 
 use crate::failure::Failure;
+use crate::setup::instead;
 
 /// Where the equations are evaluated, in SI.
 #[derive(Debug)]
@@ -194,12 +195,8 @@ impl<'a> Reader<'a> {
                 values[index] = self.number(raw);
                 continue;
             }
-            let names = || list.iter().map(|quantity| quantity.name.as_ref());
-            let help = match closest(&name, names()) {
-                Some(similar) => format!("did you mean `{similar}`?"),
-                None if list.is_empty() => "the mechanism has none".to_owned(),
-                None => format!("there are {}", names().collect::<Vec<_>>().join(", ")),
-            };
+            let names = list.iter().map(|quantity| quantity.name.as_ref());
+            let help = instead(&name, names);
             let message = format!("there is no {what} `{name}`");
             self.tell(Code::UnknownName, message, self.span(raw), help);
         }

@@ -2,7 +2,7 @@
 
 use appell_runtime::model::ModelInfo;
 use appell_spec::units::{self, Unit};
-use appell_spec::{Mechanism, Report, Scope, Snippet, closest, formula};
+use appell_spec::{Mechanism, Report, Scope, Snippet, did_you_mean, formula};
 
 use crate::failure::Failure;
 use crate::feedback::Feedback;
@@ -231,13 +231,19 @@ pub(crate) fn unknown<'n>(
     what: &str,
     names: impl Iterator<Item = &'n str> + Clone,
 ) -> String {
-    let similar = closest(name, names.clone());
-    let list = names.collect::<Vec<_>>();
-    match similar {
-        Some(similar) => format!("there is no {what} `{name}`; did you mean `{similar}`?"),
-        None if list.is_empty() => format!("there is no {what} `{name}`: the mechanism has none"),
-        None => format!("there is no {what} `{name}`; there are {}", list.join(", ")),
-    }
+    format!("there is no {what} `{name}`; {}", instead(name, names))
+}
+
+/// What to write instead of an unknown name.
+pub(crate) fn instead<'n>(name: &str, names: impl Iterator<Item = &'n str> + Clone) -> String {
+    did_you_mean(name, names.clone(), || {
+        let list = names.collect::<Vec<_>>();
+        if list.is_empty() {
+            "the mechanism has none".to_owned()
+        } else {
+            format!("there are {}", list.join(", "))
+        }
+    })
 }
 
 fn unique(assignments: &[Assignment], flag: &str) -> Result<(), Failure> {

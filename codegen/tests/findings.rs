@@ -55,6 +55,16 @@ fn a_constraint_that_contradicts_the_others_is_named() {
 }
 
 #[test]
+fn a_division_by_zero_in_an_angle_is_told_at_its_frame() {
+    let text = mass("", "u = 'dot(x)'\nv = 'dot(y)'\nw = 'dot(z)'")
+        .replace("in = 'ground'", "in = 'arm'")
+        + "[frames]\narm = { parent = 'ground', about_axis = 'z', by = 'x/(m - m)*(1 [kg/m])' }\n";
+    let shown = refusal(&text);
+    assert!(shown.contains("division-by-zero"), "{shown}");
+    assert!(shown.contains("| ^^^\n"), "{shown}");
+}
+
+#[test]
 fn an_imposed_position_brings_its_velocity_and_acceleration() {
     let text = "[mechanism]\nname = 'lift'\ntitle = 'a mass on a lift'\n\
          [parameters]\nm = { value = 1, unit = 'kg' }\n\

@@ -3,7 +3,7 @@
 use num_rational::BigRational;
 
 use crate::expr::{BinaryOp, Function, Relation, Span};
-use crate::language::{Key, Kind, Section};
+use crate::language::{Key, Kind, Section, Sense};
 use crate::units::Unit;
 
 /// A value and where it stands.
@@ -62,8 +62,10 @@ pub struct Entry {
 /// The forms of a value.
 #[derive(Debug, Clone)]
 pub enum ValueAst {
-    /// A sentence, a name or a word.
+    /// A sentence or a name.
     Text(String),
+    /// One of the words that the key takes.
+    Word(Sense),
     /// A number in the unit of the item.
     Number(BigRational),
     /// Several numbers.
@@ -137,7 +139,15 @@ impl ItemAst {
         self.entries.iter().find(|e| e.key.name == key)
     }
 
-    /// The text under a key: a sentence, a name or a word.
+    /// What the word under a key means.
+    pub fn word(&self, key: &str) -> Option<Sense> {
+        self.entry(key).and_then(|e| match &e.value {
+            ValueAst::Word(meaning) => Some(*meaning),
+            _ => None,
+        })
+    }
+
+    /// The text under a key: a sentence or a name.
     pub fn text(&self, key: &str) -> Option<Spanned<&str>> {
         self.entry(key).and_then(|e| match &e.value {
             ValueAst::Text(text) => Some(Spanned {

@@ -5,7 +5,9 @@
 mod kinds;
 mod sections;
 
-pub use sections::{AXES, SECTIONS};
+use crate::mechanism::{Axis, Interpolation};
+
+pub use sections::{AXES, INTERPOLATIONS, SECTIONS};
 
 /// A section of a spec.
 #[derive(Debug)]
@@ -39,10 +41,66 @@ pub enum Shape {
 pub struct Kind {
     /// The word after `kind =`.
     pub word: &'static str,
+    /// What the word means.
+    pub is: ItemKind,
     /// One sentence for people.
     pub about: &'static str,
     /// Its keys.
     pub keys: &'static [Key],
+}
+
+/// What a kind makes of its item: the form in which the stages after the table match on it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ItemKind {
+    /// An item of `[constraints]`.
+    Constraint(ConstraintWord),
+    /// An item of `[loads]`.
+    Load(LoadWord),
+}
+
+/// The kinds of constraints.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[expect(missing_docs, reason = "the table of kinds has a sentence for each")]
+pub enum ConstraintWord {
+    Rolling,
+    Velocity,
+    FixedVelocity,
+    Position,
+}
+
+/// The kinds of loads.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[expect(missing_docs, reason = "the table of kinds has a sentence for each")]
+pub enum LoadWord {
+    Gravity,
+    Force,
+    Torque,
+    Spring,
+    Damper,
+    Generalized,
+}
+
+/// One of the words that a key takes.
+#[derive(Debug)]
+pub struct Word {
+    /// As written.
+    pub text: &'static str,
+    /// What it means.
+    pub sense: Sense,
+}
+
+/// What a word means.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Sense {
+    /// A coordinate axis.
+    Axis {
+        /// Which one.
+        axis: Axis,
+        /// Whether it points backwards.
+        negative: bool,
+    },
+    /// How a signal runs between two samples.
+    Interpolation(Interpolation),
 }
 
 /// A key.
@@ -95,7 +153,7 @@ pub enum Form {
     /// Names of two points.
     TwoPoints,
     /// One of these words.
-    Word(&'static [&'static str]),
+    Word(&'static [Word]),
     /// A table.
     Table(&'static [Key]),
     /// A list of tables.

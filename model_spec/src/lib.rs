@@ -14,6 +14,7 @@ pub mod expr;
 pub mod language;
 pub mod limits;
 pub mod mechanism;
+mod name;
 mod number;
 pub mod parse;
 pub mod resolve;
@@ -26,7 +27,7 @@ pub use diagnostic::{Code, Diagnostic, Report, Severity};
 pub use mechanism::Mechanism;
 pub use resolve::{Scope, Snippet, formula};
 pub use starter::{NameError, starter};
-pub use suggest::closest;
+pub use suggest::{closest, did_you_mean};
 
 /// A mechanism that passed every check of this crate.
 #[derive(Debug, Clone)]

@@ -13,7 +13,7 @@ use crate::diagnostic::{Code, Diagnostic, MAX_SHOWN};
 use crate::expr::Span;
 use crate::language::{SECTIONS, Section};
 use crate::limits::MAX_FILE;
-use crate::suggest;
+use crate::suggest::{self, shown};
 
 pub(crate) use expression::zero;
 
@@ -177,19 +177,18 @@ impl Reader<'_> {
 
     fn unknown_section(&mut self, name: &str, at: Span) {
         let known = || SECTIONS.iter().map(|s: &Section| s.name);
-        let help = match suggest::closest(name, known()) {
-            Some(similar) => format!("did you mean `[{similar}]`?"),
-            None => format!(
-                "the sections are {}",
-                known().collect::<Vec<_>>().join(", ")
-            ),
-        };
-        let shown: String = name.chars().take(80).collect();
+        let help = suggest::closest(name, known()).map_or_else(
+            || format!("the sections are {}", suggest::list(known())),
+            |similar| suggest::meant(&format!("[{similar}]")),
+        );
         self.incomplete = true;
         self.tell(
-            Diagnostic::error(Code::UnknownSection, format!("unknown section `{shown}`"))
-                .at(at, "")
-                .help(help),
+            Diagnostic::error(
+                Code::UnknownSection,
+                format!("unknown section `{}`", shown(name)),
+            )
+            .at(at, "")
+            .help(help),
         );
     }
 

@@ -6,9 +6,7 @@ use serde_json::{Map, Value, json};
 
 use crate::language::{Form, Key, Kind, Need, SECTIONS, Shape};
 use crate::limits::{MAX_SENTENCE, MAX_TURNS};
-
-/// Names, as a regular expression.
-const NAME: &str = "^[A-Za-z][A-Za-z0-9_]{0,63}$";
+use crate::name;
 
 /// The schema (draft 7) as JSON text.
 pub fn json_schema() -> String {
@@ -52,7 +50,7 @@ pub fn json_schema() -> String {
 fn items(item: &Value) -> Value {
     json!({
         "type": "object",
-        "patternProperties": { NAME: item },
+        "patternProperties": { name::pattern(): item },
         "additionalProperties": false,
     })
 }
@@ -102,7 +100,7 @@ fn form(form: &Form) -> Value {
     let list = |item: Value, length: usize| json!({ "type": "array", "items": item, "minItems": length, "maxItems": length });
     match form {
         Form::Text => json!({ "type": "string", "maxLength": MAX_SENTENCE }),
-        Form::Name | Form::Reference(_) => json!({ "type": "string", "pattern": NAME }),
+        Form::Name | Form::Reference(_) => json!({ "type": "string", "pattern": name::pattern() }),
         Form::Unit => json!({ "type": "string" }),
         Form::Number => json!({ "type": "number" }),
         Form::Numbers => json!({ "type": "array", "items": { "type": "number" } }),
@@ -110,8 +108,10 @@ fn form(form: &Form) -> Value {
         Form::Expression => expression(),
         Form::Components => list(expression(), 3),
         Form::Matrix => list(list(expression(), 3), 3),
-        Form::TwoPoints => list(json!({ "type": "string", "pattern": NAME }), 2),
-        Form::Word(words) => json!({ "enum": words }),
+        Form::TwoPoints => list(json!({ "type": "string", "pattern": name::pattern() }), 2),
+        Form::Word(words) => {
+            json!({ "enum": words.iter().map(|word| word.text).collect::<Vec<_>>() })
+        }
         Form::Table(keys) => table(keys, None),
         Form::Tables(keys) => json!({
             "type": "array",

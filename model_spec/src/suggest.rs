@@ -1,5 +1,7 @@
-//! "Did you mean": the closest of a list of words.
+//! "Did you mean": the closest of a list of words, and how a message says so.
 
+/// Longest part of a word that a message repeats, in characters.
+const MAX_SHOWN: usize = 80;
 /// Longest word worth comparing.
 const MAX_LENGTH: usize = 64;
 
@@ -22,6 +24,32 @@ pub fn closest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) ->
         // The first of the closest, so that the answer does not depend on chance.
         .min_by_key(|(d, _)| *d)
         .map(|(_, c)| c)
+}
+
+/// The help for an unknown word: the candidate that was probably meant, or else the answer of
+/// `otherwise`.
+pub fn did_you_mean<'a>(
+    word: &str,
+    candidates: impl IntoIterator<Item = &'a str>,
+    otherwise: impl FnOnce() -> String,
+) -> String {
+    closest(word, candidates).map_or_else(otherwise, meant)
+}
+
+/// The help that names what was probably meant.
+pub(crate) fn meant(similar: &str) -> String {
+    format!("did you mean `{similar}`?")
+}
+
+/// Words one after the other.
+pub(crate) fn list<'a>(words: impl IntoIterator<Item = &'a str>) -> String {
+    words.into_iter().collect::<Vec<_>>().join(", ")
+}
+
+/// As much of somebody's word as a message can hold, on one line.
+pub(crate) fn shown(word: &str) -> String {
+    let seen = |c: char| if c.is_control() { '\u{fffd}' } else { c };
+    word.chars().take(MAX_SHOWN).map(seen).collect()
 }
 
 /// Edit distance with insertions, deletions, replacements and swaps of neighbours.

@@ -36,7 +36,7 @@ fn form_words(form: &Form) -> String {
         Form::TwoPoints => "names of two points".to_owned(),
         Form::Word(words) => words
             .iter()
-            .map(|w| format!("`{w}`"))
+            .map(|w| format!("`{}`", w.text))
             .collect::<Vec<_>>()
             .join(", "),
         Form::Table(_) => "table".to_owned(),

@@ -195,11 +195,16 @@ pub(super) struct Run<'a> {
 }
 
 impl Run<'_> {
-    /// Outputs, and energies where the spec does not have outputs of these names.
+    /// Outputs, and energies where the spec has no columns of these names.
     fn extras(&self) -> Extras {
+        let info = self.setup.info;
         let taken = ["kinetic_energy", "potential_energy", "power"]
             .iter()
-            .any(|name| self.setup.info.output_index(name).is_some());
+            .any(|name| {
+                info.state_index(name).is_some()
+                    || info.input_index(name).is_some()
+                    || info.output_index(name).is_some()
+            });
         Extras {
             outputs: true,
             energies: !taken,

@@ -3,7 +3,9 @@
 use appell_spec::mechanism::{Axis, FrameId, GROUND, Mechanism};
 
 use super::algebra::Algebra;
-use super::lower::{DivisionByZero, Lowering};
+use super::finding::{Item, Outcome};
+use super::kinematics::division_by_zero;
+use super::lower::Lowering;
 use super::time::TimeDerivative;
 use crate::symbolic::vector::{self, Vec3};
 use crate::symbolic::{Expr, Graph};
@@ -46,13 +48,15 @@ impl Frames {
         mechanism: &Mechanism,
         lowering: &Lowering<'_>,
         time: &TimeDerivative<'_>,
-    ) -> Result<Self, DivisionByZero> {
+    ) -> Outcome<Self> {
         let mut frames: Vec<Frame> = Vec::with_capacity(mechanism.frames.len());
-        for frame in &mechanism.frames {
+        for (id, frame) in mechanism.frames.iter().enumerate() {
             let mut w = frame.parent.map_or(vector::ZERO, |parent| frames[parent].w);
             let mut turns = Vec::with_capacity(frame.turns.len());
             for turn in &frame.turns {
-                let mut angle = lowering.lower(&mut algebra.graph, &turn.angle)?;
+                let mut angle = lowering
+                    .lower(&mut algebra.graph, &turn.angle)
+                    .map_err(|_| vec![division_by_zero(Item::Frame(id))])?;
                 if turn.negative {
                     angle = algebra.graph.neg(angle);
                 }

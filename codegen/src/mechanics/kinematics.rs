@@ -56,8 +56,7 @@ impl Kinematics {
     ) -> Outcome<Self> {
         let lowering = Lowering { symbols, rates };
         let time = TimeDerivative { symbols, rates };
-        let frames = Frames::new(algebra, mechanism, &lowering, &time)
-            .map_err(|_| vec![division_by_zero(Item::Mechanism)])?;
+        let frames = Frames::new(algebra, mechanism, &lowering, &time)?;
         let mut offsets = Vec::with_capacity(mechanism.points.len());
         let mut velocities: Vec<FrameVector> = Vec::with_capacity(mechanism.points.len());
         for (id, point) in mechanism.points.iter().enumerate() {

@@ -1,11 +1,12 @@
 //! The kinds of constraints and loads, and their keys.
 
 use super::sections::{ABOUT, AXES, IN, key};
-use super::{Form, Kind, Need, Target};
+use super::{ConstraintWord, Form, ItemKind, Kind, LoadWord, Need, Target};
 
 pub(super) static CONSTRAINTS: &[Kind] = &[
     Kind {
         word: "rolling",
+        is: ItemKind::Constraint(ConstraintWord::Rolling),
         about: "The material point of a body at the contact is at rest.",
         keys: &[
             key(
@@ -25,6 +26,7 @@ pub(super) static CONSTRAINTS: &[Kind] = &[
     },
     Kind {
         word: "velocity",
+        is: ItemKind::Constraint(ConstraintWord::Velocity),
         about: "A combination of rates has a prescribed value.",
         keys: &[
             key(
@@ -44,6 +46,7 @@ pub(super) static CONSTRAINTS: &[Kind] = &[
     },
     Kind {
         word: "fixed_velocity",
+        is: ItemKind::Constraint(ConstraintWord::FixedVelocity),
         about: "A point has a prescribed velocity along a direction.",
         keys: &[
             key(
@@ -76,6 +79,7 @@ pub(super) static CONSTRAINTS: &[Kind] = &[
     },
     Kind {
         word: "position",
+        is: ItemKind::Constraint(ConstraintWord::Position),
         about: "Reserved: an equation between coordinates.",
         keys: &[
             key(
@@ -92,6 +96,7 @@ pub(super) static CONSTRAINTS: &[Kind] = &[
 pub(super) static LOADS: &[Kind] = &[
     Kind {
         word: "gravity",
+        is: ItemKind::Load(LoadWord::Gravity),
         about: "Weight of every body.",
         keys: &[
             key(
@@ -111,6 +116,7 @@ pub(super) static LOADS: &[Kind] = &[
     },
     Kind {
         word: "force",
+        is: ItemKind::Load(LoadWord::Force),
         about: "A force on a point.",
         keys: &[
             key(
@@ -143,6 +149,7 @@ pub(super) static LOADS: &[Kind] = &[
     },
     Kind {
         word: "torque",
+        is: ItemKind::Load(LoadWord::Torque),
         about: "A torque on a body.",
         keys: &[
             key("on", Form::Reference(Target::Body), Need::Always, "Body."),
@@ -164,6 +171,7 @@ pub(super) static LOADS: &[Kind] = &[
     },
     Kind {
         word: "spring",
+        is: ItemKind::Load(LoadWord::Spring),
         about: "A linear spring.",
         keys: &[
             key(
@@ -190,6 +198,7 @@ pub(super) static LOADS: &[Kind] = &[
     },
     Kind {
         word: "damper",
+        is: ItemKind::Load(LoadWord::Damper),
         about: "A linear damper.",
         keys: &[
             key(
@@ -215,6 +224,7 @@ pub(super) static LOADS: &[Kind] = &[
     },
     Kind {
         word: "generalized",
+        is: ItemKind::Load(LoadWord::Generalized),
         about: "A generalised force: its power is `force * dot(coordinate)`.",
         keys: &[
             key(

@@ -1,7 +1,8 @@
 //! The sections and their keys.
 
 use super::kinds::{CONSTRAINTS, LOADS};
-use super::{Form, Key, Need, Section, Shape, Target};
+use super::{Form, Key, Need, Section, Sense, Shape, Target, Word};
+use crate::mechanism::{Axis, Interpolation};
 
 pub(super) const fn key(name: &'static str, form: Form, need: Need, about: &'static str) -> Key {
     Key {
@@ -37,8 +38,32 @@ pub(super) const IN: Key = key(
     "Frame in which the components are written.",
 );
 
+const fn axis(text: &'static str, axis: Axis, negative: bool) -> Word {
+    let sense = Sense::Axis { axis, negative };
+    Word { text, sense }
+}
+
+const fn interpolation(text: &'static str, interpolation: Interpolation) -> Word {
+    let sense = Sense::Interpolation(interpolation);
+    Word { text, sense }
+}
+
 /// The words for a coordinate axis.
-pub const AXES: &[&str] = &["x", "y", "z", "-x", "-y", "-z"];
+pub static AXES: &[Word] = &[
+    axis("x", Axis::X, false),
+    axis("y", Axis::Y, false),
+    axis("z", Axis::Z, false),
+    axis("-x", Axis::X, true),
+    axis("-y", Axis::Y, true),
+    axis("-z", Axis::Z, true),
+];
+
+/// The words for the course of a signal.
+pub static INTERPOLATIONS: &[Word] = &[
+    interpolation("hold", Interpolation::Hold),
+    interpolation("linear", Interpolation::Linear),
+    interpolation("cubic", Interpolation::Cubic),
+];
 
 /// Every section, in the order of a well-told spec.
 pub static SECTIONS: &[Section] = &[
@@ -143,7 +168,7 @@ pub static SECTIONS: &[Section] = &[
                 UNIT,
                 key(
                     "interpolation",
-                    Form::Word(&["hold", "linear", "cubic"]),
+                    Form::Word(INTERPOLATIONS),
                     Need::Optional,
                     "Course between two samples; `linear` when left out.",
                 ),

@@ -310,10 +310,10 @@ impl<'a> Parser<'_, 'a> {
         };
         let help = familiar.map_or_else(
             || {
-                let names: Vec<&str> = Function::ALL.iter().map(|row| row.1).collect();
-                format!("the functions are {}", names.join(", "))
+                let names = suggest::list(Function::ALL.iter().map(|row| row.1));
+                format!("the functions are {names}")
             },
-            |similar| format!("did you mean `{similar}`?"),
+            suggest::meant,
         );
         Diagnostic::error(Code::UnknownFunction, format!("unknown function `{name}`"))
             .at(self.source.span(at.start..at.end), "")

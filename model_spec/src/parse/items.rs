@@ -6,8 +6,9 @@ use crate::ast::{Entry, ItemAst, Spanned, ValueAst};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::expr::Span;
 use crate::language::{Form, Key, Kind, Need, Section, Shape};
-use crate::limits::{MAX_ITEMS, MAX_NAME};
-use crate::suggest;
+use crate::limits::MAX_ITEMS;
+use crate::name;
+use crate::suggest::{self, did_you_mean, shown};
 
 use super::{Reader, TomlKey, TomlValue, in_text_order, phrase};
 
@@ -102,9 +103,12 @@ impl Reader<'_> {
 
     /// An item whose keys depend on its kind.
     fn kind(&mut self, owner: &Owner<'_>, kinds: &'static [Kind], table: &DeTable<'_>) -> ItemAst {
-        let list = || kinds.iter().map(|k| k.word).collect::<Vec<_>>().join(", ");
+        let list = || {
+            let words = suggest::list(kinds.iter().map(|k| k.word));
+            format!("the kinds are {words}")
+        };
         let Some(value) = table.get("kind") else {
-            self.missing_key(owner, "kind", &format!("the kinds are {}", list()));
+            self.missing_key(owner, "kind", &list());
             return empty(owner);
         };
         let DeValue::String(word) = value.get_ref() else {
@@ -112,12 +116,12 @@ impl Reader<'_> {
             return empty(owner);
         };
         let Some(kind) = kinds.iter().find(|k| k.word == word.as_ref()) else {
-            let help = suggest::closest(word, kinds.iter().map(|k| k.word)).map_or_else(
-                || format!("the kinds are {}", list()),
-                |similar| format!("did you mean `{similar}`?"),
+            let help = did_you_mean(word, kinds.iter().map(|k| k.word), list);
+            self.unknown_word(
+                format!("unknown kind `{}`", shown(word)),
+                value.span(),
+                help,
             );
-            let shown: String = word.chars().take(80).collect();
-            self.unknown_word(format!("unknown kind `{shown}`"), value.span(), help);
             return empty(owner);
         };
         self.keys(owner, kind.keys, Some((kind, kinds)), table)
@@ -181,16 +185,17 @@ impl Reader<'_> {
                 .find(|k| k.keys.iter().any(|key| key.name == name))
         });
         let help = match (similar, elsewhere) {
-            (Some(similar), _) => format!("did you mean `{similar}`?"),
+            (Some(similar), _) => suggest::meant(similar),
             (None, Some(other)) => format!("`{name}` belongs to the kind `{}`", other.word),
             (None, None) => {
-                let names: Vec<&str> = keys.iter().map(|k| k.name).collect();
-                format!("the keys are {}", names.join(", "))
+                format!(
+                    "the keys are {}",
+                    suggest::list(keys.iter().map(|k| k.name))
+                )
             }
         };
-        let shown: String = name.chars().take(80).collect();
         self.tell(
-            Diagnostic::error(Code::UnknownKey, format!("unknown key `{shown}`"))
+            Diagnostic::error(Code::UnknownKey, format!("unknown key `{}`", shown(name)))
                 .at(at, "")
                 .help(help),
         );
@@ -287,23 +292,16 @@ impl Reader<'_> {
 
     /// Whether a name may be defined; `false` where that has been told.
     pub(super) fn is_valid_name(&mut self, name: &str, at: Span) -> bool {
-        let mut bytes = name.bytes();
-        let valid = bytes.next().is_some_and(|b| b.is_ascii_alphabetic())
-            && bytes.all(|b| b.is_ascii_alphanumeric() || b == b'_')
-            && name.len() <= MAX_NAME;
-        if valid {
+        if name::is_valid(name) {
             return true;
         }
-        let shown: String = name.chars().take(80).collect();
         self.tell(
             Diagnostic::error(
                 Code::InvalidName,
-                format!("`{}` is not a valid name", shown.escape_debug()),
+                format!("`{}` is not a valid name", shown(name)),
             )
             .at(at, "")
-            .help(format!(
-                "a name is a letter, then letters, digits and `_`, at most {MAX_NAME} in all"
-            )),
+            .help(format!("a name is {}", name::RULE)),
         );
         false
     }

@@ -10,10 +10,10 @@ use toml::de::DeValue;
 use crate::ast::{ExprAst, ExprAstKind, Spanned, ValueAst};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::expr::Span;
-use crate::language::{Form, Key};
+use crate::language::{Form, Key, Sense, Word};
 use crate::limits::{MAX_DIGITS, MAX_SAMPLES, MAX_SENTENCE, MAX_TURNS};
 use crate::number::{NumberError, exact};
-use crate::suggest;
+use crate::suggest::{self, did_you_mean, shown};
 use crate::units::{self, UnitError};
 
 use super::source::Source;
@@ -62,7 +62,7 @@ impl Reader<'_> {
                 };
                 Some(ValueAst::Pair([a, b]))
             }
-            Form::Word(words) => self.word(key, words, value).map(ValueAst::Text),
+            Form::Word(words) => self.word(key, words, value).map(ValueAst::Word),
             Form::Table(keys) => self.inner_table(key.name, keys, value),
             Form::Tables(keys) => {
                 let DeValue::Array(array) = value.get_ref() else {
@@ -273,22 +273,16 @@ impl Reader<'_> {
         }
     }
 
-    fn word(
-        &mut self,
-        key: &Key,
-        words: &'static [&'static str],
-        value: &TomlValue<'_>,
-    ) -> Option<String> {
-        let word = self.string(value, "a word, as a string")?;
-        if words.contains(&word) {
-            return Some(word.to_owned());
+    fn word(&mut self, key: &Key, words: &'static [Word], value: &TomlValue<'_>) -> Option<Sense> {
+        let text = self.string(value, "a word, as a string")?;
+        if let Some(word) = words.iter().find(|word| word.text == text) {
+            return Some(word.sense);
         }
-        let help = suggest::closest(word, words.iter().copied()).map_or_else(
-            || format!("write one of {}", words.join(", ")),
-            |similar| format!("did you mean `{similar}`?"),
-        );
-        let shown: String = word.chars().take(80).collect();
-        let message = format!("`{}` cannot be `{shown}`", key.name);
+        let known = || words.iter().map(|word| word.text);
+        let help = did_you_mean(text, known(), || {
+            format!("write one of {}", suggest::list(known()))
+        });
+        let message = format!("`{}` cannot be `{}`", key.name, shown(text));
         self.unknown_word(message, value.span(), help);
         None
     }
@@ -320,7 +314,7 @@ pub(super) fn unit_diagnostic(
             similar,
         } => Diagnostic::error(Code::UnknownUnit, format!("unknown unit `{symbol}`"))
             .at(place(at.clone()), "")
-            .maybe_help(similar.as_ref().map(|s| format!("did you mean `{s}`?"))),
+            .maybe_help(similar.as_deref().map(suggest::meant)),
         UnitError::Syntax { message, at } => {
             Diagnostic::error(Code::UnitSyntax, message.as_str()).at(place(at.clone()), "")
         }

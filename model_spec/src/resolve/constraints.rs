@@ -2,7 +2,7 @@
 
 use crate::ast::ItemAst;
 use crate::diagnostic::{Code, Diagnostic};
-use crate::language::Target;
+use crate::language::{ConstraintWord, ItemKind, Target};
 use crate::mechanism::{Body, Constraint, ConstraintKind};
 use crate::parse::zero;
 use crate::units::Dimension;
@@ -20,12 +20,14 @@ impl Resolver<'_> {
         let ast = self.ast;
         let mut constraints = Vec::new();
         for item in ast.items("constraints") {
-            let Some(kind) = item.kind else { continue };
-            let kind = match kind.word {
-                "rolling" => self.rolling(item, bodies),
-                "velocity" => self.velocity(item),
-                "fixed_velocity" => self.fixed_velocity(item, bodies),
-                _ => self.position(item),
+            let Some(ItemKind::Constraint(word)) = item.kind.map(|kind| kind.is) else {
+                continue;
+            };
+            let kind = match word {
+                ConstraintWord::Rolling => self.rolling(item, bodies),
+                ConstraintWord::Velocity => self.velocity(item),
+                ConstraintWord::FixedVelocity => self.fixed_velocity(item, bodies),
+                ConstraintWord::Position => self.position(item),
             };
             constraints.push(Constraint {
                 name: item.name.value.clone(),

@@ -8,7 +8,7 @@ use crate::ast::{ExprAst, ExprAstKind, Spanned};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::expr::{BinaryOp, Expr, ExprKind, Function, Quantity, Span};
 use crate::limits::{MAX_DEGREE, MAX_EXPONENT};
-use crate::suggest;
+use crate::suggest::{did_you_mean, shown};
 use crate::units::{Dimension, Unit};
 
 use super::Resolver;
@@ -162,15 +162,14 @@ impl Resolver<'_> {
 
     fn unknown_name(&self, name: &str, span: &Span) -> Diagnostic {
         let known = self.names.keys().copied().chain(["t", "pi"]);
-        let help = match suggest::closest(name, known) {
-            Some(similar) => format!("did you mean `{similar}`?"),
-            None if Function::from_name(name).is_some() => {
+        let help = did_you_mean(name, known, || {
+            if Function::from_name(name).is_some() {
                 format!("`{name}` is a function; write `{name}(…)`")
+            } else {
+                "define it as a parameter, coordinate, input or signal".to_owned()
             }
-            None => "define it as a parameter, coordinate, input or signal".to_owned(),
-        };
-        let shown: String = name.chars().take(80).collect();
-        Diagnostic::error(Code::UnknownName, format!("unknown name `{shown}`"))
+        });
+        Diagnostic::error(Code::UnknownName, format!("unknown name `{}`", shown(name)))
             .at(span.clone(), "")
             .help(help)
     }

@@ -3,7 +3,7 @@
 use crate::ast::{ItemAst, ValueAst};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::expr::{Quantity, Span};
-use crate::language::Target;
+use crate::language::{ItemKind, LoadWord, Target};
 use crate::mechanism::{Axis, Body, Connection, Load, LoadKind};
 use crate::units::Dimension;
 
@@ -25,14 +25,16 @@ impl Resolver<'_> {
         let ast = self.ast;
         let mut loads = Vec::new();
         for item in ast.items("loads") {
-            let Some(kind) = item.kind else { continue };
-            let kind = match kind.word {
-                "gravity" => self.gravity(item),
-                "force" => self.force(item, bodies),
-                "torque" => self.torque(item, bodies),
-                "spring" => self.spring(item),
-                "damper" => self.damper(item),
-                _ => self.generalized(item),
+            let Some(ItemKind::Load(word)) = item.kind.map(|kind| kind.is) else {
+                continue;
+            };
+            let kind = match word {
+                LoadWord::Gravity => self.gravity(item),
+                LoadWord::Force => self.force(item, bodies),
+                LoadWord::Torque => self.torque(item, bodies),
+                LoadWord::Spring => self.spring(item),
+                LoadWord::Damper => self.damper(item),
+                LoadWord::Generalized => self.generalized(item),
             };
             loads.push(Load {
                 name: item.name.value.clone(),
@@ -46,7 +48,7 @@ impl Resolver<'_> {
     }
 
     fn gravity(&mut self, item: &ItemAst) -> LoadKind {
-        let (direction, negative) = axis(item.text("down").map_or("-z", |w| w.value));
+        let (direction, negative) = axis(item, "down");
         let step = if negative { -1 } else { 1 };
         LoadKind::Gravity {
             down: match direction {

@@ -7,7 +7,7 @@ use crate::diagnostic::{Code, Diagnostic};
 use crate::expr::{Function, Quantity, Span};
 use crate::language::Target;
 use crate::mechanism::Label;
-use crate::suggest;
+use crate::suggest::{did_you_mean, shown};
 use crate::units::{Dimension, Unit};
 
 use super::Resolver;
@@ -181,7 +181,6 @@ impl<'a> Resolver<'a> {
 
     fn unknown_reference(&self, target: Target, name: &str, span: &Span) -> Diagnostic {
         let word = target.word();
-        let shown: String = name.chars().take(80).collect();
         let known: Vec<&str> = match target {
             Target::Frame => self.frames.keys().copied().collect(),
             Target::Point => self.points.keys().copied().collect(),
@@ -193,16 +192,16 @@ impl<'a> Resolver<'a> {
                 .map(|(name, _)| *name)
                 .collect(),
         };
-        let help = match suggest::closest(name, known.iter().copied()) {
-            Some(similar) => format!("did you mean `{similar}`?"),
-            None if !known.is_empty() && known.len() <= 12 => {
+        let help = did_you_mean(name, known.iter().copied(), || {
+            if !known.is_empty() && known.len() <= 12 {
                 format!("`[{}]` knows {}", target.section(), known.join(", "))
+            } else {
+                format!("define it in `[{}]`", target.section())
             }
-            None => format!("define it in `[{}]`", target.section()),
-        };
+        });
         Diagnostic::error(
             Code::UnknownReference,
-            format!("there is no {word} `{shown}`"),
+            format!("there is no {word} `{}`", shown(name)),
         )
         .at(span.clone(), "")
         .help(help)

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use crate::ast::{ItemAst, ValueAst};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::expr::{Expr, ExprKind};
-use crate::language::Target;
+use crate::language::{Sense, Target};
 use crate::mechanism::{Axis, Frame, GROUND, Point, Turn};
 use crate::units::Dimension;
 
@@ -46,8 +46,7 @@ impl<'a> Resolver<'a> {
     }
 
     fn turn(&mut self, item: &ItemAst) -> Turn {
-        let word = item.text("about_axis").map_or("z", |w| w.value);
-        let (axis, negative) = axis(word);
+        let (axis, negative) = axis(item, "about_axis");
         Turn {
             axis,
             negative,
@@ -193,16 +192,10 @@ impl<'a> Resolver<'a> {
     }
 }
 
-/// The axis of a word such as `-y`.
-pub(super) fn axis(word: &str) -> (Axis, bool) {
-    let (negative, letter) = match word.strip_prefix('-') {
-        Some(rest) => (true, rest),
-        None => (false, word),
-    };
-    let axis = match letter {
-        "x" => Axis::X,
-        "y" => Axis::Y,
-        _ => Axis::Z,
-    };
-    (axis, negative)
+/// The axis under a key, and whether it is the negative one; z where the word could not be read.
+pub(super) fn axis(item: &ItemAst, key: &str) -> (Axis, bool) {
+    match item.word(key) {
+        Some(Sense::Axis { axis, negative }) => (axis, negative),
+        _ => (Axis::Z, false),
+    }
 }

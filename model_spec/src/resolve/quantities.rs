@@ -5,10 +5,11 @@ use num_rational::BigRational;
 use crate::ast::{ItemAst, Spanned};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::expr::{Expr, Quantity, Span};
+use crate::language::Sense;
 use crate::mechanism::{
     Coordinate, Input, Interpolation, Label, Mechanism, Output, Parameter, PseudoVelocity, Signal,
 };
-use crate::suggest;
+use crate::suggest::did_you_mean;
 use crate::units::{Dimension, Unit};
 
 use super::Resolver;
@@ -147,9 +148,8 @@ impl<'a> Resolver<'a> {
 
     fn signal(&mut self, id: usize, item: &'a ItemAst) -> Signal {
         let label = self.labelled(item, Quantity::Signal(id));
-        let interpolation = match item.text("interpolation").map(|t| t.value) {
-            Some("hold") => Interpolation::Hold,
-            Some("cubic") => Interpolation::Cubic,
+        let interpolation = match item.word("interpolation") {
+            Some(Sense::Interpolation(written)) => written,
             _ => Interpolation::Linear,
         };
         self.interpolation.push((interpolation, &item.name.value));
@@ -325,10 +325,9 @@ impl<'a> Resolver<'a> {
             if !states.contains(&name) {
                 let span = &item.name.span;
                 self.unknown("state", name, span, |_| {
-                    let help = suggest::closest(name, states.iter().copied()).map_or_else(
-                        || format!("the states are {}", states.join(", ")),
-                        |similar| format!("did you mean `{similar}`?"),
-                    );
+                    let help = did_you_mean(name, states.iter().copied(), || {
+                        format!("the states are {}", states.join(", "))
+                    });
                     Diagnostic::error(
                         Code::UnknownReference,
                         format!("there is no coordinate or pseudo-velocity `{name}`"),

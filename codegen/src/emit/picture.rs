@@ -3,13 +3,23 @@
 use super::layout::one_line;
 use super::types::Types;
 use crate::program::{Function, FunctionKind, Layout};
-use crate::symbolic::Graph;
-use crate::symbolic::print::{Printer, Text};
+use crate::symbolic::print::{Setter, Vocabulary, text};
+use crate::symbolic::{Expr, Graph, SymbolId};
 
 /// Widest picture, in characters.
 const WIDEST: usize = 92;
 /// Nodes of the largest entry that is worth a try.
 const LARGEST: usize = 60;
+
+/// Letters as their names spell them, with the parameters first in every product.
+struct ParametersFirst<'a>(&'a [SymbolId]);
+
+impl Vocabulary for ParametersFirst<'_> {
+    fn place(&self, graph: &Graph, symbol: Expr) -> u8 {
+        let is_parameter = graph.as_symbol(symbol).is_some_and(|s| self.0.contains(&s));
+        if is_parameter { 1 } else { 2 }
+    }
+}
 
 /// The mass matrix as rustdoc lines, where it fits on the page.
 pub(super) fn picture(types: &Types<'_>, function: &Function) -> Vec<String> {
@@ -19,20 +29,19 @@ pub(super) fn picture(types: &Types<'_>, function: &Function) -> Vec<String> {
     let Layout::Matrix(rows, columns @ 1..=6) = array.layout else {
         return Vec::new();
     };
-    let at = &types.program.arguments;
-    let printer = Printer::new(&types.program.graph, Text)
-        .with_order(&[at.parameters.as_slice(), &at.states].concat())
-        .with_definitions_inline();
+    let graph = &types.program.graph;
+    let mut setter =
+        Setter::new(ParametersFirst(&types.program.arguments.parameters)).with_definitions_inline();
     let mut cells = Vec::with_capacity(array.entries.len());
     for &entry in &array.entries {
-        if types.program.graph.in_order(&[entry]).len() > LARGEST {
+        if graph.in_order(&[entry]).len() > LARGEST {
             return Vec::new();
         }
         let zero = entry == Graph::ZERO;
         cells.push(if zero {
             "·".to_owned()
         } else {
-            one_line(&printer.expression(entry))
+            one_line(&text(&setter.set(graph, entry).math))
         });
     }
     let width_of = |column: usize| {

@@ -2,9 +2,9 @@
 
 use std::fmt::Write;
 
-use super::math::{Equation, left_width};
-use super::mathml::{escaped, formula, pieces};
+use super::display::{Equation, Piece, left_width};
 use super::{Block, Chain, Page, Span, Table};
+use crate::symbolic::print::mathml::{TIMES, escaped, mathml as formula, sign};
 
 /// Width of a line of equations, in characters as [`super::Math::width`] counts them.
 const WIDTH: usize = 92;
@@ -123,4 +123,27 @@ fn equations(out: &mut String, equations: &[Equation]) {
         }
     }
     out.push_str("</mtable></math></div>\n");
+}
+
+/// One line of a broken equation.
+fn pieces(pieces: &[Piece<'_>]) -> String {
+    let mut out = String::new();
+    let mut after_whole = false;
+    for piece in pieces {
+        match piece {
+            Piece::Whole(math) => {
+                out.push_str(if after_whole { TIMES } else { "" });
+                out.push_str(&formula(math));
+            }
+            Piece::Sign { minus, first } => out.push_str(sign(*minus, *first)),
+            Piece::Equals => out.push_str("<mo>=</mo>"),
+            Piece::Open => {
+                out.push_str(if after_whole { TIMES } else { "" });
+                out.push_str("<mo stretchy=\"false\">(</mo>");
+            }
+            Piece::Close => out.push_str("<mo stretchy=\"false\">)</mo>"),
+        }
+        after_whole = matches!(piece, Piece::Whole(_) | Piece::Close);
+    }
+    out
 }

@@ -3,23 +3,24 @@
 use appell_spec::mechanism::Mechanism;
 use rustc_hash::{FxHashMap, FxHashSet};
 
-use super::letters::Letter;
+use super::Letter;
 use crate::mechanics::Derivation;
+use crate::symbolic::print::{Spelled, Vocabulary};
 use crate::symbolic::{Expr, Graph, Node};
 
 /// Where a symbol stands in a product: `m R r ω₁ sin θ`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Rank {
     /// Parameters and the circle constant.
-    Constant,
+    Constant = 1,
     /// Coordinates, signals, time.
     Position,
     /// Inputs.
     Input,
     /// Pseudo-velocities and generalised velocities.
     Velocity,
-    /// Pseudo-accelerations.
-    Acceleration,
+    /// Pseudo-accelerations; they stand behind named quantities.
+    Acceleration = 6,
 }
 
 /// Letters of a derivation.
@@ -141,32 +142,26 @@ impl Lexicon {
         self.named.insert(name, letter);
     }
 
-    /// Letter of a symbol or of a named quantity.
-    pub(super) fn letter(&self, graph: &Graph, expr: Expr) -> Letter {
-        match graph.node(expr) {
-            Node::Named(id) => self.of_name(&graph.definition(*id).name),
-            Node::Symbol(id) => self.symbols.get(&expr).map_or_else(
-                || Letter::of(graph.symbol_name(*id)),
-                |(letter, _)| letter.clone(),
-            ),
-            _ => Letter::plain("?"),
-        }
-    }
-
-    fn of_name(&self, name: &str) -> Letter {
-        self.named
-            .get(name)
-            .cloned()
-            .unwrap_or_else(|| Letter::of(name))
-    }
-
-    /// Rank of a symbol.
-    pub(super) fn rank(&self, expr: Expr) -> Rank {
-        self.symbols.get(&expr).map_or(Rank::Velocity, |row| row.1)
-    }
-
     /// Whether explicit formulas keep a name instead of putting its definition in.
     pub(super) fn keeps(&self, name: &str) -> bool {
         self.kept.contains(name)
+    }
+}
+
+impl Vocabulary for Lexicon {
+    fn letter(&self, graph: &Graph, expr: Expr) -> Letter {
+        let known = match graph.node(expr) {
+            Node::Named(id) => self.named.get(&graph.definition(*id).name),
+            _ => self.symbols.get(&expr).map(|row| &row.0),
+        };
+        known
+            .cloned()
+            .unwrap_or_else(|| Spelled.letter(graph, expr))
+    }
+
+    fn place(&self, _graph: &Graph, symbol: Expr) -> u8 {
+        self.symbols
+            .get(&symbol)
+            .map_or(Rank::Velocity, |row| row.1) as u8
     }
 }

@@ -4,14 +4,11 @@
 //! neither its format nor the graph behind it; [`text()`], [`latex()`] and [`html()`] set it.
 
 mod angles;
+mod display;
 mod explicit;
-mod formula;
 mod html;
 mod latex;
-mod letters;
 mod lexicon;
-mod math;
-mod mathml;
 mod picture;
 mod present;
 mod sections;
@@ -23,9 +20,10 @@ use appell_spec::mechanism::Mechanism;
 
 pub use html::html;
 pub use latex::latex;
-pub use letters::Letter;
-pub use math::{Equation, Math};
 pub use text::text;
+
+pub use crate::symbolic::print::{Letter, Math};
+pub use display::Equation;
 
 use crate::mechanics::{Derivation, finding};
 use writer::Writer;

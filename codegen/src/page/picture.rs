@@ -1,6 +1,6 @@
 //! Pictures of characters: lines of equal width, one of them at the height of the text.
 
-use super::text::columns;
+use crate::symbolic::print::columns;
 
 /// A rectangle of characters.
 #[derive(Debug, Clone)]

@@ -1,11 +1,11 @@
 //! How a formula is arranged: names put in where that stays readable, sums ordered by what they
 //! multiply, quotients kept together.
 
+use super::Math;
 use super::angles::with_compound_angles;
 use super::explicit::{Monomial, collect, collect_turns, dissolve};
-use super::formula::assemble;
-use super::math::Math;
 use super::writer::Writer;
+use crate::symbolic::print::assemble;
 use crate::symbolic::{Expr, Factor, Graph, Node, Rational};
 
 /// A formula with more terms keeps the names of its intermediate quantities.
@@ -75,7 +75,7 @@ impl Writer<'_> {
 
     /// The names put in, where the sum does not get too long.
     fn readable(&mut self, expr: Expr) -> Expr {
-        let lexicon = self.setter.lexicon().clone();
+        let lexicon = self.setter.vocabulary().clone();
         let graph = self.graph();
         let Some(explicit) = dissolve(graph, expr, &|name| lexicon.keeps(name)) else {
             return expr;
@@ -290,7 +290,7 @@ fn is_quotient(graph: &Graph, expr: Expr) -> bool {
 
 /// Whether one of the keys occurs in an expression, not looking behind names.
 fn occurs(graph: &Graph, expr: Expr, keys: &[Expr]) -> bool {
-    super::formula::visible(graph, expr)
+    crate::symbolic::print::visible(graph, expr)
         .iter()
         .any(|e| keys.contains(e))
 }

@@ -1,9 +1,10 @@
 //! Unicode text: the page for a terminal or a plain-text handout.
 
-use super::letters::superscript;
-use super::math::{Equation, Math, Piece, left_width};
+use super::display::{Equation, Piece, left_width};
 use super::picture::Picture;
-use super::{Block, Chain, Page, Span, Table};
+use super::{Block, Chain, Math, Page, Span, Table};
+use crate::symbolic::print::text as inline;
+use crate::symbolic::print::{clean, columns};
 
 /// Width of the page in characters.
 const WIDTH: usize = 100;
@@ -43,20 +44,6 @@ fn line(out: &mut String, text: &str) {
     out.push('\n');
 }
 
-/// Text without characters that steer a terminal or turn the direction of writing.
-pub(super) fn clean(text: &str) -> String {
-    text.chars()
-        .map(|c| match c {
-            '\u{200b}'..='\u{200f}'
-            | '\u{2028}'..='\u{202e}'
-            | '\u{2060}'..='\u{206f}'
-            | '\u{feff}' => '\u{fffd}',
-            c if c.is_control() => ' ',
-            c => c,
-        })
-        .collect()
-}
-
 fn spans(spans: &[Span]) -> String {
     spans
         .iter()
@@ -65,16 +52,6 @@ fn spans(spans: &[Span]) -> String {
             Span::Math(math) => inline(math),
         })
         .collect()
-}
-
-/// Columns that a line takes.
-pub(super) fn columns(text: &str) -> usize {
-    text.chars().filter(|&c| !is_combining(c)).count()
-}
-
-/// Whether a character takes no column of its own.
-pub(super) fn is_combining(c: char) -> bool {
-    matches!(c, '\u{300}'..='\u{36f}' | '\u{20d0}'..='\u{20ff}')
 }
 
 /// Words in lines of at most `width` columns, where no word is longer.
@@ -285,138 +262,4 @@ fn picture(math: &Math) -> Picture {
 
 fn is_tall(part: &Math) -> bool {
     matches!(part, Math::Sum(_)) || part.width() > 12
-}
-
-/// A formula on one line.
-pub(super) fn inline(math: &Math) -> String {
-    match math {
-        Math::Integer(digits) => digits.clone(),
-        Math::Ratio(n, d) => ratio(n, d),
-        Math::Letter(letter) => clean(&letter.to_string()),
-        Math::Words(words) => clean(words),
-        Math::Sign(sign) => (*sign).to_owned(),
-        Math::Row(factors) => factors.iter().map(inline).collect::<Vec<_>>().join(" "),
-        Math::Sum(terms) => sum(terms),
-        Math::Fraction(above, below) => {
-            let above = match **above {
-                Math::Sum(_) => format!("({})", inline(above)),
-                // `cos φ/a` would read as the cosine of a quotient.
-                _ if ends_with_function(above) => format!("({})", inline(above)),
-                _ => inline(above),
-            };
-            format!("{above}/{}", divisor(below))
-        }
-        Math::Power(base, exponent) => match &**exponent {
-            Math::Integer(digits) => {
-                format!(
-                    "{}{}",
-                    inline(base),
-                    digits.chars().map(superscript).collect::<String>()
-                )
-            }
-            other => format!("{}^({})", inline(base), inline(other)),
-        },
-        Math::Call(name, exponent, argument) => {
-            let raised: String = if *exponent == 1 {
-                String::new()
-            } else {
-                exponent.to_string().chars().map(superscript).collect()
-            };
-            match **argument {
-                Math::Letter(_) => format!("{name}{raised} {}", inline(argument)),
-                Math::Vector { .. } => format!("{name}{raised}{}", inline(argument)),
-                _ => format!("{name}{raised}({})", inline(argument)),
-            }
-        }
-        Math::Root(inner) => match **inner {
-            Math::Letter(_) | Math::Integer(_) => format!("√{}", inline(inner)),
-            _ => format!("√({})", inline(inner)),
-        },
-        Math::Size(inner) => format!("|{}|", inline(inner)),
-        Math::Brackets(inner) => format!("({})", inline(inner)),
-        Math::Vector {
-            components, frame, ..
-        } => {
-            let components: Vec<String> = components.iter().map(inline).collect();
-            match frame {
-                Some(frame) => format!("[{}] {}", components.join(",  "), clean(frame)),
-                None => format!("({})", components.join(", ")),
-            }
-        }
-        Math::Matrix(rows) => {
-            let rows: Vec<String> = rows
-                .iter()
-                .map(|row| row.iter().map(inline).collect::<Vec<_>>().join(", "))
-                .collect();
-            format!("[{}]", rows.join("; "))
-        }
-        Math::Cases {
-            value,
-            condition,
-            otherwise,
-        } => {
-            format!(
-                "({} if {}, else {})",
-                inline(value),
-                inline(condition),
-                inline(otherwise)
-            )
-        }
-    }
-}
-
-fn ends_with_function(math: &Math) -> bool {
-    match math {
-        Math::Call(..) => true,
-        Math::Row(factors) => factors.last().is_some_and(|f| matches!(f, Math::Call(..))),
-        _ => false,
-    }
-}
-
-fn divisor(below: &Math) -> String {
-    match below {
-        Math::Letter(_)
-        | Math::Integer(_)
-        | Math::Power(..)
-        | Math::Call(..)
-        | Math::Brackets(_) => inline(below),
-        _ => format!("({})", inline(below)),
-    }
-}
-
-fn sum(terms: &[(bool, Math)]) -> String {
-    let mut out = String::new();
-    for (index, (minus, term)) in terms.iter().enumerate() {
-        match (index, minus) {
-            (0, false) => {}
-            (0, true) => out.push('−'),
-            (_, false) => out.push_str(" + "),
-            (_, true) => out.push_str(" − "),
-        }
-        match term {
-            Math::Sum(_) => {
-                out.push('(');
-                out.push_str(&inline(term));
-                out.push(')');
-            }
-            _ => out.push_str(&inline(term)),
-        }
-    }
-    out
-}
-
-fn ratio(n: &str, d: &str) -> String {
-    let known = match (n, d) {
-        ("1", "2") => "½",
-        ("1", "3") => "⅓",
-        ("2", "3") => "⅔",
-        ("1", "4") => "¼",
-        ("3", "4") => "¾",
-        ("1", "8") => "⅛",
-        ("3", "8") => "⅜",
-        ("5", "8") => "⅝",
-        ("7", "8") => "⅞",
-        _ => return format!("{n}/{d}"),
-    };
-    known.to_owned()
 }

@@ -2,7 +2,7 @@
 
 use appell_spec::mechanism::Label;
 
-use super::letters::superscript;
+use crate::symbolic::print::superscript;
 
 /// A unit with raised exponents: `kg*m^2` is `kg m²`.
 pub(super) fn unit(label: &Label) -> String {

@@ -3,12 +3,13 @@
 use appell_spec::mechanism::{FrameId, Mechanism, PointId};
 use rustc_hash::FxHashSet;
 
-use super::formula::Setter;
-use super::letters::Letter;
+use super::Letter;
+use super::Math;
+use super::display::Equation;
 use super::lexicon::{AXES, Lexicon};
-use super::math::{Equation, Math};
 use super::{Block, Span};
 use crate::mechanics::Derivation;
+use crate::symbolic::print::Setter;
 use crate::symbolic::vector::Vec3;
 use crate::symbolic::{Expr, Graph, Node};
 
@@ -21,7 +22,7 @@ pub(super) struct Writer<'a> {
     pub(super) mechanism: &'a Mechanism,
     /// Its derivation.
     pub(super) derivation: &'a mut Derivation,
-    pub(super) setter: Setter,
+    pub(super) setter: Setter<Lexicon>,
     /// Names whose definitions the page has shown.
     defined: FxHashSet<Letter>,
     /// Names that formulas have used since the last definitions.
@@ -62,7 +63,7 @@ impl<'a> Writer<'a> {
 
     /// The letter as a formula.
     pub(super) fn symbol(&mut self, expr: Expr) -> Math {
-        Math::Letter(self.letter(expr))
+        Math::letter(self.letter(expr))
     }
 
     /// Letter of a pseudo-velocity.
@@ -99,7 +100,7 @@ impl<'a> Writer<'a> {
     pub(super) fn is_kept(&self, expr: Expr) -> bool {
         let graph = &self.derivation.algebra.graph;
         match graph.node(expr) {
-            Node::Named(id) => self.setter.lexicon().keeps(&graph.definition(*id).name),
+            Node::Named(id) => self.setter.vocabulary().keeps(&graph.definition(*id).name),
             _ => false,
         }
     }
@@ -197,7 +198,7 @@ impl<'a> Writer<'a> {
     /// The left-hand side of a definition.
     fn left(&mut self, expr: Expr, letter: Letter) -> Math {
         let Node::Solution { system, .. } = *self.graph().node(expr) else {
-            return Math::Letter(letter);
+            return Math::letter(letter);
         };
         let entries = self.graph().system(system).matrix.to_vec();
         let size = self.graph().system(system).right.len();

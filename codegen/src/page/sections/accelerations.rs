@@ -1,9 +1,8 @@
 //! Accelerations of centres of mass, angular accelerations of bodies.
 
-use super::super::letters::Letter;
-use super::super::math::Math;
 use super::super::writer::Writer;
 use super::super::{Block, Section};
+use super::super::{Letter, Math};
 use super::{math, with, words};
 use crate::mechanics::gibbs_appell::along;
 use crate::symbolic::vector;

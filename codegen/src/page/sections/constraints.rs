@@ -2,11 +2,11 @@
 
 use appell_spec::mechanism::ConstraintKind;
 
-use super::super::letters::Letter;
-use super::super::math::{Equation, Math};
+use super::super::display::Equation;
 use super::super::units::unit;
 use super::super::writer::Writer;
 use super::super::{Block, Section, Span, Table};
+use super::super::{Letter, Math};
 use super::placement::from_to;
 use super::{equality, listed, math, sentence, with, words};
 use crate::mechanics::lower::Lowering;

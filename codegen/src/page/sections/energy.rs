@@ -1,9 +1,9 @@
 //! The acceleration energy and its derivatives.
 
-use super::super::letters::Letter;
-use super::super::math::{Equation, Math};
+use super::super::display::Equation;
 use super::super::writer::Writer;
 use super::super::{Block, Section, Span};
+use super::super::{Letter, Math};
 use super::{listed, math, with, words};
 use crate::mechanics::gibbs_appell::gibbs_form;
 use crate::mechanics::motion::independent_blocks;

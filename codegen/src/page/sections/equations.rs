@@ -1,9 +1,9 @@
 //! Appell's equations, the accelerations that solve them, and the energies that check them.
 
-use super::super::letters::Letter;
-use super::super::math::{Equation, Math};
+use super::super::display::Equation;
 use super::super::writer::Writer;
 use super::super::{Block, Section};
+use super::super::{Letter, Math};
 use super::solution::{System, force_less_bias};
 use super::{constraints, math, sentence, with, words};
 use crate::mechanics::gibbs_appell::kinetic_energy;

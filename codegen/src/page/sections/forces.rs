@@ -1,9 +1,9 @@
 //! Pseudo-forces from virtual power.
 
-use super::super::letters::Letter;
-use super::super::math::{Equation, Math};
+use super::super::display::Equation;
 use super::super::writer::Writer;
 use super::super::{Block, Section, Span, Table};
+use super::super::{Letter, Math};
 use super::energy::numbered;
 use super::{math, sentence, with, words};
 use crate::mechanics::loads::generalized_forces;

@@ -1,9 +1,9 @@
 //! Jacobians of the motion, by implicit differentiation.
 
-use super::super::letters::Letter;
-use super::super::math::{Equation, Math};
+use super::super::display::Equation;
 use super::super::writer::Writer;
 use super::super::{Block, Section};
+use super::super::{Letter, Math};
 use super::solution::System;
 use super::{math, with, words};
 use crate::mechanics::motion::independent_blocks;

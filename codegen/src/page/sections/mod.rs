@@ -12,7 +12,8 @@ mod reactions;
 mod solution;
 mod velocities;
 
-use super::math::{Equation, Math};
+use super::Math;
+use super::display::Equation;
 use super::writer::Writer;
 use super::{Block, Section, Span, Stage};
 use crate::mechanics::finding;

@@ -2,10 +2,9 @@
 
 use appell_spec::mechanism::{Axis, FrameId, GROUND, Inertia, Turn};
 
-use super::super::letters::Letter;
-use super::super::math::Math;
 use super::super::writer::Writer;
 use super::super::{Block, Chain, Section, Span, Table};
+use super::super::{Letter, Math};
 use super::{equality, math, sentence, words};
 use crate::mechanics::lower::Lowering;
 use crate::symbolic::{Expr, Graph};

@@ -2,11 +2,10 @@
 
 use appell_spec::mechanism::Label;
 
-use super::super::letters::Letter;
-use super::super::math::Math;
 use super::super::units::{unit, value};
 use super::super::writer::Writer;
 use super::super::{Block, Section, Span, Table};
+use super::super::{Letter, Math};
 use super::{equality, math, words};
 use crate::mechanics::lower::Lowering;
 

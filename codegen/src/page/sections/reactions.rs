@@ -1,9 +1,9 @@
 //! Constraint forces.
 
 use super::super::Section;
-use super::super::letters::Letter;
-use super::super::math::{Equation, Math};
+use super::super::display::Equation;
 use super::super::writer::Writer;
+use super::super::{Letter, Math};
 use super::with;
 use crate::mechanics::finding::Outcome;
 use crate::mechanics::reactions::reactions;

@@ -1,7 +1,7 @@
 //! The solution of Appell's equations in letters, for blocks whose written-out form is no reading.
 
-use super::super::letters::Letter;
-use super::super::math::{Equation, Math};
+use super::super::display::Equation;
+use super::super::{Letter, Math};
 use crate::symbolic::{Expr, Graph};
 
 /// Larger blocks are solved when the equations are evaluated.

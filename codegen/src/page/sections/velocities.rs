@@ -2,8 +2,8 @@
 
 use appell_spec::mechanism::{Connection, FrameId, GROUND, LoadKind, PointId};
 
+use super::super::Letter;
 use super::super::Section;
-use super::super::letters::Letter;
 use super::super::writer::Writer;
 use super::{sentence, with};
 

@@ -1,297 +1,262 @@
-//! `LaTeX`, with `amsmath` for `aligned` and `cases`.
+//! Formulas as `LaTeX` in math mode, with `amsmath`.
 
-use super::super::{Function, Relation};
-use super::name::{Name, greek};
-use super::{Level, Notation, Piece};
+use std::fmt::Write;
 
-/// `LaTeX`: `\omega_1^2\,\sin\theta`.
-#[derive(Debug, Clone, Copy, Default)]
-pub struct Latex;
+use super::letter::{Letter, greek_command};
+use super::math::Math;
 
-/// Any characters as text that `LaTeX` prints and does not obey.
-fn escaped(word: &str) -> String {
-    let mut text = String::with_capacity(word.len());
-    for c in word.chars() {
-        match c {
-            '\\' => text.push_str("\\backslash "),
-            '^' => text.push_str("\\hat{}"),
-            '~' => text.push_str("\\sim "),
-            '{' | '}' | '$' | '&' | '#' | '%' | '_' => {
-                text.push('\\');
-                text.push(c);
-            }
-            c if c.is_control() => text.push('?'),
-            c => text.push(c),
-        }
-    }
-    text
-}
-
-/// A letter or a word in its font.
-fn word(word: &str, font: &str) -> String {
-    match greek(word) {
-        Some(_) => format!("\\{word}"),
-        None if word.chars().count() == 1 || word.bytes().all(|b| b.is_ascii_digit()) => {
-            escaped(word)
-        }
-        None => format!("\\{font}{{{}}}", escaped(word)),
-    }
-}
-
-fn grouped(piece: &Piece, least: Level) -> String {
-    if piece.level < least {
-        Latex.group(&piece.text)
-    } else {
-        piece.text.clone()
-    }
-}
-
-/// `x^2`, `x^{10}`, `x^{a}`
-fn braced(text: &str) -> String {
-    if text.len() == 1 {
-        text.to_owned()
-    } else {
-        format!("{{{text}}}")
-    }
-}
-
-/// A control word must not swallow the letter after it.
-fn joined(left: &str, right: &str) -> String {
-    let swallows = left.ends_with(|c: char| c.is_ascii_alphabetic())
-        && left
-            .rsplit(|c: char| !c.is_ascii_alphabetic())
-            .next()
-            .is_some_and(|w| left.len() > w.len() && left[..left.len() - w.len()].ends_with('\\'));
-    let space = if swallows && right.starts_with(|c: char| c.is_ascii_alphabetic()) {
-        " "
-    } else {
-        ""
+fn letter(letter: &Letter) -> String {
+    let mut characters = letter.base.chars();
+    let mut base = match (characters.next(), letter.is_word()) {
+        (Some(c), false) => match greek_command(c) {
+            Some(command) => format!("\\{command}"),
+            None => mathematical(&letter.base),
+        },
+        (None, _) => String::new(),
+        _ => format!("\\mathrm{{{}}}", mathematical(&letter.base)),
     };
-    format!("{left}{space}{right}")
+    if letter.bold && !base.is_empty() {
+        base = format!("\\boldsymbol{{{base}}}");
+    }
+    base = match letter.dots {
+        0 => base,
+        1 => format!("\\dot{{{base}}}"),
+        2 => format!("\\ddot{{{base}}}"),
+        _ => format!("\\dddot{{{base}}}"),
+    };
+    if let Some(mark) = &letter.above {
+        let _ = write!(base, "^{{{}}}", mathematical(mark));
+    }
+    if !letter.below.is_empty() {
+        let labels: Vec<String> = letter.below.iter().map(|part| label(part)).collect();
+        let _ = write!(base, "_{{{}}}", labels.join(","));
+    }
+    let before = match letter.before {
+        None => "",
+        Some('δ') => "\\delta ",
+        Some('∂') => "\\partial ",
+        Some(_) => "\\mathrm{d}",
+    };
+    format!("{before}{base}")
 }
 
-impl Latex {
-    fn function_name(function: Function) -> &'static str {
-        match function {
-            Function::Sin => "\\sin",
-            Function::Cos => "\\cos",
-            Function::Asin => "\\arcsin",
-            Function::Acos => "\\arccos",
-            Function::Atan => "\\arctan",
-            Function::Sinh => "\\sinh",
-            Function::Cosh => "\\cosh",
-            Function::Tanh => "\\tanh",
-            Function::Exp => "\\exp",
-            Function::Ln => "\\ln",
-            Function::Sqrt => "\\sqrt",
-            Function::Abs => "\\operatorname{abs}",
-            Function::Sign => "\\operatorname{sign}",
-        }
+/// A label below a letter: Greek letters, axes and counters slanted, names upright.
+fn label(part: &str) -> String {
+    if part.chars().all(|c| c.is_ascii_digit() || c == ',') {
+        return part.to_owned();
+    }
+    let single = part.chars().next().filter(|_| part.chars().count() == 1);
+    match single {
+        Some(c) => match greek_command(c) {
+            Some(command) => format!("\\{command}"),
+            None if matches!(c, 'x' | 'y' | 'z' | 'i') => c.to_string(),
+            None => format!("\\mathrm{{{}}}", mathematical(part)),
+        },
+        None => format!("\\mathrm{{{}}}", mathematical(part)),
     }
 }
 
-impl Notation for Latex {
-    fn group(&self, text: &str) -> String {
-        format!("\\left({text}\\right)")
-    }
+/// Characters in a formula: a name holds letters, digits and underscores.
+fn mathematical(name: &str) -> String {
+    name.chars()
+        .map(|c| match c {
+            '_' => "\\_".to_owned(),
+            c if c.is_ascii_alphanumeric() || c == ',' => c.to_string(),
+            c => match greek_command(c) {
+                Some(command) => format!("\\{command} "),
+                None => format!("\\text{{{}}}", latex_text(&c.to_string())),
+            },
+        })
+        .collect()
+}
 
-    fn name(&self, name: &Name) -> Piece {
-        if let Some(by) = &name.by {
-            let over = joined(
-                "\\partial",
-                &self
-                    .name(&Name {
-                        by: None,
-                        ..name.clone()
-                    })
-                    .text,
-            );
-            let under = joined("\\partial", &self.name(by).text);
-            return Piece::new(format!("\\frac{{{over}}}{{{under}}}"), Level::Product);
+/// A formula in math mode.
+pub fn latex(math: &Math) -> String {
+    match math {
+        Math::Integer(digits) => digits.clone(),
+        Math::Ratio(n, d) => format!("\\tfrac{{{n}}}{{{d}}}"),
+        Math::Letter(l) => letter(l),
+        Math::Words(words) => format!("\\text{{{}}}", latex_text(words)),
+        Math::Sign(sign) => match *sign {
+            "·" => "\\cdot ".to_owned(),
+            "×" => "\\times ".to_owned(),
+            "Σ" => "\\sum ".to_owned(),
+            "≤" => "\\le ".to_owned(),
+            sign => format!("{sign} "),
+        },
+        Math::Row(factors) => row(factors),
+        Math::Sum(terms) => sum(terms),
+        Math::Fraction(above, below) => {
+            format!("\\frac{{{}}}{{{}}}", latex(above), latex(below))
         }
-        let base = word(&name.base, "mathit");
-        let base = match name.dots {
-            0 => base,
-            1 => joined(
-                "\\dot",
-                &if base.starts_with('\\') {
-                    base
+        Math::Power(base, exponent) => format!("{}^{{{}}}", powered(base), latex(exponent)),
+        Math::Call(name, exponent, argument) => call(name, *exponent, argument),
+        Math::Root(inner) => format!("\\sqrt{{{}}}", latex(inner)),
+        Math::Size(inner) => format!("\\left|{}\\right|", latex(inner)),
+        Math::Brackets(inner) => bracketed(inner),
+        Math::Vector {
+            components,
+            frame,
+            column,
+        } => {
+            let Some(frame) = frame else {
+                let components: Vec<String> = components.iter().map(latex).collect();
+                return if *column {
+                    format!(
+                        "\\begin{{bmatrix}} {} \\end{{bmatrix}}",
+                        components.join(" \\\\ ")
+                    )
                 } else {
-                    format!("{{{base}}}")
-                },
-            ),
-            _ => joined(
-                "\\ddot",
-                &if base.starts_with('\\') {
-                    base
-                } else {
-                    format!("{{{base}}}")
-                },
-            ),
-        };
-        if name.subscripts.is_empty() {
-            return Piece::new(base, Level::Atom);
-        }
-        let subscripts: Vec<String> = name.subscripts.iter().map(|s| word(s, "mathrm")).collect();
-        let text = format!("{base}_{}", braced(&subscripts.join(",")));
-        Piece::new(text, Level::Atom)
-    }
-
-    fn digits(&self, digits: &str) -> String {
-        digits.replace('…', "\\dots")
-    }
-
-    fn sum(&self, terms: &[(bool, Piece)]) -> String {
-        let mut text = String::new();
-        for (i, (negative, piece)) in terms.iter().enumerate() {
-            match (i, negative) {
-                (0, false) => {}
-                (0, true) => text.push('-'),
-                (_, false) => text.push_str(" + "),
-                (_, true) => text.push_str(" - "),
-            }
-            text.push_str(&piece.text);
-        }
-        text
-    }
-
-    fn product(&self, factors: &[Piece]) -> String {
-        let factors: Vec<String> = factors.iter().map(|f| grouped(f, Level::Product)).collect();
-        factors.join("\\,")
-    }
-
-    fn fraction(&self, over: &[Piece], under: &[Piece]) -> Piece {
-        let side = |factors: &[Piece]| match factors {
-            [single] => single.text.clone(),
-            _ => self.product(factors),
-        };
-        Piece::new(
-            format!("\\frac{{{}}}{{{}}}", side(over), side(under)),
-            Level::Product,
-        )
-    }
-
-    fn power(&self, base: &Piece, exponent: u32) -> Piece {
-        let exponent = braced(&exponent.to_string());
-        Piece::new(
-            format!("{}^{exponent}", grouped(base, Level::Atom)),
-            Level::Power,
-        )
-    }
-
-    fn general_power(&self, base: &Piece, exponent: &Piece) -> Piece {
-        let text = format!("{}^{}", grouped(base, Level::Atom), braced(&exponent.text));
-        Piece::new(text, Level::Power)
-    }
-
-    fn function(&self, function: Function, exponent: u32, argument: &Piece) -> Piece {
-        match function {
-            Function::Sqrt => {
-                return Piece::new(format!("\\sqrt{{{}}}", argument.text), Level::Atom);
-            }
-            Function::Abs => {
-                return Piece::new(format!("\\left|{}\\right|", argument.text), Level::Atom);
-            }
-            _ => {}
-        }
-        let mut name = Self::function_name(function).to_owned();
-        if exponent > 1 {
-            name = format!("{name}^{}", braced(&exponent.to_string()));
-        }
-        if argument.level == Level::Atom {
-            Piece::new(joined(&name, &argument.text), Level::Prefix)
-        } else {
-            Piece::new(
-                format!("{name}{}", self.group(&argument.text)),
-                Level::Power,
+                    format!("({})", components.join(",\\, "))
+                };
+            };
+            let between = if *column { " \\\\ " } else { " & " };
+            let turned = if *column { "" } else { "^{\\mathsf T}" };
+            let components: Vec<String> = components.iter().map(latex).collect();
+            format!(
+                "\\begin{{bmatrix}} {} \\end{{bmatrix}}{turned}_{{\\text{{{}}}}}",
+                components.join(between),
+                latex_text(frame)
             )
         }
-    }
-
-    fn call(&self, function: &str, arguments: &[Piece]) -> Piece {
-        let arguments: Vec<&str> = arguments.iter().map(|a| a.text.as_str()).collect();
-        let arguments = self.group(&arguments.join(", "));
-        Piece::new(
-            format!("\\operatorname{{{function}}}{arguments}"),
-            Level::Power,
-        )
-    }
-
-    fn choice(
-        &self,
-        relation: Relation,
-        [left, right]: [&Piece; 2],
-        [then, otherwise]: [&Piece; 2],
-    ) -> Piece {
-        let sign = match relation {
-            Relation::Less => "<",
-            Relation::LessOrEqual => "\\le",
-        };
-        let (then, otherwise) = (&then.text, &otherwise.text);
-        let condition = format!("{} {sign} {}", left.text, right.text);
-        let text = format!(
-            "\\begin{{cases}} {then} & {condition} \\\\ {otherwise} & \\text{{otherwise}} \\end{{cases}}"
-        );
-        // Braces end nowhere visible: as a factor it needs parentheses.
-        Piece::new(text, Level::Sum)
-    }
-
-    fn equation(&self, left: &Piece, terms: &[(bool, Piece)], width: usize) -> String {
-        let whole = format!("{} = {}", left.text, self.sum(terms));
-        if visible(&whole) <= width || terms.len() < 2 {
-            return whole;
+        Math::Matrix(rows) => {
+            let rows: Vec<String> = rows
+                .iter()
+                .map(|row| row.iter().map(latex).collect::<Vec<_>>().join(" & "))
+                .collect();
+            format!(
+                "\\begin{{bmatrix}} {} \\end{{bmatrix}}",
+                rows.join(" \\\\ ")
+            )
         }
-        let mut text = format!("\\begin{{aligned}}\n{} ={{}}& ", left.text);
-        let mut used = visible(&left.text) + 3;
-        let indent = used;
-        for (i, (negative, piece)) in terms.iter().enumerate() {
-            let length = visible(&piece.text) + 3;
-            if i > 0 && used + length > width {
-                text.push_str(" \\\\\n& ");
-                used = indent;
-            }
-            match (i, negative) {
-                (0, false) => {}
-                (0, true) => text.push('-'),
-                (_, false) => text.push_str(" {}+ "),
-                (_, true) => text.push_str(" {}- "),
-            }
-            text.push_str(&piece.text);
-            used += length;
-        }
-        text.push_str("\n\\end{aligned}");
-        text
-    }
-
-    fn list(&self, equations: &[String]) -> String {
-        if let [single] = equations {
-            return single.clone();
-        }
-        format!(
-            "\\begin{{gathered}}\n{}\n\\end{{gathered}}",
-            equations.join(" \\\\\n")
-        )
+        Math::Cases {
+            value,
+            condition,
+            otherwise,
+        } => format!(
+            "\\begin{{cases}} {} & {} \\\\ {} & \\text{{otherwise}} \\end{{cases}}",
+            latex(value),
+            latex(condition),
+            latex(otherwise)
+        ),
     }
 }
 
-/// About how many characters remain of `LaTeX` source on the page: a control word is one, braces and
-/// scripts' marks are none.
-fn visible(source: &str) -> usize {
-    let mut count = 0;
-    let mut in_word = false;
-    for c in source.chars() {
+fn row(factors: &[Math]) -> String {
+    let mut out = String::new();
+    for (k, factor) in factors.iter().enumerate() {
+        let signs =
+            matches!(factor, Math::Sign(_)) || k == 0 || matches!(factors[k - 1], Math::Sign(_));
+        if !signs {
+            // Functions bring their own space.
+            let apart = !matches!(factor, Math::Call(..) | Math::Brackets(_));
+            out.push_str(if apart { "\\, " } else { " " });
+        }
+        out.push_str(&latex(factor));
+    }
+    out
+}
+
+fn sum(terms: &[(bool, Math)]) -> String {
+    let mut out = String::new();
+    for (k, (minus, term)) in terms.iter().enumerate() {
+        match (k, minus) {
+            (0, false) => {}
+            (0, true) => out.push('-'),
+            (_, false) => out.push_str(" + "),
+            (_, true) => out.push_str(" - "),
+        }
+        out.push_str(&latex(term));
+    }
+    out
+}
+
+fn bracketed(inner: &Math) -> String {
+    if inner.has_fraction() {
+        format!("\\left({}\\right)", latex(inner))
+    } else {
+        format!("({})", latex(inner))
+    }
+}
+
+/// A letter with a mark above gets braces before it is raised.
+fn powered(base: &Math) -> String {
+    match base {
+        Math::Letter(l) if l.above.is_some() => format!("\\bigl({}\\bigr)", latex(base)),
+        Math::Letter(_) => format!("{{{}}}", latex(base)),
+        _ => latex(base),
+    }
+}
+
+fn call(name: &str, exponent: u32, argument: &Math) -> String {
+    let name = match name {
+        "diag" | "sgn" | "atan2" => format!("\\operatorname{{{name}}}"),
+        name => format!("\\{name}"),
+    };
+    let raised = if exponent == 1 {
+        String::new()
+    } else {
+        format!("^{{{exponent}}}")
+    };
+    match argument {
+        Math::Letter(_) => format!("{name}{raised} {}", latex(argument)),
+        Math::Vector { .. } => format!("{name}{raised}{}", latex(argument)),
+        _ => format!("{name}{raised}{}", bracketed(argument)),
+    }
+}
+
+/// Text that LaTeX prints and does not obey.
+pub(crate) fn latex_text(text: &str) -> String {
+    let mut out = String::with_capacity(text.len());
+    for c in text.chars() {
         match c {
-            '\\' => {
-                count += 1;
-                in_word = true;
+            '\\' => out.push_str("\\textbackslash{}"),
+            '{' | '}' | '$' | '&' | '#' | '_' | '%' => {
+                out.push('\\');
+                out.push(c);
             }
-            c if in_word && c.is_ascii_alphabetic() => {}
-            '{' | '}' | '^' | '_' | ' ' => in_word = false,
-            _ => {
-                count += 1;
-                in_word = false;
-            }
+            '^' => out.push_str("\\textasciicircum{}"),
+            '~' => out.push_str("\\textasciitilde{}"),
+            '"' => out.push_str("\\textquotedbl{}"),
+            '<' => out.push_str("\\textless{}"),
+            '>' => out.push_str("\\textgreater{}"),
+            '|' => out.push_str("\\textbar{}"),
+            '\'' => out.push_str("{'}"),
+            '`' => out.push_str("{`}"),
+            '-' => out.push_str("{-}"),
+            '−' => out.push_str("$-$"),
+            ' '..='~' => out.push(c),
+            c => foreign(&mut out, c),
         }
     }
-    count
+    out
+}
+
+/// A character beyond ASCII.
+fn foreign(out: &mut String, c: char) {
+    if let Some(command) = greek_command(c) {
+        let _ = write!(out, "$\\{command}$");
+        return;
+    }
+    let raised = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹']
+        .iter()
+        .position(|&digit| digit == c);
+    match (c, raised) {
+        (_, Some(digit)) => {
+            let _ = write!(out, "$^{{{digit}}}$");
+        }
+        ('⁻', _) => out.push_str("$^{-}$"),
+        ('°', _) => out.push_str("$^{\\circ}$"),
+        ('·', _) => out.push_str("$\\cdot$"),
+        ('–', _) => out.push_str("--"),
+        ('—', _) => out.push_str("---"),
+        ('’', _) => out.push('\''),
+        ('…', _) => out.push_str("\\dots{}"),
+        // Latin letters with accents are known to every engine.
+        ('À'..='ÿ' | 'Ā'..='ž', _) => out.push(c),
+        _ if c.is_control() => out.push(' '),
+        _ => {
+            let _ = write!(out, "\\other{{{}}}{{{:04X}}}", c as u32, c as u32);
+        }
+    }
 }

@@ -1,272 +1,226 @@
-//! Presentation `MathML`, which browsers show without any script.
+//! Formulas as presentation `MathML`, within what browsers show by themselves.
 
-use super::super::{Function, Relation};
-use super::name::{Name, greek};
-use super::{Level, Notation, Piece};
+use std::fmt::Write;
 
-/// Presentation `MathML`: `<msup><mi>ω</mi><mn>2</mn></msup>`.
-///
-/// Expressions come without the surrounding `<math>`, equations with it.
-#[derive(Debug, Clone, Copy, Default)]
-pub struct MathMl;
+use super::letter::Letter;
+use super::math::Math;
+use super::text::clean;
 
-/// Between factors: a multiplication that is not written.
-const TIMES: &str = "<mo>&#x2062;</mo>";
-/// Between a function and its argument.
-const APPLY: &str = "<mo>&#x2061;</mo>";
-
-fn escaped(word: &str) -> String {
-    let mut text = String::with_capacity(word.len());
-    for c in word.chars() {
+/// Text that HTML shows and does not obey.
+pub(crate) fn escaped(text: &str) -> String {
+    let mut out = String::with_capacity(text.len());
+    for c in clean(text).chars() {
         match c {
-            '<' => text.push_str("&lt;"),
-            '>' => text.push_str("&gt;"),
-            '&' => text.push_str("&amp;"),
-            '"' => text.push_str("&quot;"),
-            '\'' => text.push_str("&#39;"),
-            c if c.is_control() => text.push('\u{fffd}'),
-            c => text.push(c),
+            '&' => out.push_str("&amp;"),
+            '<' => out.push_str("&lt;"),
+            '>' => out.push_str("&gt;"),
+            '"' => out.push_str("&quot;"),
+            '\'' => out.push_str("&#39;"),
+            c => out.push(c),
         }
     }
-    text
+    out
 }
 
-/// A letter in italics, a word upright, a number as a number.
-fn word(word: &str) -> String {
-    if let Some(letter) = greek(word) {
-        return format!("<mi>{letter}</mi>");
-    }
-    if !word.is_empty() && word.bytes().all(|b| b.is_ascii_digit()) {
-        return format!("<mn>{word}</mn>");
-    }
-    format!("<mi>{}</mi>", escaped(word))
-}
+/// A product that is not written, with a little air.
+pub(crate) const TIMES: &str = "<mo lspace=\"0.08em\" rspace=\"0.08em\">\u{2062}</mo>";
 
-fn row(text: &str) -> String {
-    format!("<mrow>{text}</mrow>")
-}
-
-fn grouped(piece: &Piece, least: Level) -> String {
-    if piece.level < least {
-        MathMl.group(&piece.text)
-    } else {
-        piece.text.clone()
+/// Plus or minus before a term.
+pub(crate) fn sign(minus: bool, first: bool) -> &'static str {
+    match (minus, first) {
+        (false, true) => "",
+        (true, true) => "<mo form=\"prefix\">−</mo>",
+        (false, false) => "<mo form=\"infix\">+</mo>",
+        (true, false) => "<mo form=\"infix\">−</mo>",
     }
 }
 
-fn sign(first: bool, negative: bool) -> &'static str {
-    match (first, negative) {
-        (true, false) => "",
-        (false, false) => "<mo>+</mo>",
-        (_, true) => "<mo>&#x2212;</mo>",
-    }
-}
-
-fn function_name(function: Function) -> &'static str {
-    match function {
-        Function::Sin => "sin",
-        Function::Cos => "cos",
-        Function::Asin => "arcsin",
-        Function::Acos => "arccos",
-        Function::Atan => "arctan",
-        Function::Sinh => "sinh",
-        Function::Cosh => "cosh",
-        Function::Tanh => "tanh",
-        Function::Exp => "exp",
-        Function::Ln => "ln",
-        Function::Sqrt => "sqrt",
-        Function::Abs => "abs",
-        Function::Sign => "sign",
-    }
-}
-
-impl Notation for MathMl {
-    fn group(&self, text: &str) -> String {
-        format!("<mrow><mo>(</mo>{text}<mo>)</mo></mrow>")
-    }
-
-    fn name(&self, name: &Name) -> Piece {
-        if let Some(by) = &name.by {
-            let over = self
-                .name(&Name {
-                    by: None,
-                    ..name.clone()
-                })
-                .text;
-            let under = self.name(by).text;
-            let text = format!(
-                "<mfrac><mrow><mo>∂</mo>{over}</mrow><mrow><mo>∂</mo>{under}</mrow></mfrac>"
-            );
-            return Piece::new(text, Level::Product);
-        }
-        let mut text = word(&name.base);
-        if name.dots > 0 {
-            let dots = if name.dots == 1 { "&#x2d9;" } else { "&#xa8;" };
-            text = format!("<mover accent=\"true\">{text}<mo>{dots}</mo></mover>");
-        }
-        if !name.subscripts.is_empty() {
-            let parts: Vec<String> = name.subscripts.iter().map(|s| word(s)).collect();
-            let below = match parts.as_slice() {
-                [single] => single.clone(),
-                _ => row(&parts.join("<mo>,</mo>")),
-            };
-            text = format!("<msub>{text}{below}</msub>");
-        }
-        Piece::new(text, Level::Atom)
-    }
-
-    fn digits(&self, digits: &str) -> String {
-        format!("<mn>{}</mn>", escaped(digits))
-    }
-
-    fn sum(&self, terms: &[(bool, Piece)]) -> String {
-        let mut text = String::new();
-        for (i, (negative, piece)) in terms.iter().enumerate() {
-            text.push_str(sign(i == 0, *negative));
-            text.push_str(&piece.text);
-        }
-        row(&text)
-    }
-
-    fn product(&self, factors: &[Piece]) -> String {
-        let factors: Vec<String> = factors.iter().map(|f| grouped(f, Level::Product)).collect();
-        row(&factors.join(TIMES))
-    }
-
-    fn fraction(&self, over: &[Piece], under: &[Piece]) -> Piece {
-        let side = |factors: &[Piece]| match factors {
-            [single] => single.text.clone(),
-            _ => self.product(factors),
-        };
-        Piece::new(
-            format!("<mfrac>{}{}</mfrac>", side(over), side(under)),
-            Level::Product,
-        )
-    }
-
-    fn power(&self, base: &Piece, exponent: u32) -> Piece {
-        let base = grouped(base, Level::Atom);
-        Piece::new(
-            format!("<msup>{base}<mn>{exponent}</mn></msup>"),
-            Level::Power,
-        )
-    }
-
-    fn general_power(&self, base: &Piece, exponent: &Piece) -> Piece {
-        let base = grouped(base, Level::Atom);
-        Piece::new(
-            format!("<msup>{base}{}</msup>", exponent.text),
-            Level::Power,
-        )
-    }
-
-    fn function(&self, function: Function, exponent: u32, argument: &Piece) -> Piece {
-        match function {
-            Function::Sqrt => {
-                return Piece::new(format!("<msqrt>{}</msqrt>", argument.text), Level::Atom);
+/// A formula, without the surrounding `<math>`.
+pub fn mathml(math: &Math) -> String {
+    match math {
+        Math::Integer(digits) => format!("<mn>{}</mn>", escaped(digits)),
+        Math::Ratio(n, d) => format!(
+            "<mstyle displaystyle=\"false\"><mfrac><mn>{}</mn><mn>{}</mn></mfrac></mstyle>",
+            escaped(n),
+            escaped(d)
+        ),
+        Math::Letter(l) => letter(l),
+        Math::Words(words) => format!("<mtext>{}</mtext>", escaped(words)),
+        Math::Sign("Σ") => "<mo largeop=\"false\">∑</mo>".to_owned(),
+        Math::Sign(sign) => format!("<mo>{}</mo>", escaped(sign)),
+        Math::Row(factors) => row(factors),
+        Math::Sum(terms) => {
+            let mut out = String::new();
+            for (k, (minus, term)) in terms.iter().enumerate() {
+                out.push_str(sign(*minus, k == 0));
+                out.push_str(&mathml(term));
             }
-            Function::Abs => {
-                let text = format!("<mrow><mo>|</mo>{}<mo>|</mo></mrow>", argument.text);
-                return Piece::new(text, Level::Atom);
-            }
-            _ => {}
+            format!("<mrow>{out}</mrow>")
         }
-        let mut name = format!("<mi>{}</mi>", function_name(function));
-        if exponent > 1 {
-            name = format!("<msup>{name}<mn>{exponent}</mn></msup>");
+        Math::Fraction(above, below) => {
+            format!("<mfrac>{}{}</mfrac>", mathml(above), mathml(below))
         }
-        let level = if argument.level == Level::Atom {
-            Level::Prefix
+        Math::Power(base, exponent) => {
+            format!("<msup>{}{}</msup>", mathml(base), mathml(exponent))
+        }
+        Math::Call(name, exponent, argument) => call(name, *exponent, argument),
+        Math::Root(inner) => format!("<msqrt>{}</msqrt>", mathml(inner)),
+        Math::Size(inner) => format!("<mrow><mo>|</mo>{}<mo>|</mo></mrow>", mathml(inner)),
+        Math::Brackets(inner) => bracketed(inner),
+        Math::Vector {
+            components,
+            frame,
+            column,
+        } => vector(components, frame.as_deref(), *column),
+        Math::Matrix(rows) => {
+            let rows: Vec<Vec<String>> = rows
+                .iter()
+                .map(|row| row.iter().map(mathml).collect())
+                .collect();
+            format!("<mrow><mo>[</mo>{}<mo>]</mo></mrow>", grid(&rows))
+        }
+        Math::Cases {
+            value,
+            condition,
+            otherwise,
+        } => {
+            let rows = [
+                vec![
+                    mathml(value),
+                    format!("<mtext>if </mtext>{}", mathml(condition)),
+                ],
+                vec![mathml(otherwise), "<mtext>otherwise</mtext>".to_owned()],
+            ];
+            format!("<mrow><mo>{{</mo>{}</mrow>", grid(&rows))
+        }
+    }
+}
+
+fn row(factors: &[Math]) -> String {
+    let mut out = String::new();
+    for (k, factor) in factors.iter().enumerate() {
+        let signs =
+            matches!(factor, Math::Sign(_)) || k == 0 || matches!(factors[k - 1], Math::Sign(_));
+        if !signs {
+            out.push_str(TIMES);
+        }
+        out.push_str(&mathml(factor));
+    }
+    format!("<mrow>{out}</mrow>")
+}
+
+/// Brackets grow only with what is taller than a line: grown ones bring air of their own.
+fn bracketed(inner: &Math) -> String {
+    let stretchy = inner.has_fraction();
+    format!(
+        "<mrow><mo stretchy=\"{stretchy}\">(</mo>{}<mo stretchy=\"{stretchy}\">)</mo></mrow>",
+        mathml(inner)
+    )
+}
+
+fn call(name: &str, exponent: u32, argument: &Math) -> String {
+    let mut head = format!("<mi>{name}</mi>");
+    if exponent != 1 {
+        head = format!("<msup>{head}<mn>{exponent}</mn></msup>");
+    }
+    let argument = match argument {
+        Math::Letter(_) => format!("<mspace width=\"0.16em\"/>{}", mathml(argument)),
+        Math::Vector { .. } => mathml(argument),
+        _ => bracketed(argument),
+    };
+    format!("<mrow>{head}<mo>\u{2061}</mo>{argument}</mrow>")
+}
+
+fn grid(rows: &[Vec<String>]) -> String {
+    let mut out = String::from("<mtable>");
+    for row in rows {
+        out.push_str("<mtr>");
+        for cell in row {
+            let _ = write!(out, "<mtd>{cell}</mtd>");
+        }
+        out.push_str("</mtr>");
+    }
+    out.push_str("</mtable>");
+    out
+}
+
+fn vector(components: &[Math], frame: Option<&str>, column: bool) -> String {
+    let components: Vec<String> = components.iter().map(mathml).collect();
+    let Some(frame) = frame else {
+        return if column {
+            let rows: Vec<Vec<String>> = components.into_iter().map(|c| vec![c]).collect();
+            format!("<mrow><mo>[</mo>{}<mo>]</mo></mrow>", grid(&rows))
         } else {
-            Level::Power
+            format!(
+                "<mrow><mo>(</mo>{}<mo>)</mo></mrow>",
+                components.join("<mo>,</mo>")
+            )
         };
-        Piece::new(
-            row(&format!("{name}{APPLY}{}", grouped(argument, Level::Atom))),
-            level,
-        )
-    }
-
-    fn call(&self, function: &str, arguments: &[Piece]) -> Piece {
-        let arguments: Vec<&str> = arguments.iter().map(|a| a.text.as_str()).collect();
-        let arguments = self.group(&arguments.join("<mo>,</mo>"));
-        Piece::new(
-            row(&format!("<mi>{}</mi>{APPLY}{arguments}", escaped(function))),
-            Level::Power,
-        )
-    }
-
-    fn choice(
-        &self,
-        relation: Relation,
-        [left, right]: [&Piece; 2],
-        [then, otherwise]: [&Piece; 2],
-    ) -> Piece {
-        let sign = match relation {
-            Relation::Less => "&lt;",
-            Relation::LessOrEqual => "&#x2264;",
-        };
-        let condition = row(&format!("{}<mo>{sign}</mo>{}", left.text, right.text));
-        let case =
-            |value: &str, when: &str| format!("<mtr><mtd>{value}</mtd><mtd>{when}</mtd></mtr>");
-        let text = format!(
-            "<mrow><mo>{{</mo><mtable columnalign=\"left left\">{}{}</mtable></mrow>",
-            case(&then.text, &condition),
-            case(&otherwise.text, "<mtext>otherwise</mtext>"),
+    };
+    let frame = format!("<mtext>{}</mtext>", escaped(frame));
+    if column {
+        let rows: Vec<Vec<String>> = components.into_iter().map(|c| vec![c]).collect();
+        return format!(
+            "<msub><mrow><mo>[</mo>{}<mo>]</mo></mrow>{frame}</msub>",
+            grid(&rows)
         );
-        // The brace has no right end: as a factor it needs parentheses.
-        Piece::new(text, Level::Sum)
     }
+    let inside = format!("<mrow><mo>[</mo>{}<mo>]</mo></mrow>", grid(&[components]));
+    format!("<msubsup>{inside}{frame}<mi mathvariant=\"normal\">T</mi></msubsup>")
+}
 
-    fn equation(&self, left: &Piece, terms: &[(bool, Piece)], width: usize) -> String {
-        let mut rows: Vec<String> = Vec::new();
-        let mut current = String::new();
-        let mut used = visible(&left.text) + 1;
-        for (i, (negative, piece)) in terms.iter().enumerate() {
-            let length = visible(&piece.text) + 1;
-            if !current.is_empty() && used + length > width {
-                rows.push(std::mem::take(&mut current));
-                used = visible(&left.text) + 1;
-            }
-            current.push_str(sign(i == 0, *negative));
-            current.push_str(&piece.text);
-            used += length;
-        }
-        rows.push(current);
-        let mut body = String::new();
-        for (i, line) in rows.iter().enumerate() {
-            let head = if i == 0 {
-                format!("<mtd>{}</mtd><mtd><mo>=</mo></mtd>", left.text)
-            } else {
-                "<mtd></mtd><mtd></mtd>".to_owned()
-            };
-            body.extend(["<mtr>", &head, "<mtd>", &row(line), "</mtd></mtr>"]);
-        }
-        format!(
-            "<math xmlns=\"http://www.w3.org/1998/Math/MathML\" display=\"block\">\
-             <mtable displaystyle=\"true\" columnalign=\"right center left\">{body}</mtable></math>"
-        )
+fn letter(letter: &Letter) -> String {
+    let base = escaped(&letter.base);
+    let mut out = match (letter.base.is_empty(), letter.bold) {
+        (true, _) => String::new(),
+        (_, true) => format!("<mi class=\"b\" mathvariant=\"normal\">{base}</mi>"),
+        (_, false) => format!("<mi>{base}</mi>"),
+    };
+    if letter.dots > 0 {
+        let dots = match letter.dots {
+            1 => "˙",
+            2 => "¨",
+            _ => "⃛",
+        };
+        out = format!(
+            "<mover accent=\"true\">{out}<mo class=\"dot\" stretchy=\"false\">{dots}</mo></mover>"
+        );
     }
-
-    fn list(&self, equations: &[String]) -> String {
-        equations.join("\n")
+    let below: Vec<String> = letter.below.iter().map(|part| label(part)).collect();
+    let below = match below.as_slice() {
+        [] => None,
+        [single] => Some(single.clone()),
+        several => Some(format!(
+            "<mrow>{}</mrow>",
+            several.join("<mo rspace=\"0.1em\">,</mo>")
+        )),
+    };
+    let above = letter
+        .above
+        .as_ref()
+        .map(|mark| format!("<mn>{}</mn>", escaped(mark)));
+    out = match (below, above) {
+        (None, None) => out,
+        (Some(below), None) => format!("<msub>{out}{below}</msub>"),
+        (None, Some(above)) => format!("<msup>{out}{above}</msup>"),
+        (Some(below), Some(above)) => format!("<msubsup>{out}{below}{above}</msubsup>"),
+    };
+    match letter.before {
+        Some(sign) => format!("<mrow><mi mathvariant=\"normal\">{sign}</mi>{out}</mrow>"),
+        None => out,
     }
 }
 
-/// Characters that remain when the tags are gone; an entity is one.
-fn visible(markup: &str) -> usize {
-    let (mut count, mut in_tag, mut in_entity) = (0, false, false);
-    for c in markup.chars() {
-        match c {
-            '<' => in_tag = true,
-            '>' => in_tag = false,
-            '&' if !in_tag => in_entity = true,
-            ';' if in_entity => {
-                in_entity = false;
-                count += 1;
-            }
-            _ if in_tag || in_entity => {}
-            _ => count += 1,
-        }
+/// A label below a letter: Greek letters, axes and counters slanted, names upright.
+fn label(part: &str) -> String {
+    let text = escaped(part);
+    if part.chars().all(|c| c.is_ascii_digit()) {
+        return format!("<mn>{text}</mn>");
     }
-    count
+    let slanted = matches!(part, "x" | "y" | "z" | "i") || !part.is_ascii();
+    if slanted || part.chars().count() > 1 {
+        format!("<mi>{text}</mi>")
+    } else {
+        format!("<mi mathvariant=\"normal\">{text}</mi>")
+    }
 }

@@ -1,9 +1,44 @@
 //! Letters: how a name is written in a formula.
 //!
 //! `omega_1` is ω with index 1, `theta` is θ, `x_G` is x with the label G, `m0` is m with index 0,
-//! `gamma_dot` is γ with a dot: names come apart as in [`crate::symbolic::print`].
+//! `gamma_dot` is γ with a dot.
 
-use crate::symbolic::print::{GREEK, Name};
+/// Greek letters that have names of their own.
+const GREEK: [(&str, char); 33] = [
+    ("alpha", 'α'),
+    ("beta", 'β'),
+    ("gamma", 'γ'),
+    ("delta", 'δ'),
+    ("epsilon", 'ε'),
+    ("zeta", 'ζ'),
+    ("eta", 'η'),
+    ("theta", 'θ'),
+    ("iota", 'ι'),
+    ("kappa", 'κ'),
+    ("lambda", 'λ'),
+    ("mu", 'μ'),
+    ("nu", 'ν'),
+    ("xi", 'ξ'),
+    ("pi", 'π'),
+    ("rho", 'ρ'),
+    ("sigma", 'σ'),
+    ("tau", 'τ'),
+    ("upsilon", 'υ'),
+    ("phi", 'φ'),
+    ("chi", 'χ'),
+    ("psi", 'ψ'),
+    ("omega", 'ω'),
+    ("Gamma", 'Γ'),
+    ("Delta", 'Δ'),
+    ("Theta", 'Θ'),
+    ("Lambda", 'Λ'),
+    ("Xi", 'Ξ'),
+    ("Pi", 'Π'),
+    ("Sigma", 'Σ'),
+    ("Phi", 'Φ'),
+    ("Psi", 'Ψ'),
+    ("Omega", 'Ω'),
+];
 
 /// A letter with its dots, index and exponent-like mark.
 #[derive(Debug, Clone, PartialEq, Eq, Hash, Default)]
@@ -20,6 +55,8 @@ pub struct Letter {
     pub above: Option<String>,
     /// δ before a virtual quantity, d before a differential, ∂ before a partial one.
     pub before: Option<char>,
+    /// For `∂letter/∂by`: what it is differentiated by.
+    pub by: Option<Box<Letter>>,
 }
 
 impl Letter {
@@ -39,13 +76,60 @@ impl Letter {
         }
     }
 
-    /// The letter of an identifier.
-    pub fn of(name: &str) -> Self {
-        let name = Name::parse(name);
+    /// The letter of an identifier, which comes apart at its underscores: `omega_1_dot` is ω̇₁, `m_W`
+    /// is m with label W.
+    ///
+    /// Parts `dot` and `ddot` are dots. Digits at the end of a letter are an index, as in `x1`. A word
+    /// as a base keeps its underscores: `wheel_radius` is one word. `d_a_d_b` is ∂a/∂b.
+    pub fn of(identifier: &str) -> Self {
+        if let Some((name, by)) = identifier
+            .strip_prefix("d_")
+            .and_then(|rest| rest.split_once("_d_"))
+            && !by.contains("_d_")
+        {
+            return Self {
+                by: Some(Box::new(Self::of_parts(by))),
+                ..Self::of_parts(name)
+            };
+        }
+        Self::of_parts(identifier)
+    }
+
+    fn of_parts(identifier: &str) -> Self {
+        let mut dots = 0;
+        let mut parts: Vec<&str> = Vec::new();
+        for part in identifier.split('_') {
+            match part {
+                "dot" if !parts.is_empty() => dots += 1,
+                "ddot" if !parts.is_empty() => dots += 2,
+                _ => parts.push(part),
+            }
+        }
+        let first = parts.first().copied().unwrap_or_default();
+        let stem = first.trim_end_matches(|c: char| c.is_ascii_digit());
+        // Empty parts come from doubled underscores; only the whole identifier tells them apart.
+        if dots > 2 || stem.is_empty() || parts.iter().any(|p| p.is_empty()) {
+            return Self::plain(identifier);
+        }
+        let is_letter = stem.chars().count() == 1 || greek(stem).is_some();
+        let (base, below) = if is_letter {
+            let index = Some(&first[stem.len()..]).filter(|index| !index.is_empty());
+            let labels = index.into_iter().chain(parts[1..].iter().copied());
+            (label(stem), labels.map(label).collect())
+        } else {
+            // Numbers at the end of a word are indices, its other parts belong to it.
+            let is_number = |part: &&&str| part.bytes().all(|b| b.is_ascii_digit());
+            let numbers = parts.iter().rev().take_while(is_number).count();
+            let (word, numbers) = parts.split_at(parts.len() - numbers);
+            (
+                word.join("_"),
+                numbers.iter().map(|&n| n.to_owned()).collect(),
+            )
+        };
         Self {
-            base: label(&name.base),
-            dots: u8::try_from(name.dots).unwrap_or(u8::MAX),
-            below: name.subscripts.iter().map(|part| label(part)).collect(),
+            base,
+            dots,
+            below,
             ..Self::default()
         }
     }
@@ -91,12 +175,14 @@ impl Letter {
     }
 }
 
+/// The Greek letter of a name.
+fn greek(word: &str) -> Option<char> {
+    GREEK.iter().find(|row| row.0 == word).map(|row| row.1)
+}
+
 /// A Greek name as its letter, anything else as it is.
 fn label(part: &str) -> String {
-    GREEK
-        .iter()
-        .find(|row| row.0 == part)
-        .map_or_else(|| part.to_owned(), |row| row.1.to_string())
+    greek(part).map_or_else(|| part.to_owned(), String::from)
 }
 
 /// The LaTeX command of a Greek letter, in the shape that Unicode gives it.
@@ -153,7 +239,7 @@ fn subscript(c: char) -> char {
 }
 
 /// Superscript form of digits and signs.
-pub(super) fn superscript(c: char) -> char {
+pub(crate) fn superscript(c: char) -> char {
     match c {
         '1' => '¹',
         '2' => '²',
@@ -184,9 +270,24 @@ mod tests {
             ("omega_1_dot", "ω\u{307}₁"),
             ("x_G_dot", "x\u{307}_G"),
             ("speed", "speed"),
+            ("x12", "x₁₂"),
+            ("I_B_xx", "I_B,xx"),
+            ("wheel_radius", "wheel_radius"),
+            ("wheel_radius_2_dot", "wheel_radius\u{307}₂"),
+            ("dot", "dot"),
+            ("__", "__"),
+            ("7", "7"),
+            ("", ""),
         ];
         for (name, written) in cases {
             assert_eq!(Letter::of(name).to_string(), written, "{name}");
         }
+    }
+
+    #[test]
+    fn names_of_derivatives_know_their_variable() {
+        let letter = Letter::of("d_lever_d_theta_1");
+        assert_eq!(letter.base, "lever");
+        assert_eq!(letter.by, Some(Box::new(Letter::of("theta_1"))));
     }
 }

@@ -2,8 +2,7 @@
 
 use rustc_hash::FxHashMap;
 
-use super::letters::Letter;
-use super::lexicon::{Lexicon, Rank};
+use super::letter::Letter;
 use super::math::Math;
 use crate::symbolic::{Expr, Factor, Function, Graph, Node, Rational, Relation, Term};
 
@@ -12,42 +11,77 @@ const WIDEST_PART: usize = 160;
 /// A part that nests deeper than this becomes a letter of its own.
 const DEEPEST_PART: usize = 12;
 
+/// Letters of symbols and names, and their order in a product.
+pub trait Vocabulary {
+    /// Letter of a symbol or of a named quantity.
+    fn letter(&self, graph: &Graph, expr: Expr) -> Letter {
+        match graph.node(expr) {
+            Node::Symbol(id) => Letter::of(graph.symbol_name(*id)),
+            Node::Named(id) => Letter::of(&graph.definition(*id).name),
+            _ => Letter::plain("?"),
+        }
+    }
+
+    /// Place of a symbol in a product: before the names up to 4, behind them from 6 on. Symbols of
+    /// the same place stand in the order in which they were made.
+    fn place(&self, _graph: &Graph, _symbol: Expr) -> u8 {
+        1
+    }
+}
+
+/// Letters as their names spell them.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Spelled;
+
+impl Vocabulary for Spelled {}
+
 /// A formula and what it takes for granted.
 #[derive(Debug, Clone)]
-pub(super) struct Set {
+pub struct Formula {
     /// The formula.
-    pub(super) math: Math,
+    pub math: Math,
     /// Named quantities and parts with letters that occur in it, in order of appearance.
-    pub(super) wants: Vec<Expr>,
+    pub wants: Vec<Expr>,
     width: usize,
     depth: usize,
 }
 
 /// Sets expressions as formulas.
 #[derive(Debug, Clone)]
-pub(super) struct Setter {
-    lexicon: Lexicon,
+pub struct Setter<V> {
+    vocabulary: V,
+    /// Whether definitions stand in the places of their names.
+    inline: bool,
     /// Parts that got a letter, by first use.
     parts: FxHashMap<Expr, usize>,
 }
 
-impl Setter {
-    pub(super) fn new(lexicon: Lexicon) -> Self {
+impl<V: Vocabulary> Setter<V> {
+    /// A setter that writes named quantities by their names.
+    pub fn new(vocabulary: V) -> Self {
         Self {
-            lexicon,
+            vocabulary,
+            inline: false,
             parts: FxHashMap::default(),
         }
     }
 
+    /// Writes the definitions of named quantities in their places.
+    #[must_use]
+    pub fn with_definitions_inline(mut self) -> Self {
+        self.inline = true;
+        self
+    }
+
     /// Letters of symbols and names.
-    pub(super) fn lexicon(&self) -> &Lexicon {
-        &self.lexicon
+    pub fn vocabulary(&self) -> &V {
+        &self.vocabulary
     }
 
     /// Letter of a symbol, a name, an unknown or a part.
-    pub(super) fn letter(&mut self, graph: &Graph, expr: Expr) -> Letter {
+    pub fn letter(&mut self, graph: &Graph, expr: Expr) -> Letter {
         match graph.node(expr) {
-            Node::Named(_) | Node::Symbol(_) => self.lexicon.letter(graph, expr),
+            Node::Named(_) | Node::Symbol(_) => self.vocabulary.letter(graph, expr),
             Node::Solution { system, row } => Letter::plain("z")
                 .below(&(system + 1).to_string())
                 .below(&(row + 1).to_string()),
@@ -60,9 +94,9 @@ impl Setter {
     }
 
     /// The formula of an expression; what is large inside gets letters.
-    pub(super) fn set(&mut self, graph: &Graph, expr: Expr) -> Set {
-        let mut known: FxHashMap<Expr, Set> = FxHashMap::default();
-        for part in visible(graph, expr) {
+    pub fn set(&mut self, graph: &Graph, expr: Expr) -> Formula {
+        let mut known: FxHashMap<Expr, Formula> = FxHashMap::default();
+        for part in written(graph, expr, self.inline) {
             let set = self.step(graph, part, &known);
             let large = part != expr && (set.width > WIDEST_PART || set.depth > DEEPEST_PART);
             let set = if large {
@@ -77,10 +111,10 @@ impl Setter {
             .unwrap_or_else(|| self.leaf(graph, expr, false))
     }
 
-    fn leaf(&mut self, graph: &Graph, expr: Expr, wanted: bool) -> Set {
-        let math = Math::Letter(self.letter(graph, expr));
+    fn leaf(&mut self, graph: &Graph, expr: Expr, wanted: bool) -> Formula {
+        let math = Math::letter(self.letter(graph, expr));
         let width = math.width();
-        Set {
+        Formula {
             math,
             wants: if wanted { vec![expr] } else { Vec::new() },
             width,
@@ -88,12 +122,13 @@ impl Setter {
         }
     }
 
-    fn step(&mut self, graph: &Graph, expr: Expr, known: &FxHashMap<Expr, Set>) -> Set {
+    fn step(&mut self, graph: &Graph, expr: Expr, known: &FxHashMap<Expr, Formula>) -> Formula {
         let math = |e: Expr| known[&e].math.clone();
         let formula = match graph.node(expr) {
             Node::Symbol(_) => return self.leaf(graph, expr, false),
+            Node::Named(id) if self.inline => return known[&graph.definition(*id).value].clone(),
             Node::Named(_) | Node::Solution { .. } => return self.leaf(graph, expr, true),
-            Node::Number(n) => signed(n, |digits| digits),
+            Node::Number(n) => signed(n),
             Node::Sum(terms) => self.sum(graph, terms, known),
             Node::Product(factors) => self.product(graph, &Rational::ONE, factors, known),
             Node::Function(Function::Sqrt, a) => Math::Root(Box::new(math(*a))),
@@ -129,7 +164,7 @@ impl Setter {
         };
         let mut wants: Vec<Expr> = Vec::new();
         let mut depth = 0;
-        each_visible_part(graph, expr, |part| {
+        each_written_part(graph, expr, self.inline, |part| {
             depth = depth.max(known[&part].depth + 1);
             for &want in &known[&part].wants {
                 if !wants.contains(&want) {
@@ -138,7 +173,7 @@ impl Setter {
             }
         });
         let width = formula.width();
-        Set {
+        Formula {
             math: formula,
             wants,
             width,
@@ -146,7 +181,7 @@ impl Setter {
         }
     }
 
-    fn sum(&self, graph: &Graph, terms: &[Term], known: &FxHashMap<Expr, Set>) -> Math {
+    fn sum(&self, graph: &Graph, terms: &[Term], known: &FxHashMap<Expr, Formula>) -> Math {
         let mut ordered: Vec<&Term> = terms.iter().collect();
         ordered.sort_by_cached_key(|term| self.reading_key(graph, term.expr));
         let mut signed_terms: Vec<(bool, Math)> = ordered
@@ -155,7 +190,7 @@ impl Setter {
                 let minus = term.coefficient.is_negative();
                 let size = term.coefficient.abs();
                 let math = match graph.node(term.expr) {
-                    Node::Number(_) => signed(&size, |digits| digits),
+                    Node::Number(_) => signed(&size),
                     Node::Product(factors) => self.product(graph, &size, factors, known),
                     _ if size.is_one() => known[&term.expr].math.clone(),
                     _ => {
@@ -184,7 +219,7 @@ impl Setter {
         graph: &Graph,
         coefficient: &Rational,
         factors: &[Factor],
-        known: &FxHashMap<Expr, Set>,
+        known: &FxHashMap<Expr, Formula>,
     ) -> Math {
         let mut factors: Vec<Factor> = factors.to_vec();
         let tangents = take_tangents(graph, &mut factors);
@@ -232,13 +267,7 @@ impl Setter {
     fn place(&self, graph: &Graph, base: Expr) -> Place {
         let group = match graph.node(base) {
             Node::Sum(_) => 0,
-            Node::Symbol(_) => match self.lexicon.rank(base) {
-                Rank::Constant => 1,
-                Rank::Position => 2,
-                Rank::Input => 3,
-                Rank::Velocity => 4,
-                Rank::Acceleration => 6,
-            },
+            Node::Symbol(_) => self.vocabulary.place(graph, base),
             Node::Named(_) | Node::Solution { .. } => 5,
             _ => 7,
         };
@@ -250,10 +279,10 @@ impl Setter {
 struct Place(u8, Expr);
 
 /// `coefficient · above / below`
-pub(super) fn assemble(coefficient: &Rational, mut above: Vec<Math>, mut below: Vec<Math>) -> Math {
+pub(crate) fn assemble(coefficient: &Rational, mut above: Vec<Math>, mut below: Vec<Math>) -> Math {
     if below.is_empty() {
         if !coefficient.is_one() || above.is_empty() {
-            above.insert(0, signed(coefficient, |digits| digits));
+            above.insert(0, signed(coefficient));
         }
         return Math::product(above);
     }
@@ -268,15 +297,14 @@ pub(super) fn assemble(coefficient: &Rational, mut above: Vec<Math>, mut below: 
     Math::fraction(Math::product(above), Math::product(below))
 }
 
-/// A number; `wrap` gets its digits. Only a number that stands alone can be negative.
-pub(super) fn signed(number: &Rational, wrap: impl Fn(Math) -> Math) -> Math {
+/// A number. Only a number that stands alone can be negative.
+fn signed(number: &Rational) -> Math {
     let big = number.abs().to_big();
-    let digits = if big.is_integer() {
+    let size = if big.is_integer() {
         Math::Integer(big.numer().to_string())
     } else {
         Math::Ratio(big.numer().to_string(), big.denom().to_string())
     };
-    let size = wrap(digits);
     if number.is_negative() {
         Math::Sum(vec![(true, size)])
     } else {
@@ -325,15 +353,21 @@ fn take_tangents(graph: &Graph, factors: &mut Vec<Factor>) -> Vec<(Expr, u32)> {
     tangents
 }
 
-/// The parts that are printed with an expression: not those behind names and numeric solutions.
-fn each_visible_part(graph: &Graph, expr: Expr, visit: impl FnMut(Expr)) {
-    if !matches!(graph.node(expr), Node::Named(_) | Node::Solution { .. }) {
+/// The parts that are written with an expression: not those behind numeric solutions, and those
+/// behind names only `inline`.
+fn each_written_part(graph: &Graph, expr: Expr, inline: bool, visit: impl FnMut(Expr)) {
+    let stands_alone = match graph.node(expr) {
+        Node::Named(_) => !inline,
+        Node::Solution { .. } => true,
+        _ => false,
+    };
+    if !stands_alone {
         graph.for_each_part(expr, visit);
     }
 }
 
-/// The printed parts of an expression, parts before wholes.
-pub(super) fn visible(graph: &Graph, root: Expr) -> Vec<Expr> {
+/// The written parts of an expression, parts before wholes.
+fn written(graph: &Graph, root: Expr, inline: bool) -> Vec<Expr> {
     let mut order = Vec::new();
     let mut seen = rustc_hash::FxHashSet::default();
     let mut stack = vec![(root, false)];
@@ -342,10 +376,15 @@ pub(super) fn visible(graph: &Graph, root: Expr) -> Vec<Expr> {
             order.push(expr);
         } else if seen.insert(expr) {
             stack.push((expr, true));
-            each_visible_part(graph, expr, |part| stack.push((part, false)));
+            each_written_part(graph, expr, inline, |part| stack.push((part, false)));
         }
     }
     order
+}
+
+/// The parts of an expression that do not lie behind names.
+pub(crate) fn visible(graph: &Graph, root: Expr) -> Vec<Expr> {
+    written(graph, root, false)
 }
 
 fn function_name(function: Function) -> &'static str {

@@ -25,19 +25,23 @@ mod dop853_coefficients;
 mod error;
 mod events;
 mod pairs;
+mod range;
 mod rk4;
 mod solver;
 mod step_size;
+mod stops;
 mod tableau;
 mod watch;
 
 pub use dense_output::DenseOutput;
-pub use error::IntegrationError;
+pub use error::{Cause, Failure, IntegrationError};
 pub use events::{Direction, Event, EventFunction, EventHit};
 pub use pairs::{Dop853, Dopri5, EmbeddedPair};
+pub use range::Range;
 pub use rk4::Rk4;
 pub use solver::Solver;
-pub use watch::{Ending, NoObserver, Observer, Range, Step, Watch};
+pub use stops::{SwitchFunction, Switches};
+pub use watch::{Ending, NoObserver, Observer, Step, Watch};
 
 /// Accuracy and limits of an adaptive integration.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -139,49 +143,4 @@ pub struct Outcome {
     pub hits: Vec<EventHit>,
     /// Its cost.
     pub statistics: Statistics,
-}
-
-/// A stretch without switching times inside.
-#[derive(Debug, Clone, Copy, PartialEq)]
-struct Segment {
-    /// Where it ends, in s.
-    end: f64,
-    /// The latest time at which its rates are evaluated: just before a switching time.
-    last: f64,
-}
-
-/// The stretches of an interval from switching time to switching time.
-#[derive(Debug)]
-struct Segments {
-    switching_times: std::vec::IntoIter<f64>,
-    end: Option<f64>,
-}
-
-impl Segments {
-    fn new([start, end]: [f64; 2], switching_times: &[f64]) -> Self {
-        let inside = |t: &f64| start < *t && *t <= end;
-        let mut times: Vec<f64> = switching_times.iter().copied().filter(inside).collect();
-        times.sort_by(f64::total_cmp);
-        times.dedup();
-        let end_is_switch = times.last().is_some_and(|last| *last >= end);
-        let remaining = (start < end && !end_is_switch).then_some(end);
-        Self {
-            switching_times: times.into_iter(),
-            end: remaining,
-        }
-    }
-}
-
-impl Iterator for Segments {
-    type Item = Segment;
-
-    fn next(&mut self) -> Option<Segment> {
-        match self.switching_times.next() {
-            Some(end) => Some(Segment {
-                end,
-                last: end.next_down(),
-            }),
-            None => self.end.take().map(|end| Segment { end, last: end }),
-        }
-    }
 }

@@ -1,15 +1,16 @@
 //! The motion of a model under its inputs.
 
+mod recorder;
+
 use crate::inputs::{InputSource, ModelInputs, ZeroInputs};
 use crate::integrate::{
-    Dop853, Dopri5, Event, IntegrationError, Observer, Options, Outcome, Range, Rk4, Solver, Step,
-    Watch,
+    Cause, Dop853, Dopri5, Event, Failure, IntegrationError, Options, Range, Rk4, Solver, Watch,
 };
 use crate::model::{At, Model, ModelInfo};
 use crate::signal::SignalError;
 use crate::trajectory::{Extras, Trajectory};
+use recorder::Recorder;
 use std::fmt::Write as _;
-use std::ops::ControlFlow;
 
 /// How the equations are integrated.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -100,12 +101,20 @@ pub enum SimulationError {
         /// The interval in s.
         interval: f64,
     },
+    /// The interval, the tolerances or the step have no answer.
+    #[error("{what} cannot be {value}")]
+    Argument {
+        /// Name of the argument.
+        what: &'static str,
+        /// Its value.
+        value: f64,
+    },
     /// The motion cannot be continued.
-    #[error("{}", describe(cause, trajectory.info()))]
+    #[error("{}", describe(failure, trajectory.info()))]
     Integration {
         /// The reason, with time and state.
-        cause: IntegrationError,
-        /// The motion up to there.
+        failure: Failure,
+        /// The motion up to there, with what it cost.
         trajectory: Box<Trajectory>,
     },
 }
@@ -136,78 +145,60 @@ impl<'a> Simulation<'a> {
         self.check()?;
         let info = self.model.info();
         let inputs = ModelInputs::new(info, self.inputs)?;
-        let switching_times = inputs.switching_times();
-        let ranges = if self.watch_ranges {
-            declared_ranges(info)
-        } else {
-            Vec::new()
-        };
+        let (switching_times, ranges) = (inputs.switching_times(), self.ranges());
         let mut watch = Watch {
             switching_times: &switching_times,
             ranges: &ranges,
             events: self.events,
+            ..Watch::default()
         };
         let mut recorder = Recorder::new(self.sampling, self.span, &self.initial_state);
         recorder.progress = self.progress;
 
-        let (model, parameters) = (self.model, &self.parameters);
+        let (model, p) = (self.model, self.parameters.as_slice());
         let mut u = vec![0.0; info.input_len()];
         let rates = |t: f64, x: &[f64], rates: &mut [f64]| {
             inputs.fill(t, x, &mut u);
-            model.rates(
-                At {
-                    t,
-                    x,
-                    u: &u,
-                    p: parameters,
-                },
-                rates,
-            );
+            model.rates(At { t, x, u: &u, p }, rates);
         };
-
-        let mut x = self.initial_state.clone();
+        let mut x = self.initial_state;
         let (span, options) = (self.span, &self.options);
-        let outcome = match self.method {
-            Method::Dop853 => Solver::<Dop853>::new().integrate(
-                rates,
-                span,
-                &mut x,
-                options,
-                &mut watch,
-                &mut recorder,
-            ),
-            Method::Dopri5 => Solver::<Dopri5>::new().integrate(
-                rates,
-                span,
-                &mut x,
-                options,
-                &mut watch,
-                &mut recorder,
-            ),
+        let (watch, observer) = (&mut watch, &mut recorder);
+        let result = match self.method {
+            Method::Dop853 => {
+                Solver::<Dop853>::new().integrate(rates, span, &mut x, options, watch, observer)
+            }
+            Method::Dopri5 => {
+                Solver::<Dopri5>::new().integrate(rates, span, &mut x, options, watch, observer)
+            }
             Method::Rk4 { step } => {
-                Rk4::new().integrate(rates, span, &mut x, step, &mut watch, &mut recorder)
+                Rk4::new().integrate(rates, span, &mut x, step, watch, observer)
             }
         };
-
-        let t_end = match &outcome {
-            Ok(Outcome { t, .. }) => *t,
-            Err(cause) => cause.time(),
+        let recorded = |t_end, hits, statistics| {
+            recorder.finish(t_end, &x);
+            let fill = |t: f64, x: &[f64], u: &mut [f64]| inputs.fill(t, x, u);
+            let (times, states) = (recorder.times, recorder.states);
+            let mut motion = Trajectory::evaluate(model, p, times, &states, fill, self.extras);
+            (motion.events, motion.statistics) = (hits, statistics);
+            motion
         };
-        recorder.finish(t_end, &x);
-        let fill = |t: f64, x: &[f64], u: &mut [f64]| inputs.fill(t, x, u);
-        let (times, states) = (recorder.times, recorder.states);
-        let mut trajectory =
-            Trajectory::evaluate(model, parameters, times, &states, fill, self.extras);
-        match outcome {
+        match result {
             Ok(outcome) => {
-                trajectory.ending = Some(outcome.ending);
-                trajectory.events = outcome.hits;
-                trajectory.statistics = outcome.statistics;
-                Ok(trajectory)
+                let mut motion = recorded(outcome.t, outcome.hits, outcome.statistics);
+                motion.ending = Some(outcome.ending);
+                Ok(motion)
             }
-            Err(cause) => {
-                let trajectory = Box::new(trajectory);
-                Err(SimulationError::Integration { cause, trajectory })
+            Err(IntegrationError::Failure(failure)) => {
+                let motion = recorded(failure.t, failure.hits.clone(), failure.statistics);
+                let trajectory = Box::new(motion);
+                Err(SimulationError::Integration {
+                    failure,
+                    trajectory,
+                })
+            }
+            Err(IntegrationError::InvalidArgument { what, value }) => {
+                Err(SimulationError::Argument { what, value })
             }
         }
     }
@@ -233,137 +224,49 @@ impl<'a> Simulation<'a> {
             _ => Ok(()),
         }
     }
-}
 
-/// The states with a finite limit.
-fn declared_ranges(info: &ModelInfo) -> Vec<Range> {
-    let limited = |limits: [f64; 2]| limits.iter().any(|limit| limit.is_finite());
-    let states = info.states.iter().enumerate();
-    states
-        .filter(|(_, state)| limited(state.range))
-        .map(|(component, state)| Range {
-            component,
-            limits: state.range,
-        })
-        .collect()
-}
-
-/// Collects times and states.
-struct Recorder<'a> {
-    sampling: Sampling,
-    span: [f64; 2],
-    /// Number of the next sample on the grid.
-    next: u32,
-    times: Vec<f64>,
-    states: Vec<f64>,
-    x: Vec<f64>,
-    progress: Option<Box<dyn FnMut(f64) + 'a>>,
-}
-
-impl Recorder<'_> {
-    fn new(sampling: Sampling, span: [f64; 2], x: &[f64]) -> Self {
-        Self {
-            sampling,
-            span,
-            next: 1,
-            times: vec![span[0]],
-            states: x.to_vec(),
-            x: x.to_vec(),
-            progress: None,
-        }
-    }
-
-    fn record(&mut self, t: f64, x: &[f64]) {
-        self.times.push(t);
-        self.states.extend_from_slice(x);
-    }
-
-    /// The next time of the grid; the interval's end where rounding alone keeps them apart.
-    fn next_on_grid(&self, interval: f64) -> f64 {
-        let [start, end] = self.span;
-        let t = start + f64::from(self.next) * interval;
-        if (t - end).abs() < 1e-9 * interval {
-            end
-        } else {
-            t
-        }
-    }
-
-    /// Records where the motion ended, which need not lie on the grid.
-    fn finish(&mut self, t: f64, x: &[f64]) {
-        if self.times.last().is_some_and(|last| *last < t) {
-            self.record(t, x);
-        }
-    }
-}
-
-impl Observer for Recorder<'_> {
-    fn wants_interior(&self, _: f64, t: f64) -> bool {
-        match self.sampling {
-            Sampling::Steps => false,
-            Sampling::Every(interval) => self.next_on_grid(interval) < t,
-        }
-    }
-
-    fn step(&mut self, step: &Step<'_>) -> ControlFlow<()> {
-        match self.sampling {
-            Sampling::Steps => self.record(step.t, step.x),
-            Sampling::Every(interval) => {
-                let mut t = self.next_on_grid(interval);
-                while t < step.t {
-                    if let Some(interior) = step.interior {
-                        let mut x = std::mem::take(&mut self.x);
-                        interior.state(t, &mut x);
-                        self.record(t, &x);
-                        self.x = x;
-                    }
-                    self.next += 1;
-                    t = self.next_on_grid(interval);
-                }
-                if t <= step.t {
-                    self.record(step.t, step.x);
-                    self.next += 1;
-                }
-            }
-        }
-        if let Some(progress) = &mut self.progress {
-            progress(step.t);
-        }
-        ControlFlow::Continue(())
+    /// The states with a finite limit, if they are watched.
+    fn ranges(&self) -> Vec<Range> {
+        let limited = |limits: [f64; 2]| limits.iter().any(|limit| limit.is_finite());
+        let states = self.model.info().states.iter().enumerate();
+        states
+            .filter(|(_, state)| self.watch_ranges && limited(state.range))
+            .map(|(component, state)| Range {
+                component,
+                limits: state.range,
+            })
+            .collect()
     }
 }
 
 /// The failure in the names and units of the spec.
-pub fn describe(cause: &IntegrationError, info: &ModelInfo) -> String {
+pub fn describe(failure: &Failure, info: &ModelInfo) -> String {
     let name = |index: usize| {
         info.states
             .get(index)
             .map_or("?", |state| state.name.as_ref())
     };
-    let reason = match cause {
-        IntegrationError::NonFinite { component, .. } => {
-            format!("`{}` or its rate is not finite", name(*component))
+    let reason = match failure.cause {
+        Cause::NonFinite { component } => {
+            format!("`{}` or its rate is not finite", name(component))
         }
-        IntegrationError::StepTooSmall { h, .. } => format!(
+        Cause::StepTooSmall { h } => format!(
             "the step shrank to {h:.1e} s: the motion is singular here, or too stiff for the method"
         ),
-        IntegrationError::TooManySteps { steps, .. } => format!("{steps} steps were not enough"),
-        IntegrationError::OutOfRange {
-            coordinate, range, ..
-        } => {
-            let Some(state) = info.states.get(*coordinate) else {
-                return cause.to_string();
-            };
-            let [lower, upper] = range.map(|limit| state.to_unit(limit));
-            format!(
-                "`{}` leaves its range {lower} … {upper} {}",
-                state.name, state.unit
-            )
-        }
-        IntegrationError::InvalidArgument { .. } => return cause.to_string(),
+        Cause::TooManySteps { steps } => format!("{steps} steps were not enough"),
+        Cause::OutOfRange { component, range } => match info.states.get(component) {
+            Some(state) => {
+                let [lower, upper] = range.map(|limit| state.to_unit(limit));
+                format!(
+                    "`{}` leaves its range {lower} … {upper} {}",
+                    state.name, state.unit
+                )
+            }
+            None => failure.cause.to_string(),
+        },
     };
-    let mut text = format!("at t = {:.9} s {reason}; state:", cause.time());
-    for (i, (state, &value)) in info.states.iter().zip(cause.state()).enumerate() {
+    let mut text = format!("at t = {:.9} s {reason}; state:", failure.t);
+    for (i, (state, &value)) in info.states.iter().zip(&failure.state).enumerate() {
         let separator = if i == 0 { "" } else { "," };
         let value = state.to_unit(value);
         // Writing to a string cannot fail.

@@ -4,8 +4,8 @@
 #![allow(clippy::unwrap_used)]
 
 use appell_runtime::integrate::{
-    Direction, Dop853, Dopri5, Ending, Event, IntegrationError, NoObserver, Options, Range, Rk4,
-    Solver, Step, Watch,
+    Cause, Direction, Dop853, Dopri5, EmbeddedPair, Ending, Event, Failure, IntegrationError,
+    NoObserver, Options, Range, Rk4, Solver, Step, Switches, Watch,
 };
 use std::f64::consts::PI;
 use std::ops::ControlFlow;
@@ -199,37 +199,163 @@ fn steps_end_exactly_at_switching_times() {
     assert!((x[0] - exact).abs() < 1e-14, "{}", x[0]);
 }
 
-#[test]
-fn leaving_a_range_is_a_typed_error_at_the_limit() {
-    let mut x = [1.0, 0.0];
+/// Runs into a limit of state 0.
+fn leave<P: EmbeddedPair>(
+    f: impl FnMut(f64, &[f64], &mut [f64]),
+    x: &mut [f64],
+    limits: [f64; 2],
+    first_step: f64,
+) -> Failure {
     let ranges = [Range {
         component: 0,
-        limits: [0.5, f64::INFINITY],
+        limits,
     }];
     let mut watch = Watch {
         ranges: &ranges,
         ..Watch::default()
     };
-    let error = Solver::<Dop853>::new()
+    let options = Options {
+        first_step: Some(first_step),
+        ..Options::default()
+    };
+    let (watch, observer) = (&mut watch, &mut NoObserver);
+    let result = Solver::<P>::new().integrate(f, [0.0, 9.0], x, &options, watch, observer);
+    let Err(IntegrationError::Failure(failure)) = result else {
+        panic!("{result:?}")
+    };
+    let range = limits;
+    let cause = Cause::OutOfRange {
+        component: 0,
+        range,
+    };
+    assert_eq!(failure.cause, cause);
+    failure
+}
+
+#[test]
+fn leaving_a_range_is_a_typed_error_at_the_limit() {
+    let mut x = [1.0, 0.0];
+    let failure = leave::<Dop853>(free_fall, &mut x, [0.5, f64::INFINITY], 0.3);
+    assert!((failure.t - 1.0).abs() < EVENT_TOLERANCE);
+    assert!((failure.state[0] - 0.5).abs() < EVENT_TOLERANCE);
+    assert_eq!(failure.state, x);
+}
+
+#[test]
+fn leaving_a_range_within_a_step_is_found_although_the_state_comes_back() {
+    // A throw of 1 m/s from −0.1 m: up to 0.4 m at 1 s, below again after 2 s, all in one step.
+    let exact = 1.0 - 0.2f64.sqrt();
+    for failure in [
+        leave::<Dop853>(free_fall, &mut [-0.1, 1.0], [-1e9, 0.3], 2.2),
+        leave::<Dopri5>(free_fall, &mut [-0.1, 1.0], [-1e9, 0.3], 2.2),
+    ] {
+        assert_eq!(failure.statistics.steps, 1);
+        assert!((failure.t - exact).abs() < EVENT_TOLERANCE, "{failure}");
+        assert!((failure.state[0] - 0.3).abs() < EVENT_TOLERANCE);
+    }
+    // It also turns where it does not reach the limit; then there is nothing to find.
+    let failure = leave::<Dop853>(free_fall, &mut [-0.1, 1.0], [-5.0, 0.5], 2.2);
+    assert!(
+        (failure.t - (1.0 + 10.8f64.sqrt())).abs() < EVENT_TOLERANCE,
+        "{failure}"
+    );
+}
+
+#[test]
+fn ranges_that_are_not_reached_cost_no_evaluations() {
+    let evaluations = |limits| {
+        let ranges = [Range {
+            component: 0,
+            limits,
+        }];
+        let mut watch = Watch {
+            ranges: &ranges,
+            ..Watch::default()
+        };
+        let options = Options::default();
+        Solver::<Dop853>::new()
+            .integrate(
+                oscillator,
+                [0.0, 60.0],
+                &mut [1.0, 0.0],
+                &options,
+                &mut watch,
+                &mut NoObserver,
+            )
+            .unwrap()
+            .statistics
+            .evaluations
+    };
+    assert_eq!(evaluations([-1.1, 1.1]), evaluations([-1e9, 1e9]));
+    // Close to the limit the interpolant decides: three evaluations in a step that turns.
+    let close = evaluations([-1.001, 1.001]) - evaluations([-1e9, 1e9]);
+    assert!(close > 0 && close <= 3 * 20, "{close}");
+}
+
+#[test]
+fn a_range_of_no_state_is_refused() {
+    let ranges = [Range {
+        component: 2,
+        limits: [0.0, 1.0],
+    }];
+    let mut watch = Watch {
+        ranges: &ranges,
+        ..Watch::default()
+    };
+    let (watch, observer) = (&mut watch, &mut NoObserver);
+    let error = Rk4::new()
         .integrate(
-            free_fall,
-            [0.0, 9.0],
-            &mut x,
-            &Options::default(),
-            &mut watch,
-            &mut NoObserver,
+            oscillator,
+            [0.0, 1.0],
+            &mut [1.0, 0.0],
+            0.1,
+            watch,
+            observer,
         )
         .unwrap_err();
-    let IntegrationError::OutOfRange {
-        t,
-        coordinate: 0,
-        value,
-        ..
-    } = error
-    else {
-        panic!("{error}")
+    assert_eq!(error.to_string(), "state of a range cannot be 2");
+}
+
+#[test]
+fn steps_end_where_switches_change() {
+    // A square wave of period 1 s and its integral, a triangle: 0.5 at odd halves of a second.
+    let above = |t: f64| t - t.floor() < 0.5;
+    let wave = |t: f64, _: &[f64], rates: &mut [f64]| rates[0] = if above(t) { 1.0 } else { -1.0 };
+    let watch = || Watch {
+        switches: Some(Switches {
+            count: 1,
+            function: Box::new(move |t, values| values[0] = f64::from(u8::from(above(t)))),
+        }),
+        ..Watch::default()
     };
-    assert!((t - 1.0).abs() < EVENT_TOLERANCE);
-    assert!((value - 0.5).abs() < EVENT_TOLERANCE);
-    assert!((x[0] - 0.5).abs() < EVENT_TOLERANCE);
+    let mut ends = Vec::new();
+    let mut observer = |step: &Step<'_>| {
+        ends.push(step.t);
+        ControlFlow::Continue(())
+    };
+    let options = Options {
+        max_step: 1.9,
+        ..Options::default()
+    };
+    let mut x = [0.0];
+    let outcome = Solver::<Dop853>::new()
+        .integrate(
+            wave,
+            [0.0, 9.5],
+            &mut x,
+            &options,
+            &mut watch(),
+            &mut observer,
+        )
+        .unwrap();
+    assert!((x[0] - 0.5).abs() < 1e-14, "{}", x[0]);
+    assert_eq!(outcome.statistics.rejected, 0);
+    for half in 1..=19 {
+        assert!(ends.contains(&(0.5 * f64::from(half))), "{half}: {ends:?}");
+    }
+    let mut x = [0.0];
+    Rk4::new()
+        .integrate(wave, [0.0, 9.5], &mut x, 0.4, &mut watch(), &mut NoObserver)
+        .unwrap();
+    assert!((x[0] - 0.5).abs() < 1e-14, "{}", x[0]);
 }

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use appell_runtime::figure::Figure;
-use appell_runtime::integrate::{IntegrationError, Options};
+use appell_runtime::integrate::Options;
 use appell_runtime::simulate::{Method, Sampling, SimulationError};
 use appell_runtime::trajectory::{CsvOptions, Extras};
 use appell_runtime::{Simulation, Trajectory};
@@ -236,9 +236,7 @@ impl Run<'_> {
             Err(error) => {
                 let reason = error.to_string();
                 match error {
-                    SimulationError::Integration { cause, trajectory }
-                        if !matches!(cause, IntegrationError::InvalidArgument { .. }) =>
-                    {
+                    SimulationError::Integration { trajectory, .. } => {
                         Ok((*trajectory, Some(reason)))
                     }
                     _ => Err(Failure::Usage(reason)),

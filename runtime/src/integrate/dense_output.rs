@@ -1,5 +1,16 @@
 //! The solution between the ends of a step.
 
+/// Start and end of a step.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Ends<'a> {
+    /// Times in s.
+    pub(super) t: [f64; 2],
+    /// States.
+    pub(super) x: [&'a [f64]; 2],
+    /// Their rates.
+    pub(super) rates: [&'a [f64]; 2],
+}
+
 /// A polynomial through both ends of the current step.
 ///
 /// In θ, the part of the step that has passed, and with θ̄ = 1 − θ, it reads c₀ + θ (c₁ + θ̄ (c₂ + θ (c₃ + θ̄ (…
@@ -42,13 +53,20 @@ impl DenseOutput {
     ///
     /// If `i` is not below the number of states.
     pub fn component(&self, t: f64, i: usize) -> f64 {
+        self.component_and_slope(t, i).0
+    }
+
+    /// Component `i` of the state at `t` and its derivative.
+    pub(super) fn component_and_slope(&self, t: f64, i: usize) -> (f64, f64) {
         let factors = self.factors(t);
+        let factor_slopes = [1.0 / self.h, -1.0 / self.h];
         let highest = self.coefficients.len() / self.n - 1;
-        let mut value = self.coefficients[highest * self.n + i];
+        let (mut value, mut slope) = (self.coefficients[highest * self.n + i], 0.0);
         for c in (0..highest).rev() {
+            slope = factor_slopes[c % 2] * value + factors[c % 2] * slope;
             value = self.coefficients[c * self.n + i] + factors[c % 2] * value;
         }
-        value
+        (value, slope)
     }
 
     /// What multiplies everything after coefficients 0, 2, … and after 1, 3, …: θ and θ̄.
@@ -65,17 +83,18 @@ impl DenseOutput {
     }
 
     /// Sets the interval and the four coefficients of the cubic Hermite polynomial, which every
-    /// method starts from: the states and rates at both ends.
-    pub(super) fn set_hermite(&mut self, t_old: f64, h: f64, x: [&[f64]; 2], rates: [&[f64]; 2]) {
+    /// method starts from.
+    pub(super) fn set_hermite(&mut self, ends: &Ends<'_>) {
         let n = self.n;
-        (self.t_old, self.h) = (t_old, h);
+        let Ends { t, x, rates } = ends;
+        (self.t_old, self.h) = (t[0], t[1] - t[0]);
         for i in 0..n {
             let difference = x[1][i] - x[0][i];
-            let bend = h * rates[0][i] - difference;
+            let bend = self.h * rates[0][i] - difference;
             self.coefficients[i] = x[0][i];
             self.coefficients[n + i] = difference;
             self.coefficients[2 * n + i] = bend;
-            self.coefficients[3 * n + i] = difference - h * rates[1][i] - bend;
+            self.coefficients[3 * n + i] = difference - self.h * rates[1][i] - bend;
         }
     }
 

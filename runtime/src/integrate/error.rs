@@ -1,63 +1,12 @@
 //! Why an integration could not be completed.
 
+use super::Statistics;
+use super::events::EventHit;
 use std::fmt::Write as _;
 
-/// The time, the state and the reason of a failed integration. Times in s, states in SI.
+/// Why there is no [`Outcome`](super::Outcome).
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum IntegrationError {
-    /// The rates stopped being numbers, however short the step, or the start is none.
-    #[error(
-        "state {component} or its rate is not finite at t = {t} s, x = {}",
-        list(state)
-    )]
-    NonFinite {
-        /// Last time with finite rates.
-        t: f64,
-        /// State at that time.
-        state: Vec<f64>,
-        /// The first state whose rate, or whose value, is infinite or not a number.
-        component: usize,
-    },
-    /// The tolerances ask for a step that no longer changes the time.
-    #[error(
-        "the step shrank to {h} s at t = {t} s, x = {}: the motion is singular there, or stiffer than this method can follow",
-        list(state)
-    )]
-    StepTooSmall {
-        /// Time of the last accepted step.
-        t: f64,
-        /// The step that would have been needed, in s.
-        h: f64,
-        /// State at that time.
-        state: Vec<f64>,
-    },
-    /// The limit on the number of steps was reached.
-    #[error(
-        "{steps} steps were not enough: stopped at t = {t} s, x = {}",
-        list(state)
-    )]
-    TooManySteps {
-        /// Time of the last accepted step.
-        t: f64,
-        /// Accepted and rejected steps.
-        steps: usize,
-        /// State at that time.
-        state: Vec<f64>,
-    },
-    /// A coordinate left the range in which the equations are declared to hold.
-    #[error("state {coordinate} leaves its range {} … {} at t = {t} s: {value}", range[0], range[1])]
-    OutOfRange {
-        /// When it reached the limit.
-        t: f64,
-        /// Index in the state.
-        coordinate: usize,
-        /// Its value then, in SI.
-        value: f64,
-        /// Lower and upper limit in SI.
-        range: [f64; 2],
-        /// State at that time.
-        state: Vec<f64>,
-    },
     /// A request that has no answer, such as an interval that ends before it begins.
     #[error("{what} cannot be {value}")]
     InvalidArgument {
@@ -66,30 +15,58 @@ pub enum IntegrationError {
         /// Its value.
         value: f64,
     },
+    /// The motion cannot be continued.
+    #[error(transparent)]
+    Failure(#[from] Failure),
 }
 
-impl IntegrationError {
-    /// The time at which the integration ended; NaN for an invalid argument.
-    pub fn time(&self) -> f64 {
-        match self {
-            Self::NonFinite { t, .. }
-            | Self::StepTooSmall { t, .. }
-            | Self::TooManySteps { t, .. }
-            | Self::OutOfRange { t, .. } => *t,
-            Self::InvalidArgument { .. } => f64::NAN,
-        }
-    }
+/// A motion that cannot be continued: the reason, and how far it came.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[error("at t = {t} s, x = {}: {cause}", list(state))]
+pub struct Failure {
+    /// The reason.
+    pub cause: Cause,
+    /// Last time of the motion, in s.
+    pub t: f64,
+    /// State at that time, in SI.
+    pub state: Vec<f64>,
+    /// Events found until then, in the order of time.
+    pub hits: Vec<EventHit>,
+    /// What it cost until then.
+    pub statistics: Statistics,
+}
 
-    /// The state at which the integration ended; empty for an invalid argument.
-    pub fn state(&self) -> &[f64] {
-        match self {
-            Self::NonFinite { state, .. }
-            | Self::StepTooSmall { state, .. }
-            | Self::TooManySteps { state, .. }
-            | Self::OutOfRange { state, .. } => state,
-            Self::InvalidArgument { .. } => &[],
-        }
-    }
+/// The reason of a failure.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+pub enum Cause {
+    /// The rates stop being numbers, however short the step, or the start is none.
+    #[error("state {component} or its rate is not finite")]
+    NonFinite {
+        /// The first state whose rate, or whose value, is infinite or not a number.
+        component: usize,
+    },
+    /// The tolerances ask for a step that no longer changes the time.
+    #[error(
+        "the step shrank to {h} s; the motion is singular here, or stiffer than this method can follow"
+    )]
+    StepTooSmall {
+        /// The step that would have been needed, in s.
+        h: f64,
+    },
+    /// The limit on the number of steps was reached.
+    #[error("{steps} steps were not enough")]
+    TooManySteps {
+        /// Accepted and rejected steps.
+        steps: usize,
+    },
+    /// A state left the range in which the equations are declared to hold.
+    #[error("state {component} leaves its range {} … {}", range[0], range[1])]
+    OutOfRange {
+        /// Index in the state.
+        component: usize,
+        /// Lower and upper limit in SI.
+        range: [f64; 2],
+    },
 }
 
 fn list(values: &[f64]) -> String {

@@ -1,6 +1,6 @@
 //! Where a function of the motion crosses zero.
 
-use super::dense_output::DenseOutput;
+use super::dense_output::{DenseOutput, Ends};
 
 /// Which crossings of zero count.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -109,16 +109,16 @@ impl Crossings {
     pub(super) fn in_step(
         &mut self,
         events: &mut [Event<'_>],
-        (t_old, t_new): (f64, f64),
-        x_new: &[f64],
+        ends: &Ends<'_>,
         dense: &DenseOutput,
     ) -> &[(f64, usize)] {
+        let [t_old, t_new] = ends.t;
         self.found.clear();
         let time = |part: usize| t_old + (t_new - t_old) * (part as f64 / PARTS as f64);
         for part in 1..=PARTS {
             let t = if part == PARTS { t_new } else { time(part) };
             if part == PARTS {
-                self.x.copy_from_slice(x_new);
+                self.x.copy_from_slice(ends.x[1]);
             } else {
                 dense.state(t, &mut self.x);
             }

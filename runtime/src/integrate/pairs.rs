@@ -30,16 +30,9 @@ pub trait EmbeddedPair: sealed::Sealed {
     /// The estimated error over the tolerances, at most 1 for a step to be accepted.
     #[doc(hidden)]
     fn error(stages: &Stages, h: f64, scale: &[f64]) -> f64;
-    /// Completes the interpolant, which already holds the cubic Hermite polynomial, and returns
-    /// the number of evaluations spent.
+    /// Completes the interpolant, which already holds the cubic Hermite polynomial.
     #[doc(hidden)]
-    fn interior<F>(
-        f: &mut F,
-        t: f64,
-        h: f64,
-        stages: &mut Stages,
-        dense: &mut DenseOutput,
-    ) -> usize
+    fn interior<F>(f: &mut F, t: f64, h: f64, stages: &mut Stages, dense: &mut DenseOutput)
     where
         F: FnMut(f64, &[f64], &mut [f64]);
 }
@@ -124,12 +117,11 @@ impl EmbeddedPair for Dopri5 {
         h * stages.mean_square(DOPRI5_ERROR, scale).sqrt()
     }
 
-    fn interior<F>(_: &mut F, _: f64, h: f64, stages: &mut Stages, dense: &mut DenseOutput) -> usize
+    fn interior<F>(_: &mut F, _: f64, h: f64, stages: &mut Stages, dense: &mut DenseOutput)
     where
         F: FnMut(f64, &[f64], &mut [f64]),
     {
         stages.combination(h, DOPRI5_INTERIOR, dense.coefficient(4));
-        0
     }
 }
 
@@ -167,7 +159,7 @@ impl EmbeddedPair for Dop853 {
         }
     }
 
-    fn interior<F>(f: &mut F, t: f64, h: f64, stages: &mut Stages, dense: &mut DenseOutput) -> usize
+    fn interior<F>(f: &mut F, t: f64, h: f64, stages: &mut Stages, dense: &mut DenseOutput)
     where
         F: FnMut(f64, &[f64], &mut [f64]),
     {
@@ -178,6 +170,5 @@ impl EmbeddedPair for Dop853 {
         for (c, &row) in dop853::INTERIOR.iter().enumerate() {
             stages.combination(h, row, dense.coefficient(4 + c));
         }
-        dop853::INTERIOR_STAGES.len()
     }
 }

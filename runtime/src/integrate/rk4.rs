@@ -1,10 +1,10 @@
 //! The classical Runge–Kutta method with a fixed step.
 
 use super::dense_output::DenseOutput;
-use super::error::IntegrationError;
+use super::error::{Cause, IntegrationError};
 use super::tableau::{Stages, Tableau};
-use super::watch::{Ending, Observer, Step, Watch, Watcher};
-use super::{Outcome, Segments, Statistics, check_span};
+use super::watch::{End, Observer, Watch, Watcher};
+use super::{Outcome, Statistics, check_span};
 
 /// Hairer, Nørsett and Wanner, table II.1.2.
 const TABLEAU: Tableau = Tableau {
@@ -50,6 +50,7 @@ impl Rk4 {
         O: Observer,
     {
         check_span(span)?;
+        watch.check(x.len())?;
         if step.is_nan() || step <= 0.0 {
             return Err(IntegrationError::InvalidArgument {
                 what: "step",
@@ -58,104 +59,73 @@ impl Rk4 {
         }
         self.stages.prepare(x, TABLEAU.new_rates() + 1);
         self.dense.prepare(x.len(), 4);
-        let segments = Segments::new(span, watch.switching_times);
-        let mut watcher = Watcher::start(watch, observer, span[0], x)?;
+        let mut watcher = Watcher::new(watch, observer, span);
         let mut statistics = Statistics::default();
-        match self.run(
-            &mut f,
-            span[0],
-            segments,
-            step,
-            &mut watcher,
-            &mut statistics,
-        ) {
-            Ok((ending, t)) => {
-                let end = if ending == Ending::Finished {
-                    self.stages.x()
-                } else {
-                    watcher.x_end()
-                };
-                x.copy_from_slice(end);
-                Ok(Outcome {
-                    ending,
-                    t,
-                    hits: watcher.hits,
-                    statistics,
-                })
-            }
-            Err(error) => {
-                x.copy_from_slice(error.state());
-                Err(error)
-            }
-        }
+        let mut counted = |t: f64, x: &[f64], rates: &mut [f64]| {
+            statistics.evaluations += 1;
+            f(t, x, rates);
+        };
+        let end = match watcher.start(span[0], x) {
+            Ok(()) => self.run(
+                &mut counted,
+                span[0],
+                x,
+                step,
+                &mut watcher,
+                &mut statistics.steps,
+            ),
+            Err(cause) => End::failed(span[0], cause),
+        };
+        watcher.conclude(end, x, statistics)
     }
 
     fn run<F, O>(
         &mut self,
         f: &mut F,
         t_start: f64,
-        segments: Segments,
+        x: &mut [f64],
         step: f64,
         watcher: &mut Watcher<'_, '_, O>,
-        statistics: &mut Statistics,
-    ) -> Result<(Ending, f64), IntegrationError>
+        steps: &mut usize,
+    ) -> End
     where
         F: FnMut(f64, &[f64], &mut [f64]),
         O: Observer,
     {
         let new_rates = TABLEAU.new_rates();
-        let mut t = t_start;
-        for segment in segments {
-            let mut f = |t: f64, x: &[f64], rates: &mut [f64]| f(t.min(segment.last), x, rates);
-            let start = t;
-            // A step that fits all but rounding fits.
-            let count = ((segment.end - start) / step * (1.0 - 1e-12))
-                .ceil()
-                .max(1.0);
-            let h = (segment.end - start) / count;
-            self.stages.evaluate_at_start(&mut f, 0, t);
-            statistics.evaluations += 1;
-            let mut done = 0.0;
-            while done < count {
-                done += 1.0;
-                let t_new = if done < count {
-                    start + done * h
-                } else {
-                    segment.end
-                };
-                self.stages.step(&mut f, &TABLEAU, t, h);
-                self.stages.evaluate_at_end(&mut f, new_rates, t_new);
-                statistics.evaluations += TABLEAU.new_rates();
-                if let Some(component) = self.stages.first_not_finite(new_rates) {
-                    let state = self.stages.x().to_vec();
-                    return Err(IntegrationError::NonFinite {
-                        t,
-                        state,
-                        component,
-                    });
-                }
-                statistics.steps += 1;
-                let (x_old, x) = (self.stages.x(), self.stages.x_new());
-                let rates = [self.stages.rates(0), self.stages.rates(new_rates)];
-                let wanted = watcher.wants_interior(t, t_new, x);
-                if wanted {
-                    self.dense.set_hermite(t, t_new - t, [x_old, x], rates);
-                }
-                let interior = wanted.then_some(&self.dense);
-                let end = watcher.accept(&Step {
-                    t_old: t,
-                    t: t_new,
-                    x_old,
-                    x,
-                    interior,
-                })?;
-                if let Some(end) = end {
-                    return Ok(end);
-                }
-                self.stages.advance(new_rates);
-                t = t_new;
+        let (mut t, mut h, mut restart) = (t_start, step, true);
+        while t < watcher.stops.end() {
+            if restart {
+                self.stages.evaluate_at_start(f, 0, t);
+                h = equal_part(watcher.stops.known_after(t).t - t, step);
             }
+            let stride = watcher.stops.stride(t, h);
+            let mut f = |t: f64, x: &[f64], rates: &mut [f64]| f(t.min(stride.last), x, rates);
+            self.stages.step(&mut f, &TABLEAU, t, stride.h);
+            self.stages.evaluate_at_end(&mut f, new_rates, stride.t_new);
+            let not_finite = self.stages.rate_not_finite(new_rates);
+            if let Some(component) = not_finite.or_else(|| self.stages.state_not_finite()) {
+                return End::failed(t, Cause::NonFinite { component });
+            }
+            *steps += 1;
+            let ends = self.stages.ends([t, stride.t_new], new_rates);
+            let wanted = watcher.wants_interior(&ends);
+            if wanted {
+                self.dense.set_hermite(&ends);
+            }
+            if let Some(end) = watcher.accept(&ends, wanted.then_some(&self.dense), x) {
+                return end;
+            }
+            self.stages.advance(new_rates);
+            (t, restart) = (stride.t_new, stride.lands);
         }
-        Ok((Ending::Finished, t))
+        End::finished(t)
     }
+}
+
+/// The longest step that is not longer than `step` and divides `length`.
+fn equal_part(length: f64, step: f64) -> f64 {
+    // A step that fits all but rounding fits.
+    let count = (length / step * (1.0 - 1e-12)).ceil();
+    length / count.max(1.0)
 }

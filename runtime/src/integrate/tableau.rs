@@ -1,5 +1,7 @@
 //! Explicit Runge–Kutta steps as data, and the arrays they work on.
 
+use super::dense_output::Ends;
+
 /// Pairs of a stage and its weight; stages that are not listed have the weight zero.
 pub(super) type Row = &'static [(usize, f64)];
 
@@ -167,11 +169,28 @@ impl Stages {
         sums.iter().sum::<f64>() / self.n.max(1) as f64
     }
 
-    /// Index of the first component of the new state or of the stage's rates that is not finite.
-    pub(super) fn first_not_finite(&self, stage: usize) -> Option<usize> {
-        let not_finite = |values: &[f64]| values.iter().position(|value| !value.is_finite());
-        not_finite(self.rates(stage)).or_else(|| not_finite(self.x_new()))
+    /// Both ends of a step whose new rates are known.
+    pub(super) fn ends(&self, t: [f64; 2], new_rates: usize) -> Ends<'_> {
+        Ends {
+            t,
+            x: [self.x(), self.x_new()],
+            rates: [self.rates(0), self.rates(new_rates)],
+        }
     }
+
+    /// The first state whose rate in a stage is infinite or not a number.
+    pub(super) fn rate_not_finite(&self, stage: usize) -> Option<usize> {
+        position_not_finite(self.rates(stage))
+    }
+
+    /// The first state that is infinite or not a number at the end of the step.
+    pub(super) fn state_not_finite(&self) -> Option<usize> {
+        position_not_finite(self.x_new())
+    }
+}
+
+fn position_not_finite(values: &[f64]) -> Option<usize> {
+    values.iter().position(|value| !value.is_finite())
 }
 
 /// `out` = x + h Σ w k, whole vectors.

@@ -1,18 +1,12 @@
 //! What happens after each accepted step: ranges, events, observers.
 
-use super::dense_output::DenseOutput;
-use super::error::IntegrationError;
-use super::events::{Crossings, Event, EventHit, brent};
+use super::dense_output::{DenseOutput, Ends};
+use super::error::{Cause, Failure, IntegrationError};
+use super::events::{Crossings, Event, EventHit};
+use super::range::Range;
+use super::stops::{Stops, Switches};
+use super::{Outcome, Statistics};
 use std::ops::ControlFlow;
-
-/// The interval of a state outside which the equations do not hold.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Range {
-    /// Index in the state.
-    pub component: usize,
-    /// Lower and upper limit in SI; may be infinite.
-    pub limits: [f64; 2],
-}
 
 /// What an integration has to look out for, besides the tolerances.
 #[derive(Debug, Default)]
@@ -20,6 +14,8 @@ pub struct Watch<'a> {
     /// Times at which the rates jump or lose smoothness, in any order. A step ends exactly at
     /// each; the rates up to there are evaluated before it, those after at or after it.
     pub switching_times: &'a [f64],
+    /// Functions of time at whose jumps steps end as at switching times.
+    pub switches: Option<Switches<'a>>,
     /// Leaving one of these is an error.
     pub ranges: &'a [Range],
     /// Functions whose zeros are sought.
@@ -39,6 +35,20 @@ pub struct Step<'a> {
     pub x: &'a [f64],
     /// The solution between, if [`Observer::wants_interior`] asked for it.
     pub interior: Option<&'a DenseOutput>,
+}
+
+impl Watch<'_> {
+    /// Refuses ranges of states that do not exist.
+    pub(super) fn check(&self, states: usize) -> Result<(), IntegrationError> {
+        let mut components = self.ranges.iter().map(|range| range.component);
+        match components.find(|&component| component >= states) {
+            None => Ok(()),
+            Some(component) => Err(IntegrationError::InvalidArgument {
+                what: "state of a range",
+                value: component as f64,
+            }),
+        }
+    }
 }
 
 /// Someone who sees every accepted step. Closures are observers that want the interior.
@@ -84,137 +94,137 @@ pub enum Ending {
     Stopped,
 }
 
-/// The watch with its memory during one integration.
+/// Where an integration ended, and why.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct End {
+    pub(super) t: f64,
+    pub(super) why: Result<Ending, Cause>,
+}
+
+impl End {
+    pub(super) fn finished(t: f64) -> Self {
+        let why = Ok(Ending::Finished);
+        Self { t, why }
+    }
+
+    pub(super) fn failed(t: f64, cause: Cause) -> Self {
+        let why = Err(cause);
+        Self { t, why }
+    }
+}
+
+/// The watch and the observer during one integration.
 pub(super) struct Watcher<'w, 'a, O> {
-    watch: &'w mut Watch<'a>,
+    pub(super) stops: Stops<'w, 'a>,
+    ranges: &'a [Range],
+    events: &'w mut [Event<'a>],
     observer: &'w mut O,
     crossings: Crossings,
-    x_end: Vec<f64>,
-    pub(super) hits: Vec<EventHit>,
+    hits: Vec<EventHit>,
 }
 
 impl<'w, 'a, O: Observer> Watcher<'w, 'a, O> {
-    /// Checks the state, the ranges and takes the signs of the events at the start.
-    pub(super) fn start(
-        watch: &'w mut Watch<'a>,
-        observer: &'w mut O,
-        t: f64,
-        x: &[f64],
-    ) -> Result<Self, IntegrationError> {
-        if let Some(component) = x.iter().position(|value| !value.is_finite()) {
-            return Err(IntegrationError::NonFinite {
-                t,
-                state: x.to_vec(),
-                component,
-            });
-        }
-        let mut crossings = Crossings::default();
-        crossings.start(&mut watch.events, t, x);
-        let watcher = Self {
-            watch,
+    pub(super) fn new(watch: &'w mut Watch<'a>, observer: &'w mut O, span: [f64; 2]) -> Self {
+        Self {
+            stops: Stops::new(span, watch.switching_times, watch.switches.as_mut()),
+            ranges: watch.ranges,
+            events: &mut watch.events,
             observer,
-            crossings,
-            x_end: x.to_vec(),
+            crossings: Crossings::default(),
             hits: Vec::new(),
-        };
-        match watcher.left_range(x) {
-            None => Ok(watcher),
-            Some((range, _)) => Err(out_of_range(range, t, x)),
         }
+    }
+
+    /// Takes the signs of the events at the start; tells if there is no start.
+    pub(super) fn start(&mut self, t: f64, x: &[f64]) -> Result<(), Cause> {
+        if let Some(component) = x.iter().position(|value| !value.is_finite()) {
+            return Err(Cause::NonFinite { component });
+        }
+        let left = |range: &&Range| range.passed(x[range.component]).is_some();
+        if let Some(range) = self.ranges.iter().find(left) {
+            return Err(range.cause());
+        }
+        self.crossings.start(self.events, t, x);
+        Ok(())
     }
 
     /// Whether the next call of `accept` needs the interpolant.
-    pub(super) fn wants_interior(&self, t_old: f64, t: f64, x: &[f64]) -> bool {
-        !self.watch.events.is_empty()
-            || self.left_range(x).is_some()
-            || self.observer.wants_interior(t_old, t)
+    pub(super) fn wants_interior(&self, ends: &Ends<'_>) -> bool {
+        !self.events.is_empty()
+            || self.ranges.iter().any(|range| range.may_be_left(ends))
+            || self.observer.wants_interior(ends.t[0], ends.t[1])
     }
 
-    /// Passes a step on to its first end: an event, a limit, or its own. Returns why to end and
-    /// where; the state there is [`Watcher::x_end`].
+    /// Shows a step up to its first end: an event, a limit, or its own. `x` becomes the state
+    /// there. Returns the end of the integration if this is it.
     pub(super) fn accept(
         &mut self,
-        step: &Step<'_>,
-    ) -> Result<Option<(Ending, f64)>, IntegrationError> {
-        let Some(dense) = step.interior else {
-            return Ok(self.observe(step).map(|ending| (ending, step.t)));
-        };
-        let (mut t, mut ending, mut left) = (step.t, None, None);
-        if let Some((range, limit)) = self.left_range(step.x) {
-            let distance = |s: f64| dense.component(s, range.component) - limit;
-            t = brent((step.t_old, step.t), distance);
-            left = Some(range);
-        }
-        let crossings =
-            self.crossings
-                .in_step(&mut self.watch.events, (step.t_old, step.t), step.x, dense);
-        for &(t_event, event) in crossings.iter().take_while(|crossing| crossing.0 <= t) {
-            let mut state = vec![0.0; step.x.len()];
-            dense.state(t_event, &mut state);
-            self.hits.push(EventHit {
-                event,
-                t: t_event,
-                state,
-            });
-            if self.watch.events[event].terminal {
-                (t, ending, left) = (t_event, Some(Ending::Event(event)), None);
-                break;
-            }
-        }
-        if ending.is_none() && left.is_none() {
-            return Ok(self.observe(step).map(|ending| (ending, step.t)));
-        }
-        dense.state(t, &mut self.x_end);
-        let x_end = std::mem::take(&mut self.x_end);
-        let stopped = self.observe(&Step {
-            t,
-            x: &x_end,
-            ..*step
+        ends: &Ends<'_>,
+        interior: Option<&DenseOutput>,
+        x: &mut [f64],
+    ) -> Option<End> {
+        x.copy_from_slice(ends.x[1]);
+        let end = interior.and_then(|dense| {
+            let end = self.end_within(ends, dense)?;
+            dense.state(end.t, x);
+            Some(end)
         });
-        self.x_end = x_end;
-        match left {
-            Some(range) => Err(out_of_range(range, t, &self.x_end)),
-            None => Ok(ending.or(stopped).map(|ending| (ending, t))),
-        }
+        let t = end.map_or(ends.t[1], |end| end.t);
+        let flow = self.observer.step(&Step {
+            t_old: ends.t[0],
+            t,
+            x_old: ends.x[0],
+            x,
+            interior,
+        });
+        let why = Ok(Ending::Stopped);
+        end.or(flow.is_break().then_some(End { t, why }))
     }
 
-    /// The state where the last step ended, if `accept` ended it early.
-    pub(super) fn x_end(&self) -> &[f64] {
-        &self.x_end
-    }
-
-    fn observe(&mut self, step: &Step<'_>) -> Option<Ending> {
-        match self.observer.step(step) {
-            ControlFlow::Continue(()) => None,
-            ControlFlow::Break(()) => {
-                self.x_end.copy_from_slice(step.x);
-                Some(Ending::Stopped)
+    /// The first terminal event or passed limit. Keeps the events before it.
+    fn end_within(&mut self, ends: &Ends<'_>, dense: &DenseOutput) -> Option<End> {
+        let left = self
+            .ranges
+            .iter()
+            .filter_map(|range| Some((range.left_at(ends, dense)?, range.cause())))
+            .min_by(|a, b| a.0.total_cmp(&b.0));
+        let (t_left, _) = left.unzip();
+        let t_last = t_left.unwrap_or(ends.t[1]);
+        let crossings = self.crossings.in_step(self.events, ends, dense);
+        for &(t, event) in crossings.iter().take_while(|crossing| crossing.0 <= t_last) {
+            let mut state = vec![0.0; ends.x[1].len()];
+            dense.state(t, &mut state);
+            self.hits.push(EventHit { event, t, state });
+            if self.events[event].terminal {
+                let why = Ok(Ending::Event(event));
+                return Some(End { t, why });
             }
         }
+        left.map(|(t, cause)| End::failed(t, cause))
     }
 
-    /// The first range that `x` lies outside of, and the limit it passed.
-    fn left_range(&self, x: &[f64]) -> Option<(Range, f64)> {
-        self.watch.ranges.iter().find_map(|&range| {
-            let [lower, upper] = range.limits;
-            let value = x.get(range.component)?;
-            if *value < lower {
-                Some((range, lower))
-            } else if *value > upper {
-                Some((range, upper))
-            } else {
-                None
-            }
-        })
-    }
-}
-
-fn out_of_range(range: Range, t: f64, x: &[f64]) -> IntegrationError {
-    IntegrationError::OutOfRange {
-        t,
-        coordinate: range.component,
-        value: x[range.component],
-        range: range.limits,
-        state: x.to_vec(),
+    /// The result of the integration, which ended in state `x`.
+    pub(super) fn conclude(
+        self,
+        end: End,
+        x: &[f64],
+        statistics: Statistics,
+    ) -> Result<Outcome, IntegrationError> {
+        let (t, hits) = (end.t, self.hits);
+        match end.why {
+            Ok(ending) => Ok(Outcome {
+                ending,
+                t,
+                hits,
+                statistics,
+            }),
+            Err(cause) => Err(IntegrationError::Failure(Failure {
+                cause,
+                t,
+                state: x.to_vec(),
+                hits,
+                statistics,
+            })),
+        }
     }
 }

@@ -230,6 +230,7 @@ fn a_falling_wheel_fails_with_time_state_and_reason_and_keeps_the_motion() {
             .is_some_and(|reason| reason.contains("theta"))
     );
     assert_close(number(&out, "final_state/theta"), 1.5, 1e-6, "theta");
+    assert!(number(&out, "statistics/steps") > 1.0);
     folder.done(&[
         "simulate",
         "rolling_wheel",

@@ -76,6 +76,11 @@ impl FactorizedBlock {
         Ok(block)
     }
 
+    /// Whether L has an entry in a row and a column, both counted in the order of elimination.
+    pub fn couples(&self, row: usize, column: usize) -> bool {
+        self.lower[row][column] != Graph::ZERO
+    }
+
     /// Unknowns of `M x = right` for the speeds of the block.
     pub fn solve(&self, algebra: &mut Algebra, right: &[Expr], x: &mut [Expr]) {
         let graph = &mut algebra.graph;

@@ -1,65 +1,57 @@
 //! Explicit formulas: names put in, and sums ordered by the velocities they multiply.
 
-use rustc_hash::FxHashMap;
+use rustc_hash::FxHashSet;
 
-use crate::symbolic::{Expr, Function, Graph, Node, Rational};
+use crate::symbolic::print::visible;
+use crate::symbolic::{Expr, Function, Graph, Node, Rational, Substitution};
 
-/// `expr` with the definitions of its names put in, except for the names that `keeps` accepts.
-/// `None` where a number is divided by zero on the way.
-pub(super) fn dissolve(
-    graph: &mut Graph,
-    expr: Expr,
-    keeps: &dyn Fn(&str) -> bool,
-) -> Option<Expr> {
-    let mut known: FxHashMap<Expr, Expr> = FxHashMap::default();
-    for part in graph.in_order(&[expr]) {
-        let new = |e: &Expr| known[e];
-        let value = match graph.node(part).clone() {
-            Node::Number(_) | Node::Symbol(_) | Node::Solution { .. } => part,
-            Node::Named(id) => {
-                let definition = graph.definition(id);
-                if keeps(&definition.name) {
-                    part
-                } else {
-                    new(&definition.value)
+/// Puts definitions in the places of names; remembers what it has put in.
+#[derive(Debug, Default)]
+pub(super) struct Dissolved {
+    definitions: Substitution,
+    known: FxHashSet<Expr>,
+}
+
+impl Dissolved {
+    /// `expr` with the definitions of its names put in, except for the names that `keeps` accepts.
+    /// `None` where a number is divided by zero on the way.
+    pub(super) fn of(
+        &mut self,
+        graph: &mut Graph,
+        expr: Expr,
+        keeps: impl Fn(&str) -> bool,
+    ) -> Option<Expr> {
+        let mut stack: Vec<(Expr, bool)> = opaque_parts(graph, expr);
+        while let Some((part, parts_done)) = stack.pop() {
+            if self.known.contains(&part) {
+                continue;
+            }
+            let value = match *graph.node(part) {
+                Node::Named(id) => Some(graph.definition(id)).filter(|d| !keeps(&d.name)),
+                _ => None,
+            }
+            .map(|definition| definition.value);
+            let value = match value {
+                Some(value) if !parts_done => {
+                    stack.push((part, true));
+                    stack.extend(opaque_parts(graph, value));
+                    continue;
                 }
-            }
-            Node::Sum(terms) => {
-                let parts: Vec<_> = terms
-                    .iter()
-                    .map(|t| (t.coefficient.clone(), new(&t.expr)))
-                    .collect();
-                graph.linear_combination(&parts)
-            }
-            Node::Product(factors) => {
-                if factors
-                    .iter()
-                    .any(|f| f.exponent < 0 && new(&f.base) == Graph::ZERO)
-                {
-                    return None;
-                }
-                let powers: Vec<_> = factors
-                    .iter()
-                    .map(|f| graph.pow(new(&f.base), f.exponent))
-                    .collect();
-                graph.product(&powers)
-            }
-            Node::Function(function, a) => graph.function(function, new(&a)),
-            Node::Atan2(y, x) => graph.atan2(new(&y), new(&x)),
-            Node::Power(base, exponent) => graph.power(new(&base), new(&exponent)),
-            Node::Choice {
-                relation,
-                compared,
-                branches,
-            } => graph.choice(
-                relation,
-                compared.map(|e| new(&e)),
-                branches.map(|e| new(&e)),
-            ),
-        };
-        known.insert(part, value);
+                Some(value) => self.definitions.apply(graph, value).unwrap_or(part),
+                None => part,
+            };
+            self.definitions.replace(graph, part, value);
+            self.known.insert(part);
+        }
+        self.definitions.apply(graph, expr)
     }
-    known.get(&expr).copied()
+}
+
+/// Names and unknowns of linear systems in an expression, with nothing done about them.
+fn opaque_parts(graph: &Graph, expr: Expr) -> Vec<(Expr, bool)> {
+    let opaque = |&part: &Expr| matches!(graph.node(part), Node::Named(_) | Node::Solution { .. });
+    let parts = visible(graph, expr).into_iter();
+    parts.filter(opaque).map(|part| (part, false)).collect()
 }
 
 /// The power of each key in a product; keys are numbered by their place in the list.

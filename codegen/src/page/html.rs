@@ -66,10 +66,10 @@ fn table(out: &mut String, table: &Table) {
     }
     for row in &table.rows {
         out.push_str("<tr>");
-        for cell in row {
+        for cell in &row.cells {
             let _ = write!(out, "<td>{}</td>", spans(cell));
         }
-        out.push_str("</tr>\n");
+        let _ = writeln!(out, "<td class=\"line\">{}</td></tr>", row.line);
     }
     out.push_str("</table>\n");
 }

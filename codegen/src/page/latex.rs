@@ -80,7 +80,12 @@ fn spans(spans: &[Span]) -> String {
 }
 
 fn table(out: &mut String, table: &Table) {
-    let columns = table.rows.iter().map(Vec::len).max().unwrap_or(1);
+    let columns = table
+        .rows
+        .iter()
+        .map(|row| row.cells.len())
+        .max()
+        .unwrap_or(1);
     if !table.title.is_empty() {
         let _ = writeln!(out, "\\quantities{{{}}}", escaped(&table.title));
     }
@@ -90,7 +95,7 @@ fn table(out: &mut String, table: &Table) {
         table
             .rows
             .iter()
-            .filter_map(|row| row.get(k))
+            .filter_map(|row| row.cells.get(k))
             .map(|cell| width(cell))
             .max()
     };
@@ -98,14 +103,19 @@ fn table(out: &mut String, table: &Table) {
         .map(|k| widest(k).unwrap_or(0) + 3)
         .sum();
     let share =
-        f64::from(u32::try_from(92_usize.saturating_sub(used).max(24)).unwrap_or(24)) / 100.0;
+        f64::from(u32::try_from(87_usize.saturating_sub(used).max(24)).unwrap_or(24)) / 100.0;
     let _ = writeln!(
         out,
-        "\\begin{{tabular}}{{{firsts}>{{\\raggedright\\arraybackslash}}p{{{share:.2}\\textwidth}}}}"
+        "\\begin{{tabular}}{{{firsts}>{{\\raggedright\\arraybackslash}}p{{{share:.2}\\textwidth}}r}}"
     );
     for row in &table.rows {
-        let cells: Vec<String> = row.iter().map(|cell| spans(cell)).collect();
-        let _ = writeln!(out, "{} \\\\", cells.join(" & "));
+        let cells: Vec<String> = row.cells.iter().map(|cell| spans(cell)).collect();
+        let _ = writeln!(
+            out,
+            "{} & \\footnotesize {} \\\\",
+            cells.join(" & "),
+            row.line
+        );
     }
     out.push_str("\\end{tabular}\\par");
 }

@@ -90,8 +90,17 @@ pub enum Span {
 pub struct Table {
     /// What is listed; empty where the text before says it.
     pub title: String,
-    /// Rows of cells.
-    pub rows: Vec<Vec<Vec<Span>>>,
+    /// Rows, in order.
+    pub rows: Vec<Row>,
+}
+
+/// A row of a table.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Row {
+    /// Its cells.
+    pub cells: Vec<Vec<Span>>,
+    /// The line of the spec that says it, from 1.
+    pub line: usize,
 }
 
 /// A chain of frames.

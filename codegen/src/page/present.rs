@@ -3,7 +3,7 @@
 
 use super::Math;
 use super::angles::with_compound_angles;
-use super::explicit::{Monomial, collect, collect_turns, dissolve};
+use super::explicit::{Monomial, collect, collect_turns};
 use super::writer::Writer;
 use crate::symbolic::print::assemble;
 use crate::symbolic::{Expr, Factor, Graph, Node, Rational};
@@ -75,22 +75,15 @@ impl Writer<'_> {
 
     /// The names put in, where the sum does not get too long.
     fn readable(&mut self, expr: Expr) -> Expr {
-        let lexicon = self.setter.vocabulary().clone();
-        let graph = self.graph();
-        let Some(explicit) = dissolve(graph, expr, &|name| lexicon.keeps(name)) else {
+        let graph = &mut self.derivation.algebra.graph;
+        let lexicon = self.setter.vocabulary();
+        let Some(explicit) = self.dissolved.of(graph, expr, |name| lexicon.keeps(name)) else {
             return expr;
         };
         match graph.expand(explicit, MOST_EXPLICIT_TERMS) {
             Some(_) => explicit,
             None => expr,
         }
-    }
-
-    /// Without names and products of sums; `None` where that is long.
-    pub(super) fn written_out(&mut self, expr: Expr) -> Option<Expr> {
-        let graph = self.graph();
-        let explicit = dissolve(graph, expr, &|_| false)?;
-        graph.expand(explicit, MOST_TERMS)
     }
 
     /// `coefficient · others · (sum) / below`, with the sum collected by the keys.

@@ -10,6 +10,8 @@ use crate::symbolic::print::{clean, columns};
 const WIDTH: usize = 100;
 /// Indent of what is displayed.
 const INDENT: usize = 4;
+/// Columns of the right margin, where the lines of the spec stand.
+const MARGIN: usize = 6;
 
 /// The page as Unicode text.
 pub fn text(page: &Page) -> String {
@@ -87,7 +89,7 @@ fn table(out: &mut String, table: &Table) {
     let rows: Vec<Vec<String>> = table
         .rows
         .iter()
-        .map(|row| row.iter().map(|cell| spans(cell)).collect())
+        .map(|row| row.cells.iter().map(|cell| spans(cell)).collect())
         .collect();
     let count = rows.iter().map(Vec::len).max().unwrap_or(0);
     let widths: Vec<usize> = (0..count)
@@ -102,8 +104,8 @@ fn table(out: &mut String, table: &Table) {
     if !table.title.is_empty() {
         line(out, &format!("  {}", clean(&table.title)));
     }
-    for row in rows {
-        let Some((last, firsts)) = row.split_last() else {
+    for (row, cells) in table.rows.iter().zip(rows) {
+        let Some((last, firsts)) = cells.split_last() else {
             continue;
         };
         let mut head = " ".repeat(INDENT);
@@ -112,16 +114,15 @@ fn table(out: &mut String, table: &Table) {
             head.push_str(&" ".repeat(width + GAP - columns(cell)));
         }
         let indent = columns(&head);
-        for (k, part) in wrapped(last, WIDTH.saturating_sub(indent).max(WIDTH / 4))
-            .iter()
-            .enumerate()
-        {
-            let start = if k == 0 {
-                head.clone()
-            } else {
-                " ".repeat(indent)
-            };
-            line(out, &format!("{start}{part}"));
+        let free = WIDTH.saturating_sub(indent + MARGIN);
+        for (k, part) in wrapped(last, free.max(WIDTH / 4)).iter().enumerate() {
+            if k > 0 {
+                line(out, &format!("{}{part}", " ".repeat(indent)));
+                continue;
+            }
+            let text = format!("{head}{part}");
+            let right = WIDTH.saturating_sub(columns(&text));
+            line(out, &format!("{text}{:>right$}", row.line));
         }
     }
 }

@@ -6,6 +6,7 @@ use rustc_hash::FxHashSet;
 use super::Letter;
 use super::Math;
 use super::display::Equation;
+use super::explicit::Dissolved;
 use super::lexicon::{AXES, Lexicon};
 use super::{Block, Span};
 use crate::mechanics::Derivation;
@@ -23,6 +24,7 @@ pub(super) struct Writer<'a> {
     /// Its derivation.
     pub(super) derivation: &'a mut Derivation,
     pub(super) setter: Setter<Lexicon>,
+    pub(super) dissolved: Dissolved,
     /// Names whose definitions the page has shown.
     defined: FxHashSet<Letter>,
     /// Names that formulas have used since the last definitions.
@@ -44,6 +46,7 @@ impl<'a> Writer<'a> {
             mechanism,
             derivation,
             setter,
+            dissolved: Dissolved::default(),
             defined: FxHashSet::default(),
             wanted: Vec::new(),
             accelerations,
@@ -94,15 +97,6 @@ impl<'a> Writer<'a> {
         let math = self.explicit(expr);
         self.wanted.truncate(wanted);
         math
-    }
-
-    /// Whether explicit formulas keep the name of an expression.
-    pub(super) fn is_kept(&self, expr: Expr) -> bool {
-        let graph = &self.derivation.algebra.graph;
-        match graph.node(expr) {
-            Node::Named(id) => self.setter.vocabulary().keeps(&graph.definition(*id).name),
-            _ => false,
-        }
     }
 
     /// A vector as one equation, or as one per component where a component fills a line.

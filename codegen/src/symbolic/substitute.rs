@@ -37,6 +37,15 @@ impl Substitution {
         }
     }
 
+    /// Replaces one expression more. What was applied before must not hold it.
+    pub fn replace(&mut self, graph: &Graph, part: Expr, value: Expr) {
+        let target = graph.support(part);
+        if !self.targets.contains(&target) {
+            self.targets.push(target);
+        }
+        self.known.insert(part, value);
+    }
+
     /// `expr` with the symbols replaced, in canonical form again. `None` where a number is divided
     /// by zero on the way.
     pub fn apply(&mut self, graph: &mut Graph, expr: Expr) -> Option<Expr> {

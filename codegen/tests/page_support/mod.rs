@@ -88,7 +88,7 @@ pub(crate) fn check(page: &Page, seed: u64) -> usize {
     };
     for block in page.sections.iter().flat_map(|s| &s.blocks) {
         let Block::Table(table) = block else { continue };
-        for cell in table.rows.iter().map(|row| &row[0]) {
+        for cell in table.rows.iter().map(|row| &row.cells[0]) {
             match cell.as_slice() {
                 [Span::Math(Math::Letter(letter))] if letter.before.is_none() => given(letter),
                 // A pseudo-velocity with its definition.

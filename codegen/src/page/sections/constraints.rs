@@ -5,7 +5,7 @@ use appell_spec::mechanism::ConstraintKind;
 use super::super::display::Equation;
 use super::super::units::unit;
 use super::super::writer::Writer;
-use super::super::{Block, Section, Span, Table};
+use super::super::{Block, Row, Section, Table};
 use super::super::{Letter, Math};
 use super::placement::from_to;
 use super::{equality, listed, math, sentence, with, words};
@@ -66,7 +66,11 @@ fn constraint(w: &mut Writer<'_>, index: usize) -> Vec<Block> {
     } else {
         &constraint.about
     };
-    let mut what = vec![words(&capitalised(about))];
+    let mut what = vec![words(&format!(
+        "{} (line {})",
+        capitalised(about),
+        constraint.line
+    ))];
     if let ConstraintKind::Rolling { body, contact } = constraint.kind {
         let centre = w.point(w.mechanism.bodies[body].centre);
         let contact = w.point(contact);
@@ -170,12 +174,15 @@ fn definitions(w: &mut Writer<'_>) -> Block {
                 Math::Letter(Letter::plain("t").before('d')),
             );
         }
-        let row: Vec<Vec<Span>> = vec![
+        let cells = vec![
             vec![equality(left, right)],
             vec![words(&unit(&speed.label))],
             vec![words(&speed.label.about)],
         ];
-        rows.push(row);
+        rows.push(Row {
+            cells,
+            line: speed.label.line,
+        });
     }
     Block::Table(Table {
         title: String::new(),

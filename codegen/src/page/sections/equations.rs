@@ -4,11 +4,11 @@ use super::super::display::Equation;
 use super::super::writer::Writer;
 use super::super::{Block, Section};
 use super::super::{Letter, Math};
-use super::solution::{System, force_less_bias};
-use super::{constraints, math, sentence, with, words};
+use super::solution::Elimination;
+use super::{listed, math, sentence, with, words};
+use crate::mechanics;
 use crate::mechanics::gibbs_appell::kinetic_energy;
-use crate::mechanics::motion::independent_blocks;
-use crate::symbolic::{Expr, Graph, Node};
+use crate::symbolic::{Expr, Node};
 
 /// Longer accelerations, on average in a block, are not written out.
 const LONGEST_READING: usize = 180;
@@ -40,153 +40,81 @@ pub(super) fn appell(w: &mut Writer<'_>) -> Section {
     }
 }
 
-/// ω̇ and q̇.
+/// ω̇, as the derivation solved for it.
 pub(super) fn motion(w: &mut Writer<'_>) -> Section {
-    let matrix = w.derivation.gibbs.mass_matrix.clone();
-    let mut open: Vec<(usize, Expr, Expr)> = Vec::new();
+    let letters: Vec<Letter> = (0..w.derivation.symbols.speeds.len())
+        .map(|k| w.speed(k).dot())
+        .collect();
+    for letter in &letters {
+        w.define(letter.clone());
+    }
     let mut equations = Vec::new();
-    let mut left_out = false;
-    for block in independent_blocks(&matrix) {
-        let derived: Vec<_> = block.iter().map(|&k| unnamed(w, k)).collect();
-        let shortest = match quotients(w, &block) {
-            Some(quotients) if reading_length(w, &quotients) < reading_length(w, &derived) => {
-                quotients
+    let mut large = Vec::new();
+    for block in w.derivation.motion.blocks.clone() {
+        if let Some(values) = values_to_read(w, &block) {
+            for (k, value) in values {
+                let right = w.explicit(value);
+                equations.push(Equation::new(Math::Letter(letters[k].clone()), right));
             }
-            _ => derived,
-        };
-        if reading_length(w, &shortest) <= LONGEST_READING * block.len() {
-            open.extend(shortest);
             continue;
         }
-        let letters: Vec<Math> = (0..matrix.len())
-            .map(|k| Math::Letter(w.speed(k).dot()))
-            .collect();
-        let unknown = |k: usize| letters[k].clone();
-        let system = System {
-            matrix: &matrix,
-            unknown: &unknown,
-            right: &force_less_bias,
-        };
-        let in_letters = system.solved(&block);
-        left_out |= in_letters.is_empty();
-        equations.extend(in_letters);
-    }
-    let order = reading_order(w, &open);
-    for &place in &order {
-        let letter = w.speed(open[place].0).dot();
-        w.define(letter);
-    }
-    for place in order {
-        let (k, _, value) = open[place];
-        let left = Math::Letter(w.speed(k).dot());
-        let right = w.explicit(value);
-        equations.push(Equation::new(left, right));
-    }
-    // Those that are solved in letters are shown as well.
-    for k in 0..matrix.len() {
-        let letter = w.speed(k).dot();
-        w.define(letter);
+        let elimination = Elimination::of(&block);
+        let solved = elimination.in_letters(|k| Math::Letter(letters[k].clone()));
+        if solved.is_empty() {
+            large.push(elimination.order);
+        }
+        equations.extend(solved);
     }
     let mut blocks = with(
         w,
         "Appell's equations, solved for the accelerations:",
         equations,
     );
-    if left_out {
-        blocks.push(sentence(
-            "Larger blocks are factorised when the equations are evaluated.",
-        ));
+    for order in large {
+        let order = order
+            .iter()
+            .map(|&k| vec![math(Math::Letter(letters[k].clone()))]);
+        let mut text = vec![words(
+            "M is factorised when the equations are evaluated, in the order ",
+        )];
+        text.extend(listed(order.collect()));
+        text.push(words("."));
+        blocks.push(Block::Sentence(text));
     }
-    let rates = constraints::rates(w);
-    blocks.extend(with(
-        w,
-        "The coordinates follow the pseudo-velocities:",
-        rates,
+    blocks.push(sentence(
+        "The coordinates follow: their velocities are those that the constraints and the \
+         pseudo-velocities determine.",
     ));
     super::section("Equations of motion", blocks)
 }
 
-/// A speed, its acceleration, and the value behind the name.
-fn unnamed(w: &mut Writer<'_>, k: usize) -> (usize, Expr, Expr) {
-    let acceleration = w.derivation.motion.accelerations[k];
-    let value = match *w.graph().node(acceleration) {
-        Node::Named(id) => w.graph().definition(id).value,
-        _ => acceleration,
+/// Accelerations of a block in the order of their solution, if they are short enough to read. What
+/// Cramer's rule gave is always read: nothing was eliminated there.
+fn values_to_read(
+    w: &mut Writer<'_>,
+    block: &mechanics::motion::Block,
+) -> Option<Vec<(usize, Expr)>> {
+    let mechanics::motion::Block::Eliminated(equations) = block else {
+        return None;
     };
-    (k, acceleration, value)
-}
-
-/// Accelerations of two coupled speeds by Cramer's rule, written out; a common factor of numerator
-/// and denominator cancels.
-fn quotients(w: &mut Writer<'_>, block: &[usize]) -> Option<Vec<(usize, Expr, Expr)>> {
-    let &[i, j] = block else { return None };
-    let m = w.derivation.gibbs.mass_matrix.clone();
-    let right = |w: &mut Writer<'_>, k: usize| {
-        let less_bias = w.derivation.gibbs.bias[k];
-        let force = w.derivation.forces[k];
-        let value = w.graph().sub(force, less_bias);
-        w.written_out(value)
-    };
-    let (r_i, r_j) = (right(w, i)?, right(w, j)?);
-    let determinant = difference(w, [m[i][i], m[j][j]], [m[i][j], m[i][j]])?;
-    let mut values = Vec::with_capacity(2);
-    for (own, diagonal, right, other) in [(i, m[j][j], r_i, r_j), (j, m[i][i], r_j, r_i)] {
-        let numerator = difference(w, [diagonal, right], [m[i][j], other])?;
-        let value = w.graph().div(numerator, determinant);
-        values.push((own, w.derivation.motion.accelerations[own], value));
-    }
-    Some(values)
-}
-
-/// `a b - c d`, multiplied out, with what its terms share before them.
-fn difference(w: &mut Writer<'_>, [a, b]: [Expr; 2], [c, d]: [Expr; 2]) -> Option<Expr> {
-    let graph = w.graph();
-    let (first, second) = (graph.mul(a, b), graph.mul(c, d));
-    let difference = graph.sub(first, second);
-    let expanded = w.written_out(difference)?;
-    Some(w.graph().take_out_common_factors(expanded)).filter(|&e| e != Graph::ZERO)
-}
-
-/// How much there is to read in the accelerations of a block and in what they are divided by.
-fn reading_length(w: &mut Writer<'_>, accelerations: &[(usize, Expr, Expr)]) -> usize {
-    let own: Vec<Expr> = accelerations.iter().map(|a| a.1).collect();
-    let values: Vec<Expr> = accelerations.iter().map(|a| a.2).collect();
-    let parts = w.graph().in_order(&values);
+    let by_cramer = equations.len() > 1 && equations.iter().all(|e| e.couplings.is_empty());
+    let mut values = Vec::with_capacity(equations.len());
     let mut length = 0;
-    for part in parts {
-        if let Node::Named(id) = *w.graph().node(part)
-            && !own.contains(&part)
-            && w.is_kept(part)
-        {
-            let pivot = w.graph().definition(id).value;
-            length += w.try_explicit(pivot).width();
-        }
+    for equation in equations {
+        let value = behind(w, w.derivation.motion.accelerations[equation.speed]);
+        let pivot = behind(w, equation.pivot);
+        length += w.try_explicit(value).width() + w.try_explicit(pivot).width();
+        values.push((equation.speed, value));
     }
-    values.into_iter().fold(length, |length, value| {
-        length + w.try_explicit(value).width()
-    })
+    (by_cramer || length <= LONGEST_READING * values.len()).then_some(values)
 }
 
-/// Accelerations that others are expressed by come first.
-fn reading_order(w: &mut Writer<'_>, open: &[(usize, Expr, Expr)]) -> Vec<usize> {
-    let mut order: Vec<usize> = Vec::with_capacity(open.len());
-    let used: Vec<Vec<usize>> = open
-        .iter()
-        .map(|&(k, own, value)| {
-            let parts = w.graph().in_order(&[value]);
-            open.iter()
-                .filter(|o| o.0 != k && o.1 != own && parts.contains(&o.1))
-                .map(|o| o.0)
-                .collect()
-        })
-        .collect();
-    while order.len() < open.len() {
-        let next = (0..open.len())
-            .find(|k| !order.contains(k) && used[*k].iter().all(|u| order.contains(u)))
-            .or_else(|| (0..open.len()).find(|k| !order.contains(k)));
-        order.extend(next);
+/// What stands behind a name.
+fn behind(w: &mut Writer<'_>, expr: Expr) -> Expr {
+    match *w.graph().node(expr) {
+        Node::Named(id) => w.graph().definition(id).value,
+        _ => expr,
     }
-    order
 }
 
 /// T, V and the power of the other loads.

@@ -2,7 +2,7 @@
 
 use super::super::display::Equation;
 use super::super::writer::Writer;
-use super::super::{Block, Section, Span, Table};
+use super::super::{Block, Row, Section, Table};
 use super::super::{Letter, Math};
 use super::energy::numbered;
 use super::{math, sentence, with, words};
@@ -36,15 +36,16 @@ pub(super) fn section(w: &mut Writer<'_>) -> Section {
             words(". Load by load:"),
         ]));
     }
-    let mut rows: Vec<Vec<Vec<Span>>> = Vec::new();
+    let mut rows: Vec<Row> = Vec::new();
     let mut equations = Vec::new();
     let speeds = w.derivation.symbols.speeds.clone();
     for (index, load) in w.derivation.loads.clone().into_iter().enumerate() {
         let item = &w.mechanism.loads[index];
         let letter = Math::Letter(Letter::plain("P").before('δ').below(&item.name));
-        if !item.about.is_empty() {
-            rows.push(vec![vec![math(letter.clone())], vec![words(&item.about)]]);
-        }
+        rows.push(Row {
+            cells: vec![vec![math(letter.clone())], vec![words(&item.about)]],
+            line: item.line,
+        });
         let forces = generalized_forces(
             &mut w.derivation.algebra,
             std::slice::from_ref(&load),

@@ -4,9 +4,7 @@ use super::super::display::Equation;
 use super::super::writer::Writer;
 use super::super::{Block, Section};
 use super::super::{Letter, Math};
-use super::solution::System;
 use super::{math, with, words};
-use crate::mechanics::motion::independent_blocks;
 use crate::symbolic::{Expr, Graph};
 
 /// The derivatives of the residual ρ, how they determine those of ω̇, and the derivatives of q̇.
@@ -34,7 +32,10 @@ pub(super) fn section(w: &mut Writer<'_>) -> Section {
         math(residual_rule),
         words(" vanishes. Differentiated by a state, an input or a parameter z they give "),
         math(rule),
-        words(", where the derivative of ρ holds the accelerations. What is not listed is zero."),
+        words(
+            ", where the derivative of ρ holds the accelerations. It is solved as the accelerations \
+             are. What is not listed is zero.",
+        ),
     ])];
     let symbols = w.derivation.symbols.clone();
     let signals: Vec<Expr> = symbols.signals.iter().flatten().copied().collect();
@@ -69,12 +70,6 @@ pub(super) fn section(w: &mut Writer<'_>) -> Section {
         }
         blocks.extend(with(w, lead, equations));
     }
-    let solution = solution(w);
-    blocks.extend(with(
-        w,
-        "Solved for the derivatives of the accelerations:",
-        solution,
-    ));
     super::section("Jacobians", blocks)
 }
 
@@ -97,23 +92,4 @@ fn residual(w: &mut Writer<'_>) -> Vec<(Letter, Expr)> {
         ));
     }
     rows
-}
-
-fn solution(w: &mut Writer<'_>) -> Vec<Equation> {
-    let matrix = w.derivation.gibbs.mass_matrix.clone();
-    let derivative = |of: Letter| Math::partial(of, Letter::plain("z"));
-    let unknowns: Vec<Math> = (0..matrix.len())
-        .map(|k| derivative(w.speed(k).dot()))
-        .collect();
-    let unknown = |k: usize| unknowns[k].clone();
-    let right = |k: usize| derivative(Letter::plain("ρ").below(&(k + 1).to_string()));
-    let system = System {
-        matrix: &matrix,
-        unknown: &unknown,
-        right: &right,
-    };
-    independent_blocks(&matrix)
-        .iter()
-        .flat_map(|block| system.solved(block))
-        .collect()
 }

@@ -3,7 +3,7 @@
 use appell_spec::mechanism::{Axis, FrameId, GROUND, Inertia, Turn};
 
 use super::super::writer::Writer;
-use super::super::{Block, Chain, Section, Span, Table};
+use super::super::{Block, Chain, Row, Section, Table};
 use super::super::{Letter, Math};
 use super::{equality, math, sentence, words};
 use crate::mechanics::lower::Lowering;
@@ -24,10 +24,14 @@ pub(super) fn section(w: &mut Writer<'_>) -> Section {
     let frames = mechanism.frames[1..].iter().filter(|f| !f.about.is_empty());
     let rows: Vec<_> = frames
         .map(|f| {
-            vec![
+            let cells = vec![
                 vec![math(Math::Words(f.name.clone()))],
                 vec![words(&f.about)],
-            ]
+            ];
+            Row {
+                cells,
+                line: f.line,
+            }
         })
         .collect();
     table(&mut blocks, "Frames", rows);
@@ -38,7 +42,7 @@ pub(super) fn section(w: &mut Writer<'_>) -> Section {
     super::section("Frames, points, bodies", blocks)
 }
 
-fn table(blocks: &mut Vec<Block>, title: &str, rows: Vec<Vec<Vec<Span>>>) {
+fn table(blocks: &mut Vec<Block>, title: &str, rows: Vec<Row>) {
     if !rows.is_empty() {
         blocks.push(Block::Table(Table {
             title: title.to_owned(),
@@ -101,7 +105,7 @@ pub(super) fn from_to(from: &str, to: &str) -> String {
     }
 }
 
-fn points(w: &mut Writer<'_>) -> Vec<Vec<Vec<Span>>> {
+fn points(w: &mut Writer<'_>) -> Vec<Row> {
     let mechanism = w.mechanism;
     let mut rows = Vec::new();
     for point in &mechanism.points {
@@ -115,15 +119,19 @@ fn points(w: &mut Writer<'_>) -> Vec<Vec<Vec<Span>>> {
             frame,
             column: false,
         };
-        rows.push(vec![
+        let cells = vec![
             vec![equality(Math::Letter(left), right)],
             vec![words(&point.about)],
-        ]);
+        ];
+        rows.push(Row {
+            cells,
+            line: point.line,
+        });
     }
     rows
 }
 
-fn bodies(w: &mut Writer<'_>) -> Vec<Vec<Vec<Span>>> {
+fn bodies(w: &mut Writer<'_>) -> Vec<Row> {
     let mechanism = w.mechanism;
     let mut rows = Vec::new();
     for body in &mechanism.bodies {
@@ -136,11 +144,15 @@ fn bodies(w: &mut Writer<'_>) -> Vec<Vec<Vec<Span>>> {
             let left = Math::Letter(Letter::bold("J").below(&body.name));
             what.push(equality(left, tensor));
         }
-        rows.push(vec![
+        let cells = vec![
             vec![math(Math::Words(body.name.clone()))],
             what,
             vec![words(&body.about)],
-        ]);
+        ];
+        rows.push(Row {
+            cells,
+            line: body.line,
+        });
     }
     rows
 }

@@ -4,23 +4,29 @@ use appell_spec::mechanism::Label;
 
 use super::super::units::{unit, value};
 use super::super::writer::Writer;
-use super::super::{Block, Section, Span, Table};
+use super::super::{Block, Row, Section, Table};
 use super::super::{Letter, Math};
-use super::{equality, math, words};
+use super::{equality, math, sentence, words};
 use crate::mechanics::lower::Lowering;
 
 /// Tables of the quantities.
 pub(super) fn section(w: &mut Writer<'_>) -> Section {
     let m = w.mechanism;
     let plain = |label: &Label, second: String| {
-        vec![
+        let cells = vec![
             vec![math(Math::Letter(Letter::of(&label.name)))],
             vec![words(&second)],
             vec![words(&label.about)],
-        ]
+        ];
+        Row {
+            cells,
+            line: label.line,
+        }
     };
-    let mut blocks = Vec::new();
-    let mut table = |title: &str, rows: Vec<Vec<Vec<Span>>>| {
+    let mut blocks = vec![sentence(
+        "Numbers at the right margin are lines of the spec.",
+    )];
+    let mut table = |title: &str, rows: Vec<Row>| {
         if !rows.is_empty() {
             blocks.push(Block::Table(Table {
                 title: title.to_owned(),
@@ -74,11 +80,15 @@ pub(super) fn outputs(w: &mut Writer<'_>) -> Option<Section> {
         };
         let right = w.set(expr);
         let left = Math::Letter(Letter::of(&output.label.name));
-        rows.push(vec![
+        let cells = vec![
             vec![equality(left, right)],
             vec![words(&unit(&output.label))],
             vec![words(&output.label.about)],
-        ]);
+        ];
+        rows.push(Row {
+            cells,
+            line: output.label.line,
+        });
     }
     if rows.is_empty() {
         return None;

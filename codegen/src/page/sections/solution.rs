@@ -1,119 +1,111 @@
-//! The solution of Appell's equations in letters, for blocks whose written-out form is no reading.
+//! Elimination in letters, for blocks of the mass matrix whose written-out form is no reading.
 
+use super::super::Letter;
+use super::super::Math;
 use super::super::display::Equation;
-use super::super::{Letter, Math};
-use crate::symbolic::{Expr, Graph};
+use super::energy::numbered;
+use crate::mechanics::motion::Block;
 
-/// Larger blocks are solved when the equations are evaluated.
+/// The elimination of larger blocks is not written entry by entry.
 const LARGEST_BLOCK: usize = 5;
 
-/// A block of linear equations with the mass matrix, in letters.
-pub(super) struct System<'a> {
-    /// The mass matrix, for its zeros.
-    pub(super) matrix: &'a [Vec<Expr>],
-    /// The unknown of a speed.
-    pub(super) unknown: &'a dyn Fn(usize) -> Math,
-    /// The right-hand side of a speed.
-    pub(super) right: &'a dyn Fn(usize) -> Math,
+/// What the derivation eliminated: speeds in order, and the entries of L that are not zero.
+pub(super) struct Elimination {
+    /// Speeds in the order of elimination.
+    pub(super) order: Vec<usize>,
+    /// Columns of L with an entry, for each row.
+    couplings: Vec<Vec<usize>>,
 }
 
-impl System<'_> {
-    /// Equations for the unknowns of a block; empty for large blocks.
-    pub(super) fn solved(&self, block: &[usize]) -> Vec<Equation> {
-        match *block {
+impl Elimination {
+    pub(super) fn of(block: &Block) -> Self {
+        match block {
+            Block::Eliminated(equations) => {
+                // The last equation was eliminated first.
+                let columns = || equations.iter().rev();
+                let order: Vec<usize> = columns().map(|e| e.speed).collect();
+                let row = |(place, speed): (usize, &usize)| {
+                    let couples = |column: usize| {
+                        let equation = columns().nth(column);
+                        equation.is_some_and(|e| e.couplings.iter().any(|c| c.0 == *speed))
+                    };
+                    (0..place).filter(|&column| couples(column)).collect()
+                };
+                let couplings = order.iter().enumerate().map(row).collect();
+                Self { order, couplings }
+            }
+            Block::Factorized(block) => Self {
+                order: block.speeds.clone(),
+                couplings: (0..block.speeds.len())
+                    .map(|row| {
+                        (0..row)
+                            .filter(|&column| block.couples(row, column))
+                            .collect()
+                    })
+                    .collect(),
+            },
+        }
+    }
+
+    /// `M = L D Lᵀ`, entry by entry, and the accelerations; nothing for large blocks.
+    pub(super) fn in_letters(&self, acceleration: impl Fn(usize) -> Math) -> Vec<Equation> {
+        match *self.order {
             [k] => {
-                vec![Equation::new(
-                    (self.unknown)(k),
-                    Math::fraction((self.right)(k), entry("M", k, k)),
-                )]
+                let value = Math::fraction(force_less_bias(k), entry("M", k, k));
+                vec![Equation::new(acceleration(k), value)]
             }
-            [i, j] => self.by_determinants(i, j),
-            _ if block.len() <= LARGEST_BLOCK => self.by_elimination(block),
-            _ => Vec::new(),
+            _ if self.order.len() > LARGEST_BLOCK => Vec::new(),
+            _ => {
+                let mut equations = Vec::new();
+                for row in 0..self.order.len() {
+                    self.factorize(row, &mut equations);
+                }
+                for column in (0..self.order.len()).rev() {
+                    equations.push(self.substituted_back(column, &acceleration));
+                }
+                equations
+            }
         }
     }
 
-    /// Two equations by Cramer's rule.
-    fn by_determinants(&self, i: usize, j: usize) -> Vec<Equation> {
-        let determinant = entry("Δ", i, j);
-        let product = |a: Math, b: Math| Math::product(vec![a, b]);
-        let value = Math::sum(vec![
-            (false, product(entry("M", i, i), entry("M", j, j))),
-            (true, square(entry("M", i, j))),
-        ]);
-        let mut equations = vec![Equation::new(determinant.clone(), value)];
-        for (own, other) in [(i, j), (j, i)] {
-            let numerator = Math::sum(vec![
-                (false, product(entry("M", other, other), (self.right)(own))),
-                (true, product(entry("M", i, j), (self.right)(other))),
-            ]);
-            let left = (self.unknown)(own);
-            equations.push(Equation::new(
-                left,
-                Math::fraction(numerator, determinant.clone()),
-            ));
+    /// A row of L, its pivot, and the reduced right-hand side.
+    fn factorize(&self, row: usize, equations: &mut Vec<Equation>) {
+        let k = self.order[row];
+        let (mut pivot, mut reduced) = (
+            vec![(false, entry("M", k, k))],
+            vec![(false, force_less_bias(k))],
+        );
+        for &column in &self.couplings[row] {
+            let p = self.order[column];
+            let shared = |q: &&usize| **q < column && self.couplings[column].contains(q);
+            let mut terms = vec![(false, entry("M", k, p))];
+            for &q in self.couplings[row].iter().filter(shared) {
+                let q = self.order[q];
+                let change = vec![entry("L", k, q), entry("L", p, q), numbered("D", q)];
+                terms.push((true, Math::product(change)));
+            }
+            let coupling = entry("L", k, p);
+            let value = Math::fraction(Math::sum(terms), numbered("D", p));
+            equations.push(Equation::new(coupling.clone(), value));
+            let change = Math::product(vec![square(coupling.clone()), numbered("D", p)]);
+            pivot.push((true, change));
+            reduced.push((true, Math::product(vec![coupling, numbered("z", p)])));
         }
-        equations
+        equations.push(Equation::new(numbered("D", k), Math::sum(pivot)));
+        equations.push(Equation::new(numbered("z", k), Math::sum(reduced)));
     }
 
-    /// `M = L D Lᵀ`, entry by entry; what is zero by structure is left out.
-    fn by_elimination(&self, block: &[usize]) -> Vec<Equation> {
-        let n = block.len();
-        let mut filled = vec![vec![false; n]; n];
-        let mut equations = Vec::new();
-        for a in 0..n {
-            for p in 0..a {
-                let changes: Vec<usize> =
-                    (0..p).filter(|&q| filled[a][q] && filled[p][q]).collect();
-                let own = self.matrix[block[a]][block[p]] != Graph::ZERO;
-                filled[a][p] = own || !changes.is_empty();
-                if !filled[a][p] {
-                    continue;
-                }
-                let mut terms = Vec::new();
-                if own {
-                    terms.push((false, entry("M", block[a], block[p])));
-                }
-                for q in changes {
-                    let factors = vec![
-                        entry("L", block[a], block[q]),
-                        entry("L", block[p], block[q]),
-                        single("D", block[q]),
-                    ];
-                    terms.push((true, Math::product(factors)));
-                }
-                let value = Math::fraction(Math::sum(terms), single("D", block[p]));
-                equations.push(Equation::new(entry("L", block[a], block[p]), value));
-            }
-            let mut pivot = vec![(false, entry("M", block[a], block[a]))];
-            let mut reduced = vec![(false, (self.right)(block[a]))];
-            for p in (0..a).filter(|&p| filled[a][p]) {
-                let coupling = entry("L", block[a], block[p]);
-                pivot.push((
-                    true,
-                    Math::product(vec![square(coupling.clone()), single("D", block[p])]),
-                ));
-                reduced.push((true, Math::product(vec![coupling, single("z", block[p])])));
-            }
-            equations.push(Equation::new(single("D", block[a]), Math::sum(pivot)));
-            equations.push(Equation::new(single("z", block[a]), Math::sum(reduced)));
+    /// The acceleration of a column, from those of later rows.
+    fn substituted_back(&self, column: usize, acceleration: impl Fn(usize) -> Math) -> Equation {
+        let k = self.order[column];
+        let own = Math::fraction(numbered("z", k), numbered("D", k));
+        let mut terms = vec![(false, own)];
+        for row in (column + 1..self.order.len()).filter(|&r| self.couplings[r].contains(&column)) {
+            let known = self.order[row];
+            let term = vec![entry("L", known, k), acceleration(known)];
+            terms.push((true, Math::product(term)));
         }
-        for a in (0..n).rev() {
-            let mut terms = vec![(
-                false,
-                Math::fraction(single("z", block[a]), single("D", block[a])),
-            )];
-            for p in (a + 1..n).filter(|&p| filled[p][a]) {
-                let known = (self.unknown)(block[p]);
-                terms.push((
-                    true,
-                    Math::product(vec![entry("L", block[p], block[a]), known]),
-                ));
-            }
-            let left = (self.unknown)(block[a]);
-            equations.push(Equation::new(left, Math::sum(terms)));
-        }
-        equations
+        Equation::new(acceleration(k), Math::sum(terms))
     }
 }
 
@@ -132,13 +124,9 @@ fn entry(name: &str, i: usize, j: usize) -> Math {
     Math::Letter(Letter::plain(name).below(&place))
 }
 
-fn single(name: &str, k: usize) -> Math {
-    Math::Letter(Letter::plain(name).below(&(k + 1).to_string()))
-}
-
 /// `Π - b`
-pub(super) fn force_less_bias(k: usize) -> Math {
-    Math::Sum(vec![(false, single("Π", k)), (true, single("b", k))])
+fn force_less_bias(k: usize) -> Math {
+    Math::Sum(vec![(false, numbered("Π", k)), (true, numbered("b", k))])
 }
 
 fn square(base: Math) -> Math {

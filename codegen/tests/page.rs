@@ -78,7 +78,7 @@ fn latex_closes_what_it_opens() {
             escaped = c == '\\' && !escaped;
         }
         assert_eq!(depth, 0, "{name}");
-        for environment in ["align*", "bmatrix", "tabular", "document", "cases"] {
+        for environment in ["align*", "bmatrix", "tabularx", "document", "cases"] {
             let count = |what: &str| latex.matches(&format!("\\{what}{{{environment}}}")).count();
             assert_eq!(count("begin"), count("end"), "{name}: {environment}");
         }

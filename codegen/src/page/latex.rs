@@ -20,17 +20,24 @@ const PREAMBLE: &str = r"\documentclass[10pt,a4paper,fleqn]{article}
 \else
   \newcommand{\other}[2]{\symbol{#1}}
 \fi
-\usepackage[margin=22mm]{geometry}
+\usepackage[margin=18mm]{geometry}
 \usepackage{amsmath}
-\usepackage{array}
+\usepackage{tabularx}
 \setlength{\parindent}{0pt}
-\setlength{\parskip}{5pt}
+\setlength{\parskip}{3pt}
 \setlength{\mathindent}{2em}
 \setcounter{MaxMatrixCols}{64}
 \allowdisplaybreaks
 \raggedbottom
 \sloppy
-\newcommand{\quantities}[1]{\par\medskip\textbf{#1}\par}
+\newcommand{\quantities}[1]{\par\smallskip\textbf{#1}\par}
+\makeatletter
+\renewcommand{\section}{\@startsection{section}{1}{0pt}{8pt plus 2pt}{3pt}{\large\bfseries}}
+\makeatother
+\AtBeginDocument{%
+  \setlength{\abovedisplayskip}{3pt plus 1pt}%
+  \setlength{\belowdisplayskip}{3pt plus 1pt}%
+}
 ";
 
 /// The page as a LaTeX document.
@@ -89,24 +96,11 @@ fn table(out: &mut String, table: &Table) {
     if !table.title.is_empty() {
         let _ = writeln!(out, "\\quantities{{{}}}", escaped(&table.title));
     }
-    // The last column takes what the others leave.
+    // The last column takes what the others leave; behind it stand the lines of the spec.
     let firsts = "l".repeat(columns.saturating_sub(1));
-    let widest = |k: usize| {
-        table
-            .rows
-            .iter()
-            .filter_map(|row| row.cells.get(k))
-            .map(|cell| width(cell))
-            .max()
-    };
-    let used: usize = (0..columns.saturating_sub(1))
-        .map(|k| widest(k).unwrap_or(0) + 3)
-        .sum();
-    let share =
-        f64::from(u32::try_from(87_usize.saturating_sub(used).max(24)).unwrap_or(24)) / 100.0;
     let _ = writeln!(
         out,
-        "\\begin{{tabular}}{{{firsts}>{{\\raggedright\\arraybackslash}}p{{{share:.2}\\textwidth}}r}}"
+        "\\begin{{tabularx}}{{\\textwidth}}{{{firsts}>{{\\raggedright\\arraybackslash}}Xr}}"
     );
     for row in &table.rows {
         let cells: Vec<String> = row.cells.iter().map(|cell| spans(cell)).collect();
@@ -117,17 +111,7 @@ fn table(out: &mut String, table: &Table) {
             row.line
         );
     }
-    out.push_str("\\end{tabular}\\par");
-}
-
-fn width(spans: &[Span]) -> usize {
-    spans
-        .iter()
-        .map(|span| match span {
-            Span::Text(text) => text.chars().count(),
-            Span::Math(math) => math.width(),
-        })
-        .sum()
+    out.push_str("\\end{tabularx}\\par");
 }
 
 fn chain(out: &mut String, chain: &Chain) {

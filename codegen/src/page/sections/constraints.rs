@@ -5,10 +5,11 @@ use appell_spec::mechanism::ConstraintKind;
 use super::super::display::Equation;
 use super::super::units::unit;
 use super::super::writer::Writer;
-use super::super::{Block, Row, Section, Table};
+use super::super::{Block, Row, Section, Span, Table};
 use super::super::{Letter, Math};
 use super::placement::from_to;
 use super::{equality, listed, math, sentence, with, words};
+use crate::mechanics::constraints;
 use crate::mechanics::lower::Lowering;
 use crate::symbolic::Graph;
 
@@ -67,74 +68,87 @@ fn constraint(w: &mut Writer<'_>, index: usize) -> Vec<Block> {
         &constraint.about
     };
     let mut what = vec![words(&format!(
-        "{} (line {})",
+        "{} (line {} of the spec)",
         capitalised(about),
         constraint.line
     ))];
-    if let ConstraintKind::Rolling { body, contact } = constraint.kind {
-        let centre = w.point(w.mechanism.bodies[body].centre);
-        let contact = w.point(contact);
-        let spin = Letter::bold("ω").below(&w.mechanism.bodies[body].name);
-        let formula = [
-            Math::Letter(Letter::bold("v").below(contact)),
-            Math::Sign("="),
-            Math::Letter(Letter::bold("v").below(centre)),
-            Math::Sign("+"),
-            Math::Letter(spin),
-            Math::Sign("×"),
-            Math::Letter(Letter::bold("r").below(&from_to(centre, contact))),
-            Math::Sign("="),
-            Math::Words("0".to_owned()),
-        ];
-        what.push(words(": "));
-        what.push(math(Math::Row(formula.into())));
-    }
+    let rolling = rolling(w, &constraint.kind);
     let (mut open, mut held) = (Vec::new(), Vec::new());
     for row in w.derivation.constraints.rows.clone() {
         if row.constraint != index {
             continue;
         }
         if row.is_embedded() {
-            held.push(vec![words(
-                row.name.rsplit('.').next().unwrap_or(&row.name),
-            )]);
-            continue;
+            let component = row.name.rsplit('.').next().unwrap_or(&row.name);
+            held.push(vec![words(component)]);
+        } else {
+            open.push(equation(w, &row));
         }
-        let mut parts = vec![row.rest];
-        for (&coefficient, rate) in row
-            .coefficients
-            .iter()
-            .zip(w.derivation.symbols.rates.clone())
-        {
-            parts.push(w.graph().mul(coefficient, rate));
-        }
-        let left = w.graph().sum(&parts);
-        let left = w.explicit(left);
-        open.push(Equation::new(left, Math::zero()));
     }
-    if !open.is_empty() {
-        let rolling = matches!(constraint.kind, ConstraintKind::Rolling { .. });
-        what.push(words(if rolling { ". In the ground:" } else { ":" }));
+    let is_rolling = rolling.is_some();
+    if let Some(formula) = rolling {
+        what.extend([words(": "), math(formula)]);
     }
+    what.push(words(match (open.is_empty(), is_rolling) {
+        (true, _) => ".",
+        (false, true) => ". In the ground:",
+        (false, false) => ":",
+    }));
     let mut blocks = vec![Block::Sentence(what)];
     blocks.extend(with(w, "", open));
     if !held.is_empty() {
-        let noun = if held.len() == 1 {
-            "Its component along "
-        } else {
-            "Its components along "
-        };
-        let mut text = vec![words(noun)];
-        let verb = if held.len() == 1 {
-            " holds by geometry: the coordinates satisfy it already."
-        } else {
-            " hold by geometry: the coordinates satisfy them already."
-        };
-        text.extend(listed(held));
-        text.push(words(verb));
-        blocks.push(Block::Sentence(text));
+        blocks.push(Block::Sentence(held_by_geometry(held)));
     }
     blocks
+}
+
+/// `v_P = v_G + ω × r_GP = 0` for a rolling body.
+fn rolling(w: &Writer<'_>, kind: &ConstraintKind) -> Option<Math> {
+    let &ConstraintKind::Rolling { body, contact } = kind else {
+        return None;
+    };
+    let body = &w.mechanism.bodies[body];
+    let (centre, contact) = (w.point(body.centre), w.point(contact));
+    Some(Math::Row(vec![
+        Math::Letter(Letter::bold("v").below(contact)),
+        Math::Sign("="),
+        Math::Letter(Letter::bold("v").below(centre)),
+        Math::Sign("+"),
+        Math::Letter(Letter::bold("ω").below(&body.name)),
+        Math::Sign("×"),
+        Math::Letter(Letter::bold("r").below(&from_to(centre, contact))),
+        Math::Sign("="),
+        Math::Words("0".to_owned()),
+    ]))
+}
+
+/// `Σ coefficient · q̇ + rest = 0`
+fn equation(w: &mut Writer<'_>, row: &constraints::Row) -> Equation {
+    let mut parts = vec![row.rest];
+    let rates = w.derivation.symbols.rates.clone();
+    for (&coefficient, rate) in row.coefficients.iter().zip(rates) {
+        parts.push(w.graph().mul(coefficient, rate));
+    }
+    let left = w.graph().sum(&parts);
+    Equation::new(w.explicit(left), Math::zero())
+}
+
+fn held_by_geometry(components: Vec<Vec<Span>>) -> Vec<Span> {
+    let (noun, verb) = if components.len() == 1 {
+        (
+            "Its component along ",
+            " holds by geometry: the coordinates satisfy it already.",
+        )
+    } else {
+        (
+            "Its components along ",
+            " hold by geometry: the coordinates satisfy them already.",
+        )
+    };
+    let mut text = vec![words(noun)];
+    text.extend(listed(components));
+    text.push(words(verb));
+    text
 }
 
 /// With a capital letter at the start of a sentence.

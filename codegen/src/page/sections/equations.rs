@@ -50,6 +50,7 @@ pub(super) fn motion(w: &mut Writer<'_>) -> Section {
     }
     let mut equations = Vec::new();
     let mut large = Vec::new();
+    let mut lead = "Appell's equations, solved for the accelerations:";
     for block in w.derivation.motion.blocks.clone() {
         if let Some(values) = values_to_read(w, &block) {
             for (k, value) in values {
@@ -62,14 +63,13 @@ pub(super) fn motion(w: &mut Writer<'_>) -> Section {
         let solved = elimination.in_letters(|k| Math::Letter(letters[k].clone()));
         if solved.is_empty() {
             large.push(elimination.order);
+        } else if solved.len() > 1 {
+            lead = "Appell's equations, solved for the accelerations with M = L D Lᵀ and L z = Π − b, \
+                    in the order of elimination:";
         }
         equations.extend(solved);
     }
-    let mut blocks = with(
-        w,
-        "Appell's equations, solved for the accelerations:",
-        equations,
-    );
+    let mut blocks = with(w, lead, equations);
     for order in large {
         let order = order
             .iter()
@@ -82,8 +82,7 @@ pub(super) fn motion(w: &mut Writer<'_>) -> Section {
         blocks.push(Block::Sentence(text));
     }
     blocks.push(sentence(
-        "The coordinates follow: their velocities are those that the constraints and the \
-         pseudo-velocities determine.",
+        "With the generalised velocities of section 3 they are the equations of motion.",
     ));
     super::section("Equations of motion", blocks)
 }

@@ -6,76 +6,12 @@ use super::super::{Block, Row, Section, Table};
 use super::super::{Letter, Math};
 use super::energy::numbered;
 use super::{math, sentence, with, words};
-use crate::mechanics::loads::generalized_forces;
+use crate::mechanics::loads::{AppliedLoad, generalized_forces};
 use crate::symbolic::Graph;
 
 /// The virtual power of every load, and what it sums to.
 pub(super) fn section(w: &mut Writer<'_>) -> Section {
-    let virtual_power = || Math::Letter(Letter::plain("P").before('δ'));
-    let product = |a: Math, b: Math| Math::Row(vec![Math::Sign("Σ"), a, Math::Sign("·"), b]);
-    let bold = |name: &str| Math::Letter(Letter::bold(name));
-    let delta = |name: &str| Math::Letter(Letter::bold(name).before('δ'));
-    let sum = Math::Row(vec![
-        virtual_power(),
-        Math::Sign("="),
-        product(bold("F"), delta("v")),
-        Math::Sign("+"),
-        product(bold("T"), delta("ω")),
-        Math::Sign("="),
-        Math::Sign("Σ"),
-        Math::Letter(Letter::plain("Π").below("i")),
-        Math::Letter(Letter::plain("ω").below("i").before('δ')),
-    ]);
-    let mut blocks = Vec::new();
-    if w.derivation.loads.is_empty() {
-        blocks.push(sentence("No load acts."));
-    } else {
-        blocks.push(Block::Sentence(vec![
-            words("Forces F and torques T work along virtual velocities: "),
-            math(sum),
-            words(". Load by load:"),
-        ]));
-    }
-    let mut rows: Vec<Row> = Vec::new();
-    let mut equations = Vec::new();
-    let speeds = w.derivation.symbols.speeds.clone();
-    for (index, load) in w.derivation.loads.clone().into_iter().enumerate() {
-        let item = &w.mechanism.loads[index];
-        let letter = Math::Letter(Letter::plain("P").before('δ').below(&item.name));
-        rows.push(Row {
-            cells: vec![vec![math(letter.clone())], vec![words(&item.about)]],
-            line: item.line,
-        });
-        let forces = generalized_forces(
-            &mut w.derivation.algebra,
-            std::slice::from_ref(&load),
-            &speeds,
-        );
-        let mut terms = Vec::new();
-        for (k, &force) in forces.iter().enumerate() {
-            if force != Graph::ZERO {
-                let along = Math::Letter(w.speed(k).before('δ'));
-                let (minus, force) = match w.explicit(force) {
-                    Math::Sum(mut single) if single.len() == 1 => single.remove(0),
-                    other => (false, other),
-                };
-                let factors = if force.is_integer("1") {
-                    vec![along]
-                } else {
-                    vec![force, along]
-                };
-                terms.push((minus, Math::product(factors)));
-            }
-        }
-        equations.push(Equation::new(letter, Math::sum(terms)));
-    }
-    if !rows.is_empty() {
-        blocks.push(Block::Table(Table {
-            title: String::new(),
-            rows,
-        }));
-    }
-    blocks.extend(with(w, "", equations));
+    let mut blocks = load_by_load(w);
     let mut equations = Vec::new();
     for (i, force) in w.derivation.forces.clone().into_iter().enumerate() {
         let right = w.explicit(force);
@@ -87,4 +23,85 @@ pub(super) fn section(w: &mut Writer<'_>) -> Section {
         equations,
     ));
     super::section("Pseudo-forces Π", blocks)
+}
+
+/// `δP = Σ F · δv + Σ T · δω = Σ Πᵢ δωᵢ`
+fn rule() -> Math {
+    let virtual_work = |load: &str, velocity: &str| {
+        Math::Row(vec![
+            Math::Sign("Σ"),
+            Math::Letter(Letter::bold(load)),
+            Math::Sign("·"),
+            Math::Letter(Letter::bold(velocity).before('δ')),
+        ])
+    };
+    Math::Row(vec![
+        Math::Letter(Letter::plain("P").before('δ')),
+        Math::Sign("="),
+        virtual_work("F", "v"),
+        Math::Sign("+"),
+        virtual_work("T", "ω"),
+        Math::Sign("="),
+        Math::Sign("Σ"),
+        Math::Letter(Letter::plain("Π").below("i")),
+        Math::Letter(Letter::plain("ω").below("i").before('δ')),
+    ])
+}
+
+fn load_by_load(w: &mut Writer<'_>) -> Vec<Block> {
+    if w.derivation.loads.is_empty() {
+        return vec![sentence("No load acts.")];
+    }
+    let mut rows = Vec::new();
+    let mut equations = Vec::new();
+    for (load, item) in w.derivation.loads.clone().iter().zip(&w.mechanism.loads) {
+        let letter = Math::Letter(Letter::plain("P").before('δ').below(&item.name));
+        rows.push(Row {
+            cells: vec![vec![math(letter.clone())], vec![words(&item.about)]],
+            line: item.line,
+        });
+        let power = virtual_power(w, load);
+        equations.push(Equation::new(letter, power));
+    }
+    let mut blocks = vec![
+        Block::Sentence(vec![
+            words("Forces F and torques T work along virtual velocities: "),
+            math(rule()),
+            words(". Load by load:"),
+        ]),
+        Block::Table(Table {
+            title: String::new(),
+            rows,
+        }),
+    ];
+    blocks.extend(with(w, "", equations));
+    blocks
+}
+
+/// `Σ Πᵢ δωᵢ` of one load.
+fn virtual_power(w: &mut Writer<'_>, load: &AppliedLoad) -> Math {
+    let speeds = w.derivation.symbols.speeds.clone();
+    let forces = generalized_forces(
+        &mut w.derivation.algebra,
+        std::slice::from_ref(load),
+        &speeds,
+    );
+    let mut terms = Vec::new();
+    for (k, force) in forces.into_iter().enumerate() {
+        if force == Graph::ZERO {
+            continue;
+        }
+        let along = Math::Letter(w.speed(k).before('δ'));
+        let (minus, force) = match w.explicit(force) {
+            Math::Sum(mut single) if single.len() == 1 => single.remove(0),
+            other => (false, other),
+        };
+        let factors = if force.is_integer("1") {
+            vec![along]
+        } else {
+            vec![force, along]
+        };
+        terms.push((minus, Math::product(factors)));
+    }
+    Math::sum(terms)
 }

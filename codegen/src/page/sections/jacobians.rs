@@ -9,34 +9,7 @@ use crate::symbolic::{Expr, Graph};
 
 /// The derivatives of the residual ρ, how they determine those of ω̇, and the derivatives of q̇.
 pub(super) fn section(w: &mut Writer<'_>) -> Section {
-    let bold = |name: &str| Math::Letter(Letter::bold(name));
-    let rates = || Math::Letter(Letter::bold("ω").dot());
-    let residual_rule = Math::Row(vec![
-        bold("ρ"),
-        Math::Sign("="),
-        Math::sum(vec![
-            (false, bold("Π")),
-            (true, bold("b")),
-            (true, Math::Row(vec![bold("M"), rates()])),
-        ]),
-    ]);
-    let derivative = |of: Letter| Math::partial(of, Letter::plain("z"));
-    let rule = Math::Row(vec![
-        bold("M"),
-        derivative(Letter::bold("ω").dot()),
-        Math::Sign("="),
-        derivative(Letter::bold("ρ")),
-    ]);
-    let mut blocks = vec![Block::Sentence(vec![
-        words("Appell's equations say that "),
-        math(residual_rule),
-        words(" vanishes. Differentiated by a state, an input or a parameter z they give "),
-        math(rule),
-        words(
-            ", where the derivative of ρ holds the accelerations. It is solved as the accelerations \
-             are. What is not listed is zero.",
-        ),
-    ])];
+    let mut blocks = vec![rule()];
     let symbols = w.derivation.symbols.clone();
     let signals: Vec<Expr> = symbols.signals.iter().flatten().copied().collect();
     let lists = [
@@ -71,6 +44,38 @@ pub(super) fn section(w: &mut Writer<'_>) -> Section {
         blocks.extend(with(w, lead, equations));
     }
     super::section("Jacobians", blocks)
+}
+
+/// What is differentiated, and what the derivatives solve.
+fn rule() -> Block {
+    let bold = |name: &str| Math::Letter(Letter::bold(name));
+    let rates = || Math::Letter(Letter::bold("ω").dot());
+    let residual_rule = Math::Row(vec![
+        bold("ρ"),
+        Math::Sign("="),
+        Math::sum(vec![
+            (false, bold("Π")),
+            (true, bold("b")),
+            (true, Math::Row(vec![bold("M"), rates()])),
+        ]),
+    ]);
+    let derivative = |of: Letter| Math::partial(of, Letter::plain("z"));
+    let rule = Math::Row(vec![
+        bold("M"),
+        derivative(Letter::bold("ω").dot()),
+        Math::Sign("="),
+        derivative(Letter::bold("ρ")),
+    ]);
+    Block::Sentence(vec![
+        words("Appell's equations say that "),
+        math(residual_rule),
+        words(" vanishes. Differentiated by a state, an input or a parameter z they give "),
+        math(rule),
+        words(
+            ", where the derivative of ρ holds the accelerations. It is solved as the accelerations \
+             are. What is not listed is zero.",
+        ),
+    ])
 }
 
 /// ρ = Π - b - M ω̇, with letters for the accelerations.

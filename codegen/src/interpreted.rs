@@ -107,4 +107,12 @@ impl Model for InterpretedModel {
     fn outputs(&self, at: At<'_>, outputs: &mut [f64]) {
         self.evaluate(FunctionKind::Outputs, at, &mut [("outputs", outputs)]);
     }
+
+    fn switch_len(&self) -> usize {
+        self.program.switch_len()
+    }
+
+    fn switches(&self, at: At<'_>, switches: &mut [f64]) {
+        self.evaluate(FunctionKind::Switches, at, &mut [("switches", switches)]);
+    }
 }

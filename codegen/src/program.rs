@@ -19,6 +19,21 @@ pub struct Program {
     pub functions: Vec<Function>,
 }
 
+impl Program {
+    /// How many values time alone switches.
+    pub fn switch_len(&self) -> usize {
+        let mut functions = self.functions.iter();
+        let switches = functions.find(|function| function.kind == FunctionKind::Switches);
+        switches.map_or(0, |function| {
+            function
+                .results
+                .iter()
+                .map(|array| array.entries.len())
+                .sum()
+        })
+    }
+}
+
 /// Symbols of the arguments.
 #[derive(Debug, Clone)]
 pub struct Arguments {
@@ -68,6 +83,8 @@ pub enum FunctionKind {
     ConstraintForces,
     /// Outputs of the spec: result `outputs`.
     Outputs,
+    /// What time alone switches, where anything does: result `switches`.
+    Switches,
 }
 
 /// An array of expressions.

@@ -45,7 +45,10 @@ pub enum Interpolation {
     Hold,
     /// Straight from row to row.
     Linear,
-    /// Natural cubic spline: two continuous derivatives, no curvature at the ends.
+    /// Natural cubic spline: two continuous derivatives, no curvature at the ends. Where it does
+    /// not end level, its first derivative jumps to zero at the end: a body that an imposed motion
+    /// carries stops without an impulse in the equations. Let such tables begin and end at rest, or
+    /// reach beyond the motion.
     Cubic,
 }
 
@@ -213,4 +216,15 @@ pub trait Model: Sync {
     fn constraint_forces(&self, at: At<'_>, forces: &mut [f64]);
     /// Outputs of the spec.
     fn outputs(&self, at: At<'_>, outputs: &mut [f64]);
+    /// How many values [`Model::switches`] writes; most models have none.
+    fn switch_len(&self) -> usize {
+        0
+    }
+    /// What time alone switches in the equations, such as the truth of `t < t_brake`: 1 or 0, or
+    /// a sign. Depends on time and parameters. An integrator ends a step at each jump, where the
+    /// rates jump or lose smoothness.
+    fn switches(&self, at: At<'_>, switches: &mut [f64]) {
+        let _ = at;
+        switches.fill(0.0);
+    }
 }

@@ -4,7 +4,8 @@ mod recorder;
 
 use crate::inputs::{InputSource, ModelInputs, ZeroInputs};
 use crate::integrate::{
-    Cause, Dop853, Dopri5, Event, Failure, IntegrationError, Options, Range, Rk4, Solver, Watch,
+    Cause, Dop853, Dopri5, Event, Failure, IntegrationError, Options, Range, Rk4, Solver, Switches,
+    Watch,
 };
 use crate::model::{At, Model, ModelInfo};
 use crate::signal::SignalError;
@@ -146,22 +147,22 @@ impl<'a> Simulation<'a> {
         let info = self.model.info();
         let inputs = ModelInputs::new(info, self.inputs)?;
         let (switching_times, ranges) = (inputs.switching_times(), self.ranges());
+        let (model, p) = (self.model, self.parameters.as_slice());
         let mut watch = Watch {
             switching_times: &switching_times,
+            switches: switches(model, p, &self.initial_state),
             ranges: &ranges,
             events: self.events,
-            ..Watch::default()
         };
         let mut recorder = Recorder::new(self.sampling, self.span, &self.initial_state);
         recorder.progress = self.progress;
 
-        let (model, p) = (self.model, self.parameters.as_slice());
         let mut u = vec![0.0; info.input_len()];
         let rates = |t: f64, x: &[f64], rates: &mut [f64]| {
             inputs.fill(t, x, &mut u);
             model.rates(At { t, x, u: &u, p }, rates);
         };
-        let mut x = self.initial_state;
+        let mut x = self.initial_state.clone();
         let (span, options) = (self.span, &self.options);
         let (watch, observer) = (&mut watch, &mut recorder);
         let result = match self.method {
@@ -237,6 +238,17 @@ impl<'a> Simulation<'a> {
             })
             .collect()
     }
+}
+
+/// What time alone switches in a model.
+fn switches<'a>(model: &'a dyn Model, p: &'a [f64], x: &'a [f64]) -> Option<Switches<'a>> {
+    // They depend neither on the state nor on the inputs, but every function has these arguments.
+    let u = vec![0.0; model.info().input_len()];
+    let count = model.switch_len();
+    (count > 0).then(|| Switches {
+        count,
+        function: Box::new(move |t, values| model.switches(At { t, x, u: &u, p }, values)),
+    })
 }
 
 /// The failure in the names and units of the spec.

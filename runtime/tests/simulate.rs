@@ -97,6 +97,33 @@ fn signals_of_the_model_drive_it() {
 }
 
 #[test]
+fn a_spline_that_ends_steeply_costs_no_rejected_step() {
+    // Its first derivative jumps where the signal begins and where it is held.
+    let mut model = cart(table(
+        Interpolation::Cubic,
+        &[0.2, 0.5, 0.6],
+        &[0.0, 2.0, 1.0],
+    ));
+    model.info.signal_inputs = vec![(0, 0), (0, 1)].into();
+    for method in [Method::Dop853, Method::Dopri5] {
+        let trajectory = Simulation {
+            span: [0.0, 1.0],
+            method,
+            ..Simulation::new(&model)
+        }
+        .run()
+        .unwrap();
+        // The integral of the derivative is the signal itself.
+        assert!((trajectory.last_state()[0] - 1.0).abs() < ROUNDING);
+        let cost = trajectory.statistics;
+        assert!(cost.rejected == 0 && cost.steps < 20, "{cost:?}");
+        for knot in [0.2, 0.5, 0.6] {
+            assert!(trajectory.times().contains(&knot));
+        }
+    }
+}
+
+#[test]
 fn a_natural_spline_follows_a_sine_and_its_derivatives() {
     let times: Vec<f64> = (0..=40).map(|i| f64::from(i) / 40.0 * PI).collect();
     let values: Vec<f64> = times.iter().map(|t| t.sin()).collect();

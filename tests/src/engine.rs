@@ -84,6 +84,12 @@ impl Model for Emitted {
     fn outputs(&self, at: At<'_>, outputs: &mut [f64]) {
         self.0.outputs(at, outputs);
     }
+    fn switch_len(&self) -> usize {
+        self.0.switch_len()
+    }
+    fn switches(&self, at: At<'_>, switches: &mut [f64]) {
+        self.0.switches(at, switches);
+    }
 }
 
 /// Everything a model computes at a point.

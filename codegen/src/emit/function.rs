@@ -26,6 +26,7 @@ pub(super) fn function_name(kind: FunctionKind) -> &'static str {
         FunctionKind::ConstraintResidual => "constraint_residual",
         FunctionKind::ConstraintForces => "constraint_forces",
         FunctionKind::Outputs => "outputs",
+        FunctionKind::Switches => "switches",
     }
 }
 
@@ -60,6 +61,9 @@ pub(super) fn about(kind: FunctionKind) -> &'static str {
         }
         FunctionKind::ConstraintForces => "Reactions in the ground, in N; one row per reaction.",
         FunctionKind::Outputs => "Outputs of the spec.",
+        FunctionKind::Switches => {
+            "What time alone switches: 1 where a relation holds, 0 elsewhere, and signs."
+        }
     }
 }
 

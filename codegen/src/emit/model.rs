@@ -30,6 +30,7 @@ const TYPES: &[&str] = &[
     "Rates",
     "ConstraintResidual",
     "ConstraintForces",
+    "Switches",
     "OutputArrays",
     "Real",
     "T",
@@ -229,6 +230,7 @@ pub(super) fn implementation(types: &Types<'_>, runtime: &syn::Path) -> Result<T
             "forces",
         )?,
         optional_method(types, FunctionKind::Outputs, "outputs", "outputs")?,
+        switches_methods(types),
     ];
     let blank = blank_tokens();
     Ok(quote! {
@@ -373,6 +375,28 @@ fn energies_method(types: &Types<'_>, runtime: &syn::Path) -> Result<TokenStream
             }
         }
     })
+}
+
+/// What time alone switches; the trait has an answer for models without switches.
+fn switches_methods(types: &Types<'_>) -> TokenStream {
+    let mut functions = types.program.functions.iter();
+    let Some(function) = functions.find(|function| function.kind == FunctionKind::Switches) else {
+        return TokenStream::new();
+    };
+    let count = Literal::usize_unsuffixed(types.len(function.results[0].layout));
+    let call = call(types, "switches");
+    let blank = blank_tokens();
+    quote! {
+        #blank
+        fn switch_len(&self) -> usize {
+            #count
+        }
+
+        #blank
+        fn switches(&self, at: At<'_>, switches: &mut [f64]) {
+            write(switches, &self::#call);
+        }
+    }
 }
 
 /// A function that `impl Model` cannot do without.

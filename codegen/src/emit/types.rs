@@ -220,6 +220,7 @@ pub(super) fn result_struct(function: &Function) -> Option<&'static str> {
         FunctionKind::ConstraintResidual => "ConstraintResidual",
         FunctionKind::ConstraintForces => "ConstraintForces",
         FunctionKind::Outputs => "OutputArrays",
+        FunctionKind::Switches => "Switches",
     })
 }
 

@@ -24,7 +24,7 @@ pub struct JitModel {
 }
 
 /// All functions, in the order of the variants.
-const KINDS: [FunctionKind; 12] = [
+const KINDS: [FunctionKind; 13] = [
     FunctionKind::Kinematics,
     FunctionKind::AccelerationEnergy,
     FunctionKind::MassMatrix,
@@ -37,13 +37,15 @@ const KINDS: [FunctionKind; 12] = [
     FunctionKind::ConstraintResidual,
     FunctionKind::ConstraintForces,
     FunctionKind::Outputs,
+    FunctionKind::Switches,
 ];
 
 /// The results that the trait asks for, with their lengths.
 ///
 /// What a function computes beyond them is left out of the machine code. The numbers that remain
 /// do not change: the schedule is that of the whole function.
-fn results(kind: FunctionKind, info: &ModelInfo) -> Vec<(&'static str, usize)> {
+fn results(kind: FunctionKind, program: &Program) -> Vec<(&'static str, usize)> {
+    let info = &program.info;
     let (n, m, k) = (info.state_len(), info.input_len(), info.parameter_len());
     let speeds = info.speeds;
     match kind {
@@ -61,6 +63,7 @@ fn results(kind: FunctionKind, info: &ModelInfo) -> Vec<(&'static str, usize)> {
         FunctionKind::ConstraintResidual => vec![("residual", info.constraint_rows.len())],
         FunctionKind::ConstraintForces => vec![("forces", 3 * info.reactions.len())],
         FunctionKind::Outputs => vec![("outputs", info.output_len())],
+        FunctionKind::Switches => vec![("switches", program.switch_len())],
     }
 }
 
@@ -70,7 +73,7 @@ impl JitModel {
         let sizes = Sizes::from(&program.info);
         let parts = KINDS
             .iter()
-            .map(|&kind| Part::new(program, kind, results(kind, &program.info)))
+            .map(|&kind| Part::new(program, kind, results(kind, program)))
             .collect::<Result<_, _>>()?;
         let model = Self {
             program: program.clone(),
@@ -164,6 +167,14 @@ impl Model for JitModel {
 
     fn outputs(&self, at: At<'_>, outputs: &mut [f64]) {
         self.evaluate(FunctionKind::Outputs, at, [outputs]);
+    }
+
+    fn switch_len(&self) -> usize {
+        self.program.switch_len()
+    }
+
+    fn switches(&self, at: At<'_>, switches: &mut [f64]) {
+        self.evaluate(FunctionKind::Switches, at, [switches]);
     }
 }
 

@@ -10,12 +10,13 @@ use super::kinematics::division_by_zero;
 use super::linear::ImplicitMotion;
 use super::lower::Lowering;
 use super::reactions;
+use super::switches::switches;
 use super::symbols::ids;
 use crate::program::{Arguments, Array, Function, FunctionKind, Layout, Program};
 use crate::symbolic::Expr;
 
 /// All functions, in the order of emitted code.
-pub const ALL: [FunctionKind; 12] = [
+pub const ALL: [FunctionKind; 13] = [
     FunctionKind::Kinematics,
     FunctionKind::AccelerationEnergy,
     FunctionKind::MassMatrix,
@@ -28,9 +29,11 @@ pub const ALL: [FunctionKind; 12] = [
     FunctionKind::ConstraintResidual,
     FunctionKind::ConstraintForces,
     FunctionKind::Outputs,
+    FunctionKind::Switches,
 ];
 
-/// The program of a derivation, with the functions `kinds`.
+/// The program of a derivation, with the functions `kinds`. Without outputs or switches there is no
+/// function for them.
 pub fn program(
     mut derivation: Derivation,
     mechanism: &Mechanism,
@@ -38,10 +41,11 @@ pub fn program(
 ) -> Outcome<Program> {
     let mut functions = Vec::with_capacity(kinds.len());
     for &kind in kinds {
-        functions.push(Function {
-            kind,
-            results: derivation.results(mechanism, kind)?,
-        });
+        let results = derivation.results(mechanism, kind)?;
+        let may_lack = matches!(kind, FunctionKind::Outputs | FunctionKind::Switches);
+        if !may_lack || results.iter().any(|array| !array.entries.is_empty()) {
+            functions.push(Function { kind, results });
+        }
     }
     let signals = tabulated_inputs(mechanism);
     let symbols = &derivation.symbols;
@@ -153,6 +157,11 @@ impl Derivation {
                     values.push(value);
                 }
                 vec![array("outputs", Layout::Outputs, values)]
+            }
+            FunctionKind::Switches => {
+                let rates = self.rates();
+                let switches = switches(&mut self.algebra.graph, &self.symbols, &rates);
+                vec![array("switches", Layout::Vector(switches.len()), switches)]
             }
         })
     }

@@ -18,6 +18,7 @@ pub mod loads;
 pub mod lower;
 pub mod motion;
 pub mod reactions;
+pub mod switches;
 pub mod symbols;
 pub mod time;
 

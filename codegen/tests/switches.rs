@@ -1,0 +1,130 @@
+//! Relations of time inside a spec: found by the derivation, landed on by the integrators.
+
+// What cannot be derived or simulated fails the test.
+#![allow(clippy::unwrap_used)]
+
+use appell_codegen::compile;
+use appell_codegen::emit::{Options, emit};
+use appell_codegen::interpreted::InterpretedModel;
+use appell_codegen::mechanics::assemble::ALL;
+use appell_codegen::program::{FunctionKind, Program};
+use appell_runtime::Simulation;
+use appell_runtime::model::Model;
+use appell_runtime::simulate::Method;
+
+/// A carriage of 1 kg under a force that is switched.
+fn carriage(force: &str) -> Program {
+    let text = format!(
+        "[mechanism]\nname = 'carriage'\ntitle = 'carriage'\n\
+         [parameters]\nm = {{ value = 1, unit = 'kg' }}\nt_brake = {{ value = 0.3, unit = 's' }}\n\
+         F_0 = {{ value = 2, unit = 'N' }}\nrate = {{ value = 1, unit = '1/s' }}\n\
+         [coordinates]\nx = {{ unit = 'm' }}\n\
+         [points]\nC = {{ from = 'O', in = 'ground', at = ['x', 0, 0] }}\n\
+         [bodies]\nb = {{ centre = 'C', mass = 'm' }}\n\
+         [pseudo_velocities]\nv = {{ value = 'dot(x)', unit = 'm/s' }}\n\
+         [loads]\npush = {{ kind = 'force', on = 'C', in = 'ground', vector = ['{force}', 0, 0] }}\n"
+    );
+    compile("carriage.toml", &text, &ALL).unwrap_or_else(|report| panic!("{}", report.plain()))
+}
+
+/// Velocities of piecewise linear motions are exact up to rounding.
+const ROUNDING: f64 = 1e-14;
+
+/// The motion for one second, without a rejected step.
+fn assert_exact(model: &dyn Model, velocity: f64, stops: &[f64]) {
+    for method in [Method::Dop853, Method::Dopri5, Method::Rk4 { step: 0.4 }] {
+        let motion = Simulation {
+            method,
+            span: [0.0, 1.0],
+            ..Simulation::new(model)
+        }
+        .run()
+        .unwrap();
+        let found = motion.last_state()[0];
+        assert!((found - velocity).abs() < ROUNDING, "{found} {velocity}");
+        assert_eq!(motion.statistics.rejected, 0);
+        for stop in stops {
+            assert!(motion.times().contains(stop), "{:?}", motion.times());
+        }
+    }
+}
+
+#[test]
+fn steps_end_exactly_where_a_relation_of_time_and_parameters_changes() {
+    for force in [
+        "if(t < t_brake, F_0, -F_0)",
+        "if(t_brake >= t, F_0, -F_0)",
+        "F_0*sign(t_brake - t)",
+    ] {
+        let program = carriage(force);
+        assert_eq!(program.switch_len(), 1, "{force}");
+        let model = InterpretedModel::new(program);
+        assert_exact(&model, 2.0 * 0.3 - 2.0 * 0.7, &[]);
+    }
+    let model = InterpretedModel::new(carriage("if(t < t_brake, F_0, -F_0)"));
+    assert_exact(&model, -0.8, &[0.3]);
+}
+
+#[test]
+fn a_square_wave_is_integrated_exactly() {
+    // Half a period is half a second: up, then down.
+    let model = InterpretedModel::new(carriage("if(sin(2*pi*rate*t) >= 0, F_0, 0*F_0)"));
+    assert_exact(&model, 1.0, &[]);
+}
+
+#[test]
+fn kinks_count_and_repeated_relations_count_once() {
+    let both = "if(t < t_brake, F_0, 0*F_0) + if(t < t_brake, 3*F_0, F_0)";
+    assert_eq!(carriage(both).switch_len(), 1);
+    assert_eq!(carriage("F_0*rate*abs(t - t_brake)").switch_len(), 1);
+}
+
+#[test]
+fn what_states_or_inputs_decide_is_no_switch() {
+    let program = carriage("if(x < 0 [m], F_0, -F_0)*(1 + rate*t)");
+    assert_eq!(program.switch_len(), 0);
+    let kinds: Vec<FunctionKind> = program.functions.iter().map(|f| f.kind).collect();
+    assert!(!kinds.contains(&FunctionKind::Switches));
+    let model = InterpretedModel::new(program);
+    assert_eq!(model.switch_len(), 0);
+}
+
+#[test]
+fn emitted_code_offers_its_switches() {
+    let text = |force| {
+        let emitted = emit(&carriage(force), &Options::default()).unwrap();
+        emitted.source
+    };
+    let switched = text("if(t < t_brake, F_0, -F_0)");
+    for line in [
+        "pub fn switches<T: Real>(",
+        "fn switch_len(&self) -> usize {",
+        "&self::switches(at.t, &parameters(&at), &state(&at), &inputs(&at))",
+    ] {
+        assert!(switched.contains(line), "{line}\n{switched}");
+    }
+    assert!(!text("F_0").contains("switch"));
+    // A spec without outputs has no type for them either.
+    assert!(!text("F_0").contains("Outputs<T>"));
+}
+
+#[cfg(feature = "jit")]
+#[test]
+fn machine_code_offers_the_same_switches() {
+    let program = carriage("if(t < t_brake, F_0, -F_0)");
+    let model = appell_codegen::jit::JitModel::new(&program).unwrap();
+    assert_eq!(model.switch_len(), 1);
+    for (t, expected) in [(0.0, 1.0), (0.3, 0.0), (0.3f64.next_down(), 1.0)] {
+        let (x, p) = ([0.0; 2], model.info().default_parameters());
+        let at = appell_runtime::model::At {
+            t,
+            x: &x,
+            u: &[],
+            p: &p,
+        };
+        let mut switches = [f64::NAN];
+        model.switches(at, &mut switches);
+        assert!((switches[0] - expected).abs() < ROUNDING, "{t}");
+    }
+    assert_exact(&model, -0.8, &[0.3]);
+}

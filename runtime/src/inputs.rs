@@ -34,7 +34,7 @@ impl InputSource for ZeroInputs {
     }
 }
 
-/// A function of time and state with switching times.
+/// A function of time and state, such as a feedback law, with switching times.
 #[derive(Debug, Clone)]
 pub struct SwitchedInputs<F> {
     /// Writes the inputs, see [`InputSource::inputs`].
@@ -103,85 +103,6 @@ impl InputSource for TabulatedInputs {
         times.sort_by(f64::total_cmp);
         times.dedup();
         times
-    }
-}
-
-/// A wanted value as a function of time, in pieces.
-pub struct Reference {
-    /// The value at t in s.
-    pub value: Box<dyn Fn(f64) -> f64 + Send + Sync>,
-    /// Times in s between which it is smooth.
-    pub switching_times: Vec<f64>,
-}
-
-impl Reference {
-    /// A value that never changes.
-    pub fn constant(value: f64) -> Self {
-        Self {
-            value: Box::new(move |_| value),
-            switching_times: Vec::new(),
-        }
-    }
-
-    /// A function of time that is smooth between `switching_times`.
-    pub fn new(
-        switching_times: Vec<f64>,
-        value: impl Fn(f64) -> f64 + Send + Sync + 'static,
-    ) -> Self {
-        Self {
-            value: Box::new(value),
-            switching_times,
-        }
-    }
-}
-
-impl std::fmt::Debug for Reference {
-    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        formatter
-            .debug_struct("Reference")
-            .field("switching_times", &self.switching_times)
-            .finish_non_exhaustive()
-    }
-}
-
-/// u = u₀ − K (y − `y_des(t)`), y being some of the states.
-///
-/// Inputs without an offset start from 0, those without a full row of gains are not fed back, and
-/// a state that does not exist makes the inputs NaN.
-#[derive(Debug)]
-pub struct StateFeedback {
-    /// u₀, one number per input.
-    pub offset: Vec<f64>,
-    /// K row by row, one row per input, one column per selected state.
-    pub gains: Vec<f64>,
-    /// Indices of the selected states.
-    pub selected: Vec<usize>,
-    /// Their wanted values.
-    pub references: Vec<Reference>,
-}
-
-impl InputSource for StateFeedback {
-    fn inputs(&self, t: f64, x: &[f64], u: &mut [f64]) {
-        let columns = self.selected.len();
-        let offsets = self.offset.iter().copied().chain(std::iter::repeat(0.0));
-        for (u, offset) in u.iter_mut().zip(offsets) {
-            *u = offset;
-        }
-        for (column, (&state, reference)) in self.selected.iter().zip(&self.references).enumerate()
-        {
-            let deviation = x.get(state).copied().unwrap_or(f64::NAN) - (reference.value)(t);
-            for (u, gains) in u.iter_mut().zip(self.gains.chunks_exact(columns)) {
-                *u -= gains[column] * deviation;
-            }
-        }
-    }
-
-    fn switching_times(&self) -> Vec<f64> {
-        self.references
-            .iter()
-            .flat_map(|reference| &reference.switching_times)
-            .copied()
-            .collect()
     }
 }
 

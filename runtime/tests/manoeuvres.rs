@@ -8,7 +8,7 @@
 mod common;
 
 use appell_runtime::figure::Figure;
-use appell_runtime::inputs::{Reference, StateFeedback};
+use appell_runtime::inputs::{InputSource, SwitchedInputs};
 use appell_runtime::integrate::{Cause, Options};
 use appell_runtime::model::At;
 use appell_runtime::simulate::{Method, Sampling, Simulation, SimulationError};
@@ -164,34 +164,28 @@ fn turn_gains(speed: f64) -> [f64; 5] {
 }
 
 /// From 0 to −2 `amplitude` between t = 2 s and t = 7 s along a cosine.
-fn cosine_ramp(amplitude: f64) -> Reference {
-    Reference::new(vec![2.0, 7.0], move |t| {
-        if t < 2.0 {
-            0.0
-        } else if t < 7.0 {
-            amplitude * ((PI * (t - 2.0) / 5.0).cos() - 1.0)
-        } else {
-            -2.0 * amplitude
-        }
-    })
+fn cosine_ramp(amplitude: f64, t: f64) -> f64 {
+    if t < 2.0 {
+        0.0
+    } else if t < 7.0 {
+        amplitude * ((PI * (t - 2.0) / 5.0).cos() - 1.0)
+    } else {
+        -2.0 * amplitude
+    }
 }
 
 const SELECTED: [usize; 6] = [0, 4, 3, 5, 6, 9];
 
-fn feedback(gains: &[f64], amplitude: f64) -> StateFeedback {
-    let last = gains.len() - 1;
-    let reference = |i| {
-        if i == last {
-            cosine_ramp(amplitude)
-        } else {
-            Reference::constant(0.0)
-        }
-    };
-    StateFeedback {
-        offset: vec![0.0],
-        gains: gains.to_vec(),
-        selected: SELECTED[..gains.len()].to_vec(),
-        references: (0..gains.len()).map(reference).collect(),
+/// u = −K (y − y_des) with y_des = 0 but for the last selected state, which follows the ramp.
+fn feedback(gains: &[f64], amplitude: f64) -> impl InputSource {
+    let selected = &SELECTED[..gains.len()];
+    SwitchedInputs {
+        function: move |t: f64, x: &[f64], u: &mut [f64]| {
+            let sum: f64 = gains.iter().zip(selected).map(|(k, &i)| k * x[i]).sum();
+            let last = gains.last().copied().unwrap_or_default();
+            u[0] = last * cosine_ramp(amplitude, t) - sum;
+        },
+        switching_times: vec![2.0, 7.0],
     }
 }
 
@@ -202,7 +196,7 @@ const FINAL_STATE_TOLERANCE: f64 = 1e-8;
 /// and a distance τ up to 0.1 ms from the peak.
 const GREATEST_TOLERANCE: f64 = 1e-6;
 
-fn check(speed: f64, feedback: &StateFeedback, final_state: [f64; 10], greatest: [f64; 3]) {
+fn check(speed: f64, feedback: &dyn InputSource, final_state: [f64; 10], greatest: [f64; 3]) {
     let model = unicycle(speed);
     let trajectory = Simulation {
         inputs: feedback,
@@ -288,7 +282,8 @@ fn the_turn_at_five_metres_per_second_ends_where_published() {
 #[test]
 fn a_figure_keeps_small_motions_apart_from_large_ones() {
     let model = unicycle(5.0);
-    let feedback = feedback(&turn_gains(5.0), FRAC_PI_4);
+    let gains = turn_gains(5.0);
+    let feedback = feedback(&gains, FRAC_PI_4);
     let trajectory = Simulation {
         inputs: &feedback,
         ..Simulation::new(&model)

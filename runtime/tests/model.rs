@@ -2,7 +2,6 @@
 
 mod common;
 
-use appell_runtime::inputs::{InputSource, Reference, StateFeedback};
 use appell_runtime::model::{Interpolation, ModelInfo, Quantity, SignalTable};
 use common::{in_unit, si};
 use std::borrow::Cow;
@@ -69,23 +68,4 @@ fn names_lead_to_positions_and_units_to_numbers() {
         (x.to_unit(0.25).to_string(), x.to_si(250.0).to_string()),
         ("250".into(), "0.25".into())
     );
-}
-
-#[test]
-fn state_feedback_follows_its_references_and_never_panics() {
-    let mut feedback = StateFeedback {
-        offset: vec![10.0, 20.0],
-        gains: vec![1.0, 2.0, 3.0, 4.0],
-        selected: vec![1, 0],
-        references: vec![Reference::constant(1.0), Reference::new(vec![5.0], |t| t)],
-    };
-    let mut u = [0.0; 2];
-    feedback.inputs(0.5, &[1.0, 3.0], &mut u);
-    assert_eq!(u.map(|u| u.to_string()), ["7", "12"]);
-    assert_eq!(feedback.switching_times(), [5.0]);
-    feedback.gains.pop();
-    feedback.offset.pop();
-    feedback.selected[0] = 9;
-    feedback.inputs(0.5, &[1.0, 3.0], &mut u);
-    assert_eq!(u.map(|u| u.to_string()), ["NaN", "0"]);
 }

@@ -6,7 +6,7 @@ use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 
 use appell_codegen::symbolic::{Graph, evaluate};
 use appell_models::Shipped;
-use appell_runtime::inputs::{Reference, StateFeedback};
+use appell_runtime::inputs::SwitchedInputs;
 use appell_runtime::integrate::Options;
 use appell_runtime::model::Model;
 use appell_runtime::simulate::{Sampling, Simulation};
@@ -197,17 +197,18 @@ fn closed_loop(gains: Vec<f64>, speed: f64, amplitude: f64, end: f64) -> Traject
     let model = model("unicycle");
     let info = model.info();
     let fed_back = ["omega_1", "theta", "sigma", "r", "psi", "y_G"];
-    let mut references: Vec<Reference> = gains.iter().map(|_| Reference::constant(0.0)).collect();
-    *references.last_mut().unwrap() = Reference::new(vec![2.0, 7.0], smooth_step(amplitude, end));
     let selected = fed_back[..gains.len()]
         .iter()
-        .map(|name| info.state_index(name).unwrap())
-        .collect();
-    let feedback = StateFeedback {
-        offset: vec![0.0],
-        gains,
-        selected,
-        references,
+        .map(|name| info.state_index(name).unwrap());
+    let terms: Vec<(f64, usize)> = gains.into_iter().zip(selected).collect();
+    let &(last, _) = terms.last().unwrap();
+    let path = smooth_step(amplitude, end);
+    // u = −K (y − y_des), where the last state follows the path and the others stay at zero.
+    let feedback = SwitchedInputs {
+        function: |t: f64, x: &[f64], u: &mut [f64]| {
+            u[0] = last * path(t) - terms.iter().map(|(k, i)| k * x[*i]).sum::<f64>();
+        },
+        switching_times: vec![2.0, 7.0],
     };
     let mut simulation = Simulation::new(model);
     simulation.initial_state = state(model, &[("omega_2", speed / 0.3)]);

@@ -137,6 +137,24 @@ pub enum Interpolation {
     Cubic,
 }
 
+impl Interpolation {
+    /// How many of the signal's derivatives equations may contain: an imposed position enters with
+    /// its velocity and acceleration, an imposed velocity with its acceleration.
+    pub const fn derivatives(self) -> u8 {
+        match self {
+            Self::Hold => 0,
+            Self::Linear => 1,
+            Self::Cubic => 2,
+        }
+    }
+
+    /// Name of a derivative of a signal: `lift_dot`, `lift_ddot`.
+    pub fn derivative_name(signal: &str, order: u8) -> String {
+        let again = "d".repeat(usize::from(order.saturating_sub(1)));
+        format!("{signal}_{again}dot")
+    }
+}
+
 /// A frame, turned from its parent by a chain of rotations about coordinate axes.
 #[derive(Debug, Clone)]
 pub struct Frame {

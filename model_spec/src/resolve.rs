@@ -1,5 +1,6 @@
 //! Syntax tree to mechanism: names become references, and every unit is checked.
 
+mod arithmetic;
 mod bodies;
 mod constraints;
 mod dimensions;
@@ -39,6 +40,7 @@ pub fn resolve(ast: &SpecAst, file: &str, text: &str) -> (Mechanism, Vec<Diagnos
     let signals = resolver.signals();
     resolver.announce("pseudo_velocities");
     resolver.announce("outputs");
+    resolver.derivative_names(&signals);
     let pseudo_velocities = resolver.pseudo_velocities(&coordinates);
     let frames = resolver.frames();
     let points = resolver.points();

@@ -156,3 +156,86 @@ fn a_literal_zero_fits_every_unit() {
         assert!(load("probe.toml", &text).is_ok(), "{text}");
     }
 }
+
+/// What is told of an output; empty where it is accepted.
+fn finding(output: &str) -> String {
+    match load("probe.toml", &spec(output)) {
+        Ok(_) => String::new(),
+        Err(report) => {
+            let found = report.diagnostics();
+            assert_eq!(found.len(), 1, "{report}");
+            let help = found[0].help.as_deref();
+            format!("{}; {}", found[0].message, help.unwrap_or("-"))
+        }
+    }
+}
+
+#[test]
+fn units_are_checked_through_every_function() {
+    let number = "a pure number or an angle";
+    let metres = "write the unit after the number: `[m]`";
+    for (text, expected) in [
+        ("hypot(0, x) + L", String::new()),
+        ("sqrt(x^3)*x^0.5/x", String::new()),
+        ("(x^3)^(1/3) + L", String::new()),
+        ("smooth_min(x, L, 1 [mm]) + max(x, 0)", String::new()),
+        ("sign(x)*L + abs(x)", String::new()),
+        ("ln(x/L) + theta", String::new()),
+        (
+            "x + 1",
+            format!("cannot add a length and {number}; {metres}"),
+        ),
+        (
+            "if(x < 1, x, L)",
+            format!("cannot compare a length and {number}; {metres}"),
+        ),
+        (
+            "if(x < L, x, theta)",
+            format!("cannot choose between a length and {number}; -"),
+        ),
+        (
+            "hypot(x, theta)",
+            format!("cannot combine a length and {number}; -"),
+        ),
+        (
+            "atan2(x, theta)",
+            format!("cannot compare a length and {number}; -"),
+        ),
+        (
+            "smooth_max(x, L, 1)",
+            format!("cannot combine a length and {number}; {metres}"),
+        ),
+        (
+            "smooth_sign(x, 0.1)",
+            format!("cannot compare a length and {number}; {metres}"),
+        ),
+        ("exp(x)", format!("`exp` takes {number}, found a length; -")),
+        (
+            "2^x",
+            format!("an exponent must be {number}, found a length; -"),
+        ),
+        (
+            "x^0.333333",
+            "the unit of this expression has too large an exponent; write the exponent as a \
+             fraction, such as `1/3`"
+                .to_owned(),
+        ),
+        (
+            "x^pi",
+            "the exponent of a quantity with a unit must be a number; divide the base by a \
+             reference value of the same unit first"
+                .to_owned(),
+        ),
+        (
+            "dot(L)",
+            "`L` is not a coordinate; `dot` takes the name of one; a parameter is constant"
+                .to_owned(),
+        ),
+    ] {
+        assert_eq!(finding(&format!("\"{text}\"")), expected, "{text}");
+    }
+    assert_eq!(
+        finding("\"x*L\", unit = \"m\""),
+        "`out` is declared as a length, its value is an area; write `unit = \"m^2\"`"
+    );
+}

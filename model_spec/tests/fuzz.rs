@@ -1,4 +1,7 @@
-//! Damaged specs are refused or read, never with a panic and never slowly.
+//! Damaged specs are refused or read, never with a panic, slowly, or with much memory.
+//!
+//! `cargo test -p appell-spec --test fuzz -- --nocapture` tells the slowest text and the peak of
+//! memory.
 
 #![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -13,6 +16,8 @@ use appell_spec::{Report, load};
 const MUTATED_BYTES: usize = 3_000_000;
 /// Far below a second, with room for a busy machine.
 const SLOWEST: Duration = Duration::from_millis(500);
+/// Most memory of the whole test, in MB; the texts themselves have at most 2 MB.
+const MOST_MEMORY: u64 = 500;
 /// How often a slow text may try again: the machine may have been busy with something else.
 const ATTEMPTS: usize = 4;
 
@@ -103,8 +108,33 @@ fn exercise(text: &str) -> Duration {
     took
 }
 
-fn is_quick(text: &str) -> bool {
-    (0..ATTEMPTS).any(|_| exercise(text) < SLOWEST)
+/// How long a text takes to read, tried again while that is too long.
+fn duration(text: &str) -> Duration {
+    let mut shortest = exercise(text);
+    for _ in 1..ATTEMPTS {
+        if shortest < SLOWEST {
+            break;
+        }
+        shortest = shortest.min(exercise(text));
+    }
+    shortest
+}
+
+/// Largest memory that this process has had so far, in MB, where the system tells.
+fn peak_memory() -> Option<u64> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = status
+        .lines()
+        .find_map(|line| line.strip_prefix("VmHWM:"))?;
+    let kilobytes: u64 = line.trim().strip_suffix(" kB")?.parse().ok()?;
+    Some(kilobytes / 1000)
+}
+
+/// Tells what the texts took, and that it was not much.
+fn is_frugal(texts: usize, slowest: Duration) {
+    let peak = peak_memory();
+    println!("{texts} texts, slowest {slowest:?}, peak of memory {peak:?} MB");
+    assert!(peak.is_none_or(|peak| peak < MOST_MEMORY), "{peak:?} MB");
 }
 
 #[test]
@@ -113,6 +143,7 @@ fn millions_of_damaged_bytes_do_no_harm() {
     let mut dice = Dice(20);
     let mut changed = 0;
     let mut round = 0;
+    let mut slowest = Duration::ZERO;
     while changed < MUTATED_BYTES {
         let mut bytes = specs[round % specs.len()].clone();
         // From one slip of the pen to a wreck.
@@ -121,9 +152,12 @@ fn millions_of_damaged_bytes_do_no_harm() {
             changed += mutate(&mut bytes, &specs, &mut dice);
         }
         let text = String::from_utf8_lossy(&bytes);
-        assert!(is_quick(&text), "slow:\n{text}");
+        let took = duration(&text);
+        assert!(took < SLOWEST, "{took:?}:\n{text}");
+        slowest = slowest.max(took);
         round += 1;
     }
+    is_frugal(round, slowest);
 }
 
 #[test]
@@ -164,9 +198,13 @@ fn hostile_texts_are_refused_quickly() {
         .unwrap();
     }
     texts.push(chain);
-    for text in texts {
+    let mut slowest = Duration::ZERO;
+    for text in &texts {
         let start: String = text.chars().take(40).collect();
-        assert!(is_quick(&text), "slow: {start}");
-        assert!(load("hostile.toml", &text).is_err(), "{start}");
+        let took = duration(text);
+        assert!(took < SLOWEST, "{took:?}: {start}");
+        assert!(load("hostile.toml", text).is_err(), "{start}");
+        slowest = slowest.max(took);
     }
+    is_frugal(texts.len(), slowest);
 }

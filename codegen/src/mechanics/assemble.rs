@@ -259,19 +259,12 @@ impl Derivation {
     }
 }
 
-/// Signals with those of their derivatives that equations may contain: an imposed position enters
-/// with its velocity and acceleration, an imposed velocity with its acceleration.
+/// Signals with those of their derivatives that equations may contain.
 fn tabulated_inputs(mechanism: &Mechanism) -> Vec<(usize, u8)> {
-    let highest = |signal: &Signal| match signal.interpolation {
-        mechanism::Interpolation::Hold => 0,
-        mechanism::Interpolation::Linear => 1,
-        mechanism::Interpolation::Cubic => 2,
-    };
-    mechanism
-        .signals
-        .iter()
-        .enumerate()
-        .flat_map(|(signal, table)| (0..=highest(table)).map(move |order| (signal, order)))
+    let orders = |signal: &Signal| 0..=signal.interpolation.derivatives();
+    let signals = mechanism.signals.iter().enumerate();
+    signals
+        .flat_map(|(index, signal)| orders(signal).map(move |order| (index, order)))
         .collect()
 }
 
@@ -297,7 +290,7 @@ fn info(
     let tabulated = signals.iter().map(|&(signal, order)| {
         let mut input = quantity(&mechanism.signals[signal].label, 0.0, everywhere);
         if order > 0 {
-            input.name = format!("{}_{}dot", input.name, "d".repeat(usize::from(order) - 1)).into();
+            input.name = mechanism::Interpolation::derivative_name(&input.name, order).into();
             input.unit = format!("({})/s^{order}", input.unit).into();
         }
         input

@@ -7,7 +7,7 @@ use num_rational::BigRational;
 use num_traits::Num;
 use toml::de::DeValue;
 
-use crate::ast::{ExprAst, ExprAstKind, Spanned, ValueAst};
+use crate::ast::{ExprAst, ExprAstKind, ItemAst, Spanned, ValueAst};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::expr::Span;
 use crate::language::{Form, Key, Sense, Word};
@@ -64,31 +64,36 @@ impl Reader<'_> {
             }
             Form::Word(words) => self.word(key, words, value).map(ValueAst::Word),
             Form::Table(keys) => self.inner_table(key.name, keys, value),
-            Form::Tables(keys) => {
-                let DeValue::Array(array) = value.get_ref() else {
-                    self.wrong_type(value, "a list of tables");
-                    return None;
-                };
-                if array.is_empty() || array.len() > MAX_TURNS {
-                    self.tell(
-                        Diagnostic::error(
-                            Code::LimitExceeded,
-                            format!("`{}` has between 1 and {MAX_TURNS} entries", key.name),
-                        )
-                        .at(value.span(), format!("{} entries", array.len())),
-                    );
-                    return None;
-                }
-                let tables = array
-                    .iter()
-                    .map(|v| self.table_item(key.name, keys, v))
-                    .collect::<Vec<_>>();
-                tables
-                    .into_iter()
-                    .collect::<Option<Vec<_>>>()
-                    .map(ValueAst::Tables)
-            }
+            Form::Tables(keys) => self.tables(key, keys, value).map(ValueAst::Tables),
         }
+    }
+
+    fn tables(
+        &mut self,
+        key: &Key,
+        keys: &'static [Key],
+        value: &TomlValue<'_>,
+    ) -> Option<Vec<ItemAst>> {
+        let DeValue::Array(array) = value.get_ref() else {
+            self.wrong_type(value, "a list of tables");
+            return None;
+        };
+        if array.is_empty() || array.len() > MAX_TURNS {
+            self.tell(
+                Diagnostic::error(
+                    Code::LimitExceeded,
+                    format!("`{}` has between 1 and {MAX_TURNS} entries", key.name),
+                )
+                .at(value.span(), format!("{} entries", array.len())),
+            );
+            return None;
+        }
+        // Every table is read before one that is refused refuses them all.
+        let tables: Vec<Option<ItemAst>> = array
+            .iter()
+            .map(|v| self.table_item(key.name, keys, v))
+            .collect();
+        tables.into_iter().collect()
     }
 
     fn string<'v>(&mut self, value: &'v TomlValue<'_>, wanted: &str) -> Option<&'v str> {
@@ -148,12 +153,14 @@ impl Reader<'_> {
         let result = match value.get_ref() {
             DeValue::Integer(_) | DeValue::Float(_) => number_of(value.get_ref()),
             other => {
-                let quoted = other
-                    .as_str()
-                    .is_some_and(|text| exact(text.trim()).is_ok());
                 self.wrong_type(value, "a number");
-                if quoted && let Some(last) = self.findings.last_mut() {
-                    last.help = Some("write the number without quotes".to_owned());
+                if let (Some(text), Some(last)) = (other.as_str(), self.findings.last_mut()) {
+                    let help = if exact(text.trim()).is_ok() {
+                        "write the number without quotes"
+                    } else {
+                        "write a number alone; it is read in the unit of the quantity"
+                    };
+                    last.help = Some(help.to_owned());
                 }
                 return None;
             }

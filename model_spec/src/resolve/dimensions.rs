@@ -52,6 +52,15 @@ impl Typed {
     pub(super) fn span(&self) -> Span {
         self.expr.span.clone()
     }
+
+    /// What to write where a bare number stands for a quantity.
+    fn missing_unit(&self, wanted: Dimension) -> Option<String> {
+        let bare = self.constant.is_some() && self.dim == Dim::NONE;
+        bare.then(|| {
+            let unit = Unit::si(wanted).text;
+            format!("write the unit after the number: `[{unit}]`")
+        })
+    }
 }
 
 impl Dim {
@@ -120,8 +129,6 @@ impl Resolver<'_> {
         } else {
             format!("have the unit `{unit}`")
         };
-        let bare_number = typed.constant.is_some() && found.is_none();
-        let help = bare_number.then(|| format!("write the unit after the number: `[{unit}]`"));
         self.tell(
             Diagnostic::error(
                 Code::UnitMismatch,
@@ -132,7 +139,7 @@ impl Resolver<'_> {
                 ),
             )
             .at(typed.span(), unit_words(found))
-            .maybe_help(help),
+            .maybe_help(typed.missing_unit(wanted)),
         );
     }
 
@@ -155,7 +162,8 @@ impl Resolver<'_> {
                         ),
                     )
                     .at(b.span(), unit_words(right))
-                    .at(a.span(), unit_words(left)),
+                    .at(a.span(), unit_words(left))
+                    .maybe_help(b.missing_unit(left).or_else(|| a.missing_unit(right))),
                 );
                 Dim::Unknown
             }

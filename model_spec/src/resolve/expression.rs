@@ -1,23 +1,20 @@
-//! Expressions: names become references; units, degrees and sizes are checked on the way.
+//! Expressions: names become references; units and degrees are checked on the way.
 
 use num_bigint::BigInt;
 use num_rational::BigRational;
-use num_traits::{One, Pow, Signed, ToPrimitive, Zero};
+use num_traits::{One, Zero};
 
 use crate::ast::{ExprAst, ExprAstKind, Spanned};
 use crate::diagnostic::{Code, Diagnostic};
-use crate::expr::{BinaryOp, Expr, ExprKind, Function, Quantity, Span};
-use crate::limits::{MAX_DEGREE, MAX_EXPONENT};
+use crate::expr::{BinaryOp, Expr, ExprKind, Function, Quantity, Relation, Span};
+use crate::mechanism::Interpolation;
 use crate::suggest::{did_you_mean, shown};
 use crate::units::{Dimension, Unit};
 
 use super::Resolver;
-use super::dimensions::{Dim, Typed, exponent};
+use super::dimensions::{Dim, Typed};
 use super::names::Meaning;
 use super::place::Place;
-
-/// Longest exact constant, in bits.
-const MAX_BITS: u64 = 4096;
 
 impl Resolver<'_> {
     /// Resolves and checks one expression.
@@ -57,27 +54,39 @@ impl Resolver<'_> {
                 compared,
                 branches,
             } => {
-                let [a, b] = compared.each_ref().map(|e| self.elaborate(e, place));
-                let [then, otherwise] = branches.each_ref().map(|e| self.elaborate(e, place));
-                self.unify(&a, &b, "compare");
-                self.no_rates(&[&a, &b], "a comparison", place);
-                let dim = self.unify(&then, &otherwise, "choose between");
-                let degree = self.same_degree(&then, &otherwise, place);
-                Typed {
-                    size: then.size.max(otherwise.size),
-                    expr: Expr {
-                        kind: ExprKind::Choice {
-                            relation: *relation,
-                            compared: Box::new([a.expr, b.expr]),
-                            branches: Box::new([then.expr, otherwise.expr]),
-                        },
-                        span,
-                    },
-                    dim,
-                    degree,
-                    constant: None,
-                }
+                let compared = compared.each_ref().map(|e| self.elaborate(e, place));
+                let branches = branches.each_ref().map(|e| self.elaborate(e, place));
+                self.choice(*relation, compared, branches, span, place)
             }
+        }
+    }
+
+    fn choice(
+        &mut self,
+        relation: Relation,
+        [a, b]: [Typed; 2],
+        [then, otherwise]: [Typed; 2],
+        span: Span,
+        place: &Place,
+    ) -> Typed {
+        self.unify(&a, &b, "compare");
+        self.no_rates(&[&a, &b], "a comparison", place);
+        self.jumps(&[&a, &b], &span, place);
+        let dim = self.unify(&then, &otherwise, "choose between");
+        let degree = self.same_degree(&then, &otherwise, place);
+        Typed {
+            size: then.size.max(otherwise.size),
+            expr: Expr {
+                kind: ExprKind::Choice {
+                    relation,
+                    compared: Box::new([a.expr, b.expr]),
+                    branches: Box::new([then.expr, otherwise.expr]),
+                },
+                span,
+            },
+            dim,
+            degree,
+            constant: None,
         }
     }
 
@@ -119,7 +128,9 @@ impl Resolver<'_> {
         self.used.add(quantity);
         if !place.allows(quantity) {
             self.not_allowed(quantity, name, &span, place);
-        } else if let Quantity::Signal(id) = quantity {
+            return Typed::poisoned(span);
+        }
+        if let Quantity::Signal(id) = quantity {
             self.smooth_enough(id, &span, place);
         }
         Typed {
@@ -143,12 +154,22 @@ impl Resolver<'_> {
                     let shown = format!("dot({text})");
                     return self.quantity(Quantity::Rate(id), dimension, &shown, span, place);
                 }
+                let help = match named.meaning {
+                    Meaning::Quantity(Quantity::Parameter(_)) => "a parameter is constant",
+                    Meaning::Quantity(Quantity::PseudoVelocity(_)) => {
+                        "accelerations are results; no expression depends on them"
+                    }
+                    Meaning::Quantity(_) | Meaning::Output => {
+                        "define its rate as a quantity of its own"
+                    }
+                };
                 self.tell(
                     Diagnostic::error(
                         Code::NotAllowedHere,
                         format!("`{text}` is not a coordinate; `dot` takes the name of one"),
                     )
-                    .at(name.span.clone(), ""),
+                    .at(name.span.clone(), "")
+                    .help(help),
                 );
             }
             None => {
@@ -217,178 +238,37 @@ impl Resolver<'_> {
         );
     }
 
-    fn binary(&mut self, op: BinaryOp, a: Typed, b: Typed, span: Span, place: &Place) -> Typed {
-        if op == BinaryOp::Power {
-            return self.power(a, b, span, place);
+    /// Warns of a choice that changes its branch while the mechanism moves.
+    fn jumps(&mut self, compared: &[&Typed], span: &Span, place: &Place) {
+        if !place.smooth.admits(Interpolation::Hold) && compared.iter().any(|e| moves(&e.expr)) {
+            let help = "let both values meet without a step in value or slope";
+            self.may_jump("if", span, place, help);
         }
-        let constants = a.constant.as_ref().zip(b.constant.as_ref());
-        let (dim, degree, size, constant) = match op {
-            BinaryOp::Add => {
-                let dim = self.unify(&a, &b, "add");
-                let degree = self.same_degree(&a, &b, place);
-                (
-                    dim,
-                    degree,
-                    a.size.max(b.size),
-                    constants.map(|(a, b)| a + b),
-                )
-            }
-            BinaryOp::Subtract => {
-                let dim = self.unify(&a, &b, "subtract");
-                let degree = self.same_degree(&a, &b, place);
-                (
-                    dim,
-                    degree,
-                    a.size.max(b.size),
-                    constants.map(|(a, b)| a - b),
-                )
-            }
-            BinaryOp::Multiply => {
-                let dim = a.dim.product(b.dim, |a, b| a.times(b).ok());
-                let degree = self.product_degree(&a, &b, place);
-                let dim = self.known_dimension(dim, &span);
-                (dim, degree, a.size + b.size, constants.map(|(a, b)| a * b))
-            }
-            BinaryOp::Divide | BinaryOp::Power => {
-                if b.dim == Dim::Any || b.constant.as_ref().is_some_and(Zero::is_zero) {
-                    self.tell(
-                        Diagnostic::error(Code::DivisionByZero, "division by zero")
-                            .at(b.span(), "this is zero"),
-                    );
-                    return Typed::poisoned(span);
-                }
-                self.no_rates(&[&b], "a divisor", place);
-                let dim = a.dim.product(b.dim, |a, b| a.over(b).ok());
-                let dim = self.known_dimension(dim, &span);
-                (
-                    dim,
-                    a.degree,
-                    a.size + b.size,
-                    constants.map(|(a, b)| a / b),
-                )
-            }
-        };
-        let typed = Typed {
-            expr: Expr {
-                kind: ExprKind::Binary(op, Box::new(a.expr), Box::new(b.expr)),
-                span,
-            },
-            dim,
-            degree,
-            constant: constant.filter(is_short),
-            size,
-        };
-        self.bounded(typed)
     }
 
-    fn known_dimension(&mut self, dim: Option<Dim>, span: &Span) -> Dim {
-        dim.unwrap_or_else(|| {
-            self.tell(
-                Diagnostic::error(
-                    Code::LimitExceeded,
-                    "the unit of this expression has too large an exponent",
-                )
-                .at(span.clone(), ""),
-            );
-            Dim::Unknown
-        })
+    /// Warns of a function that breaks the motion of its argument.
+    fn kinks(&mut self, function: Function, arguments: &[&Typed], span: &Span, place: &Place) {
+        let (course, smooth) = match function {
+            Function::Sign => (Interpolation::Hold, "smooth_sign"),
+            Function::Abs => (Interpolation::Linear, "smooth_abs"),
+            Function::Min => (Interpolation::Linear, "smooth_min"),
+            Function::Max => (Interpolation::Linear, "smooth_max"),
+            _ => return,
+        };
+        if !place.smooth.admits(course) && arguments.iter().any(|e| moves(&e.expr)) {
+            let help = format!("`{smooth}` is rounded over a width");
+            self.may_jump(function.name(), span, place, &help);
+        }
     }
 
-    /// Tells where repeated powers grow beyond reason.
-    fn bounded(&mut self, mut typed: Typed) -> Typed {
-        if typed.size > MAX_DEGREE {
-            self.tell(
-                Diagnostic::error(
-                    Code::LimitExceeded,
-                    format!("an expression has at most the degree {MAX_DEGREE}"),
-                )
-                .at(typed.span(), ""),
-            );
-            typed.size = 1;
-        }
-        typed
-    }
-
-    fn power(&mut self, a: Typed, b: Typed, span: Span, place: &Place) -> Typed {
-        self.expect(&b, Dim::NONE, &Place::constant("an exponent"));
-        if b.constant.as_ref().is_none_or(|c| !c.is_one()) {
-            self.no_rates(&[&a, &b], "a power", place);
-        }
-        let mut size = a.size;
-        let mut constant = None;
-        let dim = match (&b.constant, a.dim) {
-            (Some(value), _)
-                if value.abs() > BigRational::from_integer(BigInt::from(MAX_EXPONENT)) =>
-            {
-                self.tell(
-                    Diagnostic::error(
-                        Code::LimitExceeded,
-                        format!("an exponent is at most {MAX_EXPONENT}"),
-                    )
-                    .at(b.span(), "too large"),
-                );
-                Dim::Unknown
-            }
-            (Some(value), dim) => {
-                size = size.saturating_mul(value.abs().ceil().to_u32().unwrap_or(1).max(1));
-                if value.is_negative() && a.constant.as_ref().is_some_and(Zero::is_zero) {
-                    self.tell(
-                        Diagnostic::error(Code::DivisionByZero, "a negative power of zero")
-                            .at(a.span(), "this is zero"),
-                    );
-                    return Typed::poisoned(span);
-                }
-                constant = a
-                    .constant
-                    .as_ref()
-                    .and_then(|base| whole_power(base, value));
-                match dim {
-                    Dim::Known(d) if d.is_none() => dim,
-                    Dim::Known(d) => {
-                        let raised = exponent(value).and_then(|e| d.power(e).ok());
-                        self.known_dimension(raised.map(Dim::Known), &span)
-                    }
-                    Dim::Any if value.is_zero() => Dim::NONE,
-                    other => other,
-                }
-            }
-            (None, Dim::Known(d)) if !d.is_none() => {
-                self.exponent_not_constant(&a, d, &b);
-                Dim::Unknown
-            }
-            (None, dim) => dim,
-        };
-        if dim == Dim::Unknown {
-            // Told already; a large degree is only another side of it.
-            size = a.size;
-        }
-        let degree = if a.degree.is_none() {
-            None
-        } else {
-            degree_of_power(&a, &b)
-        };
-        let typed = Typed {
-            expr: Expr {
-                kind: ExprKind::Binary(BinaryOp::Power, Box::new(a.expr), Box::new(b.expr)),
-                span,
-            },
-            dim,
-            degree,
-            constant,
-            size,
-        };
-        self.bounded(typed)
-    }
-
-    fn exponent_not_constant(&mut self, base: &Typed, dimension: Dimension, exponent: &Typed) {
+    fn may_jump(&mut self, word: &str, span: &Span, place: &Place, help: &str) {
         self.tell(
-            Diagnostic::error(
-                Code::ExponentNotConstant,
-                "the exponent of a quantity with a unit must be a number",
+            Diagnostic::warning(
+                Code::MotionMayJump,
+                format!("`{word}` may not be smooth enough for {}", place.what),
             )
-            .at(exponent.span(), "not a number")
-            .at(base.span(), super::dimensions::unit_words(dimension))
-            .help("divide the base by a reference value of the same unit first"),
+            .at(span.clone(), "")
+            .help(help),
         );
     }
 
@@ -401,13 +281,14 @@ impl Resolver<'_> {
     ) -> Typed {
         let all: Vec<&Typed> = arguments.iter().collect();
         self.no_rates(&all, "a function", place);
+        self.kinks(function, &all, &span, place);
         let dim = match (function, all.as_slice()) {
             (Function::Abs, [a]) => a.dim,
             (Function::Sign, [_]) => Dim::NONE,
             (Function::Sqrt, [a]) => match a.dim {
                 Dim::Known(d) => {
                     let root = d.power(crate::units::Exponent::new(1, 2)).ok();
-                    self.known_dimension(root.map(Dim::Known), &span)
+                    self.known_dimension(root.map(Dim::Known), &span, None)
                 }
                 other => other,
             },
@@ -457,35 +338,7 @@ impl Resolver<'_> {
         }
     }
 
-    /// Degree of a sum; every term of a linear expression has the same one.
-    fn same_degree(&mut self, a: &Typed, b: &Typed, place: &Place) -> Option<u8> {
-        match (a.degree, b.degree) {
-            (None, other) | (other, None) => other,
-            (Some(x), Some(y)) if x == y => Some(x),
-            (Some(x), Some(_)) => {
-                let term = if x == 0 { a } else { b };
-                self.not_linear(
-                    place,
-                    "a term without a rate",
-                    term.span(),
-                    "no `dot(q)` here",
-                );
-                Some(1)
-            }
-        }
-    }
-
-    fn product_degree(&mut self, a: &Typed, b: &Typed, place: &Place) -> Option<u8> {
-        let sum = a.degree?.saturating_add(b.degree?);
-        if sum > 1 {
-            let span =
-                a.expr.span.start.min(b.expr.span.start)..b.expr.span.end.max(a.expr.span.end);
-            self.not_linear(place, "a product of rates", span, "more than one `dot(q)`");
-        }
-        Some(sum.min(1))
-    }
-
-    fn no_rates(&mut self, parts: &[&Typed], inside: &str, place: &Place) {
+    pub(super) fn no_rates(&mut self, parts: &[&Typed], inside: &str, place: &Place) {
         if let Some(part) = parts.iter().find(|p| p.degree.is_some_and(|d| d > 0)) {
             let message = format!("a rate inside {inside}");
             self.not_linear(place, &message, part.span(), "depends on a rate");
@@ -556,20 +409,11 @@ fn measured(value: &BigRational, unit: &Unit, span: &Span) -> Typed {
     }
 }
 
-/// A first power keeps the degree; any other has been refused if it held a rate.
-fn degree_of_power(a: &Typed, b: &Typed) -> Option<u8> {
-    let first = b.constant.as_ref().is_some_and(One::is_one);
-    if first { a.degree } else { Some(0) }
-}
-
-fn is_short(value: &BigRational) -> bool {
-    value.numer().bits() + value.denom().bits() <= MAX_BITS
-}
-
-/// An exact power, where the exponent is whole and the result short.
-fn whole_power(base: &BigRational, exponent: &BigRational) -> Option<BigRational> {
-    let exponent = exponent.is_integer().then(|| exponent.to_i32())??;
-    let bits = base.numer().bits() + base.denom().bits();
-    let short = bits.saturating_mul(u64::from(exponent.unsigned_abs())) <= MAX_BITS;
-    short.then(|| Pow::pow(base, exponent))
+/// Whether an expression changes while the mechanism moves.
+fn moves(expr: &Expr) -> bool {
+    let mut moves = false;
+    expr.visit(&mut |quantity| {
+        moves |= !matches!(quantity, Quantity::Parameter(_) | Quantity::Pi);
+    });
+    moves
 }

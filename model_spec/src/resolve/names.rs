@@ -6,7 +6,7 @@ use crate::ast::{ItemAst, Spanned};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::expr::{Function, Quantity, Span};
 use crate::language::Target;
-use crate::mechanism::Label;
+use crate::mechanism::{Interpolation, Label, Signal};
 use crate::suggest::{did_you_mean, shown};
 use crate::units::{Dimension, Unit};
 
@@ -103,6 +103,37 @@ impl<'a> Resolver<'a> {
                 Meaning::Quantity(Quantity::PseudoVelocity(id))
             };
             self.define(&item.name, meaning, None);
+        }
+    }
+
+    /// Tells where a name is also that of a signal's derivative: both are columns of results.
+    pub(super) fn derivative_names(&mut self, signals: &[Signal]) {
+        for signal in signals {
+            let label = &signal.label;
+            for order in 1..=signal.interpolation.derivatives() {
+                let name = Interpolation::derivative_name(&label.name, order);
+                let Some(own) = self.names.get(name.as_str()).map(|named| &named.span) else {
+                    continue;
+                };
+                let named = (own.clone(), format!("called `{name}`"));
+                let derived = (
+                    label.span.clone(),
+                    format!("brings its derivative `{name}`"),
+                );
+                let mut places = [named, derived];
+                // The later definition is the one that comes into the way.
+                places.sort_by_key(|(span, _)| std::cmp::Reverse(span.start));
+                let mut diagnostic = Diagnostic::error(
+                    Code::DuplicateName,
+                    format!(
+                        "`{name}` is also a derivative of the signal `{}`",
+                        label.name
+                    ),
+                )
+                .help(format!("rename `{name}` or the signal `{}`", label.name));
+                diagnostic.labels.extend(places);
+                self.tell(diagnostic);
+            }
         }
     }
 

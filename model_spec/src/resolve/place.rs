@@ -117,6 +117,8 @@ impl Place {
 }
 
 impl Smooth {
+    /// Whether something that runs like a signal of this kind may stand here: a jump is a `hold`,
+    /// a kink is `linear`.
     pub(super) fn admits(self, interpolation: Interpolation) -> bool {
         match self {
             Self::Any => true,

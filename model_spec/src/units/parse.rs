@@ -64,7 +64,10 @@ pub fn parse(text: &str) -> Result<Unit, UnitError> {
     }
     let product = parser.product(0)?;
     if parser.peek().is_some() {
-        return Err(parser.error("this does not belong in a unit"));
+        return Err(parser.error(match parser.peek() {
+            Some('.') => "a product is written with `*`, a fractional exponent as `^(1/2)`",
+            _ => "this does not belong in a unit",
+        }));
     }
     Ok(Unit::new(
         text.trim(),
@@ -256,9 +259,10 @@ impl Parser<'_> {
                     pi_power: 0,
                 })
             }
-            Some('%') => {
-                self.skip('%');
-                self.symbol(self.at - 1)
+            Some(c @ ('%' | '°')) => {
+                let start = self.at;
+                self.skip(c);
+                self.symbol(start)
             }
             Some(c) if c.is_alphabetic() => {
                 let start = self.at;
@@ -267,7 +271,7 @@ impl Parser<'_> {
                 }
                 self.symbol(start)
             }
-            _ => Err(self.error("expected a unit")),
+            _ => Err(self.error("expected a unit; a pure number has the unit `1`")),
         }
     }
 
@@ -318,15 +322,22 @@ fn similar(symbol: &str) -> Option<String> {
         "degrees" | "degree" | "°" => Some("deg"),
         "radians" => Some("rad"),
         "Kg" | "KG" | "kilogram" => Some("kg"),
-        "Nm" => Some("N*m"),
-        "Ns" => Some("N*s"),
+        "degC" | "celsius" => Some("K"),
         "kmh" | "kph" => Some("km/h"),
         "Ω" => Some("ohm"),
         "L" => Some("l"),
         _ => None,
     };
+    // `Nm` is a product without its sign.
+    let product = || {
+        (1..symbol.len())
+            .filter_map(|at| symbol.split_at_checked(at))
+            .find(|(a, b)| lookup(a).is_some() && lookup(b).is_some())
+            .map(|(a, b)| format!("{a}*{b}"))
+    };
     spoken
         .or_else(|| common.map(str::to_owned))
+        .or_else(product)
         .or_else(|| suggest::closest(symbol, UNITS.iter().map(|u| u.symbol)).map(str::to_owned))
 }
 
@@ -359,7 +370,11 @@ mod tests {
     fn refused_texts_say_why() {
         for (text, expected) in [
             ("", "the unit is empty; a pure number has the unit `1`"),
-            ("5 m", "expected a unit"),
+            ("5 m", "expected a unit; a pure number has the unit `1`"),
+            (
+                "m^0.5",
+                "a product is written with `*`, a fractional exponent as `^(1/2)`",
+            ),
             ("m^99", "the exponent is too large"),
             (
                 "N/m s",
@@ -379,7 +394,14 @@ mod tests {
 
     #[test]
     fn similar_units_are_proposed() {
-        for (text, expected) in [("Nm", "N*m"), ("sec", "s"), ("metre", "m"), ("dge", "deg")] {
+        for (text, expected) in [
+            ("Nm", "N*m"),
+            ("kgm", "kg*m"),
+            ("sec", "s"),
+            ("metre", "m"),
+            ("dge", "deg"),
+            ("°", "deg"),
+        ] {
             let Err(UnitError::Unknown { similar, .. }) = parse(text) else {
                 panic!("{text} is a unit");
             };

@@ -1,7 +1,7 @@
 //! From the text of a spec to its program, with every mistake told at its place in the text.
 
 use appell_spec::mechanism::Mechanism;
-use appell_spec::{Diagnostic, Report};
+use appell_spec::{Diagnostic, Report, Severity};
 
 use crate::mechanics::finding::{Finding, Item};
 use crate::mechanics::{Derivation, assemble, derive};
@@ -22,11 +22,20 @@ pub struct Derived {
 pub fn derived(file: &str, text: &str) -> Result<Derived, Report> {
     let checked = appell_spec::load(file, text)?;
     match derive(&checked.mechanism) {
-        Ok(derivation) => Ok(Derived {
-            mechanism: checked.mechanism,
-            derivation,
-            warnings: checked.warnings,
-        }),
+        Ok(derivation) => {
+            let mut warnings = checked.warnings;
+            for finding in &derivation.warnings {
+                warnings.push(Diagnostic {
+                    severity: Severity::Warning,
+                    ..diagnostic(&checked.mechanism, text, finding)
+                });
+            }
+            Ok(Derived {
+                mechanism: checked.mechanism,
+                derivation,
+                warnings,
+            })
+        }
         Err(findings) => Err(report(&checked.mechanism, text, &findings)),
     }
 }

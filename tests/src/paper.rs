@@ -331,7 +331,9 @@ impl Paper {
             coordinate_rates: &d.coordinate_rates,
         };
         let residual = implicit.residual(&mut d.algebra, &d.symbols);
-        let columns = implicit.jacobian(&mut d.algebra, &d.symbols, &residual, &variables);
+        let columns = implicit
+            .jacobian(&mut d.algebra, &d.symbols, &residual, &variables)
+            .unwrap();
         let order: Vec<Expr> = d
             .symbols
             .speeds

@@ -119,8 +119,8 @@ impl Derivation {
                 )]
             }
             FunctionKind::Rates => vec![array("rates", Layout::State, self.rates())],
-            FunctionKind::Jacobians => self.jacobians(mechanism, false),
-            FunctionKind::AllJacobians => self.jacobians(mechanism, true),
+            FunctionKind::Jacobians => self.jacobians(mechanism, false)?,
+            FunctionKind::AllJacobians => self.jacobians(mechanism, true)?,
             FunctionKind::Energies => self.energies(),
             FunctionKind::ConstraintResidual => {
                 let graph = &mut self.algebra.graph;
@@ -212,7 +212,7 @@ impl Derivation {
     }
 
     /// ẋ, A, B and, when asked for, P.
-    fn jacobians(&mut self, mechanism: &Mechanism, parameters: bool) -> Vec<Array> {
+    fn jacobians(&mut self, mechanism: &Mechanism, parameters: bool) -> Outcome<Vec<Array>> {
         let implicit = ImplicitMotion {
             gibbs: &self.gibbs,
             forces: &self.forces,
@@ -244,7 +244,7 @@ impl Derivation {
         }];
         for (name, variables) in variables {
             let columns =
-                implicit.jacobian(&mut self.algebra, &self.symbols, &residual, &variables);
+                implicit.jacobian(&mut self.algebra, &self.symbols, &residual, &variables)?;
             let entries = (0..rates.len())
                 .flat_map(|row| columns.iter().map(move |column| column[row]))
                 .collect();
@@ -255,7 +255,7 @@ impl Derivation {
                 entries,
             });
         }
-        results
+        Ok(results)
     }
 }
 

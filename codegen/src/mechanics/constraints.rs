@@ -1,15 +1,16 @@
 //! Constraints as rows that are linear in the generalised velocities.
 
 use appell_spec::Code;
-use appell_spec::mechanism::{ConstraintKind, GROUND, Mechanism, PointId};
+use appell_spec::mechanism::{ConstraintKind, FrameId, GROUND, Mechanism, PointId};
 
 use super::algebra::Algebra;
 use super::finding::{Finding, Item, Outcome};
 use super::kinematics::{Carried, Effort, Kinematics, division_by_zero, root_of};
 use super::lower::Lowering;
+use super::redundancy::leave_out;
 use super::symbols::Symbols;
 use crate::symbolic::vector::{self, Vec3};
-use crate::symbolic::{Expr, Graph, Rational};
+use crate::symbolic::{Expr, Graph, Intervals, Rational, Substitution};
 
 /// One scalar constraint: `Σ coefficient · q̇ + rest = 0`.
 #[derive(Debug, Clone)]
@@ -30,6 +31,10 @@ pub struct Row {
     pub carried: Vec<Expr>,
     /// The imagined motion that stands in for the row where geometry already embeds it.
     pub stand_in: Option<StandIn>,
+    /// Whether it is left out because it follows from the others.
+    pub redundant: bool,
+    /// The frame along whose axis it is written, for a row of a rolling contact.
+    pub frame: FrameId,
 }
 
 /// An imagined motion that violates an embedded row at `coefficient` times its rate.
@@ -59,12 +64,19 @@ pub struct Constraints {
     pub reactions: Vec<String>,
     /// Imagined motions: a point and the axis of the ground along which it is carried.
     pub carried: Vec<(PointId, usize)>,
+    /// Rows that were left out.
+    pub warnings: Vec<Finding>,
 }
 
 impl Row {
     /// Whether the coordinates satisfy the row by themselves.
     pub fn is_embedded(&self) -> bool {
-        self.stand_in.is_some()
+        self.coefficients.iter().all(|&c| c == Graph::ZERO)
+    }
+
+    /// Whether the row restricts the generalised velocities beyond what the others do.
+    pub fn is_active(&self) -> bool {
+        !self.redundant && !self.is_embedded()
     }
 }
 
@@ -73,6 +85,7 @@ pub fn constraints(
     algebra: &mut Algebra,
     mechanism: &Mechanism,
     symbols: &Symbols,
+    intervals: &mut Intervals,
 ) -> Outcome<Constraints> {
     let carried = imagined_motions(mechanism);
     let carried_rates: Vec<Expr> = carried
@@ -89,36 +102,36 @@ pub fn constraints(
         Effort::Plain,
     )?;
     let mut places: Vec<Place> = Vec::new();
-    let mut rows = Vec::new();
+    let (mut rows, mut findings) = (Vec::new(), Vec::new());
     for index in 0..mechanism.constraints.len() {
-        let (place, scalars) =
-            scalar_rows(&mut algebra.graph, mechanism, symbols, &kinematics, index)?;
-        let place = places
-            .iter()
-            .position(|&other| other == place)
-            .unwrap_or_else(|| {
-                places.push(place);
-                places.len() - 1
-            });
-        for Scalar {
-            name,
-            value,
-            direction,
-        } in scalars
-        {
-            let reaction = Reaction { place, direction };
-            rows.push(row(
-                algebra,
-                symbols,
-                &carried_rates,
-                name,
-                index,
-                value,
-                reaction,
-            ));
+        let scalars = scalar_rows(&mut algebra.graph, mechanism, symbols, &kinematics, index);
+        let (place, scalars) = match scalars {
+            Ok(scalars) => scalars,
+            Err(finding) => {
+                findings.push(finding);
+                continue;
+            }
+        };
+        let known = places.iter().position(|&other| other == place);
+        let place = known.unwrap_or_else(|| {
+            places.push(place);
+            places.len() - 1
+        });
+        for scalar in scalars {
+            match row(algebra, symbols, &carried_rates, index, place, scalar) {
+                Ok(row) => rows.push(row),
+                Err(finding) => findings.push(finding),
+            }
         }
     }
-    stand_ins(&algebra.graph, mechanism, &mut rows)?;
+    let mut warnings = stand_ins(&algebra.graph, mechanism, &mut rows, &mut findings);
+    match leave_out(algebra, mechanism, &kinematics.frames, intervals, &mut rows) {
+        Ok(left_out) => warnings.extend(left_out),
+        Err(refused) => findings.extend(refused),
+    }
+    if !findings.is_empty() {
+        return Err(findings);
+    }
     Ok(Constraints {
         rows,
         reactions: places
@@ -126,6 +139,7 @@ pub fn constraints(
             .map(|place| place.name(mechanism))
             .collect(),
         carried,
+        warnings,
     })
 }
 
@@ -169,14 +183,14 @@ fn scalar_rows(
     symbols: &Symbols,
     kinematics: &Kinematics,
     index: usize,
-) -> Outcome<(Place, Vec<Scalar>)> {
+) -> Result<(Place, Vec<Scalar>), Finding> {
     let constraint = &mechanism.constraints[index];
     let item = Item::Constraint(index);
     let lowering = Lowering {
         symbols,
         rates: &symbols.rates,
     };
-    let zero = |_| vec![division_by_zero(item)];
+    let zero = |_| division_by_zero(item);
     Ok(match &constraint.kind {
         ConstraintKind::Rolling { body, contact } => {
             let v = kinematics.material_velocity(graph, mechanism, *body, *contact, GROUND);
@@ -239,12 +253,12 @@ fn scalar_rows(
             )
         }
         ConstraintKind::Position { .. } => {
-            return Err(vec![Finding {
+            return Err(Finding {
                 code: Code::PositionConstraintReserved,
                 message: "constraints between positions are not supported yet".to_owned(),
                 item,
                 help: "choose coordinates that satisfy the constraint by themselves".to_owned(),
-            }]);
+            });
         }
     })
 }
@@ -254,11 +268,15 @@ fn row(
     algebra: &mut Algebra,
     symbols: &Symbols,
     carried_rates: &[Expr],
-    name: String,
     constraint: usize,
-    value: Expr,
-    reaction: Reaction,
-) -> Row {
+    place: usize,
+    scalar: Scalar,
+) -> Result<Row, Finding> {
+    let Scalar {
+        name,
+        value,
+        direction,
+    } = scalar;
     let mut coefficients_of = |unknowns: &[Expr]| -> Vec<Expr> {
         unknowns
             .iter()
@@ -270,29 +288,23 @@ fn row(
     };
     let coefficients = coefficients_of(&symbols.rates);
     let carried = coefficients_of(carried_rates);
-    let rest = without(algebra, value, &[&symbols.rates, carried_rates].concat());
-    Row {
+    let unknowns = [&symbols.rates, carried_rates].concat();
+    let rest = Substitution::by_zero(&algebra.graph, &unknowns)
+        .apply(&mut algebra.graph, value)
+        .ok_or_else(|| division_by_zero(Item::Constraint(constraint)))?;
+    let rest = algebra.shortest(rest);
+    Ok(Row {
         name,
         constraint,
         value,
         coefficients,
         rest,
-        reaction,
+        reaction: Reaction { place, direction },
         carried,
         stand_in: None,
-    }
-}
-
-/// `expr` with some symbols set to zero. The rows are linear in them, so no denominator holds one.
-fn without(algebra: &mut Algebra, expr: Expr, symbols: &[Expr]) -> Expr {
-    let zeros: Vec<_> = super::symbols::ids(&algebra.graph, symbols)
-        .into_iter()
-        .map(|symbol| (symbol, Graph::ZERO))
-        .collect();
-    let rest = crate::symbolic::Substitution::new(&mut algebra.graph, &zeros)
-        .apply(&mut algebra.graph, expr)
-        .unwrap_or(Graph::ZERO);
-    algebra.shortest(rest)
+        redundant: false,
+        frame: GROUND,
+    })
 }
 
 /// One motion per axis of the ground and per point from which a constrained point hangs.
@@ -331,14 +343,16 @@ pub fn motions_along(carried: &[(PointId, usize)], rates: &[Expr]) -> Vec<Carrie
 }
 
 /// Finds the rows without any generalised velocity. Those of a rolling contact hold by geometry and
-/// get an imagined motion; others contradict the spec or say nothing.
-fn stand_ins(graph: &Graph, mechanism: &Mechanism, rows: &mut [Row]) -> Outcome<()> {
-    let mut findings = Vec::new();
+/// get an imagined motion; others contradict the spec or say nothing. Returns what to warn of.
+fn stand_ins(
+    graph: &Graph,
+    mechanism: &Mechanism,
+    rows: &mut [Row],
+    findings: &mut Vec<Finding>,
+) -> Vec<Finding> {
+    let mut warnings = Vec::new();
     let mut taken: Vec<usize> = Vec::new();
-    for row in rows.iter_mut() {
-        if row.coefficients.iter().any(|&c| c != Graph::ZERO) {
-            continue;
-        }
+    for row in rows.iter_mut().filter(|row| row.is_embedded()) {
         let item = Item::Constraint(row.constraint);
         if row.rest != Graph::ZERO {
             findings.push(Finding {
@@ -369,32 +383,33 @@ fn stand_ins(graph: &Graph, mechanism: &Mechanism, rows: &mut [Row]) -> Outcome<
             .find(|fit| !taken.contains(&fit.motion))
             .cloned();
         taken.extend(row.stand_in.iter().map(|fit| fit.motion));
-        if row.stand_in.is_none() && !fitting.is_empty() {
-            findings.push(Finding {
-                code: Code::RedundantConstraint,
-                message: format!(
-                    "`{}` holds by geometry, and so does another constraint in the same direction: \
-                     how the two share their reaction cannot be told",
-                    row.name
-                ),
-                item,
-                help: "remove one of the two constraints; the motion stays the same".to_owned(),
-            });
+        if row.stand_in.is_some() {
             continue;
         }
-        if row.stand_in.is_none() {
-            let name = &mechanism.constraints[row.constraint].name;
-            findings.push(Finding {
-                code: Code::RedundantConstraint,
-                message: format!("`{name}` always holds: no generalised velocity appears in it"),
-                item,
-                help: "remove the constraint".to_owned(),
-            });
-        }
+        row.redundant = true;
+        let name = &mechanism.constraints[row.constraint].name;
+        let (message, help) = if fitting.is_empty() {
+            (
+                format!("`{name}` always holds: no generalised velocity appears in it"),
+                "remove the constraint",
+            )
+        } else {
+            (
+                format!(
+                    "`{}` holds by geometry, and so does another constraint in the same direction: \
+                     how the two share their reaction cannot be told; the other is reported with \
+                     the sum",
+                    row.name
+                ),
+                "remove one of the two constraints, or read their reactions as one",
+            )
+        };
+        warnings.push(Finding {
+            code: Code::RedundantConstraint,
+            message,
+            item,
+            help: help.to_owned(),
+        });
     }
-    if findings.is_empty() {
-        Ok(())
-    } else {
-        Err(findings)
-    }
+    warnings
 }

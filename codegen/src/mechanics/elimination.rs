@@ -6,9 +6,10 @@ use appell_spec::mechanism::Mechanism;
 use super::algebra::Algebra;
 use super::constraints::Constraints;
 use super::finding::{Finding, Item, Outcome};
+use super::kinematics::division_by_zero;
 use super::lower::Lowering;
 use super::symbols::Symbols;
-use crate::symbolic::{Expr, Graph, Intervals};
+use crate::symbolic::{Expr, Graph, Intervals, Substitution};
 
 /// The generalised velocities in terms of the pseudo-velocities.
 #[derive(Debug, Clone)]
@@ -66,7 +67,7 @@ pub fn eliminate(
         equations.push(definition(algebra, symbols, index, &speed.definition)?);
     }
     for (row, &violation) in constraints.rows.iter().zip(&violation_rates) {
-        if row.is_embedded() {
+        if !row.is_active() {
             continue;
         }
         // Σ C q̇ = violation - rest - what the imagined motions contribute
@@ -81,22 +82,17 @@ pub fn eliminate(
             right,
         });
     }
-    independent_rows(algebra, constraints)?;
     check_count(mechanism, constraints, equations.len())?;
 
     let (violating, solved_numerically) = solve(algebra, mechanism, equations, intervals)?;
-    let zeros: Vec<_> = super::symbols::ids(&algebra.graph, &violation_rates)
-        .into_iter()
-        .map(|s| (s, Graph::ZERO))
-        .collect();
-    let mut no_violation = crate::symbolic::Substitution::new(&mut algebra.graph, &zeros);
-    let rates = violating
-        .iter()
-        .map(|&rate| {
-            let allowed = no_violation.apply(&mut algebra.graph, rate).unwrap_or(rate);
-            algebra.shortest(allowed)
-        })
-        .collect();
+    let mut no_violation = Substitution::by_zero(&algebra.graph, &violation_rates);
+    let mut rates = Vec::with_capacity(violating.len());
+    for &rate in &violating {
+        let allowed = no_violation
+            .apply(&mut algebra.graph, rate)
+            .ok_or_else(|| vec![division_by_zero(Item::Mechanism)])?;
+        rates.push(algebra.shortest(allowed));
+    }
     let violating = Violation {
         rates: violation_rates,
         coordinate_rates: violating,
@@ -122,11 +118,7 @@ fn definition(
     };
     let value = lowering
         .lower(&mut algebra.graph, definition)
-        .map_err(|_| {
-            vec![super::kinematics::division_by_zero(Item::PseudoVelocity(
-                index,
-            ))]
-        })?;
+        .map_err(|_| vec![division_by_zero(Item::PseudoVelocity(index))])?;
     let mut coefficients = Vec::with_capacity(symbols.rates.len());
     let mut parts = vec![symbols.speeds[index], algebra.graph.neg(value)];
     for &rate in &symbols.rates {
@@ -148,7 +140,7 @@ fn check_count(mechanism: &Mechanism, constraints: &Constraints, equations: usiz
     if equations == coordinates {
         return Ok(());
     }
-    let rows = constraints.rows.iter().filter(|r| !r.is_embedded()).count();
+    let rows = constraints.rows.iter().filter(|r| r.is_active()).count();
     let speeds = mechanism.pseudo_velocities.len();
     let needed = coordinates.saturating_sub(rows);
     Err(vec![Finding {
@@ -286,58 +278,6 @@ fn safest_pivot(
     best.map(|(_, place)| place)
 }
 
-/// Fails where a constraint follows from the others, or contradicts them.
-fn independent_rows(algebra: &mut Algebra, constraints: &Constraints) -> Outcome<()> {
-    // Rows in echelon form: the column of the pivot, the coefficients, the rest.
-    let mut echelon: Vec<(usize, Vec<Expr>, Expr)> = Vec::new();
-    let mut findings = Vec::new();
-    for row in constraints.rows.iter().filter(|row| !row.is_embedded()) {
-        let (mut coefficients, mut rest) = (row.coefficients.clone(), row.rest);
-        for (column, pivots, pivot_rest) in &echelon {
-            if coefficients[*column] == Graph::ZERO {
-                continue;
-            }
-            let factor = algebra.graph.div(coefficients[*column], pivots[*column]);
-            let reduced = coefficients.iter_mut().zip(pivots);
-            for (value, &pivot) in reduced.chain([(&mut rest, pivot_rest)]) {
-                let change = algebra.graph.mul(factor, pivot);
-                *value = algebra.graph.sub(*value, change);
-                if algebra.test.is_zero(&algebra.graph, *value) {
-                    *value = Graph::ZERO;
-                }
-            }
-        }
-        if let Some(column) = coefficients.iter().position(|&c| c != Graph::ZERO) {
-            echelon.push((column, coefficients, rest));
-            continue;
-        }
-        let (code, message, help) = if rest == Graph::ZERO {
-            (
-                Code::RedundantConstraint,
-                "follows from the other constraints",
-                "remove it",
-            )
-        } else {
-            (
-                Code::DependentConstraints,
-                "contradicts the other constraints",
-                "remove one of them",
-            )
-        };
-        findings.push(Finding {
-            code,
-            message: format!("`{}` {message}", row.name),
-            item: Item::Constraint(row.constraint),
-            help: help.to_owned(),
-        });
-    }
-    if findings.is_empty() {
-        Ok(())
-    } else {
-        Err(findings)
-    }
-}
-
 /// Fails where the remaining equations are dependent everywhere, by elimination without regard to ranges.
 fn check_rank(
     algebra: &mut Algebra,
@@ -349,14 +289,16 @@ fn check_rank(
         .iter()
         .map(|e| open.iter().map(|&c| e.coefficients[c]).collect())
         .collect();
-    for column in 0..open.len() {
-        let pivot = (column..rows.len()).find(|&r| {
+    let mut findings = Vec::new();
+    let mut rank = 0;
+    for (column, &unknown) in open.iter().enumerate() {
+        let pivot = (rank..rows.len()).find(|&r| {
             let entry = rows[r][column];
             entry != Graph::ZERO && !algebra.test.is_zero(&algebra.graph, entry)
         });
         let Some(pivot) = pivot else {
-            let coordinate = &mechanism.coordinates[open[column]].label.name;
-            return Err(vec![Finding {
+            let coordinate = &mechanism.coordinates[unknown].label.name;
+            findings.push(Finding {
                 code: Code::SingularPseudoVelocities,
                 message: format!(
                     "pseudo-velocities and constraints do not determine `dot({coordinate})`"
@@ -365,16 +307,22 @@ fn check_rank(
                 help: "define pseudo-velocities that are independent of each other and of the \
                        constraints"
                     .to_owned(),
-            }]);
+            });
+            continue;
         };
-        rows.swap(column, pivot);
-        for r in column + 1..rows.len() {
-            let factor = algebra.graph.div(rows[r][column], rows[column][column]);
+        rows.swap(rank, pivot);
+        for r in rank + 1..rows.len() {
+            let factor = algebra.graph.div(rows[r][column], rows[rank][column]);
             for c in column..open.len() {
-                let change = algebra.graph.mul(factor, rows[column][c]);
+                let change = algebra.graph.mul(factor, rows[rank][c]);
                 rows[r][c] = algebra.graph.sub(rows[r][c], change);
             }
         }
+        rank += 1;
     }
-    Ok(())
+    if findings.is_empty() {
+        Ok(())
+    } else {
+        Err(findings)
+    }
 }

@@ -81,6 +81,11 @@ impl FactorizedBlock {
         self.lower[row][column] != Graph::ZERO
     }
 
+    /// Every speed with its entry of D.
+    pub fn pivots(&self) -> impl Iterator<Item = (usize, Expr)> {
+        self.speeds.iter().copied().zip(self.pivots.iter().copied())
+    }
+
     /// Unknowns of `M x = right` for the speeds of the block.
     pub fn solve(&self, algebra: &mut Algebra, right: &[Expr], x: &mut [Expr]) {
         let graph = &mut algebra.graph;

@@ -63,6 +63,7 @@ pub fn body_motions(
     let lowering = Lowering { symbols, rates };
     let time = TimeDerivative { symbols, rates };
     let mut motions = Vec::with_capacity(mechanism.bodies.len());
+    let mut findings = Vec::new();
     for (index, body) in mechanism.bodies.iter().enumerate() {
         let item = Item::Body(index);
         let mass = lowering
@@ -96,7 +97,9 @@ pub fn body_motions(
                         .map_err(|_| vec![division_by_zero(item)])?;
                 }
                 if frame != inertia.frame {
-                    check_invariance(algebra, mechanism, kinematics, index, &matrix)?;
+                    findings.extend(check_invariance(
+                        algebra, mechanism, kinematics, index, &matrix,
+                    ));
                 }
                 let w = kinematics.frames.angular_velocity(frame);
                 let v = kinematics
@@ -119,7 +122,11 @@ pub fn body_motions(
             rotation,
         });
     }
-    Ok(motions)
+    if findings.is_empty() {
+        Ok(motions)
+    } else {
+        Err(findings)
+    }
 }
 
 #[expect(
@@ -193,6 +200,7 @@ pub fn named_parts(graph: &mut Graph, bodies: &[BodyMotion]) -> Vec<(Expr, Expr)
             .flat_map(|rotation| rotation.momentum_rate);
         for part in body.centre.bias.into_iter().chain(rotation) {
             if let Some(value) = graph.named_value(part) {
+                // What cannot be written out stays in its names: the same value.
                 let value = written_out.apply(graph, value).unwrap_or(value);
                 parts.push((part, value));
             }
@@ -219,12 +227,9 @@ fn check_invariance(
     kinematics: &Kinematics,
     body: usize,
     inertia: &Mat3,
-) -> Outcome<()> {
+) -> Option<Finding> {
     let item = &mechanism.bodies[body];
-    let (Some(body_frame), Some(written)) = (item.frame, item.inertia.as_ref().map(|i| i.frame))
-    else {
-        return Ok(());
-    };
+    let (body_frame, written) = (item.frame?, item.inertia.as_ref()?.frame);
     // I is invariant where R I = I R; the columns of R are the body's axes.
     let mut axes = [vector::ZERO; 3];
     for (axis, unit) in axes.iter_mut().zip(vector::IDENTITY) {
@@ -244,10 +249,7 @@ fn check_invariance(
         .flatten()
         .zip(right.iter().flatten())
         .any(|(&a, &b)| a != b && !algebra.test.are_equal(&algebra.graph, a, b));
-    if !differs {
-        return Ok(());
-    }
-    Err(vec![Finding {
+    differs.then(|| Finding {
         code: Code::InertiaNotInvariant,
         message: format!(
             "the inertia of `{}` is written in `{}`, but the body turns against that frame and the \
@@ -259,7 +261,7 @@ fn check_invariance(
             "write the inertia in `{}`",
             mechanism.frames[body_frame].name
         ),
-    }])
+    })
 }
 
 /// The coefficients of Appell's equations `M ω̇ + b = Π`: `M` and `b` are those of ∂S/∂ω̇.

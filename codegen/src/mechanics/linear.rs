@@ -2,7 +2,9 @@
 //! with the accelerations held as unknowns, and solved with the pivots that solve the motion.
 
 use super::algebra::Algebra;
+use super::finding::{Item, Outcome};
 use super::gibbs_appell::GibbsForm;
+use super::kinematics::division_by_zero;
 use super::motion::{Block, Motion};
 use super::symbols::{Symbols, ids};
 use crate::symbolic::{Expr, Graph, Substitution};
@@ -60,7 +62,7 @@ impl ImplicitMotion<'_> {
         symbols: &Symbols,
         residual: &[Expr],
         variables: &[Expr],
-    ) -> Vec<Vec<Expr>> {
+    ) -> Outcome<Vec<Vec<Expr>>> {
         let replacements: Vec<_> = ids(&algebra.graph, &symbols.accelerations)
             .into_iter()
             .zip(self.motion.accelerations.iter().copied())
@@ -68,15 +70,14 @@ impl ImplicitMotion<'_> {
         let mut actual = Substitution::new(&mut algebra.graph, &replacements);
         let mut columns = Vec::with_capacity(variables.len());
         for &variable in variables {
-            let right: Vec<Expr> = residual
-                .iter()
-                .map(|&r| {
-                    let partial = algebra.derivative(r, variable);
-                    actual
-                        .apply(&mut algebra.graph, partial)
-                        .unwrap_or(Graph::ZERO)
-                })
-                .collect();
+            let mut right = Vec::with_capacity(residual.len());
+            for &r in residual {
+                let partial = algebra.derivative(r, variable);
+                let partial = actual
+                    .apply(&mut algebra.graph, partial)
+                    .ok_or_else(|| vec![division_by_zero(Item::Mechanism)])?;
+                right.push(partial);
+            }
             let mut column = vec![Graph::ZERO; right.len()];
             for block in &self.motion.blocks {
                 match block {
@@ -94,6 +95,6 @@ impl ImplicitMotion<'_> {
             }
             columns.push(column);
         }
-        columns
+        Ok(columns)
     }
 }

@@ -1,12 +1,13 @@
 //! Applied loads: generalised forces from virtual power, potential energy, power.
 
+use appell_spec::Code;
 use appell_spec::mechanism::{Connection, GROUND, LoadKind, Mechanism, PointId};
 
 use super::algebra::Algebra;
-use super::finding::{Item, Outcome};
+use super::finding::{Finding, Item, Outcome};
 use super::frames::FrameVector;
 use super::kinematics::{Kinematics, division_by_zero};
-use super::lower::Lowering;
+use super::lower::{DivisionByZero, Lowering};
 use super::symbols::Symbols;
 use crate::symbolic::vector::Vec3;
 use crate::symbolic::{Expr, Graph, Rational};
@@ -72,13 +73,36 @@ pub fn applied_loads(
         lowering: Lowering { symbols, rates },
     };
     let mut loads = Vec::with_capacity(mechanism.loads.len());
+    let mut findings = Vec::new();
     for (index, load) in mechanism.loads.iter().enumerate() {
-        let applied = context
-            .apply(algebra, &load.kind)
-            .map_err(|_| vec![division_by_zero(Item::Load(index))])?;
-        loads.push(applied);
+        match context.apply(algebra, &load.kind) {
+            Ok(applied) => loads.push(applied),
+            Err(DivisionByZero) => findings.push(undefined(index, &load.kind)),
+        }
     }
-    Ok(loads)
+    if findings.is_empty() {
+        Ok(loads)
+    } else {
+        Err(findings)
+    }
+}
+
+/// A load that divides by zero: a connection without length, or an expression.
+fn undefined(index: usize, kind: &LoadKind) -> Finding {
+    let item = Item::Load(index);
+    let (LoadKind::Spring { between, .. } | LoadKind::Damper { between, .. }) = kind else {
+        return division_by_zero(item);
+    };
+    match between {
+        Connection::Coordinate(_) => division_by_zero(item),
+        Connection::Points(..) => Finding {
+            code: Code::VanishingLength,
+            message: "the two points are always at the same place: the load has no direction"
+                .to_owned(),
+            item,
+            help: "connect two points that can move apart".to_owned(),
+        },
+    }
 }
 
 struct Context<'a> {
@@ -87,7 +111,7 @@ struct Context<'a> {
     lowering: Lowering<'a>,
 }
 
-type Lowered<T> = Result<T, super::lower::DivisionByZero>;
+type Lowered<T> = Result<T, DivisionByZero>;
 
 impl Context<'_> {
     fn apply(&self, algebra: &mut Algebra, kind: &LoadKind) -> Lowered<AppliedLoad> {
@@ -138,11 +162,11 @@ impl Context<'_> {
             } => {
                 let k = self.lowering.lower(&mut algebra.graph, stiffness)?;
                 let relaxed = self.lowering.lower(&mut algebra.graph, relaxed)?;
-                Ok(self.spring(algebra, between, k, relaxed))
+                self.spring(algebra, between, k, relaxed)
             }
             LoadKind::Damper { between, damping } => {
                 let c = self.lowering.lower(&mut algebra.graph, damping)?;
-                Ok(self.damper(algebra, between, c))
+                self.damper(algebra, between, c)
             }
             LoadKind::Generalized { coordinate, force } => {
                 let force = self.lowering.lower(&mut algebra.graph, force)?;
@@ -199,42 +223,42 @@ impl Context<'_> {
         between: &Connection,
         k: Expr,
         relaxed: Expr,
-    ) -> AppliedLoad {
-        let (length, work) = self.extension(algebra, between);
+    ) -> Lowered<AppliedLoad> {
+        let (length, work) = self.extension(algebra, between)?;
         let extension = algebra.graph.sub(length, relaxed);
         let tension = algebra.graph.mul(k, extension);
         let square = algebra.graph.square(extension);
         let twice = algebra.graph.mul(k, square);
         let potential = algebra.graph.scale(&Rational::new(1, 2), twice);
-        AppliedLoad {
+        Ok(AppliedLoad {
             work: resisting(algebra, tension, &work),
             potential: Some(potential),
-        }
+        })
     }
 
-    fn damper(&self, algebra: &mut Algebra, between: &Connection, c: Expr) -> AppliedLoad {
-        let (_, work) = self.extension(algebra, between);
+    fn damper(&self, algebra: &mut Algebra, between: &Connection, c: Expr) -> Lowered<AppliedLoad> {
+        let (_, work) = self.extension(algebra, between)?;
         let parts: Vec<Expr> = work
             .iter()
             .map(|w| algebra.graph.mul(w.force, w.velocity))
             .collect();
         let speed = algebra.graph.sum(&parts);
         let tension = algebra.graph.mul(c, speed);
-        AppliedLoad {
+        Ok(AppliedLoad {
             work: resisting(algebra, tension, &work),
             potential: None,
-        }
+        })
     }
 
     /// Length of a connection, and the pairs whose power is the rate of the length.
-    fn extension(&self, algebra: &mut Algebra, between: &Connection) -> (Expr, Vec<Work>) {
+    fn extension(&self, algebra: &mut Algebra, between: &Connection) -> Lowered<(Expr, Vec<Work>)> {
         match *between {
             Connection::Coordinate(q) => {
                 let unit = Work {
                     force: Graph::ONE,
                     velocity: self.lowering.rates[q],
                 };
-                (self.lowering.symbols.coordinates[q], vec![unit])
+                Ok((self.lowering.symbols.coordinates[q], vec![unit]))
             }
             Connection::Points(a, b) => {
                 let graph = &mut algebra.graph;
@@ -248,6 +272,9 @@ impl Context<'_> {
                 );
                 let square = algebra.graph.dot(d.v, d.v);
                 let square = algebra.shortest(square);
+                if square == Graph::ZERO {
+                    return Err(DivisionByZero);
+                }
                 let length = algebra.graph.sqrt(square);
                 let (v_a, v_b) = (
                     self.point_velocity(algebra, a, d.frame),
@@ -256,7 +283,7 @@ impl Context<'_> {
                 let v = algebra.graph.sub3(v_b, v_a);
                 let inverse = algebra.graph.pow(length, -1);
                 let direction = algebra.graph.scale3(inverse, d.v);
-                (length, pairs(direction, v))
+                Ok((length, pairs(direction, v)))
             }
         }
     }

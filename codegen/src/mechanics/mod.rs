@@ -7,29 +7,35 @@
 pub mod algebra;
 pub mod assemble;
 pub mod constraints;
+pub mod divisors;
 pub mod elimination;
 pub mod factorized;
 pub mod finding;
 pub mod frames;
 pub mod gibbs_appell;
+pub mod initial;
 pub mod kinematics;
 pub mod linear;
 pub mod loads;
 pub mod lower;
 pub mod motion;
+pub mod rank;
 pub mod reactions;
+pub mod redundancy;
 pub mod switches;
 pub mod symbols;
 pub mod time;
 
+use appell_spec::Code;
 use appell_spec::mechanism::Mechanism;
 
 use crate::symbolic::{Expr, Graph, Intervals};
 use algebra::Algebra;
 use constraints::Constraints;
 use elimination::GeneralizedVelocities;
-use finding::Outcome;
+use finding::{Finding, Outcome};
 use gibbs_appell::{BodyMotion, GibbsForm};
+use initial::InitialState;
 use kinematics::{Effort, Kinematics};
 use loads::AppliedLoad;
 use motion::Motion;
@@ -59,16 +65,39 @@ pub struct Derivation {
     pub motion: Motion,
     /// q̇, named.
     pub coordinate_rates: Vec<Expr>,
+    /// What looks unintended.
+    pub warnings: Vec<Finding>,
 }
 
-/// Derives the equations of motion of a mechanism.
+/// Derives the equations of motion of a mechanism. What can be told without the stage that fails is
+/// told with its findings.
 pub fn derive(mechanism: &Mechanism) -> Outcome<Derivation> {
+    let mut findings = divisors::findings(mechanism, seed(mechanism));
+    match equations(mechanism) {
+        Ok(derivation) if findings.is_empty() => Ok(derivation),
+        Ok(_) => Err(findings),
+        Err(others) => {
+            for other in others {
+                let told = |f: &Finding| f.code == other.code && f.item == other.item;
+                if !findings
+                    .iter()
+                    .any(|f| *f == other || told(f) && f.code == Code::DivisionByZero)
+                {
+                    findings.push(other);
+                }
+            }
+            Err(findings)
+        }
+    }
+}
+
+fn equations(mechanism: &Mechanism) -> Outcome<Derivation> {
     let mut graph = Graph::new();
     let symbols = Symbols::new(&mut graph, mechanism);
     let mut algebra = Algebra::new(graph, &symbols, seed(mechanism));
     let mut intervals = declared_ranges(&algebra.graph, mechanism, &symbols);
 
-    let constraints = constraints::constraints(&mut algebra, mechanism, &symbols)?;
+    let constraints = constraints::constraints(&mut algebra, mechanism, &symbols, &mut intervals)?;
     algebra.check_size()?;
     let velocities = elimination::eliminate(
         &mut algebra,
@@ -101,6 +130,21 @@ pub fn derive(mechanism: &Mechanism) -> Outcome<Derivation> {
         .zip(rates)
         .map(|(q, &rate)| algebra.graph.name(&format!("{}_dot", q.label.name), rate))
         .collect();
+    let state = InitialState::new(&algebra.graph, mechanism, &symbols);
+    let mut warnings = constraints.warnings.clone();
+    warnings.extend(initial::vanishing_lengths(
+        &mut algebra,
+        mechanism,
+        &kinematics,
+        &state,
+    ));
+    warnings.extend(initial::singularities(
+        &algebra.graph,
+        mechanism,
+        rates,
+        &motion,
+        &state,
+    ));
     Ok(Derivation {
         algebra,
         symbols,
@@ -113,6 +157,7 @@ pub fn derive(mechanism: &Mechanism) -> Outcome<Derivation> {
         forces,
         motion,
         coordinate_rates,
+        warnings,
     })
 }
 

@@ -68,6 +68,7 @@ pub fn solve(
         .map(|(&force, &bias)| algebra.graph.sub(force, bias))
         .collect();
     let mut accelerations = vec![Graph::ZERO; right.len()];
+    massless(algebra, mechanism, &gibbs.mass_matrix)?;
     let mut blocks = Vec::new();
     for speeds in independent_blocks(&gibbs.mass_matrix) {
         let block = if speeds.len() <= LARGEST_EXPLICIT_BLOCK {
@@ -111,6 +112,22 @@ pub fn solve(
         blocks,
         accelerations,
     })
+}
+
+impl Motion {
+    /// Every speed with the pivot that its equation is divided by.
+    pub fn pivots(&self) -> Vec<(usize, Expr)> {
+        let mut pivots = Vec::new();
+        for block in &self.blocks {
+            match block {
+                Block::Eliminated(equations) => {
+                    pivots.extend(equations.iter().map(|e| (e.speed, e.pivot)));
+                }
+                Block::Factorized(block) => pivots.extend(block.pivots()),
+            }
+        }
+        pivots
+    }
 }
 
 impl Eliminated {
@@ -238,13 +255,34 @@ pub fn simplest_pivot(
     if !algebra.test.is_zero(&algebra.graph, schur[k][k]) {
         return Ok(k);
     }
-    let name = &mechanism.pseudo_velocities[k].label.name;
-    Err(vec![Finding {
+    Err(vec![without_mass(mechanism, k)])
+}
+
+/// Fails where speeds move no mass at all, and names each.
+fn massless(
+    algebra: &mut Algebra,
+    mechanism: &Mechanism,
+    mass_matrix: &[Vec<Expr>],
+) -> Outcome<()> {
+    let findings: Vec<Finding> = (0..mass_matrix.len())
+        .filter(|&k| algebra.test.is_zero(&algebra.graph, mass_matrix[k][k]))
+        .map(|k| without_mass(mechanism, k))
+        .collect();
+    if findings.is_empty() {
+        Ok(())
+    } else {
+        Err(findings)
+    }
+}
+
+fn without_mass(mechanism: &Mechanism, speed: usize) -> Finding {
+    let name = &mechanism.pseudo_velocities[speed].label.name;
+    Finding {
         code: Code::SingularMassMatrix,
         message: format!("`{name}` can change without moving any mass"),
-        item: Item::PseudoVelocity(k),
+        item: Item::PseudoVelocity(speed),
         help: "give a mass or an inertia to what it moves, or constrain it".to_owned(),
-    }])
+    }
 }
 
 /// Blocks of one or two speeds by Cramer's rule, everything written out: what numerator and

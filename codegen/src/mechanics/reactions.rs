@@ -8,11 +8,11 @@ use appell_spec::mechanism::Mechanism;
 use super::algebra::Algebra;
 use super::constraints::{Constraints, motions_along};
 use super::elimination::Violation;
-use super::finding::Outcome;
+use super::finding::{Item, Outcome};
 use super::gibbs_appell::{BodyMotion, along, partial_velocities};
-use super::kinematics::{Effort, Kinematics};
+use super::kinematics::{Effort, Kinematics, division_by_zero};
 use super::loads::{applied_loads, generalized_forces};
-use super::symbols::{Symbols, ids};
+use super::symbols::Symbols;
 use crate::symbolic::vector::{self, Vec3};
 use crate::symbolic::{Expr, Graph, Substitution};
 
@@ -32,15 +32,12 @@ pub fn reactions(
     let loads = applied_loads(algebra, mechanism, symbols, &kinematics, rates)?;
     let applied = generalized_forces(algebra, &loads, &violation.rates);
     // The violations only tell directions: a damper resists the motion that happens.
-    let none: Vec<_> = ids(&algebra.graph, &violation.rates)
+    let mut allowed = Substitution::by_zero(&algebra.graph, &violation.rates);
+    let applied = applied
         .into_iter()
-        .map(|rate| (rate, Graph::ZERO))
-        .collect();
-    let mut allowed = Substitution::new(&mut algebra.graph, &none);
-    let applied: Vec<Expr> = applied
-        .into_iter()
-        .map(|force| allowed.apply(&mut algebra.graph, force).unwrap_or(force))
-        .collect();
+        .map(|force| allowed.apply(&mut algebra.graph, force))
+        .collect::<Option<Vec<Expr>>>()
+        .ok_or_else(|| vec![division_by_zero(Item::Mechanism)])?;
 
     // Inertial forces, shared by all reactions.
     let mut inertial = Vec::with_capacity(bodies.len());

@@ -97,6 +97,11 @@ impl Graph {
 
     /// `base^exponent`; the number 0 takes no negative exponent.
     pub fn pow(&mut self, base: Expr, exponent: i32) -> Expr {
+        if exponent == i32::MIN {
+            // The one exponent without a negative.
+            let almost = self.pow(base, exponent + 1);
+            return self.div(almost, base);
+        }
         let mut factors = Factors::new();
         factors.multiply(self, base, exponent);
         factors.into_expr(self)
@@ -163,7 +168,10 @@ impl Graph {
     /// `base^exponent` for an exponent that is not an integer number.
     pub fn power(&mut self, base: Expr, exponent: Expr) -> Expr {
         if let Some(number) = self.as_number(exponent) {
-            if let Some(n) = number.as_integer().and_then(|n| i32::try_from(n).ok()) {
+            if let Some(n) = number
+                .as_integer()
+                .and_then(|n| fitting(i32::try_from(n).ok()))
+            {
                 return self.pow(base, n);
             }
             if *number == Rational::new(1, 2) {
@@ -344,6 +352,11 @@ fn pythagoras(graph: &mut Graph, terms: &[Term]) -> Option<Vec<Term>> {
     None
 }
 
+/// An exponent whose negative is an exponent too.
+fn fitting(exponent: Option<i32>) -> Option<i32> {
+    exponent.filter(|&e| e != i32::MIN)
+}
+
 /// A product under construction: powers of the same base meet.
 struct Factors {
     coefficient: Rational,
@@ -374,27 +387,35 @@ impl Factors {
         if rest == Graph::ONE || self.coefficient.is_zero() {
             return;
         }
-        match graph.node(rest) {
-            Node::Product(factors) => self.factors.extend(factors.iter().map(|f| Factor {
+        let raised = |f: &Factor| {
+            let exponent = fitting(f.exponent.checked_mul(exponent))?;
+            Some(Factor {
                 base: f.base,
-                exponent: f.exponent.saturating_mul(exponent),
-            })),
-            _ => self.factors.push(Factor {
+                exponent,
+            })
+        };
+        let powers: Option<Vec<Factor>> = match graph.node(rest) {
+            Node::Product(factors) => factors.iter().map(raised).collect(),
+            _ => None,
+        };
+        match powers {
+            Some(powers) => self.factors.extend(powers),
+            // No product, or one whose powers are too high to write out: a factor of its own.
+            None => self.factors.push(Factor {
                 base: rest,
                 exponent,
             }),
         }
     }
 
-    /// Powers of the same base meet.
+    /// Powers of the same base meet, as far as an exponent can count them.
     fn merge(&mut self) {
         self.factors.sort_unstable_by_key(|f| f.base);
         self.factors.dedup_by(|next, first| {
-            let same = next.base == first.base;
-            if same {
-                first.exponent = first.exponent.saturating_add(next.exponent);
-            }
-            same
+            let sum = fitting(first.exponent.checked_add(next.exponent));
+            let meet = sum.filter(|_| next.base == first.base);
+            first.exponent = meet.unwrap_or(first.exponent);
+            meet.is_some()
         });
         self.factors.retain(|f| f.exponent != 0);
     }

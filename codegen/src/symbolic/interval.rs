@@ -343,7 +343,7 @@ impl Range {
 
     fn power(self, exponent: i32) -> Self {
         if exponent < 0 {
-            return self.power(exponent.saturating_neg()).reciprocal();
+            return self.power(-exponent).reciprocal();
         }
         if exponent == 1 {
             return self;

@@ -25,6 +25,12 @@ impl Substitution {
         Self::of_parts(graph, &parts)
     }
 
+    /// Replaces symbols by the number 0.
+    pub fn by_zero(graph: &Graph, symbols: &[Expr]) -> Self {
+        let zeros: Vec<(Expr, Expr)> = symbols.iter().map(|&s| (s, Graph::ZERO)).collect();
+        Self::of_parts(graph, &zeros)
+    }
+
     /// Replaces whole expressions, wherever they stand as parts.
     pub fn of_parts(graph: &Graph, replacements: &[(Expr, Expr)]) -> Self {
         let targets = replacements

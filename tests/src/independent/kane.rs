@@ -27,8 +27,10 @@ pub struct Kane {
 /// The linear map from pseudo-velocities and violations to generalised velocities.
 pub struct Velocities {
     inverse: DMatrix<f64>,
-    /// Rows of the constraints that geometry does not satisfy by itself.
+    /// Rows of the constraints that neither geometry nor the rows before them satisfy.
     pub active: Vec<usize>,
+    /// Whether rows follow from others, so that no multiplier is known.
+    pub redundant: bool,
     /// Coefficients of the generalised velocities in all constraint rows.
     pub coefficients: Vec<Vec<f64>>,
     speeds: usize,
@@ -52,9 +54,11 @@ impl Velocities {
             .map(|i| slopes(&|m| m.rows[i].value))
             .collect();
         // A row that geometry satisfies has no coefficients but for rounding.
-        let active: Vec<usize> = (0..coefficients.len())
+        let moving: Vec<usize> = (0..coefficients.len())
             .filter(|&i| coefficients[i].iter().any(|c| c.abs() > 1e-9))
             .collect();
+        let active = independent(&coefficients, &moving);
+        let redundant = active.len() < moving.len();
         let rows: Vec<&Vec<f64>> = definitions
             .iter()
             .chain(active.iter().map(|&i| &coefficients[i]))
@@ -67,6 +71,7 @@ impl Velocities {
         Self {
             inverse,
             active,
+            redundant,
             coefficients,
             speeds: definitions.len(),
         }
@@ -88,6 +93,26 @@ impl Velocities {
     fn direction(&self, i: usize) -> Vec<f64> {
         self.inverse.column(i).iter().copied().collect()
     }
+}
+
+/// The rows that are no sum of rows before them, by Gram and Schmidt.
+fn independent(rows: &[Vec<f64>], candidates: &[usize]) -> Vec<usize> {
+    let mut basis: Vec<DVector<f64>> = Vec::new();
+    let mut kept = Vec::new();
+    for &candidate in candidates {
+        let row = DVector::from_column_slice(&rows[candidate]);
+        let mut rest = row.clone();
+        for _ in 0..2 {
+            for unit in &basis {
+                rest -= unit * unit.dot(&rest);
+            }
+        }
+        if rest.norm() > 1e-9 * row.norm() {
+            basis.push(rest.normalize());
+            kept.push(candidate);
+        }
+    }
+    kept
 }
 
 /// How velocities of the bodies grow with one pseudo-velocity.

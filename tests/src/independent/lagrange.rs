@@ -21,7 +21,8 @@ pub struct Lagrange {
     /// Pseudo-accelerations that belong to them.
     pub accelerations: Vec<f64>,
     /// Reactions by the name of their place, in the ground; `None` where geometry satisfies a
-    /// constraint, whose reaction does not appear in these equations.
+    /// constraint, whose reaction does not appear in these equations, and where constraints follow from
+    /// others.
     pub reactions: Vec<(String, [Option<f64>; 3])>,
 }
 
@@ -126,7 +127,7 @@ pub fn lagrange(setting: &Setting<'_>) -> Lagrange {
             velocities
                 .active
                 .iter()
-                .position(|&a| a == i)
+                .position(|&a| a == i && !velocities.redundant)
                 .map(|row| solution[n + row])
         })
         .collect();

@@ -1,0 +1,164 @@
+//! What the equations are at the initial state, where a mechanism is most likely to be singular:
+//! arms stretched out, angles at zero, springs without length.
+
+use appell_spec::Code;
+use appell_spec::mechanism::{Connection, GROUND, LoadKind, Mechanism};
+
+use super::algebra::Algebra;
+use super::finding::{Finding, Item};
+use super::kinematics::Kinematics;
+use super::motion::Motion;
+use super::symbols::{Symbols, ids};
+use crate::symbolic::{Expr, Graph, SymbolId, evaluate};
+
+/// Values of all symbols at the initial state, without inputs.
+pub struct InitialState {
+    /// By symbol.
+    values: Vec<f64>,
+    /// Coordinates with a declared range.
+    ranges: Vec<(SymbolId, [f64; 2])>,
+}
+
+impl InitialState {
+    /// From the initial values and the parameters of a spec.
+    pub fn new(graph: &Graph, mechanism: &Mechanism, symbols: &Symbols) -> Self {
+        let mut values = vec![0.0; graph.symbol_count()];
+        let mut set = |symbols: &[Expr], numbers: &mut dyn Iterator<Item = f64>| {
+            for (symbol, number) in ids(graph, symbols).into_iter().zip(numbers) {
+                values[symbol.0 as usize] = number;
+            }
+        };
+        let first = |signal: &appell_spec::mechanism::Signal| signal.values.first().copied();
+        set(
+            &symbols.parameters,
+            &mut mechanism.parameters.iter().map(|p| p.value),
+        );
+        set(
+            &symbols.coordinates,
+            &mut mechanism.coordinates.iter().map(|q| q.initial),
+        );
+        set(
+            &symbols.speeds,
+            &mut mechanism.pseudo_velocities.iter().map(|w| w.initial),
+        );
+        let signals: Vec<Expr> = symbols.signals.iter().map(|orders| orders[0]).collect();
+        set(
+            &signals,
+            &mut mechanism
+                .signals
+                .iter()
+                .map(|signal| first(signal).unwrap_or(0.0)),
+        );
+        set(&[symbols.pi], &mut std::iter::once(std::f64::consts::PI));
+        let ranges = ids(graph, &symbols.coordinates)
+            .into_iter()
+            .zip(&mechanism.coordinates)
+            .filter_map(|(symbol, q)| Some((symbol, q.range?)))
+            .collect();
+        Self { values, ranges }
+    }
+
+    fn value(&self, graph: &Graph, expr: Expr) -> f64 {
+        evaluate(graph, &self.values, &[expr])[0]
+    }
+
+    /// Whether an expression is zero there or changes its sign on the way to an end of the range of a
+    /// coordinate.
+    fn vanishes(&self, graph: &Graph, expr: Expr) -> bool {
+        let here = self.value(graph, expr);
+        here == 0.0
+            || self.ranges.iter().any(|&(symbol, ends)| {
+                graph.mentions(expr, &[symbol])
+                    && ends.iter().any(|&end| {
+                        let mut values = self.values.clone();
+                        values[symbol.0 as usize] = end;
+                        evaluate(graph, &values, &[expr])[0] * here < 0.0
+                    })
+            })
+    }
+}
+
+/// Springs and dampers that lose their direction: those whose length is zero at the initial state, or
+/// that are straight along an axis and turn over inside the declared ranges.
+pub fn vanishing_lengths(
+    algebra: &mut Algebra,
+    mechanism: &Mechanism,
+    kinematics: &Kinematics,
+    state: &InitialState,
+) -> Vec<Finding> {
+    let mut findings = Vec::new();
+    for (index, load) in mechanism.loads.iter().enumerate() {
+        let (LoadKind::Spring { between, .. } | LoadKind::Damper { between, .. }) = &load.kind
+        else {
+            continue;
+        };
+        let Connection::Points(a, b) = *between else {
+            continue;
+        };
+        let graph = &mut algebra.graph;
+        let d = kinematics.between(graph, mechanism, a, b, GROUND);
+        let lasting: Vec<Expr> = d.into_iter().filter(|&c| c != Graph::ZERO).collect();
+        let vanishes = match *lasting {
+            [component] => state.vanishes(graph, component),
+            _ => lasting.iter().all(|&c| state.value(graph, c) == 0.0),
+        };
+        if vanishes {
+            let [a, b] = [a, b].map(|point| &mechanism.points[point].name);
+            findings.push(Finding {
+                code: Code::VanishingLength,
+                message: format!(
+                    "the distance between `{a}` and `{b}` can be zero in the declared ranges: the \
+                     load has no direction there"
+                ),
+                item: Item::Load(index),
+                help:
+                    "connect other points, start elsewhere, or declare ranges of the coordinates \
+                       that keep the points apart; between coordinates a spring needs no direction"
+                        .to_owned(),
+            });
+        }
+    }
+    findings
+}
+
+/// Equations that cannot be solved at the initial state.
+pub fn singularities(
+    graph: &Graph,
+    mechanism: &Mechanism,
+    rates: &[Expr],
+    motion: &Motion,
+    state: &InitialState,
+) -> Vec<Finding> {
+    let mut findings = Vec::new();
+    for (q, &rate) in mechanism.coordinates.iter().zip(rates) {
+        if !state.value(graph, rate).is_finite() {
+            findings.push(Finding {
+                code: Code::SingularPseudoVelocities,
+                message: format!(
+                    "pseudo-velocities and constraints do not determine `dot({})` at the initial \
+                     state",
+                    q.label.name
+                ),
+                item: Item::Mechanism,
+                help: "start elsewhere, or choose pseudo-velocities that are independent there"
+                    .to_owned(),
+            });
+        }
+    }
+    if !findings.is_empty() {
+        return findings;
+    }
+    for (speed, pivot) in motion.pivots() {
+        let value = state.value(graph, pivot);
+        if value == 0.0 || !value.is_finite() {
+            let name = &mechanism.pseudo_velocities[speed].label.name;
+            findings.push(Finding {
+                code: Code::SingularMassMatrix,
+                message: format!("the mass matrix is singular for `{name}` at the initial state"),
+                item: Item::PseudoVelocity(speed),
+                help: "give a mass or an inertia to what it moves, or start elsewhere".to_owned(),
+            });
+        }
+    }
+    findings
+}

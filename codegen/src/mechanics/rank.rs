@@ -1,0 +1,120 @@
+//! The generic rank of linear rows: which of them follow from the ones before, whatever the
+//! configuration.
+
+use super::algebra::Algebra;
+use crate::symbolic::{Expr, Graph, Intervals, Node};
+
+/// A row `Σ coefficient · unknown + rest`.
+#[derive(Debug, Clone)]
+pub struct LinearRow {
+    /// One coefficient per unknown.
+    pub coefficients: Vec<Expr>,
+    /// What remains without unknowns.
+    pub rest: Expr,
+}
+
+/// A row as a sum of earlier ones: `Σ factor · row`, by their index.
+pub type Combination = Vec<(usize, Expr)>;
+
+/// How a row stands to the independent rows before it.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Standing {
+    /// It says something new.
+    Independent,
+    /// It is this sum of them.
+    Redundant(Combination),
+    /// Its coefficients are a sum of theirs, its rest is another one.
+    Inconsistent,
+}
+
+/// A row in echelon form, and how it came from the rows as they are given.
+struct Reduced {
+    pivot: usize,
+    row: LinearRow,
+    origin: Combination,
+}
+
+/// Gaussian elimination over the field of functions: a pivot is what does not vanish identically.
+pub fn standings(algebra: &mut Algebra, rows: &[LinearRow]) -> Vec<Standing> {
+    let mut echelon: Vec<Reduced> = Vec::new();
+    let mut standings = Vec::with_capacity(rows.len());
+    for (index, given) in rows.iter().enumerate() {
+        let (row, factors) = reduced(algebra, &echelon, given);
+        let standing = match row.coefficients.iter().position(|&c| c != Graph::ZERO) {
+            Some(pivot) => {
+                let mut origin = in_given_rows(algebra, &echelon, &factors);
+                for (_, factor) in &mut origin {
+                    *factor = algebra.graph.neg(*factor);
+                }
+                origin.push((index, Graph::ONE));
+                echelon.push(Reduced { pivot, row, origin });
+                Standing::Independent
+            }
+            None if row.rest == Graph::ZERO => {
+                Standing::Redundant(in_given_rows(algebra, &echelon, &factors))
+            }
+            None => Standing::Inconsistent,
+        };
+        standings.push(standing);
+    }
+    standings
+}
+
+/// A row less its share of each row in echelon form, and these shares.
+fn reduced(
+    algebra: &mut Algebra,
+    echelon: &[Reduced],
+    given: &LinearRow,
+) -> (LinearRow, Vec<Expr>) {
+    let mut row = given.clone();
+    let mut factors = vec![Graph::ZERO; echelon.len()];
+    for (share, above) in factors.iter_mut().zip(echelon) {
+        if row.coefficients[above.pivot] == Graph::ZERO {
+            continue;
+        }
+        let pivot = above.row.coefficients[above.pivot];
+        let factor = algebra.graph.div(row.coefficients[above.pivot], pivot);
+        let entries = row.coefficients.iter_mut().chain([&mut row.rest]);
+        let subtracted = above.row.coefficients.iter().chain([&above.row.rest]);
+        for (value, &other) in entries.zip(subtracted) {
+            let change = algebra.graph.mul(factor, other);
+            *value = algebra.graph.sub(*value, change);
+            if algebra.test.is_zero(&algebra.graph, *value) {
+                *value = Graph::ZERO;
+            }
+        }
+        *share = factor;
+    }
+    (row, factors)
+}
+
+/// Shares of rows in echelon form as shares of the rows as they are given.
+fn in_given_rows(algebra: &mut Algebra, echelon: &[Reduced], factors: &[Expr]) -> Combination {
+    let mut combination = Combination::new();
+    for (&factor, above) in factors.iter().zip(echelon) {
+        for &(index, part) in &above.origin {
+            let part = algebra.graph.mul(factor, part);
+            match combination.iter_mut().find(|(known, _)| *known == index) {
+                Some((_, sum)) => *sum = algebra.graph.add(*sum, part),
+                None => combination.push((index, part)),
+            }
+        }
+    }
+    for (_, factor) in &mut combination {
+        *factor = algebra.shortest(*factor);
+    }
+    combination.retain(|&(_, factor)| factor != Graph::ZERO);
+    combination
+}
+
+/// Whether no denominator in `expr` can vanish in the declared ranges.
+pub fn is_finite(graph: &Graph, intervals: &mut Intervals, expr: Expr) -> bool {
+    graph.in_order(&[expr]).into_iter().all(|part| {
+        let Node::Product(factors) = graph.node(part) else {
+            return true;
+        };
+        factors
+            .iter()
+            .all(|f| f.exponent > 0 || intervals.cannot_vanish(graph, f.base))
+    })
+}

@@ -1,0 +1,268 @@
+//! Constraint rows that follow from others: two wheels on one axle cannot slip sideways one by one.
+//!
+//! Such a row is left out, and the motion stays the same. The reactions are then those of the rows
+//! that stay, which do the work of the one left out as well.
+
+use appell_spec::Code;
+use appell_spec::mechanism::{ConstraintKind, FrameId, GROUND, Mechanism};
+
+use super::algebra::Algebra;
+use super::constraints::Row;
+use super::finding::{Finding, Item, Outcome};
+use super::frames::{FrameVector, Frames};
+use super::rank::{Combination, LinearRow, Standing, is_finite, standings};
+use crate::symbolic::vector;
+use crate::symbolic::{Expr, Intervals};
+
+/// Marks the rows that add nothing, so that those that stay are independent. Returns what to warn of.
+///
+/// A row is left out only where it is a sum of others in *every* configuration: `dot(x) = 0` does
+/// not follow from `x*dot(x) = 0`. Where the rows of a rolling contact do not allow this in the axes
+/// of the ground, they are resolved in the axes of another frame.
+pub fn leave_out(
+    algebra: &mut Algebra,
+    mechanism: &Mechanism,
+    frames: &Frames,
+    intervals: &mut Intervals,
+    rows: &mut [Row],
+) -> Outcome<Vec<Finding>> {
+    let (mut warnings, mut errors) = (Vec::new(), Vec::new());
+    // Rows with an error, which the others are still compared without.
+    let mut refused: Vec<usize> = Vec::new();
+    let mut turned: Vec<usize> = Vec::new();
+    loop {
+        let open: Vec<usize> = (0..rows.len())
+            .filter(|row| rows[*row].is_active() && !refused.contains(row))
+            .collect();
+        let Some((row, standing)) = first_dependent(algebra, rows, &open) else {
+            break;
+        };
+        let Standing::Redundant(combination) = standing else {
+            errors.push(contradiction(&rows[row]));
+            refused.push(row);
+            continue;
+        };
+        let constraint = rows[row].constraint;
+        if let Some(spare) = spare_row(algebra, intervals, row, &combination) {
+            warnings.push(redundancy(rows, spare, row, &combination));
+            rows[spare].redundant = true;
+        } else if !turned.contains(&constraint)
+            && let Some(resolved) =
+                resolved_elsewhere(algebra, mechanism, frames, intervals, rows, constraint)
+        {
+            for (place, row) in resolved {
+                rows[place] = row;
+            }
+            turned.push(constraint);
+        } else {
+            errors.push(singular(&rows[row]));
+            refused.push(row);
+        }
+    }
+    if errors.is_empty() {
+        Ok(warnings)
+    } else {
+        Err(errors)
+    }
+}
+
+/// The first of the rows `open` that adds nothing to those before, by its index among all rows.
+fn first_dependent(
+    algebra: &mut Algebra,
+    rows: &[Row],
+    open: &[usize],
+) -> Option<(usize, Standing)> {
+    let standings = standings(algebra, &linear(rows, open));
+    let dependent = open.iter().zip(standings);
+    let (&row, standing) = dependent
+        .into_iter()
+        .find(|(_, standing)| *standing != Standing::Independent)?;
+    Some(match standing {
+        Standing::Redundant(combination) => {
+            let among_all = combination.into_iter().map(|(i, c)| (open[i], c)).collect();
+            (row, Standing::Redundant(among_all))
+        }
+        other => (row, other),
+    })
+}
+
+fn linear(rows: &[Row], places: &[usize]) -> Vec<LinearRow> {
+    let linear = |&place: &usize| LinearRow {
+        coefficients: rows[place].coefficients.clone(),
+        rest: rows[place].rest,
+    };
+    places.iter().map(linear).collect()
+}
+
+/// A row that follows from the others in every configuration, where `row = Σ factor · other`: the
+/// row itself, or another one for which that equation can be solved.
+fn spare_row(
+    algebra: &mut Algebra,
+    intervals: &mut Intervals,
+    row: usize,
+    combination: &Combination,
+) -> Option<usize> {
+    let factors: Vec<Expr> = combination.iter().map(|&(_, factor)| factor).collect();
+    let finite = |algebra: &Algebra, intervals: &mut Intervals, factors: &[Expr]| {
+        let mut factors = factors.iter();
+        factors.all(|&factor| is_finite(&algebra.graph, intervals, factor))
+    };
+    if finite(algebra, intervals, &factors) {
+        return Some(row);
+    }
+    // Later rows first: the spec's first constraint on a motion is the one to keep.
+    let mut others = combination.clone();
+    others.sort_unstable_by_key(|&(other, _)| std::cmp::Reverse(other));
+    others.into_iter().find_map(|(other, share)| {
+        let mut solved = vec![algebra.graph.pow(share, -1)];
+        for &factor in factors.iter().filter(|&&factor| factor != share) {
+            let ratio = algebra.graph.div(factor, share);
+            solved.push(algebra.shortest(ratio));
+        }
+        finite(algebra, intervals, &solved).then_some(other)
+    })
+}
+
+/// The rows of a rolling contact in the axes of the first frame in which those that add nothing can
+/// be left out in every configuration.
+fn resolved_elsewhere(
+    algebra: &mut Algebra,
+    mechanism: &Mechanism,
+    frames: &Frames,
+    intervals: &mut Intervals,
+    rows: &[Row],
+    constraint: usize,
+) -> Option<Vec<(usize, Row)>> {
+    let ConstraintKind::Rolling { .. } = mechanism.constraints[constraint].kind else {
+        return None;
+    };
+    (GROUND + 1..mechanism.frames.len()).find_map(|frame| {
+        let resolved = resolved_in(algebra, mechanism, frames, rows, constraint, frame)?;
+        let mut all = rows.to_vec();
+        for (place, row) in &resolved {
+            all[*place] = row.clone();
+        }
+        let before: Vec<usize> = (0..all.len())
+            .filter(|&row| all[row].is_active() && all[row].constraint <= constraint)
+            .collect();
+        let standings = standings(algebra, &linear(&all, &before));
+        let serves = before.iter().zip(standings).all(|(&row, standing)| {
+            all[row].constraint < constraint
+                || match standing {
+                    Standing::Independent => true,
+                    Standing::Inconsistent => false,
+                    Standing::Redundant(sum) => sum
+                        .iter()
+                        .all(|&(_, factor)| is_finite(&algebra.graph, intervals, factor)),
+                }
+        });
+        serves.then_some(resolved)
+    })
+}
+
+/// The rows of a rolling contact as components along the axes of a frame. Rows that geometry embeds
+/// stay as they are; `None` where the frame has not got their axes.
+fn resolved_in(
+    algebra: &mut Algebra,
+    mechanism: &Mechanism,
+    frames: &Frames,
+    rows: &[Row],
+    constraint: usize,
+    frame: FrameId,
+) -> Option<Vec<(usize, Row)>> {
+    let places: Vec<usize> = (0..rows.len())
+        .filter(|&row| rows[row].constraint == constraint)
+        .collect();
+    let mut resolved = Vec::with_capacity(places.len());
+    for (axis, (&place, letter)) in places.iter().zip(["x", "y", "z"]).enumerate() {
+        let unit = FrameVector {
+            frame,
+            v: vector::IDENTITY[axis],
+        };
+        let along = frames.express(&mut algebra.graph, unit, GROUND);
+        if !rows[place].is_active() {
+            if along != vector::IDENTITY[axis] {
+                return None;
+            }
+            continue;
+        }
+        let mut sum = |part: &dyn Fn(&Row) -> Expr| {
+            let terms: Vec<Expr> = along
+                .iter()
+                .zip(&places)
+                .map(|(&c, &place)| algebra.graph.mul(c, part(&rows[place])))
+                .collect();
+            let total = algebra.graph.sum(&terms);
+            algebra.shortest(total)
+        };
+        let mut row = rows[place].clone();
+        row.value = sum(&|row| row.value);
+        row.rest = sum(&|row| row.rest);
+        row.coefficients = (0..row.coefficients.len())
+            .map(|k| sum(&|row| row.coefficients[k]))
+            .collect();
+        row.carried = (0..row.carried.len())
+            .map(|k| sum(&|row| row.carried[k]))
+            .collect();
+        if row.is_embedded() {
+            return None;
+        }
+        let (constraint, frame_name) = (
+            &mechanism.constraints[constraint].name,
+            &mechanism.frames[frame].name,
+        );
+        row.name = format!("{constraint}.{frame_name}_{letter}");
+        row.frame = frame;
+        row.reaction.direction = along;
+        resolved.push((place, row));
+    }
+    Some(resolved)
+}
+
+fn contradiction(row: &Row) -> Finding {
+    Finding {
+        code: Code::DependentConstraints,
+        message: format!("`{}` contradicts the other constraints", row.name),
+        item: Item::Constraint(row.constraint),
+        help: "remove one of them".to_owned(),
+    }
+}
+
+fn singular(row: &Row) -> Finding {
+    Finding {
+        code: Code::RedundantConstraint,
+        message: format!(
+            "`{}` follows from the other constraints, but not in every configuration",
+            row.name
+        ),
+        item: Item::Constraint(row.constraint),
+        help: "remove it, or declare ranges of the coordinates in which it follows".to_owned(),
+    }
+}
+
+/// The warning for a row that is left out, where `row = Σ factor · other`.
+fn redundancy(rows: &[Row], spare: usize, row: usize, combination: &Combination) -> Finding {
+    let mut others: Vec<usize> = combination.iter().map(|&(other, _)| other).collect();
+    others.push(row);
+    others.sort_unstable();
+    let names: Vec<String> = others
+        .into_iter()
+        .filter(|&other| other != spare)
+        .map(|other| format!("`{}`", rows[other].name))
+        .collect();
+    let reason = if names.is_empty() {
+        "always holds".to_owned()
+    } else {
+        format!("follows from {}", names.join(", "))
+    };
+    Finding {
+        code: Code::RedundantConstraint,
+        message: format!(
+            "`{}` {reason} and is left out: the motion is the same, but how the constraints share \
+             their reactions cannot be told; it is reported without any",
+            rows[spare].name
+        ),
+        item: Item::Constraint(rows[spare].constraint),
+        help: "remove it, or read the reactions of these constraints as one".to_owned(),
+    }
+}

@@ -1,7 +1,7 @@
 //! Expressions given at run time, evaluated with the names of a mechanism.
 
 use appell_codegen::jit::{NativeFunction, Sizes};
-use appell_codegen::mechanics::lower::Lowering;
+use appell_codegen::mechanics::expressions::Lowering;
 use appell_codegen::mechanics::symbols::{Symbols, ids};
 use appell_codegen::program::{Arguments, Array, Function, FunctionKind, Layout, Program};
 use appell_codegen::schedule::{Schedule, interpret, schedule};

@@ -6,6 +6,7 @@ use std::time::{Duration, Instant};
 use appell_codegen::compile::{compile, derived};
 use appell_codegen::mechanics::assemble::ALL;
 use appell_codegen::schedule::schedule;
+use appell_spec::Report;
 
 /// A text this long to derive would make an editor wait.
 const LONGEST_WAIT: Duration = Duration::from_secs(20);
@@ -15,6 +16,12 @@ fn refusal(text: &str) -> String {
         Ok(_) => panic!("it was accepted"),
         Err(report) => report.plain(),
     }
+}
+
+/// What is told about a spec that is accepted.
+fn warnings(text: &str) -> String {
+    let derived = derived("a.toml", text).unwrap_or_else(|report| panic!("{}", report.plain()));
+    Report::new("a.toml", text, derived.warnings).plain()
 }
 
 /// A point mass in space with its constraints and pseudo-velocities.
@@ -30,16 +37,120 @@ fn mass(constraints: &str, speeds: &str) -> String {
 }
 
 #[test]
-fn a_constraint_that_follows_from_the_others_is_named() {
+fn a_constraint_that_follows_from_the_others_is_left_out_with_a_warning() {
     let rows = "first = { kind = 'velocity', zero = 'dot(x) + dot(y)' }\n\
                 second = { kind = 'velocity', zero = 'dot(x) - dot(y)' }\n\
                 third = { kind = 'velocity', zero = '3*dot(x)' }";
-    let shown = refusal(&mass(rows, "w = 'dot(z)'"));
+    let shown = warnings(&mass(rows, "w = 'dot(z)'"));
     assert!(shown.contains("redundant-constraint"), "{shown}");
     assert!(
-        shown.contains("`third` follows from the other constraints"),
+        shown.contains("`third` follows from `first`, `second` and is left out"),
         "{shown}"
     );
+}
+
+#[test]
+fn the_row_that_is_left_out_follows_in_every_configuration() {
+    // At x = 0 the first says nothing, so the second must stay.
+    let rows = "first = { kind = 'velocity', zero = 'x*dot(x)' }\n\
+                second = { kind = 'velocity', zero = 'dot(x)' }";
+    let shown = warnings(&mass(rows, "v = 'dot(y)'\nw = 'dot(z)'"));
+    assert!(shown.contains("`first` follows from `second`"), "{shown}");
+    // At x = 0 one of them is needed, at y = 0 the other.
+    let rows = "first = { kind = 'velocity', zero = 'x*dot(x)' }\n\
+                second = { kind = 'velocity', zero = 'y*dot(x)' }";
+    let shown = refusal(&mass(rows, "v = 'dot(y)'\nw = 'dot(z)'"));
+    assert!(
+        shown.contains("`second` follows from the other constraints, but not in every"),
+        "{shown}"
+    );
+}
+
+#[test]
+fn mistakes_of_several_stages_are_told_at_once() {
+    let rows = "still = { kind = 'velocity', zero = 'dot(x)' }\n\
+                moving = { kind = 'velocity', zero = 'dot(x)', equals = '1 [m/s]' }\n\
+                faster = { kind = 'velocity', zero = 'dot(x)', equals = '2 [m/s]' }";
+    let text = mass(rows, "v = 'dot(y)'\nw = 'dot(z)'");
+    let text = format!(
+        "{text}[loads]\npull = {{ kind = 'force', on = 'P', in = 'ground', vector = ['1 [N]/(sin(x/1 [m])^2 + cos(x/1 [m])^2 - 1)', 0, 0] }}\n\
+         [outputs]\nout = {{ value = 'x*tan(pi/2)', unit = 'm' }}\n"
+    );
+    let shown = refusal(&text);
+    for part in [
+        "`moving` contradicts",
+        "`faster` contradicts",
+        "pull = ",
+        "out = ",
+    ] {
+        assert!(shown.contains(part), "{part} is not in {shown}");
+    }
+    assert_eq!(
+        shown.matches("error[division-by-zero]").count(),
+        2,
+        "{shown}"
+    );
+}
+
+#[test]
+fn every_speed_without_mass_is_named() {
+    let text = mass("", "u = 'dot(x)'\nv = 'dot(y)'\nw = 'dot(z)'")
+        .replace("at = ['x', 'y', 'z']", "at = ['x', 0, 0]")
+        .replace(
+            "[constraints]",
+            "[outputs]\no = { value = 'y + z', unit = 'm' }",
+        );
+    let shown = refusal(&text);
+    assert!(
+        shown.contains("`v` can change without moving any mass"),
+        "{shown}"
+    );
+    assert!(
+        shown.contains("`w` can change without moving any mass"),
+        "{shown}"
+    );
+}
+
+/// A mass on a rail with a spring to a point above the rail at a height.
+fn spring(height: &str, range: &str) -> String {
+    format!(
+        "[mechanism]\nname = 'spring'\ntitle = 'a mass on a spring'\n\
+         [parameters]\nm = {{ value = 1, unit = 'kg' }}\nh = {{ value = 1, unit = 'm' }}\n\
+         [coordinates]\nx = {{ unit = 'm', initial = 1{range} }}\n\
+         [points]\nP = {{ from = 'O', in = 'ground', at = ['x', 0, 0] }}\n\
+         W = {{ from = 'O', in = 'ground', at = [0, 0, '{height}'] }}\n\
+         [bodies]\nb = {{ centre = 'P', mass = 'm' }}\n\
+         [pseudo_velocities]\nv = 'dot(x)'\n\
+         [loads]\ns = {{ kind = 'spring', between = ['W', 'P'], stiffness = '1 [N/m]', relaxed = '0.5*h' }}\n"
+    )
+}
+
+#[test]
+fn a_spring_that_can_lose_its_length_is_warned_of() {
+    assert!(!warnings(&spring("h", ", range = [-2, 2]")).contains("vanishing-length"));
+    assert!(!warnings(&spring("0", ", range = [0.5, 2]")).contains("vanishing-length"));
+    let through_the_wall = warnings(&spring("0", ", range = [-2, 2]"));
+    assert!(
+        through_the_wall.contains("vanishing-length"),
+        "{through_the_wall}"
+    );
+    let at_rest = warnings(&spring("0", "").replace("initial = 1", "initial = 0"));
+    assert!(at_rest.contains("vanishing-length"), "{at_rest}");
+    let never = refusal(&spring("0", "").replace("['x', 0, 0]", "[0, 0, 0]"));
+    assert!(never.contains("always at the same place"), "{never}");
+}
+
+#[test]
+fn pseudo_velocities_that_depend_on_each_other_at_the_start_are_warned_of() {
+    let singular = "u = 'x*dot(x)'\nv = 'dot(y)'\nw = 'dot(z)'";
+    let shown = warnings(&mass("", singular));
+    assert!(
+        shown.contains("do not determine `dot(x)` at the initial state"),
+        "{shown}"
+    );
+    let elsewhere =
+        mass("", singular).replace("x = { unit = 'm' }", "x = { unit = 'm', initial = 1 }");
+    assert!(!warnings(&elsewhere).contains("at the initial state"));
 }
 
 #[test]
@@ -107,7 +218,7 @@ fn a_parameter_that_may_change_its_sign_is_no_safe_pivot() {
 }
 
 #[test]
-fn two_contacts_that_share_a_reaction_are_refused() {
+fn two_contacts_that_share_a_reaction_are_warned_of() {
     let text = "[mechanism]\nname = 'axle'\ntitle = 'two wheels on one axle'\n\
          [parameters]\nm = { value = 1, unit = 'kg' }\nR = { value = 1, unit = 'm' }\n\
          [coordinates]\nx = { unit = 'm' }\n\
@@ -119,7 +230,7 @@ fn two_contacts_that_share_a_reaction_are_refused() {
          [constraints]\nleft = { kind = 'rolling', body = 'b', contact = 'A' }\n\
          right = { kind = 'rolling', body = 'b', contact = 'B' }\n\
          [pseudo_velocities]\nv = 'dot(x)'\n";
-    let shown = refusal(text);
+    let shown = warnings(text);
     assert!(
         shown.contains("how the two share their reaction cannot be told"),
         "{shown}"

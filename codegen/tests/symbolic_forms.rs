@@ -35,6 +35,30 @@ fn sums_and_products_do_not_depend_on_order() {
 }
 
 #[test]
+fn powers_beyond_the_largest_exponent_stay_exact() {
+    let mut g = Graph::new();
+    let [x, y] = symbols(&mut g, ["x", "y"]);
+    let high = |g: &mut Graph, e| g.pow(e, i32::MAX);
+    let root = {
+        let xy = g.mul(x, y);
+        high(&mut g, xy)
+    };
+    let tower = high(&mut g, root);
+    assert_ne!(tower, root, "(a^n)^n is not a^n");
+    let once = high(&mut g, x);
+    let (twice, thrice) = (g.mul(once, once), g.product(&[once, once, once]));
+    assert!(once != twice && twice != thrice);
+    assert_eq!(g.div(twice, once), once);
+    let value = |g: &Graph, e| evaluate(g, &[1.0 + 1e-10, 1.0], &[e])[0];
+    let ratio = value(&g, twice) / value(&g, once).powi(2);
+    assert!((ratio - 1.0).abs() < 1e-6, "{ratio}");
+    let lowest = g.pow(x, i32::MIN);
+    let back = g.pow(x, i32::MAX);
+    let product = g.product(&[lowest, back, x]);
+    assert!((value(&g, product) - 1.0).abs() < 1e-6);
+}
+
+#[test]
 fn pythagoras_shortens_sums() {
     let mut g = Graph::new();
     let [x, m, l] = symbols(&mut g, ["x", "m", "l"]);

@@ -73,7 +73,7 @@ impl Algebra {
     /// own frame, written with the yaw angle, is the same at every yaw. Then the products are
     /// multiplied out where that pays.
     pub fn shortest(&mut self, expr: Expr) -> Expr {
-        if self.graph.operations(&[expr]) == 0 {
+        if self.graph.is_free(expr) {
             return expr;
         }
         if self.test.is_zero(&self.graph, expr) {

@@ -4,11 +4,11 @@ use appell_runtime::model::{Interpolation, ModelInfo, Quantity, SignalTable};
 use appell_spec::mechanism::{self, Label, Mechanism, Signal};
 
 use super::Derivation;
+use super::expressions::Lowering;
 use super::finding::{Item, Outcome};
 use super::gibbs_appell::{acceleration_energy, kinetic_energy};
 use super::kinematics::division_by_zero;
 use super::linear::ImplicitMotion;
-use super::lower::Lowering;
 use super::reactions;
 use super::switches::switches;
 use super::symbols::ids;

@@ -4,9 +4,9 @@ use appell_spec::Code;
 use appell_spec::mechanism::{ConstraintKind, FrameId, GROUND, Mechanism, PointId};
 
 use super::algebra::Algebra;
+use super::expressions::Lowering;
 use super::finding::{Finding, Item, Outcome};
 use super::kinematics::{Carried, Effort, Kinematics, division_by_zero, root_of};
-use super::lower::Lowering;
 use super::redundancy::leave_out;
 use super::symbols::Symbols;
 use crate::symbolic::vector::{self, Vec3};

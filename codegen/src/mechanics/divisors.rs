@@ -7,9 +7,9 @@ use appell_spec::expr::Expr as Spec;
 use appell_spec::mechanism::{ConstraintKind, LoadKind, Mechanism};
 
 use super::algebra::Algebra;
+use super::expressions::Lowering;
 use super::finding::{Finding, Item};
 use super::kinematics::division_by_zero;
-use super::lower::Lowering;
 use super::symbols::Symbols;
 use crate::symbolic::{Graph, Node};
 

@@ -5,9 +5,9 @@ use appell_spec::mechanism::Mechanism;
 
 use super::algebra::Algebra;
 use super::constraints::Constraints;
+use super::expressions::Lowering;
 use super::finding::{Finding, Item, Outcome};
 use super::kinematics::division_by_zero;
-use super::lower::Lowering;
 use super::symbols::Symbols;
 use crate::symbolic::{Expr, Graph, Intervals, Substitution};
 

@@ -3,9 +3,9 @@
 use appell_spec::mechanism::{Axis, FrameId, GROUND, Mechanism};
 
 use super::algebra::Algebra;
+use super::expressions::Lowering;
 use super::finding::{Item, Outcome};
 use super::kinematics::division_by_zero;
-use super::lower::Lowering;
 use super::time::TimeDerivative;
 use crate::symbolic::vector::{self, Vec3};
 use crate::symbolic::{Expr, Graph};
@@ -119,6 +119,14 @@ impl Frames {
     /// The frame and its ancestors up to the ground.
     pub fn ancestors(&self, frame: FrameId) -> Vec<FrameId> {
         std::iter::successors(Some(frame), |&f| self.frames[f].parent).collect()
+    }
+
+    /// How many frames lie on the way from one to the other, the last one counted.
+    pub fn distance(&self, from: FrameId, to: FrameId) -> usize {
+        let (up, down) = (self.ancestors(from), self.ancestors(to));
+        let both = up.iter().rev().zip(down.iter().rev());
+        let shared = both.take_while(|(a, b)| a == b).count();
+        up.len() + down.len() - 2 * shared
     }
 
     /// How many frames there are.

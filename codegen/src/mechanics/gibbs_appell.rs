@@ -4,10 +4,10 @@ use appell_spec::Code;
 use appell_spec::mechanism::Mechanism;
 
 use super::algebra::Algebra;
+use super::expressions::Lowering;
 use super::finding::{Finding, Item, Outcome};
 use super::frames::FrameVector;
 use super::kinematics::{Kinematics, division_by_zero};
-use super::lower::Lowering;
 use super::symbols::Symbols;
 use super::time::TimeDerivative;
 use crate::symbolic::vector::{self, Mat3, Vec3};

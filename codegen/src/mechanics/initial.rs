@@ -58,14 +58,14 @@ impl InitialState {
         Self { values, ranges }
     }
 
-    fn value(&self, graph: &Graph, expr: Expr) -> f64 {
-        evaluate(graph, &self.values, &[expr])[0]
+    fn of(&self, graph: &Graph, exprs: &[Expr]) -> Vec<f64> {
+        evaluate(graph, &self.values, exprs)
     }
 
     /// Whether an expression is zero there or changes its sign on the way to an end of the range of a
     /// coordinate.
     fn vanishes(&self, graph: &Graph, expr: Expr) -> bool {
-        let here = self.value(graph, expr);
+        let here = self.of(graph, &[expr])[0];
         here == 0.0
             || self.ranges.iter().any(|&(symbol, ends)| {
                 graph.mentions(expr, &[symbol])
@@ -100,7 +100,7 @@ pub fn vanishing_lengths(
         let lasting: Vec<Expr> = d.into_iter().filter(|&c| c != Graph::ZERO).collect();
         let vanishes = match *lasting {
             [component] => state.vanishes(graph, component),
-            _ => lasting.iter().all(|&c| state.value(graph, c) == 0.0),
+            _ => state.of(graph, &lasting).iter().all(|&c| c == 0.0),
         };
         if vanishes {
             let [a, b] = [a, b].map(|point| &mechanism.points[point].name);
@@ -130,8 +130,8 @@ pub fn singularities(
     state: &InitialState,
 ) -> Vec<Finding> {
     let mut findings = Vec::new();
-    for (q, &rate) in mechanism.coordinates.iter().zip(rates) {
-        if !state.value(graph, rate).is_finite() {
+    for (q, rate) in mechanism.coordinates.iter().zip(state.of(graph, rates)) {
+        if !rate.is_finite() {
             findings.push(Finding {
                 code: Code::SingularPseudoVelocities,
                 message: format!(
@@ -148,8 +148,8 @@ pub fn singularities(
     if !findings.is_empty() {
         return findings;
     }
-    for (speed, pivot) in motion.pivots() {
-        let value = state.value(graph, pivot);
+    let (speeds, pivots): (Vec<usize>, Vec<Expr>) = motion.pivots().into_iter().unzip();
+    for (speed, value) in speeds.into_iter().zip(state.of(graph, &pivots)) {
         if value == 0.0 || !value.is_finite() {
             let name = &mechanism.pseudo_velocities[speed].label.name;
             findings.push(Finding {

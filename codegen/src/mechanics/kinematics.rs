@@ -4,13 +4,16 @@ use appell_spec::Code;
 use appell_spec::mechanism::{BodyId, FrameId, GROUND, Mechanism, ORIGIN, PointId};
 
 use super::algebra::Algebra;
+use super::expressions::Lowering;
 use super::finding::{Finding, Item, Outcome};
 use super::frames::{FrameVector, Frames};
-use super::lower::Lowering;
 use super::symbols::Symbols;
 use super::time::TimeDerivative;
 use crate::symbolic::vector::{self, Vec3};
 use crate::symbolic::{Expr, Graph};
+
+/// Frames farther from the one in which a vector is given are not tried for its components.
+const FARTHEST: usize = 3;
 
 /// Positions and velocities of a mechanism.
 #[derive(Debug, Clone)]
@@ -175,12 +178,13 @@ impl Kinematics {
 }
 
 impl Frames {
-    /// The same vector in the frame where its components take the fewest operations.
+    /// The same vector in the frame where its components take the fewest operations, among those
+    /// near by: every turn on the way to a far one makes the components longer.
     pub fn simplest(&self, algebra: &mut Algebra, vector: FrameVector) -> FrameVector {
         let mut best = vector;
         let mut cost = algebra.graph.operations(&best.v);
         for frame in 0..self.count() {
-            if cost == 0 || frame == best.frame {
+            if cost == 0 || frame == best.frame || self.distance(vector.frame, frame) > FARTHEST {
                 continue;
             }
             let v = self.express(&mut algebra.graph, vector, frame);

@@ -4,10 +4,10 @@ use appell_spec::Code;
 use appell_spec::mechanism::{Connection, GROUND, LoadKind, Mechanism, PointId};
 
 use super::algebra::Algebra;
+use super::expressions::{DivisionByZero, Lowering};
 use super::finding::{Finding, Item, Outcome};
 use super::frames::FrameVector;
 use super::kinematics::{Kinematics, division_by_zero};
-use super::lower::{DivisionByZero, Lowering};
 use super::symbols::Symbols;
 use crate::symbolic::vector::Vec3;
 use crate::symbolic::{Expr, Graph, Rational};

@@ -1,14 +1,15 @@
 //! From a mechanism to its equations of motion by the Gibbs-Appell method.
 //!
 //! The files are the steps, in order: [`symbols`], [`frames`], [`kinematics`], [`constraints`],
-//! [`elimination`], [`gibbs_appell`], [`loads`], [`motion`], [`linear`], [`reactions`],
-//! [`assemble`].
+//! [`redundancy`], [`elimination`], [`gibbs_appell`], [`loads`], [`motion`], [`linear`],
+//! [`reactions`], [`assemble`].
 
 pub mod algebra;
 pub mod assemble;
 pub mod constraints;
 pub mod divisors;
 pub mod elimination;
+pub mod expressions;
 pub mod factorized;
 pub mod finding;
 pub mod frames;
@@ -17,7 +18,6 @@ pub mod initial;
 pub mod kinematics;
 pub mod linear;
 pub mod loads;
-pub mod lower;
 pub mod motion;
 pub mod rank;
 pub mod reactions;

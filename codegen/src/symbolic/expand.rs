@@ -1,6 +1,6 @@
 //! Multiplying out, and counting what an expression costs.
 
-use rustc_hash::{FxHashMap, FxHashSet};
+use rustc_hash::FxHashMap;
 
 use super::node::{Expr, Factor, Node, Term};
 use super::{Graph, Rational};
@@ -137,42 +137,28 @@ impl Graph {
             a
         }
     }
+}
 
-    /// How many additions, multiplications, divisions and function calls compute `roots`, each shared
-    /// part once. Names cost nothing and hide nothing. Signs are free, a comparison counts as one.
-    pub fn operations(&self, roots: &[Expr]) -> usize {
-        let mut systems = FxHashSet::default();
-        let mut count = 0;
-        for expr in self.in_order(roots) {
-            count += match self.node(expr) {
-                Node::Number(_) | Node::Symbol(_) | Node::Named(_) => 0,
-                Node::Sum(terms) => {
-                    let scaled = terms
-                        .iter()
-                        .filter(|t| t.expr != Self::ONE && !is_unit(&t.coefficient));
-                    terms.len() - 1 + scaled.count()
-                }
-                Node::Product(factors) => {
-                    let (over, under): (Vec<&Factor>, Vec<&Factor>) =
-                        factors.iter().partition(|f| f.exponent > 0);
-                    let powers: usize = factors.iter().map(|f| power_cost(f.exponent)).sum();
-                    let joins = over.len().saturating_sub(1) + under.len().saturating_sub(1);
-                    powers + joins + usize::from(!under.is_empty())
-                }
-                Node::Function(..) | Node::Atan2(..) | Node::Power(..) | Node::Choice { .. } => 1,
-                Node::Solution { system, .. } => {
-                    let n = self.system(*system).right.len();
-                    // Elimination and back substitution, once for all unknowns.
-                    if systems.insert(*system) {
-                        (2 * n * n * n).div_ceil(3) + 2 * n * n
-                    } else {
-                        0
-                    }
-                }
-            };
+/// Operations of a node beside those of its parts; the system of a solution is counted where it is.
+pub(super) fn operations_of(node: &Node) -> u32 {
+    let count = match node {
+        Node::Number(_) | Node::Symbol(_) | Node::Named(_) | Node::Solution { .. } => 0,
+        Node::Sum(terms) => {
+            let scaled = terms
+                .iter()
+                .filter(|t| t.expr != Graph::ONE && !is_unit(&t.coefficient));
+            terms.len() - 1 + scaled.count()
         }
-        count
-    }
+        Node::Product(factors) => {
+            let over = factors.iter().filter(|f| f.exponent > 0).count();
+            let under = factors.len() - over;
+            let powers: usize = factors.iter().map(|f| power_cost(f.exponent)).sum();
+            let joins = over.saturating_sub(1) + under.saturating_sub(1);
+            powers + joins + usize::from(under > 0)
+        }
+        Node::Function(..) | Node::Atan2(..) | Node::Power(..) | Node::Choice { .. } => 1,
+    };
+    u32::try_from(count).unwrap_or(u32::MAX)
 }
 
 fn is_unit(coefficient: &Rational) -> bool {

@@ -3,6 +3,7 @@
 use rustc_hash::FxHashMap;
 
 use super::Rational;
+use super::expand::operations_of;
 use super::node::{Definition, Expr, Node, SymbolId, System};
 
 /// Owner of all expressions of a derivation.
@@ -11,6 +12,8 @@ pub struct Graph {
     nodes: Vec<Node>,
     /// Which symbols each node contains.
     supports: Vec<Support>,
+    /// Operations of each node beside those of its parts.
+    costs: Vec<u32>,
     index: FxHashMap<Node, Expr>,
     symbols: Vec<String>,
     definitions: Vec<Definition>,
@@ -36,6 +39,7 @@ impl Graph {
         let mut graph = Self {
             nodes: Vec::new(),
             supports: Vec::new(),
+            costs: Vec::new(),
             index: FxHashMap::default(),
             symbols: Vec::new(),
             definitions: Vec::new(),
@@ -58,6 +62,7 @@ impl Graph {
         self.nodes.push(node.clone());
         let support = self.support_of_new(Expr(id));
         self.supports.push(support);
+        self.costs.push(operations_of(&node));
         self.index.insert(node, Expr(id));
         Expr(id)
     }
@@ -268,6 +273,48 @@ impl Graph {
                     self.in_order(&[expr]).iter().any(found)
                 })
         })
+    }
+
+    /// How many additions, multiplications, divisions and function calls compute `roots`, each shared
+    /// part once. Names cost nothing and hide nothing. Signs are free, a comparison counts as one.
+    pub fn operations(&self, roots: &[Expr]) -> usize {
+        let newest = roots.iter().max().map_or(0, |root| root.0 as usize);
+        let mut visited = Marks(vec![0; newest / 64 + 1]);
+        let mut systems: Vec<u32> = Vec::new();
+        let mut stack: Vec<Expr> = roots.to_vec();
+        let mut count = 0;
+        while let Some(expr) = stack.pop() {
+            if !visited.set(expr) {
+                continue;
+            }
+            count += self.costs[expr.0 as usize] as usize;
+            // Elimination and back substitution, once for all unknowns.
+            if let Node::Solution { system, .. } = self.node(expr)
+                && !systems.contains(system)
+            {
+                systems.push(*system);
+                let n = self.system(*system).right.len();
+                count += (2 * n * n * n).div_ceil(3) + 2 * n * n;
+            }
+            self.for_each_part(expr, |part| {
+                if !visited.holds(part) {
+                    stack.push(part);
+                }
+            });
+        }
+        count
+    }
+
+    /// Whether an expression takes no operations: a number, a symbol, or a name or the negative of one.
+    pub fn is_free(&self, mut expr: Expr) -> bool {
+        loop {
+            expr = match self.node(expr) {
+                Node::Number(_) | Node::Symbol(_) => return true,
+                Node::Named(id) => self.definition(*id).value,
+                Node::Sum(terms) if self.costs[expr.0 as usize] == 0 => terms[0].expr,
+                _ => return false,
+            };
+        }
     }
 
     /// Which symbols an expression contains.

@@ -5,7 +5,7 @@
 //! applied never make an expression larger. Equality across different spellings is decided by
 //! evaluation in a finite field ([`identity`]).
 
-mod build;
+mod canonical;
 mod differentiate;
 mod evaluate;
 mod expand;

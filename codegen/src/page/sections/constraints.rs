@@ -1,6 +1,6 @@
 //! Constraints, pseudo-velocities, and the generalised velocities that solve both.
 
-use appell_spec::mechanism::ConstraintKind;
+use appell_spec::mechanism::{ConstraintKind, GROUND};
 
 use super::super::display::Equation;
 use super::super::units::unit;
@@ -10,7 +10,7 @@ use super::super::{Letter, Math};
 use super::placement::from_to;
 use super::{equality, listed, math, sentence, with, words};
 use crate::mechanics::constraints;
-use crate::mechanics::lower::Lowering;
+use crate::mechanics::expressions::Lowering;
 use crate::symbolic::Graph;
 
 /// Constraints and pseudo-velocities.
@@ -74,6 +74,7 @@ fn constraint(w: &mut Writer<'_>, index: usize) -> Vec<Block> {
     ))];
     let rolling = rolling(w, &constraint.kind);
     let (mut open, mut held) = (Vec::new(), Vec::new());
+    let mut axes = GROUND;
     for row in w.derivation.constraints.rows.clone() {
         if row.constraint != index {
             continue;
@@ -82,6 +83,7 @@ fn constraint(w: &mut Writer<'_>, index: usize) -> Vec<Block> {
             let component = row.name.rsplit('.').next().unwrap_or(&row.name);
             held.push(vec![words(component)]);
         } else {
+            axes = row.frame;
             open.push(equation(w, &row));
         }
     }
@@ -89,11 +91,12 @@ fn constraint(w: &mut Writer<'_>, index: usize) -> Vec<Block> {
     if let Some(formula) = rolling {
         what.extend([words(": "), math(formula)]);
     }
-    what.push(words(match (open.is_empty(), is_rolling) {
-        (true, _) => ".",
-        (false, true) => ". In the ground:",
-        (false, false) => ":",
-    }));
+    what.push(match (open.is_empty(), is_rolling, axes) {
+        (true, ..) => words("."),
+        (false, true, GROUND) => words(". In the ground:"),
+        (false, true, axes) => words(&format!(". In {}:", w.frame(axes))),
+        (false, false, _) => words(":"),
+    });
     let mut blocks = vec![Block::Sentence(what)];
     blocks.extend(with(w, "", open));
     if !held.is_empty() {

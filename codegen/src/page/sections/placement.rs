@@ -6,7 +6,7 @@ use super::super::writer::Writer;
 use super::super::{Block, Chain, Row, Section, Table};
 use super::super::{Letter, Math};
 use super::{equality, math, sentence, words};
-use crate::mechanics::lower::Lowering;
+use crate::mechanics::expressions::Lowering;
 use crate::symbolic::{Expr, Graph};
 
 /// Frames, points, bodies.

@@ -7,7 +7,7 @@ use super::super::writer::Writer;
 use super::super::{Block, Row, Section, Table};
 use super::super::{Letter, Math};
 use super::{equality, math, sentence, words};
-use crate::mechanics::lower::Lowering;
+use crate::mechanics::expressions::Lowering;
 
 /// Tables of the quantities.
 pub(super) fn section(w: &mut Writer<'_>) -> Section {

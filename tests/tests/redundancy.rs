@@ -31,7 +31,7 @@ fn robot(constraints: &str) -> String {
          L_ground = {{ from = 'L', in = 'yawed', at = [0, 0, '-R'] }}\n\
          Q = {{ from = 'A', in = 'yawed', at = [0, '-b', 0] }}\n\
          Q_ground = {{ from = 'Q', in = 'yawed', at = [0, 0, '-R'] }}\n\
-         [bodies]\nchassis = {{ frame = 'yawed', centre = 'C', mass = 'm', inertia = {{ diagonal = ['J', 'J', 'J'] }} }}\n\
+         [bodies]\nchassis = {{ frame = 'yawed', centre = 'C', mass = 'm', inertia = {{ in = 'yawed', diagonal = ['J', 'J', 'J'] }} }}\n\
          wheel_l = {{ frame = 'left_wheel', centre = 'L', mass = 'm_w', inertia = {{ in = 'yawed', diagonal = ['m_w*R^2/4', 'm_w*R^2/2', 'm_w*R^2/4'] }} }}\n\
          wheel_r = {{ frame = 'right_wheel', centre = 'Q', mass = 'm_w', inertia = {{ in = 'yawed', diagonal = ['m_w*R^2/4', 'm_w*R^2/2', 'm_w*R^2/4'] }} }}\n\
          [constraints]\n{constraints}\n\

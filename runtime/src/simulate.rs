@@ -4,8 +4,8 @@ mod recorder;
 
 use crate::inputs::{InputSource, ModelInputs, ZeroInputs};
 use crate::integrate::{
-    Cause, Dop853, Dopri5, Event, Failure, IntegrationError, Options, Range, Rk4, Solver, Switches,
-    Watch,
+    Cause, Dop853, Dopri5, Event, Failure, IntegrationError, Options, Outcome, Range, Rk4, Solver,
+    Switches, Watch,
 };
 use crate::model::{At, Model, ModelInfo};
 use crate::signal::SignalError;
@@ -142,40 +142,29 @@ impl<'a> Simulation<'a> {
     }
 
     /// Integrates and records.
-    pub fn run(self) -> Result<Trajectory, SimulationError> {
+    pub fn run(mut self) -> Result<Trajectory, SimulationError> {
         self.check()?;
         let info = self.model.info();
         let inputs = ModelInputs::new(info, self.inputs)?;
+        let (events, progress) = (std::mem::take(&mut self.events), self.progress.take());
         let (switching_times, ranges) = (inputs.switching_times(), self.ranges());
         let (model, p) = (self.model, self.parameters.as_slice());
         let mut watch = Watch {
             switching_times: &switching_times,
             switches: switches(model, p, &self.initial_state),
             ranges: &ranges,
-            events: self.events,
+            events,
         };
         let mut recorder = Recorder::new(self.sampling, self.span, &self.initial_state);
-        recorder.progress = self.progress;
-
+        recorder.progress = progress;
         let mut u = vec![0.0; info.input_len()];
         let rates = |t: f64, x: &[f64], rates: &mut [f64]| {
             inputs.fill(t, x, &mut u);
             model.rates(At { t, x, u: &u, p }, rates);
         };
         let mut x = self.initial_state.clone();
-        let (span, options) = (self.span, &self.options);
-        let (watch, observer) = (&mut watch, &mut recorder);
-        let result = match self.method {
-            Method::Dop853 => {
-                Solver::<Dop853>::new().integrate(rates, span, &mut x, options, watch, observer)
-            }
-            Method::Dopri5 => {
-                Solver::<Dopri5>::new().integrate(rates, span, &mut x, options, watch, observer)
-            }
-            Method::Rk4 { step } => {
-                Rk4::new().integrate(rates, span, &mut x, step, watch, observer)
-            }
-        };
+        let result = self.integrate(rates, &mut x, &mut watch, &mut recorder);
+
         let recorded = |t_end, hits, statistics| {
             recorder.finish(t_end, &x);
             let fill = |t: f64, x: &[f64], u: &mut [f64]| inputs.fill(t, x, u);
@@ -201,6 +190,26 @@ impl<'a> Simulation<'a> {
             Err(IntegrationError::InvalidArgument { what, value }) => {
                 Err(SimulationError::Argument { what, value })
             }
+        }
+    }
+
+    /// Runs the integrator of choice; `x` goes from the first to the last state.
+    fn integrate(
+        &self,
+        rates: impl FnMut(f64, &[f64], &mut [f64]),
+        x: &mut [f64],
+        watch: &mut Watch<'_>,
+        recorder: &mut Recorder<'_>,
+    ) -> Result<Outcome, IntegrationError> {
+        let (span, options) = (self.span, &self.options);
+        match self.method {
+            Method::Dop853 => {
+                Solver::<Dop853>::new().integrate(rates, span, x, options, watch, recorder)
+            }
+            Method::Dopri5 => {
+                Solver::<Dopri5>::new().integrate(rates, span, x, options, watch, recorder)
+            }
+            Method::Rk4 { step } => Rk4::new().integrate(rates, span, x, step, watch, recorder),
         }
     }
 

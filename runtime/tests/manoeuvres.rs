@@ -176,7 +176,7 @@ fn cosine_ramp(amplitude: f64, t: f64) -> f64 {
 
 const SELECTED: [usize; 6] = [0, 4, 3, 5, 6, 9];
 
-/// u = −K (y − y_des) with y_des = 0 but for the last selected state, which follows the ramp.
+/// u = −K (y − y*), where y* is the ramp for the last selected state and zero for the others.
 fn feedback(gains: &[f64], amplitude: f64) -> impl InputSource {
     let selected = &SELECTED[..gains.len()];
     SwitchedInputs {

@@ -4,7 +4,7 @@ use super::dense_output::DenseOutput;
 use super::error::{Cause, IntegrationError};
 use super::pairs::EmbeddedPair;
 use super::step_size::{StepSize, first_guess, first_step, norm};
-use super::stops::Stride;
+use super::stops::{Stop, Stride};
 use super::tableau::Stages;
 use super::watch::{End, Observer, Watch, Watcher};
 use super::{Options, Outcome, Statistics};
@@ -109,8 +109,8 @@ impl<P: EmbeddedPair> Solver<P> {
             if steps >= options.max_steps {
                 return End::failed(t, Cause::TooManySteps { steps });
             }
-            let longest = options.max_step.min(watcher.stops.known_after(t).t - t);
-            let h = next_h.unwrap_or_else(|| self.first_step(f, t, longest, options));
+            let known = watcher.stops.known_after(t);
+            let h = next_h.unwrap_or_else(|| self.first_step(f, t, known, options));
             let stride = watcher.stops.stride(t, h);
             // Up to a switching time the rates are those before it.
             let mut f = |t: f64, x: &[f64], rates: &mut [f64]| f(t.min(stride.last), x, rates);
@@ -190,11 +190,12 @@ impl<P: EmbeddedPair> Solver<P> {
         watcher.accept(&ends, Some(&self.dense), x)
     }
 
-    /// A first step from the sizes of x, ẋ and ẍ.
-    fn first_step<F>(&mut self, f: &mut F, t: f64, longest: f64, options: &Options) -> f64
+    /// A first step from the sizes of x, ẋ and ẍ, not beyond the next stop.
+    fn first_step<F>(&mut self, f: &mut F, t: f64, stop: Stop, options: &Options) -> f64
     where
         F: FnMut(f64, &[f64], &mut [f64]),
     {
+        let longest = options.max_step.min(stop.t - t);
         if let Some(h) = options.first_step {
             return h.min(longest);
         }
@@ -205,7 +206,8 @@ impl<P: EmbeddedPair> Solver<P> {
         let rates_norm = norm(self.stages.rates(0).iter().copied(), &self.scale);
         let guess = first_guess(x_norm, rates_norm).min(longest);
         self.stages.euler_step(guess);
-        self.stages.evaluate_at_end(f, 1, t + guess);
+        self.stages
+            .evaluate_at_end(f, 1, (t + guess).min(stop.last));
         let (start, end) = (self.stages.rates(0), self.stages.rates(1));
         let change = start.iter().zip(end).map(|(start, end)| end - start);
         let second_norm = norm(change, &self.scale) / guess;

@@ -134,22 +134,24 @@ impl<'w, 'a> Stops<'w, 'a> {
             let bits = |value: &f64| value.to_bits();
             !before.iter().map(bits).eq(after.iter().map(bits))
         };
-        let part = |part: u8| t + (t_new - t) * (f64::from(part) / f64::from(PARTS));
-        let first = (1..=PARTS).find(|&i| changed(if i == PARTS { t_new } else { part(i) }))?;
-        let (mut same, mut other) = (
-            part(first - 1),
-            if first == PARTS { t_new } else { part(first) },
-        );
+        let part = |i: u8| match i {
+            PARTS => t_new,
+            _ => t + (t_new - t) * (f64::from(i) / f64::from(PARTS)),
+        };
+        let first = (1..=PARTS).find(|&i| changed(part(i)))?;
+        // Halving until no number lies between.
+        let (mut same, mut other) = (part(first - 1), part(first));
         loop {
             let middle = same + (other - same) / 2.0;
             if middle <= same || middle >= other {
                 return Some(Stop::before(other));
             }
-            if changed(middle) {
-                other = middle;
+            let end = if changed(middle) {
+                &mut other
             } else {
-                same = middle;
-            }
+                &mut same
+            };
+            *end = middle;
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use appell_codegen::interpreted::InterpretedModel;
 use appell_codegen::jit::JitModel;
-use appell_codegen::mechanics::assemble::ALL;
+use appell_codegen::program::FunctionKind;
 use appell_runtime::model::Model;
 
 use crate::failure::Failure;
@@ -41,7 +41,7 @@ impl Equations {
             _ => {}
         }
         let spinner = progress::spinner("deriving the equations of motion");
-        let program = appell_codegen::compile(&source.file, &source.text, &ALL)
+        let program = appell_codegen::compile(&source.file, &source.text, &FunctionKind::ALL)
             .map_err(|report| Failure::Reports(vec![report]))?;
         spinner.finish_and_clear();
         if engine == Engine::Jit {

@@ -109,18 +109,12 @@ impl StateFunction {
             ),
             inputs: ids(&graph, &input_symbols),
             parameters: ids(&graph, &symbols.parameters),
+            pi: graph.as_symbol(symbols.pi),
         };
         let count = exprs.len();
         let layout = Layout::Vector(count);
-        let results = vec![Array {
-            name: "values".to_owned(),
-            layout,
-            entries: exprs,
-        }];
-        let function = Function {
-            kind: FunctionKind::Outputs,
-            results,
-        };
+        let results = vec![Array::new("values", "Values.", layout, exprs)];
+        let function = Function::new(FunctionKind::Outputs, results);
         let sizes = Sizes::from(&info);
         let program = Program {
             info,

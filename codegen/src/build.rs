@@ -28,7 +28,8 @@ use thiserror::Error;
 
 use crate::compile::{Derived, derived, report};
 use crate::emit::{self, Emitted, Options, emit};
-use crate::mechanics::assemble::{self, ALL};
+use crate::mechanics::assemble;
+use crate::program::FunctionKind;
 use crate::program::Program;
 
 /// Compiles one spec. Where it is wrong, prints what to change and ends the build script.
@@ -236,7 +237,7 @@ fn program(file: &str, text: &str) -> Result<Program, Report> {
         let (line, column) = warnings.line_column(at);
         println!("cargo::warning={file}:{line}:{column}: {}", warning.message);
     }
-    assemble::program(derivation, &mechanism, &ALL)
+    assemble::program(derivation, &mechanism, &FunctionKind::ALL)
         .map_err(|findings| report(&mechanism, text, &findings))
 }
 

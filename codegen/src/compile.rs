@@ -109,7 +109,7 @@ b = { centre = 'P', mass = 'm' }
 [pseudo_velocities]
 v = { value = 'dot(x)', unit = 'm/s' }
 ";
-        let Err(report) = compile("free.toml", text, &assemble::ALL) else {
+        let Err(report) = compile("free.toml", text, &FunctionKind::ALL) else {
             panic!("it was accepted")
         };
         let shown = report.plain();

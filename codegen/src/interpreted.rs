@@ -66,7 +66,7 @@ impl Model for InterpretedModel {
     }
 
     fn parameter_jacobian(&self, at: At<'_>, p: &mut [f64]) {
-        self.evaluate(FunctionKind::AllJacobians, at, &mut [("p", p)]);
+        self.evaluate(FunctionKind::ParameterJacobian, at, &mut [("p", p)]);
     }
 
     fn appell(&self, at: At<'_>, mass: &mut [f64], bias: &mut [f64], forces: &mut [f64]) {

@@ -1,6 +1,8 @@
 //! What the derivation hands to scheduling and emission: arguments, functions, expressions.
 
-use appell_runtime::model::ModelInfo;
+use std::ops::Range;
+
+use appell_runtime::model::{ModelInfo, Quantity};
 
 use crate::symbolic::{Expr, Graph, SymbolId};
 
@@ -45,6 +47,8 @@ pub struct Arguments {
     pub inputs: Vec<SymbolId>,
     /// Parameters.
     pub parameters: Vec<SymbolId>,
+    /// The number π, where expressions may contain it.
+    pub pi: Option<SymbolId>,
 }
 
 /// A function to emit or compile.
@@ -52,16 +56,49 @@ pub struct Arguments {
 pub struct Function {
     /// Which one.
     pub kind: FunctionKind,
+    /// Quantities that a reader wants first. What follows uses their values and does not look
+    /// inside.
+    pub stages: Vec<Stage>,
     /// What it returns, at least one array.
     pub results: Vec<Array>,
+}
+
+/// Named quantities on the way to the results.
+#[derive(Debug, Clone)]
+pub struct Stage {
+    /// Heading, one line.
+    pub title: String,
+    /// The quantities; those without a name are passed over.
+    pub values: Vec<Expr>,
+}
+
+impl Function {
+    /// A function that goes straight to its results.
+    pub fn new(kind: FunctionKind, results: Vec<Array>) -> Self {
+        Self {
+            kind,
+            stages: Vec::new(),
+            results,
+        }
+    }
+
+    /// The same by way of some named quantities.
+    #[must_use]
+    pub fn by_way_of(mut self, title: &str, values: Vec<Expr>) -> Self {
+        self.stages.push(Stage {
+            title: title.to_owned(),
+            values,
+        });
+        self
+    }
 }
 
 /// The functions every model has. The order is the order in emitted code.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum FunctionKind {
-    /// q̇(q, ω): results `coordinate_rates`.
+    /// q̇(q, ω): result `coordinate_rates`.
     Kinematics,
-    /// S split by body at the actual accelerations: results `total`, then one per body.
+    /// S at the actual accelerations: results `total`, then one per body.
     AccelerationEnergy,
     /// M: result `mass_matrix`.
     MassMatrix,
@@ -73,8 +110,8 @@ pub enum FunctionKind {
     Rates,
     /// ẋ, A, B: results `rates`, `a`, `b`.
     Jacobians,
-    /// ẋ, A, B, P: results `rates`, `a`, `b`, `p`.
-    AllJacobians,
+    /// P: result `p`.
+    ParameterJacobian,
     /// Results `kinetic`, `potential`, `power`.
     Energies,
     /// Constraint rows with the generalised velocities put in: result `residual`.
@@ -87,15 +124,211 @@ pub enum FunctionKind {
     Switches,
 }
 
+impl FunctionKind {
+    /// All of them, in the order of emitted code.
+    pub const ALL: [Self; 13] = [
+        Self::Kinematics,
+        Self::AccelerationEnergy,
+        Self::MassMatrix,
+        Self::Bias,
+        Self::GeneralizedForces,
+        Self::Rates,
+        Self::Jacobians,
+        Self::ParameterJacobian,
+        Self::Energies,
+        Self::ConstraintResidual,
+        Self::ConstraintForces,
+        Self::Outputs,
+        Self::Switches,
+    ];
+
+    /// Name of the emitted function.
+    pub fn name(self) -> &'static str {
+        self.words().0
+    }
+
+    /// Name of the struct it returns where it returns several arrays.
+    pub fn result_struct(self) -> &'static str {
+        self.words().1
+    }
+
+    /// What it returns, one sentence.
+    pub fn about(self) -> &'static str {
+        self.words().2
+    }
+
+    /// Name of the function, name of its result, sentence.
+    fn words(self) -> (&'static str, &'static str, &'static str) {
+        match self {
+            Self::Kinematics => (
+                "kinematics",
+                "Kinematics",
+                "Generalised velocities q̇ of pseudo-velocities and coordinates.",
+            ),
+            Self::AccelerationEnergy => (
+                "acceleration_energy",
+                "AccelerationEnergy",
+                "Acceleration energy S (Gibbs function) at the actual motion.",
+            ),
+            Self::MassMatrix => (
+                "mass_matrix",
+                "MassMatrix",
+                "Mass matrix M = ∂²S/∂ω̇², symmetric. Rows and columns follow [`Speeds`].",
+            ),
+            Self::Bias => (
+                "bias",
+                "Bias",
+                "Bias b: what is left of ∂S/∂ω̇ where the pseudo-accelerations vanish.",
+            ),
+            Self::GeneralizedForces => (
+                "generalized_forces",
+                "GeneralizedForces",
+                "Generalised forces Π: virtual power of the loads per pseudo-velocity.",
+            ),
+            Self::Rates => (
+                "rates",
+                "Rates",
+                "Rates ẋ of the state by Appell's equations M ω̇ + b = Π and kinematics.",
+            ),
+            Self::Jacobians => (
+                "jacobians",
+                "Jacobians",
+                "Rates ẋ with their derivatives by state and inputs.",
+            ),
+            Self::ParameterJacobian => (
+                "parameter_jacobian",
+                "ParameterJacobian",
+                "P = ∂ẋ/∂p. Rows follow [`State`], columns [`Parameters`].",
+            ),
+            Self::Energies => ("energies", "Energies", "Energies and power."),
+            Self::ConstraintResidual => (
+                "constraint_residual",
+                "ConstraintResidual",
+                "Constraint rows at the generalised velocities of the state: zero up to rounding.",
+            ),
+            Self::ConstraintForces => (
+                "constraint_forces",
+                "ConstraintForces",
+                "Reactions in the ground, in N; one row per reaction.",
+            ),
+            Self::Outputs => ("outputs", "OutputArrays", "Outputs of the spec."),
+            Self::Switches => (
+                "switches",
+                "Switches",
+                "What time alone switches: 1 where a relation holds, 0 elsewhere, and signs.",
+            ),
+        }
+    }
+}
+
 /// An array of expressions.
 #[derive(Debug, Clone)]
 pub struct Array {
     /// Its name.
     pub name: String,
-    /// How its entries are labelled.
+    /// What it holds, one sentence.
+    pub about: String,
+    /// How its entries are told apart.
     pub layout: Layout,
     /// Entries, row by row.
     pub entries: Vec<Expr>,
+    /// What each entry is called where it is computed.
+    pub labels: Vec<String>,
+    /// What the rows and the columns of a matrix belong to.
+    pub names: [Vec<String>; 2],
+    /// Headings over the computation of the entries; entries under none are computed last.
+    pub paragraphs: Vec<Paragraph>,
+}
+
+/// A heading over the computation of some entries.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Paragraph {
+    /// One line.
+    pub title: String,
+    /// The entries.
+    pub entries: Range<usize>,
+}
+
+impl Array {
+    /// An array whose entries are called by its name and their number.
+    pub fn new(name: &str, about: &str, layout: Layout, entries: Vec<Expr>) -> Self {
+        let labels = match entries.len() {
+            1 => vec![name.to_owned()],
+            count => (0..count).map(|i| format!("{name}_{i}")).collect(),
+        };
+        Self {
+            name: name.to_owned(),
+            about: about.to_owned(),
+            layout,
+            entries,
+            labels,
+            names: [Vec::new(), Vec::new()],
+            paragraphs: Vec::new(),
+        }
+    }
+
+    /// One number.
+    pub fn scalar(name: &str, about: &str, entry: Expr) -> Self {
+        Self::new(name, about, Layout::Scalar, vec![entry])
+    }
+
+    /// ẋ, with q̇ before the pseudo-accelerations in the text.
+    pub fn rates(info: &ModelInfo, entries: Vec<Expr>) -> Self {
+        let (all, speeds) = (entries.len(), info.speeds.min(entries.len()));
+        Self::new(
+            "rates",
+            "ẋ, the rates of the state.",
+            Layout::State,
+            entries,
+        )
+        .labelled(
+            info.states
+                .iter()
+                .map(|state| format!("{}_dot", state.name)),
+        )
+        .under("Generalised velocities.", speeds..all)
+        .under("Appell's equations, solved.", 0..speeds)
+    }
+
+    /// A matrix of derivatives of ẋ, one paragraph per row. `columns` are the variables.
+    pub fn jacobian(
+        name: &str,
+        about: &str,
+        states: &[Quantity],
+        columns: &[Quantity],
+        entries: Vec<Expr>,
+    ) -> Self {
+        let layout = Layout::Matrix(states.len(), columns.len());
+        let labels = states.iter().flat_map(|row| {
+            let label = move |column: &Quantity| format!("{name}_{}_{}", row.name, column.name);
+            columns.iter().map(label)
+        });
+        let mut array = Self::new(name, about, layout, entries).labelled(labels);
+        let all = |list: &[Quantity]| list.iter().map(|q| q.name.to_string()).collect();
+        array.names = [all(states), all(columns)];
+        for (i, state) in states.iter().enumerate() {
+            let title = format!("Row `{}` of {}.", state.name, name.to_uppercase());
+            array = array.under(&title, i * columns.len()..(i + 1) * columns.len());
+        }
+        array
+    }
+
+    /// The same with other names of the entries.
+    #[must_use]
+    pub fn labelled(mut self, labels: impl Iterator<Item = String>) -> Self {
+        self.labels = labels.collect();
+        self
+    }
+
+    /// The same with a heading over some entries.
+    #[must_use]
+    pub fn under(mut self, title: &str, entries: Range<usize>) -> Self {
+        self.paragraphs.push(Paragraph {
+            title: title.to_owned(),
+            entries,
+        });
+        self
+    }
 }
 
 /// The shape of an array, and what labels its entries.

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use std::time::{Duration, Instant};
 
 use appell_codegen::compile::{compile, derived};
-use appell_codegen::mechanics::assemble::ALL;
+use appell_codegen::program::FunctionKind;
 use appell_codegen::schedule::schedule;
 use appell_spec::Report;
 
@@ -12,7 +12,7 @@ use appell_spec::Report;
 const LONGEST_WAIT: Duration = Duration::from_secs(20);
 
 fn refusal(text: &str) -> String {
-    match compile("a.toml", text, &ALL) {
+    match compile("a.toml", text, &FunctionKind::ALL) {
         Ok(_) => panic!("it was accepted"),
         Err(report) => report.plain(),
     }
@@ -184,8 +184,8 @@ fn an_imposed_position_brings_its_velocity_and_acceleration() {
          [points]\nP = { from = 'O', in = 'ground', at = ['x', 0, 'lift'] }\n\
          [bodies]\nb = { centre = 'P', mass = 'm' }\n\
          [pseudo_velocities]\nv = 'dot(x)'\n";
-    let program =
-        compile("lift.toml", text, &ALL).unwrap_or_else(|report| panic!("{}", report.plain()));
+    let program = compile("lift.toml", text, &FunctionKind::ALL)
+        .unwrap_or_else(|report| panic!("{}", report.plain()));
     let names: Vec<_> = program
         .info
         .inputs

@@ -67,16 +67,11 @@ fn pendulum() -> Program {
         g.neg(height)
     };
     let power = g.mul(u, w);
-    let function = |kind, results: Vec<(&str, Vec<Expr>)>| Function {
-        kind,
-        results: results
-            .into_iter()
-            .map(|(name, entries)| Array {
-                name: name.to_owned(),
-                layout: Layout::Vector(entries.len()),
-                entries,
-            })
-            .collect(),
+    let function = |kind, results: Vec<(&str, Vec<Expr>)>| {
+        let array = |(name, entries): (&str, Vec<Expr>)| {
+            Array::new(name, "", Layout::Vector(entries.len()), entries)
+        };
+        Function::new(kind, results.into_iter().map(array).collect())
     };
     let rates = ("rates", vec![w_dot, w]);
     let (a, b) = (("a", vec![a_ww, a_wt, one, zero]), ("b", vec![b_w, zero]));
@@ -100,11 +95,8 @@ fn pendulum() -> Program {
             vec![("generalized_forces", vec![loads])],
         ),
         function(FunctionKind::Rates, vec![rates.clone()]),
-        function(
-            FunctionKind::Jacobians,
-            vec![rates.clone(), a.clone(), b.clone()],
-        ),
-        function(FunctionKind::AllJacobians, vec![rates, a, b, p]),
+        function(FunctionKind::Jacobians, vec![rates, a, b]),
+        function(FunctionKind::ParameterJacobian, vec![p]),
         function(
             FunctionKind::Energies,
             vec![
@@ -118,6 +110,7 @@ fn pendulum() -> Program {
     let symbol = |expr| graph.as_symbol(expr).unwrap();
     let arguments = Arguments {
         time: symbol(t),
+        pi: None,
         states: vec![symbol(w), symbol(theta)],
         inputs: vec![symbol(u)],
         parameters: vec![symbol(l), symbol(c)],
@@ -197,7 +190,7 @@ fn every_method_agrees_with_the_interpreter() {
     model.parameter_jacobian(AT, &mut p);
     assert_eq!(
         p.to_vec(),
-        interpreted(&program, FunctionKind::AllJacobians)[3]
+        interpreted(&program, FunctionKind::ParameterJacobian)[0]
     );
 
     let (mut mass, mut bias, mut forces) = ([9.0; 1], [9.0; 1], [9.0; 1]);
@@ -257,7 +250,7 @@ fn slices_of_wrong_length_are_refused() {
 fn first_uses_from_several_threads_agree() {
     let program = pendulum();
     let model = JitModel::new(&program).unwrap();
-    let expected = interpreted(&program, FunctionKind::AllJacobians).remove(3);
+    let expected = interpreted(&program, FunctionKind::ParameterJacobian).remove(0);
     thread::scope(|scope| {
         for _ in 0..4 {
             scope.spawn(|| {

@@ -6,7 +6,7 @@
 use appell_codegen::compile;
 use appell_codegen::emit::{Options, emit};
 use appell_codegen::interpreted::InterpretedModel;
-use appell_codegen::mechanics::assemble::ALL;
+use appell_codegen::program::FunctionKind;
 use appell_codegen::program::{FunctionKind, Program};
 use appell_runtime::Simulation;
 use appell_runtime::model::Model;
@@ -24,7 +24,8 @@ fn carriage(force: &str) -> Program {
          [pseudo_velocities]\nv = {{ value = 'dot(x)', unit = 'm/s' }}\n\
          [loads]\npush = {{ kind = 'force', on = 'C', in = 'ground', vector = ['{force}', 0, 0] }}\n"
     );
-    compile("carriage.toml", &text, &ALL).unwrap_or_else(|report| panic!("{}", report.plain()))
+    compile("carriage.toml", &text, &FunctionKind::ALL)
+        .unwrap_or_else(|report| panic!("{}", report.plain()))
 }
 
 /// Velocities of piecewise linear motions are exact up to rounding.

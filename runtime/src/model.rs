@@ -26,6 +26,39 @@ pub struct Quantity {
 }
 
 impl Quantity {
+    /// A quantity in SI units whose value is zero, without a range.
+    pub const fn new(name: &'static str, about: &'static str, unit: &'static str) -> Self {
+        Self {
+            name: Text::Borrowed(name),
+            about: Text::Borrowed(about),
+            unit: Text::Borrowed(unit),
+            scale: 1.0,
+            value: 0.0,
+            range: [f64::NEG_INFINITY, f64::INFINITY],
+        }
+    }
+
+    /// The same for a unit that is `scale` in SI.
+    #[must_use]
+    pub const fn scaled(mut self, scale: f64) -> Self {
+        self.scale = scale;
+        self
+    }
+
+    /// The same with a value, in SI.
+    #[must_use]
+    pub const fn valued(mut self, value: f64) -> Self {
+        self.value = value;
+        self
+    }
+
+    /// The same with a range, in SI.
+    #[must_use]
+    pub const fn within(mut self, low: f64, high: f64) -> Self {
+        self.range = [low, high];
+        self
+    }
+
     /// A value in SI, in the unit for people.
     pub fn to_unit(&self, si: f64) -> f64 {
         si / self.scale

@@ -2,8 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use appell_codegen::mechanics::assemble::{self, ALL};
+use appell_codegen::mechanics::assemble;
 use appell_codegen::mechanics::{self, Derivation};
+use appell_codegen::program::FunctionKind;
 use appell_codegen::program::Program;
 use appell_spec::Mechanism;
 
@@ -59,6 +60,6 @@ pub fn derive(mechanism: &Mechanism) -> Derivation {
 
 /// All functions of a mechanism.
 pub fn program(mechanism: &Mechanism) -> Program {
-    assemble::program(derive(mechanism), mechanism, &ALL)
+    assemble::program(derive(mechanism), mechanism, &FunctionKind::ALL)
         .unwrap_or_else(|findings| panic!("{}: {findings:?}", mechanism.file))
 }

@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 
 use appell_codegen::emit::{Options, emit};
-use appell_codegen::mechanics::assemble::ALL;
 use appell_codegen::page::{self, page};
+use appell_codegen::program::FunctionKind;
 use appell_codegen::{Derived, compile::report, derived};
 
 use crate::failure::Failure;
@@ -99,7 +99,7 @@ fn rust(source: &Source) -> Result<String, Failure> {
         return Ok(shipped.code.to_owned());
     }
     let spinner = progress::spinner("deriving the equations of motion");
-    let program = appell_codegen::compile(&source.file, &source.text, &ALL)
+    let program = appell_codegen::compile(&source.file, &source.text, &FunctionKind::ALL)
         .map_err(|report| Failure::Reports(vec![report]))?;
     let options = Options {
         spec: Some(source.text.clone()),

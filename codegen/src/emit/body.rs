@@ -7,11 +7,14 @@ use syn::{Attribute, BinOp, Expr, Stmt, token};
 use super::layout;
 use super::syntax as s;
 use super::types::{Types, result_struct};
-use crate::program::{Function, Layout};
+use crate::program::{Array, Function, Layout};
 use crate::schedule::pi::parts_of_pi;
 use crate::schedule::piece::method;
 use crate::schedule::{Argument, Operation, Schedule, Step, Tree, Value};
 use crate::symbolic::{Rational, Relation};
+
+/// Names of columns in a line of a comment.
+const NAMES_PER_LINE: usize = 8;
 
 /// The statements of a function; the last one is its result.
 pub(super) fn body(types: &Types<'_>, function: &Function, schedule: &Schedule) -> Vec<Stmt> {
@@ -174,6 +177,9 @@ impl Body<'_> {
         match tree {
             Tree::Value(value) => s::name(self.value(*value)),
             Tree::Argument(argument) => s::name(self.types.names.get(*argument)),
+            Tree::Constant(value) if value.is_negative() => {
+                s::negated(s::name(&self.types.names.constant(&value.abs())))
+            }
             Tree::Constant(value) => s::name(&self.types.names.constant(value)),
             Tree::Negate(a) => s::negated(self.tree(a)),
             Tree::Binary(operation, a, b) => {
@@ -209,9 +215,11 @@ impl Body<'_> {
     fn results(&mut self, function: &Function) {
         let mut fields = Vec::new();
         let structure = result_struct(function);
-        for (array, result) in function.results.iter().zip(&self.schedule.results) {
-            let value = self.result(array.layout, &array.name, &result.entries);
-            fields.push((array.name.as_str(), value));
+        let names = self.types.fields(function);
+        let results = function.results.iter().zip(&self.schedule.results);
+        for ((array, result), name) in results.zip(&names) {
+            let value = self.result(array, &result.entries);
+            fields.push((name.as_str(), value));
         }
         let value = match (structure, fields.len()) {
             (None, 1) => fields.remove(0).1,
@@ -231,14 +239,14 @@ impl Body<'_> {
         self.statements.push(Stmt::Expr(value, None));
     }
 
-    fn result(&mut self, layout: Layout, name: &str, entries: &[Tree]) -> Expr {
-        match layout {
+    fn result(&mut self, array: &Array, entries: &[Tree]) -> Expr {
+        match array.layout {
             Layout::Scalar => match entries {
                 [entry, ..] => self.tree(entry),
                 [] => s::associated("constant", vec![s::number(0.0)]),
             },
             Layout::State | Layout::Speeds | Layout::Coordinates | Layout::Outputs => {
-                let (type_name, labels) = self.types.labelled(layout);
+                let (type_name, labels) = self.types.labelled(array.layout);
                 let values = self.all(entries);
                 s::structure(
                     type_name,
@@ -247,8 +255,8 @@ impl Body<'_> {
             }
             Layout::Vector(_) => s::array(self.all(entries)),
             Layout::Matrix(rows, columns) => {
-                if is_sparse(layout, entries) {
-                    self.sparse(name, rows, columns, entries)
+                if is_sparse(array.layout, entries) {
+                    self.sparse(array, rows, columns, entries)
                 } else {
                     // A row may be empty: a model without inputs has a B of no columns.
                     let lines = (0..rows).map(|row| &entries[row * columns..][..columns]);
@@ -259,13 +267,14 @@ impl Body<'_> {
     }
 
     /// A matrix that starts with zeros and gets the entries that are none.
-    fn sparse(&mut self, name: &str, rows: usize, columns: usize, entries: &[Tree]) -> Expr {
+    fn sparse(&mut self, array: &Array, rows: usize, columns: usize, entries: &[Tree]) -> Expr {
         let zero = self.types.names.constant(&Rational::ZERO);
-        let mut local = name.to_owned();
+        let mut local = array.name.clone();
         while self.schedule.names.contains(&local) || self.types.is_argument(&local) {
             local.push('_');
         }
         self.attributes.push(layout::blank());
+        self.attributes.extend(numbered_names(array));
         self.push(
             s::mutable(&local),
             s::repeated(s::repeated(s::name(&zero), columns), rows),
@@ -278,6 +287,36 @@ impl Body<'_> {
         }
         s::name(&local)
     }
+}
+
+/// What the rows and columns of a matrix are, number by number.
+fn numbered_names(array: &Array) -> Vec<Attribute> {
+    let [rows, columns] = &array.names;
+    let mut comments = Vec::new();
+    let same = rows == columns;
+    let lists = if same {
+        vec![("Rows and columns: ", rows)]
+    } else {
+        vec![("Rows: ", rows), ("Columns: ", columns)]
+    };
+    for (title, names) in lists {
+        let numbered: Vec<String> = names
+            .iter()
+            .enumerate()
+            .map(|(i, name)| format!("{i} {name}"))
+            .collect();
+        let mut lines = numbered
+            .chunks(NAMES_PER_LINE)
+            .map(|names| names.join(", "))
+            .peekable();
+        let mut start = title;
+        while let Some(line) = lines.next() {
+            let end = if lines.peek().is_some() { "," } else { "." };
+            comments.push(layout::comment(&format!("{start}{line}{end}")));
+            start = "  ";
+        }
+    }
+    comments
 }
 
 /// Whether a matrix is written entry by entry instead of as a whole.
@@ -328,7 +367,7 @@ fn collect_constants(tree: &Tree, constants: &mut BTreeSet<Rational>) {
     let mut rest = vec![tree];
     while let Some(tree) = rest.pop() {
         if let Tree::Constant(value) = tree {
-            constants.insert(value.clone());
+            constants.insert(value.abs());
         }
         rest.extend(parts(tree));
     }
@@ -340,7 +379,6 @@ fn constant(value: &Rational) -> Expr {
     // Clippy rejects the digits of π.
     match parts_of_pi(value) {
         Some((1, 1)) => return syn::parse_quote!(core::f64::consts::PI),
-        Some((-1, 1)) => return syn::parse_quote!(-core::f64::consts::PI),
         _ => {}
     }
     match value.as_small() {

@@ -37,11 +37,7 @@ pub(super) fn page(types: &Types<'_>, costs: &[(FunctionKind, OperationCount)]) 
     if !costs.is_empty() {
         page.push_str("\n# Operations\n\n| function | operations |\n|---|---|\n");
         for (kind, cost) in costs {
-            let _ = writeln!(
-                page,
-                "| `{}` | {cost} |",
-                super::function::function_name(*kind)
-            );
+            let _ = writeln!(page, "| `{}` | {cost} |", kind.name());
         }
     }
     page

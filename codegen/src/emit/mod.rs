@@ -128,23 +128,24 @@ pub fn emit(program: &Program, options: &Options) -> Result<Emitted, Error> {
     }
 
     let lu = solves.then(|| quote!(use #runtime::dense::{lu_factor, lu_solve};));
-    let info = options
-        .model_impl
-        .then(|| model::info(&program.info, &runtime));
+    let model = options.model_impl.then(|| quote!(use #runtime::model;));
     let structs = types.argument_structs();
     let head = quote! {
-        #lu
         use #runtime::Real;
-        #info
+        #lu
+        #model
         #(#structs)*
         #(#results)*
     };
     let mut file: syn::File = parse(head)?;
     file.items.extend(items);
     if options.model_impl {
-        let tail: syn::File = parse(model::implementation(&types, &runtime)?)?;
-        file.items.extend(tail.items);
+        file.items
+            .extend(parse(model::implementation(&types)?)?.items);
+        file.items.extend(parse(model::info(&program.info))?.items);
     }
+    let conversions = types.conversions();
+    file.items.extend(parse(quote!(#(#conversions)*))?.items);
     let mut source = options
         .spec
         .as_deref()

@@ -11,7 +11,8 @@ use super::types::{Types, double};
 use crate::program::{FunctionKind, Layout, Program};
 use crate::schedule::names::identifier;
 
-/// Types of the emitted text, which the model's own type must not collide with.
+/// Types of the emitted text beside the results of functions, which the model's own type must not
+/// collide with.
 const TYPES: &[&str] = &[
     "Parameters",
     "Speeds",
@@ -19,19 +20,6 @@ const TYPES: &[&str] = &[
     "State",
     "Inputs",
     "Outputs",
-    "Jacobians",
-    "AllJacobians",
-    "Energies",
-    "AccelerationEnergy",
-    "Kinematics",
-    "MassMatrix",
-    "Bias",
-    "GeneralizedForces",
-    "Rates",
-    "ConstraintResidual",
-    "ConstraintForces",
-    "Switches",
-    "OutputArrays",
     "Real",
     "T",
     "Default",
@@ -71,59 +59,38 @@ pub(super) fn type_name(types: &Types<'_>) -> String {
         })
         .collect();
     let mut name = identifier(&camel);
-    while TYPES.contains(&name.as_str()) || types.is_argument(&name) || name.len() < 2 {
+    let results = FunctionKind::ALL.map(FunctionKind::result_struct);
+    let taken = |name: &str| TYPES.contains(&name) || results.contains(&name);
+    while taken(&name) || types.is_argument(&name) || name.len() < 2 {
         name.push_str("Model");
     }
     name
 }
 
 /// The statics that `INFO` is made of, and `INFO`.
-pub(super) fn info(info: &ModelInfo, runtime: &syn::Path) -> TokenStream {
+pub(super) fn info(info: &ModelInfo) -> TokenStream {
     let quantities = |name: &'static str, about: &str, list: &[Quantity]| {
         let name = known(name);
         let about = docs(&[about.to_owned()]);
         let blank = blank_tokens();
         let count = Literal::usize_unsuffixed(list.len());
-        let entries = list.iter().map(|q| {
-            let Quantity {
-                name,
-                about,
-                unit,
-                scale,
-                value,
-                range,
-            } = q;
-            let [scale, value, low, high] = [*scale, *value, range[0], range[1]].map(double);
-            let texts = [name, about, unit].map(|text| borrowed(runtime, text));
-            let [name, about, unit] = texts;
-            quote! {
-                #runtime::model::Quantity {
-                    name: #name,
-                    about: #about,
-                    unit: #unit,
-                    scale: #scale,
-                    value: #value,
-                    range: [#low, #high],
-                }
-            }
-        });
+        let entries = list.iter().map(quantity);
         quote! {
             #blank
             #about
-            static #name: [#runtime::model::Quantity; #count] = [#(#entries),*];
+            static #name: [model::Quantity; #count] = [#(#entries),*];
         }
     };
     let states = quantities("STATES", "Pseudo-velocities and coordinates.", &info.states);
     let inputs = quantities("INPUTS", "Inputs and signals.", &info.inputs);
     let parameters = quantities("PARAMETERS", "Parameters.", &info.parameters);
     let outputs = quantities("OUTPUTS", "Outputs.", &info.outputs);
-    let signals = signals(info, runtime);
-    let [name, title, source] =
-        [&info.name, &info.title, &info.source].map(|text| borrowed(runtime, text));
+    let signals = signals(info);
+    let [name, title, source] = [&info.name, &info.title, &info.source].map(|text| borrowed(text));
     let [speeds, declared_inputs] =
         [info.speeds, info.declared_inputs].map(Literal::usize_unsuffixed);
     let texts = |list: &[std::borrow::Cow<'static, str>]| {
-        let texts = list.iter().map(|text| borrowed(runtime, text));
+        let texts = list.iter().map(|text| borrowed(text));
         quote!([#(#texts),*])
     };
     let rows = texts(&info.constraint_rows);
@@ -151,72 +118,98 @@ pub(super) fn info(info: &ModelInfo, runtime: &syn::Path) -> TokenStream {
         static SIGNAL_INPUTS: [(usize, u8); #order_count] = [#(#orders),*];
         #blank
         /// Constraint rows.
-        static CONSTRAINT_ROWS: [#runtime::model::Text; #row_count] = #rows;
+        static CONSTRAINT_ROWS: [model::Text; #row_count] = #rows;
         #blank
         /// Reactions in the ground.
-        static REACTIONS: [#runtime::model::Text; #reaction_count] = #reactions;
+        static REACTIONS: [model::Text; #reaction_count] = #reactions;
         #blank
         /// Names, units and sizes of the model.
-        pub static INFO: #runtime::model::ModelInfo = #runtime::model::ModelInfo {
+        pub static INFO: model::ModelInfo = model::ModelInfo {
             name: #name,
             title: #title,
             source: #source,
-            states: #runtime::model::List::Borrowed(&STATES),
+            states: model::List::Borrowed(&STATES),
             speeds: #speeds,
-            inputs: #runtime::model::List::Borrowed(&INPUTS),
+            inputs: model::List::Borrowed(&INPUTS),
             declared_inputs: #declared_inputs,
-            signals: #runtime::model::List::Borrowed(&SIGNALS),
-            signal_inputs: #runtime::model::List::Borrowed(&SIGNAL_INPUTS),
-            parameters: #runtime::model::List::Borrowed(&PARAMETERS),
-            outputs: #runtime::model::List::Borrowed(&OUTPUTS),
-            constraint_rows: #runtime::model::List::Borrowed(&CONSTRAINT_ROWS),
-            reactions: #runtime::model::List::Borrowed(&REACTIONS),
+            signals: model::List::Borrowed(&SIGNALS),
+            signal_inputs: model::List::Borrowed(&SIGNAL_INPUTS),
+            parameters: model::List::Borrowed(&PARAMETERS),
+            outputs: model::List::Borrowed(&OUTPUTS),
+            constraint_rows: model::List::Borrowed(&CONSTRAINT_ROWS),
+            reactions: model::List::Borrowed(&REACTIONS),
             explicit_time: #explicit_time,
         };
     }
 }
 
-fn borrowed(runtime: &syn::Path, text: &str) -> TokenStream {
-    quote!(#runtime::model::Text::Borrowed(#text))
+/// A quantity, short where it is plain.
+fn quantity(quantity: &Quantity) -> TokenStream {
+    let Quantity {
+        name,
+        about,
+        unit,
+        scale,
+        value,
+        range: [low, high],
+    } = quantity;
+    let [name, about, unit]: [&str; 3] = [name, about, unit];
+    let scaled = (*scale != 1.0).then(|| {
+        let scale = double(*scale);
+        quote!(.scaled(#scale))
+    });
+    let valued = (value.to_bits() != 0).then(|| {
+        let value = double(*value);
+        quote!(.valued(#value))
+    });
+    let within = (low.is_finite() || high.is_finite()).then(|| {
+        let [low, high] = [*low, *high].map(double);
+        quote!(.within(#low, #high))
+    });
+    quote!(model::Quantity::new(#name, #about, #unit) #scaled #valued #within)
 }
 
-fn signals(info: &ModelInfo, runtime: &syn::Path) -> TokenStream {
+fn borrowed(text: &str) -> TokenStream {
+    quote!(model::Text::Borrowed(#text))
+}
+
+fn signals(info: &ModelInfo) -> TokenStream {
     let count = Literal::usize_unsuffixed(info.signals.len());
     let blank = blank_tokens();
     let tables = info.signals.iter().map(|signal| {
-        let name = borrowed(runtime, &signal.name);
+        let name = borrowed(&signal.name);
         let times = signal.times.iter().map(|&time| double(time));
         let values = signal.values.iter().map(|&value| double(value));
-        let interpolation = ident(match signal.interpolation {
+        let interpolation = known(match signal.interpolation {
             Interpolation::Hold => "Hold",
             Interpolation::Linear => "Linear",
             Interpolation::Cubic => "Cubic",
         });
         quote! {
-            #runtime::model::SignalTable {
+            model::SignalTable {
                 name: #name,
-                times: #runtime::model::List::Borrowed(&[#(#times),*]),
-                values: #runtime::model::List::Borrowed(&[#(#values),*]),
-                interpolation: #runtime::model::Interpolation::#interpolation,
+                times: model::List::Borrowed(&[#(#times),*]),
+                values: model::List::Borrowed(&[#(#values),*]),
+                interpolation: model::Interpolation::#interpolation,
             }
         }
     });
     quote! {
         #blank
         /// Tabulated functions of time.
-        static SIGNALS: [#runtime::model::SignalTable; #count] = [#(#tables),*];
+        static SIGNALS: [model::SignalTable; #count] = [#(#tables),*];
     }
 }
 
 /// The unit struct and its `impl Model`.
-pub(super) fn implementation(types: &Types<'_>, runtime: &syn::Path) -> Result<TokenStream, Error> {
+pub(super) fn implementation(types: &Types<'_>) -> Result<TokenStream, Error> {
     let name = path(&type_name(types));
     let title = docs(&[escaped(&types.program.info.title)]);
-    let helpers = helpers(&types.program.info, runtime);
+    let helpers = helpers(&types.program.info);
     let bodies = [
         motion_methods(types)?,
         appell_method(types)?,
-        energies_method(types, runtime)?,
+        energies_method(types)?,
         optional_method(
             types,
             FunctionKind::ConstraintResidual,
@@ -244,8 +237,8 @@ pub(super) fn implementation(types: &Types<'_>, runtime: &syn::Path) -> Result<T
             #helpers
 
             #blank
-            impl #runtime::model::Model for #name {
-                fn info(&self) -> &#runtime::model::ModelInfo {
+            impl model::Model for #name {
+                fn info(&self) -> &model::ModelInfo {
                     &INFO
                 }
                 #(#bodies)*
@@ -255,7 +248,7 @@ pub(super) fn implementation(types: &Types<'_>, runtime: &syn::Path) -> Result<T
 }
 
 /// Sizes, and conversions between slices and structs.
-fn helpers(info: &ModelInfo, runtime: &syn::Path) -> TokenStream {
+fn helpers(info: &ModelInfo) -> TokenStream {
     let [n, s, m, k] = [
         info.states.len(),
         info.speeds,
@@ -265,7 +258,7 @@ fn helpers(info: &ModelInfo, runtime: &syn::Path) -> TokenStream {
     .map(Literal::usize_unsuffixed);
     let blank = blank_tokens();
     quote! {
-        use #runtime::model::At;
+        use model::At;
 
         #blank
         const N: usize = #n;
@@ -306,12 +299,12 @@ fn motion_methods(types: &Types<'_>) -> Result<TokenStream, Error> {
     for kind in [
         FunctionKind::Rates,
         FunctionKind::Jacobians,
-        FunctionKind::AllJacobians,
+        FunctionKind::ParameterJacobian,
     ] {
         required(types.program, kind)?;
     }
-    let [rates, jacobians, all_jacobians] =
-        ["rates", "jacobians", "all_jacobians"].map(|name| call(types, name));
+    let [rates, jacobians, parameter_jacobian] =
+        ["rates", "jacobians", "parameter_jacobian"].map(|name| call(types, name));
     let blank = blank_tokens();
     Ok(quote! {
         #blank
@@ -329,7 +322,7 @@ fn motion_methods(types: &Types<'_>) -> Result<TokenStream, Error> {
 
         #blank
         fn parameter_jacobian(&self, at: At<'_>, p: &mut [f64]) {
-            write(p, #all_jacobians.p.as_flattened());
+            write(p, self::#parameter_jacobian.as_flattened());
         }
     })
 }
@@ -357,7 +350,7 @@ fn appell_method(types: &Types<'_>) -> Result<TokenStream, Error> {
 }
 
 /// Energies, the acceleration energy among them.
-fn energies_method(types: &Types<'_>, runtime: &syn::Path) -> Result<TokenStream, Error> {
+fn energies_method(types: &Types<'_>) -> Result<TokenStream, Error> {
     required(types.program, FunctionKind::Energies)?;
     let acceleration = required(types.program, FunctionKind::AccelerationEnergy)?;
     let [energies, s] = ["energies", "acceleration_energy"].map(|name| call(types, name));
@@ -365,9 +358,9 @@ fn energies_method(types: &Types<'_>, runtime: &syn::Path) -> Result<TokenStream
     let blank = blank_tokens();
     Ok(quote! {
         #blank
-        fn energies(&self, at: At<'_>) -> #runtime::model::Energies {
+        fn energies(&self, at: At<'_>) -> model::Energies {
             let all = #energies;
-            #runtime::model::Energies {
+            model::Energies {
                 kinetic: all.kinetic,
                 potential: all.potential,
                 power: all.power,
@@ -437,7 +430,7 @@ fn optional_method(
         });
     }
     let function = required(types.program, kind)?;
-    let call = call(types, super::function::function_name(kind));
+    let call = call(types, kind.name());
     let layout = function
         .results
         .first()

@@ -167,7 +167,7 @@ pub(super) fn assign(left: Expr, right: Expr) -> Stmt {
 }
 
 /// `Type { field: value, … }`, short where field and value have the same name.
-pub(super) fn structure(type_name: &str, fields: Vec<(&str, Expr)>) -> Expr {
+pub(super) fn structure(type_name: &'static str, fields: Vec<(&str, Expr)>) -> Expr {
     let fields = fields.into_iter().map(|(field, value)| {
         let field = ident(field);
         let same = matches!(&value, Expr::Path(value) if value.path.is_ident(&field));
@@ -181,7 +181,7 @@ pub(super) fn structure(type_name: &str, fields: Vec<(&str, Expr)>) -> Expr {
     Expr::Struct(syn::ExprStruct {
         attrs: Vec::new(),
         qself: None,
-        path: path(type_name),
+        path: Path::from(known(type_name)),
         brace_token: token::Brace::default(),
         fields: fields.collect(),
         dot2_token: None,
@@ -239,7 +239,7 @@ pub(super) fn array_pattern(names: &[Option<&str>]) -> Pat {
 }
 
 /// `&Type { fields, .. }`, with the dots if the type has other fields.
-pub(super) fn borrowed_fields(type_name: &str, fields: &[&str], all: bool) -> Pat {
+pub(super) fn borrowed_fields(type_name: &'static str, fields: &[&str], all: bool) -> Pat {
     let fields: Punctuated<syn::FieldPat, token::Comma> = fields
         .iter()
         .map(|name| syn::FieldPat {
@@ -252,7 +252,7 @@ pub(super) fn borrowed_fields(type_name: &str, fields: &[&str], all: bool) -> Pa
     let pattern = Pat::Struct(syn::PatStruct {
         attrs: Vec::new(),
         qself: None,
-        path: path(type_name),
+        path: Path::from(known(type_name)),
         brace_token: token::Brace::default(),
         fields,
         rest: (!all).then(|| syn::PatRest {

@@ -5,11 +5,11 @@ use proc_macro2::TokenStream;
 use quote::quote;
 
 use super::body::Group;
-use super::layout::{blank_tokens, docs, escaped};
-use super::syntax::{ident, number};
-use crate::program::{Array, Function, FunctionKind, Layout, Program};
+use super::layout::{blank_tokens, docs, escaped, one_line};
+use super::syntax::{ident, known, number};
+use crate::program::{Function, Layout, Program};
 use crate::schedule::Argument;
-use crate::schedule::names::{ArgumentNames, identifier};
+use crate::schedule::names::{ArgumentNames, Names, identifier};
 
 /// Names of types and fields.
 pub(super) struct Types<'a> {
@@ -125,77 +125,101 @@ impl<'a> Types<'a> {
                 quote!([[T; #columns]; #rows])
             }
             _ => {
-                let name = ident(self.labelled(layout).0);
+                let name = known(self.labelled(layout).0);
                 quote!(#name<T>)
             }
         }
     }
 
     /// The structs of arguments and labelled results.
-    pub(super) fn argument_structs(&self) -> Vec<TokenStream> {
+    fn vectors(&self) -> Vec<Vector<'_>> {
         let info = &self.program.info;
-        let states = &info.states;
-        let about = |text: &str| vec![text.to_owned()];
-        let mut items = vec![vector(
-            "Parameters",
-            &about("Parameters, in SI."),
-            &self.names.parameters,
-            &info.parameters,
-        )];
-        if !self.names.parameters.is_empty() {
-            items.push(defaults(
-                "Parameters",
-                &self.names.parameters,
-                &info.parameters,
-            ));
-        }
-        for (layout, text) in [
-            (Layout::Speeds, "One number per pseudo-velocity."),
-            (Layout::Coordinates, "One number per coordinate."),
+        let (speeds, coordinates) = info.states.split_at(self.speeds());
+        let names = &self.names;
+        let (speed_names, coordinate_names) = names.states.split_at(self.speeds());
+        let all = [
             (
-                Layout::State,
-                "The state, or its rates: pseudo-velocities, then coordinates. In SI.",
+                "Parameters",
+                "Parameters, in SI.",
+                &*names.parameters,
+                &*info.parameters,
             ),
-        ] {
-            let (name, labels) = self.labelled(layout);
-            let of = match layout {
-                Layout::Speeds => &states[..self.speeds()],
-                Layout::Coordinates => &states[self.speeds()..],
-                _ => states,
-            };
-            items.push(vector(name, &about(text), labels, of));
-        }
-        items.push(vector(
-            "Inputs",
-            &about("Inputs, in SI."),
-            &self.names.inputs,
-            &info.inputs,
-        ));
-        if !self.outputs.is_empty() {
-            items.push(vector(
-                "Outputs",
-                &about("Outputs, in SI."),
-                &self.outputs,
-                &info.outputs,
-            ));
+            (
+                "Speeds",
+                "One number per pseudo-velocity, in SI.",
+                speed_names,
+                speeds,
+            ),
+            (
+                "Coordinates",
+                "One number per coordinate, in SI.",
+                coordinate_names,
+                coordinates,
+            ),
+            (
+                "State",
+                "The state, or its rates: pseudo-velocities, then coordinates. In SI.",
+                &names.states,
+                &info.states,
+            ),
+            ("Inputs", "Inputs, in SI.", &names.inputs, &info.inputs),
+            ("Outputs", "Outputs, in SI.", &self.outputs, &info.outputs),
+        ];
+        let wanted = |vector: &Vector<'_>| vector.name != "Outputs" || !vector.labels.is_empty();
+        all.into_iter()
+            .map(|(name, about, labels, quantities)| Vector {
+                name,
+                about,
+                labels,
+                quantities,
+            })
+            .filter(wanted)
+            .collect()
+    }
+
+    /// The structs, and the values of the spec as the default of the parameters.
+    pub(super) fn argument_structs(&self) -> Vec<TokenStream> {
+        let mut items: Vec<TokenStream> = self.vectors().iter().map(Vector::structure).collect();
+        let parameters = &self.program.info.parameters;
+        if !parameters.is_empty() {
+            items.insert(
+                1,
+                defaults("Parameters", &self.names.parameters, parameters),
+            );
         }
         items
     }
 
+    /// Conversions of the structs from and to arrays.
+    pub(super) fn conversions(&self) -> Vec<TokenStream> {
+        self.vectors().iter().map(Vector::conversions).collect()
+    }
+
+    /// Field names of the results of a function, no two equal.
+    pub(super) fn fields(&self, function: &Function) -> Vec<String> {
+        let mut names = Names::default();
+        function
+            .results
+            .iter()
+            .map(|array| names.fresh(&array.name))
+            .collect()
+    }
+
     /// The struct of a function with several results.
     pub(super) fn results_struct(&self, function: &Function) -> Option<TokenStream> {
-        let name = ident(result_struct(function)?);
+        let name = known(result_struct(function)?);
         let blank = blank_tokens();
-        let about = docs(&[format!(
-            "Result of [`{}`].",
-            super::function::function_name(function.kind)
-        )]);
-        let fields = function.results.iter().map(|array| {
-            let text = docs(&[about_result(function.kind, array)]);
-            let field = ident(&array.name);
-            let kind = self.array_type(array.layout);
-            quote!(#text pub #field: #kind)
-        });
+        let about = docs(&[format!("Result of [`{}`].", function.kind.name())]);
+        let fields = function
+            .results
+            .iter()
+            .zip(self.fields(function))
+            .map(|(array, field)| {
+                let text = docs(&[one_line(&array.about)]);
+                let field = ident(&field);
+                let kind = self.array_type(array.layout);
+                quote!(#text pub #field: #kind)
+            });
         Some(quote! {
             #blank
             #about
@@ -207,45 +231,12 @@ impl<'a> Types<'a> {
 
 /// The struct a function returns, if it returns more than one array.
 pub(super) fn result_struct(function: &Function) -> Option<&'static str> {
-    (function.results.len() != 1).then_some(match function.kind {
-        FunctionKind::Kinematics => "Kinematics",
-        FunctionKind::AccelerationEnergy => "AccelerationEnergy",
-        FunctionKind::MassMatrix => "MassMatrix",
-        FunctionKind::Bias => "Bias",
-        FunctionKind::GeneralizedForces => "GeneralizedForces",
-        FunctionKind::Rates => "Rates",
-        FunctionKind::Jacobians => "Jacobians",
-        FunctionKind::AllJacobians => "AllJacobians",
-        FunctionKind::Energies => "Energies",
-        FunctionKind::ConstraintResidual => "ConstraintResidual",
-        FunctionKind::ConstraintForces => "ConstraintForces",
-        FunctionKind::Outputs => "OutputArrays",
-        FunctionKind::Switches => "Switches",
-    })
-}
-
-fn about_result(kind: FunctionKind, array: &Array) -> String {
-    match (kind, array.name.as_str()) {
-        (_, "rates") => "ẋ, the rates of the state.".to_owned(),
-        (_, "a") => "A = ∂ẋ/∂x. Rows and columns follow [`State`].".to_owned(),
-        (_, "b") => "B = ∂ẋ/∂u. Rows follow [`State`], columns [`Inputs`].".to_owned(),
-        (_, "p") => "P = ∂ẋ/∂p. Rows follow [`State`], columns [`Parameters`].".to_owned(),
-        (FunctionKind::Energies, "kinetic") => "Kinetic energy in J.".to_owned(),
-        (FunctionKind::Energies, "potential") => "Potential energy in J.".to_owned(),
-        (FunctionKind::Energies, "power") => {
-            "Power of the loads without a potential, in W.".to_owned()
-        }
-        (FunctionKind::AccelerationEnergy, "total") => "Sum over the bodies, in W/s.".to_owned(),
-        (FunctionKind::AccelerationEnergy, body) => {
-            format!("Of `{}`, in W/s.", super::layout::one_line(body))
-        }
-        (_, name) => super::layout::one_line(name),
-    }
+    (function.results.len() != 1).then(|| function.kind.result_struct())
 }
 
 /// `impl Default` with the values of the spec.
-fn defaults(name: &str, labels: &[String], quantities: &[Quantity]) -> TokenStream {
-    let type_name = ident(name);
+fn defaults(name: &'static str, labels: &[String], quantities: &[Quantity]) -> TokenStream {
+    let type_name = known(name);
     let fields = labels.iter().map(|label| ident(label));
     let values = quantities.iter().map(|quantity| double(quantity.value));
     let blank = blank_tokens();
@@ -260,64 +251,91 @@ fn defaults(name: &str, labels: &[String], quantities: &[Quantity]) -> TokenStre
     }
 }
 
-/// A struct of scalars and its conversions from and to an array.
-fn vector(name: &str, about: &[String], labels: &[String], quantities: &[Quantity]) -> TokenStream {
-    let type_name = ident(name);
-    let blank = blank_tokens();
-    let about = docs(about);
-    if labels.is_empty() {
-        return quote! {
+/// A struct of scalars.
+struct Vector<'a> {
+    name: &'static str,
+    about: &'static str,
+    labels: &'a [String],
+    quantities: &'a [Quantity],
+}
+
+impl Vector<'_> {
+    /// The struct. Without fields it holds nothing but the type of the scalar.
+    fn structure(&self) -> TokenStream {
+        let type_name = known(self.name);
+        let blank = blank_tokens();
+        let about = docs(&[self.about.to_owned()]);
+        if self.labels.is_empty() {
+            return quote! {
+                #blank
+                #about
+                #[derive(Debug, Clone, Copy, PartialEq, Default)]
+                pub struct #type_name<T>(pub core::marker::PhantomData<T>);
+            };
+        }
+        let fields = self.labels.iter().map(|label| ident(label));
+        let texts = self
+            .quantities
+            .iter()
+            .map(|quantity| docs(&[sentence(quantity)]));
+        quote! {
             #blank
             #about
-            #[derive(Debug, Clone, Copy, PartialEq, Default)]
-            pub struct #type_name<T>(pub core::marker::PhantomData<T>);
-
-            #blank
-            impl<T> From<[T; 0]> for #type_name<T> {
-                fn from(_: [T; 0]) -> Self {
-                    Self(core::marker::PhantomData)
-                }
-            }
-
-            #blank
-            impl<T> From<#type_name<T>> for [T; 0] {
-                fn from(_: #type_name<T>) -> Self {
-                    []
-                }
-            }
-        };
+            #[derive(Debug, Clone, Copy, PartialEq)]
+            pub struct #type_name<T> { #(#texts pub #fields: T),* }
+        }
     }
-    let fields: Vec<_> = labels.iter().map(|label| ident(label)).collect();
-    let texts = quantities.iter().map(|quantity| {
-        let mut text = escaped(&quantity.about);
-        if !quantity.unit.is_empty() {
-            if !text.is_empty() {
-                text.push(' ');
-            }
-            text.extend(["Unit: ", &escaped(&quantity.unit), "."]);
-        }
-        docs(&[text])
-    });
-    let count = proc_macro2::Literal::usize_unsuffixed(labels.len());
-    quote! {
-        #blank
-        #about
-        #[derive(Debug, Clone, Copy, PartialEq)]
-        pub struct #type_name<T> { #(#texts pub #fields: T),* }
 
-        #blank
-        impl<T> From<[T; #count]> for #type_name<T> {
-            fn from([#(#fields),*]: [T; #count]) -> Self {
-                Self { #(#fields),* }
+    /// From and to an array.
+    fn conversions(&self) -> TokenStream {
+        let type_name = known(self.name);
+        let blank = blank_tokens();
+        let fields: Vec<_> = self.labels.iter().map(|label| ident(label)).collect();
+        let count = proc_macro2::Literal::usize_unsuffixed(fields.len());
+        let [pattern, value] = if fields.is_empty() {
+            [quote!((_)), quote!((core::marker::PhantomData))]
+        } else {
+            [quote!({ #(#fields),* }), quote!({ #(#fields),* })]
+        };
+        quote! {
+            #blank
+            impl<T> From<[T; #count]> for #type_name<T> {
+                fn from([#(#fields),*]: [T; #count]) -> Self {
+                    Self #value
+                }
             }
-        }
 
-        #blank
-        impl<T> From<#type_name<T>> for [T; #count] {
-            fn from(#type_name { #(#fields),* }: #type_name<T>) -> Self {
-                [#(#fields),*]
+            #blank
+            impl<T> From<#type_name<T>> for [T; #count] {
+                fn from(#type_name #pattern: #type_name<T>) -> Self {
+                    [#(#fields),*]
+                }
             }
         }
+    }
+}
+
+/// What a quantity is, and its unit.
+fn sentence(quantity: &Quantity) -> String {
+    let about = capitalised(&escaped(&quantity.about));
+    let about = about.trim_end_matches('.');
+    let unit = one_line(&quantity.unit).replace('`', "'");
+    match (about.is_empty(), unit.is_empty()) {
+        (true, true) => "No unit.".to_owned(),
+        (true, false) => format!("In `{unit}`."),
+        (false, true) => format!("{about}."),
+        (false, false) => format!("{about}, in `{unit}`."),
+    }
+}
+
+/// A sentence with a capital at its start, unless it starts with a symbol.
+fn capitalised(text: &str) -> String {
+    let mut letters = text.chars();
+    match (letters.next(), text.chars().nth(1)) {
+        (Some(first), Some(second)) if second.is_lowercase() => {
+            first.to_uppercase().chain(letters).collect()
+        }
+        _ => text.to_owned(),
     }
 }
 

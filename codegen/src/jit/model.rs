@@ -23,23 +23,6 @@ pub struct JitModel {
     parts: Vec<Part>,
 }
 
-/// All functions, in the order of the variants.
-const KINDS: [FunctionKind; 13] = [
-    FunctionKind::Kinematics,
-    FunctionKind::AccelerationEnergy,
-    FunctionKind::MassMatrix,
-    FunctionKind::Bias,
-    FunctionKind::GeneralizedForces,
-    FunctionKind::Rates,
-    FunctionKind::Jacobians,
-    FunctionKind::AllJacobians,
-    FunctionKind::Energies,
-    FunctionKind::ConstraintResidual,
-    FunctionKind::ConstraintForces,
-    FunctionKind::Outputs,
-    FunctionKind::Switches,
-];
-
 /// The results that the trait asks for, with their lengths.
 ///
 /// What a function computes beyond them is left out of the machine code. The numbers that remain
@@ -57,8 +40,7 @@ fn results(kind: FunctionKind, program: &Program) -> Vec<(&'static str, usize)> 
         FunctionKind::GeneralizedForces => vec![("generalized_forces", speeds)],
         FunctionKind::Rates => vec![("rates", n)],
         FunctionKind::Jacobians => vec![("rates", n), ("a", n * n), ("b", n * m)],
-        // The other Jacobians come from the function without parameters.
-        FunctionKind::AllJacobians => vec![("p", n * k)],
+        FunctionKind::ParameterJacobian => vec![("p", n * k)],
         FunctionKind::Energies => vec![("kinetic", 1), ("potential", 1), ("power", 1)],
         FunctionKind::ConstraintResidual => vec![("residual", info.constraint_rows.len())],
         FunctionKind::ConstraintForces => vec![("forces", 3 * info.reactions.len())],
@@ -71,7 +53,7 @@ impl JitModel {
     /// Compiles the rates of a program and prepares its other functions.
     pub fn new(program: &Program) -> Result<Self, JitError> {
         let sizes = Sizes::from(&program.info);
-        let parts = KINDS
+        let parts = FunctionKind::ALL
             .iter()
             .map(|&kind| Part::new(program, kind, results(kind, program)))
             .collect::<Result<_, _>>()?;
@@ -94,7 +76,7 @@ impl JitModel {
 
     /// The functions used so far that are interpreted, with the reason.
     pub fn interpreted(&self) -> impl Iterator<Item = (FunctionKind, &JitError)> {
-        KINDS
+        FunctionKind::ALL
             .into_iter()
             .zip(&self.parts)
             .filter_map(|(kind, part)| Some((kind, part.reason()?)))
@@ -126,7 +108,7 @@ impl Model for JitModel {
     }
 
     fn parameter_jacobian(&self, at: At<'_>, p: &mut [f64]) {
-        self.evaluate(FunctionKind::AllJacobians, at, [p]);
+        self.evaluate(FunctionKind::ParameterJacobian, at, [p]);
     }
 
     fn appell(&self, at: At<'_>, mass: &mut [f64], bias: &mut [f64], forces: &mut [f64]) {

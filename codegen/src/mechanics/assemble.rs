@@ -6,31 +6,14 @@ use appell_spec::mechanism::{self, Label, Mechanism, Signal};
 use super::Derivation;
 use super::expressions::Lowering;
 use super::finding::{Item, Outcome};
-use super::gibbs_appell::{acceleration_energy, kinetic_energy};
+use super::gibbs_appell::{ActualMotion, acceleration_energy, kinetic_energy};
 use super::kinematics::division_by_zero;
 use super::linear::ImplicitMotion;
 use super::reactions;
 use super::switches::switches;
-use super::symbols::ids;
+use super::symbols::{Symbols, ids};
 use crate::program::{Arguments, Array, Function, FunctionKind, Layout, Program};
 use crate::symbolic::Expr;
-
-/// All functions, in the order of emitted code.
-pub const ALL: [FunctionKind; 13] = [
-    FunctionKind::Kinematics,
-    FunctionKind::AccelerationEnergy,
-    FunctionKind::MassMatrix,
-    FunctionKind::Bias,
-    FunctionKind::GeneralizedForces,
-    FunctionKind::Rates,
-    FunctionKind::Jacobians,
-    FunctionKind::AllJacobians,
-    FunctionKind::Energies,
-    FunctionKind::ConstraintResidual,
-    FunctionKind::ConstraintForces,
-    FunctionKind::Outputs,
-    FunctionKind::Switches,
-];
 
 /// The program of a derivation, with the functions `kinds`. Without outputs or switches there is no
 /// function for them.
@@ -39,38 +22,33 @@ pub fn program(
     mechanism: &Mechanism,
     kinds: &[FunctionKind],
 ) -> Outcome<Program> {
+    let signals = tabulated_inputs(mechanism);
+    let mut info = info(&derivation, mechanism, &signals);
     let mut functions = Vec::with_capacity(kinds.len());
     for &kind in kinds {
-        let results = derivation.results(mechanism, kind)?;
+        let results = derivation.results(mechanism, &info, kind)?;
         let may_lack = matches!(kind, FunctionKind::Outputs | FunctionKind::Switches);
         if !may_lack || results.iter().any(|array| !array.entries.is_empty()) {
-            functions.push(Function { kind, results });
+            functions.push(derivation.staged(Function::new(kind, results)));
         }
     }
-    let signals = tabulated_inputs(mechanism);
     let symbols = &derivation.symbols;
     let graph = &derivation.algebra.graph;
-    let mut input_symbols = symbols.inputs.clone();
-    input_symbols.extend(
-        signals
-            .iter()
-            .map(|&(signal, order)| symbols.signals[signal][usize::from(order)]),
-    );
     let arguments = Arguments {
         time: ids(graph, &[symbols.time])[0],
         states: ids(
             graph,
             &[symbols.speeds.as_slice(), &symbols.coordinates].concat(),
         ),
-        inputs: ids(graph, &input_symbols),
+        inputs: ids(graph, &input_symbols(symbols, &info)),
         parameters: ids(graph, &symbols.parameters),
+        pi: graph.as_symbol(symbols.pi),
     };
-    let explicit_time = functions
+    info.explicit_time = functions
         .iter()
         .flat_map(|f| &f.results)
         .flat_map(|r| &r.entries)
         .any(|&e| graph.mentions(e, &[arguments.time]));
-    let info = info(&derivation, mechanism, &signals, explicit_time);
     Ok(Program {
         info,
         file: mechanism.file.clone(),
@@ -80,53 +58,89 @@ pub fn program(
     })
 }
 
-fn array(name: &str, layout: Layout, entries: Vec<Expr>) -> Array {
-    let name = name.to_owned();
-    Array {
-        name,
-        layout,
-        entries,
-    }
-}
-
 impl Derivation {
     /// The results of one function.
-    fn results(&mut self, mechanism: &Mechanism, kind: FunctionKind) -> Outcome<Vec<Array>> {
-        let speeds = self.symbols.speeds.len();
+    fn results(
+        &mut self,
+        mechanism: &Mechanism,
+        info: &ModelInfo,
+        kind: FunctionKind,
+    ) -> Outcome<Vec<Array>> {
+        let speeds = &info.states[..info.speeds];
+        let coordinates = &info.states[info.speeds..];
+        let source = Source(mechanism);
         Ok(match kind {
             FunctionKind::Kinematics => {
-                vec![array(
-                    "coordinate_rates",
-                    Layout::Coordinates,
-                    self.coordinate_rates.clone(),
-                )]
+                let rates = self.coordinate_rates.clone();
+                let all = 0..rates.len();
+                let labels = coordinates.iter().map(|q| format!("{}_dot", q.name));
+                let array = Array::new("coordinate_rates", "q̇.", Layout::Coordinates, rates);
+                vec![array.labelled(labels).under(VELOCITIES, all)]
             }
             FunctionKind::AccelerationEnergy => self.acceleration_energies(mechanism),
             FunctionKind::MassMatrix => {
                 let entries = self.gibbs.mass_matrix.concat();
-                vec![array(
-                    "mass_matrix",
-                    Layout::Matrix(speeds, speeds),
-                    entries,
-                )]
+                let all = 0..entries.len();
+                let layout = Layout::Matrix(speeds.len(), speeds.len());
+                let labels = speeds.iter().flat_map(|row| {
+                    let label = move |column: &Quantity| format!("M_{}_{}", row.name, column.name);
+                    speeds.iter().map(label)
+                });
+                let array = Array::new("mass_matrix", "M.", layout, entries);
+                vec![array.labelled(labels).under("Entries.", all)]
             }
-            FunctionKind::Bias => vec![array("bias", Layout::Speeds, self.gibbs.bias.clone())],
+            FunctionKind::Bias => {
+                let bias = self.gibbs.bias.clone();
+                vec![by_speed("bias", "bias", "Bias.", speeds, bias)]
+            }
             FunctionKind::GeneralizedForces => {
-                vec![array(
+                let forces = self.forces.clone();
+                let about = "Generalised forces.";
+                vec![by_speed(
+                    "force",
                     "generalized_forces",
-                    Layout::Speeds,
-                    self.forces.clone(),
+                    about,
+                    speeds,
+                    forces,
                 )]
             }
-            FunctionKind::Rates => vec![array("rates", Layout::State, self.rates())],
-            FunctionKind::Jacobians => self.jacobians(mechanism, false)?,
-            FunctionKind::AllJacobians => self.jacobians(mechanism, true)?,
+            FunctionKind::Rates => vec![Array::rates(info, self.rates())],
+            FunctionKind::Jacobians => {
+                let symbols = &self.symbols;
+                let states = [symbols.speeds.as_slice(), &symbols.coordinates].concat();
+                let [a, b] = self.derivatives([states, input_symbols(symbols, info)])?;
+                vec![
+                    Array::rates(info, self.rates()),
+                    Array::jacobian("a", A, &info.states, &info.states, a),
+                    Array::jacobian("b", B, &info.states, &info.inputs, b),
+                ]
+            }
+            FunctionKind::ParameterJacobian => {
+                let [p] = self.derivatives([self.symbols.parameters.clone()])?;
+                vec![Array::jacobian("p", P, &info.states, &info.parameters, p)]
+            }
             FunctionKind::Energies => self.energies(),
             FunctionKind::ConstraintResidual => {
                 let graph = &mut self.algebra.graph;
                 let residual =
                     reactions::residual(graph, &self.constraints, &self.coordinate_rates);
-                vec![array("residual", Layout::Vector(residual.len()), residual)]
+                let rows = self
+                    .constraints
+                    .rows
+                    .iter()
+                    .filter(|row| !row.is_embedded());
+                let layout = Layout::Vector(residual.len());
+                let about = "Constraint rows.";
+                let mut array = Array::new("residual", about, layout, residual)
+                    .labelled(rows.clone().map(|row| format!("residual_{}", row.name)));
+                let constraints: Vec<usize> = rows.map(|row| row.constraint).collect();
+                let mut start = 0;
+                for same in constraints.chunk_by(|a, b| a == b) {
+                    let title = source.of_constraint(same[0]);
+                    array = array.under(&title, start..start + same.len());
+                    start += same.len();
+                }
+                vec![array]
             }
             FunctionKind::ConstraintForces => {
                 let forces = reactions::reactions(
@@ -138,47 +152,95 @@ impl Derivation {
                     &self.bodies,
                     &self.motion.accelerations,
                 )?;
-                vec![array(
-                    "forces",
-                    Layout::Matrix(forces.len(), 3),
-                    forces.concat(),
-                )]
-            }
-            FunctionKind::Outputs => {
-                let lowering = Lowering {
-                    symbols: &self.symbols,
-                    rates: &self.coordinate_rates,
-                };
-                let mut values = Vec::with_capacity(mechanism.outputs.len());
-                for (index, output) in mechanism.outputs.iter().enumerate() {
-                    let value = lowering
-                        .lower(&mut self.algebra.graph, &output.value)
-                        .map_err(|_| vec![division_by_zero(Item::Output(index))])?;
-                    values.push(value);
+                let layout = Layout::Matrix(forces.len(), 3);
+                let places = &self.constraints.reactions;
+                let labels = places
+                    .iter()
+                    .flat_map(|place| ["x", "y", "z"].map(|axis| format!("F_{place}_{axis}")));
+                let about = "Reactions in the ground.";
+                let mut array =
+                    Array::new("forces", about, layout, forces.concat()).labelled(labels);
+                for (i, place) in places.iter().enumerate() {
+                    array = array.under(&format!("Reaction `{place}`."), 3 * i..3 * i + 3);
                 }
-                vec![array("outputs", Layout::Outputs, values)]
+                vec![array]
             }
+            FunctionKind::Outputs => self.outputs(mechanism)?,
             FunctionKind::Switches => {
                 let rates = self.rates();
                 let switches = switches(&mut self.algebra.graph, &self.symbols, &rates);
-                vec![array("switches", Layout::Vector(switches.len()), switches)]
+                let layout = Layout::Vector(switches.len());
+                vec![Array::new("switches", "Switches.", layout, switches)]
             }
         })
+    }
+
+    /// A function with what a reader wants before its results.
+    fn staged(&mut self, function: Function) -> Function {
+        let accelerations = self.motion.accelerations.clone();
+        match function.kind {
+            FunctionKind::ConstraintResidual => {
+                function.by_way_of(VELOCITIES, self.coordinate_rates.clone())
+            }
+            FunctionKind::ParameterJacobian => function.by_way_of(SOLVED, accelerations),
+            FunctionKind::AccelerationEnergy | FunctionKind::ConstraintForces => {
+                let mut components = Vec::new();
+                for body in &self.bodies {
+                    let motion = ActualMotion::new(&mut self.algebra, body, &accelerations);
+                    components.extend(motion.a);
+                    components.extend(motion.alpha);
+                }
+                function
+                    .by_way_of(SOLVED, accelerations)
+                    .by_way_of("Accelerations of the bodies.", components)
+            }
+            _ => function,
+        }
+    }
+
+    /// The outputs of the spec.
+    fn outputs(&mut self, mechanism: &Mechanism) -> Outcome<Vec<Array>> {
+        let lowering = Lowering {
+            symbols: &self.symbols,
+            rates: &self.coordinate_rates,
+        };
+        let mut values = Vec::with_capacity(mechanism.outputs.len());
+        for (index, output) in mechanism.outputs.iter().enumerate() {
+            let value = lowering
+                .lower(&mut self.algebra.graph, &output.value)
+                .map_err(|_| vec![division_by_zero(Item::Output(index))])?;
+            values.push(value);
+        }
+        let labels = mechanism.outputs.iter().map(|y| y.label.name.clone());
+        let all = 0..values.len();
+        let array = Array::new("outputs", "Outputs.", Layout::Outputs, values);
+        Ok(vec![array.labelled(labels).under("Outputs.", all)])
     }
 
     /// S at the actual accelerations: the sum, then body by body.
     fn acceleration_energies(&mut self, mechanism: &Mechanism) -> Vec<Array> {
         let mut results = Vec::with_capacity(self.bodies.len() + 1);
-        for body in self.bodies.clone() {
+        for (place, body) in self.bodies.clone().into_iter().enumerate() {
             let s = acceleration_energy(&mut self.algebra, &body, &self.motion.accelerations);
-            let s = self.algebra.graph.name(&format!("s_{}", body.name), s);
-            results.push(array(&body.name, Layout::Scalar, vec![s]));
+            let label = format!("s_{}", body.name);
+            let s = self.algebra.graph.name(&label, s);
+            let about = format!("Of `{}`, in W/s.", body.name);
+            let mut name = body.name.clone();
+            while name == "total" || results.iter().any(|other: &Array| other.name == name) {
+                name.push('_');
+            }
+            results.push(
+                Array::scalar(&name, &about, s)
+                    .labelled(std::iter::once(label))
+                    .under(&Source(mechanism).of_body(place), 0..1),
+            );
         }
         let parts: Vec<Expr> = results.iter().map(|r| r.entries[0]).collect();
         let total = self.algebra.graph.sum(&parts);
-        let taken = mechanism.bodies.iter().any(|body| body.name == "total");
-        let name = if taken { "total_of_bodies" } else { "total" };
-        results.insert(0, array(name, Layout::Scalar, vec![total]));
+        results.insert(
+            0,
+            Array::scalar("total", "Sum over the bodies, in W/s.", total),
+        );
         results
     }
 
@@ -198,11 +260,17 @@ impl Derivation {
         let others = self.loads.iter().filter(|load| load.potential.is_none());
         let power: Vec<Expr> = others.map(|load| load.power(graph)).collect();
         [
-            ("kinetic", kinetic),
-            ("potential", potential),
-            ("power", power),
+            ("kinetic", "Kinetic energy, in J.", kinetic),
+            ("potential", "Potential energy, in J.", potential),
+            (
+                "power",
+                "Power of the loads without a potential, in W.",
+                power,
+            ),
         ]
-        .map(|(name, parts)| array(name, Layout::Scalar, vec![graph.sum(&parts)]))
+        .map(|(name, about, parts)| {
+            Array::scalar(name, about, graph.sum(&parts)).under(about, 0..1)
+        })
         .into()
     }
 
@@ -211,51 +279,75 @@ impl Derivation {
         [self.motion.accelerations.as_slice(), &self.coordinate_rates].concat()
     }
 
-    /// ẋ, A, B and, when asked for, P.
-    fn jacobians(&mut self, mechanism: &Mechanism, parameters: bool) -> Outcome<Vec<Array>> {
+    /// Derivatives of ẋ by each list of variables, row by row.
+    fn derivatives<const N: usize>(
+        &mut self,
+        variables: [Vec<Expr>; N],
+    ) -> Outcome<[Vec<Expr>; N]> {
         let implicit = ImplicitMotion {
             gibbs: &self.gibbs,
             forces: &self.forces,
             motion: &self.motion,
             coordinate_rates: &self.coordinate_rates,
         };
-        let rates = self.rates();
         let residual = implicit.residual(&mut self.algebra, &self.symbols);
-        let states = [self.symbols.speeds.as_slice(), &self.symbols.coordinates].concat();
-        let tabulated = tabulated_inputs(mechanism);
-        let tabulated = tabulated
-            .iter()
-            .map(|&(signal, order)| self.symbols.signals[signal][usize::from(order)]);
-        let inputs: Vec<Expr> = self
-            .symbols
-            .inputs
-            .iter()
-            .copied()
-            .chain(tabulated)
-            .collect();
-        let mut variables = vec![("a", states), ("b", inputs)];
-        if parameters {
-            variables.push(("p", self.symbols.parameters.clone()));
+        let rows = residual.len() + self.coordinate_rates.len();
+        let mut derivatives = [const { Vec::new() }; N];
+        for (derivatives, variables) in derivatives.iter_mut().zip(&variables) {
+            let (algebra, symbols) = (&mut self.algebra, &self.symbols);
+            let columns = implicit.jacobian(algebra, symbols, &residual, variables)?;
+            for row in 0..rows {
+                derivatives.extend(columns.iter().map(|column| column[row]));
+            }
         }
-        let mut results = vec![Array {
-            name: "rates".to_owned(),
-            layout: Layout::State,
-            entries: rates.clone(),
-        }];
-        for (name, variables) in variables {
-            let columns =
-                implicit.jacobian(&mut self.algebra, &self.symbols, &residual, &variables)?;
-            let entries = (0..rates.len())
-                .flat_map(|row| columns.iter().map(move |column| column[row]))
-                .collect();
-            let layout = Layout::Matrix(rates.len(), variables.len());
-            results.push(Array {
-                name: name.to_owned(),
-                layout,
-                entries,
-            });
-        }
-        Ok(results)
+        Ok(derivatives)
+    }
+}
+
+const VELOCITIES: &str = "Generalised velocities.";
+const SOLVED: &str = "Appell's equations, solved.";
+const A: &str = "A = ∂ẋ/∂x. Rows and columns follow [`State`].";
+const B: &str = "B = ∂ẋ/∂u. Rows follow [`State`], columns [`Inputs`].";
+const P: &str = "P = ∂ẋ/∂p. Rows follow [`State`], columns [`Parameters`].";
+
+/// One entry per pseudo-velocity.
+fn by_speed(
+    name: &str,
+    result: &str,
+    about: &str,
+    speeds: &[Quantity],
+    entries: Vec<Expr>,
+) -> Array {
+    let all = 0..entries.len();
+    Array::new(result, about, Layout::Speeds, entries)
+        .labelled(speeds.iter().map(|speed| format!("{name}_{}", speed.name)))
+        .under(about, all)
+}
+
+/// Symbols of the inputs: declared ones, then signals and their rates.
+fn input_symbols(symbols: &Symbols, info: &ModelInfo) -> Vec<Expr> {
+    let tabulated = info
+        .signal_inputs
+        .iter()
+        .map(|&(signal, order)| symbols.signals[signal][usize::from(order)]);
+    symbols.inputs.iter().copied().chain(tabulated).collect()
+}
+
+/// Where the things of a spec stand, for comments.
+struct Source<'a>(&'a Mechanism);
+
+impl Source<'_> {
+    fn of_body(&self, index: usize) -> String {
+        let body = &self.0.bodies[index];
+        format!("Body `{}`, {}:{}.", body.name, self.0.file, body.line)
+    }
+
+    fn of_constraint(&self, index: usize) -> String {
+        let constraint = &self.0.constraints[index];
+        format!(
+            "Constraint `{}`, {}:{}.",
+            constraint.name, self.0.file, constraint.line
+        )
     }
 }
 
@@ -268,12 +360,7 @@ fn tabulated_inputs(mechanism: &Mechanism) -> Vec<(usize, u8)> {
         .collect()
 }
 
-fn info(
-    derivation: &Derivation,
-    mechanism: &Mechanism,
-    signals: &[(usize, u8)],
-    explicit_time: bool,
-) -> ModelInfo {
+fn info(derivation: &Derivation, mechanism: &Mechanism, signals: &[(usize, u8)]) -> ModelInfo {
     let everywhere = [f64::NEG_INFINITY, f64::INFINITY];
     let speeds = mechanism
         .pseudo_velocities
@@ -330,7 +417,7 @@ fn info(
             .iter()
             .map(|r| r.clone().into())
             .collect(),
-        explicit_time,
+        explicit_time: false,
     }
 }
 

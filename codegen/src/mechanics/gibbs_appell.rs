@@ -322,12 +322,11 @@ pub fn acceleration_energy(
     body: &BodyMotion,
     accelerations: &[Expr],
 ) -> Expr {
+    let ActualMotion { a, alpha, .. } = ActualMotion::new(algebra, body, accelerations);
     let graph = &mut algebra.graph;
-    let a = along(graph, body.centre.bias, &body.centre.partial, accelerations);
     let square = graph.dot(a, a);
     let mut parts = vec![graph.product(&[body.mass, square])];
     if let Some(rotation) = &body.rotation {
-        let alpha = along(graph, rotation.bias, &rotation.partial, accelerations);
         let moment = graph.mat_vec(&rotation.inertia, alpha);
         parts.push(graph.dot(alpha, moment));
         let momentum = graph.mat_vec(&rotation.inertia, rotation.velocity.v);
@@ -337,6 +336,38 @@ pub fn acceleration_energy(
     }
     let twice = graph.sum(&parts);
     graph.scale(&Rational::new(1, 2), twice)
+}
+
+/// The motion that happens: with the solved pseudo-accelerations.
+#[derive(Debug, Clone)]
+pub struct ActualMotion {
+    /// Acceleration of the centre of mass, in the frame of its velocity.
+    pub a: Vec3,
+    /// Angular acceleration, in the frame of the inertia tensor.
+    pub alpha: Vec3,
+    /// Rate of the angular momentum about the centre of mass, there.
+    pub momentum_rate: Vec3,
+}
+
+impl ActualMotion {
+    /// The motion of a body, component by component with names.
+    pub fn new(algebra: &mut Algebra, body: &BodyMotion, accelerations: &[Expr]) -> Self {
+        let graph = &mut algebra.graph;
+        let a = along(graph, body.centre.bias, &body.centre.partial, accelerations);
+        let (mut alpha, mut momentum_rate) = (vector::ZERO, vector::ZERO);
+        if let Some(rotation) = &body.rotation {
+            alpha = along(graph, rotation.bias, &rotation.partial, accelerations);
+            let componentwise = along(graph, vector::ZERO, &rotation.partial, accelerations);
+            let growth = graph.mat_vec(&rotation.inertia, componentwise);
+            momentum_rate = graph.add3(growth, rotation.momentum_rate);
+        }
+        let name = &body.name;
+        Self {
+            a: named3(algebra, &format!("a_{name}"), a),
+            alpha: named3(algebra, &format!("alpha_{name}"), alpha),
+            momentum_rate: named3(algebra, &format!("h_{name}"), momentum_rate),
+        }
+    }
 }
 
 /// `bias + Σ partial ω̇`

@@ -227,7 +227,7 @@ fn eliminate(
             speed: k,
             pivot,
             whole: Graph::ZERO,
-            right: right[k],
+            right: name_right(algebra, mechanism, k, right[k]),
             couplings,
         });
     }
@@ -238,6 +238,15 @@ fn eliminate(
 fn name_pivot(algebra: &mut Algebra, mechanism: &Mechanism, speed: usize, pivot: Expr) -> Expr {
     let name = format!("pivot_{}", mechanism.pseudo_velocities[speed].label.name);
     algebra.graph.name(&name, pivot)
+}
+
+/// The number in front of a right-hand side stays outside, where it meets other numbers.
+fn name_right(algebra: &mut Algebra, mechanism: &Mechanism, speed: usize, right: Expr) -> Expr {
+    let name = format!("rhs_{}", mechanism.pseudo_velocities[speed].label.name);
+    let number = algebra.graph.split_coefficient(right).0.abs();
+    let right = algebra.graph.scale(&number.recip(), right);
+    let named = algebra.graph.name(&name, right);
+    algebra.graph.scale(&number, named)
 }
 
 /// Takes the diagonal entry with the fewest operations out of the open ones.
@@ -315,12 +324,11 @@ fn quotients(
         let Some([whole, right, pivot]) = algebra.cancelled(numerator, denominator, parts) else {
             return Vec::new();
         };
-        let pivot = name_pivot(algebra, mechanism, speed, pivot);
         equations.push(Eliminated {
             speed,
-            pivot,
+            pivot: name_pivot(algebra, mechanism, speed, pivot),
             whole,
-            right,
+            right: name_right(algebra, mechanism, speed, right),
             couplings: Vec::new(),
         });
     }

@@ -9,7 +9,7 @@ use super::algebra::Algebra;
 use super::constraints::{Constraints, motions_along};
 use super::elimination::Violation;
 use super::finding::{Item, Outcome};
-use super::gibbs_appell::{BodyMotion, along, partial_velocities};
+use super::gibbs_appell::{ActualMotion, BodyMotion, partial_velocities};
 use super::kinematics::{Effort, Kinematics, division_by_zero};
 use super::loads::{applied_loads, generalized_forces};
 use super::symbols::Symbols;
@@ -39,27 +39,12 @@ pub fn reactions(
         .collect::<Option<Vec<Expr>>>()
         .ok_or_else(|| vec![division_by_zero(Item::Mechanism)])?;
 
-    // Inertial forces, shared by all reactions.
+    // Inertial forces and moments, shared by all reactions.
     let mut inertial = Vec::with_capacity(bodies.len());
     for body in bodies {
-        let a = along(
-            &mut algebra.graph,
-            body.centre.bias,
-            &body.centre.partial,
-            accelerations,
-        );
-        let force = algebra.graph.scale3(body.mass, a);
-        let moment = body.rotation.as_ref().map(|rotation| {
-            let alpha = along(
-                &mut algebra.graph,
-                vector::ZERO,
-                &rotation.partial,
-                accelerations,
-            );
-            let growth = algebra.graph.mat_vec(&rotation.inertia, alpha);
-            algebra.graph.add3(growth, rotation.momentum_rate)
-        });
-        inertial.push((force, moment));
+        let motion = ActualMotion::new(algebra, body, accelerations);
+        let force = algebra.graph.scale3(body.mass, motion.a);
+        inertial.push((force, motion.momentum_rate));
     }
 
     let mut totals = vec![vector::ZERO; constraints.reactions.len()];
@@ -75,9 +60,7 @@ pub fn reactions(
             );
             let partial = partial_velocities(algebra, v, &[rate])[0];
             parts.push(algebra.graph.dot(*force, partial));
-            if let (Some(body_frame), Some(rotation), Some(moment)) =
-                (body.frame, &motion.rotation, moment)
-            {
+            if let (Some(body_frame), Some(rotation)) = (body.frame, &motion.rotation) {
                 let w = kinematics.frames.angular_velocity(body_frame);
                 let w = kinematics
                     .frames

@@ -1,10 +1,10 @@
 //! From the working graph to steps: what gets a name, in which order, under which name.
 
-use super::dag::{Dag, Id, Item, Op};
-use super::names::{ArgumentNames, LONGEST, Names};
+use super::dag::{Dag, Id, Item, Name, Op};
+use super::names::{ArgumentNames, Names};
 use super::outline::Outline;
 use super::piece::{Level, Piece, describe};
-use super::signs::choose_signs;
+use super::signs::{choose_signs, is_chosen};
 use super::{Argument, Operation, ResultArray, Schedule, Step, Tree, Value};
 use crate::program::{Function, Program};
 use crate::symbolic::{Function as Elementary, Rational};
@@ -13,6 +13,10 @@ use crate::symbolic::{Function as Elementary, Rational};
 const COLUMNS: usize = 88;
 /// Columns of `    let `, ` = ` and `;`.
 const FRAME: usize = 12;
+/// Columns of a name that is not known yet.
+const USUAL: usize = 24;
+/// Columns of the lines on which a long sum goes on.
+const MORE_LINES: usize = 140;
 /// Wider trees are not written inside other trees.
 const INLINE: usize = 60;
 /// Columns that a tree gets after a name of any length.
@@ -67,7 +71,7 @@ impl<'a> Binding<'a> {
         for name in arguments.iter() {
             names.reserve(name);
         }
-        let outline = Outline::new(program, &arguments, function, dag);
+        let outline = Outline::new(program, function, dag);
         for &id in &outline.order {
             if let Some(value) = dag.as_number(id) {
                 names.reserve(&arguments.constant(value));
@@ -171,6 +175,10 @@ impl<'a> Binding<'a> {
                 let [argument] = self.operands(id, [*argument]);
                 (argument.function(*function), false)
             }
+            Op::Kept(inner) => {
+                self.built[id.index()] = self.built[inner.index()].clone();
+                return;
+            }
             Op::Atan2(items) => {
                 let [y, x] = self.operands(id, *items);
                 (y.atan2(x), false)
@@ -186,13 +194,12 @@ impl<'a> Binding<'a> {
             Op::Solution { system, .. } => return self.solve(*system),
         };
         let leaf = self.dag.is_leaf(id);
-        let piece = if !leaf && (self.outline.bound[id.index()] || piece.width > INLINE) {
-            let name = self.value_name(id, &piece.tree, negative);
-            self.define(&name, piece.tree)
+        let built = if !leaf && (self.outline.bound[id.index()] || piece.width > INLINE) {
+            self.named(id, piece, negative)
         } else {
-            piece
+            Built { piece, negative }
         };
-        self.built[id.index()] = Some(Built { piece, negative });
+        self.built[id.index()] = Some(built);
     }
 
     /// The operands of a function, with their signs, defined before where they would not all fit on
@@ -225,9 +232,18 @@ impl<'a> Binding<'a> {
                 part.1 = false;
             }
         }
-        // The first term is positive.
+        // `a - 2 b` instead of `a + -2 b`, as long as something positive comes first.
+        let positive = parts
+            .iter()
+            .any(|(piece, minus)| !minus && !piece.starts_negative());
+        for (piece, minus) in parts.iter_mut().filter(|_| positive) {
+            if piece.starts_negative() {
+                *piece = piece.clone().opposite();
+                *minus = !*minus;
+            }
+        }
         parts.sort_by_key(|part| part.1);
-        let room = self.room(id);
+        let room = self.room_of_sum(id);
         let mut sum: Option<Piece> = None;
         for (part, minus) in parts {
             sum = Some(match sum {
@@ -340,17 +356,23 @@ impl<'a> Binding<'a> {
     fn room(&self, id: Id) -> usize {
         let made_up = || {
             let consumer = self.outline.feeds[id.index()].and_then(|feed| self.given_name(feed));
-            consumer.map_or(LONGEST, |name| name.len() + "_part_10".len())
-        };
-        let minus = match self.dag.names[id.index()] {
-            Some(name) if name.negative == self.minus[id.index()] => 0,
-            _ => "minus_".len(),
+            consumer.map_or(USUAL, |name| name.len() + "_part_10".len())
         };
         let given = self
             .given_name(id)
             .filter(|_| self.outline.bound[id.index()]);
-        let name = given.map_or_else(made_up, |name| name.len() + minus);
+        let name = given.map_or_else(made_up, |name| name.len() + 1);
         COLUMNS.saturating_sub(FRAME + name).max(NARROWEST)
+    }
+
+    /// Columns for a sum: with a name of its own it may go on, term by term, on the next lines.
+    fn room_of_sum(&self, id: Id) -> usize {
+        let more = if self.outline.bound[id.index()] {
+            MORE_LINES
+        } else {
+            0
+        };
+        self.room(id) + more
     }
 
     fn sine_and_cosine(&mut self, id: Id, angle: Item) {
@@ -447,26 +469,45 @@ impl<'a> Binding<'a> {
 
     /// Name from the derivation, or of the result.
     fn given_name(&self, id: Id) -> Option<String> {
-        let derived = self.dag.names[id.index()]
-            .map(|name| self.program.graph.definition(name.definition).name.clone());
-        derived.or_else(|| {
-            self.outline.labels[id.index()]
-                .as_ref()
-                .map(|label| label.0.clone())
-        })
+        let label = self.outline.labels[id.index()].as_ref();
+        let derived = self.derived_name(id);
+        let derived = derived.map(|name| &self.program.graph.definition(name.definition).name);
+        derived.or(label.map(|label| &label.0)).cloned()
     }
 
-    /// Name for a value that gets a binding.
-    fn value_name(&mut self, id: Id, tree: &Tree, negative: bool) -> String {
-        let derived = self.dag.names[id.index()].map(|name| name.negative);
-        let of_result = self.outline.labels[id.index()]
-            .as_ref()
-            .map(|label| label.1);
-        match (self.given_name(id), derived.or(of_result)) {
-            (Some(name), Some(sign)) if sign == negative => name,
-            (Some(name), _) => format!("minus_{name}"),
-            (None, _) => describe(tree, &self.values, &self.arguments)
-                .unwrap_or_else(|| self.fallback(id, "part")),
+    /// Name from the derivation; one that differentiation made up gives way to that of a result.
+    fn derived_name(&self, id: Id) -> Option<Name> {
+        let label = self.outline.labels[id.index()].as_ref();
+        self.dag.names[id.index()].filter(|name| !name.automatic || label.is_none())
+    }
+
+    /// Defines a value under the name that tells most. `negative` says that the piece is minus the
+    /// node.
+    fn named(&mut self, id: Id, piece: Piece, negative: bool) -> Built {
+        let derived = self.derived_name(id);
+        let label = self.outline.labels[id.index()].as_ref();
+        let sign = derived
+            .map(|name| name.negative)
+            .or(label.map(|label| label.1));
+        let described = describe(&piece.tree, &self.values, &self.arguments);
+        let (name, piece, negative) = match self.given_name(id) {
+            Some(name) if sign == Some(negative) => (name, piece, negative),
+            Some(name) if self.takes_its_sign(id) => (name, piece.opposite(), !negative),
+            // What comes out with the other sign is told by how it is made.
+            _ => match described {
+                Some(text) => (text, piece, negative),
+                None => (self.fallback(id, "part"), piece, negative),
+            },
+        };
+        let piece = self.define(&name, piece.tree);
+        Built { piece, negative }
+    }
+
+    /// Whether a value that comes out with the wrong sign is negated for the sake of its name.
+    fn takes_its_sign(&self, id: Id) -> bool {
+        match self.derived_name(id) {
+            Some(name) => !name.automatic && is_chosen(self.dag, id),
+            None => !self.outline.is_shared(id),
         }
     }
 

@@ -65,6 +65,8 @@ pub(super) enum Op {
     Power([Item; 2]),
     /// Left, right, value where the relation holds, value elsewhere.
     Choice(Relation, [Item; 4]),
+    /// A quantity that a reader wants as it stands: no rewriting looks inside.
+    Kept(Id),
     /// One unknown of a linear system.
     Solution { system: u32, row: u32 },
 }
@@ -259,6 +261,17 @@ impl Dag {
         }
     }
 
+    /// A value that nothing looks into; numbers and arguments have no inside.
+    pub(super) fn kept(&mut self, item: Item) -> Item {
+        if self.is_leaf(item.id) {
+            return item;
+        }
+        Item {
+            id: self.intern(Op::Kept(item.id)),
+            flip: item.flip,
+        }
+    }
+
     /// A function of one argument. Odd and even functions take no sign in.
     pub(super) fn function(&mut self, function: Function, argument: Item) -> Item {
         use Function::{Abs, Asin, Atan, Cos, Cosh, Sign, Sin, Sinh, Tanh};
@@ -280,6 +293,7 @@ impl Dag {
             Op::Number(_) | Op::Argument(_) => {}
             Op::Sum(items) | Op::Product(items) => items.iter().copied().for_each(visit),
             Op::Function(_, item) => visit(*item),
+            Op::Kept(id) => visit(Item::plain(*id)),
             Op::Atan2(items) | Op::Power(items) => items.iter().copied().for_each(visit),
             Op::Choice(_, items) => items.iter().copied().for_each(visit),
             Op::Solution { system, .. } => {

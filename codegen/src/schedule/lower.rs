@@ -1,6 +1,6 @@
 //! From the symbolic graph to the working graph.
 
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::Argument;
 use super::dag::{Dag, Item, Name, Op, System};
@@ -23,6 +23,8 @@ pub(super) fn lower(program: &Program, function: &Function) -> Dag {
     let mut lowering = Lowering {
         graph,
         arguments: arguments(program),
+        pi: program.arguments.pi,
+        kept: kept(graph, function),
         dag: Dag::default(),
         known: FxHashMap::default(),
         systems: FxHashMap::default(),
@@ -34,6 +36,23 @@ pub(super) fn lower(program: &Program, function: &Function) -> Dag {
     let mut dag = lowering.dag;
     dag.results = roots.iter().map(|root| lowering.known[root]).collect();
     dag
+}
+
+/// Definitions of the values of the stages.
+fn kept(graph: &Graph, function: &Function) -> FxHashSet<u32> {
+    let values = function.stages.iter().flat_map(|stage| &stage.values);
+    values
+        .filter_map(|&value| definition(graph, value))
+        .collect()
+}
+
+/// The definition behind a named expression or its negative.
+pub(super) fn definition(graph: &Graph, expr: Expr) -> Option<u32> {
+    match graph.node(expr) {
+        Node::Named(definition) => Some(*definition),
+        Node::Sum(terms) if terms.len() == 1 => definition(graph, terms[0].expr),
+        _ => None,
+    }
 }
 
 /// The argument behind each symbol.
@@ -58,6 +77,9 @@ fn arguments(program: &Program) -> FxHashMap<SymbolId, Argument> {
 struct Lowering<'a> {
     graph: &'a Graph,
     arguments: FxHashMap<SymbolId, Argument>,
+    pi: Option<SymbolId>,
+    /// Definitions of the values of the stages.
+    kept: FxHashSet<u32>,
     dag: Dag,
     known: FxHashMap<Expr, Item>,
     /// Symbolic system to system of the working graph.
@@ -71,7 +93,7 @@ impl Lowering<'_> {
             Node::Number(value) => self.dag.number(value),
             Node::Symbol(symbol) => {
                 let Some(&argument) = self.arguments.get(symbol) else {
-                    if self.graph.symbol_name(*symbol) == "pi" {
+                    if self.pi == Some(*symbol) {
                         return self.dag.number(&super::pi::pi());
                     }
                     panic!(
@@ -127,19 +149,22 @@ impl Lowering<'_> {
         }
     }
 
-    /// A named value is the value itself; the name goes with it.
+    /// A named value is the value itself; the name goes with it. A value of a stage is kept.
     fn named(&mut self, definition: u32) -> Item {
         let value = self.known[&self.graph.definition(definition).value];
         let name = &mut self.dag.names[value.id.index()];
         if name.is_none() {
-            let text = &self.graph.definition(definition).name;
             *name = Some(Name {
                 definition,
                 negative: value.flip,
-                automatic: text.starts_with("d_") && text.contains("_d_"),
+                automatic: self.graph.definition(definition).automatic,
             });
         }
-        value
+        if self.kept.contains(&definition) {
+            self.dag.kept(value)
+        } else {
+            value
+        }
     }
 
     /// `coefficient · expr`, the number among the factors.

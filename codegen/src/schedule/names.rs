@@ -3,11 +3,11 @@
 use rustc_hash::FxHashSet;
 
 use super::Argument;
-use crate::program::{FunctionKind, Layout, Program};
+use crate::program::Program;
 use crate::symbolic::Rational;
 
 /// Longest name made up here.
-pub(super) const LONGEST: usize = 24;
+pub(super) const LONGEST: usize = 28;
 
 /// Words that cannot name a value in Rust, in any edition.
 const KEYWORDS: &[&str] = &[
@@ -36,6 +36,12 @@ const STATICS: &[&str] = &[
     "SIGNAL_INPUTS",
     "CONSTRAINT_ROWS",
     "REACTIONS",
+    "Parameters",
+    "Speeds",
+    "Coordinates",
+    "State",
+    "Inputs",
+    "Outputs",
 ];
 
 /// A valid identifier that is `text` where `text` is one. Anything else is spelled in ASCII
@@ -60,13 +66,13 @@ pub(crate) fn identifier(text: &str) -> String {
 
 /// Names in use in one function.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Names {
+pub(crate) struct Names {
     taken: FxHashSet<String>,
 }
 
 impl Names {
     /// A name like `wanted` that nothing else has.
-    pub(super) fn fresh(&mut self, wanted: &str) -> String {
+    pub(crate) fn fresh(&mut self, wanted: &str) -> String {
         let wanted = identifier(wanted);
         let mut name = wanted.clone();
         let mut number = 2;
@@ -152,9 +158,30 @@ impl ArgumentNames {
 
 /// `two`, `half`, `minus_three_quarters`, `c_17_over_35`.
 fn number_in_words(value: &Rational) -> String {
-    const WHOLE: [&str; 13] = [
-        "zero", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten",
-        "eleven", "twelve",
+    const WHOLE: [&str; 20] = [
+        "zero",
+        "one",
+        "two",
+        "three",
+        "four",
+        "five",
+        "six",
+        "seven",
+        "eight",
+        "nine",
+        "ten",
+        "eleven",
+        "twelve",
+        "thirteen",
+        "fourteen",
+        "fifteen",
+        "sixteen",
+        "seventeen",
+        "eighteen",
+        "nineteen",
+    ];
+    const TENS: [&str; 10] = [
+        "", "", "twenty", "thirty", "forty", "fifty", "sixty", "seventy", "eighty", "ninety",
     ];
     const PART: [&str; 9] = [
         "", "", "half", "third", "quarter", "fifth", "sixth", "seventh", "eighth",
@@ -168,6 +195,14 @@ fn number_in_words(value: &Rational) -> String {
     {
         match (WHOLE.get(n), PART.get(d)) {
             (Some(whole), _) if d == 1 => return (*whole).to_owned(),
+            (None, _) if d == 1 && n < 100 => {
+                let (ten, one) = (TENS[n / 10], WHOLE[n % 10]);
+                return if n % 10 == 0 {
+                    ten.to_owned()
+                } else {
+                    format!("{ten}_{one}")
+                };
+            }
             (Some(_), Some(part)) if d > 1 && n == 1 => return (*part).to_owned(),
             (Some(whole), Some(part)) if d > 2 => return format!("{whole}_{part}s"),
             (Some(whole), Some(_)) if d == 2 => return format!("{whole}_halves"),
@@ -180,67 +215,6 @@ fn number_in_words(value: &Rational) -> String {
         Some((numerator, 1)) => format!("c_{numerator}_pi"),
         Some((numerator, denominator)) => format!("c_{numerator}_pi_over_{denominator}"),
         None => format!("c_{}", value.to_string().replace('/', "_over_")),
-    }
-}
-
-/// What an entry of a result is called: `omega_1_dot`, `M_speed_pitch`, `a_omega_1_theta`.
-pub(super) fn result_label(
-    program: &Program,
-    names: &ArgumentNames,
-    kind: FunctionKind,
-    array: &crate::program::Array,
-    entry: usize,
-) -> String {
-    let info = &program.info;
-    let speeds = info.speeds.min(names.states.len());
-    let outputs = |i: usize| {
-        info.outputs
-            .get(i)
-            .map_or_else(|| i.to_string(), |o| o.name.to_string())
-    };
-    let row = |i: usize| {
-        names
-            .states
-            .get(i)
-            .map_or_else(|| i.to_string(), Clone::clone)
-    };
-    let prefix = match array.name.as_str() {
-        "generalized_forces" => "force",
-        name => name,
-    };
-    match (kind, array.layout) {
-        (
-            FunctionKind::Rates | FunctionKind::Jacobians | FunctionKind::AllJacobians,
-            Layout::State,
-        ) => {
-            format!("{}_dot", row(entry))
-        }
-        (FunctionKind::Kinematics, Layout::Coordinates) => format!("{}_dot", row(speeds + entry)),
-        (_, Layout::Scalar) => prefix.to_owned(),
-        (_, Layout::State | Layout::Speeds) => format!("{prefix}_{}", row(entry)),
-        (_, Layout::Coordinates) => format!("{prefix}_{}", row(speeds + entry)),
-        (_, Layout::Outputs) => outputs(entry),
-        (_, Layout::Vector(_)) => format!("{prefix}_{entry}"),
-        (_, Layout::Matrix(rows, columns)) => {
-            let (i, j) = (entry / columns.max(1), entry % columns.max(1));
-            let all = names.states.len();
-            let column = match (columns, prefix) {
-                (n, "a" | "mass_matrix") if n <= all => row(j),
-                (_, "b") => names
-                    .inputs
-                    .get(j)
-                    .map_or_else(|| j.to_string(), Clone::clone),
-                (_, "p") => names
-                    .parameters
-                    .get(j)
-                    .map_or_else(|| j.to_string(), Clone::clone),
-                _ => j.to_string(),
-            };
-            let prefix = if prefix == "mass_matrix" { "M" } else { prefix };
-            let by_state = rows <= all && matches!(prefix, "a" | "b" | "p" | "M");
-            let line = if by_state { row(i) } else { i.to_string() };
-            format!("{prefix}_{line}_{column}")
-        }
     }
 }
 

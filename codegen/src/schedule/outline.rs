@@ -1,8 +1,10 @@
 //! The plan of a function's text: what gets a binding, what it is for, and in which paragraph.
 
+use rustc_hash::FxHashMap;
+
 use super::Argument;
 use super::dag::{Dag, Id, Item, Op};
-use super::names::{ArgumentNames, result_label};
+use super::lower::definition;
 use crate::program::{Function, Program};
 use crate::symbolic::Function as Elementary;
 
@@ -20,16 +22,13 @@ pub(super) struct Outline<'a> {
     pub(super) labels: Vec<Option<(String, bool)>>,
     /// The first named value or result that the node is a part of.
     pub(super) feeds: Vec<Option<Id>>,
+    /// Headings with the nodes that are computed under them before the results.
+    stages: Vec<(String, Vec<Id>)>,
 }
 
 impl<'a> Outline<'a> {
     /// The plan for a function.
-    pub(super) fn new(
-        program: &Program,
-        arguments: &ArgumentNames,
-        function: &Function,
-        dag: &'a Dag,
-    ) -> Self {
+    pub(super) fn new(program: &Program, function: &Function, dag: &'a Dag) -> Self {
         let order = dag.order();
         let mut outline = Self {
             dag,
@@ -38,9 +37,11 @@ impl<'a> Outline<'a> {
             partner: vec![None; dag.len()],
             labels: vec![None; dag.len()],
             feeds: vec![None; dag.len()],
+            stages: Vec::new(),
             order,
         };
-        outline.label_results(program, arguments, function);
+        outline.label_results(function);
+        outline.stages(program, function);
         outline.pair_sines();
         outline.choose_bound();
         outline.find_feeds();
@@ -48,17 +49,37 @@ impl<'a> Outline<'a> {
     }
 
     /// Results get bindings, and the names of their entries.
-    fn label_results(&mut self, program: &Program, arguments: &ArgumentNames, function: &Function) {
-        let mut results = self.dag.results.iter();
-        for array in &function.results {
-            for (entry, result) in (0..array.entries.len()).zip(&mut results) {
-                let label = &mut self.labels[result.id.index()];
-                if label.is_none() {
-                    let text = result_label(program, arguments, function.kind, array, entry);
-                    *label = Some((text, result.flip));
-                }
-                self.bound[result.id.index()] = true;
+    fn label_results(&mut self, function: &Function) {
+        let texts = function.results.iter().flat_map(|array| &array.labels);
+        for (result, text) in self.dag.results.iter().zip(texts) {
+            let label = &mut self.labels[result.id.index()];
+            if label.is_none() {
+                *label = Some((text.clone(), result.flip));
             }
+            self.bound[result.id.index()] = true;
+        }
+    }
+
+    /// Values of stages get bindings of their own.
+    fn stages(&mut self, program: &Program, function: &Function) {
+        let mut kept = FxHashMap::default();
+        for &id in &self.order {
+            if let Op::Kept(inner) = self.dag.op(id) {
+                self.bound[inner.index()] = !self.dag.is_leaf(*inner);
+                let label = self.labels[id.index()].clone();
+                self.labels[inner.index()] = self.labels[inner.index()].take().or(label);
+                if let Some(name) = self.dag.names[inner.index()] {
+                    kept.insert(name.definition, *inner);
+                }
+            }
+        }
+        for stage in &function.stages {
+            let definitions = stage
+                .values
+                .iter()
+                .filter_map(|&value| definition(&program.graph, value));
+            let ids = definitions.filter_map(|definition| kept.get(&definition).copied());
+            self.stages.push((stage.title.clone(), ids.collect()));
         }
     }
 
@@ -104,7 +125,11 @@ impl<'a> Outline<'a> {
                 }
                 _ => 1,
             };
-            let worth_reading = self.dag.names[i].is_some() && parts > 2;
+            let sum = matches!(self.dag.op(id), Op::Sum(_));
+            let worth_reading = match self.dag.names[i] {
+                Some(name) => parts > 2 || sum && !name.automatic,
+                None => false,
+            };
             self.bound[i] |= self.uses[i] >= 2
                 || worth_reading
                 || parts == usize::MAX
@@ -124,6 +149,11 @@ impl<'a> Outline<'a> {
             self.dag
                 .for_each_part(id, |part| self.feeds[part.id.index()] = feed);
         }
+    }
+
+    /// Whether more than one whole or result needs a node.
+    pub(super) fn is_shared(&self, id: Id) -> bool {
+        self.uses[id.index()] > 1
     }
 
     /// Titles and the nodes to reach under them.
@@ -154,28 +184,20 @@ impl<'a> Outline<'a> {
                 parameters.collect(),
             ),
         ];
-        let mut results = self.dag.results.iter();
+        paragraphs.extend(self.stages.iter().cloned());
+        let mut untitled = Vec::new();
+        let mut results = self.dag.results.as_slice();
         for array in &function.results {
-            let title = match array.name.as_str() {
-                "a" => "Derivatives by the state.".to_owned(),
-                "b" => "Derivatives by the inputs.".to_owned(),
-                "p" => "Derivatives by the parameters.".to_owned(),
-                name => {
-                    let mut title = name.replace('_', " ");
-                    title
-                        .get_mut(..1)
-                        .map(str::make_ascii_uppercase)
-                        .unwrap_or_default();
-                    title + "."
-                }
-            };
-            let roots = results
-                .by_ref()
-                .take(array.entries.len())
-                .map(|item| item.id)
-                .collect();
-            paragraphs.push((title, roots));
+            let (own, rest) = results.split_at(array.entries.len().min(results.len()));
+            let ids = |items: &[Item]| items.iter().map(|item| item.id).collect();
+            for paragraph in &array.paragraphs {
+                let entries = own.get(paragraph.entries.clone()).unwrap_or_default();
+                paragraphs.push((paragraph.title.clone(), ids(entries)));
+            }
+            untitled.extend(own.iter().map(|item| item.id));
+            results = rest;
         }
+        paragraphs.push((String::new(), untitled));
         paragraphs
     }
 }

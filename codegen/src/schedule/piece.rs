@@ -60,6 +60,48 @@ impl Piece {
         }
     }
 
+    /// Whether the tree starts with a negative number.
+    pub(super) fn starts_negative(&self) -> bool {
+        let mut first = &self.tree;
+        while let Tree::Binary(Operation::Multiply | Operation::Divide, a, _) = first {
+            first = a;
+        }
+        matches!(first, Tree::Constant(value) if value.is_negative())
+    }
+
+    /// Minus the value, the sign as far inside as it goes without rounding differently.
+    pub(super) fn opposite(self) -> Self {
+        let width = self.width;
+        match self.tree {
+            Tree::Constant(value) => Self {
+                tree: Tree::Constant(-&value),
+                ..self
+            },
+            Tree::Negate(inner) => Self {
+                tree: *inner,
+                level: Level::Atom,
+                width,
+            },
+            Tree::Binary(Operation::Subtract, a, b) => Self {
+                tree: Tree::Binary(Operation::Subtract, b, a),
+                ..self
+            },
+            Tree::Binary(operation @ (Operation::Multiply | Operation::Divide), a, b) => {
+                let first = Self {
+                    tree: *a,
+                    width,
+                    level: Level::Atom,
+                };
+                Self {
+                    tree: Tree::Binary(operation, Box::new(first.opposite().tree), b),
+                    width: width + 1,
+                    level: Level::Product,
+                }
+            }
+            tree => Self { tree, ..self }.negated(),
+        }
+    }
+
     /// `self.function()`
     pub(super) fn function(self, function: Function) -> Self {
         Self {
@@ -151,6 +193,9 @@ pub(super) fn describe(
                 Operation::Add => joined(&[&left, "plus", &right]),
                 Operation::Subtract => joined(&[&left, "minus", &right]),
                 Operation::Multiply if left == right => joined(&[&left, "squared"]),
+                Operation::Multiply if right.starts_with("minus_") => {
+                    joined(&["minus", &left, right.trim_start_matches("minus_")])
+                }
                 Operation::Multiply => {
                     match (left.strip_suffix("_squared"), right.strip_prefix("inv_")) {
                         (Some(root), _) if root == right => joined(&[&right, "cubed"]),

@@ -102,6 +102,7 @@ impl Rebuilding<'_> {
                 let argument = self.item(*argument);
                 return self.new.function(*function, argument);
             }
+            Op::Kept(inner) => return self.kept(*inner),
             Op::Atan2(items) => Op::Atan2(items.map(|item| self.item(item))),
             Op::Power(items) => Op::Power(items.map(|item| self.item(item))),
             Op::Choice(relation, items) => Op::Choice(*relation, items.map(|item| self.item(item))),
@@ -111,6 +112,11 @@ impl Rebuilding<'_> {
             },
         };
         Item::plain(self.new.intern(op))
+    }
+
+    fn kept(&mut self, inner: Id) -> Item {
+        let item = self.item(Item::plain(inner));
+        self.new.kept(item)
     }
 
     fn system(&mut self, index: u32) -> u32 {

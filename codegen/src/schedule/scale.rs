@@ -24,6 +24,10 @@ pub(super) fn scale(dag: &mut Dag, order: &[Id]) {
         dag.replace(*id, Op::Sum(Vec::new()));
     }
     for (id, op) in derived {
+        if scales.taken_out(id).is_some() {
+            // What remains is not what the name stands for.
+            dag.names[id.index()] = None;
+        }
         let new = scales.rewritten(dag, id, op);
         dag.replace(id, new);
     }
@@ -66,7 +70,7 @@ impl Scales {
         }
         for &id in order {
             let Op::Sum(terms) = dag.op(id) else { continue };
-            if dag.names[id.index()].is_some() {
+            if dag.names[id.index()].is_some_and(|name| !name.automatic) {
                 continue;
             }
             let inside: Vec<&Rational> = terms
@@ -173,6 +177,8 @@ impl Scales {
                 Op::Sum(vec![dag.product(factors)])
             }
             Op::Function(function, argument) => Op::Function(function, self.whole(dag, argument)),
+            // Named sums keep their numbers, and what is kept has a name.
+            Op::Kept(inner) => Op::Kept(inner),
             Op::Atan2(items) => Op::Atan2(items.map(|item| self.whole(dag, item))),
             Op::Power(items) => Op::Power(items.map(|item| self.whole(dag, item))),
             Op::Choice(relation, items) => {
@@ -213,7 +219,9 @@ fn multiplied(dag: &mut Dag, item: Item, number: &Rational) -> Item {
     let number = dag.number(number);
     let mut factors = vec![number];
     match dag.op(item.id) {
-        Op::Product(inner) if dag.names[item.id.index()].is_none() => factors.extend(inner),
+        Op::Product(inner) if dag.names[item.id.index()].is_none_or(|name| name.automatic) => {
+            factors.extend(inner);
+        }
         _ => factors.push(Item::plain(item.id)),
     }
     dag.product(factors).flipped_if(item.flip)

@@ -8,8 +8,11 @@ use super::dag::{Dag, Id, Item, Op};
 
 /// Costs of what is to be avoided.
 const NEGATION: usize = 4;
-/// A named value computed negative has to be called minus its name.
-const MINUS_NAME: usize = 1;
+/// A value that comes out with the other sign than its name's is negated or loses its name.
+const WRONG_SIGN: usize = 5;
+
+/// How often all candidates are tried: what is flipped first may be better flipped back later.
+const ROUNDS: usize = 3;
 
 /// For every node, whether minus its value is wanted.
 pub(super) fn choose_signs(dag: &Dag, order: &[Id]) -> Vec<bool> {
@@ -25,17 +28,34 @@ pub(super) fn choose_signs(dag: &Dag, order: &[Id]) -> Vec<bool> {
         }
     }
     let mut cost = signs.cost();
-    for candidate in signs.candidates() {
-        let place = candidate.index();
-        signs.wanted[place] = !signs.wanted[place];
-        let now = signs.cost();
-        if now < cost {
-            cost = now;
-        } else {
+    for _ in 0..ROUNDS {
+        let before = cost;
+        for candidate in signs.candidates() {
+            let place = candidate.index();
             signs.wanted[place] = !signs.wanted[place];
+            let now = signs.cost();
+            if now < cost {
+                cost = now;
+            } else {
+                signs.wanted[place] = !signs.wanted[place];
+            }
         }
+        if cost == 0 || cost == before {
+            break;
+        }
+        // The signs in `built` are those of the last trial.
+        cost = signs.cost();
     }
     signs.wanted
+}
+
+/// Whether the sign of a value is a matter of choice: that of a sum, or of a product with a number.
+pub(super) fn is_chosen(dag: &Dag, id: Id) -> bool {
+    match dag.op(id) {
+        Op::Sum(_) => true,
+        Op::Product(factors) => factors.iter().any(|f| dag.as_number(f.id).is_some()),
+        _ => false,
+    }
 }
 
 struct Signs<'a> {
@@ -64,10 +84,7 @@ impl Signs<'_> {
                     }
                 }
                 Op::Product(factors) => {
-                    let numbers = factors
-                        .iter()
-                        .any(|factor| dag.as_number(factor.id).is_some());
-                    if numbers {
+                    if is_chosen(dag, id) {
                         self.wanted[place]
                     } else {
                         factors
@@ -88,15 +105,23 @@ impl Signs<'_> {
                     false
                 }
             };
-            if dag.names[place].is_some_and(|name| name.negative != built) {
-                cost += MINUS_NAME;
-            }
             self.built[place] = built;
+            if self.wrong(id) {
+                cost += WRONG_SIGN;
+                // A product of values has no sign to choose: it gives up its name.
+                self.built[place] = built != is_chosen(dag, id);
+            }
         }
         let results = dag.results.iter().filter(|result| {
             result.flip != self.built[result.id.index()] && dag.as_number(result.id).is_none()
         });
         cost + NEGATION * results.count()
+    }
+
+    /// Whether a value has the other sign than its name's.
+    fn wrong(&self, id: Id) -> bool {
+        self.dag.names[id.index()]
+            .is_some_and(|name| !name.automatic && name.negative != self.built[id.index()])
     }
 
     /// Nodes whose opposite could save a negation, those that decide more than one last.
@@ -109,6 +134,13 @@ impl Signs<'_> {
         for &id in self.order {
             if !matches!(dag.op(id), Op::Sum(_) | Op::Product(_)) {
                 dag.for_each_part(id, |part| roots.extend(negative(part).then_some(part.id)));
+            }
+        }
+        for &id in self.order {
+            // A named sum of the wrong sign is mended by one of its terms, too.
+            if self.wrong(id) {
+                dag.for_each_part(id, |part| roots.push(part.id));
+                roots.push(id);
             }
         }
         roots.extend(

@@ -149,7 +149,7 @@ impl Derivatives {
             graph.definition(id).name,
             graph.symbol_name(self.symbol)
         );
-        graph.name(&name, derivative)
+        graph.name_automatically(&name, derivative)
     }
 }
 

@@ -120,8 +120,16 @@ impl Graph {
     ///
     /// Numbers, symbols and multiples of them stay as they are, and what already has a name keeps
     /// it: a second name would only make people look twice.
-    #[expect(clippy::missing_panics_doc, reason = "memory ends before the indices")]
     pub fn name(&mut self, name: &str, value: Expr) -> Expr {
+        self.define(name, value, false)
+    }
+
+    /// [`Graph::name`] for a quantity that nobody asked for, such as a derivative on the way.
+    pub fn name_automatically(&mut self, name: &str, value: Expr) -> Expr {
+        self.define(name, value, true)
+    }
+
+    fn define(&mut self, name: &str, value: Expr, automatic: bool) -> Expr {
         let plain = |graph: &Self, expr: Expr| {
             matches!(
                 graph.node(expr),
@@ -143,6 +151,7 @@ impl Graph {
         self.definitions.push(Definition {
             name: name.to_owned(),
             value,
+            automatic,
         });
         let named = self.intern(Node::Named(id));
         self.names.insert(value, named);

@@ -103,6 +103,8 @@ pub struct Definition {
     pub name: String,
     /// What it stands for.
     pub value: Expr,
+    /// Whether differentiation made it up: people look for it only where it is used more than once.
+    pub automatic: bool,
 }
 
 /// A square linear system, solved with pivoting when the equations are evaluated.

@@ -1,25 +1,13 @@
-use ::appell_runtime::dense::{lu_factor, lu_solve};
 use ::appell_runtime::Real;
+use ::appell_runtime::dense::{lu_factor, lu_solve};
 
 /// Parameters, in SI.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Parameters<T> {
     /// The name of a static.
     pub INFO_: T,
-    /// Stiffness. Unit: N/m.
+    /// Stiffness, in `N/m`.
     pub K: T,
-}
-
-impl<T> From<[T; 2]> for Parameters<T> {
-    fn from([INFO_, K]: [T; 2]) -> Self {
-        Self { INFO_, K }
-    }
-}
-
-impl<T> From<Parameters<T>> for [T; 2] {
-    fn from(Parameters { INFO_, K }: Parameters<T>) -> Self {
-        [INFO_, K]
-    }
 }
 
 impl Default for Parameters<f64> {
@@ -29,106 +17,46 @@ impl Default for Parameters<f64> {
     }
 }
 
-/// One number per pseudo-velocity.
+/// One number per pseudo-velocity, in SI.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Speeds<T> {
-    /// A keyword. Unit: m/s.
+    /// A keyword, in `m/s`.
     pub type_: T,
 }
 
-impl<T> From<[T; 1]> for Speeds<T> {
-    fn from([type_]: [T; 1]) -> Self {
-        Self { type_ }
-    }
-}
-
-impl<T> From<Speeds<T>> for [T; 1] {
-    fn from(Speeds { type_ }: Speeds<T>) -> Self {
-        [type_]
-    }
-}
-
-/// One number per coordinate.
+/// One number per coordinate, in SI.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Coordinates<T> {
-    /// The name of an argument. Unit: m.
+    /// The name of an argument, in `m`.
     pub p: T,
-    /// The name of a number. Unit: m.
+    /// The name of a number, in `m`.
     pub half: T,
-}
-
-impl<T> From<[T; 2]> for Coordinates<T> {
-    fn from([p, half]: [T; 2]) -> Self {
-        Self { p, half }
-    }
-}
-
-impl<T> From<Coordinates<T>> for [T; 2] {
-    fn from(Coordinates { p, half }: Coordinates<T>) -> Self {
-        [p, half]
-    }
 }
 
 /// The state, or its rates: pseudo-velocities, then coordinates. In SI.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct State<T> {
-    /// A keyword. Unit: m/s.
+    /// A keyword, in `m/s`.
     pub type_: T,
-    /// The name of an argument. Unit: m.
+    /// The name of an argument, in `m`.
     pub p: T,
-    /// The name of a number. Unit: m.
+    /// The name of a number, in `m`.
     pub half: T,
-}
-
-impl<T> From<[T; 3]> for State<T> {
-    fn from([type_, p, half]: [T; 3]) -> Self {
-        Self { type_, p, half }
-    }
-}
-
-impl<T> From<State<T>> for [T; 3] {
-    fn from(State { type_, p, half }: State<T>) -> Self {
-        [type_, p, half]
-    }
 }
 
 /// Inputs, in SI.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Inputs<T>(pub core::marker::PhantomData<T>);
 
-impl<T> From<[T; 0]> for Inputs<T> {
-    fn from(_: [T; 0]) -> Self {
-        Self(core::marker::PhantomData)
-    }
-}
-
-impl<T> From<Inputs<T>> for [T; 0] {
-    fn from(_: Inputs<T>) -> Self {
-        []
-    }
-}
-
 /// Outputs, in SI.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Outputs<T> {
-    /// A choice. Unit: m.
+    /// A choice, in `m`.
     pub switch: T,
     /// A power.
     pub self_: T,
-    /// An angle. Unit: rad.
+    /// An angle, in `rad`.
     pub angle: T,
-}
-
-impl<T> From<[T; 3]> for Outputs<T> {
-    fn from([switch, self_, angle]: [T; 3]) -> Self {
-        Self { switch, self_, angle }
-    }
-}
-
-impl<T> From<Outputs<T>> for [T; 3] {
-    fn from(Outputs { switch, self_, angle }: Outputs<T>) -> Self {
-        [switch, self_, angle]
-    }
 }
 
 /// Result of [`jacobians`].
@@ -136,23 +64,10 @@ impl<T> From<Outputs<T>> for [T; 3] {
 pub struct Jacobians<T> {
     /// ẋ, the rates of the state.
     pub rates: State<T>,
-    /// A = ∂ẋ/∂x. Rows and columns follow [`State`].
+    /// Derivatives.
     pub a: [[T; 3]; 3],
-    /// B = ∂ẋ/∂u. Rows follow [`State`], columns [`Inputs`].
+    /// Derivatives.
     pub b: [[T; 0]; 3],
-}
-
-/// Result of [`all_jacobians`].
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct AllJacobians<T> {
-    /// ẋ, the rates of the state.
-    pub rates: State<T>,
-    /// A = ∂ẋ/∂x. Rows and columns follow [`State`].
-    pub a: [[T; 3]; 3],
-    /// B = ∂ẋ/∂u. Rows follow [`State`], columns [`Inputs`].
-    pub b: [[T; 0]; 3],
-    /// P = ∂ẋ/∂p. Rows follow [`State`], columns [`Parameters`].
-    pub p: [[T; 2]; 3],
 }
 
 /// Rates ẋ of the state by Appell's equations M ω̇ + b = Π and kinematics.
@@ -176,30 +91,31 @@ pub fn rates<T: Real>(
     // Combinations of parameters.
     let K_squared = K * K;
     let K_squared_squared = K_squared * K_squared;
-    let type__dot_part_1 = K_squared_squared * K_squared_squared;
+    let K_squared_squared_squared = K_squared_squared * K_squared_squared;
 
-    // Rates.
+    // Generalised velocities.
     let p_minus_half = p - half;
+    let crate_ = half.ln() + half.sign() + half.abs() + half.sqrt() + half.exp()
+        + half.tanh() + half.cosh() + half.sinh() + half.atan() + half.acos()
+        + half.asin() + half.sin();
     let lu_1 = lu_factor([
         [K, p, half],
         [p, INFO_, number_half],
         [c_17_over_35, half, K],
     ]);
-    let [solution_1_1, _, _] = lu_solve(&lu_1, [type_, t, p]);
-    let crate_part_1 = half.ln() + half.sign() + half.abs() + half.sqrt() + half.exp();
-    let crate_part_2 = crate_part_1 + half.tanh() + half.cosh() + half.sinh()
-        + half.atan();
-    let crate_ = crate_part_2 + half.acos() + half.asin() + half.sin();
-    let inv_p_minus_half_cubed = one / (p_minus_half * p_minus_half * p_minus_half);
-    let type__dot_part_2 = K * K_squared * type__dot_part_1 * type__dot_part_1;
-    let type__dot_part_3 = inv_p_minus_half_cubed + type__dot_part_2;
-    let type__dot_part_4 = type__dot_part_3 + T::if_less_or_equal(t, K, p, type_);
-    let type__dot = type__dot_part_4 + T::if_less(p, p_minus_half, solution_1_1, crate_);
     let [_, _, solution_2_3] = lu_solve(&lu_1, [p, crate_, half]);
     let half_dot = solution_2_3 - p_minus_half.atan2(K.powf(p));
 
+    // Appell's equations, solved.
+    let type_dot_part_1 = K * K_squared * K_squared_squared_squared;
+    let [solution_1_1, _, _] = lu_solve(&lu_1, [type_, t, p]);
+    let type_dot = one / (p_minus_half * p_minus_half * p_minus_half)
+        + type_dot_part_1 * K_squared_squared_squared
+        + T::if_less_or_equal(t, K, p, type_)
+        + T::if_less(p, p_minus_half, solution_1_1, crate_);
+
     State {
-        type_: type__dot,
+        type_: type_dot,
         p: type_,
         half: half_dot,
     }
@@ -231,47 +147,49 @@ pub fn jacobians<T: Real>(
     // Combinations of parameters.
     let K_squared = K * K;
     let K_squared_squared = K_squared * K_squared;
-    let type__dot_part_1 = K_squared_squared * K_squared_squared;
+    let K_squared_squared_squared = K_squared_squared * K_squared_squared;
 
-    // Rates.
+    // Generalised velocities.
     let p_minus_half = p - half;
-    let inv_p_minus_half = one / p_minus_half;
-    let inv_p_minus_half_squared = inv_p_minus_half * inv_p_minus_half;
+    let half_dot_part_1 = K.powf(p);
+    let sqrt_half = half.sqrt();
+    let tanh_half = half.tanh();
+    let crate_part_1 = half.sign() + half.exp() + half.cosh() + half.sinh();
+    let crate_ = half.ln() + half.abs() + sqrt_half + tanh_half + half.atan()
+        + half.acos() + half.asin() + sin_half + crate_part_1;
     let lu_1 = lu_factor([
         [K, p, half],
         [p, INFO_, number_half],
         [c_17_over_35, half, K],
     ]);
-    let [solution_1_1, solution_1_2, solution_1_3] = lu_solve(&lu_1, [type_, t, p]);
-    let sqrt_half = half.sqrt();
-    let tanh_half = half.tanh();
-    let crate_part_1 = half.sign() + half.exp() + half.cosh() + half.sinh();
-    let crate_part_2 = half.ln() + half.abs() + sqrt_half + tanh_half + half.atan();
-    let crate_ = crate_part_2 + half.acos() + half.asin() + sin_half + crate_part_1;
-    let type__dot_part_2 = inv_p_minus_half * inv_p_minus_half_squared;
-    let type__dot_part_3 = K * K_squared * type__dot_part_1 * type__dot_part_1;
-    let type__dot_part_4 = type__dot_part_2 + type__dot_part_3;
-    let type__dot_part_5 = type__dot_part_4 + T::if_less_or_equal(t, K, p, type_);
-    let type__dot = type__dot_part_5 + T::if_less(p, p_minus_half, solution_1_1, crate_);
-    let half_dot_part_1 = K.powf(p);
     let [solution_2_1, solution_2_2, solution_2_3] = lu_solve(&lu_1, [p, crate_, half]);
     let half_dot = solution_2_3 - p_minus_half.atan2(half_dot_part_1);
 
-    // Derivatives by the state.
+    // Appell's equations, solved.
+    let inv_p_minus_half = one / p_minus_half;
+    let inv_p_minus_half_squared = inv_p_minus_half * inv_p_minus_half;
+    let type_dot_part_1 = K * K_squared * K_squared_squared_squared;
+    let [solution_1_1, solution_1_2, solution_1_3] = lu_solve(&lu_1, [type_, t, p]);
+    let type_dot = inv_p_minus_half * inv_p_minus_half_squared
+        + type_dot_part_1 * K_squared_squared_squared
+        + T::if_less_or_equal(t, K, p, type_)
+        + T::if_less(p, p_minus_half, solution_1_1, crate_);
+
+    // Row `type` of A.
     let [solution_3_1, _, _] = lu_solve(&lu_1, [one, zero, zero]);
-    let a_type__type_ = T::if_less(p, p_minus_half, solution_3_1, zero)
+    let a_type_type = T::if_less(p, p_minus_half, solution_3_1, zero)
         + T::if_less_or_equal(t, K, zero, one);
     let [solution_4_1, _, _] = lu_solve(&lu_1, [-solution_1_2, -solution_1_1, one]);
-    let a_type__p_part_1 = three * inv_p_minus_half_squared * inv_p_minus_half_squared;
-    let a_type__p_part_2 = T::if_less(p, p_minus_half, solution_4_1, zero)
-        + T::if_less_or_equal(t, K, one, zero);
-    let a_type__p = a_type__p_part_2 - a_type__p_part_1;
+    let a_type_p_part_1 = three * inv_p_minus_half_squared * inv_p_minus_half_squared;
+    let a_type_p = T::if_less(p, p_minus_half, solution_4_1, zero)
+        + T::if_less_or_equal(t, K, one, zero) - a_type_p_part_1;
     let [solution_5_1, _, _] = lu_solve(&lu_1, [-solution_1_3, zero, -solution_1_2]);
-    let a_type__half_part_1 = crate_part_1 + one + cos_half + one / (one + half * half);
-    let a_type__half_part_2 = a_type__half_part_1 + one / half + number_half / sqrt_half;
-    let d_crate_d_half = a_type__half_part_2 - tanh_half * tanh_half;
-    let a_type__half_part_3 = T::if_less(p, p_minus_half, solution_5_1, d_crate_d_half);
-    let a_type__half = a_type__p_part_1 + a_type__half_part_3;
+    let d_crate_d_half = crate_part_1 + one + cos_half + one / (one + half * half)
+        + one / half + number_half / sqrt_half - tanh_half * tanh_half;
+    let a_type_half_part_1 = T::if_less(p, p_minus_half, solution_5_1, d_crate_d_half);
+    let a_type_half = a_type_p_part_1 + a_type_half_part_1;
+
+    // Row `half` of A.
     let one_minus_solution_2_2 = one - solution_2_2;
     let [_, _, solution_6_3] = lu_solve(
         &lu_1,
@@ -290,12 +208,12 @@ pub fn jacobians<T: Real>(
 
     Jacobians {
         rates: State {
-            type_: type__dot,
+            type_: type_dot,
             p: type_,
             half: half_dot,
         },
         a: [
-            [a_type__type_, a_type__p, a_type__half],
+            [a_type_type, a_type_p, a_type_half],
             [one, zero, zero],
             [zero, a_half_p, a_half_half],
         ],
@@ -303,115 +221,59 @@ pub fn jacobians<T: Real>(
     }
 }
 
-/// Rates ẋ with their derivatives by state, inputs and parameters.
+/// P = ∂ẋ/∂p. Rows follow [`State`], columns [`Parameters`].
 ///
 /// From `mechanisms/type.toml`.
-/// Operations: 73 (34 +, 21 ×, 6 ÷, 12 sign), 1 sine-cosine pair, 14 functions, 9 choices, 11 linear systems.
+/// Operations: 33 (15 +, 11 ×, 1 ÷, 6 sign), 1 sine-cosine pair, 12 functions, 2 choices, 6 linear systems.
 #[must_use]
 #[inline]
-pub fn all_jacobians<T: Real>(
+pub fn parameter_jacobian<T: Real>(
     t: T,
     parameters: &Parameters<T>,
     x: &State<T>,
     _u: &Inputs<T>,
-) -> AllJacobians<T> {
+) -> [[T; 2]; 3] {
     let &Parameters { INFO_, K } = parameters;
     let &State { type_, p, half } = x;
     let zero = T::constant(0.0);
     let c_17_over_35 = T::constant(17.0 / 35.0);
     let number_half = T::constant(0.5);
-    let one = T::constant(1.0);
-    let three = T::constant(3.0);
-    let c_19 = T::constant(19.0);
-
-    // Sines and cosines.
-    let (sin_half, cos_half) = half.sin_cos();
+    let nineteen = T::constant(19.0);
 
     // Combinations of parameters.
     let K_squared = K * K;
     let K_squared_squared = K_squared * K_squared;
-    let type__dot_part_1 = K_squared_squared * K_squared_squared;
-    let type__dot_part_2 = K_squared * type__dot_part_1 * type__dot_part_1;
+    let K_squared_squared_squared = K_squared_squared * K_squared_squared;
 
-    // Rates.
+    // Row `type` of P.
     let p_minus_half = p - half;
-    let inv_p_minus_half = one / p_minus_half;
-    let inv_p_minus_half_squared = inv_p_minus_half * inv_p_minus_half;
     let lu_1 = lu_factor([
         [K, p, half],
         [p, INFO_, number_half],
         [c_17_over_35, half, K],
     ]);
     let [solution_1_1, solution_1_2, solution_1_3] = lu_solve(&lu_1, [type_, t, p]);
-    let sqrt_half = half.sqrt();
-    let tanh_half = half.tanh();
-    let crate_part_1 = half.sign() + half.exp() + half.cosh() + half.sinh();
-    let crate_part_2 = half.ln() + half.abs() + sqrt_half + tanh_half + half.atan();
-    let crate_ = crate_part_2 + half.acos() + half.asin() + sin_half + crate_part_1;
-    let type__dot_part_3 = inv_p_minus_half * inv_p_minus_half_squared;
-    let type__dot_part_4 = type__dot_part_3 + K * type__dot_part_2;
-    let type__dot_part_5 = type__dot_part_4 + T::if_less_or_equal(t, K, p, type_);
-    let type__dot = type__dot_part_5 + T::if_less(p, p_minus_half, solution_1_1, crate_);
-    let half_dot_part_1 = K.powf(p);
-    let [solution_2_1, solution_2_2, solution_2_3] = lu_solve(&lu_1, [p, crate_, half]);
-    let half_dot = solution_2_3 - p_minus_half.atan2(half_dot_part_1);
+    let [solution_2_1, _, _] = lu_solve(&lu_1, [zero, -solution_1_2, zero]);
+    let p_type_INFO = T::if_less(p, p_minus_half, solution_2_1, zero);
+    let [solution_3_1, _, _] = lu_solve(&lu_1, [-solution_1_1, zero, -solution_1_3]);
+    let p_type_K_part_1 = nineteen * K_squared * K_squared_squared_squared;
+    let p_type_K = T::if_less(p, p_minus_half, solution_3_1, zero)
+        + p_type_K_part_1 * K_squared_squared_squared;
 
-    // Derivatives by the state.
-    let [solution_3_1, _, _] = lu_solve(&lu_1, [one, zero, zero]);
-    let a_type__type_ = T::if_less(p, p_minus_half, solution_3_1, zero)
-        + T::if_less_or_equal(t, K, zero, one);
-    let [solution_4_1, _, _] = lu_solve(&lu_1, [-solution_1_2, -solution_1_1, one]);
-    let a_type__p_part_1 = three * inv_p_minus_half_squared * inv_p_minus_half_squared;
-    let a_type__p_part_2 = T::if_less(p, p_minus_half, solution_4_1, zero)
-        + T::if_less_or_equal(t, K, one, zero);
-    let a_type__p = a_type__p_part_2 - a_type__p_part_1;
-    let [solution_5_1, _, _] = lu_solve(&lu_1, [-solution_1_3, zero, -solution_1_2]);
-    let a_type__half_part_1 = crate_part_1 + one + cos_half + one / (one + half * half);
-    let a_type__half_part_2 = a_type__half_part_1 + one / half + number_half / sqrt_half;
-    let d_crate_d_half = a_type__half_part_2 - tanh_half * tanh_half;
-    let a_type__half_part_3 = T::if_less(p, p_minus_half, solution_5_1, d_crate_d_half);
-    let a_type__half = a_type__p_part_1 + a_type__half_part_3;
-    let one_minus_solution_2_2 = one - solution_2_2;
-    let [_, _, solution_6_3] = lu_solve(
-        &lu_1,
-        [one_minus_solution_2_2, -solution_2_1, zero],
-    );
-    let a_half_p_part_1 = p_minus_half * half_dot_part_1;
+    // Row `half` of P.
+    let crate_ = half.ln() + half.sign() + half.abs() + half.sqrt() + half.exp()
+        + half.tanh() + half.cosh() + half.sinh() + half.atan() + half.acos()
+        + half.asin() + half.sin();
+    let [solution_4_1, solution_4_2, solution_4_3] = lu_solve(&lu_1, [p, crate_, half]);
+    let [_, _, p_half_INFO] = lu_solve(&lu_1, [zero, -solution_4_2, zero]);
+    let [_, _, solution_6_3] = lu_solve(&lu_1, [-solution_4_1, zero, -solution_4_3]);
+    let p_half_K_part_1 = K.powf(p);
     let p_minus_half_squared = p_minus_half * p_minus_half;
-    let a_half_p_part_2 = p_minus_half_squared + half_dot_part_1 * half_dot_part_1;
-    let a_half_p_part_3 = one / a_half_p_part_2;
-    let a_half_p_part_4 = half_dot_part_1 - a_half_p_part_1 * K.ln();
-    let a_half_p = solution_6_3 - a_half_p_part_3 * a_half_p_part_4;
-    let [_, _, solution_7_3] = lu_solve(
-        &lu_1,
-        [-solution_2_3, d_crate_d_half, one_minus_solution_2_2],
-    );
-    let a_half_half = solution_7_3 + half_dot_part_1 * a_half_p_part_3;
+    let p_half_K_part_2 = p_minus_half_squared + p_half_K_part_1 * p_half_K_part_1;
+    let p_half_K = solution_6_3
+        + p_minus_half * p_half_K_part_1 * p / (K * p_half_K_part_2);
 
-    // Derivatives by the parameters.
-    let [solution_8_1, _, _] = lu_solve(&lu_1, [zero, -solution_1_2, zero]);
-    let p_type__INFO_ = T::if_less(p, p_minus_half, solution_8_1, zero);
-    let [solution_9_1, _, _] = lu_solve(&lu_1, [-solution_1_1, zero, -solution_1_3]);
-    let p_type__K_part_1 = c_19 * type__dot_part_2;
-    let p_type__K = T::if_less(p, p_minus_half, solution_9_1, zero) + p_type__K_part_1;
-    let [_, _, p_half_INFO_] = lu_solve(&lu_1, [zero, -solution_2_2, zero]);
-    let [_, _, solution_11_3] = lu_solve(&lu_1, [-solution_2_1, zero, -solution_2_3]);
-    let p_half_K = solution_11_3 + a_half_p_part_1 * a_half_p_part_3 * p / K;
-
-    AllJacobians {
-        rates: State {
-            type_: type__dot,
-            p: type_,
-            half: half_dot,
-        },
-        a: [
-            [a_type__type_, a_type__p, a_type__half],
-            [one, zero, zero],
-            [zero, a_half_p, a_half_half],
-        ],
-        b: [[], [], []],
-        p: [[p_type__INFO_, p_type__K], [zero, zero], [p_half_INFO_, p_half_K]],
-    }
+    [[p_type_INFO, p_type_K], [zero, zero], [p_half_INFO, p_half_K]]
 }
 
 /// Outputs of the spec.
@@ -429,10 +291,86 @@ pub fn outputs<T: Real>(
     let &Parameters { K, .. } = parameters;
     let &State { type_, p, half } = x;
 
-    // Outputs.
-    let switch = T::if_less_or_equal(t, K, p, type_);
-    let self_ = K.powf(p);
-    let angle = (p - half).atan2(self_);
+    // outputs
+    let outputs_0 = T::if_less_or_equal(t, K, p, type_);
+    let outputs_1 = K.powf(p);
+    let outputs_2 = (p - half).atan2(outputs_1);
 
-    Outputs { switch, self_, angle }
+    Outputs {
+        switch: outputs_0,
+        self_: outputs_1,
+        angle: outputs_2,
+    }
+}
+
+impl<T> From<[T; 2]> for Parameters<T> {
+    fn from([INFO_, K]: [T; 2]) -> Self {
+        Self { INFO_, K }
+    }
+}
+
+impl<T> From<Parameters<T>> for [T; 2] {
+    fn from(Parameters { INFO_, K }: Parameters<T>) -> Self {
+        [INFO_, K]
+    }
+}
+
+impl<T> From<[T; 1]> for Speeds<T> {
+    fn from([type_]: [T; 1]) -> Self {
+        Self { type_ }
+    }
+}
+
+impl<T> From<Speeds<T>> for [T; 1] {
+    fn from(Speeds { type_ }: Speeds<T>) -> Self {
+        [type_]
+    }
+}
+
+impl<T> From<[T; 2]> for Coordinates<T> {
+    fn from([p, half]: [T; 2]) -> Self {
+        Self { p, half }
+    }
+}
+
+impl<T> From<Coordinates<T>> for [T; 2] {
+    fn from(Coordinates { p, half }: Coordinates<T>) -> Self {
+        [p, half]
+    }
+}
+
+impl<T> From<[T; 3]> for State<T> {
+    fn from([type_, p, half]: [T; 3]) -> Self {
+        Self { type_, p, half }
+    }
+}
+
+impl<T> From<State<T>> for [T; 3] {
+    fn from(State { type_, p, half }: State<T>) -> Self {
+        [type_, p, half]
+    }
+}
+
+impl<T> From<[T; 0]> for Inputs<T> {
+    fn from([]: [T; 0]) -> Self {
+        Self(core::marker::PhantomData)
+    }
+}
+
+impl<T> From<Inputs<T>> for [T; 0] {
+    fn from(Inputs(_): Inputs<T>) -> Self {
+        []
+    }
+}
+
+impl<T> From<[T; 3]> for Outputs<T> {
+    fn from([switch, self_, angle]: [T; 3]) -> Self {
+        Self { switch, self_, angle }
+    }
+}
+
+impl<T> From<Outputs<T>> for [T; 3] {
+    fn from(Outputs { switch, self_, angle }: Outputs<T>) -> Self {
+        [switch, self_, angle]
+    }
 }

@@ -73,6 +73,7 @@ impl Sketch {
             inputs: symbols(&inputs),
             parameters: symbols(&parameters),
             time: symbols(&[quantity("t", "Time.", "s", 0.0)])[0],
+            pi: None,
         };
         let info = ModelInfo {
             name: name.to_owned().into(),
@@ -117,16 +118,17 @@ impl Sketch {
             .1
     }
 
+    /// Results whose entries are called by their numbers, under headings of their own.
     pub fn function(&mut self, kind: FunctionKind, results: Vec<(&str, Layout, Vec<Expr>)>) {
-        let results = results
-            .into_iter()
-            .map(|(name, layout, entries)| Array {
-                name: name.to_owned(),
-                layout,
-                entries,
-            })
-            .collect();
-        self.program.functions.push(Function { kind, results });
+        let results = results.into_iter().map(|(name, layout, entries)| {
+            let all = 0..entries.len();
+            Array::new(name, &format!("The {name}."), layout, entries).under(name, all)
+        });
+        self.add(kind, results.collect());
+    }
+
+    fn add(&mut self, kind: FunctionKind, results: Vec<Array>) {
+        self.program.functions.push(Function::new(kind, results));
         self.program.functions.sort_by_key(|function| function.kind);
     }
 
@@ -148,17 +150,17 @@ impl Sketch {
             columns(&of.inputs),
             columns(&of.parameters),
         );
-        let (n, m, k) = (of.states.len(), of.inputs.len(), of.parameters.len());
-        let by_state_and_input = vec![
-            ("rates", Layout::State, rates.clone()),
-            ("a", Layout::Matrix(n, n), a),
-            ("b", Layout::Matrix(n, m), b),
-        ];
-        let mut all = by_state_and_input.clone();
-        all.push(("p", Layout::Matrix(n, k), p));
-        self.function(FunctionKind::Rates, vec![("rates", Layout::State, rates)]);
-        self.function(FunctionKind::Jacobians, by_state_and_input);
-        self.function(FunctionKind::AllJacobians, all);
+        let info = &self.program.info;
+        let jacobian = |name: &str, columns: &[Quantity], entries| {
+            Array::jacobian(name, "Derivatives.", &info.states, columns, entries)
+        };
+        let rates = Array::rates(info, rates);
+        let a = jacobian("a", &info.states, a);
+        let b = jacobian("b", &info.inputs, b);
+        let p = jacobian("p", &info.parameters, p);
+        self.add(FunctionKind::Rates, vec![rates.clone()]);
+        self.add(FunctionKind::Jacobians, vec![rates, a, b]);
+        self.add(FunctionKind::ParameterJacobian, vec![p]);
     }
 }
 

@@ -6,7 +6,6 @@
 use appell_codegen::compile;
 use appell_codegen::emit::{Options, emit};
 use appell_codegen::interpreted::InterpretedModel;
-use appell_codegen::program::FunctionKind;
 use appell_codegen::program::{FunctionKind, Program};
 use appell_runtime::Simulation;
 use appell_runtime::model::Model;

@@ -174,7 +174,7 @@ mod tests {
 
     #[test]
     fn kinds_are_their_own_indices() {
-        for (index, kind) in KINDS.into_iter().enumerate() {
+        for (index, kind) in FunctionKind::ALL.into_iter().enumerate() {
             assert_eq!(kind as usize, index);
         }
     }

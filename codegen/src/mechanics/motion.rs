@@ -242,6 +242,9 @@ fn name_pivot(algebra: &mut Algebra, mechanism: &Mechanism, speed: usize, pivot:
 
 /// The number in front of a right-hand side stays outside, where it meets other numbers.
 fn name_right(algebra: &mut Algebra, mechanism: &Mechanism, speed: usize, right: Expr) -> Expr {
+    if right == Graph::ZERO {
+        return right;
+    }
     let name = format!("rhs_{}", mechanism.pseudo_velocities[speed].label.name);
     let number = algebra.graph.split_coefficient(right).0.abs();
     let right = algebra.graph.scale(&number.recip(), right);

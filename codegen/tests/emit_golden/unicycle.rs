@@ -221,10 +221,10 @@ pub fn acceleration_energy<T: Real>(
 /// Mass matrix M = ∂²S/∂ω̇², symmetric. Rows and columns follow [`Speeds`].
 ///
 /// ```text
-///     ⎡ 5·m·R²/4 + m₀·R² + m₀·r²   ·                  ·                −m₀·R ⎤
-///     ⎢ ·                          3·m·R²/2 + m₀·R²   −m₀·R·r          ·     ⎥
-/// M = ⎢ ·                          −m₀·R·r            m·R²/4 + m₀·r²   ·     ⎥
-///     ⎣ −m₀·R                      ·                  ·                m₀    ⎦
+///     ⎡ 5/4 m R² + m₀ R² + m₀ r²   ·                  ·                −m₀ R ⎤
+///     ⎢ ·                          3/2 m R² + m₀ R²   −m₀ R r          ·     ⎥
+/// M = ⎢ ·                          −m₀ R r            ¼ m R² + m₀ r²   ·     ⎥
+///     ⎣ −m₀ R                      ·                  ·                m₀    ⎦
 /// ```
 ///
 /// From `mechanisms/unicycle.toml`.

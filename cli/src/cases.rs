@@ -1,10 +1,12 @@
 //! The cases of `appell evaluate`, with every mistake told at its place in the file.
 
-use std::collections::BTreeMap;
+use std::collections::BTreeSet;
+use std::fmt;
 
 use appell_runtime::model::{ModelInfo, Quantity};
 use appell_spec::expr::Span;
 use appell_spec::{Code, Diagnostic, Report};
+use serde::de::{Deserialize, Deserializer, MapAccess, Visitor};
 use serde_json::value::RawValue;
 
 use crate::failure::Failure;
@@ -23,52 +25,60 @@ pub(crate) struct Case {
     pub(crate) p: Vec<f64>,
 }
 
-/// An object of a JSON text whose values keep their places.
-type Object<'a> = BTreeMap<String, &'a RawValue>;
+/// The entries of a JSON object in the order of the text; the values keep their places.
+#[derive(Default)]
+struct Object<'a>(Vec<(String, &'a RawValue)>);
+
+impl<'a> Object<'a> {
+    fn get(&self, key: &str) -> Option<&'a RawValue> {
+        let found = self.0.iter().find(|(name, _)| name == key);
+        found.map(|(_, value)| *value)
+    }
+}
+
+impl<'de> Deserialize<'de> for Object<'de> {
+    fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
+        struct Entries;
+        impl<'de> Visitor<'de> for Entries {
+            type Value = Object<'de>;
+
+            fn expecting(&self, to: &mut fmt::Formatter<'_>) -> fmt::Result {
+                to.write_str("an object")
+            }
+
+            fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Object<'de>, A::Error> {
+                let mut entries = Vec::new();
+                while let Some(entry) = map.next_entry()? {
+                    entries.push(entry);
+                }
+                Ok(Object(entries))
+            }
+        }
+        from.deserialize_map(Entries)
+    }
+}
+
+/// Most findings told for one file.
+const MOST: usize = 20;
 
 /// Reads `{"cases": [{"parameters": {…}, "state": {…}, "inputs": {…}, "t": 0}, …]}`.
 pub(crate) fn read_cases(file: &str, text: &str, info: &ModelInfo) -> Result<Vec<Case>, Failure> {
-    let top: Object<'_> = serde_json::from_str(text).map_err(|error| broken(file, text, &error))?;
     let mut reader = Reader {
         text,
         findings: Vec::new(),
     };
-    reader.keys(&top, 0..0, &["cases"]);
-    let cases: Vec<&RawValue> = match top.get("cases") {
-        Some(list) => reader.parse(list, "a list of cases"),
-        None => None,
-    }
-    .unwrap_or_default();
-    let cases = cases
-        .into_iter()
-        .map(|raw| reader.case(raw, info))
-        .collect();
+    let cases = match serde_json::from_str(text) {
+        Ok(top) => reader.cases(top, info),
+        Err(error) => {
+            reader.broken(&error);
+            Vec::new()
+        }
+    };
     if reader.findings.is_empty() {
         Ok(cases)
     } else {
-        Err(Failure::Reports(vec![Report::new(
-            file,
-            text,
-            reader.findings,
-        )]))
+        Err(Report::new(file, text, reader.findings).into())
     }
-}
-
-/// JSON that does not parse ends at its first mistake.
-fn broken(file: &str, text: &str, error: &serde_json::Error) -> Failure {
-    let (line, column) = (error.line(), error.column());
-    let message = error.to_string();
-    let message = message.split(" at line ").next().unwrap_or_default();
-    let shown: String = text
-        .lines()
-        .nth(line.saturating_sub(1))
-        .unwrap_or_default()
-        .chars()
-        .take(160)
-        .collect();
-    Failure::Data(format!(
-        "not the JSON expected: {message}\n  --> {file}:{line}:{column}\n{line:>4} | {shown}"
-    ))
 }
 
 struct Reader<'a> {
@@ -77,6 +87,47 @@ struct Reader<'a> {
 }
 
 impl<'a> Reader<'a> {
+    /// JSON that does not parse ends at its first mistake.
+    fn broken(&mut self, error: &serde_json::Error) {
+        let line = error.line().saturating_sub(1);
+        let before: usize = self
+            .text
+            .split_inclusive('\n')
+            .take(line)
+            .map(str::len)
+            .sum();
+        let at = before + error.column().saturating_sub(1);
+        // A text that ends too early has its mistake after its last character.
+        let end = self.text.trim_end().len();
+        let at = if error.is_eof() { end } else { at.min(end) };
+        let message = error.to_string();
+        let message = message.split(" at line ").next().unwrap_or_default();
+        let help = "write {\"cases\": [{\"state\": {…}}]}";
+        self.tell(
+            Code::WrongType,
+            format!("this is not JSON: {message}"),
+            at..at,
+            help,
+        );
+    }
+
+    fn cases(&mut self, top: &'a RawValue, info: &ModelInfo) -> Vec<Case> {
+        let Some(object) = self.object(top, "an object") else {
+            return Vec::new();
+        };
+        self.keys(&object, self.head(top), &["cases"], "cases");
+        let list = object.get("cases");
+        let list = list.and_then(|list| self.parse::<Vec<&RawValue>>(list, "a list of cases"));
+        let mut cases = Vec::new();
+        for case in list.unwrap_or_default() {
+            if self.findings.len() >= MOST {
+                break;
+            }
+            cases.push(self.case(case, info));
+        }
+        cases
+    }
+
     /// Where a value stands: it is a part of the text.
     fn span(&self, raw: &RawValue) -> Span {
         let start = (raw.get().as_ptr() as usize).saturating_sub(self.text.as_ptr() as usize);
@@ -94,7 +145,7 @@ impl<'a> Reader<'a> {
             .push(Diagnostic::error(code, message).at(at, "").help(help));
     }
 
-    fn parse<T: serde::Deserialize<'a>>(&mut self, raw: &'a RawValue, wanted: &str) -> Option<T> {
+    fn parse<T: Deserialize<'a>>(&mut self, raw: &'a RawValue, wanted: &str) -> Option<T> {
         let parsed = serde_json::from_str(raw.get()).ok();
         if parsed.is_none() {
             self.tell(
@@ -107,24 +158,29 @@ impl<'a> Reader<'a> {
         parsed
     }
 
-    fn keys(&mut self, object: &Object<'_>, at: Span, known: &[&str]) {
-        for (key, value) in object {
-            if !known.contains(&key.as_str()) {
-                let help = format!("the keys are {}", known.join(", "));
-                self.tell(
-                    Code::UnknownKey,
-                    format!("unknown key `{key}`"),
-                    self.head(value),
-                    help,
-                );
+    /// An object, each of whose keys stands there once.
+    fn object(&mut self, raw: &'a RawValue, wanted: &str) -> Option<Object<'a>> {
+        let object: Object<'a> = self.parse(raw, wanted)?;
+        let mut seen = BTreeSet::new();
+        for (key, value) in &object.0 {
+            if !seen.insert(key.as_str()) {
+                let message = format!("the key `{key}` stands here twice");
+                let help = "remove one of the two";
+                self.tell(Code::DuplicateName, message, self.head(value), help);
             }
         }
-        let required = if known.contains(&"state") {
-            "state"
-        } else {
-            "cases"
-        };
-        if !object.contains_key(required) {
+        Some(object)
+    }
+
+    fn keys(&mut self, object: &Object<'_>, at: Span, known: &[&str], required: &str) {
+        for (key, value) in &object.0 {
+            if !known.contains(&key.as_str()) {
+                let help = format!("the keys are {}", known.join(", "));
+                let message = format!("unknown key `{key}`");
+                self.tell(Code::UnknownKey, message, self.head(value), help);
+            }
+        }
+        if object.get(required).is_none() {
             self.tell(
                 Code::MissingKey,
                 format!("the key `{required}` is missing"),
@@ -135,12 +191,9 @@ impl<'a> Reader<'a> {
     }
 
     fn case(&mut self, raw: &'a RawValue, info: &ModelInfo) -> Case {
-        let object: Object<'a> = self.parse(raw, "an object").unwrap_or_default();
-        self.keys(
-            &object,
-            self.head(raw),
-            &["parameters", "state", "inputs", "t"],
-        );
+        let object = self.object(raw, "an object").unwrap_or_default();
+        let known = ["parameters", "state", "inputs", "t"];
+        self.keys(&object, self.head(raw), &known, "state");
         let mut numbers = |key: &str, what: &str, list: &[Quantity]| match object.get(key) {
             Some(raw) => self.numbers(raw, what, list),
             None => vec![None; list.len()],
@@ -158,7 +211,7 @@ impl<'a> Reader<'a> {
             let named: Object<'a> = serde_json::from_str(raw.get()).unwrap_or_default();
             let missing: Vec<&str> = missing
                 .into_iter()
-                .filter(|name| !named.contains_key(*name))
+                .filter(|name| named.get(name).is_none())
                 .collect();
             if !missing.is_empty() {
                 let message = format!("the state lacks {}", missing.join(", "));
@@ -189,8 +242,8 @@ impl<'a> Reader<'a> {
     /// Numbers by name, in the order of a list.
     fn numbers(&mut self, raw: &'a RawValue, what: &str, list: &[Quantity]) -> Vec<Option<f64>> {
         let mut values = vec![None; list.len()];
-        let object: Object<'a> = self.parse(raw, "an object of numbers").unwrap_or_default();
-        for (name, raw) in object {
+        let object = self.object(raw, "an object of numbers").unwrap_or_default();
+        for (name, raw) in object.0 {
             if let Some(index) = list.iter().position(|quantity| quantity.name == name) {
                 values[index] = self.number(raw);
                 continue;

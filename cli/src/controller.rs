@@ -1,5 +1,6 @@
 //! Everything that drives the inputs of a simulation.
 
+use appell_codegen::symbolic::Expr as Lowered;
 use appell_runtime::inputs::{InputSource, TabulatedInputs};
 use appell_spec::expr::Expr;
 use appell_spec::{Report, Scope, Snippet, formula};
@@ -7,7 +8,7 @@ use appell_spec::{Report, Scope, Snippet, formula};
 use crate::failure::Failure;
 use crate::feedback::Feedback;
 use crate::formula::{StateFunction, Workbench, switching_times};
-use crate::setup::{Assignment, Setup};
+use crate::setup::{Assignment, Setup, bracketed};
 
 /// Inputs from expressions, feedback laws and recordings; they add up.
 pub(crate) struct Controller {
@@ -33,7 +34,8 @@ enum Slot {
 
 /// Collects what drives the inputs.
 pub(crate) struct Plan {
-    exprs: Vec<Expr>,
+    bench: Workbench,
+    exprs: Vec<Lowered>,
     slots: Vec<Slot>,
     /// Desired values of zero need no expression.
     zero: Vec<(usize, usize, f64)>,
@@ -45,8 +47,9 @@ pub(crate) struct Plan {
 
 impl Plan {
     /// No inputs.
-    pub(crate) fn new() -> Self {
+    pub(crate) fn new(setup: &Setup<'_>) -> Self {
         Self {
+            bench: Workbench::new(&setup.mechanism),
             exprs: Vec::new(),
             slots: Vec::new(),
             zero: Vec::new(),
@@ -70,10 +73,14 @@ impl Plan {
         Ok(())
     }
 
-    fn push(&mut self, slot: Slot, expr: Expr) {
-        switching_times(&expr, &mut self.switching_times);
+    /// Takes an expression, which may not divide by the number zero.
+    fn push(&mut self, slot: Slot, expr: &Expr) -> Result<(), &'static str> {
+        let lowered = self.bench.lower(expr);
+        self.exprs
+            .push(lowered.ok_or("an expression divides by the number zero")?);
         self.slots.push(slot);
-        self.exprs.push(expr);
+        switching_times(expr, &mut self.switching_times);
+        Ok(())
     }
 
     /// `--input NAME=EXPR`
@@ -85,21 +92,20 @@ impl Plan {
         let input = setup.input(&assignment.name)?;
         self.take(input, setup)?;
         let unit = &setup.mechanism.inputs[input].label.unit;
-        let text = crate::setup::with_unit(&assignment.value, unit);
-        let wanted = Some(unit.dimension);
+        let text = bracketed(&assignment.value);
         let expr = formula(
             setup.spec,
             &Snippet::alone(&text),
             "the input",
             Scope::Law,
-            wanted,
+            unit,
         )
         .map_err(|findings| {
             let label = format!("--input {}", assignment.name);
-            Failure::Expression(Box::new(Report::new(label, text.as_str(), findings)))
+            Failure::Expression(Box::new(Report::new(label, text.as_ref(), findings)))
         })?;
-        self.push(Slot::Input(input), expr);
-        Ok(())
+        self.push(Slot::Input(input), &expr)
+            .map_err(|told| Failure::Usage(format!("--input {}: {told}", assignment.name)))
     }
 
     /// `--inputs FILE`
@@ -118,31 +124,29 @@ impl Plan {
     }
 
     /// `--feedback FILE`
-    pub(crate) fn feedback(&mut self, feedback: Feedback) {
+    pub(crate) fn feedback(&mut self, feedback: Feedback) -> Result<(), Failure> {
+        let told = |told| Failure::Data(format!("{}: {told}", feedback.file));
         let input = feedback.input;
-        if let Some(offset) = feedback.offset {
-            self.push(Slot::Input(input), offset);
+        if let Some(offset) = &feedback.offset {
+            self.push(Slot::Input(input), offset).map_err(told)?;
         }
         for (state, gain, desired) in feedback.terms {
             match desired {
-                Some(expr) => self.push(Slot::Desired { input, state, gain }, expr),
+                Some(expr) => self
+                    .push(Slot::Desired { input, state, gain }, &expr)
+                    .map_err(told)?,
                 None => self.zero.push((input, state, gain)),
             }
         }
         self.switching_times.extend(feedback.switching_times);
+        Ok(())
     }
 
     /// The inputs as a function of time and state.
     pub(crate) fn controller(self, setup: &Setup<'_>) -> Result<Controller, Failure> {
-        let mut bench = Workbench::new(&setup.mechanism);
-        let lowered: Option<Vec<_>> = self.exprs.iter().map(|expr| bench.lower(expr)).collect();
-        let Some(lowered) = lowered else {
-            return Err(Failure::Usage(
-                "an expression divides by the number zero".to_owned(),
-            ));
-        };
-        let function = bench
-            .function(setup.info, lowered)
+        let function = self
+            .bench
+            .function(setup.info, self.exprs)
             .map_err(|error| Failure::Computation(error.to_string()))?;
         let mut slots = self.slots;
         // Values beyond those of the function are zero.

@@ -5,7 +5,7 @@ use appell_codegen::jit::JitModel;
 use appell_codegen::program::FunctionKind;
 use appell_runtime::model::Model;
 
-use crate::failure::Failure;
+use crate::failure::{Failure, note};
 use crate::progress;
 use crate::source::Source;
 
@@ -41,13 +41,12 @@ impl Equations {
             _ => {}
         }
         let spinner = progress::spinner("deriving the equations of motion");
-        let program = appell_codegen::compile(&source.file, &source.text, &FunctionKind::ALL)
-            .map_err(|report| Failure::Reports(vec![report]))?;
+        let program = appell_codegen::compile(&source.file, &source.text, &FunctionKind::ALL)?;
         spinner.finish_and_clear();
         if engine == Engine::Jit {
             match JitModel::new(&program) {
                 Ok(model) => return Ok(Self::Made(Box::new(model))),
-                Err(reason) => eprintln!("note: {reason}; the equations are interpreted"),
+                Err(reason) => note(&format!("{reason}; the equations are interpreted")),
             }
         }
         Ok(Self::Made(Box::new(InterpretedModel::new(program))))

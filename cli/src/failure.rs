@@ -2,7 +2,6 @@
 
 use std::io::{IsTerminal, Write as _};
 use std::path::{Path, PathBuf};
-use std::process::ExitCode;
 
 use appell_spec::Report;
 
@@ -15,9 +14,9 @@ pub(crate) enum Failure {
     /// An expression on the command line is wrong.
     #[error("{}", .0.plain())]
     Expression(Box<Report>),
-    /// Files are wrong; each report shows the places.
-    #[error("{}", plain(.0))]
-    Reports(Vec<Report>),
+    /// A file is wrong; the report shows the places.
+    #[error("{}", .0.plain())]
+    Report(Box<Report>),
     /// A file is wrong as a whole.
     #[error("{0}")]
     Data(String),
@@ -34,6 +33,9 @@ pub(crate) enum Failure {
     /// The computation failed: time, state and reason.
     #[error("{0}")]
     Computation(String),
+    /// Several failures, each told.
+    #[error("{}", plain(.0))]
+    Several(Vec<Failure>),
 }
 
 impl Failure {
@@ -55,25 +57,44 @@ impl Failure {
         }
     }
 
-    /// 2 bad usage, 3 bad spec or data, 4 the computation failed.
-    pub(crate) fn exit_code(&self) -> ExitCode {
-        ExitCode::from(match self {
+    /// The exit status of a failure; of several, the largest.
+    pub(crate) fn status(&self) -> u8 {
+        match self {
             Self::Usage(_) | Self::Expression(_) => 2,
-            Self::Reports(_) | Self::Data(_) | Self::File { .. } => 3,
+            Self::Report(_) | Self::Data(_) | Self::File { .. } => 3,
             Self::Computation(_) => 4,
-        })
+            Self::Several(all) => all.iter().map(Self::status).max().unwrap_or(0),
+        }
     }
 
     /// Tells it on standard error.
     pub(crate) fn print(&self) {
-        let text = match self {
-            Self::Reports(reports) => reports.iter().map(shown).collect::<Vec<_>>().join("\n"),
-            Self::Expression(report) => shown(report),
-            other => format!("error: {other}"),
-        };
-        // Where standard error is closed, the exit status has to do.
-        let _ = writeln!(std::io::stderr(), "{}", text.trim_end());
+        tell(&format!("{}\n", self.told()));
     }
+
+    fn told(&self) -> String {
+        match self {
+            Self::Report(report) | Self::Expression(report) => shown(report).trim_end().to_owned(),
+            Self::Several(all) => all.iter().map(Self::told).collect::<Vec<_>>().join("\n\n"),
+            other => format!("error: {other}"),
+        }
+    }
+}
+
+impl From<Report> for Failure {
+    fn from(report: Report) -> Self {
+        Self::Report(Box::new(report))
+    }
+}
+
+/// Writes to standard error. Where that is closed, the exit status has to do.
+pub(crate) fn tell(text: &str) {
+    let _ = std::io::stderr().write_all(text.as_bytes());
+}
+
+/// Tells something that changes no result.
+pub(crate) fn note(text: &str) {
+    tell(&format!("note: {text}\n"));
 }
 
 /// A report in colour where a person reads it.
@@ -86,10 +107,7 @@ pub(crate) fn shown(report: &Report) -> String {
     }
 }
 
-fn plain(reports: &[Report]) -> String {
-    reports
-        .iter()
-        .map(Report::plain)
-        .collect::<Vec<_>>()
-        .join("\n")
+fn plain(failures: &[Failure]) -> String {
+    let texts = failures.iter().map(ToString::to_string);
+    texts.collect::<Vec<_>>().join("\n")
 }

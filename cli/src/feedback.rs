@@ -12,17 +12,21 @@
 use std::path::Path;
 
 use appell_spec::expr::{Expr, Span};
+use appell_spec::limits::MAX_FILE;
+use appell_spec::units::Unit;
 use appell_spec::{Code, Diagnostic, Report, Scope, Snippet, formula};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use crate::failure::Failure;
 use crate::files;
-use crate::setup::{Setup, unknown, with_unit};
+use crate::setup::{Setup, bracketed, unknown};
 
 /// A law for one input.
 #[derive(Debug)]
 pub(crate) struct Feedback {
+    /// The file.
+    pub(crate) file: String,
     /// The input.
     pub(crate) input: usize,
     /// What is added to the feedback.
@@ -49,12 +53,17 @@ const KEYS: &[&str] = &[
 
 /// Reads a feedback file.
 pub(crate) fn read(path: &Path, setup: &Setup<'_>) -> Result<Feedback, Failure> {
-    parse(&path.to_string_lossy(), &files::read(path)?, setup)
+    parse(
+        &path.to_string_lossy(),
+        &files::read(path, MAX_FILE as u64)?,
+        setup,
+    )
 }
 
 /// Reads the text of a feedback file.
 pub(crate) fn parse(file: &str, text: &str, setup: &Setup<'_>) -> Result<Feedback, Failure> {
     let mut reader = Reader {
+        file,
         text,
         setup,
         findings: Vec::new(),
@@ -74,17 +83,14 @@ pub(crate) fn parse(file: &str, text: &str, setup: &Setup<'_>) -> Result<Feedbac
     };
     match feedback {
         Some(feedback) if reader.findings.is_empty() => Ok(feedback),
-        _ => Err(Failure::Reports(vec![Report::new(
-            file,
-            text,
-            reader.findings,
-        )])),
+        _ => Err(Report::new(file, text, reader.findings).into()),
     }
 }
 
 type Value<'t> = Spanned<DeValue<'t>>;
 
 struct Reader<'r> {
+    file: &'r str,
     text: &'r str,
     setup: &'r Setup<'r>,
     findings: Vec<Diagnostic>,
@@ -109,9 +115,10 @@ impl Reader<'_> {
         let switching_times = self.list(table, "switching_times_s", Self::number);
         let desired = self.by_state(table, "desired", Scope::Schedule, "the desired value");
         let initial = self.by_state(table, "initial", Scope::Constant, "the initial value");
-        let offset = table.get("offset").and_then(|value| {
-            let unit = input.map(|input| self.setup.mechanism.inputs[input].label.unit.dimension);
-            self.expression(value, Scope::Law, "the offset", unit, None)
+        let setup = self.setup;
+        let offset = input.zip(table.get("offset")).and_then(|(input, value)| {
+            let unit = &setup.mechanism.inputs[input].label.unit;
+            self.expression(value, Scope::Law, "the offset", unit)
         });
         if let (Some(states), Some(gains), Some(at)) = (&states, &gains, table.get("gains"))
             && states.len() != gains.len()
@@ -136,6 +143,7 @@ impl Reader<'_> {
         };
         let terms = states?.into_iter().zip(gains?);
         Some(Feedback {
+            file: self.file.to_owned(),
             input: input?,
             offset,
             terms: terms
@@ -229,32 +237,25 @@ impl Reader<'_> {
         };
         let mut read = Vec::new();
         for (name, value) in entries {
-            let state = self.find(name.get_ref(), "state", &self.states(), name.span());
-            let unit = state.map(|state| self.setup.unit_of_state(state).clone());
-            let bare = unit.as_ref().filter(|_| scope == Scope::Constant);
-            let expr = self.expression(
-                value,
-                scope,
-                what,
-                unit.as_ref().map(|unit| unit.dimension),
-                bare,
-            );
-            if let (Some(state), Some(expr)) = (state, expr) {
+            let Some(state) = self.find(name.get_ref(), "state", &self.states(), name.span())
+            else {
+                continue;
+            };
+            let unit = self.setup.unit_of_state(state);
+            if let Some(expr) = self.expression(value, scope, what, unit) {
                 read.push((state, expr, name.span()));
             }
         }
         read
     }
 
-    /// An expression. With a unit for bare numbers, `30` and `30deg` mean what they mean on the
-    /// command line.
+    /// The value of a quantity, read as on the command line.
     fn expression(
         &mut self,
         value: &Value<'_>,
         scope: Scope,
         what: &'static str,
-        dimension: Option<appell_spec::units::Dimension>,
-        bare: Option<&appell_spec::units::Unit>,
+        unit: &Unit,
     ) -> Option<Expr> {
         let text = match value.get_ref() {
             DeValue::String(text) => text.to_string(),
@@ -269,13 +270,13 @@ impl Reader<'_> {
                 return None;
             }
         };
-        let text = bare.map_or(text.clone(), |unit| with_unit(text.trim(), unit));
+        let text = bracketed(text.trim());
         let snippet = Snippet {
             document: self.text,
             text: &text,
             whole: value.span(),
         };
-        match formula(self.setup.spec, &snippet, what, scope, dimension) {
+        match formula(self.setup.spec, &snippet, what, scope, unit) {
             Ok(expr) => Some(expr),
             Err(findings) => {
                 self.findings.extend(findings);

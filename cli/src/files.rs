@@ -1,39 +1,73 @@
 //! Files that appear complete or not at all.
 
-use std::fs;
-use std::io::{self, Write};
-use std::path::Path;
+use std::fs::{self, OpenOptions};
+use std::io::{self, BufWriter, Read as _, Write};
+use std::path::{Path, PathBuf};
 
 use crate::failure::Failure;
 
+/// Largest recording or list of cases, in bytes.
+pub(crate) const MAX_DATA: u64 = 1 << 30;
+
+/// Writes a text; `-` is standard output.
+pub(crate) fn write(path: &Path, text: &str) -> Result<(), Failure> {
+    write_with(path, |to| to.write_all(text.as_bytes()))
+}
+
 /// Writes a file through a draft beside it; `-` is standard output. What stands there and is no
 /// regular file, such as a pipe or a device, is written to and not replaced.
-pub(crate) fn write(path: &Path, text: &str) -> Result<(), Failure> {
+pub(crate) fn write_with(
+    path: &Path,
+    fill: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+) -> Result<(), Failure> {
     if is_stdout(path) {
-        return print(text);
+        return to_stdout(fill);
     }
-    // A link stays a link: its target is what the user means.
-    let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
-    if fs::metadata(&target).is_ok_and(|there| !there.is_file()) {
-        return fs::write(&target, text).map_err(Failure::writing(path));
+    let target = behind_links(path);
+    let there = fs::metadata(&target).ok();
+    if there.as_ref().is_some_and(|there| !there.is_file()) {
+        let special = OpenOptions::new().write(true).open(&target);
+        return special
+            .and_then(|file| fill_buffered(file, fill))
+            .map_err(Failure::writing(path));
     }
-    let path = target.as_path();
-    if let Some(folder) = path
-        .parent()
-        .filter(|folder| !folder.as_os_str().is_empty())
-    {
+    let permissions = there.map(|there| there.permissions());
+    if permissions.as_ref().is_some_and(fs::Permissions::readonly) {
+        let cause = io::Error::new(io::ErrorKind::PermissionDenied, "the file is read-only");
+        return Err(Failure::writing(path)(cause));
+    }
+    if let Some(folder) = target.parent().filter(|at| !at.as_os_str().is_empty()) {
         fs::create_dir_all(folder).map_err(Failure::writing(folder))?;
     }
-    let mut name = path.file_name().unwrap_or_default().to_owned();
+    let mut name = target.file_name().unwrap_or_default().to_owned();
     name.push(format!(".{}.tmp", std::process::id()));
-    let draft = path.with_file_name(name);
-    fs::write(&draft, text)
-        .and_then(|()| fs::rename(&draft, path))
+    let draft = target.with_file_name(name);
+    fs::File::create(&draft)
+        .and_then(|file| fill_buffered(file, fill))
+        .and_then(|()| permissions.map_or(Ok(()), |own| fs::set_permissions(&draft, own)))
+        .and_then(|()| fs::rename(&draft, &target))
         .map_err(|cause| {
             // The draft is of no use; that it cannot be removed would only hide the cause.
             let _ = fs::remove_file(&draft);
             Failure::writing(path)(cause)
         })
+}
+
+/// A link stays a link: its target is what the user means, even where it does not exist yet.
+fn behind_links(path: &Path) -> PathBuf {
+    let beside = |target: PathBuf| path.parent().unwrap_or(path).join(target);
+    fs::canonicalize(path)
+        .or_else(|_| fs::read_link(path).map(beside))
+        .unwrap_or_else(|_| path.to_owned())
+}
+
+fn fill_buffered(
+    to: impl Write,
+    fill: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+) -> io::Result<()> {
+    let mut to = BufWriter::new(to);
+    fill(&mut to)?;
+    to.flush()
 }
 
 /// Writes JSON, one line break at its end.
@@ -43,10 +77,14 @@ pub(crate) fn write_json(path: &Path, value: &impl serde::Serialize) -> Result<(
     write(path, &(text + "\n"))
 }
 
-/// Writes to standard output. A reader who has seen enough, such as `head`, is no failure.
+/// Writes to standard output.
 pub(crate) fn print(text: &str) -> Result<(), Failure> {
-    let mut to = io::stdout().lock();
-    match to.write_all(text.as_bytes()).and_then(|()| to.flush()) {
+    to_stdout(|to| to.write_all(text.as_bytes()))
+}
+
+/// A reader who has seen enough, such as `head`, is no failure.
+fn to_stdout(fill: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), Failure> {
+    match fill_buffered(io::stdout().lock(), fill) {
         Err(cause) if cause.kind() != io::ErrorKind::BrokenPipe => {
             Err(Failure::writing(Path::new("standard output"))(cause))
         }
@@ -59,12 +97,26 @@ pub(crate) fn is_stdout(path: &Path) -> bool {
     path.as_os_str() == "-"
 }
 
-/// Reads a text file; `-` is standard input.
-pub(crate) fn read(path: &Path) -> Result<String, Failure> {
-    let text = if is_stdout(path) {
-        io::read_to_string(io::stdin())
+/// Reads a text file of at most so many bytes; `-` is standard input.
+pub(crate) fn read(path: &Path, most: u64) -> Result<String, Failure> {
+    let mut bytes = Vec::new();
+    // One byte more tells that there are too many.
+    let read = if is_stdout(path) {
+        io::stdin().take(most + 1).read_to_end(&mut bytes)
     } else {
-        fs::read_to_string(path)
+        fs::File::open(path).and_then(|file| file.take(most + 1).read_to_end(&mut bytes))
     };
-    text.map_err(Failure::reading(path))
+    let count = read.map_err(Failure::reading(path))?;
+    let file = path.display();
+    if count as u64 > most {
+        return Err(Failure::Data(format!(
+            "{file} is larger than {} MiB, which is the most that is read",
+            most >> 20
+        )));
+    }
+    String::from_utf8(bytes).map_err(|cause| {
+        let before = &cause.as_bytes()[..cause.utf8_error().valid_up_to()];
+        let line = before.split(|byte| *byte == b'\n').count();
+        Failure::Data(format!("{file}:{line}: the file is not UTF-8 text"))
+    })
 }

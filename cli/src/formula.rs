@@ -4,17 +4,13 @@ use appell_codegen::jit::{NativeFunction, Sizes};
 use appell_codegen::mechanics::expressions::Lowering;
 use appell_codegen::mechanics::symbols::{Symbols, ids};
 use appell_codegen::program::{Arguments, Array, Function, FunctionKind, Layout, Program};
-use appell_codegen::schedule::{Schedule, interpret, schedule};
+use appell_codegen::schedule::{Schedule, interpret, pi, schedule};
 use appell_codegen::symbolic::{Expr, Graph};
 use appell_runtime::Signal;
 use appell_runtime::model::{At, ModelInfo};
 use appell_runtime::signal::SignalError;
 use appell_spec::Mechanism;
 use appell_spec::expr::{Expr as SpecExpr, ExprKind, Quantity};
-
-/// `f64::consts::PI` as a fraction.
-const PI_NUMERATOR: i64 = 884_279_719_003_555;
-const PI_DENOMINATOR: i64 = 281_474_976_710_656;
 
 /// A graph with the names of a mechanism.
 pub(crate) struct Workbench {
@@ -30,7 +26,7 @@ impl Workbench {
         let mut graph = Graph::new();
         let mut symbols = Symbols::new(&mut graph, mechanism);
         // The number of the machine, exactly.
-        symbols.pi = graph.fraction(PI_NUMERATOR, PI_DENOMINATOR);
+        symbols.pi = graph.number(pi());
         Self { graph, symbols }
     }
 

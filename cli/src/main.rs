@@ -9,6 +9,7 @@ mod feedback;
 mod files;
 mod formula;
 mod progress;
+mod reactions;
 mod recorded;
 mod setup;
 mod source;
@@ -36,7 +37,7 @@ fn main() -> ExitCode {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {
             failure.print();
-            failure.exit_code()
+            ExitCode::from(failure.status())
         }
     }
 }

@@ -5,7 +5,9 @@ use std::path::Path;
 use appell_runtime::Signal;
 use appell_runtime::inputs::TabulatedInputs;
 use appell_runtime::model::{Interpolation, SignalTable};
+use appell_spec::expr::Span;
 use appell_spec::{Code, Diagnostic, Report};
+use csv::{ReaderBuilder, StringRecord};
 
 use crate::failure::Failure;
 use crate::files;
@@ -19,39 +21,42 @@ pub(crate) fn read(
     path: &Path,
     setup: &Setup<'_>,
 ) -> Result<(TabulatedInputs, Vec<usize>), Failure> {
-    let text = files::read(path)?;
-    let mut findings = Vec::new();
-    let columns = columns(&text, setup, &mut findings);
     let file = path.to_string_lossy();
-    if !findings.is_empty() {
-        return Err(Failure::Reports(vec![Report::new(file, text, findings)]));
+    let text = files::read(path, files::MAX_DATA)?;
+    let mut reader = Reader {
+        text: &text,
+        findings: Vec::new(),
+    };
+    let columns = reader
+        .columns(setup)
+        .map_err(|error| Failure::Data(format!("{file}: {error}")))?;
+    if !reader.findings.is_empty() {
+        let findings = reader.findings;
+        return Err(Report::new(file, text, findings).into());
+    }
+    drop(text);
+    let given: Vec<usize> = columns.inputs.iter().map(|column| column.input).collect();
+    let mut values: Vec<Option<Vec<f64>>> = vec![None; setup.mechanism.inputs.len()];
+    for column in columns.inputs {
+        values[column.input] = Some(column.values);
     }
     let mut signals = Vec::new();
-    for (index, input) in setup.mechanism.inputs.iter().enumerate() {
-        let given = columns.inputs.iter().position(|&other| other == index);
-        let scale = input.label.unit.scale;
-        let values = given.map(|column| {
-            columns.values[column]
-                .iter()
-                .map(|v| v * scale)
-                .collect::<Vec<_>>()
-        });
+    for (input, values) in setup.mechanism.inputs.iter().zip(values) {
+        let (times, values) = match values {
+            Some(values) => (columns.times.clone(), values),
+            None => (vec![0.0], vec![0.0]),
+        };
         let table = SignalTable {
             name: input.label.name.clone().into(),
-            times: if given.is_some() {
-                columns.times.clone()
-            } else {
-                vec![0.0]
-            }
-            .into(),
-            values: values.unwrap_or_else(|| vec![0.0]).into(),
+            times: times.into(),
+            values: values.into(),
             interpolation: Interpolation::Hold,
         };
         let signal =
             Signal::new(&table).map_err(|error| Failure::Data(format!("{file}: {error}")))?;
         signals.push(signal);
     }
-    Ok((TabulatedInputs::new(signals), columns.inputs))
+    Ok((TabulatedInputs::new(signals), given))
 }
 
 /// Most findings told for one file.
@@ -60,136 +65,176 @@ const MOST: usize = 20;
 #[derive(Default)]
 struct Columns {
     times: Vec<f64>,
-    /// Index of the input of each column of values.
-    inputs: Vec<usize>,
-    values: Vec<Vec<f64>>,
+    inputs: Vec<Column>,
 }
 
-fn columns(text: &str, setup: &Setup<'_>, findings: &mut Vec<Diagnostic>) -> Columns {
-    let mut columns = Columns::default();
-    // Line by line instead of a CSV reader: numbers need no quotes, and places are exact.
-    let mut lines = rows(text);
-    let Some(header) = lines.next() else {
-        findings.push(
-            Diagnostic::error(Code::MissingKey, "the file is empty")
-                .at(0..0, "")
-                .help("begin with a header: `t`, then the inputs"),
-        );
-        return columns;
-    };
-    let mut time = None;
-    let mut places = Vec::new();
-    let count = header.len();
-    for (position, (at, name)) in header.into_iter().enumerate() {
-        let span = at..at + name.len();
-        let input = setup
-            .mechanism
-            .inputs
-            .iter()
-            .position(|input| input.label.name == name);
-        if name == "t" {
-            time = Some(position);
-        } else if let Some(input) = input {
-            if columns.inputs.contains(&input) {
-                findings.push(
-                    Diagnostic::error(
-                        Code::DuplicateName,
-                        format!("the column `{name}` stands here twice"),
-                    )
-                    .at(span, ""),
-                );
-            }
-            columns.inputs.push(input);
-            places.push(position);
-        } else if !is_other_quantity(name, setup) {
-            let inputs = setup
-                .mechanism
-                .inputs
-                .iter()
-                .map(|input| input.label.name.as_str());
-            findings.push(
-                Diagnostic::error(Code::UnknownName, unknown(name, "input", inputs)).at(span, ""),
-            );
-        }
+/// A column of an input.
+struct Column {
+    position: usize,
+    input: usize,
+    /// One of the input's unit in SI.
+    scale: f64,
+    /// In SI.
+    values: Vec<f64>,
+}
+
+struct Reader<'t> {
+    text: &'t str,
+    findings: Vec<Diagnostic>,
+}
+
+impl Reader<'_> {
+    fn tell(&mut self, code: Code, message: impl Into<String>, at: Span, help: Option<&str>) {
+        let finding = Diagnostic::error(code, message).at(at, "");
+        self.findings
+            .push(finding.maybe_help(help.map(str::to_owned)));
     }
-    columns.values = vec![Vec::new(); columns.inputs.len()];
-    let Some(time) = time else {
-        findings.push(
-            Diagnostic::error(Code::MissingKey, "there is no column `t`")
-                .at(0..0, "")
-                .help("name the column of times in seconds `t`"),
-        );
-        return columns;
-    };
-    for row in lines {
-        if findings.len() >= MOST {
-            break;
+
+    fn columns(&mut self, setup: &Setup<'_>) -> Result<Columns, csv::Error> {
+        let mut rows = ReaderBuilder::new()
+            .has_headers(false)
+            .flexible(true)
+            .comment(Some(b'#'))
+            .from_reader(self.text.as_bytes());
+        let mut columns = Columns::default();
+        let mut record = StringRecord::new();
+        if !rows.read_record(&mut record)? {
+            let help = "begin with a header: `t`, then the inputs";
+            self.tell(Code::MissingKey, "the file is empty", 0..0, Some(help));
+            return Ok(columns);
         }
-        let start = row.first().map_or(0, |(at, _)| *at);
-        let end = row.last().map_or(start, |(at, cell)| at + cell.len());
-        if row.len() != count {
-            let message = format!("{} cells under {count} columns", row.len());
-            findings.push(Diagnostic::error(Code::WrongType, message).at(start..end, ""));
-            continue;
-        }
-        let mut number = |position: usize| {
-            let (at, cell) = row[position];
-            let number = cell.parse::<f64>().ok().filter(|number| number.is_finite());
-            if number.is_none() {
-                findings.push(
-                    Diagnostic::error(Code::WrongType, format!("`{cell}` is not a finite number"))
-                        .at(at..at + cell.len(), "")
-                        .help("an input needs a value in every row"),
-                );
-            }
-            number.unwrap_or(0.0)
+        let count = record.len();
+        let (time, inputs) = self.header(&record, setup);
+        columns.inputs = inputs;
+        let Some(time) = time else {
+            let help = "name the column of times in seconds `t`";
+            self.tell(Code::MissingKey, "there is no column `t`", 0..0, Some(help));
+            return Ok(columns);
         };
-        let t = number(time);
-        for (column, &position) in columns.values.iter_mut().zip(&places) {
-            column.push(number(position));
+        while self.findings.len() < MOST && rows.read_record(&mut record)? {
+            if record.len() == 1 && record[0].trim().is_empty() {
+                continue;
+            }
+            if record.len() != count {
+                let message = format!("{} cells under {count} columns", record.len());
+                self.tell(Code::WrongType, message, self.row(&record), None);
+                continue;
+            }
+            let t = self.number(&record, time);
+            for column in &mut columns.inputs {
+                let value = self.number(&record, column.position);
+                column.values.push(value * column.scale);
+            }
+            if columns.times.last().is_some_and(|last| *last >= t) {
+                let message = "the time does not increase";
+                self.tell(Code::SignalTable, message, self.row(&record), None);
+            }
+            columns.times.push(t);
         }
-        if columns.times.last().is_some_and(|last| *last >= t) {
-            findings.push(
-                Diagnostic::error(Code::SignalTable, "the time does not increase")
-                    .at(start..end, ""),
-            );
+        if columns.times.is_empty() && self.findings.is_empty() {
+            self.tell(Code::SignalTable, "there are no rows", 0..0, None);
         }
-        columns.times.push(t);
+        Ok(columns)
     }
-    if columns.times.is_empty() && findings.is_empty() {
-        findings.push(Diagnostic::error(Code::SignalTable, "there are no rows").at(0..0, ""));
-    }
-    columns
-}
 
-/// Cells of each line with their places, without comments and empty lines.
-fn rows(text: &str) -> impl Iterator<Item = Vec<(usize, &str)>> {
-    let lines = text.split_inclusive('\n').scan(0, |at, line| {
-        let start = *at;
-        *at += line.len();
-        Some((start, line))
-    });
-    lines
-        .filter(|(_, line)| !line.trim().is_empty() && !line.starts_with('#'))
-        .map(|(start, line)| {
-            let mut at = start;
-            line.split(',')
-                .map(|cell| {
-                    let place = at + (cell.len() - cell.trim_start().len());
-                    at += cell.len() + 1;
-                    (place, cell.trim().trim_start_matches('\u{feff}'))
-                })
-                .collect()
+    /// Position of the time, and the columns of inputs.
+    fn header(&mut self, header: &StringRecord, setup: &Setup<'_>) -> (Option<usize>, Vec<Column>) {
+        let inputs = &setup.mechanism.inputs;
+        let names = || inputs.iter().map(|input| input.label.name.as_str());
+        let mut time = None;
+        let mut columns: Vec<Column> = Vec::new();
+        for (position, name) in header.iter().map(str::trim).enumerate() {
+            let at = || self.cell(header, position);
+            let input = names().position(|input| input == name);
+            let twice = match input {
+                Some(input) => columns.iter().any(|column| column.input == input),
+                None => name == "t" && time.is_some(),
+            };
+            if twice {
+                let message = format!("the column `{name}` stands here twice");
+                self.tell(Code::DuplicateName, message, at(), None);
+            } else if let Some(input) = input {
+                columns.push(Column {
+                    position,
+                    input,
+                    scale: inputs[input].label.unit.scale,
+                    values: Vec::new(),
+                });
+            } else if name == "t" {
+                time = Some(position);
+            } else if !is_other_quantity(name, setup) {
+                let message = unknown(name, "input", names());
+                self.tell(Code::UnknownName, message, at(), None);
+            }
+        }
+        (time, columns)
+    }
+
+    /// The finite number in a cell; tells where there is none.
+    fn number(&mut self, record: &StringRecord, position: usize) -> f64 {
+        let cell = record[position].trim();
+        let number = cell.parse::<f64>().ok().filter(|number| number.is_finite());
+        number.unwrap_or_else(|| {
+            let message = format!("`{cell}` is not a finite number");
+            let help = "an input needs a value in every row";
+            let at = self.cell(record, position);
+            self.tell(Code::WrongType, message, at, Some(help));
+            0.0
         })
+    }
+
+    /// Where a row stands, without the comments and empty lines before it.
+    fn row(&self, record: &StringRecord) -> Span {
+        let before = record.position().map_or(0, csv::Position::byte);
+        let mut start = usize::try_from(before).unwrap_or(usize::MAX);
+        start = start.min(self.text.len());
+        for line in self
+            .text
+            .get(start..)
+            .unwrap_or_default()
+            .split_inclusive('\n')
+        {
+            if !line.trim().is_empty() && !line.starts_with('#') {
+                return start..start + line.trim_end().len();
+            }
+            start += line.len();
+        }
+        start..start
+    }
+
+    /// Where a cell stands in its row.
+    fn cell(&self, record: &StringRecord, position: usize) -> Span {
+        let row = self.row(record);
+        let mut quoted = false;
+        let mut cells = self.text[row.clone()].split(|c| {
+            quoted ^= c == '"';
+            c == ',' && !quoted
+        });
+        let before: usize = cells
+            .by_ref()
+            .take(position)
+            .map(|cell| cell.len() + 1)
+            .sum();
+        let cell = cells.next().unwrap_or_default();
+        let start = row.start + before + (cell.len() - cell.trim_start().len());
+        start..start + cell.trim().len()
+    }
 }
 
-/// Columns that `appell simulate` writes besides the inputs.
+/// Columns that `appell simulate` writes besides the inputs. One that bears a number has it because
+/// the spec uses its name.
 fn is_other_quantity(name: &str, setup: &Setup<'_>) -> bool {
     let info = setup.info;
-    info.state_index(name).is_some()
-        || info.input_index(name).is_some()
-        || info.output_index(name).is_some()
-        || matches!(name, "kinetic_energy" | "potential_energy" | "power")
-        || name.starts_with("reaction_")
-        || name.starts_with("residual_")
+    let unnumbered = match name.rsplit_once('_') {
+        Some((stem, number)) if number.bytes().all(|b| b.is_ascii_digit()) => stem,
+        _ => name,
+    };
+    [name, unnumbered].into_iter().any(|name| {
+        info.state_index(name).is_some()
+            || info.input_index(name).is_some()
+            || info.output_index(name).is_some()
+            || ["kinetic_energy", "potential_energy", "power"].contains(&name)
+            || name.starts_with("reaction_")
+            || name.starts_with("residual_")
+    })
 }

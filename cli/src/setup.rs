@@ -1,6 +1,9 @@
 //! Numbers for a mechanism from the command line: parameters, initial values, inputs.
 
+use std::borrow::Cow;
+
 use appell_runtime::model::ModelInfo;
+use appell_spec::expr::Expr;
 use appell_spec::units::{self, Unit};
 use appell_spec::{Mechanism, Report, Scope, Snippet, did_you_mean, formula};
 
@@ -44,13 +47,14 @@ pub(crate) struct Setup<'a> {
     pub(crate) parameters: Vec<f64>,
     /// Initial state in SI.
     pub(crate) initial: Vec<f64>,
+    /// Whether states must stay in their declared ranges.
+    pub(crate) watch_ranges: bool,
 }
 
 impl<'a> Setup<'a> {
     /// The numbers of the spec.
     pub(crate) fn new(file: &str, spec: &'a str, info: &'a ModelInfo) -> Result<Self, Failure> {
-        let checked =
-            appell_spec::load(file, spec).map_err(|report| Failure::Reports(vec![report]))?;
+        let checked = appell_spec::load(file, spec)?;
         let (parameters, initial) = (info.default_parameters(), info.initial_state());
         Ok(Self {
             spec,
@@ -58,6 +62,7 @@ impl<'a> Setup<'a> {
             info,
             parameters,
             initial,
+            watch_ranges: true,
         })
     }
 
@@ -81,7 +86,7 @@ impl<'a> Setup<'a> {
             let parameter = &self.mechanism.parameters[index];
             let low = parameter.at_least.unwrap_or(f64::NEG_INFINITY);
             let high = parameter.at_most.unwrap_or(f64::INFINITY);
-            inside(&assignment.name, value, [low, high], &unit)?;
+            inside(&assignment.name, value, [low, high], &unit).map_err(Failure::Usage)?;
             self.parameters[index] = value;
         }
         Ok(())
@@ -93,18 +98,9 @@ impl<'a> Setup<'a> {
         for assignment in assignments {
             let index = self.state(&assignment.name)?;
             let unit = self.unit_of_state(index).clone();
-            let value = self.value(
-                &assignment.value,
-                &unit,
-                &format!("--initial {}", assignment.name),
-            )?;
-            inside(
-                &assignment.name,
-                value,
-                self.info.states[index].range,
-                &unit,
-            )?;
-            self.initial[index] = value;
+            let label = format!("--initial {}", assignment.name);
+            let value = self.value(&assignment.value, &unit, &label)?;
+            self.place(index, value).map_err(Failure::Usage)?;
         }
         Ok(())
     }
@@ -112,23 +108,14 @@ impl<'a> Setup<'a> {
     /// The initial values that a law asks for.
     pub(crate) fn start_from_law(&mut self, law: &Feedback) -> Result<(), Failure> {
         for (state, expr) in &law.initial {
-            let mut bench = Workbench::new(&self.mechanism);
+            let told = |message| Failure::Data(format!("{}: {message}", law.file));
             let name = &self.info.states[*state].name;
-            let value = bench
-                .lower(expr)
-                .map(|expr| bench.constants(&[expr], &self.parameters)[0]);
-            let value = value.filter(|value| value.is_finite()).ok_or_else(|| {
-                Failure::Data(format!(
+            let value = self.constant(expr).ok_or_else(|| {
+                told(format!(
                     "the initial value of `{name}` is not a finite number"
                 ))
             })?;
-            inside(
-                name,
-                value,
-                self.info.states[*state].range,
-                self.unit_of_state(*state),
-            )?;
-            self.initial[*state] = value;
+            self.place(*state, value).map_err(told)?;
         }
         Ok(())
     }
@@ -166,51 +153,84 @@ impl<'a> Setup<'a> {
     /// A value in SI: a number in the quantity's unit, a number with a unit, or an expression in
     /// the parameters.
     fn value(&self, text: &str, unit: &Unit, label: &str) -> Result<f64, Failure> {
-        let text = with_unit(text, unit);
-        let findings =
-            |findings| Failure::Expression(Box::new(Report::new(label, text.as_str(), findings)));
-        let wanted = Some(unit.dimension);
+        let text = bracketed(text);
         let expr = formula(
             self.spec,
             &Snippet::alone(&text),
             "the value",
             Scope::Constant,
-            wanted,
+            unit,
         )
-        .map_err(findings)?;
+        .map_err(|findings| {
+            Failure::Expression(Box::new(Report::new(label, text.as_ref(), findings)))
+        })?;
+        self.constant(&expr)
+            .ok_or_else(|| Failure::Usage(format!("{label}: `{text}` is not a finite number")))
+    }
+
+    /// The finite value of an expression in parameters.
+    fn constant(&self, expr: &Expr) -> Option<f64> {
         let mut bench = Workbench::new(&self.mechanism);
-        let value = bench
-            .lower(&expr)
-            .map(|expr| bench.constants(&[expr], &self.parameters)[0]);
-        match value {
-            Some(value) if value.is_finite() => Ok(value),
-            _ => Err(Failure::Usage(format!(
-                "{label}: `{text}` is not a finite number"
-            ))),
+        let lowered = bench.lower(expr)?;
+        let value = bench.constants(&[lowered], &self.parameters)[0];
+        value.is_finite().then_some(value)
+    }
+
+    /// An initial value, which must lie in its range where ranges are watched.
+    fn place(&mut self, state: usize, value: f64) -> Result<(), String> {
+        let quantity = &self.info.states[state];
+        if self.watch_ranges {
+            inside(
+                &quantity.name,
+                value,
+                quantity.range,
+                self.unit_of_state(state),
+            )?;
         }
+        self.initial[state] = value;
+        Ok(())
     }
 }
 
-/// `30cm` and `30 cm` become `30[cm]`, a number without unit gets the quantity's; anything else is
-/// an expression as it stands.
-pub(crate) fn with_unit(text: &str, unit: &Unit) -> String {
-    if text.parse::<f64>().is_ok_and(f64::is_finite) {
-        // A sign binds weaker than a unit, which makes no difference here.
-        return format!("{}[{}]", text.trim_start_matches('+'), unit.text);
+/// `30cm` and `30 cm` become `30[cm]`; anything else is an expression as it stands.
+pub(crate) fn bracketed(text: &str) -> Cow<'_, str> {
+    let (number, rest) = text.split_at(number_length(text));
+    let unit = rest.trim();
+    let begins = |c: char| c.is_alphabetic() || c == '%';
+    if number.is_empty() || !unit.starts_with(begins) || units::parse(unit).is_err() {
+        return Cow::Borrowed(text);
     }
-    let split = (1..text.len())
-        .rev()
-        .filter(|&at| text.is_char_boundary(at))
-        .find_map(|at| {
-            let (number, unit) = text.split_at(at);
-            let fits = number.trim_end().parse::<f64>().is_ok_and(f64::is_finite)
-                && units::parse(unit.trim()).is_ok()
-                && unit
-                    .trim_start()
-                    .starts_with(|c: char| c.is_alphabetic() || c == '%' || c == '°');
-            fits.then(|| format!("{}[{}]", number.trim_end(), unit.trim()))
-        });
-    split.unwrap_or_else(|| text.to_owned())
+    Cow::Owned(format!("{number}[{unit}]"))
+}
+
+/// Bytes of the number with which a text begins. An `e` without digits begins a unit.
+fn number_length(text: &str) -> usize {
+    let bytes = text.as_bytes();
+    let digits = |from: usize| {
+        bytes[from..]
+            .iter()
+            .take_while(|b| b.is_ascii_digit())
+            .count()
+    };
+    let sign = |from: usize| usize::from(matches!(bytes.get(from), Some(b'-' | b'+')));
+    let start = sign(0);
+    let whole = digits(start);
+    let mut end = start + whole;
+    let mut fraction = 0;
+    if bytes.get(end) == Some(&b'.') {
+        fraction = digits(end + 1);
+        end += 1 + fraction;
+    }
+    if whole + fraction == 0 {
+        return 0;
+    }
+    if let Some(b'e' | b'E') = bytes.get(end) {
+        let exponent = end + 1 + sign(end + 1);
+        if digits(exponent) > 0 {
+            end = exponent + digits(exponent);
+        }
+    }
+    end
 }
 
 /// Position of a name, or what to write instead.
@@ -261,15 +281,15 @@ fn unique(assignments: &[Assignment], flag: &str) -> Result<(), Failure> {
     Ok(())
 }
 
-fn inside(name: &str, value: f64, [low, high]: [f64; 2], unit: &Unit) -> Result<(), Failure> {
+fn inside(name: &str, value: f64, [low, high]: [f64; 2], unit: &Unit) -> Result<(), String> {
     if (low..=high).contains(&value) {
         return Ok(());
     }
     let [value, low, high] = [value, low, high].map(|si| unit.from_si(si));
-    Err(Failure::Usage(format!(
+    Err(format!(
         "`{name}` = {value} {unit} is outside its limits {low} … {high} {unit}",
         unit = unit.text
-    )))
+    ))
 }
 
 #[cfg(test)]
@@ -277,19 +297,23 @@ mod tests {
     use super::*;
 
     #[test]
-    fn numbers_get_units() {
-        let metre = units::parse("m").expect("a unit");
+    fn units_right_after_a_number_get_brackets() {
         for (text, expected) in [
-            ("0.3", "0.3[m]"),
-            ("-1e-3", "-1e-3[m]"),
+            ("0.3", "0.3"),
+            ("-1e-3", "-1e-3"),
             ("30cm", "30[cm]"),
-            ("30 cm", "30[cm]"),
+            ("-.5 cm", "-.5[cm]"),
             ("1e3mm", "1e3[mm]"),
+            ("2eV", "2eV"),
+            ("3%", "3[%]"),
             ("2*l", "2*l"),
+            ("2 l", "2[l]"),
             ("5[m]", "5[m]"),
             ("l", "l"),
+            ("", ""),
+            (".m", ".m"),
         ] {
-            assert_eq!(with_unit(text, &metre), expected);
+            assert_eq!(bracketed(text), expected);
         }
     }
 }

@@ -3,8 +3,10 @@
 use std::path::Path;
 
 use appell_models::{ALL, Shipped};
+use appell_spec::limits::MAX_FILE;
 
 use crate::failure::Failure;
+use crate::files;
 
 /// The spec behind a MODEL.
 #[derive(Debug)]
@@ -33,12 +35,7 @@ impl Source {
         if !is_path {
             return Err(Failure::Usage(unknown(model)));
         }
-        let bytes = std::fs::read(path).map_err(Failure::reading(path))?;
-        let text = String::from_utf8(bytes).map_err(|cause| {
-            let at = cause.utf8_error().valid_up_to();
-            let line = cause.as_bytes()[..at].split(|b| *b == b'\n').count();
-            Failure::Data(format!("{model}:{line}: the file is not UTF-8 text"))
-        })?;
+        let text = files::read(path, MAX_FILE as u64)?;
         Ok(Self {
             file: model.replace('\\', "/"),
             text,

@@ -3,7 +3,7 @@
 mod support;
 
 use serde_json::json;
-use support::{Folder, assert_close, number};
+use support::{Folder, assert_close, number, repository};
 
 /// Rounding of a handful of operations.
 const ROUNDING: f64 = 1e-14;
@@ -174,6 +174,102 @@ fn all_mistakes_of_a_file_are_told_with_their_places() {
     );
     assert!(outcome.stdout.is_empty());
     assert_eq!(folder.files(), ["in.json"]);
+}
+
+#[test]
+fn a_key_stands_there_once() {
+    let folder = Folder::new();
+    folder.write(
+        "in.json",
+        r#"{"cases": [
+  {"state": {"omega": 1, "theta": 2, "omega": 3}, "t": 0, "t": 1}
+], "cases": []}"#,
+    );
+    folder.fails(
+        3,
+        &["evaluate", "pendulum", "--cases", "in.json"],
+        &[
+            "the key `omega` stands here twice",
+            "in.json:2:47",
+            "the key `t` stands here twice",
+            "in.json:2:64",
+            "the key `cases` stands here twice",
+            "in.json:3:13",
+        ],
+    );
+}
+
+#[test]
+fn places_in_json_count_from_one() {
+    let folder = Folder::new();
+    for (text, place) in [
+        ("", "in.json:1:1"),
+        ("[1]", "in.json:1:1"),
+        ("  3", "in.json:1:3"),
+        ("{\"cases\": [\n", "in.json:1:12"),
+        ("{\"cases\": [\n]\n,}", "in.json:3:2"),
+        ("{\"cases\": []} []", "in.json:1:15"),
+        ("{}", "in.json:1:1"),
+    ] {
+        folder.write("in.json", text);
+        folder.fails(3, &["evaluate", "pendulum", "--cases", "in.json"], &[place]);
+    }
+}
+
+#[test]
+fn the_example_of_the_documentation_is_true() {
+    let folder = Folder::new();
+    let page = repository("docs/command-line.md");
+    let page = std::fs::read_to_string(page).expect("the page");
+    let block = |name: &str| {
+        let start = page
+            .split_once(&format!("```json {name}\n"))
+            .expect("a block")
+            .1;
+        start.split_once("```").expect("its end").0.to_owned()
+    };
+    folder.write("cases.json", &block("cases"));
+    folder.done(&[
+        "evaluate",
+        "pendulum",
+        "--cases",
+        "cases.json",
+        "--json",
+        "answer.json",
+    ]);
+    let told = serde_json::from_str(&block("answer")).expect("JSON");
+    assert_same(&folder.json("answer.json"), &told);
+}
+
+/// Fails where two JSON values differ by more than rounding.
+fn assert_same(found: &serde_json::Value, expected: &serde_json::Value) {
+    use serde_json::Value;
+    match (found, expected) {
+        (Value::Object(found), Value::Object(expected)) => {
+            let keys =
+                |map: &serde_json::Map<String, Value>| map.keys().cloned().collect::<Vec<_>>();
+            assert_eq!(keys(found), keys(expected));
+            found
+                .iter()
+                .for_each(|(key, found)| assert_same(found, &expected[key]));
+        }
+        (Value::Array(found), Value::Array(expected)) => {
+            assert_eq!(found.len(), expected.len());
+            found
+                .iter()
+                .zip(expected)
+                .for_each(|(a, b)| assert_same(a, b));
+        }
+        (Value::Number(_), Value::Number(_)) => {
+            assert_close(
+                found.as_f64().expect("a number"),
+                expected.as_f64().expect("a number"),
+                ROUNDING,
+                "a number",
+            );
+        }
+        _ => assert_eq!(found, expected),
+    }
 }
 
 #[test]

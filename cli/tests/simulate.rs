@@ -274,3 +274,293 @@ fn json_on_standard_output_stands_alone() {
     let out: serde_json::Value = serde_json::from_str(&told).expect("JSON and nothing else");
     assert_eq!(out["mechanism"], "pendulum");
 }
+
+#[test]
+fn a_plain_number_is_in_the_unit_of_the_spec_however_it_is_written() {
+    let folder = Folder::new();
+    folder.done(&["new", "mine"]);
+    let start = |value: &str| {
+        let initial = format!("theta={value}");
+        let run = [
+            "simulate",
+            "mine.toml",
+            "--t-end-s",
+            "0.01",
+            "--json",
+            "out.json",
+        ];
+        folder.done(&[&run[..], &["--initial", &initial]].concat());
+        number(&folder.json("out.json"), "initial_state/theta")
+    };
+    let twenty_degrees = 20.0_f64.to_radians();
+    for text in [
+        "20",
+        "2*10",
+        "20deg",
+        "20 deg",
+        "20[deg]",
+        "min(20, 30)",
+        "pi/pi*20",
+    ] {
+        assert_close(start(text), twenty_degrees, 1e-15, text);
+    }
+    assert_close(start("0.35[rad]"), 0.35, 1e-15, "radians");
+    let refused = |value: &str, says: &str| {
+        let initial = format!("theta={value}");
+        folder.fails(
+            2,
+            &["simulate", "mine.toml", "--initial", &initial],
+            &[says],
+        );
+    };
+    refused("20 + 1[m]", "cannot add");
+    refused("5/l", "write units after the numbers");
+    refused("2*l", "error[unit-mismatch]");
+}
+
+#[test]
+fn inputs_and_laws_read_numbers_in_the_unit_of_the_spec() {
+    let folder = Folder::new();
+    folder.done(&["new", "mine"]);
+    let spec = repository("generated/mechanisms/carriage.toml");
+    let spec = std::fs::read_to_string(spec).expect("the carriage");
+    let kilo = spec.replace("unit = \"N\"", "unit = \"kN\"");
+    assert_ne!(kilo, spec);
+    folder.write("kilo.toml", &kilo);
+    let run = |arguments: &[&str]| {
+        let base = [
+            "simulate",
+            "kilo.toml",
+            "--t-end-s",
+            "1",
+            "--json",
+            "out.json",
+        ];
+        folder.done(&[&base[..], arguments].concat());
+        number(&folder.json("out.json"), "final_state/v")
+    };
+    assert_close(run(&["--input", "F=1"]), 1000.0, 1e-12, "a number");
+    assert_close(
+        run(&["--input", "F=if(t < 1, 0.5, 0)"]),
+        500.0,
+        1e-12,
+        "a choice",
+    );
+    assert_close(run(&["--input", "F=500[N]"]), 500.0, 1e-12, "a unit");
+    folder.write(
+        "law.toml",
+        "input = 'F'\nstates = []\ngains = []\noffset = 2\n",
+    );
+    assert_close(run(&["--feedback", "law.toml"]), 2000.0, 1e-12, "an offset");
+    folder.fails(
+        2,
+        &["simulate", "kilo.toml", "--input", "F=-3*x - v"],
+        &["write units after the numbers"],
+    );
+    run(&["--input", "F=-3[kN/m]*x - 1[kN*s/m]*v"]);
+}
+
+#[test]
+fn ignored_ranges_are_ignored_at_the_start_too() {
+    let folder = Folder::new();
+    let run = [
+        "simulate",
+        "unicycle",
+        "--t-end-s",
+        "0.01",
+        "--ignore-ranges",
+    ];
+    folder.done(&[&run[..], &["--initial", "theta=1.6"]].concat());
+    folder.write(
+        "law.toml",
+        "input = 'u'\nstates = []\ngains = []\ninitial = { theta = 1.6 }\n",
+    );
+    folder.done(&[&run[..], &["--feedback", "law.toml"]].concat());
+    folder.fails(
+        3,
+        &["simulate", "unicycle", "--feedback", "law.toml"],
+        &["law.toml: `theta` = 1.6 rad is outside its limits"],
+    );
+}
+
+#[test]
+fn csv_on_standard_output_stands_alone() {
+    let folder = Folder::new();
+    let run = [
+        "simulate",
+        "pendulum",
+        "--initial",
+        "theta=1",
+        "--dt-s",
+        "5",
+    ];
+    let outcome = folder.done(&[&run[..], &["--csv", "-"]].concat());
+    let rows: Vec<&str> = outcome
+        .stdout
+        .lines()
+        .filter(|row| !row.starts_with('#'))
+        .collect();
+    assert_eq!(rows.len(), 4);
+    let width = rows[0].split(',').count();
+    assert!(rows.iter().all(|row| row.split(',').count() == width));
+    assert!(outcome.stderr.contains("smallest"), "{}", outcome.stderr);
+}
+
+/// Columns of a CSV file with their units.
+fn columns(folder: &Folder, file: &str) -> Vec<(String, String)> {
+    let text = folder.read(file);
+    let units = text.lines().find_map(|line| line.strip_prefix("# units: "));
+    let names = text.lines().find(|line| !line.starts_with('#'));
+    let names = names.expect("a header").split(',').map(str::to_owned);
+    let units = units.expect("units").split(", ").map(str::to_owned);
+    names.zip(units).collect()
+}
+
+#[test]
+fn reactions_are_columns_with_units() {
+    let folder = Folder::new();
+    let run = ["simulate", "rolling_wheel", "--t-end-s", "0.1"];
+    folder.done(&[&run[..], &["--reactions", "--csv", "a.csv"]].concat());
+    let found = columns(&folder, "a.csv");
+    let reactions: Vec<_> = found
+        .iter()
+        .filter(|(name, _)| name.starts_with("reaction_"))
+        .collect();
+    assert_eq!(reactions.len(), 3);
+    assert!(
+        reactions.iter().all(|(_, unit)| unit == "N"),
+        "{reactions:?}"
+    );
+    folder.done(&[&run[..], &["--csv", "b.csv"]].concat());
+    assert!(
+        columns(&folder, "b.csv")
+            .iter()
+            .all(|(name, _)| !name.starts_with("reaction_"))
+    );
+}
+
+#[test]
+fn a_multiplier_has_the_unit_that_makes_it_a_power() {
+    let folder = Folder::new();
+    folder.write(
+        "table.toml",
+        r#"[mechanism]
+name = "table"
+title = "A block pushed over a turning table"
+[parameters]
+m = { value = 1, unit = "kg" }
+[coordinates]
+x = { unit = "m" }
+y = { unit = "m" }
+[points]
+P = { from = "O", in = "ground", at = ["x", "y", "0[m]"] }
+[bodies]
+b = { centre = "P", mass = "m" }
+[constraints]
+tied = { kind = "velocity", zero = "dot(y) - 2*dot(x)" }
+turned = { kind = "velocity", zero = "dot(x)/1[m]", equals = "1[rad/s]" }
+[pseudo_velocities]
+[outputs]
+"#,
+    );
+    let outcome = folder.run(&["simulate", "table.toml", "--reactions", "--csv", "a.csv"]);
+    assert_eq!(outcome.status, 0, "{}", outcome.stderr);
+    let found = columns(&folder, "a.csv");
+    let unit = |name: &str| {
+        found
+            .iter()
+            .find(|(other, _)| other == name)
+            .map(|(_, unit)| unit.as_str())
+    };
+    assert_eq!(unit("reaction_tied_x"), Some("N"));
+    assert_eq!(unit("reaction_turned_x"), Some("N*m"));
+}
+
+#[test]
+fn only_the_column_whose_name_the_spec_uses_is_renamed() {
+    let folder = Folder::new();
+    folder.write(
+        "names.toml",
+        r#"[mechanism]
+name = "names"
+title = "A block on a moving track"
+[parameters]
+m = { value = 1, unit = "kg" }
+[coordinates]
+s_dot = { unit = "m", initial = 7 }
+[inputs]
+F = { unit = "N" }
+[signals]
+s = { unit = "m", t = [0, 1, 2], value = [0, 1, 4], interpolation = "cubic" }
+[points]
+P = { from = "O", in = "ground", at = ["s_dot + s", 0, 0] }
+[bodies]
+b = { centre = "P", mass = "m" }
+[pseudo_velocities]
+v = "dot(s_dot)"
+[loads]
+push = { kind = "force", on = "P", in = "ground", vector = ["F", 0, 0] }
+[outputs]
+power = { value = "F*v", unit = "W" }
+"#,
+    );
+    let run = ["simulate", "names.toml", "--t-end-s", "1", "--input", "F=1"];
+    let outcome = folder.done(&[&run[..], &["--csv", "a.csv", "--plot", "a.svg"]].concat());
+    let names: Vec<String> = columns(&folder, "a.csv")
+        .into_iter()
+        .map(|(name, _)| name)
+        .collect();
+    assert_eq!(
+        names,
+        [
+            "t",
+            "v",
+            "s_dot",
+            "F",
+            "s",
+            "s_dot_2",
+            "s_ddot",
+            "power",
+            "kinetic_energy",
+            "potential_energy",
+            "power_2"
+        ]
+    );
+    for note in ["`s_dot`; the computed column is `s_dot_2`", "`power_2`"] {
+        assert!(outcome.stderr.contains(note), "{}", outcome.stderr);
+    }
+    assert!(folder.read("a.svg").contains(">s_dot_2"));
+    folder.done(&[
+        "simulate",
+        "names.toml",
+        "--t-end-s",
+        "1",
+        "--inputs",
+        "a.csv",
+    ]);
+}
+
+#[test]
+fn a_run_gives_up_after_the_most_steps() {
+    let folder = Folder::new();
+    folder.fails(
+        4,
+        &[
+            "simulate",
+            "pendulum",
+            "--initial",
+            "theta=1",
+            "--max-steps",
+            "5",
+            "--csv",
+            "a.csv",
+            "--json",
+            "out.json",
+        ],
+        &["5 steps were not enough", "at t = "],
+    );
+    assert!(folder.read("a.csv").lines().count() > 4);
+    let out = folder.json("out.json");
+    let cost = |what: &str| number(&out, &format!("statistics/{what}"));
+    assert_close(cost("steps") + cost("rejected"), 5.0, 0.0, "steps");
+}

@@ -5,7 +5,7 @@
 //! before children, and that every expression has the dimension its place asks for.
 
 use crate::expr::{Expr, Span};
-use crate::units::Unit;
+use crate::units::{Dimension, Unit};
 
 /// Index of a parameter in [`Mechanism::parameters`].
 pub type ParameterId = usize;
@@ -280,6 +280,8 @@ pub enum ConstraintKind {
         zero: Expr,
         /// Prescribed value, of the same dimension.
         equals: Expr,
+        /// That dimension.
+        dimension: Dimension,
     },
     /// The velocity of `point` along `direction` equals `equals`.
     FixedVelocity {

@@ -50,6 +50,11 @@ impl Unit {
         Self::new(text, dimension, BigRational::one(), 0)
     }
 
+    /// Whether numbers of this unit are numbers in SI.
+    pub fn is_si(&self) -> bool {
+        self.factor.is_one() && self.pi_power == 0
+    }
+
     /// The value in SI of an exact number of this unit, rounded once.
     pub fn to_si(&self, value: &BigRational) -> f64 {
         scaled(&(value * &self.factor), self.pi_power)

@@ -105,12 +105,11 @@ impl Figure {
     /// share a panel, unless one is so much larger that the others would look flat.
     pub fn of_states_and_inputs(trajectory: &Trajectory) -> Self {
         let info = trajectory.info();
+        let (speeds, others) = trajectory.columns().split_at(info.speeds);
+        let (coordinates, others) = others.split_at(info.state_len() - info.speeds);
+        let inputs = &others[..info.input_len()];
         let mut panels: Vec<Vec<&str>> = Vec::new();
-        for group in [
-            info.coordinate_quantities(),
-            info.speed_quantities(),
-            &info.inputs,
-        ] {
+        for group in [coordinates, speeds, inputs] {
             let mut shared: Vec<SharedPanel<'_>> = Vec::new();
             for quantity in group {
                 let size = trajectory
@@ -262,7 +261,8 @@ fn largest(values: &[f64]) -> f64 {
 }
 
 impl Panel {
-    /// Samples of the lines with their names, then the unit.
+    /// Samples of the lines with their names. The unit stands in the text of the last name, so
+    /// that the space between them does not depend on the reader's font.
     fn legend(&self, svg: &mut String, y: f64) {
         let mut x = LEFT;
         for (k, series) in self.series.iter().enumerate() {
@@ -271,11 +271,13 @@ impl Panel {
                 svg,
                 &format!("<path class=\"line {}\" d=\"{sample}\"/>", style(k)),
             );
-            put(svg, &text(x + 23.0, y, "", &series.label));
+            let label = if k + 1 == self.series.len() && !self.unit.is_empty() {
+                &format!("{} [{}]", series.label, self.unit)
+            } else {
+                &series.label
+            };
+            put(svg, &text(x + 23.0, y, "", label));
             x += 23.0 + CHARACTER * series.label.chars().count() as f64 + 16.0;
-        }
-        if !self.unit.is_empty() {
-            put(svg, &text(x, y, "", &format!("[{}]", self.unit)));
         }
     }
 }

@@ -1,7 +1,7 @@
 //! The recorded course of a motion.
 
 use crate::integrate::{Ending, EventHit, Statistics};
-use crate::model::{At, Model, ModelInfo, Quantity};
+use crate::model::{At, Model, ModelInfo, Quantity, Text};
 use std::io::{self, Write};
 
 /// What is recorded besides states and inputs.
@@ -13,18 +13,23 @@ pub struct Extras {
     pub outputs: bool,
     /// `kinetic_energy`, `potential_energy` in J and the `power` of the other loads in W.
     pub energies: bool,
-    /// `reaction_<name>_x`, `_y`, `_z` in the ground: N, or N m for couples.
+    /// `reaction_<name>_x`, `_y`, `_z` in the ground: the force on a point in N; of a constraint
+    /// without a point its multiplier, in W per unit of the constraint, as `_x`.
     pub reactions: bool,
     /// `residual_<name>` of each velocity constraint.
     pub residuals: bool,
 }
 
 /// Rows over time; each row holds the state, the inputs, and the extras asked for. All in SI.
+///
+/// No two columns have the same name: what a spec does not name itself, such as the rate of a
+/// signal or an energy, gets a number where the spec uses its name for something else.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Trajectory {
     info: ModelInfo,
     parameters: Vec<f64>,
     times: Vec<f64>,
+    extras: Extras,
     columns: Vec<Quantity>,
     rows: Vec<f64>,
     /// Why the motion ended; nothing if it failed.
@@ -88,6 +93,7 @@ impl Trajectory {
             info,
             parameters: parameters.to_vec(),
             times,
+            extras,
             columns,
             rows,
             ending: None,
@@ -148,6 +154,21 @@ impl Trajectory {
     /// The state of the last row; empty without rows.
     pub fn last_state(&self) -> &[f64] {
         self.len().checked_sub(1).map_or(&[], |row| self.state(row))
+    }
+
+    /// The same, to say what is only known elsewhere, such as the unit of a reaction.
+    pub fn columns_mut(&mut self) -> &mut [Quantity] {
+        &mut self.columns
+    }
+
+    /// What is called otherwise because the spec uses the name: what it would be, what it is.
+    pub fn renamed(&self) -> Vec<[Text; 2]> {
+        let wanted = wanted_columns(&self.info, self.extras);
+        let pairs = wanted.iter().zip(&self.columns);
+        pairs
+            .map(|(wanted, column)| [wanted.name.clone(), column.name.clone()])
+            .filter(|[wanted, name]| wanted != name)
+            .collect()
     }
 
     /// Position of a column.
@@ -255,7 +276,35 @@ fn write_number(to: &mut impl Write, value: f64) -> io::Result<()> {
     }
 }
 
+/// The columns with names of their own.
 fn columns(info: &ModelInfo, extras: Extras) -> Vec<Quantity> {
+    let mut columns = wanted_columns(info, extras);
+    let spec = info.state_len() + info.declared_inputs;
+    let signals = info.signal_inputs.iter().map(|(_, order)| *order == 0);
+    let outputs = if extras.outputs { info.output_len() } else { 0 };
+    let mut own = vec![true; spec];
+    own.extend(signals);
+    own.resize(own.len() + outputs, true);
+    own.resize(columns.len(), false);
+    for index in 0..columns.len() {
+        let taken = |name: &str| {
+            let others = columns.iter().enumerate();
+            let mut rivals = others.filter(|&(other, _)| own[other] || other < index);
+            rivals.any(|(_, rival)| rival.name == name)
+        };
+        let wanted = &columns[index].name;
+        if !own[index] && taken(wanted) {
+            let numbered = (2..).map(|number: u32| format!("{wanted}_{number}"));
+            if let Some(free) = numbered.into_iter().find(|name| !taken(name)) {
+                columns[index].name = free.into();
+            }
+        }
+    }
+    columns
+}
+
+/// The columns, some of which may bear the name of another.
+fn wanted_columns(info: &ModelInfo, extras: Extras) -> Vec<Quantity> {
     let mut columns = info.states.to_vec();
     columns.extend_from_slice(&info.inputs);
     if extras.outputs {

@@ -8,7 +8,7 @@ use appell_codegen::{Derived, derived};
 use appell_spec::Report;
 use serde_json::{Value, json};
 
-use crate::failure::{Failure, shown};
+use crate::failure::{Failure, shown, tell};
 use crate::source::Source;
 use crate::{files, progress};
 
@@ -28,36 +28,15 @@ pub(crate) struct Check {
 
 impl Check {
     pub(super) fn run(&self) -> Result<(), Failure> {
-        let sources = self
-            .models
-            .iter()
-            .map(|model| Source::find(model))
-            .collect::<Result<Vec<_>, _>>()?;
         let quiet = self.json.as_deref().is_some_and(files::is_stdout);
         let mut failed = Vec::new();
         let mut found = Vec::new();
-        for source in &sources {
-            let spinner = progress::spinner(&format!("deriving {}", source.file));
-            let derived = derived(&source.file, &source.text);
-            spinner.finish_and_clear();
-            match derived {
-                Ok(derived) => {
-                    let audit = Audit::of(&derived);
-                    if !quiet {
-                        files::print(&audit.text(source))?;
-                    }
-                    let warnings =
-                        Report::new(source.file.as_str(), source.text.as_str(), derived.warnings);
-                    if !warnings.diagnostics().is_empty() {
-                        eprint!("{}", shown(&warnings));
-                    }
-                    found.push(audit.json(source, &warnings));
-                }
-                Err(report) => {
-                    found.push(
-                        json!({ "file": source.file, "ok": false, "findings": findings(&report) }),
-                    );
-                    failed.push(report);
+        for model in &self.models {
+            match check(model, quiet) {
+                Ok(entry) => found.push(entry),
+                Err(failure) => {
+                    found.push(entry(model, &failure));
+                    failed.push(failure);
                 }
             }
         }
@@ -67,8 +46,39 @@ impl Check {
         if failed.is_empty() {
             Ok(())
         } else {
-            Err(Failure::Reports(failed))
+            Err(Failure::Several(failed))
         }
+    }
+}
+
+/// Tells of one spec and returns what it tells to programs.
+fn check(model: &str, quiet: bool) -> Result<Value, Failure> {
+    let source = Source::find(model)?;
+    let spinner = progress::spinner(&format!("deriving {}", source.file));
+    let derived = derived(&source.file, &source.text);
+    spinner.finish_and_clear();
+    let derived = derived?;
+    let audit = Audit::of(&derived);
+    if !quiet {
+        files::print(&audit.text(&source))?;
+    }
+    let warnings = Report::new(source.file.as_str(), source.text.as_str(), derived.warnings);
+    if !warnings.diagnostics().is_empty() {
+        tell(&shown(&warnings));
+    }
+    Ok(audit.json(&source, &warnings))
+}
+
+/// What programs read of a spec that is wrong or cannot be read.
+fn entry(model: &str, failure: &Failure) -> Value {
+    match failure {
+        Failure::Report(report) => {
+            json!({ "file": report.file(), "ok": false, "findings": findings(report) })
+        }
+        other => json!({
+            "file": model, "ok": false,
+            "findings": [{ "code": null, "message": other.to_string() }],
+        }),
     }
 }
 

@@ -6,9 +6,11 @@ use crate::failure::Failure;
 use crate::files;
 
 /// Writes shell completions to standard output.
+///
+/// For bash: `appell completions bash > ~/.local/share/bash-completion/completions/appell`
 #[derive(Debug, clap::Args)]
 pub(crate) struct Completions {
-    /// The shell.
+    /// The shell
     shell: clap_complete::Shell,
 }
 

@@ -8,7 +8,7 @@ use appell_runtime::integrate::Options;
 use appell_runtime::simulate::Method;
 
 use super::derive::{Format, Stage, derivation};
-use super::simulate::{Run, csv};
+use super::simulate::{Run, write_csv};
 use crate::controller::Plan;
 use crate::engine::Equations;
 use crate::failure::Failure;
@@ -34,8 +34,8 @@ impl Demo {
         let mut setup = Setup::new(&source.file, &source.text, equations.model().info())?;
         let law = feedback::parse("lane_change_5_m_s.toml", LANE_CHANGE, &setup)?;
         setup.start_from_law(&law)?;
-        let mut plan = Plan::new();
-        plan.feedback(law);
+        let mut plan = Plan::new(&setup);
+        plan.feedback(law)?;
         let run = Run {
             equations: &equations,
             setup: &setup,
@@ -43,7 +43,7 @@ impl Demo {
             interval: 0.01,
             method: Method::Dop853,
             options: Options::with_tolerances(1e-10, 1e-10),
-            watch_ranges: true,
+            reactions: false,
         };
         let (trajectory, failure) = run.run(plan)?;
         let panels = [
@@ -57,36 +57,25 @@ impl Demo {
         let path = Figure::path(&trajectory, "x_G", "y_G");
 
         let mut told = String::new();
-        let mut write = |name: &str, text: &str, about: &str| {
+        let mut place = |name: &str, about: &str| {
             let path = self.out.join(name);
             // Writing to a string cannot fail.
             let _ = writeln!(told, "  {:<28} {about}", path.display());
-            files::write(&path, text)
+            path
         };
         let html = derivation(&source, Format::Html, Stage::All)?;
-        write(
-            "unicycle.html",
-            &html,
-            "the derivation from frames to equations of motion",
-        )?;
+        let about = "the derivation from frames to equations of motion";
+        files::write(&place("unicycle.html", about), &html)?;
         let rust = derivation(&source, Format::Rust, Stage::All)?;
-        write(
-            "unicycle.rs",
-            &rust,
-            "the same equations as Rust, compiled into this program",
-        )?;
-        write(
-            "lane_change.csv",
-            &csv(&trajectory)?,
-            "the motion: states, input, outputs, energies",
-        )?;
-        write("lane_change.svg", &figure.to_svg(), "the motion over time")?;
+        let about = "the same equations as Rust, compiled into this program";
+        files::write(&place("unicycle.rs", about), &rust)?;
+        let about = "the motion: states, input, outputs, energies";
+        write_csv(&place("lane_change.csv", about), &trajectory)?;
+        let about = "the motion over time";
+        files::write(&place("lane_change.svg", about), &figure.to_svg())?;
         if let Some(path) = path {
-            write(
-                "path.svg",
-                &path.to_svg(),
-                "the path of the wheel centre, seen from above",
-            )?;
+            let about = "the path of the wheel centre, seen from above";
+            files::write(&place("path.svg", about), &path.to_svg())?;
         }
         files::print(&format!("{}\nopen:\n{told}", summary::text(&trajectory)))?;
         failure.map_or(Ok(()), |reason| Err(Failure::Computation(reason)))

@@ -75,7 +75,7 @@ pub(super) fn derivation(source: &Source, format: Format, stage: Stage) -> Resul
         mechanism,
         mut derivation,
         ..
-    } = derived(&source.file, &source.text).map_err(|report| Failure::Reports(vec![report]))?;
+    } = derived(&source.file, &source.text)?;
     let stage = match stage {
         Stage::Kinematics => page::Stage::Kinematics,
         Stage::Energy => page::Stage::Energy,
@@ -84,7 +84,7 @@ pub(super) fn derivation(source: &Source, format: Format, stage: Stage) -> Resul
         Stage::All => page::Stage::All,
     };
     let page = page(&mechanism, &mut derivation, stage)
-        .map_err(|findings| Failure::Reports(vec![report(&mechanism, &source.text, &findings)]))?;
+        .map_err(|findings| report(&mechanism, &source.text, &findings))?;
     spinner.finish_and_clear();
     Ok(match format {
         Format::Latex => page::latex(&page),
@@ -99,8 +99,7 @@ fn rust(source: &Source) -> Result<String, Failure> {
         return Ok(shipped.code.to_owned());
     }
     let spinner = progress::spinner("deriving the equations of motion");
-    let program = appell_codegen::compile(&source.file, &source.text, &FunctionKind::ALL)
-        .map_err(|report| Failure::Reports(vec![report]))?;
+    let program = appell_codegen::compile(&source.file, &source.text, &FunctionKind::ALL)?;
     let options = Options {
         spec: Some(source.text.clone()),
         ..Options::default()

@@ -35,7 +35,7 @@ pub(crate) struct Evaluate {
 impl Evaluate {
     pub(super) fn run(&self) -> Result<(), Failure> {
         let source = Source::find(&self.model)?;
-        let text = files::read(&self.cases)?;
+        let text = files::read(&self.cases, files::MAX_DATA)?;
         let equations = Equations::new(&source, self.engine)?;
         let model = equations.model();
         let info = model.info();

@@ -2,7 +2,8 @@
 
 use std::path::PathBuf;
 
-use appell_models::ALL;
+use appell_models::{ALL, Shipped};
+use appell_spec::mechanism::ConstraintKind;
 use serde_json::{Value, json};
 
 use crate::failure::Failure;
@@ -20,10 +21,8 @@ pub(crate) struct List {
 impl List {
     pub(super) fn run(&self) -> Result<(), Failure> {
         if let Some(path) = &self.json {
-            files::write_json(
-                path,
-                &json!({ "mechanisms": ALL.iter().map(entry).collect::<Vec<_>>() }),
-            )?;
+            let entries = ALL.iter().map(entry).collect::<Result<Vec<_>, _>>()?;
+            files::write_json(path, &json!({ "mechanisms": entries }))?;
             if files::is_stdout(path) {
                 return Ok(());
             }
@@ -35,12 +34,12 @@ impl List {
             rows.push(vec![
                 shipped.name.to_owned(),
                 info.speeds.to_string(),
-                info.constraint_rows.len().to_string(),
+                constraints(shipped)?,
                 info.title.to_string(),
                 short(&info.source),
             ]);
         }
-        files::print(&table(&rows, 1..3))
+        files::print(&table(&rows, 1..2))
     }
 }
 
@@ -54,7 +53,38 @@ fn short(source: &str) -> String {
     }
 }
 
-fn entry(shipped: &appell_models::Shipped) -> Value {
+/// Word of the spec and number of scalar rows of each constraint.
+fn kinds(shipped: &Shipped) -> Result<Vec<(String, &'static str, usize)>, Failure> {
+    let mechanism = appell_spec::load(shipped.file, shipped.spec)?.mechanism;
+    let kind = |kind: &ConstraintKind| match kind {
+        ConstraintKind::Rolling { .. } => ("rolling", 3),
+        ConstraintKind::Velocity { .. } => ("velocity", 1),
+        ConstraintKind::FixedVelocity { .. } => ("fixed_velocity", 1),
+        ConstraintKind::Position { .. } => ("position", 1),
+    };
+    let named = mechanism.constraints.into_iter().map(|constraint| {
+        let (word, rows) = kind(&constraint.kind);
+        (constraint.name, word, rows)
+    });
+    Ok(named.collect())
+}
+
+/// What binds a mechanism: rows that the equations solve, and rows that its coordinates satisfy by
+/// themselves.
+fn constraints(shipped: &Shipped) -> Result<String, Failure> {
+    let kinds = kinds(shipped)?;
+    let all: usize = kinds.iter().map(|(.., rows)| rows).sum();
+    let held = all.saturating_sub(shipped.model.info().constraint_rows.len());
+    let mut words: Vec<&str> = kinds.iter().map(|(_, word, _)| *word).collect();
+    words.dedup();
+    Ok(match (all, held) {
+        (0, _) => "-".to_owned(),
+        (_, 0) => format!("{}: {all} rows", words.join(", ")),
+        _ => format!("{}: {all} rows, {held} held by geometry", words.join(", ")),
+    })
+}
+
+fn entry(shipped: &Shipped) -> Result<Value, Failure> {
     let info = shipped.model.info();
     let names = |list: &[appell_runtime::model::Quantity]| -> Vec<String> {
         list.iter()
@@ -66,11 +96,16 @@ fn entry(shipped: &appell_models::Shipped) -> Value {
         .iter()
         .map(|(function, cost)| ((*function).to_owned(), json!(cost)))
         .collect();
-    json!({
+    let constraints: Vec<Value> = kinds(shipped)?
+        .into_iter()
+        .map(|(name, kind, rows)| json!({ "name": name, "kind": kind, "rows": rows }))
+        .collect();
+    Ok(json!({
         "name": shipped.name,
         "title": info.title,
         "source": info.source,
         "degrees_of_freedom": info.speeds,
+        "constraints": constraints,
         "constraint_rows": info.constraint_rows,
         "pseudo_velocities": names(info.speed_quantities()),
         "coordinates": names(info.coordinate_quantities()),
@@ -78,5 +113,5 @@ fn entry(shipped: &appell_models::Shipped) -> Value {
         "parameters": names(&info.parameters),
         "outputs": names(&info.outputs),
         "operations": costs,
-    })
+    }))
 }

@@ -7,6 +7,7 @@ mod derive;
 mod evaluate;
 mod list;
 mod new;
+mod schema;
 mod simulate;
 
 use crate::failure::Failure;
@@ -21,7 +22,7 @@ pub(crate) enum Command {
     Evaluate(evaluate::Evaluate),
     Simulate(simulate::Simulate),
     Demo(demo::Demo),
-    #[command(hide = true)]
+    Schema(schema::Schema),
     Completions(completions::Completions),
 }
 
@@ -35,6 +36,7 @@ pub(crate) fn run(command: Command) -> Result<(), Failure> {
         Command::Evaluate(command) => command.run(),
         Command::Simulate(command) => command.run(),
         Command::Demo(command) => command.run(),
+        Command::Schema(command) => command.run(),
         Command::Completions(command) => command.run(),
     }
 }

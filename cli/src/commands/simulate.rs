@@ -1,6 +1,6 @@
 //! `appell simulate`
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use appell_runtime::figure::Figure;
 use appell_runtime::integrate::Options;
@@ -10,16 +10,17 @@ use appell_runtime::{Simulation, Trajectory};
 
 use crate::controller::Plan;
 use crate::engine::{Engine, Equations};
-use crate::failure::Failure;
+use crate::failure::{Failure, note, tell};
 use crate::setup::{Assignment, Setup};
 use crate::source::Source;
-use crate::{feedback, files, progress, recorded, summary};
+use crate::{feedback, files, progress, reactions, recorded, summary};
 
 /// Integrates the equations of motion and tells what happened.
 ///
-/// A plain number is in the unit of the spec, `R=30cm` is converted, and `omega_2=5[m/s]/R` uses
-/// parameters. Expressions for inputs know `t`, states and parameters; numbers without a unit in
-/// them are in SI. Inputs, recordings and feedback add up.
+/// Plain numbers, such as `20`, `2*10` or `5*sin(2*t)`, are in the unit that the spec declares for
+/// the quantity. Names and numbers with a unit, such as `30cm` or `5[m/s]/R`, are converted and
+/// checked. Expressions for inputs know `t`, states and parameters; a plain number beside them,
+/// as in `-3*x - v`, is a gain in SI. Inputs and feedback add up.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Simulate {
     /// Name of a shipped mechanism or path of a spec
@@ -44,6 +45,9 @@ pub(crate) struct Simulate {
     /// Tolerated error of states near zero, in SI
     #[arg(long, default_value = "1e-9", allow_negative_numbers = true)]
     atol: f64,
+    /// Steps, rejected ones included, after which the integration is given up
+    #[arg(long, value_name = "N", default_value_t = Options::default().max_steps)]
+    max_steps: usize,
     /// A parameter, such as R=0.3 or R=30cm
     #[arg(long, value_name = "NAME=VALUE")]
     set: Vec<Assignment>,
@@ -65,7 +69,11 @@ pub(crate) struct Simulate {
     /// What evaluates the equations [default: emitted for shipped mechanisms, else jit]
     #[arg(long, value_enum)]
     engine: Option<Engine>,
-    /// Write the motion: time, states, inputs, outputs, energies, in the units of the spec
+    /// Also compute the constraint forces, as columns `reaction_…` in N, in the ground
+    #[arg(long)]
+    reactions: bool,
+    /// Write the motion: time, states, inputs, outputs, energies, in the units of the spec; `-` is
+    /// standard output, and the summary goes to standard error then
     #[arg(long, value_name = "FILE.csv")]
     csv: Option<PathBuf>,
     /// Draw states and inputs over time
@@ -104,12 +112,13 @@ impl Simulate {
             None => Equations::at_hand(&source)?,
         };
         let mut setup = Setup::new(&source.file, &source.text, equations.model().info())?;
+        setup.watch_ranges = !self.ignore_ranges;
         setup.set(&self.set)?;
-        let mut plan = Plan::new();
+        let mut plan = Plan::new(&setup);
         for file in &self.feedback {
             let law = feedback::read(file, &setup)?;
             setup.start_from_law(&law)?;
-            plan.feedback(law);
+            plan.feedback(law)?;
         }
         setup.start(&self.initial)?;
         for assignment in &self.input {
@@ -130,14 +139,22 @@ impl Simulate {
             t_end: self.t_end_s,
             interval,
             method,
-            options: Options::with_tolerances(self.rtol, self.atol),
-            watch_ranges: !self.ignore_ranges,
+            options: Options {
+                max_steps: self.max_steps,
+                ..Options::with_tolerances(self.rtol, self.atol)
+            },
+            reactions: self.reactions,
         };
         let undriven = plan.is_empty();
         let (trajectory, failure) = run.run(plan)?;
 
+        for [wanted, name] in trajectory.renamed() {
+            note(&format!(
+                "the spec uses the name `{wanted}`; the computed column is `{name}`"
+            ));
+        }
         if let Some(path) = &self.csv {
-            files::write(path, &csv(&trajectory)?)?;
+            write_csv(path, &trajectory)?;
         }
         if let Some(path) = &self.plot {
             files::write(path, &Figure::of_states_and_inputs(&trajectory).to_svg())?;
@@ -145,16 +162,28 @@ impl Simulate {
         if let Some(path) = &self.json {
             files::write_json(path, &summary::json(&trajectory, failure.as_deref()))?;
         }
-        if !self.json.as_deref().is_some_and(files::is_stdout) {
-            files::print(&summary::text(&trajectory))?;
-            if undriven && failure.is_none() && summary::rests(&trajectory) {
-                files::print(&format!("  nothing moves: {}\n", hint(&setup)))?;
-            }
+        let mut told = summary::text(&trajectory);
+        if undriven && failure.is_none() && summary::rests(&trajectory) {
+            told += &hint(&setup);
+        }
+        if self.takes_stdout() {
+            tell(&told);
+        } else {
+            files::print(&told)?;
         }
         match failure {
             None => Ok(()),
             Some(reason) => Err(Failure::Computation(reason)),
         }
+    }
+
+    /// Whether standard output belongs to one of the files.
+    fn takes_stdout(&self) -> bool {
+        let files = [&self.csv, &self.plot, &self.json];
+        files
+            .into_iter()
+            .flatten()
+            .any(|path| files::is_stdout(path))
     }
 }
 
@@ -173,7 +202,10 @@ fn positive(flag: &str, value: f64) -> Result<(), Failure> {
 fn hint(setup: &Setup<'_>) -> String {
     let first = setup.info.coordinate_quantities().last();
     let name = first.map_or("NAME", |coordinate| coordinate.name.as_ref());
-    format!("the mechanism starts at rest and nothing drives it; try `--initial {name}=0.1`")
+    format!(
+        "  nothing moves: the mechanism starts at rest and nothing drives it; try `--initial \
+         {name}=0.1`\n"
+    )
 }
 
 /// A motion to be computed.
@@ -190,28 +222,11 @@ pub(super) struct Run<'a> {
     pub(super) method: Method,
     /// Its tolerances.
     pub(super) options: Options,
-    /// Whether states must stay in their declared ranges.
-    pub(super) watch_ranges: bool,
+    /// Whether the constraint forces are computed.
+    pub(super) reactions: bool,
 }
 
 impl Run<'_> {
-    /// Outputs, and energies where the spec has no columns of these names.
-    fn extras(&self) -> Extras {
-        let info = self.setup.info;
-        let taken = ["kinetic_energy", "potential_energy", "power"]
-            .iter()
-            .any(|name| {
-                info.state_index(name).is_some()
-                    || info.input_index(name).is_some()
-                    || info.output_index(name).is_some()
-            });
-        Extras {
-            outputs: true,
-            energies: !taken,
-            ..Extras::default()
-        }
-    }
-
     /// The motion, and why it ends early if it does.
     pub(super) fn run(&self, plan: Plan) -> Result<(Trajectory, Option<String>), Failure> {
         let controller = plan.controller(self.setup)?;
@@ -224,33 +239,34 @@ impl Run<'_> {
             method: self.method,
             options: self.options,
             sampling: Sampling::Every(self.interval),
-            extras: self.extras(),
-            watch_ranges: self.watch_ranges,
+            extras: Extras {
+                outputs: true,
+                energies: true,
+                reactions: self.reactions,
+                residuals: false,
+            },
+            watch_ranges: self.setup.watch_ranges,
             progress: Some(Box::new(|t| clock.set_position(progress::milliseconds(t)))),
             ..Simulation::new(self.equations.model())
         };
         let outcome = simulation.run();
         clock.finish_and_clear();
-        match outcome {
-            Ok(trajectory) => Ok((trajectory, None)),
+        let (mut trajectory, reason) = match outcome {
+            Ok(trajectory) => (trajectory, None),
             Err(error) => {
                 let reason = error.to_string();
                 match error {
-                    SimulationError::Integration { trajectory, .. } => {
-                        Ok((*trajectory, Some(reason)))
-                    }
-                    _ => Err(Failure::Usage(reason)),
+                    SimulationError::Integration { trajectory, .. } => (*trajectory, Some(reason)),
+                    _ => return Err(Failure::Usage(reason)),
                 }
             }
-        }
+        };
+        reactions::name_units(&self.setup.mechanism, trajectory.columns_mut());
+        Ok((trajectory, reason))
     }
 }
 
-/// A trajectory as CSV.
-pub(super) fn csv(trajectory: &Trajectory) -> Result<String, Failure> {
-    let mut bytes = Vec::new();
-    trajectory
-        .write_csv(&mut bytes, CsvOptions::default())
-        .map_err(Failure::writing("the trajectory".as_ref()))?;
-    Ok(String::from_utf8_lossy(&bytes).into_owned())
+/// Writes a trajectory as CSV.
+pub(super) fn write_csv(path: &Path, trajectory: &Trajectory) -> Result<(), Failure> {
+    files::write_with(path, |to| trajectory.write_csv(to, CsvOptions::default()))
 }

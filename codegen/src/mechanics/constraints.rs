@@ -205,7 +205,9 @@ fn scalar_rows(
                 .collect();
             (Place::Point(*contact), scalars)
         }
-        ConstraintKind::Velocity { zero: left, equals } => {
+        ConstraintKind::Velocity {
+            zero: left, equals, ..
+        } => {
             let left = lowering.lower(graph, left).map_err(zero)?;
             let right = lowering.lower(graph, equals).map_err(zero)?;
             let value = graph.sub(left, right);

@@ -24,6 +24,7 @@ mod signs;
 
 pub use cost::OperationCount;
 pub use interpret::interpret;
+pub use pi::pi;
 
 use crate::program::{self, Program};
 use crate::symbolic::{Function, Rational, Relation};

@@ -3,7 +3,7 @@
 use crate::symbolic::Rational;
 
 /// `f64::consts::PI`, exactly.
-pub(crate) fn pi() -> Rational {
+pub fn pi() -> Rational {
     Rational::new(884_279_719_003_555, 281_474_976_710_656)
 }
 

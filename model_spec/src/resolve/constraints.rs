@@ -63,10 +63,11 @@ impl Resolver<'_> {
         }
         let right = item.expression("equals").cloned();
         let right = self.elaborate(&right.unwrap_or_else(|| zero(span)), &PRESCRIBED);
-        self.unify(&left, &right, "equate");
+        let dimension = self.unify(&left, &right, "equate").known();
         ConstraintKind::Velocity {
             zero: left.expr,
             equals: right.expr,
+            dimension: dimension.unwrap_or(Dimension::NONE),
         }
     }
 

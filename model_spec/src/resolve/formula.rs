@@ -1,12 +1,13 @@
 //! Expressions outside a spec that use its names: inputs on a command line, feedback laws.
 
-use num_traits::Zero;
+use num_rational::BigRational;
+use num_traits::{One, Zero};
 
 use crate::ast::{ExprAst, ExprAstKind};
 use crate::diagnostic::{Code, Diagnostic};
-use crate::expr::{Expr, Span};
+use crate::expr::{BinaryOp, Expr, Function, Span};
 use crate::parse;
-use crate::units::Dimension;
+use crate::units::Unit;
 
 use super::Resolver;
 use super::dimensions::Dim;
@@ -45,17 +46,22 @@ impl<'a> Snippet<'a> {
     }
 }
 
-/// Reads an expression with the names of a spec, which [`crate::load`] accepts.
+/// Reads the value of a quantity, with the names of a spec that [`crate::load`] accepts; the
+/// result is in SI.
 ///
-/// A number without a unit is one in SI and takes whatever dimension fits; without such numbers
-/// the dimension must be `wanted`, where that is known. The places of the findings are places in
-/// the snippet's document.
+/// - A value of plain numbers, such as `20`, `2*10` or `5*sin(2*t)`, is in the quantity's unit.
+/// - Names, and numbers with a unit, carry dimensions, which are checked: `5[m/s]/R`.
+/// - Gains: where time or the state may occur and no number has a unit, a plain number may stand
+///   beside names, as in `-3*x - v`. Everything is in SI then, and dimensions do not matter. A
+///   quantity that is not declared in SI must not be given so: two readings would differ.
+///
+/// The places of the findings are places in the snippet's document.
 pub fn formula(
     spec: &str,
     snippet: &Snippet<'_>,
     what: &'static str,
     scope: Scope,
-    wanted: Option<Dimension>,
+    unit: &Unit,
 ) -> Result<Expr, Vec<Diagnostic>> {
     let ast = parse::expression_in(snippet.document, snippet.text, snippet.whole.clone())
         .map_err(|finding| vec![finding])?;
@@ -75,29 +81,90 @@ pub fn formula(
         Scope::Schedule => Place::scheduled(what),
         Scope::Law => Place::law(what),
     };
-    let expr = resolver.expression(&ast, &place, wanted.map_or(Dim::Unknown, Dim::Known));
+    let plain = is_plain(&ast);
+    let numbers = any(&ast, &is_bare_number);
+    let gains = scope != Scope::Constant && numbers && !any(&ast, &has_unit);
+    let ast = if plain { times(ast, unit) } else { ast };
+    let expr = resolver.expression(&ast, &place, Dim::Known(unit.dimension));
     let mut findings = resolver.findings;
-    if has_bare_number(&ast) {
+    if gains && (plain || unit.is_si()) {
         findings.retain(|finding| finding.code != Code::UnitMismatch);
     }
     if findings.is_empty() {
-        Ok(expr)
-    } else {
-        Err(findings)
+        return Ok(expr);
+    }
+    if numbers {
+        for finding in &mut findings {
+            if finding.code == Code::UnitMismatch && finding.help.is_none() {
+                finding.help = Some("write units after the numbers, as in `5[m/s]`".to_owned());
+            }
+        }
+    }
+    Err(findings)
+}
+
+/// Whether a value is a number whatever its arguments measure.
+fn is_plain(ast: &ExprAst) -> bool {
+    match &ast.kind {
+        ExprAstKind::Number(_, unit) => unit.is_none(),
+        ExprAstKind::Name(name) => name == "pi",
+        ExprAstKind::Rate(_) | ExprAstKind::Broken => false,
+        ExprAstKind::Negate(a) => is_plain(a),
+        ExprAstKind::Binary(_, a, b) => is_plain(a) && is_plain(b),
+        ExprAstKind::Call(function, arguments) => match function {
+            Function::Sin
+            | Function::Cos
+            | Function::Tan
+            | Function::Sinh
+            | Function::Cosh
+            | Function::Tanh
+            | Function::Exp
+            | Function::Ln
+            | Function::Sign
+            | Function::SmoothSign => true,
+            // Angles are in radians, like names that measure one.
+            Function::Asin | Function::Acos | Function::Atan | Function::Atan2 => false,
+            _ => arguments.iter().all(is_plain),
+        },
+        ExprAstKind::Choice { branches, .. } => branches.iter().all(is_plain),
     }
 }
 
-/// Whether a number stands without a unit; zero fits everywhere.
-fn has_bare_number(ast: &ExprAst) -> bool {
-    match &ast.kind {
-        ExprAstKind::Number(value, unit) => unit.is_none() && !value.is_zero(),
-        ExprAstKind::Name(_) | ExprAstKind::Rate(_) | ExprAstKind::Broken => false,
-        ExprAstKind::Negate(a) => has_bare_number(a),
-        ExprAstKind::Binary(_, a, b) => has_bare_number(a) || has_bare_number(b),
-        ExprAstKind::Call(_, arguments) => arguments.iter().any(has_bare_number),
-        ExprAstKind::Choice {
-            compared, branches, ..
-        } => compared.iter().chain(branches.iter()).any(has_bare_number),
+/// Zero fits everywhere.
+fn is_bare_number(ast: &ExprAst) -> bool {
+    matches!(&ast.kind, ExprAstKind::Number(value, None) if !value.is_zero())
+}
+
+fn has_unit(ast: &ExprAst) -> bool {
+    matches!(ast.kind, ExprAstKind::Number(_, Some(_)))
+}
+
+/// Whether an expression has a part of a kind.
+fn any(ast: &ExprAst, is: &impl Fn(&ExprAst) -> bool) -> bool {
+    let within = |part: &ExprAst| any(part, is);
+    is(ast)
+        || match &ast.kind {
+            ExprAstKind::Negate(a) => within(a),
+            ExprAstKind::Binary(_, a, b) => within(a) || within(b),
+            ExprAstKind::Call(_, arguments) => arguments.iter().any(within),
+            ExprAstKind::Choice {
+                compared, branches, ..
+            } => compared.iter().chain(branches.iter()).any(within),
+            _ => false,
+        }
+}
+
+/// A number of a unit.
+fn times(number: ExprAst, unit: &Unit) -> ExprAst {
+    let span = number.span.clone();
+    let one = ExprAstKind::Number(BigRational::one(), Some(Box::new(unit.clone())));
+    let one = ExprAst {
+        kind: one,
+        span: span.clone(),
+    };
+    ExprAst {
+        kind: ExprAstKind::Binary(BinaryOp::Multiply, Box::new(number), Box::new(one)),
+        span,
     }
 }
 
@@ -108,6 +175,7 @@ mod tests {
     const SPEC: &str = "\
 [parameters]
 R = { value = 0.3, unit = 'm' }
+alpha = { value = 3, unit = 'deg' }
 [coordinates]
 x = { unit = 'm' }
 [inputs]
@@ -116,34 +184,73 @@ u = { unit = 'N' }
 v = { value = 'dot(x)', unit = 'm/s' }
 ";
 
-    fn read(text: &str, scope: Scope) -> Result<Expr, String> {
-        let force = crate::units::parse("N").map(|unit| unit.dimension).ok();
-        formula(SPEC, &Snippet::alone(text), "an input", scope, force).map_err(|findings| {
-            findings
-                .iter()
-                .map(|f| f.message.clone())
-                .collect::<Vec<_>>()
-                .join("; ")
+    fn read(text: &str, scope: Scope, unit: &str) -> Result<Expr, String> {
+        let unit = crate::units::parse(unit).expect("a unit");
+        let snippet = Snippet::alone(text);
+        formula(SPEC, &snippet, "an input", scope, &unit).map_err(|findings| {
+            let messages = findings.iter().map(|finding| finding.message.clone());
+            messages.collect::<Vec<_>>().join("; ")
         })
     }
 
-    #[test]
-    fn numbers_without_unit_take_any_dimension() {
-        assert!(read("5*sin(2*t) - 3*x - v", Scope::Law).is_ok());
-        assert!(read("5[N]", Scope::Constant).is_ok());
+    fn accepts(text: &str, scope: Scope, unit: &str) {
+        if let Err(message) = read(text, scope, unit) {
+            panic!("{text}: {message}");
+        }
+    }
+
+    fn refuses(text: &str, scope: Scope, unit: &str) {
+        assert!(read(text, scope, unit).is_err(), "{text}");
     }
 
     #[test]
-    fn units_and_names_are_checked() {
+    fn plain_numbers_fit_every_quantity() {
+        for text in ["20", "2*10", "-pi/6", "sqrt(2)", "min(1, 2)", "0"] {
+            for unit in ["deg", "kN", "1"] {
+                accepts(text, Scope::Constant, unit);
+            }
+        }
+        for text in ["5*sin(2*t)", "if(t < 2, 5, -5)", "exp(-t)*2"] {
+            accepts(text, Scope::Schedule, "kN");
+        }
+    }
+
+    #[test]
+    fn quantities_are_checked_also_beside_numbers() {
+        accepts("5[N]", Scope::Constant, "kN");
+        accepts("2*R", Scope::Constant, "cm");
+        accepts("5[m/s]/R", Scope::Constant, "rad/s");
+        accepts("2*alpha", Scope::Constant, "deg");
+        accepts("5[N]*sin(2[rad/s]*t)", Scope::Law, "N");
+        accepts("if(t < 2[s], 5, -5)", Scope::Law, "kN");
+        for text in ["5/R", "R + 1", "2*alpha", "2*5[kg]", "sin(2*R)*1[m]"] {
+            refuses(text, Scope::Constant, "m");
+        }
+        refuses("20 + 1[deg]", Scope::Constant, "m");
+        refuses("5[N]*sin(2*t)", Scope::Law, "N");
+        refuses("5 + 1[N]", Scope::Law, "N");
         assert_eq!(
-            read("R", Scope::Law),
+            read("R", Scope::Law, "N"),
             Err("an input must have the unit `N`, found a length".to_owned())
         );
-        assert!(read("2*y", Scope::Law).is_err());
-        assert!(read("2*u", Scope::Law).is_err());
-        assert!(read("2*x", Scope::Schedule).is_err());
-        assert!(read("2*t", Scope::Constant).is_err());
-        assert!(read("2*", Scope::Constant).is_err());
-        assert!(read("", Scope::Constant).is_err());
+    }
+
+    #[test]
+    fn gains_are_in_si_and_need_a_quantity_in_si() {
+        for text in ["5*sin(2*t) - 3*x - v", "2*R"] {
+            accepts(text, Scope::Law, "N");
+            refuses(text, Scope::Law, "kN");
+            refuses(text, Scope::Constant, "N");
+        }
+    }
+
+    #[test]
+    fn names_are_those_of_the_scope() {
+        refuses("2*y", Scope::Law, "N");
+        refuses("2*u", Scope::Law, "N");
+        refuses("2*x", Scope::Schedule, "N");
+        refuses("2*t", Scope::Constant, "N");
+        refuses("2*", Scope::Constant, "N");
+        refuses("", Scope::Constant, "N");
     }
 }

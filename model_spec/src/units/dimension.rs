@@ -40,6 +40,8 @@ impl Dimension {
     pub const FORCE: Self = Self::integers([1, 1, -2, 0, 0, 0, 0]);
     /// A torque or an energy.
     pub const TORQUE: Self = Self::integers([2, 1, -2, 0, 0, 0, 0]);
+    /// A power.
+    pub const POWER: Self = Self::integers([2, 1, -3, 0, 0, 0, 0]);
     /// A moment of inertia.
     pub const INERTIA: Self = Self::integers([2, 1, 0, 0, 0, 0, 0]);
 

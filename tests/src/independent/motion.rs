@@ -103,7 +103,7 @@ impl<S: Real> Motion<S> {
                 ConstraintKind::Rolling { body, contact } => {
                     motion.rows.extend(motion.material(*body, *contact, place));
                 }
-                ConstraintKind::Velocity { zero, equals } => {
+                ConstraintKind::Velocity { zero, equals, .. } => {
                     motion.rows.push(first(values.of(zero) - values.of(equals)));
                 }
                 ConstraintKind::FixedVelocity {

@@ -1,0 +1,25 @@
+//! `appell schema`
+
+use std::path::PathBuf;
+
+use crate::failure::Failure;
+use crate::files;
+
+/// Writes the JSON schema of specs, for completion and checks in editors.
+///
+/// Name the file in the first line of a spec, `#:schema ./appell.schema.json`, and an editor with
+/// Taplo (in VS Code the extension Even Better TOML) completes keys and marks mistakes.
+#[derive(Debug, clap::Args)]
+pub(crate) struct Schema {
+    /// Write to a file instead of standard output
+    #[arg(long, value_name = "FILE")]
+    out: Option<PathBuf>,
+}
+
+impl Schema {
+    pub(super) fn run(&self) -> Result<(), Failure> {
+        let schema = appell_spec::schema::json_schema();
+        let text = schema.trim_end().to_owned() + "\n";
+        files::write(self.out.as_deref().unwrap_or("-".as_ref()), &text)
+    }
+}

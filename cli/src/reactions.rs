@@ -1,0 +1,37 @@
+//! Units of the constraint forces.
+
+use appell_runtime::model::Quantity;
+use appell_spec::Mechanism;
+use appell_spec::mechanism::ConstraintKind;
+use appell_spec::units::{Dimension, Unit};
+
+/// Names the unit of every column `reaction_…`: a force for a point; for a constraint without a
+/// point its multiplier, which is a power divided by what the constraint holds at zero.
+pub(crate) fn name_units(mechanism: &Mechanism, columns: &mut [Quantity]) {
+    let components = columns.iter_mut().filter_map(|column| {
+        let name = column.name.strip_prefix("reaction_")?;
+        let place = ["_x", "_y", "_z"]
+            .iter()
+            .find_map(|axis| name.strip_suffix(axis))?;
+        Some((place.to_owned(), column))
+    });
+    for (place, column) in components {
+        let unit = if mechanism.points.iter().any(|point| point.name == place) {
+            "N".to_owned()
+        } else {
+            multiplier(mechanism, &place).unwrap_or_default()
+        };
+        column.unit = unit.into();
+    }
+}
+
+fn multiplier(mechanism: &Mechanism, place: &str) -> Option<String> {
+    let name = place.strip_prefix("constraint_");
+    let mut constraints = mechanism.constraints.iter();
+    let constraint = constraints.find(|c| c.name == place || Some(c.name.as_str()) == name)?;
+    let ConstraintKind::Velocity { dimension, .. } = &constraint.kind else {
+        return None;
+    };
+    let unit = Dimension::POWER.over(dimension).ok()?;
+    Some(Unit::si(unit).text)
+}

@@ -63,7 +63,7 @@ fn expressions(mechanism: &Mechanism) -> Vec<(Item, &Spec)> {
     for (i, constraint) in mechanism.constraints.iter().enumerate() {
         let item = Item::Constraint(i);
         match &constraint.kind {
-            ConstraintKind::Velocity { zero, equals } => {
+            ConstraintKind::Velocity { zero, equals, .. } => {
                 all.extend([(item, zero), (item, equals)]);
             }
             ConstraintKind::FixedVelocity {

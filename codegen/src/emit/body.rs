@@ -215,7 +215,7 @@ impl Body<'_> {
     fn results(&mut self, function: &Function) {
         let mut fields = Vec::new();
         let structure = result_struct(function);
-        let names = self.types.fields(function);
+        let names = Types::fields(function);
         let results = function.results.iter().zip(&self.schedule.results);
         for ((array, result), name) in results.zip(&names) {
             let value = self.result(array, &result.entries);
@@ -377,9 +377,8 @@ fn collect_constants(tree: &Tree, constants: &mut BTreeSet<Rational>) {
 fn constant(value: &Rational) -> Expr {
     const EXACT: u64 = 1 << 53;
     // Clippy rejects the digits of π.
-    match parts_of_pi(value) {
-        Some((1, 1)) => return syn::parse_quote!(core::f64::consts::PI),
-        _ => {}
+    if parts_of_pi(value) == Some((1, 1)) {
+        return syn::parse_quote!(core::f64::consts::PI);
     }
     match value.as_small() {
         // Both are exact as doubles, so the quotient is rounded once.

@@ -154,7 +154,7 @@ fn quantity(quantity: &Quantity) -> TokenStream {
         range: [low, high],
     } = quantity;
     let [name, about, unit]: [&str; 3] = [name, about, unit];
-    let scaled = (*scale != 1.0).then(|| {
+    let scaled = (scale.to_bits() != 1.0_f64.to_bits()).then(|| {
         let scale = double(*scale);
         quote!(.scaled(#scale))
     });

@@ -196,7 +196,7 @@ impl<'a> Types<'a> {
     }
 
     /// Field names of the results of a function, no two equal.
-    pub(super) fn fields(&self, function: &Function) -> Vec<String> {
+    pub(super) fn fields(function: &Function) -> Vec<String> {
         let mut names = Names::default();
         function
             .results
@@ -213,7 +213,7 @@ impl<'a> Types<'a> {
         let fields = function
             .results
             .iter()
-            .zip(self.fields(function))
+            .zip(Self::fields(function))
             .map(|(array, field)| {
                 let text = docs(&[one_line(&array.about)]);
                 let field = ident(&field);

@@ -68,7 +68,6 @@ impl Derivation {
     ) -> Outcome<Vec<Array>> {
         let speeds = &info.states[..info.speeds];
         let coordinates = &info.states[info.speeds..];
-        let source = Source(mechanism);
         Ok(match kind {
             FunctionKind::Kinematics => {
                 let rates = self.coordinate_rates.clone();
@@ -108,7 +107,8 @@ impl Derivation {
             FunctionKind::Jacobians => {
                 let symbols = &self.symbols;
                 let states = [symbols.speeds.as_slice(), &symbols.coordinates].concat();
-                let [a, b] = self.derivatives([states, input_symbols(symbols, info)])?;
+                let inputs = input_symbols(symbols, info);
+                let [a, b] = self.derivatives([&states, &inputs])?;
                 vec![
                     Array::rates(info, self.rates()),
                     Array::jacobian("a", A, &info.states, &info.states, a),
@@ -116,55 +116,13 @@ impl Derivation {
                 ]
             }
             FunctionKind::ParameterJacobian => {
-                let [p] = self.derivatives([self.symbols.parameters.clone()])?;
+                let parameters = self.symbols.parameters.clone();
+                let [p] = self.derivatives([&parameters])?;
                 vec![Array::jacobian("p", P, &info.states, &info.parameters, p)]
             }
             FunctionKind::Energies => self.energies(),
-            FunctionKind::ConstraintResidual => {
-                let graph = &mut self.algebra.graph;
-                let residual =
-                    reactions::residual(graph, &self.constraints, &self.coordinate_rates);
-                let rows = self
-                    .constraints
-                    .rows
-                    .iter()
-                    .filter(|row| !row.is_embedded());
-                let layout = Layout::Vector(residual.len());
-                let about = "Constraint rows.";
-                let mut array = Array::new("residual", about, layout, residual)
-                    .labelled(rows.clone().map(|row| format!("residual_{}", row.name)));
-                let constraints: Vec<usize> = rows.map(|row| row.constraint).collect();
-                let mut start = 0;
-                for same in constraints.chunk_by(|a, b| a == b) {
-                    let title = source.of_constraint(same[0]);
-                    array = array.under(&title, start..start + same.len());
-                    start += same.len();
-                }
-                vec![array]
-            }
-            FunctionKind::ConstraintForces => {
-                let forces = reactions::reactions(
-                    &mut self.algebra,
-                    mechanism,
-                    &self.symbols,
-                    &self.constraints,
-                    &self.velocities.violating,
-                    &self.bodies,
-                    &self.motion.accelerations,
-                )?;
-                let layout = Layout::Matrix(forces.len(), 3);
-                let places = &self.constraints.reactions;
-                let labels = places
-                    .iter()
-                    .flat_map(|place| ["x", "y", "z"].map(|axis| format!("F_{place}_{axis}")));
-                let about = "Reactions in the ground.";
-                let mut array =
-                    Array::new("forces", about, layout, forces.concat()).labelled(labels);
-                for (i, place) in places.iter().enumerate() {
-                    array = array.under(&format!("Reaction `{place}`."), 3 * i..3 * i + 3);
-                }
-                vec![array]
-            }
+            FunctionKind::ConstraintResidual => vec![self.constraint_residual(mechanism)],
+            FunctionKind::ConstraintForces => vec![self.constraint_forces(mechanism)?],
             FunctionKind::Outputs => self.outputs(mechanism)?,
             FunctionKind::Switches => {
                 let rates = self.rates();
@@ -196,6 +154,56 @@ impl Derivation {
             }
             _ => function,
         }
+    }
+
+    /// The rows that geometry does not embed, at the generalised velocities.
+    fn constraint_residual(&mut self, mechanism: &Mechanism) -> Array {
+        let graph = &mut self.algebra.graph;
+        let residual = reactions::residual(graph, &self.constraints, &self.coordinate_rates);
+        let rows = || {
+            let rows = self.constraints.rows.iter();
+            rows.filter(|row| !row.is_embedded())
+        };
+        let layout = Layout::Vector(residual.len());
+        let mut array = Array::new("residual", "Constraint rows.", layout, residual)
+            .labelled(rows().map(|row| format!("residual_{}", row.name)));
+        let constraints: Vec<usize> = rows().map(|row| row.constraint).collect();
+        let mut start = 0;
+        for same in constraints.chunk_by(|a, b| a == b) {
+            let title = Source(mechanism).of_constraint(same[0]);
+            array = array.under(&title, start..start + same.len());
+            start += same.len();
+        }
+        array
+    }
+
+    /// One row per place with a reaction.
+    fn constraint_forces(&mut self, mechanism: &Mechanism) -> Outcome<Array> {
+        let forces = reactions::reactions(
+            &mut self.algebra,
+            mechanism,
+            &self.symbols,
+            &self.constraints,
+            &self.velocities.violating,
+            &self.bodies,
+            &self.motion.accelerations,
+        )?;
+        let layout = Layout::Matrix(forces.len(), 3);
+        let places = &self.constraints.reactions;
+        let labels = places
+            .iter()
+            .flat_map(|place| ["x", "y", "z"].map(|axis| format!("F_{place}_{axis}")));
+        let mut array = Array::new(
+            "forces",
+            "Reactions in the ground.",
+            layout,
+            forces.concat(),
+        )
+        .labelled(labels);
+        for (i, place) in places.iter().enumerate() {
+            array = array.under(&format!("Reaction `{place}`."), 3 * i..3 * i + 3);
+        }
+        Ok(array)
     }
 
     /// The outputs of the spec.
@@ -280,10 +288,7 @@ impl Derivation {
     }
 
     /// Derivatives of ẋ by each list of variables, row by row.
-    fn derivatives<const N: usize>(
-        &mut self,
-        variables: [Vec<Expr>; N],
-    ) -> Outcome<[Vec<Expr>; N]> {
+    fn derivatives<const N: usize>(&mut self, variables: [&[Expr]; N]) -> Outcome<[Vec<Expr>; N]> {
         let implicit = ImplicitMotion {
             gibbs: &self.gibbs,
             forces: &self.forces,
@@ -293,7 +298,7 @@ impl Derivation {
         let residual = implicit.residual(&mut self.algebra, &self.symbols);
         let rows = residual.len() + self.coordinate_rates.len();
         let mut derivatives = [const { Vec::new() }; N];
-        for (derivatives, variables) in derivatives.iter_mut().zip(&variables) {
+        for (derivatives, variables) in derivatives.iter_mut().zip(variables) {
             let (algebra, symbols) = (&mut self.algebra, &self.symbols);
             let columns = implicit.jacobian(algebra, symbols, &residual, variables)?;
             for row in 0..rows {

@@ -92,6 +92,14 @@ impl Algebra {
         v.map(|component| self.shortest(component))
     }
 
+    /// An expression with `parts` written out, multiplied out and nested again. `None` where that
+    /// takes too many terms.
+    pub fn written_out(&mut self, expr: Expr, parts: &[(Expr, Expr)]) -> Option<Expr> {
+        let plain = Substitution::of_parts(&self.graph, parts).apply(&mut self.graph, expr)?;
+        let expanded = self.graph.expand(plain, MOST_TERMS)?;
+        Some(self.graph.nest(expanded))
+    }
+
     /// A quotient as `whole + over / under` without common factors, with `parts` written out:
     /// `[whole, over, under]`. `None` where writing it out takes too many terms.
     pub fn cancelled(

@@ -28,6 +28,14 @@ impl FactorizedBlock {
     ) -> Outcome<Self> {
         let name = |speed: usize| mechanism.pseudo_velocities[speed].label.name.as_str();
         let mut schur = mass_matrix.to_vec();
+        for &i in speeds {
+            for &j in speeds.iter().filter(|&&j| j <= i) {
+                let entry = &format!("M_{}_{}", name(i), name(j));
+                let entry = algebra.graph.name(entry, schur[i][j]);
+                schur[i][j] = entry;
+                schur[j][i] = entry;
+            }
+        }
         let mut open = speeds.to_vec();
         let mut block = Self {
             speeds: Vec::new(),
@@ -38,15 +46,13 @@ impl FactorizedBlock {
         let mut columns: Vec<Vec<Expr>> = Vec::new();
         while !open.is_empty() {
             let k = simplest_pivot(algebra, mechanism, &schur, &mut open)?;
-            let pivot = algebra
-                .graph
-                .name(&format!("pivot_{}", name(k)), schur[k][k]);
+            let pivot = algebra.graph.name(&format!("D_{}", name(k)), schur[k][k]);
             let mut column = vec![Graph::ZERO; mass_matrix.len()];
             for &i in &open {
                 let ratio = algebra.graph.div(schur[i][k], pivot);
                 column[i] = algebra
                     .graph
-                    .name(&format!("l_{}_{}", name(i), name(k)), ratio);
+                    .name(&format!("L_{}_{}", name(i), name(k)), ratio);
             }
             for (a, &i) in open.iter().enumerate() {
                 for &j in &open[..=a] {
@@ -60,7 +66,7 @@ impl FactorizedBlock {
                     } else {
                         algebra
                             .graph
-                            .name(&format!("m_{}_{}", name(i), name(j)), entry)
+                            .name(&format!("D_{}_{}", name(i), name(j)), entry)
                     };
                     schur[i][j] = entry;
                     schur[j][i] = entry;
@@ -86,8 +92,15 @@ impl FactorizedBlock {
         self.speeds.iter().copied().zip(self.pivots.iter().copied())
     }
 
-    /// Unknowns of `M x = right` for the speeds of the block.
-    pub fn solve(&self, algebra: &mut Algebra, right: &[Expr], x: &mut [Expr]) {
+    /// Unknowns of `M x = right` for the speeds of the block. `name` is given the solutions `z` of
+    /// `L z = right`.
+    pub fn solve(
+        &self,
+        algebra: &mut Algebra,
+        right: &[Expr],
+        x: &mut [Expr],
+        mut name: impl FnMut(&mut Graph, usize, Expr) -> Expr,
+    ) {
         let graph = &mut algebra.graph;
         let mut z: Vec<Expr> = Vec::with_capacity(self.speeds.len());
         for (&speed, lower) in self.speeds.iter().zip(&self.lower) {
@@ -96,7 +109,8 @@ impl FactorizedBlock {
                 let term = graph.mul(entry, done);
                 terms.push(graph.neg(term));
             }
-            z.push(graph.sum(&terms));
+            let sum = graph.sum(&terms);
+            z.push(name(graph, speed, sum));
         }
         for i in (0..self.speeds.len()).rev() {
             let mut terms = vec![graph.div(z[i], self.pivots[i])];

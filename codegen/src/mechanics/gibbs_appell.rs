@@ -273,6 +273,25 @@ pub struct GibbsForm {
     pub bias: Vec<Expr>,
 }
 
+impl GibbsForm {
+    /// Writes out the named `parts` in the bias where terms of several of them cancel: all entries,
+    /// and back to the names where these are shorter.
+    pub fn write_out_what_cancels(&mut self, algebra: &mut Algebra, parts: &[(Expr, Expr)]) {
+        let written_out = |&named| algebra.written_out(named, parts).unwrap_or(named);
+        let mut bias: Vec<Expr> = self.bias.iter().map(written_out).collect();
+        for (i, &named) in self.bias.iter().enumerate() {
+            let before = algebra.graph.operations(&bias);
+            let plain = std::mem::replace(&mut bias[i], named);
+            if algebra.graph.operations(&bias) > before {
+                bias[i] = plain;
+            }
+        }
+        if algebra.graph.operations(&bias) < algebra.graph.operations(&self.bias) {
+            self.bias = bias;
+        }
+    }
+}
+
 /// ∂S/∂ω̇ by body: `Σ m v_i · a + w_i · ḣ`, `v_i` and `w_i` the partial velocities.
 pub fn gibbs_form(algebra: &mut Algebra, bodies: &[BodyMotion], speeds: usize) -> GibbsForm {
     let mut mass_matrix = vec![vec![Graph::ZERO; speeds]; speeds];

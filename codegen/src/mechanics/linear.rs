@@ -87,7 +87,9 @@ impl ImplicitMotion<'_> {
                             column[equation.speed] = equation.less_couplings(algebra, own, &column);
                         }
                     }
-                    Block::Factorized(block) => block.solve(algebra, &right, &mut column),
+                    Block::Factorized(block) => {
+                        block.solve(algebra, &right, &mut column, |_, _, z| z);
+                    }
                 }
             }
             for &rate in self.coordinate_rates {

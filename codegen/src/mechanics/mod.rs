@@ -117,12 +117,13 @@ fn equations(mechanism: &Mechanism) -> Outcome<Derivation> {
     )?;
     let bodies = gibbs_appell::body_motions(&mut algebra, mechanism, &symbols, &kinematics, rates)?;
     algebra.check_size()?;
-    let gibbs = gibbs_appell::gibbs_form(&mut algebra, &bodies, symbols.speeds.len());
+    let mut gibbs = gibbs_appell::gibbs_form(&mut algebra, &bodies, symbols.speeds.len());
     let loads = loads::applied_loads(&mut algebra, mechanism, &symbols, &kinematics, rates)?;
     let forces = loads::generalized_forces(&mut algebra, &loads, &symbols.speeds);
 
     algebra.check_size()?;
     let parts = gibbs_appell::named_parts(&mut algebra.graph, &bodies);
+    gibbs.write_out_what_cancels(&mut algebra, &parts);
     let motion = motion::solve(&mut algebra, mechanism, &gibbs, &forces, &parts)?;
     let coordinate_rates = mechanism
         .coordinates

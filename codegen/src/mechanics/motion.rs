@@ -13,7 +13,7 @@ use crate::symbolic::{Expr, Graph};
 
 /// Blocks up to this size are eliminated by formulas, each in its shortest form; larger ones by an
 /// unrolled factorisation with named entries.
-const LARGEST_EXPLICIT_BLOCK: usize = 3;
+const LARGEST_EXPLICIT_BLOCK: usize = 2;
 
 /// The solved equations of motion.
 #[derive(Debug, Clone)]
@@ -57,11 +57,12 @@ pub fn solve(
     forces: &[Expr],
     parts: &[(Expr, Expr)],
 ) -> Outcome<Motion> {
-    let names: Vec<String> = mechanism
+    let names: Vec<&str> = mechanism
         .pseudo_velocities
         .iter()
-        .map(|w| format!("{}_dot", w.label.name))
+        .map(|w| w.label.name.as_str())
         .collect();
+    let dots: Vec<String> = names.iter().map(|name| format!("{name}_dot")).collect();
     let right: Vec<Expr> = forces
         .iter()
         .zip(&gibbs.bias)
@@ -95,14 +96,21 @@ pub fn solve(
                 for equation in equations {
                     let value = equation.solved(algebra, &accelerations);
                     accelerations[equation.speed] =
-                        algebra.graph.name(&names[equation.speed], value);
+                        algebra.graph.name(&dots[equation.speed], value);
                 }
             }
             Block::Factorized(block) => {
-                block.solve(algebra, &right, &mut accelerations);
+                let right: Vec<Expr> = names
+                    .iter()
+                    .zip(&right)
+                    .map(|(name, &right)| algebra.graph.name(&format!("rhs_{name}"), right))
+                    .collect();
+                block.solve(algebra, &right, &mut accelerations, |graph, speed, z| {
+                    graph.name(&format!("z_{}", names[speed]), z)
+                });
                 for speed in speeds {
                     let value = accelerations[speed];
-                    accelerations[speed] = algebra.graph.name(&names[speed], value);
+                    accelerations[speed] = algebra.graph.name(&dots[speed], value);
                 }
             }
         }

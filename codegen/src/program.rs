@@ -209,7 +209,7 @@ impl FunctionKind {
             Self::ConstraintForces => (
                 "constraint_forces",
                 "ConstraintForces",
-                "Reactions in the ground, in N; one row per reaction.",
+                "Reactions: forces on what is held, in N. A row that is no contact starts with its multiplier.",
             ),
             Self::Outputs => ("outputs", "OutputArrays", "Outputs of the spec."),
             Self::Switches => (
@@ -300,7 +300,8 @@ impl Array {
     ) -> Self {
         let layout = Layout::Matrix(states.len(), columns.len());
         let labels = states.iter().flat_map(|row| {
-            let label = move |column: &Quantity| format!("{name}_{}_{}", row.name, column.name);
+            let symbol = name.to_uppercase();
+            let label = move |column: &Quantity| format!("{symbol}_{}_{}", row.name, column.name);
             columns.iter().map(label)
         });
         let mut array = Self::new(name, about, layout, entries).labelled(labels);
@@ -317,6 +318,13 @@ impl Array {
     #[must_use]
     pub fn labelled(mut self, labels: impl Iterator<Item = String>) -> Self {
         self.labels = labels.collect();
+        self
+    }
+
+    /// The same with names for rows and columns.
+    #[must_use]
+    pub fn with_names(mut self, rows: Vec<String>, columns: Vec<String>) -> Self {
+        self.names = [rows, columns];
         self
     }
 

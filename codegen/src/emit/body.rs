@@ -269,7 +269,7 @@ impl Body<'_> {
     /// A matrix that starts with zeros and gets the entries that are none.
     fn sparse(&mut self, array: &Array, rows: usize, columns: usize, entries: &[Tree]) -> Expr {
         let zero = self.types.names.constant(&Rational::ZERO);
-        let mut local = array.name.clone();
+        let mut local = array.name.to_uppercase();
         while self.schedule.names.contains(&local) || self.types.is_argument(&local) {
             local.push('_');
         }

@@ -11,6 +11,29 @@ use super::types::{Types, result_struct};
 use crate::program::Function;
 use crate::schedule::{Argument, OperationCount, Schedule};
 
+/// What the rows and columns of a plain array are, where no struct tells it.
+fn rows_and_columns(function: &Function) -> Vec<String> {
+    let [array] = function.results.as_slice() else {
+        return Vec::new();
+    };
+    let [rows, columns] = &array.names;
+    let list = |names: &[String]| {
+        let names: Vec<String> = names
+            .iter()
+            .map(|name| format!("`{}`", one_line(name)))
+            .collect();
+        names.join(", ")
+    };
+    match (rows.is_empty(), columns.is_empty()) {
+        (true, _) => Vec::new(),
+        (false, true) => vec![format!("Rows: {}.", list(rows)), String::new()],
+        (false, false) => vec![
+            format!("Rows: {}. Columns: {}.", list(rows), list(columns)),
+            String::new(),
+        ],
+    }
+}
+
 /// The function as an item.
 pub(super) fn function(
     types: &Types<'_>,
@@ -32,6 +55,7 @@ pub(super) fn function(
     let name = known(function.kind.name());
     let mut lines = vec![function.kind.about().to_owned(), String::new()];
     lines.extend(super::picture::picture(types, function));
+    lines.extend(rows_and_columns(function));
     lines.push(format!(
         "From `{}`.",
         one_line(&types.program.file).replace('`', "'")

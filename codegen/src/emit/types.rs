@@ -30,22 +30,18 @@ impl<'a> Types<'a> {
             }
             outputs.push(name);
         }
-        let argument = |short: &str, long: &str| {
-            let mut name = short;
-            let mut longer = long.to_owned();
-            if names.iter().any(|other| other == short) {
-                while names.iter().any(|other| *other == longer) {
-                    longer.push('_');
-                }
-                name = &longer;
+        let argument = |name: &str| {
+            let mut name = name.to_owned();
+            while names.iter().any(|other| *other == name) {
+                name.push('_');
             }
-            name.to_owned()
+            name
         };
         let arguments = [
             names.time.clone(),
-            argument("p", "parameters"),
-            argument("x", "state"),
-            argument("u", "inputs"),
+            argument("parameters"),
+            argument("state"),
+            argument("inputs"),
         ];
         Self {
             program,
@@ -146,13 +142,13 @@ impl<'a> Types<'a> {
             ),
             (
                 "Speeds",
-                "One number per pseudo-velocity, in SI.",
+                "One number per pseudo-velocity, in SI. Where it is a force: in W over the unit.",
                 speed_names,
                 speeds,
             ),
             (
                 "Coordinates",
-                "One number per coordinate, in SI.",
+                "One number per coordinate, in SI. Where it is a rate: in the unit per second.",
                 coordinate_names,
                 coordinates,
             ),

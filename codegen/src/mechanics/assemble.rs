@@ -29,7 +29,7 @@ pub fn program(
         let results = derivation.results(mechanism, &info, kind)?;
         let may_lack = matches!(kind, FunctionKind::Outputs | FunctionKind::Switches);
         if !may_lack || results.iter().any(|array| !array.entries.is_empty()) {
-            functions.push(derivation.staged(Function::new(kind, results)));
+            functions.push(derivation.staged(mechanism, Function::new(kind, results)));
         }
     }
     let symbols = &derivation.symbols;
@@ -134,7 +134,7 @@ impl Derivation {
     }
 
     /// A function with what a reader wants before its results.
-    fn staged(&mut self, function: Function) -> Function {
+    fn staged(&mut self, mechanism: &Mechanism, function: Function) -> Function {
         let accelerations = self.motion.accelerations.clone();
         match function.kind {
             FunctionKind::ConstraintResidual => {
@@ -142,15 +142,21 @@ impl Derivation {
             }
             FunctionKind::ParameterJacobian => function.by_way_of(SOLVED, accelerations),
             FunctionKind::AccelerationEnergy | FunctionKind::ConstraintForces => {
-                let mut components = Vec::new();
+                let mut function = function.by_way_of(SOLVED, accelerations.clone());
                 for body in &self.bodies {
                     let motion = ActualMotion::new(&mut self.algebra, body, &accelerations);
-                    components.extend(motion.a);
-                    components.extend(motion.alpha);
+                    let frame = |frame: usize| &mechanism.frames[frame].name;
+                    let a_in = frame(body.centre.velocity.frame);
+                    let title = format!("Acceleration of `{}` in `{a_in}`.", body.centre.point);
+                    function = function.by_way_of(&title, motion.a.to_vec());
+                    if let Some(rotation) = &body.rotation {
+                        let alpha_in = frame(rotation.velocity.frame);
+                        let title = format!("Turning of `{}` in `{alpha_in}`.", body.name);
+                        let turning = [motion.alpha, motion.momentum_rate].concat();
+                        function = function.by_way_of(&title, turning);
+                    }
                 }
                 function
-                    .by_way_of(SOLVED, accelerations)
-                    .by_way_of("Accelerations of the bodies.", components)
             }
             _ => function,
         }
@@ -166,7 +172,8 @@ impl Derivation {
         };
         let layout = Layout::Vector(residual.len());
         let mut array = Array::new("residual", "Constraint rows.", layout, residual)
-            .labelled(rows().map(|row| format!("residual_{}", row.name)));
+            .labelled(rows().map(|row| format!("residual_{}", row.name)))
+            .with_names(rows().map(|row| row.name.clone()).collect(), Vec::new());
         let constraints: Vec<usize> = rows().map(|row| row.constraint).collect();
         let mut start = 0;
         for same in constraints.chunk_by(|a, b| a == b) {
@@ -203,7 +210,8 @@ impl Derivation {
         for (i, place) in places.iter().enumerate() {
             array = array.under(&format!("Reaction `{place}`."), 3 * i..3 * i + 3);
         }
-        Ok(array)
+        let axes = ["x", "y", "z"].map(|axis| format!("ground {axis}"));
+        Ok(array.with_names(places.clone(), axes.to_vec()))
     }
 
     /// The outputs of the spec.

@@ -29,6 +29,8 @@ pub struct BodyMotion {
 /// Motion of a centre of mass, in a frame of its own.
 #[derive(Debug, Clone)]
 pub struct Translation {
+    /// Name of the point.
+    pub point: String,
     /// Velocity.
     pub velocity: FrameVector,
     /// Partial velocities ∂v/∂ω, one per pseudo-velocity.
@@ -84,6 +86,7 @@ pub fn body_motions(
             bias,
         );
         let centre = Translation {
+            point: mechanism.points[body.centre].name.clone(),
             velocity,
             partial,
             bias,
@@ -382,7 +385,7 @@ impl ActualMotion {
         }
         let name = &body.name;
         Self {
-            a: named3(algebra, &format!("a_{name}"), a),
+            a: named3(algebra, &format!("a_{}", body.centre.point), a),
             alpha: named3(algebra, &format!("alpha_{name}"), alpha),
             momentum_rate: named3(algebra, &format!("h_{name}"), momentum_rate),
         }

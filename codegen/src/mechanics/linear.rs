@@ -88,7 +88,19 @@ impl ImplicitMotion<'_> {
                         }
                     }
                     Block::Factorized(block) => {
-                        block.solve(algebra, &right, &mut column, |_, _, z| z);
+                        let by = name_of(&algebra.graph, variable);
+                        let speeds: Vec<String> = symbols
+                            .speeds
+                            .iter()
+                            .map(|&speed| name_of(&algebra.graph, speed))
+                            .collect();
+                        for &i in &block.speeds {
+                            let name = format!("d_rho_{}_d_{by}", speeds[i]);
+                            right[i] = algebra.graph.name_automatically(&name, right[i]);
+                        }
+                        block.solve(algebra, &right, &mut column, |graph, speed, z| {
+                            graph.name_automatically(&format!("d_z_{}_d_{by}", speeds[speed]), z)
+                        });
                     }
                 }
             }
@@ -99,4 +111,11 @@ impl ImplicitMotion<'_> {
         }
         Ok(columns)
     }
+}
+
+/// Name of a symbol.
+fn name_of(graph: &Graph, symbol: Expr) -> String {
+    graph
+        .as_symbol(symbol)
+        .map_or_else(String::new, |symbol| graph.symbol_name(symbol).to_owned())
 }

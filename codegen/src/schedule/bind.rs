@@ -4,7 +4,7 @@ use super::dag::{Dag, Id, Item, Name, Op};
 use super::names::{ArgumentNames, Names};
 use super::outline::Outline;
 use super::piece::{Level, Piece, describe};
-use super::signs::{choose_signs, is_chosen};
+use super::signs::{choose_signs, keeps_its_name};
 use super::{Argument, Operation, ResultArray, Schedule, Step, Tree, Value};
 use crate::program::{Function, Program};
 use crate::symbolic::{Function as Elementary, Rational};
@@ -505,10 +505,8 @@ impl<'a> Binding<'a> {
 
     /// Whether a value that comes out with the wrong sign is negated for the sake of its name.
     fn takes_its_sign(&self, id: Id) -> bool {
-        match self.derived_name(id) {
-            Some(name) => !name.automatic && is_chosen(self.dag, id),
-            None => !self.outline.is_shared(id),
-        }
+        let replaceable = self.derived_name(id).is_some_and(|name| name.automatic);
+        !replaceable && (keeps_its_name(self.dag, id) || !self.outline.is_shared(id))
     }
 
     /// `consumer_part_2`

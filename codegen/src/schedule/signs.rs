@@ -21,7 +21,11 @@ pub(super) fn choose_signs(dag: &Dag, order: &[Id]) -> Vec<bool> {
         order,
         wanted: vec![false; dag.len()],
         built: vec![false; dag.len()],
+        labels: vec![None; dag.len()],
     };
+    for result in &dag.results {
+        signs.labels[result.id.index()].get_or_insert(result.flip);
+    }
     for &id in order {
         if let Some(name) = dag.names[id.index()] {
             signs.wanted[id.index()] = name.negative;
@@ -49,13 +53,21 @@ pub(super) fn choose_signs(dag: &Dag, order: &[Id]) -> Vec<bool> {
     signs.wanted
 }
 
-/// Whether the sign of a value is a matter of choice: that of a sum, or of a product with a number.
-pub(super) fn is_chosen(dag: &Dag, id: Id) -> bool {
+/// Whether a value is worth a negation for the sake of its name: a sum, or a product that cannot be
+/// told by its factors.
+pub(super) fn keeps_its_name(dag: &Dag, id: Id) -> bool {
     match dag.op(id) {
         Op::Sum(_) => true,
-        Op::Product(factors) => factors.iter().any(|f| dag.as_number(f.id).is_some()),
+        Op::Product(factors) => factors
+            .iter()
+            .any(|factor| matches!(dag.op(factor.id), Op::Number(_) | Op::Sum(_))),
         _ => false,
     }
+}
+
+/// Whether a product has a number, which takes any sign.
+fn has_number(dag: &Dag, id: Id) -> bool {
+    matches!(dag.op(id), Op::Product(factors) if factors.iter().any(|f| dag.as_number(f.id).is_some()))
 }
 
 struct Signs<'a> {
@@ -64,6 +76,8 @@ struct Signs<'a> {
     wanted: Vec<bool>,
     /// What the wishes lead to.
     built: Vec<bool>,
+    /// The first sign in which a result wants a node.
+    labels: Vec<Option<bool>>,
 }
 
 impl Signs<'_> {
@@ -84,7 +98,7 @@ impl Signs<'_> {
                     }
                 }
                 Op::Product(factors) => {
-                    if is_chosen(dag, id) {
+                    if has_number(dag, id) {
                         self.wanted[place]
                     } else {
                         factors
@@ -108,8 +122,8 @@ impl Signs<'_> {
             self.built[place] = built;
             if self.wrong(id) {
                 cost += WRONG_SIGN;
-                // A product of values has no sign to choose: it gives up its name.
-                self.built[place] = built != is_chosen(dag, id);
+                // It is negated, or it gives up its name.
+                self.built[place] = built != keeps_its_name(dag, id);
             }
         }
         let results = dag.results.iter().filter(|result| {
@@ -120,8 +134,11 @@ impl Signs<'_> {
 
     /// Whether a value has the other sign than its name's.
     fn wrong(&self, id: Id) -> bool {
-        self.dag.names[id.index()]
-            .is_some_and(|name| !name.automatic && name.negative != self.built[id.index()])
+        let derived = self.dag.names[id.index()].filter(|name| !name.automatic);
+        let sign = derived
+            .map(|name| name.negative)
+            .or(self.labels[id.index()]);
+        sign.is_some_and(|sign| sign != self.built[id.index()])
     }
 
     /// Nodes whose opposite could save a negation, those that decide more than one last.

@@ -17,14 +17,14 @@ impl Default for Parameters<f64> {
     }
 }
 
-/// One number per pseudo-velocity, in SI.
+/// One number per pseudo-velocity, in SI. Where it is a force: in W over the unit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Speeds<T> {
     /// A keyword, in `m/s`.
     pub type_: T,
 }
 
-/// One number per coordinate, in SI.
+/// One number per coordinate, in SI. Where it is a rate: in the unit per second.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Coordinates<T> {
     /// The name of an argument, in `m`.
@@ -79,11 +79,11 @@ pub struct Jacobians<T> {
 pub fn rates<T: Real>(
     t: T,
     parameters: &Parameters<T>,
-    x: &State<T>,
-    _u: &Inputs<T>,
+    state: &State<T>,
+    _inputs: &Inputs<T>,
 ) -> State<T> {
     let &Parameters { INFO_, K } = parameters;
-    let &State { type_, p, half } = x;
+    let &State { type_, p, half } = state;
     let c_17_over_35 = T::constant(17.0 / 35.0);
     let number_half = T::constant(0.5);
     let one = T::constant(1.0);
@@ -130,11 +130,11 @@ pub fn rates<T: Real>(
 pub fn jacobians<T: Real>(
     t: T,
     parameters: &Parameters<T>,
-    x: &State<T>,
-    _u: &Inputs<T>,
+    state: &State<T>,
+    _inputs: &Inputs<T>,
 ) -> Jacobians<T> {
     let &Parameters { INFO_, K } = parameters;
-    let &State { type_, p, half } = x;
+    let &State { type_, p, half } = state;
     let zero = T::constant(0.0);
     let c_17_over_35 = T::constant(17.0 / 35.0);
     let number_half = T::constant(0.5);
@@ -177,17 +177,17 @@ pub fn jacobians<T: Real>(
 
     // Row `type` of A.
     let [solution_3_1, _, _] = lu_solve(&lu_1, [one, zero, zero]);
-    let a_type_type = T::if_less(p, p_minus_half, solution_3_1, zero)
+    let A_type_type = T::if_less(p, p_minus_half, solution_3_1, zero)
         + T::if_less_or_equal(t, K, zero, one);
     let [solution_4_1, _, _] = lu_solve(&lu_1, [-solution_1_2, -solution_1_1, one]);
-    let a_type_p_part_1 = three * inv_p_minus_half_squared * inv_p_minus_half_squared;
-    let a_type_p = T::if_less(p, p_minus_half, solution_4_1, zero)
-        + T::if_less_or_equal(t, K, one, zero) - a_type_p_part_1;
+    let A_type_p_part_1 = three * inv_p_minus_half_squared * inv_p_minus_half_squared;
+    let A_type_p = T::if_less(p, p_minus_half, solution_4_1, zero)
+        + T::if_less_or_equal(t, K, one, zero) - A_type_p_part_1;
     let [solution_5_1, _, _] = lu_solve(&lu_1, [-solution_1_3, zero, -solution_1_2]);
     let d_crate_d_half = crate_part_1 + one + cos_half + one / (one + half * half)
         + one / half + number_half / sqrt_half - tanh_half * tanh_half;
-    let a_type_half_part_1 = T::if_less(p, p_minus_half, solution_5_1, d_crate_d_half);
-    let a_type_half = a_type_p_part_1 + a_type_half_part_1;
+    let A_type_half_part_1 = T::if_less(p, p_minus_half, solution_5_1, d_crate_d_half);
+    let A_type_half = A_type_p_part_1 + A_type_half_part_1;
 
     // Row `half` of A.
     let one_minus_solution_2_2 = one - solution_2_2;
@@ -196,15 +196,15 @@ pub fn jacobians<T: Real>(
         [one_minus_solution_2_2, -solution_2_1, zero],
     );
     let p_minus_half_squared = p_minus_half * p_minus_half;
-    let a_half_p_part_1 = p_minus_half_squared + half_dot_part_1 * half_dot_part_1;
-    let a_half_p_part_2 = one / a_half_p_part_1;
-    let a_half_p_part_3 = half_dot_part_1 - p_minus_half * half_dot_part_1 * K.ln();
-    let a_half_p = solution_6_3 - a_half_p_part_2 * a_half_p_part_3;
+    let A_half_p_part_1 = p_minus_half_squared + half_dot_part_1 * half_dot_part_1;
+    let A_half_p_part_2 = one / A_half_p_part_1;
+    let A_half_p_part_3 = half_dot_part_1 - p_minus_half * half_dot_part_1 * K.ln();
+    let A_half_p = solution_6_3 - A_half_p_part_2 * A_half_p_part_3;
     let [_, _, solution_7_3] = lu_solve(
         &lu_1,
         [-solution_2_3, d_crate_d_half, one_minus_solution_2_2],
     );
-    let a_half_half = solution_7_3 + half_dot_part_1 * a_half_p_part_2;
+    let A_half_half = solution_7_3 + half_dot_part_1 * A_half_p_part_2;
 
     Jacobians {
         rates: State {
@@ -213,15 +213,17 @@ pub fn jacobians<T: Real>(
             half: half_dot,
         },
         a: [
-            [a_type_type, a_type_p, a_type_half],
+            [A_type_type, A_type_p, A_type_half],
             [one, zero, zero],
-            [zero, a_half_p, a_half_half],
+            [zero, A_half_p, A_half_half],
         ],
         b: [[], [], []],
     }
 }
 
 /// P = ∂ẋ/∂p. Rows follow [`State`], columns [`Parameters`].
+///
+/// Rows: `type`, `p`, `half`. Columns: `INFO`, `K`.
 ///
 /// From `mechanisms/type.toml`.
 /// Operations: 33 (15 +, 11 ×, 1 ÷, 6 sign), 1 sine-cosine pair, 12 functions, 2 choices, 6 linear systems.
@@ -230,11 +232,11 @@ pub fn jacobians<T: Real>(
 pub fn parameter_jacobian<T: Real>(
     t: T,
     parameters: &Parameters<T>,
-    x: &State<T>,
-    _u: &Inputs<T>,
+    state: &State<T>,
+    _inputs: &Inputs<T>,
 ) -> [[T; 2]; 3] {
     let &Parameters { INFO_, K } = parameters;
-    let &State { type_, p, half } = x;
+    let &State { type_, p, half } = state;
     let zero = T::constant(0.0);
     let c_17_over_35 = T::constant(17.0 / 35.0);
     let number_half = T::constant(0.5);
@@ -254,26 +256,26 @@ pub fn parameter_jacobian<T: Real>(
     ]);
     let [solution_1_1, solution_1_2, solution_1_3] = lu_solve(&lu_1, [type_, t, p]);
     let [solution_2_1, _, _] = lu_solve(&lu_1, [zero, -solution_1_2, zero]);
-    let p_type_INFO = T::if_less(p, p_minus_half, solution_2_1, zero);
+    let P_type_INFO = T::if_less(p, p_minus_half, solution_2_1, zero);
     let [solution_3_1, _, _] = lu_solve(&lu_1, [-solution_1_1, zero, -solution_1_3]);
-    let p_type_K_part_1 = nineteen * K_squared * K_squared_squared_squared;
-    let p_type_K = T::if_less(p, p_minus_half, solution_3_1, zero)
-        + p_type_K_part_1 * K_squared_squared_squared;
+    let P_type_K_part_1 = nineteen * K_squared * K_squared_squared_squared;
+    let P_type_K = T::if_less(p, p_minus_half, solution_3_1, zero)
+        + P_type_K_part_1 * K_squared_squared_squared;
 
     // Row `half` of P.
     let crate_ = half.ln() + half.sign() + half.abs() + half.sqrt() + half.exp()
         + half.tanh() + half.cosh() + half.sinh() + half.atan() + half.acos()
         + half.asin() + half.sin();
     let [solution_4_1, solution_4_2, solution_4_3] = lu_solve(&lu_1, [p, crate_, half]);
-    let [_, _, p_half_INFO] = lu_solve(&lu_1, [zero, -solution_4_2, zero]);
+    let [_, _, P_half_INFO] = lu_solve(&lu_1, [zero, -solution_4_2, zero]);
     let [_, _, solution_6_3] = lu_solve(&lu_1, [-solution_4_1, zero, -solution_4_3]);
-    let p_half_K_part_1 = K.powf(p);
+    let P_half_K_part_1 = K.powf(p);
     let p_minus_half_squared = p_minus_half * p_minus_half;
-    let p_half_K_part_2 = p_minus_half_squared + p_half_K_part_1 * p_half_K_part_1;
-    let p_half_K = solution_6_3
-        + p_minus_half * p_half_K_part_1 * p / (K * p_half_K_part_2);
+    let P_half_K_part_2 = p_minus_half_squared + P_half_K_part_1 * P_half_K_part_1;
+    let P_half_K = solution_6_3
+        + p_minus_half * P_half_K_part_1 * p / (K * P_half_K_part_2);
 
-    [[p_type_INFO, p_type_K], [zero, zero], [p_half_INFO, p_half_K]]
+    [[P_type_INFO, P_type_K], [zero, zero], [P_half_INFO, P_half_K]]
 }
 
 /// Outputs of the spec.
@@ -285,11 +287,11 @@ pub fn parameter_jacobian<T: Real>(
 pub fn outputs<T: Real>(
     t: T,
     parameters: &Parameters<T>,
-    x: &State<T>,
-    _u: &Inputs<T>,
+    state: &State<T>,
+    _inputs: &Inputs<T>,
 ) -> Outputs<T> {
     let &Parameters { K, .. } = parameters;
-    let &State { type_, p, half } = x;
+    let &State { type_, p, half } = state;
 
     // outputs
     let outputs_0 = T::if_less_or_equal(t, K, p, type_);

@@ -31,7 +31,7 @@ impl Default for Parameters<f64> {
     }
 }
 
-/// One number per pseudo-velocity, in SI.
+/// One number per pseudo-velocity, in SI. Where it is a force: in W over the unit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Speeds<T> {
     /// Tilt rate of the wheel, in `rad/s`.
@@ -44,7 +44,7 @@ pub struct Speeds<T> {
     pub sigma: T,
 }
 
-/// One number per coordinate, in SI.
+/// One number per coordinate, in SI. Where it is a rate: in the unit per second.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Coordinates<T> {
     /// Tilt, in `rad`.
@@ -133,12 +133,12 @@ pub struct Energies<T> {
 #[must_use]
 #[inline]
 pub fn kinematics<T: Real>(
-    p: &Parameters<T>,
-    x: &State<T>,
+    parameters: &Parameters<T>,
+    state: &State<T>,
     _inputs: &Inputs<T>,
 ) -> Coordinates<T> {
-    let &Parameters { R, .. } = p;
-    let &State { omega_1, omega_2, omega_3, sigma, theta, psi, .. } = x;
+    let &Parameters { R, .. } = parameters;
+    let &State { omega_1, omega_2, omega_3, sigma, theta, psi, .. } = state;
 
     // Sines and cosines.
     let (sin_theta, cos_theta) = theta.sin_cos();
@@ -169,12 +169,12 @@ pub fn kinematics<T: Real>(
 #[must_use]
 #[inline]
 pub fn acceleration_energy<T: Real>(
-    p: &Parameters<T>,
-    x: &State<T>,
+    parameters: &Parameters<T>,
+    state: &State<T>,
     inputs: &Inputs<T>,
 ) -> AccelerationEnergy<T> {
-    let &Parameters { m, m0, R, g } = p;
-    let &State { omega_1, omega_2, omega_3, sigma, theta, r, .. } = x;
+    let &Parameters { m, m0, R, g } = parameters;
+    let &State { omega_1, omega_2, omega_3, sigma, theta, r, .. } = state;
     let &Inputs { u } = inputs;
     let zero = T::constant(0.0);
     let quarter = T::constant(0.25);
@@ -232,12 +232,12 @@ pub fn acceleration_energy<T: Real>(
 #[must_use]
 #[inline]
 pub fn mass_matrix<T: Real>(
-    p: &Parameters<T>,
-    x: &State<T>,
+    parameters: &Parameters<T>,
+    state: &State<T>,
     _inputs: &Inputs<T>,
 ) -> [[T; 4]; 4] {
-    let &Parameters { m, m0, R, .. } = p;
-    let &State { r, .. } = x;
+    let &Parameters { m, m0, R, .. } = parameters;
+    let &State { r, .. } = state;
     let zero = T::constant(0.0);
     let quarter = T::constant(0.25);
     let five_quarters = T::constant(1.25);
@@ -271,9 +271,13 @@ pub fn mass_matrix<T: Real>(
 /// Operations: 49 (14 +, 33 ×, 1 ÷, 1 sign), 1 sine-cosine pair.
 #[must_use]
 #[inline]
-pub fn bias<T: Real>(p: &Parameters<T>, x: &State<T>, _inputs: &Inputs<T>) -> Speeds<T> {
-    let &Parameters { m, m0, R, .. } = p;
-    let &State { omega_1, omega_2, omega_3, sigma, theta, r, .. } = x;
+pub fn bias<T: Real>(
+    parameters: &Parameters<T>,
+    state: &State<T>,
+    _inputs: &Inputs<T>,
+) -> Speeds<T> {
+    let &Parameters { m, m0, R, .. } = parameters;
+    let &State { omega_1, omega_2, omega_3, sigma, theta, r, .. } = state;
     let quarter = T::constant(0.25);
     let half = T::constant(0.5);
     let three_halves = T::constant(1.5);
@@ -322,12 +326,12 @@ pub fn bias<T: Real>(p: &Parameters<T>, x: &State<T>, _inputs: &Inputs<T>) -> Sp
 #[must_use]
 #[inline]
 pub fn generalized_forces<T: Real>(
-    p: &Parameters<T>,
-    x: &State<T>,
+    parameters: &Parameters<T>,
+    state: &State<T>,
     inputs: &Inputs<T>,
 ) -> Speeds<T> {
-    let &Parameters { m, m0, R, g } = p;
-    let &State { theta, r, .. } = x;
+    let &Parameters { m, m0, R, g } = parameters;
+    let &State { theta, r, .. } = state;
     let &Inputs { u } = inputs;
     let zero = T::constant(0.0);
 
@@ -354,12 +358,16 @@ pub fn generalized_forces<T: Real>(
 /// Rates ẋ of the state by Appell's equations M ω̇ + b = Π and kinematics.
 ///
 /// From `mechanisms/unicycle.toml`.
-/// Operations: 100 (32 +, 64 ×, 4 ÷), 2 sine-cosine pairs.
+/// Operations: 101 (32 +, 64 ×, 4 ÷, 1 sign), 2 sine-cosine pairs.
 #[must_use]
 #[inline]
-pub fn rates<T: Real>(p: &Parameters<T>, x: &State<T>, inputs: &Inputs<T>) -> State<T> {
-    let &Parameters { m, m0, R, g } = p;
-    let &State { omega_1, omega_2, omega_3, sigma, theta, r, psi, .. } = x;
+pub fn rates<T: Real>(
+    parameters: &Parameters<T>,
+    state: &State<T>,
+    inputs: &Inputs<T>,
+) -> State<T> {
+    let &Parameters { m, m0, R, g } = parameters;
+    let &State { omega_1, omega_2, omega_3, sigma, theta, r, psi, .. } = state;
     let &Inputs { u } = inputs;
     let quarter = T::constant(0.25);
     let half = T::constant(0.5);
@@ -410,7 +418,7 @@ pub fn rates<T: Real>(p: &Parameters<T>, x: &State<T>, inputs: &Inputs<T>) -> St
     let f_1 = R_omega_3_omega_2 * f_1_part_1 + g_sin_theta * (R_m0 + R_m)
         - g * m0_r * cos_theta - m0_r_omega_3_omega_3 * tan_theta_r
         - m0_r_omega_1 * two_sigma - f_1_part_2;
-    let omega_1_dot = (R * f_4 + f_1) / (M_11 - R_R_m0);
+    let omega_1_dot = -(R * f_4 + f_1) / (R_R_m0 - M_11);
     let R_omega_3_omega_1 = R_omega_3 * omega_1;
     let R_m_R_omega_3_omega_1 = R_m * R_omega_3_omega_1;
     let f_3 = m0_r * R_omega_3_omega_1 + quarter_tan_theta * R_m_R_omega_3_omega_1
@@ -443,16 +451,16 @@ pub fn rates<T: Real>(p: &Parameters<T>, x: &State<T>, inputs: &Inputs<T>) -> St
 /// Rates ẋ with their derivatives by state and inputs.
 ///
 /// From `mechanisms/unicycle.toml`.
-/// Operations: 282 (79 +, 192 ×, 4 ÷, 7 sign), 2 sine-cosine pairs.
+/// Operations: 288 (79 +, 192 ×, 4 ÷, 13 sign), 2 sine-cosine pairs.
 #[must_use]
 #[inline]
 pub fn jacobians<T: Real>(
-    p: &Parameters<T>,
-    x: &State<T>,
+    parameters: &Parameters<T>,
+    state: &State<T>,
     inputs: &Inputs<T>,
 ) -> Jacobians<T> {
-    let &Parameters { m, m0, R, g } = p;
-    let &State { omega_1, omega_2, omega_3, sigma, theta, r, psi, .. } = x;
+    let &Parameters { m, m0, R, g } = parameters;
+    let &State { omega_1, omega_2, omega_3, sigma, theta, r, psi, .. } = state;
     let &Inputs { u } = inputs;
     let zero = T::constant(0.0);
     let quarter = T::constant(0.25);
@@ -477,10 +485,10 @@ pub fn jacobians<T: Real>(
     let inv_m0 = one / m0;
 
     // Generalised velocities.
-    let a_psi_omega_3 = one / cos_theta;
-    let psi_dot = a_psi_omega_3 * omega_3;
-    let sin_theta_a_psi_omega_3 = sin_theta * a_psi_omega_3;
-    let f_1_part_1 = sin_theta_a_psi_omega_3 * omega_3;
+    let A_psi_omega_3 = one / cos_theta;
+    let psi_dot = A_psi_omega_3 * omega_3;
+    let sin_theta_A_psi_omega_3 = sin_theta * A_psi_omega_3;
+    let f_1_part_1 = sin_theta_A_psi_omega_3 * omega_3;
     let phi_dot = omega_2 - f_1_part_1;
     let R_omega_2 = R * omega_2;
     let R_omega_1 = R * omega_1;
@@ -501,7 +509,7 @@ pub fn jacobians<T: Real>(
     let r_omega_1 = r * omega_1;
     let f_4_part_1 = g_sin_theta + R_omega_3_omega_2 - r_omega_3_omega_3;
     let f_4 = u - m0 * (f_4_part_1 - r_omega_1 * omega_1);
-    let f_1_part_2 = R_omega_3 * sin_theta_a_psi_omega_3;
+    let f_1_part_2 = R_omega_3 * sin_theta_A_psi_omega_3;
     let m_R_omega_3 = m * R_omega_3;
     let quarter_m_R_omega_3 = quarter * m_R_omega_3;
     let f_1_part_3 = r_omega_3 * f_1_part_1;
@@ -520,184 +528,182 @@ pub fn jacobians<T: Real>(
     let two_m0_r = two * m0_r;
     let m0_r_omega_1 = m0_r * omega_1;
     let f_3_part_1 = m0_r_omega_1 * r + R_omega_1 * quarter_R_m;
-    let d_f_3_d_omega_3 = R_m0_r_omega_1 + sin_theta_a_psi_omega_3 * f_3_part_1
+    let d_f_3_d_omega_3 = R_m0_r_omega_1 + sin_theta_A_psi_omega_3 * f_3_part_1
         - two_m0_r * sigma;
     let f_3 = minus_R_omega_1_half_R_m * omega_2 + d_f_3_d_omega_3 * omega_3;
     let f_2_part_1 = f_1_part_1 * m0_r_omega_1;
     let m0_R_omega_3 = m0 * R_omega_3;
     let f_2_part_2 = m0_R_omega_3 * omega_1 - m0 * two_sigma * omega_3;
-    let f_2_part_3 = R * (f_2_part_1 + m_R_omega_3 * omega_1 + f_2_part_2);
+    let f_2 = -R * (f_2_part_1 + m_R_omega_3 * omega_1 + f_2_part_2);
     let M_33 = m0_r_r + R * quarter_R_m;
     let D_2 = M_33 * M_22 - R_m0_r * R_m0_r;
     let inv_D_2 = one / D_2;
-    let omega_2_dot = inv_D_2 * (R_m0_r * f_3 - f_2_part_3 * M_33);
-    let omega_3_dot = inv_D_2 * (f_3 * M_22 - R_m0_r * f_2_part_3);
+    let omega_2_dot = inv_D_2 * (R_m0_r * f_3 + f_2 * M_33);
+    let omega_3_dot = inv_D_2 * (R_m0_r * f_2 + f_3 * M_22);
     let sigma_dot = f_4 * inv_m0 + R * omega_1_dot;
 
     // Row `omega_1` of A.
-    let a_omega_1_omega_1_part_1 = m0_r * sigma - R_m0_r_omega_1;
-    let a_omega_1_omega_1_part_2 = -two * inv_M_11_minus_R_R_m0;
-    let a_omega_1_omega_1 = a_omega_1_omega_1_part_1 * a_omega_1_omega_1_part_2;
-    let a_omega_1_omega_2_part_1 = m0_r * f_1_part_2;
-    let a_omega_1_omega_2_part_2 = a_omega_1_omega_2_part_1
+    let A_omega_1_omega_1_part_1 = R_m0_r_omega_1 - m0_r * sigma;
+    let A_omega_1_omega_1_part_2 = -two * inv_M_11_minus_R_R_m0;
+    let A_omega_1_omega_1 = -A_omega_1_omega_1_part_1 * A_omega_1_omega_1_part_2;
+    let A_omega_1_omega_2_part_1 = m0_r * f_1_part_2;
+    let A_omega_1_omega_2_part_2 = A_omega_1_omega_2_part_1
         + R_omega_3 * three_halves_R_m;
-    let a_omega_1_omega_2 = inv_M_11_minus_R_R_m0 * a_omega_1_omega_2_part_2;
-    let a_omega_1_omega_3_part_1 = f_1_part_1 * r;
-    let a_omega_1_omega_3_part_2 = three_halves_R_m + m0_r * sin_theta_a_psi_omega_3;
-    let a_omega_1_omega_3_part_3 = half * m * f_1_part_2;
-    let a_omega_1_omega_3_part_4 = omega_2 * a_omega_1_omega_3_part_2;
-    let a_omega_1_omega_3_part_5 = a_omega_1_omega_3_part_3 - a_omega_1_omega_3_part_4;
-    let a_omega_1_omega_3_part_6 = two_m0_r * a_omega_1_omega_3_part_1
-        + R * a_omega_1_omega_3_part_5;
-    let a_omega_1_omega_3 = -inv_M_11_minus_R_R_m0 * a_omega_1_omega_3_part_6;
-    let a_omega_1_sigma = m0_r_omega_1 * a_omega_1_omega_1_part_2;
-    let a_psi_omega_3_squared = a_psi_omega_3 * a_psi_omega_3;
-    let a_omega_1_theta_part_1 = R_omega_3 * a_psi_omega_3_squared;
-    let a_omega_1_theta_part_2 = g_sin_theta + a_omega_1_theta_part_1 * omega_2;
-    let a_omega_1_theta_part_3 = r_omega_3_omega_3 * a_psi_omega_3_squared;
-    let a_omega_1_theta_part_4 = a_omega_1_theta_part_2 - a_omega_1_theta_part_3;
-    let a_omega_1_theta_part_5 = R_m * g_cos_theta + m0_r * a_omega_1_theta_part_4
-        - quarter_m_R_omega_3 * a_omega_1_theta_part_1;
-    let a_omega_1_theta = inv_M_11_minus_R_R_m0 * a_omega_1_theta_part_5;
+    let A_omega_1_omega_2 = inv_M_11_minus_R_R_m0 * A_omega_1_omega_2_part_2;
+    let A_omega_1_omega_3_part_1 = f_1_part_1 * r;
+    let A_omega_1_omega_3_part_2 = three_halves_R_m + m0_r * sin_theta_A_psi_omega_3;
+    let A_omega_1_omega_3_part_3 = half * m * f_1_part_2;
+    let A_omega_1_omega_3_part_4 = omega_2 * A_omega_1_omega_3_part_2;
+    let A_omega_1_omega_3_part_5 = A_omega_1_omega_3_part_3 - A_omega_1_omega_3_part_4;
+    let A_omega_1_omega_3_part_6 = two_m0_r * A_omega_1_omega_3_part_1
+        + R * A_omega_1_omega_3_part_5;
+    let A_omega_1_omega_3 = -inv_M_11_minus_R_R_m0 * A_omega_1_omega_3_part_6;
+    let A_omega_1_sigma = m0_r_omega_1 * A_omega_1_omega_1_part_2;
+    let A_psi_omega_3_squared = A_psi_omega_3 * A_psi_omega_3;
+    let A_omega_1_theta_part_1 = R_omega_3 * A_psi_omega_3_squared;
+    let A_omega_1_theta_part_2 = g_sin_theta + A_omega_1_theta_part_1 * omega_2;
+    let A_omega_1_theta_part_3 = r_omega_3_omega_3 * A_psi_omega_3_squared;
+    let A_omega_1_theta_part_4 = A_omega_1_theta_part_2 - A_omega_1_theta_part_3;
+    let A_omega_1_theta_part_5 = R_m * g_cos_theta + m0_r * A_omega_1_theta_part_4
+        - quarter_m_R_omega_3 * A_omega_1_theta_part_1;
+    let A_omega_1_theta = inv_M_11_minus_R_R_m0 * A_omega_1_theta_part_5;
     let d_f_4_d_r = m0 * (omega_1 * omega_1 + omega_3 * omega_3);
-    let a_omega_1_r_part_1 = R * d_f_4_d_r - m0 * (f_1_part_4 + two * f_1_part_3);
-    let a_omega_1_r_part_2 = a_omega_1_r_part_1 - omega_1_dot * two_m0_r;
-    let a_omega_1_r = inv_M_11_minus_R_R_m0 * a_omega_1_r_part_2;
+    let A_omega_1_r_part_1 = R * d_f_4_d_r - m0 * (f_1_part_4 + two * f_1_part_3);
+    let A_omega_1_r_part_2 = A_omega_1_r_part_1 - omega_1_dot * two_m0_r;
+    let A_omega_1_r = inv_M_11_minus_R_R_m0 * A_omega_1_r_part_2;
 
     // Row `omega_2` of A.
-    let a_omega_2_omega_1_part_1 = a_omega_1_omega_2_part_1 + R_omega_3 * (R_m0 + R_m);
+    let A_omega_2_omega_1_part_1 = A_omega_1_omega_2_part_1 + R_omega_3 * (R_m0 + R_m);
     let d_f_3_d_omega_1 = f_1_part_2 * quarter_R_m + R_omega_2 * minus_half_R_m
-        + m0_r * (R_omega_3 + a_omega_1_omega_3_part_1);
-    let R_m0_r_d_f_3_d_omega_1 = R_m0_r * d_f_3_d_omega_1;
-    let a_omega_2_omega_1_part_2 = M_33 * a_omega_2_omega_1_part_1;
-    let a_omega_2_omega_1_part_3 = R_m0_r_d_f_3_d_omega_1 - a_omega_2_omega_1_part_2;
-    let a_omega_2_omega_1 = inv_D_2 * a_omega_2_omega_1_part_3;
-    let a_omega_2_omega_2_part_1 = minus_R_omega_1_half_R_m * inv_D_2;
-    let a_omega_2_omega_2 = R_m0_r * a_omega_2_omega_2_part_1;
-    let a_omega_2_omega_3_part_1 = sin_theta_a_psi_omega_3 * m0_r_omega_1;
-    let a_omega_2_omega_3_part_2 = a_omega_2_omega_3_part_1 + R_m * omega_1;
+        + m0_r * (R_omega_3 + A_omega_1_omega_3_part_1);
+    let A_omega_2_omega_1_part_2 = M_33 * A_omega_2_omega_1_part_1;
+    let A_omega_2_omega_1_part_3 = A_omega_2_omega_1_part_2 - R_m0_r * d_f_3_d_omega_1;
+    let A_omega_2_omega_1 = -inv_D_2 * A_omega_2_omega_1_part_3;
+    let A_omega_2_omega_2_part_1 = minus_R_omega_1_half_R_m * inv_D_2;
+    let A_omega_2_omega_2 = R_m0_r * A_omega_2_omega_2_part_1;
+    let A_omega_2_omega_3_part_1 = sin_theta_A_psi_omega_3 * m0_r_omega_1;
+    let A_omega_2_omega_3_part_2 = A_omega_2_omega_3_part_1 + R_m * omega_1;
     let m0_two_sigma_minus_R_omega_1 = m0 * (two_sigma - R_omega_1);
-    let a_omega_2_omega_3_part_3 = a_omega_2_omega_3_part_2
+    let A_omega_2_omega_3_part_3 = A_omega_2_omega_3_part_2
         - m0_two_sigma_minus_R_omega_1;
-    let a_omega_2_omega_3_part_4 = R * a_omega_2_omega_3_part_3;
-    let R_m0_r_d_f_3_d_omega_3 = R_m0_r * d_f_3_d_omega_3;
-    let a_omega_2_omega_3_part_5 = M_33 * a_omega_2_omega_3_part_4;
-    let a_omega_2_omega_3_part_6 = R_m0_r_d_f_3_d_omega_3 - a_omega_2_omega_3_part_5;
-    let a_omega_2_omega_3 = inv_D_2 * a_omega_2_omega_3_part_6;
+    let A_omega_2_omega_3_part_4 = R * A_omega_2_omega_3_part_3;
+    let A_omega_2_omega_3_part_5 = M_33 * A_omega_2_omega_3_part_4;
+    let A_omega_2_omega_3_part_6 = A_omega_2_omega_3_part_5 - R_m0_r * d_f_3_d_omega_3;
+    let A_omega_2_omega_3 = -inv_D_2 * A_omega_2_omega_3_part_6;
     let minus_two_over_D_2 = -two * inv_D_2;
-    let a_omega_2_sigma_part_1 = m0_r * m0_r * R_omega_3 - m0_R_omega_3 * M_33;
-    let a_omega_2_sigma = minus_two_over_D_2 * a_omega_2_sigma_part_1;
-    let a_omega_2_theta_part_1 = m0_r_omega_1 * a_omega_1_theta_part_1;
-    let d_f_3_d_theta = r_omega_3 * m0_r_omega_1 * a_psi_omega_3_squared
-        + quarter_R_m * a_omega_1_theta_part_1 * omega_1;
-    let R_m0_r_d_f_3_d_theta = R_m0_r * d_f_3_d_theta;
-    let a_omega_2_theta_part_2 = R_m0_r_d_f_3_d_theta - M_33 * a_omega_2_theta_part_1;
-    let a_omega_2_theta = inv_D_2 * a_omega_2_theta_part_2;
+    let A_omega_2_sigma_part_1 = m0_R_omega_3 * M_33 - m0_r * m0_r * R_omega_3;
+    let A_omega_2_sigma = -minus_two_over_D_2 * A_omega_2_sigma_part_1;
+    let A_omega_2_theta_part_1 = m0_r_omega_1 * A_omega_1_theta_part_1;
+    let d_f_3_d_theta = r_omega_3 * m0_r_omega_1 * A_psi_omega_3_squared
+        + quarter_R_m * A_omega_1_theta_part_1 * omega_1;
+    let A_omega_2_theta_part_2 = M_33 * A_omega_2_theta_part_1;
+    let A_omega_2_theta = -inv_D_2 * (A_omega_2_theta_part_2 - R_m0_r * d_f_3_d_theta);
     let d_f_3_d_r = f_2_part_2 + two * f_2_part_1;
-    let a_omega_2_r_part_1 = f_1_part_2 * M_33 * omega_1 + two * f_2_part_3 * r;
+    let A_omega_2_r_part_1 = f_1_part_2 * M_33 * omega_1 - two * f_2 * r;
     let d_D_2_d_r = two_m0_r * M_22 - two * R_m0 * R_m0_r;
-    let a_omega_2_r_part_2 = m0 * (a_omega_2_r_part_1 - R * (f_3 + d_f_3_d_r * r));
-    let a_omega_2_r = -inv_D_2 * (a_omega_2_r_part_2 + omega_2_dot * d_D_2_d_r);
+    let A_omega_2_r_part_2 = m0 * (A_omega_2_r_part_1 - R * (f_3 + d_f_3_d_r * r));
+    let A_omega_2_r = -inv_D_2 * (A_omega_2_r_part_2 + omega_2_dot * d_D_2_d_r);
 
     // Row `omega_3` of A.
     let M_22_d_f_3_d_omega_1 = M_22 * d_f_3_d_omega_1;
-    let a_omega_3_omega_1_part_1 = R_m0_r * a_omega_2_omega_1_part_1;
-    let a_omega_3_omega_1_part_2 = M_22_d_f_3_d_omega_1 - a_omega_3_omega_1_part_1;
-    let a_omega_3_omega_1 = inv_D_2 * a_omega_3_omega_1_part_2;
-    let a_omega_3_omega_2 = M_22 * a_omega_2_omega_2_part_1;
+    let A_omega_3_omega_1_part_1 = R_m0_r * A_omega_2_omega_1_part_1;
+    let A_omega_3_omega_1_part_2 = M_22_d_f_3_d_omega_1 - A_omega_3_omega_1_part_1;
+    let A_omega_3_omega_1 = inv_D_2 * A_omega_3_omega_1_part_2;
+    let A_omega_3_omega_2 = M_22 * A_omega_2_omega_2_part_1;
     let d_f_3_d_omega_3_M_22 = d_f_3_d_omega_3 * M_22;
-    let a_omega_3_omega_3_part_1 = R_m0_r * a_omega_2_omega_3_part_4;
-    let a_omega_3_omega_3_part_2 = d_f_3_d_omega_3_M_22 - a_omega_3_omega_3_part_1;
-    let a_omega_3_omega_3 = inv_D_2 * a_omega_3_omega_3_part_2;
-    let a_omega_3_sigma_part_1 = m0_r * M_22 * omega_3 - R_m0_r * m0_R_omega_3;
-    let a_omega_3_sigma = minus_two_over_D_2 * a_omega_3_sigma_part_1;
+    let A_omega_3_omega_3_part_1 = R_m0_r * A_omega_2_omega_3_part_4;
+    let A_omega_3_omega_3_part_2 = d_f_3_d_omega_3_M_22 - A_omega_3_omega_3_part_1;
+    let A_omega_3_omega_3 = inv_D_2 * A_omega_3_omega_3_part_2;
+    let A_omega_3_sigma_part_1 = m0_r * M_22 * omega_3 - R_m0_r * m0_R_omega_3;
+    let A_omega_3_sigma = minus_two_over_D_2 * A_omega_3_sigma_part_1;
     let M_22_d_f_3_d_theta = M_22 * d_f_3_d_theta;
-    let a_omega_3_theta_part_1 = M_22_d_f_3_d_theta - R_m0_r * a_omega_2_theta_part_1;
-    let a_omega_3_theta = inv_D_2 * a_omega_3_theta_part_1;
-    let a_omega_3_r_part_1 = M_22 * d_f_3_d_r - m0 * f_1_part_2 * R_m0_r_omega_1;
-    let a_omega_3_r_part_2 = a_omega_3_r_part_1 - R_m0 * f_2_part_3;
-    let a_omega_3_r = inv_D_2 * (a_omega_3_r_part_2 - omega_3_dot * d_D_2_d_r);
+    let A_omega_3_theta_part_1 = M_22_d_f_3_d_theta - R_m0_r * A_omega_2_theta_part_1;
+    let A_omega_3_theta = inv_D_2 * A_omega_3_theta_part_1;
+    let M_22_d_f_3_d_r_plus_R_m0_f_2 = M_22 * d_f_3_d_r + R_m0 * f_2;
+    let A_omega_3_r_part_1 = m0 * f_1_part_2 * R_m0_r_omega_1;
+    let A_omega_3_r_part_2 = M_22_d_f_3_d_r_plus_R_m0_f_2 - A_omega_3_r_part_1;
+    let A_omega_3_r = inv_D_2 * (A_omega_3_r_part_2 - omega_3_dot * d_D_2_d_r);
 
     // Row `sigma` of A.
-    let b_omega_1_u = R * inv_M_11_minus_R_R_m0;
-    let a_sigma_omega_1 = two * (r_omega_1 - a_omega_1_omega_1_part_1 * b_omega_1_u);
-    let a_sigma_omega_2 = a_omega_1_omega_2_part_2 * b_omega_1_u - R_omega_3;
-    let a_sigma_omega_3 = inv_m0 * (two_m0_r * omega_3 - R_m0 * omega_2)
-        - a_omega_1_omega_3_part_6 * b_omega_1_u;
-    let a_sigma_sigma = R_m0_r_omega_1 * a_omega_1_omega_1_part_2;
-    let a_sigma_theta = a_omega_1_theta_part_5 * b_omega_1_u - g_cos_theta;
-    let a_sigma_r = R * a_omega_1_r + inv_m0 * d_f_4_d_r;
+    let B_omega_1_u = R * inv_M_11_minus_R_R_m0;
+    let A_sigma_omega_1 = two * (r_omega_1 + A_omega_1_omega_1_part_1 * B_omega_1_u);
+    let A_sigma_omega_2 = A_omega_1_omega_2_part_2 * B_omega_1_u - R_omega_3;
+    let A_sigma_omega_3 = inv_m0 * (two_m0_r * omega_3 - R_m0 * omega_2)
+        - A_omega_1_omega_3_part_6 * B_omega_1_u;
+    let A_sigma_sigma = R_m0_r_omega_1 * A_omega_1_omega_1_part_2;
+    let A_sigma_theta = A_omega_1_theta_part_5 * B_omega_1_u - g_cos_theta;
+    let A_sigma_r = R * A_omega_1_r + inv_m0 * d_f_4_d_r;
 
     // Row `psi` of A.
-    let a_psi_theta = a_psi_omega_3 * f_1_part_1;
+    let A_psi_theta = A_psi_omega_3 * f_1_part_1;
 
     // Row `phi` of A.
-    let a_phi_theta = -a_psi_omega_3_squared * omega_3;
+    let A_phi_theta = -A_psi_omega_3_squared * omega_3;
 
     // Row `x_G` of A.
     let R_cos_theta = R * cos_theta;
-    let a_x_G_omega_1 = sin_psi * R_cos_theta;
-    let a_x_G_omega_2 = R * cos_psi;
+    let A_x_G_omega_1 = sin_psi * R_cos_theta;
+    let A_x_G_omega_2 = R * cos_psi;
     let sin_theta_R_omega_1 = sin_theta * R_omega_1;
-    let a_x_G_theta = -sin_psi * sin_theta_R_omega_1;
+    let A_x_G_theta = -sin_psi * sin_theta_R_omega_1;
 
     // Row `y_G` of A.
-    let a_y_G_omega_1 = -cos_psi * R_cos_theta;
-    let a_y_G_omega_2 = R * sin_psi;
-    let a_y_G_theta = cos_psi * sin_theta_R_omega_1;
+    let A_y_G_omega_1 = -cos_psi * R_cos_theta;
+    let A_y_G_omega_2 = R * sin_psi;
+    let A_y_G_theta = cos_psi * sin_theta_R_omega_1;
 
     // Row `sigma` of B.
-    let b_sigma_u = inv_m0 + R * b_omega_1_u;
+    let B_sigma_u = inv_m0 + R * B_omega_1_u;
 
     // Rows and columns: 0 omega_1, 1 omega_2, 2 omega_3, 3 sigma, 4 theta, 5 r, 6 psi, 7 phi,
     //   8 x_G, 9 y_G.
-    let mut a = [[zero; 10]; 10];
-    a[0][0] = a_omega_1_omega_1;
-    a[0][1] = a_omega_1_omega_2;
-    a[0][2] = a_omega_1_omega_3;
-    a[0][3] = a_omega_1_sigma;
-    a[0][4] = a_omega_1_theta;
-    a[0][5] = a_omega_1_r;
-    a[1][0] = a_omega_2_omega_1;
-    a[1][1] = a_omega_2_omega_2;
-    a[1][2] = a_omega_2_omega_3;
-    a[1][3] = a_omega_2_sigma;
-    a[1][4] = a_omega_2_theta;
-    a[1][5] = a_omega_2_r;
-    a[2][0] = a_omega_3_omega_1;
-    a[2][1] = a_omega_3_omega_2;
-    a[2][2] = a_omega_3_omega_3;
-    a[2][3] = a_omega_3_sigma;
-    a[2][4] = a_omega_3_theta;
-    a[2][5] = a_omega_3_r;
-    a[3][0] = a_sigma_omega_1;
-    a[3][1] = a_sigma_omega_2;
-    a[3][2] = a_sigma_omega_3;
-    a[3][3] = a_sigma_sigma;
-    a[3][4] = a_sigma_theta;
-    a[3][5] = a_sigma_r;
-    a[4][0] = one;
-    a[5][3] = one;
-    a[6][2] = a_psi_omega_3;
-    a[6][4] = a_psi_theta;
-    a[7][1] = one;
-    a[7][2] = -sin_theta_a_psi_omega_3;
-    a[7][4] = a_phi_theta;
-    a[8][0] = a_x_G_omega_1;
-    a[8][1] = a_x_G_omega_2;
-    a[8][4] = a_x_G_theta;
-    a[8][6] = -y_G_dot;
-    a[9][0] = a_y_G_omega_1;
-    a[9][1] = a_y_G_omega_2;
-    a[9][4] = a_y_G_theta;
-    a[9][6] = x_G_dot;
+    let mut A = [[zero; 10]; 10];
+    A[0][0] = A_omega_1_omega_1;
+    A[0][1] = A_omega_1_omega_2;
+    A[0][2] = A_omega_1_omega_3;
+    A[0][3] = A_omega_1_sigma;
+    A[0][4] = A_omega_1_theta;
+    A[0][5] = A_omega_1_r;
+    A[1][0] = A_omega_2_omega_1;
+    A[1][1] = A_omega_2_omega_2;
+    A[1][2] = A_omega_2_omega_3;
+    A[1][3] = A_omega_2_sigma;
+    A[1][4] = A_omega_2_theta;
+    A[1][5] = A_omega_2_r;
+    A[2][0] = A_omega_3_omega_1;
+    A[2][1] = A_omega_3_omega_2;
+    A[2][2] = A_omega_3_omega_3;
+    A[2][3] = A_omega_3_sigma;
+    A[2][4] = A_omega_3_theta;
+    A[2][5] = A_omega_3_r;
+    A[3][0] = A_sigma_omega_1;
+    A[3][1] = A_sigma_omega_2;
+    A[3][2] = A_sigma_omega_3;
+    A[3][3] = A_sigma_sigma;
+    A[3][4] = A_sigma_theta;
+    A[3][5] = A_sigma_r;
+    A[4][0] = one;
+    A[5][3] = one;
+    A[6][2] = A_psi_omega_3;
+    A[6][4] = A_psi_theta;
+    A[7][1] = one;
+    A[7][2] = -sin_theta_A_psi_omega_3;
+    A[7][4] = A_phi_theta;
+    A[8][0] = A_x_G_omega_1;
+    A[8][1] = A_x_G_omega_2;
+    A[8][4] = A_x_G_theta;
+    A[8][6] = -y_G_dot;
+    A[9][0] = A_y_G_omega_1;
+    A[9][1] = A_y_G_omega_2;
+    A[9][4] = A_y_G_theta;
+    A[9][6] = x_G_dot;
 
     // Rows: 0 omega_1, 1 omega_2, 2 omega_3, 3 sigma, 4 theta, 5 r, 6 psi, 7 phi,
     //   8 x_G, 9 y_G.
     // Columns: 0 u.
-    let mut b = [[zero; 1]; 10];
-    b[0][0] = b_omega_1_u;
-    b[3][0] = b_sigma_u;
+    let mut B = [[zero; 1]; 10];
+    B[0][0] = B_omega_1_u;
+    B[3][0] = B_sigma_u;
 
     Jacobians {
         rates: State {
@@ -712,24 +718,26 @@ pub fn jacobians<T: Real>(
             x_G: x_G_dot,
             y_G: y_G_dot,
         },
-        a,
-        b,
+        a: A,
+        b: B,
     }
 }
 
 /// P = ∂ẋ/∂p. Rows follow [`State`], columns [`Parameters`].
 ///
+/// Rows: `omega_1`, `omega_2`, `omega_3`, `sigma`, `theta`, `r`, `psi`, `phi`, `x_G`, `y_G`. Columns: `m`, `m0`, `R`, `g`.
+///
 /// From `mechanisms/unicycle.toml`.
-/// Operations: 257 (88 +, 164 ×, 4 ÷, 1 sign), 2 sine-cosine pairs.
+/// Operations: 263 (88 +, 164 ×, 4 ÷, 7 sign), 2 sine-cosine pairs.
 #[must_use]
 #[inline]
 pub fn parameter_jacobian<T: Real>(
-    p: &Parameters<T>,
-    x: &State<T>,
+    parameters: &Parameters<T>,
+    state: &State<T>,
     inputs: &Inputs<T>,
 ) -> [[T; 4]; 10] {
-    let &Parameters { m, m0, R, g } = p;
-    let &State { omega_1, omega_2, omega_3, sigma, theta, r, psi, .. } = x;
+    let &Parameters { m, m0, R, g } = parameters;
+    let &State { omega_1, omega_2, omega_3, sigma, theta, r, psi, .. } = state;
     let &Inputs { u } = inputs;
     let zero = T::constant(0.0);
     let quarter = T::constant(0.25);
@@ -765,7 +773,7 @@ pub fn parameter_jacobian<T: Real>(
     let m0_r = m0 * r;
     let m0_r_r = m0_r * r;
     let M_11 = m0_R_squared + m0_r_r + five_quarters * m_R_squared;
-    let inv_M_11_minus_m0_R_squared = one / (M_11 - m0_R_squared);
+    let inv_m0_R_squared_minus_M_11 = one / (m0_R_squared - M_11);
     let g_sin_theta = g * sin_theta;
     let R_g_sin_theta = R * g_sin_theta;
     let omega_3_omega_2 = omega_3 * omega_2;
@@ -787,24 +795,24 @@ pub fn parameter_jacobian<T: Real>(
         - g * cos_theta * r;
     let f_1 = g_sin_theta * R_m + omega_3_omega_2 * three_halves_m_R_squared
         + m0 * f_1_part_1 - tan_theta_omega_3_squared * quarter_m_R_squared;
-    let omega_1_dot = inv_M_11_minus_m0_R_squared * (R * f_4 + f_1);
-    let p_omega_1_m_part_1 = inv_M_11_minus_m0_R_squared * omega_1_dot;
-    let p_omega_1_m = inv_M_11_minus_m0_R_squared * d_f_1_d_m
-        - five_quarters * R_squared * p_omega_1_m_part_1;
+    let omega_1_dot = -inv_m0_R_squared_minus_M_11 * (R * f_4 + f_1);
+    let P_omega_1_m_part_1 = inv_m0_R_squared_minus_M_11 * omega_1_dot;
+    let P_omega_1_m = five_quarters * R_squared * P_omega_1_m_part_1
+        - inv_m0_R_squared_minus_M_11 * d_f_1_d_m;
     let d_f_4_d_m0 = r * (omega_3_squared + omega_1_squared) - g_sin_theta
         - R * omega_3_omega_2;
-    let p_omega_1_m0_part_1 = f_1_part_1 + R * d_f_4_d_m0;
-    let p_omega_1_m0 = inv_M_11_minus_m0_R_squared * p_omega_1_m0_part_1
-        - r_squared * p_omega_1_m_part_1;
+    let P_omega_1_m0_part_1 = f_1_part_1 + R * d_f_4_d_m0;
+    let P_omega_1_m0 = r_squared * P_omega_1_m_part_1
+        - inv_m0_R_squared_minus_M_11 * P_omega_1_m0_part_1;
     let tan_theta_half_R_m_omega_3 = tan_theta * half_R_m * omega_3;
-    let p_omega_1_R_part_1 = omega_2 * (m0_r * tan_theta + d_M_22_d_R);
-    let p_omega_1_R_part_2 = tan_theta_half_R_m_omega_3 - p_omega_1_R_part_1;
-    let p_omega_1_R_part_3 = omega_3_omega_2_m0_R + omega_3 * p_omega_1_R_part_2;
-    let p_omega_1_R_part_4 = p_omega_1_R_part_3 - f_4_part_1 - f_4 - m * g_sin_theta;
-    let p_omega_1_R = -five_halves * R_m * p_omega_1_m_part_1
-        - inv_M_11_minus_m0_R_squared * p_omega_1_R_part_4;
-    let p_omega_1_g_part_1 = sin_theta * R_m - m0_r * cos_theta;
-    let p_omega_1_g = inv_M_11_minus_m0_R_squared * p_omega_1_g_part_1;
+    let P_omega_1_R_part_1 = omega_2 * (m0_r * tan_theta + d_M_22_d_R);
+    let P_omega_1_R_part_2 = tan_theta_half_R_m_omega_3 - P_omega_1_R_part_1;
+    let P_omega_1_R_part_3 = omega_3_omega_2_m0_R + omega_3 * P_omega_1_R_part_2;
+    let P_omega_1_R_part_4 = P_omega_1_R_part_3 - f_4_part_1 - f_4 - m * g_sin_theta;
+    let P_omega_1_R = five_halves * R_m * P_omega_1_m_part_1
+        + inv_m0_R_squared_minus_M_11 * P_omega_1_R_part_4;
+    let P_omega_1_g_part_1 = sin_theta * R_m - m0_r * cos_theta;
+    let P_omega_1_g = -inv_m0_R_squared_minus_M_11 * P_omega_1_g_part_1;
 
     // Row `omega_2` of P.
     let M_33 = m0_r_r + quarter_m_R_squared;
@@ -818,86 +826,84 @@ pub fn parameter_jacobian<T: Real>(
     let f_2_part_1 = m0_r * tan_theta_omega_3_omega_1;
     let two_sigma_omega_3 = two_sigma * omega_3;
     let f_2_part_2 = m0_R * omega_3_omega_1 + R_m * omega_3_omega_1;
-    let f_2_part_3 = R * (f_2_part_1 + f_2_part_2 - m0 * two_sigma_omega_3);
+    let f_2 = -R * (f_2_part_1 + f_2_part_2 - m0 * two_sigma_omega_3);
     let D_2 = M_33 * M_22 - R_squared * m0_r * m0_r;
     let inv_D_2 = one / D_2;
     let inv_D_2_squared = inv_D_2 * inv_D_2;
-    let p_omega_2_m_part_1 = inv_D_2_squared * (M_33 * f_2_part_3 - R_m0_r * f_3);
-    let p_omega_2_m_part_2 = tan_theta_omega_3_omega_1 - two * omega_2_omega_1;
-    let p_omega_2_m_part_3 = R_squared * p_omega_2_m_part_2;
+    let P_omega_2_m_part_1 = inv_D_2_squared * (R_m0_r * f_3 + M_33 * f_2);
+    let P_omega_2_m_part_2 = tan_theta_omega_3_omega_1 - two * omega_2_omega_1;
+    let P_omega_2_m_part_3 = R_squared * P_omega_2_m_part_2;
     let R_squared_omega_3_omega_1 = R_squared * omega_3_omega_1;
-    let p_omega_2_m_part_4 = R_squared * f_2_part_3;
-    let p_omega_2_m_part_5 = four * M_33 * R_squared_omega_3_omega_1;
-    let p_omega_2_m_part_6 = p_omega_2_m_part_4 + p_omega_2_m_part_5;
+    let P_omega_2_m_part_4 = four * M_33 * R_squared_omega_3_omega_1 - R_squared * f_2;
     let minus_quarter_over_D_2 = -quarter * inv_D_2;
-    let p_omega_2_m_part_7 = p_omega_2_m_part_6 - R_m0_r * p_omega_2_m_part_3;
-    let p_omega_2_m = d_D_2_d_m * p_omega_2_m_part_1
-        + minus_quarter_over_D_2 * p_omega_2_m_part_7;
+    let P_omega_2_m_part_5 = P_omega_2_m_part_4 - R_m0_r * P_omega_2_m_part_3;
+    let P_omega_2_m = minus_quarter_over_D_2 * P_omega_2_m_part_5
+        - d_D_2_d_m * P_omega_2_m_part_1;
     let d_f_2_d_m0 = R * two_sigma_omega_3 - R_squared_omega_3_omega_1
         - R_r * tan_theta_omega_3_omega_1;
     let d_f_3_d_m0 = r_squared * tan_theta_omega_3_omega_1 + R_r * omega_3_omega_1
         - two_sigma_omega_3 * r;
-    let p_omega_2_m0_part_1 = r_squared * f_2_part_3 - M_33 * d_f_2_d_m0;
-    let p_omega_2_m0_part_2 = p_omega_2_m0_part_1 - R_m0_r * d_f_3_d_m0 - R_r * f_3;
+    let P_omega_2_m0_part_1 = M_33 * d_f_2_d_m0 + r_squared * f_2;
+    let P_omega_2_m0_part_2 = P_omega_2_m0_part_1 + R_m0_r * d_f_3_d_m0 + R_r * f_3;
     let d_D_2_d_m0 = r_squared * M_22 + R_squared * (M_33 - two * m0_r_r);
-    let p_omega_2_m0 = p_omega_2_m_part_1 * d_D_2_d_m0 - inv_D_2 * p_omega_2_m0_part_2;
+    let P_omega_2_m0 = inv_D_2 * P_omega_2_m0_part_2 - P_omega_2_m_part_1 * d_D_2_d_m0;
     let two_R_m0_r = two * R_m0_r;
     let d_D_2_d_R = d_M_22_d_R * M_33 + half_R_m * M_22 - m0_r * two_R_m0_r;
     let d_f_3_d_R = m0_r * omega_3_omega_1 + half_R_m * tan_theta_omega_3_omega_1
         - R_m * omega_2_omega_1;
-    let p_omega_2_R_part_1 = f_2_part_2 + half * f_2_part_1 - m0 * omega_3 * sigma;
-    let p_omega_2_R_part_2 = half_R_m * f_2_part_3 + two * M_33 * p_omega_2_R_part_1;
-    let p_omega_2_R_part_3 = p_omega_2_R_part_2 - m0_r * f_3 - R_m0_r * d_f_3_d_R;
-    let p_omega_2_R = p_omega_2_m_part_1 * d_D_2_d_R - inv_D_2 * p_omega_2_R_part_3;
+    let P_omega_2_R_part_1 = f_2_part_2 + half * f_2_part_1 - m0 * omega_3 * sigma;
+    let P_omega_2_R_part_2 = two * M_33 * P_omega_2_R_part_1 - half_R_m * f_2;
+    let P_omega_2_R_part_3 = P_omega_2_R_part_2 - m0_r * f_3 - R_m0_r * d_f_3_d_R;
+    let P_omega_2_R = -(P_omega_2_m_part_1 * d_D_2_d_R + inv_D_2 * P_omega_2_R_part_3);
 
     // Row `omega_3` of P.
-    let p_omega_3_m_part_1 = inv_D_2_squared * (R_m0_r * f_2_part_3 - M_22 * f_3);
-    let p_omega_3_m_part_2 = R_m0_r * R_squared_omega_3_omega_1;
-    let p_omega_3_m_part_3 = p_omega_3_m_part_2 - three_halves_R_squared * f_3;
-    let p_omega_3_m_part_4 = p_omega_3_m_part_3 - quarter * M_22 * p_omega_2_m_part_3;
-    let p_omega_3_m = d_D_2_d_m * p_omega_3_m_part_1 - inv_D_2 * p_omega_3_m_part_4;
-    let p_omega_3_m0_part_1 = R_r * f_2_part_3 - R_squared * f_3 - M_22 * d_f_3_d_m0;
-    let p_omega_3_m0 = d_D_2_d_m0 * p_omega_3_m_part_1
-        - inv_D_2 * (p_omega_3_m0_part_1 - R_m0_r * d_f_2_d_m0);
-    let p_omega_3_R_part_1 = two_R_m0_r * p_omega_2_R_part_1 + m0_r * f_2_part_3;
-    let p_omega_3_R_part_2 = p_omega_3_R_part_1 - M_22 * d_f_3_d_R - d_M_22_d_R * f_3;
-    let p_omega_3_R = d_D_2_d_R * p_omega_3_m_part_1 - inv_D_2 * p_omega_3_R_part_2;
+    let P_omega_3_m_part_1 = inv_D_2_squared * (R_m0_r * f_2 + M_22 * f_3);
+    let P_omega_3_m_part_2 = R_m0_r * R_squared_omega_3_omega_1;
+    let P_omega_3_m_part_3 = P_omega_3_m_part_2 - three_halves_R_squared * f_3;
+    let P_omega_3_m_part_4 = P_omega_3_m_part_3 - quarter * M_22 * P_omega_2_m_part_3;
+    let P_omega_3_m = -(d_D_2_d_m * P_omega_3_m_part_1 + inv_D_2 * P_omega_3_m_part_4);
+    let P_omega_3_m0_part_1 = R_squared * f_3 + M_22 * d_f_3_d_m0;
+    let P_omega_3_m0_part_2 = P_omega_3_m0_part_1 + R_m0_r * d_f_2_d_m0 + R_r * f_2;
+    let P_omega_3_m0 = inv_D_2 * P_omega_3_m0_part_2 - d_D_2_d_m0 * P_omega_3_m_part_1;
+    let P_omega_3_R_part_1 = two_R_m0_r * P_omega_2_R_part_1 - M_22 * d_f_3_d_R;
+    let P_omega_3_R_part_2 = P_omega_3_R_part_1 - d_M_22_d_R * f_3 - m0_r * f_2;
+    let P_omega_3_R = -(inv_D_2 * P_omega_3_R_part_2 + d_D_2_d_R * P_omega_3_m_part_1);
 
     // Row `sigma` of P.
-    let p_sigma_m = R * p_omega_1_m;
-    let p_sigma_m0 = R * p_omega_1_m0 - inv_m0 * (f_4 * inv_m0 - d_f_4_d_m0);
-    let p_sigma_R = omega_1_dot + R * p_omega_1_R - omega_3_omega_2;
-    let p_sigma_g = R * p_omega_1_g - sin_theta;
+    let P_sigma_m = R * P_omega_1_m;
+    let P_sigma_m0 = R * P_omega_1_m0 - inv_m0 * (f_4 * inv_m0 - d_f_4_d_m0);
+    let P_sigma_R = omega_1_dot + R * P_omega_1_R - omega_3_omega_2;
+    let P_sigma_g = R * P_omega_1_g - sin_theta;
 
     // Row `x_G` of P.
     let cos_theta_omega_1 = cos_theta * omega_1;
-    let p_x_G_R = sin_psi * cos_theta_omega_1 + cos_psi * omega_2;
+    let P_x_G_R = sin_psi * cos_theta_omega_1 + cos_psi * omega_2;
 
     // Row `y_G` of P.
-    let p_y_G_R = sin_psi * omega_2 - cos_theta_omega_1 * cos_psi;
+    let P_y_G_R = sin_psi * omega_2 - cos_theta_omega_1 * cos_psi;
 
     // Rows: 0 omega_1, 1 omega_2, 2 omega_3, 3 sigma, 4 theta, 5 r, 6 psi, 7 phi,
     //   8 x_G, 9 y_G.
     // Columns: 0 m, 1 m0, 2 R, 3 g.
-    let mut p = [[zero; 4]; 10];
-    p[0][0] = p_omega_1_m;
-    p[0][1] = p_omega_1_m0;
-    p[0][2] = p_omega_1_R;
-    p[0][3] = p_omega_1_g;
-    p[1][0] = p_omega_2_m;
-    p[1][1] = p_omega_2_m0;
-    p[1][2] = p_omega_2_R;
-    p[2][0] = p_omega_3_m;
-    p[2][1] = p_omega_3_m0;
-    p[2][2] = p_omega_3_R;
-    p[3][0] = p_sigma_m;
-    p[3][1] = p_sigma_m0;
-    p[3][2] = p_sigma_R;
-    p[3][3] = p_sigma_g;
-    p[8][2] = p_x_G_R;
-    p[9][2] = p_y_G_R;
+    let mut P = [[zero; 4]; 10];
+    P[0][0] = P_omega_1_m;
+    P[0][1] = P_omega_1_m0;
+    P[0][2] = P_omega_1_R;
+    P[0][3] = P_omega_1_g;
+    P[1][0] = P_omega_2_m;
+    P[1][1] = P_omega_2_m0;
+    P[1][2] = P_omega_2_R;
+    P[2][0] = P_omega_3_m;
+    P[2][1] = P_omega_3_m0;
+    P[2][2] = P_omega_3_R;
+    P[3][0] = P_sigma_m;
+    P[3][1] = P_sigma_m0;
+    P[3][2] = P_sigma_R;
+    P[3][3] = P_sigma_g;
+    P[8][2] = P_x_G_R;
+    P[9][2] = P_y_G_R;
 
-    p
+    P
 }
 
 /// Energies and power.
@@ -907,12 +913,12 @@ pub fn parameter_jacobian<T: Real>(
 #[must_use]
 #[inline]
 pub fn energies<T: Real>(
-    p: &Parameters<T>,
-    x: &State<T>,
+    parameters: &Parameters<T>,
+    state: &State<T>,
     inputs: &Inputs<T>,
 ) -> Energies<T> {
-    let &Parameters { m, R, g, .. } = p;
-    let &State { omega_2, sigma, theta, .. } = x;
+    let &Parameters { m, R, g, .. } = parameters;
+    let &State { omega_2, sigma, theta, .. } = state;
     let &Inputs { u } = inputs;
     let three_quarters = T::constant(0.75);
 

@@ -10,11 +10,11 @@ mod files;
 mod formula;
 mod progress;
 mod reactions;
-mod recorded;
 mod setup;
 mod source;
 mod summary;
 mod table;
+mod tabulated;
 
 use std::process::ExitCode;
 

@@ -2,7 +2,6 @@
 
 use appell_runtime::model::Quantity;
 use appell_spec::Mechanism;
-use appell_spec::mechanism::ConstraintKind;
 use appell_spec::units::{Dimension, Unit};
 
 /// Names the unit of every column `reaction_…`: a force for a point; for a constraint without a
@@ -29,9 +28,6 @@ fn multiplier(mechanism: &Mechanism, place: &str) -> Option<String> {
     let name = place.strip_prefix("constraint_");
     let mut constraints = mechanism.constraints.iter();
     let constraint = constraints.find(|c| c.name == place || Some(c.name.as_str()) == name)?;
-    let ConstraintKind::Velocity { dimension, .. } = &constraint.kind else {
-        return None;
-    };
-    let unit = Dimension::POWER.over(dimension).ok()?;
+    let unit = Dimension::POWER.over(constraint.kind.dimension()?).ok()?;
     Some(Unit::si(unit).text)
 }

@@ -303,6 +303,34 @@ pub enum ConstraintKind {
     },
 }
 
+impl ConstraintKind {
+    /// Its word in a spec, after `kind =`.
+    pub const fn word(&self) -> &'static str {
+        match self {
+            Self::Rolling { .. } => "rolling",
+            Self::Velocity { .. } => "velocity",
+            Self::FixedVelocity { .. } => "fixed_velocity",
+            Self::Position { .. } => "position",
+        }
+    }
+
+    /// How many scalar equations it stands for.
+    pub const fn rows(&self) -> usize {
+        match self {
+            Self::Rolling { .. } => 3,
+            Self::Velocity { .. } | Self::FixedVelocity { .. } | Self::Position { .. } => 1,
+        }
+    }
+
+    /// Dimension of what it holds at a value; `None` where it holds the velocity of a point.
+    pub const fn dimension(&self) -> Option<&Dimension> {
+        match self {
+            Self::Velocity { dimension, .. } => Some(dimension),
+            Self::Rolling { .. } | Self::FixedVelocity { .. } | Self::Position { .. } => None,
+        }
+    }
+}
+
 /// A pseudo-velocity: a linear combination of generalised velocities.
 #[derive(Debug, Clone)]
 pub struct PseudoVelocity {
@@ -386,6 +414,33 @@ pub enum LoadKind {
         /// Generalised force.
         force: Expr,
     },
+}
+
+impl LoadKind {
+    /// What it connects, for loads along a connection.
+    pub const fn between(&self) -> Option<&Connection> {
+        match self {
+            Self::Spring { between, .. } | Self::Damper { between, .. } => Some(between),
+            Self::Gravity { .. }
+            | Self::Force { .. }
+            | Self::Torque { .. }
+            | Self::Generalized { .. } => None,
+        }
+    }
+
+    /// The points it names: those that a force or the ends of a connection act on.
+    pub fn points(&self) -> Vec<PointId> {
+        match self {
+            Self::Force {
+                on, reaction_on, ..
+            } => [Some(*on), *reaction_on].into_iter().flatten().collect(),
+            Self::Spring { between, .. } | Self::Damper { between, .. } => match *between {
+                Connection::Points(a, b) => vec![a, b],
+                Connection::Coordinate(_) => Vec::new(),
+            },
+            Self::Gravity { .. } | Self::Torque { .. } | Self::Generalized { .. } => Vec::new(),
+        }
+    }
 }
 
 /// What a spring or damper connects.

@@ -184,6 +184,16 @@ fn constraints_and_loads_refer_to_their_items() {
 }
 
 #[test]
+fn constraints_know_their_word_and_their_rows() {
+    let constraints = rich().constraints.into_iter();
+    let found: Vec<_> = constraints
+        .map(|c| (c.kind.word(), c.kind.rows()))
+        .collect();
+    let expected = [("rolling", 3), ("velocity", 1), ("fixed_velocity", 1)];
+    assert_eq!(found, expected);
+}
+
+#[test]
 fn products_of_inertia_stand_in_the_tensor_with_their_sign() {
     let mechanism = rich();
     let inertia = mechanism.bodies[0].inertia.as_ref().unwrap();

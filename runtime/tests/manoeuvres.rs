@@ -1,4 +1,5 @@
-//! Closed-loop manoeuvres of a steered unicycle against published and recomputed values, and a
+//! The simulation alone, on equations written by hand: closed-loop manoeuvres of a steered unicycle
+//! against published and recomputed values, and a
 //! wheel that falls over. The equations are written by hand from the literature (Vizi, Orosz,
 //! Takács and Stépán, *Steering Control of an Autonomous Unicycle*, corrected).
 

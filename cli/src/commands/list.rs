@@ -3,7 +3,6 @@
 use std::path::PathBuf;
 
 use appell_models::{ALL, Shipped};
-use appell_spec::mechanism::ConstraintKind;
 use serde_json::{Value, json};
 
 use crate::failure::Failure;
@@ -56,14 +55,8 @@ fn short(source: &str) -> String {
 /// Word of the spec and number of scalar rows of each constraint.
 fn kinds(shipped: &Shipped) -> Result<Vec<(String, &'static str, usize)>, Failure> {
     let mechanism = appell_spec::load(shipped.file, shipped.spec)?.mechanism;
-    let kind = |kind: &ConstraintKind| match kind {
-        ConstraintKind::Rolling { .. } => ("rolling", 3),
-        ConstraintKind::Velocity { .. } => ("velocity", 1),
-        ConstraintKind::FixedVelocity { .. } => ("fixed_velocity", 1),
-        ConstraintKind::Position { .. } => ("position", 1),
-    };
     let named = mechanism.constraints.into_iter().map(|constraint| {
-        let (word, rows) = kind(&constraint.kind);
+        let (word, rows) = (constraint.kind.word(), constraint.kind.rows());
         (constraint.name, word, rows)
     });
     Ok(named.collect())

@@ -13,7 +13,7 @@ use crate::engine::{Engine, Equations};
 use crate::failure::{Failure, note, tell};
 use crate::setup::{Assignment, Setup};
 use crate::source::Source;
-use crate::{feedback, files, progress, reactions, recorded, summary};
+use crate::{feedback, files, progress, reactions, summary, tabulated};
 
 /// Integrates the equations of motion and tells what happened.
 ///
@@ -125,7 +125,7 @@ impl Simulate {
             plan.expression(assignment, &setup)?;
         }
         if let Some(file) = &self.inputs {
-            let (table, inputs) = recorded::read(file, &setup)?;
+            let (table, inputs) = tabulated::read(file, &setup)?;
             plan.recording(table, &inputs, &setup)?;
         }
         let method = match self.method {

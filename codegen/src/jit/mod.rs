@@ -6,7 +6,7 @@
 //! elementary functions of the Rust standard library. Its results are those of the emitted Rust
 //! and of the interpreter, bit for bit.
 //!
-//! The stages: `check` makes sure that a schedule can be compiled at all, `compile` translates
+//! The stages: `check` makes sure that a schedule can be compiled at all, `translate` turns
 //! it, `native` owns the machine code. `elementary` and `dense` are what the code calls.
 
 // Machine code is reached by pointers. Only `native`, `elementary` and `dense` use unsafe blocks;
@@ -14,14 +14,14 @@
 #![allow(unsafe_code)]
 
 mod check;
-mod compile;
 mod dense;
 mod elementary;
 mod error;
 mod host;
 mod model;
 mod native;
-mod part;
+mod on_demand;
+mod translate;
 
 pub use check::{MOST_DEPTH, MOST_OPERATIONS, MOST_ROWS, Sizes};
 pub use error::JitError;

@@ -5,7 +5,7 @@ use std::slice::from_mut;
 
 use appell_runtime::model::{At, Energies, Model, ModelInfo};
 
-use super::part::Part;
+use super::on_demand::OnDemand;
 use super::{JitError, Sizes};
 use crate::program::{FunctionKind, Program};
 
@@ -20,7 +20,7 @@ pub struct JitModel {
     program: Program,
     sizes: Sizes,
     /// By [`FunctionKind`], in the order of its variants.
-    parts: Vec<Part>,
+    parts: Vec<OnDemand>,
 }
 
 /// The results that the trait asks for, with their lengths.
@@ -55,7 +55,7 @@ impl JitModel {
         let sizes = Sizes::from(&program.info);
         let parts = FunctionKind::ALL
             .iter()
-            .map(|&kind| Part::new(program, kind, results(kind, program)))
+            .map(|&kind| OnDemand::new(program, kind, results(kind, program)))
             .collect::<Result<_, _>>()?;
         let model = Self {
             program: program.clone(),
@@ -82,7 +82,7 @@ impl JitModel {
             .filter_map(|(kind, part)| Some((kind, part.reason()?)))
     }
 
-    fn part(&self, kind: FunctionKind) -> &Part {
+    fn part(&self, kind: FunctionKind) -> &OnDemand {
         &self.parts[kind as usize]
     }
 
@@ -172,9 +172,32 @@ impl fmt::Debug for JitModel {
 mod tests {
     use super::*;
 
+    /// The kind after another one. A new kind needs an arm here, and with it a place in the list.
+    fn after(kind: FunctionKind) -> Option<FunctionKind> {
+        use FunctionKind as Kind;
+        Some(match kind {
+            Kind::Kinematics => Kind::AccelerationEnergy,
+            Kind::AccelerationEnergy => Kind::MassMatrix,
+            Kind::MassMatrix => Kind::Bias,
+            Kind::Bias => Kind::GeneralizedForces,
+            Kind::GeneralizedForces => Kind::Rates,
+            Kind::Rates => Kind::Jacobians,
+            Kind::Jacobians => Kind::ParameterJacobian,
+            Kind::ParameterJacobian => Kind::Energies,
+            Kind::Energies => Kind::ConstraintResidual,
+            Kind::ConstraintResidual => Kind::ConstraintForces,
+            Kind::ConstraintForces => Kind::Outputs,
+            Kind::Outputs => Kind::Switches,
+            Kind::Switches => return None,
+        })
+    }
+
     #[test]
-    fn kinds_are_their_own_indices() {
-        for (index, kind) in FunctionKind::ALL.into_iter().enumerate() {
+    fn the_list_of_kinds_lacks_none_and_has_each_at_its_index() {
+        let all: Vec<_> =
+            std::iter::successors(Some(FunctionKind::Kinematics), |&k| after(k)).collect();
+        assert_eq!(FunctionKind::ALL.to_vec(), all);
+        for (index, kind) in all.into_iter().enumerate() {
             assert_eq!(kind as usize, index);
         }
     }

@@ -8,8 +8,8 @@ use cranelift_jit::{JITBuilder, JITModule};
 use cranelift_module::{Module, ModuleError, default_libcall_names};
 
 use super::check::{Sizes, check};
-use super::compile::{signature, translate};
-use super::part::lengths;
+use super::on_demand::lengths;
+use super::translate::{signature, translate};
 use super::{JitError, host};
 use crate::schedule::Schedule;
 

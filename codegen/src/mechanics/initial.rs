@@ -2,7 +2,7 @@
 //! arms stretched out, angles at zero, springs without length.
 
 use appell_spec::Code;
-use appell_spec::mechanism::{Connection, GROUND, LoadKind, Mechanism};
+use appell_spec::mechanism::{Connection, GROUND, Mechanism};
 
 use super::algebra::Algebra;
 use super::finding::{Finding, Item};
@@ -88,11 +88,7 @@ pub fn vanishing_lengths(
 ) -> Vec<Finding> {
     let mut findings = Vec::new();
     for (index, load) in mechanism.loads.iter().enumerate() {
-        let (LoadKind::Spring { between, .. } | LoadKind::Damper { between, .. }) = &load.kind
-        else {
-            continue;
-        };
-        let Connection::Points(a, b) = *between else {
+        let Some(&Connection::Points(a, b)) = load.kind.between() else {
             continue;
         };
         let graph = &mut algebra.graph;

@@ -1,4 +1,4 @@
-//! Applied loads: generalised forces from virtual power, potential energy, power.
+//! Applied loads: pseudo-forces from virtual power, potential energy, power.
 
 use appell_spec::Code;
 use appell_spec::mechanism::{Connection, GROUND, LoadKind, Mechanism, PointId};
@@ -90,12 +90,9 @@ pub fn applied_loads(
 /// A load that divides by zero: a connection without length, or an expression.
 fn undefined(index: usize, kind: &LoadKind) -> Finding {
     let item = Item::Load(index);
-    let (LoadKind::Spring { between, .. } | LoadKind::Damper { between, .. }) = kind else {
-        return division_by_zero(item);
-    };
-    match between {
-        Connection::Coordinate(_) => division_by_zero(item),
-        Connection::Points(..) => Finding {
+    match kind.between() {
+        None | Some(Connection::Coordinate(_)) => division_by_zero(item),
+        Some(Connection::Points(..)) => Finding {
             code: Code::VanishingLength,
             message: "the two points are always at the same place: the load has no direction"
                 .to_owned(),

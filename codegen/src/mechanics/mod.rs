@@ -29,7 +29,7 @@ pub mod time;
 use appell_spec::Code;
 use appell_spec::mechanism::Mechanism;
 
-use crate::symbolic::{Expr, Graph, Intervals};
+use crate::symbolic::{Expr, Graph, Intervals, SymbolId};
 use algebra::Algebra;
 use constraints::Constraints;
 use elimination::GeneralizedVelocities;
@@ -162,14 +162,24 @@ fn equations(mechanism: &Mechanism) -> Outcome<Derivation> {
     })
 }
 
-/// Ranges inside which a pivot must not vanish. A parameter whose limits admit both signs may be
-/// zero; any other keeps the sign of its value: a wheel of radius zero is another mechanism.
+/// Ranges inside which a pivot must not vanish.
 fn declared_ranges(graph: &Graph, mechanism: &Mechanism, symbols: &Symbols) -> Intervals {
     let coordinates = ids(graph, &symbols.coordinates)
         .into_iter()
         .zip(&mechanism.coordinates)
         .filter_map(|(symbol, q)| q.range.map(|[low, high]| (symbol, low, high)));
-    let parameters = ids(graph, &symbols.parameters)
+    let parameters = parameter_ranges(graph, mechanism, symbols);
+    Intervals::new(graph, coordinates.chain(parameters).collect())
+}
+
+/// A parameter whose limits admit both signs may be zero; any other keeps the sign of its value: a
+/// wheel of radius zero is another mechanism.
+pub(crate) fn parameter_ranges(
+    graph: &Graph,
+    mechanism: &Mechanism,
+    symbols: &Symbols,
+) -> Vec<(SymbolId, f64, f64)> {
+    ids(graph, &symbols.parameters)
         .into_iter()
         .zip(&mechanism.parameters)
         .filter_map(|(symbol, p)| {
@@ -184,8 +194,8 @@ fn declared_ranges(graph: &Graph, mechanism: &Mechanism, symbols: &Symbols) -> I
                 v if v < 0.0 => Some((symbol, low, high.min(-f64::MIN_POSITIVE))),
                 _ => None,
             }
-        });
-    Intervals::new(graph, coordinates.chain(parameters).collect())
+        })
+        .collect()
 }
 
 /// The identity test draws its points from the spec, so that every run draws the same.

@@ -133,9 +133,13 @@ fn resolved_elsewhere(
     rows: &[Row],
     constraint: usize,
 ) -> Option<Vec<(usize, Row)>> {
-    let ConstraintKind::Rolling { .. } = mechanism.constraints[constraint].kind else {
-        return None;
-    };
+    match mechanism.constraints[constraint].kind {
+        ConstraintKind::Rolling { .. } => {}
+        // One row has no axes to choose.
+        ConstraintKind::Velocity { .. }
+        | ConstraintKind::FixedVelocity { .. }
+        | ConstraintKind::Position { .. } => return None,
+    }
     (GROUND + 1..mechanism.frames.len()).find_map(|frame| {
         let resolved = resolved_in(algebra, mechanism, frames, rows, constraint, frame)?;
         let mut all = rows.to_vec();

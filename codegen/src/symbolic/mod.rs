@@ -6,10 +6,10 @@
 //! evaluation in a finite field ([`identity`]).
 
 mod canonical;
+mod common_factors;
 mod differentiate;
 mod evaluate;
 mod expand;
-mod factor;
 mod field;
 mod graph;
 pub mod identity;

@@ -1,4 +1,4 @@
-//! What is kept of a motion.
+//! Observes an integration and keeps the samples of the motion.
 
 use super::Sampling;
 use crate::integrate::{Observer, Step};

@@ -207,7 +207,10 @@ pub fn potential<S: Real>(setting: &Setting<'_>, q: &[S], passed: S) -> S {
                 let extension = length - values.of(relaxed);
                 total += S::constant(0.5) * values.of(stiffness) * extension * extension;
             }
-            _ => {}
+            LoadKind::Force { .. }
+            | LoadKind::Torque { .. }
+            | LoadKind::Damper { .. }
+            | LoadKind::Generalized { .. } => {}
         }
     }
     total

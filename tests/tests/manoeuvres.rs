@@ -1,4 +1,5 @@
-//! Long motions: the free ones keep their energy, the controlled ones are those of the paper.
+//! Long motions of the shipped models: the free ones keep their energy, the controlled ones are
+//! those of the paper.
 
 #![allow(clippy::unwrap_used, reason = "what is missing fails the test")]
 
@@ -220,7 +221,7 @@ fn closed_loop(gains: Vec<f64>, speed: f64, amplitude: f64, end: f64) -> Traject
 
 /// What the sheet of results says about a run.
 struct Run {
-    maneuver: &'static str,
+    manoeuvre: &'static str,
     speed: f64,
     amplitude: f64,
     end: f64,
@@ -234,7 +235,7 @@ struct Run {
 }
 
 fn assert_run(run: &Run) -> Trajectory {
-    let text = if run.maneuver == "lane_change" {
+    let text = if run.manoeuvre == "lane_change" {
         LANE
     } else {
         TURN
@@ -294,7 +295,7 @@ fn assert_reference(run: &Run, motion: &Trajectory) {
     let case = cases
         .iter()
         .find(|case| {
-            case["maneuver"] == run.maneuver
+            case["maneuver"] == run.manoeuvre
                 && (number(&case["speed_m_s"]) - run.speed).abs() < 0.5
                 && case["gains"].as_str().unwrap().starts_with("exact")
                 && case["reference"].as_str().unwrap().contains("corrected")
@@ -324,7 +325,7 @@ fn assert_reference(run: &Run, motion: &Trajectory) {
 #[test]
 fn lane_change_at_1_metre_per_second() {
     let run = Run {
-        maneuver: "lane_change",
+        manoeuvre: "lane_change",
         speed: 1.0,
         amplitude: 1.25,
         end: -2.5,
@@ -342,7 +343,7 @@ fn lane_change_at_1_metre_per_second() {
 #[test]
 fn lane_change_at_5_metres_per_second_needs_more_force_than_the_paper_says() {
     let run = Run {
-        maneuver: "lane_change",
+        manoeuvre: "lane_change",
         speed: 5.0,
         amplitude: 5.0,
         end: -10.0,
@@ -366,7 +367,7 @@ fn lane_change_at_5_metres_per_second_needs_more_force_than_the_paper_says() {
 #[test]
 fn right_turn_at_1_metre_per_second() {
     let run = Run {
-        maneuver: "right_turn",
+        manoeuvre: "right_turn",
         speed: 1.0,
         amplitude: FRAC_PI_4,
         end: -FRAC_PI_2,
@@ -384,7 +385,7 @@ fn right_turn_at_1_metre_per_second() {
 #[test]
 fn right_turn_at_5_metres_per_second() {
     let run = Run {
-        maneuver: "right_turn",
+        manoeuvre: "right_turn",
         speed: 5.0,
         amplitude: FRAC_PI_4,
         end: -FRAC_PI_2,

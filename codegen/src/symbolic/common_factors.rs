@@ -1,4 +1,4 @@
-//! Common factors of a sum.
+//! Common factors of a sum in the graph, all terms at once: `a b + a c = a (b + c)`.
 
 use super::Graph;
 use super::node::{Expr, Factor, Node};

@@ -1,4 +1,4 @@
-//! One function of a model, from its place in the program to code that runs.
+//! One function of a model: compiled when it is first asked for, interpreted where it cannot be.
 
 use std::sync::OnceLock;
 
@@ -13,7 +13,7 @@ use crate::schedule::{ResultArray, Schedule, interpret, schedule};
 pub(super) type Wanted = (&'static str, usize);
 
 /// Some results of a function of a program. The code is made when it is first asked for.
-pub(super) struct Part {
+pub(super) struct OnDemand {
     kind: FunctionKind,
     wanted: Vec<Wanted>,
     ready: OnceLock<Ready>,
@@ -36,7 +36,7 @@ pub(super) enum Ready {
     },
 }
 
-impl Part {
+impl OnDemand {
     /// The wanted results of a function. A program may leave out what has no entries.
     pub(super) fn new(
         program: &Program,

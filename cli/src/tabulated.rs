@@ -1,4 +1,4 @@
-//! Inputs from a CSV file: held from each row to the next.
+//! Inputs tabulated in a CSV file: held from each row to the next.
 
 use std::path::Path;
 

@@ -183,7 +183,7 @@ impl FunctionKind {
             Self::GeneralizedForces => (
                 "generalized_forces",
                 "GeneralizedForces",
-                "Generalised forces Π: virtual power of the loads per pseudo-velocity.",
+                "Pseudo-forces Π (generalised forces): virtual power of the loads per pseudo-velocity.",
             ),
             Self::Rates => (
                 "rates",

@@ -137,6 +137,58 @@ fn texts_of_a_spec_are_shown_and_not_obeyed() {
 }
 
 #[test]
+fn every_kind_of_load_is_stated() {
+    let text = spec("pendulum")
+        .split("[loads]")
+        .next()
+        .unwrap_or_default()
+        .to_owned()
+        + r#"
+[loads]
+weight = { kind = "gravity", down = "-z", acceleration = "g" }
+push   = { kind = "force", on = "B", body = "rod", reaction_on = "A", in = "rod", vector = ["tau/l", 0, 0] }
+coil   = { kind = "spring", between = ["A", "G"], stiffness = "k", relaxed = "l" }
+oil    = { kind = "damper", between = ["A", "G"], damping = "c" }
+helix  = { kind = "spring", coordinate = "theta", stiffness = "k*l^2", relaxed = "1 [rad]" }
+brake  = { kind = "damper", coordinate = "theta", damping = "c*l^2" }
+drag   = { kind = "generalized", coordinate = "theta", force = "-tau" }
+"#;
+    let text = text
+        .replace(
+            "[coordinates]",
+            "k = { value = 10, unit = \"N/m\" }\nc = { value = 1, unit = \"N*s/m\" }\n[coordinates]",
+        )
+        .replace(
+            "[points]",
+            "[points]\nA = { from = \"O\", in = \"ground\", at = [\"2*l\", 0, 0] }\nB = { from = \"O\", in = \"rod\", at = [0, 0, \"-2*l\"] }",
+        );
+    let page = page::text(&page_support::page_after(&text, |_| {}));
+    let words: Vec<&str> = page.split_whitespace().collect();
+    let page = words.join(" ");
+    for statement in [
+        "F_weight = [0, 0, −m g] ground at G; δP_weight = F_weight · δv_G.",
+        "F_push = [τ/l, 0, 0] rod at B, fixed in rod, −F_push at A; \
+         δP_push = F_push · (δv_G + δω_rod × r_GB − δv_A).",
+        "tension F_coil = k (|r_AG| − l) between A and G; \
+         δP_coil = F_coil r_AG/|r_AG| · (δv_A − δv_G).",
+        "tension F_oil = c r_AG/|r_AG| · (v_G − v_A) between A and G; \
+         δP_oil = F_oil r_AG/|r_AG| · (δv_A − δv_G).",
+        "F_helix = −l² k (θ − 1) along θ; δP_helix = F_helix δθ̇.",
+        "F_brake = −l² c θ̇ along θ; δP_brake = F_brake δθ̇.",
+        "F_drag = −τ along θ; δP_drag = F_drag δθ̇.",
+    ] {
+        assert!(page.contains(statement), "{statement} is not in {page}");
+    }
+}
+
+#[test]
+fn divisions_that_can_fail_are_told_with_the_declared_range() {
+    let page = page::text(&page_of("unicycle", Stage::Kinematics));
+    let told = "They hold where cos θ ≠ 0; the spec declares θ from -1.5 to 1.5 rad.";
+    assert!(page.contains(told), "{page}");
+}
+
+#[test]
 fn what_the_page_says_is_true() {
     // Read as a program, every page of a shipped mechanism is free of contradictions: definitions,
     // constraints, Appell's equations and their solution hold together.

@@ -239,7 +239,7 @@ pub trait Model: Sync {
     fn jacobians(&self, at: At<'_>, rates: &mut [f64], a: &mut [f64], b: &mut [f64]);
     /// P = ∂ẋ/∂p (`n·k`).
     fn parameter_jacobian(&self, at: At<'_>, p: &mut [f64]);
-    /// M, bias and generalised forces of Appell's equations M ω̇ + b = Π (`s·s`, `s`, `s`).
+    /// M, bias and pseudo-forces of Appell's equations M ω̇ + b = Π (`s·s`, `s`, `s`).
     fn appell(&self, at: At<'_>, mass: &mut [f64], bias: &mut [f64], forces: &mut [f64]);
     /// Energies and power.
     fn energies(&self, at: At<'_>) -> Energies;

@@ -327,7 +327,7 @@ fn motion_methods(types: &Types<'_>) -> Result<TokenStream, Error> {
     })
 }
 
-/// Mass matrix, bias and generalised forces.
+/// Mass matrix, bias and pseudo-forces.
 fn appell_method(types: &Types<'_>) -> Result<TokenStream, Error> {
     for kind in [
         FunctionKind::MassMatrix,

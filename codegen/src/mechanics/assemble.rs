@@ -94,7 +94,7 @@ impl Derivation {
             }
             FunctionKind::GeneralizedForces => {
                 let forces = self.forces.clone();
-                let about = "Generalised forces.";
+                let about = "Pseudo-forces.";
                 vec![by_speed(
                     "force",
                     "generalized_forces",

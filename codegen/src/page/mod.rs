@@ -4,15 +4,16 @@
 //! neither its format nor the graph behind it; [`text()`], [`latex()`] and [`html()`] set it.
 
 mod angles;
+mod arrange;
+mod collect;
 mod display;
-mod explicit;
+mod dissolve;
 mod html;
 mod latex;
 mod lexicon;
-mod picture;
-mod present;
 mod sections;
 mod text;
+mod text_box;
 mod units;
 mod writer;
 

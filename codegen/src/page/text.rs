@@ -1,7 +1,7 @@
 //! Unicode text: the page for a terminal or a plain-text handout.
 
 use super::display::{Equation, Piece, left_width};
-use super::picture::Picture;
+use super::text_box::TextBox;
 use super::{Block, Chain, Math, Page, Span, Table};
 use crate::symbolic::print::text as inline;
 use crate::symbolic::print::{clean, columns};
@@ -156,24 +156,24 @@ fn equations(out: &mut String, equations: &[Equation]) {
         let display = equation.display(WIDTH - INDENT, left_width);
         let (head, indent) = match display.left {
             Some(left) => {
-                let left = picture(left);
+                let left = boxed(left);
                 let pad = " ".repeat(INDENT + left_width.saturating_sub(left.width()));
-                let head = Picture::line(&pad)
+                let head = TextBox::line(&pad)
                     .beside(&left)
-                    .beside(&Picture::line(" = "));
+                    .beside(&TextBox::line(" = "));
                 let indent = head.width();
                 (head, indent)
             }
-            None => (Picture::line(&" ".repeat(INDENT)), 2 * INDENT),
+            None => (TextBox::line(&" ".repeat(INDENT)), 2 * INDENT),
         };
-        let mut whole: Vec<Picture> = Vec::new();
+        let mut whole: Vec<TextBox> = Vec::new();
         for (k, pieces) in display.lines.iter().enumerate() {
             let start = if k == 0 {
                 head.clone()
             } else {
-                Picture::line(&" ".repeat(indent))
+                TextBox::line(&" ".repeat(indent))
             };
-            whole.push(start.beside(&pieces_picture(pieces)));
+            whole.push(start.beside(&pieces_box(pieces)));
         }
         // Air around what is taller than a line.
         let tall = whole.len() > 1 || whole.iter().any(|p| p.height() > 1);
@@ -187,26 +187,26 @@ fn equations(out: &mut String, equations: &[Equation]) {
     }
 }
 
-fn pieces_picture(pieces: &[Piece<'_>]) -> Picture {
-    let mut picture = Picture::line("");
+fn pieces_box(pieces: &[Piece<'_>]) -> TextBox {
+    let mut boxed = TextBox::line("");
     let (mut after_whole, mut after_minus) = (false, false);
     for piece in pieces {
-        let space = if picture.width() == 0 { "" } else { " " };
+        let space = if boxed.width() == 0 { "" } else { " " };
         let next = match piece {
             Piece::Whole(math) => {
-                let next = self::picture(math);
+                let next = self::boxed(math);
                 // A minus must not run into the bar of a quotient.
                 let runs_in = after_whole || (next.height() > 1 && after_minus);
                 let gap = if runs_in { " " } else { "" };
-                Picture::line(gap).beside(&next)
+                TextBox::line(gap).beside(&next)
             }
-            Piece::Sign { minus, first: true } => Picture::line(if *minus { "−" } else { "" }),
+            Piece::Sign { minus, first: true } => TextBox::line(if *minus { "−" } else { "" }),
             Piece::Sign { minus, .. } => {
-                Picture::line(&format!("{space}{} ", if *minus { "−" } else { "+" }))
+                TextBox::line(&format!("{space}{} ", if *minus { "−" } else { "+" }))
             }
-            Piece::Equals => Picture::line(&format!("{space}= ")),
-            Piece::Open => Picture::line(if after_whole { " (" } else { "(" }),
-            Piece::Close => Picture::line(")"),
+            Piece::Equals => TextBox::line(&format!("{space}= ")),
+            Piece::Open => TextBox::line(if after_whole { " (" } else { "(" }),
+            Piece::Close => TextBox::line(")"),
         };
         after_whole = matches!(piece, Piece::Whole(_) | Piece::Close);
         after_minus = matches!(
@@ -216,20 +216,20 @@ fn pieces_picture(pieces: &[Piece<'_>]) -> Picture {
                 first: true
             }
         );
-        picture = picture.beside(&next);
+        boxed = boxed.beside(&next);
     }
-    picture
+    boxed
 }
 
 /// A formula that may take several lines: matrices, columns and quotients of sums do.
-fn picture(math: &Math) -> Picture {
+fn boxed(math: &Math) -> TextBox {
     match math {
         Math::Matrix(rows) => {
             let cells: Vec<Vec<String>> = rows
                 .iter()
                 .map(|row| row.iter().map(inline).collect())
                 .collect();
-            Picture::bracketed(&cells)
+            TextBox::bracketed(&cells)
         }
         Math::Vector {
             components,
@@ -237,27 +237,27 @@ fn picture(math: &Math) -> Picture {
             column: true,
         } => {
             let cells: Vec<Vec<String>> = components.iter().map(|c| vec![inline(c)]).collect();
-            let mut picture = Picture::bracketed(&cells);
+            let mut boxed = TextBox::bracketed(&cells);
             if let Some(frame) = frame {
-                picture.append_to_last(&format!(" {}", clean(frame)));
+                boxed.append_to_last(&format!(" {}", clean(frame)));
             }
-            picture
+            boxed
         }
         Math::Fraction(above, below) if is_tall(above) || is_tall(below) => {
-            Picture::quotient(&inline(above), &inline(below))
+            TextBox::quotient(&inline(above), &inline(below))
         }
         Math::Row(factors) => {
             factors
                 .iter()
                 .enumerate()
-                .fold(Picture::line(""), |picture, (k, factor)| {
+                .fold(TextBox::line(""), |boxed, (k, factor)| {
                     let gap = if k == 0 { "" } else { " " };
-                    picture
-                        .beside(&Picture::line(gap))
-                        .beside(&self::picture(factor))
+                    boxed
+                        .beside(&TextBox::line(gap))
+                        .beside(&self::boxed(factor))
                 })
         }
-        other => Picture::line(&inline(other)),
+        other => TextBox::line(&inline(other)),
     }
 }
 

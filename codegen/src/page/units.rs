@@ -26,6 +26,12 @@ pub(super) fn value(label: &Label, si: f64) -> String {
     format!("{number} {}", unit(label)).trim_end().to_owned()
 }
 
+/// A range in SI as the numbers and the unit that the spec uses: `-1.5 to 1.5 rad`.
+pub(super) fn range(label: &Label, [low, high]: [f64; 2]) -> String {
+    let low = number(label.unit.from_si(low));
+    format!("{low} to {}", value(label, high))
+}
+
 /// Twelve digits: what conversion of units adds beyond them is rounding.
 fn number(value: f64) -> String {
     let rounded: f64 = format!("{value:.11e}").parse().unwrap_or(value);

@@ -6,7 +6,7 @@ use rustc_hash::FxHashSet;
 use super::Letter;
 use super::Math;
 use super::display::Equation;
-use super::explicit::Dissolved;
+use super::dissolve::Dissolved;
 use super::lexicon::{AXES, Lexicon};
 use super::{Block, Span};
 use crate::mechanics::Derivation;

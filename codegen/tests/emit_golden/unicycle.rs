@@ -319,7 +319,7 @@ pub fn bias<T: Real>(
     }
 }
 
-/// Generalised forces Π: virtual power of the loads per pseudo-velocity.
+/// Pseudo-forces Π (generalised forces): virtual power of the loads per pseudo-velocity.
 ///
 /// From `mechanisms/unicycle.toml`.
 /// Operations: 10 (3 +, 7 ×), 1 sine-cosine pair.

@@ -295,7 +295,7 @@ pub fn unicycle() -> Program {
     );
     let bias = vec![b1, b2, b3, b4];
 
-    // Generalised forces.
+    // Pseudo-forces.
     let p1 = polynomial(
         g,
         &[

@@ -8,7 +8,7 @@ use super::super::writer::Writer;
 use super::super::{Block, Row, Section, Span, Table};
 use super::super::{Letter, Math};
 use super::placement::from_to;
-use super::{equality, listed, math, sentence, with, words};
+use super::{divisors, equality, introduced, listed, math, sentence, with, words};
 use crate::mechanics::constraints;
 use crate::mechanics::expressions::Lowering;
 use crate::symbolic::Graph;
@@ -37,6 +37,7 @@ pub(super) fn section(w: &mut Writer<'_>) -> Section {
     };
     let equations = rates(w);
     blocks.extend(with(w, by, equations));
+    blocks.extend(divisors::conditions(w));
     if !w.derivation.velocities.solved_numerically.is_empty() {
         blocks.push(sentence(
             "No pivot of the linear system is safe in the declared ranges; it is solved with pivoting \
@@ -62,16 +63,11 @@ pub(super) fn rates(w: &mut Writer<'_>) -> Vec<Equation> {
 
 fn constraint(w: &mut Writer<'_>, index: usize) -> Vec<Block> {
     let constraint = &w.mechanism.constraints[index];
-    let about = if constraint.about.is_empty() {
-        &constraint.name
-    } else {
-        &constraint.about
-    };
-    let mut what = vec![words(&format!(
-        "{} (line {} of the spec)",
-        capitalised(about),
-        constraint.line
-    ))];
+    let mut what = vec![introduced(
+        &constraint.name,
+        &constraint.about,
+        constraint.line,
+    )];
     let rolling = rolling(w, &constraint.kind);
     let (mut open, mut held) = (Vec::new(), Vec::new());
     let mut axes = GROUND;
@@ -107,8 +103,12 @@ fn constraint(w: &mut Writer<'_>, index: usize) -> Vec<Block> {
 
 /// `v_P = v_G + ω × r_GP = 0` for a rolling body.
 fn rolling(w: &Writer<'_>, kind: &ConstraintKind) -> Option<Math> {
-    let &ConstraintKind::Rolling { body, contact } = kind else {
-        return None;
+    let (body, contact) = match *kind {
+        ConstraintKind::Rolling { body, contact } => (body, contact),
+        // Their rows say it all.
+        ConstraintKind::Velocity { .. }
+        | ConstraintKind::FixedVelocity { .. }
+        | ConstraintKind::Position { .. } => return None,
     };
     let body = &w.mechanism.bodies[body];
     let (centre, contact) = (w.point(body.centre), w.point(contact));
@@ -152,14 +152,6 @@ fn held_by_geometry(components: Vec<Vec<Span>>) -> Vec<Span> {
     text.extend(listed(components));
     text.push(words(verb));
     text
-}
-
-/// With a capital letter at the start of a sentence.
-fn capitalised(text: &str) -> String {
-    let mut letters = text.chars();
-    letters.next().map_or_else(String::new, |first| {
-        first.to_uppercase().chain(letters).collect()
-    })
 }
 
 fn definitions(w: &mut Writer<'_>) -> Block {

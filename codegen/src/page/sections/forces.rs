@@ -2,10 +2,10 @@
 
 use super::super::display::Equation;
 use super::super::writer::Writer;
-use super::super::{Block, Row, Section, Table};
+use super::super::{Block, Section};
 use super::super::{Letter, Math};
 use super::energy::numbered;
-use super::{math, sentence, with, words};
+use super::{introduced, loads, math, sentence, with, words};
 use crate::mechanics::loads::{AppliedLoad, generalized_forces};
 use crate::symbolic::Graph;
 
@@ -52,29 +52,21 @@ fn load_by_load(w: &mut Writer<'_>) -> Vec<Block> {
     if w.derivation.loads.is_empty() {
         return vec![sentence("No load acts.")];
     }
-    let mut rows = Vec::new();
-    let mut equations = Vec::new();
+    let mut blocks = vec![Block::Sentence(vec![
+        words("Forces F and torques T work along virtual velocities: "),
+        math(rule()),
+        words(". Load by load:"),
+    ])];
     for (load, item) in w.derivation.loads.clone().iter().zip(&w.mechanism.loads) {
-        let letter = Math::Letter(Letter::plain("P").before('δ').below(&item.name));
-        rows.push(Row {
-            cells: vec![vec![math(letter.clone())], vec![words(&item.about)]],
-            line: item.line,
-        });
+        let mut what = vec![introduced(&item.name, &item.about, item.line), words(": ")];
+        what.extend(loads::statement(w, item));
+        what.push(words("."));
+        blocks.extend(w.definitions());
+        blocks.push(Block::Sentence(what));
         let power = virtual_power(w, load);
-        equations.push(Equation::new(letter, power));
+        let equation = Equation::new(loads::virtual_power(item), power);
+        blocks.extend(with(w, "", vec![equation]));
     }
-    let mut blocks = vec![
-        Block::Sentence(vec![
-            words("Forces F and torques T work along virtual velocities: "),
-            math(rule()),
-            words(". Load by load:"),
-        ]),
-        Block::Table(Table {
-            title: String::new(),
-            rows,
-        }),
-    ];
-    blocks.extend(with(w, "", equations));
     blocks
 }
 

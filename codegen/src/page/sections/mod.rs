@@ -2,10 +2,12 @@
 
 mod accelerations;
 mod constraints;
+mod divisors;
 mod energy;
 mod equations;
 mod forces;
 mod jacobians;
+mod loads;
 mod placement;
 mod quantities;
 mod reactions;
@@ -83,6 +85,20 @@ fn with(w: &mut Writer<'_>, lead: &str, equations: Vec<Equation>) -> Vec<Block> 
     }
     blocks.push(Block::Equations(equations));
     blocks
+}
+
+/// With a capital letter at the start of a sentence.
+fn capitalised(text: &str) -> String {
+    let mut letters = text.chars();
+    letters.next().map_or_else(String::new, |first| {
+        first.to_uppercase().chain(letters).collect()
+    })
+}
+
+/// What an item is and where the spec says it: `The wheel rolls (line 48 of the spec)`.
+fn introduced(name: &str, about: &str, line: usize) -> Span {
+    let about = if about.is_empty() { name } else { about };
+    words(&format!("{} (line {line} of the spec)", capitalised(about)))
 }
 
 /// `a, b and c`

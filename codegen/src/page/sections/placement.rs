@@ -52,7 +52,7 @@ fn table(blocks: &mut Vec<Block>, title: &str, rows: Vec<Row>) {
 }
 
 /// An expression of the spec; the derivation has lowered every one of them before.
-fn lowered(w: &mut Writer<'_>, expr: &appell_spec::expr::Expr) -> Expr {
+pub(super) fn lowered(w: &mut Writer<'_>, expr: &appell_spec::expr::Expr) -> Expr {
     let derivation = &mut *w.derivation;
     let lowering = Lowering {
         symbols: &derivation.symbols,

@@ -2,7 +2,7 @@
 
 use appell_spec::mechanism::Label;
 
-use super::super::units::{unit, value};
+use super::super::units::{range, unit, value};
 use super::super::writer::Writer;
 use super::super::{Block, Row, Section, Table};
 use super::super::{Letter, Math};
@@ -45,7 +45,10 @@ pub(super) fn section(w: &mut Writer<'_>) -> Section {
         "Coordinates q",
         m.coordinates
             .iter()
-            .map(|q| plain(&q.label, unit(&q.label)))
+            .map(|q| {
+                let ends = q.range.map(|ends| range(&q.label, ends));
+                plain(&q.label, ends.unwrap_or_else(|| unit(&q.label)))
+            })
             .collect(),
     );
     table(

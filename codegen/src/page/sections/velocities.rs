@@ -1,6 +1,6 @@
 //! Angular velocities of frames and bodies, velocities of points.
 
-use appell_spec::mechanism::{Connection, FrameId, GROUND, LoadKind, PointId};
+use appell_spec::mechanism::{FrameId, GROUND, PointId};
 
 use super::super::Letter;
 use super::super::Section;
@@ -63,25 +63,7 @@ fn written_frames(w: &Writer<'_>) -> Vec<FrameId> {
 /// Centres of mass, then the other points that loads act on.
 fn moving_points(w: &Writer<'_>) -> Vec<PointId> {
     let mut points: Vec<PointId> = w.mechanism.bodies.iter().map(|b| b.centre).collect();
-    for load in &w.mechanism.loads {
-        match &load.kind {
-            LoadKind::Force {
-                on, reaction_on, ..
-            } => {
-                points.push(*on);
-                points.extend(*reaction_on);
-            }
-            LoadKind::Spring {
-                between: Connection::Points(a, b),
-                ..
-            }
-            | LoadKind::Damper {
-                between: Connection::Points(a, b),
-                ..
-            } => points.extend([*a, *b]),
-            _ => {}
-        }
-    }
+    points.extend(w.mechanism.loads.iter().flat_map(|load| load.kind.points()));
     let mut once = Vec::new();
     for point in points {
         let moves = w.derivation.kinematics.velocity(point).v != crate::symbolic::vector::ZERO;

@@ -82,6 +82,7 @@ pub fn latex(math: &Math) -> String {
             "×" => "\\times ".to_owned(),
             "Σ" => "\\sum ".to_owned(),
             "≤" => "\\le ".to_owned(),
+            "≠" => "\\ne ".to_owned(),
             sign => format!("{sign} "),
         },
         Math::Row(factors) => row(factors),

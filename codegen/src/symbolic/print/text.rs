@@ -95,6 +95,7 @@ fn divisor(below: &Math) -> String {
         | Math::Integer(_)
         | Math::Power(..)
         | Math::Call(..)
+        | Math::Size(_)
         | Math::Brackets(_) => text(below),
         _ => format!("({})", text(below)),
     }

@@ -1,58 +1,7 @@
-//! Explicit formulas: names put in, and sums ordered by the velocities they multiply.
+//! Expression to terms: a sum ordered by the velocities, or by the sines and cosines, that its terms
+//! contain.
 
-use rustc_hash::FxHashSet;
-
-use crate::symbolic::print::visible;
-use crate::symbolic::{Expr, Function, Graph, Node, Rational, Substitution};
-
-/// Puts definitions in the places of names; remembers what it has put in.
-#[derive(Debug, Default)]
-pub(super) struct Dissolved {
-    definitions: Substitution,
-    known: FxHashSet<Expr>,
-}
-
-impl Dissolved {
-    /// `expr` with the definitions of its names put in, except for the names that `keeps` accepts.
-    /// `None` where a number is divided by zero on the way.
-    pub(super) fn of(
-        &mut self,
-        graph: &mut Graph,
-        expr: Expr,
-        keeps: impl Fn(&str) -> bool,
-    ) -> Option<Expr> {
-        let mut stack: Vec<(Expr, bool)> = opaque_parts(graph, expr);
-        while let Some((part, parts_done)) = stack.pop() {
-            if self.known.contains(&part) {
-                continue;
-            }
-            let value = match *graph.node(part) {
-                Node::Named(id) => Some(graph.definition(id)).filter(|d| !keeps(&d.name)),
-                _ => None,
-            }
-            .map(|definition| definition.value);
-            let value = match value {
-                Some(value) if !parts_done => {
-                    stack.push((part, true));
-                    stack.extend(opaque_parts(graph, value));
-                    continue;
-                }
-                Some(value) => self.definitions.apply(graph, value).unwrap_or(part),
-                None => part,
-            };
-            self.definitions.replace(graph, part, value);
-            self.known.insert(part);
-        }
-        self.definitions.apply(graph, expr)
-    }
-}
-
-/// Names and unknowns of linear systems in an expression, with nothing done about them.
-fn opaque_parts(graph: &Graph, expr: Expr) -> Vec<(Expr, bool)> {
-    let opaque = |&part: &Expr| matches!(graph.node(part), Node::Named(_) | Node::Solution { .. });
-    let parts = visible(graph, expr).into_iter();
-    parts.filter(opaque).map(|part| (part, false)).collect()
-}
+use crate::symbolic::{Expr, Function, Graph, Node, Rational};
 
 /// The power of each key in a product; keys are numbered by their place in the list.
 pub(super) type Monomial = Vec<(usize, i32)>;

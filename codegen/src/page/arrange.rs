@@ -1,9 +1,9 @@
-//! How a formula is arranged: names put in where that stays readable, sums ordered by what they
-//! multiply, quotients kept together.
+//! Expression to formula: what a reader sees of an expression. Names are put in where that stays
+//! readable (`dissolve`), sums ordered by what they multiply (`collect`), quotients kept together.
 
 use super::Math;
 use super::angles::with_compound_angles;
-use super::explicit::{Monomial, collect, collect_turns};
+use super::collect::{Monomial, collect, collect_turns};
 use super::writer::Writer;
 use crate::symbolic::print::assemble;
 use crate::symbolic::{Expr, Factor, Graph, Node, Rational};

@@ -1,16 +1,17 @@
-//! Pictures of characters: lines of equal width, one of them at the height of the text.
+//! Boxes of characters, which a text page is built of: lines of equal width, one of them at the height
+//! of the text.
 
 use crate::symbolic::print::columns;
 
 /// A rectangle of characters.
 #[derive(Debug, Clone)]
-pub(super) struct Picture {
+pub(super) struct TextBox {
     lines: Vec<String>,
     /// The line at the height of the surrounding text.
     base: usize,
 }
 
-impl Picture {
+impl TextBox {
     /// One line.
     pub(super) fn line(text: &str) -> Self {
         Self {
@@ -38,15 +39,15 @@ impl Picture {
         self.lines.iter().map(String::as_str)
     }
 
-    /// Two pictures side by side, with their bases at the same height.
+    /// Two boxes side by side, with their bases at the same height.
     pub(super) fn beside(&self, right: &Self) -> Self {
         let base = self.base.max(right.base);
         let below = (self.height() - self.base).max(right.height() - right.base);
         let width = self.width();
-        let at = |picture: &Self, row: usize| -> String {
-            (row + picture.base)
+        let at = |boxed: &Self, row: usize| -> String {
+            (row + boxed.base)
                 .checked_sub(base)
-                .and_then(|k| picture.lines.get(k))
+                .and_then(|k| boxed.lines.get(k))
                 .cloned()
                 .unwrap_or_default()
         };

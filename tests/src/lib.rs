@@ -17,6 +17,7 @@ pub mod errata;
 pub mod formula;
 pub mod independent;
 pub mod paper;
+pub mod place;
 pub mod random;
 pub mod reference;
 pub mod shipped;

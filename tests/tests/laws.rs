@@ -25,9 +25,9 @@ const RESIDUAL: f64 = 1e-13;
 const ENERGY: f64 = 1e-8;
 /// Largest change of a state in a step of the stencil: the fifth power of it is the rounding of the
 /// energy.
-const STENCIL: f64 = 0.03;
+const STENCIL: f64 = 0.003;
 /// Rates below this one are no reason for a longer step, in SI.
-const FAST: f64 = 30.0;
+const FAST: f64 = 3.0;
 /// An array whose entries are all smaller is compared as if it had this size, in SI.
 const FLOOR: f64 = 1e-3;
 

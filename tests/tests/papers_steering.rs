@@ -197,17 +197,10 @@ fn steering_paper_equation_86_pseudo_accelerations_of_the_wheel() {
 
 #[test]
 fn a_wheel_with_any_axisymmetric_inertia_follows_the_general_equations() {
-    let disc = r#"["m*R^2/4", "m*R^2/2", "m*R^2/4"]"#;
-    let text = shipped::text("rolling_wheel");
-    assert!(text.contains(disc));
-    let text = text.replace(disc, r#"["k1*m*R^2", "k2*m*R^2", "k1*m*R^2"]"#).replace(
-        "\n[coordinates]",
-        "k1 = { value = 0.25, unit = \"1\", at_least = 0 }\nk2 = { value = 0.5, unit = \"1\", at_least = 0 }\n[coordinates]",
-    );
-    Paper::steering(shipped::read("general wheel", &text)).assert(
-        "w1d = ((1 + k2)*w2*w3 - k1*w3**2*tan(th) + g/R*sin(th))/(1 + k1)
-         w2d = -w1*w3/(1 + k2)
-         w3d = w1*(k1*w3*tan(th) - k2*w2)/k1",
+    Paper::steering(shipped::mechanism("axisymmetric_wheel")).assert(
+        "w1d = ((1 + k_2)*w2*w3 - k_1*w3**2*tan(th) + g/R*sin(th))/(1 + k_1)
+         w2d = -w1*w3/(1 + k_2)
+         w3d = w1*(k_1*w3*tan(th) - k_2*w2)/k_1",
     );
 }
 

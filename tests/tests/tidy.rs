@@ -253,3 +253,11 @@ fn anchor_of(heading: &str) -> String {
         .map(|c| if c == ' ' { '-' } else { c })
         .collect()
 }
+
+#[test]
+fn every_shipped_mechanism_stands_in_the_gallery() {
+    let gallery = read(&shipped::workspace().join("docs/gallery.md"));
+    let shown = |name: &String| gallery.contains(&format!("\n| `{name}` |"));
+    let missing: Vec<String> = shipped::names().into_iter().filter(|n| !shown(n)).collect();
+    assert!(missing.is_empty(), "docs/gallery.md lacks {missing:?}");
+}

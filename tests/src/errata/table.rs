@@ -37,7 +37,7 @@ pub const ERRATA: &[Erratum] = &[
         right: "for homogeneous thin discs only; a thin hoop has 19.20°",
         verdict: Verdict::Misprint,
         evidence: Evidence::Context(
-            "with the inertias k₁ m R² and k₂ m R² of a general wheel the limit depends on k₁ and k₂; tested: `a_wheel_with_any_axisymmetric_inertia_follows_the_general_equations`",
+            "with the inertias k₁ m R² and k₂ m R² of a general wheel the limit depends on k₁ and k₂; tested: `a_wheel_with_any_axisymmetric_inertia_follows_the_general_equations`, `turning_of_a_disc_beyond_18_62_and_of_a_hoop_beyond_19_20_degrees_is_always_stable`",
         ),
     },
     Erratum {

@@ -117,6 +117,7 @@ impl StateFunction {
             file: String::new(),
             graph,
             arguments,
+            dependent: Vec::new(),
             functions: vec![function],
         };
         let schedule = schedule(&program, &program.functions[0]);

@@ -108,6 +108,15 @@ impl Model for InterpretedModel {
         self.evaluate(FunctionKind::Outputs, at, &mut [("outputs", outputs)]);
     }
 
+    fn dependent_coordinates(&self) -> &[usize] {
+        &self.program.dependent
+    }
+
+    fn position_constraints(&self, at: At<'_>, residual: &mut [f64], jacobian: &mut [f64]) {
+        let wanted = &mut [("residual", residual), ("jacobian", jacobian)];
+        self.evaluate(FunctionKind::PositionConstraints, at, wanted);
+    }
+
     fn switch_len(&self) -> usize {
         self.program.switch_len()
     }

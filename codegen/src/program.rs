@@ -17,6 +17,9 @@ pub struct Program {
     pub graph: Graph,
     /// The symbols that expressions may contain, in the order of `info`.
     pub arguments: Arguments,
+    /// Coordinates that follow from the others by a position constraint each, in the order of the
+    /// constraints.
+    pub dependent: Vec<usize>,
     /// Functions, in the order in which a reader wants them.
     pub functions: Vec<Function>,
 }
@@ -122,11 +125,14 @@ pub enum FunctionKind {
     Outputs,
     /// What time alone switches, where anything does: result `switches`.
     Switches,
+    /// What position constraints demand, where there are any: results `residual`, and `jacobian`
+    /// by the coordinates.
+    PositionConstraints,
 }
 
 impl FunctionKind {
     /// All of them, in the order of emitted code.
-    pub const ALL: [Self; 13] = [
+    pub const ALL: [Self; 14] = [
         Self::Kinematics,
         Self::AccelerationEnergy,
         Self::MassMatrix,
@@ -140,6 +146,7 @@ impl FunctionKind {
         Self::ConstraintForces,
         Self::Outputs,
         Self::Switches,
+        Self::PositionConstraints,
     ];
 
     /// Name of the emitted function.
@@ -216,6 +223,11 @@ impl FunctionKind {
                 "switches",
                 "Switches",
                 "What time alone switches: 1 where a relation holds, 0 elsewhere, and signs.",
+            ),
+            Self::PositionConstraints => (
+                "position_constraints",
+                "PositionConstraints",
+                "Position constraints f(q, t) = 0 and their derivatives by the coordinates.",
             ),
         }
     }

@@ -147,6 +147,7 @@ fn pendulum() -> Program {
         file: "pendulum.toml".to_owned(),
         graph,
         arguments,
+        dependent: Vec::new(),
         functions,
     }
 }

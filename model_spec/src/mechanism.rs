@@ -296,10 +296,14 @@ pub enum ConstraintKind {
         /// Prescribed velocity.
         equals: Expr,
     },
-    /// `zero = 0`, an equation between coordinates (reserved: the derivation does not take it yet).
+    /// `zero = 0`, an equation between coordinates, parameters, signals and time.
     Position {
         /// Expression in the coordinates.
         zero: Expr,
+        /// Its dimension.
+        dimension: Dimension,
+        /// The coordinate that follows from the others; chosen when the spec names none.
+        dependent: Option<CoordinateId>,
     },
 }
 

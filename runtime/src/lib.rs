@@ -28,6 +28,8 @@ pub mod inputs;
 pub mod integrate;
 #[cfg(feature = "std")]
 pub mod model;
+#[cfg(feature = "std")]
+pub mod positions;
 pub mod real;
 #[cfg(feature = "std")]
 pub mod signal;

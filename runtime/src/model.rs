@@ -249,6 +249,17 @@ pub trait Model: Sync {
     fn constraint_forces(&self, at: At<'_>, forces: &mut [f64]);
     /// Outputs of the spec.
     fn outputs(&self, at: At<'_>, outputs: &mut [f64]);
+    /// Coordinates that follow from the others, one per position constraint; most models have none.
+    fn dependent_coordinates(&self) -> &[usize] {
+        &[]
+    }
+    /// Position constraints f(q, t) (`c`, as many as dependent coordinates) and ∂f/∂q (`c` rows,
+    /// one column per coordinate).
+    fn position_constraints(&self, at: At<'_>, residual: &mut [f64], jacobian: &mut [f64]) {
+        let _ = at;
+        residual.fill(0.0);
+        jacobian.fill(0.0);
+    }
     /// How many values [`Model::switches`] writes; most models have none.
     fn switch_len(&self) -> usize {
         0

@@ -4,10 +4,11 @@ mod recorder;
 
 use crate::inputs::{InputSource, ModelInputs, ZeroInputs};
 use crate::integrate::{
-    Cause, Dop853, Dopri5, Event, Failure, IntegrationError, Options, Outcome, Range, Rk4, Solver,
-    Switches, Watch,
+    Cause, Dop853, Dopri5, Event, Failure, IntegrationError, Options, Outcome, Projection, Range,
+    Rk4, Solver, Switches, Watch,
 };
 use crate::model::{At, Model, ModelInfo};
+use crate::positions::{Inconsistent, Moving, Positions};
 use crate::signal::SignalError;
 use crate::trajectory::{Extras, Trajectory};
 use recorder::Recorder;
@@ -96,6 +97,9 @@ pub enum SimulationError {
         /// Length that was given.
         found: usize,
     },
+    /// The initial state contradicts the position constraints.
+    #[error(transparent)]
+    Inconsistent(#[from] Inconsistent),
     /// The sampling interval is not a positive number of seconds.
     #[error("the sampling interval cannot be {interval} s")]
     Sampling {
@@ -149,26 +153,35 @@ impl<'a> Simulation<'a> {
         let (events, progress) = (std::mem::take(&mut self.events), self.progress.take());
         let (switching_times, ranges) = (inputs.switching_times(), self.ranges());
         let (model, p) = (self.model, self.parameters.as_slice());
+        let mut x = self.consistent_start(&inputs)?;
+        let initial_state = x.clone();
         let mut watch = Watch {
             switching_times: &switching_times,
-            switches: switches(model, p, &self.initial_state),
+            switches: switches(model, p, &initial_state),
             ranges: &ranges,
+            projection: projection(model, p, &inputs),
             events,
         };
-        let mut recorder = Recorder::new(self.sampling, self.span, &self.initial_state);
+        let mut recorder = Recorder::new(self.sampling, self.span, &initial_state);
         recorder.progress = progress;
         let mut u = vec![0.0; info.input_len()];
         let rates = |t: f64, x: &[f64], rates: &mut [f64]| {
             inputs.fill(t, x, &mut u);
             model.rates(At { t, x, u: &u, p }, rates);
         };
-        let mut x = self.initial_state.clone();
         let result = self.integrate(rates, &mut x, &mut watch, &mut recorder);
 
         let recorded = |t_end, hits, statistics| {
             recorder.finish(t_end, &x);
             let fill = |t: f64, x: &[f64], u: &mut [f64]| inputs.fill(t, x, u);
-            let (times, states) = (recorder.times, recorder.states);
+            let (times, mut states) = (recorder.times, recorder.states);
+            // Between steps the interpolant is as far off as the tolerances allow.
+            if let Some(mut projection) = projection(model, p, &inputs) {
+                let rows = states.chunks_mut(x.len().max(1));
+                for (&t, state) in times.iter().zip(rows) {
+                    (projection.0)(t, state);
+                }
+            }
             let mut motion = Trajectory::evaluate(model, p, times, &states, fill, self.extras);
             (motion.events, motion.statistics) = (hits, statistics);
             motion
@@ -191,6 +204,19 @@ impl<'a> Simulation<'a> {
                 Err(SimulationError::Argument { what, value })
             }
         }
+    }
+
+    /// The initial state with its dependent coordinates found by Newton's method from their values
+    /// as guesses.
+    fn consistent_start(&self, inputs: &ModelInputs<'_>) -> Result<Vec<f64>, SimulationError> {
+        let (model, t, mut x) = (self.model, self.span[0], self.initial_state.clone());
+        if let Some(mut positions) = Positions::of(model) {
+            let mut u = vec![0.0; model.info().input_len()];
+            inputs.fill(t, &x, &mut u);
+            let p = &self.parameters;
+            positions.restore(model, t, &mut x, &u, p, Moving::Dependent)?;
+        }
+        Ok(x)
     }
 
     /// Runs the integrator of choice; `x` goes from the first to the last state.
@@ -249,6 +275,21 @@ impl<'a> Simulation<'a> {
     }
 }
 
+/// The way back to the position constraints of a model.
+fn projection<'a>(
+    model: &'a dyn Model,
+    p: &'a [f64],
+    inputs: &'a ModelInputs<'_>,
+) -> Option<Projection<'a>> {
+    let mut positions = Positions::of(model)?;
+    let mut u = vec![0.0; model.info().input_len()];
+    Some(Projection(Box::new(move |t, x| {
+        inputs.fill(t, x, &mut u);
+        let restored = positions.restore(model, t, x, &u, p, Moving::All);
+        restored.is_ok()
+    })))
+}
+
 /// What time alone switches in a model.
 fn switches<'a>(model: &'a dyn Model, p: &'a [f64], x: &'a [f64]) -> Option<Switches<'a>> {
     // They depend neither on the state nor on the inputs, but every function has these arguments.
@@ -274,6 +315,7 @@ pub fn describe(failure: &Failure, info: &ModelInfo) -> String {
         Cause::StepTooSmall { h } => format!(
             "the step shrank to {h:.1e} s: the motion is singular here, or too stiff for the method"
         ),
+        Cause::Inconsistent => failure.cause.to_string(),
         Cause::TooManySteps { steps } => format!("{steps} steps were not enough"),
         Cause::OutOfRange { component, range } => match info.states.get(component) {
             Some(state) => {

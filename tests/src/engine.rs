@@ -84,6 +84,14 @@ impl Model for Emitted {
     fn outputs(&self, at: At<'_>, outputs: &mut [f64]) {
         self.0.outputs(at, outputs);
     }
+    fn dependent_coordinates(&self) -> &[usize] {
+        self.0.dependent_coordinates()
+    }
+
+    fn position_constraints(&self, at: At<'_>, residual: &mut [f64], jacobian: &mut [f64]) {
+        self.0.position_constraints(at, residual, jacobian);
+    }
+
     fn switch_len(&self) -> usize {
         self.0.switch_len()
     }

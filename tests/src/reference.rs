@@ -7,21 +7,21 @@ use serde_json::Value;
 
 use crate::shipped::workspace;
 
-/// Cases of a file, or the reason why there are none.
-pub fn cases(file: &str) -> Option<Vec<Value>> {
+/// A whole file, or nothing with the reason printed.
+pub fn document(file: &str) -> Option<Value> {
     let path = workspace().join("../shared/reference").join(file);
     let Ok(text) = std::fs::read_to_string(&path) else {
         println!("skipped: there is no {}", path.display());
         return None;
     };
-    let whole: Value =
-        serde_json::from_str(&text).unwrap_or_else(|error| panic!("{file}: {error}"));
-    Some(
-        whole["cases"]
-            .as_array()
-            .unwrap_or_else(|| panic!("{file}: no cases"))
-            .clone(),
-    )
+    Some(serde_json::from_str(&text).unwrap_or_else(|error| panic!("{file}: {error}")))
+}
+
+/// Cases of a file, or nothing with the reason printed.
+pub fn cases(file: &str) -> Option<Vec<Value>> {
+    let whole = document(file)?;
+    let cases = whole["cases"].as_array();
+    Some(cases.unwrap_or_else(|| panic!("{file}: no cases")).clone())
 }
 
 /// A number of a case.

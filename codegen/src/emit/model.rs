@@ -224,6 +224,7 @@ pub(super) fn implementation(types: &Types<'_>) -> Result<TokenStream, Error> {
         )?,
         optional_method(types, FunctionKind::Outputs, "outputs", "outputs")?,
         switches_methods(types),
+        position_methods(types),
     ];
     let blank = blank_tokens();
     Ok(quote! {
@@ -388,6 +389,30 @@ fn switches_methods(types: &Types<'_>) -> TokenStream {
         #blank
         fn switches(&self, at: At<'_>, switches: &mut [f64]) {
             write(switches, &self::#call);
+        }
+    }
+}
+
+/// Position constraints; the trait has an answer for models without any.
+fn position_methods(types: &Types<'_>) -> TokenStream {
+    let dependent = &types.program.dependent;
+    if dependent.is_empty() {
+        return TokenStream::new();
+    }
+    let dependent = dependent.iter().map(|&q| Literal::usize_unsuffixed(q));
+    let call = call(types, FunctionKind::PositionConstraints.name());
+    let blank = blank_tokens();
+    quote! {
+        #blank
+        fn dependent_coordinates(&self) -> &[usize] {
+            &[#(#dependent),*]
+        }
+
+        #blank
+        fn position_constraints(&self, at: At<'_>, residual: &mut [f64], jacobian: &mut [f64]) {
+            let all = self::#call;
+            write(residual, &all.residual);
+            write(jacobian, all.jacobian.as_flattened());
         }
     }
 }

@@ -46,6 +46,11 @@ fn results(kind: FunctionKind, program: &Program) -> Vec<(&'static str, usize)> 
         FunctionKind::ConstraintForces => vec![("forces", 3 * info.reactions.len())],
         FunctionKind::Outputs => vec![("outputs", info.output_len())],
         FunctionKind::Switches => vec![("switches", program.switch_len())],
+        FunctionKind::PositionConstraints => {
+            let count = program.dependent.len();
+            let coordinates = info.state_len() - info.speeds;
+            vec![("residual", count), ("jacobian", count * coordinates)]
+        }
     }
 }
 
@@ -149,6 +154,14 @@ impl Model for JitModel {
 
     fn outputs(&self, at: At<'_>, outputs: &mut [f64]) {
         self.evaluate(FunctionKind::Outputs, at, [outputs]);
+    }
+
+    fn dependent_coordinates(&self) -> &[usize] {
+        &self.program.dependent
+    }
+
+    fn position_constraints(&self, at: At<'_>, residual: &mut [f64], jacobian: &mut [f64]) {
+        self.evaluate(FunctionKind::PositionConstraints, at, [residual, jacobian]);
     }
 
     fn switch_len(&self) -> usize {

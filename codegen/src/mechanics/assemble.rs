@@ -9,6 +9,7 @@ use super::finding::{Item, Outcome};
 use super::gibbs_appell::{ActualMotion, acceleration_energy, kinetic_energy};
 use super::kinematics::division_by_zero;
 use super::linear::ImplicitMotion;
+use super::positions::Positions;
 use super::reactions;
 use super::switches::switches;
 use super::symbols::{Symbols, ids};
@@ -27,7 +28,10 @@ pub fn program(
     let mut functions = Vec::with_capacity(kinds.len());
     for &kind in kinds {
         let results = derivation.results(mechanism, &info, kind)?;
-        let may_lack = matches!(kind, FunctionKind::Outputs | FunctionKind::Switches);
+        let may_lack = matches!(
+            kind,
+            FunctionKind::Outputs | FunctionKind::Switches | FunctionKind::PositionConstraints
+        );
         if !may_lack || results.iter().any(|array| !array.entries.is_empty()) {
             functions.push(derivation.staged(mechanism, Function::new(kind, results)));
         }
@@ -54,6 +58,7 @@ pub fn program(
         file: mechanism.file.clone(),
         graph: derivation.algebra.graph,
         arguments,
+        dependent: derivation.positions.dependent,
         functions,
     })
 }
@@ -124,6 +129,29 @@ impl Derivation {
             FunctionKind::ConstraintResidual => vec![self.constraint_residual(mechanism)],
             FunctionKind::ConstraintForces => vec![self.constraint_forces(mechanism)?],
             FunctionKind::Outputs => self.outputs(mechanism)?,
+            FunctionKind::PositionConstraints => {
+                let Positions {
+                    names,
+                    residual,
+                    jacobian,
+                    ..
+                } = &self.positions;
+                let columns = coordinates.iter().map(|q| q.name.to_string());
+                let layout = Layout::Matrix(names.len(), coordinates.len());
+                let labels = names.iter().flat_map(|name| {
+                    let label = move |q: &Quantity| format!("d_{name}_d_{}", q.name);
+                    coordinates.iter().map(label)
+                });
+                let count = Layout::Vector(names.len());
+                vec![
+                    Array::new("residual", "f(q, t).", count, residual.clone())
+                        .labelled(names.iter().cloned())
+                        .with_names(names.clone(), Vec::new()),
+                    Array::new("jacobian", "∂f/∂q, by row.", layout, jacobian.concat())
+                        .labelled(labels)
+                        .with_names(names.clone(), columns.collect()),
+                ]
+            }
             FunctionKind::Switches => {
                 let rates = self.rates();
                 let switches = switches(&mut self.algebra.graph, &self.symbols, &rates);

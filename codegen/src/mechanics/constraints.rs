@@ -9,6 +9,7 @@ use super::finding::{Finding, Item, Outcome};
 use super::kinematics::{Carried, Effort, Kinematics, division_by_zero, root_of};
 use super::redundancy::leave_out;
 use super::symbols::Symbols;
+use super::time::TimeDerivative;
 use crate::symbolic::vector::{self, Vec3};
 use crate::symbolic::{Expr, Graph, Intervals, Rational, Substitution};
 
@@ -35,6 +36,8 @@ pub struct Row {
     pub redundant: bool,
     /// The frame along whose axis it is written, for a row of a rolling contact.
     pub frame: FrameId,
+    /// Whether it is the derivative of a position constraint.
+    pub of_position: bool,
 }
 
 /// An imagined motion that violates an embedded row at `coefficient` times its rate.
@@ -103,8 +106,8 @@ pub fn constraints(
     )?;
     let mut places: Vec<Place> = Vec::new();
     let (mut rows, mut findings) = (Vec::new(), Vec::new());
-    for index in 0..mechanism.constraints.len() {
-        let scalars = scalar_rows(&mut algebra.graph, mechanism, symbols, &kinematics, index);
+    for index in positions_last(mechanism) {
+        let scalars = scalar_rows(algebra, mechanism, symbols, &kinematics, index);
         let (place, scalars) = match scalars {
             Ok(scalars) => scalars,
             Err(finding) => {
@@ -118,7 +121,15 @@ pub fn constraints(
             places.len() - 1
         });
         for scalar in scalars {
-            match row(algebra, symbols, &carried_rates, index, place, scalar) {
+            match row(
+                algebra,
+                mechanism,
+                symbols,
+                &carried_rates,
+                index,
+                place,
+                scalar,
+            ) {
                 Ok(row) => rows.push(row),
                 Err(finding) => findings.push(finding),
             }
@@ -141,6 +152,20 @@ pub fn constraints(
         carried,
         warnings,
     })
+}
+
+/// The constraints, those of positions last: where a contact and a position constraint say the same,
+/// the contact is kept, because its reaction has a point.
+fn positions_last(mechanism: &Mechanism) -> Vec<usize> {
+    let mut order: Vec<usize> = (0..mechanism.constraints.len()).collect();
+    let position = |&i: &usize| {
+        matches!(
+            mechanism.constraints[i].kind,
+            ConstraintKind::Position { .. }
+        )
+    };
+    order.sort_by_key(position);
+    order
 }
 
 /// Where a reaction acts.
@@ -178,7 +203,7 @@ struct Scalar {
 
 /// What one constraint demands, row by row, and where its reaction acts.
 fn scalar_rows(
-    graph: &mut Graph,
+    algebra: &mut Algebra,
     mechanism: &Mechanism,
     symbols: &Symbols,
     kinematics: &Kinematics,
@@ -193,7 +218,13 @@ fn scalar_rows(
     let zero = |_| division_by_zero(item);
     Ok(match &constraint.kind {
         ConstraintKind::Rolling { body, contact } => {
-            let v = kinematics.material_velocity(graph, mechanism, *body, *contact, GROUND);
+            let v = kinematics.material_velocity(
+                &mut algebra.graph,
+                mechanism,
+                *body,
+                *contact,
+                GROUND,
+            );
             let scalars = ["x", "y", "z"]
                 .iter()
                 .enumerate()
@@ -208,9 +239,9 @@ fn scalar_rows(
         ConstraintKind::Velocity {
             zero: left, equals, ..
         } => {
-            let left = lowering.lower(graph, left).map_err(zero)?;
-            let right = lowering.lower(graph, equals).map_err(zero)?;
-            let value = graph.sub(left, right);
+            let left = lowering.lower(&mut algebra.graph, left).map_err(zero)?;
+            let right = lowering.lower(&mut algebra.graph, equals).map_err(zero)?;
+            let value = algebra.graph.sub(left, right);
             let name = constraint.name.clone();
             let direction = vector::IDENTITY[0];
             (
@@ -229,21 +260,33 @@ fn scalar_rows(
             direction,
             equals,
         } => {
-            let along = lowering.lower_all(graph, direction).map_err(zero)?;
-            let right = lowering.lower(graph, equals).map_err(zero)?;
+            let along = lowering
+                .lower_all(&mut algebra.graph, direction)
+                .map_err(zero)?;
+            let right = lowering.lower(&mut algebra.graph, equals).map_err(zero)?;
             let v = match body {
-                Some(body) => kinematics.material_velocity(graph, mechanism, *body, *point, *frame),
-                None => kinematics
-                    .frames
-                    .express(graph, kinematics.velocity(*point), *frame),
+                Some(body) => kinematics.material_velocity(
+                    &mut algebra.graph,
+                    mechanism,
+                    *body,
+                    *point,
+                    *frame,
+                ),
+                None => kinematics.frames.express(
+                    &mut algebra.graph,
+                    kinematics.velocity(*point),
+                    *frame,
+                ),
             };
-            let left = graph.dot(along, v);
-            let value = graph.sub(left, right);
+            let left = algebra.graph.dot(along, v);
+            let value = algebra.graph.sub(left, right);
             let in_ground = super::frames::FrameVector {
                 frame: *frame,
                 v: along,
             };
-            let direction = kinematics.frames.express(graph, in_ground, GROUND);
+            let direction = kinematics
+                .frames
+                .express(&mut algebra.graph, in_ground, GROUND);
             let name = constraint.name.clone();
             (
                 Place::Point(*point),
@@ -254,13 +297,18 @@ fn scalar_rows(
                 }],
             )
         }
-        ConstraintKind::Position { .. } => {
-            return Err(Finding {
-                code: Code::PositionConstraintReserved,
-                message: "constraints between positions are not supported yet".to_owned(),
-                item,
-                help: "choose coordinates that satisfy the constraint by themselves".to_owned(),
-            });
+        ConstraintKind::Position { zero: position, .. } => {
+            let position = lowering.lower(&mut algebra.graph, position).map_err(zero)?;
+            let along = TimeDerivative {
+                symbols,
+                rates: &symbols.rates,
+            };
+            let scalar = Scalar {
+                name: constraint.name.clone(),
+                value: along.of(algebra, position),
+                direction: vector::IDENTITY[0],
+            };
+            (Place::Constraint(index), vec![scalar])
         }
     })
 }
@@ -268,6 +316,7 @@ fn scalar_rows(
 /// Splits a row into its coefficients.
 fn row(
     algebra: &mut Algebra,
+    mechanism: &Mechanism,
     symbols: &Symbols,
     carried_rates: &[Expr],
     constraint: usize,
@@ -279,6 +328,8 @@ fn row(
         value,
         direction,
     } = scalar;
+    let kind = &mechanism.constraints[constraint].kind;
+    let of_position = matches!(kind, ConstraintKind::Position { .. });
     let mut coefficients_of = |unknowns: &[Expr]| -> Vec<Expr> {
         unknowns
             .iter()
@@ -306,6 +357,7 @@ fn row(
         stand_in: None,
         redundant: false,
         frame: GROUND,
+        of_position,
     })
 }
 

@@ -71,7 +71,8 @@ fn expressions(mechanism: &Mechanism) -> Vec<(Item, &Spec)> {
             } => {
                 all.extend(direction.iter().chain([equals]).map(|e| (item, e)));
             }
-            ConstraintKind::Rolling { .. } | ConstraintKind::Position { .. } => {}
+            ConstraintKind::Position { zero, .. } => all.push((item, zero)),
+            ConstraintKind::Rolling { .. } => {}
         }
     }
     for (i, speed) in mechanism.pseudo_velocities.iter().enumerate() {

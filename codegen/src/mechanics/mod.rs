@@ -19,6 +19,7 @@ pub mod kinematics;
 pub mod linear;
 pub mod loads;
 pub mod motion;
+pub mod positions;
 pub mod rank;
 pub mod reactions;
 pub mod redundancy;
@@ -39,6 +40,7 @@ use initial::InitialState;
 use kinematics::{Effort, Kinematics};
 use loads::AppliedLoad;
 use motion::Motion;
+use positions::Positions;
 use symbols::{Symbols, ids};
 
 /// The derivation of one mechanism, every stage kept for reading.
@@ -49,6 +51,8 @@ pub struct Derivation {
     pub symbols: Symbols,
     /// Constraint rows.
     pub constraints: Constraints,
+    /// Position constraints.
+    pub positions: Positions,
     /// q̇ in terms of the pseudo-velocities.
     pub velocities: GeneralizedVelocities,
     /// Velocities of points and frames.
@@ -98,6 +102,7 @@ fn equations(mechanism: &Mechanism) -> Outcome<Derivation> {
     let mut intervals = declared_ranges(&algebra.graph, mechanism, &symbols);
 
     let constraints = constraints::constraints(&mut algebra, mechanism, &symbols, &mut intervals)?;
+    let positions = Positions::new(&mut algebra, mechanism, &symbols, &mut intervals)?;
     algebra.check_size()?;
     let velocities = elimination::eliminate(
         &mut algebra,
@@ -150,6 +155,7 @@ fn equations(mechanism: &Mechanism) -> Outcome<Derivation> {
         algebra,
         symbols,
         constraints,
+        positions,
         velocities,
         kinematics,
         bodies,

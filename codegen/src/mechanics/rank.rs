@@ -102,6 +102,13 @@ fn in_given_rows(algebra: &mut Algebra, echelon: &[Reduced], factors: &[Expr]) -
     }
     for (_, factor) in &mut combination {
         *factor = algebra.shortest(*factor);
+        // Whole rows are the most frequent share, and elimination writes it in many ways.
+        for whole in [1, -1] {
+            let whole = algebra.graph.integer(whole);
+            if *factor != whole && algebra.test.are_equal(&algebra.graph, *factor, whole) {
+                *factor = whole;
+            }
+        }
     }
     combination.retain(|&(_, factor)| factor != Graph::ZERO);
     combination

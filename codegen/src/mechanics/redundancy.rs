@@ -44,7 +44,10 @@ pub fn leave_out(
         };
         let constraint = rows[row].constraint;
         if let Some(spare) = spare_row(algebra, intervals, row, &combination) {
-            warnings.push(redundancy(rows, spare, row, &combination));
+            // A position constraint beside the contact that keeps it is no mistake.
+            if !rows[spare].of_position {
+                warnings.push(redundancy(rows, spare, row, &combination));
+            }
             rows[spare].redundant = true;
         } else if !turned.contains(&constraint)
             && let Some(resolved) =

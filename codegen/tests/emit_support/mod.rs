@@ -97,6 +97,7 @@ impl Sketch {
             file,
             graph,
             arguments,
+            dependent: Vec::new(),
             functions: Vec::new(),
         };
         Self {

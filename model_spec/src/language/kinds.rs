@@ -80,13 +80,19 @@ pub(super) static CONSTRAINTS: &[Kind] = &[
     Kind {
         word: "position",
         is: ItemKind::Constraint(ConstraintWord::Position),
-        about: "Reserved: an equation between coordinates.",
+        about: "An equation between coordinates.",
         keys: &[
             key(
                 "zero",
                 Form::Expression,
                 Need::Always,
                 "Combination of coordinates that stays zero.",
+            ),
+            key(
+                "dependent",
+                Form::Reference(Target::Coordinate),
+                Need::Optional,
+                "Coordinate that follows from the others; chosen when left out.",
             ),
             ABOUT,
         ],

@@ -92,18 +92,11 @@ impl Resolver<'_> {
         let ast = item.expression("zero").cloned();
         let ast = ast.unwrap_or_else(|| zero(item.name.span.clone()));
         let typed = self.elaborate(&ast, &CLOSURE);
-        self.tell(
-            Diagnostic::error(
-                Code::PositionConstraintReserved,
-                "position constraints are not supported yet",
-            )
-            .at(item.name.span.clone(), "of kind `position`")
-            .help(
-                "choose coordinates that satisfy it, or write its time derivative as a \
-                 `velocity` constraint",
-            ),
-        );
-        ConstraintKind::Position { zero: typed.expr }
+        ConstraintKind::Position {
+            dimension: typed.dim.known().unwrap_or(Dimension::NONE),
+            zero: typed.expr,
+            dependent: self.optional_reference(item, "dependent", Target::Coordinate),
+        }
     }
 
     /// Tells where a point mass is asked to do what only a rigid body can.

@@ -59,6 +59,9 @@ pub enum Cause {
         /// Accepted and rejected steps.
         steps: usize,
     },
+    /// The position constraints have no solution near the state.
+    #[error("the position constraints cannot be satisfied any longer")]
+    Inconsistent,
     /// A state left the range in which the equations are declared to hold.
     #[error("state {component} leaves its range {} … {}", range[0], range[1])]
     OutOfRange {

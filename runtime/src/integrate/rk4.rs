@@ -102,7 +102,11 @@ impl Rk4 {
             let stride = watcher.stops.stride(t, h);
             let mut f = |t: f64, x: &[f64], rates: &mut [f64]| f(t.min(stride.last), x, rates);
             self.stages.step(&mut f, &TABLEAU, t, stride.h);
+            let projected = watcher.project(stride.t_new, self.stages.x_new_mut());
             self.stages.evaluate_at_end(&mut f, new_rates, stride.t_new);
+            if !projected {
+                return End::failed(t, Cause::Inconsistent);
+            }
             let not_finite = self.stages.rate_not_finite(new_rates);
             if let Some(component) = not_finite.or_else(|| self.stages.state_not_finite()) {
                 return End::failed(t, Cause::NonFinite { component });

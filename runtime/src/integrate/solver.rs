@@ -114,7 +114,7 @@ impl<P: EmbeddedPair> Solver<P> {
             let stride = watcher.stops.stride(t, h);
             // Up to a switching time the rates are those before it.
             let mut f = |t: f64, x: &[f64], rates: &mut [f64]| f(t.min(stride.last), x, rates);
-            let error = self.attempt(&mut f, t, stride, options);
+            let error = self.attempt(&mut f, t, stride, options, watcher);
             if error <= 1.0 {
                 statistics.steps += 1;
                 if let Some(end) = self.accept(&mut f, t, stride, watcher, x) {
@@ -144,11 +144,22 @@ impl<P: EmbeddedPair> Solver<P> {
 
     /// All stages of a step; returns its error over the tolerances, NaN where the new state is
     /// not finite.
-    fn attempt<F>(&mut self, f: &mut F, t: f64, stride: Stride, options: &Options) -> f64
+    fn attempt<F, O>(
+        &mut self,
+        f: &mut F,
+        t: f64,
+        stride: Stride,
+        options: &Options,
+        watcher: &mut Watcher<'_, '_, O>,
+    ) -> f64
     where
         F: FnMut(f64, &[f64], &mut [f64]),
+        O: Observer,
     {
         self.stages.step(f, &P::TABLEAU, t, stride.h);
+        if !watcher.project(stride.t_new, self.stages.x_new_mut()) {
+            return f64::NAN;
+        }
         if P::ERROR_USES_NEW_RATES {
             self.stages
                 .evaluate_at_end(f, P::TABLEAU.new_rates(), stride.t_new);

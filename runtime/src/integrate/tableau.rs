@@ -67,6 +67,11 @@ impl Stages {
         &self.x[..self.n]
     }
 
+    /// State at the end of the step, to be corrected.
+    pub(super) fn x_new_mut(&mut self) -> &mut [f64] {
+        &mut self.x_new[..self.n]
+    }
+
     /// State at the end of the step.
     pub(super) fn x_new(&self) -> &[f64] {
         &self.x_new[..self.n]

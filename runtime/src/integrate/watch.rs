@@ -18,8 +18,19 @@ pub struct Watch<'a> {
     pub switches: Option<Switches<'a>>,
     /// Leaving one of these is an error.
     pub ranges: &'a [Range],
+    /// What brings the state at the end of a step back to where it belongs.
+    pub projection: Option<Projection<'a>>,
     /// Functions whose zeros are sought.
     pub events: Vec<Event<'a>>,
+}
+
+/// A map of a state onto the states that are possible at a time; false where it finds none.
+pub struct Projection<'a>(pub Box<dyn FnMut(f64, &mut [f64]) -> bool + 'a>);
+
+impl std::fmt::Debug for Projection<'_> {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        formatter.write_str("Projection")
+    }
 }
 
 /// An accepted step, up to its end or to the event that ended it.
@@ -117,6 +128,7 @@ impl End {
 pub(super) struct Watcher<'w, 'a, O> {
     pub(super) stops: Stops<'w, 'a>,
     ranges: &'a [Range],
+    projection: Option<&'w mut Projection<'a>>,
     events: &'w mut [Event<'a>],
     observer: &'w mut O,
     crossings: Crossings,
@@ -128,6 +140,7 @@ impl<'w, 'a, O: Observer> Watcher<'w, 'a, O> {
         Self {
             stops: Stops::new(span, watch.switching_times, watch.switches.as_mut()),
             ranges: watch.ranges,
+            projection: watch.projection.as_mut(),
             events: &mut watch.events,
             observer,
             crossings: Crossings::default(),
@@ -146,6 +159,14 @@ impl<'w, 'a, O: Observer> Watcher<'w, 'a, O> {
         }
         self.crossings.start(self.events, t, x);
         Ok(())
+    }
+
+    /// Brings a state back to where it belongs; false where that fails.
+    pub(super) fn project(&mut self, t: f64, x: &mut [f64]) -> bool {
+        match &mut self.projection {
+            Some(projection) => (projection.0)(t, x),
+            None => true,
+        }
     }
 
     /// Whether the next call of `accept` needs the interpolant.

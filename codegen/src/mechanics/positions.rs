@@ -1,0 +1,111 @@
+//! Position constraints: what they demand, and which coordinates follow from the others.
+
+use appell_spec::Code;
+use appell_spec::mechanism::{ConstraintKind, Mechanism};
+
+use super::algebra::Algebra;
+use super::expressions::Lowering;
+use super::finding::{Finding, Item, Outcome};
+use super::kinematics::division_by_zero;
+use super::symbols::Symbols;
+use crate::symbolic::{Expr, Graph, Intervals};
+
+/// The position constraints `f(q, t) = 0` of a mechanism.
+#[derive(Debug, Clone, Default)]
+pub struct Positions {
+    /// Names of the constraints.
+    pub names: Vec<String>,
+    /// `f`, one per constraint.
+    pub residual: Vec<Expr>,
+    /// `∂f/∂q`, row by row.
+    pub jacobian: Vec<Vec<Expr>>,
+    /// The coordinate that follows from the others by each constraint, no two equal.
+    pub dependent: Vec<usize>,
+}
+
+impl Positions {
+    /// The constraints with their derivatives.
+    pub fn new(
+        algebra: &mut Algebra,
+        mechanism: &Mechanism,
+        symbols: &Symbols,
+        intervals: &mut Intervals,
+    ) -> Outcome<Self> {
+        let lowering = Lowering {
+            symbols,
+            rates: &symbols.rates,
+        };
+        let (mut positions, mut findings) = (Self::default(), Vec::new());
+        for (index, constraint) in mechanism.constraints.iter().enumerate() {
+            let ConstraintKind::Position {
+                zero, dependent, ..
+            } = &constraint.kind
+            else {
+                continue;
+            };
+            let residual = lowering
+                .lower(&mut algebra.graph, zero)
+                .map_err(|_| vec![division_by_zero(Item::Constraint(index))])?;
+            let row: Vec<Expr> = symbols
+                .coordinates
+                .iter()
+                .map(|&q| algebra.derivative(residual, q))
+                .collect();
+            match positions.dependent_of(algebra, intervals, &row, *dependent) {
+                Some(coordinate) => positions.dependent.push(coordinate),
+                None => findings.push(undetermined(mechanism, index, *dependent)),
+            }
+            positions.names.push(constraint.name.clone());
+            positions.residual.push(residual);
+            positions.jacobian.push(row);
+        }
+        if findings.is_empty() {
+            Ok(positions)
+        } else {
+            Err(findings)
+        }
+    }
+
+    /// The coordinate that the spec names, or the first free one whose coefficient is safest.
+    fn dependent_of(
+        &self,
+        algebra: &mut Algebra,
+        intervals: &mut Intervals,
+        row: &[Expr],
+        named: Option<usize>,
+    ) -> Option<usize> {
+        let mut free = |&q: &usize| {
+            let zero = row[q] == Graph::ZERO || algebra.test.is_zero(&algebra.graph, row[q]);
+            !zero && !self.dependent.contains(&q)
+        };
+        if let Some(named) = named {
+            return Some(named).filter(&mut free);
+        }
+        let candidates: Vec<usize> = (0..row.len()).filter(free).collect();
+        let safe = |&&q: &&usize| intervals.cannot_vanish(&algebra.graph, row[q]);
+        candidates.iter().find(safe).or(candidates.first()).copied()
+    }
+}
+
+fn undetermined(mechanism: &Mechanism, index: usize, dependent: Option<usize>) -> Finding {
+    let constraint = &mechanism.constraints[index].name;
+    let (message, help) = match dependent {
+        Some(q) => (
+            format!(
+                "`{constraint}` does not determine `{}`",
+                mechanism.coordinates[q].label.name
+            ),
+            "name a coordinate that appears in the constraint, another one for each constraint",
+        ),
+        None => (
+            format!("`{constraint}` determines no coordinate that is not determined already"),
+            "remove the constraint, or let a coordinate appear in it",
+        ),
+    };
+    Finding {
+        code: Code::DependentConstraints,
+        message,
+        item: Item::Constraint(index),
+        help: help.to_owned(),
+    }
+}

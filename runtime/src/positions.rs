@@ -1,0 +1,162 @@
+//! Position constraints f(q, t) = 0: consistent states, and what keeps them consistent.
+//!
+//! The equations of motion hold the derivative of f at zero, so f itself drifts by the integration
+//! error. After every step the coordinates go back to f = 0 by the shortest way (Hairer, Lubich and
+//! Wanner, Geometric Numerical Integration, section IV.4). The step's error estimate stays as it is:
+//! the way back is no longer than the error.
+
+use crate::model::{At, Model};
+
+/// Newton steps before giving up.
+const MOST_STEPS: usize = 20;
+/// Residuals that count as zero, in units of rounding of the coordinates.
+const ROUNDING: f64 = 16.0 * f64::EPSILON;
+
+/// Which coordinates move.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Moving {
+    /// The dependent ones: the others are what the caller wants.
+    Dependent,
+    /// All, as little as possible in SI.
+    All,
+}
+
+/// No configuration that satisfies the position constraints was found.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[error("no configuration satisfies the position constraints near this one: off by {residual:.1e}")]
+pub struct Inconsistent {
+    /// Largest residual where the search ended, in SI.
+    pub residual: f64,
+}
+
+/// The position constraints of a model, with work arrays.
+#[derive(Debug, Clone)]
+pub struct Positions {
+    count: usize,
+    coordinates: usize,
+    residual: Vec<f64>,
+    jacobian: Vec<f64>,
+    matrix: Vec<f64>,
+}
+
+impl Positions {
+    /// For a model that has any.
+    pub fn of(model: &dyn Model) -> Option<Self> {
+        let count = model.dependent_coordinates().len();
+        let coordinates = model.info().states.len() - model.info().speeds;
+        (count > 0).then(|| Self {
+            count,
+            coordinates,
+            residual: vec![0.0; count],
+            jacobian: vec![0.0; count * coordinates],
+            matrix: vec![0.0; count * count],
+        })
+    }
+
+    /// Moves coordinates of `x` until the constraints hold up to rounding. `u` are inputs and
+    /// signals at time `t`.
+    pub fn restore(
+        &mut self,
+        model: &dyn Model,
+        t: f64,
+        x: &mut [f64],
+        u: &[f64],
+        p: &[f64],
+        moving: Moving,
+    ) -> Result<(), Inconsistent> {
+        let speeds = model.info().speeds;
+        let mut last = f64::INFINITY;
+        for _ in 0..MOST_STEPS {
+            let at = At { t, x, u, p };
+            model.position_constraints(at, &mut self.residual, &mut self.jacobian);
+            let size = largest(&self.residual);
+            let scale = largest(&x[speeds..]).max(1.0);
+            // Below rounding, or as small as rounding lets it become.
+            if size <= ROUNDING * scale || (size >= last && size <= 1e3 * ROUNDING * scale) {
+                return Ok(());
+            }
+            if !size.is_finite() || !self.step(model, &mut x[speeds..], moving) {
+                break;
+            }
+            last = size;
+        }
+        let residual = largest(&self.residual);
+        Err(Inconsistent { residual })
+    }
+
+    /// One Newton step; false where the Jacobian is singular.
+    fn step(&mut self, model: &dyn Model, q: &mut [f64], moving: Moving) -> bool {
+        let row = |i: usize| i * self.coordinates..(i + 1) * self.coordinates;
+        let dependent = model.dependent_coordinates();
+        for i in 0..self.count {
+            for j in 0..self.count {
+                self.matrix[i * self.count + j] = match moving {
+                    Moving::Dependent => self.jacobian[i * self.coordinates + dependent[j]],
+                    Moving::All => {
+                        let pairs = self.jacobian[row(i)].iter().zip(&self.jacobian[row(j)]);
+                        pairs.map(|(a, b)| a * b).sum()
+                    }
+                };
+            }
+        }
+        if !solve(&mut self.matrix, &mut self.residual) {
+            return false;
+        }
+        for (j, &multiplier) in self.residual.iter().enumerate() {
+            match moving {
+                Moving::Dependent => q[dependent[j]] -= multiplier,
+                Moving::All => {
+                    let row = &self.jacobian[j * self.coordinates..][..self.coordinates];
+                    for (q, entry) in q.iter_mut().zip(row) {
+                        *q -= entry * multiplier;
+                    }
+                }
+            }
+        }
+        true
+    }
+}
+
+fn largest(values: &[f64]) -> f64 {
+    // A NaN stays one.
+    let max = |a: f64, b: &f64| {
+        if b.abs() > a || b.is_nan() {
+            b.abs()
+        } else {
+            a
+        }
+    };
+    values.iter().fold(0.0, max)
+}
+
+/// Solves a square system by elimination with row pivots; `right` becomes the solution. False where
+/// the matrix is singular.
+fn solve(matrix: &mut [f64], right: &mut [f64]) -> bool {
+    let n = right.len();
+    for k in 0..n {
+        let size = |row: usize| matrix[row * n + k].abs();
+        let pivot = (k..n).fold(
+            k,
+            |best, row| if size(row) > size(best) { row } else { best },
+        );
+        if matrix[pivot * n + k] == 0.0 || !matrix[pivot * n + k].is_finite() {
+            return false;
+        }
+        for column in 0..n {
+            matrix.swap(k * n + column, pivot * n + column);
+        }
+        right.swap(k, pivot);
+        for row in k + 1..n {
+            let factor = matrix[row * n + k] / matrix[k * n + k];
+            for column in k..n {
+                matrix[row * n + column] -= factor * matrix[k * n + column];
+            }
+            right[row] -= factor * right[k];
+        }
+    }
+    for k in (0..n).rev() {
+        let known: f64 = (k + 1..n).map(|c| matrix[k * n + c] * right[c]).sum();
+        right[k] = (right[k] - known) / matrix[k * n + k];
+    }
+    true
+}

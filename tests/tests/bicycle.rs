@@ -1,0 +1,139 @@
+//! The bicycle against its published benchmark: dependent pitch, three wheels' worth of rolling rows.
+
+use appell_codegen::interpreted::InterpretedModel;
+use appell_codegen::program::FunctionKind;
+use appell_runtime::Simulation;
+use appell_runtime::model::{At, Model};
+use appell_tests::reference::{document, numbers};
+use nalgebra::{Matrix2, Matrix4};
+
+const SPEC: &str = include_str!("../../generated/gallery/bicycle.toml");
+/// Digits to which the benchmark is published.
+const PUBLISHED: f64 = 1e-11;
+
+fn bicycle() -> InterpretedModel {
+    let program = appell_codegen::compile("bicycle.toml", SPEC, &FunctionKind::ALL);
+    InterpretedModel::new(program.unwrap_or_else(|report| panic!("{}", report.plain())))
+}
+
+/// Upright riding straight at a speed in m/s.
+fn upright(model: &dyn Model, v: f64) -> Vec<f64> {
+    let info = model.info();
+    let mut x = info.initial_state();
+    let radius = info.default_parameters()[info.parameter_index("r_R").unwrap()];
+    x[info.state_index("omega_R").unwrap()] = -v / radius;
+    x
+}
+
+/// A of (lean rate, steer rate, lean, steer) and B of the torques, upright.
+fn linearised(model: &dyn Model, v: f64) -> (Matrix4<f64>, Matrix2<f64>) {
+    let info = model.info();
+    let x = upright(model, v);
+    let p = info.default_parameters();
+    let n = x.len();
+    let (mut rates, mut a, mut b) = (vec![0.0; n], vec![0.0; n * n], vec![0.0; 2 * n]);
+    let at = At {
+        t: 0.0,
+        x: &x,
+        u: &[0.0, 0.0],
+        p: &p,
+    };
+    model.jacobians(at, &mut rates, &mut a, &mut b);
+    assert!(a.iter().chain(&b).chain(&rates).all(|v| v.is_finite()));
+    let places = ["omega_phi", "omega_delta", "phi", "delta"].map(|s| info.state_index(s).unwrap());
+    let pitch = info.state_index("theta").unwrap();
+    // By symmetry the pitch does not follow lean and steer to first order.
+    let mut residual = [0.0];
+    let mut slopes = vec![0.0; n - info.speeds];
+    model.position_constraints(at, &mut residual, &mut slopes);
+    for place in [places[2], places[3]] {
+        assert!(slopes[place - info.speeds].abs() < 1e-15);
+    }
+    assert!(slopes[pitch - info.speeds].abs() > 0.1);
+    (
+        Matrix4::from_fn(|i, j| a[places[i] * n + places[j]]),
+        Matrix2::from_fn(|i, j| b[places[i] * 2 + j]),
+    )
+}
+
+fn matrix(reference: &serde_json::Value, name: &str) -> Matrix2<f64> {
+    Matrix2::from_row_slice(&numbers(&reference[name]))
+}
+
+#[test]
+fn the_linearised_bicycle_is_the_benchmark() {
+    let Some(reference) = document("meijaard.json") else {
+        return;
+    };
+    let model = bicycle();
+    let g = 9.81;
+    let (still, b) = linearised(&model, 0.0);
+    let m = b.try_inverse().unwrap();
+    let close = |what: &str, found: Matrix2<f64>, wanted: Matrix2<f64>| {
+        let error = (found - wanted).amax();
+        assert!(
+            error < PUBLISHED * wanted.amax().max(1.0),
+            "{what}: {found} against {wanted}"
+        );
+    };
+    close("M", m, matrix(&reference, "M"));
+    let stiffness = |a: &Matrix4<f64>| -m * a.fixed_view::<2, 2>(0, 2);
+    let k0 = stiffness(&still) / g;
+    close("K0", k0, matrix(&reference, "K0"));
+    for v in [1.0, 4.6, 10.0] {
+        let (riding, _) = linearised(&model, v);
+        let c1 = -m * riding.fixed_view::<2, 2>(0, 0) / v;
+        close("C1", c1, matrix(&reference, "C1"));
+        close(
+            "K2",
+            (stiffness(&riding) - g * k0) / (v * v),
+            matrix(&reference, "K2"),
+        );
+    }
+}
+
+#[test]
+fn a_lean_of_the_riding_bicycle_keeps_energy_and_the_front_wheel_on_the_ground() {
+    let model = bicycle();
+    let info = model.info();
+    let mut simulation = Simulation::new(&model);
+    simulation.initial_state = upright(&model, 4.6);
+    simulation.initial_state[info.state_index("omega_phi").unwrap()] = 0.5;
+    simulation.span = [0.0, 20.0];
+    simulation.options.rtol = 1e-12;
+    simulation.options.atol = 1e-12;
+    let p = info.default_parameters();
+    let motion = simulation.run().unwrap();
+    let energy = |x: &[f64]| {
+        let energies = model.energies(At {
+            t: 0.0,
+            x,
+            u: &[0.0, 0.0],
+            p: &p,
+        });
+        energies.kinetic + energies.potential
+    };
+    let start = energy(motion.state(0));
+    let (mut drift, mut off) = (0.0_f64, 0.0_f64);
+    for row in 0..motion.len() {
+        let x = motion.state(row);
+        drift = drift.max((energy(x) / start - 1.0).abs());
+        let (mut residual, mut slopes) = ([0.0], vec![0.0; x.len() - info.speeds]);
+        model.position_constraints(
+            At {
+                t: 0.0,
+                x,
+                u: &[0.0, 0.0],
+                p: &p,
+            },
+            &mut residual,
+            &mut slopes,
+        );
+        off = off.max(residual[0].abs());
+    }
+    assert!(drift <= 1e-9, "energy drifts by {drift:e}");
+    assert!(
+        off <= 1e-12,
+        "the front wheel leaves the ground by {off:e} m"
+    );
+}

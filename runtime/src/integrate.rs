@@ -41,7 +41,7 @@ pub use range::Range;
 pub use rk4::Rk4;
 pub use solver::Solver;
 pub use stops::{SwitchFunction, Switches};
-pub use watch::{Ending, NoObserver, Observer, Projection, Step, Watch};
+pub use watch::{Ending, NoObserver, Observer, Projection, ProjectionFunction, Step, Watch};
 
 /// Accuracy and limits of an adaptive integration.
 #[derive(Debug, Clone, Copy, PartialEq)]

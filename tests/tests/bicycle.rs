@@ -1,15 +1,18 @@
-//! The bicycle against its published benchmark: dependent pitch, three wheels' worth of rolling rows.
+//! The bicycle against its published benchmark: dependent pitch, two wheels that roll.
+#![allow(clippy::unwrap_used, reason = "tests may panic")]
 
 use appell_codegen::interpreted::InterpretedModel;
 use appell_codegen::program::FunctionKind;
 use appell_runtime::Simulation;
 use appell_runtime::model::{At, Model};
-use appell_tests::reference::{document, numbers};
+use appell_tests::reference::{document, number, numbers};
 use nalgebra::{Matrix2, Matrix4};
 
 const SPEC: &str = include_str!("../../generated/gallery/bicycle.toml");
 /// Digits to which the benchmark is published.
 const PUBLISHED: f64 = 1e-11;
+/// Rounding of eigenvalues near a double root of the real part, relative to the speed.
+const CRITICAL: f64 = 1e-12;
 
 fn bicycle() -> InterpretedModel {
     let program = appell_codegen::compile("bicycle.toml", SPEC, &FunctionKind::ALL);
@@ -89,6 +92,63 @@ fn the_linearised_bicycle_is_the_benchmark() {
             (stiffness(&riding) - g * k0) / (v * v),
             matrix(&reference, "K2"),
         );
+    }
+}
+
+/// Speed in m/s at which a function changes its sign, by bisection down to rounding.
+fn root(mut low: f64, mut high: f64, f: impl Fn(f64) -> f64) -> f64 {
+    let rising = f(high) > 0.0;
+    for _ in 0..60 {
+        let middle = f64::midpoint(low, high);
+        if (f(middle) > 0.0) == rising {
+            high = middle;
+        } else {
+            low = middle;
+        }
+    }
+    f64::midpoint(low, high)
+}
+
+#[test]
+fn the_eigenvalues_and_critical_speeds_are_the_published_ones() {
+    let Some(reference) = document("meijaard.json") else {
+        return;
+    };
+    let model = bicycle();
+    let mut compared = 0;
+    for case in reference["eigenvalues"].as_array().unwrap() {
+        if case.get("weave_re").is_none() {
+            continue;
+        }
+        let found = linearised(&model, number(&case["v"]))
+            .0
+            .complex_eigenvalues();
+        let [capsize, castering, re, im] =
+            ["capsize", "castering", "weave_re", "weave_im"].map(|key| number(&case[key]));
+        for (wanted_re, wanted_im) in [(capsize, 0.0), (castering, 0.0), (re, im), (re, -im)] {
+            let nearest = found
+                .iter()
+                .map(|z| (z.re - wanted_re).hypot(z.im - wanted_im))
+                .fold(f64::INFINITY, f64::min);
+            assert!(nearest < PUBLISHED, "{case}: off by {nearest:e}");
+            compared += 1;
+        }
+    }
+    assert!(compared >= 36);
+
+    let weave = |v: f64| {
+        let z = linearised(&model, v).0.complex_eigenvalues();
+        let oscillating = z.iter().filter(|z| z.im > 0.1);
+        oscillating.map(|z| z.re).fold(f64::NEG_INFINITY, f64::max)
+    };
+    let capsize = |v: f64| linearised(&model, v).0.determinant();
+    for (name, found) in [
+        ("weave_v_w", root(4.0, 5.0, weave)),
+        ("capsize_v_c", root(5.0, 7.0, capsize)),
+    ] {
+        let wanted = number(&reference["critical_speeds"][name]);
+        let error = (found / wanted - 1.0).abs();
+        assert!(error < CRITICAL, "{name}: {found} against {wanted}");
     }
 }
 

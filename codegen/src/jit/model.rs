@@ -201,7 +201,8 @@ mod tests {
             Kind::ConstraintResidual => Kind::ConstraintForces,
             Kind::ConstraintForces => Kind::Outputs,
             Kind::Outputs => Kind::Switches,
-            Kind::Switches => return None,
+            Kind::Switches => Kind::PositionConstraints,
+            Kind::PositionConstraints => return None,
         })
     }
 

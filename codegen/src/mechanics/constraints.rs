@@ -216,6 +216,14 @@ fn scalar_rows(
         rates: &symbols.rates,
     };
     let zero = |_| division_by_zero(item);
+    let single = |value: Expr, direction: Vec3| {
+        let name = constraint.name.clone();
+        vec![Scalar {
+            name,
+            value,
+            direction,
+        }]
+    };
     Ok(match &constraint.kind {
         ConstraintKind::Rolling { body, contact } => {
             let v = kinematics.material_velocity(
@@ -242,16 +250,7 @@ fn scalar_rows(
             let left = lowering.lower(&mut algebra.graph, left).map_err(zero)?;
             let right = lowering.lower(&mut algebra.graph, equals).map_err(zero)?;
             let value = algebra.graph.sub(left, right);
-            let name = constraint.name.clone();
-            let direction = vector::IDENTITY[0];
-            (
-                Place::Constraint(index),
-                vec![Scalar {
-                    name,
-                    value,
-                    direction,
-                }],
-            )
+            (Place::Constraint(index), single(value, vector::IDENTITY[0]))
         }
         ConstraintKind::FixedVelocity {
             point,
@@ -287,15 +286,7 @@ fn scalar_rows(
             let direction = kinematics
                 .frames
                 .express(&mut algebra.graph, in_ground, GROUND);
-            let name = constraint.name.clone();
-            (
-                Place::Point(*point),
-                vec![Scalar {
-                    name,
-                    value,
-                    direction,
-                }],
-            )
+            (Place::Point(*point), single(value, direction))
         }
         ConstraintKind::Position { zero: position, .. } => {
             let position = lowering.lower(&mut algebra.graph, position).map_err(zero)?;
@@ -303,12 +294,8 @@ fn scalar_rows(
                 symbols,
                 rates: &symbols.rates,
             };
-            let scalar = Scalar {
-                name: constraint.name.clone(),
-                value: along.of(algebra, position),
-                direction: vector::IDENTITY[0],
-            };
-            (Place::Constraint(index), vec![scalar])
+            let value = along.of(algebra, position);
+            (Place::Constraint(index), single(value, vector::IDENTITY[0]))
         }
     })
 }

@@ -24,8 +24,11 @@ pub struct Watch<'a> {
     pub events: Vec<Event<'a>>,
 }
 
-/// A map of a state onto the states that are possible at a time; false where it finds none.
-pub struct Projection<'a>(pub Box<dyn FnMut(f64, &mut [f64]) -> bool + 'a>);
+/// Moves a state to a possible one at a time in s; false where it finds none.
+pub type ProjectionFunction<'a> = dyn FnMut(f64, &mut [f64]) -> bool + 'a;
+
+/// A map of states onto the possible ones.
+pub struct Projection<'a>(pub Box<ProjectionFunction<'a>>);
 
 impl std::fmt::Debug for Projection<'_> {
     fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {

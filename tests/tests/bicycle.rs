@@ -11,6 +11,8 @@ use nalgebra::{Matrix2, Matrix4};
 const SPEC: &str = include_str!("../../generated/gallery/bicycle.toml");
 /// Digits to which the benchmark is published.
 const PUBLISHED: f64 = 1e-11;
+/// Digits to which the nonlinear point is published.
+const NONLINEAR: f64 = 1e-12;
 /// Rounding of eigenvalues near a double root of the real part, relative to the speed.
 const CRITICAL: f64 = 1e-12;
 
@@ -149,6 +151,63 @@ fn the_eigenvalues_and_critical_speeds_are_the_published_ones() {
         let wanted = number(&reference["critical_speeds"][name]);
         let error = (found / wanted - 1.0).abs();
         assert!(error < CRITICAL, "{name}: {found} against {wanted}");
+    }
+}
+
+#[test]
+fn the_nonlinear_accelerations_are_those_of_basu_mandal() {
+    let Some(reference) = document("meijaard.json") else {
+        return;
+    };
+    let reference = &reference["basu_mandal_nonlinear"];
+    let [start, published] = [
+        &reference["moore_coords_input"],
+        &reference["qdd_published"],
+    ];
+    let model = bicycle();
+    let info = model.info();
+    let p = info.default_parameters();
+    let tilt = p[info.parameter_index("lam").unwrap()];
+    let mut x = info.initial_state();
+    for (name, key, offset) in [
+        ("omega_phi", "u4", 0.0),
+        ("omega_delta", "u7", 0.0),
+        ("omega_R", "u6", 0.0),
+        ("phi", "q4", 0.0),
+        ("theta", "q5", tilt),
+        ("delta", "q7", 0.0),
+    ] {
+        x[info.state_index(name).unwrap()] = number(&start[key]) - offset;
+    }
+    let at = At {
+        t: 0.0,
+        x: &x,
+        u: &[0.0, 0.0],
+        p: &p,
+    };
+    let (mut residual, mut slopes) = ([1.0], vec![0.0; x.len() - info.speeds]);
+    model.position_constraints(at, &mut residual, &mut slopes);
+    assert!(
+        residual[0].abs() < 1e-12,
+        "the front wheel is off by {:e} m",
+        residual[0]
+    );
+    let mut rates = vec![0.0; x.len()];
+    model.rates(at, &mut rates);
+    // The source measures all of these angles the other way round.
+    for (name, wanted) in [
+        ("omega_phi", -number(&published["psi"])),
+        ("omega_delta", -number(&published["psif"])),
+        ("omega_R", -number(&published["betar"])),
+        ("psi", number(&start["u3"])),
+        ("theta", number(&start["u5"])),
+        ("theta_F", number(&start["u8"])),
+    ] {
+        let found = rates[info.state_index(name).unwrap()];
+        assert!(
+            (found - wanted).abs() < NONLINEAR * wanted.abs().max(1.0),
+            "{name}: {found} against {wanted}"
+        );
     }
 }
 

@@ -344,14 +344,14 @@ fn a_gyroscope_that_is_turned_in_tilt_pushes_in_yaw_and_the_other_way_round() {
     }
 }
 
-/// The published unicycle with a turntable: M. P. Deisenroth, A. McHutchon, J. Hall and
-/// C. E. Rasmussen, PILCO, `dynamics_unicycle.m`, 2013, after D. Forster. Columns: θ', φ', ψ_w',
-/// ψ_f', ψ_t', θ, ψ_f; torques V and U; then by the published equations θ'', φ'', ψ_t'' with the
-/// published pitch inertia of the frame, C_f = 0.8292 kg m², and all five second derivatives with
-/// C_f = C_w = 0.0484 kg m².
+/// The published unicycle with a turntable: `dynamics_unicycle.m` of PILCO, 2013, by Deisenroth and
+/// others after D. Forster. Columns: `θ', φ', ψ_w', ψ_f', ψ_t', θ, ψ_f`; torques `V` and `U`; then by
+/// the published equations `θ'', φ'', ψ_t''` with the published pitch inertia of the frame,
+/// `C_f = 0.8292 kg m²`, and all five second derivatives with `C_f = C_w = 0.0484 kg m²`.
 ///
-/// The published equations have the wheel's C_w in six places where the frame's C_f belongs, which
-/// spoils ψ_w'' and ψ_f'' alone. Where the two are equal this says nothing, and all five agree.
+/// The published equations have the wheel's `C_w` in six places where the frame's `C_f` belongs,
+/// which spoils `ψ_w''` and `ψ_f''` alone. Where the two are equal this says nothing, and all five
+/// agree.
 const TURNTABLE: [([f64; 7], [f64; 2], [f64; 3], [f64; 5]); 3] = [
     (
         [-0.19, 0.24, 1.7, -0.14, 0.03, 0.1, -0.38],

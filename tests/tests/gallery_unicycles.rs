@@ -344,64 +344,75 @@ fn a_gyroscope_that_is_turned_in_tilt_pushes_in_yaw_and_the_other_way_round() {
     }
 }
 
-/// The published unicycle with a turntable: `dynamics_unicycle.m` of PILCO, 2013, by Deisenroth and
-/// others after D. Forster. Columns: `θ', φ', ψ_w', ψ_f', ψ_t', θ, ψ_f`; torques `V` and `U`; then by
-/// the published equations `θ'', φ'', ψ_t''` with the published pitch inertia of the frame,
-/// `C_f = 0.8292 kg m²`, and all five second derivatives with `C_f = C_w = 0.0484 kg m²`.
+/// A motion of the published unicycle with a turntable: `dynamics_unicycle.m` of PILCO, 2013, by
+/// Deisenroth and others after D. Forster.
 ///
-/// The published equations have the wheel's `C_w` in six places where the frame's `C_f` belongs,
-/// which spoils `ψ_w''` and `ψ_f''` alone. Where the two are equal this says nothing, and all five
-/// agree.
-const TURNTABLE: [([f64; 7], [f64; 2], [f64; 3], [f64; 5]); 3] = [
-    (
-        [-0.19, 0.24, 1.7, -0.14, 0.03, 0.1, -0.38],
-        [0.1, 5.2],
-        [
+/// The published equations have the wheel's `C_w` in six places where the pitch inertia `C_f` of the
+/// frame belongs, which spoils `ψ_w''` and `ψ_f''` alone. Where the two are equal this says nothing,
+/// and all five agree.
+struct Turntable {
+    /// `θ', φ', ψ_w', ψ_f', ψ_t', θ, ψ_f`.
+    state: [f64; 7],
+    /// `V, U`.
+    torques: [f64; 2],
+    /// `θ'', φ'', ψ_t''` by the published equations with the published `C_f`.
+    unspoilt: [f64; 3],
+    /// `θ'', φ'', ψ_w'', ψ_f'', ψ_t''` by the published equations with `C_f = C_w`.
+    equal_inertias: [f64; 5],
+}
+
+const TURNTABLE: [Turntable; 3] = [
+    Turntable {
+        state: [-0.19, 0.24, 1.7, -0.14, 0.03, 0.1, -0.38],
+        torques: [0.1, 5.2],
+        unspoilt: [
             1.051_308_493_881_435_4,
             -0.018_822_016_020_190_326,
             0.160_315_664_639_172_52,
         ],
-        [
+        equal_inertias: [
             1.031_251_523_365_861_2,
             -0.084_123_457_562_115_8,
             55.523_560_710_676_11,
             -21.918_371_014_975_13,
             0.228_095_381_868_437_22,
         ],
-    ),
-    (
-        [1.17, -1.62, -0.79, -1.64, 1.24, 0.23, -0.55],
-        [4.8, 18.6],
-        [
+    },
+    Turntable {
+        state: [1.17, -1.62, -0.79, -1.64, 1.24, 0.23, -0.55],
+        torques: [4.8, 18.6],
+        unspoilt: [
             -4.231_401_617_211_654,
             -11.871_246_749_988_956,
             32.709_404_706_965_17,
         ],
-        [
+        equal_inertias: [
             -2.804_696_746_987_158_7,
             -8.654_757_061_877_964,
             48.628_145_649_610_05,
             -27.929_953_802_160_515,
             29.293_758_292_842_21,
         ],
-    ),
-    (
-        [0.62, 0.46, -1.37, -1.94, 0.11, -0.53, -0.37],
-        [-2.6, -18.8],
-        [
+    },
+    Turntable {
+        state: [0.62, 0.46, -1.37, -1.94, 0.11, -0.53, -0.37],
+        torques: [-2.6, -18.8],
+        unspoilt: [
             -3.215_460_818_783_859_6,
             2.339_034_260_412_011_3,
             -14.696_194_314_149_453,
         ],
-        [
+        equal_inertias: [
             -2.862_206_363_171_725_6,
             3.889_465_512_270_472,
             -22.873_713_848_907_084,
             1.828_101_619_121_978_5,
             -16.071_132_353_762_426,
         ],
-    ),
+    },
 ];
+/// `C_w`, and `C_f` as published, in kg m².
+const PITCH_INERTIAS: [f64; 2] = [0.0484, 0.8292];
 const TURNTABLE_PARAMETERS: [(&str, f64); 13] = [
     ("m_w", 1.0),
     ("J_w", 0.0484),
@@ -420,15 +431,16 @@ const TURNTABLE_PARAMETERS: [(&str, f64); 13] = [
 
 /// Second derivatives of tilt, heading, wheel, frame and turntable in the published angles, which
 /// count heading and turntable to the right.
-fn turntable(place: &mut Place<'_>, state: [f64; 7], torques: [f64; 2]) -> [f64; 5] {
-    let [tilt_rate, right, wheel, frame, table, theta, gamma] = state;
+fn turntable(place: &mut Place<'_>, motion: &Turntable) -> [f64; 5] {
+    let [tilt_rate, right, wheel, frame, table, theta, gamma] = motion.state;
+    let [on_table, on_wheel] = motion.torques;
     let (yaw, delta) = (-right, -table);
     let ((s, c), (s_g, c_g)) = (theta.sin_cos(), gamma.sin_cos());
     place.set(&[("theta", theta), ("gamma", gamma), ("omega_1", tilt_rate)]);
     place.set(&[("omega_2", yaw * s + wheel), ("omega_3", yaw * c)]);
     place.set(&[("omega_b", yaw * s + frame)]);
     place.set(&[("nu_o", delta + tilt_rate * s_g + yaw * c * c_g)]);
-    place.set(&[("M_o", -torques[0]), ("M_d", torques[1])]);
+    place.set(&[("M_o", -on_table), ("M_d", on_wheel)]);
     let [w1, w2, w3, wb, nu] = place.rates(["omega_1", "omega_2", "omega_3", "omega_b", "nu_o"]);
     let yaw_dot = (w3 + yaw * s * tilt_rate) / c;
     let sideways = yaw_dot * s + yaw * c * tilt_rate;
@@ -441,18 +453,14 @@ fn an_overhead_flywheel_turns_the_unicycle_as_published_for_a_turntable() {
     let (model, mut random) = (derived("unicycle_overhead_flywheel"), Random::of("table"));
     let mut place = Place::random(&model, &mut random);
     place.set(&TURNTABLE_PARAMETERS);
-    for (state, torques, printed, equal_inertias) in TURNTABLE {
-        place.set(&[("J_by", 0.0484)]);
-        let all = turntable(&mut place, state, torques);
-        assert_close("equal inertias", &all, &equal_inertias, ROUNDING, FLOOR);
-        place.set(&[("J_by", 0.8292)]);
-        let [tilt, heading, .., table] = turntable(&mut place, state, torques);
-        assert_close(
-            "as printed",
-            &[tilt, heading, table],
-            &printed,
-            ROUNDING,
-            FLOOR,
-        );
+    let [of_wheel, of_frame] = PITCH_INERTIAS;
+    for motion in TURNTABLE {
+        place.set(&[("J_by", of_wheel)]);
+        let all = turntable(&mut place, &motion);
+        assert_close("equal", &all, &motion.equal_inertias, ROUNDING, FLOOR);
+        place.set(&[("J_by", of_frame)]);
+        let [tilt, heading, .., table] = turntable(&mut place, &motion);
+        let unspoilt = [tilt, heading, table];
+        assert_close("unspoilt", &unspoilt, &motion.unspoilt, ROUNDING, FLOOR);
     }
 }

@@ -23,10 +23,10 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
-use appell_spec::Report;
+use appell_spec::{Report, Severity};
 use thiserror::Error;
 
-use crate::compile::{Derived, derived, report};
+use crate::compile::{Derived, audited, report};
 use crate::emit::{self, Emitted, Options, emit};
 use crate::mechanics::assemble;
 use crate::program::FunctionKind;
@@ -230,9 +230,10 @@ fn program(file: &str, text: &str) -> Result<Program, Report> {
         mechanism,
         derivation,
         warnings,
-    } = derived(file, text)?;
+    } = audited(file, text)?;
     let warnings = Report::new(file, text, warnings);
-    for warning in warnings.diagnostics() {
+    let diagnostics = warnings.diagnostics().iter();
+    for warning in diagnostics.filter(|d| d.severity != Severity::Note) {
         let at = warning.labels.first().map_or(0, |(span, _)| span.start);
         let (line, column) = warnings.line_column(at);
         println!("cargo::warning={file}:{line}:{column}: {}", warning.message);

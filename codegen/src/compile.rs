@@ -1,8 +1,9 @@
 //! From the text of a spec to its program, with every mistake told at its place in the text.
 
 use appell_spec::mechanism::Mechanism;
-use appell_spec::{Diagnostic, Report, Severity};
+use appell_spec::{Code, Diagnostic, Report, Severity};
 
+use crate::audit::{Audit, audit, reasons};
 use crate::mechanics::finding::{Finding, Item};
 use crate::mechanics::{Derivation, assemble, derive};
 use crate::program::{FunctionKind, Program};
@@ -25,10 +26,12 @@ pub fn derived(file: &str, text: &str) -> Result<Derived, Report> {
         Ok(derivation) => {
             let mut warnings = checked.warnings;
             for finding in &derivation.warnings {
-                warnings.push(Diagnostic {
-                    severity: Severity::Warning,
-                    ..diagnostic(&checked.mechanism, text, finding)
-                });
+                warnings.push(diagnostic(
+                    &checked.mechanism,
+                    text,
+                    finding,
+                    Severity::Warning,
+                ));
             }
             Ok(Derived {
                 mechanism: checked.mechanism,
@@ -36,8 +39,28 @@ pub fn derived(file: &str, text: &str) -> Result<Derived, Report> {
                 warnings,
             })
         }
-        Err(findings) => Err(report(&checked.mechanism, text, &findings)),
+        Err(findings) => Err(refused(&checked.mechanism, text, &findings)),
     }
+}
+
+/// [`derived`], with what an [audit](crate::audit) of the equations tells among the warnings. Notes
+/// stand there as well.
+pub fn audited(file: &str, text: &str) -> Result<Derived, Report> {
+    let mut derived = derived(file, text)?;
+    let Audit { warnings, notes } = audit(&derived.mechanism, &derived.derivation);
+    let findings = warnings.iter().map(|finding| (finding, Severity::Warning));
+    for (finding, severity) in findings.chain(notes.iter().map(|note| (note, Severity::Note))) {
+        let diagnostic = diagnostic(&derived.mechanism, text, finding, severity);
+        // What nothing uses has no effect either.
+        let place = |d: &Diagnostic| d.labels.first().map(|(span, _)| span.clone());
+        let is_told = |known: &Diagnostic| {
+            known.code == Code::UnusedName && place(known) == place(&diagnostic)
+        };
+        if !derived.warnings.iter().any(is_told) {
+            derived.warnings.push(diagnostic);
+        }
+    }
+    Ok(derived)
 }
 
 /// Reads a spec and makes the program with the functions `kinds`.
@@ -51,18 +74,38 @@ pub fn compile(file: &str, text: &str, kinds: &[FunctionKind]) -> Result<Program
         .map_err(|findings| report(&mechanism, text, &findings))
 }
 
-/// What the derivation found wrong, at its place in the text of the spec.
-pub fn report(mechanism: &Mechanism, text: &str, findings: &[Finding]) -> Report {
-    let diagnostics = findings
-        .iter()
-        .map(|finding| diagnostic(mechanism, text, finding))
+/// What a mechanism has no equations of motion for, and what may be the reason.
+fn refused(mechanism: &Mechanism, text: &str, findings: &[Finding]) -> Report {
+    let errors = findings.iter().map(|finding| (finding, Severity::Error));
+    let reasons = reasons(mechanism, findings);
+    let reasons = reasons.iter().map(|reason| (reason, Severity::Warning));
+    let diagnostics = errors.chain(reasons);
+    let diagnostics = diagnostics
+        .map(|(finding, severity)| diagnostic(mechanism, text, finding, severity))
         .collect();
     Report::new(mechanism.file.as_str(), text, diagnostics)
 }
 
-fn diagnostic(mechanism: &Mechanism, text: &str, finding: &Finding) -> Diagnostic {
+/// What the derivation found wrong, at its place in the text of the spec.
+pub fn report(mechanism: &Mechanism, text: &str, findings: &[Finding]) -> Report {
+    let diagnostics = findings
+        .iter()
+        .map(|finding| diagnostic(mechanism, text, finding, Severity::Error))
+        .collect();
+    Report::new(mechanism.file.as_str(), text, diagnostics)
+}
+
+fn diagnostic(
+    mechanism: &Mechanism,
+    text: &str,
+    finding: &Finding,
+    severity: Severity,
+) -> Diagnostic {
     let item = match finding.item {
         Item::Mechanism => None,
+        Item::Parameter(i) => mechanism.parameters.get(i).map(|x| &x.label.span),
+        Item::Coordinate(i) => mechanism.coordinates.get(i).map(|x| &x.label.span),
+        Item::Input(i) => mechanism.inputs.get(i).map(|x| &x.label.span),
         Item::Frame(i) => mechanism.frames.get(i).map(|x| &x.span),
         Item::Point(i) => mechanism.points.get(i).map(|x| &x.span),
         Item::Body(i) => mechanism.bodies.get(i).map(|x| &x.span),
@@ -84,7 +127,10 @@ fn diagnostic(mechanism: &Mechanism, text: &str, finding: &Finding) -> Diagnosti
     });
     let diagnostic =
         Diagnostic::error(finding.code, finding.message.as_str()).help(finding.help.as_str());
-    diagnostic.at(span.unwrap_or_default(), "")
+    Diagnostic {
+        severity,
+        ..diagnostic.at(span.unwrap_or_default(), "")
+    }
 }
 
 #[cfg(test)]

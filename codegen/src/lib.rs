@@ -1,5 +1,6 @@
 //! Gibbs-Appell derivation and code generation.
 
+pub mod audit;
 pub mod build;
 pub mod compile;
 pub mod emit;
@@ -13,4 +14,4 @@ pub mod schedule;
 pub mod symbolic;
 
 pub use build::build;
-pub use compile::{Derived, compile, derived};
+pub use compile::{Derived, audited, compile, derived};

@@ -10,6 +10,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 use std::time::{Duration, Instant};
 
+use appell_codegen::audit::{audit, reasons};
 use appell_codegen::emit::emit_functions;
 use appell_codegen::mechanics::{assemble, derive};
 use appell_codegen::program::FunctionKind;
@@ -252,11 +253,17 @@ fn exercise(text: &str, kind: FunctionKind, counts: &mut Counts) -> Duration {
     };
     counts.loaded += 1;
     let start = Instant::now();
-    if let Ok(derivation) = derive(&checked.mechanism) {
-        counts.derived += 1;
-        if let Ok(program) = assemble::program(derivation, &checked.mechanism, &[kind]) {
-            schedule(&program, &program.functions[0]);
-            emit_functions(&program, &[kind]).unwrap();
+    match derive(&checked.mechanism) {
+        Ok(derivation) => {
+            counts.derived += 1;
+            audit(&checked.mechanism, &derivation);
+            if let Ok(program) = assemble::program(derivation, &checked.mechanism, &[kind]) {
+                schedule(&program, &program.functions[0]);
+                emit_functions(&program, &[kind]).unwrap();
+            }
+        }
+        Err(findings) => {
+            reasons(&checked.mechanism, &findings);
         }
     }
     start.elapsed()

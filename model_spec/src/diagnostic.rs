@@ -17,6 +17,8 @@ pub enum Severity {
     Error,
     /// The spec can be used, but something looks unintended.
     Warning,
+    /// Nothing is wrong, but worth knowing.
+    Note,
 }
 
 /// One finding.
@@ -50,6 +52,14 @@ impl Diagnostic {
     pub fn warning(code: Code, message: impl Into<String>) -> Self {
         Self {
             severity: Severity::Warning,
+            ..Self::error(code, message)
+        }
+    }
+
+    /// A note.
+    pub fn note(code: Code, message: impl Into<String>) -> Self {
+        Self {
+            severity: Severity::Note,
             ..Self::error(code, message)
         }
     }

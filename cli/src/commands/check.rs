@@ -4,8 +4,8 @@ use std::fmt::Write as _;
 use std::path::PathBuf;
 
 use appell_codegen::mechanics::motion::independent_blocks;
-use appell_codegen::{Derived, derived};
-use appell_spec::Report;
+use appell_codegen::{Derived, audited};
+use appell_spec::{Report, Severity};
 use serde_json::{Value, json};
 
 use crate::failure::{Failure, shown, tell};
@@ -15,7 +15,8 @@ use crate::{files, progress};
 /// Validates specs and tells what they describe.
 ///
 /// Names, units, frames, constraints, pseudo-velocities and inertias are checked; all mistakes are
-/// told at once, each with its line and what to write instead.
+/// told at once, each with its line and what to write instead. An audit of the equations warns of
+/// what is legal and hardly meant, and notes what is worth knowing.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Check {
     /// Names of shipped mechanisms or paths of specs
@@ -55,18 +56,18 @@ impl Check {
 fn check(model: &str, quiet: bool) -> Result<Value, Failure> {
     let source = Source::find(model)?;
     let spinner = progress::spinner(&format!("deriving {}", source.file));
-    let derived = derived(&source.file, &source.text);
+    let derived = audited(&source.file, &source.text);
     spinner.finish_and_clear();
     let derived = derived?;
-    let audit = Audit::of(&derived);
+    let summary = Summary::of(&derived);
     if !quiet {
-        files::print(&audit.text(&source))?;
+        files::print(&summary.text(&source))?;
     }
     let warnings = Report::new(source.file.as_str(), source.text.as_str(), derived.warnings);
     if !warnings.diagnostics().is_empty() {
         tell(&shown(&warnings));
     }
-    Ok(audit.json(&source, &warnings))
+    Ok(summary.json(&source, &warnings))
 }
 
 /// What programs read of a spec that is wrong or cannot be read.
@@ -86,8 +87,13 @@ fn findings(report: &Report) -> Vec<Value> {
     let finding = |diagnostic: &appell_spec::Diagnostic| {
         let at = diagnostic.labels.first().map_or(0, |(span, _)| span.start);
         let (line, column) = report.line_column(at);
+        let severity = match diagnostic.severity {
+            Severity::Error => "error",
+            Severity::Warning => "warning",
+            Severity::Note => "note",
+        };
         json!({
-            "code": diagnostic.code.text(), "message": diagnostic.message, "help": diagnostic.help,
+            "severity": severity, "code": diagnostic.code.text(), "message": diagnostic.message, "help": diagnostic.help,
             "line": line, "column": column,
         })
     };
@@ -95,7 +101,7 @@ fn findings(report: &Report) -> Vec<Value> {
 }
 
 /// What a derivation tells about a mechanism.
-struct Audit {
+struct Summary {
     title: String,
     speeds: Vec<String>,
     coordinates: usize,
@@ -105,7 +111,7 @@ struct Audit {
     solved_numerically: Vec<String>,
 }
 
-impl Audit {
+impl Summary {
     fn of(derived: &Derived) -> Self {
         let Derived {
             mechanism,

@@ -8,6 +8,7 @@ use super::constraints::Constraints;
 use super::expressions::Lowering;
 use super::finding::{Finding, Item, Outcome};
 use super::kinematics::division_by_zero;
+use super::rank::{LinearRow, Standing, standings};
 use super::symbols::Symbols;
 use crate::symbolic::{Expr, Graph, Intervals, Substitution};
 
@@ -84,7 +85,16 @@ pub fn eliminate(
     }
     check_count(mechanism, constraints, equations.len())?;
 
-    let (violating, solved_numerically) = solve(algebra, mechanism, equations, intervals)?;
+    let given = equations
+        .iter()
+        .map(|e| LinearRow::homogeneous(e.coefficients.clone()));
+    let given: Vec<LinearRow> = given.collect();
+    let Some((violating, solved_numerically)) = solve(algebra, equations, intervals) else {
+        let (speeds, rows) = given.split_at(mechanism.pseudo_velocities.len());
+        let names = constraints.rows.iter().filter(|row| row.is_active());
+        let names: Vec<&str> = names.map(|row| row.name.as_str()).collect();
+        return Err(dependent_speeds(algebra, mechanism, &names, rows, speeds));
+    };
     let mut no_violation = Substitution::by_zero(&algebra.graph, &violation_rates);
     let mut rates = Vec::with_capacity(violating.len());
     for &rate in &violating {
@@ -143,6 +153,16 @@ fn check_count(mechanism: &Mechanism, constraints: &Constraints, equations: usiz
     let rows = constraints.rows.iter().filter(|r| r.is_active()).count();
     let speeds = mechanism.pseudo_velocities.len();
     let needed = coordinates.saturating_sub(rows);
+    let left_out = constraints.rows.iter().filter(|row| row.redundant);
+    let left_out: Vec<String> = left_out.map(|row| format!("`{}`", row.name)).collect();
+    let remark = if left_out.is_empty() {
+        String::new()
+    } else {
+        format!(
+            "{} counts for nothing, because it follows from the others; ",
+            left_out.join(", ")
+        )
+    };
     Err(vec![Finding {
         code: Code::MissingPseudoVelocities,
         message: format!(
@@ -152,8 +172,10 @@ fn check_count(mechanism: &Mechanism, constraints: &Constraints, equations: usiz
         item: Item::Mechanism,
         help: if rows > coordinates {
             "remove constraints: there are more of them than coordinates".to_owned()
+        } else if needed == 0 {
+            "remove constraints: they leave nothing that could move".to_owned()
         } else {
-            format!("define exactly {needed} pseudo-velocities")
+            format!("{remark}define exactly {needed} pseudo-velocities")
         },
     }])
 }
@@ -165,12 +187,13 @@ struct Solved {
     right: Expr,
 }
 
+/// The unknowns, and which of them need a pivoted solve. `None` where the equations are dependent
+/// everywhere.
 fn solve(
     algebra: &mut Algebra,
-    mechanism: &Mechanism,
     mut equations: Vec<Equation>,
     intervals: &mut Intervals,
-) -> Outcome<(Vec<Expr>, Vec<usize>)> {
+) -> Option<(Vec<Expr>, Vec<usize>)> {
     let unknowns = equations.len();
     let mut open: Vec<usize> = (0..unknowns).collect();
     let mut solved: Vec<Solved> = Vec::new();
@@ -211,8 +234,8 @@ fn solve(
             right,
         });
     }
-    if !open.is_empty() {
-        check_rank(algebra, mechanism, &equations, &open)?;
+    if !are_independent(algebra, &equations, &open) {
+        return None;
     }
 
     let mut rates = vec![Graph::ZERO; unknowns];
@@ -241,7 +264,7 @@ fn solve(
         let rate = algebra.graph.sum(&parts);
         rates[column] = algebra.shortest(rate);
     }
-    Ok((rates, open))
+    Some((rates, open))
 }
 
 /// The pivot that fills in least, among those that cannot vanish.
@@ -278,51 +301,66 @@ fn safest_pivot(
     best.map(|(_, place)| place)
 }
 
-/// Fails where the remaining equations are dependent everywhere, by elimination without regard to ranges.
-fn check_rank(
+/// Whether the equations are independent somewhere, as equations for the unknowns `open`.
+fn are_independent(algebra: &mut Algebra, equations: &[Equation], open: &[usize]) -> bool {
+    let row =
+        |e: &Equation| LinearRow::homogeneous(open.iter().map(|&c| e.coefficients[c]).collect());
+    let rows: Vec<LinearRow> = equations.iter().map(row).collect();
+    let standings = standings(algebra, &rows);
+    standings.iter().all(|s| *s == Standing::Independent)
+}
+
+/// The pseudo-velocities that follow from constraints and from those before them; `definitions` are
+/// their equations, `rows` those of the constraints.
+fn dependent_speeds(
     algebra: &mut Algebra,
     mechanism: &Mechanism,
-    equations: &[Equation],
-    open: &[usize],
-) -> Outcome<()> {
-    let mut rows: Vec<Vec<Expr>> = equations
-        .iter()
-        .map(|e| open.iter().map(|&c| e.coefficients[c]).collect())
+    names: &[&str],
+    rows: &[LinearRow],
+    definitions: &[LinearRow],
+) -> Vec<Finding> {
+    let speeds = mechanism.pseudo_velocities.iter().map(|w| &*w.label.name);
+    let names: Vec<&str> = names.iter().copied().chain(speeds).collect();
+    let all = [rows, definitions].concat();
+    let untold: Vec<String> = (0..mechanism.coordinates.len())
+        .filter(|&q| all.iter().all(|row| row.coefficients[q] == Graph::ZERO))
+        .map(|q| format!("`dot({})`", mechanism.coordinates[q].label.name))
         .collect();
+    let help = if untold.is_empty() {
+        "define it so that it is independent of the constraints and of the others".to_owned()
+    } else {
+        let untold = untold.join(", ");
+        format!("let it depend on {untold}, of which nothing tells")
+    };
+    let consequence =
+        "constraints and pseudo-velocities do not determine all generalised velocities";
+    let finding = |message, item| Finding {
+        code: Code::SingularPseudoVelocities,
+        message,
+        item,
+        help: help.clone(),
+    };
     let mut findings = Vec::new();
-    let mut rank = 0;
-    for (column, &unknown) in open.iter().enumerate() {
-        let pivot = (rank..rows.len()).find(|&r| {
-            let entry = rows[r][column];
-            entry != Graph::ZERO && !algebra.test.is_zero(&algebra.graph, entry)
-        });
-        let Some(pivot) = pivot else {
-            let coordinate = &mechanism.coordinates[unknown].label.name;
-            findings.push(Finding {
-                code: Code::SingularPseudoVelocities,
-                message: format!(
-                    "pseudo-velocities and constraints do not determine `dot({coordinate})`"
-                ),
-                item: Item::Mechanism,
-                help: "define pseudo-velocities that are independent of each other and of the \
-                       constraints"
-                    .to_owned(),
-            });
-            continue;
-        };
-        rows.swap(rank, pivot);
-        for r in rank + 1..rows.len() {
-            let factor = algebra.graph.div(rows[r][column], rows[rank][column]);
-            for c in column..open.len() {
-                let change = algebra.graph.mul(factor, rows[rank][c]);
-                rows[r][c] = algebra.graph.sub(rows[r][c], change);
-            }
+    for (index, standing) in standings(algebra, &all).into_iter().enumerate() {
+        if let Standing::Redundant(sum) = standing
+            && let Some(speed) = index.checked_sub(rows.len())
+        {
+            let sum: Vec<String> = sum
+                .iter()
+                .map(|&(i, _)| format!("`{}`", names[i]))
+                .collect();
+            let reason = if sum.is_empty() {
+                "is always zero".to_owned()
+            } else {
+                format!("follows from {}", sum.join(", "))
+            };
+            let message = format!("`{}` {reason}: {consequence}", names[index]);
+            findings.push(finding(message, Item::PseudoVelocity(speed)));
         }
-        rank += 1;
     }
     if findings.is_empty() {
-        Ok(())
-    } else {
-        Err(findings)
+        // Which one follows cannot be told from the equations as they are written.
+        findings.push(finding(consequence.to_owned(), Item::Mechanism));
     }
+    findings
 }

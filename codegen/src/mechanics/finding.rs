@@ -7,6 +7,12 @@ use appell_spec::Code;
 pub enum Item {
     /// The mechanism as a whole.
     Mechanism,
+    /// A parameter, by index.
+    Parameter(usize),
+    /// A coordinate, by index.
+    Coordinate(usize),
+    /// An input, by index.
+    Input(usize),
     /// A frame, by index.
     Frame(usize),
     /// A point, by index.

@@ -58,7 +58,13 @@ impl InitialState {
         Self { values, ranges }
     }
 
-    fn of(&self, graph: &Graph, exprs: &[Expr]) -> Vec<f64> {
+    /// Values by symbol.
+    pub fn values(&self) -> &[f64] {
+        &self.values
+    }
+
+    /// Values of expressions.
+    pub fn of(&self, graph: &Graph, exprs: &[Expr]) -> Vec<f64> {
         evaluate(graph, &self.values, exprs)
     }
 

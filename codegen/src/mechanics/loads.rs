@@ -10,7 +10,7 @@ use super::frames::FrameVector;
 use super::kinematics::{Kinematics, division_by_zero};
 use super::symbols::Symbols;
 use crate::symbolic::vector::Vec3;
-use crate::symbolic::{Expr, Graph, Rational};
+use crate::symbolic::{Expr, Graph, Rational, SymbolId};
 
 /// A scalar force and the velocity along which it works.
 #[derive(Debug, Clone, Copy)]
@@ -28,6 +28,11 @@ pub struct AppliedLoad {
 }
 
 impl AppliedLoad {
+    /// Whether one of the forces depends on one of the symbols.
+    pub fn depends_on(&self, graph: &Graph, symbols: &[SymbolId]) -> bool {
+        self.work.iter().any(|w| graph.mentions(w.force, symbols))
+    }
+
     /// Power of the load.
     pub fn power(&self, graph: &mut Graph) -> Expr {
         let parts: Vec<Expr> = self

@@ -169,7 +169,11 @@ fn equations(mechanism: &Mechanism) -> Outcome<Derivation> {
 }
 
 /// Ranges inside which a pivot must not vanish.
-fn declared_ranges(graph: &Graph, mechanism: &Mechanism, symbols: &Symbols) -> Intervals {
+pub(crate) fn declared_ranges(
+    graph: &Graph,
+    mechanism: &Mechanism,
+    symbols: &Symbols,
+) -> Intervals {
     let coordinates = ids(graph, &symbols.coordinates)
         .into_iter()
         .zip(&mechanism.coordinates)
@@ -205,7 +209,7 @@ pub(crate) fn parameter_ranges(
 }
 
 /// The identity test draws its points from the spec, so that every run draws the same.
-fn seed(mechanism: &Mechanism) -> u64 {
+pub(crate) fn seed(mechanism: &Mechanism) -> u64 {
     // FNV-1a: short and fixed for all time. A spec made to deceive the test deceives its author only.
     mechanism
         .name

@@ -13,6 +13,16 @@ pub struct LinearRow {
     pub rest: Expr,
 }
 
+impl LinearRow {
+    /// A row without rest.
+    pub fn homogeneous(coefficients: Vec<Expr>) -> Self {
+        Self {
+            coefficients,
+            rest: Graph::ZERO,
+        }
+    }
+}
+
 /// A row as a sum of earlier ones: `Σ factor · row`, by their index.
 pub type Combination = Vec<(usize, Expr)>;
 

@@ -30,6 +30,7 @@ fn render_one(renderer: &Renderer, report: &Report, diagnostic: &Diagnostic) -> 
     let level = match diagnostic.severity {
         Severity::Error => Level::ERROR,
         Severity::Warning => Level::WARNING,
+        Severity::Note => Level::NOTE,
     };
     let title = level
         .primary_title(diagnostic.message.as_str())

@@ -54,16 +54,48 @@ impl Resolver<'_> {
             }
         }
         if !is_physical(&matrix) {
+            let (reason, help) = impossible(&matrix);
             self.tell(
                 Diagnostic::warning(
                     Code::NotPhysical,
-                    format!("no body can have the inertia of `{}`", body.name),
+                    format!("no body can have the inertia of `{}`: {reason}", body.name),
                 )
                 .at(inertia.span.clone(), "with the values of this spec")
-                .help("each principal moment is at most the sum of the other two"),
+                .help(help),
             );
         }
     }
+}
+
+/// Why no distribution of mass has such a tensor, and what to look for.
+fn impossible(inertia: &[[f64; 3]; 3]) -> (String, &'static str) {
+    let axes = ["x", "y", "z"];
+    let moments = [inertia[0][0], inertia[1][1], inertia[2][2]];
+    let total: f64 = moments.iter().sum();
+    for (axis, moment) in axes.iter().zip(moments) {
+        if moment < 0.0 {
+            let reason = format!("about {axis} it is negative, {} kg*m^2", rounded(moment));
+            return (
+                reason,
+                "a moment is the integral of a squared distance; check the sign",
+            );
+        }
+        let others = total - moment;
+        if moment - others > ROUNDING * total {
+            let reason = format!(
+                "{} kg*m^2 about {axis} is more than {} about the other two axes together",
+                rounded(moment),
+                rounded(others)
+            );
+            let help = "each moment is at most the sum of the other two; a thin disc or a rod \
+                        reaches it";
+            return (reason, help);
+        }
+    }
+    (
+        "its products are too large for its moments".to_owned(),
+        "each principal moment is positive and at most the sum of the other two",
+    )
 }
 
 fn not_finite(what: &str, body: &Body, entry: &Expr) -> Diagnostic {
@@ -72,6 +104,11 @@ fn not_finite(what: &str, body: &Body, entry: &Expr) -> Diagnostic {
         format!("the {what} of `{}` is not finite", body.name),
     )
     .at(entry.span.clone(), "with the values of this spec")
+}
+
+/// Four digits say enough about a value that was computed.
+fn rounded(value: f64) -> f64 {
+    format!("{value:.3e}").parse().unwrap_or(value)
 }
 
 /// Whether a tensor belongs to some distribution of mass: its second moments, `tr(I)/2 - I`, form

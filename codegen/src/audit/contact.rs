@@ -1,0 +1,242 @@
+//! Rolling contacts that contradict their own geometry.
+//!
+//! A contact point moves over the ground and stays on it; the material point that passes through it is
+//! at rest for that instant. So across the ground both velocities vanish by geometry, and along it
+//! they differ.
+
+use appell_spec::Code;
+use appell_spec::mechanism::{BodyId, ConstraintKind, GROUND, LoadKind, Mechanism, PointId};
+
+use super::{listed, shown, unconstrained};
+use crate::mechanics::algebra::Algebra;
+use crate::mechanics::expressions::Lowering;
+use crate::mechanics::finding::{Finding, Item};
+use crate::mechanics::initial::InitialState;
+use crate::mechanics::kinematics::Kinematics;
+use crate::mechanics::rank::{LinearRow, Standing, standings};
+use crate::mechanics::symbols::Symbols;
+use crate::mechanics::time::TimeDerivative;
+use crate::symbolic::Expr;
+
+/// At most one finding per rolling contact.
+pub(super) fn findings(
+    algebra: &mut Algebra,
+    mechanism: &Mechanism,
+    symbols: &Symbols,
+) -> Vec<Finding> {
+    let Some(kinematics) = unconstrained(algebra, mechanism, symbols) else {
+        return Vec::new();
+    };
+    let mut geometry = Geometry {
+        algebra,
+        mechanism,
+        symbols,
+        kinematics,
+    };
+    let constraints = mechanism.constraints.iter().enumerate();
+    constraints
+        .filter_map(|(index, constraint)| {
+            let ConstraintKind::Rolling { body, contact } = constraint.kind else {
+                return None;
+            };
+            let (message, help) = geometry.contradiction(body, contact)?;
+            Some(Finding {
+                code: Code::ContactGeometry,
+                message,
+                item: Item::Constraint(index),
+                help,
+            })
+        })
+        .collect()
+}
+
+struct Geometry<'a> {
+    algebra: &'a mut Algebra,
+    mechanism: &'a Mechanism,
+    symbols: &'a Symbols,
+    kinematics: Kinematics,
+}
+
+impl Geometry<'_> {
+    /// What is wrong with a contact, and what to write instead.
+    fn contradiction(&mut self, body: BodyId, contact: PointId) -> Option<(String, String)> {
+        let mechanism = self.mechanism;
+        let (body_name, point) = (
+            &mechanism.bodies[body].name,
+            &mechanism.points[contact].name,
+        );
+        if self.is_centre(body, contact) {
+            return Some((
+                format!(
+                    "`{body_name}` rolls at its own centre `{point}`: that holds the centre at \
+                     rest, however the body turns"
+                ),
+                format!(
+                    "place a point where `{body_name}` touches the ground, a radius from its \
+                     centre, and name it as `contact`"
+                ),
+            ));
+        }
+        if self.is_pinned(body, contact) {
+            return Some((
+                format!(
+                    "`{point}` is fixed in `{body_name}`: the constraint pins the body to the \
+                     ground there, and nothing rolls"
+                ),
+                format!(
+                    "place `{point}` in a frame that does not spin with `{body_name}`, and let \
+                     the frame of the body turn by an angle of its own"
+                ),
+            ));
+        }
+        if self.independent_velocities(body, contact) == 3 {
+            return Some(self.leaves_the_ground(contact));
+        }
+        self.is_overhead(body, contact).then(|| {
+            (
+                format!(
+                    "gravity pulls `{body_name}` away from its contact `{point}`, which lies \
+                     above its centre"
+                ),
+                format!("turn the sign of the position of `{point}`, or the `down` of the gravity"),
+            )
+        })
+    }
+
+    fn is_centre(&mut self, body: BodyId, contact: PointId) -> bool {
+        let centre = self.mechanism.bodies[body].centre;
+        let arm = self.kinematics.between(
+            &mut self.algebra.graph,
+            self.mechanism,
+            centre,
+            contact,
+            GROUND,
+        );
+        self.vanishes(&arm)
+    }
+
+    /// Whether the contact point moves with the material of the body, whatever the motion.
+    fn is_pinned(&mut self, body: BodyId, contact: PointId) -> bool {
+        let material = self.material_velocity(body, contact);
+        let graph = &mut self.algebra.graph;
+        let point = self.kinematics.velocity(contact);
+        let point = self.kinematics.frames.express(graph, point, GROUND);
+        let passing = graph.sub3(material, point);
+        self.vanishes(&passing)
+    }
+
+    /// How many of the three velocities of the material point the coordinates leave open, once
+    /// they satisfy the position constraints.
+    fn independent_velocities(&mut self, body: BodyId, contact: PointId) -> usize {
+        let mut velocities = self.velocities_of_positions();
+        let before = velocities.len();
+        velocities.extend(self.material_velocity(body, contact));
+        let rates = &self.symbols.rates;
+        let rows: Vec<LinearRow> = velocities
+            .into_iter()
+            .map(|velocity| {
+                let coefficients = rates.iter().map(|&rate| {
+                    let coefficient = self.algebra.derivative(velocity, rate);
+                    self.algebra.shortest(coefficient)
+                });
+                LinearRow::homogeneous(coefficients.collect())
+            })
+            .collect();
+        let standings = standings(self.algebra, &rows);
+        let open = standings[before..].iter();
+        open.filter(|standing| **standing == Standing::Independent)
+            .count()
+    }
+
+    /// Time derivatives of the position constraints.
+    fn velocities_of_positions(&mut self) -> Vec<Expr> {
+        let symbols = self.symbols;
+        let rates = &symbols.rates;
+        let mut velocities = Vec::new();
+        for constraint in &self.mechanism.constraints {
+            if let ConstraintKind::Position { zero, .. } = &constraint.kind
+                && let Ok(zero) = (Lowering { symbols, rates }).lower(&mut self.algebra.graph, zero)
+            {
+                velocities.push(TimeDerivative { symbols, rates }.of(self.algebra, zero));
+            }
+        }
+        velocities
+    }
+
+    fn leaves_the_ground(&mut self, contact: PointId) -> (String, String) {
+        let point = &self.mechanism.points[contact].name;
+        let across = match self.height(contact) {
+            Some((height, coordinates)) if !coordinates.is_empty() => {
+                let height = shown(&self.algebra.graph, height);
+                let names = listed(coordinates.iter().map(String::as_str));
+                format!("its height `{height}` changes with {names}")
+            }
+            _ => "it can move in all directions".to_owned(),
+        };
+        (
+            format!(
+                "the coordinates do not keep the contact `{point}` on the ground: {across}, and the \
+                 constraint forbids that as a third velocity"
+            ),
+            format!(
+                "place the body at the height at which `{point}` stays on the ground, such as \
+                 `R*cos(lean)` for a leaning wheel, or keep it there with a constraint of kind \
+                 `position`"
+            ),
+        )
+    }
+
+    /// Height of a point against the weight, and the coordinates that change it.
+    fn height(&mut self, point: PointId) -> Option<(Expr, Vec<String>)> {
+        let down = down(self.mechanism)?;
+        let graph = &mut self.algebra.graph;
+        let position = self.kinematics.position(graph, self.mechanism, point);
+        let down = down.map(|c| graph.integer((-c).into()));
+        let height = graph.dot(down, position);
+        let height = self.algebra.shortest(height);
+        let graph = &self.algebra.graph;
+        let coordinates = self.mechanism.coordinates.iter();
+        let changing = coordinates.zip(&self.symbols.coordinates);
+        let changing = changing.filter(|&(_, &symbol)| {
+            let symbol = graph.as_symbol(symbol);
+            symbol.is_some_and(|symbol| graph.mentions(height, &[symbol]))
+        });
+        let changing = changing.map(|(q, _)| q.label.name.clone()).collect();
+        Some((height, changing))
+    }
+
+    /// Whether the contact lies above the centre of the body at the initial state.
+    fn is_overhead(&mut self, body: BodyId, contact: PointId) -> bool {
+        let Some(down) = down(self.mechanism) else {
+            return false;
+        };
+        let centre = self.mechanism.bodies[body].centre;
+        let graph = &mut self.algebra.graph;
+        let arm = self
+            .kinematics
+            .between(graph, self.mechanism, centre, contact, GROUND);
+        let down = down.map(|c| graph.integer(c.into()));
+        let depth = graph.dot(down, arm);
+        let state = InitialState::new(graph, self.mechanism, self.symbols);
+        state.of(graph, &[depth])[0] < 0.0
+    }
+
+    fn material_velocity(&mut self, body: BodyId, contact: PointId) -> [Expr; 3] {
+        let graph = &mut self.algebra.graph;
+        self.kinematics
+            .material_velocity(graph, self.mechanism, body, contact, GROUND)
+    }
+
+    fn vanishes(&mut self, v: &[Expr; 3]) -> bool {
+        let Algebra { graph, test, .. } = &mut *self.algebra;
+        v.iter().all(|&component| test.is_zero(graph, component))
+    }
+}
+
+/// The direction of the weight, where there is one.
+fn down(mechanism: &Mechanism) -> Option<[i8; 3]> {
+    mechanism.loads.iter().find_map(|load| match load.kind {
+        LoadKind::Gravity { down, .. } => Some(down),
+        _ => None,
+    })
+}

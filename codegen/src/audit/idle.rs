@@ -1,0 +1,133 @@
+//! What is used and yet changes nothing: coordinates, parameters, bodies.
+
+use appell_spec::Code;
+
+use super::work::silent_loads;
+use super::{Audit, Bench};
+use crate::mechanics::expressions::Lowering;
+use crate::mechanics::finding::{Finding, Item};
+use crate::mechanics::loads::applied_loads;
+use crate::symbolic::vector;
+use crate::symbolic::{Expr, Graph};
+
+pub(super) fn audit(bench: &mut Bench, told: &mut Audit) {
+    coordinates(bench, told);
+    parameters(bench, told);
+    bodies(bench, told);
+}
+
+/// Coordinates that neither place nor move anything that matters.
+fn coordinates(bench: &mut Bench, told: &mut Audit) {
+    let Some(moved) = moved(bench) else {
+        return;
+    };
+    let symbols = &bench.derivation.symbols;
+    let equations = bench.equations();
+    for (q, coordinate) in bench.mechanism.coordinates.iter().enumerate() {
+        // Two rows with the same rate tie others together by means of it.
+        let rows = bench.derivation.constraints.rows.iter();
+        let ties = rows.filter(|row| row.is_active() && row.coefficients[q] != Graph::ZERO);
+        if ties.count() > 1 {
+            continue;
+        }
+        let own_rate = bench.derivation.velocities.rates[q];
+        let others: Vec<Expr> = equations
+            .iter()
+            .copied()
+            .filter(|&e| e != own_rate)
+            .collect();
+        if bench.are_independent_of(&moved, symbols.rates[q])
+            && bench.are_independent_of(&moved, symbols.coordinates[q])
+            && bench.are_independent_of(&others, symbols.coordinates[q])
+        {
+            let name = &coordinate.label.name;
+            told.warnings.push(Finding {
+                code: Code::NoEffect,
+                message: format!(
+                    "the coordinate `{name}` changes nothing: it moves no body and appears in no \
+                     load and no output"
+                ),
+                item: Item::Coordinate(q),
+                help: format!(
+                    "let the frame or the point that it describes depend on `{name}`, make it an \
+                     output, or remove it with its constraint"
+                ),
+            });
+        }
+    }
+}
+
+/// What happens in terms of q and q̇: velocities of the bodies, powers of the loads, outputs.
+fn moved(bench: &mut Bench) -> Option<Vec<Expr>> {
+    let (mechanism, symbols) = (bench.mechanism, &bench.derivation.symbols);
+    let rates = &symbols.rates;
+    let algebra = &mut bench.algebra;
+    let free = &bench.unconstrained;
+    let mut moved = Vec::new();
+    for body in &mechanism.bodies {
+        moved.extend(free.velocity(body.centre).v);
+        if let Some(frame) = body.frame {
+            moved.extend(free.frames.angular_velocity(frame).v);
+        }
+    }
+    for load in applied_loads(algebra, mechanism, symbols, free, rates).ok()? {
+        moved.push(load.power(&mut algebra.graph));
+    }
+    let lowering = Lowering { symbols, rates };
+    for output in &mechanism.outputs {
+        moved.push(lowering.lower(&mut algebra.graph, &output.value).ok()?);
+    }
+    moved.retain(|&e| e != Graph::ZERO);
+    Some(moved)
+}
+
+/// Parameters that drop out of all equations.
+fn parameters(bench: &mut Bench, told: &mut Audit) {
+    let equations = bench.equations();
+    // What a load without work depends on is told with the load.
+    let silent = silent_loads(bench);
+    for (p, parameter) in bench.mechanism.parameters.iter().enumerate() {
+        let symbol = bench.derivation.symbols.parameters[p];
+        let graph = &bench.algebra.graph;
+        let loads = &bench.derivation.loads;
+        let is_told = graph.as_symbol(symbol).is_some_and(|id| {
+            let mut silent = silent.iter();
+            silent.any(|&load| loads[load].depends_on(graph, &[id]))
+        });
+        if !is_told && bench.are_independent_of(&equations, symbol) {
+            let name = &parameter.label.name;
+            told.notes.push(Finding {
+                code: Code::NoEffect,
+                message: format!(
+                    "`{name}` drops out: neither the motion nor an output depends on it"
+                ),
+                item: Item::Parameter(p),
+                help: "nothing has to be done; a reaction may depend on it".to_owned(),
+            });
+        }
+    }
+}
+
+/// Bodies that cannot move.
+fn bodies(bench: &Bench, told: &mut Audit) {
+    for (index, (body, motion)) in bench
+        .mechanism
+        .bodies
+        .iter()
+        .zip(&bench.derivation.bodies)
+        .enumerate()
+    {
+        let turns = motion
+            .rotation
+            .as_ref()
+            .is_some_and(|r| r.velocity.v != vector::ZERO);
+        if motion.centre.velocity.v == vector::ZERO && !turns {
+            told.notes.push(Finding {
+                code: Code::NoEffect,
+                message: format!("`{}` never moves: its mass changes nothing", body.name),
+                item: Item::Body(index),
+                help: "let its centre or its frame depend on a coordinate, or remove it".to_owned(),
+            });
+        }
+    }
+}

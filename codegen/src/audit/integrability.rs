@@ -1,0 +1,249 @@
+//! Constraints between velocities that fix positions: holonomic ones in disguise.
+//!
+//! Constraint rows are one-forms on positions and time. The motions that they allow are spanned by
+//! vector fields, one per pseudo-velocity and one for time; moving along two of them in turn leads
+//! along their Lie bracket. What the rows say about all brackets, and brackets of brackets, tells what
+//! no motion ever changes (Frobenius): a sum of rows that vanishes on all of them is integrable.
+
+use appell_spec::Code;
+
+use super::{Bench, listed};
+use crate::mechanics::finding::{Finding, Item};
+use crate::mechanics::rank::{Combination, LinearRow, Standing, standings};
+use crate::symbolic::{Expr, Graph, Substitution};
+
+/// Brackets of so many fields are formed at most.
+const MOST_FIELDS: usize = 24;
+/// The search ends where it has made so many expressions.
+const MOST_EXPRESSIONS: usize = 60_000;
+
+/// A motion that the constraints allow at every position.
+#[derive(Clone)]
+struct Field {
+    rates: Vec<Expr>,
+    /// Whether time runs along with it.
+    in_time: bool,
+}
+
+/// One note per integrable sum of rows.
+pub(super) fn findings(bench: &mut Bench) -> Vec<Finding> {
+    let rows = &bench.derivation.constraints.rows;
+    let rows: Vec<usize> = (0..rows.len()).filter(|&i| rows[i].is_active()).collect();
+    if rows.is_empty() {
+        return Vec::new();
+    }
+    let Some(reached) = velocities_of_brackets(bench, &rows) else {
+        return Vec::new();
+    };
+    let by_row: Vec<LinearRow> = (0..rows.len())
+        .map(|i| LinearRow::homogeneous(reached.iter().map(|velocities| velocities[i]).collect()))
+        .collect();
+    let standings = standings(&mut bench.algebra, &by_row);
+    let sums = standings.into_iter().enumerate();
+    sums.filter_map(|(i, standing)| match standing {
+        // A position constraint does not hide that it is one.
+        Standing::Redundant(sum) if !bench.derivation.constraints.rows[rows[i]].of_position => {
+            let sum = sum.into_iter().map(|(other, share)| (rows[other], share));
+            Some(integrable(bench, rows[i], &sum.collect()))
+        }
+        _ => None,
+    })
+    .collect()
+}
+
+/// What the rows say about independent brackets of allowed motions. `None` where every sum of rows
+/// says something, or where the search grows too large.
+fn velocities_of_brackets(bench: &mut Bench, rows: &[usize]) -> Option<Vec<Vec<Expr>>> {
+    let limit = bench.algebra.graph.len() + MOST_EXPRESSIONS;
+    let mut fields = allowed(bench);
+    let mut reached: Vec<LinearRow> = Vec::new();
+    let mut done = 0;
+    while done < fields.len() {
+        let (mut brackets, known) = (Vec::new(), reached.len());
+        for b in done..fields.len() {
+            for a in 0..b {
+                if fields.len() > MOST_FIELDS || bench.algebra.graph.len() > limit {
+                    return None;
+                }
+                let bracket = bracket(bench, &fields[a], &fields[b]);
+                let velocities = velocities(bench, rows, &bracket);
+                if velocities.iter().any(|&v| v != Graph::ZERO) {
+                    reached.push(LinearRow::homogeneous(velocities));
+                    brackets.push(bracket);
+                }
+            }
+        }
+        done = fields.len();
+        let standings = standings(&mut bench.algebra, &reached);
+        let mut new = standings.iter().map(|s| *s == Standing::Independent);
+        let mut brackets = brackets.into_iter();
+        let mut index = 0;
+        reached.retain(|_| {
+            let keep = new.next().unwrap_or(false);
+            if index >= known
+                && let Some(bracket) = brackets.next()
+                && keep
+            {
+                fields.push(bracket);
+            }
+            index += 1;
+            keep
+        });
+        if reached.len() == rows.len() {
+            return None;
+        }
+    }
+    Some(reached.into_iter().map(|row| row.coefficients).collect())
+}
+
+/// The motions that the constraints allow: q̇ per pseudo-velocity, and what happens without any.
+fn allowed(bench: &mut Bench) -> Vec<Field> {
+    let (symbols, velocities) = (&bench.derivation.symbols, &bench.derivation.velocities);
+    let algebra = &mut bench.algebra;
+    let mut fields: Vec<Field> = Vec::new();
+    for &speed in &symbols.speeds {
+        let rates = velocities.rates.iter();
+        let rates = rates.map(|&rate| algebra.derivative(rate, speed)).collect();
+        let in_time = false;
+        fields.push(Field { rates, in_time });
+    }
+    let mut at_rest = Substitution::by_zero(&algebra.graph, &symbols.speeds);
+    let drift = velocities.rates.iter();
+    let drift = drift.map(|&rate| at_rest.apply(&mut algebra.graph, rate));
+    if let Some(rates) = drift.collect() {
+        let in_time = true;
+        fields.push(Field { rates, in_time });
+    }
+    fields
+}
+
+/// `[a, b]`: the velocity at which going along a, b, -a, -b in turn leads away.
+fn bracket(bench: &mut Bench, a: &Field, b: &Field) -> Field {
+    let rates = (0..a.rates.len()).map(|k| {
+        let along_a = derivative_along(bench, b.rates[k], a);
+        let along_b = derivative_along(bench, a.rates[k], b);
+        let difference = bench.algebra.graph.sub(along_a, along_b);
+        bench.algebra.shortest(difference)
+    });
+    let rates = rates.collect();
+    let in_time = false;
+    Field { rates, in_time }
+}
+
+fn derivative_along(bench: &mut Bench, expr: Expr, field: &Field) -> Expr {
+    let symbols = &bench.derivation.symbols;
+    let algebra = &mut bench.algebra;
+    let mut parts = Vec::new();
+    for (&coordinate, &rate) in symbols.coordinates.iter().zip(&field.rates) {
+        if rate != Graph::ZERO {
+            let partial = algebra.derivative(expr, coordinate);
+            parts.push(algebra.graph.mul(partial, rate));
+        }
+    }
+    if field.in_time {
+        parts.push(algebra.derivative(expr, symbols.time));
+        for [value, first, second] in &symbols.signals {
+            for (symbol, rate) in [(value, first), (first, second)] {
+                let partial = algebra.derivative(expr, *symbol);
+                parts.push(algebra.graph.mul(partial, *rate));
+            }
+        }
+    }
+    algebra.graph.sum(&parts)
+}
+
+/// The constrained velocities along a bracket, along which time stands still.
+fn velocities(bench: &mut Bench, rows: &[usize], bracket: &Field) -> Vec<Expr> {
+    let all = &bench.derivation.constraints.rows;
+    let algebra = &mut bench.algebra;
+    rows.iter()
+        .map(|&row| {
+            let coefficients = all[row].coefficients.iter().zip(&bracket.rates);
+            let parts: Vec<Expr> = coefficients
+                .map(|(&c, &rate)| algebra.graph.mul(c, rate))
+                .collect();
+            let velocity = algebra.graph.sum(&parts);
+            algebra.shortest(velocity)
+        })
+        .collect()
+}
+
+/// The note for the integrable sum `row - Σ share · other`.
+fn integrable(bench: &mut Bench, row: usize, sum: &Combination) -> Finding {
+    let rows = &bench.derivation.constraints.rows;
+    let algebra = &mut bench.algebra;
+    let mut total = |part: &dyn Fn(usize) -> Expr| {
+        let mut parts = vec![part(row)];
+        for &(other, share) in sum {
+            let share = algebra.graph.mul(share, part(other));
+            parts.push(algebra.graph.neg(share));
+        }
+        let total = algebra.graph.sum(&parts);
+        algebra.shortest(total)
+    };
+    let count = bench.mechanism.coordinates.len();
+    let form: Vec<Expr> = (0..count)
+        .map(|q| total(&|row| rows[row].coefficients[q]))
+        .collect();
+    let rest = total(&|row| rows[row].rest);
+    let tied: Vec<&str> = (0..count)
+        .filter(|&q| form[q] != Graph::ZERO)
+        .map(|q| bench.mechanism.coordinates[q].label.name.as_str())
+        .collect();
+    let mut names: Vec<&str> = sum.iter().map(|&(r, _)| rows[r].name.as_str()).collect();
+    names.push(&rows[row].name);
+    let subject = match names.as_slice() {
+        [one] => format!("`{one}` is integrable: it"),
+        several => format!("{} together are integrable: they", listed(several.to_vec())),
+    };
+    let verb = if names.len() == 1 {
+        ["holds", "ties"]
+    } else {
+        ["hold", "tie"]
+    };
+    let relation = relation(bench, &form).map(|relation| bench.shown(relation));
+    let what = match relation {
+        Some(relation) if rest == Graph::ZERO => {
+            format!("{} `{relation}` at its initial value", verb[0])
+        }
+        _ => format!(
+            "{} the positions {} together",
+            verb[1],
+            listed(tied.clone())
+        ),
+    };
+    let help = if let [only] = tied.as_slice() {
+        format!("remove the coordinate `{only}` and the constraint, and write its value instead")
+    } else {
+        format!(
+            "express one of {} by the others wherever it appears, and remove the constraint, or state \
+             the relation as a constraint of kind `position`; as it stands, the initial state decides",
+            listed(tied)
+        )
+    };
+    Finding {
+        code: Code::IntegrableConstraint,
+        message: format!("{subject} {what}"),
+        item: Item::Constraint(rows[row].constraint),
+        help,
+    }
+}
+
+/// What the form is the differential of, where its coefficients are constant.
+fn relation(bench: &mut Bench, form: &[Expr]) -> Option<Expr> {
+    let symbols = &bench.derivation.symbols;
+    let graph = &mut bench.algebra.graph;
+    let mut varying: Vec<_> = crate::mechanics::symbols::ids(graph, &symbols.coordinates);
+    let signals: Vec<Expr> = symbols.signals.iter().flatten().copied().collect();
+    varying.extend(crate::mechanics::symbols::ids(graph, &signals));
+    varying.extend(graph.as_symbol(symbols.time));
+    if form.iter().any(|&c| graph.mentions(c, &varying)) {
+        return None;
+    }
+    let terms: Vec<Expr> = form
+        .iter()
+        .zip(&symbols.coordinates)
+        .map(|(&c, &q)| graph.mul(c, q))
+        .collect();
+    Some(graph.sum(&terms))
+}

@@ -1,0 +1,91 @@
+//! Passive elements that feed energy: a sign that is wrong.
+
+use appell_spec::Code;
+use appell_spec::expr::Expr as Spec;
+use appell_spec::mechanism::LoadKind;
+
+use super::{Audit, Bench};
+use crate::mechanics::expressions::Lowering;
+use crate::mechanics::finding::{Finding, Item};
+use crate::mechanics::symbols::ids;
+use crate::symbolic::{Expr, Graph, Substitution};
+
+pub(super) fn audit(bench: &mut Bench, told: &mut Audit) {
+    for (index, load) in bench.mechanism.loads.iter().enumerate() {
+        let name = &load.name;
+        let negative = |bench: &mut Bench, coefficient| is_negative(bench, coefficient);
+        let (message, help) = match &load.kind {
+            LoadKind::Damper { damping, .. } if negative(bench, damping) => (
+                format!("the damping of `{name}` is negative: it drives the motion"),
+                "a damper resists by itself; write a positive coefficient",
+            ),
+            LoadKind::Spring { stiffness, .. } if negative(bench, stiffness) => (
+                format!(
+                    "the stiffness of `{name}` is negative: it pushes away from where it is relaxed"
+                ),
+                "a spring restores by itself; write a positive stiffness",
+            ),
+            LoadKind::Gravity { acceleration, .. } if negative(bench, acceleration) => (
+                format!("the acceleration of `{name}` is negative: bodies fall upwards"),
+                "write a positive acceleration and name the direction with `down`",
+            ),
+            LoadKind::Force { .. } | LoadKind::Torque { .. } | LoadKind::Generalized { .. }
+                if drives(bench, index) =>
+            {
+                (
+                    format!(
+                        "`{name}` feeds energy at every velocity: friction acts against the \
+                         velocity, with a minus sign"
+                    ),
+                    "turn its sign, or use a load of kind `damper`",
+                )
+            }
+            _ => continue,
+        };
+        told.warnings.push(Finding {
+            code: Code::EnergySource,
+            message,
+            item: Item::Load(index),
+            help: help.to_owned(),
+        });
+    }
+}
+
+fn is_negative(bench: &mut Bench, coefficient: &Spec) -> bool {
+    let lowering = Lowering {
+        symbols: &bench.derivation.symbols,
+        rates: &bench.derivation.velocities.rates,
+    };
+    let graph = &mut bench.algebra.graph;
+    lowering
+        .lower(graph, coefficient)
+        .is_ok_and(|coefficient| bench.declared.of(graph, coefficient).hi < 0.0)
+}
+
+/// Whether a load depends on nothing but the state, and its power is the same against every velocity
+/// and never negative: friction with the wrong sign.
+fn drives(bench: &mut Bench, load: usize) -> bool {
+    let symbols = &bench.derivation.symbols;
+    let load = &bench.derivation.loads[load];
+    let graph = &mut bench.algebra.graph;
+    let mut outside = symbols.inputs.clone();
+    outside.extend(symbols.signals.iter().flatten());
+    outside.push(symbols.time);
+    if load.depends_on(graph, &ids(graph, &outside)) {
+        return false;
+    }
+    let power = load.power(graph);
+    let power = bench.algebra.shortest(power);
+    if power == Graph::ZERO {
+        return false;
+    }
+    let graph = &mut bench.algebra.graph;
+    let backwards: Vec<_> = ids(graph, &symbols.speeds)
+        .into_iter()
+        .zip(&symbols.speeds)
+        .map(|(id, &speed)| (id, graph.neg(speed)))
+        .collect();
+    let against: Option<Expr> = Substitution::new(graph, &backwards).apply(graph, power);
+    against.is_some_and(|against| bench.algebra.test.are_equal(graph, power, against))
+        && bench.declared.of(graph, power).lo >= 0.0
+}

@@ -1,0 +1,127 @@
+//! Loads and inputs that do no work in any motion that the constraints allow.
+
+use appell_spec::Code;
+use appell_spec::mechanism::LoadKind;
+
+use super::{Audit, Bench, listed};
+use crate::mechanics::algebra::Algebra;
+use crate::mechanics::finding::{Finding, Item};
+use crate::symbolic::{Expr, SymbolId};
+
+pub(super) fn audit(bench: &mut Bench, told: &mut Audit) {
+    let silent = silent_loads(bench);
+    loads(bench, &silent, told);
+    inputs(bench, &silent, told);
+}
+
+/// Loads whose power is zero, by index.
+pub(super) fn silent_loads(bench: &mut Bench) -> Vec<usize> {
+    let Algebra { graph, test, .. } = &mut bench.algebra;
+    let loads = bench.derivation.loads.iter().enumerate();
+    loads
+        .filter_map(|(index, load)| {
+            let power = load.power(graph);
+            test.is_zero(graph, power).then_some(index)
+        })
+        .collect()
+}
+
+fn loads(bench: &Bench, silent: &[usize], told: &mut Audit) {
+    // Where constraints react, a load without work still changes their reactions.
+    let reacting = !bench.mechanism.constraints.is_empty();
+    for &index in silent {
+        let load = &bench.mechanism.loads[index];
+        let names = listed(inputs_of(bench, index).iter().map(|&(_, name, _)| name));
+        let subject = if names.is_empty() {
+            format!("`{}`", load.name)
+        } else {
+            format!("`{}` with the input {names}", load.name)
+        };
+        let mut finding = Finding {
+            code: Code::NoWork,
+            message: format!("{subject} does no work: {}", reason(&load.kind)),
+            item: Item::Load(index),
+            help: help(&load.kind).to_owned(),
+        };
+        if reacting && names.is_empty() {
+            finding.help = format!(
+                "nothing has to be done if only its share in the reactions is wanted; else {}",
+                finding.help
+            );
+            told.notes.push(finding);
+        } else {
+            told.warnings.push(finding);
+        }
+    }
+}
+
+/// Inputs that enter neither Π nor an output, besides those of loads that are told already.
+fn inputs(bench: &mut Bench, silent: &[usize], told: &mut Audit) {
+    let is_told: Vec<usize> = silent
+        .iter()
+        .flat_map(|&load| inputs_of(bench, load))
+        .map(|(input, ..)| input)
+        .collect();
+    let mut results = bench.derivation.forces.clone();
+    results.extend(&bench.outputs);
+    for (index, input) in bench.mechanism.inputs.iter().enumerate() {
+        let symbol = bench.derivation.symbols.inputs[index];
+        if !is_told.contains(&index) && bench.are_independent_of(&results, symbol) {
+            let name = &input.label.name;
+            told.warnings.push(Finding {
+                code: Code::NoWork,
+                message: format!(
+                    "the input `{name}` does no work: its loads cancel in every motion that the \
+                     constraints allow"
+                ),
+                item: Item::Input(index),
+                help: format!("check the signs with which `{name}` enters its loads"),
+            });
+        }
+    }
+}
+
+/// Indices, names and symbols of the inputs that a load depends on.
+fn inputs_of<'a>(bench: &Bench<'a>, load: usize) -> Vec<(usize, &'a str, SymbolId)> {
+    let graph = &bench.algebra.graph;
+    let symbols: &[Expr] = &bench.derivation.symbols.inputs;
+    let inputs = bench.mechanism.inputs.iter().zip(symbols).enumerate();
+    inputs
+        .filter_map(|(i, (input, &symbol))| {
+            Some((i, input.label.name.as_str(), graph.as_symbol(symbol)?))
+        })
+        .filter(|&(.., symbol)| bench.derivation.loads[load].depends_on(graph, &[symbol]))
+        .collect()
+}
+
+fn reason(kind: &LoadKind) -> &'static str {
+    match kind {
+        LoadKind::Gravity { .. } => "no body can rise or fall",
+        LoadKind::Force {
+            reaction_on: None, ..
+        } => "its point never moves along the force",
+        LoadKind::Force { .. } => "its two points never move against each other along the force",
+        LoadKind::Torque {
+            reaction_on: None, ..
+        } => "its body never turns about the axis of the torque",
+        LoadKind::Torque { .. } => {
+            "its two bodies never turn against each other about the axis of the torque"
+        }
+        LoadKind::Spring { .. } | LoadKind::Damper { .. } => "what it connects keeps its distance",
+        LoadKind::Generalized { .. } => "its coordinate never changes, or the force is zero",
+    }
+}
+
+fn help(kind: &LoadKind) -> &'static str {
+    match kind {
+        LoadKind::Gravity { .. } => {
+            "check `down` against the axes in which the points are placed, or remove the load"
+        }
+        LoadKind::Force { .. } => "check the components, the frame and the point of the force",
+        LoadKind::Torque { .. } => "check the components, the frame and the body of the torque",
+        LoadKind::Spring { .. } | LoadKind::Damper { .. } => {
+            "connect points that move against each other"
+        }
+        LoadKind::Generalized { .. } => "name a coordinate that can change",
+    }
+}

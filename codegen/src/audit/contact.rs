@@ -7,7 +7,7 @@
 use appell_spec::Code;
 use appell_spec::mechanism::{BodyId, ConstraintKind, GROUND, LoadKind, Mechanism, PointId};
 
-use super::{listed, shown, unconstrained};
+use super::{listed, shown, unconstrained, zero_or};
 use crate::mechanics::algebra::Algebra;
 use crate::mechanics::expressions::Lowering;
 use crate::mechanics::finding::{Finding, Item};
@@ -137,7 +137,7 @@ impl Geometry<'_> {
             .map(|velocity| {
                 let coefficients = rates.iter().map(|&rate| {
                     let coefficient = self.algebra.derivative(velocity, rate);
-                    self.algebra.shortest(coefficient)
+                    zero_or(self.algebra, coefficient)
                 });
                 LinearRow::homogeneous(coefficients.collect())
             })

@@ -10,6 +10,8 @@ use crate::mechanics::expressions::Lowering;
 use crate::mechanics::finding::{Finding, Item};
 use crate::symbolic::{Expr, Graph, Node, SymbolId};
 
+/// Coefficients with more operations, and determinants, are not examined.
+const MOST_OPERATIONS: usize = 300;
 /// Minors that are expanded at most.
 const MOST_MINORS: usize = 500;
 
@@ -24,6 +26,10 @@ pub(super) fn audit(bench: &mut Bench, told: &mut Audit) {
     };
     let mut minors = MOST_MINORS;
     let all = [rows, speeds.clone()].concat();
+    // What is too long to be factored is too long to be read.
+    if bench.algebra.graph.operations(&all.concat()) > MOST_OPERATIONS {
+        return;
+    }
     let Some(determinant) = determinant(&mut bench.algebra, all, &mut minors) else {
         return;
     };
@@ -34,7 +40,9 @@ pub(super) fn audit(bench: &mut Bench, told: &mut Audit) {
         }
         let names = listed(positions.iter().map(|&(name, _)| name));
         let item = culprit(bench, &speeds, factor);
-        let factor_text = bench.shown(factor);
+        let Some(factor_text) = bench.readable(factor) else {
+            continue;
+        };
         let away = format!(
             "the pseudo-velocities determine the generalised velocities only where \
              `{factor_text}` is not zero"
@@ -60,7 +68,8 @@ pub(super) fn audit(bench: &mut Bench, told: &mut Audit) {
             "declare a `range` of {names} that keeps away from it, or choose pseudo-velocities that \
              are independent there"
         );
-        if takes_both_signs(bench, factor) {
+        // Samples do not satisfy position constraints, which may keep away from it.
+        if bench.derivation.positions.names.is_empty() && takes_both_signs(bench, factor) {
             let message = format!("{away}, and the declared ranges admit that");
             told.warnings.push(Finding {
                 code,
@@ -143,6 +152,9 @@ fn determinant(algebra: &mut Algebra, rows: Matrix, minors: &mut usize) -> Optio
         });
     }
     let sum = algebra.graph.sum(&terms);
+    if algebra.graph.operations(&[sum]) > MOST_OPERATIONS {
+        return None;
+    }
     Some(algebra.shortest(sum))
 }
 

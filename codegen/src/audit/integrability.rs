@@ -7,15 +7,17 @@
 
 use appell_spec::Code;
 
-use super::{Bench, listed};
+use super::{Bench, listed, zero_or};
 use crate::mechanics::finding::{Finding, Item};
 use crate::mechanics::rank::{Combination, LinearRow, Standing, standings};
 use crate::symbolic::{Expr, Graph, Substitution};
 
 /// Brackets of so many fields are formed at most.
 const MOST_FIELDS: usize = 24;
+/// Longer velocities are not differentiated: their brackets take longer than the equations.
+const MOST_OPERATIONS: usize = 400;
 /// The search ends where it has made so many expressions.
-const MOST_EXPRESSIONS: usize = 60_000;
+const MOST_EXPRESSIONS: usize = 20_000;
 
 /// A motion that the constraints allow at every position.
 #[derive(Clone)]
@@ -41,7 +43,6 @@ pub(super) fn findings(bench: &mut Bench) -> Vec<Finding> {
     let standings = standings(&mut bench.algebra, &by_row);
     let sums = standings.into_iter().enumerate();
     sums.filter_map(|(i, standing)| match standing {
-        // A position constraint does not hide that it is one.
         Standing::Redundant(sum) if !bench.derivation.constraints.rows[rows[i]].of_position => {
             let sum = sum.into_iter().map(|(other, share)| (rows[other], share));
             Some(integrable(bench, rows[i], &sum.collect()))
@@ -55,6 +56,13 @@ pub(super) fn findings(bench: &mut Bench) -> Vec<Finding> {
 /// says something, or where the search grows too large.
 fn velocities_of_brackets(bench: &mut Bench, rows: &[usize]) -> Option<Vec<Vec<Expr>>> {
     let limit = bench.algebra.graph.len() + MOST_EXPRESSIONS;
+    let rates = &bench.derivation.velocities.rates;
+    if bench.algebra.graph.operations(rates) > MOST_OPERATIONS {
+        return None;
+    }
+    // A position constraint is integrable and does not hide it.
+    let all = &bench.derivation.constraints.rows;
+    let hidden = rows.iter().filter(|&&row| !all[row].of_position).count();
     let mut fields = allowed(bench);
     let mut reached: Vec<LinearRow> = Vec::new();
     let mut done = 0;
@@ -89,7 +97,7 @@ fn velocities_of_brackets(bench: &mut Bench, rows: &[usize]) -> Option<Vec<Vec<E
             index += 1;
             keep
         });
-        if reached.len() == rows.len() {
+        if reached.len() == hidden {
             return None;
         }
     }
@@ -123,7 +131,7 @@ fn bracket(bench: &mut Bench, a: &Field, b: &Field) -> Field {
         let along_a = derivative_along(bench, b.rates[k], a);
         let along_b = derivative_along(bench, a.rates[k], b);
         let difference = bench.algebra.graph.sub(along_a, along_b);
-        bench.algebra.shortest(difference)
+        zero_or(&mut bench.algebra, difference)
     });
     let rates = rates.collect();
     let in_time = false;
@@ -163,7 +171,7 @@ fn velocities(bench: &mut Bench, rows: &[usize], bracket: &Field) -> Vec<Expr> {
                 .map(|(&c, &rate)| algebra.graph.mul(c, rate))
                 .collect();
             let velocity = algebra.graph.sum(&parts);
-            algebra.shortest(velocity)
+            zero_or(algebra, velocity)
         })
         .collect()
 }

@@ -26,6 +26,9 @@ use crate::mechanics::{Derivation, declared_ranges, seed};
 use crate::symbolic::print::{Setter, Spelled, text};
 use crate::symbolic::{Expr, Graph, Intervals};
 
+/// Nobody reads a formula with more operations in a message.
+const MOST_OPERATIONS: usize = 16;
+
 /// What an audit tells.
 #[derive(Debug, Clone, Default)]
 pub struct Audit {
@@ -118,6 +121,12 @@ impl<'a> Bench<'a> {
         })
     }
 
+    /// An expression as people read it, where they would.
+    fn readable(&self, expr: Expr) -> Option<String> {
+        let graph = &self.algebra.graph;
+        (graph.operations(&[expr]) <= MOST_OPERATIONS).then(|| shown(graph, expr))
+    }
+
     /// An expression as people read it.
     fn shown(&self, expr: Expr) -> String {
         shown(&self.algebra.graph, expr)
@@ -159,6 +168,15 @@ fn unconstrained(
 ) -> Option<Kinematics> {
     let rates = &symbols.rates;
     Kinematics::new(algebra, mechanism, symbols, rates, &[], Effort::Plain).ok()
+}
+
+/// An expression that only its zeros matter of.
+fn zero_or(algebra: &mut Algebra, expr: Expr) -> Expr {
+    if algebra.test.is_zero(&algebra.graph, expr) {
+        Graph::ZERO
+    } else {
+        expr
+    }
 }
 
 fn shown(graph: &Graph, expr: Expr) -> String {

@@ -80,8 +80,12 @@ fn names(mechanism: &Mechanism) -> String {
 #[test]
 fn names_are_those_that_recordings_use() {
     let found: Vec<String> = mechanisms().iter().map(names).collect();
-    let expected: Vec<&str> = include_str!("shipped_names.txt").lines().collect();
-    assert_eq!(found, expected);
+    for expected in include_str!("shipped_names.txt").lines() {
+        let mechanism = expected.split(' ').next().unwrap_or_default();
+        let of = |found: &&String| found.split(' ').next() == Some(mechanism);
+        let found = found.iter().find(of).map(String::as_str);
+        assert_eq!(found, Some(expected));
+    }
 }
 
 #[test]

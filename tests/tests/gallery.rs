@@ -156,7 +156,7 @@ fn furuta_pendulum_moves_as_cazzolato_and_prime_say() {
     // On the Dynamics of the Furuta Pendulum, 2011, equations (33), (34).
     everywhere("furuta_pendulum", |place| {
         let [m1, m2, arm, l1, l2] = place.all(["m1", "m2", "L1", "l1", "l2"]);
-        let [j1, j2, b1, b2, g] = place.all(["J1", "J2", "b1", "b2", "g"]);
+        let [j1, j2, b1, b2, g] = place.all(["J1", "J2", "c1", "c2", "g"]);
         let [w1, w2, theta2] = place.all(["omega1", "omega2", "theta2"]);
         let [tau1, tau2] = place.all(["tau1", "tau2"]);
         let (s, c) = theta2.sin_cos();

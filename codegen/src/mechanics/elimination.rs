@@ -239,6 +239,12 @@ fn solve(
     }
 
     let mut rates = vec![Graph::ZERO; unknowns];
+    if let Some(pair) = pair_by_formula(algebra, &equations, &open, intervals) {
+        for (&column, rate) in open.iter().zip(pair) {
+            rates[column] = rate;
+        }
+        open.clear();
+    }
     if !open.is_empty() {
         let matrix = equations
             .iter()
@@ -265,6 +271,35 @@ fn solve(
         rates[column] = algebra.shortest(rate);
     }
     Some((rates, open))
+}
+
+/// Two unknowns whose determinant cannot vanish although every entry can, as in a turn by an angle.
+fn pair_by_formula(
+    algebra: &mut Algebra,
+    equations: &[Equation],
+    open: &[usize],
+    intervals: &mut Intervals,
+) -> Option<[Expr; 2]> {
+    let ([first, second], &[i, j]) = (equations, open) else {
+        return None;
+    };
+    let mut minor = |[a, b, c, d]: [Expr; 4]| {
+        let (ad, bc) = (algebra.graph.mul(a, d), algebra.graph.mul(b, c));
+        let difference = algebra.graph.sub(ad, bc);
+        algebra.shortest(difference)
+    };
+    let ([a, b], [c, d]) = (
+        [first.coefficients[i], first.coefficients[j]],
+        [second.coefficients[i], second.coefficients[j]],
+    );
+    let determinant = minor([a, b, c, d]);
+    let numerators = [
+        minor([first.right, b, second.right, d]),
+        minor([a, first.right, c, second.right]),
+    ];
+    intervals
+        .cannot_vanish(&algebra.graph, determinant)
+        .then(|| numerators.map(|n| algebra.graph.div(n, determinant)))
 }
 
 /// The pivot that fills in least, among those that cannot vanish.

@@ -52,7 +52,8 @@ impl Equation {
         let mut pieces = Vec::new();
         if self.left.width() <= WIDEST_LEFT {
             flatten(&self.right, 0, &mut pieces);
-            let lines = broken(&pieces, width.saturating_sub(left_width + 3));
+            let width = width.saturating_sub(left_width + 3);
+            let lines = broken(&pieces, width, width);
             return Display {
                 left: Some(&self.left),
                 lines,
@@ -64,10 +65,13 @@ impl Equation {
         flatten(&self.right, 1, &mut pieces);
         Display {
             left: None,
-            lines: broken(&pieces, width),
+            lines: broken(&pieces, width, width.saturating_sub(CONTINUED)),
         }
     }
 }
+
+/// Columns by which the lines of an equation that is broken at its equality sign are set in.
+const CONTINUED: usize = 4;
 
 /// How wide the aligned left-hand sides of a list are.
 pub(super) fn left_width(equations: &[Equation]) -> usize {
@@ -79,13 +83,14 @@ pub(super) fn left_width(equations: &[Equation]) -> usize {
         .unwrap_or(0)
 }
 
-/// Lines of pieces, broken before signs so that each fits `width` where possible. A sign outside of
+/// Lines of pieces, broken before signs so that the first and the others fit their widths where possible. A sign outside of
 /// brackets is a better place than one inside, unless it leaves most of the line empty.
-fn broken<'a>(pieces: &[(Piece<'a>, usize)], width: usize) -> Vec<Vec<Piece<'a>>> {
+fn broken<'a>(pieces: &[(Piece<'a>, usize)], first: usize, others: usize) -> Vec<Vec<Piece<'a>>> {
     let sizes: Vec<usize> = pieces.iter().map(|(piece, _)| size(piece)).collect();
     let mut lines = Vec::new();
     let mut start = 0;
     while start < pieces.len() {
+        let width = if start == 0 { first } else { others };
         // Places to break, with their depth and the width used before them.
         let mut places: Vec<(usize, usize, usize)> = Vec::new();
         let mut used = 0;

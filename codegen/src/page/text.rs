@@ -115,6 +115,16 @@ fn table(out: &mut String, table: &Table) {
         }
         let indent = columns(&head);
         let free = WIDTH.saturating_sub(indent + MARGIN);
+        if free < WIDTH / 5 {
+            // The cells before leave no room: the last one goes on below.
+            let text = head.trim_end();
+            let right = WIDTH.saturating_sub(columns(text));
+            line(out, &format!("{text}{:>right$}", row.line));
+            for part in wrapped(last, WIDTH - 3 * INDENT - MARGIN) {
+                line(out, &format!("{}{part}", " ".repeat(3 * INDENT)));
+            }
+            continue;
+        }
         for (k, part) in wrapped(last, free.max(WIDTH / 4)).iter().enumerate() {
             if k > 0 {
                 line(out, &format!("{}{part}", " ".repeat(indent)));

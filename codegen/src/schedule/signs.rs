@@ -12,7 +12,7 @@ const NEGATION: usize = 4;
 const WRONG_SIGN: usize = 5;
 
 /// How often all candidates are tried: what is flipped first may be better flipped back later.
-const ROUNDS: usize = 3;
+const ROUNDS: usize = 2;
 
 /// For every node, whether minus its value is wanted.
 pub(super) fn choose_signs(dag: &Dag, order: &[Id]) -> Vec<bool> {

@@ -82,10 +82,23 @@ impl Piece {
                 level: Level::Atom,
                 width,
             },
-            Tree::Binary(Operation::Subtract, a, b) => Self {
-                tree: Tree::Binary(Operation::Subtract, b, a),
-                ..self
-            },
+            Tree::Binary(Operation::Subtract, a, b) => {
+                let first = Self {
+                    tree: *a,
+                    width,
+                    level: Level::Product,
+                };
+                let tree = if first.starts_negative() {
+                    Tree::Binary(Operation::Add, b, Box::new(first.opposite().tree))
+                } else {
+                    Tree::Binary(Operation::Subtract, b, Box::new(first.tree))
+                };
+                Self {
+                    tree,
+                    width,
+                    level: Level::Sum,
+                }
+            }
             Tree::Binary(operation @ (Operation::Multiply | Operation::Divide), a, b) => {
                 let first = Self {
                     tree: *a,

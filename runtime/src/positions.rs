@@ -5,6 +5,7 @@
 //! Wanner, Geometric Numerical Integration, section IV.4). The step's error estimate stays as it is:
 //! the way back is no longer than the error.
 
+use crate::dense::lu_solve_in_place;
 use crate::model::{At, Model};
 
 /// Newton steps before giving up.
@@ -99,7 +100,8 @@ impl Positions {
                 };
             }
         }
-        if !solve(&mut self.matrix, &mut self.residual) {
+        let pivot = lu_solve_in_place(&mut self.matrix, &mut self.residual, self.count);
+        if pivot == 0.0 {
             return false;
         }
         for (j, &multiplier) in self.residual.iter().enumerate() {
@@ -127,36 +129,4 @@ fn largest(values: &[f64]) -> f64 {
         }
     };
     values.iter().fold(0.0, max)
-}
-
-/// Solves a square system by elimination with row pivots; `right` becomes the solution. False where
-/// the matrix is singular.
-fn solve(matrix: &mut [f64], right: &mut [f64]) -> bool {
-    let n = right.len();
-    for k in 0..n {
-        let size = |row: usize| matrix[row * n + k].abs();
-        let pivot = (k..n).fold(
-            k,
-            |best, row| if size(row) > size(best) { row } else { best },
-        );
-        if matrix[pivot * n + k] == 0.0 || !matrix[pivot * n + k].is_finite() {
-            return false;
-        }
-        for column in 0..n {
-            matrix.swap(k * n + column, pivot * n + column);
-        }
-        right.swap(k, pivot);
-        for row in k + 1..n {
-            let factor = matrix[row * n + k] / matrix[k * n + k];
-            for column in k..n {
-                matrix[row * n + column] -= factor * matrix[k * n + column];
-            }
-            right[row] -= factor * right[k];
-        }
-    }
-    for k in (0..n).rev() {
-        let known: f64 = (k + 1..n).map(|c| matrix[k * n + c] * right[c]).sum();
-        right[k] = (right[k] - known) / matrix[k * n + k];
-    }
-    true
 }

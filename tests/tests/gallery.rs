@@ -1,4 +1,4 @@
-//! Mechanisms of textbooks against their closed equations, typed from the literature.
+//! Mechanisms of textbooks against their closed equations, written down by hand.
 
 #![allow(clippy::unwrap_used, reason = "what is missing fails the test")]
 
@@ -88,8 +88,8 @@ fn rolling_ball_keeps_its_angular_velocity_and_moves_as_a_heavier_point() {
 }
 
 #[test]
-fn two_wheeled_pendulum_moves_as_published() {
-    // Kim and Kwon 2015; by hand with Boltzmann and Hamel: T with the sideways velocity w of the
+fn two_wheeled_pendulum_moves_as_derived_by_hand() {
+    // The model of Kim and Kwon 2015; equations by hand with Boltzmann and Hamel: T with the sideways velocity w of the
     // axle kept has ∂T/∂w = m_b l sin θ ψ' at w = 0, which enters the rows of v and ψ'.
     everywhere("two_wheeled_pendulum", |place| {
         let [m_b, m_w, i_x, i_y, i_z] = place.all(["m_b", "m_w", "I_x", "I_y", "I_z"]);

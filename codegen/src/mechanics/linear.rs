@@ -22,8 +22,9 @@ pub struct ImplicitMotion<'a> {
 }
 
 impl ImplicitMotion<'_> {
-    /// Residual of every equation with symbols for the accelerations. Eliminated equations:
-    /// `right - pivot (ω̇ - whole + Σ coupling ω̇_other)`; others: `Π - b - M ω̇`.
+    /// Residual of every equation with symbols for the accelerations. Eliminated equations, the
+    /// symbol standing for ω̇ less its whole part: `right - pivot (ω̇ + Σ coupling ω̇_other)`; others:
+    /// `Π - b - M ω̇`.
     pub fn residual(&self, algebra: &mut Algebra, symbols: &Symbols) -> Vec<Expr> {
         let unknowns = &symbols.accelerations;
         let mut residual = vec![Graph::ZERO; unknowns.len()];
@@ -33,7 +34,7 @@ impl ImplicitMotion<'_> {
                     for equation in equations {
                         let minus: Vec<Expr> =
                             unknowns.iter().map(|&u| algebra.graph.neg(u)).collect();
-                        let own = algebra.graph.sub(unknowns[equation.speed], equation.whole);
+                        let own = unknowns[equation.speed];
                         let sum = equation.less_couplings(algebra, own, &minus);
                         let inertial = algebra.graph.mul(equation.pivot, sum);
                         residual[equation.speed] = algebra.graph.sub(equation.right, inertial);
@@ -63,11 +64,21 @@ impl ImplicitMotion<'_> {
         residual: &[Expr],
         variables: &[Expr],
     ) -> Outcome<Vec<Vec<Expr>>> {
+        let mut values = self.motion.accelerations.clone();
+        for equation in self.motion.eliminated() {
+            let value = &mut values[equation.speed];
+            *value = algebra.graph.sub(*value, equation.whole);
+        }
         let replacements: Vec<_> = ids(&algebra.graph, &symbols.accelerations)
             .into_iter()
-            .zip(self.motion.accelerations.iter().copied())
+            .zip(values)
             .collect();
         let mut actual = Substitution::new(&mut algebra.graph, &replacements);
+        let speeds: Vec<String> = symbols
+            .speeds
+            .iter()
+            .map(|&speed| name_of(&algebra.graph, speed))
+            .collect();
         let mut columns = Vec::with_capacity(variables.len());
         for &variable in variables {
             let mut right = Vec::with_capacity(residual.len());
@@ -78,26 +89,28 @@ impl ImplicitMotion<'_> {
                     .ok_or_else(|| vec![division_by_zero(Item::Mechanism)])?;
                 right.push(partial);
             }
+            let by = name_of(&algebra.graph, variable);
+            let moved = right.iter_mut().zip(&speeds);
+            for (right, speed) in moved.filter(|(right, _)| **right != Graph::ZERO) {
+                // The number in front meets others outside.
+                let number = algebra.graph.split_coefficient(*right).0.abs();
+                let bare = algebra.graph.scale(&number.recip(), *right);
+                let name = format!("d_rho_{speed}_d_{by}");
+                let named = algebra.graph.name_automatically(&name, bare);
+                *right = algebra.graph.scale(&number, named);
+            }
             let mut column = vec![Graph::ZERO; right.len()];
             for block in &self.motion.blocks {
                 match block {
                     Block::Eliminated(equations) => {
                         for equation in equations {
                             let own = algebra.graph.div(right[equation.speed], equation.pivot);
+                            let whole = algebra.derivative(equation.whole, variable);
+                            let own = algebra.graph.add(own, whole);
                             column[equation.speed] = equation.less_couplings(algebra, own, &column);
                         }
                     }
                     Block::Factorized(block) => {
-                        let by = name_of(&algebra.graph, variable);
-                        let speeds: Vec<String> = symbols
-                            .speeds
-                            .iter()
-                            .map(|&speed| name_of(&algebra.graph, speed))
-                            .collect();
-                        for &i in &block.speeds {
-                            let name = format!("d_rho_{}_d_{by}", speeds[i]);
-                            right[i] = algebra.graph.name_automatically(&name, right[i]);
-                        }
                         block.solve(algebra, &right, &mut column, |graph, speed, z| {
                             graph.name_automatically(&format!("d_z_{}_d_{by}", speeds[speed]), z)
                         });

@@ -123,6 +123,14 @@ pub fn solve(
 }
 
 impl Motion {
+    /// The equations that are solved one by one.
+    pub fn eliminated(&self) -> impl Iterator<Item = &Eliminated> {
+        self.blocks.iter().flat_map(|block| match block {
+            Block::Eliminated(equations) => equations.as_slice(),
+            Block::Factorized(_) => &[],
+        })
+    }
+
     /// Every speed with the pivot that its equation is divided by.
     pub fn pivots(&self) -> Vec<(usize, Expr)> {
         let mut pivots = Vec::new();

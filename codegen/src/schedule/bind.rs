@@ -1,6 +1,7 @@
 //! From the working graph to steps: what gets a name, in which order, under which name.
 
 use super::dag::{Dag, Id, Item, Name, Op};
+use super::monomial::Monomial;
 use super::names::{ArgumentNames, Names};
 use super::outline::Outline;
 use super::piece::{Level, Piece, describe};
@@ -57,6 +58,8 @@ struct Binding<'a> {
     built: Vec<Option<Built>>,
     names: Names,
     values: Vec<String>,
+    /// What the values are products of, where their names say that.
+    products: Vec<Option<Monomial>>,
     steps: Vec<Step>,
     title: Option<String>,
     systems_done: Vec<bool>,
@@ -90,6 +93,7 @@ impl<'a> Binding<'a> {
             built: vec![None; dag.len()],
             names,
             values: Vec::new(),
+            products: Vec::new(),
             steps: Vec::new(),
             title: None,
             systems_done: vec![false; dag.systems.len()],
@@ -144,6 +148,14 @@ impl<'a> Binding<'a> {
             Tree::Constant(value.clone()),
             &self.arguments.constant(value),
         )
+    }
+
+    /// Sums of parameters are told in the order in which these are declared, other terms as they
+    /// come.
+    fn leading_parameter(&self, tree: &Tree) -> u32 {
+        Monomial::of(tree, &self.products)
+            .and_then(|monomial| monomial.leading_parameter())
+            .unwrap_or(u32::MAX)
     }
 
     /// The piece of an item, with its sign.
@@ -242,7 +254,7 @@ impl<'a> Binding<'a> {
                 *minus = !*minus;
             }
         }
-        parts.sort_by_key(|part| part.1);
+        parts.sort_by_key(|(piece, minus)| (*minus, self.leading_parameter(&piece.tree)));
         let room = self.room_of_sum(id);
         let mut sum: Option<Piece> = None;
         for (part, minus) in parts {
@@ -384,7 +396,7 @@ impl<'a> Binding<'a> {
             _ => (partner, id),
         };
         let angle = self.signed(angle);
-        let text = describe(&angle.tree, &self.values, &self.arguments);
+        let text = describe(&angle.tree, &self.values, &self.products, &self.arguments);
         let mut value = |of: Id, prefix: &str| {
             let wanted = match (self.given_name(of), &text) {
                 (Some(name), _) => name,
@@ -489,24 +501,32 @@ impl<'a> Binding<'a> {
         let sign = derived
             .map(|name| name.negative)
             .or(label.map(|label| label.1));
-        let described = describe(&piece.tree, &self.values, &self.arguments);
-        let (name, piece, negative) = match self.given_name(id) {
-            Some(name) if sign == Some(negative) => (name, piece, negative),
-            Some(name) if self.takes_its_sign(id) => (name, piece.opposite(), !negative),
+        let given = self.given_name(id).filter(|_| !self.tells_itself(id, &piece));
+        let (piece, negative) = match given {
+            Some(name) if sign == Some(negative) => (self.define(&name, piece.tree), negative),
+            Some(name) if self.takes_its_sign(id) => {
+                (self.define(&name, piece.opposite().tree), !negative)
+            }
             // What comes out with the other sign is told by how it is made.
-            _ => match described {
-                Some(text) => (text, piece, negative),
-                None => (self.fallback(id, "part"), piece, negative),
-            },
+            _ => (self.define_by_making(id, piece.tree), negative),
         };
-        let piece = self.define(&name, piece.tree);
         Built { piece, negative }
+    }
+
+    /// Whether a value that others need is told best by its factors, not by one of its uses.
+    fn tells_itself(&self, id: Id, piece: &Piece) -> bool {
+        const FEW: usize = 3;
+        self.outline.is_entry(id)
+            && self.derived_name(id).is_none_or(|name| name.automatic)
+            && self.outline.feeds_others(id)
+            && Monomial::of(&piece.tree, &self.products).is_some_and(|m| m.length() <= FEW)
     }
 
     /// Whether a value that comes out with the wrong sign is negated for the sake of its name.
     fn takes_its_sign(&self, id: Id) -> bool {
-        let replaceable = self.derived_name(id).is_some_and(|name| name.automatic);
-        !replaceable && (keeps_its_name(self.dag, id) || !self.outline.is_shared(id))
+        self.dag.names[id.index()].is_some()
+            || keeps_its_name(self.dag, id)
+            || !self.outline.is_shared(id)
     }
 
     /// `consumer_part_2`
@@ -522,9 +542,24 @@ impl<'a> Binding<'a> {
 
     /// Defines a part of a tree that is too wide for a line.
     fn define_part(&mut self, id: Id, piece: Piece) -> Piece {
-        let name = describe(&piece.tree, &self.values, &self.arguments)
-            .unwrap_or_else(|| self.fallback(id, "part"));
-        self.define(&name, piece.tree)
+        self.define_by_making(id, piece.tree)
+    }
+
+    /// Defines a value under a name that tells how it is made.
+    fn define_by_making(&mut self, id: Id, tree: Tree) -> Piece {
+        match describe(&tree, &self.values, &self.products, &self.arguments) {
+            Some(name) => {
+                let product = Monomial::of(&tree, &self.products);
+                let piece = self.define(&name, tree);
+                self.products.pop();
+                self.products.push(product);
+                piece
+            }
+            None => {
+                let name = self.fallback(id, "part");
+                self.define(&name, tree)
+            }
+        }
     }
 
     fn define(&mut self, name: &str, tree: Tree) -> Piece {
@@ -538,6 +573,7 @@ impl<'a> Binding<'a> {
         let value = Value(u32::try_from(self.values.len()).unwrap_or(u32::MAX));
         let piece = Piece::name(Tree::Value(value), &name);
         self.values.push(name);
+        self.products.push(None);
         (value, piece)
     }
 
@@ -549,13 +585,16 @@ impl<'a> Binding<'a> {
     }
 }
 
-/// Numbers first, then parameters, values and variables, then sums in parentheses.
-fn reading_order(tree: &Tree) -> u8 {
+/// Numbers first, then parameters, values and variables, each in their order, then sums in
+/// parentheses.
+fn reading_order(tree: &Tree) -> (u8, u32) {
     match tree {
-        Tree::Constant(_) => 0,
-        Tree::Argument(Argument::Parameter(_)) => 1,
-        Tree::Value(_) => 2,
-        Tree::Argument(_) => 3,
-        _ => 4,
+        Tree::Constant(_) => (0, 0),
+        Tree::Argument(Argument::Parameter(i)) => (1, *i),
+        Tree::Value(Value(i)) => (2, *i),
+        Tree::Argument(Argument::Time) => (3, 0),
+        Tree::Argument(Argument::State(i)) => (4, *i),
+        Tree::Argument(Argument::Input(i)) => (5, *i),
+        _ => (6, 0),
     }
 }

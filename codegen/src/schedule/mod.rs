@@ -12,6 +12,8 @@ mod dump;
 mod factor;
 mod interpret;
 mod lower;
+mod meet;
+mod monomial;
 pub(crate) mod names;
 mod outline;
 pub(crate) mod pi;

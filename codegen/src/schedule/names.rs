@@ -220,6 +220,11 @@ fn number_in_words(value: &Rational) -> String {
 
 /// `a` and `b` in one name, if that is short enough to read.
 pub(super) fn joined(parts: &[&str]) -> Option<String> {
+    joined_up_to(LONGEST, parts)
+}
+
+/// The same for names of up to `longest` letters.
+pub(super) fn joined_up_to(longest: usize, parts: &[&str]) -> Option<String> {
     let name = parts.join("_");
-    (name.len() <= LONGEST && !name.contains("_part_")).then_some(name)
+    (name.len() <= longest && !name.contains("_part_")).then_some(name)
 }

@@ -5,7 +5,7 @@ use rustc_hash::FxHashMap;
 use super::Argument;
 use super::dag::{Dag, Id, Item, Op};
 use super::lower::definition;
-use crate::program::{Function, Program};
+use crate::program::{Function, Layout, Program};
 use crate::symbolic::Function as Elementary;
 
 /// Decisions about every node.
@@ -20,6 +20,8 @@ pub(super) struct Outline<'a> {
     pub(super) partner: Vec<Option<Id>>,
     /// What the node is called if it is a result, and whether minus the node is called so.
     pub(super) labels: Vec<Option<(String, bool)>>,
+    /// Nodes that are called after an entry of a matrix.
+    entries: Vec<bool>,
     /// The first named value or result that the node is a part of.
     pub(super) feeds: Vec<Option<Id>>,
     /// Headings with the nodes that are computed under them before the results.
@@ -36,6 +38,7 @@ impl<'a> Outline<'a> {
             bound: vec![false; dag.len()],
             partner: vec![None; dag.len()],
             labels: vec![None; dag.len()],
+            entries: vec![false; dag.len()],
             feeds: vec![None; dag.len()],
             stages: Vec::new(),
             order,
@@ -50,11 +53,15 @@ impl<'a> Outline<'a> {
 
     /// Results get bindings, and the names of their entries.
     fn label_results(&mut self, function: &Function) {
-        let texts = function.results.iter().flat_map(|array| &array.labels);
-        for (result, text) in self.dag.results.iter().zip(texts) {
+        let texts = function.results.iter().flat_map(|array| {
+            let entry = matches!(array.layout, Layout::Matrix(..));
+            array.labels.iter().map(move |text| (text, entry))
+        });
+        for (result, (text, entry)) in self.dag.results.iter().zip(texts) {
             let label = &mut self.labels[result.id.index()];
             if label.is_none() {
                 *label = Some((text.clone(), result.flip));
+                self.entries[result.id.index()] = entry;
             }
             self.bound[result.id.index()] = true;
         }
@@ -154,6 +161,17 @@ impl<'a> Outline<'a> {
     /// Whether more than one whole or result needs a node.
     pub(super) fn is_shared(&self, id: Id) -> bool {
         self.uses[id.index()] > 1
+    }
+
+    /// Whether the node is called after an entry of a matrix, if anything.
+    pub(super) fn is_entry(&self, id: Id) -> bool {
+        self.entries[id.index()] || self.labels[id.index()].is_none()
+    }
+
+    /// Whether a node is a part of others, besides being a result.
+    pub(super) fn feeds_others(&self, id: Id) -> bool {
+        let results = self.dag.results.iter().filter(|result| result.id == id);
+        self.uses[id.index()] as usize > results.count()
     }
 
     /// Titles and the nodes to reach under them.

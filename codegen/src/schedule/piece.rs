@@ -1,8 +1,9 @@
 //! Trees under construction, with the width they have in print.
 
+use super::monomial::Monomial;
 use super::names::{ArgumentNames, joined};
 use super::{Operation, Schedule, Tree, Value};
-use crate::symbolic::{Function, Rational, Relation};
+use crate::symbolic::{Function, Relation};
 
 /// How tightly the outermost operation of a tree binds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -186,50 +187,30 @@ pub(crate) fn method(function: Function) -> &'static str {
 }
 
 /// A name that says how a value is made, where a short one does: `R_squared`, `m_R`, `inv_D`,
-/// `tan_theta`, `a_minus_b`.
+/// `tan_theta`, `a_minus_b`. `products` tells which values are products.
 pub(super) fn describe(
     tree: &Tree,
     values: &[String],
+    products: &[Option<Monomial>],
     arguments: &ArgumentNames,
 ) -> Option<String> {
-    let inner = |tree: &Tree| describe(tree, values, arguments);
+    if let Some(monomial) = Monomial::of(tree, products) {
+        return monomial.name(values, arguments);
+    }
+    let inner = |tree: &Tree| describe(tree, values, products, arguments);
     match tree {
-        Tree::Value(Value(value)) => joined(&[values.get(*value as usize)?]),
-        Tree::Argument(argument) => joined(&[arguments.get(*argument)]),
-        Tree::Constant(value) => joined(&[&arguments.constant(value)]),
         Tree::Negate(a) => joined(&["minus", &inner(a)?]),
         Tree::Function(function, a) => joined(&[method(*function), &inner(a)?]),
         Tree::Binary(operation, a, b) => {
-            let left = inner(a)?;
-            let right = inner(b)?;
+            let (left, right) = (inner(a)?, inner(b)?);
             match operation {
                 Operation::Add => joined(&[&left, "plus", &right]),
                 Operation::Subtract => joined(&[&left, "minus", &right]),
-                Operation::Multiply if left == right => joined(&[&left, "squared"]),
-                Operation::Multiply if right.starts_with("minus_") => {
-                    joined(&["minus", &left, right.trim_start_matches("minus_")])
-                }
-                Operation::Multiply => {
-                    match (left.strip_suffix("_squared"), right.strip_prefix("inv_")) {
-                        (Some(root), _) if root == right => joined(&[&right, "cubed"]),
-                        (_, Some(denominator)) => quotient(&left, denominator),
-                        _ => joined(&[&left, &right]),
-                    }
-                }
-                Operation::Divide if **a == Tree::Constant(Rational::ONE) => {
-                    joined(&["inv", &right])
-                }
-                Operation::Divide => quotient(&left, &right),
+                Operation::Multiply => joined(&[&left, &right]),
+                Operation::Divide => joined(&[&left, "over", &right]),
             }
         }
-        Tree::Atan2(..) | Tree::Power(..) | Tree::Choice { .. } => None,
-    }
-}
-
-fn quotient(above: &str, below: &str) -> Option<String> {
-    match (above.strip_prefix("sin_"), below.strip_prefix("cos_")) {
-        (Some(angle), Some(same)) if angle == same => joined(&["tan", angle]),
-        _ => joined(&[above, "over", below]),
+        _ => None,
     }
 }
 

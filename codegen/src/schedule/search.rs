@@ -5,6 +5,7 @@ use super::cancel::cancel;
 use super::dag::{Dag, Item};
 use super::divide::{join_divisions, share_reciprocals};
 use super::factor::factor;
+use super::meet::meet;
 use super::rebuild::{Dissolve, rebuild};
 use super::scale::scale;
 use super::share::{Within, share};
@@ -150,6 +151,9 @@ fn follow(derived: &Dag, plan: Plan) -> Dag {
 /// Reciprocals come last: the other passes see through divisions.
 fn finish(dag: &Dag) -> Dag {
     let mut dag = dag.clone();
+    let order = dag.order();
+    meet(&mut dag, &order);
+    dag = rebuild(&dag, Dissolve::Unnamed);
     let order = dag.order();
     share_reciprocals(&mut dag, &order);
     rebuild(&dag, Dissolve::Unnamed)

@@ -10,6 +10,8 @@ use super::dag::{Dag, Id, Item, Op};
 const NEGATION: usize = 4;
 /// A value that comes out with the other sign than its name's is negated or loses its name.
 const WRONG_SIGN: usize = 5;
+/// A product with a negative number reads worse than one with a positive number.
+const MINUS_IN_NAME: usize = 10;
 
 /// How often all candidates are tried: what is flipped first may be better flipped back later.
 const ROUNDS: usize = 2;
@@ -99,6 +101,9 @@ impl Signs<'_> {
                 }
                 Op::Product(factors) => {
                     if has_number(dag, id) {
+                        if self.wanted[place] && self.sign(id).is_none() {
+                            cost += MINUS_IN_NAME;
+                        }
                         self.wanted[place]
                     } else {
                         factors
@@ -123,7 +128,7 @@ impl Signs<'_> {
             if self.wrong(id) {
                 cost += WRONG_SIGN;
                 // It is negated, or it gives up its name.
-                self.built[place] = built != keeps_its_name(dag, id);
+                self.built[place] = built != (dag.names[id.index()].is_some() || keeps_its_name(dag, id));
             }
         }
         let results = dag.results.iter().filter(|result| {
@@ -132,13 +137,18 @@ impl Signs<'_> {
         cost + NEGATION * results.count()
     }
 
+    /// The sign in which a value has its name.
+    fn sign(&self, id: Id) -> Option<bool> {
+        let derived = self.dag.names[id.index()];
+        derived
+            .map(|name| name.negative)
+            .or(self.labels[id.index()])
+    }
+
     /// Whether a value has the other sign than its name's.
     fn wrong(&self, id: Id) -> bool {
-        let derived = self.dag.names[id.index()].filter(|name| !name.automatic);
-        let sign = derived
-            .map(|name| name.negative)
-            .or(self.labels[id.index()]);
-        sign.is_some_and(|sign| sign != self.built[id.index()])
+        self.sign(id)
+            .is_some_and(|sign| sign != self.built[id.index()])
     }
 
     /// Nodes whose opposite could save a negation, those that decide more than one last.

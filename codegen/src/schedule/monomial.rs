@@ -1,0 +1,146 @@
+//! Names of products: by their factors, however they are multiplied. `m·(R·R)` and `(m·R)·R` are
+//! both `m_R_squared`, in every function.
+
+use super::names::{ArgumentNames, LONGEST, joined_up_to};
+use super::{Argument, Operation, Tree, Value};
+use crate::symbolic::Rational;
+
+/// Longest name of a product, or quotient, of two.
+const LONGEST_OF_TWO: usize = 40;
+
+/// A factor that is not a product of others, in the order in which names tell them.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Factor {
+    /// A parameter by index.
+    Parameter(u32),
+    /// A value that is no product, or that the derivation named.
+    Value(Value),
+    /// Anything else that is given.
+    Argument(Argument),
+}
+
+/// A number times powers of factors.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Monomial {
+    coefficient: Rational,
+    powers: Vec<(Factor, i32)>,
+}
+
+impl Monomial {
+    /// The product that a tree is, if it is one. `products` says it of the values.
+    pub(super) fn of(tree: &Tree, products: &[Option<Monomial>]) -> Option<Self> {
+        match tree {
+            Tree::Constant(value) => Some(Self {
+                coefficient: value.clone(),
+                powers: Vec::new(),
+            }),
+            Tree::Argument(Argument::Parameter(i)) => Some(Self::factor(Factor::Parameter(*i))),
+            Tree::Argument(argument) => Some(Self::factor(Factor::Argument(*argument))),
+            Tree::Value(value) => {
+                let known = products.get(value.0 as usize)?.clone();
+                Some(known.unwrap_or_else(|| Self::factor(Factor::Value(*value))))
+            }
+            Tree::Negate(a) => {
+                let a = Self::of(a, products)?;
+                Some(Self {
+                    coefficient: -&a.coefficient,
+                    ..a
+                })
+            }
+            Tree::Binary(Operation::Multiply, a, b) => {
+                Some(Self::of(a, products)?.times(&Self::of(b, products)?, 1))
+            }
+            Tree::Binary(Operation::Divide, a, b) => {
+                let (above, below) = (Self::of(a, products)?, Self::of(b, products)?);
+                (!below.coefficient.is_zero()).then(|| above.times(&below, -1))
+            }
+            _ => None,
+        }
+    }
+
+    fn factor(factor: Factor) -> Self {
+        Self {
+            coefficient: Rational::ONE,
+            powers: vec![(factor, 1)],
+        }
+    }
+
+    /// `self · other^±1`
+    fn times(mut self, other: &Self, sign: i32) -> Self {
+        self.coefficient = if sign > 0 {
+            &self.coefficient * &other.coefficient
+        } else {
+            &self.coefficient * &other.coefficient.recip()
+        };
+        for &(factor, power) in &other.powers {
+            match self.powers.binary_search_by_key(&factor, |known| known.0) {
+                Ok(place) => self.powers[place].1 += sign * power,
+                Err(place) => self.powers.insert(place, (factor, sign * power)),
+            }
+        }
+        self.powers.retain(|known| known.1 != 0);
+        self
+    }
+
+    /// How many factors there are to read, the number included.
+    pub(super) fn length(&self) -> usize {
+        usize::from(!self.coefficient.is_one()) + self.powers.len()
+    }
+
+    /// The parameter that comes first, where there is nothing but parameters.
+    pub(super) fn leading_parameter(&self) -> Option<u32> {
+        let parameter = |&(factor, _): &(Factor, i32)| match factor {
+            Factor::Parameter(i) => Some(i),
+            _ => None,
+        };
+        let parameters: Option<Vec<u32>> = self.powers.iter().map(parameter).collect();
+        parameters?.first().copied()
+    }
+
+    /// `m_R_squared`, `two_over_pivot`, `inv_R`, `tan_theta`; `None` where that would be too long.
+    pub(super) fn name(&self, values: &[String], arguments: &ArgumentNames) -> Option<String> {
+        let mut above = Vec::new();
+        let mut below = Vec::new();
+        if !self.coefficient.is_one() {
+            above.push(arguments.constant(&self.coefficient));
+        }
+        for &(factor, power) in &self.powers {
+            let name = match factor {
+                Factor::Parameter(i) => arguments.get(Argument::Parameter(i)),
+                Factor::Value(value) => values.get(value.0 as usize)?,
+                Factor::Argument(argument) => arguments.get(argument),
+            };
+            let sum = name.contains("_plus_") || name.contains("_minus_");
+            let side = if power > 0 { &mut above } else { &mut below };
+            side.push(match power.abs() {
+                1 if sum && power > 0 && !side.is_empty() => format!("times_{name}"),
+                _ if sum && self.length() + power.unsigned_abs() as usize > 2 => return None,
+                1 => name.to_owned(),
+                2 => format!("{name}_squared"),
+                3 => format!("{name}_cubed"),
+                _ => return None,
+            });
+        }
+        // sin over cos is a name of its own.
+        for cosine in 0..below.len() {
+            let Some(angle) = below[cosine].strip_prefix("cos_") else {
+                continue;
+            };
+            let sine = format!("sin_{angle}");
+            if let Some(place) = above.iter().position(|name| *name == sine) {
+                above[place] = format!("tan_{angle}");
+                below.remove(cosine);
+                break;
+            }
+        }
+        let longest = if self.length() <= 2 { LONGEST_OF_TWO } else { LONGEST };
+        let joined = |parts: &[&str]| joined_up_to(longest, parts);
+        let words = |side: &[String]| joined(&side.iter().map(String::as_str).collect::<Vec<_>>());
+        match (above.is_empty(), below.is_empty()) {
+            (true, true) => Some(arguments.constant(&Rational::ONE)),
+            (_, true) => words(&above),
+            (true, _) => joined(&["inv", &words(&below)?]),
+            _ => joined(&[&words(&above)?, "over", &words(&below)?]),
+        }
+    }
+}

@@ -6,7 +6,9 @@ use appell_spec::mechanism::{self, Label, Mechanism, Signal};
 use super::Derivation;
 use super::expressions::Lowering;
 use super::finding::{Item, Outcome};
-use super::gibbs_appell::{ActualMotion, acceleration_energy, kinetic_energy};
+use super::gibbs_appell::{
+    ActualMotion, BodyMotion, acceleration_energy, kinetic_energy_by_velocity, motions_in_ground,
+};
 use super::kinematics::division_by_zero;
 use super::linear::ImplicitMotion;
 use super::positions::Positions;
@@ -169,9 +171,26 @@ impl Derivation {
                 function.by_way_of(VELOCITIES, self.coordinate_rates.clone())
             }
             FunctionKind::ParameterJacobian => function.by_way_of(SOLVED, accelerations),
+            FunctionKind::Energies => {
+                let mut function = function;
+                for (place, body) in self.bodies.iter().enumerate() {
+                    let (v, energy) = kinetic_energy_by_velocity(&mut self.algebra, body);
+                    let frame = &mechanism.frames[body.centre.velocity.frame].name;
+                    let title = format!("Velocity of `{}` in `{frame}`.", body.centre.point);
+                    function = function
+                        .by_way_of(&title, v.to_vec())
+                        .by_way_of(&Source(mechanism).of_body(place), vec![energy]);
+                }
+                function
+            }
             FunctionKind::AccelerationEnergy | FunctionKind::ConstraintForces => {
                 let mut function = function.by_way_of(SOLVED, accelerations.clone());
-                for body in &self.bodies {
+                let bodies = if function.kind == FunctionKind::ConstraintForces {
+                    self.bodies_in_ground(mechanism)
+                } else {
+                    self.bodies.clone()
+                };
+                for body in &bodies {
                     let motion = ActualMotion::new(&mut self.algebra, body, &accelerations);
                     let frame = |frame: usize| &mechanism.frames[frame].name;
                     let a_in = frame(body.centre.velocity.frame);
@@ -212,15 +231,27 @@ impl Derivation {
         array
     }
 
+    fn bodies_in_ground(&mut self, mechanism: &Mechanism) -> Vec<BodyMotion> {
+        motions_in_ground(
+            &mut self.algebra,
+            mechanism,
+            &self.symbols,
+            &self.kinematics,
+            &self.velocities.rates,
+            &self.bodies,
+        )
+    }
+
     /// One row per place with a reaction.
     fn constraint_forces(&mut self, mechanism: &Mechanism) -> Outcome<Array> {
+        let bodies = self.bodies_in_ground(mechanism);
         let forces = reactions::reactions(
             &mut self.algebra,
             mechanism,
             &self.symbols,
             &self.constraints,
             &self.velocities.violating,
-            &self.bodies,
+            &bodies,
             &self.motion.accelerations,
         )?;
         let layout = Layout::Matrix(forces.len(), 3);
@@ -293,7 +324,7 @@ impl Derivation {
         let bodies = self.bodies.clone();
         let kinetic: Vec<Expr> = bodies
             .iter()
-            .map(|body| kinetic_energy(&mut self.algebra, body))
+            .map(|body| kinetic_energy_by_velocity(&mut self.algebra, body).1)
             .collect();
         let graph = &mut self.algebra.graph;
         let potential: Vec<Expr> = self

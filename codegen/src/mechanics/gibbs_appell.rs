@@ -1,7 +1,7 @@
 //! The acceleration energy and its derivatives: mass matrix and bias of Appell's equations.
 
 use appell_spec::Code;
-use appell_spec::mechanism::Mechanism;
+use appell_spec::mechanism::{GROUND, Mechanism, PointId};
 
 use super::algebra::Algebra;
 use super::expressions::Lowering;
@@ -72,25 +72,14 @@ pub fn body_motions(
             .lower(&mut algebra.graph, &body.mass)
             .map_err(|_| vec![division_by_zero(item)])?;
         let velocity = kinematics.velocity(body.centre);
-        let partial = partial_velocities(algebra, velocity.v, &symbols.speeds);
-        let w_frame = frame_rate(algebra, mechanism, kinematics, velocity.frame);
-        let mut bias = time.of3(algebra, velocity.v);
-        let point = &mechanism.points[body.centre].name;
-        let named_velocity = named3(algebra, &format!("v_{point}"), velocity.v);
-        let turning = algebra.graph.cross(w_frame, named_velocity);
-        bias = algebra.graph.add3(bias, turning);
-        let bias = algebra.shortest3(bias);
-        let bias = named3(
+        let centre = translation(
             algebra,
-            &format!("a0_{}", mechanism.points[body.centre].name),
-            bias,
-        );
-        let centre = Translation {
-            point: mechanism.points[body.centre].name.clone(),
+            mechanism,
+            kinematics,
+            &time,
+            body.centre,
             velocity,
-            partial,
-            bias,
-        };
+        );
         let rotation = match (body.frame, &body.inertia) {
             (Some(frame), Some(inertia)) => {
                 let mut matrix = [[Graph::ZERO; 3]; 3];
@@ -130,6 +119,84 @@ pub fn body_motions(
     } else {
         Err(findings)
     }
+}
+
+/// Motion of a point in the frame of its velocity.
+fn translation(
+    algebra: &mut Algebra,
+    mechanism: &Mechanism,
+    kinematics: &Kinematics,
+    time: &TimeDerivative<'_>,
+    point: PointId,
+    velocity: FrameVector,
+) -> Translation {
+    let name = &mechanism.points[point].name;
+    let partial = partial_velocities(algebra, velocity.v, &time.symbols.speeds);
+    let w_frame = frame_rate(algebra, mechanism, kinematics, velocity.frame);
+    let componentwise = time.of3(algebra, velocity.v);
+    let named_velocity = named3(algebra, &format!("v_{name}"), velocity.v);
+    let turning = algebra.graph.cross(w_frame, named_velocity);
+    let bias = algebra.graph.add3(componentwise, turning);
+    let bias = algebra.shortest3(bias);
+    Translation {
+        point: name.clone(),
+        velocity,
+        partial,
+        bias: named3(algebra, &format!("a0_{name}"), bias),
+    }
+}
+
+/// The bodies as their weight and the reactions of the ground see them: a centre of mass whose
+/// acceleration is no longer in the ground moves in the ground.
+pub fn motions_in_ground(
+    algebra: &mut Algebra,
+    mechanism: &Mechanism,
+    symbols: &Symbols,
+    kinematics: &Kinematics,
+    rates: &[Expr],
+    bodies: &[BodyMotion],
+) -> Vec<BodyMotion> {
+    let time = TimeDerivative { symbols, rates };
+    let mut motions = bodies.to_vec();
+    for (motion, body) in motions.iter_mut().zip(&mechanism.bodies) {
+        let moving = motion.centre.velocity;
+        if moving.frame == GROUND {
+            continue;
+        }
+        let v = kinematics
+            .frames
+            .express(&mut algebra.graph, moving, GROUND);
+        let velocity = FrameVector {
+            frame: GROUND,
+            v: algebra.shortest3(v),
+        };
+        let fixed = translation(
+            algebra,
+            mechanism,
+            kinematics,
+            &time,
+            body.centre,
+            velocity,
+        );
+        let mut acceleration = |centre: &Translation| {
+            let graph = &mut algebra.graph;
+            let v = along(
+                graph,
+                centre.bias,
+                &centre.partial,
+                &symbols.accelerations,
+            );
+            let frame = centre.velocity.frame;
+            let a = kinematics
+                .frames
+                .express(graph, FrameVector { frame, v }, GROUND);
+            graph.operations(&a)
+        };
+        if acceleration(&fixed) <= acceleration(&motion.centre) {
+            motion.centre = fixed;
+        }
+    }
+    motions
 }
 
 #[expect(
@@ -346,18 +413,23 @@ pub fn acceleration_energy(
 ) -> Expr {
     let ActualMotion { a, alpha, .. } = ActualMotion::new(algebra, body, accelerations);
     let graph = &mut algebra.graph;
+    let half = Rational::new(1, 2);
     let square = graph.dot(a, a);
-    let mut parts = vec![graph.product(&[body.mass, square])];
-    if let Some(rotation) = &body.rotation {
-        let moment = graph.mat_vec(&rotation.inertia, alpha);
-        parts.push(graph.dot(alpha, moment));
-        let momentum = graph.mat_vec(&rotation.inertia, rotation.velocity.v);
-        let gyroscopic = graph.cross(rotation.velocity.v, momentum);
-        let coupling = graph.dot(alpha, gyroscopic);
-        parts.push(graph.scale(&2.into(), coupling));
-    }
-    let twice = graph.sum(&parts);
-    graph.scale(&Rational::new(1, 2), twice)
+    let translating = graph.product(&[body.mass, square]);
+    let translating = graph.scale(&half, translating);
+    let Some(rotation) = &body.rotation else {
+        return translating;
+    };
+    let moment = graph.mat_vec(&rotation.inertia, alpha);
+    let square = graph.dot(alpha, moment);
+    let square = graph.scale(&half, square);
+    let momentum = graph.mat_vec(&rotation.inertia, rotation.velocity.v);
+    let gyroscopic = graph.cross(rotation.velocity.v, momentum);
+    let coupling = graph.dot(alpha, gyroscopic);
+    let turning = graph.add(square, coupling);
+    let translating = graph.name(&format!("s_moving_{}", body.name), translating);
+    let turning = graph.name(&format!("s_turning_{}", body.name), turning);
+    graph.add(translating, turning)
 }
 
 /// The motion that happens: with the solved pseudo-accelerations.
@@ -404,7 +476,24 @@ pub fn along(graph: &mut Graph, bias: Vec3, partial: &[Vec3], accelerations: &[E
 
 /// Kinetic energy `½ m v·v + ½ ω·I ω` of a body.
 pub fn kinetic_energy(algebra: &mut Algebra, body: &BodyMotion) -> Expr {
+    kinetic_energy_with(algebra, body, body.centre.velocity.v)
+}
+
+/// The same for a reader: with the name `T_body`, and by way of the named velocity of the centre of
+/// mass where that is no longer.
+pub fn kinetic_energy_by_velocity(algebra: &mut Algebra, body: &BodyMotion) -> (Vec3, Expr) {
     let v = body.centre.velocity.v;
+    let velocity = named3(algebra, &format!("v_{}", body.centre.point), v);
+    let mut energy = kinetic_energy_with(algebra, body, velocity);
+    let written_out = kinetic_energy(algebra, body);
+    if algebra.graph.operations(&[written_out]) < algebra.graph.operations(&[energy]) {
+        energy = written_out;
+    }
+    let name = format!("T_{}", body.name);
+    (velocity, algebra.graph.name(&name, energy))
+}
+
+fn kinetic_energy_with(algebra: &mut Algebra, body: &BodyMotion, v: Vec3) -> Expr {
     let square = algebra.graph.dot(v, v);
     let mut parts = vec![algebra.graph.mul(body.mass, square)];
     if let Some(rotation) = &body.rotation {

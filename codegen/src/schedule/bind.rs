@@ -150,12 +150,9 @@ impl<'a> Binding<'a> {
         )
     }
 
-    /// Sums of parameters are told in the order in which these are declared, other terms as they
-    /// come.
-    fn leading_parameter(&self, tree: &Tree) -> u32 {
-        Monomial::of(tree, &self.products)
-            .and_then(|monomial| monomial.leading_parameter())
-            .unwrap_or(u32::MAX)
+    /// Where a term stands among those of its sign.
+    fn place_in_sum(&self, tree: &Tree) -> (u8, u32) {
+        Monomial::of(tree, &self.products).map_or((2, 0), |monomial| monomial.place_in_sum())
     }
 
     /// The piece of an item, with its sign.
@@ -254,7 +251,7 @@ impl<'a> Binding<'a> {
                 *minus = !*minus;
             }
         }
-        parts.sort_by_key(|(piece, minus)| (*minus, self.leading_parameter(&piece.tree)));
+        parts.sort_by_key(|(piece, minus)| (*minus, self.place_in_sum(&piece.tree)));
         let room = self.room_of_sum(id);
         let mut sum: Option<Piece> = None;
         for (part, minus) in parts {

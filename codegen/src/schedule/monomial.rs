@@ -87,14 +87,18 @@ impl Monomial {
         usize::from(!self.coefficient.is_one()) + self.powers.len()
     }
 
-    /// The parameter that comes first, where there is nothing but parameters.
-    pub(super) fn leading_parameter(&self) -> Option<u32> {
-        let parameter = |&(factor, _): &(Factor, i32)| match factor {
-            Factor::Parameter(i) => Some(i),
-            _ => None,
-        };
-        let parameters: Option<Vec<u32>> = self.powers.iter().map(parameter).collect();
-        parameters?.first().copied()
+    /// Where the product stands in a sum: products of parameters in the order in which these are
+    /// declared, then powers of one value in the order of their definition, then the others.
+    pub(super) fn place_in_sum(&self) -> (u8, u32) {
+        let all_parameters = self
+            .powers
+            .iter()
+            .all(|(factor, _)| matches!(factor, Factor::Parameter(_)));
+        match *self.powers.as_slice() {
+            [(Factor::Parameter(i), _), ..] if all_parameters => (0, i),
+            [(Factor::Value(Value(i)), _)] => (1, i),
+            _ => (2, 0),
+        }
     }
 
     /// `m_R_squared`, `two_over_pivot`, `inv_R`, `tan_theta`; `None` where that would be too long.
@@ -133,7 +137,12 @@ impl Monomial {
                 break;
             }
         }
-        let longest = if self.length() <= 2 { LONGEST_OF_TWO } else { LONGEST };
+        let sum = above.iter().any(|name| name.starts_with("times_"));
+        let longest = if self.length() <= 2 && !sum {
+            LONGEST_OF_TWO
+        } else {
+            LONGEST
+        };
         let joined = |parts: &[&str]| joined_up_to(longest, parts);
         let words = |side: &[String]| joined(&side.iter().map(String::as_str).collect::<Vec<_>>());
         match (above.is_empty(), below.is_empty()) {

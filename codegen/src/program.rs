@@ -64,6 +64,39 @@ pub struct Function {
     pub stages: Vec<Stage>,
     /// What it returns, at least one array.
     pub results: Vec<Array>,
+    /// What names on the way mean.
+    pub glossary: Vec<Term>,
+}
+
+/// The meaning of some names.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Term {
+    /// What the names start with.
+    pub symbol: String,
+    /// How they go on.
+    pub names: Names,
+    /// One sentence.
+    pub meaning: String,
+}
+
+/// How names go on after their symbol.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Names {
+    /// `_x`, `_y` or `_z`.
+    Axes,
+    /// Not at all, or with an underscore and anything.
+    Any,
+}
+
+impl Term {
+    /// Whether a name is one of those.
+    pub fn explains(&self, name: &str) -> bool {
+        let rest = name.strip_prefix(self.symbol.as_str());
+        rest.is_some_and(|rest| match self.names {
+            Names::Axes => matches!(rest, "_x" | "_y" | "_z"),
+            Names::Any => rest.is_empty() || rest.starts_with('_'),
+        })
+    }
 }
 
 /// Named quantities on the way to the results.
@@ -82,7 +115,15 @@ impl Function {
             kind,
             stages: Vec::new(),
             results,
+            glossary: Vec::new(),
         }
+    }
+
+    /// The same with the meaning of some names.
+    #[must_use]
+    pub fn explaining(mut self, terms: Vec<Term>) -> Self {
+        self.glossary.extend(terms);
+        self
     }
 
     /// The same by way of some named quantities.
@@ -216,7 +257,7 @@ impl FunctionKind {
             Self::ConstraintForces => (
                 "constraint_forces",
                 "ConstraintForces",
-                "Reactions: forces on what is held, in N. A row that is no contact starts with its multiplier.",
+                "Reactions: forces on what is held, in N.",
             ),
             Self::Outputs => ("outputs", "OutputArrays", "Outputs of the spec."),
             Self::Switches => (

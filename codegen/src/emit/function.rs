@@ -8,7 +8,7 @@ use super::body::body;
 use super::layout::{blank_tokens, docs, one_line};
 use super::syntax::{ident, known};
 use super::types::{Types, result_struct};
-use crate::program::Function;
+use crate::program::{Function, Term};
 use crate::schedule::{Argument, OperationCount, Schedule};
 
 /// What the rows and columns of a plain array are, where no struct tells it.
@@ -34,6 +34,24 @@ fn rows_and_columns(function: &Function) -> Vec<String> {
     }
 }
 
+/// What the names of values mean, where they occur.
+fn glossary(function: &Function, schedule: &Schedule) -> Vec<String> {
+    let occurs = |term: &&Term| schedule.names.iter().any(|name| term.explains(name));
+    let mut lines: Vec<String> = function
+        .glossary
+        .iter()
+        .filter(occurs)
+        .map(|term| {
+            let (symbol, meaning) = (one_line(&term.symbol), one_line(&term.meaning));
+            format!("- `{symbol}`: {meaning}")
+        })
+        .collect();
+    if !lines.is_empty() {
+        lines.push(String::new());
+    }
+    lines
+}
+
 /// The function as an item.
 pub(super) fn function(
     types: &Types<'_>,
@@ -56,6 +74,7 @@ pub(super) fn function(
     let mut lines = vec![function.kind.about().to_owned(), String::new()];
     lines.extend(super::picture::picture(types, function));
     lines.extend(rows_and_columns(function));
+    lines.extend(glossary(function, schedule));
     lines.push(format!(
         "From `{}`.",
         one_line(&types.program.file).replace('`', "'")

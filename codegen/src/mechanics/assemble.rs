@@ -9,6 +9,7 @@ use super::finding::{Item, Outcome};
 use super::gibbs_appell::{
     ActualMotion, BodyMotion, acceleration_energy, kinetic_energy_by_velocity, motions_in_ground,
 };
+use super::glossary;
 use super::kinematics::division_by_zero;
 use super::linear::ImplicitMotion;
 use super::positions::Positions;
@@ -165,48 +166,88 @@ impl Derivation {
 
     /// A function with what a reader wants before its results.
     fn staged(&mut self, mechanism: &Mechanism, function: Function) -> Function {
+        use FunctionKind as F;
         let accelerations = self.motion.accelerations.clone();
         match function.kind {
-            FunctionKind::ConstraintResidual => {
-                function.by_way_of(VELOCITIES, self.coordinate_rates.clone())
+            F::ConstraintResidual => function
+                .by_way_of(VELOCITIES, self.coordinate_rates.clone())
+                .explaining(glossary::of_rows(mechanism, &self.constraints)),
+            F::Energies => self.staged_by_velocities(mechanism, function),
+            F::Bias | F::Rates | F::Jacobians => {
+                let bodies = self.bodies.clone();
+                self.explained(mechanism, function, &bodies)
             }
-            FunctionKind::ParameterJacobian => function.by_way_of(SOLVED, accelerations),
-            FunctionKind::Energies => {
-                let mut function = function;
-                for (place, body) in self.bodies.iter().enumerate() {
-                    let (v, energy) = kinetic_energy_by_velocity(&mut self.algebra, body);
-                    let frame = &mechanism.frames[body.centre.velocity.frame].name;
-                    let title = format!("Velocity of `{}` in `{frame}`.", body.centre.point);
-                    function = function
-                        .by_way_of(&title, v.to_vec())
-                        .by_way_of(&Source(mechanism).of_body(place), vec![energy]);
-                }
-                function
+            F::ParameterJacobian => {
+                let bodies = self.bodies.clone();
+                let function = function.by_way_of(SOLVED, accelerations);
+                self.explained(mechanism, function, &bodies)
             }
-            FunctionKind::AccelerationEnergy | FunctionKind::ConstraintForces => {
-                let mut function = function.by_way_of(SOLVED, accelerations.clone());
-                let bodies = if function.kind == FunctionKind::ConstraintForces {
-                    self.bodies_in_ground(mechanism)
-                } else {
-                    self.bodies.clone()
-                };
-                for body in &bodies {
-                    let motion = ActualMotion::new(&mut self.algebra, body, &accelerations);
-                    let frame = |frame: usize| &mechanism.frames[frame].name;
-                    let a_in = frame(body.centre.velocity.frame);
-                    let title = format!("Acceleration of `{}` in `{a_in}`.", body.centre.point);
-                    function = function.by_way_of(&title, motion.a.to_vec());
-                    if let Some(rotation) = &body.rotation {
-                        let alpha_in = frame(rotation.velocity.frame);
-                        let title = format!("Turning of `{}` in `{alpha_in}`.", body.name);
-                        let turning = [motion.alpha, motion.momentum_rate].concat();
-                        function = function.by_way_of(&title, turning);
-                    }
-                }
-                function
+            F::AccelerationEnergy => {
+                let bodies = self.bodies.clone();
+                self.staged_by_accelerations(mechanism, function, &bodies)
             }
-            _ => function,
+            F::ConstraintForces => {
+                let bodies = self.bodies_in_ground(mechanism);
+                self.staged_by_accelerations(mechanism, function, &bodies)
+                    .explaining(glossary::of_multipliers(mechanism, &self.constraints))
+            }
+            F::Kinematics
+            | F::MassMatrix
+            | F::GeneralizedForces
+            | F::Outputs
+            | F::Switches
+            | F::PositionConstraints => function,
         }
+    }
+
+    /// A function with the meaning of the names that it may use.
+    fn explained(
+        &self,
+        mechanism: &Mechanism,
+        function: Function,
+        bodies: &[BodyMotion],
+    ) -> Function {
+        function
+            .explaining(glossary::of_motions(mechanism, &self.kinematics, bodies))
+            .explaining(glossary::of_solution(&self.motion))
+    }
+
+    /// The velocities of the bodies, then their kinetic energies.
+    fn staged_by_velocities(&mut self, mechanism: &Mechanism, mut function: Function) -> Function {
+        for (place, body) in self.bodies.iter().enumerate() {
+            let (v, energy) = kinetic_energy_by_velocity(&mut self.algebra, body);
+            let frame = &mechanism.frames[body.centre.velocity.frame].name;
+            let title = format!("Velocity of `{}` in `{frame}`.", body.centre.point);
+            function = function
+                .by_way_of(&title, v.to_vec())
+                .by_way_of(&Source(mechanism).of_body(place), vec![energy]);
+        }
+        function
+    }
+
+    /// The solved equations, then the accelerations of the bodies.
+    fn staged_by_accelerations(
+        &mut self,
+        mechanism: &Mechanism,
+        function: Function,
+        bodies: &[BodyMotion],
+    ) -> Function {
+        let accelerations = self.motion.accelerations.clone();
+        let mut function = function.by_way_of(SOLVED, accelerations.clone());
+        for body in bodies {
+            let motion = ActualMotion::new(&mut self.algebra, body, &accelerations);
+            let frame = |frame: usize| &mechanism.frames[frame].name;
+            let a_in = frame(body.centre.velocity.frame);
+            let title = format!("Acceleration of `{}` in `{a_in}`.", body.centre.point);
+            function = function.by_way_of(&title, motion.a.to_vec());
+            if let Some(rotation) = &body.rotation {
+                let alpha_in = frame(rotation.velocity.frame);
+                let title = format!("Turning of `{}` in `{alpha_in}`.", body.name);
+                let turning = [motion.alpha, motion.momentum_rate].concat();
+                function = function.by_way_of(&title, turning);
+            }
+        }
+        self.explained(mechanism, function, bodies)
     }
 
     /// The rows that geometry does not embed, at the generalised velocities.

@@ -30,7 +30,7 @@ impl FactorizedBlock {
         let mut schur = mass_matrix.to_vec();
         for &i in speeds {
             for &j in speeds.iter().filter(|&&j| j <= i) {
-                let entry = &format!("M_{}_{}", name(i), name(j));
+                let entry = &format!("M_{}_{}", name(j), name(i));
                 let entry = algebra.graph.name(entry, schur[i][j]);
                 schur[i][j] = entry;
                 schur[j][i] = entry;

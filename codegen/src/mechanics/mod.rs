@@ -14,6 +14,7 @@ pub mod factorized;
 pub mod finding;
 pub mod frames;
 pub mod gibbs_appell;
+pub mod glossary;
 pub mod initial;
 pub mod kinematics;
 pub mod linear;

@@ -1,0 +1,154 @@
+//! What the names of a derivation mean, for the readers of emitted functions.
+
+use appell_spec::mechanism::{ConstraintKind, Mechanism};
+use appell_spec::units::{Dimension, Unit};
+
+use super::constraints::{Constraints, Row};
+use super::gibbs_appell::BodyMotion;
+use super::kinematics::Kinematics;
+use super::motion::{Block, Motion};
+use crate::program::{Names, Term};
+
+/// Names of the steps that solve Appell's equations and differentiate the solution.
+pub fn of_solution(motion: &Motion) -> Vec<Term> {
+    let mut terms = Vec::new();
+    let any = |kind: fn(&Block) -> bool| motion.blocks.iter().any(kind);
+    let (alone, together) = (
+        any(|block| matches!(block, Block::Eliminated(_))),
+        any(|block| matches!(block, Block::Factorized(_))),
+    );
+    if alone {
+        terms.push(term(
+            "pivot",
+            "the factor of a pseudo-acceleration where its equation stands alone, `pivot ω̇ = rhs`.",
+        ));
+    }
+    if together {
+        terms.extend([
+            term("L", "the unit triangular factor of `M = L D Lᵀ`."),
+            term("D", "the diagonal of `M = L D Lᵀ`, and `L D` beside it."),
+            term("z", "what solves `L z = rhs`, `rhs = Π - b`."),
+        ]);
+    }
+    let rho = match (alone, together) {
+        (true, false) => "`rho = rhs - pivot ω̇`",
+        (false, _) => "`rho = rhs - M ω̇`",
+        (true, true) => "`rho = rhs - pivot ω̇`, or `rhs - M ω̇`,",
+    };
+    terms.extend([
+        term("d_rhs", "derivatives of `rhs`."),
+        term("d_pivot", "derivatives of `pivot`."),
+        term("d_rho", &format!("derivatives of {rho} with ω̇ held.")),
+        term("d_z", "what solves `L d_z = d_rho`."),
+    ]);
+    terms
+}
+
+/// Names of the motions of frames and bodies.
+pub fn of_motions(
+    mechanism: &Mechanism,
+    kinematics: &Kinematics,
+    bodies: &[BodyMotion],
+) -> Vec<Term> {
+    let frame = |id: usize| &mechanism.frames[id].name;
+    let mut terms = Vec::new();
+    for (id, known) in mechanism.frames.iter().enumerate() {
+        let along = frame(kinematics.frames.angular_velocity(id).frame);
+        let meaning = format!("angular velocity of `{}`, along `{along}`.", known.name);
+        terms.push(vector("w", &known.name, meaning));
+    }
+    for body in bodies {
+        let (point, along) = (&body.centre.point, frame(body.centre.velocity.frame));
+        terms.push(vector(
+            "v",
+            point,
+            format!("velocity of `{point}`, along `{along}`."),
+        ));
+        terms.push(vector(
+            "a0",
+            point,
+            format!("acceleration of `{point}` where ω̇ = 0, along `{along}`."),
+        ));
+        if let Some(rotation) = &body.rotation {
+            let (name, along) = (&body.name, frame(rotation.velocity.frame));
+            let meaning =
+                format!("rate of the angular momentum of `{name}` where ω̇ = 0, along `{along}`.");
+            terms.push(vector("h0", name, meaning));
+        }
+    }
+    terms
+}
+
+/// Names of the constraint rows that geometry does not embed, with their units.
+pub fn of_rows(mechanism: &Mechanism, constraints: &Constraints) -> Vec<Term> {
+    each_constraint(constraints, |row| !row.is_embedded())
+        .map(|row| {
+            let name = &mechanism.constraints[row.constraint].name;
+            let unit = unit_of_row(&mechanism.constraints[row.constraint].kind);
+            let meaning = format!("what constraint `{name}` demands to be zero, in `{unit}`.");
+            term(&format!("residual_{name}"), &meaning)
+        })
+        .collect()
+}
+
+/// Names of the reactions that no point feels.
+pub fn of_multipliers(mechanism: &Mechanism, constraints: &Constraints) -> Vec<Term> {
+    let without_point = |row: &Row| {
+        let kind = &mechanism.constraints[row.constraint].kind;
+        matches!(
+            kind,
+            ConstraintKind::Velocity { .. } | ConstraintKind::Position { .. }
+        )
+    };
+    each_constraint(constraints, without_point)
+        .map(|row| {
+            let constraint = &mechanism.constraints[row.constraint];
+            let unit = unit_of_row(&constraint.kind);
+            let name = &constraint.name;
+            let meaning = format!("the multiplier of constraint `{name}` as x, in W per `{unit}`.");
+            let place = &constraints.reactions[row.reaction.place];
+            vector("F", place, meaning)
+        })
+        .collect()
+}
+
+/// The first of the rows of every constraint that has such rows.
+fn each_constraint(
+    constraints: &Constraints,
+    such: impl Fn(&Row) -> bool,
+) -> impl Iterator<Item = &Row> {
+    let mut told = Vec::new();
+    constraints.rows.iter().filter(move |row| {
+        let first = such(row) && !told.contains(&row.constraint);
+        told.push(row.constraint);
+        first
+    })
+}
+
+/// Unit of what a constraint demands of the velocities.
+fn unit_of_row(kind: &ConstraintKind) -> String {
+    let dimension = match kind {
+        ConstraintKind::Rolling { .. } | ConstraintKind::FixedVelocity { .. } => {
+            Dimension::VELOCITY
+        }
+        ConstraintKind::Velocity { dimension, .. } => *dimension,
+        ConstraintKind::Position { dimension, .. } => dimension.rate().unwrap_or(*dimension),
+    };
+    Unit::si(dimension).text
+}
+
+fn term(symbol: &str, meaning: &str) -> Term {
+    Term {
+        symbol: symbol.to_owned(),
+        names: Names::Any,
+        meaning: meaning.to_owned(),
+    }
+}
+
+fn vector(letter: &str, of: &str, meaning: String) -> Term {
+    Term {
+        symbol: format!("{letter}_{of}"),
+        names: Names::Axes,
+        meaning,
+    }
+}

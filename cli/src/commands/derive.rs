@@ -21,7 +21,8 @@ pub(crate) struct Derive {
     /// How it is written
     #[arg(long, value_enum, default_value_t = Format::Text)]
     format: Format,
-    /// How far the page reads; each stage holds everything before it. Rust is always complete
+    /// How far the page reads; each stage holds everything before it, only `equations`, the
+    /// handout, leaves out what it does not need. Rust is always complete
     #[arg(long, value_enum, default_value_t = Stage::Equations)]
     stage: Stage,
     /// Write to a file instead of standard output

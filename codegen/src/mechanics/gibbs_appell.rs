@@ -72,14 +72,7 @@ pub fn body_motions(
             .lower(&mut algebra.graph, &body.mass)
             .map_err(|_| vec![division_by_zero(item)])?;
         let velocity = kinematics.velocity(body.centre);
-        let centre = translation(
-            algebra,
-            mechanism,
-            kinematics,
-            &time,
-            body.centre,
-            velocity,
-        );
+        let centre = translation(algebra, mechanism, kinematics, &time, body.centre, velocity);
         let rotation = match (body.frame, &body.inertia) {
             (Some(frame), Some(inertia)) => {
                 let mut matrix = [[Graph::ZERO; 3]; 3];
@@ -170,22 +163,10 @@ pub fn motions_in_ground(
             frame: GROUND,
             v: algebra.shortest3(v),
         };
-        let fixed = translation(
-            algebra,
-            mechanism,
-            kinematics,
-            &time,
-            body.centre,
-            velocity,
-        );
+        let fixed = translation(algebra, mechanism, kinematics, &time, body.centre, velocity);
         let mut acceleration = |centre: &Translation| {
             let graph = &mut algebra.graph;
-            let v = along(
-                graph,
-                centre.bias,
-                &centre.partial,
-                &symbols.accelerations,
-            );
+            let v = along(graph, centre.bias, &centre.partial, &symbols.accelerations);
             let frame = centre.velocity.frame;
             let a = kinematics
                 .frames

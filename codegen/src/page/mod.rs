@@ -29,14 +29,15 @@ pub use display::Equation;
 use crate::mechanics::{Derivation, finding};
 use writer::Writer;
 
-/// How far a page reads. Each stage holds everything before it.
+/// How far a page reads. Each stage holds everything before it; only [`Stage::Equations`], the
+/// handout, leaves M and b out where the equations are solved without them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Stage {
     /// Frames, constraints, velocities, accelerations.
     Kinematics,
     /// Acceleration energy, mass matrix, bias.
     Energy,
-    /// Pseudo-forces, Appell's equations, accelerations, energies.
+    /// Pseudo-forces, Appell's equations, accelerations, energies: the handout.
     Equations,
     /// Jacobians of the motion.
     Jacobians,

@@ -498,7 +498,9 @@ impl<'a> Binding<'a> {
         let sign = derived
             .map(|name| name.negative)
             .or(label.map(|label| label.1));
-        let given = self.given_name(id).filter(|_| !self.tells_itself(id, &piece));
+        let given = self
+            .given_name(id)
+            .filter(|_| !self.tells_itself(id, &piece));
         let (piece, negative) = match given {
             Some(name) if sign == Some(negative) => (self.define(&name, piece.tree), negative),
             Some(name) if self.takes_its_sign(id) => {

@@ -128,7 +128,8 @@ impl Signs<'_> {
             if self.wrong(id) {
                 cost += WRONG_SIGN;
                 // It is negated, or it gives up its name.
-                self.built[place] = built != (dag.names[id.index()].is_some() || keeps_its_name(dag, id));
+                self.built[place] =
+                    built != (dag.names[id.index()].is_some() || keeps_its_name(dag, id));
             }
         }
         let results = dag.results.iter().filter(|result| {

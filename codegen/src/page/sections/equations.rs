@@ -13,6 +13,15 @@ use crate::symbolic::{Expr, Node};
 /// Longer accelerations, on average in a block, are not written out.
 const LONGEST_READING: usize = 180;
 
+/// Whether the solved equations are short enough to be written out, so that nothing on the page
+/// refers to M and b.
+pub(super) fn are_written_out(w: &mut Writer<'_>) -> bool {
+    let blocks = w.derivation.motion.blocks.clone();
+    blocks
+        .iter()
+        .all(|block| values_to_read(w, block).is_some())
+}
+
 /// M ω̇ + b = Π, row by row.
 pub(super) fn appell(w: &mut Writer<'_>) -> Section {
     let accelerations = w.derivation.symbols.accelerations.clone();

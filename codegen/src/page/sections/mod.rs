@@ -29,9 +29,13 @@ pub(super) fn sections(w: &mut Writer<'_>, stage: Stage) -> finding::Outcome<Vec
         velocities::section(w),
         accelerations::section(w),
     ];
+    // The handout needs M and b where they solve the equations in letters.
+    let in_letters = stage != Stage::Equations || !equations::are_written_out(w);
     if stage >= Stage::Energy {
         sections.push(energy::section(w));
-        sections.push(energy::derivatives(w));
+        if in_letters {
+            sections.push(energy::derivatives(w));
+        }
     }
     if stage >= Stage::Equations {
         sections.push(forces::section(w));

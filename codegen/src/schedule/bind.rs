@@ -546,19 +546,16 @@ impl<'a> Binding<'a> {
 
     /// Defines a value under a name that tells how it is made.
     fn define_by_making(&mut self, id: Id, tree: Tree) -> Piece {
-        match describe(&tree, &self.values, &self.products, &self.arguments) {
-            Some(name) => {
-                let product = Monomial::of(&tree, &self.products);
-                let piece = self.define(&name, tree);
-                self.products.pop();
-                self.products.push(product);
-                piece
-            }
-            None => {
-                let name = self.fallback(id, "part");
-                self.define(&name, tree)
-            }
+        let described = describe(&tree, &self.values, &self.products, &self.arguments);
+        let product = described
+            .is_some()
+            .then(|| Monomial::of(&tree, &self.products));
+        let name = described.unwrap_or_else(|| self.fallback(id, "part"));
+        let piece = self.define(&name, tree);
+        if let Some(last) = self.products.last_mut() {
+            *last = product.flatten();
         }
+        piece
     }
 
     fn define(&mut self, name: &str, tree: Tree) -> Piece {

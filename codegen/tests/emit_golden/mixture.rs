@@ -90,8 +90,8 @@ pub fn rates<T: Real>(
 
     // Combinations of parameters.
     let K_squared = K * K;
-    let K_squared_squared = K_squared * K_squared;
-    let K_squared_squared_squared = K_squared_squared * K_squared_squared;
+    let type_dot_part_1 = K_squared * K_squared;
+    let type_dot_part_2 = type_dot_part_1 * type_dot_part_1;
 
     // Generalised velocities.
     let p_minus_half = p - half;
@@ -107,10 +107,9 @@ pub fn rates<T: Real>(
     let half_dot = solution_2_3 - p_minus_half.atan2(K.powf(p));
 
     // Appell's equations, solved.
-    let type_dot_part_1 = K * K_squared * K_squared_squared_squared;
     let [solution_1_1, _, _] = lu_solve(&lu_1, [type_, t, p]);
     let type_dot = one / (p_minus_half * p_minus_half * p_minus_half)
-        + type_dot_part_1 * K_squared_squared_squared
+        + K * K_squared * type_dot_part_2 * type_dot_part_2
         + T::if_less_or_equal(t, K, p, type_)
         + T::if_less(p, p_minus_half, solution_1_1, crate_);
 
@@ -146,8 +145,8 @@ pub fn jacobians<T: Real>(
 
     // Combinations of parameters.
     let K_squared = K * K;
-    let K_squared_squared = K_squared * K_squared;
-    let K_squared_squared_squared = K_squared_squared * K_squared_squared;
+    let type_dot_part_1 = K_squared * K_squared;
+    let type_dot_part_2 = type_dot_part_1 * type_dot_part_1;
 
     // Generalised velocities.
     let p_minus_half = p - half;
@@ -155,8 +154,8 @@ pub fn jacobians<T: Real>(
     let sqrt_half = half.sqrt();
     let tanh_half = half.tanh();
     let crate_part_1 = half.sign() + half.exp() + half.cosh() + half.sinh();
-    let crate_ = half.ln() + half.abs() + sqrt_half + tanh_half + half.atan()
-        + half.acos() + half.asin() + sin_half + crate_part_1;
+    let crate_ = sin_half + sqrt_half + tanh_half + crate_part_1 + half.ln() + half.abs()
+        + half.atan() + half.acos() + half.asin();
     let lu_1 = lu_factor([
         [K, p, half],
         [p, INFO_, number_half],
@@ -167,11 +166,10 @@ pub fn jacobians<T: Real>(
 
     // Appell's equations, solved.
     let inv_p_minus_half = one / p_minus_half;
-    let inv_p_minus_half_squared = inv_p_minus_half * inv_p_minus_half;
-    let type_dot_part_1 = K * K_squared * K_squared_squared_squared;
+    let type_dot_part_3 = inv_p_minus_half * inv_p_minus_half;
     let [solution_1_1, solution_1_2, solution_1_3] = lu_solve(&lu_1, [type_, t, p]);
-    let type_dot = inv_p_minus_half * inv_p_minus_half_squared
-        + type_dot_part_1 * K_squared_squared_squared
+    let type_dot = inv_p_minus_half * type_dot_part_3
+        + K * K_squared * type_dot_part_2 * type_dot_part_2
         + T::if_less_or_equal(t, K, p, type_)
         + T::if_less(p, p_minus_half, solution_1_1, crate_);
 
@@ -180,12 +178,12 @@ pub fn jacobians<T: Real>(
     let A_type_type = T::if_less(p, p_minus_half, solution_3_1, zero)
         + T::if_less_or_equal(t, K, zero, one);
     let [solution_4_1, _, _] = lu_solve(&lu_1, [-solution_1_2, -solution_1_1, one]);
-    let A_type_p_part_1 = three * inv_p_minus_half_squared * inv_p_minus_half_squared;
+    let A_type_p_part_1 = three * type_dot_part_3 * type_dot_part_3;
     let A_type_p = T::if_less(p, p_minus_half, solution_4_1, zero)
         + T::if_less_or_equal(t, K, one, zero) - A_type_p_part_1;
     let [solution_5_1, _, _] = lu_solve(&lu_1, [-solution_1_3, zero, -solution_1_2]);
-    let d_crate_d_half = crate_part_1 + one + cos_half + one / (one + half * half)
-        + one / half + number_half / sqrt_half - tanh_half * tanh_half;
+    let d_crate_d_half = cos_half + number_half / sqrt_half + crate_part_1 + one
+        + one / (one + half * half) + one / half - tanh_half * tanh_half;
     let A_type_half_part_1 = T::if_less(p, p_minus_half, solution_5_1, d_crate_d_half);
     let A_type_half = A_type_p_part_1 + A_type_half_part_1;
 
@@ -195,9 +193,8 @@ pub fn jacobians<T: Real>(
         &lu_1,
         [one_minus_solution_2_2, -solution_2_1, zero],
     );
-    let p_minus_half_squared = p_minus_half * p_minus_half;
-    let A_half_p_part_1 = p_minus_half_squared + half_dot_part_1 * half_dot_part_1;
-    let A_half_p_part_2 = one / A_half_p_part_1;
+    let A_half_p_part_1 = p_minus_half * p_minus_half;
+    let A_half_p_part_2 = one / (A_half_p_part_1 + half_dot_part_1 * half_dot_part_1);
     let A_half_p_part_3 = half_dot_part_1 - p_minus_half * half_dot_part_1 * K.ln();
     let A_half_p = solution_6_3 - A_half_p_part_2 * A_half_p_part_3;
     let [_, _, solution_7_3] = lu_solve(
@@ -244,8 +241,8 @@ pub fn parameter_jacobian<T: Real>(
 
     // Combinations of parameters.
     let K_squared = K * K;
-    let K_squared_squared = K_squared * K_squared;
-    let K_squared_squared_squared = K_squared_squared * K_squared_squared;
+    let P_type_K_part_1 = K_squared * K_squared;
+    let P_type_K_part_2 = P_type_K_part_1 * P_type_K_part_1;
 
     // Row `type` of P.
     let p_minus_half = p - half;
@@ -258,9 +255,8 @@ pub fn parameter_jacobian<T: Real>(
     let [solution_2_1, _, _] = lu_solve(&lu_1, [zero, -solution_1_2, zero]);
     let P_type_INFO = T::if_less(p, p_minus_half, solution_2_1, zero);
     let [solution_3_1, _, _] = lu_solve(&lu_1, [-solution_1_1, zero, -solution_1_3]);
-    let P_type_K_part_1 = nineteen * K_squared * K_squared_squared_squared;
     let P_type_K = T::if_less(p, p_minus_half, solution_3_1, zero)
-        + P_type_K_part_1 * K_squared_squared_squared;
+        + nineteen * K_squared * P_type_K_part_2 * P_type_K_part_2;
 
     // Row `half` of P.
     let crate_ = half.ln() + half.sign() + half.abs() + half.sqrt() + half.exp()
@@ -270,10 +266,10 @@ pub fn parameter_jacobian<T: Real>(
     let [_, _, P_half_INFO] = lu_solve(&lu_1, [zero, -solution_4_2, zero]);
     let [_, _, solution_6_3] = lu_solve(&lu_1, [-solution_4_1, zero, -solution_4_3]);
     let P_half_K_part_1 = K.powf(p);
-    let p_minus_half_squared = p_minus_half * p_minus_half;
-    let P_half_K_part_2 = p_minus_half_squared + P_half_K_part_1 * P_half_K_part_1;
-    let P_half_K = solution_6_3
-        + p_minus_half * P_half_K_part_1 * p / (K * P_half_K_part_2);
+    let P_half_K_part_2 = p_minus_half * p_minus_half;
+    let P_half_K_part_3 = p_minus_half * P_half_K_part_1 * p;
+    let P_half_K_part_4 = K * (P_half_K_part_2 + P_half_K_part_1 * P_half_K_part_1);
+    let P_half_K = solution_6_3 + P_half_K_part_3 / P_half_K_part_4;
 
     [[P_type_INFO, P_type_K], [zero, zero], [P_half_INFO, P_half_K]]
 }

@@ -146,11 +146,11 @@ pub fn kinematics<T: Real>(
 
     // coordinate_rates
     let coordinate_rates_2 = omega_3 / cos_theta;
-    let coordinate_rates_3 = omega_2 - coordinate_rates_2 * sin_theta;
+    let coordinate_rates_3 = omega_2 - sin_theta * coordinate_rates_2;
     let R_omega_2 = R * omega_2;
     let R_cos_theta_omega_1 = R * cos_theta * omega_1;
     let coordinate_rates_4 = cos_psi * R_omega_2 + sin_psi * R_cos_theta_omega_1;
-    let coordinate_rates_5 = R_omega_2 * sin_psi - cos_psi * R_cos_theta_omega_1;
+    let coordinate_rates_5 = sin_psi * R_omega_2 - cos_psi * R_cos_theta_omega_1;
 
     Coordinates {
         theta: omega_1,
@@ -187,29 +187,29 @@ pub fn acceleration_energy<T: Real>(
     let (sin_theta, cos_theta) = theta.sin_cos();
 
     // Combinations of parameters.
-    let m_R_R = m * R * R;
+    let m_R_squared = m * R * R;
 
     // total
     let m0_r = m0 * r;
     let omega_3_squared = omega_3 * omega_3;
     let R_omega_3 = R * omega_3;
-    let R_omega_3_omega_2 = R_omega_3 * omega_2;
+    let R_omega_2_omega_3 = R_omega_3 * omega_2;
     let g_sin_theta = g * sin_theta;
-    let f_4_part_1 = R_omega_3_omega_2 + g_sin_theta;
+    let f_4_part_1 = R_omega_2_omega_3 + g_sin_theta;
     let f_4_part_2 = m0 * (r * (omega_3_squared + omega_1 * omega_1) - f_4_part_1);
-    let f_4 = u + f_4_part_2;
-    let omega_1_dot_part_1 = sin_theta * omega_3 / cos_theta;
-    let omega_1_dot_part_2 = g_sin_theta + three_halves * R_omega_3_omega_2;
-    let omega_1_dot_part_3 = quarter * R_omega_3 * omega_1_dot_part_1;
-    let omega_1_dot_part_4 = f_4 + m * (omega_1_dot_part_2 - omega_1_dot_part_3);
-    let omega_1_dot_part_5 = omega_1_dot_part_4 + m0 * f_4_part_1;
-    let omega_1_dot_part_6 = m0_r * (omega_3_squared - omega_1_dot_part_1 * omega_2);
-    let omega_1_dot_part_7 = g * cos_theta + omega_1_dot_part_1 * r * omega_3;
-    let omega_1_dot_part_8 = R * (omega_1_dot_part_5 - omega_1_dot_part_6);
-    let omega_1_dot_part_9 = m0_r * (omega_1_dot_part_7 + two * omega_1 * sigma);
-    let omega_1_dot_part_10 = omega_1_dot_part_8 - omega_1_dot_part_9;
-    let omega_1_dot = omega_1_dot_part_10 / (m0_r * r + five_quarters * m_R_R);
-    let s_wheel = five_eighths * m_R_R * omega_1_dot * omega_1_dot;
+    let f_4 = f_4_part_2 + u;
+    let tan_theta_omega_3 = sin_theta * omega_3 / cos_theta;
+    let omega_1_dot_part_1 = g_sin_theta + three_halves * R_omega_2_omega_3;
+    let omega_1_dot_part_2 = quarter * R_omega_3 * tan_theta_omega_3;
+    let omega_1_dot_part_3 = f_4 + m * (omega_1_dot_part_1 - omega_1_dot_part_2);
+    let omega_1_dot_part_4 = omega_1_dot_part_3 + m0 * f_4_part_1;
+    let omega_1_dot_part_5 = m0_r * (omega_3_squared - tan_theta_omega_3 * omega_2);
+    let omega_1_dot_part_6 = g * cos_theta + tan_theta_omega_3 * omega_3 * r;
+    let omega_1_dot_part_7 = R * (omega_1_dot_part_4 - omega_1_dot_part_5);
+    let omega_1_dot_part_8 = m0_r * (omega_1_dot_part_6 + two * omega_1 * sigma);
+    let omega_1_dot_part_9 = omega_1_dot_part_7 - omega_1_dot_part_8;
+    let omega_1_dot = omega_1_dot_part_9 / (five_quarters * m_R_squared + m0_r * r);
+    let s_wheel = five_eighths * m_R_squared * omega_1_dot * omega_1_dot;
 
     AccelerationEnergy {
         total: s_wheel,
@@ -248,19 +248,19 @@ pub fn mass_matrix<T: Real>(
     let m0_R_squared = m0 * R_squared;
     let m_R_squared = m * R_squared;
     let m0_R = m0 * R;
-    let mass_matrix_5 = m0_R_squared + three_halves * m_R_squared;
+    let mass_matrix_5 = three_halves * m_R_squared + m0_R_squared;
 
     // mass_matrix
     let m0_r = m0 * r;
-    let m0_r_r = m0_r * r;
-    let mass_matrix_0 = m0_r_r + m0_R_squared + five_quarters * m_R_squared;
-    let R_m0_r = R * m0_r;
-    let mass_matrix_10 = m0_r_r + quarter * m_R_squared;
+    let m0_r_squared = m0_r * r;
+    let mass_matrix_0 = five_quarters * m_R_squared + m0_R_squared + m0_r_squared;
+    let m0_R_r = R * m0_r;
+    let mass_matrix_10 = quarter * m_R_squared + m0_r_squared;
 
     [
         [mass_matrix_0, zero, zero, -m0_R],
-        [zero, mass_matrix_5, -R_m0_r, zero],
-        [zero, -R_m0_r, mass_matrix_10, zero],
+        [zero, mass_matrix_5, -m0_R_r, zero],
+        [zero, -m0_R_r, mass_matrix_10, zero],
         [-m0_R, zero, zero, m0],
     ]
 }
@@ -288,28 +288,27 @@ pub fn bias<T: Real>(
 
     // bias
     let m0_r = m0 * r;
-    let m0_r_omega_1 = m0_r * omega_1;
+    let m0_omega_1_r = m0_r * omega_1;
     let two_sigma = two * sigma;
     let tan_theta = sin_theta / cos_theta;
-    let m0_r_omega_3 = m0_r * omega_3;
+    let m0_omega_3_r = m0_r * omega_3;
     let R_omega_3 = R * omega_3;
     let R_omega_2 = R * omega_2;
     let bias_0_part_1 = tan_theta * (m0_r * omega_2 - quarter * m * R_omega_3);
-    let bias_0_part_2 = m0_r_omega_3 - bias_0_part_1;
-    let tan_theta_m0_r_omega_3_r = tan_theta * m0_r_omega_3 * r;
-    let bias_0_part_3 = R * (bias_0_part_2 - R_omega_2 * (m0 + three_halves * m));
-    let bias_0 = m0_r_omega_1 * two_sigma
-        + omega_3 * (tan_theta_m0_r_omega_3_r + bias_0_part_3);
+    let bias_0_part_2 = m0_omega_3_r - bias_0_part_1;
+    let bias_0_part_3 = tan_theta * m0_omega_3_r * r;
+    let bias_0_part_4 = R * (bias_0_part_2 - R_omega_2 * (three_halves * m + m0));
+    let bias_0 = m0_omega_1_r * two_sigma + omega_3 * (bias_0_part_3 + bias_0_part_4);
     let R_omega_1 = R * omega_1;
     let m_R_omega_1 = m * R_omega_1;
     let two_sigma_minus_R_omega_1 = two_sigma - R_omega_1;
-    let bias_1_part_1 = m0_r_omega_1 * tan_theta + m_R_omega_1;
+    let bias_1_part_1 = m0_omega_1_r * tan_theta + m_R_omega_1;
     let bias_1 = R_omega_3 * (bias_1_part_1 - m0 * two_sigma_minus_R_omega_1);
     let bias_2_part_1 = m0_r * two_sigma_minus_R_omega_1;
-    let bias_2_part_2 = tan_theta * (m0_r_omega_1 * r + quarter * R * m_R_omega_1);
+    let bias_2_part_2 = tan_theta * (m0_omega_1_r * r + quarter * R * m_R_omega_1);
     let bias_2 = half * R_omega_2 * m_R_omega_1
         + omega_3 * (bias_2_part_1 - bias_2_part_2);
-    let bias_3 = -(m0_r_omega_1 * omega_1 + omega_3 * (m0_r_omega_3 - m0 * R_omega_2));
+    let bias_3 = -(m0_omega_1_r * omega_1 + omega_3 * (m0_omega_3_r - m0 * R_omega_2));
 
     Speeds {
         omega_1: bias_0,
@@ -339,13 +338,13 @@ pub fn generalized_forces<T: Real>(
     let (sin_theta, cos_theta) = theta.sin_cos();
 
     // Combinations of parameters.
-    let g_m0 = g * m0;
+    let m0_g = m0 * g;
 
     // generalized_forces
     let R_sin_theta = R * sin_theta;
-    let generalized_forces_0 = g * m * R_sin_theta
-        + g_m0 * (R_sin_theta - cos_theta * r);
-    let generalized_forces_3 = u - sin_theta * g_m0;
+    let generalized_forces_0 = m * g * R_sin_theta
+        + m0_g * (R_sin_theta - cos_theta * r);
+    let generalized_forces_3 = u - sin_theta * m0_g;
 
     Speeds {
         omega_1: generalized_forces_0,
@@ -381,11 +380,11 @@ pub fn rates<T: Real>(
     let (sin_psi, cos_psi) = psi.sin_cos();
 
     // Combinations of parameters.
-    let R_m0 = R * m0;
-    let R_R_m0 = R * R_m0;
-    let R_m = R * m;
-    let R_R_m = R * R_m;
-    let M_22 = R_R_m0 + three_halves * R_R_m;
+    let m0_R = m0 * R;
+    let m0_R_squared = R * m0_R;
+    let m_R = m * R;
+    let m_R_squared = R * m_R;
+    let M_22 = three_halves * m_R_squared + m0_R_squared;
 
     // Generalised velocities.
     let inv_cos_theta = one / cos_theta;
@@ -395,43 +394,43 @@ pub fn rates<T: Real>(
     let R_omega_2 = R * omega_2;
     let R_cos_theta_omega_1 = R * cos_theta * omega_1;
     let x_G_dot = cos_psi * R_omega_2 + sin_psi * R_cos_theta_omega_1;
-    let y_G_dot = R_omega_2 * sin_psi - cos_psi * R_cos_theta_omega_1;
+    let y_G_dot = sin_psi * R_omega_2 - cos_psi * R_cos_theta_omega_1;
 
     // Appell's equations, solved.
     let m0_r = m0 * r;
-    let m0_r_r = m0_r * r;
-    let M_11 = R_R_m0 + m0_r_r + five_quarters * R_R_m;
-    let m0_r_omega_3 = m0_r * omega_3;
-    let m0_r_omega_3_omega_3 = m0_r_omega_3 * omega_3;
-    let m0_r_omega_1 = m0_r * omega_1;
+    let m0_r_squared = m0_r * r;
+    let M_11 = five_quarters * m_R_squared + m0_R_squared + m0_r_squared;
+    let m0_omega_3_r = m0_r * omega_3;
+    let m0_omega_3_squared_r = m0_omega_3_r * omega_3;
+    let m0_omega_1_r = m0_r * omega_1;
     let g_sin_theta = g * sin_theta;
     let R_omega_3 = R * omega_3;
-    let R_omega_3_omega_2 = R_omega_3 * omega_2;
-    let f_4 = m0_r_omega_3_omega_3 + m0_r_omega_1 * omega_1 + u
-        - m0 * (g_sin_theta + R_omega_3_omega_2);
+    let R_omega_2_omega_3 = R_omega_3 * omega_2;
+    let f_4 = m0_omega_3_squared_r + m0_omega_1_r * omega_1 + u
+        - m0 * (g_sin_theta + R_omega_2_omega_3);
     let tan_theta_r = tan_theta * r;
     let two_sigma = two * sigma;
-    let R_m0_plus_m0_r_tan_theta = R_m0 + m0_r * tan_theta;
-    let f_1_part_1 = three_halves * R_m + R_m0_plus_m0_r_tan_theta;
+    let m0_R_plus_m0_tan_theta_r = m0_R + tan_theta * m0_r;
+    let f_1_part_1 = three_halves * m_R + m0_R_plus_m0_tan_theta_r;
     let quarter_tan_theta = quarter * tan_theta;
-    let f_1_part_2 = R_omega_3 * (m0_r_omega_3 + m * R_omega_3 * quarter_tan_theta);
-    let f_1 = R_omega_3_omega_2 * f_1_part_1 + g_sin_theta * (R_m0 + R_m)
-        - g * m0_r * cos_theta - m0_r_omega_3_omega_3 * tan_theta_r
-        - m0_r_omega_1 * two_sigma - f_1_part_2;
-    let omega_1_dot = -(R * f_4 + f_1) / (R_R_m0 - M_11);
-    let R_omega_3_omega_1 = R_omega_3 * omega_1;
-    let R_m_R_omega_3_omega_1 = R_m * R_omega_3_omega_1;
-    let f_3 = m0_r * R_omega_3_omega_1 + quarter_tan_theta * R_m_R_omega_3_omega_1
-        - half * R_R_m * omega_1 * omega_2
-        - m0_r_omega_3 * (two_sigma - tan_theta_r * omega_1);
-    let R_m0_r = R * m0_r;
-    let f_2 = m0 * R_omega_3 * two_sigma - R_m_R_omega_3_omega_1
-        - R_m0_plus_m0_r_tan_theta * R_omega_3_omega_1;
-    let M_33 = m0_r_r + quarter * R_R_m;
-    let D_2 = M_33 * M_22 - R_m0_r * R_m0_r;
+    let f_1_part_2 = R_omega_3 * (m0_omega_3_r + m * R_omega_3 * quarter_tan_theta);
+    let f_1 = R_omega_2_omega_3 * f_1_part_1 + g_sin_theta * (m_R + m0_R) - f_1_part_2
+        - g * cos_theta * m0_r - m0_omega_3_squared_r * tan_theta_r
+        - m0_omega_1_r * two_sigma;
+    let omega_1_dot = -(f_1 + R * f_4) / (m0_R_squared - M_11);
+    let R_omega_1_omega_3 = R_omega_3 * omega_1;
+    let m_R_squared_omega_1_omega_3 = m_R * R_omega_1_omega_3;
+    let f_3 = m0_r * R_omega_1_omega_3 + quarter_tan_theta * m_R_squared_omega_1_omega_3
+        - half * m_R_squared * omega_1 * omega_2
+        - m0_omega_3_r * (two_sigma - tan_theta_r * omega_1);
+    let m0_R_r = R * m0_r;
+    let f_2 = m0 * R_omega_3 * two_sigma - m_R_squared_omega_1_omega_3
+        - m0_R_plus_m0_tan_theta_r * R_omega_1_omega_3;
+    let M_33 = quarter * m_R_squared + m0_r_squared;
+    let D_2 = M_22 * M_33 - m0_R_r * m0_R_r;
     let inv_D_2 = one / D_2;
-    let omega_2_dot = inv_D_2 * (f_3 * R_m0_r + f_2 * M_33);
-    let omega_3_dot = inv_D_2 * (R_m0_r * f_2 + f_3 * M_22);
+    let omega_2_dot = inv_D_2 * (f_3 * m0_R_r + f_2 * M_33);
+    let omega_3_dot = inv_D_2 * (m0_R_r * f_2 + M_22 * f_3);
     let sigma_dot = f_4 / m0 + R * omega_1_dot;
 
     State {
@@ -475,185 +474,182 @@ pub fn jacobians<T: Real>(
     let (sin_psi, cos_psi) = psi.sin_cos();
 
     // Combinations of parameters.
-    let R_m0 = R * m0;
-    let R_R_m0 = R * R_m0;
-    let R_m = R * m;
-    let three_halves_R_m = three_halves * R_m;
-    let minus_half_R_m = -half * R_m;
-    let quarter_R_m = quarter * R_m;
-    let M_22 = R_R_m0 + R * three_halves_R_m;
+    let m0_R = m0 * R;
+    let m0_R_squared = R * m0_R;
+    let m_R = m * R;
+    let three_halves_m_R = three_halves * m_R;
+    let minus_half_m_R = -half * m_R;
+    let quarter_m_R = quarter * m_R;
+    let M_22 = R * three_halves_m_R + m0_R_squared;
     let inv_m0 = one / m0;
 
     // Generalised velocities.
-    let A_psi_omega_3 = one / cos_theta;
-    let psi_dot = A_psi_omega_3 * omega_3;
-    let sin_theta_A_psi_omega_3 = sin_theta * A_psi_omega_3;
-    let f_1_part_1 = sin_theta_A_psi_omega_3 * omega_3;
-    let phi_dot = omega_2 - f_1_part_1;
+    let inv_cos_theta = one / cos_theta;
+    let psi_dot = inv_cos_theta * omega_3;
+    let tan_theta = sin_theta * inv_cos_theta;
+    let tan_theta_omega_3 = tan_theta * omega_3;
+    let phi_dot = omega_2 - tan_theta_omega_3;
     let R_omega_2 = R * omega_2;
     let R_omega_1 = R * omega_1;
-    let cos_theta_R_omega_1 = cos_theta * R_omega_1;
-    let x_G_dot = R_omega_2 * cos_psi + sin_psi * cos_theta_R_omega_1;
-    let y_G_dot = R_omega_2 * sin_psi - cos_psi * cos_theta_R_omega_1;
+    let R_cos_theta_omega_1 = cos_theta * R_omega_1;
+    let x_G_dot = cos_psi * R_omega_2 + sin_psi * R_cos_theta_omega_1;
+    let y_G_dot = sin_psi * R_omega_2 - cos_psi * R_cos_theta_omega_1;
 
     // Appell's equations, solved.
     let m0_r = m0 * r;
-    let m0_r_r = m0_r * r;
-    let M_11 = R_R_m0 + m0_r_r + five_quarters * R * R_m;
-    let inv_M_11_minus_R_R_m0 = one / (M_11 - R_R_m0);
+    let m0_r_squared = m0_r * r;
+    let M_11 = five_quarters * R * m_R + m0_R_squared + m0_r_squared;
+    let omega_1_dot_part_1 = one / (M_11 - m0_R_squared);
     let g_sin_theta = g * sin_theta;
-    let r_omega_3 = r * omega_3;
-    let r_omega_3_omega_3 = r_omega_3 * omega_3;
+    let omega_3_r = omega_3 * r;
+    let omega_3_squared_r = omega_3_r * omega_3;
     let R_omega_3 = R * omega_3;
-    let R_omega_3_omega_2 = R_omega_3 * omega_2;
-    let r_omega_1 = r * omega_1;
-    let f_4_part_1 = g_sin_theta + R_omega_3_omega_2 - r_omega_3_omega_3;
-    let f_4 = u - m0 * (f_4_part_1 - r_omega_1 * omega_1);
-    let f_1_part_2 = R_omega_3 * sin_theta_A_psi_omega_3;
+    let R_omega_2_omega_3 = R_omega_3 * omega_2;
+    let omega_1_r = omega_1 * r;
+    let f_4_part_1 = g_sin_theta + R_omega_2_omega_3 - omega_3_squared_r;
+    let f_4 = u - m0 * (f_4_part_1 - omega_1_r * omega_1);
+    let R_tan_theta_omega_3 = tan_theta * R_omega_3;
     let m_R_omega_3 = m * R_omega_3;
     let quarter_m_R_omega_3 = quarter * m_R_omega_3;
-    let f_1_part_3 = r_omega_3 * f_1_part_1;
+    let tan_theta_omega_3_squared_r = tan_theta_omega_3 * omega_3_r;
     let g_cos_theta = g * cos_theta;
     let two_sigma = two * sigma;
-    let f_1_part_4 = g_cos_theta + R_omega_3 * omega_3 + two_sigma * omega_1
-        - f_1_part_2 * omega_2;
-    let f_1_part_5 = R * g_sin_theta + R_omega_3 * R_omega_2;
-    let f_1 = R_m * g_sin_theta + R_omega_3_omega_2 * three_halves_R_m
-        + m0 * (f_1_part_5 - r * (f_1_part_3 + f_1_part_4))
-        - f_1_part_2 * quarter_m_R_omega_3;
-    let omega_1_dot = inv_M_11_minus_R_R_m0 * (R * f_4 + f_1);
-    let R_m0_r = R * m0_r;
-    let minus_R_omega_1_half_R_m = R_omega_1 * minus_half_R_m;
-    let R_m0_r_omega_1 = R_m0_r * omega_1;
+    let f_1_part_1 = g_cos_theta + R_omega_3 * omega_3 + two_sigma * omega_1
+        - R_tan_theta_omega_3 * omega_2;
+    let f_1_part_2 = R * g_sin_theta + R_omega_2 * R_omega_3;
+    let f_1_part_3 = f_1_part_2 - r * (f_1_part_1 + tan_theta_omega_3_squared_r);
+    let f_1 = m_R * g_sin_theta + three_halves_m_R * R_omega_2_omega_3 + m0 * f_1_part_3
+        - R_tan_theta_omega_3 * quarter_m_R_omega_3;
+    let omega_1_dot = omega_1_dot_part_1 * (f_1 + R * f_4);
+    let m0_R_r = R * m0_r;
+    let f_3_part_1 = minus_half_m_R * R_omega_1;
+    let m0_R_omega_1_r = m0_R_r * omega_1;
     let two_m0_r = two * m0_r;
-    let m0_r_omega_1 = m0_r * omega_1;
-    let f_3_part_1 = m0_r_omega_1 * r + R_omega_1 * quarter_R_m;
-    let d_f_3_d_omega_3 = R_m0_r_omega_1 + sin_theta_A_psi_omega_3 * f_3_part_1
-        - two_m0_r * sigma;
-    let f_3 = minus_R_omega_1_half_R_m * omega_2 + d_f_3_d_omega_3 * omega_3;
-    let f_2_part_1 = f_1_part_1 * m0_r_omega_1;
+    let m0_omega_1_r = m0_r * omega_1;
+    let d_f_3_d_omega_3 = m0_R_omega_1_r
+        + tan_theta * (m0_omega_1_r * r + quarter_m_R * R_omega_1) - two_m0_r * sigma;
+    let f_3 = f_3_part_1 * omega_2 + d_f_3_d_omega_3 * omega_3;
+    let f_2_part_1 = tan_theta_omega_3 * m0_omega_1_r;
     let m0_R_omega_3 = m0 * R_omega_3;
     let f_2_part_2 = m0_R_omega_3 * omega_1 - m0 * two_sigma * omega_3;
-    let f_2 = -R * (f_2_part_1 + m_R_omega_3 * omega_1 + f_2_part_2);
-    let M_33 = m0_r_r + R * quarter_R_m;
-    let D_2 = M_33 * M_22 - R_m0_r * R_m0_r;
+    let f_2 = -R * (f_2_part_1 + f_2_part_2 + m_R_omega_3 * omega_1);
+    let M_33 = R * quarter_m_R + m0_r_squared;
+    let D_2 = M_22 * M_33 - m0_R_r * m0_R_r;
     let inv_D_2 = one / D_2;
-    let omega_2_dot = inv_D_2 * (R_m0_r * f_3 + f_2 * M_33);
-    let omega_3_dot = inv_D_2 * (R_m0_r * f_2 + f_3 * M_22);
-    let sigma_dot = f_4 * inv_m0 + R * omega_1_dot;
+    let omega_2_dot = inv_D_2 * (m0_R_r * f_3 + f_2 * M_33);
+    let omega_3_dot = inv_D_2 * (m0_R_r * f_2 + M_22 * f_3);
+    let sigma_dot = inv_m0 * f_4 + R * omega_1_dot;
 
     // Row `omega_1` of A.
-    let A_omega_1_omega_1_part_1 = R_m0_r_omega_1 - m0_r * sigma;
-    let A_omega_1_omega_1_part_2 = -two * inv_M_11_minus_R_R_m0;
+    let A_omega_1_omega_1_part_1 = m0_R_omega_1_r - m0_r * sigma;
+    let A_omega_1_omega_1_part_2 = -two * omega_1_dot_part_1;
     let A_omega_1_omega_1 = -A_omega_1_omega_1_part_1 * A_omega_1_omega_1_part_2;
-    let A_omega_1_omega_2_part_1 = m0_r * f_1_part_2;
-    let A_omega_1_omega_2_part_2 = A_omega_1_omega_2_part_1
-        + R_omega_3 * three_halves_R_m;
-    let A_omega_1_omega_2 = inv_M_11_minus_R_R_m0 * A_omega_1_omega_2_part_2;
-    let A_omega_1_omega_3_part_1 = f_1_part_1 * r;
-    let A_omega_1_omega_3_part_2 = three_halves_R_m + m0_r * sin_theta_A_psi_omega_3;
-    let A_omega_1_omega_3_part_3 = half * m * f_1_part_2;
-    let A_omega_1_omega_3_part_4 = omega_2 * A_omega_1_omega_3_part_2;
-    let A_omega_1_omega_3_part_5 = A_omega_1_omega_3_part_3 - A_omega_1_omega_3_part_4;
-    let A_omega_1_omega_3_part_6 = two_m0_r * A_omega_1_omega_3_part_1
-        + R * A_omega_1_omega_3_part_5;
-    let A_omega_1_omega_3 = -inv_M_11_minus_R_R_m0 * A_omega_1_omega_3_part_6;
-    let A_omega_1_sigma = m0_r_omega_1 * A_omega_1_omega_1_part_2;
-    let A_psi_omega_3_squared = A_psi_omega_3 * A_psi_omega_3;
-    let A_omega_1_theta_part_1 = R_omega_3 * A_psi_omega_3_squared;
+    let m0_R_tan_theta_omega_3_r = m0_r * R_tan_theta_omega_3;
+    let A_omega_1_omega_2_part_1 = m0_R_tan_theta_omega_3_r
+        + three_halves_m_R * R_omega_3;
+    let A_omega_1_omega_2 = omega_1_dot_part_1 * A_omega_1_omega_2_part_1;
+    let tan_theta_omega_3_r = tan_theta_omega_3 * r;
+    let half_m_R_tan_theta_omega_3 = half * m * R_tan_theta_omega_3;
+    let A_omega_1_omega_3_part_1 = omega_2 * (three_halves_m_R + tan_theta * m0_r);
+    let A_omega_1_omega_3_part_2 = half_m_R_tan_theta_omega_3 - A_omega_1_omega_3_part_1;
+    let A_omega_1_omega_3_part_3 = two_m0_r * tan_theta_omega_3_r
+        + R * A_omega_1_omega_3_part_2;
+    let A_omega_1_omega_3 = -omega_1_dot_part_1 * A_omega_1_omega_3_part_3;
+    let A_omega_1_sigma = m0_omega_1_r * A_omega_1_omega_1_part_2;
+    let inv_cos_theta_squared = inv_cos_theta * inv_cos_theta;
+    let A_omega_1_theta_part_1 = R_omega_3 * inv_cos_theta_squared;
     let A_omega_1_theta_part_2 = g_sin_theta + A_omega_1_theta_part_1 * omega_2;
-    let A_omega_1_theta_part_3 = r_omega_3_omega_3 * A_psi_omega_3_squared;
+    let A_omega_1_theta_part_3 = omega_3_squared_r * inv_cos_theta_squared;
     let A_omega_1_theta_part_4 = A_omega_1_theta_part_2 - A_omega_1_theta_part_3;
-    let A_omega_1_theta_part_5 = R_m * g_cos_theta + m0_r * A_omega_1_theta_part_4
+    let A_omega_1_theta_part_5 = m_R * g_cos_theta + m0_r * A_omega_1_theta_part_4
         - quarter_m_R_omega_3 * A_omega_1_theta_part_1;
-    let A_omega_1_theta = inv_M_11_minus_R_R_m0 * A_omega_1_theta_part_5;
+    let A_omega_1_theta = omega_1_dot_part_1 * A_omega_1_theta_part_5;
     let d_f_4_d_r = m0 * (omega_1 * omega_1 + omega_3 * omega_3);
-    let A_omega_1_r_part_1 = R * d_f_4_d_r - m0 * (f_1_part_4 + two * f_1_part_3);
-    let A_omega_1_r_part_2 = A_omega_1_r_part_1 - omega_1_dot * two_m0_r;
-    let A_omega_1_r = inv_M_11_minus_R_R_m0 * A_omega_1_r_part_2;
+    let R_d_f_4_d_r = R * d_f_4_d_r;
+    let A_omega_1_r_part_1 = m0 * (f_1_part_1 + two * tan_theta_omega_3_squared_r);
+    let A_omega_1_r_part_2 = R_d_f_4_d_r - A_omega_1_r_part_1 - omega_1_dot * two_m0_r;
+    let A_omega_1_r_part_3 = omega_1_dot_part_1 * A_omega_1_r_part_2;
 
     // Row `omega_2` of A.
-    let A_omega_2_omega_1_part_1 = A_omega_1_omega_2_part_1 + R_omega_3 * (R_m0 + R_m);
-    let d_f_3_d_omega_1 = f_1_part_2 * quarter_R_m + R_omega_2 * minus_half_R_m
-        + m0_r * (R_omega_3 + A_omega_1_omega_3_part_1);
-    let A_omega_2_omega_1_part_2 = M_33 * A_omega_2_omega_1_part_1;
-    let A_omega_2_omega_1_part_3 = A_omega_2_omega_1_part_2 - R_m0_r * d_f_3_d_omega_1;
-    let A_omega_2_omega_1 = -inv_D_2 * A_omega_2_omega_1_part_3;
-    let A_omega_2_omega_2_part_1 = minus_R_omega_1_half_R_m * inv_D_2;
-    let A_omega_2_omega_2 = R_m0_r * A_omega_2_omega_2_part_1;
-    let A_omega_2_omega_3_part_1 = sin_theta_A_psi_omega_3 * m0_r_omega_1;
-    let A_omega_2_omega_3_part_2 = A_omega_2_omega_3_part_1 + R_m * omega_1;
+    let d_f_2_d_omega_1 = -(m0_R_tan_theta_omega_3_r + R_omega_3 * (m_R + m0_R));
+    let d_f_3_d_omega_1 = quarter_m_R * R_tan_theta_omega_3 + minus_half_m_R * R_omega_2
+        + m0_r * (R_omega_3 + tan_theta_omega_3_r);
+    let A_omega_2_omega_1_part_1 = M_33 * d_f_2_d_omega_1 + m0_R_r * d_f_3_d_omega_1;
+    let A_omega_2_omega_1 = inv_D_2 * A_omega_2_omega_1_part_1;
+    let A_omega_2_omega_2_part_1 = f_3_part_1 * inv_D_2;
+    let A_omega_2_omega_2 = m0_R_r * A_omega_2_omega_2_part_1;
+    let A_omega_2_omega_3_part_1 = tan_theta * m0_omega_1_r + m_R * omega_1;
     let m0_two_sigma_minus_R_omega_1 = m0 * (two_sigma - R_omega_1);
-    let A_omega_2_omega_3_part_3 = A_omega_2_omega_3_part_2
+    let A_omega_2_omega_3_part_2 = A_omega_2_omega_3_part_1
         - m0_two_sigma_minus_R_omega_1;
-    let A_omega_2_omega_3_part_4 = R * A_omega_2_omega_3_part_3;
-    let A_omega_2_omega_3_part_5 = M_33 * A_omega_2_omega_3_part_4;
-    let A_omega_2_omega_3_part_6 = A_omega_2_omega_3_part_5 - R_m0_r * d_f_3_d_omega_3;
-    let A_omega_2_omega_3 = -inv_D_2 * A_omega_2_omega_3_part_6;
+    let A_omega_2_omega_3_part_3 = R * A_omega_2_omega_3_part_2;
+    let A_omega_2_omega_3_part_4 = M_33 * A_omega_2_omega_3_part_3;
+    let A_omega_2_omega_3_part_5 = A_omega_2_omega_3_part_4 - m0_R_r * d_f_3_d_omega_3;
+    let A_omega_2_omega_3 = -inv_D_2 * A_omega_2_omega_3_part_5;
     let minus_two_over_D_2 = -two * inv_D_2;
     let A_omega_2_sigma_part_1 = m0_R_omega_3 * M_33 - m0_r * m0_r * R_omega_3;
     let A_omega_2_sigma = -minus_two_over_D_2 * A_omega_2_sigma_part_1;
-    let A_omega_2_theta_part_1 = m0_r_omega_1 * A_omega_1_theta_part_1;
-    let d_f_3_d_theta = r_omega_3 * m0_r_omega_1 * A_psi_omega_3_squared
-        + quarter_R_m * A_omega_1_theta_part_1 * omega_1;
+    let A_omega_2_theta_part_1 = m0_omega_1_r * A_omega_1_theta_part_1;
+    let d_f_3_d_theta = omega_3_r * m0_omega_1_r * inv_cos_theta_squared
+        + quarter_m_R * A_omega_1_theta_part_1 * omega_1;
     let A_omega_2_theta_part_2 = M_33 * A_omega_2_theta_part_1;
-    let A_omega_2_theta = -inv_D_2 * (A_omega_2_theta_part_2 - R_m0_r * d_f_3_d_theta);
-    let d_f_3_d_r = f_2_part_2 + two * f_2_part_1;
-    let A_omega_2_r_part_1 = f_1_part_2 * M_33 * omega_1 - two * f_2 * r;
-    let d_D_2_d_r = two_m0_r * M_22 - two * R_m0 * R_m0_r;
-    let A_omega_2_r_part_2 = m0 * (A_omega_2_r_part_1 - R * (f_3 + d_f_3_d_r * r));
-    let A_omega_2_r = -inv_D_2 * (A_omega_2_r_part_2 + omega_2_dot * d_D_2_d_r);
+    let A_omega_2_theta = -inv_D_2 * (A_omega_2_theta_part_2 - m0_R_r * d_f_3_d_theta);
+    let d_f_3_d_r = two * f_2_part_1 + f_2_part_2;
+    let A_omega_2_r_part_1 = R_tan_theta_omega_3 * M_33 * omega_1;
+    let A_omega_2_r_part_2 = A_omega_2_r_part_1 - two * f_2 * r;
+    let d_D_2_d_r = M_22 * two_m0_r - two * m0_R * m0_R_r;
+    let A_omega_2_r_part_3 = m0 * (A_omega_2_r_part_2 - R * (f_3 + d_f_3_d_r * r));
+    let A_omega_2_r = -inv_D_2 * (A_omega_2_r_part_3 + omega_2_dot * d_D_2_d_r);
 
     // Row `omega_3` of A.
-    let M_22_d_f_3_d_omega_1 = M_22 * d_f_3_d_omega_1;
-    let A_omega_3_omega_1_part_1 = R_m0_r * A_omega_2_omega_1_part_1;
-    let A_omega_3_omega_1_part_2 = M_22_d_f_3_d_omega_1 - A_omega_3_omega_1_part_1;
-    let A_omega_3_omega_1 = inv_D_2 * A_omega_3_omega_1_part_2;
+    let A_omega_3_omega_1_part_1 = M_22 * d_f_3_d_omega_1 + m0_R_r * d_f_2_d_omega_1;
+    let A_omega_3_omega_1 = inv_D_2 * A_omega_3_omega_1_part_1;
     let A_omega_3_omega_2 = M_22 * A_omega_2_omega_2_part_1;
-    let d_f_3_d_omega_3_M_22 = d_f_3_d_omega_3 * M_22;
-    let A_omega_3_omega_3_part_1 = R_m0_r * A_omega_2_omega_3_part_4;
-    let A_omega_3_omega_3_part_2 = d_f_3_d_omega_3_M_22 - A_omega_3_omega_3_part_1;
+    let M_22_d_f_3_d_omega_3 = M_22 * d_f_3_d_omega_3;
+    let A_omega_3_omega_3_part_1 = m0_R_r * A_omega_2_omega_3_part_3;
+    let A_omega_3_omega_3_part_2 = M_22_d_f_3_d_omega_3 - A_omega_3_omega_3_part_1;
     let A_omega_3_omega_3 = inv_D_2 * A_omega_3_omega_3_part_2;
-    let A_omega_3_sigma_part_1 = m0_r * M_22 * omega_3 - R_m0_r * m0_R_omega_3;
+    let A_omega_3_sigma_part_1 = M_22 * m0_r * omega_3 - m0_R_r * m0_R_omega_3;
     let A_omega_3_sigma = minus_two_over_D_2 * A_omega_3_sigma_part_1;
     let M_22_d_f_3_d_theta = M_22 * d_f_3_d_theta;
-    let A_omega_3_theta_part_1 = M_22_d_f_3_d_theta - R_m0_r * A_omega_2_theta_part_1;
+    let A_omega_3_theta_part_1 = M_22_d_f_3_d_theta - m0_R_r * A_omega_2_theta_part_1;
     let A_omega_3_theta = inv_D_2 * A_omega_3_theta_part_1;
-    let M_22_d_f_3_d_r_plus_R_m0_f_2 = M_22 * d_f_3_d_r + R_m0 * f_2;
-    let A_omega_3_r_part_1 = m0 * f_1_part_2 * R_m0_r_omega_1;
-    let A_omega_3_r_part_2 = M_22_d_f_3_d_r_plus_R_m0_f_2 - A_omega_3_r_part_1;
+    let M_22_d_f_3_d_r_plus_m0_R_f_2 = M_22 * d_f_3_d_r + m0_R * f_2;
+    let A_omega_3_r_part_1 = m0 * R_tan_theta_omega_3 * m0_R_omega_1_r;
+    let A_omega_3_r_part_2 = M_22_d_f_3_d_r_plus_m0_R_f_2 - A_omega_3_r_part_1;
     let A_omega_3_r = inv_D_2 * (A_omega_3_r_part_2 - omega_3_dot * d_D_2_d_r);
 
     // Row `sigma` of A.
-    let B_omega_1_u = R * inv_M_11_minus_R_R_m0;
-    let A_sigma_omega_1 = two * (r_omega_1 + A_omega_1_omega_1_part_1 * B_omega_1_u);
-    let A_sigma_omega_2 = A_omega_1_omega_2_part_2 * B_omega_1_u - R_omega_3;
-    let A_sigma_omega_3 = inv_m0 * (two_m0_r * omega_3 - R_m0 * omega_2)
-        - A_omega_1_omega_3_part_6 * B_omega_1_u;
-    let A_sigma_sigma = R_m0_r_omega_1 * A_omega_1_omega_1_part_2;
-    let A_sigma_theta = A_omega_1_theta_part_5 * B_omega_1_u - g_cos_theta;
-    let A_sigma_r = R * A_omega_1_r + inv_m0 * d_f_4_d_r;
+    let B_omega_1_u_part_1 = R * omega_1_dot_part_1;
+    let A_sigma_omega_1_part_1 = A_omega_1_omega_1_part_1 * B_omega_1_u_part_1;
+    let A_sigma_omega_1 = two * (omega_1_r + A_sigma_omega_1_part_1);
+    let A_sigma_omega_2 = A_omega_1_omega_2_part_1 * B_omega_1_u_part_1 - R_omega_3;
+    let A_sigma_omega_3 = inv_m0 * (two_m0_r * omega_3 - m0_R * omega_2)
+        - A_omega_1_omega_3_part_3 * B_omega_1_u_part_1;
+    let A_sigma_sigma = m0_R_omega_1_r * A_omega_1_omega_1_part_2;
+    let A_sigma_theta = A_omega_1_theta_part_5 * B_omega_1_u_part_1 - g_cos_theta;
+    let A_sigma_r = R * A_omega_1_r_part_3 + inv_m0 * d_f_4_d_r;
 
     // Row `psi` of A.
-    let A_psi_theta = A_psi_omega_3 * f_1_part_1;
+    let A_psi_theta = inv_cos_theta * tan_theta_omega_3;
 
     // Row `phi` of A.
-    let A_phi_theta = -A_psi_omega_3_squared * omega_3;
+    let A_phi_theta = -inv_cos_theta_squared * omega_3;
 
     // Row `x_G` of A.
     let R_cos_theta = R * cos_theta;
     let A_x_G_omega_1 = sin_psi * R_cos_theta;
     let A_x_G_omega_2 = R * cos_psi;
-    let sin_theta_R_omega_1 = sin_theta * R_omega_1;
-    let A_x_G_theta = -sin_psi * sin_theta_R_omega_1;
+    let R_sin_theta_omega_1 = sin_theta * R_omega_1;
+    let A_x_G_theta = -sin_psi * R_sin_theta_omega_1;
 
     // Row `y_G` of A.
     let A_y_G_omega_1 = -cos_psi * R_cos_theta;
     let A_y_G_omega_2 = R * sin_psi;
-    let A_y_G_theta = cos_psi * sin_theta_R_omega_1;
+    let A_y_G_theta = cos_psi * R_sin_theta_omega_1;
 
     // Row `sigma` of B.
-    let B_sigma_u = inv_m0 + R * B_omega_1_u;
+    let B_sigma_u = inv_m0 + R * B_omega_1_u_part_1;
 
     // Rows and columns: 0 omega_1, 1 omega_2, 2 omega_3, 3 sigma, 4 theta, 5 r, 6 psi, 7 phi,
     //   8 x_G, 9 y_G.
@@ -663,7 +659,7 @@ pub fn jacobians<T: Real>(
     A[0][2] = A_omega_1_omega_3;
     A[0][3] = A_omega_1_sigma;
     A[0][4] = A_omega_1_theta;
-    A[0][5] = A_omega_1_r;
+    A[0][5] = A_omega_1_r_part_3;
     A[1][0] = A_omega_2_omega_1;
     A[1][1] = A_omega_2_omega_2;
     A[1][2] = A_omega_2_omega_3;
@@ -684,10 +680,10 @@ pub fn jacobians<T: Real>(
     A[3][5] = A_sigma_r;
     A[4][0] = one;
     A[5][3] = one;
-    A[6][2] = A_psi_omega_3;
+    A[6][2] = inv_cos_theta;
     A[6][4] = A_psi_theta;
     A[7][1] = one;
-    A[7][2] = -sin_theta_A_psi_omega_3;
+    A[7][2] = -tan_theta;
     A[7][4] = A_phi_theta;
     A[8][0] = A_x_G_omega_1;
     A[8][1] = A_x_G_omega_2;
@@ -702,7 +698,7 @@ pub fn jacobians<T: Real>(
     //   8 x_G, 9 y_G.
     // Columns: 0 u.
     let mut B = [[zero; 1]; 10];
-    B[0][0] = B_omega_1_u;
+    B[0][0] = B_omega_1_u_part_1;
     B[3][0] = B_sigma_u;
 
     Jacobians {
@@ -761,118 +757,117 @@ pub fn parameter_jacobian<T: Real>(
     let three_halves_R_squared = three_halves * R_squared;
     let quarter_R_squared = quarter * R_squared;
     let m0_R = m0 * R;
-    let R_m = R * m;
+    let m_R = m * R;
     let quarter_m_R_squared = quarter * m_R_squared;
     let three_halves_m_R_squared = three_halves * m_R_squared;
-    let half_R_m = half * R_m;
-    let d_M_22_d_R = two * m0_R + three * R_m;
-    let M_22 = m0_R_squared + three_halves_m_R_squared;
+    let half_m_R = half * m_R;
+    let d_M_22_d_R = three * m_R + two * m0_R;
+    let M_22 = three_halves_m_R_squared + m0_R_squared;
     let inv_m0 = one / m0;
 
     // Row `omega_1` of P.
     let m0_r = m0 * r;
-    let m0_r_r = m0_r * r;
-    let M_11 = m0_R_squared + m0_r_r + five_quarters * m_R_squared;
-    let inv_m0_R_squared_minus_M_11 = one / (m0_R_squared - M_11);
+    let m0_r_squared = m0_r * r;
+    let M_11 = five_quarters * m_R_squared + m0_R_squared + m0_r_squared;
+    let P_omega_1_m_part_1 = one / (m0_R_squared - M_11);
     let g_sin_theta = g * sin_theta;
     let R_g_sin_theta = R * g_sin_theta;
-    let omega_3_omega_2 = omega_3 * omega_2;
+    let omega_2_omega_3 = omega_2 * omega_3;
     let tan_theta = sin_theta / cos_theta;
     let omega_3_squared = omega_3 * omega_3;
     let tan_theta_omega_3_squared = tan_theta * omega_3_squared;
-    let d_f_1_d_m = R_g_sin_theta + omega_3_omega_2 * three_halves_R_squared
-        - tan_theta_omega_3_squared * quarter_R_squared;
-    let omega_3_omega_2_m0_R = omega_3_omega_2 * m0_R;
+    let d_f_1_d_m = R_g_sin_theta + three_halves_R_squared * omega_2_omega_3
+        - quarter_R_squared * tan_theta_omega_3_squared;
+    let m0_R_omega_2_omega_3 = m0_R * omega_2_omega_3;
     let omega_1_squared = omega_1 * omega_1;
     let f_4_part_1 = m0 * g_sin_theta - m0_r * omega_3_squared;
-    let f_4 = m0_r * omega_1_squared + u - omega_3_omega_2_m0_R - f_4_part_1;
+    let f_4 = m0_r * omega_1_squared + u - f_4_part_1 - m0_R_omega_2_omega_3;
     let two_sigma = two * sigma;
     let r_squared = r * r;
     let R_r = R * r;
-    let f_1_part_1 = R_g_sin_theta + R_squared * omega_3_omega_2
-        + omega_3_omega_2 * tan_theta * R_r - two_sigma * r * omega_1
+    let f_1_part_1 = R_g_sin_theta + R_squared * omega_2_omega_3
+        + omega_2_omega_3 * tan_theta * R_r - two_sigma * omega_1 * r
         - tan_theta_omega_3_squared * r_squared - omega_3_squared * R_r
         - g * cos_theta * r;
-    let f_1 = g_sin_theta * R_m + omega_3_omega_2 * three_halves_m_R_squared
-        + m0 * f_1_part_1 - tan_theta_omega_3_squared * quarter_m_R_squared;
-    let omega_1_dot = -inv_m0_R_squared_minus_M_11 * (R * f_4 + f_1);
-    let P_omega_1_m_part_1 = inv_m0_R_squared_minus_M_11 * omega_1_dot;
-    let P_omega_1_m = five_quarters * R_squared * P_omega_1_m_part_1
-        - inv_m0_R_squared_minus_M_11 * d_f_1_d_m;
+    let f_1 = m_R * g_sin_theta + three_halves_m_R_squared * omega_2_omega_3
+        + m0 * f_1_part_1 - quarter_m_R_squared * tan_theta_omega_3_squared;
+    let omega_1_dot = -P_omega_1_m_part_1 * (f_1 + R * f_4);
+    let P_omega_1_m_part_2 = P_omega_1_m_part_1 * omega_1_dot;
+    let P_omega_1_m = five_quarters * R_squared * P_omega_1_m_part_2
+        - P_omega_1_m_part_1 * d_f_1_d_m;
     let d_f_4_d_m0 = r * (omega_3_squared + omega_1_squared) - g_sin_theta
-        - R * omega_3_omega_2;
-    let P_omega_1_m0_part_1 = f_1_part_1 + R * d_f_4_d_m0;
-    let P_omega_1_m0 = r_squared * P_omega_1_m_part_1
-        - inv_m0_R_squared_minus_M_11 * P_omega_1_m0_part_1;
-    let tan_theta_half_R_m_omega_3 = tan_theta * half_R_m * omega_3;
-    let P_omega_1_R_part_1 = omega_2 * (m0_r * tan_theta + d_M_22_d_R);
-    let P_omega_1_R_part_2 = tan_theta_half_R_m_omega_3 - P_omega_1_R_part_1;
-    let P_omega_1_R_part_3 = omega_3_omega_2_m0_R + omega_3 * P_omega_1_R_part_2;
+        - R * omega_2_omega_3;
+    let P_omega_1_m0 = r_squared * P_omega_1_m_part_2
+        - P_omega_1_m_part_1 * (f_1_part_1 + R * d_f_4_d_m0);
+    let half_m_R_tan_theta_omega_3 = half_m_R * tan_theta * omega_3;
+    let P_omega_1_R_part_1 = omega_2 * (d_M_22_d_R + m0_r * tan_theta);
+    let P_omega_1_R_part_2 = half_m_R_tan_theta_omega_3 - P_omega_1_R_part_1;
+    let P_omega_1_R_part_3 = m0_R_omega_2_omega_3 + omega_3 * P_omega_1_R_part_2;
     let P_omega_1_R_part_4 = P_omega_1_R_part_3 - f_4_part_1 - f_4 - m * g_sin_theta;
-    let P_omega_1_R = five_halves * R_m * P_omega_1_m_part_1
-        + inv_m0_R_squared_minus_M_11 * P_omega_1_R_part_4;
-    let P_omega_1_g_part_1 = sin_theta * R_m - m0_r * cos_theta;
-    let P_omega_1_g = -inv_m0_R_squared_minus_M_11 * P_omega_1_g_part_1;
+    let P_omega_1_R = five_halves * m_R * P_omega_1_m_part_2
+        + P_omega_1_m_part_1 * P_omega_1_R_part_4;
+    let P_omega_1_g = -P_omega_1_m_part_1 * (sin_theta * m_R - cos_theta * m0_r);
 
     // Row `omega_2` of P.
-    let M_33 = m0_r_r + quarter_m_R_squared;
+    let M_33 = quarter_m_R_squared + m0_r_squared;
     let d_D_2_d_m = three_halves_R_squared * M_33 + quarter_R_squared * M_22;
-    let R_m0_r = R * m0_r;
-    let omega_2_omega_1 = omega_2 * omega_1;
-    let f_3_part_1 = m0_r * two_sigma - omega_1 * (R_m0_r + tan_theta * M_33);
-    let f_3 = -(half * m_R_squared * omega_2_omega_1 + omega_3 * f_3_part_1);
-    let omega_3_omega_1 = omega_3 * omega_1;
-    let tan_theta_omega_3_omega_1 = tan_theta * omega_3_omega_1;
-    let f_2_part_1 = m0_r * tan_theta_omega_3_omega_1;
-    let two_sigma_omega_3 = two_sigma * omega_3;
-    let f_2_part_2 = m0_R * omega_3_omega_1 + R_m * omega_3_omega_1;
-    let f_2 = -R * (f_2_part_1 + f_2_part_2 - m0 * two_sigma_omega_3);
-    let D_2 = M_33 * M_22 - R_squared * m0_r * m0_r;
+    let m0_R_r = R * m0_r;
+    let omega_1_omega_2 = omega_1 * omega_2;
+    let f_3_part_1 = m0_r * two_sigma - omega_1 * (m0_R_r + tan_theta * M_33);
+    let f_3 = -(half * m_R_squared * omega_1_omega_2 + omega_3 * f_3_part_1);
+    let omega_1_omega_3 = omega_1 * omega_3;
+    let tan_theta_omega_1_omega_3 = tan_theta * omega_1_omega_3;
+    let f_2_part_1 = m0_r * tan_theta_omega_1_omega_3;
+    let two_omega_3_sigma = two_sigma * omega_3;
+    let f_2_part_2 = m0_R * omega_1_omega_3 + m_R * omega_1_omega_3;
+    let f_2 = -R * (f_2_part_1 + f_2_part_2 - m0 * two_omega_3_sigma);
+    let D_2 = M_22 * M_33 - R_squared * m0_r * m0_r;
     let inv_D_2 = one / D_2;
     let inv_D_2_squared = inv_D_2 * inv_D_2;
-    let P_omega_2_m_part_1 = inv_D_2_squared * (R_m0_r * f_3 + M_33 * f_2);
-    let P_omega_2_m_part_2 = tan_theta_omega_3_omega_1 - two * omega_2_omega_1;
+    let P_omega_2_m_part_1 = inv_D_2_squared * (m0_R_r * f_3 + M_33 * f_2);
+    let P_omega_2_m_part_2 = tan_theta_omega_1_omega_3 - two * omega_1_omega_2;
     let P_omega_2_m_part_3 = R_squared * P_omega_2_m_part_2;
-    let R_squared_omega_3_omega_1 = R_squared * omega_3_omega_1;
-    let P_omega_2_m_part_4 = four * M_33 * R_squared_omega_3_omega_1 - R_squared * f_2;
+    let R_squared_omega_1_omega_3 = R_squared * omega_1_omega_3;
+    let P_omega_2_m_part_4 = four * M_33 * R_squared_omega_1_omega_3 - R_squared * f_2;
     let minus_quarter_over_D_2 = -quarter * inv_D_2;
-    let P_omega_2_m_part_5 = P_omega_2_m_part_4 - R_m0_r * P_omega_2_m_part_3;
+    let P_omega_2_m_part_5 = P_omega_2_m_part_4 - m0_R_r * P_omega_2_m_part_3;
     let P_omega_2_m = minus_quarter_over_D_2 * P_omega_2_m_part_5
         - d_D_2_d_m * P_omega_2_m_part_1;
-    let d_f_2_d_m0 = R * two_sigma_omega_3 - R_squared_omega_3_omega_1
-        - R_r * tan_theta_omega_3_omega_1;
-    let d_f_3_d_m0 = r_squared * tan_theta_omega_3_omega_1 + R_r * omega_3_omega_1
-        - two_sigma_omega_3 * r;
+    let d_f_2_d_m0 = R * two_omega_3_sigma - R_squared_omega_1_omega_3
+        - R_r * tan_theta_omega_1_omega_3;
+    let d_f_3_d_m0 = r_squared * tan_theta_omega_1_omega_3 + R_r * omega_1_omega_3
+        - two_omega_3_sigma * r;
     let P_omega_2_m0_part_1 = M_33 * d_f_2_d_m0 + r_squared * f_2;
-    let P_omega_2_m0_part_2 = P_omega_2_m0_part_1 + R_m0_r * d_f_3_d_m0 + R_r * f_3;
-    let d_D_2_d_m0 = r_squared * M_22 + R_squared * (M_33 - two * m0_r_r);
+    let P_omega_2_m0_part_2 = P_omega_2_m0_part_1 + m0_R_r * d_f_3_d_m0 + R_r * f_3;
+    let d_D_2_d_m0 = M_22 * r_squared + R_squared * (M_33 - two * m0_r_squared);
     let P_omega_2_m0 = inv_D_2 * P_omega_2_m0_part_2 - P_omega_2_m_part_1 * d_D_2_d_m0;
-    let two_R_m0_r = two * R_m0_r;
-    let d_D_2_d_R = d_M_22_d_R * M_33 + half_R_m * M_22 - m0_r * two_R_m0_r;
-    let d_f_3_d_R = m0_r * omega_3_omega_1 + half_R_m * tan_theta_omega_3_omega_1
-        - R_m * omega_2_omega_1;
-    let P_omega_2_R_part_1 = f_2_part_2 + half * f_2_part_1 - m0 * omega_3 * sigma;
-    let P_omega_2_R_part_2 = two * M_33 * P_omega_2_R_part_1 - half_R_m * f_2;
-    let P_omega_2_R_part_3 = P_omega_2_R_part_2 - m0_r * f_3 - R_m0_r * d_f_3_d_R;
+    let two_m0_R_r = two * m0_R_r;
+    let d_D_2_d_R = d_M_22_d_R * M_33 + half_m_R * M_22 - m0_r * two_m0_R_r;
+    let d_f_3_d_R = m0_r * omega_1_omega_3 + half_m_R * tan_theta_omega_1_omega_3
+        - m_R * omega_1_omega_2;
+    let P_omega_2_R_part_1 = half * f_2_part_1 + f_2_part_2 - m0 * omega_3 * sigma;
+    let P_omega_2_R_part_2 = two * M_33 * P_omega_2_R_part_1 - half_m_R * f_2;
+    let P_omega_2_R_part_3 = P_omega_2_R_part_2 - m0_r * f_3 - m0_R_r * d_f_3_d_R;
     let P_omega_2_R = -(P_omega_2_m_part_1 * d_D_2_d_R + inv_D_2 * P_omega_2_R_part_3);
 
     // Row `omega_3` of P.
-    let P_omega_3_m_part_1 = inv_D_2_squared * (R_m0_r * f_2 + M_22 * f_3);
-    let P_omega_3_m_part_2 = R_m0_r * R_squared_omega_3_omega_1;
-    let P_omega_3_m_part_3 = P_omega_3_m_part_2 - three_halves_R_squared * f_3;
-    let P_omega_3_m_part_4 = P_omega_3_m_part_3 - quarter * M_22 * P_omega_2_m_part_3;
-    let P_omega_3_m = -(d_D_2_d_m * P_omega_3_m_part_1 + inv_D_2 * P_omega_3_m_part_4);
+    let P_omega_3_m_part_1 = inv_D_2_squared * (m0_R_r * f_2 + M_22 * f_3);
+    let m0_R_cubed_omega_1_omega_3_r = m0_R_r * R_squared_omega_1_omega_3;
+    let three_halves_R_squared_f_3 = three_halves_R_squared * f_3;
+    let P_omega_3_m_part_2 = m0_R_cubed_omega_1_omega_3_r - three_halves_R_squared_f_3;
+    let P_omega_3_m_part_3 = P_omega_3_m_part_2 - quarter * M_22 * P_omega_2_m_part_3;
+    let P_omega_3_m = -(d_D_2_d_m * P_omega_3_m_part_1 + inv_D_2 * P_omega_3_m_part_3);
     let P_omega_3_m0_part_1 = R_squared * f_3 + M_22 * d_f_3_d_m0;
-    let P_omega_3_m0_part_2 = P_omega_3_m0_part_1 + R_m0_r * d_f_2_d_m0 + R_r * f_2;
+    let P_omega_3_m0_part_2 = P_omega_3_m0_part_1 + m0_R_r * d_f_2_d_m0 + R_r * f_2;
     let P_omega_3_m0 = inv_D_2 * P_omega_3_m0_part_2 - d_D_2_d_m0 * P_omega_3_m_part_1;
-    let P_omega_3_R_part_1 = two_R_m0_r * P_omega_2_R_part_1 - M_22 * d_f_3_d_R;
+    let P_omega_3_R_part_1 = two_m0_R_r * P_omega_2_R_part_1 - M_22 * d_f_3_d_R;
     let P_omega_3_R_part_2 = P_omega_3_R_part_1 - d_M_22_d_R * f_3 - m0_r * f_2;
     let P_omega_3_R = -(inv_D_2 * P_omega_3_R_part_2 + d_D_2_d_R * P_omega_3_m_part_1);
 
     // Row `sigma` of P.
     let P_sigma_m = R * P_omega_1_m;
-    let P_sigma_m0 = R * P_omega_1_m0 - inv_m0 * (f_4 * inv_m0 - d_f_4_d_m0);
-    let P_sigma_R = omega_1_dot + R * P_omega_1_R - omega_3_omega_2;
+    let P_sigma_m0 = R * P_omega_1_m0 - inv_m0 * (inv_m0 * f_4 - d_f_4_d_m0);
+    let P_sigma_R = omega_1_dot + R * P_omega_1_R - omega_2_omega_3;
     let P_sigma_g = R * P_omega_1_g - sin_theta;
 
     // Row `x_G` of P.
@@ -880,7 +875,7 @@ pub fn parameter_jacobian<T: Real>(
     let P_x_G_R = sin_psi * cos_theta_omega_1 + cos_psi * omega_2;
 
     // Row `y_G` of P.
-    let P_y_G_R = sin_psi * omega_2 - cos_theta_omega_1 * cos_psi;
+    let P_y_G_R = sin_psi * omega_2 - cos_psi * cos_theta_omega_1;
 
     // Rows: 0 omega_1, 1 omega_2, 2 omega_3, 3 sigma, 4 theta, 5 r, 6 psi, 7 phi,
     //   8 x_G, 9 y_G.
@@ -923,16 +918,16 @@ pub fn energies<T: Real>(
     let three_quarters = T::constant(0.75);
 
     // Combinations of parameters.
-    let R_m = R * m;
+    let m_R = m * R;
 
     // kinetic
-    let kinetic = three_quarters * R * R_m * omega_2 * omega_2;
+    let kinetic = three_quarters * R * m_R * omega_2 * omega_2;
 
     // potential
-    let potential = g * R_m * theta.cos();
+    let potential = g * m_R * theta.cos();
 
     // power
-    let power = u * sigma;
+    let power = sigma * u;
 
     Energies {
         kinetic,

@@ -15,6 +15,7 @@ mod source;
 mod summary;
 mod table;
 mod tabulated;
+mod thorough;
 
 use std::process::ExitCode;
 

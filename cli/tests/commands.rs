@@ -42,6 +42,51 @@ fn new_writes_a_spec_that_checks_and_never_overwrites() {
 }
 
 #[test]
+fn a_thorough_check_tells_what_was_proven_against_whom() {
+    let folder = Folder::new();
+    let command = ["check", "--thorough", "unicycle", "--json", "check.json"];
+    let told = folder.done(&command).stdout;
+    for text in [
+        "three formulations    agree",
+        "Kane                proved identical: mass matrix, bias, forces, accelerations",
+        "Lagrange            proved identical: accelerations, constraint forces",
+        "a false one among them has a chance below",
+    ] {
+        assert!(told.contains(text), "{text} is missing in\n{told}");
+    }
+    let thorough = &folder.json("check.json")["specs"][0]["thorough"];
+    assert_eq!(thorough["agrees"], true);
+    assert!(thorough["error_bound"].as_f64().expect("a bound") < 1e-12);
+    assert!(thorough["seconds"].as_f64().expect("a time") >= 0.0);
+    let comparisons = thorough["comparisons"].as_array().expect("a list");
+    assert!(comparisons.iter().any(|c| {
+        c["against"] == "Lagrange" && c["quantity"] == "accelerations" && c["method"] == "identity"
+    }));
+    // Without the flag nobody waits for it.
+    folder.done(&["check", "unicycle", "--json", "quick.json"]);
+    assert!(folder.json("quick.json")["specs"][0]["thorough"].is_null());
+}
+
+#[test]
+fn a_thorough_check_fails_where_nothing_can_be_compared() {
+    let folder = Folder::new();
+    folder.write(
+        "nowhere.toml",
+        "[mechanism]\nname = 'nowhere'\ntitle = 'a mass nowhere'\n\
+         [parameters]\nm = { value = 1, unit = 'kg' }\nl = { value = 1, unit = 'm' }\n\
+         [coordinates]\nx = { unit = 'm', initial = 0.1 }\n\
+         [points]\nP = { from = 'O', in = 'ground', at = ['x', 0, 0] }\n\
+         Q = { from = 'O', in = 'ground', at = ['2*l', 0, 0] }\n\
+         [bodies]\nb = { centre = 'P', mass = 'm' }\n\
+         [pseudo_velocities]\nv = 'dot(x)'\n\
+         [loads]\nleft = { kind = 'spring', between = ['O', 'P'], stiffness = '3 [N/m]*sqrt(-m/(1 [kg]))', relaxed = 'l' }\n\
+         right = { kind = 'spring', between = ['P', 'Q'], stiffness = '3 [N/m]', relaxed = 'l' }\n",
+    );
+    let parts = ["could not be compared", "declare a `range`"];
+    folder.fails(4, &["check", "--thorough", "nowhere.toml"], &parts);
+}
+
+#[test]
 fn check_tells_what_a_mechanism_is() {
     let folder = Folder::new();
     let told = folder

@@ -4,6 +4,7 @@ pub mod audit;
 pub mod build;
 pub mod compile;
 pub mod emit;
+pub mod formulations;
 pub mod interpreted;
 #[cfg(feature = "jit")]
 pub mod jit;

@@ -4,9 +4,10 @@ use std::fmt::Write as _;
 use std::time::{Duration, Instant};
 
 use appell_codegen::compile::{compile, derived};
+use appell_codegen::formulations::compare;
 use appell_codegen::program::FunctionKind;
 use appell_codegen::schedule::schedule;
-use appell_spec::Report;
+use appell_spec::{Code, Report};
 
 /// A text this long to derive would make an editor wait.
 const LONGEST_WAIT: Duration = Duration::from_secs(20);
@@ -281,4 +282,19 @@ fn a_long_chain_neither_hangs_nor_fills_the_memory() {
         assert!(report.plain().contains("too-large"), "{}", report.plain());
     }
     assert!(start.elapsed() < LONGEST_WAIT, "{:?}", start.elapsed());
+}
+
+#[test]
+fn the_formulations_of_a_long_chain_are_compared_or_refused_in_time() {
+    for links in [8, 24] {
+        let Ok(chain) = derived("chain.toml", &chain(links)) else {
+            continue;
+        };
+        let start = Instant::now();
+        match compare(&chain.mechanism, &chain.derivation) {
+            Ok(verdict) => assert!(verdict.agrees(), "{links} links: {verdict:#?}"),
+            Err(findings) => assert_eq!(findings[0].code, Code::TooLarge, "{findings:?}"),
+        }
+        assert!(start.elapsed() < LONGEST_WAIT, "{:?}", start.elapsed());
+    }
 }

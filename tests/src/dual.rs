@@ -6,7 +6,7 @@ use appell_codegen::program::{FunctionKind, Program};
 use appell_codegen::symbolic::{Expr, Function, Graph, Node, Relation, SymbolId};
 use appell_runtime::{Dual, Real};
 
-use crate::independent::Point;
+use crate::point::Point;
 
 type D = Dual<f64, 1>;
 

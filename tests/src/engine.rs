@@ -9,7 +9,7 @@ use appell_models::Shipped;
 use appell_runtime::model::{At, Model};
 use appell_spec::Mechanism;
 
-use crate::independent::Point;
+use crate::point::Point;
 use crate::shipped;
 
 /// A model and how it is executed.

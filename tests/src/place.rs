@@ -4,7 +4,7 @@ use appell_codegen::interpreted::InterpretedModel;
 use appell_runtime::model::Model;
 
 use crate::engine::{Evaluation, assert_close, interpreter};
-use crate::independent::Point;
+use crate::point::Point;
 use crate::random::Random;
 use crate::shipped;
 

@@ -18,19 +18,31 @@ pub fn workspace() -> PathBuf {
 
 /// Names of all shipped mechanisms in alphabetical order.
 pub fn names() -> Vec<String> {
-    let folder = workspace().join("generated/mechanisms");
-    let mut names: Vec<String> = std::fs::read_dir(folder)
-        .unwrap()
+    let specs = specs("generated/mechanisms").into_iter();
+    let stem = |path: PathBuf| path.file_stem().unwrap().to_string_lossy().into_owned();
+    specs.map(stem).collect()
+}
+
+/// The mechanisms that are shipped as specs alone.
+pub fn gallery() -> Vec<Mechanism> {
+    let specs = specs("generated/gallery").into_iter();
+    let mechanism = |path: PathBuf| {
+        let text = std::fs::read_to_string(&path).unwrap();
+        read(&path.to_string_lossy(), &text)
+    };
+    specs.map(mechanism).collect()
+}
+
+/// The specs in a folder, in alphabetical order.
+fn specs(folder: &str) -> Vec<PathBuf> {
+    let entries = std::fs::read_dir(workspace().join(folder)).unwrap();
+    let mut paths: Vec<PathBuf> = entries
         .map(|entry| entry.unwrap().path())
-        .filter(|path| {
-            path.extension()
-                .is_some_and(|extension| extension == "toml")
-        })
-        .map(|path| path.file_stem().unwrap().to_string_lossy().into_owned())
+        .filter(|path| path.extension().is_some_and(|end| end == "toml"))
         .collect();
-    names.sort();
-    assert!(!names.is_empty(), "no mechanism is shipped");
-    names
+    paths.sort();
+    assert!(!paths.is_empty(), "no mechanism in {folder}");
+    paths
 }
 
 /// Text of a shipped spec.

@@ -6,8 +6,8 @@ use appell_codegen::mechanics::gibbs_appell::{acceleration_energy, kinetic_energ
 use appell_codegen::symbolic::{Expr, Graph};
 use appell_runtime::model::Model;
 use appell_tests::engine::{Evaluation, assert_close, assert_schedules, engines, interpreter};
-use appell_tests::independent::Point;
 use appell_tests::paper::energy_rate;
+use appell_tests::point::Point;
 use appell_tests::random::Random;
 use appell_tests::{dual, shipped};
 use nalgebra::DMatrix;

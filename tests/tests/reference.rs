@@ -7,7 +7,7 @@ use appell_runtime::Dual;
 use appell_runtime::model::{Model, ModelInfo};
 use appell_tests::engine::{Engine, Evaluation, assert_close, engines};
 use appell_tests::formula::{Scope, definitions};
-use appell_tests::independent::Point;
+use appell_tests::point::Point;
 use appell_tests::random::Random;
 use appell_tests::reference::{cases, number, numbers};
 use serde_json::Value;

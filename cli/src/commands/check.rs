@@ -10,6 +10,7 @@ use serde_json::{Value, json};
 
 use crate::failure::{Failure, shown, tell};
 use crate::source::Source;
+use crate::thorough::Thorough;
 use crate::{files, progress};
 
 /// Validates specs and tells what they describe.
@@ -25,6 +26,12 @@ pub(crate) struct Check {
     /// Write what was found as JSON; `-` is standard output
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
+    /// Compare the equations with Kane's and with Lagrange's with multipliers
+    ///
+    /// Equality is proven by an identity test with a bound on its error where that can tell, and
+    /// else seen at random points in the declared ranges.
+    #[arg(long)]
+    thorough: bool,
 }
 
 impl Check {
@@ -33,8 +40,11 @@ impl Check {
         let mut failed = Vec::new();
         let mut found = Vec::new();
         for model in &self.models {
-            match check(model, quiet) {
-                Ok(entry) => found.push(entry),
+            match self.check(model, quiet) {
+                Ok((entry, disagreement)) => {
+                    found.push(entry);
+                    failed.extend(disagreement);
+                }
                 Err(failure) => {
                     found.push(entry(model, &failure));
                     failed.push(failure);
@@ -50,24 +60,36 @@ impl Check {
             Err(Failure::Several(failed))
         }
     }
-}
 
-/// Tells of one spec and returns what it tells to programs.
-fn check(model: &str, quiet: bool) -> Result<Value, Failure> {
-    let source = Source::find(model)?;
-    let spinner = progress::spinner(&format!("deriving {}", source.file));
-    let derived = audited(&source.file, &source.text);
-    spinner.finish_and_clear();
-    let derived = derived?;
-    let summary = Summary::of(&derived);
-    if !quiet {
-        files::print(&summary.text(&source))?;
+    /// Tells of one spec. Returns what it tells to programs, and whether formulations disagree.
+    fn check(&self, model: &str, quiet: bool) -> Result<(Value, Option<Failure>), Failure> {
+        let source = Source::find(model)?;
+        let spinner = progress::spinner(&format!("deriving {}", source.file));
+        let derived = audited(&source.file, &source.text);
+        spinner.finish_and_clear();
+        let derived = derived?;
+        let summary = Summary::of(&derived);
+        let thorough = self.thorough.then(|| Thorough::new(&source, &derived));
+        let thorough = thorough.transpose()?;
+        if !quiet {
+            files::print(&summary.text(&source))?;
+            if let Some(thorough) = &thorough {
+                files::print(&thorough.text())?;
+            }
+        }
+        let warnings = Report::new(source.file.as_str(), source.text.as_str(), derived.warnings);
+        if !warnings.diagnostics().is_empty() {
+            tell(&shown(&warnings));
+        }
+        let mut entry = summary.json(&source, &warnings);
+        let Some(thorough) = thorough else {
+            return Ok((entry, None));
+        };
+        let disagreement = thorough.failure(&source);
+        entry["ok"] = disagreement.is_none().into();
+        entry["thorough"] = thorough.json();
+        Ok((entry, disagreement))
     }
-    let warnings = Report::new(source.file.as_str(), source.text.as_str(), derived.warnings);
-    if !warnings.diagnostics().is_empty() {
-        tell(&shown(&warnings));
-    }
-    Ok(summary.json(&source, &warnings))
 }
 
 /// What programs read of a spec that is wrong or cannot be read.

@@ -91,6 +91,15 @@ impl IdentityTest {
         }
     }
 
+    /// A test of the same graph at other points.
+    #[must_use]
+    pub fn reseeded(&self, seed: u64) -> Self {
+        Self {
+            pi: self.pi,
+            ..Self::new(seed)
+        }
+    }
+
     /// Whether `e` is zero wherever it is defined.
     pub fn is_zero(&mut self, g: &Graph, e: Expr) -> bool {
         e == Graph::ZERO || self.are_equal(g, e, Graph::ZERO)

@@ -1,0 +1,226 @@
+//! `check --thorough`: what the comparison of three formulations tells.
+
+use std::fmt::Write as _;
+use std::time::Instant;
+
+use appell_codegen::Derived;
+use appell_codegen::formulations::{Against, Agreement, Comparison, Verdict, compare};
+use serde_json::{Value, json};
+
+use crate::failure::Failure;
+use crate::progress;
+use crate::source::Source;
+
+/// The order in which people read it.
+const AGAINST: [Against; 4] = [
+    Against::Spec,
+    Against::Kane,
+    Against::Lagrange,
+    Against::Newton,
+];
+
+/// The comparison of one mechanism, and how long it took.
+pub(crate) struct Thorough {
+    verdict: Verdict,
+    seconds: f64,
+}
+
+impl Thorough {
+    /// Compares.
+    pub(crate) fn new(source: &Source, derived: &Derived) -> Result<Self, Failure> {
+        let spinner = progress::spinner(&format!("comparing formulations of {}", source.file));
+        let start = Instant::now();
+        let verdict = compare(&derived.mechanism, &derived.derivation);
+        let seconds = start.elapsed().as_secs_f64();
+        spinner.finish_and_clear();
+        match verdict {
+            Ok(verdict) => Ok(Self { verdict, seconds }),
+            Err(findings) => {
+                let reasons = findings.iter().map(|finding| finding.message.as_str());
+                let reasons: Vec<&str> = reasons.collect();
+                Err(Failure::Computation(format!(
+                    "{}: the formulations cannot be compared: {}",
+                    source.file,
+                    reasons.join("; ")
+                )))
+            }
+        }
+    }
+
+    /// One line per formulation and method, as the summary of `check` writes them.
+    pub(crate) fn text(&self) -> String {
+        let answer = if self.verdict.agrees() {
+            "agree"
+        } else {
+            "DO NOT AGREE"
+        };
+        let mut text = format!("  three formulations    {answer}, {:.2} s\n", self.seconds);
+        let mut proofs = false;
+        // Writing to a string cannot fail.
+        let mut line = |against: Against, what: &str| {
+            let _ = writeln!(text, "    {:<20}{what}", against.word());
+        };
+        for against in AGAINST {
+            let all = self.verdict.comparisons.iter();
+            let (proven, others): (Vec<&Comparison>, Vec<&Comparison>) = all
+                .filter(|comparison| comparison.against == against)
+                .partition(|comparison| comparison.agreement == Agreement::Identical);
+            if !proven.is_empty() {
+                proofs = true;
+                let proven: Vec<&str> = proven.iter().map(|c| c.quantity).collect();
+                line(against, &format!("proved identical: {}", proven.join(", ")));
+            }
+            for comparison in others {
+                line(against, &seen(comparison));
+            }
+        }
+        if proofs {
+            let _ = writeln!(
+                text,
+                "    {:<20}a false one among them has a chance below {:.0e}",
+                "proofs", self.verdict.error_bound
+            );
+        }
+        text
+    }
+
+    /// What programs read.
+    pub(crate) fn json(&self) -> Value {
+        let comparison = |comparison: &Comparison| {
+            let mut entry = json!({
+                "against": comparison.against.word(), "quantity": comparison.quantity,
+            });
+            let told = match &comparison.agreement {
+                Agreement::Identical => json!({ "agrees": true, "method": "identity" }),
+                Agreement::AtPoints { points, deviation } => json!({
+                    "agrees": true, "method": "points", "points": points, "deviation": deviation,
+                }),
+                Agreement::Different {
+                    entry,
+                    values,
+                    deviation,
+                } => json!({
+                    "agrees": false, "method": "points", "entry": entry, "values": values,
+                    "deviation": deviation,
+                }),
+                Agreement::Undefined => json!({ "agrees": null, "method": "points", "points": 0 }),
+            };
+            if let (Value::Object(entry), Value::Object(told)) = (&mut entry, told) {
+                entry.extend(told);
+            }
+            entry
+        };
+        let comparisons: Vec<Value> = self.verdict.comparisons.iter().map(comparison).collect();
+        json!({
+            "agrees": self.verdict.agrees(), "comparisons": comparisons,
+            "error_bound": self.verdict.error_bound, "seconds": self.seconds,
+        })
+    }
+
+    /// Why the equations cannot be trusted, where that is so.
+    pub(crate) fn failure(&self, source: &Source) -> Option<Failure> {
+        if self.verdict.agrees() {
+            return None;
+        }
+        let mut text = String::new();
+        let (mut differs, mut undefined) = (false, false);
+        for comparison in &self.verdict.comparisons {
+            let (against, quantity) = (comparison.against.word(), comparison.quantity);
+            match &comparison.agreement {
+                Agreement::Different {
+                    entry,
+                    values: [derived, other],
+                    deviation,
+                } => {
+                    differs = true;
+                    let _ = write!(
+                        text,
+                        "\n  {against}: {quantity}, `{entry}` is {derived:e} by Gibbs-Appell and {other:e} \
+                         there; off by {deviation:.0e} of the largest entry"
+                    );
+                }
+                Agreement::Undefined => {
+                    undefined = true;
+                    let _ = write!(
+                        text,
+                        "\n  {against}: {quantity} has no finite value at any random point in the declared \
+                         ranges"
+                    );
+                }
+                Agreement::Identical | Agreement::AtPoints { .. } => {}
+            }
+        }
+        if differs {
+            text.push_str(
+                "\n  one spec has one motion, so at least one formulation is derived wrongly: do not use \
+                 these equations\n  the mistake is in appell, not in the spec; please report it together \
+                 with the spec",
+            );
+        }
+        if undefined {
+            text.push_str(
+                "\n  declare a `range` for the coordinates, inside which all expressions are defined",
+            );
+        }
+        let verdict = if differs {
+            "the formulations disagree"
+        } else {
+            "the formulations could not be compared"
+        };
+        Some(Failure::Computation(format!(
+            "{}: {verdict}{text}",
+            source.file
+        )))
+    }
+}
+
+/// What was seen at random points.
+fn seen(comparison: &Comparison) -> String {
+    let quantity = comparison.quantity;
+    match &comparison.agreement {
+        Agreement::Identical => format!("identical: {quantity}"),
+        Agreement::AtPoints { points, deviation } => {
+            format!("equal at {points} random points, to {deviation:.0e}: {quantity}")
+        }
+        Agreement::Different { .. } => format!("DIFFERENT: {quantity}"),
+        Agreement::Undefined => format!("not compared: {quantity}"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_disagreement_fails_and_says_what_it_means() {
+        let bias = Comparison {
+            against: Against::Kane,
+            quantity: "bias",
+            agreement: Agreement::Different {
+                entry: "omega".to_owned(),
+                values: [1.5, -1.5],
+                deviation: 2.0,
+            },
+        };
+        let thorough = Thorough {
+            verdict: Verdict {
+                comparisons: vec![bias],
+                error_bound: 0.0,
+            },
+            seconds: 0.0,
+        };
+        let source = Source {
+            file: "wheel.toml".to_owned(),
+            text: String::new(),
+            shipped: None,
+        };
+        assert!(thorough.text().contains("DO NOT AGREE"));
+        assert_eq!(thorough.json()["agrees"], false);
+        let failure = thorough.failure(&source).expect("a failure");
+        assert_eq!(failure.status(), 4);
+        let told = failure.to_string();
+        for part in ["Kane: bias, `omega` is 1.5e0", "do not use these equations"] {
+            assert!(told.contains(part), "{told}");
+        }
+    }
+}

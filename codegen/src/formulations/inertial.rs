@@ -1,0 +1,226 @@
+//! A mechanism in the ground: every vector in components of the inertial frame, every velocity the
+//! derivative of a position.
+
+use appell_spec::expr::Expr as Spec;
+use appell_spec::mechanism::{Axis, BodyId, Components, ConstraintKind, FrameId, Mechanism};
+
+use crate::mechanics::algebra::Algebra;
+use crate::mechanics::expressions::{DivisionByZero, Lowering};
+use crate::mechanics::symbols::Symbols;
+use crate::mechanics::time::TimeDerivative;
+use crate::symbolic::vector::{self, Mat3, Vec3};
+use crate::symbolic::{Expr, Graph};
+
+/// An expression of a spec in the graph.
+pub(super) type Lowered<T> = Result<T, DivisionByZero>;
+
+/// Positions and velocities for given generalised velocities.
+pub(super) struct Inertial<'a> {
+    pub(super) mechanism: &'a Mechanism,
+    pub(super) symbols: &'a Symbols,
+    /// Generalised velocities: symbols, or functions of the pseudo-velocities.
+    pub(super) rates: &'a [Expr],
+    /// From the components of each frame to those of the ground.
+    rotations: Vec<Mat3>,
+    positions: Vec<Vec3>,
+    velocities: Vec<Vec3>,
+    /// Angular velocities of the frames.
+    turning: Vec<Vec3>,
+}
+
+/// A scalar constraint on velocities.
+pub(super) struct Row {
+    /// Index of the constraint in the mechanism.
+    pub(super) constraint: usize,
+    /// What has to vanish.
+    pub(super) value: Expr,
+    /// Where a unit of its reaction acts: the force in the ground, or the multiplier as first
+    /// component where the constraint has no point.
+    pub(super) direction: Vec3,
+}
+
+impl<'a> Inertial<'a> {
+    pub(super) fn new(
+        algebra: &mut Algebra,
+        mechanism: &'a Mechanism,
+        symbols: &'a Symbols,
+        rates: &'a [Expr],
+    ) -> Lowered<Self> {
+        let mut inertial = Self {
+            mechanism,
+            symbols,
+            rates,
+            rotations: Vec::with_capacity(mechanism.frames.len()),
+            positions: Vec::with_capacity(mechanism.points.len()),
+            velocities: Vec::with_capacity(mechanism.points.len()),
+            turning: Vec::with_capacity(mechanism.frames.len()),
+        };
+        for frame in &mechanism.frames {
+            let mut rotation = match frame.parent {
+                Some(parent) => inertial.rotations[parent],
+                None => vector::IDENTITY,
+            };
+            for turn in &frame.turns {
+                let mut angle = inertial.lower(algebra, &turn.angle)?;
+                if turn.negative {
+                    angle = algebra.graph.neg(angle);
+                }
+                let turn = elementary(&mut algebra.graph, turn.axis, angle);
+                rotation = algebra.graph.mat_mat(&rotation, &turn);
+            }
+            let turning = inertial.angular_velocity(algebra, &rotation);
+            inertial.rotations.push(rotation);
+            inertial.turning.push(turning);
+        }
+        for point in &mechanism.points {
+            let mut position = inertial.in_ground(algebra, point.frame, &point.at)?;
+            if let Some(from) = point.from {
+                position = algebra.graph.add3(inertial.positions[from], position);
+            }
+            let velocity = inertial.time().of3(algebra, position);
+            inertial.positions.push(position);
+            inertial.velocities.push(velocity);
+        }
+        Ok(inertial)
+    }
+
+    /// Derivatives along the motion, pseudo-velocities held.
+    pub(super) fn time(&self) -> TimeDerivative<'a> {
+        TimeDerivative {
+            symbols: self.symbols,
+            rates: self.rates,
+        }
+    }
+
+    pub(super) fn lower(&self, algebra: &mut Algebra, expr: &Spec) -> Lowered<Expr> {
+        let (symbols, rates) = (self.symbols, self.rates);
+        Lowering { symbols, rates }.lower(&mut algebra.graph, expr)
+    }
+
+    fn lower3(&self, algebra: &mut Algebra, v: &Components) -> Lowered<Vec3> {
+        let (symbols, rates) = (self.symbols, self.rates);
+        Lowering { symbols, rates }.lower_all(&mut algebra.graph, v)
+    }
+
+    /// A vector that is written in a frame.
+    pub(super) fn in_ground(
+        &self,
+        algebra: &mut Algebra,
+        frame: FrameId,
+        v: &Components,
+    ) -> Lowered<Vec3> {
+        let v = self.lower3(algebra, v)?;
+        Ok(algebra.graph.mat_vec(&self.rotations[frame], v))
+    }
+
+    /// ω from Ṙ Rᵀ, which is the matrix of ω ×.
+    fn angular_velocity(&self, algebra: &mut Algebra, rotation: &Mat3) -> Vec3 {
+        let rate = rotation.map(|row| self.time().of3(algebra, row));
+        let mut spin = |i: usize, j: usize| algebra.graph.dot(rate[i], rotation[j]);
+        [spin(2, 1), spin(0, 2), spin(1, 0)]
+    }
+
+    /// Position of a point.
+    pub(super) fn position(&self, point: usize) -> Vec3 {
+        self.positions[point]
+    }
+
+    /// Velocity of a point, or of the material point of a body there: `v_C + ω × r`.
+    pub(super) fn velocity(&self, graph: &mut Graph, body: Option<BodyId>, point: usize) -> Vec3 {
+        let Some(body) = body else {
+            return self.velocities[point];
+        };
+        let centre = self.mechanism.bodies[body].centre;
+        let arm = graph.sub3(self.positions[point], self.positions[centre]);
+        let turning = graph.cross(self.turning(body), arm);
+        graph.add3(self.velocities[centre], turning)
+    }
+
+    /// Angular velocity of a body; zero for a point mass.
+    pub(super) fn turning(&self, body: BodyId) -> Vec3 {
+        let frame = self.mechanism.bodies[body].frame;
+        frame.map_or(vector::ZERO, |frame| self.turning[frame])
+    }
+
+    /// Mass of a body.
+    pub(super) fn mass(&self, algebra: &mut Algebra, body: BodyId) -> Lowered<Expr> {
+        self.lower(algebra, &self.mechanism.bodies[body].mass)
+    }
+
+    /// `I w` of a body, R I Rᵀ w.
+    pub(super) fn momentum(&self, algebra: &mut Algebra, body: BodyId, w: Vec3) -> Lowered<Vec3> {
+        let Some(inertia) = &self.mechanism.bodies[body].inertia else {
+            return Ok(vector::ZERO);
+        };
+        let mut tensor = vector::IDENTITY;
+        for (row, written) in tensor.iter_mut().zip(&inertia.matrix) {
+            *row = self.lower3(algebra, written)?;
+        }
+        let rotation = &self.rotations[inertia.frame];
+        let w = algebra.graph.transposed_mat_vec(rotation, w);
+        let momentum = algebra.graph.mat_vec(&tensor, w);
+        Ok(algebra.graph.mat_vec(rotation, momentum))
+    }
+
+    /// The definitions of the pseudo-velocities.
+    pub(super) fn definitions(&self, algebra: &mut Algebra) -> Lowered<Vec<Expr>> {
+        let speeds = self.mechanism.pseudo_velocities.iter();
+        speeds.map(|w| self.lower(algebra, &w.definition)).collect()
+    }
+
+    /// The constraints in the order of the spec.
+    pub(super) fn rows(&self, algebra: &mut Algebra) -> Lowered<Vec<Row>> {
+        let mut rows = Vec::new();
+        for (constraint, item) in self.mechanism.constraints.iter().enumerate() {
+            let mut row = |value, direction| {
+                rows.push(Row {
+                    constraint,
+                    value,
+                    direction,
+                });
+            };
+            match &item.kind {
+                ConstraintKind::Rolling { body, contact } => {
+                    let v = self.velocity(&mut algebra.graph, Some(*body), *contact);
+                    for (value, axis) in v.into_iter().zip(vector::IDENTITY) {
+                        row(value, axis);
+                    }
+                }
+                ConstraintKind::Velocity { zero, equals, .. } => {
+                    let (left, right) = (self.lower(algebra, zero)?, self.lower(algebra, equals)?);
+                    row(algebra.graph.sub(left, right), vector::IDENTITY[0]);
+                }
+                ConstraintKind::FixedVelocity {
+                    point,
+                    body,
+                    frame,
+                    direction,
+                    equals,
+                } => {
+                    let along = self.in_ground(algebra, *frame, direction)?;
+                    let v = self.velocity(&mut algebra.graph, *body, *point);
+                    let left = algebra.graph.dot(along, v);
+                    let right = self.lower(algebra, equals)?;
+                    row(algebra.graph.sub(left, right), along);
+                }
+                ConstraintKind::Position { zero, .. } => {
+                    let position = self.lower(algebra, zero)?;
+                    row(self.time().of(algebra, position), vector::IDENTITY[0]);
+                }
+            }
+        }
+        Ok(rows)
+    }
+}
+
+/// The rotation matrix of a turn about an axis.
+fn elementary(graph: &mut Graph, axis: Axis, angle: Expr) -> Mat3 {
+    let (sin, cos) = (graph.sin(angle), graph.cos(angle));
+    let minus = graph.neg(sin);
+    let (zero, one) = (Graph::ZERO, Graph::ONE);
+    match axis {
+        Axis::X => [[one, zero, zero], [zero, cos, minus], [zero, sin, cos]],
+        Axis::Y => [[cos, zero, sin], [zero, one, zero], [minus, zero, cos]],
+        Axis::Z => [[cos, minus, zero], [sin, cos, zero], [zero, zero, one]],
+    }
+}

@@ -1,0 +1,136 @@
+//! Kane's equations: `Σ (F - m a)·v_i + (T - I α - ω × I ω)·ω_i = 0` for every pseudo-velocity.
+
+use super::inertial::{Inertial, Lowered};
+use super::loads::{Which, efforts, generalized_force};
+use super::room;
+use crate::mechanics::algebra::Algebra;
+use crate::mechanics::finding::Outcome;
+use crate::symbolic::vector::Vec3;
+use crate::symbolic::{Expr, Graph};
+
+/// Kane's equations in the letters of Appell's.
+pub(super) struct Kane {
+    /// M, row by row.
+    pub(super) mass_matrix: Vec<Vec<Expr>>,
+    /// b.
+    pub(super) bias: Vec<Expr>,
+    /// Π.
+    pub(super) forces: Vec<Expr>,
+    /// Pseudo-accelerations.
+    pub(super) accelerations: Vec<Expr>,
+    /// Sum of all reactions by Newton's law for the whole, at given pseudo-accelerations.
+    pub(super) total_reaction: Vec3,
+}
+
+/// The motion of a body along every pseudo-velocity.
+struct Partial {
+    mass: Expr,
+    /// ∂v/∂ω of the centre of mass.
+    v: Vec<Vec3>,
+    /// ∂ω/∂ω of the body.
+    w: Vec<Vec3>,
+    /// I ∂ω/∂ω.
+    momentum: Vec<Vec3>,
+    /// m a and I α + ω × I ω without pseudo-accelerations.
+    inertial: [Vec3; 2],
+}
+
+/// Kane's equations of velocities in terms of the pseudo-velocities; `actual` are the
+/// pseudo-accelerations of Newton's law.
+pub(super) fn kane(
+    algebra: &mut Algebra,
+    inertial: &Inertial<'_>,
+    actual: &[Expr],
+) -> Outcome<Kane> {
+    let speeds = &inertial.symbols.speeds;
+    let mut bodies = Vec::with_capacity(inertial.mechanism.bodies.len());
+    for body in 0..inertial.mechanism.bodies.len() {
+        bodies.push(room(algebra, |algebra| partial(algebra, inertial, body))?);
+    }
+    let loads = room(algebra, |algebra| efforts(algebra, inertial, Which::All))?;
+    let graph = &mut algebra.graph;
+    let mut mass_matrix = vec![vec![Graph::ZERO; speeds.len()]; speeds.len()];
+    let mut bias = Vec::with_capacity(speeds.len());
+    for i in 0..speeds.len() {
+        for j in 0..speeds.len() {
+            let mut parts = Vec::new();
+            for body in &bodies {
+                let product = graph.dot(body.v[i], body.v[j]);
+                parts.push(graph.mul(body.mass, product));
+                parts.push(graph.dot(body.w[i], body.momentum[j]));
+            }
+            mass_matrix[i][j] = graph.sum(&parts);
+        }
+        let mut parts = Vec::new();
+        for body in &bodies {
+            let [force, moment] = body.inertial;
+            parts.push(graph.dot(body.v[i], force));
+            parts.push(graph.dot(body.w[i], moment));
+        }
+        bias.push(graph.sum(&parts));
+    }
+    let mut forces = Vec::with_capacity(speeds.len());
+    for &speed in speeds {
+        let force = |algebra: &mut Algebra| Ok(generalized_force(algebra, &loads, speed));
+        forces.push(room(algebra, force)?);
+    }
+    let graph = &mut algebra.graph;
+    let right = forces.iter().zip(&bias).map(|(&f, &b)| graph.sub(f, b));
+    let right = right.collect();
+    let accelerations = graph.solve_numerically(mass_matrix.concat(), right);
+
+    let mut total_reaction = [Graph::ZERO; 3];
+    for load in loads.iter().filter(|load| load.external) {
+        total_reaction = graph.sub3(total_reaction, load.force);
+    }
+    for body in &bodies {
+        total_reaction = graph.add3(total_reaction, body.inertial[0]);
+        for (&v, &acceleration) in body.v.iter().zip(actual) {
+            let mass = graph.mul(body.mass, acceleration);
+            let force = graph.scale3(mass, v);
+            total_reaction = graph.add3(total_reaction, force);
+        }
+    }
+    Ok(Kane {
+        mass_matrix,
+        bias,
+        forces,
+        accelerations,
+        total_reaction,
+    })
+}
+
+fn partial(algebra: &mut Algebra, inertial: &Inertial<'_>, body: usize) -> Lowered<Partial> {
+    let centre = inertial.mechanism.bodies[body].centre;
+    let v = inertial.velocity(&mut algebra.graph, None, centre);
+    let w = inertial.turning(body);
+    let mass = inertial.mass(algebra, body)?;
+    let mut along = |v: Vec3| -> Vec<Vec3> {
+        let speeds = inertial.symbols.speeds.iter();
+        speeds
+            .map(|&speed| v.map(|c| algebra.derivative(c, speed)))
+            .collect()
+    };
+    let (partial_v, partial_w) = (along(v), along(w));
+    let momenta = partial_w.iter();
+    let momenta: Lowered<Vec<Vec3>> = momenta
+        .map(|&w| inertial.momentum(algebra, body, w))
+        .collect();
+    let (a, alpha) = (
+        inertial.time().of3(algebra, v),
+        inertial.time().of3(algebra, w),
+    );
+    let growth = inertial.momentum(algebra, body, alpha)?;
+    let momentum = inertial.momentum(algebra, body, w)?;
+    let gyroscopic = algebra.graph.cross(w, momentum);
+    Ok(Partial {
+        mass,
+        v: partial_v,
+        w: partial_w,
+        momentum: momenta?,
+        inertial: [
+            algebra.graph.scale3(mass, a),
+            algebra.graph.add3(growth, gyroscopic),
+        ],
+    })
+}

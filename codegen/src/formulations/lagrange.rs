@@ -1,0 +1,176 @@
+//! Lagrange's equations with multipliers: `d/dt ∂T/∂q̇ - ∂T/∂q + ∂V/∂q = Q + Cᵀ λ`, `C q̈ + ċ = 0`.
+//!
+//! T is written in all generalised velocities, as if there were no constraints.
+
+use super::inertial::{Inertial, Lowered};
+use super::loads::{Which, efforts, generalized_force, potential};
+use super::room;
+use crate::mechanics::algebra::Algebra;
+use crate::mechanics::finding::Outcome;
+use crate::mechanics::rank::{LinearRow, Standing, standings};
+use crate::symbolic::{Expr, Graph, Rational, Substitution};
+
+/// The solution of Lagrange's equations.
+pub(super) struct Lagrange {
+    /// Generalised accelerations q̈.
+    pub(super) accelerations: Vec<Expr>,
+    /// Multiplier of each constraint row; `None` where it does not appear in the equations, because
+    /// geometry or other rows satisfy the row.
+    pub(super) multipliers: Vec<Option<Expr>>,
+    /// Whether rows follow from others, so that multipliers are a matter of choice.
+    pub(super) redundant: bool,
+}
+
+/// `Σ coefficient q̈ = right` in the state of the motion.
+struct Equation {
+    coefficients: Vec<Expr>,
+    right: Expr,
+}
+
+/// Lagrange's equations of velocities with symbols for q̇, solved where q̇ = `rates`.
+pub(super) fn lagrange(
+    algebra: &mut Algebra,
+    inertial: &Inertial<'_>,
+    rates: &[Expr],
+) -> Outcome<Lagrange> {
+    let n = rates.len();
+    let dynamics = dynamics(algebra, inertial)?;
+    let rows = room(algebra, |algebra| inertial.rows(algebra))?;
+    let mut constraints = Vec::with_capacity(rows.len());
+    for row in &rows {
+        let of_row = |algebra: &mut Algebra| Ok(differentiated(algebra, inertial, row.value));
+        constraints.push(room(algebra, of_row)?);
+    }
+    let active = independent(algebra, &constraints);
+    let moving = constraints.iter().filter(|row| row.moves(algebra)).count();
+
+    // M q̈ - Cᵀ λ = right, C q̈ = -ċ, in the motion that the constraints allow.
+    let size = n + active.len();
+    let mut matrix = vec![Graph::ZERO; size * size];
+    let mut right = Vec::with_capacity(size);
+    for (i, equation) in dynamics.iter().enumerate() {
+        matrix[i * size..i * size + n].copy_from_slice(&equation.coefficients);
+        right.push(equation.right);
+    }
+    for (place, &row) in (n..).zip(&active) {
+        for (k, &coefficient) in constraints[row].coefficients.iter().enumerate() {
+            matrix[place * size + k] = coefficient;
+            matrix[k * size + place] = algebra.graph.neg(coefficient);
+        }
+        right.push(constraints[row].right);
+    }
+    let mut allowed = Substitution::of_parts(
+        &algebra.graph,
+        &inertial
+            .symbols
+            .rates
+            .iter()
+            .copied()
+            .zip(rates.iter().copied())
+            .collect::<Vec<_>>(),
+    );
+    for entry in matrix.iter_mut().chain(&mut right) {
+        let in_motion = |algebra: &mut Algebra| {
+            let entry = allowed.apply(&mut algebra.graph, *entry);
+            entry.ok_or(crate::mechanics::expressions::DivisionByZero)
+        };
+        *entry = room(algebra, in_motion)?;
+    }
+    let solution = algebra.graph.solve_numerically(matrix, right);
+    let mut multipliers = vec![None; rows.len()];
+    for (place, &row) in (n..).zip(&active) {
+        multipliers[row] = Some(solution[place]);
+    }
+    Ok(Lagrange {
+        accelerations: solution[..n].to_vec(),
+        multipliers,
+        redundant: active.len() < moving,
+    })
+}
+
+/// `M q̈ = Q - ∂V/∂q + ∂T/∂q - (d/dt ∂T/∂q̇ without q̈)`, one equation per coordinate.
+fn dynamics(algebra: &mut Algebra, inertial: &Inertial<'_>) -> Outcome<Vec<Equation>> {
+    let energy = |algebra: &mut Algebra| kinetic_energy(algebra, inertial);
+    let kinetic = room(algebra, energy)?;
+    let potential = room(algebra, |algebra| potential(algebra, inertial))?;
+    let loads = |algebra: &mut Algebra| efforts(algebra, inertial, Which::WithoutPotential);
+    let loads = room(algebra, loads)?;
+    let symbols = inertial.symbols;
+    let mut equations = Vec::with_capacity(symbols.coordinates.len());
+    for (&q, &rate) in symbols.coordinates.iter().zip(&symbols.rates) {
+        let equation = |algebra: &mut Algebra| {
+            let momentum = algebra.derivative(kinetic, rate);
+            let Equation {
+                coefficients,
+                right: minus_drift,
+            } = differentiated(algebra, inertial, momentum);
+            let slope = algebra.derivative(kinetic, q);
+            let pull = algebra.derivative(potential, q);
+            let force = generalized_force(algebra, &loads, rate);
+            let graph = &mut algebra.graph;
+            let pull = graph.neg(pull);
+            Ok(Equation {
+                coefficients,
+                right: graph.sum(&[force, pull, slope, minus_drift]),
+            })
+        };
+        equations.push(room(algebra, equation)?);
+    }
+    Ok(equations)
+}
+
+/// T = Σ ½ m v·v + ½ ω·I ω
+fn kinetic_energy(algebra: &mut Algebra, inertial: &Inertial<'_>) -> Lowered<Expr> {
+    let mut parts = Vec::new();
+    for (index, body) in inertial.mechanism.bodies.iter().enumerate() {
+        let v = inertial.velocity(&mut algebra.graph, None, body.centre);
+        let square = algebra.graph.dot(v, v);
+        let mass = inertial.mass(algebra, index)?;
+        parts.push(algebra.graph.mul(mass, square));
+        let w = inertial.turning(index);
+        let momentum = inertial.momentum(algebra, index, w)?;
+        parts.push(algebra.graph.dot(w, momentum));
+    }
+    let twice = algebra.graph.sum(&parts);
+    Ok(algebra.graph.scale(&Rational::new(1, 2), twice))
+}
+
+/// The rate of what is a function of coordinates, generalised velocities and time:
+/// `Σ ∂f/∂q̇ q̈ = df/dt - (∂f/∂q q̇ + ∂f/∂t)`, with what stands without q̈ for a df/dt of zero.
+fn differentiated(algebra: &mut Algebra, inertial: &Inertial<'_>, f: Expr) -> Equation {
+    let rates = inertial.symbols.rates.iter();
+    let coefficients = rates.map(|&rate| algebra.derivative(f, rate)).collect();
+    let drift = inertial.time().of(algebra, f);
+    Equation {
+        coefficients,
+        right: algebra.graph.neg(drift),
+    }
+}
+
+impl Equation {
+    /// Whether any acceleration takes part in it.
+    fn moves(&self, algebra: &mut Algebra) -> bool {
+        let Algebra { graph, test, .. } = algebra;
+        self.coefficients.iter().any(|&c| !test.is_zero(graph, c))
+    }
+}
+
+/// The rows that are no sum of rows before them.
+fn independent(algebra: &mut Algebra, rows: &[Equation]) -> Vec<usize> {
+    let mut linear = Vec::with_capacity(rows.len());
+    for row in rows {
+        let coefficients = row.coefficients.iter();
+        let Algebra { graph, test, .. } = &mut *algebra;
+        let written = |&c: &Expr| {
+            if test.is_zero(graph, c) {
+                Graph::ZERO
+            } else {
+                c
+            }
+        };
+        linear.push(LinearRow::homogeneous(coefficients.map(written).collect()));
+    }
+    let standings = standings(algebra, &linear).into_iter().enumerate();
+    let independent = standings.filter(|(_, standing)| *standing == Standing::Independent);
+    independent.map(|(row, _)| row).collect()
+}

@@ -1,0 +1,211 @@
+//! Applied loads in the ground: as forces with the velocities along which they work, and as potentials.
+
+use appell_spec::mechanism::{Connection, LoadKind};
+
+use super::inertial::{Inertial, Lowered};
+use crate::mechanics::algebra::Algebra;
+use crate::symbolic::vector::Vec3;
+use crate::symbolic::{Expr, Graph, Rational};
+
+/// A force, torque or force along a coordinate, and the velocity with which it works.
+#[derive(Clone, Copy)]
+pub(super) struct Effort {
+    pub(super) force: Vec3,
+    pub(super) velocity: Vec3,
+    /// Whether it is a force on the mechanism from outside.
+    pub(super) external: bool,
+}
+
+/// Which loads are told as forces.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Which {
+    All,
+    /// Only those that [`potential`] does not tell.
+    WithoutPotential,
+}
+
+/// Everything that acts.
+pub(super) fn efforts(
+    algebra: &mut Algebra,
+    inertial: &Inertial<'_>,
+    which: Which,
+) -> Lowered<Vec<Effort>> {
+    let mechanism = inertial.mechanism;
+    let mut all = Vec::new();
+    for load in &mechanism.loads {
+        match &load.kind {
+            LoadKind::Gravity { down, acceleration } if which == Which::All => {
+                let g = inertial.lower(algebra, acceleration)?;
+                for (index, body) in mechanism.bodies.iter().enumerate() {
+                    let mass = inertial.mass(algebra, index)?;
+                    let weight = algebra.graph.mul(mass, g);
+                    let down = down.map(|c| algebra.graph.integer(c.into()));
+                    all.push(Effort {
+                        force: algebra.graph.scale3(weight, down),
+                        velocity: inertial.velocity(&mut algebra.graph, None, body.centre),
+                        external: true,
+                    });
+                }
+            }
+            LoadKind::Spring {
+                between,
+                stiffness,
+                relaxed,
+            } if which == Which::All => {
+                let k = inertial.lower(algebra, stiffness)?;
+                let relaxed = inertial.lower(algebra, relaxed)?;
+                let line = Line::new(algebra, inertial, between);
+                let extension = algebra.graph.sub(line.length, relaxed);
+                let tension = algebra.graph.mul(k, extension);
+                all.push(line.under(&mut algebra.graph, tension));
+            }
+            LoadKind::Gravity { .. } | LoadKind::Spring { .. } => {}
+            LoadKind::Force {
+                on,
+                body,
+                reaction_on,
+                frame,
+                vector,
+            } => {
+                let mut velocity = inertial.velocity(&mut algebra.graph, *body, *on);
+                if let Some(other) = reaction_on {
+                    let other = inertial.velocity(&mut algebra.graph, None, *other);
+                    velocity = algebra.graph.sub3(velocity, other);
+                }
+                all.push(Effort {
+                    force: inertial.in_ground(algebra, *frame, vector)?,
+                    velocity,
+                    external: reaction_on.is_none(),
+                });
+            }
+            LoadKind::Torque {
+                on,
+                reaction_on,
+                frame,
+                vector,
+            } => {
+                let mut velocity = inertial.turning(*on);
+                if let Some(other) = reaction_on {
+                    velocity = algebra.graph.sub3(velocity, inertial.turning(*other));
+                }
+                all.push(Effort {
+                    force: inertial.in_ground(algebra, *frame, vector)?,
+                    velocity,
+                    external: false,
+                });
+            }
+            LoadKind::Damper { between, damping } => {
+                let c = inertial.lower(algebra, damping)?;
+                let line = Line::new(algebra, inertial, between);
+                let rate = algebra.graph.dot(line.direction, line.velocity);
+                let tension = algebra.graph.mul(c, rate);
+                all.push(line.under(&mut algebra.graph, tension));
+            }
+            LoadKind::Generalized { coordinate, force } => {
+                let force = inertial.lower(algebra, force)?;
+                all.push(Effort {
+                    force: [force, Graph::ZERO, Graph::ZERO],
+                    velocity: [inertial.rates[*coordinate], Graph::ZERO, Graph::ZERO],
+                    external: false,
+                });
+            }
+        }
+    }
+    Ok(all)
+}
+
+/// What a spring or damper pulls along.
+struct Line {
+    length: Expr,
+    /// Unit vector along which the length grows, and the velocity of one end from the other.
+    direction: Vec3,
+    velocity: Vec3,
+}
+
+impl Line {
+    fn new(algebra: &mut Algebra, inertial: &Inertial<'_>, between: &Connection) -> Self {
+        let graph = &mut algebra.graph;
+        match *between {
+            Connection::Coordinate(q) => Self {
+                length: inertial.symbols.coordinates[q],
+                direction: [Graph::ONE, Graph::ZERO, Graph::ZERO],
+                velocity: [inertial.rates[q], Graph::ZERO, Graph::ZERO],
+            },
+            Connection::Points(a, b) => {
+                let arm = graph.sub3(inertial.position(b), inertial.position(a));
+                let square = graph.dot(arm, arm);
+                let length = graph.sqrt(square);
+                let inverse = graph.pow(length, -1);
+                let v_a = inertial.velocity(graph, None, a);
+                let v_b = inertial.velocity(graph, None, b);
+                Self {
+                    length,
+                    direction: graph.scale3(inverse, arm),
+                    velocity: graph.sub3(v_b, v_a),
+                }
+            }
+        }
+    }
+
+    /// A tension works against the growth of the length.
+    fn under(self, graph: &mut Graph, tension: Expr) -> Effort {
+        let pull = graph.neg(tension);
+        Effort {
+            force: graph.scale3(pull, self.direction),
+            velocity: self.velocity,
+            external: false,
+        }
+    }
+}
+
+/// Virtual power in a unit of the velocity `direction`, of which all velocities are linear functions.
+pub(super) fn generalized_force(
+    algebra: &mut Algebra,
+    efforts: &[Effort],
+    direction: Expr,
+) -> Expr {
+    let mut parts = Vec::with_capacity(efforts.len());
+    for effort in efforts {
+        let partial = effort.velocity.map(|c| algebra.derivative(c, direction));
+        parts.push(algebra.graph.dot(effort.force, partial));
+    }
+    algebra.graph.sum(&parts)
+}
+
+/// Potential energy of gravity and springs.
+pub(super) fn potential(algebra: &mut Algebra, inertial: &Inertial<'_>) -> Lowered<Expr> {
+    let mechanism = inertial.mechanism;
+    let mut parts = Vec::new();
+    for load in &mechanism.loads {
+        match &load.kind {
+            LoadKind::Gravity { down, acceleration } => {
+                let g = inertial.lower(algebra, acceleration)?;
+                for (index, body) in mechanism.bodies.iter().enumerate() {
+                    let mass = inertial.mass(algebra, index)?;
+                    let down = down.map(|c| algebra.graph.integer(c.into()));
+                    let fallen = algebra.graph.dot(down, inertial.position(body.centre));
+                    let energy = algebra.graph.product(&[mass, g, fallen]);
+                    parts.push(algebra.graph.neg(energy));
+                }
+            }
+            LoadKind::Spring {
+                between,
+                stiffness,
+                relaxed,
+            } => {
+                let k = inertial.lower(algebra, stiffness)?;
+                let relaxed = inertial.lower(algebra, relaxed)?;
+                let line = Line::new(algebra, inertial, between);
+                let extension = algebra.graph.sub(line.length, relaxed);
+                let square = algebra.graph.square(extension);
+                let twice = algebra.graph.mul(k, square);
+                parts.push(algebra.graph.scale(&Rational::new(1, 2), twice));
+            }
+            LoadKind::Force { .. }
+            | LoadKind::Torque { .. }
+            | LoadKind::Damper { .. }
+            | LoadKind::Generalized { .. } => {}
+        }
+    }
+    Ok(algebra.graph.sum(&parts))
+}

@@ -1,0 +1,391 @@
+//! Three formulations, one answer: the derived equations against Kane's and against Lagrange's with
+//! multipliers.
+//!
+//! Both are written a second time, in the ground and by the textbook: rotation matrices are
+//! multiplied out, positions are differentiated, nothing is simplified. With the derivation they share
+//! the reading of expressions, the graph, and q̇ as functions of the pseudo-velocities, which are first
+//! held against the definitions and the constraints.
+//!
+//! Equality is decided by the [identity test](crate::symbolic::identity). Where that cannot tell,
+//! because a theorem about a function is not known to it, the values at random points decide.
+
+mod inertial;
+mod kane;
+mod lagrange;
+mod loads;
+mod points;
+
+use appell_spec::mechanism::{Constraint, ConstraintKind, Mechanism};
+
+use crate::mechanics::algebra::Algebra;
+use crate::mechanics::expressions::DivisionByZero;
+use crate::mechanics::finding::{Item, Outcome};
+use crate::mechanics::kinematics::division_by_zero;
+use crate::mechanics::{Derivation, reactions, seed};
+use crate::symbolic::vector::Vec3;
+use crate::symbolic::{Expr, Graph, IdentityTest};
+
+use inertial::{Inertial, Lowered, Row};
+use lagrange::Lagrange;
+use points::Points;
+
+/// A proof that may err with a greater probability is none.
+const GREATEST_ERROR: f64 = 1e-9;
+/// Tests with points of their own that together may prove an identity.
+const MOST_TESTS: i32 = 4;
+
+/// What the derived equations are held against.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Against {
+    /// The definitions of the pseudo-velocities and the constraints.
+    Spec,
+    /// Kane's equations.
+    Kane,
+    /// Lagrange's equations with multipliers.
+    Lagrange,
+    /// Newton's law for the whole mechanism.
+    Newton,
+}
+
+impl Against {
+    /// Its name for people.
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::Spec => "spec",
+            Self::Kane => "Kane",
+            Self::Lagrange => "Lagrange",
+            Self::Newton => "Newton",
+        }
+    }
+}
+
+/// How two spellings of one quantity compare.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Agreement {
+    /// The same functions, by the identity test.
+    Identical,
+    /// The same values at random points.
+    AtPoints {
+        /// At how many.
+        points: usize,
+        /// Largest deviation, relative to the largest entry there.
+        deviation: f64,
+    },
+    /// Different values.
+    Different {
+        /// The entry that is off most.
+        entry: String,
+        /// Its values by the derivation and by the other formulation.
+        values: [f64; 2],
+        /// Their deviation, relative to the largest entry there.
+        deviation: f64,
+    },
+    /// No values: at no random point both are finite.
+    Undefined,
+}
+
+/// A quantity of the derivation against another formulation.
+#[derive(Debug, Clone)]
+pub struct Comparison {
+    /// What it is held against.
+    pub against: Against,
+    /// What is compared.
+    pub quantity: &'static str,
+    /// With what result.
+    pub agreement: Agreement,
+}
+
+/// The result of all comparisons.
+#[derive(Debug, Clone)]
+pub struct Verdict {
+    /// One per quantity and formulation.
+    pub comparisons: Vec<Comparison>,
+    /// Bound on the probability that any quantity was taken for identical though it is not.
+    pub error_bound: f64,
+}
+
+impl Verdict {
+    /// Whether all quantities were compared and agree.
+    pub fn agrees(&self) -> bool {
+        let agree = |c: &Comparison| {
+            matches!(
+                c.agreement,
+                Agreement::Identical | Agreement::AtPoints { .. }
+            )
+        };
+        self.comparisons.iter().all(agree)
+    }
+}
+
+/// A quantity as the derivation has it, and as another formulation has it.
+struct Claim {
+    against: Against,
+    quantity: &'static str,
+    pairs: Vec<Pair>,
+}
+
+/// Two expressions that should be the same function.
+struct Pair {
+    entry: String,
+    derived: Expr,
+    other: Expr,
+}
+
+/// Compares a derivation with the other formulations of the same mechanism. Fails where their
+/// equations take more expressions than a mechanism of bodies needs.
+pub fn compare(mechanism: &Mechanism, derivation: &Derivation) -> Outcome<Verdict> {
+    let symbols = &derivation.symbols;
+    // A graph of its own: the emitted equations do not depend on the comparison.
+    let graph = derivation.algebra.graph.clone();
+    let mut algebra = Algebra::new(graph, symbols, seed(mechanism));
+    let claims = claims(&mut algebra, mechanism, derivation)?;
+    Ok(decide(&mut algebra, mechanism, derivation, claims))
+}
+
+/// Everything that has to agree.
+fn claims(
+    algebra: &mut Algebra,
+    mechanism: &Mechanism,
+    derivation: &Derivation,
+) -> Outcome<Vec<Claim>> {
+    let Derivation {
+        symbols,
+        gibbs,
+        motion,
+        ..
+    } = derivation;
+    let rates = &derivation.velocities.rates;
+    let speeds = mechanism.pseudo_velocities.iter();
+    let speeds: Vec<&str> = speeds.map(|w| w.label.name.as_str()).collect();
+    let by_speed = |derived: &[Expr], other: &[Expr]| named(&speeds, derived, other);
+
+    let new = |algebra: &mut Algebra| Inertial::new(algebra, mechanism, symbols, rates);
+    let allowed = room(algebra, new)?;
+    let definitions = room(algebra, |algebra| allowed.definitions(algebra))?;
+    let rows = room(algebra, |algebra| allowed.rows(algebra))?;
+    let violated = rows.iter().map(|row| Pair {
+        entry: mechanism.constraints[row.constraint].name.clone(),
+        derived: row.value,
+        other: Graph::ZERO,
+    });
+    let mut claims = vec![
+        Claim {
+            against: Against::Spec,
+            quantity: "pseudo-velocities",
+            pairs: by_speed(&symbols.speeds, &definitions),
+        },
+        Claim {
+            against: Against::Spec,
+            quantity: "constraints",
+            pairs: violated.collect(),
+        },
+    ];
+
+    let kane = kane::kane(algebra, &allowed, &motion.accelerations)?;
+    let entries = speeds
+        .iter()
+        .flat_map(|row| speeds.iter().map(move |column| format!("{row}, {column}")));
+    let entries: Vec<String> = entries.collect();
+    let entries: Vec<&str> = entries.iter().map(String::as_str).collect();
+    let (mass, other) = (gibbs.mass_matrix.concat(), kane.mass_matrix.concat());
+    for (quantity, pairs) in [
+        ("mass matrix", named(&entries, &mass, &other)),
+        ("bias", by_speed(&gibbs.bias, &kane.bias)),
+        ("forces", by_speed(&derivation.forces, &kane.forces)),
+        (
+            "accelerations",
+            by_speed(&motion.accelerations, &kane.accelerations),
+        ),
+    ] {
+        claims.push(Claim {
+            against: Against::Kane,
+            quantity,
+            pairs,
+        });
+    }
+
+    let new = |algebra: &mut Algebra| Inertial::new(algebra, mechanism, symbols, &symbols.rates);
+    let unconstrained = room(algebra, new)?;
+    let lagrange = lagrange::lagrange(algebra, &unconstrained, rates)?;
+    let coordinates = mechanism.coordinates.iter();
+    let coordinates: Vec<&str> = coordinates.map(|q| q.label.name.as_str()).collect();
+    let accelerations = generalized_accelerations(algebra, &allowed, &motion.accelerations)?;
+    claims.push(Claim {
+        against: Against::Lagrange,
+        quantity: "accelerations",
+        pairs: named(&coordinates, &accelerations, &lagrange.accelerations),
+    });
+    claims.extend(reaction_claims(
+        algebra,
+        derivation,
+        mechanism,
+        &rows,
+        &lagrange,
+        kane.total_reaction,
+    )?);
+    claims.retain(|claim| !claim.pairs.is_empty());
+    Ok(claims)
+}
+
+/// Constraint forces against Lagrange's multipliers, and their sum against Newton's law.
+fn reaction_claims(
+    algebra: &mut Algebra,
+    derivation: &Derivation,
+    mechanism: &Mechanism,
+    rows: &[Row],
+    lagrange: &Lagrange,
+    total: Vec3,
+) -> Outcome<Vec<Claim>> {
+    let constraints = &derivation.constraints;
+    let forces = reactions::reactions(
+        algebra,
+        mechanism,
+        &derivation.symbols,
+        constraints,
+        &derivation.velocities.violating,
+        &derivation.bodies,
+        &derivation.motion.accelerations,
+    )?;
+    // What the multipliers tell of each place; what geometry holds they do not know.
+    let mut known = vec![[Some(Graph::ZERO); 3]; forces.len()];
+    let graph = &mut algebra.graph;
+    for (row, &multiplier) in rows.iter().zip(&lagrange.multipliers) {
+        let same = constraints.rows.iter();
+        let Some(of_constraint) = same.clone().find(|r| r.constraint == row.constraint) else {
+            continue;
+        };
+        let place = &mut known[of_constraint.reaction.place];
+        for (component, &direction) in place.iter_mut().zip(&row.direction) {
+            if direction == Graph::ZERO {
+                continue;
+            }
+            *component = component.zip(multiplier).map(|(sum, multiplier)| {
+                let part = graph.mul(multiplier, direction);
+                graph.add(sum, part)
+            });
+        }
+    }
+    let axes = ["x", "y", "z"];
+    let mut pairs = Vec::new();
+    for ((place, force), known) in constraints.reactions.iter().zip(&forces).zip(&known) {
+        for ((axis, &derived), known) in axes.iter().zip(force).zip(known) {
+            if let (Some(other), false) = (*known, lagrange.redundant) {
+                let entry = format!("{place}, {axis}");
+                pairs.push(Pair {
+                    entry,
+                    derived,
+                    other,
+                });
+            }
+        }
+    }
+    let mut claims = vec![Claim {
+        against: Against::Lagrange,
+        quantity: "constraint forces",
+        pairs,
+    }];
+    // Newton's law knows the reactions that are forces at points alone.
+    let rolls = |c: &Constraint| matches!(c.kind, ConstraintKind::Rolling { .. });
+    if !rows.is_empty() && mechanism.constraints.iter().all(rolls) {
+        let mut sum = [Graph::ZERO; 3];
+        for &force in &forces {
+            sum = algebra.graph.add3(sum, force);
+        }
+        claims.push(Claim {
+            against: Against::Newton,
+            quantity: "sum of the constraint forces",
+            pairs: named(&axes, &sum, &total),
+        });
+    }
+    Ok(claims)
+}
+
+/// q̈ = d/dt q̇(ω, q, t)
+fn generalized_accelerations(
+    algebra: &mut Algebra,
+    allowed: &Inertial<'_>,
+    accelerations: &[Expr],
+) -> Outcome<Vec<Expr>> {
+    let mut all = Vec::with_capacity(allowed.rates.len());
+    for &rate in allowed.rates {
+        let along = |algebra: &mut Algebra| {
+            let mut parts = vec![allowed.time().of(algebra, rate)];
+            for (&speed, &acceleration) in allowed.symbols.speeds.iter().zip(accelerations) {
+                let partial = algebra.derivative(rate, speed);
+                parts.push(algebra.graph.mul(partial, acceleration));
+            }
+            Ok(algebra.graph.sum(&parts))
+        };
+        all.push(room(algebra, along)?);
+    }
+    Ok(all)
+}
+
+/// Proves what can be proven; the rest is compared at points.
+fn decide(
+    algebra: &mut Algebra,
+    mechanism: &Mechanism,
+    derivation: &Derivation,
+    claims: Vec<Claim>,
+) -> Verdict {
+    let mut points = None;
+    let mut error_bound = 0.0;
+    let mut comparisons = Vec::with_capacity(claims.len());
+    for claim in claims {
+        let agreement = if let Some(error) = claim.proof(algebra, seed(mechanism)) {
+            error_bound += error;
+            Agreement::Identical
+        } else {
+            let new = || Points::new(&algebra.graph, mechanism, &derivation.symbols);
+            let points = points.get_or_insert_with(new);
+            points.compare(&algebra.graph, &claim.pairs)
+        };
+        comparisons.push(Comparison {
+            against: claim.against,
+            quantity: claim.quantity,
+            agreement,
+        });
+    }
+    Verdict {
+        comparisons,
+        error_bound,
+    }
+}
+
+impl Claim {
+    /// The probability with which a proof that all pairs are the same functions may err. `None` where
+    /// there is no proof.
+    fn proof(&self, algebra: &mut Algebra, seed: u64) -> Option<f64> {
+        let Algebra { graph, test, .. } = algebra;
+        let pairs = self.pairs.iter();
+        let differences = pairs.map(|pair| graph.sub(pair.derived, pair.other));
+        let differences: Vec<Expr> = differences.collect();
+        let all = graph.sum(&differences);
+        let each = test.error_bound(graph, all);
+        let error = |tests: i32| each.powi(tests) * differences.len() as f64;
+        let tests = (1..=MOST_TESTS).find(|&tests| error(tests) <= GREATEST_ERROR)?;
+        let holds = |test: &mut IdentityTest| differences.iter().all(|&d| test.is_zero(graph, d));
+        // Every further test draws points of its own.
+        let more =
+            (1..tests).map(|number| test.reseeded(seed.wrapping_add(number.unsigned_abs().into())));
+        let more: Vec<IdentityTest> = more.collect();
+        (holds(test) && more.into_iter().all(|mut test| holds(&mut test))).then(|| error(tests))
+    }
+}
+
+fn named(names: &[&str], derived: &[Expr], other: &[Expr]) -> Vec<Pair> {
+    let both = derived.iter().zip(other);
+    let pair = |(name, (&derived, &other)): (&&str, (&Expr, &Expr))| Pair {
+        entry: (*name).to_owned(),
+        derived,
+        other,
+    };
+    names.iter().zip(both).map(pair).collect()
+}
+
+/// Calls a step that may divide by zero and may make many expressions.
+fn room<T>(algebra: &mut Algebra, step: impl FnOnce(&mut Algebra) -> Lowered<T>) -> Outcome<T> {
+    let result = step(algebra).map_err(|DivisionByZero| vec![division_by_zero(Item::Mechanism)])?;
+    algebra.check_size()?;
+    Ok(result)
+}

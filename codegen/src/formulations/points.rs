@@ -1,0 +1,129 @@
+//! Values at random points inside the declared ranges.
+
+use appell_spec::mechanism::Mechanism;
+
+use super::{Agreement, Pair};
+use crate::mechanics::seed;
+use crate::mechanics::symbols::{Symbols, ids};
+use crate::symbolic::{Expr, Graph, SymbolId, evaluate};
+
+/// Points at which expressions are compared.
+const COUNT: usize = 24;
+/// Points that are tried: expressions may have no value outside the range that nobody declared.
+const MOST: usize = 4 * COUNT;
+/// What rounding in a thousand operations may do to an entry, relative to the size of what was added
+/// up.
+const ROUNDING: f64 = 1e-9;
+/// Relative change of every argument that shows how much rounding is amplified.
+const DISTURBANCE: f64 = 4.0 * f64::EPSILON;
+
+/// Random points, each with a neighbour at the distance of rounding.
+pub(super) struct Points {
+    all: Vec<[Vec<f64>; 2]>,
+}
+
+impl Points {
+    /// Angles and lengths without a range stay within ±1.2, velocities within ±2, inputs and signals
+    /// within ±5; parameters are up to 30 % off the spec's.
+    pub(super) fn new(graph: &Graph, mechanism: &Mechanism, symbols: &Symbols) -> Self {
+        let mut random = Random(seed(mechanism));
+        let mut domains: Vec<(Expr, [f64; 2])> = Vec::new();
+        for (&symbol, q) in symbols.coordinates.iter().zip(&mechanism.coordinates) {
+            // The middle nine tenths: at the ends of a range the equations may be singular.
+            let range = q.range.map_or([-1.2, 1.2], |[low, high]| {
+                let edge = 0.05 * (high - low);
+                [low + edge, high - edge]
+            });
+            domains.push((symbol, range));
+        }
+        for (&symbol, p) in symbols.parameters.iter().zip(&mechanism.parameters) {
+            let width = 0.3 * p.value.abs();
+            let low = p.at_least.unwrap_or(f64::NEG_INFINITY);
+            let high = p.at_most.unwrap_or(f64::INFINITY);
+            domains.push((
+                symbol,
+                [low.max(p.value - width), high.min(p.value + width)],
+            ));
+        }
+        let around = |symbols: &[Expr], size: f64| -> Vec<_> {
+            symbols.iter().map(|&s| (s, [-size, size])).collect()
+        };
+        domains.extend(around(&symbols.speeds, 2.0));
+        domains.extend(around(&symbols.inputs, 5.0));
+        domains.extend(around(&symbols.signals.concat(), 5.0));
+        domains.push((symbols.time, [0.0, 2.0]));
+        domains.push((symbols.pi, [std::f64::consts::PI; 2]));
+
+        let places: Vec<Expr> = domains.iter().map(|&(symbol, _)| symbol).collect();
+        let places: Vec<SymbolId> = ids(graph, &places);
+        let mut all = Vec::with_capacity(MOST);
+        for _ in 0..MOST {
+            let mut point = vec![f64::NAN; graph.symbol_count()];
+            let mut neighbour = point.clone();
+            for (place, &(_, range)) in places.iter().zip(&domains) {
+                let value = random.between(range);
+                let change = random.between([-DISTURBANCE, DISTURBANCE]);
+                point[place.0 as usize] = value;
+                neighbour[place.0 as usize] = value * (1.0 + change);
+            }
+            all.push([point, neighbour]);
+        }
+        Self { all }
+    }
+
+    /// Compares at the first points where all expressions have a value.
+    pub(super) fn compare(&self, graph: &Graph, pairs: &[Pair]) -> Agreement {
+        let derived = pairs.iter().map(|pair| pair.derived);
+        let other = pairs.iter().map(|pair| pair.other);
+        let roots: Vec<Expr> = derived.chain(other).collect();
+        let at = |point: &[f64]| {
+            let values = evaluate(graph, point, &roots);
+            values.iter().all(|v| v.is_finite()).then_some(values)
+        };
+        let both = |[point, neighbour]: &[Vec<f64>; 2]| Some([at(point)?, at(neighbour)?]);
+        let values: Vec<[Vec<f64>; 2]> = self.all.iter().filter_map(both).take(COUNT).collect();
+        if values.is_empty() {
+            return Agreement::Undefined;
+        }
+        // What cancels in an entry is as large as its rounding errors say.
+        let noise = values.iter().flat_map(|[a, b]| a.iter().zip(b));
+        let noise = noise.fold(0.0, |most: f64, (a, b)| most.max((a - b).abs()));
+        let (mut entry, mut worst, mut deviation) = (0, [0.0; 2], 0.0);
+        for [values, _] in &values {
+            let scale = values.iter().fold(0.0, |scale: f64, v| scale.max(v.abs()));
+            let size = scale.max(noise / f64::EPSILON);
+            let (derived, other) = values.split_at(pairs.len());
+            for (k, (&a, &b)) in derived.iter().zip(other).enumerate() {
+                if (a - b).abs() > deviation * size {
+                    (entry, worst, deviation) = (k, [a, b], (a - b).abs() / size);
+                }
+            }
+        }
+        if deviation <= ROUNDING {
+            return Agreement::AtPoints {
+                points: values.len(),
+                deviation,
+            };
+        }
+        Agreement::Different {
+            entry: pairs[entry].entry.clone(),
+            values: worst,
+            deviation,
+        }
+    }
+}
+
+/// Steele, Lea and Flood, *Fast splittable pseudorandom number generators*, 2014.
+struct Random(u64);
+
+impl Random {
+    fn between(&mut self, [low, high]: [f64; 2]) -> f64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        z ^= z >> 31;
+        let fraction = (z >> 11) as f64 / (1_u64 << 53) as f64;
+        low + (high - low) * fraction
+    }
+}

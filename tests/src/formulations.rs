@@ -1,0 +1,29 @@
+//! A derivation against Kane's equations and Lagrange's with multipliers.
+
+use appell_codegen::formulations::{Agreement, Verdict, compare};
+use appell_codegen::mechanics::Derivation;
+use appell_spec::Mechanism;
+
+use crate::shipped;
+
+/// Rounding of two spellings of a thousand operations, where values are compared.
+const AT_POINTS: f64 = 1e-12;
+
+/// What the comparison of a derivation tells.
+pub fn verdict(mechanism: &Mechanism, derivation: &Derivation) -> Verdict {
+    compare(mechanism, derivation)
+        .unwrap_or_else(|findings| panic!("{}: {findings:?}", mechanism.file))
+}
+
+/// Demands that the three formulations of a mechanism agree.
+pub fn assert_one_answer(mechanism: &Mechanism) -> Verdict {
+    let verdict = verdict(mechanism, &shipped::derive(mechanism));
+    assert!(verdict.agrees(), "{}: {verdict:#?}", mechanism.name);
+    for comparison in &verdict.comparisons {
+        if let Agreement::AtPoints { deviation, .. } = comparison.agreement {
+            let what = format!("{}: {comparison:?}", mechanism.name);
+            assert!(deviation <= AT_POINTS, "{what}");
+        }
+    }
+    verdict
+}

@@ -118,6 +118,7 @@ impl StateFunction {
             graph,
             arguments,
             dependent: Vec::new(),
+            systems: Vec::new(),
             functions: vec![function],
         };
         let schedule = schedule(&program, &program.functions[0]);

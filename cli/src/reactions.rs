@@ -4,14 +4,16 @@ use appell_runtime::model::Quantity;
 use appell_spec::Mechanism;
 use appell_spec::units::{Dimension, Unit};
 
-/// Names the unit of every column `reaction_…`: a force for a point; for a constraint without a
-/// point its multiplier, which is a power divided by what the constraint holds at zero.
+/// Names the unit of every column `reaction_…` and `normal_force_…`: a force for a point; for a
+/// constraint without a point its multiplier, which is a power divided by the rate of what the
+/// constraint holds at a value.
 pub(crate) fn name_units(mechanism: &Mechanism, columns: &mut [Quantity]) {
     let components = columns.iter_mut().filter_map(|column| {
-        let name = column.name.strip_prefix("reaction_")?;
-        let place = ["_x", "_y", "_z"]
-            .iter()
-            .find_map(|axis| name.strip_suffix(axis))?;
+        let place = column.name.strip_prefix("normal_force_").or_else(|| {
+            let name = column.name.strip_prefix("reaction_")?;
+            let mut axes = ["_x", "_y", "_z"].iter();
+            axes.find_map(|axis| name.strip_suffix(axis))
+        })?;
         Some((place.to_owned(), column))
     });
     for (place, column) in components {

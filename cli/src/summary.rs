@@ -4,6 +4,7 @@ use appell_runtime::Trajectory;
 use appell_runtime::model::Quantity;
 use serde_json::{Map, Value, json};
 
+use crate::breaches;
 use crate::table::{number, table};
 
 /// Smallest and largest value of a column of the samples, in SI.
@@ -51,7 +52,9 @@ pub(crate) fn text(trajectory: &Trajectory) -> String {
         )
     };
     let title = &trajectory.info().title;
-    format!("{title}\n{} s{cost}\n{}", number(t_end), table(&rows, 1..5))
+    let rows = table(&rows, 1..5);
+    let breaches = breaches::text(trajectory);
+    format!("{title}\n{} s{cost}\n{rows}{breaches}", number(t_end))
 }
 
 /// The same for programs, in SI.
@@ -90,6 +93,7 @@ pub(crate) fn json(trajectory: &Trajectory, failure: Option<&str>) -> Value {
         "t_end_s": trajectory.times().last(),
         "rows": trajectory.len(),
         "failure": failure,
+        "events": breaches::json(trajectory),
         "initial_state": named(&all[..states], row(0)),
         "final_state": named(&all[..states], row(last)),
         "final_values": named(&all[states..], row(last).get(states..).unwrap_or_default()),

@@ -124,4 +124,20 @@ impl Model for InterpretedModel {
     fn switches(&self, at: At<'_>, switches: &mut [f64]) {
         self.evaluate(FunctionKind::Switches, at, &mut [("switches", switches)]);
     }
+
+    fn contacts(&self, at: At<'_>, normals: &mut [f64], friction: &mut [f64]) {
+        let wanted = &mut [("normals", &mut *normals), ("friction", &mut *friction)];
+        match self.program.function(FunctionKind::Contacts) {
+            Some(_) => self.evaluate(FunctionKind::Contacts, at, wanted),
+            None => self.info().initial_contacts(normals, friction),
+        }
+    }
+
+    fn system_sizes(&self) -> &[usize] {
+        &self.program.systems
+    }
+
+    fn systems(&self, at: At<'_>, matrices: &mut [f64]) {
+        self.evaluate(FunctionKind::Systems, at, &mut [("matrices", matrices)]);
+    }
 }

@@ -20,15 +20,21 @@ pub struct Program {
     /// Coordinates that follow from the others by a position constraint each, in the order of the
     /// constraints.
     pub dependent: Vec<usize>,
+    /// Sizes of the linear systems that are solved with pivoting on the way to the rates.
+    pub systems: Vec<usize>,
     /// Functions, in the order in which a reader wants them.
     pub functions: Vec<Function>,
 }
 
 impl Program {
+    /// One of its functions, if it has it.
+    pub fn function(&self, kind: FunctionKind) -> Option<&Function> {
+        self.functions.iter().find(|function| function.kind == kind)
+    }
+
     /// How many values time alone switches.
     pub fn switch_len(&self) -> usize {
-        let mut functions = self.functions.iter();
-        let switches = functions.find(|function| function.kind == FunctionKind::Switches);
+        let switches = self.function(FunctionKind::Switches);
         switches.map_or(0, |function| {
             function
                 .results
@@ -169,11 +175,17 @@ pub enum FunctionKind {
     /// What position constraints demand, where there are any: results `residual`, and `jacobian`
     /// by the coordinates.
     PositionConstraints,
+    /// Surfaces at the contacts, where they are not the same everywhere: results `normals`, three
+    /// columns, and `friction`.
+    Contacts,
+    /// Systems that are solved with pivoting, where there are any: result `matrices`, one after the
+    /// other.
+    Systems,
 }
 
 impl FunctionKind {
     /// All of them, in the order of emitted code.
-    pub const ALL: [Self; 14] = [
+    pub const ALL: [Self; 16] = [
         Self::Kinematics,
         Self::AccelerationEnergy,
         Self::MassMatrix,
@@ -188,6 +200,8 @@ impl FunctionKind {
         Self::Outputs,
         Self::Switches,
         Self::PositionConstraints,
+        Self::Contacts,
+        Self::Systems,
     ];
 
     /// Name of the emitted function.
@@ -269,6 +283,16 @@ impl FunctionKind {
                 "position_constraints",
                 "PositionConstraints",
                 "Position constraints f(q, t) = 0 and their derivatives by the coordinates.",
+            ),
+            Self::Contacts => (
+                "contacts",
+                "Contacts",
+                "Surfaces at the contacts: normals in the ground, coefficients of friction.",
+            ),
+            Self::Systems => (
+                "systems",
+                "Systems",
+                "Matrices of the systems that are solved with pivoting, row by row.",
             ),
         }
     }

@@ -140,6 +140,7 @@ fn pendulum() -> Program {
         outputs: quantities(&["height"]).into(),
         constraint_rows: vec![].into(),
         reactions: vec![].into(),
+        contacts: vec![].into(),
         explicit_time: false,
     };
     Program {
@@ -148,6 +149,7 @@ fn pendulum() -> Program {
         graph,
         arguments,
         dependent: Vec::new(),
+        systems: Vec::new(),
         functions,
     }
 }

@@ -66,6 +66,8 @@ pub enum ValueAst {
     Text(String),
     /// One of the words that the key takes.
     Word(Sense),
+    /// Yes or no.
+    Flag(bool),
     /// A number in the unit of the item.
     Number(BigRational),
     /// Several numbers.
@@ -145,6 +147,12 @@ impl ItemAst {
             ValueAst::Word(meaning) => Some(*meaning),
             _ => None,
         })
+    }
+
+    /// Whether the flag under a key is set.
+    pub fn flag(&self, key: &str) -> bool {
+        let value = self.entry(key).map(|e| &e.value);
+        matches!(value, Some(ValueAst::Flag(true)))
     }
 
     /// The text under a key: a sentence or a name.

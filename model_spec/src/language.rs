@@ -154,6 +154,8 @@ pub enum Form {
     TwoPoints,
     /// One of these words.
     Word(&'static [Word]),
+    /// `true` or `false`.
+    Flag,
     /// A table.
     Table(&'static [Key]),
     /// A list of tables.

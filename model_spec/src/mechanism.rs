@@ -272,6 +272,10 @@ pub enum ConstraintKind {
         body: BodyId,
         /// Contact point.
         contact: PointId,
+        /// Normal of the surface, if the spec tells it.
+        normal: Option<Normal>,
+        /// Coefficient of friction, if the spec tells it.
+        friction: Option<Expr>,
     },
     /// `zero = equals`, `zero` linear in the generalised velocities, `equals` a function of
     /// coordinates, parameters, signals and time.
@@ -295,6 +299,8 @@ pub enum ConstraintKind {
         direction: Components,
         /// Prescribed velocity.
         equals: Expr,
+        /// Whether the reaction can only push along `direction`.
+        one_sided: bool,
     },
     /// `zero = 0`, an equation between coordinates, parameters, signals and time.
     Position {
@@ -304,7 +310,20 @@ pub enum ConstraintKind {
         dimension: Dimension,
         /// The coordinate that follows from the others; chosen when the spec names none.
         dependent: Option<CoordinateId>,
+        /// Whether the reaction can only push, towards positive `zero`.
+        one_sided: bool,
     },
+}
+
+/// The normal of a surface: an axis that points from it into the body.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Normal {
+    /// Frame that has the axis; the ground or one that follows the surface.
+    pub frame: FrameId,
+    /// The axis.
+    pub axis: Axis,
+    /// Whether the normal points backwards along it.
+    pub negative: bool,
 }
 
 impl ConstraintKind {

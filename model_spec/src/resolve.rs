@@ -66,7 +66,7 @@ pub fn resolve(ast: &SpecAst, file: &str, text: &str) -> (Mechanism, Vec<Diagnos
         outputs,
     };
     resolver.initial(&mut mechanism);
-    resolver.physical(&mechanism.bodies, &mechanism.parameters);
+    resolver.physical(&mechanism);
     resolver.unused(&mechanism);
     (mechanism, resolver.findings)
 }

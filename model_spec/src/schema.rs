@@ -112,6 +112,7 @@ fn form(form: &Form) -> Value {
         Form::Word(words) => {
             json!({ "enum": words.iter().map(|word| word.text).collect::<Vec<_>>() })
         }
+        Form::Flag => json!({ "type": "boolean" }),
         Form::Table(keys) => table(keys, None),
         Form::Tables(keys) => json!({
             "type": "array",

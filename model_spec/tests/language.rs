@@ -143,6 +143,8 @@ fn constraints_and_loads_refer_to_their_items() {
     let ConstraintKind::Rolling {
         body: 1,
         contact: 2,
+        normal: None,
+        friction: None,
     } = mechanism.constraints[0].kind
     else {
         panic!("{:?}", mechanism.constraints[0]);

@@ -39,6 +39,7 @@ fn form_words(form: &Form) -> String {
             .map(|w| format!("`{}`", w.text))
             .collect::<Vec<_>>()
             .join(", "),
+        Form::Flag => "`true` or `false`".to_owned(),
         Form::Table(_) => "table".to_owned(),
         Form::Tables(_) => "list of tables".to_owned(),
     }

@@ -6,6 +6,7 @@
 //! - [`signal`] and [`inputs`]: what drives a model;
 //! - [`integrate`]: initial value problems, events, typed failures;
 //! - [`simulate`] and [`trajectory`]: motions of a model and their files;
+//! - [`contact`] and [`condition`]: where a model stops being valid;
 //! - [`figure`]: plots as SVG.
 //!
 //! Without it the crate is `no_std` and holds what emitted code needs: the scalar trait [`Real`],
@@ -19,6 +20,10 @@
 
 #![cfg_attr(not(feature = "std"), no_std)]
 
+#[cfg(feature = "std")]
+pub mod condition;
+#[cfg(feature = "std")]
+pub mod contact;
 pub mod dense;
 #[cfg(feature = "std")]
 pub mod figure;

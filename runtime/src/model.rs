@@ -98,6 +98,22 @@ pub struct SignalTable {
     pub interpolation: Interpolation,
 }
 
+/// A contact with a surface, which can push a body but not pull it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Contact {
+    /// Name of its reaction.
+    pub name: Text,
+    /// Index into [`ModelInfo::reactions`].
+    pub reaction: usize,
+    /// Direction in which the surface pushes, in the ground, at the initial state of the spec;
+    /// [`Model::contacts`] tells it everywhere.
+    pub normal: [f64; 3],
+    /// Whether friction holds the body along the surface, so that it could slip.
+    pub grips: bool,
+    /// Coefficient of friction at the initial state, where the spec tells one.
+    pub friction: Option<f64>,
+}
+
 /// What a model is made of, in the order of its vectors.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ModelInfo {
@@ -128,6 +144,8 @@ pub struct ModelInfo {
     pub constraint_rows: List<Text>,
     /// Constrained points, or constraints without a point, that have a reaction.
     pub reactions: List<Text>,
+    /// Those of the reactions that can only push.
+    pub contacts: List<Contact>,
     /// Whether the equations depend on time explicitly.
     pub explicit_time: bool,
 }
@@ -184,6 +202,17 @@ impl ModelInfo {
     /// Position of an output.
     pub fn output_index(&self, name: &str) -> Option<usize> {
         index_of(&self.outputs, name)
+    }
+
+    /// Normals and friction of the contacts at the initial state, as [`Model::contacts`] writes
+    /// them.
+    pub fn initial_contacts(&self, normals: &mut [f64], friction: &mut [f64]) {
+        for (contact, normal) in self.contacts.iter().zip(normals.chunks_mut(3)) {
+            normal.copy_from_slice(&contact.normal[..normal.len()]);
+        }
+        for (contact, friction) in self.contacts.iter().zip(friction) {
+            *friction = contact.friction.unwrap_or(0.0);
+        }
     }
 
     /// The pseudo-velocities, the first part of the state.
@@ -247,6 +276,24 @@ pub trait Model: Sync {
     fn constraint_residual(&self, at: At<'_>, residual: &mut [f64]);
     /// Reactions in the ground, three components per entry of [`ModelInfo::reactions`].
     fn constraint_forces(&self, at: At<'_>, forces: &mut [f64]);
+    /// Surfaces at the contacts: directions in which they push, in the ground and of any length
+    /// (three components per entry of [`ModelInfo::contacts`]), and coefficients of friction (one
+    /// per entry; 0 where the spec tells none). Most surfaces are the same everywhere.
+    fn contacts(&self, at: At<'_>, normals: &mut [f64], friction: &mut [f64]) {
+        let _ = at;
+        self.info().initial_contacts(normals, friction);
+    }
+    /// Sizes of the linear systems that are solved with pivoting on the way to the rates; most
+    /// models have none.
+    fn system_sizes(&self) -> &[usize] {
+        &[]
+    }
+    /// Their matrices one after the other, row by row: the sum of the squares of
+    /// [`Model::system_sizes`].
+    fn systems(&self, at: At<'_>, matrices: &mut [f64]) {
+        let _ = at;
+        matrices.fill(0.0);
+    }
     /// Outputs of the spec.
     fn outputs(&self, at: At<'_>, outputs: &mut [f64]);
     /// Coordinates that follow from the others, one per position constraint; most models have none.

@@ -1,11 +1,12 @@
 //! The motion of a model under its inputs.
 
 mod recorder;
+mod validity;
 
 use crate::inputs::{InputSource, ModelInputs, ZeroInputs};
 use crate::integrate::{
-    Cause, Dop853, Dopri5, Event, Failure, IntegrationError, Options, Outcome, Projection, Range,
-    Rk4, Solver, Switches, Watch,
+    Cause, Dop853, Dopri5, Ending, Event, EventHit, Failure, IntegrationError, Options, Outcome,
+    Projection, Range, Rk4, Solver, Switches, Watch,
 };
 use crate::model::{At, Model, ModelInfo};
 use crate::positions::{Inconsistent, Moving, Positions};
@@ -13,6 +14,8 @@ use crate::signal::SignalError;
 use crate::trajectory::{Extras, Trajectory};
 use recorder::Recorder;
 use std::fmt::Write as _;
+use validity::Limits;
+pub use validity::{Breach, Limit, Response, Validity};
 
 /// How the equations are integrated.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -58,8 +61,8 @@ pub struct Simulation<'a> {
     pub sampling: Sampling,
     /// What is recorded besides states and inputs.
     pub extras: Extras,
-    /// Whether a state outside its declared range ends the simulation with an error.
-    pub watch_ranges: bool,
+    /// What happens where the model stops being valid.
+    pub validity: Validity,
     /// Events to be found.
     pub events: Vec<Event<'a>>,
     /// Called with the time in s after each step.
@@ -139,7 +142,7 @@ impl<'a> Simulation<'a> {
             options: Options::default(),
             sampling: Sampling::Steps,
             extras: Extras::default(),
-            watch_ranges: true,
+            validity: Validity::default(),
             events: Vec::new(),
             progress: None,
         }
@@ -155,12 +158,18 @@ impl<'a> Simulation<'a> {
         let (model, p) = (self.model, self.parameters.as_slice());
         let mut x = self.consistent_start(&inputs)?;
         let initial_state = x.clone();
+        let limits = Limits::new(model, &inputs, p, self.validity);
+        let (breaches, ends_at_once) = limits.at_start(self.span[0], &initial_state);
+        if ends_at_once {
+            self.span[1] = self.span[0];
+        }
+        let own_events = events.len();
         let mut watch = Watch {
             switching_times: &switching_times,
             switches: switches(model, p, &initial_state),
             ranges: &ranges,
             projection: projection(model, p, &inputs),
-            events,
+            events: events.into_iter().chain(limits.events()).collect(),
         };
         let mut recorder = Recorder::new(self.sampling, self.span, &initial_state);
         recorder.progress = progress;
@@ -171,7 +180,7 @@ impl<'a> Simulation<'a> {
         };
         let result = self.integrate(rates, &mut x, &mut watch, &mut recorder);
 
-        let recorded = |t_end, hits, statistics| {
+        let recorded = |t_end, hits: Vec<EventHit>, statistics| {
             recorder.finish(t_end, &x);
             let fill = |t: f64, x: &[f64], u: &mut [f64]| inputs.fill(t, x, u);
             let (times, mut states) = (recorder.times, recorder.states);
@@ -183,18 +192,30 @@ impl<'a> Simulation<'a> {
                 }
             }
             let mut motion = Trajectory::evaluate(model, p, times, &states, fill, self.extras);
-            (motion.events, motion.statistics) = (hits, statistics);
+            motion.breaches = breaches;
+            for hit in hits {
+                match hit.event.checked_sub(own_events) {
+                    None => motion.events.push(hit),
+                    Some(limit) => motion.breaches.extend(limits.found(limit, hit)),
+                }
+            }
+            motion.statistics = statistics;
             motion
         };
         match result {
             Ok(outcome) => {
                 let mut motion = recorded(outcome.t, outcome.hits, outcome.statistics);
-                motion.ending = Some(outcome.ending);
+                motion.ending = Some(match outcome.ending {
+                    Ending::Event(event) if event >= own_events => Ending::Stopped,
+                    Ending::Finished if ends_at_once => Ending::Stopped,
+                    ending => ending,
+                });
                 Ok(motion)
             }
-            Err(IntegrationError::Failure(failure)) => {
-                let motion = recorded(failure.t, failure.hits.clone(), failure.statistics);
-                let trajectory = Box::new(motion);
+            Err(IntegrationError::Failure(mut failure)) => {
+                let hits = std::mem::take(&mut failure.hits);
+                let trajectory = Box::new(recorded(failure.t, hits, failure.statistics));
+                failure.hits.clone_from(&trajectory.events);
                 Err(SimulationError::Integration {
                     failure,
                     trajectory,
@@ -266,7 +287,7 @@ impl<'a> Simulation<'a> {
         let limited = |limits: [f64; 2]| limits.iter().any(|limit| limit.is_finite());
         let states = self.model.info().states.iter().enumerate();
         states
-            .filter(|(_, state)| self.watch_ranges && limited(state.range))
+            .filter(|(_, state)| self.validity.ranges == Response::Stop && limited(state.range))
             .map(|(component, state)| Range {
                 component,
                 limits: state.range,
@@ -328,8 +349,14 @@ pub fn describe(failure: &Failure, info: &ModelInfo) -> String {
             None => failure.cause.to_string(),
         },
     };
-    let mut text = format!("at t = {:.9} s {reason}; state:", failure.t);
-    for (i, (state, &value)) in info.states.iter().zip(&failure.state).enumerate() {
+    let state = describe_state(&failure.state, info);
+    format!("at t = {:.9} s {reason}; state:{state}", failure.t)
+}
+
+/// A state in the names and units of the spec.
+fn describe_state(state: &[f64], info: &ModelInfo) -> String {
+    let mut text = String::new();
+    for (i, (state, &value)) in info.states.iter().zip(state).enumerate() {
         let separator = if i == 0 { "" } else { "," };
         let value = state.to_unit(value);
         // Writing to a string cannot fail.

@@ -1,11 +1,14 @@
 //! The recorded course of a motion.
 
+use crate::condition::Conditions;
+use crate::contact::ContactForces;
 use crate::integrate::{Ending, EventHit, Statistics};
 use crate::model::{At, Model, ModelInfo, Quantity, Text};
+use crate::simulate::Breach;
 use std::io::{self, Write};
 
 /// What is recorded besides states and inputs.
-// Four independent switches.
+// Independent switches.
 #[allow(clippy::struct_excessive_bools)]
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Extras {
@@ -16,6 +19,12 @@ pub struct Extras {
     /// `reaction_<name>_x`, `_y`, `_z` in the ground: the force on a point in N; of a constraint
     /// without a point its multiplier, in W per unit of the constraint, as `_x`.
     pub reactions: bool,
+    /// At each contact its `normal_force_<name>`, and where it could slip its
+    /// `tangential_force_<name>` and `friction_demand_<name>`, the tangential over the normal force.
+    pub contacts: bool,
+    /// `condition_mass_matrix`, and `condition_system_<number>` of each system that is solved with
+    /// pivoting.
+    pub conditions: bool,
     /// `residual_<name>` of each velocity constraint.
     pub residuals: bool,
 }
@@ -30,12 +39,16 @@ pub struct Trajectory {
     parameters: Vec<f64>,
     times: Vec<f64>,
     extras: Extras,
+    systems: usize,
     columns: Vec<Quantity>,
     rows: Vec<f64>,
     /// Why the motion ended; nothing if it failed.
     pub ending: Option<Ending>,
     /// Events found.
     pub events: Vec<EventHit>,
+    /// Limits of the model that the motion passes, in the order of time. The last one ended a motion
+    /// whose ending is [`Ending::Stopped`].
+    pub breaches: Vec<Breach>,
     /// Cost of the integration.
     pub statistics: Statistics,
 }
@@ -54,7 +67,8 @@ impl Trajectory {
         extras: Extras,
     ) -> Self {
         let info = model.info().clone();
-        let columns = columns(&info, extras);
+        let columns = columns(&info, model.system_sizes().len(), extras);
+        let mut forces = ContactForces::new();
         let n = info.state_len();
         let mut rows = Vec::with_capacity(times.len() * columns.len());
         let mut inputs = vec![0.0; info.input_len()];
@@ -84,6 +98,18 @@ impl Trajectory {
                 model.constraint_forces(at, &mut reactions);
                 rows.extend_from_slice(&reactions);
             }
+            if extras.contacts {
+                let forces = forces.at(model, at).iter().zip(info.contacts.iter());
+                for (force, contact) in forces {
+                    rows.push(force.normal);
+                    if contact.grips {
+                        rows.extend([force.tangential, force.demand()]);
+                    }
+                }
+            }
+            if extras.conditions {
+                rows.extend(Conditions::of(model, at).iter());
+            }
             if extras.residuals {
                 model.constraint_residual(at, &mut residuals);
                 rows.extend_from_slice(&residuals);
@@ -94,10 +120,12 @@ impl Trajectory {
             parameters: parameters.to_vec(),
             times,
             extras,
+            systems: model.system_sizes().len(),
             columns,
             rows,
             ending: None,
             events: Vec::new(),
+            breaches: Vec::new(),
             statistics: Statistics::default(),
         }
     }
@@ -163,7 +191,7 @@ impl Trajectory {
 
     /// What is called otherwise because the spec uses the name: what it would be, what it is.
     pub fn renamed(&self) -> Vec<[Text; 2]> {
-        let wanted = wanted_columns(&self.info, self.extras);
+        let wanted = wanted_columns(&self.info, self.systems, self.extras);
         let pairs = wanted.iter().zip(&self.columns);
         pairs
             .map(|(wanted, column)| [wanted.name.clone(), column.name.clone()])
@@ -277,8 +305,8 @@ fn write_number(to: &mut impl Write, value: f64) -> io::Result<()> {
 }
 
 /// The columns with names of their own.
-fn columns(info: &ModelInfo, extras: Extras) -> Vec<Quantity> {
-    let mut columns = wanted_columns(info, extras);
+fn columns(info: &ModelInfo, systems: usize, extras: Extras) -> Vec<Quantity> {
+    let mut columns = wanted_columns(info, systems, extras);
     let spec = info.state_len() + info.declared_inputs;
     let signals = info.signal_inputs.iter().map(|(_, order)| *order == 0);
     let outputs = if extras.outputs { info.output_len() } else { 0 };
@@ -304,7 +332,7 @@ fn columns(info: &ModelInfo, extras: Extras) -> Vec<Quantity> {
 }
 
 /// The columns, some of which may bear the name of another.
-fn wanted_columns(info: &ModelInfo, extras: Extras) -> Vec<Quantity> {
+fn wanted_columns(info: &ModelInfo, systems: usize, extras: Extras) -> Vec<Quantity> {
     let mut columns = info.states.to_vec();
     columns.extend_from_slice(&info.inputs);
     if extras.outputs {
@@ -325,6 +353,34 @@ fn wanted_columns(info: &ModelInfo, extras: Extras) -> Vec<Quantity> {
                 let name = format!("reaction_{reaction}_{axis}");
                 columns.push(si(name, "reaction in the ground", ""));
             }
+        }
+    }
+    if extras.contacts {
+        for contact in info.contacts.iter() {
+            let name = &contact.name;
+            columns.push(si(
+                format!("normal_force_{name}"),
+                "push of the surface",
+                "",
+            ));
+            if contact.grips {
+                columns.push(si(
+                    format!("tangential_force_{name}"),
+                    "size of the force along the surface",
+                    "N",
+                ));
+                columns.push(si(
+                    format!("friction_demand_{name}"),
+                    "tangential force over normal force",
+                    "",
+                ));
+            }
+        }
+    }
+    if extras.conditions {
+        let names = (1..=systems).map(|system| format!("condition_system_{system}"));
+        for name in std::iter::once("condition_mass_matrix".to_owned()).chain(names) {
+            columns.push(si(name, "condition number", ""));
         }
     }
     if extras.residuals {

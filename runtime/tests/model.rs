@@ -30,6 +30,7 @@ const INFO: ModelInfo = ModelInfo {
     outputs: Cow::Borrowed(&[]),
     constraint_rows: Cow::Borrowed(&[]),
     reactions: Cow::Borrowed(&[]),
+    contacts: Cow::Borrowed(&[]),
     explicit_time: false,
 };
 

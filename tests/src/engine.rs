@@ -98,6 +98,15 @@ impl Model for Emitted {
     fn switches(&self, at: At<'_>, switches: &mut [f64]) {
         self.0.switches(at, switches);
     }
+    fn contacts(&self, at: At<'_>, normals: &mut [f64], friction: &mut [f64]) {
+        self.0.contacts(at, normals, friction);
+    }
+    fn system_sizes(&self) -> &[usize] {
+        self.0.system_sizes()
+    }
+    fn systems(&self, at: At<'_>, matrices: &mut [f64]) {
+        self.0.systems(at, matrices);
+    }
 }
 
 /// Everything a model computes at a point.

@@ -5,10 +5,10 @@ use std::path::PathBuf;
 
 use appell_runtime::figure::Figure;
 use appell_runtime::integrate::Options;
-use appell_runtime::simulate::Method;
+use appell_runtime::simulate::{Method, Validity};
 
 use super::derive::{Format, Stage, derivation};
-use super::simulate::{Run, write_csv};
+use super::simulate::{Run, standard_extras, write_csv};
 use crate::controller::Plan;
 use crate::engine::Equations;
 use crate::failure::Failure;
@@ -43,7 +43,8 @@ impl Demo {
             interval: 0.01,
             method: Method::Dop853,
             options: Options::with_tolerances(1e-10, 1e-10),
-            reactions: false,
+            extras: standard_extras(),
+            validity: Validity::default(),
         };
         let (trajectory, failure) = run.run(plan)?;
         let panels = [

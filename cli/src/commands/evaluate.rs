@@ -2,6 +2,8 @@
 
 use std::path::PathBuf;
 
+use appell_runtime::condition::Conditions;
+use appell_runtime::contact::ContactForces;
 use appell_runtime::inputs::{ModelInputs, ZeroInputs};
 use appell_runtime::model::{At, Model, Quantity};
 use serde_json::{Map, Value, json};
@@ -153,6 +155,8 @@ fn answer(model: &dyn Model, at: At<'_>) -> (Value, bool) {
         .zip(reactions.chunks(3))
         .map(|(name, force)| (name.to_string(), json!(force)))
         .collect();
+    let contacts = contacts(model, at);
+    let conditions = Conditions::of(model, at);
     let value = json!({
         "rates": named(&info.states, &rates),
         "mass_matrix": rows(&mass, s, s),
@@ -167,7 +171,30 @@ fn answer(model: &dyn Model, at: At<'_>) -> (Value, bool) {
         "power": energies.power,
         "constraint_residual": residual,
         "constraint_forces": reactions,
+        "contacts": contacts,
+        "conditions": {
+            "mass_matrix": conditions.mass_matrix,
+            "systems": conditions.systems,
+        },
         "outputs": named(&info.outputs, &outputs),
     });
     (value, finite)
+}
+
+/// What each contact asks of its surface. A friction demand without end is `null`.
+fn contacts(model: &dyn Model, at: At<'_>) -> Map<String, Value> {
+    let mut forces = ContactForces::new();
+    let forces = forces.at(model, at).iter();
+    let contacts = model.info().contacts.iter().zip(forces);
+    contacts
+        .map(|(contact, force)| {
+            let mut told = json!({ "normal_force": force.normal });
+            if contact.grips {
+                told["tangential_force"] = json!(force.tangential);
+                told["friction_demand"] = json!(force.demand());
+                told["friction"] = json!(force.friction);
+            }
+            (contact.name.to_string(), told)
+        })
+        .collect()
 }

@@ -3,8 +3,9 @@
 use std::path::{Path, PathBuf};
 
 use appell_runtime::figure::Figure;
-use appell_runtime::integrate::Options;
-use appell_runtime::simulate::{Method, Sampling, SimulationError};
+use appell_runtime::integrate::{Ending, Options};
+use appell_runtime::model::ModelInfo;
+use appell_runtime::simulate::{Method, Response, Sampling, SimulationError, Validity};
 use appell_runtime::trajectory::{CsvOptions, Extras};
 use appell_runtime::{Simulation, Trajectory};
 
@@ -66,12 +67,23 @@ pub(crate) struct Simulate {
     /// Let states leave the ranges that the spec declares
     #[arg(long)]
     ignore_ranges: bool,
+    /// Coefficient of friction of all contacts, in place of those of the spec
+    #[arg(long, value_name = "MU", allow_negative_numbers = true)]
+    friction: Option<f64>,
+    /// What happens where a contact is lost or slips, a state leaves its range, or a linear system is
+    /// nearly singular [default: a range ends the motion, the others are told]
+    #[arg(long, value_enum, value_name = "WHAT")]
+    on_event: Option<OnEvent>,
     /// What evaluates the equations [default: emitted for shipped mechanisms, else jit]
     #[arg(long, value_enum)]
     engine: Option<Engine>,
-    /// Also compute the constraint forces, as columns `reaction_…` in N, in the ground
+    /// Also compute the constraint forces, as columns `reaction_…` in N, in the ground; at contacts
+    /// their `normal_force_…`, `tangential_force_…` and `friction_demand_…`
     #[arg(long)]
     reactions: bool,
+    /// Also compute condition numbers, as columns `condition_…`
+    #[arg(long)]
+    conditions: bool,
     /// Write the motion: time, states, inputs, outputs, energies, in the units of the spec; `-` is
     /// standard output, and the summary goes to standard error then
     #[arg(long, value_name = "FILE.csv")]
@@ -95,6 +107,15 @@ enum Integrator {
     Rk4,
 }
 
+/// What happens at an event.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+enum OnEvent {
+    /// The motion ends there
+    Stop,
+    /// It is told, and the motion goes on
+    Warn,
+}
+
 impl Simulate {
     pub(super) fn run(&self) -> Result<(), Failure> {
         positive("--t-end-s", self.t_end_s)?;
@@ -112,7 +133,8 @@ impl Simulate {
             None => Equations::at_hand(&source)?,
         };
         let mut setup = Setup::new(&source.file, &source.text, equations.model().info())?;
-        setup.watch_ranges = !self.ignore_ranges;
+        let validity = self.validity(setup.info)?;
+        setup.watch_ranges = validity.ranges == Response::Stop;
         setup.set(&self.set)?;
         let mut plan = Plan::new(&setup);
         for file in &self.feedback {
@@ -143,7 +165,13 @@ impl Simulate {
                 max_steps: self.max_steps,
                 ..Options::with_tolerances(self.rtol, self.atol)
             },
-            reactions: self.reactions,
+            extras: Extras {
+                reactions: self.reactions,
+                contacts: self.reactions,
+                conditions: self.conditions,
+                ..standard_extras()
+            },
+            validity,
         };
         let undriven = plan.is_empty();
         let (trajectory, failure) = run.run(plan)?;
@@ -177,6 +205,39 @@ impl Simulate {
         }
     }
 
+    /// What is watched, and what happens then.
+    fn validity(&self, info: &ModelInfo) -> Result<Validity, Failure> {
+        if let Some(friction) = self.friction {
+            if !(friction.is_finite() && friction >= 0.0) {
+                return Err(Failure::Usage(format!(
+                    "`--friction {friction}` must be a number that is not negative"
+                )));
+            }
+            if !info.contacts.iter().any(|contact| contact.grips) {
+                return Err(Failure::Usage(
+                    "`--friction`: the mechanism has no rolling contact whose forces can be told"
+                        .to_owned(),
+                ));
+            }
+        }
+        let (ranges, others) = match self.on_event {
+            None => (Response::Stop, Response::Report),
+            Some(OnEvent::Stop) => (Response::Stop, Response::Stop),
+            Some(OnEvent::Warn) => (Response::Report, Response::Report),
+        };
+        Ok(Validity {
+            ranges: if self.ignore_ranges {
+                Response::Ignore
+            } else {
+                ranges
+            },
+            contacts: others,
+            friction: self.friction,
+            conditions: others,
+            ..Validity::default()
+        })
+    }
+
     /// Whether standard output belongs to one of the files.
     fn takes_stdout(&self) -> bool {
         let files = [&self.csv, &self.plot, &self.json];
@@ -208,6 +269,15 @@ fn hint(setup: &Setup<'_>) -> String {
     )
 }
 
+/// What every motion is recorded with.
+pub(super) fn standard_extras() -> Extras {
+    Extras {
+        outputs: true,
+        energies: true,
+        ..Extras::default()
+    }
+}
+
 /// A motion to be computed.
 pub(super) struct Run<'a> {
     /// What moves.
@@ -222,8 +292,10 @@ pub(super) struct Run<'a> {
     pub(super) method: Method,
     /// Its tolerances.
     pub(super) options: Options,
-    /// Whether the constraint forces are computed.
-    pub(super) reactions: bool,
+    /// What is recorded besides states and inputs.
+    pub(super) extras: Extras,
+    /// What is watched.
+    pub(super) validity: Validity,
 }
 
 impl Run<'_> {
@@ -239,20 +311,20 @@ impl Run<'_> {
             method: self.method,
             options: self.options,
             sampling: Sampling::Every(self.interval),
-            extras: Extras {
-                outputs: true,
-                energies: true,
-                reactions: self.reactions,
-                residuals: false,
-            },
-            watch_ranges: self.setup.watch_ranges,
+            extras: self.extras,
+            validity: self.validity,
             progress: Some(Box::new(|t| clock.set_position(progress::milliseconds(t)))),
             ..Simulation::new(self.equations.model())
         };
         let outcome = simulation.run();
         clock.finish_and_clear();
         let (mut trajectory, reason) = match outcome {
-            Ok(trajectory) => (trajectory, None),
+            Ok(trajectory) => {
+                let ended = trajectory.ending == Some(Ending::Stopped);
+                let last = trajectory.breaches.last().filter(|_| ended);
+                let reason = last.map(|breach| breach.describe_in_full(trajectory.info()));
+                (trajectory, reason)
+            }
             Err(error) => {
                 let reason = error.to_string();
                 match error {

@@ -5,10 +5,13 @@
 //! they differ.
 
 use appell_spec::Code;
-use appell_spec::mechanism::{BodyId, ConstraintKind, GROUND, LoadKind, Mechanism, PointId};
+use appell_spec::mechanism::{
+    BodyId, ConstraintKind, GROUND, LoadKind, Mechanism, Normal, PointId,
+};
 
 use super::{listed, shown, unconstrained, zero_or};
 use crate::mechanics::algebra::Algebra;
+use crate::mechanics::contacts::axis;
 use crate::mechanics::expressions::Lowering;
 use crate::mechanics::finding::{Finding, Item};
 use crate::mechanics::initial::InitialState;
@@ -36,10 +39,18 @@ pub(super) fn findings(
     let constraints = mechanism.constraints.iter().enumerate();
     constraints
         .filter_map(|(index, constraint)| {
-            let ConstraintKind::Rolling { body, contact } = constraint.kind else {
+            let ConstraintKind::Rolling {
+                body,
+                contact,
+                normal,
+                ..
+            } = constraint.kind
+            else {
                 return None;
             };
-            let (message, help) = geometry.contradiction(body, contact)?;
+            let (message, help) = geometry
+                .contradiction(body, contact)
+                .or_else(|| geometry.wrong_normal(body, contact, normal?))?;
             Some(Finding {
                 code: Code::ContactGeometry,
                 message,
@@ -89,7 +100,8 @@ impl Geometry<'_> {
                 ),
             ));
         }
-        if self.independent_velocities(body, contact) == 3 {
+        let material = self.material_velocity(body, contact);
+        if self.independent_of_positions(&material) == 3 {
             return Some(self.leaves_the_ground(contact));
         }
         self.is_overhead(body, contact).then(|| {
@@ -99,6 +111,45 @@ impl Geometry<'_> {
                      above its centre"
                 ),
                 format!("turn the sign of the position of `{point}`, or the `down` of the gravity"),
+            )
+        })
+    }
+
+    /// What is wrong with the normal of a surface, and what to write instead.
+    fn wrong_normal(
+        &mut self,
+        body: BodyId,
+        contact: PointId,
+        normal: Normal,
+    ) -> Option<(String, String)> {
+        let (k, frame) = (axis(normal.axis), normal.frame);
+        let graph = &mut self.algebra.graph;
+        let (mechanism, kinematics) = (self.mechanism, &self.kinematics);
+        let v = kinematics.material_velocity(graph, mechanism, body, contact, frame);
+        let point = &mechanism.points[contact].name;
+        if self.independent_of_positions(&[v[k]]) > 0 {
+            return Some((
+                format!(
+                    "the coordinates let the contact `{point}` move along the normal of its surface"
+                ),
+                "name the axis across the surface, in a frame that follows the surface".to_owned(),
+            ));
+        }
+        let centre = mechanism.bodies[body].centre;
+        let graph = &mut self.algebra.graph;
+        let arm = self
+            .kinematics
+            .between(graph, mechanism, contact, centre, frame);
+        let state = InitialState::new(graph, mechanism, self.symbols);
+        let height = state.of(graph, &[arm[k]])[0];
+        let height = if normal.negative { -height } else { height };
+        (height < 0.0).then(|| {
+            (
+                format!(
+                    "the normal at `{point}` points out of `{}`, whose contact could only pull",
+                    mechanism.bodies[body].name
+                ),
+                "turn the sign of `normal`: it points from the surface into the body".to_owned(),
             )
         })
     }
@@ -125,12 +176,12 @@ impl Geometry<'_> {
         self.vanishes(&passing)
     }
 
-    /// How many of the three velocities of the material point the coordinates leave open, once
-    /// they satisfy the position constraints.
-    fn independent_velocities(&mut self, body: BodyId, contact: PointId) -> usize {
+    /// How many of some velocities the coordinates leave open, once they satisfy the position
+    /// constraints.
+    fn independent_of_positions(&mut self, wanted: &[Expr]) -> usize {
         let mut velocities = self.velocities_of_positions();
         let before = velocities.len();
-        velocities.extend(self.material_velocity(body, contact));
+        velocities.extend(wanted);
         let rates = &self.symbols.rates;
         let rows: Vec<LinearRow> = velocities
             .into_iter()

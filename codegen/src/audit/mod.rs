@@ -132,9 +132,10 @@ impl<'a> Bench<'a> {
         shown(&self.algebra.graph, expr)
     }
 
-    /// Everything that the motion and its results consist of, without reactions.
+    /// Everything that the motion and its results consist of, without reactions but with friction.
     fn equations(&self) -> Vec<Expr> {
         let Derivation {
+            contacts,
             velocities,
             gibbs,
             forces,
@@ -147,6 +148,7 @@ impl<'a> Bench<'a> {
         all.extend(&velocities.rates);
         all.extend(loads.iter().filter_map(|load| load.potential));
         all.extend(&self.outputs);
+        all.extend(contacts.iter().filter_map(|contact| contact.friction));
         all
     }
 

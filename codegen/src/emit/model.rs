@@ -1,6 +1,6 @@
 //! `INFO` and the implementation of `Model`, which need the standard library.
 
-use appell_runtime::model::{Interpolation, ModelInfo, Quantity};
+use appell_runtime::model::{Contact, Interpolation, ModelInfo, Quantity};
 use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 
@@ -97,6 +97,8 @@ pub(super) fn info(info: &ModelInfo) -> TokenStream {
     let reactions = texts(&info.reactions);
     let [row_count, reaction_count] =
         [info.constraint_rows.len(), info.reactions.len()].map(Literal::usize_unsuffixed);
+    let contacts = info.contacts.iter().map(contact);
+    let contact_count = Literal::usize_unsuffixed(info.contacts.len());
     let orders = info.signal_inputs.iter().map(|&(signal, order)| {
         let (signal, order) = (
             Literal::usize_unsuffixed(signal),
@@ -123,6 +125,9 @@ pub(super) fn info(info: &ModelInfo) -> TokenStream {
         /// Reactions in the ground.
         static REACTIONS: [model::Text; #reaction_count] = #reactions;
         #blank
+        /// Contacts, which can only push.
+        static CONTACTS: [model::Contact; #contact_count] = [#(#contacts),*];
+        #blank
         /// Names, units and sizes of the model.
         pub static INFO: model::ModelInfo = model::ModelInfo {
             name: #name,
@@ -138,8 +143,32 @@ pub(super) fn info(info: &ModelInfo) -> TokenStream {
             outputs: model::List::Borrowed(&OUTPUTS),
             constraint_rows: model::List::Borrowed(&CONSTRAINT_ROWS),
             reactions: model::List::Borrowed(&REACTIONS),
+            contacts: model::List::Borrowed(&CONTACTS),
             explicit_time: #explicit_time,
         };
+    }
+}
+
+/// A contact.
+fn contact(contact: &Contact) -> TokenStream {
+    let (name, grips) = (borrowed(&contact.name), contact.grips);
+    let reaction = Literal::usize_unsuffixed(contact.reaction);
+    let normal = contact.normal.map(double);
+    let friction = match contact.friction {
+        Some(friction) => {
+            let friction = double(friction);
+            quote!(Some(#friction))
+        }
+        None => quote!(None),
+    };
+    quote! {
+        model::Contact {
+            name: #name,
+            reaction: #reaction,
+            normal: [#(#normal),*],
+            grips: #grips,
+            friction: #friction,
+        }
     }
 }
 
@@ -225,6 +254,8 @@ pub(super) fn implementation(types: &Types<'_>) -> Result<TokenStream, Error> {
         optional_method(types, FunctionKind::Outputs, "outputs", "outputs")?,
         switches_methods(types),
         position_methods(types),
+        contact_methods(types),
+        system_methods(types),
     ];
     let blank = blank_tokens();
     Ok(quote! {
@@ -413,6 +444,45 @@ fn position_methods(types: &Types<'_>) -> TokenStream {
             let all = self::#call;
             write(residual, &all.residual);
             write(jacobian, all.jacobian.as_flattened());
+        }
+    }
+}
+
+/// Surfaces that change; the trait has an answer for those that do not.
+fn contact_methods(types: &Types<'_>) -> TokenStream {
+    if types.program.function(FunctionKind::Contacts).is_none() {
+        return TokenStream::new();
+    }
+    let call = call(types, FunctionKind::Contacts.name());
+    let blank = blank_tokens();
+    quote! {
+        #blank
+        fn contacts(&self, at: At<'_>, normals: &mut [f64], friction: &mut [f64]) {
+            let all = self::#call;
+            write(normals, all.normals.as_flattened());
+            write(friction, &all.friction);
+        }
+    }
+}
+
+/// Systems solved with pivoting; the trait has an answer for models without any.
+fn system_methods(types: &Types<'_>) -> TokenStream {
+    let sizes = &types.program.systems;
+    if types.program.function(FunctionKind::Systems).is_none() {
+        return TokenStream::new();
+    }
+    let sizes = sizes.iter().map(|&size| Literal::usize_unsuffixed(size));
+    let call = call(types, FunctionKind::Systems.name());
+    let blank = blank_tokens();
+    quote! {
+        #blank
+        fn system_sizes(&self) -> &[usize] {
+            &[#(#sizes),*]
+        }
+
+        #blank
+        fn systems(&self, at: At<'_>, matrices: &mut [f64]) {
+            write(matrices, &self::#call);
         }
     }
 }

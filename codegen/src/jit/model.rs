@@ -51,6 +51,17 @@ fn results(kind: FunctionKind, program: &Program) -> Vec<(&'static str, usize)> 
             let coordinates = info.state_len() - info.speeds;
             vec![("residual", count), ("jacobian", count * coordinates)]
         }
+        FunctionKind::Contacts => {
+            let count = match program.function(kind) {
+                Some(_) => info.contacts.len(),
+                None => 0,
+            };
+            vec![("normals", 3 * count), ("friction", count)]
+        }
+        FunctionKind::Systems => {
+            let entries = program.systems.iter().map(|size| size * size);
+            vec![("matrices", entries.sum())]
+        }
     }
 }
 
@@ -171,6 +182,21 @@ impl Model for JitModel {
     fn switches(&self, at: At<'_>, switches: &mut [f64]) {
         self.evaluate(FunctionKind::Switches, at, [switches]);
     }
+
+    fn contacts(&self, at: At<'_>, normals: &mut [f64], friction: &mut [f64]) {
+        match self.program.function(FunctionKind::Contacts) {
+            Some(_) => self.evaluate(FunctionKind::Contacts, at, [normals, friction]),
+            None => self.info().initial_contacts(normals, friction),
+        }
+    }
+
+    fn system_sizes(&self) -> &[usize] {
+        &self.program.systems
+    }
+
+    fn systems(&self, at: At<'_>, matrices: &mut [f64]) {
+        self.evaluate(FunctionKind::Systems, at, [matrices]);
+    }
 }
 
 impl fmt::Debug for JitModel {
@@ -202,7 +228,9 @@ mod tests {
             Kind::ConstraintForces => Kind::Outputs,
             Kind::Outputs => Kind::Switches,
             Kind::Switches => Kind::PositionConstraints,
-            Kind::PositionConstraints => return None,
+            Kind::PositionConstraints => Kind::Contacts,
+            Kind::Contacts => Kind::Systems,
+            Kind::Systems => return None,
         })
     }
 

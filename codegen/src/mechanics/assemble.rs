@@ -1,6 +1,6 @@
 //! The derived equations as the functions of a program.
 
-use appell_runtime::model::{Interpolation, ModelInfo, Quantity, SignalTable};
+use appell_runtime::model::{Contact, Interpolation, List, ModelInfo, Quantity, SignalTable};
 use appell_spec::mechanism::{self, Label, Mechanism, Signal};
 
 use super::Derivation;
@@ -10,14 +10,16 @@ use super::gibbs_appell::{
     ActualMotion, BodyMotion, acceleration_energy, kinetic_energy_by_velocity, motions_in_ground,
 };
 use super::glossary;
+use super::initial::InitialState;
 use super::kinematics::division_by_zero;
 use super::linear::ImplicitMotion;
 use super::positions::Positions;
 use super::reactions;
 use super::switches::switches;
 use super::symbols::{Symbols, ids};
+use super::systems::systems;
 use crate::program::{Arguments, Array, Function, FunctionKind, Layout, Program};
-use crate::symbolic::Expr;
+use crate::symbolic::{Expr, Graph};
 
 /// The program of a derivation, with the functions `kinds`. Without outputs or switches there is no
 /// function for them.
@@ -33,7 +35,11 @@ pub fn program(
         let results = derivation.results(mechanism, &info, kind)?;
         let may_lack = matches!(
             kind,
-            FunctionKind::Outputs | FunctionKind::Switches | FunctionKind::PositionConstraints
+            FunctionKind::Outputs
+                | FunctionKind::Switches
+                | FunctionKind::PositionConstraints
+                | FunctionKind::Contacts
+                | FunctionKind::Systems
         );
         if !may_lack || results.iter().any(|array| !array.entries.is_empty()) {
             functions.push(derivation.staged(mechanism, Function::new(kind, results)));
@@ -56,8 +62,10 @@ pub fn program(
         .flat_map(|f| &f.results)
         .flat_map(|r| &r.entries)
         .any(|&e| graph.mentions(e, &[arguments.time]));
+    let systems = systems(graph, &derivation.rates());
     Ok(Program {
         info,
+        systems: systems.into_iter().map(|(size, _)| size).collect(),
         file: mechanism.file.clone(),
         graph: derivation.algebra.graph,
         arguments,
@@ -160,6 +168,13 @@ impl Derivation {
                 let switches = switches(&mut self.algebra.graph, &self.symbols, &rates);
                 let layout = Layout::Vector(switches.len());
                 vec![Array::new("switches", "Switches.", layout, switches)]
+            }
+            FunctionKind::Contacts => self.surfaces(),
+            FunctionKind::Systems => {
+                let systems = systems(&self.algebra.graph, &self.rates());
+                let matrices: Vec<Expr> = systems.into_iter().flat_map(|(_, m)| m).collect();
+                let layout = Layout::Vector(matrices.len());
+                vec![Array::new("matrices", "Matrices.", layout, matrices)]
             }
         })
     }
@@ -281,6 +296,47 @@ impl Derivation {
             &self.velocities.rates,
             &self.bodies,
         )
+    }
+
+    /// Normals and friction of the contacts; nothing where they are the same everywhere.
+    fn surfaces(&self) -> Vec<Array> {
+        let graph = &self.algebra.graph;
+        if self
+            .contacts
+            .iter()
+            .all(|contact| contact.is_constant(graph))
+        {
+            return Vec::new();
+        }
+        let names: Vec<String> = self
+            .contacts
+            .iter()
+            .map(|contact| self.constraints.reactions[contact.place].clone())
+            .collect();
+        let normals = self.contacts.iter().flat_map(|contact| contact.normal);
+        let friction = self.contacts.iter().map(|contact| contact.friction);
+        let friction = friction.map(|friction| friction.unwrap_or(Graph::ZERO));
+        let count = names.len();
+        let labels = |name: &String| ["x", "y", "z"].map(|axis| format!("n_{name}_{axis}"));
+        let axes = ["x", "y", "z"].map(|axis| format!("ground {axis}"));
+        vec![
+            Array::new(
+                "normals",
+                "Normals in the ground.",
+                Layout::Matrix(count, 3),
+                normals.collect(),
+            )
+            .labelled(names.iter().flat_map(labels))
+            .with_names(names.clone(), axes.to_vec()),
+            Array::new(
+                "friction",
+                "Coefficients of friction.",
+                Layout::Vector(count),
+                friction.collect(),
+            )
+            .labelled(names.iter().map(|name| format!("friction_{name}")))
+            .with_names(names.clone(), Vec::new()),
+        ]
     }
 
     /// One row per place with a reaction.
@@ -530,8 +586,30 @@ fn info(derivation: &Derivation, mechanism: &Mechanism, signals: &[(usize, u8)])
             .iter()
             .map(|r| r.clone().into())
             .collect(),
+        contacts: contacts(derivation, mechanism),
         explicit_time: false,
     }
+}
+
+/// The contacts as they are at the initial state.
+fn contacts(derivation: &Derivation, mechanism: &Mechanism) -> List<Contact> {
+    let graph = &derivation.algebra.graph;
+    let state = InitialState::new(graph, mechanism, &derivation.symbols);
+    let contact = |contact: &super::contacts::Contact| {
+        let normal = state.of(graph, &contact.normal);
+        Contact {
+            name: derivation.constraints.reactions[contact.place]
+                .clone()
+                .into(),
+            reaction: contact.place,
+            normal: [normal[0], normal[1], normal[2]],
+            grips: contact.grips,
+            friction: contact
+                .friction
+                .map(|friction| state.of(graph, &[friction])[0]),
+        }
+    };
+    derivation.contacts.iter().map(contact).collect()
 }
 
 fn quantity(label: &Label, value: f64, range: [f64; 2]) -> Quantity {

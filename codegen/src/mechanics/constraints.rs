@@ -6,6 +6,7 @@ use appell_spec::mechanism::{ConstraintKind, FrameId, GROUND, Mechanism, PointId
 use super::algebra::Algebra;
 use super::expressions::Lowering;
 use super::finding::{Finding, Item, Outcome};
+use super::frames::FrameVector;
 use super::kinematics::{Carried, Effort, Kinematics, division_by_zero, root_of};
 use super::redundancy::leave_out;
 use super::symbols::Symbols;
@@ -40,6 +41,17 @@ pub struct Row {
     pub of_position: bool,
 }
 
+/// An imagined motion: a point and the axis along which it is carried.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Imagined {
+    /// The point next to the origin that everything carried hangs from.
+    pub root: PointId,
+    /// Frame of the axis.
+    pub frame: FrameId,
+    /// The axis.
+    pub axis: usize,
+}
+
 /// An imagined motion that violates an embedded row at `coefficient` times its rate.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct StandIn {
@@ -65,8 +77,8 @@ pub struct Constraints {
     pub rows: Vec<Row>,
     /// Names of the places with reactions.
     pub reactions: Vec<String>,
-    /// Imagined motions: a point and the axis of the ground along which it is carried.
-    pub carried: Vec<(PointId, usize)>,
+    /// Imagined motions.
+    pub carried: Vec<Imagined>,
     /// Rows that were left out.
     pub warnings: Vec<Finding>,
 }
@@ -83,6 +95,14 @@ impl Row {
     }
 }
 
+impl Constraints {
+    /// The rows of a constraint.
+    pub fn rows_of(&self, constraint: usize) -> impl Iterator<Item = &Row> {
+        let rows = self.rows.iter();
+        rows.filter(move |row| row.constraint == constraint)
+    }
+}
+
 /// Constraint rows with symbols for q̇, tested for rows that geometry already embeds.
 pub fn constraints(
     algebra: &mut Algebra,
@@ -93,7 +113,10 @@ pub fn constraints(
     let carried = imagined_motions(mechanism);
     let carried_rates: Vec<Expr> = carried
         .iter()
-        .map(|(point, axis)| algebra.graph.symbol(&format!("carry_{point}_{axis}")))
+        .map(|motion| {
+            let name = format!("carry_{}_{}", motion.root, motion.axis);
+            algebra.graph.symbol(&name)
+        })
         .collect();
     let motions = motions_along(&carried, &carried_rates);
     let kinematics = Kinematics::new(
@@ -199,6 +222,7 @@ struct Scalar {
     name: String,
     value: Expr,
     direction: Vec3,
+    frame: FrameId,
 }
 
 /// What one constraint demands, row by row, and where its reaction acts.
@@ -222,27 +246,32 @@ fn scalar_rows(
             name,
             value,
             direction,
+            frame: GROUND,
         }]
     };
     Ok(match &constraint.kind {
-        ConstraintKind::Rolling { body, contact } => {
-            let v = kinematics.material_velocity(
-                &mut algebra.graph,
-                mechanism,
-                *body,
-                *contact,
-                GROUND,
-            );
-            let scalars = ["x", "y", "z"]
-                .iter()
-                .enumerate()
-                .map(|(k, axis)| Scalar {
+        ConstraintKind::Rolling {
+            body,
+            contact,
+            normal,
+            ..
+        } => {
+            let frame = normal.map_or(GROUND, |normal| normal.frame);
+            let graph = &mut algebra.graph;
+            let v = kinematics.material_velocity(graph, mechanism, *body, *contact, frame);
+            let scalars = ["x", "y", "z"].iter().enumerate().map(|(k, axis)| {
+                let unit = FrameVector {
+                    frame,
+                    v: vector::IDENTITY[k],
+                };
+                Scalar {
                     name: format!("{}.{axis}", constraint.name),
                     value: v[k],
-                    direction: vector::IDENTITY[k],
-                })
-                .collect();
-            (Place::Point(*contact), scalars)
+                    direction: kinematics.frames.express(graph, unit, GROUND),
+                    frame,
+                }
+            });
+            (Place::Point(*contact), scalars.collect())
         }
         ConstraintKind::Velocity {
             zero: left, equals, ..
@@ -258,6 +287,7 @@ fn scalar_rows(
             frame,
             direction,
             equals,
+            ..
         } => {
             let along = lowering
                 .lower_all(&mut algebra.graph, direction)
@@ -279,13 +309,11 @@ fn scalar_rows(
             };
             let left = algebra.graph.dot(along, v);
             let value = algebra.graph.sub(left, right);
-            let in_ground = super::frames::FrameVector {
+            let along = FrameVector {
                 frame: *frame,
                 v: along,
             };
-            let direction = kinematics
-                .frames
-                .express(&mut algebra.graph, in_ground, GROUND);
+            let direction = kinematics.frames.express(&mut algebra.graph, along, GROUND);
             (Place::Point(*point), single(value, direction))
         }
         ConstraintKind::Position { zero: position, .. } => {
@@ -314,6 +342,7 @@ fn row(
         name,
         value,
         direction,
+        frame,
     } = scalar;
     let kind = &mechanism.constraints[constraint].kind;
     let of_position = matches!(kind, ConstraintKind::Position { .. });
@@ -343,41 +372,54 @@ fn row(
         carried,
         stand_in: None,
         redundant: false,
-        frame: GROUND,
+        frame,
         of_position,
     })
 }
 
-/// One motion per axis of the ground and per point from which a constrained point hangs.
-fn imagined_motions(mechanism: &Mechanism) -> Vec<(PointId, usize)> {
-    let mut carried = Vec::new();
+/// Three motions per point from which a constrained point hangs, along the axes of the ground or of
+/// the first surface that the spec tells the normal of.
+fn imagined_motions(mechanism: &Mechanism) -> Vec<Imagined> {
+    let mut roots: Vec<(PointId, Option<FrameId>)> = Vec::new();
     for constraint in &mechanism.constraints {
-        let carrier = match &constraint.kind {
-            ConstraintKind::Rolling { body, .. }
-            | ConstraintKind::FixedVelocity {
+        let (carrier, surface) = match &constraint.kind {
+            ConstraintKind::Rolling { body, normal, .. } => (
+                mechanism.bodies[*body].centre,
+                normal.map(|normal| normal.frame),
+            ),
+            ConstraintKind::FixedVelocity {
                 body: Some(body), ..
-            } => mechanism.bodies[*body].centre,
+            } => (mechanism.bodies[*body].centre, None),
             ConstraintKind::FixedVelocity {
                 point, body: None, ..
-            } => *point,
+            } => (*point, None),
             ConstraintKind::Velocity { .. } | ConstraintKind::Position { .. } => continue,
         };
         let root = root_of(mechanism, carrier);
-        if !carried.contains(&(root, 0)) {
-            carried.extend((0..3).map(|axis| (root, axis)));
+        match roots.iter_mut().find(|(known, _)| *known == root) {
+            Some((_, frame)) => *frame = frame.or(surface),
+            None => roots.push((root, surface)),
         }
     }
-    carried
+    let along = |(root, frame): (PointId, Option<FrameId>)| {
+        (0..3).map(move |axis| Imagined {
+            root,
+            frame: frame.unwrap_or(GROUND),
+            axis,
+        })
+    };
+    roots.into_iter().flat_map(along).collect()
 }
 
 /// The imagined motions with given velocities.
-pub fn motions_along(carried: &[(PointId, usize)], rates: &[Expr]) -> Vec<Carried> {
+pub fn motions_along(carried: &[Imagined], rates: &[Expr]) -> Vec<Carried> {
     carried
         .iter()
         .zip(rates)
-        .map(|(&(root, axis), &rate)| {
+        .map(|(&Imagined { root, frame, axis }, &rate)| {
             let mut v = vector::ZERO;
             v[axis] = rate;
+            let v = FrameVector { frame, v };
             Carried { root, v }
         })
         .collect()

@@ -72,7 +72,9 @@ fn expressions(mechanism: &Mechanism) -> Vec<(Item, &Spec)> {
                 all.extend(direction.iter().chain([equals]).map(|e| (item, e)));
             }
             ConstraintKind::Position { zero, .. } => all.push((item, zero)),
-            ConstraintKind::Rolling { .. } => {}
+            ConstraintKind::Rolling { friction, .. } => {
+                all.extend(friction.iter().map(|e| (item, e)));
+            }
         }
     }
     for (i, speed) in mechanism.pseudo_velocities.iter().enumerate() {

@@ -36,15 +36,15 @@ pub enum Effort {
 }
 
 /// An imagined motion that the coordinates do not have: the points placed from the origin by way of
-/// `root` are carried along with a velocity of the ground's components.
+/// `root` are carried along with a velocity.
 ///
 /// Where geometry already embeds a constraint, this is the motion against which its reaction works.
 #[derive(Debug, Clone, Copy)]
 pub struct Carried {
     /// The point next to the origin that everything carried hangs from.
     pub root: PointId,
-    /// Velocity, in the ground.
-    pub v: Vec3,
+    /// Velocity.
+    pub v: FrameVector,
 }
 
 impl Kinematics {
@@ -80,11 +80,7 @@ impl Kinematics {
             // v_P = v_from + (dr/dt in the frame) + ω × r
             let mut v = frames.express(&mut algebra.graph, velocities[from], point.frame);
             for motion in carried.iter().filter(|c| c.root == id) {
-                let carried = FrameVector {
-                    frame: GROUND,
-                    v: motion.v,
-                };
-                let carried = frames.express(&mut algebra.graph, carried, point.frame);
+                let carried = frames.express(&mut algebra.graph, motion.v, point.frame);
                 v = algebra.graph.add3(v, carried);
             }
             let relative = time.of3(algebra, at);

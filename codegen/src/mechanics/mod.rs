@@ -7,6 +7,7 @@
 pub mod algebra;
 pub mod assemble;
 pub mod constraints;
+pub mod contacts;
 pub mod divisors;
 pub mod elimination;
 pub mod expressions;
@@ -26,6 +27,7 @@ pub mod reactions;
 pub mod redundancy;
 pub mod switches;
 pub mod symbols;
+pub mod systems;
 pub mod time;
 
 use appell_spec::Code;
@@ -34,6 +36,7 @@ use appell_spec::mechanism::Mechanism;
 use crate::symbolic::{Expr, Graph, Intervals, SymbolId};
 use algebra::Algebra;
 use constraints::Constraints;
+use contacts::Contact;
 use elimination::GeneralizedVelocities;
 use finding::{Finding, Outcome};
 use gibbs_appell::{BodyMotion, GibbsForm};
@@ -52,6 +55,8 @@ pub struct Derivation {
     pub symbols: Symbols,
     /// Constraint rows.
     pub constraints: Constraints,
+    /// Contacts, which can only push.
+    pub contacts: Vec<Contact>,
     /// Position constraints.
     pub positions: Positions,
     /// q̇ in terms of the pseudo-velocities.
@@ -103,6 +108,8 @@ fn equations(mechanism: &Mechanism) -> Outcome<Derivation> {
     let mut intervals = declared_ranges(&algebra.graph, mechanism, &symbols);
 
     let constraints = constraints::constraints(&mut algebra, mechanism, &symbols, &mut intervals)?;
+    let (contacts, not_judged) =
+        contacts::contacts(&mut algebra, mechanism, &symbols, &constraints)?;
     let positions = Positions::new(&mut algebra, mechanism, &symbols, &mut intervals)?;
     algebra.check_size()?;
     let velocities = elimination::eliminate(
@@ -139,6 +146,7 @@ fn equations(mechanism: &Mechanism) -> Outcome<Derivation> {
         .collect();
     let state = InitialState::new(&algebra.graph, mechanism, &symbols);
     let mut warnings = constraints.warnings.clone();
+    warnings.extend(not_judged);
     warnings.extend(initial::vanishing_lengths(
         &mut algebra,
         mechanism,
@@ -156,6 +164,7 @@ fn equations(mechanism: &Mechanism) -> Outcome<Derivation> {
         algebra,
         symbols,
         constraints,
+        contacts,
         positions,
         velocities,
         kinematics,

@@ -58,7 +58,7 @@ pub fn leave_out(
             }
             turned.push(constraint);
         } else {
-            errors.push(singular(&rows[row]));
+            errors.push(singular(mechanism, &rows[row]));
             refused.push(row);
         }
     }
@@ -137,9 +137,10 @@ fn resolved_elsewhere(
     constraint: usize,
 ) -> Option<Vec<(usize, Row)>> {
     match mechanism.constraints[constraint].kind {
-        ConstraintKind::Rolling { .. } => {}
-        // One row has no axes to choose.
-        ConstraintKind::Velocity { .. }
+        ConstraintKind::Rolling { normal: None, .. } => {}
+        // One row has no axes to choose; a surface has its own.
+        ConstraintKind::Rolling { .. }
+        | ConstraintKind::Velocity { .. }
         | ConstraintKind::FixedVelocity { .. }
         | ConstraintKind::Position { .. } => return None,
     }
@@ -235,7 +236,15 @@ fn contradiction(row: &Row) -> Finding {
     }
 }
 
-fn singular(row: &Row) -> Finding {
+fn singular(mechanism: &Mechanism, row: &Row) -> Finding {
+    let help = match mechanism.constraints[row.constraint].kind {
+        ConstraintKind::Rolling { normal: None, .. } => {
+            "on a surface that is not across an axis of the ground, name a frame that follows it and \
+             its axis across it, such as `in = \"slope\", normal = \"z\"`; else remove the \
+             constraint, or declare ranges of the coordinates in which it follows"
+        }
+        _ => "remove it, or declare ranges of the coordinates in which it follows",
+    };
     Finding {
         code: Code::RedundantConstraint,
         message: format!(
@@ -243,7 +252,7 @@ fn singular(row: &Row) -> Finding {
             row.name
         ),
         item: Item::Constraint(row.constraint),
-        help: "remove it, or declare ranges of the coordinates in which it follows".to_owned(),
+        help: help.to_owned(),
     }
 }
 

@@ -1094,6 +1094,9 @@ static CONSTRAINT_ROWS: [model::Text; 0] = [];
 /// Reactions in the ground.
 static REACTIONS: [model::Text; 0] = [];
 
+/// Contacts, which can only push.
+static CONTACTS: [model::Contact; 0] = [];
+
 /// Names, units and sizes of the model.
 pub static INFO: model::ModelInfo = model::ModelInfo {
     name: model::Text::Borrowed("unicycle"),
@@ -1109,6 +1112,7 @@ pub static INFO: model::ModelInfo = model::ModelInfo {
     outputs: model::List::Borrowed(&OUTPUTS),
     constraint_rows: model::List::Borrowed(&CONSTRAINT_ROWS),
     reactions: model::List::Borrowed(&REACTIONS),
+    contacts: model::List::Borrowed(&CONTACTS),
     explicit_time: false,
 };
 

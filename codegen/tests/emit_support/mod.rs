@@ -89,6 +89,7 @@ impl Sketch {
             outputs: vec![].into(),
             constraint_rows: vec![].into(),
             reactions: vec![].into(),
+            contacts: vec![].into(),
             explicit_time: false,
         };
         let file = format!("mechanisms/{name}.toml");
@@ -98,6 +99,7 @@ impl Sketch {
             graph,
             arguments,
             dependent: Vec::new(),
+            systems: Vec::new(),
             functions: Vec::new(),
         };
         Self {

@@ -63,6 +63,7 @@ impl Reader<'_> {
                 Some(ValueAst::Pair([a, b]))
             }
             Form::Word(words) => self.word(key, words, value).map(ValueAst::Word),
+            Form::Flag => self.flag(value).map(ValueAst::Flag),
             Form::Table(keys) => self.inner_table(key.name, keys, value),
             Form::Tables(keys) => self.tables(key, keys, value).map(ValueAst::Tables),
         }
@@ -94,6 +95,14 @@ impl Reader<'_> {
             .map(|v| self.table_item(key.name, keys, v))
             .collect();
         tables.into_iter().collect()
+    }
+
+    fn flag(&mut self, value: &TomlValue<'_>) -> Option<bool> {
+        let flag = value.get_ref().as_bool();
+        if flag.is_none() {
+            self.wrong_type(value, "`true` or `false`");
+        }
+        flag
     }
 
     fn string<'v>(&mut self, value: &'v TomlValue<'_>, wanted: &str) -> Option<&'v str> {

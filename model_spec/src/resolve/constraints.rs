@@ -3,16 +3,18 @@
 use crate::ast::ItemAst;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::language::{ConstraintWord, ItemKind, Target};
-use crate::mechanism::{Body, Constraint, ConstraintKind};
+use crate::mechanism::{Body, Constraint, ConstraintKind, GROUND, Normal};
 use crate::parse::zero;
 use crate::units::Dimension;
 
 use super::Resolver;
 use super::dimensions::Dim;
 use super::place::Place;
+use super::placement::axis;
 
 const PRESCRIBED: Place = Place::prescribed("the prescribed velocity");
 const DIRECTION: Place = Place::prescribed("a direction");
+const FRICTION: Place = Place::surface("a coefficient of friction");
 const CLOSURE: Place = Place::geometry("a position constraint");
 
 impl Resolver<'_> {
@@ -43,10 +45,34 @@ impl Resolver<'_> {
     fn rolling(&mut self, item: &ItemAst, bodies: &[Body]) -> ConstraintKind {
         let body = self.reference(item, "body", Target::Body);
         self.needs_frame(item, "body", bodies, "roll");
+        let friction = item.expression("friction").cloned();
         ConstraintKind::Rolling {
             body,
             contact: self.reference(item, "contact", Target::Point),
+            normal: self.normal(item),
+            friction: friction.map(|ast| self.expression(&ast, &FRICTION, Dim::NONE)),
         }
+    }
+
+    fn normal(&mut self, item: &ItemAst) -> Option<Normal> {
+        let frame = self.optional_reference(item, "in", Target::Frame);
+        if let (None, Some(given)) = (item.entry("normal"), item.entry("in")) {
+            self.tell(
+                Diagnostic::error(
+                    Code::MissingKey,
+                    format!("`{}` has no `normal`", item.name.value),
+                )
+                .at(given.span.clone(), "which axis of this frame?")
+                .help("write the axis that points from the surface into the body, such as `normal = \"z\"`"),
+            );
+        }
+        item.entry("normal")?;
+        let (axis, negative) = axis(item, "normal");
+        Some(Normal {
+            frame: frame.unwrap_or(GROUND),
+            axis,
+            negative,
+        })
     }
 
     fn velocity(&mut self, item: &ItemAst) -> ConstraintKind {
@@ -85,6 +111,7 @@ impl Resolver<'_> {
                 &PRESCRIBED,
                 Dim::Known(Dimension::VELOCITY),
             ),
+            one_sided: item.flag("one_sided"),
         }
     }
 
@@ -96,6 +123,7 @@ impl Resolver<'_> {
             dimension: typed.dim.known().unwrap_or(Dimension::NONE),
             zero: typed.expr,
             dependent: self.optional_reference(item, "dependent", Target::Coordinate),
+            one_sided: item.flag("one_sided"),
         }
     }
 

@@ -1,10 +1,10 @@
-//! What the parameters' values make of masses and inertias.
+//! What the parameters' values make of masses, inertias and friction.
 
 use num_traits::ToPrimitive;
 
 use crate::diagnostic::{Code, Diagnostic, Severity};
 use crate::expr::{BinaryOp, Expr, ExprKind, Function, Quantity, Relation};
-use crate::mechanism::{Body, Inertia, Parameter};
+use crate::mechanism::{Body, Constraint, ConstraintKind, Inertia, Mechanism, Parameter};
 
 use super::Resolver;
 
@@ -12,17 +12,40 @@ use super::Resolver;
 const ROUNDING: f64 = 1e-9;
 
 impl Resolver<'_> {
-    /// Tells of masses and inertias that no body can have.
-    pub(super) fn physical(&mut self, bodies: &[Body], parameters: &[Parameter]) {
+    /// Tells of masses, inertias and friction that nothing can have.
+    pub(super) fn physical(&mut self, mechanism: &Mechanism) {
+        let parameters = &mechanism.parameters;
         // Values that could not be read are placeholders; nothing follows from them.
         if self.ast.broken || self.findings.iter().any(|f| f.severity == Severity::Error) {
             return;
         }
-        for body in bodies {
+        for body in &mechanism.bodies {
             self.physical_mass(body, parameters);
             if let Some(inertia) = &body.inertia {
                 self.physical_inertia(body, inertia, parameters);
             }
+        }
+        for constraint in &mechanism.constraints {
+            self.physical_friction(constraint, parameters);
+        }
+    }
+
+    /// A coefficient that changes with the place has no value to judge.
+    fn physical_friction(&mut self, constraint: &Constraint, parameters: &[Parameter]) {
+        if let ConstraintKind::Rolling {
+            friction: Some(friction),
+            ..
+        } = &constraint.kind
+            && value(friction, parameters) < 0.0
+        {
+            self.tell(
+                Diagnostic::error(
+                    Code::NotPhysical,
+                    format!("the friction of `{}` is negative", constraint.name),
+                )
+                .at(friction.span.clone(), "with the values of this spec")
+                .help("a coefficient of friction is the largest tangential force over the normal force"),
+            );
         }
     }
 

@@ -65,6 +65,11 @@ impl Place {
         Self::new(what, COORDINATES | TIME, Smooth::Once)
     }
 
+    /// A property of a surface.
+    pub(super) const fn surface(what: &'static str) -> Self {
+        Self::new(what, COORDINATES | TIME, Smooth::Any)
+    }
+
     /// A property that may be scheduled in time.
     pub(super) const fn scheduled(what: &'static str) -> Self {
         Self::new(what, TIME, Smooth::Any)

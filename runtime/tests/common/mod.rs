@@ -97,6 +97,7 @@ pub fn info(
         outputs: List::default(),
         constraint_rows: List::default(),
         reactions: List::default(),
+        contacts: List::default(),
         explicit_time: false,
     }
 }

@@ -104,7 +104,7 @@ fn constraint(w: &mut Writer<'_>, index: usize) -> Vec<Block> {
 /// `v_P = v_G + ω × r_GP = 0` for a rolling body.
 fn rolling(w: &Writer<'_>, kind: &ConstraintKind) -> Option<Math> {
     let (body, contact) = match *kind {
-        ConstraintKind::Rolling { body, contact } => (body, contact),
+        ConstraintKind::Rolling { body, contact, .. } => (body, contact),
         // Their rows say it all.
         ConstraintKind::Velocity { .. }
         | ConstraintKind::FixedVelocity { .. }

@@ -1,0 +1,59 @@
+//! Where a motion leaves what its model describes.
+
+use appell_runtime::Trajectory;
+use appell_runtime::simulate::{Breach, Limit};
+use serde_json::{Map, Value, json};
+
+use crate::table::number;
+
+/// Breaches that a person reads one by one.
+const MOST_SHOWN: usize = 10;
+
+/// The lines that a person reads; nothing where nothing happens.
+pub(crate) fn text(trajectory: &Trajectory) -> String {
+    let breaches = &trajectory.breaches;
+    let line = |breach: &Breach| {
+        let what = breach.describe(trajectory.info());
+        format!("  at t = {} s {what}\n", number(breach.t))
+    };
+    let mut text: String = breaches.iter().take(MOST_SHOWN).map(line).collect();
+    if let Some(more) = breaches.len().checked_sub(MOST_SHOWN).filter(|&n| n > 0) {
+        text += &format!("  and {more} more; `--json` has them all\n");
+    }
+    text
+}
+
+/// The same for programs, in SI.
+pub(crate) fn json(trajectory: &Trajectory) -> Value {
+    let info = trajectory.info();
+    let contact = |index: usize| {
+        info.contacts
+            .get(index)
+            .map(|contact| contact.name.as_ref())
+    };
+    let breach = |breach: &Breach| {
+        let (kind, place) = match breach.limit {
+            Limit::Range { state } => {
+                let name = info.states.get(state).map(|state| state.name.as_ref());
+                ("out_of_range", json!({ "state": name }))
+            }
+            Limit::Contact { contact: index } => {
+                ("contact_lost", json!({ "contact": contact(index) }))
+            }
+            Limit::Friction { contact: index } => ("slip", json!({ "contact": contact(index) })),
+            Limit::Condition { system } => ("ill_conditioned", json!({ "system": system })),
+        };
+        let states = info.states.iter().zip(&breach.state);
+        let states: Map<String, Value> = states
+            .map(|(state, &value)| (state.name.to_string(), json!(value)))
+            .collect();
+        json!({
+            "t_s": breach.t,
+            "kind": kind,
+            "where": place,
+            "value": breach.value,
+            "state": states,
+        })
+    };
+    trajectory.breaches.iter().map(breach).collect()
+}

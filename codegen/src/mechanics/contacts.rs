@@ -1,0 +1,165 @@
+//! Contacts, which can only push: where they react, and along which normal.
+
+use appell_spec::Code;
+use appell_spec::mechanism::{Axis, ConstraintKind, LoadKind, Mechanism};
+
+use super::algebra::Algebra;
+use super::constraints::{Constraints, Row};
+use super::expressions::Lowering;
+use super::finding::{Finding, Item, Outcome};
+use super::kinematics::division_by_zero;
+use super::rank::{LinearRow, Standing, standings};
+use super::symbols::Symbols;
+use crate::symbolic::vector::{self, Vec3};
+use crate::symbolic::{Expr, Graph};
+
+/// A contact.
+#[derive(Debug, Clone)]
+pub struct Contact {
+    /// Index into [`Constraints::reactions`].
+    pub place: usize,
+    /// Direction in which it pushes, in the ground.
+    pub normal: Vec3,
+    /// Whether friction holds it along the surface.
+    pub grips: bool,
+    /// Coefficient of friction, if the spec tells it.
+    pub friction: Option<Expr>,
+}
+
+/// The contacts of a mechanism, at most one per place of a reaction, and what to warn of.
+///
+/// Where constraints share a reaction in a way that cannot be told, no contact is judged.
+pub fn contacts(
+    algebra: &mut Algebra,
+    mechanism: &Mechanism,
+    symbols: &Symbols,
+    constraints: &Constraints,
+) -> Outcome<(Vec<Contact>, Vec<Finding>)> {
+    let (mut contacts, mut warnings) = (Vec::<Contact>::new(), Vec::new());
+    let mut rows = constraints.rows.iter();
+    let shared = rows.any(|row| row.redundant && !row.of_position);
+    for (index, constraint) in mechanism.constraints.iter().enumerate() {
+        let rows: Vec<&Row> = constraints.rows_of(index).collect();
+        let (normal, grips, friction) = match &constraint.kind {
+            ConstraintKind::Rolling {
+                normal, friction, ..
+            } => {
+                let normal = match normal {
+                    Some(normal) => Some((axis(normal.axis), normal.negative)),
+                    None => against_the_weight(algebra, mechanism, constraints, &rows),
+                };
+                (normal, true, friction.as_ref())
+            }
+            ConstraintKind::FixedVelocity { one_sided, .. }
+            | ConstraintKind::Position { one_sided, .. } => {
+                (one_sided.then_some((0, false)), false, None)
+            }
+            ConstraintKind::Velocity { .. } => (None, false, None),
+        };
+        let unknown = normal.is_none();
+        let found = normal.filter(|_| !shared).and_then(|(axis, negative)| {
+            let reaction = &rows.get(axis)?.reaction;
+            let graph = &mut algebra.graph;
+            let normal = match negative {
+                true => reaction.direction.map(|c| graph.neg(c)),
+                false => reaction.direction,
+            };
+            Some((reaction.place, normal))
+        });
+        let Some((place, normal)) = found else {
+            if friction.is_some() {
+                warnings.push(not_judged(&constraint.name, index, unknown));
+            }
+            continue;
+        };
+        let lowering = Lowering {
+            symbols,
+            rates: &symbols.rates,
+        };
+        let friction = friction
+            .map(|friction| lowering.lower(&mut algebra.graph, friction))
+            .transpose()
+            .map_err(|_| vec![division_by_zero(Item::Constraint(index))])?;
+        if contacts.iter().all(|other| other.place != place) {
+            contacts.push(Contact {
+                place,
+                normal,
+                grips,
+                friction,
+            });
+        }
+    }
+    Ok((contacts, warnings))
+}
+
+/// The axis of the ground against the weight, where the coordinates keep the contact from moving
+/// along it.
+fn against_the_weight(
+    algebra: &mut Algebra,
+    mechanism: &Mechanism,
+    constraints: &Constraints,
+    rows: &[&Row],
+) -> Option<(usize, bool)> {
+    let down = mechanism.loads.iter().find_map(|load| match load.kind {
+        LoadKind::Gravity { down, .. } => Some(down),
+        _ => None,
+    })?;
+    let axis = down.iter().position(|&c| c != 0)?;
+    let row = rows.get(axis)?;
+    let lasts = row.reaction.direction == vector::IDENTITY[axis]
+        && (row.is_embedded() || follows_from_positions(algebra, constraints, row));
+    lasts.then_some((axis, down[axis] > 0))
+}
+
+/// Whether the position constraints imply a row.
+fn follows_from_positions(algebra: &mut Algebra, constraints: &Constraints, row: &Row) -> bool {
+    let positions = constraints.rows.iter().filter(|row| row.of_position);
+    let rows: Vec<LinearRow> = positions
+        .chain([row])
+        .map(|row| LinearRow {
+            coefficients: row.coefficients.clone(),
+            rest: row.rest,
+        })
+        .collect();
+    let standings = standings(algebra, &rows);
+    matches!(standings.last(), Some(Standing::Redundant(_)))
+}
+
+fn not_judged(name: &str, constraint: usize, unknown: bool) -> Finding {
+    let (reason, help) = if unknown {
+        (
+            "the normal of its surface is not known",
+            "name a frame that follows the surface and its axis across it, such as `in = \
+             \"slope\", normal = \"z\"`",
+        )
+    } else {
+        (
+            "how the constraints share their reactions cannot be told",
+            "leave `friction` out, or describe a mechanism in which each contact has a reaction of \
+             its own",
+        )
+    };
+    Finding {
+        code: Code::ContactNotJudged,
+        message: format!("the friction of `{name}` says nothing: {reason}"),
+        item: Item::Constraint(constraint),
+        help: help.to_owned(),
+    }
+}
+
+/// Number of an axis.
+pub fn axis(axis: Axis) -> usize {
+    match axis {
+        Axis::X => 0,
+        Axis::Y => 1,
+        Axis::Z => 2,
+    }
+}
+
+impl Contact {
+    /// Whether neither the normal nor the friction changes with the state or with parameters.
+    pub fn is_constant(&self, graph: &Graph) -> bool {
+        let mut exprs = self.normal.iter().chain(&self.friction);
+        exprs.all(|&expr| graph.as_number(expr).is_some())
+    }
+}

@@ -1,0 +1,276 @@
+//! Where a motion leaves what its model describes: ranges, contacts, accuracy.
+
+use super::describe_state;
+use crate::condition::Conditions;
+use crate::contact::ContactForces;
+use crate::inputs::ModelInputs;
+use crate::integrate::{Direction, Event, EventHit};
+use crate::model::{At, Model, ModelInfo};
+use std::cell::RefCell;
+use std::rc::Rc;
+
+/// What a simulation does where its model stops being valid.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Response {
+    /// It does not look.
+    Ignore,
+    /// It records a [`Breach`] and goes on.
+    Report,
+    /// It records a [`Breach`] and ends there.
+    Stop,
+}
+
+/// What is watched.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Validity {
+    /// States that leave their declared range. To stop there is an error.
+    pub ranges: Response,
+    /// Contacts that would have to pull, or that slip.
+    pub contacts: Response,
+    /// Coefficient of friction of all contacts, in place of those of the spec. Contacts with
+    /// neither are not watched for slipping.
+    pub friction: Option<f64>,
+    /// Linear systems that lose more than `worst_condition` allows.
+    pub conditions: Response,
+    /// The largest condition number that passes.
+    pub worst_condition: f64,
+}
+
+impl Default for Validity {
+    /// Ranges end the motion, nothing else is watched.
+    fn default() -> Self {
+        Self {
+            ranges: Response::Stop,
+            contacts: Response::Ignore,
+            friction: None,
+            conditions: Response::Ignore,
+            worst_condition: 1e12,
+        }
+    }
+}
+
+/// A limit of a model.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Limit {
+    /// The declared range of a state.
+    Range {
+        /// Index of the state.
+        state: usize,
+    },
+    /// A contact can only push.
+    Contact {
+        /// Index into [`ModelInfo::contacts`].
+        contact: usize,
+    },
+    /// Friction carries only a part of the normal force.
+    Friction {
+        /// Index into [`ModelInfo::contacts`].
+        contact: usize,
+    },
+    /// Linear systems keep some digits.
+    Condition {
+        /// 0 for the mass matrix, then the systems of [`Model::system_sizes`].
+        system: usize,
+    },
+}
+
+/// A limit that a motion passes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Breach {
+    /// When, in s: the root of what is limited, or the start of the motion where it begins beyond.
+    pub t: f64,
+    /// State at that time, in SI.
+    pub state: Vec<f64>,
+    /// Which limit.
+    pub limit: Limit,
+    /// What is limited, at that time and in SI: the state, the normal force, the friction demand,
+    /// the condition number.
+    pub value: f64,
+}
+
+impl Breach {
+    /// What happens, in the names and units of the spec.
+    pub fn describe(&self, info: &ModelInfo) -> String {
+        let contact = |index: usize| info.contacts.get(index).map_or("?", |c| c.name.as_ref());
+        match self.limit {
+            Limit::Range { state } => info.states.get(state).map_or_else(String::new, |state| {
+                let [lower, upper] = state.range.map(|limit| state.to_unit(limit));
+                let value = state.to_unit(self.value);
+                let (name, unit) = (&state.name, &state.unit);
+                format!("`{name}` = {value:.6} {unit} leaves its range {lower} … {upper} {unit}")
+            }),
+            Limit::Contact { contact: index } => format!(
+                "the contact `{}` is lost: its normal force falls below zero",
+                contact(index)
+            ),
+            Limit::Friction { contact: index } => format!(
+                "the contact `{}` slips: it asks for a coefficient of friction of {:.6}",
+                contact(index),
+                self.value
+            ),
+            Limit::Condition { system: 0 } => {
+                format!(
+                    "the mass matrix has the condition number {:.1e}",
+                    self.value
+                )
+            }
+            Limit::Condition { system } => format!(
+                "system {system} for the generalised velocities has the condition number {:.1e}",
+                self.value
+            ),
+        }
+    }
+
+    /// The same with time and state.
+    pub fn describe_in_full(&self, info: &ModelInfo) -> String {
+        let (t, what) = (self.t, self.describe(info));
+        let state = describe_state(&self.state, info);
+        format!("at t = {t:.9} s {what}; state:{state}")
+    }
+}
+
+/// Everything that limits look at, kept for the last state that was asked for.
+struct Gauge<'a> {
+    model: &'a dyn Model,
+    inputs: &'a ModelInputs<'a>,
+    p: &'a [f64],
+    validity: Validity,
+    u: Vec<f64>,
+    /// Time and state of `forces`.
+    seen: Option<(f64, Vec<f64>)>,
+    forces: ContactForces,
+}
+
+impl Gauge<'_> {
+    /// What a limit limits, and how much is left: negative beyond the limit.
+    fn read(&mut self, limit: Limit, t: f64, x: &[f64]) -> (f64, f64) {
+        match limit {
+            Limit::Range { state } => {
+                let [lower, upper] = self.model.info().states[state].range;
+                (x[state], (x[state] - lower).min(upper - x[state]))
+            }
+            Limit::Contact { contact } => {
+                let normal = self.forces_at(t, x)[contact].normal;
+                (normal, normal)
+            }
+            Limit::Friction { contact } => {
+                let given = self.validity.friction;
+                let force = self.forces_at(t, x)[contact];
+                let friction = given.or(force.friction).unwrap_or(f64::INFINITY);
+                (force.demand(), force.grip(friction))
+            }
+            Limit::Condition { system } => {
+                self.inputs.fill(t, x, &mut self.u);
+                let (u, p) = (&self.u, self.p);
+                let conditions = Conditions::of(self.model, At { t, x, u, p });
+                let value = conditions.iter().nth(system).unwrap_or(f64::NAN);
+                // Bounded, so that a root is found beside a pole.
+                let left = self.validity.worst_condition / value.max(1.0);
+                (value, left.ln().max(-1e3))
+            }
+        }
+    }
+
+    fn forces_at(&mut self, t: f64, x: &[f64]) -> &[crate::contact::ContactForce] {
+        let is_seen = |(time, state): &(f64, Vec<f64>)| time.to_bits() == t.to_bits() && state == x;
+        if !self.seen.as_ref().is_some_and(is_seen) {
+            self.inputs.fill(t, x, &mut self.u);
+            let (u, p) = (&self.u, self.p);
+            self.forces.at(self.model, At { t, x, u, p });
+            self.seen = Some((t, x.to_vec()));
+        }
+        self.forces.last()
+    }
+}
+
+/// The limits of one simulation.
+pub(super) struct Limits<'a> {
+    gauge: Rc<RefCell<Gauge<'a>>>,
+    /// With whether each ends the motion.
+    watched: Vec<(Limit, bool)>,
+}
+
+impl<'a> Limits<'a> {
+    pub(super) fn new(
+        model: &'a dyn Model,
+        inputs: &'a ModelInputs<'a>,
+        p: &'a [f64],
+        validity: Validity,
+    ) -> Self {
+        let info = model.info();
+        let gauge = Gauge {
+            model,
+            inputs,
+            p,
+            validity,
+            u: vec![0.0; info.input_len()],
+            seen: None,
+            forces: ContactForces::new(),
+        };
+        let mut watched = Vec::new();
+        // To stop at a range is an error of the integration.
+        if validity.ranges == Response::Report {
+            let states = info.states.iter().enumerate();
+            let limited = states.filter(|(_, q)| q.range.iter().any(|limit| limit.is_finite()));
+            watched.extend(limited.map(|(state, _)| (Limit::Range { state }, false)));
+        }
+        if validity.contacts != Response::Ignore {
+            let stop = validity.contacts == Response::Stop;
+            for (contact, surface) in info.contacts.iter().enumerate() {
+                watched.push((Limit::Contact { contact }, stop));
+                if surface.grips && (validity.friction.is_some() || surface.friction.is_some()) {
+                    watched.push((Limit::Friction { contact }, stop));
+                }
+            }
+        }
+        if validity.conditions != Response::Ignore {
+            let stop = validity.conditions == Response::Stop;
+            let systems = 0..=model.system_sizes().len();
+            watched.extend(systems.map(|system| (Limit::Condition { system }, stop)));
+        }
+        Self {
+            gauge: Rc::new(RefCell::new(gauge)),
+            watched,
+        }
+    }
+
+    /// One event per limit.
+    pub(super) fn events(&self) -> impl Iterator<Item = Event<'a>> + '_ {
+        self.watched.iter().map(|&(limit, stop)| {
+            let gauge = Rc::clone(&self.gauge);
+            let left = move |t: f64, x: &[f64]| gauge.borrow_mut().read(limit, t, x).1;
+            Event {
+                terminal: stop,
+                ..Event::new(Direction::Falling, left)
+            }
+        })
+    }
+
+    /// The limits beyond which a motion begins, and whether one of them ends it.
+    pub(super) fn at_start(&self, t: f64, x: &[f64]) -> (Vec<Breach>, bool) {
+        let (mut breaches, mut ends) = (Vec::new(), false);
+        for &(limit, stop) in &self.watched {
+            if self.gauge.borrow_mut().read(limit, t, x).1 < 0.0 {
+                breaches.push(self.breach(limit, t, x.to_vec()));
+                ends |= stop;
+            }
+        }
+        (breaches, ends)
+    }
+
+    /// The breach that an event stands for, which is numbered as in [`Limits::events`].
+    pub(super) fn found(&self, event: usize, hit: EventHit) -> Option<Breach> {
+        let &(limit, _) = self.watched.get(event)?;
+        Some(self.breach(limit, hit.t, hit.state))
+    }
+
+    fn breach(&self, limit: Limit, t: f64, state: Vec<f64>) -> Breach {
+        let (value, _) = self.gauge.borrow_mut().read(limit, t, &state);
+        Breach {
+            t,
+            state,
+            limit,
+            value,
+        }
+    }
+}

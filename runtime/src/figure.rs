@@ -7,6 +7,7 @@
 mod axis;
 
 use crate::model::Quantity;
+use crate::simulate::Breach;
 use crate::trajectory::Trajectory;
 use axis::{Axis, number};
 use std::fmt::Write as _;
@@ -31,6 +32,15 @@ pub struct Panel {
     pub series: Vec<Series>,
 }
 
+/// A place on the horizontal axis where something happens.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Mark {
+    /// Where.
+    pub x: f64,
+    /// What happens; shown where the pointer rests on the mark.
+    pub about: String,
+}
+
 /// Panels from top to bottom.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Figure {
@@ -40,6 +50,8 @@ pub struct Figure {
     pub x_label: String,
     /// The panels.
     pub panels: Vec<Panel>,
+    /// Vertical lines through all panels.
+    pub marks: Vec<Mark>,
     /// Whether a metre is as long upward as sideways.
     pub equal_axes: bool,
 }
@@ -72,8 +84,9 @@ text{fill:#222;font:12px system-ui,sans-serif}.title{font-size:15px;font-weight:
 ";
 
 impl Figure {
-    /// Columns of a trajectory over time, one panel per list of names. Names that the trajectory
-    /// does not have are left out, and so are panels without lines.
+    /// Columns of a trajectory over time, one panel per list of names, with a mark at each limit
+    /// that the motion passes. Names that the trajectory does not have are left out, and so are
+    /// panels without lines.
     pub fn over_time(trajectory: &Trajectory, panels: &[Vec<&str>]) -> Self {
         let series = |name: &&str| {
             let y = trajectory.column_in_unit(name)?;
@@ -93,10 +106,15 @@ impl Figure {
                 series: names.iter().filter_map(series).collect(),
             })
         };
+        let mark = |breach: &Breach| Mark {
+            x: breach.t,
+            about: breach.describe(trajectory.info()),
+        };
         Self {
             title: trajectory.info().title.to_string(),
             x_label: "t [s]".to_string(),
             panels: panels.iter().filter_map(panel).collect(),
+            marks: trajectory.breaches.iter().map(mark).collect(),
             equal_axes: false,
         }
     }
@@ -152,6 +170,7 @@ impl Figure {
                 unit: unit(y)?,
                 series: vec![series],
             }],
+            marks: Vec::new(),
             equal_axes: true,
         })
     }
@@ -207,6 +226,9 @@ impl Figure {
                 height: panel_height,
             };
             area.grid(&mut svg, &x_axis, y_axis);
+            for mark in &self.marks {
+                area.mark(&mut svg, mark, &x_axis);
+            }
             panel.legend(&mut svg, area.top - 9.0);
             for (k, series) in panel.series.iter().enumerate() {
                 let line = area.line(series, &x_axis, y_axis);
@@ -317,6 +339,24 @@ impl Area {
         );
     }
 
+    fn mark(&self, svg: &mut String, mark: &Mark, x_axis: &Axis) {
+        let part = x_axis.part(mark.x);
+        if !(0.0..=1.0).contains(&part) {
+            return;
+        }
+        let line = format!(
+            "M{:.1} {:.1}v{:.1}",
+            LEFT + self.width * part,
+            self.top,
+            self.height
+        );
+        let about = escaped(&mark.about);
+        put(
+            svg,
+            &format!("<path class=\"frame dashed\" d=\"{line}\"><title>{about}</title></path>"),
+        );
+    }
+
     /// The line's path without the points that would not be seen: a point is drawn where it or
     /// its successor lies more than a third of a pixel from the last one drawn.
     fn line(&self, series: &Series, x_axis: &Axis, y_axis: &Axis) -> String {
@@ -377,12 +417,16 @@ fn style(series: usize) -> String {
 }
 
 fn text(x: f64, y: f64, attributes: &str, content: &str) -> String {
-    let content = content
-        .replace('&', "&amp;")
-        .replace('<', "&lt;")
-        .replace('>', "&gt;");
+    let content = escaped(content);
     let space = if attributes.is_empty() { "" } else { " " };
     format!("<text x=\"{x:.1}\" y=\"{y:.1}\"{space}{attributes}>{content}</text>")
+}
+
+fn escaped(content: &str) -> String {
+    content
+        .replace('&', "&amp;")
+        .replace('<', "&lt;")
+        .replace('>', "&gt;")
 }
 
 fn put(svg: &mut String, element: &str) {

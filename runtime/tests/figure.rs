@@ -1,6 +1,6 @@
 //! Plots as SVG.
 
-use appell_runtime::figure::{Figure, Panel, Series};
+use appell_runtime::figure::{Figure, Mark, Panel, Series};
 
 fn series(label: &str, count: u32, y: impl Fn(f64) -> f64) -> Series {
     let x: Vec<f64> = (0..=count)
@@ -18,6 +18,7 @@ fn figure(panels: Vec<Panel>) -> Figure {
         title: "A & B".into(),
         x_label: "t [s]".into(),
         panels,
+        marks: Vec::new(),
         equal_axes: false,
     }
 }
@@ -156,4 +157,29 @@ fn equal_axes_draw_a_circle_round() {
         numbers(1)
     );
     assert!(numbers(0) > 300.0);
+}
+
+#[test]
+fn marks_stand_in_every_panel_and_say_what_happens() {
+    let panel = |name| Panel {
+        unit: String::new(),
+        series: vec![series(name, 10, |t| t)],
+    };
+    let mut figure = figure(vec![panel("a"), panel("b")]);
+    let plain = figure.to_svg();
+    figure.marks = vec![Mark {
+        x: 0.5,
+        about: "N < 0 & slipping".to_owned(),
+    }];
+    let svg = figure.to_svg();
+    let marks = svg
+        .matches("<title>N &lt; 0 &amp; slipping</title>")
+        .count();
+    assert_eq!(marks, figure.panels.len());
+    figure.marks[0].x = 1e9;
+    assert_eq!(
+        figure.to_svg(),
+        plain,
+        "a mark beside the figure is not drawn"
+    );
 }

@@ -154,13 +154,8 @@ fn contact(contact: &Contact) -> TokenStream {
     let (name, grips) = (borrowed(&contact.name), contact.grips);
     let reaction = Literal::usize_unsuffixed(contact.reaction);
     let normal = contact.normal.map(double);
-    let friction = match contact.friction {
-        Some(friction) => {
-            let friction = double(friction);
-            quote!(Some(#friction))
-        }
-        None => quote!(None),
-    };
+    let friction = contact.friction.map(double);
+    let friction = friction.map_or_else(|| quote!(None), |friction| quote!(Some(#friction)));
     quote! {
         model::Contact {
             name: #name,

@@ -211,7 +211,9 @@ impl Derivation {
             | F::GeneralizedForces
             | F::Outputs
             | F::Switches
-            | F::PositionConstraints => function,
+            | F::PositionConstraints
+            | F::Contacts
+            | F::Systems => function,
         }
     }
 

@@ -60,9 +60,10 @@ pub fn contacts(
         let found = normal.filter(|_| !shared).and_then(|(axis, negative)| {
             let reaction = &rows.get(axis)?.reaction;
             let graph = &mut algebra.graph;
-            let normal = match negative {
-                true => reaction.direction.map(|c| graph.neg(c)),
-                false => reaction.direction,
+            let normal = if negative {
+                reaction.direction.map(|c| graph.neg(c))
+            } else {
+                reaction.direction
             };
             Some((reaction.place, normal))
         });

@@ -16,11 +16,10 @@ pub(crate) fn text(trajectory: &Trajectory) -> String {
         let what = breach.describe(trajectory.info());
         format!("  at t = {} s {what}\n", number(breach.t))
     };
-    let mut text: String = breaches.iter().take(MOST_SHOWN).map(line).collect();
-    if let Some(more) = breaches.len().checked_sub(MOST_SHOWN).filter(|&n| n > 0) {
-        text += &format!("  and {more} more; `--json` has them all\n");
-    }
-    text
+    let more = breaches.len().saturating_sub(MOST_SHOWN);
+    let rest = (more > 0).then(|| format!("  and {more} more; `--json` has them all\n"));
+    let shown = breaches.iter().take(MOST_SHOWN).map(line);
+    shown.chain(rest).collect()
 }
 
 /// The same for programs, in SI.

@@ -263,7 +263,7 @@ fn a_motion_that_begins_beyond_a_limit_says_so_at_once() {
     assert!(motion(&*model, &[("theta", 0.1)], own).breaches[0].t > 0.0);
 }
 
-/// Newton's law for the centre of mass: N = m (g + z̈), F_t = m |(ẍ, ÿ)|.
+/// Newton's law for the centre of mass: N = m (g + z̈), F = m |(ẍ, ÿ)|.
 #[test]
 fn a_wheel_presses_with_its_weight_and_the_acceleration_of_its_centre() {
     let [model, _] = engines(&shipped::text("rolling_wheel"));
@@ -297,7 +297,7 @@ fn a_wheel_presses_with_its_weight_and_the_acceleration_of_its_centre() {
     }
 }
 
-/// Moments about the rear contact: N_Q w = g Σ m x.
+/// Moments about the rear contact: N w = g Σ m x for the front.
 #[test]
 fn the_wheels_of_a_bicycle_carry_it_by_its_levers() {
     let [model, _] = engines(&file("generated/gallery/bicycle.toml"));

@@ -20,7 +20,7 @@ pub(crate) enum Command {
     Check(check::Check),
     Derive(derive::Derive),
     Evaluate(evaluate::Evaluate),
-    Simulate(simulate::Simulate),
+    Simulate(Box<simulate::Simulate>),
     Demo(demo::Demo),
     Schema(schema::Schema),
     Completions(completions::Completions),

@@ -12,7 +12,7 @@ use appell_runtime::integrate::{Ending, Options};
 use appell_runtime::model::{At, Model};
 use appell_runtime::simulate::{Breach, Limit, Response, Validity};
 use appell_runtime::{Simulation, Trajectory};
-use appell_tests::independent::compare::compare;
+use appell_tests::formulations::assert_one_answer;
 use appell_tests::shipped;
 
 /// Rounding of a formula against the derived equations.
@@ -322,9 +322,7 @@ fn the_wheels_of_a_bicycle_carry_it_by_its_levers() {
 fn bodies_on_slopes_and_balls_have_the_reactions_of_kane_and_lagrange() {
     for text in [slope(), ball()] {
         let mechanism = shipped::read("test.toml", &text);
-        for model in engines(&text) {
-            compare(&mechanism, &*model, 12);
-        }
+        assert_one_answer(&mechanism);
     }
 }
 

@@ -180,7 +180,7 @@ impl<'a> Inertial<'a> {
                 });
             };
             match &item.kind {
-                ConstraintKind::Rolling { body, contact } => {
+                ConstraintKind::Rolling { body, contact, .. } => {
                     let v = self.velocity(&mut algebra.graph, Some(*body), *contact);
                     for (value, axis) in v.into_iter().zip(vector::IDENTITY) {
                         row(value, axis);
@@ -196,6 +196,7 @@ impl<'a> Inertial<'a> {
                     frame,
                     direction,
                     equals,
+                    ..
                 } => {
                     let along = self.in_ground(algebra, *frame, direction)?;
                     let v = self.velocity(&mut algebra.graph, *body, *point);

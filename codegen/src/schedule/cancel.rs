@@ -3,14 +3,18 @@
 use super::dag::{Dag, Id, Item, Op};
 
 /// Distributes a division over a sum where a term loses a factor by that. The reciprocal takes the
-/// place of the product, so nothing is divided that was not divided before.
-pub(super) fn cancel(dag: &mut Dag, order: &[Id]) {
+/// place of the product, so nothing is divided that was not divided before. Tells whether anything
+/// cancelled.
+pub(super) fn cancel(dag: &mut Dag, order: &[Id]) -> bool {
+    let mut any = false;
     let uses = dag.uses(order);
     for &id in order {
         while let Some((sum, divisor, terms)) = candidate(dag, &uses, id) {
             distribute(dag, id, sum, divisor, &terms);
+            any = true;
         }
     }
+    any
 }
 
 /// A sum among the factors of a product that nothing else uses, a divisor of the product, and the

@@ -4,17 +4,20 @@ use super::dag::{Dag, Id, Item, Op};
 use super::search::Preference;
 
 /// Takes factors out of all sums, the most frequent first. Only products that nothing else uses
-/// are opened: every step saves multiplications.
-pub(super) fn factor(dag: &mut Dag, order: &[Id], preference: Preference, least: u32) {
+/// are opened: every step saves multiplications. Tells whether anything was taken out.
+pub(super) fn factor(dag: &mut Dag, order: &[Id], preference: Preference, least: u32) -> bool {
+    let mut any = false;
     let mut uses = dag.uses(order);
     for &id in order {
         let mut sums = vec![id];
         while let Some(sum) = sums.pop() {
             while let Some((factor, members)) = best_factor(dag, &uses, sum, preference, least) {
                 sums.extend(take_out(dag, &mut uses, sum, factor, &members));
+                any = true;
             }
         }
     }
+    any
 }
 
 /// The factor that the most terms have, and which terms these are. `None` where no factor is

@@ -8,8 +8,9 @@ use super::dag::{Dag, Id, Item, Op};
 /// Longer products are left alone.
 const LONGEST: usize = 16;
 
-/// Replaces every product by the shortest one that has the same factors.
-pub(super) fn meet(dag: &mut Dag, order: &[Id]) {
+/// Replaces every product by the shortest one that has the same factors. Tells whether any met.
+pub(super) fn meet(dag: &mut Dag, order: &[Id]) -> bool {
+    let mut any = false;
     let mut written_out: Vec<Option<Vec<Item>>> = vec![None; dag.len()];
     let mut known: FxHashMap<Vec<Item>, Id> = FxHashMap::default();
     for &id in order {
@@ -40,6 +41,7 @@ pub(super) fn meet(dag: &mut Dag, order: &[Id]) {
                     dag.replace(first, shorter);
                 }
                 dag.replace(id, Op::Product(vec![Item::plain(first)]));
+                any = true;
             }
             None => {
                 known.insert(flat.clone(), id);
@@ -47,4 +49,5 @@ pub(super) fn meet(dag: &mut Dag, order: &[Id]) {
         }
         written_out[id.index()] = Some(flat);
     }
+    any
 }

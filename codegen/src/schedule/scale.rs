@@ -6,11 +6,12 @@
 use super::dag::{Dag, Id, Item, Op, System};
 use crate::symbolic::Rational;
 
-/// Takes a number out of every unnamed sum where that saves multiplications.
-pub(super) fn scale(dag: &mut Dag, order: &[Id]) {
+/// Takes a number out of every unnamed sum where that saves multiplications. Tells whether there
+/// was any.
+pub(super) fn scale(dag: &mut Dag, order: &[Id]) -> bool {
     let scales = Scales::choose(dag, order);
     if scales.taken_out.iter().all(Option::is_none) {
-        return;
+        return false;
     }
     // The sums are about to change their values. Whoever looks for a product with one of them must
     // not find a node that is yet to be rewritten: it would get the number twice.
@@ -46,6 +47,7 @@ pub(super) fn scale(dag: &mut Dag, order: &[Id]) {
         let result = dag.results[place];
         dag.results[place] = scales.whole(dag, result);
     }
+    true
 }
 
 struct Scales {

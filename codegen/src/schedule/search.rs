@@ -97,7 +97,7 @@ const NAME: usize = 1;
 /// The cheapest equivalent graph found. What is cheaper by nothing stays as derived.
 pub(super) fn cheapest(derived: &Dag, tuning: Tuning) -> Dag {
     let weigh = |dag: &Dag| dag.weight(&dag.order(), tuning.division);
-    let mut best = finish(&rebuild(derived, Dissolve::Unnamed));
+    let mut best = finish(rebuild(derived, Dissolve::Unnamed));
     let mut least = weigh(&best);
     let mut effort = 0;
     for (number, plan) in PLANS.into_iter().enumerate() {
@@ -105,7 +105,7 @@ pub(super) fn cheapest(derived: &Dag, tuning: Tuning) -> Dag {
         if number >= 2 && effort > tuning.effort {
             break;
         }
-        let candidate = finish(&follow(derived, plan));
+        let candidate = finish(follow(derived, plan));
         let nameless = if plan.dissolve == Dissolve::Named {
             NAME
         } else {
@@ -126,35 +126,38 @@ pub(super) fn cheapest(derived: &Dag, tuning: Tuning) -> Dag {
 
 fn follow(derived: &Dag, plan: Plan) -> Dag {
     let mut dag = rebuild(derived, plan.dissolve);
-    let order = dag.order();
-    cancel(&mut dag, &order);
-    dag = rebuild(&dag, plan.dissolve);
-    if plan.scale {
-        let order = dag.order();
-        scale(&mut dag, &order);
+    let mut order = dag.order();
+    if cancel(&mut dag, &order) {
         dag = rebuild(&dag, plan.dissolve);
+        order = dag.order();
+    }
+    if plan.scale && scale(&mut dag, &order) {
+        dag = rebuild(&dag, plan.dissolve);
+        order = dag.order();
     }
     for &level in plan.levels {
         for pass in plan.passes {
-            let order = dag.order();
-            match pass {
+            let rewritten = match pass {
                 Pass::Factor => factor(&mut dag, &order, plan.preference, level),
                 Pass::Products => share(&mut dag, &order, Within::Products, plan.preference, level),
                 Pass::Sums => share(&mut dag, &order, Within::Sums, plan.preference, level),
+            };
+            if rewritten {
+                dag = rebuild(&dag, Dissolve::Unnamed);
+                order = dag.order();
             }
-            dag = rebuild(&dag, Dissolve::Unnamed);
         }
     }
     dag
 }
 
 /// Reciprocals come last: the other passes see through divisions.
-fn finish(dag: &Dag) -> Dag {
-    let mut dag = dag.clone();
-    let order = dag.order();
-    meet(&mut dag, &order);
-    dag = rebuild(&dag, Dissolve::Unnamed);
-    let order = dag.order();
+fn finish(mut dag: Dag) -> Dag {
+    let mut order = dag.order();
+    if meet(&mut dag, &order) {
+        dag = rebuild(&dag, Dissolve::Unnamed);
+        order = dag.order();
+    }
     share_reciprocals(&mut dag, &order);
     rebuild(&dag, Dissolve::Unnamed)
 }

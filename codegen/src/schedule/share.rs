@@ -24,14 +24,16 @@ pub(super) enum Within {
 /// Longer sums and products are left alone: pairs grow with the square of the length.
 const LONGEST: usize = 64;
 
-/// Shares the parts that at least `least` sums, or products, have in common.
+/// Shares the parts that at least `least` sums, or products, have in common. Tells whether there
+/// were any.
 pub(super) fn share(
     dag: &mut Dag,
     order: &[Id],
     within: Within,
     preference: Preference,
     least: u32,
-) {
+) -> bool {
+    let mut any = false;
     let mut sharing = Sharing {
         within,
         preference,
@@ -55,6 +57,7 @@ pub(super) fn share(
     sharing.count_all();
     while let Some(pair) = sharing.most_frequent() {
         sharing.extract(dag, pair);
+        any = true;
     }
     for (id, items) in sharing.owners.into_iter().zip(sharing.lists) {
         match (within, dag.op(id)) {
@@ -64,6 +67,7 @@ pub(super) fn share(
             (Within::Products, _) => dag.replace(id, Op::Product(items)),
         }
     }
+    any
 }
 
 type Pair = (Item, Item);

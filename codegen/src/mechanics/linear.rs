@@ -66,8 +66,9 @@ impl ImplicitMotion<'_> {
     ) -> Outcome<Vec<Vec<Expr>>> {
         let mut values = self.motion.accelerations.clone();
         for equation in self.motion.eliminated() {
-            let value = &mut values[equation.speed];
-            *value = algebra.graph.sub(*value, equation.whole);
+            if equation.whole != Graph::ZERO {
+                values[equation.speed] = equation.quotient;
+            }
         }
         let replacements: Vec<_> = ids(&algebra.graph, &symbols.accelerations)
             .into_iter()
@@ -90,27 +91,31 @@ impl ImplicitMotion<'_> {
                 right.push(partial);
             }
             let by = name_of(&algebra.graph, variable);
-            let moved = right.iter_mut().zip(&speeds);
-            for (right, speed) in moved.filter(|(right, _)| **right != Graph::ZERO) {
-                // The number in front meets others outside.
-                let number = algebra.graph.split_coefficient(*right).0.abs();
-                let bare = algebra.graph.scale(&number.recip(), *right);
-                let name = format!("d_rho_{speed}_d_{by}");
-                let named = algebra.graph.name_automatically(&name, bare);
-                *right = algebra.graph.scale(&number, named);
-            }
+            let rho = |algebra: &mut Algebra, speed: usize, value: Expr| {
+                let name = format!("d_rho_{}_d_{by}", speeds[speed]);
+                algebra.graph.name_automatically(&name, value)
+            };
             let mut column = vec![Graph::ZERO; right.len()];
             for block in &self.motion.blocks {
                 match block {
                     Block::Eliminated(equations) => {
                         for equation in equations {
-                            let own = algebra.graph.div(right[equation.speed], equation.pivot);
+                            let right = right[equation.speed];
+                            let plain = algebra.graph.div(right, equation.pivot);
+                            let named = rho(algebra, equation.speed, right);
+                            let named = algebra.graph.div(named, equation.pivot);
+                            // A pivot that cancels does so under no name.
+                            let count = |own| algebra.graph.operations(&[own]);
+                            let own = if count(plain) < count(named) { plain } else { named };
                             let whole = algebra.derivative(equation.whole, variable);
                             let own = algebra.graph.add(own, whole);
                             column[equation.speed] = equation.less_couplings(algebra, own, &column);
                         }
                     }
                     Block::Factorized(block) => {
+                        for &speed in &block.speeds {
+                            right[speed] = rho(algebra, speed, right[speed]);
+                        }
                         block.solve(algebra, &right, &mut column, |graph, speed, z| {
                             graph.name_automatically(&format!("d_z_{}_d_{by}", speeds[speed]), z)
                         });

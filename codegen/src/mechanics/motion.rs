@@ -9,7 +9,7 @@ use super::algebra::Algebra;
 use super::factorized::FactorizedBlock;
 use super::finding::{Finding, Item, Outcome};
 use super::gibbs_appell::GibbsForm;
-use crate::symbolic::{Expr, Graph};
+use crate::symbolic::{Expr, Graph, Rational};
 
 /// Blocks up to this size are eliminated by formulas, each in its shortest form; larger ones by an
 /// unrolled factorisation with named entries.
@@ -44,6 +44,8 @@ pub struct Eliminated {
     pub whole: Expr,
     /// Its right-hand side.
     pub right: Expr,
+    /// `right / pivot`; it has a name where a whole part stands beside it.
+    pub quotient: Expr,
     /// Accelerations that are known by then, with their coefficients.
     pub couplings: Vec<(usize, Expr)>,
 }
@@ -149,8 +151,7 @@ impl Motion {
 impl Eliminated {
     /// `right / pivot + whole - Σ coupling · ω̇_other`
     pub fn solved(&self, algebra: &mut Algebra, accelerations: &[Expr]) -> Expr {
-        let own = algebra.graph.div(self.right, self.pivot);
-        let own = algebra.graph.add(own, self.whole);
+        let own = algebra.graph.add(self.quotient, self.whole);
         self.less_couplings(algebra, own, accelerations)
     }
 
@@ -239,11 +240,13 @@ fn eliminate(
             right[i] = algebra.shortest(value);
         }
         couplings.retain(|&(_, coupling)| coupling != Graph::ZERO);
+        let right = name_right(algebra, mechanism, k, right[k]);
         equations.push(Eliminated {
             speed: k,
             pivot,
             whole: Graph::ZERO,
-            right: name_right(algebra, mechanism, k, right[k]),
+            right,
+            quotient: algebra.graph.div(right, pivot),
             couplings,
         });
     }
@@ -256,16 +259,9 @@ fn name_pivot(algebra: &mut Algebra, mechanism: &Mechanism, speed: usize, pivot:
     algebra.graph.name(&name, pivot)
 }
 
-/// The number in front of a right-hand side stays outside, where it meets other numbers.
 fn name_right(algebra: &mut Algebra, mechanism: &Mechanism, speed: usize, right: Expr) -> Expr {
-    if right == Graph::ZERO {
-        return right;
-    }
     let name = format!("rhs_{}", mechanism.pseudo_velocities[speed].label.name);
-    let number = algebra.graph.split_coefficient(right).0.abs();
-    let right = algebra.graph.scale(&number.recip(), right);
-    let named = algebra.graph.name(&name, right);
-    algebra.graph.scale(&number, named)
+    algebra.graph.name(&name, right)
 }
 
 /// Takes the diagonal entry with the fewest operations out of the open ones.
@@ -338,16 +334,38 @@ fn quotients(
         }
         _ => return Vec::new(),
     };
-    let mut equations = Vec::with_capacity(pairs.len());
+    let mut equations: Vec<Eliminated> = Vec::with_capacity(pairs.len());
+    // Numbers in front of the right-hand sides go into the pivots; equal pivots stay equal.
+    let mut scales: Vec<(Expr, Rational)> = Vec::new();
     for (&speed, (numerator, denominator)) in speeds.iter().zip(pairs) {
         let Some([whole, right, pivot]) = algebra.cancelled(numerator, denominator, parts) else {
             return Vec::new();
         };
+        let known = scales.iter().find(|scale| scale.0 == pivot);
+        let number = known.map(|scale| scale.1.clone()).unwrap_or_else(|| {
+            let number = algebra.graph.split_coefficient(right).0.abs();
+            if number.is_zero() { Rational::ONE } else { number }
+        });
+        let right = algebra.graph.scale(&number.recip(), right);
+        let scaled = algebra.graph.scale(&number.recip(), pivot);
+        scales.push((pivot, number));
+        let (right, pivot) = (
+            name_right(algebra, mechanism, speed, right),
+            name_pivot(algebra, mechanism, speed, scaled),
+        );
+        let mut quotient = algebra.graph.div(right, pivot);
+        if whole != Graph::ZERO {
+            let name = &mechanism.pseudo_velocities[speed].label.name;
+            quotient = algebra
+                .graph
+                .name(&format!("rhs_over_pivot_{name}"), quotient);
+        }
         equations.push(Eliminated {
             speed,
-            pivot: name_pivot(algebra, mechanism, speed, pivot),
+            pivot,
             whole,
-            right: name_right(algebra, mechanism, speed, right),
+            right,
+            quotient,
             couplings: Vec::new(),
         });
     }

@@ -1,53 +1,253 @@
-//! Products that are equal once they are written out meet: `m·(h·l)` and `(m·h)·l`, which different
-//! passes put together.
+//! Nodes of equal value meet, however they are written: `sin θ (m a - n b)` and
+//! `m a sin θ - n b sin θ`, which different passes put together. And a value that has a name in the
+//! derivation gets it back.
+//!
+//! Values are compared at two random points of a prime field of 61 bits. Sums and products of
+//! degree `d` that are equal there are equal but for a chance of `(d/p)²`; other functions count
+//! as unknowns of their own, so that no identity between them is used.
 
-use rustc_hash::FxHashMap;
+use std::hash::{Hash, Hasher};
 
-use super::dag::{Dag, Id, Item, Op};
+use rustc_hash::{FxHashMap, FxHasher};
 
-/// Longer products are left alone.
-const LONGEST: usize = 16;
+use super::dag::{Dag, Id, Item, Name, Op};
+use crate::symbolic::field::Element;
 
-/// Replaces every product by the shortest one that has the same factors. Tells whether any met.
+/// A value at both points, up to its sign.
+type Value = [Element; 2];
+
+/// Lets nodes of equal value meet in the first of them. Tells whether any met.
 pub(super) fn meet(dag: &mut Dag, order: &[Id]) -> bool {
+    let values = values(dag, order);
+    let mut place = vec![usize::MAX; dag.len()];
+    let mut known: FxHashMap<Value, (Id, bool)> = FxHashMap::default();
     let mut any = false;
-    let mut written_out: Vec<Option<Vec<Item>>> = vec![None; dag.len()];
-    let mut known: FxHashMap<Vec<Item>, Id> = FxHashMap::default();
-    for &id in order {
-        let Op::Product(factors) = dag.op(id) else {
+    for (position, &id) in order.iter().enumerate() {
+        place[id.index()] = position;
+        let Some((value, sign)) = values[id.index()].map(without_sign) else {
             continue;
         };
-        let length = factors.len();
-        let mut flat = Vec::with_capacity(LONGEST);
-        for factor in factors {
-            match &written_out[factor.id.index()] {
-                Some(inner) => flat.extend(inner.iter().map(|part| part.flipped_if(factor.flip))),
-                None => flat.push(*factor),
-            }
-        }
-        // Numbers would have to be multiplied, and reciprocals cancelled, to be compared.
-        let numbers = flat.iter().filter(|part| dag.as_number(part.id).is_some());
-        if flat.len() > LONGEST || numbers.count() > 1 {
+        let Some(&(first, first_sign)) = known.get(&value) else {
+            known.insert(value, (id, sign));
+            continue;
+        };
+        if !can_give_way(dag, id) {
             continue;
         }
-        flat.sort_unstable();
-        match known.get(&flat) {
-            Some(&first) => {
-                let Op::Product(other) = dag.op(first) else {
-                    continue;
-                };
-                if length < other.len() {
-                    let shorter = dag.op(id).clone();
-                    dag.replace(first, shorter);
-                }
-                dag.replace(id, Op::Product(vec![Item::plain(first)]));
-                any = true;
-            }
-            None => {
-                known.insert(flat.clone(), id);
-            }
+        // The shorter way is taken where it was known when the first one was.
+        let mut before = true;
+        dag.for_each_part(id, |part| {
+            before &= place[part.id.index()] < place[first.index()];
+        });
+        if before && sign == first_sign && parts(dag, id) < parts(dag, first) {
+            let shorter = dag.op(id).clone();
+            dag.replace(first, shorter);
         }
-        written_out[id.index()] = Some(flat);
+        let alias = Item {
+            id: first,
+            flip: sign != first_sign,
+        };
+        dag.replace(id, Op::Sum(vec![alias]));
+        any = true;
     }
     any
+}
+
+/// Longer sums and products are left alone: pairs grow with the square of the length.
+const LONGEST: usize = 12;
+
+/// Takes two factors, or two terms, together where their product, or sum, is a node already. Tells
+/// whether there were any.
+pub(super) fn meet_in_parts(dag: &mut Dag, order: &[Id]) -> bool {
+    let values = values(dag, order);
+    let mut place = vec![0; dag.len()];
+    let mut known: FxHashMap<Value, (Id, bool)> = FxHashMap::default();
+    for (position, &id) in order.iter().enumerate() {
+        place[id.index()] = position;
+        if let Some((value, sign)) = values[id.index()].map(without_sign) {
+            known.entry(value).or_insert((id, sign));
+        }
+    }
+    // What was replaced stands for its value no longer.
+    let mut gone = vec![false; dag.len()];
+    let mut any = false;
+    for (position, &id) in order.iter().enumerate() {
+        let (items, product) = match dag.op(id) {
+            Op::Product(items) => (items, true),
+            Op::Sum(items) => (items, false),
+            _ => continue,
+        };
+        if gone[id.index()] || !(3..=LONGEST).contains(&items.len()) {
+            continue;
+        }
+        let items = items.clone();
+        let found = pairs(items.len()).find_map(|(i, j)| {
+            let whole = whole_of([items[i], items[j]], product, &values)?;
+            let (value, sign) = without_sign(whole);
+            let &(other, other_sign) = known.get(&value)?;
+            let usable = other != id
+                && !gone[other.index()]
+                && (place[other.index()] < position || can_give_way(dag, other));
+            usable.then_some((i, j, other, sign != other_sign))
+        });
+        let Some((i, j, other, flip)) = found else {
+            continue;
+        };
+        let mut together = Item { id: other, flip };
+        if place[other.index()] > position {
+            // The other one comes later: both take a new node.
+            let pair = vec![items[i], items[j]];
+            let node = if product { dag.product(pair) } else { dag.sum(pair) };
+            dag.replace(other, Op::Sum(vec![node.flipped_if(flip)]));
+            gone[other.index()] = true;
+            together = node;
+        }
+        let mut rest = items;
+        rest.remove(j);
+        rest.remove(i);
+        let new = if product {
+            rest.push(Item::plain(together.id));
+            dag.product(rest).flipped_if(together.flip)
+        } else {
+            rest.push(together);
+            dag.sum(rest)
+        };
+        dag.replace(id, Op::Sum(vec![new]));
+        gone[id.index()] = true;
+        any = true;
+    }
+    any
+}
+
+/// Places of all pairs in a list.
+fn pairs(length: usize) -> impl Iterator<Item = (usize, usize)> {
+    (1..length).flat_map(|j| (0..j).map(move |i| (i, j)))
+}
+
+/// Value of two factors, or of two terms.
+fn whole_of([a, b]: [Item; 2], product: bool, values: &[Option<Value>]) -> Option<Value> {
+    let part = |item: Item| {
+        let value = values[item.id.index()]?;
+        Some(match (item.flip, product) {
+            (false, _) => value,
+            (true, false) => value.map(|v| -v),
+            (true, true) => [value[0].inverse()?, value[1].inverse()?],
+        })
+    };
+    let ([a, b], [c, d]) = (part(a)?, part(b)?);
+    Some(if product { [a * c, b * d] } else { [a + c, b + d] })
+}
+
+fn can_give_way(dag: &Dag, id: Id) -> bool {
+    matches!(dag.op(id), Op::Sum(_) | Op::Product(_))
+}
+
+/// Gives nodes the names that values of the derivation have.
+pub(super) fn name_again(dag: &mut Dag, derived: &Dag) {
+    let mut names: FxHashMap<Value, (Name, bool)> = FxHashMap::default();
+    let order = derived.order();
+    let known = values(derived, &order);
+    for id in order {
+        if let (Some(name), Some(value)) = (derived.names[id.index()], known[id.index()]) {
+            let (value, sign) = without_sign(value);
+            names.entry(value).or_insert((name, sign));
+        }
+    }
+    let order = dag.order();
+    let values = values(dag, &order);
+    for id in order {
+        if dag.names[id.index()].is_some() || !can_give_way(dag, id) {
+            continue;
+        }
+        let Some((value, sign)) = values[id.index()].map(without_sign) else {
+            continue;
+        };
+        if let Some(&(name, other)) = names.get(&value) {
+            dag.names[id.index()] = Some(Name {
+                negative: name.negative != (sign != other),
+                ..name
+            });
+        }
+    }
+}
+
+/// How many parts a sum or a product has; other nodes are as short as can be.
+fn parts(dag: &Dag, id: Id) -> usize {
+    match dag.op(id) {
+        Op::Sum(items) | Op::Product(items) => items.len(),
+        _ => 0,
+    }
+}
+
+/// The one of `±value` whose first component is in the lower half, and whether the sign changed.
+fn without_sign([first, second]: Value) -> (Value, bool) {
+    let (first, flip) = first.without_sign();
+    ([first, if flip { -second } else { second }], flip)
+}
+
+/// Values of the nodes; `None` where the points hit a division by zero.
+fn values(dag: &Dag, order: &[Id]) -> Vec<Option<Value>> {
+    let mut values: Vec<Option<Value>> = vec![None; dag.len()];
+    for &id in order {
+        values[id.index()] = value(dag, id, &values);
+    }
+    values
+}
+
+fn value(dag: &Dag, id: Id, values: &[Option<Value>]) -> Option<Value> {
+    let signed = |item: &Item| {
+        let value = values[item.id.index()]?;
+        Some(if item.flip { value.map(|v| -v) } else { value })
+    };
+    let unknown = |tag: u64, items: &[Item]| {
+        let parts: Option<Vec<Value>> = items.iter().map(signed).collect();
+        Some(draw((tag, parts?)))
+    };
+    match dag.op(id) {
+        Op::Number(number) => Element::from_rational(number).map(|value| [value; 2]),
+        Op::Argument(argument) => Some(draw(argument)),
+        Op::Sum(terms) => terms.iter().try_fold([Element::ZERO; 2], |[a, b], term| {
+            let [c, d] = signed(term)?;
+            Some([a + c, b + d])
+        }),
+        Op::Product(factors) => factors.iter().try_fold([Element::ONE; 2], |[a, b], factor| {
+            let [c, d] = values[factor.id.index()]?;
+            Some(if factor.flip {
+                [a * c.inverse()?, b * d.inverse()?]
+            } else {
+                [a * c, b * d]
+            })
+        }),
+        // Nothing looks inside.
+        Op::Kept(inner) => values[inner.index()].map(|inner| draw((4_u64, inner))),
+        Op::Function(function, argument) => {
+            let argument = signed(argument)?;
+            Some(draw((function, argument)))
+        }
+        Op::Atan2(items) => unknown(0, items),
+        Op::Power(items) => unknown(1, items),
+        Op::Choice(relation, items) => {
+            let [left, right, then, otherwise] = items.each_ref().map(signed);
+            Some(draw((relation, [left?, right?, then?, otherwise?])))
+        }
+        Op::Solution { system, row } => {
+            let system = &dag.systems[*system as usize];
+            let matrix = unknown(2, &system.matrix)?;
+            let right = unknown(3, &system.right)?;
+            Some(draw((matrix, right, row)))
+        }
+    }
+}
+
+/// The unknowns that something stands for: the same in every run.
+fn draw(of: impl Hash) -> Value {
+    [1_u64, 2].map(|point| {
+        let mut hasher = FxHasher::default();
+        (point, &of).hash(&mut hasher);
+        // The finaliser of MurmurHash3 spreads what the hasher leaves in few bits.
+        let mut bits = hasher.finish();
+        bits = (bits ^ (bits >> 33)).wrapping_mul(0xff51_afd7_ed55_8ccd);
+        bits = (bits ^ (bits >> 33)).wrapping_mul(0xc4ce_b9fe_1a85_ec53);
+        Element::new(bits ^ (bits >> 33))
+    })
 }

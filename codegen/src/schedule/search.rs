@@ -5,7 +5,7 @@ use super::cancel::cancel;
 use super::dag::{Dag, Item};
 use super::divide::{join_divisions, share_reciprocals};
 use super::factor::factor;
-use super::meet::meet;
+use super::meet::{meet, meet_in_parts, name_again};
 use super::rebuild::{Dissolve, rebuild};
 use super::scale::scale;
 use super::share::{Within, share};
@@ -94,6 +94,9 @@ const PLANS: [Plan; 6] = [
 /// Operations that a name from the derivation is worth.
 const NAME: usize = 1;
 
+/// How often nodes are looked for that are equal: one meeting makes others possible.
+const MEETINGS: usize = 4;
+
 /// The cheapest equivalent graph found. What is cheaper by nothing stays as derived.
 pub(super) fn cheapest(derived: &Dag, tuning: Tuning) -> Dag {
     let weigh = |dag: &Dag| dag.weight(&dag.order(), tuning.division);
@@ -116,12 +119,34 @@ pub(super) fn cheapest(derived: &Dag, tuning: Tuning) -> Dag {
             (best, least) = (candidate, weight);
         }
     }
+    let mut best = merged(best);
     let joint = joined(&best);
     if weigh(&joint) < weigh(&best) {
-        joint
-    } else {
-        best
+        best = joint;
     }
+    name_again(&mut best, derived);
+    best
+}
+
+/// Nodes of equal value met.
+fn merged(mut dag: Dag) -> Dag {
+    for _ in 0..MEETINGS {
+        let mut order = dag.order();
+        let mut any = meet(&mut dag, &order);
+        if any {
+            dag = rebuild(&dag, Dissolve::Unnamed);
+            order = dag.order();
+        }
+        let parts = meet_in_parts(&mut dag, &order);
+        if parts {
+            dag = rebuild(&dag, Dissolve::Unnamed);
+        }
+        any |= parts;
+        if !any {
+            break;
+        }
+    }
+    dag
 }
 
 fn follow(derived: &Dag, plan: Plan) -> Dag {
@@ -153,11 +178,7 @@ fn follow(derived: &Dag, plan: Plan) -> Dag {
 
 /// Reciprocals come last: the other passes see through divisions.
 fn finish(mut dag: Dag) -> Dag {
-    let mut order = dag.order();
-    if meet(&mut dag, &order) {
-        dag = rebuild(&dag, Dissolve::Unnamed);
-        order = dag.order();
-    }
+    let order = dag.order();
     share_reciprocals(&mut dag, &order);
     rebuild(&dag, Dissolve::Unnamed)
 }

@@ -28,16 +28,16 @@ const LOW: u64 = (1 << 61) - 1;
 
 /// An element of the field, below [`PRIME`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub(super) struct Element(u64);
+pub(crate) struct Element(u64);
 
 impl Element {
-    pub(super) const ZERO: Self = Self(0);
-    pub(super) const ONE: Self = Self(1);
+    pub(crate) const ZERO: Self = Self(0);
+    pub(crate) const ONE: Self = Self(1);
     /// `1/2`
     pub(super) const HALF: Self = Self(PRIME.div_ceil(2));
 
     /// The residue of any 64-bit number.
-    pub(super) const fn new(value: u64) -> Self {
+    pub(crate) const fn new(value: u64) -> Self {
         // 2^61 = GAP
         let folded = (value & LOW) + (value >> 61) * GAP;
         Self(if folded >= PRIME {
@@ -68,7 +68,7 @@ impl Element {
     }
 
     /// A rational number; `None` where the prime divides its denominator.
-    pub(super) fn from_rational(value: &Rational) -> Option<Self> {
+    pub(crate) fn from_rational(value: &Rational) -> Option<Self> {
         match value.as_small() {
             Some((n, 1)) => Some(Self::from_signed(n)),
             Some((n, d)) => Some(Self::from_signed(n) * Self::from_signed(d).inverse()?),
@@ -84,7 +84,7 @@ impl Element {
     }
 
     /// The one of `±self` in the lower half, and whether the sign changed.
-    pub(super) fn without_sign(self) -> (Self, bool) {
+    pub(crate) fn without_sign(self) -> (Self, bool) {
         if self.0 > PRIME / 2 {
             (-self, true)
         } else {
@@ -111,7 +111,7 @@ impl Element {
     }
 
     /// `1/self`; zero has none.
-    pub(super) fn inverse(self) -> Option<Self> {
+    pub(crate) fn inverse(self) -> Option<Self> {
         if self.is_zero() {
             return None;
         }

@@ -10,7 +10,7 @@ mod common_factors;
 mod differentiate;
 mod evaluate;
 mod expand;
-mod field;
+pub(crate) mod field;
 mod graph;
 pub mod identity;
 mod interval;

@@ -72,6 +72,8 @@ pub struct Function {
     pub results: Vec<Array>,
     /// What names on the way mean.
     pub glossary: Vec<Term>,
+    /// What else a caller should know, a sentence each.
+    pub remarks: Vec<String>,
 }
 
 /// The meaning of some names.
@@ -122,7 +124,15 @@ impl Function {
             stages: Vec::new(),
             results,
             glossary: Vec::new(),
+            remarks: Vec::new(),
         }
+    }
+
+    /// The same with something a caller should know.
+    #[must_use]
+    pub fn remarking(mut self, remarks: impl Iterator<Item = String>) -> Self {
+        self.remarks.extend(remarks);
+        self
     }
 
     /// The same with the meaning of some names.

@@ -74,6 +74,9 @@ pub(super) fn function(
     let mut lines = vec![function.kind.about().to_owned(), String::new()];
     lines.extend(super::picture::picture(types, function));
     lines.extend(rows_and_columns(function));
+    for remark in &function.remarks {
+        lines.extend([one_line(remark), String::new()]);
+    }
     lines.extend(glossary(function, schedule));
     lines.push(format!(
         "From `{}`.",

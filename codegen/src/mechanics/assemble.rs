@@ -4,10 +4,12 @@ use appell_runtime::model::{Contact, Interpolation, List, ModelInfo, Quantity, S
 use appell_spec::mechanism::{self, Label, Mechanism, Signal};
 
 use super::Derivation;
+use super::constraints::Constraints;
 use super::expressions::Lowering;
 use super::finding::{Item, Outcome};
 use super::gibbs_appell::{
-    ActualMotion, BodyMotion, acceleration_energy, kinetic_energy_by_velocity, motions_in_ground,
+    ActualMotion, BodyMotion, acceleration_energies, acceleration_energy,
+    kinetic_energy_by_velocity, motions_in_ground,
 };
 use super::glossary;
 use super::initial::InitialState;
@@ -92,7 +94,7 @@ impl Derivation {
                 let array = Array::new("coordinate_rates", "q̇.", Layout::Coordinates, rates);
                 vec![array.labelled(labels).under(VELOCITIES, all)]
             }
-            FunctionKind::AccelerationEnergy => self.acceleration_energies(mechanism),
+            FunctionKind::AccelerationEnergy => self.acceleration_energies(),
             FunctionKind::MassMatrix => {
                 let entries = self.gibbs.mass_matrix.concat();
                 let all = 0..entries.len();
@@ -186,7 +188,8 @@ impl Derivation {
         match function.kind {
             F::ConstraintResidual => function
                 .by_way_of(VELOCITIES, self.coordinate_rates.clone())
-                .explaining(glossary::of_rows(mechanism, &self.constraints)),
+                .explaining(glossary::of_rows(mechanism, &self.constraints))
+                .remarking(embedded(mechanism, &self.constraints)),
             F::Energies => self.staged_by_velocities(mechanism, function),
             F::Bias | F::Rates | F::Jacobians => {
                 let bodies = self.bodies.clone();
@@ -199,7 +202,13 @@ impl Derivation {
             }
             F::AccelerationEnergy => {
                 let bodies = self.bodies.clone();
-                self.staged_by_accelerations(mechanism, function, &bodies)
+                let mut function = self.staged_by_accelerations(mechanism, function, &bodies);
+                for (place, body) in bodies.iter().enumerate() {
+                    let parts = acceleration_energies(&mut self.algebra, body, &accelerations);
+                    function =
+                        function.by_way_of(&Source(mechanism).of_body(place), parts.to_vec());
+                }
+                function
             }
             F::ConstraintForces => {
                 let bodies = self.bodies_in_ground(mechanism);
@@ -392,9 +401,9 @@ impl Derivation {
     }
 
     /// S at the actual accelerations: the sum, then body by body.
-    fn acceleration_energies(&mut self, mechanism: &Mechanism) -> Vec<Array> {
+    fn acceleration_energies(&mut self) -> Vec<Array> {
         let mut results = Vec::with_capacity(self.bodies.len() + 1);
-        for (place, body) in self.bodies.clone().into_iter().enumerate() {
+        for body in self.bodies.clone() {
             let s = acceleration_energy(&mut self.algebra, &body, &self.motion.accelerations);
             let label = format!("s_{}", body.name);
             let s = self.algebra.graph.name(&label, s);
@@ -403,11 +412,7 @@ impl Derivation {
             while name == "total" || results.iter().any(|other: &Array| other.name == name) {
                 name.push('_');
             }
-            results.push(
-                Array::scalar(&name, &about, s)
-                    .labelled(std::iter::once(label))
-                    .under(&Source(mechanism).of_body(place), 0..1),
-            );
+            results.push(Array::scalar(&name, &about, s).labelled(std::iter::once(label)));
         }
         let parts: Vec<Expr> = results.iter().map(|r| r.entries[0]).collect();
         let total = self.algebra.graph.sum(&parts);
@@ -502,6 +507,17 @@ fn input_symbols(symbols: &Symbols, info: &ModelInfo) -> Vec<Expr> {
         .iter()
         .map(|&(signal, order)| symbols.signals[signal][usize::from(order)]);
     symbols.inputs.iter().copied().chain(tabulated).collect()
+}
+
+/// The constraints that have no row, and why.
+fn embedded(mechanism: &Mechanism, constraints: &Constraints) -> impl Iterator<Item = String> {
+    let has_row =
+        |index| (constraints.rows.iter()).any(|row| row.constraint == index && !row.is_embedded());
+    let without = (0..mechanism.constraints.len()).filter(move |&index| !has_row(index));
+    without.map(|index| {
+        let name = &mechanism.constraints[index].name;
+        format!("`{name}` has no row: the coordinates satisfy it identically.")
+    })
 }
 
 /// Where the things of a spec stand, for comments.

@@ -392,25 +392,38 @@ pub fn acceleration_energy(
     body: &BodyMotion,
     accelerations: &[Expr],
 ) -> Expr {
+    let terms = acceleration_energies(algebra, body, accelerations);
+    algebra.graph.sum(&terms)
+}
+
+/// Its three terms, with names.
+pub fn acceleration_energies(
+    algebra: &mut Algebra,
+    body: &BodyMotion,
+    accelerations: &[Expr],
+) -> [Expr; 3] {
     let ActualMotion { a, alpha, .. } = ActualMotion::new(algebra, body, accelerations);
     let graph = &mut algebra.graph;
     let half = Rational::new(1, 2);
     let square = graph.dot(a, a);
-    let translating = graph.product(&[body.mass, square]);
-    let translating = graph.scale(&half, translating);
+    let moving = graph.product(&[body.mass, square]);
+    let moving = graph.scale(&half, moving);
     let Some(rotation) = &body.rotation else {
-        return translating;
+        let moving = graph.name(&format!("s_{}", body.name), moving);
+        return [moving, Graph::ZERO, Graph::ZERO];
     };
     let moment = graph.mat_vec(&rotation.inertia, alpha);
     let square = graph.dot(alpha, moment);
-    let square = graph.scale(&half, square);
+    let turning = graph.scale(&half, square);
     let momentum = graph.mat_vec(&rotation.inertia, rotation.velocity.v);
-    let gyroscopic = graph.cross(rotation.velocity.v, momentum);
-    let coupling = graph.dot(alpha, gyroscopic);
-    let turning = graph.add(square, coupling);
-    let translating = graph.name(&format!("s_moving_{}", body.name), translating);
-    let turning = graph.name(&format!("s_turning_{}", body.name), turning);
-    graph.add(translating, turning)
+    let moment = graph.cross(rotation.velocity.v, momentum);
+    let gyroscopic = graph.dot(alpha, moment);
+    let terms = [
+        ("moving", moving),
+        ("turning", turning),
+        ("gyroscopic", gyroscopic),
+    ];
+    terms.map(|(how, s)| graph.name(&format!("s_{how}_{}", body.name), s))
 }
 
 /// The motion that happens: with the solved pseudo-accelerations.

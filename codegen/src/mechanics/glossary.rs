@@ -20,7 +20,11 @@ pub fn of_solution(motion: &Motion) -> Vec<Term> {
     if alone {
         terms.push(term(
             "pivot",
-            "the factor of a pseudo-acceleration where its equation stands alone, `pivot ω̇ = rhs`.",
+            "what divides `rhs`: `ω̇ = rhs/pivot`, plus terms that need no division.",
+        ));
+        terms.push(term(
+            "rhs_over_pivot",
+            "`rhs/pivot` where `ω̇` has further terms.",
         ));
     }
     if together {
@@ -31,9 +35,9 @@ pub fn of_solution(motion: &Motion) -> Vec<Term> {
         ]);
     }
     let rho = match (alone, together) {
-        (true, false) => "`rho = rhs - pivot ω̇`",
+        (true, false) => "`rho = rhs - pivot ω̇`, ω̇ less its further terms,",
         (false, _) => "`rho = rhs - M ω̇`",
-        (true, true) => "`rho = rhs - pivot ω̇`, or `rhs - M ω̇`,",
+        (true, true) => "`rho = rhs - pivot ω̇`, ω̇ less its further terms, or `rhs - M ω̇`,",
     };
     terms.extend([
         term("d_rhs", "derivatives of `rhs`."),

@@ -106,7 +106,11 @@ impl ImplicitMotion<'_> {
                             let named = algebra.graph.div(named, equation.pivot);
                             // A pivot that cancels does so under no name.
                             let count = |own| algebra.graph.operations(&[own]);
-                            let own = if count(plain) < count(named) { plain } else { named };
+                            let own = if count(plain) < count(named) {
+                                plain
+                            } else {
+                                named
+                            };
                             let whole = algebra.derivative(equation.whole, variable);
                             let own = algebra.graph.add(own, whole);
                             column[equation.speed] = equation.less_couplings(algebra, own, &column);

@@ -344,7 +344,11 @@ fn quotients(
         let known = scales.iter().find(|scale| scale.0 == pivot);
         let number = known.map(|scale| scale.1.clone()).unwrap_or_else(|| {
             let number = algebra.graph.split_coefficient(right).0.abs();
-            if number.is_zero() { Rational::ONE } else { number }
+            if number.is_zero() {
+                Rational::ONE
+            } else {
+                number
+            }
         });
         let right = algebra.graph.scale(&number.recip(), right);
         let scaled = algebra.graph.scale(&number.recip(), pivot);

@@ -19,7 +19,7 @@ const USUAL: usize = 24;
 /// Columns of the lines on which a long sum goes on.
 const MORE_LINES: usize = 140;
 /// Wider trees are not written inside other trees.
-const INLINE: usize = 60;
+const INLINE: usize = 72;
 /// Columns that a tree gets after a name of any length.
 const NARROWEST: usize = 30;
 
@@ -315,7 +315,7 @@ impl<'a> Binding<'a> {
 
     /// `a b c …`, with parts defined before where the line would be too long.
     fn chain(&mut self, id: Id, factors: Vec<Piece>) -> Option<Piece> {
-        let room = self.room(id);
+        let room = self.room_of_product(id);
         let mut product: Option<Piece> = None;
         for factor in factors {
             product = Some(match product {
@@ -378,6 +378,16 @@ impl<'a> Binding<'a> {
     fn room_of_sum(&self, id: Id) -> usize {
         let more = if self.outline.bound[id.index()] {
             MORE_LINES
+        } else {
+            0
+        };
+        self.room(id) + more
+    }
+
+    /// Columns for a product: with a name of its own it may go on once.
+    fn room_of_product(&self, id: Id) -> usize {
+        let more = if self.outline.bound[id.index()] {
+            MORE_LINES / 2
         } else {
             0
         };
@@ -518,7 +528,9 @@ impl<'a> Binding<'a> {
         self.outline.is_entry(id)
             && self.derived_name(id).is_none_or(|name| name.automatic)
             && self.outline.feeds_others(id)
-            && Monomial::of(&piece.tree, &self.products).is_some_and(|m| m.length() <= FEW)
+            && Monomial::of(&piece.tree, &self.products).is_some_and(|product| {
+                product.length() <= FEW && product.name(&self.values, &self.arguments).is_some()
+            })
     }
 
     /// Whether a value that comes out with the wrong sign is negated for the sake of its name.

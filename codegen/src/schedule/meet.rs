@@ -97,7 +97,11 @@ pub(super) fn meet_in_parts(dag: &mut Dag, order: &[Id]) -> bool {
         if place[other.index()] > position {
             // The other one comes later: both take a new node.
             let pair = vec![items[i], items[j]];
-            let node = if product { dag.product(pair) } else { dag.sum(pair) };
+            let node = if product {
+                dag.product(pair)
+            } else {
+                dag.sum(pair)
+            };
             dag.replace(other, Op::Sum(vec![node.flipped_if(flip)]));
             gone[other.index()] = true;
             together = node;
@@ -135,7 +139,11 @@ fn whole_of([a, b]: [Item; 2], product: bool, values: &[Option<Value>]) -> Optio
         })
     };
     let ([a, b], [c, d]) = (part(a)?, part(b)?);
-    Some(if product { [a * c, b * d] } else { [a + c, b + d] })
+    Some(if product {
+        [a * c, b * d]
+    } else {
+        [a + c, b + d]
+    })
 }
 
 fn can_give_way(dag: &Dag, id: Id) -> bool {
@@ -210,14 +218,16 @@ fn value(dag: &Dag, id: Id, values: &[Option<Value>]) -> Option<Value> {
             let [c, d] = signed(term)?;
             Some([a + c, b + d])
         }),
-        Op::Product(factors) => factors.iter().try_fold([Element::ONE; 2], |[a, b], factor| {
-            let [c, d] = values[factor.id.index()]?;
-            Some(if factor.flip {
-                [a * c.inverse()?, b * d.inverse()?]
-            } else {
-                [a * c, b * d]
-            })
-        }),
+        Op::Product(factors) => factors
+            .iter()
+            .try_fold([Element::ONE; 2], |[a, b], factor| {
+                let [c, d] = values[factor.id.index()]?;
+                Some(if factor.flip {
+                    [a * c.inverse()?, b * d.inverse()?]
+                } else {
+                    [a * c, b * d]
+                })
+            }),
         // Nothing looks inside.
         Op::Kept(inner) => values[inner.index()].map(|inner| draw((4_u64, inner))),
         Op::Function(function, argument) => {

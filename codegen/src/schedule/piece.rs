@@ -197,6 +197,9 @@ pub(super) fn describe(
     if let Some(monomial) = Monomial::of(tree, products) {
         return monomial.name(values, arguments);
     }
+    if let Some(name) = angle_sum(tree, values) {
+        return joined(&[&name]);
+    }
     let inner = |tree: &Tree| describe(tree, values, products, arguments);
     match tree {
         Tree::Negate(a) => joined(&["minus", &inner(a)?]),
@@ -209,6 +212,44 @@ pub(super) fn describe(
                 Operation::Multiply => joined(&[&left, &right]),
                 Operation::Divide => joined(&[&left, "over", &right]),
             }
+        }
+        _ => None,
+    }
+}
+
+/// `sin_a_minus_b` and the like where a tree is written out by an addition theorem.
+fn angle_sum(tree: &Tree, values: &[String]) -> Option<String> {
+    let Tree::Binary(operation @ (Operation::Add | Operation::Subtract), left, right) = tree else {
+        return None;
+    };
+    // Function and angle of both factors.
+    let factors = |tree: &Tree| {
+        let Tree::Binary(Operation::Multiply, a, b) = tree else {
+            return None;
+        };
+        let factor = |tree: &Tree| {
+            let Tree::Value(Value(value)) = tree else {
+                return None;
+            };
+            values.get(*value as usize)?.split_once('_')
+        };
+        Some([factor(a)?, factor(b)?])
+    };
+    let ([(f, a), (g, b)], right) = (factors(left)?, factors(right)?);
+    let swapped = [right[1], right[0]];
+    let opposite = |function: &str| if function == "sin" { "cos" } else { "sin" };
+    let partner = [(opposite(f), a), (opposite(g), b)];
+    if a == b || (right != partner && swapped != partner) {
+        return None;
+    }
+    let plus = *operation == Operation::Add;
+    match (f, g, plus) {
+        ("sin", "cos", true) | ("cos", "sin", true) => Some(format!("sin_{a}_plus_{b}")),
+        ("sin", "cos", false) => Some(format!("sin_{a}_minus_{b}")),
+        ("cos", "sin", false) => Some(format!("sin_{b}_minus_{a}")),
+        ("cos", "cos", false) => Some(format!("cos_{a}_plus_{b}")),
+        ("cos", "cos", true) | ("sin", "sin", true) => {
+            Some(format!("cos_{}_minus_{}", a.min(b), a.max(b)))
         }
         _ => None,
     }

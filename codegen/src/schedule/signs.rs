@@ -23,10 +23,12 @@ pub(super) fn choose_signs(dag: &Dag, order: &[Id]) -> Vec<bool> {
         order,
         wanted: vec![false; dag.len()],
         built: vec![false; dag.len()],
+        wrong: vec![false; dag.len()],
         labels: vec![None; dag.len()],
     };
     for result in &dag.results {
-        signs.labels[result.id.index()].get_or_insert(result.flip);
+        let sign = *signs.labels[result.id.index()].get_or_insert(result.flip);
+        signs.wanted[result.id.index()] = sign;
     }
     for &id in order {
         if let Some(name) = dag.names[id.index()] {
@@ -78,6 +80,8 @@ struct Signs<'a> {
     wanted: Vec<bool>,
     /// What the wishes lead to.
     built: Vec<bool>,
+    /// What came out with the other sign than its name's.
+    wrong: Vec<bool>,
     /// The first sign in which a result wants a node.
     labels: Vec<Option<bool>>,
 }
@@ -125,7 +129,8 @@ impl Signs<'_> {
                 }
             };
             self.built[place] = built;
-            if self.wrong(id) {
+            self.wrong[place] = self.sign(id).is_some_and(|sign| sign != built);
+            if self.wrong[place] {
                 cost += WRONG_SIGN;
                 // It is negated, or it gives up its name.
                 self.built[place] =
@@ -146,12 +151,6 @@ impl Signs<'_> {
             .or(self.labels[id.index()])
     }
 
-    /// Whether a value has the other sign than its name's.
-    fn wrong(&self, id: Id) -> bool {
-        self.sign(id)
-            .is_some_and(|sign| sign != self.built[id.index()])
-    }
-
     /// Nodes whose opposite could save a negation, those that decide more than one last.
     fn candidates(&self) -> Vec<Id> {
         let dag = self.dag;
@@ -166,7 +165,7 @@ impl Signs<'_> {
         }
         for &id in self.order {
             // A named sum of the wrong sign is mended by one of its terms, too.
-            if self.wrong(id) {
+            if self.wrong[id.index()] {
                 dag.for_each_part(id, |part| roots.push(part.id));
                 roots.push(id);
             }

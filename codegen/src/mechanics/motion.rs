@@ -342,14 +342,11 @@ fn quotients(
             return Vec::new();
         };
         let known = scales.iter().find(|scale| scale.0 == pivot);
-        let number = known.map(|scale| scale.1.clone()).unwrap_or_else(|| {
-            let number = algebra.graph.split_coefficient(right).0.abs();
-            if number.is_zero() {
-                Rational::ONE
-            } else {
-                number
-            }
-        });
+        let number = match known {
+            Some((_, number)) => number.clone(),
+            None if right == Graph::ZERO => Rational::ONE,
+            None => algebra.graph.split_coefficient(right).0.abs(),
+        };
         let right = algebra.graph.scale(&number.recip(), right);
         let scaled = algebra.graph.scale(&number.recip(), pivot);
         scales.push((pivot, number));

@@ -102,8 +102,10 @@ pub(super) fn meet_in_parts(dag: &mut Dag, order: &[Id]) -> bool {
             } else {
                 dag.sum(pair)
             };
-            dag.replace(other, Op::Sum(vec![node.flipped_if(flip)]));
-            gone[other.index()] = true;
+            if node.id != other {
+                dag.replace(other, Op::Sum(vec![node.flipped_if(flip)]));
+                gone[other.index()] = true;
+            }
             together = node;
         }
         let mut rest = items;

@@ -184,8 +184,8 @@ pub fn jacobians<T: Real>(
     let [solution_5_1, _, _] = lu_solve(&lu_1, [-solution_1_3, zero, -solution_1_2]);
     let d_crate_d_half = cos_half + number_half / sqrt_half + crate_part_1 + one
         + one / (one + half * half) + one / half - tanh_half * tanh_half;
-    let A_type_half_part_1 = T::if_less(p, p_minus_half, solution_5_1, d_crate_d_half);
-    let A_type_half = A_type_p_part_1 + A_type_half_part_1;
+    let A_type_half = A_type_p_part_1
+        + T::if_less(p, p_minus_half, solution_5_1, d_crate_d_half);
 
     // Row `half` of A.
     let one_minus_solution_2_2 = one - solution_2_2;

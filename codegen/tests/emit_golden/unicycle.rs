@@ -196,8 +196,7 @@ pub fn acceleration_energy<T: Real>(
     let R_omega_2_omega_3 = R_omega_3 * omega_2;
     let g_sin_theta = g * sin_theta;
     let f_4_part_1 = R_omega_2_omega_3 + g_sin_theta;
-    let f_4_part_2 = m0 * (r * (omega_3_squared + omega_1 * omega_1) - f_4_part_1);
-    let f_4 = f_4_part_2 + u;
+    let f_4 = u + m0 * (r * (omega_3_squared + omega_1 * omega_1) - f_4_part_1);
     let tan_theta_omega_3 = sin_theta * omega_3 / cos_theta;
     let omega_1_dot_part_1 = g_sin_theta + three_halves * R_omega_2_omega_3;
     let omega_1_dot_part_2 = quarter * R_omega_3 * tan_theta_omega_3;
@@ -268,7 +267,7 @@ pub fn mass_matrix<T: Real>(
 /// Bias b: what is left of ∂S/∂ω̇ where the pseudo-accelerations vanish.
 ///
 /// From `mechanisms/unicycle.toml`.
-/// Operations: 49 (14 +, 33 ×, 1 ÷, 1 sign), 1 sine-cosine pair.
+/// Operations: 48 (14 +, 33 ×, 1 ÷), 1 sine-cosine pair.
 #[must_use]
 #[inline]
 pub fn bias<T: Real>(
@@ -308,7 +307,7 @@ pub fn bias<T: Real>(
     let bias_2_part_2 = tan_theta * (m0_omega_1_r * r + quarter * R * m_R_omega_1);
     let bias_2 = half * R_omega_2 * m_R_omega_1
         + omega_3 * (bias_2_part_1 - bias_2_part_2);
-    let bias_3 = -(m0_omega_1_r * omega_1 + omega_3 * (m0_omega_3_r - m0 * R_omega_2));
+    let bias_3 = omega_3 * (m0 * R_omega_2 - m0_omega_3_r) - m0_omega_1_r * omega_1;
 
     Speeds {
         omega_1: bias_0,
@@ -357,7 +356,7 @@ pub fn generalized_forces<T: Real>(
 /// Rates ẋ of the state by Appell's equations M ω̇ + b = Π and kinematics.
 ///
 /// From `mechanisms/unicycle.toml`.
-/// Operations: 101 (32 +, 64 ×, 4 ÷, 1 sign), 2 sine-cosine pairs.
+/// Operations: 98 (30 +, 64 ×, 4 ÷), 2 sine-cosine pairs.
 #[must_use]
 #[inline]
 pub fn rates<T: Real>(
@@ -380,11 +379,10 @@ pub fn rates<T: Real>(
     let (sin_psi, cos_psi) = psi.sin_cos();
 
     // Combinations of parameters.
-    let m0_R = m0 * R;
-    let m0_R_squared = R * m0_R;
     let m_R = m * R;
     let m_R_squared = R * m_R;
-    let M_22 = three_halves * m_R_squared + m0_R_squared;
+    let m0_R = m0 * R;
+    let M_22 = three_halves * m_R_squared + R * m0_R;
 
     // Generalised velocities.
     let inv_cos_theta = one / cos_theta;
@@ -399,7 +397,6 @@ pub fn rates<T: Real>(
     // Appell's equations, solved.
     let m0_r = m0 * r;
     let m0_r_squared = m0_r * r;
-    let M_11 = five_quarters * m_R_squared + m0_R_squared + m0_r_squared;
     let m0_omega_3_r = m0_r * omega_3;
     let m0_omega_3_squared_r = m0_omega_3_r * omega_3;
     let m0_omega_1_r = m0_r * omega_1;
@@ -413,11 +410,11 @@ pub fn rates<T: Real>(
     let m0_R_plus_m0_tan_theta_r = m0_R + tan_theta * m0_r;
     let f_1_part_1 = three_halves * m_R + m0_R_plus_m0_tan_theta_r;
     let quarter_tan_theta = quarter * tan_theta;
-    let f_1_part_2 = R_omega_3 * (m0_omega_3_r + m * R_omega_3 * quarter_tan_theta);
-    let f_1 = R_omega_2_omega_3 * f_1_part_1 + g_sin_theta * (m_R + m0_R) - f_1_part_2
+    let f_1 = R_omega_2_omega_3 * f_1_part_1 + g_sin_theta * (m_R + m0_R)
         - g * cos_theta * m0_r - m0_omega_3_squared_r * tan_theta_r
-        - m0_omega_1_r * two_sigma;
-    let omega_1_dot = -(f_1 + R * f_4) / (m0_R_squared - M_11);
+        - m0_omega_1_r * two_sigma
+        - R_omega_3 * (m0_omega_3_r + m * R_omega_3 * quarter_tan_theta);
+    let omega_1_dot = (f_1 + R * f_4) / (five_quarters * m_R_squared + m0_r_squared);
     let R_omega_1_omega_3 = R_omega_3 * omega_1;
     let m_R_squared_omega_1_omega_3 = m_R * R_omega_1_omega_3;
     let f_3 = m0_r * R_omega_1_omega_3 + quarter_tan_theta * m_R_squared_omega_1_omega_3
@@ -450,7 +447,7 @@ pub fn rates<T: Real>(
 /// Rates ẋ with their derivatives by state and inputs.
 ///
 /// From `mechanisms/unicycle.toml`.
-/// Operations: 288 (79 +, 192 ×, 4 ÷, 13 sign), 2 sine-cosine pairs.
+/// Operations: 275 (76 +, 186 ×, 4 ÷, 9 sign), 2 sine-cosine pairs.
 #[must_use]
 #[inline]
 pub fn jacobians<T: Real>(
@@ -474,13 +471,12 @@ pub fn jacobians<T: Real>(
     let (sin_psi, cos_psi) = psi.sin_cos();
 
     // Combinations of parameters.
-    let m0_R = m0 * R;
-    let m0_R_squared = R * m0_R;
     let m_R = m * R;
     let three_halves_m_R = three_halves * m_R;
     let minus_half_m_R = -half * m_R;
     let quarter_m_R = quarter * m_R;
-    let M_22 = R * three_halves_m_R + m0_R_squared;
+    let m0_R = m0 * R;
+    let M_22 = R * three_halves_m_R + R * m0_R;
     let inv_m0 = one / m0;
 
     // Generalised velocities.
@@ -498,8 +494,7 @@ pub fn jacobians<T: Real>(
     // Appell's equations, solved.
     let m0_r = m0 * r;
     let m0_r_squared = m0_r * r;
-    let M_11 = five_quarters * R * m_R + m0_R_squared + m0_r_squared;
-    let omega_1_dot_part_1 = one / (M_11 - m0_R_squared);
+    let omega_1_dot_part_1 = one / (five_quarters * R * m_R + m0_r_squared);
     let g_sin_theta = g * sin_theta;
     let omega_3_r = omega_3 * r;
     let omega_3_squared_r = omega_3_r * omega_3;
@@ -526,8 +521,8 @@ pub fn jacobians<T: Real>(
     let m0_R_omega_1_r = m0_R_r * omega_1;
     let two_m0_r = two * m0_r;
     let m0_omega_1_r = m0_r * omega_1;
-    let d_f_3_d_omega_3 = m0_R_omega_1_r
-        + tan_theta * (m0_omega_1_r * r + quarter_m_R * R_omega_1) - two_m0_r * sigma;
+    let f_3_part_2 = m0_omega_1_r * r + quarter_m_R * R_omega_1;
+    let d_f_3_d_omega_3 = m0_R_omega_1_r + tan_theta * f_3_part_2 - two_m0_r * sigma;
     let f_3 = f_3_part_1 * omega_2 + d_f_3_d_omega_3 * omega_3;
     let f_2_part_1 = tan_theta_omega_3 * m0_omega_1_r;
     let m0_R_omega_3 = m0 * R_omega_3;
@@ -541,9 +536,9 @@ pub fn jacobians<T: Real>(
     let sigma_dot = inv_m0 * f_4 + R * omega_1_dot;
 
     // Row `omega_1` of A.
-    let A_omega_1_omega_1_part_1 = m0_R_omega_1_r - m0_r * sigma;
+    let A_omega_1_omega_1_part_1 = m0_r * sigma - m0_R_omega_1_r;
     let A_omega_1_omega_1_part_2 = -two * omega_1_dot_part_1;
-    let A_omega_1_omega_1 = -A_omega_1_omega_1_part_1 * A_omega_1_omega_1_part_2;
+    let A_omega_1_omega_1 = A_omega_1_omega_1_part_1 * A_omega_1_omega_1_part_2;
     let m0_R_tan_theta_omega_3_r = m0_r * R_tan_theta_omega_3;
     let A_omega_1_omega_2_part_1 = m0_R_tan_theta_omega_3_r
         + three_halves_m_R * R_omega_3;
@@ -564,71 +559,63 @@ pub fn jacobians<T: Real>(
     let A_omega_1_theta_part_5 = m_R * g_cos_theta + m0_r * A_omega_1_theta_part_4
         - quarter_m_R_omega_3 * A_omega_1_theta_part_1;
     let A_omega_1_theta = omega_1_dot_part_1 * A_omega_1_theta_part_5;
-    let d_f_4_d_r = m0 * (omega_1 * omega_1 + omega_3 * omega_3);
-    let R_d_f_4_d_r = R * d_f_4_d_r;
-    let A_omega_1_r_part_1 = m0 * (f_1_part_1 + two * tan_theta_omega_3_squared_r);
-    let A_omega_1_r_part_2 = R_d_f_4_d_r - A_omega_1_r_part_1 - omega_1_dot * two_m0_r;
-    let A_omega_1_r_part_3 = omega_1_dot_part_1 * A_omega_1_r_part_2;
+    let A_omega_1_r_part_1 = omega_1 * omega_1 + omega_3 * omega_3;
+    let A_omega_1_r_part_2 = m0_R * A_omega_1_r_part_1;
+    let A_omega_1_r_part_3 = m0 * (f_1_part_1 + two * tan_theta_omega_3_squared_r);
+    let A_omega_1_r_part_4 = A_omega_1_r_part_2 - A_omega_1_r_part_3;
+    let A_omega_1_r = omega_1_dot_part_1 * (A_omega_1_r_part_4 - omega_1_dot * two_m0_r);
 
     // Row `omega_2` of A.
     let d_f_2_d_omega_1 = -(m0_R_tan_theta_omega_3_r + R_omega_3 * (m_R + m0_R));
     let d_f_3_d_omega_1 = quarter_m_R * R_tan_theta_omega_3 + minus_half_m_R * R_omega_2
         + m0_r * (R_omega_3 + tan_theta_omega_3_r);
-    let A_omega_2_omega_1_part_1 = M_33 * d_f_2_d_omega_1 + m0_R_r * d_f_3_d_omega_1;
-    let A_omega_2_omega_1 = inv_D_2 * A_omega_2_omega_1_part_1;
+    let A_omega_2_omega_1 = inv_D_2
+        * (M_33 * d_f_2_d_omega_1 + m0_R_r * d_f_3_d_omega_1);
     let A_omega_2_omega_2_part_1 = f_3_part_1 * inv_D_2;
     let A_omega_2_omega_2 = m0_R_r * A_omega_2_omega_2_part_1;
-    let A_omega_2_omega_3_part_1 = tan_theta * m0_omega_1_r + m_R * omega_1;
     let m0_two_sigma_minus_R_omega_1 = m0 * (two_sigma - R_omega_1);
-    let A_omega_2_omega_3_part_2 = A_omega_2_omega_3_part_1
-        - m0_two_sigma_minus_R_omega_1;
-    let A_omega_2_omega_3_part_3 = R * A_omega_2_omega_3_part_2;
-    let A_omega_2_omega_3_part_4 = M_33 * A_omega_2_omega_3_part_3;
-    let A_omega_2_omega_3_part_5 = A_omega_2_omega_3_part_4 - m0_R_r * d_f_3_d_omega_3;
-    let A_omega_2_omega_3 = -inv_D_2 * A_omega_2_omega_3_part_5;
+    let m0_tan_theta_omega_1_r = tan_theta * m0_omega_1_r;
+    let A_omega_2_omega_3_part_1 = m0_two_sigma_minus_R_omega_1 - m0_tan_theta_omega_1_r;
+    let d_f_2_d_omega_3 = R * (A_omega_2_omega_3_part_1 - m_R * omega_1);
+    let A_omega_2_omega_3 = inv_D_2
+        * (M_33 * d_f_2_d_omega_3 + m0_R_r * d_f_3_d_omega_3);
     let minus_two_over_D_2 = -two * inv_D_2;
-    let A_omega_2_sigma_part_1 = m0_R_omega_3 * M_33 - m0_r * m0_r * R_omega_3;
-    let A_omega_2_sigma = -minus_two_over_D_2 * A_omega_2_sigma_part_1;
-    let A_omega_2_theta_part_1 = m0_omega_1_r * A_omega_1_theta_part_1;
-    let d_f_3_d_theta = omega_3_r * m0_omega_1_r * inv_cos_theta_squared
-        + quarter_m_R * A_omega_1_theta_part_1 * omega_1;
-    let A_omega_2_theta_part_2 = M_33 * A_omega_2_theta_part_1;
-    let A_omega_2_theta = -inv_D_2 * (A_omega_2_theta_part_2 - m0_R_r * d_f_3_d_theta);
+    let A_omega_2_sigma = minus_two_over_D_2
+        * (m0_r * m0_r * R_omega_3 - m0_R_omega_3 * M_33);
     let d_f_3_d_r = two * f_2_part_1 + f_2_part_2;
-    let A_omega_2_r_part_1 = R_tan_theta_omega_3 * M_33 * omega_1;
-    let A_omega_2_r_part_2 = A_omega_2_r_part_1 - two * f_2 * r;
+    let A_omega_2_r_part_1 = R_tan_theta_omega_3 * f_3_part_2 - two * f_2 * r;
     let d_D_2_d_r = M_22 * two_m0_r - two * m0_R * m0_R_r;
-    let A_omega_2_r_part_3 = m0 * (A_omega_2_r_part_2 - R * (f_3 + d_f_3_d_r * r));
-    let A_omega_2_r = -inv_D_2 * (A_omega_2_r_part_3 + omega_2_dot * d_D_2_d_r);
+    let A_omega_2_r_part_2 = m0 * (A_omega_2_r_part_1 - R * (f_3 + d_f_3_d_r * r));
+    let A_omega_2_r = -inv_D_2 * (A_omega_2_r_part_2 + omega_2_dot * d_D_2_d_r);
 
     // Row `omega_3` of A.
-    let A_omega_3_omega_1_part_1 = M_22 * d_f_3_d_omega_1 + m0_R_r * d_f_2_d_omega_1;
-    let A_omega_3_omega_1 = inv_D_2 * A_omega_3_omega_1_part_1;
+    let A_omega_3_omega_1 = inv_D_2
+        * (M_22 * d_f_3_d_omega_1 + m0_R_r * d_f_2_d_omega_1);
     let A_omega_3_omega_2 = M_22 * A_omega_2_omega_2_part_1;
-    let M_22_d_f_3_d_omega_3 = M_22 * d_f_3_d_omega_3;
-    let A_omega_3_omega_3_part_1 = m0_R_r * A_omega_2_omega_3_part_3;
-    let A_omega_3_omega_3_part_2 = M_22_d_f_3_d_omega_3 - A_omega_3_omega_3_part_1;
-    let A_omega_3_omega_3 = inv_D_2 * A_omega_3_omega_3_part_2;
-    let A_omega_3_sigma_part_1 = M_22 * m0_r * omega_3 - m0_R_r * m0_R_omega_3;
-    let A_omega_3_sigma = minus_two_over_D_2 * A_omega_3_sigma_part_1;
-    let M_22_d_f_3_d_theta = M_22 * d_f_3_d_theta;
-    let A_omega_3_theta_part_1 = M_22_d_f_3_d_theta - m0_R_r * A_omega_2_theta_part_1;
-    let A_omega_3_theta = inv_D_2 * A_omega_3_theta_part_1;
+    let A_omega_3_omega_3 = inv_D_2
+        * (M_22 * d_f_3_d_omega_3 + m0_R_r * d_f_2_d_omega_3);
+    let A_omega_3_sigma = minus_two_over_D_2
+        * (M_22 * m0_r * omega_3 - m0_R_r * m0_R_omega_3);
+    let A_omega_3_theta_part_1 = omega_3_r * m0_omega_1_r * inv_cos_theta_squared;
+    let A_omega_3_theta_part_2 = quarter_m_R * A_omega_1_theta_part_1 * omega_1;
+    let A_omega_3_theta_part_3 = A_omega_3_theta_part_1 + A_omega_3_theta_part_2;
+    let A_omega_3_theta_part_4 = M_22 * A_omega_3_theta_part_3;
+    let A_omega_3_theta_part_5 = m0_R_r * m0_omega_1_r * A_omega_1_theta_part_1;
+    let A_omega_3_theta = inv_D_2 * (A_omega_3_theta_part_4 - A_omega_3_theta_part_5);
     let M_22_d_f_3_d_r_plus_m0_R_f_2 = M_22 * d_f_3_d_r + m0_R * f_2;
     let A_omega_3_r_part_1 = m0 * R_tan_theta_omega_3 * m0_R_omega_1_r;
     let A_omega_3_r_part_2 = M_22_d_f_3_d_r_plus_m0_R_f_2 - A_omega_3_r_part_1;
     let A_omega_3_r = inv_D_2 * (A_omega_3_r_part_2 - omega_3_dot * d_D_2_d_r);
 
     // Row `sigma` of A.
-    let B_omega_1_u_part_1 = R * omega_1_dot_part_1;
-    let A_sigma_omega_1_part_1 = A_omega_1_omega_1_part_1 * B_omega_1_u_part_1;
-    let A_sigma_omega_1 = two * (omega_1_r + A_sigma_omega_1_part_1);
-    let A_sigma_omega_2 = A_omega_1_omega_2_part_1 * B_omega_1_u_part_1 - R_omega_3;
+    let B_omega_1_u = R * omega_1_dot_part_1;
+    let A_sigma_omega_1 = two * (omega_1_r - A_omega_1_omega_1_part_1 * B_omega_1_u);
+    let A_sigma_omega_2 = A_omega_1_omega_2_part_1 * B_omega_1_u - R_omega_3;
     let A_sigma_omega_3 = inv_m0 * (two_m0_r * omega_3 - m0_R * omega_2)
-        - A_omega_1_omega_3_part_3 * B_omega_1_u_part_1;
+        - A_omega_1_omega_3_part_3 * B_omega_1_u;
     let A_sigma_sigma = m0_R_omega_1_r * A_omega_1_omega_1_part_2;
-    let A_sigma_theta = A_omega_1_theta_part_5 * B_omega_1_u_part_1 - g_cos_theta;
-    let A_sigma_r = R * A_omega_1_r_part_3 + inv_m0 * d_f_4_d_r;
+    let A_sigma_theta = A_omega_1_theta_part_5 * B_omega_1_u - g_cos_theta;
+    let A_sigma_r = A_omega_1_r_part_1 + R * A_omega_1_r;
 
     // Row `psi` of A.
     let A_psi_theta = inv_cos_theta * tan_theta_omega_3;
@@ -649,7 +636,7 @@ pub fn jacobians<T: Real>(
     let A_y_G_theta = cos_psi * R_sin_theta_omega_1;
 
     // Row `sigma` of B.
-    let B_sigma_u = inv_m0 + R * B_omega_1_u_part_1;
+    let B_sigma_u = inv_m0 + R * B_omega_1_u;
 
     // Rows and columns: 0 omega_1, 1 omega_2, 2 omega_3, 3 sigma, 4 theta, 5 r, 6 psi, 7 phi,
     //   8 x_G, 9 y_G.
@@ -659,12 +646,11 @@ pub fn jacobians<T: Real>(
     A[0][2] = A_omega_1_omega_3;
     A[0][3] = A_omega_1_sigma;
     A[0][4] = A_omega_1_theta;
-    A[0][5] = A_omega_1_r_part_3;
+    A[0][5] = A_omega_1_r;
     A[1][0] = A_omega_2_omega_1;
     A[1][1] = A_omega_2_omega_2;
     A[1][2] = A_omega_2_omega_3;
     A[1][3] = A_omega_2_sigma;
-    A[1][4] = A_omega_2_theta;
     A[1][5] = A_omega_2_r;
     A[2][0] = A_omega_3_omega_1;
     A[2][1] = A_omega_3_omega_2;
@@ -698,7 +684,7 @@ pub fn jacobians<T: Real>(
     //   8 x_G, 9 y_G.
     // Columns: 0 u.
     let mut B = [[zero; 1]; 10];
-    B[0][0] = B_omega_1_u_part_1;
+    B[0][0] = B_omega_1_u;
     B[3][0] = B_sigma_u;
 
     Jacobians {
@@ -724,7 +710,7 @@ pub fn jacobians<T: Real>(
 /// Rows: `omega_1`, `omega_2`, `omega_3`, `sigma`, `theta`, `r`, `psi`, `phi`, `x_G`, `y_G`. Columns: `m`, `m0`, `R`, `g`.
 ///
 /// From `mechanisms/unicycle.toml`.
-/// Operations: 263 (88 +, 164 ×, 4 ÷, 7 sign), 2 sine-cosine pairs.
+/// Operations: 254 (86 +, 164 ×, 4 ÷), 2 sine-cosine pairs.
 #[must_use]
 #[inline]
 pub fn parameter_jacobian<T: Real>(
@@ -752,7 +738,6 @@ pub fn parameter_jacobian<T: Real>(
 
     // Combinations of parameters.
     let R_squared = R * R;
-    let m0_R_squared = m0 * R_squared;
     let m_R_squared = m * R_squared;
     let three_halves_R_squared = three_halves * R_squared;
     let quarter_R_squared = quarter * R_squared;
@@ -762,14 +747,13 @@ pub fn parameter_jacobian<T: Real>(
     let three_halves_m_R_squared = three_halves * m_R_squared;
     let half_m_R = half * m_R;
     let d_M_22_d_R = three * m_R + two * m0_R;
-    let M_22 = three_halves_m_R_squared + m0_R_squared;
+    let M_22 = three_halves_m_R_squared + m0 * R_squared;
     let inv_m0 = one / m0;
 
     // Row `omega_1` of P.
     let m0_r = m0 * r;
     let m0_r_squared = m0_r * r;
-    let M_11 = five_quarters * m_R_squared + m0_R_squared + m0_r_squared;
-    let P_omega_1_m_part_1 = one / (m0_R_squared - M_11);
+    let P_omega_1_m_part_1 = one / (five_quarters * m_R_squared + m0_r_squared);
     let g_sin_theta = g * sin_theta;
     let R_g_sin_theta = R * g_sin_theta;
     let omega_2_omega_3 = omega_2 * omega_3;
@@ -785,53 +769,53 @@ pub fn parameter_jacobian<T: Real>(
     let two_sigma = two * sigma;
     let r_squared = r * r;
     let R_r = R * r;
-    let f_1_part_1 = R_g_sin_theta + R_squared * omega_2_omega_3
+    let d_f_1_d_m0 = R_g_sin_theta + R_squared * omega_2_omega_3
         + omega_2_omega_3 * tan_theta * R_r - two_sigma * omega_1 * r
         - tan_theta_omega_3_squared * r_squared - omega_3_squared * R_r
         - g * cos_theta * r;
     let f_1 = m_R * g_sin_theta + three_halves_m_R_squared * omega_2_omega_3
-        + m0 * f_1_part_1 - quarter_m_R_squared * tan_theta_omega_3_squared;
-    let omega_1_dot = -P_omega_1_m_part_1 * (f_1 + R * f_4);
+        + m0 * d_f_1_d_m0 - quarter_m_R_squared * tan_theta_omega_3_squared;
+    let omega_1_dot = P_omega_1_m_part_1 * (f_1 + R * f_4);
     let P_omega_1_m_part_2 = P_omega_1_m_part_1 * omega_1_dot;
-    let P_omega_1_m = five_quarters * R_squared * P_omega_1_m_part_2
-        - P_omega_1_m_part_1 * d_f_1_d_m;
+    let P_omega_1_m = P_omega_1_m_part_1 * d_f_1_d_m
+        - five_quarters * R_squared * P_omega_1_m_part_2;
     let d_f_4_d_m0 = r * (omega_3_squared + omega_1_squared) - g_sin_theta
         - R * omega_2_omega_3;
-    let P_omega_1_m0 = r_squared * P_omega_1_m_part_2
-        - P_omega_1_m_part_1 * (f_1_part_1 + R * d_f_4_d_m0);
+    let P_omega_1_m0 = P_omega_1_m_part_1 * (d_f_1_d_m0 + R * d_f_4_d_m0)
+        - r_squared * P_omega_1_m_part_2;
     let half_m_R_tan_theta_omega_3 = half_m_R * tan_theta * omega_3;
     let P_omega_1_R_part_1 = omega_2 * (d_M_22_d_R + m0_r * tan_theta);
     let P_omega_1_R_part_2 = half_m_R_tan_theta_omega_3 - P_omega_1_R_part_1;
     let P_omega_1_R_part_3 = m0_R_omega_2_omega_3 + omega_3 * P_omega_1_R_part_2;
     let P_omega_1_R_part_4 = P_omega_1_R_part_3 - f_4_part_1 - f_4 - m * g_sin_theta;
-    let P_omega_1_R = five_halves * m_R * P_omega_1_m_part_2
-        + P_omega_1_m_part_1 * P_omega_1_R_part_4;
-    let P_omega_1_g = -P_omega_1_m_part_1 * (sin_theta * m_R - cos_theta * m0_r);
+    let P_omega_1_R = -five_halves * m_R * P_omega_1_m_part_2
+        - P_omega_1_m_part_1 * P_omega_1_R_part_4;
+    let P_omega_1_g = P_omega_1_m_part_1 * (sin_theta * m_R - cos_theta * m0_r);
 
     // Row `omega_2` of P.
     let M_33 = quarter_m_R_squared + m0_r_squared;
     let d_D_2_d_m = three_halves_R_squared * M_33 + quarter_R_squared * M_22;
     let m0_R_r = R * m0_r;
     let omega_1_omega_2 = omega_1 * omega_2;
-    let f_3_part_1 = m0_r * two_sigma - omega_1 * (m0_R_r + tan_theta * M_33);
-    let f_3 = -(half * m_R_squared * omega_1_omega_2 + omega_3 * f_3_part_1);
+    let f_3_part_1 = omega_1 * (m0_R_r + tan_theta * M_33) - m0_r * two_sigma;
+    let f_3 = omega_3 * f_3_part_1 - half * m_R_squared * omega_1_omega_2;
     let omega_1_omega_3 = omega_1 * omega_3;
     let tan_theta_omega_1_omega_3 = tan_theta * omega_1_omega_3;
     let f_2_part_1 = m0_r * tan_theta_omega_1_omega_3;
     let two_omega_3_sigma = two_sigma * omega_3;
     let f_2_part_2 = m0_R * omega_1_omega_3 + m_R * omega_1_omega_3;
-    let f_2 = -R * (f_2_part_1 + f_2_part_2 - m0 * two_omega_3_sigma);
+    let f_2 = R * (m0 * two_omega_3_sigma - f_2_part_1 - f_2_part_2);
     let D_2 = M_22 * M_33 - R_squared * m0_r * m0_r;
     let inv_D_2 = one / D_2;
     let inv_D_2_squared = inv_D_2 * inv_D_2;
     let P_omega_2_m_part_1 = inv_D_2_squared * (m0_R_r * f_3 + M_33 * f_2);
-    let P_omega_2_m_part_2 = tan_theta_omega_1_omega_3 - two * omega_1_omega_2;
-    let P_omega_2_m_part_3 = R_squared * P_omega_2_m_part_2;
+    let P_omega_2_m_part_2 = R_squared
+        * (tan_theta_omega_1_omega_3 - two * omega_1_omega_2);
     let R_squared_omega_1_omega_3 = R_squared * omega_1_omega_3;
-    let P_omega_2_m_part_4 = four * M_33 * R_squared_omega_1_omega_3 - R_squared * f_2;
+    let P_omega_2_m_part_3 = four * M_33 * R_squared_omega_1_omega_3 - R_squared * f_2;
     let minus_quarter_over_D_2 = -quarter * inv_D_2;
-    let P_omega_2_m_part_5 = P_omega_2_m_part_4 - m0_R_r * P_omega_2_m_part_3;
-    let P_omega_2_m = minus_quarter_over_D_2 * P_omega_2_m_part_5
+    let P_omega_2_m_part_4 = P_omega_2_m_part_3 - m0_R_r * P_omega_2_m_part_2;
+    let P_omega_2_m = minus_quarter_over_D_2 * P_omega_2_m_part_4
         - d_D_2_d_m * P_omega_2_m_part_1;
     let d_f_2_d_m0 = R * two_omega_3_sigma - R_squared_omega_1_omega_3
         - R_r * tan_theta_omega_1_omega_3;
@@ -846,23 +830,23 @@ pub fn parameter_jacobian<T: Real>(
     let d_f_3_d_R = m0_r * omega_1_omega_3 + half_m_R * tan_theta_omega_1_omega_3
         - m_R * omega_1_omega_2;
     let P_omega_2_R_part_1 = half * f_2_part_1 + f_2_part_2 - m0 * omega_3 * sigma;
-    let P_omega_2_R_part_2 = two * M_33 * P_omega_2_R_part_1 - half_m_R * f_2;
-    let P_omega_2_R_part_3 = P_omega_2_R_part_2 - m0_r * f_3 - m0_R_r * d_f_3_d_R;
-    let P_omega_2_R = -(P_omega_2_m_part_1 * d_D_2_d_R + inv_D_2 * P_omega_2_R_part_3);
+    let P_omega_2_R_part_2 = half_m_R * f_2 + m0_r * f_3 + m0_R_r * d_f_3_d_R;
+    let P_omega_2_R_part_3 = P_omega_2_R_part_2 - two * M_33 * P_omega_2_R_part_1;
+    let P_omega_2_R = inv_D_2 * P_omega_2_R_part_3 - P_omega_2_m_part_1 * d_D_2_d_R;
 
     // Row `omega_3` of P.
     let P_omega_3_m_part_1 = inv_D_2_squared * (m0_R_r * f_2 + M_22 * f_3);
-    let m0_R_cubed_omega_1_omega_3_r = m0_R_r * R_squared_omega_1_omega_3;
     let three_halves_R_squared_f_3 = three_halves_R_squared * f_3;
-    let P_omega_3_m_part_2 = m0_R_cubed_omega_1_omega_3_r - three_halves_R_squared_f_3;
-    let P_omega_3_m_part_3 = P_omega_3_m_part_2 - quarter * M_22 * P_omega_2_m_part_3;
-    let P_omega_3_m = -(d_D_2_d_m * P_omega_3_m_part_1 + inv_D_2 * P_omega_3_m_part_3);
+    let P_omega_3_m_part_2 = quarter * M_22 * P_omega_2_m_part_2;
+    let P_omega_3_m_part_3 = three_halves_R_squared_f_3 + P_omega_3_m_part_2;
+    let P_omega_3_m_part_4 = P_omega_3_m_part_3 - m0_R_r * R_squared_omega_1_omega_3;
+    let P_omega_3_m = inv_D_2 * P_omega_3_m_part_4 - d_D_2_d_m * P_omega_3_m_part_1;
     let P_omega_3_m0_part_1 = R_squared * f_3 + M_22 * d_f_3_d_m0;
     let P_omega_3_m0_part_2 = P_omega_3_m0_part_1 + m0_R_r * d_f_2_d_m0 + R_r * f_2;
     let P_omega_3_m0 = inv_D_2 * P_omega_3_m0_part_2 - d_D_2_d_m0 * P_omega_3_m_part_1;
-    let P_omega_3_R_part_1 = two_m0_R_r * P_omega_2_R_part_1 - M_22 * d_f_3_d_R;
-    let P_omega_3_R_part_2 = P_omega_3_R_part_1 - d_M_22_d_R * f_3 - m0_r * f_2;
-    let P_omega_3_R = -(inv_D_2 * P_omega_3_R_part_2 + d_D_2_d_R * P_omega_3_m_part_1);
+    let P_omega_3_R_part_1 = M_22 * d_f_3_d_R + d_M_22_d_R * f_3 + m0_r * f_2;
+    let P_omega_3_R_part_2 = P_omega_3_R_part_1 - two_m0_R_r * P_omega_2_R_part_1;
+    let P_omega_3_R = inv_D_2 * P_omega_3_R_part_2 - d_D_2_d_R * P_omega_3_m_part_1;
 
     // Row `sigma` of P.
     let P_sigma_m = R * P_omega_1_m;

@@ -40,7 +40,10 @@ pub(crate) fn json(trajectory: &Trajectory) -> Value {
                 ("contact_lost", json!({ "contact": contact(index) }))
             }
             Limit::Friction { contact: index } => ("slip", json!({ "contact": contact(index) })),
-            Limit::Condition { system } => ("ill_conditioned", json!({ "system": system })),
+            Limit::Condition { of } => {
+                let name = trajectory.conditions().get(of);
+                ("ill_conditioned", json!({ "of": name }))
+            }
         };
         let states = info.states.iter().zip(&breach.state);
         let states: Map<String, Value> = states

@@ -25,12 +25,9 @@ fn kinds(summary: &Value) -> Vec<&str> {
 #[test]
 fn a_ball_that_leaves_its_surface_is_told_and_the_motion_goes_on() {
     let folder = Folder::new();
-    let model = right("ball_on_a_ball");
     let run = [
         "simulate",
-        &model,
-        "--initial",
-        "theta=0.05",
+        "ball_on_ball",
         "--t-end-s",
         "1.5",
         "--json",
@@ -53,12 +50,9 @@ fn a_ball_that_leaves_its_surface_is_told_and_the_motion_goes_on() {
 #[test]
 fn a_motion_stops_at_an_event_where_that_is_asked_for() {
     let folder = Folder::new();
-    let model = right("ball_on_a_ball");
     let run = [
         "simulate",
-        &model,
-        "--initial",
-        "theta=0.05",
+        "ball_on_ball",
         "--on-event",
         "stop",
         "--json",

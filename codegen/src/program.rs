@@ -20,7 +20,8 @@ pub struct Program {
     /// Coordinates that follow from the others by a position constraint each, in the order of the
     /// constraints.
     pub dependent: Vec<usize>,
-    /// Sizes of the linear systems that are solved with pivoting on the way to the rates.
+    /// Sizes of the linear systems of several unknowns that are solved with pivoting on the way to
+    /// the rates.
     pub systems: Vec<usize>,
     /// Functions, in the order in which a reader wants them.
     pub functions: Vec<Function>,

@@ -19,13 +19,9 @@ pub fn condition_number(matrix: &[f64], n: usize) -> f64 {
     if n == 0 {
         return 1.0;
     }
-    let mut factors = matrix.to_vec();
-    let mut inverse = vec![0.0; n * n];
-    inverse.iter_mut().step_by(n + 1).for_each(|one| *one = 1.0);
-    let pivot = lu_solve_in_place(&mut factors, &mut inverse, n);
-    if pivot == 0.0 || inverse.iter().any(|entry| !entry.is_finite()) {
+    let Some(inverse) = inverse(matrix, n) else {
         return f64::INFINITY;
-    }
+    };
     // |A⁻¹| |A| has no negative entry and none below 1 on the diagonal: powers of it approach its
     // largest eigenvalue from any positive vector.
     let (mut x, mut radius) = (vec![1.0; n], 1.0);
@@ -39,6 +35,56 @@ pub fn condition_number(matrix: &[f64], n: usize) -> f64 {
     radius
 }
 
+/// A⁻¹, row by row; nothing for a matrix that is singular up to rounding.
+fn inverse(matrix: &[f64], n: usize) -> Option<Vec<f64>> {
+    let mut factors = matrix.to_vec();
+    let mut inverse = vec![0.0; n * n];
+    inverse.iter_mut().step_by(n + 1).for_each(|one| *one = 1.0);
+    let pivot = lu_solve_in_place(&mut factors, &mut inverse, n);
+    let finite = inverse.iter().all(|entry| entry.is_finite());
+    (pivot > 0.0 && finite).then_some(inverse)
+}
+
+/// How far the pseudo-velocities are from not determining the generalised velocities, in SI: the
+/// Frobenius norms of G = ∂q̇/∂ω and of its pseudo-inverse, multiplied and divided by the number of
+/// pseudo-velocities. 1 where G keeps lengths and angles, infinite where q̇ is not finite.
+pub fn velocity_condition(model: &dyn Model, at: At<'_>) -> f64 {
+    let (n, s) = (model.info().state_len(), model.info().speeds);
+    if s == 0 {
+        return 1.0;
+    }
+    // q̇ is linear in ω, but for a part that time prescribes.
+    let mut x = at.x.to_vec();
+    let mut rates_for = |speed: Option<usize>| {
+        x[..s].fill(0.0);
+        if let Some(speed) = speed {
+            x[speed] = 1.0;
+        }
+        let mut rates = vec![0.0; n];
+        model.rates(At { x: &x, ..at }, &mut rates);
+        rates.split_off(s)
+    };
+    let drift = rates_for(None);
+    let columns: Vec<Vec<f64>> = (0..s)
+        .map(|speed| {
+            let rates = rates_for(Some(speed));
+            rates.iter().zip(&drift).map(|(a, b)| a - b).collect()
+        })
+        .collect();
+    let product = |a: &[f64], b: &[f64]| -> f64 { a.iter().zip(b).map(|(a, b)| a * b).sum() };
+    let pairs = columns
+        .iter()
+        .flat_map(|a| columns.iter().map(|b| product(a, b)));
+    let gram: Vec<f64> = pairs.collect();
+    if gram.iter().any(|entry| !entry.is_finite()) {
+        return f64::INFINITY;
+    }
+    let trace = |matrix: &[f64]| -> f64 { matrix.iter().step_by(s + 1).sum() };
+    inverse(&gram, s).map_or(f64::INFINITY, |inverse| {
+        (trace(&gram) * trace(&inverse)).sqrt() / s as f64
+    })
+}
+
 /// |A| x
 fn absolute_product(matrix: &[f64], x: &[f64]) -> Vec<f64> {
     let row = |row: &[f64]| row.iter().zip(x).map(|(a, x)| a.abs() * x).sum();
@@ -50,7 +96,9 @@ fn absolute_product(matrix: &[f64], x: &[f64]) -> Vec<f64> {
 pub struct Conditions {
     /// Of the mass matrix.
     pub mass_matrix: f64,
-    /// Of each system of [`Model::system_sizes`], which is solved for generalised velocities.
+    /// Of the way from pseudo-velocities to generalised velocities; see [`velocity_condition`].
+    pub velocities: f64,
+    /// Of each system of [`Model::system_sizes`], which are solved for generalised velocities.
     pub systems: Vec<f64>,
 }
 
@@ -73,12 +121,23 @@ impl Conditions {
         });
         Self {
             mass_matrix: condition_number(&mass, s),
+            velocities: velocity_condition(model, at),
             systems: systems.collect(),
         }
     }
 
-    /// All of them, the mass matrix first.
+    /// All of them in the order of the fields, named for people by [`Conditions::names`].
     pub fn iter(&self) -> impl Iterator<Item = f64> + '_ {
-        std::iter::once(self.mass_matrix).chain(self.systems.iter().copied())
+        let first = [self.mass_matrix, self.velocities];
+        first.into_iter().chain(self.systems.iter().copied())
+    }
+
+    /// What they are of: `mass_matrix`, `velocities`, `system_1`, ….
+    pub fn names(model: &dyn Model) -> impl Iterator<Item = String> {
+        let systems = 1..=model.system_sizes().len();
+        let first = ["mass_matrix", "velocities"].map(str::to_owned);
+        first
+            .into_iter()
+            .chain(systems.map(|i| format!("system_{i}")))
     }
 }

@@ -53,11 +53,6 @@ impl ContactForces {
         Self::default()
     }
 
-    /// The forces that were asked for last.
-    pub(crate) fn last(&self) -> &[ContactForce] {
-        &self.forces
-    }
-
     /// One force per entry of [`ModelInfo::contacts`](crate::model::ModelInfo::contacts). Not a
     /// number where the equations have no finite solution.
     pub fn at(&mut self, model: &dyn Model, at: At<'_>) -> &[ContactForce] {

@@ -283,8 +283,8 @@ pub trait Model: Sync {
         let _ = at;
         self.info().initial_contacts(normals, friction);
     }
-    /// Sizes of the linear systems that are solved with pivoting on the way to the rates; most
-    /// models have none.
+    /// Sizes of the linear systems of several unknowns that are solved with pivoting on the way to
+    /// the rates; most models have none.
     fn system_sizes(&self) -> &[usize] {
         &[]
     }

@@ -22,8 +22,7 @@ pub struct Extras {
     /// At each contact its `normal_force_<name>`, and where it could slip its
     /// `tangential_force_<name>` and `friction_demand_<name>`, the tangential over the normal force.
     pub contacts: bool,
-    /// `condition_mass_matrix`, and `condition_system_<number>` of each system that is solved with
-    /// pivoting.
+    /// `condition_<name>` for each of [`Conditions::names`].
     pub conditions: bool,
     /// `residual_<name>` of each velocity constraint.
     pub residuals: bool,
@@ -39,7 +38,8 @@ pub struct Trajectory {
     parameters: Vec<f64>,
     times: Vec<f64>,
     extras: Extras,
-    systems: usize,
+    /// What condition numbers there are.
+    conditions: Vec<String>,
     columns: Vec<Quantity>,
     rows: Vec<f64>,
     /// Why the motion ended; nothing if it failed.
@@ -67,7 +67,8 @@ impl Trajectory {
         extras: Extras,
     ) -> Self {
         let info = model.info().clone();
-        let columns = columns(&info, model.system_sizes().len(), extras);
+        let conditions: Vec<String> = Conditions::names(model).collect();
+        let columns = columns(&info, &conditions, extras);
         let mut forces = ContactForces::new();
         let n = info.state_len();
         let mut rows = Vec::with_capacity(times.len() * columns.len());
@@ -120,7 +121,7 @@ impl Trajectory {
             parameters: parameters.to_vec(),
             times,
             extras,
-            systems: model.system_sizes().len(),
+            conditions,
             columns,
             rows,
             ending: None,
@@ -138,6 +139,11 @@ impl Trajectory {
     /// The parameters it was made with, in SI.
     pub fn parameters(&self) -> &[f64] {
         &self.parameters
+    }
+
+    /// What condition numbers the model has, in the order of [`Conditions::names`].
+    pub fn conditions(&self) -> &[String] {
+        &self.conditions
     }
 
     /// Number of rows.
@@ -191,7 +197,7 @@ impl Trajectory {
 
     /// What is called otherwise because the spec uses the name: what it would be, what it is.
     pub fn renamed(&self) -> Vec<[Text; 2]> {
-        let wanted = wanted_columns(&self.info, self.systems, self.extras);
+        let wanted = wanted_columns(&self.info, &self.conditions, self.extras);
         let pairs = wanted.iter().zip(&self.columns);
         pairs
             .map(|(wanted, column)| [wanted.name.clone(), column.name.clone()])
@@ -305,8 +311,8 @@ fn write_number(to: &mut impl Write, value: f64) -> io::Result<()> {
 }
 
 /// The columns with names of their own.
-fn columns(info: &ModelInfo, systems: usize, extras: Extras) -> Vec<Quantity> {
-    let mut columns = wanted_columns(info, systems, extras);
+fn columns(info: &ModelInfo, conditions: &[String], extras: Extras) -> Vec<Quantity> {
+    let mut columns = wanted_columns(info, conditions, extras);
     let spec = info.state_len() + info.declared_inputs;
     let signals = info.signal_inputs.iter().map(|(_, order)| *order == 0);
     let outputs = if extras.outputs { info.output_len() } else { 0 };
@@ -332,7 +338,7 @@ fn columns(info: &ModelInfo, systems: usize, extras: Extras) -> Vec<Quantity> {
 }
 
 /// The columns, some of which may bear the name of another.
-fn wanted_columns(info: &ModelInfo, systems: usize, extras: Extras) -> Vec<Quantity> {
+fn wanted_columns(info: &ModelInfo, conditions: &[String], extras: Extras) -> Vec<Quantity> {
     let mut columns = info.states.to_vec();
     columns.extend_from_slice(&info.inputs);
     if extras.outputs {
@@ -378,9 +384,8 @@ fn wanted_columns(info: &ModelInfo, systems: usize, extras: Extras) -> Vec<Quant
         }
     }
     if extras.conditions {
-        let names = (1..=systems).map(|system| format!("condition_system_{system}"));
-        for name in std::iter::once("condition_mass_matrix".to_owned()).chain(names) {
-            columns.push(si(name, "condition number", ""));
+        for name in conditions {
+            columns.push(si(format!("condition_{name}"), "condition number", ""));
         }
     }
     if extras.residuals {

@@ -134,6 +134,10 @@ pub struct Evaluation {
     pub reactions: Vec<f64>,
     /// Outputs.
     pub outputs: Vec<f64>,
+    /// Normals of the contacts, then coefficients of friction.
+    pub contacts: Vec<f64>,
+    /// Matrices of the systems solved with pivoting.
+    pub systems: Vec<f64>,
 }
 
 impl Evaluation {
@@ -159,6 +163,8 @@ impl Evaluation {
             residual: nan(info.constraint_rows.len()),
             reactions: nan(3 * info.reactions.len()),
             outputs: nan(info.output_len()),
+            contacts: nan(4 * info.contacts.len()),
+            systems: nan(model.system_sizes().iter().map(|n| n * n).sum()),
         };
         model.jacobians(at, &mut e.rates, &mut e.a, &mut e.b);
         model.rates(at, &mut e.rates);
@@ -174,11 +180,14 @@ impl Evaluation {
         model.constraint_residual(at, &mut e.residual);
         model.constraint_forces(at, &mut e.reactions);
         model.outputs(at, &mut e.outputs);
+        let (normals, friction) = e.contacts.split_at_mut(3 * info.contacts.len());
+        model.contacts(at, normals, friction);
+        model.systems(at, &mut e.systems);
         e
     }
 
     /// Its arrays with their names.
-    pub fn arrays(&self) -> [(&'static str, &[f64]); 11] {
+    pub fn arrays(&self) -> [(&'static str, &[f64]); 13] {
         [
             ("rates", &self.rates),
             ("A", &self.a),
@@ -191,6 +200,8 @@ impl Evaluation {
             ("residual", &self.residual),
             ("reactions", &self.reactions),
             ("outputs", &self.outputs),
+            ("contacts", &self.contacts),
+            ("systems", &self.systems),
         ]
     }
 }

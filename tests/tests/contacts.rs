@@ -111,7 +111,7 @@ fn slope() -> String {
 }
 
 fn ball() -> String {
-    file("codegen/tests/audit/right/ball_on_a_ball.toml")
+    shipped::text("ball_on_ball")
 }
 
 fn forces(model: &dyn Model, x: &[f64], p: &[f64]) -> Vec<ContactForce> {
@@ -359,6 +359,34 @@ fn a_system_near_its_singular_configuration_has_a_large_condition_number() {
     }
 }
 
+/// dψ/dt = ω₃/cos θ: the norms of ∂q̇/∂ω and of its pseudo-inverse in closed form.
+#[test]
+fn velocities_lose_digits_where_a_wheel_lies_flat() {
+    let [model, _] = engines(&shipped::text("rolling_wheel"));
+    let p = model.info().default_parameters();
+    let radius = 0.3_f64;
+    for theta in [0.0, 1.0, 1.5, 1.570_79_f64] {
+        let mut x = model.info().initial_state();
+        x[model.info().state_index("theta").unwrap()] = theta;
+        let at = At {
+            t: 0.0,
+            x: &x,
+            u: &[],
+            p: &p,
+        };
+        let found = Conditions::of(&*model, at).velocities;
+        // ω₁ moves θ and y_G, ω₂ moves φ and x_G, ω₃ moves ψ and φ.
+        let (sin, cos) = theta.sin_cos();
+        let [one, two] = [1.0 + (radius * cos).powi(2), 1.0 + radius * radius];
+        let three = (1.0 + sin * sin) / (cos * cos);
+        let determinant = two * three - (sin / cos).powi(2);
+        let squares = one + two + three;
+        let inverse_squares = 1.0 / one + (two + three) / determinant;
+        let expected = (squares * inverse_squares).sqrt() / 3.0;
+        assert_close(found / expected, 1.0, PLACE, &format!("at {theta}"));
+    }
+}
+
 #[test]
 fn a_motion_into_a_singular_configuration_tells_its_condition_number() {
     let [model, _] = engines(CROSSED);
@@ -370,7 +398,7 @@ fn a_motion_into_a_singular_configuration_tells_its_condition_number() {
     let ended = motion(&*model, &[("w", 0.5)], validity);
     let breach = &ended.breaches[0];
     // M is proportional to [1, −a; −a, 1] with a = sin 2q: (1 + a)/(1 − a) = 1000.
-    assert_eq!(breach.limit, Limit::Condition { system: 0 });
+    assert_eq!(breach.limit, Limit::Condition { of: 0 });
     assert_close(breach.value / 1e3, 1.0, PLACE, "condition number");
     let q = state(breach, &*model, "q");
     assert_close((2.0 * q).sin(), 999.0 / 1001.0, PLACE, "sine");

@@ -174,6 +174,7 @@ fn answer(model: &dyn Model, at: At<'_>) -> (Value, bool) {
         "contacts": contacts,
         "conditions": {
             "mass_matrix": conditions.mass_matrix,
+            "velocities": conditions.velocities,
             "systems": conditions.systems,
         },
         "outputs": named(&info.outputs, &outputs),

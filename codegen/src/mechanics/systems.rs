@@ -2,7 +2,8 @@
 
 use crate::symbolic::{Expr, Graph, Node};
 
-/// The different matrices of the systems inside `roots`, row by row, each with its size.
+/// The different matrices of the systems inside `roots`, row by row, each with its size. Of a lone
+/// unknown no condition number tells more than that it is divided by.
 pub fn systems(graph: &Graph, roots: &[Expr]) -> Vec<(usize, Vec<Expr>)> {
     let mut systems: Vec<(usize, Vec<Expr>)> = Vec::new();
     for expr in graph.in_order(roots) {
@@ -11,7 +12,8 @@ pub fn systems(graph: &Graph, roots: &[Expr]) -> Vec<(usize, Vec<Expr>)> {
         };
         let system = graph.system(system);
         let matrix = system.matrix.to_vec();
-        if systems.iter().all(|(_, known)| *known != matrix) {
+        let is_new = systems.iter().all(|(_, known)| *known != matrix);
+        if matrix.len() > 1 && is_new {
             systems.push((system.right.len(), matrix));
         }
     }

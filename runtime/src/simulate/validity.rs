@@ -2,7 +2,7 @@
 
 use super::describe_state;
 use crate::condition::Conditions;
-use crate::contact::ContactForces;
+use crate::contact::{ContactForce, ContactForces};
 use crate::inputs::ModelInputs;
 use crate::integrate::{Direction, Event, EventHit};
 use crate::model::{At, Model, ModelInfo};
@@ -30,7 +30,7 @@ pub struct Validity {
     /// Coefficient of friction of all contacts, in place of those of the spec. Contacts with
     /// neither are not watched for slipping.
     pub friction: Option<f64>,
-    /// Linear systems that lose more than `worst_condition` allows.
+    /// Mass matrix, velocities and systems with a condition number above `worst_condition`.
     pub conditions: Response,
     /// The largest condition number that passes.
     pub worst_condition: f64,
@@ -67,10 +67,10 @@ pub enum Limit {
         /// Index into [`ModelInfo::contacts`].
         contact: usize,
     },
-    /// Linear systems keep some digits.
+    /// What is solved keeps some digits.
     Condition {
-        /// 0 for the mass matrix, then the systems of [`Model::system_sizes`].
-        system: usize,
+        /// Index into [`Conditions::names`].
+        of: usize,
     },
 }
 
@@ -108,16 +108,14 @@ impl Breach {
                 contact(index),
                 self.value
             ),
-            Limit::Condition { system: 0 } => {
-                format!(
-                    "the mass matrix has the condition number {:.1e}",
-                    self.value
-                )
+            Limit::Condition { of } => {
+                let what = match of {
+                    0 => "mass matrix",
+                    1 => "way from pseudo-velocities to generalised velocities",
+                    _ => "system for the generalised velocities",
+                };
+                format!("the {what} has the condition number {:.1e}", self.value)
             }
-            Limit::Condition { system } => format!(
-                "system {system} for the generalised velocities has the condition number {:.1e}",
-                self.value
-            ),
         }
     }
 
@@ -136,9 +134,11 @@ struct Gauge<'a> {
     p: &'a [f64],
     validity: Validity,
     u: Vec<f64>,
-    /// Time and state of `forces`.
-    seen: Option<(f64, Vec<f64>)>,
     forces: ContactForces,
+    /// Time and state of what was seen last.
+    place: Option<(f64, Vec<f64>)>,
+    seen_forces: Option<Vec<ContactForce>>,
+    seen_conditions: Option<Conditions>,
 }
 
 impl Gauge<'_> {
@@ -159,11 +159,8 @@ impl Gauge<'_> {
                 let friction = given.or(force.friction).unwrap_or(f64::INFINITY);
                 (force.demand(), force.grip(friction))
             }
-            Limit::Condition { system } => {
-                self.inputs.fill(t, x, &mut self.u);
-                let (u, p) = (&self.u, self.p);
-                let conditions = Conditions::of(self.model, At { t, x, u, p });
-                let value = conditions.iter().nth(system).unwrap_or(f64::NAN);
+            Limit::Condition { of } => {
+                let value = self.conditions_at(t, x).iter().nth(of).unwrap_or(f64::NAN);
                 // Bounded, so that a root is found beside a pole.
                 let left = self.validity.worst_condition / value.max(1.0);
                 (value, left.ln().max(-1e3))
@@ -171,15 +168,29 @@ impl Gauge<'_> {
         }
     }
 
-    fn forces_at(&mut self, t: f64, x: &[f64]) -> &[crate::contact::ContactForce] {
+    fn forces_at(&mut self, t: f64, x: &[f64]) -> &[ContactForce] {
+        self.look(t, x);
+        let (model, u, p) = (self.model, &self.u, self.p);
+        let forces = &mut self.forces;
+        self.seen_forces
+            .get_or_insert_with(|| forces.at(model, At { t, x, u, p }).to_vec())
+    }
+
+    fn conditions_at(&mut self, t: f64, x: &[f64]) -> &Conditions {
+        self.look(t, x);
+        let (model, u, p) = (self.model, &self.u, self.p);
+        self.seen_conditions
+            .get_or_insert_with(|| Conditions::of(model, At { t, x, u, p }))
+    }
+
+    /// Forgets what was seen elsewhere.
+    fn look(&mut self, t: f64, x: &[f64]) {
         let is_seen = |(time, state): &(f64, Vec<f64>)| time.to_bits() == t.to_bits() && state == x;
-        if !self.seen.as_ref().is_some_and(is_seen) {
+        if !self.place.as_ref().is_some_and(is_seen) {
             self.inputs.fill(t, x, &mut self.u);
-            let (u, p) = (&self.u, self.p);
-            self.forces.at(self.model, At { t, x, u, p });
-            self.seen = Some((t, x.to_vec()));
+            (self.seen_forces, self.seen_conditions) = (None, None);
+            self.place = Some((t, x.to_vec()));
         }
-        self.forces.last()
     }
 }
 
@@ -204,8 +215,10 @@ impl<'a> Limits<'a> {
             p,
             validity,
             u: vec![0.0; info.input_len()],
-            seen: None,
             forces: ContactForces::new(),
+            place: None,
+            seen_forces: None,
+            seen_conditions: None,
         };
         let mut watched = Vec::new();
         // To stop at a range is an error of the integration.
@@ -225,8 +238,8 @@ impl<'a> Limits<'a> {
         }
         if validity.conditions != Response::Ignore {
             let stop = validity.conditions == Response::Stop;
-            let systems = 0..=model.system_sizes().len();
-            watched.extend(systems.map(|system| (Limit::Condition { system }, stop)));
+            let all = 0..Conditions::names(model).count();
+            watched.extend(all.map(|of| (Limit::Condition { of }, stop)));
         }
         Self {
             gauge: Rc::new(RefCell::new(gauge)),

@@ -365,7 +365,7 @@ fn velocities_lose_digits_where_a_wheel_lies_flat() {
     let [model, _] = engines(&shipped::text("rolling_wheel"));
     let p = model.info().default_parameters();
     let radius = 0.3_f64;
-    for theta in [0.0, 1.0, 1.5, 1.570_79_f64] {
+    for theta in [0.0, 1.0, 1.5, 1.57_f64] {
         let mut x = model.info().initial_state();
         x[model.info().state_index("theta").unwrap()] = theta;
         let at = At {

@@ -56,7 +56,9 @@ def generated(build, python, repetitions):
         print(f"  gcc {source.name}", flush=True)
         call("gcc", *FLAGS, "-c", source, "-o", source.with_suffix(".o"))
         objects.append(source.with_suffix(".o"))
-    rust = dict(os.environ, CARGO_TARGET_DIR=str(build / "target"), RUSTFLAGS="-C target-cpu=native")
+    rust = dict(os.environ, CARGO_TARGET_DIR=str(build / "target"), RUSTFLAGS="-C target-cpu=native",
+                PEERS_RUN=datetime.datetime.now().isoformat())
+    print("  cargo", flush=True)
     call("cargo", "build", "--release", "--quiet", cwd=HERE / "appell", env=rust)
     written = max((build / "target/release/build").glob("peers-appell-*/out/told.tsv"), key=os.path.getmtime)
     told["appell"] = {}

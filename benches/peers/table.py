@@ -11,15 +11,22 @@ TEXT = """# Performance beside SymPy and CasADi
 
 <!-- Written by benches/peers/run.py. -->
 
-One run of `{command}` on {date}, commit {commit}: {processor}, {cores} cores, load up to {load:.1f};
-{gcc}, {rustc}, Python {python}, SymPy {sympy}, CasADi {casadi}. C with `-O3 -march=native`, Rust with
-`-C target-cpu=native`, everything in one program.
+One run of
+
+```sh
+{command}
+```
+
+on {date}, commit {commit}. {processor}, {cores} cores, load up to {load:.1f}; {gcc}; {rustc}; Python {python},
+SymPy {sympy}, CasADi {casadi}. C with `-O3 -march=native`, Rust with `-C target-cpu=native`, everything in
+one program.
 
 - **time** is the median time of a call, parameters at run time, over 256 states in turn; the median of
   {layouts} code layouts: shuffled order of linking, random padding between the functions.
 - **appell / this** is what to compare. Each round calls all functions in turn, so that both of a pair see
   the same machine; the ratio is formed in every round. Median of the layouts, and the range of the
-  layouts' medians. Below 1, appell is faster. On a busy machine times grow, ratios stay.
+  layouts' medians. Below 1, appell is faster. On a busy machine times grow; ratios stay, but those of the
+  large functions spread.
 - **operations** are counted after common sub-expressions are shared. SymPy: `count_ops`, integer powers
   multiplied out, a function counts one. CasADi: instructions without loads and stores. appell: additions,
   multiplications, divisions and signs; sine-cosine pairs, functions and linear systems are told apart, the

@@ -6,6 +6,7 @@ use super::inertial::{Inertial, Lowered};
 use super::loads::{Which, efforts, generalized_force, potential};
 use super::room;
 use crate::mechanics::algebra::Algebra;
+use crate::mechanics::expressions::DivisionByZero;
 use crate::mechanics::finding::Outcome;
 use crate::mechanics::rank::{LinearRow, Standing, standings};
 use crate::symbolic::{Expr, Graph, Rational, Substitution};
@@ -59,20 +60,13 @@ pub(super) fn lagrange(
         }
         right.push(constraints[row].right);
     }
-    let mut allowed = Substitution::of_parts(
-        &algebra.graph,
-        &inertial
-            .symbols
-            .rates
-            .iter()
-            .copied()
-            .zip(rates.iter().copied())
-            .collect::<Vec<_>>(),
-    );
+    let symbols = inertial.symbols.rates.iter().copied();
+    let in_terms_of_speeds: Vec<(Expr, Expr)> = symbols.zip(rates.iter().copied()).collect();
+    let mut allowed = Substitution::of_parts(&algebra.graph, &in_terms_of_speeds);
     for entry in matrix.iter_mut().chain(&mut right) {
         let in_motion = |algebra: &mut Algebra| {
             let entry = allowed.apply(&mut algebra.graph, *entry);
-            entry.ok_or(crate::mechanics::expressions::DivisionByZero)
+            entry.ok_or(DivisionByZero)
         };
         *entry = room(algebra, in_motion)?;
     }

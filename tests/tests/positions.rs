@@ -7,6 +7,8 @@ use appell_runtime::Simulation;
 use appell_runtime::model::Model;
 use appell_runtime::simulate::SimulationError;
 use appell_runtime::trajectory::Trajectory;
+use appell_tests::formulations::assert_one_answer;
+use appell_tests::shipped;
 
 /// Two integrations at tolerances of 1e-12 over seconds.
 const MOTION: f64 = 1e-9;
@@ -99,6 +101,12 @@ fn a_rod_with_a_moving_end_swings_like_a_pendulum() {
         let off = (x.hypot(z - pivot) - 0.5).abs();
         assert!(off < 1e-14, "the rod is off by {off:e} m");
     }
+}
+
+#[test]
+fn the_rod_moves_as_kane_and_lagrange_say() {
+    assert_one_answer(&shipped::read("rod", ROD));
+    assert_one_answer(&shipped::read("angle", ANGLE));
 }
 
 #[test]

@@ -23,9 +23,9 @@ pub fn names() -> Vec<String> {
     specs.map(stem).collect()
 }
 
-/// The mechanisms that are shipped as specs alone.
-pub fn gallery() -> Vec<Mechanism> {
-    let specs = specs("generated/gallery").into_iter();
+/// The mechanisms whose specs stand in a folder of the workspace.
+pub fn mechanisms_in(folder: &str) -> Vec<Mechanism> {
+    let specs = specs(folder).into_iter();
     let mechanism = |path: PathBuf| {
         let text = std::fs::read_to_string(&path).unwrap();
         read(&path.to_string_lossy(), &text)

@@ -25,10 +25,37 @@ fn appell_kane_and_lagrange_are_proved_identical_for_every_shipped_mechanism() {
 
 #[test]
 fn appell_kane_and_lagrange_are_proved_identical_for_mechanisms_that_are_not_compiled_in() {
-    for mechanism in shipped::gallery() {
+    for mechanism in shipped::mechanisms_in("generated/gallery") {
         let verdict = assert_one_answer(&mechanism);
         assert!(is_proven(&verdict), "{}: {verdict:#?}", mechanism.name);
     }
+}
+
+#[test]
+fn reactions_that_cannot_be_told_are_not_judged() {
+    for mechanism in shipped::mechanisms_in("codegen/tests/audit/right") {
+        assert_one_answer(&mechanism);
+    }
+    // A pendulum beside the wheel: the ground holds it as well.
+    let text = shipped::text("rolling_wheel")
+        .replace("[coordinates]", "[coordinates]\nswing = { unit = 'rad' }")
+        .replace(
+            "[frames]",
+            "[frames]\narm = { parent = 'ground', about_axis = 'x', by = 'swing' }",
+        )
+        .replace(
+            "[points]",
+            "[points]\nB = { from = 'O', in = 'arm', at = [0, 0, '-R'] }",
+        )
+        .replace(
+            "[constraints]",
+            "[bodies.bob]\ncentre = 'B'\nmass = 'm'\n[constraints]",
+        )
+        .replace(
+            "[pseudo_velocities]",
+            "[pseudo_velocities]\nrate = 'dot(swing)'",
+        );
+    assert_one_answer(&shipped::read("beside.toml", &text));
 }
 
 /// What disagrees after a change to the derivation of the unicycle.

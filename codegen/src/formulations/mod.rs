@@ -20,7 +20,7 @@ use appell_spec::mechanism::{Constraint, ConstraintKind, Mechanism};
 use crate::mechanics::algebra::Algebra;
 use crate::mechanics::expressions::DivisionByZero;
 use crate::mechanics::finding::{Item, Outcome};
-use crate::mechanics::kinematics::division_by_zero;
+use crate::mechanics::kinematics::{division_by_zero, root_of};
 use crate::mechanics::{Derivation, reactions, seed};
 use crate::symbolic::vector::Vec3;
 use crate::symbolic::{Expr, Graph, IdentityTest};
@@ -284,9 +284,7 @@ fn reaction_claims(
         quantity: "constraint forces",
         pairs,
     }];
-    // Newton's law knows the reactions that are forces at points alone.
-    let rolls = |c: &Constraint| matches!(c.kind, ConstraintKind::Rolling { .. });
-    if !rows.is_empty() && mechanism.constraints.iter().all(rolls) {
+    if !rows.is_empty() && rests_on_contacts(derivation, mechanism) {
         let mut sum = [Graph::ZERO; 3];
         for &force in &forces {
             sum = algebra.graph.add3(sum, force);
@@ -298,6 +296,20 @@ fn reaction_claims(
         });
     }
     Ok(claims)
+}
+
+/// Whether nothing but rolling contacts, each with all its reaction, holds the mechanism: bodies that
+/// hang from one point, and no second point on which geometry could pull from outside.
+fn rests_on_contacts(derivation: &Derivation, mechanism: &Mechanism) -> bool {
+    let rolls = |c: &Constraint| matches!(c.kind, ConstraintKind::Rolling { .. });
+    let mut roots = mechanism
+        .bodies
+        .iter()
+        .map(|body| root_of(mechanism, body.centre));
+    let first = roots.next();
+    mechanism.constraints.iter().all(rolls)
+        && derivation.constraints.rows.iter().all(|row| !row.redundant)
+        && roots.all(|root| Some(root) == first)
 }
 
 /// q̈ = d/dt q̇(ω, q, t)

@@ -5,6 +5,7 @@
 //! - [`model`]: the trait that emitted models and models made at run time implement;
 //! - [`signal`] and [`inputs`]: what drives a model;
 //! - [`integrate`]: initial value problems, events, typed failures;
+//! - [`linearise`]: A and B in the independent states;
 //! - [`simulate`] and [`trajectory`]: motions of a model and their files;
 //! - [`contact`] and [`condition`]: where a model stops being valid;
 //! - [`figure`]: plots as SVG.
@@ -31,6 +32,8 @@ pub mod figure;
 pub mod inputs;
 #[cfg(feature = "std")]
 pub mod integrate;
+#[cfg(feature = "std")]
+pub mod linearise;
 #[cfg(feature = "std")]
 pub mod model;
 #[cfg(feature = "std")]

@@ -8,9 +8,12 @@ use appell_codegen::program::FunctionKind;
 use appell_models::Shipped;
 use criterion::{Criterion, criterion_group, criterion_main};
 
+/// The mechanism of the gallery with the longest equations.
+const BICYCLE: &str = include_str!("../../generated/gallery/bicycle.toml");
+
 /// Parses, checks, derives, schedules and prints.
-fn generate(shipped: &Shipped, kinds: &[FunctionKind]) -> usize {
-    let checked = appell_spec::load(shipped.file, shipped.spec).expect("shipped specs are right");
+fn generate(file: &str, spec: &str, kinds: &[FunctionKind]) -> usize {
+    let checked = appell_spec::load(file, spec).expect("shipped specs are right");
     let Ok(derivation) = derive(&checked.mechanism) else {
         panic!("shipped specs can be derived")
     };
@@ -36,10 +39,14 @@ fn generation(criterion: &mut Criterion) {
             ),
         ] {
             group.bench_function(format!("{name}, {what}"), |bencher| {
-                bencher.iter(|| generate(shipped, kinds));
+                bencher.iter(|| generate(shipped.file, shipped.spec, kinds));
             });
         }
     }
+    group.sample_size(10);
+    group.bench_function("bicycle, every function", |bencher| {
+        bencher.iter(|| generate("bicycle.toml", BICYCLE, &FunctionKind::ALL));
+    });
     group.finish();
 }
 

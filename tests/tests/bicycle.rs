@@ -2,9 +2,14 @@
 #![allow(clippy::unwrap_used, reason = "tests may panic")]
 
 use appell_codegen::interpreted::InterpretedModel;
-use appell_codegen::program::FunctionKind;
+use appell_codegen::program::{FunctionKind, Program};
 use appell_runtime::Simulation;
+use appell_runtime::linearise::Linearisation;
 use appell_runtime::model::{At, Model};
+use appell_tests::dual;
+use appell_tests::engine::{Evaluation, assert_close};
+use appell_tests::point::Point;
+use appell_tests::random::Random;
 use appell_tests::reference::{document, number, numbers};
 use nalgebra::{Matrix2, Matrix4};
 
@@ -16,9 +21,16 @@ const NONLINEAR: f64 = 1e-12;
 /// Rounding of eigenvalues near a double root of the real part, relative to the speed.
 const CRITICAL: f64 = 1e-12;
 
-fn bicycle() -> InterpretedModel {
+/// Rounding of derivatives of a pivoted solution, relative to the largest entry.
+const JACOBIANS: f64 = 1e-11;
+
+fn program() -> Program {
     let program = appell_codegen::compile("bicycle.toml", SPEC, &FunctionKind::ALL);
-    InterpretedModel::new(program.unwrap_or_else(|report| panic!("{}", report.plain())))
+    program.unwrap_or_else(|report| panic!("{}", report.plain()))
+}
+
+fn bicycle() -> InterpretedModel {
+    InterpretedModel::new(program())
 }
 
 /// Upright riding straight at a speed in m/s.
@@ -35,29 +47,26 @@ fn linearised(model: &dyn Model, v: f64) -> (Matrix4<f64>, Matrix2<f64>) {
     let info = model.info();
     let x = upright(model, v);
     let p = info.default_parameters();
-    let n = x.len();
-    let (mut rates, mut a, mut b) = (vec![0.0; n], vec![0.0; n * n], vec![0.0; 2 * n]);
     let at = At {
         t: 0.0,
         x: &x,
         u: &[0.0, 0.0],
         p: &p,
     };
-    model.jacobians(at, &mut rates, &mut a, &mut b);
-    assert!(a.iter().chain(&b).chain(&rates).all(|v| v.is_finite()));
-    let places = ["omega_phi", "omega_delta", "phi", "delta"].map(|s| info.state_index(s).unwrap());
-    let pitch = info.state_index("theta").unwrap();
+    let linear = Linearisation::about(model, at).unwrap();
+    assert!(linear.a.iter().chain(&linear.b).all(|v| v.is_finite()));
+    let place = |name| {
+        let state = info.state_index(name).unwrap();
+        linear.states.iter().position(|&s| s == state).unwrap()
+    };
+    let places = ["omega_phi", "omega_delta", "phi", "delta"].map(place);
+    let n = linear.states.len();
     // By symmetry the pitch does not follow lean and steer to first order.
-    let mut residual = [0.0];
-    let mut slopes = vec![0.0; n - info.speeds];
-    model.position_constraints(at, &mut residual, &mut slopes);
-    for place in [places[2], places[3]] {
-        assert!(slopes[place - info.speeds].abs() < 1e-15);
-    }
-    assert!(slopes[pitch - info.speeds].abs() > 0.1);
+    assert_eq!(linear.dependence.len(), n);
+    assert!(linear.dependence.iter().all(|slope| slope.abs() < 1e-15));
     (
-        Matrix4::from_fn(|i, j| a[places[i] * n + places[j]]),
-        Matrix2::from_fn(|i, j| b[places[i] * 2 + j]),
+        Matrix4::from_fn(|i, j| linear.a[places[i] * n + places[j]]),
+        Matrix2::from_fn(|i, j| linear.b[places[i] * 2 + j]),
     )
 }
 
@@ -151,6 +160,22 @@ fn the_eigenvalues_and_critical_speeds_are_the_published_ones() {
         let wanted = number(&reference["critical_speeds"][name]);
         let error = (found / wanted - 1.0).abs();
         assert!(error < CRITICAL, "{name}: {found} against {wanted}");
+    }
+}
+
+#[test]
+fn the_jacobians_are_those_of_dual_numbers_in_any_motion() {
+    let program = program();
+    let model = InterpretedModel::new(program.clone());
+    let mut random = Random::of("bicycle");
+    for number in 0..12 {
+        let point = Point::random(model.info(), &mut random);
+        let e = Evaluation::of(&model, point.at());
+        let derived = [("A", &e.a), ("B", &e.b), ("P", &e.p)];
+        for ((what, derived), dual) in derived.into_iter().zip(dual::jacobians(&program, &point)) {
+            let what = format!("{what} at point {number}");
+            assert_close(&what, derived, &dual, JACOBIANS, 1e-3);
+        }
     }
 }
 

@@ -5,8 +5,9 @@
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
-use appell_codegen::program::FunctionKind;
+use appell_codegen::program::{Function, FunctionKind};
 use appell_codegen::schedule::{OperationCount, schedule};
+use appell_spec::Mechanism;
 use appell_tests::shipped;
 
 /// One of the counts.
@@ -36,8 +37,8 @@ fn name(kind: FunctionKind) -> String {
 }
 
 fn counts() -> Counts {
-    let count = |mechanism: &String| {
-        let program = shipped::program(&shipped::mechanism(mechanism));
+    let count = |mechanism: &Mechanism| {
+        let program = shipped::program(mechanism);
         let functions = program.functions.iter();
         functions
             .map(|function| {
@@ -46,10 +47,18 @@ fn counts() -> Counts {
             })
             .collect()
     };
-    shipped::names()
-        .iter()
-        .map(|mechanism| (mechanism.clone(), count(mechanism)))
+    let shipped = shipped::names().into_iter();
+    let mechanisms = shipped.map(|name| (shipped::mechanism(&name), name));
+    let mechanisms = mechanisms.chain([(bicycle(), "bicycle".to_owned())]);
+    mechanisms
+        .map(|(mechanism, name)| (name, count(&mechanism)))
         .collect()
+}
+
+/// The mechanism of the gallery whose velocities follow from a system.
+fn bicycle() -> Mechanism {
+    let file = shipped::workspace().join("generated/gallery/bicycle.toml");
+    shipped::read("bicycle", &std::fs::read_to_string(file).unwrap())
 }
 
 fn write(counts: &Counts) -> String {
@@ -126,4 +135,23 @@ fn the_rates_of_the_unicycle_stay_within_115_operations() {
         (0, 0, 0),
         "{count}"
     );
+}
+
+#[test]
+fn the_bicycle_takes_fewer_operations_than_the_best_published_equations() {
+    use FunctionKind::{Bias, Jacobians, MassMatrix, ParameterJacobian};
+    let program = shipped::program(&bicycle());
+    let results = |kind: &FunctionKind| {
+        let function = program.functions.iter().find(|f| f.kind == *kind).unwrap();
+        function.results.clone()
+    };
+    for (kinds, most) in [
+        (vec![MassMatrix, Bias], 1900),
+        (vec![Jacobians], 6000),
+        (vec![Jacobians, ParameterJacobian], 10_000),
+    ] {
+        let together = Function::new(kinds[0], kinds.iter().flat_map(results).collect());
+        let count = OperationCount::of(&schedule(&program, &together));
+        assert!(count.total() <= most, "{kinds:?}: {count}");
+    }
 }

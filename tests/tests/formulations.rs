@@ -7,8 +7,9 @@ use appell_codegen::mechanics::Derivation;
 use appell_tests::formulations::{assert_one_answer, verdict};
 use appell_tests::shipped;
 
-/// Bound on the probability that anything here was taken for identical though it is not.
-const ERROR: f64 = 1e-10;
+/// Bound on the probability that anything here was taken for identical though it is not. It grows with
+/// the degree of the equations; that of the bicycle is the highest.
+const ERROR: f64 = 1e-8;
 
 fn is_proven(verdict: &Verdict) -> bool {
     let mut all = verdict.comparisons.iter();

@@ -4,7 +4,8 @@
 use appell_codegen::interpreted::InterpretedModel;
 use appell_codegen::program::FunctionKind;
 use appell_runtime::Simulation;
-use appell_runtime::model::Model;
+use appell_runtime::linearise::{Linearisation, Undetermined};
+use appell_runtime::model::{At, Model};
 use appell_runtime::simulate::SimulationError;
 use appell_runtime::trajectory::Trajectory;
 use appell_tests::formulations::assert_one_answer;
@@ -77,6 +78,44 @@ fn run(model: &dyn Model, x: &[f64]) -> Result<Trajectory, SimulationError> {
     simulation.options.rtol = 1e-12;
     simulation.options.atol = 1e-12;
     simulation.run()
+}
+
+/// About hanging still: x = 0, z = -l, with a pivot that does not move.
+fn hanging(model: &dyn Model) -> Result<Linearisation, Undetermined> {
+    let info = model.info();
+    let mut p = info.default_parameters();
+    p[info.parameter_index("a").unwrap()] = 0.0;
+    let mut x = vec![0.0; info.states.len()];
+    x[info.state_index("z").unwrap()] = -0.5;
+    let u = Vec::new();
+    let at = At {
+        t: 0.0,
+        x: &x,
+        u: &u,
+        p: &p,
+    };
+    Linearisation::about(model, at)
+}
+
+#[test]
+fn a_hanging_pendulum_is_linearised_in_the_coordinate_that_is_free() {
+    let text = ROD.replace("- l^2\"", "- l^2\", dependent = \"z\"");
+    let model = model(&text);
+    let linear = hanging(&model).unwrap();
+    let [v, x] = ["v", "x"].map(|name| model.info().state_index(name).unwrap());
+    assert_eq!(linear.states, [v, x]);
+    let wanted = [0.0, -9.81 / 0.5, 1.0, 0.0];
+    for (found, wanted) in linear.a.iter().zip(wanted) {
+        assert!((found - wanted).abs() < 1e-12, "{linear:?}");
+    }
+    assert_eq!(linear.a_of(x, v), Some(linear.a[2]));
+    assert_eq!(linear.dependence, [0.0, 0.0]);
+}
+
+#[test]
+fn a_coordinate_that_the_constraint_does_not_determine_is_no_dependent_one() {
+    let text = ROD.replace("- l^2\"", "- l^2\", dependent = \"x\"");
+    assert_eq!(hanging(&model(&text)), Err(Undetermined));
 }
 
 #[test]

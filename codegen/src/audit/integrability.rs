@@ -15,7 +15,7 @@ use crate::symbolic::{Expr, Graph, Substitution};
 /// Brackets of so many fields are formed at most.
 const MOST_FIELDS: usize = 24;
 /// Longer velocities are not differentiated: their brackets take longer than the equations.
-const MOST_OPERATIONS: usize = 400;
+const MOST_OPERATIONS: usize = 250;
 /// The search ends where it has made so many expressions.
 const MOST_EXPRESSIONS: usize = 20_000;
 
@@ -45,7 +45,7 @@ pub(super) fn findings(bench: &mut Bench) -> Vec<Finding> {
     sums.filter_map(|(i, standing)| match standing {
         Standing::Redundant(sum) if !bench.derivation.constraints.rows[rows[i]].of_position => {
             let sum = sum.into_iter().map(|(other, share)| (rows[other], share));
-            Some(integrable(bench, rows[i], &sum.collect()))
+            integrable(bench, rows[i], &sum.collect())
         }
         _ => None,
     })
@@ -176,8 +176,8 @@ fn velocities(bench: &mut Bench, rows: &[usize], bracket: &Field) -> Vec<Expr> {
         .collect()
 }
 
-/// The note for the integrable sum `row - Σ share · other`.
-fn integrable(bench: &mut Bench, row: usize, sum: &Combination) -> Finding {
+/// The note for the integrable sum `row - Σ share · other`; none where a position constraint says it.
+fn integrable(bench: &mut Bench, row: usize, sum: &Combination) -> Option<Finding> {
     let rows = &bench.derivation.constraints.rows;
     let algebra = &mut bench.algebra;
     let mut total = |part: &dyn Fn(usize) -> Expr| {
@@ -194,6 +194,9 @@ fn integrable(bench: &mut Bench, row: usize, sum: &Combination) -> Finding {
         .map(|q| total(&|row| rows[row].coefficients[q]))
         .collect();
     let rest = total(&|row| rows[row].rest);
+    if is_stated(bench, &form, rest) {
+        return None;
+    }
     let tied: Vec<&str> = (0..count)
         .filter(|&q| form[q] != Graph::ZERO)
         .map(|q| bench.mechanism.coordinates[q].label.name.as_str())
@@ -229,12 +232,30 @@ fn integrable(bench: &mut Bench, row: usize, sum: &Combination) -> Finding {
             listed(tied)
         )
     };
-    Finding {
+    Some(Finding {
         code: Code::IntegrableConstraint,
         message: format!("{subject} {what}"),
         item: Item::Constraint(rows[row].constraint),
         help,
-    }
+    })
+}
+
+/// Whether a form follows from the position constraints, also from those whose rows contacts repeat.
+fn is_stated(bench: &mut Bench, form: &[Expr], rest: Expr) -> bool {
+    let rows = bench.derivation.constraints.rows.iter();
+    let mut rows: Vec<LinearRow> = rows
+        .filter(|row| row.of_position)
+        .map(|row| LinearRow {
+            coefficients: row.coefficients.clone(),
+            rest: row.rest,
+        })
+        .collect();
+    rows.push(LinearRow {
+        coefficients: form.to_vec(),
+        rest,
+    });
+    let standing = standings(&mut bench.algebra, &rows).pop();
+    matches!(standing, Some(Standing::Redundant(_)))
 }
 
 /// What the form is the differential of, where its coefficients are constant.

@@ -15,6 +15,7 @@ use super::glossary;
 use super::initial::InitialState;
 use super::kinematics::division_by_zero;
 use super::linear::ImplicitMotion;
+use super::linear_bound::BoundMotion;
 use super::positions::Positions;
 use super::reactions;
 use super::switches::switches;
@@ -298,7 +299,11 @@ impl Derivation {
         array
     }
 
+    /// The bodies for the reactions. Dependent speeds are not differentiated once more for them.
     fn bodies_in_ground(&mut self, mechanism: &Mechanism) -> Vec<BodyMotion> {
+        if !self.dependent.values.is_empty() {
+            return self.bodies.clone();
+        }
         motions_in_ground(
             &mut self.algebra,
             mechanism,
@@ -460,23 +465,36 @@ impl Derivation {
 
     /// Derivatives of ẋ by each list of variables, row by row.
     fn derivatives<const N: usize>(&mut self, variables: [&[Expr]; N]) -> Outcome<[Vec<Expr>; N]> {
-        let implicit = ImplicitMotion {
-            gibbs: &self.gibbs,
-            forces: &self.forces,
-            motion: &self.motion,
-            coordinate_rates: &self.coordinate_rates,
-        };
-        let residual = implicit.residual(&mut self.algebra, &self.symbols);
-        let rows = residual.len() + self.coordinate_rates.len();
-        let mut derivatives = [const { Vec::new() }; N];
-        for (derivatives, variables) in derivatives.iter_mut().zip(variables) {
-            let (algebra, symbols) = (&mut self.algebra, &self.symbols);
-            let columns = implicit.jacobian(algebra, symbols, &residual, variables)?;
-            for row in 0..rows {
-                derivatives.extend(columns.iter().map(|column| column[row]));
+        let (algebra, symbols) = (&mut self.algebra, &self.symbols);
+        let rows = self.motion.accelerations.len() + self.coordinate_rates.len();
+        let mut columns_of: Vec<Vec<Vec<Expr>>> = Vec::with_capacity(N);
+        if self.dependent.values.is_empty() {
+            let implicit = ImplicitMotion {
+                gibbs: &self.gibbs,
+                forces: &self.forces,
+                motion: &self.motion,
+                coordinate_rates: &self.coordinate_rates,
+            };
+            let residual = implicit.residual(algebra, symbols);
+            for variables in variables {
+                columns_of.push(implicit.jacobian(algebra, symbols, &residual, variables)?);
+            }
+        } else {
+            let (unbound, dependent) = (&self.unbound, &self.dependent);
+            let mut bound = BoundMotion::new(algebra, symbols, unbound, dependent, &self.motion)?;
+            for variables in variables {
+                let columns = variables.iter().map(|&z| bound.column(algebra, z));
+                columns_of.push(columns.collect::<Outcome<_>>()?);
             }
         }
-        Ok(derivatives)
+        let by_row = |columns: Vec<Vec<Expr>>| {
+            let row = |row| columns.iter().map(move |column: &Vec<Expr>| column[row]);
+            (0..rows).flat_map(row).collect()
+        };
+        let mut columns_of = columns_of.into_iter().map(by_row);
+        Ok(std::array::from_fn(|_| {
+            columns_of.next().unwrap_or_default()
+        }))
     }
 }
 

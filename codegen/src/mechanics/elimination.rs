@@ -34,8 +34,38 @@ pub struct Violation {
     pub carried_rates: Vec<Expr>,
 }
 
+/// What formulas solve, in terms of what they leave open.
+#[derive(Debug, Clone)]
+pub struct Elimination {
+    /// q̇ in terms of the pseudo-velocities and of the unknowns of the open system.
+    pub rates: Vec<Expr>,
+    /// What is left open, in the motions that the constraints allow.
+    pub open: OpenSystem,
+    /// q̇ and the right-hand side of the open system when constraint rows are violated.
+    violating: (Vec<Expr>, Vec<Expr>),
+    violation_rates: Vec<Expr>,
+    carried_rates: Vec<Expr>,
+}
+
+/// What no safe pivot solves: `matrix · unknowns = right`.
+#[derive(Debug, Clone, Default)]
+pub struct OpenSystem {
+    /// Coordinates whose rates it determines.
+    pub coordinates: Vec<usize>,
+    /// Symbols of these rates.
+    pub unknowns: Vec<Expr>,
+    /// The constraint row behind each equation; none behind the definition of a pseudo-velocity.
+    pub rows: Vec<Option<usize>>,
+    /// Its matrix, row by row: a function of coordinates and time.
+    pub matrix: Vec<Expr>,
+    /// Its right-hand side, linear in the pseudo-velocities.
+    pub right: Vec<Expr>,
+}
+
 /// An equation `Σ coefficient · q̇ = right`.
 struct Equation {
+    /// The constraint row that it was.
+    row: Option<usize>,
     coefficients: Vec<Expr>,
     right: Expr,
 }
@@ -48,7 +78,7 @@ pub fn eliminate(
     symbols: &Symbols,
     constraints: &Constraints,
     intervals: &mut Intervals,
-) -> Outcome<GeneralizedVelocities> {
+) -> Outcome<Elimination> {
     let violation_rates: Vec<Expr> = constraints
         .rows
         .iter()
@@ -67,18 +97,19 @@ pub fn eliminate(
     for (index, speed) in mechanism.pseudo_velocities.iter().enumerate() {
         equations.push(definition(algebra, symbols, index, &speed.definition)?);
     }
-    for (row, &violation) in constraints.rows.iter().zip(&violation_rates) {
+    for (index, row) in constraints.rows.iter().enumerate() {
         if !row.is_active() {
             continue;
         }
         // Σ C q̇ = violation - rest - what the imagined motions contribute
-        let mut parts = vec![violation, algebra.graph.neg(row.rest)];
+        let mut parts = vec![violation_rates[index], algebra.graph.neg(row.rest)];
         for (&coefficient, &rate) in row.carried.iter().zip(&carried_rates) {
             let contribution = algebra.graph.mul(coefficient, rate);
             parts.push(algebra.graph.neg(contribution));
         }
         let right = algebra.graph.sum(&parts);
         equations.push(Equation {
+            row: Some(index),
             coefficients: row.coefficients.clone(),
             right,
         });
@@ -89,30 +120,121 @@ pub fn eliminate(
         .iter()
         .map(|e| LinearRow::homogeneous(e.coefficients.clone()));
     let given: Vec<LinearRow> = given.collect();
-    let Some((violating, solved_numerically)) = solve(algebra, equations, intervals) else {
+    let solved = solve(algebra, equations, &symbols.rates, intervals);
+    let Some((violating, violated)) = solved else {
         let (speeds, rows) = given.split_at(mechanism.pseudo_velocities.len());
         let names = constraints.rows.iter().filter(|row| row.is_active());
         let names: Vec<&str> = names.map(|row| row.name.as_str()).collect();
         return Err(dependent_speeds(algebra, mechanism, &names, rows, speeds));
     };
     let mut no_violation = Substitution::by_zero(&algebra.graph, &violation_rates);
-    let mut rates = Vec::with_capacity(violating.len());
-    for &rate in &violating {
-        let allowed = no_violation
-            .apply(&mut algebra.graph, rate)
-            .ok_or_else(|| vec![division_by_zero(Item::Mechanism)])?;
-        rates.push(algebra.shortest(allowed));
-    }
-    let violating = Violation {
-        rates: violation_rates,
-        coordinate_rates: violating,
-        carried_rates,
+    let mut allowed = |exprs: &[Expr]| -> Outcome<Vec<Expr>> {
+        let allowed = no_violation.apply_all(&mut algebra.graph, exprs);
+        let allowed = allowed.ok_or_else(|| vec![division_by_zero(Item::Mechanism)])?;
+        Ok(allowed.into_iter().map(|e| algebra.shortest(e)).collect())
     };
-    Ok(GeneralizedVelocities {
-        rates,
-        violating,
-        solved_numerically,
+    Ok(Elimination {
+        rates: allowed(&violating)?,
+        open: OpenSystem {
+            right: allowed(&violated.right)?,
+            ..violated.clone()
+        },
+        violating: (violating, violated.right),
+        violation_rates,
+        carried_rates,
     })
+}
+
+impl Elimination {
+    /// Turns equations of the open system about: each of `places` becomes the sum of all of them
+    /// with the coefficients of its row in `turn`, which is `matrix` and `right` in the motions that
+    /// the constraints allow.
+    pub fn turn(&mut self, algebra: &mut Algebra, places: &[usize], turned: &[TurnedRow]) {
+        let before: Vec<Expr> = places
+            .iter()
+            .map(|&place| self.violating.1[place])
+            .collect();
+        for (&place, row) in places.iter().zip(turned) {
+            // What a violation adds is linear in it.
+            let mut parts = vec![row.right];
+            for (&factor, &right) in row.factors.iter().zip(&before) {
+                for &violation in &self.violation_rates {
+                    let slope = algebra.derivative(right, violation);
+                    parts.push(algebra.graph.product(&[factor, slope, violation]));
+                }
+            }
+            self.violating.1[place] = algebra.graph.sum(&parts);
+            self.open.right[place] = row.right;
+            let start = place * self.open.unknowns.len();
+            self.open.matrix.splice(
+                start..start + row.coefficients.len(),
+                row.coefficients.iter().copied(),
+            );
+        }
+    }
+
+    /// q̇ with the solution of the open system.
+    pub fn closed(
+        self,
+        algebra: &mut Algebra,
+        mechanism: &Mechanism,
+    ) -> Outcome<GeneralizedVelocities> {
+        let Self {
+            rates,
+            open,
+            violating,
+            violation_rates,
+            carried_rates,
+        } = self;
+        let mut values = open.solved_for(&mut algebra.graph, &open.right);
+        for (value, &q) in values.iter_mut().zip(&open.coordinates) {
+            let name = format!("{}_dot", mechanism.coordinates[q].label.name);
+            *value = algebra.graph.name(&name, *value);
+        }
+        let rates = open.put_in(algebra, &values, &rates)?;
+        let values = open.solved_for(&mut algebra.graph, &violating.1);
+        let coordinate_rates = open.put_in(algebra, &values, &violating.0)?;
+        Ok(GeneralizedVelocities {
+            rates,
+            violating: Violation {
+                rates: violation_rates,
+                coordinate_rates,
+                carried_rates,
+            },
+            solved_numerically: open.coordinates,
+        })
+    }
+}
+
+/// An equation of the open system that stands for others of it.
+#[derive(Debug, Clone)]
+pub struct TurnedRow {
+    /// Coefficients of the unknowns.
+    pub coefficients: Vec<Expr>,
+    /// Right-hand side in the motions that the constraints allow.
+    pub right: Expr,
+    /// The equation as a sum of those that it stands for.
+    pub factors: Vec<Expr>,
+}
+
+impl OpenSystem {
+    /// Its unknowns for another right-hand side.
+    pub fn solved_for(&self, graph: &mut Graph, right: &[Expr]) -> Vec<Expr> {
+        graph.solve_numerically(self.matrix.clone(), right.to_vec())
+    }
+
+    /// Expressions with values in place of the unknowns.
+    fn put_in(&self, algebra: &mut Algebra, values: &[Expr], exprs: &[Expr]) -> Outcome<Vec<Expr>> {
+        let parts: Vec<(Expr, Expr)> = self
+            .unknowns
+            .iter()
+            .copied()
+            .zip(values.iter().copied())
+            .collect();
+        let mut actual = Substitution::of_parts(&algebra.graph, &parts);
+        let put_in = actual.apply_all(&mut algebra.graph, exprs);
+        put_in.ok_or_else(|| vec![division_by_zero(Item::Mechanism)])
+    }
 }
 
 /// The definition of a pseudo-velocity as an equation for q̇.
@@ -140,6 +262,7 @@ fn definition(
     let right = algebra.graph.sum(&parts);
     let right = algebra.shortest(right);
     Ok(Equation {
+        row: None,
         coefficients,
         right,
     })
@@ -187,13 +310,14 @@ struct Solved {
     right: Expr,
 }
 
-/// The unknowns, and which of them need a pivoted solve. `None` where the equations are dependent
-/// everywhere.
+/// The unknowns, and the system of those that need a pivoted solve; the others are in terms of these.
+/// `None` where the equations are dependent everywhere.
 fn solve(
     algebra: &mut Algebra,
     mut equations: Vec<Equation>,
+    symbols: &[Expr],
     intervals: &mut Intervals,
-) -> Option<(Vec<Expr>, Vec<usize>)> {
+) -> Option<(Vec<Expr>, OpenSystem)> {
     let unknowns = equations.len();
     let mut open: Vec<usize> = (0..unknowns).collect();
     let mut solved: Vec<Solved> = Vec::new();
@@ -201,6 +325,7 @@ fn solve(
         let Equation {
             coefficients,
             right,
+            ..
         } = equations.swap_remove(row);
         let pivot = coefficients[column];
         let right = algebra.graph.div(right, pivot);
@@ -245,15 +370,17 @@ fn solve(
         }
         open.clear();
     }
+    let mut system = OpenSystem::default();
     if !open.is_empty() {
-        let matrix = equations
-            .iter()
-            .flat_map(|e| open.iter().map(|&c| e.coefficients[c]))
-            .collect();
-        let right = equations.iter().map(|e| e.right).collect();
-        let solution = algebra.graph.solve_numerically(matrix, right);
-        for (&column, unknown) in open.iter().zip(solution) {
-            rates[column] = unknown;
+        system.unknowns = open.iter().map(|&column| symbols[column]).collect();
+        for &column in &open {
+            rates[column] = symbols[column];
+        }
+        for equation in &equations {
+            let row = open.iter().map(|&c| equation.coefficients[c]);
+            system.matrix.extend(row);
+            system.right.push(equation.right);
+            system.rows.push(equation.row);
         }
     }
     for Solved {
@@ -270,7 +397,8 @@ fn solve(
         let rate = algebra.graph.sum(&parts);
         rates[column] = algebra.shortest(rate);
     }
-    Some((rates, open))
+    system.coordinates = open;
+    Some((rates, system))
 }
 
 /// Two unknowns whose determinant cannot vanish although every entry can, as in a turn by an angle.

@@ -23,6 +23,8 @@ pub struct FrameVector {
 #[derive(Debug, Clone, Copy)]
 struct Turn {
     axis: usize,
+    /// Rate of the angle.
+    rate: Expr,
     sin: Expr,
     cos: Expr,
 }
@@ -67,12 +69,12 @@ impl Frames {
                 };
                 let elementary = Turn {
                     axis,
+                    rate: time.of(algebra, angle),
                     sin: algebra.graph.sin(angle),
                     cos: algebra.graph.cos(angle),
                 };
                 w = elementary.into_child(&mut algebra.graph, w);
-                let rate = time.of(algebra, angle);
-                w[axis] = algebra.graph.add(w[axis], rate);
+                w[axis] = algebra.graph.add(w[axis], elementary.rate);
                 turns.push(elementary);
             }
             let w = algebra.shortest3(w);
@@ -91,6 +93,31 @@ impl Frames {
             frame,
             v: self.frames[frame].w,
         }
+    }
+
+    /// All angular velocities and rates of turns.
+    pub(super) fn rates(&mut self) -> impl Iterator<Item = &mut Expr> {
+        self.frames.iter_mut().flat_map(|frame| {
+            let turns = frame.turns.iter_mut().map(|turn| &mut turn.rate);
+            frame.w.iter_mut().chain(turns)
+        })
+    }
+
+    /// Angular velocity of a frame in the components of one that it is turned against: that of the
+    /// other and the rates of the turns between.
+    pub fn angular_velocity_in(&self, graph: &mut Graph, frame: FrameId, to: FrameId) -> Vec3 {
+        let path = self.ancestors(frame);
+        let Some(last) = path.iter().position(|&f| f == to) else {
+            return self.express(graph, self.angular_velocity(frame), to);
+        };
+        let mut v = vector::ZERO;
+        for &frame in &path[..last] {
+            for turn in self.frames[frame].turns.iter().rev() {
+                v[turn.axis] = graph.add(v[turn.axis], turn.rate);
+                v = turn.into_parent(graph, v);
+            }
+        }
+        graph.add3(v, self.frames[to].w)
     }
 
     /// The same vector in the components of another frame.

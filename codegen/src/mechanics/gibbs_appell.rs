@@ -61,6 +61,7 @@ pub fn body_motions(
     symbols: &Symbols,
     kinematics: &Kinematics,
     rates: &[Expr],
+    directions: &[Expr],
 ) -> Outcome<Vec<BodyMotion>> {
     let lowering = Lowering { symbols, rates };
     let time = TimeDerivative { symbols, rates };
@@ -72,7 +73,10 @@ pub fn body_motions(
             .lower(&mut algebra.graph, &body.mass)
             .map_err(|_| vec![division_by_zero(item)])?;
         let velocity = kinematics.velocity(body.centre);
-        let centre = translation(algebra, mechanism, kinematics, &time, body.centre, velocity);
+        let point = body.centre;
+        let centre = translation(
+            algebra, mechanism, directions, kinematics, &time, point, velocity,
+        );
         let rotation = match (body.frame, &body.inertia) {
             (Some(frame), Some(inertia)) => {
                 let mut matrix = [[Graph::ZERO; 3]; 3];
@@ -95,7 +99,7 @@ pub fn body_motions(
                     v: algebra.shortest3(v),
                 };
                 Some(rotation(
-                    algebra, mechanism, symbols, kinematics, &time, &body.name, velocity, matrix,
+                    algebra, mechanism, directions, kinematics, &time, &body.name, velocity, matrix,
                 ))
             }
             _ => None,
@@ -118,13 +122,14 @@ pub fn body_motions(
 fn translation(
     algebra: &mut Algebra,
     mechanism: &Mechanism,
+    directions: &[Expr],
     kinematics: &Kinematics,
     time: &TimeDerivative<'_>,
     point: PointId,
     velocity: FrameVector,
 ) -> Translation {
     let name = &mechanism.points[point].name;
-    let partial = partial_velocities(algebra, velocity.v, &time.symbols.speeds);
+    let partial = partial_velocities(algebra, velocity.v, directions);
     let w_frame = frame_rate(algebra, mechanism, kinematics, velocity.frame);
     let componentwise = time.of3(algebra, velocity.v);
     let named_velocity = named3(algebra, &format!("v_{name}"), velocity.v);
@@ -163,7 +168,10 @@ pub fn motions_in_ground(
             frame: GROUND,
             v: algebra.shortest3(v),
         };
-        let fixed = translation(algebra, mechanism, kinematics, &time, body.centre, velocity);
+        let (speeds, point) = (&symbols.speeds, body.centre);
+        let fixed = translation(
+            algebra, mechanism, speeds, kinematics, &time, point, velocity,
+        );
         let mut acceleration = |centre: &Translation| {
             let graph = &mut algebra.graph;
             let v = along(graph, centre.bias, &centre.partial, &symbols.accelerations);
@@ -187,14 +195,14 @@ pub fn motions_in_ground(
 fn rotation(
     algebra: &mut Algebra,
     mechanism: &Mechanism,
-    symbols: &Symbols,
+    directions: &[Expr],
     kinematics: &Kinematics,
     time: &TimeDerivative<'_>,
     body: &str,
     velocity: FrameVector,
     inertia: Mat3,
 ) -> Rotation {
-    let partial = partial_velocities(algebra, velocity.v, &symbols.speeds);
+    let partial = partial_velocities(algebra, velocity.v, directions);
     let w_frame = frame_rate(algebra, mechanism, kinematics, velocity.frame);
     let componentwise = time.of3(algebra, velocity.v);
     let componentwise = algebra.shortest3(componentwise);
@@ -218,7 +226,7 @@ fn rotation(
 }
 
 /// Angular velocity of a frame with names for its components.
-fn frame_rate(
+pub(super) fn frame_rate(
     algebra: &mut Algebra,
     mechanism: &Mechanism,
     kinematics: &Kinematics,
@@ -228,7 +236,7 @@ fn frame_rate(
     named3(algebra, &format!("w_{}", mechanism.frames[frame].name), w)
 }
 
-fn named3(algebra: &mut Algebra, name: &str, v: Vec3) -> Vec3 {
+pub(super) fn named3(algebra: &mut Algebra, name: &str, v: Vec3) -> Vec3 {
     let mut named = v;
     for (component, axis) in named.iter_mut().zip(["x", "y", "z"]) {
         *component = algebra.graph.name(&format!("{name}_{axis}"), *component);

@@ -10,7 +10,7 @@ use super::frames::{FrameVector, Frames};
 use super::symbols::Symbols;
 use super::time::TimeDerivative;
 use crate::symbolic::vector::{self, Vec3};
-use crate::symbolic::{Expr, Graph};
+use crate::symbolic::{Expr, Graph, Substitution};
 
 /// Frames farther from the one in which a vector is given are not tried for its components.
 const FARTHEST: usize = 3;
@@ -104,6 +104,20 @@ impl Kinematics {
             offsets,
             velocities,
         })
+    }
+
+    /// Replaces parts of all velocities.
+    pub fn replace(&mut self, graph: &mut Graph, replacement: &mut Substitution) -> Outcome<()> {
+        let components = self
+            .velocities
+            .iter_mut()
+            .flat_map(|velocity| &mut velocity.v);
+        for component in components.chain(self.frames.rates()) {
+            *component = replacement
+                .apply(graph, *component)
+                .ok_or_else(|| vec![division_by_zero(Item::Mechanism)])?;
+        }
+        Ok(())
     }
 
     /// Velocity of a point.

@@ -75,11 +75,6 @@ impl ImplicitMotion<'_> {
             .zip(values)
             .collect();
         let mut actual = Substitution::new(&mut algebra.graph, &replacements);
-        let speeds: Vec<String> = symbols
-            .speeds
-            .iter()
-            .map(|&speed| name_of(&algebra.graph, speed))
-            .collect();
         let mut columns = Vec::with_capacity(variables.len());
         for &variable in variables {
             let mut right = Vec::with_capacity(residual.len());
@@ -90,42 +85,7 @@ impl ImplicitMotion<'_> {
                     .ok_or_else(|| vec![division_by_zero(Item::Mechanism)])?;
                 right.push(partial);
             }
-            let by = name_of(&algebra.graph, variable);
-            let rho = |algebra: &mut Algebra, speed: usize, value: Expr| {
-                let name = format!("d_rho_{}_d_{by}", speeds[speed]);
-                algebra.graph.name_automatically(&name, value)
-            };
-            let mut column = vec![Graph::ZERO; right.len()];
-            for block in &self.motion.blocks {
-                match block {
-                    Block::Eliminated(equations) => {
-                        for equation in equations {
-                            let right = right[equation.speed];
-                            let plain = algebra.graph.div(right, equation.pivot);
-                            let named = rho(algebra, equation.speed, right);
-                            let named = algebra.graph.div(named, equation.pivot);
-                            // A pivot that cancels does so under no name.
-                            let count = |own| algebra.graph.operations(&[own]);
-                            let own = if count(plain) < count(named) {
-                                plain
-                            } else {
-                                named
-                            };
-                            let whole = algebra.derivative(equation.whole, variable);
-                            let own = algebra.graph.add(own, whole);
-                            column[equation.speed] = equation.less_couplings(algebra, own, &column);
-                        }
-                    }
-                    Block::Factorized(block) => {
-                        for &speed in &block.speeds {
-                            right[speed] = rho(algebra, speed, right[speed]);
-                        }
-                        block.solve(algebra, &right, &mut column, |graph, speed, z| {
-                            graph.name_automatically(&format!("d_z_{}_d_{by}", speeds[speed]), z)
-                        });
-                    }
-                }
-            }
+            let mut column = self.motion.solved_for(algebra, symbols, variable, right);
             for &rate in self.coordinate_rates {
                 column.push(algebra.derivative(rate, variable));
             }
@@ -135,8 +95,60 @@ impl ImplicitMotion<'_> {
     }
 }
 
+impl Motion {
+    /// Derivatives of ω̇ from those of the residuals by `variable`: of the eliminated equations, or of
+    /// `Π - b - M ω̇`.
+    pub fn solved_for(
+        &self,
+        algebra: &mut Algebra,
+        symbols: &Symbols,
+        variable: Expr,
+        mut right: Vec<Expr>,
+    ) -> Vec<Expr> {
+        let speeds = symbols.speeds.iter();
+        let speeds: Vec<String> = speeds.map(|&w| name_of(&algebra.graph, w)).collect();
+        let by = name_of(&algebra.graph, variable);
+        let rho = |algebra: &mut Algebra, speed: usize, value: Expr| {
+            let name = format!("d_rho_{}_d_{by}", speeds[speed]);
+            algebra.graph.name_automatically(&name, value)
+        };
+        let mut column = vec![Graph::ZERO; right.len()];
+        for block in &self.blocks {
+            match block {
+                Block::Eliminated(equations) => {
+                    for equation in equations {
+                        let right = right[equation.speed];
+                        let plain = algebra.graph.div(right, equation.pivot);
+                        let named = rho(algebra, equation.speed, right);
+                        let named = algebra.graph.div(named, equation.pivot);
+                        // A pivot that cancels does so under no name.
+                        let count = |own| algebra.graph.operations(&[own]);
+                        let own = if count(plain) < count(named) {
+                            plain
+                        } else {
+                            named
+                        };
+                        let whole = algebra.derivative(equation.whole, variable);
+                        let own = algebra.graph.add(own, whole);
+                        column[equation.speed] = equation.less_couplings(algebra, own, &column);
+                    }
+                }
+                Block::Factorized(block) => {
+                    for &speed in &block.speeds {
+                        right[speed] = rho(algebra, speed, right[speed]);
+                    }
+                    block.solve(algebra, &right, &mut column, |graph, speed, z| {
+                        graph.name_automatically(&format!("d_z_{}_d_{by}", speeds[speed]), z)
+                    });
+                }
+            }
+        }
+        column
+    }
+}
+
 /// Name of a symbol.
-fn name_of(graph: &Graph, symbol: Expr) -> String {
+pub(super) fn name_of(graph: &Graph, symbol: Expr) -> String {
     graph
         .as_symbol(symbol)
         .map_or_else(String::new, |symbol| graph.symbol_name(symbol).to_owned())

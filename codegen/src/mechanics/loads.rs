@@ -10,7 +10,7 @@ use super::frames::FrameVector;
 use super::kinematics::{Kinematics, division_by_zero};
 use super::symbols::Symbols;
 use crate::symbolic::vector::Vec3;
-use crate::symbolic::{Expr, Graph, Rational, SymbolId};
+use crate::symbolic::{Expr, Graph, Rational, Substitution, SymbolId};
 
 /// A scalar force and the velocity along which it works.
 #[derive(Debug, Clone, Copy)]
@@ -42,6 +42,24 @@ impl AppliedLoad {
             .collect();
         graph.sum(&parts)
     }
+}
+
+/// Replaces parts of all forces, velocities and potentials.
+pub fn replace(
+    loads: &mut [AppliedLoad],
+    graph: &mut Graph,
+    replacement: &mut Substitution,
+) -> Outcome<()> {
+    for (index, load) in loads.iter_mut().enumerate() {
+        let work = load.work.iter_mut();
+        let parts = work.flat_map(|work| [&mut work.force, &mut work.velocity]);
+        for part in parts.chain(&mut load.potential) {
+            *part = replacement
+                .apply(graph, *part)
+                .ok_or_else(|| vec![division_by_zero(Item::Load(index))])?;
+        }
+    }
+    Ok(())
 }
 
 /// Π: virtual power of all loads, one force per direction.

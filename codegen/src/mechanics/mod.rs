@@ -1,13 +1,15 @@
 //! From a mechanism to its equations of motion by the Gibbs-Appell method.
 //!
 //! The files are the steps, in order: [`symbols`], [`frames`], [`kinematics`], [`constraints`],
-//! [`redundancy`], [`elimination`], [`gibbs_appell`], [`loads`], [`motion`], [`linear`],
-//! [`reactions`], [`assemble`].
+//! [`redundancy`], [`elimination`], [`gibbs_appell`], [`loads`], [`dependent`], [`motion`],
+//! [`linear`], [`reactions`], [`assemble`].
 
 pub mod algebra;
 pub mod assemble;
 pub mod constraints;
+pub mod contact_rows;
 pub mod contacts;
+pub mod dependent;
 pub mod divisors;
 pub mod elimination;
 pub mod expressions;
@@ -19,6 +21,7 @@ pub mod glossary;
 pub mod initial;
 pub mod kinematics;
 pub mod linear;
+pub mod linear_bound;
 pub mod loads;
 pub mod motion;
 pub mod positions;
@@ -37,6 +40,7 @@ use crate::symbolic::{Expr, Graph, Intervals, SymbolId};
 use algebra::Algebra;
 use constraints::Constraints;
 use contacts::Contact;
+use dependent::DependentSpeeds;
 use elimination::GeneralizedVelocities;
 use finding::{Finding, Outcome};
 use gibbs_appell::{BodyMotion, GibbsForm};
@@ -61,6 +65,10 @@ pub struct Derivation {
     pub positions: Positions,
     /// q̇ in terms of the pseudo-velocities.
     pub velocities: GeneralizedVelocities,
+    /// Generalised velocities without a formula.
+    pub dependent: DependentSpeeds,
+    /// The motion as if nothing bound the dependent speeds, which come last.
+    pub unbound: Unbound,
     /// Velocities of points and frames.
     pub kinematics: Kinematics,
     /// Motions of the bodies.
@@ -77,6 +85,15 @@ pub struct Derivation {
     pub coordinate_rates: Vec<Expr>,
     /// What looks unintended.
     pub warnings: Vec<Finding>,
+}
+
+/// The motion while the dependent speeds count as free, with their symbols.
+#[derive(Debug, Clone)]
+pub struct Unbound {
+    /// Π.
+    pub forces: Vec<Expr>,
+    /// Motions of the bodies.
+    pub bodies: Vec<BodyMotion>,
 }
 
 /// Derives the equations of motion of a mechanism. What can be told without the stage that fails is
@@ -112,15 +129,16 @@ fn equations(mechanism: &Mechanism) -> Outcome<Derivation> {
         contacts::contacts(&mut algebra, mechanism, &symbols, &constraints)?;
     let positions = Positions::new(&mut algebra, mechanism, &symbols, &mut intervals)?;
     algebra.check_size()?;
-    let velocities = elimination::eliminate(
+    let elimination = elimination::eliminate(
         &mut algebra,
         mechanism,
         &symbols,
         &constraints,
         &mut intervals,
     )?;
-    let rates = &velocities.rates;
-    let kinematics = Kinematics::new(
+    let rates = &elimination.rates;
+    let directions = [symbols.speeds.as_slice(), &elimination.open.unknowns].concat();
+    let mut kinematics = Kinematics::new(
         &mut algebra,
         mechanism,
         &symbols,
@@ -128,37 +146,54 @@ fn equations(mechanism: &Mechanism) -> Outcome<Derivation> {
         &[],
         Effort::Shortest,
     )?;
-    let bodies = gibbs_appell::body_motions(&mut algebra, mechanism, &symbols, &kinematics, rates)?;
+    let bodies = gibbs_appell::body_motions(
+        &mut algebra,
+        mechanism,
+        &symbols,
+        &kinematics,
+        rates,
+        &directions,
+    )?;
     algebra.check_size()?;
-    let mut gibbs = gibbs_appell::gibbs_form(&mut algebra, &bodies, symbols.speeds.len());
-    let loads = loads::applied_loads(&mut algebra, mechanism, &symbols, &kinematics, rates)?;
-    let forces = loads::generalized_forces(&mut algebra, &loads, &symbols.speeds);
-
+    let unbound_gibbs = gibbs_appell::gibbs_form(&mut algebra, &bodies, directions.len());
+    let mut loads = loads::applied_loads(&mut algebra, mechanism, &symbols, &kinematics, rates)?;
+    let forces = loads::generalized_forces(&mut algebra, &loads, &directions);
+    let unbound = Unbound { forces, bodies };
+    let (dependent, velocities) = DependentSpeeds::new(
+        &mut algebra,
+        mechanism,
+        &symbols,
+        &constraints,
+        elimination,
+        &kinematics,
+        &unbound.bodies,
+    )?;
     algebra.check_size()?;
+    let mut actual = dependent.actual(&algebra.graph);
+    kinematics.replace(&mut algebra.graph, &mut actual)?;
+    loads::replace(&mut loads, &mut algebra.graph, &mut actual)?;
+    let bodies = dependent.reduced_bodies(&mut algebra, unbound.bodies.clone())?;
+    let mut gibbs = dependent.reduced(&mut algebra, mechanism, &unbound_gibbs)?;
+    let forces = dependent::apply(&mut actual, &mut algebra, &unbound.forces)?;
+    let forces = dependent.along_allowed(&mut algebra.graph, &forces);
     let parts = gibbs_appell::named_parts(&mut algebra.graph, &bodies);
     gibbs.write_out_what_cancels(&mut algebra, &parts);
-    let motion = motion::solve(&mut algebra, mechanism, &gibbs, &forces, &parts)?;
+    let explicit = dependent.values.is_empty();
+    let motion = motion::solve(&mut algebra, mechanism, &gibbs, &forces, &parts, explicit)?;
     let coordinate_rates = mechanism
         .coordinates
         .iter()
-        .zip(rates)
+        .zip(&velocities.rates)
         .map(|(q, &rate)| algebra.graph.name(&format!("{}_dot", q.label.name), rate))
         .collect();
-    let state = InitialState::new(&algebra.graph, mechanism, &symbols);
-    let mut warnings = constraints.warnings.clone();
-    warnings.extend(not_judged);
-    warnings.extend(initial::vanishing_lengths(
+    let mut warnings = [constraints.warnings.clone(), not_judged].concat();
+    warnings.extend(initially_singular(
         &mut algebra,
         mechanism,
+        &symbols,
         &kinematics,
-        &state,
-    ));
-    warnings.extend(initial::singularities(
-        &algebra.graph,
-        mechanism,
-        rates,
+        &velocities.rates,
         &motion,
-        &state,
     ));
     Ok(Derivation {
         algebra,
@@ -167,6 +202,8 @@ fn equations(mechanism: &Mechanism) -> Outcome<Derivation> {
         contacts,
         positions,
         velocities,
+        dependent,
+        unbound,
         kinematics,
         bodies,
         gibbs,
@@ -176,6 +213,24 @@ fn equations(mechanism: &Mechanism) -> Outcome<Derivation> {
         coordinate_rates,
         warnings,
     })
+}
+
+/// What is singular where the motion starts.
+fn initially_singular(
+    algebra: &mut Algebra,
+    mechanism: &Mechanism,
+    symbols: &Symbols,
+    kinematics: &Kinematics,
+    rates: &[Expr],
+    motion: &Motion,
+) -> Vec<Finding> {
+    let state = InitialState::new(&algebra.graph, mechanism, symbols);
+    let mut findings = initial::vanishing_lengths(algebra, mechanism, kinematics, &state);
+    let graph = &algebra.graph;
+    findings.extend(initial::singularities(
+        graph, mechanism, rates, motion, &state,
+    ));
+    findings
 }
 
 /// Ranges inside which a pivot must not vanish.

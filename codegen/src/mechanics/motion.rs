@@ -11,8 +11,8 @@ use super::finding::{Finding, Item, Outcome};
 use super::gibbs_appell::GibbsForm;
 use crate::symbolic::{Expr, Graph, Rational};
 
-/// Blocks up to this size are eliminated by formulas, each in its shortest form; larger ones by an
-/// unrolled factorisation with named entries.
+/// Blocks up to this size are eliminated by formulas, each in its shortest form; larger ones, and
+/// those whose entries are numbers of a solved system, by an unrolled factorisation with named entries.
 const LARGEST_EXPLICIT_BLOCK: usize = 2;
 
 /// The solved equations of motion.
@@ -51,13 +51,14 @@ pub struct Eliminated {
 }
 
 /// Solves the equations of motion. `parts` are the names that may be written out where that lets a
-/// mass or a length cancel.
+/// mass or a length cancel; where `explicit`, small blocks are solved by formulas.
 pub fn solve(
     algebra: &mut Algebra,
     mechanism: &Mechanism,
     gibbs: &GibbsForm,
     forces: &[Expr],
     parts: &[(Expr, Expr)],
+    explicit: bool,
 ) -> Outcome<Motion> {
     let names: Vec<&str> = mechanism
         .pseudo_velocities
@@ -74,7 +75,7 @@ pub fn solve(
     massless(algebra, mechanism, &gibbs.mass_matrix)?;
     let mut blocks = Vec::new();
     for speeds in independent_blocks(&gibbs.mass_matrix) {
-        let block = if speeds.len() <= LARGEST_EXPLICIT_BLOCK {
+        let block = if explicit && speeds.len() <= LARGEST_EXPLICIT_BLOCK {
             let eliminated = eliminate(algebra, mechanism, &gibbs.mass_matrix, &right, &speeds)?;
             let values = substitute_back(algebra, &eliminated, &accelerations);
             let written_out = quotients(

@@ -129,6 +129,14 @@ impl Graph {
         self.define(name, value, true)
     }
 
+    /// Gives a quantity the name of a definition.
+    pub(super) fn name_like(&mut self, definition: u32, value: Expr) -> Expr {
+        let Definition {
+            name, automatic, ..
+        } = self.definition(definition).clone();
+        self.define(&name, value, automatic)
+    }
+
     fn define(&mut self, name: &str, value: Expr, automatic: bool) -> Expr {
         let plain = |graph: &Self, expr: Expr| {
             matches!(

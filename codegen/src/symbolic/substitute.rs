@@ -11,6 +11,7 @@ use super::node::{Expr, Node, SymbolId};
 #[derive(Debug, Default)]
 pub struct Substitution {
     known: FxHashMap<Expr, Expr>,
+    keeps_names: bool,
     /// What is replaced; an expression that cannot hold any of it stays as it is.
     targets: Vec<Support>,
 }
@@ -39,8 +40,17 @@ impl Substitution {
             .collect();
         Self {
             known: replacements.iter().copied().collect(),
+            keeps_names: false,
             targets,
         }
+    }
+
+    /// The same where the replacements are the values that the symbols stood in for all along: what
+    /// had a name is called so again.
+    #[must_use]
+    pub fn keeping_names(mut self) -> Self {
+        self.keeps_names = true;
+        self
     }
 
     /// Replaces one expression more. What was applied before must not hold it.
@@ -67,6 +77,11 @@ impl Substitution {
         Some(self.get(expr))
     }
 
+    /// [`Substitution::apply`] to each.
+    pub fn apply_all(&mut self, graph: &mut Graph, exprs: &[Expr]) -> Option<Vec<Expr>> {
+        exprs.iter().map(|&expr| self.apply(graph, expr)).collect()
+    }
+
     fn get(&self, expr: Expr) -> Expr {
         self.known.get(&expr).copied().unwrap_or(expr)
     }
@@ -76,11 +91,14 @@ impl Substitution {
         Some(match graph.node(expr).clone() {
             Node::Number(_) | Node::Symbol(_) => expr,
             Node::Named(id) => {
-                let value = graph.definition(id).value;
-                if new(&value) == value {
+                let definition = graph.definition(id);
+                let (old, value) = (definition.value, new(&definition.value));
+                if value == old {
                     expr
+                } else if self.keeps_names {
+                    graph.name_like(id, value)
                 } else {
-                    new(&value)
+                    value
                 }
             }
             Node::Sum(terms) => {

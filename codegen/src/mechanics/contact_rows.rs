@@ -1,0 +1,251 @@
+//! Rolling contacts that no formula solves: their rows in the frame where they are shortest.
+//!
+//! The body's motion is known when the rows are solved, so they share its partial velocities. And
+//! since the contact is at rest, so is the rate at which its velocity turns with the frame: the rows'
+//! rates of change are the components of `v̇_C + d/dt (ω × r)`.
+
+use appell_spec::mechanism::{BodyId, ConstraintKind, FrameId, GROUND, Mechanism, PointId};
+
+use super::algebra::Algebra;
+use super::constraints::Constraints;
+use super::elimination::{Elimination, TurnedRow};
+use super::finding::{Item, Outcome};
+use super::frames::FrameVector;
+use super::gibbs_appell::{BodyMotion, frame_rate, named3};
+use super::kinematics::{Kinematics, division_by_zero};
+use super::symbols::Symbols;
+use super::time::TimeDerivative;
+use crate::symbolic::vector::{self, Vec3};
+use crate::symbolic::{Expr, Substitution};
+
+/// The three rows of a contact.
+pub struct ContactRows {
+    /// Their places in the open system.
+    pub places: Vec<usize>,
+    /// The rows in the chosen frame.
+    pub rows: Vec<TurnedRow>,
+    /// Their rates of change where all accelerations vanish, with the other sign.
+    change: Vec3,
+}
+
+/// What the rows of a contact are made of.
+struct Contact<'a> {
+    mechanism: &'a Mechanism,
+    symbols: &'a Symbols,
+    elimination: &'a Elimination,
+    kinematics: &'a Kinematics,
+    motion: &'a BodyMotion,
+    body: BodyId,
+    frame: FrameId,
+    point: PointId,
+}
+
+impl ContactRows {
+    /// Those of all contacts none of whose rows is solved by a formula.
+    pub fn all(
+        algebra: &mut Algebra,
+        mechanism: &Mechanism,
+        symbols: &Symbols,
+        constraints: &Constraints,
+        elimination: &Elimination,
+        kinematics: &Kinematics,
+        bodies: &[BodyMotion],
+    ) -> Outcome<Vec<Self>> {
+        let mut all = Vec::new();
+        for (index, constraint) in mechanism.constraints.iter().enumerate() {
+            let ConstraintKind::Rolling { body, contact, .. } = constraint.kind else {
+                continue;
+            };
+            let rows = elimination.open.rows.iter();
+            let places: Vec<usize> = rows
+                .enumerate()
+                .filter(|(_, row)| {
+                    row.is_some_and(|row| {
+                        let row = &constraints.rows[row];
+                        row.constraint == index && row.frame == GROUND
+                    })
+                })
+                .map(|(place, _)| place)
+                .collect();
+            let (3, Some(frame)) = (places.len(), mechanism.bodies[body].frame) else {
+                continue;
+            };
+            let contact = Contact {
+                mechanism,
+                symbols,
+                elimination,
+                kinematics,
+                motion: &bodies[body],
+                body,
+                frame,
+                point: contact,
+            };
+            all.push(contact.rows(algebra, places)?);
+        }
+        Ok(all)
+    }
+
+    /// Rate of change of the row at a place of the open system.
+    pub fn change_of(&self, place: usize) -> Option<Expr> {
+        let axis = self.places.iter().position(|&p| p == place)?;
+        Some(self.change[axis])
+    }
+}
+
+impl Contact<'_> {
+    fn rows(&self, algebra: &mut Algebra, mut places: Vec<usize>) -> Outcome<ContactRows> {
+        // In the order of the axes of the ground.
+        places.sort_unstable_by_key(|&place| self.elimination.open.rows[place]);
+        let nearby = [
+            self.mechanism.points[self.point].frame,
+            self.motion.centre.velocity.frame,
+        ];
+        let mut best: Option<(usize, FrameId, Vec<Vec3>)> = None;
+        for frame in nearby {
+            let partial = self.partial(algebra, frame);
+            let cost = algebra.graph.operations(partial.as_flattened());
+            if best.as_ref().is_none_or(|(least, ..)| cost < *least) {
+                best = Some((cost, frame, partial));
+            }
+        }
+        let (frame, partial) =
+            best.map_or((GROUND, Vec::new()), |(_, frame, partial)| (frame, partial));
+        let drift = self.drift(algebra, frame)?;
+        let speeds = &self.symbols.speeds;
+        let rows = (0..3).map(|axis| {
+            let unit = FrameVector {
+                frame,
+                v: vector::IDENTITY[axis],
+            };
+            let factors = self
+                .kinematics
+                .frames
+                .express(&mut algebra.graph, unit, GROUND);
+            let mut parts = vec![algebra.graph.neg(drift[axis])];
+            for (&speed, direction) in speeds.iter().zip(&partial) {
+                let part = algebra.graph.mul(direction[axis], speed);
+                parts.push(algebra.graph.neg(part));
+            }
+            TurnedRow {
+                coefficients: partial[speeds.len()..]
+                    .iter()
+                    .map(|direction| direction[axis])
+                    .collect(),
+                right: algebra.graph.sum(&parts),
+                factors: factors.to_vec(),
+            }
+        });
+        let rows = rows.collect();
+        Ok(ContactRows {
+            rows,
+            change: self.change(algebra, frame),
+            places,
+        })
+    }
+
+    /// Partial velocities of the contact.
+    fn partial(&self, algebra: &mut Algebra, frame: FrameId) -> Vec<Vec3> {
+        let w = self.angular_velocity(algebra, frame);
+        let arm = self.arm(algebra, frame);
+        let directions = [
+            self.symbols.speeds.as_slice(),
+            &self.elimination.open.unknowns,
+        ]
+        .concat();
+        let centre = &self.motion.centre;
+        directions
+            .iter()
+            .zip(&centre.partial)
+            .map(|(&direction, &v)| {
+                let v = FrameVector {
+                    frame: centre.velocity.frame,
+                    v,
+                };
+                let v = self.kinematics.frames.express(&mut algebra.graph, v, frame);
+                let w = w.map(|component| algebra.derivative(component, direction));
+                let w = algebra.shortest3(w);
+                let turning = algebra.graph.cross(w, arm);
+                algebra.graph.add3(v, turning)
+            })
+            .collect()
+    }
+
+    /// Velocity of the contact without any speed.
+    fn drift(&self, algebra: &mut Algebra, frame: FrameId) -> Outcome<Vec3> {
+        let v =
+            self.kinematics
+                .frames
+                .express(&mut algebra.graph, self.motion.centre.velocity, frame);
+        let w = self.angular_velocity(algebra, frame);
+        let arm = self.arm(algebra, frame);
+        let turning = algebra.graph.cross(w, arm);
+        let v = algebra.graph.add3(v, turning);
+        let speeds = [
+            self.symbols.speeds.as_slice(),
+            &self.elimination.open.unknowns,
+        ]
+        .concat();
+        let rest = Substitution::by_zero(&algebra.graph, &speeds).apply_all(&mut algebra.graph, &v);
+        match rest.as_deref() {
+            Some(&[x, y, z]) => Ok(algebra.shortest3([x, y, z])),
+            _ => Err(vec![division_by_zero(Item::Body(self.body))]),
+        }
+    }
+
+    /// `-(v̇_C + d/dt (ω × r))` where all accelerations vanish.
+    fn change(&self, algebra: &mut Algebra, frame: FrameId) -> Vec3 {
+        let time = TimeDerivative {
+            symbols: self.symbols,
+            rates: &self.elimination.rates,
+        };
+        let centre = &self.motion.centre;
+        let a = FrameVector {
+            frame: centre.velocity.frame,
+            v: centre.bias,
+        };
+        let a = self.kinematics.frames.express(&mut algebra.graph, a, frame);
+        let w = self.angular_velocity(algebra, frame);
+        let arm = self.arm(algebra, frame);
+        let (body, point) = (&self.motion.name, &self.mechanism.points[self.point].name);
+        let w_dot = time.of3(algebra, w);
+        let w_dot = algebra.shortest3(w_dot);
+        let w_dot = named3(algebra, &format!("w_dot_{body}"), w_dot);
+        let arm_dot = time.of3(algebra, arm);
+        let arm_dot = named3(algebra, &format!("arm_dot_{point}"), arm_dot);
+        let frame_rate = frame_rate(algebra, self.mechanism, self.kinematics, frame);
+        let graph = &mut algebra.graph;
+        let turning = graph.cross(w, arm);
+        let parts = [
+            graph.cross(w_dot, arm),
+            graph.cross(w, arm_dot),
+            graph.cross(frame_rate, turning),
+        ];
+        let sum = parts.into_iter().fold(a, |sum, part| graph.add3(sum, part));
+        graph.neg3(sum)
+    }
+
+    fn angular_velocity(&self, algebra: &mut Algebra, frame: FrameId) -> Vec3 {
+        let w = self
+            .kinematics
+            .frames
+            .angular_velocity_in(&mut algebra.graph, self.frame, frame);
+        named3(algebra, &format!("w_{}", self.motion.name), w)
+    }
+
+    /// From the centre to the contact.
+    fn arm(&self, algebra: &mut Algebra, frame: FrameId) -> Vec3 {
+        let centre = self.mechanism.bodies[self.body].centre;
+        let arm = self.kinematics.between(
+            &mut algebra.graph,
+            self.mechanism,
+            centre,
+            self.point,
+            frame,
+        );
+        named3(
+            algebra,
+            &format!("arm_{}", self.mechanism.points[self.point].name),
+            arm,
+        )
+    }
+}

@@ -1,0 +1,390 @@
+//! Generalised velocities that no formula gives, as dependent speeds.
+//!
+//! They first count as further speeds `s`, as if nothing bound them: velocities and equations stay
+//! short. The system `C s = r(ω)` that determines them then brings the equations back to the
+//! pseudo-velocities. With `s = β ω + β₀` and `ṡ = β ω̇ + γ`, and `B = [1; β]`, the mass matrix is
+//! `Bᵀ M B`, the bias `Bᵀ (b + M [0; γ])`, the pseudo-forces `Bᵀ Π` (Kane and Levinson, Dynamics:
+//! Theory and Applications, 1985, sections 2.11 and 4.4).
+
+use appell_spec::mechanism::Mechanism;
+
+use super::algebra::Algebra;
+use super::constraints::Constraints;
+use super::contact_rows::ContactRows;
+use super::elimination::{Elimination, GeneralizedVelocities, OpenSystem};
+use super::finding::{Item, Outcome};
+use super::gibbs_appell::{BodyMotion, GibbsForm};
+use super::kinematics::{Kinematics, division_by_zero};
+use super::symbols::Symbols;
+use super::time::TimeDerivative;
+use crate::symbolic::vector::Vec3;
+use crate::symbolic::{Expr, Graph, Substitution};
+
+/// The dependent speeds of a mechanism; most have none.
+#[derive(Debug, Clone, Default)]
+pub struct DependentSpeeds {
+    /// `C s = r`, with symbols for s.
+    pub system: OpenSystem,
+    /// ∂r/∂ω, row by row.
+    pub driving: Vec<Vec<Expr>>,
+    /// `ṙ - Ċ s` where all pseudo-accelerations vanish, with symbols for s.
+    pub change: Vec<Expr>,
+    /// s, named.
+    pub values: Vec<Expr>,
+    /// q̇ in terms of the pseudo-velocities and of the symbols for s.
+    pub rates: Vec<Expr>,
+    /// Symbols for ṡ.
+    pub accelerations: Vec<Expr>,
+    /// Symbols for the multipliers λ, one per equation of the system.
+    pub multipliers: Vec<Expr>,
+    /// β: how each follows the pseudo-velocities, named.
+    pub partial: Vec<Vec<Expr>>,
+    /// γ: ṡ where all pseudo-accelerations vanish, named.
+    pub bias: Vec<Expr>,
+}
+
+impl DependentSpeeds {
+    /// The dependent speeds with their derivatives, and q̇ with their values. `bodies` move along the
+    /// pseudo-velocities and the dependent speeds.
+    pub fn new(
+        algebra: &mut Algebra,
+        mechanism: &Mechanism,
+        symbols: &Symbols,
+        constraints: &Constraints,
+        mut elimination: Elimination,
+        kinematics: &Kinematics,
+        bodies: &[BodyMotion],
+    ) -> Outcome<(Self, GeneralizedVelocities)> {
+        let contacts = ContactRows::all(
+            algebra,
+            mechanism,
+            symbols,
+            constraints,
+            &elimination,
+            kinematics,
+            bodies,
+        )?;
+        for contact in &contacts {
+            elimination.turn(algebra, &contact.places, &contact.rows);
+        }
+        let system = elimination.open.clone();
+        let rates = elimination.rates.clone();
+        let velocities = elimination.closed(algebra, mechanism)?;
+        let mut symbols_for = |name: &str| -> Vec<Expr> {
+            let unknowns = system
+                .coordinates
+                .iter()
+                .map(|&q| &mechanism.coordinates[q].label.name);
+            unknowns
+                .map(|q| algebra.graph.symbol(&format!("{q}_{name}")))
+                .collect()
+        };
+        let (accelerations, multipliers) = (symbols_for("ddot"), symbols_for("multiplier"));
+        let mut dependent = Self {
+            driving: Vec::new(),
+            change: Vec::new(),
+            values: system
+                .coordinates
+                .iter()
+                .map(|&q| velocities.rates[q])
+                .collect(),
+            partial: vec![Vec::new(); system.unknowns.len()],
+            bias: Vec::new(),
+            rates: rates.clone(),
+            accelerations,
+            multipliers,
+            system,
+        };
+        let time = TimeDerivative {
+            symbols,
+            rates: &rates,
+        };
+        let residual = dependent.residual(&mut algebra.graph);
+        for (place, row) in residual.into_iter().enumerate() {
+            let right = dependent.system.right[place];
+            let mut driving: Vec<Expr> = symbols
+                .speeds
+                .iter()
+                .map(|&speed| algebra.derivative(right, speed))
+                .collect();
+            let known = contacts.iter().find_map(|contact| contact.change_of(place));
+            let change = if let Some(change) = known {
+                change
+            } else {
+                driving = driving
+                    .into_iter()
+                    .map(|slope| algebra.shortest(slope))
+                    .collect();
+                let change = time.of(algebra, row);
+                algebra.shortest(change)
+            };
+            dependent.driving.push(driving);
+            dependent.change.push(change);
+        }
+        dependent.solve(algebra, mechanism)?;
+        Ok((dependent, velocities))
+    }
+
+    /// β and γ from the system.
+    fn solve(&mut self, algebra: &mut Algebra, mechanism: &Mechanism) -> Outcome<()> {
+        let names: Vec<&str> = self
+            .system
+            .coordinates
+            .iter()
+            .map(|&q| mechanism.coordinates[q].label.name.as_str())
+            .collect();
+        for (i, speed) in mechanism.pseudo_velocities.iter().enumerate() {
+            let right: Vec<Expr> = self.driving.iter().map(|row| row[i]).collect();
+            let solved = self.system.solved_for(&mut algebra.graph, &right);
+            for ((row, name), partial) in self.partial.iter_mut().zip(&names).zip(solved) {
+                let name = format!("d_{name}_dot_d_{}", speed.label.name);
+                row.push(algebra.graph.name(&name, partial));
+            }
+        }
+        let mut actual = self.actual(&algebra.graph);
+        let change = apply(&mut actual, algebra, &self.change)?;
+        let solved = self.system.solved_for(&mut algebra.graph, &change);
+        for (name, bias) in names.iter().zip(solved) {
+            self.bias
+                .push(algebra.graph.name(&format!("a0_{name}"), bias));
+        }
+        Ok(())
+    }
+
+    /// `r - C s`, with symbols for s.
+    pub fn residual(&self, graph: &mut Graph) -> Vec<Expr> {
+        let OpenSystem {
+            unknowns,
+            matrix,
+            right,
+            ..
+        } = &self.system;
+        if unknowns.is_empty() {
+            return Vec::new();
+        }
+        let rows = matrix.chunks(unknowns.len()).zip(right);
+        rows.map(|(row, &right)| {
+            let left = scalar_product(graph, row, unknowns);
+            graph.sub(right, left)
+        })
+        .collect()
+    }
+
+    /// Puts the values in place of the symbols.
+    pub fn actual(&self, graph: &Graph) -> Substitution {
+        let unknowns = self.system.unknowns.iter().copied();
+        let parts: Vec<(Expr, Expr)> = unknowns.zip(self.values.iter().copied()).collect();
+        Substitution::of_parts(graph, &parts).keeping_names()
+    }
+
+    /// `D ω̇ + c - C ṡ` for rates of all speeds.
+    pub fn acceleration_residual(&self, graph: &mut Graph, accelerations: &[Expr]) -> Vec<Expr> {
+        let (own, dependent) = accelerations.split_at(accelerations.len() - self.values.len());
+        let rows = self
+            .system
+            .matrix
+            .chunks(self.values.len().max(1))
+            .zip(&self.driving)
+            .zip(&self.change);
+        rows.map(|((row, driving), &change)| {
+            let driven = scalar_product(graph, driving, own);
+            let left = scalar_product(graph, row, dependent);
+            let right = graph.add(driven, change);
+            graph.sub(right, left)
+        })
+        .collect()
+    }
+
+    /// λ in `Cᵀ λ = work`, named.
+    pub fn solved_multipliers(&self, graph: &mut Graph, work: &[Expr]) -> Vec<Expr> {
+        let n = self.values.len();
+        let transposed = (0..n * n).map(|k| self.system.matrix[k % n * n + k / n]);
+        let solved = graph.solve_numerically(transposed.collect(), work.to_vec());
+        let names = self.multipliers.clone();
+        solved
+            .into_iter()
+            .zip(names)
+            .map(|(value, symbol)| {
+                let name = graph
+                    .as_symbol(symbol)
+                    .map(|s| graph.symbol_name(s).to_owned());
+                graph.name(&name.unwrap_or_default(), value)
+            })
+            .collect()
+    }
+
+    /// `residual + [D, -C]ᵀ λ` with symbols for λ.
+    pub fn balance(&self, graph: &mut Graph, residual: &[Expr]) -> Vec<Expr> {
+        let n = self.values.len();
+        let own = residual.len() - n;
+        residual
+            .iter()
+            .enumerate()
+            .map(|(j, &residual)| {
+                let column: Vec<Expr> = (0..n)
+                    .map(|row| match j.checked_sub(own) {
+                        None => self.driving[row][j],
+                        Some(d) => graph.neg(self.system.matrix[row * n + d]),
+                    })
+                    .collect();
+                let work = scalar_product(graph, &column, &self.multipliers);
+                graph.add(residual, work)
+            })
+            .collect()
+    }
+
+    /// ω̇, and ṡ that goes with it.
+    pub fn accelerations_with(&self, graph: &mut Graph, independent: &[Expr]) -> Vec<Expr> {
+        let mut all = independent.to_vec();
+        for (row, &bias) in self.partial.iter().zip(&self.bias) {
+            let along = scalar_product(graph, row, independent);
+            let sum = graph.add(bias, along);
+            let named = self.accelerations[all.len() - independent.len()];
+            let name = graph
+                .as_symbol(named)
+                .map(|s| graph.symbol_name(s).to_owned());
+            all.push(graph.name(&name.unwrap_or_default(), sum));
+        }
+        all
+    }
+
+    /// `Bᵀ v` for a vector with an entry for each speed, the dependent ones last.
+    pub fn along_allowed(&self, graph: &mut Graph, all: &[Expr]) -> Vec<Expr> {
+        let (own, dependent) = all.split_at(all.len() - self.values.len());
+        own.iter()
+            .enumerate()
+            .map(|(i, &own)| {
+                let share: Vec<Expr> = self.partial.iter().map(|row| row[i]).collect();
+                let share = scalar_product(graph, &share, dependent);
+                graph.add(own, share)
+            })
+            .collect()
+    }
+
+    /// M and b of the pseudo-velocities from those of all speeds.
+    pub fn reduced(
+        &self,
+        algebra: &mut Algebra,
+        mechanism: &Mechanism,
+        all: &GibbsForm,
+    ) -> Outcome<GibbsForm> {
+        if self.values.is_empty() {
+            return Ok(all.clone());
+        }
+        let speeds = all.bias.len() - self.values.len();
+        let mut actual = self.actual(&algebra.graph);
+        let bias = apply(&mut actual, algebra, &all.bias)?;
+        let graph = &mut algebra.graph;
+        // M B, the rows of the dependent speeds.
+        let coupling: Vec<Vec<Expr>> = all.mass_matrix[speeds..]
+            .iter()
+            .zip(&self.system.unknowns)
+            .map(|(row, &unknown)| {
+                let along = self.along_allowed(graph, row);
+                let name = graph
+                    .as_symbol(unknown)
+                    .map(|s| graph.symbol_name(s).to_owned());
+                let name = name.unwrap_or_default();
+                let named = along.into_iter().zip(&mechanism.pseudo_velocities);
+                named
+                    .map(|(entry, speed)| {
+                        graph.name(&format!("M_{name}_{}", speed.label.name), entry)
+                    })
+                    .collect()
+            })
+            .collect();
+        let column = |matrix: &[Vec<Expr>], j: usize| -> Vec<Expr> {
+            matrix.iter().map(|row| row[j]).collect()
+        };
+        let mut mass_matrix = vec![vec![Graph::ZERO; speeds]; speeds];
+        let mut reduced_bias = self.along_allowed(graph, &bias);
+        for i in 0..speeds {
+            for j in 0..=i {
+                let own = &all.mass_matrix[i];
+                let direct = scalar_product(graph, &own[speeds..], &column(&self.partial, j));
+                let shared =
+                    scalar_product(graph, &column(&self.partial, i), &column(&coupling, j));
+                let entry = graph.sum(&[own[j], direct, shared]);
+                mass_matrix[i][j] = entry;
+                mass_matrix[j][i] = entry;
+            }
+            let share = scalar_product(graph, &column(&coupling, i), &self.bias);
+            reduced_bias[i] = graph.add(reduced_bias[i], share);
+        }
+        Ok(GibbsForm {
+            mass_matrix,
+            bias: reduced_bias,
+        })
+    }
+
+    /// Motions of the bodies in terms of the pseudo-velocities alone.
+    pub fn reduced_bodies(
+        &self,
+        algebra: &mut Algebra,
+        mut bodies: Vec<BodyMotion>,
+    ) -> Outcome<Vec<BodyMotion>> {
+        if self.values.is_empty() {
+            return Ok(bodies);
+        }
+        let mut actual = self.actual(&algebra.graph);
+        for body in &mut bodies {
+            let centre = &mut body.centre;
+            centre.velocity.v = apply3(&mut actual, algebra, centre.velocity.v)?;
+            centre.bias = apply3(&mut actual, algebra, centre.bias)?;
+            let more = self.reduce_partial(&mut algebra.graph, &mut centre.partial);
+            centre.bias = algebra.graph.add3(centre.bias, more);
+            if let Some(rotation) = &mut body.rotation {
+                rotation.velocity.v = apply3(&mut actual, algebra, rotation.velocity.v)?;
+                rotation.bias = apply3(&mut actual, algebra, rotation.bias)?;
+                rotation.momentum_rate = apply3(&mut actual, algebra, rotation.momentum_rate)?;
+                let more = self.reduce_partial(&mut algebra.graph, &mut rotation.partial);
+                rotation.bias = algebra.graph.add3(rotation.bias, more);
+                let growth = algebra.graph.mat_vec(&rotation.inertia, more);
+                rotation.momentum_rate = algebra.graph.add3(rotation.momentum_rate, growth);
+            }
+        }
+        Ok(bodies)
+    }
+
+    /// Partial velocities by the pseudo-velocities in place of those by all speeds, and what the
+    /// dependent ones add where all pseudo-accelerations vanish.
+    fn reduce_partial(&self, graph: &mut Graph, partial: &mut Vec<Vec3>) -> Vec3 {
+        let dependent = partial.split_off(partial.len() - self.values.len());
+        for (i, own) in partial.iter_mut().enumerate() {
+            for (&direction, row) in dependent.iter().zip(&self.partial) {
+                let share = graph.scale3(row[i], direction);
+                *own = graph.add3(*own, share);
+            }
+        }
+        let mut more = [Graph::ZERO; 3];
+        for (&direction, &bias) in dependent.iter().zip(&self.bias) {
+            let share = graph.scale3(bias, direction);
+            more = graph.add3(more, share);
+        }
+        more
+    }
+}
+
+/// `Σ a b`
+pub fn scalar_product(graph: &mut Graph, a: &[Expr], b: &[Expr]) -> Expr {
+    let products: Vec<Expr> = a.iter().zip(b).map(|(&a, &b)| graph.mul(a, b)).collect();
+    graph.sum(&products)
+}
+
+/// Values with a substitution applied.
+pub fn apply(
+    substitution: &mut Substitution,
+    algebra: &mut Algebra,
+    exprs: &[Expr],
+) -> Outcome<Vec<Expr>> {
+    let applied = substitution.apply_all(&mut algebra.graph, exprs);
+    applied.ok_or_else(|| vec![division_by_zero(Item::Mechanism)])
+}
+
+fn apply3(substitution: &mut Substitution, algebra: &mut Algebra, v: Vec3) -> Outcome<Vec3> {
+    let mut actual = v;
+    for component in &mut actual {
+        *component = apply(substitution, algebra, &[*component])?[0];
+    }
+    Ok(actual)
+}

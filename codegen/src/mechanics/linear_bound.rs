@@ -1,0 +1,217 @@
+//! Jacobians of the rates where dependent speeds take part.
+//!
+//! Everything is differentiated while the dependent speeds s, their rates and the accelerations are
+//! held, and brought together once. With `C s = r`, `D = ∂r/∂ω` and `C ṡ = D ω̇ + c`:
+//!
+//! ```text
+//! C ds = d(r - C s)                 C dṡ = d(D ω̇ + c - C ṡ) + ∂c/∂s ds
+//! M dω̇ = Bᵀ (d(ρ + [D, -C]ᵀ λ) + ∂ρ/∂s ds + ∂ρ/∂ṡ dṡ)
+//! ```
+//!
+//! ρ = Π - b - M ω̇ of all speeds does not vanish: its dependent part is `Cᵀ λ`, the work of the
+//! constraints, and holding λ takes the place of differentiating B.
+
+use super::Unbound;
+use super::algebra::Algebra;
+use super::dependent::{DependentSpeeds, apply};
+use super::finding::Outcome;
+use super::gibbs_appell::{ActualMotion, named3};
+use super::linear::name_of;
+use super::motion::Motion;
+use super::symbols::Symbols;
+use crate::symbolic::{Expr, Graph, Substitution};
+
+/// The motion with its dependent speeds, ready to be differentiated.
+pub struct BoundMotion<'a> {
+    symbols: &'a Symbols,
+    motion: &'a Motion,
+    dependent: &'a DependentSpeeds,
+    held: Held,
+    /// ∂c/∂s, a column per dependent speed.
+    change_by_speeds: Vec<Vec<Expr>>,
+    /// Bᵀ ∂ρ/∂s, a column per dependent speed.
+    balance_by_speeds: Vec<Vec<Expr>>,
+    /// Bᵀ ∂ρ/∂ṡ, a column per dependent speed.
+    balance_by_accelerations: Vec<Vec<Expr>>,
+    /// ∂q̇/∂s, a column per dependent speed.
+    rates_by_speeds: Vec<Vec<Expr>>,
+}
+
+/// What vanishes, with symbols for what is held.
+struct Held {
+    /// `r - C s`
+    velocity: Vec<Expr>,
+    /// `D ω̇ + c - C ṡ`
+    acceleration: Vec<Expr>,
+    /// `ρ + [D, -C]ᵀ λ` of all speeds, the dependent ones last.
+    balance: Vec<Expr>,
+    /// Puts what happens in place of the symbols.
+    actual: Substitution,
+}
+
+impl Held {
+    /// Derivatives by one symbol, the others held, at the motion that happens.
+    fn partials(
+        actual: &mut Substitution,
+        algebra: &mut Algebra,
+        of: &[Expr],
+        variable: Expr,
+    ) -> Outcome<Vec<Expr>> {
+        let partials = of.iter().map(|&e| algebra.derivative(e, variable));
+        let partials: Vec<Expr> = partials.collect();
+        apply(actual, algebra, &partials)
+    }
+}
+
+impl<'a> BoundMotion<'a> {
+    /// Everything that does not depend on the variable of differentiation.
+    pub fn new(
+        algebra: &mut Algebra,
+        symbols: &'a Symbols,
+        unbound: &Unbound,
+        dependent: &'a DependentSpeeds,
+        motion: &'a Motion,
+    ) -> Outcome<Self> {
+        let mut bound = Self {
+            symbols,
+            motion,
+            dependent,
+            held: held(algebra, symbols, unbound, dependent, motion)?,
+            change_by_speeds: Vec::new(),
+            balance_by_speeds: Vec::new(),
+            balance_by_accelerations: Vec::new(),
+            rates_by_speeds: Vec::new(),
+        };
+        let Held {
+            acceleration,
+            balance,
+            actual,
+            ..
+        } = &mut bound.held;
+        let speeds = dependent.system.unknowns.iter();
+        for (&speed, &rate) in speeds.zip(&dependent.accelerations) {
+            let by_speed = Held::partials(actual, algebra, acceleration, speed)?;
+            bound.change_by_speeds.push(by_speed);
+            for (columns, variable) in [
+                (&mut bound.balance_by_speeds, speed),
+                (&mut bound.balance_by_accelerations, rate),
+            ] {
+                let all = Held::partials(actual, algebra, balance, variable)?;
+                columns.push(dependent.along_allowed(&mut algebra.graph, &all));
+            }
+            let rates = Held::partials(actual, algebra, &dependent.rates, speed)?;
+            bound.rates_by_speeds.push(rates);
+        }
+        Ok(bound)
+    }
+
+    /// Derivatives of all rates by a variable: those of ω̇, then those of q̇.
+    pub fn column(&mut self, algebra: &mut Algebra, variable: Expr) -> Outcome<Vec<Expr>> {
+        let (dependent, system) = (self.dependent, &self.dependent.system);
+        let Held {
+            velocity,
+            acceleration,
+            balance,
+            actual,
+        } = &mut self.held;
+        let mut partials =
+            |algebra: &mut Algebra, of: &[Expr]| Held::partials(actual, algebra, of, variable);
+        let by = name_of(&algebra.graph, variable);
+        let named = |graph: &mut Graph, symbols: &[Expr], values: Vec<Expr>| -> Vec<Expr> {
+            let named = symbols.iter().zip(values).map(|(&symbol, value)| {
+                let name = format!("d_{}_d_{by}", name_of(graph, symbol));
+                graph.name_automatically(&name, value)
+            });
+            named.collect()
+        };
+
+        let speed = self.symbols.speeds.iter().position(|&w| w == variable);
+        let speeds = if let Some(speed) = speed {
+            dependent.partial.iter().map(|row| row[speed]).collect()
+        } else {
+            let change = partials(algebra, velocity)?;
+            let solved = system.solved_for(&mut algebra.graph, &change);
+            named(&mut algebra.graph, &system.unknowns, solved)
+        };
+        let mut change = partials(algebra, acceleration)?;
+        let graph = &mut algebra.graph;
+        add_along(graph, &mut change, &self.change_by_speeds, &speeds);
+        let solved = system.solved_for(graph, &change);
+        let accelerations = named(graph, &dependent.accelerations, solved);
+
+        let all = partials(algebra, balance)?;
+        let graph = &mut algebra.graph;
+        let mut right = dependent.along_allowed(graph, &all);
+        add_along(graph, &mut right, &self.balance_by_speeds, &speeds);
+        let by_accelerations = &self.balance_by_accelerations;
+        add_along(graph, &mut right, by_accelerations, &accelerations);
+        let mut column = self
+            .motion
+            .solved_for(algebra, self.symbols, variable, right);
+
+        let mut rates = partials(algebra, &dependent.rates)?;
+        let graph = &mut algebra.graph;
+        add_along(graph, &mut rates, &self.rates_by_speeds, &speeds);
+        column.extend(rates);
+        Ok(column)
+    }
+}
+
+/// What vanishes, and the motion that happens.
+fn held(
+    algebra: &mut Algebra,
+    symbols: &Symbols,
+    unbound: &Unbound,
+    dependent: &DependentSpeeds,
+    motion: &Motion,
+) -> Outcome<Held> {
+    let accelerations = [symbols.accelerations.as_slice(), &dependent.accelerations].concat();
+    let residual = residual(algebra, unbound, &accelerations);
+    let graph = &mut algebra.graph;
+    let happening = dependent.accelerations_with(graph, &motion.accelerations);
+    let speeds = dependent.system.unknowns.iter().zip(&dependent.values);
+    let pairs = speeds.chain(accelerations.iter().zip(&happening));
+    let mut pairs: Vec<(Expr, Expr)> = pairs.map(|(&symbol, &value)| (symbol, value)).collect();
+    let mut actual = Substitution::of_parts(graph, &pairs).keeping_names();
+    let work = apply(&mut actual, algebra, &residual[symbols.speeds.len()..])?;
+    let graph = &mut algebra.graph;
+    let multipliers = dependent.solved_multipliers(graph, &work);
+    pairs.extend(dependent.multipliers.iter().copied().zip(multipliers));
+    Ok(Held {
+        velocity: dependent.residual(graph),
+        acceleration: dependent.acceleration_residual(graph, &accelerations),
+        balance: dependent.balance(graph, &residual),
+        actual: Substitution::of_parts(graph, &pairs).keeping_names(),
+    })
+}
+
+/// ρ = Π - b - M ω̇ of all speeds, body by body: applied forces less `v_j · m a + w_j · ḣ`.
+fn residual(algebra: &mut Algebra, unbound: &Unbound, accelerations: &[Expr]) -> Vec<Expr> {
+    let mut rows: Vec<Vec<Expr>> = unbound.forces.iter().map(|&force| vec![force]).collect();
+    for body in &unbound.bodies {
+        let motion = ActualMotion::new(algebra, body, accelerations);
+        let force = algebra.graph.scale3(body.mass, motion.a);
+        let force = named3(algebra, &format!("f_{}", body.name), force);
+        for (j, row) in rows.iter_mut().enumerate() {
+            let part = algebra.graph.dot(body.centre.partial[j], force);
+            row.push(algebra.graph.neg(part));
+            if let Some(rotation) = &body.rotation {
+                let moment = motion.momentum_rate;
+                let part = algebra.graph.dot(rotation.partial[j], moment);
+                row.push(algebra.graph.neg(part));
+            }
+        }
+    }
+    let rows = rows.into_iter().map(|row| algebra.graph.sum(&row));
+    rows.collect()
+}
+
+/// `sum + Σ column · factor`
+fn add_along(graph: &mut Graph, sum: &mut [Expr], columns: &[Vec<Expr>], factors: &[Expr]) {
+    for (column, &factor) in columns.iter().zip(factors) {
+        for (entry, &slope) in sum.iter_mut().zip(column) {
+            let part = graph.mul(slope, factor);
+            *entry = graph.add(*entry, part);
+        }
+    }
+}

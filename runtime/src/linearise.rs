@@ -1,0 +1,95 @@
+//! Linearisation where coordinates depend on each other.
+//!
+//! A and B of [`Model::jacobians`] hold every coordinate as if it were free. Position constraints
+//! f(q, t) = 0 tie the dependent ones to the others, `∂f/∂q δq = 0`: a mode or a controller of the
+//! mechanism is one of the states that remain.
+
+use crate::dense::lu_solve_in_place;
+use crate::model::{At, Model};
+
+/// `δẋ = A δx + B δu` in the independent states: pseudo-velocities and independent coordinates.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Linearisation {
+    /// The independent states, by their index in the model.
+    pub states: Vec<usize>,
+    /// A, row by row: as many rows and columns as independent states.
+    pub a: Vec<f64>,
+    /// B, row by row: a column for each input and signal.
+    pub b: Vec<f64>,
+    /// How the dependent coordinates follow: a row for each, in the order of
+    /// [`Model::dependent_coordinates`], a column for each independent state.
+    pub dependence: Vec<f64>,
+}
+
+/// The position constraints do not determine the dependent coordinates at this state.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[error(
+    "the position constraints do not determine the dependent coordinates here: name others in the spec"
+)]
+pub struct Undetermined;
+
+impl Linearisation {
+    /// About a state that satisfies the position constraints. Without any it is A and B of the
+    /// model.
+    pub fn about(model: &dyn Model, at: At<'_>) -> Result<Self, Undetermined> {
+        let info = model.info();
+        let (n, m) = (info.states.len(), info.inputs.len());
+        let dependent = model.dependent_coordinates();
+        let dependent: Vec<usize> = dependent.iter().map(|q| info.speeds + q).collect();
+        let states: Vec<usize> = (0..n).filter(|state| !dependent.contains(state)).collect();
+        let (mut rates, mut all, mut b) = (vec![0.0; n], vec![0.0; n * n], vec![0.0; n * m]);
+        model.jacobians(at, &mut rates, &mut all, &mut b);
+
+        let dependence = dependence(model, at, &states)?;
+        let entry = |&row: &usize, (place, &column): (usize, &usize)| {
+            let by_way_of = dependent.iter().enumerate();
+            let by_way_of = by_way_of
+                .map(|(k, &other)| all[row * n + other] * dependence[k * states.len() + place]);
+            all[row * n + column] + by_way_of.sum::<f64>()
+        };
+        let row = |row| {
+            let columns = states.iter().enumerate();
+            columns.map(move |column| entry(row, column))
+        };
+        Ok(Self {
+            a: states.iter().flat_map(row).collect(),
+            b: states
+                .iter()
+                .flat_map(|&row| b[row * m..(row + 1) * m].to_vec())
+                .collect(),
+            dependence,
+            states,
+        })
+    }
+
+    /// Entry of A for two states, by their index in the model; `None` for a dependent one.
+    pub fn a_of(&self, row: usize, column: usize) -> Option<f64> {
+        let place = |state| self.states.iter().position(|&s| s == state);
+        Some(self.a[place(row)? * self.states.len() + place(column)?])
+    }
+}
+
+/// `-(∂f/∂q_dependent)⁻¹ ∂f/∂q` in the columns of the independent states.
+fn dependence(model: &dyn Model, at: At<'_>, states: &[usize]) -> Result<Vec<f64>, Undetermined> {
+    let (info, dependent) = (model.info(), model.dependent_coordinates());
+    let (count, coordinates) = (dependent.len(), info.states.len() - info.speeds);
+    if count == 0 {
+        return Ok(Vec::new());
+    }
+    let (mut residual, mut slopes) = (vec![0.0; count], vec![0.0; count * coordinates]);
+    model.position_constraints(at, &mut residual, &mut slopes);
+    let mut matrix = Vec::with_capacity(count * count);
+    let mut right = Vec::with_capacity(count * states.len());
+    for row in slopes.chunks(coordinates) {
+        matrix.extend(dependent.iter().map(|&q| row[q]));
+        // Positions do not depend on pseudo-velocities.
+        let slope = |&state: &usize| state.checked_sub(info.speeds).map_or(0.0, |q| -row[q]);
+        right.extend(states.iter().map(slope));
+    }
+    lu_solve_in_place(&mut matrix, &mut right, count);
+    if right.iter().all(|entry| entry.is_finite()) {
+        Ok(right)
+    } else {
+        Err(Undetermined)
+    }
+}

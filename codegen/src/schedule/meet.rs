@@ -125,6 +125,96 @@ pub(super) fn meet_in_parts(dag: &mut Dag, order: &[Id]) -> bool {
     any
 }
 
+/// Writes a sum as a multiple of another node where it is one: `a (b c) + d (b e)` is `b` times the
+/// sum `a c + d e` that stands elsewhere. Tells whether there were any.
+pub(super) fn meet_in_multiples(dag: &mut Dag, order: &[Id]) -> bool {
+    let values = values(dag, order);
+    let mut known: FxHashMap<Value, (Id, bool)> = FxHashMap::default();
+    let sums = || order.iter().filter(|&&id| matches!(dag.op(id), Op::Sum(_)));
+    for &id in sums() {
+        if let Some((value, sign)) = values[id.index()].map(without_sign) {
+            known.entry(value).or_insert((id, sign));
+        }
+    }
+    let mut multiples = Vec::new();
+    for &id in sums() {
+        let Some(whole) = values[id.index()] else {
+            continue;
+        };
+        let found = factors_inside(dag, id).into_iter().find_map(|factor| {
+            let [a, b] = values[factor.index()]?;
+            let (value, sign) = without_sign([whole[0] * a.inverse()?, whole[1] * b.inverse()?]);
+            let &(other, other_sign) = known.get(&value)?;
+            (other != id).then_some((factor, other, sign != other_sign))
+        });
+        multiples.extend(found.map(|(factor, other, flip)| (id, factor, other, flip)));
+    }
+    let mut any = false;
+    for (id, factor, other, flip) in multiples {
+        // The other sum must not be made of this one.
+        let (mut seen, mut made_of_it) = (vec![false; dag.len()], false);
+        dag.visit_from(&[other, factor], &mut seen, |part| made_of_it |= part == id);
+        if made_of_it {
+            continue;
+        }
+        let product = dag.product(vec![Item::plain(factor), Item::plain(other)]);
+        dag.replace(id, Op::Sum(vec![product.flipped_if(flip)]));
+        any = true;
+    }
+    any
+}
+
+/// What could be a factor of all terms of a sum: factors of the products in its first term.
+fn factors_inside(dag: &Dag, sum: Id) -> Vec<Id> {
+    let Op::Sum(terms) = dag.op(sum) else {
+        return Vec::new();
+    };
+    let mut factors = Vec::new();
+    let mut open: Vec<Id> = terms.iter().take(1).map(|term| term.id).collect();
+    while let Some(id) = open.pop() {
+        if let Op::Product(inner) = dag.op(id)
+            && open.len() + factors.len() < LONGEST
+        {
+            open.extend(inner.iter().filter(|item| !item.flip).map(|item| item.id));
+        } else {
+            factors.push(id);
+        }
+    }
+    factors
+}
+
+/// Lets everything outside refer to values of stages by what is kept, so that equal wholes are made
+/// of equal parts.
+pub(super) fn refer_to_kept(dag: &mut Dag, order: &[Id]) {
+    let mut kept: FxHashMap<Id, Id> = FxHashMap::default();
+    for &id in order {
+        if let Op::Kept(inner) = dag.op(id) {
+            kept.insert(*inner, id);
+        }
+    }
+    if kept.is_empty() {
+        return;
+    }
+    for &id in order {
+        let (Op::Sum(items) | Op::Product(items)) = dag.op(id) else {
+            continue;
+        };
+        if !items.iter().any(|item| kept.contains_key(&item.id)) {
+            continue;
+        }
+        let items = items.iter().map(|item| Item {
+            id: kept.get(&item.id).copied().unwrap_or(item.id),
+            flip: item.flip,
+        });
+        let items = items.collect();
+        let op = match dag.op(id) {
+            Op::Sum(_) => Op::Sum(items),
+            _ => Op::Product(items),
+        };
+        dag.replace(id, op);
+    }
+}
+
 /// Places of all pairs in a list.
 fn pairs(length: usize) -> impl Iterator<Item = (usize, usize)> {
     (1..length).flat_map(|j| (0..j).map(move |i| (i, j)))

@@ -7,7 +7,7 @@ use crate::program::Program;
 use crate::symbolic::Rational;
 
 /// Longest name made up here.
-pub(super) const LONGEST: usize = 28;
+pub(super) const LONGEST: usize = 31;
 
 /// Words that cannot name a value in Rust, in any edition.
 const KEYWORDS: &[&str] = &[

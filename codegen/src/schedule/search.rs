@@ -2,10 +2,10 @@
 
 use super::Tuning;
 use super::cancel::cancel;
-use super::dag::{Dag, Item};
+use super::dag::{Dag, Id, Item};
 use super::divide::{join_divisions, share_reciprocals};
 use super::factor::factor;
-use super::meet::{meet, meet_in_parts, name_again};
+use super::meet::{meet, meet_in_multiples, meet_in_parts, name_again, refer_to_kept};
 use super::rebuild::{Dissolve, rebuild};
 use super::scale::scale;
 use super::share::{Within, share};
@@ -130,18 +130,24 @@ pub(super) fn cheapest(derived: &Dag, tuning: Tuning) -> Dag {
 
 /// Nodes of equal value met.
 fn merged(mut dag: Dag) -> Dag {
+    let order = dag.order();
+    refer_to_kept(&mut dag, &order);
+    dag = rebuild(&dag, Dissolve::Unnamed);
+    let order = dag.order();
+    if meet_in_multiples(&mut dag, &order) {
+        dag = rebuild(&dag, Dissolve::Unnamed);
+    }
     for _ in 0..MEETINGS {
-        let mut order = dag.order();
-        let mut any = meet(&mut dag, &order);
-        if any {
-            dag = rebuild(&dag, Dissolve::Unnamed);
-            order = dag.order();
+        let mut any = false;
+        let products =
+            |dag: &mut Dag, order: &[Id]| share(dag, order, Within::Products, Preference::Early, 2);
+        for pass in [meet, meet_in_parts, products] {
+            let order = dag.order();
+            if pass(&mut dag, &order) {
+                dag = rebuild(&dag, Dissolve::Unnamed);
+                any = true;
+            }
         }
-        let parts = meet_in_parts(&mut dag, &order);
-        if parts {
-            dag = rebuild(&dag, Dissolve::Unnamed);
-        }
-        any |= parts;
         if !any {
             break;
         }

@@ -295,9 +295,10 @@ pub fn bias<T: Real>(
     let R_omega_2 = R * omega_2;
     let bias_0_part_1 = tan_theta * (m0_r * omega_2 - quarter * m * R_omega_3);
     let bias_0_part_2 = m0_omega_3_r - bias_0_part_1;
-    let bias_0_part_3 = tan_theta * m0_omega_3_r * r;
-    let bias_0_part_4 = R * (bias_0_part_2 - R_omega_2 * (three_halves * m + m0));
-    let bias_0 = m0_omega_1_r * two_sigma + omega_3 * (bias_0_part_3 + bias_0_part_4);
+    let m0_tan_theta_omega_3_r_squared = tan_theta * m0_omega_3_r * r;
+    let bias_0_part_3 = R * (bias_0_part_2 - R_omega_2 * (three_halves * m + m0));
+    let bias_0 = m0_omega_1_r * two_sigma
+        + omega_3 * (m0_tan_theta_omega_3_r_squared + bias_0_part_3);
     let R_omega_1 = R * omega_1;
     let m_R_omega_1 = m * R_omega_1;
     let two_sigma_minus_R_omega_1 = two_sigma - R_omega_1;
@@ -447,7 +448,7 @@ pub fn rates<T: Real>(
 /// Rates ẋ with their derivatives by state and inputs.
 ///
 /// From `mechanisms/unicycle.toml`.
-/// Operations: 275 (76 +, 186 ×, 4 ÷, 9 sign), 2 sine-cosine pairs.
+/// Operations: 269 (73 +, 184 ×, 4 ÷, 8 sign), 2 sine-cosine pairs.
 #[must_use]
 #[inline]
 pub fn jacobians<T: Real>(
@@ -504,8 +505,7 @@ pub fn jacobians<T: Real>(
     let f_4_part_1 = g_sin_theta + R_omega_2_omega_3 - omega_3_squared_r;
     let f_4 = u - m0 * (f_4_part_1 - omega_1_r * omega_1);
     let R_tan_theta_omega_3 = tan_theta * R_omega_3;
-    let m_R_omega_3 = m * R_omega_3;
-    let quarter_m_R_omega_3 = quarter * m_R_omega_3;
+    let quarter_m_R_omega_3 = quarter * m * R_omega_3;
     let tan_theta_omega_3_squared_r = tan_theta_omega_3 * omega_3_r;
     let g_cos_theta = g * cos_theta;
     let two_sigma = two * sigma;
@@ -517,28 +517,27 @@ pub fn jacobians<T: Real>(
         - R_tan_theta_omega_3 * quarter_m_R_omega_3;
     let omega_1_dot = omega_1_dot_part_1 * (f_1 + R * f_4);
     let m0_R_r = R * m0_r;
-    let f_3_part_1 = minus_half_m_R * R_omega_1;
+    let minus_half_m_R_squared_omega_1 = minus_half_m_R * R_omega_1;
     let m0_R_omega_1_r = m0_R_r * omega_1;
     let two_m0_r = two * m0_r;
-    let m0_omega_1_r = m0_r * omega_1;
-    let f_3_part_2 = m0_omega_1_r * r + quarter_m_R * R_omega_1;
-    let d_f_3_d_omega_3 = m0_R_omega_1_r + tan_theta * f_3_part_2 - two_m0_r * sigma;
-    let f_3 = f_3_part_1 * omega_2 + d_f_3_d_omega_3 * omega_3;
-    let f_2_part_1 = tan_theta_omega_3 * m0_omega_1_r;
-    let m0_R_omega_3 = m0 * R_omega_3;
-    let f_2_part_2 = m0_R_omega_3 * omega_1 - m0 * two_sigma * omega_3;
-    let f_2 = -R * (f_2_part_1 + f_2_part_2 + m_R_omega_3 * omega_1);
     let M_33 = R * quarter_m_R + m0_r_squared;
+    let M_33_omega_1 = M_33 * omega_1;
+    let d_f_3_d_omega_3 = m0_R_omega_1_r + tan_theta * M_33_omega_1 - two_m0_r * sigma;
+    let f_3 = minus_half_m_R_squared_omega_1 * omega_2 + d_f_3_d_omega_3 * omega_3;
+    let m0_omega_1_r = m0_r * omega_1;
+    let f_2_part_1 = m0 * (two_sigma - R_omega_1) - tan_theta * m0_omega_1_r
+        - m_R * omega_1;
+    let f_2 = R_omega_3 * f_2_part_1;
     let D_2 = M_22 * M_33 - m0_R_r * m0_R_r;
     let inv_D_2 = one / D_2;
-    let omega_2_dot = inv_D_2 * (m0_R_r * f_3 + f_2 * M_33);
+    let omega_2_dot = inv_D_2 * (m0_R_r * f_3 + M_33 * f_2);
     let omega_3_dot = inv_D_2 * (m0_R_r * f_2 + M_22 * f_3);
     let sigma_dot = inv_m0 * f_4 + R * omega_1_dot;
 
     // Row `omega_1` of A.
-    let A_omega_1_omega_1_part_1 = m0_r * sigma - m0_R_omega_1_r;
-    let A_omega_1_omega_1_part_2 = -two * omega_1_dot_part_1;
-    let A_omega_1_omega_1 = A_omega_1_omega_1_part_1 * A_omega_1_omega_1_part_2;
+    let m0_sigma_r_minus_m0_R_omega_1_r = m0_r * sigma - m0_R_omega_1_r;
+    let A_omega_1_omega_1_part_1 = -two * omega_1_dot_part_1;
+    let A_omega_1_omega_1 = m0_sigma_r_minus_m0_R_omega_1_r * A_omega_1_omega_1_part_1;
     let m0_R_tan_theta_omega_3_r = m0_r * R_tan_theta_omega_3;
     let A_omega_1_omega_2_part_1 = m0_R_tan_theta_omega_3_r
         + three_halves_m_R * R_omega_3;
@@ -550,7 +549,7 @@ pub fn jacobians<T: Real>(
     let A_omega_1_omega_3_part_3 = two_m0_r * tan_theta_omega_3_r
         + R * A_omega_1_omega_3_part_2;
     let A_omega_1_omega_3 = -omega_1_dot_part_1 * A_omega_1_omega_3_part_3;
-    let A_omega_1_sigma = m0_omega_1_r * A_omega_1_omega_1_part_2;
+    let A_omega_1_sigma = m0_omega_1_r * A_omega_1_omega_1_part_1;
     let inv_cos_theta_squared = inv_cos_theta * inv_cos_theta;
     let A_omega_1_theta_part_1 = R_omega_3 * inv_cos_theta_squared;
     let A_omega_1_theta_part_2 = g_sin_theta + A_omega_1_theta_part_1 * omega_2;
@@ -571,19 +570,18 @@ pub fn jacobians<T: Real>(
         + m0_r * (R_omega_3 + tan_theta_omega_3_r);
     let A_omega_2_omega_1 = inv_D_2
         * (M_33 * d_f_2_d_omega_1 + m0_R_r * d_f_3_d_omega_1);
-    let A_omega_2_omega_2_part_1 = f_3_part_1 * inv_D_2;
+    let A_omega_2_omega_2_part_1 = minus_half_m_R_squared_omega_1 * inv_D_2;
     let A_omega_2_omega_2 = m0_R_r * A_omega_2_omega_2_part_1;
-    let m0_two_sigma_minus_R_omega_1 = m0 * (two_sigma - R_omega_1);
-    let m0_tan_theta_omega_1_r = tan_theta * m0_omega_1_r;
-    let A_omega_2_omega_3_part_1 = m0_two_sigma_minus_R_omega_1 - m0_tan_theta_omega_1_r;
-    let d_f_2_d_omega_3 = R * (A_omega_2_omega_3_part_1 - m_R * omega_1);
+    let d_f_2_d_omega_3 = R * f_2_part_1;
     let A_omega_2_omega_3 = inv_D_2
         * (M_33 * d_f_2_d_omega_3 + m0_R_r * d_f_3_d_omega_3);
+    let m0_R_omega_3 = m0 * R_omega_3;
     let minus_two_over_D_2 = -two * inv_D_2;
     let A_omega_2_sigma = minus_two_over_D_2
-        * (m0_r * m0_r * R_omega_3 - m0_R_omega_3 * M_33);
-    let d_f_3_d_r = two * f_2_part_1 + f_2_part_2;
-    let A_omega_2_r_part_1 = R_tan_theta_omega_3 * f_3_part_2 - two * f_2 * r;
+        * (m0_r * m0_r * R_omega_3 - M_33 * m0_R_omega_3);
+    let d_f_3_d_r = m0_R_omega_3 * omega_1 + two * tan_theta_omega_3 * m0_omega_1_r
+        - m0 * two_sigma * omega_3;
+    let A_omega_2_r_part_1 = R_tan_theta_omega_3 * M_33_omega_1 - two * f_2 * r;
     let d_D_2_d_r = M_22 * two_m0_r - two * m0_R * m0_R_r;
     let A_omega_2_r_part_2 = m0 * (A_omega_2_r_part_1 - R * (f_3 + d_f_3_d_r * r));
     let A_omega_2_r = -inv_D_2 * (A_omega_2_r_part_2 + omega_2_dot * d_D_2_d_r);
@@ -609,11 +607,12 @@ pub fn jacobians<T: Real>(
 
     // Row `sigma` of A.
     let B_omega_1_u = R * omega_1_dot_part_1;
-    let A_sigma_omega_1 = two * (omega_1_r - A_omega_1_omega_1_part_1 * B_omega_1_u);
+    let A_sigma_omega_1_part_1 = m0_sigma_r_minus_m0_R_omega_1_r * B_omega_1_u;
+    let A_sigma_omega_1 = two * (omega_1_r - A_sigma_omega_1_part_1);
     let A_sigma_omega_2 = A_omega_1_omega_2_part_1 * B_omega_1_u - R_omega_3;
     let A_sigma_omega_3 = inv_m0 * (two_m0_r * omega_3 - m0_R * omega_2)
         - A_omega_1_omega_3_part_3 * B_omega_1_u;
-    let A_sigma_sigma = m0_R_omega_1_r * A_omega_1_omega_1_part_2;
+    let A_sigma_sigma = m0_R_omega_1_r * A_omega_1_omega_1_part_1;
     let A_sigma_theta = A_omega_1_theta_part_5 * B_omega_1_u - g_cos_theta;
     let A_sigma_r = A_omega_1_r_part_1 + R * A_omega_1_r;
 
@@ -801,10 +800,11 @@ pub fn parameter_jacobian<T: Real>(
     let f_3 = omega_3 * f_3_part_1 - half * m_R_squared * omega_1_omega_2;
     let omega_1_omega_3 = omega_1 * omega_3;
     let tan_theta_omega_1_omega_3 = tan_theta * omega_1_omega_3;
-    let f_2_part_1 = m0_r * tan_theta_omega_1_omega_3;
+    let m0_tan_theta_omega_1_omega_3_r = m0_r * tan_theta_omega_1_omega_3;
     let two_omega_3_sigma = two_sigma * omega_3;
-    let f_2_part_2 = m0_R * omega_1_omega_3 + m_R * omega_1_omega_3;
-    let f_2 = R * (m0 * two_omega_3_sigma - f_2_part_1 - f_2_part_2);
+    let f_2_part_1 = m0_R * omega_1_omega_3 + m_R * omega_1_omega_3;
+    let f_2_part_2 = m0 * two_omega_3_sigma - f_2_part_1;
+    let f_2 = R * (f_2_part_2 - m0_tan_theta_omega_1_omega_3_r);
     let D_2 = M_22 * M_33 - R_squared * m0_r * m0_r;
     let inv_D_2 = one / D_2;
     let inv_D_2_squared = inv_D_2 * inv_D_2;
@@ -829,7 +829,8 @@ pub fn parameter_jacobian<T: Real>(
     let d_D_2_d_R = d_M_22_d_R * M_33 + half_m_R * M_22 - m0_r * two_m0_R_r;
     let d_f_3_d_R = m0_r * omega_1_omega_3 + half_m_R * tan_theta_omega_1_omega_3
         - m_R * omega_1_omega_2;
-    let P_omega_2_R_part_1 = half * f_2_part_1 + f_2_part_2 - m0 * omega_3 * sigma;
+    let P_omega_2_R_part_1 = f_2_part_1 + half * m0_tan_theta_omega_1_omega_3_r
+        - m0 * omega_3 * sigma;
     let P_omega_2_R_part_2 = half_m_R * f_2 + m0_r * f_3 + m0_R_r * d_f_3_d_R;
     let P_omega_2_R_part_3 = P_omega_2_R_part_2 - two * M_33 * P_omega_2_R_part_1;
     let P_omega_2_R = inv_D_2 * P_omega_2_R_part_3 - P_omega_2_m_part_1 * d_D_2_d_R;

@@ -194,6 +194,21 @@ fn derived_rust_is_that_of_the_shipped_module() {
 }
 
 #[test]
+fn a_drawing_is_named_after_its_mechanism_or_goes_where_it_is_sent() {
+    let folder = Folder::new();
+    folder.done(&["draw", "pendulum"]);
+    let svg = folder.read("pendulum.svg");
+    assert!(
+        svg.starts_with("<svg ") && svg.contains(">G (rod)<"),
+        "{svg}"
+    );
+    assert_eq!(folder.done(&["draw", "pendulum", "--out", "-"]).stdout, svg);
+    folder.done(&["draw", "pendulum", "--out", "drawn.svg"]);
+    assert_eq!(folder.read("drawn.svg"), svg);
+    assert_eq!(folder.files(), ["drawn.svg", "pendulum.svg"]);
+}
+
+#[test]
 fn the_demo_writes_what_it_says() {
     let folder = Folder::new();
     let told = folder.done(&["demo", "--out", "demo"]).stdout;

@@ -3,6 +3,7 @@
 pub mod audit;
 pub mod build;
 pub mod compile;
+pub mod drawing;
 pub mod emit;
 pub mod formulations;
 pub mod interpreted;

@@ -72,7 +72,8 @@ const CHARACTER: f64 = 6.6;
 /// Colours before the order repeats with dashes.
 const COLOURS: usize = 6;
 
-const STYLE: &str = "\
+/// Style of paper, grid, frame, text and lines (`c0` to `c5`), for any drawing beside the figures.
+pub const STYLE: &str = "\
 .paper{fill:#fff}.grid{stroke:#e3e3e3}.frame{stroke:#777;fill:none}
 text{fill:#222;font:12px system-ui,sans-serif}.title{font-size:15px;font-weight:600}
 .c0{stroke:#0072b2}.c1{stroke:#d55e00}.c2{stroke:#009e73}.c3{stroke:#cc79a7}.c4{stroke:#e69f00}.c5{stroke:#56b4e9}

@@ -4,6 +4,7 @@ mod check;
 mod completions;
 mod demo;
 mod derive;
+mod draw;
 mod evaluate;
 mod list;
 mod new;
@@ -19,6 +20,7 @@ pub(crate) enum Command {
     New(new::New),
     Check(check::Check),
     Derive(derive::Derive),
+    Draw(draw::Draw),
     Evaluate(evaluate::Evaluate),
     Simulate(Box<simulate::Simulate>),
     Demo(demo::Demo),
@@ -33,6 +35,7 @@ pub(crate) fn run(command: Command) -> Result<(), Failure> {
         Command::New(command) => command.run(),
         Command::Check(command) => command.run(),
         Command::Derive(command) => command.run(),
+        Command::Draw(command) => command.run(),
         Command::Evaluate(command) => command.run(),
         Command::Simulate(command) => command.run(),
         Command::Demo(command) => command.run(),

@@ -1,0 +1,39 @@
+//! `appell draw`
+
+use std::path::{Path, PathBuf};
+
+use appell_codegen::drawing::drawing;
+use appell_codegen::{Derived, compile::report, derived};
+
+use crate::failure::Failure;
+use crate::source::Source;
+use crate::{files, progress};
+
+/// Draws the mechanism at its initial state, as SVG.
+///
+/// What is not as meant in a spec, such as the sign of an angle, is often seen at once.
+#[derive(Debug, clap::Args)]
+pub(crate) struct Draw {
+    /// Name of a shipped mechanism or path of a spec
+    model: String,
+    /// Write to this file, `-` is standard output; default is the name of the mechanism with `.svg`
+    #[arg(long, value_name = "FILE")]
+    out: Option<PathBuf>,
+}
+
+impl Draw {
+    pub(super) fn run(&self) -> Result<(), Failure> {
+        let source = Source::find(&self.model)?;
+        let spinner = progress::spinner("deriving the equations of motion");
+        let Derived {
+            mechanism,
+            derivation,
+            ..
+        } = derived(&source.file, &source.text)?;
+        let svg = drawing(&mechanism, derivation)
+            .map_err(|findings| report(&mechanism, &source.text, &findings))?;
+        spinner.finish_and_clear();
+        let default = format!("{}.svg", mechanism.name);
+        files::write(self.out.as_deref().unwrap_or(Path::new(&default)), &svg)
+    }
+}

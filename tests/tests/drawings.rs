@@ -151,13 +151,13 @@ fn the_loop_of_the_four_bar_linkage_is_drawn_closed() {
     }
 }
 
-/// A mass at a place that depends on `x`, which starts at zero.
+/// A mass at a place with three components that depend on `x`, which starts at zero.
 fn mass_at(title: &str, place: &str) -> Mechanism {
     let spec = format!(
         "[mechanism]\nname = 'mass'\ntitle = {title:?}\n\
          [parameters]\nm = {{ value = 1, unit = 'kg' }}\nl = {{ value = 1, unit = 'm' }}\n\
          [coordinates]\nx = {{ unit = 'm' }}\n\
-         [points]\nP = {{ from = 'O', in = 'ground', at = ['{place}', 0, 0] }}\n\
+         [points]\nP = {{ from = 'O', in = 'ground', at = [{place}] }}\n\
          [bodies]\nb = {{ centre = 'P', mass = 'm' }}\n\
          [pseudo_velocities]\nv = {{ value = 'dot(x)', unit = 'm/s' }}\n"
     );
@@ -167,7 +167,7 @@ fn mass_at(title: &str, place: &str) -> Mechanism {
 #[test]
 fn what_is_nowhere_or_far_away_is_told_and_not_drawn() {
     for place in ["x + l*ln(x/l)", "x + 1e200*l"] {
-        let svg = drawn(&mass_at("A mass", place));
+        let svg = drawn(&mass_at("A mass", &format!("'{place}', 0, 0")));
         assert!(svg.contains("nowhere finite: P"), "{svg}");
         assert_inside(place, &svg);
     }
@@ -182,15 +182,25 @@ fn a_mechanism_of_any_size_has_a_drawing() {
         "x + 1e-300*l",
         "x - 1e16*l",
     ] {
-        let svg = drawn(&mass_at("A mass", place));
+        let svg = drawn(&mass_at("A mass", &format!("'{place}', 0, 0")));
         assert!(!svg.contains("nowhere"), "{svg}");
         assert_inside(place, &svg);
     }
 }
 
 #[test]
+fn a_mass_far_away_on_the_line_of_sight_is_drawn_on_few_squares() {
+    let [(sin_a, cos_a), (sin_e, cos_e)] = [32.0_f64, 20.0].map(|d| d.to_radians().sin_cos());
+    let sight = [-sin_a * cos_e, cos_a * cos_e, -sin_e];
+    let [x, y, z] = sight.map(|c| format!("{:.16}*l", 1e9 * c));
+    let svg = drawn(&mass_at("A mass", &format!("'x + {x}', '{y}', '{z}'")));
+    assert_inside("on the line of sight", &svg);
+    assert!(svg.matches("class=\"grid\"").count() < 50, "{svg}");
+}
+
+#[test]
 fn the_text_of_a_spec_stays_text() {
-    let svg = drawn(&mass_at("</text><script>alert('&')</script>", "x"));
+    let svg = drawn(&mass_at("</text><script>alert('&')</script>", "'x', 0, 0"));
     assert!(!svg.contains("<script"), "{svg}");
     assert!(svg.contains("&lt;script&gt;"), "{svg}");
 }

@@ -58,13 +58,13 @@ struct Sheet<'a> {
 pub(super) fn svg(mechanism: &Mechanism, scene: &Scene, view: &View) -> String {
     let mut strokes = shapes::links(mechanism, scene);
     let points = || scene.points.iter().flatten().copied();
-    let frame_size = size(view, points());
+    let frame_size = size(points());
     strokes.extend(
         shapes::bodies(mechanism, scene, view)
             .into_iter()
             .filter(|body| {
                 // A hint that would hide the rest is none.
-                let all = size(view, body.corners.iter().copied());
+                let all = size(body.corners.iter().copied());
                 body.class == "wheel" || frame_size == 0.0 || all <= 2.0 * frame_size
             }),
     );
@@ -73,7 +73,7 @@ pub(super) fn svg(mechanism: &Mechanism, scene: &Scene, view: &View) -> String {
         corners.chain(points()).collect()
     };
     let places = drawn(&strokes);
-    let extent = Some(size(view, places.iter().copied()))
+    let extent = Some(size(places.iter().copied()))
         .filter(|&extent| extent > SMALLEST)
         .unwrap_or(1.0);
     let step = round_number(extent / SQUARES);
@@ -151,10 +151,16 @@ fn bounds(view: &View, places: impl Iterator<Item = Vector>) -> [[f64; 2]; 2] {
     })
 }
 
-/// The larger of width and height.
-fn size(view: &View, places: impl Iterator<Item = Vector>) -> f64 {
-    let [width, height] = bounds(view, places).map(|[low, high]| high - low);
-    width.max(height)
+/// The largest of length, width and height: what is long along the line of sight is not small.
+fn size(places: impl Iterator<Item = Vector>) -> f64 {
+    let none = [[f64::INFINITY, f64::NEG_INFINITY]; 3];
+    let spans = places.fold(none, |spans, place| {
+        [0, 1, 2].map(|k| [spans[k][0].min(place[k]), spans[k][1].max(place[k])])
+    });
+    spans
+        .map(|[low, high]| high - low)
+        .into_iter()
+        .fold(0.0, f64::max)
 }
 
 fn tips(axes: &Axes, extent: f64) -> [Vector; 3] {

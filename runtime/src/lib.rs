@@ -7,6 +7,8 @@
 //! - [`integrate`]: initial value problems, events, typed failures;
 //! - [`linearise`]: A and B in the independent states;
 //! - [`simulate`] and [`trajectory`]: motions of a model and their files;
+//! - [`spectrum`]: eigenvalues, eigenvectors, characteristic polynomials;
+//! - [`singular`]: singular values and vectors, ranks, shortest solutions;
 //! - [`contact`] and [`condition`]: where a model stops being valid;
 //! - [`figure`]: plots as SVG.
 //!
@@ -43,6 +45,10 @@ pub mod real;
 pub mod signal;
 #[cfg(feature = "std")]
 pub mod simulate;
+#[cfg(feature = "std")]
+pub mod singular;
+#[cfg(feature = "std")]
+pub mod spectrum;
 #[cfg(feature = "std")]
 pub mod trajectory;
 

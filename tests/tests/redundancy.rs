@@ -89,7 +89,7 @@ fn the_warning_names_the_row_that_is_left_out() {
         "{shown}"
     );
     assert!(
-        shown.contains("`on_right.z` holds by geometry, and so does another"),
+        shown.contains("`L_ground` and `Q_ground` are not reported"),
         "{shown}"
     );
     let solved = derived.derivation.velocities.solved_numerically;

@@ -18,6 +18,7 @@ mod points;
 use appell_spec::mechanism::{Constraint, ConstraintKind, Mechanism};
 
 use crate::mechanics::algebra::Algebra;
+use crate::mechanics::constraints;
 use crate::mechanics::expressions::DivisionByZero;
 use crate::mechanics::finding::{Item, Outcome};
 use crate::mechanics::kinematics::{division_by_zero, root_of};
@@ -254,7 +255,10 @@ fn reaction_claims(
         let Some(of_constraint) = same.clone().find(|r| r.constraint == row.constraint) else {
             continue;
         };
-        let place = &mut known[of_constraint.reaction.place];
+        let Some(place) = constraints.reported(of_constraint) else {
+            continue;
+        };
+        let place = &mut known[place];
         for (component, &direction) in place.iter_mut().zip(&row.direction) {
             if direction == Graph::ZERO {
                 continue;
@@ -298,17 +302,24 @@ fn reaction_claims(
     Ok(claims)
 }
 
-/// Whether nothing but rolling contacts, each with all its reaction, holds the mechanism: bodies that
-/// hang from one point, and no second point on which geometry could pull from outside.
+/// Whether nothing but contacts whose reactions are told holds the mechanism: bodies that hang from
+/// one point, and no second point on which geometry could pull from outside.
 fn rests_on_contacts(derivation: &Derivation, mechanism: &Mechanism) -> bool {
+    let constraints = &derivation.constraints;
+    let mut rows = constraints.rows.iter();
+    // A position that a contact keeps has no force of its own.
+    let told = |row: &constraints::Row| match constraints.reported(row) {
+        Some(_) => row.root.is_some(),
+        None => row.of_position && row.redundant,
+    };
     let rolls = |c: &Constraint| matches!(c.kind, ConstraintKind::Rolling { .. });
     let mut roots = mechanism
         .bodies
         .iter()
         .map(|body| root_of(mechanism, body.centre));
     let first = roots.next();
-    mechanism.constraints.iter().all(rolls)
-        && derivation.constraints.rows.iter().all(|row| !row.redundant)
+    mechanism.constraints.iter().any(rolls)
+        && rows.all(told)
         && roots.all(|root| Some(root) == first)
 }
 

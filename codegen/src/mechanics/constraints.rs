@@ -1,18 +1,20 @@
 //! Constraints as rows that are linear in the generalised velocities.
 
 use appell_spec::Code;
-use appell_spec::mechanism::{ConstraintKind, FrameId, GROUND, Mechanism, PointId};
+use appell_spec::mechanism::{ConstraintKind, GROUND, Mechanism, PointId};
 
 use super::algebra::Algebra;
 use super::expressions::Lowering;
 use super::finding::{Finding, Item, Outcome};
 use super::frames::FrameVector;
-use super::kinematics::{Carried, Effort, Kinematics, division_by_zero, root_of};
+use super::kinematics::{Effort, Kinematics, division_by_zero, root_of};
+use super::rank::LinearRow;
 use super::redundancy::leave_out;
+use super::support::Support;
 use super::symbols::Symbols;
 use super::time::TimeDerivative;
 use crate::symbolic::vector::{self, Vec3};
-use crate::symbolic::{Expr, Graph, Intervals, Rational, Substitution};
+use crate::symbolic::{Expr, Graph, Intervals, Substitution};
 
 /// One scalar constraint: `Σ coefficient · q̇ + rest = 0`.
 #[derive(Debug, Clone)]
@@ -29,42 +31,20 @@ pub struct Row {
     pub rest: Expr,
     /// Where its reaction is reported, and along which direction of the ground a unit of it acts.
     pub reaction: Reaction,
-    /// Coefficients of the imagined motions, one per entry of [`Constraints::carried`].
-    pub carried: Vec<Expr>,
-    /// The imagined motion that stands in for the row where geometry already embeds it.
-    pub stand_in: Option<StandIn>,
+    /// The direction as it is written; an axis of the ground where the constraint has no point.
+    pub along: FrameVector,
+    /// The point next to the origin from which hangs what it holds, if it has a point.
+    pub root: Option<PointId>,
     /// Whether it is left out because it follows from the others.
     pub redundant: bool,
-    /// The frame along whose axis it is written, for a row of a rolling contact.
-    pub frame: FrameId,
     /// Whether it is the derivative of a position constraint.
     pub of_position: bool,
-}
-
-/// An imagined motion: a point and the axis along which it is carried.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Imagined {
-    /// The point next to the origin that everything carried hangs from.
-    pub root: PointId,
-    /// Frame of the axis.
-    pub frame: FrameId,
-    /// The axis.
-    pub axis: usize,
-}
-
-/// An imagined motion that violates an embedded row at `coefficient` times its rate.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct StandIn {
-    /// Index into [`Constraints::carried`].
-    pub motion: usize,
-    /// Rate of the row for a unit rate of the motion; not zero.
-    pub coefficient: Rational,
 }
 
 /// How the reaction of a row is reported.
 #[derive(Debug, Clone)]
 pub struct Reaction {
-    /// Index into [`Constraints::reactions`].
+    /// Index among the places of reactions; see [`Constraints::reported`].
     pub place: usize,
     /// Direction in the ground; a row without a point reports its multiplier as first component.
     pub direction: Vec3,
@@ -75,11 +55,14 @@ pub struct Reaction {
 pub struct Constraints {
     /// Scalar rows in the order of the spec.
     pub rows: Vec<Row>,
-    /// Names of the places with reactions.
+    /// Names of the places whose reactions are reported.
     pub reactions: Vec<String>,
-    /// Imagined motions.
-    pub carried: Vec<Imagined>,
-    /// Rows that were left out.
+    /// For each place of a reaction its index into [`Constraints::reactions`]; none where its
+    /// reaction cannot be told.
+    pub reported: Vec<Option<usize>>,
+    /// What violates the rows that follow from geometry or from others.
+    pub support: Support,
+    /// Rows that were left out, reactions that cannot be told.
     pub warnings: Vec<Finding>,
 }
 
@@ -93,6 +76,14 @@ impl Row {
     pub fn is_active(&self) -> bool {
         !self.redundant && !self.is_embedded()
     }
+
+    /// The row for questions of rank.
+    pub fn linear(&self) -> LinearRow {
+        LinearRow {
+            coefficients: self.coefficients.clone(),
+            rest: self.rest,
+        }
+    }
 }
 
 impl Constraints {
@@ -100,6 +91,11 @@ impl Constraints {
     pub fn rows_of(&self, constraint: usize) -> impl Iterator<Item = &Row> {
         let rows = self.rows.iter();
         rows.filter(move |row| row.constraint == constraint)
+    }
+
+    /// Index of the reaction of a row among those that are reported.
+    pub fn reported(&self, row: &Row) -> Option<usize> {
+        self.reported.get(row.reaction.place).copied().flatten()
     }
 }
 
@@ -110,21 +106,12 @@ pub fn constraints(
     symbols: &Symbols,
     intervals: &mut Intervals,
 ) -> Outcome<Constraints> {
-    let carried = imagined_motions(mechanism);
-    let carried_rates: Vec<Expr> = carried
-        .iter()
-        .map(|motion| {
-            let name = format!("carry_{}_{}", motion.root, motion.axis);
-            algebra.graph.symbol(&name)
-        })
-        .collect();
-    let motions = motions_along(&carried, &carried_rates);
     let kinematics = Kinematics::new(
         algebra,
         mechanism,
         symbols,
         &symbols.rates,
-        &motions,
+        &[],
         Effort::Plain,
     )?;
     let mut places: Vec<Place> = Vec::new();
@@ -144,21 +131,13 @@ pub fn constraints(
             places.len() - 1
         });
         for scalar in scalars {
-            match row(
-                algebra,
-                mechanism,
-                symbols,
-                &carried_rates,
-                index,
-                place,
-                scalar,
-            ) {
+            match row(algebra, mechanism, symbols, index, place, scalar) {
                 Ok(row) => rows.push(row),
                 Err(finding) => findings.push(finding),
             }
         }
     }
-    let mut warnings = stand_ins(&algebra.graph, mechanism, &mut rows, &mut findings);
+    let mut warnings = without_motion(mechanism, &rows, &mut findings);
     match leave_out(algebra, mechanism, &kinematics.frames, intervals, &mut rows) {
         Ok(left_out) => warnings.extend(left_out),
         Err(refused) => findings.extend(refused),
@@ -166,13 +145,20 @@ pub fn constraints(
     if !findings.is_empty() {
         return Err(findings);
     }
+    let support = Support::new(algebra, mechanism, &kinematics.frames, intervals, &rows);
+    let names: Vec<String> = places.iter().map(|place| place.name(mechanism)).collect();
+    warnings.extend(support.findings(mechanism, &rows, &names));
+    let (mut reactions, mut reported) = (Vec::new(), Vec::new());
+    for (place, name) in names.into_iter().enumerate() {
+        let told = support.tells(place);
+        reported.push(told.then_some(reactions.len()));
+        reactions.extend(told.then_some(name));
+    }
     Ok(Constraints {
         rows,
-        reactions: places
-            .into_iter()
-            .map(|place| place.name(mechanism))
-            .collect(),
-        carried,
+        reactions,
+        reported,
+        support,
         warnings,
     })
 }
@@ -221,8 +207,26 @@ impl Place {
 struct Scalar {
     name: String,
     value: Expr,
+    along: FrameVector,
     direction: Vec3,
-    frame: FrameId,
+    root: Option<PointId>,
+}
+
+impl Scalar {
+    /// The row of a constraint that no point feels.
+    fn without_point(name: &str, value: Expr) -> Self {
+        let along = FrameVector {
+            frame: GROUND,
+            v: vector::IDENTITY[0],
+        };
+        Self {
+            name: name.to_owned(),
+            value,
+            along,
+            direction: along.v,
+            root: None,
+        }
+    }
 }
 
 /// What one constraint demands, row by row, and where its reaction acts.
@@ -240,15 +244,7 @@ fn scalar_rows(
         rates: &symbols.rates,
     };
     let zero = |_| division_by_zero(item);
-    let single = |value: Expr, direction: Vec3| {
-        let name = constraint.name.clone();
-        vec![Scalar {
-            name,
-            value,
-            direction,
-            frame: GROUND,
-        }]
-    };
+    let single = |value| Scalar::without_point(&constraint.name, value);
     Ok(match &constraint.kind {
         ConstraintKind::Rolling {
             body,
@@ -267,8 +263,9 @@ fn scalar_rows(
                 Scalar {
                     name: format!("{}.{axis}", constraint.name),
                     value: v[k],
+                    along: unit,
                     direction: kinematics.frames.express(graph, unit, GROUND),
-                    frame,
+                    root: Some(root_of(mechanism, mechanism.bodies[*body].centre)),
                 }
             });
             (Place::Point(*contact), scalars.collect())
@@ -279,7 +276,7 @@ fn scalar_rows(
             let left = lowering.lower(&mut algebra.graph, left).map_err(zero)?;
             let right = lowering.lower(&mut algebra.graph, equals).map_err(zero)?;
             let value = algebra.graph.sub(left, right);
-            (Place::Constraint(index), single(value, vector::IDENTITY[0]))
+            (Place::Constraint(index), vec![single(value)])
         }
         ConstraintKind::FixedVelocity {
             point,
@@ -314,7 +311,14 @@ fn scalar_rows(
                 v: along,
             };
             let direction = kinematics.frames.express(&mut algebra.graph, along, GROUND);
-            (Place::Point(*point), single(value, direction))
+            let carrier = body.map_or(*point, |body| mechanism.bodies[body].centre);
+            let scalar = Scalar {
+                along,
+                direction,
+                root: Some(root_of(mechanism, carrier)),
+                ..single(value)
+            };
+            (Place::Point(*point), vec![scalar])
         }
         ConstraintKind::Position { zero: position, .. } => {
             let position = lowering.lower(&mut algebra.graph, position).map_err(zero)?;
@@ -323,7 +327,7 @@ fn scalar_rows(
                 rates: &symbols.rates,
             };
             let value = along.of(algebra, position);
-            (Place::Constraint(index), single(value, vector::IDENTITY[0]))
+            (Place::Constraint(index), vec![single(value)])
         }
     })
 }
@@ -333,7 +337,6 @@ fn row(
     algebra: &mut Algebra,
     mechanism: &Mechanism,
     symbols: &Symbols,
-    carried_rates: &[Expr],
     constraint: usize,
     place: usize,
     scalar: Scalar,
@@ -341,24 +344,18 @@ fn row(
     let Scalar {
         name,
         value,
+        along,
         direction,
-        frame,
+        root,
     } = scalar;
     let kind = &mechanism.constraints[constraint].kind;
     let of_position = matches!(kind, ConstraintKind::Position { .. });
-    let mut coefficients_of = |unknowns: &[Expr]| -> Vec<Expr> {
-        unknowns
-            .iter()
-            .map(|&unknown| {
-                let coefficient = algebra.derivative(value, unknown);
-                algebra.shortest(coefficient)
-            })
-            .collect()
-    };
-    let coefficients = coefficients_of(&symbols.rates);
-    let carried = coefficients_of(carried_rates);
-    let unknowns = [&symbols.rates, carried_rates].concat();
-    let rest = Substitution::by_zero(&algebra.graph, &unknowns)
+    let mut coefficients = Vec::with_capacity(symbols.rates.len());
+    for &rate in &symbols.rates {
+        let coefficient = algebra.derivative(value, rate);
+        coefficients.push(algebra.shortest(coefficient));
+    }
+    let rest = Substitution::by_zero(&algebra.graph, &symbols.rates)
         .apply(&mut algebra.graph, value)
         .ok_or_else(|| division_by_zero(Item::Constraint(constraint)))?;
     let rest = algebra.shortest(rest);
@@ -369,73 +366,22 @@ fn row(
         coefficients,
         rest,
         reaction: Reaction { place, direction },
-        carried,
-        stand_in: None,
+        along,
+        root,
         redundant: false,
-        frame,
         of_position,
     })
 }
 
-/// Three motions per point from which a constrained point hangs, along the axes of the ground or of
-/// the first surface that the spec tells the normal of.
-fn imagined_motions(mechanism: &Mechanism) -> Vec<Imagined> {
-    let mut roots: Vec<(PointId, Option<FrameId>)> = Vec::new();
-    for constraint in &mechanism.constraints {
-        let (carrier, surface) = match &constraint.kind {
-            ConstraintKind::Rolling { body, normal, .. } => (
-                mechanism.bodies[*body].centre,
-                normal.map(|normal| normal.frame),
-            ),
-            ConstraintKind::FixedVelocity {
-                body: Some(body), ..
-            } => (mechanism.bodies[*body].centre, None),
-            ConstraintKind::FixedVelocity {
-                point, body: None, ..
-            } => (*point, None),
-            ConstraintKind::Velocity { .. } | ConstraintKind::Position { .. } => continue,
-        };
-        let root = root_of(mechanism, carrier);
-        match roots.iter_mut().find(|(known, _)| *known == root) {
-            Some((_, frame)) => *frame = frame.or(surface),
-            None => roots.push((root, surface)),
-        }
-    }
-    let along = |(root, frame): (PointId, Option<FrameId>)| {
-        (0..3).map(move |axis| Imagined {
-            root,
-            frame: frame.unwrap_or(GROUND),
-            axis,
-        })
-    };
-    roots.into_iter().flat_map(along).collect()
-}
-
-/// The imagined motions with given velocities.
-pub fn motions_along(carried: &[Imagined], rates: &[Expr]) -> Vec<Carried> {
-    carried
-        .iter()
-        .zip(rates)
-        .map(|(&Imagined { root, frame, axis }, &rate)| {
-            let mut v = vector::ZERO;
-            v[axis] = rate;
-            let v = FrameVector { frame, v };
-            Carried { root, v }
-        })
-        .collect()
-}
-
-/// Finds the rows without any generalised velocity. Those of a rolling contact hold by geometry and
-/// get an imagined motion; others contradict the spec or say nothing. Returns what to warn of.
-fn stand_ins(
-    graph: &Graph,
+/// What the rows without any generalised velocity say: those of a point hold by geometry, others
+/// contradict the spec or say nothing. Returns what to warn of.
+fn without_motion(
     mechanism: &Mechanism,
-    rows: &mut [Row],
+    rows: &[Row],
     findings: &mut Vec<Finding>,
 ) -> Vec<Finding> {
     let mut warnings = Vec::new();
-    let mut taken: Vec<usize> = Vec::new();
-    for row in rows.iter_mut().filter(|row| row.is_embedded()) {
+    for row in rows.iter().filter(|row| row.is_embedded()) {
         let item = Item::Constraint(row.constraint);
         if row.rest != Graph::ZERO {
             findings.push(Finding {
@@ -448,51 +394,15 @@ fn stand_ins(
                 help: "let a coordinate take part in the motion that the constraint prescribes"
                     .to_owned(),
             });
-            continue;
+        } else if row.root.is_none() {
+            let name = &mechanism.constraints[row.constraint].name;
+            warnings.push(Finding {
+                code: Code::RedundantConstraint,
+                message: format!("`{name}` always holds: no generalised velocity appears in it"),
+                item,
+                help: "remove the constraint".to_owned(),
+            });
         }
-        let fitting: Vec<StandIn> = row
-            .carried
-            .iter()
-            .enumerate()
-            .filter_map(|(motion, &c)| Some((motion, graph.as_number(c)?)))
-            .filter(|(_, coefficient)| !coefficient.is_zero())
-            .map(|(motion, coefficient)| StandIn {
-                motion,
-                coefficient: coefficient.clone(),
-            })
-            .collect();
-        row.stand_in = fitting
-            .iter()
-            .find(|fit| !taken.contains(&fit.motion))
-            .cloned();
-        taken.extend(row.stand_in.iter().map(|fit| fit.motion));
-        if row.stand_in.is_some() {
-            continue;
-        }
-        row.redundant = true;
-        let name = &mechanism.constraints[row.constraint].name;
-        let (message, help) = if fitting.is_empty() {
-            (
-                format!("`{name}` always holds: no generalised velocity appears in it"),
-                "remove the constraint",
-            )
-        } else {
-            (
-                format!(
-                    "`{}` holds by geometry, and so does another constraint in the same direction: \
-                     how the two share their reaction cannot be told; the other is reported with \
-                     the sum",
-                    row.name
-                ),
-                "remove one of the two constraints, or read their reactions as one",
-            )
-        };
-        warnings.push(Finding {
-            code: Code::RedundantConstraint,
-            message,
-            item,
-            help: help.to_owned(),
-        });
     }
     warnings
 }

@@ -62,7 +62,7 @@ impl ContactRows {
                 .filter(|(_, row)| {
                     row.is_some_and(|row| {
                         let row = &constraints.rows[row];
-                        row.constraint == index && row.frame == GROUND
+                        row.constraint == index && row.along.frame == GROUND
                     })
                 })
                 .map(|(place, _)| place)

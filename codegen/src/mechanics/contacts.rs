@@ -28,7 +28,7 @@ pub struct Contact {
 
 /// The contacts of a mechanism, at most one per place of a reaction, and what to warn of.
 ///
-/// Where constraints share a reaction in a way that cannot be told, no contact is judged.
+/// Where constraints share a reaction in a way that cannot be told, their contacts are not judged.
 pub fn contacts(
     algebra: &mut Algebra,
     mechanism: &Mechanism,
@@ -36,8 +36,6 @@ pub fn contacts(
     constraints: &Constraints,
 ) -> Outcome<(Vec<Contact>, Vec<Finding>)> {
     let (mut contacts, mut warnings) = (Vec::<Contact>::new(), Vec::new());
-    let mut rows = constraints.rows.iter();
-    let shared = rows.any(|row| row.redundant && !row.of_position);
     for (index, constraint) in mechanism.constraints.iter().enumerate() {
         let rows: Vec<&Row> = constraints.rows_of(index).collect();
         let (normal, grips, friction) = match &constraint.kind {
@@ -57,15 +55,15 @@ pub fn contacts(
             ConstraintKind::Velocity { .. } => (None, false, None),
         };
         let unknown = normal.is_none();
-        let found = normal.filter(|_| !shared).and_then(|(axis, negative)| {
-            let reaction = &rows.get(axis)?.reaction;
+        let found = normal.and_then(|(axis, negative)| {
+            let row = rows.get(axis)?;
             let graph = &mut algebra.graph;
             let normal = if negative {
-                reaction.direction.map(|c| graph.neg(c))
+                graph.neg3(row.reaction.direction)
             } else {
-                reaction.direction
+                row.reaction.direction
             };
-            Some((reaction.place, normal))
+            Some((constraints.reported(row)?, normal))
         });
         let Some((place, normal)) = found else {
             if friction.is_some() {
@@ -115,13 +113,7 @@ fn against_the_weight(
 /// Whether the position constraints imply a row.
 fn follows_from_positions(algebra: &mut Algebra, constraints: &Constraints, row: &Row) -> bool {
     let positions = constraints.rows.iter().filter(|row| row.of_position);
-    let rows: Vec<LinearRow> = positions
-        .chain([row])
-        .map(|row| LinearRow {
-            coefficients: row.coefficients.clone(),
-            rest: row.rest,
-        })
-        .collect();
+    let rows: Vec<LinearRow> = positions.chain([row]).map(Row::linear).collect();
     let standings = standings(algebra, &rows);
     matches!(standings.last(), Some(Standing::Redundant(_)))
 }

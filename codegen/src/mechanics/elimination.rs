@@ -30,7 +30,7 @@ pub struct Violation {
     pub rates: Vec<Expr>,
     /// q̇ in terms of pseudo-velocities and those rates.
     pub coordinate_rates: Vec<Expr>,
-    /// Rates of the imagined motions, in the order of [`Constraints::carried`].
+    /// Rates of the imagined motions, in the order of their support.
     pub carried_rates: Vec<Expr>,
 }
 
@@ -84,13 +84,13 @@ pub fn eliminate(
         .iter()
         .map(|row| algebra.graph.symbol(&format!("violation_{}", row.name)))
         .collect();
-    let mut carried_rates = vec![Graph::ZERO; constraints.carried.len()];
-    for (row, &violation) in constraints.rows.iter().zip(&violation_rates) {
-        if let Some(stand_in) = &row.stand_in {
-            carried_rates[stand_in.motion] = algebra
-                .graph
-                .scale(&stand_in.coefficient.recip(), violation);
-        }
+    let mut carried_rates = Vec::with_capacity(constraints.support.motions.len());
+    for motion in &constraints.support.motions {
+        let parts = motion.rate.iter().zip(&violation_rates);
+        let parts: Vec<Expr> = parts
+            .map(|(&share, &violation)| algebra.graph.mul(share, violation))
+            .collect();
+        carried_rates.push(algebra.graph.sum(&parts));
     }
 
     let mut equations = Vec::new();
@@ -103,8 +103,8 @@ pub fn eliminate(
         }
         // Σ C q̇ = violation - rest - what the imagined motions contribute
         let mut parts = vec![violation_rates[index], algebra.graph.neg(row.rest)];
-        for (&coefficient, &rate) in row.carried.iter().zip(&carried_rates) {
-            let contribution = algebra.graph.mul(coefficient, rate);
+        for (motion, &rate) in constraints.support.motions.iter().zip(&carried_rates) {
+            let contribution = algebra.graph.mul(motion.gains[index], rate);
             parts.push(algebra.graph.neg(contribution));
         }
         let right = algebra.graph.sum(&parts);

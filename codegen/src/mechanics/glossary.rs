@@ -105,13 +105,13 @@ pub fn of_multipliers(mechanism: &Mechanism, constraints: &Constraints) -> Vec<T
         )
     };
     each_constraint(constraints, without_point)
-        .map(|row| {
+        .filter_map(|row| {
             let constraint = &mechanism.constraints[row.constraint];
             let unit = unit_of_row(&constraint.kind);
             let name = &constraint.name;
             let meaning = format!("the multiplier of constraint `{name}` as x, in W per `{unit}`.");
-            let place = &constraints.reactions[row.reaction.place];
-            vector("F", place, meaning)
+            let place = &constraints.reactions[constraints.reported(row)?];
+            Some(vector("F", place, meaning))
         })
         .collect()
 }

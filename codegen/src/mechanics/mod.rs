@@ -1,7 +1,7 @@
 //! From a mechanism to its equations of motion by the Gibbs-Appell method.
 //!
 //! The files are the steps, in order: [`symbols`], [`frames`], [`kinematics`], [`constraints`],
-//! [`redundancy`], [`elimination`], [`gibbs_appell`], [`loads`], [`dependent`], [`motion`],
+//! [`redundancy`], [`support`], [`elimination`], [`gibbs_appell`], [`loads`], [`dependent`], [`motion`],
 //! [`linear`], [`reactions`], [`assemble`].
 
 pub mod algebra;
@@ -28,6 +28,7 @@ pub mod positions;
 pub mod rank;
 pub mod reactions;
 pub mod redundancy;
+pub mod support;
 pub mod switches;
 pub mod symbols;
 pub mod systems;

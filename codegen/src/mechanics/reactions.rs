@@ -1,16 +1,16 @@
 //! Constraint forces by auxiliary pseudo-velocities.
 //!
-//! Every constraint row gets a speed at which it would be violated. In the motions along these
+//! Every constraint row gets a speed at which it alone would be violated. In the motions along these
 //! speeds the constraint does work, so Appell's equations for them give its reaction.
 
 use appell_spec::mechanism::Mechanism;
 
 use super::algebra::Algebra;
-use super::constraints::{Constraints, motions_along};
+use super::constraints::Constraints;
 use super::elimination::Violation;
 use super::finding::{Item, Outcome};
 use super::gibbs_appell::{ActualMotion, BodyMotion, partial_velocities};
-use super::kinematics::{Effort, Kinematics, division_by_zero};
+use super::kinematics::{Carried, Effort, Kinematics, division_by_zero};
 use super::loads::{applied_loads, generalized_forces};
 use super::symbols::Symbols;
 use crate::symbolic::vector::{self, Vec3};
@@ -26,7 +26,11 @@ pub fn reactions(
     bodies: &[BodyMotion],
     accelerations: &[Expr],
 ) -> Outcome<Vec<Vec3>> {
-    let carried = motions_along(&constraints.carried, &violation.carried_rates);
+    let motions = constraints.support.motions.iter();
+    let carried: Vec<Carried> = motions
+        .zip(&violation.carried_rates)
+        .flat_map(|(motion, &rate)| motion.at(&mut algebra.graph, rate))
+        .collect();
     let rates = &violation.coordinate_rates;
     let kinematics = Kinematics::new(algebra, mechanism, symbols, rates, &carried, Effort::Plain)?;
     let loads = applied_loads(algebra, mechanism, symbols, &kinematics, rates)?;
@@ -49,6 +53,9 @@ pub fn reactions(
 
     let mut totals = vec![vector::ZERO; constraints.reactions.len()];
     for ((row, &rate), applied) in constraints.rows.iter().zip(&violation.rates).zip(applied) {
+        let Some(place) = constraints.reported(row) else {
+            continue;
+        };
         let mut parts = vec![algebra.graph.neg(applied)];
         for ((body, motion), (force, moment)) in mechanism.bodies.iter().zip(bodies).zip(&inertial)
         {
@@ -72,7 +79,7 @@ pub fn reactions(
         let magnitude = algebra.graph.sum(&parts);
         let magnitude = algebra.shortest(magnitude);
         let contribution = algebra.graph.scale3(magnitude, row.reaction.direction);
-        let total = &mut totals[row.reaction.place];
+        let total = &mut totals[place];
         *total = algebra.graph.add3(*total, contribution);
     }
     Ok(totals)

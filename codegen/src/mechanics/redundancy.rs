@@ -1,7 +1,6 @@
 //! Constraint rows that follow from others: two wheels on one axle cannot slip sideways one by one.
 //!
-//! Such a row is left out, and the motion stays the same. The reactions are then those of the rows
-//! that stay, which do the work of the one left out as well.
+//! Such a row is left out, and the motion stays the same.
 
 use appell_spec::Code;
 use appell_spec::mechanism::{ConstraintKind, FrameId, GROUND, Mechanism};
@@ -44,10 +43,7 @@ pub fn leave_out(
         };
         let constraint = rows[row].constraint;
         if let Some(spare) = spare_row(algebra, intervals, row, &combination) {
-            // A position constraint beside the contact that keeps it is no mistake.
-            if !rows[spare].of_position {
-                warnings.push(redundancy(rows, spare, row, &combination));
-            }
+            warnings.extend(redundancy(rows, spare, row, &combination));
             rows[spare].redundant = true;
         } else if !turned.contains(&constraint)
             && let Some(resolved) =
@@ -90,11 +86,7 @@ fn first_dependent(
 }
 
 fn linear(rows: &[Row], places: &[usize]) -> Vec<LinearRow> {
-    let linear = |&place: &usize| LinearRow {
-        coefficients: rows[place].coefficients.clone(),
-        rest: rows[place].rest,
-    };
-    places.iter().map(linear).collect()
+    places.iter().map(|&place| rows[place].linear()).collect()
 }
 
 /// A row that follows from the others in every configuration, where `row = Σ factor · other`: the
@@ -209,9 +201,6 @@ fn resolved_in(
         row.coefficients = (0..row.coefficients.len())
             .map(|k| sum(&|row| row.coefficients[k]))
             .collect();
-        row.carried = (0..row.carried.len())
-            .map(|k| sum(&|row| row.carried[k]))
-            .collect();
         if row.is_embedded() {
             return None;
         }
@@ -220,7 +209,7 @@ fn resolved_in(
             &mechanism.frames[frame].name,
         );
         row.name = format!("{constraint}.{frame_name}_{letter}");
-        row.frame = frame;
+        row.along = unit;
         row.reaction.direction = along;
         resolved.push((place, row));
     }
@@ -256,14 +245,25 @@ fn singular(mechanism: &Mechanism, row: &Row) -> Finding {
     }
 }
 
-/// The warning for a row that is left out, where `row = Σ factor · other`.
-fn redundancy(rows: &[Row], spare: usize, row: usize, combination: &Combination) -> Finding {
+/// The warning for a row that is left out, where `row = Σ factor · other`. Rows of one contact may
+/// follow from each other, as geometry keeps it on its surface, and a position constraint beside the
+/// contact that keeps it is no mistake.
+fn redundancy(
+    rows: &[Row],
+    spare: usize,
+    row: usize,
+    combination: &Combination,
+) -> Option<Finding> {
     let mut others: Vec<usize> = combination.iter().map(|&(other, _)| other).collect();
     others.push(row);
     others.sort_unstable();
+    others.retain(|&other| other != spare);
+    let own = |&other: &usize| rows[other].constraint == rows[spare].constraint;
+    if rows[spare].of_position || !others.is_empty() && others.iter().all(own) {
+        return None;
+    }
     let names: Vec<String> = others
         .into_iter()
-        .filter(|&other| other != spare)
         .map(|other| format!("`{}`", rows[other].name))
         .collect();
     let reason = if names.is_empty() {
@@ -271,14 +271,13 @@ fn redundancy(rows: &[Row], spare: usize, row: usize, combination: &Combination)
     } else {
         format!("follows from {}", names.join(", "))
     };
-    Finding {
+    Some(Finding {
         code: Code::RedundantConstraint,
         message: format!(
-            "`{}` {reason} and is left out: the motion is the same, but how the constraints share \
-             their reactions cannot be told; it is reported without any",
+            "`{}` {reason} and is left out: the motion is the same without it",
             rows[spare].name
         ),
         item: Item::Constraint(rows[spare].constraint),
-        help: "remove it, or read the reactions of these constraints as one".to_owned(),
-    }
+        help: "remove it".to_owned(),
+    })
 }

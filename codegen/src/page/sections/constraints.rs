@@ -79,7 +79,7 @@ fn constraint(w: &mut Writer<'_>, index: usize) -> Vec<Block> {
             let component = row.name.rsplit('.').next().unwrap_or(&row.name);
             held.push(vec![words(component)]);
         } else {
-            axes = row.frame;
+            axes = row.along.frame;
             open.push(equation(w, &row));
         }
     }

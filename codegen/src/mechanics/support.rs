@@ -1,0 +1,347 @@
+//! Forces behind rows that geometry or other rows already satisfy.
+//!
+//! Such a row `r = Σ factor · other` tells nothing of the motion, but its force is as real as the
+//! others. It works in motions that the coordinates do not have: all that hangs together is carried
+//! along the direction of the force. There the row does not follow any more, `r - Σ factor · other =
+//! D c` for the rates c of these motions. Where D has an inverse, each row can be violated alone, and
+//! its force is told. Where it has none, the forces outnumber the equations of Newton: the mechanism
+//! is statically indeterminate, and no share of them is reported.
+
+use appell_spec::Code;
+use appell_spec::expr::Quantity;
+use appell_spec::mechanism::{CoordinateId, Mechanism, ORIGIN, PointId};
+
+use super::algebra::Algebra;
+use super::constraints::{Reaction, Row};
+use super::finding::{Finding, Item};
+use super::frames::{FrameVector, Frames};
+use super::kinematics::{Carried, root_of};
+use super::rank::{LinearRow, Standing, standings};
+use crate::symbolic::vector::Vec3;
+use crate::symbolic::{Expr, Graph, Intervals};
+
+/// A motion that the coordinates do not have.
+#[derive(Debug, Clone)]
+pub struct Imagined {
+    /// The points next to the origin from which hangs what is carried along.
+    roots: Vec<PointId>,
+    /// Its velocity for a unit of its rate.
+    along: FrameVector,
+    /// How much of each row it violates per unit of its rate.
+    pub gains: Vec<Expr>,
+    /// Its rate as a sum of the rates at which rows are violated.
+    pub rate: Vec<Expr>,
+}
+
+impl Imagined {
+    /// What moves at a rate.
+    pub fn at(&self, graph: &mut Graph, rate: Expr) -> Vec<Carried> {
+        let v = FrameVector {
+            frame: self.along.frame,
+            v: graph.scale3(rate, self.along.v),
+        };
+        let carried = |&root| Carried { root, v };
+        self.roots.iter().map(carried).collect()
+    }
+
+    /// How much of a row it violates.
+    fn gain(&self, algebra: &mut Algebra, frames: &Frames, row: &Row) -> Expr {
+        if row.root.is_none_or(|root| !self.roots.contains(&root)) {
+            return Graph::ZERO;
+        }
+        let frame = self.along.frame;
+        let direction = frames.express(&mut algebra.graph, row.along, frame);
+        let gain = algebra.graph.dot(direction, self.along.v);
+        tidy(algebra, gain)
+    }
+}
+
+/// Rows whose shares of a force cannot be told.
+#[derive(Debug, Clone)]
+struct Indeterminate {
+    /// The last of the rows.
+    row: usize,
+    /// Places of reactions that would change with the shares.
+    places: Vec<usize>,
+}
+
+/// What holds the rows that follow from others.
+#[derive(Debug, Clone, Default)]
+pub struct Support {
+    /// Motions that violate them.
+    pub motions: Vec<Imagined>,
+    indeterminate: Vec<Indeterminate>,
+    /// Places of position constraints that a contact keeps: the force is the contact's.
+    silent: Vec<usize>,
+}
+
+/// A row of `D c = violations`.
+struct Equation {
+    gains: Vec<Expr>,
+    violations: Vec<Expr>,
+}
+
+impl Support {
+    /// Looks for a motion behind each row that follows from others.
+    pub fn new(
+        algebra: &mut Algebra,
+        mechanism: &Mechanism,
+        frames: &Frames,
+        intervals: &mut Intervals,
+        rows: &[Row],
+    ) -> Self {
+        let mut support = Self::default();
+        let following: Vec<usize> = (0..rows.len()).filter(|&r| !rows[r].is_active()).collect();
+        for &row in &following {
+            let Some(root) = rows[row].root else { continue };
+            let mut motion = Imagined {
+                roots: tied_to(mechanism, root),
+                along: rows[row].along,
+                gains: Vec::new(),
+                rate: Vec::new(),
+            };
+            for row in rows {
+                let gain = motion.gain(algebra, frames, row);
+                motion.gains.push(gain);
+            }
+            support.motions.push(motion);
+        }
+        let mut solved: Vec<(usize, Equation)> = Vec::new();
+        for &row in &following {
+            let factors = factors(algebra, rows, row);
+            let kept = |other: usize| factors[other] != Graph::ZERO && !rows[other].of_position;
+            if rows[row].of_position && (0..rows.len()).any(kept) {
+                support.silent.push(rows[row].reaction.place);
+                continue;
+            }
+            let mut equation = support.equation(algebra, row, factors);
+            for (motion, known) in &solved {
+                equation.less(algebra, known, *motion);
+            }
+            match equation.pivot(algebra, intervals) {
+                Some(motion) => {
+                    equation.divide(algebra, motion);
+                    for (_, known) in &mut solved {
+                        known.less(algebra, &equation, motion);
+                    }
+                    solved.push((motion, equation));
+                }
+                None => support.indeterminate.push(Indeterminate {
+                    row,
+                    places: loaded_places(algebra, rows, &equation.violations),
+                }),
+            }
+        }
+        solved.sort_by_key(|(motion, _)| *motion);
+        support.motions = solved
+            .into_iter()
+            .map(|(motion, equation)| Imagined {
+                rate: equation.violations,
+                ..support.motions[motion].clone()
+            })
+            .collect();
+        support
+    }
+
+    /// Whether the reaction at a place is determined.
+    pub fn tells(&self, place: usize) -> bool {
+        let mut untold = self.indeterminate.iter().flat_map(|rows| &rows.places);
+        untold.all(|&other| other != place) && !self.silent.contains(&place)
+    }
+
+    /// What to warn of, once for all reactions that depend on each other.
+    pub fn findings(&self, mechanism: &Mechanism, rows: &[Row], places: &[String]) -> Vec<Finding> {
+        let mut groups: Vec<Indeterminate> = Vec::new();
+        for indeterminate in &self.indeterminate {
+            let mut joined = indeterminate.clone();
+            groups.retain(|group| {
+                let meets = group.places.iter().any(|p| joined.places.contains(p));
+                if meets {
+                    joined.places.extend(&group.places);
+                }
+                !meets
+            });
+            joined.places.sort_unstable();
+            joined.places.dedup();
+            groups.push(joined);
+        }
+        // A constraint that always holds is told of as such.
+        groups.retain(|group| group.places.len() > 1);
+        let finding = |group: Indeterminate| {
+            let shares = |row: &&Row| group.places.contains(&row.reaction.place);
+            let mut sharing: Vec<usize> = rows
+                .iter()
+                .filter(shares)
+                .map(|row| row.constraint)
+                .collect();
+            sharing.dedup();
+            let sharing = sharing.iter().map(|&c| &mechanism.constraints[c].name);
+            let forces = group.places.iter().map(|&place| &places[place]);
+            Finding {
+                code: Code::UndeterminedReaction,
+                message: format!(
+                    "how {} share their reactions cannot be told: they have more forces than the \
+                     laws of motion have equations for them; {} are not reported",
+                    listed(sharing),
+                    listed(forces)
+                ),
+                item: Item::Constraint(rows[group.row].constraint),
+                help: "the motion does not depend on it; for the reactions keep one constraint for \
+                       each motion that is prevented, or add the coordinate, a play or a deflection, \
+                       that tells them apart"
+                    .to_owned(),
+            }
+        };
+        groups.into_iter().map(finding).collect()
+    }
+
+    /// `Σ gain · c = Σ violation` for a row that is a sum of others with `factors`.
+    fn equation(&self, algebra: &mut Algebra, row: usize, factors: Vec<Expr>) -> Equation {
+        let graph = &mut algebra.graph;
+        let mut violations: Vec<Expr> = factors.into_iter().map(|f| graph.neg(f)).collect();
+        violations[row] = Graph::ONE;
+        let gain = |motion: &Imagined| {
+            let parts = motion.gains.iter().zip(&violations);
+            let parts: Vec<Expr> = parts.map(|(&gain, &v)| graph.mul(gain, v)).collect();
+            graph.sum(&parts)
+        };
+        let gains: Vec<Expr> = self.motions.iter().map(gain).collect();
+        Equation {
+            gains: gains.into_iter().map(|gain| tidy(algebra, gain)).collect(),
+            violations,
+        }
+    }
+}
+
+impl Equation {
+    /// A motion for which it can be solved in every configuration, the plainest first.
+    fn pivot(&self, algebra: &Algebra, intervals: &mut Intervals) -> Option<usize> {
+        let graph = &algebra.graph;
+        let candidates = (0..self.gains.len()).filter(|&k| self.gains[k] != Graph::ZERO);
+        let safe = candidates.filter(|&k| intervals.cannot_vanish(graph, self.gains[k]));
+        safe.min_by_key(|&k| (graph.operations(&[self.gains[k]]), k))
+    }
+
+    /// Takes a motion out of it by an equation that is solved for that motion.
+    fn less(&mut self, algebra: &mut Algebra, solved: &Self, motion: usize) {
+        let share = self.gains[motion];
+        if share == Graph::ZERO {
+            return;
+        }
+        let own = self.gains.iter_mut().chain(&mut self.violations);
+        for (value, &other) in own.zip(solved.gains.iter().chain(&solved.violations)) {
+            let part = algebra.graph.mul(share, other);
+            let rest = algebra.graph.sub(*value, part);
+            *value = tidy(algebra, rest);
+        }
+    }
+
+    /// Solves it for a motion.
+    fn divide(&mut self, algebra: &mut Algebra, motion: usize) {
+        let pivot = self.gains[motion];
+        for value in self.gains.iter_mut().chain(&mut self.violations) {
+            let quotient = algebra.graph.div(*value, pivot);
+            *value = algebra.shortest(quotient);
+        }
+    }
+}
+
+/// The shortest form; zero where it is zero.
+fn tidy(algebra: &mut Algebra, expr: Expr) -> Expr {
+    if algebra.test.is_zero(&algebra.graph, expr) {
+        Graph::ZERO
+    } else {
+        algebra.shortest(expr)
+    }
+}
+
+/// A row as a sum of active rows: a factor for each of all rows.
+fn factors(algebra: &mut Algebra, rows: &[Row], row: usize) -> Vec<Expr> {
+    let mut factors = vec![Graph::ZERO; rows.len()];
+    if rows[row].is_embedded() {
+        return factors;
+    }
+    let mut places: Vec<usize> = (0..rows.len()).filter(|&r| rows[r].is_active()).collect();
+    places.push(row);
+    let linear: Vec<LinearRow> = places.iter().map(|&place| rows[place].linear()).collect();
+    if let Some(Standing::Redundant(sum)) = standings(algebra, &linear).pop() {
+        for (other, factor) in sum {
+            factors[places[other]] = factor;
+        }
+    }
+    factors
+}
+
+/// Where a force remains if rows react in the proportion of `shares`.
+fn loaded_places(algebra: &mut Algebra, rows: &[Row], shares: &[Expr]) -> Vec<usize> {
+    let mut loads: Vec<(usize, Vec3)> = Vec::new();
+    for (row, &share) in rows.iter().zip(shares) {
+        let Reaction { place, direction } = &row.reaction;
+        let force = algebra.graph.scale3(share, *direction);
+        match loads.iter_mut().find(|(known, _)| known == place) {
+            Some((_, sum)) => *sum = algebra.graph.add3(*sum, force),
+            None => loads.push((*place, force)),
+        }
+    }
+    let Algebra { graph, test, .. } = algebra;
+    let loaded = loads
+        .into_iter()
+        .filter(|(_, force)| force.iter().any(|&c| !test.is_zero(graph, c)));
+    loaded.map(|(place, _)| place).collect()
+}
+
+/// The points next to the origin that hang together with `root`: coordinates that move both say that
+/// something joins them, which no constraint tells.
+fn tied_to(mechanism: &Mechanism, root: PointId) -> Vec<PointId> {
+    let all = (0..mechanism.points.len()).filter(|&p| mechanism.points[p].from == Some(ORIGIN));
+    let mut apart: Vec<(PointId, Vec<CoordinateId>)> =
+        all.map(|root| (root, moving(mechanism, root))).collect();
+    let mut tied = vec![root];
+    let mut coordinates = moving(mechanism, root);
+    apart.retain(|(other, _)| *other != root);
+    while let Some(place) = apart
+        .iter()
+        .position(|(_, own)| own.iter().any(|q| coordinates.contains(q)))
+    {
+        let (other, own) = apart.swap_remove(place);
+        tied.push(other);
+        coordinates.extend(own);
+    }
+    tied.sort_unstable();
+    tied
+}
+
+/// The coordinates on the way from the origin to what hangs from `root`.
+fn moving(mechanism: &Mechanism, root: PointId) -> Vec<CoordinateId> {
+    let mut coordinates = Vec::new();
+    let mut see = |quantity| {
+        if let Quantity::Coordinate(q) = quantity {
+            coordinates.push(q);
+        }
+    };
+    let points = mechanism.points.iter().enumerate();
+    for (_, point) in points.filter(|(p, _)| *p != ORIGIN && root_of(mechanism, *p) == root) {
+        point
+            .at
+            .iter()
+            .for_each(|component| component.visit(&mut see));
+        let mut frame = Some(point.frame);
+        while let Some(turned) = frame.map(|frame| &mechanism.frames[frame]) {
+            turned
+                .turns
+                .iter()
+                .for_each(|turn| turn.angle.visit(&mut see));
+            frame = turned.parent;
+        }
+    }
+    coordinates
+}
+
+/// `a`, `b` and `c`
+fn listed<'a>(names: impl Iterator<Item = &'a String>) -> String {
+    let mut names: Vec<String> = names.map(|name| format!("`{name}`")).collect();
+    match names.pop() {
+        Some(last) if !names.is_empty() => format!("{} and {last}", names.join(", ")),
+        last => last.unwrap_or_default(),
+    }
+}

@@ -233,7 +233,7 @@ fn two_contacts_that_share_a_reaction_are_warned_of() {
          [pseudo_velocities]\nv = 'dot(x)'\n";
     let shown = warnings(text);
     assert!(
-        shown.contains("how the two share their reaction cannot be told"),
+        shown.contains("how `left` and `right` share their reactions cannot be told"),
         "{shown}"
     );
 }

@@ -9,6 +9,7 @@
 //! - [`simulate`] and [`trajectory`]: motions of a model and their files;
 //! - [`spectrum`]: eigenvalues, eigenvectors, characteristic polynomials;
 //! - [`singular`]: singular values and vectors, ranks, shortest solutions;
+//! - [`control`]: controllability, pole placement, optimal feedback, sampled loops;
 //! - [`contact`] and [`condition`]: where a model stops being valid;
 //! - [`figure`]: plots as SVG.
 //!
@@ -27,6 +28,8 @@
 pub mod condition;
 #[cfg(feature = "std")]
 pub mod contact;
+#[cfg(feature = "std")]
+pub mod control;
 pub mod dense;
 #[cfg(feature = "std")]
 pub mod figure;

@@ -1,0 +1,284 @@
+//! Controllers that measure at intervals and act with a delay.
+//!
+//! Between measurements the inputs are held (zero-order hold), and what a measurement asks for acts
+//! after a delay. In the states at the measurements, together with the inputs that were asked for
+//! and do not act yet, the system is linear and discrete (K. J. Åström, B. Wittenmark,
+//! *Computer-Controlled Systems*, sections 2.3 and 3.2).
+
+use std::cell::RefCell;
+
+use nalgebra::{Complex, DMatrix, DVector};
+
+use super::LinearSystem;
+use super::lqr::{self, Regulator};
+use super::placement::{Placement, PlacementError};
+use super::riccati::RiccatiError;
+use super::robust_placement;
+use crate::inputs::InputSource;
+
+/// Most measurements that a delay may last.
+const MOST_PENDING: usize = 100;
+
+/// When a controller measures and acts.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sampling {
+    period: f64,
+    delay: f64,
+}
+
+/// No controller can measure and act like this.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+pub enum SamplingError {
+    /// The period is no time.
+    #[error("the sampling period must be a positive number of seconds, not {0}")]
+    Period(f64),
+    /// The delay is no time.
+    #[error("the delay must be a number of seconds that is not negative, not {0}")]
+    Delay(f64),
+    /// The delay lasts too long.
+    #[error("the delay of {delay} s lasts more than {MOST_PENDING} sampling periods of {period} s")]
+    Pending {
+        /// The period in s.
+        period: f64,
+        /// The delay in s.
+        delay: f64,
+    },
+}
+
+impl Sampling {
+    /// Measures each `period` in s, and acts `delay` in s later.
+    pub fn new(period: f64, delay: f64) -> Result<Self, SamplingError> {
+        let sampling = Self { period, delay };
+        if !(period.is_finite() && period > 0.0) {
+            Err(SamplingError::Period(period))
+        } else if !(delay.is_finite() && delay >= 0.0) {
+            Err(SamplingError::Delay(delay))
+        } else if sampling.pending() > MOST_PENDING {
+            Err(SamplingError::Pending { period, delay })
+        } else {
+            Ok(sampling)
+        }
+    }
+
+    /// Between two measurements, in s.
+    pub fn period(self) -> f64 {
+        self.period
+    }
+
+    /// From a measurement to its effect, in s.
+    pub fn delay(self) -> f64 {
+        self.delay
+    }
+
+    /// How many inputs that were asked for still have to act at a measurement.
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "a count; what is no count saturates"
+    )]
+    pub fn pending(self) -> usize {
+        // A delay of three periods that is written as 0.3 s for 0.1 s has three, not four.
+        (self.delay / self.period * (1.0 - 1e-12)).ceil() as usize
+    }
+
+    /// The pole of the sampled loop for a pole of the continuous one: e^{sT}.
+    pub fn pole(self, continuous: Complex<f64>) -> Complex<f64> {
+        (continuous * self.period).exp()
+    }
+
+    /// The pole that decays as fast in continuous time: ln z / T. None for z = 0, which is over
+    /// after one period.
+    pub fn continuous_pole(self, sampled: Complex<f64>) -> Option<Complex<f64>> {
+        (sampled.norm() > 0.0).then(|| sampled.ln() / self.period)
+    }
+
+    /// The discrete system: states y at a measurement, then the inputs that still have to act, the
+    /// oldest first. Its inputs are what a measurement asks for.
+    #[must_use]
+    pub fn discretise(self, system: &LinearSystem) -> LinearSystem {
+        let (n, m, pending) = (system.order(), system.inputs(), self.pending());
+        let size = n + m * pending;
+        let (mut a, mut b) = (DMatrix::zeros(size, size), DMatrix::zeros(size, m));
+        // The input changes once in a period, after this time.
+        let change = (self.delay - self.period * (pending as f64 - 1.0)).clamp(0.0, self.period);
+        if pending == 0 {
+            let [phi, gamma] = held(system, self.period);
+            return LinearSystem { a: phi, b: gamma };
+        }
+        let [_, before] = held(system, change);
+        let [after, now] = held(system, self.period - change);
+        let [phi, _] = held(system, self.period);
+        a.view_mut((0, 0), (n, n)).copy_from(&phi);
+        a.view_mut((0, n), (n, m)).copy_from(&(after * before));
+        if pending == 1 {
+            b.rows_mut(0, n).copy_from(&now);
+        } else {
+            a.view_mut((0, n + m), (n, m)).copy_from(&now);
+        }
+        for place in 1..pending {
+            a.view_mut((n + (place - 1) * m, n + place * m), (m, m))
+                .fill_with_identity();
+        }
+        b.rows_mut(n + (pending - 1) * m, m).fill_with_identity();
+        LinearSystem { a, b }
+    }
+
+    /// Gains that give the sampled loop the poles e^{sT} for poles s of a continuous one; what is
+    /// pending gets the pole 0. The gains are for y and then for what is pending.
+    pub fn place(
+        self,
+        system: &LinearSystem,
+        poles: &[Complex<f64>],
+    ) -> Result<Placement, PlacementError> {
+        if poles.len() != system.order() {
+            return Err(PlacementError::Count {
+                given: poles.len(),
+                order: system.order(),
+            });
+        }
+        let sampled = self.discretise(system);
+        let mut poles: Vec<_> = poles.iter().map(|pole| self.pole(*pole)).collect();
+        poles.resize(sampled.order(), 0.0.into());
+        robust_placement::place(&sampled, &poles)
+    }
+
+    /// Gains that minimise Σ (yᵀ Q y + uᵀ R u) T over the measurements.
+    pub fn regulate(
+        self,
+        system: &LinearSystem,
+        q: &DMatrix<f64>,
+        r: &DMatrix<f64>,
+    ) -> Result<Regulator, RiccatiError> {
+        let sampled = self.discretise(system);
+        let mut weight = DMatrix::zeros(sampled.order(), sampled.order());
+        let n = q.nrows().min(sampled.order());
+        if q.shape() == (system.order(), system.order()) {
+            weight
+                .view_mut((0, 0), (n, n))
+                .copy_from(&(q * self.period));
+        } else {
+            weight = q.clone();
+        }
+        lqr::discrete(&sampled, &weight, &(r * self.period))
+    }
+}
+
+/// e^{At} and ∫₀ᵗ e^{As} ds B, by one exponential (C. F. Van Loan, *Computing integrals involving the
+/// matrix exponential*, IEEE Transactions on Automatic Control 23, 1978).
+fn held(system: &LinearSystem, time: f64) -> [DMatrix<f64>; 2] {
+    let (n, m) = (system.order(), system.inputs());
+    let mut both = DMatrix::zeros(n + m, n + m);
+    both.view_mut((0, 0), (n, n)).copy_from(&system.a);
+    both.view_mut((0, n), (n, m)).copy_from(&system.b);
+    let exponential = (both * time).exp();
+    [
+        exponential.view((0, 0), (n, n)).into_owned(),
+        exponential.view((0, n), (n, m)).into_owned(),
+    ]
+}
+
+/// Sampled feedback of states as the inputs of one simulation from t = 0 on: it remembers what its
+/// measurements asked for. `desired` writes y_des at a time in s.
+#[derive(Debug)]
+pub struct SampledFeedback<D> {
+    /// The inputs, by their index in the model; the others stay zero.
+    pub inputs: Vec<usize>,
+    /// The states y, by their index in the model.
+    pub states: Vec<usize>,
+    /// K, a row for each input, a column for each state and then for each pending input.
+    pub gain: DMatrix<f64>,
+    /// u₀, a number for each input; it acts until the first measurement does.
+    pub offset: Vec<f64>,
+    /// y_des(t).
+    pub desired: D,
+    /// When it measures and acts.
+    pub sampling: Sampling,
+    /// End of the simulation in s.
+    pub until: f64,
+    asked: RefCell<Vec<DVector<f64>>>,
+}
+
+impl<D: Fn(f64, &mut [f64])> SampledFeedback<D> {
+    /// A law that has not measured yet, without an offset.
+    pub fn new(
+        inputs: Vec<usize>,
+        states: Vec<usize>,
+        gain: DMatrix<f64>,
+        desired: D,
+        sampling: Sampling,
+        until: f64,
+    ) -> Self {
+        Self {
+            offset: vec![0.0; inputs.len()],
+            inputs,
+            states,
+            gain,
+            desired,
+            sampling,
+            until,
+            asked: RefCell::default(),
+        }
+    }
+
+    /// What a measurement asks for, beside u₀.
+    fn ask(&self, t: f64, x: &[f64], asked: &[DVector<f64>]) -> DVector<f64> {
+        let (n, m, pending) = (
+            self.states.len(),
+            self.inputs.len(),
+            self.sampling.pending(),
+        );
+        let mut y = DVector::zeros(n + m * pending);
+        (self.desired)(t, &mut y.as_mut_slice()[..n]);
+        for (y, &state) in y.iter_mut().zip(&self.states) {
+            *y = x[state] - *y;
+        }
+        for (place, earlier) in asked.iter().rev().take(pending).enumerate() {
+            y.rows_mut(n + (pending - 1 - place) * m, m)
+                .copy_from(earlier);
+        }
+        -(&self.gain * y)
+    }
+}
+
+impl<D: Fn(f64, &mut [f64])> InputSource for SampledFeedback<D> {
+    fn inputs(&self, t: f64, x: &[f64], u: &mut [f64]) {
+        let mut asked = self.asked.borrow_mut();
+        let measured = times_until(self.sampling.period, 0.0, t);
+        // The integrator stops at each measurement and evaluates there before it goes on.
+        while asked.len() < measured {
+            let ask = self.ask(t, x, &asked);
+            asked.push(ask);
+        }
+        u.fill(0.0);
+        let acting = times_until(self.sampling.period, self.sampling.delay, t).checked_sub(1);
+        let acting = acting.and_then(|place| asked.get(place));
+        for (row, &input) in self.inputs.iter().enumerate() {
+            u[input] = self.offset[row] + acting.map_or(0.0, |ask| ask[row]);
+        }
+    }
+
+    fn switching_times(&self) -> Vec<f64> {
+        let Sampling { period, delay } = self.sampling;
+        (0..times_until(period, 0.0, self.until))
+            .flat_map(|k| [k as f64 * period, k as f64 * period + delay])
+            .collect()
+    }
+}
+
+/// How many of the times `first`, `first + period`, … have come at `t`.
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "a count; what is no count saturates"
+)]
+fn times_until(period: f64, first: f64, t: f64) -> usize {
+    let mut count = ((t - first) / period).floor().max(0.0) as usize;
+    // The quotient is rounded; the times are exactly those at which the integrator stops.
+    while count as f64 * period + first <= t {
+        count += 1;
+    }
+    while count > 0 && (count - 1) as f64 * period + first > t {
+        count -= 1;
+    }
+    count
+}

@@ -7,10 +7,10 @@
 //! 2. [`controllability`]: what the inputs reach, which modes they do not;
 //! 3. [`reduction`]: the exact equations of chosen outputs alone;
 //! 4. [`placement`], [`robust_placement`] or [`lqr`]: the gains;
-//! 5. [`feedback`]: u = u₀ − K (y − y_des(t)) as the inputs of a simulation.
+//! 5. [`feedback`]: `u = u₀ − K (y − y_des(t))` as the inputs of a simulation.
 //!
-//! Beside it: [`sampled`] for a controller that measures at intervals and acts with a delay,
-//! [`schedule`] for gains over a speed, [`attraction`] for how large a disturbance may be.
+//! Beside it: [`sampled`] and [`sampler`] for a controller that measures at intervals and acts with a
+//! delay, [`schedule`] for gains over a speed, [`attraction`] for how large a disturbance may be.
 //!
 //! All matrices are in SI, in the order of the states and inputs that [`LinearSystem`] names.
 
@@ -26,6 +26,7 @@ pub mod reduction;
 pub mod riccati;
 pub mod robust_placement;
 pub mod sampled;
+pub mod sampler;
 pub mod schedule;
 pub mod staircase;
 

@@ -60,11 +60,7 @@ fn placed_gains_are_the_exact_ones_of_the_reference() {
         let speed = number(&case["speed_m_s"]);
         let poles = vec![Complex::from(number(&case["pole"])); outputs.len()];
         let placed = placement::place(&steered(speed, outputs).system, &poles).unwrap();
-        println!("{speed} {:?} residual {:e}", placed.gain, placed.residual);
         let wanted = numbers(&case["K"]);
-        for (g, w) in placed.gain.iter().zip(&wanted) {
-            println!("{:e}", g / w - 1.0);
-        }
         for (gain, wanted) in placed.gain.iter().zip(&wanted) {
             assert_close("gain", &[*gain], &[*wanted], GAINS, 0.0);
         }
@@ -76,7 +72,6 @@ fn a_slider_steers_six_dimensions_while_rolling_and_four_at_rest() {
     for (speed, rank) in [(5.0, 6), (1.0, 6), (0.1, 6), (0.0, 4)] {
         let equations = rolling("unicycle", speed);
         let c = Controllability::of(&equations.system).unwrap();
-        println!("{speed} {c:#?}");
         assert_eq!(c.rank, rank);
         let outputs = places(model("unicycle"), &equations, LANE);
         assert_eq!(output_rank(&equations.system, &outputs), rank);

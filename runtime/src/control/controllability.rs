@@ -107,7 +107,9 @@ fn singular_values(system: &LinearSystem) -> Vec<f64> {
     let mut values = Singular::of(&krylov.transpose()).values;
     let largest = values.first().copied().unwrap_or(0.0);
     if largest > 0.0 {
-        values.iter_mut().for_each(|value| *value /= largest);
+        for value in &mut values {
+            *value /= largest;
+        }
     }
     values
 }

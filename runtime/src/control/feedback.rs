@@ -1,10 +1,10 @@
-//! u = u₀ − K (y − y_des(t)) as the inputs of a simulation.
+//! `u = u₀ − K (y − y_des(t))` as the inputs of a simulation.
 
 use nalgebra::DMatrix;
 
 use crate::inputs::InputSource;
 
-/// Feedback of states. `desired` writes y_des at a time in s, in the order of `states`.
+/// Feedback of states. `desired` writes `y_des` at a time in s, in the order of `states`.
 #[derive(Debug, Clone)]
 pub struct Feedback<D> {
     /// The inputs, by their index in the model; the others stay zero.
@@ -15,9 +15,9 @@ pub struct Feedback<D> {
     pub gain: DMatrix<f64>,
     /// u₀, a number for each input.
     pub offset: Vec<f64>,
-    /// y_des(t).
+    /// `y_des(t)`.
     pub desired: D,
-    /// Times in s at which y_des jumps or kinks.
+    /// Times in s at which `y_des` jumps or kinks.
     pub switching_times: Vec<f64>,
 }
 

@@ -32,6 +32,9 @@ pub struct OperatingPoint<'a> {
     pub p: Vec<f64>,
 }
 
+/// ẋ, A and B of a model, row by row.
+type Jacobians = (Vec<f64>, Vec<f64>, Vec<f64>);
+
 /// δẋ = A δx + B δu about a steady motion.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MotionEquations {
@@ -192,7 +195,7 @@ impl<'a> OperatingPoint<'a> {
         Ok(u)
     }
 
-    fn jacobians(&self) -> Result<(Vec<f64>, Vec<f64>, Vec<f64>), OperatingPointError> {
+    fn jacobians(&self) -> Result<Jacobians, OperatingPointError> {
         self.check()?;
         let (n, u) = (self.x.len(), self.inputs_at(0.0)?);
         let (mut rates, mut a) = (vec![0.0; n], vec![0.0; n * n]);

@@ -7,7 +7,7 @@
 
 use nalgebra::{Complex, DMatrix, RowDVector};
 
-use super::LinearSystem;
+use super::linear_system::{Balanced, LinearSystem};
 use super::staircase::Staircase;
 use crate::singular::Singular;
 use crate::spectrum::{Spectrum, SpectrumError, characteristic_polynomial};
@@ -24,8 +24,8 @@ pub struct Placement {
     /// of the poles that were wanted, each beside the sum of the sizes of the terms that make it:
     /// this tells how exact the gains are even where the poles spread.
     pub residual: f64,
-    /// Condition number of the eigenvectors of A − B K, columns of length 1: how far poles move
-    /// when equations change. Infinite for a multiple pole with one eigenvector.
+    /// Condition number of the eigenvectors of A − B K, of length 1 in balanced states: how far
+    /// poles move when equations change. Infinite for a multiple pole with one eigenvector.
     pub condition: f64,
 }
 
@@ -95,7 +95,7 @@ pub fn place(system: &LinearSystem, poles: &[Complex<f64>]) -> Result<Placement,
     }
     let gain = hessenberg_gain(&form.system, &poles) * form.q.transpose();
     let gain = DMatrix::from_row_slice(1, system.order(), gain.as_slice());
-    Placement::of(system, balanced.gain(&gain), &poles)
+    Placement::of(&balanced, &gain, &poles)
 }
 
 /// eₙᵀ p(H) / (β h₂₁ h₃₂ …) for an upper Hessenberg H and b = β e₁.
@@ -158,24 +158,21 @@ pub(super) fn paired(
 }
 
 impl Placement {
-    /// What gains achieve, measured on the system itself.
+    /// What the gains of a balanced system achieve.
     pub(super) fn of(
-        system: &LinearSystem,
-        gain: DMatrix<f64>,
+        balanced: &Balanced,
+        scaled_gain: &DMatrix<f64>,
         wanted: &[Complex<f64>],
     ) -> Result<Self, PlacementError> {
-        let closed = system.closed(&gain);
+        let closed = balanced.system.closed(scaled_gain);
         let spectrum = Spectrum::of(&closed)?;
-        let vectors: Vec<_> = spectrum
-            .modes
-            .iter()
-            .map(|mode| mode.right.clone())
-            .collect();
+        let modes = spectrum.modes.iter();
+        let vectors: Vec<_> = modes.map(|mode| mode.right.clone()).collect();
         Ok(Self {
             poles: spectrum.values().collect(),
             residual: polynomial_residual(&characteristic_polynomial(&closed)?, wanted),
             condition: condition(&DMatrix::from_columns(&vectors)),
-            gain,
+            gain: balanced.gain(scaled_gain),
         })
     }
 }

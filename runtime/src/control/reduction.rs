@@ -2,7 +2,7 @@
 //!
 //! On the motions that the inputs can make, other states may follow from the chosen ones, and what
 //! the chosen ones do not depend on does not matter. If just as many dimensions remain as states
-//! were chosen, these have linear equations of their own, ẏ = A_y y + B_y u: the controllable part
+//! were chosen, these have linear equations of their own, `ẏ = A_y y + B_y u`: the controllable part
 //! of the system, and of that the part which y observes. Feedback of y is state feedback then.
 
 use nalgebra::{DMatrix, RowDVector};
@@ -16,7 +16,7 @@ use crate::singular::Singular;
 pub struct Subsystem {
     /// The chosen states, by their place in the whole system.
     pub states: Vec<usize>,
-    /// ẏ = A_y y + B_y u.
+    /// `ẏ = A_y y + B_y u`.
     pub system: LinearSystem,
     /// Other states that follow from the chosen ones, with a factor for each of these. They were
     /// substituted.

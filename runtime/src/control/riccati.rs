@@ -72,7 +72,7 @@ pub enum RiccatiError {
     Spectrum(#[from] SpectrumError),
 }
 
-/// Solves AᵀX + X A − X B R⁻¹ Bᵀ X + Q = 0; K = R⁻¹ Bᵀ X.
+/// Solves `AᵀX + X A − X B R⁻¹ Bᵀ X + Q = 0`; `K = R⁻¹ Bᵀ X`.
 pub fn continuous(a: &Matrix, b: &Matrix, q: &Matrix, r: &Matrix) -> Result<Riccati, RiccatiError> {
     let g = control_energy(a, b, q, r)?;
     let gain = |x: &Matrix| r.clone().cholesky().map(|r| r.solve(&(b.transpose() * x)));
@@ -104,7 +104,7 @@ pub fn continuous(a: &Matrix, b: &Matrix, q: &Matrix, r: &Matrix) -> Result<Ricc
     finish(x, gain, smallest, stable.iter().all(|pole| pole.re < 0.0))
 }
 
-/// Solves AᵀX A − X − AᵀX B (R + BᵀX B)⁻¹ BᵀX A + Q = 0; K = (R + BᵀX B)⁻¹ BᵀX A.
+/// Solves `AᵀX A − X − AᵀX B (R + BᵀX B)⁻¹ BᵀX A + Q = 0`; `K = (R + BᵀX B)⁻¹ BᵀX A`.
 pub fn discrete(a: &Matrix, b: &Matrix, q: &Matrix, r: &Matrix) -> Result<Riccati, RiccatiError> {
     let g = control_energy(a, b, q, r)?;
     let gain = |x: &Matrix| {

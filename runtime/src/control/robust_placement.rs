@@ -59,7 +59,7 @@ pub fn place(system: &LinearSystem, poles: &[Complex<f64>]) -> Result<Placement,
         .lu()
         .solve(&(b.transpose() * (a - wanted)))
         .ok_or(PlacementError::Defective)?;
-    Placement::of(system, balanced.gain(&gain), &poles)
+    Placement::of(&balanced, &gain, &poles)
 }
 
 fn check(system: &LinearSystem, poles: &[Complex<f64>]) -> Result<(), PlacementError> {
@@ -98,7 +98,7 @@ fn spread(choices: &[Matrix], poles: &[Complex<f64>], start: usize) -> Option<Ma
         for j in (0..poles.len()).filter(|&j| poles[j].im >= 0.0) {
             let orthogonal = vectors.clone().try_inverse()?.row(j).adjoint();
             let within = &choices[j] * (choices[j].adjoint() * orthogonal);
-            set(&mut vectors, poles, j, within.normalize());
+            set(&mut vectors, poles, j, &within.normalize());
         }
         let volume = vectors.determinant().modulus();
         if best.as_ref().is_none_or(|(largest, _)| volume > *largest) {
@@ -120,17 +120,17 @@ fn first_vectors(choices: &[Matrix], poles: &[Complex<f64>], start: usize) -> Ma
                 if poles[j].im > 0.0 { angle.sin() } else { 0.0 },
             )
         });
-        set(&mut vectors, poles, j, (&choices[j] * weights).normalize());
+        set(&mut vectors, poles, j, &(&choices[j] * weights).normalize());
     }
     vectors
 }
 
 /// Sets an eigenvector, and the conjugate one beside it for a complex pole.
-fn set(vectors: &mut Matrix, poles: &[Complex<f64>], j: usize, vector: DVector<Complex<f64>>) {
+fn set(vectors: &mut Matrix, poles: &[Complex<f64>], j: usize, vector: &DVector<Complex<f64>>) {
     if poles[j].im > 0.0 {
         vectors.set_column(j + 1, &vector.conjugate());
     }
-    vectors.set_column(j, &vector);
+    vectors.set_column(j, vector);
 }
 
 fn complex(matrix: &DMatrix<f64>) -> Matrix {

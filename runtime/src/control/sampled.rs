@@ -5,16 +5,13 @@
 //! and do not act yet, the system is linear and discrete (K. J. Åström, B. Wittenmark,
 //! *Computer-Controlled Systems*, sections 2.3 and 3.2).
 
-use std::cell::RefCell;
-
-use nalgebra::{Complex, DMatrix, DVector};
+use nalgebra::{Complex, DMatrix};
 
 use super::LinearSystem;
 use super::lqr::{self, Regulator};
 use super::placement::{Placement, PlacementError};
 use super::riccati::RiccatiError;
 use super::robust_placement;
-use crate::inputs::InputSource;
 
 /// Most measurements that a delay may last.
 const MOST_PENDING: usize = 100;
@@ -175,110 +172,4 @@ fn held(system: &LinearSystem, time: f64) -> [DMatrix<f64>; 2] {
         exponential.view((0, 0), (n, n)).into_owned(),
         exponential.view((0, n), (n, m)).into_owned(),
     ]
-}
-
-/// Sampled feedback of states as the inputs of one simulation from t = 0 on: it remembers what its
-/// measurements asked for. `desired` writes y_des at a time in s.
-#[derive(Debug)]
-pub struct SampledFeedback<D> {
-    /// The inputs, by their index in the model; the others stay zero.
-    pub inputs: Vec<usize>,
-    /// The states y, by their index in the model.
-    pub states: Vec<usize>,
-    /// K, a row for each input, a column for each state and then for each pending input.
-    pub gain: DMatrix<f64>,
-    /// u₀, a number for each input; it acts until the first measurement does.
-    pub offset: Vec<f64>,
-    /// y_des(t).
-    pub desired: D,
-    /// When it measures and acts.
-    pub sampling: Sampling,
-    /// End of the simulation in s.
-    pub until: f64,
-    asked: RefCell<Vec<DVector<f64>>>,
-}
-
-impl<D: Fn(f64, &mut [f64])> SampledFeedback<D> {
-    /// A law that has not measured yet, without an offset.
-    pub fn new(
-        inputs: Vec<usize>,
-        states: Vec<usize>,
-        gain: DMatrix<f64>,
-        desired: D,
-        sampling: Sampling,
-        until: f64,
-    ) -> Self {
-        Self {
-            offset: vec![0.0; inputs.len()],
-            inputs,
-            states,
-            gain,
-            desired,
-            sampling,
-            until,
-            asked: RefCell::default(),
-        }
-    }
-
-    /// What a measurement asks for, beside u₀.
-    fn ask(&self, t: f64, x: &[f64], asked: &[DVector<f64>]) -> DVector<f64> {
-        let (n, m, pending) = (
-            self.states.len(),
-            self.inputs.len(),
-            self.sampling.pending(),
-        );
-        let mut y = DVector::zeros(n + m * pending);
-        (self.desired)(t, &mut y.as_mut_slice()[..n]);
-        for (y, &state) in y.iter_mut().zip(&self.states) {
-            *y = x[state] - *y;
-        }
-        for (place, earlier) in asked.iter().rev().take(pending).enumerate() {
-            y.rows_mut(n + (pending - 1 - place) * m, m)
-                .copy_from(earlier);
-        }
-        -(&self.gain * y)
-    }
-}
-
-impl<D: Fn(f64, &mut [f64])> InputSource for SampledFeedback<D> {
-    fn inputs(&self, t: f64, x: &[f64], u: &mut [f64]) {
-        let mut asked = self.asked.borrow_mut();
-        let measured = times_until(self.sampling.period, 0.0, t);
-        // The integrator stops at each measurement and evaluates there before it goes on.
-        while asked.len() < measured {
-            let ask = self.ask(t, x, &asked);
-            asked.push(ask);
-        }
-        u.fill(0.0);
-        let acting = times_until(self.sampling.period, self.sampling.delay, t).checked_sub(1);
-        let acting = acting.and_then(|place| asked.get(place));
-        for (row, &input) in self.inputs.iter().enumerate() {
-            u[input] = self.offset[row] + acting.map_or(0.0, |ask| ask[row]);
-        }
-    }
-
-    fn switching_times(&self) -> Vec<f64> {
-        let Sampling { period, delay } = self.sampling;
-        (0..times_until(period, 0.0, self.until))
-            .flat_map(|k| [k as f64 * period, k as f64 * period + delay])
-            .collect()
-    }
-}
-
-/// How many of the times `first`, `first + period`, … have come at `t`.
-#[expect(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "a count; what is no count saturates"
-)]
-fn times_until(period: f64, first: f64, t: f64) -> usize {
-    let mut count = ((t - first) / period).floor().max(0.0) as usize;
-    // The quotient is rounded; the times are exactly those at which the integrator stops.
-    while count as f64 * period + first <= t {
-        count += 1;
-    }
-    while count > 0 && (count - 1) as f64 * period + first > t {
-        count -= 1;
-    }
-    count
 }

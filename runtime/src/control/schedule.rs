@@ -111,7 +111,7 @@ pub struct ScheduledFeedback<'s, C, D> {
     pub states: Vec<usize>,
     /// The condition at (t, x).
     pub condition: C,
-    /// y_des(t) − y₀.
+    /// `y_des(t) − y₀`.
     pub desired: D,
     /// Times in s at which `desired` jumps or kinks.
     pub switching_times: Vec<f64>,

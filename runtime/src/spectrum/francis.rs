@@ -8,6 +8,8 @@ use super::{SpectrumError, finite};
 
 /// Steps for one eigenvalue; a handful is usual.
 const MOST_STEPS: usize = 60;
+/// Steps after which what is small beside the matrix is zero.
+const CHAIN: usize = 2 * EXCEPTIONAL;
 /// Steps after which an exceptional shift breaks a cycle.
 const EXCEPTIONAL: usize = 10;
 
@@ -61,7 +63,7 @@ impl Eigenvalues {
         let (mut size, mut shifted, mut steps) = (n, 0.0, 0);
         while size > 0 {
             let last = size - 1;
-            let first = self.deflated(last, norm);
+            let first = self.deflated(last, norm, steps);
             if first == last {
                 let value = self.h[last * n + last] + shifted;
                 self.values.push(Complex::new(value, 0.0));
@@ -89,12 +91,14 @@ impl Eigenvalues {
     }
 
     /// Where the block that ends at `last` begins: above it a subdiagonal entry is zero to rounding.
-    fn deflated(&mut self, last: usize, norm: f64) -> usize {
+    fn deflated(&mut self, last: usize, norm: f64, steps: usize) -> usize {
         let mut first = last;
         while first > 0 {
             let beside = self.entry(first - 1, first - 1).abs() + self.entry(first, first).abs();
-            // A diagonal of zeros is compared with the matrix.
-            let beside = if beside == 0.0 { norm } else { beside };
+            // A diagonal of zeros is compared with the matrix; so is one that stays small beside
+            // what couples it, as where a chain of zero eigenvalues lost its zeros to rounding.
+            let chain = steps > CHAIN;
+            let beside = if beside == 0.0 || chain { norm } else { beside };
             if self.entry(first, first - 1).abs() <= f64::EPSILON * beside {
                 self.h[first * self.n + first - 1] = 0.0;
                 break;

@@ -1,10 +1,10 @@
 //! `check --thorough`: what the comparison of three formulations tells.
 
 use std::fmt::Write as _;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use appell_codegen::Derived;
-use appell_codegen::formulations::{Against, Agreement, Comparison, Verdict, compare};
+use appell_codegen::formulations::{Against, Agreement, Comparison, Verdict, compare_while};
 use serde_json::{Value, json};
 
 use crate::failure::Failure;
@@ -23,18 +23,28 @@ const AGAINST: [Against; 4] = [
 pub(crate) struct Thorough {
     verdict: Verdict,
     seconds: f64,
+    limit: Duration,
 }
 
 impl Thorough {
-    /// Compares.
-    pub(crate) fn new(source: &Source, derived: &Derived) -> Result<Self, Failure> {
+    /// Compares as long as the limit lasts.
+    pub(crate) fn new(
+        source: &Source,
+        derived: &Derived,
+        limit: Duration,
+    ) -> Result<Self, Failure> {
         let spinner = progress::spinner(&format!("comparing formulations of {}", source.file));
         let start = Instant::now();
-        let verdict = compare(&derived.mechanism, &derived.derivation);
+        let is_time = || start.elapsed() < limit;
+        let verdict = compare_while(&derived.mechanism, &derived.derivation, &is_time);
         let seconds = start.elapsed().as_secs_f64();
         spinner.finish_and_clear();
         match verdict {
-            Ok(verdict) => Ok(Self { verdict, seconds }),
+            Ok(verdict) => Ok(Self {
+                verdict,
+                seconds,
+                limit,
+            }),
             Err(findings) => {
                 let reasons = findings.iter().map(|finding| finding.message.as_str());
                 let reasons: Vec<&str> = reasons.collect();
@@ -49,10 +59,13 @@ impl Thorough {
 
     /// One line per formulation and method, as the summary of `check` writes them.
     pub(crate) fn text(&self) -> String {
+        let all = &self.verdict.comparisons;
         let answer = if self.verdict.agrees() {
             "agree"
-        } else {
+        } else if all.iter().any(Comparison::differs) {
             "DO NOT AGREE"
+        } else {
+            "NOT ALL COMPARED"
         };
         let mut text = format!("  three formulations    {answer}, {:.2} s\n", self.seconds);
         let mut proofs = false;
@@ -104,6 +117,7 @@ impl Thorough {
                     "deviation": deviation,
                 }),
                 Agreement::Undefined => json!({ "agrees": null, "method": "points", "points": 0 }),
+                Agreement::NotReached => json!({ "agrees": null, "method": null }),
             };
             if let (Value::Object(entry), Value::Object(told)) = (&mut entry, told) {
                 entry.extend(told);
@@ -114,6 +128,7 @@ impl Thorough {
         json!({
             "agrees": self.verdict.agrees(), "comparisons": comparisons,
             "error_bound": self.verdict.error_bound, "seconds": self.seconds,
+            "time_limit_s": self.limit.as_secs_f64(),
         })
     }
 
@@ -124,6 +139,7 @@ impl Thorough {
         }
         let mut text = String::new();
         let (mut differs, mut undefined) = (false, false);
+        let (mut compared, mut left) = (Vec::new(), Vec::new());
         for comparison in &self.verdict.comparisons {
             let (against, quantity) = (comparison.against.word(), comparison.quantity);
             match &comparison.agreement {
@@ -147,8 +163,23 @@ impl Thorough {
                          ranges"
                     );
                 }
-                Agreement::Identical | Agreement::AtPoints { .. } => {}
+                Agreement::Identical | Agreement::AtPoints { .. } => {
+                    compared.push(format!("{against}: {quantity}"));
+                }
+                Agreement::NotReached => left.push(format!("{against}: {quantity}")),
             }
+        }
+        if !left.is_empty() {
+            let nothing = || "nothing".to_owned();
+            let compared = Some(compared.join(", ")).filter(|all| !all.is_empty());
+            let _ = write!(
+                text,
+                "\n  the time limit of {} s was over first\n  compared, and equal: {}\n  not compared: {}\n  \
+                 give it more time with `--time-limit-s`",
+                self.limit.as_secs_f64(),
+                compared.unwrap_or_else(nothing),
+                left.join(", ")
+            );
         }
         if differs {
             text.push_str(
@@ -164,8 +195,10 @@ impl Thorough {
         }
         let verdict = if differs {
             "the formulations disagree"
-        } else {
+        } else if undefined {
             "the formulations could not be compared"
+        } else {
+            "the formulations were not all compared"
         };
         Some(Failure::Computation(format!(
             "{}: {verdict}{text}",
@@ -184,6 +217,7 @@ fn seen(comparison: &Comparison) -> String {
         }
         Agreement::Different { .. } => format!("DIFFERENT: {quantity}"),
         Agreement::Undefined => format!("not compared: {quantity}"),
+        Agreement::NotReached => format!("not compared in time: {quantity}"),
     }
 }
 
@@ -208,6 +242,7 @@ mod tests {
                 error_bound: 0.0,
             },
             seconds: 0.0,
+            limit: Duration::from_secs(1),
         };
         let source = Source {
             file: "wheel.toml".to_owned(),

@@ -68,6 +68,33 @@ fn a_thorough_check_tells_what_was_proven_against_whom() {
 }
 
 #[test]
+fn a_thorough_check_without_time_says_what_it_did_not_compare() {
+    let folder = Folder::new();
+    let check = [
+        "check",
+        "--thorough",
+        "pendulum",
+        "--time-limit-s",
+        "0",
+        "--json",
+        "check.json",
+    ];
+    let parts = [
+        "the time limit of 0 s was over first",
+        "compared, and equal: nothing",
+        "Kane: mass matrix",
+        "Lagrange: accelerations",
+        "give it more time with `--time-limit-s`",
+    ];
+    folder.fails(4, &check, &parts);
+    let spec = &folder.json("check.json")["specs"][0];
+    assert_eq!(spec["ok"], false);
+    assert!(spec["thorough"]["comparisons"][0]["agrees"].is_null());
+    let negative = ["check", "--thorough", "pendulum", "--time-limit-s=-1"];
+    folder.fails(2, &negative, &["`--time-limit-s` is a number of seconds"]);
+}
+
+#[test]
 fn a_thorough_check_fails_where_nothing_can_be_compared() {
     let folder = Folder::new();
     folder.write(

@@ -29,11 +29,7 @@ fn specs(folder: &str) -> Vec<PathBuf> {
 }
 
 fn shipped() -> Vec<PathBuf> {
-    [
-        specs("../generated/mechanisms"),
-        specs("../generated/gallery"),
-    ]
-    .concat()
+    specs("../generated/mechanisms")
 }
 
 fn name_of(path: &Path) -> &str {

@@ -9,7 +9,7 @@ use appell_models::Shipped;
 use criterion::{Criterion, criterion_group, criterion_main};
 
 /// The mechanism of the gallery with the longest equations.
-const BICYCLE: &str = include_str!("../../generated/gallery/bicycle.toml");
+const BICYCLE: &str = include_str!("../../generated/mechanisms/bicycle.toml");
 
 /// Parses, checks, derives, schedules and prints.
 fn generate(file: &str, spec: &str, kinds: &[FunctionKind]) -> usize {

@@ -13,7 +13,7 @@ use appell_tests::random::Random;
 use appell_tests::reference::{document, number, numbers};
 use nalgebra::{Matrix2, Matrix4};
 
-const SPEC: &str = include_str!("../../generated/gallery/bicycle.toml");
+const SPEC: &str = include_str!("../../generated/mechanisms/bicycle.toml");
 /// Digits to which the benchmark is published.
 const PUBLISHED: f64 = 1e-11;
 /// Digits to which the nonlinear point is published.

@@ -300,7 +300,7 @@ fn a_wheel_presses_with_its_weight_and_the_acceleration_of_its_centre() {
 /// Moments about the rear contact: N w = g Σ m x for the front.
 #[test]
 fn the_wheels_of_a_bicycle_carry_it_by_its_levers() {
-    let [model, _] = engines(&file("generated/gallery/bicycle.toml"));
+    let [model, _] = engines(&shipped::text("bicycle"));
     let names: Vec<&str> = model
         .info()
         .contacts

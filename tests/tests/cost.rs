@@ -47,18 +47,11 @@ fn counts() -> Counts {
             })
             .collect()
     };
-    let shipped = shipped::names().into_iter();
-    let mechanisms = shipped.map(|name| (shipped::mechanism(&name), name));
-    let mechanisms = mechanisms.chain([(bicycle(), "bicycle".to_owned())]);
-    mechanisms
+    let names = shipped::names().into_iter();
+    names
+        .map(|name| (shipped::mechanism(&name), name))
         .map(|(mechanism, name)| (name, count(&mechanism)))
         .collect()
-}
-
-/// The mechanism of the gallery whose velocities follow from a system.
-fn bicycle() -> Mechanism {
-    let file = shipped::workspace().join("generated/gallery/bicycle.toml");
-    shipped::read("bicycle", &std::fs::read_to_string(file).unwrap())
 }
 
 fn write(counts: &Counts) -> String {
@@ -140,7 +133,7 @@ fn the_rates_of_the_unicycle_stay_within_115_operations() {
 #[test]
 fn the_bicycle_takes_fewer_operations_than_the_best_published_equations() {
     use FunctionKind::{Bias, Jacobians, MassMatrix, ParameterJacobian};
-    let program = shipped::program(&bicycle());
+    let program = shipped::program(&shipped::mechanism("bicycle"));
     let results = |kind: &FunctionKind| {
         let function = program.functions.iter().find(|f| f.kind == *kind).unwrap();
         function.results.clone()

@@ -25,14 +25,6 @@ fn appell_kane_and_lagrange_are_proved_identical_for_every_shipped_mechanism() {
 }
 
 #[test]
-fn appell_kane_and_lagrange_are_proved_identical_for_mechanisms_that_are_not_compiled_in() {
-    for mechanism in shipped::mechanisms_in("generated/gallery") {
-        let verdict = assert_one_answer(&mechanism);
-        assert!(is_proven(&verdict), "{}: {verdict:#?}", mechanism.name);
-    }
-}
-
-#[test]
 fn reactions_that_cannot_be_told_are_not_judged() {
     for mechanism in shipped::mechanisms_in("codegen/tests/audit/right") {
         assert_one_answer(&mechanism);

@@ -6,7 +6,7 @@ use appell_codegen::program::FunctionKind;
 use appell_runtime::Simulation;
 use appell_runtime::model::{At, Model};
 
-const SPEC: &str = include_str!("../../generated/gallery/four_bar.toml");
+const SPEC: &str = include_str!("../../generated/mechanisms/four_bar.toml");
 /// Fourth-order differences over a step of a milliradian.
 const DIFFERENCES: f64 = 1e-8;
 

@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "what is missing fails the test")]
 
+use appell_runtime::model::Model;
 use appell_tests::engine::assert_close;
 use appell_tests::place::{Place, assert_contains, derived};
 use appell_tests::random::Random;
@@ -62,8 +63,27 @@ const EXTRAS: [(&str, &[(&str, f64)]); 5] = [
             ("J_uz", 0.0),
             ("M_h", 0.0),
             ("M_u", 0.0),
+            ("m_h", 0.0),
+            ("J_h", 0.0),
+            ("J_hz", 0.0),
+            ("m_s", 0.0),
+            ("J_s", 0.0),
+            ("J_sz", 0.0),
+            ("M_l", 0.0),
+            ("M_r", 0.0),
         ],
     ),
+];
+/// A rider without mass in the legs.
+const NO_LEGS: [(&str, f64); 8] = [
+    ("m_h", 0.0),
+    ("J_h", 0.0),
+    ("J_hz", 0.0),
+    ("m_s", 0.0),
+    ("J_s", 0.0),
+    ("J_sz", 0.0),
+    ("M_l", 0.0),
+    ("M_r", 0.0),
 ];
 
 /// Calls `check` with random places of two mechanisms; the second takes what has the same name from
@@ -248,6 +268,7 @@ fn a_rider_as_a_linkage_straight_ahead_is_the_electric_unicycle_of_three_degrees
     pairs("unicycle_linkage_rider", "euc_3dof", |linkage, euc| {
         linkage.set(&STRAIGHT);
         linkage.set(&[("delta", 0.0), ("delta_dot", 0.0), ("M_u", 0.0)]);
+        linkage.set(&NO_LEGS);
         let [m_t, j_t, l_t] = linkage.all(["m_t", "J_t", "l_t"]);
         let [m_u, j_uy, l_u] = linkage.all(["m_u", "J_uy", "l_u"]);
         let [m, j, h] = together(&[[m_t, j_t, l_t], [m_u, j_uy, l_u]]);
@@ -268,6 +289,53 @@ fn a_rider_as_a_linkage_straight_ahead_is_the_electric_unicycle_of_three_degrees
         ];
         assert_contains("straight", linkage, euc, &speeds, ROUNDING);
     });
+}
+
+/// Angles of a thigh and its knee: the knee lies on two circles, about hip and pedal, before them.
+fn leg([hip, pedal]: [[f64; 2]; 2], [thigh, shank]: [f64; 2]) -> [f64; 2] {
+    let down = [pedal[0] - hip[0], pedal[1] - hip[1]];
+    let span = down[0].hypot(down[1]);
+    let opposite = |a: f64, b: f64, c: f64| ((a * a + b * b - c * c) / (2.0 * a * b)).acos();
+    let forward = down[0].atan2(-down[1]) + opposite(thigh, span, shank);
+    [forward, std::f64::consts::PI - opposite(thigh, shank, span)]
+}
+
+#[test]
+fn the_legs_of_the_rider_follow_the_pedals() {
+    const STEP: f64 = 1e-3;
+    let model = derived("unicycle_linkage_rider");
+    let mut random = Random::of("legs");
+    for _ in 0..PLACES {
+        let mut place = Place::random(&model, &mut random);
+        // The pedals within reach of the feet.
+        place.set(&[("l_h", 0.6), ("a_h", 0.35), ("a_s", 0.4), ("a_c", 0.1)]);
+        let [phi, gamma, theta] = place.all(["phi", "gamma", "theta"]);
+        let [w2, w3, wb] = place.all(["omega_2", "omega_3", "omega_b"]);
+        let yaw = w3 / theta.cos() * theta.sin();
+        let angles = |t: f64, side: f64| {
+            let (phi, gamma) = (phi + t * (w2 - yaw), gamma + t * (wb - yaw));
+            let hip = [0.6 * gamma.sin(), 0.6 * gamma.cos()];
+            leg(
+                [hip, [side * 0.1 * phi.cos(), -side * 0.1 * phi.sin()]],
+                [0.35, 0.4],
+            )
+        };
+        for (names, side) in [(["thigh_l", "knee_l"], 1.0), (["thigh_r", "knee_r"], -1.0)] {
+            let now = angles(0.0, side);
+            place.set(&[(names[0], now[0]), (names[1], now[1])]);
+            let at = |steps: f64| angles(steps * STEP, side);
+            let slope = |i: usize| {
+                let [one, two] = [1.0, 2.0].map(|k| at(k)[i] - at(-k)[i]);
+                (8.0 * one - two) / (12.0 * STEP)
+            };
+            let rates = place.rates(names);
+            assert_close("legs", &rates, &[slope(0), slope(1)], 1e-8, FLOOR);
+        }
+        let mut open = [0.0; 4];
+        let mut slopes = vec![0.0; 4 * model.info().coordinate_quantities().len()];
+        model.position_constraints(place.point.at(), &mut open, &mut slopes);
+        assert_close("loops", &open, &[0.0; 4], ROUNDING, 1.0);
+    }
 }
 
 #[test]

@@ -133,7 +133,7 @@ fn newtons_law_holds_for_every_mechanism_that_rests_on_contacts() {
             balanced.push(mechanism.name);
         }
     }
-    for name in ["unicycle", "two_wheeled_pendulum", "rolling_ball", "wheel"] {
+    for name in ["unicycle", "two_wheeled_pendulum", "bicycle", "wheel"] {
         assert!(balanced.iter().any(|known| known == name), "{balanced:?}");
     }
 }

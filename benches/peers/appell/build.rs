@@ -9,23 +9,19 @@ use appell_codegen::program::FunctionKind as Kind;
 
 /// Name of a kernel, its spec, its functions.
 const KERNELS: &[(&str, &str, &[Kind])] = &[
-    ("unicycle_rates", "mechanisms/unicycle", &[Kind::Rates]),
-    (
-        "unicycle_jacobians",
-        "mechanisms/unicycle",
-        &[Kind::Jacobians],
-    ),
-    ("euc_rates", "mechanisms/euc_3dof", &[Kind::Rates]),
-    ("euc_jacobians", "mechanisms/euc_3dof", &[Kind::Jacobians]),
+    ("unicycle_rates", "unicycle", &[Kind::Rates]),
+    ("unicycle_jacobians", "unicycle", &[Kind::Jacobians]),
+    ("euc_rates", "euc_3dof", &[Kind::Rates]),
+    ("euc_jacobians", "euc_3dof", &[Kind::Jacobians]),
     (
         "bicycle_equations",
-        "gallery/bicycle",
+        "bicycle",
         &[Kind::MassMatrix, Kind::Bias],
     ),
-    ("bicycle_state", "gallery/bicycle", &[Kind::Jacobians]),
+    ("bicycle_state", "bicycle", &[Kind::Jacobians]),
     (
         "bicycle_parameters",
-        "gallery/bicycle",
+        "bicycle",
         &[Kind::Jacobians, Kind::ParameterJacobian],
     ),
 ];
@@ -38,7 +34,7 @@ fn main() {
     println!("cargo::rerun-if-env-changed=PEERS_RUN");
     let mut told = String::new();
     for (name, spec, kinds) in KERNELS {
-        let file = format!("../../../generated/{spec}.toml");
+        let file = format!("../../../generated/mechanisms/{spec}.toml");
         println!("cargo::rerun-if-changed={file}");
         let text = std::fs::read_to_string(&file).unwrap_or_else(|error| panic!("{file}: {error}"));
         let mut best = Duration::MAX;

@@ -2,6 +2,7 @@
 
 use std::fmt::Write as _;
 use std::path::PathBuf;
+use std::time::Duration;
 
 use appell_codegen::mechanics::motion::independent_blocks;
 use appell_codegen::{Derived, audited};
@@ -32,6 +33,11 @@ pub(crate) struct Check {
     /// else seen at random points in the declared ranges.
     #[arg(long)]
     thorough: bool,
+    /// Longest time for this comparison of one mechanism, in s
+    ///
+    /// What is not compared by then is named, and the check fails.
+    #[arg(long, value_name = "S", default_value_t = 60.0, requires = "thorough")]
+    time_limit_s: f64,
 }
 
 impl Check {
@@ -69,7 +75,12 @@ impl Check {
         spinner.finish_and_clear();
         let derived = derived?;
         let summary = Summary::of(&derived);
-        let thorough = self.thorough.then(|| Thorough::new(&source, &derived));
+        let limit = Duration::try_from_secs_f64(self.time_limit_s).map_err(|_| {
+            Failure::Usage("`--time-limit-s` is a number of seconds, zero or more".to_owned())
+        })?;
+        let thorough = self
+            .thorough
+            .then(|| Thorough::new(&source, &derived, limit));
         let thorough = thorough.transpose()?;
         if !quiet {
             files::print(&summary.text(&source))?;

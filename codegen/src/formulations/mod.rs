@@ -35,6 +35,11 @@ const GREATEST_ERROR: f64 = 1e-9;
 /// Tests with points of their own that together may prove an identity.
 const MOST_TESTS: i32 = 4;
 
+/// What Kane's equations tell.
+const BY_KANE: [&str; 4] = ["mass matrix", "bias", "forces", "accelerations"];
+/// What Lagrange's equations tell.
+const BY_LAGRANGE: [&str; 2] = ["accelerations", "constraint forces"];
+
 /// What the derived equations are held against.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Against {
@@ -83,6 +88,8 @@ pub enum Agreement {
     },
     /// No values: at no random point both are finite.
     Undefined,
+    /// Time was up before.
+    NotReached,
 }
 
 /// A quantity of the derivation against another formulation.
@@ -94,6 +101,13 @@ pub struct Comparison {
     pub quantity: &'static str,
     /// With what result.
     pub agreement: Agreement,
+}
+
+impl Comparison {
+    /// Whether the two are different functions.
+    pub fn differs(&self) -> bool {
+        matches!(self.agreement, Agreement::Different { .. })
+    }
 }
 
 /// The result of all comparisons.
@@ -122,7 +136,8 @@ impl Verdict {
 struct Claim {
     against: Against,
     quantity: &'static str,
-    pairs: Vec<Pair>,
+    /// None where time was up before they were derived.
+    pairs: Option<Vec<Pair>>,
 }
 
 /// Two expressions that should be the same function.
@@ -135,12 +150,21 @@ struct Pair {
 /// Compares a derivation with the other formulations of the same mechanism. Fails where their
 /// equations take more expressions than a mechanism of bodies needs.
 pub fn compare(mechanism: &Mechanism, derivation: &Derivation) -> Outcome<Verdict> {
+    compare_while(mechanism, derivation, &|| true)
+}
+
+/// [`compare`] as long as `is_time` says so, which is asked before every formulation and every entry.
+pub fn compare_while(
+    mechanism: &Mechanism,
+    derivation: &Derivation,
+    is_time: &dyn Fn() -> bool,
+) -> Outcome<Verdict> {
     let symbols = &derivation.symbols;
     // A graph of its own: the emitted equations do not depend on the comparison.
     let graph = derivation.algebra.graph.clone();
     let mut algebra = Algebra::new(graph, symbols, seed(mechanism));
-    let claims = claims(&mut algebra, mechanism, derivation)?;
-    Ok(decide(&mut algebra, mechanism, derivation, claims))
+    let claims = claims(&mut algebra, mechanism, derivation, is_time)?;
+    Ok(decide(&mut algebra, mechanism, derivation, claims, is_time))
 }
 
 /// Everything that has to agree.
@@ -148,6 +172,7 @@ fn claims(
     algebra: &mut Algebra,
     mechanism: &Mechanism,
     derivation: &Derivation,
+    is_time: &dyn Fn() -> bool,
 ) -> Outcome<Vec<Claim>> {
     let Derivation {
         symbols,
@@ -173,14 +198,19 @@ fn claims(
         Claim {
             against: Against::Spec,
             quantity: "pseudo-velocities",
-            pairs: by_speed(&symbols.speeds, &definitions),
+            pairs: Some(by_speed(&symbols.speeds, &definitions)),
         },
         Claim {
             against: Against::Spec,
             quantity: "constraints",
-            pairs: violated.collect(),
+            pairs: Some(violated.collect()),
         },
     ];
+    if !is_time() {
+        claims.extend(not_reached(Against::Kane, &BY_KANE));
+        claims.extend(not_reached(Against::Lagrange, &BY_LAGRANGE));
+        return Ok(claims);
+    }
 
     let kane = kane::kane(algebra, &allowed, &motion.accelerations)?;
     let entries = speeds
@@ -189,20 +219,25 @@ fn claims(
     let entries: Vec<String> = entries.collect();
     let entries: Vec<&str> = entries.iter().map(String::as_str).collect();
     let (mass, other) = (gibbs.mass_matrix.concat(), kane.mass_matrix.concat());
-    for (quantity, pairs) in [
-        ("mass matrix", named(&entries, &mass, &other)),
-        ("bias", by_speed(&gibbs.bias, &kane.bias)),
-        ("forces", by_speed(&derivation.forces, &kane.forces)),
-        (
-            "accelerations",
-            by_speed(&motion.accelerations, &kane.accelerations),
-        ),
-    ] {
-        claims.push(Claim {
-            against: Against::Kane,
-            quantity,
-            pairs,
-        });
+    let by_kane = [
+        named(&entries, &mass, &other),
+        by_speed(&gibbs.bias, &kane.bias),
+        by_speed(&derivation.forces, &kane.forces),
+        by_speed(&motion.accelerations, &kane.accelerations),
+    ];
+    claims.extend(
+        BY_KANE
+            .into_iter()
+            .zip(by_kane)
+            .map(|(quantity, pairs)| Claim {
+                against: Against::Kane,
+                quantity,
+                pairs: Some(pairs),
+            }),
+    );
+    if !is_time() {
+        claims.extend(not_reached(Against::Lagrange, &BY_LAGRANGE));
+        return Ok(claims);
     }
 
     let new = |algebra: &mut Algebra| Inertial::new(algebra, mechanism, symbols, &symbols.rates);
@@ -213,8 +248,8 @@ fn claims(
     let accelerations = generalized_accelerations(algebra, &allowed, &motion.accelerations)?;
     claims.push(Claim {
         against: Against::Lagrange,
-        quantity: "accelerations",
-        pairs: named(&coordinates, &accelerations, &lagrange.accelerations),
+        quantity: BY_LAGRANGE[0],
+        pairs: Some(named(&coordinates, &accelerations, &lagrange.accelerations)),
     });
     claims.extend(reaction_claims(
         algebra,
@@ -224,8 +259,17 @@ fn claims(
         &lagrange,
         kane.total_reaction,
     )?);
-    claims.retain(|claim| !claim.pairs.is_empty());
+    claims.retain(|claim| claim.pairs.as_ref().is_none_or(|pairs| !pairs.is_empty()));
     Ok(claims)
+}
+
+/// What is not compared because time is up.
+fn not_reached(against: Against, quantities: &[&'static str]) -> impl Iterator<Item = Claim> {
+    quantities.iter().map(move |&quantity| Claim {
+        against,
+        quantity,
+        pairs: None,
+    })
 }
 
 /// Constraint forces against Lagrange's multipliers, and their sum against Newton's law.
@@ -285,8 +329,8 @@ fn reaction_claims(
     }
     let mut claims = vec![Claim {
         against: Against::Lagrange,
-        quantity: "constraint forces",
-        pairs,
+        quantity: BY_LAGRANGE[1],
+        pairs: Some(pairs),
     }];
     if !rows.is_empty() && rests_on_contacts(derivation, mechanism) {
         let mut sum = [Graph::ZERO; 3];
@@ -296,7 +340,7 @@ fn reaction_claims(
         claims.push(Claim {
             against: Against::Newton,
             quantity: "sum of the constraint forces",
-            pairs: named(&axes, &sum, &total),
+            pairs: Some(named(&axes, &sum, &total)),
         });
     }
     Ok(claims)
@@ -350,18 +394,22 @@ fn decide(
     mechanism: &Mechanism,
     derivation: &Derivation,
     claims: Vec<Claim>,
+    is_time: &dyn Fn() -> bool,
 ) -> Verdict {
     let mut points = None;
     let mut error_bound = 0.0;
     let mut comparisons = Vec::with_capacity(claims.len());
     for claim in claims {
-        let agreement = if let Some(error) = claim.proof(algebra, seed(mechanism)) {
+        let pairs = claim.pairs.unwrap_or_default();
+        let agreement = if let Some(error) = proof(algebra, &pairs, seed(mechanism), is_time) {
             error_bound += error;
             Agreement::Identical
+        } else if pairs.is_empty() || !is_time() {
+            Agreement::NotReached
         } else {
             let new = || Points::new(&algebra.graph, mechanism, &derivation.symbols);
             let points = points.get_or_insert_with(new);
-            points.compare(&algebra.graph, &claim.pairs)
+            points.compare(&algebra.graph, &pairs)
         };
         comparisons.push(Comparison {
             against: claim.against,
@@ -375,25 +423,34 @@ fn decide(
     }
 }
 
-impl Claim {
-    /// The probability with which a proof that all pairs are the same functions may err. `None` where
-    /// there is no proof.
-    fn proof(&self, algebra: &mut Algebra, seed: u64) -> Option<f64> {
-        let Algebra { graph, test, .. } = algebra;
-        let pairs = self.pairs.iter();
-        let differences = pairs.map(|pair| graph.sub(pair.derived, pair.other));
-        let differences: Vec<Expr> = differences.collect();
-        let all = graph.sum(&differences);
-        let each = test.error_bound(graph, all);
-        let error = |tests: i32| each.powi(tests) * differences.len() as f64;
-        let tests = (1..=MOST_TESTS).find(|&tests| error(tests) <= GREATEST_ERROR)?;
-        let holds = |test: &mut IdentityTest| differences.iter().all(|&d| test.is_zero(graph, d));
-        // Every further test draws points of its own.
-        let more =
-            (1..tests).map(|number| test.reseeded(seed.wrapping_add(number.unsigned_abs().into())));
-        let more: Vec<IdentityTest> = more.collect();
-        (holds(test) && more.into_iter().all(|mut test| holds(&mut test))).then(|| error(tests))
+/// The probability with which a proof that all pairs are the same functions may err. `None` where
+/// there is no proof, or no time for one.
+fn proof(
+    algebra: &mut Algebra,
+    pairs: &[Pair],
+    seed: u64,
+    is_time: &dyn Fn() -> bool,
+) -> Option<f64> {
+    if pairs.is_empty() {
+        return None;
     }
+    let Algebra { graph, test, .. } = algebra;
+    let differences = pairs.iter();
+    let differences = differences.map(|pair| graph.sub(pair.derived, pair.other));
+    let differences: Vec<Expr> = differences.collect();
+    let all = graph.sum(&differences);
+    let each = test.error_bound(graph, all);
+    let error = |tests: i32| each.powi(tests) * differences.len() as f64;
+    let tests = (1..=MOST_TESTS).find(|&tests| error(tests) <= GREATEST_ERROR)?;
+    let holds = |test: &mut IdentityTest| {
+        let mut differences = differences.iter();
+        differences.all(|&d| is_time() && test.is_zero(graph, d))
+    };
+    // Every further test draws points of its own.
+    let more =
+        (1..tests).map(|number| test.reseeded(seed.wrapping_add(number.unsigned_abs().into())));
+    let more: Vec<IdentityTest> = more.collect();
+    (holds(test) && more.into_iter().all(|mut test| holds(&mut test))).then(|| error(tests))
 }
 
 fn named(names: &[&str], derived: &[Expr], other: &[Expr]) -> Vec<Pair> {

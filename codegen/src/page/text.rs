@@ -117,9 +117,11 @@ fn table(out: &mut String, table: &Table) {
         let free = WIDTH.saturating_sub(indent + MARGIN);
         if free < WIDTH / 5 {
             // The cells before leave no room: the last one goes on below.
-            let text = head.trim_end();
-            let right = WIDTH.saturating_sub(columns(text));
+            let mut heads = broken(head.trim_end()).into_iter();
+            let text = heads.next().unwrap_or_default();
+            let right = WIDTH.saturating_sub(columns(&text));
             line(out, &format!("{text}{:>right$}", row.line));
+            heads.for_each(|part| line(out, &part));
             for part in wrapped(last, WIDTH - 3 * INDENT - MARGIN) {
                 line(out, &format!("{}{part}", " ".repeat(3 * INDENT)));
             }
@@ -135,6 +137,17 @@ fn table(out: &mut String, table: &Table) {
             line(out, &format!("{text}{:>right$}", row.line));
         }
     }
+}
+
+/// A row that is as wide as a page, in several lines beside the margin.
+fn broken(text: &str) -> Vec<String> {
+    if columns(text) + MARGIN <= WIDTH {
+        return vec![text.to_owned()];
+    }
+    let parts = wrapped(text, WIDTH - 2 * INDENT - MARGIN).into_iter();
+    let indented =
+        |(k, part): (usize, String)| format!("{}{part}", " ".repeat(INDENT * (1 + k.min(1))));
+    parts.enumerate().map(indented).collect()
 }
 
 fn chain(out: &mut String, chain: &Chain) {

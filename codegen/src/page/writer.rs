@@ -12,10 +12,12 @@ use super::{Block, Span};
 use crate::mechanics::Derivation;
 use crate::symbolic::print::Setter;
 use crate::symbolic::vector::Vec3;
-use crate::symbolic::{Expr, Graph, Node};
+use crate::symbolic::{Expr, Graph, Node, System};
 
-/// A vector with a wider component is written component by component.
-const WIDEST_COMPONENT: usize = 76;
+/// A vector with a wider component, its frame beside it, is written component by component.
+const WIDEST_COMPONENT: usize = 82;
+/// A linear system whose entries are wider is written equation by equation.
+const WIDEST_SYSTEM: usize = 76;
 
 /// Writes formulas and remembers what they take for granted.
 pub(super) struct Writer<'a> {
@@ -103,7 +105,8 @@ impl<'a> Writer<'a> {
     pub(super) fn vector(&mut self, letter: Letter, v: Vec3, frame: FrameId) -> Vec<Equation> {
         let components: Vec<Math> = v.iter().map(|&c| self.explicit(c)).collect();
         let frame = &self.mechanism.frames[frame].name;
-        if components.iter().all(|c| c.width() <= WIDEST_COMPONENT) {
+        let widest = components.iter().map(Math::width).max().unwrap_or(0);
+        if widest + frame.chars().count() <= WIDEST_COMPONENT {
             let right = Math::vector(components, frame);
             return vec![Equation::new(Math::Letter(letter), right)];
         }
@@ -126,23 +129,23 @@ impl<'a> Writer<'a> {
     /// Definitions of the names used since the last call, each before its first use.
     pub(super) fn definitions(&mut self) -> Vec<Block> {
         let mut equations = Vec::new();
-        let mut stack: Vec<(Expr, Option<Math>)> = std::mem::take(&mut self.wanted)
+        let mut stack: Vec<(Expr, Option<Vec<Equation>>)> = std::mem::take(&mut self.wanted)
             .into_iter()
             .rev()
             .map(|e| (e, None))
             .collect();
         while let Some((expr, written)) = stack.pop() {
-            let letter = self.letter(expr);
-            if let Some(math) = written {
-                equations.push(Equation::new(self.left(expr, letter), math));
+            if let Some(written) = written {
+                equations.extend(written);
                 continue;
             }
+            let letter = self.letter(expr);
             if !self.defined.insert(letter) {
                 continue;
             }
             self.define_all_unknowns(expr);
-            let math = self.definition(expr);
-            stack.push((expr, Some(math)));
+            let written = self.definition(expr);
+            stack.push((expr, Some(written)));
             let more = std::mem::take(&mut self.wanted);
             stack.extend(more.into_iter().rev().map(|e| (e, None)));
         }
@@ -168,50 +171,66 @@ impl<'a> Writer<'a> {
         }
     }
 
-    /// What a name stands for; of a linear system, the system.
-    fn definition(&mut self, expr: Expr) -> Math {
-        let graph = self.graph();
-        match graph.node(expr).clone() {
+    /// The equations that say what a name stands for; of a linear system, what all its unknowns do.
+    fn definition(&mut self, expr: Expr) -> Vec<Equation> {
+        let letter = self.letter(expr);
+        let right = match *self.graph().node(expr) {
             Node::Named(id) => {
-                let value = graph.definition(id).value;
+                let value = self.graph().definition(id).value;
                 self.explicit(value)
             }
-            Node::Solution { system, .. } => {
-                let right = graph.system(system).right.to_vec();
-                let components = right.iter().map(|&r| self.explicit(r)).collect();
-                Math::Vector {
-                    components,
-                    frame: None,
-                    column: true,
-                }
-            }
+            Node::Solution { system, .. } => return self.system(system, letter),
             _ => self.set_whole(expr),
-        }
+        };
+        vec![Equation::new(Math::letter(letter), right)]
     }
 
-    /// The left-hand side of a definition.
-    fn left(&mut self, expr: Expr, letter: Letter) -> Math {
-        let Node::Solution { system, .. } = *self.graph().node(expr) else {
-            return Math::letter(letter);
-        };
-        let entries = self.graph().system(system).matrix.to_vec();
-        let size = self.graph().system(system).right.len();
-        let rows: Vec<Vec<Math>> = entries
-            .chunks(size)
+    /// A linear system: as matrix and columns, or one equation below the other where these are wider
+    /// than a page.
+    fn system(&mut self, system: u32, unknown: Letter) -> Vec<Equation> {
+        let System { matrix, right } = self.graph().system(system).clone();
+        let wanted = self.wanted.len();
+        let rows: Vec<Vec<Math>> = matrix
+            .chunks(right.len())
             .map(|row| row.iter().map(|&e| self.set(e)).collect())
             .collect();
-        let mut unknown = letter;
-        let unknowns = (1..=size).map(|row| {
+        let components: Vec<Math> = right.iter().map(|&r| self.explicit(r)).collect();
+        let column = |k: usize| rows.iter().map(|row| row[k].width() + 3).max().unwrap_or(0);
+        let widest = components.iter().map(Math::width).max().unwrap_or(0);
+        if (0..right.len()).map(column).sum::<usize>() + widest > WIDEST_SYSTEM {
+            self.wanted.truncate(wanted);
+            return self.equation_by_equation(&matrix, &right);
+        }
+        let mut unknown = unknown;
+        let unknowns = (1..=right.len()).map(|row| {
             unknown.below.pop();
             unknown.below.push(row.to_string());
             Math::Letter(unknown.clone())
         });
-        let unknowns = Math::Vector {
-            components: unknowns.collect(),
+        let column = |components| Math::Vector {
+            components,
             frame: None,
             column: true,
         };
-        Math::Row(vec![Math::Matrix(rows), unknowns])
+        let left = Math::Row(vec![Math::Matrix(rows), column(unknowns.collect())]);
+        vec![Equation::new(left, column(components))]
+    }
+
+    /// `0 = Σ coefficient · unknown - right`
+    fn equation_by_equation(&mut self, matrix: &[Expr], right: &[Expr]) -> Vec<Equation> {
+        let graph = self.graph();
+        let unknowns = graph.solve_numerically(matrix.to_vec(), right.to_vec());
+        let mut equations = Vec::with_capacity(right.len());
+        for (row, &right) in matrix.chunks(unknowns.len()).zip(right) {
+            let graph = self.graph();
+            let mut parts = vec![graph.neg(right)];
+            for (&coefficient, &unknown) in row.iter().zip(&unknowns) {
+                parts.push(graph.mul(coefficient, unknown));
+            }
+            let sum = graph.sum(&parts);
+            equations.push(Equation::new(Math::zero(), self.explicit(sum)));
+        }
+        equations
     }
 
     /// A part with a letter, written out.

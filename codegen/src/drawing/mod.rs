@@ -1,11 +1,16 @@
-//! A drawing of a mechanism at its initial state, as SVG.
+//! A drawing of a mechanism at its initial state, as SVG, and what a moving picture needs.
 //!
-//! The files are the steps: [`scene`] places points and turns frames, [`view`] chooses where to look
-//! from, [`shapes`] makes strokes in space, [`sheet`] lays them out on paper.
+//! The files are the steps: [`placement`] writes where points and frames are, [`scene`] evaluates that,
+//! [`solids`] gives bodies a shape, [`view`] chooses where to look from, [`shapes`] makes strokes in
+//! space, [`sheet`] lays them out on paper. [`mod@film`] follows a motion with the same places and shapes.
 
+pub mod film;
+pub mod link;
+mod placement;
 mod scene;
 mod shapes;
 mod sheet;
+mod solids;
 mod space;
 mod view;
 
@@ -19,7 +24,7 @@ use view::View;
 /// The drawing of a mechanism, an SVG document. What has no finite position is left out and told in
 /// the caption.
 pub fn drawing(mechanism: &Mechanism, derivation: Derivation) -> Outcome<String> {
-    let scene = Scene::new(mechanism, derivation)?;
+    let scene = Scene::initial(mechanism, derivation)?;
     let view = View::of(mechanism, scene.flat_across);
     Ok(sheet::svg(mechanism, &scene, &view))
 }

@@ -17,8 +17,8 @@ pub(super) struct View {
     pub(super) up: Vector,
     /// Two directions that span the plane of the ground.
     pub(super) floor: [Vector; 2],
-    /// Whether it looks straight at the plane of the motion.
-    pub(super) flat: bool,
+    /// Upwards in the ground: against the weight, else along z.
+    pub(super) vertical: Vector,
     /// Direction of the weight, if there is any.
     pub(super) down: Option<Vector>,
 }
@@ -28,7 +28,6 @@ impl View {
     /// of one that moves in space.
     pub(super) fn of(mechanism: &Mechanism, flat_across: Option<usize>) -> Self {
         let down = down(mechanism);
-        // Upwards is against the weight, else along z.
         let vertical = down.map_or(unit(2), |down| scaled(-1.0, down));
         let upright = |axis: usize| vertical[axis] != 0.0;
         let first = unit(usize::from(upright(0)));
@@ -45,7 +44,7 @@ impl View {
                 right,
                 up,
                 floor: [right, floor],
-                flat: true,
+                vertical,
                 down,
             };
         }
@@ -58,7 +57,7 @@ impl View {
             right,
             up: add(scaled(cos_e, vertical), sin_e, away),
             floor: [first, second],
-            flat: false,
+            vertical,
             down,
         }
     }

@@ -1,0 +1,74 @@
+//! What belongs together: points with the points that they are placed from, frames with points.
+
+use appell_spec::mechanism::{
+    Connection, FrameId, GROUND, Load, LoadKind, Mechanism, ORIGIN, Point, PointId,
+};
+
+/// A line between two points.
+pub struct Link {
+    /// What the line stands for.
+    pub kind: LinkKind,
+    /// Its ends.
+    pub ends: [PointId; 2],
+    /// What it is, for people.
+    pub about: String,
+}
+
+/// What a line stands for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum LinkKind {
+    /// Coordinates that lead from the origin: no part of the mechanism.
+    Way,
+    /// A part of the mechanism.
+    Rod,
+    /// A spring between two points.
+    Spring,
+    /// A damper between two points.
+    Damper,
+}
+
+/// Links from each point to the point that it is placed from, and springs and dampers.
+pub(super) fn links(mechanism: &Mechanism) -> impl Iterator<Item = Link> {
+    let placed = |(id, point): (PointId, &Point)| {
+        let from = point.from?;
+        let leads_only = from == ORIGIN && point.frame == GROUND;
+        Some(Link {
+            kind: if leads_only {
+                LinkKind::Way
+            } else {
+                LinkKind::Rod
+            },
+            ends: [from, id],
+            about: format!("{} from {}", point.name, mechanism.points[from].name),
+        })
+    };
+    let connection = |load: &Load| {
+        let Some(&Connection::Points(a, b)) = load.kind.between() else {
+            return None;
+        };
+        let (kind, word) = match load.kind {
+            LoadKind::Spring { .. } => (LinkKind::Spring, "spring"),
+            _ => (LinkKind::Damper, "damper"),
+        };
+        Some(Link {
+            kind,
+            ends: [a, b],
+            about: format!("{word} {}", load.name),
+        })
+    };
+    let placed = mechanism.points.iter().enumerate().filter_map(placed);
+    placed.chain(mechanism.loads.iter().filter_map(connection))
+}
+
+/// Where the axes of a frame are drawn: at the centre of its body, or at the point from which it
+/// places another.
+pub(super) fn seat(mechanism: &Mechanism, frame: FrameId) -> Option<PointId> {
+    let of_body = mechanism.bodies.iter().find(|b| b.frame == Some(frame));
+    let placing = mechanism.points.iter().find(|p| p.frame == frame);
+    match frame {
+        GROUND => Some(ORIGIN),
+        _ => of_body
+            .map(|body| body.centre)
+            .or(placing.and_then(|point| point.from)),
+    }
+}

@@ -8,6 +8,7 @@ mod engine;
 mod failure;
 mod feedback;
 mod files;
+mod film;
 mod formula;
 mod progress;
 mod reactions;

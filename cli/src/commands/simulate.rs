@@ -14,7 +14,7 @@ use crate::engine::{Engine, Equations};
 use crate::failure::{Failure, note, tell};
 use crate::setup::{Assignment, Setup};
 use crate::source::Source;
-use crate::{feedback, files, progress, reactions, summary, tabulated};
+use crate::{feedback, files, film, progress, reactions, summary, tabulated};
 
 /// Integrates the equations of motion and tells what happened.
 ///
@@ -91,6 +91,9 @@ pub(crate) struct Simulate {
     /// Draw states and inputs over time
     #[arg(long, value_name = "FILE.svg")]
     plot: Option<PathBuf>,
+    /// Write a page with the moving mechanism, for a browser; it needs no network
+    #[arg(long, value_name = "FILE.html")]
+    html: Option<PathBuf>,
     /// Write a summary in SI; `-` is standard output
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
@@ -187,6 +190,10 @@ impl Simulate {
         if let Some(path) = &self.plot {
             files::write(path, &Figure::of_states_and_inputs(&trajectory).to_svg())?;
         }
+        if let Some(path) = &self.html {
+            let page = film::page(&equations, &setup, &trajectory, failure.as_deref())?;
+            files::write(path, &page)?;
+        }
         if let Some(path) = &self.json {
             files::write_json(path, &summary::json(&trajectory, failure.as_deref()))?;
         }
@@ -240,7 +247,7 @@ impl Simulate {
 
     /// Whether standard output belongs to one of the files.
     fn takes_stdout(&self) -> bool {
-        let files = [&self.csv, &self.plot, &self.json];
+        let files = [&self.csv, &self.plot, &self.html, &self.json];
         files
             .into_iter()
             .flatten()

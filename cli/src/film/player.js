@@ -1,0 +1,262 @@
+// The player: time, keys and buttons, one picture after the other.
+
+const SPEEDS = [0.1, 0.25, 0.5, 1, 2, 4];
+/** A picture that comes later than this is a pause, in s. */
+const LONGEST = 0.25;
+/** Numbers that change faster than this are not read, in s. */
+const READABLE = 0.1;
+/** Fewer pictures than this in a second look jerky. */
+const SLOW = 50;
+/** Pixels of the picture to those of the screen, at least. */
+const COARSEST = 0.5;
+
+/** What draws in space here, by its name; nothing where nothing does. */
+function painter() {
+  const context = document.createElement("canvas").getContext("webgl2");
+  const names = context?.getExtension("WEBGL_debug_renderer_info");
+  const name = context && String(context.getParameter(names?.UNMASKED_RENDERER_WEBGL ?? context.RENDERER));
+  context?.getExtension("WEBGL_lose_context")?.loseContext();
+  return name;
+}
+
+class Player {
+  constructor() {
+    this.time = film.start;
+    this.playing = false;
+    this.changed = true;
+    this.pictures = 0;
+    this.fineness = 1;
+    this.recent = [];
+    at("title").textContent = film.title;
+    at("source").textContent = film.source ?? "";
+    at("space").setAttribute("aria-label", `${film.title}, moving in space`);
+    if (film.ending) this.say(`The motion ends early: ${film.ending}`, 8000);
+    this.values = new Values((column) => this.choose(column));
+    this.strip = new Strip((t) => this.seek(t));
+    this.prepareSpace();
+    this.prepareControls();
+    this.choose(mostCurious());
+    colours.use(colours.theme);
+  }
+
+  /** The picture in space; without WebGL the rest of the page works. */
+  prepareSpace() {
+    const name = painter();
+    if (!name) {
+      this.say("This browser offers no WebGL, which the picture in space needs. Values and plots are shown without it.");
+      return;
+    }
+    const canvas = at("space");
+    // Smooth edges take a graphics processor.
+    const antialias = !/swiftshader|llvmpipe|software|basic render/i.test(name);
+    this.renderer = new THREE.WebGLRenderer({ canvas, antialias, powerPreference: "high-performance" });
+    this.stage = new Stage();
+    this.eye = new Eye(canvas, this.stage);
+    this.names = new Names(this.stage);
+    fillLegend(this.stage);
+    new ResizeObserver(() => this.fit()).observe(at("stage"));
+    this.fit();
+    canvas.addEventListener("dblclick", () => this.eye.reset(at("follow").checked));
+    colours.follow(() => (this.changed = true));
+  }
+
+  prepareControls() {
+    const choice = (list, text, value) => Object.assign(element(at(list), "option", text), { value });
+    for (const speed of SPEEDS) choice("speed", `${speed} ×`, speed);
+    at("speed").value = 1;
+    if (film.contacts.length) choice("trace", "contacts", "contacts");
+    choice("trace", "none", "none");
+    film.points.forEach(({ name }, point) => choice("trace", name, point));
+    // Without a contact, the point at the end of the description is the most curious one.
+    if (!film.contacts.length) at("trace").value = film.points.length - 1;
+    at("trace").addEventListener("change", () => this.trace());
+    this.trace();
+    at("follow").checked = Boolean(this.stage?.travels);
+    at("follow").addEventListener("change", () => this.eye?.reset(at("follow").checked));
+    for (const box of ["forces", "points", "axes", "follow"]) {
+      at(box).addEventListener("change", () => (this.changed = true));
+    }
+    const slider = at("slider");
+    [slider.min, slider.max] = [film.start, film.end];
+    slider.addEventListener("input", () => this.seek(slider.valueAsNumber));
+    at("play").addEventListener("click", () => this.play(!this.playing));
+    at("theme").addEventListener("click", () => colours.use(colours.theme === "dark" ? "light" : "dark"));
+    colours.follow(() => (at("theme").textContent = colours.theme === "dark" ? "light" : "dark"));
+    addEventListener("keydown", (event) => this.key(event));
+  }
+
+  say(text, milliseconds) {
+    at("message").textContent = text;
+    at("message").hidden = false;
+    if (milliseconds) setTimeout(() => (at("message").hidden = true), milliseconds);
+  }
+
+  trace() {
+    const { value } = at("trace");
+    const points = value === "contacts" ? film.contacts : value === "none" ? [] : [Number(value)];
+    this.stage?.draw(points);
+    this.changed = true;
+  }
+
+  choose(column) {
+    this.values.choose(column);
+    this.strip.choose(column);
+  }
+
+  play(playing) {
+    if (playing && this.time >= film.end) this.time = film.start;
+    this.playing = playing && film.end > film.start;
+    at("play").textContent = this.playing ? "pause" : "play";
+    if (this.stage && this.fineness < 1) this.fit();
+    this.recent = [];
+    at("rate").textContent = "";
+    this.changed = true;
+  }
+
+  seek(t) {
+    this.time = Math.min(Math.max(t, film.start), film.end);
+    this.changed = true;
+  }
+
+  step(rows) {
+    this.play(false);
+    const { low, high, part } = instantAt(this.time);
+    const row = (part > 0.5 ? high : low) + rows;
+    this.seek(film.times[Math.min(Math.max(row, 0), film.rows - 1)]);
+  }
+
+  key(event) {
+    const typing = event.target.closest?.("select");
+    if (typing || event.ctrlKey || event.metaKey || event.altKey) return;
+    const sign = { ArrowLeft: -1, ArrowRight: 1 }[event.key];
+    const actions = {
+      Home: () => this.seek(film.start),
+      End: () => this.seek(film.end),
+      "+": () => this.eye?.zoom(0.85),
+      "-": () => this.eye?.zoom(1 / 0.85),
+      f: () => at("follow").click(),
+    };
+    // A focused button or box keeps its own space bar.
+    if (event.key === " " && event.target.closest?.("button, input[type=checkbox]") === null) {
+      actions[" "] = () => this.play(!this.playing);
+    }
+    const action = sign
+      ? () => (event.shiftKey ? this.seek(this.time + 0.1 * sign) : this.step(sign))
+      : actions[event.key];
+    if (!action) return;
+    event.preventDefault();
+    action();
+  }
+
+  fit() {
+    [this.width, this.height] = [at("stage").clientWidth, at("stage").clientHeight];
+    // What stands still may take its time.
+    const fineness = this.playing ? this.fineness : 1;
+    this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2) * fineness);
+    this.renderer.setSize(this.width, this.height, false);
+    this.changed = true;
+  }
+
+  /** Time goes on by the seconds since the last picture. */
+  advance(seconds) {
+    if (!this.playing) return;
+    this.time += seconds * Number(at("speed").value);
+    if (this.time > film.end) {
+      const repeats = at("repeat").checked;
+      this.time = repeats ? film.start : film.end;
+      if (!repeats) this.play(false);
+    }
+    this.changed = true;
+  }
+
+  picture(now) {
+    const seconds = this.last === undefined ? 0 : (now - this.last) / 1000;
+    this.last = now;
+    this.count(now);
+    this.advance(Math.min(seconds, LONGEST));
+    if (this.changed || this.eye?.changed) this.show();
+  }
+
+  show() {
+    this.changed = false;
+    const instant = instantAt(this.time);
+    if (this.stage) {
+      this.stage.show(instant, { forces: at("forces").checked, axes: at("axes").checked });
+      const { target } = this.eye;
+      if (at("follow").checked) this.stage.middle(instant, target);
+      else this.stage.whole.getCenter(target);
+      this.eye.look(this.width, this.height);
+      this.renderer.render(this.stage.scene, this.eye.camera);
+      this.names.show(instant, this.eye.camera, this.width, this.height, at("points").checked);
+    }
+    this.strip.show(this.time);
+    if (this.playing && this.last - this.told < 1000 * READABLE) return;
+    this.told = this.last;
+    this.values.show(instant);
+    at("time").textContent = `t = ${this.time.toFixed(3)} s`;
+    at("slider").value = this.time;
+    at("slider").setAttribute("aria-valuetext", `${this.time.toFixed(2)} s`);
+  }
+
+  /** Counts the pictures of the last second; a slow machine gets coarser ones. */
+  count(now) {
+    this.pictures += 1;
+    this.recent.push(now);
+    while (this.recent[0] < now - 1000) this.recent.shift();
+    if (this.pictures % 30 || now - this.recent[0] < 900) return;
+    const rate = this.recent.length - 1;
+    at("rate").textContent = this.playing ? `${rate} pictures/s` : "";
+    if (this.playing && this.stage && rate < SLOW && this.fineness > COARSEST) {
+      this.fineness *= 0.8;
+      this.fit();
+    }
+  }
+}
+
+/** The column that is shown first: an input or else a coordinate that changes. */
+function mostCurious() {
+  const changes = (column) => {
+    const value = (row) => film.values[row * film.columns.length + column];
+    return film.times.some((_, row) => value(row) !== value(0));
+  };
+  const of = (wanted) => film.columns.findIndex(({ group }, column) => group === wanted && changes(column));
+  return Math.max(0, ["inputs", "coordinates"].map(of).find((column) => column >= 0) ?? 0);
+}
+
+/** Shows the page, and tells scripts the time shown, whether it plays, pictures, places of points. */
+function start() {
+  if (!film.rows) {
+    colours.use(colours.theme);
+    at("message").textContent = "The motion has no row.";
+    at("message").hidden = false;
+    return;
+  }
+  const player = new Player();
+  globalThis.appell = {
+    get time() {
+      return player.time;
+    },
+    get playing() {
+      return player.playing;
+    },
+    get pictures() {
+      return player.pictures;
+    },
+    /** Pictures of the last second. */
+    get rate() {
+      return player.recent.length - 1;
+    },
+    place(name) {
+      const point = film.points.findIndex((candidate) => candidate.name === name);
+      return placeAt(point, instantAt(player.time), new THREE.Vector3()).toArray();
+    },
+  };
+  player.play(!matchMedia("(prefers-reduced-motion: reduce)").matches);
+  const next = (now) => {
+    player.picture(now);
+    requestAnimationFrame(next);
+  };
+  requestAnimationFrame(next);
+}
+
+start();

@@ -1,12 +1,13 @@
 //! Everything that drives the inputs of a simulation.
 
 use appell_codegen::symbolic::Expr as Lowered;
+use appell_runtime::control::sampler::Sampler;
 use appell_runtime::inputs::{InputSource, TabulatedInputs};
 use appell_spec::expr::Expr;
 use appell_spec::{Report, Scope, Snippet, formula};
 
 use crate::failure::Failure;
-use crate::feedback::Feedback;
+use crate::feedback::{Feedback, Sampled};
 use crate::formula::{StateFunction, Workbench, switching_times};
 use crate::setup::{Assignment, Setup, bracketed};
 
@@ -17,19 +18,33 @@ pub(crate) struct Controller {
     slots: Vec<Slot>,
     parameters: Vec<f64>,
     recorded: Option<TabulatedInputs>,
+    sampled: Vec<SampledLaw>,
     switching_times: Vec<f64>,
+}
+
+/// A law that measures at intervals.
+struct SampledLaw {
+    sampler: Sampler,
+    inputs: Vec<usize>,
+    pending_gains: Vec<Vec<f64>>,
 }
 
 /// What a value of the function means.
 enum Slot {
     /// It is added to an input.
     Input(usize),
-    /// It is the desired value of a state: the input falls by the gain times the deviation.
-    Desired {
-        input: usize,
-        state: usize,
-        gain: f64,
-    },
+    /// It is the desired value of a state.
+    Desired(Term),
+}
+
+/// An input falls by the gain times the deviation of a state, at once or when it is measured.
+#[derive(Debug, Clone, Copy)]
+struct Term {
+    input: usize,
+    state: usize,
+    gain: f64,
+    /// The sampled law to which it belongs.
+    law: Option<usize>,
 }
 
 /// Collects what drives the inputs.
@@ -38,7 +53,8 @@ pub(crate) struct Plan {
     exprs: Vec<Lowered>,
     slots: Vec<Slot>,
     /// Desired values of zero need no expression.
-    zero: Vec<(usize, usize, f64)>,
+    zero: Vec<Term>,
+    sampled: Vec<(Sampled, Vec<usize>)>,
     recorded: Option<TabulatedInputs>,
     switching_times: Vec<f64>,
     /// Inputs that an expression or a recording sets.
@@ -53,6 +69,7 @@ impl Plan {
             exprs: Vec::new(),
             slots: Vec::new(),
             zero: Vec::new(),
+            sampled: Vec::new(),
             recorded: None,
             switching_times: Vec::new(),
             set: Vec::new(),
@@ -126,42 +143,85 @@ impl Plan {
     /// `--feedback FILE`
     pub(crate) fn feedback(&mut self, feedback: Feedback) -> Result<(), Failure> {
         let told = |told| Failure::Data(format!("{}: {told}", feedback.file));
-        let input = feedback.input;
-        if let Some(offset) = &feedback.offset {
-            self.push(Slot::Input(input), offset).map_err(told)?;
-        }
-        for (state, gain, desired) in feedback.terms {
-            match desired {
-                Some(expr) => self
-                    .push(Slot::Desired { input, state, gain }, &expr)
-                    .map_err(told)?,
-                None => self.zero.push((input, state, gain)),
+        for (&input, offset) in feedback.inputs.iter().zip(&feedback.offsets) {
+            if let Some(offset) = offset {
+                self.push(Slot::Input(input), offset).map_err(told)?;
             }
+        }
+        let law = feedback.sampled.is_some().then_some(self.sampled.len());
+        for (&input, gains) in feedback.inputs.iter().zip(&feedback.gains) {
+            for ((state, desired), &gain) in feedback.states.iter().zip(gains) {
+                let term = Term {
+                    input,
+                    state: *state,
+                    gain,
+                    law,
+                };
+                match desired {
+                    Some(expr) => self.push(Slot::Desired(term), expr).map_err(told)?,
+                    None => self.zero.push(term),
+                }
+            }
+        }
+        if let Some(sampled) = feedback.sampled {
+            self.sampled.push((sampled, feedback.inputs));
         }
         self.switching_times.extend(feedback.switching_times);
         Ok(())
     }
 
-    /// The inputs as a function of time and state.
-    pub(crate) fn controller(self, setup: &Setup<'_>) -> Result<Controller, Failure> {
+    /// The inputs as a function of time and state, for a motion from 0 to `until` in s.
+    pub(crate) fn controller(self, setup: &Setup<'_>, until: f64) -> Result<Controller, Failure> {
         let function = self
             .bench
             .function(setup.info, self.exprs)
             .map_err(|error| Failure::Computation(error.to_string()))?;
         let mut slots = self.slots;
         // Values beyond those of the function are zero.
-        slots.extend(
-            self.zero
-                .into_iter()
-                .map(|(input, state, gain)| Slot::Desired { input, state, gain }),
-        );
+        slots.extend(self.zero.into_iter().map(Slot::Desired));
+        let mut switching_times = self.switching_times;
+        let mut sampled = Vec::new();
+        for (law, inputs) in self.sampled {
+            if until / law.sampling.period() > MOST_MEASUREMENTS {
+                return Err(Failure::Usage(format!(
+                    "{} measurements are too many; choose a larger `sampled_ms` (at most \
+                     {MOST_MEASUREMENTS:.0} measurements)",
+                    until / law.sampling.period()
+                )));
+            }
+            let sampler = Sampler::new(law.sampling, until);
+            switching_times.extend(sampler.switching_times());
+            sampled.push(SampledLaw {
+                sampler,
+                inputs,
+                pending_gains: law.pending_gains,
+            });
+        }
         Ok(Controller {
             function,
             slots,
             parameters: setup.parameters.clone(),
             recorded: self.recorded,
-            switching_times: self.switching_times,
+            sampled,
+            switching_times,
         })
+    }
+}
+
+/// Measurements in one motion.
+const MOST_MEASUREMENTS: f64 = 1e6;
+
+impl Controller {
+    /// What the terms of a law, or those without one, take from each input.
+    fn feedback(&self, law: Option<usize>, x: &[f64], values: &[f64], inputs: &mut [f64]) {
+        for (slot, value) in self.slots.iter().zip(values) {
+            match slot {
+                Slot::Desired(term) if term.law == law => {
+                    inputs[term.input] -= term.gain * (x[term.state] - value);
+                }
+                _ => {}
+            }
+        }
     }
 }
 
@@ -173,15 +233,38 @@ impl InputSource for Controller {
         }
         let mut values = vec![0.0; self.slots.len()];
         self.function.values(t, x, &self.parameters, &mut values);
-        for (slot, value) in self.slots.iter().zip(values) {
-            match *slot {
-                Slot::Input(input) => u[input] += value,
-                Slot::Desired { input, state, gain } => u[input] -= gain * (x[state] - value),
+        for (slot, value) in self.slots.iter().zip(&values) {
+            if let Slot::Input(input) = *slot {
+                u[input] += value;
+            }
+        }
+        self.feedback(None, x, &values, u);
+        for (law, sampled) in self.sampled.iter().enumerate() {
+            let acting = sampled.sampler.acting(t, |pending| {
+                let mut asked = vec![0.0; u.len()];
+                self.feedback(Some(law), x, &values, &mut asked);
+                sampled.asked(&asked, &pending.concat())
+            });
+            for (&input, acting) in sampled.inputs.iter().zip(acting.iter().flatten()) {
+                u[input] += acting;
             }
         }
     }
 
     fn switching_times(&self) -> Vec<f64> {
         self.switching_times.clone()
+    }
+}
+
+impl SampledLaw {
+    /// What a measurement asks for, from the feedback of the states and from what is pending, the
+    /// oldest first. Before the first measurements less is pending than the gains expect.
+    fn asked(&self, feedback: &[f64], pending: &[f64]) -> Vec<f64> {
+        let rows = self.inputs.iter().zip(&self.pending_gains);
+        rows.map(|(&input, gains)| {
+            let terms = gains.iter().rev().zip(pending.iter().rev());
+            feedback[input] - terms.map(|(gain, pending)| gain * pending).sum::<f64>()
+        })
+        .collect()
     }
 }

@@ -1,9 +1,12 @@
-//! Feedback files: `u = offset - K (y - y_desired(t))` for one input, y being some of the states.
+//! Feedback files: `u = offset - K (y - y_desired(t))`, y being some of the states.
 //!
 //! ```toml
-//! input  = "u"
+//! input  = "u"                             # or inputs = ["u", "v"], with a list of gains for each
 //! states = ["theta", "omega_1"]
 //! gains  = [40, 12]
+//! sampled_ms = 10                          # measured at intervals, held between them
+//! delay_ms = 5                             # from a measurement to its effect
+//! pending_gains = [0.1]                    # for what was asked for and does not act yet
 //! switching_times_s = [2]                  # where a desired value jumps or kinks
 //! desired = { theta = "if(t < 2, 0, 0.1)" }
 //! initial = { theta = "5deg" }             # --initial wins
@@ -11,6 +14,7 @@
 
 use std::path::Path;
 
+use appell_runtime::control::sampled::Sampling;
 use appell_spec::expr::{Expr, Span};
 use appell_spec::limits::MAX_FILE;
 use appell_spec::units::Unit;
@@ -22,30 +26,48 @@ use crate::failure::Failure;
 use crate::files;
 use crate::setup::{Setup, bracketed, unknown};
 
-/// A law for one input.
+/// A law for one input or several.
 #[derive(Debug)]
 pub(crate) struct Feedback {
     /// The file.
     pub(crate) file: String,
-    /// The input.
-    pub(crate) input: usize,
-    /// What is added to the feedback.
-    pub(crate) offset: Option<Expr>,
-    /// State, gain in SI, desired value.
-    pub(crate) terms: Vec<(usize, f64, Option<Expr>)>,
+    /// The inputs.
+    pub(crate) inputs: Vec<usize>,
+    /// What is added to the feedback of each input.
+    pub(crate) offsets: Vec<Option<Expr>>,
+    /// The states, with what is wanted of them.
+    pub(crate) states: Vec<(usize, Option<Expr>)>,
+    /// In SI, a row for each input, a number for each state.
+    pub(crate) gains: Vec<Vec<f64>>,
+    /// When a sampled controller measures and acts.
+    pub(crate) sampled: Option<Sampled>,
     /// Times in s at which the law jumps or kinks.
     pub(crate) switching_times: Vec<f64>,
     /// Initial values by state.
     pub(crate) initial: Vec<(usize, Expr)>,
 }
 
+/// A controller that measures at intervals.
+#[derive(Debug)]
+pub(crate) struct Sampled {
+    /// When it measures and acts.
+    pub(crate) sampling: Sampling,
+    /// A row for each input: gains for what was asked for and does not act yet, all inputs of the
+    /// oldest measurement first.
+    pub(crate) pending_gains: Vec<Vec<f64>>,
+}
+
 const KEYS: &[&str] = &[
     "about",
     "mechanism",
     "input",
+    "inputs",
     "offset",
     "states",
     "gains",
+    "sampled_ms",
+    "delay_ms",
+    "pending_gains",
     "switching_times_s",
     "desired",
     "initial",
@@ -109,24 +131,11 @@ impl Reader<'_> {
     /// Everything in the file. What is wrong is told and replaced, so that all of it is told.
     fn feedback(&mut self, table: &DeTable<'_>) -> Option<Feedback> {
         self.keys(table);
-        let input = self.input(table);
+        let inputs = self.inputs(table);
         let states = self.list(table, "states", Self::state);
-        let gains = self.list(table, "gains", Self::number);
         let switching_times = self.list(table, "switching_times_s", Self::number);
         let desired = self.by_state(table, "desired", Scope::Schedule, "the desired value");
         let initial = self.by_state(table, "initial", Scope::Constant, "the initial value");
-        let setup = self.setup;
-        let offset = input.zip(table.get("offset")).and_then(|(input, value)| {
-            let unit = &setup.mechanism.inputs[input].label.unit;
-            self.expression(value, Scope::Law, "the offset", unit)
-        });
-        if let (Some(states), Some(gains), Some(at)) = (&states, &gains, table.get("gains"))
-            && states.len() != gains.len()
-        {
-            let message = format!("{} gains for {} states", gains.len(), states.len());
-            let help = "write one gain for each state, in the same order";
-            self.tell(Code::WrongType, message, at.span(), help);
-        }
         for (state, _, at) in &desired {
             if states
                 .as_ref()
@@ -137,18 +146,24 @@ impl Reader<'_> {
                 self.tell(Code::UnknownReference, message, at.clone(), help);
             }
         }
+        let (inputs, states) = inputs.zip(states)?;
+        let offsets = self.offsets(table, &inputs);
+        let gains = self.gains(table, "gains", inputs.len(), states.len());
+        let sampled = self.sampled(table, inputs.len());
         let wanted = |state: usize| {
             let found = desired.iter().find(|(other, ..)| *other == state);
             found.map(|(_, expr, _)| expr.clone())
         };
-        let terms = states?.into_iter().zip(gains?);
         Some(Feedback {
             file: self.file.to_owned(),
-            input: input?,
-            offset,
-            terms: terms
-                .map(|(state, gain)| (state, gain, wanted(state)))
+            offsets,
+            states: states
+                .into_iter()
+                .map(|state| (state, wanted(state)))
                 .collect(),
+            gains: gains?,
+            sampled: sampled?,
+            inputs,
             switching_times: switching_times.unwrap_or_default(),
             initial: initial
                 .into_iter()
@@ -166,15 +181,11 @@ impl Reader<'_> {
                 self.tell(Code::UnknownKey, message, key.span(), &help);
             }
         }
+        let needs = "a law needs `input` or `inputs`, `states` and `gains`";
         for key in ["input", "states", "gains"] {
-            if table.get(key).is_none() {
+            if table.get(key).is_none() && !(key == "input" && table.get("inputs").is_some()) {
                 let message = format!("the key `{key}` is missing");
-                self.tell(
-                    Code::MissingKey,
-                    message,
-                    0..0,
-                    "a law needs `input`, `states` and `gains`",
-                );
+                self.tell(Code::MissingKey, message, 0..0, needs);
             }
         }
         let ours = &self.setup.mechanism.name;
@@ -186,11 +197,141 @@ impl Reader<'_> {
         }
     }
 
-    fn input(&mut self, table: &DeTable<'_>) -> Option<usize> {
-        let (name, at) = self.string(table.get("input")?)?;
+    /// The one of `input`, or the list of `inputs`.
+    fn inputs(&mut self, table: &DeTable<'_>) -> Option<Vec<usize>> {
+        match (table.get("input"), table.get("inputs")) {
+            (Some(_), Some(both)) => {
+                let message = "a law has `input` or `inputs`, not both";
+                self.tell(Code::UnknownKey, message, both.span(), "remove one of them");
+                None
+            }
+            (Some(one), None) => Some(vec![self.input(one)?]),
+            (None, _) => self.list(table, "inputs", Self::input),
+        }
+    }
+
+    fn input(&mut self, value: &Value<'_>) -> Option<usize> {
+        let (name, at) = self.string(value)?;
         let inputs = self.setup.mechanism.inputs.iter();
         let names: Vec<String> = inputs.map(|input| input.label.name.clone()).collect();
         self.find(&name, "input", &names, at)
+    }
+
+    /// One expression, or a list of them for several inputs.
+    fn offsets(&mut self, table: &DeTable<'_>, inputs: &[usize]) -> Vec<Option<Expr>> {
+        let Some(value) = table.get("offset") else {
+            return vec![None; inputs.len()];
+        };
+        let values = match value.get_ref() {
+            DeValue::Array(values) => values.iter().collect(),
+            _ => vec![value],
+        };
+        self.count("offset", values.len(), "input", inputs.len(), value.span());
+        let setup = self.setup;
+        let units = inputs
+            .iter()
+            .map(|&input| &setup.mechanism.inputs[input].label.unit);
+        let pairs = values.into_iter().zip(units);
+        pairs
+            .map(|(value, unit)| self.expression(value, Scope::Law, "the offset", unit))
+            .collect()
+    }
+
+    /// Numbers: a list for one input, a list of lists for several.
+    fn gains(
+        &mut self,
+        table: &DeTable<'_>,
+        key: &'static str,
+        inputs: usize,
+        columns: usize,
+    ) -> Option<Vec<Vec<f64>>> {
+        let value = table.get(key)?;
+        let nested = value
+            .get_ref()
+            .get(0)
+            .is_some_and(|first| first.get_ref().is_array());
+        let rows = if nested {
+            self.list(table, key, Self::numbers)?
+        } else {
+            vec![self.list(table, key, Self::number)?]
+        };
+        self.count("list of gains", rows.len(), "input", inputs, value.span());
+        let what = if key == "gains" {
+            "state"
+        } else {
+            "pending input"
+        };
+        for row in &rows {
+            self.count("gain", row.len(), what, columns, value.span());
+        }
+        Some(rows)
+    }
+
+    /// Tells where there is not one for each.
+    fn count(&mut self, what: &str, given: usize, each: &str, needed: usize, at: Span) {
+        if given != needed {
+            let plural = |count: usize, noun: &str| {
+                let ending = if count == 1 { "" } else { "s" };
+                format!("{count} {noun}{ending}")
+            };
+            let message = format!("{} for {}", plural(given, what), plural(needed, each));
+            let help = format!("write one {what} for each {each}, in the same order");
+            self.tell(Code::WrongType, message, at, &help);
+        }
+    }
+
+    /// When the controller measures and acts; nothing where that is wrong.
+    fn sampled(&mut self, table: &DeTable<'_>, inputs: usize) -> Option<Option<Sampled>> {
+        let Some(period) = table.get("sampled_ms") else {
+            for key in ["delay_ms", "pending_gains"] {
+                if let Some(value) = table.get(key) {
+                    let message = format!("`{key}` needs `sampled_ms`");
+                    self.tell(
+                        Code::MissingKey,
+                        message,
+                        value.span(),
+                        "a delay is one of a controller that measures at intervals",
+                    );
+                }
+            }
+            return Some(None);
+        };
+        let delay = match table.get("delay_ms") {
+            Some(delay) => self.number(delay)?,
+            None => 0.0,
+        };
+        let sampling = Sampling::new(self.number(period)? / 1e3, delay / 1e3);
+        let sampling = match sampling {
+            Ok(sampling) => sampling,
+            Err(error) => {
+                self.tell(Code::WrongType, error.to_string(), period.span(), "");
+                return None;
+            }
+        };
+        let pending = sampling.pending() * inputs;
+        let pending_gains = match table.get("pending_gains") {
+            Some(_) => self.gains(table, "pending_gains", inputs, pending)?,
+            None => vec![vec![0.0; pending]; inputs],
+        };
+        Some(Some(Sampled {
+            sampling,
+            pending_gains,
+        }))
+    }
+
+    fn numbers(&mut self, value: &Value<'_>) -> Option<Vec<f64>> {
+        let DeValue::Array(elements) = value.get_ref() else {
+            let help = "write a list of numbers for each input";
+            self.tell(
+                Code::WrongType,
+                "expected a list of numbers",
+                value.span(),
+                help,
+            );
+            return None;
+        };
+        let read: Vec<Option<f64>> = elements.iter().map(|value| self.number(value)).collect();
+        read.into_iter().collect()
     }
 
     /// A list under a key; nothing where the key or an element is missing or wrong.

@@ -308,7 +308,7 @@ pub(super) struct Run<'a> {
 impl Run<'_> {
     /// The motion, and why it ends early if it does.
     pub(super) fn run(&self, plan: Plan) -> Result<(Trajectory, Option<String>), Failure> {
-        let controller = plan.controller(self.setup)?;
+        let controller = plan.controller(self.setup, self.t_end)?;
         let clock = progress::clock(self.t_end);
         let simulation = Simulation {
             parameters: self.setup.parameters.clone(),

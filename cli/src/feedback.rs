@@ -162,7 +162,7 @@ impl Reader<'_> {
                 .map(|state| (state, wanted(state)))
                 .collect(),
             gains: gains?,
-            sampled: sampled?,
+            sampled,
             inputs,
             switching_times: switching_times.unwrap_or_default(),
             initial: initial
@@ -280,8 +280,8 @@ impl Reader<'_> {
         }
     }
 
-    /// When the controller measures and acts; nothing where that is wrong.
-    fn sampled(&mut self, table: &DeTable<'_>, inputs: usize) -> Option<Option<Sampled>> {
+    /// When the controller measures and acts; nothing where it always does, or where that is wrong.
+    fn sampled(&mut self, table: &DeTable<'_>, inputs: usize) -> Option<Sampled> {
         let Some(period) = table.get("sampled_ms") else {
             for key in ["delay_ms", "pending_gains"] {
                 if let Some(value) = table.get(key) {
@@ -294,7 +294,7 @@ impl Reader<'_> {
                     );
                 }
             }
-            return Some(None);
+            return None;
         };
         let delay = match table.get("delay_ms") {
             Some(delay) => self.number(delay)?,
@@ -313,10 +313,10 @@ impl Reader<'_> {
             Some(_) => self.gains(table, "pending_gains", inputs, pending)?,
             None => vec![vec![0.0; pending]; inputs],
         };
-        Some(Some(Sampled {
+        Some(Sampled {
             sampling,
             pending_gains,
-        }))
+        })
     }
 
     fn numbers(&mut self, value: &Value<'_>) -> Option<Vec<f64>> {

@@ -3,6 +3,7 @@
 mod breaches;
 mod cases;
 mod commands;
+mod control;
 mod controller;
 mod engine;
 mod failure;

@@ -94,11 +94,20 @@ impl<'a> Setup<'a> {
 
     /// `--initial NAME=VALUE`; values may use parameters.
     pub(crate) fn start(&mut self, assignments: &[Assignment]) -> Result<(), Failure> {
-        unique(assignments, "--initial")?;
+        self.start_with("--initial", assignments)
+    }
+
+    /// The same for a flag of another name.
+    pub(crate) fn start_with(
+        &mut self,
+        flag: &str,
+        assignments: &[Assignment],
+    ) -> Result<(), Failure> {
+        unique(assignments, flag)?;
         for assignment in assignments {
             let index = self.state(&assignment.name)?;
             let unit = self.unit_of_state(index).clone();
-            let label = format!("--initial {}", assignment.name);
+            let label = format!("{flag} {}", assignment.name);
             let value = self.value(&assignment.value, &unit, &label)?;
             self.place(index, value).map_err(Failure::Usage)?;
         }
@@ -139,6 +148,18 @@ impl<'a> Setup<'a> {
                 .iter()
                 .map(|input| input.label.name.as_str()),
         )
+    }
+
+    /// A constant value of a declared input, with its index.
+    pub(crate) fn input_value(
+        &self,
+        flag: &str,
+        assignment: &Assignment,
+    ) -> Result<(usize, f64), Failure> {
+        let input = self.input(&assignment.name)?;
+        let unit = &self.mechanism.inputs[input].label.unit;
+        let label = format!("{flag} {}", assignment.name);
+        Ok((input, self.value(&assignment.value, unit, &label)?))
     }
 
     /// Unit of a state.
@@ -266,7 +287,7 @@ pub(crate) fn instead<'n>(name: &str, names: impl Iterator<Item = &'n str> + Clo
     })
 }
 
-fn unique(assignments: &[Assignment], flag: &str) -> Result<(), Failure> {
+pub(crate) fn unique(assignments: &[Assignment], flag: &str) -> Result<(), Failure> {
     for (i, assignment) in assignments.iter().enumerate() {
         if assignments[..i]
             .iter()

@@ -2,6 +2,7 @@
 
 mod check;
 mod completions;
+mod control;
 mod demo;
 mod derive;
 mod draw;
@@ -23,6 +24,7 @@ pub(crate) enum Command {
     Draw(draw::Draw),
     Evaluate(evaluate::Evaluate),
     Simulate(Box<simulate::Simulate>),
+    Control(Box<control::Control>),
     Demo(demo::Demo),
     Schema(schema::Schema),
     Completions(completions::Completions),
@@ -38,6 +40,7 @@ pub(crate) fn run(command: Command) -> Result<(), Failure> {
         Command::Draw(command) => command.run(),
         Command::Evaluate(command) => command.run(),
         Command::Simulate(command) => command.run(),
+        Command::Control(command) => command.run(),
         Command::Demo(command) => command.run(),
         Command::Schema(command) => command.run(),
         Command::Completions(command) => command.run(),

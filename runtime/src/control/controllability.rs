@@ -72,15 +72,13 @@ impl Controllability {
         })
     }
 
-    /// Whether feedback can make all poles stable.
-    pub fn stabilisable(&self) -> bool {
-        self.lost.iter().all(|mode| mode.re < 0.0)
-    }
-
-    /// Lost modes that do not decay: the closed loop keeps them, as a neutral mode or an unstable
-    /// one.
-    pub fn kept(&self) -> impl Iterator<Item = Complex<f64>> + '_ {
-        self.lost.iter().copied().filter(|mode| mode.re >= 0.0)
+    /// Lost modes that do not decay: whatever the feedback, the closed loop keeps them, as a neutral
+    /// mode or a growing one.
+    pub fn kept(&self) -> impl Iterator<Item = &Mode> {
+        let size = self.modes.iter().map(|mode| mode.value.norm());
+        let rounding = LOST * size.fold(1.0, f64::max);
+        let lost = self.modes.iter().filter(|mode| mode.lost);
+        lost.filter(move |mode| mode.value.re >= -rounding)
     }
 }
 

@@ -2,6 +2,9 @@
 
 use nalgebra::{ComplexField, DMatrix};
 
+/// A pivot may be this small beside the largest entry.
+const PIVOT: f64 = 1e-4;
+
 /// The reduced row echelon form of independent rows: each row has a 1 where the others have 0, and
 /// what is rounding becomes 0. Columns stand for states; the first ones are eliminated, so that
 /// relations tell speeds in terms of coordinates.
@@ -19,8 +22,9 @@ where
         };
         let largest = |column: usize| sizes(column).into_iter().fold(0.0, f64::max);
         let overall = (0..rows.ncols()).map(largest).fold(0.0, f64::max);
-        // The first column that is not small: no entry of the result becomes large.
-        let Some(column) = (0..rows.ncols()).find(|&column| largest(column) > 0.1 * overall) else {
+        // The first column that is not tiny: rows stay independent.
+        let Some(column) = (0..rows.ncols()).find(|&column| largest(column) > PIVOT * overall)
+        else {
             break;
         };
         let sizes = sizes(column).into_iter().enumerate();

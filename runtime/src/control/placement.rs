@@ -201,7 +201,16 @@ fn polynomial_residual(coefficients: &[f64], wanted: &[Complex<f64>]) -> f64 {
         polynomial
     };
     let exact = expand(&mut wanted.iter().copied());
-    let size = expand(&mut wanted.iter().map(|root| Complex::from(-root.norm())));
+    // A root at zero has no size of its own; it counts as large as the largest.
+    let largest = wanted.iter().map(|root| root.norm()).fold(0.0, f64::max);
+    let of = |root: &Complex<f64>| {
+        if root.norm() > 0.0 {
+            root.norm()
+        } else {
+            largest
+        }
+    };
+    let size = expand(&mut wanted.iter().map(|root| Complex::from(-of(root))));
     let pairs = coefficients.iter().zip(exact.iter().zip(size));
     pairs
         .map(|(got, (exact, size))| (got - exact.re).abs() / size.re.max(f64::MIN_POSITIVE))

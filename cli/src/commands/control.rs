@@ -1,0 +1,158 @@
+//! `appell control`
+
+use std::path::PathBuf;
+
+use crate::control::design::{self, Design, Method, Request};
+use crate::control::{ask, law_file, report};
+use crate::engine::Equations;
+use crate::failure::{Failure, tell};
+use crate::files;
+use crate::setup::{Assignment, Setup};
+use crate::source::Source;
+
+/// What the inputs can do about a steady motion, and gains for a feedback law.
+///
+/// The motion is the initial state of the spec with the values of `--at`; inputs that `--at` does
+/// not name are chosen so that it is steady. Without `--poles` or `--lqr` nothing is designed.
+/// Gains, poles and weights are in SI.
+#[derive(Debug, clap::Args)]
+pub(crate) struct Control {
+    /// Name of a shipped mechanism or path of a spec
+    model: String,
+    /// A parameter, such as R=0.3 or R=30cm
+    #[arg(long, value_name = "NAME=VALUE")]
+    set: Vec<Assignment>,
+    /// A state or an input on the steady motion, such as theta=5deg or u=2N
+    #[arg(long, value_name = "NAME=VALUE", allow_hyphen_values = true)]
+    at: Vec<Assignment>,
+    /// The inputs that the law may use [default: all]
+    #[arg(long, value_name = "NAMES", value_delimiter = ',')]
+    inputs: Vec<String>,
+    /// The states that are fed back [default: as many as the inputs reach, coordinates first]
+    #[arg(long, value_name = "NAMES", value_delimiter = ',')]
+    outputs: Vec<String>,
+    /// Poles of the closed loop in 1/s, such as -8,-8,-2+3i,-2-3i; a single one is for all
+    #[arg(
+        long,
+        value_name = "POLES",
+        allow_hyphen_values = true,
+        conflicts_with = "lqr"
+    )]
+    poles: Option<String>,
+    /// Weights of the outputs and of the inputs in ∫(yᵀQy + uᵀRu)dt, such as Q=1,10,R=0.1: diagonals;
+    /// a single number is for all
+    #[arg(long, value_name = "Q=…,R=…")]
+    lqr: Option<String>,
+    /// The controller measures at this interval and holds its inputs
+    #[arg(long, value_name = "MS", allow_negative_numbers = true)]
+    sampled_ms: Option<f64>,
+    /// From a measurement to its effect
+    #[arg(
+        long,
+        value_name = "MS",
+        allow_negative_numbers = true,
+        requires = "sampled_ms"
+    )]
+    delay_ms: Option<f64>,
+    /// Designs a law at each of several values of a state, input or parameter, such as
+    /// v=1..20/10: ten intervals
+    #[arg(long, value_name = "NAME=FROM..TO/STEPS", allow_hyphen_values = true)]
+    schedule: Option<Assignment>,
+    /// Write the law as a file for `appell simulate --feedback`
+    #[arg(long, value_name = "FILE.toml", conflicts_with = "schedule")]
+    write: Option<PathBuf>,
+    /// Write everything in SI; `-` is standard output
+    #[arg(long, value_name = "FILE")]
+    json: Option<PathBuf>,
+}
+
+impl Control {
+    pub(super) fn run(&self) -> Result<(), Failure> {
+        let source = Source::find(&self.model)?;
+        let equations = Equations::at_hand(&source)?;
+        let model = equations.model();
+        let mut setup = Setup::new(&source.file, &source.text, model.info())?;
+        setup.set(&self.set)?;
+        let request = self.request(&setup)?;
+        if self.write.is_some() && matches!(request.method, Method::None) {
+            return Err(Failure::Usage(
+                "`--write` needs a law; ask for one with `--poles` or `--lqr`".to_owned(),
+            ));
+        }
+        let at = ask::point(&mut setup, &self.at)?;
+        let (text, json) = match &self.schedule {
+            None => {
+                let design = design::design(model, &setup, &at, &request)?;
+                if let Some(path) = &self.write {
+                    files::write(path, &law_file::text(&design, &setup, &self.model))?;
+                }
+                (report::text(&design, &setup), report::json(&design, &setup))
+            }
+            Some(schedule) => {
+                let values = ask::values(&mut setup, schedule)?;
+                let designs = self.scheduled(model, &mut setup, &values, &request)?;
+                let designs = values.si.into_iter().zip(designs).collect::<Vec<_>>();
+                (
+                    report::schedule_text(&schedule.name, &designs, &setup),
+                    report::schedule_json(&schedule.name, &designs, &setup),
+                )
+            }
+        };
+        if let Some(path) = &self.json {
+            files::write_json(path, &json)?;
+        }
+        let to_stdout = [&self.json, &self.write].into_iter().flatten();
+        if to_stdout.into_iter().any(|path| files::is_stdout(path)) {
+            tell(&text);
+            return Ok(());
+        }
+        files::print(&text)
+    }
+
+    fn request(&self, setup: &Setup<'_>) -> Result<Request, Failure> {
+        let inputs = if self.inputs.is_empty() {
+            (0..setup.info.declared_inputs).collect()
+        } else {
+            ask::distinct("--inputs", &self.inputs, |name| setup.input(name))?
+        };
+        if inputs.is_empty() {
+            return Err(Failure::Usage(
+                "the mechanism has no input; declare one under `[inputs]` of the spec".to_owned(),
+            ));
+        }
+        let outputs = ask::distinct("--outputs", &self.outputs, |name| setup.state(name))?;
+        let method = match (&self.poles, &self.lqr) {
+            (Some(poles), _) => Method::Poles(ask::poles(poles)?),
+            (None, Some(weights)) => ask::weights(weights)?,
+            (None, None) => Method::None,
+        };
+        Ok(Request {
+            inputs,
+            outputs,
+            method,
+            sampling: ask::sampling(self.sampled_ms, self.delay_ms)?,
+        })
+    }
+
+    /// A design at each value.
+    fn scheduled(
+        &self,
+        model: &dyn appell_runtime::model::Model,
+        setup: &mut Setup<'_>,
+        values: &ask::Values,
+        request: &Request,
+    ) -> Result<Vec<Design>, Failure> {
+        let mut request = request.clone();
+        let mut designs: Vec<Design> = Vec::new();
+        for &value in &values.si {
+            let mut at = ask::point(setup, &self.at)?;
+            values.place(setup, &mut at, value);
+            let design = design::design(model, setup, &at, &request)
+                .map_err(|failure| values.at(setup, value, &failure))?;
+            // All laws of a schedule feed back the same states.
+            request.outputs.clone_from(&design.outputs);
+            designs.push(design);
+        }
+        Ok(designs)
+    }
+}

@@ -188,7 +188,14 @@ fn first_dependent(rows: &DMatrix<f64>) -> Option<(usize, Vec<f64>)> {
         let row = rows.row(place).transpose();
         let factors = Singular::of(&before).solve(&row, place);
         let rest = row - before * &factors;
-        (rest.norm() <= DEPENDENT).then(|| (place, factors.iter().copied().collect()))
+        let clean = |factor: &f64| {
+            if factor.abs() <= DEPENDENT {
+                0.0
+            } else {
+                *factor
+            }
+        };
+        (rest.norm() <= DEPENDENT).then(|| (place, factors.iter().map(clean).collect()))
     })
 }
 

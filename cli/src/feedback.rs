@@ -146,10 +146,24 @@ impl Reader<'_> {
                 self.tell(Code::UnknownReference, message, at.clone(), help);
             }
         }
+        let gains = self.gains(table, "gains");
+        let sampling = self.sampling(table);
+        let pending_gains = self.gains(table, "pending_gains");
         let (inputs, states) = inputs.zip(states)?;
         let offsets = self.offsets(table, &inputs);
-        let gains = self.gains(table, "gains", inputs.len(), states.len());
-        let sampled = self.sampled(table, inputs.len());
+        if let Some(gains) = &gains {
+            self.count_gains(table, "gains", gains, inputs.len(), states.len());
+        }
+        let sampled = sampling.map(|sampling| {
+            let pending = sampling.pending() * inputs.len();
+            if let Some(gains) = &pending_gains {
+                self.count_gains(table, "pending_gains", gains, inputs.len(), pending);
+            }
+            Sampled {
+                sampling,
+                pending_gains: pending_gains.unwrap_or(vec![vec![0.0; pending]; inputs.len()]),
+            }
+        });
         let wanted = |state: usize| {
             let found = desired.iter().find(|(other, ..)| *other == state);
             found.map(|(_, expr, _)| expr.clone())
@@ -238,33 +252,34 @@ impl Reader<'_> {
     }
 
     /// Numbers: a list for one input, a list of lists for several.
-    fn gains(
+    fn gains(&mut self, table: &DeTable<'_>, key: &'static str) -> Option<Vec<Vec<f64>>> {
+        let first = table.get(key)?.get_ref().get(0);
+        if first.is_some_and(|first| first.get_ref().is_array()) {
+            self.list(table, key, Self::numbers)
+        } else {
+            Some(vec![self.list(table, key, Self::number)?])
+        }
+    }
+
+    /// Tells where there is not a list for each input and a number for each column.
+    fn count_gains(
         &mut self,
         table: &DeTable<'_>,
         key: &'static str,
+        gains: &[Vec<f64>],
         inputs: usize,
         columns: usize,
-    ) -> Option<Vec<Vec<f64>>> {
-        let value = table.get(key)?;
-        let nested = value
-            .get_ref()
-            .get(0)
-            .is_some_and(|first| first.get_ref().is_array());
-        let rows = if nested {
-            self.list(table, key, Self::numbers)?
-        } else {
-            vec![self.list(table, key, Self::number)?]
-        };
-        self.count("list of gains", rows.len(), "input", inputs, value.span());
+    ) {
+        let at = table.get(key).map_or(0..0, Spanned::span);
+        self.count("list of gains", gains.len(), "input", inputs, at.clone());
         let what = if key == "gains" {
             "state"
         } else {
             "pending input"
         };
-        for row in &rows {
-            self.count("gain", row.len(), what, columns, value.span());
+        for row in gains {
+            self.count("gain", row.len(), what, columns, at.clone());
         }
-        Some(rows)
     }
 
     /// Tells where there is not one for each.
@@ -281,17 +296,13 @@ impl Reader<'_> {
     }
 
     /// When the controller measures and acts; nothing where it always does, or where that is wrong.
-    fn sampled(&mut self, table: &DeTable<'_>, inputs: usize) -> Option<Sampled> {
+    fn sampling(&mut self, table: &DeTable<'_>) -> Option<Sampling> {
         let Some(period) = table.get("sampled_ms") else {
             for key in ["delay_ms", "pending_gains"] {
                 if let Some(value) = table.get(key) {
                     let message = format!("`{key}` needs `sampled_ms`");
-                    self.tell(
-                        Code::MissingKey,
-                        message,
-                        value.span(),
-                        "a delay is one of a controller that measures at intervals",
-                    );
+                    let help = "a delay is one of a controller that measures at intervals";
+                    self.tell(Code::MissingKey, message, value.span(), help);
                 }
             }
             return None;
@@ -300,23 +311,13 @@ impl Reader<'_> {
             Some(delay) => self.number(delay)?,
             None => 0.0,
         };
-        let sampling = Sampling::new(self.number(period)? / 1e3, delay / 1e3);
-        let sampling = match sampling {
-            Ok(sampling) => sampling,
+        match Sampling::new(self.number(period)? / 1e3, delay / 1e3) {
+            Ok(sampling) => Some(sampling),
             Err(error) => {
                 self.tell(Code::WrongType, error.to_string(), period.span(), "");
-                return None;
+                None
             }
-        };
-        let pending = sampling.pending() * inputs;
-        let pending_gains = match table.get("pending_gains") {
-            Some(_) => self.gains(table, "pending_gains", inputs, pending)?,
-            None => vec![vec![0.0; pending]; inputs],
-        };
-        Some(Sampled {
-            sampling,
-            pending_gains,
-        })
+        }
     }
 
     fn numbers(&mut self, value: &Value<'_>) -> Option<Vec<f64>> {

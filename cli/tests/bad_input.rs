@@ -124,7 +124,7 @@ theta = "5kg"
     folder.fails(
         3,
         &["simulate", "unicycle", "--feedback", "law.toml"],
-        &["2 gains for 1 states"],
+        &["2 gains for 1 state"],
     );
 }
 

@@ -8,6 +8,7 @@
 //! - [`linearise`]: A and B in the independent states;
 //! - [`simulate`] and [`trajectory`]: motions of a model and their files;
 //! - [`spectrum`]: eigenvalues, eigenvectors, characteristic polynomials;
+//! - [`analysis`]: steady motions, their families and stability;
 //! - [`singular`]: singular values and vectors, ranks, shortest solutions;
 //! - [`control`]: controllability, pole placement, optimal feedback, sampled loops;
 //! - [`contact`] and [`condition`]: where a model stops being valid;
@@ -24,6 +25,8 @@
 
 #![cfg_attr(not(feature = "std"), no_std)]
 
+#[cfg(feature = "std")]
+pub mod analysis;
 #[cfg(feature = "std")]
 pub mod condition;
 #[cfg(feature = "std")]

@@ -4,7 +4,7 @@ use std::fs::{self, OpenOptions};
 use std::io::{self, BufWriter, Read as _, Write};
 use std::path::{Path, PathBuf};
 
-use crate::failure::Failure;
+use crate::failure::{Failure, tell};
 
 /// Largest recording or list of cases, in bytes.
 pub(crate) const MAX_DATA: u64 = 1 << 30;
@@ -80,6 +80,16 @@ pub(crate) fn write_json(path: &Path, value: &impl serde::Serialize) -> Result<(
 /// Writes to standard output.
 pub(crate) fn print(text: &str) -> Result<(), Failure> {
     to_stdout(|to| to.write_all(text.as_bytes()))
+}
+
+/// Writes to standard output, or to standard error where one of the files takes that.
+pub(crate) fn print_beside(text: &str, files: &[&Option<PathBuf>]) -> Result<(), Failure> {
+    let mut files = files.iter().filter_map(|file| file.as_ref());
+    if files.any(|path| is_stdout(path)) {
+        tell(text);
+        return Ok(());
+    }
+    print(text)
 }
 
 /// A reader who has seen enough, such as `head`, is no failure.

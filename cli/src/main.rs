@@ -11,6 +11,7 @@ mod feedback;
 mod files;
 mod film;
 mod formula;
+mod motions;
 mod progress;
 mod reactions;
 mod setup;

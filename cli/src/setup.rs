@@ -173,7 +173,7 @@ impl<'a> Setup<'a> {
 
     /// A value in SI: a number in the quantity's unit, a number with a unit, or an expression in
     /// the parameters.
-    fn value(&self, text: &str, unit: &Unit, label: &str) -> Result<f64, Failure> {
+    pub(crate) fn value(&self, text: &str, unit: &Unit, label: &str) -> Result<f64, Failure> {
         let text = bracketed(text);
         let expr = formula(
             self.spec,

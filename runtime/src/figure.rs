@@ -5,11 +5,13 @@
 //! colour vision can tell apart; the figure follows the reader's light or dark scheme.
 
 mod axis;
+mod map;
 
 use crate::model::Quantity;
 use crate::simulate::Breach;
 use crate::trajectory::Trajectory;
 use axis::{Axis, number};
+pub use map::Map;
 use std::fmt::Write as _;
 
 /// A line.

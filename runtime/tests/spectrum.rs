@@ -57,6 +57,23 @@ fn every_sparse_matrix_has_eigenvalues_whose_powers_sum_to_the_traces() {
 }
 
 #[test]
+fn entries_that_are_hardly_numbers_do_no_harm() {
+    let mut random = Random(6);
+    for _ in 0..500 {
+        let a = sparse(&mut random, 6, true);
+        let exact = eigenvalues(&a).unwrap();
+        let dusty = a.map(|entry| {
+            if entry == 0.0 {
+                1e-310 * random.next()
+            } else {
+                entry
+            }
+        });
+        assert_eq!(eigenvalues(&dusty).unwrap(), exact);
+    }
+}
+
+#[test]
 fn simple_modes_solve_their_equations_and_their_vectors_belong_to_them_alone() {
     let mut random = Random(2);
     for n in 1..=20 {

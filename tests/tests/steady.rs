@@ -198,5 +198,5 @@ fn a_free_input_holds_a_tilted_unicycle_straight() {
     );
     assert_close("u", value("u"), p("m0") * p("g") * 0.1_f64.sin());
     let path = ["x_G", "y_G"].map(|name| term(model, name));
-    assert_eq!(circle(model, &motions[0].point, path).radius, f64::INFINITY);
+    assert!(circle(model, &motions[0].point, path).radius.is_infinite());
 }

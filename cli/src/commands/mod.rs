@@ -11,6 +11,8 @@ mod list;
 mod new;
 mod schema;
 mod simulate;
+mod stability;
+mod steady;
 
 use crate::failure::Failure;
 
@@ -25,6 +27,8 @@ pub(crate) enum Command {
     Evaluate(evaluate::Evaluate),
     Simulate(Box<simulate::Simulate>),
     Control(Box<control::Control>),
+    Steady(steady::Steady),
+    Stability(stability::StabilityCommand),
     Demo(demo::Demo),
     Schema(schema::Schema),
     Completions(completions::Completions),
@@ -41,6 +45,8 @@ pub(crate) fn run(command: Command) -> Result<(), Failure> {
         Command::Evaluate(command) => command.run(),
         Command::Simulate(command) => command.run(),
         Command::Control(command) => command.run(),
+        Command::Steady(command) => command.run(),
+        Command::Stability(command) => command.run(),
         Command::Demo(command) => command.run(),
         Command::Schema(command) => command.run(),
         Command::Completions(command) => command.run(),

@@ -11,7 +11,7 @@ use appell_runtime::{Simulation, Trajectory};
 
 use crate::controller::Plan;
 use crate::engine::{Engine, Equations};
-use crate::failure::{Failure, note, tell};
+use crate::failure::{Failure, note};
 use crate::setup::{Assignment, Setup};
 use crate::source::Source;
 use crate::{feedback, files, film, progress, reactions, summary, tabulated};
@@ -201,11 +201,7 @@ impl Simulate {
         if undriven && failure.is_none() && summary::rests(&trajectory) {
             told += &hint(&setup);
         }
-        if self.takes_stdout() {
-            tell(&told);
-        } else {
-            files::print(&told)?;
-        }
+        files::print_beside(&told, &[&self.csv, &self.plot, &self.html, &self.json])?;
         match failure {
             None => Ok(()),
             Some(reason) => Err(Failure::Computation(reason)),
@@ -243,15 +239,6 @@ impl Simulate {
             conditions: others,
             ..Validity::default()
         })
-    }
-
-    /// Whether standard output belongs to one of the files.
-    fn takes_stdout(&self) -> bool {
-        let files = [&self.csv, &self.plot, &self.html, &self.json];
-        files
-            .into_iter()
-            .flatten()
-            .any(|path| files::is_stdout(path))
     }
 }
 

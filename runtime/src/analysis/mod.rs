@@ -7,14 +7,42 @@
 //! | `equations.rs`, `newton.rs`, `starts.rs` | steady motions as equations, their solution, where to begin |
 //! | `steady.rs` | steady motions under conditions, all that are found, the dimension of their family |
 //! | `hidden.rs` | what the hidden coordinates do: rates, circles |
+//! | `continuation.rs`, `crossing.rs` | curves of zeros, followed by their length; where two of them cross |
+//! | `branch.rs` | steady motions along one quantity: folds, crossings, ends, feasibility |
+//! | `critical.rs` | smooth functions whose zeros are changes of stability |
+//! | `chart.rs`, `boundary.rs` | stability over two quantities: a grid, and its borders as curves |
+//! | `locus.rs` | modes that keep their place through crossings |
 //! | `stability.rs` | eigenvalues without those of the family; the verdict |
+//!
+//! ```
+//! # use appell_runtime::analysis::*;
+//! # use appell_runtime::model::Model;
+//! /// Speeds at which the verdict on upright running changes.
+//! fn critical_speeds(model: &dyn Model) -> Result<Vec<f64>, BranchError> {
+//!     let problem = SteadyProblem::new(model, Point::initial(model))?;
+//!     let Some(speed) = Term::named(model.info(), "speed") else {
+//!         return Ok(Vec::new());
+//!     };
+//!     let options = BranchOptions::default();
+//!     let branches = Branches::new(&problem, speed, [0.5, 10.0], &[], options)?.trace(20)?;
+//!     let changes = branches.iter().flat_map(Branch::changes);
+//!     Ok(changes.map(|special| special.motion.value).collect())
+//! }
+//! ```
 //!
 //! Nothing here knows a mechanism. A steady motion is one whose essential states rest; the wheel
 //! rolls, the pendulum spins, and their hidden coordinates run on.
 
+mod boundary;
+mod branch;
+mod chart;
+mod continuation;
+mod critical;
+mod crossing;
 mod cyclic;
 mod equations;
 mod hidden;
+mod locus;
 mod newton;
 mod point;
 mod stability;
@@ -22,8 +50,16 @@ mod starts;
 mod steady;
 mod term;
 
+pub use boundary::{Boundary, BoundaryFold};
+pub use branch::{
+    Branch, BranchError, BranchOptions, BranchPoint, Branches, Kind, Requirement, Special,
+};
+pub use chart::{Axis, Cell, Chart, ChartError};
+pub use continuation::End;
+pub use critical::Change;
 pub use cyclic::{Structure, StructureError};
 pub use hidden::{Circle, circle};
+pub use locus::loci;
 pub use point::Point;
 pub use stability::{Stability, StabilityError, Verdict, essential_matrix};
 pub use steady::{Condition, SteadyError, SteadyMotion, SteadyProblem};

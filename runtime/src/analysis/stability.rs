@@ -137,6 +137,15 @@ pub fn essential_matrix(
     structure: &Structure,
     point: &Point,
 ) -> Result<(Vec<usize>, DMatrix<f64>), Undetermined> {
+    if model.dependent_coordinates().is_empty() {
+        let (n, m) = (point.x.len(), point.u.len());
+        let (mut rates, mut a, mut b) = (vec![0.0; n], vec![0.0; n * n], vec![0.0; n * m]);
+        model.jacobians(point.at(), &mut rates, &mut a, &mut b);
+        let states = structure.essential.clone();
+        let entry = |i: usize, j: usize| a[states[i] * n + states[j]];
+        let matrix = DMatrix::from_fn(states.len(), states.len(), entry);
+        return Ok((states, matrix));
+    }
     let linear = Linearisation::about(model, point.at())?;
     let n = linear.states.len();
     let essential = |place: &usize| structure.is_essential(linear.states[*place]);

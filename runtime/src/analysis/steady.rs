@@ -203,7 +203,7 @@ impl<'a> SteadyProblem<'a> {
     }
 
     /// Whether a term exists and is constant in a steady motion.
-    fn check(&self, term: Term) -> Result<(), SteadyError> {
+    pub(super) fn check(&self, term: Term) -> Result<(), SteadyError> {
         let info = self.model.info();
         let (index, len) = match term {
             Term::State(i) | Term::Rate(i) => (i, info.state_len()),
@@ -393,9 +393,12 @@ impl<'a> SteadyProblem<'a> {
     }
 
     pub(super) fn in_range(&self, point: &Point) -> bool {
-        let states = self.model.info().states.iter().zip(&point.x);
-        let mut essential = self.structure.essential.iter().zip(states);
-        essential.all(|(_, (quantity, x))| (quantity.range[0]..=quantity.range[1]).contains(x))
+        let states = &self.model.info().states;
+        let mut essential = self.structure.essential.iter();
+        essential.all(|&state| {
+            let [low, high] = states[state].range;
+            (low..=high).contains(&point.x[state])
+        })
     }
 
     fn motion(&self, equations: &SteadyEquations<'_>, zero: &Zero) -> SteadyMotion {

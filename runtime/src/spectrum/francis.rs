@@ -3,7 +3,7 @@
 
 use nalgebra::Complex;
 
-use super::hessenberg::{balance, reduce};
+use super::hessenberg::{balance, dust, reduce};
 use super::{SpectrumError, finite};
 
 /// Steps for one eigenvalue; a handful is usual.
@@ -33,6 +33,11 @@ impl Eigenvalues {
         }
     }
 
+    /// Rows of the matrices.
+    pub fn size(&self) -> usize {
+        self.n
+    }
+
     /// Of a matrix, row by row: largest real part first, of a pair the one with positive imaginary
     /// part first.
     pub fn of(&mut self, a: &[f64]) -> Result<&[Complex<f64>], SpectrumError> {
@@ -43,6 +48,7 @@ impl Eigenvalues {
         }
         finite(a, n)?;
         self.h.copy_from_slice(a);
+        dust(&mut self.h);
         balance(&mut self.h, n);
         reduce(&mut self.h, n, &mut self.reflector);
         self.values.clear();

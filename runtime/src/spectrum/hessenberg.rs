@@ -1,5 +1,13 @@
 //! Balancing and the Hessenberg form, both in place, row by row.
 
+/// Clears entries that are nothing beside the largest, and whose squares would underflow.
+pub(super) fn dust(a: &mut [f64]) {
+    const NOTHING: f64 = 1e-60;
+    let largest = a.iter().map(|entry| entry.abs()).fold(0.0, f64::max);
+    let small = |entry: &&mut f64| entry.abs() <= NOTHING * largest;
+    a.iter_mut().filter(small).for_each(|entry| *entry = 0.0);
+}
+
 /// Makes rows and columns of similar size by a diagonal similarity of powers of two, which rounds
 /// nothing (Parlett and Reinsch, Numerische Mathematik 13, 1969).
 pub(super) fn balance(a: &mut [f64], n: usize) {

@@ -1,0 +1,147 @@
+//! `appell stability`
+
+use appell_runtime::analysis::{Branch, Stability, Term, loci};
+use appell_runtime::figure::{Figure, Panel, Series};
+use appell_runtime::spectrum::Complex;
+
+mod plane;
+
+use plane::{Grid, Plane};
+
+use super::steady::{marks, write};
+use crate::failure::Failure;
+use crate::files;
+use crate::motions::{Answer, Asked, Question, told};
+use crate::table::table;
+
+/// Eigenvalues of steady motions, and where their stability changes.
+///
+/// The motions are given as for `appell steady`. Eigenvalues that only lead to neighbouring steady
+/// motions are counted and left out of the verdict. With `--along` critical values are found to
+/// rounding, by smooth functions of the characteristic polynomial.
+#[derive(Debug, clap::Args)]
+pub(crate) struct StabilityCommand {
+    #[command(flatten)]
+    question: Question,
+    /// Stability over two quantities, such as theta=-30deg..30deg,psi_dot=1..8
+    #[arg(
+        long,
+        value_name = "X=FROM..TO,Y=FROM..TO",
+        allow_hyphen_values = true,
+        conflicts_with = "along"
+    )]
+    chart: Option<Plane>,
+    /// Points of the chart along both quantities
+    #[arg(
+        long,
+        value_name = "NxM",
+        default_value = "100x100",
+        requires = "chart"
+    )]
+    grid: Grid,
+}
+
+impl StabilityCommand {
+    pub(super) fn run(&self) -> Result<(), Failure> {
+        self.question.with(|asked, setup| {
+            if let Some(chart) = &self.chart {
+                return self.draw(asked, &chart.axes(setup, self.grid)?);
+            }
+            let answer = asked.answer()?;
+            let text = told::structure(asked)
+                + &match &answer {
+                    Answer::Motions(motions) => {
+                        let each = motions.iter().map(|(_, stability)| modes(asked, stability));
+                        told::motions(asked, motions) + &each.collect::<String>()
+                    }
+                    Answer::Branches(branches) => told::branches(asked, branches),
+                };
+            write(&self.question, asked, &answer, figure)?;
+            files::print_beside(
+                &text,
+                &[&self.question.csv, &self.question.json, &self.question.plot],
+            )
+        })
+    }
+}
+
+/// Eigenvalues with the states that take part most.
+fn modes(asked: &Asked<'_>, stability: &Stability) -> String {
+    let info = asked.problem.model().info();
+    let mut rows = Vec::new();
+    for &place in &stability.deciding {
+        let mode = &stability.spectrum.modes[place];
+        if mode.value.im < 0.0 {
+            continue;
+        }
+        let mut parts: Vec<(f64, &str)> = stability
+            .states
+            .iter()
+            .zip(mode.right.iter())
+            .map(|(&state, part)| (part.norm(), info.states[state].name.as_ref()))
+            .collect();
+        parts.sort_by(|a, b| b.0.total_cmp(&a.0));
+        let leading: Vec<&str> = parts
+            .iter()
+            .filter(|p| p.0 > 0.1)
+            .map(|p| p.1)
+            .take(4)
+            .collect();
+        let value = told::eigenvalue(mode.value);
+        let value = if mode.value.im > 0.0 {
+            value.replace('+', "±")
+        } else {
+            value
+        };
+        rows.push(vec![value, "1/s".to_owned(), leading.join(", ")]);
+    }
+    let neutral = format!(
+        "{} zero eigenvalue{} of {}: the family of neighbouring steady motions has {} dimension{}",
+        stability.zeros,
+        if stability.zeros == 1 { "" } else { "s" },
+        stability.states.len(),
+        stability.family,
+        if stability.family == 1 { "" } else { "s" },
+    );
+    rows.push(vec!["0".to_owned(), "1/s".to_owned(), neutral]);
+    format!("eigenvalues\n{}", table(&rows, 0..1))
+}
+
+/// Branches that are drawn; further ones are in the files of `--csv` and `--json`.
+const MOST_BRANCHES: usize = 4;
+
+/// Real and imaginary parts over the quantity, two panels for each branch.
+fn figure(asked: &Asked<'_>, along: Term, branches: &[Branch]) -> Figure {
+    let info = asked.problem.model().info();
+    let horizontal = along.quantity(info);
+    let panels = branches.iter().take(MOST_BRANCHES).enumerate();
+    let panels = panels.flat_map(|(number, branch)| {
+        let points = || branch.points.iter();
+        let x: Vec<f64> = points().map(|at| horizontal.to_unit(at.value)).collect();
+        let modes = loci(points().map(|at| &at.stability));
+        let panel = |name: &str, part: fn(&Complex<f64>) -> f64| Panel {
+            unit: "1/s".to_owned(),
+            series: modes
+                .iter()
+                .enumerate()
+                .map(|(mode, locus)| Series {
+                    label: match mode {
+                        0 if branches.len() > 1 => format!("branch {}: {name} 1", number + 1),
+                        _ => format!("{name} {}", mode + 1),
+                    },
+                    x: x.clone(),
+                    y: locus.iter().map(part).collect(),
+                })
+                .collect(),
+        };
+        [panel("re", |z| z.re), panel("im", |z| z.im)]
+    });
+    let panels = panels.collect();
+    Figure {
+        title: info.title.to_string(),
+        x_label: format!("{} [{}]", horizontal.name, horizontal.unit),
+        panels,
+        marks: marks(asked, along, branches),
+        equal_axes: false,
+    }
+}

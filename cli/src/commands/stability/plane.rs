@@ -1,0 +1,222 @@
+//! `appell stability --chart`: stability over two quantities.
+
+use std::fmt::Write as _;
+use std::io::{self, Write};
+use std::str::FromStr;
+
+use appell_runtime::analysis::{Axis, Boundary, Cell, Chart, Verdict};
+use appell_runtime::figure::{Map, Series};
+use serde_json::{Value, json};
+
+use super::StabilityCommand;
+use crate::failure::Failure;
+use crate::files;
+use crate::motions::{Asked, Span, export, told};
+use crate::setup::Setup;
+
+/// `X=FROM..TO,Y=FROM..TO` as it was given.
+#[derive(Debug, Clone)]
+pub(super) struct Plane([Span; 2]);
+
+impl FromStr for Plane {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let (x, y) = text
+            .split_once(',')
+            .ok_or("write X=FROM..TO,Y=FROM..TO, such as theta=-30deg..30deg,psi_dot=1..8")?;
+        Ok(Self([Span::from_str(x)?, Span::from_str(y)?]))
+    }
+}
+
+/// `NxM` as it was given.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Grid([usize; 2]);
+
+impl FromStr for Grid {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let parts = text
+            .split_once(['x', '×'])
+            .ok_or("write NxM, such as 400x400")?;
+        let count = |part: &str| {
+            part.trim()
+                .parse()
+                .map_err(|_| format!("`{part}` is no number"))
+        };
+        Ok(Self([count(parts.0)?, count(parts.1)?]))
+    }
+}
+
+impl Plane {
+    /// The axes in SI.
+    pub(super) fn axes(&self, setup: &Setup<'_>, grid: Grid) -> Result<[Axis; 2], Failure> {
+        let axis = |k: usize| {
+            let (term, range) = self.0[k].resolve(setup, "--chart")?;
+            let count = grid.0[k];
+            Ok::<_, Failure>(Axis { term, range, count })
+        };
+        Ok([axis(0)?, axis(1)?])
+    }
+}
+
+impl StabilityCommand {
+    /// Computes the chart, tells it and writes its files.
+    pub(super) fn draw(&self, asked: &Asked<'_>, axes: &[Axis; 2]) -> Result<(), Failure> {
+        let chart = asked.chart(*axes)?;
+        let question = &self.question;
+        if let Some(path) = &question.json {
+            files::write_json(path, &json(asked, &chart))?;
+        }
+        if let Some(path) = &question.csv {
+            files::write_with(path, |to| csv(asked, &chart, to))?;
+        }
+        if let Some(path) = &question.plot {
+            files::write(path, &map(asked, &chart).to_svg())?;
+        }
+        let text = told::structure(asked) + &text(asked, &chart);
+        files::print_beside(&text, &[&question.csv, &question.json, &question.plot])
+    }
+}
+
+/// How many motions there are, and the boundaries with their turning points.
+fn text(asked: &Asked<'_>, chart: &Chart) -> String {
+    let info = asked.problem.model().info();
+    let quantities = chart.axes.map(|axis| axis.term.quantity(info));
+    let found = chart.cells.iter().flatten();
+    let count = |verdict: Verdict| found.clone().filter(|cell| cell.verdict == verdict).count();
+    let mut text = format!(
+        "{} motions: {} asymptotically stable, {} neutrally stable, {} unstable; {} without one\n",
+        chart.cells.len(),
+        count(Verdict::Asymptotic),
+        count(Verdict::Neutral),
+        count(Verdict::Unstable),
+        chart.cells.len() - found.clone().count(),
+    );
+    for boundary in &chart.boundaries {
+        let role = if boundary.decides {
+            "boundary"
+        } else {
+            "inside what is unstable"
+        };
+        // Writing to a string cannot fail.
+        let _ = writeln!(text, "{role}: {}", told::change_text(boundary.change));
+        for fold in &boundary.folds {
+            let value = quantities[fold.axis].to_unit(fold.at[fold.axis]);
+            let other = 1 - fold.axis;
+            let _ = writeln!(
+                text,
+                "  turns back at {} = {} {} ({} = {:.6} {})",
+                quantities[fold.axis].name,
+                told::exact(value),
+                quantities[fold.axis].unit,
+                quantities[other].name,
+                quantities[other].to_unit(fold.at[other]),
+                quantities[other].unit,
+            );
+        }
+    }
+    text
+}
+
+fn boundary_json(boundary: &Boundary) -> Value {
+    let folds = boundary.folds.iter();
+    let folds = folds.map(|fold| json!({ "axis": fold.axis, "at": fold.at }));
+    json!({
+        "kind": export::kind(appell_runtime::analysis::Kind::Critical(boundary.change)),
+        "decides": boundary.decides,
+        "points": boundary.points,
+        "folds": folds.collect::<Vec<_>>(),
+    })
+}
+
+fn json(asked: &Asked<'_>, chart: &Chart) -> Value {
+    let info = asked.problem.model().info();
+    let axis = |axis: &Axis| json!({ "name": axis.term.name(info), "range": axis.range, "count": axis.count });
+    let unknowns = chart.unknowns.iter().map(|term| term.name(info));
+    let cell = |cell: &Option<Cell>| {
+        cell.as_ref().map(|cell| {
+            json!({
+                "unknowns": cell.unknowns,
+                "eigenvalues": cell.eigenvalues.iter().map(|z| [z.re, z.im]).collect::<Vec<_>>(),
+                "verdict": export::verdict(cell.verdict),
+                "feasible": cell.feasible,
+            })
+        })
+    };
+    json!({
+        "mechanism": info.name,
+        "axes": chart.axes.iter().map(axis).collect::<Vec<_>>(),
+        "unknowns": unknowns.collect::<Vec<_>>(),
+        "boundaries": chart.boundaries.iter().map(boundary_json).collect::<Vec<_>>(),
+        "cells": chart.cells.iter().map(cell).collect::<Vec<_>>(),
+    })
+}
+
+/// A row for every motion: the two quantities, growth, verdict.
+fn csv(asked: &Asked<'_>, chart: &Chart, to: &mut dyn Write) -> io::Result<()> {
+    let info = asked.problem.model().info();
+    let [x, y] = chart.axes.map(|axis| axis.term.quantity(info));
+    writeln!(
+        to,
+        "# mechanism: {}\n# units: {} {}, {} {}, growth 1/s",
+        info.name, x.name, x.unit, y.name, y.unit
+    )?;
+    writeln!(to, "{},{},growth,verdict,feasible", x.name, y.name)?;
+    for j in 0..chart.axes[1].count {
+        for i in 0..chart.axes[0].count {
+            let Some(cell) = chart.cell(i, j) else {
+                continue;
+            };
+            let growth = cell.eigenvalues.first().map_or(f64::NEG_INFINITY, |z| z.re);
+            writeln!(
+                to,
+                "{},{},{growth},{},{}",
+                x.to_unit(chart.axes[0].value(i)),
+                y.to_unit(chart.axes[1].value(j)),
+                export::verdict(cell.verdict),
+                cell.feasible,
+            )?;
+        }
+    }
+    Ok(())
+}
+
+fn map(asked: &Asked<'_>, chart: &Chart) -> Map {
+    let info = asked.problem.model().info();
+    let quantities = chart.axes.map(|axis| axis.term.quantity(info));
+    let shown = |k: usize, value: f64| quantities[k].to_unit(value);
+    let kind = |cell: &Cell| match cell.verdict {
+        _ if !cell.feasible => 3,
+        Verdict::Asymptotic => 0,
+        Verdict::Neutral | Verdict::Critical => 1,
+        Verdict::Unstable => 2,
+    };
+    let curve = |boundary: &Boundary| Series {
+        label: String::new(),
+        x: boundary.points.iter().map(|at| shown(0, at[0])).collect(),
+        y: boundary.points.iter().map(|at| shown(1, at[1])).collect(),
+    };
+    let names = [
+        "asymptotically stable",
+        "neutrally stable",
+        "unstable",
+        "not feasible",
+    ];
+    Map {
+        title: info.title.to_string(),
+        labels: quantities
+            .each_ref()
+            .map(|q| format!("{} [{}]", q.name, q.unit)),
+        ranges: [0, 1].map(|k: usize| chart.axes[k].range.map(|value| shown(k, value))),
+        counts: chart.axes.map(|axis| axis.count),
+        kinds: names.map(str::to_owned).to_vec(),
+        cells: chart
+            .cells
+            .iter()
+            .map(|cell| cell.as_ref().map(kind))
+            .collect(),
+        curves: chart.boundaries.iter().map(curve).collect(),
+    }
+}

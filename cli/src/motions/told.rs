@@ -1,0 +1,260 @@
+//! Steady motions for people: short tables in the units of the spec.
+
+use std::fmt::Write as _;
+
+use appell_runtime::analysis::{
+    Branch, Change, End, Kind, Special, Stability, SteadyMotion, Verdict, circle,
+};
+use appell_runtime::contact::ContactForces;
+use appell_runtime::model::ModelInfo;
+use appell_runtime::spectrum::Complex;
+
+use super::Asked;
+use crate::table::{number, table};
+
+/// Motions side by side at most.
+const COLUMNS: usize = 6;
+
+/// What the verdict is called.
+pub(crate) fn verdict(verdict: Verdict) -> &'static str {
+    match verdict {
+        Verdict::Asymptotic => "asymptotically stable",
+        Verdict::Neutral => "neutrally stable",
+        Verdict::Unstable => "unstable",
+        Verdict::Critical => "critical",
+    }
+}
+
+/// Essential and hidden states.
+pub(crate) fn structure(asked: &Asked<'_>) -> String {
+    let info = asked.problem.model().info();
+    let names = |states: &[usize]| {
+        let names: Vec<&str> = states
+            .iter()
+            .map(|&s| info.states[s].name.as_ref())
+            .collect();
+        if names.is_empty() {
+            "none".to_owned()
+        } else {
+            names.join(", ")
+        }
+    };
+    let structure = asked.problem.structure();
+    format!(
+        "{}\n  essential  {}\n  hidden     {}\n",
+        info.title,
+        names(&structure.essential),
+        names(&structure.hidden),
+    )
+}
+
+/// Motions side by side.
+pub(crate) fn motions(asked: &Asked<'_>, motions: &[(SteadyMotion, Stability)]) -> String {
+    let (model, shown) = (
+        asked.problem.model(),
+        &motions[..motions.len().min(COLUMNS)],
+    );
+    let info = model.info();
+    let mut rows = Vec::new();
+    let mut row =
+        |name: String, unit: String, value: &dyn Fn(&(SteadyMotion, Stability)) -> String| {
+            let values = shown.iter().map(value);
+            rows.push(
+                std::iter::once(name)
+                    .chain(values)
+                    .chain([unit])
+                    .collect::<Vec<_>>(),
+            );
+        };
+    for term in asked.terms() {
+        let quantity = term.quantity(info);
+        row(
+            quantity.name.to_string(),
+            quantity.unit.to_string(),
+            &|(motion, _)| number(quantity.to_unit(tidy(term.value(model, &motion.point)))),
+        );
+    }
+    for (place, name) in asked.places() {
+        row(
+            format!("radius of the path of {name}"),
+            "m".to_owned(),
+            &|(motion, _)| {
+                let radius = circle(model, &motion.point, place).radius;
+                if radius.is_finite() {
+                    number(radius)
+                } else {
+                    "straight".to_owned()
+                }
+            },
+        );
+    }
+    for (i, contact) in info.contacts.iter().enumerate() {
+        let force = |motion: &SteadyMotion| {
+            let mut forces = ContactForces::new();
+            forces
+                .at(model, motion.point.at())
+                .get(i)
+                .copied()
+                .unwrap_or_default()
+        };
+        row(
+            format!("normal force {}", contact.name),
+            String::new(),
+            &|(m, _)| number(force(m).normal),
+        );
+        if contact.grips {
+            row(
+                format!("friction demand {}", contact.name),
+                String::new(),
+                &|(m, _)| number(tidy(force(m).demand())),
+            );
+        }
+    }
+    let count = motions.len();
+    let mut text = match count {
+        1 => "1 steady motion\n".to_owned(),
+        _ => format!("{count} steady motions\n"),
+    };
+    text += &table(&rows, 1..1 + shown.len());
+    if count > shown.len() {
+        let _ = writeln!(
+            text,
+            "  the other {} are in the files of --json and --csv",
+            count - shown.len()
+        );
+    }
+    for (i, (_, stability)) in shown.iter().enumerate() {
+        let which = if count == 1 {
+            String::new()
+        } else {
+            format!("{}: ", i + 1)
+        };
+        let _ = writeln!(text, "  {which}{}", verdict(stability.verdict));
+    }
+    text
+}
+
+/// Rounding is not worth a number.
+fn tidy(value: f64) -> f64 {
+    if value.abs() < 1e-14 { 0.0 } else { value }
+}
+
+/// One eigenvalue.
+pub(crate) fn eigenvalue(value: Complex<f64>) -> String {
+    if value.im == 0.0 {
+        return number(tidy(value.re));
+    }
+    let sign = if value.im < 0.0 { '-' } else { '+' };
+    format!(
+        "{} {sign} {} i",
+        number(tidy(value.re)),
+        number(value.im.abs())
+    )
+}
+
+/// Branches with what lies on them.
+pub(crate) fn branches(asked: &Asked<'_>, branches: &[Branch]) -> String {
+    let Some((along, _)) = asked.along else {
+        return String::new();
+    };
+    let info = asked.problem.model().info();
+    let quantity = along.quantity(info);
+    let mut text = String::new();
+    for (i, branch) in branches.iter().enumerate() {
+        let ends = [branch.points.first(), branch.points.last()];
+        let ends = ends.map(|end| end.map_or(f64::NAN, |end| quantity.to_unit(end.value)));
+        let _ = writeln!(
+            text,
+            "branch {}: {} = {} … {} {}, {} points{}",
+            i + 1,
+            quantity.name,
+            number(ends[0]),
+            number(ends[1]),
+            quantity.unit,
+            branch.points.len(),
+            why(info, branch.ends),
+        );
+        let mut rows = Vec::new();
+        let first = branch.points.first().map(|point| point.stability.verdict);
+        if let Some(first) = first {
+            rows.push(vec![
+                "beginning".to_owned(),
+                String::new(),
+                verdict(first).to_owned(),
+            ]);
+        }
+        for (k, special) in branch.specials.iter().enumerate() {
+            let next = branch.specials.get(k + 1).map(|next| next.after);
+            let behind = branch
+                .points
+                .get(special.after + 1)
+                .map(|p| p.stability.verdict);
+            let before = branch
+                .points
+                .get(special.after)
+                .map(|p| p.stability.verdict);
+            let mut what = event(asked, special);
+            if let Some(behind) = behind.filter(|_| behind != before && next != Some(special.after))
+            {
+                let _ = write!(what, "; {} beyond", verdict(behind));
+            }
+            let value = quantity.to_unit(special.motion.value);
+            rows.push(vec![exact(value), quantity.unit.to_string(), what]);
+        }
+        text += &table(&rows, 0..1);
+    }
+    text
+}
+
+/// All digits of a value that is known to rounding.
+pub(crate) fn exact(value: f64) -> String {
+    format!("{value:.14}")
+}
+
+fn why(info: &ModelInfo, ends: [End; 2]) -> String {
+    let one = |end: End| match end {
+        End::Range => None,
+        End::State(state) => Some(format!("the range of {}", info.states[state].name)),
+        End::Infinity => Some("infinity".to_owned()),
+        End::Closed => Some("its beginning".to_owned()),
+        End::Infeasible(_) => Some("what is not feasible".to_owned()),
+        End::Lost => Some("where no further motion is found".to_owned()),
+        End::Points => Some("the limit of points".to_owned()),
+    };
+    match ends.map(one) {
+        _ if ends == [End::Closed; 2] => ", closed".to_owned(),
+        [None, None] => String::new(),
+        [Some(first), None] => format!(", from {first}"),
+        [None, Some(last)] => format!(", up to {last}"),
+        [Some(first), Some(last)] => format!(", from {first} up to {last}"),
+    }
+}
+
+fn event(asked: &Asked<'_>, special: &Special) -> String {
+    let info = asked.problem.model().info();
+    match special.kind {
+        Kind::Fold => "fold: the branch turns back".to_owned(),
+        Kind::Crossing => "another branch crosses".to_owned(),
+        Kind::Critical(change) => change_text(change),
+        Kind::Feasibility(number) => match asked.requirements.get(number) {
+            Some(requirement) => {
+                format!("border of feasibility: {}", requirement.term.name(info))
+            }
+            None => "a contact lifts".to_owned(),
+        },
+    }
+}
+
+/// What eigenvalues do at a critical point.
+pub(crate) fn change_text(change: Change) -> String {
+    match change {
+        Change::RealZero => "a real eigenvalue passes through zero".to_owned(),
+        Change::Oscillation { frequency } => format!(
+            "an oscillation of {} rad/s changes between growth and decay",
+            number(frequency)
+        ),
+        Change::Collision { frequency } => {
+            format!("two oscillations of {} rad/s meet", number(frequency))
+        }
+    }
+}

@@ -1,0 +1,130 @@
+//! A plane divided into kinds, with curves on top, as SVG.
+
+use std::fmt::Write as _;
+
+use super::axis::{Axis, number};
+use super::{
+    Area, FOOTER_HEIGHT, HEADER_HEIGHT, LEFT, RIGHT, STYLE, Series, TITLE_HEIGHT, WIDTH, put, text,
+};
+
+/// What is known at points of a grid over two quantities, and curves between.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Map {
+    /// Above the map; may be empty.
+    pub title: String,
+    /// Name and unit of the horizontal and of the vertical quantity.
+    pub labels: [String; 2],
+    /// Their first and last values.
+    pub ranges: [[f64; 2]; 2],
+    /// Points along each.
+    pub counts: [usize; 2],
+    /// Names of the kinds, up to four.
+    pub kinds: Vec<String>,
+    /// The kind of each point, row by row from the first value of the vertical quantity; nothing
+    /// where nothing is known.
+    pub cells: Vec<Option<usize>>,
+    /// Curves.
+    pub curves: Vec<Series>,
+}
+
+const HEIGHT: f64 = 480.0;
+/// Fillings of the kinds, which any colour vision tells apart.
+const FILLS: &str = ".k0{fill:#56b4e9}.k1{fill:#009e73}.k2{fill:#d55e00}.k3{fill:#888}\
+.kind{fill-opacity:.45}.curve{fill:none;stroke-width:1.4;stroke:#222}\
+@media(prefers-color-scheme:dark){.curve{stroke:#eee}}\n";
+/// Room for the name of a kind in the legend.
+const LEGEND: f64 = 170.0;
+
+impl Map {
+    /// The map as an SVG document.
+    pub fn to_svg(&self) -> String {
+        let [x_axis, y_axis] = self.ranges.map(|range| Axis::tight(range.into_iter()));
+        let area = Area {
+            top: TITLE_HEIGHT + HEADER_HEIGHT,
+            width: WIDTH - LEFT - RIGHT,
+            height: HEIGHT,
+        };
+        let height = area.top + HEIGHT + FOOTER_HEIGHT;
+        let mut svg = format!(
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {WIDTH} {height:.0}\" \
+             width=\"{WIDTH}\" height=\"{height:.0}\">\n<style>\n{STYLE}{FILLS}</style>\n\
+             <rect class=\"paper\" width=\"100%\" height=\"100%\"/>\n"
+        );
+        put(&mut svg, &text(LEFT, 22.0, "class=\"title\"", &self.title));
+        for (kind, name) in self.kinds.iter().enumerate() {
+            let x = LEFT + LEGEND * kind as f64;
+            let y = area.top - 9.0;
+            let sample = format!("M{x:.1} {:.1}h14v10h-14z", y - 9.0);
+            put(
+                &mut svg,
+                &format!("<path class=\"kind k{kind}\" d=\"{sample}\"/>"),
+            );
+            put(&mut svg, &text(x + 20.0, y, "", name));
+            let cells = self.cells_of(kind, &area);
+            put(
+                &mut svg,
+                &format!("<path class=\"kind k{kind}\" d=\"{cells}\"/>"),
+            );
+        }
+        area.grid(&mut svg, &x_axis, &y_axis);
+        for curve in &self.curves {
+            let line = area.line(curve, &x_axis, &y_axis);
+            put(&mut svg, &format!("<path class=\"curve\" d=\"{line}\"/>"));
+        }
+        let bottom = area.top + HEIGHT;
+        for tick in x_axis.ticks(8) {
+            let x = LEFT + area.width * x_axis.part(tick);
+            let label = number(tick, x_axis.step(8));
+            put(
+                &mut svg,
+                &text(x, bottom + 16.0, "text-anchor=\"middle\"", &label),
+            );
+        }
+        let middle = LEFT + area.width / 2.0;
+        put(
+            &mut svg,
+            &text(
+                middle,
+                bottom + 35.0,
+                "text-anchor=\"middle\"",
+                &self.labels[0],
+            ),
+        );
+        let (x, y) = (18.0, area.top + HEIGHT / 2.0);
+        let turned = format!("text-anchor=\"middle\" transform=\"rotate(-90 {x} {y})\"");
+        put(&mut svg, &text(x, y, &turned, &self.labels[1]));
+        svg + "</svg>\n"
+    }
+
+    /// The cells of a kind as rectangles, one for each run in a row.
+    fn cells_of(&self, kind: usize, area: &Area) -> String {
+        let [columns, rows] = self.counts;
+        let [wide, high] = [
+            area.width / columns.max(1) as f64,
+            area.height / rows.max(1) as f64,
+        ];
+        // Ranges may run downwards.
+        let [left, down] = self.ranges.map(|[from, to]| from > to);
+        let mut path = String::new();
+        for (j, row) in self.cells.chunks(columns.max(1)).enumerate() {
+            let place = if down { j } else { rows.saturating_sub(j + 1) };
+            let mut i = 0;
+            while i < row.len() {
+                let run = row[i..]
+                    .iter()
+                    .take_while(|cell| **cell == Some(kind))
+                    .count();
+                if run > 0 {
+                    let start = if left { columns - i - run } else { i };
+                    let x = LEFT + wide * start as f64;
+                    let y = area.top + high * place as f64;
+                    let width = wide * run as f64;
+                    // Writing to a string cannot fail.
+                    let _ = write!(path, "M{x:.1} {y:.1}h{width:.1}v{high:.2}h-{width:.1}z");
+                }
+                i += run.max(1);
+            }
+        }
+        path
+    }
+}

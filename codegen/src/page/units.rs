@@ -26,7 +26,7 @@ pub(super) fn value(label: &Label, si: f64) -> String {
     format!("{number} {}", unit(label)).trim_end().to_owned()
 }
 
-/// A range in SI as the numbers and the unit that the spec uses: `-1.5 to 1.5 rad`.
+/// A range in SI as the numbers and the unit that the spec uses: `−1.5 to 1.5 rad`.
 pub(super) fn range(label: &Label, [low, high]: [f64; 2]) -> String {
     let low = number(label.unit.from_si(low));
     format!("{low} to {}", value(label, high))
@@ -36,9 +36,10 @@ pub(super) fn range(label: &Label, [low, high]: [f64; 2]) -> String {
 fn number(value: f64) -> String {
     let rounded: f64 = format!("{value:.11e}").parse().unwrap_or(value);
     let size = rounded.abs();
-    if rounded != 0.0 && !(1e-4..1e7).contains(&size) {
+    let number = if rounded != 0.0 && !(1e-4..1e7).contains(&size) {
         format!("{rounded:e}")
     } else {
         format!("{rounded}")
-    }
+    };
+    number.replace('-', "−")
 }

@@ -80,7 +80,10 @@ fn take_out(
     let mut outer = Vec::with_capacity(terms.len());
     for (position, term) in terms.iter().enumerate() {
         if members.contains(&position) {
-            let rest = without(dag, term.id, factor);
+            let rest = match dag.op(term.id) {
+                Op::Product(factors) => without(factors, factor),
+                _ => Vec::new(),
+            };
             let rest = dag.product(rest);
             note_use(uses, rest.id);
             inner.push(rest.flipped_if(term.flip));
@@ -97,12 +100,9 @@ fn take_out(
     Some(inner.id)
 }
 
-/// The factors of a product without one occurrence of `factor`.
-fn without(dag: &Dag, product: Id, factor: Item) -> Vec<Item> {
-    let Op::Product(factors) = dag.op(product) else {
-        return Vec::new();
-    };
-    let mut rest = factors.clone();
+/// The factors without one occurrence of `factor`.
+pub(super) fn without(factors: &[Item], factor: Item) -> Vec<Item> {
+    let mut rest = factors.to_vec();
     if let Some(position) = rest.iter().position(|&other| other == factor) {
         rest.remove(position);
     }

@@ -14,7 +14,7 @@ use super::dag::{Dag, Id, Item, Name, Op};
 use crate::symbolic::field::Element;
 
 /// A value at both points, up to its sign.
-type Value = [Element; 2];
+pub(super) type Value = [Element; 2];
 
 /// Lets nodes of equal value meet in the first of them. Tells whether any met.
 pub(super) fn meet(dag: &mut Dag, order: &[Id]) -> bool {
@@ -142,8 +142,7 @@ pub(super) fn meet_in_multiples(dag: &mut Dag, order: &[Id]) -> bool {
             continue;
         };
         let found = factors_inside(dag, id).into_iter().find_map(|factor| {
-            let [a, b] = values[factor.index()]?;
-            let (value, sign) = without_sign([whole[0] * a.inverse()?, whole[1] * b.inverse()?]);
+            let (value, sign) = without_sign(over(whole, values[factor.index()]?)?);
             let &(other, other_sign) = known.get(&value)?;
             (other != id).then_some((factor, other, sign != other_sign))
         });
@@ -184,8 +183,8 @@ fn factors_inside(dag: &Dag, sum: Id) -> Vec<Id> {
 }
 
 /// Lets everything outside refer to values of stages by what is kept, so that equal wholes are made
-/// of equal parts.
-pub(super) fn refer_to_kept(dag: &mut Dag, order: &[Id]) {
+/// of equal parts. Tells whether anything is kept.
+pub(super) fn refer_to_kept(dag: &mut Dag, order: &[Id]) -> bool {
     let mut kept: FxHashMap<Id, Id> = FxHashMap::default();
     for &id in order {
         if let Op::Kept(inner) = dag.op(id) {
@@ -193,7 +192,7 @@ pub(super) fn refer_to_kept(dag: &mut Dag, order: &[Id]) {
         }
     }
     if kept.is_empty() {
-        return;
+        return false;
     }
     for &id in order {
         let (Op::Sum(items) | Op::Product(items)) = dag.op(id) else {
@@ -213,6 +212,7 @@ pub(super) fn refer_to_kept(dag: &mut Dag, order: &[Id]) {
         };
         dag.replace(id, op);
     }
+    true
 }
 
 /// Places of all pairs in a list.
@@ -227,7 +227,7 @@ fn whole_of([a, b]: [Item; 2], product: bool, values: &[Option<Value>]) -> Optio
         Some(match (item.flip, product) {
             (false, _) => value,
             (true, false) => value.map(|v| -v),
-            (true, true) => [value[0].inverse()?, value[1].inverse()?],
+            (true, true) => inverse(value)?,
         })
     };
     let ([a, b], [c, d]) = (part(a)?, part(b)?);
@@ -280,13 +280,25 @@ fn parts(dag: &Dag, id: Id) -> usize {
 }
 
 /// The one of `±value` whose first component is in the lower half, and whether the sign changed.
-fn without_sign([first, second]: Value) -> (Value, bool) {
+pub(super) fn without_sign([first, second]: Value) -> (Value, bool) {
     let (first, flip) = first.without_sign();
     ([first, if flip { -second } else { second }], flip)
 }
 
+/// One value over another.
+pub(super) fn over([a, b]: Value, other: Value) -> Option<Value> {
+    let [c, d] = inverse(other)?;
+    Some([a * c, b * d])
+}
+
+/// An inverse costs some seventy products: one serves both points.
+fn inverse([a, b]: Value) -> Option<Value> {
+    let both = (a * b).inverse()?;
+    Some([both * b, both * a])
+}
+
 /// Values of the nodes; `None` where the points hit a division by zero.
-fn values(dag: &Dag, order: &[Id]) -> Vec<Option<Value>> {
+pub(super) fn values(dag: &Dag, order: &[Id]) -> Vec<Option<Value>> {
     let mut values: Vec<Option<Value>> = vec![None; dag.len()];
     for &id in order {
         values[id.index()] = value(dag, id, &values);
@@ -313,12 +325,9 @@ fn value(dag: &Dag, id: Id, values: &[Option<Value>]) -> Option<Value> {
         Op::Product(factors) => factors
             .iter()
             .try_fold([Element::ONE; 2], |[a, b], factor| {
-                let [c, d] = values[factor.id.index()]?;
-                Some(if factor.flip {
-                    [a * c.inverse()?, b * d.inverse()?]
-                } else {
-                    [a * c, b * d]
-                })
+                let value = values[factor.id.index()]?;
+                let [c, d] = if factor.flip { inverse(value)? } else { value };
+                Some([a * c, b * d])
             }),
         // Nothing looks inside.
         Op::Kept(inner) => values[inner.index()].map(|inner| draw((4_u64, inner))),

@@ -10,6 +10,7 @@ mod dag;
 mod divide;
 mod dump;
 mod factor;
+mod gather;
 mod interpret;
 mod lower;
 mod meet;

@@ -5,6 +5,7 @@ use super::cancel::cancel;
 use super::dag::{Dag, Id, Item};
 use super::divide::{join_divisions, share_reciprocals};
 use super::factor::factor;
+use super::gather::gather;
 use super::meet::{meet, meet_in_multiples, meet_in_parts, name_again, refer_to_kept};
 use super::rebuild::{Dissolve, rebuild};
 use super::scale::scale;
@@ -130,18 +131,19 @@ pub(super) fn cheapest(derived: &Dag, tuning: Tuning) -> Dag {
 
 /// Nodes of equal value met.
 fn merged(mut dag: Dag) -> Dag {
-    let order = dag.order();
-    refer_to_kept(&mut dag, &order);
-    dag = rebuild(&dag, Dissolve::Unnamed);
-    let order = dag.order();
-    if meet_in_multiples(&mut dag, &order) {
-        dag = rebuild(&dag, Dissolve::Unnamed);
+    for pass in [refer_to_kept, meet_in_multiples] {
+        let order = dag.order();
+        if pass(&mut dag, &order) {
+            dag = rebuild(&dag, Dissolve::Unnamed);
+        }
     }
     for _ in 0..MEETINGS {
         let mut any = false;
         let products =
             |dag: &mut Dag, order: &[Id]| share(dag, order, Within::Products, Preference::Early, 2);
-        for pass in [meet, meet_in_parts, products] {
+        let sums =
+            |dag: &mut Dag, order: &[Id]| share(dag, order, Within::Sums, Preference::Early, 2);
+        for pass in [meet, meet_in_parts, products, gather, sums] {
             let order = dag.order();
             if pass(&mut dag, &order) {
                 dag = rebuild(&dag, Dissolve::Unnamed);

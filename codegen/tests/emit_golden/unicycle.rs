@@ -357,7 +357,7 @@ pub fn generalized_forces<T: Real>(
 /// Rates ẋ of the state by Appell's equations M ω̇ + b = Π and kinematics.
 ///
 /// From `mechanisms/unicycle.toml`.
-/// Operations: 98 (30 +, 64 ×, 4 ÷), 2 sine-cosine pairs.
+/// Operations: 97 (30 +, 63 ×, 4 ÷), 2 sine-cosine pairs.
 #[must_use]
 #[inline]
 pub fn rates<T: Real>(
@@ -382,8 +382,9 @@ pub fn rates<T: Real>(
     // Combinations of parameters.
     let m_R = m * R;
     let m_R_squared = R * m_R;
+    let three_halves_m_R = three_halves * m_R;
     let m0_R = m0 * R;
-    let M_22 = three_halves * m_R_squared + R * m0_R;
+    let M_22 = R * (three_halves_m_R + m0_R);
 
     // Generalised velocities.
     let inv_cos_theta = one / cos_theta;
@@ -409,11 +410,11 @@ pub fn rates<T: Real>(
     let tan_theta_r = tan_theta * r;
     let two_sigma = two * sigma;
     let m0_R_plus_m0_tan_theta_r = m0_R + tan_theta * m0_r;
-    let f_1_part_1 = three_halves * m_R + m0_R_plus_m0_tan_theta_r;
     let quarter_tan_theta = quarter * tan_theta;
-    let f_1 = R_omega_2_omega_3 * f_1_part_1 + g_sin_theta * (m_R + m0_R)
-        - g * cos_theta * m0_r - m0_omega_3_squared_r * tan_theta_r
-        - m0_omega_1_r * two_sigma
+    let f_1_part_1 = R_omega_2_omega_3 * (three_halves_m_R + m0_R_plus_m0_tan_theta_r)
+        + g_sin_theta * (m_R + m0_R) - g * cos_theta * m0_r
+        - m0_omega_3_squared_r * tan_theta_r - m0_omega_1_r * two_sigma;
+    let f_1 = f_1_part_1
         - R_omega_3 * (m0_omega_3_r + m * R_omega_3 * quarter_tan_theta);
     let omega_1_dot = (f_1 + R * f_4) / (five_quarters * m_R_squared + m0_r_squared);
     let R_omega_1_omega_3 = R_omega_3 * omega_1;
@@ -448,7 +449,7 @@ pub fn rates<T: Real>(
 /// Rates ẋ with their derivatives by state and inputs.
 ///
 /// From `mechanisms/unicycle.toml`.
-/// Operations: 269 (73 +, 184 ×, 4 ÷, 8 sign), 2 sine-cosine pairs.
+/// Operations: 264 (72 +, 180 ×, 4 ÷, 8 sign), 2 sine-cosine pairs.
 #[must_use]
 #[inline]
 pub fn jacobians<T: Real>(
@@ -477,7 +478,7 @@ pub fn jacobians<T: Real>(
     let minus_half_m_R = -half * m_R;
     let quarter_m_R = quarter * m_R;
     let m0_R = m0 * R;
-    let M_22 = R * three_halves_m_R + R * m0_R;
+    let M_22 = R * (three_halves_m_R + m0_R);
     let inv_m0 = one / m0;
 
     // Generalised velocities.
@@ -496,14 +497,14 @@ pub fn jacobians<T: Real>(
     let m0_r = m0 * r;
     let m0_r_squared = m0_r * r;
     let omega_1_dot_part_1 = one / (five_quarters * R * m_R + m0_r_squared);
-    let g_sin_theta = g * sin_theta;
     let omega_3_r = omega_3 * r;
     let omega_3_squared_r = omega_3_r * omega_3;
+    let omega_1_r = omega_1 * r;
+    let g_sin_theta = g * sin_theta;
     let R_omega_3 = R * omega_3;
     let R_omega_2_omega_3 = R_omega_3 * omega_2;
-    let omega_1_r = omega_1 * r;
-    let f_4_part_1 = g_sin_theta + R_omega_2_omega_3 - omega_3_squared_r;
-    let f_4 = u - m0 * (f_4_part_1 - omega_1_r * omega_1);
+    let f_4_part_1 = g_sin_theta + R_omega_2_omega_3;
+    let f_4 = u + m0 * (omega_3_squared_r + omega_1_r * omega_1 - f_4_part_1);
     let R_tan_theta_omega_3 = tan_theta * R_omega_3;
     let quarter_m_R_omega_3 = quarter * m * R_omega_3;
     let tan_theta_omega_3_squared_r = tan_theta_omega_3 * omega_3_r;
@@ -511,10 +512,9 @@ pub fn jacobians<T: Real>(
     let two_sigma = two * sigma;
     let f_1_part_1 = g_cos_theta + R_omega_3 * omega_3 + two_sigma * omega_1
         - R_tan_theta_omega_3 * omega_2;
-    let f_1_part_2 = R * g_sin_theta + R_omega_2 * R_omega_3;
-    let f_1_part_3 = f_1_part_2 - r * (f_1_part_1 + tan_theta_omega_3_squared_r);
-    let f_1 = m_R * g_sin_theta + three_halves_m_R * R_omega_2_omega_3 + m0 * f_1_part_3
-        - R_tan_theta_omega_3 * quarter_m_R_omega_3;
+    let f_1_part_2 = r * (f_1_part_1 + tan_theta_omega_3_squared_r) - R * f_4_part_1;
+    let f_1 = m_R * g_sin_theta + three_halves_m_R * R_omega_2_omega_3
+        - R_tan_theta_omega_3 * quarter_m_R_omega_3 - m0 * f_1_part_2;
     let omega_1_dot = omega_1_dot_part_1 * (f_1 + R * f_4);
     let m0_R_r = R * m0_r;
     let minus_half_m_R_squared_omega_1 = minus_half_m_R * R_omega_1;
@@ -524,9 +524,8 @@ pub fn jacobians<T: Real>(
     let M_33_omega_1 = M_33 * omega_1;
     let d_f_3_d_omega_3 = m0_R_omega_1_r + tan_theta * M_33_omega_1 - two_m0_r * sigma;
     let f_3 = minus_half_m_R_squared_omega_1 * omega_2 + d_f_3_d_omega_3 * omega_3;
-    let m0_omega_1_r = m0_r * omega_1;
-    let f_2_part_1 = m0 * (two_sigma - R_omega_1) - tan_theta * m0_omega_1_r
-        - m_R * omega_1;
+    let m0_tan_theta_r = tan_theta * m0_r;
+    let f_2_part_1 = m0 * (two_sigma - R_omega_1) - omega_1 * (m_R + m0_tan_theta_r);
     let f_2 = R_omega_3 * f_2_part_1;
     let D_2 = M_22 * M_33 - m0_R_r * m0_R_r;
     let inv_D_2 = one / D_2;
@@ -544,20 +543,21 @@ pub fn jacobians<T: Real>(
     let A_omega_1_omega_2 = omega_1_dot_part_1 * A_omega_1_omega_2_part_1;
     let tan_theta_omega_3_r = tan_theta_omega_3 * r;
     let half_m_R_tan_theta_omega_3 = half * m * R_tan_theta_omega_3;
-    let A_omega_1_omega_3_part_1 = omega_2 * (three_halves_m_R + tan_theta * m0_r);
+    let A_omega_1_omega_3_part_1 = omega_2 * (three_halves_m_R + m0_tan_theta_r);
     let A_omega_1_omega_3_part_2 = half_m_R_tan_theta_omega_3 - A_omega_1_omega_3_part_1;
     let A_omega_1_omega_3_part_3 = two_m0_r * tan_theta_omega_3_r
         + R * A_omega_1_omega_3_part_2;
     let A_omega_1_omega_3 = -omega_1_dot_part_1 * A_omega_1_omega_3_part_3;
-    let A_omega_1_sigma = m0_omega_1_r * A_omega_1_omega_1_part_1;
+    let m0_omega_1_r = m0_r * omega_1;
+    let A_omega_1_sigma = A_omega_1_omega_1_part_1 * m0_omega_1_r;
     let inv_cos_theta_squared = inv_cos_theta * inv_cos_theta;
     let A_omega_1_theta_part_1 = R_omega_3 * inv_cos_theta_squared;
-    let A_omega_1_theta_part_2 = g_sin_theta + A_omega_1_theta_part_1 * omega_2;
-    let A_omega_1_theta_part_3 = omega_3_squared_r * inv_cos_theta_squared;
-    let A_omega_1_theta_part_4 = A_omega_1_theta_part_2 - A_omega_1_theta_part_3;
-    let A_omega_1_theta_part_5 = m_R * g_cos_theta + m0_r * A_omega_1_theta_part_4
+    let A_omega_1_theta_part_2 = omega_3_squared_r - R_omega_2_omega_3;
+    let A_omega_1_theta_part_3 = inv_cos_theta_squared * A_omega_1_theta_part_2;
+    let A_omega_1_theta_part_4 = m_R * g_cos_theta
+        + m0_r * (g_sin_theta - A_omega_1_theta_part_3)
         - quarter_m_R_omega_3 * A_omega_1_theta_part_1;
-    let A_omega_1_theta = omega_1_dot_part_1 * A_omega_1_theta_part_5;
+    let A_omega_1_theta = omega_1_dot_part_1 * A_omega_1_theta_part_4;
     let A_omega_1_r_part_1 = omega_1 * omega_1 + omega_3 * omega_3;
     let A_omega_1_r_part_2 = m0_R * A_omega_1_r_part_1;
     let A_omega_1_r_part_3 = m0 * (f_1_part_1 + two * tan_theta_omega_3_squared_r);
@@ -613,7 +613,7 @@ pub fn jacobians<T: Real>(
     let A_sigma_omega_3 = inv_m0 * (two_m0_r * omega_3 - m0_R * omega_2)
         - A_omega_1_omega_3_part_3 * B_omega_1_u;
     let A_sigma_sigma = m0_R_omega_1_r * A_omega_1_omega_1_part_1;
-    let A_sigma_theta = A_omega_1_theta_part_5 * B_omega_1_u - g_cos_theta;
+    let A_sigma_theta = A_omega_1_theta_part_4 * B_omega_1_u - g_cos_theta;
     let A_sigma_r = A_omega_1_r_part_1 + R * A_omega_1_r;
 
     // Row `psi` of A.
@@ -709,7 +709,7 @@ pub fn jacobians<T: Real>(
 /// Rows: `omega_1`, `omega_2`, `omega_3`, `sigma`, `theta`, `r`, `psi`, `phi`, `x_G`, `y_G`. Columns: `m`, `m0`, `R`, `g`.
 ///
 /// From `mechanisms/unicycle.toml`.
-/// Operations: 254 (86 +, 164 ×, 4 ÷), 2 sine-cosine pairs.
+/// Operations: 252 (86 +, 162 ×, 4 ÷), 2 sine-cosine pairs.
 #[must_use]
 #[inline]
 pub fn parameter_jacobian<T: Real>(
@@ -768,10 +768,9 @@ pub fn parameter_jacobian<T: Real>(
     let two_sigma = two * sigma;
     let r_squared = r * r;
     let R_r = R * r;
-    let d_f_1_d_m0 = R_g_sin_theta + R_squared * omega_2_omega_3
-        + omega_2_omega_3 * tan_theta * R_r - two_sigma * omega_1 * r
-        - tan_theta_omega_3_squared * r_squared - omega_3_squared * R_r
-        - g * cos_theta * r;
+    let d_f_1_d_m0 = R_g_sin_theta + omega_2_omega_3 * (R_squared + tan_theta * R_r)
+        - two_sigma * omega_1 * r - tan_theta_omega_3_squared * r_squared
+        - omega_3_squared * R_r - g * cos_theta * r;
     let f_1 = m_R * g_sin_theta + three_halves_m_R_squared * omega_2_omega_3
         + m0 * d_f_1_d_m0 - quarter_m_R_squared * tan_theta_omega_3_squared;
     let omega_1_dot = P_omega_1_m_part_1 * (f_1 + R * f_4);
@@ -802,9 +801,9 @@ pub fn parameter_jacobian<T: Real>(
     let tan_theta_omega_1_omega_3 = tan_theta * omega_1_omega_3;
     let m0_tan_theta_omega_1_omega_3_r = m0_r * tan_theta_omega_1_omega_3;
     let two_omega_3_sigma = two_sigma * omega_3;
-    let f_2_part_1 = m0_R * omega_1_omega_3 + m_R * omega_1_omega_3;
-    let f_2_part_2 = m0 * two_omega_3_sigma - f_2_part_1;
-    let f_2 = R * (f_2_part_2 - m0_tan_theta_omega_1_omega_3_r);
+    let omega_1_omega_3_m_R_plus_m0_R = omega_1_omega_3 * (m_R + m0_R);
+    let f_2_part_1 = m0 * two_omega_3_sigma - omega_1_omega_3_m_R_plus_m0_R;
+    let f_2 = R * (f_2_part_1 - m0_tan_theta_omega_1_omega_3_r);
     let D_2 = M_22 * M_33 - R_squared * m0_r * m0_r;
     let inv_D_2 = one / D_2;
     let inv_D_2_squared = inv_D_2 * inv_D_2;
@@ -829,8 +828,8 @@ pub fn parameter_jacobian<T: Real>(
     let d_D_2_d_R = d_M_22_d_R * M_33 + half_m_R * M_22 - m0_r * two_m0_R_r;
     let d_f_3_d_R = m0_r * omega_1_omega_3 + half_m_R * tan_theta_omega_1_omega_3
         - m_R * omega_1_omega_2;
-    let P_omega_2_R_part_1 = f_2_part_1 + half * m0_tan_theta_omega_1_omega_3_r
-        - m0 * omega_3 * sigma;
+    let P_omega_2_R_part_1 = omega_1_omega_3_m_R_plus_m0_R
+        + half * m0_tan_theta_omega_1_omega_3_r - m0 * omega_3 * sigma;
     let P_omega_2_R_part_2 = half_m_R * f_2 + m0_r * f_3 + m0_R_r * d_f_3_d_R;
     let P_omega_2_R_part_3 = P_omega_2_R_part_2 - two * M_33 * P_omega_2_R_part_1;
     let P_omega_2_R = inv_D_2 * P_omega_2_R_part_3 - P_omega_2_m_part_1 * d_D_2_d_R;

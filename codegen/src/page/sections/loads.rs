@@ -9,7 +9,7 @@ use appell_spec::mechanism::{
 use super::super::writer::Writer;
 use super::super::{Letter, Math, Span};
 use super::placement::{from_to, lowered};
-use super::{equality, listed, math, words};
+use super::{equality, listed, math, place, words};
 use crate::symbolic::{Expr, Graph};
 
 /// `F_drive = [0, u, 0] tilted at A, −F_drive at G; δP_drive = F_drive · (δv_A − δv_G)`
@@ -89,7 +89,8 @@ fn gravity(w: &mut Writer<'_>, load: &Load, down: [i8; 3], acceleration: &Spec) 
         let centre = w.point(body.centre);
         weights.push(vec![
             equality(Math::Letter(letter.clone()), vector_in(w, vector, GROUND)),
-            words(&format!(" at {centre}")),
+            words(" at "),
+            place(centre),
         ]);
         power.push((false, dot(Math::Letter(letter), velocity(centre))));
     }
@@ -107,7 +108,8 @@ fn force(
     let point = w.point(on);
     let mut what = vec![
         stated(w, &letter, vector, frame),
-        words(&format!(" at {point}")),
+        words(" at "),
+        place(point),
     ];
     let mut v = velocity(point);
     if let Some(body) = body {
@@ -126,7 +128,8 @@ fn force(
     let mut motion = vec![(false, v)];
     if let Some(other) = reaction_on {
         let other = w.point(other);
-        what.extend(reaction(&letter, &format!(" at {other}")));
+        what.extend(reaction(&letter, " at "));
+        what.push(place(other));
         motion.push((true, velocity(other)));
     }
     (what, dot(letter, Math::sum(motion)))
@@ -184,7 +187,10 @@ fn pulling(w: &Writer<'_>, load: &Load, ends: [PointId; 2], tension: Math) -> Sa
     let what = vec![
         words("tension "),
         equality(letter.clone(), tension),
-        words(&format!(" between {a} and {b}")),
+        words(" between "),
+        place(a),
+        words(" and "),
+        place(b),
     ];
     let approach = Math::Sum(vec![(false, velocity(a)), (true, velocity(b))]);
     let pull = Math::Row(vec![letter, direction(w, ends)]);

@@ -5,7 +5,7 @@ use appell_spec::mechanism::{Axis, FrameId, GROUND, Inertia, Turn};
 use super::super::writer::Writer;
 use super::super::{Block, Chain, Row, Section, Table};
 use super::super::{Letter, Math};
-use super::{equality, math, sentence, words};
+use super::{equality, math, place, sentence, words};
 use crate::mechanics::expressions::Lowering;
 use crate::symbolic::{Expr, Graph};
 
@@ -137,7 +137,7 @@ fn bodies(w: &mut Writer<'_>) -> Vec<Row> {
     for body in &mechanism.bodies {
         let mass = lowered(w, &body.mass);
         let mut what = vec![words("mass "), math(w.set(mass))];
-        what.push(words(&format!(" at {}", w.point(body.centre))));
+        what.extend([words(" at "), place(w.point(body.centre))]);
         if let Some(inertia) = &body.inertia {
             what.push(words(", "));
             let tensor = tensor(w, inertia);

@@ -14,10 +14,10 @@ mod reactions;
 mod solution;
 mod velocities;
 
-use super::{Letter, Math};
 use super::display::Equation;
 use super::writer::Writer;
 use super::{Block, Section, Span, Stage};
+use super::{Letter, Math};
 use crate::mechanics::finding;
 
 /// The sections up to a stage.

@@ -17,6 +17,11 @@ pub fn of_solution(motion: &Motion) -> Vec<Term> {
         any(|block| matches!(block, Block::Eliminated(_))),
         any(|block| matches!(block, Block::Factorized(_))),
     );
+    terms.push(term(
+        "rhs",
+        "right-hand sides `Π - b`, less what elimination took from them; `_over_` what they are \
+         divided by.",
+    ));
     if alone {
         terms.push(term(
             "pivot",
@@ -31,7 +36,7 @@ pub fn of_solution(motion: &Motion) -> Vec<Term> {
         terms.extend([
             term("L", "the unit triangular factor of `M = L D Lᵀ`."),
             term("D", "the diagonal of `M = L D Lᵀ`, and `L D` beside it."),
-            term("z", "what solves `L z = rhs`, `rhs = Π - b`."),
+            term("z", "what solves `L z = rhs`."),
         ]);
     }
     let rho = match (alone, together) {

@@ -9,7 +9,7 @@ use super::algebra::Algebra;
 use super::factorized::FactorizedBlock;
 use super::finding::{Finding, Item, Outcome};
 use super::gibbs_appell::GibbsForm;
-use crate::symbolic::{Expr, Graph, Rational};
+use crate::symbolic::{Expr, Graph, Node, Rational};
 
 /// Blocks up to this size are eliminated by formulas, each in its shortest form; larger ones, and
 /// those whose entries are numbers of a solved system, by an unrolled factorisation with named entries.
@@ -38,8 +38,10 @@ pub enum Block {
 pub struct Eliminated {
     /// The speed it determines.
     pub speed: usize,
-    /// Its pivot.
+    /// Its pivot; 1 where the right-hand side is already divided by it.
     pub pivot: Expr,
+    /// What the pivot was then: zero where the mass matrix is singular.
+    pub inertia: Expr,
     /// What the pivot divides without a rest.
     pub whole: Expr,
     /// Its right-hand side.
@@ -140,7 +142,7 @@ impl Motion {
         for block in &self.blocks {
             match block {
                 Block::Eliminated(equations) => {
-                    pivots.extend(equations.iter().map(|e| (e.speed, e.pivot)));
+                    pivots.extend(equations.iter().map(|e| (e.speed, e.inertia)));
                 }
                 Block::Factorized(block) => pivots.extend(block.pivots()),
             }
@@ -241,10 +243,14 @@ fn eliminate(
             right[i] = algebra.shortest(value);
         }
         couplings.retain(|&(_, coupling)| coupling != Graph::ZERO);
-        let right = name_right(algebra, mechanism, k, right[k]);
+        let (right, inertia) = (right[k], pivot);
+        let specific = specific(algebra, mechanism, k, right, pivot);
+        let pivot = specific.map_or(pivot, |_| Graph::ONE);
+        let right = specific.unwrap_or_else(|| name_right(algebra, mechanism, k, right));
         equations.push(Eliminated {
             speed: k,
             pivot,
+            inertia,
             whole: Graph::ZERO,
             right,
             quotient: algebra.graph.div(right, pivot),
@@ -263,6 +269,36 @@ fn name_pivot(algebra: &mut Algebra, mechanism: &Mechanism, speed: usize, pivot:
 fn name_right(algebra: &mut Algebra, mechanism: &Mechanism, speed: usize, right: Expr) -> Expr {
     let name = format!("rhs_{}", mechanism.pseudo_velocities[speed].label.name);
     algebra.graph.name(&name, right)
+}
+
+/// The right-hand side over a pivot that is a symbol, term by term, where that is shorter: a mass
+/// that most loads are proportional to goes.
+fn specific(
+    algebra: &mut Algebra,
+    mechanism: &Mechanism,
+    speed: usize,
+    right: Expr,
+    pivot: Expr,
+) -> Option<Expr> {
+    let symbol = algebra.graph.as_symbol(pivot)?;
+    let Node::Sum(terms) = algebra.graph.node(right).clone() else {
+        return None;
+    };
+    let specific: Vec<_> = terms
+        .iter()
+        .map(|term| {
+            let over = algebra.graph.div(term.expr, pivot);
+            (term.coefficient.clone(), over)
+        })
+        .collect();
+    let specific = algebra.graph.linear_combination(&specific);
+    let whole = algebra.graph.div(right, pivot);
+    if algebra.graph.operations(&[specific]) >= algebra.graph.operations(&[whole]) {
+        return None;
+    }
+    let speed = &mechanism.pseudo_velocities[speed].label.name;
+    let name = format!("rhs_{speed}_over_{}", algebra.graph.symbol_name(symbol));
+    Some(algebra.graph.name(&name, specific))
 }
 
 /// Takes the diagonal entry with the fewest operations out of the open ones.
@@ -365,6 +401,7 @@ fn quotients(
         equations.push(Eliminated {
             speed,
             pivot,
+            inertia: pivot,
             whole,
             right,
             quotient,

@@ -102,7 +102,7 @@ impl OperationCount {
 }
 
 impl fmt::Display for OperationCount {
-    /// `98 (41 +, 53 ×, 4 ÷), 2 sine-cosine pairs`
+    /// `98 (41 +, 53 ×, 4 ÷), sine or cosine of 2 angles`
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}", self.total())?;
         let mut separator = " (";
@@ -120,8 +120,11 @@ impl fmt::Display for OperationCount {
         if self.total() > 0 {
             f.write_str(")")?;
         }
+        if self.sin_cos > 0 {
+            let angles = if self.sin_cos == 1 { "angle" } else { "angles" };
+            write!(f, ", sine or cosine of {} {angles}", self.sin_cos)?;
+        }
         for (count, one, many) in [
-            (self.sin_cos, "sine-cosine pair", "sine-cosine pairs"),
             (self.functions, "function", "functions"),
             (self.selects, "choice", "choices"),
             (self.solves, "linear system", "linear systems"),

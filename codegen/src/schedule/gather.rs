@@ -1,5 +1,5 @@
-//! Takes a factor out of two terms where what remains of one of them is known already: with `l x`
-//! at hand, `h l x - h y` becomes `h (l x - y)`.
+//! Distributivity where parts are known already. With `l x` at hand, `h l x - h y` becomes
+//! `h (l x - y)`; with `m a` and `m b` at hand, `m (a + b) + c` becomes `m a + m b + c`.
 //!
 //! [`super::factor`] opens a product only where nothing else uses it. Here `h l` may be shared: it
 //! is the quotient that counts, and quotients are known by their values.
@@ -12,17 +12,35 @@ use super::meet::{Value, over, values, without_sign};
 
 /// Takes factors out. Tells whether there were any; every one saves a multiplication.
 pub(super) fn gather(dag: &mut Dag, order: &[Id]) -> bool {
-    let quotients = Quotients::of(dag, order);
+    let known = Known::of(dag, order);
     let mut found = Vec::new();
     for &sum in order {
         if let Op::Sum(terms) = dag.op(sum)
-            && let Some(common) = quotients.common(terms)
+            && let Some(common) = known.common(terms)
         {
             found.push((sum, common));
         }
     }
     for (sum, common) in &found {
         take_out(dag, *sum, common);
+    }
+    !found.is_empty()
+}
+
+/// Multiplies products out whose terms are all known. Tells whether there were any; every one saves
+/// a multiplication.
+pub(super) fn scatter(dag: &mut Dag, order: &[Id]) -> bool {
+    let known = Known::of(dag, order);
+    let mut found = Vec::new();
+    for &sum in order {
+        if let Op::Sum(terms) = dag.op(sum)
+            && let Some(scattered) = known.scattered(terms)
+        {
+            found.push((sum, scattered));
+        }
+    }
+    for (sum, terms) in &found {
+        dag.replace(*sum, Op::Sum(terms.clone()));
     }
     !found.is_empty()
 }
@@ -37,28 +55,28 @@ struct Common {
     other: Item,
 }
 
-/// The nodes by their values, which tell what is known without a factor.
-struct Quotients<'d> {
+/// The nodes by their values.
+struct Known<'d> {
     dag: &'d Dag,
     uses: Vec<u32>,
     values: Vec<Option<Value>>,
-    known: FxHashMap<Value, (Id, bool)>,
+    nodes: FxHashMap<Value, (Id, bool)>,
 }
 
-impl<'d> Quotients<'d> {
+impl<'d> Known<'d> {
     fn of(dag: &'d Dag, order: &[Id]) -> Self {
         let values = values(dag, order);
-        let mut known = FxHashMap::default();
+        let mut nodes = FxHashMap::default();
         for &id in order {
             if let Some((value, sign)) = values[id.index()].map(without_sign) {
-                known.entry(value).or_insert((id, sign));
+                nodes.entry(value).or_insert((id, sign));
             }
         }
         Self {
             dag,
             uses: dag.uses(order),
             values,
-            known,
+            nodes,
         }
     }
 
@@ -94,9 +112,43 @@ impl<'d> Quotients<'d> {
             return None;
         }
         let quotient = over(self.values[term.id.index()]?, self.values[factor.index()]?)?;
-        let (value, sign) = without_sign(quotient);
-        let &(id, other) = self.known.get(&value)?;
-        let flip = term.flip ^ (sign != other);
+        Some(self.node(quotient)?.flipped_if(term.flip))
+    }
+
+    /// The terms with one product multiplied out.
+    fn scattered(&self, terms: &[Item]) -> Option<Vec<Item>> {
+        terms.iter().enumerate().find_map(|(place, &term)| {
+            let [a, b] = self.factors(term)? else {
+                return None;
+            };
+            let products = self.products(*a, *b).or_else(|| self.products(*b, *a))?;
+            let mut scattered = terms.to_vec();
+            scattered.remove(place);
+            scattered.extend(products.into_iter().map(|item| item.flipped_if(term.flip)));
+            Some(scattered)
+        })
+    }
+
+    /// The products of a factor with all terms of a sum that nothing else needs.
+    fn products(&self, factor: Item, sum: Item) -> Option<Vec<Item>> {
+        let Op::Sum(terms) = self.dag.op(sum.id) else {
+            return None;
+        };
+        if factor.flip || sum.flip || self.uses[sum.id.index()] != 1 {
+            return None;
+        }
+        let [a, b] = self.values[factor.id.index()]?;
+        let product = |term: &Item| {
+            let [c, d] = self.values[term.id.index()]?;
+            Some(self.node([a * c, b * d])?.flipped_if(term.flip))
+        };
+        terms.iter().map(product).collect()
+    }
+
+    fn node(&self, value: Value) -> Option<Item> {
+        let (value, sign) = without_sign(value);
+        let &(id, other) = self.nodes.get(&value)?;
+        let flip = sign != other;
         Some(Item { id, flip })
     }
 }

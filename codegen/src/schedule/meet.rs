@@ -171,12 +171,11 @@ fn factors_inside(dag: &Dag, sum: Id) -> Vec<Id> {
     let mut factors = Vec::new();
     let mut open: Vec<Id> = terms.iter().take(1).map(|term| term.id).collect();
     while let Some(id) = open.pop() {
+        factors.push(id);
         if let Op::Product(inner) = dag.op(id)
             && open.len() + factors.len() < LONGEST
         {
             open.extend(inner.iter().filter(|item| !item.flip).map(|item| item.id));
-        } else {
-            factors.push(id);
         }
     }
     factors

@@ -143,8 +143,10 @@ impl Rebuilding<'_> {
         let Some(name) = self.old.names[old.index()] else {
             return;
         };
+        // A sine says itself what it is.
+        let says_itself = name.automatic && matches!(self.new.op(new.id), Op::Function(..));
         let place = &mut self.new.names[new.id.index()];
-        if place.is_none() {
+        if place.is_none() && !says_itself {
             *place = Some(Name {
                 definition: name.definition,
                 automatic: name.automatic,

@@ -5,7 +5,7 @@ use super::cancel::cancel;
 use super::dag::{Dag, Id, Item};
 use super::divide::{join_divisions, share_reciprocals};
 use super::factor::factor;
-use super::gather::gather;
+use super::gather::{gather, scatter};
 use super::meet::{meet, meet_in_multiples, meet_in_parts, name_again, refer_to_kept};
 use super::rebuild::{Dissolve, rebuild};
 use super::scale::scale;
@@ -143,7 +143,7 @@ fn merged(mut dag: Dag) -> Dag {
             |dag: &mut Dag, order: &[Id]| share(dag, order, Within::Products, Preference::Early, 2);
         let sums =
             |dag: &mut Dag, order: &[Id]| share(dag, order, Within::Sums, Preference::Early, 2);
-        for pass in [meet, meet_in_parts, products, gather, sums] {
+        for pass in [meet, meet_in_parts, products, scatter, gather, sums] {
             let order = dag.order();
             if pass(&mut dag, &order) {
                 dag = rebuild(&dag, Dissolve::Unnamed);

@@ -50,13 +50,21 @@ pub fn html(page: &Page) -> String {
 }
 
 fn spans(spans: &[Span]) -> String {
-    spans
-        .iter()
-        .map(|span| match span {
-            Span::Text(text) => escaped(text),
-            Span::Math(math) => format!("<math>{}</math>", formula(math)),
-        })
-        .collect()
+    let mut out = String::new();
+    for (place, span) in spans.iter().enumerate() {
+        let stops = |next: &Span| matches!(next, Span::Text(text) if text.starts_with(['.', ',', ';', ':']));
+        match span {
+            Span::Text(text) => out.push_str(&escaped(text)),
+            Span::Math(math) => {
+                let _ = write!(out, "<math>{}</math>", formula(math));
+                // A stop stays on the line of its formula.
+                if spans.get(place + 1).is_some_and(stops) {
+                    out.push('\u{2060}');
+                }
+            }
+        }
+    }
+    out
 }
 
 fn table(out: &mut String, table: &Table) {

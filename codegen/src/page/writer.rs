@@ -82,8 +82,8 @@ impl<'a> Writer<'a> {
     }
 
     /// Name of a point.
-    pub(super) fn point(&self, point: PointId) -> &'a str {
-        &self.mechanism.points[point].name
+    pub(super) fn point(&self, point: PointId) -> String {
+        Letter::of(&self.mechanism.points[point].name).to_string()
     }
 
     /// The formula of an expression as it stands.

@@ -8,7 +8,7 @@ use rustc_hash::FxHashMap;
 
 use super::dag::{Dag, Id, Item, Op};
 use super::factor::without;
-use super::meet::{Value, over, values, without_sign};
+use super::meet::{Value, made_of, over, values, without_sign};
 
 /// Takes factors out. Tells whether there were any; every one saves a multiplication.
 pub(super) fn gather(dag: &mut Dag, order: &[Id]) -> bool {
@@ -21,10 +21,14 @@ pub(super) fn gather(dag: &mut Dag, order: &[Id]) -> bool {
             found.push((sum, common));
         }
     }
+    let mut any = false;
     for (sum, common) in &found {
-        take_out(dag, *sum, common);
+        if !made_of(dag, &[common.quotient.id], *sum) {
+            take_out(dag, *sum, common);
+            any = true;
+        }
     }
-    !found.is_empty()
+    any
 }
 
 /// Multiplies products out whose terms are all known. Tells whether there were any; every one saves
@@ -39,10 +43,15 @@ pub(super) fn scatter(dag: &mut Dag, order: &[Id]) -> bool {
             found.push((sum, scattered));
         }
     }
-    for (sum, terms) in &found {
-        dag.replace(*sum, Op::Sum(terms.clone()));
+    let mut any = false;
+    for (sum, terms) in found {
+        let parts: Vec<Id> = terms.iter().map(|term| term.id).collect();
+        if !made_of(dag, &parts, sum) {
+            dag.replace(sum, Op::Sum(terms));
+            any = true;
+        }
     }
-    !found.is_empty()
+    any
 }
 
 /// Two terms with a common factor.

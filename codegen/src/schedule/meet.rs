@@ -150,10 +150,7 @@ pub(super) fn meet_in_multiples(dag: &mut Dag, order: &[Id]) -> bool {
     }
     let mut any = false;
     for (id, factor, other, flip) in multiples {
-        // The other sum must not be made of this one.
-        let (mut seen, mut made_of_it) = (vec![false; dag.len()], false);
-        dag.visit_from(&[other, factor], &mut seen, |part| made_of_it |= part == id);
-        if made_of_it {
+        if made_of(dag, &[other, factor], id) {
             continue;
         }
         let product = dag.product(vec![Item::plain(factor), Item::plain(other)]);
@@ -161,6 +158,13 @@ pub(super) fn meet_in_multiples(dag: &mut Dag, order: &[Id]) -> bool {
         any = true;
     }
     any
+}
+
+/// Whether nodes are made of another one, which then must not be made of them.
+pub(super) fn made_of(dag: &Dag, nodes: &[Id], part: Id) -> bool {
+    let (mut seen, mut found) = (vec![false; dag.len()], false);
+    dag.visit_from(nodes, &mut seen, |node| found |= node == part);
+    found
 }
 
 /// What could be a factor of all terms of a sum: factors of the products in its first term.

@@ -73,7 +73,7 @@ pub struct Jacobians<T> {
 /// Rates ẋ of the state by Appell's equations M ω̇ + b = Π and kinematics.
 ///
 /// From `mechanisms/type.toml`.
-/// Operations: 25 (16 +, 8 ×, 1 ÷), 1 sine-cosine pair, 13 functions, 2 choices, 2 linear systems.
+/// Operations: 25 (16 +, 8 ×, 1 ÷), sine or cosine of 1 angle, 13 functions, 2 choices, 2 linear systems.
 #[must_use]
 #[inline]
 pub fn rates<T: Real>(
@@ -123,7 +123,7 @@ pub fn rates<T: Real>(
 /// Rates ẋ with their derivatives by state and inputs.
 ///
 /// From `mechanisms/type.toml`.
-/// Operations: 61 (32 +, 18 ×, 5 ÷, 6 sign), 1 sine-cosine pair, 14 functions, 7 choices, 7 linear systems.
+/// Operations: 61 (32 +, 18 ×, 5 ÷, 6 sign), sine or cosine of 1 angle, 14 functions, 7 choices, 7 linear systems.
 #[must_use]
 #[inline]
 pub fn jacobians<T: Real>(
@@ -223,7 +223,7 @@ pub fn jacobians<T: Real>(
 /// Rows: `type`, `p`, `half`. Columns: `INFO`, `K`.
 ///
 /// From `mechanisms/type.toml`.
-/// Operations: 33 (15 +, 11 ×, 1 ÷, 6 sign), 1 sine-cosine pair, 12 functions, 2 choices, 6 linear systems.
+/// Operations: 33 (15 +, 11 ×, 1 ÷, 6 sign), sine or cosine of 1 angle, 12 functions, 2 choices, 6 linear systems.
 #[must_use]
 #[inline]
 pub fn parameter_jacobian<T: Real>(

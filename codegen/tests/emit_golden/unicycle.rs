@@ -129,7 +129,7 @@ pub struct Energies<T> {
 /// Generalised velocities q̇ of pseudo-velocities and coordinates.
 ///
 /// From `mechanisms/unicycle.toml`.
-/// Operations: 12 (3 +, 8 ×, 1 ÷), 2 sine-cosine pairs.
+/// Operations: 12 (3 +, 8 ×, 1 ÷), sine or cosine of 2 angles.
 #[must_use]
 #[inline]
 pub fn kinematics<T: Real>(
@@ -165,7 +165,7 @@ pub fn kinematics<T: Real>(
 /// Acceleration energy S (Gibbs function) at the actual motion.
 ///
 /// From `mechanisms/unicycle.toml`.
-/// Operations: 46 (14 +, 30 ×, 2 ÷), 1 sine-cosine pair.
+/// Operations: 46 (14 +, 30 ×, 2 ÷), sine or cosine of 1 angle.
 #[must_use]
 #[inline]
 pub fn acceleration_energy<T: Real>(
@@ -267,7 +267,7 @@ pub fn mass_matrix<T: Real>(
 /// Bias b: what is left of ∂S/∂ω̇ where the pseudo-accelerations vanish.
 ///
 /// From `mechanisms/unicycle.toml`.
-/// Operations: 48 (14 +, 33 ×, 1 ÷), 1 sine-cosine pair.
+/// Operations: 48 (14 +, 33 ×, 1 ÷), sine or cosine of 1 angle.
 #[must_use]
 #[inline]
 pub fn bias<T: Real>(
@@ -321,7 +321,7 @@ pub fn bias<T: Real>(
 /// Pseudo-forces Π (generalised forces): virtual power of the loads per pseudo-velocity.
 ///
 /// From `mechanisms/unicycle.toml`.
-/// Operations: 10 (3 +, 7 ×), 1 sine-cosine pair.
+/// Operations: 10 (3 +, 7 ×), sine or cosine of 1 angle.
 #[must_use]
 #[inline]
 pub fn generalized_forces<T: Real>(
@@ -357,7 +357,7 @@ pub fn generalized_forces<T: Real>(
 /// Rates ẋ of the state by Appell's equations M ω̇ + b = Π and kinematics.
 ///
 /// From `mechanisms/unicycle.toml`.
-/// Operations: 97 (30 +, 63 ×, 4 ÷), 2 sine-cosine pairs.
+/// Operations: 97 (30 +, 63 ×, 4 ÷), sine or cosine of 2 angles.
 #[must_use]
 #[inline]
 pub fn rates<T: Real>(
@@ -449,7 +449,7 @@ pub fn rates<T: Real>(
 /// Rates ẋ with their derivatives by state and inputs.
 ///
 /// From `mechanisms/unicycle.toml`.
-/// Operations: 264 (72 +, 180 ×, 4 ÷, 8 sign), 2 sine-cosine pairs.
+/// Operations: 261 (70 +, 179 ×, 4 ÷, 8 sign), sine or cosine of 2 angles.
 #[must_use]
 #[inline]
 pub fn jacobians<T: Real>(
@@ -525,7 +525,8 @@ pub fn jacobians<T: Real>(
     let d_f_3_d_omega_3 = m0_R_omega_1_r + tan_theta * M_33_omega_1 - two_m0_r * sigma;
     let f_3 = minus_half_m_R_squared_omega_1 * omega_2 + d_f_3_d_omega_3 * omega_3;
     let m0_tan_theta_r = tan_theta * m0_r;
-    let f_2_part_1 = m0 * (two_sigma - R_omega_1) - omega_1 * (m_R + m0_tan_theta_r);
+    let m_R_plus_m0_tan_theta_r = m_R + m0_tan_theta_r;
+    let f_2_part_1 = m0 * (two_sigma - R_omega_1) - m_R_plus_m0_tan_theta_r * omega_1;
     let f_2 = R_omega_3 * f_2_part_1;
     let D_2 = M_22 * M_33 - m0_R_r * m0_R_r;
     let inv_D_2 = one / D_2;
@@ -537,13 +538,12 @@ pub fn jacobians<T: Real>(
     let m0_sigma_r_minus_m0_R_omega_1_r = m0_r * sigma - m0_R_omega_1_r;
     let A_omega_1_omega_1_part_1 = -two * omega_1_dot_part_1;
     let A_omega_1_omega_1 = m0_sigma_r_minus_m0_R_omega_1_r * A_omega_1_omega_1_part_1;
-    let m0_R_tan_theta_omega_3_r = m0_r * R_tan_theta_omega_3;
-    let A_omega_1_omega_2_part_1 = m0_R_tan_theta_omega_3_r
-        + three_halves_m_R * R_omega_3;
-    let A_omega_1_omega_2 = omega_1_dot_part_1 * A_omega_1_omega_2_part_1;
+    let A_omega_1_omega_2_part_1 = three_halves_m_R + m0_tan_theta_r;
+    let A_omega_1_omega_2_part_2 = R_omega_3 * A_omega_1_omega_2_part_1;
+    let A_omega_1_omega_2 = omega_1_dot_part_1 * A_omega_1_omega_2_part_2;
     let tan_theta_omega_3_r = tan_theta_omega_3 * r;
     let half_m_R_tan_theta_omega_3 = half * m * R_tan_theta_omega_3;
-    let A_omega_1_omega_3_part_1 = omega_2 * (three_halves_m_R + m0_tan_theta_r);
+    let A_omega_1_omega_3_part_1 = A_omega_1_omega_2_part_1 * omega_2;
     let A_omega_1_omega_3_part_2 = half_m_R_tan_theta_omega_3 - A_omega_1_omega_3_part_1;
     let A_omega_1_omega_3_part_3 = two_m0_r * tan_theta_omega_3_r
         + R * A_omega_1_omega_3_part_2;
@@ -565,7 +565,7 @@ pub fn jacobians<T: Real>(
     let A_omega_1_r = omega_1_dot_part_1 * (A_omega_1_r_part_4 - omega_1_dot * two_m0_r);
 
     // Row `omega_2` of A.
-    let d_f_2_d_omega_1 = -(m0_R_tan_theta_omega_3_r + R_omega_3 * (m_R + m0_R));
+    let d_f_2_d_omega_1 = -R_omega_3 * (m0_R + m_R_plus_m0_tan_theta_r);
     let d_f_3_d_omega_1 = quarter_m_R * R_tan_theta_omega_3 + minus_half_m_R * R_omega_2
         + m0_r * (R_omega_3 + tan_theta_omega_3_r);
     let A_omega_2_omega_1 = inv_D_2
@@ -609,7 +609,7 @@ pub fn jacobians<T: Real>(
     let B_omega_1_u = R * omega_1_dot_part_1;
     let A_sigma_omega_1_part_1 = m0_sigma_r_minus_m0_R_omega_1_r * B_omega_1_u;
     let A_sigma_omega_1 = two * (omega_1_r - A_sigma_omega_1_part_1);
-    let A_sigma_omega_2 = A_omega_1_omega_2_part_1 * B_omega_1_u - R_omega_3;
+    let A_sigma_omega_2 = A_omega_1_omega_2_part_2 * B_omega_1_u - R_omega_3;
     let A_sigma_omega_3 = inv_m0 * (two_m0_r * omega_3 - m0_R * omega_2)
         - A_omega_1_omega_3_part_3 * B_omega_1_u;
     let A_sigma_sigma = m0_R_omega_1_r * A_omega_1_omega_1_part_1;
@@ -709,7 +709,7 @@ pub fn jacobians<T: Real>(
 /// Rows: `omega_1`, `omega_2`, `omega_3`, `sigma`, `theta`, `r`, `psi`, `phi`, `x_G`, `y_G`. Columns: `m`, `m0`, `R`, `g`.
 ///
 /// From `mechanisms/unicycle.toml`.
-/// Operations: 252 (86 +, 162 ×, 4 ÷), 2 sine-cosine pairs.
+/// Operations: 252 (86 +, 162 ×, 4 ÷), sine or cosine of 2 angles.
 #[must_use]
 #[inline]
 pub fn parameter_jacobian<T: Real>(
@@ -888,7 +888,7 @@ pub fn parameter_jacobian<T: Real>(
 /// Energies and power.
 ///
 /// From `mechanisms/unicycle.toml`.
-/// Operations: 8 (8 ×), 1 sine-cosine pair.
+/// Operations: 8 (8 ×), sine or cosine of 1 angle.
 #[must_use]
 #[inline]
 pub fn energies<T: Real>(

@@ -22,7 +22,7 @@ pub(super) fn section(w: &mut Writer<'_>) -> Section {
                 &body.centre.partial,
                 &accelerations,
             );
-            let letter = Letter::bold("a").below(w.point(centre));
+            let letter = Letter::bold("a").below(&w.point(centre));
             equations.extend(w.vector(letter, a, body.centre.velocity.frame));
         }
         if let Some(rotation) = body.rotation

@@ -24,6 +24,9 @@ pub(super) fn section(w: &mut Writer<'_>) -> Section {
     ));
     let definitions = definitions(w);
     blocks.push(definitions);
+    blocks.push(sentence(
+        "Below, ωᵢ is the i-th of them; rows and columns follow the same order.",
+    ));
     let by = if w
         .derivation
         .constraints
@@ -113,13 +116,13 @@ fn rolling(w: &Writer<'_>, kind: &ConstraintKind) -> Option<Math> {
     let body = &w.mechanism.bodies[body];
     let (centre, contact) = (w.point(body.centre), w.point(contact));
     Some(Math::Row(vec![
-        Math::Letter(Letter::bold("v").below(contact)),
+        Math::Letter(Letter::bold("v").below(&contact)),
         Math::Sign("="),
-        Math::Letter(Letter::bold("v").below(centre)),
+        Math::Letter(Letter::bold("v").below(&centre)),
         Math::Sign("+"),
         Math::Letter(Letter::bold("ω").below(&body.name)),
         Math::Sign("×"),
-        Math::Letter(Letter::bold("r").below(&from_to(centre, contact))),
+        Math::Letter(Letter::bold("r").below(&from_to(&centre, &contact))),
         Math::Sign("="),
         Math::Words("0".to_owned()),
     ]))

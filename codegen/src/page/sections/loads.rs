@@ -9,7 +9,7 @@ use appell_spec::mechanism::{
 use super::super::writer::Writer;
 use super::super::{Letter, Math, Span};
 use super::placement::{from_to, lowered};
-use super::{equality, listed, math, place, words};
+use super::{equality, listed, math, words};
 use crate::symbolic::{Expr, Graph};
 
 /// `F_drive = [0, u, 0] tilted at A, −F_drive at G; δP_drive = F_drive · (δv_A − δv_G)`
@@ -89,10 +89,9 @@ fn gravity(w: &mut Writer<'_>, load: &Load, down: [i8; 3], acceleration: &Spec) 
         let centre = w.point(body.centre);
         weights.push(vec![
             equality(Math::Letter(letter.clone()), vector_in(w, vector, GROUND)),
-            words(" at "),
-            place(centre),
+            words(&format!(" at {centre}")),
         ]);
-        power.push((false, dot(Math::Letter(letter), velocity(centre))));
+        power.push((false, dot(Math::Letter(letter), velocity(&centre))));
     }
     (listed(weights), Math::Sum(power))
 }
@@ -108,10 +107,9 @@ fn force(
     let point = w.point(on);
     let mut what = vec![
         stated(w, &letter, vector, frame),
-        words(" at "),
-        place(point),
+        words(&format!(" at {point}")),
     ];
-    let mut v = velocity(point);
+    let mut v = velocity(&point);
     if let Some(body) = body {
         let body = &w.mechanism.bodies[body];
         what.push(words(&format!(", fixed in {}", body.name)));
@@ -120,7 +118,7 @@ fn force(
             let lever = between(w, [body.centre, on]);
             let turning = Math::Row(vec![rotation(&body.name), Math::Sign("×"), lever]);
             v = Math::Sum(vec![
-                (false, velocity(w.point(body.centre))),
+                (false, velocity(&w.point(body.centre))),
                 (false, turning),
             ]);
         }
@@ -128,9 +126,8 @@ fn force(
     let mut motion = vec![(false, v)];
     if let Some(other) = reaction_on {
         let other = w.point(other);
-        what.extend(reaction(&letter, " at "));
-        what.push(place(other));
-        motion.push((true, velocity(other)));
+        what.extend(reaction(&letter, &format!(" at {other}")));
+        motion.push((true, velocity(&other)));
     }
     (what, dot(letter, Math::sum(motion)))
 }
@@ -172,7 +169,7 @@ fn spring(w: &mut Writer<'_>, load: &Load, ends: [PointId; 2], k: &Spec, relaxed
 
 /// A tension `c r_AB/|r_AB| · (v_B − v_A)`.
 fn damper(w: &mut Writer<'_>, load: &Load, ends: [PointId; 2], c: &Spec) -> Said {
-    let [v_a, v_b] = ends.map(|end| Math::Letter(Letter::bold("v").below(w.point(end))));
+    let [v_a, v_b] = ends.map(|end| Math::Letter(Letter::bold("v").below(&w.point(end))));
     let lengthening = dot(
         direction(w, ends),
         Math::Sum(vec![(false, v_b), (true, v_a)]),
@@ -187,12 +184,9 @@ fn pulling(w: &Writer<'_>, load: &Load, ends: [PointId; 2], tension: Math) -> Sa
     let what = vec![
         words("tension "),
         equality(letter.clone(), tension),
-        words(" between "),
-        place(a),
-        words(" and "),
-        place(b),
+        words(&format!(" between {a} and {b}")),
     ];
-    let approach = Math::Sum(vec![(false, velocity(a)), (true, velocity(b))]);
+    let approach = Math::Sum(vec![(false, velocity(&a)), (true, velocity(&b))]);
     let pull = Math::Row(vec![letter, direction(w, ends)]);
     (what, dot(pull, approach))
 }
@@ -247,7 +241,7 @@ fn rotation(body: &str) -> Math {
 
 /// `r_AB`
 fn between(w: &Writer<'_>, [a, b]: [PointId; 2]) -> Math {
-    Math::Letter(Letter::bold("r").below(&from_to(w.point(a), w.point(b))))
+    Math::Letter(Letter::bold("r").below(&from_to(&w.point(a), &w.point(b))))
 }
 
 /// `r_AB/|r_AB|`

@@ -14,10 +14,10 @@ mod reactions;
 mod solution;
 mod velocities;
 
+use super::Math;
 use super::display::Equation;
 use super::writer::Writer;
 use super::{Block, Section, Span, Stage};
-use super::{Letter, Math};
 use crate::mechanics::finding;
 
 /// The sections up to a stage.
@@ -67,11 +67,6 @@ fn words(text: &str) -> Span {
 
 fn sentence(text: &str) -> Block {
     Block::Sentence(vec![words(text)])
-}
-
-/// The name of a point in the text: `G_0` is G₀.
-fn place(point: &str) -> Span {
-    math(Math::Letter(Letter::of(point)))
 }
 
 fn math(math: Math) -> Span {

@@ -5,7 +5,7 @@ use appell_spec::mechanism::{Axis, FrameId, GROUND, Inertia, Turn};
 use super::super::writer::Writer;
 use super::super::{Block, Chain, Row, Section, Table};
 use super::super::{Letter, Math};
-use super::{equality, math, place, sentence, words};
+use super::{equality, math, sentence, words};
 use crate::mechanics::expressions::Lowering;
 use crate::symbolic::{Expr, Graph};
 
@@ -13,8 +13,8 @@ use crate::symbolic::{Expr, Graph};
 pub(super) fn section(w: &mut Writer<'_>) -> Section {
     let mechanism = w.mechanism;
     let mut blocks = vec![sentence(
-        "Each frame is the one before it, turned about one of its axes. Behind the components of a \
-         vector stands their frame.",
+        "O is the origin of the ground. Each frame is the one before it, turned about one of its \
+         axes. Behind the components of a vector stands their frame.",
     )];
     for leaf in 1..mechanism.frames.len() {
         if !mechanism.frames.iter().any(|f| f.parent == Some(leaf)) {
@@ -108,12 +108,12 @@ pub(super) fn from_to(from: &str, to: &str) -> String {
 fn points(w: &mut Writer<'_>) -> Vec<Row> {
     let mechanism = w.mechanism;
     let mut rows = Vec::new();
-    for point in &mechanism.points {
+    for (id, point) in mechanism.points.iter().enumerate() {
         let Some(from) = point.from else { continue };
         let components = point.at.iter().map(|c| lowered(w, c)).collect::<Vec<_>>();
         let components = components.into_iter().map(|c| w.set(c)).collect();
         let frame = Some(w.frame(point.frame));
-        let left = Letter::bold("r").below(&from_to(w.point(from), &point.name));
+        let left = Letter::bold("r").below(&from_to(&w.point(from), &w.point(id)));
         let right = Math::Vector {
             components,
             frame,
@@ -137,7 +137,7 @@ fn bodies(w: &mut Writer<'_>) -> Vec<Row> {
     for body in &mechanism.bodies {
         let mass = lowered(w, &body.mass);
         let mut what = vec![words("mass "), math(w.set(mass))];
-        what.extend([words(" at "), place(w.point(body.centre))]);
+        what.push(words(&format!(" at {}", w.point(body.centre))));
         if let Some(inertia) = &body.inertia {
             what.push(words(", "));
             let tensor = tensor(w, inertia);

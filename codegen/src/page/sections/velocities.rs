@@ -32,11 +32,12 @@ pub(super) fn section(w: &mut Writer<'_>) -> Section {
     }
     for point in moving_points(w) {
         let v = w.derivation.kinematics.velocity(point);
-        let letter = Letter::bold("v").below(w.point(point));
+        let letter = Letter::bold("v").below(&w.point(point));
         equations.extend(w.vector(letter, v.v, v.frame));
     }
     let mut blocks = vec![sentence(
-        "Ω turns a frame, ω a body; each vector is written in the frame where it is shortest.",
+        "Ω turns a frame, ω a body and the frames fixed in it; each vector is written in the frame \
+         where it is shortest.",
     )];
     blocks.extend(with(w, "", equations));
     super::section("Velocities", blocks)

@@ -226,6 +226,11 @@ pub(crate) fn latex_text(text: &str) -> String {
             '`' => out.push_str("{`}"),
             '-' => out.push_str("{-}"),
             '−' => out.push_str("$-$"),
+            '₀'..='₉' => {
+                let digit = u32::from(c) - u32::from('₀');
+                let _ = write!(out, "$_{digit}$");
+            }
+            'ᵢ' => out.push_str("$_i$"),
             ' '..='~' => out.push(c),
             c => foreign(&mut out, c),
         }

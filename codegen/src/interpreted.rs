@@ -70,8 +70,8 @@ impl Model for InterpretedModel {
     }
 
     fn appell(&self, at: At<'_>, mass: &mut [f64], bias: &mut [f64], forces: &mut [f64]) {
-        self.evaluate(FunctionKind::MassMatrix, at, &mut [("mass_matrix", mass)]);
-        self.evaluate(FunctionKind::Bias, at, &mut [("bias", bias)]);
+        let left = &mut [("mass_matrix", mass), ("bias", bias)];
+        self.evaluate(FunctionKind::MassMatrixAndBias, at, left);
         self.evaluate(
             FunctionKind::GeneralizedForces,
             at,

@@ -165,6 +165,8 @@ pub enum FunctionKind {
     MassMatrix,
     /// b: result `bias`.
     Bias,
+    /// M and b, with what they share: results `mass_matrix`, `bias`.
+    MassMatrixAndBias,
     /// Π: result `generalized_forces`.
     GeneralizedForces,
     /// ẋ: result `rates`.
@@ -196,11 +198,12 @@ pub enum FunctionKind {
 
 impl FunctionKind {
     /// All of them, in the order of emitted code.
-    pub const ALL: [Self; 16] = [
+    pub const ALL: [Self; 17] = [
         Self::Kinematics,
         Self::AccelerationEnergy,
         Self::MassMatrix,
         Self::Bias,
+        Self::MassMatrixAndBias,
         Self::GeneralizedForces,
         Self::Rates,
         Self::Jacobians,
@@ -252,6 +255,11 @@ impl FunctionKind {
                 "bias",
                 "Bias",
                 "Bias b: what is left of ∂S/∂ω̇ where the pseudo-accelerations vanish.",
+            ),
+            Self::MassMatrixAndBias => (
+                "mass_matrix_and_bias",
+                "MassMatrixAndBias",
+                "Mass matrix M and bias b together: what both need is computed once.",
             ),
             Self::GeneralizedForces => (
                 "generalized_forces",

@@ -28,7 +28,7 @@ const MOST_KIB: u64 = 1 << 20;
 const KINDS: [FunctionKind; 5] = [
     FunctionKind::Rates,
     FunctionKind::MassMatrix,
-    FunctionKind::Bias,
+    FunctionKind::MassMatrixAndBias,
     FunctionKind::ConstraintForces,
     FunctionKind::Outputs,
 ];

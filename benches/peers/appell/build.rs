@@ -13,11 +13,7 @@ const KERNELS: &[(&str, &str, &[Kind])] = &[
     ("unicycle_jacobians", "unicycle", &[Kind::Jacobians]),
     ("euc_rates", "euc_3dof", &[Kind::Rates]),
     ("euc_jacobians", "euc_3dof", &[Kind::Jacobians]),
-    (
-        "bicycle_equations",
-        "bicycle",
-        &[Kind::MassMatrix, Kind::Bias],
-    ),
+    ("bicycle_equations", "bicycle", &[Kind::MassMatrixAndBias]),
     ("bicycle_state", "bicycle", &[Kind::Jacobians]),
     (
         "bicycle_parameters",

@@ -357,20 +357,20 @@ fn motion_methods(types: &Types<'_>) -> Result<TokenStream, Error> {
 /// Mass matrix, bias and pseudo-forces.
 fn appell_method(types: &Types<'_>) -> Result<TokenStream, Error> {
     for kind in [
-        FunctionKind::MassMatrix,
-        FunctionKind::Bias,
+        FunctionKind::MassMatrixAndBias,
         FunctionKind::GeneralizedForces,
     ] {
         required(types.program, kind)?;
     }
-    let [mass, bias, forces] =
-        ["mass_matrix", "bias", "generalized_forces"].map(|name| call(types, name));
+    let [both, forces] =
+        ["mass_matrix_and_bias", "generalized_forces"].map(|name| call(types, name));
     let blank = blank_tokens();
     Ok(quote! {
         #blank
         fn appell(&self, at: At<'_>, mass: &mut [f64], bias: &mut [f64], forces: &mut [f64]) {
-            write(mass, #mass.as_flattened());
-            write(bias, &<[f64; S]>::from(self::#bias));
+            let left = #both;
+            write(mass, left.mass_matrix.as_flattened());
+            write(bias, &<[f64; S]>::from(left.bias));
             write(forces, &<[f64; S]>::from(#forces));
         }
     })

@@ -32,11 +32,12 @@ fn results(kind: FunctionKind, program: &Program) -> Vec<(&'static str, usize)> 
     let (n, m, k) = (info.state_len(), info.input_len(), info.parameter_len());
     let speeds = info.speeds;
     match kind {
-        // The rates contain them.
-        FunctionKind::Kinematics => vec![],
+        // Other functions return them too.
+        FunctionKind::Kinematics | FunctionKind::MassMatrix | FunctionKind::Bias => vec![],
         FunctionKind::AccelerationEnergy => vec![("total", 1)],
-        FunctionKind::MassMatrix => vec![("mass_matrix", speeds * speeds)],
-        FunctionKind::Bias => vec![("bias", speeds)],
+        FunctionKind::MassMatrixAndBias => {
+            vec![("mass_matrix", speeds * speeds), ("bias", speeds)]
+        }
         FunctionKind::GeneralizedForces => vec![("generalized_forces", speeds)],
         FunctionKind::Rates => vec![("rates", n)],
         FunctionKind::Jacobians => vec![("rates", n), ("a", n * n), ("b", n * m)],
@@ -128,8 +129,7 @@ impl Model for JitModel {
     }
 
     fn appell(&self, at: At<'_>, mass: &mut [f64], bias: &mut [f64], forces: &mut [f64]) {
-        self.evaluate(FunctionKind::MassMatrix, at, [mass]);
-        self.evaluate(FunctionKind::Bias, at, [bias]);
+        self.evaluate(FunctionKind::MassMatrixAndBias, at, [mass, bias]);
         self.evaluate(FunctionKind::GeneralizedForces, at, [forces]);
     }
 
@@ -218,7 +218,8 @@ mod tests {
             Kind::Kinematics => Kind::AccelerationEnergy,
             Kind::AccelerationEnergy => Kind::MassMatrix,
             Kind::MassMatrix => Kind::Bias,
-            Kind::Bias => Kind::GeneralizedForces,
+            Kind::Bias => Kind::MassMatrixAndBias,
+            Kind::MassMatrixAndBias => Kind::GeneralizedForces,
             Kind::GeneralizedForces => Kind::Rates,
             Kind::Rates => Kind::Jacobians,
             Kind::Jacobians => Kind::ParameterJacobian,

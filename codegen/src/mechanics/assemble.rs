@@ -96,21 +96,9 @@ impl Derivation {
                 vec![array.labelled(labels).under(VELOCITIES, all)]
             }
             FunctionKind::AccelerationEnergy => self.acceleration_energies(),
-            FunctionKind::MassMatrix => {
-                let entries = self.gibbs.mass_matrix.concat();
-                let all = 0..entries.len();
-                let layout = Layout::Matrix(speeds.len(), speeds.len());
-                let labels = speeds.iter().flat_map(|row| {
-                    let label = move |column: &Quantity| format!("M_{}_{}", row.name, column.name);
-                    speeds.iter().map(label)
-                });
-                let array = Array::new("mass_matrix", "M.", layout, entries);
-                vec![array.labelled(labels).under("Entries.", all)]
-            }
-            FunctionKind::Bias => {
-                let bias = self.gibbs.bias.clone();
-                vec![by_speed("bias", "bias", "Bias.", speeds, bias)]
-            }
+            FunctionKind::MassMatrix => vec![self.mass_matrix(speeds)],
+            FunctionKind::Bias => vec![self.bias(speeds)],
+            FunctionKind::MassMatrixAndBias => vec![self.mass_matrix(speeds), self.bias(speeds)],
             FunctionKind::GeneralizedForces => {
                 let forces = self.forces.clone();
                 let about = "Pseudo-forces.";
@@ -182,6 +170,22 @@ impl Derivation {
         })
     }
 
+    fn mass_matrix(&self, speeds: &[Quantity]) -> Array {
+        let entries = self.gibbs.mass_matrix.concat();
+        let all = 0..entries.len();
+        let layout = Layout::Matrix(speeds.len(), speeds.len());
+        let labels = speeds.iter().flat_map(|row| {
+            let label = move |column: &Quantity| format!("M_{}_{}", row.name, column.name);
+            speeds.iter().map(label)
+        });
+        let array = Array::new("mass_matrix", "M.", layout, entries);
+        array.labelled(labels).under("Entries.", all)
+    }
+
+    fn bias(&self, speeds: &[Quantity]) -> Array {
+        by_speed("bias", "bias", "Bias.", speeds, self.gibbs.bias.clone())
+    }
+
     /// A function with what a reader wants before its results.
     fn staged(&mut self, mechanism: &Mechanism, function: Function) -> Function {
         use FunctionKind as F;
@@ -192,7 +196,7 @@ impl Derivation {
                 .explaining(glossary::of_rows(mechanism, &self.constraints))
                 .remarking(embedded(mechanism, &self.constraints)),
             F::Energies => self.staged_by_velocities(mechanism, function),
-            F::Bias | F::Rates | F::Jacobians => {
+            F::Bias | F::MassMatrixAndBias | F::Rates | F::Jacobians => {
                 let bodies = self.bodies.clone();
                 self.explained(mechanism, function, &bodies)
             }

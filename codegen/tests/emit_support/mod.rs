@@ -368,11 +368,11 @@ pub fn unicycle() -> Program {
         FunctionKind::Kinematics,
         vec![("coordinate_rates", Layout::Coordinates, kinematics)],
     );
-    sketch.function(
-        FunctionKind::MassMatrix,
-        vec![("mass_matrix", Layout::Matrix(4, 4), mass_matrix)],
-    );
-    sketch.function(FunctionKind::Bias, vec![("bias", Layout::Speeds, bias)]);
+    let mass_matrix = ("mass_matrix", Layout::Matrix(4, 4), mass_matrix);
+    let bias = ("bias", Layout::Speeds, bias);
+    sketch.function(FunctionKind::MassMatrix, vec![mass_matrix.clone()]);
+    sketch.function(FunctionKind::Bias, vec![bias.clone()]);
+    sketch.function(FunctionKind::MassMatrixAndBias, vec![mass_matrix, bias]);
     sketch.function(
         FunctionKind::GeneralizedForces,
         vec![("generalized_forces", Layout::Speeds, forces)],

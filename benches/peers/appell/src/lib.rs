@@ -76,9 +76,9 @@ kernel!(appell_euc_jacobians, euc_jacobians, [6, 2, 11] -> 54, |p, x, u, out| {
     lay(out, j.rates.into(), &j.a, &j.b);
 });
 kernel!(appell_bicycle_equations, bicycle_equations, [11, 2, 26] -> 12, |p, x, u, out| {
-    let (m, b) = (bicycle_equations::mass_matrix(p, x, u), bicycle_equations::bias(p, x, u));
-    out[..9].copy_from_slice(m.as_flattened());
-    out[9..].copy_from_slice(&<[f64; 3]>::from(b));
+    let left = bicycle_equations::mass_matrix_and_bias(p, x, u);
+    out[..9].copy_from_slice(left.mass_matrix.as_flattened());
+    out[9..].copy_from_slice(&<[f64; 3]>::from(left.bias));
 });
 kernel!(appell_bicycle_state, bicycle_state, [11, 2, 26] -> 154, |p, x, u, out| {
     let j = bicycle_state::jacobians(p, x, u);

@@ -51,16 +51,29 @@ pub fn html(page: &Page) -> String {
 
 fn spans(spans: &[Span]) -> String {
     let mut out = String::new();
-    for (place, span) in spans.iter().enumerate() {
-        let stops = |next: &Span| matches!(next, Span::Text(text) if text.starts_with(['.', ',', ';', ':']));
+    let mut spans = spans.iter().peekable();
+    // The stop of a formula stays on its line.
+    let mut stopped = false;
+    while let Some(span) = spans.next() {
         match span {
-            Span::Text(text) => out.push_str(&escaped(text)),
+            Span::Text(text) => {
+                out.push_str(&escaped(&text[usize::from(stopped)..]));
+                stopped = false;
+            }
             Span::Math(math) => {
-                let _ = write!(out, "<math>{}</math>", formula(math));
-                // A stop stays on the line of its formula.
-                if spans.get(place + 1).is_some_and(stops) {
-                    out.push('\u{2060}');
-                }
+                let formula = formula(math);
+                let stop = match spans.peek() {
+                    Some(Span::Text(text)) => text.chars().next().filter(|c| ".,;:".contains(*c)),
+                    _ => None,
+                };
+                stopped = stop.is_some();
+                let _ = match stop {
+                    Some(stop) => write!(
+                        out,
+                        "<span class=\"stopped\"><math>{formula}</math>{stop}</span>"
+                    ),
+                    None => write!(out, "<math>{formula}</math>"),
+                };
             }
         }
     }

@@ -19,8 +19,12 @@ pub fn of_solution(motion: &Motion) -> Vec<Term> {
     );
     terms.push(term(
         "rhs",
-        "right-hand sides `Π - b`, less what elimination took from them; `_over_` what they are \
-         divided by.",
+        if alone {
+            "right-hand sides: `Π - b` after elimination, with the factor that clears the fractions \
+             of `rhs/pivot`; `_over_` what they are divided by."
+        } else {
+            "right-hand sides `Π - b`."
+        },
     ));
     if alone {
         terms.push(term(
@@ -34,7 +38,10 @@ pub fn of_solution(motion: &Motion) -> Vec<Term> {
     }
     if together {
         terms.extend([
-            term("L", "the unit triangular factor of `M = L D Lᵀ`."),
+            term(
+                "L",
+                "the factor of `M = L D Lᵀ`, unit triangular in the order of elimination.",
+            ),
             term("D", "the diagonal of `M = L D Lᵀ`, and `L D` beside it."),
             term("z", "what solves `L z = rhs`."),
         ]);

@@ -20,10 +20,9 @@ pub fn of_solution(motion: &Motion) -> Vec<Term> {
     terms.push(term(
         "rhs",
         if alone {
-            "right-hand sides: `Π - b` after elimination, with the factor that clears the fractions \
-             of `rhs/pivot`; `_over_` what they are divided by."
+            "`Π - b` after elimination, times the common denominator in `pivot`; `_over_`: divided."
         } else {
-            "right-hand sides `Π - b`."
+            "`Π - b`."
         },
     ));
     if alone {

@@ -13,7 +13,6 @@ mod film;
 mod formula;
 mod motions;
 mod progress;
-mod reactions;
 mod setup;
 mod source;
 mod summary;

@@ -4,7 +4,8 @@ use std::path::Path;
 
 use appell_runtime::Signal;
 use appell_runtime::inputs::TabulatedInputs;
-use appell_runtime::model::{Interpolation, SignalTable};
+use appell_runtime::model::{Interpolation, Model, Quantity, SignalTable};
+use appell_runtime::trajectory::{self, Extras};
 use appell_spec::expr::Span;
 use appell_spec::{Code, Diagnostic, Report};
 use csv::{ReaderBuilder, StringRecord};
@@ -20,11 +21,13 @@ use crate::setup::{Setup, unknown};
 pub(crate) fn read(
     path: &Path,
     setup: &Setup<'_>,
+    model: &dyn Model,
 ) -> Result<(TabulatedInputs, Vec<usize>), Failure> {
     let file = path.to_string_lossy();
     let text = files::read(path, files::MAX_DATA)?;
     let mut reader = Reader {
         text: &text,
+        recorded: trajectory::recorded(model, Extras::ALL),
         findings: Vec::new(),
     };
     let columns = reader
@@ -80,6 +83,8 @@ struct Column {
 
 struct Reader<'t> {
     text: &'t str,
+    /// What `appell simulate` could have written.
+    recorded: Vec<Quantity>,
     findings: Vec<Diagnostic>,
 }
 
@@ -162,7 +167,7 @@ impl Reader<'_> {
                 });
             } else if name == "t" {
                 time = Some(position);
-            } else if !is_other_quantity(name, setup) {
+            } else if self.recorded.iter().all(|column| column.name != name) {
                 let message = unknown(name, "input", names());
                 self.tell(Code::UnknownName, message, at(), None);
             }
@@ -219,22 +224,4 @@ impl Reader<'_> {
         let start = row.start + before + (cell.len() - cell.trim_start().len());
         start..start + cell.trim().len()
     }
-}
-
-/// Columns that `appell simulate` writes besides the inputs. One that bears a number has it because
-/// the spec uses its name.
-fn is_other_quantity(name: &str, setup: &Setup<'_>) -> bool {
-    let info = setup.info;
-    let unnumbered = match name.rsplit_once('_') {
-        Some((stem, number)) if number.bytes().all(|b| b.is_ascii_digit()) => stem,
-        _ => name,
-    };
-    [name, unnumbered].into_iter().any(|name| {
-        info.state_index(name).is_some()
-            || info.input_index(name).is_some()
-            || info.output_index(name).is_some()
-            || ["kinetic_energy", "potential_energy", "power"].contains(&name)
-            || name.starts_with("reaction_")
-            || name.starts_with("residual_")
-    })
 }

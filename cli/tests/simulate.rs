@@ -562,3 +562,67 @@ fn a_run_gives_up_after_the_most_steps() {
     let cost = |what: &str| number(&out, &format!("statistics/{what}"));
     assert_close(cost("steps") + cost("rejected"), 5.0, 0.0, "steps");
 }
+
+/// A rolling wheel whose outputs are called like computed columns, and a turned coordinate without
+/// a point.
+fn wheel_with_hostile_names(folder: &Folder) {
+    let wheel = repository("generated/mechanisms/rolling_wheel.toml");
+    let text = std::fs::read_to_string(wheel).expect("a shipped mechanism");
+    let text = text.replace(
+        "[outputs]",
+        "[inputs]\nu = { unit = 'N' }\n[loads.push]\nkind = 'force'\non = 'G'\nin = 'yawed'\n\
+         vector = ['u', 0, 0]\n\
+         [outputs]\n\
+         normal_force_P = { value = '2[kN]', unit = 'kN' }\n\
+         reaction_arm_x = { value = '5[m]', unit = 'm' }\n",
+    );
+    folder.write("hostile.toml", &text);
+}
+
+#[test]
+fn an_output_called_like_a_computed_column_keeps_its_unit() {
+    let folder = Folder::new();
+    wheel_with_hostile_names(&folder);
+    let run = ["simulate", "hostile.toml", "--t-end-s", "0.1"];
+    folder.done(&[&run[..], &["--reactions", "--csv", "a.csv"]].concat());
+    let found = columns(&folder, "a.csv");
+    for (name, unit, first) in [
+        ("normal_force_P", "kN", 2.0),
+        ("reaction_arm_x", "m", 5.0),
+        ("normal_force_P_2", "N", 98.1),
+    ] {
+        let place = found.iter().position(|(other, _)| other == name);
+        let place = place.unwrap_or_else(|| panic!("no column {name}: {found:?}"));
+        assert_eq!(found[place].1, unit, "{name}");
+        let text = folder.read("a.csv");
+        let mut rows = text.lines().filter(|line| !line.starts_with('#')).skip(1);
+        let row = rows.next().expect("a row");
+        let value = row.split(',').nth(place).and_then(|cell| cell.parse().ok());
+        assert_close(value.expect("a number"), first, 1e-12, name);
+    }
+}
+
+#[test]
+fn a_motion_written_with_everything_can_be_fed_back() {
+    let folder = Folder::new();
+    wheel_with_hostile_names(&folder);
+    let run = ["simulate", "hostile.toml", "--t-end-s", "0.1"];
+    let all = ["--input", "u=1", "--reactions", "--conditions"];
+    folder.done(&[&run[..], &all, &["--csv", "a.csv"]].concat());
+    let names = columns(&folder, "a.csv");
+    for computed in [
+        "tangential_force_P",
+        "friction_demand_P",
+        "condition_mass_matrix",
+    ] {
+        assert!(names.iter().any(|(name, _)| name == computed), "{names:?}");
+    }
+    folder.done(&[&run[..], &["--inputs", "a.csv"]].concat());
+    // What no motion has stays a mistake.
+    let mistaken = folder
+        .read("a.csv")
+        .replace("tangential_force_P", "reaction_of_nothing");
+    folder.write("b.csv", &mistaken);
+    let refused = [&run[..], &["--inputs", "b.csv"]].concat();
+    folder.fails(3, &refused, &["no input `reaction_of_nothing`"]);
+}

@@ -98,6 +98,38 @@ pub struct SignalTable {
     pub interpolation: Interpolation,
 }
 
+/// The reaction of a constraint.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Reaction {
+    /// Name of the point that feels it, or of the constraint that has no point.
+    pub name: Text,
+    /// N for the force on a point. For a multiplier a power divided by the rate of what the
+    /// constraint holds at a value, in SI; empty where no unit can be written.
+    pub unit: Text,
+    /// Whether it is the force on a point.
+    pub on_point: bool,
+}
+
+impl Reaction {
+    /// The force on a point, three components in the ground.
+    pub const fn on_point(name: Text) -> Self {
+        Self {
+            name,
+            unit: Text::Borrowed("N"),
+            on_point: true,
+        }
+    }
+
+    /// The multiplier of a constraint without a point, the first of its three components.
+    pub const fn multiplier(name: Text, unit: Text) -> Self {
+        Self {
+            name,
+            unit,
+            on_point: false,
+        }
+    }
+}
+
 /// A contact with a surface, which can push a body but not pull it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Contact {
@@ -143,7 +175,7 @@ pub struct ModelInfo {
     /// Velocity constraints, one name per scalar row.
     pub constraint_rows: List<Text>,
     /// Constrained points, or constraints without a point, that have a reaction.
-    pub reactions: List<Text>,
+    pub reactions: List<Reaction>,
     /// Those of the reactions that can only push.
     pub contacts: List<Contact>,
     /// Whether the equations depend on time explicitly.

@@ -3,7 +3,7 @@
 use crate::condition::Conditions;
 use crate::contact::ContactForces;
 use crate::integrate::{Ending, EventHit, Statistics};
-use crate::model::{At, Model, ModelInfo, Quantity, Text};
+use crate::model::{At, Contact, Model, ModelInfo, Quantity, Reaction, Text};
 use crate::simulate::Breach;
 use std::io::{self, Write};
 
@@ -26,6 +26,18 @@ pub struct Extras {
     pub conditions: bool,
     /// `residual_<name>` of each velocity constraint.
     pub residuals: bool,
+}
+
+impl Extras {
+    /// Everything.
+    pub const ALL: Self = Self {
+        outputs: true,
+        energies: true,
+        reactions: true,
+        contacts: true,
+        conditions: true,
+        residuals: true,
+    };
 }
 
 /// Rows over time; each row holds the state, the inputs, and the extras asked for. All in SI.
@@ -190,11 +202,6 @@ impl Trajectory {
         self.len().checked_sub(1).map_or(&[], |row| self.state(row))
     }
 
-    /// The same, to say what is only known elsewhere, such as the unit of a reaction.
-    pub fn columns_mut(&mut self) -> &mut [Quantity] {
-        &mut self.columns
-    }
-
     /// What is called otherwise because the spec uses the name: what it would be, what it is.
     pub fn renamed(&self) -> Vec<[Text; 2]> {
         let wanted = wanted_columns(&self.info, &self.conditions, self.extras);
@@ -310,6 +317,12 @@ fn write_number(to: &mut impl Write, value: f64) -> io::Result<()> {
     }
 }
 
+/// The columns that a trajectory of a model has, with names of their own.
+pub fn recorded(model: &dyn Model, extras: Extras) -> Vec<Quantity> {
+    let conditions: Vec<String> = Conditions::names(model).collect();
+    columns(model.info(), &conditions, extras)
+}
+
 /// The columns with names of their own.
 fn columns(info: &ModelInfo, conditions: &[String], extras: Extras) -> Vec<Quantity> {
     let mut columns = wanted_columns(info, conditions, extras);
@@ -345,62 +358,64 @@ fn wanted_columns(info: &ModelInfo, conditions: &[String], extras: Extras) -> Ve
         columns.extend_from_slice(&info.outputs);
     }
     if extras.energies {
-        columns.push(si("kinetic_energy".into(), "kinetic energy", "J"));
-        columns.push(si("potential_energy".into(), "potential energy", "J"));
-        columns.push(si(
-            "power".into(),
-            "power of the loads without potential",
-            "W",
-        ));
+        columns.extend([
+            si("kinetic_energy", "kinetic energy", "J"),
+            si("potential_energy", "potential energy", "J"),
+            si("power", "power of the loads without potential", "W"),
+        ]);
     }
     if extras.reactions {
-        for reaction in info.reactions.iter() {
-            for axis in ["x", "y", "z"] {
-                let name = format!("reaction_{reaction}_{axis}");
-                columns.push(si(name, "reaction in the ground", ""));
-            }
+        for Reaction { name, unit, .. } in info.reactions.iter() {
+            columns.extend(["x", "y", "z"].map(|axis| {
+                let name = format!("reaction_{name}_{axis}");
+                si(name, "reaction in the ground", unit.clone())
+            }));
         }
     }
     if extras.contacts {
         for contact in info.contacts.iter() {
-            let name = &contact.name;
-            columns.push(si(
-                format!("normal_force_{name}"),
-                "push of the surface",
-                "",
-            ));
-            if contact.grips {
-                columns.push(si(
-                    format!("tangential_force_{name}"),
-                    "size of the force along the surface",
-                    "N",
-                ));
-                columns.push(si(
-                    format!("friction_demand_{name}"),
-                    "tangential force over normal force",
-                    "",
-                ));
-            }
+            columns.extend(contact_columns(info, contact));
         }
     }
     if extras.conditions {
-        for name in conditions {
-            columns.push(si(format!("condition_{name}"), "condition number", ""));
-        }
+        let name = |name| si(format!("condition_{name}"), "condition number", "");
+        columns.extend(conditions.iter().map(name));
     }
     if extras.residuals {
-        for row in info.constraint_rows.iter() {
-            columns.push(si(
-                format!("residual_{row}"),
-                "residual of the constraint",
-                "",
-            ));
-        }
+        let name = |row| si(format!("residual_{row}"), "residual of the constraint", "");
+        columns.extend(info.constraint_rows.iter().map(name));
     }
     columns
 }
 
-fn si(name: String, about: &'static str, unit: &'static str) -> Quantity {
+/// What a contact has to give, in the unit of its reaction.
+fn contact_columns(info: &ModelInfo, contact: &Contact) -> impl Iterator<Item = Quantity> {
+    let name = &contact.name;
+    let reaction = info.reactions.get(contact.reaction);
+    let unit = reaction.map_or(Text::default(), |reaction| reaction.unit.clone());
+    let normal = si(
+        format!("normal_force_{name}"),
+        "push of the surface",
+        unit.clone(),
+    );
+    let along = contact.grips.then(|| {
+        [
+            si(
+                format!("tangential_force_{name}"),
+                "size of the force along the surface",
+                unit,
+            ),
+            si(
+                format!("friction_demand_{name}"),
+                "tangential force over normal force",
+                "",
+            ),
+        ]
+    });
+    [normal].into_iter().chain(along.into_iter().flatten())
+}
+
+fn si(name: impl Into<Text>, about: &'static str, unit: impl Into<Text>) -> Quantity {
     Quantity {
         name: name.into(),
         about: about.into(),

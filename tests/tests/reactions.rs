@@ -55,7 +55,7 @@ fn model(text: &str) -> InterpretedModel {
 
 fn names(model: &InterpretedModel) -> Vec<String> {
     let names = model.info().reactions.iter();
-    names.map(ToString::to_string).collect()
+    names.map(|reaction| reaction.name.to_string()).collect()
 }
 
 /// The reactions, three components each.

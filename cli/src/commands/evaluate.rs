@@ -153,7 +153,7 @@ fn answer(model: &dyn Model, at: At<'_>) -> (Value, bool) {
         .reactions
         .iter()
         .zip(reactions.chunks(3))
-        .map(|(name, force)| (name.to_string(), json!(force)))
+        .map(|(reaction, force)| (reaction.name.to_string(), json!(force)))
         .collect();
     let contacts = contacts(model, at);
     let conditions = Conditions::of(model, at);

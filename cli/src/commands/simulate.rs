@@ -14,7 +14,7 @@ use crate::engine::{Engine, Equations};
 use crate::failure::{Failure, note};
 use crate::setup::{Assignment, Setup};
 use crate::source::Source;
-use crate::{feedback, files, film, progress, reactions, summary, tabulated};
+use crate::{feedback, files, film, progress, summary, tabulated};
 
 /// Integrates the equations of motion and tells what happened.
 ///
@@ -77,8 +77,8 @@ pub(crate) struct Simulate {
     /// What evaluates the equations [default: emitted for shipped mechanisms, else jit]
     #[arg(long, value_enum)]
     engine: Option<Engine>,
-    /// Also compute the constraint forces, as columns `reaction_…` in N, in the ground; at contacts
-    /// their `normal_force_…`, `tangential_force_…` and `friction_demand_…`
+    /// Also compute the constraint forces, as columns `reaction_…` in the ground: of a point in N, of
+    /// a constraint without a point its multiplier; at contacts their `normal_force_…`, `tangential_force_…` and `friction_demand_…`
     #[arg(long)]
     reactions: bool,
     /// Also compute condition numbers, as columns `condition_…`
@@ -150,7 +150,7 @@ impl Simulate {
             plan.expression(assignment, &setup)?;
         }
         if let Some(file) = &self.inputs {
-            let (table, inputs) = tabulated::read(file, &setup)?;
+            let (table, inputs) = tabulated::read(file, &setup, equations.model())?;
             plan.recording(table, &inputs, &setup)?;
         }
         let method = match self.method {
@@ -312,23 +312,23 @@ impl Run<'_> {
         };
         let outcome = simulation.run();
         clock.finish_and_clear();
-        let (mut trajectory, reason) = match outcome {
+        match outcome {
             Ok(trajectory) => {
                 let ended = trajectory.ending == Some(Ending::Stopped);
                 let last = trajectory.breaches.last().filter(|_| ended);
                 let reason = last.map(|breach| breach.describe_in_full(trajectory.info()));
-                (trajectory, reason)
+                Ok((trajectory, reason))
             }
             Err(error) => {
                 let reason = error.to_string();
                 match error {
-                    SimulationError::Integration { trajectory, .. } => (*trajectory, Some(reason)),
-                    _ => return Err(Failure::Usage(reason)),
+                    SimulationError::Integration { trajectory, .. } => {
+                        Ok((*trajectory, Some(reason)))
+                    }
+                    _ => Err(Failure::Usage(reason)),
                 }
             }
-        };
-        reactions::name_units(&self.setup.mechanism, trajectory.columns_mut());
-        Ok((trajectory, reason))
+        }
     }
 }
 

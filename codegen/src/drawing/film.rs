@@ -176,20 +176,19 @@ fn contacts(mechanism: &Mechanism) -> Vec<PointId> {
 
 /// Constraint forces on points, with their places among the model's.
 fn reactions(mechanism: &Mechanism, model: &dyn Model) -> Vec<(usize, Force)> {
-    let names = model.info().reactions.iter().enumerate();
-    let on_point = names.filter_map(|(index, name)| {
-        // The reaction of a constraint without a point is no force in space.
-        let at = mechanism
-            .points
-            .iter()
-            .position(|point| *name == point.name)?;
+    let reactions = model.info().reactions.iter().enumerate();
+    // The reaction of a constraint without a point is no force in space.
+    let on_point = reactions.filter(|(_, reaction)| reaction.on_point);
+    let found = on_point.filter_map(|(index, reaction)| {
+        let mut points = mechanism.points.iter();
+        let at = points.position(|point| reaction.name == point.name)?;
         let force = Force {
             kind: ForceKind::Reaction,
             at,
         };
         Some((index, force))
     });
-    on_point.collect()
+    found.collect()
 }
 
 /// Forces of the spec on points, and weights, as expressions in the ground.

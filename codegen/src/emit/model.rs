@@ -1,6 +1,6 @@
 //! `INFO` and the implementation of `Model`, which need the standard library.
 
-use appell_runtime::model::{Contact, Interpolation, ModelInfo, Quantity};
+use appell_runtime::model::{Contact, Interpolation, ModelInfo, Quantity, Reaction};
 use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 
@@ -94,7 +94,7 @@ pub(super) fn info(info: &ModelInfo) -> TokenStream {
         quote!([#(#texts),*])
     };
     let rows = texts(&info.constraint_rows);
-    let reactions = texts(&info.reactions);
+    let reactions = info.reactions.iter().map(reaction);
     let [row_count, reaction_count] =
         [info.constraint_rows.len(), info.reactions.len()].map(Literal::usize_unsuffixed);
     let contacts = info.contacts.iter().map(contact);
@@ -123,7 +123,7 @@ pub(super) fn info(info: &ModelInfo) -> TokenStream {
         static CONSTRAINT_ROWS: [model::Text; #row_count] = #rows;
         #blank
         /// Reactions in the ground.
-        static REACTIONS: [model::Text; #reaction_count] = #reactions;
+        static REACTIONS: [model::Reaction; #reaction_count] = [#(#reactions),*];
         #blank
         /// Contacts, which can only push.
         static CONTACTS: [model::Contact; #contact_count] = [#(#contacts),*];
@@ -146,6 +146,16 @@ pub(super) fn info(info: &ModelInfo) -> TokenStream {
             contacts: model::List::Borrowed(&CONTACTS),
             explicit_time: #explicit_time,
         };
+    }
+}
+
+/// A reaction.
+fn reaction(reaction: &Reaction) -> TokenStream {
+    let [name, unit] = [&reaction.name, &reaction.unit].map(|text| borrowed(text));
+    if reaction.on_point {
+        quote!(model::Reaction::on_point(#name))
+    } else {
+        quote!(model::Reaction::multiplier(#name, #unit))
     }
 }
 

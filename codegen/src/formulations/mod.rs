@@ -295,11 +295,8 @@ fn reaction_claims(
     let mut known = vec![[Some(Graph::ZERO); 3]; forces.len()];
     let graph = &mut algebra.graph;
     for (row, &multiplier) in rows.iter().zip(&lagrange.multipliers) {
-        let same = constraints.rows.iter();
-        let Some(of_constraint) = same.clone().find(|r| r.constraint == row.constraint) else {
-            continue;
-        };
-        let Some(place) = constraints.reported(of_constraint) else {
+        let reported = constraints.rows_of(row.constraint).next();
+        let Some(place) = reported.and_then(|row| constraints.reported(row)) else {
             continue;
         };
         let place = &mut known[place];
@@ -318,7 +315,7 @@ fn reaction_claims(
     for ((place, force), known) in constraints.reactions.iter().zip(&forces).zip(&known) {
         for ((axis, &derived), known) in axes.iter().zip(force).zip(known) {
             if let (Some(other), false) = (*known, lagrange.redundant) {
-                let entry = format!("{place}, {axis}");
+                let entry = format!("{}, {axis}", place.name);
                 pairs.push(Pair {
                     entry,
                     derived,

@@ -331,7 +331,7 @@ impl Derivation {
         let names: Vec<String> = self
             .contacts
             .iter()
-            .map(|contact| self.constraints.reactions[contact.place].clone())
+            .map(|contact| self.constraints.reactions[contact.place].name.to_string())
             .collect();
         let normals = self.contacts.iter().flat_map(|contact| contact.normal);
         let friction = self.contacts.iter().map(|contact| contact.friction);
@@ -372,7 +372,10 @@ impl Derivation {
             &self.motion.accelerations,
         )?;
         let layout = Layout::Matrix(forces.len(), 3);
-        let places = &self.constraints.reactions;
+        let reactions = self.constraints.reactions.iter();
+        let places: Vec<String> = reactions
+            .map(|reaction| reaction.name.to_string())
+            .collect();
         let labels = places
             .iter()
             .flat_map(|place| ["x", "y", "z"].map(|axis| format!("F_{place}_{axis}")));
@@ -387,7 +390,7 @@ impl Derivation {
             array = array.under(&format!("Reaction `{place}`."), 3 * i..3 * i + 3);
         }
         let axes = ["x", "y", "z"].map(|axis| format!("ground {axis}"));
-        Ok(array.with_names(places.clone(), axes.to_vec()))
+        Ok(array.with_names(places, axes.to_vec()))
     }
 
     /// The outputs of the spec.
@@ -620,12 +623,7 @@ fn info(derivation: &Derivation, mechanism: &Mechanism, signals: &[(usize, u8)])
             .map(|y| quantity(&y.label, 0.0, everywhere))
             .collect(),
         constraint_rows: rows.map(|r| r.name.clone().into()).collect(),
-        reactions: derivation
-            .constraints
-            .reactions
-            .iter()
-            .map(|r| r.clone().into())
-            .collect(),
+        reactions: derivation.constraints.reactions.clone().into(),
         contacts: contacts(derivation, mechanism),
         explicit_time: false,
     }
@@ -638,9 +636,7 @@ fn contacts(derivation: &Derivation, mechanism: &Mechanism) -> List<Contact> {
     let contact = |contact: &super::contacts::Contact| {
         let normal = state.of(graph, &contact.normal);
         Contact {
-            name: derivation.constraints.reactions[contact.place]
-                .clone()
-                .into(),
+            name: derivation.constraints.reactions[contact.place].name.clone(),
             reaction: contact.place,
             normal: [normal[0], normal[1], normal[2]],
             grips: contact.grips,

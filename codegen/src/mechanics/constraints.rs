@@ -1,7 +1,9 @@
 //! Constraints as rows that are linear in the generalised velocities.
 
+use appell_runtime::model::Reaction as Reported;
 use appell_spec::Code;
 use appell_spec::mechanism::{ConstraintKind, GROUND, Mechanism, PointId};
+use appell_spec::units::{Dimension, Unit};
 
 use super::algebra::Algebra;
 use super::expressions::Lowering;
@@ -55,8 +57,8 @@ pub struct Reaction {
 pub struct Constraints {
     /// Scalar rows in the order of the spec.
     pub rows: Vec<Row>,
-    /// Names of the places whose reactions are reported.
-    pub reactions: Vec<String>,
+    /// The reactions that are reported.
+    pub reactions: Vec<Reported>,
     /// For each place of a reaction its index into [`Constraints::reactions`]; none where its
     /// reaction cannot be told.
     pub reported: Vec<Option<usize>>,
@@ -149,10 +151,10 @@ pub fn constraints(
     let names: Vec<String> = places.iter().map(|place| place.name(mechanism)).collect();
     warnings.extend(support.findings(mechanism, &rows, &names));
     let (mut reactions, mut reported) = (Vec::new(), Vec::new());
-    for (place, name) in names.into_iter().enumerate() {
-        let told = support.tells(place);
+    for (index, (place, name)) in places.into_iter().zip(names).enumerate() {
+        let told = support.tells(index);
         reported.push(told.then_some(reactions.len()));
-        reactions.extend(told.then_some(name));
+        reactions.extend(told.then(|| place.reaction(mechanism, name)));
     }
     Ok(Constraints {
         rows,
@@ -198,6 +200,20 @@ impl Place {
                 } else {
                     name.clone()
                 }
+            }
+        }
+    }
+
+    /// Its reaction under this name. A multiplier is a power divided by the rate of what the
+    /// constraint holds at a value.
+    fn reaction(self, mechanism: &Mechanism, name: String) -> Reported {
+        match self {
+            Self::Point(_) => Reported::on_point(name.into()),
+            Self::Constraint(index) => {
+                let rate = mechanism.constraints[index].kind.dimension();
+                let unit = rate.and_then(|rate| Dimension::POWER.over(rate).ok());
+                let unit = unit.map_or_else(String::new, |unit| Unit::si(unit).text);
+                Reported::multiplier(name.into(), unit.into())
             }
         }
     }

@@ -121,7 +121,7 @@ pub fn of_multipliers(mechanism: &Mechanism, constraints: &Constraints) -> Vec<T
             let unit = unit_of_row(&constraint.kind);
             let name = &constraint.name;
             let meaning = format!("the multiplier of constraint `{name}` as x, in W per `{unit}`.");
-            let place = &constraints.reactions[constraints.reported(row)?];
+            let place = &constraints.reactions[constraints.reported(row)?].name;
             Some(vector("F", place, meaning))
         })
         .collect()

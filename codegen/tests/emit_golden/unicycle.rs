@@ -1155,7 +1155,7 @@ static SIGNAL_INPUTS: [(usize, u8); 0] = [];
 static CONSTRAINT_ROWS: [model::Text; 0] = [];
 
 /// Reactions in the ground.
-static REACTIONS: [model::Text; 0] = [];
+static REACTIONS: [model::Reaction; 0] = [];
 
 /// Contacts, which can only push.
 static CONTACTS: [model::Contact; 0] = [];

@@ -32,7 +32,7 @@ pub(super) fn section(w: &mut Writer<'_>) -> Outcome<Option<Section>> {
             if component == Graph::ZERO {
                 continue;
             }
-            let left = Letter::plain("F").below(place).below(axis);
+            let left = Letter::plain("F").below(&place.name).below(axis);
             let right = w.explicit(component);
             equations.push(Equation::new(Math::Letter(left), right));
         }

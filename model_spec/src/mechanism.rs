@@ -194,6 +194,17 @@ pub enum Axis {
     Z,
 }
 
+impl Axis {
+    /// Its place among the components of a vector.
+    pub const fn index(self) -> usize {
+        match self {
+            Self::X => 0,
+            Self::Y => 1,
+            Self::Z => 2,
+        }
+    }
+}
+
 /// A point, placed from another point.
 #[derive(Debug, Clone)]
 pub struct Point {
@@ -437,6 +448,20 @@ pub enum LoadKind {
         /// Generalised force.
         force: Expr,
     },
+}
+
+impl Mechanism {
+    /// Direction of the weight, a unit vector of the ground; nothing without gravity.
+    pub fn down(&self) -> Option<[i8; 3]> {
+        self.loads.iter().find_map(|load| match load.kind {
+            LoadKind::Gravity { down, .. } => Some(down),
+            LoadKind::Force { .. }
+            | LoadKind::Torque { .. }
+            | LoadKind::Spring { .. }
+            | LoadKind::Damper { .. }
+            | LoadKind::Generalized { .. } => None,
+        })
+    }
 }
 
 impl LoadKind {

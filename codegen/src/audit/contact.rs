@@ -5,13 +5,10 @@
 //! they differ.
 
 use appell_spec::Code;
-use appell_spec::mechanism::{
-    BodyId, ConstraintKind, GROUND, LoadKind, Mechanism, Normal, PointId,
-};
+use appell_spec::mechanism::{BodyId, ConstraintKind, GROUND, Mechanism, Normal, PointId};
 
 use super::{listed, shown, unconstrained, zero_or};
 use crate::mechanics::algebra::Algebra;
-use crate::mechanics::contacts::axis;
 use crate::mechanics::expressions::Lowering;
 use crate::mechanics::finding::{Finding, Item};
 use crate::mechanics::initial::InitialState;
@@ -122,7 +119,7 @@ impl Geometry<'_> {
         contact: PointId,
         normal: Normal,
     ) -> Option<(String, String)> {
-        let (k, frame) = (axis(normal.axis), normal.frame);
+        let (k, frame) = (normal.axis.index(), normal.frame);
         let graph = &mut self.algebra.graph;
         let (mechanism, kinematics) = (self.mechanism, &self.kinematics);
         let v = kinematics.material_velocity(graph, mechanism, body, contact, frame);
@@ -239,7 +236,7 @@ impl Geometry<'_> {
 
     /// Height of a point against the weight, and the coordinates that change it.
     fn height(&mut self, point: PointId) -> Option<(Expr, Vec<String>)> {
-        let down = down(self.mechanism)?;
+        let down = self.mechanism.down()?;
         let graph = &mut self.algebra.graph;
         let position = self.kinematics.position(graph, self.mechanism, point);
         let down = down.map(|c| graph.integer((-c).into()));
@@ -258,7 +255,7 @@ impl Geometry<'_> {
 
     /// Whether the contact lies above the centre of the body at the initial state.
     fn is_overhead(&mut self, body: BodyId, contact: PointId) -> bool {
-        let Some(down) = down(self.mechanism) else {
+        let Some(down) = self.mechanism.down() else {
             return false;
         };
         let centre = self.mechanism.bodies[body].centre;
@@ -282,12 +279,4 @@ impl Geometry<'_> {
         let Algebra { graph, test, .. } = &mut *self.algebra;
         v.iter().all(|&component| test.is_zero(graph, component))
     }
-}
-
-/// The direction of the weight, where there is one.
-fn down(mechanism: &Mechanism) -> Option<[i8; 3]> {
-    mechanism.loads.iter().find_map(|load| match load.kind {
-        LoadKind::Gravity { down, .. } => Some(down),
-        _ => None,
-    })
 }

@@ -40,7 +40,12 @@ pub(super) fn audit(bench: &mut Bench, told: &mut Audit) {
                     "turn its sign, or use a load of kind `damper`",
                 )
             }
-            _ => continue,
+            LoadKind::Damper { .. }
+            | LoadKind::Spring { .. }
+            | LoadKind::Gravity { .. }
+            | LoadKind::Force { .. }
+            | LoadKind::Torque { .. }
+            | LoadKind::Generalized { .. } => continue,
         };
         told.warnings.push(Finding {
             code: Code::EnergySource,

@@ -43,12 +43,16 @@ pub(super) fn links(mechanism: &Mechanism) -> impl Iterator<Item = Link> {
         })
     };
     let connection = |load: &Load| {
-        let Some(&Connection::Points(a, b)) = load.kind.between() else {
-            return None;
+        let (kind, word, between) = match &load.kind {
+            LoadKind::Spring { between, .. } => (LinkKind::Spring, "spring", between),
+            LoadKind::Damper { between, .. } => (LinkKind::Damper, "damper", between),
+            LoadKind::Gravity { .. }
+            | LoadKind::Force { .. }
+            | LoadKind::Torque { .. }
+            | LoadKind::Generalized { .. } => return None,
         };
-        let (kind, word) = match load.kind {
-            LoadKind::Spring { .. } => (LinkKind::Spring, "spring"),
-            _ => (LinkKind::Damper, "damper"),
+        let &Connection::Points(a, b) = between else {
+            return None;
         };
         Some(Link {
             kind,

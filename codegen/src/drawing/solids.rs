@@ -72,7 +72,9 @@ fn contact(mechanism: &Mechanism, id: BodyId) -> Option<PointId> {
             point,
             ..
         } => Some((body, point)),
-        _ => None,
+        ConstraintKind::FixedVelocity { body: None, .. }
+        | ConstraintKind::Velocity { .. }
+        | ConstraintKind::Position { .. } => None,
     });
     let frame = mechanism.bodies[id].frame;
     let rolls = |&(body, point): &(BodyId, PointId)| {

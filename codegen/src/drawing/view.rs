@@ -1,6 +1,6 @@
 //! Where to look from: straight at the plane of the motion, else from the side and above.
 
-use appell_spec::mechanism::{LoadKind, Mechanism};
+use appell_spec::mechanism::Mechanism;
 
 use super::space::{Vector, ZERO, add, cross, dot, scaled, unit};
 
@@ -27,7 +27,7 @@ impl View {
     /// The view of a mechanism whose points never leave the plane across an axis of the ground, or
     /// of one that moves in space.
     pub(super) fn of(mechanism: &Mechanism, flat_across: Option<usize>) -> Self {
-        let down = down(mechanism);
+        let down = mechanism.down().map(|down| down.map(f64::from));
         let vertical = down.map_or(unit(2), |down| scaled(-1.0, down));
         let upright = |axis: usize| vertical[axis] != 0.0;
         let first = unit(usize::from(upright(0)));
@@ -71,16 +71,4 @@ impl View {
     pub(super) fn beside(&self, place: Vector, right: f64, up: f64) -> Vector {
         add(add(place, right, self.right), up, self.up)
     }
-}
-
-/// Direction of the weight.
-fn down(mechanism: &Mechanism) -> Option<Vector> {
-    let mut loads = mechanism.loads.iter();
-    loads.find_map(|load| match &load.kind {
-        LoadKind::Gravity { down, .. } => {
-            let down = down.map(f64::from);
-            (down != ZERO).then_some(down)
-        }
-        _ => None,
-    })
 }

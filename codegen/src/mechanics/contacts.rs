@@ -1,7 +1,7 @@
 //! Contacts, which can only push: where they react, and along which normal.
 
 use appell_spec::Code;
-use appell_spec::mechanism::{Axis, ConstraintKind, LoadKind, Mechanism};
+use appell_spec::mechanism::{ConstraintKind, Mechanism};
 
 use super::algebra::Algebra;
 use super::constraints::{Constraints, Row};
@@ -43,7 +43,7 @@ pub fn contacts(
                 normal, friction, ..
             } => {
                 let normal = match normal {
-                    Some(normal) => Some((axis(normal.axis), normal.negative)),
+                    Some(normal) => Some((normal.axis.index(), normal.negative)),
                     None => against_the_weight(algebra, mechanism, constraints, &rows),
                 };
                 (normal, true, friction.as_ref())
@@ -99,10 +99,7 @@ fn against_the_weight(
     constraints: &Constraints,
     rows: &[&Row],
 ) -> Option<(usize, bool)> {
-    let down = mechanism.loads.iter().find_map(|load| match load.kind {
-        LoadKind::Gravity { down, .. } => Some(down),
-        _ => None,
-    })?;
+    let down = mechanism.down()?;
     let axis = down.iter().position(|&c| c != 0)?;
     let row = rows.get(axis)?;
     let lasts = row.reaction.direction == vector::IDENTITY[axis]
@@ -137,15 +134,6 @@ fn not_judged(name: &str, constraint: usize, unknown: bool) -> Finding {
         message: format!("the friction of `{name}` says nothing: {reason}"),
         item: Item::Constraint(constraint),
         help: help.to_owned(),
-    }
-}
-
-/// Number of an axis.
-pub fn axis(axis: Axis) -> usize {
-    match axis {
-        Axis::X => 0,
-        Axis::Y => 1,
-        Axis::Z => 2,
     }
 }
 

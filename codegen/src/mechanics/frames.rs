@@ -1,6 +1,6 @@
 //! Frames: rotations by chains and angular velocities without differentiating matrices.
 
-use appell_spec::mechanism::{Axis, FrameId, GROUND, Mechanism};
+use appell_spec::mechanism::{FrameId, GROUND, Mechanism};
 
 use super::algebra::Algebra;
 use super::expressions::Lowering;
@@ -62,11 +62,7 @@ impl Frames {
                 if turn.negative {
                     angle = algebra.graph.neg(angle);
                 }
-                let axis = match turn.axis {
-                    Axis::X => 0,
-                    Axis::Y => 1,
-                    Axis::Z => 2,
-                };
+                let axis = turn.axis.index();
                 let elementary = Turn {
                     axis,
                     rate: time.of(algebra, angle),

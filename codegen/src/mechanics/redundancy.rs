@@ -232,7 +232,14 @@ fn singular(mechanism: &Mechanism, row: &Row) -> Finding {
              its axis across it, such as `in = \"slope\", normal = \"z\"`; else remove the \
              constraint, or declare ranges of the coordinates in which it follows"
         }
-        _ => "remove it, or declare ranges of the coordinates in which it follows",
+        ConstraintKind::Rolling {
+            normal: Some(_), ..
+        }
+        | ConstraintKind::Velocity { .. }
+        | ConstraintKind::FixedVelocity { .. }
+        | ConstraintKind::Position { .. } => {
+            "remove it, or declare ranges of the coordinates in which it follows"
+        }
     };
     Finding {
         code: Code::RedundantConstraint,

@@ -238,6 +238,60 @@ fn two_contacts_that_share_a_reaction_are_warned_of() {
     );
 }
 
+/// A wheel with constraints at the point where it touches the ground.
+fn wheel(constraints: &str) -> String {
+    format!(
+        "[mechanism]\nname = 'wheel'\ntitle = 'a wheel'\n\
+         [parameters]\nm = {{ value = 1, unit = 'kg' }}\nR = {{ value = 1, unit = 'm' }}\n\
+         [coordinates]\nx = {{ unit = 'm' }}\nphi = {{ unit = 'rad' }}\n\
+         [frames]\nwheel = {{ parent = 'ground', about_axis = 'y', by = 'phi' }}\n\
+         [points]\nC = {{ from = 'O', in = 'ground', at = ['x', 0, 'R'] }}\n\
+         P = {{ from = 'C', in = 'ground', at = [0, 0, '-R'] }}\n\
+         [bodies]\nb = {{ frame = 'wheel', centre = 'C', mass = 'm', inertia = {{ in = 'ground', diagonal = ['m*R^2/2', 'm*R^2', 'm*R^2/2'] }} }}\n\
+         [constraints]\n{constraints}\n\
+         [pseudo_velocities]\nv = 'dot(x)'\n\
+         [loads]\nweight = {{ kind = 'gravity', down = '-z', acceleration = '9.81[m/s^2]' }}\n"
+    )
+}
+
+/// A contact of the wheel that only holds it off the ground.
+const KERB: &str = "kerb = { kind = 'fixed_velocity', point = 'P', in = 'ground', \
+                    direction = [0, 0, 1], one_sided = true }";
+/// Its contact that grips.
+const GRIP: &str = "grip = { kind = 'rolling', body = 'b', contact = 'P', friction = 0.8 }";
+
+#[test]
+fn of_contacts_at_one_point_the_one_that_grips_is_judged() {
+    for constraints in [[KERB, GRIP], [GRIP, KERB]] {
+        let text = wheel(&constraints.join("\n"));
+        let derived =
+            derived("a.toml", &text).unwrap_or_else(|report| panic!("{}", report.plain()));
+        let contacts = &derived.derivation.contacts;
+        assert_eq!(contacts.len(), 1, "{constraints:?}");
+        assert!(contacts[0].grips, "{constraints:?}");
+        assert!(contacts[0].friction.is_some(), "{constraints:?}");
+        assert!(!warnings(&text).contains("contact-not-judged"));
+    }
+}
+
+#[test]
+fn a_contact_that_another_at_its_point_outdoes_is_warned_of() {
+    let slide = KERB
+        .replace("kerb", "slide")
+        .replace("[0, 0, 1]", "[0, 0, -1]");
+    let shown = warnings(&wheel(&[&slide, GRIP].join("\n")));
+    assert!(
+        shown.contains("the contact `slide` is not judged: `grip` is at the same point"),
+        "{shown}"
+    );
+    let other = GRIP.replace("grip", "other").replace("0.8", "0.5");
+    let shown = warnings(&wheel(&[GRIP, &other].join("\n")));
+    assert!(
+        shown.contains("the contact `other` is not judged: `grip` is at the same point"),
+        "{shown}"
+    );
+}
+
 /// A chain of links that turn against each other about changing axes.
 fn chain(links: usize) -> String {
     let mut text = String::from(

@@ -2,7 +2,7 @@
 
 use appell_spec::mechanism::Mechanism;
 
-use super::space::{Vector, ZERO, add, cross, dot, scaled, unit};
+use super::space::{Vector, add, cross, dot, scaled, unit};
 
 /// How far the first horizontal axis is turned into the picture, in degrees.
 const AZIMUTH: f64 = 32.0;

@@ -1,5 +1,7 @@
 //! Contacts, which can only push: where they react, and along which normal.
 
+use std::mem;
+
 use appell_spec::Code;
 use appell_spec::mechanism::{ConstraintKind, Mechanism};
 
@@ -16,6 +18,8 @@ use crate::symbolic::{Expr, Graph};
 /// A contact.
 #[derive(Debug, Clone)]
 pub struct Contact {
+    /// Index of its constraint in the mechanism.
+    pub constraint: usize,
     /// Index into [`Constraints::reactions`].
     pub place: usize,
     /// Direction in which it pushes, in the ground.
@@ -29,6 +33,7 @@ pub struct Contact {
 /// The contacts of a mechanism, at most one per place of a reaction, and what to warn of.
 ///
 /// Where constraints share a reaction in a way that cannot be told, their contacts are not judged.
+/// Of several contacts at one place one is judged, by the whole reaction: the first that grips.
 pub fn contacts(
     algebra: &mut Algebra,
     mechanism: &Mechanism,
@@ -67,7 +72,7 @@ pub fn contacts(
         });
         let Some((place, normal)) = found else {
             if friction.is_some() {
-                warnings.push(not_judged(&constraint.name, index, unknown));
+                warnings.push(idle_friction(&constraint.name, index, unknown));
             }
             continue;
         };
@@ -79,16 +84,42 @@ pub fn contacts(
             .map(|friction| lowering.lower(&mut algebra.graph, friction))
             .transpose()
             .map_err(|_| vec![division_by_zero(Item::Constraint(index))])?;
-        if contacts.iter().all(|other| other.place != place) {
-            contacts.push(Contact {
-                place,
-                normal,
-                grips,
-                friction,
-            });
+        let contact = Contact {
+            constraint: index,
+            place,
+            normal,
+            grips,
+            friction,
+        };
+        let known = contacts.iter_mut().find(|known| known.place == place);
+        match known {
+            None => contacts.push(contact),
+            Some(known) => warnings.extend(merge(mechanism, known, contact)),
         }
     }
     Ok((contacts, warnings))
+}
+
+/// Keeps of two contacts at one place the one that is judged, and warns if the other says more.
+fn merge(mechanism: &Mechanism, known: &mut Contact, contact: Contact) -> Option<Finding> {
+    let other = if contact.grips && !known.grips {
+        mem::replace(known, contact)
+    } else {
+        contact
+    };
+    let rubs_otherwise = other.friction.is_some() && other.friction != known.friction;
+    let says_more = other.normal != known.normal || rubs_otherwise;
+    let name = |contact: &Contact| &mechanism.constraints[contact.constraint].name;
+    says_more.then(|| Finding {
+        code: Code::ContactNotJudged,
+        message: format!(
+            "the contact `{}` is not judged: `{}` is at the same point and shares its reaction",
+            name(&other),
+            name(known)
+        ),
+        item: Item::Constraint(other.constraint),
+        help: "give each contact a point of its own".to_owned(),
+    })
 }
 
 /// The axis of the ground against the weight, where the coordinates keep the contact from moving
@@ -115,7 +146,7 @@ fn follows_from_positions(algebra: &mut Algebra, constraints: &Constraints, row:
     matches!(standings.last(), Some(Standing::Redundant(_)))
 }
 
-fn not_judged(name: &str, constraint: usize, unknown: bool) -> Finding {
+fn idle_friction(name: &str, constraint: usize, unknown: bool) -> Finding {
     let (reason, help) = if unknown {
         (
             "the normal of its surface is not known",

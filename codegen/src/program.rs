@@ -154,7 +154,7 @@ impl Function {
     }
 }
 
-/// The functions every model has. The order is the order in emitted code.
+/// The functions that a model can have; one that would be empty may be missing. The order is the order in emitted code.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum FunctionKind {
     /// q̇(q, ω): result `coordinate_rates`.

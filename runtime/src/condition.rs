@@ -1,6 +1,6 @@
 //! How far the linear systems of a model are from being singular.
 
-use crate::dense::lu_solve_in_place;
+use crate::dense::solved_in_place;
 use crate::model::{At, Model};
 
 /// Power iterations; a condition number is wanted to one digit.
@@ -40,9 +40,7 @@ fn inverse(matrix: &[f64], n: usize) -> Option<Vec<f64>> {
     let mut factors = matrix.to_vec();
     let mut inverse = vec![0.0; n * n];
     inverse.iter_mut().step_by(n + 1).for_each(|one| *one = 1.0);
-    let pivot = lu_solve_in_place(&mut factors, &mut inverse, n);
-    let finite = inverse.iter().all(|entry| entry.is_finite());
-    (pivot > 0.0 && finite).then_some(inverse)
+    solved_in_place(&mut factors, &mut inverse, n).then_some(inverse)
 }
 
 /// How far the pseudo-velocities are from not determining the generalised velocities, in SI: the

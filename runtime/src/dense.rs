@@ -194,6 +194,13 @@ pub fn lu_solve_in_place(matrix: &mut [f64], right: &mut [f64], n: usize) -> f64
     smallest_pivot
 }
 
+/// The same where only a solution counts: X replaces B. False for a matrix that is singular up to
+/// rounding or not finite; `right` is worthless then.
+pub(crate) fn solved_in_place(matrix: &mut [f64], right: &mut [f64], n: usize) -> bool {
+    let pivot = lu_solve_in_place(matrix, right, n);
+    pivot > 0.0 && right.iter().all(|entry| entry.is_finite())
+}
+
 /// |x| by clearing the sign bit; `f64::abs` under a name that every feature set has.
 #[inline]
 fn magnitude(x: f64) -> f64 {

@@ -4,7 +4,7 @@
 //! f(q, t) = 0 tie the dependent ones to the others, `∂f/∂q δq = 0`: a mode or a controller of the
 //! mechanism is one of the states that remain.
 
-use crate::dense::lu_solve_in_place;
+use crate::dense::solved_in_place;
 use crate::model::{At, Model};
 
 /// `δẋ = A δx + B δu` in the independent states: pseudo-velocities and independent coordinates.
@@ -86,10 +86,6 @@ fn dependence(model: &dyn Model, at: At<'_>, states: &[usize]) -> Result<Vec<f64
         let slope = |&state: &usize| state.checked_sub(info.speeds).map_or(0.0, |q| -row[q]);
         right.extend(states.iter().map(slope));
     }
-    lu_solve_in_place(&mut matrix, &mut right, count);
-    if right.iter().all(|entry| entry.is_finite()) {
-        Ok(right)
-    } else {
-        Err(Undetermined)
-    }
+    let determined = solved_in_place(&mut matrix, &mut right, count);
+    determined.then_some(right).ok_or(Undetermined)
 }

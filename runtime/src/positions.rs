@@ -5,7 +5,7 @@
 //! Wanner, Geometric Numerical Integration, section IV.4). The step's error estimate stays as it is:
 //! the way back is no longer than the error.
 
-use crate::dense::lu_solve_in_place;
+use crate::dense::solved_in_place;
 use crate::model::{At, Model};
 
 /// Newton steps before giving up.
@@ -100,8 +100,7 @@ impl Positions {
                 };
             }
         }
-        let pivot = lu_solve_in_place(&mut self.matrix, &mut self.residual, self.count);
-        if pivot == 0.0 {
+        if !solved_in_place(&mut self.matrix, &mut self.residual, self.count) {
             return false;
         }
         for (j, &multiplier) in self.residual.iter().enumerate() {

@@ -280,6 +280,17 @@ fn regulators_of_random_systems_solve_their_equations() {
     }
 }
 
+#[test]
+fn a_sampled_regulator_refuses_weights_of_what_is_pending() {
+    let system = Random(13).system(2, 1);
+    // One measurement period of delay adds one state.
+    let sampled = Sampling::new(0.02, 0.02).unwrap();
+    let (q, r) = (DMatrix::identity(3, 3), DMatrix::identity(1, 1));
+    assert_eq!(sampled.discretise(&system).order(), 3);
+    let refused = sampled.regulate(&system, &q, &r).unwrap_err();
+    assert_eq!(refused.to_string(), "Q must be 2 × 2, not 3 × 3");
+}
+
 /// A chain of integrators beside a mode at +1 that no input reaches.
 fn chain_and_lost_mode() -> LinearSystem {
     #[rustfmt::skip]

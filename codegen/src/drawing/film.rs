@@ -136,10 +136,7 @@ pub fn film(
         let at = values.at(row);
         let values = &values.of_symbols;
         if count == 0 {
-            let scene = Scene {
-                flat_across,
-                ..Scene::at(&placement, graph, values)
-            };
+            let scene = Scene::at(&placement, graph, values, flat_across);
             film.shapes = shapes(mechanism, &scene);
         }
         for place in placement.points_at(graph, values) {

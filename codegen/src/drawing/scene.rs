@@ -1,4 +1,4 @@
-//! Where everything is at the initial state: points, axes of frames, bodies.
+//! Where everything is at one state: points, axes of frames, bodies.
 
 use appell_runtime::positions::{Moving, Positions};
 use appell_spec::mechanism::Mechanism;
@@ -42,21 +42,26 @@ impl Scene {
         let state = InitialState::new(&graph, mechanism, &symbols);
         let mut values = state.values().to_vec();
         let consistent = close(program, &mut values);
+        let scene = Self::at(&placement, &graph, &values, flat_across);
         Ok(Self {
-            flat_across,
             consistent,
-            ..Self::at(&placement, &graph, &values)
+            ..scene
         })
     }
 
-    /// Where everything is for these values of the symbols.
-    pub(super) fn at(placement: &Placement, graph: &Graph, values: &[f64]) -> Self {
+    /// Where everything is for these values of the symbols, at which the position constraints hold.
+    pub(super) fn at(
+        placement: &Placement,
+        graph: &Graph,
+        values: &[f64],
+        flat_across: Option<usize>,
+    ) -> Self {
         let frames = placement.frames_at(graph, values);
         Self {
             points: placement.points_at(graph, values),
             bodies: placement.bodies_at(graph, values, &frames),
             frames,
-            flat_across: None,
+            flat_across,
             consistent: true,
         }
     }

@@ -3,8 +3,9 @@
 //!
 //! Both are written a second time, in the ground and by the textbook: rotation matrices are
 //! multiplied out, positions are differentiated, nothing is simplified. With the derivation they share
-//! the reading of expressions, the graph, and q̇ as functions of the pseudo-velocities, which are first
-//! held against the definitions and the constraints.
+//! the reading of expressions, the graph, the [derivative along a motion](crate::mechanics::time), the
+//! [question of rank](crate::mechanics::rank), and q̇ as functions of the pseudo-velocities, which are
+//! first held against the definitions and the constraints.
 //!
 //! Equality is decided by the [identity test](crate::symbolic::identity). Where that cannot tell,
 //! because a theorem about a function is not known to it, the values at random points decide.

@@ -125,7 +125,7 @@ pub fn eliminate(
         let (speeds, rows) = given.split_at(mechanism.pseudo_velocities.len());
         let names = constraints.rows.iter().filter(|row| row.is_active());
         let names: Vec<&str> = names.map(|row| row.name.as_str()).collect();
-        return Err(dependent_speeds(algebra, mechanism, &names, rows, speeds));
+        return Err(untold_velocities(algebra, mechanism, &names, rows, speeds));
     };
     let mut no_violation = Substitution::by_zero(&algebra.graph, &violation_rates);
     let mut allowed = |exprs: &[Expr]| -> Outcome<Vec<Expr>> {
@@ -146,9 +146,8 @@ pub fn eliminate(
 }
 
 impl Elimination {
-    /// Turns equations of the open system about: each of `places` becomes the sum of all of them
-    /// with the coefficients of its row in `turn`, which is `matrix` and `right` in the motions that
-    /// the constraints allow.
+    /// Turns equations of the open system about: the equation at each of `places` becomes its row
+    /// of `turned`, the sum of them all with the factors of that row.
     pub fn turn(&mut self, algebra: &mut Algebra, places: &[usize], turned: &[TurnedRow]) {
         let before: Vec<Expr> = places
             .iter()
@@ -475,7 +474,7 @@ fn are_independent(algebra: &mut Algebra, equations: &[Equation], open: &[usize]
 
 /// The pseudo-velocities that follow from constraints and from those before them; `definitions` are
 /// their equations, `rows` those of the constraints.
-fn dependent_speeds(
+fn untold_velocities(
     algebra: &mut Algebra,
     mechanism: &Mechanism,
     names: &[&str],

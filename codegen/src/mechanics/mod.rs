@@ -1,8 +1,6 @@
 //! From a mechanism to its equations of motion by the Gibbs-Appell method.
 //!
-//! The files are the steps, in order: [`symbols`], [`frames`], [`kinematics`], [`constraints`],
-//! [`redundancy`], [`support`], [`elimination`], [`gibbs_appell`], [`loads`], [`dependent`], [`motion`],
-//! [`linear`], [`reactions`], [`assemble`].
+//! The files are the steps; `equations` calls them in order, and `ARCHITECTURE.md` lists them.
 
 pub mod algebra;
 pub mod assemble;

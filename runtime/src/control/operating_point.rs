@@ -13,7 +13,9 @@ use crate::singular::Singular;
 /// Pseudo-accelerations in SI up to which a motion counts as steady: values that people type have
 /// some eight digits.
 const STEADY: f64 = 1e-6;
-/// How far along the motion the equations are compared with themselves, in s.
+/// How far along the motion the equations are compared with themselves, in s. Any time would do
+/// but a multiple of the period of what time prescribes, after which everything is as before; whole
+/// and half seconds are such multiples more often than this.
 const AHEAD: f64 = 0.7;
 /// Entries that differ by less than this beside the largest are equal.
 const SAME: f64 = 1e-9;

@@ -139,23 +139,31 @@ impl Sampling {
         robust_placement::place(&sampled, &poles)
     }
 
-    /// Gains that minimise Σ (yᵀ Q y + uᵀ R u) T over the measurements.
+    /// Gains that minimise Σ (yᵀ Q y + uᵀ R u) T over the measurements; Q and R are of the order and
+    /// the inputs of `system`.
     pub fn regulate(
         self,
         system: &LinearSystem,
         q: &DMatrix<f64>,
         r: &DMatrix<f64>,
     ) -> Result<Regulator, RiccatiError> {
-        let sampled = self.discretise(system);
-        let mut weight = DMatrix::zeros(sampled.order(), sampled.order());
-        let n = q.nrows().min(sampled.order());
-        if q.shape() == (system.order(), system.order()) {
-            weight
-                .view_mut((0, 0), (n, n))
-                .copy_from(&(q * self.period));
-        } else {
-            weight = q.clone();
+        let n = system.order();
+        let (found_rows, found_columns) = q.shape();
+        if (found_rows, found_columns) != (n, n) {
+            return Err(RiccatiError::Shape {
+                what: "Q",
+                rows: n,
+                columns: n,
+                found_rows,
+                found_columns,
+            });
         }
+        let sampled = self.discretise(system);
+        // What is pending has no weight of its own.
+        let mut weight = DMatrix::zeros(sampled.order(), sampled.order());
+        weight
+            .view_mut((0, 0), (n, n))
+            .copy_from(&(q * self.period));
         lqr::discrete(&sampled, &weight, &(r * self.period))
     }
 }

@@ -50,6 +50,7 @@ def operations(tool, told, kernel):
         return f"{count:,}"
     total = sum(int(n) for n in re.findall(r"(?:^|\+ )(\d+) \(", count))
     rest = {}
+    count = re.sub(r"sine or cosine of (\d+) angles?", r"\1 sine-cosine pair", count)
     for n, what in re.findall(r", (\d+) (sine-cosine pair|function|linear system)s?", count):
         rest[what] = rest.get(what, 0) + int(n)
     return ", ".join([f"{total:,}"] + [f"{n} {what}{'s' if n > 1 else ''}" for what, n in rest.items()])

@@ -3,6 +3,7 @@
 mod breaches;
 mod cases;
 mod commands;
+mod conditions;
 mod control;
 mod controller;
 mod engine;

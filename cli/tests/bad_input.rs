@@ -33,6 +33,32 @@ fn files_that_are_no_specs_are_refused() {
 }
 
 #[test]
+fn conditions_of_a_steady_motion_are_checked() {
+    let folder = Folder::new();
+    let about = |conditions: &str, says: &[&str]| {
+        let arguments = [
+            "derive", "unicycle", "--stage", "linear", "--about", conditions,
+        ];
+        folder.fails(2, &arguments, says);
+    };
+    about(
+        "tetha=0",
+        &["no state, rate or input `tetha`", "did you mean `theta`?"],
+    );
+    about("dot(tetha)=0", &["did you mean `dot(theta)`?"]);
+    about("theta", &["--about theta: write NAME=VALUE"]);
+    about("theta=0, theta=1", &["`theta` has two values"]);
+    about("theta=2*theta", &["`theta` is given in terms of itself"]);
+    about("theta=r, r=R*theta", &["in terms of itself"]);
+    about("theta=1[m]", &["error[unit-mismatch]", "--about theta:1:1"]);
+    about("theta=t", &["--about theta:1:1"]);
+    about("theta=1/0", &["--about theta: `1/0` divides by zero"]);
+    about("omega_3=1, dot(psi)=3", &["`psi_dot` is not the rate"]);
+    let equations = ["derive", "unicycle", "--about", "theta=0"];
+    folder.fails(2, &equations, &["--about goes with --stage linear"]);
+}
+
+#[test]
 fn values_on_the_command_line_are_checked() {
     let folder = Folder::new();
     let simulate = |more: &[&str], says: &[&str]| {

@@ -9,6 +9,7 @@ pub mod formulations;
 pub mod interpreted;
 #[cfg(feature = "jit")]
 pub mod jit;
+pub mod linearisation;
 pub mod mechanics;
 pub mod page;
 pub mod program;

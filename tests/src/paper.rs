@@ -3,10 +3,10 @@
 use std::collections::BTreeMap;
 use std::sync::{LazyLock, Mutex, MutexGuard, PoisonError};
 
+use appell_codegen::linearisation::{Characteristic, Linearisation, SteadyMotion};
 use appell_codegen::mechanics::Derivation;
 use appell_codegen::mechanics::frames::FrameVector;
 use appell_codegen::mechanics::gibbs_appell::{acceleration_energy, along, kinetic_energy};
-use appell_codegen::mechanics::linear::ImplicitMotion;
 use appell_codegen::mechanics::symbols::ids;
 use appell_codegen::symbolic::vector::Vec3;
 use appell_codegen::symbolic::{Expr, Graph, Substitution, SymbolId, evaluate};
@@ -26,6 +26,8 @@ pub struct Paper {
     pub scope: Scope,
     /// What was derived.
     derived: BTreeMap<String, Expr>,
+    /// The linear equations of paper 001.
+    linear: Option<Linearisation>,
 }
 
 macro_rules! shared {
@@ -135,7 +137,7 @@ impl Paper {
             .position(graph, &paper.mechanism, g);
         paper.derive_as("zG", position[2]);
         paper.accelerations(tilted);
-        paper.linearisation();
+        paper.linearise(&[]);
         paper
     }
 
@@ -179,6 +181,7 @@ impl Paper {
             derivation,
             scope,
             derived: BTreeMap::new(),
+            linear: None,
         }
     }
 
@@ -308,67 +311,60 @@ impl Paper {
         }
     }
 
-    /// A and B where w1 = s = 0, in the yaw rate `Pd` and the pitch rate `Fd`.
-    fn linearisation(&mut self) {
+    /// A and B about a steady motion without control, in the yaw rate `Pd` and the pitch rate `Fd`,
+    /// under further conditions.
+    pub fn linearise(&mut self, conditions: &[(&str, &str)]) {
+        for (coordinate, name) in [("psi", "Pd"), ("phi", "Fd")] {
+            let mut names = self.mechanism.coordinates.iter();
+            let place = names.position(|q| q.label.name == coordinate).unwrap();
+            let rate = self.derivation.symbols.rates[place];
+            self.scope.define(name, rate);
+        }
+        let mut values: Vec<(Expr, Expr)> = Vec::new();
+        values.extend(self.scope.get("u").map(|u| (u, Graph::ZERO)));
+        for (name, value) in conditions {
+            let symbol = self.scope.get(name).unwrap();
+            values.push((symbol, self.formula(value)));
+        }
+        let d = &mut self.derivation;
+        let steady = SteadyMotion::new(&self.mechanism, d, &values).unwrap();
+        let linear = Linearisation::about(d, steady).unwrap();
         let states = if self.scope.get("s").is_some() {
             UNICYCLE_STATES
         } else {
             WHEEL_STATES
         };
-        let (yaw, pitch) = {
-            let graph = &mut self.derivation.algebra.graph;
-            (graph.symbol("Pd"), graph.symbol("Fd"))
-        };
-        self.scope.define("Pd", yaw);
-        self.scope.define("Fd", pitch);
-        let mut variables: Vec<Expr> = states.iter().map(|s| self.scope.get(s).unwrap()).collect();
-        variables.extend(self.scope.get("u"));
-        let d = &mut self.derivation;
-        let implicit = ImplicitMotion {
-            gibbs: &d.gibbs,
-            forces: &d.forces,
-            motion: &d.motion,
-            coordinate_rates: &d.coordinate_rates,
-        };
-        let residual = implicit.residual(&mut d.algebra, &d.symbols);
-        let columns = implicit
-            .jacobian(&mut d.algebra, &d.symbols, &residual, &variables)
-            .unwrap();
-        let order: Vec<Expr> = d
-            .symbols
-            .speeds
+        let places: Vec<usize> = states
             .iter()
-            .chain(&d.symbols.coordinates)
-            .copied()
+            .map(|s| {
+                linear
+                    .states
+                    .iter()
+                    .position(|&x| Some(x) == self.scope.get(s))
+            })
+            .map(Option::unwrap)
             .collect();
-        let mut steady = vec![("w2", "Pd*sin(th) + Fd"), ("w3", "Pd*cos(th)"), ("w1", "0")];
-        if self.scope.get("s").is_some() {
-            // The paper linearises the motion without control.
-            steady.extend([("s", "0"), ("u", "0")]);
-        }
-        let mut steady = self.substitution(&steady);
-        for (row, state) in variables.iter().take(states.len()).enumerate() {
-            let place = order.iter().position(|s| s == state).unwrap();
-            for (column, entries) in columns.iter().enumerate() {
-                let at_steady = steady
-                    .apply(&mut self.derivation.algebra.graph, entries[place])
-                    .unwrap();
-                let name = if column < states.len() {
-                    format!("A{}{}", row + 1, column + 1)
-                } else {
-                    format!("B{}", row + 1)
-                };
-                self.derive_as(&name, at_steady);
+        for (row, &i) in places.iter().enumerate() {
+            for (column, &j) in places.iter().enumerate() {
+                self.derive_as(&format!("A{}{}", row + 1, column + 1), linear.a[i][j]);
+            }
+            for &entry in &linear.b[i] {
+                self.derive_as(&format!("B{}", row + 1), entry);
             }
         }
-        for name in ["w1d", "sd"] {
-            if let Some(&rate) = self.derived.get(name) {
-                let value = steady
-                    .apply(&mut self.derivation.algebra.graph, rate)
-                    .unwrap();
-                self.derive_as(&format!("steady_{name}"), value);
+        for (name, state) in [("steady_w1d", "w1"), ("steady_sd", "s")] {
+            if let Some(place) = states.iter().position(|&s| s == state) {
+                self.derive_as(name, linear.rates[places[place]]);
             }
         }
+        self.linear = Some(linear);
+    }
+
+    /// The characteristic polynomial of all states.
+    pub fn characteristic(&mut self) -> Characteristic {
+        let linear = self.linear.clone().unwrap();
+        let rows: Vec<&[Expr]> = linear.a.iter().map(Vec::as_slice).collect();
+        Characteristic::of(&mut self.derivation, &rows).unwrap()
     }
 
     fn derive_as(&mut self, name: &str, value: Expr) {

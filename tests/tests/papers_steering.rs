@@ -3,6 +3,7 @@
 
 #![allow(clippy::unwrap_used, reason = "what is missing fails the test")]
 
+use appell_codegen::linearisation::Characteristic;
 use appell_tests::paper::{Paper, rolling_wheel, unicycle};
 use appell_tests::shipped;
 
@@ -92,21 +93,85 @@ fn steering_paper_equations_18_and_19_linear_wheel() {
 }
 
 #[test]
-fn steering_paper_equation_21_square_of_the_eigenvalues_of_the_wheel() {
+fn steering_paper_equations_20_and_21_eigenvalues_of_the_wheel() {
     let mut paper = rolling_wheel();
-    let square = eigenvalue_square(&mut paper);
-    let typed = paper.formula("4*g/(5*R)*cos(th) - (Pd**2 + 14/5*Pd*Fd*sin(th) + 12/5*Fd**2)");
-    assert!(paper.same(square, typed));
+    let polynomial = paper.characteristic();
+    assert_eq!((polynomial.degree, polynomial.zeros()), (8, 6));
+    assert_polynomial(
+        &mut paper,
+        &polynomial,
+        "1",
+        &["0", "-(A12*A21 + A13*A31 + A14*A41)"],
+    );
+    assert_polynomial(
+        &mut paper,
+        &polynomial,
+        "1",
+        &[
+            "0",
+            "Pd**2 + 14/5*Pd*Fd*sin(th) + 12/5*Fd**2 - 4*g/(5*R)*cos(th)",
+        ],
+    );
 }
 
-/// λ² of the only eigenvalues that are not zero: the tilt equation feeds back on itself through
-/// the three entries of column 1.
-fn eigenvalue_square(paper: &mut Paper) -> appell_codegen::symbolic::Expr {
-    let parts = [("A12", "A21"), ("A13", "A31"), ("A14", "A41")].map(|(a, b)| {
-        let (a, b) = (paper.derived(a), paper.derived(b));
-        paper.derivation.algebra.graph.mul(a, b)
-    });
-    paper.derivation.algebra.graph.sum(&parts)
+/// Demands coefficients after the first, all of them times `factor`. Entries `A12` are the derived.
+fn assert_polynomial(
+    paper: &mut Paper,
+    polynomial: &Characteristic,
+    factor: &str,
+    coefficients: &[&str],
+) {
+    let before = paper.scope.clone();
+    for name in paper.derived_names() {
+        if name.starts_with('A') {
+            let entry = paper.derived(&name);
+            paper.scope.define(&name, entry);
+        }
+    }
+    for (&derived, typed) in polynomial.coefficients[1..].iter().zip(coefficients) {
+        let (factor, right) = (paper.formula(factor), paper.formula(typed));
+        let left = paper.derivation.algebra.graph.mul(factor, derived);
+        assert!(paper.same(left, right), "{typed}");
+    }
+    paper.scope = before;
+}
+
+#[test]
+fn steering_paper_equation_25_straight_rolling_of_the_wheel() {
+    let mut paper = Paper::steering(shipped::mechanism("rolling_wheel"));
+    paper.linearise(&[("th", "0"), ("Pd", "0"), ("psi", "0")]);
+    paper.assert_linearisation(
+        "A13 = 6/5*Fd
+         A14 = 4*g/(5*R)
+         A31 = -2*Fd
+         A41 = 1
+         A53 = 1
+         A62 = 1
+         A72 = R
+         A81 = -R
+         A85 = R*Fd",
+    );
+    paper.assert("steady_w1d = 0");
+}
+
+#[test]
+fn steering_paper_equation_29_spinning_wheel() {
+    let mut paper = Paper::steering(shipped::mechanism("rolling_wheel"));
+    paper.linearise(&[("th", "0"), ("Fd", "0")]);
+    paper.assert_linearisation(
+        "A12 = 6/5*Pd
+         A14 = -1/5*Pd**2 + 4*g/(5*R)
+         A21 = -2/3*Pd
+         A41 = 1
+         A53 = 1
+         A62 = 1
+         A64 = -Pd
+         A71 = R*sin(psi)
+         A72 = R*cos(psi)
+         A81 = -R*cos(psi)
+         A82 = R*sin(psi)",
+    );
+    paper.assert("steady_w1d = 0");
 }
 
 #[test]
@@ -326,31 +391,72 @@ fn steering_paper_equation_48_and_appendix_c_linear_unicycle() {
 }
 
 #[test]
-fn steering_paper_equations_51_and_52_characteristic_polynomial_of_straight_rolling() {
+fn steering_paper_equation_49_characteristic_polynomial_of_the_unicycle() {
     let mut paper = unicycle();
-    let mut straight = paper.substitution(&[("th", "0"), ("r", "0"), ("Pd", "0"), ("psi", "0")]);
-    for name in ["A13", "A14", "A16", "A31", "A53", "A54", "A56"] {
-        let entry = paper.derived(name);
-        let value = straight
-            .apply(&mut paper.derivation.algebra.graph, entry)
-            .unwrap();
-        paper.scope.define(name, value);
-    }
-    // det(λ - A) of tilt and slider, with q = λ².
-    let (a, b, c) = (
-        "5*m*R**2",
-        "-5*m*R**2*(A13*A31 + A14 + A56)",
-        "5*m*R**2*((A13*A31 + A14)*A56 - A16*(A53*A31 + A54))",
+    let polynomial = paper.characteristic();
+    assert_eq!((polynomial.degree, polynomial.zeros()), (10, 6));
+    // λ² times tilt and slide rates, the other states put in.
+    let (tilt, slide) = ("(A12*A21 + A13*A31 + A14)", "(A52*A25 + A53*A35 + A56)");
+    let (to_tilt, to_slide) = ("(A12*A25 + A13*A35 + A16)", "(A52*A21 + A53*A31 + A54)");
+    assert_polynomial(
+        &mut paper,
+        &polynomial,
+        "1",
+        &[
+            "0",
+            &format!("-{tilt} - {slide}"),
+            "0",
+            &format!("{tilt}*{slide} - {to_tilt}*{to_slide}"),
+        ],
     );
-    let printed = [
+}
+
+fn straight_unicycle() -> Paper {
+    let mut paper = Paper::steering(shipped::mechanism("unicycle"));
+    paper.linearise(&[("th", "0"), ("r", "0"), ("Pd", "0"), ("psi", "0")]);
+    paper
+}
+
+#[test]
+fn steering_paper_equations_50_and_55_straight_rolling_of_the_unicycle() {
+    let mut paper = straight_unicycle();
+    paper.assert_linearisation(
+        "A13 = 6/5*Fd
+         A14 = 4*g/(5*R)
+         A16 = -4*m0*g/(5*m*R**2)
+         A31 = -2*Fd
+         A41 = 1
+         A53 = R*Fd/5
+         A54 = -g/5
+         A56 = -4*m0*g/(5*m*R)
+         A65 = 1
+         A73 = 1
+         A82 = 1
+         A92 = R
+         A101 = -R
+         A107 = R*Fd
+         B1 = 4/(5*m*R)
+         B5 = (5*m + 4*m0)/(5*m*m0)",
+    );
+    paper.assert("steady_w1d = 0\nsteady_sd = 0");
+}
+
+#[test]
+fn steering_paper_equations_51_and_52_characteristic_polynomial_of_straight_rolling() {
+    let mut paper = straight_unicycle();
+    let polynomial = paper.characteristic();
+    assert_eq!((polynomial.degree, polynomial.zeros()), (10, 6));
+    assert_polynomial(
+        &mut paper,
+        &polynomial,
         "5*m*R**2",
-        "12*Fd**2*m*R**2 + 4*(m0 - m)*g*R",
-        "4*m0*g*(2*Fd**2*R - g)",
-    ];
-    for (derived, printed) in [a, b, c].into_iter().zip(printed) {
-        let (derived, typed) = (paper.formula(derived), paper.formula(printed));
-        assert!(paper.same(derived, typed), "{printed}");
-    }
+        &[
+            "0",
+            "12*Fd**2*m*R**2 + 4*(m0 - m)*g*R",
+            "0",
+            "4*m0*g*(2*Fd**2*R - g)",
+        ],
+    );
 }
 
 #[test]

@@ -64,10 +64,10 @@ impl Demo {
             let _ = writeln!(told, "  {:<28} {about}", path.display());
             path
         };
-        let html = derivation(&source, Format::Html, Stage::All)?;
+        let html = derivation(&source, Format::Html, Stage::All, &[])?;
         let about = "the derivation from frames to equations of motion";
         files::write(&place("unicycle.html", about), &html)?;
-        let rust = derivation(&source, Format::Rust, Stage::All)?;
+        let rust = derivation(&source, Format::Rust, Stage::All, &[])?;
         let about = "the same equations as Rust, compiled into this program";
         files::write(&place("unicycle.rs", about), &rust)?;
         let about = "the motion: states, input, outputs, energies";

@@ -3,10 +3,12 @@
 use std::path::PathBuf;
 
 use appell_codegen::emit::{Options, emit};
-use appell_codegen::page::{self, page};
+use appell_codegen::linearisation::{Linearisation, SteadyMotion};
+use appell_codegen::page::{self, Page, page};
 use appell_codegen::program::FunctionKind;
 use appell_codegen::{Derived, compile::report, derived};
 
+use crate::conditions::conditions;
 use crate::failure::Failure;
 use crate::source::Source;
 use crate::{files, progress};
@@ -25,6 +27,10 @@ pub(crate) struct Derive {
     /// handout, leaves out what it does not need. Rust is always complete
     #[arg(long, value_enum, default_value_t = Stage::Equations)]
     stage: Stage,
+    /// Values in the steady motion, for `--stage linear`: `theta=0, dot(psi)=0`. States, rates and
+    /// inputs that are not given stay letters
+    #[arg(long, value_name = "CONDITIONS")]
+    about: Vec<String>,
     /// Write to a file instead of standard output
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
@@ -56,42 +62,68 @@ pub(crate) enum Stage {
     Jacobians,
     /// Constraint forces and outputs as well
     All,
+    /// Only the linear equations about a steady motion: A, B, characteristic polynomial
+    Linear,
 }
 
 impl Derive {
     pub(super) fn run(&self) -> Result<(), Failure> {
         let source = Source::find(&self.model)?;
-        let text = derivation(&source, self.format, self.stage)?;
+        let linear = self.stage == Stage::Linear && self.format != Format::Rust;
+        if !linear && !self.about.is_empty() {
+            let message = "--about goes with --stage linear, as text, latex or html";
+            return Err(Failure::Usage(message.to_owned()));
+        }
+        let text = derivation(&source, self.format, self.stage, &self.about)?;
         files::write(self.out.as_deref().unwrap_or("-".as_ref()), &text)
     }
 }
 
-/// The derivation of a spec.
-pub(super) fn derivation(source: &Source, format: Format, stage: Stage) -> Result<String, Failure> {
+/// The derivation of a spec; `about` are the conditions of the motion for [`Stage::Linear`].
+pub(super) fn derivation(
+    source: &Source,
+    format: Format,
+    stage: Stage,
+    about: &[String],
+) -> Result<String, Failure> {
     if format == Format::Rust {
         return rust(source);
     }
     let spinner = progress::spinner("deriving the equations of motion");
-    let Derived {
-        mechanism,
-        mut derivation,
-        ..
-    } = derived(&source.file, &source.text)?;
+    let mut derived = derived(&source.file, &source.text)?;
     let stage = match stage {
-        Stage::Kinematics => page::Stage::Kinematics,
-        Stage::Energy => page::Stage::Energy,
-        Stage::Equations => page::Stage::Equations,
-        Stage::Jacobians => page::Stage::Jacobians,
-        Stage::All => page::Stage::All,
+        Stage::Kinematics => Some(page::Stage::Kinematics),
+        Stage::Energy => Some(page::Stage::Energy),
+        Stage::Equations => Some(page::Stage::Equations),
+        Stage::Jacobians => Some(page::Stage::Jacobians),
+        Stage::All => Some(page::Stage::All),
+        Stage::Linear => None,
     };
-    let page = page(&mechanism, &mut derivation, stage)
-        .map_err(|findings| report(&mechanism, &source.text, &findings))?;
+    let page = match stage {
+        Some(stage) => page(&derived.mechanism, &mut derived.derivation, stage)
+            .map_err(|findings| report(&derived.mechanism, &source.text, &findings))?,
+        None => linear(&source.text, &mut derived, about)?,
+    };
     spinner.finish_and_clear();
     Ok(match format {
         Format::Latex => page::latex(&page),
         Format::Html => page::html(&page),
         Format::Text | Format::Rust => page::text(&page),
     })
+}
+
+/// The linear equations about a steady motion.
+fn linear(spec: &str, derived: &mut Derived, about: &[String]) -> Result<Page, Failure> {
+    let Derived {
+        mechanism,
+        derivation,
+        ..
+    } = derived;
+    let conditions = conditions("--about", spec, mechanism, derivation, about)?;
+    let steady = SteadyMotion::new(mechanism, derivation, &conditions);
+    let linear = steady.and_then(|steady| Linearisation::about(derivation, steady));
+    let linear = linear.map_err(|error| Failure::Usage(format!("--about: {error}")))?;
+    Ok(page::linear(mechanism, derivation, &linear))
 }
 
 /// The emitted module of a spec.

@@ -2,12 +2,12 @@
 //!
 //! [`page`] writes the derivation of a mechanism from its frames to its equations. A [`Page`] knows
 //! neither its format nor the graph behind it; [`text()`], [`latex()`] and [`html()`] set it.
+//! [`linear`] is the page of the linear equations about a steady motion.
 
 mod angles;
 mod arrange;
 mod collect;
 mod display;
-mod dissolve;
 mod html;
 mod latex;
 mod lexicon;
@@ -26,6 +26,7 @@ pub use text::text;
 pub use crate::symbolic::print::{Letter, Math};
 pub use display::Equation;
 
+use crate::linearisation::Linearisation;
 use crate::mechanics::{Derivation, finding};
 use writer::Writer;
 
@@ -130,4 +131,15 @@ pub fn page(
         source: mechanism.source.clone(),
         sections,
     })
+}
+
+/// Writes the linear equations about a steady motion of a mechanism, with their characteristic
+/// polynomial; see [`Linearisation::about`].
+pub fn linear(mechanism: &Mechanism, derivation: &mut Derivation, linear: &Linearisation) -> Page {
+    let mut writer = Writer::new(mechanism, derivation);
+    Page {
+        title: mechanism.title.clone(),
+        source: mechanism.source.clone(),
+        sections: sections::linear(&mut writer, linear),
+    }
 }

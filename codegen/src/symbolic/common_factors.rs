@@ -149,7 +149,7 @@ impl Graph {
         (self.product(&over), self.product(&under))
     }
 
-    fn factors_of(&self, expr: Expr) -> Vec<Factor> {
+    pub(super) fn factors_of(&self, expr: Expr) -> Vec<Factor> {
         match self.node(expr) {
             Node::Product(factors) => factors.to_vec(),
             Node::Number(_) => Vec::new(),

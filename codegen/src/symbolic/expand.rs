@@ -114,7 +114,7 @@ impl Graph {
     }
 
     /// The terms of an expression as a sum.
-    fn terms(&self, expr: Expr) -> Vec<Term> {
+    pub(super) fn terms(&self, expr: Expr) -> Vec<Term> {
         match self.node(expr) {
             Node::Sum(terms) => terms.to_vec(),
             Node::Number(n) if n.is_zero() => Vec::new(),

@@ -8,9 +8,11 @@
 mod canonical;
 mod common_factors;
 mod differentiate;
+pub(crate) mod dissolve;
 mod evaluate;
 mod expand;
 pub(crate) mod field;
+mod fraction;
 mod graph;
 pub mod identity;
 mod interval;

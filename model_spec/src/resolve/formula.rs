@@ -22,6 +22,8 @@ pub enum Scope {
     Schedule,
     /// Parameters, signals, time and the state.
     Law,
+    /// Parameters, the state and the rates of the coordinates.
+    Motion,
 }
 
 /// An expression and where it stands.
@@ -80,6 +82,7 @@ pub fn formula(
         Scope::Constant => Place::constant(what),
         Scope::Schedule => Place::scheduled(what),
         Scope::Law => Place::law(what),
+        Scope::Motion => Place::motion(what),
     };
     let plain = is_plain(&ast);
     let numbers = any(&ast, &is_bare_number);
@@ -242,6 +245,14 @@ v = { value = 'dot(x)', unit = 'm/s' }
             refuses(text, Scope::Law, "kN");
             refuses(text, Scope::Constant, "N");
         }
+    }
+
+    #[test]
+    fn a_motion_is_given_in_states_and_rates() {
+        accepts("-2*dot(x) + v", Scope::Motion, "m/s");
+        refuses("dot(x)", Scope::Law, "m/s");
+        refuses("x*t", Scope::Motion, "m*s");
+        refuses("dot(x)", Scope::Motion, "m");
     }
 
     #[test]

@@ -86,6 +86,11 @@ impl Place {
         Self::new(what, COORDINATES | SPEEDS | TIME, Smooth::Any)
     }
 
+    /// A value in a motion, from other values there.
+    pub(super) const fn motion(what: &'static str) -> Self {
+        Self::new(what, COORDINATES | RATES | SPEEDS, Smooth::Any)
+    }
+
     /// Definition of a pseudo-velocity.
     pub(super) const SPEED: Self = Self::linear("a pseudo-velocity");
     /// Left side of a velocity constraint.

@@ -7,6 +7,7 @@ mod energy;
 mod equations;
 mod forces;
 mod jacobians;
+mod linear;
 mod loads;
 mod placement;
 mod quantities;
@@ -18,6 +19,7 @@ use super::Math;
 use super::display::Equation;
 use super::writer::Writer;
 use super::{Block, Section, Span, Stage};
+use crate::linearisation::Linearisation;
 use crate::mechanics::finding;
 
 /// The sections up to a stage.
@@ -51,6 +53,19 @@ pub(super) fn sections(w: &mut Writer<'_>, stage: Stage) -> finding::Outcome<Vec
         sections.extend(quantities::outputs(w));
     }
     Ok(sections)
+}
+
+/// The sections of a page about linear equations.
+pub(super) fn linear(w: &mut Writer<'_>, linear: &Linearisation) -> Vec<Section> {
+    let mut sections = vec![
+        quantities::section(w),
+        linear::steady(w, linear),
+        linear::equations(w, linear),
+    ];
+    if let Some(polynomial) = linear.characteristic(w.derivation) {
+        sections.push(linear::characteristic(w, &polynomial));
+    }
+    sections
 }
 
 /// A section with a heading of words.

@@ -2,12 +2,12 @@
 
 use rustc_hash::FxHashSet;
 
-use crate::symbolic::print::visible;
-use crate::symbolic::{Expr, Graph, Node, Substitution};
+use super::print::visible;
+use super::{Expr, Graph, Node, Substitution};
 
 /// Puts definitions in the places of names; remembers what it has put in.
 #[derive(Debug, Default)]
-pub(super) struct Dissolved {
+pub(crate) struct Dissolved {
     definitions: Substitution,
     known: FxHashSet<Expr>,
 }
@@ -15,7 +15,7 @@ pub(super) struct Dissolved {
 impl Dissolved {
     /// `expr` with the definitions of its names put in, except for the names that `keeps` accepts.
     /// `None` where a number is divided by zero on the way.
-    pub(super) fn of(
+    pub(crate) fn of(
         &mut self,
         graph: &mut Graph,
         expr: Expr,

@@ -1,0 +1,292 @@
+//! A steady motion as values of states, rates and inputs.
+//!
+//! Essential coordinates rest: that gives the pseudo-velocities which move them. The other
+//! pseudo-velocities are written in the rates of hidden coordinates, by their definitions, where
+//! these rates are constant. What is not given stays a letter.
+
+use appell_spec::mechanism::Mechanism;
+
+use super::structure::Structure;
+use crate::mechanics::Derivation;
+use crate::mechanics::expressions::Lowering;
+use crate::symbolic::{Expr, Graph, Substitution, SymbolId};
+
+/// Why conditions describe no motion.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum SteadyError {
+    /// A value follows from itself.
+    #[error("`{0}` is given in terms of itself")]
+    Circular(String),
+    /// Two conditions for one quantity.
+    #[error("`{0}` has two values")]
+    Twice(String),
+    /// A rate that the pseudo-velocities do not have.
+    #[error(
+        "`{0}` is not the rate that the pseudo-velocities give; give pseudo-velocities instead"
+    )]
+    Contradiction(String),
+    /// Something is divided by zero.
+    #[error("the equations divide by zero in this motion")]
+    Undefined,
+}
+
+/// A steady motion.
+#[derive(Debug, Clone)]
+pub struct SteadyMotion {
+    /// Essential states and hidden ones.
+    pub structure: Structure,
+    /// Symbols with what they are in the motion. No value mentions a symbol that has one.
+    pub values: Vec<(Expr, Expr)>,
+}
+
+impl SteadyMotion {
+    /// The steady motion of a mechanism under further conditions: values of states, of inputs, and of
+    /// rates q̇, each by its symbol.
+    pub fn new(
+        mechanism: &Mechanism,
+        derivation: &mut Derivation,
+        conditions: &[(Expr, Expr)],
+    ) -> Result<Self, SteadyError> {
+        let structure = Structure::of(derivation);
+        let rates = &derivation.symbols.rates;
+        let given_rates = conditions.iter().map(|&(symbol, _)| symbol);
+        let mut builder = Builder {
+            mechanism,
+            given_rates: given_rates.filter(|s| rates.contains(s)).collect(),
+            derivation,
+            motion: Self {
+                structure,
+                values: Vec::new(),
+            },
+        };
+        for &(symbol, value) in conditions {
+            builder.set(symbol, value)?;
+        }
+        builder.rest()?;
+        builder.rates_that_follow()?;
+        builder.speeds_in_rates()?;
+        builder.check_given_rates()?;
+        Ok(builder.motion)
+    }
+
+    /// Puts the motion in.
+    pub fn substitution(&self, graph: &Graph) -> Substitution {
+        Substitution::of_parts(graph, &self.values)
+    }
+
+    fn gives(&self, symbol: Expr) -> bool {
+        self.values.iter().any(|&(known, _)| known == symbol)
+    }
+}
+
+struct Builder<'a> {
+    mechanism: &'a Mechanism,
+    derivation: &'a mut Derivation,
+    given_rates: Vec<Expr>,
+    motion: SteadyMotion,
+}
+
+impl Builder<'_> {
+    /// Gives a symbol its value, also in the values that are known.
+    fn set(&mut self, symbol: Expr, value: Expr) -> Result<(), SteadyError> {
+        let graph = &self.derivation.algebra.graph;
+        let Some(id) = graph.as_symbol(symbol) else {
+            return Ok(());
+        };
+        let name = graph.symbol_name(id).to_owned();
+        if self.motion.gives(symbol) {
+            return Err(SteadyError::Twice(name));
+        }
+        let value = self.value(value)?;
+        let graph = &mut self.derivation.algebra.graph;
+        if graph.mentions(value, &[id]) {
+            return Err(SteadyError::Circular(name));
+        }
+        let mut here = Substitution::new(graph, &[(id, value)]);
+        for (_, known) in &mut self.motion.values {
+            *known = here.apply(graph, *known).ok_or(SteadyError::Undefined)?;
+        }
+        self.motion.values.push((symbol, value));
+        Ok(())
+    }
+
+    /// What an expression is in the motion as far as it is known.
+    fn value(&mut self, expr: Expr) -> Result<Expr, SteadyError> {
+        let graph = &mut self.derivation.algebra.graph;
+        let mut motion = self.motion.substitution(graph);
+        motion.apply(graph, expr).ok_or(SteadyError::Undefined)
+    }
+
+    /// Pseudo-velocities without a value.
+    fn open_speeds(&self) -> Vec<Expr> {
+        let speeds = self.derivation.symbols.speeds.iter().copied();
+        speeds.filter(|&w| !self.motion.gives(w)).collect()
+    }
+
+    /// Those of some symbols on which an expression depends.
+    fn depends(&mut self, expr: Expr, symbols: &[Expr]) -> Vec<Expr> {
+        let algebra = &mut self.derivation.algebra;
+        let ids: Vec<(Expr, SymbolId)> = symbols
+            .iter()
+            .filter_map(|&s| Some((s, algebra.graph.as_symbol(s)?)))
+            .collect();
+        ids.into_iter()
+            .filter(|&(_, id)| !algebra.test.independent_of(&algebra.graph, expr, id))
+            .map(|(symbol, _)| symbol)
+            .collect()
+    }
+
+    /// Essential coordinates rest, unless their rate is given. Each pass finds the pseudo-velocities
+    /// that alone are left to move a coordinate.
+    fn rest(&mut self) -> Result<(), SteadyError> {
+        let speeds = self.derivation.symbols.speeds.len();
+        let essential = self.motion.structure.essential.clone();
+        let coordinates: Vec<usize> = essential
+            .iter()
+            .filter_map(|k| k.checked_sub(speeds))
+            .collect();
+        for _ in 0..coordinates.len() {
+            for &coordinate in &coordinates {
+                let rate = self.value(self.derivation.coordinate_rates[coordinate])?;
+                let symbol = self.derivation.symbols.rates[coordinate];
+                let wanted = if self.motion.gives(symbol) {
+                    self.value(symbol)?
+                } else {
+                    Graph::ZERO
+                };
+                let open = self.open_speeds();
+                let [speed] = self.depends(rate, &open)[..] else {
+                    continue;
+                };
+                let excess = self.derivation.algebra.graph.sub(rate, wanted);
+                let algebra = &mut self.derivation.algebra;
+                let slope = algebra.derivative(excess, speed);
+                let zero = Substitution::by_zero(&algebra.graph, &[speed])
+                    .apply(&mut algebra.graph, excess)
+                    .ok_or(SteadyError::Undefined)?;
+                let value = if algebra.test.is_zero(&algebra.graph, zero) {
+                    Graph::ZERO
+                } else {
+                    let minus = algebra.graph.neg(zero);
+                    algebra.graph.div(minus, slope)
+                };
+                self.set(speed, value)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Rates that the known pseudo-velocities determine.
+    fn rates_that_follow(&mut self) -> Result<(), SteadyError> {
+        for (k, symbol) in self
+            .derivation
+            .symbols
+            .rates
+            .clone()
+            .into_iter()
+            .enumerate()
+        {
+            let rate = self.value(self.derivation.coordinate_rates[k])?;
+            let open = self.open_speeds();
+            if self.motion.gives(symbol) || !self.depends(rate, &open).is_empty() {
+                continue;
+            }
+            let algebra = &mut self.derivation.algebra;
+            let rate = algebra.shortest(rate);
+            self.set(symbol, rate)?;
+        }
+        Ok(())
+    }
+
+    /// The other pseudo-velocities by their definitions, where as many constant rates stand there.
+    fn speeds_in_rates(&mut self) -> Result<(), SteadyError> {
+        let symbols = self.derivation.symbols.clone();
+        let lowering = Lowering {
+            symbols: &symbols,
+            rates: &symbols.rates,
+        };
+        let constant = self.constant_rates()?;
+        let (mut written, mut used) = (Vec::new(), Vec::new());
+        for (&speed, spec) in symbols.speeds.iter().zip(&self.mechanism.pseudo_velocities) {
+            let graph = &mut self.derivation.algebra.graph;
+            let Ok(definition) = lowering.lower(graph, &spec.definition) else {
+                continue;
+            };
+            if self.motion.gives(speed) {
+                continue;
+            }
+            let follow = self.with_given_rates_as_letters(definition)?;
+            let rates = self.depends(follow, &symbols.rates);
+            if rates.iter().all(|rate| constant.contains(rate)) {
+                used.extend(rates);
+                written.push((speed, definition));
+            }
+        }
+        used.sort_unstable();
+        used.dedup();
+        if used.len() != written.len() {
+            return Ok(());
+        }
+        for (speed, definition) in written {
+            self.set(speed, definition)?;
+        }
+        Ok(())
+    }
+
+    /// Rates of hidden coordinates that do not follow from what is known and stay constant.
+    fn constant_rates(&mut self) -> Result<Vec<Expr>, SteadyError> {
+        let symbols = self.derivation.symbols.clone();
+        let speeds = symbols.speeds.len();
+        let structure = self.motion.structure.clone();
+        let coordinates: Vec<usize> = structure.hidden.iter().map(|k| k - speeds).collect();
+        let hidden: Vec<Expr> = coordinates
+            .iter()
+            .map(|&k| symbols.coordinates[k])
+            .collect();
+        let mut constant = Vec::new();
+        for k in coordinates {
+            let symbol = symbols.rates[k];
+            let follows = self.motion.gives(symbol) && !self.given_rates.contains(&symbol);
+            let rate = self.value(self.derivation.coordinate_rates[k])?;
+            if !follows && self.depends(rate, &hidden).is_empty() {
+                constant.push(symbol);
+            }
+        }
+        Ok(constant)
+    }
+
+    fn with_given_rates_as_letters(&mut self, expr: Expr) -> Result<Expr, SteadyError> {
+        let values = self.motion.values.iter().copied();
+        let values: Vec<(Expr, Expr)> = values
+            .filter(|(symbol, _)| !self.given_rates.contains(symbol))
+            .collect();
+        let graph = &mut self.derivation.algebra.graph;
+        let mut known = Substitution::of_parts(graph, &values);
+        known.apply(graph, expr).ok_or(SteadyError::Undefined)
+    }
+
+    /// A given rate must be the one that the pseudo-velocities give.
+    fn check_given_rates(&mut self) -> Result<(), SteadyError> {
+        for (k, symbol) in self
+            .derivation
+            .symbols
+            .rates
+            .clone()
+            .into_iter()
+            .enumerate()
+        {
+            if !self.given_rates.contains(&symbol) {
+                continue;
+            }
+            let rate = self.value(self.derivation.coordinate_rates[k])?;
+            let given = self.value(symbol)?;
+            let algebra = &mut self.derivation.algebra;
+            if !algebra.test.are_equal(&algebra.graph, rate, given) {
+                let name = algebra.graph.as_symbol(symbol);
+                let name = name.map_or("", |id| algebra.graph.symbol_name(id));
+                return Err(SteadyError::Contradiction(name.to_owned()));
+            }
+        }
+        Ok(())
+    }
+}

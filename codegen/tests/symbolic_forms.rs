@@ -3,8 +3,8 @@
 #![allow(clippy::unwrap_used, reason = "tests")]
 
 use appell_codegen::symbolic::{
-    Derivatives, Expr, Function, Graph, Intervals, Node, Rational, Relation, Substitution,
-    SymbolId, evaluate,
+    Derivatives, Expr, Function, Graph, IdentityTest, Intervals, Node, Rational, Relation,
+    Substitution, SymbolId, evaluate,
 };
 
 fn symbols<const N: usize>(g: &mut Graph, names: [&str; N]) -> [Expr; N] {
@@ -268,6 +268,38 @@ fn common_factors_come_out() {
     let over = g.div(c, x);
     let rest = g.add(b, over);
     assert_eq!(g.take_out_common_factors(sum), g.div(rest, x));
+}
+
+#[test]
+fn quotients_of_quotients_become_one_fraction() {
+    let mut g = Graph::new();
+    let mut test = IdentityTest::new(1);
+    let [m, l, theta, k] = symbols(&mut g, ["m", "l", "theta", "k"]);
+    let l2 = g.square(l);
+    let ml2 = g.mul(m, l2);
+    let inertia = g.add(ml2, k);
+    // 1/k - m l²/(k (m l² + k)) = 1/(m l² + k)
+    let (first, below) = (g.pow(k, -1), g.mul(k, inertia));
+    let second = g.div(ml2, below);
+    let sum = g.sub(first, second);
+    let fraction = g.one_fraction(&mut test, sum, 100);
+    assert_eq!(fraction, Some(g.pow(inertia, -1)));
+    // (m² l⁴ - k²)/(m l² + k) = m l² - k
+    let (a, b) = (g.square(ml2), g.square(k));
+    let difference = g.sub(a, b);
+    let quotient = g.div(difference, inertia);
+    let fraction = g.one_fraction(&mut test, quotient, 100);
+    assert_eq!(fraction, Some(g.sub(ml2, k)));
+    // (1 - cos² θ)/sin θ = sin θ
+    let (sin, cos) = (g.sin(theta), g.cos(theta));
+    let cos2 = g.square(cos);
+    let rest = g.linear_combination(&[(1.into(), Graph::ONE), (2.into(), cos2)]);
+    let rest = g.linear_combination(&[(1.into(), rest), ((-3).into(), cos2)]);
+    let quotient = g.div(rest, sin);
+    let fraction = g.one_fraction(&mut test, quotient, 100);
+    assert_eq!(fraction, Some(sin));
+    let long = g.square(inertia);
+    assert_eq!(g.one_fraction(&mut test, long, 2), None);
 }
 
 #[test]

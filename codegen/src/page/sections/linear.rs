@@ -22,7 +22,12 @@ pub(super) fn steady(w: &mut Writer<'_>, linear: &Linearisation) -> Section {
     } else {
         states.push(words("; "));
         states.extend(letters(w, hidden));
-        states.push(words(" are hidden and follow."));
+        let one = hidden.len() == 1;
+        states.push(words(if one {
+            " is hidden and follows."
+        } else {
+            " are hidden and follow."
+        }));
     }
     let mut blocks = vec![Block::Sentence(states)];
     let mut values = Vec::new();
@@ -141,7 +146,7 @@ fn rule(w: &mut Writer<'_>, linear: &Linearisation) -> Block {
 
 /// The polynomial whose zeros are the eigenvalues of the essential states.
 pub(super) fn characteristic(w: &mut Writer<'_>, polynomial: &Characteristic) -> Section {
-    let left = Math::Letter(Letter::plain("P"));
+    let left = Math::Letter(Letter::plain("χ"));
     let mut equations = vec![Equation::new(left, factored(polynomial))];
     for (k, &value) in polynomial.coefficients.iter().enumerate().skip(1) {
         if value == Graph::ZERO {

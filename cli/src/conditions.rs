@@ -69,7 +69,7 @@ fn quantity(
     let inputs = mechanism.inputs.iter().map(|u| &u.label);
     let named = speeds.zip(&symbols.speeds);
     let named = named.chain(coordinates().zip(&symbols.coordinates));
-    let mut named = named.chain(inputs.zip(&symbols.inputs));
+    let named = named.chain(inputs.zip(&symbols.inputs));
     if let Some((label, &symbol)) = named.clone().find(|(label, _)| label.name == name) {
         return Ok((symbol, label.unit.clone()));
     }
@@ -78,21 +78,18 @@ fn quantity(
     let rate = coordinates()
         .zip(&symbols.rates)
         .find(|(label, _)| Some(label.name.as_str()) == inner);
-    match rate {
-        Some((label, &symbol)) => Ok((symbol, per_second(&label.unit))),
-        None => {
-            let rates: Vec<String> = coordinates()
-                .map(|label| format!("dot({})", label.name))
-                .collect();
-            let known: Vec<&str> = named
-                .by_ref()
-                .map(|(label, _)| label.name.as_str())
-                .chain(rates.iter().map(String::as_str))
-                .collect();
-            let message = unknown(name, "state, rate or input", known.into_iter());
-            Err(Failure::Usage(message))
-        }
+    if let Some((label, &symbol)) = rate {
+        return Ok((symbol, per_second(&label.unit)));
     }
+    let rates: Vec<String> = coordinates()
+        .map(|label| format!("dot({})", label.name))
+        .collect();
+    let known: Vec<&str> = named
+        .map(|(label, _)| label.name.as_str())
+        .chain(rates.iter().map(String::as_str))
+        .collect();
+    let message = unknown(name, "state, rate or input", known.into_iter());
+    Err(Failure::Usage(message))
 }
 
 /// Plain numbers for a rate are in the unit of its coordinate per second.

@@ -21,6 +21,16 @@ pub(crate) fn clock(until_s: f64) -> ProgressBar {
     bar
 }
 
+/// Parts of a whole, each with its name.
+pub(crate) fn parts() -> ProgressBar {
+    let bar = ProgressBar::new(0);
+    if let Ok(style) = ProgressStyle::with_template("{bar:40} {pos}/{len}  {msg}  {elapsed}") {
+        bar.set_style(style);
+    }
+    bar.enable_steady_tick(Duration::from_millis(120));
+    bar
+}
+
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,

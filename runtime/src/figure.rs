@@ -11,7 +11,7 @@ use crate::model::Quantity;
 use crate::simulate::Breach;
 use crate::trajectory::Trajectory;
 use axis::{Axis, number};
-pub use map::Map;
+pub use map::{Curve, Map, Stroke};
 use std::fmt::Write as _;
 
 /// A line.

@@ -11,12 +11,11 @@
     reason = "whatever fails here fails a test, which is the point"
 )]
 
+pub use appell_papers::{errata, formula, paper, steering};
+
 pub mod dual;
 pub mod engine;
-pub mod errata;
-pub mod formula;
 pub mod formulations;
-pub mod paper;
 pub mod place;
 pub mod point;
 pub mod random;

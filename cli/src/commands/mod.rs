@@ -9,6 +9,7 @@ mod draw;
 mod evaluate;
 mod list;
 mod new;
+mod reproduce;
 mod schema;
 mod simulate;
 mod stability;
@@ -30,6 +31,7 @@ pub(crate) enum Command {
     Steady(steady::Steady),
     Stability(stability::StabilityCommand),
     Demo(demo::Demo),
+    Reproduce(reproduce::Reproduce),
     Schema(schema::Schema),
     Completions(completions::Completions),
 }
@@ -48,6 +50,7 @@ pub(crate) fn run(command: Command) -> Result<(), Failure> {
         Command::Steady(command) => command.run(),
         Command::Stability(command) => command.run(),
         Command::Demo(command) => command.run(),
+        Command::Reproduce(command) => command.run(),
         Command::Schema(command) => command.run(),
         Command::Completions(command) => command.run(),
     }

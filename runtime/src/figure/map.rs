@@ -18,29 +18,75 @@ pub struct Map {
     pub ranges: [[f64; 2]; 2],
     /// Points along each.
     pub counts: [usize; 2],
-    /// Names of the kinds, up to four.
+    /// Names of the kinds, up to six; one without a name is not in the legend.
     pub kinds: Vec<String>,
     /// The kind of each point, row by row from the first value of the vertical quantity; nothing
     /// where nothing is known.
     pub cells: Vec<Option<usize>>,
-    /// Curves.
-    pub curves: Vec<Series>,
+    /// Curves; those with a label are in the legend.
+    pub curves: Vec<Curve>,
+}
+
+/// A curve on a map.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Curve {
+    /// Where it runs.
+    pub line: Series,
+    /// How it is drawn.
+    pub stroke: Stroke,
+}
+
+/// How a curve is drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Stroke {
+    /// A line.
+    Solid,
+    /// A thin line, such as a level of a third quantity.
+    Thin,
+    /// Dashes.
+    Dashed,
+    /// Dots.
+    Dotted,
+    /// A disc at each point.
+    Discs,
+    /// A square at each point.
+    Squares,
+}
+
+impl Stroke {
+    const fn class(self) -> &'static str {
+        match self {
+            Self::Solid => "curve",
+            Self::Thin => "curve thin",
+            Self::Dashed => "curve long",
+            Self::Dotted => "curve dots",
+            Self::Discs | Self::Squares => "spot",
+        }
+    }
 }
 
 const HEIGHT: f64 = 480.0;
 /// Fillings of the kinds, which any colour vision tells apart.
-const FILLS: &str = ".k0{fill:#56b4e9}.k1{fill:#009e73}.k2{fill:#d55e00}.k3{fill:#888}\
-.kind{fill-opacity:.45}.curve{fill:none;stroke-width:1.4;stroke:#222}\
-@media(prefers-color-scheme:dark){.curve{stroke:#eee}}\n";
-/// Room for the name of a kind in the legend.
+const FILLS: &str = ".k0{fill:#56b4e9}.k1{fill:#009e73}.k2{fill:#d55e00}.k3{fill:#888}.k4{fill:#f0e442}.k5{fill:#0072b2}\
+.kind{fill-opacity:.45}.curve{fill:none;stroke-width:1.6;stroke:#222}.thin{stroke-width:.7}\
+.long{stroke-dasharray:8 5}.dots{stroke-dasharray:2 4;stroke-width:2}.spot{fill:#222}\
+@media(prefers-color-scheme:dark){.curve{stroke:#eee}.spot{fill:#eee}}\n";
+/// Room for a name in the legend.
 const LEGEND: f64 = 170.0;
+/// Curves in a row of the legend.
+const PER_ROW: usize = 3;
+const LEGEND_ROW: f64 = 18.0;
 
 impl Map {
     /// The map as an SVG document.
     pub fn to_svg(&self) -> String {
         let [x_axis, y_axis] = self.ranges.map(|range| Axis::tight(range.into_iter()));
+        let labelled: Vec<&Curve> = (self.curves.iter())
+            .filter(|curve| !curve.line.label.is_empty())
+            .collect();
+        let rows = labelled.len().div_ceil(PER_ROW);
         let area = Area {
-            top: TITLE_HEIGHT + HEADER_HEIGHT,
+            top: TITLE_HEIGHT + HEADER_HEIGHT + LEGEND_ROW * rows as f64,
             width: WIDTH - LEFT - RIGHT,
             height: HEIGHT,
         };
@@ -51,15 +97,18 @@ impl Map {
              <rect class=\"paper\" width=\"100%\" height=\"100%\"/>\n"
         );
         put(&mut svg, &text(LEFT, 22.0, "class=\"title\"", &self.title));
+        let mut x = LEFT;
         for (kind, name) in self.kinds.iter().enumerate() {
-            let x = LEFT + LEGEND * kind as f64;
-            let y = area.top - 9.0;
-            let sample = format!("M{x:.1} {:.1}h14v10h-14z", y - 9.0);
-            put(
-                &mut svg,
-                &format!("<path class=\"kind k{kind}\" d=\"{sample}\"/>"),
-            );
-            put(&mut svg, &text(x + 20.0, y, "", name));
+            if !name.is_empty() {
+                let y = TITLE_HEIGHT + HEADER_HEIGHT - 9.0;
+                let sample = format!("M{x:.1} {:.1}h14v10h-14z", y - 9.0);
+                put(
+                    &mut svg,
+                    &format!("<path class=\"kind k{kind}\" d=\"{sample}\"/>"),
+                );
+                put(&mut svg, &text(x + 20.0, y, "", name));
+                x += LEGEND;
+            }
             let cells = self.cells_of(kind, &area);
             put(
                 &mut svg,
@@ -67,9 +116,27 @@ impl Map {
             );
         }
         area.grid(&mut svg, &x_axis, &y_axis);
+        // What leaves the ranges is cut off.
+        let frame = format!(
+            "<svg x=\"{LEFT}\" y=\"{:.1}\" width=\"{:.1}\" height=\"{HEIGHT}\" \
+             viewBox=\"{LEFT} {:.1} {:.1} {HEIGHT}\">",
+            area.top, area.width, area.top, area.width
+        );
+        put(&mut svg, &frame);
         for curve in &self.curves {
-            let line = area.line(curve, &x_axis, &y_axis);
-            put(&mut svg, &format!("<path class=\"curve\" d=\"{line}\"/>"));
+            let line = curve.path(&area, &x_axis, &y_axis);
+            put(&mut svg, &curve.stroke.element(&line));
+        }
+        put(&mut svg, "</svg>");
+        for (i, curve) in labelled.into_iter().enumerate() {
+            let x = LEFT + LEGEND * (i % PER_ROW) as f64;
+            let y = TITLE_HEIGHT + HEADER_HEIGHT - 9.0 + LEGEND_ROW * (1 + i / PER_ROW) as f64;
+            let sample = match curve.stroke {
+                Stroke::Discs | Stroke::Squares => curve.stroke.spot([x + 8.0, y - 4.0]),
+                _ => format!("M{x:.1} {:.1}h18", y - 4.0),
+            };
+            put(&mut svg, &curve.stroke.element(&sample));
+            put(&mut svg, &text(x + 23.0, y, "", &curve.line.label));
         }
         let bottom = area.top + HEIGHT;
         for tick in x_axis.ticks(8) {
@@ -126,5 +193,33 @@ impl Map {
             }
         }
         path
+    }
+}
+
+impl Curve {
+    fn path(&self, area: &Area, x_axis: &Axis, y_axis: &Axis) -> String {
+        if !matches!(self.stroke, Stroke::Discs | Stroke::Squares) {
+            return area.line(&self.line, x_axis, y_axis);
+        }
+        let points = self.line.x.iter().zip(&self.line.y);
+        let place = |(x, y): (&f64, &f64)| {
+            let right = LEFT + area.width * x_axis.part(*x);
+            [right, area.top + area.height * (1.0 - y_axis.part(*y))]
+        };
+        points.map(|point| self.stroke.spot(place(point))).collect()
+    }
+}
+
+impl Stroke {
+    fn element(self, path: &str) -> String {
+        format!("<path class=\"{}\" d=\"{path}\"/>", self.class())
+    }
+
+    /// A spot about a place.
+    fn spot(self, [x, y]: [f64; 2]) -> String {
+        match self {
+            Self::Squares => format!("M{:.1} {:.1}h10v10h-10z", x - 5.0, y - 5.0),
+            _ => format!("M{:.1} {y:.1}a5 5 0 1 0 10 0a5 5 0 1 0 -10 0z", x - 5.0),
+        }
     }
 }

@@ -5,7 +5,7 @@ use std::io::{self, Write};
 use std::str::FromStr;
 
 use appell_runtime::analysis::{Axis, Boundary, Cell, Chart, Verdict};
-use appell_runtime::figure::{Map, Series};
+use appell_runtime::figure::{Curve, Map, Series, Stroke};
 use serde_json::{Value, json};
 
 use super::StabilityCommand;
@@ -193,10 +193,13 @@ fn map(asked: &Asked<'_>, chart: &Chart) -> Map {
         Verdict::Neutral | Verdict::Critical => 1,
         Verdict::Unstable => 2,
     };
-    let curve = |boundary: &Boundary| Series {
-        label: String::new(),
-        x: boundary.points.iter().map(|at| shown(0, at[0])).collect(),
-        y: boundary.points.iter().map(|at| shown(1, at[1])).collect(),
+    let curve = |boundary: &Boundary| Curve {
+        line: Series {
+            label: String::new(),
+            x: boundary.points.iter().map(|at| shown(0, at[0])).collect(),
+            y: boundary.points.iter().map(|at| shown(1, at[1])).collect(),
+        },
+        stroke: Stroke::Solid,
     };
     let names = [
         "asymptotically stable",

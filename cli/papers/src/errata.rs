@@ -163,21 +163,7 @@ impl Comparison {
                 }
                 paper.same(derived, typed)
             }
-            Quantity::AccelerationEnergy => {
-                let derived = paper.derived("S");
-                let rest = paper.derivation.algebra.graph.sub(derived, typed);
-                paper
-                    .derivation
-                    .symbols
-                    .accelerations
-                    .clone()
-                    .into_iter()
-                    .all(|acceleration| {
-                        let slope = paper.derivation.algebra.derivative(rest, acceleration);
-                        let zero = paper.formula("0");
-                        paper.same(slope, zero)
-                    })
-            }
+            Quantity::AccelerationEnergy => paper.has_acceleration_energy(text),
             Quantity::Solves {
                 residual,
                 unknown,
@@ -238,7 +224,7 @@ pub fn markdown() -> String {
         "# Errata of the papers\n\n\
          Where the text of a paper differs from what its mechanism's equations are. The papers were \
          read as\nrecognised text, so a garbled formula is not always the authors'. This page is \
-         written by\n`tests/tests/errata.rs` from `tests/src/errata/table.rs`: a row with a test is \
+         written by\n`tests/tests/errata.rs` from `cli/papers/src/errata/table.rs`: a row with a test is \
          shown by the identity\ntest, which compares functions and not numbers. The printed form \
          fails it, the right one passes.\n",
     );

@@ -1,0 +1,89 @@
+//! The equations of *Steering Control of an Autonomous Unicycle* (Vizi, Orosz, Takács, Stépán) that
+//! are formulas, corrected where the errata say so. Each is compared with what appell derives: as a
+//! function, not at points.
+//!
+//! Letters: `th`, `psi`, `phi` for the angles, `w1` … for the pseudo-velocities, `s` for σ, `Pd` and
+//! `Fd` for the steady yaw and pitch rate, a trailing `d` for a rate. Steady values stand where
+//! w1 = s = 0; `c1`, `c2`, … are the coefficients of the characteristic polynomial.
+
+use std::sync::MutexGuard;
+
+use crate::errata::Subject;
+use crate::paper::{self, Paper};
+
+mod table;
+
+pub use table::EQUATIONS;
+
+/// A numbered equation.
+#[derive(Debug)]
+pub struct Equation {
+    /// Its number or numbers in the paper.
+    pub number: &'static str,
+    /// What it says.
+    pub about: &'static str,
+    /// What is compared.
+    pub claims: &'static [Claim],
+}
+
+/// Formulas of one mechanism.
+#[derive(Debug)]
+pub struct Claim {
+    /// The mechanism.
+    pub subject: Subject,
+    /// Symbols that have a value here.
+    pub at: &'static [(&'static str, &'static str)],
+    /// The formulas.
+    pub formulas: Formulas,
+}
+
+/// How formulas are compared.
+#[derive(Debug)]
+pub enum Formulas {
+    /// Lines `derived = formula`.
+    Lines(&'static str),
+    /// Entries of matrices; entries that are not listed are zero.
+    Matrix(&'static str),
+    /// The acceleration energy, up to terms without accelerations.
+    Energy(&'static str),
+}
+
+impl Formulas {
+    /// As they are typed.
+    pub const fn text(&self) -> &'static str {
+        match self {
+            Self::Lines(text) | Self::Matrix(text) | Self::Energy(text) => text,
+        }
+    }
+}
+
+impl Equation {
+    /// The equation of a number.
+    pub fn find(number: &str) -> Option<&'static Self> {
+        EQUATIONS.iter().find(|equation| equation.number == number)
+    }
+
+    /// What is not as derived; nothing where the equation holds.
+    pub fn differences(&self) -> Vec<String> {
+        self.claims.iter().flat_map(Claim::differences).collect()
+    }
+}
+
+impl Claim {
+    fn paper(&self) -> MutexGuard<'static, Paper> {
+        match self.subject {
+            Subject::Wheel => paper::rolling_wheel(),
+            _ => paper::unicycle(),
+        }
+    }
+
+    fn differences(&self) -> Vec<String> {
+        let mut paper = self.paper();
+        match self.formulas {
+            Formulas::Lines(lines) => paper.differences(lines, self.at),
+            Formulas::Matrix(lines) => paper.matrix_differences(lines, self.at),
+            Formulas::Energy(text) if paper.has_acceleration_energy(text) => Vec::new(),
+            Formulas::Energy(text) => vec![format!("S is not {text}")],
+        }
+    }
+}

@@ -1,0 +1,187 @@
+//! Steady motions of shipped mechanisms, by names and in SI.
+
+use appell_models::Shipped;
+use appell_runtime::analysis::{
+    Axis, Branch, BranchError, BranchOptions, Branches, Chart, Point, Requirement, Special,
+    SteadyError, SteadyProblem, Term,
+};
+use appell_runtime::figure::{Curve, Series, Stroke};
+use appell_runtime::model::Model;
+
+use crate::failure::Failure;
+
+/// Starting points from which motions are sought.
+const STARTS: usize = 20;
+/// The same for the seeds of a chart, which has regions that do not hang together.
+const CHART_STARTS: usize = 100;
+
+/// The numbers of the paper: masses of wheel and slider, radius, gravitational acceleration.
+pub(super) const WHEEL_MASS: f64 = 10.0;
+/// Mass of the slider in kg.
+pub(super) const SLIDER_MASS: f64 = 5.0;
+/// Radius in m.
+pub(super) const RADIUS: f64 = 0.3;
+/// In m/s².
+pub(super) const GRAVITY: f64 = 9.81;
+
+/// A mechanism with quantities by name.
+#[derive(Clone, Copy)]
+pub(super) struct Mechanism(pub(super) &'static dyn Model);
+
+impl Mechanism {
+    pub(super) fn shipped(name: &str) -> Result<Self, Failure> {
+        let found = Shipped::find(name);
+        let found = found.ok_or_else(|| failed(&format!("no shipped mechanism `{name}`")))?;
+        Ok(Self(found.model))
+    }
+
+    pub(super) fn term(self, name: &str) -> Result<Term, Failure> {
+        Term::named(self.0.info(), name).ok_or_else(|| failed(&format!("no quantity `{name}`")))
+    }
+
+    /// A quantity at a point, in SI.
+    pub(super) fn value(self, name: &str, point: &Point) -> Result<f64, Failure> {
+        Ok(self.term(name)?.value(self.0, point))
+    }
+
+    /// Steady motions with quantities as given.
+    pub(super) fn problem(self, given: &[(&str, f64)]) -> Result<SteadyProblem<'static>, Failure> {
+        let mut problem = SteadyProblem::new(self.0, Point::initial(self.0)).map_err(told)?;
+        for (name, value) in given {
+            problem.fix(self.term(name)?, *value).map_err(told)?;
+        }
+        Ok(problem)
+    }
+
+    /// Branches of steady motions along a quantity; none where there are no motions.
+    pub(super) fn branches(
+        self,
+        given: &[(&str, f64)],
+        along: &str,
+        range: [f64; 2],
+    ) -> Result<Vec<Branch>, Failure> {
+        let problem = self.problem(given)?;
+        let options = BranchOptions::default();
+        let traced = Branches::new(&problem, self.term(along)?, range, &[], options)
+            .and_then(|branches| branches.trace(STARTS));
+        match traced {
+            Err(BranchError::Steady(SteadyError::None { .. })) => Ok(Vec::new()),
+            other => other.map_err(told),
+        }
+    }
+
+    pub(super) fn chart(
+        self,
+        given: &[(&str, f64)],
+        axes: [(&str, [f64; 2], usize); 2],
+        least: &[(&str, f64)],
+    ) -> Result<Chart, Failure> {
+        let axis = |(name, range, count)| {
+            let term = self.term(name)?;
+            Ok::<_, Failure>(Axis { term, range, count })
+        };
+        let [x, y] = axes;
+        let axes = [axis(x)?, axis(y)?];
+        let requirement = |(name, at_least): &(&str, f64)| {
+            let (term, at_least) = (self.term(name)?, *at_least);
+            Ok::<_, Failure>(Requirement { term, at_least })
+        };
+        let requirements: Vec<_> = least.iter().map(requirement).collect::<Result<_, _>>()?;
+        let threads = std::thread::available_parallelism().map_or(1, usize::from);
+        Chart::of(
+            &self.problem(given)?,
+            axes,
+            &requirements,
+            CHART_STARTS,
+            threads,
+        )
+        .map_err(told)
+    }
+
+    /// Branches as curves over two quantities.
+    pub(super) fn curves(
+        self,
+        branches: &[Branch],
+        over: [&str; 2],
+        stroke: Stroke,
+    ) -> Result<Vec<Curve>, Failure> {
+        let [x, y] = over.map(|name| self.term(name));
+        let (x, y) = (x?, y?);
+        let info = self.0.info();
+        let values = |branch: &Branch, term: Term| -> Vec<f64> {
+            let quantity = term.quantity(info);
+            let points = branch.points.iter();
+            points
+                .map(|at| quantity.to_unit(term.value(self.0, &at.point)))
+                .collect()
+        };
+        let curve = |branch: &Branch| Curve {
+            line: Series {
+                label: String::new(),
+                x: degrees(over[0], values(branch, x)),
+                y: values(branch, y),
+            },
+            stroke,
+        };
+        Ok(branches.iter().map(curve).collect())
+    }
+}
+
+/// The motion of a cell of a chart.
+pub(super) fn cell_point(chart: &Chart, unknowns: &[f64], base: &Point) -> Point {
+    let mut point = base.clone();
+    for (term, value) in chart.unknowns.iter().zip(unknowns) {
+        if let Term::State(state) = term {
+            point.x[*state] = *value;
+        }
+    }
+    point
+}
+
+/// Angles are drawn in degrees.
+pub(super) fn degrees(name: &str, values: Vec<f64>) -> Vec<f64> {
+    if name == "theta" {
+        return values.into_iter().map(f64::to_degrees).collect();
+    }
+    values
+}
+
+/// The boundaries of a chart that decide on stability, with the tilt in degrees where it is on an
+/// axis; the first has a label.
+pub(super) fn boundaries(chart: &Chart, names: [&str; 2]) -> Vec<Curve> {
+    let deciding = chart.boundaries.iter().filter(|boundary| boundary.decides);
+    let along =
+        |k: usize, points: &[[f64; 2]]| degrees(names[k], points.iter().map(|at| at[k]).collect());
+    deciding
+        .enumerate()
+        .map(|(i, boundary)| Curve {
+            line: Series {
+                label: (if i == 0 { "stability boundary" } else { "" }).to_owned(),
+                x: along(0, &boundary.points),
+                y: along(1, &boundary.points),
+            },
+            stroke: Stroke::Solid,
+        })
+        .collect()
+}
+
+/// Values of the quantity at special points of branches.
+pub(super) fn values(branches: &[Branch], wanted: impl Fn(&Special) -> bool) -> Vec<f64> {
+    let specials = branches.iter().flat_map(|branch| &branch.specials);
+    let mut values: Vec<f64> = specials
+        .filter(|special| wanted(special))
+        .map(|special| special.motion.value)
+        .collect();
+    values.sort_by(f64::total_cmp);
+    values
+}
+
+/// A computation that did not come to its end.
+pub(super) fn failed(reason: &str) -> Failure {
+    Failure::Computation(reason.to_owned())
+}
+
+/// The same for an error of the runtime.
+pub(super) fn told(error: impl std::fmt::Display) -> Failure {
+    Failure::Computation(error.to_string())
+}

@@ -1,0 +1,121 @@
+//! The book of the paper on steering, made in full. It stays under the target folder for readers.
+
+mod support;
+
+use std::path::Path;
+
+use serde_json::Value;
+use support::Folder;
+
+/// Statements of the book at least: every number from (1) to (91) is among them.
+const EQUATIONS: u32 = 91;
+
+#[test]
+fn the_book_of_steering_has_every_equation_table_and_figure_and_all_statements_hold() {
+    let artefact = Path::new(env!("CARGO_TARGET_TMPDIR")).join("book");
+    let out = artefact.to_str().expect("a path in UTF-8");
+    let folder = Folder::new();
+    let told = folder.done(&["reproduce", "steering", "--out", out, "--json", "book.json"]);
+    assert!(told.stdout.contains("errata"), "{}", told.stdout);
+
+    let book = folder.json("book.json");
+    assert_eq!(book["claims"], book["holding"]);
+    let sections = book["sections"].as_array().expect("sections");
+    let claims: Vec<&Value> = sections
+        .iter()
+        .flat_map(|section| section["claims"].as_array().expect("claims"))
+        .collect();
+    let places: Vec<&str> = claims.iter().filter_map(|c| c["place"].as_str()).collect();
+    for number in 1..=EQUATIONS {
+        let named = format!("({number})");
+        let found = places.iter().any(|place| place.contains(&named));
+        assert!(found, "{named} is missing");
+    }
+    for other in ["table I", "table II", "table III"] {
+        assert!(
+            places.iter().any(|place| place.starts_with(other)),
+            "{other} is missing"
+        );
+    }
+    for figure in [3, 5, 6, 7, 8] {
+        let named = format!("figure {figure}");
+        assert!(
+            places.iter().any(|place| place.starts_with(&named)),
+            "{named} is missing"
+        );
+    }
+    let find = |published: &str| {
+        let found = claims.iter().find(|claim| claim["published"] == published);
+        found.unwrap_or_else(|| panic!("nothing on {published}"))
+    };
+    let gain = find("P_ψ = 536.67 N");
+    assert!(gain["verdict"]["erratum"].is_string(), "{gain}");
+    assert!(
+        gain["ours"]
+            .as_str()
+            .expect("a value")
+            .starts_with("563.6697"),
+        "{gain}"
+    );
+    let force = claims.iter().find(|claim| {
+        claim["published"] == "|u| < 10 N" && claim["place"] == "figure 8, lane change at 5 m/s"
+    });
+    let force = force.expect("the force of the lane change");
+    assert!(
+        force["ours"]
+            .as_str()
+            .expect("a value")
+            .starts_with("10.35"),
+        "{force}"
+    );
+    assert!(
+        claims
+            .iter()
+            .all(|claim| claim["command"].as_str().is_some_and(|c| !c.is_empty()))
+    );
+
+    let page = std::fs::read_to_string(artefact.join("steering.html")).expect("the book");
+    assert_self_contained(&page);
+    assert_well_formed(&page);
+    assert_eq!(page.matches("<figure>").count(), 17);
+}
+
+/// Nothing of the page is elsewhere.
+fn assert_self_contained(page: &str) {
+    let namespaces = ["http://www.w3.org/1999/xhtml", "http://www.w3.org/2000/svg"];
+    let rest = namespaces
+        .iter()
+        .fold(page.to_owned(), |page, name| page.replace(name, ""));
+    for foreign in [
+        "http:", "https:", "src=", "@import", "url(", "<script", "<link",
+    ] {
+        assert!(!rest.contains(foreign), "`{foreign}` in the book");
+    }
+    let links = rest.split("href=\"").skip(1);
+    assert!(
+        links.into_iter().all(|link| link.starts_with('#')),
+        "a link leads out of the book"
+    );
+}
+
+/// Every element is closed in its order.
+fn assert_well_formed(page: &str) {
+    let mut open: Vec<&str> = Vec::new();
+    for part in page.split('<').skip(1) {
+        let (tag, _) = part.split_once('>').expect("a tag ends");
+        if tag.starts_with('!') || tag.ends_with('/') {
+            continue;
+        }
+        let name = tag.split_whitespace().next().unwrap_or_default();
+        match name.strip_prefix('/') {
+            Some(name) => assert_eq!(open.pop(), Some(name), "`</{name}>` closes another element"),
+            None => open.push(name),
+        }
+    }
+    assert!(open.is_empty(), "not closed: {open:?}");
+}
+
+#[test]
+fn a_paper_that_is_not_known_is_refused_with_those_that_are() {
+    Folder::new().fails(2, &["reproduce", "stering"], &["steering"]);
+}

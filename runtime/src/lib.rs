@@ -11,6 +11,7 @@
 //! - [`analysis`]: steady motions, their families and stability;
 //! - [`singular`]: singular values and vectors, ranks, shortest solutions;
 //! - [`control`]: controllability, pole placement, optimal feedback, sampled loops;
+//! - [`estimate`]: filters, likelihoods with gradients, fits to recordings;
 //! - [`contact`] and [`condition`]: where a model stops being valid;
 //! - [`figure`]: plots as SVG.
 //!
@@ -34,6 +35,10 @@ pub mod contact;
 #[cfg(feature = "std")]
 pub mod control;
 pub mod dense;
+#[cfg(feature = "std")]
+mod differences;
+#[cfg(feature = "std")]
+pub mod estimate;
 #[cfg(feature = "std")]
 pub mod figure;
 #[cfg(feature = "std")]

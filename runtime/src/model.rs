@@ -275,6 +275,17 @@ pub struct At<'a> {
     pub p: &'a [f64],
 }
 
+/// The gradient of a scalar at a place: as many numbers as states, inputs and parameters.
+#[derive(Debug)]
+pub struct Gradient<'a> {
+    /// By the state.
+    pub x: &'a mut [f64],
+    /// By the inputs.
+    pub u: &'a mut [f64],
+    /// By the parameters.
+    pub p: &'a mut [f64],
+}
+
 /// Energies and the power of the applied loads that are not conservative in the model's books.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Energies {
@@ -328,6 +339,25 @@ pub trait Model: Sync {
     }
     /// Outputs of the spec.
     fn outputs(&self, at: At<'_>, outputs: &mut [f64]);
+    /// Whether the derivatives below are formulas. The answers of this trait are differences of the
+    /// functions above: slower, and right to some nine digits.
+    fn has_adjoint(&self) -> bool {
+        false
+    }
+    /// Gradient of ⟨λ, ẋ⟩ + ⟨Λ, A⟩ + ⟨Γ, B⟩ + ⟨K, M⟩, where brackets are sums over all products of
+    /// entries. `weights` are λ (`n`), Λ (`n·n`), Γ (`n·m`), K (`s·s`), one after the other. It is
+    /// what the adjoint equations of a motion and of its variation need.
+    fn adjoint(&self, at: At<'_>, weights: &[f64], mut gradient: Gradient<'_>) {
+        crate::differences::adjoint(self, at, weights, &mut gradient);
+    }
+    /// Outputs y (`l`), C = ∂y/∂x (`l·n`), D = ∂y/∂u (`l·m`).
+    fn output_jacobians(&self, at: At<'_>, outputs: &mut [f64], c: &mut [f64], d: &mut [f64]) {
+        crate::differences::output_jacobians(self, at, [outputs, c, d]);
+    }
+    /// Gradient of ⟨μ, y⟩ + ⟨Γ, C⟩ + ⟨Δ, D⟩; `weights` are μ (`l`), Γ (`l·n`), Δ (`l·m`).
+    fn output_adjoint(&self, at: At<'_>, weights: &[f64], mut gradient: Gradient<'_>) {
+        crate::differences::output_adjoint(self, at, weights, &mut gradient);
+    }
     /// Coordinates that follow from the others, one per position constraint; most models have none.
     fn dependent_coordinates(&self) -> &[usize] {
         &[]

@@ -6,7 +6,7 @@ use appell_codegen::program::Program;
 use appell_codegen::schedule::{interpret, schedule};
 use appell_codegen::symbolic::evaluate;
 use appell_models::Shipped;
-use appell_runtime::model::{At, Model};
+use appell_runtime::model::{At, Gradient, Model};
 use appell_spec::Mechanism;
 
 use crate::point::Point;
@@ -83,6 +83,18 @@ impl Model for Emitted {
     }
     fn outputs(&self, at: At<'_>, outputs: &mut [f64]) {
         self.0.outputs(at, outputs);
+    }
+    fn has_adjoint(&self) -> bool {
+        self.0.has_adjoint()
+    }
+    fn adjoint(&self, at: At<'_>, weights: &[f64], gradient: Gradient<'_>) {
+        self.0.adjoint(at, weights, gradient);
+    }
+    fn output_jacobians(&self, at: At<'_>, outputs: &mut [f64], c: &mut [f64], d: &mut [f64]) {
+        self.0.output_jacobians(at, outputs, c, d);
+    }
+    fn output_adjoint(&self, at: At<'_>, weights: &[f64], gradient: Gradient<'_>) {
+        self.0.output_adjoint(at, weights, gradient);
     }
     fn dependent_coordinates(&self) -> &[usize] {
         self.0.dependent_coordinates()

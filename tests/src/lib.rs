@@ -19,5 +19,6 @@ pub mod formulations;
 pub mod place;
 pub mod point;
 pub mod random;
+pub mod recorded;
 pub mod reference;
 pub mod shipped;

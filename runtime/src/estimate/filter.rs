@@ -1,0 +1,460 @@
+//! The square-root extended Kalman filter (Bierman 1977; Särkkä, *Bayesian Filtering and
+//! Smoothing*, 2013, section 5.2).
+//!
+//! Time: z⁺ by a Runge–Kutta step, P⁺ = F (P + N) Fᵀ + N, where N is half of the noise of the step;
+//! half enters before it and half after. Measurements: one scalar after the other, all linearised
+//! about the state before the first of them, which is the update with all at once where noise is
+//! independent. The residuals of these scalars are independent of each other and of all earlier
+//! ones: squares and logarithms of their variances add up to the likelihood.
+
+use std::f64::consts::TAU;
+use std::ops::Range;
+
+use super::EstimateError;
+use super::layout::Layout;
+use super::matrix::{add_scaled, dot, multiply, pieces, scale, transposed_multiply};
+use super::plant::{Place, Plant, Scratch};
+use super::recording::Recording;
+use super::setup::{Disturbance, Measured, Setup};
+use super::square_root::{potter, triangularise};
+use super::timeline::{Action, Advance};
+use super::transition::{Span, Stages, stages_len, step};
+
+/// A measured scalar as the filter met it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Innovation {
+    /// Row of the recording.
+    pub row: usize,
+    /// Channel.
+    pub channel: usize,
+    /// When it was sampled, in s.
+    pub t: f64,
+    /// Measured value less its prediction from all earlier rows, in SI.
+    pub residual: f64,
+    /// Variance of that residual.
+    pub variance: f64,
+    /// Measured value less its prediction from all earlier rows and from the channels before it in
+    /// the row. Divided by the root of `white_variance` it is white noise of variance 1.
+    pub white_residual: f64,
+    /// Its variance.
+    pub white_variance: f64,
+}
+
+impl Innovation {
+    /// White noise of variance 1 where the model and the levels of noise are right.
+    pub fn whitened(&self) -> f64 {
+        self.white_residual / self.white_variance.sqrt()
+    }
+
+    /// Its share of the log-likelihood.
+    pub fn log_likelihood(&self) -> f64 {
+        let (e, s) = (self.white_residual, self.white_variance);
+        -0.5 * ((TAU * s).ln() + e * e / s)
+    }
+}
+
+/// What the filter did, in order.
+#[derive(Debug, Clone)]
+pub(super) enum Record {
+    /// A step; its numbers start at `tape`.
+    Advance { advance: Advance, tape: usize },
+    /// Scalars that were measured at one time, and the inputs then, where outputs were.
+    Measure {
+        samples: Range<usize>,
+        held: Vec<f64>,
+    },
+}
+
+/// A scalar with what the way back needs.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Sample {
+    pub(super) innovation: Innovation,
+    /// The quantity before scale and bias.
+    pub(super) quantity: f64,
+    /// Where its numbers start.
+    pub(super) tape: usize,
+}
+
+/// Numbers of a step on the tape.
+pub(super) struct StepTape<'a> {
+    pub(super) held: &'a mut [f64],
+    pub(super) stages: Stages<'a>,
+    /// F.
+    pub(super) f: &'a mut [f64],
+    /// Root of P before the step.
+    pub(super) root: &'a mut [f64],
+    /// Directions in which the disturbances act, n rows.
+    pub(super) columns: &'a mut [f64],
+    /// State after the step.
+    pub(super) after: &'a mut [f64],
+    /// Root of P after the step.
+    pub(super) root_after: &'a mut [f64],
+}
+
+/// Numbers of a scalar on the tape.
+pub(super) struct SampleTape<'a> {
+    /// Slope of the scalar by the states.
+    pub(super) c: &'a mut [f64],
+    /// P c.
+    pub(super) a: &'a mut [f64],
+    /// State before the update.
+    pub(super) z: &'a mut [f64],
+    /// Root of P before the update.
+    pub(super) root: &'a mut [f64],
+}
+
+/// Sizes that cut a tape.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Sizes {
+    pub(super) n: usize,
+    pub(super) inputs: usize,
+    pub(super) disturbances: usize,
+}
+
+impl Sizes {
+    fn step_len(self) -> usize {
+        let Self { n, .. } = self;
+        self.inputs + stages_len(n) + 3 * n * n + n * self.disturbances + n
+    }
+
+    fn sample_len(self) -> usize {
+        3 * self.n + self.n * self.n
+    }
+
+    pub(super) fn step(self, tape: &mut [f64]) -> StepTape<'_> {
+        let n = self.n;
+        let (nn, columns) = (n * n, n * self.disturbances);
+        let lengths = [self.inputs, stages_len(n), nn, nn, columns, n, nn];
+        let [held, stages, f, root, columns, after, root_after] = pieces(tape, lengths);
+        StepTape {
+            held,
+            stages: Stages::cut(stages, n),
+            f,
+            root,
+            columns,
+            after,
+            root_after,
+        }
+    }
+
+    pub(super) fn sample(self, tape: &mut [f64]) -> SampleTape<'_> {
+        let [c, a, z, root] = pieces(tape, [self.n, self.n, self.n, self.n * self.n]);
+        SampleTape { c, a, z, root }
+    }
+}
+
+/// One run of the filter along a recording.
+pub(super) struct Pass<'a> {
+    pub(super) setup: &'a Setup<'a>,
+    pub(super) plant: &'a Plant<'a>,
+    pub(super) layout: Layout,
+    pub(super) values: &'a [f64],
+    pub(super) run: usize,
+    pub(super) sizes: Sizes,
+    /// Whether everything stays on the tape.
+    keeps: bool,
+    pub(super) tape: Vec<f64>,
+    pub(super) records: Vec<Record>,
+    pub(super) samples: Vec<Sample>,
+    pub(super) z: Vec<f64>,
+    pub(super) root: Vec<f64>,
+    held: Vec<f64>,
+    scratch: Scratch,
+    spread: Vec<f64>,
+    wide: Vec<f64>,
+    seen: Vec<f64>,
+    outputs: Vec<f64>,
+    output_slopes: Vec<f64>,
+}
+
+impl<'a> Pass<'a> {
+    /// Filters a recording. Without `keeps` only the innovations remain.
+    pub(super) fn over(
+        (setup, plant, layout): (&'a Setup<'a>, &'a Plant<'a>, Layout),
+        values: &'a [f64],
+        (run, recording): (usize, &Recording),
+        actions: &[Action],
+        keeps: bool,
+    ) -> Result<Self, EstimateError> {
+        let (n, info) = (plant.n, plant.info());
+        let outputs = if setup.sees_outputs() {
+            info.output_len()
+        } else {
+            0
+        };
+        let sizes = Sizes {
+            n,
+            inputs: info.declared_inputs,
+            disturbances: setup.disturbances.len(),
+        };
+        let zeros = |len| vec![0.0; len];
+        let mut pass = Self {
+            setup,
+            plant,
+            layout,
+            values,
+            run,
+            sizes,
+            keeps,
+            tape: Vec::new(),
+            records: Vec::with_capacity(actions.len()),
+            samples: Vec::with_capacity(recording.times().len() * setup.channels.len()),
+            z: zeros(n),
+            root: zeros(n * n),
+            held: zeros(sizes.inputs),
+            scratch: plant.scratch(),
+            spread: zeros(2 * n * (n + sizes.disturbances)),
+            wide: zeros(n * (n + 2 * sizes.disturbances)),
+            seen: zeros(n),
+            outputs: zeros(outputs),
+            output_slopes: zeros(outputs * n),
+        };
+        if keeps {
+            let steps = actions
+                .iter()
+                .filter(|a| matches!(a, Action::Advance(_)))
+                .count();
+            let samples = pass.samples.capacity();
+            pass.tape
+                .reserve(steps * sizes.step_len() + samples * sizes.sample_len());
+        }
+        pass.start();
+        for action in actions {
+            match *action {
+                Action::Advance(advance) => pass.advance(advance)?,
+                Action::Switch { row, input } => pass.switch(recording.inputs(row), input),
+                Action::Measure { row, channel } => pass.measure(recording, row, channel)?,
+            }
+        }
+        Ok(pass)
+    }
+
+    pub(super) fn log_likelihood(&self) -> f64 {
+        let samples = self.samples.iter();
+        samples
+            .map(|sample| sample.innovation.log_likelihood())
+            .sum()
+    }
+
+    pub(super) fn p(&self) -> &'a [f64] {
+        &self.values[..self.layout.parameters]
+    }
+
+    pub(super) fn lags(&self) -> &'a [f64] {
+        let start = self.layout.lag(0);
+        &self.values[start..start + self.layout.lags]
+    }
+
+    fn start(&mut self) {
+        let n = self.sizes.n;
+        let (initial, spread) = (self.layout.initial(self.run), self.layout.spread(self.run));
+        self.z.copy_from_slice(&self.values[initial..initial + n]);
+        for i in 0..n {
+            self.root[i * (n + 1)] = self.values[spread + i];
+        }
+    }
+
+    fn switch(&mut self, inputs: &[f64], only: Option<usize>) {
+        for (input, (held, &now)) in self.held.iter_mut().zip(inputs).enumerate() {
+            let delayed = self.setup.delayed.contains(&input);
+            // The first row is the best guess for what a delayed input was before it.
+            let first = self.records.is_empty();
+            if only.map_or(!delayed || first, |only| only == input) {
+                *held = now;
+            }
+        }
+    }
+
+    /// Room on the tape.
+    fn record(&mut self, len: usize) -> usize {
+        let start = if self.keeps { self.tape.len() } else { 0 };
+        self.tape.resize(start + len, 0.0);
+        start
+    }
+
+    fn advance(&mut self, advance: Advance) -> Result<(), EstimateError> {
+        let tape = self.record(self.sizes.step_len());
+        self.records.push(Record::Advance { advance, tape });
+        let (n, d) = (self.sizes.n, self.sizes.disturbances);
+        let (p, lags, h) = (self.p(), self.lags(), advance.h);
+        let mut on = self.sizes.step(&mut self.tape[tape..]);
+        on.held.copy_from_slice(&self.held);
+        on.root.copy_from_slice(&self.root);
+        on.stages.z[..n].copy_from_slice(&self.z);
+        let span = Span {
+            t: advance.t,
+            h,
+            held: on.held,
+            p,
+            lags,
+        };
+        let before = span.place(0, &self.z);
+        directions(
+            self.setup,
+            self.plant,
+            before,
+            &mut self.scratch,
+            on.columns,
+        );
+        step(
+            self.plant,
+            span,
+            &mut self.scratch,
+            &mut on.stages,
+            on.after,
+            on.f,
+        );
+
+        // [S, N½], then [F S, F N½, N½].
+        let [joint, moved] = pieces(&mut self.spread, [n * (n + d), n * (n + d)]);
+        for (i, joint) in joint.chunks_exact_mut(n + d).enumerate() {
+            joint[..n].copy_from_slice(&on.root[i * n..(i + 1) * n]);
+            for j in 0..d {
+                let level = self.values[self.layout.disturbance(j)];
+                joint[n + j] = level * (0.5 * h).sqrt() * on.columns[i * d + j];
+            }
+        }
+        multiply(on.f, joint, n, moved);
+        let rows = self.wide.chunks_exact_mut(n + 2 * d);
+        let parts = moved.chunks_exact(n + d).zip(joint.chunks_exact(n + d));
+        for (wide, (moved, joint)) in rows.zip(parts) {
+            wide[..n + d].copy_from_slice(moved);
+            wide[n + d..].copy_from_slice(&joint[n..]);
+        }
+        triangularise(&mut self.wide, n, on.root_after);
+        self.z.copy_from_slice(on.after);
+        self.root.copy_from_slice(on.root_after);
+        let finite = self
+            .z
+            .iter()
+            .chain(&self.root)
+            .all(|entry| entry.is_finite());
+        finite.then_some(()).ok_or(EstimateError::Diverged {
+            run: self.run,
+            t: advance.t + h,
+        })
+    }
+
+    fn measure(
+        &mut self,
+        recording: &Recording,
+        row: usize,
+        only: Option<usize>,
+    ) -> Result<(), EstimateError> {
+        let first = self.samples.len();
+        let (setup, n) = (self.setup, self.sizes.n);
+        let measured = recording.measured(row);
+        let t = recording.times()[row];
+        let here = |channel: &usize| {
+            let late = setup.channels[*channel].longest_delay.is_some();
+            only.map_or(!late, |only| only == *channel) && !measured[*channel].is_nan()
+        };
+        let seen: Vec<usize> = (0..setup.channels.len()).filter(here).collect();
+        let is_output = |&c: &usize| matches!(setup.channels[c].measures, Measured::Output(_));
+        let mut held = Vec::new();
+        if seen.iter().any(is_output) {
+            held.clone_from(&self.held);
+            let place = Place {
+                t,
+                z: &self.z,
+                held: &self.held,
+                p: self.p(),
+                lags: self.lags(),
+            };
+            let (outputs, slopes) = (&mut self.outputs, &mut self.output_slopes);
+            self.plant
+                .outputs(place, &mut self.scratch, outputs, slopes);
+        }
+        let prior = self.record(seen.len() * self.sizes.sample_len());
+        for (count, &channel) in seen.iter().enumerate() {
+            let tape = prior + count * self.sizes.sample_len();
+            let (earlier, rest) = self.tape.split_at_mut(tape);
+            let SampleTape { c, a, z, root } = self.sizes.sample(rest);
+            z.copy_from_slice(&self.z);
+            root.copy_from_slice(&self.root);
+            c.fill(0.0);
+            let quantity = match setup.channels[channel].measures {
+                Measured::State(state) => {
+                    c[state] = 1.0;
+                    if count == 0 {
+                        z[state]
+                    } else {
+                        earlier[prior + 2 * n + state]
+                    }
+                }
+                Measured::Output(output) => {
+                    c.copy_from_slice(&self.output_slopes[output * n..(output + 1) * n]);
+                    self.outputs[output]
+                }
+            };
+            let gain = self.values[self.layout.scale(channel)];
+            let bias = self.values[self.layout.bias(channel)];
+            let noise = self.values[self.layout.noise(channel)];
+            scale(gain, c);
+            let residual = measured[channel] - gain * quantity - bias;
+            let r = noise * noise;
+            let mut white = residual;
+            let mut variance = None;
+            if count > 0 {
+                let [_, _, first_z, first_root] = pieces(&mut earlier[prior..], [n, n, n, n * n]);
+                white -= dot(c, z) - dot(c, first_z);
+                transposed_multiply(first_root, c, n, &mut self.seen);
+                variance = Some(dot(&self.seen, &self.seen) + r);
+            }
+            transposed_multiply(root, c, n, &mut self.seen);
+            multiply(root, &self.seen, n, a);
+            let s = dot(&self.seen, &self.seen) + r;
+            if !(s > 0.0 && s.is_finite() && white.is_finite()) {
+                return Err(EstimateError::Diverged { run: self.run, t });
+            }
+            add_scaled(white / s, a, &mut self.z);
+            potter(&mut self.root, &self.seen, a, s, r);
+            self.samples.push(Sample {
+                innovation: Innovation {
+                    row,
+                    channel,
+                    t,
+                    residual,
+                    variance: variance.unwrap_or(s),
+                    white_residual: white,
+                    white_variance: s,
+                },
+                quantity,
+                tape,
+            });
+        }
+        let samples = first..self.samples.len();
+        self.records.push(Record::Measure { samples, held });
+        Ok(())
+    }
+}
+
+/// Columns along which the disturbances act on ż: n rows, a column each.
+fn directions(
+    setup: &Setup<'_>,
+    plant: &Plant<'_>,
+    place: Place<'_>,
+    scratch: &mut Scratch,
+    columns: &mut [f64],
+) {
+    let (d, s) = (setup.disturbances.len(), plant.speeds);
+    columns.fill(0.0);
+    let mut forces = false;
+    for (j, disturbance) in setup.disturbances.iter().enumerate() {
+        match *disturbance {
+            Disturbance::Force(speed) => {
+                columns[speed * d + j] = 1.0;
+                forces = true;
+            }
+            Disturbance::Rate(_) => {}
+        }
+    }
+    if forces {
+        plant.accelerations(place, scratch, &mut columns[..s * d]);
+    }
+    for (j, disturbance) in setup.disturbances.iter().enumerate() {
+        if let Disturbance::Rate(state) = *disturbance {
+            columns[state * d + j] = 1.0;
+        }
+    }
+}

@@ -1,0 +1,94 @@
+//! Products of small matrices, stored row by row.
+
+/// `c += a b`: `a` has `inner` columns, `b` as many rows.
+pub(super) fn multiply_add(a: &[f64], b: &[f64], inner: usize, c: &mut [f64]) {
+    let columns = b.len() / inner;
+    for (a, c) in a.chunks_exact(inner).zip(c.chunks_exact_mut(columns)) {
+        for (&factor, b) in a.iter().zip(b.chunks_exact(columns)) {
+            add_scaled(factor, b, c);
+        }
+    }
+}
+
+/// `c = a b`
+pub(super) fn multiply(a: &[f64], b: &[f64], inner: usize, c: &mut [f64]) {
+    c.fill(0.0);
+    multiply_add(a, b, inner, c);
+}
+
+/// `c += aᵀ b`: both have `inner` rows.
+pub(super) fn transposed_multiply_add(a: &[f64], b: &[f64], inner: usize, c: &mut [f64]) {
+    let (rows, columns) = (a.len() / inner, b.len() / inner);
+    for (a, b) in a.chunks_exact(rows).zip(b.chunks_exact(columns)) {
+        for (&factor, c) in a.iter().zip(c.chunks_exact_mut(columns)) {
+            add_scaled(factor, b, c);
+        }
+    }
+}
+
+/// `c = aᵀ b`
+pub(super) fn transposed_multiply(a: &[f64], b: &[f64], inner: usize, c: &mut [f64]) {
+    c.fill(0.0);
+    transposed_multiply_add(a, b, inner, c);
+}
+
+/// `c += a bᵀ`: both have `inner` columns.
+pub(super) fn multiply_transposed_add(a: &[f64], b: &[f64], inner: usize, c: &mut [f64]) {
+    let columns = b.len() / inner;
+    for (a, c) in a.chunks_exact(inner).zip(c.chunks_exact_mut(columns)) {
+        for (b, c) in b.chunks_exact(inner).zip(c) {
+            *c += dot(a, b);
+        }
+    }
+}
+
+/// `c = a bᵀ`
+pub(super) fn multiply_transposed(a: &[f64], b: &[f64], inner: usize, c: &mut [f64]) {
+    c.fill(0.0);
+    multiply_transposed_add(a, b, inner, c);
+}
+
+/// `y += factor x`
+pub(super) fn add_scaled(factor: f64, x: &[f64], y: &mut [f64]) {
+    for (y, x) in y.iter_mut().zip(x) {
+        *y += factor * x;
+    }
+}
+
+/// `y += x`
+pub(super) fn add(x: &[f64], y: &mut [f64]) {
+    add_scaled(1.0, x, y);
+}
+
+/// `x = factor x`
+pub(super) fn scale(factor: f64, x: &mut [f64]) {
+    for x in x {
+        *x *= factor;
+    }
+}
+
+/// `xᵀ y`, for matrices the sum over all entries.
+pub(super) fn dot(x: &[f64], y: &[f64]) -> f64 {
+    x.iter().zip(y).map(|(x, y)| x * y).sum()
+}
+
+/// The unit matrix, n × n.
+pub(super) fn set_identity(matrix: &mut [f64], n: usize) {
+    matrix.fill(0.0);
+    matrix
+        .iter_mut()
+        .step_by(n + 1)
+        .for_each(|entry| *entry = 1.0);
+}
+
+/// Cuts a slice into pieces of the given lengths; what remains is dropped.
+pub(super) fn pieces<const N: usize>(
+    mut slice: &mut [f64],
+    lengths: [usize; N],
+) -> [&mut [f64]; N] {
+    lengths.map(|length| {
+        let (piece, rest) = std::mem::take(&mut slice).split_at_mut(length);
+        slice = rest;
+        piece
+    })
+}

@@ -1,0 +1,214 @@
+//! One step of the classical Runge–Kutta method on z and on ∂z⁺/∂z together, and its adjoint.
+//!
+//! The transition matrix F is that of the step as it is computed, not of the exact flow: the filter
+//! and its gradient then belong to one function of the values, whatever the step.
+
+use super::matrix::{
+    add, add_scaled, dot, multiply, multiply_transposed, pieces, set_identity, transposed_multiply,
+};
+use super::plant::{Place, Plant, Scratch, Sums};
+
+/// Parts of the step at which the stages after the first stand.
+const STAGES: [f64; 3] = [0.5, 0.5, 1.0];
+/// Parts of the step with which the rates count.
+const WEIGHTS: [f64; 4] = [1.0 / 6.0, 1.0 / 3.0, 1.0 / 3.0, 1.0 / 6.0];
+
+/// What the adjoint needs to know of a step, cut out of a tape.
+pub(super) struct Stages<'a> {
+    /// States of the four stages; the first is the state before the step.
+    pub(super) z: &'a mut [f64],
+    /// Rates there.
+    pub(super) k: &'a mut [f64],
+    /// ∂ż/∂z there.
+    pub(super) a: &'a mut [f64],
+    /// ∂z/∂z of the stages by the state before the step; the first is the unit matrix.
+    pub(super) x: &'a mut [f64],
+}
+
+/// How many numbers the stages of `n` states are.
+pub(super) fn stages_len(n: usize) -> usize {
+    8 * n + 8 * n * n
+}
+
+impl<'a> Stages<'a> {
+    pub(super) fn cut(tape: &'a mut [f64], n: usize) -> Self {
+        let [z, k, a, x] = pieces(tape, [4 * n, 4 * n, 4 * n * n, 4 * n * n]);
+        Self { z, k, a, x }
+    }
+}
+
+/// When a step takes place and with what.
+#[derive(Clone, Copy)]
+pub(super) struct Span<'a> {
+    pub(super) t: f64,
+    pub(super) h: f64,
+    pub(super) held: &'a [f64],
+    pub(super) p: &'a [f64],
+    pub(super) lags: &'a [f64],
+}
+
+impl<'a> Span<'a> {
+    /// The place of a stage.
+    pub(super) fn place(&self, stage: usize, z: &'a [f64]) -> Place<'a> {
+        let part = if stage == 0 { 0.0 } else { STAGES[stage - 1] };
+        Place {
+            t: self.t + part * self.h,
+            z,
+            held: self.held,
+            p: self.p,
+            lags: self.lags,
+        }
+    }
+}
+
+/// Fills the stages from the state in the first one; writes z⁺ and F.
+pub(super) fn step(
+    plant: &Plant<'_>,
+    span: Span<'_>,
+    scratch: &mut Scratch,
+    stages: &mut Stages<'_>,
+    after: &mut [f64],
+    f: &mut [f64],
+) {
+    let (n, h) = (plant.n, span.h);
+    let nn = n * n;
+    after.copy_from_slice(&stages.z[..n]);
+    set_identity(f, n);
+    set_identity(&mut stages.x[..nn], n);
+    for i in 0..4 {
+        let (z, k) = (
+            &stages.z[i * n..(i + 1) * n],
+            &mut stages.k[i * n..(i + 1) * n],
+        );
+        let a = &mut stages.a[i * nn..(i + 1) * nn];
+        plant.jacobian(span.place(i, z), scratch, k, a);
+        add_scaled(h * WEIGHTS[i], k, after);
+        let (x, next_x) = stages.x.split_at_mut((i + 1) * nn);
+        let x = &x[i * nn..];
+        if i == 3 {
+            add_product(h * WEIGHTS[i], a, x, n, f);
+            return;
+        }
+        let (first, next) = stages.z.split_at_mut((i + 1) * n);
+        next[..n].copy_from_slice(&first[..n]);
+        add_scaled(h * STAGES[i], k, &mut next[..n]);
+        // K_i = A_i X_i, in the place of X_{i+1} = 1 + h c K_i.
+        let next = &mut next_x[..nn];
+        if i == 0 {
+            next.copy_from_slice(a);
+        } else {
+            multiply(a, x, n, next);
+        }
+        add_scaled(h * WEIGHTS[i], next, f);
+        let part = h * STAGES[i];
+        for entry in next.iter_mut() {
+            *entry *= part;
+        }
+        next.iter_mut()
+            .step_by(n + 1)
+            .for_each(|entry| *entry += 1.0);
+    }
+}
+
+/// `c += factor a b`
+fn add_product(factor: f64, a: &[f64], b: &[f64], n: usize, c: &mut [f64]) {
+    for (a, c) in a.chunks_exact(n).zip(c.chunks_exact_mut(n)) {
+        for (&entry, b) in a.iter().zip(b.chunks_exact(n)) {
+            add_scaled(factor * entry, b, c);
+        }
+    }
+}
+
+/// Numbers on the way back.
+#[derive(Debug, Clone)]
+pub(super) struct Reverse {
+    k: Vec<f64>,
+    kk: Vec<f64>,
+    a: Vec<f64>,
+    z: Vec<f64>,
+    x: Vec<f64>,
+    product: Vec<f64>,
+    no_mass: Vec<f64>,
+}
+
+impl Reverse {
+    pub(super) fn new(plant: &Plant<'_>) -> Self {
+        let (n, zeros) = (plant.n, |len| vec![0.0; len]);
+        Self {
+            k: zeros(n),
+            kk: zeros(n * n),
+            a: zeros(n * n),
+            z: zeros(n),
+            x: zeros(n * n),
+            product: zeros(n * n),
+            no_mass: zeros(plant.speeds * plant.speeds),
+        }
+    }
+}
+
+/// What depends on a step: a scalar with the gradients `after` in z⁺ and `f` in F, and `mass` in
+/// the mass matrix before the step.
+#[derive(Clone, Copy)]
+pub(super) struct Effects<'a> {
+    pub(super) after: &'a [f64],
+    pub(super) f: &'a [f64],
+    pub(super) mass: &'a [f64],
+    /// Whether the derivative by the length of the step is wanted.
+    pub(super) by_length: bool,
+}
+
+/// The gradient of that scalar: added to `sums`, where `sums.z` is that of the state before the
+/// step. Returns the derivative by the length of the step, 0 where it is not wanted.
+pub(super) fn adjoint(
+    plant: &Plant<'_>,
+    span: Span<'_>,
+    scratch: &mut Scratch,
+    (stages, effects): (&Stages<'_>, Effects<'_>),
+    back: &mut Reverse,
+    sums: &mut Sums<'_>,
+) -> f64 {
+    let (n, h) = (plant.n, span.h);
+    let nn = n * n;
+    let mut by_h = 0.0;
+    add(effects.after, sums.z);
+    for i in (0..4).rev() {
+        let (z, k) = (&stages.z[i * n..(i + 1) * n], &stages.k[i * n..(i + 1) * n]);
+        let a = &stages.a[i * nn..(i + 1) * nn];
+        let x = &stages.x[i * nn..(i + 1) * nn];
+        // z⁺ and F hold the rates of this stage; so does the next stage, whose gradients are in
+        // `back.z` and `back.x`.
+        back.k.fill(0.0);
+        back.kk.fill(0.0);
+        if i < 3 {
+            add_scaled(h * STAGES[i], &back.z, &mut back.k);
+            add_scaled(h * STAGES[i], &back.x, &mut back.kk);
+        }
+        if effects.by_length {
+            multiply(a, x, n, &mut back.product);
+            by_h += WEIGHTS[i] * (dot(effects.after, k) + dot(effects.f, &back.product));
+            if i < 3 {
+                by_h += STAGES[i] * (dot(&back.z, k) + dot(&back.x, &back.product));
+            }
+        }
+        add_scaled(h * WEIGHTS[i], effects.after, &mut back.k);
+        add_scaled(h * WEIGHTS[i], effects.f, &mut back.kk);
+        let mass = if i == 0 {
+            back.a.copy_from_slice(&back.kk);
+            effects.mass
+        } else {
+            multiply_transposed(&back.kk, x, n, &mut back.a);
+            transposed_multiply(a, &back.kk, n, &mut back.x);
+            &back.no_mass
+        };
+        back.z.fill(0.0);
+        let mut of_stage = Sums {
+            z: &mut back.z,
+            p: sums.p,
+            lags: sums.lags,
+        };
+        let weights = [back.k.as_slice(), &back.a, mass];
+        plant.adjoint(span.place(i, z), scratch, weights, &mut of_stage);
+        add(&back.z, sums.z);
+    }
+    by_h
+}

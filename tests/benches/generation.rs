@@ -1,4 +1,4 @@
-//! From the text of a spec to Rust source, warm: what a build script pays per mechanism.
+//! From the text of a spec to Rust source, warm: what `appell derive` pays per mechanism.
 //!
 //! `cargo bench -p appell-tests --bench generation`
 
@@ -7,6 +7,11 @@ use appell_codegen::mechanics::{assemble, derive};
 use appell_codegen::program::FunctionKind;
 use appell_models::Shipped;
 use criterion::{Criterion, criterion_group, criterion_main};
+use mimalloc::MiMalloc;
+
+/// As in `appell`.
+#[global_allocator]
+static ALLOCATOR: MiMalloc = MiMalloc;
 
 /// The mechanism of the gallery with the longest equations.
 const BICYCLE: &str = include_str!("../../generated/mechanisms/bicycle.toml");

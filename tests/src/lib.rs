@@ -22,3 +22,4 @@ pub mod random;
 pub mod recorded;
 pub mod reference;
 pub mod shipped;
+pub mod steady;

@@ -1,32 +1,14 @@
 //! Stability by general means: critical values that are known from elsewhere, to the last digits.
 #![allow(clippy::unwrap_used, reason = "what is missing fails the test")]
 
-use appell_models::Shipped;
 use appell_runtime::analysis::{
-    Axis, Branch, BranchOptions, Branches, Change, Chart, Kind, Point, Stability, SteadyProblem,
-    Term, Verdict, loci,
+    Axis, Branch, BranchOptions, Branches, Change, Chart, Kind, Point, Stability, Verdict, loci,
 };
-use appell_runtime::model::Model;
+use appell_tests::steady::{problem, shipped, term};
 use nalgebra::{Matrix2, Matrix3};
 
 /// Twelve digits.
 const CRITICAL: f64 = 1e-12;
-
-fn shipped(name: &str) -> &'static dyn Model {
-    Shipped::find(name).unwrap().model
-}
-
-fn term(model: &dyn Model, name: &str) -> Term {
-    Term::named(model.info(), name).unwrap_or_else(|| panic!("no `{name}`"))
-}
-
-fn problem<'a>(model: &'a dyn Model, given: &[(&str, f64)]) -> SteadyProblem<'a> {
-    let mut problem = SteadyProblem::new(model, Point::initial(model)).unwrap();
-    for (name, value) in given {
-        problem.fix(term(model, name), *value).unwrap();
-    }
-    problem
-}
 
 fn branches(name: &str, given: &[(&str, f64)], along: &str, range: [f64; 2]) -> Vec<Branch> {
     let model = shipped(name);

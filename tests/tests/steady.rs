@@ -1,12 +1,12 @@
 //! Steady motions by general means: the unicycle's turning motions, every digit.
 #![allow(clippy::unwrap_used, reason = "what is missing fails the test")]
 
-use appell_models::Shipped;
 use appell_runtime::analysis::{
-    Circle, Point, Stability, SteadyError, SteadyProblem, Term, Verdict, circle, essential_matrix,
+    Circle, Stability, SteadyError, SteadyProblem, Term, Verdict, circle, essential_matrix,
 };
 use appell_runtime::model::Model;
 use appell_tests::reference::{cases, number, numbers};
+use appell_tests::steady::{problem, shipped, term};
 use serde_json::Value;
 
 /// What the references are reproduced to.
@@ -14,23 +14,6 @@ const REFERENCE: f64 = 1e-10;
 
 /// Essential states of the references, under the names of the spec.
 const ESSENTIAL: [&str; 6] = ["omega_1", "omega_2", "omega_3", "theta", "sigma", "r"];
-
-fn shipped(name: &str) -> &'static dyn Model {
-    Shipped::find(name).unwrap().model
-}
-
-fn term(model: &dyn Model, name: &str) -> Term {
-    Term::named(model.info(), name).unwrap_or_else(|| panic!("no `{name}`"))
-}
-
-/// Steady motions with quantities as given.
-fn problem<'a>(model: &'a dyn Model, given: &[(&str, f64)]) -> SteadyProblem<'a> {
-    let mut problem = SteadyProblem::new(model, Point::initial(model)).unwrap();
-    for (name, value) in given {
-        problem.fix(term(model, name), *value).unwrap();
-    }
-    problem
-}
 
 fn assert_close(what: &str, found: f64, wanted: f64) {
     let error = (found - wanted).abs();

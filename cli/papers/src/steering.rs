@@ -11,8 +11,10 @@ use std::sync::MutexGuard;
 use crate::errata::Subject;
 use crate::paper::{self, Paper};
 
+mod gains;
 mod table;
 
+pub use gains::{GAINS, Gains, MISPRINT, OUTPUTS};
 pub use table::EQUATIONS;
 
 /// A numbered equation.

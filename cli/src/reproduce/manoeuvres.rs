@@ -2,13 +2,14 @@
 
 use std::fmt::Write as _;
 
+use appell_papers::steering::OUTPUTS;
 use appell_runtime::integrate::Options;
 use appell_runtime::simulate::{Sampling, SimulationError};
 use appell_runtime::trajectory::Extras;
 use appell_runtime::{Simulation, Trajectory};
 
 use super::found::{failed, told};
-use super::tables::{LANE, placed};
+use super::tables::placed;
 use crate::controller::Plan;
 use crate::engine::Equations;
 use crate::failure::Failure;
@@ -61,7 +62,7 @@ impl Path {
     }
 
     fn outputs(self) -> &'static [&'static str] {
-        if self.turn { &LANE[..5] } else { &LANE }
+        if self.turn { &OUTPUTS[..5] } else { &OUTPUTS }
     }
 }
 

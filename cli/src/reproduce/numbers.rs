@@ -1,5 +1,6 @@
 //! Equations whose content are numbers: circles, critical values, ranks, poles.
 
+use appell_papers::steering::OUTPUTS;
 use appell_runtime::analysis::{Change, Kind, Special, circle};
 use appell_runtime::control::controllability::{Controllability, output_rank};
 use appell_runtime::spectrum::characteristic_polynomial;
@@ -7,7 +8,7 @@ use appell_runtime::spectrum::characteristic_polynomial;
 use super::claim::{Claim, Section, Verdict};
 use super::found::{GRAVITY, Mechanism, RADIUS, SLIDER_MASS, WHEEL_MASS, told, values};
 use super::manoeuvres::Path;
-use super::tables::{LANE, POLE, placed, steered, straight};
+use super::tables::{POLE, placed, steered, straight};
 use crate::failure::Failure;
 
 /// Where stability changes by a real eigenvalue.
@@ -203,7 +204,7 @@ fn unicycle(claims: &mut Vec<Claim>) -> Result<(), Failure> {
 fn reach(claims: &mut Vec<Claim>) -> Result<(), Failure> {
     let (mut ranks, mut lane, mut turn) = (Vec::new(), Vec::new(), Vec::new());
     for speed in [1.0, 5.0] {
-        let (equations, outputs) = straight(speed, &LANE)?;
+        let (equations, outputs) = straight(speed, &OUTPUTS)?;
         ranks.push(Controllability::of(&equations.system).map_err(told)?.rank);
         lane.push(output_rank(&equations.system, &outputs));
         turn.push(output_rank(&equations.system, &outputs[..5]));
@@ -227,7 +228,7 @@ fn reach(claims: &mut Vec<Claim>) -> Result<(), Failure> {
         &turn,
         5,
     );
-    for outputs in [&LANE[..], &LANE[..5]] {
+    for outputs in [&OUTPUTS[..], &OUTPUTS[..5]] {
         let mut worst = 15;
         for speed in [1.0, 5.0] {
             let closed = steered(speed, outputs)?

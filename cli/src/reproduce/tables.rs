@@ -1,5 +1,6 @@
 //! Tables I, II and III: parameters, and gains that place all poles at −8 1/s.
 
+use appell_papers::steering::{GAINS, Gains, MISPRINT, OUTPUTS};
 use appell_runtime::control::operating_point::{MotionEquations, OperatingPoint};
 use appell_runtime::control::reduction::{Subsystem, reduce};
 use appell_runtime::control::robust_placement;
@@ -11,10 +12,8 @@ use crate::failure::Failure;
 
 /// Real part of all poles in 1/s.
 pub(super) const POLE: f64 = -8.0;
-/// Outputs of the lane change; the turn leaves the last one out.
-pub(super) const LANE: [&str; 6] = ["omega_1", "theta", "sigma", "r", "psi", "y_G"];
-/// Names of their gains, and units.
-const GAINS: [(&str, &str); 6] = [
+/// Letters of the gains, and units.
+const LETTERS: [(&str, &str); 6] = [
     ("D_ϑ", "N s"),
     ("P_ϑ", "N"),
     ("D_r", "N s/m"),
@@ -22,34 +21,6 @@ const GAINS: [(&str, &str); 6] = [
     ("P_ψ", "N"),
     ("P_y", "N/m"),
 ];
-
-/// A column of table II or III: name, speed in m/s, gains as printed.
-const COLUMNS: [(&str, f64, &[&str]); 4] = [
-    (
-        "table II",
-        1.0,
-        &[
-            "-2042.70", "-7637.29", "2116.86", "11942.04", "3382.02", "4509.36",
-        ],
-    ),
-    (
-        "table II",
-        5.0,
-        &["75.51", "777.28", "99.52", "405.60", "676.4", "180.37"],
-    ),
-    (
-        "table III",
-        1.0,
-        &["-776.65", "-2776.88", "882.53", "4881.84", "536.67"],
-    ),
-    (
-        "table III",
-        5.0,
-        &["106.44", "-128.32", "41.49", "73.69", "112.73"],
-    ),
-];
-/// The gain that is misprinted.
-const MISPRINT: &str = "536.67";
 
 /// Table I: letter in the spec, value.
 const PARAMETERS: [(&str, &str, f64); 4] = [
@@ -114,14 +85,19 @@ pub(super) fn section() -> Result<Section, Failure> {
             "appell check unicycle",
         ));
     }
-    for (table, speed, printed) in COLUMNS {
-        let outputs = &LANE[..printed.len()];
+    for Gains {
+        table,
+        speed,
+        printed,
+    } in GAINS
+    {
+        let outputs = &OUTPUTS[..printed.len()];
         let gains = placed(speed, outputs)?;
         let command = format!(
             "appell control unicycle --at omega_2={speed}[m/s]/R --outputs {} --poles {POLE}",
             outputs.join(",")
         );
-        for ((printed, gain), (letter, unit)) in printed.iter().zip(gains.iter()).zip(GAINS) {
+        for ((printed, gain), (letter, unit)) in printed.iter().zip(gains.iter()).zip(LETTERS) {
             claims.push(entry(
                 table,
                 speed,
@@ -158,9 +134,10 @@ fn entry(
     let published = format!("{letter} = {printed} {unit}");
     let wanted = printed.parse().unwrap_or(f64::NAN);
     let claim = Claim::number(&place, &published, [wanted, gain], 0, command);
-    if printed == MISPRINT {
-        // 5 R² m p⁵/(8 φ̇ g) = 563.67 N: two digits are swapped in print.
-        let holds = format!("{gain:.2}") == "563.67";
+    let [misprint, right] = MISPRINT;
+    if printed == misprint {
+        // 5 R² m p⁵/(8 φ̇ g)
+        let holds = format!("{gain:.2}") == right;
         return Claim { holds, ..claim }.verdict(Verdict::Erratum("misprint, two digits swapped"));
     }
     let digits = printed.chars().filter(char::is_ascii_digit).count();

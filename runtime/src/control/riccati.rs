@@ -77,31 +77,23 @@ pub fn continuous(a: &Matrix, b: &Matrix, q: &Matrix, r: &Matrix) -> Result<Ricc
     let g = control_energy(a, b, q, r)?;
     let gain = |x: &Matrix| r.clone().cholesky().map(|r| r.solve(&(b.transpose() * x)));
     let size = a.norm().max((&g * q).norm().sqrt()).max(f64::MIN_POSITIVE);
-    let mut x = [1.0, 0.3, 3.0]
+    let start = [1.0, 0.3, 3.0]
         .into_iter()
         .find_map(|part| doubled(cayley(a, &g, q, part * size)?))
         .ok_or(RiccatiError::NoStabilisingSolution)?;
+    let newton = |x: &Matrix| {
+        let k = gain(x)?;
+        let right = -(q + k.transpose() * r * &k);
+        lyapunov(&(a - b * k), &right)
+    };
     let residual = |x: &Matrix| {
         let terms = [a.transpose() * x, x * a, -(x * &g * x), q.clone()];
         relative(&terms)
     };
-    let mut smallest = residual(&x);
-    for _ in 0..NEWTON_STEPS {
-        let Some(k) = gain(&x) else { break };
-        let closed = a - b * &k;
-        let right = -(q + k.transpose() * r * k);
-        let Some(next) = lyapunov(&closed, &right) else {
-            break;
-        };
-        let left = residual(&next);
-        if left.is_nan() || left >= smallest {
-            break;
-        }
-        (x, smallest) = (next, left);
-    }
+    let (x, residual) = polished(start, newton, residual);
     let gain = gain(&x).ok_or(RiccatiError::InputWeight)?;
     let stable = spectrum::eigenvalues(&(a - b * &gain))?;
-    finish(x, gain, smallest, stable.iter().all(|pole| pole.re < 0.0))
+    finish(x, gain, residual, stable.iter().all(|pole| pole.re < 0.0))
 }
 
 /// Solves `AᵀX A − X − AᵀX B (R + BᵀX B)⁻¹ BᵀX A + Q = 0`; `K = (R + BᵀX B)⁻¹ BᵀX A`.
@@ -112,34 +104,40 @@ pub fn discrete(a: &Matrix, b: &Matrix, q: &Matrix, r: &Matrix) -> Result<Riccat
         let weight = (r + &bx * b).cholesky()?;
         Some(weight.solve(&(bx * a)))
     };
-    let mut x = doubled([a.clone(), g, q.clone()]).ok_or(RiccatiError::NoStabilisingSolution)?;
+    let start = doubled([a.clone(), g, q.clone()]).ok_or(RiccatiError::NoStabilisingSolution)?;
+    let newton = |x: &Matrix| {
+        let k = gain(x)?;
+        let right = q + k.transpose() * r * &k;
+        stein(&(a - b * k), &right)
+    };
     let residual = |x: &Matrix| {
         let k = gain(x).unwrap_or_else(|| Matrix::zeros(b.ncols(), a.nrows()));
         let ax = a.transpose() * x;
         relative(&[&ax * a, -x, -(ax * b * k), q.clone()])
     };
+    let (x, residual) = polished(start, newton, residual);
+    let gain = gain(&x).ok_or(RiccatiError::InputWeight)?;
+    let stable = spectrum::eigenvalues(&(a - b * &gain))?;
+    let inside = stable.iter().all(|pole| pole.norm() < 1.0);
+    finish(x, gain, residual, inside)
+}
+
+/// Newton steps as long as the residual falls.
+fn polished(
+    mut x: Matrix,
+    newton: impl Fn(&Matrix) -> Option<Matrix>,
+    residual: impl Fn(&Matrix) -> f64,
+) -> (Matrix, f64) {
     let mut smallest = residual(&x);
     for _ in 0..NEWTON_STEPS {
-        let Some(k) = gain(&x) else { break };
-        let closed = a - b * &k;
-        let right = q + k.transpose() * r * k;
-        let Some(next) = stein(&closed, &right) else {
-            break;
-        };
+        let Some(next) = newton(&x) else { break };
         let left = residual(&next);
         if left.is_nan() || left >= smallest {
             break;
         }
         (x, smallest) = (next, left);
     }
-    let gain = gain(&x).ok_or(RiccatiError::InputWeight)?;
-    let stable = spectrum::eigenvalues(&(a - b * &gain))?;
-    finish(
-        x,
-        gain,
-        smallest,
-        stable.iter().all(|pole| pole.norm() < 1.0),
-    )
+    (x, smallest)
 }
 
 /// B R⁻¹ Bᵀ, after the matrices were checked.

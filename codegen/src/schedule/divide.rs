@@ -53,6 +53,51 @@ fn denominators(dag: &Dag, id: Id) -> Vec<Id> {
     below
 }
 
+/// Divides early. Where the dividend comes late, the reciprocal of a denominator that is known by
+/// then costs one multiplication more, and the longest path is shorter by a division.
+pub(super) fn divide_early(dag: &mut Dag, order: &[Id], division: usize) {
+    let depths = depths(dag, order, division);
+    for &id in order {
+        let Op::Product(factors) = dag.op(id) else {
+            continue;
+        };
+        let (below, above): (Vec<Item>, Vec<Item>) = factors.iter().partition(|factor| factor.flip);
+        let ([denominator], Some(dividend)) = (
+            below.as_slice(),
+            above.iter().map(|factor| depths[factor.id.index()]).max(),
+        ) else {
+            continue;
+        };
+        if depths[denominator.id.index()] + division < dividend {
+            let denominator = *denominator;
+            let reciprocal = Item::plain(dag.intern(Op::Product(vec![denominator])));
+            let product = std::iter::once(reciprocal).chain(above).collect();
+            dag.replace(id, Op::Product(product));
+        }
+    }
+}
+
+/// Operations on the longest path to each node.
+fn depths(dag: &Dag, order: &[Id], division: usize) -> Vec<usize> {
+    let mut depths = vec![0; dag.len()];
+    for &id in order {
+        let mut deepest = 0;
+        dag.for_each_part(id, |part| deepest = deepest.max(depths[part.id.index()]));
+        depths[id.index()] = deepest
+            + match dag.op(id) {
+                Op::Number(_) | Op::Argument(_) | Op::Kept(_) => 0,
+                Op::Sum(_) | Op::Choice(..) => 1,
+                Op::Product(factors) if factors.iter().any(|factor| factor.flip) => division,
+                Op::Product(_) => 1,
+                Op::Function(..) | Op::Atan2(_) | Op::Power(_) | Op::Solution { .. } => FUNCTION,
+            };
+    }
+    depths
+}
+
+/// Operations that a function or a linear system takes as long as, about.
+const FUNCTION: usize = 10;
+
 /// Most denominators that share a division. Their product must stay far from overflow, in single
 /// precision too.
 const MOST: usize = 3;

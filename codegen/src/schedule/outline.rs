@@ -112,8 +112,8 @@ impl<'a> Outline<'a> {
         }
     }
 
-    /// What is used twice is computed once; what has a name is worth a line of its own if it is more
-    /// than one operation.
+    /// What is used twice is computed once, and so is a reciprocal; what has a name is worth a line
+    /// of its own if it is more than one operation.
     fn choose_bound(&mut self) {
         for &id in &self.order {
             let i = id.index();
@@ -133,12 +133,14 @@ impl<'a> Outline<'a> {
                 _ => 1,
             };
             let sum = matches!(self.dag.op(id), Op::Sum(_));
+            let reciprocal = matches!(self.dag.op(id), Op::Product(_)) && parts == 1;
             let worth_reading = match self.dag.names[i] {
                 Some(name) => parts > 2 || sum && !name.automatic,
                 None => false,
             };
             self.bound[i] |= self.uses[i] >= 2
                 || worth_reading
+                || reciprocal
                 || parts == usize::MAX
                 || self.partner[i].is_some();
         }

@@ -3,7 +3,7 @@
 use super::Tuning;
 use super::cancel::cancel;
 use super::dag::{Dag, Id, Item};
-use super::divide::{join_divisions, share_reciprocals};
+use super::divide::{divide_early, join_divisions, share_reciprocals};
 use super::factor::factor;
 use super::gather::{gather, scatter};
 use super::meet::{meet, meet_in_multiples, meet_in_parts, name_again, refer_to_kept};
@@ -125,6 +125,8 @@ pub(super) fn cheapest(derived: &Dag, tuning: Tuning) -> Dag {
     if weigh(&joint) < weigh(&best) {
         best = joint;
     }
+    let order = best.order();
+    divide_early(&mut best, &order, tuning.division);
     name_again(&mut best, derived);
     best
 }

@@ -182,8 +182,10 @@ pub fn jacobians<T: Real>(
     let A_type_p = T::if_less(p, p_minus_half, solution_4_1, zero)
         + T::if_less_or_equal(t, K, one, zero) - A_type_p_part_1;
     let [solution_5_1, _, _] = lu_solve(&lu_1, [-solution_1_3, zero, -solution_1_2]);
-    let d_crate_d_half = cos_half + number_half / sqrt_half + crate_part_1 + one
-        + one / (one + half * half) + one / half - tanh_half * tanh_half;
+    let one_over_one_plus_half_squared = one / (one + half * half);
+    let inv_half = one / half;
+    let d_crate_d_half = cos_half + number_half / sqrt_half + crate_part_1
+        + one_over_one_plus_half_squared + one + inv_half - tanh_half * tanh_half;
     let A_type_half = A_type_p_part_1
         + T::if_less(p, p_minus_half, solution_5_1, d_crate_d_half);
 

@@ -174,7 +174,7 @@ pub fn kinematics<T: Real>(
 /// Acceleration energy S (Gibbs function) at the actual motion.
 ///
 /// From `mechanisms/unicycle.toml`.
-/// Operations: 46 (14 +, 30 ×, 2 ÷), sine or cosine of 1 angle.
+/// Operations: 47 (14 +, 31 ×, 2 ÷), sine or cosine of 1 angle.
 #[must_use]
 #[inline]
 pub fn acceleration_energy<T: Real>(
@@ -188,6 +188,7 @@ pub fn acceleration_energy<T: Real>(
     let zero = T::constant(0.0);
     let quarter = T::constant(0.25);
     let five_eighths = T::constant(0.625);
+    let one = T::constant(1.0);
     let five_quarters = T::constant(1.25);
     let three_halves = T::constant(1.5);
     let two = T::constant(2.0);
@@ -200,6 +201,7 @@ pub fn acceleration_energy<T: Real>(
 
     // total
     let m0_r = m0 * r;
+    let omega_1_dot_part_1 = one / (five_quarters * m_R_squared + m0_r * r);
     let omega_3_squared = omega_3 * omega_3;
     let R_omega_3 = R * omega_3;
     let R_omega_2_omega_3 = R_omega_3 * omega_2;
@@ -207,16 +209,15 @@ pub fn acceleration_energy<T: Real>(
     let f_4_part_1 = R_omega_2_omega_3 + g_sin_theta;
     let f_4 = u + m0 * (r * (omega_3_squared + omega_1 * omega_1) - f_4_part_1);
     let tan_theta_omega_3 = sin_theta * omega_3 / cos_theta;
-    let omega_1_dot_part_1 = g_sin_theta + three_halves * R_omega_2_omega_3;
-    let omega_1_dot_part_2 = quarter * R_omega_3 * tan_theta_omega_3;
-    let omega_1_dot_part_3 = f_4 + m * (omega_1_dot_part_1 - omega_1_dot_part_2);
-    let omega_1_dot_part_4 = omega_1_dot_part_3 + m0 * f_4_part_1;
-    let omega_1_dot_part_5 = m0_r * (omega_3_squared - tan_theta_omega_3 * omega_2);
-    let omega_1_dot_part_6 = g * cos_theta + tan_theta_omega_3 * omega_3 * r;
-    let omega_1_dot_part_7 = R * (omega_1_dot_part_4 - omega_1_dot_part_5);
-    let omega_1_dot_part_8 = m0_r * (omega_1_dot_part_6 + two * omega_1 * sigma);
-    let omega_1_dot_part_9 = omega_1_dot_part_7 - omega_1_dot_part_8;
-    let omega_1_dot = omega_1_dot_part_9 / (five_quarters * m_R_squared + m0_r * r);
+    let omega_1_dot_part_2 = g_sin_theta + three_halves * R_omega_2_omega_3;
+    let omega_1_dot_part_3 = quarter * R_omega_3 * tan_theta_omega_3;
+    let omega_1_dot_part_4 = f_4 + m * (omega_1_dot_part_2 - omega_1_dot_part_3);
+    let omega_1_dot_part_5 = omega_1_dot_part_4 + m0 * f_4_part_1;
+    let omega_1_dot_part_6 = m0_r * (omega_3_squared - tan_theta_omega_3 * omega_2);
+    let omega_1_dot_part_7 = g * cos_theta + tan_theta_omega_3 * omega_3 * r;
+    let omega_1_dot_part_8 = R * (omega_1_dot_part_5 - omega_1_dot_part_6);
+    let omega_1_dot_part_9 = m0_r * (omega_1_dot_part_7 + two * omega_1 * sigma);
+    let omega_1_dot = omega_1_dot_part_1 * (omega_1_dot_part_8 - omega_1_dot_part_9);
     let s_wheel = five_eighths * m_R_squared * omega_1_dot * omega_1_dot;
 
     AccelerationEnergy {
@@ -443,7 +444,7 @@ pub fn generalized_forces<T: Real>(
 /// Rates ẋ of the state by Appell's equations M ω̇ + b = Π and kinematics.
 ///
 /// From `mechanisms/unicycle.toml`.
-/// Operations: 97 (30 +, 63 ×, 4 ÷), sine or cosine of 2 angles.
+/// Operations: 99 (30 +, 65 ×, 4 ÷), sine or cosine of 2 angles.
 #[must_use]
 #[inline]
 pub fn rates<T: Real>(
@@ -471,6 +472,7 @@ pub fn rates<T: Real>(
     let three_halves_m_R = three_halves * m_R;
     let m0_R = m0 * R;
     let M_22 = R * (three_halves_m_R + m0_R);
+    let inv_m0 = one / m0;
 
     // Generalised velocities.
     let inv_cos_theta = one / cos_theta;
@@ -485,6 +487,7 @@ pub fn rates<T: Real>(
     // Appell's equations, solved.
     let m0_r = m0 * r;
     let m0_r_squared = m0_r * r;
+    let omega_1_dot_part_1 = one / (five_quarters * m_R_squared + m0_r_squared);
     let m0_omega_3_r = m0_r * omega_3;
     let m0_omega_3_squared_r = m0_omega_3_r * omega_3;
     let m0_omega_1_r = m0_r * omega_1;
@@ -502,7 +505,7 @@ pub fn rates<T: Real>(
         - m0_omega_3_squared_r * tan_theta_r - m0_omega_1_r * two_sigma;
     let f_1 = f_1_part_1
         - R_omega_3 * (m0_omega_3_r + m * R_omega_3 * quarter_tan_theta);
-    let omega_1_dot = (f_1 + R * f_4) / (five_quarters * m_R_squared + m0_r_squared);
+    let omega_1_dot = omega_1_dot_part_1 * (f_1 + R * f_4);
     let R_omega_1_omega_3 = R_omega_3 * omega_1;
     let m_R_squared_omega_1_omega_3 = m_R * R_omega_1_omega_3;
     let f_3 = m0_r * R_omega_1_omega_3 + quarter_tan_theta * m_R_squared_omega_1_omega_3
@@ -516,7 +519,7 @@ pub fn rates<T: Real>(
     let inv_D_2 = one / D_2;
     let omega_2_dot = inv_D_2 * (f_3 * m0_R_r + f_2 * M_33);
     let omega_3_dot = inv_D_2 * (m0_R_r * f_2 + M_22 * f_3);
-    let sigma_dot = f_4 / m0 + R * omega_1_dot;
+    let sigma_dot = inv_m0 * f_4 + R * omega_1_dot;
 
     State {
         omega_1: omega_1_dot,

@@ -86,9 +86,8 @@ fn depths(dag: &Dag, order: &[Id], division: usize) -> Vec<usize> {
         depths[id.index()] = deepest
             + match dag.op(id) {
                 Op::Number(_) | Op::Argument(_) | Op::Kept(_) => 0,
-                Op::Sum(_) | Op::Choice(..) => 1,
                 Op::Product(factors) if factors.iter().any(|factor| factor.flip) => division,
-                Op::Product(_) => 1,
+                Op::Sum(_) | Op::Product(_) | Op::Choice(..) => 1,
                 Op::Function(..) | Op::Atan2(_) | Op::Power(_) | Op::Solution { .. } => FUNCTION,
             };
     }

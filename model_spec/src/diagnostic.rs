@@ -95,6 +95,8 @@ impl Diagnostic {
 pub struct Report {
     file: String,
     text: String,
+    /// Line of the file at which the text begins, from 1.
+    first_line: usize,
     diagnostics: Vec<Diagnostic>,
 }
 
@@ -109,8 +111,17 @@ impl Report {
         Self {
             file: file.into(),
             text: text.into(),
+            first_line: 1,
             diagnostics,
         }
+    }
+
+    /// Tells that the text is only a part of the file, from this line on, counted from 1: of a
+    /// recording of gigabytes nobody keeps more than the line in question.
+    #[must_use]
+    pub fn from_line(mut self, first_line: usize) -> Self {
+        self.first_line = first_line;
+        self
     }
 
     /// Name of the file.
@@ -132,7 +143,8 @@ impl Report {
 
     /// Line and column of a place, both from 1; the column counts characters.
     pub fn line_column(&self, at: usize) -> (usize, usize) {
-        line_column(&self.text, at)
+        let (line, column) = line_column(&self.text, at);
+        (line - 1 + self.first_line, column)
     }
 
     /// The report as plain text.

@@ -27,7 +27,7 @@ pub use diagnostic::{Code, Diagnostic, Report, Severity};
 pub use mechanism::Mechanism;
 pub use resolve::{Scope, Snippet, formula};
 pub use starter::{NameError, starter};
-pub use suggest::{closest, did_you_mean};
+pub use suggest::{closest, did_you_mean, shown};
 
 /// A mechanism that passed every check of this crate.
 #[derive(Debug, Clone)]

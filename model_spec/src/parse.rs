@@ -16,6 +16,7 @@ use crate::limits::MAX_FILE;
 use crate::suggest::{self, shown};
 
 pub(crate) use expression::zero;
+pub use values::unit_diagnostic;
 
 /// Most diagnostics collected; more would help nobody.
 const MAX_FINDINGS: usize = 1000;

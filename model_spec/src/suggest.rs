@@ -47,7 +47,7 @@ pub(crate) fn list<'a>(words: impl IntoIterator<Item = &'a str>) -> String {
 }
 
 /// As much of somebody's word as a message can hold, on one line.
-pub(crate) fn shown(word: &str) -> String {
+pub fn shown(word: &str) -> String {
     let seen = |c: char| if c.is_control() { '\u{fffd}' } else { c };
     word.chars().take(MAX_SHOWN).map(seen).collect()
 }

@@ -3,7 +3,8 @@
 //! With the feature `std`, the default:
 //!
 //! - [`model`]: the trait that emitted models and models made at run time implement;
-//! - [`signal`] and [`inputs`]: what drives a model;
+//! - [`signal`]: tabulated functions of time; derivatives of noisy samples with their covariance;
+//! - [`inputs`]: what drives a model;
 //! - [`integrate`]: initial value problems, events, typed failures;
 //! - [`linearise`]: A and B in the independent states;
 //! - [`simulate`] and [`trajectory`]: motions of a model and their files;

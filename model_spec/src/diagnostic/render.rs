@@ -85,7 +85,7 @@ fn snippet<'a>(
             });
     // A carriage return would be shown as a symbol; a blank keeps the places.
     Snippet::source(text[from..to].replace('\r', " "))
-        .line_start(super::line_column(text, from).0)
+        .line_start(report.line_column(from).0)
         .path(report.file.as_str())
         .annotations(annotations)
 }

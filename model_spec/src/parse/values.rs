@@ -319,10 +319,7 @@ fn number_of(value: &DeValue<'_>) -> Result<BigRational, NumberError> {
 }
 
 /// What a refused unit is told; `place` maps places in the unit text to places in the file.
-pub(super) fn unit_diagnostic(
-    error: &UnitError,
-    place: impl Fn(Range<usize>) -> Span,
-) -> Diagnostic {
+pub fn unit_diagnostic(error: &UnitError, place: impl Fn(Range<usize>) -> Span) -> Diagnostic {
     match error {
         UnitError::Unknown {
             symbol,

@@ -1,0 +1,134 @@
+//! CSV files without a description: columns carry the names of the spec, in its units.
+
+use std::path::PathBuf;
+
+use appell_spec::Mechanism;
+
+use super::channel::{self, Channel, Measured, Role};
+use super::clock::Sampling;
+use super::limits::{MAX_NUMBERS, MAX_RUNS, MIN_ROWS};
+use super::{DataError, DataSet, Finding, FindingKind, Parameter, Part, Run, Spec, csv, noise};
+
+/// What is held out of several runs, or of one: the last third.
+const HELD_OUT: usize = 3;
+/// What lies between the parts of one run, in s, so that the second does not continue the first.
+const APART: f64 = 1.0;
+
+/// Reads CSV files whose columns have the names and units of the spec. The last third of the files is
+/// held out; of a single one its last third, after a second.
+pub fn read_bare(spec: Spec, files: &[PathBuf]) -> Result<DataSet, DataError> {
+    let mechanism = appell_spec::load(&spec.file, &spec.text)?.mechanism;
+    let Some(first) = files.first() else {
+        return Err(DataError::whole(spec.file, "there is no recording"));
+    };
+    if files.len() > MAX_RUNS {
+        let message = format!("a data set has at most {MAX_RUNS} runs");
+        return Err(DataError::whole(first.to_string_lossy(), message));
+    }
+    let channels = channels(&csv::header(first)?, &mechanism);
+    if !channels.iter().any(Channel::is_measured) {
+        let message = format!(
+            "no column is a quantity of `{}`; it has {}",
+            mechanism.name,
+            Measured::names(&mechanism).join(", ")
+        );
+        return Err(DataError::whole(first.to_string_lossy(), message));
+    }
+    let held_out = match files.len() {
+        1 => 0,
+        count => (count / HELD_OUT).max(1),
+    };
+    let (mut runs, mut findings, mut errors) = (Vec::new(), Vec::new(), Vec::new());
+    let mut budget = MAX_NUMBERS;
+    for (index, path) in files.iter().enumerate() {
+        let part = if index + held_out < files.len() {
+            Part::Fit
+        } else {
+            Part::Test
+        };
+        match csv::read(path, &channels, &mut budget) {
+            Ok(table) => {
+                let name = path.to_string_lossy().into_owned();
+                runs.push(channel::run(name, part, table, &channels, &mut findings));
+            }
+            Err(error) => errors.push(error),
+        }
+    }
+    if !errors.is_empty() {
+        return Err(DataError::several(errors));
+    }
+    if held_out > 0 {
+        let message = format!("the last {held_out} of {} runs are held out", files.len());
+        findings.push(Finding::new(FindingKind::Split, message));
+    } else {
+        split(&mut runs, &mut findings);
+    }
+    let own = mechanism.parameters.iter();
+    let parameters = own.map(|parameter| Parameter {
+        value: parameter.value,
+        std: None,
+    });
+    let mut set = DataSet {
+        parameters: parameters.collect(),
+        spec,
+        mechanism,
+        description: String::new(),
+        channels,
+        runs,
+        findings,
+    };
+    noise::find(&mut set);
+    set.findings.sort_by_key(Finding::order);
+    Ok(set)
+}
+
+/// The columns that the spec knows.
+fn channels(header: &[String], mechanism: &Mechanism) -> Vec<Channel> {
+    let known = header.iter().filter_map(|column| {
+        let input = mechanism
+            .inputs
+            .iter()
+            .position(|i| i.label.name == *column);
+        let role = Measured::named(column, mechanism)
+            .map(Role::Measures)
+            .or(input.map(Role::Input))?;
+        let unit = role.label(mechanism)?.unit.clone();
+        Some(Channel::new(column, role, unit, None))
+    });
+    known.collect()
+}
+
+/// Splits the only run in time.
+fn split(runs: &mut Vec<Run>, findings: &mut Vec<Finding>) {
+    let [run] = &runs[..] else { return };
+    let end = run.times.last().copied().unwrap_or(0.0);
+    let kept = run.duration() / HELD_OUT as f64;
+    let fitted = run.times.partition_point(|t| *t <= end - kept);
+    let tested = run.times.partition_point(|t| *t <= end - kept + APART);
+    if run.times.len() - tested < MIN_ROWS || fitted < MIN_ROWS {
+        let message = "the only run is too short to hold a part of it out";
+        findings.push(Finding::new(FindingKind::NoTestRun, message));
+        return;
+    }
+    let message = format!(
+        "one run only: it is fitted up to {:.3} s and held out from {:.3} s; another run would tell more",
+        run.times[fitted - 1],
+        run.times[tested]
+    );
+    findings.push(Finding::new(FindingKind::Split, message));
+    let piece = |rows: std::ops::Range<usize>, part| Run {
+        name: run.name.clone(),
+        part,
+        sampling: Sampling::of(&run.times[rows.clone()]),
+        times: run.times[rows.clone()].to_vec(),
+        values: run
+            .values
+            .iter()
+            .map(|values| values[rows.clone()].to_vec())
+            .collect(),
+    };
+    *runs = vec![
+        piece(0..fitted, Part::Fit),
+        piece(tested..run.times.len(), Part::Test),
+    ];
+}

@@ -1,0 +1,151 @@
+//! Times that increase: which rows are in order, how long the steps are, where they gape.
+
+use appell_spec::{Code, Diagnostic, Report};
+
+use super::finding::counted;
+use super::limits::MAX_LEFT_OUT;
+use super::{DataError, Finding, FindingKind};
+
+/// A step so many times the median is a gap.
+const GAP: f64 = 5.0;
+/// Most gaps that a message lists.
+const LISTED: usize = 3;
+
+/// Lets rows pass whose time is later than all before, and counts the others.
+#[derive(Default)]
+pub(super) struct Clock {
+    latest: Option<f64>,
+    rows: usize,
+    repeated: Skipped,
+    backward: Skipped,
+    missing: Skipped,
+}
+
+/// Rows left out for one reason.
+#[derive(Default)]
+struct Skipped {
+    count: usize,
+    /// Number and text of the first line.
+    first: Option<(usize, String)>,
+}
+
+impl Clock {
+    /// Whether a row comes later than all before.
+    pub(super) fn accept(&mut self, t: f64, line: usize, text: &str) -> bool {
+        self.rows += 1;
+        let skipped = if t.is_nan() {
+            &mut self.missing
+        } else if self.latest.is_some_and(|latest| t < latest) {
+            &mut self.backward
+        } else if self.latest == Some(t) {
+            &mut self.repeated
+        } else {
+            self.latest = Some(t);
+            return true;
+        };
+        skipped.count += 1;
+        skipped.first.get_or_insert_with(|| (line, text.to_owned()));
+        false
+    }
+
+    /// What was left out; an error where that is more than the slips of a logger.
+    pub(super) fn findings(self, file: &str) -> Result<Vec<Finding>, DataError> {
+        let most = MAX_LEFT_OUT * self.rows as f64;
+        let kinds = [
+            (
+                self.backward,
+                FindingKind::BackwardTime,
+                "the time goes back",
+                "where the clock starts anew, split the file into two runs",
+            ),
+            (
+                self.repeated,
+                FindingKind::RepeatedTime,
+                "the time stands still",
+                "write the times with more digits, or keep one row for each time",
+            ),
+            (
+                self.missing,
+                FindingKind::MissingTime,
+                "the time is missing",
+                "every row needs its time in seconds",
+            ),
+        ];
+        let mut findings = Vec::new();
+        for (skipped, kind, what, help) in kinds {
+            let Some((line, text)) = skipped.first else {
+                continue;
+            };
+            let rows = counted(skipped.count, "row");
+            if skipped.count as f64 > most {
+                let message = format!(
+                    "{what}, here and in {} of {} rows",
+                    skipped.count, self.rows
+                );
+                let diagnostic = Diagnostic::error(Code::SignalTable, message);
+                let diagnostic = diagnostic.at(0..text.len(), "").help(help);
+                return Err(Report::new(file, text, vec![diagnostic])
+                    .from_line(line)
+                    .into());
+            }
+            let message = format!("{what}: {rows} of {} left out", self.rows);
+            findings.push(Finding::new(kind, message).on_line(line));
+        }
+        Ok(findings)
+    }
+}
+
+/// Steps between times.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Sampling {
+    /// Median step in s.
+    pub step: f64,
+    /// Shortest step in s.
+    pub shortest: f64,
+    /// Longest step in s.
+    pub longest: f64,
+    /// Begin and end of the steps that are gaps, in s.
+    pub gaps: Vec<[f64; 2]>,
+}
+
+impl Sampling {
+    pub(super) fn of(times: &[f64]) -> Self {
+        let mut steps: Vec<f64> = times.windows(2).map(|pair| pair[1] - pair[0]).collect();
+        let middle = steps.len() / 2;
+        let step = if steps.is_empty() {
+            0.0
+        } else {
+            *steps.select_nth_unstable_by(middle, f64::total_cmp).1
+        };
+        let gaps = times
+            .windows(2)
+            .filter(|pair| pair[1] - pair[0] > GAP * step);
+        Self {
+            step,
+            shortest: steps.iter().copied().fold(f64::INFINITY, f64::min),
+            longest: steps.iter().copied().fold(0.0, f64::max),
+            gaps: gaps.map(|pair| [pair[0], pair[1]]).collect(),
+        }
+    }
+
+    pub(super) fn findings(&self) -> Option<Finding> {
+        if self.gaps.is_empty() {
+            return None;
+        }
+        let listed = self.gaps.iter().take(LISTED);
+        let listed: Vec<String> = listed
+            .map(|[from, to]| format!("{:.3} s after {from:.3} s", to - from))
+            .collect();
+        let more = match self.gaps.len().saturating_sub(LISTED) {
+            0 => String::new(),
+            more => format!(" and {more} more"),
+        };
+        let message = format!(
+            "{} in steps of {:.3} ms: {}{more}",
+            counted(self.gaps.len(), "gap"),
+            1e3 * self.step,
+            listed.join(", ")
+        );
+        Some(Finding::new(FindingKind::Gap, message))
+    }
+}

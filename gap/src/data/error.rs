@@ -1,0 +1,65 @@
+//! Why a data set cannot be read.
+
+use std::path::PathBuf;
+
+use appell_spec::Report;
+
+/// Why a data set cannot be read.
+#[derive(Debug, thiserror::Error)]
+pub enum DataError {
+    /// Mistakes in a file, with their places.
+    #[error("{0}")]
+    Report(Box<Report>),
+    /// A file cannot be opened or read.
+    #[error("cannot read {}: {cause}", path.display())]
+    File {
+        /// The file.
+        path: PathBuf,
+        /// What the system says.
+        cause: std::io::Error,
+    },
+    /// A folder without a description.
+    #[error(
+        "{} holds no recording.toml; write one, or name the mechanism and the CSV files themselves",
+        folder.display()
+    )]
+    NoManifest {
+        /// The folder.
+        folder: PathBuf,
+    },
+    /// A file is wrong as a whole.
+    #[error("{file}: {message}")]
+    Whole {
+        /// The file.
+        file: String,
+        /// What is wrong, and what to do.
+        message: String,
+    },
+    /// Several of them.
+    #[error("{}", .0.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n\n"))]
+    Several(Vec<DataError>),
+}
+
+impl DataError {
+    /// One error or several.
+    pub(super) fn several(mut errors: Vec<Self>) -> Self {
+        match errors.len() {
+            1 => errors.remove(0),
+            _ => Self::Several(errors),
+        }
+    }
+
+    /// A file that is wrong as a whole.
+    pub(super) fn whole(file: impl Into<String>, message: impl Into<String>) -> Self {
+        Self::Whole {
+            file: file.into(),
+            message: message.into(),
+        }
+    }
+}
+
+impl From<Report> for DataError {
+    fn from(report: Report) -> Self {
+        Self::Report(Box::new(report))
+    }
+}

@@ -1,0 +1,181 @@
+//! Tables of a TOML file, read with places; what is wrong is told and left out, so that all of it is
+//! told.
+
+use appell_spec::expr::Span;
+use appell_spec::units::{self, Unit};
+use appell_spec::{Code, Diagnostic, Report, Severity, did_you_mean, shown};
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+/// A value with its place.
+pub(super) type Value<'t> = Spanned<DeValue<'t>>;
+
+/// The text of a file, and what is wrong with it.
+pub(super) struct Fields<'t> {
+    file: &'t str,
+    text: &'t str,
+    findings: Vec<Diagnostic>,
+}
+
+impl<'t> Fields<'t> {
+    /// Parses a file.
+    pub(super) fn new(file: &'t str, text: &'t str) -> (Self, Spanned<DeTable<'t>>) {
+        let (table, errors) = DeTable::parse_recoverable(text);
+        let findings = errors.iter().map(|error| {
+            let message = error.message().lines().next().unwrap_or_default();
+            Diagnostic::error(Code::TomlSyntax, message).at(error.span().unwrap_or(0..0), "")
+        });
+        let fields = Self {
+            file,
+            text,
+            findings: findings.take(super::limits::MAX_MISTAKES).collect(),
+        };
+        (fields, table)
+    }
+
+    /// Adds a finding.
+    pub(super) fn tell(&mut self, code: Code, message: impl Into<String>, at: Span, help: &str) {
+        let diagnostic = Diagnostic::error(code, message).at(at, "");
+        let help = (!help.is_empty()).then(|| help.to_owned());
+        self.findings.push(diagnostic.maybe_help(help));
+    }
+
+    /// Whether something is wrong.
+    pub(super) fn is_wrong(&self) -> bool {
+        self.findings
+            .iter()
+            .any(|finding| finding.severity == Severity::Error)
+    }
+
+    /// Everything that is wrong.
+    pub(super) fn report(self) -> Report {
+        Report::new(self.file, self.text, self.findings)
+    }
+
+    /// The table of a section; nothing where it is absent.
+    pub(super) fn section<'a, 'd>(
+        &mut self,
+        table: &'a DeTable<'d>,
+        name: &str,
+    ) -> Option<&'a DeTable<'d>> {
+        let value = table.get(name)?;
+        let inner = value.get_ref().as_table();
+        if inner.is_none() {
+            self.wrong_type(value, &format!("a table `[{name}]`"));
+        }
+        inner
+    }
+
+    /// Tells of keys that nobody reads.
+    pub(super) fn only(&mut self, table: &DeTable<'_>, keys: &[&str]) {
+        for key in table.keys() {
+            let name = key.get_ref().as_ref();
+            if !keys.contains(&name) {
+                let help = did_you_mean(name, keys.iter().copied(), || {
+                    format!("the keys are {}", keys.join(", "))
+                });
+                let message = format!("unknown key `{}`", shown(name));
+                self.tell(Code::UnknownKey, message, key.span(), &help);
+            }
+        }
+    }
+
+    /// A text that may be absent.
+    pub(super) fn string(&mut self, table: &DeTable<'_>, key: &str) -> Option<(String, Span)> {
+        let value = table.get(key)?;
+        self.text_of(value)
+    }
+
+    fn text_of(&mut self, value: &Value<'_>) -> Option<(String, Span)> {
+        let text = value.get_ref().as_str();
+        if text.is_none() {
+            self.wrong_type(value, "a string");
+        }
+        Some((text?.to_owned(), value.span()))
+    }
+
+    /// A list of texts; empty where it is absent.
+    pub(super) fn strings(&mut self, table: &DeTable<'_>, key: &str) -> Vec<(String, Span)> {
+        let Some(value) = table.get(key) else {
+            return Vec::new();
+        };
+        let Some(list) = value.get_ref().as_array() else {
+            self.wrong_type(value, "a list of file names");
+            return Vec::new();
+        };
+        let texts = list.iter().map(|value| self.text_of(value));
+        texts.collect::<Vec<_>>().into_iter().flatten().collect()
+    }
+
+    /// A finite number.
+    pub(super) fn number(&mut self, value: &Value<'_>) -> Option<f64> {
+        let number = match value.get_ref() {
+            DeValue::Float(float) => float.as_str().parse::<f64>().ok(),
+            DeValue::Integer(integer) => integer.as_str().parse::<f64>().ok(),
+            _ => {
+                self.wrong_type(value, "a number");
+                return None;
+            }
+        };
+        let finite = number.filter(|number| number.is_finite());
+        if finite.is_none() {
+            let help = "write a decimal number";
+            self.tell(Code::NotFinite, "not a finite number", value.span(), help);
+        }
+        finite
+    }
+
+    /// A number that may be absent and is not negative.
+    pub(super) fn deviation(&mut self, table: &DeTable<'_>, key: &str) -> Option<f64> {
+        let value = table.get(key)?;
+        let number = self.number(value)?;
+        if number < 0.0 {
+            let message = format!("`{key}` is a standard deviation, which is not negative");
+            self.tell(Code::ValueOutsideLimits, message, value.span(), "");
+            return None;
+        }
+        Some(number)
+    }
+
+    /// A unit that may be absent: then the one of the quantity. One of another dimension is told.
+    pub(super) fn unit(&mut self, table: &DeTable<'_>, of: Option<(&str, &Unit)>) -> Option<Unit> {
+        let Some((text, at)) = self.string(table, "unit") else {
+            return of.map(|(_, unit)| unit.clone());
+        };
+        let unit = match units::parse(&text) {
+            Ok(unit) => unit,
+            Err(error) => {
+                // Between the quotes, unless escapes make the text another one.
+                let start = at.start + 1;
+                let same = self.text.get(start..start + text.len()) == Some(text.as_str());
+                let place = |part: std::ops::Range<usize>| {
+                    if same {
+                        start + part.start..start + part.end
+                    } else {
+                        at.clone()
+                    }
+                };
+                self.findings
+                    .push(appell_spec::parse::unit_diagnostic(&error, place));
+                return None;
+            }
+        };
+        if let Some((name, own)) = of
+            && own.dimension != unit.dimension
+        {
+            let wanted = units::quantity_name(&own.dimension);
+            let found = units::quantity_name(&unit.dimension);
+            let message = format!("`{name}` is {wanted}, `{text}` is {found}");
+            let help = format!("the spec measures it in `{}`", own.text);
+            self.tell(Code::UnitMismatch, message, at, &help);
+            return None;
+        }
+        Some(unit)
+    }
+
+    /// Tells that a value has another form.
+    pub(super) fn wrong_type(&mut self, value: &Value<'_>, wanted: &str) {
+        let message = format!("expected {wanted}");
+        self.tell(Code::WrongType, message, value.span(), "");
+    }
+}

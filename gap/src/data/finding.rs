@@ -1,0 +1,144 @@
+//! What was mended in recordings, and what looks wrong.
+
+use appell_spec::Severity;
+
+/// What kind of thing was found.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum FindingKind {
+    /// Rows with the time of the row before; left out.
+    RepeatedTime,
+    /// Rows earlier than a row before; left out.
+    BackwardTime,
+    /// Rows without a time; left out.
+    MissingTime,
+    /// A last line that breaks off; left out.
+    CutOff,
+    /// A step much longer than the others.
+    Gap,
+    /// Measurements that are missing.
+    Dropouts,
+    /// Missing inputs; the value before holds on.
+    HeldInput,
+    /// An angle that started anew after a turn; counted on.
+    Unwrapped,
+    /// A column that the data set does not describe; left aside.
+    UnknownColumn,
+    /// A channel that never changes.
+    Constant,
+    /// A channel that changes in steps.
+    Quantised,
+    /// A stated noise level that the data contradict.
+    NoiseDisagrees,
+    /// A noise level that cannot be told from the motion.
+    NoiseBound,
+    /// Recordings are split here, because nobody said what is held out.
+    Split,
+    /// Nothing is held out.
+    NoTestRun,
+}
+
+impl FindingKind {
+    /// Its word for programs.
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::RepeatedTime => "repeated-time",
+            Self::BackwardTime => "backward-time",
+            Self::MissingTime => "missing-time",
+            Self::CutOff => "cut-off",
+            Self::Gap => "gap",
+            Self::Dropouts => "dropouts",
+            Self::HeldInput => "held-input",
+            Self::Unwrapped => "unwrapped",
+            Self::UnknownColumn => "unknown-column",
+            Self::Constant => "constant",
+            Self::Quantised => "quantised",
+            Self::NoiseDisagrees => "noise-disagrees",
+            Self::NoiseBound => "noise-bound",
+            Self::Split => "split",
+            Self::NoTestRun => "no-test-run",
+        }
+    }
+
+    /// Whether it changes what can be concluded, or is only worth knowing.
+    pub const fn severity(self) -> Severity {
+        match self {
+            Self::BackwardTime
+            | Self::MissingTime
+            | Self::Constant
+            | Self::HeldInput
+            | Self::NoiseDisagrees
+            | Self::NoiseBound
+            | Self::NoTestRun => Severity::Warning,
+            Self::RepeatedTime
+            | Self::CutOff
+            | Self::Gap
+            | Self::Dropouts
+            | Self::Unwrapped
+            | Self::UnknownColumn
+            | Self::Quantised
+            | Self::Split => Severity::Note,
+        }
+    }
+}
+
+/// One finding.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Finding {
+    /// What kind of thing.
+    pub kind: FindingKind,
+    /// File of the run, where it is about one.
+    pub run: Option<String>,
+    /// First line of the file, from 1, where it is about one.
+    pub line: Option<usize>,
+    /// Column of the file, where it is about one.
+    pub channel: Option<String>,
+    /// One sentence.
+    pub message: String,
+}
+
+impl Finding {
+    /// A finding about the whole data set.
+    pub(super) fn new(kind: FindingKind, message: impl Into<String>) -> Self {
+        Self {
+            kind,
+            run: None,
+            line: None,
+            channel: None,
+            message: message.into(),
+        }
+    }
+
+    #[must_use]
+    pub(super) fn in_run(mut self, run: &str) -> Self {
+        self.run = Some(run.to_owned());
+        self
+    }
+
+    #[must_use]
+    pub(super) fn on_line(mut self, line: usize) -> Self {
+        self.line = Some(line);
+        self
+    }
+
+    #[must_use]
+    pub(super) fn of_channel(mut self, channel: &str) -> Self {
+        self.channel = Some(channel.to_owned());
+        self
+    }
+
+    /// What matters most first; within that, run by run.
+    pub(super) fn order(&self) -> (Severity, Option<String>, FindingKind, Option<String>) {
+        (
+            self.kind.severity(),
+            self.run.clone(),
+            self.kind,
+            self.channel.clone(),
+        )
+    }
+}
+
+/// `1 row`, `3 rows`.
+pub(super) fn counted(count: usize, one: &str) -> String {
+    let plural = if count == 1 { "" } else { "s" };
+    format!("{count} {one}{plural}")
+}

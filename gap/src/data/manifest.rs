@@ -1,0 +1,380 @@
+//! What `recording.toml` says.
+//!
+//! ```toml
+//! mechanism   = "pendulum"                 # a name of the library, or the path of a spec beside this file
+//! description = "driven pendulum, encoder at the pivot"
+//!
+//! [parameters]                             # of this rig; std = tolerance, 0 = known exactly
+//! m = { value = 2.04, unit = "kg", std = 0.04 }
+//!
+//! [channels]                               # every column other than t
+//! theta = { measures = "theta", unit = "deg", noise_std = 0.05 }
+//! tau   = { input = "tau", unit = "N m" }
+//! room  = { unit = "K" }                   # recorded, and in no model
+//!
+//! [runs]
+//! fit  = ["run1.csv", "run2.csv"]
+//! test = ["run3.csv"]
+//! ```
+
+use std::io::Read as _;
+use std::path::{Component, Path, PathBuf};
+
+use appell_spec::expr::Span;
+use appell_spec::limits::MAX_FILE;
+use appell_spec::units::Unit;
+use appell_spec::{Code, Mechanism, did_you_mean, shown};
+use toml::de::DeTable;
+
+use super::channel::{Channel, Measured, Role};
+use super::fields::{Fields, Value};
+use super::limits::MAX_RUNS;
+use super::{DataError, Library, Parameter, Part, Spec};
+
+/// A description whose names and units fit the mechanism.
+pub(super) struct Manifest {
+    pub(super) spec: Spec,
+    pub(super) mechanism: Mechanism,
+    pub(super) description: String,
+    pub(super) parameters: Vec<Parameter>,
+    pub(super) channels: Vec<Channel>,
+    pub(super) runs: Vec<(String, Part)>,
+}
+
+const KEYS: &[&str] = &["mechanism", "description", "parameters", "channels", "runs"];
+
+/// Reads a description; `instead` replaces the mechanism that it names.
+pub(super) fn read(
+    path: &Path,
+    library: Library<'_>,
+    instead: Option<Spec>,
+) -> Result<Manifest, DataError> {
+    let file = path.to_string_lossy();
+    let text = text_of(path)?;
+    let (mut fields, table) = Fields::new(&file, &text);
+    if fields.is_wrong() {
+        return Err(fields.report().into());
+    }
+    let table = table.get_ref();
+    fields.only(table, KEYS);
+    let named = fields.string(table, "mechanism");
+    let spec = match (instead, named) {
+        (Some(spec), _) => Some(spec),
+        (None, Some((name, at))) => find(&name, at, path, library, &mut fields)?,
+        (None, None) => {
+            let message = "the key `mechanism` is missing";
+            let help = "name a shipped mechanism, or the path of a spec beside this file";
+            fields.tell(Code::MissingKey, message, 0..0, help);
+            None
+        }
+    };
+    let Some(spec) = spec else {
+        return Err(fields.report().into());
+    };
+    let mechanism = appell_spec::load(&spec.file, &spec.text)?.mechanism;
+    let description = fields.string(table, "description");
+    let parameters = parameters(&mut fields, table, &mechanism);
+    let channels = channels(&mut fields, table, &mechanism);
+    let runs = runs(&mut fields, table);
+    if fields.is_wrong() {
+        return Err(fields.report().into());
+    }
+    Ok(Manifest {
+        description: description.map_or_else(String::new, |(text, _)| text),
+        spec,
+        mechanism,
+        parameters,
+        channels,
+        runs,
+    })
+}
+
+/// The text of a file of at most the size of a spec.
+pub(super) fn text_of(path: &Path) -> Result<String, DataError> {
+    let failed = |cause| DataError::File {
+        path: path.to_owned(),
+        cause,
+    };
+    let mut text = Vec::new();
+    let open = std::fs::File::open(path).map_err(failed)?;
+    let most = MAX_FILE as u64 + 1;
+    open.take(most).read_to_end(&mut text).map_err(failed)?;
+    let file = path.to_string_lossy();
+    if text.len() > MAX_FILE {
+        let message = format!("the file has more than {MAX_FILE} bytes");
+        return Err(DataError::whole(file, message));
+    }
+    String::from_utf8(text).map_err(|_| DataError::whole(file, "the file is not UTF-8 text"))
+}
+
+/// The spec of a name, or of a path relative to the description.
+fn find(
+    name: &str,
+    at: Span,
+    manifest: &Path,
+    library: Library<'_>,
+    fields: &mut Fields<'_>,
+) -> Result<Option<Spec>, DataError> {
+    if let Some((_, spec)) = library.iter().find(|(known, _)| *known == name) {
+        return Ok(Some(spec.clone()));
+    }
+    let path = manifest.parent().unwrap_or(Path::new("")).join(name);
+    if path.is_file() {
+        return Ok(Some(Spec {
+            file: path.to_string_lossy().into_owned(),
+            text: text_of(&path)?,
+        }));
+    }
+    let names = || library.iter().map(|(name, _)| *name);
+    let help = did_you_mean(name, names(), || {
+        "name a shipped mechanism, or the path of a spec beside this file".to_owned()
+    });
+    let message = format!("there is no mechanism and no file `{}`", shown(name));
+    fields.tell(Code::UnknownReference, message, at, &help);
+    Ok(None)
+}
+
+/// The parameters of the spec with the values of this rig.
+fn parameters(
+    fields: &mut Fields<'_>,
+    table: &DeTable<'_>,
+    mechanism: &Mechanism,
+) -> Vec<Parameter> {
+    let own = mechanism.parameters.iter();
+    let mut parameters: Vec<Parameter> = own
+        .map(|parameter| Parameter {
+            value: parameter.value,
+            std: None,
+        })
+        .collect();
+    let Some(table) = fields.section(table, "parameters") else {
+        return parameters;
+    };
+    for (key, value) in table {
+        let name = key.get_ref().as_ref();
+        let known = || mechanism.parameters.iter().map(|p| p.label.name.as_str());
+        let Some(index) = known().position(|own| own == name) else {
+            unknown(fields, "parameter", name, key.span(), known());
+            continue;
+        };
+        if let Some(read) = parameter(fields, value, &mechanism.parameters[index]) {
+            parameters[index] = read;
+        }
+    }
+    parameters
+}
+
+fn parameter(
+    fields: &mut Fields<'_>,
+    value: &Value<'_>,
+    own: &appell_spec::mechanism::Parameter,
+) -> Option<Parameter> {
+    let Some(table) = value.get_ref().as_table() else {
+        let wanted = "a table such as { value = 1.2, unit = \"kg\", std = 0.03 }";
+        fields.wrong_type(value, wanted);
+        return None;
+    };
+    fields.only(table, &["value", "unit", "std"]);
+    let unit = fields.unit(table, Some((&own.label.name, &own.label.unit)));
+    let std = fields.deviation(table, "std");
+    let Some(number) = table.get("value") else {
+        let message = "the key `value` is missing";
+        fields.tell(Code::MissingKey, message, value.span(), "");
+        return None;
+    };
+    let at = number.span();
+    let (number, unit) = (fields.number(number)?, unit?);
+    let value = number * unit.scale;
+    let limits = [
+        own.at_least
+            .filter(|least| value < *least)
+            .map(|least| ("below", least)),
+        own.at_most
+            .filter(|most| value > *most)
+            .map(|most| ("above", most)),
+    ];
+    for (side, limit) in limits.into_iter().flatten() {
+        let limit = unit.from_si(limit);
+        let message = format!(
+            "`{}` is {side} its limit of {limit} {}",
+            own.label.name, unit.text
+        );
+        fields.tell(Code::ValueOutsideLimits, message, at.clone(), "");
+    }
+    Some(Parameter {
+        value,
+        std: std.map(|std| std * unit.scale),
+    })
+}
+
+fn channels(fields: &mut Fields<'_>, table: &DeTable<'_>, mechanism: &Mechanism) -> Vec<Channel> {
+    let Some(table) = fields.section(table, "channels") else {
+        if table.get("channels").is_none() {
+            let message = "the section `[channels]` is missing";
+            let help =
+                "write a line for each column, such as x = { measures = \"x\", unit = \"m\" }";
+            fields.tell(Code::MissingSection, message, 0..0, help);
+        }
+        return Vec::new();
+    };
+    let mut entries: Vec<_> = table.iter().collect();
+    entries.sort_by_key(|(key, _)| key.span().start);
+    let read = entries
+        .into_iter()
+        .filter_map(|(key, value)| channel(fields, key.get_ref(), value, key.span(), mechanism));
+    let channels: Vec<Channel> = read.collect();
+    if !fields.is_wrong() && !channels.iter().any(Channel::is_measured) {
+        let message = "no channel measures anything";
+        let help =
+            "at least one needs `measures`, the name of a coordinate, pseudo-velocity or output";
+        fields.tell(Code::MissingKey, message, 0..0, help);
+    }
+    channels
+}
+
+fn channel(
+    fields: &mut Fields<'_>,
+    column: &str,
+    value: &Value<'_>,
+    at: Span,
+    mechanism: &Mechanism,
+) -> Option<Channel> {
+    if column == "t" {
+        let message = "`t` is the time in seconds, not a channel";
+        fields.tell(Code::ReservedName, message, at, "remove the line");
+        return None;
+    }
+    let Some(table) = value.get_ref().as_table() else {
+        let wanted = "a table such as { measures = \"theta\", unit = \"rad\" }";
+        fields.wrong_type(value, wanted);
+        return None;
+    };
+    fields.only(table, &["measures", "input", "unit", "noise_std"]);
+    let measures = fields.string(table, "measures");
+    let input = fields.string(table, "input");
+    let role = match (measures, input) {
+        (Some(_), Some((_, at))) => {
+            let message = "a channel has `measures` or `input`, not both";
+            fields.tell(Code::ConflictingKeys, message, at, "remove one of them");
+            return None;
+        }
+        (Some((name, at)), None) => measured(fields, &name, at, mechanism)?,
+        (None, Some((name, at))) => commanded(fields, &name, at, mechanism)?,
+        (None, None) => Role::Recorded,
+    };
+    let label = role.label(mechanism);
+    let unit = fields.unit(table, label.map(|label| (label.name.as_str(), &label.unit)));
+    let stated = fields.deviation(table, "noise_std");
+    if stated.is_some() && !matches!(role, Role::Measures(_)) {
+        let message = "only what is measured has noise";
+        fields.tell(Code::NotAllowedHere, message, at, "remove `noise_std`");
+        return None;
+    }
+    let unit: Unit = match unit {
+        Some(unit) => unit,
+        // A unit that could not be read has been told; a recorded channel may have none.
+        None if table.get("unit").is_none() => Unit::si(appell_spec::units::Dimension::NONE),
+        None => return None,
+    };
+    Some(Channel::new(
+        column,
+        role,
+        unit.clone(),
+        stated.map(|std| std * unit.scale),
+    ))
+}
+
+fn measured(fields: &mut Fields<'_>, name: &str, at: Span, mechanism: &Mechanism) -> Option<Role> {
+    let found = Measured::named(name, mechanism);
+    if found.is_none() {
+        let is_input = mechanism.inputs.iter().any(|i| i.label.name == name);
+        if is_input {
+            let message = format!("`{name}` is an input, which is commanded");
+            let help = format!("write input = \"{name}\"");
+            fields.tell(Code::NotAllowedHere, message, at, &help);
+        } else {
+            let known = Measured::names(mechanism);
+            let what = "coordinate, pseudo-velocity or output";
+            unknown(fields, what, name, at, known.into_iter());
+        }
+    }
+    found.map(Role::Measures)
+}
+
+fn commanded(fields: &mut Fields<'_>, name: &str, at: Span, mechanism: &Mechanism) -> Option<Role> {
+    let names = || mechanism.inputs.iter().map(|i| i.label.name.as_str());
+    let found = names().position(|own| own == name);
+    if found.is_none() {
+        unknown(fields, "input", name, at, names());
+    }
+    found.map(Role::Input)
+}
+
+fn unknown<'n>(
+    fields: &mut Fields<'_>,
+    what: &str,
+    name: &str,
+    at: Span,
+    known: impl Iterator<Item = &'n str> + Clone,
+) {
+    let help = did_you_mean(name, known.clone(), || {
+        let list: Vec<&str> = known.collect();
+        if list.is_empty() {
+            format!("the mechanism has no {what}")
+        } else {
+            format!("there are {}", list.join(", "))
+        }
+    });
+    let message = format!("the spec has no {what} `{}`", shown(name));
+    fields.tell(Code::UnknownName, message, at, &help);
+}
+
+/// The files of the runs, those to fit first.
+fn runs(fields: &mut Fields<'_>, table: &DeTable<'_>) -> Vec<(String, Part)> {
+    let Some(table) = fields.section(table, "runs") else {
+        if table.get("runs").is_none() {
+            let message = "the section `[runs]` is missing";
+            let help = "write fit = [\"run1.csv\"] and test = [\"run2.csv\"]";
+            fields.tell(Code::MissingSection, message, 0..0, help);
+        }
+        return Vec::new();
+    };
+    fields.only(table, &["fit", "test"]);
+    let mut runs: Vec<(String, Part)> = Vec::new();
+    for (key, part) in [("fit", Part::Fit), ("test", Part::Test)] {
+        for (name, at) in fields.strings(table, key) {
+            if !is_inside(&name) {
+                let message = format!("`{}` does not lie beside this file", shown(&name));
+                let help = "name a file of this folder or of one below";
+                fields.tell(Code::NotAllowedHere, message, at, help);
+            } else if let Some((_, other)) = runs.iter().find(|(other, _)| *other == name) {
+                let message = format!("the run `{}` stands here twice", shown(&name));
+                let help = if *other == part {
+                    "remove one of them"
+                } else {
+                    "a run that is held out may not be fitted"
+                };
+                fields.tell(Code::DuplicateName, message, at, help);
+            } else if runs.len() == MAX_RUNS {
+                let message = format!("a data set has at most {MAX_RUNS} runs");
+                fields.tell(Code::LimitExceeded, message, at, "");
+                return runs;
+            } else {
+                runs.push((name, part));
+            }
+        }
+    }
+    if !fields.is_wrong() && !runs.iter().any(|(_, part)| *part == Part::Fit) {
+        let message = "there is no run to fit";
+        let help = "write fit = [\"run1.csv\"]";
+        fields.tell(Code::MissingKey, message, 0..0, help);
+    }
+    runs
+}
+
+/// Whether a path leads to a file beside or below.
+fn is_inside(name: &str) -> bool {
+    let path = PathBuf::from(name);
+    let mut parts = path.components();
+    !name.is_empty() && parts.all(|part| matches!(part, Component::Normal(_) | Component::CurDir))
+}

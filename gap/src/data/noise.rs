@@ -1,0 +1,192 @@
+//! The noise level of each channel: stated, and checked against the data.
+//!
+//! Differences of neighbouring samples tell it where the motion is slow against the sampling, standstill
+//! where it is not. A sensor with steps of q has at least the noise q/√12 of a value anywhere within
+//! them. A stated level may be wrong by a factor of two, within which the data decide.
+
+use appell_runtime::signal::Samples;
+use appell_runtime::signal::noise::{at_standstill, from_differences};
+
+use super::quantum::quantum;
+use super::{Channel, DataSet, Finding, FindingKind, Part, Run};
+
+/// By which factor a stated level may be wrong.
+const TRUST: f64 = 2.0;
+/// Part of the noise from which steps are worth knowing.
+const NOTABLE: f64 = 0.5;
+
+/// The noise of a channel.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Noise {
+    /// Standard deviation in SI.
+    pub std: f64,
+    /// Where it is from.
+    pub source: NoiseSource,
+    /// What the data alone tell, in SI.
+    pub found: Option<f64>,
+    /// Step of the sensor in SI.
+    pub quantum: Option<f64>,
+}
+
+/// Where a noise level is from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum NoiseSource {
+    /// The description; the data do not tell better.
+    Stated,
+    /// Differences of neighbouring samples.
+    Differences,
+    /// Samples at rest.
+    Standstill,
+    /// The step of the sensor.
+    Quantisation,
+}
+
+impl NoiseSource {
+    /// Its word for programs.
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::Stated => "stated",
+            Self::Differences => "differences",
+            Self::Standstill => "standstill",
+            Self::Quantisation => "quantisation",
+        }
+    }
+}
+
+/// Finds the noise of every measured channel from the runs that may be fitted.
+pub(super) fn find(set: &mut DataSet) {
+    let runs: Vec<&Run> = set.runs.iter().filter(|r| r.part == Part::Fit).collect();
+    for (index, channel) in set.channels.iter_mut().enumerate() {
+        let values = || runs.iter().map(|run| &*run.values[index]);
+        let mut tell = |kind, message: String| {
+            let finding = Finding::new(kind, message);
+            set.findings.push(finding.of_channel(&channel.column));
+        };
+        if is_constant(values()) {
+            let message = "the channel never changes in the runs to fit";
+            tell(FindingKind::Constant, message.to_owned());
+        }
+        if !channel.is_measured() {
+            continue;
+        }
+        let records: Vec<Samples<'_>> = runs
+            .iter()
+            .filter_map(|run| Samples::new(&run.times, &run.values[index]).ok())
+            .collect();
+        let (noise, finding) = judged(channel, level(&records), quantum(values()));
+        channel.noise = noise;
+        if let Some((kind, message)) = finding {
+            tell(kind, message);
+        }
+        let stepped = noise.and_then(|noise| Some((noise.quantum?, noise.std)));
+        if let Some((step, _)) = stepped.filter(|(step, std)| *step > NOTABLE * std) {
+            let message = format!("values in steps of {}", in_unit(channel, step));
+            tell(FindingKind::Quantised, message);
+        }
+    }
+}
+
+fn is_constant<'v>(records: impl Iterator<Item = &'v [f64]>) -> bool {
+    // Missing values, NaN, are neither smaller nor larger.
+    let [low, high] = records
+        .flatten()
+        .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| {
+            [low.min(*value), high.max(*value)]
+        });
+    high <= low
+}
+
+/// What the data tell.
+struct Level {
+    std: f64,
+    source: NoiseSource,
+    /// Whether it is only an upper bound.
+    bound: bool,
+}
+
+fn level(records: &[Samples<'_>]) -> Option<Level> {
+    let differences = from_differences(records)?;
+    let at_rest = (!differences.settled)
+        .then(|| at_standstill(records))
+        .flatten();
+    Some(match at_rest {
+        Some(std) => Level {
+            std,
+            source: NoiseSource::Standstill,
+            bound: false,
+        },
+        None => Level {
+            std: differences.std,
+            source: NoiseSource::Differences,
+            bound: !differences.settled,
+        },
+    })
+}
+
+type Told = Option<(FindingKind, String)>;
+
+/// The level to work with, from what is stated, what the data tell and the step of the sensor.
+fn judged(channel: &Channel, level: Option<Level>, quantum: Option<f64>) -> (Option<Noise>, Told) {
+    let floor = quantum.map_or(0.0, |step| step / 12f64.sqrt());
+    let stated = channel.stated_noise.filter(|std| *std > 0.0);
+    let level = level.map(|level| {
+        if level.std < floor {
+            let (std, source) = (floor, NoiseSource::Quantisation);
+            let bound = false;
+            Level { std, source, bound }
+        } else {
+            level
+        }
+    });
+    let noise = |std, source, found| {
+        (std > 0.0).then_some(Noise {
+            std,
+            source,
+            found,
+            quantum,
+        })
+    };
+    match (stated, level) {
+        (None, None) => (None, None),
+        (Some(std), None) => (noise(std, NoiseSource::Stated, None), None),
+        (None, Some(level)) => {
+            let told = level.bound.then(|| {
+                let found = in_unit(channel, level.std);
+                let message = format!(
+                    "the motion is too fast for the sampling to tell the noise from it; it is at most {found}"
+                );
+                (FindingKind::NoiseBound, message)
+            });
+            (noise(level.std, level.source, Some(level.std)), told)
+        }
+        (Some(stated), Some(level)) => {
+            // Nobody says whether the statement counts the steps.
+            let allowed = stated / TRUST..=stated.hypot(floor) * TRUST;
+            let within = level.std.clamp(*allowed.start(), *allowed.end());
+            let open = level.bound && level.std > stated;
+            let told = (!open && !allowed.contains(&level.std)).then(|| {
+                let message = format!(
+                    "the stated noise is {}, the data tell {}; {} is used",
+                    in_unit(channel, stated),
+                    in_unit(channel, level.std),
+                    in_unit(channel, within)
+                );
+                (FindingKind::NoiseDisagrees, message)
+            });
+            // An upper bound above the statement says nothing against it.
+            let (std, source) = if open {
+                (stated, NoiseSource::Stated)
+            } else {
+                (within, level.source)
+            };
+            (noise(std, source, Some(level.std)), told)
+        }
+    }
+}
+
+/// A value in the unit of the files, with three digits.
+fn in_unit(channel: &Channel, value: f64) -> String {
+    let value = channel.unit.from_si(value);
+    let rounded = format!("{value:.2e}").parse().unwrap_or(value);
+    format!("{rounded} {}", channel.unit.text)
+}

@@ -14,6 +14,7 @@ mod film;
 mod formula;
 mod motions;
 mod progress;
+mod recording;
 mod reproduce;
 mod setup;
 mod source;

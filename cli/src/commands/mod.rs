@@ -9,6 +9,7 @@ mod draw;
 mod evaluate;
 mod list;
 mod new;
+mod recording;
 mod reproduce;
 mod schema;
 mod simulate;
@@ -28,6 +29,7 @@ pub(crate) enum Command {
     Evaluate(evaluate::Evaluate),
     Simulate(Box<simulate::Simulate>),
     Control(Box<control::Control>),
+    Recording(recording::Recording),
     Steady(steady::Steady),
     Stability(stability::StabilityCommand),
     Demo(demo::Demo),
@@ -47,6 +49,7 @@ pub(crate) fn run(command: Command) -> Result<(), Failure> {
         Command::Evaluate(command) => command.run(),
         Command::Simulate(command) => command.run(),
         Command::Control(command) => command.run(),
+        Command::Recording(command) => command.run(),
         Command::Steady(command) => command.run(),
         Command::Stability(command) => command.run(),
         Command::Demo(command) => command.run(),

@@ -100,7 +100,7 @@ impl<R: BufRead> CsvFile<R> {
         let mut clock = Clock::default();
         let mut times = Vec::new();
         let mut columns: Vec<Vec<f64>> = vec![Vec::new(); channels.len()];
-        let mut row: Vec<Range<usize>> = Vec::new();
+        let (mut row, mut read): (Vec<Range<usize>>, Vec<f64>) = (Vec::new(), Vec::new());
         while self.mistakes.len() < MAX_MISTAKES && self.lines.next()? {
             row.clear();
             row.extend(cells(&self.lines.text, self.separator));
@@ -116,9 +116,11 @@ impl<R: BufRead> CsvFile<R> {
                 self.tell(Code::WrongType, message, line, None);
                 continue;
             }
-            let mut number = |place: usize| self.number(row[place].clone());
-            let t = number(places.time);
-            let read: Vec<f64> = places.channels.iter().map(|&place| number(place)).collect();
+            let t = self.number(row[places.time].clone(), 1.0);
+            read.clear();
+            for (place, channel) in places.channels.iter().zip(channels) {
+                read.push(self.number(row[*place].clone(), channel.unit.scale));
+            }
             if !clock.accept(t, self.lines.number, &self.lines.text) {
                 continue;
             }
@@ -131,8 +133,8 @@ impl<R: BufRead> CsvFile<R> {
             };
             *budget = left;
             times.push(t);
-            for ((column, value), channel) in columns.iter_mut().zip(read).zip(channels) {
-                column.push(value * channel.unit.scale);
+            for (column, value) in columns.iter_mut().zip(&read) {
+                column.push(*value);
             }
         }
         if !self.mistakes.is_empty() {
@@ -197,10 +199,10 @@ impl<R: BufRead> CsvFile<R> {
         Places { time, channels }
     }
 
-    /// The number in a cell, NaN where it is missing; tells where there is something else.
-    fn number(&mut self, cell: Range<usize>) -> f64 {
+    /// The number in a cell in SI, NaN where it is missing; tells where there is something else.
+    fn number(&mut self, cell: Range<usize>, scale: f64) -> f64 {
         let text = &self.lines.text[cell.clone()];
-        match text.parse::<f64>() {
+        match text.parse::<f64>().map(|number| number * scale) {
             Ok(number) if !number.is_infinite() => number,
             _ if MISSING.iter().any(|word| text.eq_ignore_ascii_case(word)) => f64::NAN,
             _ => {

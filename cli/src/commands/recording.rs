@@ -1,0 +1,35 @@
+//! `appell recording`
+
+use std::path::PathBuf;
+
+use crate::failure::Failure;
+use crate::files;
+use crate::recording;
+
+/// Reads recordings and tells what they hold: runs, rates, gaps, the noise of each channel, and what
+/// was mended or looks wrong.
+///
+/// A data set is a folder with a `recording.toml`. CSV files alone need `--model`, and columns with the
+/// names and units of its spec.
+#[derive(Debug, clap::Args)]
+pub(crate) struct Recording {
+    /// Folder of a data set, or CSV files
+    #[arg(required = true)]
+    data: Vec<PathBuf>,
+    /// Mechanism of CSV files, or in place of the one that a data set names
+    #[arg(long, value_name = "MODEL")]
+    model: Option<String>,
+    /// Write everything in SI; `-` is standard output
+    #[arg(long, value_name = "FILE")]
+    json: Option<PathBuf>,
+}
+
+impl Recording {
+    pub(super) fn run(&self) -> Result<(), Failure> {
+        let set = recording::read(&self.data, self.model.as_deref())?;
+        if let Some(path) = &self.json {
+            files::write_json(path, &recording::json(&set))?;
+        }
+        files::print_beside(&recording::text(&set), &[&self.json])
+    }
+}

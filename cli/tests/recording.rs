@@ -1,0 +1,102 @@
+//! `appell recording` tells what recordings hold, and refuses what cannot be read.
+
+mod support;
+
+use std::fmt::Write as _;
+
+use support::Folder;
+
+const DESCRIPTION: &str = r#"
+mechanism   = "pendulum"
+description = "bench rig"
+[parameters]
+m = { value = 1.2, unit = "kg", std = 0.05 }
+[channels]
+theta = { measures = "theta", unit = "deg", noise_std = 0.1 }
+tau   = { input = "tau", unit = "N m" }
+[runs]
+fit  = ["a.csv"]
+test = ["b.csv"]
+"#;
+
+/// A swing in degrees, 100 Hz, seen by an encoder with steps of a tenth.
+fn swing(rows: usize) -> String {
+    let mut text = "t,theta,tau\n".to_owned();
+    for i in 0..rows {
+        let t = i as f64 / 100.0;
+        let theta = (300.0 * (3.0 * t).sin()).round() / 10.0;
+        let _ = writeln!(text, "{t},{theta},{}", i % 2);
+    }
+    text
+}
+
+#[test]
+fn a_data_set_is_summed_up_for_people_and_for_programs() {
+    let folder = Folder::new();
+    folder.write("recording.toml", DESCRIPTION);
+    folder.write("a.csv", &swing(500));
+    folder.write("b.csv", &swing(300).replacen("\n0.5,", "\n0.49,", 1));
+    let outcome = folder.done(&["recording", ".", "--json", "summary.json"]);
+    for expected in [
+        "bench rig",
+        "measured theta",
+        "input tau",
+        "values in steps of 0.1 deg",
+        "the stated noise is 0.1 deg",
+        "b.csv:52: the time stands still: 1 row of 300 left out",
+    ] {
+        assert!(outcome.stdout.contains(expected), "{}", outcome.stdout);
+    }
+    let json = folder.json("summary.json");
+    assert_eq!(json["runs"][0]["rows"], 500);
+    assert_eq!(json["runs"][1]["part"], "test");
+    let quantum = json["channels"][0]["quantum"].as_f64().expect("a step");
+    assert!((quantum.to_degrees() - 0.1).abs() < 1e-3, "{quantum}");
+    assert_eq!(json["parameters"][0]["std"], 0.05);
+    let kinds: Vec<&str> = json["findings"]
+        .as_array()
+        .expect("findings")
+        .iter()
+        .filter_map(|finding| finding["kind"].as_str())
+        .collect();
+    assert_eq!(kinds, ["noise-disagrees", "quantised", "repeated-time"]);
+}
+
+#[test]
+fn csv_files_alone_need_a_model() {
+    let folder = Folder::new();
+    folder.write("a.csv", &swing(900));
+    folder.fails(2, &["recording", "a.csv"], &["CSV files need `--model`"]);
+    let outcome = folder.done(&["recording", "a.csv", "--model", "pendulum"]);
+    assert!(
+        outcome.stdout.contains("held out from"),
+        "{}",
+        outcome.stdout
+    );
+    folder.fails(2, &["recording", ".", "a.csv"], &["give one data set"]);
+}
+
+#[test]
+fn what_cannot_be_read_is_told_with_its_place() {
+    let folder = Folder::new();
+    folder.fails(3, &["recording", "."], &["holds no recording.toml"]);
+    folder.write("recording.toml", &DESCRIPTION.replace("deg", "dog"));
+    folder.fails(
+        3,
+        &["recording", "."],
+        &["error[unknown-unit]", "recording.toml:7"],
+    );
+    folder.write("recording.toml", DESCRIPTION);
+    folder.write("a.csv", &swing(100).replacen(",0\n", ",off\n", 2));
+    folder.write("b.csv", "t,theta\n");
+    folder.fails(
+        3,
+        &["recording", "."],
+        &[
+            "a.csv:2:",
+            "`off` is not a finite number",
+            "b.csv:1:1",
+            "no column `tau`",
+        ],
+    );
+}

@@ -1,0 +1,113 @@
+//! Damaged descriptions and recordings are refused or read, never with a panic and never slowly.
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+mod common;
+
+use std::time::{Duration, Instant};
+
+use common::{Folder, SWING, pendulum, swing};
+
+/// Damaged data sets; each is read once.
+const DAMAGED: usize = 1_500;
+/// Far below a second, with room for a busy machine.
+const SLOWEST: Duration = Duration::from_millis(500);
+
+/// The same damage in every run (`SplitMix64`).
+struct Dice(u64);
+
+impl Dice {
+    fn below(&mut self, n: usize) -> usize {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        usize::try_from((z ^ (z >> 31)) % (n.max(1) as u64)).unwrap()
+    }
+}
+
+/// Pieces that mean something to TOML, to CSV or to numbers.
+const TELLING: &[&[u8]] = &[
+    b"\"",
+    b",",
+    b";",
+    b"\n",
+    b"\r\n",
+    b"#",
+    b"=",
+    b"{",
+    b"}",
+    b"[",
+    b"]",
+    b"nan",
+    b"inf",
+    b"-",
+    b"1e308",
+    b"1e-320",
+    b"1e999",
+    b"0",
+    b"\xff",
+    b"\xef\xbb\xbf",
+    b"\0",
+    b"t",
+    b"theta",
+    b" ",
+];
+
+fn damage(bytes: &mut Vec<u8>, dice: &mut Dice) {
+    for _ in 0..=dice.below(2) {
+        let at = dice.below(bytes.len() + 1);
+        let end = (at + dice.below(30)).min(bytes.len());
+        match dice.below(4) {
+            0 if at < bytes.len() => bytes[at] ^= 1 << dice.below(8),
+            1 => {
+                let piece = TELLING[dice.below(TELLING.len())];
+                bytes.splice(at..at, piece.iter().copied());
+            }
+            2 => {
+                bytes.drain(at..end);
+            }
+            _ => {
+                let copy = bytes[at..end].to_vec();
+                let to = dice.below(bytes.len() + 1);
+                bytes.splice(to..to, copy);
+            }
+        }
+    }
+}
+
+#[test]
+fn damaged_data_sets_are_refused_or_read() {
+    let folder = Folder::new();
+    let description = pendulum(SWING, &["a.csv"], &["b.csv"]).into_bytes();
+    let recording = swing(60, 1, 1e-3).into_bytes();
+    folder.write("b.csv", &recording);
+    let mut dice = Dice(1);
+    let (mut read, mut slowest) = (0, Duration::ZERO);
+    for round in 0..DAMAGED {
+        let (mut toml, mut csv) = (description.clone(), recording.clone());
+        if round % 2 == 0 {
+            damage(&mut toml, &mut dice);
+        } else {
+            damage(&mut csv, &mut dice);
+        }
+        folder.write("recording.toml", toml).write("a.csv", csv);
+        let start = Instant::now();
+        match folder.read() {
+            Ok(set) => {
+                read += 1;
+                for run in &set.runs {
+                    assert!(run.times.windows(2).all(|pair| pair[0] < pair[1]));
+                    for values in &run.values {
+                        assert_eq!(values.len(), run.times.len());
+                        assert!(values.iter().all(|value| !value.is_infinite()));
+                    }
+                }
+            }
+            Err(error) => assert!(!error.to_string().is_empty()),
+        }
+        slowest = slowest.max(start.elapsed());
+    }
+    println!("{read} of {DAMAGED} are read; the slowest took {slowest:?}");
+    assert!((DAMAGED / 20..DAMAGED / 2).contains(&read), "{read}");
+    assert!(slowest < SLOWEST, "{slowest:?}");
+}

@@ -63,6 +63,30 @@ fn a_data_set_is_summed_up_for_people_and_for_programs() {
 }
 
 #[test]
+fn the_description_in_the_manual_is_one() {
+    let folder = Folder::new();
+    let manual = support::repository("docs/command-line.md");
+    let block = manual
+        .split("```toml recording\n")
+        .nth(1)
+        .and_then(|rest| rest.split("```").next())
+        .expect("a description in the manual");
+    folder.write("recording.toml", block);
+    let recording = swing(300)
+        .replace('\n', ",290\n")
+        .replace("tau,290", "tau,room");
+    for name in ["run1.csv", "run2.csv", "run3.csv"] {
+        folder.write(name, &recording);
+    }
+    let outcome = folder.done(&["recording", "."]);
+    assert!(
+        outcome.stdout.contains("not in the model"),
+        "{}",
+        outcome.stdout
+    );
+}
+
+#[test]
 fn csv_files_alone_need_a_model() {
     let folder = Folder::new();
     folder.write("a.csv", &swing(900));

@@ -10,7 +10,7 @@
 //! |---|---|
 //! | `manifest.rs`, `fields.rs` | what `recording.toml` says, with its places |
 //! | `bare.rs` | files without one: columns with names of the spec; which part is held out |
-//! | `csv.rs` | rows of numbers, line by line |
+//! | `csv.rs`, `motive.rs` | rows of numbers, line by line; the header of OptiTrack Motive |
 //! | `clock.rs` | which rows are in order; steps and gaps |
 //! | `channel.rs` | what a column measures, and its values in SI |
 //! | `quantum.rs`, `noise.rs` | the step of a sensor; the noise level, stated and found |
@@ -29,6 +29,7 @@ mod fields;
 mod finding;
 pub mod limits;
 mod manifest;
+mod motive;
 mod noise;
 mod quantum;
 

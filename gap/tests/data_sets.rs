@@ -409,3 +409,36 @@ fn files_without_a_description_are_read_by_the_names_of_the_spec() {
     );
     assert!(read_bare(spec(), &[]).is_err());
 }
+
+#[test]
+fn files_of_motive_are_read_by_bodies_and_axes() {
+    let folder = Folder::new();
+    let channels = "\"arm.Rotation.X\" = { measures = \"theta\", unit = \"deg\" }";
+    folder.write("recording.toml", pendulum(channels, &["run.csv"], &[]));
+    let mut text = "Format Version,1.23,Take Name,swing,Length Units,Meters\n\n\
+                    ,Type,Rigid Body,Rigid Body,Rigid Body\n,Name,arm,arm,arm\n\
+                    ,ID,\"9A,1\",\"9A,1\",\"9A,1\"\n,,Rotation,Position,Mean Marker Error\n\
+                    Frame,Time (Seconds),X,X,\n"
+        .to_owned();
+    for i in 0..50 {
+        writeln!(text, "{i},{:.6},{},{},", f64::from(i) / 120.0, i % 7, 0.1).unwrap();
+    }
+    folder.write("run.csv", text);
+    let set = folder.read().unwrap();
+    assert!((set.runs[0].values[0][3] - 3f64.to_radians()).abs() < ROUNDING);
+    let told = set
+        .findings
+        .iter()
+        .find(|f| f.kind == FindingKind::UnknownColumn);
+    let told = &told.unwrap().message;
+    assert!(
+        told.contains("Frame, arm.Position.X, arm.Mean Marker Error"),
+        "{told}"
+    );
+    folder.write("run.csv", "Format Version,1.23\n,Name,arm\n");
+    assert!(
+        folder
+            .refused()
+            .contains("no line that begins with `Frame`")
+    );
+}

@@ -7,6 +7,7 @@
 //! - [`inputs`]: what drives a model;
 //! - [`integrate`]: initial value problems, events, typed failures;
 //! - [`linearise`]: A and B in the independent states;
+//! - [`inverse`]: the inputs of a measured motion, and what it must satisfy whatever they were;
 //! - [`simulate`] and [`trajectory`]: motions of a model and their files;
 //! - [`spectrum`]: eigenvalues, eigenvectors, characteristic polynomials;
 //! - [`analysis`]: steady motions, their families and stability;
@@ -46,6 +47,8 @@ pub mod figure;
 pub mod inputs;
 #[cfg(feature = "std")]
 pub mod integrate;
+#[cfg(feature = "std")]
+pub mod inverse;
 #[cfg(feature = "std")]
 pub mod linearise;
 #[cfg(feature = "std")]

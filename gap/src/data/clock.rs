@@ -2,14 +2,12 @@
 
 use appell_spec::{Code, Diagnostic, Report};
 
-use super::finding::counted;
+use super::finding::{counted, listed};
 use super::limits::MAX_LEFT_OUT;
 use super::{DataError, Finding, FindingKind};
 
 /// A step so many times the median is a gap.
 const GAP: f64 = 5.0;
-/// Most gaps that a message lists.
-const LISTED: usize = 3;
 
 /// Lets rows pass whose time is later than all before, and counts the others.
 #[derive(Default)]
@@ -132,19 +130,15 @@ impl Sampling {
         if self.gaps.is_empty() {
             return None;
         }
-        let listed = self.gaps.iter().take(LISTED);
-        let listed: Vec<String> = listed
+        let gaps = self.gaps.iter();
+        let gaps: Vec<String> = gaps
             .map(|[from, to]| format!("{:.3} s after {from:.3} s", to - from))
             .collect();
-        let more = match self.gaps.len().saturating_sub(LISTED) {
-            0 => String::new(),
-            more => format!(" and {more} more"),
-        };
         let message = format!(
-            "{} in steps of {:.3} ms: {}{more}",
+            "{} in steps of {:.3} ms: {}",
             counted(self.gaps.len(), "gap"),
             1e3 * self.step,
-            listed.join(", ")
+            listed(&gaps)
         );
         Some(Finding::new(FindingKind::Gap, message))
     }

@@ -10,8 +10,9 @@ use appell_spec::{Code, Diagnostic, Report, closest, shown};
 
 use super::channel::Channel;
 use super::clock::Clock;
+use super::finding::listed;
 use super::limits::{MAX_LINE, MAX_MISTAKES, MIN_ROWS};
-use super::{DataError, Finding, FindingKind};
+use super::{DataError, Finding, FindingKind, motive};
 
 /// The numbers of a file.
 pub(super) struct Table {
@@ -72,9 +73,11 @@ impl<R: BufRead> CsvFile<R> {
             .into_iter()
             .find(|c| lines.text.contains(*c));
         let separator = separator.unwrap_or(',');
-        let header = cells(&lines.text, separator)
-            .map(|cell| lines.text[cell].to_owned())
-            .collect();
+        let header = if motive::begins(&lines.text) {
+            motive::header(&mut lines, separator)?
+        } else {
+            texts(&lines.text, separator)
+        };
         Ok(Self {
             lines,
             separator,
@@ -188,13 +191,14 @@ impl<R: BufRead> CsvFile<R> {
         let time = place("t", "name the column of times in seconds `t`");
         let about = "every run has a column for each line of `[channels]`";
         let channels: Vec<usize> = channels.iter().map(|c| place(&c.column, about)).collect();
-        for (i, name) in header.iter().enumerate() {
-            if i != time && !channels.contains(&i) {
-                let message = "the column is not described and left aside";
-                findings.push(
-                    Finding::new(FindingKind::UnknownColumn, message).of_channel(&shown(name)),
-                );
-            }
+        let unknown = (0..header.len()).filter(|i| *i != time && !channels.contains(i));
+        let unknown: Vec<String> = unknown.map(|i| shown(&header[i])).collect();
+        if !unknown.is_empty() {
+            let message = format!(
+                "columns that nobody describes are left aside: {}",
+                listed(&unknown)
+            );
+            findings.push(Finding::new(FindingKind::UnknownColumn, message));
         }
         Places { time, channels }
     }
@@ -228,14 +232,14 @@ struct Places {
 }
 
 /// The lines of a file that hold something.
-struct Lines<R> {
+pub(super) struct Lines<R> {
     reader: R,
     /// Name of the file.
     file: String,
     /// Number of the line, from 1.
     number: usize,
     /// The line, without its end.
-    text: String,
+    pub(super) text: String,
     /// Whether the file ends within the line.
     breaks_off: bool,
     bytes: Vec<u8>,
@@ -254,7 +258,7 @@ impl<R: BufRead> Lines<R> {
     }
 
     /// Goes to the next line that is neither empty nor a comment; whether there is one.
-    fn next(&mut self) -> Result<bool, DataError> {
+    pub(super) fn next(&mut self) -> Result<bool, DataError> {
         loop {
             self.bytes.clear();
             let mut limited = self.reader.by_ref().take(MAX_LINE as u64 + 1);
@@ -285,7 +289,7 @@ impl<R: BufRead> Lines<R> {
     }
 
     /// File and line.
-    fn place(&self) -> String {
+    pub(super) fn place(&self) -> String {
         format!("{}:{}", self.file, self.number)
     }
 
@@ -294,6 +298,12 @@ impl<R: BufRead> Lines<R> {
         let report = Report::new(&*self.file, &*self.text, vec![diagnostic]);
         report.from_line(self.number).into()
     }
+}
+
+/// The cells of a line.
+pub(super) fn texts(line: &str, separator: char) -> Vec<String> {
+    let cells = cells(line, separator);
+    cells.map(|cell| line[cell].to_owned()).collect()
 }
 
 /// Where the cells of a line stand, without blanks and quotes around them.

@@ -137,6 +137,18 @@ impl Finding {
     }
 }
 
+/// Most items that a message lists.
+const LISTED: usize = 3;
+
+/// `a, b, c and 4 more`.
+pub(super) fn listed(items: &[String]) -> String {
+    let shown = items[..items.len().min(LISTED)].join(", ");
+    match items.len().saturating_sub(LISTED) {
+        0 => shown,
+        more => format!("{shown} and {more} more"),
+    }
+}
+
 /// `1 row`, `3 rows`.
 pub(super) fn counted(count: usize, one: &str) -> String {
     let plural = if count == 1 { "" } else { "s" };

@@ -65,7 +65,8 @@ fn a_data_set_is_summed_up_for_people_and_for_programs() {
 #[test]
 fn the_description_in_the_manual_is_one() {
     let folder = Folder::new();
-    let manual = support::repository("docs/command-line.md");
+    let path = support::repository("docs/command-line.md");
+    let manual = std::fs::read_to_string(path).expect("the manual");
     let block = manual
         .split("```toml recording\n")
         .nth(1)

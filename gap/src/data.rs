@@ -14,6 +14,7 @@
 //! | `clock.rs` | which rows are in order; steps and gaps |
 //! | `channel.rs` | what a column measures, and its values in SI |
 //! | `quantum.rs`, `noise.rs` | the step of a sensor; the noise level, stated and found |
+//! | `observed.rs` | the runs as the estimation core takes them |
 //! | `finding.rs`, `error.rs` | what was mended or looks wrong; what cannot be read |
 //! | `limits.rs` | how large a data set may be |
 //!
@@ -31,6 +32,7 @@ pub mod limits;
 mod manifest;
 mod motive;
 mod noise;
+mod observed;
 mod quantum;
 
 use std::path::Path;

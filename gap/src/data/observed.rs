@@ -1,0 +1,62 @@
+//! A data set as the estimation core takes it: columns by the indices of a model.
+
+use appell_runtime::estimate::{self, EstimateError, Recording};
+use appell_runtime::model::ModelInfo;
+
+use super::{Channel, DataSet, Measured, Part, Role};
+
+impl DataSet {
+    /// The measured channels whose quantities the model has, with what they show.
+    pub fn measured(&self, info: &ModelInfo) -> Vec<(&Channel, estimate::Measured)> {
+        let shown = |channel: &Channel| match channel.role {
+            Role::Measures(measured) => {
+                let name = &measured.label(&self.mechanism).name;
+                match measured {
+                    Measured::Coordinate(_) | Measured::PseudoVelocity(_) => {
+                        info.state_index(name).map(estimate::Measured::State)
+                    }
+                    Measured::Output(_) => info.output_index(name).map(estimate::Measured::Output),
+                }
+            }
+            Role::Input(_) | Role::Recorded => None,
+        };
+        let channels = self.channels.iter();
+        channels
+            .filter_map(|channel| Some((channel, shown(channel)?)))
+            .collect()
+    }
+
+    /// The runs of a part, with the channels of [`DataSet::measured`]. Inputs that nobody recorded
+    /// are zero.
+    pub fn recordings(
+        &self,
+        part: Part,
+        info: &ModelInfo,
+    ) -> Result<Vec<Recording>, EstimateError> {
+        let index = |channel: &Channel| {
+            let mut columns = self.channels.iter().map(|other| &other.column);
+            columns.position(|column| *column == channel.column)
+        };
+        let measured = self.measured(info);
+        let measured: Vec<usize> = measured.iter().filter_map(|(c, _)| index(c)).collect();
+        let input = |name: &str| {
+            self.channels.iter().position(|channel| {
+                let label = channel.role.label(&self.mechanism);
+                matches!(channel.role, Role::Input(_)) && label.is_some_and(|l| l.name == name)
+            })
+        };
+        let inputs = info.inputs.iter().take(info.declared_inputs);
+        let inputs: Vec<Option<usize>> = inputs.map(|own| input(&own.name)).collect();
+        let runs = self.runs.iter().filter(|run| run.part == part);
+        runs.map(|run| {
+            let rows = 0..run.times.len();
+            let commanded = rows.clone().flat_map(|row| {
+                let values = inputs.iter();
+                values.map(move |column| column.map_or(0.0, |column| run.values[column][row]))
+            });
+            let seen = rows.flat_map(|row| measured.iter().map(move |&c| run.values[c][row]));
+            Recording::new(run.times.clone(), commanded.collect(), seen.collect())
+        })
+        .collect()
+    }
+}

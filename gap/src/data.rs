@@ -10,7 +10,7 @@
 //! |---|---|
 //! | `manifest.rs`, `fields.rs` | what `recording.toml` says, with its places |
 //! | `bare.rs` | files without one: columns with names of the spec; which part is held out |
-//! | `csv.rs`, `motive.rs` | rows of numbers, line by line; the header of OptiTrack Motive |
+//! | `csv.rs`, `motive.rs` | rows of numbers, line by line; the header of Motive |
 //! | `clock.rs` | which rows are in order; steps and gaps |
 //! | `channel.rs` | what a column measures, and its values in SI |
 //! | `quantum.rs`, `noise.rs` | the step of a sensor; the noise level, stated and found |

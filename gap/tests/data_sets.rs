@@ -174,7 +174,7 @@ fn bad_recordings_are_refused_with_file_line_and_column() {
     let cases: [(String, &[&str]); 14] = [
         (String::new(), &["run.csv: the file is empty"]),
         ("t,theta,tau\n".to_owned(), &["0 rows", "needs 8"]),
-        ("t,theta,tau\n0,0,0\n".to_owned(), &["1 rows"]),
+        ("t,theta,tau\n0,0,0\n".to_owned(), &["1 row;"]),
         (
             good.replace("theta", "tetha"),
             &["run.csv:1:1", "no column `theta`", "did you mean `tetha`?"],

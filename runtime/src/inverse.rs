@@ -96,7 +96,7 @@ impl InputEquations {
         let expected = &without + &inputs * DVector::repeat(m, 2.0 * size);
         let part = (&twice - expected).amax() / (size + twice.amax());
         // Not a number is no linearity either.
-        if m > 0 && !(part <= LINEAR) {
+        if m > 0 && (part.is_nan() || part > LINEAR) {
             return Err(InverseError::NotLinear { part });
         }
         Ok(Self {

@@ -2,6 +2,8 @@
 
 #![allow(clippy::unwrap_used, reason = "what is missing fails the test")]
 
+use std::fmt::Write as _;
+
 use appell_gap::data::{Part, Spec, read_bare};
 use appell_models::Shipped;
 use appell_runtime::estimate::Measured;
@@ -13,7 +15,7 @@ fn columns_of_a_recording_become_those_of_the_model() {
     let mut text = "x_G,theta,t,omega,F\n".to_owned();
     for row in 0..40 {
         let theta = if row == 3 { "" } else { "0.5" };
-        text += &format!("{row},{theta},{},-2,7\n", f64::from(row) * 0.1);
+        writeln!(text, "{row},{theta},{},-2,7", f64::from(row) * 0.1).unwrap();
     }
     let path = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join("columns_of_a_recording.csv");
     std::fs::write(&path, text).unwrap();

@@ -10,7 +10,7 @@ use appell_spec::{Code, Diagnostic, Report, closest, shown};
 
 use super::channel::Channel;
 use super::clock::Clock;
-use super::finding::listed;
+use super::finding::{counted, listed};
 use super::limits::{MAX_LINE, MAX_MISTAKES, MIN_ROWS};
 use super::{DataError, Finding, FindingKind, motive};
 
@@ -146,9 +146,9 @@ impl<R: BufRead> CsvFile<R> {
         let file = &*self.lines.file;
         findings.extend(clock.findings(file)?);
         if times.len() < MIN_ROWS {
+            let rows = counted(times.len(), "row");
             let message = format!(
-                "the file has {} rows; a run needs {MIN_ROWS} to tell a rate and a noise level",
-                times.len()
+                "the file has {rows}; a run needs {MIN_ROWS} to tell a rate and a noise level"
             );
             return Err(DataError::whole(file, message));
         }

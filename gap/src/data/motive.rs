@@ -1,4 +1,4 @@
-//! The header of CSV files that OptiTrack Motive exports: bodies and markers over several lines.
+//! The header of CSV files that `OptiTrack` Motive exports: bodies and markers over several lines.
 //!
 //! ```text
 //! Format Version,1.23,Take Name,ride,…,Length Units,Meters,Coordinate Space,Global

@@ -1,6 +1,7 @@
 //! Questions about steady motions from the command line, and what is common to their answers.
 
 pub(crate) mod export;
+pub(crate) mod regions;
 pub(crate) mod told;
 
 use std::path::PathBuf;
@@ -276,7 +277,12 @@ pub(crate) fn term(setup: &Setup<'_>, name: &str) -> Result<Term, Failure> {
 }
 
 /// A value of a term in SI.
-fn value_of(setup: &Setup<'_>, term: Term, text: &str, label: &str) -> Result<f64, Failure> {
+pub(crate) fn value_of(
+    setup: &Setup<'_>,
+    term: Term,
+    text: &str,
+    label: &str,
+) -> Result<f64, Failure> {
     let quantity = term.quantity(setup.info);
     let unit: Unit = units::parse(&quantity.unit)
         .map_err(|_| Failure::Usage(format!("{label}: `{}` is no unit", quantity.unit)))?;
@@ -293,7 +299,8 @@ fn unanswered(error: &BranchError) -> Failure {
     }
 }
 
-fn refused(error: &SteadyError) -> Failure {
+/// Why there is no steady motion.
+pub(crate) fn refused(error: &SteadyError) -> Failure {
     match error {
         SteadyError::None { .. } | SteadyError::Structure(_) => {
             Failure::Computation(error.to_string())

@@ -6,6 +6,7 @@
 
 mod axis;
 mod map;
+mod surface;
 
 use crate::model::Quantity;
 use crate::simulate::Breach;
@@ -13,6 +14,7 @@ use crate::trajectory::Trajectory;
 use axis::{Axis, number};
 pub use map::{Curve, Map, Stroke};
 use std::fmt::Write as _;
+pub use surface::{Patch, Surface};
 
 /// A line.
 #[derive(Debug, Clone, PartialEq)]

@@ -90,7 +90,10 @@ pub(super) fn section() -> Result<Section, Failure> {
     for list in LISTS {
         claims.push((list.0, letters(list)?));
     }
-    let errata = ERRATA.iter().filter(|e| e.source == Source::Steering);
+    // What is wrong about a figure stands beside it.
+    let of_equations =
+        |e: &&Erratum| e.source == Source::Steering && !e.equation.contains("figure");
+    let errata = ERRATA.iter().filter(of_equations);
     for erratum in errata {
         claims.push((first_number(erratum.equation), misprint(erratum)));
     }
@@ -181,7 +184,8 @@ fn letters(
     Ok(claim.verdict(Verdict::Definition))
 }
 
-fn misprint(erratum: &Erratum) -> Claim {
+/// What is printed, and what is right.
+pub(super) fn misprint(erratum: &Erratum) -> Claim {
     let (evidence, holds) = match &erratum.evidence {
         Evidence::Test(_, comparison) => {
             let [printed, right] = comparison.verdicts();

@@ -4,14 +4,14 @@ use appell_runtime::analysis::{Cell, Chart, Point};
 use appell_runtime::figure::{Curve, Map, Series, Stroke};
 
 use super::claim::{Claim, Picture, Section, digits};
-use super::found::{GRAVITY, Mechanism, RADIUS, SLIDER_MASS, WHEEL_MASS, cell_point, told};
+use super::found::{GRAVITY, Mechanism, RADIUS, SLIDER_MASS, WHEEL_MASS, cell_point, shown, told};
 use crate::failure::Failure;
 
 /// Largest tilt that is drawn, in degrees.
 const TILT_DEG: f64 = 60.0;
 /// Largest yaw rate that is drawn, in rad/s.
 const YAW: f64 = 10.0;
-const GRID: usize = 160;
+const GRID: usize = 240;
 const COMMAND: &str =
     "appell stability unicycle --chart theta=-60deg..60deg,psi_dot=-10..10 --require z_A>=0";
 
@@ -47,20 +47,32 @@ pub(super) fn section() -> Result<Section, Failure> {
         stroke: Stroke::Discs,
     });
 
+    let names = ["theta", "psi_dot"].map(shown);
+    curves.extend(chart.edges.iter().map(|edge| {
+        Curve {
+            line: series(
+                "",
+                edge.points
+                    .iter()
+                    .map(|at| at[0] * names[0].scale)
+                    .collect(),
+                edge.points.iter().map(|at| at[1]).collect(),
+            ),
+            stroke: Stroke::Thin,
+        }
+    }));
     let heights = Heights::new(unicycle);
-    let cells: Vec<Option<usize>> = (chart.cells.iter())
-        .map(|cell| {
-            cell.as_ref()
-                .map(|cell| heights.kind(&chart, cell))
-                .transpose()
-        })
-        .collect::<Result<_, _>>()?;
+    let kind = |cells: &Vec<Cell>| {
+        let first = cells.first().map(|cell| heights.kind(&chart, cell));
+        first.transpose()
+    };
+    let cells: Vec<Option<usize>> = chart.cells.iter().map(kind).collect::<Result<_, _>>()?;
     let mut claims = Vec::new();
     non_generic(&mut claims, unicycle, upright)?;
     areas(&mut claims, unicycle, &chart, &cells)?;
     let map = Map {
         title: "Steady motions of the unicycle".to_owned(),
-        labels: ["ϑ [deg]".to_owned(), "ψ̇ [rad/s]".to_owned()],
+        labels: names.map(|name| name.label),
         ranges: [[-TILT_DEG, TILT_DEG], [-YAW, YAW]],
         counts: [GRID; 2],
         kinds: [

@@ -1,16 +1,16 @@
 //! Figure 6: stability of the turning motions for eight sliding masses.
 
 use appell_runtime::analysis::{Cell, Chart, Point, Verdict};
-use appell_runtime::figure::Map;
 
 use super::claim::{Claim, Picture, Section};
 use super::figure_5::place_of_mass;
-use super::found::{Mechanism, boundaries, cell_point};
+use super::found::{Mechanism, cell_point, shown};
 use crate::failure::Failure;
+use crate::motions::regions;
 
 const TILT_DEG: f64 = 60.0;
 const YAW: f64 = 10.0;
-const GRID: usize = 160;
+const GRID: usize = 240;
 /// In kg.
 const MASSES: [f64; 8] = [0.0, 1.0, 2.0, 5.0, 10.0, 15.0, 20.0, 30.0];
 
@@ -27,7 +27,8 @@ pub(super) fn section() -> Result<Section, Failure> {
         ];
         let chart = mechanism.chart(&given, axes, &least)?;
         claims.push(claim(mass, mechanism, &chart)?);
-        let map = map(mass, &chart);
+        let names = ["theta", "psi_dot"];
+        let map = regions::map(&format!("m₀ = {mass} kg"), &chart, names.map(shown));
         pictures.push(Picture {
             svg: map.to_svg(),
             caption: format!("m₀ = {mass} kg, m₀/m = {}.", mass / 10.0),
@@ -126,27 +127,4 @@ fn disagrees(cell: &Cell) -> bool {
     };
     let (grows, border) = (clear(true), clear(false));
     !border && grows != (cell.verdict == Verdict::Unstable)
-}
-
-fn map(mass: f64, chart: &Chart) -> Map {
-    let kind = |cell: &Cell| match cell.verdict {
-        _ if !cell.feasible => 3,
-        Verdict::Unstable => 2,
-        _ => 1,
-    };
-    Map {
-        title: format!("m₀ = {mass} kg"),
-        labels: ["ϑ [deg]".to_owned(), "ψ̇ [rad/s]".to_owned()],
-        ranges: [[-TILT_DEG, TILT_DEG], [-YAW, YAW]],
-        counts: [GRID; 2],
-        kinds: ["", "stable", "unstable", "not feasible"]
-            .map(str::to_owned)
-            .to_vec(),
-        cells: chart
-            .cells
-            .iter()
-            .map(|cell| cell.as_ref().map(kind))
-            .collect(),
-        curves: boundaries(chart, ["theta", "psi_dot"]),
-    }
 }

@@ -9,6 +9,7 @@ use appell_runtime::figure::{Curve, Series, Stroke};
 use appell_runtime::model::Model;
 
 use crate::failure::Failure;
+use crate::motions::regions::Shown;
 
 /// Starting points from which motions are sought.
 const STARTS: usize = 20;
@@ -146,23 +147,18 @@ pub(super) fn degrees(name: &str, values: Vec<f64>) -> Vec<f64> {
     values
 }
 
-/// The boundaries of a chart that decide on stability, with the tilt in degrees where it is on an
-/// axis; the first has a label.
-pub(super) fn boundaries(chart: &Chart, names: [&str; 2]) -> Vec<Curve> {
-    let deciding = chart.boundaries.iter().filter(|boundary| boundary.decides);
-    let along =
-        |k: usize, points: &[[f64; 2]]| degrees(names[k], points.iter().map(|at| at[k]).collect());
-    deciding
-        .enumerate()
-        .map(|(i, boundary)| Curve {
-            line: Series {
-                label: (if i == 0 { "stability boundary" } else { "" }).to_owned(),
-                x: along(0, &boundary.points),
-                y: along(1, &boundary.points),
-            },
-            stroke: Stroke::Solid,
-        })
-        .collect()
+/// How a quantity is drawn: angles in degrees, by the letters of the paper.
+pub(super) fn shown(name: &str) -> Shown {
+    let (label, scale) = match name {
+        "theta" => ("ϑ [deg]", 1f64.to_degrees()),
+        "psi_dot" => ("ψ̇ [rad/s]", 1.0),
+        "phi_dot" => ("φ̇ [rad/s]", 1.0),
+        other => (other, 1.0),
+    };
+    Shown {
+        label: label.to_owned(),
+        scale,
+    }
 }
 
 /// Values of the quantity at special points of branches.

@@ -1,38 +1,19 @@
 //! Stability over two quantities: a grid of steady motions with their eigenvalues.
 
+use std::cmp::Ordering;
+
 use nalgebra::DVector;
 
-use super::boundary::{self, Boundary};
+use super::boundary::{self, Boundary, Edge};
 use super::branch::{BranchError, Requirement};
-use super::critical::Criteria;
-use super::cyclic::Structure;
-use super::equations::SteadyEquations;
-use super::newton::{self, Equations as _};
+use super::critical::REST;
+use super::flood::Flood;
+use super::plane::{Axis, Plane};
 use super::stability::{Verdict, essential_matrix, zero_count};
-use super::steady::{Condition, SteadyError, SteadyProblem};
+use super::steady::{SteadyError, SteadyProblem};
 use super::term::Term;
 use crate::linearise::Undetermined;
-use crate::model::Model;
-use crate::spectrum::{Complex, Eigenvalues, SpectrumError, characteristic_polynomial};
-
-/// A quantity with its range and the number of its values.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Axis {
-    /// The quantity.
-    pub term: Term,
-    /// First and last value in SI.
-    pub range: [f64; 2],
-    /// How many values, both ends among them.
-    pub count: usize,
-}
-
-impl Axis {
-    /// A value by its number.
-    pub fn value(&self, i: usize) -> f64 {
-        let part = i as f64 / self.count.saturating_sub(1).max(1) as f64;
-        self.range[0] + part * (self.range[1] - self.range[0])
-    }
-}
+use crate::spectrum::{Complex, Eigenvalues, SpectrumError};
 
 /// A steady motion of the grid.
 #[derive(Debug, Clone, PartialEq)]
@@ -56,11 +37,13 @@ pub struct Chart {
     pub axes: [Axis; 2],
     /// What [`Cell::unknowns`] are.
     pub unknowns: Vec<Term>,
-    /// Cells row by row, the horizontal quantity running fastest; nothing where no steady motion was
-    /// found.
-    pub cells: Vec<Option<Cell>>,
+    /// The motions of each place, row by row, the horizontal quantity running fastest: none where
+    /// no steady motion was found, several where sheets of them lie over each other.
+    pub cells: Vec<Vec<Cell>>,
     /// Where eigenvalues reach the imaginary axis, as curves.
     pub boundaries: Vec<Boundary>,
+    /// Where requirements begin or cease to hold, as curves.
+    pub edges: Vec<Edge>,
 }
 
 /// Why there is no chart.
@@ -90,12 +73,6 @@ impl From<SteadyError> for ChartError {
 const MOST: usize = 4000;
 /// Places along each axis where motions are sought from many starting points.
 const SEEDS: usize = 5;
-/// Passes over the grid; one or two are usual, a region behind a corner takes more.
-const MOST_PASSES: usize = 12;
-/// Cells between those that are sought from seeds, where they have no neighbour to begin from.
-const STRIDE: usize = 16;
-/// Real parts below this part of the largest eigenvalue count as zero.
-const REST: f64 = 1e-6;
 
 impl Chart {
     /// Of the motions that satisfy a problem's conditions and have the values of the axes. `starts`
@@ -114,81 +91,60 @@ impl Chart {
         let mut problem = problem.clone();
         for axis in axes {
             problem.release(axis.term)?;
-            let [from, to] = axis.range;
-            let length = to - from;
-            if !length.is_finite() || length == 0.0 {
+            if !axis.length().is_finite() || axis.length() == 0.0 {
                 let along = axis.term.name(problem.model().info());
+                let [from, to] = axis.range;
                 return Err(BranchError::Range { along, from, to }.into());
             }
         }
         for requirement in requirements {
             problem.check(requirement.term)?;
         }
-        let equations = scaled(&problem, axes);
-        let (seeds, zeros) = seeds(&problem, &equations, axes, starts)?;
-        let rows: Vec<usize> = (0..y.count).collect();
-        let band = y.count.div_ceil(threads.max(1));
-        let filled = std::thread::scope(|scope| {
-            let bands = rows.chunks(band).map(|rows| {
-                let filler = Filler::new(&problem, &equations, axes, requirements, zeros, &seeds);
-                scope.spawn(move || filler.fill(rows))
-            });
-            let running: Vec<_> = bands.collect();
-            let joined = running
-                .into_iter()
-                .map(|thread| thread.join().unwrap_or_default());
-            joined.collect::<Vec<_>>().concat()
-        });
+        let plane = Plane::new(&problem, axes);
+        let (seeds, zeros) = seeds(&plane, starts)?;
+        let motions = motions(&plane, &seeds, starts, threads);
+        let judge = Judge {
+            plane: &plane,
+            requirements,
+            zeros,
+        };
         let mut chart = Self {
             axes,
-            unknowns: equations.unknowns.clone(),
-            cells: filled,
+            unknowns: plane.equations.unknowns.clone(),
+            cells: judge.cells(&motions, threads),
             boundaries: Vec::new(),
+            edges: Vec::new(),
         };
-        chart.boundaries = boundary::trace(&problem, &equations, &chart, zeros)?;
+        chart.boundaries = boundary::boundaries(&plane, &chart, zeros)?;
+        chart.edges = boundary::edges(&plane, &chart, requirements);
         Ok(chart)
     }
 
-    /// The cell of the i-th value of the first axis and the j-th of the second.
-    pub fn cell(&self, i: usize, j: usize) -> Option<&Cell> {
+    /// The motions at the i-th value of the first axis and the j-th of the second.
+    pub fn motions(&self, i: usize, j: usize) -> &[Cell] {
         let inside = i < self.axes[0].count && j < self.axes[1].count;
         let place = j * self.axes[0].count + i;
-        self.cells.get(place).filter(|_| inside)?.as_ref()
+        self.cells
+            .get(place)
+            .filter(|_| inside)
+            .map_or(&[], Vec::as_slice)
     }
-}
-
-/// The equations with the quantities of the axes in units of their ranges.
-fn scaled<'p>(problem: &'p SteadyProblem<'_>, axes: [Axis; 2]) -> SteadyEquations<'p> {
-    let mut equations = problem.equations();
-    for (term, scale) in equations.unknowns.iter().zip(&mut equations.scales) {
-        for axis in axes.iter().filter(|axis| axis.term == *term) {
-            *scale = 0.5 * (axis.range[1] - axis.range[0]).abs();
-        }
-    }
-    equations
 }
 
 /// Motions at a few places, found from many starting points, and how many eigenvalues are zero at
 /// all of them.
-fn seeds(
-    problem: &SteadyProblem<'_>,
-    equations: &SteadyEquations<'_>,
-    axes: [Axis; 2],
-    starts: usize,
-) -> Result<(Vec<DVector<f64>>, usize), ChartError> {
+fn seeds(plane: &Plane<'_>, starts: usize) -> Result<(Vec<DVector<f64>>, usize), ChartError> {
+    let problem = plane.problem;
     let mut seeds = Vec::new();
     let mut zeros = usize::MAX;
     let mut reason = None;
     for i in 0..SEEDS {
         for j in 0..SEEDS {
             let mut here = problem.clone();
-            for (axis, k) in axes.iter().zip([i, j]) {
+            for (axis, k) in plane.axes.iter().zip([i, j]) {
                 // Off the middle, where mechanisms are symmetric.
                 let part = (k as f64 + 0.53) / SEEDS as f64;
-                here.fix(
-                    axis.term,
-                    axis.range[0] + part * (axis.range[1] - axis.range[0]),
-                )?;
+                here.fix(axis.term, axis.range[0] + part * axis.length())?;
             }
             match here.solve_isolated(starts) {
                 Ok(motions) => {
@@ -196,7 +152,7 @@ fn seeds(
                         let (model, structure) = (problem.model(), problem.structure());
                         let (_, matrix) = essential_matrix(model, structure, &motion.point)?;
                         zeros = zeros.min(zero_count(&matrix)?);
-                        seeds.push(equations.unknowns_of(&motion.point));
+                        seeds.push(plane.equations.unknowns_of(&motion.point));
                     }
                 }
                 Err(error) => reason = Some(error),
@@ -209,177 +165,82 @@ fn seeds(
     }
 }
 
-/// Motions of a row of the grid, as unknowns.
-type Row = Vec<Option<DVector<f64>>>;
-
-/// Fills rows of the grid, each motion from its neighbours.
-struct Filler<'a> {
-    model: &'a dyn Model,
-    structure: &'a Structure,
-    equations: SteadyEquations<'a>,
-    axes: [Axis; 2],
-    requirements: &'a [Requirement],
-    zeros: usize,
-    seeds: &'a [DVector<f64>],
-    problem: &'a SteadyProblem<'a>,
+/// The motions of the whole grid: bands of rows side by side, then across their edges.
+fn motions(
+    plane: &Plane<'_>,
+    seeds: &[DVector<f64>],
+    starts: usize,
+    threads: usize,
+) -> Vec<Vec<DVector<f64>>> {
+    let rows = plane.axes[1].count;
+    let high = rows.div_ceil(threads.max(1));
+    let filled = |from: usize| {
+        let mut band = Flood::over(plane, from..rows.min(from + high));
+        for seed in seeds {
+            band.seed(seed);
+            band.spread();
+        }
+        band
+    };
+    let bands = std::thread::scope(|scope| {
+        let bands = (0..rows).step_by(high);
+        let running: Vec<_> = bands
+            .map(|from| scope.spawn(move || filled(from)))
+            .collect();
+        running
+            .into_iter()
+            .filter_map(|band| band.join().ok())
+            .collect()
+    });
+    let mut all = Flood::joined(plane, bands);
+    all.spread();
+    all.fill_holes(plane.problem, starts);
+    all.motions
 }
 
-impl<'a> Filler<'a> {
-    fn new(
-        problem: &'a SteadyProblem<'a>,
-        equations: &SteadyEquations<'a>,
-        axes: [Axis; 2],
-        requirements: &'a [Requirement],
-        zeros: usize,
-        seeds: &'a [DVector<f64>],
-    ) -> Self {
-        let mut equations = equations.clone();
-        let conditions = axes.map(|axis| Condition {
-            term: axis.term,
-            value: axis.range[0],
-        });
-        equations.conditions.extend(conditions);
-        Self {
-            model: problem.model(),
-            structure: problem.structure(),
-            equations,
-            axes,
-            requirements,
-            zeros,
-            seeds,
-            problem,
-        }
+/// Tells what becomes of motions.
+struct Judge<'a> {
+    plane: &'a Plane<'a>,
+    requirements: &'a [Requirement],
+    zeros: usize,
+}
+
+impl Judge<'_> {
+    /// The cells of all places, shared among threads.
+    fn cells(&self, motions: &[Vec<DVector<f64>>], threads: usize) -> Vec<Vec<Cell>> {
+        let share = motions.len().div_ceil(threads.max(1)).max(1);
+        std::thread::scope(|scope| {
+            let part = |motions| scope.spawn(move || self.part(motions));
+            let running: Vec<_> = motions.chunks(share).map(part).collect();
+            let parts = running.into_iter();
+            parts
+                .flat_map(|part| part.join().unwrap_or_default())
+                .collect()
+        })
     }
 
-    /// Down and up in turn, until nothing further is reached.
-    fn fill(mut self, rows: &[usize]) -> Vec<Option<Cell>> {
-        let count = self.axes[0].count;
-        let mut motions: Vec<Row> = vec![vec![None; count]; rows.len()];
-        let mut found = 0;
-        for pass in 0..MOST_PASSES {
-            for place in 0..rows.len() {
-                let down = pass % 2 == 0;
-                let k = if down { place } else { rows.len() - 1 - place };
-                let beside = if down { k.checked_sub(1) } else { Some(k + 1) };
-                let mut row = std::mem::take(&mut motions[k]);
-                let beside = beside.and_then(|k| motions.get(k));
-                self.sweep(rows[k], &mut row, beside, pass == 0 && k % STRIDE == 0);
-                motions[k] = row;
-            }
-            let now = motions.iter().flatten().flatten().count();
-            if pass > 0 && now == found {
-                break;
-            }
-            found = now;
-        }
+    fn part(&self, motions: &[Vec<DVector<f64>>]) -> Vec<Vec<Cell>> {
         let mut solver = Eigenvalues::new(0);
-        let motions = motions.iter().flatten();
-        let cell = |z: &Option<DVector<f64>>| z.as_ref().and_then(|z| self.cell(z, &mut solver));
-        motions.map(cell).collect()
-    }
-
-    /// Fills what a row lacks, forth and back.
-    fn sweep(&mut self, j: usize, row: &mut Row, beside: Option<&Row>, seeded: bool) {
-        let count = row.len();
-        for i in 0..count {
-            if row[i].is_none() {
-                let before = [i.checked_sub(1), i.checked_sub(2)];
-                row[i] = self.solve([i, j], before, row, beside, seeded && i % STRIDE == 0);
-            }
-        }
-        for i in (0..count).rev() {
-            if row[i].is_none() {
-                let after = [i + 1, i + 2].map(|k| Some(k).filter(|&k| k < count));
-                row[i] = self.solve([i, j], after, row, beside, false);
-            }
-        }
-    }
-
-    /// The motion of a cell from the two beside it in its row and one of the next row, or from a seed.
-    fn solve(
-        &mut self,
-        [i, j]: [usize; 2],
-        beside: [Option<usize>; 2],
-        row: &Row,
-        above: Option<&Row>,
-        seeded: bool,
-    ) -> Option<DVector<f64>> {
-        let last = self.equations.conditions.len();
-        self.equations.conditions[last - 2].value = self.axes[0].value(i);
-        self.equations.conditions[last - 1].value = self.axes[1].value(j);
-        let [one, two] = beside.map(|place| row[place?].as_ref());
-        let ahead = one.zip(two).map(|(one, two)| one * 2.0 - two);
-        let starts = [ahead.as_ref(), one, above.and_then(|row| row[i].as_ref())];
-        let near = starts
-            .into_iter()
-            .flatten()
-            .find_map(|start| self.newton(start));
-        if near.is_some() || !seeded {
-            return near;
-        }
-        let zero = newton::solve(&self.equations, self.nearest_seed()?).ok()?;
-        let inside = self.problem.in_range(&self.equations.point(&zero.z));
-        (zero.family() == 0 && inside).then_some(zero.z)
-    }
-
-    /// The seed whose values of the axes are nearest to those of the conditions.
-    fn nearest_seed(&self) -> Option<&DVector<f64>> {
-        let conditions = &self.equations.conditions[self.equations.conditions.len() - 2..];
-        let away = |z: &DVector<f64>| {
-            let point = self.equations.point(z);
-            let part = |k: usize| {
-                let [from, to] = self.axes[k].range;
-                let value = self.axes[k].term.value(self.model, &point);
-                (value - conditions[k].value) / (to - from)
-            };
-            part(0).hypot(part(1))
-        };
-        let seeds = self.seeds.iter();
-        seeds.min_by(|a, b| away(a).total_cmp(&away(b)))
-    }
-
-    /// Newton's method for a motion that stands alone and is near.
-    fn newton(&self, start: &DVector<f64>) -> Option<DVector<f64>> {
-        /// Steps; two are usual.
-        const STEPS: usize = 8;
-        /// After a step as short as this the next would be rounding.
-        const SHORT: f64 = 1e-7;
-        /// A longer step, relative to the motion, leads to another one.
-        const FAR: f64 = 1.0;
-        /// Unknowns that exceed this, in their scales, run to infinity.
-        const INFINITE: f64 = 1e4;
-        /// Columns that depend on each other to this part belong to a family.
-        const REGULAR: f64 = 1e-9;
-        let mut z = start.clone();
-        for _ in 0..STEPS {
-            let (f, jacobian) = self.equations.evaluate(&z);
-            let weights = newton::weights(&jacobian);
-            let qr = newton::weighted(&jacobian, &weights).qr();
-            let mut target = -f.component_mul(&weights);
-            qr.q_tr_mul(&mut target);
-            let r = qr.r();
-            let diagonal = r.diagonal();
-            let regular = diagonal.amin() > REGULAR * diagonal.amax();
-            if !regular {
-                return None;
-            }
-            let step = r.solve_upper_triangular(&target.rows(0, r.ncols()))?;
-            z += &step;
-            let size = step.norm() / (1.0 + z.norm());
-            if size.is_nan() || size > FAR || z.norm() > INFINITE {
-                return None;
-            }
-            if size <= SHORT {
-                let inside = self.problem.in_range(&self.equations.point(&z));
-                return inside.then_some(z);
-            }
-        }
-        None
+        let places = motions.iter().map(|place| {
+            let cells = place.iter().filter_map(|z| self.cell(z, &mut solver));
+            let mut cells: Vec<Cell> = cells.collect();
+            // In an order that does not tell how they were found.
+            cells.sort_by(|a, b| {
+                let pairs = a.unknowns.iter().zip(&b.unknowns);
+                let mut orders = pairs.map(|(a, b)| rounded(*a).total_cmp(&rounded(*b)));
+                orders
+                    .find(|order| order.is_ne())
+                    .unwrap_or(Ordering::Equal)
+            });
+            cells
+        });
+        places.collect()
     }
 
     fn cell(&self, z: &DVector<f64>, solver: &mut Eigenvalues) -> Option<Cell> {
-        let point = self.equations.point(z);
-        let (states, matrix) = essential_matrix(self.model, self.structure, &point).ok()?;
+        let (problem, equations) = (self.plane.problem, &self.plane.equations);
+        let (model, point) = (problem.model(), equations.point(z));
+        let (states, matrix) = essential_matrix(model, problem.structure(), &point).ok()?;
         if solver.size() != states.len() {
             *solver = Eigenvalues::new(states.len());
         }
@@ -397,8 +258,8 @@ impl<'a> Filler<'a> {
         } else {
             Verdict::Neutral
         };
-        let holds = |r: &Requirement| r.term.value(self.model, &point) >= r.at_least;
-        let scaled = z.iter().zip(&self.equations.scales);
+        let holds = |r: &Requirement| r.term.value(model, &point) >= r.at_least;
+        let scaled = z.iter().zip(&equations.scales);
         Some(Cell {
             unknowns: scaled.map(|(z, scale)| z * scale).collect(),
             eigenvalues: values,
@@ -408,32 +269,7 @@ impl<'a> Filler<'a> {
     }
 }
 
-/// Criteria for the motions of a chart, from a few of its cells.
-pub(super) fn criteria(
-    problem: &SteadyProblem<'_>,
-    equations: &SteadyEquations<'_>,
-    chart: &Chart,
-    zeros: usize,
-) -> Result<Criteria, ChartError> {
-    /// Cells that are looked at.
-    const SAMPLES: usize = 40;
-    let cells: Vec<&Cell> = chart.cells.iter().flatten().collect();
-    let each = (cells.len() / SAMPLES).max(1);
-    let mut polynomials = Vec::new();
-    for cell in cells.iter().step_by(each) {
-        let z = unknowns(equations, cell);
-        let point = equations.point(&z);
-        let (_, matrix) = essential_matrix(problem.model(), problem.structure(), &point)?;
-        polynomials.push(characteristic_polynomial(&matrix)?);
-    }
-    Ok(Criteria::of(&polynomials, zeros))
-}
-
-/// The unknowns of a cell in units of their scales.
-pub(super) fn unknowns(equations: &SteadyEquations<'_>, cell: &Cell) -> DVector<f64> {
-    let values = cell.unknowns.iter().zip(&equations.scales);
-    DVector::from_iterator(
-        cell.unknowns.len(),
-        values.map(|(value, scale)| value / scale),
-    )
+/// A value in SI without its last digits, and zero without a sign.
+fn rounded(value: f64) -> f64 {
+    (value * 1e6).round() + 0.0
 }

@@ -18,6 +18,8 @@ const EVEN: f64 = 1e-10;
 /// Eigenvalues within this part of the largest lie on an axis, or on each other, where a criterion
 /// is zero to rounding.
 const NEAR: f64 = 1e-4;
+/// Real parts below this part of the largest eigenvalue count as zero where rounding is not told.
+pub(super) const REST: f64 = 1e-6;
 
 /// What happens at a critical point.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -99,6 +101,30 @@ impl Criteria {
             1.0
         };
         [scaled[degree], pairs]
+    }
+
+    /// The signs of the two values where these are the eigenvalues but the zeros; 0 where rounding
+    /// decides.
+    pub(super) fn signs(&self, values: &[Complex<f64>]) -> [f64; 2] {
+        let sign = |factors: &mut dyn Iterator<Item = Complex<f64>>| {
+            let product = factors.fold(Complex::from(1.0), |product, factor| {
+                product * factor / factor.norm()
+            });
+            if product.re.is_nan() { 0.0 } else { product.re }
+        };
+        let last = sign(&mut values.iter().copied());
+        if !self.even {
+            let pairs = values.iter().enumerate();
+            let mut sums = pairs.flat_map(|(i, a)| values[..i].iter().map(move |b| a + b));
+            return [last, sign(&mut sums)];
+        }
+        // Each pair of complex squares makes one factor negative; it has two eigenvalues above the
+        // real axis.
+        let largest = values.iter().map(|value| value.norm()).fold(0.0, f64::max);
+        let beside =
+            |value: &&Complex<f64>| value.re.abs() > REST * largest && value.im > REST * largest;
+        let above = values.iter().filter(beside).count();
+        [last, if above / 2 % 2 == 0 { 1.0 } else { -1.0 }]
     }
 
     /// What happens where one of the two values is zero: eigenvalues tell whether the zero is one

@@ -3,6 +3,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::cyclic::Structure;
+use super::differences;
 use super::newton::Equations;
 use super::point::Point;
 use super::steady::Condition;
@@ -136,19 +137,15 @@ impl<'a> SteadyEquations<'a> {
         }
     }
 
-    /// Value of an output, and its gradient by differences: a model gives none. The value decides
-    /// where a solution is, the gradient only how fast it is found.
+    /// Value of an output, and its gradient by differences: a model gives none.
     fn output(&self, output: usize, point: &Point) -> (f64, DVector<f64>) {
-        /// Balances the error of the difference with that of rounding.
-        const STEP: f64 = 1e-3;
         let z = self.unknowns_of(point);
         let gradient = DVector::from_fn(z.len(), |i, _| {
-            let at = |steps: f64| {
+            differences::slope(|by| {
                 let mut z = z.clone();
-                z[i] += steps * STEP;
+                z[i] += by;
                 self.point(&z).outputs(self.model)[output]
-            };
-            (8.0 * (at(1.0) - at(-1.0)) - (at(2.0) - at(-2.0))) / (12.0 * STEP)
+            })
         });
         (point.outputs(self.model)[output], gradient)
     }

@@ -6,11 +6,12 @@
 //! | `cyclic.rs` | essential states and hidden ones, from the equations |
 //! | `equations.rs`, `newton.rs`, `starts.rs` | steady motions as equations, their solution, where to begin |
 //! | `steady.rs` | steady motions under conditions, all that are found, the dimension of their family |
-//! | `hidden.rs` | what the hidden coordinates do: rates, circles |
+//! | `hidden.rs`, `differences.rs` | what the hidden coordinates do: rates, circles; slopes that a model does not tell |
 //! | `continuation.rs`, `crossing.rs` | curves of zeros, followed by their length; where two of them cross |
 //! | `branch.rs` | steady motions along one quantity: folds, crossings, ends, feasibility |
 //! | `critical.rs` | smooth functions whose zeros are changes of stability |
-//! | `chart.rs`, `boundary.rs` | stability over two quantities: a grid, and its borders as curves |
+//! | `plane.rs`, `flood.rs`, `chart.rs` | stability over two quantities: a place, a grid, its verdicts |
+//! | `level.rs`, `boundary.rs` | curves over two quantities: borders of stability and feasibility |
 //! | `locus.rs` | modes that keep their place through crossings |
 //! | `stability.rs` | eigenvalues without those of the family; the verdict |
 //!
@@ -40,26 +41,31 @@ mod continuation;
 mod critical;
 mod crossing;
 mod cyclic;
+mod differences;
 mod equations;
+mod flood;
 mod hidden;
+mod level;
 mod locus;
 mod newton;
+mod plane;
 mod point;
 mod stability;
 mod starts;
 mod steady;
 mod term;
 
-pub use boundary::{Boundary, BoundaryFold};
+pub use boundary::{Boundary, BoundaryFold, Edge};
 pub use branch::{
     Branch, BranchError, BranchOptions, BranchPoint, Branches, Kind, Requirement, Special,
 };
-pub use chart::{Axis, Cell, Chart, ChartError};
+pub use chart::{Cell, Chart, ChartError};
 pub use continuation::End;
 pub use critical::Change;
 pub use cyclic::{Structure, StructureError};
 pub use hidden::{Circle, circle};
 pub use locus::loci;
+pub use plane::Axis;
 pub use point::Point;
 pub use stability::{Stability, StabilityError, Verdict, essential_matrix};
 pub use steady::{Condition, SteadyError, SteadyMotion, SteadyProblem};

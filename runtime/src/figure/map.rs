@@ -67,26 +67,51 @@ impl Stroke {
 
 const HEIGHT: f64 = 480.0;
 /// Fillings of the kinds, which any colour vision tells apart.
-const FILLS: &str = ".k0{fill:#56b4e9}.k1{fill:#009e73}.k2{fill:#d55e00}.k3{fill:#888}.k4{fill:#f0e442}.k5{fill:#0072b2}\
+pub(super) const FILLS: &str = ".k0{fill:#56b4e9}.k1{fill:#009e73}.k2{fill:#d55e00}.k3{fill:#888}.k4{fill:#f0e442}.k5{fill:#0072b2}\
 .kind{fill-opacity:.45}.curve{fill:none;stroke-width:1.6;stroke:#222}.thin{stroke-width:.7}\
 .long{stroke-dasharray:8 5}.dots{stroke-dasharray:2 4;stroke-width:2}.spot{fill:#222}\
 @media(prefers-color-scheme:dark){.curve{stroke:#eee}.spot{fill:#eee}}\n";
 /// Room for a name in the legend.
-const LEGEND: f64 = 170.0;
-/// Curves in a row of the legend.
-const PER_ROW: usize = 3;
+pub(super) const LEGEND: f64 = 168.0;
+/// Names in a row of the legend.
+const PER_ROW: usize = 4;
 const LEGEND_ROW: f64 = 18.0;
+
+/// What stands before a name in the legend.
+enum Sample<'a> {
+    Kind(usize),
+    Curve(&'a Curve),
+}
+
+impl Sample<'_> {
+    /// The sample, with the middle of its left end at a place.
+    fn at(&self, [x, y]: [f64; 2]) -> String {
+        match self {
+            Self::Kind(kind) => element(*kind, &format!("M{x:.1} {:.1}h16v10h-16z", y - 5.0)),
+            Self::Curve(curve) => curve.stroke.element(&match curve.stroke {
+                Stroke::Discs | Stroke::Squares => curve.stroke.spot([x + 8.0, y]),
+                _ => format!("M{x:.1} {y:.1}h18"),
+            }),
+        }
+    }
+}
+
+/// An area of a kind.
+pub(super) fn element(kind: usize, path: &str) -> String {
+    format!("<path class=\"kind k{kind}\" d=\"{path}\"/>")
+}
 
 impl Map {
     /// The map as an SVG document.
     pub fn to_svg(&self) -> String {
         let [x_axis, y_axis] = self.ranges.map(|range| Axis::tight(range.into_iter()));
-        let labelled: Vec<&Curve> = (self.curves.iter())
-            .filter(|curve| !curve.line.label.is_empty())
-            .collect();
-        let rows = labelled.len().div_ceil(PER_ROW);
+        let kinds = self.kinds.iter().enumerate();
+        let kinds = kinds.filter(|(_, name)| !name.is_empty());
+        let labelled = (self.curves.iter()).filter(|curve| !curve.line.label.is_empty());
+        let entries = kinds.clone().count() + labelled.clone().count();
+        let rows = entries.div_ceil(PER_ROW).max(1);
         let area = Area {
-            top: TITLE_HEIGHT + HEADER_HEIGHT + LEGEND_ROW * rows as f64,
+            top: TITLE_HEIGHT + HEADER_HEIGHT + LEGEND_ROW * (rows - 1) as f64,
             width: WIDTH - LEFT - RIGHT,
             height: HEIGHT,
         };
@@ -97,23 +122,17 @@ impl Map {
              <rect class=\"paper\" width=\"100%\" height=\"100%\"/>\n"
         );
         put(&mut svg, &text(LEFT, 22.0, "class=\"title\"", &self.title));
-        let mut x = LEFT;
-        for (kind, name) in self.kinds.iter().enumerate() {
-            if !name.is_empty() {
-                let y = TITLE_HEIGHT + HEADER_HEIGHT - 9.0;
-                let sample = format!("M{x:.1} {:.1}h14v10h-14z", y - 9.0);
-                put(
-                    &mut svg,
-                    &format!("<path class=\"kind k{kind}\" d=\"{sample}\"/>"),
-                );
-                put(&mut svg, &text(x + 20.0, y, "", name));
-                x += LEGEND;
-            }
-            let cells = self.cells_of(kind, &area);
-            put(
-                &mut svg,
-                &format!("<path class=\"kind k{kind}\" d=\"{cells}\"/>"),
-            );
+        let samples = kinds.map(|(kind, name)| (Sample::Kind(kind), name));
+        let samples =
+            samples.chain(labelled.map(|curve| (Sample::Curve(curve), &curve.line.label)));
+        for (i, (sample, name)) in samples.enumerate() {
+            let x = LEFT + LEGEND * (i % PER_ROW) as f64;
+            let y = TITLE_HEIGHT + HEADER_HEIGHT - 9.0 + LEGEND_ROW * (i / PER_ROW) as f64;
+            put(&mut svg, &sample.at([x, y - 4.0]));
+            put(&mut svg, &text(x + 23.0, y, "", name));
+        }
+        for kind in 0..self.kinds.len() {
+            put(&mut svg, &element(kind, &self.cells_of(kind, &area)));
         }
         area.grid(&mut svg, &x_axis, &y_axis);
         // What leaves the ranges is cut off.
@@ -128,16 +147,6 @@ impl Map {
             put(&mut svg, &curve.stroke.element(&line));
         }
         put(&mut svg, "</svg>");
-        for (i, curve) in labelled.into_iter().enumerate() {
-            let x = LEFT + LEGEND * (i % PER_ROW) as f64;
-            let y = TITLE_HEIGHT + HEADER_HEIGHT - 9.0 + LEGEND_ROW * (1 + i / PER_ROW) as f64;
-            let sample = match curve.stroke {
-                Stroke::Discs | Stroke::Squares => curve.stroke.spot([x + 8.0, y - 4.0]),
-                _ => format!("M{x:.1} {:.1}h18", y - 4.0),
-            };
-            put(&mut svg, &curve.stroke.element(&sample));
-            put(&mut svg, &text(x + 23.0, y, "", &curve.line.label));
-        }
         let bottom = area.top + HEIGHT;
         for tick in x_axis.ticks(8) {
             let x = LEFT + area.width * x_axis.part(tick);
@@ -163,36 +172,41 @@ impl Map {
         svg + "</svg>\n"
     }
 
-    /// The cells of a kind as rectangles, one for each run in a row.
+    /// The points of a kind as rectangles about them, one for each run in a row.
     fn cells_of(&self, kind: usize, area: &Area) -> String {
         let [columns, rows] = self.counts;
-        let [wide, high] = [
-            area.width / columns.max(1) as f64,
-            area.height / rows.max(1) as f64,
-        ];
         // Ranges may run downwards.
         let [left, down] = self.ranges.map(|[from, to]| from > to);
         let mut path = String::new();
         for (j, row) in self.cells.chunks(columns.max(1)).enumerate() {
-            let place = if down { j } else { rows.saturating_sub(j + 1) };
+            let [top, bottom] = reach([j, j + 1], rows, !down);
             let mut i = 0;
             while i < row.len() {
-                let run = row[i..]
-                    .iter()
-                    .take_while(|cell| **cell == Some(kind))
-                    .count();
+                let same = row[i..].iter().take_while(|cell| **cell == Some(kind));
+                let run = same.count();
                 if run > 0 {
-                    let start = if left { columns - i - run } else { i };
-                    let x = LEFT + wide * start as f64;
-                    let y = area.top + high * place as f64;
-                    let width = wide * run as f64;
+                    let [from, to] = reach([i, i + run], columns, left);
+                    let [x, width] = [LEFT + area.width * from, area.width * (to - from)];
+                    let [y, high] = [area.top + area.height * top, area.height * (bottom - top)];
                     // Writing to a string cannot fail.
-                    let _ = write!(path, "M{x:.1} {y:.1}h{width:.1}v{high:.2}h-{width:.1}z");
+                    let _ = write!(path, "M{x:.1} {y:.2}h{width:.1}v{high:.2}h-{width:.1}z");
                 }
                 i += run.max(1);
             }
         }
         path
+    }
+}
+
+/// Where the points of a run of a row of so many begin and end, as parts of the row: halfway to the
+/// points beside them.
+fn reach(run: [usize; 2], count: usize, backwards: bool) -> [f64; 2] {
+    let part = |end: usize| (end as f64 - 0.5) / count.saturating_sub(1).max(1) as f64;
+    let [from, to] = run.map(|end| part(end).clamp(0.0, 1.0));
+    if backwards {
+        [1.0 - to, 1.0 - from]
+    } else {
+        [from, to]
     }
 }
 

@@ -42,6 +42,16 @@ pub const ERRATA: &[Erratum] = &[
     },
     Erratum {
         source: Source::Steering,
+        equation: "text on figure 3",
+        printed: "panels (c) and (d) show the level sets of ψ̇ and φ̇, respectively",
+        right: "(c) has levels of φ̇, (d) of ψ̇",
+        verdict: Verdict::Misprint,
+        evidence: Evidence::Context(
+            "the line φ̇ → ±∞ of (c) lies in the plane of ϑ and ψ̇; motions that differ in ψ̇ alone, as in (d), lie over one place of the plane of ϑ and φ̇",
+        ),
+    },
+    Erratum {
+        source: Source::Steering,
         equation: "(29)",
         printed: "seven entries in rows 7 and 8",
         right: "one more zero in each",

@@ -4,13 +4,14 @@ use std::fmt::Write as _;
 use std::io::{self, Write};
 use std::str::FromStr;
 
-use appell_runtime::analysis::{Axis, Boundary, Cell, Chart, Verdict};
-use appell_runtime::figure::{Curve, Map, Series, Stroke};
+use appell_runtime::analysis::{Axis, Boundary, Cell, Chart, Edge, Verdict};
+use appell_runtime::figure::Map;
 use serde_json::{Value, json};
 
 use super::StabilityCommand;
 use crate::failure::Failure;
 use crate::files;
+use crate::motions::regions::{self, Shown};
 use crate::motions::{Asked, Span, export, told};
 use crate::setup::Setup;
 
@@ -87,18 +88,21 @@ fn text(asked: &Asked<'_>, chart: &Chart) -> String {
     let found = chart.cells.iter().flatten();
     let count = |verdict: Verdict| found.clone().filter(|cell| cell.verdict == verdict).count();
     let mut text = format!(
-        "{} motions: {} asymptotically stable, {} neutrally stable, {} unstable; {} without one\n",
+        "{} motions at {} places: {} asymptotically stable, {} neutrally stable, {} unstable; {} places \
+         without one, {} with several\n",
+        found.clone().count(),
         chart.cells.len(),
         count(Verdict::Asymptotic),
         count(Verdict::Neutral),
         count(Verdict::Unstable),
-        chart.cells.len() - found.clone().count(),
+        chart.cells.iter().filter(|cells| cells.is_empty()).count(),
+        chart.cells.iter().filter(|cells| cells.len() > 1).count(),
     );
     for boundary in &chart.boundaries {
-        let role = if boundary.decides {
-            "boundary"
-        } else {
-            "inside what is unstable"
+        let role = match boundary.deciding().count() {
+            0 => "inside what is unstable",
+            _ if boundary.decides.contains(&false) => "boundary, in parts",
+            _ => "boundary",
         };
         // Writing to a string cannot fail.
         let _ = writeln!(text, "{role}: {}", told::change_text(boundary.change));
@@ -122,7 +126,8 @@ fn text(asked: &Asked<'_>, chart: &Chart) -> String {
 
 fn boundary_json(boundary: &Boundary) -> Value {
     let folds = boundary.folds.iter();
-    let folds = folds.map(|fold| json!({ "axis": fold.axis, "at": fold.at }));
+    let folds =
+        folds.map(|fold| json!({ "axis": fold.axis, "at": fold.at, "decides": fold.decides }));
     json!({
         "kind": export::kind(appell_runtime::analysis::Kind::Critical(boundary.change)),
         "decides": boundary.decides,
@@ -135,22 +140,23 @@ fn json(asked: &Asked<'_>, chart: &Chart) -> Value {
     let info = asked.problem.model().info();
     let axis = |axis: &Axis| json!({ "name": axis.term.name(info), "range": axis.range, "count": axis.count });
     let unknowns = chart.unknowns.iter().map(|term| term.name(info));
-    let cell = |cell: &Option<Cell>| {
-        cell.as_ref().map(|cell| {
-            json!({
-                "unknowns": cell.unknowns,
-                "eigenvalues": cell.eigenvalues.iter().map(|z| [z.re, z.im]).collect::<Vec<_>>(),
-                "verdict": export::verdict(cell.verdict),
-                "feasible": cell.feasible,
-            })
+    let motion = |cell: &Cell| {
+        json!({
+            "unknowns": cell.unknowns,
+            "eigenvalues": cell.eigenvalues.iter().map(|z| [z.re, z.im]).collect::<Vec<_>>(),
+            "verdict": export::verdict(cell.verdict),
+            "feasible": cell.feasible,
         })
     };
+    let place = |cells: &Vec<Cell>| json!(cells.iter().map(motion).collect::<Vec<_>>());
+    let edge = |edge: &Edge| json!({ "requirement": edge.requirement, "points": edge.points });
     json!({
         "mechanism": info.name,
         "axes": chart.axes.iter().map(axis).collect::<Vec<_>>(),
         "unknowns": unknowns.collect::<Vec<_>>(),
         "boundaries": chart.boundaries.iter().map(boundary_json).collect::<Vec<_>>(),
-        "cells": chart.cells.iter().map(cell).collect::<Vec<_>>(),
+        "edges": chart.edges.iter().map(edge).collect::<Vec<_>>(),
+        "cells": chart.cells.iter().map(place).collect::<Vec<_>>(),
     })
 }
 
@@ -166,18 +172,17 @@ fn csv(asked: &Asked<'_>, chart: &Chart, to: &mut dyn Write) -> io::Result<()> {
     writeln!(to, "{},{},growth,verdict,feasible", x.name, y.name)?;
     for j in 0..chart.axes[1].count {
         for i in 0..chart.axes[0].count {
-            let Some(cell) = chart.cell(i, j) else {
-                continue;
-            };
-            let growth = cell.eigenvalues.first().map_or(f64::NEG_INFINITY, |z| z.re);
-            writeln!(
-                to,
-                "{},{},{growth},{},{}",
-                x.to_unit(chart.axes[0].value(i)),
-                y.to_unit(chart.axes[1].value(j)),
-                export::verdict(cell.verdict),
-                cell.feasible,
-            )?;
+            for cell in chart.motions(i, j) {
+                let growth = cell.eigenvalues.first().map_or(f64::NEG_INFINITY, |z| z.re);
+                writeln!(
+                    to,
+                    "{},{},{growth},{},{}",
+                    x.to_unit(chart.axes[0].value(i)),
+                    y.to_unit(chart.axes[1].value(j)),
+                    export::verdict(cell.verdict),
+                    cell.feasible,
+                )?;
+            }
         }
     }
     Ok(())
@@ -185,41 +190,12 @@ fn csv(asked: &Asked<'_>, chart: &Chart, to: &mut dyn Write) -> io::Result<()> {
 
 fn map(asked: &Asked<'_>, chart: &Chart) -> Map {
     let info = asked.problem.model().info();
-    let quantities = chart.axes.map(|axis| axis.term.quantity(info));
-    let shown = |k: usize, value: f64| quantities[k].to_unit(value);
-    let kind = |cell: &Cell| match cell.verdict {
-        _ if !cell.feasible => 3,
-        Verdict::Asymptotic => 0,
-        Verdict::Neutral | Verdict::Critical => 1,
-        Verdict::Unstable => 2,
+    let shown = |axis: Axis| {
+        let quantity = axis.term.quantity(info);
+        Shown {
+            label: format!("{} [{}]", quantity.name, quantity.unit),
+            scale: quantity.to_unit(1.0),
+        }
     };
-    let curve = |boundary: &Boundary| Curve {
-        line: Series {
-            label: String::new(),
-            x: boundary.points.iter().map(|at| shown(0, at[0])).collect(),
-            y: boundary.points.iter().map(|at| shown(1, at[1])).collect(),
-        },
-        stroke: Stroke::Solid,
-    };
-    let names = [
-        "asymptotically stable",
-        "neutrally stable",
-        "unstable",
-        "not feasible",
-    ];
-    Map {
-        title: info.title.to_string(),
-        labels: quantities
-            .each_ref()
-            .map(|q| format!("{} [{}]", q.name, q.unit)),
-        ranges: [0, 1].map(|k: usize| chart.axes[k].range.map(|value| shown(k, value))),
-        counts: chart.axes.map(|axis| axis.count),
-        kinds: names.map(str::to_owned).to_vec(),
-        cells: chart
-            .cells
-            .iter()
-            .map(|cell| cell.as_ref().map(kind))
-            .collect(),
-        curves: chart.boundaries.iter().map(curve).collect(),
-    }
+    regions::map(&info.title, chart, chart.axes.map(shown))
 }

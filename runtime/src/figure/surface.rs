@@ -1,0 +1,200 @@
+//! A surface in space, seen in parallel projection, as SVG.
+
+use std::fmt::Write as _;
+
+use super::axis::{Axis, number};
+use super::map::{FILLS, LEGEND, element};
+use super::{HEADER_HEIGHT, LEFT, STYLE, TITLE_HEIGHT, WIDTH, put, text};
+
+/// Pieces of a surface over three quantities.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Surface {
+    /// Above the picture; may be empty.
+    pub title: String,
+    /// Name and unit of each quantity; the last one points upwards.
+    pub labels: [String; 3],
+    /// Their first and last values.
+    pub ranges: [[f64; 2]; 3],
+    /// Names of the kinds, coloured as those of a [`Map`](super::Map).
+    pub kinds: Vec<String>,
+    /// The pieces. Those that leave the ranges are left out.
+    pub patches: Vec<Patch>,
+}
+
+/// A piece of a surface.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Patch {
+    /// Its corners, in order.
+    pub corners: [[f64; 3]; 4],
+    /// Its kind.
+    pub kind: usize,
+}
+
+const HEIGHT: f64 = 500.0;
+/// Half an edge of the box.
+const SIZE: f64 = 150.0;
+/// Sine and cosine of the angles from which the box is seen: to the left and from above.
+const TURN: [f64; 2] = [0.529_919_264_233_204_9, 0.848_048_096_156_426];
+const DIP: [f64; 2] = [0.422_618_261_740_699_44, 0.906_307_787_036_649_9];
+/// Surfaces hide what is behind them; their mesh tells their form.
+const SOLID: &str = ".piece path{stroke:#222;stroke-width:.35;stroke-linejoin:round;fill-opacity:.85}\
+@media(prefers-color-scheme:dark){.piece path{stroke:#111}}\n";
+
+/// A place on the paper, and how near it is to the reader.
+fn seen([x, y, z]: [f64; 3]) -> ([f64; 2], f64) {
+    let [sideways, depth] = [TURN[1] * x - TURN[0] * y, TURN[0] * x + TURN[1] * y];
+    let upwards = DIP[1] * z + DIP[0] * depth;
+    let near = DIP[0] * z - DIP[1] * depth;
+    let middle = [WIDTH / 2.0, TITLE_HEIGHT + HEADER_HEIGHT + HEIGHT / 2.0];
+    (
+        [middle[0] + SIZE * sideways, middle[1] - SIZE * upwards],
+        near,
+    )
+}
+
+impl Surface {
+    /// The surface as an SVG document.
+    pub fn to_svg(&self) -> String {
+        let height = TITLE_HEIGHT + HEADER_HEIGHT + HEIGHT;
+        let mut svg = format!(
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {WIDTH} {height:.0}\" \
+             width=\"{WIDTH}\" height=\"{height:.0}\">\n<style>\n{STYLE}{FILLS}{SOLID}</style>\n\
+             <rect class=\"paper\" width=\"100%\" height=\"100%\"/>\n"
+        );
+        put(&mut svg, &text(LEFT, 22.0, "class=\"title\"", &self.title));
+        let named = self
+            .kinds
+            .iter()
+            .enumerate()
+            .filter(|(_, name)| !name.is_empty());
+        for (i, (kind, name)) in named.enumerate() {
+            let (x, y) = (LEFT + LEGEND * i as f64, TITLE_HEIGHT + HEADER_HEIGHT - 9.0);
+            put(
+                &mut svg,
+                &element(kind, &format!("M{x:.1} {:.1}h16v10h-16z", y - 9.0)),
+            );
+            put(&mut svg, &text(x + 23.0, y, "", name));
+        }
+        self.walls(&mut svg);
+        put(&mut svg, "<g class=\"piece\">");
+        for (kind, path) in self.pieces() {
+            put(&mut svg, &element(kind, &path));
+        }
+        put(&mut svg, "</g>");
+        self.scales(&mut svg);
+        svg + "</svg>\n"
+    }
+
+    /// A place in the box, each quantity between −1 and 1.
+    fn inside(&self, values: [f64; 3]) -> [f64; 3] {
+        [0, 1, 2].map(|k: usize| {
+            let [from, to] = self.ranges[k];
+            2.0 * (values[k] - from) / (to - from) - 1.0
+        })
+    }
+
+    /// The pieces, the farthest first.
+    fn pieces(&self) -> Vec<(usize, String)> {
+        let mut pieces: Vec<(f64, usize, String)> = Vec::new();
+        for patch in &self.patches {
+            let corners = patch.corners.map(|corner| self.inside(corner));
+            if corners
+                .iter()
+                .flatten()
+                .any(|part| part.is_nan() || part.abs() > 1.0)
+            {
+                continue;
+            }
+            let near = corners.iter().map(|corner| seen(*corner).1).sum();
+            let mut path = String::new();
+            for (k, corner) in corners.iter().enumerate() {
+                let [x, y] = seen(*corner).0;
+                // Writing to a string cannot fail.
+                let _ = write!(path, "{}{x:.1} {y:.1}", if k == 0 { 'M' } else { 'L' });
+            }
+            pieces.push((near, patch.kind, path + "z"));
+        }
+        pieces.sort_by(|a, b| a.0.total_cmp(&b.0));
+        pieces
+            .into_iter()
+            .map(|(_, kind, path)| (kind, path))
+            .collect()
+    }
+
+    /// The floor and the two walls behind, with the lines of the ticks.
+    fn walls(&self, svg: &mut String) {
+        let mut grid = String::new();
+        let mut line = |ends: [[f64; 3]; 2]| {
+            let [[x, y], [to_x, to_y]] = ends.map(|end| seen(end).0);
+            let _ = write!(grid, "M{x:.1} {y:.1}L{to_x:.1} {to_y:.1}");
+        };
+        for (k, other, third) in [(0, 1, 2), (1, 0, 2), (2, 0, 1)] {
+            for tick in self
+                .ticks(k)
+                .into_iter()
+                .map(|(part, _)| part)
+                .chain([-1.0, 1.0])
+            {
+                for (along, still) in [(other, third), (third, other)] {
+                    // What is behind: the far ends of the first two, the floor of the last.
+                    let behind = |axis: usize| if axis == 2 { -1.0 } else { 1.0 };
+                    let mut ends = [[0.0; 3]; 2];
+                    for (end, part) in ends.iter_mut().zip([-1.0, 1.0]) {
+                        (end[k], end[along], end[still]) = (tick, part, behind(still));
+                    }
+                    line(ends);
+                }
+            }
+        }
+        put(
+            svg,
+            &format!("<path class=\"grid\" fill=\"none\" d=\"{grid}\"/>"),
+        );
+    }
+
+    /// Ticks and names along the edges in front.
+    fn scales(&self, svg: &mut String) {
+        for (k, edge, away) in [
+            (0, [0.0, -1.0, -1.0], [0.0, 16.0]),
+            (1, [-1.0, 0.0, -1.0], [-16.0, 14.0]),
+            (2, [-1.0, 1.0, 0.0], [-14.0, 4.0]),
+        ] {
+            let at = |part: f64| {
+                let mut place = edge;
+                place[k] = part;
+                seen(place).0
+            };
+            let anchor = if k == 0 { "start" } else { "end" };
+            let anchor = format!("text-anchor=\"{anchor}\"");
+            for (part, label) in self.ticks(k) {
+                let [x, y] = at(part);
+                put(svg, &text(x + away[0], y + away[1], &anchor, &label));
+            }
+            let [x, y] = at(0.0);
+            put(
+                svg,
+                &text(
+                    x + 3.2 * away[0],
+                    y + 3.0 * away[1],
+                    &anchor,
+                    &self.labels[k],
+                ),
+            );
+        }
+    }
+
+    /// Where the ticks of a quantity are in the box, and what they say.
+    fn ticks(&self, k: usize) -> Vec<(f64, String)> {
+        /// About so many.
+        const COUNT: u32 = 5;
+        let axis = Axis::tight(self.ranges[k].into_iter());
+        let [from, to] = self.ranges[k];
+        let ticks = axis.ticks(COUNT).into_iter();
+        ticks
+            .map(|tick| {
+                let part = 2.0 * (tick - from) / (to - from) - 1.0;
+                (part, number(tick, axis.step(COUNT)))
+            })
+            .collect()
+    }
+}

@@ -2,12 +2,14 @@
 
 use appell_codegen::symbolic::Expr as Lowered;
 use appell_runtime::control::sampler::Sampler;
+use appell_runtime::control::schedule::GainSchedule;
 use appell_runtime::inputs::{InputSource, TabulatedInputs};
 use appell_spec::expr::Expr;
 use appell_spec::{Report, Scope, Snippet, formula};
+use nalgebra::DVector;
 
 use crate::failure::Failure;
-use crate::feedback::{Feedback, Sampled};
+use crate::feedback::{Feedback, Gains, Sampled, Varied};
 use crate::formula::{StateFunction, Workbench, switching_times};
 use crate::setup::{Assignment, Setup, bracketed};
 
@@ -19,6 +21,7 @@ pub(crate) struct Controller {
     parameters: Vec<f64>,
     recorded: Option<TabulatedInputs>,
     sampled: Vec<SampledLaw>,
+    scheduled: Vec<ScheduledLaw>,
     switching_times: Vec<f64>,
 }
 
@@ -35,6 +38,16 @@ enum Slot {
     Input(usize),
     /// It is the desired value of a state.
     Desired(Term),
+    /// It is wanted beside the steady motions of a scheduled law: the law, the place of the state.
+    Beside(usize, usize),
+}
+
+/// A law whose gains follow a quantity.
+struct ScheduledLaw {
+    over: Varied,
+    schedule: GainSchedule,
+    inputs: Vec<usize>,
+    states: Vec<usize>,
 }
 
 /// An input falls by the gain times the deviation of a state, at once or when it is measured.
@@ -55,6 +68,7 @@ pub(crate) struct Plan {
     /// Desired values of zero need no expression.
     zero: Vec<Term>,
     sampled: Vec<(Sampled, Vec<usize>)>,
+    scheduled: Vec<ScheduledLaw>,
     recorded: Option<TabulatedInputs>,
     switching_times: Vec<f64>,
     /// Inputs that an expression or a recording sets.
@@ -70,6 +84,7 @@ impl Plan {
             slots: Vec::new(),
             zero: Vec::new(),
             sampled: Vec::new(),
+            scheduled: Vec::new(),
             recorded: None,
             switching_times: Vec::new(),
             set: Vec::new(),
@@ -78,7 +93,8 @@ impl Plan {
 
     /// Whether nothing drives the mechanism.
     pub(crate) fn is_empty(&self) -> bool {
-        self.slots.is_empty() && self.zero.is_empty() && self.recorded.is_none()
+        let laws = self.zero.is_empty() && self.scheduled.is_empty();
+        self.slots.is_empty() && laws && self.recorded.is_none()
     }
 
     fn take(&mut self, input: usize, setup: &Setup<'_>) -> Result<(), Failure> {
@@ -148,8 +164,28 @@ impl Plan {
                 self.push(Slot::Input(input), offset).map_err(told)?;
             }
         }
+        self.switching_times.extend(&feedback.switching_times);
+        let gains = match feedback.gains {
+            Gains::Fixed(gains) => gains,
+            Gains::Scheduled(over, schedule) => {
+                let (states, desired): (Vec<_>, Vec<_>) = feedback.states.into_iter().unzip();
+                let law = self.scheduled.len();
+                for (place, expr) in desired.iter().enumerate() {
+                    if let Some(expr) = expr {
+                        self.push(Slot::Beside(law, place), expr).map_err(told)?;
+                    }
+                }
+                self.scheduled.push(ScheduledLaw {
+                    over,
+                    schedule,
+                    inputs: feedback.inputs,
+                    states,
+                });
+                return Ok(());
+            }
+        };
         let law = feedback.sampled.is_some().then_some(self.sampled.len());
-        for (&input, gains) in feedback.inputs.iter().zip(&feedback.gains) {
+        for (&input, gains) in feedback.inputs.iter().zip(&gains) {
             for ((state, desired), &gain) in feedback.states.iter().zip(gains) {
                 let term = Term {
                     input,
@@ -166,7 +202,6 @@ impl Plan {
         if let Some(sampled) = feedback.sampled {
             self.sampled.push((sampled, feedback.inputs));
         }
-        self.switching_times.extend(feedback.switching_times);
         Ok(())
     }
 
@@ -203,6 +238,7 @@ impl Plan {
             parameters: setup.parameters.clone(),
             recorded: self.recorded,
             sampled,
+            scheduled: self.scheduled,
             switching_times,
         })
     }
@@ -239,6 +275,17 @@ impl InputSource for Controller {
             }
         }
         self.feedback(None, x, &values, u);
+        for (law, scheduled) in self.scheduled.iter().enumerate() {
+            scheduled.add(x, &self.parameters, u, |y| {
+                for (slot, value) in self.slots.iter().zip(&values) {
+                    if let Slot::Beside(of, place) = *slot
+                        && of == law
+                    {
+                        y[place] -= value;
+                    }
+                }
+            });
+        }
         for (law, sampled) in self.sampled.iter().enumerate() {
             let acting = sampled.sampler.acting(t, |pending| {
                 let mut asked = vec![0.0; u.len()];
@@ -253,6 +300,19 @@ impl InputSource for Controller {
 
     fn switching_times(&self) -> Vec<f64> {
         self.switching_times.clone()
+    }
+}
+
+impl ScheduledLaw {
+    /// Adds what the law asks for; `less` takes from the states what is wanted of them.
+    fn add(&self, x: &[f64], p: &[f64], u: &mut [f64], less: impl Fn(&mut DVector<f64>)) {
+        let states = self.states.iter().map(|&state| x[state]);
+        let mut y = DVector::from_iterator(self.states.len(), states);
+        less(&mut y);
+        let asked = self.schedule.at(self.over.value(x, p)).asked(&y);
+        for (&input, asked) in self.inputs.iter().zip(asked.iter()) {
+            u[input] += asked;
+        }
     }
 }
 

@@ -11,10 +11,14 @@
 //! desired = { theta = "if(t < 2, 0, 0.1)" }
 //! initial = { theta = "5deg" }             # --initial wins
 //! ```
+//!
+//! A law whose gains follow a state or parameter has, in place of `gains` and `offset`, the quantity
+//! as `over` and a table `[[at]]` for each of its values.
 
 use std::path::Path;
 
 use appell_runtime::control::sampled::Sampling;
+use appell_runtime::control::schedule::GainSchedule;
 use appell_spec::expr::{Expr, Span};
 use appell_spec::limits::MAX_FILE;
 use appell_spec::units::Unit;
@@ -25,6 +29,10 @@ use toml::de::{DeTable, DeValue};
 use crate::failure::Failure;
 use crate::files;
 use crate::setup::{Setup, bracketed, unknown};
+
+mod schedule;
+
+pub(crate) use schedule::Varied;
 
 /// A law for one input or several.
 #[derive(Debug)]
@@ -37,14 +45,23 @@ pub(crate) struct Feedback {
     pub(crate) offsets: Vec<Option<Expr>>,
     /// The states, with what is wanted of them.
     pub(crate) states: Vec<(usize, Option<Expr>)>,
-    /// In SI, a row for each input, a number for each state.
-    pub(crate) gains: Vec<Vec<f64>>,
+    /// In SI.
+    pub(crate) gains: Gains,
     /// When a sampled controller measures and acts.
     pub(crate) sampled: Option<Sampled>,
     /// Times in s at which the law jumps or kinks.
     pub(crate) switching_times: Vec<f64>,
     /// Initial values by state.
     pub(crate) initial: Vec<(usize, Expr)>,
+}
+
+/// Gains of a law.
+#[derive(Debug)]
+pub(crate) enum Gains {
+    /// A row for each input, a number for each state.
+    Fixed(Vec<Vec<f64>>),
+    /// They follow a quantity.
+    Scheduled(Varied, GainSchedule),
 }
 
 /// A controller that measures at intervals.
@@ -59,10 +76,12 @@ pub(crate) struct Sampled {
 
 const KEYS: &[&str] = &[
     "about",
+    "at",
     "mechanism",
     "input",
     "inputs",
     "offset",
+    "over",
     "states",
     "gains",
     "sampled_ms",
@@ -146,6 +165,7 @@ impl Reader<'_> {
                 self.tell(Code::UnknownReference, message, at.clone(), help);
             }
         }
+        let scheduled = table.get("over").is_some() || table.get("at").is_some();
         let gains = self.gains(table, "gains");
         let sampling = self.sampling(table);
         let pending_gains = self.gains(table, "pending_gains");
@@ -164,6 +184,11 @@ impl Reader<'_> {
                 pending_gains: pending_gains.unwrap_or(vec![vec![0.0; pending]; inputs.len()]),
             }
         });
+        let gains = if scheduled {
+            schedule::read(self, table, &inputs, &states)?
+        } else {
+            Gains::Fixed(gains?)
+        };
         let wanted = |state: usize| {
             let found = desired.iter().find(|(other, ..)| *other == state);
             found.map(|(_, expr, _)| expr.clone())
@@ -175,7 +200,7 @@ impl Reader<'_> {
                 .into_iter()
                 .map(|state| (state, wanted(state)))
                 .collect(),
-            gains: gains?,
+            gains,
             sampled,
             inputs,
             switching_times: switching_times.unwrap_or_default(),
@@ -195,9 +220,14 @@ impl Reader<'_> {
                 self.tell(Code::UnknownKey, message, key.span(), &help);
             }
         }
-        let needs = "a law needs `input` or `inputs`, `states` and `gains`";
+        let needs = "a law needs `input` or `inputs`, `states`, and `gains` or a schedule";
+        let instead = |key: &str| match key {
+            "input" => table.get("inputs").is_some(),
+            "gains" => table.get("over").is_some() || table.get("at").is_some(),
+            _ => false,
+        };
         for key in ["input", "states", "gains"] {
-            if table.get(key).is_none() && !(key == "input" && table.get("inputs").is_some()) {
+            if table.get(key).is_none() && !instead(key) {
                 let message = format!("the key `{key}` is missing");
                 self.tell(Code::MissingKey, message, 0..0, needs);
             }

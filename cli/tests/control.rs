@@ -219,6 +219,178 @@ fn gains_over_the_speed_are_a_table() {
 }
 
 #[test]
+fn a_law_with_gains_over_the_speed_goes_through_its_file() {
+    let folder = Folder::new();
+    let schedule = [
+        "control",
+        "unicycle",
+        "--schedule",
+        "omega_2=1[m/s]/R..5[m/s]/R/40",
+    ];
+    let write = ["--poles", "-8", "--write", "law.toml"];
+    folder.done(&with(&[&schedule, LANE, &write]));
+    let law = folder.read("law.toml");
+    assert!(law.contains("over = \"omega_2\""), "{law}");
+    assert_eq!(law.matches("[[at]]").count(), 41);
+    for speed in ["1.63", "4.44"] {
+        let speed = format!("omega_2={speed}[m/s]/R");
+        let motion = [
+            "--initial",
+            &speed,
+            "--initial",
+            "y_G=5cm",
+            "--json",
+            "motion.json",
+        ];
+        folder.done(&with(&[
+            &["simulate", "unicycle", "--feedback", "law.toml"],
+            &motion,
+        ]));
+        let y_g = &folder.json("motion.json")["final_state"]["y_G"];
+        assert!(y_g.as_f64().expect("a number").abs() < 1e-4, "{y_g}");
+    }
+    // What is wanted beside the steady motion is added.
+    let wanted = law.replacen("[[at]]", "[desired]\ny_G = 0.1\n\n[[at]]", 1);
+    folder.write("wanted.toml", &wanted);
+    let motion = ["--initial", "omega_2=3[m/s]/R", "--json", "motion.json"];
+    folder.done(&with(&[
+        &["simulate", "unicycle", "--feedback", "wanted.toml"],
+        &motion,
+    ]));
+    let y_g = &folder.json("motion.json")["final_state"]["y_G"];
+    assert!(
+        (y_g.as_f64().expect("a number") - 0.1).abs() < 1e-4,
+        "{y_g}"
+    );
+}
+
+#[test]
+fn mistakes_in_a_schedule_are_told_at_once() {
+    let folder = Folder::new();
+    let simulate = ["simulate", "unicycle", "--feedback", "law.toml"];
+    folder.write(
+        "law.toml",
+        "input = \"u\"\nstates = [\"theta\"]\nover = \"omega_2\"\noffset = 1\n\
+         [[at]]\nvalue = 1\ngains = [1, 2]\n[[at]]\ngains = [1]\nspeed = 3\n",
+    );
+    let says = [
+        "no `offset` of its own",
+        "2 gains for 1 state",
+        "needs `value` and `gains`",
+        "unknown key `speed`",
+    ];
+    folder.fails(3, &simulate, &says);
+    folder.write(
+        "law.toml",
+        "input = \"u\"\nstates = [\"theta\"]\nover = \"omega_9\"\n[[at]]\nvalue = 1\ngains = [1]\n",
+    );
+    folder.fails(3, &simulate, &["no state or parameter `omega_9`"]);
+    folder.write(
+        "law.toml",
+        "input = \"u\"\nstates = [\"theta\"]\nover = \"omega_2\"\n\
+         [[at]]\nvalue = 2\ngains = [1]\n[[at]]\nvalue = 1\ngains = [1]\n",
+    );
+    folder.fails(3, &simulate, &["must increase, but 1 follows 2"]);
+    let design = [
+        "control",
+        "unicycle",
+        "--schedule",
+        "omega_2=1..5/4",
+        "--poles",
+        "-8",
+    ];
+    let sampled = ["--sampled-ms", "10", "--write", "law.toml"];
+    folder.fails(
+        2,
+        &with(&[&design, LANE, &sampled]),
+        &["cannot follow a schedule"],
+    );
+}
+
+#[test]
+fn a_law_keeps_the_unicycle_on_a_circle_that_is_given_by_its_rates() {
+    let folder = Folder::new();
+    let circle = ["--at", "theta=10deg", "--at", "psi_dot=2"];
+    folder.fails(
+        2,
+        &with(&[&["control", "unicycle"], &circle]),
+        &["give 1 more of", "u"],
+    );
+    let design = ["--at", "u=0", "--lqr", "Q=1,R=0.01", "--write", "law.toml"];
+    let told = folder
+        .done(&with(&[&["control", "unicycle"], &circle, &design]))
+        .stdout;
+    assert!(told.contains("r = -0.08375 m"), "{told}");
+    let simulate = [
+        "simulate",
+        "unicycle",
+        "--feedback",
+        "law.toml",
+        "--t-end-s",
+        "30",
+    ];
+    let pushed = ["--initial", "sigma=5mm/s", "--json", "motion.json"];
+    folder.done(&with(&[&simulate, &pushed]));
+    let motion = folder.json("motion.json");
+    assert!(motion["failure"].is_null(), "{motion}");
+    let theta = motion["final_state"]["theta"].as_f64().expect("a number");
+    assert!((theta - 10f64.to_radians()).abs() < 1e-3, "{theta}");
+    folder.fails(
+        2,
+        &["control", "unicycle", "--at", "x_P=1"],
+        &["`x_P` is not constant"],
+    );
+}
+
+#[test]
+fn the_region_of_attraction_is_told_drawn_and_written() {
+    let folder = Folder::new();
+    let law = [
+        "control",
+        "unicycle",
+        "--at",
+        "omega_2=5[m/s]/R",
+        "--poles",
+        "-8",
+    ];
+    let outputs = ["--outputs", "omega_1,theta,sigma,r,psi"];
+    let grid = [
+        "--attraction",
+        "omega_1=-6..6/6,r=-15cm..15cm/6",
+        "--for-s",
+        "8",
+    ];
+    let files = ["--plot", "region.svg", "--json", "region.json"];
+    let told = folder.done(&with(&[&law, &outputs, &grid, &files])).stdout;
+    assert!(told.contains("of 49 disturbed motions"), "{told}");
+    let region = &folder.json("region.json")["attraction"];
+    assert_eq!(region["fates"].as_array().map(Vec::len), Some(49));
+    assert_eq!(region["fates"][24], "settled");
+    assert!(region["fates"][0]["lost_s"].is_number(), "{region}");
+    let safe = region["safe_part"].as_f64().expect("a number");
+    assert!((safe - 1.0 / 3.0).abs() < 1e-12, "{safe}");
+    let drawn = folder.read("region.svg");
+    assert!(drawn.contains("settles") && drawn.contains("omega_1 at the start [rad/s]"));
+    let asks = |more: &[&str], says: &[&str]| {
+        folder.fails(2, &with(&[&law, &outputs, more]), says);
+    };
+    asks(&["--attraction", "r=1..2"], &["not a range"]);
+    asks(&["--attraction", "q=1..2/3"], &["no state `q`"]);
+    asks(&["--attraction", "r=0..1/2,r=0..1/2"], &["given twice"]);
+    asks(
+        &["--attraction", "r=0..1/2", "--for-s", "0"],
+        &["positive number"],
+    );
+    let one = ["--attraction", "r=-1mm..1mm/2", "--plot", "one.svg"];
+    asks(&one, &["name two"]);
+    folder.fails(
+        2,
+        &["control", "unicycle", "--attraction", "r=0..1/2"],
+        &["`--attraction` needs a law"],
+    );
+}
+
+#[test]
 fn what_cannot_be_designed_says_what_to_write_instead() {
     let folder = Folder::new();
     let fails = |more: &[&str], says: &[&str]| folder.fails(2, &with(&[STRAIGHT, more]), says);

@@ -261,7 +261,7 @@ fn regulator(
     inputs: Vec<usize>,
     outputs: &[&str],
     gain: DMatrix<f64>,
-) -> Feedback<impl Fn(f64, &mut [f64]) + Sync> {
+) -> Feedback<impl Fn(f64, &mut [f64]) + Sync + Clone> {
     Feedback {
         offset: vec![0.0; inputs.len()],
         inputs,
@@ -462,10 +462,10 @@ fn the_region_of_attraction_ends_where_motions_are_lost() {
         model: point.model,
         parameters: &point.p,
         state: &point.x,
-        inputs: &law,
+        inputs: &|| Box::new(law.clone()),
         duration: 8.0,
         axes: vec![axis(omega_1, 6.0), axis(r, 0.15)],
-        settled: &|x| x[theta].abs() < 0.01,
+        settled: &|motion| motion.last_state()[theta].abs() < 0.01,
     };
     let count = std::sync::atomic::AtomicUsize::new(0);
     let fates = region

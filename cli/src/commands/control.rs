@@ -2,8 +2,10 @@
 
 use std::path::PathBuf;
 
+use appell_runtime::model::{Model, Quantity};
+
 use crate::control::design::{self, Design, Method, Request};
-use crate::control::{ask, law_file, report};
+use crate::control::{ask, attraction, law_file, report};
 use crate::engine::Equations;
 use crate::failure::{Failure, tell};
 use crate::files;
@@ -22,7 +24,8 @@ pub(crate) struct Control {
     /// A parameter, such as R=0.3 or R=30cm
     #[arg(long, value_name = "NAME=VALUE")]
     set: Vec<Assignment>,
-    /// A state or an input on the steady motion, such as theta=5deg or u=2N
+    /// A state or an input on the steady motion, such as theta=5deg or u=2N, or what it follows from:
+    /// an output, the rate of a hidden coordinate
     #[arg(long, value_name = "NAME=VALUE", allow_hyphen_values = true)]
     at: Vec<Assignment>,
     /// The inputs that the law may use [default: all]
@@ -59,8 +62,28 @@ pub(crate) struct Control {
     #[arg(long, value_name = "NAME=FROM..TO/STEPS", allow_hyphen_values = true)]
     schedule: Option<Assignment>,
     /// Write the law as a file for `appell simulate --feedback`
-    #[arg(long, value_name = "FILE.toml", conflicts_with = "schedule")]
+    #[arg(long, value_name = "FILE.toml")]
     write: Option<PathBuf>,
+    /// Simulate the law from a grid of disturbances of one or two states, such as
+    /// theta=-20deg..20deg/8,r=-10cm..10cm/8, and tell which motions settle
+    #[arg(
+        long,
+        value_name = "NAME=FROM..TO/STEPS,…",
+        allow_hyphen_values = true,
+        conflicts_with = "schedule"
+    )]
+    attraction: Option<String>,
+    /// How long each of these motions lasts
+    #[arg(
+        long,
+        value_name = "S",
+        default_value_t = 10.0,
+        requires = "attraction"
+    )]
+    for_s: f64,
+    /// Draw the disturbances of two states and what becomes of them
+    #[arg(long, value_name = "FILE.svg", requires = "attraction")]
+    plot: Option<PathBuf>,
     /// Write everything in SI; `-` is standard output
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
@@ -74,24 +97,43 @@ impl Control {
         let mut setup = Setup::new(&source.file, &source.text, model.info())?;
         setup.set(&self.set)?;
         let request = self.request(&setup)?;
-        if self.write.is_some() && matches!(request.method, Method::None) {
-            return Err(Failure::Usage(
-                "`--write` needs a law; ask for one with `--poles` or `--lqr`".to_owned(),
-            ));
+        let flags = [
+            ("--write", self.write.is_some()),
+            ("--attraction", self.attraction.is_some()),
+        ];
+        if let (Method::None, Some((flag, _))) = (&request.method, flags.iter().find(|f| f.1)) {
+            return Err(Failure::Usage(format!(
+                "`{flag}` needs a law; ask for one with `--poles` or `--lqr`"
+            )));
         }
-        let at = ask::point(&mut setup, &self.at)?;
+        let at = ask::point(model, &mut setup, &self.at)?;
         let (text, json) = match &self.schedule {
             None => {
                 let design = design::design(model, &setup, &at, &request)?;
                 if let Some(path) = &self.write {
                     files::write(path, &law_file::text(&design, &setup, &self.model))?;
                 }
-                (report::text(&design, &setup), report::json(&design, &setup))
+                let mut text = report::text(&design, &setup);
+                let mut json = report::json(&design, &setup);
+                if let Some(asked) = &self.attraction {
+                    let region = attraction::explore(model, &setup, &design, asked, self.for_s)?;
+                    text += &region.text();
+                    json["attraction"] = region.json();
+                    if let Some(path) = &self.plot {
+                        files::write(path, &region.map()?.to_svg())?;
+                    }
+                }
+                (text, json)
             }
             Some(schedule) => {
                 let values = ask::values(&mut setup, schedule)?;
+                let over = self.readable(&values, &setup)?;
                 let designs = self.scheduled(model, &mut setup, &values, &request)?;
                 let designs = values.si.into_iter().zip(designs).collect::<Vec<_>>();
+                if let (Some(path), Some(over)) = (&self.write, over) {
+                    let text = law_file::schedule(&over, &designs, &setup, &self.model);
+                    files::write(path, &text)?;
+                }
                 (
                     report::schedule_text(&schedule.name, &designs, &setup),
                     report::schedule_json(&schedule.name, &designs, &setup),
@@ -134,10 +176,30 @@ impl Control {
         })
     }
 
+    /// The quantity that a written schedule follows.
+    fn readable(
+        &self,
+        values: &ask::Values,
+        setup: &Setup<'_>,
+    ) -> Result<Option<Quantity>, Failure> {
+        let refused = |text: &str| Err(Failure::Usage(text.to_owned()));
+        match (&self.write, values.readable(setup)) {
+            (None, _) => Ok(None),
+            (Some(_), _) if self.sampled_ms.is_some() => {
+                refused("`--write`: a law that measures at intervals cannot follow a schedule yet")
+            }
+            (Some(_), None) => refused(
+                "`--write`: gains cannot follow an input, which they set; schedule a state or a \
+                 parameter",
+            ),
+            (Some(_), Some(quantity)) => Ok(Some(quantity.clone())),
+        }
+    }
+
     /// A design at each value.
     fn scheduled(
         &self,
-        model: &dyn appell_runtime::model::Model,
+        model: &dyn Model,
         setup: &mut Setup<'_>,
         values: &ask::Values,
         request: &Request,
@@ -145,7 +207,7 @@ impl Control {
         let mut request = request.clone();
         let mut designs: Vec<Design> = Vec::new();
         for &value in &values.si {
-            let mut at = ask::point(setup, &self.at)?;
+            let mut at = ask::point(model, setup, &self.at)?;
             values.place(setup, &mut at, value);
             let design = design::design(model, setup, &at, &request)
                 .map_err(|failure| values.at(setup, value, &failure))?;

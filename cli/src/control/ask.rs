@@ -1,10 +1,13 @@
 //! What a user asks a controller for, read from flags.
 
+use appell_runtime::analysis::{Point, SteadyProblem, Term};
 use appell_runtime::control::sampled::Sampling;
+use appell_runtime::model::{Model, Quantity};
 use nalgebra::Complex;
 
 use super::design::Method;
 use crate::failure::Failure;
+use crate::motions::{refused, term, value_of};
 use crate::setup::{Assignment, Setup, unique, unknown};
 
 /// Inputs on the steady motion that were given; the others are chosen.
@@ -13,17 +16,27 @@ pub(crate) type GivenInputs = Vec<(usize, f64)>;
 /// Most designs of a schedule.
 const MOST_STEPS: usize = 10_000;
 
-/// Reads `--at`: states go to the setup, inputs are returned.
+/// Reads `--at`: states go to the setup, inputs are returned. Where a rate or an output is given,
+/// the other states follow from it.
 pub(crate) fn point(
+    model: &dyn Model,
     setup: &mut Setup<'_>,
     assignments: &[Assignment],
 ) -> Result<GivenInputs, Failure> {
     unique(assignments, "--at")?;
-    let declared = &setup.info.inputs[..setup.info.declared_inputs];
+    let info = setup.info;
+    let follows = |a: &Assignment| {
+        let term = Term::named(info, &a.name);
+        matches!(term, Some(Term::Rate(_) | Term::Output(_)))
+    };
+    if assignments.iter().any(follows) {
+        return motion(model, setup, assignments);
+    }
+    let declared = &info.inputs[..info.declared_inputs];
     let is_input = |a: &&Assignment| declared.iter().any(|input| input.name == a.name);
     let (inputs, states): (Vec<_>, Vec<_>) = assignments.iter().partition(is_input);
     let states: Vec<Assignment> = states.into_iter().cloned().collect();
-    let names = setup.info.states.iter().chain(declared);
+    let names = info.states.iter().chain(declared);
     let names = || names.clone().map(|quantity| quantity.name.as_ref());
     if let Some(other) = states.iter().find(|a| !names().any(|name| name == a.name)) {
         let text = unknown(&other.name, "state or input", names());
@@ -32,6 +45,41 @@ pub(crate) fn point(
     setup.start_with("--at", &states)?;
     let value = |a: &Assignment| setup.input_value("--at", a);
     inputs.into_iter().map(value).collect()
+}
+
+/// The steady motion with quantities as given; states go to the setup, all inputs are returned.
+fn motion(
+    model: &dyn Model,
+    setup: &mut Setup<'_>,
+    assignments: &[Assignment],
+) -> Result<GivenInputs, Failure> {
+    /// Points from which it is sought.
+    const STARTS: usize = 40;
+    let base = Point {
+        x: setup.initial.clone(),
+        p: setup.parameters.clone(),
+        ..Point::initial(model)
+    };
+    let mut problem = SteadyProblem::new(model, base).map_err(|error| refused(&error))?;
+    for input in 0..setup.info.declared_inputs {
+        let freed = problem.free(Term::Input(input));
+        freed.map_err(|error| refused(&error))?;
+    }
+    for Assignment { name, value } in assignments {
+        let term = term(setup, name)?;
+        let value = value_of(setup, term, value, &format!("--at {name}"))?;
+        problem.fix(term, value).map_err(|error| refused(&error))?;
+    }
+    let found = problem.solve_isolated(STARTS);
+    let found = found.map_err(|error| refused(&error))?;
+    // The nearest comes first.
+    let point = found.into_iter().next().map(|motion| motion.point);
+    let point = point.unwrap_or_else(|| problem.base().clone());
+    setup.initial = point.x;
+    // What is less than rounding of a newton is nothing.
+    let clean = |u: f64| if u.abs() < f64::EPSILON { 0.0 } else { u };
+    let inputs = point.u.into_iter().take(setup.info.declared_inputs);
+    Ok(inputs.map(clean).enumerate().collect())
 }
 
 /// Names in a list, each once.
@@ -133,6 +181,58 @@ pub(crate) fn sampling(
     sampling.map_err(|error| Failure::Usage(format!("--sampled-ms, --delay-ms: {error}")))
 }
 
+/// `FROM..TO` of `NAME=FROM..TO/STEPS`
+fn ends<'a>(flag: &str, range: &'a Assignment) -> Result<[&'a str; 2], Failure> {
+    let parts = range.value.split_once("..").and_then(|(from, rest)| {
+        let (to, _) = rest.rsplit_once('/')?;
+        Some([from, to])
+    });
+    parts.ok_or_else(|| no_range(flag, range))
+}
+
+/// `STEPS` of `NAME=FROM..TO/STEPS`
+fn steps(flag: &str, range: &Assignment) -> Result<usize, Failure> {
+    let steps = range
+        .value
+        .rsplit_once('/')
+        .and_then(|(_, steps)| steps.trim().parse().ok());
+    match steps.ok_or_else(|| no_range(flag, range))? {
+        steps if (1..=MOST_STEPS).contains(&steps) => Ok(steps),
+        steps => Err(Failure::Usage(format!(
+            "{flag}: {steps} intervals; between 1 and {MOST_STEPS} are possible"
+        ))),
+    }
+}
+
+fn no_range(flag: &str, range: &Assignment) -> Failure {
+    Failure::Usage(format!(
+        "{flag}: `{}` is not a range; write {}=1..5/8 for eight intervals from 1 to 5",
+        range.value, range.name
+    ))
+}
+
+/// Values from end to end.
+fn spread([from, to]: [f64; 2], steps: usize) -> Vec<f64> {
+    let part = |step: usize| step as f64 / steps as f64;
+    (0..=steps)
+        .map(|step| from + (to - from) * part(step))
+        .collect()
+}
+
+/// `NAME=FROM..TO/STEPS`: a state, and by how much it is off its value on the motion.
+pub(crate) fn disturbances(setup: &Setup<'_>, text: &str) -> Result<(usize, Vec<f64>), Failure> {
+    const FLAG: &str = "--attraction";
+    let range = text.parse::<Assignment>();
+    let range = range.map_err(|text| Failure::Usage(format!("{FLAG}: {text}")))?;
+    let state = setup.state(&range.name)?;
+    let unit = setup.unit_of_state(state);
+    let label = format!("{FLAG} {}", range.name);
+    let value = |text: &str| setup.value(text.trim(), unit, &label);
+    let [from, to] = ends(FLAG, &range)?;
+    let ends = [value(from)?, value(to)?];
+    Ok((state, spread(ends, steps(FLAG, &range)?)))
+}
+
 /// What a schedule varies.
 #[derive(Debug, Clone, Copy)]
 enum Varied {
@@ -151,20 +251,8 @@ pub(crate) struct Values {
 
 /// `NAME=FROM..TO/STEPS`
 pub(crate) fn values(setup: &mut Setup<'_>, schedule: &Assignment) -> Result<Values, Failure> {
-    let shape = || {
-        Failure::Usage(format!(
-            "--schedule: `{}` is not a range; write {}=1..5/8 for eight intervals from 1 to 5",
-            schedule.value, schedule.name
-        ))
-    };
-    let (from, rest) = schedule.value.split_once("..").ok_or_else(shape)?;
-    let (to, steps) = rest.rsplit_once('/').ok_or_else(shape)?;
-    let steps: usize = steps.trim().parse().map_err(|_| shape())?;
-    if steps == 0 || steps > MOST_STEPS {
-        return Err(Failure::Usage(format!(
-            "--schedule: {steps} intervals; between 1 and {MOST_STEPS} are possible"
-        )));
-    }
+    let [from, to] = ends("--schedule", schedule)?;
+    let steps = steps("--schedule", schedule)?;
     let (name, info) = (&schedule.name, setup.info);
     let varied = if let Some(state) = info.state_index(name) {
         Varied::State(state)
@@ -200,17 +288,23 @@ pub(crate) fn values(setup: &mut Setup<'_>, schedule: &Assignment) -> Result<Val
         }
     };
     let (from, to) = (end(from)?, end(to)?);
-    let part = |step: usize| step as f64 / steps as f64;
     Ok(Values {
         varied,
         name: name.clone(),
-        si: (0..=steps)
-            .map(|step| from + (to - from) * part(step))
-            .collect(),
+        si: spread([from, to], steps),
     })
 }
 
 impl Values {
+    /// The quantity, where a law can read it: not an input.
+    pub(crate) fn readable<'q>(&self, setup: &'q Setup<'_>) -> Option<&'q Quantity> {
+        match self.varied {
+            Varied::State(state) => setup.info.states.get(state),
+            Varied::Parameter(parameter) => setup.info.parameters.get(parameter),
+            Varied::Input(_) => None,
+        }
+    }
+
     /// Puts a value in its place.
     pub(crate) fn place(&self, setup: &mut Setup<'_>, inputs: &mut GivenInputs, value: f64) {
         match self.varied {

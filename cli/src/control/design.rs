@@ -1,5 +1,6 @@
 //! From a steady motion to gains.
 
+use appell_runtime::analysis::Point;
 use appell_runtime::control::controllability::Controllability;
 use appell_runtime::control::operating_point::{MotionEquations, OperatingPoint};
 use appell_runtime::control::reduction::{Subsystem, independent_states, reduce};
@@ -51,6 +52,8 @@ pub(crate) struct Design {
     pub(crate) u: Vec<f64>,
     /// Parameters.
     pub(crate) p: Vec<f64>,
+    /// Rates of the states: positions and angles may run on.
+    pub(crate) rates: Vec<f64>,
     /// A and B about it.
     pub(crate) equations: MotionEquations,
     /// What the inputs reach.
@@ -78,6 +81,17 @@ pub(crate) struct Law {
     pub(crate) condition: Option<f64>,
 }
 
+/// A state with a larger rate, in SI, runs on along the motion.
+const RUNS: f64 = 1e-6;
+
+impl Design {
+    /// The rate of a state that runs on along the motion; 0 for the others.
+    pub(crate) fn running(&self, state: usize) -> f64 {
+        let rate = self.rates[state];
+        if rate.abs() > RUNS { rate } else { 0.0 }
+    }
+}
+
 /// Designs a law about a steady motion, or tells only what the inputs reach.
 pub(crate) fn design(
     model: &dyn Model,
@@ -98,7 +112,8 @@ pub(crate) fn design(
     let equations = point.equations(&request.inputs).map_err(told)?;
     let controllability = Controllability::of(&equations.system)
         .map_err(|error| Failure::Computation(error.to_string()))?;
-    let outputs = outputs(setup, &equations, &request.outputs)?;
+    let rates = rates(model, &point);
+    let outputs = outputs(setup, &equations, &rates, &request.outputs)?;
     let subsystem = reduce(&equations.system, &outputs)
         .map_err(|error| explain::reduction(&error, &equations, setup))?;
     let law = law(&subsystem, request)?;
@@ -106,6 +121,7 @@ pub(crate) fn design(
         x: point.x,
         u: point.u,
         p: point.p,
+        rates,
         controllability,
         outputs: outputs
             .iter()
@@ -117,16 +133,29 @@ pub(crate) fn design(
     })
 }
 
+/// Rates of the states on the motion.
+fn rates(model: &dyn Model, point: &OperatingPoint<'_>) -> Vec<f64> {
+    let mut at = Point {
+        x: point.x.clone(),
+        p: point.p.clone(),
+        ..Point::initial(model)
+    };
+    at.u[..point.u.len()].copy_from_slice(&point.u);
+    at.rates(model)
+}
+
 /// Places of the outputs among the states of the equations: those that were asked for, or as many
 /// as the inputs reach.
 fn outputs(
     setup: &Setup<'_>,
     equations: &MotionEquations,
+    rates: &[f64],
     asked: &[usize],
 ) -> Result<Vec<usize>, Failure> {
     let name = |state: usize| &setup.info.states[state].name;
     if asked.is_empty() {
-        // Coordinates that the accelerations feel, the other coordinates, pseudo-velocities.
+        // What rests before what runs on; coordinates that the accelerations feel, the other
+        // coordinates, pseudo-velocities.
         let (states, a) = (&equations.states, &equations.system.a);
         let is_speed = |place: usize| states[place] < setup.info.speeds;
         let is_felt = |place: usize| {
@@ -135,7 +164,8 @@ fn outputs(
         };
         let mut candidates: Vec<usize> = (0..states.len()).collect();
         candidates.retain(|place| !equations.varying.contains(place));
-        candidates.sort_by_key(|&place| (is_speed(place), !is_felt(place)));
+        let runs = |place: usize| rates[states[place]].abs() > RUNS;
+        candidates.sort_by_key(|&place| (runs(place), is_speed(place), !is_felt(place)));
         let mut chosen = independent_states(&equations.system, &candidates);
         chosen.sort_unstable();
         if chosen.is_empty() {

@@ -5,6 +5,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use crate::inputs::InputSource;
 use crate::model::Model;
 use crate::simulate::{Simulation, SimulationError};
+use crate::trajectory::Trajectory;
 
 /// One state that the grid varies.
 #[derive(Debug, Clone, PartialEq)]
@@ -37,14 +38,14 @@ pub struct Region<'a> {
     pub parameters: &'a [f64],
     /// The state on the steady motion in SI; the axes replace entries.
     pub state: &'a [f64],
-    /// The closed loop.
-    pub inputs: &'a (dyn InputSource + Sync),
+    /// Makes the closed loop, anew for each motion.
+    pub inputs: &'a (dyn Fn() -> Box<dyn InputSource + 'a> + Sync),
     /// How long each motion lasts, in s.
     pub duration: f64,
     /// What varies. The first axis runs slowest in the results.
     pub axes: Vec<Axis>,
-    /// Whether a state at the end is settled.
-    pub settled: &'a (dyn Fn(&[f64]) -> bool + Sync),
+    /// Whether a motion is settled at its end.
+    pub settled: &'a (dyn Fn(&Trajectory) -> bool + Sync),
 }
 
 impl std::fmt::Debug for Region<'_> {
@@ -62,6 +63,8 @@ impl std::fmt::Debug for Region<'_> {
 pub struct Fates {
     /// What varied.
     pub axes: Vec<Axis>,
+    /// The states of the axes on the steady motion.
+    pub centre: Vec<f64>,
     /// One for each point of the grid, the last axis running fastest.
     pub fates: Vec<Fate>,
 }
@@ -94,8 +97,11 @@ impl Region<'_> {
         });
         found.sort_by_key(|(point, _)| *point);
         let fates = found.into_iter().map(|(_, fate)| fate);
+        let states = self.axes.iter().map(|axis| self.state.get(axis.state));
+        let centre = states.map(|state| state.copied().unwrap_or(f64::NAN));
         Ok(Fates {
             axes: self.axes.clone(),
+            centre: centre.collect(),
             fates: fates.collect::<Result<_, _>>()?,
         })
     }
@@ -109,7 +115,8 @@ impl Region<'_> {
                 *x = axis.values[place];
             }
         }
-        simulation.inputs = self.inputs;
+        let inputs = (self.inputs)();
+        simulation.inputs = &*inputs;
         simulation.span = [0.0, self.duration];
         let motion = match simulation.run() {
             Ok(motion) => motion,
@@ -122,7 +129,7 @@ impl Region<'_> {
         let time = motion.times().last().copied().unwrap_or(0.0);
         Ok(if time < self.duration {
             Fate::Lost { time }
-        } else if (self.settled)(motion.last_state()) {
+        } else if (self.settled)(&motion) {
             Fate::Settled
         } else {
             Fate::Unsettled
@@ -132,16 +139,20 @@ impl Region<'_> {
 
 impl Fates {
     /// The largest part s of the grid such that every motion settles that begins within s times the
-    /// largest values of all axes: an estimate from inside, as fine as the grid.
+    /// largest disturbances of all axes: an estimate from inside, as fine as the grid.
     pub fn safe_part(&self) -> f64 {
-        let reach: Vec<f64> = self.axes.iter().map(|axis| largest(&axis.values)).collect();
+        let axes = || self.axes.iter().zip(&self.centre);
+        let largest = |(axis, centre): (&Axis, &f64)| {
+            let away = axis.values.iter().map(|value| (value - centre).abs());
+            away.fold(f64::MIN_POSITIVE, f64::max)
+        };
+        let reach: Vec<f64> = axes().map(largest).collect();
         let part = |point: usize| {
             let places = places(&self.axes, point);
-            let axes = self.axes.iter().zip(places).zip(&reach);
-            axes.map(|((axis, place), reach)| {
-                axis.values[place].abs() / reach.max(f64::MIN_POSITIVE)
-            })
-            .fold(0.0, f64::max)
+            let away = axes().zip(places);
+            let away = away.map(|((axis, centre), place)| (axis.values[place] - centre).abs());
+            let parts = away.zip(&reach).map(|(away, reach)| away / reach);
+            parts.fold(0.0, f64::max)
         };
         let parts = (0..self.fates.len()).map(|point| (part(point), &self.fates[point]));
         let failing = parts.clone().filter(|(_, fate)| **fate != Fate::Settled);
@@ -165,8 +176,4 @@ fn places(axes: &[Axis], mut point: usize) -> Vec<usize> {
         .collect();
     places.reverse();
     places
-}
-
-fn largest(values: &[f64]) -> f64 {
-    values.iter().fold(0.0, |most, value| value.abs().max(most))
 }

@@ -18,6 +18,14 @@ pub struct Law {
     pub inputs: DVector<f64>,
 }
 
+impl Law {
+    /// u₀ − K (y − y₀) for the states y.
+    #[must_use]
+    pub fn asked(&self, y: &DVector<f64>) -> DVector<f64> {
+        &self.inputs - &self.gain * (y - &self.states)
+    }
+}
+
 /// Laws over a condition.
 #[derive(Debug, Clone, PartialEq)]
 pub struct GainSchedule {
@@ -123,14 +131,12 @@ where
     D: Fn(f64, &mut [f64]),
 {
     fn inputs(&self, t: f64, x: &[f64], u: &mut [f64]) {
-        let law = self.schedule.at((self.condition)(t, x));
-        let mut desired = vec![0.0; self.states.len()];
-        (self.desired)(t, &mut desired);
-        let mut y = DVector::from_vec(desired) + law.states;
+        let mut y = DVector::zeros(self.states.len());
+        (self.desired)(t, y.as_mut_slice());
         for (y, &state) in y.iter_mut().zip(&self.states) {
             *y = x[state] - *y;
         }
-        let asked = law.inputs - law.gain * y;
+        let asked = self.schedule.at((self.condition)(t, x)).asked(&y);
         u.fill(0.0);
         for (&input, asked) in self.inputs.iter().zip(asked.iter()) {
             u[input] = *asked;

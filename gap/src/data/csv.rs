@@ -43,13 +43,12 @@ fn open(path: &Path) -> Result<CsvFile<BufReader<File>>, DataError> {
         path: path.to_owned(),
         cause,
     };
-    let file = File::open(path).map_err(failed)?;
-    if !file.metadata().map_err(failed)?.is_file() {
-        return Err(DataError::whole(
-            path.to_string_lossy(),
-            "a run is a regular file",
-        ));
+    // A pipe would keep everybody waiting.
+    if !std::fs::metadata(path).map_err(failed)?.is_file() {
+        let message = "a run is a regular file";
+        return Err(DataError::whole(path.to_string_lossy(), message));
     }
+    let file = File::open(path).map_err(failed)?;
     CsvFile::new(path, BufReader::new(file))
 }
 

@@ -2,7 +2,8 @@
 #![allow(clippy::unwrap_used, reason = "what is missing fails the test")]
 
 use appell_runtime::analysis::{
-    Axis, Branch, BranchOptions, Branches, Change, Chart, Kind, Point, Stability, Verdict, loci,
+    Axis, Boundary, Branch, BranchOptions, Branches, Change, Chart, Kind, Point, Stability,
+    Verdict, loci,
 };
 use appell_tests::steady::{problem, shipped, term};
 use nalgebra::{Matrix2, Matrix3};
@@ -132,6 +133,38 @@ fn a_rolling_disc_is_stable_beyond_a_tilt_that_its_inertia_decides() {
             assert!(error < digits, "{name}: {tilt} against {wanted}");
         }
     }
+}
+
+#[test]
+fn borders_of_the_unicycle_that_nearly_meet_come_to_an_end() {
+    // Beyond it a curve would go round and round.
+    const POINTS: usize = 1500;
+    let model = shipped("unicycle");
+    let axis = |name: &str, most: f64| Axis {
+        term: term(model, name),
+        range: [-most, most],
+        count: 60,
+    };
+    let axes = [axis("theta", 60f64.to_radians()), axis("psi_dot", 10.0)];
+    let chart = Chart::of(&problem(model, &[("m0", 15.0)]), axes, &[], 10, 2).unwrap();
+    let lengths: Vec<usize> = chart.boundaries.iter().map(|b| b.points.len()).collect();
+    assert!(lengths.iter().all(|points| *points < POINTS), "{lengths:?}");
+    // Left and right, forwards and backwards are alike.
+    let places = |change: fn(Change) -> bool| {
+        let boundaries = chart.boundaries.iter();
+        boundaries
+            .filter(|b| change(b.change))
+            .flat_map(Boundary::deciding)
+            .count()
+    };
+    assert!(
+        places(|change| change == Change::RealZero) >= 4,
+        "{lengths:?}"
+    );
+    assert!(
+        places(|change| matches!(change, Change::Collision { .. })) >= 4,
+        "{lengths:?}"
+    );
 }
 
 #[test]

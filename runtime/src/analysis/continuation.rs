@@ -35,7 +35,8 @@ pub enum End {
     Closed,
     /// A requirement is violated beyond: its number.
     Infeasible(usize),
-    /// No further point was found: equations that are not smooth or not finite.
+    /// No further point was found: equations that are not smooth or not finite. Or it led back into
+    /// itself but not to its beginning, where another curve is as near as rounding.
     Lost,
     /// The limit of points was reached.
     Points,
@@ -212,6 +213,8 @@ pub(super) fn follow(
 ) -> (Vec<OnCurve>, End) {
     let mut points: Vec<OnCurve> = Vec::new();
     let mut step = 0.1 * longest(start);
+    // Where two curves nearly meet a step may change over, and the start is not met again.
+    let mut mark: Option<OnCurve> = None;
     loop {
         let last = points.last().unwrap_or(start);
         let size = 1.0 + last.z.norm();
@@ -227,16 +230,26 @@ pub(super) fn follow(
             return (points, End::Lost);
         };
         let travelled = (&next.z - &last.z).norm();
-        let near_start = (&next.z - &start.z).norm() < 0.75 * travelled;
-        if points.len() > 4 && near_start && next.tangent.dot(&start.tangent) > 0.0 {
+        let back_at = |other: &OnCurve| {
+            let near = (&next.z - &other.z).norm() < 0.75 * travelled;
+            near && next.tangent.dot(&other.tangent) > 0.0
+        };
+        if points.len() > 4 && back_at(start) {
             points.push(start.clone());
             return (points, End::Closed);
+        }
+        if mark.as_ref().is_some_and(back_at) {
+            return (points, End::Lost);
         }
         if let Some((end, why)) = limit(last, &next) {
             points.extend(end);
             return (points, why);
         }
         points.push(next);
+        // Marks that are twice as far apart each time find a round of any length (R. P. Brent, 1980).
+        if points.len() > 4 && points.len().is_power_of_two() {
+            mark = points.last().cloned();
+        }
     }
 }
 

@@ -41,7 +41,7 @@ impl Equations {
             _ => {}
         }
         let spinner = progress::spinner("deriving the equations of motion");
-        let program = appell_codegen::compile(&source.file, &source.text, &FunctionKind::ALL)?;
+        let program = appell_codegen::compile(&source.file, &source.text, &FunctionKind::STANDARD)?;
         spinner.finish_and_clear();
         if engine == Engine::Jit {
             match JitModel::new(&program) {

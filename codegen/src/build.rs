@@ -43,6 +43,7 @@ pub struct Build {
     specs: Vec<PathBuf>,
     out_dir: Option<PathBuf>,
     options: Options,
+    adjoints: bool,
 }
 
 /// A mechanism that was compiled.
@@ -134,6 +135,14 @@ impl Build {
         self
     }
 
+    /// Emits the adjoints of rates and outputs as well, which make gradients of likelihoods exact
+    /// and fast: about as much code as everything else together.
+    #[must_use]
+    pub fn adjoints(mut self) -> Self {
+        self.adjoints = true;
+        self
+    }
+
     /// Compiles every spec to `NAME.rs` and `NAME.md`. All wrong specs are reported together.
     ///
     /// With the environment variable `GENERATED_DIR` a copy goes to that folder, for reading.
@@ -157,7 +166,7 @@ impl Build {
             })?;
             // The same name in messages and comments on every system.
             let file = spec.to_string_lossy().replace('\\', "/");
-            match program(&file, &text) {
+            match program(&file, &text, self.kinds()) {
                 Ok(program) => compiled.push(self.emitted(spec, text, program)?),
                 Err(report) => reports.push(report.plain()),
             }
@@ -186,6 +195,14 @@ impl Build {
             }
         }
         Ok(compiled)
+    }
+
+    fn kinds(&self) -> &'static [FunctionKind] {
+        if self.adjoints {
+            &FunctionKind::ALL
+        } else {
+            &FunctionKind::STANDARD
+        }
     }
 
     fn emitted(
@@ -225,7 +242,7 @@ impl Build {
 }
 
 /// The program of a spec; what looks unintended in it is told as warnings of the build.
-fn program(file: &str, text: &str) -> Result<Program, Report> {
+fn program(file: &str, text: &str, kinds: &[FunctionKind]) -> Result<Program, Report> {
     let Derived {
         mechanism,
         derivation,
@@ -238,7 +255,7 @@ fn program(file: &str, text: &str) -> Result<Program, Report> {
         let (line, column) = warnings.line_column(at);
         println!("cargo::warning={file}:{line}:{column}: {}", warning.message);
     }
-    assemble::program(derivation, &mechanism, &FunctionKind::ALL)
+    assemble::program(derivation, &mechanism, kinds)
         .map_err(|findings| report(&mechanism, text, &findings))
 }
 

@@ -5,10 +5,11 @@
 
 use std::sync::OnceLock;
 
-use appell_runtime::model::{At, Energies, Model, ModelInfo};
+use appell_runtime::differences;
+use appell_runtime::model::{At, Energies, Gradient, Model, ModelInfo};
 
 use crate::program::{FunctionKind, Program};
-use crate::schedule::{Schedule, interpret, schedule};
+use crate::schedule::{Schedule, interpret_weighted, schedule};
 
 /// A model that interprets its schedules. Functions that the program lacks give NaN.
 #[derive(Debug)]
@@ -27,6 +28,16 @@ impl InterpretedModel {
 
     /// Fills each slice with the result of its name.
     fn evaluate(&self, kind: FunctionKind, at: At<'_>, wanted: &mut [(&str, &mut [f64])]) {
+        self.evaluate_weighted(kind, at, &[], wanted);
+    }
+
+    fn evaluate_weighted(
+        &self,
+        kind: FunctionKind,
+        at: At<'_>,
+        weights: &[f64],
+        wanted: &mut [(&str, &mut [f64])],
+    ) {
         let functions = self.program.functions.iter().zip(&self.schedules);
         let Some((function, lazy)) = functions.into_iter().find(|(f, _)| f.kind == kind) else {
             for (_, to) in wanted.iter_mut() {
@@ -35,7 +46,7 @@ impl InterpretedModel {
             return;
         };
         let schedule = lazy.get_or_init(|| schedule(&self.program, function));
-        let results = interpret(schedule, at.t, at.x, at.u, at.p);
+        let results = interpret_weighted(schedule, at, weights);
         for (name, to) in wanted {
             match schedule.results.iter().position(|r| r.name == *name) {
                 Some(i) => to.copy_from_slice(&results[i]),
@@ -106,6 +117,37 @@ impl Model for InterpretedModel {
 
     fn outputs(&self, at: At<'_>, outputs: &mut [f64]) {
         self.evaluate(FunctionKind::Outputs, at, &mut [("outputs", outputs)]);
+    }
+
+    fn has_adjoint(&self) -> bool {
+        self.program.function(FunctionKind::Adjoint).is_some()
+    }
+
+    fn adjoint(&self, at: At<'_>, weights: &[f64], by: Gradient<'_>) {
+        if self.has_adjoint() {
+            let wanted = &mut [("x", by.x), ("u", by.u), ("p", by.p)];
+            self.evaluate_weighted(FunctionKind::Adjoint, at, weights, wanted);
+        } else {
+            differences::adjoint(self, at, weights, by);
+        }
+    }
+
+    fn output_jacobians(&self, at: At<'_>, outputs: &mut [f64], c: &mut [f64], d: &mut [f64]) {
+        let wanted = &mut [("outputs", &mut *outputs), ("c", &mut *c), ("d", &mut *d)];
+        match self.program.function(FunctionKind::OutputJacobians) {
+            Some(_) => self.evaluate(FunctionKind::OutputJacobians, at, wanted),
+            None => differences::output_jacobians(self, at, [outputs, c, d]),
+        }
+    }
+
+    fn output_adjoint(&self, at: At<'_>, weights: &[f64], by: Gradient<'_>) {
+        match self.program.function(FunctionKind::OutputAdjoint) {
+            Some(_) => {
+                let wanted = &mut [("x", by.x), ("u", by.u), ("p", by.p)];
+                self.evaluate_weighted(FunctionKind::OutputAdjoint, at, weights, wanted);
+            }
+            None => differences::output_adjoint(self, at, weights, by),
+        }
     }
 
     fn dependent_coordinates(&self) -> &[usize] {

@@ -57,6 +57,10 @@ pub struct Arguments {
     pub inputs: Vec<SymbolId>,
     /// Parameters.
     pub parameters: Vec<SymbolId>,
+    /// Weights of [`FunctionKind::Adjoint`], where the program has it.
+    pub weights: Vec<SymbolId>,
+    /// Weights of [`FunctionKind::OutputAdjoint`], where the program has it.
+    pub output_weights: Vec<SymbolId>,
     /// The number π, where expressions may contain it.
     pub pi: Option<SymbolId>,
 }
@@ -194,11 +198,42 @@ pub enum FunctionKind {
     /// Systems that are solved with pivoting, where there are any: result `matrices`, one after the
     /// other.
     Systems,
+    /// Gradient of ⟨λ, ẋ⟩ + ⟨Λ, A⟩ + ⟨Γ, B⟩ + ⟨K, M⟩: results `x`, `u`, `p`.
+    Adjoint,
+    /// Outputs, C, D: results `outputs`, `c`, `d`.
+    OutputJacobians,
+    /// Gradient of ⟨μ, y⟩ + ⟨Γ, C⟩ + ⟨Δ, D⟩: results `x`, `u`, `p`.
+    OutputAdjoint,
 }
 
 impl FunctionKind {
     /// All of them, in the order of emitted code.
-    pub const ALL: [Self; 17] = [
+    pub const ALL: [Self; 20] = [
+        Self::Kinematics,
+        Self::AccelerationEnergy,
+        Self::MassMatrix,
+        Self::Bias,
+        Self::MassMatrixAndBias,
+        Self::GeneralizedForces,
+        Self::Rates,
+        Self::Jacobians,
+        Self::ParameterJacobian,
+        Self::Energies,
+        Self::ConstraintResidual,
+        Self::ConstraintForces,
+        Self::Outputs,
+        Self::Switches,
+        Self::PositionConstraints,
+        Self::Contacts,
+        Self::Systems,
+        Self::Adjoint,
+        Self::OutputJacobians,
+        Self::OutputAdjoint,
+    ];
+
+    /// Those of every model. The others, which estimation asks for, are as long as all of these
+    /// together.
+    pub const STANDARD: [Self; 17] = [
         Self::Kinematics,
         Self::AccelerationEnergy,
         Self::MassMatrix,
@@ -312,6 +347,21 @@ impl FunctionKind {
                 "systems",
                 "Systems",
                 "Matrices of the systems that are solved with pivoting, row by row.",
+            ),
+            Self::Adjoint => (
+                "adjoint",
+                "Adjoint",
+                "Gradient of ⟨λ, ẋ⟩ + ⟨Λ, A⟩ + ⟨Γ, B⟩ + ⟨K, M⟩; the weights are λ, Λ, Γ, K, row by row.",
+            ),
+            Self::OutputJacobians => (
+                "output_jacobians",
+                "OutputJacobians",
+                "Outputs of the spec with their derivatives by state and inputs.",
+            ),
+            Self::OutputAdjoint => (
+                "output_adjoint",
+                "OutputAdjoint",
+                "Gradient of ⟨μ, y⟩ + ⟨Γ, C⟩ + ⟨Δ, D⟩; the weights are μ, Γ, Δ, row by row.",
             ),
         }
     }

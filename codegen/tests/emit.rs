@@ -7,10 +7,11 @@
 mod emit_support;
 
 use appell_codegen::emit::{Error, Options, emit, emit_functions};
+use appell_codegen::interpreted::InterpretedModel;
 use appell_codegen::program::{FunctionKind, Program};
 use appell_codegen::schedule::{interpret, schedule};
 use appell_runtime::Dual;
-use appell_runtime::model::{At, Model};
+use appell_runtime::model::{At, Gradient, Model};
 use emit_support::{Numbers, SPEC, golden_options, mixture, quantity};
 
 #[allow(non_snake_case, dead_code, unreachable_pub, clippy::pedantic)]
@@ -20,6 +21,53 @@ mod unicycle {
 #[allow(non_snake_case, dead_code, unreachable_pub, clippy::pedantic)]
 mod mixture_model {
     include!("emit_golden/mixture.rs");
+}
+
+#[allow(non_snake_case, dead_code, unreachable_pub, clippy::pedantic)]
+mod with_adjoints {
+    include!("emit_golden/with_adjoints.rs");
+}
+
+/// x, u and p of a gradient as bits.
+fn gradient(model: &dyn Model, write: impl FnOnce(Gradient<'_>)) -> [Vec<u64>; 3] {
+    let info = model.info();
+    let lengths = [info.state_len(), info.input_len(), info.parameter_len()];
+    let mut all = lengths.map(|len| vec![f64::NAN; len]);
+    let [x, u, p] = &mut all;
+    write(Gradient { x, u, p });
+    all.map(|numbers| bits(&numbers))
+}
+
+#[test]
+fn emitted_adjoints_are_those_of_the_interpreter() {
+    let interpreter = InterpretedModel::new(emit_support::with_adjoints());
+    let models: [&dyn Model; 2] = [&interpreter, &with_adjoints::Pendulum];
+    let mut numbers = Numbers(11);
+    let info = interpreter.info();
+    let (n, m, l) = (info.state_len(), info.input_len(), info.output_len());
+    let (x, u) = (numbers.list(n), numbers.list(m));
+    let p = info.default_parameters();
+    let at = At {
+        t: 0.0,
+        x: &x,
+        u: &u,
+        p: &p,
+    };
+    let weights = numbers.list(n + n * n + n * m + info.speeds * info.speeds);
+    let [wanted, got] = models.map(|model| gradient(model, |by| model.adjoint(at, &weights, by)));
+    assert_eq!(got, wanted);
+    let weights = numbers.list(l + l * n + l * m);
+    let [wanted, got] =
+        models.map(|model| gradient(model, |by| model.output_adjoint(at, &weights, by)));
+    assert_eq!(got, wanted);
+    let [wanted, got] = models.map(|model| {
+        let mut all = [vec![0.0; l], vec![0.0; l * n], vec![0.0; l * m]];
+        let [y, c, d] = &mut all;
+        model.output_jacobians(at, y, c, d);
+        all.map(|numbers| bits(&numbers))
+    });
+    assert_eq!(got, wanted);
+    assert!(with_adjoints::Pendulum.has_adjoint());
 }
 
 #[test]

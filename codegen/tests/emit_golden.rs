@@ -10,7 +10,7 @@ mod emit_support;
 use std::path::Path;
 
 use appell_codegen::emit::{Emitted, emit};
-use emit_support::{golden_options, mixture, unicycle};
+use emit_support::{golden_options, mixture, unicycle, with_adjoints};
 
 fn is_golden(name: &str, emitted: &Emitted) {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/emit_golden");
@@ -35,6 +35,12 @@ fn the_unicycle_is_emitted_as_in_the_golden_file() {
         "unicycle",
         &emit(&unicycle(), &golden_options(true)).unwrap(),
     );
+}
+
+#[test]
+fn adjoints_are_emitted_as_in_the_golden_file() {
+    let emitted = emit(&with_adjoints(), &golden_options(true)).unwrap();
+    is_golden("with_adjoints", &emitted);
 }
 
 #[test]

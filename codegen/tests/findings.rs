@@ -13,7 +13,7 @@ use appell_spec::{Code, Report};
 const LONGEST_WAIT: Duration = Duration::from_secs(20);
 
 fn refusal(text: &str) -> String {
-    match compile("a.toml", text, &FunctionKind::ALL) {
+    match compile("a.toml", text, &FunctionKind::STANDARD) {
         Ok(_) => panic!("it was accepted"),
         Err(report) => report.plain(),
     }
@@ -185,7 +185,7 @@ fn an_imposed_position_brings_its_velocity_and_acceleration() {
          [points]\nP = { from = 'O', in = 'ground', at = ['x', 0, 'lift'] }\n\
          [bodies]\nb = { centre = 'P', mass = 'm' }\n\
          [pseudo_velocities]\nv = 'dot(x)'\n";
-    let program = compile("lift.toml", text, &FunctionKind::ALL)
+    let program = compile("lift.toml", text, &FunctionKind::STANDARD)
         .unwrap_or_else(|report| panic!("{}", report.plain()));
     let names: Vec<_> = program
         .info

@@ -109,6 +109,8 @@ fn pendulum() -> Program {
     let symbol = |expr| graph.as_symbol(expr).unwrap();
     let arguments = Arguments {
         time: symbol(t),
+        weights: Vec::new(),
+        output_weights: Vec::new(),
         pi: None,
         states: vec![symbol(w), symbol(theta)],
         inputs: vec![symbol(u)],

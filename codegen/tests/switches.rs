@@ -23,7 +23,7 @@ fn carriage(force: &str) -> Program {
          [pseudo_velocities]\nv = {{ value = 'dot(x)', unit = 'm/s' }}\n\
          [loads]\npush = {{ kind = 'force', on = 'C', in = 'ground', vector = ['{force}', 0, 0] }}\n"
     );
-    compile("carriage.toml", &text, &FunctionKind::ALL)
+    compile("carriage.toml", &text, &FunctionKind::STANDARD)
         .unwrap_or_else(|report| panic!("{}", report.plain()))
 }
 

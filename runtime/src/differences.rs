@@ -13,12 +13,7 @@ fn step(value: f64) -> f64 {
 
 /// What [`Model::adjoint`] writes, to about nine digits. The weighted Jacobians are differentiated
 /// along one direction for each column that has a weight: `∇⟨Λ, J⟩ = Σ_j ∂(Jᵀ Λ_j)/∂z_j`.
-pub(crate) fn adjoint<M: Model + ?Sized>(
-    model: &M,
-    at: At<'_>,
-    weights: &[f64],
-    by: &mut Gradient<'_>,
-) {
+pub fn adjoint<M: Model + ?Sized>(model: &M, at: At<'_>, weights: &[f64], mut by: Gradient<'_>) {
     let info = model.info();
     let (n, m, k, s) = (at.x.len(), at.u.len(), at.p.len(), info.speeds);
     let (lambda, rest) = weights.split_at(n);
@@ -28,7 +23,7 @@ pub(crate) fn adjoint<M: Model + ?Sized>(
     by.u.fill(0.0);
     by.p.fill(0.0);
     let mut all = Jacobians::new(n, m, k);
-    all.pull(model, at, lambda, 1.0, by);
+    all.pull(model, at, lambda, 1.0, &mut by);
     let (mut x, mut u) = (at.x.to_vec(), at.u.to_vec());
     for j in 0..n + m {
         let column: Vec<f64> = (0..n)
@@ -52,7 +47,7 @@ pub(crate) fn adjoint<M: Model + ?Sized>(
                 u[j - n] = centre + sign * h;
             }
             let there = At { x: &x, u: &u, ..at };
-            all.pull(model, there, &column, sign / (2.0 * h), by);
+            all.pull(model, there, &column, sign / (2.0 * h), &mut by);
         }
         if j < n {
             x[j] = centre;
@@ -76,7 +71,7 @@ pub(crate) fn adjoint<M: Model + ?Sized>(
 }
 
 /// What [`Model::output_jacobians`] writes, to about nine digits.
-pub(crate) fn output_jacobians<M: Model + ?Sized>(
+pub fn output_jacobians<M: Model + ?Sized>(
     model: &M,
     at: At<'_>,
     [outputs, c, d]: [&mut [f64]; 3],
@@ -96,12 +91,7 @@ pub(crate) fn output_jacobians<M: Model + ?Sized>(
 
 /// What [`Model::output_adjoint`] writes: to about nine digits where the model has formulas for
 /// the Jacobians of its outputs, else to about seven.
-pub(crate) fn output_adjoint<M: Model + ?Sized>(
-    model: &M,
-    at: At<'_>,
-    weights: &[f64],
-    by: &mut Gradient<'_>,
-) {
+pub fn output_adjoint<M: Model + ?Sized>(model: &M, at: At<'_>, weights: &[f64], by: Gradient<'_>) {
     let (n, m) = (at.x.len(), at.u.len());
     let l = model.info().output_len();
     let [mut y, mut c, mut d] = [vec![0.0; l], vec![0.0; l * n], vec![0.0; l * m]];
@@ -112,12 +102,10 @@ pub(crate) fn output_adjoint<M: Model + ?Sized>(
             .map(|(value, weight)| value * weight)
             .sum::<f64>()
     };
-    by.x.fill(0.0);
-    by.u.fill(0.0);
-    by.p.fill(0.0);
-    wide_slopes(at.x, by.x, |x| weighted(At { x, ..at }));
-    wide_slopes(at.u, by.u, |u| weighted(At { u, ..at }));
-    wide_slopes(at.p, by.p, |p| weighted(At { p, ..at }));
+    let Gradient { x, u, p } = by;
+    wide_slopes(at.x, x, |x| weighted(At { x, ..at }));
+    wide_slopes(at.u, u, |u| weighted(At { u, ..at }));
+    wide_slopes(at.p, p, |p| weighted(At { p, ..at }));
 }
 
 /// The slopes of a scalar that may hold differences itself: of order four, so that a step far above

@@ -13,6 +13,7 @@
 //! - [`analysis`]: steady motions, their families and stability;
 //! - [`singular`]: singular values and vectors, ranks, shortest solutions;
 //! - [`control`]: controllability, pole placement, optimal feedback, sampled loops;
+//! - [`differences`]: derivatives that a model has no formulas for;
 //! - [`estimate`]: filters, likelihoods with gradients, fits to recordings;
 //! - [`contact`] and [`condition`]: where a model stops being valid;
 //! - [`figure`]: plots as SVG.
@@ -38,7 +39,7 @@ pub mod contact;
 pub mod control;
 pub mod dense;
 #[cfg(feature = "std")]
-mod differences;
+pub mod differences;
 #[cfg(feature = "std")]
 pub mod estimate;
 #[cfg(feature = "std")]

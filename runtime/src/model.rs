@@ -2,6 +2,8 @@
 
 use std::borrow::Cow;
 
+use crate::differences;
+
 /// A text that is static in emitted models and owned in models made at run time.
 pub type Text = Cow<'static, str>;
 /// A list that is static in emitted models and owned in models made at run time.
@@ -347,16 +349,16 @@ pub trait Model: Sync {
     /// Gradient of ⟨λ, ẋ⟩ + ⟨Λ, A⟩ + ⟨Γ, B⟩ + ⟨K, M⟩, where brackets are sums over all products of
     /// entries. `weights` are λ (`n`), Λ (`n·n`), Γ (`n·m`), K (`s·s`), one after the other. It is
     /// what the adjoint equations of a motion and of its variation need.
-    fn adjoint(&self, at: At<'_>, weights: &[f64], mut gradient: Gradient<'_>) {
-        crate::differences::adjoint(self, at, weights, &mut gradient);
+    fn adjoint(&self, at: At<'_>, weights: &[f64], by: Gradient<'_>) {
+        differences::adjoint(self, at, weights, by);
     }
     /// Outputs y (`l`), C = ∂y/∂x (`l·n`), D = ∂y/∂u (`l·m`).
     fn output_jacobians(&self, at: At<'_>, outputs: &mut [f64], c: &mut [f64], d: &mut [f64]) {
-        crate::differences::output_jacobians(self, at, [outputs, c, d]);
+        differences::output_jacobians(self, at, [outputs, c, d]);
     }
     /// Gradient of ⟨μ, y⟩ + ⟨Γ, C⟩ + ⟨Δ, D⟩; `weights` are μ (`l`), Γ (`l·n`), Δ (`l·m`).
-    fn output_adjoint(&self, at: At<'_>, weights: &[f64], mut gradient: Gradient<'_>) {
-        crate::differences::output_adjoint(self, at, weights, &mut gradient);
+    fn output_adjoint(&self, at: At<'_>, weights: &[f64], by: Gradient<'_>) {
+        differences::output_adjoint(self, at, weights, by);
     }
     /// Coordinates that follow from the others, one per position constraint; most models have none.
     fn dependent_coordinates(&self) -> &[usize] {

@@ -70,8 +70,8 @@ pub fn derive(mechanism: &Mechanism) -> Derivation {
         .unwrap_or_else(|findings| panic!("{}: {findings:?}", mechanism.file))
 }
 
-/// All functions of a mechanism.
+/// The functions of a mechanism that every model has.
 pub fn program(mechanism: &Mechanism) -> Program {
-    assemble::program(derive(mechanism), mechanism, &FunctionKind::ALL)
+    assemble::program(derive(mechanism), mechanism, &FunctionKind::STANDARD)
         .unwrap_or_else(|findings| panic!("{}: {findings:?}", mechanism.file))
 }

@@ -25,7 +25,7 @@ const CRITICAL: f64 = 1e-12;
 const JACOBIANS: f64 = 1e-11;
 
 fn program() -> Program {
-    let program = appell_codegen::compile("bicycle.toml", SPEC, &FunctionKind::ALL);
+    let program = appell_codegen::compile("bicycle.toml", SPEC, &FunctionKind::STANDARD);
     program.unwrap_or_else(|report| panic!("{}", report.plain()))
 }
 

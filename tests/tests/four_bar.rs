@@ -17,7 +17,7 @@ struct Linkage {
 
 impl Linkage {
     fn new() -> Self {
-        let program = appell_codegen::compile("four_bar.toml", SPEC, &FunctionKind::ALL);
+        let program = appell_codegen::compile("four_bar.toml", SPEC, &FunctionKind::STANDARD);
         let program = program.unwrap_or_else(|report| panic!("{}", report.plain()));
         Self {
             model: InterpretedModel::new(program),

@@ -67,7 +67,7 @@ z = { value = "a*sin(rate*t) - l*cos(theta)", unit = "m" }
 "#;
 
 fn model(text: &str) -> InterpretedModel {
-    let program = appell_codegen::compile("positions.toml", text, &FunctionKind::ALL);
+    let program = appell_codegen::compile("positions.toml", text, &FunctionKind::STANDARD);
     InterpretedModel::new(program.unwrap_or_else(|report| panic!("{}", report.plain())))
 }
 
@@ -181,7 +181,7 @@ fn a_constraint_that_does_not_determine_the_named_coordinate_is_told() {
         "x = { unit = \"m\", initial = 0.3 }",
         "x = { unit = \"m\" }\ny = { unit = \"m\" }",
     );
-    let Err(report) = appell_codegen::compile("y.toml", &text, &FunctionKind::ALL) else {
+    let Err(report) = appell_codegen::compile("y.toml", &text, &FunctionKind::STANDARD) else {
         panic!("accepted");
     };
     let text = report.plain();

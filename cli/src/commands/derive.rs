@@ -132,7 +132,7 @@ fn rust(source: &Source) -> Result<String, Failure> {
         return Ok(shipped.code.to_owned());
     }
     let spinner = progress::spinner("deriving the equations of motion");
-    let program = appell_codegen::compile(&source.file, &source.text, &FunctionKind::ALL)?;
+    let program = appell_codegen::compile(&source.file, &source.text, &FunctionKind::STANDARD)?;
     let options = Options {
         spec: Some(source.text.clone()),
         ..Options::default()

@@ -25,6 +25,7 @@ pub(super) fn body(types: &Types<'_>, function: &Function, schedule: &Schedule) 
         attributes: Vec::new(),
     };
     body.arguments();
+    body.weights();
     body.constants(function);
     for step in &schedule.steps {
         body.step(step);
@@ -60,6 +61,17 @@ impl Body<'_> {
             if !used.is_empty() {
                 let pattern = s::borrowed_fields(group.type_name, &used, used.len() == group.len);
                 self.push(pattern, s::name(&group.argument));
+            }
+        }
+    }
+
+    /// `let lambda_v = weights[0];`
+    fn weights(&mut self) {
+        for &argument in &self.schedule.arguments {
+            if let Argument::Weight(index) | Argument::OutputWeight(index) = argument {
+                let weights = &self.types.argument_names()[4];
+                let value = s::indexed(weights, index as usize);
+                self.push(s::binding(self.types.names.get(argument)), value);
             }
         }
     }

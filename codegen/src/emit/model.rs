@@ -261,6 +261,8 @@ pub(super) fn implementation(types: &Types<'_>) -> Result<TokenStream, Error> {
         position_methods(types),
         contact_methods(types),
         system_methods(types),
+        adjoint_methods(types),
+        output_derivative_methods(types),
     ];
     let blank = blank_tokens();
     Ok(quote! {
@@ -488,6 +490,63 @@ fn system_methods(types: &Types<'_>) -> TokenStream {
         #blank
         fn systems(&self, at: At<'_>, matrices: &mut [f64]) {
             write(matrices, &self::#call);
+        }
+    }
+}
+
+/// The adjoint of the rates; the trait differentiates by differences where there is none.
+fn adjoint_methods(types: &Types<'_>) -> TokenStream {
+    let kind = FunctionKind::Adjoint;
+    if types.program.function(kind).is_none() {
+        return TokenStream::new();
+    }
+    let method = gradient_method(types, kind);
+    let blank = blank_tokens();
+    quote! {
+        #blank
+        fn has_adjoint(&self) -> bool {
+            true
+        }
+        #method
+    }
+}
+
+/// Derivatives of the outputs, and their adjoint.
+fn output_derivative_methods(types: &Types<'_>) -> TokenStream {
+    let kind = FunctionKind::OutputJacobians;
+    let count = Literal::usize_unsuffixed(types.program.info.outputs.len());
+    let call = call(types, kind.name());
+    let blank = blank_tokens();
+    let jacobians = types.program.function(kind).map(|_| {
+        quote! {
+            #blank
+            fn output_jacobians(&self, at: At<'_>, outputs: &mut [f64], c: &mut [f64], d: &mut [f64]) {
+                let all = self::#call;
+                write(outputs, &<[f64; #count]>::from(all.outputs));
+                write(c, all.c.as_flattened());
+                write(d, all.d.as_flattened());
+            }
+        }
+    });
+    let kind = FunctionKind::OutputAdjoint;
+    let adjoint = (types.program.function(kind)).map(|_| gradient_method(types, kind));
+    quote!(#jacobians #adjoint)
+}
+
+/// A method that writes the gradient of a weighted sum.
+fn gradient_method(types: &Types<'_>, kind: FunctionKind) -> TokenStream {
+    let name = ident(kind.name());
+    let time = types.program.info.explicit_time.then(|| quote!(at.t,));
+    let count = Literal::usize_unsuffixed(types.weights(kind));
+    let blank = blank_tokens();
+    quote! {
+        #blank
+        fn #name(&self, at: At<'_>, weights: &[f64], by: model::Gradient<'_>) {
+            let weights = first::<#count>(weights);
+            let all = self::#name(#time &parameters(&at), &state(&at), &inputs(&at), &weights);
+            write(by.x, &all.x);
+            write(by.u, &all.u);
+            write(by.p, &all.p);
         }
     }
 }

@@ -7,7 +7,7 @@ use quote::quote;
 use super::body::Group;
 use super::layout::{blank_tokens, docs, escaped, one_line};
 use super::syntax::{ident, known, number};
-use crate::program::{Function, Layout, Program};
+use crate::program::{Function, FunctionKind, Layout, Program};
 use crate::schedule::Argument;
 use crate::schedule::names::{ArgumentNames, Names, identifier};
 
@@ -16,7 +16,7 @@ pub(super) struct Types<'a> {
     pub(super) program: &'a Program,
     pub(super) names: ArgumentNames,
     outputs: Vec<String>,
-    arguments: [String; 4],
+    arguments: [String; 5],
 }
 
 impl<'a> Types<'a> {
@@ -42,6 +42,7 @@ impl<'a> Types<'a> {
             argument("parameters"),
             argument("state"),
             argument("inputs"),
+            argument("weights"),
         ];
         Self {
             program,
@@ -51,8 +52,8 @@ impl<'a> Types<'a> {
         }
     }
 
-    /// Names of the arguments of every function: time, parameters, state, inputs.
-    pub(super) fn argument_names(&self) -> &[String; 4] {
+    /// Names of the arguments of functions: time, parameters, state, inputs; for adjoints weights.
+    pub(super) fn argument_names(&self) -> &[String; 5] {
         &self.arguments
     }
 
@@ -63,7 +64,7 @@ impl<'a> Types<'a> {
 
     /// The structs that hold the arguments.
     pub(super) fn groups(&self) -> [Group; 3] {
-        let [_, parameters, state, inputs] = &self.arguments;
+        let [_, parameters, state, inputs, _] = &self.arguments;
         let group = |type_name, argument: &String, len, like| Group {
             type_name,
             argument: argument.clone(),
@@ -81,6 +82,15 @@ impl<'a> Types<'a> {
             group("State", state, names.states.len(), Argument::State(0)),
             group("Inputs", inputs, names.inputs.len(), Argument::Input(0)),
         ]
+    }
+
+    /// How many weights a function takes.
+    pub(super) fn weights(&self, kind: FunctionKind) -> usize {
+        match kind {
+            FunctionKind::Adjoint => self.names.weights.len(),
+            FunctionKind::OutputAdjoint => self.names.output_weights.len(),
+            _ => 0,
+        }
     }
 
     fn speeds(&self) -> usize {

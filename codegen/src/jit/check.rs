@@ -24,6 +24,8 @@ pub(super) struct Checked<'a> {
     pub(super) schedule: &'a Schedule,
     /// Rows of the factorisations, by their number.
     pub(super) rows: FxHashMap<u32, usize>,
+    /// How many weights it uses, counted from the first.
+    pub(super) weights: usize,
 }
 
 /// Lengths of the arguments of a model.
@@ -54,6 +56,7 @@ pub(super) fn check(schedule: &Schedule, sizes: Sizes) -> Result<Checked<'_>, Ji
         defined: vec![false; schedule.names.len()],
         operations: 0,
         rows: FxHashMap::default(),
+        weights: 0,
     };
     for step in &schedule.steps {
         checker.step(step)?;
@@ -64,6 +67,7 @@ pub(super) fn check(schedule: &Schedule, sizes: Sizes) -> Result<Checked<'_>, Ji
     Ok(Checked {
         schedule,
         rows: checker.rows,
+        weights: checker.weights,
     })
 }
 
@@ -72,6 +76,7 @@ struct Checker {
     defined: Vec<bool>,
     operations: usize,
     rows: FxHashMap<u32, usize>,
+    weights: usize,
 }
 
 impl Checker {
@@ -191,12 +196,17 @@ impl Checker {
         }
     }
 
-    fn argument(&self, argument: Argument) -> Result<(), JitError> {
+    fn argument(&mut self, argument: Argument) -> Result<(), JitError> {
         let (what, index, len) = match argument {
             Argument::Time => return Ok(()),
             Argument::State(index) => ("state", index, self.sizes.states),
             Argument::Input(index) => ("input", index, self.sizes.inputs),
             Argument::Parameter(index) => ("parameter", index, self.sizes.parameters),
+            Argument::Weight(index) | Argument::OutputWeight(index) => {
+                // Every call has to bring as many.
+                self.weights = self.weights.max(index as usize + 1);
+                ("weight", index, MOST_ARGUMENTS)
+            }
         };
         let index = index as usize;
         if index < len.min(MOST_ARGUMENTS) {

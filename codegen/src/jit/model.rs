@@ -3,7 +3,8 @@
 use std::fmt;
 use std::slice::from_mut;
 
-use appell_runtime::model::{At, Energies, Model, ModelInfo};
+use appell_runtime::differences;
+use appell_runtime::model::{At, Energies, Gradient, Model, ModelInfo};
 
 use super::on_demand::OnDemand;
 use super::{JitError, Sizes};
@@ -63,6 +64,15 @@ fn results(kind: FunctionKind, program: &Program) -> Vec<(&'static str, usize)> 
             let entries = program.systems.iter().map(|size| size * size);
             vec![("matrices", entries.sum())]
         }
+        // What a program may lack.
+        _ if program.function(kind).is_none() => vec![],
+        FunctionKind::Adjoint | FunctionKind::OutputAdjoint => {
+            vec![("x", n), ("u", m), ("p", k)]
+        }
+        FunctionKind::OutputJacobians => {
+            let l = info.output_len();
+            vec![("outputs", l), ("c", l * n), ("d", l * m)]
+        }
     }
 }
 
@@ -104,9 +114,18 @@ impl JitModel {
     }
 
     fn evaluate<const N: usize>(&self, kind: FunctionKind, at: At<'_>, results: [&mut [f64]; N]) {
-        self.part(kind)
-            .ready(&self.program, self.sizes)
-            .call(at, results);
+        self.evaluate_weighted(kind, at, &[], results);
+    }
+
+    fn evaluate_weighted<const N: usize>(
+        &self,
+        kind: FunctionKind,
+        at: At<'_>,
+        weights: &[f64],
+        results: [&mut [f64]; N],
+    ) {
+        let part = self.part(kind).ready(&self.program, self.sizes);
+        part.call(at, weights, results);
     }
 }
 
@@ -165,6 +184,36 @@ impl Model for JitModel {
 
     fn outputs(&self, at: At<'_>, outputs: &mut [f64]) {
         self.evaluate(FunctionKind::Outputs, at, [outputs]);
+    }
+
+    fn has_adjoint(&self) -> bool {
+        self.program.function(FunctionKind::Adjoint).is_some()
+    }
+
+    fn adjoint(&self, at: At<'_>, weights: &[f64], by: Gradient<'_>) {
+        if self.has_adjoint() {
+            let by = [by.x, by.u, by.p];
+            self.evaluate_weighted(FunctionKind::Adjoint, at, weights, by);
+        } else {
+            differences::adjoint(self, at, weights, by);
+        }
+    }
+
+    fn output_jacobians(&self, at: At<'_>, outputs: &mut [f64], c: &mut [f64], d: &mut [f64]) {
+        match self.program.function(FunctionKind::OutputJacobians) {
+            Some(_) => self.evaluate(FunctionKind::OutputJacobians, at, [outputs, c, d]),
+            None => differences::output_jacobians(self, at, [outputs, c, d]),
+        }
+    }
+
+    fn output_adjoint(&self, at: At<'_>, weights: &[f64], by: Gradient<'_>) {
+        match self.program.function(FunctionKind::OutputAdjoint) {
+            Some(_) => {
+                let by = [by.x, by.u, by.p];
+                self.evaluate_weighted(FunctionKind::OutputAdjoint, at, weights, by);
+            }
+            None => differences::output_adjoint(self, at, weights, by),
+        }
     }
 
     fn dependent_coordinates(&self) -> &[usize] {
@@ -231,7 +280,10 @@ mod tests {
             Kind::Switches => Kind::PositionConstraints,
             Kind::PositionConstraints => Kind::Contacts,
             Kind::Contacts => Kind::Systems,
-            Kind::Systems => return None,
+            Kind::Systems => Kind::Adjoint,
+            Kind::Adjoint => Kind::OutputJacobians,
+            Kind::OutputJacobians => Kind::OutputAdjoint,
+            Kind::OutputAdjoint => return None,
         })
     }
 

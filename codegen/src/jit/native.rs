@@ -13,8 +13,9 @@ use super::translate::{signature, translate};
 use super::{JitError, host};
 use crate::schedule::Schedule;
 
-/// `t`, states, inputs, parameters, addresses of the results.
-type Entry = unsafe extern "C" fn(f64, *const f64, *const f64, *const f64, *const *mut f64);
+/// `t`, states, inputs, parameters, weights, addresses of the results.
+type Entry =
+    unsafe extern "C" fn(f64, *const f64, *const f64, *const f64, *const f64, *const *mut f64);
 
 /// One schedule in machine code. The code lives as long as this value; several threads may call it
 /// at the same time.
@@ -22,6 +23,8 @@ type Entry = unsafe extern "C" fn(f64, *const f64, *const f64, *const f64, *cons
 pub struct NativeFunction {
     entry: Entry,
     sizes: Sizes,
+    /// How many weights it uses.
+    weights: usize,
     /// Lengths of the results.
     results: Vec<usize>,
     _code: Code,
@@ -46,6 +49,7 @@ impl NativeFunction {
             // SAFETY: the code was compiled with `signature`, which is that of `Entry`.
             entry: unsafe { std::mem::transmute::<*const u8, Entry>(entry) },
             sizes,
+            weights: checked.weights,
             results: lengths(schedule),
             _code: code,
         })
@@ -59,9 +63,26 @@ impl NativeFunction {
     /// for; no code runs then.
     #[inline]
     pub fn call<const N: usize>(&self, at: At<'_>, results: [&mut [f64]; N]) {
+        self.call_weighted(at, &[], results);
+    }
+
+    /// [`Self::call`] for an adjoint with its weights.
+    ///
+    /// # Panics
+    ///
+    /// As [`Self::call`], and where there are fewer weights than the schedule uses.
+    #[inline]
+    pub fn call_weighted<const N: usize>(
+        &self,
+        at: At<'_>,
+        weights: &[f64],
+        results: [&mut [f64]; N],
+    ) {
         check_lengths(at, self.sizes, &results, &self.results);
+        check_weights(weights, self.weights);
         let results = results.map(<[f64]>::as_mut_ptr);
-        // SAFETY: the schedule's check bounds every read by `sizes`, and the translation writes
+        // SAFETY: the schedule's check bounds every read by `sizes` and by the weights that it
+        // counted, and the translation writes
         // each result from its start to its length; both were compared above. The references promise that the
         // memory is valid and that results overlap neither each other nor the arguments. The code
         // is alive while `self` is.
@@ -71,6 +92,7 @@ impl NativeFunction {
                 at.x.as_ptr(),
                 at.u.as_ptr(),
                 at.p.as_ptr(),
+                weights.as_ptr(),
                 results.as_ptr(),
             );
         }
@@ -94,6 +116,16 @@ pub(super) fn check_lengths(at: At<'_>, sizes: Sizes, out: &[&mut [f64]], result
             .map(|result| result.len())
             .eq(results.iter().copied()),
         "results: lengths {results:?} expected"
+    );
+}
+
+/// Refuses fewer weights than a function uses.
+#[inline]
+pub(super) fn check_weights(weights: &[f64], used: usize) {
+    assert!(
+        weights.len() >= used,
+        "weights: {} given, {used} used",
+        weights.len()
     );
 }
 

@@ -7,7 +7,7 @@ use appell_runtime::model::At;
 use super::native::check_lengths;
 use super::{JitError, NativeFunction, Sizes};
 use crate::program::{Function, FunctionKind, Program};
-use crate::schedule::{ResultArray, Schedule, interpret, schedule};
+use crate::schedule::{ResultArray, Schedule, interpret_weighted, schedule};
 
 /// A result that is asked of a function: its name and its length.
 pub(super) type Wanted = (&'static str, usize);
@@ -135,9 +135,9 @@ impl OnDemand {
 impl Ready {
     /// Evaluates the function; see [`NativeFunction::call`].
     #[inline]
-    pub(super) fn call<const N: usize>(&self, at: At<'_>, out: [&mut [f64]; N]) {
+    pub(super) fn call<const N: usize>(&self, at: At<'_>, weights: &[f64], out: [&mut [f64]; N]) {
         match self {
-            Self::Native(native) => native.call(at, out),
+            Self::Native(native) => native.call_weighted(at, weights, out),
             Self::Interpreted {
                 schedule,
                 sizes,
@@ -145,7 +145,7 @@ impl Ready {
                 ..
             } => {
                 check_lengths(at, *sizes, &out, results);
-                let computed = interpret(schedule, at.t, at.x, at.u, at.p);
+                let computed = interpret_weighted(schedule, at, weights);
                 for (out, computed) in out.into_iter().zip(computed) {
                     out.copy_from_slice(&computed);
                 }

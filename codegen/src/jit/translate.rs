@@ -19,11 +19,11 @@ use super::elementary;
 use crate::schedule::{Argument, Operation, Step, Tree, Value};
 use crate::symbolic::{Function, Relation};
 
-/// Signature of compiled functions: `t`, then the addresses of states, inputs, parameters and of a
-/// list with the address of each result.
+/// Signature of compiled functions: `t`, then the addresses of states, inputs, parameters, weights
+/// and of a list with the address of each result.
 pub(super) fn signature(config: TargetFrontendConfig) -> Signature {
     let pointer = config.pointer_type();
-    let parameters = [F64, pointer, pointer, pointer, pointer];
+    let parameters = [F64, pointer, pointer, pointer, pointer, pointer];
     signature_of(config.default_call_conv, &parameters, &[])
 }
 
@@ -70,6 +70,7 @@ struct Received {
     states: ir::Value,
     inputs: ir::Value,
     parameters: ir::Value,
+    weights: ir::Value,
     results: ir::Value,
 }
 
@@ -110,7 +111,8 @@ impl<'a> Translation<'a> {
             states: builder.block_params(block)[1],
             inputs: builder.block_params(block)[2],
             parameters: builder.block_params(block)[3],
-            results: builder.block_params(block)[4],
+            weights: builder.block_params(block)[4],
+            results: builder.block_params(block)[5],
         };
         // A checked schedule defines values before it uses them; zero stands in until then.
         let zero = builder.ins().f64const(0.0);
@@ -326,6 +328,9 @@ impl<'a> Translation<'a> {
             Argument::State(index) => (self.received.states, index),
             Argument::Input(index) => (self.received.inputs, index),
             Argument::Parameter(index) => (self.received.parameters, index),
+            Argument::Weight(index) | Argument::OutputWeight(index) => {
+                (self.received.weights, index)
+            }
         };
         let builder = &mut self.builder;
         *self.arguments.entry(argument).or_insert_with(|| {

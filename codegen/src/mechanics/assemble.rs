@@ -43,6 +43,8 @@ pub fn program(
                 | FunctionKind::PositionConstraints
                 | FunctionKind::Contacts
                 | FunctionKind::Systems
+                | FunctionKind::OutputJacobians
+                | FunctionKind::OutputAdjoint
         );
         if !may_lack || results.iter().any(|array| !array.entries.is_empty()) {
             functions.push(derivation.staged(mechanism, Function::new(kind, results)));
@@ -58,6 +60,8 @@ pub fn program(
         ),
         inputs: ids(graph, &input_symbols(symbols, &info)),
         parameters: ids(graph, &symbols.parameters),
+        weights: ids(graph, &symbols.weights),
+        output_weights: ids(graph, &symbols.output_weights),
         pi: graph.as_symbol(symbols.pi),
     };
     info.explicit_time = functions
@@ -167,6 +171,9 @@ impl Derivation {
                 let layout = Layout::Vector(matrices.len());
                 vec![Array::new("matrices", "Matrices.", layout, matrices)]
             }
+            FunctionKind::Adjoint => self.adjoint(info)?,
+            FunctionKind::OutputJacobians => self.output_jacobians(mechanism, info)?,
+            FunctionKind::OutputAdjoint => self.output_adjoint(mechanism, info)?,
         })
     }
 
@@ -227,7 +234,9 @@ impl Derivation {
             | F::Switches
             | F::PositionConstraints
             | F::Contacts
-            | F::Systems => function,
+            | F::Systems
+            | F::OutputJacobians => function,
+            F::Adjoint | F::OutputAdjoint => function.explaining(glossary::of_weights()),
         }
     }
 
@@ -394,7 +403,7 @@ impl Derivation {
     }
 
     /// The outputs of the spec.
-    fn outputs(&mut self, mechanism: &Mechanism) -> Outcome<Vec<Array>> {
+    pub(super) fn outputs(&mut self, mechanism: &Mechanism) -> Outcome<Vec<Array>> {
         let lowering = Lowering {
             symbols: &self.symbols,
             rates: &self.coordinate_rates,
@@ -466,12 +475,15 @@ impl Derivation {
     }
 
     /// ẋ: pseudo-accelerations, then generalised velocities.
-    fn rates(&self) -> Vec<Expr> {
+    pub(super) fn rates(&self) -> Vec<Expr> {
         [self.motion.accelerations.as_slice(), &self.coordinate_rates].concat()
     }
 
     /// Derivatives of ẋ by each list of variables, row by row.
-    fn derivatives<const N: usize>(&mut self, variables: [&[Expr]; N]) -> Outcome<[Vec<Expr>; N]> {
+    pub(super) fn derivatives<const N: usize>(
+        &mut self,
+        variables: [&[Expr]; N],
+    ) -> Outcome<[Vec<Expr>; N]> {
         let (algebra, symbols) = (&mut self.algebra, &self.symbols);
         let rows = self.motion.accelerations.len() + self.coordinate_rates.len();
         let mut columns_of: Vec<Vec<Vec<Expr>>> = Vec::with_capacity(N);
@@ -526,7 +538,7 @@ fn by_speed(
 }
 
 /// Symbols of the inputs: declared ones, then signals and their rates.
-fn input_symbols(symbols: &Symbols, info: &ModelInfo) -> Vec<Expr> {
+pub(super) fn input_symbols(symbols: &Symbols, info: &ModelInfo) -> Vec<Expr> {
     let tabulated = info
         .signal_inputs
         .iter()

@@ -152,6 +152,14 @@ fn unit_of_row(kind: &ConstraintKind) -> String {
     Unit::si(dimension).text
 }
 
+/// Weights of the adjoints.
+pub fn of_weights() -> Vec<Term> {
+    vec![term(
+        "adjoint",
+        "a derivative of the weighted sum by a value on the way.",
+    )]
+}
+
 fn term(symbol: &str, meaning: &str) -> Term {
     Term {
         symbol: symbol.to_owned(),

@@ -2,6 +2,7 @@
 //!
 //! The files are the steps; `equations` calls them in order, and `ARCHITECTURE.md` lists them.
 
+mod adjoint;
 pub mod algebra;
 pub mod assemble;
 pub mod constraints;

@@ -25,6 +25,10 @@ pub struct Symbols {
     pub time: Expr,
     /// The circle constant.
     pub pi: Expr,
+    /// Weights of the adjoint of the rates, once it is asked for.
+    pub weights: Vec<Expr>,
+    /// Weights of the adjoint of the outputs, once it is asked for.
+    pub output_weights: Vec<Expr>,
 }
 
 impl Symbols {
@@ -68,6 +72,8 @@ impl Symbols {
             signals,
             time,
             pi,
+            weights: Vec::new(),
+            output_weights: Vec::new(),
         }
     }
 }

@@ -603,6 +603,7 @@ fn reading_order(tree: &Tree) -> (u8, u32) {
         Tree::Argument(Argument::Time) => (3, 0),
         Tree::Argument(Argument::State(i)) => (4, *i),
         Tree::Argument(Argument::Input(i)) => (5, *i),
-        _ => (6, 0),
+        Tree::Argument(Argument::Weight(i) | Argument::OutputWeight(i)) => (6, *i),
+        _ => (7, 0),
     }
 }

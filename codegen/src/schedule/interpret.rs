@@ -1,6 +1,7 @@
 //! Executes a schedule step by step: the reference for emitted and compiled code.
 
 use appell_runtime::dense::lu_solve_in_place;
+use appell_runtime::model::At;
 use appell_runtime::real::Real;
 
 use super::{Argument, Operation, Schedule, Step, Tree, Value};
@@ -13,11 +14,18 @@ use crate::symbolic::{Function, Relation};
 ///
 /// If `x`, `u` or `p` are shorter than the arguments that the schedule uses.
 pub fn interpret(schedule: &Schedule, t: f64, x: &[f64], u: &[f64], p: &[f64]) -> Vec<Vec<f64>> {
+    interpret_weighted(schedule, At { t, x, u, p }, &[])
+}
+
+/// [`interpret`] for an adjoint with its weights.
+///
+/// # Panics
+///
+/// As [`interpret`], and if there are fewer weights than the schedule uses.
+pub fn interpret_weighted(schedule: &Schedule, at: At<'_>, weights: &[f64]) -> Vec<Vec<f64>> {
     let mut machine = Machine {
-        t,
-        x,
-        u,
-        p,
+        at,
+        weights,
         values: vec![f64::NAN; schedule.names.len()],
         matrices: Vec::new(),
     };
@@ -29,10 +37,8 @@ pub fn interpret(schedule: &Schedule, t: f64, x: &[f64], u: &[f64], p: &[f64]) -
 }
 
 struct Machine<'a> {
-    t: f64,
-    x: &'a [f64],
-    u: &'a [f64],
-    p: &'a [f64],
+    at: At<'a>,
+    weights: &'a [f64],
     values: Vec<f64>,
     /// Matrices by factorisation. They are factorised anew with every right-hand side, which gives
     /// the same bits.
@@ -87,10 +93,13 @@ impl Machine<'_> {
     fn tree(&self, tree: &Tree) -> f64 {
         match tree {
             Tree::Value(value) => self.values[value.0 as usize],
-            Tree::Argument(Argument::Time) => self.t,
-            Tree::Argument(Argument::State(i)) => self.x[*i as usize],
-            Tree::Argument(Argument::Input(i)) => self.u[*i as usize],
-            Tree::Argument(Argument::Parameter(i)) => self.p[*i as usize],
+            Tree::Argument(Argument::Time) => self.at.t,
+            Tree::Argument(Argument::State(i)) => self.at.x[*i as usize],
+            Tree::Argument(Argument::Input(i)) => self.at.u[*i as usize],
+            Tree::Argument(Argument::Parameter(i)) => self.at.p[*i as usize],
+            Tree::Argument(Argument::Weight(i) | Argument::OutputWeight(i)) => {
+                self.weights[*i as usize]
+            }
             Tree::Constant(value) => value.to_f64(),
             Tree::Negate(a) => -self.tree(a),
             Tree::Binary(operation, a, b) => {

@@ -71,6 +71,8 @@ fn arguments(program: &Program) -> FxHashMap<SymbolId, Argument> {
         .chain(numbered(&of.states, Argument::State))
         .chain(numbered(&of.inputs, Argument::Input))
         .chain(numbered(&of.parameters, Argument::Parameter))
+        .chain(numbered(&of.weights, Argument::Weight))
+        .chain(numbered(&of.output_weights, Argument::OutputWeight))
         .collect()
 }
 

@@ -26,7 +26,7 @@ mod share;
 mod signs;
 
 pub use cost::OperationCount;
-pub use interpret::interpret;
+pub use interpret::{interpret, interpret_weighted};
 pub use pi::pi;
 
 use crate::program::{self, Program};
@@ -101,6 +101,10 @@ pub enum Argument {
     Input(u32),
     /// Parameter by index.
     Parameter(u32),
+    /// Weight of an adjoint by index.
+    Weight(u32),
+    /// Weight of an adjoint of the outputs by index.
+    OutputWeight(u32),
 }
 
 /// A step.

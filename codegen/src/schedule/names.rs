@@ -101,6 +101,10 @@ pub(crate) struct ArgumentNames {
     pub(crate) inputs: Vec<String>,
     /// Parameters.
     pub(crate) parameters: Vec<String>,
+    /// Weights of the adjoint of the rates.
+    pub(crate) weights: Vec<String>,
+    /// Weights of the adjoint of the outputs.
+    pub(crate) output_weights: Vec<String>,
 }
 
 impl ArgumentNames {
@@ -117,11 +121,19 @@ impl ArgumentNames {
         let (states, inputs) = (all(&info.states), all(&info.inputs));
         let parameters = all(&info.parameters);
         let time = names.fresh("t");
+        let symbols = &program.arguments;
+        let [weights, output_weights] = [&symbols.weights, &symbols.output_weights].map(|list| {
+            list.iter()
+                .map(|&w| names.fresh(program.graph.symbol_name(w)))
+                .collect()
+        });
         Self {
             time,
             states,
             inputs,
             parameters,
+            weights,
+            output_weights,
         }
     }
 
@@ -132,6 +144,8 @@ impl ArgumentNames {
             Argument::State(i) => &self.states[i as usize],
             Argument::Input(i) => &self.inputs[i as usize],
             Argument::Parameter(i) => &self.parameters[i as usize],
+            Argument::Weight(i) => &self.weights[i as usize],
+            Argument::OutputWeight(i) => &self.output_weights[i as usize],
         }
     }
 
@@ -141,7 +155,9 @@ impl ArgumentNames {
             .states
             .iter()
             .chain(&self.inputs)
-            .chain(&self.parameters);
+            .chain(&self.parameters)
+            .chain(&self.weights)
+            .chain(&self.output_weights);
         std::iter::once(&self.time).chain(lists)
     }
 

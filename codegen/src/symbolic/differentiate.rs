@@ -154,7 +154,12 @@ impl Derivatives {
 }
 
 /// Derivative of a function by its argument; `value` is the function's node.
-fn outer_derivative(graph: &mut Graph, function: Function, x: Expr, value: Expr) -> Expr {
+pub(super) fn outer_derivative(
+    graph: &mut Graph,
+    function: Function,
+    x: Expr,
+    value: Expr,
+) -> Expr {
     let one = Graph::ONE;
     match function {
         Function::Sin => graph.cos(x),

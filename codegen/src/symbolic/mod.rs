@@ -13,6 +13,7 @@ mod evaluate;
 mod expand;
 pub(crate) mod field;
 mod fraction;
+mod gradient;
 mod graph;
 pub mod identity;
 mod interval;
@@ -24,6 +25,7 @@ pub mod vector;
 
 pub use differentiate::Derivatives;
 pub use evaluate::evaluate;
+pub use gradient::gradient;
 pub use graph::Graph;
 pub use identity::IdentityTest;
 pub use interval::{Interval, Intervals};

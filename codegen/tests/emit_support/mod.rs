@@ -29,6 +29,12 @@ pub fn golden_options(model_impl: bool) -> Options {
     }
 }
 
+/// A shipped mechanism with everything that can be emitted.
+pub fn with_adjoints() -> Program {
+    let spec = include_str!("../../../generated/mechanisms/pendulum.toml");
+    appell_codegen::compile("pendulum.toml", spec, &FunctionKind::ALL).unwrap()
+}
+
 /// A quantity with a unit.
 pub fn quantity(name: &str, about: &str, unit: &str, value: f64) -> Quantity {
     Quantity {
@@ -73,6 +79,8 @@ impl Sketch {
             inputs: symbols(&inputs),
             parameters: symbols(&parameters),
             time: symbols(&[quantity("t", "Time.", "s", 0.0)])[0],
+            weights: Vec::new(),
+            output_weights: Vec::new(),
             pi: None,
         };
         let info = ModelInfo {

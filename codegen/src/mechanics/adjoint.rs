@@ -1,0 +1,153 @@
+//! Adjoints of the equations of motion and of the outputs: gradients of weighted sums of what the
+//! Jacobians hold, by reverse accumulation.
+//!
+//! A gradient of a filter or of a shooting method needs second derivatives of the rates, but only
+//! summed up with weights. One sweep backwards gives that sum's gradient in everything at once.
+
+use appell_runtime::model::{ModelInfo, Quantity};
+use appell_spec::mechanism::Mechanism;
+
+use super::Derivation;
+use super::assemble::input_symbols;
+use super::finding::Outcome;
+use super::symbols::ids;
+use crate::program::{Array, Layout};
+use crate::symbolic::{Expr, gradient};
+
+impl Derivation {
+    /// The gradient of ⟨λ, ẋ⟩ + ⟨Λ, A⟩ + ⟨Γ, B⟩ + ⟨K, M⟩.
+    pub(super) fn adjoint(&mut self, info: &ModelInfo) -> Outcome<Vec<Array>> {
+        let speeds = &info.states[..info.speeds];
+        let names = [
+            listed("lambda", &info.states),
+            paired("Lambda", &info.states, &info.states),
+            paired("Gamma", &info.states, &info.inputs),
+            paired("K", speeds, speeds),
+        ];
+        self.symbols.weights = self.new_symbols(&names.concat());
+        let (states, inputs) = self.variables(info);
+        let [a, b] = self.derivatives([&states, &inputs])?;
+        let mass = self.gibbs.mass_matrix.concat();
+        let weighted = [self.rates(), a, b, mass].concat();
+        let weights = self.symbols.weights.clone();
+        Ok(self.gradient_arrays(info, &weighted, &weights))
+    }
+
+    /// Outputs with their derivatives by states and inputs.
+    pub(super) fn output_jacobians(
+        &mut self,
+        mechanism: &Mechanism,
+        info: &ModelInfo,
+    ) -> Outcome<Vec<Array>> {
+        let outputs = self.outputs(mechanism)?;
+        let (states, inputs) = self.variables(info);
+        let values: Vec<Expr> = outputs.iter().flat_map(|y| y.entries.clone()).collect();
+        let [c, d] = [&states, &inputs].map(|variables| self.slopes(&values, variables));
+        let matrix = |name: &str, about: &str, columns: &[Quantity], entries: Vec<Expr>| {
+            let layout = Layout::Matrix(info.outputs.len(), columns.len());
+            let labels = paired(&name.to_uppercase(), &info.outputs, columns);
+            let all = |list: &[Quantity]| list.iter().map(|q| q.name.to_string()).collect();
+            Array::new(name, about, layout, entries)
+                .labelled(labels.into_iter())
+                .with_names(all(&info.outputs), all(columns))
+        };
+        let c = matrix("c", "C = ∂y/∂x. Columns follow [`State`].", &info.states, c);
+        let d = matrix(
+            "d",
+            "D = ∂y/∂u. Columns follow [`Inputs`].",
+            &info.inputs,
+            d,
+        );
+        Ok(outputs.into_iter().chain([c, d]).collect())
+    }
+
+    /// The gradient of ⟨μ, y⟩ + ⟨Γ, C⟩ + ⟨Δ, D⟩.
+    pub(super) fn output_adjoint(
+        &mut self,
+        mechanism: &Mechanism,
+        info: &ModelInfo,
+    ) -> Outcome<Vec<Array>> {
+        let names = [
+            listed("mu", &info.outputs),
+            paired("Gamma", &info.outputs, &info.states),
+            paired("Delta", &info.outputs, &info.inputs),
+        ];
+        self.symbols.output_weights = self.new_symbols(&names.concat());
+        let arrays = self.output_jacobians(mechanism, info)?;
+        let weighted: Vec<Expr> = arrays.into_iter().flat_map(|array| array.entries).collect();
+        if weighted.is_empty() {
+            return Ok(Vec::new());
+        }
+        let weights = self.symbols.output_weights.clone();
+        Ok(self.gradient_arrays(info, &weighted, &weights))
+    }
+
+    fn new_symbols(&mut self, names: &[String]) -> Vec<Expr> {
+        let graph = &mut self.algebra.graph;
+        names.iter().map(|name| graph.symbol(name)).collect()
+    }
+
+    fn variables(&self, info: &ModelInfo) -> (Vec<Expr>, Vec<Expr>) {
+        let symbols = &self.symbols;
+        let states = [symbols.speeds.as_slice(), &symbols.coordinates].concat();
+        (states, input_symbols(symbols, info))
+    }
+
+    /// Derivatives of values by variables, row by row.
+    fn slopes(&mut self, values: &[Expr], variables: &[Expr]) -> Vec<Expr> {
+        let mut slopes = Vec::with_capacity(values.len() * variables.len());
+        for &value in values {
+            for &variable in variables {
+                slopes.push(self.algebra.derivative(value, variable));
+            }
+        }
+        slopes
+    }
+
+    fn gradient_arrays(
+        &mut self,
+        info: &ModelInfo,
+        values: &[Expr],
+        weights: &[Expr],
+    ) -> Vec<Array> {
+        let (states, inputs) = self.variables(info);
+        let parameters = self.symbols.parameters.clone();
+        let graph = &mut self.algebra.graph;
+        let variables = ids(graph, &[states, inputs, parameters].concat());
+        let weighted: Vec<(Expr, Expr)> = values
+            .iter()
+            .copied()
+            .zip(weights.iter().copied())
+            .collect();
+        let mut entries = gradient(graph, &weighted, &variables).into_iter();
+        let parts = [
+            ("x", "By the state.", &info.states),
+            ("u", "By the inputs.", &info.inputs),
+            ("p", "By the parameters.", &info.parameters),
+        ];
+        let array = |(name, about, quantities): (&str, &str, &[Quantity])| {
+            let entries: Vec<Expr> = entries.by_ref().take(quantities.len()).collect();
+            Array::new(name, about, Layout::Vector(quantities.len()), entries)
+                .labelled(listed("by", quantities).into_iter())
+        };
+        parts
+            .map(|(name, about, quantities)| (name, about, quantities.as_ref()))
+            .map(array)
+            .into()
+    }
+}
+
+/// `symbol_name` for every quantity.
+fn listed(symbol: &str, quantities: &[Quantity]) -> Vec<String> {
+    let names = quantities.iter();
+    names
+        .map(|quantity| format!("{symbol}_{}", quantity.name))
+        .collect()
+}
+
+/// `symbol_row_column` for every pair, row by row.
+fn paired(symbol: &str, rows: &[Quantity], columns: &[Quantity]) -> Vec<String> {
+    let rows = rows.iter();
+    rows.flat_map(|row| listed(&format!("{symbol}_{}", row.name), columns))
+        .collect()
+}

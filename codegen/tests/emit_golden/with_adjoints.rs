@@ -1,0 +1,981 @@
+/// The spec this module is made from.
+pub const SPEC: &str = r##"# A spec with "quotes" and "#.
+name = 'unicycle'
+"##;
+
+use ::appell_runtime::Real;
+use ::appell_runtime::model;
+
+/// Parameters, in SI.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Parameters<T> {
+    /// Mass of the rod, in `kg`.
+    pub m: T,
+    /// Distance from the pivot to the centre of mass, in `m`.
+    pub l: T,
+    /// Inertia about the centre of mass, in `kg*m^2`.
+    pub I: T,
+    /// Gravitational acceleration, in `m/s^2`.
+    pub g: T,
+}
+
+impl Default for Parameters<f64> {
+    /// The values of the spec.
+    fn default() -> Self {
+        Self {
+            m: 1.0,
+            l: 0.5,
+            I: 0.02,
+            g: 9.81,
+        }
+    }
+}
+
+/// One number per pseudo-velocity, in SI. Where it is a force: in W over the unit.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Speeds<T> {
+    /// Angular velocity, in `rad/s`.
+    pub omega: T,
+}
+
+/// One number per coordinate, in SI. Where it is a rate: in the unit per second.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Coordinates<T> {
+    /// Angle from the hanging position, positive towards +x, in `rad`.
+    pub theta: T,
+}
+
+/// The state, or its rates: pseudo-velocities, then coordinates. In SI.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct State<T> {
+    /// Angular velocity, in `rad/s`.
+    pub omega: T,
+    /// Angle from the hanging position, positive towards +x, in `rad`.
+    pub theta: T,
+}
+
+/// Inputs, in SI.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Inputs<T> {
+    /// Torque at the pivot, positive in the sense of theta, in `N*m`.
+    pub tau: T,
+}
+
+/// Outputs, in SI.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Outputs<T> {
+    /// Centre of mass along the ground axis x, in `m`.
+    pub x_G: T,
+    /// Height of the centre of mass above the pivot, in `m`.
+    pub z_G: T,
+    /// Energy above the hanging position, in `J`.
+    pub energy: T,
+}
+
+/// Result of [`acceleration_energy`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct AccelerationEnergy<T> {
+    /// Sum over the bodies, in W/s.
+    pub total: T,
+    /// Of `rod`, in W/s.
+    pub rod: T,
+}
+
+/// Result of [`mass_matrix_and_bias`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MassMatrixAndBias<T> {
+    /// M.
+    pub mass_matrix: [[T; 1]; 1],
+    /// Bias.
+    pub bias: Speeds<T>,
+}
+
+/// Result of [`jacobians`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Jacobians<T> {
+    /// ẋ, the rates of the state.
+    pub rates: State<T>,
+    /// A = ∂ẋ/∂x. Rows and columns follow [`State`].
+    pub a: [[T; 2]; 2],
+    /// B = ∂ẋ/∂u. Rows follow [`State`], columns [`Inputs`].
+    pub b: [[T; 1]; 2],
+}
+
+/// Result of [`energies`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Energies<T> {
+    /// Kinetic energy, in J.
+    pub kinetic: T,
+    /// Potential energy, in J.
+    pub potential: T,
+    /// Power of the loads without a potential, in W.
+    pub power: T,
+}
+
+/// Result of [`adjoint`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Adjoint<T> {
+    /// By the state.
+    pub x: [T; 2],
+    /// By the inputs.
+    pub u: [T; 1],
+    /// By the parameters.
+    pub p: [T; 4],
+}
+
+/// Result of [`output_jacobians`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct OutputJacobians<T> {
+    /// Outputs.
+    pub outputs: Outputs<T>,
+    /// C = ∂y/∂x. Columns follow [`State`].
+    pub c: [[T; 2]; 3],
+    /// D = ∂y/∂u. Columns follow [`Inputs`].
+    pub d: [[T; 1]; 3],
+}
+
+/// Result of [`output_adjoint`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct OutputAdjoint<T> {
+    /// By the state.
+    pub x: [T; 2],
+    /// By the inputs.
+    pub u: [T; 1],
+    /// By the parameters.
+    pub p: [T; 4],
+}
+
+/// Generalised velocities q̇ of pseudo-velocities and coordinates.
+///
+/// From `pendulum.toml`.
+/// Operations: 0.
+#[must_use]
+#[inline]
+pub fn kinematics<T: Real>(
+    _parameters: &Parameters<T>,
+    state: &State<T>,
+    _inputs: &Inputs<T>,
+) -> Coordinates<T> {
+    let &State { omega, .. } = state;
+
+    Coordinates { theta: omega }
+}
+
+/// Acceleration energy S (Gibbs function) at the actual motion.
+///
+/// - `a0_G`: acceleration of `G` where ω̇ = 0, along `rod`.
+/// - `rhs`: `Π - b` after elimination, times the common denominator in `pivot`; `_over_`: divided.
+/// - `pivot`: what divides `rhs`: `ω̇ = rhs/pivot`, plus terms that need no division.
+///
+/// From `pendulum.toml`.
+/// Operations: 19 (4 +, 14 ×, 1 ÷), sine or cosine of 1 angle.
+#[must_use]
+#[inline]
+pub fn acceleration_energy<T: Real>(
+    parameters: &Parameters<T>,
+    state: &State<T>,
+    inputs: &Inputs<T>,
+) -> AccelerationEnergy<T> {
+    let &Parameters { m, l, I, g } = parameters;
+    let &State { omega, theta } = state;
+    let &Inputs { tau } = inputs;
+    let half = T::constant(0.5);
+
+    // Combinations of parameters.
+    let m_l = m * l;
+    let pivot_omega = l * m_l + I;
+
+    // Appell's equations, solved.
+    let rhs_omega = tau - g * m_l * theta.sin();
+    let omega_dot = rhs_omega / pivot_omega;
+
+    // Acceleration of `G` in `rod`.
+    let a_G_x = l * omega_dot;
+    let a0_G_z = l * omega * omega;
+
+    // Body `rod`, pendulum.toml:29.
+    let s_moving_rod = half * m * (a_G_x * a_G_x + a0_G_z * a0_G_z);
+    let s_turning_rod = half * I * omega_dot * omega_dot;
+
+    let s_rod = s_moving_rod + s_turning_rod;
+
+    AccelerationEnergy {
+        total: s_rod,
+        rod: s_rod,
+    }
+}
+
+/// Mass matrix M = ∂²S/∂ω̇², symmetric. Rows and columns follow [`Speeds`].
+///
+/// ```text
+/// M = [ m l² + I ]
+/// ```
+///
+/// From `pendulum.toml`.
+/// Operations: 3 (1 +, 2 ×).
+#[must_use]
+#[inline]
+pub fn mass_matrix<T: Real>(
+    parameters: &Parameters<T>,
+    _state: &State<T>,
+    _inputs: &Inputs<T>,
+) -> [[T; 1]; 1] {
+    let &Parameters { m, l, I, .. } = parameters;
+
+    // Combinations of parameters.
+    let M_omega_omega = m * l * l + I;
+
+    [[M_omega_omega]]
+}
+
+/// Bias b: what is left of ∂S/∂ω̇ where the pseudo-accelerations vanish.
+///
+/// From `pendulum.toml`.
+/// Operations: 0.
+#[must_use]
+#[inline]
+pub fn bias<T: Real>(
+    _parameters: &Parameters<T>,
+    _state: &State<T>,
+    _inputs: &Inputs<T>,
+) -> Speeds<T> {
+    let zero = T::constant(0.0);
+
+    Speeds { omega: zero }
+}
+
+/// Mass matrix M and bias b together: what both need is computed once.
+///
+/// From `pendulum.toml`.
+/// Operations: 3 (1 +, 2 ×).
+#[must_use]
+#[inline]
+pub fn mass_matrix_and_bias<T: Real>(
+    parameters: &Parameters<T>,
+    _state: &State<T>,
+    _inputs: &Inputs<T>,
+) -> MassMatrixAndBias<T> {
+    let &Parameters { m, l, I, .. } = parameters;
+    let zero = T::constant(0.0);
+
+    // Combinations of parameters.
+    let M_omega_omega = m * l * l + I;
+
+    MassMatrixAndBias {
+        mass_matrix: [[M_omega_omega]],
+        bias: Speeds { omega: zero },
+    }
+}
+
+/// Pseudo-forces Π (generalised forces): virtual power of the loads per pseudo-velocity.
+///
+/// From `pendulum.toml`.
+/// Operations: 4 (1 +, 3 ×), sine or cosine of 1 angle.
+#[must_use]
+#[inline]
+pub fn generalized_forces<T: Real>(
+    parameters: &Parameters<T>,
+    state: &State<T>,
+    inputs: &Inputs<T>,
+) -> Speeds<T> {
+    let &Parameters { m, l, g, .. } = parameters;
+    let &State { theta, .. } = state;
+    let &Inputs { tau } = inputs;
+
+    // Pseudo-forces.
+    let force_omega = tau - m * l * g * theta.sin();
+
+    Speeds { omega: force_omega }
+}
+
+/// Rates ẋ of the state by Appell's equations M ω̇ + b = Π and kinematics.
+///
+/// - `rhs`: `Π - b` after elimination, times the common denominator in `pivot`; `_over_`: divided.
+/// - `pivot`: what divides `rhs`: `ω̇ = rhs/pivot`, plus terms that need no division.
+///
+/// From `pendulum.toml`.
+/// Operations: 7 (2 +, 4 ×, 1 ÷), sine or cosine of 1 angle.
+#[must_use]
+#[inline]
+pub fn rates<T: Real>(
+    parameters: &Parameters<T>,
+    state: &State<T>,
+    inputs: &Inputs<T>,
+) -> State<T> {
+    let &Parameters { m, l, I, g } = parameters;
+    let &State { omega, theta } = state;
+    let &Inputs { tau } = inputs;
+
+    // Combinations of parameters.
+    let m_l = m * l;
+    let pivot_omega = l * m_l + I;
+
+    // Appell's equations, solved.
+    let rhs_omega = tau - g * m_l * theta.sin();
+    let omega_dot = rhs_omega / pivot_omega;
+
+    State {
+        omega: omega_dot,
+        theta: omega,
+    }
+}
+
+/// Rates ẋ with their derivatives by state and inputs.
+///
+/// - `rhs`: `Π - b` after elimination, times the common denominator in `pivot`; `_over_`: divided.
+/// - `pivot`: what divides `rhs`: `ω̇ = rhs/pivot`, plus terms that need no division.
+///
+/// From `pendulum.toml`.
+/// Operations: 11 (2 +, 7 ×, 1 ÷, 1 sign), sine or cosine of 1 angle.
+#[must_use]
+#[inline]
+pub fn jacobians<T: Real>(
+    parameters: &Parameters<T>,
+    state: &State<T>,
+    inputs: &Inputs<T>,
+) -> Jacobians<T> {
+    let &Parameters { m, l, I, g } = parameters;
+    let &State { omega, theta } = state;
+    let &Inputs { tau } = inputs;
+    let zero = T::constant(0.0);
+    let one = T::constant(1.0);
+
+    // Sines and cosines.
+    let (sin_theta, cos_theta) = theta.sin_cos();
+
+    // Combinations of parameters.
+    let m_l = m * l;
+    let m_l_g = g * m_l;
+    let pivot_omega = l * m_l + I;
+    let inv_pivot_omega = one / pivot_omega;
+
+    // Appell's equations, solved.
+    let rhs_omega = tau - sin_theta * m_l_g;
+    let omega_dot = inv_pivot_omega * rhs_omega;
+
+    // Row `omega` of A.
+    let A_omega_theta = -cos_theta * m_l_g * inv_pivot_omega;
+
+    Jacobians {
+        rates: State {
+            omega: omega_dot,
+            theta: omega,
+        },
+        a: [[zero, A_omega_theta], [one, zero]],
+        b: [[inv_pivot_omega], [zero]],
+    }
+}
+
+/// P = ∂ẋ/∂p. Rows follow [`State`], columns [`Parameters`].
+///
+/// Rows: `omega`, `theta`. Columns: `m`, `l`, `I`, `g`.
+///
+/// - `rhs`: `Π - b` after elimination, times the common denominator in `pivot`; `_over_`: divided.
+/// - `pivot`: what divides `rhs`: `ω̇ = rhs/pivot`, plus terms that need no division.
+///
+/// From `pendulum.toml`.
+/// Operations: 22 (4 +, 14 ×, 1 ÷, 3 sign), sine or cosine of 1 angle.
+#[must_use]
+#[inline]
+pub fn parameter_jacobian<T: Real>(
+    parameters: &Parameters<T>,
+    state: &State<T>,
+    inputs: &Inputs<T>,
+) -> [[T; 4]; 2] {
+    let &Parameters { m, l, I, g } = parameters;
+    let &State { theta, .. } = state;
+    let &Inputs { tau } = inputs;
+    let zero = T::constant(0.0);
+    let one = T::constant(1.0);
+    let two = T::constant(2.0);
+
+    // Sines and cosines.
+    let sin_theta = theta.sin();
+
+    // Combinations of parameters.
+    let m_l = m * l;
+    let pivot_omega = l * m_l + I;
+    let inv_pivot_omega = one / pivot_omega;
+
+    // Appell's equations, solved.
+    let g_sin_theta = g * sin_theta;
+    let rhs_omega = tau - m_l * g_sin_theta;
+    let omega_dot = inv_pivot_omega * rhs_omega;
+
+    // Row `omega` of P.
+    let l_omega_dot = l * omega_dot;
+    let P_omega_m = -l * inv_pivot_omega * (g_sin_theta + l_omega_dot);
+    let P_omega_l = m * inv_pivot_omega * (-two * l_omega_dot - g_sin_theta);
+    let P_omega_I = -inv_pivot_omega * omega_dot;
+    let P_omega_g = -sin_theta * m_l * inv_pivot_omega;
+
+    [[P_omega_m, P_omega_l, P_omega_I, P_omega_g], [zero, zero, zero, zero]]
+}
+
+/// Energies and power.
+///
+/// From `pendulum.toml`.
+/// Operations: 10 (1 +, 8 ×, 1 sign), sine or cosine of 1 angle.
+#[must_use]
+#[inline]
+pub fn energies<T: Real>(
+    parameters: &Parameters<T>,
+    state: &State<T>,
+    inputs: &Inputs<T>,
+) -> Energies<T> {
+    let &Parameters { m, l, I, g } = parameters;
+    let &State { omega, theta } = state;
+    let &Inputs { tau } = inputs;
+    let half = T::constant(0.5);
+
+    // Combinations of parameters.
+    let m_l = m * l;
+
+    // Body `rod`, pendulum.toml:29.
+    let T_rod = half * omega * omega * (l * m_l + I);
+
+    // Potential energy, in J.
+    let potential = -g * m_l * theta.cos();
+
+    // Power of the loads without a potential, in W.
+    let power = omega * tau;
+
+    Energies {
+        kinetic: T_rod,
+        potential,
+        power,
+    }
+}
+
+/// Constraint rows at the generalised velocities of the state: zero up to rounding.
+///
+/// From `pendulum.toml`.
+/// Operations: 0.
+#[must_use]
+#[inline]
+pub fn constraint_residual<T: Real>(
+    _parameters: &Parameters<T>,
+    _state: &State<T>,
+    _inputs: &Inputs<T>,
+) -> [T; 0] {
+    []
+}
+
+/// Reactions: forces on what is held, in N.
+///
+/// From `pendulum.toml`.
+/// Operations: 0.
+#[must_use]
+#[inline]
+pub fn constraint_forces<T: Real>(
+    _parameters: &Parameters<T>,
+    _state: &State<T>,
+    _inputs: &Inputs<T>,
+) -> [[T; 3]; 0] {
+    []
+}
+
+/// Outputs of the spec.
+///
+/// From `pendulum.toml`.
+/// Operations: 13 (3 +, 9 ×, 1 sign), sine or cosine of 1 angle.
+#[must_use]
+#[inline]
+pub fn outputs<T: Real>(
+    parameters: &Parameters<T>,
+    state: &State<T>,
+    _inputs: &Inputs<T>,
+) -> Outputs<T> {
+    let &Parameters { m, l, I, g } = parameters;
+    let &State { omega, theta } = state;
+    let half = T::constant(0.5);
+    let one = T::constant(1.0);
+
+    // Sines and cosines.
+    let (sin_theta, cos_theta) = theta.sin_cos();
+
+    // Combinations of parameters.
+    let m_l = m * l;
+
+    // Outputs.
+    let x_G = l * sin_theta;
+    let z_G = -l * cos_theta;
+    let energy = half * omega * omega * (l * m_l + I) - g * m_l * (cos_theta - one);
+
+    Outputs { x_G, z_G, energy }
+}
+
+/// Gradient of ⟨λ, ẋ⟩ + ⟨Λ, A⟩ + ⟨Γ, B⟩ + ⟨K, M⟩; the weights are λ, Λ, Γ, K, row by row.
+///
+/// - `adjoint`: a derivative of the weighted sum by a value on the way.
+///
+/// From `pendulum.toml`.
+/// Operations: 33 (9 +, 22 ×, 1 ÷, 1 sign), sine or cosine of 1 angle.
+#[must_use]
+#[inline]
+pub fn adjoint<T: Real>(
+    parameters: &Parameters<T>,
+    state: &State<T>,
+    inputs: &Inputs<T>,
+    weights: &[T; 9],
+) -> Adjoint<T> {
+    let &Parameters { m, l, I, g } = parameters;
+    let &State { theta, .. } = state;
+    let &Inputs { tau } = inputs;
+    let lambda_omega = weights[0];
+    let lambda_theta = weights[1];
+    let Lambda_omega_theta = weights[3];
+    let Gamma_omega_tau = weights[6];
+    let K_omega_omega = weights[8];
+    let one = T::constant(1.0);
+    let two = T::constant(2.0);
+
+    // Sines and cosines.
+    let (sin_theta, cos_theta) = theta.sin_cos();
+
+    // Combinations of parameters.
+    let m_l = m * l;
+    let m_l_g = g * m_l;
+    let pivot_omega = l * m_l + I;
+    let inv_pivot_omega = one / pivot_omega;
+
+    let by_tau = inv_pivot_omega * lambda_omega;
+    let Lambda_omega_theta_over_pivot_omega = inv_pivot_omega * Lambda_omega_theta;
+    let by_theta_part_1 = sin_theta * Lambda_omega_theta_over_pivot_omega;
+    let by_theta = m_l_g * (by_theta_part_1 - cos_theta * by_tau);
+    let rhs_omega = tau - sin_theta * m_l_g;
+    let by_I_part_1 = cos_theta * m_l_g * Lambda_omega_theta - Gamma_omega_tau;
+    let adjoint_pivot_omega = inv_pivot_omega * inv_pivot_omega
+        * (by_I_part_1 - rhs_omega * lambda_omega);
+    let by_I = adjoint_pivot_omega + K_omega_omega;
+    let l_by_I = l * by_I;
+    let by_m_part_1 = sin_theta * by_tau
+        + cos_theta * Lambda_omega_theta_over_pivot_omega;
+    let by_m_part_2 = g * by_m_part_1;
+    let by_m = l * (l_by_I - by_m_part_2);
+    let by_l = m * (two * l_by_I - by_m_part_2);
+    let by_g = -m_l * by_m_part_1;
+
+    Adjoint {
+        x: [lambda_theta, by_theta],
+        u: [by_tau],
+        p: [by_m, by_l, by_I, by_g],
+    }
+}
+
+/// Outputs of the spec with their derivatives by state and inputs.
+///
+/// From `pendulum.toml`.
+/// Operations: 14 (3 +, 10 ×, 1 sign), sine or cosine of 1 angle.
+#[must_use]
+#[inline]
+pub fn output_jacobians<T: Real>(
+    parameters: &Parameters<T>,
+    state: &State<T>,
+    _inputs: &Inputs<T>,
+) -> OutputJacobians<T> {
+    let &Parameters { m, l, I, g } = parameters;
+    let &State { omega, theta } = state;
+    let zero = T::constant(0.0);
+    let half = T::constant(0.5);
+    let one = T::constant(1.0);
+
+    // Sines and cosines.
+    let (sin_theta, cos_theta) = theta.sin_cos();
+
+    // Combinations of parameters.
+    let m_l = m * l;
+    let m_l_g = g * m_l;
+
+    // Outputs.
+    let x_G = l * sin_theta;
+    let l_cos_theta = l * cos_theta;
+    let C_energy_omega = omega * (l * m_l + I);
+    let energy = half * C_energy_omega * omega - m_l_g * (cos_theta - one);
+
+    let C_energy_theta = sin_theta * m_l_g;
+
+    // Rows: 0 x_G, 1 z_G, 2 energy.
+    // Columns: 0 tau.
+    let mut D = [[zero; 1]; 3];
+
+    OutputJacobians {
+        outputs: Outputs {
+            x_G,
+            z_G: -l_cos_theta,
+            energy,
+        },
+        c: [[zero, l_cos_theta], [zero, x_G], [C_energy_omega, C_energy_theta]],
+        d: D,
+    }
+}
+
+/// Gradient of ⟨μ, y⟩ + ⟨Γ, C⟩ + ⟨Δ, D⟩; the weights are μ, Γ, Δ, row by row.
+///
+/// - `adjoint`: a derivative of the weighted sum by a value on the way.
+///
+/// From `pendulum.toml`.
+/// Operations: 37 (14 +, 23 ×), sine or cosine of 1 angle.
+#[must_use]
+#[inline]
+pub fn output_adjoint<T: Real>(
+    parameters: &Parameters<T>,
+    state: &State<T>,
+    _inputs: &Inputs<T>,
+    weights: &[T; 12],
+) -> OutputAdjoint<T> {
+    let &Parameters { m, l, I, g } = parameters;
+    let &State { omega, theta } = state;
+    let mu_x_G = weights[0];
+    let mu_z_G = weights[1];
+    let mu_energy = weights[2];
+    let Gamma_x_G_theta = weights[4];
+    let Gamma_z_G_theta = weights[6];
+    let Gamma_energy_omega = weights[7];
+    let Gamma_energy_theta = weights[8];
+    let zero = T::constant(0.0);
+    let half = T::constant(0.5);
+    let one = T::constant(1.0);
+    let two = T::constant(2.0);
+
+    // Sines and cosines.
+    let (sin_theta, cos_theta) = theta.sin_cos();
+
+    // Combinations of parameters.
+    let m_l = m * l;
+    let m_l_g = g * m_l;
+
+    let omega_mu_energy = omega * mu_energy;
+    let by_omega = (l * m_l + I) * (Gamma_energy_omega + omega_mu_energy);
+    let adjoint = Gamma_z_G_theta + mu_x_G;
+    let adjoint_2 = Gamma_x_G_theta - mu_z_G;
+    let by_theta = cos_theta * (l * adjoint + m_l_g * Gamma_energy_theta)
+        - sin_theta * (l * adjoint_2 - m_l_g * mu_energy);
+    let by_I = omega * (Gamma_energy_omega + half * omega_mu_energy);
+    let l_by_I = l * by_I;
+    let by_m_part_1 = sin_theta * Gamma_energy_theta - mu_energy * (cos_theta - one);
+    let by_m_part_2 = g * by_m_part_1;
+    let by_m = l * (by_m_part_2 + l_by_I);
+    let by_l = sin_theta * adjoint + cos_theta * adjoint_2
+        + m * (by_m_part_2 + two * l_by_I);
+    let by_g = m_l * by_m_part_1;
+
+    OutputAdjoint {
+        x: [by_omega, by_theta],
+        u: [zero],
+        p: [by_m, by_l, by_I, by_g],
+    }
+}
+
+/// Physical pendulum with a torque at its pivot
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Pendulum;
+
+const _: () = {
+    use model::At;
+
+    const N: usize = 2;
+    const S: usize = 1;
+    const M: usize = 1;
+    const K: usize = 4;
+
+    /// The first numbers of a slice that holds at least as many.
+    fn first<const LEN: usize>(numbers: &[f64]) -> [f64; LEN] {
+        core::array::from_fn(|i| numbers[i])
+    }
+
+    fn parameters(at: &At<'_>) -> Parameters<f64> {
+        first::<K>(at.p).into()
+    }
+
+    fn state(at: &At<'_>) -> State<f64> {
+        first::<N>(at.x).into()
+    }
+
+    fn inputs(at: &At<'_>) -> Inputs<f64> {
+        first::<M>(at.u).into()
+    }
+
+    fn write(to: &mut [f64], from: &[f64]) {
+        to.copy_from_slice(from);
+    }
+
+    impl model::Model for Pendulum {
+        fn info(&self) -> &model::ModelInfo {
+            &INFO
+        }
+
+        fn rates(&self, at: At<'_>, rates: &mut [f64]) {
+            write(
+                rates,
+                &<[f64; N]>::from(
+                    self::rates(&parameters(&at), &state(&at), &inputs(&at)),
+                ),
+            );
+        }
+
+        fn jacobians(
+            &self,
+            at: At<'_>,
+            rates: &mut [f64],
+            a: &mut [f64],
+            b: &mut [f64],
+        ) {
+            let all = jacobians(&parameters(&at), &state(&at), &inputs(&at));
+            write(rates, &<[f64; N]>::from(all.rates));
+            write(a, all.a.as_flattened());
+            write(b, all.b.as_flattened());
+        }
+
+        fn parameter_jacobian(&self, at: At<'_>, p: &mut [f64]) {
+            write(
+                p,
+                self::parameter_jacobian(&parameters(&at), &state(&at), &inputs(&at))
+                    .as_flattened(),
+            );
+        }
+
+        fn appell(
+            &self,
+            at: At<'_>,
+            mass: &mut [f64],
+            bias: &mut [f64],
+            forces: &mut [f64],
+        ) {
+            let left = mass_matrix_and_bias(&parameters(&at), &state(&at), &inputs(&at));
+            write(mass, left.mass_matrix.as_flattened());
+            write(bias, &<[f64; S]>::from(left.bias));
+            write(
+                forces,
+                &<[f64; S]>::from(
+                    generalized_forces(&parameters(&at), &state(&at), &inputs(&at)),
+                ),
+            );
+        }
+
+        fn energies(&self, at: At<'_>) -> model::Energies {
+            let all = energies(&parameters(&at), &state(&at), &inputs(&at));
+            model::Energies {
+                kinetic: all.kinetic,
+                potential: all.potential,
+                power: all.power,
+                acceleration: acceleration_energy(
+                        &parameters(&at),
+                        &state(&at),
+                        &inputs(&at),
+                    )
+                    .total,
+            }
+        }
+
+        fn constraint_residual(&self, _at: At<'_>, _none: &mut [f64]) {}
+
+        fn constraint_forces(&self, _at: At<'_>, _none: &mut [f64]) {}
+
+        fn outputs(&self, at: At<'_>, outputs: &mut [f64]) {
+            write(
+                outputs,
+                &<[f64; 3]>::from(
+                    self::outputs(&parameters(&at), &state(&at), &inputs(&at)),
+                ),
+            );
+        }
+
+        fn has_adjoint(&self) -> bool {
+            true
+        }
+
+        fn adjoint(&self, at: At<'_>, weights: &[f64], by: model::Gradient<'_>) {
+            let weights = first::<9>(weights);
+            let all = self::adjoint(
+                &parameters(&at),
+                &state(&at),
+                &inputs(&at),
+                &weights,
+            );
+            write(by.x, &all.x);
+            write(by.u, &all.u);
+            write(by.p, &all.p);
+        }
+
+        fn output_jacobians(
+            &self,
+            at: At<'_>,
+            outputs: &mut [f64],
+            c: &mut [f64],
+            d: &mut [f64],
+        ) {
+            let all = self::output_jacobians(
+                &parameters(&at),
+                &state(&at),
+                &inputs(&at),
+            );
+            write(outputs, &<[f64; 3]>::from(all.outputs));
+            write(c, all.c.as_flattened());
+            write(d, all.d.as_flattened());
+        }
+
+        fn output_adjoint(&self, at: At<'_>, weights: &[f64], by: model::Gradient<'_>) {
+            let weights = first::<12>(weights);
+            let all = self::output_adjoint(
+                &parameters(&at),
+                &state(&at),
+                &inputs(&at),
+                &weights,
+            );
+            write(by.x, &all.x);
+            write(by.u, &all.u);
+            write(by.p, &all.p);
+        }
+    }
+};
+
+/// Pseudo-velocities and coordinates.
+static STATES: [model::Quantity; 2] = [
+    model::Quantity::new("omega", "angular velocity", "rad/s"),
+    model::Quantity::new(
+        "theta",
+        "angle from the hanging position, positive towards +x",
+        "rad",
+    ),
+];
+
+/// Inputs and signals.
+static INPUTS: [model::Quantity; 1] = [
+    model::Quantity::new(
+        "tau",
+        "torque at the pivot, positive in the sense of theta",
+        "N*m",
+    ),
+];
+
+/// Parameters.
+static PARAMETERS: [model::Quantity; 4] = [
+    model::Quantity::new("m", "mass of the rod", "kg")
+        .valued(1.0)
+        .within(0.0, f64::INFINITY),
+    model::Quantity::new("l", "distance from the pivot to the centre of mass", "m")
+        .valued(0.5)
+        .within(0.0, f64::INFINITY),
+    model::Quantity::new("I", "inertia about the centre of mass", "kg*m^2")
+        .valued(0.02)
+        .within(0.0, f64::INFINITY),
+    model::Quantity::new("g", "gravitational acceleration", "m/s^2")
+        .valued(9.81)
+        .within(0.0, f64::INFINITY),
+];
+
+/// Outputs.
+static OUTPUTS: [model::Quantity; 3] = [
+    model::Quantity::new("x_G", "centre of mass along the ground axis x", "m"),
+    model::Quantity::new("z_G", "height of the centre of mass above the pivot", "m"),
+    model::Quantity::new("energy", "energy above the hanging position", "J"),
+];
+
+/// Tabulated functions of time.
+static SIGNALS: [model::SignalTable; 0] = [];
+
+/// Signal and order of derivative behind the inputs that are signals.
+static SIGNAL_INPUTS: [(usize, u8); 0] = [];
+
+/// Constraint rows.
+static CONSTRAINT_ROWS: [model::Text; 0] = [];
+
+/// Reactions in the ground.
+static REACTIONS: [model::Reaction; 0] = [];
+
+/// Contacts, which can only push.
+static CONTACTS: [model::Contact; 0] = [];
+
+/// Names, units and sizes of the model.
+pub static INFO: model::ModelInfo = model::ModelInfo {
+    name: model::Text::Borrowed("pendulum"),
+    title: model::Text::Borrowed("Physical pendulum with a torque at its pivot"),
+    source: model::Text::Borrowed(
+        "Textbook: (I + m l^2) theta'' = tau - m g l sin(theta)",
+    ),
+    states: model::List::Borrowed(&STATES),
+    speeds: 1,
+    inputs: model::List::Borrowed(&INPUTS),
+    declared_inputs: 1,
+    signals: model::List::Borrowed(&SIGNALS),
+    signal_inputs: model::List::Borrowed(&SIGNAL_INPUTS),
+    parameters: model::List::Borrowed(&PARAMETERS),
+    outputs: model::List::Borrowed(&OUTPUTS),
+    constraint_rows: model::List::Borrowed(&CONSTRAINT_ROWS),
+    reactions: model::List::Borrowed(&REACTIONS),
+    contacts: model::List::Borrowed(&CONTACTS),
+    explicit_time: false,
+};
+
+impl<T> From<[T; 4]> for Parameters<T> {
+    fn from([m, l, I, g]: [T; 4]) -> Self {
+        Self { m, l, I, g }
+    }
+}
+
+impl<T> From<Parameters<T>> for [T; 4] {
+    fn from(Parameters { m, l, I, g }: Parameters<T>) -> Self {
+        [m, l, I, g]
+    }
+}
+
+impl<T> From<[T; 1]> for Speeds<T> {
+    fn from([omega]: [T; 1]) -> Self {
+        Self { omega }
+    }
+}
+
+impl<T> From<Speeds<T>> for [T; 1] {
+    fn from(Speeds { omega }: Speeds<T>) -> Self {
+        [omega]
+    }
+}
+
+impl<T> From<[T; 1]> for Coordinates<T> {
+    fn from([theta]: [T; 1]) -> Self {
+        Self { theta }
+    }
+}
+
+impl<T> From<Coordinates<T>> for [T; 1] {
+    fn from(Coordinates { theta }: Coordinates<T>) -> Self {
+        [theta]
+    }
+}
+
+impl<T> From<[T; 2]> for State<T> {
+    fn from([omega, theta]: [T; 2]) -> Self {
+        Self { omega, theta }
+    }
+}
+
+impl<T> From<State<T>> for [T; 2] {
+    fn from(State { omega, theta }: State<T>) -> Self {
+        [omega, theta]
+    }
+}
+
+impl<T> From<[T; 1]> for Inputs<T> {
+    fn from([tau]: [T; 1]) -> Self {
+        Self { tau }
+    }
+}
+
+impl<T> From<Inputs<T>> for [T; 1] {
+    fn from(Inputs { tau }: Inputs<T>) -> Self {
+        [tau]
+    }
+}
+
+impl<T> From<[T; 3]> for Outputs<T> {
+    fn from([x_G, z_G, energy]: [T; 3]) -> Self {
+        Self { x_G, z_G, energy }
+    }
+}
+
+impl<T> From<Outputs<T>> for [T; 3] {
+    fn from(Outputs { x_G, z_G, energy }: Outputs<T>) -> Self {
+        [x_G, z_G, energy]
+    }
+}

@@ -189,3 +189,39 @@ fn the_likelihood_is_that_of_the_textbook_and_of_all_samples_at_once() {
         "{got} against {wanted}"
     );
 }
+
+#[test]
+fn the_smoother_conditions_all_states_on_all_samples() {
+    let (model, recordings) = (Oscillator::new(), [recording()]);
+    let setup = setup(&model);
+    let estimation = Estimation::new(&setup, &recordings).unwrap();
+    let values = values(&estimation);
+    let smoothed = estimation.smoothed(&values, 0).unwrap();
+
+    let (means, covariance) = joint_states(&values[..3], &recordings[0]);
+    let (slopes, residuals, noise) = joint_samples(&recordings[0], &means);
+    let joint = (&slopes * &covariance * slopes.transpose() + noise)
+        .cholesky()
+        .unwrap();
+    let gain = joint.solve(&(&slopes * &covariance)).transpose();
+    let means = means + &gain * residuals;
+    let covariance = &covariance - &gain * slopes * &covariance;
+    assert_eq!(smoothed.len(), recordings[0].times().len());
+    for (row, smoothed) in smoothed.iter().enumerate() {
+        for i in 0..2 {
+            let error = smoothed.state[i] - means[2 * row + i];
+            assert!(
+                error.abs() <= ROUNDING,
+                "row {row}, state {i}: off by {error:e}"
+            );
+            for j in 0..2 {
+                let wanted = covariance[(2 * row + i, 2 * row + j)];
+                let error = smoothed.covariance(i, j) - wanted;
+                assert!(
+                    error.abs() <= ROUNDING,
+                    "row {row}, {i}, {j}: off by {error:e}"
+                );
+            }
+        }
+    }
+}

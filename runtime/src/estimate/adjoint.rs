@@ -67,7 +67,7 @@ pub(super) fn adjoint(pass: &mut Pass<'_>, rows: &Range<usize>, gradient: &mut [
                 let on = shared.sizes.step(&mut tape[*at..]);
                 back.advance(*advance, &on, gradient);
             }
-            Record::Measure { samples, held } => {
+            Record::Measure { samples, held, .. } => {
                 let samples = &shared.samples[samples.clone()];
                 back.measure((samples, held), rows, &mut tape, gradient);
             }

@@ -60,6 +60,8 @@ pub(super) enum Record {
     Advance { advance: Advance, tape: usize },
     /// Scalars that were measured at one time, and the inputs then, where outputs were.
     Measure {
+        /// The row, unless it was a delayed channel alone.
+        row: Option<usize>,
         samples: Range<usize>,
         held: Vec<f64>,
     },
@@ -424,7 +426,8 @@ impl<'a> Pass<'a> {
             });
         }
         let samples = first..self.samples.len();
-        self.records.push(Record::Measure { samples, held });
+        let row = only.is_none().then_some(row);
+        self.records.push(Record::Measure { row, samples, held });
         Ok(())
     }
 }

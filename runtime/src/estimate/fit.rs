@@ -11,7 +11,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::EstimateError;
 use super::estimation::Estimation;
-use super::free::{Free, Selection};
+use super::free::{Coordinate, Free, Selection};
 use super::sensitivity::Sensitivity;
 
 /// Part of the promised gain that makes a step worth it.
@@ -70,15 +70,15 @@ impl Fit {
         effort: Effort,
     ) -> Result<Self, EstimateError> {
         let selection = Selection::new(&estimation.layout(), free)?;
-        let limits = selection.limits();
+        let within = Within::of(&selection);
         let mut point = Point::of(estimation, &selection, start)?;
         let mut curvature = curvature(estimation, &selection, &point.values)?;
         let mut is_fresh = true;
         let (mut damping, mut steps) = (0.0, 0);
         loop {
-            let (_, promise) = point.step(&curvature, 0.0, &limits);
+            let (_, promise) = point.step(&curvature, 0.0, &within);
             if promise <= effort.gain && is_fresh {
-                return Ok(point.fit(free, &limits, (curvature, promise, steps)));
+                return Ok(point.fit(free, &within.limits, (curvature, promise, steps)));
             }
             if !is_fresh && (promise <= effort.gain || damping > 0.0) {
                 // Curvature that was learned on the way cannot judge an optimum or a failure.
@@ -91,8 +91,8 @@ impl Fit {
                 return Err(EstimateError::Stuck { steps, slope });
             }
             steps += 1;
-            let (step, gain) = point.step(&curvature, damping, &limits);
-            let next = point.moved(estimation, &selection, &step, &limits);
+            let (step, gain) = point.step(&curvature, damping, &within);
+            let next = point.moved(estimation, &selection, &step, &within.limits);
             match next.filter(|next| next.objective > point.objective + ENOUGH * gain) {
                 Some(next) => {
                     let moved = &next.coordinates - &point.coordinates;
@@ -173,6 +173,28 @@ fn learn(curvature: &mut DMatrix<f64>, moved: &DVector<f64>, change: &DVector<f6
     *curvature += &change * change.transpose() / along - &expected * expected.transpose() / bent;
 }
 
+/// Where a search may go.
+struct Within {
+    /// Lowest and highest coordinates.
+    limits: Vec<[f64; 2]>,
+    /// Longest change in one step: a level that is better at zero falls by this factor in every step,
+    /// until nothing is gained by it any more.
+    reach: Vec<f64>,
+}
+
+impl Within {
+    fn of(selection: &Selection<'_>) -> Self {
+        let reach = |free: &Free| match free.coordinate {
+            Coordinate::Plain => f64::INFINITY,
+            Coordinate::Logarithm => 3.0,
+        };
+        Self {
+            limits: selection.limits(),
+            reach: selection.free.iter().map(reach).collect(),
+        }
+    }
+}
+
 /// A point of the search.
 struct Point {
     values: Vec<f64>,
@@ -212,37 +234,59 @@ impl Point {
         .collect()
     }
 
-    /// The step of a curvature, and the gain that it promises.
-    fn step(
+    /// The step of a curvature, and the gain that it promises. Coordinates at their limits stay; no
+    /// coordinate moves farther than it can reach, and the others make the best of that.
+    fn step(&self, curvature: &DMatrix<f64>, damping: f64, within: &Within) -> (DVector<f64>, f64) {
+        let held = self.held(&within.limits);
+        let mut fixed: Vec<Option<f64>> = held.iter().map(|&held| held.then_some(0.0)).collect();
+        let mut step = self.free_step(curvature, damping, &fixed);
+        let far = |(step, reach): (&f64, &f64)| step.abs() > *reach;
+        if step.iter().zip(&within.reach).any(far) {
+            for (i, &reach) in within.reach.iter().enumerate() {
+                if step[i].abs() > reach {
+                    fixed[i] = Some(reach.copysign(step[i]));
+                }
+            }
+            step = self.free_step(curvature, damping, &fixed);
+        }
+        let gain = self.gradient.dot(&step) - 0.5 * step.dot(&(curvature * &step));
+        (step, gain)
+    }
+
+    /// The damped step of the coordinates that are not fixed.
+    fn free_step(
         &self,
         curvature: &DMatrix<f64>,
         damping: f64,
-        limits: &[[f64; 2]],
-    ) -> (DVector<f64>, f64) {
-        let held = self.held(limits);
-        let mut slope = self.gradient.clone();
-        let mut damped = curvature.clone();
-        for (i, &held) in held.iter().enumerate() {
-            // A little of the diagonal keeps directions without information in place.
-            damped[(i, i)] *= 1.0 + damping + 1e-12;
-            if held || damped[(i, i)] <= 0.0 {
-                slope[i] = 0.0;
-                damped.row_mut(i).fill(0.0);
-                damped.column_mut(i).fill(0.0);
-                damped[(i, i)] = 1.0;
-            }
-        }
-        let scale = damped.diagonal().map(|entry| entry.sqrt().recip());
-        let scaled = DMatrix::from_fn(slope.len(), slope.len(), |i, j| {
-            damped[(i, j)] * scale[i] * scale[j]
+        fixed: &[Option<f64>],
+    ) -> DVector<f64> {
+        let mut step =
+            DVector::from_iterator(fixed.len(), fixed.iter().map(|fixed| fixed.unwrap_or(0.0)));
+        let slope = &self.gradient - curvature * &step;
+        // A coordinate without curvature cannot be judged.
+        let open: Vec<usize> = (0..fixed.len())
+            .filter(|&i| fixed[i].is_none() && curvature[(i, i)] > 0.0)
+            .collect();
+        let scale: Vec<f64> = open
+            .iter()
+            .map(|&i| curvature[(i, i)].sqrt().recip())
+            .collect();
+        let mut scaled = DMatrix::from_fn(open.len(), open.len(), |i, j| {
+            curvature[(open[i], open[j])] * scale[i] * scale[j]
         });
-        let right = slope.component_mul(&scale);
-        let step = match scaled.cholesky() {
-            Some(factor) => factor.solve(&right).component_mul(&scale),
-            None => right.component_mul(&scale),
+        for i in 0..open.len() {
+            // A little of the diagonal keeps directions without information in place.
+            scaled[(i, i)] += damping + 1e-12;
+        }
+        let right = DVector::from_fn(open.len(), |i, _| slope[open[i]] * scale[i]);
+        let solved = match scaled.cholesky() {
+            Some(factor) => factor.solve(&right),
+            None => right,
         };
-        let gain = 0.5 * slope.dot(&step);
-        (step, gain)
+        for (i, &place) in open.iter().enumerate() {
+            step[place] = solved[i] * scale[i];
+        }
+        step
     }
 
     /// The point after a step, if the filter runs there.

@@ -18,31 +18,45 @@
 //! - [`filter`], [`square_root`]: the extended Kalman filter, innovations, log-likelihood;
 //! - [`adjoint`]: the gradient of the log-likelihood in all values by one sweep backwards;
 //! - [`estimation`]: all of it behind one type;
+//! - [`smoother`]: states given a whole recording;
+//! - [`consistency`], [`chi_squared`]: whether innovations are what they should be;
 //! - [`free`], [`fit`]: the most likely values;
-//! - [`sensitivity`]: scores and Fisher's information.
+//! - [`sensitivity`]: scores and Fisher's information;
+//! - [`identifiability`], [`profile`], [`robust`]: what is known of the values, and how far.
 
 mod adjoint;
+mod chi_squared;
+mod consistency;
 mod error;
 mod estimation;
 mod filter;
 mod fit;
 mod free;
+mod identifiability;
 mod layout;
 mod matrix;
 mod plant;
+mod profile;
 mod recording;
+mod robust;
 mod sensitivity;
 mod setup;
+mod smoother;
 mod square_root;
 mod timeline;
 mod transition;
 
+pub use chi_squared::{chi_squared_probability, chi_squared_quantile};
+pub use consistency::Consistency;
 pub use error::EstimateError;
 pub use estimation::Estimation;
 pub use filter::Innovation;
 pub use fit::{Effort, Fit};
 pub use free::{Coordinate, Free};
+pub use identifiability::{Combination, Identifiability};
 pub use layout::{Layout, Unknown};
 pub use recording::Recording;
+pub use robust::Blocks;
 pub use sensitivity::Sensitivity;
 pub use setup::{Channel, Disturbance, Measured, Setup};
+pub use smoother::Smoothed;

@@ -1,0 +1,133 @@
+//! The square-root form of the smoother of Rauch, Tung and Striebel: the state at every row given
+//! the whole recording (P. Park and T. Kailath, *New square-root smoothing algorithms*, 1996;
+//! Särkkä 2013, section 9.1).
+//!
+//! The state before a step, given the one after it, is a regression: z + G (z⁺ − ẑ⁺) with a
+//! covariance that does not depend on z⁺. One triangularisation of the joint root gives both.
+
+use super::EstimateError;
+use super::estimation::Estimation;
+use super::filter::{Pass, Record, StepTape};
+use super::layout::Unknown;
+use super::matrix::{add, multiply};
+use super::square_root::triangularise;
+use super::timeline::Advance;
+
+/// Smaller pivots of a root, relative to their row, are rounding: nothing varies in that direction.
+const ROUNDING: f64 = 1e-13;
+
+/// The state at a row given everything that was measured.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Smoothed {
+    /// Time in s.
+    pub t: f64,
+    /// Expected state; states of lags stand last.
+    pub state: Vec<f64>,
+    /// Root S of its covariance S Sᵀ, row by row.
+    pub root: Vec<f64>,
+}
+
+impl Smoothed {
+    /// Covariance of two states.
+    pub fn covariance(&self, i: usize, j: usize) -> f64 {
+        let n = self.state.len();
+        let [a, b] = [i, j].map(|i| &self.root[i * n..(i + 1) * n]);
+        super::matrix::dot(a, b)
+    }
+
+    /// Standard deviation of a state.
+    pub fn deviation(&self, i: usize) -> f64 {
+        self.covariance(i, i).sqrt()
+    }
+}
+
+impl Estimation<'_> {
+    /// The states at all rows of a run, given all of its measurements.
+    pub fn smoothed(&self, values: &[f64], run: usize) -> Result<Vec<Smoothed>, EstimateError> {
+        self.check(values)?;
+        self.layout().place(Unknown::Initial { run, state: 0 })?;
+        let mut pass = self.pass(run, values, true)?;
+        let mut tape = std::mem::take(&mut pass.tape);
+        let mut last = Smoothed {
+            t: 0.0,
+            state: pass.z.clone(),
+            root: pass.root.clone(),
+        };
+        let mut rows = Vec::with_capacity(self.recordings()[run].times().len());
+        for record in pass.records.iter().rev() {
+            match record {
+                Record::Advance { advance, tape: at } => {
+                    let on = pass.sizes.step(&mut tape[*at..]);
+                    step_back(&pass, *advance, &on, &mut last);
+                }
+                Record::Measure { row: Some(row), .. } => {
+                    last.t = self.recordings()[run].times()[*row];
+                    rows.push(last.clone());
+                }
+                Record::Measure { row: None, .. } => {}
+            }
+        }
+        rows.reverse();
+        Ok(rows)
+    }
+}
+
+/// From the smoothed state after a step to the one before it.
+fn step_back(pass: &Pass<'_>, advance: Advance, on: &StepTape<'_>, last: &mut Smoothed) {
+    let (n, d) = (pass.sizes.n, pass.sizes.disturbances);
+    // Roots of state after and state before, jointly: [F S, F N½, N½; S, 0, 0].
+    let width = (n + 2 * d).max(2 * n);
+    let mut sources = vec![0.0; n * (n + d)];
+    let mut moved = vec![0.0; n * (n + d)];
+    for i in 0..n {
+        let row = &mut sources[i * (n + d)..(i + 1) * (n + d)];
+        row[..n].copy_from_slice(&on.root[i * n..(i + 1) * n]);
+        for j in 0..d {
+            let level = pass.values[pass.layout.disturbance(j)];
+            row[n + j] = level * (0.5 * advance.h).sqrt() * on.columns[i * d + j];
+        }
+    }
+    multiply(on.f, &sources, n, &mut moved);
+    let mut joint = vec![0.0; 2 * n * width];
+    for i in 0..n {
+        let (moved, source) = (&moved[i * (n + d)..], &sources[i * (n + d)..]);
+        joint[i * width..i * width + n + d].copy_from_slice(&moved[..n + d]);
+        joint[i * width + n + d..i * width + n + 2 * d].copy_from_slice(&source[n..n + d]);
+        joint[(n + i) * width..(n + i) * width + n].copy_from_slice(&source[..n]);
+    }
+    let mut roots = vec![0.0; 4 * n * n];
+    triangularise(&mut joint, 2 * n, &mut roots);
+    let root = |i: usize, j: usize| roots[i * 2 * n + j];
+
+    // G L₁₁ = L₂₁, row by row from the last column on.
+    let mut gain = vec![0.0; n * n];
+    for i in 0..n {
+        for j in (0..n).rev() {
+            let known: f64 = (j + 1..n).map(|k| gain[i * n + k] * root(k, j)).sum();
+            let size = (0..=j).fold(0.0, |size: f64, k| size.max(root(j, k).abs()));
+            if root(j, j).abs() > ROUNDING * size {
+                gain[i * n + j] = (root(n + i, j) - known) / root(j, j);
+            }
+        }
+    }
+    let mut change = vec![0.0; n];
+    let off: Vec<f64> = last
+        .state
+        .iter()
+        .zip(&*on.after)
+        .map(|(a, b)| a - b)
+        .collect();
+    multiply(&gain, &off, n, &mut change);
+    let mut spread = vec![0.0; n * n];
+    multiply(&gain, &last.root, n, &mut spread);
+    let mut wide = vec![0.0; 2 * n * n];
+    for (i, wide) in wide.chunks_exact_mut(2 * n).enumerate() {
+        for j in 0..n {
+            wide[j] = root(n + i, n + j);
+            wide[n + j] = spread[i * n + j];
+        }
+    }
+    triangularise(&mut wide, n, &mut last.root);
+    last.state.copy_from_slice(&on.stages.z[..n]);
+    add(&change, &mut last.state);
+}

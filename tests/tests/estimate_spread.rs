@@ -1,0 +1,201 @@
+//! What estimates say about their own spread.
+
+#![allow(clippy::unwrap_used, reason = "what is missing fails the test")]
+
+use appell_models::Shipped;
+use appell_runtime::estimate::{
+    Blocks, Consistency, Coordinate, Effort, Estimation, Fit, Free, Identifiability, Measured,
+    Sensitivity, Setup, Unknown,
+};
+use appell_runtime::model::Model;
+use appell_tests::random::Random;
+use appell_tests::recorded::{Drive, record};
+
+fn shipped(name: &str) -> &'static dyn Model {
+    Shipped::find(name).unwrap().model
+}
+
+/// Level of the disturbing torque, noise of the angle, spread of the initial state.
+const TRUE: [f64; 3] = [0.02, 0.003, 0.02];
+
+/// A pendulum whose angle is seen.
+fn hanging(model: &dyn Model) -> Setup<'_> {
+    let angle = model.info().state_index("theta").unwrap();
+    Setup::new(model, &[Measured::State(angle)])
+}
+
+fn drive() -> Drive {
+    Drive::sines(500, 0.02, &[0.2])
+}
+
+fn true_values(setup: &Setup<'_>) -> Vec<f64> {
+    let unseen = [drive().unseen(1)];
+    let estimation = Estimation::new(setup, &unseen).unwrap();
+    let (mut values, layout) = (estimation.nominal(), estimation.layout());
+    let mut set = |unknown, value| values[layout.place(unknown).unwrap()] = value;
+    set(Unknown::Disturbance(0), TRUE[0]);
+    set(Unknown::Noise(0), TRUE[1]);
+    for state in 0..2 {
+        set(Unknown::Spread { run: 0, state }, TRUE[2]);
+    }
+    values
+}
+
+fn parameter(model: &dyn Model, name: &str) -> Free {
+    let index = model.info().parameter_index(name).unwrap();
+    Free {
+        coordinate: Coordinate::Logarithm,
+        ..Free::of(Unknown::Parameter(index)).within(0.0, f64::INFINITY)
+    }
+}
+
+/// In how many of simulated data sets the interval of each value holds the truth.
+fn covered(sets: usize) -> [usize; 3] {
+    let model = shipped("pendulum");
+    let setup = hanging(model);
+    let truth = true_values(&setup);
+    let free = [
+        parameter(model, "I"),
+        Free::of(Unknown::Disturbance(0)),
+        Free::of(Unknown::Noise(0)),
+    ];
+    let mut random = Random::of("coverage");
+    let mut covered = [0; 3];
+    for _ in 0..sets {
+        let recordings = [record(&setup, &truth, &drive(), &mut random)];
+        let estimation = Estimation::new(&setup, &recordings).unwrap();
+        let fit = Fit::of(&estimation, &truth, &free, Effort::default()).unwrap();
+        for (index, one) in free.iter().enumerate() {
+            let [low, high] = fit.interval95(index).unwrap();
+            let place = estimation.layout().place(one.unknown).unwrap();
+            covered[index] += usize::from((low..=high).contains(&truth[place]));
+        }
+    }
+    covered
+}
+
+#[test]
+fn most_intervals_hold_the_truth() {
+    // 36 of 40 and more, with a probability of 95 % each.
+    for count in covered(40) {
+        assert!(count >= 35, "{count} of 40");
+    }
+}
+
+#[test]
+#[ignore = "400 fits take a while; run with --release -- --ignored"]
+fn intervals_of_95_percent_hold_the_truth_in_93_to_97_percent_of_400_data_sets() {
+    for count in covered(400) {
+        assert!((372..=388).contains(&count), "{count} of 400");
+    }
+}
+
+#[test]
+fn innovations_of_the_true_model_are_inside_their_bands() {
+    let model = shipped("cart_pole");
+    let setup = Setup::new(model, &[Measured::State(2), Measured::State(3)]);
+    let drive = Drive::sines(1000, 0.01, &[3.0]);
+    let unseen = [drive.unseen(2)];
+    let estimation = Estimation::new(&setup, &unseen).unwrap();
+    let (mut values, layout) = (estimation.nominal(), estimation.layout());
+    for unknown in [0, 1].map(Unknown::Disturbance) {
+        values[layout.place(unknown).unwrap()] = 0.02;
+    }
+    for unknown in [0, 1].map(Unknown::Noise) {
+        values[layout.place(unknown).unwrap()] = 0.002;
+    }
+    let recordings = [record(
+        &setup,
+        &values,
+        &drive,
+        &mut Random::of("innovations"),
+    )];
+    let estimation = Estimation::new(&setup, &recordings).unwrap();
+    let channel = |innovations: &[_], channel| {
+        let innovations = innovations.iter();
+        let of_channel: Vec<_> = innovations
+            .filter(|i: &&appell_runtime::estimate::Innovation| i.channel == channel)
+            .copied()
+            .collect();
+        Consistency::of(&of_channel, 0.99)
+    };
+    let innovations = estimation.innovations(&values).unwrap().remove(0);
+    for index in 0..2 {
+        let consistency = channel(&innovations, index);
+        assert!(
+            consistency.has_right_size() && consistency.is_white(),
+            "{consistency:?}"
+        );
+    }
+    // The wrong mass shows.
+    values[0] *= 1.3;
+    let innovations = estimation.innovations(&values).unwrap().remove(0);
+    assert!(!channel(&innovations, 0).has_right_size());
+}
+
+#[test]
+fn what_the_data_cannot_tell_is_told_as_a_combination() {
+    let model = shipped("pendulum");
+    let setup = hanging(model);
+    let truth = true_values(&setup);
+    let recordings = [record(
+        &setup,
+        &truth,
+        &drive(),
+        &mut Random::of("combination"),
+    )];
+    let estimation = Estimation::new(&setup, &recordings).unwrap();
+    let free = ["m", "l", "I"].map(|name| parameter(model, name));
+    let sensitivity = Sensitivity::of(&estimation, &truth, &free).unwrap();
+    let at = free.map(|one| truth[estimation.layout().place(one.unknown).unwrap()]);
+    let [m, l, inertia] = at;
+    let told = Identifiability::of(&sensitivity, &at, &free);
+    // The motion depends on m l and on I + m l².
+    assert_eq!(told.rank(), 2, "{told:?}");
+    let unknown = &told.combinations[2].parts;
+    let wanted = nalgebra::DVector::from_vec(vec![-1.0, 1.0, -m * l * l / inertia]).normalize();
+    let along = unknown.dot(&wanted).abs();
+    assert!((along - 1.0).abs() < 1e-6, "{unknown} against {wanted}");
+    assert!(told.combinations[2].deviation > 1e3 * told.combinations[1].deviation);
+}
+
+#[test]
+fn robust_spread_and_profiles_agree_with_the_information_where_the_model_is_right() {
+    let model = shipped("pendulum");
+    let setup = hanging(model);
+    let truth = true_values(&setup);
+    let mut random = Random::of("robust");
+    let recordings = [0, 1, 2, 3].map(|_| record(&setup, &truth, &drive(), &mut random));
+    let mut all = truth[..truth.len() - 4].to_vec();
+    for _ in &recordings {
+        all.extend(&truth[truth.len() - 4..]);
+    }
+    let estimation = Estimation::new(&setup, &recordings).unwrap();
+    let free = [parameter(model, "I"), Free::of(Unknown::Noise(0))];
+    let fit = Fit::of(&estimation, &all, &free, Effort::default()).unwrap();
+    let sensitivity = Sensitivity::of(&estimation, &fit.values, &free).unwrap();
+    let blocks = Blocks::of(&fit, &sensitivity, 15).unwrap();
+    assert_eq!(blocks.len(), 40);
+    let (robust, plain) = (blocks.covariance(), fit.covariance().unwrap());
+    let draws = blocks.bootstrap(1000, 1);
+    for index in 0..2 {
+        // Forty blocks tell a standard deviation to a ninth.
+        let ratio = (robust[(index, index)] / plain[(index, index)]).sqrt();
+        assert!((0.7..1.4).contains(&ratio), "{ratio}");
+        let squares: f64 = draws.iter().map(|draw| draw[index] * draw[index]).sum();
+        let ratio = (squares / 1000.0 / robust[(index, index)]).sqrt();
+        assert!((0.9..1.1).contains(&ratio), "{ratio}");
+
+        let [low, high] = fit.interval95(index).unwrap();
+        let [lower, higher] = fit.profile_interval(&estimation, index, 1.921).unwrap();
+        let width = (high / low).ln();
+        assert!(
+            (lower / low).ln().abs() < 0.1 * width,
+            "{lower} against {low}"
+        );
+        assert!(
+            (higher / high).ln().abs() < 0.1 * width,
+            "{higher} against {high}"
+        );
+    }
+}

@@ -2,6 +2,8 @@
 
 #![allow(clippy::unwrap_used, reason = "what is missing fails the test")]
 
+use appell_codegen::jit::JitModel;
+use appell_codegen::program::FunctionKind;
 use appell_models::Shipped;
 use appell_runtime::estimate::{
     Channel, Disturbance, Estimation, Layout, Measured, Recording, Setup, Unknown,
@@ -150,6 +152,27 @@ fn it_is_exact_for_outputs_biases_scales_and_noise_on_rates() {
     values[0] *= 1.02;
     values[2] *= 0.97;
     assert_gradient(&estimation, &values, TOLERANCE_OF_DIFFERENCES);
+}
+
+#[test]
+fn it_is_exact_for_outputs_with_formulas() {
+    let text = appell_tests::shipped::text("cart_pole");
+    let program = appell_codegen::compile("cart_pole.toml", &text, &FunctionKind::ALL).unwrap();
+    let model = JitModel::new(&program).unwrap();
+    let output = |name: &str| Measured::Output(model.info().output_index(name).unwrap());
+    let mut setup = Setup::new(&model, &[output("x_G"), output("energy")]);
+    setup.lagging = vec![0];
+    let drive = Drive::sines(80, 0.01, &[2.0]);
+    let unseen = [drive.unseen(2)];
+    let mut prompt = setup.clone();
+    prompt.lagging = Vec::new();
+    let truth = noisy(&Estimation::new(&prompt, &unseen).unwrap(), 0.05, 0.01);
+    let recordings = [record(&prompt, &truth, &drive, &mut Random::of("formulas"))];
+    let estimation = Estimation::new(&setup, &recordings).unwrap();
+    let mut values = noisy(&estimation, 0.05, 0.01);
+    values[1] *= 1.04;
+    set(&mut values, &estimation.layout(), Unknown::Lag(0), 0.02);
+    assert_gradient(&estimation, &values, TOLERANCE);
 }
 
 #[test]

@@ -70,7 +70,7 @@ impl Body<'_> {
         for &argument in &self.schedule.arguments {
             if let Argument::Weight(index) | Argument::OutputWeight(index) = argument {
                 let weights = &self.types.argument_names()[4];
-                let value = s::indexed(weights, index as usize);
+                let value = s::entry(s::name(weights), &[index as usize]);
                 self.push(s::binding(self.types.names.get(argument)), value);
             }
         }
@@ -287,12 +287,15 @@ impl Body<'_> {
         }
         self.attributes.push(layout::blank());
         self.attributes.extend(numbered_names(array));
-        self.push(
-            s::mutable(&local),
-            s::repeated(s::repeated(s::name(&zero), columns), rows),
-        );
+        let zeros = s::repeated(s::repeated(s::name(&zero), columns), rows);
+        let is_zero = |tree: &Tree| *tree == Tree::Constant(Rational::ZERO);
+        if entries.iter().all(is_zero) {
+            self.push(s::binding(&local), zeros);
+        } else {
+            self.push(s::mutable(&local), zeros);
+        }
         for (index, tree) in entries.iter().enumerate() {
-            if *tree != Tree::Constant(Rational::ZERO) {
+            if !is_zero(tree) {
                 let place = s::entry(s::name(&local), &[index / columns, index % columns]);
                 self.statements.push(s::assign(place, self.tree(tree)));
             }

@@ -44,16 +44,6 @@ pub(super) fn associated(function: &'static str, arguments: Vec<Expr>) -> Expr {
     called(path_expression(function_path), arguments)
 }
 
-/// `array[index]`
-pub(super) fn indexed(array: &str, index: usize) -> Expr {
-    Expr::Index(syn::ExprIndex {
-        attrs: Vec::new(),
-        expr: Box::new(name(array)),
-        bracket_token: token::Bracket::default(),
-        index: Box::new(index_number(index)),
-    })
-}
-
 /// `function(arguments)`
 pub(super) fn call(function: &'static str, arguments: Vec<Expr>) -> Expr {
     called(path_expression(Path::from(known(function))), arguments)

@@ -168,7 +168,7 @@ pub fn kinematics<T: Real>(
 /// - `pivot`: what divides `rhs`: `ω̇ = rhs/pivot`, plus terms that need no division.
 ///
 /// From `pendulum.toml`.
-/// Operations: 19 (4 +, 14 ×, 1 ÷), sine or cosine of 1 angle.
+/// Operations: 20 (4 +, 15 ×, 1 ÷), sine or cosine of 1 angle.
 #[must_use]
 #[inline]
 pub fn acceleration_energy<T: Real>(
@@ -180,14 +180,16 @@ pub fn acceleration_energy<T: Real>(
     let &State { omega, theta } = state;
     let &Inputs { tau } = inputs;
     let half = T::constant(0.5);
+    let one = T::constant(1.0);
 
     // Combinations of parameters.
     let m_l = m * l;
     let pivot_omega = l * m_l + I;
+    let inv_pivot_omega = one / pivot_omega;
 
     // Appell's equations, solved.
     let rhs_omega = tau - g * m_l * theta.sin();
-    let omega_dot = rhs_omega / pivot_omega;
+    let omega_dot = inv_pivot_omega * rhs_omega;
 
     // Acceleration of `G` in `rod`.
     let a_G_x = l * omega_dot;
@@ -294,7 +296,7 @@ pub fn generalized_forces<T: Real>(
 /// - `pivot`: what divides `rhs`: `ω̇ = rhs/pivot`, plus terms that need no division.
 ///
 /// From `pendulum.toml`.
-/// Operations: 7 (2 +, 4 ×, 1 ÷), sine or cosine of 1 angle.
+/// Operations: 8 (2 +, 5 ×, 1 ÷), sine or cosine of 1 angle.
 #[must_use]
 #[inline]
 pub fn rates<T: Real>(
@@ -305,14 +307,16 @@ pub fn rates<T: Real>(
     let &Parameters { m, l, I, g } = parameters;
     let &State { omega, theta } = state;
     let &Inputs { tau } = inputs;
+    let one = T::constant(1.0);
 
     // Combinations of parameters.
     let m_l = m * l;
     let pivot_omega = l * m_l + I;
+    let inv_pivot_omega = one / pivot_omega;
 
     // Appell's equations, solved.
     let rhs_omega = tau - g * m_l * theta.sin();
-    let omega_dot = rhs_omega / pivot_omega;
+    let omega_dot = inv_pivot_omega * rhs_omega;
 
     State {
         omega: omega_dot,
@@ -597,7 +601,7 @@ pub fn output_jacobians<T: Real>(
 
     // Rows: 0 x_G, 1 z_G, 2 energy.
     // Columns: 0 tau.
-    let mut D = [[zero; 1]; 3];
+    let D = [[zero; 1]; 3];
 
     OutputJacobians {
         outputs: Outputs {

@@ -22,7 +22,8 @@
 //! - [`consistency`], [`chi_squared`]: whether innovations are what they should be;
 //! - [`free`], [`fit`]: the most likely values;
 //! - [`sensitivity`]: scores and Fisher's information;
-//! - [`identifiability`], [`profile`], [`robust`]: what is known of the values, and how far.
+//! - [`identifiability`], [`profile`], [`robust`]: what is known of the values, and how far;
+//! - [`regression`]: parameters from accelerations, without a filter.
 
 mod adjoint;
 mod chi_squared;
@@ -38,6 +39,7 @@ mod matrix;
 mod plant;
 mod profile;
 mod recording;
+mod regression;
 mod robust;
 mod sensitivity;
 mod setup;
@@ -56,6 +58,7 @@ pub use free::{Coordinate, Free};
 pub use identifiability::{Combination, Identifiability};
 pub use layout::{Layout, Unknown};
 pub use recording::Recording;
+pub use regression::{BaseParameters, Moment, Regression};
 pub use robust::Blocks;
 pub use sensitivity::Sensitivity;
 pub use setup::{Channel, Disturbance, Measured, Setup};

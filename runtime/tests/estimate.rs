@@ -225,3 +225,35 @@ fn the_smoother_conditions_all_states_on_all_samples() {
         }
     }
 }
+
+#[test]
+fn what_no_filter_can_run_with_is_refused() {
+    let (model, recordings) = (Oscillator::new(), [recording()]);
+    let told = |setup: &Setup<'_>| {
+        Estimation::new(setup, &recordings)
+            .err()
+            .unwrap()
+            .to_string()
+    };
+    let mut wrong = setup(&model);
+    wrong.longest_step = 1e-12;
+    assert!(told(&wrong).contains("longest step"), "{}", told(&wrong));
+    let wrong = Setup::new(&model, &[Measured::State(5), Measured::State(0)]);
+    assert_eq!(
+        told(&wrong),
+        "state 5: the model has 2, and each may be named once"
+    );
+    let wrong = Setup::new(&model, &[Measured::State(0)]);
+    assert!(told(&wrong).contains("measurements"), "{}", told(&wrong));
+
+    let setup = setup(&model);
+    let estimation = Estimation::new(&setup, &recordings).unwrap();
+    let mut values = values(&estimation);
+    values[estimation.layout().place(Unknown::Noise(1)).unwrap()] = -1.0;
+    let error = estimation.log_likelihood(&values).unwrap_err().to_string();
+    assert_eq!(error, "noise of channel 1 is -1; it has to be 0 or more");
+    assert!(Recording::new(vec![0.0, 0.0], vec![], vec![]).is_err());
+    assert!(Recording::new(vec![0.0], vec![], vec![]).is_err());
+    assert!(Recording::new(vec![0.0, 1.0], vec![], vec![1.0]).is_err());
+    assert!(Recording::new(vec![0.0, 1.0], vec![f64::NAN, 0.0], vec![]).is_err());
+}

@@ -172,9 +172,11 @@ fn robust_spread_and_profiles_agree_with_the_information_where_the_model_is_righ
     }
     let estimation = Estimation::new(&setup, &recordings).unwrap();
     let free = [parameter(model, "I"), Free::of(Unknown::Noise(0))];
+    let alone = Fit::of(&estimation, &all, &free[..1], Effort::default()).unwrap();
+    assert!(alone.profile_interval(&estimation, 0, 1.921).unwrap()[0] > 0.0);
     let fit = Fit::of(&estimation, &all, &free, Effort::default()).unwrap();
     let sensitivity = Sensitivity::of(&estimation, &fit.values, &free).unwrap();
-    let blocks = Blocks::of(&fit, &sensitivity, 15).unwrap();
+    let blocks = Blocks::of(&fit, &sensitivity, 50).unwrap();
     assert_eq!(blocks.len(), 40);
     let (robust, plain) = (blocks.covariance(), fit.covariance().unwrap());
     let draws = blocks.bootstrap(1000, 1);

@@ -126,6 +126,9 @@ pub(super) fn inverse(
     held: &[bool],
 ) -> Result<DMatrix<f64>, EstimateError> {
     let open: Vec<usize> = (0..held.len()).filter(|&i| !held[i]).collect();
+    if open.is_empty() {
+        return Ok(DMatrix::zeros(held.len(), held.len()));
+    }
     let part = DMatrix::from_fn(open.len(), open.len(), |i, j| {
         information[(open[i], open[j])]
     });
@@ -267,6 +270,9 @@ impl Point {
         let open: Vec<usize> = (0..fixed.len())
             .filter(|&i| fixed[i].is_none() && curvature[(i, i)] > 0.0)
             .collect();
+        if open.is_empty() {
+            return step;
+        }
         let scale: Vec<f64> = open
             .iter()
             .map(|&i| curvature[(i, i)].sqrt().recip())

@@ -4,6 +4,9 @@ use crate::model::Model;
 
 use super::{EstimateError, Recording};
 
+/// Steps of a recording; more are a mistake in a unit.
+const MOST_STEPS: f64 = 1e7;
+
 /// What a channel shows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Measured {
@@ -133,6 +136,14 @@ impl<'a> Setup<'a> {
             return Err(EstimateError::DelayWithTime);
         }
         for recording in recordings {
+            let times = recording.times();
+            if times[times.len() - 1] - times[0] > MOST_STEPS * self.longest_step {
+                return Err(EstimateError::Value {
+                    what: "longest step in s".to_owned(),
+                    value: self.longest_step,
+                    demand: "at least a ten-millionth of the longest recording",
+                });
+            }
             let expected = [
                 ("inputs", recording.input_len(), info.declared_inputs),
                 ("measurements", recording.channel_len(), self.channels.len()),

@@ -105,6 +105,8 @@ impl StateFunction {
             ),
             inputs: ids(&graph, &input_symbols),
             parameters: ids(&graph, &symbols.parameters),
+            weights: Vec::new(),
+            output_weights: Vec::new(),
             pi: graph.as_symbol(symbols.pi),
         };
         let count = exprs.len();

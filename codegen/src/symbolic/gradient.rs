@@ -185,8 +185,10 @@ mod tests {
     /// Both ways to differentiate, at a point.
     fn assert_same(graph: &mut Graph, results: &[Expr], symbols: &[Expr], at: &[f64]) {
         let ids: Vec<SymbolId> = symbols.iter().filter_map(|&s| graph.as_symbol(s)).collect();
-        let weights: Vec<Expr> = (0..results.len())
-            .map(|i| graph.number(Rational::from(2 * i64::try_from(i).unwrap() + 3)))
+        let weights: Vec<Expr> = (3_i64..)
+            .step_by(2)
+            .take(results.len())
+            .map(|weight| graph.number(Rational::from(weight)))
             .collect();
         let weighted: Vec<_> = results.iter().copied().zip(weights.clone()).collect();
         let backwards = gradient(graph, &weighted, &ids);

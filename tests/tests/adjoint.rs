@@ -50,7 +50,7 @@ fn assert_adjoints(what: &str, model: &dyn Model, at: At<'_>, random: &mut Rando
     let weights_of_rates = weights(n + n * n + n * m + s * s, random);
     let got = gradient(model, |by| model.adjoint(at, &weights_of_rates, by));
     let wanted = gradient(model, |by| {
-        differences::adjoint(model, at, &weights_of_rates, by)
+        differences::adjoint(model, at, &weights_of_rates, by);
     });
     for (got, wanted) in got.iter().zip(&wanted) {
         assert_close(what, got, wanted, DIFFERENCES, 1.0);
@@ -68,7 +68,7 @@ fn assert_adjoints(what: &str, model: &dyn Model, at: At<'_>, random: &mut Rando
 
     let weights_of_outputs = weights(l + l * n + l * m, random);
     let got = gradient(model, |by| {
-        model.output_adjoint(at, &weights_of_outputs, by)
+        model.output_adjoint(at, &weights_of_outputs, by);
     });
     let wanted = gradient(model, |by| {
         differences::output_adjoint(model, at, &weights_of_outputs, by);

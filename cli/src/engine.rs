@@ -40,8 +40,17 @@ impl Equations {
             }
             _ => {}
         }
+        Self::made(source, engine, &FunctionKind::STANDARD)
+    }
+
+    /// Machine code with what estimation asks for: adjoints.
+    pub(crate) fn for_estimation(source: &Source) -> Result<Self, Failure> {
+        Self::made(source, Engine::Jit, &FunctionKind::ALL)
+    }
+
+    fn made(source: &Source, engine: Engine, kinds: &[FunctionKind]) -> Result<Self, Failure> {
         let spinner = progress::spinner("deriving the equations of motion");
-        let program = appell_codegen::compile(&source.file, &source.text, &FunctionKind::STANDARD)?;
+        let program = appell_codegen::compile(&source.file, &source.text, kinds)?;
         spinner.finish_and_clear();
         if engine == Engine::Jit {
             match JitModel::new(&program) {

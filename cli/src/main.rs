@@ -12,6 +12,7 @@ mod feedback;
 mod files;
 mod film;
 mod formula;
+mod identified;
 mod motions;
 mod progress;
 mod recording;

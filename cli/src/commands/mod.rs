@@ -7,6 +7,7 @@ mod demo;
 mod derive;
 mod draw;
 mod evaluate;
+mod identify;
 mod list;
 mod new;
 mod recording;
@@ -30,6 +31,7 @@ pub(crate) enum Command {
     Simulate(Box<simulate::Simulate>),
     Control(Box<control::Control>),
     Recording(recording::Recording),
+    Identify(identify::Identify),
     Steady(steady::Steady),
     Stability(stability::StabilityCommand),
     Demo(demo::Demo),
@@ -50,6 +52,7 @@ pub(crate) fn run(command: Command) -> Result<(), Failure> {
         Command::Simulate(command) => command.run(),
         Command::Control(command) => command.run(),
         Command::Recording(command) => command.run(),
+        Command::Identify(command) => command.run(),
         Command::Steady(command) => command.run(),
         Command::Stability(command) => command.run(),
         Command::Demo(command) => command.run(),

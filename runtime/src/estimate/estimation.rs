@@ -9,7 +9,7 @@ use super::layout::{Layout, Unknown};
 use super::plant::Plant;
 use super::recording::Recording;
 use super::setup::Setup;
-use super::timeline::timeline;
+use super::timeline::{Action, timeline};
 
 /// A setup with recordings: functions of the values that [`Layout`] lists.
 pub struct Estimation<'a> {
@@ -136,10 +136,32 @@ impl<'a> Estimation<'a> {
         keeps: bool,
     ) -> Result<Pass<'b>, EstimateError> {
         let recording = &self.recordings[run];
-        let (setup, layout) = (self.setup, self.layout);
-        let actions = timeline(setup, &layout, recording, &self.knots, values);
-        let model = (setup, &self.plant, layout);
-        Pass::over(model, values, (run, recording), &actions, keeps)
+        let model = (self.setup, &self.plant, self.layout);
+        Pass::over(
+            model,
+            values,
+            (run, recording),
+            &self.actions(run, values),
+            keeps,
+        )
+    }
+
+    /// The filter before the first of the `actions` of a run.
+    pub(super) fn fresh<'b>(
+        &'b self,
+        run: usize,
+        values: &'b [f64],
+        actions: &[Action],
+    ) -> Pass<'b> {
+        let recording = &self.recordings[run];
+        let model = (self.setup, &self.plant, self.layout);
+        Pass::new(model, values, (run, recording), actions, false)
+    }
+
+    /// Steps, changes of inputs and samples of a run.
+    pub(super) fn actions(&self, run: usize, values: &[f64]) -> Vec<Action> {
+        let recording = &self.recordings[run];
+        timeline(self.setup, &self.layout, recording, &self.knots, values)
     }
 
     /// Refuses values that no filter can run with.

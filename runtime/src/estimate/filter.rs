@@ -160,7 +160,7 @@ pub(super) struct Pass<'a> {
     pub(super) samples: Vec<Sample>,
     pub(super) z: Vec<f64>,
     pub(super) root: Vec<f64>,
-    held: Vec<f64>,
+    pub(super) held: Vec<f64>,
     scratch: Scratch,
     spread: Vec<f64>,
     wide: Vec<f64>,
@@ -178,6 +178,27 @@ impl<'a> Pass<'a> {
         actions: &[Action],
         keeps: bool,
     ) -> Result<Self, EstimateError> {
+        let mut pass = Self::new(
+            (setup, plant, layout),
+            values,
+            (run, recording),
+            actions,
+            keeps,
+        );
+        for &action in actions {
+            pass.act(recording, action)?;
+        }
+        Ok(pass)
+    }
+
+    /// Before the first action.
+    pub(super) fn new(
+        (setup, plant, layout): (&'a Setup<'a>, &'a Plant<'a>, Layout),
+        values: &'a [f64],
+        (run, recording): (usize, &Recording),
+        actions: &[Action],
+        keeps: bool,
+    ) -> Self {
         let (n, info) = (plant.n, plant.info());
         let outputs = if setup.sees_outputs() {
             info.output_len()
@@ -221,14 +242,29 @@ impl<'a> Pass<'a> {
                 .reserve(steps * sizes.step_len() + samples * sizes.sample_len());
         }
         pass.start();
-        for action in actions {
-            match *action {
-                Action::Advance(advance) => pass.advance(advance)?,
-                Action::Switch { row, input } => pass.switch(recording.inputs(row), input),
-                Action::Measure { row, channel } => pass.measure(recording, row, channel)?,
+        pass
+    }
+
+    pub(super) fn act(
+        &mut self,
+        recording: &Recording,
+        action: Action,
+    ) -> Result<(), EstimateError> {
+        match action {
+            Action::Advance(advance) => self.advance(advance),
+            Action::Switch { row, input } => {
+                let first = self.records.is_empty();
+                switch(
+                    self.setup,
+                    first,
+                    &mut self.held,
+                    recording.inputs(row),
+                    input,
+                );
+                Ok(())
             }
+            Action::Measure { row, channel } => self.measure(recording, row, channel),
         }
-        Ok(pass)
     }
 
     pub(super) fn log_likelihood(&self) -> f64 {
@@ -253,17 +289,6 @@ impl<'a> Pass<'a> {
         self.z.copy_from_slice(&self.values[initial..initial + n]);
         for i in 0..n {
             self.root[i * (n + 1)] = self.values[spread + i];
-        }
-    }
-
-    fn switch(&mut self, inputs: &[f64], only: Option<usize>) {
-        for (input, (held, &now)) in self.held.iter_mut().zip(inputs).enumerate() {
-            let delayed = self.setup.delayed.contains(&input);
-            // The first row is the best guess for what a delayed input was before it.
-            let first = self.records.is_empty();
-            if only.map_or(!delayed || first, |only| only == input) {
-                *held = now;
-            }
         }
     }
 
@@ -429,6 +454,23 @@ impl<'a> Pass<'a> {
         let row = only.is_none().then_some(row);
         self.records.push(Record::Measure { row, samples, held });
         Ok(())
+    }
+}
+
+/// One delayed input, or all others, take new values. The first row is the best guess for what a
+/// delayed input was before it.
+pub(super) fn switch(
+    setup: &Setup<'_>,
+    first: bool,
+    held: &mut [f64],
+    inputs: &[f64],
+    only: Option<usize>,
+) {
+    for (input, (held, &now)) in held.iter_mut().zip(inputs).enumerate() {
+        let delayed = setup.delayed.contains(&input);
+        if only.map_or(!delayed || first, |only| only == input) {
+            *held = now;
+        }
     }
 }
 

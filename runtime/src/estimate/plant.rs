@@ -118,6 +118,16 @@ impl<'a> Plant<'a> {
         }
     }
 
+    /// ż.
+    pub(super) fn rates(&self, place: Place<'_>, scratch: &mut Scratch, rates: &mut [f64]) {
+        let n = self.info().state_len();
+        self.inputs(place, &mut scratch.u);
+        self.model.rates(at(place, n, &scratch.u), &mut rates[..n]);
+        for (lag, (&input, &tau)) in self.lagging.iter().zip(place.lags).enumerate() {
+            rates[n + lag] = (place.held[input] - place.z[n + lag]) / tau;
+        }
+    }
+
     /// ż and ∂ż/∂z.
     pub(super) fn jacobian(
         &self,
@@ -210,6 +220,18 @@ impl<'a> Plant<'a> {
         self.inputs(place, u);
         self.model.appell(at(place, n, u), mass, bias, forces);
         crate::dense::lu_solve_in_place(mass, columns, self.speeds);
+    }
+
+    /// y of all outputs.
+    pub(super) fn output_values(
+        &self,
+        place: Place<'_>,
+        scratch: &mut Scratch,
+        outputs: &mut [f64],
+    ) {
+        self.inputs(place, &mut scratch.u);
+        let at = at(place, self.info().state_len(), &scratch.u);
+        self.model.outputs(at, outputs);
     }
 
     /// y, ∂y/∂z of all outputs.

@@ -9,9 +9,9 @@ use super::matrix::{
 use super::plant::{Place, Plant, Scratch, Sums};
 
 /// Parts of the step at which the stages after the first stand.
-const STAGES: [f64; 3] = [0.5, 0.5, 1.0];
+pub(super) const STAGES: [f64; 3] = [0.5, 0.5, 1.0];
 /// Parts of the step with which the rates count.
-const WEIGHTS: [f64; 4] = [1.0 / 6.0, 1.0 / 3.0, 1.0 / 3.0, 1.0 / 6.0];
+pub(super) const WEIGHTS: [f64; 4] = [1.0 / 6.0, 1.0 / 3.0, 1.0 / 3.0, 1.0 / 6.0];
 
 /// What the adjoint needs to know of a step, cut out of a tape.
 pub(super) struct Stages<'a> {

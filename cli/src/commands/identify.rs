@@ -1,0 +1,64 @@
+//! `appell identify`
+
+use std::path::PathBuf;
+
+use appell_gap::identify::{self, Options};
+
+use crate::engine::Equations;
+use crate::failure::Failure;
+use crate::source::Source;
+use crate::{files, identified, progress, recording};
+
+/// Finds the parameters that make recordings most likely, with intervals, and tells how well the
+/// model then predicts the runs that were held out.
+///
+/// Parameters with a tolerance in the data set are free, within it; `--free` chooses others. Levels of
+/// noise and of disturbing forces are estimated too, so that what the model lacks does not narrow the
+/// intervals.
+#[derive(Debug, clap::Args)]
+pub(crate) struct Identify {
+    /// Name of a shipped mechanism or path of a spec
+    model: String,
+    /// Folder with a `recording.toml`, or CSV files with columns of the spec's names
+    #[arg(long, required = true, num_args = 1.., value_name = "DIR")]
+    data: Vec<PathBuf>,
+    /// Parameters to look for
+    #[arg(long, value_delimiter = ',', value_name = "NAMES")]
+    free: Option<Vec<String>>,
+    /// Write everything in SI; `-` is standard output
+    #[arg(long, value_name = "FILE")]
+    json: Option<PathBuf>,
+    /// Draw the runs that were held out beside predictions of them
+    #[arg(long, value_name = "FILE.svg")]
+    plot: Option<PathBuf>,
+    /// Write a page with all of it
+    #[arg(long, value_name = "FILE.html")]
+    html: Option<PathBuf>,
+}
+
+impl Identify {
+    pub(super) fn run(&self) -> Result<(), Failure> {
+        let set = recording::read(&self.data, Some(&self.model))?;
+        let equations = Equations::for_estimation(&Source::find(&self.model)?)?;
+        let spinner = progress::spinner("reading");
+        let options = Options {
+            free: self.free.clone(),
+        };
+        let answer = identify::identify(&set, equations.model(), &options, |stage| {
+            spinner.set_message(stage);
+        });
+        spinner.finish_and_clear();
+        let answer = answer.map_err(identified::failure)?;
+        if let Some(path) = &self.json {
+            files::write_json(path, &identified::json(&set, &answer))?;
+        }
+        if let Some(path) = &self.plot {
+            files::write(path, &identified::figure(&set, &answer).to_svg())?;
+        }
+        if let Some(path) = &self.html {
+            files::write(path, &identified::page(&set, &answer))?;
+        }
+        let outputs = [&self.json, &self.plot, &self.html];
+        files::print_beside(&identified::text(&set, &answer), &outputs)
+    }
+}

@@ -1,0 +1,85 @@
+//! Parameters from recordings, with what the recordings cannot tell.
+//!
+//! ```text
+//! data set --start--> values to begin with: levels of noise, states at the first rows
+//!          --problem--> what is looked for: parameters within their tolerances, levels
+//!          --fit (estimate)--> the most likely values, beside the most likely nominal ones
+//!          --answer--> intervals, correlation, combinations that are known
+//!          --held_out--> errors of predictions on the runs that no fit has seen
+//! ```
+//!
+//! The likelihood is that of the innovations of an extended Kalman filter with disturbing forces on
+//! every pseudo-velocity, whose levels are estimated too (`appell_runtime::estimate`). A model that
+//! is wrong therefore shows as large disturbances, not as wrong parameters with narrow intervals; and
+//! the robust intervals do not believe that what is left is white.
+
+mod answer;
+mod error;
+mod held_out;
+mod problem;
+mod start;
+
+use appell_runtime::estimate::{Estimation, Fit, Setup};
+use appell_runtime::model::Model;
+
+use crate::data::{DataSet, Part};
+
+pub use answer::{Answer, Estimate, Known, Level};
+pub use error::IdentifyError;
+pub use held_out::{AHEAD, HORIZONS, HeldOut, Trace};
+
+use held_out::Test;
+use problem::Problem;
+
+/// Steps of the integration are this long in s at most.
+const LONGEST_STEP: f64 = 0.02;
+
+/// What is identified.
+#[derive(Debug, Clone, Default)]
+pub struct Options {
+    /// Parameters to look for; nothing means those that the data set states a tolerance for.
+    pub free: Option<Vec<String>>,
+}
+
+/// Finds the parameters of a model that make the runs to fit most likely, and measures its errors on
+/// the others. `stage` is told what begins.
+pub fn identify(
+    set: &DataSet,
+    model: &dyn Model,
+    options: &Options,
+    mut stage: impl FnMut(&'static str),
+) -> Result<Answer, IdentifyError> {
+    let measured = set.measured(model.info());
+    if measured.is_empty() {
+        return Err(IdentifyError::NothingMeasured);
+    }
+    let shown: Vec<_> = measured.iter().map(|(_, shown)| *shown).collect();
+    let setup = Setup {
+        longest_step: LONGEST_STEP,
+        ..Setup::new(model, &shown)
+    };
+    let recordings = set.recordings(Part::Fit, model.info())?;
+    if recordings.is_empty() {
+        return Err(IdentifyError::NothingToFit);
+    }
+    let estimation = Estimation::new(&setup, &recordings)?;
+    let problem = Problem::of(set, &estimation, options)?;
+
+    stage("fitting the levels of noise to the nominal model");
+    let nominal = Fit::of(&estimation, &problem.start, &problem.levels, problem.effort)?;
+    stage("fitting the parameters");
+    let all = [problem.parameters.as_slice(), &problem.levels].concat();
+    let fit = Fit::of(&estimation, &nominal.values, &all, problem.effort)?;
+    stage("weighing what the recordings tell");
+    let mut answer = Answer::of(set, &estimation, &problem, (&nominal, &fit))?;
+    stage("predicting the runs that were held out");
+    let recordings = set.recordings(Part::Test, model.info())?;
+    if recordings.is_empty() {
+        return Ok(answer);
+    }
+    let estimation = Estimation::new(&setup, &recordings)?;
+    let test = Test::new(set, &estimation, [&nominal.values, &fit.values])?;
+    answer.held_out = test.errors()?;
+    answer.traces = test.traces()?;
+    Ok(answer)
+}

@@ -1,0 +1,213 @@
+//! What the recordings tell: intervals, correlation, combinations that are known.
+
+use appell_runtime::estimate::{
+    Blocks, Consistency, Estimation, Fit, Free, Identifiability, Sensitivity, Unknown,
+};
+use appell_runtime::model::Quantity;
+use nalgebra::DMatrix;
+
+use super::IdentifyError;
+use super::held_out::{HeldOut, Trace};
+use super::problem::Problem;
+use crate::data::DataSet;
+
+/// Blocks of scores last so many seconds: errors of a mechanism's motion forget each other by then.
+const BLOCK: f64 = 1.0;
+/// Half the width of a 95 % interval in standard deviations.
+const QUANTILE: f64 = 1.959_963_984_540_054;
+
+/// A parameter that was looked for.
+#[derive(Debug, Clone)]
+pub struct Estimate {
+    /// Name, sentence and unit.
+    pub quantity: Quantity,
+    /// Value before, in SI.
+    pub nominal: f64,
+    /// Tolerance beforehand in SI, if there is any.
+    pub tolerance: Option<f64>,
+    /// Most likely value in SI.
+    pub value: f64,
+    /// Standard deviation in SI if the model is right.
+    pub std: f64,
+    /// Standard deviation in SI that does not believe the model.
+    pub robust_std: f64,
+    /// Whether the value stands at a limit of its range: nothing is said of its spread.
+    pub at_limit: bool,
+    /// Part of the tolerance that the recordings leave; above one half they tell little.
+    pub left: Option<f64>,
+}
+
+impl Estimate {
+    /// The wider of the two standard deviations.
+    pub fn honest_std(&self) -> f64 {
+        self.std.max(self.robust_std)
+    }
+
+    /// 95 % interval in SI.
+    pub fn interval95(&self) -> [f64; 2] {
+        [-1.0, 1.0].map(|sign| self.value + sign * QUANTILE * self.honest_std())
+    }
+}
+
+/// A level of noise, before and after the parameters were fitted.
+#[derive(Debug, Clone)]
+pub struct Level {
+    /// Column or pseudo-velocity.
+    pub name: String,
+    /// Of the nominal model, in SI.
+    pub nominal: f64,
+    /// Of the fitted model, in SI.
+    pub fitted: f64,
+}
+
+/// A combination of parameters, by its parts in units of tolerance, and how well it is known.
+#[derive(Debug, Clone)]
+pub struct Known {
+    /// Parts of the parameters, in the order of the estimates.
+    pub parts: Vec<f64>,
+    /// Standard deviation to which the recordings alone tell it, in units of tolerance.
+    pub deviation: f64,
+}
+
+/// Everything that was found.
+#[derive(Debug, Clone)]
+pub struct Answer {
+    /// Parameters in the order in which they were asked for.
+    pub parameters: Vec<Estimate>,
+    /// Correlation of their errors.
+    pub correlation: DMatrix<f64>,
+    /// Combinations of parameters, the best known first.
+    pub combinations: Vec<Known>,
+    /// Noise of the channels.
+    pub noise: Vec<Level>,
+    /// Disturbing forces: standard deviations of their integrals over one second.
+    pub disturbances: Vec<Level>,
+    /// Log-likelihood of the nominal model with fitted levels, and of the fitted one.
+    pub log_likelihoods: [f64; 2],
+    /// Correlation of neighbouring innovations of each channel, with the band where they are white.
+    pub whiteness: Vec<(String, Consistency)>,
+    /// Errors on the runs that were held out; empty where there are none.
+    pub held_out: Vec<HeldOut>,
+    /// Channels of these runs beside predictions of them.
+    pub traces: Vec<Trace>,
+}
+
+impl Answer {
+    pub(super) fn of(
+        set: &DataSet,
+        estimation: &Estimation<'_>,
+        problem: &Problem,
+        (nominal, fit): (&Fit, &Fit),
+    ) -> Result<Self, IdentifyError> {
+        let info = estimation.setup().model.info();
+        let layout = estimation.layout();
+        let count = problem.parameters.len();
+        let sensitivity = Sensitivity::of(estimation, &fit.values, &fit.free)?;
+        let covariance = fit.covariance()?;
+        let robust = Blocks::of(fit, &sensitivity, block(estimation))?.covariance();
+        let mut parameters = Vec::new();
+        for (place, free) in problem.parameters.iter().enumerate() {
+            let Unknown::Parameter(index) = free.unknown else {
+                continue;
+            };
+            let std = covariance[(place, place)].sqrt();
+            let tolerance = free.prior.map(|[_, deviation]| deviation);
+            parameters.push(Estimate {
+                quantity: info.parameters[index].clone(),
+                nominal: set.parameters[index].value,
+                tolerance,
+                value: fit.values[index],
+                std,
+                robust_std: robust[(place, place)].sqrt(),
+                at_limit: fit.at_limit[place],
+                left: tolerance.map(|tolerance| std / tolerance),
+            });
+        }
+        let correlation = DMatrix::from_fn(count, count, |i, j| {
+            let size = (covariance[(i, i)] * covariance[(j, j)]).sqrt();
+            if size > 0.0 {
+                covariance[(i, j)] / size
+            } else {
+                0.0
+            }
+        });
+        let level = |unknown, name: String| -> Result<Level, IdentifyError> {
+            let place = layout.place(unknown)?;
+            let [nominal, fitted] = [nominal, fit].map(|fit| fit.values[place]);
+            Ok(Level {
+                name,
+                nominal,
+                fitted,
+            })
+        };
+        let measured = set.measured(info);
+        let columns: Vec<String> = measured.iter().map(|(c, _)| c.column.clone()).collect();
+        let noise = columns.iter().enumerate();
+        let speeds = info.states[..info.speeds].iter().enumerate();
+        Ok(Self {
+            combinations: combinations(&sensitivity, fit, &problem.parameters),
+            noise: noise
+                .map(|(index, column)| level(Unknown::Noise(index), column.clone()))
+                .collect::<Result<_, _>>()?,
+            disturbances: speeds
+                .map(|(index, speed)| level(Unknown::Disturbance(index), speed.name.to_string()))
+                .collect::<Result<_, _>>()?,
+            log_likelihoods: [nominal.log_likelihood, fit.log_likelihood],
+            whiteness: whiteness(estimation, fit, &columns)?,
+            held_out: Vec::new(),
+            traces: Vec::new(),
+            parameters,
+            correlation,
+        })
+    }
+}
+
+/// Rows of a block.
+fn block(estimation: &Estimation<'_>) -> usize {
+    let runs = estimation.recordings().iter();
+    let steps = runs.map(|run| {
+        let times = run.times();
+        (times[times.len() - 1] - times[0]) / (times.len() - 1) as f64
+    });
+    let step = steps.fold(f64::INFINITY, f64::min);
+    // Both are counts of rows in memory.
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+    let rows = (BLOCK / step).ceil() as usize;
+    rows.max(1)
+}
+
+/// Combinations of the parameters, levels being what they are: these are found from the sizes of
+/// innovations, which parameters do not change.
+fn combinations(sensitivity: &Sensitivity, fit: &Fit, parameters: &[Free]) -> Vec<Known> {
+    let count = parameters.len();
+    let part = Sensitivity {
+        samples: sensitivity.samples.clone(),
+        residuals: sensitivity.residuals.columns(0, count).into_owned(),
+        variances: sensitivity.variances.columns(0, count).into_owned(),
+    };
+    let values: Vec<f64> = parameters
+        .iter()
+        .zip(fit.coordinates.iter())
+        .map(|(free, &coordinate)| free.to_value(coordinate))
+        .collect();
+    let found = Identifiability::of(&part, &values, parameters);
+    let known = found.combinations.into_iter().map(|combination| Known {
+        parts: combination.parts.iter().copied().collect(),
+        deviation: combination.deviation,
+    });
+    known.collect()
+}
+
+fn whiteness(
+    estimation: &Estimation<'_>,
+    fit: &Fit,
+    columns: &[String],
+) -> Result<Vec<(String, Consistency)>, IdentifyError> {
+    let runs = estimation.innovations(&fit.values)?;
+    let of_channel = |(channel, column): (usize, &String)| {
+        let all = runs.iter().flatten();
+        let own = all.filter(|innovation| innovation.channel == channel);
+        (column.clone(), Consistency::of(own, 0.99))
+    };
+    Ok(columns.iter().enumerate().map(of_channel).collect())
+}

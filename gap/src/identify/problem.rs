@@ -1,0 +1,185 @@
+//! What is looked for, and where the search begins.
+
+use appell_runtime::estimate::{Effort, Estimation, Free, Recording, Unknown};
+use appell_runtime::model::ModelInfo;
+
+use super::start::{Start, forces, start};
+use super::{IdentifyError, Options};
+use crate::data::{Channel, DataSet};
+
+/// A stated noise may be wrong by a factor of two.
+const NOISE_FACTOR: f64 = std::f64::consts::LN_2;
+/// Part of a signal that counts as noise where nothing is known about it.
+const NOISE_PART: f64 = 1e-2;
+/// Factors of the noise within which it is looked for.
+const NOISE_RANGE: [f64; 2] = [1e-2, 1e3];
+/// Levels of disturbances that are tried first, as parts of the forces, over one second.
+const PARTS: [f64; 4] = [1e-4, 1e-3, 1e-2, 1e-1];
+/// Factors of the forces within which disturbances are looked for.
+const DISTURBANCE_RANGE: [f64; 2] = [1e-7, 1e3];
+
+/// A fit to be made.
+pub(super) struct Problem {
+    /// Values to begin with: the parameters of the rig.
+    pub(super) start: Vec<f64>,
+    /// Parameters that are free.
+    pub(super) parameters: Vec<Free>,
+    /// Levels of disturbances and noise, which always are.
+    pub(super) levels: Vec<Free>,
+    /// When to stop.
+    pub(super) effort: Effort,
+}
+
+impl Problem {
+    pub(super) fn of(
+        set: &DataSet,
+        estimation: &Estimation<'_>,
+        options: &Options,
+    ) -> Result<Self, IdentifyError> {
+        let (layout, setup) = (estimation.layout(), estimation.setup());
+        let parameters = free_parameters(set, setup.model.info(), options)?;
+        let mut values = estimation.nominal();
+        for (value, parameter) in values.iter_mut().zip(&set.parameters) {
+            *value = parameter.value;
+        }
+        let mut levels = Vec::new();
+        let measured = set.measured(setup.model.info());
+        for (index, (channel, _)) in measured.iter().enumerate() {
+            let (level, free) = noise(channel, index, estimation.recordings());
+            values[layout.place(free.unknown)?] = level;
+            levels.push(free);
+        }
+        let starts = begin(estimation, &mut values)?;
+        let sizes = forces(setup, &starts, &values, estimation.recordings());
+        for (index, &size) in sizes.iter().enumerate() {
+            let [low, high] = DISTURBANCE_RANGE.map(|factor| factor * size);
+            levels.push(Free::of(Unknown::Disturbance(index)).within(low, high));
+        }
+        Ok(Self {
+            start: most_likely(estimation, &values, &sizes)?,
+            parameters,
+            levels,
+            effort: Effort::default(),
+        })
+    }
+}
+
+/// The parameters that are looked for, each within its range and about its value.
+fn free_parameters(
+    set: &DataSet,
+    info: &ModelInfo,
+    options: &Options,
+) -> Result<Vec<Free>, IdentifyError> {
+    let chosen: Vec<usize> = match &options.free {
+        Some(names) => names
+            .iter()
+            .map(|name| {
+                info.parameter_index(name)
+                    .ok_or_else(|| IdentifyError::UnknownParameter {
+                        name: name.clone(),
+                        known: info.parameters.iter().map(|p| p.name.to_string()).collect(),
+                    })
+            })
+            .collect::<Result<_, _>>()?,
+        None => {
+            let has_tolerance = |&i: &usize| set.parameters[i].std.is_some_and(|std| std > 0.0);
+            (0..set.parameters.len()).filter(has_tolerance).collect()
+        }
+    };
+    if chosen.is_empty() {
+        return Err(IdentifyError::NothingFree);
+    }
+    let free = |&index: &usize| {
+        let parameter = set.parameters[index];
+        let [low, high] = info.parameters[index].range;
+        let free = Free::of(Unknown::Parameter(index)).within(low, high);
+        match parameter.std {
+            Some(std) if std > 0.0 => free.around(parameter.value, std),
+            _ => free,
+        }
+    };
+    Ok(chosen.iter().map(free).collect())
+}
+
+/// The noise of a channel to begin with, and within which limits it is looked for.
+fn noise(channel: &Channel, index: usize, recordings: &[Recording]) -> (f64, Free) {
+    let free = Free::of(Unknown::Noise(index));
+    let Some(noise) = channel.noise else {
+        let level = NOISE_PART * deviation(recordings, index);
+        let level = if level > 0.0 { level } else { NOISE_PART };
+        return (level, free);
+    };
+    let [low, high] = NOISE_RANGE.map(|factor| factor * noise.std);
+    let steps = noise.quantum.unwrap_or(0.0) / 12.0_f64.sqrt();
+    let free = free
+        .within(low.max(steps.min(noise.std)), high)
+        .around(noise.std, NOISE_FACTOR);
+    (noise.std, free)
+}
+
+/// Standard deviation of a channel along all recordings.
+fn deviation(recordings: &[Recording], channel: usize) -> f64 {
+    let values: Vec<f64> = recordings
+        .iter()
+        .flat_map(|recording| {
+            (0..recording.times().len()).map(|row| recording.measured(row)[channel])
+        })
+        .filter(|value| !value.is_nan())
+        .collect();
+    let count = values.len() as f64;
+    let mean = values.iter().sum::<f64>() / count;
+    let squares: f64 = values.iter().map(|value| (value - mean).powi(2)).sum();
+    (squares / count).sqrt()
+}
+
+/// Writes the states at the first rows of all runs.
+pub(super) fn begin(
+    estimation: &Estimation<'_>,
+    values: &mut [f64],
+) -> Result<Vec<Start>, IdentifyError> {
+    let (layout, setup) = (estimation.layout(), estimation.setup());
+    let mut noise = Vec::new();
+    for channel in 0..setup.channels.len() {
+        noise.push(values[layout.place(Unknown::Noise(channel))?]);
+    }
+    let parameters = values[..setup.model.info().parameter_len()].to_vec();
+    let mut starts = Vec::new();
+    for (run, recording) in estimation.recordings().iter().enumerate() {
+        let start = start(setup, &noise, &parameters, recording);
+        for (state, (&expected, &spread)) in start.state.iter().zip(&start.spread).enumerate() {
+            values[layout.place(Unknown::Initial { run, state })?] = expected;
+            values[layout.place(Unknown::Spread { run, state })?] = spread;
+        }
+        starts.push(start);
+    }
+    Ok(starts)
+}
+
+/// The values with those of some disturbances that make the recordings most likely.
+fn most_likely(
+    estimation: &Estimation<'_>,
+    values: &[f64],
+    sizes: &[f64],
+) -> Result<Vec<f64>, IdentifyError> {
+    let layout = estimation.layout();
+    let mut best: Option<(f64, Vec<f64>)> = None;
+    let mut failure = None;
+    for part in PARTS {
+        let mut values = values.to_vec();
+        for (index, size) in sizes.iter().enumerate() {
+            values[layout.place(Unknown::Disturbance(index))?] = part * size;
+        }
+        match estimation.log_likelihood(&values) {
+            Ok(likelihood) if best.as_ref().is_none_or(|(most, _)| likelihood > *most) => {
+                best = Some((likelihood, values));
+            }
+            Ok(_) => {}
+            Err(error) => failure = Some(error),
+        }
+    }
+    match (best, failure) {
+        (Some((_, values)), _) => Ok(values),
+        (None, Some(error)) => Err(error.into()),
+        (None, None) => Ok(values.to_vec()),
+    }
+}

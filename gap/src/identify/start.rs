@@ -1,0 +1,202 @@
+//! Values that a fit can begin with: states at the first rows, sizes of forces.
+
+use appell_runtime::estimate::{Measured, Recording, Setup};
+use appell_runtime::model::{At, Model, ModelInfo};
+use appell_runtime::signal::savitzky_golay::weights;
+use nalgebra::{DMatrix, DVector};
+
+/// Samples of a parabola whose slope tells a velocity.
+const WINDOW: usize = 15;
+/// Places along a run at which slopes and forces are looked at.
+const PLACES: usize = 100;
+/// First values are this many times less certain than a measurement: they are measured again by the
+/// first row.
+const CAUTION: f64 = 10.0;
+
+/// What a run begins with.
+pub(super) struct Start {
+    /// Expected state.
+    pub(super) state: Vec<f64>,
+    /// Standard deviations.
+    pub(super) spread: Vec<f64>,
+}
+
+/// States at the first row: measured ones as measured, other pseudo-velocities from slopes of the
+/// coordinates, the rest as in the spec, known to one SI unit.
+pub(super) fn start(
+    setup: &Setup<'_>,
+    noise: &[f64],
+    parameters: &[f64],
+    recording: &Recording,
+) -> Start {
+    let info = setup.model.info();
+    let mut start = Start {
+        state: info.initial_state(),
+        spread: vec![1.0; info.state_len()],
+    };
+    let columns = columns(setup, info);
+    for (state, column) in columns.iter().enumerate() {
+        let Some(column) = *column else { continue };
+        let rows = 0..recording.times().len();
+        let mut values = rows.map(|row| recording.measured(row)[column]);
+        if let Some(first) = values.find(|value| !value.is_nan()) {
+            start.state[state] = first;
+            start.spread[state] = CAUTION * noise[column];
+        }
+    }
+    let unknown: Vec<usize> = (0..info.speeds).filter(|&s| columns[s].is_none()).collect();
+    let seen: Vec<(usize, Slopes)> = (info.speeds..info.state_len())
+        .filter_map(|state| Some((state, Slopes::of(recording, columns[state]?)?)))
+        .collect();
+    if let Some((speeds, sizes)) = speeds(setup.model, &start.state, parameters, (&unknown, &seen))
+    {
+        for (place, &state) in unknown.iter().enumerate() {
+            start.state[state] = speeds[place];
+            start.spread[state] = sizes[place];
+        }
+    }
+    start
+}
+
+/// The column of each state, if it is measured.
+fn columns(setup: &Setup<'_>, info: &ModelInfo) -> Vec<Option<usize>> {
+    let shows = |state| {
+        let mut channels = setup.channels.iter();
+        channels.position(|channel| channel.measures == Measured::State(state))
+    };
+    (0..info.state_len()).map(shows).collect()
+}
+
+/// Slopes of a measured coordinate.
+struct Slopes {
+    /// At the first samples.
+    first: f64,
+    /// Root of the mean square along the run.
+    size: f64,
+}
+
+impl Slopes {
+    fn of(recording: &Recording, column: usize) -> Option<Self> {
+        let rows = 0..recording.times().len();
+        let samples: Vec<(f64, f64)> = rows
+            .map(|row| (recording.times()[row], recording.measured(row)[column]))
+            .filter(|(_, value)| !value.is_nan())
+            .collect();
+        let slope = |samples: &[(f64, f64)]| {
+            let times: Vec<f64> = samples.iter().map(|(t, _)| *t).collect();
+            let weights = weights(&times, times[0], 2, 1)?;
+            Some(weights.iter().zip(samples).map(|(w, (_, y))| w * y).sum())
+        };
+        let window = WINDOW.min(samples.len());
+        let stride = (samples.len() / PLACES).max(1);
+        let windows = samples.windows(window.max(3)).step_by(stride);
+        let slopes: Vec<f64> = windows.filter_map(slope).collect();
+        let squares: f64 = slopes.iter().map(|slope: &f64| slope * slope).sum();
+        Some(Self {
+            first: *slopes.first()?,
+            size: (squares / slopes.len() as f64).sqrt(),
+        })
+    }
+}
+
+/// Pseudo-velocities whose generalised velocities are the slopes, by least squares, and their sizes
+/// along the run. Generalised velocities are affine in the pseudo-velocities.
+fn speeds(
+    model: &dyn Model,
+    state: &[f64],
+    parameters: &[f64],
+    (unknown, seen): (&[usize], &[(usize, Slopes)]),
+) -> Option<(DVector<f64>, DVector<f64>)> {
+    if unknown.is_empty() || seen.is_empty() {
+        return None;
+    }
+    let (info, u) = (model.info(), vec![0.0; model.info().input_len()]);
+    let velocities = |speed: Option<usize>| {
+        let mut x = state.to_vec();
+        for &unknown in unknown {
+            x[unknown] = if Some(unknown) == speed { 1.0 } else { 0.0 };
+        }
+        let mut rates = vec![0.0; info.state_len()];
+        let (x, p) = (&x, parameters);
+        model.rates(
+            At {
+                t: 0.0,
+                x,
+                u: &u,
+                p,
+            },
+            &mut rates,
+        );
+        DVector::from_iterator(seen.len(), seen.iter().map(|(state, _)| rates[*state]))
+    };
+    let at_rest = velocities(None);
+    let columns: Vec<_> = unknown
+        .iter()
+        .map(|&speed| velocities(Some(speed)) - &at_rest)
+        .collect();
+    let inverse = DMatrix::from_columns(&columns).pseudo_inverse(1e-9).ok()?;
+    let first = DVector::from_iterator(seen.len(), seen.iter().map(|(_, slopes)| slopes.first));
+    let size = DVector::from_iterator(seen.len(), seen.iter().map(|(_, slopes)| slopes.size));
+    let speeds = &inverse * (first - at_rest);
+    // What no slope tells stays uncertain.
+    let floor = f64::EPSILON.sqrt();
+    let sizes = (inverse.abs() * size).map(|size| if size > floor { size } else { 1.0 });
+    speeds
+        .iter()
+        .all(|speed| speed.is_finite())
+        .then_some((speeds, sizes))
+}
+
+/// Size of the forces in each of Appell's equations along the recordings: root of the mean squares of
+/// pseudo-forces and bias.
+pub(super) fn forces(
+    setup: &Setup<'_>,
+    starts: &[Start],
+    values: &[f64],
+    recordings: &[Recording],
+) -> Vec<f64> {
+    let (model, info) = (setup.model, setup.model.info());
+    let parameters = &values[..info.parameter_len()];
+    let columns = columns(setup, info);
+    let s = info.speeds;
+    let (mut mass, mut bias, mut forces) = (vec![0.0; s * s], vec![0.0; s], vec![0.0; s]);
+    let mut squares = vec![0.0; s];
+    let mut inertias = vec![0.0; s];
+    let mut count: f64 = 0.0;
+    for (start, recording) in starts.iter().zip(recordings) {
+        let rows = recording.times().len();
+        for row in (0..rows).step_by((rows / PLACES).max(1)) {
+            let mut x = start.state.clone();
+            for (x, column) in x.iter_mut().zip(&columns) {
+                let value = column.map_or(f64::NAN, |column| recording.measured(row)[column]);
+                if !value.is_nan() {
+                    *x = value;
+                }
+            }
+            let mut u = vec![0.0; info.input_len()];
+            u[..recording.input_len()].copy_from_slice(recording.inputs(row));
+            let at = At {
+                t: recording.times()[row],
+                x: &x,
+                u: &u,
+                p: parameters,
+            };
+            model.appell(at, &mut mass, &mut bias, &mut forces);
+            count += 1.0;
+            for i in 0..s {
+                squares[i] += forces[i].powi(2) + bias[i].powi(2);
+                inertias[i] += mass[i * (s + 1)];
+            }
+        }
+    }
+    let size = |(square, inertia): (f64, f64)| {
+        // Where nothing pushes, a unit of acceleration has to do.
+        let size = (square / count).sqrt();
+        if size.is_finite() && size > 0.0 {
+            size
+        } else {
+            inertia / count
+        }
+    };
+    squares.into_iter().zip(inertias).map(size).collect()
+}

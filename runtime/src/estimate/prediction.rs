@@ -1,0 +1,233 @@
+//! Predictions beyond one step: from what the filter knows at a row the motion goes on, and nothing
+//! that is measured afterwards is used.
+
+use super::EstimateError;
+use super::estimation::Estimation;
+use super::filter::{Pass, switch};
+use super::layout::{Layout, Unknown};
+use super::matrix::add_scaled;
+use super::plant::{Place, Plant, Scratch};
+use super::recording::Recording;
+use super::setup::{Measured, Setup};
+use super::timeline::{Action, Advance};
+use super::transition::{STAGES, WEIGHTS};
+
+/// A measured scalar beside its prediction.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Predicted {
+    /// Row from which on nothing was known.
+    pub origin: usize,
+    /// Row of the measured value.
+    pub row: usize,
+    /// Channel.
+    pub channel: usize,
+    /// Time in s since the origin.
+    pub ahead: f64,
+    /// Measured value less predicted value, in SI.
+    pub residual: f64,
+}
+
+impl Estimation<'_> {
+    /// Predictions of all channels of a run `horizon` s ahead, or at the first later row, from one
+    /// row in `every`. What cannot be predicted because numbers overflow is infinitely wrong.
+    pub fn predictions(
+        &self,
+        values: &[f64],
+        run: usize,
+        horizon: f64,
+        every: usize,
+    ) -> Result<Vec<Predicted>, EstimateError> {
+        self.check(values)?;
+        self.layout().place(Unknown::Initial { run, state: 0 })?;
+        let recording = &self.recordings()[run];
+        let actions = self.actions(run, values);
+        let mut pass = self.fresh(run, values, &actions);
+        let mut walk = Walk::new(&pass, recording);
+        let mut predicted = Vec::new();
+        for (place, &action) in actions.iter().enumerate() {
+            pass.act(recording, action)?;
+            match action {
+                Action::Measure { row, channel: None } if row % every.max(1) == 0 => {
+                    walk.begin(&pass, row);
+                    walk.on(&actions[place + 1..], horizon, &mut predicted);
+                }
+                _ => {}
+            }
+        }
+        Ok(predicted)
+    }
+
+    /// Predictions of all rows of a run from the state that is expected before the first one.
+    pub fn free_run(&self, values: &[f64], run: usize) -> Result<Vec<Predicted>, EstimateError> {
+        self.check(values)?;
+        self.layout().place(Unknown::Initial { run, state: 0 })?;
+        let actions = self.actions(run, values);
+        let pass = self.fresh(run, values, &actions);
+        let mut walk = Walk::new(&pass, &self.recordings()[run]);
+        let mut predicted = Vec::new();
+        walk.begin(&pass, 0);
+        walk.on(&actions, f64::INFINITY, &mut predicted);
+        Ok(predicted)
+    }
+}
+
+/// A motion that nothing corrects.
+struct Walk<'a> {
+    setup: &'a Setup<'a>,
+    plant: &'a Plant<'a>,
+    layout: Layout,
+    values: &'a [f64],
+    recording: &'a Recording,
+    origin: usize,
+    started: bool,
+    z: Vec<f64>,
+    held: Vec<f64>,
+    scratch: Scratch,
+    /// States and rates of the stages.
+    stage: Vec<f64>,
+    rates: Vec<f64>,
+}
+
+impl<'a> Walk<'a> {
+    fn new(pass: &Pass<'a>, recording: &'a Recording) -> Self {
+        let n = pass.sizes.n;
+        Self {
+            setup: pass.setup,
+            plant: pass.plant,
+            layout: pass.layout,
+            values: pass.values,
+            recording,
+            origin: 0,
+            started: false,
+            z: vec![0.0; n],
+            held: vec![0.0; pass.sizes.inputs],
+            scratch: pass.plant.scratch(),
+            stage: vec![0.0; n],
+            rates: vec![0.0; n],
+        }
+    }
+
+    /// Takes over what the filter knows.
+    fn begin(&mut self, pass: &Pass<'_>, row: usize) {
+        self.z.copy_from_slice(&pass.z);
+        self.held.copy_from_slice(&pass.held);
+        self.origin = row;
+        self.started = !pass.records.is_empty();
+    }
+
+    /// Goes on until every channel was met at the horizon; along an infinite one all are told.
+    fn on(&mut self, actions: &[Action], horizon: f64, predicted: &mut Vec<Predicted>) {
+        let start = self.recording.times()[self.origin];
+        let mut open = vec![true; self.setup.channels.len()];
+        let mut t = start;
+        for &action in actions {
+            match action {
+                Action::Advance(advance) => {
+                    self.advance(advance);
+                    t = advance.t + advance.h;
+                }
+                Action::Switch { row, input } => {
+                    let inputs = self.recording.inputs(row);
+                    switch(self.setup, !self.started, &mut self.held, inputs, input);
+                    self.started = true;
+                }
+                Action::Measure { row, channel } => {
+                    let ahead = t - start;
+                    let everything = horizon.is_infinite();
+                    // Times of rows carry rounding.
+                    if !everything && ahead < horizon * (1.0 - 1e-9) {
+                        continue;
+                    }
+                    self.compare(row, channel, ahead, &mut open, predicted);
+                    if everything {
+                        open.fill(true);
+                    } else if !open.contains(&true) {
+                        return;
+                    }
+                }
+            }
+        }
+    }
+
+    /// Tells the channels that were sampled for a row and are still open.
+    fn compare(
+        &mut self,
+        row: usize,
+        only: Option<usize>,
+        ahead: f64,
+        open: &mut [bool],
+        predicted: &mut Vec<Predicted>,
+    ) {
+        let measured = self.recording.measured(row);
+        let mut outputs = Vec::new();
+        for (channel, open) in open.iter_mut().enumerate() {
+            let late = self.setup.channels[channel].longest_delay.is_some();
+            let sampled = only.map_or(!late, |only| only == channel);
+            if !*open || !sampled || measured[channel].is_nan() {
+                continue;
+            }
+            let quantity = match self.setup.channels[channel].measures {
+                Measured::State(state) => self.z[state],
+                Measured::Output(output) => {
+                    if outputs.is_empty() {
+                        outputs = vec![0.0; self.plant.info().output_len()];
+                        let t = self.recording.times()[row];
+                        let place = place(self.layout, self.values, (t, &self.z, &self.held));
+                        self.plant
+                            .output_values(place, &mut self.scratch, &mut outputs);
+                    }
+                    outputs[output]
+                }
+            };
+            let scale = self.values[self.layout.scale(channel)];
+            let bias = self.values[self.layout.bias(channel)];
+            let residual = measured[channel] - scale * quantity - bias;
+            *open = false;
+            predicted.push(Predicted {
+                origin: self.origin,
+                row,
+                channel,
+                ahead,
+                residual: if residual.is_nan() {
+                    f64::INFINITY
+                } else {
+                    residual
+                },
+            });
+        }
+    }
+
+    /// A step of the same method as that of the filter.
+    fn advance(&mut self, advance: Advance) {
+        let Advance { t, h, .. } = advance;
+        let (before, mut after) = (self.z.clone(), self.z.clone());
+        self.stage.copy_from_slice(&before);
+        for (stage, weight) in WEIGHTS.into_iter().enumerate() {
+            let part = if stage == 0 { 0.0 } else { STAGES[stage - 1] };
+            let at = (t + part * h, self.stage.as_slice(), self.held.as_slice());
+            let place = place(self.layout, self.values, at);
+            self.plant.rates(place, &mut self.scratch, &mut self.rates);
+            add_scaled(h * weight, &self.rates, &mut after);
+            if let Some(next) = STAGES.get(stage) {
+                self.stage.copy_from_slice(&before);
+                add_scaled(h * next, &self.rates, &mut self.stage);
+            }
+        }
+        self.z = after;
+    }
+}
+
+fn place<'v>(
+    layout: Layout,
+    values: &'v [f64],
+    (t, z, held): (f64, &'v [f64], &'v [f64]),
+) -> Place<'v> {
+    let lags = layout.lag(0);
+    Place {
+        t,
+        z,
+        held,
+        p: &values[..layout.parameters],
+        lags: &values[lags..lags + layout.lags],
+    }
+}

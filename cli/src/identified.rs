@@ -16,7 +16,7 @@ const NEGLIGIBLE: f64 = 0.1;
 /// Runs that are drawn.
 const DRAWN_RUNS: usize = 3;
 
-pub(crate) fn failure(error: IdentifyError) -> Failure {
+pub(crate) fn failure(error: &IdentifyError) -> Failure {
     match error {
         IdentifyError::UnknownParameter { .. } => Failure::Usage(error.to_string()),
         IdentifyError::Estimate(_) => Failure::Computation(error.to_string()),

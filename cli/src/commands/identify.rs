@@ -48,7 +48,7 @@ impl Identify {
             spinner.set_message(stage);
         });
         spinner.finish_and_clear();
-        let answer = answer.map_err(identified::failure)?;
+        let answer = answer.map_err(|error| identified::failure(&error))?;
         if let Some(path) = &self.json {
             files::write_json(path, &identified::json(&set, &answer))?;
         }

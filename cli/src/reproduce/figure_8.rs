@@ -70,7 +70,14 @@ pub(super) fn section() -> Result<Section, Failure> {
         [
             Picture {
                 svg: over_time(title, [slow, fast], path).to_svg(),
-                caption: format!("{title}: tilt, place of the mass, yaw, force. Desired yaw as third line of its panel."),
+                caption: format!(
+                    "{title}: tilt, place of the mass, yaw, force.{}",
+                    if path.turn {
+                        " Third line of the yaw: the desired one."
+                    } else {
+                        ""
+                    }
+                ),
             },
             Picture {
                 svg: from_above(title, [slow, fast], RUNS[at].run).to_svg(),

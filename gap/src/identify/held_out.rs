@@ -1,15 +1,18 @@
 //! Errors of predictions on runs that no fit has seen.
 
-use appell_runtime::estimate::{Estimation, Predicted, Unknown};
+use appell_runtime::estimate::{Estimation, Predicted, Recording, Unknown};
 
 use super::IdentifyError;
 use super::problem::begin;
 use crate::data::{DataSet, Part, Run};
 
-/// Horizons in s at which predictions are judged: 0 is one step, infinity the free run.
+/// Horizons in s at which predictions are judged: 0 is one step, infinity the free run to the end.
 pub const HORIZONS: [f64; 4] = [0.0, 0.1, 1.0, f64::INFINITY];
 /// Most rows of a run from which predictions start.
 const ORIGINS: usize = 200;
+/// Time in s that the filter has to find the state before it predicts, but no more than a tenth of
+/// the run.
+const WARM_UP: f64 = 0.5;
 /// The horizon of traces in s.
 pub const AHEAD: f64 = 1.0;
 /// Most points of a trace.
@@ -18,7 +21,7 @@ const POINTS: usize = 2000;
 /// Root of the mean square of the errors of predictions, in units of the noise of the fitted model.
 #[derive(Debug, Clone, PartialEq)]
 pub struct HeldOut {
-    /// Horizon in s: 0 is one step, infinity the free run from the first row.
+    /// Horizon in s: 0 is one step, infinity the free run to the end.
     pub horizon: f64,
     /// Column; nothing for all of them together.
     pub column: Option<String>,
@@ -125,19 +128,26 @@ impl<'a> Test<'a> {
             *count += 1.0;
         };
         if horizon <= 0.0 {
-            for one in self.estimation.innovations(values)?.iter().flatten() {
-                add(one.channel, one.residual);
+            let runs = self.estimation.innovations(values)?;
+            for (recording, innovations) in self.estimation.recordings().iter().zip(runs) {
+                let first = origins(recording, ORIGINS).first().copied();
+                for one in innovations {
+                    if Some(one.row) >= first {
+                        add(one.channel, one.residual);
+                    }
+                }
             }
             return Ok(sums);
         }
         for (run, recording) in self.estimation.recordings().iter().enumerate() {
-            let every = recording.times().len().div_ceil(ORIGINS);
-            let predicted = if horizon.is_finite() {
-                self.estimation.predictions(values, run, horizon, every)?
-            } else {
-                self.estimation.free_run(values, run)?
-            };
-            for one in predicted {
+            let mut origins = origins(recording, ORIGINS);
+            if horizon.is_infinite() {
+                origins.truncate(1);
+            }
+            let predictions = self
+                .estimation
+                .predictions(values, run, horizon, &origins)?;
+            for one in predictions {
                 add(one.channel, one.residual);
             }
         }
@@ -149,12 +159,11 @@ impl<'a> Test<'a> {
         let mut traces = Vec::new();
         for (index, run) in self.runs.iter().enumerate() {
             let recording = &self.estimation.recordings()[index];
-            let every = recording.times().len().div_ceil(POINTS);
-            let [nominal, fitted] = [0, 1].map(|which: usize| {
-                self.estimation
-                    .predictions(&self.values[which], index, AHEAD, every)
-            });
-            let (nominal, fitted) = (nominal?, fitted?);
+            let origins = origins(recording, POINTS);
+            let predictions =
+                |values: &[f64]| self.estimation.predictions(values, index, AHEAD, &origins);
+            let [nominal, fitted] = &self.values;
+            let (nominal, fitted) = (predictions(nominal)?, predictions(fitted)?);
             for (channel, column) in self.columns.iter().enumerate() {
                 let own = |predicted: &[Predicted]| -> Vec<Predicted> {
                     let own = predicted.iter().filter(|one| one.channel == channel);
@@ -178,6 +187,16 @@ impl<'a> Test<'a> {
         }
         Ok(traces)
     }
+}
+
+/// Rows from which predictions start.
+fn origins(recording: &Recording, most: usize) -> Vec<usize> {
+    let times = recording.times();
+    let (start, end) = (times[0], times[times.len() - 1]);
+    let from = start + WARM_UP.min(0.1 * (end - start));
+    let first = times.partition_point(|&t| t < from);
+    let every = (times.len() - first).div_ceil(most).max(1);
+    (first..times.len()).step_by(every).collect()
 }
 
 fn root(sums: &[(f64, f64)]) -> f64 {

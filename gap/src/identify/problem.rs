@@ -70,21 +70,18 @@ fn free_parameters(
     info: &ModelInfo,
     options: &Options,
 ) -> Result<Vec<Free>, IdentifyError> {
-    let chosen: Vec<usize> = match &options.free {
-        Some(names) => names
-            .iter()
-            .map(|name| {
-                info.parameter_index(name)
-                    .ok_or_else(|| IdentifyError::UnknownParameter {
-                        name: name.clone(),
-                        known: info.parameters.iter().map(|p| p.name.to_string()).collect(),
-                    })
+    let named = |name: &String| {
+        info.parameter_index(name)
+            .ok_or_else(|| IdentifyError::UnknownParameter {
+                name: name.clone(),
+                known: info.parameters.iter().map(|p| p.name.to_string()).collect(),
             })
-            .collect::<Result<_, _>>()?,
-        None => {
-            let has_tolerance = |&i: &usize| set.parameters[i].std.is_some_and(|std| std > 0.0);
-            (0..set.parameters.len()).filter(has_tolerance).collect()
-        }
+    };
+    let has_tolerance = |&i: &usize| set.parameters[i].std.is_some_and(|std| std > 0.0);
+    let chosen: Vec<usize> = if let Some(names) = &options.free {
+        names.iter().map(named).collect::<Result<_, _>>()?
+    } else {
+        (0..set.parameters.len()).filter(has_tolerance).collect()
     };
     if chosen.is_empty() {
         return Err(IdentifyError::NothingFree);

@@ -28,14 +28,15 @@ pub struct Predicted {
 }
 
 impl Estimation<'_> {
-    /// Predictions of all channels of a run `horizon` s ahead, or at the first later row, from one
-    /// row in `every`. What cannot be predicted because numbers overflow is infinitely wrong.
+    /// Predictions of all channels of a run `horizon` s ahead, or at the first later row, from each
+    /// of the rows `origins`, which increase. An infinite horizon tells all later rows. What cannot
+    /// be predicted because numbers overflow is infinitely wrong.
     pub fn predictions(
         &self,
         values: &[f64],
         run: usize,
         horizon: f64,
-        every: usize,
+        origins: &[usize],
     ) -> Result<Vec<Predicted>, EstimateError> {
         self.check(values)?;
         self.layout().place(Unknown::Initial { run, state: 0 })?;
@@ -46,27 +47,13 @@ impl Estimation<'_> {
         let mut predicted = Vec::new();
         for (place, &action) in actions.iter().enumerate() {
             pass.act(recording, action)?;
-            match action {
-                Action::Measure { row, channel: None } if row % every.max(1) == 0 => {
-                    walk.begin(&pass, row);
-                    walk.on(&actions[place + 1..], horizon, &mut predicted);
-                }
-                _ => {}
+            if let Action::Measure { row, channel: None } = action
+                && origins.binary_search(&row).is_ok()
+            {
+                walk.begin(&pass, row);
+                walk.on(&actions[place + 1..], horizon, &mut predicted);
             }
         }
-        Ok(predicted)
-    }
-
-    /// Predictions of all rows of a run from the state that is expected before the first one.
-    pub fn free_run(&self, values: &[f64], run: usize) -> Result<Vec<Predicted>, EstimateError> {
-        self.check(values)?;
-        self.layout().place(Unknown::Initial { run, state: 0 })?;
-        let actions = self.actions(run, values);
-        let pass = self.fresh(run, values, &actions);
-        let mut walk = Walk::new(&pass, &self.recordings()[run]);
-        let mut predicted = Vec::new();
-        walk.begin(&pass, 0);
-        walk.on(&actions, f64::INFINITY, &mut predicted);
         Ok(predicted)
     }
 }
@@ -79,7 +66,6 @@ struct Walk<'a> {
     values: &'a [f64],
     recording: &'a Recording,
     origin: usize,
-    started: bool,
     z: Vec<f64>,
     held: Vec<f64>,
     scratch: Scratch,
@@ -98,7 +84,6 @@ impl<'a> Walk<'a> {
             values: pass.values,
             recording,
             origin: 0,
-            started: false,
             z: vec![0.0; n],
             held: vec![0.0; pass.sizes.inputs],
             scratch: pass.plant.scratch(),
@@ -112,7 +97,6 @@ impl<'a> Walk<'a> {
         self.z.copy_from_slice(&pass.z);
         self.held.copy_from_slice(&pass.held);
         self.origin = row;
-        self.started = !pass.records.is_empty();
     }
 
     /// Goes on until every channel was met at the horizon; along an infinite one all are told.
@@ -128,8 +112,7 @@ impl<'a> Walk<'a> {
                 }
                 Action::Switch { row, input } => {
                     let inputs = self.recording.inputs(row);
-                    switch(self.setup, !self.started, &mut self.held, inputs, input);
-                    self.started = true;
+                    switch(self.setup, false, &mut self.held, inputs, input);
                 }
                 Action::Measure { row, channel } => {
                     let ahead = t - start;

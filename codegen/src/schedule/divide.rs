@@ -1,5 +1,5 @@
-//! Divisions are dear: what divides more than one product gets one reciprocal, and independent
-//! denominators share one division.
+//! Divisions are dear: what divides more than one product gets one reciprocal, independent
+//! denominators share one division, and a division that a late dividend waits for starts early.
 
 use super::dag::{Dag, Id, Item, Op};
 

@@ -1,6 +1,8 @@
 //! Stability over two quantities: a grid of steady motions with their eigenvalues.
 
 use std::cmp::Ordering;
+use std::iter;
+use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
 use nalgebra::DVector;
 
@@ -76,7 +78,8 @@ const SEEDS: usize = 5;
 
 impl Chart {
     /// Of the motions that satisfy a problem's conditions and have the values of the axes. `starts`
-    /// is the number of starting points for each seed; rows are shared among `threads`.
+    /// is the number of starting points for each seed; rows are shared among `threads`, whose number
+    /// does not change the result.
     pub fn of(
         problem: &SteadyProblem<'_>,
         axes: [Axis; 2],
@@ -165,7 +168,8 @@ fn seeds(plane: &Plane<'_>, starts: usize) -> Result<(Vec<DVector<f64>>, usize),
     }
 }
 
-/// The motions of the whole grid: bands of rows side by side, then across their edges.
+/// The motions of the whole grid: a band for each row of seeds, then across their edges. Sheets make
+/// bands unlike, so each thread takes the next one when it is free.
 fn motions(
     plane: &Plane<'_>,
     seeds: &[DVector<f64>],
@@ -173,7 +177,7 @@ fn motions(
     threads: usize,
 ) -> Vec<Vec<DVector<f64>>> {
     let rows = plane.axes[1].count;
-    let high = rows.div_ceil(threads.max(1));
+    let high = rows.div_ceil(SEEDS);
     let filled = |from: usize| {
         let mut band = Flood::over(plane, from..rows.min(from + high));
         for seed in seeds {
@@ -182,16 +186,18 @@ fn motions(
         }
         band
     };
-    let bands = std::thread::scope(|scope| {
-        let bands = (0..rows).step_by(high);
-        let running: Vec<_> = bands
-            .map(|from| scope.spawn(move || filled(from)))
-            .collect();
-        running
-            .into_iter()
-            .filter_map(|band| band.join().ok())
-            .collect()
+    let next = AtomicUsize::new(0);
+    let taken = || {
+        let from = iter::repeat_with(|| next.fetch_add(high, Relaxed));
+        let bands = from.take_while(|&from| from < rows).map(filled);
+        bands.collect::<Vec<_>>()
+    };
+    let mut bands: Vec<Flood<'_>> = std::thread::scope(|scope| {
+        let running: Vec<_> = (0..threads.max(1)).map(|_| scope.spawn(taken)).collect();
+        let taken = running.into_iter().filter_map(|bands| bands.join().ok());
+        taken.flatten().collect()
     });
+    bands.sort_by_key(Flood::first_row);
     let mut all = Flood::joined(plane, bands);
     all.spread();
     all.fill_holes(plane.problem, starts);

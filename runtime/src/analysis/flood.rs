@@ -42,6 +42,10 @@ impl<'a> Flood<'a> {
         }
     }
 
+    pub(super) fn first_row(&self) -> usize {
+        self.rows.start
+    }
+
     /// Of bands of rows that follow each other; their edges are to spread again.
     pub(super) fn joined(plane: &'a Plane<'a>, bands: Vec<Self>) -> Self {
         let mut all = Self::over(plane, 0..plane.axes[1].count);

@@ -14,6 +14,7 @@ mod film;
 mod formula;
 mod identified;
 mod motions;
+mod picture;
 mod progress;
 mod recording;
 mod reproduce;

@@ -48,7 +48,7 @@ pub(crate) struct Question {
     #[arg(long, value_name = "FILE.csv")]
     pub(crate) csv: Option<PathBuf>,
     /// Draw the motions along the quantity
-    #[arg(long, value_name = "FILE.svg")]
+    #[arg(long, value_name = "FILE.svg|png")]
     pub(crate) plot: Option<PathBuf>,
     /// Write the motions in SI; `-` is standard output
     #[arg(long, value_name = "FILE")]

@@ -9,6 +9,7 @@ use crate::control::{ask, attraction, law_file, report};
 use crate::engine::Equations;
 use crate::failure::{Failure, tell};
 use crate::files;
+use crate::picture;
 use crate::setup::{Assignment, Setup};
 use crate::source::Source;
 
@@ -82,7 +83,7 @@ pub(crate) struct Control {
     )]
     for_s: f64,
     /// Draw the disturbances of two states and what becomes of them
-    #[arg(long, value_name = "FILE.svg", requires = "attraction")]
+    #[arg(long, value_name = "FILE.svg|png", requires = "attraction")]
     plot: Option<PathBuf>,
     /// Write everything in SI; `-` is standard output
     #[arg(long, value_name = "FILE")]
@@ -120,7 +121,7 @@ impl Control {
                     text += &region.text();
                     json["attraction"] = region.json();
                     if let Some(path) = &self.plot {
-                        files::write(path, &region.map()?.to_svg())?;
+                        picture::write(path, &region.map()?.to_svg())?;
                     }
                 }
                 (text, json)

@@ -7,7 +7,7 @@ use appell_codegen::{Derived, compile::report, derived};
 
 use crate::failure::Failure;
 use crate::source::Source;
-use crate::{files, progress};
+use crate::{picture, progress};
 
 /// Draws the mechanism at its initial state, as SVG.
 ///
@@ -34,6 +34,6 @@ impl Draw {
             .map_err(|findings| report(&mechanism, &source.text, &findings))?;
         spinner.finish_and_clear();
         let default = format!("{}.svg", mechanism.name);
-        files::write(self.out.as_deref().unwrap_or(Path::new(&default)), &svg)
+        picture::write(self.out.as_deref().unwrap_or(Path::new(&default)), &svg)
     }
 }

@@ -7,7 +7,7 @@ use appell_gap::identify::{self, Options};
 use crate::engine::Equations;
 use crate::failure::Failure;
 use crate::source::Source;
-use crate::{files, identified, progress, recording};
+use crate::{files, identified, picture, progress, recording};
 
 /// Finds the parameters that make recordings most likely, with intervals, and tells how well the
 /// model then predicts the runs that were held out.
@@ -29,7 +29,7 @@ pub(crate) struct Identify {
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
     /// Draw the runs that were held out beside predictions of them
-    #[arg(long, value_name = "FILE.svg")]
+    #[arg(long, value_name = "FILE.svg|png")]
     plot: Option<PathBuf>,
     /// Write a page with all of it
     #[arg(long, value_name = "FILE.html")]
@@ -53,7 +53,7 @@ impl Identify {
             files::write_json(path, &identified::json(&set, &answer))?;
         }
         if let Some(path) = &self.plot {
-            files::write(path, &identified::figure(&set, &answer).to_svg())?;
+            picture::write(path, &identified::figure(&set, &answer).to_svg())?;
         }
         if let Some(path) = &self.html {
             files::write(path, &identified::page(&set, &answer))?;

@@ -14,7 +14,7 @@ use crate::engine::{Engine, Equations};
 use crate::failure::{Failure, note};
 use crate::setup::{Assignment, Setup};
 use crate::source::Source;
-use crate::{feedback, files, film, progress, summary, tabulated};
+use crate::{feedback, files, film, picture, progress, summary, tabulated};
 
 /// Integrates the equations of motion and tells what happened.
 ///
@@ -89,7 +89,7 @@ pub(crate) struct Simulate {
     #[arg(long, value_name = "FILE.csv")]
     csv: Option<PathBuf>,
     /// Draw states and inputs over time
-    #[arg(long, value_name = "FILE.svg")]
+    #[arg(long, value_name = "FILE.svg|png")]
     plot: Option<PathBuf>,
     /// Write a page with the moving mechanism, for a browser; it needs no network
     #[arg(long, value_name = "FILE.html")]
@@ -188,7 +188,7 @@ impl Simulate {
             write_csv(path, &trajectory)?;
         }
         if let Some(path) = &self.plot {
-            files::write(path, &Figure::of_states_and_inputs(&trajectory).to_svg())?;
+            picture::write(path, &Figure::of_states_and_inputs(&trajectory).to_svg())?;
         }
         if let Some(path) = &self.html {
             let page = film::page(&equations, &setup, &trajectory, failure.as_deref())?;

@@ -6,6 +6,7 @@ use appell_runtime::figure::{Figure, Panel, Series};
 use crate::failure::{Failure, note};
 use crate::files;
 use crate::motions::{Answer, Asked, Question, export, told};
+use crate::picture;
 
 /// Finds steady motions: those whose essential states rest while hidden coordinates run on.
 ///
@@ -52,7 +53,7 @@ pub(super) fn write(
     }
     match (&question.plot, answer, asked.along) {
         (Some(path), Answer::Branches(branches), Some((along, _))) => {
-            files::write(path, &figure(asked, along, branches).to_svg())?;
+            picture::write(path, &figure(asked, along, branches).to_svg())?;
         }
         (Some(_), ..) => {
             note("`--plot` draws motions along a quantity: give `--along NAME=FROM..TO`");

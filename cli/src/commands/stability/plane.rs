@@ -13,6 +13,7 @@ use crate::failure::Failure;
 use crate::files;
 use crate::motions::regions::{self, Shown};
 use crate::motions::{Asked, Span, export, told};
+use crate::picture;
 use crate::setup::Setup;
 
 /// `X=FROM..TO,Y=FROM..TO` as it was given.
@@ -74,7 +75,7 @@ impl StabilityCommand {
             files::write_with(path, |to| csv(asked, &chart, to))?;
         }
         if let Some(path) = &question.plot {
-            files::write(path, &map(asked, &chart).to_svg())?;
+            picture::write(path, &map(asked, &chart).to_svg())?;
         }
         let text = told::structure(asked) + &text(asked, &chart);
         files::print_beside(&text, &[&question.csv, &question.json, &question.plot])

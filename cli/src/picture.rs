@@ -1,0 +1,52 @@
+//! Pictures for people: SVG, or PNG by the name of the file.
+
+use std::path::Path;
+
+use crate::failure::Failure;
+use crate::files;
+
+/// Writes a picture, as PNG where the name ends so; `-` is standard output and SVG.
+pub(crate) fn write(path: &Path, svg: &str) -> Result<(), Failure> {
+    if path
+        .extension()
+        .is_some_and(|end| end.eq_ignore_ascii_case("png"))
+    {
+        let png = png(svg)?;
+        files::write_with(path, |to| to.write_all(&png))
+    } else {
+        files::write(path, svg)
+    }
+}
+
+/// The picture in its light colours, at twice its size.
+#[cfg(feature = "png")]
+fn png(svg: &str) -> Result<Vec<u8>, Failure> {
+    use resvg::tiny_skia::{Pixmap, Transform};
+    use resvg::usvg::{Options, Tree};
+
+    /// Pixels for a unit of the picture.
+    const SCALE: f32 = 2.0;
+    /// The same letters on every machine, with the Greek ones and the dots above them.
+    const LETTERS: &[u8] = include_bytes!("../vendor/dejavu/DejaVuSans.ttf");
+    let failed = |cause: String| Failure::Computation(format!("the picture has no PNG: {cause}"));
+    let mut options = Options::default();
+    let fonts = options.fontdb_mut();
+    fonts.load_font_data(LETTERS.to_vec());
+    fonts.set_sans_serif_family("DejaVu Sans");
+    let tree = Tree::from_str(svg, &options).map_err(|cause| failed(cause.to_string()))?;
+    let size = tree.size().to_int_size().scale_by(SCALE);
+    let pixels = size.and_then(|size| Pixmap::new(size.width(), size.height()));
+    let mut pixels = pixels.ok_or_else(|| failed("it has no size".to_owned()))?;
+    let scale = Transform::from_scale(SCALE, SCALE);
+    resvg::render(&tree, scale, &mut pixels.as_mut());
+    pixels
+        .encode_png()
+        .map_err(|cause| failed(cause.to_string()))
+}
+
+#[cfg(not(feature = "png"))]
+fn png(_: &str) -> Result<Vec<u8>, Failure> {
+    let help = "this program was built without PNG: write to a name that ends in .svg, or build it \
+                with `--features png`";
+    Err(Failure::Usage(help.to_owned()))
+}

@@ -9,8 +9,26 @@
 //! ```
 //!
 //! An acceleration that was not measured counts as unknown like an input, and takes one relation away.
+//!
+//! | file | idea |
+//! |---|---|
+//! | `inverse.rs` | the equations at a state: inputs, relations |
+//! | `relation.rs` | relations of a measured motion with exact derivatives; inputs with their covariance |
+//! | `track.rs` | recorded coordinates as splines with the covariance of all derivatives |
+//! | `consistency.rs` | how inconsistent recordings are with a model, weighed by their noise |
+//! | `search.rs` | the least inconsistent parameters, with intervals |
+
+mod consistency;
+mod relation;
+mod search;
+mod track;
 
 use nalgebra::{DMatrix, DVector};
+
+pub use consistency::{Consistency, Inconsistency, Sought};
+pub use relation::{Motion, Relations, Rows};
+pub use search::Found;
+pub use track::{Record, Stretch, Track};
 
 use crate::model::{At, Model};
 use crate::singular::Singular;
@@ -37,6 +55,47 @@ pub enum InverseError {
         /// How many unknowns there are.
         unknowns: usize,
     },
+    /// A measured coordinate that the model does not have.
+    #[error("coordinate {index}: the model has {coordinates}")]
+    NoCoordinate {
+        /// Its index.
+        index: usize,
+        /// How many there are.
+        coordinates: usize,
+    },
+    /// A sought value that does not exist.
+    #[error("value {index} is looked for: there are {len}")]
+    Unknown {
+        /// Its index.
+        index: usize,
+        /// How many there are.
+        len: usize,
+    },
+    /// Time itself moves the model.
+    #[error(
+        "time drives the model, by a signal or a formula; its motion cannot be told from coordinates alone"
+    )]
+    Driven,
+    /// The inputs can make every motion.
+    #[error("the inputs can make every motion: no relation is left over")]
+    NoRelation,
+    /// The inputs reach more or fewer equations than elsewhere.
+    #[error("{found} relations are left over here, {expected} elsewhere")]
+    OtherKind {
+        /// Relations here.
+        found: usize,
+        /// Relations elsewhere.
+        expected: usize,
+    },
+    /// No run is long enough.
+    #[error("no run has enough samples without a gap")]
+    TooShort,
+    /// Numbers that give out.
+    #[error("the relations are not finite at these parameters")]
+    NotFinite,
+    /// The motion varies too little, or the parameters change nothing.
+    #[error("the recorded motions do not tell these values apart from noise: a matrix is singular")]
+    Singular,
     /// Not one acceleration for each pseudo-velocity.
     #[error("there are {found} accelerations for {needed} pseudo-velocities")]
     Lengths {

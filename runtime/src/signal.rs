@@ -6,6 +6,7 @@
 //! | `samples.rs` | measured values at increasing times; what an estimate of them is |
 //! | `savitzky_golay.rs`, `window.rs` | polynomials fitted in a window that moves; how wide it may be |
 //! | `kinematic.rs`, `spline.rs` | integrated white noise, smoothed; splines with cross-validation |
+//! | `regression_spline.rs` | splines of least squares with knots that several quantities share |
 //! | `butterworth.rs` | a low-pass filter without a shift in phase |
 //! | `noise.rs` | the noise level, from differences and from standstill |
 //! | `angle.rs` | angles counted on through whole turns |
@@ -19,6 +20,7 @@ pub mod angle;
 pub mod butterworth;
 pub mod kinematic;
 pub mod noise;
+pub mod regression_spline;
 pub mod samples;
 pub mod savitzky_golay;
 pub mod spline;

@@ -65,6 +65,18 @@ impl<T: ComplexField<RealField = f64>> Singular<T> {
     }
 }
 
+impl Singular<f64> {
+    /// A⁺, where only the first `rank` singular values count.
+    pub fn inverse(&self, rank: usize) -> DMatrix<f64> {
+        let rank = rank.min(self.values.len());
+        let mut scaled = self.right.columns(0, rank).into_owned();
+        for (mut column, value) in scaled.column_iter_mut().zip(&self.values) {
+            column /= value * value;
+        }
+        scaled * self.images.columns(0, rank).transpose()
+    }
+}
+
 /// Turns two columns until they stand at right angles; false where they do already.
 fn turn<T: ComplexField<RealField = f64>>(
     images: &mut DMatrix<T>,

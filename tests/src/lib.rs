@@ -21,5 +21,6 @@ pub mod point;
 pub mod random;
 pub mod recorded;
 pub mod reference;
+pub mod rides;
 pub mod shipped;
 pub mod steady;

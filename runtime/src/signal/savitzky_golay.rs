@@ -25,6 +25,11 @@ impl SavitzkyGolay {
         Ok(Self { degree, count })
     }
 
+    /// Samples of a window.
+    pub const fn count(self) -> usize {
+        self.count
+    }
+
     /// Value and derivatives at the times of the samples, also where the value is missing.
     ///
     /// The covariance is that of white noise of the standard deviation `std`; it holds no error of

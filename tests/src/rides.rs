@@ -1,0 +1,143 @@
+//! Rides of a planar electric unicycle: manoeuvres under a rider who keeps the balance and sways.
+
+use appell_codegen::jit::JitModel;
+use appell_codegen::program::FunctionKind;
+use appell_models::Shipped;
+use appell_runtime::Simulation;
+use appell_runtime::control::lqr::{self, weights};
+use appell_runtime::control::operating_point::OperatingPoint;
+use appell_runtime::control::reduction::reduce;
+use appell_runtime::integrate::Options;
+use appell_runtime::inverse::Record;
+use appell_runtime::model::Model;
+use appell_runtime::simulate::Sampling;
+use nalgebra::{DMatrix, DVector};
+
+use crate::random::Random;
+use crate::recorded::normal;
+
+/// States that the rider feels.
+const FELT: [&str; 5] = ["v", "gamma_dot", "phi_dot", "gamma", "phi"];
+/// Frames a second.
+pub const RATE: f64 = 120.0;
+/// Length of a ride in s.
+pub const LENGTH: f64 = 6.0;
+/// Height of the pivot that is captured above the axle, and of the rider's centre above the axle, in m.
+const HEIGHTS: [f64; 2] = [0.45, 0.56];
+/// Standard deviations of positions in m and of angles in rad.
+const NOISE: [f64; 2] = [2e-4, 0.5 * std::f64::consts::PI / 180.0];
+
+/// What is ridden: speeds in m/s before and after.
+#[derive(Debug, Clone, Copy)]
+pub struct Manoeuvre {
+    /// Its name.
+    pub name: &'static str,
+    /// Speeds at the beginning and at the end.
+    pub speeds: [f64; 2],
+}
+
+/// Straight rides.
+pub const MANOEUVRES: [Manoeuvre; 3] = [
+    Manoeuvre {
+        name: "constant speed",
+        speeds: [2.0, 2.0],
+    },
+    Manoeuvre {
+        name: "acceleration",
+        speeds: [0.5, 3.0],
+    },
+    Manoeuvre {
+        name: "deceleration",
+        speeds: [3.0, 0.5],
+    },
+];
+
+/// The model with formulas for its derivatives.
+pub fn planar() -> JitModel {
+    let shipped = Shipped::find("euc_3dof").unwrap();
+    let program = appell_codegen::compile(shipped.file, shipped.spec, &FunctionKind::ALL).unwrap();
+    JitModel::new(&program).unwrap()
+}
+
+impl Manoeuvre {
+    /// The desired speed: a smooth step over two seconds.
+    fn speed(self, t: f64) -> f64 {
+        let part = ((t - 1.5) / 2.0).clamp(0.0, 1.0);
+        let [from, to] = self.speeds;
+        from + (to - from) * part * part * (3.0 - 2.0 * part)
+    }
+
+    /// x, γ and φ at all frames of a ride, without noise.
+    pub fn ride(self, model: &dyn Model, random: &mut Random) -> Record {
+        self.long_ride(model, random, LENGTH)
+    }
+
+    /// The same for so many seconds.
+    pub fn long_ride(self, model: &dyn Model, random: &mut Random, seconds: f64) -> Record {
+        let info = model.info();
+        let states = FELT.map(|name| info.state_index(name).unwrap());
+        let equations = OperatingPoint::new(model).equations(&[0, 1]).unwrap();
+        let places = states.map(|state| equations.states.iter().position(|&s| s == state).unwrap());
+        let system = reduce(&equations.system, &places).unwrap().system;
+        let q = weights(&[4.0, 1.0, 1.0, 40.0, 4.0]);
+        let gain = lqr::continuous(&system, &q, &weights(&[0.01, 0.01]))
+            .unwrap()
+            .gain;
+        // The rider sways: some newton metres at frequencies of the body.
+        let sway: Vec<[f64; 3]> = (0..4)
+            .map(|k| {
+                let frequency = 2.0 + 1.5 * f64::from(k) + random.between(-0.5, 0.5);
+                [
+                    4.0 / (1.0 + f64::from(k)),
+                    frequency,
+                    random.between(0.0, 6.28),
+                ]
+            })
+            .collect();
+        let rider = move |t: f64, x: &[f64], u: &mut [f64]| {
+            let off = DVector::from_fn(states.len(), |i, _| {
+                x[states[i]] - if i == 0 { self.speed(t) } else { 0.0 }
+            });
+            u.copy_from_slice((-(&gain * off)).as_slice());
+            u[1] += sway
+                .iter()
+                .map(|[a, w, start]| a * (w * t + start).sin())
+                .sum::<f64>();
+        };
+        let mut initial_state = info.initial_state();
+        initial_state[states[0]] = self.speeds[0];
+        let motion = Simulation {
+            initial_state,
+            inputs: &rider,
+            span: [0.0, seconds],
+            options: Options::with_tolerances(1e-12, 1e-12),
+            sampling: Sampling::Every(1.0 / RATE),
+            ..Simulation::new(model)
+        };
+        let motion = motion.run().unwrap();
+        let columns =
+            ["x", "gamma", "phi"].map(|name| DVector::from_vec(motion.column(name).unwrap()));
+        Record {
+            times: motion.times().to_vec(),
+            values: DMatrix::from_columns(&columns),
+        }
+    }
+}
+
+/// The same ride as a capture sees it: the noise of the body's angle reaches the axle, whose place is
+/// computed from a pivot above it, and with it the rider's angle.
+pub fn seen(ride: &Record, random: &mut Random) -> Record {
+    let mut values = ride.values.clone();
+    for mut row in values.row_iter_mut() {
+        let [place, centre] = [0, 1].map(|_| NOISE[0] * normal(random));
+        let angle = NOISE[1] * normal(random);
+        let axle = place - HEIGHTS[0] * angle;
+        row[0] += axle;
+        row[1] += angle;
+        row[2] += (centre - axle) / HEIGHTS[1];
+    }
+    Record {
+        times: ride.times.clone(),
+        values,
+    }
+}

@@ -17,6 +17,7 @@ mod motions;
 mod picture;
 mod progress;
 mod recording;
+mod relations;
 mod reproduce;
 mod setup;
 mod source;

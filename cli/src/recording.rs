@@ -131,7 +131,7 @@ fn role(role: Role) -> &'static str {
 }
 
 /// `warning: run.csv:12: theta: 3 values of 200 missing`
-fn sentence(finding: &Finding) -> String {
+pub(crate) fn sentence(finding: &Finding) -> String {
     let mut text = format!("{}: ", severity(finding));
     if let Some(run) = &finding.run {
         let line = finding.line.map(|line| format!(":{line}"));

@@ -24,9 +24,9 @@
 mod bare;
 mod channel;
 mod clock;
-mod csv;
+pub(crate) mod csv;
 mod error;
-mod fields;
+pub(crate) mod fields;
 mod finding;
 pub mod limits;
 mod manifest;

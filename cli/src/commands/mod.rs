@@ -8,7 +8,9 @@ mod derive;
 mod draw;
 mod evaluate;
 mod identify;
+mod inverse;
 mod list;
+mod motion;
 mod new;
 mod recording;
 mod reproduce;
@@ -32,6 +34,8 @@ pub(crate) enum Command {
     Control(Box<control::Control>),
     Recording(recording::Recording),
     Identify(identify::Identify),
+    Inverse(inverse::Inverse),
+    Motion(motion::Motion),
     Steady(steady::Steady),
     Stability(stability::StabilityCommand),
     Demo(demo::Demo),
@@ -53,6 +57,8 @@ pub(crate) fn run(command: Command) -> Result<(), Failure> {
         Command::Control(command) => command.run(),
         Command::Recording(command) => command.run(),
         Command::Identify(command) => command.run(),
+        Command::Inverse(command) => command.run(),
+        Command::Motion(command) => command.run(),
         Command::Steady(command) => command.run(),
         Command::Stability(command) => command.run(),
         Command::Demo(command) => command.run(),

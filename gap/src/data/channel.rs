@@ -100,7 +100,7 @@ impl Role {
 }
 
 impl Channel {
-    pub(super) fn new(column: &str, role: Role, unit: Unit, stated_noise: Option<f64>) -> Self {
+    pub(crate) fn new(column: &str, role: Role, unit: Unit, stated_noise: Option<f64>) -> Self {
         Self {
             column: column.to_owned(),
             role,

@@ -15,17 +15,17 @@ use super::limits::{MAX_LINE, MAX_MISTAKES, MIN_ROWS};
 use super::{DataError, Finding, FindingKind, motive};
 
 /// The numbers of a file.
-pub(super) struct Table {
+pub(crate) struct Table {
     /// Times in s, strictly increasing.
-    pub(super) times: Vec<f64>,
+    pub(crate) times: Vec<f64>,
     /// Values in SI, a column for each channel; NaN where one is missing.
-    pub(super) columns: Vec<Vec<f64>>,
+    pub(crate) columns: Vec<Vec<f64>>,
     /// What was left out.
-    pub(super) findings: Vec<Finding>,
+    pub(crate) findings: Vec<Finding>,
 }
 
 /// Reads the columns of the channels. `budget` counts down the numbers that may still come.
-pub(super) fn read(
+pub(crate) fn read(
     path: &Path,
     channels: &[Channel],
     budget: &mut usize,

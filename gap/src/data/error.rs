@@ -50,7 +50,7 @@ impl DataError {
     }
 
     /// A file that is wrong as a whole.
-    pub(super) fn whole(file: impl Into<String>, message: impl Into<String>) -> Self {
+    pub(crate) fn whole(file: impl Into<String>, message: impl Into<String>) -> Self {
         Self::Whole {
             file: file.into(),
             message: message.into(),

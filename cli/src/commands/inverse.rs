@@ -1,0 +1,62 @@
+//! `appell inverse`
+
+use std::path::PathBuf;
+
+use appell_gap::inverse::{self, Options, RelationError};
+
+use crate::engine::Equations;
+use crate::failure::Failure;
+use crate::source::Source;
+use crate::{files, progress, recording, relations};
+
+/// Finds the inputs of recorded motions, and parameters from the equations that the inputs leave over.
+///
+/// Where a mechanism has more equations of motion than inputs, some combinations of them hold whatever
+/// the inputs were. They are weighed by the noise of the recordings, through splines and exact
+/// derivatives. All coordinates that move the mechanism have to be measured; no input has to be.
+#[derive(Debug, clap::Args)]
+pub(crate) struct Inverse {
+    /// Name of a shipped mechanism or path of a spec
+    model: String,
+    /// Folder with a `recording.toml`, or CSV files with columns of the spec's names
+    #[arg(long, required = true, num_args = 1.., value_name = "DIR")]
+    data: Vec<PathBuf>,
+    /// Parameters to look for
+    #[arg(long, value_delimiter = ',', value_name = "NAMES")]
+    free: Vec<String>,
+    /// Columns that may show a constant too much
+    #[arg(long, value_delimiter = ',', value_name = "COLUMNS")]
+    bias: Vec<String>,
+    /// Write everything in SI; `-` is standard output
+    #[arg(long, value_name = "FILE")]
+    json: Option<PathBuf>,
+    /// Draw the inputs of the first runs with their bands
+    #[arg(long, value_name = "FILE.svg")]
+    plot: Option<PathBuf>,
+}
+
+impl Inverse {
+    pub(super) fn run(&self) -> Result<(), Failure> {
+        let set = recording::read(&self.data, Some(&self.model))?;
+        let equations = Equations::for_estimation(&Source::find(&self.model)?)?;
+        let options = Options {
+            free: self.free.clone(),
+            biased: self.bias.clone(),
+        };
+        let spinner = progress::spinner("weighing the equations of motion");
+        let answer = inverse::find(&set, equations.model(), &options);
+        spinner.finish_and_clear();
+        let answer = answer.map_err(|error| match error {
+            RelationError::Inverse(_) => Failure::Computation(error.to_string()),
+            _ => Failure::Usage(error.to_string()),
+        })?;
+        let info = equations.model().info();
+        if let Some(path) = &self.json {
+            files::write_json(path, &relations::json(info, &answer))?;
+        }
+        if let Some(path) = &self.plot {
+            files::write(path, &relations::figure(info, &answer).to_svg())?;
+        }
+        files::print_beside(&relations::text(&answer), &[&self.json, &self.plot])
+    }
+}

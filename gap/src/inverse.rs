@@ -1,0 +1,320 @@
+//! Parameters and inputs of recorded motions whose inputs nobody measured.
+//!
+//! The equations that the inputs leave over hold whatever they were; see
+//! [`appell_runtime::inverse`]. Runs to be fitted take part; their coordinates have to be measured.
+
+use appell_runtime::inverse::{Consistency, Found, InverseError, Record, Relations, Sought, Track};
+use appell_runtime::model::{Model, Quantity};
+use nalgebra::{DMatrix, DVector};
+
+use crate::data::{DataSet, Measured, Part, Role};
+
+/// Values of a profile on each side of the nominal one.
+const PROFILE: i32 = 12;
+/// From one value of a profile to the next.
+const FACTOR: f64 = 1.12;
+
+/// What is looked for.
+#[derive(Debug, Clone, Default)]
+pub struct Options {
+    /// Parameters by name.
+    pub free: Vec<String>,
+    /// Columns whose bias is unknown.
+    pub biased: Vec<String>,
+}
+
+/// Why nothing is found.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum RelationError {
+    /// No such parameter.
+    #[error("the spec has no parameter `{name}`; there are {known}")]
+    UnknownParameter {
+        /// What was asked for.
+        name: String,
+        /// What there is.
+        known: String,
+    },
+    /// No such column of a coordinate.
+    #[error("no column `{name}` measures a coordinate; there are {known}")]
+    UnknownColumn {
+        /// What was asked for.
+        name: String,
+        /// What there is.
+        known: String,
+    },
+    /// The computation failed.
+    #[error(transparent)]
+    Inverse(#[from] InverseError),
+}
+
+/// A sought value.
+#[derive(Debug, Clone)]
+pub struct Estimate {
+    /// A parameter, or the coordinate whose column is biased.
+    pub quantity: Quantity,
+    /// Whether it is the bias of a column.
+    pub is_bias: bool,
+    /// Nominal value in SI.
+    pub nominal: f64,
+    /// Value in SI.
+    pub value: f64,
+    /// Standard deviation from the noise.
+    pub std: f64,
+    /// The same from how stretches of the recordings disagree.
+    pub robust_std: f64,
+    /// 95 % interval; infinite at an end where the motions do not tell.
+    pub interval95: [f64; 2],
+    /// Values and how much larger the inconsistency is there, the others fitted; parameters only.
+    pub profile: Vec<[f64; 2]>,
+}
+
+impl Estimate {
+    /// Whether the motions bound the value on both sides.
+    pub fn is_told(&self) -> bool {
+        self.interval95.iter().all(|end| end.is_finite())
+    }
+}
+
+/// The inputs of a run.
+#[derive(Debug, Clone)]
+pub struct Inputs {
+    /// Name of the run.
+    pub run: String,
+    /// Times in s.
+    pub times: Vec<f64>,
+    /// For each declared input its values in SI.
+    pub values: Vec<Vec<f64>>,
+    /// Their standard deviations.
+    pub stds: Vec<Vec<f64>>,
+}
+
+/// What motions tell whatever their inputs were.
+#[derive(Debug, Clone)]
+pub struct Answer {
+    /// The sought values.
+    pub estimates: Vec<Estimate>,
+    /// Everything on the search; nothing where no value was sought.
+    pub found: Option<Found>,
+    /// Relations that the inputs leave over at each time.
+    pub relations: usize,
+    /// Mean square of the whitened relations at the values found.
+    pub normalised_square: f64,
+    /// Distance of the knots of the splines in s.
+    pub spacing: f64,
+    /// Measured columns with their noise in SI.
+    pub noise: Vec<(String, f64)>,
+    /// Correlation of the noise of the columns.
+    pub correlation: DMatrix<f64>,
+    /// The inputs of each run.
+    pub inputs: Vec<Inputs>,
+}
+
+/// Finds what is sought, and the inputs.
+pub fn find(set: &DataSet, model: &dyn Model, options: &Options) -> Result<Answer, RelationError> {
+    let info = model.info();
+    let columns = coordinates(set);
+    let sought = sought(set, model, &columns, options)?;
+    let runs: Vec<_> = set
+        .runs
+        .iter()
+        .filter(|run| run.part == Part::Fit)
+        .collect();
+    let records: Vec<Record> = runs
+        .iter()
+        .map(|run| {
+            let values = columns
+                .iter()
+                .map(|(column, _)| DVector::from_column_slice(&run.values[*column]));
+            Record {
+                times: run.times.clone(),
+                values: DMatrix::from_columns(&values.collect::<Vec<_>>()),
+            }
+        })
+        .collect();
+    let track = Track::of(&records)?;
+    let p: Vec<f64> = set
+        .parameters
+        .iter()
+        .map(|parameter| parameter.value)
+        .collect();
+    let measured: Vec<usize> = columns.iter().map(|(_, coordinate)| *coordinate).collect();
+    let relations = Relations::new(model, &measured, &track.stretches[0].motions[0], &p)?;
+    let count = relations.len();
+    let consistency = Consistency::new(relations, track, p, sought)?;
+    let found = if consistency.sought().is_empty() {
+        None
+    } else {
+        Some(consistency.find()?)
+    };
+    let values = found
+        .as_ref()
+        .map_or_else(|| consistency.nominal(), |found| found.values.clone());
+    let normalised_square = if let Some(found) = &found {
+        found.normalised_square()
+    } else {
+        let here = consistency.at(&values)?;
+        2.0 * here.cost / here.count.max(1) as f64
+    };
+    let track = consistency.track();
+    let std = |k: usize| track.noise[(k, k)].sqrt();
+    let estimate = |(index, sought): (usize, &Sought)| {
+        let found = found.as_ref()?;
+        Some(estimate(&consistency, found, index, *sought, info))
+    };
+    let estimates = consistency.sought().iter().enumerate().filter_map(estimate);
+    let estimates = estimates.collect::<Result<_, InverseError>>()?;
+    let inputs = runs.iter().enumerate().map(|(number, run)| {
+        let (times, values, stds) = inputs(&consistency, &values, found.as_ref(), number)?;
+        Ok(Inputs {
+            run: run.name.clone(),
+            times,
+            values,
+            stds,
+        })
+    });
+    Ok(Answer {
+        estimates,
+        relations: count,
+        normalised_square,
+        spacing: track.spacing,
+        noise: (columns.iter().enumerate())
+            .map(|(k, (column, _))| (set.channels[*column].column.clone(), std(k)))
+            .collect(),
+        correlation: DMatrix::from_fn(measured.len(), measured.len(), |i, j| {
+            track.noise[(i, j)] / (std(i) * std(j))
+        }),
+        inputs: inputs.collect::<Result<_, InverseError>>()?,
+        found,
+    })
+}
+
+/// Columns that measure coordinates, with the coordinates.
+fn coordinates(set: &DataSet) -> Vec<(usize, usize)> {
+    let columns = set.channels.iter().enumerate();
+    columns
+        .filter_map(|(column, channel)| match channel.role {
+            Role::Measures(Measured::Coordinate(coordinate)) => Some((column, coordinate)),
+            _ => None,
+        })
+        .collect()
+}
+
+fn sought(
+    set: &DataSet,
+    model: &dyn Model,
+    columns: &[(usize, usize)],
+    options: &Options,
+) -> Result<Vec<Sought>, RelationError> {
+    let info = model.info();
+    let parameter = |name: &String| {
+        let index = info.parameter_index(name).map(Sought::Parameter);
+        index.ok_or_else(|| RelationError::UnknownParameter {
+            name: name.clone(),
+            known: listed(info.parameters.iter().map(|own| own.name.as_ref())),
+        })
+    };
+    let name = |(column, _): &(usize, usize)| set.channels[*column].column.as_str();
+    let bias = |wanted: &String| {
+        let place = columns.iter().position(|own| name(own) == wanted);
+        place
+            .map(Sought::Bias)
+            .ok_or_else(|| RelationError::UnknownColumn {
+                name: wanted.clone(),
+                known: listed(columns.iter().map(name)),
+            })
+    };
+    let parameters = options.free.iter().map(parameter);
+    parameters.chain(options.biased.iter().map(bias)).collect()
+}
+
+fn listed<'n>(names: impl Iterator<Item = &'n str>) -> String {
+    let names: Vec<&str> = names.collect();
+    if names.is_empty() {
+        return "none".to_owned();
+    }
+    names.join(", ")
+}
+
+fn estimate(
+    consistency: &Consistency<'_>,
+    found: &Found,
+    index: usize,
+    sought: Sought,
+    info: &appell_runtime::model::ModelInfo,
+) -> Result<Estimate, InverseError> {
+    let nominal = consistency.nominal()[index];
+    let (quantity, is_bias) = match sought {
+        Sought::Parameter(parameter) => (info.parameters[parameter].clone(), false),
+        Sought::Bias(measured) => {
+            let coordinate = consistency.relations().measured()[measured];
+            (info.coordinate_quantities()[coordinate].clone(), true)
+        }
+    };
+    let profile = if is_bias {
+        Vec::new()
+    } else {
+        let at: Vec<f64> = (-PROFILE..=PROFILE)
+            .map(|step| found.values[index] * FACTOR.powi(step))
+            .collect();
+        let costs = consistency.profile(index, &at)?;
+        at.iter()
+            .zip(costs)
+            .map(|(&at, cost)| [at, cost - found.cost])
+            .collect()
+    };
+    Ok(Estimate {
+        quantity,
+        is_bias,
+        nominal,
+        value: found.values[index],
+        std: found.covariance[(index, index)].sqrt(),
+        robust_std: found.robust[(index, index)].sqrt(),
+        interval95: found.intervals[index],
+        profile,
+    })
+}
+
+/// Times, values and standard deviations of the inputs.
+type Band = (Vec<f64>, Vec<Vec<f64>>, Vec<Vec<f64>>);
+
+/// The inputs of a run with their band: noise of the motion, and what is not known of the values.
+fn inputs(
+    consistency: &Consistency<'_>,
+    values: &DVector<f64>,
+    found: Option<&Found>,
+    run: usize,
+) -> Result<Band, InverseError> {
+    let relations = consistency.relations();
+    let count = relations.model().info().declared_inputs;
+    let (mut times, mut means, mut stds) =
+        (Vec::new(), vec![Vec::new(); count], vec![Vec::new(); count]);
+    let p = consistency.parameters(values);
+    let stretches = consistency.track().stretches.iter();
+    for stretch in stretches.filter(|stretch| stretch.run == run) {
+        for (place, motion) in stretch.motions.iter().enumerate() {
+            let spread = consistency.track().spread(stretch, place);
+            let at = |values: &DVector<f64>| {
+                let motion = consistency.corrected(motion, values);
+                relations.inputs(&motion, &consistency.parameters(values), &spread)
+            };
+            let (mean, mut covariance) =
+                relations.inputs(&consistency.corrected(motion, values), &p, &spread)?;
+            if let Some(found) = found {
+                let mut slopes = DMatrix::zeros(count, values.len());
+                for index in 0..values.len() {
+                    let std = found.covariance[(index, index)].sqrt();
+                    let mut varied = values.clone();
+                    varied[index] += std;
+                    slopes.set_column(index, &((at(&varied)?.0 - &mean) / std));
+                }
+                covariance += &slopes * &found.covariance * slopes.transpose();
+            }
+            times.push(motion.t);
+            for input in 0..count {
+                means[input].push(mean[input]);
+                stds[input].push(covariance[(input, input)].sqrt());
+            }
+        }
+    }
+    Ok((times, means, stds))
+}

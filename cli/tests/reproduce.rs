@@ -1,4 +1,4 @@
-//! The book of the paper on steering, made in full. It stays under the target folder for readers.
+//! The books of the papers, made in full. They stay under the target folder for readers.
 
 mod support;
 
@@ -9,6 +9,38 @@ use support::Folder;
 
 /// Statements of the book at least: every number from (1) to (91) is among them.
 const EQUATIONS: u32 = 91;
+
+/// Findings of the paper on the electric unicycle that show on the simulated rides, too.
+const SHOWN: [(&str, &str); 6] = [
+    ("figure 6", "the pitch angle γ of the body remains small"),
+    (
+        "figure 8",
+        "figure-eight has the largest error at the optimal h",
+    ),
+    (
+        "figure 8",
+        "the curve of constant speed is flat: a large range of h gives similar torques",
+    ),
+    (
+        "figure 8",
+        "the curve of figure-eight is flat: a large range of h gives similar torques",
+    ),
+    ("height", "constant speed is not sensitive to h"),
+    ("height", "figure-eight is not sensitive to h"),
+];
+
+/// Findings that do not.
+const NOT_SHOWN: [(&str, &str); 3] = [
+    (
+        "figure 8",
+        "deceleration has the smallest error at the optimal h",
+    ),
+    (
+        "figure 8, deceleration",
+        "3 DoF has the smaller error at its minimum",
+    ),
+    ("figure 8, deceleration", "3 DoF identifies the larger h"),
+];
 
 #[test]
 fn the_book_of_steering_has_every_equation_table_and_figure_and_all_statements_hold() {
@@ -78,6 +110,68 @@ fn the_book_of_steering_has_every_equation_table_and_figure_and_all_statements_h
     assert_self_contained(&page);
     assert_well_formed(&page);
     assert_eq!(page.matches("<figure>").count(), 18);
+}
+
+/// Equations of the paper on the electric unicycle.
+const EUC_EQUATIONS: u32 = 13;
+
+#[test]
+fn the_book_of_the_electric_unicycle_says_what_holds_on_simulated_rides() {
+    let artefact = Path::new(env!("CARGO_TARGET_TMPDIR")).join("book");
+    let out = artefact.to_str().expect("a path in UTF-8");
+    let folder = Folder::new();
+    folder.done(&["reproduce", "euc", "--out", out, "--json", "book.json"]);
+
+    let book = folder.json("book.json");
+    assert_eq!(book["claims"], book["holding"]);
+    let sections = book["sections"].as_array().expect("sections");
+    let claims: Vec<&Value> = sections
+        .iter()
+        .flat_map(|section| section["claims"].as_array().expect("claims"))
+        .collect();
+    let has = |named: &str| {
+        let places = claims.iter().filter_map(|claim| claim["place"].as_str());
+        places.clone().any(|place| place.contains(named))
+    };
+    for number in 1..=EUC_EQUATIONS {
+        assert!(has(&format!("({number})")), "({number}) is missing");
+    }
+    for place in ["table 1", "table 2", "table 3"] {
+        assert!(has(place), "{place} is missing");
+    }
+    for figure in [3, 4, 6, 7, 8] {
+        assert!(
+            has(&format!("figure {figure}")),
+            "figure {figure} is missing"
+        );
+    }
+    let verdict = |place: &str, published: &str| {
+        let found = claims
+            .iter()
+            .find(|claim| claim["place"] == place && claim["published"] == published);
+        &found.unwrap_or_else(|| panic!("nothing on {published}"))["verdict"]
+    };
+    // What depends on the paper's recordings is said to.
+    for (place, published) in [
+        ("figure 6", "h = 0.61 m, RMSE 4.7599 N m"),
+        ("figure 7", "h = 0.28 m, RMSE 13.5626 N m"),
+    ] {
+        assert_eq!(verdict(place, published), "no_data", "{published}");
+    }
+    for (place, published) in SHOWN {
+        assert_eq!(verdict(place, published), "true", "{place}: {published}");
+    }
+    for (place, published) in NOT_SHOWN {
+        assert_eq!(
+            verdict(place, published),
+            "not_here",
+            "{place}: {published}"
+        );
+    }
+    let page = std::fs::read_to_string(artefact.join("euc.html")).expect("the book");
+    assert_self_contained(&page);
+    assert_well_formed(&page);
+    assert_eq!(page.matches("<figure>").count(), 7);
 }
 
 /// Nothing of the page is elsewhere.

@@ -6,6 +6,7 @@
 //! | `formula.rs` | formulas as papers print them |
 //! | `paper.rs` | the derived equations under the names of the papers |
 //! | `steering.rs` | the equations of *Steering Control of an Autonomous Unicycle* |
+//! | `euc.rs` | the equations of *Experimental Model Identification of the Longitudinal Dynamics of an Electric Unicycle* |
 //! | `errata.rs` | what is printed and what is right |
 
 #![allow(
@@ -15,6 +16,7 @@
 )]
 
 pub mod errata;
+pub mod euc;
 pub mod formula;
 pub mod paper;
 pub mod steering;

@@ -30,18 +30,25 @@ pub(crate) struct Reproduce {
 enum Paper {
     /// Steering Control of an Autonomous Unicycle
     Steering,
+    /// Experimental Model Identification of the Longitudinal Dynamics of an Electric Unicycle
+    Euc,
 }
 
 impl Paper {
     const fn title(self) -> &'static str {
         match self {
             Self::Steering => "Steering Control of an Autonomous Unicycle",
+            Self::Euc => {
+                "Experimental Model Identification of the Longitudinal Dynamics of an Electric Unicycle \
+                 with a Human Rider"
+            }
         }
     }
 
     const fn file(self) -> &'static str {
         match self {
             Self::Steering => "steering.html",
+            Self::Euc => "euc.html",
         }
     }
 }
@@ -59,12 +66,14 @@ struct Book<'a> {
 impl Reproduce {
     pub(super) fn run(&self) -> Result<(), Failure> {
         let bar = progress::parts();
+        let making = |name: &str, done: usize, of: usize| {
+            bar.set_length(of as u64);
+            bar.set_position(done as u64);
+            bar.set_message(name.to_owned());
+        };
         let sections = match self.paper {
-            Paper::Steering => reproduce::steering(|name, done, of| {
-                bar.set_length(of as u64);
-                bar.set_position(done as u64);
-                bar.set_message(name.to_owned());
-            }),
+            Paper::Steering => reproduce::steering(making),
+            Paper::Euc => reproduce::euc(making),
         };
         bar.finish_and_clear();
         let sections = sections?;

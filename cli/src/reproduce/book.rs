@@ -16,9 +16,9 @@ pub(crate) fn page(title: &str, sections: &[Section]) -> String {
          <meta name=\"viewport\" content=\"width=device-width,initial-scale=1\"/>\n\
          <title>{title}, recomputed</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n<main>\n\
          <h1>{title}, recomputed</h1>\n\
-         <p>Every numbered equation, table and figure: what is published, what appell finds, what \
-         that means, and the command that makes it. {count} statements are compared; {good} came out \
-         as they should.</p>\n<nav><ul>\n"
+         <p>Equations, tables and figures: what is published, what appell finds, what that means, and \
+         the command that makes it. {count} statements are compared; {good} came out as they \
+         should.</p>\n<nav><ul>\n"
     );
     for (number, section) in sections.iter().enumerate() {
         let errata = section.claims.iter().filter(|c| c.verdict.is_erratum());

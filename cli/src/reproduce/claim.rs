@@ -58,6 +58,10 @@ pub(crate) enum Verdict {
     Erratum(&'static str),
     /// Not in the paper.
     Added,
+    /// A finding on recordings that are not public; on simulated ones it does not show.
+    NotHere,
+    /// A number that depends on recordings that nobody can get.
+    NoData,
 }
 
 impl Verdict {
@@ -76,6 +80,8 @@ impl Verdict {
             Self::Definition => "definition".to_owned(),
             Self::Erratum(kind) => format!("erratum: {kind}"),
             Self::Added => "not in the paper".to_owned(),
+            Self::NotHere => "not on the simulated rides".to_owned(),
+            Self::NoData => "depends on data that nobody can get".to_owned(),
         }
     }
 }
@@ -111,6 +117,23 @@ impl Claim {
         Self {
             verdict: Verdict::Digits(digits),
             ..Self::that(place, published, shown(found), digits >= needed, command)
+        }
+    }
+
+    /// What the paper found on recordings that are not public: it shows on other ones, or it does not.
+    /// Either is an answer.
+    pub(crate) fn finding(
+        place: &str,
+        published: &str,
+        ours: impl Into<String>,
+        shows: bool,
+        command: &str,
+    ) -> Self {
+        let claim = Self::that(place, published, ours, true, command);
+        if shows {
+            claim
+        } else {
+            claim.verdict(Verdict::NotHere)
         }
     }
 

@@ -9,11 +9,13 @@
 //! | `figure_3.rs` … `figure_8.rs` | figures, and what they are said to show |
 //! | `beyond.rs` | what the paper did not see |
 //! | `book.rs` | the page |
+//! | `euc/` | the second paper, on simulated rides |
 
 mod beyond;
 mod book;
 mod claim;
 mod equations;
+mod euc;
 mod figure_3;
 mod figure_5;
 mod figure_6;
@@ -26,6 +28,7 @@ mod tables;
 
 pub(crate) use book::page;
 pub(crate) use claim::{Claim, Section};
+pub(crate) use euc::book as euc;
 
 use crate::failure::Failure;
 

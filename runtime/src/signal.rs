@@ -20,6 +20,7 @@ pub mod angle;
 pub mod butterworth;
 pub mod kinematic;
 pub mod noise;
+#[cfg(feature = "analysis")]
 pub mod regression_spline;
 pub mod samples;
 pub mod savitzky_golay;

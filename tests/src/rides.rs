@@ -90,7 +90,7 @@ impl Manoeuvre {
                 [
                     4.0 / (1.0 + f64::from(k)),
                     frequency,
-                    random.between(0.0, 6.28),
+                    random.between(0.0, std::f64::consts::TAU),
                 ]
             })
             .collect();

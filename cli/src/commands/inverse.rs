@@ -7,7 +7,7 @@ use appell_gap::inverse::{self, Options, RelationError};
 use crate::engine::Equations;
 use crate::failure::Failure;
 use crate::source::Source;
-use crate::{files, progress, recording, relations};
+use crate::{files, picture, progress, recording, relations};
 
 /// Finds the inputs of recorded motions, and parameters from the equations that the inputs leave over.
 ///
@@ -31,7 +31,7 @@ pub(crate) struct Inverse {
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
     /// Draw the inputs of the first runs with their bands
-    #[arg(long, value_name = "FILE.svg")]
+    #[arg(long, value_name = "FILE.svg|png")]
     plot: Option<PathBuf>,
 }
 
@@ -55,7 +55,7 @@ impl Inverse {
             files::write_json(path, &relations::json(info, &answer))?;
         }
         if let Some(path) = &self.plot {
-            files::write(path, &relations::figure(info, &answer).to_svg())?;
+            picture::write(path, &relations::figure(info, &answer).to_svg())?;
         }
         files::print_beside(&relations::text(&answer), &[&self.json, &self.plot])
     }

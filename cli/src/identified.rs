@@ -13,12 +13,16 @@ use crate::table::{number, table};
 
 /// Parts of a combination that are smaller are not told.
 const NEGLIGIBLE: f64 = 0.1;
+/// Combinations that are known to more tolerances than this are not known.
+const UNKNOWN: f64 = 100.0;
 /// Runs that are drawn.
-const DRAWN_RUNS: usize = 3;
+const DRAWN_RUNS: usize = 2;
 
 pub(crate) fn failure(error: &IdentifyError) -> Failure {
     match error {
-        IdentifyError::UnknownParameter { .. } => Failure::Usage(error.to_string()),
+        IdentifyError::UnknownParameter { .. } | IdentifyError::UnknownAddition { .. } => {
+            Failure::Usage(error.to_string())
+        }
         IdentifyError::Estimate(_) => Failure::Computation(error.to_string()),
         _ => Failure::Data(error.to_string()),
     }
@@ -31,6 +35,7 @@ pub(crate) fn text(set: &DataSet, answer: &Answer) -> String {
     let _ = writeln!(text, "\n{}", parameters(answer));
     let _ = writeln!(text, "{}", combinations(answer));
     let _ = writeln!(text, "{}", levels(answer));
+    let _ = writeln!(text, "{}", residuals(answer));
     if answer.held_out.is_empty() {
         text.push_str("No run was held out: nothing tells how the model predicts.\n");
     } else {
@@ -57,7 +62,12 @@ fn parameters(answer: &Answer) -> String {
     ];
     let mut rows = vec![heading.map(str::to_owned).to_vec()];
     for estimate in &answer.parameters {
-        let [low, high] = estimate.interval95().map(|end| in_unit(estimate, end));
+        let ends = estimate.interval95().map(|end| in_unit(estimate, end));
+        let [low, high] = if estimate.at_limit {
+            Default::default()
+        } else {
+            ends
+        };
         let tolerance = estimate.tolerance.map(|std| in_unit(estimate, std));
         rows.push(vec![
             estimate.quantity.name.to_string(),
@@ -97,10 +107,12 @@ fn combinations(answer: &Answer) -> String {
         "in parts of the tolerances".to_owned(),
     ]];
     for combination in &answer.combinations {
-        rows.push(vec![
-            number(combination.deviation),
-            sum(answer, combination),
-        ]);
+        let known_to = if combination.deviation < UNKNOWN {
+            number(combination.deviation)
+        } else {
+            "not at all".to_owned()
+        };
+        rows.push(vec![known_to, sum(answer, combination)]);
     }
     text += &table(&rows, 0..1);
     text
@@ -141,6 +153,32 @@ fn levels(answer: &Answer) -> String {
     table(&rows, 2..4)
 }
 
+/// Whether what the filter did not expect is noise.
+fn residuals(answer: &Answer) -> String {
+    let heading = [
+        "channel",
+        "neighbours correlate by",
+        "noise stays below",
+        "",
+    ];
+    let mut rows = vec![heading.map(str::to_owned).to_vec()];
+    for (column, consistency) in &answer.whiteness {
+        let remark = if consistency.is_white() {
+            ""
+        } else {
+            "the model or the sensor lacks something"
+        };
+        rows.push(vec![
+            column.clone(),
+            number(consistency.correlation),
+            number(consistency.correlation_band[1]),
+            remark.to_owned(),
+        ]);
+    }
+    let text = "What the fitted model did not expect one step ahead, on the runs that were fitted";
+    format!("{text}\n\n{}", table(&rows, 1..3))
+}
+
 fn held_out(answer: &Answer) -> String {
     let heading = ["ahead", "channel", "nominal model", "fitted model"];
     let mut rows = vec![heading.map(str::to_owned).to_vec()];
@@ -163,7 +201,7 @@ fn ahead(error: &HeldOut) -> String {
     }
 }
 
-/// The first runs that were held out, a panel for each channel.
+/// The first runs that were held out: a panel for each channel and one for its errors.
 pub(crate) fn figure(set: &DataSet, answer: &Answer) -> Figure {
     let mut runs: Vec<&str> = answer
         .traces
@@ -174,7 +212,7 @@ pub(crate) fn figure(set: &DataSet, answer: &Answer) -> Figure {
     runs.truncate(DRAWN_RUNS);
     let traces = answer.traces.iter();
     let shown = traces.filter(|trace| runs.contains(&trace.run.as_str()));
-    let panels = shown.map(|trace| {
+    let panels = shown.flat_map(|trace| {
         let channel = set.channels.iter().find(|c| c.column == trace.column);
         let in_unit = |values: &[f64]| -> Vec<f64> {
             let values = values.iter();
@@ -187,14 +225,27 @@ pub(crate) fn figure(set: &DataSet, answer: &Answer) -> Figure {
             x: trace.times.clone(),
             y: in_unit(y),
         };
-        Panel {
-            unit: channel.map_or_else(String::new, |channel| channel.unit.text.clone()),
-            series: vec![
-                series(format!("{}, {}", trace.column, trace.run), &trace.measured),
-                series(format!("nominal, {AHEAD} s ahead"), &trace.nominal),
-                series(format!("fitted, {AHEAD} s ahead"), &trace.fitted),
-            ],
-        }
+        let unit = channel.map_or_else(String::new, |channel| channel.unit.text.clone());
+        let error = |predicted: &[f64]| -> Vec<f64> {
+            let pairs = trace.measured.iter().zip(predicted);
+            pairs
+                .map(|(measured, predicted)| measured - predicted)
+                .collect()
+        };
+        let name = format!("{}, {}", trace.column, trace.run);
+        let motion = vec![
+            series(name.clone(), &trace.measured),
+            series(format!("nominal, {AHEAD} s ahead"), &trace.nominal),
+            series(format!("fitted, {AHEAD} s ahead"), &trace.fitted),
+        ];
+        let errors = vec![
+            series(format!("{name}: error of nominal"), &error(&trace.nominal)),
+            series("error of fitted".to_owned(), &error(&trace.fitted)),
+        ];
+        [motion, errors].map(|series| Panel {
+            unit: unit.clone(),
+            series,
+        })
     });
     Figure {
         title: format!("{}: runs that were held out", set.mechanism.name),

@@ -1,8 +1,8 @@
-//! Data sets: a folder with `recording.toml` and a CSV file for each run, or CSV files alone.
+//! Data sets: a folder with `recording.toml` and a file for each run, or such files alone.
 //!
 //! ```text
 //! recording.toml --manifest--> mechanism, parameters, channels, runs
-//! *.csv          --csv------> rows, --clock--> increasing times, --channel--> SI, whole angles
+//! run.csv, …     --table----> rows, --clock--> increasing times, --channel--> SI, whole angles
 //! runs           --noise----> noise level of each channel
 //! ```
 //!
@@ -10,7 +10,10 @@
 //! |---|---|
 //! | `manifest.rs`, `fields.rs` | what `recording.toml` says, with its places |
 //! | `bare.rs` | files without one: columns with names of the spec; which part is held out |
+//! | `table.rs` | a run from a file of any format, which the end of its name tells |
 //! | `csv.rs`, `motive.rs` | rows of numbers, line by line; the header of Motive |
+//! | `c3d.rs` | points and analog channels of motion capture |
+//! | `mcap.rs`, `parquet.rs` | logs of robots, tables of data stores; each where its feature is on |
 //! | `clock.rs` | which rows are in order; steps and gaps |
 //! | `channel.rs` | what a column measures, and its values in SI |
 //! | `quantum.rs`, `noise.rs` | the step of a sensor; the noise level, stated and found |
@@ -22,6 +25,7 @@
 //! noise levels nor anything else that is computed here; its findings are about its form.
 
 mod bare;
+mod c3d;
 mod channel;
 mod clock;
 pub(crate) mod csv;
@@ -30,10 +34,15 @@ pub(crate) mod fields;
 mod finding;
 pub mod limits;
 mod manifest;
+#[cfg(feature = "mcap")]
+mod mcap;
 mod motive;
 mod noise;
 mod observed;
+#[cfg(feature = "parquet")]
+mod parquet;
 mod quantum;
+mod table;
 
 use std::path::Path;
 
@@ -159,7 +168,7 @@ pub fn read(
     let mut errors = Vec::new();
     for (name, part) in runs {
         let path = folder.join(&name);
-        match csv::read(&path, &channels, &mut budget) {
+        match table::read(&path, &channels, &mut budget) {
             Ok(table) => {
                 let run = channel::run(name, part, table, &channels, &mut findings);
                 read_runs.push(run);

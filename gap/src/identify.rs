@@ -13,6 +13,7 @@
 //! is wrong therefore shows as large disturbances, not as wrong parameters with narrow intervals; and
 //! the robust intervals do not believe that what is left is white.
 
+mod additions;
 mod answer;
 mod error;
 mod held_out;
@@ -29,7 +30,7 @@ pub use error::IdentifyError;
 pub use held_out::{AHEAD, HORIZONS, HeldOut, Trace};
 
 use held_out::Test;
-use problem::Problem;
+use problem::{EFFORT, Problem};
 
 /// Steps of the integration are this long in s at most.
 const LONGEST_STEP: f64 = 0.02;
@@ -39,6 +40,9 @@ const LONGEST_STEP: f64 = 0.02;
 pub struct Options {
     /// Parameters to look for; nothing means those that the data set states a tolerance for.
     pub free: Option<Vec<String>>,
+    /// What to look for besides: `tau.lag` and `tau.delay` of inputs; `theta.bias`, `theta.scale` and
+    /// `theta.delay` of channels.
+    pub also: Vec<String>,
 }
 
 /// Finds the parameters of a model that make the runs to fit most likely, and measures its errors on
@@ -54,22 +58,26 @@ pub fn identify(
         return Err(IdentifyError::NothingMeasured);
     }
     let shown: Vec<_> = measured.iter().map(|(_, shown)| *shown).collect();
-    let setup = Setup {
+    let mut setup = Setup {
         longest_step: LONGEST_STEP,
         ..Setup::new(model, &shown)
     };
+    let additions = additions::named(&options.also, set, &setup)?;
+    for addition in &additions {
+        addition.prepare(&mut setup);
+    }
     let recordings = set.recordings(Part::Fit, model.info())?;
     if recordings.is_empty() {
         return Err(IdentifyError::NothingToFit);
     }
     let estimation = Estimation::new(&setup, &recordings)?;
-    let problem = Problem::of(set, &estimation, options)?;
+    let problem = Problem::of(set, &estimation, (options, &additions))?;
 
     stage("fitting the levels of noise to the nominal model");
-    let nominal = Fit::of(&estimation, &problem.start, &problem.levels, problem.effort)?;
+    let nominal = Fit::of(&estimation, &problem.start, &problem.levels, EFFORT)?;
     stage("fitting the parameters");
-    let all = [problem.parameters.as_slice(), &problem.levels].concat();
-    let fit = Fit::of(&estimation, &nominal.values, &all, problem.effort)?;
+    let all = [problem.wanted.as_slice(), &problem.levels].concat();
+    let fit = Fit::of(&estimation, &nominal.values, &all, EFFORT)?;
     stage("weighing what the recordings tell");
     let mut answer = Answer::of(set, &estimation, &problem, (&nominal, &fit))?;
     stage("predicting the runs that were held out");

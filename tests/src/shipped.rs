@@ -72,6 +72,11 @@ pub fn derive(mechanism: &Mechanism) -> Derivation {
 
 /// The functions of a mechanism that every model has.
 pub fn program(mechanism: &Mechanism) -> Program {
-    assemble::program(derive(mechanism), mechanism, &FunctionKind::STANDARD)
+    program_of(mechanism, &FunctionKind::STANDARD)
+}
+
+/// Some functions of a mechanism.
+pub fn program_of(mechanism: &Mechanism, kinds: &[FunctionKind]) -> Program {
+    assemble::program(derive(mechanism), mechanism, kinds)
         .unwrap_or_else(|findings| panic!("{}: {findings:?}", mechanism.file))
 }

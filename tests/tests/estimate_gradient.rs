@@ -35,7 +35,8 @@ fn noisy(estimation: &Estimation<'_>, level: f64, noise: f64) -> Vec<f64> {
     for index in 0..setup.channels.len() {
         set(&mut values, &layout, Unknown::Noise(index), noise);
     }
-    let states = setup.model.info().state_len() + setup.lagging.len();
+    let added = setup.lagging.len() + setup.drifting.len();
+    let states = setup.model.info().state_len() + added;
     for run in 0..estimation.recordings().len() {
         for state in 0..states {
             set(&mut values, &layout, Unknown::Spread { run, state }, 0.1);
@@ -201,5 +202,55 @@ fn it_is_exact_for_lags_and_delays() {
     set(&mut values, &layout, Unknown::Lag(0), 0.03);
     set(&mut values, &layout, Unknown::InputDelay(0), 0.0137);
     set(&mut values, &layout, Unknown::InputDelay(1), 0.0042);
+    assert_gradient(&estimation, &values, TOLERANCE);
+}
+
+#[test]
+fn it_is_exact_for_drifting_parameters() {
+    let text = appell_tests::shipped::text("cart_pole");
+    let program = appell_codegen::compile("cart_pole.toml", &text, &FunctionKind::ALL).unwrap();
+    let model = JitModel::new(&program).unwrap();
+    let info = model.info();
+    let energy = Measured::Output(info.output_index("energy").unwrap());
+    let constant = Setup::new(&model, &[Measured::State(3), energy]);
+    let mut setup = constant.clone();
+    setup.drifting = ["m_pole", "l"]
+        .map(|name| info.parameter_index(name).unwrap())
+        .to_vec();
+    setup.lagging = vec![0];
+    setup
+        .disturbances
+        .push(Disturbance::Rate(info.state_len() + 1));
+    let drive = Drive::sines(80, 0.01, &[2.0]);
+    let unseen = [drive.unseen(2)];
+    let truth = noisy(&Estimation::new(&constant, &unseen).unwrap(), 0.05, 0.01);
+    let recordings = [record(&constant, &truth, &drive, &mut Random::of("drift"))];
+    let estimation = Estimation::new(&setup, &recordings).unwrap();
+    let mut values = noisy(&estimation, 0.05, 0.01);
+    set(&mut values, &estimation.layout(), Unknown::Lag(0), 0.02);
+    assert_gradient(&estimation, &values, TOLERANCE);
+}
+
+#[test]
+fn it_stays_exact_along_chaotic_motions() {
+    let text = appell_tests::shipped::text("double_pendulum");
+    let program =
+        appell_codegen::compile("double_pendulum.toml", &text, &FunctionKind::ALL).unwrap();
+    let model = JitModel::new(&program).unwrap();
+    let setup = Setup::new(&model, &[Measured::State(2), Measured::State(3)]);
+    let drive = Drive::sines(4000, 0.02, &[0.0, 0.0]);
+    let unseen = [drive.unseen(2)];
+    let mut values = noisy(&Estimation::new(&setup, &unseen).unwrap(), 0.05, 0.01);
+    let layout = Estimation::new(&setup, &unseen).unwrap().layout();
+    for state in 2..4 {
+        set(
+            &mut values,
+            &layout,
+            Unknown::Initial { run: 0, state },
+            2.5,
+        );
+    }
+    let recordings = [record(&setup, &values, &drive, &mut Random::of("chaos"))];
+    let estimation = Estimation::new(&setup, &recordings).unwrap();
     assert_gradient(&estimation, &values, TOLERANCE);
 }

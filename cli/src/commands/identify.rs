@@ -25,6 +25,10 @@ pub(crate) struct Identify {
     /// Parameters to look for
     #[arg(long, value_delimiter = ',', value_name = "NAMES")]
     free: Option<Vec<String>>,
+    /// What to look for besides: `tau.lag` and `tau.delay` of an input, `theta.bias`, `theta.scale` and
+    /// `theta.delay` of a channel
+    #[arg(long, value_delimiter = ',', value_name = "NAMES")]
+    also: Vec<String>,
     /// Write everything in SI; `-` is standard output
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
@@ -43,6 +47,7 @@ impl Identify {
         let spinner = progress::spinner("reading");
         let options = Options {
             free: self.free.clone(),
+            also: self.also.clone(),
         };
         let answer = identify::identify(&set, equations.model(), &options, |stage| {
             spinner.set_message(stage);

@@ -7,7 +7,7 @@ use appell_spec::Mechanism;
 use super::channel::{self, Channel, Measured, Role};
 use super::clock::Sampling;
 use super::limits::{MAX_NUMBERS, MAX_RUNS, MIN_ROWS};
-use super::{DataError, DataSet, Finding, FindingKind, Parameter, Part, Run, Spec, csv, noise};
+use super::{DataError, DataSet, Finding, FindingKind, Parameter, Part, Run, Spec, noise, table};
 
 /// What is held out of several runs, or of one: the last third.
 const HELD_OUT: usize = 3;
@@ -25,7 +25,7 @@ pub fn read_bare(spec: Spec, files: &[PathBuf]) -> Result<DataSet, DataError> {
         let message = format!("a data set has at most {MAX_RUNS} runs");
         return Err(DataError::whole(first.to_string_lossy(), message));
     }
-    let channels = channels(&csv::header(first)?, &mechanism);
+    let channels = channels(&table::header(first)?, &mechanism);
     if !channels.iter().any(Channel::is_measured) {
         let message = format!(
             "no column is a quantity of `{}`; it has {}",
@@ -46,7 +46,7 @@ pub fn read_bare(spec: Spec, files: &[PathBuf]) -> Result<DataSet, DataError> {
         } else {
             Part::Test
         };
-        match csv::read(path, &channels, &mut budget) {
+        match table::read(path, &channels, &mut budget) {
             Ok(table) => {
                 let name = path.to_string_lossy().into_owned();
                 runs.push(channel::run(name, part, table, &channels, &mut findings));

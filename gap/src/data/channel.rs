@@ -6,9 +6,9 @@ use appell_spec::mechanism::Label;
 use appell_spec::units::{Dimension, Unit};
 
 use super::clock::Sampling;
-use super::csv::Table;
 use super::finding::counted;
 use super::noise::Noise;
+use super::table::Table;
 use super::{Finding, FindingKind, Part, Run};
 
 /// A column of every run.

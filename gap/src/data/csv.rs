@@ -10,19 +10,10 @@ use appell_spec::{Code, Diagnostic, Report, closest, shown};
 
 use super::channel::Channel;
 use super::clock::Clock;
-use super::finding::{counted, listed};
-use super::limits::{MAX_LINE, MAX_MISTAKES, MIN_ROWS};
+use super::finding::listed;
+use super::limits::{MAX_LINE, MAX_MISTAKES};
+use super::table::{TIME, Table, checked, regular, too_many};
 use super::{DataError, Finding, FindingKind, motive};
-
-/// The numbers of a file.
-pub(crate) struct Table {
-    /// Times in s, strictly increasing.
-    pub(crate) times: Vec<f64>,
-    /// Values in SI, a column for each channel; NaN where one is missing.
-    pub(crate) columns: Vec<Vec<f64>>,
-    /// What was left out.
-    pub(crate) findings: Vec<Finding>,
-}
 
 /// Reads the columns of the channels. `budget` counts down the numbers that may still come.
 pub(crate) fn read(
@@ -43,11 +34,7 @@ fn open(path: &Path) -> Result<CsvFile<BufReader<File>>, DataError> {
         path: path.to_owned(),
         cause,
     };
-    // A pipe would keep everybody waiting.
-    if !std::fs::metadata(path).map_err(failed)?.is_file() {
-        let message = "a run is a regular file";
-        return Err(DataError::whole(path.to_string_lossy(), message));
-    }
+    regular(path)?;
     let file = File::open(path).map_err(failed)?;
     CsvFile::new(path, BufReader::new(file))
 }
@@ -126,14 +113,8 @@ impl<R: BufRead> CsvFile<R> {
             if !clock.accept(t, self.lines.number, &self.lines.text) {
                 continue;
             }
-            let Some(left) = budget.checked_sub(1 + channels.len()) else {
-                let message = format!(
-                    "the data set holds more than {} numbers; leave out rows or channels",
-                    super::limits::MAX_NUMBERS
-                );
-                return Err(DataError::whole(self.lines.place(), message));
-            };
-            *budget = left;
+            let left = budget.checked_sub(1 + channels.len());
+            *budget = left.ok_or_else(|| too_many(self.lines.place()))?;
             times.push(t);
             for (column, value) in columns.iter_mut().zip(&read) {
                 column.push(*value);
@@ -144,24 +125,7 @@ impl<R: BufRead> CsvFile<R> {
         }
         let file = &*self.lines.file;
         findings.extend(clock.findings(file)?);
-        if times.len() < MIN_ROWS {
-            let rows = counted(times.len(), "row");
-            let message = format!(
-                "the file has {rows}; a run needs {MIN_ROWS} to tell a rate and a noise level"
-            );
-            return Err(DataError::whole(file, message));
-        }
-        for (channel, values) in channels.iter().zip(&columns) {
-            if values.iter().all(|value| value.is_nan()) {
-                let message = format!("the column `{}` holds no value", channel.column);
-                return Err(DataError::whole(file, message));
-            }
-        }
-        Ok(Table {
-            times,
-            columns,
-            findings,
-        })
+        checked(file, channels, times, columns, findings)
     }
 
     /// Where the time and the channels stand.
@@ -187,7 +151,7 @@ impl<R: BufRead> CsvFile<R> {
                 }
             }
         };
-        let time = place("t", "name the column of times in seconds `t`");
+        let time = place(TIME, "name the column of times in seconds `t`");
         let about = "every run has a column for each line of `[channels]`";
         let channels: Vec<usize> = channels.iter().map(|c| place(&c.column, about)).collect();
         let unknown = (0..header.len()).filter(|i| *i != time && !channels.contains(i));

@@ -2,6 +2,8 @@
 
 /// Most numbers of a data set, times included; eight bytes each.
 pub const MAX_NUMBERS: usize = 100_000_000;
+/// Largest file that is read as a whole, in bytes: C3D and MCAP.
+pub const MAX_BYTES: u64 = 1 << 30;
 /// Longest line of a CSV file, in bytes.
 pub const MAX_LINE: usize = 1 << 16;
 /// Most runs of a data set.

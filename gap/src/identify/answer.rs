@@ -43,9 +43,11 @@ impl Estimate {
         self.std.max(self.robust_std)
     }
 
-    /// 95 % interval in SI.
+    /// 95 % interval in SI, within the range of the quantity.
     pub fn interval95(&self) -> [f64; 2] {
-        [-1.0, 1.0].map(|sign| self.value + sign * QUANTILE * self.honest_std())
+        let [low, high] = self.quantity.range;
+        let end = |sign| self.value + sign * QUANTILE * self.honest_std();
+        [-1.0, 1.0].map(|sign| end(sign).max(low).min(high))
     }
 }
 
@@ -101,22 +103,20 @@ impl Answer {
     ) -> Result<Self, IdentifyError> {
         let info = estimation.setup().model.info();
         let layout = estimation.layout();
-        let count = problem.parameters.len();
+        let count = problem.wanted.len();
         let sensitivity = Sensitivity::of(estimation, &fit.values, &fit.free)?;
         let covariance = fit.covariance()?;
         let robust = Blocks::of(fit, &sensitivity, block(estimation))?.covariance();
         let mut parameters = Vec::new();
-        for (place, free) in problem.parameters.iter().enumerate() {
-            let Unknown::Parameter(index) = free.unknown else {
-                continue;
-            };
+        let wanted = problem.wanted.iter().zip(&problem.quantities);
+        for (place, (free, quantity)) in wanted.enumerate() {
             let std = covariance[(place, place)].sqrt();
             let tolerance = free.prior.map(|[_, deviation]| deviation);
             parameters.push(Estimate {
-                quantity: info.parameters[index].clone(),
-                nominal: set.parameters[index].value,
+                quantity: quantity.clone(),
+                nominal: quantity.value,
                 tolerance,
-                value: fit.values[index],
+                value: fit.values[layout.place(free.unknown)?],
                 std,
                 robust_std: robust[(place, place)].sqrt(),
                 at_limit: fit.at_limit[place],
@@ -145,7 +145,7 @@ impl Answer {
         let noise = columns.iter().enumerate();
         let speeds = info.states[..info.speeds].iter().enumerate();
         Ok(Self {
-            combinations: combinations(&sensitivity, fit, &problem.parameters),
+            combinations: combinations(&sensitivity, fit, &problem.wanted),
             noise: noise
                 .map(|(index, column)| level(Unknown::Noise(index), column.clone()))
                 .collect::<Result<_, _>>()?,

@@ -28,6 +28,14 @@ pub enum IdentifyError {
         /// Names of the spec.
         known: Vec<String>,
     },
+    /// A lag, delay, bias or scale of something that there is not.
+    #[error("there is no `{name}` to look for; there are {}", known.join(", "))]
+    UnknownAddition {
+        /// As given.
+        name: String,
+        /// What can be looked for.
+        known: Vec<String>,
+    },
     /// A filter or a fit that failed.
     #[error(transparent)]
     Estimate(#[from] EstimateError),

@@ -1,8 +1,9 @@
 //! What is looked for, and where the search begins.
 
 use appell_runtime::estimate::{Effort, Estimation, Free, Recording, Unknown};
-use appell_runtime::model::ModelInfo;
+use appell_runtime::model::{ModelInfo, Quantity};
 
+use super::additions::Addition;
 use super::start::{Start, forces, start};
 use super::{IdentifyError, Options};
 use crate::data::{Channel, DataSet};
@@ -14,7 +15,12 @@ const NOISE_PART: f64 = 1e-2;
 /// Factors of the noise within which it is looked for.
 const NOISE_RANGE: [f64; 2] = [1e-2, 1e3];
 /// Levels of disturbances that are tried first, as parts of the forces, over one second.
-const PARTS: [f64; 4] = [1e-4, 1e-3, 1e-2, 1e-1];
+const PARTS: [f64; 5] = [1e-4, 1e-3, 1e-2, 1e-1, 1.0];
+/// A search ends where a hundredth of a standard deviation is left.
+pub(super) const EFFORT: Effort = Effort {
+    gain: 5e-5,
+    steps: 200,
+};
 /// Factors of the forces within which disturbances are looked for.
 const DISTURBANCE_RANGE: [f64; 2] = [1e-7, 1e3];
 
@@ -22,25 +28,31 @@ const DISTURBANCE_RANGE: [f64; 2] = [1e-7, 1e3];
 pub(super) struct Problem {
     /// Values to begin with: the parameters of the rig.
     pub(super) start: Vec<f64>,
-    /// Parameters that are free.
-    pub(super) parameters: Vec<Free>,
+    /// Parameters and additions that are free.
+    pub(super) wanted: Vec<Free>,
+    /// What they are; the value is the nominal one.
+    pub(super) quantities: Vec<Quantity>,
     /// Levels of disturbances and noise, which always are.
     pub(super) levels: Vec<Free>,
-    /// When to stop.
-    pub(super) effort: Effort,
 }
 
 impl Problem {
     pub(super) fn of(
         set: &DataSet,
         estimation: &Estimation<'_>,
-        options: &Options,
+        (options, additions): (&Options, &[Addition]),
     ) -> Result<Self, IdentifyError> {
         let (layout, setup) = (estimation.layout(), estimation.setup());
-        let parameters = free_parameters(set, setup.model.info(), options)?;
+        let (mut wanted, mut quantities) = free_parameters(set, setup.model.info(), options)?;
         let mut values = estimation.nominal();
         for (value, parameter) in values.iter_mut().zip(&set.parameters) {
             *value = parameter.value;
+        }
+        for addition in additions {
+            let (free, quantity) = addition.free(estimation, &set.runs);
+            values[layout.place(free.unknown)?] = quantity.value;
+            wanted.push(free);
+            quantities.push(quantity);
         }
         let mut levels = Vec::new();
         let measured = set.measured(setup.model.info());
@@ -57,9 +69,9 @@ impl Problem {
         }
         Ok(Self {
             start: most_likely(estimation, &values, &sizes)?,
-            parameters,
+            wanted,
+            quantities,
             levels,
-            effort: Effort::default(),
         })
     }
 }
@@ -69,7 +81,7 @@ fn free_parameters(
     set: &DataSet,
     info: &ModelInfo,
     options: &Options,
-) -> Result<Vec<Free>, IdentifyError> {
+) -> Result<(Vec<Free>, Vec<Quantity>), IdentifyError> {
     let named = |name: &String| {
         info.parameter_index(name)
             .ok_or_else(|| IdentifyError::UnknownParameter {
@@ -83,7 +95,7 @@ fn free_parameters(
     } else {
         (0..set.parameters.len()).filter(has_tolerance).collect()
     };
-    if chosen.is_empty() {
+    if chosen.is_empty() && options.also.is_empty() {
         return Err(IdentifyError::NothingFree);
     }
     let free = |&index: &usize| {
@@ -95,7 +107,15 @@ fn free_parameters(
             _ => free,
         }
     };
-    Ok(chosen.iter().map(free).collect())
+    let quantity = |&index: &usize| {
+        let value = set.parameters[index].value;
+        Quantity {
+            value,
+            ..info.parameters[index].clone()
+        }
+    };
+    let frees = chosen.iter().map(free).collect();
+    Ok((frees, chosen.iter().map(quantity).collect()))
 }
 
 /// The noise of a channel to begin with, and within which limits it is looked for.

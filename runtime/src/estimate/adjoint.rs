@@ -9,7 +9,7 @@ use std::ops::Range;
 use super::filter::{Pass, Record, Sample, SampleTape, StepTape};
 use super::matrix::{
     add, add_scaled, dot, multiply, multiply_transposed, multiply_transposed_add, scale,
-    transposed_multiply,
+    symmetrise, transposed_multiply,
 };
 use super::plant::{Place, Scratch, Sums};
 use super::setup::{Disturbance, Measured};
@@ -107,6 +107,8 @@ impl Backward<'_, '_> {
         multiply(&self.p, on.f, n, product);
         noise.copy_from_slice(&self.p);
         transposed_multiply(on.f, product, n, &mut self.p);
+        // Measurements damp the symmetric part alone: rounding in the other one would grow with F.
+        symmetrise(&mut self.p, n);
         add(&self.p, noise);
 
         multiply_transposed(on.root, on.root, n, by_f);

@@ -54,7 +54,8 @@ impl<'a> Estimation<'a> {
     pub fn nominal(&self) -> Vec<f64> {
         let (info, layout) = (self.setup.model.info(), self.layout);
         let mut values = vec![0.0; layout.len()];
-        values[..layout.parameters].copy_from_slice(&info.default_parameters());
+        let values_of_spec = info.default_parameters();
+        values[..layout.parameters].copy_from_slice(&values_of_spec);
         values[layout.scale(0)..layout.sensor_delay(0)].fill(1.0);
         values[layout.lag(0)..layout.input_delay(0)].fill(0.01);
         let state = info.initial_state();
@@ -62,8 +63,12 @@ impl<'a> Estimation<'a> {
             let initial = &mut values[layout.initial(run)..];
             initial[..state.len()].copy_from_slice(&state);
             // A lag starts where its input does.
-            for (lagged, &input) in initial[state.len()..].iter_mut().zip(&self.setup.lagging) {
-                *lagged = recording.inputs(0)[input];
+            let inputs = self.setup.lagging.iter();
+            let inputs = inputs.map(|&input| recording.inputs(0)[input]);
+            let drifting = self.setup.drifting.iter();
+            let added = inputs.chain(drifting.map(|&parameter| values_of_spec[parameter]));
+            for (initial, added) in initial[state.len()..].iter_mut().zip(added) {
+                *initial = added;
             }
         }
         values

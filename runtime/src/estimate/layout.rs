@@ -22,7 +22,8 @@ pub enum Unknown {
     Lag(usize),
     /// Delay in s of an input, by its place in the list of the setup.
     InputDelay(usize),
-    /// Expected state at the first row of a run; states of lags stand last.
+    /// Expected state at the first row of a run; states of lags and of drifting parameters stand
+    /// last.
     Initial {
         /// The run.
         run: usize,

@@ -81,6 +81,17 @@ pub(super) fn set_identity(matrix: &mut [f64], n: usize) {
         .for_each(|entry| *entry = 1.0);
 }
 
+/// The symmetric part of a matrix, n × n.
+pub(super) fn symmetrise(matrix: &mut [f64], n: usize) {
+    for i in 0..n {
+        for j in 0..i {
+            let mean = 0.5 * (matrix[i * n + j] + matrix[j * n + i]);
+            matrix[i * n + j] = mean;
+            matrix[j * n + i] = mean;
+        }
+    }
+}
+
 /// Cuts a slice into pieces of the given lengths; what remains is dropped.
 pub(super) fn pieces<const N: usize>(
     mut slice: &mut [f64],

@@ -21,7 +21,7 @@
 //! - [`prediction`]: where the motion goes from what the filter knows;
 //! - [`smoother`]: states given a whole recording;
 //! - [`consistency`], [`chi_squared`]: whether innovations are what they should be;
-//! - [`free`], [`fit`]: the most likely values;
+//! - [`free`], [`posterior`], [`curvature`], [`fit`]: the most likely values;
 //! - [`sensitivity`]: scores and Fisher's information;
 //! - [`identifiability`], [`profile`], [`robust`]: what is known of the values, and how far;
 //! - [`regression`]: parameters from accelerations, without a filter.
@@ -29,6 +29,7 @@
 mod adjoint;
 mod chi_squared;
 mod consistency;
+mod curvature;
 mod error;
 mod estimation;
 mod filter;
@@ -38,6 +39,7 @@ mod identifiability;
 mod layout;
 mod matrix;
 mod plant;
+mod posterior;
 mod prediction;
 mod profile;
 mod recording;

@@ -17,7 +17,7 @@ use super::sensitivity::Sensitivity;
 /// Scores of a fit in blocks of rows.
 #[derive(Debug, Clone)]
 pub struct Blocks {
-    /// Inverse of the information.
+    /// Inverse of the curvature.
     covariance: DMatrix<f64>,
     /// Score of each block.
     scores: Vec<DVector<f64>>,
@@ -36,7 +36,7 @@ impl Blocks {
             *sum += all.row(place).transpose();
         }
         Ok(Self {
-            covariance: inverse(&fit.information, &fit.at_limit)?,
+            covariance: inverse(&fit.curvature, &fit.at_limit)?,
             scores: blocks.into_values().collect(),
         })
     }
@@ -51,7 +51,7 @@ impl Blocks {
         self.scores.is_empty()
     }
 
-    /// The robust covariance of the coordinates, `H⁻¹ J H⁻¹`: H the information, J the sum of the
+    /// The robust covariance of the coordinates, `H⁻¹ J H⁻¹`: H the observed curvature, J the sum of the
     /// squares of the scores about their mean.
     pub fn covariance(&self) -> DMatrix<f64> {
         let centred = self.centred();

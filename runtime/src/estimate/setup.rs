@@ -43,8 +43,8 @@ pub enum Disturbance {
     /// A generalised force beside Π in the equation of a pseudo-velocity, by its index. The level
     /// is in the unit of the force times √s.
     Force(usize),
-    /// Added to the rate of a state, by its index in the state or, from its end on, in the list of
-    /// lagging inputs. The level is in the unit of the state per √s.
+    /// Added to the rate of a state, by its index in the state or, from its end on, in the lists of
+    /// lagging inputs and of drifting parameters. The level is in the unit of the state per √s.
     Rate(usize),
 }
 
@@ -61,6 +61,9 @@ pub struct Setup<'a> {
     pub lagging: Vec<usize>,
     /// Declared inputs that arrive late by a constant time.
     pub delayed: Vec<usize>,
+    /// Parameters that change on the way, by their indices: a state each, which moves by a
+    /// [`Disturbance::Rate`] alone. The value in the list of parameters is not used.
+    pub drifting: Vec<usize>,
     /// Longest step of the integration in s; longer gaps between samples are divided.
     pub longest_step: f64,
 }
@@ -78,13 +81,14 @@ impl<'a> Setup<'a> {
             disturbances: (0..model.info().speeds).map(Disturbance::Force).collect(),
             lagging: Vec::new(),
             delayed: Vec::new(),
+            drifting: Vec::new(),
             longest_step: f64::INFINITY,
         }
     }
 
-    /// Number of states with those of the lags.
+    /// Number of states with those of the lags and of drifting parameters.
     pub(super) fn state_len(&self) -> usize {
-        self.model.info().state_len() + self.lagging.len()
+        self.model.info().state_len() + self.lagging.len() + self.drifting.len()
     }
 
     /// Whether any output is measured.
@@ -120,10 +124,14 @@ impl<'a> Setup<'a> {
                 Disturbance::Rate(index) => below("state", index, self.state_len())?,
             }
         }
-        for inputs in [&self.lagging, &self.delayed] {
-            for (place, &input) in inputs.iter().enumerate() {
-                let twice = inputs[..place].contains(&input);
-                below("input", input, if twice { 0 } else { info.declared_inputs })?;
+        for (what, list, len) in [
+            ("input", &self.lagging, info.declared_inputs),
+            ("input", &self.delayed, info.declared_inputs),
+            ("parameter", &self.drifting, info.parameter_len()),
+        ] {
+            for (place, &index) in list.iter().enumerate() {
+                let twice = list[..place].contains(&index);
+                below(what, index, if twice { 0 } else { len })?;
             }
         }
         positive("longest step in s", self.longest_step)?;

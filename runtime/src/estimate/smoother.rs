@@ -21,7 +21,7 @@ const ROUNDING: f64 = 1e-13;
 pub struct Smoothed {
     /// Time in s.
     pub t: f64,
-    /// Expected state; states of lags stand last.
+    /// Expected state; states of lags and of drifting parameters stand last.
     pub state: Vec<f64>,
     /// Root S of its covariance S Sᵀ, row by row.
     pub root: Vec<f64>,

@@ -1,0 +1,151 @@
+//! MCAP, the container that robots log into: messages of many topics with their times.
+//!
+//! Messages are JSON or those of ROS 2 (CDR with definitions in its message language). Every number of a
+//! message is a value of the column `topic.field.field` or `topic.field[2]`. Messages of one time make a
+//! row; what a row lacks is missing. `t` is in s from the first message on, by the clock of the logger.
+
+mod cdr;
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use mcap::{Message, MessageStream};
+use serde_json::Value;
+
+use self::cdr::Definitions;
+use super::DataError;
+use super::table::{Columns, TIME, Wanted, bytes, too_many};
+
+/// Reads a file; `budget` is the most numbers of all columns together.
+pub(super) fn read(path: &Path, wanted: Wanted<'_>, budget: usize) -> Result<Columns, DataError> {
+    let bytes = bytes(path)?;
+    let place = path.to_string_lossy();
+    let damaged = |error: mcap::McapError| {
+        let message =
+            format!("the file breaks off or is damaged: {error}; `mcap recover` saves what it can");
+        DataError::whole(&*place, message)
+    };
+    let mut log = Log::default();
+    for message in MessageStream::new(&bytes).map_err(damaged)? {
+        let message = message.map_err(damaged)?;
+        log.add(&message, wanted).map_err(|what| {
+            let message = format!("a message of the topic `{}` {what}", message.channel.topic);
+            DataError::whole(&*place, message)
+        })?;
+        if log.values.len() > budget {
+            return Err(too_many(place.into_owned()));
+        }
+    }
+    log.columns(budget)
+        .ok_or_else(|| too_many(place.into_owned()))
+}
+
+/// Everything that was logged, message by message.
+#[derive(Default)]
+struct Log {
+    /// Place of each column.
+    names: BTreeMap<String, usize>,
+    /// Definitions of the messages of a channel, by its number; nothing where nobody can read them.
+    definitions: BTreeMap<u16, Option<Definitions>>,
+    /// Time in ns, column and value.
+    values: Vec<(u64, usize, f64)>,
+}
+
+impl Log {
+    fn add(&mut self, message: &Message<'_>, wanted: Wanted<'_>) -> Result<(), &'static str> {
+        let channel = &message.channel;
+        let (names, values) = (&mut self.names, &mut self.values);
+        let mut tell = |name: &str, value: f64| {
+            let next = 1 + names.len();
+            let place = *names.entry(name.to_owned()).or_insert(next);
+            if wanted(name) {
+                values.push((message.log_time, place, value));
+            }
+        };
+        match channel.message_encoding.as_str() {
+            "json" => {
+                let value: Value =
+                    serde_json::from_slice(&message.data).map_err(|_| "is not JSON")?;
+                flatten(&mut channel.topic.clone(), &value, &mut tell);
+            }
+            "cdr" => {
+                let definitions = self.definitions.entry(channel.id).or_insert_with(|| {
+                    let schema = channel.schema.as_ref()?;
+                    let text = str::from_utf8(&schema.data).ok()?;
+                    (schema.encoding == "ros2msg").then(|| Definitions::of(text))
+                });
+                if let Some(definitions) = definitions {
+                    definitions
+                        .read(&message.data, &channel.topic, &mut tell)
+                        .ok_or("does not fit its definition")?;
+                }
+            }
+            _ => {}
+        }
+        Ok(())
+    }
+
+    /// Rows in the order of time; nothing where they hold more than may be.
+    fn columns(mut self, budget: usize) -> Option<Columns> {
+        self.values.sort_by_key(|(time, ..)| *time);
+        let start = self.values.first().map_or(0, |(time, ..)| *time);
+        let mut names = vec![TIME.to_owned(); 1 + self.names.len()];
+        let mut is_there = vec![false; names.len()];
+        for (_, place, _) in &self.values {
+            is_there[*place] = true;
+        }
+        is_there[0] = true;
+        for (name, place) in self.names {
+            names[place] = name;
+        }
+        let width = is_there.iter().filter(|there| **there).count();
+        let mut columns: Vec<Vec<f64>> = vec![Vec::new(); names.len()];
+        for row in self.values.chunk_by(|a, b| a.0 == b.0) {
+            if (1 + columns[0].len()).checked_mul(width)? > budget {
+                return None;
+            }
+            for (column, _) in columns
+                .iter_mut()
+                .zip(&is_there)
+                .filter(|(_, there)| **there)
+            {
+                column.push(f64::NAN);
+            }
+            let last = columns[0].len() - 1;
+            columns[0][last] = (row[0].0 - start) as f64 * 1e-9;
+            for (_, place, value) in row {
+                columns[*place][last] = *value;
+            }
+        }
+        Some(Columns {
+            names,
+            values: columns,
+            findings: Vec::new(),
+        })
+    }
+}
+
+/// Every number of a JSON value with the path that leads to it. JSON that was read is at most 128 deep.
+fn flatten(path: &mut String, value: &Value, tell: &mut dyn FnMut(&str, f64)) {
+    let length = path.len();
+    match value {
+        Value::Number(number) => tell(path, number.as_f64().unwrap_or(f64::NAN)),
+        Value::Bool(value) => tell(path, f64::from(u8::from(*value))),
+        Value::Array(values) => {
+            for (index, value) in values.iter().enumerate() {
+                path.push_str(&format!("[{index}]"));
+                flatten(path, value, tell);
+                path.truncate(length);
+            }
+        }
+        Value::Object(fields) => {
+            for (name, value) in fields {
+                path.push('.');
+                path.push_str(name);
+                flatten(path, value, tell);
+                path.truncate(length);
+            }
+        }
+        Value::Null | Value::String(_) => {}
+    }
+}

@@ -155,3 +155,37 @@ fn what_cannot_be_identified_is_refused_with_what_to_write_instead() {
     assert_eq!(outcome.status, 3, "{}", outcome.stderr);
     assert!(outcome.stderr.contains("--free"), "{}", outcome.stderr);
 }
+
+/// Rows by which the torque acts later than it was commanded.
+const LATE: usize = 5;
+
+#[test]
+fn a_command_that_acts_late_is_found_where_it_is_looked_for() {
+    let folder = data_set();
+    for name in ["a.csv", "b.csv", "c.csv"] {
+        let text = folder.read(name);
+        let rows: Vec<Vec<&str>> = text.lines().map(|row| row.split(',').collect()).collect();
+        let mut late = "t,theta,tau\n".to_owned();
+        for (now, then) in rows[1..].iter().zip(&rows[1 + LATE..]) {
+            let _ = writeln!(late, "{},{},{}", now[0], now[1], then[2]);
+        }
+        folder.write(name, &late);
+    }
+    folder.done(&[
+        "identify",
+        "pendulum",
+        "--data",
+        ".",
+        "--also",
+        "tau.delay",
+        "--json",
+        "found.json",
+    ]);
+    let delay = &folder.json("found.json")["parameters"][2];
+    assert_eq!(delay["name"], "tau.delay");
+    let value = delay["value"].as_f64().expect("a number");
+    assert!((value - 0.05).abs() < 0.01, "{delay}");
+    let outcome = folder.run(&["identify", "pendulum", "--data", ".", "--also", "tau.late"]);
+    assert_eq!(outcome.status, 2, "{}", outcome.stderr);
+    assert!(outcome.stderr.contains("tau.delay"), "{}", outcome.stderr);
+}

@@ -64,6 +64,9 @@ fn scale(information: f64) -> f64 {
 
 /// The curvature with all its eigenvalues, as parts of the expected one, made positive.
 fn mended(observed: &DMatrix<f64>, expected: &DMatrix<f64>) -> DMatrix<f64> {
+    if expected.is_empty() {
+        return expected.clone();
+    }
     let scales = expected.diagonal().map(scale);
     let scaled = |matrix: &DMatrix<f64>| {
         DMatrix::from_fn(matrix.nrows(), matrix.ncols(), |i, j| {

@@ -12,19 +12,19 @@ use super::EstimateError;
 use super::curvature::learn;
 use super::estimation::Estimation;
 use super::free::{Free, Selection};
-use super::posterior::Posterior;
+use super::posterior::{Point, Posterior};
 
 /// Part of the promised gain that makes a step worth it.
 const ENOUGH: f64 = 0.05;
-/// Part of the promised gain with which the curvature is believed.
-const BELIEVED: f64 = 0.75;
-/// Damping of steps that failed, relative to the curvature, first and at most before the curvature is
-/// observed anew.
-const DAMPING: [f64; 2] = [0.1, 5.0];
+/// Damping of a step that failed, relative to the curvature.
+const DAMPING: f64 = 0.1;
 /// Steps that are damped more than this move nothing.
 const MOST_DAMPING: f64 = 1e9;
-/// Gain in log-likelihood that is given up where no step finds it: a tenth of a standard deviation.
+/// Gain in log-likelihood that is given up where damped steps do not find it: a tenth of a standard
+/// deviation.
 const CLOSE: f64 = 5e-3;
+/// The same damping where no more than that is to be gained.
+const DAMPING_CLOSE: f64 = 5.0;
 
 /// When to stop.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -90,13 +90,13 @@ impl Fit {
         let (mut is_observed, mut damping, mut steps) = (false, 0.0, 0);
         loop {
             let (_, left) = posterior.step(&point, &curvature, 0.0);
-            let futile = if left <= CLOSE {
-                DAMPING[1]
+            let most = if left <= CLOSE {
+                DAMPING_CLOSE
             } else {
                 MOST_DAMPING
             };
-            let is_over = left <= effort.gain || steps >= effort.steps || damping > futile;
-            if !is_observed && (is_over || damping > DAMPING[1]) {
+            let is_over = left <= effort.gain || steps >= effort.steps || damping > most;
+            if !is_observed && (is_over || damping > 0.0) {
                 information = posterior.expected(&point)?;
                 curvature = posterior.observed(&point, &information)?;
                 (is_observed, damping) = (true, 0.0);
@@ -123,27 +123,16 @@ impl Fit {
             steps += 1;
             let (step, gain) = posterior.step(&point, &curvature, damping);
             let next = posterior.moved(&point, &step).ok();
-            let next = next.filter(|next| next.objective.is_finite());
-            // A step that failed tells something, but nothing better than what was just observed.
-            if let Some(next) = next
-                .as_ref()
-                .filter(|next| !is_observed || point.is_worse_than(next, ENOUGH * gain))
-            {
-                learn(&mut curvature, &point, next);
-            }
-            match next.filter(|next| point.is_worse_than(next, ENOUGH * gain)) {
+            let is_better = |next: &Point| {
+                next.objective.is_finite() && point.is_worse_than(next, ENOUGH * gain)
+            };
+            match next.filter(is_better) {
                 Some(next) => {
-                    if next.objective - point.objective > BELIEVED * gain {
-                        damping = if damping > 0.1 * DAMPING[0] {
-                            0.1 * damping
-                        } else {
-                            0.0
-                        };
-                    }
+                    learn(&mut curvature, &point, &next);
                     point = next;
-                    is_observed = false;
+                    (is_observed, damping) = (false, 0.0);
                 }
-                None => damping = (6.0 * damping).max(DAMPING[0]),
+                None => damping = (6.0 * damping).max(DAMPING),
             }
         }
     }

@@ -106,7 +106,7 @@ impl<'a> Plant<'a> {
         Scratch {
             u: zeros(m),
             p: zeros(k),
-            by_p: zeros(if self.drifting.is_empty() { 0 } else { n * k }),
+            by_p: zeros(self.info().state_len() * k),
             a: zeros(n * n),
             b: zeros(n * m),
             weights: zeros(n + n * n + n * m + s * s),

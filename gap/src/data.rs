@@ -28,7 +28,7 @@ mod bare;
 mod c3d;
 mod channel;
 mod clock;
-pub(crate) mod csv;
+mod csv;
 mod error;
 pub(crate) mod fields;
 mod finding;
@@ -42,7 +42,7 @@ mod observed;
 #[cfg(feature = "parquet")]
 mod parquet;
 mod quantum;
-mod table;
+pub(crate) mod table;
 
 use std::path::Path;
 

@@ -16,7 +16,7 @@ use super::table::{TIME, Table, checked, regular, too_many};
 use super::{DataError, Finding, FindingKind, motive};
 
 /// Reads the columns of the channels. `budget` counts down the numbers that may still come.
-pub(crate) fn read(
+pub(super) fn read(
     path: &Path,
     channels: &[Channel],
     budget: &mut usize,

@@ -48,7 +48,7 @@ impl Format {
 }
 
 /// Reads the columns of the channels. `budget` counts down the numbers that may still come.
-pub(super) fn read(
+pub(crate) fn read(
     path: &Path,
     channels: &[Channel],
     budget: &mut usize,

@@ -6,7 +6,7 @@ use appell_runtime::signal::angle::unwrap;
 use appell_spec::units;
 
 use super::skeleton::{Column, Skeleton};
-use crate::data::{Channel, DataError, Finding, Role, csv, limits};
+use crate::data::{Channel, DataError, Finding, Role, limits, table};
 
 /// Rigid bodies at increasing times, in SI; NaN where a body was not seen.
 #[derive(Debug, Clone, PartialEq)]
@@ -27,7 +27,7 @@ pub struct Track {
 }
 
 impl Capture {
-    /// Reads the columns of all bodies of a skeleton from a CSV file.
+    /// Reads the columns of all bodies of a skeleton from a file of any format of recordings.
     pub fn read(path: &Path, skeleton: &Skeleton) -> Result<(Self, Vec<Finding>), DataError> {
         let patterns: Vec<&Column> = patterns(skeleton).collect();
         let names = skeleton.bodies.iter();
@@ -36,7 +36,7 @@ impl Capture {
         let channel = |name: String| Channel::new(&name, Role::Recorded, plain.clone(), None);
         let channels: Vec<Channel> = names.map(channel).collect();
         let mut budget = limits::MAX_NUMBERS;
-        let table = csv::read(path, &channels, &mut budget)?;
+        let table = table::read(path, &channels, &mut budget)?;
         let mut columns = table.columns.into_iter();
         let bodies = skeleton.bodies.iter().map(|_| {
             let mut next = |column: &Column| -> Vec<f64> {

@@ -7,6 +7,7 @@ use std::fmt::Write as _;
 
 use appell_codegen::program::{Function, FunctionKind};
 use appell_codegen::schedule::{OperationCount, Tuning, schedule, schedule_tuned};
+use appell_spec::Mechanism;
 use appell_tests::shipped;
 
 /// One of the counts.
@@ -20,18 +21,6 @@ const COUNTED: [(&str, Count); 6] = [
     ("functions", |count| count.functions),
     ("choices", |count| count.selects),
     ("linear_systems", |count| count.solves),
-];
-
-/// Mechanisms of recordings: fits pay their adjoints.
-const WITH_ADJOINTS: [&str; 8] = [
-    "carriage",
-    "cart_pole",
-    "double_pendulum",
-    "euc_2dof",
-    "euc_3dof",
-    "pendulum",
-    "rolling_wheel",
-    "unicycle",
 ];
 
 type Counts = BTreeMap<String, BTreeMap<String, [usize; 6]>>;
@@ -48,13 +37,8 @@ fn name(kind: FunctionKind) -> String {
 }
 
 fn counts() -> Counts {
-    let count = |name: &str| {
-        let kinds: &[FunctionKind] = if WITH_ADJOINTS.contains(&name) {
-            &FunctionKind::ALL
-        } else {
-            &FunctionKind::STANDARD
-        };
-        let program = shipped::program_of(&shipped::mechanism(name), kinds);
+    let count = |mechanism: &Mechanism| {
+        let program = shipped::program(mechanism);
         let functions = program.functions.iter();
         functions
             .map(|function| {
@@ -64,7 +48,10 @@ fn counts() -> Counts {
             .collect()
     };
     let names = shipped::names().into_iter();
-    names.map(|name| (name.clone(), count(&name))).collect()
+    names
+        .map(|name| (shipped::mechanism(&name), name))
+        .map(|(mechanism, name)| (name, count(&mechanism)))
+        .collect()
 }
 
 fn write(counts: &Counts) -> String {

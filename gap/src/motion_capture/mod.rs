@@ -33,5 +33,5 @@ pub use ride::Ride;
 pub use skeleton::{
     Channel, ChannelKind, Column, Columns, Frame, Place, Point, Rider, Segment, Skeleton,
 };
-pub use smooth::{Smoothed, filter};
+pub use smooth::{Signal, Smoothed, filter};
 pub use written::{manifest, table};

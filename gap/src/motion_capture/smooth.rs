@@ -4,8 +4,8 @@
 //! Its window is the narrowest of those that the rule of [`appell_runtime::signal::window`] chooses
 //! for the second derivatives of the channels.
 
-use appell_runtime::signal::savitzky_golay::SavitzkyGolay;
-use appell_runtime::signal::{Estimate, Samples, SamplesError, noise, window};
+use appell_runtime::signal::savitzky_golay::{SavitzkyGolay, weights};
+use appell_runtime::signal::{Samples, SamplesError, noise, window};
 
 use super::pose::{Axes, Vector};
 use super::ride::Ride;
@@ -24,9 +24,25 @@ pub struct Smoothed {
     /// Acceleration of the frame's origin, in the frame, m/s².
     pub acceleration: Vec<Vector>,
     /// Yaw, tilt and pitch with two derivatives.
-    pub angles: [Estimate; 3],
+    pub angles: [Signal; 3],
     /// The channels with two derivatives.
-    pub channels: Vec<Estimate>,
+    pub channels: Vec<Signal>,
+}
+
+/// A quantity with two derivatives.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Signal(Vec<[f64; 3]>);
+
+impl Signal {
+    /// Value and derivatives at a row.
+    pub fn at(&self, row: usize) -> [f64; 3] {
+        self.0[row]
+    }
+
+    /// The derivative of an order at all times.
+    pub fn derivative(&self, order: usize) -> Vec<f64> {
+        self.0.iter().map(|all| all[order]).collect()
+    }
 }
 
 /// The window for rides of one kind, in samples of a Savitzky-Golay filter.
@@ -55,10 +71,8 @@ pub fn filter(rides: &[Ride]) -> Result<SavitzkyGolay, SamplesError> {
 impl Smoothed {
     /// Of a ride, by a filter.
     pub fn of(ride: &Ride, filter: SavitzkyGolay) -> Result<Self, SamplesError> {
-        let smooth = |values: &[f64]| {
-            // Covariances are not asked for: the level does not matter.
-            filter.estimate(Samples::new(&ride.times, values)?, 2, 1.0)
-        };
+        let kernels = Kernels::of(&ride.times, filter);
+        let smooth = |values: &[f64]| kernels.smooth(values);
         let component = |k: usize| {
             let values: Vec<f64> = ride.origin.iter().map(|place| place[k]).collect();
             smooth(&values)
@@ -81,5 +95,64 @@ impl Smoothed {
             channels: channels.collect::<Result<_, _>>()?,
             angles,
         })
+    }
+}
+
+/// Weights of a filter at all times of a record. On equal steps most of them are the same.
+struct Kernels<'t> {
+    times: &'t [f64],
+    filter: SavitzkyGolay,
+    /// The first sample of each window, and the place of its weights.
+    windows: Vec<(usize, usize)>,
+    /// For each order a weight for each sample of a window.
+    weights: Vec<[Vec<f64>; 3]>,
+}
+
+/// Times from the middle of two windows that differ by less than this part of a window are the same.
+const SAME: f64 = 1e-9;
+
+impl<'t> Kernels<'t> {
+    fn of(times: &'t [f64], filter: SavitzkyGolay) -> Self {
+        let count = filter.count();
+        let mut all = Self {
+            times,
+            filter,
+            windows: Vec::new(),
+            weights: Vec::new(),
+        };
+        let mut shape: Vec<f64> = Vec::new();
+        for (row, &t) in times.iter().enumerate() {
+            let first = row.saturating_sub(count / 2);
+            let first = first.min(times.len().saturating_sub(count));
+            let window = &times[first..times.len().min(first + count)];
+            let close = SAME * (window[window.len() - 1] - window[0]);
+            let same = shape.len() == window.len()
+                && (shape.iter().zip(window)).all(|(own, time)| (own - (time - t)).abs() <= close);
+            if !same {
+                let of = |order| weights(window, t, DEGREE, order).unwrap_or_default();
+                all.weights.push([of(0), of(1), of(2)]);
+                shape = window.iter().map(|time| time - t).collect();
+            }
+            all.windows.push((first, all.weights.len() - 1));
+        }
+        all
+    }
+
+    fn smooth(&self, values: &[f64]) -> Result<Signal, SamplesError> {
+        let samples = Samples::new(self.times, values)?;
+        if values.len() < self.filter.count() || values.iter().any(|value| value.is_nan()) {
+            // Windows reach over what is missing. Covariances are not asked for: no level matters.
+            let estimate = self.filter.estimate(samples, 2, 1.0)?;
+            let rows = 0..estimate.len();
+            let three = |row| [0, 1, 2].map(|order| estimate.at(row)[order]);
+            return Ok(Signal(rows.map(three).collect()));
+        }
+        let rows = self.windows.iter().map(|&(first, kernel)| {
+            self.weights[kernel].each_ref().map(|weights| {
+                let pairs = weights.iter().zip(&values[first..]);
+                pairs.map(|(weight, value)| weight * value).sum()
+            })
+        });
+        Ok(Signal(rows.collect()))
     }
 }

@@ -7,6 +7,7 @@
 mod cdr;
 
 use std::collections::BTreeMap;
+use std::fmt::Write as _;
 use std::path::Path;
 
 use mcap::{Message, MessageStream};
@@ -133,7 +134,8 @@ fn flatten(path: &mut String, value: &Value, tell: &mut dyn FnMut(&str, f64)) {
         Value::Bool(value) => tell(path, f64::from(u8::from(*value))),
         Value::Array(values) => {
             for (index, value) in values.iter().enumerate() {
-                path.push_str(&format!("[{index}]"));
+                // Writing to a string cannot fail.
+                let _ = write!(path, "[{index}]");
                 flatten(path, value, tell);
                 path.truncate(length);
             }

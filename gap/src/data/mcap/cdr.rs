@@ -2,11 +2,12 @@
 //! Representation*: numbers stand at multiples of their own length).
 
 use std::collections::BTreeMap;
+use std::fmt::Write as _;
 
 /// Messages inside messages are at most so deep.
 const DEEPEST: usize = 16;
 
-/// The message types of a channel by name; the first one has the name ``.
+/// The message types of a channel by name; the first one has an empty name.
 pub(super) struct Definitions {
     types: BTreeMap<String, Vec<Field>>,
 }
@@ -164,7 +165,8 @@ impl<'a> Reader<'a> {
                     };
                     self.elements = self.elements.checked_sub(count)?;
                     for index in 0..count {
-                        self.path.push_str(&format!("[{index}]"));
+                        // Writing to a string cannot fail.
+                        let _ = write!(self.path, "[{index}]");
                         self.value(&field.kind, depth)?;
                         self.path.truncate(of_field);
                     }

@@ -16,15 +16,17 @@ use super::posterior::{Point, Posterior};
 
 /// Part of the promised gain that makes a step worth it.
 const ENOUGH: f64 = 0.05;
-/// Damping of a step that failed, relative to the curvature.
+/// Damping of the first step that fails, relative to the curvature.
 const DAMPING: f64 = 0.1;
+/// Part of the promised gain with which the damping falls.
+const BELIEVED: f64 = 0.75;
 /// Steps that are damped more than this move nothing.
 const MOST_DAMPING: f64 = 1e9;
 /// Gain in log-likelihood that is given up where damped steps do not find it: a tenth of a standard
 /// deviation.
 const CLOSE: f64 = 5e-3;
-/// The same damping where no more than that is to be gained.
-const DAMPING_CLOSE: f64 = 5.0;
+/// More damping than this tells that the curvature is wrong, or that nothing is left to gain.
+const MUCH_DAMPING: f64 = 5.0;
 
 /// When to stop.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -91,12 +93,12 @@ impl Fit {
         loop {
             let (_, left) = posterior.step(&point, &curvature, 0.0);
             let most = if left <= CLOSE {
-                DAMPING_CLOSE
+                MUCH_DAMPING
             } else {
                 MOST_DAMPING
             };
             let is_over = left <= effort.gain || steps >= effort.steps || damping > most;
-            if !is_observed && (is_over || damping > 0.0) {
+            if !is_observed && (is_over || damping > MUCH_DAMPING) {
                 information = posterior.expected(&point)?;
                 curvature = posterior.observed(&point, &information)?;
                 (is_observed, damping) = (true, 0.0);
@@ -123,16 +125,22 @@ impl Fit {
             steps += 1;
             let (step, gain) = posterior.step(&point, &curvature, damping);
             let next = posterior.moved(&point, &step).ok();
-            let is_better = |next: &Point| {
-                next.objective.is_finite() && point.is_worse_than(next, ENOUGH * gain)
-            };
-            match next.filter(is_better) {
-                Some(next) => {
-                    learn(&mut curvature, &point, &next);
-                    point = next;
-                    (is_observed, damping) = (false, 0.0);
+            let next = next.filter(|next| next.objective.is_finite());
+            let is_better = |next: &Point| point.is_worse_than(next, ENOUGH * gain);
+            let better = next.as_ref().is_some_and(is_better);
+            // A step that failed tells something, but nothing better than what was just observed.
+            if let Some(next) = next.as_ref().filter(|_| better || !is_observed) {
+                learn(&mut curvature, &point, next);
+            }
+            match next {
+                Some(next) if better => {
+                    if next.objective - point.objective > BELIEVED * gain {
+                        let less = 0.1 * damping;
+                        damping = if less < 0.1 * DAMPING { 0.0 } else { less };
+                    }
+                    (point, is_observed) = (next, false);
                 }
-                None => damping = (6.0 * damping).max(DAMPING),
+                _ => damping = (6.0 * damping).max(DAMPING),
             }
         }
     }

@@ -111,21 +111,35 @@ impl Track {
     }
 }
 
-/// How far a point has come along the first axis of a frame: steps between neighbours, each along the
-/// mean of the two axes. Noise of the point does not add up as long as the axis keeps its direction.
+/// Frames on each side over which the direction of a path is averaged.
+const NEIGHBOURS: usize = 15;
+
+/// How far a point has come along the first axis of a frame: steps between rows, each along the mean of
+/// the axes of its neighbours. Noise of the point does not add up as long as the axis keeps its
+/// direction; noise of the axis times noise of the point would, without the mean.
 fn path(frames: &[Axes], place: &[Vector]) -> Vec<f64> {
+    let rows = place.len();
+    let seen = |row: usize| frames[row].forward().iter().all(|x| x.is_finite());
+    // Sums of the axes up to each row: a mean is a difference of two of them.
+    let mut sums = vec![[0.0; 3]];
+    for row in 0..rows {
+        let axis = if seen(row) {
+            frames[row].forward()
+        } else {
+            [0.0; 3]
+        };
+        sums.push(sum(sums[row], axis));
+    }
     let mut way = 0.0;
     let mut last: Option<usize> = None;
-    let steps = (0..place.len()).map(|row| {
-        if !place[row]
-            .iter()
-            .chain(&frames[row].forward())
-            .all(|x| x.is_finite())
-        {
+    let steps = (0..rows).map(|row| {
+        if !seen(row) || !place[row].iter().all(|x| x.is_finite()) {
             return f64::NAN;
         }
         if let Some(before) = last {
-            let forward = sum(frames[before].forward(), frames[row].forward());
+            // As many on each side, so that a turn takes nothing from a step.
+            let reach = NEIGHBOURS.min(before).min(rows - 1 - row);
+            let forward = difference(sums[row + reach + 1], sums[before - reach]);
             let length = product(forward, forward).sqrt();
             way += product(difference(place[row], place[before]), forward) / length;
         }

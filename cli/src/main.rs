@@ -6,6 +6,7 @@ mod commands;
 mod conditions;
 mod control;
 mod controller;
+mod diagnosed;
 mod engine;
 mod failure;
 mod feedback;

@@ -15,6 +15,7 @@ pub mod page;
 pub mod program;
 pub mod schedule;
 pub mod symbolic;
+pub mod velocities;
 
 pub use build::build;
 pub use compile::{Derived, audited, compile, derived};

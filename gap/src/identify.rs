@@ -30,7 +30,8 @@ pub use error::IdentifyError;
 pub use held_out::{AHEAD, HORIZONS, HeldOut, Trace};
 
 use held_out::Test;
-use problem::{EFFORT, Problem};
+pub(crate) use problem::{Problem, begin};
+use problem::EFFORT;
 
 /// Steps of the integration are this long in s at most.
 const LONGEST_STEP: f64 = 0.02;
@@ -43,6 +44,18 @@ pub struct Options {
     /// What to look for besides: `tau.lag` and `tau.delay` of inputs; `theta.bias`, `theta.scale` and
     /// `theta.delay` of channels.
     pub also: Vec<String>,
+    /// Whether it is no mistake that no parameter is free.
+    pub none_will_do: bool,
+}
+
+impl Options {
+    /// All parameters with a tolerance, if there are any.
+    pub(crate) fn tolerant() -> Self {
+        Self {
+            none_will_do: true,
+            ..Self::default()
+        }
+    }
 }
 
 /// Finds the parameters of a model that make the runs to fit most likely, and measures its errors on

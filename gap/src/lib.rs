@@ -5,6 +5,8 @@
 //! finds parameters from them, [`inverse`] from motions whose inputs nobody knows. [`motion_capture`] makes recordings of a capture of rigid bodies.
 
 pub mod data;
+pub mod diagnose;
+pub mod effects;
 pub mod identify;
 pub mod inverse;
 pub mod motion_capture;

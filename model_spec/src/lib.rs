@@ -8,6 +8,7 @@
 //! text and with what to write instead.
 
 pub mod ast;
+pub mod compose;
 pub mod diagnostic;
 pub mod edit;
 pub mod expr;

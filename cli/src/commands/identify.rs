@@ -48,6 +48,7 @@ impl Identify {
         let options = Options {
             free: self.free.clone(),
             also: self.also.clone(),
+            none_will_do: false,
         };
         let answer = identify::identify(&set, equations.model(), &options, |stage| {
             spinner.set_message(stage);

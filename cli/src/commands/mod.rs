@@ -5,6 +5,7 @@ mod completions;
 mod control;
 mod demo;
 mod derive;
+mod diagnose;
 mod draw;
 mod evaluate;
 mod identify;
@@ -36,6 +37,7 @@ pub(crate) enum Command {
     Identify(identify::Identify),
     Inverse(inverse::Inverse),
     Motion(motion::Motion),
+    Diagnose(diagnose::Diagnose),
     Steady(steady::Steady),
     Stability(stability::StabilityCommand),
     Demo(demo::Demo),
@@ -59,6 +61,7 @@ pub(crate) fn run(command: Command) -> Result<(), Failure> {
         Command::Identify(command) => command.run(),
         Command::Inverse(command) => command.run(),
         Command::Motion(command) => command.run(),
+        Command::Diagnose(command) => command.run(),
         Command::Steady(command) => command.run(),
         Command::Stability(command) => command.run(),
         Command::Demo(command) => command.run(),

@@ -3,9 +3,41 @@
 use appell_runtime::estimate::{self, EstimateError, Recording};
 use appell_runtime::model::ModelInfo;
 
-use super::{Channel, DataSet, Measured, Part, Role};
+use appell_spec::Mechanism;
+use appell_spec::mechanism;
+
+use super::{Channel, DataSet, Measured, Parameter, Part, Role};
 
 impl DataSet {
+    /// The runs of one part alone.
+    #[must_use]
+    pub fn only(&self, part: Part) -> Self {
+        let mut set = self.clone();
+        set.runs.retain(|run| run.part == part);
+        set
+    }
+
+    /// The same recordings of a mechanism with further parameters, whose values its spec states.
+    #[must_use]
+    pub fn bound_to(&self, mechanism: &Mechanism) -> Self {
+        let own = |parameter: &mechanism::Parameter| {
+            let mut names = self.mechanism.parameters.iter().map(|p| &p.label.name);
+            let known = names.position(|name| *name == parameter.label.name);
+            known.map_or(
+                Parameter {
+                    value: parameter.value,
+                    std: None,
+                },
+                |index| self.parameters[index],
+            )
+        };
+        Self {
+            parameters: mechanism.parameters.iter().map(own).collect(),
+            mechanism: mechanism.clone(),
+            ..self.clone()
+        }
+    }
+
     /// The measured channels whose quantities the model has, with what they show.
     pub fn measured(&self, info: &ModelInfo) -> Vec<(&Channel, estimate::Measured)> {
         let shown = |channel: &Channel| match channel.role {

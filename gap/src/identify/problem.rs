@@ -25,19 +25,19 @@ pub(super) const EFFORT: Effort = Effort {
 const DISTURBANCE_RANGE: [f64; 2] = [1e-7, 1e3];
 
 /// A fit to be made.
-pub(super) struct Problem {
+pub(crate) struct Problem {
     /// Values to begin with: the parameters of the rig.
-    pub(super) start: Vec<f64>,
+    pub(crate) start: Vec<f64>,
     /// Parameters and additions that are free.
-    pub(super) wanted: Vec<Free>,
+    pub(crate) wanted: Vec<Free>,
     /// What they are; the value is the nominal one.
     pub(super) quantities: Vec<Quantity>,
     /// Levels of disturbances and noise, which always are.
-    pub(super) levels: Vec<Free>,
+    pub(crate) levels: Vec<Free>,
 }
 
 impl Problem {
-    pub(super) fn of(
+    pub(crate) fn of(
         set: &DataSet,
         estimation: &Estimation<'_>,
         (options, additions): (&Options, &[Addition]),
@@ -95,7 +95,7 @@ fn free_parameters(
     } else {
         (0..set.parameters.len()).filter(has_tolerance).collect()
     };
-    if chosen.is_empty() && options.also.is_empty() {
+    if chosen.is_empty() && options.also.is_empty() && !options.none_will_do {
         return Err(IdentifyError::NothingFree);
     }
     let free = |&index: &usize| {
@@ -150,7 +150,7 @@ fn deviation(recordings: &[Recording], channel: usize) -> f64 {
 }
 
 /// Writes the states at the first rows of all runs.
-pub(super) fn begin(
+pub(crate) fn begin(
     estimation: &Estimation<'_>,
     values: &mut [f64],
 ) -> Result<Vec<Start>, IdentifyError> {

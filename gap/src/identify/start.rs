@@ -14,11 +14,11 @@ const PLACES: usize = 100;
 const CAUTION: f64 = 10.0;
 
 /// What a run begins with.
-pub(super) struct Start {
+pub(crate) struct Start {
     /// Expected state.
-    pub(super) state: Vec<f64>,
+    pub(crate) state: Vec<f64>,
     /// Standard deviations.
-    pub(super) spread: Vec<f64>,
+    pub(crate) spread: Vec<f64>,
 }
 
 /// States at the first row: measured ones as measured, other pseudo-velocities from slopes of the

@@ -23,6 +23,9 @@
 //! - [`consistency`], [`chi_squared`]: whether innovations are what they should be;
 //! - [`free`], [`posterior`], [`curvature`], [`fit`]: the most likely values;
 //! - [`sensitivity`]: scores and Fisher's information;
+//! - [`scoring`]: fits in few passes;
+//! - [`tangent`], [`information`]: how innovations change with many values, and Fisher's information,
+//!   in few passes;
 //! - [`identifiability`], [`profile`], [`robust`]: what is known of the values, and how far;
 //! - [`regression`]: parameters from accelerations, without a filter.
 
@@ -36,6 +39,7 @@ mod filter;
 mod fit;
 mod free;
 mod identifiability;
+mod information;
 mod layout;
 mod matrix;
 mod plant;
@@ -45,10 +49,12 @@ mod profile;
 mod recording;
 mod regression;
 mod robust;
+mod scoring;
 mod sensitivity;
 mod setup;
 mod smoother;
 mod square_root;
+mod tangent;
 mod timeline;
 mod transition;
 
@@ -68,3 +74,4 @@ pub use robust::Blocks;
 pub use sensitivity::Sensitivity;
 pub use setup::{Channel, Disturbance, Measured, Setup};
 pub use smoother::Smoothed;
+pub use tangent::{Direction, Shapes, Tangent};

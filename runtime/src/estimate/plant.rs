@@ -167,6 +167,25 @@ impl<'a> Plant<'a> {
         (first..).zip(self.drifting.iter().copied())
     }
 
+    /// Tells what the model sees at a place.
+    pub(super) fn at(&self, place: Place<'_>, scratch: &mut Scratch, tell: impl FnOnce(At<'_>)) {
+        let Scratch { u, p, .. } = scratch;
+        self.view(place, u, p);
+        tell(at(place, self.info().state_len(), u, p));
+    }
+
+    /// ∂ẋ/∂p of the model's own states.
+    pub(super) fn parameter_jacobian(
+        &self,
+        place: Place<'_>,
+        scratch: &mut Scratch,
+        slopes: &mut [f64],
+    ) {
+        self.at(place, scratch, |at| {
+            self.model.parameter_jacobian(at, slopes);
+        });
+    }
+
     /// ż.
     pub(super) fn rates(&self, place: Place<'_>, scratch: &mut Scratch, rates: &mut [f64]) {
         let n = self.info().state_len();

@@ -58,6 +58,52 @@ impl Estimation<'_> {
     }
 }
 
+impl Estimation<'_> {
+    /// Variances in SI that the errors of [`Estimation::predictions`] have where the model and its
+    /// levels are right, each with its channel.
+    pub fn expected_errors(
+        &self,
+        values: &[f64],
+        run: usize,
+        horizon: f64,
+        origins: &[usize],
+    ) -> Result<Vec<(usize, f64)>, EstimateError> {
+        self.check(values)?;
+        self.layout().place(Unknown::Initial { run, state: 0 })?;
+        let recording = &self.recordings()[run];
+        let actions = self.actions(run, values);
+        let mut pass = self.fresh(run, values, &actions);
+        let mut expected = Vec::new();
+        for (place, &action) in actions.iter().enumerate() {
+            pass.act(recording, action)?;
+            let Action::Measure { row, channel: None } = action else {
+                continue;
+            };
+            if origins.binary_search(&row).is_err() {
+                continue;
+            }
+            let mut ahead = self.fresh(run, values, &actions);
+            ahead.z.copy_from_slice(&pass.z);
+            ahead.root.copy_from_slice(&pass.root);
+            ahead.held.copy_from_slice(&pass.held);
+            for &action in &actions[place + 1..] {
+                if let Action::Measure { row: met, channel } = action {
+                    let passed = recording.times()[met] - recording.times()[row];
+                    if channel.is_some() || passed < horizon * (1.0 - 1e-9) {
+                        continue;
+                    }
+                    ahead.act(recording, action)?;
+                    let samples = ahead.samples.iter().map(|sample| sample.innovation);
+                    expected.extend(samples.map(|one| (one.channel, one.variance)));
+                    break;
+                }
+                ahead.act(recording, action)?;
+            }
+        }
+        Ok(expected)
+    }
+}
+
 /// A motion that nothing corrects.
 struct Walk<'a> {
     setup: &'a Setup<'a>,

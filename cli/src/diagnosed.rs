@@ -1,0 +1,201 @@
+//! A gap report, for people and for programs.
+
+use std::fmt::Write as _;
+
+use appell_gap::diagnose::{DiagnoseError, Hypothesis, Report, Verdict};
+use appell_gap::effects::ModelError;
+use serde_json::{Value, json};
+
+use crate::failure::Failure;
+use crate::table::number;
+
+/// Hypotheses that the summary lists.
+const LISTED: usize = 3;
+
+pub(crate) fn failure(error: DiagnoseError) -> Failure {
+    match error {
+        DiagnoseError::Model(ModelError::Spec(report)) => Failure::Report(report),
+        DiagnoseError::NothingMeasured
+        | DiagnoseError::NothingToFit
+        | DiagnoseError::Model(ModelError::Effect(_) | ModelError::Edit(_)) => {
+            Failure::Data(error.to_string())
+        }
+        other => Failure::Computation(other.to_string()),
+    }
+}
+
+/// `a + b`
+fn joined(effects: &[String]) -> String {
+    if effects.is_empty() {
+        "nominal model".to_owned()
+    } else {
+        effects.join(" + ")
+    }
+}
+
+/// The summary in some ten lines.
+pub(crate) fn text(report: &Report) -> String {
+    let mut text = String::new();
+    // Writing to a string cannot fail.
+    let _ = writeln!(text, "{}: {}", report.mechanism, sentence(report));
+    if !report.place.equations.is_empty() {
+        let shares: Vec<String> = report
+            .place
+            .equations
+            .iter()
+            .filter(|equation| equation.share >= 0.05)
+            .map(|e| format!("{} {:.0} %", e.name, 100.0 * e.share))
+            .collect();
+        let _ = writeln!(
+            text,
+            "  where     {} ({})",
+            report.place.domain,
+            shares.join(", ")
+        );
+    }
+    for hypothesis in report.which.iter().take(LISTED) {
+        let _ = writeln!(text, "  which     {}", line(hypothesis));
+    }
+    for group in &report.tied {
+        let names: Vec<String> = group.iter().map(|effects| joined(effects)).collect();
+        let _ = writeln!(text, "  tied      {}", names.join(" | "));
+    }
+    match &report.how_far {
+        Some(far) => {
+            let _ = writeln!(
+                text,
+                "  how far   error {} s ahead: nominal {}, re-fitted {}, with effect {}, floor {} (in units of noise)",
+                far.horizon_s,
+                number(far.nominal),
+                number(far.refitted),
+                number(far.with_effect),
+                number(far.noise_floor),
+            );
+            let _ = writeln!(
+                text,
+                "            closed {:.1} % [{:.1}, {:.1}], against the re-fitted model {:.1} %",
+                100.0 * far.closed,
+                100.0 * far.closed_ci95[0],
+                100.0 * far.closed_ci95[1],
+                100.0 * far.closed_vs_refitted,
+            );
+        }
+        None => text.push_str("  how far   no run was held out\n"),
+    }
+    let levels: Vec<String> = report
+        .disturbances
+        .iter()
+        .map(|(name, before, after)| format!("{name} {} -> {}", number(*before), number(*after)))
+        .collect();
+    let _ = writeln!(
+        text,
+        "  disturbance, before and after: {}",
+        levels.join(", ")
+    );
+    text
+}
+
+/// The verdict in one sentence.
+fn sentence(report: &Report) -> String {
+    let about: Vec<&str> = report
+        .found
+        .iter()
+        .map(|found| found.about.as_str())
+        .collect();
+    match report.verdict {
+        Verdict::NoGap => "no gap beyond noise and disturbance".to_owned(),
+        Verdict::Explained => format!("the gap is explained by {}", about.join(" and ")),
+        Verdict::Ambiguous => format!(
+            "there is a gap; {} explains it, and so do others as well",
+            about.join(" and ")
+        ),
+        Verdict::Unexplained => "there is a gap that nothing in the library explains".to_owned(),
+    }
+}
+
+fn line(hypothesis: &Hypothesis) -> String {
+    let values: Vec<String> = hypothesis
+        .parameters
+        .iter()
+        .map(|value| {
+            let short = value.name.rsplit('.').next().unwrap_or_default();
+            format!(
+                "{short} = {} ± {} {}",
+                number(value.value),
+                number(value.std),
+                value.unit
+            )
+        })
+        .collect();
+    format!(
+        "{:6.1} %  {}  {}",
+        100.0 * hypothesis.probability,
+        joined(&hypothesis.effects),
+        values.join(", ")
+    )
+}
+
+/// The gap report of the contract.
+pub(crate) fn json(report: &Report) -> Value {
+    let equations = report.place.equations.iter().map(|e| {
+        json!({ "name": e.name, "share": e.share, "p_value": e.p_value, "rms": e.rms, "unit": e.unit })
+    });
+    let windows = report.place.windows.iter().map(|w| {
+        json!({ "run": w.run, "from_s": w.from, "to_s": w.to, "equation": w.equation, "z": w.z })
+    });
+    let region = report
+        .place
+        .region
+        .iter()
+        .map(|r| json!({ "variable": r.variable, "description": r.description, "z": r.z }));
+    let which = report.which.iter().map(|h| {
+        let parameters = h
+            .parameters
+            .iter()
+            .map(|v| json!({ "name": v.name, "value": v.value, "std": v.std, "unit": v.unit }));
+        json!({
+            "effects": h.effects, "probability": h.probability,
+            "log_bayes_factor": h.log_bayes_factor, "parameters": parameters.collect::<Vec<_>>(),
+        })
+    });
+    let tied = report.tied.iter().map(|group| {
+        let names = group.iter().map(|effects| effects.join("+"));
+        names.collect::<Vec<_>>()
+    });
+    let far = report.how_far.as_ref().map(|far| {
+        json!({
+            "horizon_s": far.horizon_s, "nominal": far.nominal, "refitted": far.refitted,
+            "with_effect": far.with_effect, "noise_floor": far.noise_floor, "closed": far.closed,
+            "closed_ci95": far.closed_ci95, "closed_vs_refitted": far.closed_vs_refitted,
+            "runs": far.runs,
+        })
+    });
+    let detectable = report
+        .detectable
+        .iter()
+        .map(|d| json!({ "effect": d.effect, "smallest": d.smallest, "unit": d.unit }));
+    let failed = report
+        .failed
+        .iter()
+        .map(|(effects, reason)| json!({ "effects": effects, "reason": reason }));
+    let disturbances = report.disturbances.iter().map(
+        |(name, before, after)| json!({ "name": name, "nominal": before, "with_effect": after }),
+    );
+    json!({
+        "schema": "gap-report/1",
+        "mechanism": report.mechanism,
+        "verdict": report.verdict.word(),
+        "where": {
+            "domain": report.place.domain,
+            "equations": equations.collect::<Vec<_>>(),
+            "windows": windows.collect::<Vec<_>>(),
+            "region": region.collect::<Vec<_>>(),
+        },
+        "which": which.collect::<Vec<_>>(),
+        "tied": tied.collect::<Vec<_>>(),
+        "how_far": far,
+        "detectable": detectable.collect::<Vec<_>>(),
+        "failed": failed.collect::<Vec<_>>(),
+        "disturbances": disturbances.collect::<Vec<_>>(),
+    })
+}

@@ -1,0 +1,74 @@
+//! Where a model falls short of recordings, which effect it lacks, and how far the effect closes the
+//! gap.
+//!
+//! ```text
+//! data set --split--> runs to fit | runs held out, which the last step alone can read
+//!          --effects--> candidates: every effect at every place, derived at once with sizes of zero
+//!          --bench, evidence--> the nominal model in innovations form, parameters within tolerance
+//!          --screen--> what each candidate would gain, to first order
+//!          --compare--> the best ones fitted, alone and together; evidence on equal terms
+//!          --unknown--> what no candidate explains, and what it depends on
+//!          --localise--> equations, windows of time, regions
+//!          --held_out--> errors of predictions: nominal, re-fitted, with the effect, noise
+//! ```
+//!
+//! Decisions rest on the likelihood of the innovations of an extended Kalman filter whose levels of
+//! disturbance are found anew under every hypothesis.
+
+mod bench;
+mod compare;
+mod error;
+mod evidence;
+mod held_out;
+mod hypothesis;
+mod localise;
+mod report;
+mod scales;
+mod screen;
+mod unknown;
+
+use crate::data::{DataSet, Part};
+use crate::effects::{Effect, EffectModel, candidates};
+
+pub use error::DiagnoseError;
+pub use report::{
+    Detectable, Found, HowFar, Hypothesis, Region, Report, ShareOf, Value, Verdict, Where, Window,
+};
+
+use bench::Bench;
+use compare::Comparison;
+use held_out::HeldOut;
+use screen::Screen;
+
+/// Diagnoses a data set with a library of effects. `stage` is told what begins.
+pub fn diagnose(
+    set: &DataSet,
+    effects: &[Effect],
+    mut stage: impl FnMut(&'static str),
+) -> Result<Report, DiagnoseError> {
+    stage("deriving the mechanism with all effects");
+    let fitted = set.only(Part::Fit);
+    if fitted.runs.is_empty() {
+        return Err(DiagnoseError::NothingToFit);
+    }
+    let scales = scales::of(&fitted);
+    let all = candidates(&set.mechanism, &set.spec, effects, &scales)?;
+    let model = EffectModel::new(&set.spec, all)?;
+    let bench = Bench::new(&fitted, &model)?;
+    stage("fitting the nominal model");
+    let nominal = bench.nominal()?;
+    stage("screening the effects");
+    let screen = Screen::of(&bench, &nominal)?;
+    stage("fitting the effects that remain");
+    let mut comparison = Comparison::of(&bench, nominal, &screen)?;
+    stage("looking for what no effect explains");
+    comparison.weigh_unknown(&bench, &screen)?;
+    stage("localising the gap");
+    let place = localise::place(&bench, &comparison)?;
+    stage("predicting the runs that were held out");
+    let held_out = HeldOut::of(set.only(Part::Test), &bench)?;
+    let how_far = held_out.how_far(&bench, &comparison)?;
+    Ok(report::assemble(
+        &bench, &screen, comparison, place, how_far,
+    ))
+}

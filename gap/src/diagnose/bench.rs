@@ -1,0 +1,299 @@
+//! Everything that hypotheses are fitted with: recordings, the model with all candidates, what is
+//! free under each hypothesis, and from where a search starts.
+
+use appell_runtime::estimate::{
+    Coordinate, Effort, Estimation, Fit, Free, Layout, Measured, Recording, Setup, Unknown,
+};
+use appell_runtime::model::Model;
+
+use super::DiagnoseError;
+use super::evidence::Evidence;
+use super::hypothesis::Fitted;
+use crate::data::{DataSet, Part};
+use crate::effects::{Acts, Candidate, EffectModel, Part as Role};
+use crate::identify::{Options, Problem};
+
+/// Steps of the integration are this long in s at most.
+const LONGEST_STEP: f64 = 0.02;
+/// Delays of inputs and channels are this long in s at most.
+const LONGEST_DELAY: f64 = 0.1;
+/// Shortest lag that the integration can follow, in steps.
+const SHORTEST_LAG: f64 = 0.5;
+/// Fits end where a further step promises less than this in log-likelihood: a tenth of what tells
+/// two hypotheses apart.
+const EFFORT: Effort = Effort {
+    gain: 0.02,
+    steps: 25,
+};
+/// Standard deviation of the logarithm of a shape.
+const SHAPE: f64 = 1.0;
+/// Standard deviation of a parameter that may be wrong, as a part of its value.
+pub(super) const WRONG: f64 = 0.5;
+
+/// What hypotheses are fitted with.
+pub(super) struct Bench<'a> {
+    /// The runs to fit, bound to the mechanism with all candidates.
+    pub(super) set: DataSet,
+    pub(super) effects: &'a EffectModel,
+    pub(super) recordings: Vec<Recording>,
+    pub(super) measured: Vec<Measured>,
+    pub(super) problem: Problem,
+    /// Typical sizes of the states that are not measured.
+    pub(super) sizes: Vec<f64>,
+    /// Steps are this long at most.
+    longest_step: f64,
+    /// Shortest step between rows.
+    step: f64,
+}
+
+impl<'a> Bench<'a> {
+    /// For the runs to fit.
+    pub(super) fn new(set: &DataSet, effects: &'a EffectModel) -> Result<Self, DiagnoseError> {
+        let set = set.bound_to(&effects.mechanism);
+        let info = effects.info();
+        let measured: Vec<Measured> = set.measured(info).iter().map(|(_, m)| *m).collect();
+        if measured.is_empty() {
+            return Err(DiagnoseError::NothingMeasured);
+        }
+        let recordings = set.recordings(Part::Fit, info)?;
+        let steps = recordings.iter().map(|run| {
+            let times = run.times();
+            (times[times.len() - 1] - times[0]) / (times.len() - 1) as f64
+        });
+        let step = steps.fold(f64::INFINITY, f64::min);
+        let setup = Setup {
+            longest_step: LONGEST_STEP,
+            ..Setup::new(effects.model(), &measured)
+        };
+        let (problem, sizes) = {
+            let estimation = Estimation::new(&setup, &recordings)?;
+            let mut problem = Problem::of(&set, &estimation, (&Options::tolerant(), &[]))?;
+            level(&estimation, &mut problem)?;
+            let sizes = sizes(&estimation, &problem)?;
+            (problem, sizes)
+        };
+        Ok(Self {
+            set,
+            effects,
+            recordings,
+            measured,
+            problem,
+            sizes,
+            longest_step: LONGEST_STEP,
+            step,
+        })
+    }
+
+    pub(super) fn model(&self) -> &dyn Model {
+        self.effects.model()
+    }
+
+    pub(super) fn candidate(&self, index: usize) -> &Candidate {
+        &self.effects.candidates[index]
+    }
+
+    /// The filter of a hypothesis: lags, delays.
+    pub(super) fn setup(&self, members: &[usize]) -> Setup<'_> {
+        let mut setup = Setup {
+            longest_step: self.longest_step,
+            ..Setup::new(self.model(), &self.measured)
+        };
+        for &member in members {
+            match self.candidate(member).acts {
+                Acts::Lag(input) => {
+                    setup.lagging.push(input);
+                    setup.longest_step = self.longest_step.min(self.step);
+                }
+                Acts::Delay(input) => setup.delayed.push(input),
+                Acts::Late(channel) => {
+                    setup.channels[channel].longest_delay = Some(LONGEST_DELAY);
+                }
+                _ => {}
+            }
+        }
+        setup
+    }
+
+    /// Places of the parameters of a candidate, with what each is.
+    pub(super) fn own(&self, candidate: &Candidate) -> Vec<(usize, Role)> {
+        let info = self.effects.info();
+        let own = candidate.parameters.iter();
+        own.filter_map(|(name, role)| Some((info.parameter_index(name)?, *role)))
+            .collect()
+    }
+
+    /// What is looked for under a hypothesis: parameters of the mechanism, then what the members
+    /// bring, then levels.
+    pub(super) fn free(&self, members: &[usize], setup: &Setup<'_>) -> Vec<Free> {
+        let info = self.effects.info();
+        let wrong: Vec<usize> = members
+            .iter()
+            .map(|&member| self.candidate(member))
+            .filter(|candidate| matches!(candidate.acts, Acts::Parameter(_)))
+            .filter_map(|candidate| info.parameter_index(&candidate.site))
+            .collect();
+        let mut free: Vec<Free> = Vec::new();
+        for one in &self.problem.wanted {
+            match (one.unknown, one.prior) {
+                (Unknown::Parameter(index), Some([value, _])) if wrong.contains(&index) => {
+                    free.push(one.around(value, WRONG * value.abs().max(f64::MIN_POSITIVE)));
+                }
+                _ => free.push(*one),
+            }
+        }
+        for &member in members {
+            free.extend(self.brought(member, setup));
+        }
+        free.extend(&self.problem.levels);
+        free
+    }
+
+    /// What a member brings.
+    pub(super) fn brought(&self, member: usize, setup: &Setup<'_>) -> Vec<Free> {
+        let candidate = self.candidate(member);
+        let info = self.effects.info();
+        let at = |list: &[usize], input: usize| list.iter().position(|own| *own == input);
+        match candidate.acts {
+            Acts::Items => self
+                .own(candidate)
+                .into_iter()
+                .filter(|(_, role)| *role != Role::Switch)
+                .map(|(index, role)| {
+                    let quantity = &info.parameters[index];
+                    let [low, high] = quantity.range;
+                    let free = Free::of(Unknown::Parameter(index)).within(low, high);
+                    match role {
+                        Role::Shape => Free {
+                            coordinate: Coordinate::Logarithm,
+                            ..free.around(quantity.value, SHAPE)
+                        },
+                        Role::Size | Role::Switch => free,
+                    }
+                })
+                .collect(),
+            Acts::Parameter(_) => Vec::new(),
+            Acts::Bias(channel) => vec![Free::of(Unknown::Bias(channel))],
+            Acts::Scale(channel) => vec![Free::of(Unknown::Scale(channel))],
+            Acts::Late(channel) => {
+                vec![Free::of(Unknown::SensorDelay(channel)).within(0.0, LONGEST_DELAY)]
+            }
+            Acts::Lag(input) => at(&setup.lagging, input)
+                .map(|place| {
+                    let shortest = SHORTEST_LAG * setup.longest_step;
+                    Free::of(Unknown::Lag(place)).within(shortest, 1e3 * shortest)
+                })
+                .into_iter()
+                .collect(),
+            Acts::Delay(input) => at(&setup.delayed, input)
+                .map(|place| Free::of(Unknown::InputDelay(place)).within(0.0, LONGEST_DELAY))
+                .into_iter()
+                .collect(),
+        }
+    }
+
+    /// The nominal model, its parameters within their tolerances.
+    pub(super) fn nominal(&self) -> Result<Fitted, DiagnoseError> {
+        let setup = self.setup(&[]);
+        let estimation = Estimation::new(&setup, &self.recordings)?;
+        self.fit(&[], &estimation, &self.problem.start)
+    }
+
+    /// Fits a hypothesis from a start.
+    pub(super) fn fit(
+        &self,
+        members: &[usize],
+        estimation: &Estimation<'_>,
+        start: &[f64],
+    ) -> Result<Fitted, DiagnoseError> {
+        let free = self.free(members, estimation.setup());
+        let fit = Fit::quick(estimation, start, &free, EFFORT)?;
+        let evidence = Evidence::of(self, members, &fit);
+        Ok(Fitted {
+            members: members.to_vec(),
+            layout: estimation.layout(),
+            fit,
+            evidence,
+        })
+    }
+}
+
+/// Moves the levels of disturbance one by one by powers of ten to where the recordings are most
+/// likely: forces of one equation say little of those of another.
+fn level(estimation: &Estimation<'_>, problem: &mut Problem) -> Result<(), DiagnoseError> {
+    let layout = estimation.layout();
+    let mut best = estimation.log_likelihood(&problem.start)?;
+    for index in 0..estimation.setup().disturbances.len() {
+        let place = layout.place(Unknown::Disturbance(index))?;
+        let Some([low, high]) = problem
+            .levels
+            .iter()
+            .find(|free| free.unknown == Unknown::Disturbance(index))
+            .map(|free| free.range)
+        else {
+            continue;
+        };
+        for factor in [10.0, 0.1] {
+            let mut moved = problem.start.clone();
+            loop {
+                moved[place] *= factor;
+                if !(low..=high).contains(&moved[place]) {
+                    break;
+                }
+                match estimation.log_likelihood(&moved) {
+                    Ok(likelihood) if likelihood > best => {
+                        best = likelihood;
+                        problem.start.clone_from(&moved);
+                    }
+                    _ => break,
+                }
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Spreads with which the runs begin: sizes of what is not measured.
+fn sizes(estimation: &Estimation<'_>, problem: &Problem) -> Result<Vec<f64>, DiagnoseError> {
+    let layout = estimation.layout();
+    let states = 0..estimation.setup().model.info().state_len();
+    let size = |state| {
+        let mut most = 0.0_f64;
+        for run in 0..estimation.recordings().len() {
+            most = most.max(problem.start[layout.place(Unknown::Spread { run, state })?]);
+        }
+        Ok(most)
+    };
+    states.map(size).collect()
+}
+
+/// Values of one filter as those of another: what both have is taken over.
+pub(super) fn transfer(from: (&Layout, &[f64]), to: &Estimation<'_>) -> Vec<f64> {
+    let (layout, values) = from;
+    let mut own = to.nominal();
+    let setup = to.setup();
+    let info = setup.model.info();
+    let mut unknowns: Vec<Unknown> = Vec::new();
+    unknowns.extend((0..info.parameter_len()).map(Unknown::Parameter));
+    unknowns.extend((0..setup.disturbances.len()).map(Unknown::Disturbance));
+    for channel in 0..setup.channels.len() {
+        unknowns.extend([
+            Unknown::Noise(channel),
+            Unknown::Bias(channel),
+            Unknown::Scale(channel),
+            Unknown::SensorDelay(channel),
+        ]);
+    }
+    for run in 0..to.recordings().len() {
+        for state in 0..info.state_len() {
+            unknowns.push(Unknown::Initial { run, state });
+            unknowns.push(Unknown::Spread { run, state });
+        }
+    }
+    let new = to.layout();
+    for unknown in unknowns {
+        if let (Ok(from), Ok(place)) = (layout.place(unknown), new.place(unknown)) {
+            own[place] = values[from];
+        }
+    }
+    own
+}

@@ -1,0 +1,317 @@
+//! The best candidates fitted, alone and together, and how probable each hypothesis is.
+//!
+//! Every hypothesis has the same effort. One effect joins another where the evidence for both
+//! outweighs that there are many pairs.
+
+use std::collections::BTreeSet;
+
+use appell_runtime::estimate::{Estimation, Unknown};
+
+use super::DiagnoseError;
+use super::bench::{Bench, transfer};
+use super::evidence::LARGEST_LOG_SIZE;
+use super::hypothesis::Fitted;
+use super::screen::{Screen, Screened};
+use super::unknown::{Wave, waves};
+use crate::effects::{Acts, Candidate, Part};
+
+/// Candidates that are fitted alone.
+const KEPT: usize = 8;
+/// Candidates that are tried beside another.
+const KEPT_BESIDE: usize = 4;
+/// Most effects of a hypothesis.
+const MOST_MEMBERS: usize = 3;
+/// Gains below this are those of noise: d′ of two.
+const LEAST_GAIN: f64 = 2.0;
+/// Part of the greatest gain below which no fit catches up.
+const LEAST_PART: f64 = 0.1;
+/// Two hypotheses whose evidence differs by less cannot be told apart: odds of twenty.
+pub(super) const TIED: f64 = 3.0;
+/// Probability beforehand that there is no gap.
+const NO_GAP: f64 = 0.5;
+/// Probability beforehand that an effect does not come alone.
+const NOT_ALONE: f64 = 0.2;
+/// Probability beforehand that a gap comes from nothing in the library.
+const UNKNOWN: f64 = 0.1;
+/// Part of its gain that a wave has to repeat on runs that it was not found in.
+const REPEATED: f64 = 0.5;
+/// Fits gain at most so many times what the first order promises.
+const MOST_STRETCH: f64 = 4.0;
+/// Why a fit does not count.
+const NO_EVIDENCE: &str = "its parameters cannot be told from each other";
+/// Signatures that are this much alike are those of one effect in two guises.
+const ALIKE: f64 = 0.8;
+
+/// Hypotheses with their probabilities.
+#[derive(Debug, Clone)]
+pub(super) struct Comparison {
+    /// Fitted hypotheses, the most probable first; the nominal model is one of them.
+    pub(super) fits: Vec<(Fitted, f64)>,
+    /// Hypotheses whose fit failed, with the reason.
+    pub(super) failed: Vec<(Vec<usize>, String)>,
+    /// Probability that nothing in the library explains the gap.
+    pub(super) unknown: f64,
+    /// The force that nobody has named and that would gain most.
+    pub(super) wave: Option<Wave>,
+    /// Place of the nominal model among the fits.
+    pub(super) nominal: usize,
+}
+
+impl Comparison {
+    /// The nominal model.
+    pub(super) fn nominal(&self) -> &Fitted {
+        &self.fits[self.nominal].0
+    }
+
+    /// The most probable hypothesis of the library.
+    pub(super) fn best(&self) -> &Fitted {
+        &self.fits[0].0
+    }
+
+    /// Gives its probability to the hypothesis that nothing in the library explains the gap.
+    ///
+    /// It is the nominal model with the best wave. Gains of waves are those of first order, so they
+    /// are held against gains of first order: a wave speaks for itself as much as a named effect of
+    /// the same gain does, less one more size, and less the number of waves.
+    pub(super) fn weigh_unknown(
+        &mut self,
+        bench: &Bench<'_>,
+        screen: &Screen,
+    ) -> Result<(), DiagnoseError> {
+        let (waves, tried) = waves(bench, self.nominal())?;
+        let Some(wave) = waves
+            .into_iter()
+            .find(|wave| wave.predicted > REPEATED * wave.gain)
+        else {
+            return Ok(());
+        };
+        let nominal = self.nominal();
+        let fitted = self.best().evidence.log_likelihood - nominal.evidence.log_likelihood;
+        let screened = self.best().members.first().and_then(|best| {
+            let mut list = screen.list.iter();
+            list.find(|one| one.candidate == *best).map(|one| one.gain)
+        });
+        // A fit finds new levels too, which the first order does not.
+        let stretch = screened.map_or(1.0, |gain| (fitted / gain).clamp(1.0, MOST_STRETCH));
+        let occam = 2.0 * wave_occam(wave.gain) + (tried.max(1) as f64).ln();
+        let log = nominal.evidence.log() + stretch * wave.gain - occam
+            + (1.0 - NO_GAP).ln()
+            + UNKNOWN.ln();
+        let best = self.best();
+        let reference = best.evidence.log() + prior(bench, best.members.len());
+        let odds = (log - reference).exp() * self.fits[0].1;
+        self.unknown = odds / (1.0 + odds);
+        self.wave = Some(wave);
+        Ok(())
+    }
+
+    pub(super) fn of(
+        bench: &Bench<'_>,
+        nominal: Fitted,
+        screen: &Screen,
+    ) -> Result<Self, DiagnoseError> {
+        let mut search = Search {
+            bench,
+            fits: vec![nominal],
+            failed: Vec::new(),
+            tried: BTreeSet::new(),
+        };
+        for screened in kept(bench, screen, KEPT) {
+            search.join(0, &screened);
+        }
+        for members in 1..MOST_MEMBERS {
+            let Some(best) = search.best_of(members) else {
+                break;
+            };
+            if best == 0 {
+                break;
+            }
+            let screen = Screen::of(bench, &search.fits[best])?;
+            for screened in kept(bench, &screen, KEPT_BESIDE) {
+                search.join(best, &screened);
+            }
+        }
+        Ok(search.finish())
+    }
+}
+
+/// The candidates worth a fit: the best variant of each effect at each place.
+fn kept(bench: &Bench<'_>, screen: &Screen, most: usize) -> Vec<Screened> {
+    let mut kept: Vec<Screened> = Vec::new();
+    let best = screen.list.first().map_or(0.0, |one| one.gain);
+    let least = LEAST_GAIN.max(LEAST_PART * best);
+    for screened in screen.list.iter().filter(|one| one.gain > least) {
+        let name = bench.candidate(screened.candidate).name();
+        let is_known = kept
+            .iter()
+            .any(|own| bench.candidate(own.candidate).name() == name);
+        let is_guise = kept
+            .first()
+            .is_some_and(|best| best.alike(screened) > ALIKE);
+        if !is_known && (kept.len() < most || is_guise && kept.len() < 2 * most) {
+            kept.push(screened.clone());
+        }
+    }
+    kept
+}
+
+struct Search<'b, 'a> {
+    bench: &'b Bench<'a>,
+    fits: Vec<Fitted>,
+    failed: Vec<(Vec<usize>, String)>,
+    tried: BTreeSet<Vec<usize>>,
+}
+
+impl Search<'_, '_> {
+    /// Fits a candidate beside the members of a hypothesis.
+    fn join(&mut self, to: usize, screened: &Screened) {
+        let mut members = self.fits[to].members.clone();
+        members.push(screened.candidate);
+        members.sort_unstable();
+        if !self.tried.insert(members.clone()) {
+            return;
+        }
+        match self.fitted(to, screened, &members) {
+            Ok(fitted) if fitted.evidence.log().is_finite() => self.fits.push(fitted),
+            Ok(_) => self.failed.push((members, NO_EVIDENCE.to_owned())),
+            Err(error) => self.failed.push((members, error.to_string())),
+        }
+    }
+
+    fn fitted(
+        &self,
+        to: usize,
+        screened: &Screened,
+        members: &[usize],
+    ) -> Result<Fitted, DiagnoseError> {
+        let bench = self.bench;
+        let setup = bench.setup(members);
+        let estimation = Estimation::new(&setup, &bench.recordings)?;
+        let from = &self.fits[to];
+        let mut start = transfer((&from.layout, &from.fit.values), &estimation);
+        let base = if matches!(bench.candidate(screened.candidate).acts, Acts::Late(_)) {
+            // A late channel loses its first rows: what it gains is counted against the same rows.
+            Some(estimation.log_likelihood(&start)?)
+        } else {
+            None
+        };
+        place(bench, &estimation, screened, &mut start)?;
+        let mut fitted = bench.fit(members, &estimation, &start)?;
+        if let Some(base) = base {
+            fitted.evidence.log_likelihood += from.evidence.log_likelihood - base;
+        }
+        Ok(fitted)
+    }
+
+    /// The best hypothesis with so many members.
+    fn best_of(&self, members: usize) -> Option<usize> {
+        let own = (0..self.fits.len()).filter(|&i| self.fits[i].members.len() == members);
+        let log = |i: usize| self.log_posterior(&self.fits[i]);
+        own.max_by(|&a, &b| log(a).total_cmp(&log(b)))
+    }
+
+    /// Logarithm of the probability, up to a constant.
+    fn log_posterior(&self, fitted: &Fitted) -> f64 {
+        fitted.evidence.log() + prior(self.bench, fitted.members.len())
+    }
+
+    fn finish(mut self) -> Comparison {
+        self.fits.retain(|fitted| fitted.evidence.smallest > 1.0);
+        let logs: Vec<f64> = self.fits.iter().map(|f| self.log_posterior(f)).collect();
+        let most = logs.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let weights: Vec<f64> = logs.iter().map(|log| (log - most).exp()).collect();
+        let sum: f64 = weights.iter().sum();
+        let mut fits: Vec<(Fitted, f64)> = self
+            .fits
+            .into_iter()
+            .zip(weights)
+            .map(|(fitted, weight)| (fitted, weight / sum))
+            .collect();
+        fits.sort_by(|a, b| b.1.total_cmp(&a.1));
+        let nominal = fits
+            .iter()
+            .position(|(fitted, _)| fitted.members.is_empty());
+        Comparison {
+            nominal: nominal.unwrap_or(0),
+            fits,
+            failed: self.failed,
+            unknown: 0.0,
+            wave: None,
+        }
+    }
+}
+
+/// Logarithm of the probability beforehand of a hypothesis with so many members.
+fn prior(bench: &Bench<'_>, members: usize) -> f64 {
+    let candidates = bench.effects.candidates.iter();
+    let names: BTreeSet<String> = candidates.map(Candidate::name).collect();
+    let each = (names.len().max(1) as f64).ln();
+    match members {
+        0 => NO_GAP.ln(),
+        count => (1.0 - NO_GAP).ln() + (count - 1) as f64 * NOT_ALONE.ln() - count as f64 * each,
+    }
+}
+
+/// What the size of a wave takes from its gain, as that of an effect does: see `evidence`.
+fn wave_occam(gain: f64) -> f64 {
+    let d = (2.0 * gain).sqrt().max(1.0);
+    (2.0 * d * LARGEST_LOG_SIZE).ln() - 0.5 * std::f64::consts::TAU.ln()
+}
+
+/// Puts the best step of the screen into the values: no size starts at its bound.
+fn place(
+    bench: &Bench<'_>,
+    estimation: &Estimation<'_>,
+    screened: &Screened,
+    values: &mut [f64],
+) -> Result<(), DiagnoseError> {
+    let layout = estimation.layout();
+    let setup = estimation.setup();
+    let candidate = bench.candidate(screened.candidate);
+    let first = screened.sizes.first().copied().unwrap_or(0.0);
+    let at = |list: &[usize], input| list.iter().position(|own| *own == input).unwrap_or(0);
+    let mut set = |unknown, value: f64| -> Result<(), DiagnoseError> {
+        values[layout.place(unknown)?] = value;
+        Ok(())
+    };
+    match candidate.acts {
+        Acts::Items => {
+            let mut direction = 0;
+            for (index, part) in bench.own(candidate) {
+                let unknown = Unknown::Parameter(index);
+                let quantity = &bench.effects.info().parameters[index];
+                match part {
+                    Part::Switch => set(unknown, 1.0)?,
+                    Part::Shape => {
+                        set(unknown, quantity.value)?;
+                        continue;
+                    }
+                    Part::Size => {
+                        let size = screened.sizes[direction];
+                        let least = screened.deviations[direction];
+                        let size = if size.abs() > 0.0 { size } else { least };
+                        set(unknown, size)?;
+                    }
+                }
+                direction += 1;
+            }
+        }
+        Acts::Parameter(_) => {}
+        Acts::Bias(channel) => set(Unknown::Bias(channel), first)?,
+        Acts::Scale(channel) => set(Unknown::Scale(channel), 1.0 + first)?,
+        Acts::Late(channel) => {
+            let longest = setup.channels[channel].longest_delay.unwrap_or(0.0);
+            set(Unknown::SensorDelay(channel), first.clamp(0.0, longest))?;
+        }
+        Acts::Lag(input) => {
+            let shortest = setup.longest_step;
+            let unknown = Unknown::Lag(at(&setup.lagging, input));
+            set(unknown, first.clamp(shortest, 100.0 * shortest))?;
+        }
+        Acts::Delay(input) => {
+            let unknown = Unknown::InputDelay(at(&setup.delayed, input));
+            set(unknown, first.clamp(0.0, 0.09))?;
+        }
+    }
+    Ok(())
+}

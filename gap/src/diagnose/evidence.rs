@@ -1,0 +1,127 @@
+//! How much recordings speak for a hypothesis: the likelihood, averaged over what its parameters may
+//! be beforehand (Laplace's method; D. J. C. MacKay, *Information Theory, Inference, and Learning
+//! Algorithms*, 2003, chapter 28).
+//!
+//! Effects of different kinds meet on equal terms because what is known beforehand of a size is said
+//! of the gap that it makes, not of its unit: the logarithm of d′, the size in its own standard
+//! deviations, is uniform from 1 to a thousand. Levels of noise and disturbance are the same under
+//! all hypotheses and stand at their optimum.
+
+use std::f64::consts::TAU;
+
+use appell_runtime::estimate::{Fit, Unknown};
+use nalgebra::DMatrix;
+
+use super::bench::Bench;
+
+/// Logarithm of the largest d′ that is expected: whole motions come to some thousand.
+pub(super) const LARGEST_LOG_SIZE: f64 = 6.9;
+/// Sizes in their standard deviations below this are not told from zero.
+const SMALLEST: f64 = 1.0;
+
+/// The evidence of a fitted hypothesis.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Evidence {
+    /// Logarithm of the likelihood at the optimum.
+    pub(super) log_likelihood: f64,
+    /// What the average over the parameters takes from it.
+    pub(super) occam: f64,
+    /// Smallest size of a member in its standard deviations.
+    pub(super) smallest: f64,
+}
+
+impl Evidence {
+    pub(super) fn of(bench: &Bench<'_>, members: &[usize], fit: &Fit) -> Self {
+        let is_level = |i: usize| {
+            matches!(
+                fit.free[i].unknown,
+                Unknown::Disturbance(_) | Unknown::Noise(_) | Unknown::Spread { .. }
+            )
+        };
+        let open: Vec<usize> = (0..fit.free.len())
+            .filter(|&i| !is_level(i) && !fit.at_limit[i])
+            .collect();
+        let information = DMatrix::from_fn(open.len(), open.len(), |i, j| {
+            fit.information[(open[i], open[j])]
+        });
+        let (log_volume, deviations) = volume(&information);
+        let mut occam = log_volume;
+        let mut smallest = f64::INFINITY;
+        let own = bench.problem.wanted.len();
+        for (place, &i) in open.iter().enumerate() {
+            let free = &fit.free[i];
+            occam += match free.prior {
+                Some([expected, deviation]) => {
+                    let off = (fit.coordinates[i] - free.to_coordinate(expected)) / deviation;
+                    -0.5 * off * off - deviation.ln() - 0.5 * TAU.ln()
+                }
+                None => {
+                    let neutral = if matches!(free.unknown, Unknown::Scale(_)) {
+                        1.0
+                    } else {
+                        0.0
+                    };
+                    let size = (free.to_value(fit.coordinates[i]) - neutral).abs();
+                    let in_value = match free.unknown {
+                        // A lag is counted by its logarithm, its deviation too.
+                        Unknown::Lag(_) => size * deviations[place],
+                        _ => deviations[place],
+                    };
+                    let d = (size / in_value).max(SMALLEST);
+                    smallest = smallest.min(size / in_value);
+                    let two_sided = free.range[0] < neutral;
+                    let sides = if two_sided { 2.0_f64 } else { 1.0 };
+                    // The density of the coordinate: 1/(size · sides · range) for plain ones.
+                    -(d * deviations[place] * sides * LARGEST_LOG_SIZE).ln()
+                }
+            };
+        }
+        // A member whose size stands at zero is not there.
+        for i in own..fit.free.len() {
+            let free = &fit.free[i];
+            if fit.at_limit[i] && free.prior.is_none() && !is_level(i) {
+                smallest = 0.0;
+            }
+        }
+        if members.is_empty() {
+            smallest = f64::INFINITY;
+        }
+        Self {
+            log_likelihood: fit.log_likelihood,
+            occam,
+            smallest,
+        }
+    }
+
+    /// Logarithm of the evidence.
+    pub(super) fn log(&self) -> f64 {
+        self.log_likelihood + self.occam
+    }
+}
+
+/// Logarithm of the volume of a normal distribution with this information, and its deviations.
+fn volume(information: &DMatrix<f64>) -> (f64, Vec<f64>) {
+    let k = information.nrows();
+    if k == 0 {
+        return (0.0, Vec::new());
+    }
+    let scale: Vec<f64> = (0..k)
+        .map(|i| information[(i, i)].max(f64::MIN_POSITIVE).sqrt())
+        .collect();
+    let mut scaled = DMatrix::from_fn(k, k, |i, j| information[(i, j)] / (scale[i] * scale[j]));
+    for i in 0..k {
+        scaled[(i, i)] += 1e-10;
+    }
+    let Some(factor) = scaled.cholesky() else {
+        return (0.0, scale.iter().map(|scale| scale.recip()).collect());
+    };
+    let log_determinant: f64 = (0..k)
+        .map(|i| 2.0 * (factor.l_dirty()[(i, i)].ln() + scale[i].ln()))
+        .sum();
+    let inverse = factor.inverse();
+    let deviations = (0..k).map(|i| inverse[(i, i)].sqrt() / scale[i]);
+    (
+        0.5 * (k as f64 * TAU.ln() - log_determinant),
+        deviations.collect(),
+    )
+}

@@ -1,0 +1,16 @@
+//! A hypothesis after its fit.
+
+use appell_runtime::estimate::{Fit, Layout};
+
+use super::evidence::Evidence;
+
+/// A set of candidates, fitted.
+#[derive(Debug, Clone)]
+pub(super) struct Fitted {
+    /// Indices of the candidates; none for the nominal model.
+    pub(super) members: Vec<usize>,
+    /// Places of the values.
+    pub(super) layout: Layout,
+    pub(super) fit: Fit,
+    pub(super) evidence: Evidence,
+}

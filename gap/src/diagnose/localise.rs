@@ -1,0 +1,121 @@
+//! Where the gap lies: which equations feel what the best hypothesis adds.
+//!
+//! What a member adds to Appell's equation of a pseudo-velocity is the force M Δω̇ that its sizes make
+//! along the recordings. Weighed by the disturbance that the equation has anyway, and squared, it is
+//! the part of the gap in that equation.
+
+use appell_runtime::estimate::{Estimation, Unknown, chi_squared_probability};
+use appell_runtime::model::At;
+
+use super::DiagnoseError;
+use super::bench::Bench;
+use super::compare::Comparison;
+use super::report::{ShareOf, Where};
+use crate::effects::{Acts, Part};
+
+/// Places along the recordings.
+const PLACES: usize = 400;
+
+/// The equations of the best hypothesis.
+pub(super) fn place(bench: &Bench<'_>, comparison: &Comparison) -> Result<Where, DiagnoseError> {
+    let best = comparison.best();
+    let Some(&first) = best.members.first() else {
+        return Ok(Where::nowhere());
+    };
+    let domain = bench.candidate(first).family.word();
+    let setup = bench.setup(&best.members);
+    let estimation = Estimation::new(&setup, &bench.recordings)?;
+    let (info, layout) = (bench.effects.info(), estimation.layout());
+    let (n, s, k) = (info.state_len(), info.speeds, info.parameter_len());
+    let m = info.input_len();
+    let values = &best.fit.values;
+    let p = &values[..k];
+    let mut added = vec![0.0; s];
+    let mut count = 0.0_f64;
+    let (mut mass, mut bias, mut forces) = (vec![0.0; s * s], vec![0.0; s], vec![0.0; s]);
+    let (mut rates, mut a, mut b) = (vec![0.0; n], vec![0.0; n * n], vec![0.0; n * m]);
+    let mut plain = p.to_vec();
+    for &member in &best.members {
+        for (index, part) in bench.own(bench.candidate(member)) {
+            if part != Part::Shape {
+                plain[index] = 0.0;
+            }
+        }
+        if matches!(bench.candidate(member).acts, Acts::Parameter(_))
+            && let Some(index) = info.parameter_index(&bench.candidate(member).site)
+        {
+            plain[index] = bench.set.parameters[index].value;
+        }
+    }
+    for run in 0..bench.recordings.len() {
+        let recording = &bench.recordings[run];
+        let states = estimation.smoothed(values, run)?;
+        let rows = states.len();
+        let stride = (rows * bench.recordings.len() / PLACES).max(1);
+        for row in (1..rows).step_by(stride) {
+            let x = &states[row].state[..n];
+            let mut u = vec![0.0; m];
+            u[..recording.input_len()].copy_from_slice(recording.inputs(row));
+            let t = recording.times()[row];
+            let at = At { t, x, u: &u, p };
+            let mut difference = vec![0.0; n];
+            bench.model().rates(at, &mut difference);
+            bench.model().rates(At { p: &plain, ..at }, &mut rates);
+            for (with, without) in difference.iter_mut().zip(&rates) {
+                *with -= without;
+            }
+            for &member in &best.members {
+                if let Acts::Lag(input) | Acts::Delay(input) = bench.candidate(member).acts {
+                    bench.model().jacobians(at, &mut rates, &mut a, &mut b);
+                    let jump = recording.inputs(row)[input] - recording.inputs(row - 1)[input];
+                    for state in 0..n {
+                        difference[state] += b[state * m + input] * jump;
+                    }
+                }
+            }
+            bench.model().appell(at, &mut mass, &mut bias, &mut forces);
+            for i in 0..s {
+                let force: f64 = (0..s).map(|j| mass[i * s + j] * difference[j]).sum();
+                added[i] += force * force;
+            }
+            count += 1.0;
+        }
+    }
+    let gain = best.evidence.log_likelihood - comparison.nominal().evidence.log_likelihood;
+    let p_value = 1.0 - chi_squared_probability(2.0 * gain, 1.0);
+    let mut energies = Vec::new();
+    for i in 0..s {
+        let level = values[layout.place(Unknown::Disturbance(i))?];
+        energies.push(added[i] / level.powi(2).max(f64::MIN_POSITIVE));
+    }
+    let whole: f64 = energies.iter().sum();
+    let mut equations: Vec<ShareOf> = (0..s)
+        .map(|i| ShareOf {
+            name: info.states[i].name.to_string(),
+            share: if whole > 0.0 {
+                energies[i] / whole
+            } else {
+                0.0
+            },
+            p_value,
+            rms: (added[i] / count.max(1.0)).sqrt(),
+            unit: force_unit(&info.states[i].unit),
+        })
+        .collect();
+    equations.sort_by(|a, b| b.share.total_cmp(&a.share));
+    Ok(Where {
+        domain,
+        equations,
+        windows: Vec::new(),
+        region: Vec::new(),
+    })
+}
+
+/// Unit of the force beside a pseudo-velocity: a watt for each of its units.
+fn force_unit(speed: &str) -> String {
+    match speed {
+        "m/s" => "N".to_owned(),
+        "rad/s" => "N m".to_owned(),
+        other => format!("W/({other})"),
+    }
+}

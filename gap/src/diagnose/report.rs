@@ -1,0 +1,423 @@
+//! The gap report: what was found, in the words of the contract.
+
+use super::bench::Bench;
+use super::compare::{Comparison, TIED};
+use super::hypothesis::Fitted;
+use super::screen::Screen;
+use crate::effects::{Acts, Part};
+use appell_runtime::estimate::Unknown;
+
+/// Sizes in their standard deviations that are found with near certainty.
+const DETECTABLE: f64 = 5.0;
+/// Fewer hypotheses than this are never cut from the report.
+const TOLD: usize = 10;
+
+/// The result in one word.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Verdict {
+    /// Nothing beyond noise and disturbance.
+    NoGap,
+    /// One hypothesis wins.
+    Explained,
+    /// A gap whose explanations cannot be told apart.
+    Ambiguous,
+    /// A gap that nothing in the library explains.
+    Unexplained,
+}
+
+impl Verdict {
+    /// Its word for programs.
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::NoGap => "no_gap",
+            Self::Explained => "explained",
+            Self::Ambiguous => "ambiguous",
+            Self::Unexplained => "unexplained",
+        }
+    }
+}
+
+/// A value that was found, in SI.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Value {
+    /// Effect and parameter.
+    pub name: String,
+    /// Most likely value.
+    pub value: f64,
+    /// Standard deviation.
+    pub std: f64,
+    /// Unit.
+    pub unit: String,
+}
+
+/// A hypothesis with its probability.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Hypothesis {
+    /// Names of its effects; none for the nominal model, `unknown` for none of the library.
+    pub effects: Vec<String>,
+    /// Probability.
+    pub probability: f64,
+    /// Logarithm of the Bayes factor against the nominal model.
+    pub log_bayes_factor: Option<f64>,
+    /// Values that its effects have.
+    pub parameters: Vec<Value>,
+}
+
+/// An equation and its part in the gap.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ShareOf {
+    /// Pseudo-velocity.
+    pub name: String,
+    /// Part of the whitened energy of the gap.
+    pub share: f64,
+    /// Probability of such a gap by chance.
+    pub p_value: f64,
+    /// Root of the mean square of the missing force.
+    pub rms: f64,
+    /// Its unit.
+    pub unit: String,
+}
+
+/// A window of time in which the gap shows.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Window {
+    /// File of the run.
+    pub run: String,
+    /// Begin in s.
+    pub from: f64,
+    /// End in s.
+    pub to: f64,
+    /// Pseudo-velocity.
+    pub equation: String,
+    /// Size in standard deviations.
+    pub z: f64,
+}
+
+/// A region of the state space in which the gap shows.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Region {
+    /// Variable.
+    pub variable: String,
+    /// Where it is.
+    pub description: String,
+    /// Size in standard deviations.
+    pub z: f64,
+}
+
+/// Where the gap lies.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Where {
+    /// Force, parameter, actuator, constraint, sensor or none.
+    pub domain: &'static str,
+    /// Equations, the greatest share first.
+    pub equations: Vec<ShareOf>,
+    /// Windows of time.
+    pub windows: Vec<Window>,
+    /// Regions.
+    pub region: Vec<Region>,
+}
+
+impl Where {
+    /// No gap.
+    pub(super) fn nowhere() -> Self {
+        Self {
+            domain: "none",
+            equations: Vec::new(),
+            windows: Vec::new(),
+            region: Vec::new(),
+        }
+    }
+}
+
+/// Errors of predictions on runs that were held out, in units of the noise.
+#[derive(Debug, Clone, PartialEq)]
+#[expect(missing_docs, reason = "the words of the contract")]
+pub struct HowFar {
+    pub horizon_s: f64,
+    pub nominal: f64,
+    pub refitted: f64,
+    pub with_effect: f64,
+    pub noise_floor: f64,
+    pub closed: f64,
+    pub closed_ci95: [f64; 2],
+    pub closed_vs_refitted: f64,
+    pub runs: Vec<String>,
+}
+
+/// The smallest size of an effect that these recordings would show.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Detectable {
+    /// Effect.
+    pub effect: String,
+    /// Size in SI.
+    pub smallest: f64,
+    /// Unit.
+    pub unit: String,
+}
+
+/// A member of a hypothesis in a sentence.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Found {
+    /// Name.
+    pub effect: String,
+    /// Sentence.
+    pub about: String,
+}
+
+/// The whole report.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Report {
+    /// Name of the mechanism.
+    pub mechanism: String,
+    /// The result in one word.
+    pub verdict: Verdict,
+    /// Where the gap lies.
+    pub place: Where,
+    /// Hypotheses, the most probable first.
+    pub which: Vec<Hypothesis>,
+    /// Hypotheses that cannot be told apart, each a list of effects.
+    pub tied: Vec<Vec<Vec<String>>>,
+    /// How far the gap closes; nothing where no run was held out.
+    pub how_far: Option<HowFar>,
+    /// What these recordings would show.
+    pub detectable: Vec<Detectable>,
+    /// Hypotheses whose fit failed, with the reason.
+    pub failed: Vec<(Vec<String>, String)>,
+    /// Disturbances before and after: name, level under the nominal model and under the best one.
+    pub disturbances: Vec<(String, f64, f64)>,
+    /// Effects of the best hypothesis in words.
+    pub found: Vec<Found>,
+}
+
+pub(super) fn assemble(
+    bench: &Bench<'_>,
+    screen: &Screen,
+    comparison: Comparison,
+    place: Where,
+    how_far: Option<HowFar>,
+) -> Report {
+    let names = |members: &[usize]| -> Vec<String> {
+        members.iter().map(|&m| bench.candidate(m).name()).collect()
+    };
+    let base = comparison.nominal().evidence.log();
+    let known = 1.0 - comparison.unknown;
+    let mut which: Vec<Hypothesis> = Vec::new();
+    for (fitted, probability) in &comparison.fits {
+        let effects = names(&fitted.members);
+        // Variants of one effect are one hypothesis.
+        if let Some(own) = which.iter_mut().find(|own| own.effects == effects) {
+            own.probability += probability * known;
+            continue;
+        }
+        which.push(Hypothesis {
+            effects,
+            probability: probability * known,
+            log_bayes_factor: Some(fitted.evidence.log() - base),
+            parameters: values(bench, fitted),
+        });
+    }
+    which.push(Hypothesis {
+        effects: vec!["unknown".to_owned()],
+        probability: comparison.unknown,
+        log_bayes_factor: None,
+        parameters: Vec::new(),
+    });
+    which.sort_by(|a, b| b.probability.total_cmp(&a.probability));
+    let tied = tied(&which);
+    let top = &which[0];
+    let verdict = match top.effects.first().map(String::as_str) {
+        None => Verdict::NoGap,
+        Some("unknown") => Verdict::Unexplained,
+        Some(_) if tied.is_empty() => Verdict::Explained,
+        Some(_) => Verdict::Ambiguous,
+    };
+    let cut = which.len().min(TOLD);
+    let rest: f64 = which[cut..].iter().map(|h| h.probability).sum();
+    let keep: Vec<Hypothesis> = which
+        .iter()
+        .enumerate()
+        .filter(|(i, h)| *i < cut || h.effects.is_empty() || h.effects == ["unknown"])
+        .map(|(_, h)| h.clone())
+        .collect();
+    let best = comparison.best();
+    Report {
+        mechanism: bench.set.mechanism.name.clone(),
+        verdict,
+        place: if verdict == Verdict::NoGap {
+            Where::nowhere()
+        } else {
+            place
+        },
+        which: if rest < 1e-6 { keep } else { which },
+        tied,
+        how_far,
+        detectable: detectable(bench, screen),
+        failed: comparison
+            .failed
+            .iter()
+            .map(|(members, reason)| (names(members), reason.clone()))
+            .collect(),
+        disturbances: disturbances(bench, comparison.nominal(), best),
+        found: best
+            .members
+            .iter()
+            .map(|&member| Found {
+                effect: bench.candidate(member).name(),
+                about: bench.candidate(member).about.clone(),
+            })
+            .collect(),
+    }
+}
+
+/// The leading hypothesis with those that cannot be told from it.
+fn tied(which: &[Hypothesis]) -> Vec<Vec<Vec<String>>> {
+    let top = &which[0];
+    if top.effects.is_empty() || top.effects == ["unknown"] {
+        return Vec::new();
+    }
+    let is_near = |other: &&Hypothesis| {
+        !other.effects.is_empty()
+            && other.effects != ["unknown"]
+            && other.effects.len() == top.effects.len()
+            && (top.probability / other.probability).ln() < TIED
+    };
+    let group: Vec<Vec<String>> = which
+        .iter()
+        .filter(is_near)
+        .map(|h| h.effects.clone())
+        .collect();
+    if group.len() > 1 {
+        vec![group]
+    } else {
+        Vec::new()
+    }
+}
+
+/// Values of the members of a hypothesis.
+fn values(bench: &Bench<'_>, fitted: &Fitted) -> Vec<Value> {
+    let info = bench.effects.info();
+    let deviation = |place: usize| {
+        fitted
+            .fit
+            .covariance()
+            .map_or(f64::NAN, |covariance| covariance[(place, place)].sqrt())
+    };
+    let mut values = Vec::new();
+    for &member in &fitted.members {
+        let candidate = bench.candidate(member);
+        let name = |parameter: &str| format!("{}.{parameter}", candidate.name());
+        let own: Vec<usize> = bench
+            .own(candidate)
+            .into_iter()
+            .filter(|(_, part)| *part != Part::Switch)
+            .map(|(index, _)| index)
+            .collect();
+        for (place, free) in fitted.fit.free.iter().enumerate() {
+            let value = free.to_value(fitted.fit.coordinates[place]);
+            let told = match (free.unknown, candidate.acts) {
+                (Unknown::Parameter(index), Acts::Items) if own.contains(&index) => {
+                    let quantity = &info.parameters[index];
+                    // What follows the identifier of the candidate.
+                    let short = quantity.name.rsplit('_').next().unwrap_or_default();
+                    Some((name(short), quantity.unit.to_string()))
+                }
+                (Unknown::Parameter(index), Acts::Parameter(_))
+                    if info.parameters[index].name == candidate.site.as_str() =>
+                {
+                    let quantity = &info.parameters[index];
+                    Some((name("value"), quantity.unit.to_string()))
+                }
+                (Unknown::Bias(own), Acts::Bias(channel)) if own == channel => {
+                    Some((name("bias"), channel_unit(bench, channel)))
+                }
+                (Unknown::Scale(own), Acts::Scale(channel)) if own == channel => {
+                    Some((name("scale"), "1".to_owned()))
+                }
+                (Unknown::SensorDelay(own), Acts::Late(channel)) if own == channel => {
+                    Some((name("delay"), "s".to_owned()))
+                }
+                (Unknown::Lag(_), Acts::Lag(_)) => Some((name("time_constant"), "s".to_owned())),
+                (Unknown::InputDelay(_), Acts::Delay(_)) => Some((name("delay"), "s".to_owned())),
+                _ => None,
+            };
+            if let Some((name, unit)) = told {
+                let scale = match free.unknown {
+                    Unknown::Parameter(index) => info.parameters[index].scale,
+                    _ => 1.0,
+                };
+                let stretch = match free.coordinate {
+                    appell_runtime::estimate::Coordinate::Plain => 1.0,
+                    appell_runtime::estimate::Coordinate::Logarithm => value,
+                };
+                values.push(Value {
+                    name,
+                    value: value / scale,
+                    std: deviation(place) * stretch / scale,
+                    unit,
+                });
+            }
+        }
+    }
+    values
+}
+
+/// SI unit of a measured channel.
+fn channel_unit(bench: &Bench<'_>, channel: usize) -> String {
+    let measured = bench.set.measured(bench.effects.info());
+    let unit = measured
+        .get(channel)
+        .map(|(channel, _)| channel.unit.dimension);
+    unit.map_or_else(String::new, |d| appell_spec::units::Unit::si(d).text)
+}
+
+fn disturbances(bench: &Bench<'_>, nominal: &Fitted, best: &Fitted) -> Vec<(String, f64, f64)> {
+    let info = bench.effects.info();
+    let level = |fitted: &Fitted, index| {
+        let place = fitted.layout.place(Unknown::Disturbance(index));
+        place.map_or(f64::NAN, |place| fitted.fit.values[place])
+    };
+    (0..info.speeds)
+        .map(|index| {
+            let name = info.states[index].name.to_string();
+            (name, level(nominal, index), level(best, index))
+        })
+        .collect()
+}
+
+/// What each effect would need to be seen.
+fn detectable(bench: &Bench<'_>, screen: &Screen) -> Vec<Detectable> {
+    let info = bench.effects.info();
+    let mut told: Vec<Detectable> = Vec::new();
+    let mut list: Vec<_> = screen.list.iter().collect();
+    list.sort_by_key(|one| one.candidate);
+    for one in list {
+        let candidate = bench.candidate(one.candidate);
+        let name = candidate.name();
+        let Some(&deviation) = one.deviations.first() else {
+            continue;
+        };
+        if deviation <= 0.0 || told.iter().any(|own| own.effect == name) {
+            continue;
+        }
+        let unit = match candidate.acts {
+            Acts::Items => bench
+                .own(candidate)
+                .first()
+                .map_or_else(String::new, |(index, _)| {
+                    info.parameters[*index].unit.to_string()
+                }),
+            Acts::Parameter(_) => info
+                .parameter_index(&candidate.site)
+                .map_or_else(String::new, |index| info.parameters[index].unit.to_string()),
+            Acts::Bias(channel) => channel_unit(bench, channel),
+            Acts::Scale(_) => "1".to_owned(),
+            Acts::Lag(_) | Acts::Delay(_) | Acts::Late(_) => "s".to_owned(),
+        };
+        told.push(Detectable {
+            effect: name,
+            smallest: DETECTABLE * deviation,
+            unit,
+        });
+    }
+    told
+}

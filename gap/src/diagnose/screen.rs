@@ -1,0 +1,286 @@
+//! What every candidate would gain, to first order: the score of its size at zero, with what the
+//! nominal parameters can do within their tolerances taken off (C. R. Rao's score test).
+//!
+//! With r the whitened innovations and S their slopes, the best step is −(SᵀS)⁻¹ Sᵀ r. Rows for what
+//! is known of the parameters beforehand stand below those of the samples.
+
+use appell_runtime::estimate::{Coordinate, Direction, Estimation, Tangent, Unknown};
+use nalgebra::{DMatrix, DVector};
+
+use super::DiagnoseError;
+use super::bench::Bench;
+use super::hypothesis::Fitted;
+use crate::effects::{Acts, Part};
+
+/// A candidate after the screen.
+#[derive(Debug, Clone)]
+pub(super) struct Screened {
+    /// Its index.
+    pub(super) candidate: usize,
+    /// What it would gain in log-likelihood.
+    pub(super) gain: f64,
+    /// The best sizes, one for each direction of the candidate.
+    pub(super) sizes: Vec<f64>,
+    /// Their standard deviations.
+    pub(super) deviations: Vec<f64>,
+    /// Its signature along the best step, of length 1.
+    signature: DVector<f64>,
+}
+
+impl Screened {
+    /// Cosine of the angle between two signatures.
+    pub(super) fn alike(&self, other: &Self) -> f64 {
+        self.signature.dot(&other.signature)
+    }
+}
+
+/// All candidates.
+#[derive(Debug, Clone)]
+pub(super) struct Screen {
+    /// The greatest gain first.
+    pub(super) list: Vec<Screened>,
+}
+
+/// Whitened innovations and their slopes, with what a hypothesis already has taken off.
+pub(super) struct Projected {
+    pub(super) tangent: Tangent,
+    /// Orthogonal basis of what is already free.
+    basis: DMatrix<f64>,
+    /// Rows for what is known beforehand.
+    prior_rows: usize,
+    /// Innovations that remain.
+    pub(super) rest: DVector<f64>,
+}
+
+impl Projected {
+    /// About a fit; `tangent` starts with the directions that are already free.
+    pub(super) fn new(tangent: Tangent, fitted: &Fitted, free: usize) -> Self {
+        let samples = tangent.samples.len();
+        let known: Vec<(usize, f64, f64)> = (0..free)
+            .filter_map(|i| {
+                let one = &fitted.fit.free[i];
+                let [expected, deviation] = one.prior?;
+                let off = fitted.fit.coordinates[i] - one.to_coordinate(expected);
+                // Slopes are those by values, what is known beforehand is of coordinates.
+                let stretch = match one.coordinate {
+                    Coordinate::Plain => 1.0,
+                    Coordinate::Logarithm => one.to_value(fitted.fit.coordinates[i]),
+                };
+                Some((i, off / deviation, (deviation * stretch).recip()))
+            })
+            .collect();
+        let rows = samples + known.len();
+        let mut own = DMatrix::zeros(rows, free);
+        own.rows_mut(0, samples)
+            .copy_from(&tangent.slopes.columns(0, free));
+        let mut rest = DVector::zeros(rows);
+        for (row, (_, sample)) in tangent.samples.iter().enumerate() {
+            rest[row] = sample.whitened();
+        }
+        for (row, &(column, off, slope)) in known.iter().enumerate() {
+            own[(samples + row, column)] = slope;
+            rest[samples + row] = off;
+        }
+        let basis = orthogonal(own);
+        let along = basis.tr_mul(&rest);
+        rest -= &basis * along;
+        Self {
+            tangent,
+            basis,
+            prior_rows: known.len(),
+            rest,
+        }
+    }
+
+    /// Slopes of some columns that nothing free can imitate.
+    pub(super) fn slopes(&self, columns: &[usize]) -> DMatrix<f64> {
+        let samples = self.tangent.samples.len();
+        let mut slopes = DMatrix::zeros(samples + self.prior_rows, columns.len());
+        for (place, &column) in columns.iter().enumerate() {
+            slopes
+                .view_mut((0, place), (samples, 1))
+                .copy_from(&self.tangent.slopes.column(column));
+        }
+        let along = self.basis.tr_mul(&slopes);
+        slopes -= &self.basis * along;
+        slopes
+    }
+}
+
+/// An orthonormal basis of the columns, without those that follow from others.
+fn orthogonal(columns: DMatrix<f64>) -> DMatrix<f64> {
+    /// Part of a column that has to be new.
+    const NEW: f64 = 1e-6;
+    let mut basis: Vec<DVector<f64>> = Vec::new();
+    for column in columns.column_iter() {
+        let mut column = column.into_owned();
+        let size = column.norm();
+        // Twice is enough (Kahan).
+        for _ in 0..2 {
+            for own in &basis {
+                let along = own.dot(&column);
+                column.axpy(-along, own, 1.0);
+            }
+        }
+        let rest = column.norm();
+        if rest > NEW * size {
+            basis.push(column / rest);
+        }
+    }
+    if basis.is_empty() {
+        return DMatrix::zeros(columns.nrows(), 0);
+    }
+    DMatrix::from_columns(&basis)
+}
+
+impl Screen {
+    /// About a fit, of all candidates that it does not have.
+    pub(super) fn of(bench: &Bench<'_>, fitted: &Fitted) -> Result<Self, DiagnoseError> {
+        let setup = bench.setup(&fitted.members);
+        let estimation = Estimation::new(&setup, &bench.recordings)?;
+        let free = moving(fitted);
+        let mut directions = free.clone();
+        let mut own: Vec<(usize, Vec<usize>)> = Vec::new();
+        for candidate in 0..bench.effects.candidates.len() {
+            if fitted.members.contains(&candidate) {
+                continue;
+            }
+            let first = directions.len();
+            directions.extend(self::directions(bench, candidate));
+            own.push((candidate, (first..directions.len()).collect()));
+        }
+        let mut values = fitted.fit.values.clone();
+        shapes(bench, &mut values, &fitted.members);
+        let tangent = estimation.tangent(&values, &directions, None)?;
+        let projected = Projected::new(tangent, fitted, free.len());
+        let mut list: Vec<Screened> = own
+            .into_iter()
+            .filter_map(|(candidate, columns)| {
+                let positive = positive(bench, candidate);
+                screened(&projected, candidate, &columns, &positive)
+            })
+            .collect();
+        list.sort_by(|a, b| b.gain.total_cmp(&a.gain));
+        Ok(Self { list })
+    }
+}
+
+/// Shapes of candidates that are not members stand where their spec has them.
+fn shapes(bench: &Bench<'_>, values: &mut [f64], members: &[usize]) {
+    let info = bench.effects.info();
+    for (index, candidate) in bench.effects.candidates.iter().enumerate() {
+        if members.contains(&index) {
+            continue;
+        }
+        for (place, part) in bench.own(candidate) {
+            values[place] = match part {
+                Part::Shape => info.parameters[place].value,
+                Part::Size | Part::Switch => 0.0,
+            };
+        }
+    }
+}
+
+/// What is free under a hypothesis and moves the mean.
+pub(super) fn moving(fitted: &Fitted) -> Vec<Direction> {
+    let free = fitted.fit.free.iter();
+    free.map(|free| Direction::Value(free.unknown))
+        .filter(|direction| moves_the_mean(*direction))
+        .collect()
+}
+
+fn moves_the_mean(direction: Direction) -> bool {
+    !matches!(
+        direction,
+        Direction::Value(Unknown::Disturbance(_) | Unknown::Noise(_) | Unknown::Spread { .. })
+    )
+}
+
+/// Directions in which a candidate starts from zero.
+pub(super) fn directions(bench: &Bench<'_>, candidate: usize) -> Vec<Direction> {
+    let candidate = bench.candidate(candidate);
+    let value = |unknown| vec![Direction::Value(unknown)];
+    match candidate.acts {
+        Acts::Items => bench
+            .own(candidate)
+            .into_iter()
+            .filter(|(_, part)| *part != Part::Shape)
+            .map(|(index, _)| Direction::Value(Unknown::Parameter(index)))
+            .collect(),
+        Acts::Parameter(_) => bench
+            .effects
+            .info()
+            .parameter_index(&candidate.site)
+            .map_or_else(Vec::new, |index| value(Unknown::Parameter(index))),
+        Acts::Lag(input) | Acts::Delay(input) => vec![Direction::LateInput(input)],
+        Acts::Bias(channel) => value(Unknown::Bias(channel)),
+        Acts::Scale(channel) => value(Unknown::Scale(channel)),
+        Acts::Late(channel) => vec![Direction::LateChannel(channel)],
+    }
+}
+
+/// Which directions have one side only.
+fn positive(bench: &Bench<'_>, candidate: usize) -> Vec<bool> {
+    let candidate = bench.candidate(candidate);
+    let info = bench.effects.info();
+    match candidate.acts {
+        Acts::Items => bench
+            .own(candidate)
+            .into_iter()
+            .filter(|(_, part)| *part != Part::Shape)
+            .map(|(index, _)| info.parameters[index].range[0] >= 0.0)
+            .collect(),
+        Acts::Lag(_) | Acts::Delay(_) | Acts::Late(_) => vec![true],
+        Acts::Parameter(_) | Acts::Bias(_) | Acts::Scale(_) => vec![false],
+    }
+}
+
+/// The best step along the columns of a candidate, without those that would leave their side.
+fn screened(
+    projected: &Projected,
+    candidate: usize,
+    columns: &[usize],
+    positive: &[bool],
+) -> Option<Screened> {
+    /// Part of a signature that nothing free can imitate, below which there is none.
+    const LEFT: f64 = 1e-4;
+    let slopes = projected.slopes(columns);
+    let squares = slopes.tr_mul(&slopes);
+    let score = slopes.tr_mul(&projected.rest);
+    let seen = |place: &usize| {
+        let whole = projected.tangent.slopes.column(columns[*place]).norm();
+        let left = squares[(*place, *place)].sqrt();
+        whole > 0.0 && left.is_finite() && left > LEFT * whole
+    };
+    let mut open: Vec<usize> = (0..columns.len()).filter(seen).collect();
+    loop {
+        if open.is_empty() {
+            return None;
+        }
+        let part = DMatrix::from_fn(open.len(), open.len(), |i, j| squares[(open[i], open[j])]);
+        let right = DVector::from_fn(open.len(), |i, _| -score[open[i]]);
+        let factor = part.cholesky()?;
+        let step = factor.solve(&right);
+        let against = (0..open.len()).find(|&i| positive[open[i]] && step[i] <= 0.0);
+        if let Some(place) = against {
+            open.remove(place);
+            continue;
+        }
+        let inverse = factor.inverse();
+        let mut sizes = vec![0.0; columns.len()];
+        let mut deviations = vec![0.0; columns.len()];
+        for (place, &column) in open.iter().enumerate() {
+            sizes[column] = step[place];
+            deviations[column] = inverse[(place, place)].sqrt();
+        }
+        let signature = &slopes * DVector::from_column_slice(&sizes);
+        let length = signature.norm();
+        return Some(Screened {
+            candidate,
+            gain: 0.5 * right.dot(&step),
+            sizes,
+            deviations,
+            signature: signature / length.max(f64::MIN_POSITIVE),
+        });
+    }
+}

@@ -1,0 +1,232 @@
+//! An effect at a place, in one of its variants: a hypothesis on what the model lacks.
+
+use appell_spec::Mechanism;
+use toml_edit::{DocumentMut, Item, TableLike, Value};
+
+use super::effect::{Effect, EffectError, Family, Filter};
+use super::site::{Site, Sites};
+
+/// How a candidate acts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Acts {
+    /// By items of the spec, with parameters of its own.
+    Items,
+    /// By the value of a parameter that the spec has.
+    Parameter(usize),
+    /// By a lag of an input.
+    Lag(usize),
+    /// By a delay of an input.
+    Delay(usize),
+    /// By the bias of a channel.
+    Bias(usize),
+    /// By the scale of a channel.
+    Scale(usize),
+    /// By the delay of a channel.
+    Late(usize),
+}
+
+/// What a parameter of a candidate is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Part {
+    /// How much of the effect there is; zero where there is none.
+    Size,
+    /// Its shape, which matters where there is some of it.
+    Shape,
+    /// One where the effect is there, zero elsewhere.
+    Switch,
+}
+
+/// An effect at a place.
+#[derive(Debug, Clone)]
+pub struct Candidate {
+    /// Kind of the effect.
+    pub kind: String,
+    /// The place.
+    pub site: String,
+    /// Where the effect belongs.
+    pub family: Family,
+    /// One sentence.
+    pub about: String,
+    /// How it acts.
+    pub acts: Acts,
+    /// Its parameters in the spec, each with what it is.
+    pub(crate) parameters: Vec<(String, Part)>,
+    /// What its names in the spec start with.
+    pub(super) stem: String,
+    /// Centre of mass of the body where it acts, if it acts at one.
+    pub(super) centre: Option<String>,
+    /// Items for the spec.
+    pub(super) items: String,
+    /// What is added to inputs: name and expression.
+    pub(super) added: Vec<(String, String)>,
+}
+
+impl Candidate {
+    /// `kind@site`
+    pub fn name(&self) -> String {
+        format!("{}@{}", self.kind, self.site)
+    }
+
+    /// All candidates of an effect in a mechanism.
+    pub(super) fn all(
+        effect: &Effect,
+        mechanism: &Mechanism,
+        sites: &Sites<'_>,
+    ) -> Result<Vec<Self>, EffectError> {
+        let mut candidates = Vec::new();
+        for site in sites.of(effect.site) {
+            for (index, variant) in effect.variants.iter().enumerate() {
+                let stem = format!("{}_{}", effect.name, identifier(&site.name));
+                let id = if effect.variants.len() > 1 {
+                    format!("{stem}_{}", index + 1)
+                } else {
+                    stem
+                };
+                let id = unused(id, mechanism);
+                candidates.push(Self::new(effect, &site, &id, variant)?);
+            }
+        }
+        Ok(candidates)
+    }
+
+    fn new(
+        effect: &Effect,
+        site: &Site,
+        id: &str,
+        variant: &[(String, String)],
+    ) -> Result<Self, EffectError> {
+        let wrong = |message: String| EffectError {
+            file: effect.name.clone(),
+            message,
+        };
+        let mut words: Vec<(&str, &str)> = vec![("effect", id), ("site", &site.name)];
+        let own = variant
+            .iter()
+            .map(|(word, text)| (word.as_str(), text.as_str()));
+        // The words of a variant may themselves mean words of the place.
+        let of_site = site.words.iter().map(|(word, text)| (*word, text.as_str()));
+        words.extend(own.chain(of_site));
+        let filled = filled(&filled(&effect.text, &words), &words);
+        let mut document: DocumentMut = filled
+            .parse()
+            .map_err(|e: toml_edit::TomlError| wrong(e.to_string()))?;
+        let added = match document.remove("input") {
+            Some(input) => texts(&input),
+            None => Vec::new(),
+        };
+        document.remove("effect");
+        let switch = effect
+            .switch
+            .as_deref()
+            .map(|text| self::filled(text, &words));
+        let mut parameters = Vec::new();
+        if let Some(table) = document
+            .get_mut("parameters")
+            .and_then(Item::as_table_like_mut)
+        {
+            for (name, item) in table.iter_mut() {
+                let name = name.get().to_owned();
+                let item = item
+                    .as_table_like_mut()
+                    .ok_or_else(|| wrong(format!("`{name}` is not a table")))?;
+                for key in ["value", "at_least", "at_most"] {
+                    compute(item, key)
+                        .map_err(|text| wrong(format!("`{text}` is no product of numbers")))?;
+                }
+                let is_zero = item.get("value").and_then(number).is_some_and(|v| v == 0.0);
+                let part = if switch.as_ref() == Some(&name) {
+                    Part::Switch
+                } else if is_zero {
+                    Part::Size
+                } else {
+                    Part::Shape
+                };
+                parameters.push((name, part));
+            }
+        }
+        let acts = match effect.filter {
+            None => Acts::Items,
+            Some(Filter::Value) => Acts::Parameter(site.index),
+            Some(Filter::Lag) => Acts::Lag(site.index),
+            Some(Filter::Delay) => Acts::Delay(site.index),
+            Some(Filter::Bias) => Acts::Bias(site.index),
+            Some(Filter::Scale) => Acts::Scale(site.index),
+            Some(Filter::Late) => Acts::Late(site.index),
+        };
+        Ok(Self {
+            kind: effect.name.clone(),
+            site: site.name.clone(),
+            family: effect.family,
+            about: effect.about.replace("{site}", &site.name),
+            acts,
+            parameters,
+            stem: id.to_owned(),
+            centre: (site.words.iter())
+                .find(|(word, _)| *word == "centre")
+                .map(|(_, name)| name.clone()),
+            items: document.to_string(),
+            added,
+        })
+    }
+}
+
+/// A text with what stands for its words.
+fn filled(text: &str, words: &[(&str, &str)]) -> String {
+    let mut text = text.to_owned();
+    for (word, meaning) in words {
+        text = text.replace(&format!("{{{word}}}"), meaning);
+    }
+    text
+}
+
+fn texts(item: &Item) -> Vec<(String, String)> {
+    let Some(table) = item.as_table_like() else {
+        return Vec::new();
+    };
+    let pairs = table.iter();
+    pairs
+        .filter_map(|(name, item)| Some((name.to_owned(), item.as_str()?.to_owned())))
+        .collect()
+}
+
+/// Puts the value of a product such as `0.5*12.3` in its place.
+fn compute(table: &mut dyn TableLike, key: &str) -> Result<(), String> {
+    let Some(text) = table.get(key).and_then(Item::as_str).map(str::to_owned) else {
+        return Ok(());
+    };
+    let factors: Result<Vec<f64>, _> = text
+        .split('*')
+        .map(|factor| factor.trim().parse::<f64>())
+        .collect();
+    let product = factors.map_err(|_| text)?.iter().product::<f64>();
+    table.insert(key, Item::Value(Value::from(product)));
+    Ok(())
+}
+
+fn number(item: &Item) -> Option<f64> {
+    let whole = || item.as_integer().map(|whole| whole as f64);
+    item.as_float().or_else(whole)
+}
+
+/// A name that is a valid identifier: columns may have any.
+fn identifier(name: &str) -> String {
+    let valid = |c: char| if c.is_ascii_alphanumeric() { c } else { '_' };
+    name.chars().map(valid).collect()
+}
+
+/// A stem with which no name of the mechanism starts.
+fn unused(stem: String, mechanism: &Mechanism) -> String {
+    let is_used = |stem: &str| {
+        let parameters = mechanism.parameters.iter().map(|p| &p.label.name);
+        let points = mechanism.points.iter().map(|p| &p.name);
+        let bodies = mechanism.bodies.iter().map(|b| &b.name);
+        let loads = mechanism.loads.iter().map(|l| &l.name);
+        let mut names = parameters.chain(points).chain(bodies).chain(loads);
+        names.any(|name| name.starts_with(stem))
+    };
+    let mut stem = stem;
+    while is_used(&stem) {
+        stem += "_too";
+    }
+    stem
+}

@@ -1,0 +1,51 @@
+//! The effects that are shipped.
+
+use super::{Effect, EffectError};
+
+macro_rules! files {
+    ($($name:literal),* $(,)?) => {
+        [$(($name, include_str!(concat!("../../effects/", $name, ".toml")))),*]
+    };
+}
+
+/// Files in the order in which people read the library.
+const FILES: [(&str, &str); 22] = files![
+    "viscous_friction",
+    "coulomb_friction",
+    "stribeck_friction",
+    "spring",
+    "rolling_resistance",
+    "spin_friction",
+    "quadratic_drag",
+    "constant_force",
+    "ground_slope",
+    "parameter_error",
+    "mass_offset",
+    "added_inertia_sliding",
+    "added_inertia_turning",
+    "actuator_gain",
+    "actuator_bias",
+    "actuator_lag",
+    "actuator_delay",
+    "actuator_saturation",
+    "actuator_dead_zone",
+    "sensor_bias",
+    "sensor_scale",
+    "sensor_delay",
+];
+
+/// All of them.
+pub fn shipped() -> Result<Vec<Effect>, EffectError> {
+    let files = FILES.iter();
+    files.map(|(name, text)| Effect::read(name, text)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_shipped_file_can_be_read() {
+        assert_eq!(shipped().map(|all| all.len()), Ok(FILES.len()));
+    }
+}

@@ -1,0 +1,346 @@
+//! The places in a mechanism where effects may act, and the words that stand for them in the text of
+//! an effect.
+
+use appell_codegen::velocities::Velocities;
+use appell_spec::expr::{Expr, ExprKind, Quantity};
+use appell_spec::mechanism::{ConstraintKind, CoordinateId, LoadKind, Mechanism};
+use appell_spec::units::{Dimension, Unit};
+
+/// Kinds of places.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum SiteKind {
+    /// A coordinate whose rate moves something by itself.
+    Coordinate,
+    /// Such a coordinate that is a length.
+    Slider,
+    /// Such a coordinate that is an angle.
+    Hinge,
+    /// A body.
+    Body,
+    /// A body with a frame.
+    RigidBody,
+    /// A body that rolls.
+    Wheel,
+    /// The weight.
+    Gravity,
+    /// A parameter.
+    Parameter,
+    /// An input.
+    Input,
+    /// A measured channel.
+    Channel,
+}
+
+const WORDS: [(&str, SiteKind); 10] = [
+    ("coordinate", SiteKind::Coordinate),
+    ("slider", SiteKind::Slider),
+    ("hinge", SiteKind::Hinge),
+    ("body", SiteKind::Body),
+    ("rigid_body", SiteKind::RigidBody),
+    ("wheel", SiteKind::Wheel),
+    ("gravity", SiteKind::Gravity),
+    ("parameter", SiteKind::Parameter),
+    ("input", SiteKind::Input),
+    ("channel", SiteKind::Channel),
+];
+
+impl SiteKind {
+    pub(super) fn of(word: &str) -> Option<Self> {
+        let found = WORDS.iter().find(|(own, _)| *own == word);
+        found.map(|(_, kind)| *kind)
+    }
+
+    pub(super) fn words() -> String {
+        WORDS.map(|(word, _)| word).join(", ")
+    }
+}
+
+/// What recordings tell of typical sizes, in SI.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Scales {
+    /// Typical rate of each coordinate.
+    pub rates: Vec<f64>,
+    /// Largest value of each input.
+    pub largest: Vec<f64>,
+    /// Columns of the measured channels.
+    pub channels: Vec<String>,
+    /// Parameters with a tolerance, which may be wrong by more.
+    pub uncertain: Vec<usize>,
+}
+
+/// Part of a typical rate or input over which a sign or a corner is rounded.
+const NARROW: f64 = 0.02;
+
+/// A place.
+#[derive(Debug, Clone)]
+pub(super) struct Site {
+    /// Name in the spec; `gravity` for the weight, the column for a channel.
+    pub(super) name: String,
+    /// Its index among its like: parameters, inputs, channels.
+    pub(super) index: usize,
+    /// Words and what they stand for.
+    pub(super) words: Vec<(&'static str, String)>,
+}
+
+/// Places in a mechanism.
+pub(super) struct Sites<'m> {
+    mechanism: &'m Mechanism,
+    velocities: &'m Velocities,
+    scales: &'m Scales,
+}
+
+impl<'m> Sites<'m> {
+    pub(super) fn new(
+        mechanism: &'m Mechanism,
+        velocities: &'m Velocities,
+        scales: &'m Scales,
+    ) -> Self {
+        Self {
+            mechanism,
+            velocities,
+            scales,
+        }
+    }
+
+    /// All places of a kind.
+    pub(super) fn of(&self, kind: SiteKind) -> Vec<Site> {
+        let is_length = |&q: &CoordinateId| self.dimension(q) == Dimension::LENGTH;
+        let is_angle = |&q: &CoordinateId| self.dimension(q) == Dimension::NONE;
+        let moving = self.moving();
+        let moving = moving.into_iter();
+        match kind {
+            SiteKind::Coordinate => moving
+                .filter(|q| is_length(q) || is_angle(q))
+                .map(|q| self.coordinate(q))
+                .collect(),
+            SiteKind::Slider => moving
+                .filter(is_length)
+                .map(|q| self.coordinate(q))
+                .collect(),
+            SiteKind::Hinge => moving
+                .filter(is_angle)
+                .map(|q| self.coordinate(q))
+                .collect(),
+            SiteKind::Body => (0..self.mechanism.bodies.len())
+                .map(|body| self.body(body))
+                .collect(),
+            SiteKind::RigidBody => (0..self.mechanism.bodies.len())
+                .filter(|&body| self.mechanism.bodies[body].frame.is_some())
+                .map(|body| self.body(body))
+                .collect(),
+            SiteKind::Wheel => self.wheels(),
+            SiteKind::Gravity => self.gravity().into_iter().collect(),
+            SiteKind::Parameter => self
+                .scales
+                .uncertain
+                .iter()
+                .map(|&p| self.parameter(p))
+                .collect(),
+            SiteKind::Input => (0..self.mechanism.inputs.len())
+                .filter(|&input| self.scales.largest[input] > 0.0)
+                .map(|input| self.input(input))
+                .collect(),
+            SiteKind::Channel => {
+                let columns = self.scales.channels.iter().enumerate();
+                let site = |(index, column): (usize, &String)| Site {
+                    name: column.clone(),
+                    index,
+                    words: Vec::new(),
+                };
+                columns.map(site).collect()
+            }
+        }
+    }
+
+    fn dimension(&self, coordinate: CoordinateId) -> Dimension {
+        self.mechanism.coordinates[coordinate].label.unit.dimension
+    }
+
+    /// Coordinates whose rates stand in definitions of the pseudo-velocities: the others follow.
+    fn moving(&self) -> Vec<CoordinateId> {
+        let stands = |&q: &CoordinateId| {
+            let mut speeds = self.mechanism.pseudo_velocities.iter();
+            speeds.any(|speed| mentions(&speed.definition, Quantity::Rate(q)))
+        };
+        (0..self.mechanism.coordinates.len())
+            .filter(stands)
+            .collect()
+    }
+
+    fn coordinate(&self, index: CoordinateId) -> Site {
+        let label = &self.mechanism.coordinates[index].label;
+        let is_length = self.dimension(index) == Dimension::LENGTH;
+        let (unit, force) = if is_length {
+            ("m", "N")
+        } else {
+            ("rad", "N*m")
+        };
+        let rate = self.scales.rates[index];
+        let mut words = vec![
+            ("unit", unit.to_owned()),
+            ("force", force.to_owned()),
+            ("typical_rate", number(rate)),
+            ("narrow_rate", number(NARROW * rate)),
+        ];
+        words.extend(self.across());
+        Site {
+            name: label.name.clone(),
+            index,
+            words,
+        }
+    }
+
+    fn body(&self, index: usize) -> Site {
+        let body = &self.mechanism.bodies[index];
+        let [x, y, z] = &self.velocities.points[body.centre];
+        let speed = format!("sqrt(({x})^2 + ({y})^2 + ({z})^2 + (0.001 [m/s])^2)");
+        let frame = body
+            .frame
+            .map(|frame| self.mechanism.frames[frame].name.clone());
+        Site {
+            name: body.name.clone(),
+            index,
+            words: vec![
+                ("centre", self.mechanism.points[body.centre].name.clone()),
+                ("frame", frame.unwrap_or_else(|| "ground".to_owned())),
+                ("speed", speed),
+                ("velocity_x", format!("({x})")),
+                ("velocity_y", format!("({y})")),
+                ("velocity_z", format!("({z})")),
+            ],
+        }
+    }
+
+    /// Bodies that roll, with their angular velocity about the normal of the ground.
+    fn wheels(&self) -> Vec<Site> {
+        let rolling = self
+            .mechanism
+            .constraints
+            .iter()
+            .filter_map(|c| match c.kind {
+                ConstraintKind::Rolling { body, .. } => Some(body),
+                _ => None,
+            });
+        let mut bodies: Vec<usize> = rolling.collect();
+        bodies.sort_unstable();
+        bodies.dedup();
+        bodies
+            .into_iter()
+            .filter_map(|body| self.wheel(body))
+            .collect()
+    }
+
+    fn wheel(&self, body: usize) -> Option<Site> {
+        let down = self.mechanism.down()?;
+        let frame = self.mechanism.bodies[body].frame?;
+        let turn = self.mechanism.frames[frame].turns.last()?;
+        let ExprKind::Quantity(Quantity::Coordinate(roll)) = turn.angle.kind else {
+            return None;
+        };
+        let w = &self.velocities.frames[frame];
+        let parts = down.iter().zip(w).filter(|(down, _)| **down != 0);
+        let spin: Vec<String> = parts
+            .map(|(down, w)| format!("({})*({w})", -down))
+            .collect();
+        let mut site = self.body(body);
+        let rate = self.scales.rates[roll];
+        site.words.extend([
+            ("roll", self.mechanism.coordinates[roll].label.name.clone()),
+            ("narrow_rate", number(NARROW * rate)),
+            ("spin", spin.join(" + ")),
+            ("normal_x", (-down[0]).to_string()),
+            ("normal_y", (-down[1]).to_string()),
+            ("normal_z", (-down[2]).to_string()),
+        ]);
+        Some(site)
+    }
+
+    fn gravity(&self) -> Option<Site> {
+        let mut loads = self.mechanism.loads.iter();
+        let gravity = loads.find_map(|load| match &load.kind {
+            LoadKind::Gravity { acceleration, .. } => Some(acceleration),
+            _ => None,
+        })?;
+        let mut words = self.across();
+        words.push(("gravity", self.written(gravity)?));
+        Some(Site {
+            name: "gravity".to_owned(),
+            index: 0,
+            words,
+        })
+    }
+
+    /// Axes of the ground across the weight.
+    fn across(&self) -> Vec<(&'static str, String)> {
+        let down = self.mechanism.down().unwrap_or([0, 0, -1]);
+        let across: Vec<usize> = (0..3).filter(|&axis| down[axis] == 0).collect();
+        let letter = |place: usize| ["x", "y", "z"][across[place]].to_owned();
+        let component = |axis: usize| if across[0] == axis { "1" } else { "0" }.to_owned();
+        vec![
+            ("across_1", letter(0)),
+            ("across_2", letter(1)),
+            ("across_x", component(0)),
+            ("across_y", component(1)),
+            ("across_z", component(2)),
+        ]
+    }
+
+    fn parameter(&self, index: usize) -> Site {
+        Site {
+            name: self.mechanism.parameters[index].label.name.clone(),
+            index,
+            words: Vec::new(),
+        }
+    }
+
+    fn input(&self, index: usize) -> Site {
+        let label = &self.mechanism.inputs[index].label;
+        let largest = self.scales.largest[index];
+        // Numbers of a fragment are in SI; so has to be its unit.
+        let unit = if label.unit.is_si() {
+            label.unit.text.clone()
+        } else {
+            Unit::si(label.unit.dimension).text
+        };
+        Site {
+            name: label.name.clone(),
+            index,
+            words: vec![
+                ("unit", unit),
+                ("largest", number(largest)),
+                ("narrow", number(NARROW * largest)),
+            ],
+        }
+    }
+
+    /// A constant expression in the words of the spec.
+    fn written(&self, expr: &Expr) -> Option<String> {
+        match &expr.kind {
+            ExprKind::Quantity(Quantity::Parameter(p)) => {
+                Some(self.mechanism.parameters[*p].label.name.clone())
+            }
+            _ => None,
+        }
+    }
+}
+
+/// Digits that are enough for a scale, and give the same text everywhere.
+fn number(value: f64) -> String {
+    format!("{value:.3e}")
+}
+
+fn mentions(expr: &Expr, quantity: Quantity) -> bool {
+    match &expr.kind {
+        ExprKind::Number(_) => false,
+        ExprKind::Quantity(own) => *own == quantity,
+        ExprKind::Negate(a) => mentions(a, quantity),
+        ExprKind::Binary(_, a, b) => mentions(a, quantity) || mentions(b, quantity),
+        ExprKind::Call(_, parts) => parts.iter().any(|part| mentions(part, quantity)),
+        ExprKind::Choice {
+            compared, branches, ..
+        } => {
+            let mut parts = compared.iter().chain(branches.iter());
+            parts.any(|part| mentions(part, quantity))
+        }
+    }
+}

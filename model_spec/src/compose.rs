@@ -1,0 +1,196 @@
+//! Specs put together from parts: further items, and expressions in the places of names.
+
+use toml_edit::{DocumentMut, Item, TableLike, Value};
+
+use crate::edit::EditError;
+use crate::language::{Form, Key, SECTIONS, Shape};
+
+/// A spec that grows, with its comments and layout untouched.
+#[derive(Debug, Clone)]
+pub struct Composition {
+    document: DocumentMut,
+}
+
+impl Composition {
+    /// Starts with the text of a spec.
+    pub fn new(text: &str) -> Result<Self, EditError> {
+        Ok(Self {
+            document: document(text)?,
+        })
+    }
+
+    /// Adds the items of a fragment, which is written as a spec is, sections and all. Where the spec
+    /// has an item of the same name, the keys of the fragment replace its own.
+    pub fn add(&mut self, fragment: &str) -> Result<(), EditError> {
+        let fragment = document(fragment)?;
+        for (section, items) in fragment.iter() {
+            let Some(items) = items.as_table_like() else {
+                continue;
+            };
+            let own = self.document.entry(section).or_insert(toml_edit::table());
+            let own = own.as_table_like_mut().ok_or_else(|| EditError::Syntax {
+                message: format!("`{section}` is not a section"),
+            })?;
+            for (name, item) in items.iter() {
+                merge(own, name, item);
+            }
+        }
+        Ok(())
+    }
+
+    /// Writes an expression in the places of a name, in all expressions of the sections.
+    pub fn substitute(&mut self, sections: &[&str], name: &str, by: &str) {
+        for section in sections {
+            let keys = expressions(section);
+            let Some(items) = self
+                .document
+                .get_mut(section)
+                .and_then(Item::as_table_like_mut)
+            else {
+                continue;
+            };
+            for (_, item) in items.iter_mut() {
+                let Some(table) = item.as_table_like_mut() else {
+                    continue;
+                };
+                for (key, item) in table.iter_mut() {
+                    if keys.contains(&key.get())
+                        && let Some(value) = item.as_value_mut()
+                    {
+                        replace(value, name, by);
+                    }
+                }
+            }
+        }
+    }
+
+    /// The text of the whole.
+    pub fn text(&self) -> String {
+        self.document.to_string()
+    }
+}
+
+fn document(text: &str) -> Result<DocumentMut, EditError> {
+    text.parse()
+        .map_err(|e: toml_edit::TomlError| EditError::Syntax {
+            message: e.message().to_owned(),
+        })
+}
+
+fn merge(own: &mut dyn TableLike, name: &str, item: &Item) {
+    let there = own.get_mut(name).and_then(Item::as_table_like_mut);
+    match (there, item.as_table_like()) {
+        (Some(there), Some(keys)) => {
+            for (key, value) in keys.iter() {
+                there.insert(key, value.clone());
+            }
+        }
+        _ => {
+            own.insert(name, item.clone());
+        }
+    }
+}
+
+/// Keys of a section that hold expressions.
+fn expressions(section: &str) -> Vec<&'static str> {
+    let section = SECTIONS.iter().find(|known| known.name == section);
+    let keys: Vec<&'static Key> = match section.map(|section| &section.shape) {
+        Some(Shape::Items(keys, _) | Shape::Table(keys)) => keys.iter().collect(),
+        Some(Shape::Kinds(kinds)) => kinds.iter().flat_map(|kind| kind.keys).collect(),
+        Some(Shape::States) | None => Vec::new(),
+    };
+    let hold = |key: &&Key| matches!(key.form, Form::Expression | Form::Components | Form::Matrix);
+    keys.into_iter().filter(hold).map(|key| key.name).collect()
+}
+
+fn replace(value: &mut Value, name: &str, by: &str) {
+    match value {
+        Value::String(text) => {
+            let replaced = replaced(text.value(), name, by);
+            if replaced != *text.value() {
+                let decor = text.decor().clone();
+                *value = Value::from(replaced);
+                *value.decor_mut() = decor;
+            }
+        }
+        Value::Array(parts) => parts.iter_mut().for_each(|part| replace(part, name, by)),
+        _ => {}
+    }
+}
+
+/// An expression with `by` in the places of a whole name; units in brackets stay.
+fn replaced(expression: &str, name: &str, by: &str) -> String {
+    let mut out = String::with_capacity(expression.len());
+    let mut rest = expression;
+    while let Some(first) = rest.chars().next() {
+        let is_word = |c: char| c.is_alphanumeric() || c == '_';
+        let len = if first == '[' {
+            rest.find(']').map_or(rest.len(), |end| end + 1)
+        } else if is_word(first) {
+            rest.find(|c| !is_word(c)).unwrap_or(rest.len())
+        } else {
+            first.len_utf8()
+        };
+        let (part, after) = rest.split_at(len);
+        if part == name {
+            out += "(";
+            out += by;
+            out += ")";
+        } else {
+            out += part;
+        }
+        rest = after;
+    }
+    out
+}
+
+#[cfg(test)]
+#[expect(clippy::unwrap_used, reason = "a test fails by panicking")]
+mod tests {
+    use super::*;
+
+    const SPEC: &str = "\
+# A rig.
+[parameters]
+m = { value = 10, unit = \"kg\" }  # weighed
+
+[bodies.cart]
+centre = \"C\"
+mass   = \"m\"
+
+[loads]
+push = { kind = \"force\", on = \"F\", vector = [\"F + 2 [F]\", 0, \"F_1\"] }
+";
+
+    #[test]
+    fn items_are_added_and_keys_replaced_while_comments_stay() {
+        let mut spec = Composition::new(SPEC).unwrap();
+        let fragment = "\
+[parameters]
+c = { value = 0, unit = \"N\" }
+[bodies]
+cart = { centre = \"D\" }
+[points]
+D = { from = \"C\" }
+";
+        spec.add(fragment).unwrap();
+        let text = spec.text();
+        assert!(text.contains("# weighed"), "{text}");
+        let read: DocumentMut = text.parse().unwrap();
+        assert_eq!(read["parameters"]["c"]["unit"].as_str(), Some("N"));
+        assert_eq!(read["bodies"]["cart"]["centre"].as_str(), Some("D"));
+        assert_eq!(read["bodies"]["cart"]["mass"].as_str(), Some("m"));
+        assert_eq!(read["points"]["D"]["from"].as_str(), Some("C"));
+    }
+
+    #[test]
+    fn whole_names_in_expressions_are_replaced_and_nothing_else() {
+        let mut spec = Composition::new(SPEC).unwrap();
+        spec.substitute(&["loads"], "F", "F + b");
+        let read: DocumentMut = spec.text().parse().unwrap();
+        let push = &read["loads"]["push"];
+        assert_eq!(push["on"].as_str(), Some("F"));
+        assert_eq!(push["vector"][0].as_str(), Some("(F + b) + 2 [F]"));
+        assert_eq!(push["vector"][2].as_str(), Some("F_1"));
+    }
+}

@@ -72,10 +72,9 @@ fn written(graph: &Graph, symbols: &Symbols, mechanism: &Mechanism, expr: Expr) 
         }
         Node::Named(id) => of(graph.definition(*id).value),
         Node::Sum(terms) => {
-            let terms = terms.iter().map(|term| match term.coefficient.is_one() {
-                true => of(term.expr),
-                false => format!("{}*{}", literal(&term.coefficient), of(term.expr)),
-            });
+            let terms = terms
+                .iter()
+                .map(|term| format!("{}*{}", literal(&term.coefficient), of(term.expr)));
             format!("({})", terms.collect::<Vec<_>>().join(" + "))
         }
         Node::Product(factors) => {

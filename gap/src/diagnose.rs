@@ -62,13 +62,17 @@ pub fn diagnose(
     stage("fitting the effects that remain");
     let mut comparison = Comparison::of(&bench, nominal, &screen)?;
     stage("looking for what no effect explains");
-    comparison.weigh_unknown(&bench, &screen)?;
+    comparison.weigh_unknown(&bench)?;
     stage("localising the gap");
     let place = localise::place(&bench, &comparison)?;
     stage("predicting the runs that were held out");
-    let held_out = HeldOut::of(set.only(Part::Test), &bench)?;
+    let held_out = HeldOut::of(&set.only(Part::Test), &bench)?;
     let how_far = held_out.how_far(&bench, &comparison)?;
     Ok(report::assemble(
-        &bench, &screen, comparison, place, how_far,
+        &bench,
+        &screen,
+        &comparison,
+        place,
+        how_far,
     ))
 }

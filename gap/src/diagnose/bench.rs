@@ -23,7 +23,7 @@ const SHORTEST_LAG: f64 = 0.5;
 /// two hypotheses apart.
 const EFFORT: Effort = Effort {
     gain: 0.02,
-    steps: 25,
+    steps: 60,
 };
 /// Standard deviation of the logarithm of a shape.
 const SHAPE: f64 = 1.0;

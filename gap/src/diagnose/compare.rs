@@ -8,7 +8,7 @@ use std::collections::BTreeSet;
 use appell_runtime::estimate::{Estimation, Unknown};
 
 use super::DiagnoseError;
-use super::bench::{Bench, transfer};
+use super::bench::{Bench, WRONG, transfer};
 use super::evidence::LARGEST_LOG_SIZE;
 use super::hypothesis::Fitted;
 use super::screen::{Screen, Screened};
@@ -21,10 +21,10 @@ const KEPT: usize = 8;
 const KEPT_BESIDE: usize = 4;
 /// Most effects of a hypothesis.
 const MOST_MEMBERS: usize = 3;
-/// Gains below this are those of noise: d′ of two.
-const LEAST_GAIN: f64 = 2.0;
+/// Gains below this cannot outweigh that there are many candidates, whatever a fit adds to them.
+const LEAST_GAIN: f64 = 4.0;
 /// Part of the greatest gain below which no fit catches up.
-const LEAST_PART: f64 = 0.1;
+const LEAST_PART: f64 = 0.25;
 /// Two hypotheses whose evidence differs by less cannot be told apart: odds of twenty.
 pub(super) const TIED: f64 = 3.0;
 /// Probability beforehand that there is no gap.
@@ -35,8 +35,10 @@ const NOT_ALONE: f64 = 0.2;
 const UNKNOWN: f64 = 0.1;
 /// Part of its gain that a wave has to repeat on runs that it was not found in.
 const REPEATED: f64 = 0.5;
-/// Fits gain at most so many times what the first order promises.
-const MOST_STRETCH: f64 = 4.0;
+/// Part of what the best hypothesis explains that a wave has to gain.
+const MATTERS: f64 = 0.3;
+/// Odds beyond this are certainty.
+const MOST_LOG_ODDS: f64 = 50.0;
 /// Why a fit does not count.
 const NO_EVIDENCE: &str = "its parameters cannot be told from each other";
 /// Signatures that are this much alike are those of one effect in two guises.
@@ -68,39 +70,23 @@ impl Comparison {
         &self.fits[0].0
     }
 
-    /// Gives its probability to the hypothesis that nothing in the library explains the gap.
-    ///
-    /// It is the nominal model with the best wave. Gains of waves are those of first order, so they
-    /// are held against gains of first order: a wave speaks for itself as much as a named effect of
-    /// the same gain does, less one more size, and less the number of waves.
-    pub(super) fn weigh_unknown(
-        &mut self,
-        bench: &Bench<'_>,
-        screen: &Screen,
-    ) -> Result<(), DiagnoseError> {
-        let (waves, tried) = waves(bench, self.nominal())?;
-        let Some(wave) = waves
-            .into_iter()
-            .find(|wave| wave.predicted > REPEATED * wave.gain)
-        else {
+    /// Gives its probability to the hypothesis that nothing in the library explains the gap: that
+    /// the best hypothesis leaves a wave, which counts as two further sizes and one of all waves. A
+    /// wave that is small beside what the best hypothesis explains is a matter of its law.
+    pub(super) fn weigh_unknown(&mut self, bench: &Bench<'_>) -> Result<(), DiagnoseError> {
+        let best = self.best();
+        let (waves, tried) = waves(bench, best)?;
+        let repeats = |wave: &Wave| wave.predicted > REPEATED * wave.gain;
+        let Some(wave) = waves.into_iter().find(repeats) else {
             return Ok(());
         };
-        let nominal = self.nominal();
-        let fitted = self.best().evidence.log_likelihood - nominal.evidence.log_likelihood;
-        let screened = self.best().members.first().and_then(|best| {
-            let mut list = screen.list.iter();
-            list.find(|one| one.candidate == *best).map(|one| one.gain)
-        });
-        // A fit finds new levels too, which the first order does not.
-        let stretch = screened.map_or(1.0, |gain| (fitted / gain).clamp(1.0, MOST_STRETCH));
-        let occam = 2.0 * wave_occam(wave.gain) + (tried.max(1) as f64).ln();
-        let log = nominal.evidence.log() + stretch * wave.gain - occam
-            + (1.0 - NO_GAP).ln()
-            + UNKNOWN.ln();
-        let best = self.best();
-        let reference = best.evidence.log() + prior(bench, best.members.len());
-        let odds = (log - reference).exp() * self.fits[0].1;
-        self.unknown = odds / (1.0 + odds);
+        let explained = best.evidence.log_likelihood - self.nominal().evidence.log_likelihood;
+        if wave.gain > MATTERS * explained {
+            let occam = 2.0 * wave_occam(wave.gain) + (tried.max(1) as f64).ln();
+            let log = wave.gain - occam + UNKNOWN.ln();
+            let odds = log.min(MOST_LOG_ODDS).exp() * self.fits[0].1;
+            self.unknown = odds / (1.0 + odds);
+        }
         self.wave = Some(wave);
         Ok(())
     }
@@ -270,6 +256,11 @@ fn place(
     let candidate = bench.candidate(screened.candidate);
     let first = screened.sizes.first().copied().unwrap_or(0.0);
     let at = |list: &[usize], input| list.iter().position(|own| *own == input).unwrap_or(0);
+    let values_now = bench
+        .effects
+        .info()
+        .parameter_index(&candidate.site)
+        .map_or(0.0, |index| values[index]);
     let mut set = |unknown, value: f64| -> Result<(), DiagnoseError> {
         values[layout.place(unknown)?] = value;
         Ok(())
@@ -296,7 +287,16 @@ fn place(
                 direction += 1;
             }
         }
-        Acts::Parameter(_) => {}
+        Acts::Parameter(_) => {
+            let info = bench.effects.info();
+            if let Some(index) = info.parameter_index(&candidate.site) {
+                let nominal = bench.set.parameters[index].value;
+                let most = WRONG * nominal.abs();
+                let [low, high] = info.parameters[index].range;
+                let moved = values_now + first.clamp(-most, most);
+                set(Unknown::Parameter(index), moved.clamp(low, high))?;
+            }
+        }
         Acts::Bias(channel) => set(Unknown::Bias(channel), first)?,
         Acts::Scale(channel) => set(Unknown::Scale(channel), 1.0 + first)?,
         Acts::Late(channel) => {

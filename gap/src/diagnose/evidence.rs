@@ -1,5 +1,5 @@
 //! How much recordings speak for a hypothesis: the likelihood, averaged over what its parameters may
-//! be beforehand (Laplace's method; D. J. C. MacKay, *Information Theory, Inference, and Learning
+//! be beforehand (Laplace's method; D. J. C. `MacKay`, *Information Theory, Inference, and Learning
 //! Algorithms*, 2003, chapter 28).
 //!
 //! Effects of different kinds meet on equal terms because what is known beforehand of a size is said
@@ -50,30 +50,27 @@ impl Evidence {
         let own = bench.problem.wanted.len();
         for (place, &i) in open.iter().enumerate() {
             let free = &fit.free[i];
-            occam += match free.prior {
-                Some([expected, deviation]) => {
-                    let off = (fit.coordinates[i] - free.to_coordinate(expected)) / deviation;
-                    -0.5 * off * off - deviation.ln() - 0.5 * TAU.ln()
-                }
-                None => {
-                    let neutral = if matches!(free.unknown, Unknown::Scale(_)) {
-                        1.0
-                    } else {
-                        0.0
-                    };
-                    let size = (free.to_value(fit.coordinates[i]) - neutral).abs();
-                    let in_value = match free.unknown {
-                        // A lag is counted by its logarithm, its deviation too.
-                        Unknown::Lag(_) => size * deviations[place],
-                        _ => deviations[place],
-                    };
-                    let d = (size / in_value).max(SMALLEST);
-                    smallest = smallest.min(size / in_value);
-                    let two_sided = free.range[0] < neutral;
-                    let sides = if two_sided { 2.0_f64 } else { 1.0 };
-                    // The density of the coordinate: 1/(size · sides · range) for plain ones.
-                    -(d * deviations[place] * sides * LARGEST_LOG_SIZE).ln()
-                }
+            occam += if let Some([expected, deviation]) = free.prior {
+                let off = (fit.coordinates[i] - free.to_coordinate(expected)) / deviation;
+                -0.5 * off * off - deviation.ln() - 0.5 * TAU.ln()
+            } else {
+                let neutral = if matches!(free.unknown, Unknown::Scale(_)) {
+                    1.0
+                } else {
+                    0.0
+                };
+                let size = (free.to_value(fit.coordinates[i]) - neutral).abs();
+                let in_value = match free.unknown {
+                    // A lag is counted by its logarithm, its deviation too.
+                    Unknown::Lag(_) => size * deviations[place],
+                    _ => deviations[place],
+                };
+                let d = (size / in_value).max(SMALLEST);
+                smallest = smallest.min(size / in_value);
+                let two_sided = free.range[0] < neutral;
+                let sides = if two_sided { 2.0_f64 } else { 1.0 };
+                // The density of the coordinate: 1/(size · sides · range) for plain ones.
+                -(d * deviations[place] * sides * LARGEST_LOG_SIZE).ln()
             };
         }
         // A member whose size stands at zero is not there.

@@ -43,7 +43,7 @@ struct Block {
 
 impl HeldOut {
     /// Of a data set that has nothing else.
-    pub(super) fn of(set: DataSet, bench: &Bench<'_>) -> Result<Self, DiagnoseError> {
+    pub(super) fn of(set: &DataSet, bench: &Bench<'_>) -> Result<Self, DiagnoseError> {
         let set = set.bound_to(&bench.effects.mechanism);
         let recordings = set.recordings(Part::Test, bench.effects.info())?;
         Ok(Self {

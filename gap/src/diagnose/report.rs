@@ -192,7 +192,7 @@ pub struct Report {
 pub(super) fn assemble(
     bench: &Bench<'_>,
     screen: &Screen,
-    comparison: Comparison,
+    comparison: &Comparison,
     place: Where,
     how_far: Option<HowFar>,
 ) -> Report {

@@ -81,7 +81,7 @@ impl Projected {
             own[(samples + row, column)] = slope;
             rest[samples + row] = off;
         }
-        let basis = orthogonal(own);
+        let basis = orthogonal(&own);
         let along = basis.tr_mul(&rest);
         rest -= &basis * along;
         Self {
@@ -108,7 +108,7 @@ impl Projected {
 }
 
 /// An orthonormal basis of the columns, without those that follow from others.
-fn orthogonal(columns: DMatrix<f64>) -> DMatrix<f64> {
+fn orthogonal(columns: &DMatrix<f64>) -> DMatrix<f64> {
     /// Part of a column that has to be new.
     const NEW: f64 = 1e-6;
     let mut basis: Vec<DVector<f64>> = Vec::new();

@@ -181,7 +181,7 @@ fn solved(squares: &Matrix2<f64>, score: &Vector2<f64>) -> Option<Vector2<f64>> 
     /// A little of the larger diagonal keeps a wave that is hardly there in place.
     const FLOOR: f64 = 1e-9;
     let size = squares.diagonal().max();
-    if !(size > 0.0) {
+    if size.is_nan() || size <= 0.0 {
         return None;
     }
     let squares = squares + Matrix2::identity() * (FLOOR * size);

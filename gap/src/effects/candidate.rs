@@ -76,6 +76,11 @@ impl Candidate {
         let mut candidates = Vec::new();
         for site in sites.of(effect.site) {
             for (index, variant) in effect.variants.iter().enumerate() {
+                let mut words = variant.iter();
+                let along = words.find(|(word, _)| word == "offset_along");
+                if along.is_some_and(|(_, axis)| site.placed_along.contains(&axis.as_str())) {
+                    continue;
+                }
                 let stem = format!("{}_{}", effect.name, identifier(&site.name));
                 let id = if effect.variants.len() > 1 {
                     format!("{stem}_{}", index + 1)

@@ -5,6 +5,7 @@ use appell_codegen::velocities::Velocities;
 use appell_spec::expr::{Expr, ExprKind, Quantity};
 use appell_spec::mechanism::{ConstraintKind, CoordinateId, LoadKind, Mechanism};
 use appell_spec::units::{Dimension, Unit};
+use num_traits::Zero;
 
 /// Kinds of places.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -80,6 +81,8 @@ pub(super) struct Site {
     pub(super) index: usize,
     /// Words and what they stand for.
     pub(super) words: Vec<(&'static str, String)>,
+    /// Axes along which the drawing already places the centre of mass.
+    pub(super) placed_along: Vec<&'static str>,
 }
 
 /// Places in a mechanism.
@@ -146,6 +149,7 @@ impl<'m> Sites<'m> {
                     name: column.clone(),
                     index,
                     words: Vec::new(),
+                    placed_along: Vec::new(),
                 };
                 columns.map(site).collect()
             }
@@ -187,6 +191,7 @@ impl<'m> Sites<'m> {
             name: label.name.clone(),
             index,
             words,
+            placed_along: Vec::new(),
         }
     }
 
@@ -208,7 +213,23 @@ impl<'m> Sites<'m> {
                 ("velocity_y", format!("({y})")),
                 ("velocity_z", format!("({z})")),
             ],
+            placed_along: self.placed_along(index),
         }
+    }
+
+    /// Axes of the frame of a body along which its centre is placed: an error there is one of a
+    /// parameter.
+    fn placed_along(&self, index: usize) -> Vec<&'static str> {
+        let body = &self.mechanism.bodies[index];
+        let centre = &self.mechanism.points[body.centre];
+        if Some(centre.frame) != body.frame {
+            return Vec::new();
+        }
+        let is_zero = |expr: &Expr| matches!(&expr.kind, ExprKind::Number(n) if n.is_zero());
+        let axes = ["x", "y", "z"].into_iter().zip(&centre.at);
+        axes.filter(|(_, at)| !is_zero(at))
+            .map(|(axis, _)| axis)
+            .collect()
     }
 
     /// Bodies that roll, with their angular velocity about the normal of the ground.
@@ -267,6 +288,7 @@ impl<'m> Sites<'m> {
             name: "gravity".to_owned(),
             index: 0,
             words,
+            placed_along: Vec::new(),
         })
     }
 
@@ -290,6 +312,7 @@ impl<'m> Sites<'m> {
             name: self.mechanism.parameters[index].label.name.clone(),
             index,
             words: Vec::new(),
+            placed_along: Vec::new(),
         }
     }
 
@@ -310,6 +333,7 @@ impl<'m> Sites<'m> {
                 ("largest", number(largest)),
                 ("narrow", number(NARROW * largest)),
             ],
+            placed_along: Vec::new(),
         }
     }
 

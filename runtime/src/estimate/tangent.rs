@@ -168,7 +168,7 @@ impl<'p, 'a> Forward<'p, 'a> {
         match action {
             Action::Advance(_) => self.advance(),
             Action::Switch { .. } if !first => {
-                self.switch(recording_time(recording, action), &before)
+                self.switch(recording_time(recording, action), &before);
             }
             Action::Switch { .. } => {}
             Action::Measure { .. } => self.measure(samples),
@@ -320,7 +320,9 @@ impl<'p, 'a> Forward<'p, 'a> {
                 add_scaled(a[i] / s, row, &mut self.z[i * columns..(i + 1) * columns]);
             }
             let deviation = s.sqrt();
-            row.iter_mut().for_each(|entry| *entry /= deviation);
+            for entry in row {
+                *entry /= deviation;
+            }
         }
     }
 

@@ -2,7 +2,9 @@
 //!
 //! [`data`] reads recordings: values in SI at increasing times, bound to the names of a spec, each
 //! channel with its noise level, and with everything said that was mended or looks wrong. [`identify`]
-//! finds parameters from them, [`inverse`] from motions whose inputs nobody knows. [`motion_capture`] makes recordings of a capture of rigid bodies.
+//! finds parameters from them, [`inverse`] from motions whose inputs nobody knows. [`motion_capture`]
+//! makes recordings of a capture of rigid bodies. [`effects`] are what a model may lack, and [`diagnose`]
+//! tells which of them it does.
 
 pub mod data;
 pub mod diagnose;

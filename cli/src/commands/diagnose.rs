@@ -11,8 +11,7 @@ use crate::{diagnosed, files, progress, recording};
 /// Tells where a model falls short of recordings, which effect it lacks, and how far the effect closes
 /// the gap.
 ///
-/// Every effect of the library is tried at every place of the mechanism where it makes sense
-/// (`appell list --effects`). Runs to test are read by the last step alone. The exit status is 0
+/// Every effect of the library is tried at every place of the mechanism where it makes sense. Runs to test are read by the last step alone. The exit status is 0
 /// whatever the verdict.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Diagnose {

@@ -30,8 +30,8 @@ pub use error::IdentifyError;
 pub use held_out::{AHEAD, HORIZONS, HeldOut, Trace};
 
 use held_out::Test;
-pub(crate) use problem::{Problem, begin};
 use problem::EFFORT;
+pub(crate) use problem::{Problem, begin};
 
 /// Steps of the integration are this long in s at most.
 const LONGEST_STEP: f64 = 0.02;

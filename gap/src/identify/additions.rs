@@ -27,7 +27,7 @@ enum Kind {
 }
 
 /// One of them.
-pub(super) struct Addition {
+pub(crate) struct Addition {
     name: String,
     kind: Kind,
     /// Place of the input or channel.

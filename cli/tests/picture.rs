@@ -14,14 +14,14 @@ fn a_png_is_twice_as_large_as_its_svg_and_shows_lines_and_letters() {
     folder.done(&DRAW);
     folder.done(&["draw", "pendulum", "--out", "pendulum.svg"]);
     let svg = folder.read("pendulum.svg");
-    let size = |name: &str| -> f64 {
+    let size = |name: &str| -> u32 {
         let (_, from) = svg.split_once(&format!("{name}=\"")).expect("a size");
         let (value, _) = from.split_once('"').expect("a value");
-        value.parse().expect("a number")
+        value.parse().expect("a whole number")
     };
     let drawn = Pixmap::load_png(folder.path("pendulum.png")).expect("a PNG");
-    let (width, height) = (f64::from(drawn.width()), f64::from(drawn.height()));
-    assert_eq!([width, height], [2.0 * size("width"), 2.0 * size("height")]);
+    let twice = ["width", "height"].map(|name| 2 * size(name));
+    assert_eq!([drawn.width(), drawn.height()], twice);
     // The title stands in the first rows, alone: letters, not only lines.
     let dark = |row: usize| {
         let pixels = drawn.pixels().chunks(drawn.width() as usize).nth(row);

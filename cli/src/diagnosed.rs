@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use appell_gap::diagnose::{DiagnoseError, Hypothesis, Report, Verdict};
+use appell_gap::diagnose::{Changes, DiagnoseError, Hypothesis, Report, Verdict};
 use appell_gap::effects::ModelError;
 use serde_json::{Value, json};
 
@@ -156,6 +156,7 @@ pub(crate) fn json(report: &Report) -> Value {
         json!({
             "effects": h.effects, "probability": h.probability,
             "log_bayes_factor": h.log_bayes_factor, "parameters": parameters.collect::<Vec<_>>(),
+            "changes": h.changes.as_ref().map(changes),
         })
     });
     let tied = report.tied.iter().map(|group| {
@@ -197,5 +198,20 @@ pub(crate) fn json(report: &Report) -> Value {
         "detectable": detectable.collect::<Vec<_>>(),
         "failed": failed.collect::<Vec<_>>(),
         "disturbances": disturbances.collect::<Vec<_>>(),
+    })
+}
+
+/// What `appell apply` reads.
+fn changes(changes: &Changes) -> Value {
+    let inputs = changes.inputs.iter();
+    let parameters = changes.parameters.iter().map(|p| {
+        json!({ "name": p.name, "stated": p.stated, "value": p.value, "std": p.std, "unit": p.unit })
+    });
+    let beside = changes.beside.iter();
+    json!({
+        "items": changes.items,
+        "inputs": inputs.map(|(input, adds)| json!({ "input": input, "adds": adds })).collect::<Vec<_>>(),
+        "parameters": parameters.collect::<Vec<_>>(),
+        "beside": beside.map(|b| json!({ "effect": b.effect, "acts": b.acts, "on": b.on })).collect::<Vec<_>>(),
     })
 }

@@ -1,5 +1,6 @@
 //! `appell`: from a mechanism spec to equations of motion, numbers and motions.
 
+mod applied;
 mod breaches;
 mod cases;
 mod commands;

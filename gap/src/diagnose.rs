@@ -10,12 +10,14 @@
 //!          --unknown--> what no candidate explains, and what it depends on
 //!          --localise--> equations, windows of time, regions
 //!          --held_out--> errors of predictions: nominal, re-fitted, with the effect, noise
+//!          --changes--> what each hypothesis changes in the spec
 //! ```
 //!
 //! Decisions rest on the likelihood of the innovations of an extended Kalman filter whose levels of
 //! disturbance are found anew under every hypothesis.
 
 mod bench;
+mod changes;
 mod compare;
 mod error;
 mod evidence;
@@ -30,6 +32,7 @@ mod unknown;
 use crate::data::{DataSet, Part};
 use crate::effects::{Effect, EffectModel, candidates};
 
+pub use changes::{Beside, ChangeError, Changes, Refitted};
 pub use error::DiagnoseError;
 pub use report::{
     Detectable, Found, HowFar, Hypothesis, Region, Report, ShareOf, Value, Verdict, Where, Window,
@@ -68,11 +71,5 @@ pub fn diagnose(
     stage("predicting the runs that were held out");
     let held_out = HeldOut::of(&set.only(Part::Test), &bench)?;
     let how_far = held_out.how_far(&bench, &comparison)?;
-    Ok(report::assemble(
-        &bench,
-        &screen,
-        &comparison,
-        place,
-        how_far,
-    ))
+    report::assemble(&bench, &screen, &comparison, place, how_far)
 }

@@ -19,5 +19,6 @@ pub(crate) use candidate::Part;
 pub use candidate::{Acts, Candidate};
 pub use effect::{Effect, EffectError, Family};
 pub use library::shipped;
+pub(crate) use model::ACTING;
 pub use model::{EffectModel, ModelError, candidates, with_candidates};
 pub use site::{Scales, SiteKind};

@@ -22,6 +22,11 @@ impl Composition {
     /// Adds the items of a fragment, which is written as a spec is, sections and all. Where the spec
     /// has an item of the same name, the keys of the fragment replace its own.
     pub fn add(&mut self, fragment: &str) -> Result<(), EditError> {
+        self.add_noted(fragment, "")
+    }
+
+    /// Adds the items of a fragment, with a comment above what is new in each section.
+    pub fn add_noted(&mut self, fragment: &str, note: &str) -> Result<(), EditError> {
         let fragment = document(fragment)?;
         for (section, items) in fragment.iter() {
             let Some(items) = items.as_table_like() else {
@@ -31,8 +36,12 @@ impl Composition {
             let own = own.as_table_like_mut().ok_or_else(|| EditError::Syntax {
                 message: format!("`{section}` is not a section"),
             })?;
+            let mut note = note;
             for (name, item) in items.iter() {
-                merge(own, name, item);
+                if merge(own, name, item) && !note.is_empty() {
+                    comment(own, name, note);
+                    note = "";
+                }
             }
         }
         Ok(())
@@ -77,17 +86,27 @@ fn document(text: &str) -> Result<DocumentMut, EditError> {
         })
 }
 
-fn merge(own: &mut dyn TableLike, name: &str, item: &Item) {
+/// Whether the item is new.
+fn merge(own: &mut dyn TableLike, name: &str, item: &Item) -> bool {
     let there = own.get_mut(name).and_then(Item::as_table_like_mut);
     match (there, item.as_table_like()) {
         (Some(there), Some(keys)) => {
             for (key, value) in keys.iter() {
                 there.insert(key, value.clone());
             }
+            false
         }
-        _ => {
-            own.insert(name, item.clone());
-        }
+        _ => own.insert(name, item.clone()).is_none(),
+    }
+}
+
+/// Writes a comment above an item.
+fn comment(own: &mut dyn TableLike, name: &str, note: &str) {
+    let comment = format!("# {}\n", note.replace('\n', " "));
+    if let Some(Item::Table(table)) = own.get_mut(name) {
+        table.decor_mut().set_prefix(format!("\n{comment}"));
+    } else if let Some(mut key) = own.key_mut(name) {
+        key.leaf_decor_mut().set_prefix(comment);
     }
 }
 
@@ -181,6 +200,29 @@ D = { from = \"C\" }
         assert_eq!(read["bodies"]["cart"]["centre"].as_str(), Some("D"));
         assert_eq!(read["bodies"]["cart"]["mass"].as_str(), Some("m"));
         assert_eq!(read["points"]["D"]["from"].as_str(), Some("C"));
+    }
+
+    #[test]
+    fn what_is_new_has_a_comment_above_it() {
+        let mut spec = Composition::new(SPEC).unwrap();
+        let fragment = "\
+[parameters]
+m = { value = 11 }
+c = { value = 0, unit = \"N\" }
+d = { value = 0, unit = \"N\" }
+[bodies.box]
+centre = \"C\"
+";
+        spec.add_noted(fragment, "found").unwrap();
+        let text = spec.text();
+        for expected in [
+            "# weighed\n# found\nc = {",
+            "}\nd = {",
+            "# found\n[bodies.box]",
+        ] {
+            assert!(text.contains(expected), "{expected} in\n{text}");
+        }
+        assert!(text.parse::<DocumentMut>().is_ok());
     }
 
     #[test]

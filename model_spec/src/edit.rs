@@ -2,7 +2,6 @@
 
 use toml_edit::{DocumentMut, Item, Value};
 
-use crate::number::exact;
 use crate::units::{self, Unit};
 
 /// Why the values could not be written.
@@ -83,7 +82,7 @@ fn set_parameter(document: &mut DocumentMut, name: &str, value: f64) -> Result<(
         Value::Float(x) => Some(format!("{:e}", x.value())),
         _ => None,
     };
-    if stated.is_some_and(|text| in_si(&unit, &text) == Some(value)) {
+    if stated.is_some_and(|text| unit.read(&text) == Some(value)) {
         return Ok(());
     }
     let decor = old.decor().clone();
@@ -97,13 +96,9 @@ fn shortest(unit: &Unit, value: f64) -> f64 {
     let exact_number = unit.from_si(value);
     (0..17)
         .map(|digits| format!("{exact_number:.digits$e}"))
-        .find(|text| in_si(unit, text) == Some(value))
+        .find(|text| unit.read(text) == Some(value))
         .and_then(|text| text.parse().ok())
         .unwrap_or(exact_number)
-}
-
-fn in_si(unit: &Unit, text: &str) -> Option<f64> {
-    exact(text).ok().map(|number| unit.to_si(&number))
 }
 
 #[cfg(test)]
@@ -149,7 +144,7 @@ unit  = "N/m"
             let document: DocumentMut = text.parse().unwrap();
             let written = document["parameters"]["d"]["value"].as_float().unwrap();
             let unit = units::parse("mm").unwrap();
-            assert_eq!(in_si(&unit, &format!("{written:e}")), Some(value));
+            assert_eq!(unit.read(&format!("{written:e}")), Some(value));
         }
     }
 

@@ -11,6 +11,8 @@ pub use dimension::{BASE_UNITS, Dimension, DimensionOverflow, Exponent};
 pub use parse::{UnitError, parse};
 pub use table::{PREFIXES, UNITS, UnitEntry};
 
+use crate::number::exact;
+
 /// A unit as written, with its dimension and its size in SI.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Unit {
@@ -58,6 +60,11 @@ impl Unit {
     /// The value in SI of an exact number of this unit, rounded once.
     pub fn to_si(&self, value: &BigRational) -> f64 {
         scaled(&(value * &self.factor), self.pi_power)
+    }
+
+    /// The value in SI of a decimal number of this unit.
+    pub fn read(&self, number: &str) -> Option<f64> {
+        exact(number).ok().map(|number| self.to_si(&number))
     }
 
     /// A value in SI expressed in this unit.

@@ -1,5 +1,6 @@
 //! One file per command: parse flags, call, print.
 
+mod apply;
 mod check;
 mod completions;
 mod control;
@@ -38,6 +39,7 @@ pub(crate) enum Command {
     Inverse(inverse::Inverse),
     Motion(motion::Motion),
     Diagnose(diagnose::Diagnose),
+    Apply(apply::Apply),
     Steady(steady::Steady),
     Stability(stability::StabilityCommand),
     Demo(demo::Demo),
@@ -62,6 +64,7 @@ pub(crate) fn run(command: Command) -> Result<(), Failure> {
         Command::Inverse(command) => command.run(),
         Command::Motion(command) => command.run(),
         Command::Diagnose(command) => command.run(),
+        Command::Apply(command) => command.run(),
         Command::Steady(command) => command.run(),
         Command::Stability(command) => command.run(),
         Command::Demo(command) => command.run(),

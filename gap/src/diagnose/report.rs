@@ -1,6 +1,8 @@
 //! The gap report: what was found, in the words of the contract.
 
+use super::DiagnoseError;
 use super::bench::Bench;
+use super::changes::Changes;
 use super::compare::{Comparison, TIED};
 use super::hypothesis::Fitted;
 use super::screen::Screen;
@@ -61,6 +63,8 @@ pub struct Hypothesis {
     pub log_bayes_factor: Option<f64>,
     /// Values that its effects have.
     pub parameters: Vec<Value>,
+    /// What it changes in the spec; nothing for `unknown`.
+    pub changes: Option<Changes>,
 }
 
 /// An equation and its part in the gap.
@@ -195,7 +199,7 @@ pub(super) fn assemble(
     comparison: &Comparison,
     place: Where,
     how_far: Option<HowFar>,
-) -> Report {
+) -> Result<Report, DiagnoseError> {
     let names = |members: &[usize]| -> Vec<String> {
         members.iter().map(|&m| bench.candidate(m).name()).collect()
     };
@@ -214,6 +218,7 @@ pub(super) fn assemble(
             probability: probability * known,
             log_bayes_factor: Some(fitted.evidence.log() - base),
             parameters: values(bench, fitted),
+            changes: Some(Changes::of(bench, fitted)?),
         });
     }
     which.push(Hypothesis {
@@ -221,6 +226,7 @@ pub(super) fn assemble(
         probability: comparison.unknown,
         log_bayes_factor: None,
         parameters: Vec::new(),
+        changes: None,
     });
     which.sort_by(|a, b| b.probability.total_cmp(&a.probability));
     let tied = tied(&which);
@@ -240,7 +246,7 @@ pub(super) fn assemble(
         .map(|(_, h)| h.clone())
         .collect();
     let best = comparison.best();
-    Report {
+    Ok(Report {
         mechanism: bench.set.mechanism.name.clone(),
         verdict,
         place: if verdict == Verdict::NoGap {
@@ -266,7 +272,7 @@ pub(super) fn assemble(
                 about: bench.candidate(member).about.clone(),
             })
             .collect(),
-    }
+    })
 }
 
 /// The leading hypothesis with those that cannot be told from it.

@@ -58,7 +58,7 @@ pub struct Candidate {
     /// Items for the spec.
     pub(super) items: String,
     /// What is added to inputs: name and expression.
-    pub(super) added: Vec<(String, String)>,
+    pub(crate) added: Vec<(String, String)>,
 }
 
 impl Candidate {

@@ -23,7 +23,7 @@ use super::{Candidate, Family};
 use crate::data::Spec;
 
 /// Sections whose expressions inputs act in.
-const ACTING: [&str; 2] = ["loads", "constraints"];
+pub(crate) const ACTING: [&str; 2] = ["loads", "constraints"];
 
 /// Stands for the centre of mass of a body with what moves it so far.
 const LAST_CENTRE: &str = "{last_centre}";

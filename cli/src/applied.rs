@@ -1,0 +1,256 @@
+//! A gap report as `appell apply` reads it, and what is told of the spec that comes out.
+
+use std::fmt::Write as _;
+use std::path::Path;
+
+use appell_gap::diagnose::{Beside, Changes, Refitted};
+use serde::Deserialize;
+
+use crate::failure::Failure;
+use crate::files;
+use crate::table::number;
+
+/// Name and version of the format.
+const SCHEMA: &str = "gap-report/1";
+
+/// What of a report matters here.
+#[derive(Debug, Deserialize)]
+pub(crate) struct Report {
+    schema: String,
+    pub(crate) mechanism: String,
+    which: Vec<Hypothesis>,
+    #[serde(default)]
+    tied: Vec<Vec<String>>,
+}
+
+/// A hypothesis of a report.
+#[derive(Debug, Deserialize)]
+pub(crate) struct Hypothesis {
+    effects: Vec<String>,
+    probability: f64,
+    #[serde(default)]
+    parameters: Vec<Found>,
+    changes: Option<Written>,
+}
+
+#[derive(Debug, Deserialize)]
+struct Found {
+    name: String,
+    value: Option<f64>,
+    std: Option<f64>,
+    unit: String,
+}
+
+#[derive(Debug, Deserialize)]
+struct Written {
+    items: String,
+    inputs: Vec<Added>,
+    parameters: Vec<Parameter>,
+    beside: Vec<Outside>,
+}
+
+#[derive(Debug, Deserialize)]
+struct Added {
+    input: String,
+    adds: String,
+}
+
+#[derive(Debug, Deserialize)]
+struct Parameter {
+    name: String,
+    stated: f64,
+    value: f64,
+    std: Option<f64>,
+    unit: String,
+}
+
+#[derive(Debug, Deserialize)]
+struct Outside {
+    effect: String,
+    acts: String,
+    on: String,
+}
+
+impl Report {
+    /// Reads the file that `appell diagnose --json` wrote.
+    pub(crate) fn read(path: &Path) -> Result<Self, Failure> {
+        let file = path.display();
+        let text = files::read(path, files::MAX_DATA)?;
+        let report: Self = serde_json::from_str(&text).map_err(|cause| {
+            Failure::Data(format!(
+                "{file}: this is no gap report: {cause}\n  write one with `appell diagnose --json {file}`"
+            ))
+        })?;
+        if report.schema != SCHEMA {
+            let found = &report.schema;
+            return Err(Failure::Data(format!(
+                "{file}: its schema is `{found}`, and `{SCHEMA}` is what this version reads"
+            )));
+        }
+        Ok(report)
+    }
+
+    /// The hypothesis with this number, from 1; the most probable one without.
+    pub(crate) fn hypothesis(&self, wanted: Option<usize>) -> Result<&Hypothesis, Failure> {
+        let count = self.which.len();
+        let place = wanted.unwrap_or(1);
+        let found = place.checked_sub(1).and_then(|index| self.which.get(index));
+        let found = found.ok_or_else(|| {
+            Failure::Usage(format!(
+                "there is no hypothesis {place}: the report has {count}, counted from 1"
+            ))
+        })?;
+        if found.changes.is_none() {
+            return Err(Failure::Usage(format!(
+                "hypothesis {place} says that nothing in the library explains the gap: there is \
+                 nothing to write\n  choose another one with `--hypothesis`:\n{}",
+                self.list()
+            )));
+        }
+        Ok(found)
+    }
+
+    fn list(&self) -> String {
+        let lines = self.which.iter().enumerate().map(|(index, hypothesis)| {
+            let percent = 100.0 * hypothesis.probability;
+            format!("    {}  {percent:5.1} %  {}", index + 1, hypothesis.name())
+        });
+        lines.collect::<Vec<_>>().join("\n")
+    }
+
+    /// Hypotheses that cannot be told from this one.
+    fn rivals(&self, hypothesis: &Hypothesis) -> Vec<&str> {
+        let name = hypothesis.effects.join("+");
+        let groups = self.tied.iter().filter(|group| group.contains(&name));
+        let others = groups.flatten().filter(|other| **other != name);
+        others.map(String::as_str).collect()
+    }
+}
+
+impl Hypothesis {
+    /// Its effects in one line.
+    pub(crate) fn name(&self) -> String {
+        if self.effects.is_empty() {
+            return "nominal model, its parameters fitted".to_owned();
+        }
+        self.effects.join(" + ")
+    }
+
+    /// What it changes.
+    pub(crate) fn changes(&self) -> Changes {
+        let Some(written) = &self.changes else {
+            return Changes::default();
+        };
+        let inputs = written.inputs.iter();
+        let parameters = written.parameters.iter().map(|p| Refitted {
+            name: p.name.clone(),
+            stated: p.stated,
+            value: p.value,
+            std: p.std,
+            unit: p.unit.clone(),
+        });
+        let beside = written.beside.iter().map(|b| Beside {
+            effect: b.effect.clone(),
+            acts: b.acts.clone(),
+            on: b.on.clone(),
+        });
+        Changes {
+            items: written.items.clone(),
+            inputs: inputs
+                .map(|one| (one.input.clone(), one.adds.clone()))
+                .collect(),
+            parameters: parameters.collect(),
+            beside: beside.collect(),
+        }
+    }
+
+    /// What was written, and what has to be done elsewhere.
+    pub(crate) fn told(&self, report: &Report, changes: &Changes, file: &str) -> String {
+        let mut text = format!(
+            "{file}: {} with {} ({:.1} %)\n",
+            report.mechanism,
+            self.name(),
+            100.0 * self.probability
+        );
+        let is_beside = |value: &&Found| {
+            let mut effects = changes.beside.iter();
+            effects.any(|beside| value.name.starts_with(&format!("{}.", beside.effect)))
+        };
+        // Writing to a string cannot fail.
+        for value in self.parameters.iter().filter(|value| !is_beside(value)) {
+            let _ = writeln!(text, "  found     {} = {}", value.name, value.sentence());
+        }
+        for one in &changes.parameters {
+            let _ = writeln!(text, "  changed   {}", refitted(one));
+        }
+        for one in &changes.beside {
+            let own = |value: &&Found| value.name.starts_with(&format!("{}.", one.effect));
+            let value = self.parameters.iter().find(own).map(Found::sentence);
+            let _ = writeln!(
+                text,
+                "  elsewhere {}",
+                elsewhere(one, &value.unwrap_or_default())
+            );
+        }
+        for rival in report.rivals(self) {
+            let _ = writeln!(
+                text,
+                "  tied with {rival}: these recordings cannot tell which"
+            );
+        }
+        if !changes.parameters.is_empty() {
+            text += "  note      `[parameters]` of a recording.toml win over those of a spec: write the new \
+                     values there too\n";
+        }
+        text
+    }
+}
+
+impl Found {
+    fn sentence(&self) -> String {
+        let value = self.value.map_or_else(|| "unknown".to_owned(), number);
+        let std = self.std.map(|std| format!(" ± {}", number(std)));
+        let unit = if self.unit == "1" { "" } else { &self.unit };
+        format!("{value}{} {unit}", std.unwrap_or_default())
+            .trim_end()
+            .to_owned()
+    }
+}
+
+/// `m = 1.02 ± 0.01 kg, stated as 1 kg`
+fn refitted(one: &Refitted) -> String {
+    let std = one.std.map(|std| format!(" ± {}", number(std)));
+    let (value, stated) = (number(one.value), number(one.stated));
+    match std {
+        Some(std) => format!(
+            "{} = {value}{std} {unit}, fitted; stated as {stated} {unit}",
+            one.name,
+            unit = one.unit
+        ),
+        None => format!(
+            "{} = {value} {}, as the recordings state",
+            one.name, one.unit
+        ),
+    }
+}
+
+/// Where an effect belongs that no spec can hold.
+fn elsewhere(beside: &Beside, value: &str) -> String {
+    let (effect, on) = (&beside.effect, &beside.on);
+    let rest = match beside.acts.as_str() {
+        "lag" => format!(
+            "{on} follows its command as a filter of the first order with the time constant {value}; \
+             no mechanism has this: put the filter between controller and model"
+        ),
+        "delay" => format!(
+            "{on} follows its command later by {value}; no mechanism has this: write `delay_ms` in \
+             the feedback law of `appell simulate --feedback`, or delay the commands of a table"
+        ),
+        "bias" => format!("the sensor {on} shows {value} too much: take it off where {on} is read"),
+        "scale" => {
+            format!("the sensor {on} shows {value} times what there is: divide where {on} is read")
+        }
+        _ => format!("the sensor {on} is late by {value}: shift its times where it is read"),
+    };
+    format!("{effect}: {rest}")
+}

@@ -1,0 +1,232 @@
+//! What a hypothesis changes in the spec, so that the spec can be improved without the recordings.
+
+use std::collections::BTreeMap;
+
+use appell_runtime::estimate::{Coordinate, Unknown};
+use appell_spec::compose::Composition;
+use appell_spec::edit::{EditError, set_parameters};
+use appell_spec::units::{self, Unit};
+use toml_edit::{DocumentMut, Item};
+
+use super::DiagnoseError;
+use super::bench::Bench;
+use super::hypothesis::Fitted;
+use crate::effects::{ACTING, Acts, ModelError, Part, with_candidates};
+
+/// Changes of a spec.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Changes {
+    /// Items to add, written as a spec is, with the values that were found.
+    pub items: String,
+    /// What is added to an input wherever it acts: its name and an expression.
+    pub inputs: Vec<(String, String)>,
+    /// Parameters of this rig.
+    pub parameters: Vec<Refitted>,
+    /// Effects that no spec can hold, because they act beside the equations of motion.
+    pub beside: Vec<Beside>,
+}
+
+/// A parameter of the spec as it is on this rig, in its unit.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Refitted {
+    /// Name.
+    pub name: String,
+    /// Value that the data set states.
+    pub stated: f64,
+    /// Most likely value.
+    pub value: f64,
+    /// Standard deviation; nothing where the parameter was not free.
+    pub std: Option<f64>,
+    /// Unit.
+    pub unit: String,
+}
+
+/// An effect beside the equations.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Beside {
+    /// Name.
+    pub effect: String,
+    /// How it acts: `lag`, `delay` of an input; `bias`, `scale`, `late` of a channel.
+    pub acts: String,
+    /// The input or channel.
+    pub on: String,
+}
+
+/// Why a spec cannot be changed.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum ChangeError {
+    /// The spec or the items are not what they should be.
+    #[error(transparent)]
+    Edit(#[from] EditError),
+    /// The effect is there already.
+    #[error(
+        "the spec has `{name}` already: it holds this effect, and the report is about another spec"
+    )]
+    There {
+        /// A parameter of the effect.
+        name: String,
+    },
+    /// A unit that does not exist.
+    #[error("the parameter `{name}` has no readable value and unit in the report")]
+    Unreadable {
+        /// The parameter.
+        name: String,
+    },
+}
+
+impl Changes {
+    /// The spec with the changes, its comments and layout untouched; `note` stands above what is new.
+    pub fn improved(&self, spec: &str, note: &str) -> Result<String, ChangeError> {
+        let mut values: Vec<(&str, f64)> = Vec::new();
+        for one in &self.parameters {
+            let unit = units::parse(&one.unit).ok();
+            let value = unit.and_then(|unit| unit.read(&format!("{:e}", one.value)));
+            let unreadable = || ChangeError::Unreadable {
+                name: one.name.clone(),
+            };
+            values.push((&one.name, value.ok_or_else(unreadable)?));
+        }
+        let text = set_parameters(spec, &values)?;
+        let (own, new) = (parameter_names(&text)?, parameter_names(&self.items)?);
+        if let Some(name) = new.into_iter().find(|name| own.contains(name)) {
+            return Err(ChangeError::There { name });
+        }
+        let mut composition = Composition::new(&text)?;
+        let mut sums: BTreeMap<&str, String> = BTreeMap::new();
+        for (input, adds) in &self.inputs {
+            let sum = sums.entry(input).or_insert_with(|| input.clone());
+            sum.push_str(" + ");
+            sum.push_str(adds);
+        }
+        for (input, sum) in sums {
+            composition.substitute(&ACTING, input, &sum);
+        }
+        composition.add_noted(&self.items, note)?;
+        Ok(composition.text())
+    }
+
+    /// Of a fitted hypothesis.
+    pub(super) fn of(bench: &Bench<'_>, fitted: &Fitted) -> Result<Self, DiagnoseError> {
+        let members = || fitted.members.iter().map(|&member| bench.candidate(member));
+        let beside = members().filter_map(|candidate| {
+            let acts = match candidate.acts {
+                Acts::Items | Acts::Parameter(_) => return None,
+                Acts::Lag(_) => "lag",
+                Acts::Delay(_) => "delay",
+                Acts::Bias(_) => "bias",
+                Acts::Scale(_) => "scale",
+                Acts::Late(_) => "late",
+            };
+            Some(Beside {
+                effect: candidate.name(),
+                acts: acts.to_owned(),
+                on: candidate.site.clone(),
+            })
+        });
+        Ok(Self {
+            items: items(bench, fitted)?,
+            inputs: members()
+                .flat_map(|candidate| candidate.added.clone())
+                .collect(),
+            parameters: parameters(bench, fitted),
+            beside: beside.collect(),
+        })
+    }
+}
+
+/// Names of the parameters of a spec.
+fn parameter_names(text: &str) -> Result<Vec<String>, EditError> {
+    let document: DocumentMut =
+        text.parse()
+            .map_err(|e: toml_edit::TomlError| EditError::Syntax {
+                message: e.message().to_owned(),
+            })?;
+    let parameters = document.get("parameters").and_then(Item::as_table_like);
+    let names = parameters.into_iter().flat_map(|table| table.iter());
+    Ok(names.map(|(name, _)| name.to_owned()).collect())
+}
+
+/// The items of the members; their sizes and shapes stand at the values that were found.
+fn items(bench: &Bench<'_>, fitted: &Fitted) -> Result<String, DiagnoseError> {
+    let members: Vec<_> = (fitted.members.iter())
+        .map(|&member| bench.candidate(member).clone())
+        .collect();
+    let text = with_candidates("", &members).map_err(ModelError::from)?;
+    let info = bench.effects.info();
+    let mut values: Vec<(&str, f64)> = Vec::new();
+    for candidate in &members {
+        for (index, part) in bench.own(candidate) {
+            let parameter = &info.parameters[index];
+            let value = match part {
+                Part::Switch => 1.0,
+                Part::Size | Part::Shape => {
+                    let unit = &bench.effects.mechanism.parameters[index].label.unit;
+                    rounded(fitted.fit.values[index], deviation(fitted, index), unit)
+                }
+            };
+            values.push((&parameter.name, value));
+        }
+    }
+    Ok(set_parameters(&text, &values).map_err(ModelError::from)?)
+}
+
+/// Parameters of the mechanism that were free, or that this rig has otherwise than the spec.
+fn parameters(bench: &Bench<'_>, fitted: &Fitted) -> Vec<Refitted> {
+    let candidates = bench.effects.candidates.iter();
+    let brought: Vec<&String> = candidates
+        .flat_map(|candidate| candidate.parameters.iter().map(|(name, _)| name))
+        .collect();
+    let mut told = Vec::new();
+    for (index, parameter) in bench.effects.mechanism.parameters.iter().enumerate() {
+        let rig = bench.set.parameters[index];
+        let free = deviation(fitted, index);
+        let as_in_spec = free.is_none() && rig.value.total_cmp(&parameter.value).is_eq();
+        if as_in_spec || brought.contains(&&parameter.label.name) {
+            continue;
+        }
+        let unit = &parameter.label.unit;
+        let value = match free {
+            Some(_) => rounded(fitted.fit.values[index], free, unit),
+            None => rig.value,
+        };
+        told.push(Refitted {
+            name: parameter.label.name.clone(),
+            stated: unit.from_si(rig.value),
+            value: unit.from_si(value),
+            std: free.map(|std| unit.from_si(std)),
+            unit: unit.text.clone(),
+        });
+    }
+    told
+}
+
+/// Standard deviation of a parameter in SI; nothing where it was not free.
+fn deviation(fitted: &Fitted, index: usize) -> Option<f64> {
+    let mut free = fitted.fit.free.iter();
+    let place = free.position(|free| free.unknown == Unknown::Parameter(index))?;
+    let covariance = fitted.fit.covariance().ok()?;
+    let std = covariance[(place, place)].sqrt();
+    Some(match fitted.fit.free[place].coordinate {
+        Coordinate::Plain => std,
+        Coordinate::Logarithm => std * fitted.fit.values[index],
+    })
+}
+
+/// A value in SI with the digits that its standard deviation leaves in its unit, and two more.
+fn rounded(value: f64, deviation: Option<f64>, unit: &Unit) -> f64 {
+    /// Digits where nothing tells how well the value is known.
+    const DIGITS: usize = 6;
+    let number = unit.from_si(value);
+    let digits = deviation
+        .map(|std| (value / std).abs())
+        .filter(|ratio| ratio.is_finite() && *ratio > 0.0)
+        .map_or(DIGITS, |ratio| {
+            let digits = ratio.log10().ceil().clamp(0.0, 12.0);
+            // Twelve at most.
+            #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+            let digits = digits as usize;
+            digits + 2
+        });
+    let text = format!("{number:.digits$e}");
+    unit.read(&text).unwrap_or(value)
+}

@@ -4,6 +4,7 @@ use std::fmt::Write as _;
 
 use appell_gap::data::DataSet;
 use appell_gap::identify::{AHEAD, Answer, Estimate, HeldOut, IdentifyError, Known};
+use appell_runtime::estimate::EstimateError;
 use appell_runtime::figure::{Figure, Panel, Series};
 use serde_json::{Value, json};
 
@@ -22,6 +23,11 @@ pub(crate) fn failure(error: &IdentifyError) -> Failure {
     match error {
         IdentifyError::UnknownParameter { .. } | IdentifyError::UnknownAddition { .. } => {
             Failure::Usage(error.to_string())
+        }
+        IdentifyError::Estimate(EstimateError::Diverged { .. } | EstimateError::Stuck { .. }) => {
+            Failure::Computation(format!(
+                "{error}; where the values of the rig are far off, `--start shooting` may help"
+            ))
         }
         IdentifyError::Estimate(_) => Failure::Computation(error.to_string()),
         _ => Failure::Data(error.to_string()),

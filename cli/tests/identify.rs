@@ -189,3 +189,33 @@ fn a_command_that_acts_late_is_found_where_it_is_looked_for() {
     assert_eq!(outcome.status, 2, "{}", outcome.stderr);
     assert!(outcome.stderr.contains("tau.delay"), "{}", outcome.stderr);
 }
+
+#[test]
+fn shooting_begins_where_the_rig_is_far_from_its_drawing() {
+    let folder = data_set();
+    let far = DESCRIPTION
+        .replace(
+            "0.5,  unit = \"m\",      std = 0.05",
+            "0.7, unit = \"m\", std = 0.5",
+        )
+        .replace(
+            "0.02, unit = \"kg m^2\", std = 0.01",
+            "0.02, unit = \"kg m^2\", std = 0.1",
+        );
+    folder.write("recording.toml", &far);
+    let run = [
+        "identify",
+        "pendulum",
+        "--data",
+        ".",
+        "--json",
+        "found.json",
+    ];
+    folder.done(&[&run[..], &["--start", "shooting"]].concat());
+    let found = folder.json("found.json");
+    for (place, truth) in [(0, 0.53), (1, 0.03)] {
+        let number = |key: &str| found["parameters"][place][key].as_f64().expect("a number");
+        let std = number("std").max(number("robust_std"));
+        assert!((number("value") - truth).abs() < 3.0 * std, "{found}");
+    }
+}

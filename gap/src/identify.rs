@@ -2,6 +2,7 @@
 //!
 //! ```text
 //! data set --start--> values to begin with: levels of noise, states at the first rows
+//!          --shooting--> parameters to begin with, where asked for
 //!          --problem--> what is looked for: parameters within their tolerances, levels
 //!          --fit (estimate)--> the most likely values, beside the most likely nominal ones
 //!          --answer--> intervals, correlation, combinations that are known
@@ -18,6 +19,7 @@ mod answer;
 mod error;
 mod held_out;
 mod problem;
+mod shooting;
 mod start;
 
 use appell_runtime::estimate::{Estimation, Fit, Setup};
@@ -36,6 +38,16 @@ pub(crate) use problem::{Problem, begin};
 /// Steps of the integration are this long in s at most.
 const LONGEST_STEP: f64 = 0.02;
 
+/// Where the search for parameters begins.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Begin {
+    /// At the values of the rig.
+    #[default]
+    Nominal,
+    /// Where multiple shooting ends that begins there: for values far from the truth.
+    Shooting,
+}
+
 /// What is identified.
 #[derive(Debug, Clone, Default)]
 pub struct Options {
@@ -46,6 +58,8 @@ pub struct Options {
     pub also: Vec<String>,
     /// Whether it is no mistake that no parameter is free.
     pub none_will_do: bool,
+    /// Where the search begins.
+    pub begin: Begin,
 }
 
 impl Options {
@@ -88,9 +102,16 @@ pub fn identify(
 
     stage("fitting the levels of noise to the nominal model");
     let nominal = Fit::of(&estimation, &problem.start, &problem.levels, EFFORT)?;
+    let begin = match options.begin {
+        Begin::Nominal => nominal.values.clone(),
+        Begin::Shooting => {
+            stage("shooting at the recordings");
+            shooting::shot(&estimation, &problem, &nominal.values)?
+        }
+    };
     stage("fitting the parameters");
     let all = [problem.wanted.as_slice(), &problem.levels].concat();
-    let fit = Fit::of(&estimation, &nominal.values, &all, EFFORT)?;
+    let fit = Fit::of(&estimation, &begin, &all, EFFORT)?;
     stage("weighing what the recordings tell");
     let mut answer = Answer::of(set, &estimation, &problem, (&nominal, &fit))?;
     stage("predicting the runs that were held out");

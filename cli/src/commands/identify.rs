@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use appell_gap::identify::{self, Options};
+use appell_gap::identify::{self, Begin, Options};
 
 use crate::engine::Equations;
 use crate::failure::Failure;
@@ -29,6 +29,10 @@ pub(crate) struct Identify {
     /// `theta.delay` of a channel
     #[arg(long, value_delimiter = ',', value_name = "NAMES")]
     also: Vec<String>,
+    /// Where the search begins: at the values of the rig, or, if these are far from the truth, where
+    /// multiple shooting leads from them
+    #[arg(long, value_name = "WHERE", value_enum, default_value_t = Start::Nominal)]
+    start: Start,
     /// Write everything in SI; `-` is standard output
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
@@ -40,6 +44,12 @@ pub(crate) struct Identify {
     html: Option<PathBuf>,
 }
 
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+enum Start {
+    Nominal,
+    Shooting,
+}
+
 impl Identify {
     pub(super) fn run(&self) -> Result<(), Failure> {
         let set = recording::read(&self.data, Some(&self.model))?;
@@ -49,6 +59,10 @@ impl Identify {
             free: self.free.clone(),
             also: self.also.clone(),
             none_will_do: false,
+            begin: match self.start {
+                Start::Nominal => Begin::Nominal,
+                Start::Shooting => Begin::Shooting,
+            },
         };
         let answer = identify::identify(&set, equations.model(), &options, |stage| {
             spinner.set_message(stage);

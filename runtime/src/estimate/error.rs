@@ -103,6 +103,14 @@ pub enum EstimateError {
         /// Largest scaled slope that remains.
         slope: f64,
     },
+    /// A value that multiple shooting does not look for.
+    #[error(
+        "{unknown:?} is not found by shooting, which knows parameters, biases, scales and lags"
+    )]
+    NotByShooting {
+        /// Which.
+        unknown: super::Unknown,
+    },
     /// A matrix that ought to be positive definite and is not.
     #[error("{what} is singular: some combination of the unknowns is not determined")]
     Singular {

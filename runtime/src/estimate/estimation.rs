@@ -44,6 +44,11 @@ impl<'a> Estimation<'a> {
         self.setup
     }
 
+    /// The equations of all states.
+    pub(super) fn plant(&self) -> &Plant<'a> {
+        &self.plant
+    }
+
     /// Its recordings.
     pub fn recordings(&self) -> &'a [Recording] {
         self.recordings

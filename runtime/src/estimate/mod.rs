@@ -24,6 +24,7 @@
 //! - [`free`], [`posterior`], [`curvature`], [`fit`]: the most likely values;
 //! - [`sensitivity`]: scores and Fisher's information;
 //! - [`scoring`]: fits in few passes;
+//! - [`shooting`]: fits without disturbances, from starts far from the truth;
 //! - [`tangent`], [`information`]: how innovations change with many values, and Fisher's information,
 //!   in few passes;
 //! - [`identifiability`], [`profile`], [`robust`]: what is known of the values, and how far;
@@ -52,6 +53,7 @@ mod robust;
 mod scoring;
 mod sensitivity;
 mod setup;
+mod shooting;
 mod smoother;
 mod square_root;
 mod tangent;
@@ -73,5 +75,6 @@ pub use regression::{BaseParameters, Moment, Regression};
 pub use robust::Blocks;
 pub use sensitivity::Sensitivity;
 pub use setup::{Channel, Disturbance, Measured, Setup};
+pub use shooting::{Shooting, Shot};
 pub use smoother::Smoothed;
 pub use tangent::{Direction, Shapes, Tangent};

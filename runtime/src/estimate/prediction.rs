@@ -246,7 +246,8 @@ impl<'a> Walk<'a> {
     }
 }
 
-fn place<'v>(
+/// Where a motion is, with what the values say.
+pub(super) fn place<'v>(
     layout: Layout,
     values: &'v [f64],
     (t, z, held): (f64, &'v [f64], &'v [f64]),

@@ -1,5 +1,7 @@
 //! What was recorded.
 
+use std::ops::Range;
+
 use super::EstimateError;
 
 /// One uninterrupted recording, in SI.
@@ -92,6 +94,17 @@ impl Recording {
     /// What was measured at a row's time; NaN where nothing was.
     pub fn measured(&self, row: usize) -> &[f64] {
         &self.measurements[row * self.columns[1]..(row + 1) * self.columns[1]]
+    }
+
+    /// Some of its rows.
+    pub(super) fn part(&self, rows: Range<usize>) -> Self {
+        let [inputs, channels] = self.columns;
+        Self {
+            times: self.times[rows.clone()].to_vec(),
+            inputs: self.inputs[rows.start * inputs..rows.end * inputs].to_vec(),
+            measurements: self.measurements[rows.start * channels..rows.end * channels].to_vec(),
+            columns: self.columns,
+        }
     }
 
     /// The same motion with other measurements.

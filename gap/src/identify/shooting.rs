@@ -1,0 +1,71 @@
+//! Parameters to begin with where those of the rig are far from the truth: multiple shooting finds
+//! them without a filter, and the likelihood chooses among what it found with open and with closed
+//! gaps.
+
+use appell_runtime::estimate::{Estimation, Free, Recording, Shooting, Unknown};
+
+use super::IdentifyError;
+use super::problem::Problem;
+use super::start::start;
+
+/// Rows of a segment at least.
+const ROWS: usize = 10;
+/// Length of a segment in s: motions of mechanisms forget little of their beginning.
+const LENGTH: f64 = 0.25;
+
+/// The most likely ones of `values` and of those with what shooting found.
+pub(super) fn shot(
+    estimation: &Estimation<'_>,
+    problem: &Problem,
+    values: &[f64],
+) -> Result<Vec<f64>, IdentifyError> {
+    let (layout, setup) = (estimation.layout(), estimation.setup());
+    let is_shot = |free: &&Free| {
+        matches!(
+            free.unknown,
+            Unknown::Parameter(_) | Unknown::Bias(_) | Unknown::Scale(_) | Unknown::Lag(_)
+        )
+    };
+    let free: Vec<Free> = problem.wanted.iter().filter(is_shot).copied().collect();
+    let mut noise = Vec::new();
+    for channel in 0..setup.channels.len() {
+        noise.push(values[layout.place(Unknown::Noise(channel))?]);
+    }
+    let parameters = &values[..setup.model.info().parameter_len()];
+    let guess = |part: &Recording| {
+        let lags = setup.lagging.iter().map(|&input| part.inputs(0)[input]);
+        let drifting = setup.drifting.iter().map(|&index| parameters[index]);
+        let state = start(setup, &noise, parameters, part).state;
+        state.into_iter().chain(lags).chain(drifting).collect()
+    };
+    let rows = rows(estimation.recordings());
+    let shots = Shooting::new(estimation, values, &free, rows, guess)?.shots()?;
+    let mut best = (estimation.log_likelihood(values)?, values.to_vec());
+    for shot in shots {
+        let mut found = values.to_vec();
+        for free in &free {
+            let place = layout.place(free.unknown)?;
+            found[place] = shot.values[place];
+        }
+        // A filter may fail where a motion did not.
+        if let Ok(likelihood) = estimation.log_likelihood(&found)
+            && likelihood > best.0
+        {
+            best = (likelihood, found);
+        }
+    }
+    Ok(best.1)
+}
+
+/// Rows of a segment.
+fn rows(recordings: &[Recording]) -> usize {
+    let count: usize = recordings.iter().map(|r| r.times().len() - 1).sum();
+    let lengths = recordings.iter().map(|recording| {
+        let times = recording.times();
+        times[times.len() - 1] - times[0]
+    });
+    let rows = LENGTH * count as f64 / lengths.sum::<f64>();
+    // A count of rows in memory.
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+    ROWS.max(rows.ceil() as usize)
+}

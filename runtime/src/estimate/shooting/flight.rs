@@ -1,0 +1,268 @@
+//! The segments of a run: residuals of their samples and their ends, with the derivatives of both by
+//! the states at their beginnings and by the free values. The derivatives are those of the
+//! Runge–Kutta steps as they are computed.
+
+use nalgebra::{DMatrix, DVector};
+
+use super::super::EstimateError;
+use super::super::estimation::Estimation;
+use super::super::filter::switch;
+use super::super::layout::Unknown;
+use super::super::matrix::{add_scaled, dot, multiply};
+use super::super::plant::{Place, Scratch, Sums};
+use super::super::prediction::place;
+use super::super::recording::Recording;
+use super::super::setup::Measured;
+use super::super::timeline::{Action, Advance};
+use super::super::transition::{STAGES, WEIGHTS};
+
+/// A segment. Derivatives by the state at its beginning, then by the free values.
+pub(super) struct Piece {
+    /// A row for each sample, in units of its noise: derivatives of the residual, the residual.
+    pub(super) rows: DMatrix<f64>,
+    /// State at the end.
+    pub(super) end: DVector<f64>,
+    /// Its derivatives.
+    pub(super) by: DMatrix<f64>,
+}
+
+/// A motion with its derivatives.
+pub(super) struct Flight<'a> {
+    estimation: &'a Estimation<'a>,
+    values: &'a [f64],
+    run: usize,
+    recording: &'a Recording,
+    /// Free values, each with its derivative by its coordinate.
+    unknowns: &'a [(Unknown, f64)],
+    n: usize,
+    width: usize,
+    z: Vec<f64>,
+    /// n rows.
+    by: Vec<f64>,
+    held: Vec<f64>,
+    rows: Vec<f64>,
+    scratch: Scratch,
+}
+
+impl<'a> Flight<'a> {
+    pub(super) fn new(
+        estimation: &'a Estimation<'_>,
+        values: &'a [f64],
+        run: usize,
+        unknowns: &'a [(Unknown, f64)],
+    ) -> Self {
+        let plant = estimation.plant();
+        let (n, width) = (plant.n, plant.n + unknowns.len());
+        Self {
+            estimation,
+            values,
+            run,
+            recording: &estimation.recordings()[run],
+            unknowns,
+            n,
+            width,
+            z: vec![0.0; n],
+            by: vec![0.0; n * width],
+            held: vec![0.0; plant.info().declared_inputs],
+            rows: Vec::new(),
+            scratch: plant.scratch(),
+        }
+    }
+
+    /// All segments of the run: rows at which they begin, and states there.
+    pub(super) fn along(
+        mut self,
+        (nodes, states): (&Vec<usize>, &Vec<DVector<f64>>),
+    ) -> Result<Vec<Piece>, EstimateError> {
+        let mut pieces = Vec::with_capacity(nodes.len());
+        self.begin(&states[0]);
+        let mut is_first = true;
+        for action in self.estimation.actions(self.run, self.values) {
+            match action {
+                Action::Advance(advance) => self.advance(advance),
+                Action::Switch { row, input } => {
+                    let inputs = self.recording.inputs(row);
+                    switch(
+                        self.estimation.setup(),
+                        is_first,
+                        &mut self.held,
+                        inputs,
+                        input,
+                    );
+                    is_first = false;
+                }
+                Action::Measure { row, channel } => {
+                    let next = pieces.len() + 1;
+                    if channel.is_none() && nodes.get(next) == Some(&row) {
+                        pieces.push(self.end());
+                        self.begin(&states[next]);
+                    }
+                    self.measure(row, channel)?;
+                }
+            }
+        }
+        pieces.push(self.end());
+        Ok(pieces)
+    }
+
+    fn begin(&mut self, state: &DVector<f64>) {
+        self.z.copy_from_slice(state.as_slice());
+        self.by.fill(0.0);
+        let diagonal = self.by.iter_mut().step_by(self.width + 1);
+        diagonal.take(self.n).for_each(|entry| *entry = 1.0);
+    }
+
+    fn end(&mut self) -> Piece {
+        let columns = self.width + 1;
+        let rows = std::mem::take(&mut self.rows);
+        Piece {
+            rows: DMatrix::from_row_slice(rows.len() / columns, columns, &rows),
+            end: DVector::from_column_slice(&self.z),
+            by: DMatrix::from_row_slice(self.n, self.width, &self.by),
+        }
+    }
+
+    /// One step of the state and of its derivatives together.
+    fn advance(&mut self, Advance { t, h, .. }: Advance) {
+        let (n, width) = (self.n, self.width);
+        let (before, by_before) = (self.z.clone(), self.by.clone());
+        let (mut stage, mut by_stage) = (before.clone(), by_before.clone());
+        let (mut rates, mut by_rates) = (vec![0.0; n], vec![0.0; n * width]);
+        let (mut slopes, held) = (vec![0.0; n * n], self.held.clone());
+        for (i, weight) in WEIGHTS.into_iter().enumerate() {
+            let part = if i == 0 { 0.0 } else { STAGES[i - 1] };
+            let at = (t + part * h, stage.as_slice(), held.as_slice());
+            let place = place(self.estimation.layout(), self.values, at);
+            let plant = self.estimation.plant();
+            plant.jacobian(place, &mut self.scratch, &mut rates, &mut slopes);
+            multiply(&slopes, &by_stage, n, &mut by_rates);
+            self.unknowns_in_rates(place, &mut by_rates);
+            add_scaled(h * weight, &rates, &mut self.z);
+            add_scaled(h * weight, &by_rates, &mut self.by);
+            if let Some(next) = STAGES.get(i) {
+                stage.copy_from_slice(&before);
+                add_scaled(h * next, &rates, &mut stage);
+                by_stage.copy_from_slice(&by_before);
+                add_scaled(h * next, &by_rates, &mut by_stage);
+            }
+        }
+    }
+
+    /// Adds what the free values change in the rates by themselves.
+    fn unknowns_in_rates(&mut self, place: Place<'_>, by_rates: &mut [f64]) {
+        let plant = self.estimation.plant();
+        let (states, count) = (plant.info().state_len(), plant.info().parameter_len());
+        let is_parameter =
+            |&(unknown, _): &(Unknown, f64)| matches!(unknown, Unknown::Parameter(_));
+        let mut slopes = Vec::new();
+        if self.unknowns.iter().any(is_parameter) {
+            slopes.resize(states * count, 0.0);
+            plant.parameter_jacobian(place, &mut self.scratch, &mut slopes);
+        }
+        for (column, &(unknown, stretch)) in (self.n..).zip(self.unknowns) {
+            match unknown {
+                Unknown::Parameter(index) => {
+                    for state in 0..states {
+                        by_rates[state * self.width + column] +=
+                            stretch * slopes[state * count + index];
+                    }
+                }
+                Unknown::Lag(lag) => {
+                    let (tau, state) = (place.lags[lag], states + lag);
+                    let input = self.estimation.setup().lagging[lag];
+                    let gap = place.held[input] - place.z[state];
+                    by_rates[state * self.width + column] -= stretch * gap / (tau * tau);
+                }
+                _ => {}
+            }
+        }
+    }
+
+    /// Adds the samples of one delayed channel, or of all others.
+    fn measure(&mut self, row: usize, only: Option<usize>) -> Result<(), EstimateError> {
+        let (setup, layout) = (self.estimation.setup(), self.estimation.layout());
+        let (n, t) = (self.n, self.recording.times()[row]);
+        let count = if setup.sees_outputs() {
+            self.estimation.plant().info().output_len()
+        } else {
+            0
+        };
+        let (mut outputs, mut slopes) = (vec![0.0; count], vec![0.0; count * n]);
+        let place = place(layout, self.values, (t, &self.z, &self.held));
+        if count > 0 {
+            let plant = self.estimation.plant();
+            plant.outputs(place, &mut self.scratch, &mut outputs, &mut slopes);
+        }
+        for (index, channel) in setup.channels.iter().enumerate() {
+            let measured = self.recording.measured(row)[index];
+            let late = channel.longest_delay.is_some();
+            if !only.map_or(!late, |only| only == index) || measured.is_nan() {
+                continue;
+            }
+            let (scale, bias) = (layout.scale(index), layout.bias(index));
+            let (scale, bias) = (self.values[scale], self.values[bias]);
+            let weight = 1.0 / self.values[layout.noise(index)];
+            let start = self.rows.len();
+            self.rows.resize(start + self.width + 1, 0.0);
+            let line = &mut self.rows[start..];
+            let mut by_parameters = Vec::new();
+            let quantity = match channel.measures {
+                Measured::State(state) => {
+                    let by = &self.by[state * self.width..(state + 1) * self.width];
+                    add_scaled(-weight * scale, by, line);
+                    self.z[state]
+                }
+                Measured::Output(output) => {
+                    for (slope, by) in slopes[output * n..(output + 1) * n]
+                        .iter()
+                        .zip(self.by.chunks_exact(self.width))
+                    {
+                        add_scaled(-weight * scale * slope, by, line);
+                    }
+                    by_parameters = output_slope(self.estimation, place, &mut self.scratch, output);
+                    outputs[output]
+                }
+            };
+            for (column, &(unknown, stretch)) in (n..).zip(self.unknowns) {
+                line[column] -= weight
+                    * stretch
+                    * match unknown {
+                        Unknown::Bias(own) if own == index => 1.0,
+                        Unknown::Scale(own) if own == index => quantity,
+                        Unknown::Parameter(parameter) if !by_parameters.is_empty() => {
+                            scale * by_parameters[parameter]
+                        }
+                        _ => 0.0,
+                    };
+            }
+            line[self.width] = weight * (measured - scale * quantity - bias);
+            if !dot(line, line).is_finite() {
+                return Err(EstimateError::Diverged { run: self.run, t });
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Derivatives of an output by the parameters.
+fn output_slope(
+    estimation: &Estimation<'_>,
+    place: Place<'_>,
+    scratch: &mut Scratch,
+    output: usize,
+) -> Vec<f64> {
+    let plant = estimation.plant();
+    let count = plant.info().output_len();
+    let mut weights = vec![0.0; count];
+    weights[output] = 1.0;
+    let slopes = vec![0.0; count * plant.n];
+    let (mut z, mut lags) = (vec![0.0; plant.n], vec![0.0; place.lags.len()]);
+    let mut p = vec![0.0; place.p.len()];
+    let mut sums = Sums {
+        z: &mut z,
+        p: &mut p,
+        lags: &mut lags,
+    };
+    plant.output_adjoint(place, scratch, [&weights, &slopes], &mut sums);
+    p
+}

@@ -1,0 +1,209 @@
+"""Checks the simulators by what does not come from them: energy, closed forms, each other, chi-square.
+
+    check.py [--archive]      with --archive a case is made anew and held against the committed one"""
+
+import argparse
+import tarfile
+import tempfile
+from pathlib import Path
+
+import numpy as np
+from scipy.integrate import solve_ivp
+
+import catalogue
+import generate
+import mechanisms
+import oracle
+import rigid
+import simulate
+import truths
+from effects import Actuator, DryFriction, Force, Parameter, Rig, Richer
+
+HERE = Path(__file__).resolve().parent
+ENERGY = 1e-7  # relative; the tolerance of the integration over two seconds
+AGREEMENT = 1e-6  # rms between MuJoCo and SciPy, in units of the coordinates
+TIMES = np.arange(0, 2.0001, 0.01)
+
+
+def parameters(name):
+    return dict(catalogue.RIGS[name]["parameters"])
+
+
+def start_of(mechanism):
+    x = np.random.default_rng(3).normal(0, 0.3, len(mechanism.coordinates) + len(mechanism.speeds))
+    if mechanism.name in ("unicycle", "rolling_wheel"):
+        x[len(mechanism.coordinates) + 1] = 9.0
+    return x
+
+
+def moved(name, effects=(), push=1.0, mujoco=False, times=TIMES):
+    """A run under slow commands without noise."""
+    mechanism = mechanisms.ALL[name]
+    rig = Rig(mechanism, parameters(name), list(effects))
+    amplitude = push * np.array(catalogue.forces(name, rig.parameters))[: len(mechanism.inputs)]
+    drive = lambda k, t, x: amplitude * np.sin(3 * t)
+    calm = np.zeros((len(times), len(mechanism.speeds)))
+    return (rigid if mujoco else simulate).run(rig, drive, times, start_of(mechanism), calm)
+
+
+def energy_is_conserved_without_forces():
+    for name, mechanism in mechanisms.ALL.items():
+        times = TIMES[:60] if "euc" in name else TIMES  # riders fall
+        trial = moved(name, push=0.0, times=times)
+        q, v = mechanism.split(trial.states)
+        energy = mechanism.energy(parameters(name), q, v)
+        kinetic = energy - mechanism.potential(parameters(name), q)
+        assert np.ptp(energy) < ENERGY * max(np.max(kinetic), 1e-3), (name, np.ptp(energy))
+
+
+def energy_grows_by_the_work_of_inputs():
+    for name in ("cart_pole", "double_pendulum"):
+        mechanism, trial = mechanisms.ALL[name], moved(name)
+        q, v = mechanism.split(trial.states)
+        energy = mechanism.energy(parameters(name), q, v)
+        column = [np.argmax(c) for c in mechanism.input_map({}, np.zeros(2)).T]
+        work = np.sum(trial.commands[:-1] * np.diff(q[:, column], axis=0))  # held over each sample
+        assert abs(energy[-1] - energy[0] - work) < 1e-7, (name, energy[-1] - energy[0], work)
+
+
+def mujoco_and_scipy_agree():
+    mechanism = mechanisms.double_pendulum
+    with_effects = {
+        "carriage": [Force("viscous_friction", "x", 0.4), Force("spring", "x", 2.0)],
+        "pendulum": [Parameter("mass_offset", "rod", 0.02), Force("viscous_friction", "theta", 0.05)],
+        "cart_pole": [Parameter("mass_offset", "pole", 0.02), Actuator("actuator_lag", "F", 0.05)],
+        "double_pendulum": [Parameter("added_inertia", "theta1", 0.01, mechanism), Force("spring", "theta2", 0.2)],
+    }
+    for name, effects in with_effects.items():
+        for some in ([], effects):
+            ours, theirs = moved(name, some), moved(name, some, mujoco=True)
+            apart = np.sqrt(np.mean((ours.states - theirs.states) ** 2))
+            limit = 1e-4 if any(isinstance(e, Actuator) for e in some) else AGREEMENT  # a lag goes in steps there
+            assert apart < limit, (name, len(some), apart)
+
+
+def wheels_that_hardly_slip_roll():
+    """Derived without the formulas of the papers, and equal to them in the limit."""
+    for name, build, times in (
+        ("unicycle", truths.slipping_unicycle, TIMES[:40]),
+        ("euc_2dof", truths.slipping_euc, TIMES[:40]),
+    ):
+        rolls = moved(name, times=times).states[-1]
+        apart = []
+        for compliance in (0.02, 0.002):
+            effect = Richer("slip", "contact", compliance, build)
+            apart.append(np.max(np.abs(moved(name, [effect], times=times).states[-1] - rolls)))
+        assert apart[0] < 0.02 and apart[1] < 0.15 * apart[0], (name, apart)
+
+
+def dry_friction_stops_and_holds():
+    """A carriage slows down by F_c/m, stops, and does not move until the push exceeds F_c."""
+    p = parameters("carriage")
+    friction = 0.5
+    rig = Rig(mechanisms.carriage, p, [DryFriction("coulomb_friction", "x", friction)])
+    push = lambda k, t, x: np.array([0.0 if t < 1.5 else 0.8 * friction if t < 1.75 else 2 * friction])
+    trial = simulate.run(rig, push, TIMES, np.array([0.0, 0.3]), np.zeros((len(TIMES), 1)))
+    x, v = trial.states.T
+    stop = 0.3**2 * p["m"] / (2 * friction)
+    assert abs(x[120] - stop) < 1e-8 and v[120] == 0.0, (x[120], stop)
+    assert x[175] == x[120], "held below break-away"
+    assert abs(v[-1] - friction / p["m"] * 0.25) < 1e-8, v[-1]
+
+
+def actuators_follow_their_differential_equations():
+    lag, swing = Actuator("actuator_lag", "F", 0.05), Actuator("actuator_lag", "F", 0.05, "second_order")
+    command = lambda t: np.sin(5 * t)
+    pulse = 1.2 / 0.05
+    x = np.zeros(3)
+    for t in TIMES[:-1]:
+        lag.hold(t, command(t))
+        swing.hold(t, command(t))
+        u = command(t)
+        rates = lambda s, x: [(u - x[0]) / 0.05, x[2], pulse**2 * (u - x[1]) - 1.2 * pulse * x[2]]
+        x = solve_ivp(rates, (t, t + 0.01), x, rtol=1e-11, atol=1e-13).y[:, -1]
+        assert abs(lag.value(t + 0.01) - x[0]) < 1e-9 and abs(swing.value(t + 0.01) - x[1]) < 1e-9
+
+
+def delays_shift_the_command():
+    """The momentum of a carriage is the impulse of the late command."""
+    delay = 0.0137
+    trial = moved("carriage", [Actuator("actuator_delay", "F", delay)])
+    u = trial.commands[:, 0]
+    whole, part = divmod(delay, 0.01)
+    last = len(u) - 2 - int(whole)  # what still comes, for the rest of its sample
+    late = u[0] * delay + np.sum(u[:last]) * 0.01 + u[last] * (0.01 - part)
+    gained = parameters("carriage")["m"] * (trial.states[-1, 1] - trial.states[0, 1])
+    assert abs(gained - late) < 1e-8, (gained, late)
+
+
+def lugre_and_play_lose_energy():
+    """What a rig has besides may not drive it."""
+    for effect in (
+        catalogue.make(mechanisms.pendulum, parameters("pendulum"), "coulomb_friction", "theta", 4.0, "lugre"),
+        catalogue.make(mechanisms.pendulum, parameters("pendulum"), "hysteresis", "theta", 4.0),
+        catalogue.make(mechanisms.pendulum, parameters("pendulum"), "backlash", "theta", 1.0),
+    ):
+        trial = moved("pendulum", [effect], push=0.0)
+        q, v = mechanisms.pendulum.split(trial.states)
+        energy = mechanisms.pendulum.energy(parameters("pendulum"), q, v)
+        assert energy[-1] < energy[0] + 1e-6, (effect.kind, effect.law, energy[[0, -1]])
+
+
+def innovations_of_the_true_filter_are_white():
+    """The oracle's filter on recordings without a gap: mean normalised innovation of one."""
+    for name, number in generate.names().items():
+        case = generate.CASES[number]
+        if case.null_kind != "clean" or case.mechanism not in ("carriage", "pendulum"):
+            continue
+        place = generate.world(number, case)
+        rig = place.rig([])
+        trial = generate.trial(place, rig, 0)
+        measured = generate.recorded(place, rig, trial, 0)
+        filter = oracle.Filter(rig, trial, place.noise, place.disturbance_sd)
+        inputs = oracle.held(trial.commands)
+        x, out = trial.states[0].copy(), []
+        for k in range(len(trial.t)):
+            e = measured[k] - x[: filter.n]
+            out.append(filter.white[k] @ e)
+            x = x + filter.K[k] @ e
+            if k + 1 < len(trial.t):
+                step = trial.t[k + 1] - trial.t[k]
+                x = oracle.flow(place.mechanism, place.true, x, inputs[k], np.zeros(len(place.disturbance_sd)), step)
+        mean = np.mean(np.square(out[10:]))
+        assert abs(mean - 1) < 4 * np.sqrt(2 / np.size(out)), (name, mean)
+
+
+def a_case_is_made_again_byte_for_byte():
+    name = next(n for n, i in generate.names().items() if generate.CASES[i].mechanism == "carriage")
+    with tempfile.TemporaryDirectory() as place:
+        generate.make_case(generate.names()[name], name, Path(place))
+        with tarfile.open(HERE / "cases.tar.xz") as archive:
+            for path in sorted((Path(place) / "cases" / name).iterdir()):
+                committed = archive.extractfile(f"cases/{name}/{path.name}").read()
+                assert committed == path.read_bytes(), f"{name}/{path.name}"
+
+
+def main():
+    ask = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+    ask.add_argument("--archive", action="store_true")
+    ask = ask.parse_args()
+    checks = [
+        energy_is_conserved_without_forces,
+        energy_grows_by_the_work_of_inputs,
+        mujoco_and_scipy_agree,
+        wheels_that_hardly_slip_roll,
+        dry_friction_stops_and_holds,
+        actuators_follow_their_differential_equations,
+        delays_shift_the_command,
+        lugre_and_play_lose_energy,
+        innovations_of_the_true_filter_are_white,
+    ]
+    if ask.archive:
+        checks.append(a_case_is_made_again_byte_for_byte)
+    for check in checks:
+        check()
+        print("ok  ", check.__name__.replace("_", " "), flush=True)
+
+
+if __name__ == "__main__":
+    main()

@@ -4,6 +4,7 @@ use appell_runtime::estimate::{
     Disturbance, Estimation, Layout, Measured, Recording, Setup, Unknown,
 };
 use appell_runtime::model::{At, Model};
+use appell_runtime::positions::{Moving, Positions};
 
 use crate::random::Random;
 
@@ -51,8 +52,18 @@ impl Drive {
 
 /// What a setup measures when its values are true: initial states, disturbances and noise are
 /// drawn. No lags and no delays. The motion takes the steps of the filter: noise enters half before
-/// and half after a step.
+/// and half after a step. Loops are closed.
 pub fn record(setup: &Setup<'_>, values: &[f64], drive: &Drive, random: &mut Random) -> Recording {
+    record_with_states(setup, values, drive, random).0
+}
+
+/// The same with the true states at all rows.
+pub fn record_with_states(
+    setup: &Setup<'_>,
+    values: &[f64],
+    drive: &Drive,
+    random: &mut Random,
+) -> (Recording, Vec<Vec<f64>>) {
     let unseen = [drive.unseen(setup.channels.len())];
     let layout = Estimation::new(setup, &unseen).unwrap().layout();
     let value = |unknown| values[layout.place(unknown).unwrap()];
@@ -66,9 +77,19 @@ pub fn record(setup: &Setup<'_>, values: &[f64], drive: &Drive, random: &mut Ran
         .collect();
     let p = &values[..model.info().parameter_len()];
     let width = model.info().declared_inputs;
-    let mut measurements = Vec::new();
+    let mut positions = Positions::of(model);
+    let mut close = |t: f64, x: &mut [f64], u: &[f64]| {
+        if let Some(positions) = &mut positions {
+            positions
+                .restore(model, t, x, u, p, Moving::Dependent)
+                .unwrap();
+        }
+    };
+    let (mut measurements, mut states) = (Vec::new(), Vec::new());
+    close(drive.times[0], &mut x, &drive.inputs[..width]);
     for (row, &t) in drive.times.iter().enumerate() {
         let u = &drive.inputs[row * width..(row + 1) * width];
+        states.push(x.clone());
         let mut outputs = vec![0.0; model.info().output_len()];
         model.outputs(At { t, x: &x, u, p }, &mut outputs);
         for (index, channel) in setup.channels.iter().enumerate() {
@@ -97,11 +118,13 @@ pub fn record(setup: &Setup<'_>, values: &[f64], drive: &Drive, random: &mut Ran
             add(&before, &mut x);
             runge_kutta(model, u, p, h, &mut x);
             add(&after, &mut x);
+            close(at.t + h, &mut x, u);
             step += 1.0;
         }
     }
     let (times, inputs) = (drive.times.clone(), drive.inputs.clone());
-    Recording::new(times, inputs, measurements).unwrap()
+    let recording = Recording::new(times, inputs, measurements).unwrap();
+    (recording, states)
 }
 
 /// What the disturbances change before and after a step.

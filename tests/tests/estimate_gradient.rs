@@ -266,3 +266,22 @@ fn it_stays_exact_along_chaotic_motions() {
     let estimation = Estimation::new(&setup, &recordings).unwrap();
     assert_gradient_by_steps(&estimation, &values, TOLERANCE_ALONG_CHAOS, 1e-4);
 }
+
+#[test]
+fn it_is_exact_for_closed_loops() {
+    let model = shipped("four_bar");
+    let state = |name: &str| Measured::State(model.info().state_index(name).unwrap());
+    let mut setup = Setup::new(model, &[state("theta1"), state("theta3")]);
+    setup.disturbances.push(Disturbance::Rate(1));
+    let drive = Drive::sines(80, 0.01, &[0.4]);
+    let unseen = [drive.unseen(2)];
+    let values = noisy(&Estimation::new(&setup, &unseen).unwrap(), 0.05, 0.01);
+    let mut random = Random::of("closed");
+    let recordings = [with_gaps(&record(&setup, &values, &drive, &mut random))];
+    let estimation = Estimation::new(&setup, &recordings).unwrap();
+    let mut elsewhere = values.clone();
+    for (value, factor) in elsewhere[..9].iter_mut().zip([1.02, 0.99, 1.01, 1.0]) {
+        *value *= factor;
+    }
+    assert_gradient(&estimation, &elsewhere, TOLERANCE_OF_DIFFERENCES);
+}

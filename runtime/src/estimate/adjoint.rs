@@ -6,9 +6,10 @@
 
 use std::ops::Range;
 
+use super::closure::Closure;
 use super::filter::{Pass, Record, Sample, SampleTape, StepTape};
 use super::matrix::{
-    add, add_scaled, dot, multiply, multiply_transposed, multiply_transposed_add, scale,
+    add, add_scaled, dot, multiply, multiply_transposed, multiply_transposed_add, pieces, scale,
     symmetrise, transposed_multiply,
 };
 use super::plant::{Place, Scratch, Sums};
@@ -25,6 +26,7 @@ struct Backward<'p, 'a> {
     parameters: Vec<f64>,
     lags: Vec<f64>,
     scratch: Scratch,
+    closure: Option<Closure>,
     reverse: Reverse,
     square: [Vec<f64>; 3],
     vector: [Vec<f64>; 2],
@@ -53,6 +55,7 @@ pub(super) fn adjoint(pass: &mut Pass<'_>, rows: &Range<usize>, gradient: &mut [
         parameters: zeros(pass.layout.parameters),
         lags: zeros(pass.layout.lags),
         scratch: pass.plant.scratch(),
+        closure: pass.closure.clone(),
         reverse: Reverse::new(pass.plant),
         square: [zeros(n * n), zeros(n * n), zeros(n * n)],
         vector: [zeros(n), zeros(n)],
@@ -70,6 +73,10 @@ pub(super) fn adjoint(pass: &mut Pass<'_>, rows: &Range<usize>, gradient: &mut [
             Record::Measure { samples, held, .. } => {
                 let samples = &shared.samples[samples.clone()];
                 back.measure((samples, held), rows, &mut tape, gradient);
+            }
+            Record::Close { t, held, tape: at } => {
+                let [z, root] = pieces(&mut tape[*at..], [n, n * n]);
+                back.open((*t, held), z, root);
             }
         }
     }
@@ -89,6 +96,31 @@ impl Backward<'_, '_> {
         }
         add(&self.parameters, gradient);
         add(&self.lags, &mut gradient[layout.lag(0)..]);
+    }
+
+    /// Loops that were closed.
+    fn open(&mut self, (t, held): (f64, &[f64]), z: &mut [f64], root: &[f64]) {
+        let Some(closure) = &mut self.closure else {
+            return;
+        };
+        let closed = z.to_vec();
+        let place = Place {
+            t,
+            z: &closed,
+            held,
+            p: self.pass.p(),
+            lags: self.pass.lags(),
+        };
+        let plant = self.pass.plant;
+        // It was closed here before.
+        let _ = closure.close(plant, place, &mut self.scratch, z);
+        let mut sums = Sums {
+            z: &mut self.z,
+            p: &mut self.parameters,
+            lags: &mut self.lags,
+        };
+        let covariance = (root, self.p.as_mut_slice());
+        closure.adjoint(plant, place, &mut self.scratch, covariance, &mut sums);
     }
 
     fn advance(&mut self, advance: Advance, on: &StepTape<'_>, gradient: &mut [f64]) {

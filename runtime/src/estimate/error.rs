@@ -95,6 +95,16 @@ pub enum EstimateError {
         /// Where, in s.
         t: f64,
     },
+    /// Position constraints that no state near the estimate satisfies.
+    #[error("run {run}: at {t} s: {source}")]
+    Open {
+        /// Which run.
+        run: usize,
+        /// Where, in s.
+        t: f64,
+        /// How far off.
+        source: crate::positions::Inconsistent,
+    },
     /// An optimisation that found no better point from a start that is not an optimum.
     #[error("no better values are found after {steps} steps; the slope is {slope:.2e}")]
     Stuck {

@@ -5,12 +5,14 @@
 //! half enters before it and half after. Measurements: one scalar after the other, all linearised
 //! about the state before the first of them, which is the update with all at once where noise is
 //! independent. The residuals of these scalars are independent of each other and of all earlier
-//! ones: squares and logarithms of their variances add up to the likelihood.
+//! ones: squares and logarithms of their variances add up to the likelihood. Where coordinates depend
+//! on each other, loops are closed after each of the two.
 
 use std::f64::consts::TAU;
 use std::ops::Range;
 
 use super::EstimateError;
+use super::closure::Closure;
 use super::layout::Layout;
 use super::matrix::{add_scaled, dot, multiply, pieces, scale, transposed_multiply};
 use super::plant::{Place, Plant, Scratch};
@@ -65,6 +67,8 @@ pub(super) enum Record {
         samples: Range<usize>,
         held: Vec<f64>,
     },
+    /// Loops were closed; the closed state and the root of P before start at `tape`.
+    Close { t: f64, held: Vec<f64>, tape: usize },
 }
 
 /// A scalar with what the way back needs.
@@ -162,6 +166,7 @@ pub(super) struct Pass<'a> {
     pub(super) root: Vec<f64>,
     pub(super) held: Vec<f64>,
     scratch: Scratch,
+    pub(super) closure: Option<Closure>,
     spread: Vec<f64>,
     wide: Vec<f64>,
     seen: Vec<f64>,
@@ -226,6 +231,7 @@ impl<'a> Pass<'a> {
             root: zeros(n * n),
             held: zeros(sizes.inputs),
             scratch: plant.scratch(),
+            closure: Closure::of(plant),
             spread: zeros(2 * n * (n + sizes.disturbances)),
             wide: zeros(n * (n + 2 * sizes.disturbances)),
             seen: zeros(n),
@@ -251,7 +257,10 @@ impl<'a> Pass<'a> {
         action: Action,
     ) -> Result<(), EstimateError> {
         match action {
-            Action::Advance(advance) => self.advance(advance),
+            Action::Advance(advance) => {
+                self.advance(advance)?;
+                self.close(advance.t + advance.h)
+            }
             Action::Switch { row, input } => {
                 let first = self.records.is_empty();
                 switch(
@@ -261,9 +270,15 @@ impl<'a> Pass<'a> {
                     recording.inputs(row),
                     input,
                 );
+                if first {
+                    self.close(recording.times()[row])?;
+                }
                 Ok(())
             }
-            Action::Measure { row, channel } => self.measure(recording, row, channel),
+            Action::Measure { row, channel } => {
+                self.measure(recording, row, channel)?;
+                self.close(recording.times()[row])
+            }
         }
     }
 
@@ -360,6 +375,36 @@ impl<'a> Pass<'a> {
             run: self.run,
             t: advance.t + h,
         })
+    }
+
+    /// Closes the loops.
+    fn close(&mut self, t: f64) -> Result<(), EstimateError> {
+        let Some(closure) = &mut self.closure else {
+            return Ok(());
+        };
+        let z = self.z.clone();
+        let lags = self.layout.lag(0);
+        let place = Place {
+            t,
+            z: &z,
+            held: &self.held,
+            p: &self.values[..self.layout.parameters],
+            lags: &self.values[lags..lags + self.layout.lags],
+        };
+        let run = self.run;
+        closure
+            .close(self.plant, place, &mut self.scratch, &mut self.z)
+            .map_err(|source| EstimateError::Open { run, t, source })?;
+        // Without a tape its beginning belongs to the step or the samples before.
+        let tape = self.tape.len();
+        if self.keeps {
+            self.tape.extend(&self.z);
+            self.tape.extend(&self.root);
+        }
+        closure.follow(&mut self.root);
+        let held = self.held.clone();
+        self.records.push(Record::Close { t, held, tape });
+        Ok(())
     }
 
     fn measure(

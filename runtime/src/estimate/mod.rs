@@ -15,6 +15,7 @@
 //! - [`recording`], [`setup`], [`layout`]: what is given;
 //! - [`timeline`]: the order of steps and samples;
 //! - [`plant`], [`transition`]: the motion and its transition matrix, step by step;
+//! - [`closure`]: closed loops, whose coordinates depend on each other;
 //! - [`filter`], [`square_root`]: the extended Kalman filter, innovations, log-likelihood;
 //! - [`adjoint`]: the gradient of the log-likelihood in all values by one sweep backwards;
 //! - [`estimation`]: all of it behind one type;
@@ -32,6 +33,7 @@
 
 mod adjoint;
 mod chi_squared;
+mod closure;
 mod consistency;
 mod curvature;
 mod error;

@@ -142,12 +142,16 @@ impl<'a> Plant<'a> {
         let (n, k) = (self.info().state_len(), self.info().parameter_len());
         let [x, u, p] = pieces(gradient, [n, self.m, k]);
         add_scaled(factor, x, &mut sums.z[..n]);
-        let (lagged, drifted) = sums.z[n..].split_at_mut(self.lagging.len());
-        for (lagged, &input) in lagged.iter_mut().zip(self.lagging) {
+        for (lagged, &input) in sums.z[n..].iter_mut().zip(self.lagging) {
             *lagged += factor * u[input];
         }
-        for (drifted, &parameter) in drifted.iter_mut().zip(self.drifting) {
-            *drifted += factor * std::mem::take(&mut p[parameter]);
+        self.pass_on_parameters(factor, p, sums);
+    }
+
+    /// Adds a gradient by the parameters that the model sees, times a factor.
+    pub(super) fn pass_on_parameters(&self, factor: f64, p: &mut [f64], sums: &mut Sums<'_>) {
+        for (state, parameter) in self.drifts() {
+            sums.z[state] += factor * std::mem::take(&mut p[parameter]);
         }
         add_scaled(factor, p, sums.p);
     }

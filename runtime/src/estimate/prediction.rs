@@ -2,6 +2,7 @@
 //! that is measured afterwards is used.
 
 use super::EstimateError;
+use super::closure::Closure;
 use super::estimation::Estimation;
 use super::filter::{Pass, switch};
 use super::layout::{Layout, Unknown};
@@ -115,6 +116,7 @@ struct Walk<'a> {
     z: Vec<f64>,
     held: Vec<f64>,
     scratch: Scratch,
+    closure: Option<Closure>,
     /// States and rates of the stages.
     stage: Vec<f64>,
     rates: Vec<f64>,
@@ -133,6 +135,7 @@ impl<'a> Walk<'a> {
             z: vec![0.0; n],
             held: vec![0.0; pass.sizes.inputs],
             scratch: pass.plant.scratch(),
+            closure: pass.closure.clone(),
             stage: vec![0.0; n],
             rates: vec![0.0; n],
         }
@@ -243,6 +246,18 @@ impl<'a> Walk<'a> {
             }
         }
         self.z = after;
+        if let Some(closure) = &mut self.closure {
+            let open = self.z.clone();
+            let at = (t + h, open.as_slice(), self.held.as_slice());
+            let place = place(self.layout, self.values, at);
+            // A prediction that no closed loop is near is infinitely wrong.
+            if closure
+                .close(self.plant, place, &mut self.scratch, &mut self.z)
+                .is_err()
+            {
+                self.z.fill(f64::NAN);
+            }
+        }
     }
 }
 

@@ -10,6 +10,7 @@ use super::estimation::Estimation;
 use super::filter::{Pass, Record, StepTape};
 use super::layout::Unknown;
 use super::matrix::{add, multiply};
+use super::prediction::place;
 use super::square_root::triangularise;
 use super::timeline::Advance;
 
@@ -53,18 +54,33 @@ impl Estimation<'_> {
             state: pass.z.clone(),
             root: pass.root.clone(),
         };
+        // Dependent coordinates say nothing that the others do not.
+        let told: Vec<usize> = match &pass.closure {
+            Some(closure) => closure.independent().collect(),
+            None => (0..pass.sizes.n).collect(),
+        };
+        let (mut closure, mut scratch) = (pass.closure.clone(), pass.plant.scratch());
         let mut rows = Vec::with_capacity(self.recordings()[run].times().len());
         for record in pass.records.iter().rev() {
             match record {
                 Record::Advance { advance, tape: at } => {
                     let on = pass.sizes.step(&mut tape[*at..]);
-                    step_back(&pass, *advance, &on, &mut last);
+                    step_back(&pass, *advance, (&on, &told), &mut last);
                 }
                 Record::Measure { row: Some(row), .. } => {
                     last.t = self.recordings()[run].times()[*row];
-                    rows.push(last.clone());
+                    let mut told = last.clone();
+                    if let Some(closure) = &mut closure {
+                        let at = (last.t, last.state.as_slice(), pass.held.as_slice());
+                        let (place, t) = (place(self.layout(), values, at), last.t);
+                        closure
+                            .close(pass.plant, place, &mut scratch, &mut told.state)
+                            .map_err(|source| EstimateError::Open { run, t, source })?;
+                        closure.follow(&mut told.root);
+                    }
+                    rows.push(told);
                 }
-                Record::Measure { row: None, .. } => {}
+                Record::Measure { row: None, .. } | Record::Close { .. } => {}
             }
         }
         rows.reverse();
@@ -73,10 +89,15 @@ impl Estimation<'_> {
 }
 
 /// From the smoothed state after a step to the one before it.
-fn step_back(pass: &Pass<'_>, advance: Advance, on: &StepTape<'_>, last: &mut Smoothed) {
-    let (n, d) = (pass.sizes.n, pass.sizes.disturbances);
+fn step_back(
+    pass: &Pass<'_>,
+    advance: Advance,
+    (on, told): (&StepTape<'_>, &[usize]),
+    last: &mut Smoothed,
+) {
+    let (n, d, r) = (pass.sizes.n, pass.sizes.disturbances, told.len());
     // Roots of state after and state before, jointly: [F S, F N½, N½; S, 0, 0].
-    let width = (n + 2 * d).max(2 * n);
+    let width = (n + 2 * d).max(r + n);
     let mut sources = vec![0.0; n * (n + d)];
     let mut moved = vec![0.0; n * (n + d)];
     for i in 0..n {
@@ -88,42 +109,45 @@ fn step_back(pass: &Pass<'_>, advance: Advance, on: &StepTape<'_>, last: &mut Sm
         }
     }
     multiply(on.f, &sources, n, &mut moved);
-    let mut joint = vec![0.0; 2 * n * width];
-    for i in 0..n {
+    let mut joint = vec![0.0; (r + n) * width];
+    let (after, before) = joint.split_at_mut(r * width);
+    for (row, &i) in after.chunks_exact_mut(width).zip(told) {
         let (moved, source) = (&moved[i * (n + d)..], &sources[i * (n + d)..]);
-        joint[i * width..i * width + n + d].copy_from_slice(&moved[..n + d]);
-        joint[i * width + n + d..i * width + n + 2 * d].copy_from_slice(&source[n..n + d]);
-        joint[(n + i) * width..(n + i) * width + n].copy_from_slice(&source[..n]);
+        row[..n + d].copy_from_slice(&moved[..n + d]);
+        row[n + d..n + 2 * d].copy_from_slice(&source[n..n + d]);
     }
-    let mut roots = vec![0.0; 4 * n * n];
-    triangularise(&mut joint, 2 * n, &mut roots);
-    let root = |i: usize, j: usize| roots[i * 2 * n + j];
+    for (row, source) in before
+        .chunks_exact_mut(width)
+        .zip(sources.chunks_exact(n + d))
+    {
+        row[..n].copy_from_slice(&source[..n]);
+    }
+    let mut roots = vec![0.0; (r + n) * (r + n)];
+    triangularise(&mut joint, r + n, &mut roots);
+    let root = |i: usize, j: usize| roots[i * (r + n) + j];
 
     // G L₁₁ = L₂₁, row by row from the last column on.
-    let mut gain = vec![0.0; n * n];
+    let mut gain = vec![0.0; n * r];
     for i in 0..n {
-        for j in (0..n).rev() {
-            let known: f64 = (j + 1..n).map(|k| gain[i * n + k] * root(k, j)).sum();
+        for j in (0..r).rev() {
+            let known: f64 = (j + 1..r).map(|k| gain[i * r + k] * root(k, j)).sum();
             let size = (0..=j).fold(0.0, |size: f64, k| size.max(root(j, k).abs()));
             if root(j, j).abs() > ROUNDING * size {
-                gain[i * n + j] = (root(n + i, j) - known) / root(j, j);
+                gain[i * r + j] = (root(r + i, j) - known) / root(j, j);
             }
         }
     }
     let mut change = vec![0.0; n];
-    let off: Vec<f64> = last
-        .state
-        .iter()
-        .zip(&*on.after)
-        .map(|(a, b)| a - b)
-        .collect();
-    multiply(&gain, &off, n, &mut change);
+    let off: Vec<f64> = told.iter().map(|&i| last.state[i] - on.after[i]).collect();
+    multiply(&gain, &off, r, &mut change);
+    let rows = told.iter().flat_map(|&i| &last.root[i * n..(i + 1) * n]);
+    let rows: Vec<f64> = rows.copied().collect();
     let mut spread = vec![0.0; n * n];
-    multiply(&gain, &last.root, n, &mut spread);
+    multiply(&gain, &rows, r, &mut spread);
     let mut wide = vec![0.0; 2 * n * n];
     for (i, wide) in wide.chunks_exact_mut(2 * n).enumerate() {
         for j in 0..n {
-            wide[j] = root(n + i, n + j);
+            wide[j] = root(r + i, r + j);
             wide[n + j] = spread[i * n + j];
         }
     }

@@ -173,12 +173,45 @@ impl<'p, 'a> Forward<'p, 'a> {
             Action::Switch { .. } => {}
             Action::Measure { .. } => self.measure(samples),
         }
+        self.close(action, recording);
         Ok(())
+    }
+
+    /// Lets the dependent coordinates follow.
+    fn close(&mut self, action: Action, recording: &super::Recording) {
+        let Some(closure) = &self.pass.closure else {
+            return;
+        };
+        closure.follow(&mut self.z);
+        let t = match action {
+            Action::Advance(advance) => advance.t + advance.h,
+            _ => recording_time(recording, action),
+        };
+        let place = Place {
+            t,
+            z: &self.pass.z,
+            held: &self.pass.held,
+            p: self.pass.p(),
+            lags: self.pass.lags(),
+        };
+        for (column, direction) in self.directions.iter().enumerate() {
+            if let Direction::Value(Unknown::Parameter(index)) = *direction {
+                let plant = self.pass.plant;
+                for (state, slope) in closure.by_parameter(plant, place, &mut self.scratch, index) {
+                    self.z[state * self.columns + column] += slope;
+                }
+            }
+        }
     }
 
     /// Z ← F (Z + H) + H, where H is half of what the step adds, by the slopes in its middle.
     fn advance(&mut self) {
-        let Some(&Record::Advance { advance, tape }) = self.pass.records.last() else {
+        let advances = self.pass.records.iter().rev();
+        let mut advances = advances.filter_map(|record| match record {
+            Record::Advance { advance, tape } => Some((*advance, *tape)),
+            _ => None,
+        });
+        let Some((advance, tape)) = advances.next() else {
             return;
         };
         let (n, columns, half) = (self.pass.sizes.n, self.columns, 0.5 * advance.h);

@@ -5,6 +5,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::super::EstimateError;
+use super::super::closure::Closure;
 use super::super::estimation::Estimation;
 use super::super::filter::switch;
 use super::super::layout::Unknown;
@@ -42,6 +43,7 @@ pub(super) struct Flight<'a> {
     held: Vec<f64>,
     rows: Vec<f64>,
     scratch: Scratch,
+    closure: Option<Closure>,
 }
 
 impl<'a> Flight<'a> {
@@ -66,6 +68,7 @@ impl<'a> Flight<'a> {
             held: vec![0.0; plant.info().declared_inputs],
             rows: Vec::new(),
             scratch: plant.scratch(),
+            closure: Closure::of(plant),
         }
     }
 
@@ -75,7 +78,7 @@ impl<'a> Flight<'a> {
         (nodes, states): (&Vec<usize>, &Vec<DVector<f64>>),
     ) -> Result<Vec<Piece>, EstimateError> {
         let mut pieces = Vec::with_capacity(nodes.len());
-        self.begin(&states[0]);
+        self.begin(nodes[0], &states[0])?;
         let mut is_first = true;
         for action in self.estimation.actions(self.run, self.values) {
             match action {
@@ -95,7 +98,7 @@ impl<'a> Flight<'a> {
                     let next = pieces.len() + 1;
                     if channel.is_none() && nodes.get(next) == Some(&row) {
                         pieces.push(self.end());
-                        self.begin(&states[next]);
+                        self.begin(row, &states[next])?;
                     }
                     self.measure(row, channel)?;
                 }
@@ -105,11 +108,34 @@ impl<'a> Flight<'a> {
         Ok(pieces)
     }
 
-    fn begin(&mut self, state: &DVector<f64>) {
+    /// A segment begins at a row, where loops are closed.
+    fn begin(&mut self, row: usize, state: &DVector<f64>) -> Result<(), EstimateError> {
         self.z.copy_from_slice(state.as_slice());
         self.by.fill(0.0);
         let diagonal = self.by.iter_mut().step_by(self.width + 1);
         diagonal.take(self.n).for_each(|entry| *entry = 1.0);
+        let Some(closure) = &mut self.closure else {
+            return Ok(());
+        };
+        let (run, t, plant) = (
+            self.run,
+            self.recording.times()[row],
+            self.estimation.plant(),
+        );
+        let at = (t, state.as_slice(), self.held.as_slice());
+        let place = place(self.estimation.layout(), self.values, at);
+        closure
+            .close(plant, place, &mut self.scratch, &mut self.z)
+            .map_err(|source| EstimateError::Open { run, t, source })?;
+        closure.follow(&mut self.by);
+        for (column, &(unknown, stretch)) in (self.n..).zip(self.unknowns) {
+            if let Unknown::Parameter(index) = unknown {
+                for (state, slope) in closure.by_parameter(plant, place, &mut self.scratch, index) {
+                    self.by[state * self.width + column] += stretch * slope;
+                }
+            }
+        }
+        Ok(())
     }
 
     fn end(&mut self) -> Piece {

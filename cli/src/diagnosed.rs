@@ -1,10 +1,16 @@
 //! A gap report, for people and for programs.
 
+mod numbers;
+mod page;
+mod plots;
+
 use std::fmt::Write as _;
 
-use appell_gap::diagnose::{Changes, DiagnoseError, Hypothesis, Report, Verdict};
+use appell_gap::diagnose::{Ahead, Changes, DiagnoseError, Hypothesis, Report, Verdict};
 use appell_gap::effects::ModelError;
 use serde_json::{Value, json};
+
+pub(crate) use page::page;
 
 use crate::failure::Failure;
 use crate::table::number;
@@ -168,7 +174,7 @@ pub(crate) fn json(report: &Report) -> Value {
             "horizon_s": far.horizon_s, "nominal": far.nominal, "refitted": far.refitted,
             "with_effect": far.with_effect, "noise_floor": far.noise_floor, "closed": far.closed,
             "closed_ci95": far.closed_ci95, "closed_vs_refitted": far.closed_vs_refitted,
-            "runs": far.runs,
+            "runs": far.runs, "horizons": report.horizons.iter().map(ahead).collect::<Vec<_>>(),
         })
     });
     let detectable = report
@@ -198,6 +204,16 @@ pub(crate) fn json(report: &Report) -> Value {
         "detectable": detectable.collect::<Vec<_>>(),
         "failed": failed.collect::<Vec<_>>(),
         "disturbances": disturbances.collect::<Vec<_>>(),
+    })
+}
+
+/// Errors at a horizon.
+fn ahead(ahead: &Ahead) -> Value {
+    let horizon = ahead.horizon.is_finite().then_some(ahead.horizon);
+    json!({
+        "horizon_s": horizon, "free_run": horizon.is_none(), "nominal": ahead.nominal,
+        "refitted": ahead.refitted, "with_effect": ahead.with_effect,
+        "noise_floor": ahead.noise_floor,
     })
 }
 

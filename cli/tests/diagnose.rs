@@ -1,6 +1,7 @@
 //! `appell diagnose` finds what a simulated rig has and its model lacks, and finds nothing where there
 //! is nothing.
 
+mod browser;
 mod rig;
 mod support;
 
@@ -37,6 +38,63 @@ fn nothing_is_found_where_nothing_is_missing() {
     let report = report(&viscous(0.0));
     assert_eq!(report["verdict"], "no_gap", "{report:#}");
     assert_eq!(report["where"]["domain"], "none");
+}
+
+#[test]
+fn the_page_shows_where_which_and_how_far_and_needs_nothing_beside_it() {
+    let folder = viscous(0.4);
+    folder.done(&["diagnose", "--data", ".", "--html", "page.html"]);
+    let page = folder.read("page.html");
+    let told = [
+        "viscous_friction@x",
+        "law that was found",
+        "free run",
+        "held out",
+        "class=\"ring c1\"",
+        "class=\"band f2\"",
+        "smallest size",
+        "appell apply",
+    ];
+    for text in told {
+        assert!(page.contains(text), "`{text}` is missing");
+    }
+    assert!(
+        !page.contains("NaN") && !page.contains("inf"),
+        "a number is none"
+    );
+    let Some(mut browser) = browser::Browser::start(&folder.path("browser")) else {
+        return;
+    };
+    browser.open(&folder.path("page.html"));
+    let colours = ["light", "dark"].map(|scheme| {
+        browser.prefer(scheme);
+        browser
+            .value("getComputedStyle(document.body).backgroundColor")
+            .to_string()
+    });
+    assert_ne!(colours[0], colours[1]);
+    let wide = browser.number("document.documentElement.scrollWidth - innerWidth");
+    assert!(
+        wide <= 0.0,
+        "the page is {wide} pixels wider than the window"
+    );
+    assert_eq!(browser.complaints(), Vec::<String>::new());
+}
+
+#[test]
+fn a_page_without_a_gap_tells_what_would_have_been_seen() {
+    let folder = viscous(0.0);
+    folder.done(&["diagnose", "--data", ".", "--html", "page.html"]);
+    let page = folder.read("page.html");
+    let told = [
+        "No gap beyond noise",
+        "No equation disagrees",
+        "<details open>",
+    ];
+    for text in told {
+        assert!(page.contains(text), "`{text}` is missing");
+    }
+    assert!(!page.contains("class=\"ring"), "nothing is marked");
 }
 
 #[test]

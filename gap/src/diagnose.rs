@@ -10,6 +10,7 @@
 //!          --unknown--> what no candidate explains, and what it depends on
 //!          --localise--> equations, windows of time, regions
 //!          --held_out--> errors of predictions: nominal, re-fitted, with the effect, noise
+//!          --traces, law--> what people look at
 //!          --changes--> what each hypothesis changes in the spec
 //! ```
 //!
@@ -23,10 +24,12 @@ mod error;
 mod evidence;
 mod held_out;
 mod hypothesis;
+mod law;
 mod localise;
 mod report;
 mod scales;
 mod screen;
+mod traces;
 mod unknown;
 
 use crate::data::{DataSet, Part};
@@ -34,19 +37,30 @@ use crate::effects::{Effect, EffectModel, candidates};
 
 pub use changes::{Beside, ChangeError, Changes, Refitted};
 pub use error::DiagnoseError;
+pub use law::Law;
 pub use report::{
-    Detectable, Found, HowFar, Hypothesis, Region, Report, ShareOf, Value, Verdict, Where, Window,
+    Detectable, Found, HowFar, Hypothesis, Pictures, Region, Report, ShareOf, Value, Verdict,
+    Where, Window,
 };
+pub use traces::{AHEAD, Ahead, Trace};
 
 use bench::Bench;
 use compare::Comparison;
 use held_out::HeldOut;
 use screen::Screen;
 
+/// What is asked for beside the report.
+#[derive(Debug, Clone, Default)]
+pub struct Options {
+    /// Traces, and the missing force over what it depends on.
+    pub pictures: bool,
+}
+
 /// Diagnoses a data set with a library of effects. `stage` is told what begins.
 pub fn diagnose(
     set: &DataSet,
     effects: &[Effect],
+    options: &Options,
     mut stage: impl FnMut(&'static str),
 ) -> Result<Report, DiagnoseError> {
     stage("deriving the mechanism with all effects");
@@ -71,5 +85,20 @@ pub fn diagnose(
     stage("predicting the runs that were held out");
     let held_out = HeldOut::of(&set.only(Part::Test), &bench)?;
     let how_far = held_out.how_far(&bench, &comparison)?;
-    report::assemble(&bench, &screen, &comparison, place, how_far)
+    let horizons = held_out.horizons(&bench, &comparison)?;
+    let pictures = if options.pictures {
+        stage("drawing");
+        Some(Pictures {
+            traces: held_out.traces(&bench, &comparison)?,
+            law: law::law(&bench, &comparison, &place)?,
+        })
+    } else {
+        None
+    };
+    let report = report::assemble(&bench, &screen, &comparison, place, how_far)?;
+    Ok(Report {
+        horizons,
+        pictures,
+        ..report
+    })
 }

@@ -6,6 +6,7 @@
 
 mod axis;
 mod map;
+mod plot;
 mod surface;
 
 use crate::model::Quantity;
@@ -13,6 +14,7 @@ use crate::simulate::Breach;
 use crate::trajectory::Trajectory;
 use axis::{Axis, number};
 pub use map::{Curve, Map, Stroke};
+pub use plot::{Layer, Look, Plot};
 use std::fmt::Write as _;
 pub use surface::{Patch, Surface};
 

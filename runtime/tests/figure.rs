@@ -1,6 +1,6 @@
 //! Plots as SVG.
 
-use appell_runtime::figure::{Figure, Mark, Panel, Series};
+use appell_runtime::figure::{Figure, Layer, Look, Mark, Panel, Plot, Series};
 
 fn series(label: &str, count: u32, y: impl Fn(f64) -> f64) -> Series {
     let x: Vec<f64> = (0..=count)
@@ -182,4 +182,34 @@ fn marks_stand_in_every_panel_and_say_what_happens() {
         plain,
         "a mark beside the figure is not drawn"
     );
+}
+
+#[test]
+fn a_plot_has_points_a_band_and_a_legend_of_what_is_named() {
+    let layer = |label: &str, y: [f64; 3], look| Layer {
+        series: Series {
+            label: label.to_owned(),
+            x: vec![0.0, 1.0, 2.0],
+            y: y.to_vec(),
+        },
+        look,
+        colour: 1,
+    };
+    let plot = Plot {
+        labels: ["t [s]".to_owned(), "x [m]".to_owned()],
+        height: 160.0,
+        layers: vec![
+            layer("noise", [-1.0; 3], Look::Band(vec![1.0; 3])),
+            layer("data", [0.0, f64::NAN, 0.5], Look::Points),
+            layer("", [0.0, 0.2, 0.4], Look::Line),
+        ],
+    };
+    let svg = plot.to_svg();
+    // Two points, as the third is not finite, and the one of the legend.
+    assert_eq!(svg.matches("h0").count(), 3, "{svg}");
+    assert_eq!(svg.matches("class=\"band f1\"").count(), 2, "{svg}");
+    assert_eq!(svg.matches("class=\"line c1\"").count(), 1, "{svg}");
+    for text in ["noise", "data", "t [s]", "x [m]"] {
+        assert!(svg.contains(&format!(">{text}</text>")), "{text} in {svg}");
+    }
 }

@@ -4,7 +4,7 @@
 
 use std::fs;
 
-use appell_codegen::drawing::drawing;
+use appell_codegen::drawing::{drawing, marked};
 use appell_spec::Mechanism;
 use appell_tests::shipped;
 
@@ -35,6 +35,28 @@ fn the_drawings_of_all_mechanisms_are_those_of_the_documents() {
         let shown = format!("\"drawings/{}.svg\"", mechanism.name);
         assert!(gallery.contains(&shown), "docs/gallery.md lacks {shown}");
     }
+}
+
+#[test]
+fn rings_mark_joints_bodies_and_points_of_attack() {
+    let mechanism = all().into_iter().find(|m| m.name == "cart_pole").unwrap();
+    let plain = drawn(&mechanism);
+    let rings = |names: &[&str]| {
+        let svg = marked(&mechanism, shipped::derive(&mechanism), names).unwrap();
+        let rings = svg.lines().filter(|line| line.contains("class=\"ring"));
+        let place = |line: &str| {
+            let [x, y] = ["cx", "cy"].map(|name| attribute(line, name)[0].parse().unwrap());
+            [x, y]
+        };
+        rings.map(place).collect::<Vec<[f64; 2]>>()
+    };
+    let [cart, pole] = places(&mechanism, &plain, ["C", "G"]);
+    // The pole turns about the cart, and the force acts on it.
+    for name in ["x", "theta", "omega", "cart", "F", "m_cart"] {
+        assert_eq!(rings(&[name]), [cart], "{name}");
+    }
+    assert_eq!(rings(&["pole"]), [pole]);
+    assert_eq!(rings(&["gravity", "nobody"]), Vec::<[f64; 2]>::new());
 }
 
 /// Half of the last digit of the coordinates, several times.

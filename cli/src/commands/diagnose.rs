@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use appell_gap::diagnose;
+use appell_gap::diagnose::{self, Options};
 use appell_gap::effects;
 
 use crate::failure::Failure;
@@ -26,6 +26,9 @@ pub(crate) struct Diagnose {
     /// Write the gap report; `-` is standard output
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
+    /// Write a page with drawings, laws over data and traces; it needs no network
+    #[arg(long, value_name = "FILE.html")]
+    html: Option<PathBuf>,
 }
 
 impl Diagnose {
@@ -33,13 +36,20 @@ impl Diagnose {
         let set = recording::read(&self.data, self.model.as_deref())?;
         let library = self.library()?;
         let spinner = progress::spinner("reading");
-        let report = diagnose::diagnose(&set, &library, |stage| spinner.set_message(stage));
+        let options = Options {
+            pictures: self.html.is_some(),
+        };
+        let stage = |stage| spinner.set_message(stage);
+        let report = diagnose::diagnose(&set, &library, &options, stage);
         spinner.finish_and_clear();
         let report = report.map_err(diagnosed::failure)?;
         if let Some(path) = &self.json {
             files::write_json(path, &diagnosed::json(&report))?;
         }
-        files::print_beside(&diagnosed::text(&report), &[&self.json])
+        if let Some(path) = &self.html {
+            files::write(path, &diagnosed::page(&set, &report))?;
+        }
+        files::print_beside(&diagnosed::text(&report), &[&self.json, &self.html])
     }
 
     /// The shipped effects and those of the user.

@@ -2,9 +2,10 @@
 //!
 //! The files are the steps: [`placement`] writes where points and frames are, [`scene`] evaluates that,
 //! [`solids`] gives bodies a shape, [`view`] chooses where to look from, [`shapes`] makes strokes in
-//! space, [`sheet`] lays them out on paper. [`mod@film`] follows a motion with the same places and shapes.
+//! space, [`sheet`] lays them out on paper. [`home`] tells where a name belongs. [`mod@film`] follows a motion with the same places and shapes.
 
 pub mod film;
+mod home;
 pub mod link;
 mod placement;
 mod scene;
@@ -24,7 +25,13 @@ use view::View;
 /// The drawing of a mechanism, an SVG document. What has no finite position is left out and told in
 /// the caption.
 pub fn drawing(mechanism: &Mechanism, derivation: Derivation) -> Outcome<String> {
+    marked(mechanism, derivation, &[])
+}
+
+/// The drawing with rings about the places of some names: coordinates, bodies, inputs, parameters,
+/// constraints, points. A name without a place has no ring.
+pub fn marked(mechanism: &Mechanism, derivation: Derivation, names: &[&str]) -> Outcome<String> {
     let scene = Scene::initial(mechanism, derivation)?;
     let view = View::of(mechanism, scene.flat_across);
-    Ok(sheet::svg(mechanism, &scene, &view))
+    Ok(sheet::svg(mechanism, &scene, &view, names))
 }

@@ -5,6 +5,7 @@ use std::fmt::Write as _;
 use appell_runtime::figure::STYLE;
 use appell_spec::mechanism::Mechanism;
 
+use super::home::home;
 use super::scene::Scene;
 use super::shapes::{self, Axes, Stroke};
 use super::space::{Vector, add, dot};
@@ -28,6 +29,8 @@ const CLOSE: f64 = 7.0;
 const SMALLEST: f64 = 1e-100;
 /// Colours of the three axes.
 const AXIS_COLOURS: [&str; 3] = ["c1", "c2", "c0"];
+/// Radius of a ring that marks a place.
+const RING: f64 = 17.0;
 /// Length of the arrow of the weight.
 const ARROW: f64 = 40.0;
 
@@ -55,7 +58,7 @@ struct Sheet<'a> {
 }
 
 /// The drawing of a scene.
-pub(super) fn svg(mechanism: &Mechanism, scene: &Scene, view: &View) -> String {
+pub(super) fn svg(mechanism: &Mechanism, scene: &Scene, view: &View, marked: &[&str]) -> String {
     let mut strokes = shapes::links(mechanism, scene);
     let points = || scene.points.iter().flatten().copied();
     let frame_size = size(points());
@@ -118,6 +121,9 @@ pub(super) fn svg(mechanism: &Mechanism, scene: &Scene, view: &View) -> String {
         sheet.axes(axes, extent);
     }
     sheet.points(mechanism, scene);
+    for name in marked {
+        sheet.rings(mechanism, scene, name);
+    }
     sheet.weight();
     sheet.legend(height, step, &strokes);
     sheet.svg + "</svg>\n"
@@ -269,6 +275,30 @@ impl Sheet<'_> {
                 ("start", 9.0)
             };
             self.text([x + side, y + 14.0], "name halo", anchor, &name);
+        }
+    }
+
+    /// Rings about the places of a name.
+    fn rings(&mut self, mechanism: &Mechanism, scene: &Scene, name: &str) {
+        let mut drawn: Vec<[f64; 2]> = Vec::new();
+        for point in home(mechanism, name) {
+            let Some(at) = scene.points[point].map(|place| self.place(place)) else {
+                continue;
+            };
+            let close = |other: &[f64; 2]| (other[0] - at[0]).hypot(other[1] - at[1]) < CLOSE;
+            if drawn.iter().any(close) {
+                continue;
+            }
+            let [x, y] = at;
+            let _ = writeln!(
+                self.svg,
+                "<circle class=\"ring c1\" cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"{RING}\" fill=\"none\" \
+                 stroke-width=\"4\"/>"
+            );
+            drawn.push(at);
+        }
+        if let Some([x, y]) = drawn.first() {
+            self.text([x + 0.8 * RING, y - RING], "name halo", "start", name);
         }
     }
 

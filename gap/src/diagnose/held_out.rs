@@ -28,8 +28,8 @@ const BLOCK: f64 = 2.0;
 
 /// The runs that were held out.
 pub(super) struct HeldOut {
-    names: Vec<String>,
-    recordings: Vec<Recording>,
+    pub(super) names: Vec<String>,
+    pub(super) recordings: Vec<Recording>,
 }
 
 /// Sums of squared errors, in units of the noise, of one block of a run.
@@ -62,14 +62,11 @@ impl HeldOut {
             return Ok(None);
         }
         let (refitted, best) = (comparison.nominal(), comparison.best());
-        let mut nominal = refitted.clone();
-        for (index, parameter) in bench.set.parameters.iter().enumerate() {
-            nominal.fit.values[index] = parameter.value;
-        }
+        let nominal = stated(bench, refitted);
         let noise = noise(bench, best)?;
         let errors = |fitted: &Fitted| self.errors(bench, fitted, &noise, HORIZON);
         let (nominal, refitted, effect) = (errors(&nominal)?, errors(refitted)?, errors(best)?);
-        let floor = self.floor(bench, best, &noise)?;
+        let floor = self.floor(bench, best, &noise, HORIZON)?;
         let blocks: Vec<Block> = blocks(&nominal, &refitted, &effect);
         let total = sum(&blocks);
         let closed = |e0: f64, e: f64| (e0 - e) / (e0 - floor * floor);
@@ -97,7 +94,7 @@ impl HeldOut {
     }
 
     /// Squared errors in units of the noise, with run and block.
-    fn errors(
+    pub(super) fn errors(
         &self,
         bench: &Bench<'_>,
         fitted: &Fitted,
@@ -106,12 +103,13 @@ impl HeldOut {
     ) -> Result<Vec<(usize, usize, f64)>, DiagnoseError> {
         let setup = bench.setup(&fitted.members);
         let estimation = Estimation::new(&setup, &self.recordings)?;
-        let mut values = transfer((&fitted.layout, &fitted.fit.values), &estimation);
-        delays(fitted, &estimation, &mut values)?;
-        begin(&estimation, &mut values)?;
+        let values = taken_over(fitted, &estimation)?;
         let mut errors = Vec::new();
         for (run, recording) in self.recordings.iter().enumerate() {
-            let origins = origins(recording, ORIGINS);
+            let mut origins = origins(recording, ORIGINS);
+            if horizon.is_infinite() {
+                origins.truncate(1);
+            }
             for one in estimation.predictions(&values, run, horizon, &origins)? {
                 let block = (recording.times()[one.origin] - recording.times()[0]) / BLOCK;
                 // A count of blocks in memory.
@@ -125,22 +123,21 @@ impl HeldOut {
     }
 
     /// The error that remains where the hypothesis is right.
-    fn floor(
+    pub(super) fn floor(
         &self,
         bench: &Bench<'_>,
         fitted: &Fitted,
         noise: &[f64],
+        horizon: f64,
     ) -> Result<f64, DiagnoseError> {
         let setup = bench.setup(&fitted.members);
         let estimation = Estimation::new(&setup, &self.recordings)?;
-        let mut values = transfer((&fitted.layout, &fitted.fit.values), &estimation);
-        delays(fitted, &estimation, &mut values)?;
-        begin(&estimation, &mut values)?;
+        let values = taken_over(fitted, &estimation)?;
         let (mut squares, mut count) = (0.0, 0.0_f64);
         for (run, recording) in self.recordings.iter().enumerate() {
             let origins = origins(recording, EXPECTED_FROM);
             for (channel, variance) in
-                estimation.expected_errors(&values, run, HORIZON, &origins)?
+                estimation.expected_errors(&values, run, horizon, &origins)?
             {
                 squares += variance / noise[channel].powi(2);
                 count += 1.0;
@@ -148,6 +145,26 @@ impl HeldOut {
         }
         Ok((squares / count.max(1.0)).sqrt())
     }
+}
+
+/// The rig as the data set states it, with the levels of a fit.
+pub(super) fn stated(bench: &Bench<'_>, fitted: &Fitted) -> Fitted {
+    let mut stated = fitted.clone();
+    for (index, parameter) in bench.set.parameters.iter().enumerate() {
+        stated.fit.values[index] = parameter.value;
+    }
+    stated
+}
+
+/// Values of a fit on these recordings.
+pub(super) fn taken_over(
+    fitted: &Fitted,
+    estimation: &Estimation<'_>,
+) -> Result<Vec<f64>, DiagnoseError> {
+    let mut values = transfer((&fitted.layout, &fitted.fit.values), estimation);
+    delays(fitted, estimation, &mut values)?;
+    begin(estimation, &mut values)?;
+    Ok(values)
 }
 
 /// Lags and delays keep their values: their places are the same with any recordings.
@@ -166,7 +183,7 @@ fn delays(
 }
 
 /// Noise of the channels under a hypothesis.
-fn noise(bench: &Bench<'_>, fitted: &Fitted) -> Result<Vec<f64>, DiagnoseError> {
+pub(super) fn noise(bench: &Bench<'_>, fitted: &Fitted) -> Result<Vec<f64>, DiagnoseError> {
     let channels = 0..bench.measured.len();
     let noise = channels.map(|channel| {
         let place = fitted.layout.place(Unknown::Noise(channel))?;
@@ -176,7 +193,7 @@ fn noise(bench: &Bench<'_>, fitted: &Fitted) -> Result<Vec<f64>, DiagnoseError> 
 }
 
 /// Rows from which predictions start.
-fn origins(recording: &Recording, most: usize) -> Vec<usize> {
+pub(super) fn origins(recording: &Recording, most: usize) -> Vec<usize> {
     let times = recording.times();
     let (start, end) = (times[0], times[times.len() - 1]);
     let from = start + WARM_UP.min(0.1 * (end - start));

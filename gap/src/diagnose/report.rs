@@ -5,7 +5,9 @@ use super::bench::Bench;
 use super::changes::Changes;
 use super::compare::{Comparison, TIED};
 use super::hypothesis::Fitted;
+use super::law::Law;
 use super::screen::Screen;
+use super::traces::{Ahead, Trace};
 use crate::effects::{Acts, Part};
 use appell_runtime::estimate::Unknown;
 
@@ -191,6 +193,19 @@ pub struct Report {
     pub disturbances: Vec<(String, f64, f64)>,
     /// Effects of the best hypothesis in words.
     pub found: Vec<Found>,
+    /// Errors over horizons; empty where no run was held out.
+    pub horizons: Vec<Ahead>,
+    /// What people look at, where they asked for it.
+    pub pictures: Option<Pictures>,
+}
+
+/// What people look at.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Pictures {
+    /// Channels of the first run that was held out.
+    pub traces: Vec<Trace>,
+    /// The missing force; nothing without a gap in the equations.
+    pub law: Option<Law>,
 }
 
 pub(super) fn assemble(
@@ -272,6 +287,8 @@ pub(super) fn assemble(
                 about: bench.candidate(member).about.clone(),
             })
             .collect(),
+        horizons: Vec::new(),
+        pictures: None,
     })
 }
 

@@ -1,0 +1,443 @@
+//! A gap report as a page that needs no network: what a control engineer can act on.
+
+use std::fmt::Write as _;
+
+use appell_codegen::drawing::marked;
+use appell_codegen::{Derived, derived};
+use appell_gap::data::{DataSet, Part};
+use appell_gap::diagnose::{Ahead, HowFar, Hypothesis, Report, Verdict, Where};
+
+use super::numbers::{measured, percent, short};
+use super::{joined, plots, sentence};
+
+const STYLE: &str = include_str!("page.css");
+/// An effect that betters predictions by less is of little matter.
+const MATTERS: f64 = 0.05;
+
+/// The page.
+pub(crate) fn page(set: &DataSet, report: &Report) -> String {
+    let name = escaped(&set.mechanism.name);
+    let sections = [
+        place(set, report),
+        which(report),
+        how_far(report),
+        next(report),
+        detectable(report),
+        recordings(set),
+    ];
+    format!(
+        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
+         <meta name=\"viewport\" content=\"width=device-width,initial-scale=1\">\n\
+         <title>{name}: the gap</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n<main>\n\
+         <h1>{name}: model against recordings</h1>\n<p class=\"faint\">{about}</p>\n\
+         <p class=\"verdict\">{verdict}</p>\n{sections}</main>\n</body>\n</html>\n",
+        about = escaped(&set.description),
+        verdict = escaped(&verdict(report)),
+        sections = sections.concat(),
+    )
+}
+
+/// The verdict, with the size of the effect and what it closes.
+fn verdict(report: &Report) -> String {
+    let mut text = capital(&sentence(report));
+    let top = report.which.iter().find(|h| !h.parameters.is_empty());
+    let is_named = matches!(report.verdict, Verdict::Explained | Verdict::Ambiguous);
+    if let Some(top) = top.filter(|_| is_named) {
+        let _ = write!(text, ": {}", values(top).join(", "));
+    }
+    text.push('.');
+    if let (Some(far), true) = (&report.how_far, is_named) {
+        let _ = write!(
+            text,
+            " On runs that no fit has seen, it closes {} [{}, {}] of the gap, and {} of what the \
+             re-fitted parameters leave.",
+            percent(far.closed),
+            percent(far.closed_ci95[0]),
+            percent(far.closed_ci95[1]),
+            percent(far.closed_vs_refitted),
+        );
+        if far.with_effect > (1.0 - MATTERS) * far.refitted {
+            text += " The effect is certain and of little matter: predictions hardly get better.";
+        }
+    }
+    text
+}
+
+/// `force = 0.412 ± 0.021 N`
+fn values(hypothesis: &Hypothesis) -> Vec<String> {
+    let values = hypothesis.parameters.iter().map(|value| {
+        let short = value.name.rsplit('.').next().unwrap_or_default();
+        let unit = if value.unit == "1" { "" } else { &value.unit };
+        let number = measured(value.value, value.std);
+        format!("{} = {number} {unit}", short.replace('_', " "))
+            .trim_end()
+            .to_owned()
+    });
+    values.collect()
+}
+
+fn place(set: &DataSet, report: &Report) -> String {
+    let mut html = "<h2>Where</h2>\n".to_owned();
+    if report.place.equations.is_empty() {
+        html += "<p>No equation disagrees with the recordings beyond noise and disturbance.</p>\n";
+    } else {
+        let domain = report.place.domain;
+        // Writing to a string cannot fail.
+        let _ = writeln!(html, "<p>The gap is a matter of <b>{domain}</b>.</p>");
+    }
+    if let Some(svg) = drawing(set, report) {
+        html += &figure(
+            &svg,
+            "The mechanism at its initial state. A ring marks where the effect acts.",
+        );
+    }
+    html += &equations(set, &report.place);
+    html += &windows(&report.place);
+    if let Some(law) = report.pictures.as_ref().and_then(|p| p.law.as_ref()) {
+        let caption = if law.law.is_empty() {
+            "The force that the model lacks, as the recordings show it without any law, over what it \
+             depends on most."
+        } else {
+            "The force that the model lacks, as the recordings show it without any law, and the law \
+             that was found."
+        };
+        html += &figure(&plots::law(law), caption);
+    }
+    html
+}
+
+/// The mechanism with rings; nothing where it has no drawing.
+fn drawing(set: &DataSet, report: &Report) -> Option<String> {
+    let sites = report
+        .found
+        .iter()
+        .filter_map(|found| found.effect.split_once('@'));
+    // A channel stands for what it shows.
+    let name = |site: &str| {
+        let channel = set.channels.iter().find(|channel| channel.column == site);
+        let label = channel.and_then(|channel| channel.role.label(&set.mechanism));
+        label.map_or_else(|| site.to_owned(), |label| label.name.clone())
+    };
+    let mut names: Vec<String> = sites.map(|(_, site)| name(site)).collect();
+    names.dedup();
+    if report.verdict == Verdict::NoGap {
+        names.clear();
+    }
+    let names: Vec<&str> = names.iter().map(String::as_str).collect();
+    let Derived {
+        mechanism,
+        derivation,
+        ..
+    } = derived(&set.spec.file, &set.spec.text).ok()?;
+    marked(&mechanism, derivation, &names).ok()
+}
+
+fn equations(set: &DataSet, place: &Where) -> String {
+    if place.equations.is_empty() {
+        return String::new();
+    }
+    let speeds = &set.mechanism.pseudo_velocities;
+    let rows = place.equations.iter().map(|equation| {
+        let label = speeds
+            .iter()
+            .map(|s| &s.label)
+            .find(|l| l.name == equation.name);
+        let about = label.map_or("", |label| label.about.as_str());
+        vec![
+            format!(
+                "{}<br><span class=\"faint\">{}</span>",
+                code(&equation.name),
+                escaped(about)
+            ),
+            format!("{} {}", bar(equation.share), percent(equation.share)),
+            format!("{} {}", short(equation.rms), escaped(&equation.unit)),
+            short(equation.p_value),
+        ]
+    });
+    table(
+        [
+            "equation of",
+            "share of the gap",
+            "missing force (rms)",
+            "p-value",
+        ],
+        rows,
+        2,
+    )
+}
+
+fn windows(place: &Where) -> String {
+    let mut html = String::new();
+    if !place.windows.is_empty() {
+        let rows = place.windows.iter().map(|w| {
+            let time = format!("{} to {} s", short(w.from), short(w.to));
+            vec![escaped(&w.run), time, code(&w.equation), short(w.z)]
+        });
+        html += &table(
+            ["run", "when", "equation of", "size in deviations"],
+            rows,
+            3,
+        );
+    }
+    if !place.region.is_empty() {
+        let rows = place
+            .region
+            .iter()
+            .map(|r| vec![code(&r.variable), escaped(&r.description), short(r.z)]);
+        html += &table(["depends on", "where", "size in deviations"], rows, 2);
+    }
+    html
+}
+
+fn which(report: &Report) -> String {
+    let rows = report.which.iter().map(|hypothesis| {
+        let name = match hypothesis.effects.first().map(String::as_str) {
+            None => "no effect: the model with its parameters within tolerance".to_owned(),
+            Some("unknown") => "none of the library".to_owned(),
+            Some(_) => code(&joined(&hypothesis.effects)),
+        };
+        let values = values(hypothesis)
+            .iter()
+            .map(|value| escaped(value))
+            .collect::<Vec<_>>();
+        let bayes = hypothesis.log_bayes_factor.map_or_else(String::new, short);
+        vec![
+            format!(
+                "{} {}",
+                bar(hypothesis.probability),
+                percent(hypothesis.probability)
+            ),
+            format!("{name}<br>{}", values.join("<br>")),
+            bayes,
+        ]
+    });
+    let mut html = "<h2>Which</h2>\n".to_owned();
+    html += &table(
+        [
+            "probability",
+            "hypothesis, with values ± one standard deviation",
+            "log Bayes factor",
+        ],
+        rows,
+        2,
+    );
+    for group in &report.tied {
+        let names: Vec<String> = group.iter().map(|effects| code(&joined(effects))).collect();
+        let _ = writeln!(
+            html,
+            "<p><b>Tied.</b> These recordings cannot tell {} apart.</p>",
+            names.join(" and ")
+        );
+    }
+    if !report.failed.is_empty() {
+        let failed = report.failed.iter().map(|(effects, reason)| {
+            format!("<li>{}: {}</li>", code(&joined(effects)), escaped(reason))
+        });
+        let _ = writeln!(
+            html,
+            "<details><summary>{} hypotheses that could not be fitted</summary><ul>{}</ul></details>",
+            report.failed.len(),
+            failed.collect::<String>()
+        );
+    }
+    html
+}
+
+fn how_far(report: &Report) -> String {
+    let mut html = "<h2>How far</h2>\n".to_owned();
+    let Some(far) = &report.how_far else {
+        return html + "<p>No run was held out, so nothing tells how far the gap closes.</p>\n";
+    };
+    html += &closed(far);
+    let rows = report.horizons.iter().map(|ahead| {
+        let floor = ahead.noise_floor.map_or_else(|| "–".to_owned(), short);
+        vec![
+            horizon(ahead),
+            short(ahead.nominal),
+            short(ahead.refitted),
+            short(ahead.with_effect),
+            floor,
+        ]
+    });
+    html += &table(
+        [
+            "ahead",
+            "as stated",
+            "parameters re-fitted",
+            "with the effect",
+            "noise floor",
+        ],
+        rows,
+        1,
+    );
+    html += "<p class=\"faint\">Root mean square error of predictions, in units of the noise. The floor is \
+             what the filter expects if the hypothesis is right.</p>\n";
+    let traces = report.pictures.iter().flat_map(|pictures| &pictures.traces);
+    for trace in plots::most_bettered(traces) {
+        let caption = format!(
+            "{} of {}, which no fit has seen, beside predictions {} s before, and their errors. The band \
+             is two standard deviations of the error that is left if the hypothesis is right.",
+            trace.column,
+            trace.run,
+            appell_gap::diagnose::AHEAD
+        );
+        let [motion, errors] = plots::trace(trace);
+        html += &figure(&(motion + &errors), &caption);
+    }
+    if !report.disturbances.is_empty() {
+        let rows = report
+            .disturbances
+            .iter()
+            .map(|(name, before, after)| vec![code(name), short(*before), short(*after)]);
+        html += "<p>Disturbance that the filter needs to follow the recordings: an effect that is missing \
+                 shows as disturbance.</p>\n";
+        html += &table(["equation of", "without the effect", "with it"], rows, 1);
+    }
+    html
+}
+
+fn closed(far: &HowFar) -> String {
+    format!(
+        "<p>{} s ahead the error falls from {} to {} of the noise; the floor is {}. The gap closes by \
+         <b>{}</b>, with 95 % between {} and {}; against the model with re-fitted parameters by <b>{}</b>. \
+         Runs: {}.</p>\n",
+        far.horizon_s,
+        short(far.nominal),
+        short(far.with_effect),
+        short(far.noise_floor),
+        percent(far.closed),
+        percent(far.closed_ci95[0]),
+        percent(far.closed_ci95[1]),
+        percent(far.closed_vs_refitted),
+        escaped(&far.runs.join(", "))
+    )
+}
+
+fn horizon(ahead: &Ahead) -> String {
+    match ahead.horizon {
+        horizon if horizon <= 0.0 => "one step".to_owned(),
+        horizon if horizon.is_finite() => format!("{horizon} s"),
+        _ => "free run".to_owned(),
+    }
+}
+
+/// What to do now.
+fn next(report: &Report) -> String {
+    let text = match report.verdict {
+        Verdict::NoGap => {
+            "<p>Nothing has to be added to the model. The table below tells how small an effect these \
+             recordings would have shown.</p>\n"
+        }
+        Verdict::Explained | Verdict::Ambiguous => {
+            "<p>Write the effect into the spec, with the report that <code>--json report.json</code> \
+             wrote:</p>\n<pre>appell apply MODEL --report report.json -o improved.toml</pre>\n"
+        }
+        Verdict::Unexplained => {
+            "<p>Look at what the missing force depends on, and write that effect as a few lines of the \
+             spec language: <code>appell diagnose --effects own.toml</code>.</p>\n"
+        }
+    };
+    format!("<h2>Next</h2>\n{text}")
+}
+
+fn detectable(report: &Report) -> String {
+    let rows = report.detectable.iter().map(|one| {
+        let unit = if one.unit == "1" { "" } else { &one.unit };
+        vec![
+            code(&one.effect),
+            format!("{} {}", short(one.smallest), escaped(unit)),
+        ]
+    });
+    let rows: Vec<Vec<String>> = rows.collect();
+    if rows.is_empty() {
+        return String::new();
+    }
+    format!(
+        "<h2>What these recordings would show</h2>\n<details{}><summary>The smallest size of each effect \
+         that would be found with near certainty</summary>\n{}</details>\n",
+        if report.verdict == Verdict::NoGap {
+            " open"
+        } else {
+            ""
+        },
+        table(["effect", "smallest size"], rows.into_iter(), 1)
+    )
+}
+
+fn recordings(set: &DataSet) -> String {
+    let rows = set.runs.iter().map(|run| {
+        let part = match run.part {
+            Part::Fit => "to fit",
+            Part::Test => "held out",
+        };
+        vec![
+            escaped(&run.name),
+            part.to_owned(),
+            run.times.len().to_string(),
+            format!("{} s", short(run.duration())),
+        ]
+    });
+    let mut html = "<h2>Recordings</h2>\n".to_owned();
+    html += &table(["run", "used", "rows", "length"], rows, 2);
+    for finding in &set.findings {
+        let told = escaped(&crate::recording::sentence(finding));
+        let _ = writeln!(html, "<p class=\"faint\">{told}</p>");
+    }
+    html
+}
+
+/// A table; the columns from `numbers` on stand to the right. Cells are HTML.
+fn table<const N: usize>(
+    heading: [&str; N],
+    rows: impl Iterator<Item = Vec<String>>,
+    numbers: usize,
+) -> String {
+    let class = |column: usize| {
+        if column >= numbers {
+            " class=\"number\""
+        } else {
+            ""
+        }
+    };
+    let mut html = "<table>\n<tr>".to_owned();
+    for (column, text) in heading.iter().enumerate() {
+        let _ = write!(html, "<th{}>{text}</th>", class(column));
+    }
+    html += "</tr>\n";
+    for row in rows {
+        html += "<tr>";
+        for (column, cell) in row.iter().enumerate() {
+            let _ = write!(html, "<td{}>{cell}</td>", class(column));
+        }
+        html += "</tr>\n";
+    }
+    html + "</table>\n"
+}
+
+fn bar(part: f64) -> String {
+    let width = 100.0 * part.clamp(0.0, 1.0);
+    format!("<span class=\"bar\"><i style=\"width:{width:.1}%\"></i></span>")
+}
+
+fn figure(svg: &str, caption: &str) -> String {
+    format!(
+        "<figure>{svg}<figcaption>{}</figcaption></figure>\n",
+        escaped(caption)
+    )
+}
+
+fn code(text: &str) -> String {
+    format!("<code>{}</code>", escaped(text))
+}
+
+fn capital(text: &str) -> String {
+    let mut letters = text.chars();
+    let first = letters.next().map(char::to_uppercase);
+    first.into_iter().flatten().chain(letters).collect()
+}
+
+fn escaped(text: &str) -> String {
+    text.replace('&', "&amp;")
+        .replace('<', "&lt;")
+        .replace('>', "&gt;")
+}

@@ -1,0 +1,120 @@
+//! Pictures of a gap report.
+
+use appell_gap::diagnose::{Law, Trace};
+use appell_runtime::figure::{Layer, Look, Plot, Series};
+
+/// Channels that are drawn.
+const DRAWN: usize = 3;
+/// Colours: data, as stated, re-fitted, with the effect.
+const COLOURS: [usize; 4] = [2, 1, 4, 0];
+
+/// The channels that the effect betters most, in the order of the recordings.
+pub(super) fn most_bettered<'t>(traces: impl Iterator<Item = &'t Trace>) -> Vec<&'t Trace> {
+    let traces: Vec<&Trace> = traces.collect();
+    let mut order: Vec<usize> = (0..traces.len()).collect();
+    let gain = |&i: &usize| better(traces[i]);
+    order.sort_by(|a, b| gain(b).total_cmp(&gain(a)));
+    order.truncate(DRAWN);
+    order.sort_unstable();
+    order.into_iter().map(|i| traces[i]).collect()
+}
+
+/// Mean square of the error that the effect takes away, in units of what is left by right.
+fn better(trace: &Trace) -> f64 {
+    let square = |predicted: &[f64]| -> f64 {
+        let pairs = errors(trace, predicted)
+            .into_iter()
+            .filter(|error| error.is_finite());
+        pairs.map(|error| error * error).sum()
+    };
+    (square(&trace.refitted) - square(&trace.with_effect)) / trace.deviation.powi(2)
+}
+
+fn errors(trace: &Trace, predicted: &[f64]) -> Vec<f64> {
+    let pairs = trace.measured.iter().zip(predicted);
+    pairs
+        .map(|(measured, predicted)| measured - predicted)
+        .collect()
+}
+
+/// A channel with predictions, and the errors of these.
+pub(super) fn trace(trace: &Trace) -> [String; 2] {
+    let layer = |label: &str, y: Vec<f64>, look, colour| Layer {
+        series: Series {
+            label: label.to_owned(),
+            x: trace.times.clone(),
+            y,
+        },
+        look,
+        colour,
+    };
+    let [data, stated, refitted, effect] = COLOURS;
+    let label = |text: &str| format!("{text} [{}]", trace.unit);
+    let motion = Plot {
+        labels: ["t [s]".to_owned(), label(&trace.column)],
+        height: 170.0,
+        layers: vec![
+            layer("measured", trace.measured.clone(), Look::Points, data),
+            layer("as stated", trace.nominal.clone(), Look::Line, stated),
+            layer("re-fitted", trace.refitted.clone(), Look::Line, refitted),
+            layer(
+                "with the effect",
+                trace.with_effect.clone(),
+                Look::Line,
+                effect,
+            ),
+        ],
+    };
+    let wide = 2.0 * trace.deviation;
+    let edge = |value: f64| vec![value; trace.times.len()];
+    let error = |predicted: &[f64]| errors(trace, predicted);
+    let errors = Plot {
+        labels: ["t [s]".to_owned(), label("error")],
+        height: 150.0,
+        layers: vec![
+            layer("expected", edge(-wide), Look::Band(edge(wide)), data),
+            layer("as stated", error(&trace.nominal), Look::Line, stated),
+            layer("re-fitted", error(&trace.refitted), Look::Line, refitted),
+            layer(
+                "with the effect",
+                error(&trace.with_effect),
+                Look::Line,
+                effect,
+            ),
+        ],
+    };
+    [motion.to_svg(), errors.to_svg()]
+}
+
+/// The missing force over what it depends on.
+pub(super) fn law(law: &Law) -> String {
+    let layer = |label: &str, points: &[[f64; 2]], look, colour| Layer {
+        series: Series {
+            label: label.to_owned(),
+            x: points.iter().map(|[x, _]| *x).collect(),
+            y: points.iter().map(|[_, y]| *y).collect(),
+        },
+        look,
+        colour,
+    };
+    let [data, stated, _, effect] = COLOURS;
+    let mut layers = vec![
+        layer("recordings", &law.points, Look::Points, data),
+        layer("their mean", &law.means, Look::Line, stated),
+    ];
+    if !law.law.is_empty() {
+        layers.push(layer("law that was found", &law.law, Look::Line, effect));
+    }
+    let plot = Plot {
+        labels: [
+            format!("{} [{}]", law.variable, law.variable_unit),
+            format!(
+                "missing force in the equation of {} [{}]",
+                law.equation, law.unit
+            ),
+        ],
+        height: 260.0,
+        layers,
+    };
+    plot.to_svg()
+}

@@ -1,0 +1,140 @@
+//! Where in the drawing a name of the spec is at home: a joint, a body, a point of attack.
+
+use std::collections::BTreeSet;
+
+use appell_spec::expr::{Expr, Quantity};
+use appell_spec::mechanism::{
+    Connection, ConstraintKind, CoordinateId, Load, LoadKind, Mechanism, PointId,
+};
+
+/// Points that stand for a coordinate, pseudo-velocity, parameter, input, body, constraint or point.
+pub(super) fn home(mechanism: &Mechanism, name: &str) -> BTreeSet<PointId> {
+    let mut points = BTreeSet::new();
+    let named = mechanism.points.iter().position(|own| own.name == name);
+    points.extend(named);
+    let body = mechanism.bodies.iter().find(|own| own.name == name);
+    points.extend(body.map(|body| body.centre));
+    let constraint = mechanism.constraints.iter().find(|own| own.name == name);
+    points.extend(constraint.and_then(|constraint| match constraint.kind {
+        ConstraintKind::Rolling { contact, .. } => Some(contact),
+        ConstraintKind::FixedVelocity { point, .. } => Some(point),
+        ConstraintKind::Velocity { .. } | ConstraintKind::Position { .. } => None,
+    }));
+    for (index, coordinate) in mechanism.coordinates.iter().enumerate() {
+        if coordinate.label.name == name {
+            points.extend(moved(mechanism, index));
+        }
+    }
+    for speed in &mechanism.pseudo_velocities {
+        if speed.label.name == name {
+            for (index, _) in mechanism.coordinates.iter().enumerate() {
+                if mentions(&speed.definition, Quantity::Rate(index)) {
+                    points.extend(moved(mechanism, index));
+                }
+            }
+        }
+    }
+    for (index, input) in mechanism.inputs.iter().enumerate() {
+        if input.label.name == name {
+            points.extend(felt(mechanism, Quantity::Input(index)));
+        }
+    }
+    for (index, parameter) in mechanism.parameters.iter().enumerate() {
+        if parameter.label.name == name {
+            points.extend(shaped(mechanism, Quantity::Parameter(index)));
+        }
+    }
+    points
+}
+
+/// The joint of a coordinate: points that it places, and the pivots of frames that it turns.
+fn moved(mechanism: &Mechanism, coordinate: CoordinateId) -> Vec<PointId> {
+    let quantity = Quantity::Coordinate(coordinate);
+    let mut points: Vec<PointId> = placed(mechanism, quantity).collect();
+    for (id, frame) in mechanism.frames.iter().enumerate() {
+        if !frame
+            .turns
+            .iter()
+            .any(|turn| mentions(&turn.angle, quantity))
+        {
+            continue;
+        }
+        let placing = mechanism.points.iter().find(|point| point.frame == id);
+        let body = mechanism.bodies.iter().find(|body| body.frame == Some(id));
+        let pivot = placing.and_then(|point| point.from);
+        points.extend(pivot.or(body.map(|body| body.centre)));
+    }
+    points
+}
+
+/// Points whose places mention a quantity.
+fn placed(mechanism: &Mechanism, quantity: Quantity) -> impl Iterator<Item = PointId> {
+    let points = mechanism.points.iter().enumerate();
+    points
+        .filter(move |(_, point)| point.at.iter().any(|at| mentions(at, quantity)))
+        .map(|(id, _)| id)
+}
+
+/// Where loads act that mention a quantity.
+fn felt(mechanism: &Mechanism, quantity: Quantity) -> Vec<PointId> {
+    let loads = mechanism.loads.iter();
+    loads
+        .filter(|load| {
+            expressions(load)
+                .iter()
+                .any(|expr| mentions(expr, quantity))
+        })
+        .flat_map(|load| attack(mechanism, load))
+        .collect()
+}
+
+/// What a quantity of the mechanism itself shapes: places, masses, loads.
+fn shaped(mechanism: &Mechanism, quantity: Quantity) -> Vec<PointId> {
+    let heavy = mechanism.bodies.iter().filter(|body| {
+        let inertia = body
+            .inertia
+            .iter()
+            .flat_map(|inertia| inertia.matrix.as_flattened());
+        std::iter::once(&body.mass)
+            .chain(inertia)
+            .any(|expr| mentions(expr, quantity))
+    });
+    let mut points: Vec<PointId> = heavy.map(|body| body.centre).collect();
+    points.extend(placed(mechanism, quantity));
+    points.extend(felt(mechanism, quantity));
+    points
+}
+
+fn attack(mechanism: &Mechanism, load: &Load) -> Vec<PointId> {
+    match &load.kind {
+        LoadKind::Torque { on, .. } => vec![mechanism.bodies[*on].centre],
+        LoadKind::Generalized { coordinate, .. }
+        | LoadKind::Spring {
+            between: Connection::Coordinate(coordinate),
+            ..
+        }
+        | LoadKind::Damper {
+            between: Connection::Coordinate(coordinate),
+            ..
+        } => moved(mechanism, *coordinate),
+        kind => kind.points(),
+    }
+}
+
+fn expressions(load: &Load) -> Vec<&Expr> {
+    match &load.kind {
+        LoadKind::Gravity { acceleration, .. } => vec![acceleration],
+        LoadKind::Force { vector, .. } | LoadKind::Torque { vector, .. } => vector.iter().collect(),
+        LoadKind::Spring {
+            stiffness, relaxed, ..
+        } => vec![stiffness, relaxed],
+        LoadKind::Damper { damping, .. } => vec![damping],
+        LoadKind::Generalized { force, .. } => vec![force],
+    }
+}
+
+fn mentions(expr: &Expr, quantity: Quantity) -> bool {
+    let mut found = false;
+    expr.visit(&mut |own| found |= own == quantity);
+    found
+}

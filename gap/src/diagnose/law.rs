@@ -1,0 +1,259 @@
+//! The force that the model lacks, over what it depends on, with the law that was found for it.
+//!
+//! The states are those of the smoother under the nominal model, whose disturbance is free to be the
+//! missing force: what is drawn as data does not know the law. What the state does in a step beyond
+//! the equations without the effect, times the mass matrix, is the force.
+
+use appell_runtime::estimate::{Estimation, Recording, Smoothed};
+use appell_runtime::model::At;
+
+use super::DiagnoseError;
+use super::bench::Bench;
+use super::compare::Comparison;
+use super::hypothesis::Fitted;
+use super::report::Where;
+use crate::effects::{Acts, Part};
+
+/// Most steps that are looked at.
+const STEPS: usize = 6000;
+/// Most points that are drawn.
+const POINTS: usize = 500;
+/// Parts of a variable along which a law is drawn.
+const PARTS: usize = 60;
+/// A law that explains less of itself than this along a variable depends on something else.
+const DEPENDS: f64 = 0.3;
+
+/// Data and law over a variable, in SI.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Law {
+    /// The pseudo-velocity whose equation lacks the force.
+    pub equation: String,
+    /// Unit of the force.
+    pub unit: String,
+    /// A state or an input.
+    pub variable: String,
+    /// Its unit.
+    pub variable_unit: String,
+    /// Places along the recordings: variable, force.
+    pub points: Vec<[f64; 2]>,
+    /// Mean force in each part of the variable.
+    pub means: Vec<[f64; 2]>,
+    /// The law of the best hypothesis; empty where none acts in the equations.
+    pub law: Vec<[f64; 2]>,
+}
+
+/// One step of a recording.
+struct Step {
+    /// States, then inputs.
+    variables: Vec<f64>,
+    /// What the data say.
+    force: f64,
+    /// What the law says.
+    law: f64,
+}
+
+/// Of the equation with the greatest share.
+pub(super) fn law(
+    bench: &Bench<'_>,
+    comparison: &Comparison,
+    place: &Where,
+) -> Result<Option<Law>, DiagnoseError> {
+    let info = bench.effects.info();
+    let Some(first) = place.equations.first() else {
+        return Ok(None);
+    };
+    let names = info.states[..info.speeds].iter();
+    let Some(equation) = names.map(|s| &s.name).position(|name| *name == first.name) else {
+        return Ok(None);
+    };
+    let steps = steps(bench, comparison, equation)?;
+    let variables = info.states.iter().chain(info.inputs.iter());
+    let has_law = steps.iter().any(|step| step.law != 0.0);
+    let target = |step: &Step| if has_law { step.law } else { step.force };
+    let explained = (0..variables.clone().count()).map(|v| (v, explained(&steps, v, target)));
+    let best = explained.max_by(|a, b| a.1.total_cmp(&b.1));
+    let Some((variable, part)) = best.filter(|(_, part)| part.is_finite()) else {
+        return Ok(None);
+    };
+    let Some(quantity) = variables.clone().nth(variable) else {
+        return Ok(None);
+    };
+    let stride = steps.len().div_ceil(POINTS).max(1);
+    let of = |step: &Step| [step.variables[variable], step.force];
+    Ok(Some(Law {
+        equation: first.name.clone(),
+        unit: first.unit.clone(),
+        variable: quantity.name.to_string(),
+        variable_unit: quantity.unit.to_string(),
+        points: steps.iter().step_by(stride).map(of).collect(),
+        means: means(&steps, variable, |step| step.force),
+        law: if has_law && part > DEPENDS {
+            means(&steps, variable, |step| step.law)
+        } else {
+            Vec::new()
+        },
+    }))
+}
+
+/// The steps of all runs.
+fn steps(
+    bench: &Bench<'_>,
+    comparison: &Comparison,
+    equation: usize,
+) -> Result<Vec<Step>, DiagnoseError> {
+    let (nominal, best) = (comparison.nominal(), comparison.best());
+    let setup = bench.setup(&nominal.members);
+    let estimation = Estimation::new(&setup, &bench.recordings)?;
+    let rows: usize = bench.recordings.iter().map(|run| run.times().len()).sum();
+    let stride = rows.div_ceil(STEPS).max(1);
+    let with = &best.fit.values[..bench.effects.info().parameter_len()];
+    let without = without(bench, best);
+    let mut steps = Vec::new();
+    for (index, recording) in bench.recordings.iter().enumerate() {
+        let states = estimation.smoothed(&nominal.fit.values, index)?;
+        for row in (1..states.len()).step_by(stride) {
+            let forces = Forces::new(bench, recording, &states, row);
+            let own = |force: Vec<f64>| force[equation];
+            steps.push(Step {
+                variables: forces.variables(),
+                force: own(forces.missing(&without)),
+                law: own(forces.between(with, &without)),
+            });
+        }
+    }
+    steps.retain(|step| step.force.is_finite() && step.law.is_finite());
+    Ok(steps)
+}
+
+/// The step that ends at a row.
+struct Forces<'s> {
+    bench: &'s Bench<'s>,
+    /// Times at the ends.
+    times: [f64; 2],
+    /// States at the ends.
+    ends: [&'s [f64]; 2],
+    inputs: Vec<f64>,
+}
+
+impl<'s> Forces<'s> {
+    fn new(
+        bench: &'s Bench<'s>,
+        recording: &Recording,
+        states: &'s [Smoothed],
+        row: usize,
+    ) -> Self {
+        let info = bench.effects.info();
+        let mut inputs = vec![0.0; info.input_len()];
+        inputs[..recording.input_len()].copy_from_slice(recording.inputs(row - 1));
+        Self {
+            bench,
+            times: [recording.times()[row - 1], recording.times()[row]],
+            ends: [row - 1, row].map(|row| &states[row].state[..info.state_len()]),
+            inputs,
+        }
+    }
+
+    /// States in the middle, and inputs.
+    fn variables(&self) -> Vec<f64> {
+        let [from, to] = self.ends;
+        let middle = from.iter().zip(to).map(|(a, b)| 0.5 * (a + b));
+        middle.chain(self.inputs.iter().copied()).collect()
+    }
+
+    /// M (Δω/Δt − ω̇), with ω̇ the mean of both ends.
+    fn missing(&self, p: &[f64]) -> Vec<f64> {
+        let [before, after] = [0, 1].map(|end| self.rates(self.times[end], self.ends[end], p));
+        let [from, to] = self.ends;
+        let step = self.times[1] - self.times[0];
+        let beyond = |i: usize| (to[i] - from[i]) / step - 0.5 * (before[i] + after[i]);
+        self.times_mass(beyond, p)
+    }
+
+    /// M (ω̇ − ω̇₀) in the middle.
+    fn between(&self, with: &[f64], without: &[f64]) -> Vec<f64> {
+        let middle = self.variables();
+        let x = &middle[..self.ends[0].len()];
+        let [with, plain] = [with, without].map(|p| self.rates(self.times[0], x, p));
+        self.times_mass(|i| with[i] - plain[i], without)
+    }
+
+    fn rates(&self, t: f64, x: &[f64], p: &[f64]) -> Vec<f64> {
+        let mut rates = vec![0.0; x.len()];
+        let u = &self.inputs;
+        self.bench.model().rates(At { t, x, u, p }, &mut rates);
+        rates
+    }
+
+    fn times_mass(&self, acceleration: impl Fn(usize) -> f64, p: &[f64]) -> Vec<f64> {
+        let speeds = self.bench.effects.info().speeds;
+        let middle = self.variables();
+        let at = At {
+            t: self.times[0],
+            x: &middle[..self.ends[0].len()],
+            u: &self.inputs,
+            p,
+        };
+        let (mut mass, mut bias) = (vec![0.0; speeds * speeds], vec![0.0; speeds]);
+        let mut forces = vec![0.0; speeds];
+        self.bench
+            .model()
+            .appell(at, &mut mass, &mut bias, &mut forces);
+        let row = |i: usize| {
+            (0..speeds)
+                .map(|j| mass[i * speeds + j] * acceleration(j))
+                .sum()
+        };
+        (0..speeds).map(row).collect()
+    }
+}
+
+/// The parameters of a fit without what its members do.
+fn without(bench: &Bench<'_>, fitted: &Fitted) -> Vec<f64> {
+    let info = bench.effects.info();
+    let mut plain = fitted.fit.values[..info.parameter_len()].to_vec();
+    for &member in &fitted.members {
+        let candidate = bench.candidate(member);
+        for (index, part) in bench.own(candidate) {
+            if part != Part::Shape {
+                plain[index] = 0.0;
+            }
+        }
+        if let (Acts::Parameter(_), Some(index)) =
+            (candidate.acts, info.parameter_index(&candidate.site))
+        {
+            plain[index] = bench.set.parameters[index].value;
+        }
+    }
+    plain
+}
+
+/// The steps in order of a variable, cut into parts with as many steps each.
+fn parts(steps: &[Step], variable: usize) -> Vec<Vec<&Step>> {
+    let mut sorted: Vec<&Step> = steps.iter().collect();
+    sorted.sort_by(|a, b| a.variables[variable].total_cmp(&b.variables[variable]));
+    let size = sorted.len().div_ceil(PARTS).max(1);
+    sorted.chunks(size).map(<[&Step]>::to_vec).collect()
+}
+
+fn mean(part: &[&Step], of: impl Fn(&Step) -> f64) -> f64 {
+    part.iter().map(|step| of(step)).sum::<f64>() / part.len() as f64
+}
+
+/// Means of the variable and of a force.
+fn means(steps: &[Step], variable: usize, of: impl Fn(&Step) -> f64) -> Vec<[f64; 2]> {
+    let parts = parts(steps, variable);
+    let point = |part: &Vec<&Step>| [mean(part, |s| s.variables[variable]), mean(part, &of)];
+    parts.iter().map(point).collect()
+}
+
+/// Part of the variance of a force that its means along a variable have.
+fn explained(steps: &[Step], variable: usize, of: impl Fn(&Step) -> f64) -> f64 {
+    let all: Vec<&Step> = steps.iter().collect();
+    let centre = mean(&all, &of);
+    let whole: f64 = steps.iter().map(|step| (of(step) - centre).powi(2)).sum();
+    let parts = parts(steps, variable);
+    let between = parts
+        .iter()
+        .map(|part| part.len() as f64 * (mean(part, &of) - centre).powi(2));
+    between.sum::<f64>() / whole
+}

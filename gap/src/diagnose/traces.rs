@@ -1,0 +1,164 @@
+//! What people look at of the runs that were held out: channels beside predictions of them, and how
+//! errors grow with the horizon.
+
+use appell_runtime::estimate::Estimation;
+
+use super::DiagnoseError;
+use super::bench::Bench;
+use super::compare::Comparison;
+use super::held_out::{HeldOut, noise, origins, stated, taken_over};
+use super::hypothesis::Fitted;
+
+/// Horizons in s beside the one at which the gap is told: one step, short, the free run.
+const HORIZONS: [f64; 4] = [0.0, 0.1, 1.0, f64::INFINITY];
+/// The horizon of traces in s.
+pub const AHEAD: f64 = 1.0;
+/// Most points of a trace.
+const POINTS: usize = 1000;
+/// Rows from which the expected error is told.
+const EXPECTED_FROM: usize = 25;
+
+/// Root of the mean square of the errors at a horizon, in units of the noise.
+#[derive(Debug, Clone, PartialEq)]
+#[expect(missing_docs, reason = "the words of the contract")]
+pub struct Ahead {
+    /// In s: 0 is one step, infinity the free run to the end.
+    pub horizon: f64,
+    pub nominal: f64,
+    pub refitted: f64,
+    pub with_effect: f64,
+    /// What the filter expects; nothing for the free run.
+    pub noise_floor: Option<f64>,
+}
+
+/// A channel of a run beside predictions of it, [`AHEAD`] before, in the unit of the channel.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Trace {
+    /// File of the run.
+    pub run: String,
+    /// Column.
+    pub column: String,
+    /// Unit.
+    pub unit: String,
+    /// Times in s.
+    pub times: Vec<f64>,
+    /// What was measured.
+    pub measured: Vec<f64>,
+    /// What the model predicts with the parameters that the data set states.
+    pub nominal: Vec<f64>,
+    /// What it predicts with its parameters fitted.
+    pub refitted: Vec<f64>,
+    /// What the best hypothesis predicts.
+    pub with_effect: Vec<f64>,
+    /// Standard deviation that the errors have if the best hypothesis is right.
+    pub deviation: f64,
+}
+
+impl HeldOut {
+    /// Errors at all horizons.
+    pub(super) fn horizons(
+        &self,
+        bench: &Bench<'_>,
+        comparison: &Comparison,
+    ) -> Result<Vec<Ahead>, DiagnoseError> {
+        if self.recordings.is_empty() {
+            return Ok(Vec::new());
+        }
+        let (refitted, best) = (comparison.nominal(), comparison.best());
+        let noise = noise(bench, best)?;
+        let nominal = stated(bench, refitted);
+        let ahead = |horizon: f64| {
+            let error = |fitted: &Fitted| -> Result<f64, DiagnoseError> {
+                let errors = self.errors(bench, fitted, &noise, horizon)?;
+                let squares: f64 = errors.iter().map(|(_, _, square)| square).sum();
+                Ok((squares / errors.len().max(1) as f64).sqrt())
+            };
+            let floor = if horizon.is_finite() {
+                Some(self.floor(bench, best, &noise, horizon)?)
+            } else {
+                None
+            };
+            Ok(Ahead {
+                horizon,
+                nominal: error(&nominal)?,
+                refitted: error(refitted)?,
+                with_effect: error(best)?,
+                noise_floor: floor,
+            })
+        };
+        HORIZONS.into_iter().map(ahead).collect()
+    }
+
+    /// The channels of the first run.
+    pub(super) fn traces(
+        &self,
+        bench: &Bench<'_>,
+        comparison: &Comparison,
+    ) -> Result<Vec<Trace>, DiagnoseError> {
+        let Some(recording) = self.recordings.first() else {
+            return Ok(Vec::new());
+        };
+        let (refitted, best) = (comparison.nominal(), comparison.best());
+        let nominal = stated(bench, refitted);
+        let origins = origins(recording, POINTS);
+        let rows = recording.times().len();
+        let channels = bench.set.measured(bench.effects.info());
+        // By channel and row; NaN where nothing is predicted.
+        let predicted = |fitted: &Fitted| -> Result<Vec<Vec<f64>>, DiagnoseError> {
+            let setup = bench.setup(&fitted.members);
+            let estimation = Estimation::new(&setup, &self.recordings)?;
+            let values = taken_over(fitted, &estimation)?;
+            let mut predicted = vec![vec![f64::NAN; rows]; channels.len()];
+            for one in estimation.predictions(&values, 0, AHEAD, &origins)? {
+                let value = recording.measured(one.row)[one.channel] - one.residual;
+                predicted[one.channel][one.row] = value;
+            }
+            Ok(predicted)
+        };
+        let predictions = [&nominal, refitted, best].map(predicted);
+        let [nominal, refitted, with_effect] = predictions;
+        let (nominal, refitted, with_effect) = (nominal?, refitted?, with_effect?);
+        let deviations = self.deviations(bench, best)?;
+        let mut traces = Vec::new();
+        for (index, (channel, _)) in channels.iter().enumerate() {
+            let told: Vec<usize> = (0..rows)
+                .filter(|&row| {
+                    nominal[index][row].is_finite() || with_effect[index][row].is_finite()
+                })
+                .collect();
+            let of = |values: &dyn Fn(usize) -> f64| -> Vec<f64> {
+                let rows = told.iter();
+                rows.map(|&row| channel.unit.from_si(values(row))).collect()
+            };
+            traces.push(Trace {
+                run: self.names[0].clone(),
+                column: channel.column.clone(),
+                unit: channel.unit.text.clone(),
+                times: told.iter().map(|&row| recording.times()[row]).collect(),
+                measured: of(&|row| recording.measured(row)[index]),
+                nominal: of(&|row| nominal[index][row]),
+                refitted: of(&|row| refitted[index][row]),
+                with_effect: of(&|row| with_effect[index][row]),
+                deviation: channel.unit.from_si(deviations[index]),
+            });
+        }
+        Ok(traces)
+    }
+
+    /// Standard deviations in SI that errors have if a hypothesis is right, by channel.
+    fn deviations(&self, bench: &Bench<'_>, fitted: &Fitted) -> Result<Vec<f64>, DiagnoseError> {
+        let setup = bench.setup(&fitted.members);
+        let estimation = Estimation::new(&setup, &self.recordings)?;
+        let values = taken_over(fitted, &estimation)?;
+        let origins = origins(&self.recordings[0], EXPECTED_FROM);
+        let mut sums = vec![(0.0, 0.0); bench.measured.len()];
+        for (channel, variance) in estimation.expected_errors(&values, 0, AHEAD, &origins)? {
+            sums[channel].0 += variance;
+            sums[channel].1 += 1.0;
+        }
+        let means = sums.into_iter();
+        Ok(means
+            .map(|(sum, count): (f64, f64)| (sum / count.max(1.0)).sqrt())
+            .collect())
+    }
+}

@@ -1,0 +1,159 @@
+//! One quantity over another: points, lines and bands, as SVG.
+
+use std::fmt::Write as _;
+
+use super::axis::{Axis, number};
+use super::{
+    Area, CHARACTER, FOOTER_HEIGHT, HEADER_HEIGHT, LEFT, RIGHT, STYLE, Series, WIDTH, put, text,
+};
+
+/// Layers over a common pair of axes, drawn in their order.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Plot {
+    /// Name and unit of the horizontal and of the vertical axis.
+    pub labels: [String; 2],
+    /// Height of the frame.
+    pub height: f64,
+    /// What is drawn.
+    pub layers: Vec<Layer>,
+}
+
+/// A part of a plot; one without a label is not in the legend.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Layer {
+    /// Name and values.
+    pub series: Series,
+    /// How they are drawn.
+    pub look: Look,
+    /// Number of its colour, 0 to 5.
+    pub colour: usize,
+}
+
+/// How a layer is drawn.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Look {
+    /// A line.
+    Line,
+    /// A small disc at each point.
+    Points,
+    /// What lies between the series and these values.
+    Band(Vec<f64>),
+}
+
+/// Beside the style of the figures.
+const PLOT_STYLE: &str = "\
+.band{stroke:none;fill-opacity:.25}.dots{stroke-width:3.2;stroke-linecap:round;stroke-opacity:.55;fill:none}
+.f0{fill:#0072b2}.f1{fill:#d55e00}.f2{fill:#009e73}.f3{fill:#cc79a7}.f4{fill:#e69f00}.f5{fill:#56b4e9}
+";
+/// Room for the name of the vertical axis.
+const HEAD: f64 = 22.0;
+
+impl Plot {
+    /// The plot as an SVG document.
+    pub fn to_svg(&self) -> String {
+        let x_axis = Axis::tight(self.layers.iter().flat_map(|l| &l.series.x).copied());
+        let y_axis = Axis::padded(self.layers.iter().flat_map(Layer::heights));
+        let area = Area {
+            top: HEAD + HEADER_HEIGHT,
+            width: WIDTH - LEFT - RIGHT,
+            height: self.height,
+        };
+        let bottom = area.top + area.height;
+        let height = bottom + FOOTER_HEIGHT;
+        let mut svg = format!(
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {WIDTH} {height:.0}\" \
+             width=\"{WIDTH}\" height=\"{height:.0}\">\n<style>\n{STYLE}{PLOT_STYLE}</style>\n\
+             <rect class=\"paper\" width=\"100%\" height=\"100%\"/>\n"
+        );
+        put(&mut svg, &text(LEFT, 16.0, "", &self.labels[1]));
+        area.grid(&mut svg, &x_axis, &y_axis);
+        let mut right = LEFT;
+        for layer in &self.layers {
+            let path = layer.path(&area, &x_axis, &y_axis);
+            put(&mut svg, &layer.element(&path));
+            if !layer.series.label.is_empty() {
+                let y = area.top - 9.0;
+                put(&mut svg, &layer.element(&layer.sample([right, y - 4.0])));
+                put(&mut svg, &text(right + 23.0, y, "", &layer.series.label));
+                right += 23.0 + CHARACTER * layer.series.label.chars().count() as f64 + 16.0;
+            }
+        }
+        for tick in x_axis.ticks(8) {
+            let x = LEFT + area.width * x_axis.part(tick);
+            let label = number(tick, x_axis.step(8));
+            put(
+                &mut svg,
+                &text(x, bottom + 16.0, "text-anchor=\"middle\"", &label),
+            );
+        }
+        let middle = LEFT + area.width / 2.0;
+        put(
+            &mut svg,
+            &text(
+                middle,
+                bottom + 35.0,
+                "text-anchor=\"middle\"",
+                &self.labels[0],
+            ),
+        );
+        svg + "</svg>\n"
+    }
+}
+
+impl Layer {
+    fn heights(&self) -> impl Iterator<Item = f64> {
+        let other: &[f64] = match &self.look {
+            Look::Band(other) => other,
+            Look::Line | Look::Points => &[],
+        };
+        self.series.y.iter().chain(other).copied()
+    }
+
+    fn element(&self, path: &str) -> String {
+        let colour = self.colour;
+        let class = match self.look {
+            Look::Line => format!("line c{colour}"),
+            Look::Points => format!("dots c{colour}"),
+            Look::Band(_) => format!("band f{colour}"),
+        };
+        format!("<path class=\"{class}\" d=\"{path}\"/>")
+    }
+
+    fn sample(&self, [x, y]: [f64; 2]) -> String {
+        match self.look {
+            Look::Line => format!("M{x:.1} {y:.1}h18"),
+            Look::Points => format!("M{:.1} {y:.1}h0", x + 9.0),
+            Look::Band(_) => format!("M{x:.1} {:.1}h18v9h-18z", y - 4.5),
+        }
+    }
+
+    fn path(&self, area: &Area, x_axis: &Axis, y_axis: &Axis) -> String {
+        match &self.look {
+            Look::Line => area.line(&self.series, x_axis, y_axis),
+            Look::Points => {
+                let place = |x: f64, y: f64| {
+                    let right = LEFT + area.width * x_axis.part(x);
+                    [right, area.top + area.height * (1.0 - y_axis.part(y))]
+                };
+                let mut path = String::new();
+                let points = self.series.x.iter().zip(&self.series.y);
+                for (x, y) in points.filter(|(x, y)| x.is_finite() && y.is_finite()) {
+                    let [x, y] = place(*x, *y);
+                    // Writing to a string cannot fail.
+                    let _ = write!(path, "M{x:.1} {y:.1}h0");
+                }
+                path
+            }
+            Look::Band(other) => {
+                let there = area.line(&self.series, x_axis, y_axis);
+                let back = Series {
+                    label: String::new(),
+                    x: self.series.x.iter().rev().copied().collect(),
+                    y: other.iter().rev().copied().collect(),
+                };
+                let back = area.line(&back, x_axis, y_axis);
+                format!("{there}{}z", back.replacen('M', "L", 1))
+            }
+        }
+    }
+}

@@ -108,7 +108,7 @@ def make(mechanism, p, kind, site, size, law="library", peak=1.0, rng=None):
     at = coordinate_of(mechanism, site)
     amplitude, rate = MOTION[mechanism.name].get(at, (1.0, 1.0))
     index = min(mechanism.coordinates.index(at), len(mechanism.speeds) - 1)
-    index = {"r": 3, "phi": 1, "theta": 0}[at] if mechanism.name in ("unicycle", "rolling_wheel") else index
+    index = {"r": 3, "phi": 1, "theta": 0}.get(at, 0) if mechanism.name in ("unicycle", "rolling_wheel") else index
     force = 0.02 * forces(mechanism.name, p)[index]
     inertia = mechanism.mass(p, np.zeros(len(mechanism.coordinates)))[index, index]
     wheel = mechanism.name in ("unicycle", "rolling_wheel")

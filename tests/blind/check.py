@@ -3,6 +3,7 @@
     check.py [--archive]      with --archive a case is made anew and held against the committed one"""
 
 import argparse
+import json
 import tarfile
 import tempfile
 from pathlib import Path
@@ -183,6 +184,19 @@ def a_case_is_made_again_byte_for_byte():
                 assert committed == path.read_bytes(), f"{name}/{path.name}"
 
 
+def labels_and_cases_agree():
+    """As many as planned, and no case tells its label."""
+    labels = json.loads((HERE / "labels.json").read_text())["cases"]
+    with tarfile.open(HERE / "cases.tar.xz") as archive:
+        recordings = [m for m in archive.getnames() if m.endswith("recording.toml")]
+        assert {m.split("/")[1] for m in recordings} == set(labels) == set(generate.names())
+        for member in recordings:
+            text = archive.extractfile(member).read().decode()
+            label = labels[member.split("/")[1]]
+            for word in label["effects"] + [label["kind"], label["off_kind"] or "@", label["null_kind"] or "@"]:
+                assert word.split("@")[0] not in text or not word.split("@")[0], (member, word)
+
+
 def main():
     ask = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     ask.add_argument("--archive", action="store_true")
@@ -199,7 +213,7 @@ def main():
         innovations_of_the_true_filter_are_white,
     ]
     if ask.archive:
-        checks.append(a_case_is_made_again_byte_for_byte)
+        checks += [labels_and_cases_agree, a_case_is_made_again_byte_for_byte]
     for check in checks:
         check()
         print("ok  ", check.__name__.replace("_", " "), flush=True)

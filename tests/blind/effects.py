@@ -105,7 +105,7 @@ class Slope(Effect):
         total = 0.0
         for body in mechanism.bodies.values():
             forward = body.jacobian(p, q)[..., 0, :]
-            total = total + body.mass(p) * 9.81 * self.size * forward
+            total = total + np.asarray(body.mass(p) * 9.81 * self.size)[..., None] * forward
         return total
 
 
@@ -157,7 +157,8 @@ class DryFriction(Effect):
 
     def speed(self, mechanism):
         """Speed that is the rate of the coordinate; friction that sticks sits on no other one."""
-        return {"theta": 0, "r": 3}[self.site] if mechanism.name == "unicycle" else mechanism.coordinates.index(self.site)
+        wheel = mechanism.name in ("unicycle", "rolling_wheel")
+        return {"theta": 0, "r": 3}[self.site] if wheel else mechanism.coordinates.index(self.site)
 
 
 @dataclass

@@ -28,6 +28,7 @@ import simulate
 from effects import Rig, Sensor
 from plan import CASES
 
+HERE = Path(__file__).resolve().parent
 SEED = 61803
 RUNS = 5
 FIT_RUNS = 3
@@ -287,9 +288,14 @@ def names():
     return {f"case_{place + 1:03d}": int(number) for place, number in enumerate(order)}
 
 
-def pack(out):
-    """One archive with the same bytes each time."""
-    here = Path(__file__).resolve().parent
+def write_labels(path, labels):
+    """One line a case."""
+    lines = ",\n".join(f'"{name}": {json.dumps(label)}' for name, label in sorted(labels.items()))
+    path.write_text(f'{{"schema": "gap-labels/1", "seed": {SEED}, "cases": {{\n{lines}\n}}}}\n')
+
+
+def archive(root, pattern, name):
+    """Files below a folder as one archive beside this file, with the same bytes each time."""
 
     def plain(entry):
         entry.uid = entry.gid = entry.mtime = 0
@@ -297,12 +303,10 @@ def pack(out):
         entry.mode = 0o755 if entry.isdir() else 0o644
         return entry
 
-    with lzma.open(here / "cases.tar.xz", "wb", preset=9 | lzma.PRESET_EXTREME) as file:
-        with tarfile.open(fileobj=file, mode="w", format=tarfile.USTAR_FORMAT) as archive:
-            for path in sorted((out / "cases").rglob("*")):
-                if path.is_file():
-                    archive.add(path, f"cases/{path.relative_to(out / 'cases')}", filter=plain)
-    shutil.copy(out / "labels.json", here / "labels.json")
+    with lzma.open(HERE / f"{name}.tar.xz", "wb", preset=9 | lzma.PRESET_EXTREME) as file:
+        with tarfile.open(fileobj=file, mode="w", format=tarfile.USTAR_FORMAT) as packed:
+            for path in sorted(root.glob(pattern)):
+                packed.add(path, path.relative_to(root), filter=plain)
 
 
 def main():
@@ -326,10 +330,10 @@ def main():
             f" d' {l['dprime']:7.1f}  closed {closed if closed is None else round(closed, 3)}  {time.time() - began:.0f} s",
             flush=True,
         )
-        text = {"schema": "gap-labels/1", "seed": SEED, "cases": dict(sorted(labels.items()))}
-        path.write_text(json.dumps(text, indent=1) + "\n")
+        write_labels(path, labels)
     if ask.pack:
-        pack(ask.out)
+        archive(ask.out, "cases/*/*", "cases")
+        shutil.copy(path, HERE / "labels.json")
 
 
 if __name__ == "__main__":

@@ -117,7 +117,7 @@ ACTUATORS = [
 JOINTS_AND_CONTACTS = [
     single("pendulum", "backlash@theta", "field", size=1.0),
     single("cart_pole", "backlash@x", "field", size=1.0),
-    single("euc_2dof", "longitudinal_slip@contact", 15),
+    single("euc_2dof", "longitudinal_slip@contact", "field", size=6.0),
     single("unicycle", "lateral_slip@contact", "field", size=1.0),
 ]
 

@@ -2,7 +2,8 @@
 
     score.py --reports FOLDER --tool PATH        diagnoses every case into FOLDER/appell, then scores
     score.py --reports FOLDER --leave-one-out    the same without the effect that is there, in FOLDER/left_out
-    score.py --reports FOLDER                    scores what lies in FOLDER, one column per subfolder
+    score.py --reports FOLDER                    scores what lies in FOLDER, one column per subfolder; the
+                                                 baselines' reports come from the archive beside this file
     score.py --reports FOLDER --write FILE.md    and writes the table between the markers of FILE.md
 
 The tool gets a folder that holds one case and nothing else; no label is near it."""
@@ -57,6 +58,14 @@ def unpack(folder):
     with tarfile.open(HERE / "cases.tar.xz") as archive:
         archive.extractall(folder, filter="data")
     return Path(folder) / "cases"
+
+
+def bundled(folder):
+    """Reports of the baselines as committed, where none lie in the folder."""
+    archive = HERE / "baselines.tar.xz"
+    if archive.exists() and not (folder / "output_error").exists():
+        with tarfile.open(archive) as reports:
+            reports.extractall(folder, filter="data")
 
 
 def diagnose(tool, case, report, without):
@@ -330,6 +339,7 @@ def main():
         run(ask.tool, ask.reports / "left_out", wanted, ask.jobs)
     elif ask.tool:
         run(ask.tool, ask.reports / "appell", dict.fromkeys(labels, ()), ask.jobs)
+    bundled(ask.reports)
     text = section(labels, ask.reports)
     print(text)
     if ask.misses:

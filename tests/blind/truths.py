@@ -72,37 +72,45 @@ def geared(base, coordinate, share, half_gap, stiffness, damping):
     return Truth(gear, mesh, lambda p, q, v: (np.append(q, q[i]), np.append(v, v[i])))
 
 
-# Electric unicycle whose wheel slips along its path: the force follows the slip.
+# Electric unicycle whose wheel slips along its path: the force follows the slip. The odometer counts
+# the turns of the wheel, so the declared x is that of the wheel's rim; the axle comes last.
 
 
 def slipping_euc(compliance):
+    rim = [2, 1]  # places of axle and rider among the speeds (rim, rider, axle)
+
     def mass(p, q):
         M = np.zeros((3, 3))
-        M[:2, :2] = euc_2dof.mass(p, q[:2])
-        M[0, 0] -= p["J_w"] / p["R"] ** 2
-        M[2, 2] = p["J_w"]
+        M[np.ix_(rim, rim)] = euc_2dof.mass(p, q[rim])
+        M[0, 0] = p["J_w"] / p["R"] ** 2
+        M[2, 2] -= M[0, 0]
         return M
 
+    def bias(p, q, v):
+        h = np.zeros(3)
+        h[rim] = euc_2dof_bias(p, q[rim], v[rim])
+        return h
+
     def creep(p, q, v):
-        ground_speed = max(abs(v[0]), 0.3)
+        ground_speed = max(abs(v[2]), 0.3)
         load = (p["m"] + p["m_0"] + p["m_w"]) * p["g"]
-        force = load * (p["R"] * v[2] - v[0]) / (compliance * ground_speed)
-        return np.array([force, 0.0, -p["R"] * force])
+        force = load * (v[0] - v[2]) / (compliance * ground_speed)
+        return np.array([-force, 0.0, force])
 
     slipping = Mechanism(
         name="euc_2dof that slips",
-        coordinates=("x", "phi", "spin"),
-        speeds=("v", "phi_dot", "spin_rate"),
+        coordinates=("rim", "phi", "x"),
+        speeds=("rim_speed", "phi_dot", "v"),
         inputs=("M_d",),
         mass=mass,
-        bias=lambda p, q, v: np.append(euc_2dof_bias(p, q[:2], v[:2]), 0.0),
-        input_map=lambda p, q: np.array([[0.0], [-1.0], [1.0]]),
+        bias=bias,
+        input_map=lambda p, q: np.array([[1 / p["R"]], [-1.0], [0.0]]),
         kinematics=lambda p, q: np.eye(3),
         potential=lambda p, q: euc_2dof.potential(p, q[..., :2]),
         bodies={},
         defaults=euc_2dof.defaults,
     )
-    return Truth(slipping, creep, lambda p, q, v: (np.append(q, q[0] / p["R"]), np.append(v, v[0] / p["R"])))
+    return Truth(slipping, creep, lambda p, q, v: (np.append(q, q[0]), np.append(v, v[0])))
 
 
 # Unicycle whose wheel slips sideways: the lateral velocity of the contact is a fifth speed. Derived

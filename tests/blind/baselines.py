@@ -147,7 +147,10 @@ def stepper(data, variants):
         if variant.forces:
             groups.setdefault(variant.sizes, []).append(row)
     groups = [
-        (variants[rows[0]].forces, *((p, slice(None)) if single else ({k: x[rows] for k, x in p.items()}, rows)))
+        (
+            variants[rows[0]].forces,
+            *((p, slice(None)) if single else ({k: x[rows] for k, x in p.items()}, rows)),
+        )
         for rows in groups.values()
     ]
 
@@ -435,7 +438,9 @@ class OutputError:
             c = self.step(r + J[:, :k] @ shift, J, k)  # the prior is about no shift
             shift = np.clip(c[:k], -4, 4)
             sizes = {name: size + c[k + i] for i, (name, size) in enumerate(sizes.items())}
-            starts = [s + c[k + w + i * len(s) : k + w + (i + 1) * len(s)] * scale for i, s in enumerate(starts)]
+            starts = [
+                s + c[k + w + i * len(s) : k + w + (i + 1) * len(s)] * scale for i, s in enumerate(starts)
+            ]
         return best
 
 
@@ -506,7 +511,14 @@ def main():
                 path = ask.reports / name / f"{folder.name}.json"
                 path.parent.mkdir(parents=True, exist_ok=True)
                 path.write_text(json.dumps(made))
-            said = {name: ("+".join(made["which"][0]["effects"]) or "nothing") if "which" in made else made["trouble"] for name, made in reports.items()}
+            said = {
+                name: (
+                    ("+".join(made["which"][0]["effects"]) or "nothing")
+                    if "which" in made
+                    else made["trouble"]
+                )
+                for name, made in reports.items()
+            }
             print(folder.name, data.mechanism.name, said, flush=True)
     if ask.pack:
         pack(ask.reports)

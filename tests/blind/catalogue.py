@@ -4,7 +4,18 @@ typical sizes of effects, and the answers that are right."""
 import numpy as np
 
 import truths
-from effects import Actuator, DryFriction, Force, Memory, Parameter, PointForce, Richer, Sensor, Slope, SpinFriction
+from effects import (
+    Actuator,
+    DryFriction,
+    Force,
+    Memory,
+    Parameter,
+    PointForce,
+    Richer,
+    Sensor,
+    Slope,
+    SpinFriction,
+)
 
 FIXED = ("g", "m_w", "J_w", "J_0", "h_0", "l_0")  # known exactly
 TOLERANCE = {"m": 0.02, "l": 0.01, "r": 0.01, "h": 0.01, "I": 0.05, "J": 0.05, "R": 0.004}  # by first letter
@@ -75,7 +86,10 @@ def forces(name, p):
         "carriage": lambda: [1.5 * p["m"]],
         "pendulum": lambda: [0.45 * p["m"] * g * p["l"]],
         "cart_pole": lambda: [2 * (p["m_cart"] + p["m_pole"]), 0.1 * p["m_pole"] * g * p["l"]],
-        "double_pendulum": lambda: [0.4 * g * (p["m1"] * p["r1"] + p["m2"] * p["l1"]), 0.35 * g * p["m2"] * p["r2"]],
+        "double_pendulum": lambda: [
+            0.4 * g * (p["m1"] * p["r1"] + p["m2"] * p["l1"]),
+            0.35 * g * p["m2"] * p["r2"],
+        ],
         "euc_2dof": lambda: [60.0, 15.0],
         "euc_3dof": lambda: [60.0, 3.0, 15.0],
         "rolling_wheel": lambda: [1.0, 1.0, 0.4],
@@ -100,7 +114,11 @@ def coordinate_of(mechanism, site):
     """The coordinate at which an effect on a wheel or a body is felt most."""
     if site in mechanism.coordinates:
         return site
-    return "phi" if mechanism.name in ("unicycle", "rolling_wheel") else mechanism.coordinates[-1 if site in ("pole", "link2") else 0]
+    return (
+        "phi"
+        if mechanism.name in ("unicycle", "rolling_wheel")
+        else mechanism.coordinates[-1 if site in ("pole", "link2") else 0]
+    )
 
 
 def make(mechanism, p, kind, site, size, law="library", peak=1.0, rng=None):
@@ -108,17 +126,32 @@ def make(mechanism, p, kind, site, size, law="library", peak=1.0, rng=None):
     at = coordinate_of(mechanism, site)
     amplitude, rate = MOTION[mechanism.name].get(at, (1.0, 1.0))
     index = min(mechanism.coordinates.index(at), len(mechanism.speeds) - 1)
-    index = {"r": 3, "phi": 1, "theta": 0}.get(at, 0) if mechanism.name in ("unicycle", "rolling_wheel") else index
+    index = (
+        {"r": 3, "phi": 1, "theta": 0}.get(at, 0)
+        if mechanism.name in ("unicycle", "rolling_wheel")
+        else index
+    )
     force = 0.02 * forces(mechanism.name, p)[index]
     inertia = mechanism.mass(p, np.zeros(len(mechanism.coordinates)))[index, index]
     wheel = mechanism.name in ("unicycle", "rolling_wheel")
     name = mechanism.name
 
     if kind.startswith("actuator"):
-        unit = {"gain": 0.03, "bias": 0.02 * peak, "lag": 0.01, "delay": 0.005, "saturation": peak, "dead_zone": 0.02 * peak}
+        unit = {
+            "gain": 0.03,
+            "bias": 0.02 * peak,
+            "lag": 0.01,
+            "delay": 0.005,
+            "saturation": peak,
+            "dead_zone": 0.02 * peak,
+        }
         return Actuator(kind, site, size * unit[kind[9:]], law)
     if kind.startswith("sensor"):
-        unit = {"sensor_bias": 2 * RIGS[name]["noise"].get(site, 1e-3), "sensor_scale": 0.005, "sensor_delay": 0.003}
+        unit = {
+            "sensor_bias": 2 * RIGS[name]["noise"].get(site, 1e-3),
+            "sensor_scale": 0.005,
+            "sensor_delay": 0.003,
+        }
         return Sensor(kind, site, size * unit[kind])
     if kind in ("parameter_error", "added_inertia", "mass_offset"):
         unit = {"parameter_error": 0.08, "added_inertia": 0.05 * inertia, "mass_offset": 0.002}
@@ -242,7 +275,9 @@ def coordinate_equation(mechanism, coordinate):
 def equations(mechanism, kind, site):
     """Equations in which the effect acts, if it acts as a force there."""
     if family(kind) == "actuator":
-        column = mechanism.input_map({"R": 1.0}, np.zeros(len(mechanism.coordinates)))[:, mechanism.inputs.index(site)]
+        column = mechanism.input_map({"R": 1.0}, np.zeros(len(mechanism.coordinates)))[
+            :, mechanism.inputs.index(site)
+        ]
         return [speed for speed, entry in zip(mechanism.speeds, column) if entry]
     if family(kind) not in ("force", "joint"):
         return None

@@ -1,6 +1,6 @@
 """Checks the simulators by what does not come from them: energy, closed forms, each other, chi-square.
 
-    check.py [--archive]      with --archive a case is made anew and held against the committed one"""
+check.py [--archive]      with --archive a case is made anew and held against the committed one"""
 
 import argparse
 import json
@@ -73,13 +73,18 @@ def mujoco_and_scipy_agree():
         "carriage": [Force("viscous_friction", "x", 0.4), Force("spring", "x", 2.0)],
         "pendulum": [Parameter("mass_offset", "rod", 0.02), Force("viscous_friction", "theta", 0.05)],
         "cart_pole": [Parameter("mass_offset", "pole", 0.02), Actuator("actuator_lag", "F", 0.05)],
-        "double_pendulum": [Parameter("added_inertia", "theta1", 0.01, mechanism), Force("spring", "theta2", 0.2)],
+        "double_pendulum": [
+            Parameter("added_inertia", "theta1", 0.01, mechanism),
+            Force("spring", "theta2", 0.2),
+        ],
     }
     for name, effects in with_effects.items():
         for some in ([], effects):
             ours, theirs = moved(name, some), moved(name, some, mujoco=True)
             apart = np.sqrt(np.mean((ours.states - theirs.states) ** 2))
-            limit = 1e-4 if any(isinstance(e, Actuator) for e in some) else AGREEMENT  # a lag goes in steps there
+            limit = (
+                1e-4 if any(isinstance(e, Actuator) for e in some) else AGREEMENT
+            )  # a lag goes in steps there
             assert apart < limit, (name, len(some), apart)
 
 
@@ -140,7 +145,9 @@ def delays_shift_the_command():
 def lugre_and_play_lose_energy():
     """What a rig has besides may not drive it."""
     for effect in (
-        catalogue.make(mechanisms.pendulum, parameters("pendulum"), "coulomb_friction", "theta", 4.0, "lugre"),
+        catalogue.make(
+            mechanisms.pendulum, parameters("pendulum"), "coulomb_friction", "theta", 4.0, "lugre"
+        ),
         catalogue.make(mechanisms.pendulum, parameters("pendulum"), "hysteresis", "theta", 4.0),
         catalogue.make(mechanisms.pendulum, parameters("pendulum"), "backlash", "theta", 1.0),
     ):
@@ -169,7 +176,9 @@ def innovations_of_the_true_filter_are_white():
             x = x + filter.K[k] @ e
             if k + 1 < len(trial.t):
                 step = trial.t[k + 1] - trial.t[k]
-                x = oracle.flow(place.mechanism, place.true, x, inputs[k], np.zeros(len(place.disturbance_sd)), step)
+                x = oracle.flow(
+                    place.mechanism, place.true, x, inputs[k], np.zeros(len(place.disturbance_sd)), step
+                )
         mean = np.mean(np.square(out[10:]))
         assert abs(mean - 1) < 4 * np.sqrt(2 / np.size(out)), (name, mean)
 
@@ -193,7 +202,11 @@ def labels_and_cases_agree():
         for member in recordings:
             text = archive.extractfile(member).read().decode()
             label = labels[member.split("/")[1]]
-            for word in label["effects"] + [label["kind"], label["off_kind"] or "@", label["null_kind"] or "@"]:
+            for word in label["effects"] + [
+                label["kind"],
+                label["off_kind"] or "@",
+                label["null_kind"] or "@",
+            ]:
                 assert word.split("@")[0] not in text or not word.split("@")[0], (member, word)
 
 

@@ -45,8 +45,12 @@ def linearised(mechanism, p, kept):
 
     size, inputs = n + len(mechanism.speeds), len(mechanism.inputs)
     still, idle = np.zeros(size), np.zeros(inputs)
-    A = np.stack([(rates(NUDGE * e, idle) - rates(-NUDGE * e, idle)) / (2 * NUDGE) for e in np.eye(size)[kept]], axis=1)
-    B = np.stack([(rates(still, NUDGE * e) - rates(still, -NUDGE * e)) / (2 * NUDGE) for e in np.eye(inputs)], axis=1)
+    A = np.stack(
+        [(rates(NUDGE * e, idle) - rates(-NUDGE * e, idle)) / (2 * NUDGE) for e in np.eye(size)[kept]], axis=1
+    )
+    B = np.stack(
+        [(rates(still, NUDGE * e) - rates(still, -NUDGE * e)) / (2 * NUDGE) for e in np.eye(inputs)], axis=1
+    )
     return A, B
 
 
@@ -75,7 +79,9 @@ def double_pendulum(p, rng, duration, run):
     lower = p["g"] * p["m2"] * p["r2"]
     first, second = multisine(rng, 0.15, 2.0), multisine(rng, 0.2, 2.0)
     start = np.concatenate([rng.normal(0, 0.2, 2), np.zeros(2)])
-    return start, lambda k, t, x: np.array([0.4 * upper * first(t), 0.35 * lower * second(t) - 0.05 * lower * x[3]])
+    return start, lambda k, t, x: np.array(
+        [0.4 * upper * first(t), 0.35 * lower * second(t) - 0.05 * lower * x[3]]
+    )
 
 
 def euc_2dof(p, rng, duration, run):
@@ -107,7 +113,21 @@ def euc_3dof(p, rng, duration, run):
 def rolling_wheel(p, rng, duration, run):
     """It rolls freely, fast enough not to fall over."""
     spin = rng.uniform(2.2, 3.2) / p["R"]
-    return np.array([0, 0, rng.normal(0, 0.3), rng.uniform(0.03, 0.15), 0, rng.normal(0, 0.1), spin, rng.normal(0, 0.1)]), None
+    return (
+        np.array(
+            [
+                0,
+                0,
+                rng.normal(0, 0.3),
+                rng.uniform(0.03, 0.15),
+                0,
+                rng.normal(0, 0.1),
+                spin,
+                rng.normal(0, 0.1),
+            ]
+        ),
+        None,
+    )
 
 
 def unicycle(p, rng, duration, run):
@@ -136,7 +156,6 @@ def for_run(mechanism, p, rng, duration, noise, run):
     """Start and drive of a run. The drive's own sensors are not those that are recorded."""
     start, law = globals()[mechanism.name](p, rng, duration, run)
     own = np.random.default_rng(rng.integers(2**32))
-    n = len(mechanism.coordinates)
     sd = np.concatenate([0.3 * np.asarray(noise), np.full(len(mechanism.speeds), 0.003)])
 
     def drive(k, t, x):

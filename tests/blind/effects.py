@@ -58,7 +58,9 @@ class Force(Effect):
             "spring": lambda: -c * position,
             "rolling_resistance": lambda: -c * np.tanh(rate / 0.05),
             "ripple": lambda: c * np.sin(2 * np.pi * position / self.pitch),
-            "cogging": lambda: c * np.sign(np.sin(self.teeth * position)) * np.abs(np.sin(self.teeth * position)) ** 0.7,
+            "cogging": lambda: c
+            * np.sign(np.sin(self.teeth * position))
+            * np.abs(np.sin(self.teeth * position)) ** 0.7,
             "hardening": lambda: -c * position**3,
             "thermal_drift": lambda: -c * np.exp(-t / 4.0) * rate,
         }
@@ -223,7 +225,9 @@ class Actuator(Effect):
             off, rate = self.given - u, self.slope
             along = (rate + damping * pulse * off) / swing
             value = u + decay * (off * c + along * s)
-            slope = decay * ((along * swing - damping * pulse * off) * c - (off * swing + damping * pulse * along) * s)
+            slope = decay * (
+                (along * swing - damping * pulse * off) * c - (off * swing + damping * pulse * along) * s
+            )
             return value, slope
         if self.kind == "actuator_lag":
             return u + (self.given - u) * np.exp(-since / self.size), 0.0
@@ -309,13 +313,15 @@ class Richer(Effect):
 
 @dataclass
 class Rig:
-    """A real mechanism: the declared one, the true parameters, what acts besides."""
+    """A real mechanism: the declared one, the true parameters, what acts besides. `unchanged` are the
+    parameters before an effect changed them."""
 
     mechanism: object
     parameters: dict
     effects: list = field(default_factory=list)
 
     def __post_init__(self):
+        self.unchanged = dict(self.parameters)
         for effect in self.effects:
             effect.change(self.parameters)
 

@@ -49,15 +49,12 @@ class World:
     peak: float = 1.0
 
     def rig(self, sizes):
-        parameters = dict(self.true)
         rng = np.random.default_rng((*self.seed, 77))
         effects = [
             catalogue.make(self.mechanism, self.true, kind, site, size, law, self.peak, rng)
             for (kind, site, law), size in zip(self.case.effects, sizes)
         ]
-        rig = Rig(self.mechanism, parameters, effects)
-        rig.declared_true = self.true
-        return rig
+        return Rig(self.mechanism, dict(self.true), effects)
 
 
 def rounded(value, digits=4):
@@ -70,7 +67,11 @@ def world(number, case):
     mechanism = mechanisms.ALL[case.mechanism]
     about = catalogue.RIGS[case.mechanism]
     declared = {
-        name: value if name in catalogue.FIXED else rounded(value * np.exp(rng.normal(0, 0.12 if value < 50 else 0.05)))
+        name: (
+            value
+            if name in catalogue.FIXED
+            else rounded(value * np.exp(rng.normal(0, 0.12 if value < 50 else 0.05)))
+        )
         for name, value in about["parameters"].items()
     }
     exact = case.null_kind == "clean"
@@ -119,7 +120,9 @@ def tolerances(world):
 
 
 def dprime(world, rig, trials):
-    parts = [oracle.signatures(rig, one, tolerances(world), world.noise, world.disturbance_sd) for one in trials]
+    parts = [
+        oracle.signatures(rig, one, tolerances(world), world.noise, world.disturbance_sd) for one in trials
+    ]
     return oracle.dprime(parts)
 
 
@@ -128,10 +131,9 @@ def sized(world):
     case = world.case
     if case.kind == "null":
         return [], []
-    plain = Rig(world.mechanism, dict(world.true))
-    plain.declared_true = world.true
     if world.mechanism.inputs:
-        commands = simulate_plain(world, plain)
+        bare = replace(world, case=replace(case, effects=()))
+        commands = trial(bare, bare.rig([]), 0).commands
         site = case.effects[0][1]
         column = world.mechanism.inputs.index(site) if site in world.mechanism.inputs else 0
         world.peak = float(np.max(np.abs(commands[:, column])))
@@ -150,12 +152,6 @@ def sized(world):
         sizes.append(size)
         each.append(reached)
     return sizes, each
-
-
-def simulate_plain(world, plain):
-    """Commands of the first run of a rig without the effect."""
-    bare = replace(world, case=replace(world.case, effects=()))
-    return trial(bare, plain, 0).commands
 
 
 def recorded(world, rig, one, run):
@@ -197,7 +193,12 @@ def write_run(path, world, one, measured):
 
 def write_recording(folder, world, stated):
     about = catalogue.RIGS[world.case.mechanism]
-    lines = [f'mechanism   = "{world.case.mechanism}"', f'description = "{about["about"]}"', "", "[parameters]"]
+    lines = [
+        f'mechanism   = "{world.case.mechanism}"',
+        f'description = "{about["about"]}"',
+        "",
+        "[parameters]",
+    ]
     for name, value in world.declared.items():
         std = rounded(catalogue.tolerance(name, value))
         lines.append(f'{name} = {{ value = {value:g}, unit = "{catalogue.UNITS[name]}", std = {std:g} }}')
@@ -209,7 +210,13 @@ def write_recording(folder, world, stated):
     for name in world.mechanism.inputs:
         lines.append(f'{name} = {{ input = "{name}", unit = "{catalogue.UNITS[name]}" }}')
     runs = [f'"run{i + 1}.csv"' for i in range(RUNS)]
-    lines += ["", "[runs]", f"fit  = [{', '.join(runs[:FIT_RUNS])}]", f"test = [{', '.join(runs[FIT_RUNS:])}]", ""]
+    lines += [
+        "",
+        "[runs]",
+        f"fit  = [{', '.join(runs[:FIT_RUNS])}]",
+        f"test = [{', '.join(runs[FIT_RUNS:])}]",
+        "",
+    ]
     (folder / "recording.toml").write_text("\n".join(lines))
 
 
@@ -234,7 +241,13 @@ def label(world, rig, trials, measured, each, stated):
     far = None
     if case.effects:
         far = oracle.how_far(
-            rig, world.declared, trials[FIT_RUNS:], measured[FIT_RUNS:], world.noise, world.disturbance_sd, known
+            rig,
+            world.declared,
+            trials[FIT_RUNS:],
+            measured[FIT_RUNS:],
+            world.noise,
+            world.disturbance_sd,
+            known,
         )
     equations = [catalogue.equations(mechanism, kind, site) for kind, site, _ in kinds]
     acts = sorted({name for names in equations if names for name in names})
@@ -245,9 +258,15 @@ def label(world, rig, trials, measured, each, stated):
         "level": case.level,
         "effects": [f"{kind}@{site}" for kind, site, _ in kinds] if known else ["unknown"] if kinds else [],
         "accept": [catalogue.accept(mechanism, *kind) for kind in kinds] if known else [],
-        "family": None if not kinds else "off_library" if not known else families if len(kinds) > 1 else families[0],
+        "family": (
+            None if not kinds else "off_library" if not known else families if len(kinds) > 1 else families[0]
+        ),
         "off_kind": f"{kinds[0][0]}@{kinds[0][1]}" if case.kind == "off_library" else None,
-        "domains": sorted({d for kind, _, _ in kinds for d in catalogue.domains(kind)}) if known else None if kinds else [],
+        "domains": (
+            sorted({d for kind, _, _ in kinds for d in catalogue.domains(kind)})
+            if known
+            else None if kinds else []
+        ),
         "equations": acts or None,
         "magnitude": magnitude(world, rig),
         "law": kinds[0][2] if kinds else "library",

@@ -188,7 +188,9 @@ def double_mass(p, q):
     own = p["I2"] + p["m2"] * (p["r2"] ** 2 + p.get("e", 0) ** 2)
     upper = p["I1"] + p["m1"] * p["r1"] ** 2 + p["m2"] * p["l1"] ** 2
     coupling = p["m2"] * p["l1"] * k
-    return matrix([[upper + own + 2 * coupling + added(p, 0), own + coupling], [own + coupling, own + added(p, 1)]])
+    return matrix(
+        [[upper + own + 2 * coupling + added(p, 0), own + coupling], [own + coupling, own + added(p, 1)]]
+    )
 
 
 def double_jacobian(p, q):

@@ -24,7 +24,9 @@ def flow(mechanism, p, x, inputs, disturbance, dt, t=0.0, effects=()):
         f = disturbance + times(mechanism.input_map(p, q), u)
         for effect in effects:
             f = f + effect.force(mechanism, p, q, v, t)
-        return np.concatenate([times(mechanism.kinematics(p, q), v), mechanism.acceleration(p, q, v, f)], axis=-1)
+        return np.concatenate(
+            [times(mechanism.kinematics(p, q), v), mechanism.acceleration(p, q, v, f)], axis=-1
+        )
 
     for j in range(SUBSTEPS):
         u = inputs[..., j, :]
@@ -70,7 +72,7 @@ class Filter:
     """The Kalman filter about a true motion, with the true levels."""
 
     def __init__(self, rig, trial, noise, disturbance_sd):
-        mechanism, p = rig.mechanism, declared_true(rig)
+        mechanism, p = rig.mechanism, rig.unchanged
         x, dt = trial.states[:-1], np.diff(trial.t)
         self.n, u, w = len(noise), held(trial.commands)[:-1], trial.disturbance[: len(dt)]
         scale = np.maximum(np.std(trial.states, axis=0), 1e-3)
@@ -114,15 +116,15 @@ class Filter:
         return np.array(out).reshape(-1, defects.shape[-1])
 
 
-def declared_true(rig):
-    """True values of the declared parameters, without what the effects changed in them."""
-    return rig.declared_true
-
-
 def signatures(rig, trial, tolerances, noise, disturbance_sd):
     """Whitened innovations: the gap of the true motion, and one per uncertain parameter."""
-    mechanism, p = rig.mechanism, declared_true(rig)
-    x, dt, u, w = trial.states[:-1], np.diff(trial.t), held(trial.commands)[:-1], trial.disturbance[: len(trial.t) - 1]
+    mechanism, p = rig.mechanism, rig.unchanged
+    x, dt, u, w = (
+        trial.states[:-1],
+        np.diff(trial.t),
+        held(trial.commands)[:-1],
+        trial.disturbance[: len(trial.t) - 1],
+    )
     defects = [trial.states[1:] - flow(mechanism, p, x, u, w, dt)]
     n = len(noise)
     shown = np.zeros((len(trial.t), n, 1 + len(tolerances)))
@@ -205,7 +207,9 @@ def how_far(rig, declared, trials, recorded, noise, disturbance_sd, law):
             n = len(noise)
             for sensor in rig.of(Sensor):
                 i = rig.mechanism.coordinates.index(sensor.site)
-                rates = times(rig.mechanism.kinematics(rig.parameters, trial.states[:, :n]), trial.states[:, n:])
+                rates = times(
+                    rig.mechanism.kinematics(rig.parameters, trial.states[:, :n]), trial.states[:, n:]
+                )
                 shown[:, i] = sensor.shown(trial.t, trial.states[:, i], rates[:, i]) - trial.states[:, i]
             effects = [e for e in rig.effects if not isinstance(e, (Actuator, Sensor, Parameter))]
             models["with_effect"] = (rig.parameters, given(rig, trial.t, trial.commands), effects, shown)
@@ -219,4 +223,11 @@ def how_far(rig, declared, trials, recorded, noise, disturbance_sd, law):
     e0, e, n = rms["nominal"], rms["with_effect"], rms["floor"]
     closed = None if e is None else 1 - (e**2 - n**2) / (e0**2 - n**2)
     usable = closed is not None and e0**2 > 2 * n**2 and 0.6 <= closed <= 1.3
-    return {"horizon_s": 1.0, "nominal": e0, "with_effect": e, "noise_floor": n, "closed": closed, "usable": usable}
+    return {
+        "horizon_s": 1.0,
+        "nominal": e0,
+        "with_effect": e,
+        "noise_floor": n,
+        "closed": closed,
+        "usable": usable,
+    }

@@ -4,7 +4,7 @@ rotor inertia of joints are MuJoCo's own; other forces act as generalised ones."
 import mujoco
 import numpy as np
 
-from effects import Actuator, DryFriction, Force, Parameter
+from effects import Actuator, Parameter
 from simulate import Trial
 
 SUBSTEPS = 10
@@ -27,14 +27,22 @@ def text(mechanism, p, own):
     if mechanism.name == "carriage":
         return HEAD + f'<body>{joint("x", "slide", own)}{inertial(p["m"], 1)}</body>' + TAIL
     if mechanism.name == "pendulum":
-        return HEAD + f'<body>{joint("theta", "hinge", own)}{inertial(p["m"], p["I"], p.get("e", 0), p["l"])}</body>' + TAIL
+        return (
+            HEAD
+            + f'<body>{joint("theta", "hinge", own)}{inertial(p["m"], p["I"], p.get("e", 0), p["l"])}</body>'
+            + TAIL
+        )
     if mechanism.name == "cart_pole":
         pole = f'<body>{joint("theta", "hinge", own)}{inertial(p["m_pole"], p["I"], p.get("e", 0), p["l"])}</body>'
         return HEAD + f'<body>{joint("x", "slide", own)}{inertial(p["m_cart"], 1)}{pole}</body>' + TAIL
     if mechanism.name == "double_pendulum":
         lower = inertial(p["m2"], p["I2"], p.get("e", 0), p["r2"])
         link2 = f'<body pos="0 0 {-p["l1"]}">{joint("theta2", "hinge", own)}{lower}</body>'
-        return HEAD + f'<body>{joint("theta1", "hinge", own)}{inertial(p["m1"], p["I1"], 0, p["r1"])}{link2}</body>' + TAIL
+        return (
+            HEAD
+            + f'<body>{joint("theta1", "hinge", own)}{inertial(p["m1"], p["I1"], 0, p["r1"])}{link2}</body>'
+            + TAIL
+        )
     raise KeyError(f"no rigid bodies for {mechanism.name}")
 
 

@@ -121,10 +121,15 @@ class Answer:
         self.probability = ranked[0]["probability"]
         self.parameters = ranked[0].get("parameters") or []
         self.domain = report.get("where", {}).get("domain", "none")
-        self.equations = [e["name"] for e in sorted(report.get("where", {}).get("equations", []), key=lambda e: -e["share"])]
+        self.equations = [
+            e["name"] for e in sorted(report.get("where", {}).get("equations", []), key=lambda e: -e["share"])
+        ]
         self.far = report.get("how_far") or {}
         self.seconds = report.get("seconds")
-        groups = [[sorted(member.split("+")) if isinstance(member, str) else sorted(member) for member in g] for g in report.get("tied", [])]
+        groups = [
+            [sorted(member.split("+")) if isinstance(member, str) else sorted(member) for member in g]
+            for g in report.get("tied", [])
+        ]
         self.tied = next((g for g in groups if self.sets[0] in g), [self.sets[0]])
 
 
@@ -160,7 +165,12 @@ def covers(answer, label):
     """Whether the interval of the size holds the true one; None where there is no size to compare."""
     true = label["magnitude"][0]
     kind = true["effect"].split("@")[0]
-    if label["kind"] != "single" or kind not in SIZED or answer.sets[0] != [true["effect"]] or not answer.parameters:
+    if (
+        label["kind"] != "single"
+        or kind not in SIZED
+        or answer.sets[0] != [true["effect"]]
+        or not answer.parameters
+    ):
         return None
     first = answer.parameters[0]
     if not first.get("std"):
@@ -176,7 +186,9 @@ def closed(answer, label):
     far = answer.far if answer else {}
     try:
         same = abs(far["horizon_s"] - 1) < 0.05 and 1 / 3 < far["nominal"] / oracle["nominal"] < 3
-        own = 1 - (far["with_effect"] ** 2 - far["noise_floor"] ** 2) / (far["nominal"] ** 2 - far["noise_floor"] ** 2)
+        own = 1 - (far["with_effect"] ** 2 - far["noise_floor"] ** 2) / (
+            far["nominal"] ** 2 - far["noise_floor"] ** 2
+        )
         if not same or abs(own - far["closed"]) > 0.05:
             return 0.0
     except (KeyError, TypeError, ZeroDivisionError):
@@ -237,30 +249,44 @@ def scores(labels, folder):
     none = lambda l, a: a is not None and (a.verdict == "unexplained" or a.sets[0] == ["unknown"])
     place = lambda l, a: a is not None and a.domain in right_domains(l)
     acts = lambda l: l["equations"] and {domain_of(e) for e in l["effects"]} <= {"force", "actuator"}
-    equation = lambda l, a: (a is not None and a.equations[:1] and a.equations[0] in l["equations"]) if acts(l) else None
+    equation = lambda l, a: (
+        (a is not None and a.equations[:1] and a.equations[0] in l["equations"]) if acts(l) else None
+    )
     over = lambda sel, f: rate([f(l, a) for l, a in sel])
     sure = [(l, a) for l, a in pairs if a and a.probability >= SURE]
 
-    rows = [("false alarms on nulls", rate([a is None or detected(l, a) for l, a in nulls]))]
-    rows += [(f"detected, d′ below {LARGE}", over(small, detected)), (f"detected, d′ {LARGE} and more", over(large, detected))]
-    rows += [("right effect first", over(large, first)), ("right effect in the leading tie", over(large, leading))]
-    rows += [("members of the leading tie, mean", size_of_ties(large)), ("right effect in the first three", over(large, three))]
-    rows += [("domain right", over(large, place)), ("equation right", over(large, equation))]
-    rows += [("two effects: exact set first", over(of("compound"), first)), ("two effects: exact set in the leading tie", over(of("compound"), leading))]
-    rows += [("other law: right effect first", over(of("mismatch"), first)), ("other law: in the leading tie", over(of("mismatch"), leading))]
-    rows += [("off the library: detected", over(off, detected)), ("off the library: “none of the library”", over(off, none))]
-    rows += [("in the library: wrongly “none”", over(known, none))]
-    rows += [("closed ÷ what the true law closes, median", middle([closed(a, l) for l, a in known]))]
-    rows += [(f"claims at {SURE} and more that are right", over(sure, first))]
-    rows += [("95 % intervals that hold the true size", rate([covers(a, l) for l, a in of("single") if a]))]
-    rows += [("no report, or an invalid one", f"{sum(a is None for _, a in pairs)} of {len(pairs)}")]
-    rows += [("seconds a case, median", middle([a.seconds for _, a in pairs if a], 1))]
-    return rows
+    return [
+        ("false alarms on nulls", rate([a is None or detected(l, a) for l, a in nulls])),
+        (f"detected, d′ below {LARGE}", over(small, detected)),
+        (f"detected, d′ {LARGE} and more", over(large, detected)),
+        ("right effect first", over(large, first)),
+        ("right effect in the leading tie", over(large, leading)),
+        ("members of the leading tie, mean", size_of_ties(large)),
+        ("right effect in the first three", over(large, three)),
+        ("domain right", over(large, place)),
+        ("equation right", over(large, equation)),
+        ("two effects: exact set first", over(of("compound"), first)),
+        ("two effects: exact set in the leading tie", over(of("compound"), leading)),
+        ("other law: right effect first", over(of("mismatch"), first)),
+        ("other law: in the leading tie", over(of("mismatch"), leading)),
+        ("off the library: detected", over(off, detected)),
+        ("off the library: “none of the library”", over(off, none)),
+        ("in the library: wrongly “none”", over(known, none)),
+        ("closed ÷ what the true law closes, median", middle([closed(a, l) for l, a in known])),
+        (f"claims at {SURE} and more that are right", over(sure, first)),
+        ("95 % intervals that hold the true size", rate([covers(a, l) for l, a in of("single") if a])),
+        ("no report, or an invalid one", f"{sum(a is None for _, a in pairs)} of {len(pairs)}"),
+        ("seconds a case, median", middle([a.seconds for _, a in pairs if a], 1)),
+    ]
 
 
 def left_out(labels, folder):
     """What is said when the library lacks the effect that is there."""
-    answers = [(label, read(folder / f"{name}.json")) for name, label in sorted(labels.items()) if label["kind"] in ("single", "mismatch")]
+    answers = [
+        (label, read(folder / f"{name}.json"))
+        for name, label in sorted(labels.items())
+        if label["kind"] in ("single", "mismatch")
+    ]
     known = [(l, a) for l, a in answers if a]
     named = lambda a: a.sets[0] not in ([], ["unknown"])
     wrong = lambda a: named(a) and a.probability >= NAMED and len(a.tied) == 1
@@ -304,7 +330,9 @@ def section(labels, reports):
 def write(path, text):
     page = path.read_text()
     if BEGIN not in page or END not in page:
-        raise SystemExit(f"{path}: the markers are missing; write these two lines where the scores belong:\n{BEGIN}\n{END}")
+        raise SystemExit(
+            f"{path}: the markers are missing; write these two lines where the scores belong:\n{BEGIN}\n{END}"
+        )
     before, after = page.split(BEGIN)[0], page.split(END)[1]
     path.write_text(f"{before}{BEGIN}\n\n{text}\n\n{END}{after}")
 
@@ -318,12 +346,16 @@ def misses(labels, folder):
             truth = "+".join(label["effects"]) or f"nothing ({label['null_kind']})"
             truth = label["off_kind"] or truth
             said = "+".join(answer.sets[0]) or "nothing"
-            print(f"{name} {label['mechanism']:15} d' {label['dprime']:7.1f}  {truth}: {said} at {answer.probability:.3f}, {len(answer.tied)} tied, {answer.verdict}")
+            print(
+                f"{name} {label['mechanism']:15} d' {label['dprime']:7.1f}  {truth}: {said} at {answer.probability:.3f}, {len(answer.tied)} tied, {answer.verdict}"
+            )
 
 
 def main():
     ask = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    ask.add_argument("--reports", type=Path, required=True, help="folder of the reports, one subfolder per method")
+    ask.add_argument(
+        "--reports", type=Path, required=True, help="folder of the reports, one subfolder per method"
+    )
     ask.add_argument("--tool", help="binary of appell; without it the reports that are there are scored")
     ask.add_argument("--jobs", type=int, default=1)
     ask.add_argument("--only", nargs="*", help="names of cases")
@@ -335,7 +367,9 @@ def main():
     if ask.only:
         labels = {name: labels[name] for name in ask.only}
     if ask.tool and ask.leave_one_out:
-        wanted = {name: kinds_of(label) for name, label in labels.items() if label["kind"] in ("single", "mismatch")}
+        wanted = {
+            name: kinds_of(label) for name, label in labels.items() if label["kind"] in ("single", "mismatch")
+        }
         run(ask.tool, ask.reports / "left_out", wanted, ask.jobs)
     elif ask.tool:
         run(ask.tool, ask.reports / "appell", dict.fromkeys(labels, ()), ask.jobs)

@@ -57,7 +57,8 @@ class Integrator:
             i = self.mechanism.coordinates.index(memory.site)
             own = own + np.eye(self.own_m)[i] * memory.pull(own_v[i], z)
         given = np.array(
-            [self.actuators[i].value(t) if i in self.actuators else u for i, u in enumerate(command)], dtype=float
+            [self.actuators[i].value(t) if i in self.actuators else u for i, u in enumerate(command)],
+            dtype=float,
         )
         f = np.zeros(self.m)
         f[: self.own_m] = own

@@ -5,11 +5,16 @@ mod page;
 mod plots;
 
 use std::fmt::Write as _;
+use std::path::Path;
 
-use appell_gap::diagnose::{Ahead, Changes, DiagnoseError, Hypothesis, Report, Verdict};
+use appell_gap::data::DataSet;
+use appell_gap::diagnose::{
+    Ahead, Changes, DiagnoseError, Experiment, Hypothesis, Report, Verdict,
+};
 use appell_gap::effects::ModelError;
 use serde_json::{Value, json};
 
+use numbers::short;
 pub(crate) use page::page;
 
 use crate::failure::Failure;
@@ -40,7 +45,7 @@ fn joined(effects: &[String]) -> String {
 }
 
 /// The summary in some ten lines.
-pub(crate) fn text(report: &Report) -> String {
+pub(crate) fn text(report: &Report, next: Option<&Path>) -> String {
     let mut text = String::new();
     // Writing to a string cannot fail.
     let _ = writeln!(text, "{}: {}", report.mechanism, sentence(report));
@@ -65,6 +70,12 @@ pub(crate) fn text(report: &Report) -> String {
     for group in &report.tied {
         let names: Vec<String> = group.iter().map(|effects| joined(effects)).collect();
         let _ = writeln!(text, "  tied      {}", names.join(" | "));
+    }
+    if let Some(experiment) = &report.experiment {
+        let _ = writeln!(text, "  next      {}", told(experiment));
+    }
+    if let Some(path) = next {
+        let _ = writeln!(text, "            written to {}", path.display());
     }
     match &report.how_far {
         Some(far) => {
@@ -141,8 +152,46 @@ fn line(hypothesis: &Hypothesis) -> String {
     )
 }
 
-/// The gap report of the contract.
-pub(crate) fn json(report: &Report) -> Value {
+/// The next experiment in a sentence.
+fn told(experiment: &Experiment) -> String {
+    let seconds = experiment.times.last().copied().unwrap_or(0.0);
+    format!(
+        "{} for {} s: sets the first two apart by {} deviations, now {}",
+        experiment.about,
+        short(seconds),
+        short(experiment.separation_then),
+        short(experiment.separation_now),
+    )
+}
+
+/// The inputs of an experiment in the units of the spec, as `appell simulate --inputs` reads them.
+pub(crate) fn csv(set: &DataSet, experiment: &Experiment) -> String {
+    let mut text = "t".to_owned();
+    let mut units = Vec::new();
+    for (name, _) in &experiment.inputs {
+        let _ = write!(text, ",{name}");
+        let mut inputs = set.mechanism.inputs.iter();
+        units.push(
+            inputs
+                .find(|input| input.label.name == *name)
+                .map(|input| &input.label.unit),
+        );
+    }
+    text.push('\n');
+    for (row, t) in experiment.times.iter().enumerate() {
+        // Times are multiples of a step; what rounding adds is of no use.
+        let _ = write!(text, "{}", (t * 1e9).round() / 1e9);
+        for ((_, values), unit) in experiment.inputs.iter().zip(&units) {
+            let value = unit.map_or(values[row], |unit| unit.from_si(values[row]));
+            let _ = write!(text, ",{value:.6e}");
+        }
+        text.push('\n');
+    }
+    text
+}
+
+/// The gap report of the contract; `next` is where the next experiment stands.
+pub(crate) fn json(report: &Report, next: Option<&Path>) -> Value {
     let equations = report.place.equations.iter().map(|e| {
         json!({ "name": e.name, "share": e.share, "p_value": e.p_value, "rms": e.rms, "unit": e.unit })
     });
@@ -188,6 +237,14 @@ pub(crate) fn json(report: &Report) -> Value {
     let disturbances = report.disturbances.iter().map(
         |(name, before, after)| json!({ "name": name, "nominal": before, "with_effect": after }),
     );
+    let experiment = report.experiment.as_ref().map(|one| {
+        json!({
+            "separates": one.separates.iter().map(|effects| effects.join("+")).collect::<Vec<_>>(),
+            "file": next.and_then(Path::file_name).map(|name| name.to_string_lossy()),
+            "separation_now": one.separation_now, "separation_then": one.separation_then,
+            "about": one.about,
+        })
+    });
     json!({
         "schema": "gap-report/1",
         "mechanism": report.mechanism,
@@ -201,6 +258,7 @@ pub(crate) fn json(report: &Report) -> Value {
         "which": which.collect::<Vec<_>>(),
         "tied": tied.collect::<Vec<_>>(),
         "how_far": far,
+        "experiment": experiment,
         "detectable": detectable.collect::<Vec<_>>(),
         "failed": failed.collect::<Vec<_>>(),
         "disturbances": disturbances.collect::<Vec<_>>(),

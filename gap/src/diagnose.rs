@@ -11,6 +11,7 @@
 //!          --localise--> equations, windows of time, regions
 //!          --held_out--> errors of predictions: nominal, re-fitted, with the effect, noise
 //!          --traces, law--> what people look at
+//!          --experiment--> the input that tells tied hypotheses apart
 //!          --changes--> what each hypothesis changes in the spec
 //! ```
 //!
@@ -22,6 +23,7 @@ mod changes;
 mod compare;
 mod error;
 mod evidence;
+mod experiment;
 mod held_out;
 mod hypothesis;
 mod law;
@@ -37,6 +39,7 @@ use crate::effects::{Effect, EffectModel, candidates};
 
 pub use changes::{Beside, ChangeError, Changes, Refitted};
 pub use error::DiagnoseError;
+pub use experiment::{Experiment, Limit};
 pub use law::Law;
 pub use report::{
     Detectable, Found, HowFar, Hypothesis, Pictures, Region, Report, ShareOf, Value, Verdict,
@@ -54,6 +57,8 @@ use screen::Screen;
 pub struct Options {
     /// Traces, and the missing force over what it depends on.
     pub pictures: bool,
+    /// Within which the next experiment has to stay; elsewhere it stays near what is recorded.
+    pub limits: Vec<Limit>,
 }
 
 /// Diagnoses a data set with a library of effects. `stage` is told what begins.
@@ -96,9 +101,18 @@ pub fn diagnose(
         None
     };
     let report = report::assemble(&bench, &screen, &comparison, place, how_far)?;
+    let experiment = match report.tied.first().map(Vec::as_slice) {
+        Some([first, second, ..]) => {
+            stage("designing the next experiment");
+            let pair = [first.as_slice(), second.as_slice()];
+            experiment::experiment(&bench, &comparison, pair, &options.limits)?
+        }
+        _ => None,
+    };
     Ok(Report {
         horizons,
         pictures,
+        experiment,
         ..report
     })
 }

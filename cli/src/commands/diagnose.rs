@@ -1,8 +1,10 @@
 //! `appell diagnose`
 
 use std::path::PathBuf;
+use std::str::FromStr;
 
-use appell_gap::diagnose::{self, Options};
+use appell_gap::data::DataSet;
+use appell_gap::diagnose::{self, Limit, Options};
 use appell_gap::effects;
 
 use crate::failure::Failure;
@@ -29,6 +31,40 @@ pub(crate) struct Diagnose {
     /// Write a page with drawings, laws over data and traces; it needs no network
     #[arg(long, value_name = "FILE.html")]
     html: Option<PathBuf>,
+    /// Where the next experiment goes if hypotheses are tied [default: experiment.csv beside the
+    /// gap report]
+    #[arg(long, value_name = "FILE.csv")]
+    experiment: Option<PathBuf>,
+    /// Limits of an input or of a measured channel in that experiment, in the unit of its column
+    /// [default: those of the recordings]
+    #[arg(long, value_name = "NAME=FROM..TO", allow_hyphen_values = true)]
+    limit: Vec<Span>,
+}
+
+/// `NAME=FROM..TO` in the unit of a column.
+#[derive(Debug, Clone)]
+struct Span {
+    name: String,
+    ends: [f64; 2],
+}
+
+impl FromStr for Span {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let read = || {
+            let (name, span) = text.split_once('=')?;
+            let (from, to) = span.split_once("..")?;
+            let end = |text: &str| text.trim().parse().ok().filter(|end: &f64| end.is_finite());
+            Some((name.trim().to_owned(), [end(from)?, end(to)?]))
+        };
+        let help = || "write NAME=FROM..TO with two numbers, such as F=-10..10".to_owned();
+        let (name, ends) = read().ok_or_else(help)?;
+        if ends[0] >= ends[1] {
+            return Err(format!("{} is not less than {}", ends[0], ends[1]));
+        }
+        Ok(Self { name, ends })
+    }
 }
 
 impl Diagnose {
@@ -38,18 +74,53 @@ impl Diagnose {
         let spinner = progress::spinner("reading");
         let options = Options {
             pictures: self.html.is_some(),
+            limits: self.limits(&set)?,
         };
         let stage = |stage| spinner.set_message(stage);
         let report = diagnose::diagnose(&set, &library, &options, stage);
         spinner.finish_and_clear();
         let report = report.map_err(diagnosed::failure)?;
+        let next = report.experiment.as_ref().zip(self.next());
+        if let Some((experiment, path)) = &next {
+            files::write(path, &diagnosed::csv(&set, experiment))?;
+        }
+        let next = next.map(|(_, path)| path);
         if let Some(path) = &self.json {
-            files::write_json(path, &diagnosed::json(&report))?;
+            files::write_json(path, &diagnosed::json(&report, next.as_deref()))?;
         }
         if let Some(path) = &self.html {
             files::write(path, &diagnosed::page(&set, &report))?;
         }
-        files::print_beside(&diagnosed::text(&report), &[&self.json, &self.html])
+        let outputs = [&self.json, &self.html, &next];
+        files::print_beside(&diagnosed::text(&report, next.as_deref()), &outputs)
+    }
+
+    /// Where the next experiment goes: beside the gap report, if that is a file.
+    fn next(&self) -> Option<PathBuf> {
+        let report = self.json.as_ref().filter(|path| !files::is_stdout(path));
+        let beside = || report.map(|path| path.with_file_name("experiment.csv"));
+        self.experiment.clone().or_else(beside)
+    }
+
+    /// The limits in SI.
+    fn limits(&self, set: &DataSet) -> Result<Vec<Limit>, Failure> {
+        let limit = |span: &Span| {
+            let channel = set
+                .channels
+                .iter()
+                .find(|channel| channel.column == span.name);
+            let channel = channel.ok_or_else(|| {
+                let columns: Vec<&str> = set.channels.iter().map(|c| c.column.as_str()).collect();
+                Failure::Usage(format!(
+                    "`--limit {}`: there is no such column; there are {}",
+                    span.name,
+                    columns.join(", ")
+                ))
+            })?;
+            let limits = span.ends.map(|end| end * channel.unit.scale);
+            Ok((span.name.clone(), limits))
+        };
+        self.limit.iter().map(limit).collect()
     }
 
     /// The shipped effects and those of the user.

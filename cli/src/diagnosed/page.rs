@@ -21,7 +21,7 @@ pub(crate) fn page(set: &DataSet, report: &Report) -> String {
         place(set, report),
         which(report),
         how_far(report),
-        next(report),
+        next(set, report),
         detectable(report),
         recordings(set),
     ];
@@ -322,7 +322,7 @@ fn horizon(ahead: &Ahead) -> String {
 }
 
 /// What to do now.
-fn next(report: &Report) -> String {
+fn next(set: &DataSet, report: &Report) -> String {
     let text = match report.verdict {
         Verdict::NoGap => {
             "<p>Nothing has to be added to the model. The table below tells how small an effect these \
@@ -337,7 +337,30 @@ fn next(report: &Report) -> String {
              spec language: <code>appell diagnose --effects own.toml</code>.</p>\n"
         }
     };
-    format!("<h2>Next</h2>\n{text}")
+    let mut html = format!("<h2>Next</h2>\n{text}");
+    if let Some(experiment) = &report.experiment {
+        let names = experiment
+            .separates
+            .each_ref()
+            .map(|effects| code(&joined(effects)));
+        let _ = writeln!(
+            html,
+            "<p>This experiment tells {} from {}: {}. The two are {} standard deviations apart now, and \
+             {} with its recording. The command writes the input as a table beside the gap report.</p>",
+            names[0],
+            names[1],
+            escaped(&experiment.about),
+            short(experiment.separation_now),
+            short(experiment.separation_then),
+        );
+        for plot in plots::experiment(experiment, &set.mechanism) {
+            html += &figure(&plot, "The input of the next experiment.");
+        }
+    } else if report.verdict == Verdict::Ambiguous {
+        html += "<p>No input that was tried tells the tied hypotheses apart and keeps the motion within its \
+                 limits. Give wider ones with <code>--limit</code>, or record under feedback.</p>\n";
+    }
+    html
 }
 
 fn detectable(report: &Report) -> String {

@@ -1,7 +1,8 @@
 //! Pictures of a gap report.
 
-use appell_gap::diagnose::{Law, Trace};
+use appell_gap::diagnose::{Experiment, Law, Trace};
 use appell_runtime::figure::{Layer, Look, Plot, Series};
+use appell_spec::Mechanism;
 
 /// Channels that are drawn.
 const DRAWN: usize = 3;
@@ -117,4 +118,37 @@ pub(super) fn law(law: &Law) -> String {
         layers,
     };
     plot.to_svg()
+}
+
+/// The inputs of an experiment, in the units of the spec.
+pub(super) fn experiment(experiment: &Experiment, mechanism: &Mechanism) -> Vec<String> {
+    let plot = |(name, values): &(String, Vec<f64>)| {
+        let mut inputs = mechanism.inputs.iter();
+        let input = inputs.find(|input| input.label.name == *name)?;
+        let unit = &input.label.unit;
+        // Each value is held until the next time.
+        let mut x = Vec::with_capacity(2 * values.len());
+        let mut y = Vec::with_capacity(2 * values.len());
+        for (row, value) in values.iter().enumerate() {
+            let next = experiment.times.get(row + 1);
+            x.extend([
+                experiment.times[row],
+                *next.unwrap_or(&experiment.times[row]),
+            ]);
+            y.extend([unit.from_si(*value); 2]);
+        }
+        let label = String::new();
+        let line = Layer {
+            series: Series { label, x, y },
+            look: Look::Line,
+            colour: 0,
+        };
+        let plot = Plot {
+            labels: ["t [s]".to_owned(), format!("{name} [{}]", unit.text)],
+            height: 150.0,
+            layers: vec![line],
+        };
+        Some(plot.to_svg())
+    };
+    experiment.inputs.iter().filter_map(plot).collect()
 }

@@ -40,14 +40,14 @@ impl Noise {
     }
 }
 
-/// A recording under held forces, with noise of 1 mm. `friction` is a force by velocity.
-fn run(friction: impl Fn(f64) -> f64, noise: &mut Noise) -> String {
+/// A recording under forces that are held for 10 ms, with noise of 1 mm. `friction` is a force by
+/// velocity.
+fn recording(friction: &dyn Fn(f64) -> f64, forces: &[f64], noise: &mut Noise) -> String {
     let mut text = "t,x,F\n".to_owned();
     let (mut x, mut v) = (0.0, 0.0);
     let h = 0.01 / f64::from(STEPS);
-    for row in 0..ROWS {
-        let t = f64::from(row) / 100.0;
-        let force = 2.0 * (3.0 * t).sin() + 1.5 * (7.1 * t).cos();
+    for (row, force) in forces.iter().enumerate() {
+        let t = row as f64 / 100.0;
         let _ = writeln!(text, "{t},{},{force}", x + 1e-3 * noise.next());
         for _ in 0..STEPS {
             // The middle of the step, so that the error is of its third order.
@@ -59,23 +59,51 @@ fn run(friction: impl Fn(f64) -> f64, noise: &mut Noise) -> String {
     text
 }
 
-/// A data set of three runs.
-pub(crate) fn data_set(friction: impl Fn(f64) -> f64) -> Folder {
-    let folder = Folder::new();
-    folder.write("recording.toml", DESCRIPTION);
-    let mut noise = Noise(7);
-    for name in ["a.csv", "b.csv", "c.csv"] {
-        folder.write(name, &run(&friction, &mut noise));
+/// A rig with a friction.
+pub(crate) struct Rig<F> {
+    pub(crate) folder: Folder,
+    friction: F,
+    noise: Noise,
+}
+
+impl<F: Fn(f64) -> f64> Rig<F> {
+    /// With a data set of three runs.
+    pub(crate) fn new(friction: F) -> Self {
+        let mut rig = Self {
+            folder: Folder::new(),
+            friction,
+            noise: Noise(7),
+        };
+        rig.folder.write("recording.toml", DESCRIPTION);
+        let force = |t: f64| 2.0 * (3.0 * t).sin() + 1.5 * (7.1 * t).cos();
+        let forces: Vec<f64> = (0..ROWS).map(|row| force(f64::from(row) / 100.0)).collect();
+        for name in ["a.csv", "b.csv", "c.csv"] {
+            rig.record(name, &forces);
+        }
+        rig
     }
-    folder
+
+    /// Records a run that may be fitted.
+    pub(crate) fn record_to_fit(&mut self, name: &str, forces: &[f64]) {
+        self.record(name, forces);
+        let named = format!("fit  = [\"{name}\", ");
+        let description = self.folder.read("recording.toml");
+        let description = description.replace("fit  = [", &named);
+        self.folder.write("recording.toml", &description);
+    }
+
+    fn record(&mut self, name: &str, forces: &[f64]) {
+        let text = recording(&self.friction, forces, &mut self.noise);
+        self.folder.write(name, &text);
+    }
 }
 
 /// With viscous friction.
 pub(crate) fn viscous(coefficient: f64) -> Folder {
-    data_set(move |v| coefficient * v)
+    Rig::new(move |v| coefficient * v).folder
 }
 
 /// With dry friction, its sign rounded as filters have to round it.
 pub(crate) fn dry(force: f64) -> Folder {
-    data_set(move |v| force * (v / 0.02).tanh())
+    Rig::new(move |v| force * (v / 0.02).tanh()).folder
 }

@@ -4,6 +4,7 @@ use super::DiagnoseError;
 use super::bench::Bench;
 use super::changes::Changes;
 use super::compare::{Comparison, TIED};
+use super::experiment::Experiment;
 use super::hypothesis::Fitted;
 use super::law::Law;
 use super::screen::Screen;
@@ -197,6 +198,8 @@ pub struct Report {
     pub horizons: Vec<Ahead>,
     /// What people look at, where they asked for it.
     pub pictures: Option<Pictures>,
+    /// What would tell the first two tied hypotheses apart.
+    pub experiment: Option<Experiment>,
 }
 
 /// What people look at.
@@ -289,6 +292,7 @@ pub(super) fn assemble(
             .collect(),
         horizons: Vec::new(),
         pictures: None,
+        experiment: None,
     })
 }
 

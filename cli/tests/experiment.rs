@@ -1,0 +1,74 @@
+//! The next experiment of `appell diagnose` tells apart what its recordings cannot.
+
+mod rig;
+mod support;
+
+use support::number;
+
+/// So little friction that these recordings hardly tell its law.
+const FRICTION: f64 = 0.003;
+const LIMITS: [&str; 4] = ["--limit", "F=-6..6", "--limit", "x=-6..6"];
+
+#[test]
+fn a_tie_is_separated_by_the_experiment_that_was_proposed() {
+    let mut rig = rig::Rig::new(|v| FRICTION * v);
+    let asked = [
+        &["diagnose", "--data", ".", "--json", "report.json"],
+        &LIMITS[..],
+    ]
+    .concat();
+    rig.folder.done(&asked);
+    let report = rig.folder.json("report.json");
+    assert_eq!(report["verdict"], "ambiguous", "{report:#}");
+    let experiment = &report["experiment"];
+    assert_eq!(experiment["file"], "experiment.csv");
+    let (now, then) = (
+        number(experiment, "separation_now"),
+        number(experiment, "separation_then"),
+    );
+    assert!(now < 3.0 && then > 6.0, "{now} now, {then} then");
+
+    // The rig does what the table says.
+    let table = rig.folder.read("experiment.csv");
+    let mut lines = table.lines();
+    assert_eq!(lines.next(), Some("t,F"));
+    let force = |line: &str| -> f64 {
+        let (_, force) = line.split_once(',').expect("two columns");
+        force.parse().expect("a number")
+    };
+    let forces: Vec<f64> = lines.map(force).collect();
+    assert!(forces.iter().all(|force| force.abs() <= 6.0));
+    rig.record_to_fit("d.csv", &forces);
+    let recorded = rig.folder.read("d.csv");
+    let places = recorded
+        .lines()
+        .skip(1)
+        .filter_map(|line| line.split(',').nth(1));
+    let farthest = places.fold(0.0_f64, |most, x| {
+        most.max(x.parse::<f64>().expect("a number").abs())
+    });
+    // The limit, and what the true friction does that the fitted one does not.
+    assert!(farthest < 6.3, "{farthest} m");
+
+    rig.folder.done(&asked);
+    let again = rig.folder.json("report.json");
+    assert_eq!(again["verdict"], "explained", "{again:#}");
+    let found = &again["which"][0];
+    assert_eq!(found["effects"], serde_json::json!(["viscous_friction@x"]));
+    assert!(number(found, "probability") > 0.999, "{found}");
+    assert!(again["experiment"].is_null());
+}
+
+#[test]
+fn limits_name_columns_and_run_upwards() {
+    let folder = rig::viscous(0.4);
+    let asked = |limit| ["diagnose", "--data", ".", "--limit", limit];
+    let told = ["there is no such column; there are x, F"];
+    folder.fails(2, &asked("f=-1..1"), &told);
+    folder.fails(2, &asked("F=1..-1"), &["1 is not less than -1"]);
+    folder.fails(
+        2,
+        &asked("F=fast"),
+        &["write NAME=FROM..TO with two numbers"],
+    );
+}

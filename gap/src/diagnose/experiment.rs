@@ -1,0 +1,289 @@
+//! The next experiment for a tie: the input that tells the tied hypotheses apart best.
+//!
+//! One hypothesis makes a recording without noise; the filter of the other one is run on it. What it
+//! does not expect, whitened, is the difference of the two, and what its parameters can do within what
+//! is known of them by now is taken off: with innovations r, slopes S and the information I of the
+//! fit, d² = min over z of |r + S z|² + zᵀ I z. Two models d apart differ by d²/2 in log-likelihood.
+
+use appell_runtime::estimate::{Coordinate, Estimation, Recording, Unknown};
+use nalgebra::{DMatrix, DVector};
+
+use super::DiagnoseError;
+use super::bench::Bench;
+use super::compare::Comparison;
+use super::held_out::taken_over;
+use super::hypothesis::Fitted;
+use super::screen::moving;
+use crate::data::{DataSet, Role};
+use crate::experiment::Excitation;
+
+/// Longest experiment in s.
+const LONGEST: f64 = 20.0;
+/// Parts of the limits that are tried.
+const SIZES: [f64; 4] = [1.0, 0.7, 0.4, 0.2];
+/// Where nothing is said, a measured channel may leave its recorded range by this part of it.
+const ROOM: f64 = 0.25;
+
+/// A limit that a person states, in SI: a column with its smallest and largest value.
+pub type Limit = (String, [f64; 2]);
+
+/// An input that separates two hypotheses.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Experiment {
+    /// The effects of both.
+    pub separates: [Vec<String>; 2],
+    /// What the input is, in words.
+    pub about: String,
+    /// How far the recordings set them apart, in standard deviations.
+    pub separation_now: f64,
+    /// How far they are apart with the recordings of this experiment.
+    pub separation_then: f64,
+    /// Times in s.
+    pub times: Vec<f64>,
+    /// Inputs of the spec with their values in SI, each held until the next time.
+    pub inputs: Vec<(String, Vec<f64>)>,
+}
+
+/// What may be done with the rig.
+struct Rig<'a> {
+    bench: &'a Bench<'a>,
+    step: f64,
+    duration: f64,
+    /// Limits of the inputs by their index; nothing for those that nobody drives.
+    inputs: Vec<Option<[f64; 2]>>,
+    /// Limits of the measured channels.
+    channels: Vec<[f64; 2]>,
+}
+
+/// The best experiment for two hypotheses; nothing where no input that was tried keeps the motion
+/// within its limits.
+pub(super) fn experiment(
+    bench: &Bench<'_>,
+    comparison: &Comparison,
+    pair: [&[String]; 2],
+    limits: &[Limit],
+) -> Result<Option<Experiment>, DiagnoseError> {
+    let fit = |effects: &[String]| {
+        let mut fits = comparison.fits.iter().map(|(fitted, _)| fitted);
+        fits.find(|fitted| {
+            let names = fitted.members.iter().map(|&m| bench.candidate(m).name());
+            names.eq(effects.iter().cloned())
+        })
+    };
+    let (Some(truth), Some(rival)) = (fit(pair[0]), fit(pair[1])) else {
+        return Ok(None);
+    };
+    let rig = Rig::new(bench, limits);
+    let mut best: Option<(f64, Excitation, usize, f64, Recording)> = None;
+    for (input, limits) in rig.inputs.iter().enumerate() {
+        let Some(limits) = limits else { continue };
+        for shape in Excitation::library(rig.duration, rig.step) {
+            // Smaller inputs where larger ones leave the limits.
+            for size in SIZES {
+                let Some(recording) = rig.made(truth, (input, *limits), (shape, size))? else {
+                    continue;
+                };
+                let d = distance(bench, rival, &recording)?;
+                if d.is_finite() && best.as_ref().is_none_or(|best| d > best.0) {
+                    best = Some((d, shape, input, size, recording));
+                }
+                break;
+            }
+        }
+    }
+    let Some((d, shape, input, size, recording)) = best else {
+        return Ok(None);
+    };
+    let gap = truth.evidence.log_likelihood - rival.evidence.log_likelihood;
+    let now = (2.0 * gap.abs()).sqrt();
+    let name = |input: usize| bench.effects.info().inputs[input].name.to_string();
+    Ok(Some(Experiment {
+        separates: pair.map(<[String]>::to_vec),
+        about: format!(
+            "{shape} on {}, {:.0} % of its limits",
+            name(input),
+            100.0 * size
+        ),
+        separation_now: now,
+        separation_then: now.hypot(d),
+        inputs: rig.driven(&recording, name),
+        times: recording.times().to_vec(),
+    }))
+}
+
+impl<'a> Rig<'a> {
+    fn new(bench: &'a Bench<'a>, limits: &[Limit]) -> Self {
+        let set = &bench.set;
+        let info = bench.effects.info();
+        let stated = |column: &str| {
+            limits
+                .iter()
+                .find(|(own, _)| own == column)
+                .map(|(_, l)| *l)
+        };
+        let mut inputs = vec![None; info.declared_inputs];
+        for (column, channel) in set.channels.iter().enumerate() {
+            if let Role::Input(input) = channel.role {
+                let range = stated(&channel.column).or_else(|| range(set, column));
+                inputs[input] = range.filter(|[low, high]| high > low);
+            }
+        }
+        let measured = set.measured(info);
+        let channels = measured.iter().map(|(channel, _)| {
+            let column = set
+                .channels
+                .iter()
+                .position(|own| own.column == channel.column);
+            let recorded = column.and_then(|column| range(set, column));
+            let wide = recorded.map(|[low, high]| {
+                let room = ROOM * (high - low);
+                [low - room, high + room]
+            });
+            let all = [f64::NEG_INFINITY, f64::INFINITY];
+            stated(&channel.column).or(wide).unwrap_or(all)
+        });
+        let spans: Vec<[f64; 2]> = bench
+            .recordings
+            .iter()
+            .map(|run| {
+                let times = run.times();
+                let span = times[times.len() - 1] - times[0];
+                [span, span / (times.len() - 1) as f64]
+            })
+            .collect();
+        let longest = spans.iter().fold(0.0_f64, |most, span| most.max(span[0]));
+        let finest = spans
+            .iter()
+            .fold(f64::INFINITY, |least, span| least.min(span[1]));
+        Self {
+            bench,
+            step: finest,
+            duration: longest.min(LONGEST),
+            inputs,
+            channels: channels.collect(),
+        }
+    }
+
+    /// The recording without noise that a hypothesis makes; nothing where the motion leaves its limits.
+    fn made(
+        &self,
+        truth: &Fitted,
+        (input, [low, high]): (usize, [f64; 2]),
+        (shape, size): (Excitation, f64),
+    ) -> Result<Option<Recording>, DiagnoseError> {
+        let samples = shape.samples(self.duration, self.step);
+        let (rows, columns, channels) = (samples.len(), self.inputs.len(), self.channels.len());
+        let mut inputs = vec![0.0; rows * columns];
+        let (centre, half) = (0.5 * (low + high), 0.5 * size * (high - low));
+        for (row, sample) in samples.iter().enumerate() {
+            inputs[row * columns + input] = centre + half * sample;
+        }
+        let times = (0..rows).map(|row| row as f64 * self.step).collect();
+        // Nothing is known at the first row; later ones are compared with zero.
+        let mut nothing = vec![0.0; rows * channels];
+        nothing[..channels].fill(f64::NAN);
+        let blank = vec![Recording::new(times, inputs, nothing)?];
+        let setup = self.bench.setup(&truth.members);
+        let estimation = Estimation::new(&setup, &blank)?;
+        let mut values = taken_over(truth, &estimation)?;
+        self.rest(truth, &estimation, &mut values)?;
+        let mut shown = vec![f64::NAN; rows * channels];
+        for one in estimation.predictions(&values, 0, f64::INFINITY, &[0])? {
+            let value = -one.residual;
+            let [low, high] = self.channels[one.channel];
+            if !(low..=high).contains(&value) {
+                return Ok(None);
+            }
+            shown[one.row * channels + one.channel] = value;
+        }
+        Ok(Some(blank[0].with_measurements(shown)?))
+    }
+
+    /// The motion begins where the first run does, at rest.
+    fn rest(
+        &self,
+        truth: &Fitted,
+        estimation: &Estimation<'_>,
+        values: &mut [f64],
+    ) -> Result<(), DiagnoseError> {
+        let info = self.bench.effects.info();
+        for state in 0..info.state_len() {
+            let unknown = Unknown::Initial { run: 0, state };
+            let begun = truth.fit.values[truth.layout.place(unknown)?];
+            let at = if state < info.speeds { 0.0 } else { begun };
+            values[estimation.layout().place(unknown)?] = at;
+        }
+        Ok(())
+    }
+
+    /// The inputs that someone drives.
+    fn driven(
+        &self,
+        recording: &Recording,
+        name: impl Fn(usize) -> String,
+    ) -> Vec<(String, Vec<f64>)> {
+        let rows = recording.times().len();
+        let driven = (0..self.inputs.len()).filter(|&input| self.inputs[input].is_some());
+        let values = |input: usize| (0..rows).map(|row| recording.inputs(row)[input]).collect();
+        driven.map(|input| (name(input), values(input))).collect()
+    }
+}
+
+/// Smallest and largest value of a column in the runs to fit.
+fn range(set: &DataSet, column: usize) -> Option<[f64; 2]> {
+    let values = set.runs.iter().flat_map(|run| &run.values[column]);
+    let seen = values.filter(|value| value.is_finite());
+    let none = [f64::INFINITY, f64::NEG_INFINITY];
+    let range = seen.fold(none, |[low, high], &value| {
+        [low.min(value), high.max(value)]
+    });
+    (range[0] <= range[1]).then_some(range)
+}
+
+/// How far a hypothesis stays from a recording of another one after its parameters have adapted.
+fn distance(
+    bench: &Bench<'_>,
+    rival: &Fitted,
+    recording: &Recording,
+) -> Result<f64, DiagnoseError> {
+    let recordings = [recording.clone()];
+    let setup = bench.setup(&rival.members);
+    let estimation = Estimation::new(&setup, &recordings)?;
+    let values = taken_over(rival, &estimation)?;
+    let directions = moving(rival);
+    let tangent = estimation.tangent(&values, &directions, None)?;
+    let rest = DVector::from_iterator(
+        tangent.samples.len(),
+        tangent.samples.iter().map(|(_, sample)| sample.whitened()),
+    );
+    let score = tangent.slopes.tr_mul(&rest);
+    let mut squares = tangent.slopes.tr_mul(&tangent.slopes) + known(rival);
+    let size = squares.diagonal().amax();
+    for i in 0..squares.nrows() {
+        squares[(i, i)] += 1e-12 * size;
+    }
+    let adapted = squares
+        .cholesky()
+        .map_or(0.0, |factor| score.dot(&factor.solve(&score)));
+    Ok((rest.norm_squared() - adapted).max(0.0).sqrt())
+}
+
+/// What the recordings tell of the values that move the mean.
+fn known(fitted: &Fitted) -> DMatrix<f64> {
+    let moves = |i: &usize| {
+        !matches!(
+            fitted.fit.free[*i].unknown,
+            Unknown::Disturbance(_) | Unknown::Noise(_) | Unknown::Spread { .. }
+        )
+    };
+    let own: Vec<usize> = (0..fitted.fit.free.len()).filter(moves).collect();
+    // From coordinates to values.
+    let stretch = |i: usize| match fitted.fit.free[i].coordinate {
+        Coordinate::Plain => 1.0,
+        Coordinate::Logarithm => fitted.fit.free[i].to_value(fitted.fit.coordinates[i]),
+    };
+    DMatrix::from_fn(own.len(), own.len(), |i, j| {
+        let (i, j) = (own[i], own[j]);
+        fitted.fit.information[(i, j)] / (stretch(i) * stretch(j))
+    })
+}

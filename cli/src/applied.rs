@@ -100,6 +100,13 @@ impl Report {
                 "there is no hypothesis {place}: the report has {count}, counted from 1"
             ))
         })?;
+        if let Some(name) = found.alternative() {
+            return Err(Failure::Usage(format!(
+                "hypothesis {place} is another model, `{name}`: use its spec\n  choose another \
+                 hypothesis with `--hypothesis`:\n{}",
+                self.list()
+            )));
+        }
         if found.changes.is_none() {
             return Err(Failure::Usage(format!(
                 "hypothesis {place} says that nothing in the library explains the gap: there is \
@@ -134,6 +141,11 @@ impl Hypothesis {
             return "nominal model, its parameters fitted".to_owned();
         }
         self.effects.join(" + ")
+    }
+
+    /// The model that it stands for, if it is another one.
+    fn alternative(&self) -> Option<&str> {
+        self.effects.first()?.strip_prefix("alternative:")
     }
 
     /// What it changes.

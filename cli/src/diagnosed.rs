@@ -26,7 +26,9 @@ const LISTED: usize = 3;
 pub(crate) fn failure(error: DiagnoseError) -> Failure {
     match error {
         DiagnoseError::Model(ModelError::Spec(report)) => Failure::Report(report),
+        DiagnoseError::Data(error) => error.into(),
         DiagnoseError::NothingMeasured
+        | DiagnoseError::LacksChannel { .. }
         | DiagnoseError::NothingToFit
         | DiagnoseError::Model(ModelError::Effect(_) | ModelError::Edit(_)) => {
             Failure::Data(error.to_string())

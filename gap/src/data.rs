@@ -18,6 +18,7 @@
 //! | `channel.rs` | what a column measures, and its values in SI |
 //! | `quantum.rs`, `noise.rs` | the step of a sensor; the noise level, stated and found |
 //! | `observed.rs` | the runs as the estimation core takes them |
+//! | `rebound.rs` | the same recordings for another spec |
 //! | `finding.rs`, `error.rs` | what was mended or looks wrong; what cannot be read |
 //! | `limits.rs` | how large a data set may be |
 //!
@@ -42,6 +43,7 @@ mod observed;
 #[cfg(feature = "parquet")]
 mod parquet;
 mod quantum;
+mod rebound;
 pub(crate) mod table;
 
 use std::path::Path;

@@ -7,6 +7,7 @@
 //!          --bench, evidence--> the nominal model in innovations form, parameters within tolerance
 //!          --screen--> what each candidate would gain, to first order
 //!          --compare--> the best ones fitted, alone and together; evidence on equal terms
+//!          --alternative--> other specs, fitted to the same recordings
 //!          --unknown--> what no candidate explains, and what it depends on
 //!          --localise--> equations, windows of time, regions
 //!          --held_out--> errors of predictions: nominal, re-fitted, with the effect, noise
@@ -18,6 +19,7 @@
 //! Decisions rest on the likelihood of the innovations of an extended Kalman filter whose levels of
 //! disturbance are found anew under every hypothesis.
 
+mod alternative;
 mod bench;
 mod changes;
 mod compare;
@@ -34,7 +36,7 @@ mod screen;
 mod traces;
 mod unknown;
 
-use crate::data::{DataSet, Part};
+use crate::data::{DataSet, Part, Spec};
 use crate::effects::{Effect, EffectModel, candidates};
 
 pub use changes::{Beside, ChangeError, Changes, Refitted};
@@ -47,9 +49,10 @@ pub use report::{
 };
 pub use traces::{AHEAD, Ahead, Trace};
 
+use alternative::{Alternative, Rival};
 use bench::Bench;
 use compare::Comparison;
-use held_out::HeldOut;
+use held_out::{HeldOut, Leader};
 use screen::Screen;
 
 /// What is asked for beside the report.
@@ -59,6 +62,8 @@ pub struct Options {
     pub pictures: bool,
     /// Within which the next experiment has to stay; elsewhere it stays near what is recorded.
     pub limits: Vec<Limit>,
+    /// Other specs of the same thing, each a hypothesis of its own.
+    pub alternatives: Vec<Spec>,
 }
 
 /// Diagnoses a data set with a library of effects. `stage` is told what begins.
@@ -85,22 +90,56 @@ pub fn diagnose(
     let mut comparison = Comparison::of(&bench, nominal, &screen)?;
     stage("looking for what no effect explains");
     comparison.weigh_unknown(&bench)?;
+    stage("fitting the alternatives");
+    let alternatives = options.alternatives.iter();
+    let alternatives: Vec<Alternative> = alternatives
+        .map(|spec| Alternative::new(&fitted, spec))
+        .collect::<Result<_, _>>()?;
+    let rivals: Vec<Rival<'_>> = (alternatives.iter())
+        .map(|alternative| Rival::of(alternative, &bench))
+        .collect::<Result<_, _>>()?;
     stage("localising the gap");
     let place = localise::place(&bench, &comparison)?;
+    let report = report::assemble(&bench, &screen, &comparison, place.clone(), &rivals)?;
     stage("predicting the runs that were held out");
-    let held_out = HeldOut::of(&set.only(Part::Test), &bench)?;
-    let how_far = held_out.how_far(&bench, &comparison)?;
-    let horizons = held_out.horizons(&bench, &comparison)?;
+    let test = set.only(Part::Test);
+    let held_out = HeldOut::of(&test, &bench)?;
+    let leading = rivals
+        .iter()
+        .find(|rival| report.which[0].effects == [rival.name.clone()]);
+    let rebound = match leading {
+        Some(rival) => Some(HeldOut::of(&rival.rebound(&test)?, &rival.bench)?),
+        None => None,
+    };
+    let noise = held_out::noise(&bench, comparison.best())?;
+    let leader = match (leading, &rebound) {
+        (Some(rival), Some(runs)) => Leader {
+            bench: &rival.bench,
+            fitted: &rival.fitted,
+            runs,
+            noise: rival.noise(&bench, &noise),
+        },
+        _ => Leader {
+            bench: &bench,
+            fitted: comparison.best(),
+            runs: &held_out,
+            noise,
+        },
+    };
+    let how_far = held_out.how_far(&bench, &comparison, &leader)?;
+    let horizons = held_out.horizons(&bench, &comparison, &leader)?;
     let pictures = if options.pictures {
         stage("drawing");
         Some(Pictures {
-            traces: held_out.traces(&bench, &comparison)?,
-            law: law::law(&bench, &comparison, &place)?,
+            traces: held_out.traces(&bench, &comparison, &leader)?,
+            law: match leading {
+                Some(_) => None,
+                None => law::law(&bench, &comparison, &place)?,
+            },
         })
     } else {
         None
     };
-    let report = report::assemble(&bench, &screen, &comparison, place, how_far)?;
     let experiment = match report.tied.first().map(Vec::as_slice) {
         Some([first, second, ..]) => {
             stage("designing the next experiment");
@@ -110,6 +149,7 @@ pub fn diagnose(
         _ => None,
     };
     Ok(Report {
+        how_far,
         horizons,
         pictures,
         experiment,

@@ -3,11 +3,12 @@
 use std::path::PathBuf;
 use std::str::FromStr;
 
-use appell_gap::data::DataSet;
+use appell_gap::data::{DataSet, Spec};
 use appell_gap::diagnose::{self, Limit, Options};
 use appell_gap::effects;
 
 use crate::failure::Failure;
+use crate::source::Source;
 use crate::{diagnosed, files, progress, recording};
 
 /// Tells where a model falls short of recordings, which effect it lacks, and how far the effect closes
@@ -25,6 +26,10 @@ pub(crate) struct Diagnose {
     /// Files of effects of your own, which are tried beside those of the library
     #[arg(long, num_args = 1.., value_name = "FILE.toml")]
     effects: Vec<PathBuf>,
+    /// Other specs of the same thing, each a hypothesis of its own; names of quantities join them to the
+    /// recordings
+    #[arg(long, num_args = 1.., value_name = "SPEC")]
+    alternative: Vec<String>,
     /// Write the gap report; `-` is standard output
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
@@ -75,6 +80,7 @@ impl Diagnose {
         let options = Options {
             pictures: self.html.is_some(),
             limits: self.limits(&set)?,
+            alternatives: self.alternatives()?,
         };
         let stage = |stage| spinner.set_message(stage);
         let report = diagnose::diagnose(&set, &library, &options, stage);
@@ -100,6 +106,18 @@ impl Diagnose {
         let report = self.json.as_ref().filter(|path| !files::is_stdout(path));
         let beside = || report.map(|path| path.with_file_name("experiment.csv"));
         self.experiment.clone().or_else(beside)
+    }
+
+    /// The other specs.
+    fn alternatives(&self) -> Result<Vec<Spec>, Failure> {
+        let specs = self.alternative.iter().map(|model| {
+            let source = Source::find(model)?;
+            Ok(Spec {
+                file: source.file,
+                text: source.text,
+            })
+        });
+        specs.collect()
     }
 
     /// The limits in SI.

@@ -78,8 +78,10 @@ fn values(hypothesis: &Hypothesis) -> Vec<String> {
 
 fn place(set: &DataSet, report: &Report) -> String {
     let mut html = "<h2>Where</h2>\n".to_owned();
-    if report.place.equations.is_empty() {
+    if report.verdict == Verdict::NoGap {
         html += "<p>No equation disagrees with the recordings beyond noise and disturbance.</p>\n";
+    } else if report.place.equations.is_empty() {
+        html += "<p>In the structure of the model: another one fits the recordings.</p>\n";
     } else {
         let domain = report.place.domain;
         // Writing to a string cannot fail.
@@ -327,6 +329,9 @@ fn next(set: &DataSet, report: &Report) -> String {
         Verdict::NoGap => {
             "<p>Nothing has to be added to the model. The table below tells how small an effect these \
              recordings would have shown.</p>\n"
+        }
+        _ if report.which[0].changes.is_none() && report.verdict != Verdict::Unexplained => {
+            "<p>Go on with the alternative model, and diagnose that one.</p>\n"
         }
         Verdict::Explained | Verdict::Ambiguous => {
             "<p>Write the effect into the spec, with the report that <code>--json report.json</code> \

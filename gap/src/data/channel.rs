@@ -116,7 +116,7 @@ impl Channel {
     }
 
     /// Whether it is an angle in a unit of angles, which may start anew after a turn.
-    fn is_angle(&self) -> bool {
+    pub(super) fn is_angle(&self) -> bool {
         let angle = self.unit.dimension == Dimension::NONE
             && (self.unit.pi_power != 0 || self.unit.text == "rad");
         angle && matches!(self.role, Role::Measures(Measured::Coordinate(_)))

@@ -228,7 +228,7 @@ impl Search<'_, '_> {
 }
 
 /// Logarithm of the probability beforehand of a hypothesis with so many members.
-fn prior(bench: &Bench<'_>, members: usize) -> f64 {
+pub(super) fn prior(bench: &Bench<'_>, members: usize) -> f64 {
     let candidates = bench.effects.candidates.iter();
     let names: BTreeSet<String> = candidates.map(Candidate::name).collect();
     let each = (names.len().max(1) as f64).ln();

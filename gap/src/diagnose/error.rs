@@ -16,6 +16,20 @@ pub enum DiagnoseError {
     /// All runs are held out.
     #[error("no run may be fitted; name one in `fit` of `[runs]`")]
     NothingToFit,
+    /// Recordings that do not fit an alternative.
+    #[error(transparent)]
+    Data(#[from] crate::data::DataError),
+    /// An alternative cannot be compared on the same channels.
+    #[error(
+        "the alternative `{name}` has no quantity for the column `{column}`; hypotheses are compared \
+         on the same channels, and names join them"
+    )]
+    LacksChannel {
+        /// The alternative.
+        name: String,
+        /// The column.
+        column: String,
+    },
     /// A mechanism with effects that has no equations.
     #[error(transparent)]
     Model(#[from] ModelError),

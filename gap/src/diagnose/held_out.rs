@@ -32,6 +32,27 @@ pub(super) struct HeldOut {
     pub(super) recordings: Vec<Recording>,
 }
 
+/// The hypothesis that leads, with the runs that were held out as its model takes them.
+pub(super) struct Leader<'l> {
+    pub(super) bench: &'l Bench<'l>,
+    pub(super) fitted: &'l Fitted,
+    pub(super) runs: &'l HeldOut,
+    /// Noise of its channels; infinite for those that are not compared.
+    pub(super) noise: Vec<f64>,
+}
+
+impl Leader<'_> {
+    pub(super) fn errors(&self, horizon: f64) -> Result<Vec<(usize, usize, f64)>, DiagnoseError> {
+        self.runs
+            .errors(self.bench, self.fitted, &self.noise, horizon)
+    }
+
+    pub(super) fn floor(&self, horizon: f64) -> Result<f64, DiagnoseError> {
+        self.runs
+            .floor(self.bench, self.fitted, &self.noise, horizon)
+    }
+}
+
 /// Sums of squared errors, in units of the noise, of one block of a run.
 #[derive(Debug, Clone, Copy, Default)]
 struct Block {
@@ -52,21 +73,22 @@ impl HeldOut {
         })
     }
 
-    /// The errors of the nominal model, the re-fitted one and the best hypothesis.
+    /// The errors of the nominal model, the re-fitted one and the leading hypothesis.
     pub(super) fn how_far(
         &self,
         bench: &Bench<'_>,
         comparison: &Comparison,
+        leader: &Leader<'_>,
     ) -> Result<Option<HowFar>, DiagnoseError> {
         if self.recordings.is_empty() {
             return Ok(None);
         }
-        let (refitted, best) = (comparison.nominal(), comparison.best());
+        let refitted = comparison.nominal();
         let nominal = stated(bench, refitted);
-        let noise = noise(bench, best)?;
+        let noise = noise(bench, comparison.best())?;
         let errors = |fitted: &Fitted| self.errors(bench, fitted, &noise, HORIZON);
-        let (nominal, refitted, effect) = (errors(&nominal)?, errors(refitted)?, errors(best)?);
-        let floor = self.floor(bench, best, &noise, HORIZON)?;
+        let (nominal, refitted) = (errors(&nominal)?, errors(refitted)?);
+        let (effect, floor) = (leader.errors(HORIZON)?, leader.floor(HORIZON)?);
         let blocks: Vec<Block> = blocks(&nominal, &refitted, &effect);
         let total = sum(&blocks);
         let closed = |e0: f64, e: f64| (e0 - e) / (e0 - floor * floor);
@@ -111,6 +133,9 @@ impl HeldOut {
                 origins.truncate(1);
             }
             for one in estimation.predictions(&values, run, horizon, &origins)? {
+                if noise[one.channel].is_infinite() {
+                    continue;
+                }
                 let block = (recording.times()[one.origin] - recording.times()[0]) / BLOCK;
                 // A count of blocks in memory.
                 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
@@ -139,8 +164,10 @@ impl HeldOut {
             for (channel, variance) in
                 estimation.expected_errors(&values, run, horizon, &origins)?
             {
-                squares += variance / noise[channel].powi(2);
-                count += 1.0;
+                if noise[channel].is_finite() {
+                    squares += variance / noise[channel].powi(2);
+                    count += 1.0;
+                }
             }
         }
         Ok((squares / count.max(1.0)).sqrt())

@@ -1,9 +1,10 @@
 //! The gap report: what was found, in the words of the contract.
 
 use super::DiagnoseError;
+use super::alternative::Rival;
 use super::bench::Bench;
 use super::changes::Changes;
-use super::compare::{Comparison, TIED};
+use super::compare::{Comparison, TIED, prior};
 use super::experiment::Experiment;
 use super::hypothesis::Fitted;
 use super::law::Law;
@@ -16,6 +17,8 @@ use appell_runtime::estimate::Unknown;
 const DETECTABLE: f64 = 5.0;
 /// Fewer hypotheses than this are never cut from the report.
 const TOLD: usize = 10;
+/// Odds beyond this are certainty, and no number any more.
+const MOST_LOG_ODDS: f64 = 600.0;
 
 /// The result in one word.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -216,7 +219,7 @@ pub(super) fn assemble(
     screen: &Screen,
     comparison: &Comparison,
     place: Where,
-    how_far: Option<HowFar>,
+    rivals: &[Rival<'_>],
 ) -> Result<Report, DiagnoseError> {
     let names = |members: &[usize]| -> Vec<String> {
         members.iter().map(|&m| bench.candidate(m).name()).collect()
@@ -246,6 +249,7 @@ pub(super) fn assemble(
         parameters: Vec::new(),
         changes: None,
     });
+    join(&mut which, rivals, bench, comparison)?;
     which.sort_by(|a, b| b.probability.total_cmp(&a.probability));
     let tied = tied(&which);
     let top = &which[0];
@@ -264,17 +268,33 @@ pub(super) fn assemble(
         .map(|(_, h)| h.clone())
         .collect();
     let best = comparison.best();
+    let leading = rivals
+        .iter()
+        .find(|rival| top.effects == [rival.name.clone()]);
+    let leads = leading.is_some();
+    let found = match leading {
+        Some(rival) => vec![Found {
+            effect: rival.name.clone(),
+            about: format!("the model `{}`", rival.bench.set.mechanism.name),
+        }],
+        None => (best.members.iter())
+            .map(|&member| Found {
+                effect: bench.candidate(member).name(),
+                about: bench.candidate(member).about.clone(),
+            })
+            .collect(),
+    };
     Ok(Report {
         mechanism: bench.set.mechanism.name.clone(),
         verdict,
-        place: if verdict == Verdict::NoGap {
+        place: if verdict == Verdict::NoGap || leads {
             Where::nowhere()
         } else {
             place
         },
         which: if rest < 1e-6 { keep } else { which },
         tied,
-        how_far,
+        how_far: None,
         detectable: detectable(bench, screen),
         failed: comparison
             .failed
@@ -282,18 +302,39 @@ pub(super) fn assemble(
             .map(|(members, reason)| (names(members), reason.clone()))
             .collect(),
         disturbances: disturbances(bench, comparison.nominal(), best),
-        found: best
-            .members
-            .iter()
-            .map(|&member| Found {
-                effect: bench.candidate(member).name(),
-                about: bench.candidate(member).about.clone(),
-            })
-            .collect(),
+        found,
         horizons: Vec::new(),
         pictures: None,
         experiment: None,
     })
+}
+
+/// Alternatives beside the hypotheses of the library, each as probable beforehand as one effect.
+fn join(
+    which: &mut Vec<Hypothesis>,
+    rivals: &[Rival<'_>],
+    bench: &Bench<'_>,
+    comparison: &Comparison,
+) -> Result<(), DiagnoseError> {
+    let (best, probability) = &comparison.fits[0];
+    let known = probability * (1.0 - comparison.unknown);
+    let beside = best.evidence.log() + prior(bench, best.members.len());
+    let base = comparison.nominal().evidence.log();
+    for rival in rivals {
+        let odds = rival.log + prior(bench, 1) - beside;
+        which.push(Hypothesis {
+            effects: vec![rival.name.clone()],
+            probability: odds.min(MOST_LOG_ODDS).exp() * known.max(f64::MIN_POSITIVE),
+            log_bayes_factor: Some(rival.log - base),
+            parameters: rival.values()?,
+            changes: None,
+        });
+    }
+    let sum: f64 = which.iter().map(|hypothesis| hypothesis.probability).sum();
+    for hypothesis in which {
+        hypothesis.probability /= sum;
+    }
+    Ok(())
 }
 
 /// The leading hypothesis with those that cannot be told from it.

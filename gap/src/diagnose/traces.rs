@@ -4,9 +4,10 @@
 use appell_runtime::estimate::Estimation;
 
 use super::DiagnoseError;
+use super::alternative::columns;
 use super::bench::Bench;
 use super::compare::Comparison;
-use super::held_out::{HeldOut, noise, origins, stated, taken_over};
+use super::held_out::{HeldOut, Leader, noise, origins, stated, taken_over};
 use super::hypothesis::Fitted;
 
 /// Horizons in s beside the one at which the gap is told: one step, short, the free run.
@@ -60,21 +61,20 @@ impl HeldOut {
         &self,
         bench: &Bench<'_>,
         comparison: &Comparison,
+        leader: &Leader<'_>,
     ) -> Result<Vec<Ahead>, DiagnoseError> {
         if self.recordings.is_empty() {
             return Ok(Vec::new());
         }
-        let (refitted, best) = (comparison.nominal(), comparison.best());
-        let noise = noise(bench, best)?;
+        let refitted = comparison.nominal();
+        let noise = noise(bench, comparison.best())?;
         let nominal = stated(bench, refitted);
         let ahead = |horizon: f64| {
             let error = |fitted: &Fitted| -> Result<f64, DiagnoseError> {
-                let errors = self.errors(bench, fitted, &noise, horizon)?;
-                let squares: f64 = errors.iter().map(|(_, _, square)| square).sum();
-                Ok((squares / errors.len().max(1) as f64).sqrt())
+                Ok(root(&self.errors(bench, fitted, &noise, horizon)?))
             };
             let floor = if horizon.is_finite() {
-                Some(self.floor(bench, best, &noise, horizon)?)
+                Some(leader.floor(horizon)?)
             } else {
                 None
             };
@@ -82,7 +82,7 @@ impl HeldOut {
                 horizon,
                 nominal: error(&nominal)?,
                 refitted: error(refitted)?,
-                with_effect: error(best)?,
+                with_effect: root(&leader.errors(horizon)?),
                 noise_floor: floor,
             })
         };
@@ -94,37 +94,26 @@ impl HeldOut {
         &self,
         bench: &Bench<'_>,
         comparison: &Comparison,
+        leader: &Leader<'_>,
     ) -> Result<Vec<Trace>, DiagnoseError> {
         let Some(recording) = self.recordings.first() else {
             return Ok(Vec::new());
         };
-        let (refitted, best) = (comparison.nominal(), comparison.best());
-        let nominal = stated(bench, refitted);
-        let origins = origins(recording, POINTS);
+        let refitted = comparison.nominal();
+        let nominal = self.predicted(bench, &stated(bench, refitted))?;
+        let refitted = self.predicted(bench, refitted)?;
+        let with_effect = leader.runs.predicted(leader.bench, leader.fitted)?;
+        let deviations = leader.runs.deviations(leader.bench, leader.fitted)?;
+        let led = columns(leader.bench);
         let rows = recording.times().len();
         let channels = bench.set.measured(bench.effects.info());
-        // By channel and row; NaN where nothing is predicted.
-        let predicted = |fitted: &Fitted| -> Result<Vec<Vec<f64>>, DiagnoseError> {
-            let setup = bench.setup(&fitted.members);
-            let estimation = Estimation::new(&setup, &self.recordings)?;
-            let values = taken_over(fitted, &estimation)?;
-            let mut predicted = vec![vec![f64::NAN; rows]; channels.len()];
-            for one in estimation.predictions(&values, 0, AHEAD, &origins)? {
-                let value = recording.measured(one.row)[one.channel] - one.residual;
-                predicted[one.channel][one.row] = value;
-            }
-            Ok(predicted)
-        };
-        let predictions = [&nominal, refitted, best].map(predicted);
-        let [nominal, refitted, with_effect] = predictions;
-        let (nominal, refitted, with_effect) = (nominal?, refitted?, with_effect?);
-        let deviations = self.deviations(bench, best)?;
         let mut traces = Vec::new();
         for (index, (channel, _)) in channels.iter().enumerate() {
+            let Some(own) = led.iter().position(|column| *column == channel.column) else {
+                continue;
+            };
             let told: Vec<usize> = (0..rows)
-                .filter(|&row| {
-                    nominal[index][row].is_finite() || with_effect[index][row].is_finite()
-                })
+                .filter(|&row| nominal[index][row].is_finite() || with_effect[own][row].is_finite())
                 .collect();
             let of = |values: &dyn Fn(usize) -> f64| -> Vec<f64> {
                 let rows = told.iter();
@@ -138,11 +127,30 @@ impl HeldOut {
                 measured: of(&|row| recording.measured(row)[index]),
                 nominal: of(&|row| nominal[index][row]),
                 refitted: of(&|row| refitted[index][row]),
-                with_effect: of(&|row| with_effect[index][row]),
-                deviation: channel.unit.from_si(deviations[index]),
+                with_effect: of(&|row| with_effect[own][row]),
+                deviation: channel.unit.from_si(deviations[own]),
             });
         }
         Ok(traces)
+    }
+
+    /// Predictions of the first run in SI, by channel and row; NaN where nothing is predicted.
+    fn predicted(
+        &self,
+        bench: &Bench<'_>,
+        fitted: &Fitted,
+    ) -> Result<Vec<Vec<f64>>, DiagnoseError> {
+        let recording = &self.recordings[0];
+        let setup = bench.setup(&fitted.members);
+        let estimation = Estimation::new(&setup, &self.recordings)?;
+        let values = taken_over(fitted, &estimation)?;
+        let rows = recording.times().len();
+        let mut predicted = vec![vec![f64::NAN; rows]; bench.measured.len()];
+        for one in estimation.predictions(&values, 0, AHEAD, &origins(recording, POINTS))? {
+            let value = recording.measured(one.row)[one.channel] - one.residual;
+            predicted[one.channel][one.row] = value;
+        }
+        Ok(predicted)
     }
 
     /// Standard deviations in SI that errors have if a hypothesis is right, by channel.
@@ -161,4 +169,10 @@ impl HeldOut {
             .map(|(sum, count): (f64, f64)| (sum / count.max(1.0)).sqrt())
             .collect())
     }
+}
+
+/// Root of the mean of squared errors.
+fn root(errors: &[(usize, usize, f64)]) -> f64 {
+    let squares: f64 = errors.iter().map(|(_, _, square)| square).sum();
+    (squares / errors.len().max(1) as f64).sqrt()
 }

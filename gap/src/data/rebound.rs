@@ -1,0 +1,52 @@
+//! The same recordings for another spec of the same thing: names join the two.
+
+use appell_runtime::signal::angle::unwrap;
+use appell_spec::Mechanism;
+
+use super::{Channel, DataError, DataSet, Measured, Role, Spec};
+
+impl DataSet {
+    /// Recordings bound to another spec. A quantity keeps its name; a column that the first spec does
+    /// not know is bound if the other one has a quantity of its name and dimension. What the other
+    /// one does not have is only recorded.
+    pub fn rebound(&self, spec: &Spec) -> Result<Self, DataError> {
+        let mechanism = appell_spec::load(&spec.file, &spec.text)?.mechanism;
+        let mut set = self.bound_to(&mechanism);
+        set.spec = spec.clone();
+        for (index, channel) in set.channels.iter_mut().enumerate() {
+            let role = role(channel, &self.mechanism, &mechanism);
+            let was_measured = channel.is_measured();
+            channel.role = role;
+            if channel.is_angle() && !was_measured {
+                for run in &mut set.runs {
+                    unwrap(&mut run.values[index]);
+                }
+            }
+        }
+        Ok(set)
+    }
+}
+
+/// What a column holds for another mechanism.
+fn role(channel: &Channel, from: &Mechanism, to: &Mechanism) -> Role {
+    let input = |name: &str| {
+        let place = to.inputs.iter().position(|input| input.label.name == name);
+        place.map(Role::Input)
+    };
+    let measured = |name: &str| Measured::named(name, to).map(Role::Measures);
+    let name = |role: Role| {
+        role.label(from)
+            .map_or(channel.column.as_str(), |l| &l.name)
+    };
+    let found = match channel.role {
+        Role::Measures(_) => measured(name(channel.role)),
+        Role::Input(_) => input(name(channel.role)),
+        Role::Recorded => measured(&channel.column)
+            .or_else(|| input(&channel.column))
+            .filter(|role| {
+                let label = role.label(to);
+                label.is_some_and(|l| l.unit.dimension == channel.unit.dimension)
+            }),
+    };
+    found.unwrap_or(Role::Recorded)
+}

@@ -132,14 +132,14 @@ def actuators_follow_their_differential_equations():
 
 def delays_shift_the_command():
     """The momentum of a carriage is the impulse of the late command."""
-    delay = 0.0137
-    trial = moved("carriage", [Actuator("actuator_delay", "F", delay)])
-    u = trial.commands[:, 0]
-    whole, part = divmod(delay, 0.01)
-    last = len(u) - 2 - int(whole)  # what still comes, for the rest of its sample
-    late = u[0] * delay + np.sum(u[:last]) * 0.01 + u[last] * (0.01 - part)
-    gained = parameters("carriage")["m"] * (trial.states[-1, 1] - trial.states[0, 1])
-    assert abs(gained - late) < 1e-8, (gained, late)
+    for delay, mujoco in ((0.0137, False), (0.0137, True), (0.0003, True)):
+        trial = moved("carriage", [Actuator("actuator_delay", "F", delay)], mujoco=mujoco)
+        u = trial.commands[:, 0]
+        whole, part = divmod(delay, 0.01)
+        last = len(u) - 2 - int(whole)  # what still comes, for the rest of its sample
+        late = u[0] * delay + np.sum(u[:last]) * 0.01 + u[last] * (0.01 - part)
+        gained = parameters("carriage")["m"] * (trial.states[-1, 1] - trial.states[0, 1])
+        assert abs(gained - late) < 1e-8, (delay, mujoco, gained, late)
 
 
 def lugre_and_play_lose_energy():
@@ -210,6 +210,24 @@ def labels_and_cases_agree():
                 assert word.split("@")[0] not in text or not word.split("@")[0], (member, word)
 
 
+def rigs_stay_up():
+    """No feedback of a drive lets a rig fall over."""
+    most = {"phi": 0.6, "gamma": 0.6, "theta": 0.9}  # rad; the wheel's phi turns, the pendulums swing
+    with tarfile.open(HERE / "cases.tar.xz") as archive:
+        for name, number in generate.names().items():
+            kind = generate.CASES[number].mechanism
+            for run in range(1, generate.RUNS + 1) if kind in ("unicycle", "euc_2dof", "euc_3dof") else ():
+                rows = np.genfromtxt(
+                    archive.extractfile(f"cases/{name}/run{run}.csv"), delimiter=",", names=True
+                )
+                for angle in (
+                    ("theta",)
+                    if kind == "unicycle"
+                    else ("phi", "gamma")[: 1 + ("gamma" in rows.dtype.names)]
+                ):
+                    assert np.nanmax(np.abs(rows[angle])) < most[angle], (name, run, angle)
+
+
 def main():
     ask = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     ask.add_argument("--archive", action="store_true")
@@ -226,7 +244,7 @@ def main():
         innovations_of_the_true_filter_are_white,
     ]
     if ask.archive:
-        checks += [labels_and_cases_agree, a_case_is_made_again_byte_for_byte]
+        checks += [labels_and_cases_agree, rigs_stay_up, a_case_is_made_again_byte_for_byte]
     for check in checks:
         check()
         print("ok  ", check.__name__.replace("_", " "), flush=True)

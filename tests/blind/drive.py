@@ -2,7 +2,7 @@
 A drive sees what its own sensors show at a sample and gives the command that is held."""
 
 import numpy as np
-from scipy.linalg import solve_continuous_are
+from scipy.linalg import expm, solve_continuous_are, solve_discrete_are
 
 from oracle import NUDGE
 
@@ -32,6 +32,15 @@ def plateaus(rng, duration, low, high, rise=0.8):
 def regulator(A, B, states, effort):
     P = solve_continuous_are(A, B, np.diag(states), np.diag(effort))
     return np.linalg.solve(np.diag(effort), B.T @ P)
+
+
+def sampled_regulator(A, B, states, effort, step):
+    """The same for a command that is held over a step; a body that is light and fast needs it."""
+    n, m = B.shape
+    both = expm(np.block([[A, B], [np.zeros((m, n + m))]]) * step)
+    F, G = both[:n, :n], both[:n, n:]
+    P = solve_discrete_are(F, G, np.diag(states), np.diag(effort))
+    return np.linalg.solve(np.diag(effort) + G.T @ P @ G, G.T @ P @ F)
 
 
 def linearised(mechanism, p, kept):
@@ -98,7 +107,7 @@ def euc_3dof(p, rng, duration, run):
     from mechanisms import euc_3dof as mechanism
 
     A, B = linearised(mechanism, p, [1, 2, 3, 4, 5])
-    K = regulator(A, B, [300.0, 200.0, 20.0, 20.0, 20.0], [2e-3, 4e-3])
+    K = sampled_regulator(A, B, [300.0, 200.0, 20.0, 20.0, 20.0], [2e-2, 4e-2], 0.0125)
     speed = plateaus(rng, duration, 1.2, 3.0)
     first, second = multisine(rng, 0.3, 2.5), multisine(rng, 0.3, 2.5)
     start = np.array([0.0, 0.0, 0.0, speed(0.0), 0.0, 0.0])

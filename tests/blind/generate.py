@@ -33,6 +33,7 @@ SEED = 61803
 RUNS = 5
 FIT_RUNS = 3
 RATE_HZ = 100
+ROUNDS = 5  # of the search for a size
 
 
 @dataclass
@@ -142,13 +143,13 @@ def sized(world):
     sizes, each = [], []
     for effect in case.effects:
         alone = replace(world, case=replace(case, effects=(effect,)))
-        size, level = 1.0, case.level
-        for _ in range(4):
+        size, reached = 1.0, case.level
+        for _ in range(ROUNDS):
+            size *= float(np.clip(case.level / max(reached, 1e-9), 0.02, 30))
             rig = alone.rig([size])
             reached = dprime(alone, rig, [trial(alone, rig, 0)]) * np.sqrt(FIT_RUNS)
-            if abs(reached / level - 1) < 0.05:
+            if abs(reached / case.level - 1) < 0.05:
                 break
-            size *= float(np.clip(level / max(reached, 1e-9), 0.02, 30))
         sizes.append(size)
         each.append(reached)
     return sizes, each
@@ -271,7 +272,7 @@ def label(world, rig, trials, measured, each, stated):
         "magnitude": magnitude(world, rig),
         "law": kinds[0][2] if kinds else "library",
         "dprime": total,
-        "dprime_each": each or ([total] if kinds else []),
+        "dprime_each": each if len(kinds) > 1 else [total] * len(kinds),
         "dprime_data": total if kinds else None,
         "simulator": case.simulator,
         "noise": list(map(float, world.noise)),

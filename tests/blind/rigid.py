@@ -59,6 +59,17 @@ def attributes(effect):
     return None
 
 
+def mean(actuator, begin, end):
+    """What an actuator gives on average over a step."""
+    times = [begin] + actuator.breaks(begin, end) + [end]
+    total = 0.0
+    for left, right in zip(times, times[1:]):
+        middle = (left + right) / 2
+        actuator.enter(middle)
+        total += actuator.value(middle) * (right - left)
+    return total / (end - begin)
+
+
 def run(rig, drive, t, start, disturbance):
     """A trial as `simulate.run` makes one."""
     mechanism, p = rig.mechanism, rig.parameters
@@ -84,13 +95,12 @@ def run(rig, drive, t, start, disturbance):
         for i, actuator in actuators.items():
             actuator.hold(now, commands[-1][i])
         for j in range(SUBSTEPS):
-            middle = now + (j + 0.5) * model.opt.timestep
+            begin = now + j * model.opt.timestep
             given = commands[-1].copy()
             for i, actuator in actuators.items():
-                actuator.enter(middle)
-                given[i] = actuator.value(middle)
+                given[i] = mean(actuator, begin, begin + model.opt.timestep)
             q, v = data.qpos.copy(), data.qvel.copy()
-            extra = sum((e.force(mechanism, p, q, v, middle) for e in forces), 0.0)
+            extra = sum((e.force(mechanism, p, q, v, begin) for e in forces), 0.0)
             data.qfrc_applied[:] = disturbance[k] + mechanism.input_map(p, q) @ given + extra
             mujoco.mj_step(model, data)
     return Trial(t, np.array(states), np.array(commands), disturbance)

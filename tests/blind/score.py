@@ -37,7 +37,7 @@ DRAWS = 2000  # of the bootstrap
 # Sizes whose first reported parameter is the size itself, in the same unit.
 SIZED = """viscous_friction coulomb_friction spring rolling_resistance spin_friction quadratic_drag
 constant_force ground_slope mass_offset added_inertia actuator_gain actuator_bias actuator_lag actuator_delay
-actuator_dead_zone sensor_bias sensor_scale sensor_delay""".split()
+actuator_dead_zone sensor_bias sensor_delay""".split()
 
 DOMAIN = {
     **dict.fromkeys("parameter_error mass_offset added_inertia".split(), "parameter"),
@@ -319,8 +319,11 @@ def section(labels, reports):
         f"{len(labels)} cases: {count('null')} without a gap, {count('single')} with one effect, {count('compound')} with two, "
         f"{count('mismatch')} with another law than the library's, {count('off_library')} with what the library does not have. "
         f"Intervals of 95 % in brackets. One effect has d′ {LARGE} or more where nothing else is said.",
-        table("measure", {name.replace("_", " "): scores(labels, reports / name) for name in methods}),
     ]
+    if methods:
+        parts.append(
+            table("measure", {name.replace("_", " "): scores(labels, reports / name) for name in methods})
+        )
     if (reports / "left_out").is_dir():
         parts.append("The library without the effect that is there, and without its twins:")
         parts.append(table("answer", {"appell": left_out(labels, reports / "left_out")}))

@@ -219,3 +219,36 @@ fn shooting_begins_where_the_rig_is_far_from_its_drawing() {
         assert!((number("value") - truth).abs() < 3.0 * std, "{found}");
     }
 }
+
+#[test]
+fn a_parameter_that_changes_on_the_way_is_followed() {
+    let folder = data_set();
+    let run = [
+        "identify",
+        "pendulum",
+        "--data",
+        ".",
+        "--json",
+        "found.json",
+    ];
+    folder.done(&[&run[..], &["--drifting", "l=0.001"]].concat());
+    let found = folder.json("found.json");
+    assert_eq!(found["parameters"].as_array().expect("a list").len(), 1);
+    let courses = found["drifting"].as_array().expect("courses");
+    assert_eq!(courses.len(), 2);
+    for course in courses {
+        let last = |key: &str| {
+            let all = course[key].as_array().expect("numbers");
+            all.last()
+                .and_then(serde_json::Value::as_f64)
+                .expect("a number")
+        };
+        let (value, std) = (last("value"), last("std"));
+        assert!(
+            std < 0.01 && (value - 0.53).abs() < 4.0 * std,
+            "{value} ± {std}"
+        );
+    }
+    let outcome = folder.run(&["identify", "pendulum", "--data", ".", "--drifting", "l=0"]);
+    assert_eq!(outcome.status, 2, "{}", outcome.stderr);
+}

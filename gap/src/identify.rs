@@ -16,6 +16,7 @@
 
 mod additions;
 mod answer;
+mod drift;
 mod error;
 mod held_out;
 mod problem;
@@ -25,9 +26,10 @@ mod start;
 use appell_runtime::estimate::{Estimation, Fit, Setup};
 use appell_runtime::model::Model;
 
-use crate::data::{DataSet, Part};
+use crate::data::{DataSet, Part, Run};
 
 pub use answer::{Answer, Estimate, Known, Level};
+pub use drift::Course;
 pub use error::IdentifyError;
 pub use held_out::{AHEAD, HORIZONS, HeldOut, Trace};
 
@@ -56,6 +58,9 @@ pub struct Options {
     /// What to look for besides: `tau.lag` and `tau.delay` of inputs; `theta.bias`, `theta.scale` and
     /// `theta.delay` of channels.
     pub also: Vec<String>,
+    /// Parameters that change on the way, with the standard deviations of their changes in one second,
+    /// in their units.
+    pub drifting: Vec<(String, f64)>,
     /// Whether it is no mistake that no parameter is free.
     pub none_will_do: bool,
     /// Where the search begins.
@@ -93,6 +98,8 @@ pub fn identify(
     for addition in &additions {
         addition.prepare(&mut setup);
     }
+    let drifts = drift::named(&options.drifting, set, model.info())?;
+    drift::prepare(&drifts, &mut setup);
     let recordings = set.recordings(Part::Fit, model.info())?;
     if recordings.is_empty() {
         return Err(IdentifyError::NothingToFit);
@@ -114,13 +121,19 @@ pub fn identify(
     let fit = Fit::of(&estimation, &begin, &all, EFFORT)?;
     stage("weighing what the recordings tell");
     let mut answer = Answer::of(set, &estimation, &problem, (&nominal, &fit))?;
+    let runs: Vec<&Run> = set
+        .runs
+        .iter()
+        .filter(|run| run.part == Part::Fit)
+        .collect();
+    answer.courses = drift::courses(&drifts, &estimation, &fit.values, &runs)?;
     stage("predicting the runs that were held out");
     let recordings = set.recordings(Part::Test, model.info())?;
     if recordings.is_empty() {
         return Ok(answer);
     }
     let estimation = Estimation::new(&setup, &recordings)?;
-    let test = Test::new(set, &estimation, [&nominal.values, &fit.values])?;
+    let test = Test::new(set, &estimation, ([&nominal.values, &fit.values], &drifts))?;
     answer.held_out = test.errors()?;
     answer.traces = test.traces()?;
     Ok(answer)

@@ -3,12 +3,16 @@
 
 mod common;
 
+use std::fmt::Write as _;
 use std::time::{Duration, Instant};
 
+use appell_gap::motion_capture::Skeleton;
 use common::{Folder, SWING, pendulum, swing};
 
 /// Damaged data sets; each is read once.
 const DAMAGED: usize = 1_500;
+/// Damaged skeletons, captures and files of laboratories.
+const CAPTURES: usize = 600;
 /// Far below a second, with room for a busy machine.
 const SLOWEST: Duration = Duration::from_millis(500);
 
@@ -109,5 +113,81 @@ fn damaged_data_sets_are_refused_or_read() {
     }
     println!("{read} of {DAMAGED} are read; the slowest took {slowest:?}");
     assert!((DAMAGED / 20..DAMAGED / 2).contains(&read), "{read}");
+    assert!(slowest < SLOWEST, "{slowest:?}");
+}
+
+/// A take of Motive: rows of a header, then an angle that swings.
+fn take() -> Vec<u8> {
+    let mut text = "Format Version,1.23,Take Name,swing,Length Units,Meters\n\n\
+                    ,Type,Rigid Body,Rigid Body\n,Name,arm,arm\n\
+                    ,ID,\"9A,1\",\"9A,1\"\n,,Rotation,Position\n\
+                    Frame,Time (Seconds),X,X\n"
+        .to_owned();
+    for row in 0..60 {
+        let t = f64::from(row) / 120.0;
+        writeln!(text, "{row},{t:.6},{:.4},0.1", 20.0 * (3.0 * t).sin()).unwrap();
+    }
+    text.into_bytes()
+}
+
+/// Bytes without a meaning, behind the beginning of a file of C3D or of Motive.
+fn noise(beginning: &[u8], dice: &mut Dice) -> Vec<u8> {
+    let length = dice.below(2000);
+    let byte = |_| u8::try_from(dice.below(256)).unwrap();
+    let rest: Vec<u8> = (0..length).map(byte).collect();
+    [beginning, &rest].concat()
+}
+
+#[test]
+fn damaged_takes_and_noise_for_a_capture_are_refused_or_read() {
+    let folder = Folder::new();
+    let take = take();
+    let channels = "\"arm.Rotation.X\" = { measures = \"theta\", unit = \"deg\" }";
+    let mut dice = Dice(2);
+    let mut slowest = Duration::ZERO;
+    for file in ["run.csv", "run.c3d"] {
+        folder.write("recording.toml", pendulum(channels, &[file], &[]));
+        let beginnings: [&[u8]; 3] = match file {
+            "run.csv" => [b"", b"Format Version,1.23\n", &take[..120]],
+            // The key, then headers that promise parameters in the second block.
+            _ => [b"", b"\x02\x50", b"\x02\x50\x01\0\x02\0\x01\0\xff\xff"],
+        };
+        for round in 0..CAPTURES {
+            let bytes = if file == "run.csv" && round % 2 == 0 {
+                let mut bytes = take.clone();
+                damage(&mut bytes, &mut dice);
+                bytes
+            } else {
+                noise(beginnings[round % 3], &mut dice)
+            };
+            folder.write(file, bytes);
+            let start = Instant::now();
+            match folder.read() {
+                Ok(set) => assert!(!set.runs.is_empty()),
+                Err(error) => assert!(!error.to_string().is_empty()),
+            }
+            slowest = slowest.max(start.elapsed());
+        }
+    }
+    assert!(slowest < SLOWEST, "{slowest:?}");
+}
+
+#[test]
+fn damaged_skeletons_are_refused_or_read() {
+    let skeleton = include_bytes!("../../docs/examples/euc/skeleton.toml");
+    let mut dice = Dice(3);
+    let (mut read, mut slowest) = (0, Duration::ZERO);
+    for _ in 0..CAPTURES {
+        let mut bytes = skeleton.to_vec();
+        damage(&mut bytes, &mut dice);
+        let text = String::from_utf8_lossy(&bytes);
+        let start = Instant::now();
+        match Skeleton::parse("skeleton.toml", &text) {
+            Ok(_) => read += 1,
+            Err(report) => assert!(!report.to_string().is_empty()),
+        }
+        slowest = slowest.max(start.elapsed());
+    }
+    assert!((CAPTURES / 50..CAPTURES).contains(&read), "{read}");
     assert!(slowest < SLOWEST, "{slowest:?}");
 }

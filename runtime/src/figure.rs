@@ -16,7 +16,7 @@ use axis::{Axis, number};
 pub use map::{Curve, Map, Stroke};
 pub use plot::{Layer, Look, Plot};
 use std::fmt::Write as _;
-pub use surface::{Patch, Surface};
+pub use surface::{Patch, Path, Surface};
 
 /// A line.
 #[derive(Debug, Clone, PartialEq)]

@@ -13,18 +13,14 @@ use std::fmt::Write as _;
 use std::path::PathBuf;
 use std::time::Instant;
 
-use appell_gap::motion_capture::{Axes, Capture, Ride, Skeleton, Smoothed, filter};
+use appell_gap::motion_capture::{Capture, Ride, Skeleton, Smoothed, filter};
 use appell_runtime::inverse::{Consistency, Record, Relations, Sought, Track};
 use appell_runtime::model::Model;
 use appell_tests::random::Random;
-use appell_tests::recorded::normal;
-use appell_tests::rides::{MANOEUVRES, planar};
-use nalgebra::{DMatrix, DVector};
+use appell_tests::rides::{MANOEUVRES, captured, planar, record_of, skeleton};
 
 const RUNS: usize = 10;
 const SECONDS: f64 = 60.0;
-/// Radius of the wheel, and of the pivot and the pedals from its axle, in m.
-const WHEEL: [f64; 3] = [0.2, 0.35, -0.05];
 
 /// A file of a capture: rigid bodies of the skeleton on a planar ride, in mm and degrees.
 fn write(skeleton: &Skeleton, ride: &Record, random: &mut Random) -> PathBuf {
@@ -35,29 +31,15 @@ fn write(skeleton: &Skeleton, ride: &Record, random: &mut Random) -> PathBuf {
         }
     }
     text.push('\n');
-    for (row, t) in ride.times.iter().enumerate() {
-        let [x, gamma, phi] = [0, 1, 2].map(|k| ride.values[(row, k)]);
+    let capture = captured(skeleton, ride, (0.0, &mut Random::of("markers")), random);
+    for (row, t) in capture.times.iter().enumerate() {
         let _ = write!(text, "{t}");
-        let axle = [x, 0.0, WHEEL[0]];
-        let at =
-            |pitch: f64, height: f64| Axes::turned([0.0, 0.0, pitch]).to_ground([0.0, 0.0, height]);
-        for (place, body) in skeleton.bodies.iter().enumerate() {
-            let (arm, pitch) = if body == "E" {
-                (at(gamma, WHEEL[1]), gamma)
-            } else {
-                let height = 1.6 - 0.1 * place as f64;
-                let (low, high) = (at(gamma, WHEEL[2]), at(phi, height));
-                ([0, 1, 2].map(|k| low[k] + high[k]), phi)
-            };
-            for k in 0..3 {
-                let _ = write!(
-                    text,
-                    ",{:.4}",
-                    1e3 * (axle[k] + arm[k]) + 0.2 * normal(random)
-                );
+        for track in &capture.bodies {
+            for place in &track.position {
+                let _ = write!(text, ",{:.4}", 1e3 * place[row]);
             }
-            for angle in [0.0, 0.0, pitch.to_degrees()] {
-                let _ = write!(text, ",{:.4}", angle + 0.5 * normal(random));
+            for angle in &track.angles {
+                let _ = write!(text, ",{:.4}", angle[row].to_degrees());
             }
         }
         text.push('\n');
@@ -68,8 +50,7 @@ fn write(skeleton: &Skeleton, ride: &Record, random: &mut Random) -> PathBuf {
 }
 
 fn main() {
-    let text = include_str!("../../docs/examples/euc/skeleton.toml");
-    let skeleton = Skeleton::parse("skeleton.toml", text).unwrap();
+    let skeleton = skeleton();
     let model = planar();
     let mut random = Random::of("pipeline");
     let files: Vec<PathBuf> = (0..RUNS)
@@ -99,17 +80,7 @@ fn main() {
         start.elapsed().as_secs_f64(),
         filter.count()
     );
-    let record = |ride: &Ride| {
-        let channels = ride.channels.iter();
-        let columns: Vec<_> = channels
-            .map(|own| DVector::from_column_slice(own))
-            .collect();
-        Record {
-            times: ride.times.clone(),
-            values: DMatrix::from_columns(&columns),
-        }
-    };
-    let records: Vec<Record> = rides.iter().map(record).collect();
+    let records: Vec<Record> = rides.iter().map(record_of).collect();
     let track = Track::of(&records).unwrap();
     let times: usize = track.stretches.iter().map(|own| own.motions.len()).sum();
     println!(

@@ -2,6 +2,7 @@
 
 use appell_codegen::jit::JitModel;
 use appell_codegen::program::FunctionKind;
+use appell_gap::motion_capture::{Axes, Capture, Ride, Skeleton, Track, Vector};
 use appell_models::Shipped;
 use appell_runtime::Simulation;
 use appell_runtime::control::lqr::{self, weights};
@@ -139,5 +140,75 @@ pub fn seen(ride: &Record, random: &mut Random) -> Record {
     Record {
         times: ride.times.clone(),
         values,
+    }
+}
+
+/// Height of the pivot and of the pedals from the axle, and of the axle above the ground, in m.
+const UNICYCLE: [f64; 3] = [0.35, -0.05, 0.2];
+/// Height of the highest joint above the pedals, and distance from joint to joint, in m.
+const RIDER: [f64; 2] = [1.6, 0.1];
+
+/// The skeleton of the example.
+pub fn skeleton() -> Skeleton {
+    let text = include_str!("../../docs/examples/euc/skeleton.toml");
+    Skeleton::parse("skeleton.toml", text).unwrap()
+}
+
+/// The rigid bodies of the skeleton on a ride as cameras see them: joints one above the other along a
+/// stiff rider, each away from where it should be by so many metres on each axis, as `markers` tells.
+pub fn captured(
+    skeleton: &Skeleton,
+    ride: &Record,
+    (offset, markers): (f64, &mut Random),
+    random: &mut Random,
+) -> Capture {
+    let bodies = skeleton.bodies.iter().enumerate().map(|(place, body)| {
+        let away = [0; 3].map(|_| offset * normal(markers));
+        let joint = [
+            away[0],
+            away[1],
+            away[2] + RIDER[0] - RIDER[1] * place as f64,
+        ];
+        let top = [away[0], away[1], away[2] + UNICYCLE[0]];
+        let mut track = Track {
+            position: [const { Vec::new() }; 3],
+            angles: [const { Vec::new() }; 3],
+        };
+        for row in 0..ride.times.len() {
+            let [x, gamma, phi] = [0, 1, 2].map(|k| ride.values[(row, k)]);
+            let turned = |pitch: f64, arm: Vector| Axes::turned([0.0, 0.0, pitch]).to_ground(arm);
+            let (pitch, arms) = if body == "E" {
+                (gamma, [turned(gamma, top), [0.0; 3]])
+            } else {
+                let pedals = turned(gamma, [0.0, 0.0, UNICYCLE[1]]);
+                (phi, [pedals, turned(phi, joint)])
+            };
+            let axle = [x, 0.0, UNICYCLE[2]];
+            for k in 0..3 {
+                let place = axle[k] + arms[0][k] + arms[1][k];
+                track.position[k].push(place + NOISE[0] * normal(random));
+                track.angles[k].push([0.0, 0.0, pitch][k] + NOISE[1] * normal(random));
+            }
+        }
+        track
+    });
+    Capture {
+        bodies: bodies.collect(),
+        times: ride.times.clone(),
+    }
+}
+
+/// The coordinates of the model that a capture shows.
+pub fn shown(skeleton: &Skeleton, capture: &Capture) -> Record {
+    record_of(&Ride::of(skeleton, capture))
+}
+
+/// The coordinates of a ride through the pipeline.
+pub fn record_of(ride: &Ride) -> Record {
+    let columns = ride.channels.iter();
+    let columns: Vec<_> = columns.map(|own| DVector::from_column_slice(own)).collect();
+    Record {
+        times: ride.times.clone(),
+        values: DMatrix::from_columns(&columns),
     }
 }

@@ -8,6 +8,16 @@ use appell_codegen::program::FunctionKind;
 use appell_codegen::program::Program;
 use appell_spec::Mechanism;
 
+/// Mechanisms whose adjoints are short enough to be derived in a test: one or two blocks, formulas
+/// alone, velocity constraints, and pivoting with dependent speeds.
+pub const WITH_ADJOINTS: [&str; 5] = [
+    "cart_pole",
+    "double_pendulum",
+    "chaplygin_sleigh",
+    "rolling_wheel",
+    "four_bar",
+];
+
 /// The root of the workspace.
 pub fn workspace() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR"))

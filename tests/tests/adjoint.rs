@@ -14,15 +14,6 @@ use appell_tests::shipped;
 
 /// Differences keep nine digits of ten.
 const DIFFERENCES: f64 = 1e-7;
-/// Mechanisms that are short enough to be derived here: one or two blocks, formulas alone, velocity
-/// constraints, and pivoting with dependent speeds.
-const MECHANISMS: [&str; 5] = [
-    "cart_pole",
-    "double_pendulum",
-    "chaplygin_sleigh",
-    "rolling_wheel",
-    "four_bar",
-];
 
 /// x, u and p of a gradient.
 fn gradient(model: &dyn Model, write: impl FnOnce(Gradient<'_>)) -> [Vec<f64>; 3] {
@@ -80,7 +71,7 @@ fn assert_adjoints(what: &str, model: &dyn Model, at: At<'_>, random: &mut Rando
 
 #[test]
 fn adjoints_are_gradients_of_weighted_jacobians() {
-    for name in MECHANISMS {
+    for name in shipped::WITH_ADJOINTS {
         let text = shipped::text(name);
         let program = compile(name, &text, &FunctionKind::ALL).unwrap();
         let mut random = Random::of(name);

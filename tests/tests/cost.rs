@@ -5,9 +5,8 @@
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
-use appell_codegen::program::{Function, FunctionKind};
+use appell_codegen::program::{Function, FunctionKind, Program};
 use appell_codegen::schedule::{OperationCount, Tuning, schedule, schedule_tuned};
-use appell_spec::Mechanism;
 use appell_tests::shipped;
 
 /// One of the counts.
@@ -21,6 +20,13 @@ const COUNTED: [(&str, Count); 6] = [
     ("functions", |count| count.functions),
     ("choices", |count| count.selects),
     ("linear_systems", |count| count.solves),
+];
+
+/// Functions that estimation asks for.
+const ADJOINTS: [FunctionKind; 3] = [
+    FunctionKind::Adjoint,
+    FunctionKind::OutputJacobians,
+    FunctionKind::OutputAdjoint,
 ];
 
 type Counts = BTreeMap<String, BTreeMap<String, [usize; 6]>>;
@@ -37,21 +43,23 @@ fn name(kind: FunctionKind) -> String {
 }
 
 fn counts() -> Counts {
-    let count = |mechanism: &Mechanism| {
-        let program = shipped::program(mechanism);
+    let count = |program: Program| {
         let functions = program.functions.iter();
-        functions
-            .map(|function| {
-                let count = OperationCount::of(&schedule(&program, function));
-                (name(function.kind), COUNTED.map(|(_, get)| get(&count)))
-            })
-            .collect()
+        let count = functions.map(|function| {
+            let count = OperationCount::of(&schedule(&program, function));
+            (name(function.kind), COUNTED.map(|(_, get)| get(&count)))
+        });
+        count.collect::<Vec<_>>()
     };
-    let names = shipped::names().into_iter();
-    names
-        .map(|name| (shipped::mechanism(&name), name))
-        .map(|(mechanism, name)| (name, count(&mechanism)))
-        .collect()
+    let of_mechanism = |name: String| {
+        let mechanism = shipped::mechanism(&name);
+        let mut counts = count(shipped::program(&mechanism));
+        if shipped::WITH_ADJOINTS.contains(&name.as_str()) {
+            counts.extend(count(shipped::program_of(&mechanism, &ADJOINTS)));
+        }
+        (name, counts.into_iter().collect())
+    };
+    shipped::names().into_iter().map(of_mechanism).collect()
 }
 
 fn write(counts: &Counts) -> String {

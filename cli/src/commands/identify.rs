@@ -29,6 +29,9 @@ pub(crate) struct Identify {
     /// `theta.delay` of a channel
     #[arg(long, value_delimiter = ',', value_name = "NAMES")]
     also: Vec<String>,
+    /// Parameters that change on the way, each with the standard deviation of its change in one second
+    #[arg(long, value_delimiter = ',', value_name = "NAME=RATE", value_parser = drift)]
+    drifting: Vec<(String, f64)>,
     /// Where the search begins: at the values of the rig, or, if these are far from the truth, where
     /// multiple shooting leads from them
     #[arg(long, value_name = "WHERE", value_enum, default_value_t = Start::Nominal)]
@@ -42,6 +45,13 @@ pub(crate) struct Identify {
     /// Write a page with all of it
     #[arg(long, value_name = "FILE.html")]
     html: Option<PathBuf>,
+}
+
+/// `k=0.01`
+fn drift(text: &str) -> Result<(String, f64), String> {
+    let parts = text.split_once('=');
+    let parts = parts.and_then(|(name, rate)| Some((name.to_owned(), rate.parse().ok()?)));
+    parts.ok_or_else(|| "write a name and a rate, such as `k=0.01`".to_owned())
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
@@ -58,6 +68,7 @@ impl Identify {
         let options = Options {
             free: self.free.clone(),
             also: self.also.clone(),
+            drifting: self.drifting.clone(),
             none_will_do: false,
             begin: match self.start {
                 Start::Nominal => Begin::Nominal,

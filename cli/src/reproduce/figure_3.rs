@@ -158,6 +158,7 @@ fn surface(wheel: Mechanism, chart: &Chart) -> Result<Surface, Failure> {
         ranges: [[-RATE, RATE], [-RATE, RATE], [-90.0, 90.0]],
         kinds: ["", "stable", "unstable"].map(str::to_owned).to_vec(),
         patches,
+        paths: Vec::new(),
     })
 }
 

@@ -7,6 +7,7 @@ use appell_runtime::model::Quantity;
 use nalgebra::DMatrix;
 
 use super::IdentifyError;
+use super::drift::Course;
 use super::held_out::{HeldOut, Trace};
 use super::problem::Problem;
 use crate::data::DataSet;
@@ -88,6 +89,8 @@ pub struct Answer {
     pub log_likelihoods: [f64; 2],
     /// Correlation of neighbouring innovations of each channel, with the band where they are white.
     pub whiteness: Vec<(String, Consistency)>,
+    /// Drifting parameters along the runs that were fitted.
+    pub courses: Vec<Course>,
     /// Errors on the runs that were held out; empty where there are none.
     pub held_out: Vec<HeldOut>,
     /// Channels of these runs beside predictions of them.
@@ -154,6 +157,7 @@ impl Answer {
                 .collect::<Result<_, _>>()?,
             log_likelihoods: [nominal.log_likelihood, fit.log_likelihood],
             whiteness: whiteness(estimation, fit, &columns)?,
+            courses: Vec::new(),
             held_out: Vec::new(),
             traces: Vec::new(),
             parameters,

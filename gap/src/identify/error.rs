@@ -36,6 +36,17 @@ pub enum IdentifyError {
         /// What can be looked for.
         known: Vec<String>,
     },
+    /// A rate of drift that is none, or given twice.
+    #[error(
+        "`{name}` cannot drift by {rate}: give each parameter one positive rate, in its unit per \
+         square root of a second"
+    )]
+    Rate {
+        /// The parameter.
+        name: String,
+        /// As given.
+        rate: f64,
+    },
     /// A filter or a fit that failed.
     #[error(transparent)]
     Estimate(#[from] EstimateError),

@@ -3,6 +3,7 @@
 use appell_runtime::estimate::{Estimation, Predicted, Recording, Unknown};
 
 use super::IdentifyError;
+use super::drift::{self, Drift};
 use super::problem::begin;
 use crate::data::{DataSet, Part, Run};
 
@@ -64,7 +65,7 @@ impl<'a> Test<'a> {
     pub(super) fn new(
         set: &'a DataSet,
         estimation: &'a Estimation<'a>,
-        fits: [&[f64]; 2],
+        (fits, drifts): ([&[f64]; 2], &[Drift]),
     ) -> Result<Self, IdentifyError> {
         let (layout, channels) = (
             estimation.layout(),
@@ -77,6 +78,7 @@ impl<'a> Test<'a> {
             // What comes before the runs stands at the same places.
             own[..first_run].copy_from_slice(&fit[..first_run]);
             begin(estimation, &mut own)?;
+            drift::begin(drifts, estimation, &mut own)?;
             values.push(own);
         }
         let noise = (0..channels.len()).map(|channel| {

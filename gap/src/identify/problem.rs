@@ -4,6 +4,7 @@ use appell_runtime::estimate::{Effort, Estimation, Free, Recording, Unknown};
 use appell_runtime::model::{ModelInfo, Quantity};
 
 use super::additions::Addition;
+use super::drift::{self, Drift};
 use super::start::{Start, forces, start};
 use super::{IdentifyError, Options};
 use crate::data::{Channel, DataSet};
@@ -43,7 +44,9 @@ impl Problem {
         (options, additions): (&Options, &[Addition]),
     ) -> Result<Self, IdentifyError> {
         let (layout, setup) = (estimation.layout(), estimation.setup());
-        let (mut wanted, mut quantities) = free_parameters(set, setup.model.info(), options)?;
+        let drifts = drift::named(&options.drifting, set, setup.model.info())?;
+        let (mut wanted, mut quantities) =
+            free_parameters(set, (setup.model.info(), &drifts), options)?;
         let mut values = estimation.nominal();
         for (value, parameter) in values.iter_mut().zip(&set.parameters) {
             *value = parameter.value;
@@ -62,6 +65,7 @@ impl Problem {
             levels.push(free);
         }
         let starts = begin(estimation, &mut values)?;
+        drift::begin(&drifts, estimation, &mut values)?;
         let sizes = forces(setup, &starts, &values, estimation.recordings());
         for (index, &size) in sizes.iter().enumerate() {
             let [low, high] = DISTURBANCE_RANGE.map(|factor| factor * size);
@@ -76,26 +80,36 @@ impl Problem {
     }
 }
 
+/// The parameter of a name.
+pub(super) fn parameter(name: &str, info: &ModelInfo) -> Result<usize, IdentifyError> {
+    info.parameter_index(name)
+        .ok_or_else(|| IdentifyError::UnknownParameter {
+            name: name.to_owned(),
+            known: info.parameters.iter().map(|p| p.name.to_string()).collect(),
+        })
+}
+
 /// The parameters that are looked for, each within its range and about its value.
 fn free_parameters(
     set: &DataSet,
-    info: &ModelInfo,
+    (info, drifts): (&ModelInfo, &[Drift]),
     options: &Options,
 ) -> Result<(Vec<Free>, Vec<Quantity>), IdentifyError> {
-    let named = |name: &String| {
-        info.parameter_index(name)
-            .ok_or_else(|| IdentifyError::UnknownParameter {
-                name: name.clone(),
-                known: info.parameters.iter().map(|p| p.name.to_string()).collect(),
-            })
-    };
     let has_tolerance = |&i: &usize| set.parameters[i].std.is_some_and(|std| std > 0.0);
     let chosen: Vec<usize> = if let Some(names) = &options.free {
-        names.iter().map(named).collect::<Result<_, _>>()?
+        let names = names.iter().map(|name| parameter(name, info));
+        names.collect::<Result<_, _>>()?
     } else {
         (0..set.parameters.len()).filter(has_tolerance).collect()
     };
-    if chosen.is_empty() && options.also.is_empty() && !options.none_will_do {
+    // What drifts is a state.
+    let drifts = |index: &usize| drifts.iter().any(|own| own.parameter == *index);
+    let chosen: Vec<usize> = chosen.into_iter().filter(|index| !drifts(index)).collect();
+    if chosen.is_empty()
+        && options.drifting.is_empty()
+        && options.also.is_empty()
+        && !options.none_will_do
+    {
         return Err(IdentifyError::NothingFree);
     }
     let free = |&index: &usize| {

@@ -1,4 +1,4 @@
-//! A surface in space, seen in parallel projection, as SVG.
+//! Surfaces and paths in space, seen in parallel projection, as SVG.
 
 use std::fmt::Write as _;
 
@@ -19,6 +19,17 @@ pub struct Surface {
     pub kinds: Vec<String>,
     /// The pieces. Those that leave the ranges are left out.
     pub patches: Vec<Patch>,
+    /// Paths in front of them.
+    pub paths: Vec<Path>,
+}
+
+/// A path in space.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Path {
+    /// Its name in the legend.
+    pub label: String,
+    /// Its points.
+    pub points: Vec<[f64; 3]>,
 }
 
 /// A piece of a surface.
@@ -52,6 +63,10 @@ fn seen([x, y, z]: [f64; 3]) -> ([f64; 2], f64) {
     )
 }
 
+fn line(index: usize, path: &str) -> String {
+    format!("<path class=\"line c{}\" d=\"{path}\"/>", index % 6)
+}
+
 impl Surface {
     /// The surface as an SVG document.
     pub fn to_svg(&self) -> String {
@@ -75,12 +90,24 @@ impl Surface {
             );
             put(&mut svg, &text(x + 23.0, y, "", name));
         }
+        for (i, path) in self.paths.iter().enumerate() {
+            let place = self.kinds.len() + i;
+            let (x, y) = (
+                LEFT + LEGEND * place as f64,
+                TITLE_HEIGHT + HEADER_HEIGHT - 13.0,
+            );
+            put(&mut svg, &line(i, &format!("M{x:.1} {y:.1}h16")));
+            put(&mut svg, &text(x + 23.0, y + 4.0, "", &path.label));
+        }
         self.walls(&mut svg);
         put(&mut svg, "<g class=\"piece\">");
         for (kind, path) in self.pieces() {
             put(&mut svg, &element(kind, &path));
         }
         put(&mut svg, "</g>");
+        for (i, path) in self.paths.iter().enumerate() {
+            put(&mut svg, &line(i, &self.way(&path.points)));
+        }
         self.scales(&mut svg);
         svg + "</svg>\n"
     }
@@ -91,6 +118,22 @@ impl Surface {
             let [from, to] = self.ranges[k];
             2.0 * (values[k] - from) / (to - from) - 1.0
         })
+    }
+
+    /// A path on the paper; points that are not known interrupt it.
+    fn way(&self, points: &[[f64; 3]]) -> String {
+        let (mut way, mut is_on) = (String::new(), false);
+        for &point in points {
+            let inside = self.inside(point);
+            let is_known = inside.iter().all(|part| part.is_finite());
+            if is_known {
+                let [x, y] = seen(inside).0;
+                // Writing to a string cannot fail.
+                let _ = write!(way, "{}{x:.1} {y:.1}", if is_on { 'L' } else { 'M' });
+            }
+            is_on = is_known;
+        }
+        way
     }
 
     /// The pieces, the farthest first.

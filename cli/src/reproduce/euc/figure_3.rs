@@ -1,7 +1,7 @@
 //! Figures 3 and 4: a figure-eight in the ground, and in the frame that moves with the unicycle.
 
 use appell_gap::motion_capture::{Ride, Vector};
-use appell_runtime::figure::{Figure, Panel, Series};
+use appell_runtime::figure::{Figure, Panel, Path, Series, Surface};
 
 use super::laboratory::Laboratory;
 use super::rider::Manoeuvre;
@@ -68,8 +68,14 @@ pub(super) fn section(laboratory: &Laboratory) -> Result<Section, Failure> {
     ];
     let pictures = vec![
         Picture {
+            svg: in_space(laboratory, ride).to_svg(),
+            caption: "Figure 3: paths of the wheel centre C, the top of the unicycle E, the rider's centre of mass G and \
+                      the head H in the capture volume."
+                .to_owned(),
+        },
+        Picture {
             svg: from_above(ride, top).to_svg(),
-            caption: "Figure 3: wheel centre C, top of the unicycle E and rider's centre of mass G from above.".to_owned(),
+            caption: "The same from above: C, E and G.".to_owned(),
         },
         Picture {
             svg: in_frame(ride, top, [0, 2], "x [m]").to_svg(),
@@ -114,6 +120,38 @@ fn line(label: &str, places: &[Vector], [x, y]: [usize; 2]) -> Series {
         label: label.to_owned(),
         x: places.iter().map(|place| place[x]).collect(),
         y: places.iter().map(|place| place[y]).collect(),
+    }
+}
+
+/// The paths in a box as large as the capture volume, about their middle.
+fn in_space(laboratory: &Laboratory, ride: &Ride) -> Surface {
+    let mut paths = vec![Path {
+        label: "C".to_owned(),
+        points: ride.origin.clone(),
+    }];
+    for name in ["E", "H"] {
+        if let Some(body) = laboratory.skeleton.body(name) {
+            let points = ride.points[body].clone();
+            let label = name.to_owned();
+            paths.push(Path { label, points });
+        }
+    }
+    let (label, points) = ("G".to_owned(), ride.centre.clone());
+    paths.insert(2, Path { label, points });
+    let all: Vec<Vector> = paths.iter().flat_map(|path| path.points.clone()).collect();
+    let around = |k: usize| {
+        let own: Vec<f64> = all.iter().map(|place| place[k]).collect();
+        let middle = 0.5 * (least(&own) + most(&own));
+        // One scale on the ground.
+        [-0.5, 0.5].map(|part| middle + part * VOLUME[0])
+    };
+    Surface {
+        title: "Figure-eight in space".to_owned(),
+        labels: ["X [m]", "Y [m]", "Z [m]"].map(str::to_owned),
+        ranges: [around(0), around(1), [0.0, VOLUME[2]]],
+        kinds: Vec::new(),
+        patches: Vec::new(),
+        paths,
     }
 }
 

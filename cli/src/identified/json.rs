@@ -1,0 +1,64 @@
+//! The same for programs.
+
+use appell_gap::data::DataSet;
+use appell_gap::identify::Answer;
+use serde_json::{Value, json};
+
+/// Everything for programs, in SI.
+pub(crate) fn json(set: &DataSet, answer: &Answer) -> Value {
+    let parameters = answer.parameters.iter().map(|estimate| {
+        json!({
+            "name": estimate.quantity.name, "unit": estimate.quantity.unit,
+            "nominal": estimate.nominal, "tolerance": estimate.tolerance,
+            "value": estimate.value, "std": estimate.std, "robust_std": estimate.robust_std,
+            "interval95": estimate.interval95(), "at_limit": estimate.at_limit,
+        })
+    });
+    let rows = answer.correlation.row_iter();
+    let correlation = rows.map(|row| row.iter().copied().collect::<Vec<f64>>());
+    let combinations = answer
+        .combinations
+        .iter()
+        .map(|known| json!({ "parts": known.parts, "deviation_in_tolerances": known.deviation }));
+    let levels = |levels: &[appell_gap::identify::Level]| {
+        let levels = levels.iter().map(
+            |level| json!({ "name": level.name, "nominal": level.nominal, "fitted": level.fitted }),
+        );
+        levels.collect::<Vec<_>>()
+    };
+    let whiteness = answer.whiteness.iter().map(|(column, consistency)| {
+        json!({
+            "channel": column, "count": consistency.count,
+            "normalised_square": consistency.squares / consistency.count as f64,
+            "band99": consistency.band.map(|end| end / consistency.count as f64),
+            "correlation": consistency.correlation,
+            "correlation_band99": consistency.correlation_band,
+        })
+    });
+    let courses = answer.courses.iter().map(|course| {
+        json!({
+            "parameter": course.quantity.name, "run": course.run, "t_s": course.times,
+            "value": course.values, "std": course.deviations,
+        })
+    });
+    let held_out = answer.held_out.iter().map(|error| {
+        let horizon = error.horizon.is_finite().then_some(error.horizon);
+        json!({
+            "horizon_s": horizon, "free_run": horizon.is_none(), "channel": error.column,
+            "nominal": error.nominal, "fitted": error.fitted,
+        })
+    });
+    json!({
+        "schema": "identified/1",
+        "mechanism": set.mechanism.name,
+        "parameters": parameters.collect::<Vec<_>>(),
+        "correlation": correlation.collect::<Vec<_>>(),
+        "combinations": combinations.collect::<Vec<_>>(),
+        "noise": levels(&answer.noise),
+        "disturbances": levels(&answer.disturbances),
+        "innovations": whiteness.collect::<Vec<_>>(),
+        "log_likelihood": { "nominal": answer.log_likelihoods[0], "fitted": answer.log_likelihoods[1] },
+        "drifting": courses.collect::<Vec<_>>(),
+        "held_out": held_out.collect::<Vec<_>>(),
+    })
+}

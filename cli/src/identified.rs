@@ -8,7 +8,7 @@ use std::fmt::Write as _;
 use std::ops::Range;
 
 use appell_gap::data::{Channel, DataSet};
-use appell_gap::identify::{Answer, Estimate, HeldOut, IdentifyError, Known};
+use appell_gap::identify::{AHEAD, Answer, Estimate, HeldOut, IdentifyError, Known};
 use appell_runtime::estimate::EstimateError;
 
 use crate::failure::Failure;
@@ -21,6 +21,11 @@ pub(crate) use page::page;
 
 /// Parts of a combination that are smaller are not told.
 const NEGLIGIBLE: f64 = 0.1;
+/// Ratio of errors that is no accident.
+const WORSE: f64 = 1.2;
+/// What it means.
+const BENT: &str = "On the runs that were held out the fitted model predicts worse than the nominal one, \
+a second ahead: what the model lacks has bent the parameters. `appell diagnose` looks for it.";
 /// Combinations that are known to more tolerances than this are not known.
 const UNKNOWN: f64 = 100.0;
 
@@ -48,6 +53,8 @@ struct Part {
     numbers: Range<usize>,
     /// Whether the numbers lie between -1 and 1 and are shown by colours too.
     is_heat: bool,
+    /// A sentence below; may be empty.
+    note: String,
 }
 
 impl Part {
@@ -57,6 +64,7 @@ impl Part {
             rows: vec![columns.map(str::to_owned).to_vec()],
             numbers,
             is_heat: false,
+            note: String::new(),
         }
     }
 }
@@ -68,6 +76,9 @@ pub(crate) fn text(set: &DataSet, answer: &Answer) -> String {
         let rows = table(&part.rows, part.numbers);
         // Writing to a string cannot fail.
         let _ = write!(text, "\n{}\n\n{rows}", part.heading);
+        if !part.note.is_empty() {
+            let _ = writeln!(text, "\n{}", part.note);
+        }
     }
     if answer.held_out.is_empty() {
         text.push_str("\nNo run was held out: nothing tells how the model predicts.\n");
@@ -125,7 +136,17 @@ fn parameters(answer: &Answer) -> Part {
             remark(estimate).to_owned(),
         ]);
     }
+    if is_bent(answer) {
+        BENT.clone_into(&mut part.note);
+    }
     part
+}
+
+/// Whether the fitted model predicts worse than the nominal one where nothing was fitted.
+fn is_bent(answer: &Answer) -> bool {
+    let mut errors = answer.held_out.iter();
+    let ahead = errors.find(|error| error.column.is_none() && error.horizon >= AHEAD);
+    ahead.is_some_and(|error| error.fitted > WORSE * error.nominal)
 }
 
 fn remark(estimate: &Estimate) -> &'static str {
@@ -146,7 +167,10 @@ fn correlation(answer: &Answer) -> Part {
     part.rows[0].push(String::new());
     part.rows[0].extend(names.clone());
     for (name, row) in names.into_iter().zip(answer.correlation.row_iter()) {
-        let cells = row.iter().map(|value| format!("{value:.2}"));
+        // No zero with a sign.
+        let cells = row
+            .iter()
+            .map(|value| format!("{:.2}", (100.0 * value).round() / 100.0 + 0.0));
         part.rows.push([name].into_iter().chain(cells).collect());
     }
     part
@@ -291,14 +315,14 @@ fn held_out(set: &DataSet, answer: &Answer) -> Part {
     let columns = [
         "ahead",
         "channel",
+        "unit",
         "nominal model",
         "fitted model",
-        "unit",
         "nominal / noise",
         "fitted / noise",
     ];
     let heading = "Errors on the runs that were held out: roots of mean squares";
-    let mut part = Part::new(heading, columns, 2..7);
+    let mut part = Part::new(heading, columns, 3..7);
     for error in &answer.held_out {
         let column = error.column.as_deref();
         let noise = column.and_then(|own| answer.noise.iter().find(|level| level.name == own));
@@ -310,9 +334,9 @@ fn held_out(set: &DataSet, answer: &Answer) -> Part {
         part.rows.push(vec![
             ahead(error),
             column.unwrap_or("all").to_owned(),
+            channel.map_or_else(String::new, |own| own.unit.text.clone()),
             shown(error.nominal),
             shown(error.fitted),
-            channel.map_or_else(String::new, |own| own.unit.text.clone()),
             short(error.nominal),
             short(error.fitted),
         ]);

@@ -15,6 +15,9 @@ pub(crate) fn page(set: &DataSet, answer: &Answer) -> String {
         // Writing to a string cannot fail.
         let _ = writeln!(body, "<h2>{}</h2>", escaped(&part.heading));
         body += &table(part);
+        if !part.note.is_empty() {
+            let _ = writeln!(body, "<p>{}</p>", escaped(&part.note));
+        }
         if place == 0 && !answer.traces.is_empty() {
             let _ = writeln!(body, "<h2>The runs that were held out</h2>");
             let _ = writeln!(body, "{}", figure(set, answer).to_svg());

@@ -21,6 +21,8 @@ pub(crate) use page::page;
 
 /// Parts of a combination that are smaller are not told.
 const NEGLIGIBLE: f64 = 0.1;
+/// Tolerances by which no value is off, unless it stands for something else.
+const FAR: f64 = 3.0;
 /// Ratio of errors that is no accident.
 const WORSE: f64 = 1.2;
 /// What it means.
@@ -150,9 +152,11 @@ fn is_bent(answer: &Answer) -> bool {
 }
 
 fn remark(estimate: &Estimate) -> &'static str {
-    match (estimate.at_limit, estimate.left) {
-        (true, _) => "at the limit of its range",
-        (_, Some(left)) if left > 0.5 => "hardly told by the recordings",
+    let moved = (estimate.value - estimate.nominal).abs();
+    match (estimate.at_limit, estimate.tolerance, estimate.left) {
+        (true, ..) => "at the limit of its range",
+        (_, Some(tolerance), _) if moved > FAR * tolerance => "far beyond its tolerance",
+        (.., Some(left)) if left > 0.5 => "hardly told by the recordings",
         _ => "",
     }
 }

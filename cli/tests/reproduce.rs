@@ -171,7 +171,7 @@ fn the_book_of_the_electric_unicycle_says_what_holds_on_simulated_rides() {
     let page = std::fs::read_to_string(artefact.join("euc.html")).expect("the book");
     assert_self_contained(&page);
     assert_well_formed(&page);
-    assert_eq!(page.matches("<figure>").count(), 7);
+    assert_eq!(page.matches("<figure>").count(), 8);
 }
 
 /// Nothing of the page is elsewhere.

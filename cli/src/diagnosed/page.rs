@@ -66,10 +66,15 @@ fn verdict(report: &Report) -> String {
 /// `force = 0.412 ± 0.021 N`
 fn values(hypothesis: &Hypothesis) -> Vec<String> {
     let values = hypothesis.parameters.iter().map(|value| {
-        let short = value.name.rsplit('.').next().unwrap_or_default();
+        let (effect, short) = value.name.rsplit_once('.').unwrap_or(("", &value.name));
         let unit = if value.unit == "1" { "" } else { &value.unit };
         let number = measured(value.value, value.std);
-        format!("{} = {number} {unit}", short.replace('_', " "))
+        // Several effects may have values of one name.
+        let site = effect
+            .split_once('@')
+            .filter(|_| hypothesis.effects.len() > 1);
+        let site = site.map_or_else(String::new, |(_, site)| format!(" ({site})"));
+        format!("{}{site} = {number} {unit}", short.replace('_', " "))
             .trim_end()
             .to_owned()
     });
@@ -93,8 +98,17 @@ fn place(set: &DataSet, report: &Report) -> String {
             "The mechanism at its initial state. A ring marks where the effect acts.",
         );
     }
-    html += &equations(set, &report.place);
     html += &windows(&report.place);
+    // What sensors show wrong is no force.
+    if !report
+        .place
+        .equations
+        .iter()
+        .any(|equation| equation.share > 0.0)
+    {
+        return html;
+    }
+    html += &equations(set, &report.place);
     if let Some(law) = report.pictures.as_ref().and_then(|p| p.law.as_ref()) {
         let caption = if law.law.is_empty() {
             "The force that the model lacks, as the recordings show it without any law, over what it \
@@ -151,7 +165,7 @@ fn equations(set: &DataSet, place: &Where) -> String {
                 code(&equation.name),
                 escaped(about)
             ),
-            format!("{} {}", bar(equation.share), percent(equation.share)),
+            bar(equation.share),
             format!("{} {}", short(equation.rms), escaped(&equation.unit)),
             short(equation.p_value),
         ]
@@ -204,11 +218,7 @@ fn which(report: &Report) -> String {
             .collect::<Vec<_>>();
         let bayes = hypothesis.log_bayes_factor.map_or_else(String::new, short);
         vec![
-            format!(
-                "{} {}",
-                bar(hypothesis.probability),
-                percent(hypothesis.probability)
-            ),
+            bar(hypothesis.probability),
             format!("{name}<br>{}", values.join("<br>")),
             bayes,
         ]
@@ -442,9 +452,13 @@ fn table<const N: usize>(
     html + "</table>\n"
 }
 
+/// A part as a bar beside its number.
 fn bar(part: f64) -> String {
     let width = 100.0 * part.clamp(0.0, 1.0);
-    format!("<span class=\"bar\"><i style=\"width:{width:.1}%\"></i></span>")
+    format!(
+        "<span class=\"share\"><span class=\"bar\"><i style=\"width:{width:.1}%\"></i></span> {}</span>",
+        percent(part)
+    )
 }
 
 fn figure(svg: &str, caption: &str) -> String {

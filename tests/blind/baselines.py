@@ -2,7 +2,8 @@
 
     finite_differences   accelerations by Savitzky and Golay, least squares, BIC; without scales and delays
                          of sensors, which this method fits to its own noise
-    output_error         simulated runs fitted by Gauss and Newton (single shooting), BIC
+    output_error         simulated runs fitted by Gauss and Newton (single shooting), one effect by one more
+                         step, BIC; with pairs BIC would always choose two, as disturbances are not white there
     refitted             the declared model with its parameters fitted again, never an effect
 
 They know the mechanisms of `mechanisms.py` and the laws of `effects.py`: the very ones of the rigs. They
@@ -31,7 +32,6 @@ from score import unpack
 PASS_HZ = 8.0  # what the smoothing keeps, of motions and inputs alike
 WINDOW, ORDER = 5, 4  # of the derivatives
 EDGE = 15  # samples at the ends that the smoothing spoils
-KEPT = 2  # candidates that output error fits after the linear screen
 STEPS = 3  # of Gauss and Newton
 ONE_SIDED = """viscous_friction coulomb_friction rolling_resistance spin_friction quadratic_drag added_inertia
 actuator_lag actuator_delay actuator_saturation actuator_dead_zone sensor_delay""".split()
@@ -229,8 +229,8 @@ def allowed(names, sizes):
     return all(size > 0 or name.split("@")[0] not in ONE_SIDED for name, size in zip(names, sizes))
 
 
-def compare(columns, target, nuisance, names):
-    """BIC of every candidate and pair beside the nuisance, by forward selection."""
+def compare(columns, target, nuisance, names, pairs=True):
+    """BIC of every candidate beside the nuisance, and of pairs by forward selection."""
     n = len(target)
     ridge = np.eye(nuisance.shape[1])
 
@@ -250,7 +250,7 @@ def compare(columns, target, nuisance, names):
     singles = [key for key, (_, c) in results.items() if key and allowed(key, c[-1:])]
     best = min(singles, key=lambda key: results[key][0], default=())
     for name in names:
-        if name not in best:
+        if pairs and best and name not in best:
             results[tuple(sorted(best + (name,)))] = rss(tuple(sorted(best + (name,))))
     possible = {key: value for key, (value, c) in results.items() if allowed(key, c[len(c) - len(key) :])}
     bic = {key: n * np.log(value / n) + len(key) * np.log(n) for key, value in possible.items()}
@@ -448,8 +448,7 @@ def output_error(data):
     """(report with effects, report of the model with parameters fitted again)"""
     began = time.monotonic()
     fits = OutputError(data)
-    n = sum(run[1].size for run in data.fit)
-    cost, fits.shift, fits.starts, _ = fits.fit({}, STEPS)
+    _, fits.shift, fits.starts, _ = fits.fit({}, STEPS)
     plain = Variant(data, data.p, {})
     again = Variant(data, fits.parameters(fits.shift), {})
     refitted = report(data, {(): 1.0}, how_far(data, plain, again), began)
@@ -458,19 +457,13 @@ def output_error(data):
     k = len(fits.shift)
     nuisance = np.hstack([J[:, :k], J[:, k + len(names) :]])
     columns = {name: J[:, k + i] for i, name in enumerate(names)}
-    bic, coefficients = compare(columns, r, nuisance, names)
-    ranked = sorted((key for key in bic if key), key=bic.get)[:KEPT]
-    found = {(): n * np.log(cost / n)}
-    models = {(): again}
-    for key in ranked:
-        sizes = dict(zip(key, coefficients[key][len(coefficients[key]) - len(key) :]))
-        value, shift, _, sizes = fits.fit(sizes, 1)
-        if not allowed(key, sizes.values()):
-            continue
-        found[key] = n * np.log(value / n) + len(key) * np.log(n)
-        models[key] = Variant(data, fits.parameters(shift), sizes)
-    best = min(found, key=found.get)
-    return report(data, weighed(found), how_far(data, plain, models[best]), began), refitted
+    bic, coefficients = compare(columns, r, nuisance, names, pairs=False)
+    best = min(bic, key=bic.get)
+    c = coefficients[best]
+    model = Variant(
+        data, fits.parameters(np.clip(fits.shift + c[:k], -4, 4)), dict(zip(best, c[len(c) - len(best) :]))
+    )
+    return report(data, weighed(bic), how_far(data, plain, model), began), refitted
 
 
 def pack(reports):

@@ -26,6 +26,7 @@ mod compare;
 mod error;
 mod evidence;
 mod experiment;
+mod feedback;
 mod held_out;
 mod hypothesis;
 mod law;
@@ -35,6 +36,7 @@ mod scales;
 mod screen;
 mod traces;
 mod unknown;
+mod windows;
 
 use crate::data::{DataSet, Part, Spec};
 use crate::effects::{Effect, EffectModel, candidates};
@@ -99,7 +101,8 @@ pub fn diagnose(
         .map(|alternative| Rival::of(alternative, &bench))
         .collect::<Result<_, _>>()?;
     stage("localising the gap");
-    let place = localise::place(&bench, &comparison)?;
+    let mut place = localise::place(&bench, &comparison)?;
+    windows::tell(&bench, &comparison, &mut place)?;
     let report = report::assemble(&bench, &screen, &comparison, place.clone(), &rivals)?;
     stage("predicting the runs that were held out");
     let test = set.only(Part::Test);

@@ -287,6 +287,8 @@ pub enum ConstraintKind {
         normal: Option<Normal>,
         /// Coefficient of friction, if the spec tells it.
         friction: Option<Expr>,
+        /// How the contact creeps, if the spec tells it.
+        creep: Option<Box<Creep>>,
     },
     /// `zero = equals`, `zero` linear in the generalised velocities, `equals` a function of
     /// coordinates, parameters, signals and time.
@@ -335,6 +337,16 @@ pub struct Normal {
     pub axis: Axis,
     /// Whether the normal points backwards along it.
     pub negative: bool,
+}
+
+/// Light creep of a rolling contact: the velocity of sliding over that of travel, per force along the
+/// surface over the normal force.
+#[derive(Debug, Clone)]
+pub struct Creep {
+    /// Along the travel.
+    pub longitudinal: Expr,
+    /// Across it.
+    pub lateral: Expr,
 }
 
 impl ConstraintKind {

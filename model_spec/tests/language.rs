@@ -145,6 +145,7 @@ fn constraints_and_loads_refer_to_their_items() {
         contact: 2,
         normal: None,
         friction: None,
+        creep: None,
     } = mechanism.constraints[0].kind
     else {
         panic!("{:?}", mechanism.constraints[0]);

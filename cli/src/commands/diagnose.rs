@@ -30,6 +30,9 @@ pub(crate) struct Diagnose {
     /// recordings
     #[arg(long, num_args = 1.., value_name = "SPEC")]
     alternative: Vec<String>,
+    /// Kinds of the library that are left out, such as `coulomb_friction`
+    #[arg(long, num_args = 1.., value_name = "KIND")]
+    without: Vec<String>,
     /// Write the gap report; `-` is standard output
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
@@ -145,6 +148,18 @@ impl Diagnose {
     fn library(&self) -> Result<Vec<effects::Effect>, Failure> {
         let data = |error: effects::EffectError| Failure::Data(error.to_string());
         let mut library = effects::shipped().map_err(data)?;
+        for kind in &self.without {
+            let before = library.len();
+            library.retain(|effect| effect.name != *kind);
+            if library.len() == before {
+                let mut kinds: Vec<&str> = library.iter().map(|e| e.name.as_str()).collect();
+                kinds.dedup();
+                return Err(Failure::Usage(format!(
+                    "`--without {kind}`: the library has {}",
+                    kinds.join(", ")
+                )));
+            }
+        }
         for path in &self.effects {
             let text = files::read(path, appell_spec::limits::MAX_FILE as u64)?;
             let name = path.file_stem().unwrap_or_default().to_string_lossy();

@@ -136,7 +136,7 @@ impl<'a> Bench<'a> {
     fn equations(&self) -> Vec<Expr> {
         let Derivation {
             contacts,
-            velocities,
+            coordinate_rates,
             gibbs,
             forces,
             loads,
@@ -145,7 +145,7 @@ impl<'a> Bench<'a> {
         let mut all: Vec<Expr> = gibbs.mass_matrix.iter().flatten().copied().collect();
         all.extend(&gibbs.bias);
         all.extend(forces);
-        all.extend(&velocities.rates);
+        all.extend(coordinate_rates);
         all.extend(loads.iter().filter_map(|load| load.potential));
         all.extend(&self.outputs);
         all.extend(contacts.iter().filter_map(|contact| contact.friction));

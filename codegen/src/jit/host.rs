@@ -7,19 +7,28 @@ use cranelift_codegen::settings::{self, Configurable};
 
 use super::JitError;
 
-/// The instruction set of this processor; found out once.
-pub(super) fn target() -> Result<OwnedTargetIsa, JitError> {
-    static TARGET: OnceLock<OwnedTargetIsa> = OnceLock::new();
-    if let Some(target) = TARGET.get() {
+/// Steps beyond which a function is long.
+const LONG: usize = 6000;
+
+/// The instruction set of this processor, for a function of so many steps; found out once.
+pub(super) fn target(steps: usize) -> Result<OwnedTargetIsa, JitError> {
+    static TARGETS: [OnceLock<OwnedTargetIsa>; 2] = [OnceLock::new(), OnceLock::new()];
+    let is_long = steps > LONG;
+    let known = &TARGETS[usize::from(is_long)];
+    if let Some(target) = known.get() {
         return Ok(target.clone());
     }
-    let target = detect()?;
-    Ok(TARGET.get_or_init(|| target).clone())
+    let target = detect(is_long)?;
+    Ok(known.get_or_init(|| target).clone())
 }
 
-fn detect() -> Result<OwnedTargetIsa, JitError> {
+fn detect(is_long: bool) -> Result<OwnedTargetIsa, JitError> {
     let mut flags = settings::builder();
     flags.set("opt_level", "speed")?;
+    // Registers of a long function take minutes to choose well, and most values are spilled anyway.
+    if is_long {
+        flags.set("regalloc_algorithm", "single_pass")?;
+    }
     // The code calls functions that may be far away, by address.
     flags.set("is_pic", "false")?;
     flags.set("use_colocated_libcalls", "false")?;

@@ -34,7 +34,7 @@ impl NativeFunction {
     /// Compiles a schedule of a model with arguments of these sizes.
     pub fn compile(schedule: &Schedule, sizes: Sizes) -> Result<Self, JitError> {
         let checked = check(schedule, sizes)?;
-        let target = host::target()?;
+        let target = host::target(schedule.steps.len())?;
         let builder = JITBuilder::with_isa(target, default_libcall_names());
         let mut module = JITModule::new(builder);
         let config = module.target_config();

@@ -22,6 +22,7 @@ use super::switches::switches;
 use super::symbols::{Symbols, ids};
 use super::systems::systems;
 use crate::program::{Arguments, Array, Function, FunctionKind, Layout, Program};
+use crate::symbolic::vector::Vec3;
 use crate::symbolic::{Expr, Graph};
 
 /// The program of a derivation, with the functions `kinds`. Without outputs or switches there is no
@@ -93,7 +94,7 @@ impl Derivation {
         let coordinates = &info.states[info.speeds..];
         Ok(match kind {
             FunctionKind::Kinematics => {
-                let rates = self.coordinate_rates.clone();
+                let rates = self.rolling_rates.clone();
                 let all = 0..rates.len();
                 let labels = coordinates.iter().map(|q| format!("{}_dot", q.name));
                 let array = Array::new("coordinate_rates", "q̇.", Layout::Coordinates, rates);
@@ -199,7 +200,7 @@ impl Derivation {
         let accelerations = self.motion.accelerations.clone();
         match function.kind {
             F::ConstraintResidual => function
-                .by_way_of(VELOCITIES, self.coordinate_rates.clone())
+                .by_way_of(VELOCITIES, self.rolling_rates.clone())
                 .explaining(glossary::of_rows(mechanism, &self.constraints))
                 .remarking(embedded(mechanism, &self.constraints)),
             F::Energies => self.staged_by_velocities(mechanism, function),
@@ -293,7 +294,7 @@ impl Derivation {
     /// The rows that geometry does not embed, at the generalised velocities.
     fn constraint_residual(&mut self, mechanism: &Mechanism) -> Array {
         let graph = &mut self.algebra.graph;
-        let residual = reactions::residual(graph, &self.constraints, &self.coordinate_rates);
+        let residual = reactions::residual(graph, &self.constraints, &self.rolling_rates);
         let rows = || {
             let rows = self.constraints.rows.iter();
             rows.filter(|row| !row.is_embedded())
@@ -368,10 +369,10 @@ impl Derivation {
         ]
     }
 
-    /// One row per place with a reaction.
-    fn constraint_forces(&mut self, mechanism: &Mechanism) -> Outcome<Array> {
+    /// Reactions in the ground, by place.
+    pub(super) fn reactions(&mut self, mechanism: &Mechanism) -> Outcome<Vec<Vec3>> {
         let bodies = self.bodies_in_ground(mechanism);
-        let forces = reactions::reactions(
+        reactions::reactions(
             &mut self.algebra,
             mechanism,
             &self.symbols,
@@ -379,7 +380,12 @@ impl Derivation {
             &self.velocities.violating,
             &bodies,
             &self.motion.accelerations,
-        )?;
+        )
+    }
+
+    /// One row per place with a reaction.
+    fn constraint_forces(&mut self, mechanism: &Mechanism) -> Outcome<Array> {
+        let forces = self.reactions(mechanism)?;
         let layout = Layout::Matrix(forces.len(), 3);
         let reactions = self.constraints.reactions.iter();
         let places: Vec<String> = reactions

@@ -72,8 +72,14 @@ fn expressions(mechanism: &Mechanism) -> Vec<(Item, &Spec)> {
                 all.extend(direction.iter().chain([equals]).map(|e| (item, e)));
             }
             ConstraintKind::Position { zero, .. } => all.push((item, zero)),
-            ConstraintKind::Rolling { friction, .. } => {
+            ConstraintKind::Rolling {
+                friction, creep, ..
+            } => {
                 all.extend(friction.iter().map(|e| (item, e)));
+                let creep = creep
+                    .iter()
+                    .flat_map(|creep| [&creep.longitudinal, &creep.lateral]);
+                all.extend(creep.map(|e| (item, e)));
             }
         }
     }

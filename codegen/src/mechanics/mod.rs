@@ -8,6 +8,7 @@ pub mod assemble;
 pub mod constraints;
 pub mod contact_rows;
 pub mod contacts;
+pub mod creep;
 pub mod dependent;
 pub mod divisors;
 pub mod elimination;
@@ -83,6 +84,8 @@ pub struct Derivation {
     pub motion: Motion,
     /// q̇, named.
     pub coordinate_rates: Vec<Expr>,
+    /// q̇ if no contact crept, named.
+    pub rolling_rates: Vec<Expr>,
     /// What looks unintended.
     pub warnings: Vec<Finding>,
 }
@@ -180,12 +183,7 @@ fn equations(mechanism: &Mechanism) -> Outcome<Derivation> {
     gibbs.write_out_what_cancels(&mut algebra, &parts);
     let explicit = dependent.values.is_empty();
     let motion = motion::solve(&mut algebra, mechanism, &gibbs, &forces, &parts, explicit)?;
-    let coordinate_rates = mechanism
-        .coordinates
-        .iter()
-        .zip(&velocities.rates)
-        .map(|(q, &rate)| algebra.graph.name(&format!("{}_dot", q.label.name), rate))
-        .collect();
+    let rolling_rates = named_rates(&mut algebra.graph, mechanism, &velocities.rates);
     let mut warnings = [constraints.warnings.clone(), not_judged].concat();
     warnings.extend(initially_singular(
         &mut algebra,
@@ -195,7 +193,7 @@ fn equations(mechanism: &Mechanism) -> Outcome<Derivation> {
         &velocities.rates,
         &motion,
     ));
-    Ok(Derivation {
+    let mut derivation = Derivation {
         algebra,
         symbols,
         constraints,
@@ -210,9 +208,27 @@ fn equations(mechanism: &Mechanism) -> Outcome<Derivation> {
         loads,
         forces,
         motion,
-        coordinate_rates,
+        coordinate_rates: rolling_rates.clone(),
+        rolling_rates,
         warnings,
-    })
+    };
+    if let Some(creeping) = creep::creeping_motion(&mut derivation, mechanism)? {
+        let algebra = &mut derivation.algebra;
+        let (gibbs, forces) = (creeping.gibbs, creeping.forces);
+        derivation.motion = motion::solve(algebra, mechanism, &gibbs, &forces, &[], true)?;
+        let rates = &creeping.coordinate_rates;
+        derivation.coordinate_rates = named_rates(&mut algebra.graph, mechanism, rates);
+        (derivation.gibbs, derivation.forces) = (gibbs, forces);
+    }
+    Ok(derivation)
+}
+
+/// q̇ by the names of the coordinates.
+fn named_rates(graph: &mut Graph, mechanism: &Mechanism, rates: &[Expr]) -> Vec<Expr> {
+    let coordinates = mechanism.coordinates.iter().zip(rates);
+    coordinates
+        .map(|(q, &rate)| graph.name(&format!("{}_dot", q.label.name), rate))
+        .collect()
 }
 
 /// What is singular where the motion starts.

@@ -2,12 +2,13 @@
 //! free under each hypothesis, and from where a search starts.
 
 use appell_runtime::estimate::{
-    Coordinate, Effort, Estimation, Fit, Free, Layout, Measured, Recording, Setup, Unknown,
+    Coordinate, Effort, Estimation, Fit, Free, Measured, Recording, Setup, Unknown,
 };
 use appell_runtime::model::Model;
 
 use super::DiagnoseError;
 use super::evidence::Evidence;
+use super::feedback::Surprises;
 use super::hypothesis::Fitted;
 use crate::data::{DataSet, Part};
 use crate::effects::{Acts, Candidate, EffectModel, Part as Role};
@@ -40,6 +41,8 @@ pub(super) struct Bench<'a> {
     pub(super) problem: Problem,
     /// Typical sizes of the states that are not measured.
     pub(super) sizes: Vec<f64>,
+    /// What inputs know beyond the recordings.
+    pub(super) surprises: Surprises,
     /// Steps are this long at most.
     longest_step: f64,
     /// Shortest step between rows.
@@ -63,7 +66,7 @@ impl<'a> Bench<'a> {
         let step = steps.fold(f64::INFINITY, f64::min);
         let setup = Setup {
             longest_step: LONGEST_STEP,
-            ..Setup::new(effects.model(), &measured)
+            ..Setup::new(effects.with(&[]), &measured)
         };
         let (problem, sizes) = {
             let estimation = Estimation::new(&setup, &recordings)?;
@@ -73,6 +76,7 @@ impl<'a> Bench<'a> {
             (problem, sizes)
         };
         Ok(Self {
+            surprises: Surprises::of(&recordings),
             set,
             effects,
             recordings,
@@ -84,19 +88,24 @@ impl<'a> Bench<'a> {
         })
     }
 
-    pub(super) fn model(&self) -> &dyn Model {
-        self.effects.model()
-    }
-
     pub(super) fn candidate(&self, index: usize) -> &Candidate {
         &self.effects.candidates[index]
     }
 
     /// The filter of a hypothesis: lags, delays.
     pub(super) fn setup(&self, members: &[usize]) -> Setup<'_> {
+        self.setup_of(self.effects.with(members), members)
+    }
+
+    /// The filter of a hypothesis on the equations that have all candidates.
+    pub(super) fn whole_setup(&self, members: &[usize]) -> Setup<'_> {
+        self.setup_of(self.effects.model(), members)
+    }
+
+    fn setup_of<'s>(&'s self, model: &'s dyn Model, members: &[usize]) -> Setup<'s> {
         let mut setup = Setup {
             longest_step: self.longest_step,
-            ..Setup::new(self.model(), &self.measured)
+            ..Setup::new(model, &self.measured)
         };
         for &member in members {
             match self.candidate(member).acts {
@@ -198,6 +207,55 @@ impl<'a> Bench<'a> {
         self.fit(&[], &estimation, &self.problem.start)
     }
 
+    /// Values of a hypothesis for another filter: what both have is taken over.
+    pub(super) fn carried(&self, from: &Fitted, to: &Estimation<'_>) -> Vec<f64> {
+        let mut values = to.nominal();
+        let (setup, was) = (to.setup(), self.setup(&from.members));
+        let mut pairs: Vec<(Unknown, Unknown)> = Vec::new();
+        let same = |unknown| (unknown, unknown);
+        let info = setup.model.info();
+        pairs.extend((0..info.parameter_len()).map(|p| same(Unknown::Parameter(p))));
+        pairs.extend((0..setup.disturbances.len()).map(|d| same(Unknown::Disturbance(d))));
+        for channel in 0..setup.channels.len() {
+            pairs.extend(
+                [
+                    Unknown::Noise(channel),
+                    Unknown::Bias(channel),
+                    Unknown::Scale(channel),
+                    Unknown::SensorDelay(channel),
+                ]
+                .map(same),
+            );
+        }
+        let inputs = |list: &[usize], input: &usize| list.iter().position(|own| own == input);
+        for (new, input) in setup.lagging.iter().enumerate() {
+            let old = inputs(&was.lagging, input);
+            pairs.extend(old.map(|old| (Unknown::Lag(old), Unknown::Lag(new))));
+        }
+        for (new, input) in setup.delayed.iter().enumerate() {
+            let old = inputs(&was.delayed, input);
+            pairs.extend(old.map(|old| (Unknown::InputDelay(old), Unknown::InputDelay(new))));
+        }
+        // Other recordings begin as those that were fitted did.
+        for run in 0..to.recordings().len() {
+            let old = run.min(self.recordings.len() - 1);
+            for state in 0..info.state_len() {
+                let (initial, spread) = (
+                    |run| Unknown::Initial { run, state },
+                    |run| Unknown::Spread { run, state },
+                );
+                pairs.push((initial(old), initial(run)));
+                pairs.push((spread(old), spread(run)));
+            }
+        }
+        for (old, new) in pairs {
+            if let (Ok(old), Ok(new)) = (from.layout.place(old), to.layout().place(new)) {
+                values[new] = from.fit.values[old];
+            }
+        }
+        values
+    }
+
     /// Fits a hypothesis from a start.
     pub(super) fn fit(
         &self,
@@ -264,36 +322,4 @@ fn sizes(estimation: &Estimation<'_>, problem: &Problem) -> Result<Vec<f64>, Dia
         Ok(most)
     };
     states.map(size).collect()
-}
-
-/// Values of one filter as those of another: what both have is taken over.
-pub(super) fn transfer(from: (&Layout, &[f64]), to: &Estimation<'_>) -> Vec<f64> {
-    let (layout, values) = from;
-    let mut own = to.nominal();
-    let setup = to.setup();
-    let info = setup.model.info();
-    let mut unknowns: Vec<Unknown> = Vec::new();
-    unknowns.extend((0..info.parameter_len()).map(Unknown::Parameter));
-    unknowns.extend((0..setup.disturbances.len()).map(Unknown::Disturbance));
-    for channel in 0..setup.channels.len() {
-        unknowns.extend([
-            Unknown::Noise(channel),
-            Unknown::Bias(channel),
-            Unknown::Scale(channel),
-            Unknown::SensorDelay(channel),
-        ]);
-    }
-    for run in 0..to.recordings().len() {
-        for state in 0..info.state_len() {
-            unknowns.push(Unknown::Initial { run, state });
-            unknowns.push(Unknown::Spread { run, state });
-        }
-    }
-    let new = to.layout();
-    for unknown in unknowns {
-        if let (Ok(from), Ok(place)) = (layout.place(unknown), new.place(unknown)) {
-            own[place] = values[from];
-        }
-    }
-    own
 }

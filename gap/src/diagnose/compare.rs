@@ -8,7 +8,7 @@ use std::collections::BTreeSet;
 use appell_runtime::estimate::{Estimation, Unknown};
 
 use super::DiagnoseError;
-use super::bench::{Bench, WRONG, transfer};
+use super::bench::{Bench, WRONG};
 use super::evidence::LARGEST_LOG_SIZE;
 use super::hypothesis::Fitted;
 use super::screen::{Screen, Screened};
@@ -174,7 +174,7 @@ impl Search<'_, '_> {
         let setup = bench.setup(members);
         let estimation = Estimation::new(&setup, &bench.recordings)?;
         let from = &self.fits[to];
-        let mut start = transfer((&from.layout, &from.fit.values), &estimation);
+        let mut start = bench.carried(from, &estimation);
         let base = if matches!(bench.candidate(screened.candidate).acts, Acts::Late(_)) {
             // A late channel loses its first rows: what it gains is counted against the same rows.
             Some(estimation.log_likelihood(&start)?)
@@ -183,6 +183,7 @@ impl Search<'_, '_> {
         };
         place(bench, &estimation, screened, &mut start)?;
         let mut fitted = bench.fit(members, &estimation, &start)?;
+        fitted.evidence.told = from.evidence.told + screened.told;
         if let Some(base) = base {
             fitted.evidence.log_likelihood += from.evidence.log_likelihood - base;
         }

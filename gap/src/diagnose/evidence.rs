@@ -26,6 +26,8 @@ pub(super) struct Evidence {
     pub(super) log_likelihood: f64,
     /// What the average over the parameters takes from it.
     pub(super) occam: f64,
+    /// What inputs that know the motion could tell of the gain.
+    pub(super) told: f64,
     /// Smallest size of a member in its standard deviations.
     pub(super) smallest: f64,
 }
@@ -86,13 +88,14 @@ impl Evidence {
         Self {
             log_likelihood: fit.log_likelihood,
             occam,
+            told: 0.0,
             smallest,
         }
     }
 
     /// Logarithm of the evidence.
     pub(super) fn log(&self) -> f64 {
-        self.log_likelihood + self.occam
+        self.log_likelihood - self.told + self.occam
     }
 }
 

@@ -185,7 +185,7 @@ impl<'a> Rig<'a> {
         let blank = vec![Recording::new(times, inputs, nothing)?];
         let setup = self.bench.setup(&truth.members);
         let estimation = Estimation::new(&setup, &blank)?;
-        let mut values = taken_over(truth, &estimation)?;
+        let mut values = taken_over(self.bench, truth, &estimation)?;
         self.rest(truth, &estimation, &mut values)?;
         let mut shown = vec![f64::NAN; rows * channels];
         for one in estimation.predictions(&values, 0, f64::INFINITY, &[0])? {
@@ -249,7 +249,7 @@ fn distance(
     let recordings = [recording.clone()];
     let setup = bench.setup(&rival.members);
     let estimation = Estimation::new(&setup, &recordings)?;
-    let values = taken_over(rival, &estimation)?;
+    let values = taken_over(bench, rival, &estimation)?;
     let directions = moving(rival);
     let tangent = estimation.tangent(&values, &directions, None)?;
     let rest = DVector::from_iterator(

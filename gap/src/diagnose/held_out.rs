@@ -6,7 +6,7 @@
 use appell_runtime::estimate::{Estimation, Recording, Unknown};
 
 use super::DiagnoseError;
-use super::bench::{Bench, transfer};
+use super::bench::Bench;
 use super::compare::Comparison;
 use super::hypothesis::Fitted;
 use super::report::HowFar;
@@ -125,7 +125,7 @@ impl HeldOut {
     ) -> Result<Vec<(usize, usize, f64)>, DiagnoseError> {
         let setup = bench.setup(&fitted.members);
         let estimation = Estimation::new(&setup, &self.recordings)?;
-        let values = taken_over(fitted, &estimation)?;
+        let values = taken_over(bench, fitted, &estimation)?;
         let mut errors = Vec::new();
         for (run, recording) in self.recordings.iter().enumerate() {
             let mut origins = origins(recording, ORIGINS);
@@ -157,7 +157,7 @@ impl HeldOut {
     ) -> Result<f64, DiagnoseError> {
         let setup = bench.setup(&fitted.members);
         let estimation = Estimation::new(&setup, &self.recordings)?;
-        let values = taken_over(fitted, &estimation)?;
+        let values = taken_over(bench, fitted, &estimation)?;
         let (mut squares, mut count) = (0.0, 0.0_f64);
         for (run, recording) in self.recordings.iter().enumerate() {
             let origins = origins(recording, EXPECTED_FROM);
@@ -185,28 +185,13 @@ pub(super) fn stated(bench: &Bench<'_>, fitted: &Fitted) -> Fitted {
 
 /// Values of a fit on these recordings.
 pub(super) fn taken_over(
+    bench: &Bench<'_>,
     fitted: &Fitted,
     estimation: &Estimation<'_>,
 ) -> Result<Vec<f64>, DiagnoseError> {
-    let mut values = transfer((&fitted.layout, &fitted.fit.values), estimation);
-    delays(fitted, estimation, &mut values)?;
+    let mut values = bench.carried(fitted, estimation);
     begin(estimation, &mut values)?;
     Ok(values)
-}
-
-/// Lags and delays keep their values: their places are the same with any recordings.
-fn delays(
-    fitted: &Fitted,
-    estimation: &Estimation<'_>,
-    values: &mut [f64],
-) -> Result<(), DiagnoseError> {
-    let setup = estimation.setup();
-    let lags = (0..setup.lagging.len()).map(Unknown::Lag);
-    for unknown in lags.chain((0..setup.delayed.len()).map(Unknown::InputDelay)) {
-        values[estimation.layout().place(unknown)?] =
-            fitted.fit.values[fitted.layout.place(unknown)?];
-    }
-    Ok(())
 }
 
 /// Noise of the channels under a hypothesis.

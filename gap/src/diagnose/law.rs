@@ -5,7 +5,7 @@
 //! the equations without the effect, times the mass matrix, is the force.
 
 use appell_runtime::estimate::{Estimation, Recording, Smoothed};
-use appell_runtime::model::At;
+use appell_runtime::model::{At, Model};
 
 use super::DiagnoseError;
 use super::bench::Bench;
@@ -106,13 +106,14 @@ fn steps(
     let estimation = Estimation::new(&setup, &bench.recordings)?;
     let rows: usize = bench.recordings.iter().map(|run| run.times().len()).sum();
     let stride = rows.div_ceil(STEPS).max(1);
-    let with = &best.fit.values[..bench.effects.info().parameter_len()];
+    let model = bench.effects.with(&best.members);
+    let with = &best.fit.values[..model.info().parameter_len()];
     let without = without(bench, best);
     let mut steps = Vec::new();
     for (index, recording) in bench.recordings.iter().enumerate() {
         let states = estimation.smoothed(&nominal.fit.values, index)?;
         for row in (1..states.len()).step_by(stride) {
-            let forces = Forces::new(bench, recording, &states, row);
+            let forces = Forces::new(model, recording, &states, row);
             let own = |force: Vec<f64>| force[equation];
             steps.push(Step {
                 variables: forces.variables(),
@@ -127,7 +128,7 @@ fn steps(
 
 /// The step that ends at a row.
 struct Forces<'s> {
-    bench: &'s Bench<'s>,
+    model: &'s dyn Model,
     /// Times at the ends.
     times: [f64; 2],
     /// States at the ends.
@@ -137,16 +138,16 @@ struct Forces<'s> {
 
 impl<'s> Forces<'s> {
     fn new(
-        bench: &'s Bench<'s>,
+        model: &'s dyn Model,
         recording: &Recording,
         states: &'s [Smoothed],
         row: usize,
     ) -> Self {
-        let info = bench.effects.info();
+        let info = model.info();
         let mut inputs = vec![0.0; info.input_len()];
         inputs[..recording.input_len()].copy_from_slice(recording.inputs(row - 1));
         Self {
-            bench,
+            model,
             times: [recording.times()[row - 1], recording.times()[row]],
             ends: [row - 1, row].map(|row| &states[row].state[..info.state_len()]),
             inputs,
@@ -180,12 +181,12 @@ impl<'s> Forces<'s> {
     fn rates(&self, t: f64, x: &[f64], p: &[f64]) -> Vec<f64> {
         let mut rates = vec![0.0; x.len()];
         let u = &self.inputs;
-        self.bench.model().rates(At { t, x, u, p }, &mut rates);
+        self.model.rates(At { t, x, u, p }, &mut rates);
         rates
     }
 
     fn times_mass(&self, acceleration: impl Fn(usize) -> f64, p: &[f64]) -> Vec<f64> {
-        let speeds = self.bench.effects.info().speeds;
+        let speeds = self.model.info().speeds;
         let middle = self.variables();
         let at = At {
             t: self.times[0],
@@ -195,9 +196,7 @@ impl<'s> Forces<'s> {
         };
         let (mut mass, mut bias) = (vec![0.0; speeds * speeds], vec![0.0; speeds]);
         let mut forces = vec![0.0; speeds];
-        self.bench
-            .model()
-            .appell(at, &mut mass, &mut bias, &mut forces);
+        self.model.appell(at, &mut mass, &mut bias, &mut forces);
         let row = |i: usize| {
             (0..speeds)
                 .map(|j| mass[i * speeds + j] * acceleration(j))
@@ -209,7 +208,7 @@ impl<'s> Forces<'s> {
 
 /// The parameters of a fit without what its members do.
 fn without(bench: &Bench<'_>, fitted: &Fitted) -> Vec<f64> {
-    let info = bench.effects.info();
+    let info = bench.effects.with(&fitted.members).info();
     let mut plain = fitted.fit.values[..info.parameter_len()].to_vec();
     for &member in &fitted.members {
         let candidate = bench.candidate(member);

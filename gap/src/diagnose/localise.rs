@@ -25,7 +25,8 @@ pub(super) fn place(bench: &Bench<'_>, comparison: &Comparison) -> Result<Where,
     let domain = bench.candidate(first).family.word();
     let setup = bench.setup(&best.members);
     let estimation = Estimation::new(&setup, &bench.recordings)?;
-    let (info, layout) = (bench.effects.info(), estimation.layout());
+    let (model, layout) = (estimation.setup().model, estimation.layout());
+    let info = model.info();
     let (n, s, k) = (info.state_len(), info.speeds, info.parameter_len());
     let m = info.input_len();
     let values = &best.fit.values;
@@ -59,21 +60,21 @@ pub(super) fn place(bench: &Bench<'_>, comparison: &Comparison) -> Result<Where,
             let t = recording.times()[row];
             let at = At { t, x, u: &u, p };
             let mut difference = vec![0.0; n];
-            bench.model().rates(at, &mut difference);
-            bench.model().rates(At { p: &plain, ..at }, &mut rates);
+            model.rates(at, &mut difference);
+            model.rates(At { p: &plain, ..at }, &mut rates);
             for (with, without) in difference.iter_mut().zip(&rates) {
                 *with -= without;
             }
             for &member in &best.members {
                 if let Acts::Lag(input) | Acts::Delay(input) = bench.candidate(member).acts {
-                    bench.model().jacobians(at, &mut rates, &mut a, &mut b);
+                    model.jacobians(at, &mut rates, &mut a, &mut b);
                     let jump = recording.inputs(row)[input] - recording.inputs(row - 1)[input];
                     for state in 0..n {
                         difference[state] += b[state * m + input] * jump;
                     }
                 }
             }
-            bench.model().appell(at, &mut mass, &mut bias, &mut forces);
+            model.appell(at, &mut mass, &mut bias, &mut forces);
             for i in 0..s {
                 let force: f64 = (0..s).map(|j| mass[i * s + j] * difference[j]).sum();
                 added[i] += force * force;

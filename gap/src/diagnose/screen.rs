@@ -4,11 +4,15 @@
 //! With r the whitened innovations and S their slopes, the best step is −(SᵀS)⁻¹ Sᵀ r. Rows for what
 //! is known of the parameters beforehand stand below those of the samples.
 
-use appell_runtime::estimate::{Coordinate, Direction, Estimation, Tangent, Unknown};
+use std::ops::Range;
+
+use appell_runtime::estimate::{Coordinate, Direction, Estimation, Shapes, Tangent, Unknown};
+use appell_runtime::model::At;
 use nalgebra::{DMatrix, DVector};
 
 use super::DiagnoseError;
 use super::bench::Bench;
+use super::feedback::KICKS;
 use super::hypothesis::Fitted;
 use crate::effects::{Acts, Part};
 
@@ -17,8 +21,10 @@ use crate::effects::{Acts, Part};
 pub(super) struct Screened {
     /// Its index.
     pub(super) candidate: usize,
-    /// What it would gain in log-likelihood.
+    /// What it would gain in log-likelihood, beyond what an input that knows the motion could tell.
     pub(super) gain: f64,
+    /// What such an input could tell of that.
+    pub(super) told: f64,
     /// The best sizes, one for each direction of the candidate.
     pub(super) sizes: Vec<f64>,
     /// Their standard deviations.
@@ -42,8 +48,8 @@ pub(super) struct Screen {
 }
 
 /// Whitened innovations and their slopes, with what a hypothesis already has taken off.
-pub(super) struct Projected {
-    pub(super) tangent: Tangent,
+pub(super) struct Projected<'t> {
+    pub(super) tangent: &'t Tangent,
     /// Orthogonal basis of what is already free.
     basis: DMatrix<f64>,
     /// Rows for what is known beforehand.
@@ -52,9 +58,14 @@ pub(super) struct Projected {
     pub(super) rest: DVector<f64>,
 }
 
-impl Projected {
-    /// About a fit; `tangent` starts with the directions that are already free.
-    pub(super) fn new(tangent: Tangent, fitted: &Fitted, free: usize) -> Self {
+impl<'t> Projected<'t> {
+    /// About a fit; `tangent` starts with the directions that are already free, and some `others` are.
+    pub(super) fn new(
+        tangent: &'t Tangent,
+        fitted: &Fitted,
+        free: usize,
+        others: Range<usize>,
+    ) -> Self {
         let samples = tangent.samples.len();
         let known: Vec<(usize, f64, f64)> = (0..free)
             .filter_map(|i| {
@@ -70,9 +81,11 @@ impl Projected {
             })
             .collect();
         let rows = samples + known.len();
-        let mut own = DMatrix::zeros(rows, free);
-        own.rows_mut(0, samples)
-            .copy_from(&tangent.slopes.columns(0, free));
+        let mut own = DMatrix::zeros(rows, free + others.len());
+        for (column, slope) in (0..free).chain(others).enumerate() {
+            let slope = tangent.slopes.column(slope);
+            own.view_mut((0, column), (samples, 1)).copy_from(&slope);
+        }
         let mut rest = DVector::zeros(rows);
         for (row, (_, sample)) in tangent.samples.iter().enumerate() {
             rest[row] = sample.whitened();
@@ -136,7 +149,7 @@ fn orthogonal(columns: &DMatrix<f64>) -> DMatrix<f64> {
 impl Screen {
     /// About a fit, of all candidates that it does not have.
     pub(super) fn of(bench: &Bench<'_>, fitted: &Fitted) -> Result<Self, DiagnoseError> {
-        let setup = bench.setup(&fitted.members);
+        let setup = bench.whole_setup(&fitted.members);
         let estimation = Estimation::new(&setup, &bench.recordings)?;
         let free = moving(fitted);
         let mut directions = free.clone();
@@ -149,15 +162,28 @@ impl Screen {
             directions.extend(self::directions(bench, candidate));
             own.push((candidate, (first..directions.len()).collect()));
         }
-        let mut values = fitted.fit.values.clone();
+        let mut values = bench.carried(fitted, &estimation);
         shapes(bench, &mut values, &fitted.members);
-        let tangent = estimation.tangent(&values, &directions, None)?;
-        let projected = Projected::new(tangent, fitted, free.len());
+        let surprises = &bench.surprises;
+        let kicks = |run: usize, at: At<'_>, to: &mut [f64]| surprises.kicks(run, at.t, to);
+        let kicks = (surprises.count > 0).then_some(Shapes {
+            count: surprises.count * KICKS,
+            values: &kicks,
+        });
+        let tangent = estimation.tangent(&values, &directions, kicks)?;
+        let projected = Projected::new(&tangent, fitted, free.len(), 0..0);
+        let kicked = directions.len()..tangent.slopes.ncols();
+        let beyond = Projected::new(&tangent, fitted, free.len(), kicked);
         let mut list: Vec<Screened> = own
             .into_iter()
             .filter_map(|(candidate, columns)| {
                 let positive = positive(bench, candidate);
-                screened(&projected, candidate, &columns, &positive)
+                let mut one = screened(&projected, candidate, &columns, &positive)?;
+                let beyond = screened(&beyond, candidate, &columns, &positive);
+                let beyond = beyond.map_or(0.0, |beyond| beyond.gain);
+                one.told = (one.gain - beyond).max(0.0);
+                one.gain -= one.told;
+                Some(one)
             })
             .collect();
         list.sort_by(|a, b| b.gain.total_cmp(&a.gain));
@@ -237,7 +263,7 @@ fn positive(bench: &Bench<'_>, candidate: usize) -> Vec<bool> {
 
 /// The best step along the columns of a candidate, without those that would leave their side.
 fn screened(
-    projected: &Projected,
+    projected: &Projected<'_>,
     candidate: usize,
     columns: &[usize],
     positive: &[bool],
@@ -278,6 +304,7 @@ fn screened(
         return Some(Screened {
             candidate,
             gain: 0.5 * right.dot(&step),
+            told: 0.0,
             sizes,
             deviations,
             signature: signature / length.max(f64::MIN_POSITIVE),

@@ -143,7 +143,7 @@ impl HeldOut {
         let recording = &self.recordings[0];
         let setup = bench.setup(&fitted.members);
         let estimation = Estimation::new(&setup, &self.recordings)?;
-        let values = taken_over(fitted, &estimation)?;
+        let values = taken_over(bench, fitted, &estimation)?;
         let rows = recording.times().len();
         let mut predicted = vec![vec![f64::NAN; rows]; bench.measured.len()];
         for one in estimation.predictions(&values, 0, AHEAD, &origins(recording, POINTS))? {
@@ -157,7 +157,7 @@ impl HeldOut {
     fn deviations(&self, bench: &Bench<'_>, fitted: &Fitted) -> Result<Vec<f64>, DiagnoseError> {
         let setup = bench.setup(&fitted.members);
         let estimation = Estimation::new(&setup, &self.recordings)?;
-        let values = taken_over(fitted, &estimation)?;
+        let values = taken_over(bench, fitted, &estimation)?;
         let origins = origins(&self.recordings[0], EXPECTED_FROM);
         let mut sums = vec![(0.0, 0.0); bench.measured.len()];
         for (channel, variance) in estimation.expected_errors(&values, 0, AHEAD, &origins)? {

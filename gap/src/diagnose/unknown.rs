@@ -67,7 +67,7 @@ pub(super) fn waves(
             values: &write,
         };
         let tangent = estimation.tangent(&fitted.fit.values, &free, Some(shapes))?;
-        let projected = Projected::new(tangent, fitted, free.len());
+        let projected = Projected::new(&tangent, fitted, free.len(), 0..0);
         for (place, disturbance) in setup.disturbances.iter().enumerate() {
             let Disturbance::Force(equation) = *disturbance else {
                 continue;
@@ -152,7 +152,7 @@ impl Bench<'_> {
 }
 
 /// What two columns gain, and what they gain on each run with the coefficients of the others.
-fn gains(projected: &Projected, slopes: &DMatrix<f64>) -> Option<(f64, f64)> {
+fn gains(projected: &Projected<'_>, slopes: &DMatrix<f64>) -> Option<(f64, f64)> {
     let samples = &projected.tangent.samples;
     let runs = samples.last().map_or(0, |(run, _)| run + 1);
     let mut squares = vec![Matrix2::zeros(); runs];

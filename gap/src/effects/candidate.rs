@@ -67,6 +67,11 @@ impl Candidate {
         format!("{}@{}", self.kind, self.site)
     }
 
+    /// Whether it lets a contact slide.
+    pub(super) fn creeps(&self) -> bool {
+        self.family == Family::Constraint
+    }
+
     /// All candidates of an effect in a mechanism.
     pub(super) fn all(
         effect: &Effect,

@@ -9,7 +9,7 @@ macro_rules! files {
 }
 
 /// Files in the order in which people read the library.
-const FILES: [(&str, &str); 22] = files![
+const FILES: [(&str, &str); 24] = files![
     "viscous_friction",
     "coulomb_friction",
     "stribeck_friction",
@@ -29,6 +29,8 @@ const FILES: [(&str, &str); 22] = files![
     "actuator_delay",
     "actuator_saturation",
     "actuator_dead_zone",
+    "longitudinal_slip",
+    "lateral_slip",
     "sensor_bias",
     "sensor_scale",
     "sensor_delay",

@@ -55,6 +55,9 @@ pub struct EffectModel {
     /// The spec with all of them.
     pub spec: Spec,
     model: JitModel,
+    /// The model without contacts that creep, which is much shorter. Its parameters come first in the
+    /// whole one.
+    rolling: Option<JitModel>,
 }
 
 /// All candidates of some effects in a mechanism.
@@ -75,8 +78,26 @@ pub fn candidates(
 }
 
 impl EffectModel {
-    /// Derives the mechanism of a spec with candidates.
-    pub fn new(spec: &Spec, candidates: Vec<Candidate>) -> Result<Self, ModelError> {
+    /// Derives the mechanism of a spec with candidates, without those of contacts where the forces of
+    /// these cannot be told.
+    pub fn new(spec: &Spec, mut candidates: Vec<Candidate>) -> Result<Self, ModelError> {
+        // The last ones, so that all other parameters keep their places without them.
+        candidates.sort_by_key(Candidate::creeps);
+        let others = candidates.partition_point(|one| !one.creeps());
+        if others == candidates.len() {
+            return Self::with_all(spec, candidates);
+        }
+        let rolling = Self::with_all(spec, candidates[..others].to_vec())?;
+        Ok(match Self::with_all(spec, candidates) {
+            Ok(whole) => Self {
+                rolling: Some(rolling.model),
+                ..whole
+            },
+            Err(_) => rolling,
+        })
+    }
+
+    fn with_all(spec: &Spec, candidates: Vec<Candidate>) -> Result<Self, ModelError> {
         let text = with_candidates(&spec.text, &candidates)?;
         let wrong = |report: Report| ModelError::Spec(Box::new(report));
         let derived = derived(&spec.file, &text).map_err(wrong)?;
@@ -91,7 +112,19 @@ impl EffectModel {
                 text,
             },
             model: JitModel::new(&program)?,
+            rolling: None,
         })
+    }
+
+    /// The shortest equations that have some candidates.
+    pub fn with(&self, members: &[usize]) -> &dyn Model {
+        let creeps = members
+            .iter()
+            .any(|&member| self.candidates[member].creeps());
+        match &self.rolling {
+            Some(rolling) if !creeps => rolling,
+            _ => &self.model,
+        }
     }
 
     /// Its equations.

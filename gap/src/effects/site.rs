@@ -3,7 +3,7 @@
 
 use appell_codegen::velocities::Velocities;
 use appell_spec::expr::{Expr, ExprKind, Quantity};
-use appell_spec::mechanism::{ConstraintKind, CoordinateId, LoadKind, Mechanism};
+use appell_spec::mechanism::{Constraint, ConstraintKind, CoordinateId, LoadKind, Mechanism};
 use appell_spec::units::{Dimension, Unit};
 use num_traits::Zero;
 
@@ -22,6 +22,8 @@ pub enum SiteKind {
     RigidBody,
     /// A body that rolls.
     Wheel,
+    /// A rolling contact that does not creep yet.
+    Contact,
     /// The weight.
     Gravity,
     /// A parameter.
@@ -32,13 +34,14 @@ pub enum SiteKind {
     Channel,
 }
 
-const WORDS: [(&str, SiteKind); 10] = [
+const WORDS: [(&str, SiteKind); 11] = [
     ("coordinate", SiteKind::Coordinate),
     ("slider", SiteKind::Slider),
     ("hinge", SiteKind::Hinge),
     ("body", SiteKind::Body),
     ("rigid_body", SiteKind::RigidBody),
     ("wheel", SiteKind::Wheel),
+    ("contact", SiteKind::Contact),
     ("gravity", SiteKind::Gravity),
     ("parameter", SiteKind::Parameter),
     ("input", SiteKind::Input),
@@ -132,6 +135,7 @@ impl<'m> Sites<'m> {
                 .map(|body| self.body(body))
                 .collect(),
             SiteKind::Wheel => self.wheels(),
+            SiteKind::Contact => self.contacts(),
             SiteKind::Gravity => self.gravity().into_iter().collect(),
             SiteKind::Parameter => self
                 .scales
@@ -249,6 +253,20 @@ impl<'m> Sites<'m> {
             .into_iter()
             .filter_map(|body| self.wheel(body))
             .collect()
+    }
+
+    fn contacts(&self) -> Vec<Site> {
+        let constraints = self.mechanism.constraints.iter().enumerate();
+        let rolls =
+            |kind: &ConstraintKind| matches!(kind, ConstraintKind::Rolling { creep: None, .. });
+        let contacts = constraints.filter(|(_, constraint)| rolls(&constraint.kind));
+        let site = |(index, constraint): (usize, &Constraint)| Site {
+            name: constraint.name.clone(),
+            index,
+            words: Vec::new(),
+            placed_along: Vec::new(),
+        };
+        contacts.map(site).collect()
     }
 
     fn wheel(&self, body: usize) -> Option<Site> {

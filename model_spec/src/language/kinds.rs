@@ -39,6 +39,18 @@ pub(super) static CONSTRAINTS: &[Kind] = &[
                 Need::Optional,
                 "Coefficient of friction, which the contact force must not ask too much of.",
             ),
+            key(
+                "longitudinal_creep",
+                Form::Expression,
+                Need::Optional,
+                "Creep along the travel: velocity of sliding over velocity of travel, per force along the surface over normal force.",
+            ),
+            key(
+                "lateral_creep",
+                Form::Expression,
+                Need::Optional,
+                "The same across the travel.",
+            ),
             ABOUT,
         ],
     },

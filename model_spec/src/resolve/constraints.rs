@@ -3,7 +3,7 @@
 use crate::ast::ItemAst;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::language::{ConstraintWord, ItemKind, Target};
-use crate::mechanism::{Body, Constraint, ConstraintKind, GROUND, Normal};
+use crate::mechanism::{Body, Constraint, ConstraintKind, Creep, GROUND, Normal};
 use crate::parse::zero;
 use crate::units::Dimension;
 
@@ -15,6 +15,7 @@ use super::placement::axis;
 const PRESCRIBED: Place = Place::prescribed("the prescribed velocity");
 const DIRECTION: Place = Place::prescribed("a direction");
 const FRICTION: Place = Place::surface("a coefficient of friction");
+const CREEP: Place = Place::surface("the creep of a contact");
 const CLOSURE: Place = Place::geometry("a position constraint");
 
 impl Resolver<'_> {
@@ -46,12 +47,31 @@ impl Resolver<'_> {
         let body = self.reference(item, "body", Target::Body);
         self.needs_frame(item, "body", bodies, "roll");
         let friction = item.expression("friction").cloned();
+        let creep = self.creep(item);
         ConstraintKind::Rolling {
             body,
             contact: self.reference(item, "contact", Target::Point),
             normal: self.normal(item),
             friction: friction.map(|ast| self.expression(&ast, &FRICTION, Dim::NONE)),
+            creep,
         }
+    }
+
+    /// How a contact creeps, if it does.
+    fn creep(&mut self, item: &ItemAst) -> Option<Box<Creep>> {
+        let keys = ["longitudinal_creep", "lateral_creep"];
+        if keys.iter().all(|key| item.expression(key).is_none()) {
+            return None;
+        }
+        let [longitudinal, lateral] = keys.map(|key| {
+            let ast = item.expression(key).cloned();
+            let ast = ast.unwrap_or_else(|| zero(item.name.span.clone()));
+            self.expression(&ast, &CREEP, Dim::NONE)
+        });
+        Some(Box::new(Creep {
+            longitudinal,
+            lateral,
+        }))
     }
 
     fn normal(&mut self, item: &ItemAst) -> Option<Normal> {

@@ -12,10 +12,17 @@ use super::posterior::{Point, Posterior};
 
 /// Part of the promised gain that makes a step worth it.
 const ENOUGH: f64 = 0.05;
-/// Damping of a step that failed, relative to the curvature.
-const DAMPING: f64 = 0.1;
+/// Damping of a step after one that failed undamped, relative to the curvature: in a narrow valley the
+/// right one is small.
+const DAMPING: f64 = 1e-4;
+/// A step that fails is damped so much more.
+const MORE: f64 = 8.0;
+/// A step is damped so much less after one that kept this part of its promise.
+const LESS: (f64, f64) = (5.0, 0.5);
 /// Steps that are damped more than this move nothing, less than this are not damped.
-const DAMPED: [f64; 2] = [0.05, 1e6];
+const DAMPED: [f64; 2] = [2e-5, 1e6];
+/// So many steps that gain less together than one should have come to the end.
+const LAST: usize = 6;
 /// Change of a level's logarithm that makes no other information of it.
 const NEAR: f64 = 0.3;
 
@@ -37,9 +44,12 @@ impl Fit {
         let mut point = posterior.at(start)?;
         let mut information = levels.information(&posterior, &point)?;
         let (mut damping, mut steps) = (0.0, 0);
+        let mut gained = [f64::INFINITY; LAST];
         loop {
             let (step, gain) = posterior.step(&point, &information, damping);
-            if (0.0..=effort.gain).contains(&gain) && damping <= 0.0 {
+            let promises_little = (0.0..=effort.gain).contains(&gain);
+            let gains_little = gained.iter().sum::<f64>() < effort.gain;
+            if promises_little && (damping <= 0.0 || gains_little) {
                 return Ok(Self {
                     free: free.to_vec(),
                     at_limit: point.is_held,
@@ -65,14 +75,19 @@ impl Fit {
             };
             match next.flatten().filter(is_better) {
                 Some(next) => {
-                    point = next;
-                    information = levels.information(&posterior, &point)?;
-                    damping /= 6.0;
+                    let kept = next.objective - point.objective;
+                    gained.rotate_left(1);
+                    gained[LAST - 1] = kept;
+                    if kept > LESS.1 * gain {
+                        damping /= LESS.0;
+                    }
                     if damping < DAMPED[0] {
                         damping = 0.0;
                     }
+                    point = next;
+                    information = levels.information(&posterior, &point)?;
                 }
-                None => damping = (6.0 * damping).max(DAMPING),
+                None => damping = (MORE * damping).max(DAMPING),
             }
         }
     }

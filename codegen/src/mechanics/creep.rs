@@ -1,0 +1,271 @@
+//! Light creep of rolling contacts.
+//!
+//! A wheel of rubber or steel slides a little against the force that acts on it. In the range where
+//! sliding grows with the force, its velocity is
+//!
+//! `s = -|v| (κₗ Fₗ eₗ + κₜ Fₜ eₜ) / N`,
+//!
+//! with v the velocity of the contact along the surface, eₗ its direction and eₜ across it, F the force on
+//! the wheel and N its normal part (J. J. Kalker, *Three-Dimensional Elastic Bodies in Rolling Contact*,
+//! 1990, linear theory). The constraint rows of the contact hold s in place of zero. F is the force of
+//! pure rolling: what creep changes of it is of second order in κ.
+//!
+//! Sliding has inertia. With the velocities of sliding as further pseudo-velocities, M and m their masses,
+//! Appell's equations are `M ω̇ + m ṡ + b(q, ω, s) = Π(q, ω, s)`. The state is `w = ω + M⁻¹ m s`, and
+//!
+//! `M ẇ = Π - b + (ṁ - Ṁ M⁻¹ m) s`,
+//!
+//! which needs no ṡ. What has passed since s changed counts as if it had changed at once.
+
+use appell_spec::Code;
+use appell_spec::mechanism::{ConstraintKind, Creep, GROUND, Mechanism, PointId};
+
+use super::Derivation;
+use super::contacts::Contact;
+use super::expressions::Lowering;
+use super::finding::{Finding, Item, Outcome};
+use super::gibbs_appell::{GibbsForm, body_motions, gibbs_form};
+use super::kinematics::{Effort, Kinematics, division_by_zero};
+use super::loads::{applied_loads, generalized_forces};
+use super::motion;
+use super::time::TimeDerivative;
+use crate::symbolic::vector::{self, Vec3};
+use crate::symbolic::{Expr, Graph, Rational, Substitution};
+
+/// Below this velocity of travel, in mm/s, creep fades.
+const SLOW: i64 = 1;
+
+/// A contact that creeps.
+struct Creeping<'m> {
+    constraint: usize,
+    point: PointId,
+    creep: &'m Creep,
+    contact: Contact,
+}
+
+/// The motion with what creep changes of it.
+pub struct CreepingMotion {
+    /// M and b.
+    pub gibbs: GibbsForm,
+    /// Π.
+    pub forces: Vec<Expr>,
+    /// q̇.
+    pub coordinate_rates: Vec<Expr>,
+}
+
+/// The motion with all contacts creeping; `None` where none does.
+pub fn creeping_motion(
+    derivation: &mut Derivation,
+    mechanism: &Mechanism,
+) -> Outcome<Option<CreepingMotion>> {
+    let creeping = creeping(derivation, mechanism)?;
+    if creeping.is_empty() {
+        return Ok(None);
+    }
+    let slides = sliding(derivation, mechanism, &creeping)?;
+    let violated = derivation.velocities.violating.clone();
+    let symbols = derivation.symbols.clone();
+    let algebra = &mut derivation.algebra;
+
+    // Appell's equations of the mechanism that may slide.
+    let (free, held): (Vec<Expr>, Vec<Expr>) = violated
+        .rates
+        .iter()
+        .partition(|rate| slides.iter().any(|(own, _)| own == *rate));
+    let mut held = Substitution::by_zero(&algebra.graph, &held);
+    let zero = || vec![division_by_zero(Item::Mechanism)];
+    let rates = held.apply_all(&mut algebra.graph, &violated.coordinate_rates);
+    let rates = rates.ok_or_else(zero)?;
+    let kinematics = Kinematics::new(algebra, mechanism, &symbols, &rates, &[], Effort::Plain)?;
+    let directions = [symbols.speeds.as_slice(), &free].concat();
+    let bodies = body_motions(
+        algebra,
+        mechanism,
+        &symbols,
+        &kinematics,
+        &rates,
+        &directions,
+    )?;
+    let sliding = gibbs_form(algebra, &bodies, directions.len());
+    let loads = applied_loads(algebra, mechanism, &symbols, &kinematics, &rates)?;
+    let forces = generalized_forces(algebra, &loads, &symbols.speeds);
+
+    // m s, and what its change adds.
+    let rolling = derivation.velocities.rates.clone();
+    let time = TimeDerivative {
+        symbols: &symbols,
+        rates: &rolling,
+    };
+    let mut momenta = Vec::with_capacity(symbols.speeds.len());
+    let mut changes = Vec::with_capacity(symbols.speeds.len());
+    for row in &sliding.mass_matrix[..symbols.speeds.len()] {
+        let (mut momentum, mut change) = (Vec::new(), Vec::new());
+        for (rate, &mass) in free.iter().zip(&row[symbols.speeds.len()..]) {
+            let slide = slides
+                .iter()
+                .find(|(own, _)| own == rate)
+                .map_or(Graph::ZERO, |own| own.1);
+            momentum.push(algebra.graph.mul(mass, slide));
+            let rate = time.of(algebra, mass);
+            change.push(algebra.graph.mul(rate, slide));
+        }
+        momenta.push(algebra.graph.sum(&momentum));
+        changes.push(change);
+    }
+    let shares = per_mass(derivation, mechanism, &momenta)?;
+    let algebra = &mut derivation.algebra;
+    for (change, row) in changes.iter_mut().zip(&derivation.gibbs.mass_matrix) {
+        for (&mass, &share) in row.iter().zip(&shares) {
+            let rate = time.of(algebra, mass);
+            let part = algebra.graph.mul(rate, share);
+            change.push(algebra.graph.neg(part));
+        }
+    }
+
+    let mut actual = Substitution::of_parts(&algebra.graph, &slides);
+    for (&speed, &share) in symbols.speeds.iter().zip(&shares) {
+        let left = algebra.graph.sub(speed, share);
+        actual.replace(&algebra.graph, speed, left);
+    }
+    let graph = &mut algebra.graph;
+    let mut apply =
+        |graph: &mut Graph, exprs: &[Expr]| actual.apply_all(graph, exprs).ok_or_else(zero);
+    let bias = apply(graph, &sliding.bias[..symbols.speeds.len()])?;
+    let mut forces = apply(graph, &forces)?;
+    let coordinate_rates = apply(graph, &rates)?;
+    for (force, change) in forces.iter_mut().zip(changes) {
+        let change = graph.sum(&change);
+        *force = graph.add(*force, change);
+    }
+    Ok(Some(CreepingMotion {
+        gibbs: GibbsForm {
+            bias,
+            ..derivation.gibbs.clone()
+        },
+        forces,
+        coordinate_rates,
+    }))
+}
+
+/// The rate at which each row of a creeping contact is violated: its symbol and its value.
+fn sliding(
+    derivation: &mut Derivation,
+    mechanism: &Mechanism,
+    creeping: &[Creeping<'_>],
+) -> Outcome<Vec<(Expr, Expr)>> {
+    let forces = derivation.reactions(mechanism)?;
+    let mut sliding = Vec::new();
+    for one in creeping {
+        let slides = one.slides(derivation, forces[one.contact.place])?;
+        let rates = &derivation.velocities.violating.rates;
+        for (row, &rate) in derivation.constraints.rows.iter().zip(rates) {
+            if row.constraint == one.constraint && !row.is_embedded() {
+                let graph = &mut derivation.algebra.graph;
+                sliding.push((rate, graph.dot(row.reaction.direction, slides)));
+            }
+        }
+    }
+    Ok(sliding)
+}
+
+/// The contacts that creep.
+fn creeping<'m>(derivation: &Derivation, mechanism: &'m Mechanism) -> Outcome<Vec<Creeping<'m>>> {
+    let mut creeping = Vec::new();
+    for (constraint, item) in mechanism.constraints.iter().enumerate() {
+        let ConstraintKind::Rolling {
+            contact: point,
+            creep: Some(creep),
+            ..
+        } = &item.kind
+        else {
+            continue;
+        };
+        let mut contacts = derivation.contacts.iter();
+        let contact = contacts
+            .find(|contact| contact.constraint == constraint)
+            .filter(|_| derivation.dependent.values.is_empty())
+            .ok_or_else(|| vec![not_judged(&item.name, constraint)])?;
+        creeping.push(Creeping {
+            constraint,
+            point: *point,
+            creep,
+            contact: contact.clone(),
+        });
+    }
+    Ok(creeping)
+}
+
+impl Creeping<'_> {
+    /// Velocity of sliding, in the ground.
+    fn slides(&self, derivation: &mut Derivation, force: Vec3) -> Outcome<Vec3> {
+        let lowering = Lowering {
+            symbols: &derivation.symbols,
+            rates: &derivation.velocities.rates,
+        };
+        let graph = &mut derivation.algebra.graph;
+        let mut lowered = |expr| {
+            let value = lowering.lower(graph, expr);
+            value.map_err(|_| vec![division_by_zero(Item::Constraint(self.constraint))])
+        };
+        let longitudinal = lowered(&self.creep.longitudinal)?;
+        let lateral = lowered(&self.creep.lateral)?;
+        let travel = derivation.kinematics.velocity(self.point);
+        let travel = derivation.kinematics.frames.express(graph, travel, GROUND);
+        let across = graph.cross(self.contact.normal, travel);
+        let square = graph.dot(travel, travel);
+        let slow = graph.number(Rational::new(SLOW * SLOW, 1_000_000));
+        let square = graph.add(square, slow);
+        let speed = graph.sqrt(square);
+        let normal = graph.dot(force, self.contact.normal);
+        let divisor = graph.mul(normal, speed);
+        let mut slides = vector::ZERO;
+        for (kappa, direction) in [(longitudinal, travel), (lateral, across)] {
+            let along = graph.dot(force, direction);
+            let along = graph.mul(kappa, along);
+            let along = graph.div(along, divisor);
+            let part = graph.scale3(along, direction);
+            slides = graph.sub3(slides, part);
+        }
+        Ok(slides)
+    }
+}
+
+/// M⁻¹ times a list.
+fn per_mass(
+    derivation: &mut Derivation,
+    mechanism: &Mechanism,
+    momenta: &[Expr],
+) -> Outcome<Vec<Expr>> {
+    let algebra = &mut derivation.algebra;
+    // Solved for symbols, so that nothing of it is called an acceleration.
+    let kicks: Vec<Expr> = (0..momenta.len())
+        .map(|i| algebra.graph.symbol(&format!("kick_{i}")))
+        .collect();
+    let without_bias = GibbsForm {
+        bias: vec![Graph::ZERO; momenta.len()],
+        ..derivation.gibbs.clone()
+    };
+    let solved = motion::solve(algebra, mechanism, &without_bias, &kicks, &[], true)?;
+    let mut all = Vec::with_capacity(momenta.len());
+    for &solved in &solved.accelerations {
+        let mut parts = Vec::with_capacity(momenta.len());
+        for (&kick, &momentum) in kicks.iter().zip(momenta) {
+            let mobility = algebra.derivative(solved, kick);
+            parts.push(algebra.graph.mul(mobility, momentum));
+        }
+        all.push(algebra.graph.sum(&parts));
+    }
+    Ok(all)
+}
+
+fn not_judged(name: &str, constraint: usize) -> Finding {
+    Finding {
+        code: Code::CreepNotJudged,
+        message: format!("the creep of `{name}` cannot be told: its forces are not known"),
+        item: Item::Constraint(constraint),
+        help:
+            "creep needs the normal of the surface, a reaction that belongs to this contact alone, \
+               and pseudo-velocities that formulas solve"
+                .to_owned(),
+    }
+}

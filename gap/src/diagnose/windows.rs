@@ -54,8 +54,9 @@ fn gains(bench: &Bench<'_>, nominal: &Fitted, best: &Fitted) -> Result<Vec<Gain>
     for (place, fitted) in [nominal, best].into_iter().enumerate() {
         let setup = bench.setup(&fitted.members);
         let estimation = Estimation::new(&setup, &bench.recordings)?;
-        let samples = estimation.tangent(&fitted.fit.values, &[], None)?.samples;
-        for (run, sample) in samples {
+        let runs = estimation.innovations(&fitted.fit.values)?;
+        let samples = runs.iter().enumerate();
+        for (run, sample) in samples.flat_map(|(run, all)| all.iter().map(move |one| (run, one))) {
             let row = rows
                 .entry((run, sample.row))
                 .or_insert((sample.t, [0.0; 2]));

@@ -138,3 +138,49 @@ fn rest(regressors: &DMatrix<f64>, values: &DVector<f64>) -> Option<DVector<f64>
     let solution = squares.cholesky()?.solve(&scaled.tr_mul(values));
     Some(values - scaled * solution)
 }
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "tests may panic")]
+mod tests {
+    use super::*;
+
+    /// Uniform numbers of variance 1, the same in every run.
+    fn noise(seed: &mut u64) -> f64 {
+        *seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+        ((*seed >> 11) as f64 / (1_u64 << 53) as f64 - 0.5) * 12.0_f64.sqrt()
+    }
+
+    /// A mass that a command pushes, seen with noise: the command is a sum of sines, or it knows the
+    /// position.
+    fn recording(follows: bool) -> Recording {
+        let (mut seed, h) = (7, 0.01);
+        let (mut x, mut v) = (0.3, 0.0);
+        let (mut times, mut inputs, mut measured) = (Vec::new(), Vec::new(), Vec::new());
+        for row in 0..800 {
+            let t = f64::from(row) * h;
+            let u = if follows {
+                -40.0 * x - 4.0 * v
+            } else {
+                (3.0 * t).sin() + (7.3 * t).cos()
+            };
+            times.push(t);
+            inputs.push(u);
+            measured.push(x + 1e-3 * noise(&mut seed));
+            v += h * (u + 3.0 * noise(&mut seed));
+            x += h * v;
+        }
+        Recording::new(times, inputs, measured).unwrap()
+    }
+
+    #[test]
+    fn a_command_that_knows_the_motion_is_told_from_one_that_does_not() {
+        assert_eq!(Surprises::of(&[recording(false)]).count, 0);
+        let told = Surprises::of(&[recording(true)]);
+        assert_eq!(told.count, 1);
+        let mut kicks = [f64::NAN; KICKS];
+        told.kicks(0, 5.005, &mut kicks);
+        assert!(kicks.iter().all(|kick| kick.is_finite() && *kick != 0.0));
+        told.kicks(0, -1.0, &mut kicks);
+        assert_eq!(kicks, [0.0; KICKS]);
+    }
+}

@@ -11,7 +11,8 @@ use crate::mechanics::frames::FrameVector;
 use crate::mechanics::kinematics::{Effort, Kinematics};
 use crate::mechanics::seed;
 use crate::mechanics::symbols::Symbols;
-use crate::symbolic::{Expr, Function, Graph, Node, Rational, Relation};
+use crate::schedule::piece::method;
+use crate::symbolic::{Expr, Graph, Node, Rational, Relation};
 
 /// Components in the ground.
 pub type Components = [String; 3];
@@ -91,7 +92,7 @@ fn written(graph: &Graph, symbols: &Symbols, mechanism: &Mechanism, expr: Expr) 
             }
             format!("({text})")
         }
-        Node::Function(function, argument) => format!("{}({})", word(*function), of(*argument)),
+        Node::Function(function, argument) => format!("{}({})", method(*function), of(*argument)),
         Node::Atan2(y, x) => format!("atan2({}, {})", of(*y), of(*x)),
         Node::Power(base, exponent) => format!("({})^({})", of(*base), of(*exponent)),
         Node::Choice {
@@ -118,22 +119,4 @@ fn written(graph: &Graph, symbols: &Symbols, mechanism: &Mechanism, expr: Expr) 
 fn literal(number: &Rational) -> String {
     let exact = number.to_big();
     format!("({exact})")
-}
-
-fn word(function: Function) -> &'static str {
-    match function {
-        Function::Sin => "sin",
-        Function::Cos => "cos",
-        Function::Asin => "asin",
-        Function::Acos => "acos",
-        Function::Atan => "atan",
-        Function::Sinh => "sinh",
-        Function::Cosh => "cosh",
-        Function::Tanh => "tanh",
-        Function::Exp => "exp",
-        Function::Ln => "ln",
-        Function::Sqrt => "sqrt",
-        Function::Abs => "abs",
-        Function::Sign => "sign",
-    }
 }

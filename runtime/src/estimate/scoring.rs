@@ -21,6 +21,8 @@ const MORE: f64 = 8.0;
 const LESS: (f64, f64) = (5.0, 0.5);
 /// Steps that are damped more than this move nothing, less than this are not damped.
 const DAMPED: [f64; 2] = [2e-5, 1e6];
+/// A place from which no step leads on may promise so many times what a step is worth.
+const FLAT: f64 = 10.0;
 /// So many steps that gain less together than one should have come to the end.
 const LAST: usize = 6;
 /// Change of a level's logarithm that makes no other information of it.
@@ -49,7 +51,13 @@ impl Fit {
             let (step, gain) = posterior.step(&point, &information, damping);
             let promises_little = (0.0..=effort.gain).contains(&gain);
             let gains_little = gained.iter().sum::<f64>() < effort.gain;
-            if promises_little && (damping <= 0.0 || gains_little) {
+            let ends = steps >= effort.steps || damping > DAMPED[1];
+            // Where no step helps, the place is good if little was promised at all.
+            let is_flat = || {
+                let (_, promised) = posterior.step(&point, &information, DAMPING);
+                (0.0..=FLAT * effort.gain).contains(&promised)
+            };
+            if promises_little && (damping <= 0.0 || gains_little) || ends && is_flat() {
                 return Ok(Self {
                     free: free.to_vec(),
                     at_limit: point.is_held,
@@ -63,7 +71,7 @@ impl Fit {
                     steps,
                 });
             }
-            if steps >= effort.steps || damping > DAMPED[1] {
+            if ends {
                 let slope = point.gradient.amax();
                 return Err(EstimateError::Stuck { steps, slope });
             }

@@ -181,6 +181,6 @@ mod tests {
         told.kicks(0, 5.005, &mut kicks);
         assert!(kicks.iter().all(|kick| kick.is_finite() && *kick != 0.0));
         told.kicks(0, -1.0, &mut kicks);
-        assert_eq!(kicks, [0.0; KICKS]);
+        assert!(kicks.iter().all(|kick| kick.abs() < f64::MIN_POSITIVE));
     }
 }

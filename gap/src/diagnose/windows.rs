@@ -24,7 +24,7 @@ const CELLS: usize = 12;
 const STANDS_OUT: f64 = 4.0;
 
 /// What a row gains in log-likelihood by the best hypothesis.
-struct Row {
+struct Sample {
     run: usize,
     row: usize,
     t: f64,
@@ -49,7 +49,7 @@ pub(super) fn tell(
     Ok(())
 }
 
-fn gains(bench: &Bench<'_>, nominal: &Fitted, best: &Fitted) -> Result<Vec<Row>, DiagnoseError> {
+fn gains(bench: &Bench<'_>, nominal: &Fitted, best: &Fitted) -> Result<Vec<Sample>, DiagnoseError> {
     let mut rows: BTreeMap<(usize, usize), (f64, [f64; 2])> = BTreeMap::new();
     for (place, fitted) in [nominal, best].into_iter().enumerate() {
         let setup = bench.setup(&fitted.members);
@@ -65,7 +65,7 @@ fn gains(bench: &Bench<'_>, nominal: &Fitted, best: &Fitted) -> Result<Vec<Row>,
     }
     Ok(rows
         .into_iter()
-        .map(|((run, row), (t, [nominal, best]))| Row {
+        .map(|((run, row), (t, [nominal, best]))| Sample {
             run,
             row,
             t,
@@ -75,7 +75,7 @@ fn gains(bench: &Bench<'_>, nominal: &Fitted, best: &Fitted) -> Result<Vec<Row>,
 }
 
 /// Windows that gain more than chance gives, the largest first.
-fn windows(bench: &Bench<'_>, gains: &[Row], equation: &str) -> Vec<Window> {
+fn windows(bench: &Bench<'_>, gains: &[Sample], equation: &str) -> Vec<Window> {
     let mut sums: BTreeMap<(usize, u64), f64> = BTreeMap::new();
     let start = |run: usize| bench.recordings[run].times()[0];
     for one in gains {
@@ -122,7 +122,7 @@ fn windows(bench: &Bench<'_>, gains: &[Row], equation: &str) -> Vec<Window> {
 fn region(
     bench: &Bench<'_>,
     best: &Fitted,
-    gains: &[Row],
+    gains: &[Sample],
 ) -> Result<Option<Region>, DiagnoseError> {
     let setup = bench.setup(&best.members);
     let estimation = Estimation::new(&setup, &bench.recordings)?;

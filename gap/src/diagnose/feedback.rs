@@ -14,6 +14,8 @@ const LAGS: usize = 4;
 const SEEN: usize = 2;
 /// Kicks that follow a surprise.
 pub(super) const KICKS: usize = 2;
+/// Surprises that are smaller than this part of the input tell nothing.
+const FORETOLD: f64 = 1e-3;
 /// An input follows the motion where the measurements foretell more of it than chance would in one of
 /// so many recordings; the logarithm of the ratio of likelihoods beyond one for each regressor.
 const SURE: f64 = 7.0;
@@ -106,10 +108,11 @@ fn surprise(recordings: &[Recording], input: usize) -> Option<Vec<Vec<f64>>> {
     let with_motion = rest(&regressors.columns(0, own + then).into_owned(), &command)?;
     let (before, after) = (alone.norm_squared(), with_motion.norm_squared());
     let ratio = 0.5 * rows.len() as f64 * (before / after.max(f64::MIN_POSITIVE)).ln();
-    if ratio - (then as f64) < SURE {
+    let rest = rest(&regressors, &command)?;
+    let is_foretold = rest.norm() < FORETOLD * command.norm();
+    if is_foretold || ratio - (then as f64) < SURE {
         return None;
     }
-    let rest = rest(&regressors, &command)?;
     let mut all: Vec<Vec<f64>> = recordings
         .iter()
         .map(|run| vec![0.0; run.times().len()])

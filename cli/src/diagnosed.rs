@@ -30,6 +30,7 @@ pub(crate) fn failure(error: DiagnoseError) -> Failure {
         DiagnoseError::NothingMeasured
         | DiagnoseError::LacksChannel { .. }
         | DiagnoseError::NothingToFit
+        | DiagnoseError::TooLong { .. }
         | DiagnoseError::Model(ModelError::Effect(_) | ModelError::Edit(_)) => {
             Failure::Data(error.to_string())
         }

@@ -71,6 +71,13 @@ pub(crate) fn text(set: &DataSet) -> String {
     text
 }
 
+/// What of the recordings changes what can be concluded, a sentence each.
+pub(crate) fn warnings(set: &DataSet) -> Vec<String> {
+    let findings = set.findings.iter();
+    let grave = findings.filter(|finding| finding.kind.severity() == Severity::Warning);
+    grave.map(sentence).collect()
+}
+
 fn runs(set: &DataSet) -> String {
     let heading = ["run", "for", "rows", "seconds", "step in ms", "gaps"];
     let mut rows = vec![heading.map(str::to_owned).to_vec()];

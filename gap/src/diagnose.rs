@@ -85,7 +85,7 @@ pub fn diagnose(
     let model = EffectModel::new(&set.spec, all)?;
     let bench = Bench::new(&fitted, &model)?;
     stage("fitting the nominal model");
-    let nominal = bench.nominal()?;
+    let nominal = bench.nominal().map_err(DiagnoseError::of_nominal)?;
     stage("screening the effects");
     let screen = Screen::of(&bench, &nominal)?;
     stage("fitting the effects that remain");

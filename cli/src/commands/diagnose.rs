@@ -89,19 +89,26 @@ impl Diagnose {
         let report = diagnose::diagnose(&set, &library, &options, stage);
         spinner.finish_and_clear();
         let report = report.map_err(diagnosed::failure)?;
+        let warnings = recording::warnings(&set);
         let next = report.experiment.as_ref().zip(self.next());
         if let Some((experiment, path)) = &next {
             files::write(path, &diagnosed::csv(&set, experiment))?;
         }
         let next = next.map(|(_, path)| path);
         if let Some(path) = &self.json {
-            files::write_json(path, &diagnosed::json(&report, next.as_deref()))?;
+            let mut json = diagnosed::json(&report, next.as_deref());
+            json["data"] = warnings.clone().into();
+            files::write_json(path, &json)?;
         }
         if let Some(path) = &self.html {
             files::write(path, &diagnosed::page(&set, &report))?;
         }
         let outputs = [&self.json, &self.html, &next];
-        files::print_beside(&diagnosed::text(&report, next.as_deref()), &outputs)
+        let mut text = diagnosed::text(&report, next.as_deref());
+        for warning in &warnings {
+            text.extend(["  data      ", warning, "\n"]);
+        }
+        files::print_beside(&text, &outputs)
     }
 
     /// Where the next experiment goes: beside the gap report, if that is a file.

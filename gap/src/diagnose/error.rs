@@ -16,6 +16,17 @@ pub enum DiagnoseError {
     /// All runs are held out.
     #[error("no run may be fitted; name one in `fit` of `[runs]`")]
     NothingToFit,
+    /// Recordings with more rows than a diagnosis takes.
+    #[error(
+        "the runs to fit have {rows} rows, and a diagnosis takes {most} at most; name fewer runs in \
+         `fit`, or keep every n-th row"
+    )]
+    TooLong {
+        /// How many there are.
+        rows: usize,
+        /// How many may be.
+        most: usize,
+    },
     /// Recordings that do not fit an alternative.
     #[error(transparent)]
     Data(#[from] crate::data::DataError),
@@ -33,10 +44,27 @@ pub enum DiagnoseError {
     /// A mechanism with effects that has no equations.
     #[error(transparent)]
     Model(#[from] ModelError),
+    /// The model is too far from the recordings for a search to begin.
+    #[error(
+        "the model as it is cannot be fitted to these recordings: {0}; a wrong unit or sign, a channel \
+         that never changes, another mechanism or tolerances that are far too small look like this; \
+         `appell recording` tells what the columns hold, and a wider `std` lets parameters move"
+    )]
+    Nominal(EstimateError),
     /// A filter or a fit that failed.
     #[error(transparent)]
     Estimate(#[from] EstimateError),
     /// A start that cannot be found.
     #[error(transparent)]
     Start(#[from] crate::identify::IdentifyError),
+}
+
+impl DiagnoseError {
+    /// Where the nominal model itself cannot be fitted.
+    pub(super) fn of_nominal(error: Self) -> Self {
+        match error {
+            Self::Estimate(error) => Self::Nominal(error),
+            other => other,
+        }
+    }
 }

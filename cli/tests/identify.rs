@@ -4,7 +4,7 @@ mod support;
 
 use std::fmt::Write as _;
 
-use support::Folder;
+use support::{Folder, Noise};
 
 const DESCRIPTION: &str = r#"
 mechanism   = "pendulum"
@@ -20,23 +20,6 @@ tau   = { input = "tau", unit = "N m" }
 fit  = ["a.csv", "b.csv"]
 test = ["c.csv"]
 "#;
-
-/// Noise of variance 1: the sum of twelve uniform numbers (P. L'Ecuyer's 64-bit congruences).
-struct Noise(u64);
-
-impl Noise {
-    fn uniform(&mut self) -> f64 {
-        self.0 = self
-            .0
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 11) as f64 / (1_u64 << 53) as f64
-    }
-
-    fn next(&mut self) -> f64 {
-        (0..12).map(|_| self.uniform()).sum::<f64>() - 6.0
-    }
-}
 
 /// A pendulum of l = 0.53 m and I = 0.03 kg m², driven by held torques, seen with noise of 0.1°.
 fn rig(folder: &Folder, name: &str, start: &str, noise: &mut Noise) {

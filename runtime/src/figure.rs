@@ -319,6 +319,22 @@ struct Area {
 }
 
 impl Area {
+    /// Numbers and the label below.
+    fn name_x(&self, svg: &mut String, axis: &Axis, label: &str) {
+        let bottom = self.top + self.height;
+        for tick in axis.ticks(8) {
+            let x = LEFT + self.width * axis.part(tick);
+            let label = number(tick, axis.step(8));
+            let middle = "text-anchor=\"middle\"";
+            put(svg, &text(x, bottom + 16.0, middle, &label));
+        }
+        let x = LEFT + self.width / 2.0;
+        put(
+            svg,
+            &text(x, bottom + 35.0, "text-anchor=\"middle\"", label),
+        );
+    }
+
     fn grid(&self, svg: &mut String, x_axis: &Axis, y_axis: &Axis) {
         let mut grid = String::new();
         for tick in x_axis.ticks(8) {

@@ -3,7 +3,7 @@
 
 use std::fmt::Write as _;
 
-use super::support::Folder;
+use super::support::{Folder, Noise};
 
 const DESCRIPTION: &str = r#"
 mechanism   = "carriage"
@@ -22,23 +22,6 @@ test = ["c.csv"]
 const ROWS: u32 = 800;
 /// Steps of the simulation in a row.
 const STEPS: u32 = 10;
-
-/// Noise of variance 1: the sum of twelve uniform numbers (P. L'Ecuyer's 64-bit congruences).
-struct Noise(u64);
-
-impl Noise {
-    fn uniform(&mut self) -> f64 {
-        self.0 = self
-            .0
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 11) as f64 / (1_u64 << 53) as f64
-    }
-
-    fn next(&mut self) -> f64 {
-        (0..12).map(|_| self.uniform()).sum::<f64>() - 6.0
-    }
-}
 
 /// A recording under forces that are held for 10 ms, with noise of 1 mm. `friction` is a force by
 /// velocity.

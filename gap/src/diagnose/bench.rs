@@ -214,6 +214,26 @@ impl<'a> Bench<'a> {
         self.fit(&[], &estimation, &self.problem.start)
     }
 
+    /// The parameters of a fit without what its members do.
+    pub(super) fn without(&self, fitted: &Fitted) -> Vec<f64> {
+        let info = self.effects.with(&fitted.members).info();
+        let mut plain = fitted.fit.values[..info.parameter_len()].to_vec();
+        for &member in &fitted.members {
+            let candidate = self.candidate(member);
+            for (index, part) in self.own(candidate) {
+                if part != Role::Shape {
+                    plain[index] = 0.0;
+                }
+            }
+            if let (Acts::Parameter(_), Some(index)) =
+                (candidate.acts, info.parameter_index(&candidate.site))
+            {
+                plain[index] = self.set.parameters[index].value;
+            }
+        }
+        plain
+    }
+
     /// Values of a hypothesis for another filter: what both have is taken over.
     pub(super) fn carried(&self, from: &Fitted, to: &Estimation<'_>) -> Vec<f64> {
         let mut values = to.nominal();

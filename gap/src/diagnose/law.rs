@@ -10,9 +10,7 @@ use appell_runtime::model::{At, Model};
 use super::DiagnoseError;
 use super::bench::Bench;
 use super::compare::Comparison;
-use super::hypothesis::Fitted;
 use super::report::Where;
-use crate::effects::{Acts, Part};
 
 /// Most steps that are looked at.
 const STEPS: usize = 6000;
@@ -108,7 +106,7 @@ fn steps(
     let stride = rows.div_ceil(STEPS).max(1);
     let model = bench.effects.with(&best.members);
     let with = &best.fit.values[..model.info().parameter_len()];
-    let without = without(bench, best);
+    let without = bench.without(best);
     let mut steps = Vec::new();
     for (index, recording) in bench.recordings.iter().enumerate() {
         let states = estimation.smoothed(&nominal.fit.values, index)?;
@@ -204,26 +202,6 @@ impl<'s> Forces<'s> {
         };
         (0..speeds).map(row).collect()
     }
-}
-
-/// The parameters of a fit without what its members do.
-fn without(bench: &Bench<'_>, fitted: &Fitted) -> Vec<f64> {
-    let info = bench.effects.with(&fitted.members).info();
-    let mut plain = fitted.fit.values[..info.parameter_len()].to_vec();
-    for &member in &fitted.members {
-        let candidate = bench.candidate(member);
-        for (index, part) in bench.own(candidate) {
-            if part != Part::Shape {
-                plain[index] = 0.0;
-            }
-        }
-        if let (Acts::Parameter(_), Some(index)) =
-            (candidate.acts, info.parameter_index(&candidate.site))
-        {
-            plain[index] = bench.set.parameters[index].value;
-        }
-    }
-    plain
 }
 
 /// The steps in order of a variable, cut into parts with as many steps each.

@@ -11,7 +11,7 @@ use super::DiagnoseError;
 use super::bench::Bench;
 use super::compare::Comparison;
 use super::report::{ShareOf, Where};
-use crate::effects::{Acts, Part};
+use crate::effects::Acts;
 
 /// Places along the recordings.
 const PLACES: usize = 400;
@@ -35,19 +35,7 @@ pub(super) fn place(bench: &Bench<'_>, comparison: &Comparison) -> Result<Where,
     let mut count = 0.0_f64;
     let (mut mass, mut bias, mut forces) = (vec![0.0; s * s], vec![0.0; s], vec![0.0; s]);
     let (mut rates, mut a, mut b) = (vec![0.0; n], vec![0.0; n * n], vec![0.0; n * m]);
-    let mut plain = p.to_vec();
-    for &member in &best.members {
-        for (index, part) in bench.own(bench.candidate(member)) {
-            if part != Part::Shape {
-                plain[index] = 0.0;
-            }
-        }
-        if matches!(bench.candidate(member).acts, Acts::Parameter(_))
-            && let Some(index) = info.parameter_index(&bench.candidate(member).site)
-        {
-            plain[index] = bench.set.parameters[index].value;
-        }
-    }
+    let plain = bench.without(best);
     for run in 0..bench.recordings.len() {
         let recording = &bench.recordings[run];
         let states = estimation.smoothed(values, run)?;

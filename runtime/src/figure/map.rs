@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use super::axis::{Axis, number};
+use super::axis::Axis;
 use super::{
     Area, FOOTER_HEIGHT, HEADER_HEIGHT, LEFT, RIGHT, STYLE, Series, TITLE_HEIGHT, WIDTH, put, text,
 };
@@ -147,25 +147,7 @@ impl Map {
             put(&mut svg, &curve.stroke.element(&line));
         }
         put(&mut svg, "</svg>");
-        let bottom = area.top + HEIGHT;
-        for tick in x_axis.ticks(8) {
-            let x = LEFT + area.width * x_axis.part(tick);
-            let label = number(tick, x_axis.step(8));
-            put(
-                &mut svg,
-                &text(x, bottom + 16.0, "text-anchor=\"middle\"", &label),
-            );
-        }
-        let middle = LEFT + area.width / 2.0;
-        put(
-            &mut svg,
-            &text(
-                middle,
-                bottom + 35.0,
-                "text-anchor=\"middle\"",
-                &self.labels[0],
-            ),
-        );
+        area.name_x(&mut svg, &x_axis, &self.labels[0]);
         let (x, y) = (18.0, area.top + HEIGHT / 2.0);
         let turned = format!("text-anchor=\"middle\" transform=\"rotate(-90 {x} {y})\"");
         put(&mut svg, &text(x, y, &turned, &self.labels[1]));

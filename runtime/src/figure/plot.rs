@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use super::axis::{Axis, number};
+use super::axis::Axis;
 use super::{
     Area, CHARACTER, FOOTER_HEIGHT, HEADER_HEIGHT, LEFT, RIGHT, STYLE, Series, WIDTH, put, text,
 };
@@ -78,24 +78,7 @@ impl Plot {
                 right += 23.0 + CHARACTER * layer.series.label.chars().count() as f64 + 16.0;
             }
         }
-        for tick in x_axis.ticks(8) {
-            let x = LEFT + area.width * x_axis.part(tick);
-            let label = number(tick, x_axis.step(8));
-            put(
-                &mut svg,
-                &text(x, bottom + 16.0, "text-anchor=\"middle\"", &label),
-            );
-        }
-        let middle = LEFT + area.width / 2.0;
-        put(
-            &mut svg,
-            &text(
-                middle,
-                bottom + 35.0,
-                "text-anchor=\"middle\"",
-                &self.labels[0],
-            ),
-        );
+        area.name_x(&mut svg, &x_axis, &self.labels[0]);
         svg + "</svg>\n"
     }
 }

@@ -10,6 +10,8 @@ pub const MAX_LINE: usize = 1 << 16;
 pub const MAX_RUNS: usize = 1024;
 /// Fewest rows of a run: fewer tell neither a rate nor a noise level.
 pub const MIN_ROWS: usize = 8;
+/// Largest measurement or input, in SI: larger ones are no numbers of a rig.
+pub const MAX_VALUE: f64 = 1e30;
 /// Most rows out of order, as a part of all, that are left out; with more the clock is wrong.
 pub const MAX_LEFT_OUT: f64 = 0.05;
 /// Most mistakes told for one file.

@@ -7,7 +7,7 @@ use appell_spec::{closest, shown};
 use super::channel::Channel;
 use super::clock::Clock;
 use super::finding::{counted, listed};
-use super::limits::{MAX_BYTES, MAX_NUMBERS, MIN_ROWS};
+use super::limits::{MAX_BYTES, MAX_NUMBERS, MAX_VALUE, MIN_ROWS};
 use super::{DataError, Finding, FindingKind, c3d, csv};
 
 /// The column of the times.
@@ -206,6 +206,16 @@ pub(super) fn checked(
     for (channel, values) in channels.iter().zip(&columns) {
         if values.iter().all(|value| value.is_nan()) {
             let message = format!("the column `{}` holds no value", channel.column);
+            return Err(DataError::whole(file, message));
+        }
+        if let Some(row) = values.iter().position(|value| value.abs() > MAX_VALUE) {
+            let message = format!(
+                "the column `{}` holds {:e} at t = {} s, which no rig measures; leave the cell empty \
+                 where nothing was measured",
+                channel.column,
+                channel.unit.from_si(values[row]),
+                times[row]
+            );
             return Err(DataError::whole(file, message));
         }
     }

@@ -263,6 +263,13 @@ pub(crate) fn json(report: &Report, next: Option<&Path>) -> Value {
         "how_far": far,
         "experiment": experiment,
         "detectable": detectable.collect::<Vec<_>>(),
+        "left": report.left.as_ref().map(|left| json!({
+            "place": left.place,
+            "variable": left.variable,
+            "log_bayes_factor": left.log_bayes_factor,
+            "gain": left.gain,
+            "explained": left.explained,
+        })),
         "failed": failed.collect::<Vec<_>>(),
         "disturbances": disturbances.collect::<Vec<_>>(),
     })

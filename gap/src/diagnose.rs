@@ -21,6 +21,7 @@
 
 mod alternative;
 mod bench;
+mod calibration;
 mod changes;
 mod compare;
 mod error;
@@ -46,7 +47,7 @@ pub use error::DiagnoseError;
 pub use experiment::{Experiment, Limit};
 pub use law::Law;
 pub use report::{
-    Detectable, Found, HowFar, Hypothesis, Pictures, Region, Report, ShareOf, Value, Verdict,
+    Detectable, Found, HowFar, Hypothesis, Left, Pictures, Region, Report, ShareOf, Value, Verdict,
     Where, Window,
 };
 pub use traces::{AHEAD, Ahead, Trace};

@@ -9,10 +9,10 @@ use appell_runtime::estimate::{Estimation, Unknown};
 
 use super::DiagnoseError;
 use super::bench::{Bench, WRONG};
-use super::evidence::LARGEST_LOG_SIZE;
+use super::calibration::{Rest, tempered, unlisted_beside_an_effect, unlisted_beside_nothing};
 use super::hypothesis::Fitted;
 use super::screen::{Screen, Screened};
-use super::unknown::{Wave, waves};
+use super::unknown::{Leftover, leftover};
 use crate::effects::{Acts, Candidate, Part};
 
 /// Candidates that are fitted alone.
@@ -31,14 +31,6 @@ pub(super) const TIED: f64 = 3.0;
 const NO_GAP: f64 = 0.5;
 /// Probability beforehand that an effect does not come alone.
 const NOT_ALONE: f64 = 0.2;
-/// Probability beforehand that a gap comes from nothing in the library.
-const UNKNOWN: f64 = 0.1;
-/// Part of its gain that a wave has to repeat on runs that it was not found in.
-const REPEATED: f64 = 0.5;
-/// Part of what the best hypothesis explains that a wave has to gain.
-const MATTERS: f64 = 0.3;
-/// Odds beyond this are certainty.
-const MOST_LOG_ODDS: f64 = 50.0;
 /// Why a fit does not count.
 const NO_EVIDENCE: &str = "its parameters cannot be told from each other";
 /// Signatures that are this much alike are those of one effect in two guises.
@@ -53,8 +45,8 @@ pub(super) struct Comparison {
     pub(super) failed: Vec<(Vec<usize>, String)>,
     /// Probability that nothing in the library explains the gap.
     pub(super) unknown: f64,
-    /// The force that nobody has named and that would gain most.
-    pub(super) wave: Option<Wave>,
+    /// What the best hypothesis leaves.
+    pub(super) left: Option<Leftover>,
     /// Place of the nominal model among the fits.
     pub(super) nominal: usize,
 }
@@ -70,24 +62,38 @@ impl Comparison {
         &self.fits[0].0
     }
 
-    /// Gives its probability to the hypothesis that nothing in the library explains the gap: that
-    /// the best hypothesis leaves a wave, which counts as two further sizes and one of all waves. A
-    /// wave that is small beside what the best hypothesis explains is a matter of its law.
+    /// What the most probable hypothesis gains over the nominal model, whose parameters may strain
+    /// to imitate it.
+    pub(super) fn explained(&self) -> f64 {
+        let [best, nominal] = [self.best(), self.nominal()].map(|own| own.evidence);
+        (best.log_likelihood - nominal.log_likelihood).max(best.log() - nominal.log())
+    }
+
+    /// Gives its probability to the hypothesis that nothing in the library explains the gap.
     pub(super) fn weigh_unknown(&mut self, bench: &Bench<'_>) -> Result<(), DiagnoseError> {
-        let best = self.best();
-        let (waves, tried) = waves(bench, best)?;
-        let repeats = |wave: &Wave| wave.predicted > REPEATED * wave.gain;
-        let Some(wave) = waves.into_iter().find(repeats) else {
-            return Ok(());
+        self.left = leftover(bench, self.best())?;
+        let (gain, explained) = (
+            self.left.as_ref().map_or(0.0, |l| l.first.gain),
+            self.explained(),
+        );
+        let rest = Rest {
+            log_bayes_factor: (self.left.as_ref())
+                .map_or(f64::NEG_INFINITY, |left| left.log_bayes_factor),
+            share: gain / (gain + explained.max(0.0)).max(f64::MIN_POSITIVE),
         };
-        let explained = best.evidence.log_likelihood - self.nominal().evidence.log_likelihood;
-        if wave.gain > MATTERS * explained {
-            let occam = 2.0 * wave_occam(wave.gain) + (tried.max(1) as f64).ln();
-            let log = wave.gain - occam + UNKNOWN.ln();
-            let odds = log.min(MOST_LOG_ODDS).exp() * self.fits[0].1;
-            self.unknown = odds / (1.0 + odds);
-        }
-        self.wave = Some(wave);
+        let members = self.best().members.len();
+        let odds = if members == 0 {
+            unlisted_beside_nothing(rest)
+        } else {
+            unlisted_beside_an_effect(rest)
+        };
+        // What is as large as the best hypothesis leaves as much.
+        let alike = self
+            .fits
+            .iter()
+            .filter(|(own, _)| own.members.len() == members);
+        let weight = odds * alike.map(|(_, probability)| probability).sum::<f64>();
+        self.unknown = weight / (1.0 + weight);
         Ok(())
     }
 
@@ -206,7 +212,7 @@ impl Search<'_, '_> {
         self.fits.retain(|fitted| fitted.evidence.smallest > 1.0);
         let logs: Vec<f64> = self.fits.iter().map(|f| self.log_posterior(f)).collect();
         let most = logs.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        let weights: Vec<f64> = logs.iter().map(|log| (log - most).exp()).collect();
+        let weights: Vec<f64> = logs.iter().map(|log| tempered(log - most).exp()).collect();
         let sum: f64 = weights.iter().sum();
         let mut fits: Vec<(Fitted, f64)> = self
             .fits
@@ -223,7 +229,7 @@ impl Search<'_, '_> {
             fits,
             failed: self.failed,
             unknown: 0.0,
-            wave: None,
+            left: None,
         }
     }
 }
@@ -237,12 +243,6 @@ pub(super) fn prior(bench: &Bench<'_>, members: usize) -> f64 {
         0 => NO_GAP.ln(),
         count => (1.0 - NO_GAP).ln() + (count - 1) as f64 * NOT_ALONE.ln() - count as f64 * each,
     }
-}
-
-/// What the size of a wave takes from its gain, as that of an effect does: see `evidence`.
-fn wave_occam(gain: f64) -> f64 {
-    let d = (2.0 * gain).sqrt().max(1.0);
-    (2.0 * d * LARGEST_LOG_SIZE).ln() - 0.5 * std::f64::consts::TAU.ln()
 }
 
 /// Puts the best step of the screen into the values: no size starts at its bound.

@@ -15,7 +15,7 @@ use nalgebra::DMatrix;
 use super::bench::Bench;
 
 /// Logarithm of the largest d′ that is expected: whole motions come to some thousand.
-pub(super) const LARGEST_LOG_SIZE: f64 = 6.9;
+const LARGEST_LOG_SIZE: f64 = 6.9;
 /// Sizes in their standard deviations below this are not told from zero.
 const SMALLEST: f64 = 1.0;
 
@@ -124,4 +124,10 @@ fn volume(information: &DMatrix<f64>) -> (f64, Vec<f64>) {
         0.5 * (k as f64 * TAU.ln() - log_determinant),
         deviations.collect(),
     )
+}
+
+/// What one size that gains so much takes from its gain.
+pub(super) fn occam(gain: f64) -> f64 {
+    let d = (2.0 * gain).sqrt().max(SMALLEST);
+    (2.0 * d * LARGEST_LOG_SIZE).ln() - 0.5 * TAU.ln()
 }

@@ -3,6 +3,7 @@
 use super::DiagnoseError;
 use super::alternative::Rival;
 use super::bench::Bench;
+use super::calibration::tempered;
 use super::changes::Changes;
 use super::compare::{Comparison, TIED, prior};
 use super::experiment::Experiment;
@@ -11,7 +12,7 @@ use super::law::Law;
 use super::screen::Screen;
 use super::traces::{Ahead, Trace};
 use crate::effects::{Acts, Part};
-use appell_runtime::estimate::Unknown;
+use appell_runtime::estimate::{Along, Unknown};
 
 /// Sizes in their standard deviations that are found with near certainty.
 const DETECTABLE: f64 = 5.0;
@@ -165,6 +166,21 @@ pub struct Detectable {
     pub unit: String,
 }
 
+/// What the best hypothesis leaves: a force or an error that nobody has named.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Left {
+    /// Pseudo-velocity of the equation that has the force, or channel that has the error.
+    pub place: String,
+    /// What it depends on.
+    pub variable: String,
+    /// Logarithm of the Bayes factor for it.
+    pub log_bayes_factor: f64,
+    /// What it gains in log-likelihood.
+    pub gain: f64,
+    /// What the best hypothesis gains over the nominal model.
+    pub explained: f64,
+}
+
 /// A member of a hypothesis in a sentence.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Found {
@@ -195,6 +211,8 @@ pub struct Report {
     pub failed: Vec<(Vec<String>, String)>,
     /// Disturbances before and after: name, level under the nominal model and under the best one.
     pub disturbances: Vec<(String, f64, f64)>,
+    /// What the best hypothesis leaves; nothing where no law foretells runs that it was not found in.
+    pub left: Option<Left>,
     /// Effects of the best hypothesis in words.
     pub found: Vec<Found>,
     /// Errors over horizons; empty where no run was held out.
@@ -302,6 +320,7 @@ pub(super) fn assemble(
             .map(|(members, reason)| (names(members), reason.clone()))
             .collect(),
         disturbances: disturbances(bench, comparison.nominal(), best),
+        left: left(bench, comparison),
         found,
         horizons: Vec::new(),
         pictures: None,
@@ -321,7 +340,7 @@ fn join(
     let beside = best.evidence.log() + prior(bench, best.members.len());
     let base = comparison.nominal().evidence.log();
     for rival in rivals {
-        let odds = rival.log + prior(bench, 1) - beside;
+        let odds = tempered(rival.log + prior(bench, 1) - beside);
         which.push(Hypothesis {
             effects: vec![rival.name.clone()],
             probability: odds.min(MOST_LOG_ODDS).exp() * known.max(f64::MIN_POSITIVE),
@@ -436,6 +455,25 @@ fn channel_unit(bench: &Bench<'_>, channel: usize) -> String {
         .get(channel)
         .map(|(channel, _)| channel.unit.dimension);
     unit.map_or_else(String::new, |d| appell_spec::units::Unit::si(d).text)
+}
+
+fn left(bench: &Bench<'_>, comparison: &Comparison) -> Option<Left> {
+    let left = comparison.left.as_ref()?;
+    let first = &left.first;
+    let place = match first.along {
+        Along::Disturbances => bench.effects.info().states[first.place].name.to_string(),
+        Along::Channels => {
+            let measured = bench.set.measured(bench.effects.info());
+            measured.get(first.place)?.0.column.clone()
+        }
+    };
+    Some(Left {
+        place,
+        variable: first.variable.clone(),
+        log_bayes_factor: left.log_bayes_factor,
+        gain: first.gain,
+        explained: comparison.explained(),
+    })
 }
 
 fn disturbances(bench: &Bench<'_>, nominal: &Fitted, best: &Fitted) -> Vec<(String, f64, f64)> {

@@ -6,7 +6,9 @@
 
 use std::ops::Range;
 
-use appell_runtime::estimate::{Coordinate, Direction, Estimation, Shapes, Tangent, Unknown};
+use appell_runtime::estimate::{
+    Along, Coordinate, Direction, Estimation, Shapes, Tangent, Unknown,
+};
 use appell_runtime::model::At;
 use nalgebra::{DMatrix, DVector};
 
@@ -167,6 +169,7 @@ impl Screen {
         let surprises = &bench.surprises;
         let kicks = |run: usize, at: At<'_>, to: &mut [f64]| surprises.kicks(run, at.t, to);
         let kicks = (surprises.count > 0).then_some(Shapes {
+            along: Along::Disturbances,
             count: surprises.count * KICKS,
             values: &kicks,
         });

@@ -1,16 +1,22 @@
-//! Forces that nobody has named: functions of one position or rate in one equation.
+//! What nobody has named: a force in an equation or an error of a channel, as a law of a position, a
+//! rate or an input. A law is a sum of waves of the variable whose sizes fall off as those of a law with a step do, or one wave alone. About the best
+//! hypothesis they tell what it leaves and on what that depends.
 //!
-//! Each function is one wave, a sine and a cosine of the variable. A wave that gains more than any
-//! effect of the library speaks for something that the library lacks, and tells what it depends on.
-//! Waves of time are left out: what does not return with the state is a disturbance, and the filter
-//! has levels for these. A wave has to predict runs that it was not found in.
+//! A law is linear in the sizes of its waves, so what it gains, and how probable it makes the recordings
+//! when its sizes are normal, has a closed form (C. E. Rasmussen and C. K. I. Williams, *Gaussian
+//! Processes for Machine Learning*, 2006, chapter 2). Waves of time alone are left out: what does not
+//! return with the state is a disturbance, and there are levels for these. A law has to foretell runs
+//! that it was not found in.
 
-use appell_runtime::estimate::{Disturbance, Estimation, Shapes};
+use std::f64::consts::{PI, TAU};
+
+use appell_runtime::estimate::{Along, Disturbance, Estimation, Measured, Recording, Shapes};
 use appell_runtime::model::At;
-use nalgebra::{DMatrix, DVector, Matrix2, Vector2};
+use nalgebra::{DMatrix, DVector};
 
 use super::DiagnoseError;
 use super::bench::Bench;
+use super::evidence::occam;
 use super::hypothesis::Fitted;
 use super::screen::{Projected, moving};
 
@@ -18,111 +24,210 @@ use super::screen::{Projected, moving};
 const WAVES: usize = 24;
 /// Range of a rate in typical rates.
 const REACH: f64 = 2.5;
+/// Sizes of a law that are tried, each twice the one before.
+const SIZES: usize = 12;
+/// Part of its gain that a law has to repeat on runs that it was not found in.
+const REPEATED: f64 = 0.5;
 
-/// A force as a wave.
+/// What a law that nobody has named would gain beside a hypothesis.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Wave {
-    /// Index of the pseudo-velocity whose equation has it.
-    pub(super) equation: usize,
+pub(super) struct Unnamed {
+    /// What it adds to.
+    pub(super) along: Along,
+    /// Index of the pseudo-velocity whose equation has it, or of the channel.
+    pub(super) place: usize,
     /// Name of the variable.
     pub(super) variable: String,
-    /// Length of the wave in SI units of the variable.
-    pub(super) length: f64,
     /// Gain in log-likelihood.
     pub(super) gain: f64,
     /// Gain on runs that it was not found in.
-    pub(super) predicted: f64,
+    pub(super) foretold: f64,
+    /// Logarithm of the Bayes factor for it.
+    pub(super) log_bayes_factor: f64,
 }
 
-/// How a variable is cut into waves.
+/// All of them together.
+#[derive(Debug, Clone)]
+pub(super) struct Leftover {
+    /// The one that the recordings speak for most.
+    pub(super) first: Unnamed,
+    /// Logarithm of the Bayes factor for any of them, all alike beforehand.
+    pub(super) log_bayes_factor: f64,
+}
+
+/// What the laws of a variable depend on.
+#[derive(Clone, Copy)]
 struct Variable {
-    state: usize,
+    /// States, then inputs.
+    index: usize,
     /// Angle of the first wave per unit.
     first: f64,
     /// The waves also grow with time: a friction that changes.
     drifts: bool,
 }
 
-/// The waves about a fit, the greatest gain first, and how many were tried.
-pub(super) fn waves(
+impl Variable {
+    fn of(self, bench: &Bench<'_>, at: At<'_>) -> f64 {
+        let states = bench.effects.info().state_len();
+        match self.index.checked_sub(states) {
+            Some(input) => at.u[input],
+            None => at.x[self.index],
+        }
+    }
+
+    fn name(self, bench: &Bench<'_>) -> String {
+        let info = bench.effects.info();
+        let mut quantities = info.states.iter().chain(info.inputs.iter());
+        let name = quantities
+            .nth(self.index)
+            .map_or("", |own| own.name.as_ref());
+        if self.drifts {
+            format!("{name} and time")
+        } else {
+            name.to_owned()
+        }
+    }
+}
+
+/// What a hypothesis leaves that a law without a name explains; nothing where no law foretells
+/// other runs.
+pub(super) fn leftover(
     bench: &Bench<'_>,
     fitted: &Fitted,
-) -> Result<(Vec<Wave>, usize), DiagnoseError> {
+) -> Result<Option<Leftover>, DiagnoseError> {
     let setup = bench.setup(&fitted.members);
     let estimation = Estimation::new(&setup, &bench.recordings)?;
-    let free = moving(fitted);
-    let info = bench.effects.info();
-    let mut found = Vec::new();
+    let (mut smooth, mut single) = (Family::default(), Family::default());
     for variable in variables(bench) {
-        let write = |_run: usize, at: At<'_>, values: &mut [f64]| {
-            let x = at.x[variable.state];
-            let grown = if variable.drifts { at.t } else { 1.0 };
-            for (wave, pair) in values.chunks_exact_mut(2).enumerate() {
-                let (sin, cos) = ((wave + 1) as f64 * variable.first * x).sin_cos();
-                pair.copy_from_slice(&[grown * sin, grown * cos]);
-            }
-        };
-        let shapes = Shapes {
-            count: 2 * WAVES,
-            values: &write,
-        };
-        let tangent = estimation.tangent(&fitted.fit.values, &free, Some(shapes))?;
-        let projected = Projected::new(&tangent, fitted, free.len(), 0..0);
-        for (place, disturbance) in setup.disturbances.iter().enumerate() {
-            let Disturbance::Force(equation) = *disturbance else {
+        for along in [Along::Disturbances, Along::Channels] {
+            if along == Along::Channels && variable.drifts {
                 continue;
-            };
-            for wave in 0..WAVES {
-                let column = free.len() + 2 * (place * WAVES + wave);
-                let slopes = projected.slopes(&[column, column + 1]);
-                let Some((gain, predicted)) = gains(&projected, &slopes) else {
-                    continue;
-                };
-                let name = &info.states[variable.state].name;
-                found.push(Wave {
-                    equation,
-                    variable: if variable.drifts {
-                        format!("{name} and time")
-                    } else {
-                        name.to_string()
-                    },
-                    length: std::f64::consts::TAU / ((wave + 1) as f64 * variable.first),
+            }
+            for (place, told) in told(bench, &estimation, fitted, variable, along)? {
+                let unnamed = |(gain, foretold, log_bayes_factor)| Unnamed {
+                    along,
+                    place,
+                    variable: variable.name(bench),
                     gain,
-                    predicted,
-                });
+                    foretold,
+                    log_bayes_factor,
+                };
+                smooth.add(told.smooth().map(unnamed));
+                for wave in 0..WAVES {
+                    single.add(told.single(wave).map(unnamed));
+                }
             }
         }
     }
-    found.sort_by(|a, b| b.gain.total_cmp(&a.gain));
-    let tried = found.len();
-    Ok((found, tried))
+    Ok(joined(smooth, single))
 }
 
-/// Positions and rates that return: over whole turns where an angle makes several.
+/// What the waves of a variable tell of the force in each equation, or of the error of each channel.
+fn told(
+    bench: &Bench<'_>,
+    estimation: &Estimation<'_>,
+    fitted: &Fitted,
+    variable: Variable,
+    along: Along,
+) -> Result<Vec<(usize, Told)>, DiagnoseError> {
+    let (free, setup) = (moving(fitted), estimation.setup());
+    let write = |_run: usize, at: At<'_>, values: &mut [f64]| {
+        let x = variable.of(bench, at);
+        let grown = if variable.drifts { at.t } else { 1.0 };
+        for (wave, pair) in values.chunks_exact_mut(2).enumerate() {
+            let (sin, cos) = ((wave + 1) as f64 * variable.first * x).sin_cos();
+            pair.copy_from_slice(&[grown * sin, grown * cos]);
+        }
+    };
+    let shapes = Shapes {
+        along,
+        count: 2 * WAVES,
+        values: &write,
+    };
+    let tangent = estimation.tangent(&fitted.fit.values, &free, Some(shapes))?;
+    let projected = Projected::new(&tangent, fitted, free.len(), 0..0);
+    let places: Vec<Option<usize>> = match along {
+        Along::Disturbances => (setup.disturbances.iter())
+            .map(|one| match *one {
+                Disturbance::Force(equation) => Some(equation),
+                _ => None,
+            })
+            .collect(),
+        Along::Channels => (0..setup.channels.len()).map(Some).collect(),
+    };
+    let places = places.into_iter().enumerate();
+    Ok(places
+        .filter_map(|(block, place)| {
+            let first = free.len() + 2 * block * WAVES;
+            let columns: Vec<usize> = (first..first + 2 * WAVES).collect();
+            Some((place?, Told::new(&projected, &projected.slopes(&columns))))
+        })
+        .collect())
+}
+
+/// Laws of one kind.
+#[derive(Default)]
+struct Family {
+    tried: usize,
+    found: Vec<Unnamed>,
+}
+
+impl Family {
+    fn add(&mut self, unnamed: Option<Unnamed>) {
+        self.tried += 1;
+        let foretells = |one: &Unnamed| one.foretold > REPEATED * one.gain;
+        self.found.extend(unnamed.filter(foretells));
+    }
+}
+
+/// Both kinds are as probable beforehand, and so are the laws of a kind.
+fn joined(smooth: Family, single: Family) -> Option<Leftover> {
+    let weight = |family: &Family| -((2 * family.tried.max(1)) as f64).ln();
+    let weights = [weight(&smooth), weight(&single)];
+    let mut all: Vec<(f64, Unnamed)> = Vec::new();
+    for (family, weight) in [smooth, single].into_iter().zip(weights) {
+        let found = family.found.into_iter();
+        all.extend(found.map(|one| (one.log_bayes_factor + weight, one)));
+    }
+    let log = log_sum(all.iter().map(|(log, _)| *log));
+    let first = all.into_iter().max_by(|a, b| a.0.total_cmp(&b.0))?;
+    Some(Leftover {
+        first: first.1,
+        log_bayes_factor: log,
+    })
+}
+
+/// Logarithm of a sum of exponentials.
+fn log_sum(logs: impl Iterator<Item = f64> + Clone) -> f64 {
+    let most = logs.clone().fold(f64::NEG_INFINITY, f64::max);
+    most + logs.map(|log| (log - most).exp()).sum::<f64>().ln()
+}
+
+/// Positions and rates that return, over whole turns where an angle makes several; inputs.
 fn variables(bench: &Bench<'_>) -> Vec<Variable> {
     let info = bench.effects.info();
     let mut variables = Vec::new();
-    for state in 0..info.state_len() {
-        let Some((low, high)) = bench.range(state) else {
+    for index in 0..info.state_len() + bench.recordings[0].input_len() {
+        let Some((low, high)) = bench.range(index) else {
             continue;
         };
         let range = high - low;
-        let turns = info.states[state].unit.as_ref() == "rad" && range > std::f64::consts::TAU;
-        let first = if turns {
+        let is_angle = (info.states.get(index)).is_some_and(|state| state.unit.as_ref() == "rad");
+        let first = if is_angle && range > TAU {
             1.0
         } else {
-            std::f64::consts::PI / range
+            PI / range
         };
-        variables.push(Variable {
-            state,
+        let one = Variable {
+            index,
             first,
             drifts: false,
-        });
-        if state < info.speeds {
+        };
+        variables.push(one);
+        if index < info.speeds {
             variables.push(Variable {
-                state,
-                first,
                 drifts: true,
+                ..one
             });
         }
     }
@@ -130,62 +235,165 @@ fn variables(bench: &Bench<'_>) -> Vec<Variable> {
 }
 
 impl Bench<'_> {
-    /// Range of a state along the recordings: measured, or typical rates of what is measured.
-    fn range(&self, state: usize) -> Option<(f64, f64)> {
-        let shown = self.measured.iter().position(
-            |shown| matches!(shown, appell_runtime::estimate::Measured::State(s) if *s == state),
-        );
-        if let Some(channel) = shown {
-            let rows = self
-                .recordings
-                .iter()
-                .flat_map(|run| (0..run.times().len()).map(move |row| run.measured(row)[channel]));
-            let seen = rows.filter(|value| !value.is_nan());
-            let (low, high) = seen.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| {
-                (low.min(x), high.max(x))
-            });
-            return (high > low).then_some((low, high));
+    /// Range of a state or input along the recordings: as recorded, or typical rates of what is
+    /// measured.
+    fn range(&self, index: usize) -> Option<(f64, f64)> {
+        let states = self.effects.info().state_len();
+        let shown = |shown: &Measured| *shown == Measured::State(index);
+        let channel = self.measured.iter().position(shown);
+        let recorded = |run: &Recording, row: usize| match channel {
+            Some(channel) => run.measured(row)[channel],
+            None => run.inputs(row)[index - states],
+        };
+        if channel.is_none() && index < states {
+            let size = self.sizes.get(index).copied()?;
+            return (size > 0.0).then_some((-REACH * size, REACH * size));
         }
-        let size = self.sizes.get(state).copied()?;
-        (size > 0.0).then_some((-REACH * size, REACH * size))
+        let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+        for run in &self.recordings {
+            for row in 0..run.times().len() {
+                let value = recorded(run, row);
+                // What is missing changes neither.
+                (low, high) = (low.min(value), high.max(value));
+            }
+        }
+        (high > low).then_some((low, high))
     }
 }
 
-/// What two columns gain, and what they gain on each run with the coefficients of the others.
-fn gains(projected: &Projected<'_>, slopes: &DMatrix<f64>) -> Option<(f64, f64)> {
-    let samples = &projected.tangent.samples;
-    let runs = samples.last().map_or(0, |(run, _)| run + 1);
-    let mut squares = vec![Matrix2::zeros(); runs];
-    let mut scores = vec![Vector2::zeros(); runs];
-    for (row, (run, _)) in samples.iter().enumerate() {
-        let slope = Vector2::new(slopes[(row, 0)], slopes[(row, 1)]);
-        squares[*run] += slope * slope.transpose();
-        scores[*run] -= slope * projected.rest[row];
-    }
-    let all: Matrix2<f64> = squares.iter().sum();
-    let score: Vector2<f64> = scores.iter().sum();
-    let step = solved(&all, &score)?;
-    let gain = 0.5 * score.dot(&step);
-    if runs < 2 {
-        return Some((gain, gain));
-    }
-    let mut predicted = 0.0;
-    for run in 0..runs {
-        let step = solved(&(all - squares[run]), &(score - scores[run]))?;
-        predicted += step.dot(&scores[run]) - 0.5 * step.dot(&(squares[run] * step));
-    }
-    Some((gain, predicted))
+/// What the waves of a variable tell, run by run: the squares of their slopes and their scores.
+struct Told {
+    runs: Vec<(DMatrix<f64>, DVector<f64>)>,
+    squares: DMatrix<f64>,
+    scores: DVector<f64>,
 }
 
-fn solved(squares: &Matrix2<f64>, score: &Vector2<f64>) -> Option<Vector2<f64>> {
-    /// A little of the larger diagonal keeps a wave that is hardly there in place.
-    const FLOOR: f64 = 1e-9;
-    let size = squares.diagonal().max();
-    if size.is_nan() || size <= 0.0 {
-        return None;
+impl Told {
+    fn new(projected: &Projected<'_>, slopes: &DMatrix<f64>) -> Self {
+        let samples = &projected.tangent.samples;
+        let mut runs = Vec::new();
+        let mut from = 0;
+        while let Some((run, _)) = samples.get(from) {
+            let rows = samples[from..]
+                .iter()
+                .take_while(|(own, _)| own == run)
+                .count();
+            let slopes = slopes.rows(from, rows);
+            let rest = projected.rest.rows(from, rows);
+            runs.push((slopes.tr_mul(&slopes), -slopes.tr_mul(&rest)));
+            from += rows;
+        }
+        // With the rows for what is known of the parameters beforehand.
+        Self {
+            runs,
+            squares: slopes.tr_mul(slopes),
+            scores: -slopes.tr_mul(&projected.rest),
+        }
     }
-    let squares = squares + Matrix2::identity() * (FLOOR * size);
-    let factor = squares.cholesky()?;
-    let step: DVector<f64> = DVector::from_column_slice(factor.solve(score).as_slice());
-    Some(Vector2::new(step[0], step[1]))
+
+    /// A law whose waves fall off as one over their number: gain, gain on other runs, logarithm of
+    /// the Bayes factor averaged over its size.
+    fn smooth(&self) -> Option<(f64, f64, f64)> {
+        let fall = DVector::from_fn(self.scores.len(), |i, _| ((i / 2 + 1) as f64).recip());
+        let scaled = self.scaled(&fall);
+        let eigen = scaled.squares.clone().symmetric_eigen();
+        let most = eigen.eigenvalues.max();
+        if most.is_nan() || most <= 0.0 {
+            return None;
+        }
+        let along = eigen.eigenvectors.tr_mul(&scaled.scores);
+        let log = |variance: f64| -> f64 {
+            let pairs = eigen.eigenvalues.iter().zip(along.iter());
+            pairs
+                .map(|(square, score)| {
+                    let grown = 1.0 + variance * square.max(0.0);
+                    0.5 * (variance * score * score / grown - grown.ln())
+                })
+                .sum()
+        };
+        let variances = (0..SIZES).map(|i| 4.0_f64.powi(i32::try_from(i).unwrap_or(0)) / most);
+        let logs: Vec<(f64, f64)> = variances
+            .map(|variance| (variance, log(variance)))
+            .collect();
+        let (variance, _) = *logs.iter().max_by(|a, b| a.1.total_cmp(&b.1))?;
+        let average = log_sum(logs.iter().map(|(_, log)| *log)) - (SIZES as f64).ln();
+        let (gain, foretold) = scaled.gains(variance.recip())?;
+        Some((gain, foretold, average))
+    }
+
+    /// One wave of two sizes.
+    fn single(&self, wave: usize) -> Option<(f64, f64, f64)> {
+        /// A little of the larger square keeps a wave that is hardly there in place.
+        const FLOOR: f64 = 1e-9;
+        let pair = Self::part(&self.squares, &self.scores, 2 * wave);
+        let runs = self.runs.iter();
+        let own = Self {
+            runs: runs
+                .map(|(squares, scores)| Self::part(squares, scores, 2 * wave))
+                .collect(),
+            squares: pair.0,
+            scores: pair.1,
+        };
+        let size = own.squares.diagonal().max();
+        if size.is_nan() || size <= 0.0 {
+            return None;
+        }
+        let (gain, foretold) = own.gains(FLOOR * size)?;
+        Some((gain, foretold, gain - 2.0 * occam(gain)))
+    }
+
+    fn part(
+        squares: &DMatrix<f64>,
+        scores: &DVector<f64>,
+        from: usize,
+    ) -> (DMatrix<f64>, DVector<f64>) {
+        let squares = squares.view((from, from), (2, 2)).into_owned();
+        (squares, scores.rows(from, 2).into_owned())
+    }
+
+    fn scaled(&self, by: &DVector<f64>) -> Self {
+        let scale = |squares: &DMatrix<f64>, scores: &DVector<f64>| {
+            let squares =
+                DMatrix::from_fn(by.len(), by.len(), |i, j| by[i] * squares[(i, j)] * by[j]);
+            (squares, by.component_mul(scores))
+        };
+        let (squares, scores) = scale(&self.squares, &self.scores);
+        Self {
+            runs: self
+                .runs
+                .iter()
+                .map(|(squares, scores)| scale(squares, scores))
+                .collect(),
+            squares,
+            scores,
+        }
+    }
+
+    /// What the most probable sizes gain, and what those found in the other runs gain in each; `held`
+    /// is the inverse of their variance.
+    fn gains(&self, held: f64) -> Option<(f64, f64)> {
+        let sizes = solved(&self.squares, &self.scores, held)?;
+        let gain = gained(&sizes, &self.squares, &self.scores);
+        if self.runs.len() < 2 {
+            return Some((gain, gain));
+        }
+        let mut foretold = 0.0;
+        for (squares, scores) in &self.runs {
+            let sizes = solved(&(&self.squares - squares), &(&self.scores - scores), held)?;
+            foretold += gained(&sizes, squares, scores);
+        }
+        Some((gain, foretold))
+    }
+}
+
+fn gained(sizes: &DVector<f64>, squares: &DMatrix<f64>, scores: &DVector<f64>) -> f64 {
+    sizes.dot(scores) - 0.5 * sizes.dot(&(squares * sizes))
+}
+
+fn solved(squares: &DMatrix<f64>, scores: &DVector<f64>, held: f64) -> Option<DVector<f64>> {
+    let mut squares = squares.clone();
+    for i in 0..squares.nrows() {
+        squares[(i, i)] += held;
+    }
+    Some(squares.cholesky()?.solve(scores))
 }

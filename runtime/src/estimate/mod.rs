@@ -79,4 +79,4 @@ pub use sensitivity::Sensitivity;
 pub use setup::{Channel, Disturbance, Measured, Setup};
 pub use shooting::{Shooting, Shot};
 pub use smoother::Smoothed;
-pub use tangent::{Direction, Shapes, Tangent};
+pub use tangent::{Along, Direction, Shapes, Tangent};

@@ -29,10 +29,21 @@ pub enum Direction {
     LateChannel(usize),
 }
 
-/// Forces that are tried beside those of the model: shapes of run, time, state and inputs, each in
-/// the direction of each disturbance.
+/// What shapes add to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Along {
+    /// The force of each disturbance.
+    Disturbances,
+    /// What each channel reads.
+    Channels,
+}
+
+/// What is tried beside the model: shapes of run, time, state and inputs, each in the direction of
+/// each disturbance, or as an error of each channel.
 #[derive(Clone, Copy)]
 pub struct Shapes<'s> {
+    /// What they add to.
+    pub along: Along,
     /// How many.
     pub count: usize,
     /// Writes the values of all shapes.
@@ -45,7 +56,7 @@ pub struct Tangent {
     /// The samples in the order of runs, rows and channels, with the run of each.
     pub samples: Vec<(usize, Innovation)>,
     /// A row for each sample; a column for each direction, then for each shape along the first
-    /// disturbance, and so on.
+    /// disturbance or channel, and so on.
     pub slopes: DMatrix<f64>,
 }
 
@@ -64,7 +75,14 @@ impl Estimation<'_> {
                 layout.place(unknown)?;
             }
         }
-        let tried = shapes.map_or(0, |shapes| shapes.count * self.setup().disturbances.len());
+        let tried = shapes.map_or(0, |shapes| {
+            let setup = self.setup();
+            shapes.count
+                * match shapes.along {
+                    Along::Disturbances => setup.disturbances.len(),
+                    Along::Channels => setup.channels.len(),
+                }
+        });
         let columns = directions.len() + tried;
         let mut all: Vec<(usize, Innovation, Vec<f64>)> = Vec::new();
         for run in 0..self.recordings().len() {
@@ -252,7 +270,7 @@ impl<'p, 'a> Forward<'p, 'a> {
                 _ => {}
             }
         }
-        if let Some(shapes) = self.shapes {
+        if let Some(shapes) = self.shapes.filter(|own| own.along == Along::Disturbances) {
             plant.at(place, &mut self.scratch, |at| {
                 (shapes.values)(self.pass.run, at, &mut self.tried);
             });
@@ -347,6 +365,20 @@ impl<'p, 'a> Forward<'p, 'a> {
                     }
                     _ => 0.0,
                 };
+            }
+            if let Some(shapes) = self.shapes.filter(|own| own.along == Along::Channels) {
+                let place = Place {
+                    t: sample.innovation.t,
+                    z,
+                    held: &self.pass.held,
+                    p: &self.pass.values[..self.pass.layout.parameters],
+                    lags: &self.pass.values[self.pass.layout.lag(0)..][..setup.lagging.len()],
+                };
+                self.pass.plant.at(place, &mut self.scratch, |at| {
+                    (shapes.values)(self.pass.run, at, &mut self.tried);
+                });
+                let first = self.directions.len() + channel * shapes.count;
+                add_scaled(-1.0, &self.tried, &mut row[first..][..shapes.count]);
             }
             let s = sample.innovation.white_variance;
             for i in 0..n {

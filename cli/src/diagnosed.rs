@@ -74,6 +74,9 @@ pub(crate) fn text(report: &Report, next: Option<&Path>) -> String {
         let names: Vec<String> = group.iter().map(|effects| joined(effects)).collect();
         let _ = writeln!(text, "  tied      {}", names.join(" | "));
     }
+    if let Some(left) = report.left.as_ref().filter(|left| left.is_there()) {
+        let _ = writeln!(text, "  left      {}", left.about);
+    }
     if let Some(experiment) = &report.experiment {
         let _ = writeln!(text, "  next      {}", told(experiment));
     }
@@ -129,7 +132,11 @@ fn sentence(report: &Report) -> String {
             "there is a gap; {} explains it, and so do others as well",
             about.join(" and ")
         ),
-        Verdict::Unexplained => "there is a gap that nothing in the library explains".to_owned(),
+        Verdict::Unexplained => {
+            let left = report.left.as_ref().map(|left| format!(": {}", left.about));
+            let left = left.unwrap_or_default();
+            format!("there is a gap that nothing in the library explains{left}")
+        }
     }
 }
 
@@ -266,6 +273,7 @@ pub(crate) fn json(report: &Report, next: Option<&Path>) -> Value {
         "left": report.left.as_ref().map(|left| json!({
             "place": left.place,
             "variable": left.variable,
+            "about": left.about,
             "log_bayes_factor": left.log_bayes_factor,
             "gain": left.gain,
             "explained": left.explained,

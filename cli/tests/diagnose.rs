@@ -5,7 +5,7 @@ mod browser;
 mod rig;
 mod support;
 
-use rig::viscous;
+use rig::{dry, viscous};
 use support::Folder;
 
 fn report(folder: &Folder) -> serde_json::Value {
@@ -38,6 +38,49 @@ fn nothing_is_found_where_nothing_is_missing() {
     let report = report(&viscous(0.0));
     assert_eq!(report["verdict"], "no_gap", "{report:#}");
     assert_eq!(report["where"]["domain"], "none");
+}
+
+#[test]
+fn a_library_without_the_cause_does_not_name_another_one() {
+    let folder = dry(0.3);
+    let without = [
+        "--without",
+        "coulomb_friction",
+        "--without",
+        "stribeck_friction",
+    ];
+    folder.done(
+        &[
+            &["diagnose", "--data", ".", "--json", "report.json"],
+            &without[..],
+        ]
+        .concat(),
+    );
+    let report = folder.json("report.json");
+    assert_eq!(report["verdict"], "unexplained");
+    assert_eq!(report["left"]["place"], "v");
+    assert_eq!(report["left"]["variable"], "v");
+}
+
+#[test]
+fn an_error_of_a_sensor_that_nobody_has_named_is_told_with_its_place() {
+    let folder = viscous(0.0);
+    for name in ["a.csv", "b.csv", "c.csv"] {
+        let text = folder.read(name);
+        let mut lines = text.lines();
+        let mut changed = vec![lines.next().expect("a header").to_owned()];
+        changed.extend(lines.map(|line| {
+            let cells: Vec<&str> = line.split(',').collect();
+            let x: f64 = cells[1].parse().expect("a position");
+            format!("{},{},{}", cells[0], x + 0.004 * (40.0 * x).sin(), cells[2])
+        }));
+        folder.write(name, &(changed.join("\n") + "\n"));
+    }
+    let told = folder.done(&["diagnose", "--data", ".", "--json", "report.json"]);
+    let report = folder.json("report.json");
+    assert_eq!(report["verdict"], "unexplained", "{}", told.stdout);
+    let says = "an error of the channel x that depends on x";
+    assert!(told.stdout.contains(says), "{}", told.stdout);
 }
 
 #[test]

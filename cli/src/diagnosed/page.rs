@@ -241,6 +241,17 @@ fn which(report: &Report) -> String {
             names.join(" and ")
         );
     }
+    if let Some(left) = report.left.as_ref().filter(|left| left.is_there()) {
+        let part = left.gain / (left.gain + left.explained.max(0.0));
+        let _ = writeln!(
+            html,
+            "<p><b>Left.</b> Beside the first hypothesis the recordings speak for {}, with a log Bayes factor \
+             of {}. It is {} of the gap.</p>",
+            escaped(&left.about),
+            short(left.log_bayes_factor),
+            percent(part),
+        );
+    }
     if !report.failed.is_empty() {
         let failed = report.failed.iter().map(|(effects, reason)| {
             format!("<li>{}: {}</li>", code(&joined(effects)), escaped(reason))

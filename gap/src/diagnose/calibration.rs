@@ -13,7 +13,7 @@ const UNLISTED: f64 = 0.1;
 const TEMPERATURE: f64 = 1.0;
 /// Probability that an effect which the library lacks looks just like one that it has.
 const MIMICKED: f64 = 0.3;
-/// Probability that the law of an effect is not exact.
+/// Odds that the law of an effect is not exact.
 const INEXACT: f64 = 0.3;
 /// Size of what such a law leaves beside what it explains: standard deviation.
 const LEFT: f64 = 0.15;
@@ -42,7 +42,7 @@ pub(super) fn unlisted_beside_an_effect(rest: Rest) -> f64 {
     let size = rest.share.clamp(0.0, 1.0).sqrt() / LEFT;
     let density = 2.0 / (TAU.sqrt() * LEFT) * (-0.5 * size * size).exp();
     let unlisted = MIMICKED + (1.0 - MIMICKED) * bayes_factor;
-    let listed = 1.0 - INEXACT + INEXACT * density * bayes_factor;
+    let listed = 1.0 + INEXACT * density * bayes_factor;
     UNLISTED / (1.0 - UNLISTED) * unlisted / listed
 }
 

@@ -173,12 +173,21 @@ pub struct Left {
     pub place: String,
     /// What it depends on.
     pub variable: String,
+    /// Both in words.
+    pub about: String,
     /// Logarithm of the Bayes factor for it.
     pub log_bayes_factor: f64,
     /// What it gains in log-likelihood.
     pub gain: f64,
     /// What the best hypothesis gains over the nominal model.
     pub explained: f64,
+}
+
+impl Left {
+    /// Whether the recordings speak for it with odds of twenty and more.
+    pub fn is_there(&self) -> bool {
+        self.log_bayes_factor > TIED
+    }
 }
 
 /// A member of a hypothesis in a sentence.
@@ -460,16 +469,22 @@ fn channel_unit(bench: &Bench<'_>, channel: usize) -> String {
 fn left(bench: &Bench<'_>, comparison: &Comparison) -> Option<Left> {
     let left = comparison.left.as_ref()?;
     let first = &left.first;
-    let place = match first.along {
-        Along::Disturbances => bench.effects.info().states[first.place].name.to_string(),
+    let (place, what) = match first.along {
+        Along::Disturbances => {
+            let equation = bench.effects.info().states[first.place].name.to_string();
+            (equation, "a force in the equation of")
+        }
         Along::Channels => {
             let measured = bench.set.measured(bench.effects.info());
-            measured.get(first.place)?.0.column.clone()
+            let (channel, _) = measured.get(first.place)?;
+            (channel.column.clone(), "an error of the channel")
         }
     };
+    let variable = first.variable.clone();
     Some(Left {
+        about: format!("{what} {place} that depends on {variable}"),
         place,
-        variable: first.variable.clone(),
+        variable,
         log_bayes_factor: left.log_bayes_factor,
         gain: first.gain,
         explained: comparison.explained(),

@@ -150,7 +150,7 @@ fn told(
         Along::Disturbances => (setup.disturbances.iter())
             .map(|one| match *one {
                 Disturbance::Force(equation) => Some(equation),
-                _ => None,
+                Disturbance::Rate(_) => None,
             })
             .collect(),
         Along::Channels => (0..setup.channels.len()).map(Some).collect(),

@@ -1,0 +1,159 @@
+"""From evidence to probabilities that hold: finds the four numbers of gap/src/diagnose/calibration.rs.
+
+    calibrate.py --collect REPORTS --labels LABELS   takes from reports what is needed: calibration.json
+    calibrate.py                                     finds the numbers, tells how well claims hold
+    calibrate.py --check                             fails where the tool has other numbers
+
+REPORTS has a subfolder `appell` of reports with the whole library, and `left_out` of reports with a
+library that lacks the effect. The numbers make the true answers most probable. Cases whose cause is not
+in the library count so much that they are a tenth of all gaps."""
+
+import argparse
+import json
+import math
+import re
+from pathlib import Path
+
+from score import is_truth, rate
+
+HERE = Path(__file__).resolve().parent
+DATA = HERE / "calibration.json"
+TOOL = HERE / "../../gap/src/diagnose/calibration.rs"
+NAMES = ["TEMPERATURE", "MIMICKED", "INEXACT", "LEFT"]
+RANGES = {"TEMPERATURE": (1.0, 4.0), "MIMICKED": (0.02, 0.9), "INEXACT": (0.02, 0.9), "LEFT": (0.02, 0.5)}
+LEAST = 1e-3  # one answer that is wrong for certain must not outweigh all others
+MOST = 300.0
+UNKNOWN = ["unknown"]
+
+
+def constants():
+    """The numbers of the tool."""
+    found = re.findall(r"const (\w+): f64 = ([\d.]+);", TOOL.read_text())
+    return {name: float(value) for name, value in found}
+
+
+# What is needed of a report.
+
+
+def row(report, label, left_out, temperature):
+    """log odds against the best hypothesis and number of members of each, with whether it is true."""
+    listed = [h for h in report["which"] if h["effects"] != UNKNOWN]
+    best = max(h["probability"] for h in listed) or 1.0
+    odds = lambda h: max(temperature * math.log(max(h["probability"], 1e-300) / best), -50.0)
+    true = lambda h: not left_out and is_truth(sorted(h["effects"]), label)
+    left = report.get("left")
+    return {
+        "listed": [[round(odds(h), 3), len(h["effects"]), true(h)] for h in listed if odds(h) > -40],
+        "left": left and [round(left[key], 3) for key in ("log_bayes_factor", "gain", "explained")],
+        "unlisted": left_out or label["kind"] == "off_library",
+        "left_out": left_out,
+    }
+
+
+def collect(reports, labels):
+    temperature = constants()["TEMPERATURE"]
+    rows = []
+    for folder in ("appell", "left_out"):
+        for name, label in sorted(labels.items()):
+            path = reports / folder / f"{name}.json"
+            if not path.exists() or folder == "left_out" and label["kind"] not in ("single", "mismatch"):
+                continue
+            report = json.loads(path.read_text())
+            if report.get("which"):
+                rows.append(row(report, label, folder == "left_out", temperature))
+    return rows
+
+
+# The probabilities, as in calibration.rs.
+
+
+def probabilities(row, numbers):
+    """Those of the listed hypotheses, and of none of them."""
+    weights = [math.exp(odds / numbers["TEMPERATURE"]) for odds, _, _ in row["listed"]]
+    listed = [weight / sum(weights) for weight in weights]
+    best = max(range(len(listed)), key=listed.__getitem__)
+    members = row["listed"][best][1]
+    log, gain, explained = row["left"] or (-math.inf, 0.0, 1.0)
+    factor = math.exp(min(log, MOST))
+    unlisted = numbers["UNLISTED"]
+    if members:
+        size = math.sqrt(gain / max(gain + max(explained, 0.0), 1e-300)) / numbers["LEFT"]
+        density = 2 / (math.sqrt(math.tau) * numbers["LEFT"]) * math.exp(-0.5 * size * size)
+        mimicked, inexact = numbers["MIMICKED"], numbers["INEXACT"]
+        odds = unlisted / (1 - unlisted) * (mimicked + (1 - mimicked) * factor)
+        odds /= 1 + inexact * density * factor
+    else:
+        odds = unlisted * factor
+    weight = odds * sum(p for p, (_, own, _) in zip(listed, row["listed"]) if own == members)
+    unknown = weight / (1 + weight)
+    return [p * (1 - unknown) for p in listed], unknown
+
+
+def claim(row, numbers):
+    """The first answer's probability, and whether it is true."""
+    listed, unknown = probabilities(row, numbers)
+    if unknown >= max(listed):
+        return unknown, row["unlisted"]
+    best = max(range(len(listed)), key=listed.__getitem__)
+    return listed[best], row["listed"][best][2]
+
+
+def surprise(rows, numbers):
+    """The mean of the negative logarithm of the true answer's probability."""
+    alike = sum(row["unlisted"] for row in rows)
+    weight = numbers["UNLISTED"] / (1 - numbers["UNLISTED"]) * (len(rows) - alike) / max(alike, 1)
+    total, weights = 0.0, 0.0
+    for row in rows:
+        listed, unknown = probabilities(row, numbers)
+        true = sum(p for p, (_, _, is_true) in zip(listed, row["listed"]) if is_true)
+        own = weight if row["unlisted"] else 1.0
+        total -= own * math.log(max(unknown if row["unlisted"] else true, LEAST))
+        weights += own
+    return total / weights
+
+
+def found(rows, numbers):
+    """The numbers that surprise least, by turns along each on finer and finer grids."""
+    numbers = dict(numbers)
+    for parts in (8, 16, 32, 64):
+        for _ in range(4):
+            for name in NAMES:
+                low, high = RANGES[name]
+                grid = [low * (high / low) ** (i / parts) for i in range(parts + 1)]
+                numbers[name] = min(grid, key=lambda value: surprise(rows, {**numbers, name: value}))
+    return numbers
+
+
+def reliability(rows, numbers):
+    claims = [claim(row, numbers) for row in rows if not row["left_out"]]
+    for low, high in ((0.0, 0.8), (0.8, 0.9), (0.9, 0.95), (0.95, 1.01)):
+        own = [(p, right) for p, right in claims if low <= p < high]
+        if own:
+            mean = sum(p for p, _ in own) / len(own)
+            yield f"| {low} to {min(high, 1)} | {mean:.2f} | {rate([right for _, right in own])} |"
+
+
+def main():
+    ask = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+    ask.add_argument("--collect", type=Path, help="folder of reports")
+    ask.add_argument("--labels", type=Path, default=HERE / "labels.json")
+    ask.add_argument("--data", type=Path, default=DATA)
+    ask.add_argument("--check", action="store_true")
+    ask = ask.parse_args()
+    if ask.collect:
+        rows = collect(ask.collect, json.loads(ask.labels.read_text())["cases"])
+        ask.data.write_text("[\n" + ",\n".join(map(json.dumps, rows)) + "\n]\n")
+        return
+    rows, now = json.loads(ask.data.read_text()), constants()
+    best = found(rows, now)
+    for name in NAMES:
+        print(f"{name}: {best[name]:.2f}, in the tool {now[name]}")
+    print(f"surprise: {surprise(rows, best):.3f}, with the numbers of the tool {surprise(rows, now):.3f}")
+    print("| claimed | mean | right |\n|---|---|---|")
+    print("\n".join(reliability(rows, now)))
+    if ask.check and surprise(rows, now) > surprise(rows, best) + 0.02:
+        raise SystemExit("the numbers of the tool are not those of the data")
+
+
+if __name__ == "__main__":
+    main()

@@ -6,6 +6,7 @@ mod common;
 use std::fmt::Write as _;
 use std::time::{Duration, Instant};
 
+use appell_gap::diagnose::{Options, diagnose};
 use appell_gap::motion_capture::Skeleton;
 use common::{Folder, SWING, pendulum, swing};
 
@@ -13,6 +14,8 @@ use common::{Folder, SWING, pendulum, swing};
 const DAMAGED: usize = 1_500;
 /// Damaged skeletons, captures and files of laboratories.
 const CAPTURES: usize = 600;
+/// Damaged data sets that are diagnosed.
+const DIAGNOSED: usize = 24;
 /// Far below a second, with room for a busy machine.
 const SLOWEST: Duration = Duration::from_millis(500);
 
@@ -190,4 +193,69 @@ fn damaged_skeletons_are_refused_or_read() {
     }
     assert!((CAPTURES / 50..CAPTURES).contains(&read), "{read}");
     assert!(slowest < SLOWEST, "{slowest:?}");
+}
+
+/// What a channel may show of a rig on which something is broken.
+fn broken(round: usize, row: usize, value: f64) -> f64 {
+    match round % 10 {
+        0 => 0.25,
+        1 => 1e6 * value,
+        2 => 1e-9 * value,
+        3 if (20..40).contains(&row) => f64::NAN,
+        4 if row % 2 == 0 => f64::NAN,
+        5 if row > 30 => 1e3,
+        6 => value + 1e6,
+        7 => -value,
+        8 if row == 25 => 1e12,
+        9 => (row * row % 7) as f64 * 1e3,
+        _ => value,
+    }
+}
+
+/// One column of all runs is broken, or the clock goes by another unit.
+fn rig_with_a_fault(round: usize, text: &str) -> String {
+    let mut lines = text.lines();
+    let mut out = format!("{}\n", lines.next().unwrap());
+    for (row, line) in lines.enumerate() {
+        let mut cells: Vec<f64> = line.split(',').map(|cell| cell.parse().unwrap()).collect();
+        match round / 10 {
+            0 => cells[1] = broken(round, row, cells[1]),
+            1 => cells[2] = broken(round, row, cells[2]),
+            _ => cells[0] *= [1e-4, 1e3, 1e6, 1e-9][round % 4],
+        }
+        let cells: Vec<String> = cells.iter().map(f64::to_string).collect();
+        writeln!(out, "{}", cells.join(",")).unwrap();
+    }
+    out
+}
+
+#[test]
+fn a_rig_with_a_fault_is_diagnosed_or_refused() {
+    let folder = Folder::new();
+    folder.write(
+        "recording.toml",
+        pendulum(SWING, &["a.csv", "b.csv"], &["c.csv"]),
+    );
+    // Some of all families are enough.
+    let effects = appell_gap::effects::shipped().unwrap();
+    let effects: Vec<_> = effects.into_iter().step_by(4).collect();
+    let mut told = 0;
+    for round in 0..DIAGNOSED {
+        for (seed, name) in (1..).zip(["a.csv", "b.csv", "c.csv"]) {
+            folder.write(name, rig_with_a_fault(round, &swing(60, seed, 1e-3)));
+        }
+        let Ok(set) = folder.read() else {
+            continue;
+        };
+        match diagnose(&set, &effects, &Options::default(), |_| ()) {
+            Ok(report) => {
+                told += 1;
+                let sum: f64 = report.which.iter().map(|one| one.probability).sum();
+                assert!((sum - 1.0).abs() < 1e-6, "round {round}: {sum}");
+            }
+            Err(error) => assert!(!error.to_string().is_empty()),
+        }
+    }
+    println!("{told} of {DIAGNOSED} are diagnosed");
+    assert!(told > DIAGNOSED / 4, "{told}");
 }

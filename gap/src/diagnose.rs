@@ -11,7 +11,7 @@
 //!          --unknown--> what no candidate explains, and what it depends on
 //!          --localise--> equations, windows of time, regions
 //!          --held_out--> errors of predictions: nominal, re-fitted, with the effect, noise
-//!          --traces, law--> what people look at
+//!          --over_time, traces, law--> what people look at
 //!          --experiment--> the input that tells tied hypotheses apart
 //!          --changes--> what each hypothesis changes in the spec
 //! ```
@@ -28,10 +28,12 @@ mod error;
 mod evidence;
 mod experiment;
 mod feedback;
+mod forces;
 mod held_out;
 mod hypothesis;
 mod law;
 mod localise;
+mod over_time;
 mod report;
 mod scales;
 mod screen;
@@ -46,6 +48,7 @@ pub use changes::{Beside, ChangeError, Changes, Refitted};
 pub use error::DiagnoseError;
 pub use experiment::{Experiment, Limit};
 pub use law::Law;
+pub use over_time::{MissingForce, OverTime};
 pub use report::{
     Detectable, Found, HowFar, Hypothesis, Left, Pictures, Region, Report, ShareOf, Value, Verdict,
     Where, Window,
@@ -135,6 +138,7 @@ pub fn diagnose(
     let pictures = if options.pictures {
         stage("drawing");
         Some(Pictures {
+            over_time: over_time::over_time(&bench, &comparison)?,
             traces: held_out.traces(&bench, &comparison, &leader)?,
             law: match leading {
                 Some(_) => None,

@@ -85,6 +85,10 @@ fn place(set: &DataSet, report: &Report) -> String {
     let mut html = "<h2>Where</h2>\n".to_owned();
     if report.verdict == Verdict::NoGap {
         html += "<p>No equation disagrees with the recordings beyond noise and disturbance.</p>\n";
+    } else if report.verdict == Verdict::Unexplained {
+        if let Some(left) = &report.left {
+            let _ = writeln!(html, "<p>{}.</p>", escaped(&capital(&left.about)));
+        }
     } else if report.place.equations.is_empty() {
         html += "<p>In the structure of the model: another one fits the recordings.</p>\n";
     } else {
@@ -97,6 +101,14 @@ fn place(set: &DataSet, report: &Report) -> String {
             &svg,
             "The mechanism at its initial state. A ring marks where the effect acts.",
         );
+    }
+    if let (Some(pictures), true) = (&report.pictures, report.verdict != Verdict::NoGap) {
+        let caption = format!(
+            "The missing force of each equation in parts of {} s of the runs that were fitted, the darker \
+             the larger; beside the name the largest.",
+            short(pictures.over_time.part)
+        );
+        html += &figure(&plots::over_time(&pictures.over_time), &caption);
     }
     html += &windows(&report.place);
     // What sensors show wrong is no force.
@@ -489,7 +501,7 @@ fn capital(text: &str) -> String {
     first.into_iter().flatten().chain(letters).collect()
 }
 
-fn escaped(text: &str) -> String {
+pub(super) fn escaped(text: &str) -> String {
     text.replace('&', "&amp;")
         .replace('<', "&lt;")
         .replace('>', "&gt;")

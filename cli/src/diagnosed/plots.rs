@@ -1,8 +1,13 @@
 //! Pictures of a gap report.
 
-use appell_gap::diagnose::{Experiment, Law, Trace};
+use std::fmt::Write as _;
+
+use appell_gap::diagnose::{Experiment, Law, OverTime, Trace};
 use appell_runtime::figure::{Layer, Look, Plot, Series};
 use appell_spec::Mechanism;
+
+use super::numbers::short;
+use super::page::escaped;
 
 /// Channels that are drawn.
 const DRAWN: usize = 3;
@@ -118,6 +123,67 @@ pub(super) fn law(law: &Law) -> String {
         layers,
     };
     plot.to_svg()
+}
+
+/// The missing force of each equation over time: the darker, the larger beside the largest of the
+/// equation.
+pub(super) fn over_time(map: &OverTime) -> String {
+    const LEFT: f64 = 190.0;
+    const WIDTH: f64 = 720.0;
+    const ROW: f64 = 26.0;
+    const GAP: f64 = 6.0;
+    let parts: usize = map.runs.iter().map(|(_, _, parts)| parts).sum();
+    let gaps = GAP * map.runs.len().saturating_sub(1) as f64;
+    let cell = (WIDTH - LEFT - gaps) / parts.max(1) as f64;
+    let height = ROW * map.equations.len() as f64 + 40.0;
+    let mut svg = format!(
+        "<svg viewBox=\"0 0 {WIDTH} {height}\" width=\"{WIDTH}\" height=\"{height}\" role=\"img\" \
+         class=\"heat\">\n"
+    );
+    // Writing to a string cannot fail.
+    for (row, equation) in map.equations.iter().enumerate() {
+        let largest = equation.rms.iter().copied().fold(0.0, f64::max);
+        let y = ROW * row as f64;
+        let _ = writeln!(
+            svg,
+            "<text x=\"4\" y=\"{:.1}\">{}</text><text x=\"{:.1}\" y=\"{:.1}\" class=\"small\">{} {}</text>",
+            y + 17.0,
+            escaped(&equation.name),
+            LEFT - 8.0,
+            y + 17.0,
+            short(largest),
+            escaped(&equation.unit),
+        );
+        let mut index = 0;
+        for (run, (_, _, parts)) in map.runs.iter().enumerate() {
+            for _ in 0..*parts {
+                let x = LEFT + cell * index as f64 + GAP * run as f64;
+                let part = equation.rms[index] / largest.max(f64::MIN_POSITIVE);
+                let _ = writeln!(
+                    svg,
+                    "<rect x=\"{x:.1}\" y=\"{:.1}\" width=\"{:.1}\" height=\"{:.1}\" fill-opacity=\"{part:.2}\"/>",
+                    y + 2.0,
+                    cell + 0.3,
+                    ROW - 4.0,
+                );
+                index += 1;
+            }
+        }
+    }
+    let mut index = 0;
+    for (run, (name, from, parts)) in map.runs.iter().enumerate() {
+        let x = LEFT + cell * index as f64 + GAP * run as f64;
+        let _ = writeln!(
+            svg,
+            "<text x=\"{x:.1}\" y=\"{:.1}\" class=\"run\">{}: {} to {} s</text>",
+            height - 20.0,
+            escaped(name),
+            short(*from),
+            short(from + map.part * *parts as f64),
+        );
+        index += parts;
+    }
+    svg + "</svg>\n"
 }
 
 /// The inputs of an experiment, in the units of the spec.

@@ -1,15 +1,14 @@
 //! The force that the model lacks, over what it depends on, with the law that was found for it.
 //!
 //! The states are those of the smoother under the nominal model, whose disturbance is free to be the
-//! missing force: what is drawn as data does not know the law. What the state does in a step beyond
-//! the equations without the effect, times the mass matrix, is the force.
+//! missing force: what is drawn as data does not know the law.
 
-use appell_runtime::estimate::{Estimation, Recording, Smoothed};
-use appell_runtime::model::{At, Model};
+use appell_runtime::estimate::Estimation;
 
 use super::DiagnoseError;
 use super::bench::Bench;
 use super::compare::Comparison;
+use super::forces::Forces;
 use super::report::Where;
 
 /// Most steps that are looked at.
@@ -122,86 +121,6 @@ fn steps(
     }
     steps.retain(|step| step.force.is_finite() && step.law.is_finite());
     Ok(steps)
-}
-
-/// The step that ends at a row.
-struct Forces<'s> {
-    model: &'s dyn Model,
-    /// Times at the ends.
-    times: [f64; 2],
-    /// States at the ends.
-    ends: [&'s [f64]; 2],
-    inputs: Vec<f64>,
-}
-
-impl<'s> Forces<'s> {
-    fn new(
-        model: &'s dyn Model,
-        recording: &Recording,
-        states: &'s [Smoothed],
-        row: usize,
-    ) -> Self {
-        let info = model.info();
-        let mut inputs = vec![0.0; info.input_len()];
-        inputs[..recording.input_len()].copy_from_slice(recording.inputs(row - 1));
-        Self {
-            model,
-            times: [recording.times()[row - 1], recording.times()[row]],
-            ends: [row - 1, row].map(|row| &states[row].state[..info.state_len()]),
-            inputs,
-        }
-    }
-
-    /// States in the middle, and inputs.
-    fn variables(&self) -> Vec<f64> {
-        let [from, to] = self.ends;
-        let middle = from.iter().zip(to).map(|(a, b)| 0.5 * (a + b));
-        middle.chain(self.inputs.iter().copied()).collect()
-    }
-
-    /// M (Δω/Δt − ω̇), with ω̇ the mean of both ends.
-    fn missing(&self, p: &[f64]) -> Vec<f64> {
-        let [before, after] = [0, 1].map(|end| self.rates(self.times[end], self.ends[end], p));
-        let [from, to] = self.ends;
-        let step = self.times[1] - self.times[0];
-        let beyond = |i: usize| (to[i] - from[i]) / step - 0.5 * (before[i] + after[i]);
-        self.times_mass(beyond, p)
-    }
-
-    /// M (ω̇ − ω̇₀) in the middle.
-    fn between(&self, with: &[f64], without: &[f64]) -> Vec<f64> {
-        let middle = self.variables();
-        let x = &middle[..self.ends[0].len()];
-        let [with, plain] = [with, without].map(|p| self.rates(self.times[0], x, p));
-        self.times_mass(|i| with[i] - plain[i], without)
-    }
-
-    fn rates(&self, t: f64, x: &[f64], p: &[f64]) -> Vec<f64> {
-        let mut rates = vec![0.0; x.len()];
-        let u = &self.inputs;
-        self.model.rates(At { t, x, u, p }, &mut rates);
-        rates
-    }
-
-    fn times_mass(&self, acceleration: impl Fn(usize) -> f64, p: &[f64]) -> Vec<f64> {
-        let speeds = self.model.info().speeds;
-        let middle = self.variables();
-        let at = At {
-            t: self.times[0],
-            x: &middle[..self.ends[0].len()],
-            u: &self.inputs,
-            p,
-        };
-        let (mut mass, mut bias) = (vec![0.0; speeds * speeds], vec![0.0; speeds]);
-        let mut forces = vec![0.0; speeds];
-        self.model.appell(at, &mut mass, &mut bias, &mut forces);
-        let row = |i: usize| {
-            (0..speeds)
-                .map(|j| mass[i * speeds + j] * acceleration(j))
-                .sum()
-        };
-        (0..speeds).map(row).collect()
-    }
 }
 
 /// The steps in order of a variable, cut into parts with as many steps each.

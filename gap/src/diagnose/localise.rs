@@ -101,7 +101,7 @@ pub(super) fn place(bench: &Bench<'_>, comparison: &Comparison) -> Result<Where,
 }
 
 /// Unit of the force beside a pseudo-velocity: a watt for each of its units.
-fn force_unit(speed: &str) -> String {
+pub(super) fn force_unit(speed: &str) -> String {
     match speed {
         "m/s" => "N".to_owned(),
         "rad/s" => "N m".to_owned(),

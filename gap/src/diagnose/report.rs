@@ -9,6 +9,7 @@ use super::compare::{Comparison, TIED, prior};
 use super::experiment::Experiment;
 use super::hypothesis::Fitted;
 use super::law::Law;
+use super::over_time::OverTime;
 use super::screen::Screen;
 use super::traces::{Ahead, Trace};
 use crate::effects::{Acts, Part};
@@ -235,6 +236,8 @@ pub struct Report {
 /// What people look at.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Pictures {
+    /// The missing force of each equation.
+    pub over_time: OverTime,
     /// Channels of the first run that was held out.
     pub traces: Vec<Trace>,
     /// The missing force; nothing without a gap in the equations.

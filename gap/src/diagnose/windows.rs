@@ -12,7 +12,7 @@ use super::hypothesis::Fitted;
 use super::report::{Region, Where, Window};
 
 /// Length of a window in s.
-const WINDOW: f64 = 0.5;
+pub(super) const WINDOW: f64 = 0.5;
 /// Part of false windows among those that are told (Y. Benjamini and D. Yekutieli, *The control of the
 /// false discovery rate in multiple testing under dependency*, 2001).
 const FALSE: f64 = 0.05;

@@ -104,8 +104,8 @@ fn place(set: &DataSet, report: &Report) -> String {
     }
     if let (Some(pictures), true) = (&report.pictures, report.verdict != Verdict::NoGap) {
         let caption = format!(
-            "The missing force of each equation in parts of {} s of the runs that were fitted, the darker \
-             the larger; beside the name the largest.",
+            "The missing force of each equation in parts of {} s of the runs that were fitted, the \
+             stronger the colour the larger; beside the name the largest.",
             short(pictures.over_time.part)
         );
         html += &figure(&plots::over_time(&pictures.over_time), &caption);
@@ -201,10 +201,15 @@ fn windows(place: &Where) -> String {
             let time = format!("{} to {} s", short(w.from), short(w.to));
             vec![escaped(&w.run), time, code(&w.equation), short(w.z)]
         });
-        html += &table(
+        let table = table(
             ["run", "when", "equation of", "size in deviations"],
             rows,
             3,
+        );
+        let _ = writeln!(
+            html,
+            "<details><summary>{} windows that stand out</summary>{table}</details>",
+            place.windows.len()
         );
     }
     if !place.region.is_empty() {

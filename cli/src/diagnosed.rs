@@ -278,6 +278,7 @@ pub(crate) fn json(report: &Report, next: Option<&Path>) -> Value {
             "gain": left.gain,
             "explained": left.explained,
         })),
+        "independent": report.independent,
         "failed": failed.collect::<Vec<_>>(),
         "disturbances": disturbances.collect::<Vec<_>>(),
     })

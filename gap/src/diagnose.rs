@@ -39,6 +39,7 @@ mod scales;
 mod screen;
 mod traces;
 mod unknown;
+mod whiteness;
 mod windows;
 
 use crate::data::{DataSet, Part, Spec};

@@ -41,10 +41,11 @@ def row(report, label, left_out, temperature):
     best = max(h["probability"] for h in listed) or 1.0
     odds = lambda h: max(temperature * math.log(max(h["probability"], 1e-300) / best), -50.0)
     true = lambda h: not left_out and is_truth(sorted(h["effects"]), label)
-    left = report.get("left")
+    left, independent = report.get("left"), report.get("independent", 1.0)
     return {
         "listed": [[round(odds(h), 3), len(h["effects"]), true(h)] for h in listed if odds(h) > -40],
-        "left": left and [round(left[key], 3) for key in ("log_bayes_factor", "gain", "explained")],
+        "left": left
+        and [round(independent * left["log_bayes_factor"], 3), round(left["gain"], 3), round(left["explained"], 3)],
         "unlisted": left_out or label["kind"] == "off_library",
         "left_out": left_out,
     }

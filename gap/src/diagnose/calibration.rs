@@ -12,11 +12,11 @@ const UNLISTED: f64 = 0.1;
 /// Differences of the logarithm of the evidence are divided by this.
 const TEMPERATURE: f64 = 1.0;
 /// Probability that an effect which the library lacks looks just like one that it has.
-const MIMICKED: f64 = 0.3;
+const MIMICKED: f64 = 0.4;
 /// Odds that the law of an effect is not exact.
-const INEXACT: f64 = 0.3;
+const INEXACT: f64 = 0.5;
 /// Size of what such a law leaves beside what it explains: standard deviation.
-const LEFT: f64 = 0.15;
+const LEFT: f64 = 0.1;
 /// Larger logarithms are certainty.
 const MOST: f64 = 300.0;
 

@@ -13,6 +13,7 @@ use super::calibration::{Rest, tempered, unlisted_beside_an_effect, unlisted_bes
 use super::hypothesis::Fitted;
 use super::screen::{Screen, Screened};
 use super::unknown::{Leftover, leftover};
+use super::whiteness::independent;
 use crate::effects::{Acts, Candidate, Part};
 
 /// Candidates that are fitted alone.
@@ -43,6 +44,8 @@ pub(super) struct Comparison {
     pub(super) fits: Vec<(Fitted, f64)>,
     /// Hypotheses whose fit failed, with the reason.
     pub(super) failed: Vec<(Vec<usize>, String)>,
+    /// Part of the samples that tell something of their own: see `whiteness`.
+    pub(super) independent: f64,
     /// Probability that nothing in the library explains the gap.
     pub(super) unknown: f64,
     /// What the best hypothesis leaves.
@@ -77,8 +80,9 @@ impl Comparison {
             self.explained(),
         );
         let rest = Rest {
-            log_bayes_factor: (self.left.as_ref())
-                .map_or(f64::NEG_INFINITY, |left| left.log_bayes_factor),
+            log_bayes_factor: (self.left.as_ref()).map_or(f64::NEG_INFINITY, |left| {
+                self.independent * left.log_bayes_factor
+            }),
             share: gain / (gain + explained.max(0.0)).max(f64::MIN_POSITIVE),
         };
         let members = self.best().members.len();
@@ -123,7 +127,7 @@ impl Comparison {
                 search.join(best, &screened);
             }
         }
-        Ok(search.finish())
+        search.finish()
     }
 }
 
@@ -208,11 +212,14 @@ impl Search<'_, '_> {
         fitted.evidence.log() + prior(self.bench, fitted.members.len())
     }
 
-    fn finish(mut self) -> Comparison {
+    fn finish(mut self) -> Result<Comparison, DiagnoseError> {
         self.fits.retain(|fitted| fitted.evidence.smallest > 1.0);
         let logs: Vec<f64> = self.fits.iter().map(|f| self.log_posterior(f)).collect();
-        let most = logs.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        let weights: Vec<f64> = logs.iter().map(|log| tempered(log - most).exp()).collect();
+        let best = (0..logs.len()).max_by(|&a, &b| logs[a].total_cmp(&logs[b]));
+        let best = best.unwrap_or(0);
+        let independent = independent(self.bench, &self.fits[best])?;
+        let weight = |log: &f64| tempered(independent * (log - logs[best])).exp();
+        let weights: Vec<f64> = logs.iter().map(weight).collect();
         let sum: f64 = weights.iter().sum();
         let mut fits: Vec<(Fitted, f64)> = self
             .fits
@@ -224,13 +231,14 @@ impl Search<'_, '_> {
         let nominal = fits
             .iter()
             .position(|(fitted, _)| fitted.members.is_empty());
-        Comparison {
+        Ok(Comparison {
             nominal: nominal.unwrap_or(0),
             fits,
             failed: self.failed,
+            independent,
             unknown: 0.0,
             left: None,
-        }
+        })
     }
 }
 

@@ -223,6 +223,9 @@ pub struct Report {
     pub disturbances: Vec<(String, f64, f64)>,
     /// What the best hypothesis leaves; nothing where no law foretells runs that it was not found in.
     pub left: Option<Left>,
+    /// Part of the samples that tell something of their own; less than one where the innovations of
+    /// the best hypothesis follow each other.
+    pub independent: f64,
     /// Effects of the best hypothesis in words.
     pub found: Vec<Found>,
     /// Errors over horizons; empty where no run was held out.
@@ -333,6 +336,7 @@ pub(super) fn assemble(
             .collect(),
         disturbances: disturbances(bench, comparison.nominal(), best),
         left: left(bench, comparison),
+        independent: comparison.independent,
         found,
         horizons: Vec::new(),
         pictures: None,
@@ -352,7 +356,7 @@ fn join(
     let beside = best.evidence.log() + prior(bench, best.members.len());
     let base = comparison.nominal().evidence.log();
     for rival in rivals {
-        let odds = tempered(rival.log + prior(bench, 1) - beside);
+        let odds = tempered(comparison.independent * (rival.log + prior(bench, 1) - beside));
         which.push(Hypothesis {
             effects: vec![rival.name.clone()],
             probability: odds.min(MOST_LOG_ODDS).exp() * known.max(f64::MIN_POSITIVE),

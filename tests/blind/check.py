@@ -4,12 +4,14 @@ check.py [--archive]      with --archive a case is made anew and held against th
 
 import argparse
 import json
+import re
 import tarfile
 import tempfile
 from pathlib import Path
 
 import numpy as np
 from scipy.integrate import solve_ivp
+from scipy.optimize import least_squares
 
 import catalogue
 import generate
@@ -17,11 +19,15 @@ import mechanisms
 import oracle
 import rigid
 import simulate
+import substitutes
 import truths
+import twins
 from effects import Actuator, DryFriction, Force, Parameter, Rig, Richer
+from plan import single
 
 HERE = Path(__file__).resolve().parent
 ENERGY = 1e-7  # relative; the tolerance of the integration over two seconds
+SELF = 0.1  # part of a gap by which a law with events may differ from the same one in steps
 AGREEMENT = 1e-6  # rms between MuJoCo and SciPy, in units of the coordinates
 TIMES = np.arange(0, 2.0001, 0.01)
 
@@ -183,6 +189,90 @@ def innovations_of_the_true_filter_are_white():
         assert abs(mean - 1) < 4 * np.sqrt(2 / np.size(out)), (name, mean)
 
 
+class Seen:
+    """One run of a rig with an effect."""
+
+    def __init__(self, mechanism, effect, size):
+        self.place = generate.world(0, single(mechanism, effect, "field", size=size))
+        rig = self.place.rig([size])
+        self.trial = generate.trial(self.place, rig, 0)
+        self.recordings = twins.recordings_of(self.place, rig, [self.trial])
+        self.size = self.recordings.size
+
+    def from_(self, name):
+        """Separation from an effect."""
+        candidates = [c for c in twins.candidates_of(self.place, [self.trial]) if c.name == name]
+        return twins.separations(self.recordings, candidates)[0][name]
+
+
+def an_effect_is_its_own_twin():
+    """What is simulated with events, contacts and further speeds is what a substitute does in steps."""
+    for mechanism, effect, size, name in (
+        ("carriage", "coulomb_friction@x", 0.3, "coulomb_friction@x"),
+        ("carriage", "stribeck_friction@x", 0.3, "stribeck_friction@x"),
+        ("cart_pole", "quadratic_drag@pole", 0.2, "quadratic_drag@pole"),
+        ("double_pendulum", "mass_offset@link2", 0.5, "mass_offset@link2"),
+        ("unicycle", "added_inertia@r", 2.0, "added_inertia@r"),
+        ("pendulum", "parameter_error@l", 2.0, "parameter_error@l"),
+        ("pendulum", "actuator_saturation@tau", 1.8, "actuator_saturation@tau"),
+        ("carriage", "actuator_lag@F", 0.3, "actuator_lag@F"),
+        ("carriage", "actuator_delay@F", 0.3, "actuator_delay@F"),
+        ("carriage", "sensor_delay@x", 0.3, "sensor_delay@x"),
+        ("euc_2dof", "longitudinal_slip@contact", 6.0, "longitudinal_slip@rolling"),
+        ("unicycle", "lateral_slip@contact", 1.0, "lateral_slip@rolling"),
+    ):
+        seen = Seen(mechanism, effect, size)
+        apart = seen.from_(name)
+        assert seen.size > 3 and apart < SELF * seen.size, (effect, seen.size, apart)
+
+
+def twins_are_mutual():
+    """Two laws that are linear in their sizes take the same part of each other's gap."""
+    for mechanism, first, second in (
+        ("carriage", "viscous_friction@x", "quadratic_drag@carriage"),
+        ("cart_pole", "ground_slope@gravity", "constant_force@pole"),
+    ):
+        both = [Seen(mechanism, one, 0.2) for one in (first, second)]
+        shares = [seen.from_(other) / seen.size for seen, other in zip(both, (second, first))]
+        assert abs(shares[0] - shares[1]) < 0.05 and 0.01 < shares[0] < 0.99, (first, second, shares)
+
+
+def separations_are_those_of_a_filter_with_the_wrong_law():
+    """A filter with the substitute's law, its size and the parameters fitted to a run without noise: what
+    it is surprised by, against the projection of signatures."""
+    for mechanism, effect, size, wrong in (
+        ("pendulum", "coulomb_friction@theta", 0.3, "viscous_friction@theta"),
+        ("carriage", "actuator_lag@F", 1.0, "actuator_delay@F"),
+    ):
+        seen = Seen(mechanism, effect, size)
+        place, trial, filter = seen.place, seen.trial, seen.recordings.filters[0]
+        stds = generate.tolerances(place)
+        astray = [(place.true[name] - place.declared[name]) / std for name, std in stds.items()]
+
+        def surprises(fitted):
+            other = catalogue.make(place.mechanism, place.true, *wrong.split("@"), fitted[0])
+            p = {
+                **place.true,
+                **{name: place.true[name] + s * z for (name, s), z in zip(stds.items(), fitted[1:])},
+            }
+            inputs, effects = oracle.held(trial.commands), [other]
+            if isinstance(other, Actuator):
+                inputs, effects = substitutes.acted(place.mechanism, other, trial.t, trial.commands), []
+            x, out = trial.states[0], []
+            for k, dt in enumerate(np.diff(trial.t)):
+                e = trial.states[k, : filter.n] - x[: filter.n]
+                out.append(filter.white[k] @ e)
+                x = x + filter.K[k] @ e
+                x = oracle.flow(place.mechanism, p, x, inputs[k], trial.disturbance[k], dt, 0.0, effects)
+            return np.concatenate(out + [fitted[1:] + astray])
+
+        start = np.append(size, np.zeros(len(stds)))
+        fit = least_squares(surprises, start, diff_step=1e-3, ftol=1e-3, max_nfev=10)
+        by_force = np.sqrt(2 * fit.cost - seen.recordings.own**2)
+        projected = seen.from_(wrong)
+        assert abs(by_force - projected) < 0.1 + 0.05 * by_force, (effect, wrong, by_force, projected)
+
+
 def a_case_is_made_again_byte_for_byte():
     name = next(n for n, i in generate.names().items() if generate.CASES[i].mechanism == "carriage")
     with tempfile.TemporaryDirectory() as place:
@@ -208,6 +298,23 @@ def labels_and_cases_agree():
                 label["null_kind"] or "@",
             ]:
                 assert word.split("@")[0] not in text or not word.split("@")[0], (member, word)
+
+
+def twins_are_made_again():
+    """As the label has them; and no right answer is called a twin."""
+    labels = json.loads((HERE / "labels.json").read_text())["cases"]
+    for label in labels.values():
+        right = [pattern for patterns in label["accept"] for pattern in patterns]
+        assert ("twins" in label) == (label["kind"] in ("single", "mismatch"))
+        assert not any(re.fullmatch(pattern, name) for pattern in right for name in label.get("twins", {}))
+    name = next(
+        n for n, label in sorted(labels.items()) if label["mechanism"] == "pendulum" and label.get("twins")
+    )
+    place, rig, _ = generate.sized_rig(generate.names()[name])
+    trials = [generate.trial(place, rig, run) for run in range(generate.FIT_RUNS)]
+    again, label = twins.twins_of(place, rig, trials, labels[name]["accept"]), labels[name]["twins"]
+    assert again.keys() == label.keys(), (name, again, label)
+    assert all(abs(again[one] - label[one]) < 0.02 for one in again), (name, again, label)
 
 
 def rigs_stay_up():
@@ -242,9 +349,17 @@ def main():
         delays_shift_the_command,
         lugre_and_play_lose_energy,
         innovations_of_the_true_filter_are_white,
+        an_effect_is_its_own_twin,
+        twins_are_mutual,
+        separations_are_those_of_a_filter_with_the_wrong_law,
     ]
     if ask.archive:
-        checks += [labels_and_cases_agree, rigs_stay_up, a_case_is_made_again_byte_for_byte]
+        checks += [
+            labels_and_cases_agree,
+            rigs_stay_up,
+            twins_are_made_again,
+            a_case_is_made_again_byte_for_byte,
+        ]
     for check in checks:
         check()
         print("ok  ", check.__name__.replace("_", " "), flush=True)

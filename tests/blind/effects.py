@@ -30,6 +30,10 @@ class Effect:
         """Force along the pseudo-velocities; smooth, for one state or many."""
         return 0.0
 
+    def after(self, mechanism, p, x, h):
+        """States after a step of h, where the effect acts on states."""
+        return x
+
 
 @dataclass
 class Force(Effect):
@@ -77,13 +81,14 @@ class PointForce(Effect):
     law: str = "library"
     wind: np.ndarray = None
     step: float = 0.01
+    axis: int = 0  # of the ground, along which a constant force acts
 
     def force(self, mechanism, p, q, v, t):
         J = mechanism.bodies[self.site].jacobian(p, q)
         velocity = times(J, v)
         if self.kind == "constant_force":
             F = np.zeros_like(velocity)
-            F[..., 0] = self.size
+            F[..., self.axis] = self.size
         else:
             if self.kind == "gust":
                 velocity = velocity.copy()
@@ -96,17 +101,18 @@ class PointForce(Effect):
 
 @dataclass
 class Slope(Effect):
-    """A ground that falls along x: part of the weight of every body acts along it."""
+    """A ground that falls along an axis: part of the weight of every body acts along it."""
 
     size: float
     kind: str = "ground_slope"
     site: str = "gravity"
     law: str = "library"
+    axis: int = 0
 
     def force(self, mechanism, p, q, v, t):
         total = 0.0
         for body in mechanism.bodies.values():
-            forward = body.jacobian(p, q)[..., 0, :]
+            forward = body.jacobian(p, q)[..., self.axis, :]
             total = total + np.asarray(body.mass(p) * 9.81 * self.size)[..., None] * forward
         return total
 
@@ -238,7 +244,12 @@ class Actuator(Effect):
     def value(self, t):
         return self.state(t)[0]
 
+    @property
+    def remembers(self):
+        return self.kind in ("actuator_lag", "actuator_delay")
+
     def static(self, u):
+        """What comes of a command at once, or of many."""
         d = self.size
         if self.law == "soft":
             return d * np.tanh(u / d)
@@ -246,7 +257,7 @@ class Actuator(Effect):
             "actuator_gain": (1 + d) * u,
             "actuator_bias": u + d,
             "actuator_saturation": np.clip(u, -d, d),
-            "actuator_dead_zone": np.sign(u) * max(abs(u) - d, 0.0),
+            "actuator_dead_zone": np.sign(u) * np.maximum(np.abs(u) - d, 0.0),
         }[self.kind]
 
 

@@ -286,11 +286,16 @@ def label(world, rig, trials, measured, each, stated):
     }
 
 
-def make_case(number, name, out):
-    case = CASES[number]
-    place = world(number, case)
+def sized_rig(number):
+    """The rig of a case, and d' of each of its effects."""
+    place = world(number, CASES[number])
     sizes, each = sized(place)
-    rig = place.rig(sizes)
+    return place, place.rig(sizes), each
+
+
+def make_case(number, name, out):
+    place, rig, each = sized_rig(number)
+    case = place.case
     trials = [trial(place, rig, run) for run in range(RUNS)]
     measured = [recorded(place, rig, one, run) for run, one in enumerate(trials)]
     stated = {"noise_x0.5": 0.5, "noise_x2": 2.0}.get(case.null_kind, 1.0)

@@ -35,6 +35,8 @@ def flow(mechanism, p, x, inputs, disturbance, dt, t=0.0, effects=()):
         k3 = rates(x + h / 2 * k2, u)
         k4 = rates(x + h * k3, u)
         x = x + h / 6 * (k1 + 2 * k2 + 2 * k3 + k4)
+        for effect in effects:
+            x = effect.after(mechanism, p, x, h)
     return x
 
 
@@ -42,11 +44,14 @@ def held(commands):
     return np.repeat(commands[:, None, :], SUBSTEPS, axis=1)
 
 
-def given(rig, t, commands):
-    """What the actuators of the rig gave in the middle of each substep."""
+def given(mechanism, actuators, t, commands):
+    """What actuators give in the middle of each substep."""
     inputs = held(commands).copy()
-    for actuator in rig.of(Actuator):
-        i = rig.mechanism.inputs.index(actuator.site)
+    for actuator in actuators:
+        i = mechanism.inputs.index(actuator.site)
+        if not actuator.remembers:
+            inputs[:, :, i] = actuator.static(inputs[:, :, i])
+            continue
         actuator.reset()
         for k in range(len(t) - 1):
             actuator.hold(t[k], commands[k, i])
@@ -116,29 +121,58 @@ class Filter:
         return np.array(out).reshape(-1, defects.shape[-1])
 
 
+class Motion:
+    """A true motion, and by how much a model errs along it in each sample: in the state that it makes of
+    the true one before, and in what the sensors show."""
+
+    def __init__(self, rig, trial, disturbed=True):
+        self.mechanism, self.p, self.trial = rig.mechanism, rig.unchanged, trial
+        self.x, self.dt = trial.states[:-1], np.diff(trial.t)
+        self.u, self.w = held(trial.commands)[:-1], trial.disturbance[: len(self.dt)] * disturbed
+        self.declared = self.next()
+
+    def next(self, mechanism=None, p=None, inputs=None, effects=()):
+        """States one sample after the true ones, by the declared model or one that differs."""
+        inputs = self.u if inputs is None else inputs
+        return flow(
+            mechanism or self.mechanism, p or self.p, self.x, inputs, self.w, self.dt, 0.0, effects=effects
+        )
+
+    def off(self, sensors=()):
+        """What sensors show besides the positions."""
+        n = len(self.mechanism.coordinates)
+        q, v = self.mechanism.split(self.trial.states)
+        rates, shown = times(self.mechanism.kinematics(self.p, q), v), np.zeros((len(q), n))
+        for sensor in sensors:
+            i = self.mechanism.coordinates.index(sensor.site)
+            shown[:, i] = sensor.shown(self.trial.t, q[:, i], rates[:, i]) - q[:, i]
+        return shown
+
+    def gap(self, rig):
+        """What the declared model lacks."""
+        return self.trial.states[1:] - self.declared, self.off(rig.of(Sensor))
+
+    def imitations(self, tolerances):
+        """What a standard deviation of each uncertain parameter does."""
+        defects = []
+        for name, std in tolerances.items():
+            up, down = dict(self.p), dict(self.p)
+            up[name], down[name] = self.p[name] + 0.1 * std, self.p[name] - 0.1 * std
+            defects.append((self.next(p=up) - self.next(p=down)) / 0.2)
+        return [(defect, self.off()) for defect in defects]
+
+
+def whitened(filter, errors):
+    """Whitened innovations, a column for each (defects of the motion, what is shown)."""
+    defects, shown = (np.stack(parts, axis=-1) for parts in zip(*errors))
+    return filter.innovations(defects, shown)
+
+
 def signatures(rig, trial, tolerances, noise, disturbance_sd):
     """Whitened innovations: the gap of the true motion, and one per uncertain parameter."""
-    mechanism, p = rig.mechanism, rig.unchanged
-    x, dt, u, w = (
-        trial.states[:-1],
-        np.diff(trial.t),
-        held(trial.commands)[:-1],
-        trial.disturbance[: len(trial.t) - 1],
-    )
-    defects = [trial.states[1:] - flow(mechanism, p, x, u, w, dt)]
-    n = len(noise)
-    shown = np.zeros((len(trial.t), n, 1 + len(tolerances)))
-    for sensor in rig.of(Sensor):
-        i = mechanism.coordinates.index(sensor.site)
-        rates = times(mechanism.kinematics(p, trial.states[:, :n]), trial.states[:, n:])
-        shown[:, i, 0] = sensor.shown(trial.t, trial.states[:, i], rates[:, i]) - trial.states[:, i]
-    for name, std in tolerances.items():
-        up, down = dict(p), dict(p)
-        up[name], down[name] = p[name] + 0.1 * std, p[name] - 0.1 * std
-        difference = flow(mechanism, up, x, u, w, dt) - flow(mechanism, down, x, u, w, dt)
-        defects.append(difference / 0.2)
+    motion = Motion(rig, trial)
     filter = Filter(rig, trial, noise, disturbance_sd)
-    return filter.innovations(np.stack(defects, axis=-1), shown)
+    return whitened(filter, [motion.gap(rig)] + motion.imitations(tolerances))
 
 
 def dprime(parts):
@@ -212,7 +246,12 @@ def how_far(rig, declared, trials, recorded, noise, disturbance_sd, law):
                 )
                 shown[:, i] = sensor.shown(trial.t, trial.states[:, i], rates[:, i]) - trial.states[:, i]
             effects = [e for e in rig.effects if not isinstance(e, (Actuator, Sensor, Parameter))]
-            models["with_effect"] = (rig.parameters, given(rig, trial.t, trial.commands), effects, shown)
+            models["with_effect"] = (
+                rig.parameters,
+                given(rig.mechanism, rig.of(Actuator), trial.t, trial.commands),
+                effects,
+                shown,
+            )
         for name, (p, inputs, effects, shown) in models.items():
             states = track(rig, p, trial, measured, filter, inputs, effects, shown)
             predicted = ahead(rig, p, trial, states, inputs, effects, horizon, starts)[:, : len(noise)]

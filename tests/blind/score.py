@@ -31,6 +31,7 @@ LARGE = 7.4  # d' from which an effect should be found
 MOST_TIED = 5  # a tie of more says nothing
 SURE = 0.95
 NAMED = 0.8  # probability at which a wrong name counts, in the leave-one-out check
+TOLD = 3.3  # separation, in standard deviations, from which a recording tells two answers apart
 TIME_LIMIT_S = 300
 DRAWS = 2000  # of the bootstrap
 
@@ -156,6 +157,19 @@ def is_truth(effects, label):
     return any(all(map(fits, order, wanted)) for order in itertools.permutations(effects))
 
 
+def is_twin(effects, label):
+    """Whether this recording cannot tell a set of effects from the truth. Pairs are listed where neither
+    effect would do alone; sets of more are never listed, and count as told."""
+    return label.get("twins", {}).get("+".join(sorted(effects)), math.inf) < TOLD
+
+
+def has_twin(label):
+    """Whether something that is left without the right kinds is a twin."""
+    gone = kinds_of(label)
+    kinds = lambda name: {effect.split("@")[0] for effect in name.split("+")}
+    return any(left < TOLD and not kinds(name) & set(gone) for name, left in label.get("twins", {}).items())
+
+
 def right_domains(label):
     twins = {domain_of(pattern) for patterns in label["accept"] for pattern in patterns}
     return set(label["domains"] or []) | twins
@@ -242,6 +256,7 @@ def scores(labels, folder):
 
     detected = lambda l, a: a is not None and a.verdict != "no_gap"
     first = lambda l, a: a is not None and is_truth(a.sets[0], l)
+    near = lambda l, a: first(l, a) or a is not None and is_twin(a.sets[0], l)
     leading = lambda l, a: a is not None and (
         first(l, a) or len(a.tied) <= MOST_TIED and any(is_truth(member, l) for member in a.tied)
     )
@@ -260,6 +275,7 @@ def scores(labels, folder):
         (f"detected, d′ below {LARGE}", over(small, detected)),
         (f"detected, d′ {LARGE} and more", over(large, detected)),
         ("right effect first", over(large, first)),
+        ("right effect or its twin first", over(large, near)),
         ("right effect in the leading tie", over(large, leading)),
         ("members of the leading tie, mean", size_of_ties(large)),
         ("right effect in the first three", over(large, three)),
@@ -290,8 +306,11 @@ def left_out(labels, folder):
     known = [(l, a) for l, a in answers if a]
     named = lambda a: a.sets[0] not in ([], ["unknown"])
     wrong = lambda a: named(a) and a.probability >= NAMED and len(a.tied) == 1
+    told = lambda l, a: wrong(a) and not is_twin(a.sets[0], l)
     return [
         (f"wrong name at {NAMED} and more", rate([wrong(a) for _, a in known])),
+        ("… that the recording tells from the truth", rate([told(l, a) for l, a in known])),
+        ("… where nothing that is left is a twin", rate([wrong(a) for l, a in known if not has_twin(l)])),
         ("a tie, or a name with less", rate([named(a) and not wrong(a) for _, a in known])),
         ("“none of the library”", rate([a.sets[0] == ["unknown"] for _, a in known])),
         ("no gap", rate([a.sets[0] == [] for _, a in known])),
@@ -325,7 +344,7 @@ def section(labels, reports):
             table("measure", {name.replace("_", " "): scores(labels, reports / name) for name in methods})
         )
     if (reports / "left_out").is_dir():
-        parts.append("The library without the effect that is there, and without its twins:")
+        parts.append("The library without the effect that is there, and without other right answers:")
         parts.append(table("answer", {"appell": left_out(labels, reports / "left_out")}))
     return "\n\n".join(parts)
 

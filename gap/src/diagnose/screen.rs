@@ -116,7 +116,8 @@ impl<'t> Projected<'t> {
                 .view_mut((0, place), (samples, 1))
                 .copy_from(&self.tangent.slopes.column(column));
         }
-        let along = self.basis.tr_mul(&slopes);
+        // Turned, the product runs along the memory.
+        let along = self.basis.transpose() * &slopes;
         slopes -= &self.basis * along;
         slopes
     }

@@ -10,7 +10,9 @@
 
 use std::f64::consts::{PI, TAU};
 
-use appell_runtime::estimate::{Along, Disturbance, Estimation, Measured, Recording, Shapes};
+use appell_runtime::estimate::{
+    Along, Disturbance, Estimation, Innovation, Measured, Recording, Shapes,
+};
 use appell_runtime::model::At;
 use nalgebra::{DMatrix, DVector};
 
@@ -271,23 +273,31 @@ struct Told {
 impl Told {
     fn new(projected: &Projected<'_>, slopes: &DMatrix<f64>) -> Self {
         let samples = &projected.tangent.samples;
+        // By rows the products below run along the memory.
+        let turned = slopes.transpose();
+        let told = |from: usize, rows: usize| {
+            let turned = turned.columns(from, rows);
+            let squares = turned * slopes.rows(from, rows);
+            (squares, -(turned * projected.rest.rows(from, rows)))
+        };
         let mut runs = Vec::new();
         let mut from = 0;
         while let Some((run, _)) = samples.get(from) {
-            let rows = samples[from..]
-                .iter()
-                .take_while(|(own, _)| own == run)
-                .count();
-            let slopes = slopes.rows(from, rows);
-            let rest = projected.rest.rows(from, rows);
-            runs.push((slopes.tr_mul(&slopes), -slopes.tr_mul(&rest)));
+            let of_run = |sample: &&(usize, Innovation)| sample.0 == *run;
+            let rows = samples[from..].iter().take_while(of_run).count();
+            runs.push(told(from, rows));
             from += rows;
         }
-        // With the rows for what is known of the parameters beforehand.
+        // The rows for what is known of the parameters beforehand belong to no run.
+        let (mut squares, mut scores) = told(from, slopes.nrows() - from);
+        for (own, score) in &runs {
+            squares += own;
+            scores += score;
+        }
         Self {
             runs,
-            squares: slopes.tr_mul(slopes),
-            scores: -slopes.tr_mul(&projected.rest),
+            squares,
+            scores,
         }
     }
 

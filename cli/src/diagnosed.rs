@@ -77,6 +77,17 @@ pub(crate) fn text(report: &Report, next: Option<&Path>) -> String {
     if let Some(left) = report.left.as_ref().filter(|left| left.is_there()) {
         let _ = writeln!(text, "  left      {}", left.about);
     }
+    if report.verdict == Verdict::Unexplained && !report.failed.is_empty() {
+        let names: Vec<String> = (report.failed.iter().take(LISTED))
+            .map(|(effects, _)| joined(effects))
+            .collect();
+        let _ = writeln!(
+            text,
+            "  failed    {} could not be fitted, among them {}; the gap report says why",
+            report.failed.len(),
+            names.join(", ")
+        );
+    }
     if let Some(experiment) = &report.experiment {
         let _ = writeln!(text, "  next      {}", told(experiment));
     }

@@ -29,11 +29,11 @@ pub(crate) fn read(paths: &[PathBuf], model: Option<&str>) -> Result<DataSet, Fa
             Ok(data::read(folder, &library, spec)?)
         }
         (paths, _) if paths.iter().any(described) => Err(Failure::Usage(
-            "give one data set, or CSV files with `--model`".to_owned(),
+            "give one data set, or CSV files and their mechanism".to_owned(),
         )),
         (paths, Some(spec)) => Ok(data::read_bare(spec, paths)?),
         (_, None) => Err(Failure::Usage(
-            "CSV files need `--model`, the mechanism whose names their columns have".to_owned(),
+            "CSV files need the mechanism whose names their columns have; name a shipped one or a spec".to_owned(),
         )),
     }
 }

@@ -191,6 +191,29 @@ pub fn read(
         findings,
     };
     noise::find(&mut set);
+    set.tell_what_lacks();
     set.findings.sort_by_key(Finding::order);
     Ok(set)
+}
+
+impl DataSet {
+    /// Inputs without a column, and parameters without a tolerance.
+    fn tell_what_lacks(&mut self) {
+        for (index, input) in self.mechanism.inputs.iter().enumerate() {
+            let recorded = |channel: &Channel| channel.role == Role::Input(index);
+            if !self.channels.iter().any(recorded) {
+                let message = format!(
+                    "no column is the input `{}`, so zero is taken for it",
+                    input.label.name
+                );
+                self.findings
+                    .push(Finding::new(FindingKind::NoInput, message));
+            }
+        }
+        if !self.parameters.is_empty() && self.parameters.iter().all(|own| own.std.is_none()) {
+            let message = "no parameter has a tolerance `std`, so all are taken as they are";
+            self.findings
+                .push(Finding::new(FindingKind::NoTolerance, message));
+        }
+    }
 }

@@ -28,7 +28,8 @@ pub fn read_bare(spec: Spec, files: &[PathBuf]) -> Result<DataSet, DataError> {
     let channels = channels(&table::header(first)?, &mechanism);
     if !channels.iter().any(Channel::is_measured) {
         let message = format!(
-            "no column is a quantity of `{}`; it has {}",
+            "no column is a quantity of `{}`; it has {}; describe columns with other names and units in \
+             a recording.toml",
             mechanism.name,
             Measured::names(&mechanism).join(", ")
         );
@@ -78,6 +79,7 @@ pub fn read_bare(spec: Spec, files: &[PathBuf]) -> Result<DataSet, DataError> {
         findings,
     };
     noise::find(&mut set);
+    set.tell_what_lacks();
     set.findings.sort_by_key(Finding::order);
     Ok(set)
 }

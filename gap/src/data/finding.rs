@@ -35,6 +35,10 @@ pub enum FindingKind {
     Split,
     /// Nothing is held out.
     NoTestRun,
+    /// An input that no column records; zero is taken for it.
+    NoInput,
+    /// No parameter has a tolerance.
+    NoTolerance,
 }
 
 impl FindingKind {
@@ -56,6 +60,8 @@ impl FindingKind {
             Self::NoiseBound => "noise-bound",
             Self::Split => "split",
             Self::NoTestRun => "no-test-run",
+            Self::NoInput => "no-input",
+            Self::NoTolerance => "no-tolerance",
         }
     }
 
@@ -68,6 +74,7 @@ impl FindingKind {
             | Self::HeldInput
             | Self::NoiseDisagrees
             | Self::NoiseBound
+            | Self::NoInput
             | Self::NoTestRun => Severity::Warning,
             Self::RepeatedTime
             | Self::CutOff
@@ -76,6 +83,7 @@ impl FindingKind {
             | Self::Unwrapped
             | Self::UnknownColumn
             | Self::Quantised
+            | Self::NoTolerance
             | Self::Split => Severity::Note,
         }
     }

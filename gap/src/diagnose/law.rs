@@ -20,7 +20,7 @@ const PARTS: usize = 60;
 /// A law that explains less of itself than this along a variable depends on something else.
 const DEPENDS: f64 = 0.3;
 
-/// Data and law over a variable, in SI.
+/// Data and law over a variable: the force in SI, the variable in the unit of the spec.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Law {
     /// The pseudo-velocity whose equation lacks the force.
@@ -76,16 +76,21 @@ pub(super) fn law(
         return Ok(None);
     };
     let stride = steps.len().div_ceil(POINTS).max(1);
-    let of = |step: &Step| [step.variables[variable], step.force];
+    let in_unit = |[x, force]: [f64; 2]| [x / quantity.scale, force];
+    let of = |step: &Step| in_unit([step.variables[variable], step.force]);
+    let means = |of: &dyn Fn(&Step) -> f64| {
+        let means = means(&steps, variable, of).into_iter();
+        means.map(in_unit).collect()
+    };
     Ok(Some(Law {
         equation: first.name.clone(),
         unit: first.unit.clone(),
         variable: quantity.name.to_string(),
         variable_unit: quantity.unit.to_string(),
         points: steps.iter().step_by(stride).map(of).collect(),
-        means: means(&steps, variable, |step| step.force),
+        means: means(&|step| step.force),
         law: if has_law && part > DEPENDS {
-            means(&steps, variable, |step| step.law)
+            means(&|step| step.law)
         } else {
             Vec::new()
         },

@@ -6,6 +6,7 @@
 
 use appell_runtime::estimate::{Estimation, Unknown, chi_squared_probability};
 use appell_runtime::model::At;
+use appell_spec::units::Unit;
 
 use super::DiagnoseError;
 use super::bench::Bench;
@@ -88,7 +89,7 @@ pub(super) fn place(bench: &Bench<'_>, comparison: &Comparison) -> Result<Where,
             },
             p_value,
             rms: (added[i] / count.max(1.0)).sqrt(),
-            unit: force_unit(&info.states[i].unit),
+            unit: force_unit(bench, i),
         })
         .collect();
     equations.sort_by(|a, b| b.share.total_cmp(&a.share));
@@ -100,11 +101,16 @@ pub(super) fn place(bench: &Bench<'_>, comparison: &Comparison) -> Result<Where,
     })
 }
 
-/// Unit of the force beside a pseudo-velocity: a watt for each of its units.
-pub(super) fn force_unit(speed: &str) -> String {
-    match speed {
+/// SI unit of the force beside a pseudo-velocity: a watt for each of its units.
+pub(super) fn force_unit(bench: &Bench<'_>, equation: usize) -> String {
+    let speed = &bench.effects.mechanism.pseudo_velocities[equation]
+        .label
+        .unit;
+    let speed = Unit::si(speed.dimension).text;
+    match speed.as_str() {
         "m/s" => "N".to_owned(),
-        "rad/s" => "N m".to_owned(),
+        // An angle has no dimension.
+        "1/s" | "rad/s" => "N m".to_owned(),
         other => format!("W/({other})"),
     }
 }

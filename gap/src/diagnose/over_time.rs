@@ -83,15 +83,17 @@ pub(super) fn over_time(
         }
         runs.push((bench.set.runs[run].name.clone(), from, parts));
     }
-    let speeds = info.states[..info.speeds].iter();
-    let equations = speeds.zip(squares).map(|(speed, squares)| MissingForce {
-        name: speed.name.to_string(),
-        unit: force_unit(&speed.unit),
-        rms: squares
-            .iter()
-            .map(|(sum, count)| (sum / count.max(1.0)).sqrt())
-            .collect(),
-    });
+    let equations = squares
+        .iter()
+        .enumerate()
+        .map(|(equation, squares)| MissingForce {
+            name: info.states[equation].name.to_string(),
+            unit: force_unit(bench, equation),
+            rms: squares
+                .iter()
+                .map(|(sum, count)| (sum / count.max(1.0)).sqrt())
+                .collect(),
+        });
     Ok(OverTime {
         part,
         runs,

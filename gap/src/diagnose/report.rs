@@ -47,7 +47,7 @@ impl Verdict {
     }
 }
 
-/// A value that was found, in SI.
+/// A value that was found.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Value {
     /// Effect and parameter.
@@ -161,9 +161,9 @@ pub struct HowFar {
 pub struct Detectable {
     /// Effect.
     pub effect: String,
-    /// Size in SI.
+    /// Size.
     pub smallest: f64,
-    /// Unit.
+    /// Its unit.
     pub unit: String,
 }
 
@@ -467,10 +467,18 @@ fn values(bench: &Bench<'_>, fitted: &Fitted) -> Vec<Value> {
 /// SI unit of a measured channel.
 fn channel_unit(bench: &Bench<'_>, channel: usize) -> String {
     let measured = bench.set.measured(bench.effects.info());
-    let unit = measured
-        .get(channel)
-        .map(|(channel, _)| channel.unit.dimension);
-    unit.map_or_else(String::new, |d| appell_spec::units::Unit::si(d).text)
+    let Some((channel, _)) = measured.get(channel) else {
+        return String::new();
+    };
+    let unit = &channel.unit;
+    let si = appell_spec::units::Unit::si(unit.dimension).text;
+    // An angle has no dimension, but people know it by its name.
+    let is_angle = ["deg", "rad"].iter().any(|name| unit.text.contains(name));
+    match si.as_str() {
+        "1" if is_angle => "rad".to_owned(),
+        "1/s" if is_angle => "rad/s".to_owned(),
+        _ => si,
+    }
 }
 
 fn left(bench: &Bench<'_>, comparison: &Comparison) -> Option<Left> {
@@ -527,23 +535,23 @@ fn detectable(bench: &Bench<'_>, screen: &Screen) -> Vec<Detectable> {
         if deviation <= 0.0 || told.iter().any(|own| own.effect == name) {
             continue;
         }
-        let unit = match candidate.acts {
-            Acts::Items => bench
-                .own(candidate)
-                .first()
-                .map_or_else(String::new, |(index, _)| {
-                    info.parameters[*index].unit.to_string()
-                }),
-            Acts::Parameter(_) => info
-                .parameter_index(&candidate.site)
-                .map_or_else(String::new, |index| info.parameters[index].unit.to_string()),
-            Acts::Bias(channel) => channel_unit(bench, channel),
-            Acts::Scale(_) => "1".to_owned(),
-            Acts::Lag(_) | Acts::Delay(_) | Acts::Late(_) => "s".to_owned(),
+        let parameter = match candidate.acts {
+            Acts::Items => bench.own(candidate).first().map(|(index, _)| *index),
+            Acts::Parameter(_) => info.parameter_index(&candidate.site),
+            _ => None,
+        };
+        let (scale, unit) = match (candidate.acts, parameter) {
+            (_, Some(index)) => {
+                let quantity = &info.parameters[index];
+                (quantity.scale, quantity.unit.to_string())
+            }
+            (Acts::Bias(channel), _) => (1.0, channel_unit(bench, channel)),
+            (Acts::Lag(_) | Acts::Delay(_) | Acts::Late(_), _) => (1.0, "s".to_owned()),
+            _ => (1.0, "1".to_owned()),
         };
         told.push(Detectable {
             effect: name,
-            smallest: DETECTABLE * deviation,
+            smallest: DETECTABLE * deviation / scale,
             unit,
         });
     }

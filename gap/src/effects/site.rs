@@ -73,7 +73,7 @@ pub struct Scales {
 }
 
 /// Part of a typical rate or input over which a sign or a corner is rounded.
-const NARROW: f64 = 0.02;
+const NARROW: f64 = 0.005;
 
 /// A place.
 #[derive(Debug, Clone)]

@@ -113,6 +113,11 @@ pub(crate) fn text(report: &Report, next: Option<&Path>) -> String {
                 100.0 * far.closed_ci95[1],
                 100.0 * far.closed_vs_refitted,
             );
+            if report.verdict != Verdict::NoGap && far.closed_ci95[0] <= 0.0 {
+                text.push_str(
+                    "            nothing shows yet that it helps on runs that no fit has seen\n",
+                );
+            }
         }
         None => text.push_str("  how far   no run was held out\n"),
     }

@@ -97,10 +97,12 @@ fn place(set: &DataSet, report: &Report) -> String {
         let _ = writeln!(html, "<p>The gap is a matter of <b>{domain}</b>.</p>");
     }
     if let Some(svg) = drawing(set, report) {
-        html += &figure(
-            &svg,
-            "The mechanism at its initial state. A ring marks where the effect acts.",
-        );
+        let caption = if svg.contains("class=\"ring") {
+            "The mechanism at its initial state. A ring marks where the gap is."
+        } else {
+            "The mechanism at its initial state."
+        };
+        html += &figure(&svg, caption);
     }
     if let (Some(pictures), true) = (&report.pictures, report.verdict != Verdict::NoGap) {
         let caption = format!(
@@ -146,11 +148,15 @@ fn drawing(set: &DataSet, report: &Report) -> Option<String> {
         let label = channel.and_then(|channel| channel.role.label(&set.mechanism));
         label.map_or_else(|| site.to_owned(), |label| label.name.clone())
     };
-    let mut names: Vec<String> = sites.map(|(_, site)| name(site)).collect();
+    let mut names: Vec<String> = match report.verdict {
+        Verdict::NoGap => Vec::new(),
+        Verdict::Unexplained => {
+            let left = report.left.iter();
+            left.map(|left| name(&left.place)).collect()
+        }
+        _ => sites.map(|(_, site)| name(site)).collect(),
+    };
     names.dedup();
-    if report.verdict == Verdict::NoGap {
-        names.clear();
-    }
     let names: Vec<&str> = names.iter().map(String::as_str).collect();
     let Derived {
         mechanism,

@@ -35,6 +35,7 @@ mod law;
 mod localise;
 mod over_time;
 mod report;
+mod richer;
 mod scales;
 mod screen;
 mod traces;

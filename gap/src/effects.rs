@@ -7,9 +7,11 @@
 //! | `effect.rs` | what the file of an effect says |
 //! | `site.rs` | the places in a mechanism, and the words that stand for them |
 //! | `candidate.rs` | an effect at a place: names, items to add, values to look for |
+//! | `drive.rs` | what inputs push along a pseudo-velocity, and the inertia there |
 //! | `model.rs` | a mechanism with many candidates, derived at once; at its nominal values the mechanism itself |
 
 mod candidate;
+mod drive;
 mod effect;
 mod library;
 mod model;
@@ -17,6 +19,7 @@ mod site;
 
 pub(crate) use candidate::Part;
 pub use candidate::{Acts, Candidate};
+pub(crate) use drive::Drive;
 pub use effect::{Effect, EffectError, Family};
 pub use library::shipped;
 pub(crate) use model::ACTING;

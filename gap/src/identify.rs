@@ -37,7 +37,7 @@ use held_out::Test;
 use problem::EFFORT;
 pub(crate) use problem::{Problem, begin};
 
-/// Steps of the integration are this long in s at most.
+/// Steps of the integration are this long in s at most, where the equations are not fast.
 const LONGEST_STEP: f64 = 0.02;
 
 /// Where the search for parameters begins.
@@ -77,6 +77,11 @@ impl Options {
     }
 }
 
+/// The longest step in s of the integration, where equations bear no longer one than this.
+pub(crate) fn longest_step(borne: Option<f64>) -> f64 {
+    borne.map_or(LONGEST_STEP, |borne| borne.min(LONGEST_STEP))
+}
+
 /// Finds the parameters of a model that make the runs to fit most likely, and measures its errors on
 /// the others. `stage` is told what begins.
 pub fn identify(
@@ -91,7 +96,7 @@ pub fn identify(
     }
     let shown: Vec<_> = measured.iter().map(|(_, shown)| *shown).collect();
     let mut setup = Setup {
-        longest_step: LONGEST_STEP,
+        longest_step: longest_step(set.mechanism.longest_step),
         ..Setup::new(model, &shown)
     };
     let additions = additions::named(&options.also, set, &setup)?;

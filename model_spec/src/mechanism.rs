@@ -41,6 +41,8 @@ pub struct Mechanism {
     pub title: String,
     /// Where the model comes from.
     pub source: Option<String>,
+    /// Longest step in s by which filters of recordings may follow the equations, where they are fast.
+    pub longest_step: Option<f64>,
     /// Name of the spec file, for messages and comments in emitted code.
     pub file: String,
     /// Constants of the mechanism.
@@ -235,14 +237,23 @@ pub struct Body {
     pub frame: Option<FrameId>,
     /// Centre of mass.
     pub centre: PointId,
-    /// Mass.
+    /// Mass; its negative where it is taken away.
     pub mass: Expr,
-    /// Inertia about the centre of mass; `None` for a point mass.
+    /// Inertia about the centre of mass; `None` for a point mass. Its negative where it is taken away.
     pub inertia: Option<Inertia>,
+    /// Whether mass and inertia are taken away: a hole, or a part that another body contains.
+    pub taken_away: bool,
     /// Line of the definition, from 1.
     pub line: usize,
     /// Place of the definition in the spec text; empty for what the language supplies.
     pub span: Span,
+}
+
+impl Body {
+    /// Minus one for what is taken away.
+    pub(crate) fn sign(&self) -> f64 {
+        if self.taken_away { -1.0 } else { 1.0 }
+    }
 }
 
 /// Inertia tensor about a centre of mass.

@@ -15,6 +15,8 @@ mod quantities;
 
 use std::collections::BTreeMap;
 
+use num_traits::ToPrimitive;
+
 use crate::ast::{ExprAst, ItemAst, SpecAst};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::expr::{Expr, Span};
@@ -34,6 +36,7 @@ const MAX_FINDINGS: usize = 1000;
 pub fn resolve(ast: &SpecAst, file: &str, text: &str) -> (Mechanism, Vec<Diagnostic>) {
     let mut resolver = Resolver::new(ast, text);
     let (name, title, source) = resolver.heading();
+    let longest_step = resolver.longest_step();
     let parameters = resolver.parameters();
     let coordinates = resolver.coordinates();
     let inputs = resolver.inputs();
@@ -52,6 +55,7 @@ pub fn resolve(ast: &SpecAst, file: &str, text: &str) -> (Mechanism, Vec<Diagnos
         name,
         title,
         source,
+        longest_step,
         file: file.to_owned(),
         parameters,
         coordinates,
@@ -132,6 +136,26 @@ impl<'a> Resolver<'a> {
             text("title").unwrap_or_default(),
             text("source"),
         )
+    }
+
+    fn longest_step(&mut self) -> Option<f64> {
+        let item = self.ast.items("mechanism").first();
+        let step = item.and_then(|item: &ItemAst| item.number("longest_step"))?;
+        let seconds = step
+            .value
+            .to_f64()
+            .filter(|step| step.is_finite() && *step > 0.0);
+        if seconds.is_none() {
+            self.tell(
+                Diagnostic::error(
+                    Code::NotPhysical,
+                    "the longest step is not positive".to_owned(),
+                )
+                .at(step.span.clone(), "in seconds")
+                .help("leave it out where the equations are not fast"),
+            );
+        }
+        seconds
     }
 
     /// The expression under a key, of the dimension that its place asks for.

@@ -1,9 +1,12 @@
 //! A simulated rig: a carriage of 1 kg with a friction that its model does not have.
 #![allow(dead_code, reason = "every test file uses a part of it")]
 
+mod gear;
+
 use std::fmt::Write as _;
 
 use super::support::{Folder, Noise};
+use gear::Gear;
 
 const DESCRIPTION: &str = r#"
 mechanism   = "carriage"
@@ -18,28 +21,45 @@ fit  = ["a.csv", "b.csv"]
 test = ["c.csv"]
 "#;
 
+const RUNS: [&str; 3] = ["a.csv", "b.csv", "c.csv"];
 /// Rows of a recording, a hundred in a second.
 const ROWS: u32 = 800;
+/// Time for which a force is held, in s.
+const HELD: f64 = 0.01;
 /// Steps of the simulation in a row.
 const STEPS: u32 = 10;
 
-/// A recording under forces that are held for 10 ms, with noise of 1 mm. `friction` is a force by
-/// velocity.
-fn recording(friction: &dyn Fn(f64) -> f64, forces: &[f64], noise: &mut Noise) -> String {
+/// A recording under forces that are held, with noise of 1 mm. `advance` gives the position after a force.
+fn recording(mut advance: impl FnMut(f64) -> f64, forces: &[f64], noise: &mut Noise) -> String {
     let mut text = "t,x,F\n".to_owned();
-    let (mut x, mut v) = (0.0, 0.0);
-    let h = 0.01 / f64::from(STEPS);
+    let mut x = 0.0;
     for (row, force) in forces.iter().enumerate() {
         let t = row as f64 / 100.0;
         let _ = writeln!(text, "{t},{},{force}", x + 1e-3 * noise.next());
+        x = advance(*force);
+    }
+    text
+}
+
+/// The motion of the carriage; `friction` is a force by velocity.
+fn rubbing(friction: impl Fn(f64) -> f64) -> impl FnMut(f64) -> f64 {
+    let (mut x, mut v) = (0.0, 0.0);
+    let h = HELD / f64::from(STEPS);
+    move |force| {
         for _ in 0..STEPS {
             // The middle of the step, so that the error is of its third order.
             let half = v + 0.5 * h * (force - friction(v));
             x += h * half;
             v += h * (force - friction(half));
         }
+        x
     }
-    text
+}
+
+/// Forces of a run.
+fn forces() -> Vec<f64> {
+    let force = |t: f64| 2.0 * (3.0 * t).sin() + 1.5 * (7.1 * t).cos();
+    (0..ROWS).map(|row| force(f64::from(row) / 100.0)).collect()
 }
 
 /// A rig with a friction.
@@ -58,10 +78,8 @@ impl<F: Fn(f64) -> f64> Rig<F> {
             noise: Noise(7),
         };
         rig.folder.write("recording.toml", DESCRIPTION);
-        let force = |t: f64| 2.0 * (3.0 * t).sin() + 1.5 * (7.1 * t).cos();
-        let forces: Vec<f64> = (0..ROWS).map(|row| force(f64::from(row) / 100.0)).collect();
-        for name in ["a.csv", "b.csv", "c.csv"] {
-            rig.record(name, &forces);
+        for name in RUNS {
+            rig.record(name, &forces());
         }
         rig
     }
@@ -76,7 +94,7 @@ impl<F: Fn(f64) -> f64> Rig<F> {
     }
 
     fn record(&mut self, name: &str, forces: &[f64]) {
-        let text = recording(&self.friction, forces, &mut self.noise);
+        let text = recording(rubbing(&self.friction), forces, &mut self.noise);
         self.folder.write(name, &text);
     }
 }
@@ -89,4 +107,16 @@ pub(crate) fn viscous(coefficient: f64) -> Folder {
 /// With dry friction, its sign rounded as filters have to round it.
 pub(crate) fn dry(force: f64) -> Folder {
     Rig::new(move |v| force * (v / 0.02).tanh()).folder
+}
+
+/// With play in its gear, the motor with a part of the mass.
+pub(crate) fn geared(share: f64, half_gap: f64) -> Folder {
+    let (folder, mut noise) = (Folder::new(), Noise(7));
+    folder.write("recording.toml", DESCRIPTION);
+    for name in RUNS {
+        let mut gear = Gear::new(share, half_gap);
+        let text = recording(|force| gear.advance(force, HELD), &forces(), &mut noise);
+        folder.write(name, &text);
+    }
+    folder
 }

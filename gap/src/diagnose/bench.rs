@@ -12,12 +12,10 @@ use super::feedback::Surprises;
 use super::hypothesis::Fitted;
 use crate::data::{DataSet, Part};
 use crate::effects::{Acts, Candidate, EffectModel, Part as Role};
-use crate::identify::{Options, Problem};
+use crate::identify::{Options, Problem, longest_step};
 
 /// Rows that are fitted; more take hours, and tell no more of what a model lacks.
 const MOST_ROWS: usize = 500_000;
-/// Steps of the integration are this long in s at most.
-const LONGEST_STEP: f64 = 0.02;
 /// Delays of inputs and channels are this long in s at most.
 const LONGEST_DELAY: f64 = 0.1;
 /// Shortest lag that the integration can follow, in steps.
@@ -45,8 +43,6 @@ pub(super) struct Bench<'a> {
     pub(super) sizes: Vec<f64>,
     /// What inputs know beyond the recordings.
     pub(super) surprises: Surprises,
-    /// Steps are this long at most.
-    longest_step: f64,
     /// Shortest step between rows.
     step: f64,
 }
@@ -72,7 +68,7 @@ impl<'a> Bench<'a> {
         });
         let step = steps.fold(f64::INFINITY, f64::min);
         let setup = Setup {
-            longest_step: LONGEST_STEP,
+            longest_step: longest_step(effects.longest_step(&[])),
             ..Setup::new(effects.with(&[]), &measured)
         };
         let (problem, sizes) = {
@@ -90,13 +86,32 @@ impl<'a> Bench<'a> {
             measured,
             problem,
             sizes,
-            longest_step: LONGEST_STEP,
             step,
         })
     }
 
     pub(super) fn candidate(&self, index: usize) -> &Candidate {
-        &self.effects.candidates[index]
+        self.effects.candidate(index)
+    }
+
+    /// Members without those that bring a coordinate.
+    pub(super) fn locked(&self, members: &[usize]) -> Vec<usize> {
+        let own = members.iter().copied();
+        own.filter(|&member| self.candidate(member).brings.is_none())
+            .collect()
+    }
+
+    /// Where a state of the mechanism stands in a model that may have more.
+    pub(super) fn place(&self, state: usize, of: &dyn Model) -> usize {
+        let own = self.effects.info().speeds;
+        let coordinate = state.checked_sub(own);
+        coordinate.map_or(state, |coordinate| of.info().speeds + coordinate)
+    }
+
+    /// States of the mechanism, or their rates, out of those of a model that may have more.
+    pub(super) fn own_states(&self, states: &[f64], of: &dyn Model) -> Vec<f64> {
+        let own = 0..self.effects.info().state_len();
+        own.map(|state| states[self.place(state, of)]).collect()
     }
 
     /// The filter of a hypothesis: lags, delays.
@@ -104,21 +119,26 @@ impl<'a> Bench<'a> {
         self.setup_of(self.effects.with(members), members)
     }
 
-    /// The filter of a hypothesis on the equations that have all candidates.
+    /// The filter of a hypothesis on the equations that have all candidates beside it.
     pub(super) fn whole_setup(&self, members: &[usize]) -> Setup<'_> {
-        self.setup_of(self.effects.model(), members)
+        self.setup_of(self.effects.beside(members), members)
     }
 
     fn setup_of<'s>(&'s self, model: &'s dyn Model, members: &[usize]) -> Setup<'s> {
+        // A coordinate that a member brings moves those that are measured to other places in the state,
+        // and nothing disturbs it.
+        let measured = self.set.measured(model.info());
+        let measured: Vec<Measured> = measured.iter().map(|(_, shown)| *shown).collect();
         let mut setup = Setup {
-            longest_step: self.longest_step,
-            ..Setup::new(model, &self.measured)
+            longest_step: longest_step(self.effects.longest_step(members)),
+            ..Setup::new(model, &measured)
         };
+        setup.disturbances.truncate(self.effects.info().speeds);
         for &member in members {
             match self.candidate(member).acts {
                 Acts::Lag(input) => {
                     setup.lagging.push(input);
-                    setup.longest_step = self.longest_step.min(self.step);
+                    setup.longest_step = setup.longest_step.min(self.step);
                 }
                 Acts::Delay(input) => setup.delayed.push(input),
                 Acts::Late(channel) => {
@@ -263,16 +283,21 @@ impl<'a> Bench<'a> {
             let old = inputs(&was.delayed, input);
             pairs.extend(old.map(|old| (Unknown::InputDelay(old), Unknown::InputDelay(new))));
         }
-        // Other recordings begin as those that were fitted did.
+        // Other recordings begin as those that were fitted did. Coordinates follow the pseudo-velocities,
+        // of which there may be one more.
+        let speeds = [was.model.info().speeds, info.speeds];
         for run in 0..to.recordings().len() {
             let old = run.min(self.recordings.len() - 1);
             for state in 0..info.state_len() {
+                let Some(before) = moved(state, speeds) else {
+                    continue;
+                };
                 let (initial, spread) = (
-                    |run| Unknown::Initial { run, state },
-                    |run| Unknown::Spread { run, state },
+                    |run, state| Unknown::Initial { run, state },
+                    |run, state| Unknown::Spread { run, state },
                 );
-                pairs.push((initial(old), initial(run)));
-                pairs.push((spread(old), spread(run)));
+                pairs.push((initial(old, before), initial(run, state)));
+                pairs.push((spread(old, before), spread(run, state)));
             }
         }
         for (old, new) in pairs {
@@ -281,6 +306,36 @@ impl<'a> Bench<'a> {
             }
         }
         values
+    }
+
+    /// The coordinates that members bring begin somewhere within their sizes, and soon find their places.
+    pub(super) fn hide(
+        &self,
+        members: &[usize],
+        estimation: &Estimation<'_>,
+        values: &mut [f64],
+    ) -> Result<(), DiagnoseError> {
+        /// Part of a size by which the rate changes in a second.
+        const CROSSED: f64 = 1.0;
+        let (info, layout) = (estimation.setup().model.info(), estimation.layout());
+        for candidate in members.iter().map(|&member| self.candidate(member)) {
+            if candidate.brings.is_none() {
+                continue;
+            }
+            let own = self.own(candidate);
+            let size = own.iter().find(|(_, role)| *role == Role::Size);
+            let size = size.map_or(0.0, |(place, _)| values[*place].abs());
+            for run in 0..estimation.recordings().len() {
+                for (state, spread) in [
+                    (info.speeds - 1, CROSSED * size),
+                    (info.state_len() - 1, size),
+                ] {
+                    values[layout.place(Unknown::Initial { run, state })?] = 0.0;
+                    values[layout.place(Unknown::Spread { run, state })?] = spread;
+                }
+            }
+        }
+        Ok(())
     }
 
     /// Fits a hypothesis from a start.
@@ -303,6 +358,15 @@ impl<'a> Bench<'a> {
             fit,
             evidence,
         })
+    }
+}
+
+/// Where a state stood in a model with other pseudo-velocities; nothing for one that it did not have.
+fn moved(state: usize, [was, is]: [usize; 2]) -> Option<usize> {
+    if state < is {
+        (state < was).then_some(state)
+    } else {
+        Some(was + state - is)
     }
 }
 

@@ -192,7 +192,15 @@ impl Search<'_, '_> {
             None
         };
         place(bench, &estimation, screened, &mut start)?;
-        let mut fitted = bench.fit(members, &estimation, &start)?;
+        let fits = screened.starts.iter().map(|values| {
+            let mut start = start.clone();
+            for &(place, value) in values {
+                start[place] = value;
+            }
+            bench.hide(&[screened.candidate], &estimation, &mut start)?;
+            bench.fit(members, &estimation, &start)
+        });
+        let mut fitted = best_fit(fits)?;
         fitted.evidence.told = from.evidence.told + screened.told;
         if let Some(base) = base {
             fitted.evidence.log_likelihood += from.evidence.log_likelihood - base;
@@ -250,6 +258,29 @@ pub(super) fn prior(bench: &Bench<'_>, members: usize) -> f64 {
     match members {
         0 => NO_GAP.ln(),
         count => (1.0 - NO_GAP).ln() + (count - 1) as f64 * NOT_ALONE.ln() - count as f64 * each,
+    }
+}
+
+/// The fit with the greatest evidence; why the last one failed if none is left.
+fn best_fit(
+    fits: impl Iterator<Item = Result<Fitted, DiagnoseError>>,
+) -> Result<Fitted, DiagnoseError> {
+    let (mut best, mut failure) = (None::<Fitted>, None);
+    for fit in fits {
+        match fit {
+            Ok(fit) => {
+                let log = fit.evidence.log();
+                if best.as_ref().is_none_or(|best| log > best.evidence.log()) {
+                    best = Some(fit);
+                }
+            }
+            Err(error) => failure = Some(error),
+        }
+    }
+    match (best, failure) {
+        (Some(best), _) => Ok(best),
+        (None, Some(error)) => Err(error),
+        (None, None) => Err(DiagnoseError::NothingToFit),
     }
 }
 

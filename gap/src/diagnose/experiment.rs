@@ -186,7 +186,7 @@ impl<'a> Rig<'a> {
         let setup = self.bench.setup(&truth.members);
         let estimation = Estimation::new(&setup, &blank)?;
         let mut values = taken_over(self.bench, truth, &estimation)?;
-        self.rest(truth, &estimation, &mut values)?;
+        Self::rest(truth, &estimation, &mut values)?;
         let mut shown = vec![f64::NAN; rows * channels];
         for one in estimation.predictions(&values, 0, f64::INFINITY, &[0])? {
             let value = -one.residual;
@@ -201,12 +201,11 @@ impl<'a> Rig<'a> {
 
     /// The motion begins where the first run does, at rest.
     fn rest(
-        &self,
         truth: &Fitted,
         estimation: &Estimation<'_>,
         values: &mut [f64],
     ) -> Result<(), DiagnoseError> {
-        let info = self.bench.effects.info();
+        let info = estimation.setup().model.info();
         for state in 0..info.state_len() {
             let unknown = Unknown::Initial { run: 0, state };
             let begun = truth.fit.values[truth.layout.place(unknown)?];

@@ -191,6 +191,7 @@ pub(super) fn taken_over(
 ) -> Result<Vec<f64>, DiagnoseError> {
     let mut values = bench.carried(fitted, estimation);
     begin(estimation, &mut values)?;
+    bench.hide(&fitted.members, estimation, &mut values)?;
     Ok(values)
 }
 

@@ -108,7 +108,7 @@ fn steps(
     let estimation = Estimation::new(&setup, &bench.recordings)?;
     let rows: usize = bench.recordings.iter().map(|run| run.times().len()).sum();
     let stride = rows.div_ceil(STEPS).max(1);
-    let model = bench.effects.with(&best.members);
+    let model = bench.effects.with(&bench.locked(&best.members));
     let with = &best.fit.values[..model.info().parameter_len()];
     let without = bench.without(best);
     let mut steps = Vec::new();

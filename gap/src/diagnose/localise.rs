@@ -23,10 +23,12 @@ pub(super) fn place(bench: &Bench<'_>, comparison: &Comparison) -> Result<Where,
     let Some(&first) = best.members.first() else {
         return Ok(Where::nowhere());
     };
-    let domain = bench.candidate(first).family.word();
+    let domain = bench.candidate(first).family.domain();
     let setup = bench.setup(&best.members);
     let estimation = Estimation::new(&setup, &bench.recordings)?;
-    let (model, layout) = (estimation.setup().model, estimation.layout());
+    let (richer, layout) = (estimation.setup().model, estimation.layout());
+    // What a member brings is locked where the member is not.
+    let model = bench.effects.with(&bench.locked(&best.members));
     let info = model.info();
     let (n, s, k) = (info.state_len(), info.speeds, info.parameter_len());
     let m = info.input_len();
@@ -37,19 +39,21 @@ pub(super) fn place(bench: &Bench<'_>, comparison: &Comparison) -> Result<Where,
     let (mut mass, mut bias, mut forces) = (vec![0.0; s * s], vec![0.0; s], vec![0.0; s]);
     let (mut rates, mut a, mut b) = (vec![0.0; n], vec![0.0; n * n], vec![0.0; n * m]);
     let plain = bench.without(best);
+    let mut moving = vec![0.0; richer.info().state_len()];
     for run in 0..bench.recordings.len() {
         let recording = &bench.recordings[run];
         let states = estimation.smoothed(values, run)?;
         let rows = states.len();
         let stride = (rows * bench.recordings.len() / PLACES).max(1);
         for row in (1..rows).step_by(stride) {
-            let x = &states[row].state[..n];
+            let state = &states[row].state[..moving.len()];
+            let x = &bench.own_states(state, richer)[..];
             let mut u = vec![0.0; m];
             u[..recording.input_len()].copy_from_slice(recording.inputs(row));
             let t = recording.times()[row];
             let at = At { t, x, u: &u, p };
-            let mut difference = vec![0.0; n];
-            model.rates(at, &mut difference);
+            richer.rates(At { x: state, ..at }, &mut moving);
+            let mut difference = bench.own_states(&moving, richer);
             model.rates(At { p: &plain, ..at }, &mut rates);
             for (with, without) in difference.iter_mut().zip(&rates) {
                 *with -= without;

@@ -420,8 +420,7 @@ fn values(bench: &Bench<'_>, fitted: &Fitted) -> Vec<Value> {
             let told = match (free.unknown, candidate.acts) {
                 (Unknown::Parameter(index), Acts::Items) if own.contains(&index) => {
                     let quantity = &info.parameters[index];
-                    // What follows the identifier of the candidate.
-                    let short = quantity.name.rsplit('_').next().unwrap_or_default();
+                    let short = candidate.short(&quantity.name);
                     Some((name(short), quantity.unit.to_string()))
                 }
                 (Unknown::Parameter(index), Acts::Parameter(_))

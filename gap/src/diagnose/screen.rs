@@ -16,6 +16,7 @@ use super::DiagnoseError;
 use super::bench::Bench;
 use super::feedback::KICKS;
 use super::hypothesis::Fitted;
+use super::richer;
 use crate::effects::{Acts, Part};
 
 /// A candidate after the screen.
@@ -31,14 +32,38 @@ pub(super) struct Screened {
     pub(super) sizes: Vec<f64>,
     /// Their standard deviations.
     pub(super) deviations: Vec<f64>,
+    /// What else its fit begins with: values of its parameters by their places, one list for each start.
+    pub(super) starts: Vec<Vec<(usize, f64)>>,
     /// Its signature along the best step, of length 1.
     signature: DVector<f64>,
 }
 
 impl Screened {
+    /// A candidate that gains by a step which is known otherwise.
+    pub(super) fn tried(
+        candidate: usize,
+        gain: f64,
+        sizes: Vec<f64>,
+        starts: Vec<Vec<(usize, f64)>>,
+    ) -> Self {
+        Self {
+            candidate,
+            gain,
+            told: 0.0,
+            deviations: vec![0.0; sizes.len()],
+            sizes,
+            starts,
+            signature: DVector::zeros(0),
+        }
+    }
+
     /// Cosine of the angle between two signatures.
     pub(super) fn alike(&self, other: &Self) -> f64 {
-        self.signature.dot(&other.signature)
+        if self.signature.len() == other.signature.len() {
+            self.signature.dot(&other.signature)
+        } else {
+            0.0
+        }
     }
 }
 
@@ -158,7 +183,8 @@ impl Screen {
         let mut directions = free.clone();
         let mut own: Vec<(usize, Vec<usize>)> = Vec::new();
         for candidate in 0..bench.effects.candidates.len() {
-            if fitted.members.contains(&candidate) {
+            let brings = bench.candidate(candidate).brings.is_some();
+            if brings || fitted.members.contains(&candidate) {
                 continue;
             }
             let first = directions.len();
@@ -190,6 +216,7 @@ impl Screen {
                 Some(one)
             })
             .collect();
+        list.extend(richer::tried(bench, fitted)?);
         list.sort_by(|a, b| b.gain.total_cmp(&a.gain));
         Ok(Self { list })
     }
@@ -311,6 +338,7 @@ fn screened(
             told: 0.0,
             sizes,
             deviations,
+            starts: vec![Vec::new()],
             signature: signature / length.max(f64::MIN_POSITIVE),
         });
     }

@@ -13,7 +13,7 @@ use std::f64::consts::{PI, TAU};
 use appell_runtime::estimate::{
     Along, Disturbance, Estimation, Innovation, Measured, Recording, Shapes,
 };
-use appell_runtime::model::At;
+use appell_runtime::model::{At, Model};
 use nalgebra::{DMatrix, DVector};
 
 use super::DiagnoseError;
@@ -69,11 +69,11 @@ struct Variable {
 }
 
 impl Variable {
-    fn of(self, bench: &Bench<'_>, at: At<'_>) -> f64 {
+    fn of(self, (bench, model): (&Bench<'_>, &dyn Model), at: At<'_>) -> f64 {
         let states = bench.effects.info().state_len();
         match self.index.checked_sub(states) {
             Some(input) => at.u[input],
-            None => at.x[self.index],
+            None => at.x[bench.place(self.index, model)],
         }
     }
 
@@ -134,7 +134,7 @@ fn told(
 ) -> Result<Vec<(usize, Told)>, DiagnoseError> {
     let (free, setup) = (moving(fitted), estimation.setup());
     let write = |_run: usize, at: At<'_>, values: &mut [f64]| {
-        let x = variable.of(bench, at);
+        let x = variable.of((bench, setup.model), at);
         let grown = if variable.drifts { at.t } else { 1.0 };
         for (wave, pair) in values.chunks_exact_mut(2).enumerate() {
             let (sin, cos) = ((wave + 1) as f64 * variable.first * x).sin_cos();
@@ -239,7 +239,7 @@ fn variables(bench: &Bench<'_>) -> Vec<Variable> {
 impl Bench<'_> {
     /// Range of a state or input along the recordings: as recorded, or typical rates of what is
     /// measured.
-    fn range(&self, index: usize) -> Option<(f64, f64)> {
+    pub(super) fn range(&self, index: usize) -> Option<(f64, f64)> {
         let states = self.effects.info().state_len();
         let shown = |shown: &Measured| *shown == Measured::State(index);
         let channel = self.measured.iter().position(shown);

@@ -57,6 +57,9 @@ pub struct Candidate {
     pub(super) centre: Option<String>,
     /// Items for the spec.
     pub(super) items: String,
+    /// The pseudo-velocity beside which it brings a coordinate of its own, if it brings any. That one and
+    /// its rate are the last ones among the coordinates and the rates of a model that it alone has.
+    pub(crate) brings: Option<usize>,
     /// What is added to inputs: name and expression.
     pub(crate) added: Vec<(String, String)>,
 }
@@ -70,6 +73,30 @@ impl Candidate {
     /// Whether it lets a contact slide.
     pub(super) fn creeps(&self) -> bool {
         self.family == Family::Constraint
+    }
+
+    /// What follows its name in the name of one of its parameters.
+    pub(crate) fn short<'p>(&self, parameter: &'p str) -> &'p str {
+        let short = parameter.strip_prefix(self.stem.as_str());
+        short.map_or(parameter, |short| short.trim_start_matches('_'))
+    }
+
+    /// Its parameters alone.
+    pub(super) fn declared(&self) -> Self {
+        let mut document: DocumentMut = self.items.parse().unwrap_or_default();
+        document.retain(|section, _| section == "parameters");
+        Self {
+            items: document.to_string(),
+            ..self.clone()
+        }
+    }
+
+    /// With the meaning of words that its mechanism tells once it has equations.
+    pub(super) fn told(&self, words: &[(&str, &str)]) -> Self {
+        Self {
+            items: filled(&self.items, words),
+            ..self.clone()
+        }
     }
 
     /// All candidates of an effect in a mechanism.
@@ -154,6 +181,7 @@ impl Candidate {
                 parameters.push((name, part));
             }
         }
+        let brings = document.contains_key("coordinates").then_some(site.index);
         let acts = match effect.filter {
             None => Acts::Items,
             Some(Filter::Value) => Acts::Parameter(site.index),
@@ -175,6 +203,7 @@ impl Candidate {
                 .find(|(word, _)| *word == "centre")
                 .map(|(_, name)| name.clone()),
             items: document.to_string(),
+            brings,
             added,
         })
     }

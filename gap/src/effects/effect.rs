@@ -55,6 +55,14 @@ impl Family {
             Self::Sensor => "sensor",
         }
     }
+
+    /// Where a gap of this family lies: a joint with play is one that does not hold.
+    pub const fn domain(self) -> &'static str {
+        match self {
+            Self::Joint => Self::Constraint.word(),
+            other => other.word(),
+        }
+    }
 }
 
 /// What acts beside the equations of motion.

@@ -9,7 +9,7 @@ macro_rules! files {
 }
 
 /// Files in the order in which people read the library.
-const FILES: [(&str, &str); 24] = files![
+const FILES: [(&str, &str); 26] = files![
     "viscous_friction",
     "coulomb_friction",
     "stribeck_friction",
@@ -31,6 +31,8 @@ const FILES: [(&str, &str); 24] = files![
     "actuator_dead_zone",
     "longitudinal_slip",
     "lateral_slip",
+    "backlash_sliding",
+    "backlash_turning",
     "sensor_bias",
     "sensor_scale",
     "sensor_delay",

@@ -3,8 +3,12 @@
 //! All of them stand in one spec with sizes of zero: at these values its equations are those of the
 //! mechanism, and their derivatives are what each candidate would do first. A hypothesis sets some
 //! sizes free.
+//!
+//! A candidate that brings a coordinate has a model of its own, with all others beside it, derived once it
+//! is asked for. Its parameters stand in every model, so that they have the same places everywhere.
 
 use std::collections::BTreeMap;
+use std::sync::OnceLock;
 
 use appell_codegen::compile::report;
 use appell_codegen::derived;
@@ -18,8 +22,8 @@ use appell_spec::edit::EditError;
 use appell_spec::{Mechanism, Report};
 
 use super::effect::{Effect, EffectError};
-use super::site::{Scales, Sites};
-use super::{Candidate, Family};
+use super::site::{Scales, Sites, number};
+use super::{Candidate, Drive, Family};
 use crate::data::Spec;
 
 /// Sections whose expressions inputs act in.
@@ -58,6 +62,20 @@ pub struct EffectModel {
     /// The model without contacts that creep, which is much shorter. Its parameters come first in the
     /// whole one.
     rolling: Option<JitModel>,
+    /// For each candidate that brings a coordinate, once it was asked for.
+    richer: Vec<OnceLock<Option<Richer>>>,
+    /// The spec that candidates are added to.
+    plain: Spec,
+}
+
+/// A model with a coordinate that a candidate brings.
+#[derive(Debug)]
+struct Richer {
+    /// The candidate, all words of its items told.
+    candidate: Candidate,
+    model: JitModel,
+    /// The longest step in s that it bears, where it is fast.
+    longest_step: Option<f64>,
 }
 
 /// All candidates of some effects in a mechanism.
@@ -98,26 +116,91 @@ impl EffectModel {
     }
 
     fn with_all(spec: &Spec, candidates: Vec<Candidate>) -> Result<Self, ModelError> {
-        let text = with_candidates(&spec.text, &candidates)?;
-        let wrong = |report: Report| ModelError::Spec(Box::new(report));
-        let derived = derived(&spec.file, &text).map_err(wrong)?;
-        let mechanism = derived.mechanism;
-        let program = assemble::program(derived.derivation, &mechanism, &FunctionKind::ALL)
-            .map_err(|findings| wrong(report(&mechanism, &text, &findings)))?;
+        let declared = |one: &Candidate| match one.brings {
+            Some(_) => one.declared(),
+            None => one.clone(),
+        };
+        let declared: Vec<Candidate> = candidates.iter().map(declared).collect();
+        let text = with_candidates(&spec.text, &declared)?;
+        let (mechanism, model) = derive(&spec.file, &text)?;
         Ok(Self {
+            richer: candidates.iter().map(|_| OnceLock::new()).collect(),
             candidates,
             mechanism,
             spec: Spec {
                 file: spec.file.clone(),
                 text,
             },
-            model: JitModel::new(&program)?,
+            model,
             rolling: None,
+            plain: spec.clone(),
         })
+    }
+
+    /// Derives the model of a candidate that brings a coordinate; whether there is one.
+    pub(crate) fn enrich(&self, index: usize, drive: &Drive) -> bool {
+        let richer = self.richer[index].get_or_init(|| self.richer(index, drive).ok());
+        richer.is_some()
+    }
+
+    fn richer(&self, index: usize, drive: &Drive) -> Result<Richer, ModelError> {
+        let inputs = self.mechanism.inputs.iter();
+        let force = drive.written(inputs.map(|input| input.label.name.as_str()));
+        let words = [
+            ("drive", force.as_str()),
+            ("inertia", &number(drive.inertia)),
+        ];
+        let candidate = self.candidates[index].told(&words);
+        let others = self.candidates.iter().filter(|one| !one.creeps());
+        let beside = others.enumerate().map(|(other, one)| match one.brings {
+            Some(_) if other == index => candidate.clone(),
+            Some(_) => one.declared(),
+            None => one.clone(),
+        });
+        let beside: Vec<Candidate> = beside.collect();
+        let text = with_candidates(&self.plain.text, &beside)?;
+        let (mechanism, model) = derive(&self.plain.file, &text)?;
+        Ok(Richer {
+            candidate,
+            model,
+            longest_step: mechanism.longest_step,
+        })
+    }
+
+    /// Whether a candidate can stand beside none that brings a coordinate.
+    pub(crate) fn stands_alone(&self, index: usize) -> bool {
+        let candidate = &self.candidates[index];
+        candidate.creeps() || candidate.brings.is_some()
+    }
+
+    /// A candidate, with all words that are told by now.
+    pub fn candidate(&self, index: usize) -> &Candidate {
+        let richer = self.richer[index].get().and_then(Option::as_ref);
+        richer.map_or(&self.candidates[index], |richer| &richer.candidate)
+    }
+
+    /// The model with the coordinate that a member brings.
+    fn richer_with(&self, members: &[usize]) -> Option<&Richer> {
+        let mut richer = members
+            .iter()
+            .filter_map(|&member| self.richer[member].get());
+        richer.find_map(Option::as_ref)
+    }
+
+    /// The longest step in s that some candidates bear, where their equations are fast.
+    pub(crate) fn longest_step(&self, members: &[usize]) -> Option<f64> {
+        let own = self.mechanism.longest_step;
+        let richer = self
+            .richer_with(members)
+            .and_then(|richer| richer.longest_step);
+        own.into_iter().chain(richer).reduce(f64::min)
     }
 
     /// The shortest equations that have some candidates.
     pub fn with(&self, members: &[usize]) -> &dyn Model {
+        if let Some(richer) = self.richer_with(members) {
+            return &richer.model;
+        }
         let creeps = members
             .iter()
             .any(|&member| self.candidates[member].creeps());
@@ -127,9 +210,10 @@ impl EffectModel {
         }
     }
 
-    /// Its equations.
-    pub fn model(&self) -> &dyn Model {
-        &self.model
+    /// The equations of all candidates that can stand beside some members.
+    pub fn beside(&self, members: &[usize]) -> &dyn Model {
+        self.richer_with(members)
+            .map_or(&self.model, |richer| &richer.model)
     }
 
     /// Names and sizes of its equations.
@@ -138,9 +222,23 @@ impl EffectModel {
     }
 }
 
+/// The mechanism of a spec, and machine code of its equations.
+fn derive(file: &str, text: &str) -> Result<(Mechanism, JitModel), ModelError> {
+    let wrong = |report: Report| ModelError::Spec(Box::new(report));
+    let derived = derived(file, text).map_err(wrong)?;
+    let mechanism = derived.mechanism;
+    let program = assemble::program(derived.derivation, &mechanism, &FunctionKind::ALL)
+        .map_err(|findings| wrong(report(&mechanism, text, &findings)))?;
+    Ok((mechanism, JitModel::new(&program)?))
+}
+
 /// A spec with candidates.
 pub fn with_candidates(text: &str, candidates: &[Candidate]) -> Result<String, EditError> {
     let mut spec = Composition::new(text)?;
+    // What drives a coordinate that a candidate brings feels what others add to inputs.
+    for candidate in candidates.iter().filter(|one| one.brings.is_some()) {
+        spec.add(&candidate.items)?;
+    }
     let mut inputs: Vec<&String> = Vec::new();
     for candidate in candidates {
         inputs.extend(candidate.added.iter().map(|(input, _)| input));
@@ -155,9 +253,9 @@ pub fn with_candidates(text: &str, candidates: &[Candidate]) -> Result<String, E
         let parts: Vec<&str> = std::iter::once(input.as_str()).chain(added).collect();
         spec.substitute(&ACTING, input, &parts.join(" + "));
     }
-    // What candidates add does not feel what they add to inputs.
+    // What other candidates add does not.
     let mut centres: BTreeMap<&str, &str> = BTreeMap::new();
-    for candidate in candidates {
+    for candidate in candidates.iter().filter(|one| one.brings.is_none()) {
         let moved = candidate.items.contains(LAST_CENTRE);
         match candidate.centre.as_deref().filter(|_| moved) {
             Some(centre) => {

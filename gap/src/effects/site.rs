@@ -3,7 +3,9 @@
 
 use appell_codegen::velocities::Velocities;
 use appell_spec::expr::{Expr, ExprKind, Quantity};
-use appell_spec::mechanism::{Constraint, ConstraintKind, CoordinateId, LoadKind, Mechanism};
+use appell_spec::mechanism::{
+    Constraint, ConstraintKind, CoordinateId, LoadKind, Mechanism, PseudoVelocity,
+};
 use appell_spec::units::{Dimension, Unit};
 use num_traits::Zero;
 
@@ -16,6 +18,10 @@ pub enum SiteKind {
     Slider,
     /// Such a coordinate that is an angle.
     Hinge,
+    /// A slider that a pseudo-velocity of its own moves, and an input.
+    DrivenSlider,
+    /// Such a hinge.
+    DrivenHinge,
     /// A body.
     Body,
     /// A body with a frame.
@@ -34,10 +40,12 @@ pub enum SiteKind {
     Channel,
 }
 
-const WORDS: [(&str, SiteKind); 11] = [
+const WORDS: [(&str, SiteKind); 13] = [
     ("coordinate", SiteKind::Coordinate),
     ("slider", SiteKind::Slider),
     ("hinge", SiteKind::Hinge),
+    ("driven_slider", SiteKind::DrivenSlider),
+    ("driven_hinge", SiteKind::DrivenHinge),
     ("body", SiteKind::Body),
     ("rigid_body", SiteKind::RigidBody),
     ("wheel", SiteKind::Wheel),
@@ -127,6 +135,8 @@ impl<'m> Sites<'m> {
                 .filter(is_angle)
                 .map(|q| self.coordinate(q))
                 .collect(),
+            SiteKind::DrivenSlider => self.driven(is_length),
+            SiteKind::DrivenHinge => self.driven(is_angle),
             SiteKind::Body => (0..self.mechanism.bodies.len())
                 .map(|body| self.body(body))
                 .collect(),
@@ -173,6 +183,26 @@ impl<'m> Sites<'m> {
         (0..self.mechanism.coordinates.len())
             .filter(stands)
             .collect()
+    }
+
+    /// Coordinates whose rates are pseudo-velocities and stand in no other one, if there are inputs; the
+    /// index is that of the pseudo-velocity.
+    fn driven(&self, fits: impl Fn(&CoordinateId) -> bool) -> Vec<Site> {
+        let speeds = &self.mechanism.pseudo_velocities;
+        let of = |(index, speed): (usize, &PseudoVelocity)| {
+            let ExprKind::Quantity(Quantity::Rate(q)) = speed.definition.kind else {
+                return None;
+            };
+            let users = speeds
+                .iter()
+                .filter(|own| mentions(&own.definition, Quantity::Rate(q)));
+            let site = self.coordinate(q);
+            (users.count() == 1 && fits(&q)).then_some(Site { index, ..site })
+        };
+        if self.scales.largest.iter().all(|&largest| largest <= 0.0) {
+            return Vec::new();
+        }
+        speeds.iter().enumerate().filter_map(of).collect()
     }
 
     fn coordinate(&self, index: CoordinateId) -> Site {
@@ -367,7 +397,7 @@ impl<'m> Sites<'m> {
 }
 
 /// Digits that are enough for a scale, and give the same text everywhere.
-fn number(value: f64) -> String {
+pub(super) fn number(value: f64) -> String {
     format!("{value:.3e}")
 }
 

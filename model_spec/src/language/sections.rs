@@ -85,6 +85,12 @@ pub static SECTIONS: &[Section] = &[
                 Need::Optional,
                 "Where the model comes from: paper and equations.",
             ),
+            key(
+                "longest_step",
+                Form::Number,
+                Need::Optional,
+                "Longest step in s by which filters of recordings may follow the equations; 0.02 when left out.",
+            ),
         ]),
     },
     Section {
@@ -273,6 +279,12 @@ pub static SECTIONS: &[Section] = &[
                     Form::Table(INERTIA),
                     Need::Optional,
                     "Inertia about the centre of mass.",
+                ),
+                key(
+                    "taken_away",
+                    Form::Flag,
+                    Need::Optional,
+                    "Whether mass and inertia are taken away: a hole, or a part that another body contains.",
                 ),
                 ABOUT,
             ],

@@ -46,13 +46,20 @@ impl Resolver<'_> {
                 .help("name the frame that is fixed in the body"),
             );
         }
+        let mass = self.expression_of(item, "mass", &MASS, Dim::Known(Dimension::MASS));
+        let taken_away = item.flag("taken_away");
+        let signed = |expr| if taken_away { negative(expr) } else { expr };
         Body {
             name: item.name.value.clone(),
             about: Self::about(item),
             frame,
             centre: self.reference(item, "centre", Target::Point),
-            mass: self.expression_of(item, "mass", &MASS, Dim::Known(Dimension::MASS)),
-            inertia,
+            mass: signed(mass),
+            inertia: inertia.map(|inertia| Inertia {
+                matrix: inertia.matrix.map(|row| row.map(signed)),
+                ..inertia
+            }),
+            taken_away,
             line: self.line(&item.name.span),
             span: item.name.span.clone(),
         }
@@ -118,6 +125,14 @@ impl Resolver<'_> {
                 return;
             }
         }
+    }
+}
+
+/// Written where the expression is.
+fn negative(expr: Expr) -> Expr {
+    Expr {
+        span: expr.span.clone(),
+        kind: ExprKind::Negate(Box::new(expr)),
     }
 }
 

@@ -50,7 +50,7 @@ impl Resolver<'_> {
     }
 
     fn physical_mass(&mut self, body: &Body, parameters: &[Parameter]) {
-        let mass = value(&body.mass, parameters);
+        let mass = body.sign() * value(&body.mass, parameters);
         let diagnostic = if !mass.is_finite() {
             not_finite("mass", body, &body.mass)
         } else if mass < 0.0 {
@@ -67,7 +67,8 @@ impl Resolver<'_> {
 
     fn physical_inertia(&mut self, body: &Body, inertia: &Inertia, parameters: &[Parameter]) {
         let entries = inertia.matrix.each_ref();
-        let matrix = entries.map(|row| row.each_ref().map(|e| value(e, parameters)));
+        let of = |e: &Expr| body.sign() * value(e, parameters);
+        let matrix = entries.map(|row| row.each_ref().map(of));
         for (row, values) in entries.iter().zip(&matrix) {
             for (entry, value) in row.iter().zip(values) {
                 if !value.is_finite() {

@@ -1,0 +1,133 @@
+//! Candidates that bring a coordinate of their own, such as play: what they would gain.
+//!
+//! They do nothing to first order, and their models cost more than others. So they are tried on a grid of
+//! sizes, and only where the filter is surprised after reversals of the drive: there the teeth change
+//! sides.
+
+use appell_runtime::estimate::Estimation;
+
+use super::DiagnoseError;
+use super::bench::Bench;
+use super::hypothesis::Fitted;
+use super::screen::{Screened, directions};
+use crate::effects::{Drive, Part};
+
+/// Sizes that are tried, as parts of the range of the coordinate: most gears have less play, and less
+/// than the smallest is hardly seen.
+const PARTS: [f64; 7] = [5e-4, 1e-3, 2e-3, 4e-3, 8e-3, 1.6e-2, 3.2e-2];
+/// Factors of the shape from which fits begin.
+const FACTORS: [f64; 3] = [0.6, 1.2, 2.4];
+/// Ends of the times in s after a reversal of the drive that are looked at: some of them are those in
+/// which the gap is crossed.
+const AFTER: [f64; 4] = [0.05, 0.1, 0.2, 0.4];
+/// Standard deviations by which the mean innovation in one of these times stands out.
+const SURPRISED: f64 = 4.0;
+
+/// Those that gain at some size.
+pub(super) fn tried(bench: &Bench<'_>, fitted: &Fitted) -> Result<Vec<Screened>, DiagnoseError> {
+    let effects = bench.effects;
+    // One such coordinate at a time, and none where contacts creep.
+    if fitted
+        .members
+        .iter()
+        .any(|&member| effects.stands_alone(member))
+    {
+        return Ok(Vec::new());
+    }
+    let p = &fitted.fit.values[..effects.with(&[]).info().parameter_len()];
+    let mut list = Vec::new();
+    for (index, candidate) in effects.candidates.iter().enumerate() {
+        let Some(beside) = candidate.brings else {
+            continue;
+        };
+        let Some(drive) = Drive::of(effects.with(&[]), p, beside) else {
+            continue;
+        };
+        if is_surprised(bench, fitted, &drive)? && effects.enrich(index, &drive) {
+            list.extend(best_size(bench, fitted, index)?);
+        }
+    }
+    Ok(list)
+}
+
+/// Whether innovations lean to one side after the drive has changed sign.
+fn is_surprised(bench: &Bench<'_>, fitted: &Fitted, drive: &Drive) -> Result<bool, DiagnoseError> {
+    let setup = bench.setup(&fitted.members);
+    let estimation = Estimation::new(&setup, &bench.recordings)?;
+    let runs = estimation.innovations(&fitted.fit.values)?;
+    let mut sums = vec![(0.0_f64, 0.0_f64); AFTER.len() * setup.channels.len()];
+    for (recording, innovations) in bench.recordings.iter().zip(runs) {
+        let times = recording.times();
+        let signs: Vec<f64> = (0..times.len())
+            .map(|row| drive.force(recording.inputs(row)).signum())
+            .collect();
+        let mut reversed = f64::NEG_INFINITY;
+        let mut last = 0;
+        for one in &innovations {
+            for row in last + 1..=one.row {
+                if signs[row] * signs[row - 1] < 0.0 {
+                    reversed = times[row];
+                }
+            }
+            last = last.max(one.row);
+            let window = AFTER.iter().position(|end| one.t - reversed < *end);
+            if let Some(window) = window {
+                let sum = &mut sums[AFTER.len() * one.channel + window];
+                sum.0 += one.whitened() * signs[one.row];
+                sum.1 += 1.0;
+            }
+        }
+    }
+    let stands_out = |(sum, count): &(f64, f64)| sum.abs() > SURPRISED * count.sqrt();
+    Ok(sums.iter().any(stands_out))
+}
+
+/// The size that gains most. Recordings tell the product of size and shape best: a fit begins with several
+/// shapes and the same product.
+fn best_size(
+    bench: &Bench<'_>,
+    fitted: &Fitted,
+    candidate: usize,
+) -> Result<Option<Screened>, DiagnoseError> {
+    let members = [fitted.members.as_slice(), &[candidate]].concat();
+    let setup = bench.setup(&members);
+    let estimation = Estimation::new(&setup, &bench.recordings)?;
+    let info = bench.effects.info();
+    let site = bench.candidate(candidate).site.as_str();
+    let state = info.states.iter().position(|state| state.name == site);
+    let Some((low, high)) = state.and_then(|state| bench.range(state)) else {
+        return Ok(None);
+    };
+    let own = bench.own(bench.candidate(candidate));
+    let value = |(place, role): (usize, Part), size: f64, factor: f64| match role {
+        Part::Size => size / factor,
+        Part::Shape => factor * info.parameters[place].value,
+        Part::Switch => 1.0,
+    };
+    let begin = |size: f64, factor: f64| -> Vec<(usize, f64)> {
+        let values = own.iter().map(|&one| (one.0, value(one, size, factor)));
+        values.collect()
+    };
+    let mut best: Option<(f64, f64)> = None;
+    for part in PARTS {
+        let size = part * (high - low);
+        let mut values = bench.carried(fitted, &estimation);
+        for (place, value) in begin(size, 1.0) {
+            values[place] = value;
+        }
+        bench.hide(&[candidate], &estimation, &mut values)?;
+        // A size at which the filter is lost is none.
+        let Ok(likelihood) = estimation.log_likelihood(&values) else {
+            continue;
+        };
+        let gain = likelihood - fitted.fit.log_likelihood;
+        if gain > best.map_or(0.0, |(most, _)| most) {
+            best = Some((gain, size));
+        }
+    }
+    Ok(best.map(|(gain, size)| {
+        let sizes = vec![size; directions(bench, candidate).len()];
+        let starts = FACTORS.map(|factor| begin(size, factor));
+        Screened::tried(candidate, gain, sizes, starts.to_vec())
+    }))
+}

@@ -103,13 +103,21 @@ pub fn diagnose(
     let alternatives: Vec<Alternative> = alternatives
         .map(|spec| Alternative::new(&fitted, spec))
         .collect::<Result<_, _>>()?;
-    let rivals: Vec<Rival<'_>> = (alternatives.iter())
-        .map(|alternative| Rival::of(alternative, &bench))
-        .collect::<Result<_, _>>()?;
+    let (mut rivals, mut lost): (Vec<Rival<'_>>, Vec<_>) = (Vec::new(), Vec::new());
+    for alternative in &alternatives {
+        match Rival::of(alternative, &bench) {
+            Ok(rival) => rivals.push(rival),
+            Err(DiagnoseError::Estimate(error)) => {
+                lost.push((vec![alternative.name()], error.to_string()));
+            }
+            Err(other) => return Err(other),
+        }
+    }
     stage("localising the gap");
     let mut place = localise::place(&bench, &comparison)?;
     windows::tell(&bench, &comparison, &mut place)?;
-    let report = report::assemble(&bench, &screen, &comparison, place.clone(), &rivals)?;
+    let mut report = report::assemble(&bench, &screen, &comparison, place.clone(), &rivals)?;
+    report.failed.append(&mut lost);
     stage("predicting the runs that were held out");
     let test = set.only(Part::Test);
     let held_out = HeldOut::of(&test, &bench)?;

@@ -3,7 +3,7 @@
 use appell_runtime::signal::angle::unwrap;
 use appell_spec::Mechanism;
 
-use super::{Channel, DataError, DataSet, Measured, Role, Spec};
+use super::{Channel, DataError, DataSet, Measured, Part, Role, Spec, noise};
 
 impl DataSet {
     /// Recordings bound to another spec. A quantity keeps its name; a column that the first spec does
@@ -22,6 +22,10 @@ impl DataSet {
                     unwrap(&mut run.values[index]);
                 }
             }
+        }
+        // What is measured now has noise.
+        if set.runs.iter().any(|run| run.part == Part::Fit) {
+            noise::find(&mut set);
         }
         Ok(set)
     }

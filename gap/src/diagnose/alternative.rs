@@ -2,9 +2,10 @@
 //!
 //! It is fitted to the same recordings as the nominal model is, and its evidence stands beside that of
 //! the effects. Channels that it knows and the other one does not are no gain: the evidence is that of
-//! the channels of both, given these, log p(all) − log p(these).
+//! the samples of both, each given all samples before it. A filter that saw those channels alone would
+//! lose a mechanism that falls over.
 
-use appell_runtime::estimate::{Estimation, Recording};
+use appell_runtime::estimate::{Estimation, Innovation};
 
 use super::DiagnoseError;
 use super::bench::Bench;
@@ -40,6 +41,11 @@ impl Alternative {
             model: EffectModel::new(spec, Vec::new())?,
         })
     }
+
+    /// Name of its hypothesis.
+    pub(super) fn name(&self) -> String {
+        format!("alternative:{}", self.set.mechanism.name)
+    }
 }
 
 impl<'a> Rival<'a> {
@@ -60,11 +66,11 @@ impl<'a> Rival<'a> {
         let bench = Bench::new(&alternative.set, &alternative.model)?;
         let fitted = bench.nominal()?;
         let extra: Vec<bool> = own.iter().map(|column| !shared.contains(column)).collect();
-        let given = given(&bench, &fitted, &extra)?;
+        let of_extra = of_channels(&bench, &fitted, &extra)?;
         Ok(Self {
             spec: &alternative.spec,
-            name: format!("alternative:{name}"),
-            log: fitted.evidence.log() - given,
+            name: alternative.name(),
+            log: fitted.evidence.log() - of_extra,
             bench,
             fitted,
         })
@@ -109,25 +115,16 @@ fn measured(set: &DataSet, model: &EffectModel) -> Vec<String> {
     columns.collect()
 }
 
-/// Log-likelihood of some of the channels alone.
-fn given(bench: &Bench<'_>, fitted: &Fitted, channels: &[bool]) -> Result<f64, DiagnoseError> {
-    if !channels.contains(&true) {
-        return Ok(0.0);
-    }
-    let alone = |recording: &Recording| {
-        let rows = 0..recording.times().len();
-        let values = rows.flat_map(|row| {
-            let seen = recording.measured(row).iter().zip(channels);
-            seen.map(|(value, own)| if *own { *value } else { f64::NAN })
-        });
-        recording.with_measurements(values.collect())
-    };
-    let recordings: Vec<Recording> = bench
-        .recordings
-        .iter()
-        .map(alone)
-        .collect::<Result<_, _>>()?;
+/// Log-likelihood of the samples of some channels, each given all samples before it.
+fn of_channels(
+    bench: &Bench<'_>,
+    fitted: &Fitted,
+    channels: &[bool],
+) -> Result<f64, DiagnoseError> {
     let setup = bench.setup(&fitted.members);
-    let estimation = Estimation::new(&setup, &recordings)?;
-    Ok(estimation.log_likelihood(&fitted.fit.values)?)
+    let estimation = Estimation::new(&setup, &bench.recordings)?;
+    let runs = estimation.innovations(&fitted.fit.values)?;
+    let samples = runs.iter().flatten();
+    let own = samples.filter(|sample| channels[sample.channel]);
+    Ok(own.map(Innovation::log_likelihood).sum())
 }

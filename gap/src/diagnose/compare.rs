@@ -112,7 +112,7 @@ impl Comparison {
             failed: Vec::new(),
             tried: BTreeSet::new(),
         };
-        for screened in kept(bench, screen, KEPT) {
+        for screened in kept(bench, screen, &[], KEPT) {
             search.join(0, &screened);
         }
         for members in 1..MOST_MEMBERS {
@@ -123,7 +123,8 @@ impl Comparison {
                 break;
             }
             let screen = Screen::of(bench, &search.fits[best])?;
-            for screened in kept(bench, &screen, KEPT_BESIDE) {
+            let members = search.fits[best].members.clone();
+            for screened in kept(bench, &screen, &members, KEPT_BESIDE) {
                 search.join(best, &screened);
             }
         }
@@ -131,16 +132,17 @@ impl Comparison {
     }
 }
 
-/// The candidates worth a fit: the best variant of each effect at each place.
-fn kept(bench: &Bench<'_>, screen: &Screen, most: usize) -> Vec<Screened> {
+/// The candidates worth a fit beside some members: the best variant of each other effect at each place.
+fn kept(bench: &Bench<'_>, screen: &Screen, members: &[usize], most: usize) -> Vec<Screened> {
     let mut kept: Vec<Screened> = Vec::new();
     let best = screen.list.first().map_or(0.0, |one| one.gain);
     let least = LEAST_GAIN.max(LEAST_PART * best);
     for screened in screen.list.iter().filter(|one| one.gain > least) {
         let name = bench.candidate(screened.candidate).name();
-        let is_known = kept
-            .iter()
-            .any(|own| bench.candidate(own.candidate).name() == name);
+        let fitted = kept.iter().map(|own| own.candidate);
+        let is_known = fitted
+            .chain(members.iter().copied())
+            .any(|own| bench.candidate(own).name() == name);
         let is_guise = kept
             .first()
             .is_some_and(|best| best.alike(screened) > ALIKE);

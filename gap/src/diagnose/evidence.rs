@@ -50,6 +50,7 @@ impl Evidence {
         let mut occam = log_volume;
         let mut smallest = f64::INFINITY;
         let own = bench.problem.wanted.len();
+        let whole = fit.covariance();
         for (place, &i) in open.iter().enumerate() {
             let free = &fit.free[i];
             occam += if let Some([expected, deviation]) = free.prior {
@@ -68,7 +69,11 @@ impl Evidence {
                     _ => deviations[place],
                 };
                 let d = (size / in_value).max(SMALLEST);
-                smallest = smallest.min(size / in_value);
+                // A level may do what a member does: what is told of the member is what the level leaves.
+                let left = whole
+                    .as_ref()
+                    .map_or(0.0, |whole| deviations[place] / whole[(i, i)].sqrt());
+                smallest = smallest.min(size / in_value * left);
                 let two_sided = free.range[0] < neutral;
                 let sides = if two_sided { 2.0_f64 } else { 1.0 };
                 // The density of the coordinate: 1/(size · sides · range) for plain ones.

@@ -12,6 +12,9 @@ const PLACES: usize = 100;
 /// First values are this many times less certain than a measurement: they are measured again by the
 /// first row.
 const CAUTION: f64 = 10.0;
+/// A parabola over the first samples misses a motion that a step sets off: the true slope lies within
+/// so many of what it tells.
+const CAREFUL: f64 = 3.0;
 
 /// What a run begins with.
 pub(crate) struct Start {
@@ -136,7 +139,11 @@ fn speeds(
         .collect();
     let inverse = DMatrix::from_columns(&columns).pseudo_inverse(1e-9).ok()?;
     let first = DVector::from_iterator(seen.len(), seen.iter().map(|(_, slopes)| slopes.first));
-    let size = DVector::from_iterator(seen.len(), seen.iter().map(|(_, slopes)| slopes.size));
+    let size = DVector::from_iterator(
+        seen.len(),
+        seen.iter()
+            .map(|(_, slopes)| slopes.size.max(CAREFUL * slopes.first.abs())),
+    );
     let speeds = &inverse * (first - at_rest);
     // What no slope tells stays uncertain.
     let floor = f64::EPSILON.sqrt();

@@ -30,7 +30,6 @@ pub(crate) fn failure(error: DiagnoseError) -> Failure {
         DiagnoseError::NothingMeasured
         | DiagnoseError::LacksChannel { .. }
         | DiagnoseError::NothingToFit
-        | DiagnoseError::TooLong { .. }
         | DiagnoseError::Model(ModelError::Effect(_) | ModelError::Edit(_)) => {
             Failure::Data(error.to_string())
         }
@@ -94,6 +93,9 @@ pub(crate) fn text(report: &Report, next: Option<&Path>) -> String {
     if let Some(path) = next {
         let _ = writeln!(text, "            written to {}", path.display());
     }
+    if let Some(rows) = left_out(report) {
+        let _ = writeln!(text, "  rows      {rows}");
+    }
     match &report.how_far {
         Some(far) => {
             let _ = writeln!(
@@ -132,6 +134,16 @@ pub(crate) fn text(report: &Report, next: Option<&Path>) -> String {
         levels.join(", ")
     );
     text
+}
+
+/// That rows were left out, if any were.
+fn left_out(report: &Report) -> Option<String> {
+    let [fitted, all] = report.rows;
+    (fitted < all).then(|| {
+        format!(
+            "{fitted} of {all} rows to fit were fitted, in stretches that are spread over the runs"
+        )
+    })
 }
 
 /// The verdict in one sentence.
@@ -275,6 +287,7 @@ pub(crate) fn json(report: &Report, next: Option<&Path>) -> Value {
         "schema": "gap-report/1",
         "mechanism": report.mechanism,
         "verdict": report.verdict.word(),
+        "rows": { "fitted": report.rows[0], "all": report.rows[1] },
         "where": {
             "domain": report.place.domain,
             "equations": equations.collect::<Vec<_>>(),

@@ -19,6 +19,7 @@
 //! | `quantum.rs`, `noise.rs` | the step of a sensor; the noise level, stated and found |
 //! | `observed.rs` | the runs as the estimation core takes them |
 //! | `rebound.rs` | the same recordings for another spec |
+//! | `stretches.rs` | some rows of long recordings |
 //! | `finding.rs`, `error.rs` | what was mended or looks wrong; what cannot be read |
 //! | `limits.rs` | how large a data set may be |
 //!
@@ -44,6 +45,7 @@ mod observed;
 mod parquet;
 mod quantum;
 mod rebound;
+mod stretches;
 pub(crate) mod table;
 
 use std::path::Path;

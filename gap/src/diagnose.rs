@@ -63,6 +63,9 @@ use compare::Comparison;
 use held_out::{HeldOut, Leader};
 use screen::Screen;
 
+/// Rows that are fitted: with so many, sizes are known far better than laws are right.
+const MOST_ROWS: usize = 4000;
+
 /// What is asked for beside the report.
 #[derive(Debug, Clone, Default)]
 pub struct Options {
@@ -82,7 +85,8 @@ pub fn diagnose(
     mut stage: impl FnMut(&'static str),
 ) -> Result<Report, DiagnoseError> {
     stage("deriving the mechanism with all effects");
-    let fitted = set.only(Part::Fit);
+    let whole = set.only(Part::Fit);
+    let fitted = whole.stretches(MOST_ROWS);
     if fitted.runs.is_empty() {
         return Err(DiagnoseError::NothingToFit);
     }
@@ -118,6 +122,7 @@ pub fn diagnose(
     windows::tell(&bench, &comparison, &mut place)?;
     let mut report = report::assemble(&bench, &screen, &comparison, place.clone(), &rivals)?;
     report.failed.append(&mut lost);
+    report.rows = [fitted.rows(), whole.rows()];
     stage("predicting the runs that were held out");
     let test = set.only(Part::Test);
     let held_out = HeldOut::of(&test, &bench)?;

@@ -8,7 +8,7 @@ use appell_gap::data::{DataSet, Part};
 use appell_gap::diagnose::{Ahead, HowFar, Hypothesis, Report, Verdict, Where};
 
 use super::numbers::{measured, percent, short};
-use super::{joined, plots, sentence};
+use super::{joined, left_out, plots, sentence};
 
 const STYLE: &str = include_str!("page.css");
 /// An effect that betters predictions by less is of little matter.
@@ -23,7 +23,7 @@ pub(crate) fn page(set: &DataSet, report: &Report) -> String {
         how_far(report),
         next(set, report),
         detectable(report),
-        recordings(set),
+        recordings(set, report),
     ];
     format!(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
@@ -56,7 +56,9 @@ fn verdict(report: &Report) -> String {
             percent(far.closed_ci95[1]),
             percent(far.closed_vs_refitted),
         );
-        if far.with_effect > (1.0 - MATTERS) * far.refitted {
+        if far.with_effect > far.refitted {
+            text += " Predictions get worse with it: what was fitted does not hold on these runs.";
+        } else if far.with_effect > (1.0 - MATTERS) * far.refitted {
             text += " The effect is certain and of little matter: predictions hardly get better.";
         }
     }
@@ -436,7 +438,7 @@ fn detectable(report: &Report) -> String {
     )
 }
 
-fn recordings(set: &DataSet) -> String {
+fn recordings(set: &DataSet, report: &Report) -> String {
     let rows = set.runs.iter().map(|run| {
         let part = match run.part {
             Part::Fit => "to fit",
@@ -451,6 +453,9 @@ fn recordings(set: &DataSet) -> String {
     });
     let mut html = "<h2>Recordings</h2>\n".to_owned();
     html += &table(["run", "used", "rows", "length"], rows, 2);
+    if let Some(rows) = left_out(report) {
+        let _ = writeln!(html, "<p class=\"faint\">{}.</p>", escaped(&rows));
+    }
     for finding in &set.findings {
         let told = escaped(&crate::recording::sentence(finding));
         let _ = writeln!(html, "<p class=\"faint\">{told}</p>");

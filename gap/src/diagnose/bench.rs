@@ -2,7 +2,7 @@
 //! free under each hypothesis, and from where a search starts.
 
 use appell_runtime::estimate::{
-    Coordinate, Effort, EstimateError, Estimation, Fit, Free, Measured, Recording, Setup, Unknown,
+    Coordinate, Effort, Estimation, Fit, Free, Measured, Recording, Setup, Unknown,
 };
 use appell_runtime::model::Model;
 
@@ -14,8 +14,6 @@ use crate::data::{DataSet, Part};
 use crate::effects::{Acts, Candidate, EffectModel, Part as Role};
 use crate::identify::{Options, Problem, longest_step};
 
-/// Rows that are fitted; more take hours, and tell no more of what a model lacks.
-const MOST_ROWS: usize = 500_000;
 /// Delays of inputs and channels are this long in s at most.
 const LONGEST_DELAY: f64 = 0.1;
 /// Shortest lag that the integration can follow, in steps.
@@ -55,11 +53,6 @@ impl<'a> Bench<'a> {
         let measured: Vec<Measured> = set.measured(info).iter().map(|(_, m)| *m).collect();
         if measured.is_empty() {
             return Err(DiagnoseError::NothingMeasured);
-        }
-        let rows = set.runs.iter().map(|run| run.times.len()).sum();
-        if rows > MOST_ROWS {
-            let most = MOST_ROWS;
-            return Err(DiagnoseError::TooLong { rows, most });
         }
         let recordings = set.recordings(Part::Fit, info)?;
         let steps = recordings.iter().map(|run| {
@@ -346,11 +339,7 @@ impl<'a> Bench<'a> {
         start: &[f64],
     ) -> Result<Fitted, DiagnoseError> {
         let free = self.free(members, estimation.setup());
-        // Far from the optimum the observed curvature leads on where the expected one does not.
-        let fit = match Fit::quick(estimation, start, &free, EFFORT) {
-            Err(EstimateError::Stuck { .. }) => Fit::of(estimation, start, &free, EFFORT)?,
-            fit => fit?,
-        };
+        let fit = Fit::quick(estimation, start, &free, EFFORT)?;
         let evidence = Evidence::of(self, members, &fit);
         Ok(Fitted {
             members: members.to_vec(),

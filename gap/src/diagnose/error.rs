@@ -16,17 +16,6 @@ pub enum DiagnoseError {
     /// All runs are held out.
     #[error("no run may be fitted; name one in `fit` of `[runs]`")]
     NothingToFit,
-    /// Recordings with more rows than a diagnosis takes.
-    #[error(
-        "the runs to fit have {rows} rows, and a diagnosis takes {most} at most; name fewer runs in \
-         `fit`, or keep every n-th row"
-    )]
-    TooLong {
-        /// How many there are.
-        rows: usize,
-        /// How many may be.
-        most: usize,
-    },
     /// Recordings that do not fit an alternative.
     #[error(transparent)]
     Data(#[from] crate::data::DataError),

@@ -207,6 +207,8 @@ pub struct Report {
     pub mechanism: String,
     /// The result in one word.
     pub verdict: Verdict,
+    /// Rows of the runs to fit: those that were fitted, and all.
+    pub rows: [usize; 2],
     /// Where the gap lies.
     pub place: Where,
     /// Hypotheses, the most probable first.
@@ -320,6 +322,7 @@ pub(super) fn assemble(
     Ok(Report {
         mechanism: bench.set.mechanism.name.clone(),
         verdict,
+        rows: [0; 2],
         place: if verdict == Verdict::NoGap || leads {
             Where::nowhere()
         } else {

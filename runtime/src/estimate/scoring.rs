@@ -72,8 +72,8 @@ impl Fit {
                 });
             }
             if ends {
-                let slope = point.gradient.amax();
-                return Err(EstimateError::Stuck { steps, slope });
+                // Far from an optimum the observed curvature leads on where the expected one does not.
+                return Self::of(estimation, &point.values, free, effort);
             }
             steps += 1;
             // Coordinates at their reach may make things worse together: a damped step does not.

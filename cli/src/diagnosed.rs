@@ -9,7 +9,7 @@ use std::path::Path;
 
 use appell_gap::data::DataSet;
 use appell_gap::diagnose::{
-    Ahead, Changes, DiagnoseError, Experiment, Hypothesis, Report, Verdict,
+    Ahead, Changes, DiagnoseError, Experiment, Hint, Hypothesis, Report, Verdict,
 };
 use appell_gap::effects::ModelError;
 use serde_json::{Value, json};
@@ -73,6 +73,9 @@ pub(crate) fn text(report: &Report, next: Option<&Path>) -> String {
         let names: Vec<String> = group.iter().map(|effects| joined(effects)).collect();
         let _ = writeln!(text, "  tied      {}", names.join(" | "));
     }
+    for hint in &report.hints {
+        let _ = writeln!(text, "  hint      {}", hinted(hint));
+    }
     if let Some(left) = report.left.as_ref().filter(|left| left.is_there()) {
         let _ = writeln!(text, "  left      {}", left.about);
     }
@@ -134,6 +137,14 @@ pub(crate) fn text(report: &Report, next: Option<&Path>) -> String {
         levels.join(", ")
     );
     text
+}
+
+/// A hint in words.
+fn hinted(hint: &Hint) -> String {
+    format!(
+        "the gap in the equation of {} depends on {}, which the model does not know",
+        hint.equation, hint.variable
+    )
 }
 
 /// That rows were left out, if any were.
@@ -287,6 +298,12 @@ pub(crate) fn json(report: &Report, next: Option<&Path>) -> Value {
         "schema": "gap-report/1",
         "mechanism": report.mechanism,
         "verdict": report.verdict.word(),
+        "hints": report.hints.iter().map(|hint| json!({
+            "variable": hint.variable,
+            "equation": hint.equation,
+            "gain": hint.gain,
+            "log_bayes_factor": hint.log_bayes_factor,
+        })).collect::<Vec<_>>(),
         "rows": { "fitted": report.rows[0], "all": report.rows[1] },
         "where": {
             "domain": report.place.domain,

@@ -21,6 +21,7 @@
 
 mod alternative;
 mod bench;
+mod beside;
 mod calibration;
 mod changes;
 mod compare;
@@ -52,8 +53,8 @@ pub use experiment::{Experiment, Limit};
 pub use law::Law;
 pub use over_time::{MissingForce, OverTime};
 pub use report::{
-    Detectable, Found, HowFar, Hypothesis, Left, Pictures, Region, Report, ShareOf, Value, Verdict,
-    Where, Window,
+    Detectable, Found, Hint, HowFar, Hypothesis, Left, Pictures, Region, Report, ShareOf, Value,
+    Verdict, Where, Window,
 };
 pub use traces::{AHEAD, Ahead, Trace};
 
@@ -123,6 +124,7 @@ pub fn diagnose(
     let mut report = report::assemble(&bench, &screen, &comparison, place.clone(), &rivals)?;
     report.failed.append(&mut lost);
     report.rows = [fitted.rows(), whole.rows()];
+    report.hints = report::hints(&bench, &comparison)?;
     stage("predicting the runs that were held out");
     let test = set.only(Part::Test);
     let held_out = HeldOut::of(&test, &bench)?;

@@ -10,7 +10,8 @@ use crate::{files, progress};
 
 /// Recomputes a paper: every equation, table and figure beside what is published, as a book.
 ///
-/// The book is one page that needs no network. The exit status is 4 if a statement that should hold
+/// The book is one page that needs no network. Beside the one on the electric unicycle its simulated
+/// rides are written, as data sets for `appell diagnose`. The exit status is 4 if a statement that should hold
 /// does not.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Reproduce {
@@ -73,7 +74,7 @@ impl Reproduce {
         };
         let sections = match self.paper {
             Paper::Steering => reproduce::steering(making),
-            Paper::Euc => reproduce::euc(making),
+            Paper::Euc => reproduce::euc(&self.out.join("rides"), making),
         };
         bar.finish_and_clear();
         let sections = sections?;

@@ -8,7 +8,7 @@ use appell_gap::data::{DataSet, Part};
 use appell_gap::diagnose::{Ahead, HowFar, Hypothesis, Report, Verdict, Where};
 
 use super::numbers::{measured, percent, short};
-use super::{joined, left_out, plots, sentence};
+use super::{hinted, joined, left_out, plots, sentence};
 
 const STYLE: &str = include_str!("page.css");
 /// An effect that betters predictions by less is of little matter.
@@ -97,6 +97,9 @@ fn place(set: &DataSet, report: &Report) -> String {
         let domain = report.place.domain;
         // Writing to a string cannot fail.
         let _ = writeln!(html, "<p>The gap is a matter of <b>{domain}</b>.</p>");
+    }
+    for hint in &report.hints {
+        let _ = writeln!(html, "<p>{}.</p>", escaped(&capital(&hinted(hint))));
     }
     if let Some(svg) = drawing(set, report) {
         let caption = if svg.contains("class=\"ring") {

@@ -7,6 +7,7 @@ use appell_runtime::estimate::{
 use appell_runtime::model::Model;
 
 use super::DiagnoseError;
+use super::beside::Beside;
 use super::evidence::Evidence;
 use super::feedback::Surprises;
 use super::hypothesis::Fitted;
@@ -41,6 +42,8 @@ pub(super) struct Bench<'a> {
     pub(super) sizes: Vec<f64>,
     /// What inputs know beyond the recordings.
     pub(super) surprises: Surprises,
+    /// What was recorded and the model does not know.
+    pub(super) beside: Vec<Beside>,
     /// Shortest step between rows.
     step: f64,
 }
@@ -73,6 +76,7 @@ impl<'a> Bench<'a> {
         };
         Ok(Self {
             surprises: Surprises::of(&recordings),
+            beside: Beside::of(&set),
             set,
             effects,
             recordings,

@@ -15,12 +15,17 @@ use crate::identify::begin;
 
 /// Horizon in s at which the gap is told.
 const HORIZON: f64 = 1.0;
+/// The same where a mechanism falls over so soon that the best hypothesis expects larger errors than
+/// the channels vary.
+const SHORT: f64 = 0.1;
 /// Most rows of a run from which predictions start.
 const ORIGINS: usize = 150;
 /// Rows from which expected errors are told.
 const EXPECTED_FROM: usize = 25;
 /// Time in s that the filter has to find the state, but no more than a tenth of the run.
 const WARM_UP: f64 = 0.5;
+/// Times that disturbances are raised tenfold at most.
+const MORE: usize = 6;
 /// Draws of the bootstrap.
 const DRAWS: usize = 1000;
 /// Blocks of errors last so many seconds: errors that overlap depend on each other.
@@ -86,9 +91,13 @@ impl HeldOut {
         let refitted = comparison.nominal();
         let nominal = stated(bench, refitted);
         let noise = noise(bench, comparison.best())?;
-        let errors = |fitted: &Fitted| self.errors(bench, fitted, &noise, HORIZON);
+        let (mut horizon, mut floor) = (HORIZON, leader.floor(HORIZON)?);
+        if floor.is_nan() || floor > leader.runs.spread(&leader.noise) {
+            (horizon, floor) = (SHORT, leader.floor(SHORT)?);
+        }
+        let errors = |fitted: &Fitted| self.errors(bench, fitted, &noise, horizon);
         let (nominal, refitted) = (errors(&nominal)?, errors(refitted)?);
-        let (effect, floor) = (leader.errors(HORIZON)?, leader.floor(HORIZON)?);
+        let effect = leader.errors(horizon)?;
         let blocks: Vec<Block> = blocks(&nominal, &refitted, &effect);
         let total = sum(&blocks);
         let closed = |e0: f64, e: f64| (e0 - e) / (e0 - floor * floor);
@@ -103,7 +112,7 @@ impl HeldOut {
                 .unwrap_or(f64::NAN)
         };
         Ok(Some(HowFar {
-            horizon_s: HORIZON,
+            horizon_s: horizon,
             nominal: mean(total.nominal, &total).sqrt(),
             refitted: mean(total.refitted, &total).sqrt(),
             with_effect: mean(total.effect, &total).sqrt(),
@@ -113,6 +122,28 @@ impl HeldOut {
             closed_vs_refitted: closed(mean(total.refitted, &total), mean(total.effect, &total)),
             runs: self.names.clone(),
         }))
+    }
+
+    /// How much the channels vary, in units of the noise: root of the mean square.
+    fn spread(&self, noise: &[f64]) -> f64 {
+        let (mut squares, mut count) = (0.0, 0.0_f64);
+        for (channel, noise) in noise
+            .iter()
+            .enumerate()
+            .filter(|(_, noise)| noise.is_finite())
+        {
+            for run in &self.recordings {
+                let rows = (0..run.times().len()).map(|row| run.measured(row)[channel]);
+                let seen: Vec<f64> = rows.filter(|value| !value.is_nan()).collect();
+                let mean = seen.iter().sum::<f64>() / seen.len().max(1) as f64;
+                squares += seen
+                    .iter()
+                    .map(|value| ((value - mean) / noise).powi(2))
+                    .sum::<f64>();
+                count += seen.len() as f64;
+            }
+        }
+        (squares / count.max(1.0)).sqrt()
     }
 
     /// Squared errors in units of the noise, with run and block.
@@ -183,7 +214,8 @@ pub(super) fn stated(bench: &Bench<'_>, fitted: &Fitted) -> Fitted {
     stated
 }
 
-/// Values of a fit on these recordings.
+/// Values of a fit on these recordings. A filter that trusts its model so much that it loses a run
+/// which it has not seen gets more disturbance, until it follows.
 pub(super) fn taken_over(
     bench: &Bench<'_>,
     fitted: &Fitted,
@@ -192,6 +224,15 @@ pub(super) fn taken_over(
     let mut values = bench.carried(fitted, estimation);
     begin(estimation, &mut values)?;
     bench.hide(&fitted.members, estimation, &mut values)?;
+    let layout = estimation.layout();
+    for _ in 0..MORE {
+        if estimation.log_likelihood(&values).is_ok() {
+            break;
+        }
+        for index in 0..estimation.setup().disturbances.len() {
+            values[layout.place(Unknown::Disturbance(index))?] *= 10.0;
+        }
+    }
     Ok(values)
 }
 

@@ -12,6 +12,7 @@ use super::law::Law;
 use super::over_time::OverTime;
 use super::screen::Screen;
 use super::traces::{Ahead, Trace};
+use super::unknown;
 use crate::effects::{Acts, Part};
 use appell_runtime::estimate::{Along, Unknown};
 
@@ -191,6 +192,19 @@ impl Left {
     }
 }
 
+/// A channel that the model does not know and on which the gap of the nominal model depends.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Hint {
+    /// The channel, or its rate.
+    pub variable: String,
+    /// Pseudo-velocity of the equation whose missing force depends on it most.
+    pub equation: String,
+    /// What such a force would gain in log-likelihood.
+    pub gain: f64,
+    /// Logarithm of the Bayes factor for it.
+    pub log_bayes_factor: f64,
+}
+
 /// A member of a hypothesis in a sentence.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Found {
@@ -228,6 +242,8 @@ pub struct Report {
     /// Part of the samples that tell something of their own; less than one where the innovations of
     /// the best hypothesis follow each other.
     pub independent: f64,
+    /// Channels that the model does not know and that the gap depends on, the surest first.
+    pub hints: Vec<Hint>,
     /// Effects of the best hypothesis in words.
     pub found: Vec<Found>,
     /// Errors over horizons; empty where no run was held out.
@@ -340,6 +356,7 @@ pub(super) fn assemble(
         disturbances: disturbances(bench, comparison.nominal(), best),
         left: left(bench, comparison),
         independent: comparison.independent,
+        hints: Vec::new(),
         found,
         horizons: Vec::new(),
         pictures: None,
@@ -355,14 +372,17 @@ fn join(
     comparison: &Comparison,
 ) -> Result<(), DiagnoseError> {
     let (best, probability) = &comparison.fits[0];
-    let known = probability * (1.0 - comparison.unknown);
+    // Beside certainty nothing is left of 1 − p: what is left of the library speaks for itself.
+    let left = comparison.left.as_ref();
+    let left = left.map_or(0.0, |left| left.log_bayes_factor.max(0.0));
+    let known = probability.ln() + (1.0 - comparison.unknown).ln().max(-left);
     let beside = best.evidence.log() + prior(bench, best.members.len());
     let base = comparison.nominal().evidence.log();
     for rival in rivals {
         let odds = tempered(comparison.independent * (rival.log + prior(bench, 1) - beside));
         which.push(Hypothesis {
             effects: vec![rival.name.clone()],
-            probability: odds.min(MOST_LOG_ODDS).exp() * known.max(f64::MIN_POSITIVE),
+            probability: (odds + known).min(MOST_LOG_ODDS).exp(),
             log_bayes_factor: Some(rival.log - base),
             parameters: rival.values()?,
             changes: None,
@@ -481,6 +501,23 @@ fn channel_unit(bench: &Bench<'_>, channel: usize) -> String {
         "1/s" if is_angle => "rad/s".to_owned(),
         _ => si,
     }
+}
+
+/// What the gap of the nominal model depends on beside the quantities of the model.
+pub(super) fn hints(
+    bench: &Bench<'_>,
+    comparison: &Comparison,
+) -> Result<Vec<Hint>, DiagnoseError> {
+    let info = bench.effects.info();
+    let hints = unknown::hints(bench, comparison.nominal())?.into_iter();
+    Ok(hints
+        .map(|one| Hint {
+            equation: info.states[one.place].name.to_string(),
+            variable: one.variable,
+            gain: one.gain,
+            log_bayes_factor: one.log_bayes_factor,
+        })
+        .collect())
 }
 
 fn left(bench: &Bench<'_>, comparison: &Comparison) -> Option<Left> {

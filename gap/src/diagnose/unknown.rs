@@ -1,6 +1,7 @@
 //! What nobody has named: a force in an equation or an error of a channel, as a law of a position, a
-//! rate or an input. A law is a sum of waves of the variable whose sizes fall off as those of a law with a step do, or one wave alone. About the best
-//! hypothesis they tell what it leaves and on what that depends.
+//! rate, an input, or a channel that was recorded beside them. A law is a sum of waves of the variable
+//! whose sizes fall off as those of a law with a step do, or one wave alone. About the best hypothesis
+//! they tell what it leaves and on what that depends.
 //!
 //! A law is linear in the sizes of its waves, so what it gains, and how probable it makes the recordings
 //! when its sizes are normal, has a closed form (C. E. Rasmussen and C. K. I. Williams, *Gaussian
@@ -18,6 +19,8 @@ use nalgebra::{DMatrix, DVector};
 
 use super::DiagnoseError;
 use super::bench::Bench;
+use super::beside::Beside;
+use super::compare::TIED;
 use super::evidence::occam;
 use super::hypothesis::Fitted;
 use super::screen::{Projected, moving};
@@ -57,32 +60,42 @@ pub(super) struct Leftover {
     pub(super) log_bayes_factor: f64,
 }
 
+/// Where the values of a variable are from.
+#[derive(Clone, Copy)]
+enum Source<'b> {
+    /// States, then inputs.
+    Own(usize),
+    /// A channel that the model does not know.
+    Beside(&'b Beside),
+}
+
 /// What the laws of a variable depend on.
 #[derive(Clone, Copy)]
-struct Variable {
-    /// States, then inputs.
-    index: usize,
+struct Variable<'b> {
+    source: Source<'b>,
     /// Angle of the first wave per unit.
     first: f64,
     /// The waves also grow with time: a friction that changes.
     drifts: bool,
 }
 
-impl Variable {
-    fn of(self, (bench, model): (&Bench<'_>, &dyn Model), at: At<'_>) -> f64 {
+impl Variable<'_> {
+    fn of(self, (bench, model): (&Bench<'_>, &dyn Model), run: usize, at: At<'_>) -> f64 {
         let states = bench.effects.info().state_len();
-        match self.index.checked_sub(states) {
-            Some(input) => at.u[input],
-            None => at.x[bench.place(self.index, model)],
+        match self.source {
+            Source::Own(index) if index < states => at.x[bench.place(index, model)],
+            Source::Own(index) => at.u[index - states],
+            Source::Beside(beside) => beside.at(run, at.t),
         }
     }
 
     fn name(self, bench: &Bench<'_>) -> String {
         let info = bench.effects.info();
         let mut quantities = info.states.iter().chain(info.inputs.iter());
-        let name = quantities
-            .nth(self.index)
-            .map_or("", |own| own.name.as_ref());
+        let name = match self.source {
+            Source::Own(index) => quantities.nth(index).map_or("", |own| own.name.as_ref()),
+            Source::Beside(beside) => &beside.name,
+        };
         if self.drifts {
             format!("{name} and time")
         } else {
@@ -129,12 +142,15 @@ fn told(
     bench: &Bench<'_>,
     estimation: &Estimation<'_>,
     fitted: &Fitted,
-    variable: Variable,
+    variable: Variable<'_>,
     along: Along,
 ) -> Result<Vec<(usize, Told)>, DiagnoseError> {
     let (free, setup) = (moving(fitted), estimation.setup());
-    let write = |_run: usize, at: At<'_>, values: &mut [f64]| {
-        let x = variable.of((bench, setup.model), at);
+    let write = |run: usize, at: At<'_>, values: &mut [f64]| {
+        let x = variable.of((bench, setup.model), run, at);
+        if x.is_nan() {
+            return values.fill(0.0);
+        }
         let grown = if variable.drifts { at.t } else { 1.0 };
         for (wave, pair) in values.chunks_exact_mut(2).enumerate() {
             let (sin, cos) = ((wave + 1) as f64 * variable.first * x).sin_cos();
@@ -205,8 +221,51 @@ fn log_sum(logs: impl Iterator<Item = f64> + Clone) -> f64 {
     most + logs.map(|log| (log - most).exp()).sum::<f64>().ln()
 }
 
-/// Positions and rates that return, over whole turns where an angle makes several; inputs.
-fn variables(bench: &Bench<'_>) -> Vec<Variable> {
+/// Channels that the model does not know and on which the gap of a hypothesis depends, each with the
+/// place where it shows most: one false one in twenty.
+pub(super) fn hints(bench: &Bench<'_>, fitted: &Fitted) -> Result<Vec<Unnamed>, DiagnoseError> {
+    let setup = bench.setup(&fitted.members);
+    let estimation = Estimation::new(&setup, &bench.recordings)?;
+    let along = Along::Disturbances;
+    let mut found = Vec::new();
+    let mut tried = 0;
+    for variable in bench.beside.iter().map(Variable::beside) {
+        let mut family = Family::default();
+        for (place, told) in told(bench, &estimation, fitted, variable, along)? {
+            let smooth = told.smooth();
+            family.add(smooth.map(|(gain, foretold, log_bayes_factor)| Unnamed {
+                along,
+                place,
+                variable: variable.name(bench),
+                gain,
+                foretold,
+                log_bayes_factor,
+            }));
+        }
+        tried += family.tried;
+        let log = |one: &Unnamed| one.log_bayes_factor;
+        let all = family.found.into_iter();
+        found.extend(all.max_by(|a, b| log(a).total_cmp(&log(b))));
+    }
+    let least = TIED + (tried.max(1) as f64).ln();
+    found.retain(|one| one.log_bayes_factor > least);
+    found.sort_by(|a, b| b.log_bayes_factor.total_cmp(&a.log_bayes_factor));
+    Ok(found)
+}
+
+impl<'b> Variable<'b> {
+    fn beside(beside: &'b Beside) -> Self {
+        Self {
+            source: Source::Beside(beside),
+            first: PI / (beside.range.1 - beside.range.0),
+            drifts: false,
+        }
+    }
+}
+
+/// Positions and rates that return, over whole turns where an angle makes several; inputs; channels
+/// that the model does not know.
+fn variables<'b>(bench: &'b Bench<'_>) -> Vec<Variable<'b>> {
     let info = bench.effects.info();
     let mut variables = Vec::new();
     for index in 0..info.state_len() + bench.recordings[0].input_len() {
@@ -221,7 +280,7 @@ fn variables(bench: &Bench<'_>) -> Vec<Variable> {
             PI / range
         };
         let one = Variable {
-            index,
+            source: Source::Own(index),
             first,
             drifts: false,
         };
@@ -233,6 +292,7 @@ fn variables(bench: &Bench<'_>) -> Vec<Variable> {
             });
         }
     }
+    variables.extend(bench.beside.iter().map(Variable::beside));
     variables
 }
 

@@ -7,7 +7,7 @@ use super::capture::{Captured, Imperfection};
 use super::dice::Dice;
 use super::rider::{Manoeuvre, Rider};
 use crate::failure::Failure;
-use crate::reproduce::found::told;
+use crate::reproduce::found::{failed, told};
 
 /// The skeleton that stands among the examples.
 const SKELETON: &str = include_str!("../../../../docs/examples/euc/skeleton.toml");
@@ -97,6 +97,17 @@ impl Laboratory {
             rider: captured,
             skeleton,
         })
+    }
+
+    /// Value and unit of a parameter of the spatial model that was ridden.
+    pub(super) fn stated(&self, name: &str) -> Result<(f64, String), Failure> {
+        let motion = self.sessions.iter().flat_map(|own| &own.motions).next();
+        let motion = motion.ok_or_else(|| failed("nothing was ridden"))?;
+        let info = motion.info();
+        let index = info.parameter_index(name);
+        let index = index.ok_or_else(|| failed(&format!("the model has no `{name}`")))?;
+        let unit = info.parameters[index].unit.to_string();
+        Ok((motion.parameters()[index], unit))
     }
 
     /// The rides of a manoeuvre as other cameras would see them.

@@ -6,6 +6,7 @@
 //! | `equations.rs`, `tables.rs` | every numbered equation; tables 1 to 3 |
 //! | `rider.rs` | the spatial unicycle under a rider, four manoeuvres |
 //! | `capture.rs`, `dice.rs` | rigid bodies as cameras see them; noise |
+//! | `recorded.rs` | the rides as data sets, for `appell diagnose` |
 //! | `laboratory.rs` | everything that was ridden, captured and smoothed |
 //! | `torque.rs` | M_d,1 and M_d,2, and their difference over the height |
 //! | `figure_3.rs`, `figure_6.rs`, `figure_8.rs` | figures 3 and 4, 6 and 7, 8 |
@@ -19,9 +20,12 @@ mod figure_6;
 mod figure_8;
 mod heights;
 mod laboratory;
+mod recorded;
 mod rider;
 mod tables;
 mod torque;
+
+use std::path::Path;
 
 use laboratory::{Laboratory, Session};
 use rider::Manoeuvre;
@@ -42,11 +46,16 @@ const PARTS: &[Part] = &[
     ("heights", heights::section),
 ];
 
-/// The book part by part; `making` hears what is made, and how much of the book is.
-pub(crate) fn book(mut making: impl FnMut(&str, usize, usize)) -> Result<Vec<Section>, Failure> {
+/// The book part by part; `making` hears what is made, and how much of the book is. The rides go to a
+/// folder, as recordings.
+pub(crate) fn book(
+    rides: &Path,
+    mut making: impl FnMut(&str, usize, usize),
+) -> Result<Vec<Section>, Failure> {
     let all = PARTS.len() + 1;
     making("rides", 0, all);
     let laboratory = Laboratory::new()?;
+    recorded::write(&laboratory, rides)?;
     let part = |(number, (name, make)): (usize, &Part)| {
         making(name, number + 1, all);
         make(&laboratory)

@@ -24,7 +24,7 @@ pub(super) const RATE: f64 = 120.0;
 const SPATIAL: &str = "euc_spatial";
 /// A thin wheel rolls on a point, about which nothing turns it. Tyres have a patch: a rider who twists
 /// the upper body draws a torque from it.
-const TWIST: [(&str, &str); 2] = [
+pub(super) const TWIST: [(&str, &str); 2] = [
     (
         "[frames]",
         "M_z = { unit = \"N*m\", about = \"torque of the ground on the tyre, drawn by the rider's twisting\" }\n\n[frames]",
@@ -97,6 +97,15 @@ impl Manoeuvre {
         match self {
             Self::FigureEight => STRAIGHT + 2.0 * PERIOD,
             _ => 5.0,
+        }
+    }
+
+    /// The frame from which on the commands are smooth: turning begins with a jump, and the mean of a torque
+    /// from row to row says nothing of it.
+    pub(super) const fn steady_from(self) -> usize {
+        match self {
+            Self::FigureEight => 300,
+            _ => 0,
         }
     }
 

@@ -202,7 +202,7 @@ fn broken(round: usize, row: usize, value: f64) -> f64 {
         1 => 1e6 * value,
         2 => 1e-9 * value,
         3 if (20..40).contains(&row) => f64::NAN,
-        4 if row % 2 == 0 => f64::NAN,
+        4 if row.is_multiple_of(2) => f64::NAN,
         5 if row > 30 => 1e3,
         6 => value + 1e6,
         7 => -value,

@@ -25,6 +25,11 @@ const EFFORT: Effort = Effort {
     gain: 0.02,
     steps: 60,
 };
+/// The same for the nominal model, which begins where the parameters are stated: perhaps far away.
+const FROM_AFAR: Effort = Effort {
+    gain: EFFORT.gain,
+    steps: 400,
+};
 /// Standard deviation of the logarithm of a shape.
 const SHAPE: f64 = 1.0;
 /// Standard deviation of a parameter that may be wrong, as a part of its value.
@@ -228,7 +233,7 @@ impl<'a> Bench<'a> {
     pub(super) fn nominal(&self) -> Result<Fitted, DiagnoseError> {
         let setup = self.setup(&[]);
         let estimation = Estimation::new(&setup, &self.recordings)?;
-        self.fit(&[], &estimation, &self.problem.start)
+        self.fit_by(&[], &estimation, &self.problem.start, FROM_AFAR)
     }
 
     /// The parameters of a fit without what its members do.
@@ -342,8 +347,18 @@ impl<'a> Bench<'a> {
         estimation: &Estimation<'_>,
         start: &[f64],
     ) -> Result<Fitted, DiagnoseError> {
+        self.fit_by(members, estimation, start, EFFORT)
+    }
+
+    fn fit_by(
+        &self,
+        members: &[usize],
+        estimation: &Estimation<'_>,
+        start: &[f64],
+        effort: Effort,
+    ) -> Result<Fitted, DiagnoseError> {
         let free = self.free(members, estimation.setup());
-        let fit = Fit::quick(estimation, start, &free, EFFORT)?;
+        let fit = Fit::quick(estimation, start, &free, effort)?;
         let evidence = Evidence::of(self, members, &fit);
         Ok(Fitted {
             members: members.to_vec(),

@@ -132,6 +132,8 @@ pub(super) fn over_time(map: &OverTime) -> String {
     const WIDTH: f64 = 720.0;
     const ROW: f64 = 26.0;
     const GAP: f64 = 6.0;
+    // Width of a letter on the average.
+    const LETTER: f64 = 6.6;
     let parts: usize = map.runs.iter().map(|(_, _, parts)| parts).sum();
     let gaps = GAP * map.runs.len().saturating_sub(1) as f64;
     let cell = (WIDTH - LEFT - gaps) / parts.max(1) as f64;
@@ -170,18 +172,21 @@ pub(super) fn over_time(map: &OverTime) -> String {
             }
         }
     }
-    let mut index = 0;
+    let (mut index, mut taken) = (0, 0.0);
     for (run, (name, from, parts)) in map.runs.iter().enumerate() {
         let x = LEFT + cell * index as f64 + GAP * run as f64;
-        let _ = writeln!(
-            svg,
-            "<text x=\"{x:.1}\" y=\"{:.1}\" class=\"run\">{}: {} to {} s</text>",
-            height - 20.0,
-            escaped(name),
-            short(*from),
-            short(from + map.part * *parts as f64),
-        );
         index += parts;
+        let to = from + map.part * *parts as f64;
+        let label = format!("{name}: {} to {} s", short(*from), short(to));
+        let width = LETTER * label.chars().count() as f64;
+        // Short stretches of a run leave no room for their names.
+        if x < taken || x + width > WIDTH {
+            continue;
+        }
+        taken = x + width;
+        let y = height - 20.0;
+        let label = escaped(&label);
+        let _ = writeln!(svg, "<text x=\"{x:.1}\" y=\"{y:.1}\">{label}</text>");
     }
     svg + "</svg>\n"
 }

@@ -38,7 +38,9 @@ def constants():
 def row(report, label, left_out, temperature):
     """log odds against the best hypothesis and number of members of each, with whether it is true."""
     listed = [h for h in report["which"] if h["effects"] != UNKNOWN]
-    best = max(h["probability"] for h in listed) or 1.0
+    best = max(h["probability"] for h in listed)
+    if not best:  # beside certainty that it is none of them the first one is left
+        listed, best = [{**listed[0], "probability": 1.0}], 1.0
     odds = lambda h: max(temperature * math.log(max(h["probability"], 1e-300) / best), -50.0)
     true = lambda h: not left_out and is_truth(sorted(h["effects"]), label)
     left, independent = report.get("left"), report.get("independent", 1.0)

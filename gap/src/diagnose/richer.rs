@@ -26,6 +26,10 @@ const SURPRISED: f64 = 4.0;
 /// Those that gain at some size.
 pub(super) fn tried(bench: &Bench<'_>, fitted: &Fitted) -> Result<Vec<Screened>, DiagnoseError> {
     let effects = bench.effects;
+    // An input that follows the motion surprises the filter after its reversals whatever the cause.
+    if bench.surprises.count > 0 {
+        return Ok(Vec::new());
+    }
     // One such coordinate at a time, and none where contacts creep.
     if fitted
         .members

@@ -3,6 +3,7 @@
 mod rig;
 mod support;
 
+use rig::closed;
 use support::{Folder, number, repository};
 
 /// A rig with dry friction, the user's own spec of it, and the gap report.
@@ -56,17 +57,7 @@ fn the_improved_spec_checks_and_has_no_gap() {
         "{text}"
     );
     folder.done(&["check", "new.toml"]);
-    let asked = [
-        "diagnose",
-        "new.toml",
-        "--data",
-        ".",
-        "--json",
-        "again.json",
-    ];
-    folder.done(&asked);
-    let again = folder.json("again.json");
-    assert_eq!(again["verdict"], "no_gap", "{again:#}");
+    let again = closed(&folder, "new.toml");
     // The held-out error of the new spec, re-fitted or not, is that of the model with the effect.
     let before = number(&folder.json("report.json"), "how_far/with_effect");
     let after = number(&again, "how_far/nominal");

@@ -51,7 +51,8 @@ impl Gear {
     }
 }
 
-fn moved([x, v]: [f64; 2], acceleration: f64, time: f64) -> [f64; 2] {
+/// After a time of constant acceleration.
+pub(super) fn moved([x, v]: [f64; 2], acceleration: f64, time: f64) -> [f64; 2] {
     let half = 0.5 * time * acceleration;
     [x + time * (v + half), v + 2.0 * half]
 }

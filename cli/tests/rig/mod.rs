@@ -6,7 +6,8 @@ mod gear;
 use std::fmt::Write as _;
 
 use super::support::{Folder, Noise};
-use gear::Gear;
+use gear::{Gear, moved};
+use serde_json::Value;
 
 const DESCRIPTION: &str = r#"
 mechanism   = "carriage"
@@ -56,6 +57,28 @@ fn rubbing(friction: impl Fn(f64) -> f64) -> impl FnMut(f64) -> f64 {
     }
 }
 
+/// The motion of the carriage with dry friction that sticks, from stop to stop: while a force is held,
+/// all motion between two stops is a parabola.
+fn stuck(friction: f64) -> impl FnMut(f64) -> f64 {
+    let mut state = [0.0, 0.0];
+    move |force| {
+        let mut left = HELD;
+        while left > 0.0 && (state[1] != 0.0 || force.abs() > friction) {
+            let along = if state[1] == 0.0 { force } else { state[1] };
+            let acceleration = force - friction * along.signum();
+            let stop = -state[1] / acceleration;
+            let stops = stop > 0.0 && stop <= left;
+            let time = if stops { stop } else { left };
+            state = moved(state, acceleration, time);
+            if stops {
+                state[1] = 0.0;
+            }
+            left -= time;
+        }
+        state[0]
+    }
+}
+
 /// Forces of a run.
 fn forces() -> Vec<f64> {
     let force = |t: f64| 2.0 * (3.0 * t).sin() + 1.5 * (7.1 * t).cos();
@@ -99,6 +122,15 @@ impl<F: Fn(f64) -> f64> Rig<F> {
     }
 }
 
+/// The report on a spec in which the effect stands says that there is no gap.
+pub(crate) fn closed(folder: &Folder, spec: &str) -> Value {
+    let asked = ["diagnose", spec, "--data", ".", "--json", "again.json"];
+    folder.done(&asked);
+    let again = folder.json("again.json");
+    assert_eq!(again["verdict"], "no_gap", "{again:#}");
+    again
+}
+
 /// With viscous friction.
 pub(crate) fn viscous(coefficient: f64) -> Folder {
     Rig::new(move |v| coefficient * v).folder
@@ -107,6 +139,16 @@ pub(crate) fn viscous(coefficient: f64) -> Folder {
 /// With dry friction, its sign rounded as filters have to round it.
 pub(crate) fn dry(force: f64) -> Folder {
     Rig::new(move |v| force * (v / 0.02).tanh()).folder
+}
+
+/// With dry friction that sticks.
+pub(crate) fn sticking(friction: f64) -> Folder {
+    let (folder, mut noise) = (Folder::new(), Noise(7));
+    folder.write("recording.toml", DESCRIPTION);
+    for name in RUNS {
+        folder.write(name, &recording(stuck(friction), &forces(), &mut noise));
+    }
+    folder
 }
 
 /// With play in its gear, the motor with a part of the mass.

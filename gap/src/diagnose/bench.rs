@@ -2,7 +2,7 @@
 //! free under each hypothesis, and from where a search starts.
 
 use appell_runtime::estimate::{
-    Coordinate, Effort, Estimation, Fit, Free, Measured, Recording, Setup, Unknown,
+    Coordinate, Effort, EstimateError, Estimation, Fit, Free, Measured, Recording, Setup, Unknown,
 };
 use appell_runtime::model::Model;
 
@@ -30,10 +30,18 @@ const FROM_AFAR: Effort = Effort {
     gain: EFFORT.gain,
     steps: 400,
 };
+/// The same for levels that are found anew right after.
+const ROUGHLY: Effort = Effort {
+    gain: 10.0,
+    steps: 30,
+};
 /// Standard deviation of the logarithm of a shape.
 const SHAPE: f64 = 1.0;
 /// Standard deviation of a parameter that may be wrong, as a part of its value.
 pub(super) const WRONG: f64 = 0.5;
+
+/// A way to an optimum.
+type Search = fn(&Estimation<'_>, &[f64], &[Free], Effort) -> Result<Fit, EstimateError>;
 
 /// What hypotheses are fitted with.
 pub(super) struct Bench<'a> {
@@ -229,11 +237,30 @@ impl<'a> Bench<'a> {
         }
     }
 
-    /// The nominal model, its parameters within their tolerances.
+    /// How many sizes and shapes members bring.
+    pub(super) fn sizes_of(&self, members: &[usize]) -> usize {
+        let own = |candidate: &Candidate| {
+            let roles = candidate.parameters.iter().map(|(_, role)| *role);
+            roles.filter(|role| *role != Role::Switch).count().max(1)
+        };
+        let members = members.iter().map(|&member| self.candidate(member));
+        members.map(own).sum()
+    }
+
+    /// The nominal model, its parameters within their tolerances. Levels go first: with levels that are
+    /// far too small parameters would leave their tolerances for what is noise.
     pub(super) fn nominal(&self) -> Result<Fitted, DiagnoseError> {
         let setup = self.setup(&[]);
         let estimation = Estimation::new(&setup, &self.recordings)?;
-        self.fit_by(&[], &estimation, &self.problem.start, FROM_AFAR)
+        let start = &self.problem.start;
+        let levels = Fit::quick(&estimation, start, &self.problem.levels, ROUGHLY)?.values;
+        match self.fit_by(Fit::quick, &[], (&estimation, &levels), FROM_AFAR) {
+            // Far from an optimum the observed curvature leads on where the expected one does not.
+            Err(DiagnoseError::Estimate(EstimateError::Stuck { .. })) => {
+                self.fit_by(Fit::of, &[], (&estimation, &levels), FROM_AFAR)
+            }
+            fitted => fitted,
+        }
     }
 
     /// The parameters of a fit without what its members do.
@@ -347,18 +374,18 @@ impl<'a> Bench<'a> {
         estimation: &Estimation<'_>,
         start: &[f64],
     ) -> Result<Fitted, DiagnoseError> {
-        self.fit_by(members, estimation, start, EFFORT)
+        self.fit_by(Fit::quick, members, (estimation, start), EFFORT)
     }
 
     fn fit_by(
         &self,
+        search: Search,
         members: &[usize],
-        estimation: &Estimation<'_>,
-        start: &[f64],
+        (estimation, start): (&Estimation<'_>, &[f64]),
         effort: Effort,
     ) -> Result<Fitted, DiagnoseError> {
         let free = self.free(members, estimation.setup());
-        let fit = Fit::quick(estimation, start, &free, effort)?;
+        let fit = search(estimation, start, &free, effort)?;
         let evidence = Evidence::of(self, members, &fit);
         Ok(Fitted {
             members: members.to_vec(),

@@ -34,15 +34,18 @@ pub(super) fn tempered(log: f64) -> f64 {
     log / TEMPERATURE
 }
 
+/// Odds that a law which is not exact leaves this part of a gap, beside one that may leave any: the size,
+/// not the energy, of what it leaves is half of a normal distribution.
+pub(super) fn inexact(share: f64) -> f64 {
+    let size = share.clamp(0.0, 1.0).sqrt() / LEFT;
+    INEXACT * 2.0 / (TAU.sqrt() * LEFT) * (-0.5 * size * size).exp()
+}
+
 /// Odds that nothing in the library causes a gap that an effect explains but for a rest.
 pub(super) fn unlisted_beside_an_effect(rest: Rest) -> f64 {
     let bayes_factor = rest.log_bayes_factor.min(MOST).exp();
-    // The size, not the energy, of what an inexact law leaves is half of a normal distribution; what
-    // any other law leaves is anything from nothing to all.
-    let size = rest.share.clamp(0.0, 1.0).sqrt() / LEFT;
-    let density = 2.0 / (TAU.sqrt() * LEFT) * (-0.5 * size * size).exp();
     let unlisted = MIMICKED + (1.0 - MIMICKED) * bayes_factor;
-    let listed = 1.0 + INEXACT * density * bayes_factor;
+    let listed = 1.0 + inexact(rest.share) * bayes_factor;
     UNLISTED / (1.0 - UNLISTED) * unlisted / listed
 }
 

@@ -9,7 +9,9 @@ use appell_runtime::estimate::{Estimation, Unknown};
 
 use super::DiagnoseError;
 use super::bench::{Bench, WRONG};
-use super::calibration::{Rest, tempered, unlisted_beside_an_effect, unlisted_beside_nothing};
+use super::calibration::{
+    Rest, inexact, tempered, unlisted_beside_an_effect, unlisted_beside_nothing,
+};
 use super::hypothesis::Fitted;
 use super::screen::{Screen, Screened};
 use super::unknown::{Leftover, leftover};
@@ -212,7 +214,8 @@ impl Search<'_, '_> {
 
     /// The best hypothesis with so many members.
     fn best_of(&self, members: usize) -> Option<usize> {
-        let own = (0..self.fits.len()).filter(|&i| self.fits[i].members.len() == members);
+        let is_one = |fitted: &Fitted| fitted.members.len() == members && fitted.is_there();
+        let own = (0..self.fits.len()).filter(|&i| is_one(&self.fits[i]));
         let log = |i: usize| self.log_posterior(&self.fits[i]);
         own.max_by(|&a, &b| log(a).total_cmp(&log(b)))
     }
@@ -223,13 +226,24 @@ impl Search<'_, '_> {
     }
 
     fn finish(mut self) -> Result<Comparison, DiagnoseError> {
-        self.fits.retain(|fitted| fitted.evidence.smallest > 1.0);
+        self.fits.retain(Fitted::is_there);
         let logs: Vec<f64> = self.fits.iter().map(|f| self.log_posterior(f)).collect();
         let best = (0..logs.len()).max_by(|&a, &b| logs[a].total_cmp(&logs[b]));
         let best = best.unwrap_or(0);
         let independent = independent(self.bench, &self.fits[best])?;
-        let weight = |log: &f64| tempered(independent * (log - logs[best])).exp();
-        let weights: Vec<f64> = logs.iter().map(weight).collect();
+        let sizes = |fitted: &Fitted| self.bench.sizes_of(&fitted.members);
+        let none = self.fits[0].evidence;
+        let explained = |fitted: &Fitted| fitted.evidence.log() - none.log();
+        let (all, most) = (explained(&self.fits[best]), sizes(&self.fits[best]));
+        let weight = |(log, fitted): (&f64, &Fitted)| {
+            let weight = tempered(independent * (log - logs[best])).exp();
+            if sizes(fitted) >= most {
+                return weight;
+            }
+            // What has fewer sizes and explains nearly as much may be right, its law not exact.
+            weight.max(inexact(1.0 - explained(fitted) / all))
+        };
+        let weights: Vec<f64> = logs.iter().zip(&self.fits).map(weight).collect();
         let sum: f64 = weights.iter().sum();
         let mut fits: Vec<(Fitted, f64)> = self
             .fits

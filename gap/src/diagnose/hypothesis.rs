@@ -14,3 +14,10 @@ pub(super) struct Fitted {
     pub(super) fit: Fit,
     pub(super) evidence: Evidence,
 }
+
+impl Fitted {
+    /// Whether the recordings tell the sizes of all members from zero.
+    pub(super) fn is_there(&self) -> bool {
+        self.evidence.smallest > 1.0
+    }
+}

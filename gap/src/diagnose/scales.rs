@@ -9,22 +9,24 @@ use crate::effects::Scales;
 const WINDOW: usize = 15;
 /// Places along a run at which rates are looked at.
 const PLACES: usize = 200;
+/// Part of what is uncertain of such a slope over which signs are rounded: a filter is lost in what is much
+/// narrower than it sees, and a sign that is wider than that creeps where the mechanism sticks.
+const ROUNDED: f64 = 0.17;
+/// Parts of the typical rate between which that lies: narrower signs are too stiff.
+const NARROW: [f64; 2] = [0.002, 0.005];
 
 /// Of the runs to fit.
 pub(super) fn of(set: &DataSet) -> Scales {
     let mechanism = &set.mechanism;
     let column = |role: Role| set.channels.iter().position(|channel| channel.role == role);
-    let rate = |coordinate: usize| {
-        let column = column(Role::Measures(Measured::Coordinate(coordinate)))?;
-        let slopes: Vec<f64> = set
-            .runs
-            .iter()
-            .flat_map(|run| slopes(run, column))
-            .collect();
-        let squares: f64 = slopes.iter().map(|slope| slope * slope).sum();
-        let rate = (squares / slopes.len() as f64).sqrt();
-        (rate.is_finite() && rate > 0.0).then_some(rate)
+    let rates = |coordinate: usize| -> [f64; 2] {
+        let measured = Role::Measures(Measured::Coordinate(coordinate));
+        column(measured)
+            .and_then(|column| rates(set, column))
+            .unwrap_or([1.0, NARROW[1]])
     };
+    let rates = (0..mechanism.coordinates.len()).map(rates);
+    let (rates, narrow) = rates.map(|[rate, narrow]| (rate, narrow)).unzip();
     let largest = |input: usize| {
         let column = column(Role::Input(input))?;
         let values = set.runs.iter().flat_map(|run| &run.values[column]);
@@ -32,9 +34,8 @@ pub(super) fn of(set: &DataSet) -> Scales {
     };
     let tolerant = |index: &usize| set.parameters[*index].std.is_some_and(|std| std > 0.0);
     Scales {
-        rates: (0..mechanism.coordinates.len())
-            .map(|q| rate(q).unwrap_or(1.0))
-            .collect(),
+        rates,
+        narrow,
         largest: (0..mechanism.inputs.len())
             .map(|input| largest(input).unwrap_or(0.0))
             .collect(),
@@ -48,8 +49,32 @@ pub(super) fn of(set: &DataSet) -> Scales {
     }
 }
 
+/// Typical slope of a channel, and over what its sign is rounded.
+fn rates(set: &DataSet, column: usize) -> Option<[f64; 2]> {
+    let runs = set.runs.iter();
+    let slopes: Vec<Slope> = runs.flat_map(|run| slopes(run, column)).collect();
+    let squares = |of: fn(&Slope) -> f64| -> f64 { slopes.iter().map(|own| of(own).powi(2)).sum() };
+    let typical = |squares: f64| (squares / slopes.len() as f64).sqrt();
+    let rate = typical(squares(|own| own.slope));
+    if !(rate.is_finite() && rate > 0.0) {
+        return None;
+    }
+    let noise = set.channels[column].noise.map(|noise| noise.std);
+    let uncertain = noise.map(|noise| noise * typical(squares(|own| own.deviation)) / rate);
+    let [low, high] = NARROW;
+    let part = uncertain.map_or(high, |part| (ROUNDED * part).clamp(low, high));
+    Some([rate, part * rate])
+}
+
+/// The slope of a parabola through some samples.
+struct Slope {
+    slope: f64,
+    /// Its standard deviation where that of the samples is 1.
+    deviation: f64,
+}
+
 /// Slopes of a channel at places along a run.
-fn slopes(run: &Run, column: usize) -> Vec<f64> {
+fn slopes(run: &Run, column: usize) -> Vec<Slope> {
     let samples: Vec<(f64, f64)> = run
         .times
         .iter()
@@ -57,10 +82,14 @@ fn slopes(run: &Run, column: usize) -> Vec<f64> {
         .filter(|(_, value)| !value.is_nan())
         .map(|(&t, &value)| (t, value))
         .collect();
-    let slope = |samples: &[(f64, f64)]| -> Option<f64> {
+    let slope = |samples: &[(f64, f64)]| -> Option<Slope> {
         let times: Vec<f64> = samples.iter().map(|(t, _)| *t).collect();
         let weights = weights(&times, times[times.len() / 2], 2, 1)?;
-        Some(weights.iter().zip(samples).map(|(w, (_, y))| w * y).sum())
+        let weighed = weights.iter().zip(samples).map(|(w, (_, y))| w * y);
+        Some(Slope {
+            slope: weighed.sum(),
+            deviation: weights.iter().map(|w| w * w).sum::<f64>().sqrt(),
+        })
     };
     let stride = (samples.len() / PLACES).max(1);
     let windows = samples.windows(WINDOW).step_by(stride);

@@ -102,6 +102,18 @@ impl Variable<'_> {
             name.to_owned()
         }
     }
+
+    /// A law of this variable at a place.
+    fn unnamed(self, bench: &Bench<'_>, (along, place): (Along, usize), law: Law) -> Unnamed {
+        Unnamed {
+            along,
+            place,
+            variable: self.name(bench),
+            gain: law.gain,
+            foretold: law.foretold,
+            log_bayes_factor: law.log_bayes_factor,
+        }
+    }
 }
 
 /// What a hypothesis leaves that a law without a name explains; nothing where no law foretells
@@ -119,14 +131,7 @@ pub(super) fn leftover(
                 continue;
             }
             for (place, told) in told(bench, &estimation, fitted, variable, along)? {
-                let unnamed = |(gain, foretold, log_bayes_factor)| Unnamed {
-                    along,
-                    place,
-                    variable: variable.name(bench),
-                    gain,
-                    foretold,
-                    log_bayes_factor,
-                };
+                let unnamed = |law| variable.unnamed(bench, (along, place), law);
                 smooth.add(told.smooth().map(unnamed));
                 for wave in 0..WAVES {
                     single.add(told.single(wave).map(unnamed));
@@ -233,14 +238,7 @@ pub(super) fn hints(bench: &Bench<'_>, fitted: &Fitted) -> Result<Vec<Unnamed>, 
         let mut family = Family::default();
         for (place, told) in told(bench, &estimation, fitted, variable, along)? {
             let smooth = told.smooth();
-            family.add(smooth.map(|(gain, foretold, log_bayes_factor)| Unnamed {
-                along,
-                place,
-                variable: variable.name(bench),
-                gain,
-                foretold,
-                log_bayes_factor,
-            }));
+            family.add(smooth.map(|law| variable.unnamed(bench, (along, place), law)));
         }
         tried += family.tried;
         let log = |one: &Unnamed| one.log_bayes_factor;
@@ -323,6 +321,13 @@ impl Bench<'_> {
     }
 }
 
+/// What a law would gain, all told and on runs that it was not found in.
+struct Law {
+    gain: f64,
+    foretold: f64,
+    log_bayes_factor: f64,
+}
+
 /// What the waves of a variable tell, run by run: the squares of their slopes and their scores.
 struct Told {
     runs: Vec<(DMatrix<f64>, DVector<f64>)>,
@@ -361,9 +366,8 @@ impl Told {
         }
     }
 
-    /// A law whose waves fall off as one over their number: gain, gain on other runs, logarithm of
-    /// the Bayes factor averaged over its size.
-    fn smooth(&self) -> Option<(f64, f64, f64)> {
+    /// A law whose waves fall off as one over their number, averaged over its size.
+    fn smooth(&self) -> Option<Law> {
         let fall = DVector::from_fn(self.scores.len(), |i, _| ((i / 2 + 1) as f64).recip());
         let scaled = self.scaled(&fall);
         let eigen = scaled.squares.clone().symmetric_eigen();
@@ -388,11 +392,15 @@ impl Told {
         let (variance, _) = *logs.iter().max_by(|a, b| a.1.total_cmp(&b.1))?;
         let average = log_sum(logs.iter().map(|(_, log)| *log)) - (SIZES as f64).ln();
         let (gain, foretold) = scaled.gains(variance.recip())?;
-        Some((gain, foretold, average))
+        Some(Law {
+            gain,
+            foretold,
+            log_bayes_factor: average,
+        })
     }
 
     /// One wave of two sizes.
-    fn single(&self, wave: usize) -> Option<(f64, f64, f64)> {
+    fn single(&self, wave: usize) -> Option<Law> {
         /// A little of the larger square keeps a wave that is hardly there in place.
         const FLOOR: f64 = 1e-9;
         let pair = Self::part(&self.squares, &self.scores, 2 * wave);
@@ -409,7 +417,11 @@ impl Told {
             return None;
         }
         let (gain, foretold) = own.gains(FLOOR * size)?;
-        Some((gain, foretold, gain - 2.0 * occam(gain)))
+        Some(Law {
+            gain,
+            foretold,
+            log_bayes_factor: gain - 2.0 * occam(gain),
+        })
     }
 
     fn part(

@@ -72,6 +72,8 @@ impl SiteKind {
 pub struct Scales {
     /// Typical rate of each coordinate.
     pub rates: Vec<f64>,
+    /// Rate over which a sign of each coordinate's rate is rounded.
+    pub narrow: Vec<f64>,
     /// Largest value of each input.
     pub largest: Vec<f64>,
     /// Columns of the measured channels.
@@ -80,7 +82,7 @@ pub struct Scales {
     pub uncertain: Vec<usize>,
 }
 
-/// Part of a typical rate or input over which a sign or a corner is rounded.
+/// Part of the largest input over which a corner is rounded.
 const NARROW: f64 = 0.005;
 
 /// A place.
@@ -218,7 +220,7 @@ impl<'m> Sites<'m> {
             ("unit", unit.to_owned()),
             ("force", force.to_owned()),
             ("typical_rate", number(rate)),
-            ("narrow_rate", number(NARROW * rate)),
+            ("narrow_rate", number(self.scales.narrow[index])),
         ];
         words.extend(self.across());
         Site {
@@ -312,10 +314,9 @@ impl<'m> Sites<'m> {
             .map(|(down, w)| format!("({})*({w})", -down))
             .collect();
         let mut site = self.body(body);
-        let rate = self.scales.rates[roll];
         site.words.extend([
             ("roll", self.mechanism.coordinates[roll].label.name.clone()),
-            ("narrow_rate", number(NARROW * rate)),
+            ("narrow_rate", number(self.scales.narrow[roll])),
             ("spin", spin.join(" + ")),
             ("normal_x", (-down[0]).to_string()),
             ("normal_y", (-down[1]).to_string()),

@@ -1,7 +1,7 @@
 //! The square-root extended Kalman filter (Bierman 1977; Särkkä, *Bayesian Filtering and
 //! Smoothing*, 2013, section 5.2).
 //!
-//! Time: z⁺ by a Runge–Kutta step, P⁺ = F (P + N) Fᵀ + N, where N is half of the noise of the step;
+//! Time: z⁺ by a Runge–Kutta step, in parts where it meets a corner, P⁺ = F (P + N) Fᵀ + N, where N is half of the noise of the step;
 //! half enters before it and half after. Measurements: one scalar after the other, all linearised
 //! about the state before the first of them, which is the update with all at once where noise is
 //! independent. The residuals of these scalars are independent of each other and of all earlier
@@ -20,7 +20,7 @@ use super::recording::Recording;
 use super::setup::{Disturbance, Measured, Setup};
 use super::square_root::{potter, triangularise};
 use super::timeline::{Action, Advance};
-use super::transition::{Span, Stages, stages_len, step};
+use super::transition::{MOST_HALVINGS, Span, Stages, halvings, stages_len, step};
 
 /// A measured scalar as the filter met it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -157,7 +157,7 @@ pub(super) struct Pass<'a> {
     pub(super) values: &'a [f64],
     pub(super) run: usize,
     pub(super) sizes: Sizes,
-    /// Whether everything stays on the tape.
+    /// Whether everything stays on the tape, and not what the last action did alone.
     keeps: bool,
     pub(super) tape: Vec<f64>,
     pub(super) records: Vec<Record>,
@@ -256,9 +256,12 @@ impl<'a> Pass<'a> {
         recording: &Recording,
         action: Action,
     ) -> Result<(), EstimateError> {
+        if !self.keeps {
+            self.tape.clear();
+        }
         match action {
             Action::Advance(advance) => {
-                self.advance(advance)?;
+                self.advance(advance, 0)?;
                 self.close(advance.t + advance.h)
             }
             Action::Switch { row, input } => {
@@ -309,12 +312,13 @@ impl<'a> Pass<'a> {
 
     /// Room on the tape.
     fn record(&mut self, len: usize) -> usize {
-        let start = if self.keeps { self.tape.len() } else { 0 };
+        let start = self.tape.len();
         self.tape.resize(start + len, 0.0);
         start
     }
 
-    fn advance(&mut self, advance: Advance) -> Result<(), EstimateError> {
+    /// Goes on by a step, or by parts of it where it is too long for what it meets.
+    fn advance(&mut self, advance: Advance, halved: u32) -> Result<(), EstimateError> {
         let tape = self.record(self.sizes.step_len());
         self.records.push(Record::Advance { advance, tape });
         let (n, d) = (self.sizes.n, self.sizes.disturbances);
@@ -346,6 +350,13 @@ impl<'a> Pass<'a> {
             on.after,
             on.f,
         );
+        let halvings = halvings(&on.stages, n, h).min(MOST_HALVINGS - halved);
+        if halvings > 0 {
+            self.tape.truncate(tape);
+            self.records.pop();
+            let mut parts = advance.parts(halvings);
+            return parts.try_for_each(|part| self.advance(part, halved + halvings));
+        }
 
         // [S, N½], then [F S, F N½, N½].
         let [joint, moved] = pieces(&mut self.spread, [n * (n + d), n * (n + d)]);
@@ -395,12 +406,9 @@ impl<'a> Pass<'a> {
         closure
             .close(self.plant, place, &mut self.scratch, &mut self.z)
             .map_err(|source| EstimateError::Open { run, t, source })?;
-        // Without a tape its beginning belongs to the step or the samples before.
         let tape = self.tape.len();
-        if self.keeps {
-            self.tape.extend(&self.z);
-            self.tape.extend(&self.root);
-        }
+        self.tape.extend(&self.z);
+        self.tape.extend(&self.root);
         closure.follow(&mut self.root);
         let held = self.held.clone();
         self.records.push(Record::Close { t, held, tape });

@@ -34,6 +34,7 @@
 mod adjoint;
 mod chi_squared;
 mod closure;
+mod company;
 mod consistency;
 mod curvature;
 mod error;

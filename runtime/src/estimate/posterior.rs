@@ -21,6 +21,7 @@ pub(super) struct Posterior<'o, 'e> {
 }
 
 /// Its value and gradient somewhere.
+#[derive(Clone)]
 pub(super) struct Point {
     /// All values in SI.
     pub(super) values: Vec<f64>,

@@ -11,7 +11,7 @@ use super::plant::{Place, Plant, Scratch};
 use super::recording::Recording;
 use super::setup::{Measured, Setup};
 use super::timeline::{Action, Advance};
-use super::transition::{STAGES, WEIGHTS};
+use super::transition::{MOST_HALVINGS, STAGES, WEIGHTS, is_uneven};
 
 /// A measured scalar beside its prediction.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -141,7 +141,7 @@ impl<'a> Walk<'a> {
             scratch: pass.plant.scratch(),
             closure: pass.closure.clone(),
             stage: vec![0.0; n],
-            rates: vec![0.0; n],
+            rates: vec![0.0; 4 * n],
         }
     }
 
@@ -235,24 +235,11 @@ impl<'a> Walk<'a> {
 
     /// A step of the same method as that of the filter.
     fn advance(&mut self, advance: Advance) {
-        let Advance { t, h, .. } = advance;
-        let (before, mut after) = (self.z.clone(), self.z.clone());
-        self.stage.copy_from_slice(&before);
-        for (stage, weight) in WEIGHTS.into_iter().enumerate() {
-            let part = if stage == 0 { 0.0 } else { STAGES[stage - 1] };
-            let at = (t + part * h, self.stage.as_slice(), self.held.as_slice());
-            let place = place(self.layout, self.values, at);
-            self.plant.rates(place, &mut self.scratch, &mut self.rates);
-            add_scaled(h * weight, &self.rates, &mut after);
-            if let Some(next) = STAGES.get(stage) {
-                self.stage.copy_from_slice(&before);
-                add_scaled(h * next, &self.rates, &mut self.stage);
-            }
-        }
-        self.z = after;
+        self.step(advance, 0);
+        let t = advance.t + advance.h;
         if let Some(closure) = &mut self.closure {
             let open = self.z.clone();
-            let at = (t + h, open.as_slice(), self.held.as_slice());
+            let at = (t, open.as_slice(), self.held.as_slice());
             let place = place(self.layout, self.values, at);
             // A prediction that no closed loop is near is infinitely wrong.
             if closure
@@ -261,6 +248,32 @@ impl<'a> Walk<'a> {
             {
                 self.z.fill(f64::NAN);
             }
+        }
+    }
+
+    /// A step, or parts of it where it is too long for what it meets.
+    fn step(&mut self, advance: Advance, halved: u32) {
+        let (Advance { t, h, .. }, n) = (advance, self.z.len());
+        let mut after = self.z.clone();
+        self.stage.copy_from_slice(&self.z);
+        for (stage, weight) in WEIGHTS.into_iter().enumerate() {
+            let part = if stage == 0 { 0.0 } else { STAGES[stage - 1] };
+            let at = (t + part * h, self.stage.as_slice(), self.held.as_slice());
+            let place = place(self.layout, self.values, at);
+            let rates = &mut self.rates[stage * n..(stage + 1) * n];
+            self.plant.rates(place, &mut self.scratch, rates);
+            add_scaled(h * weight, rates, &mut after);
+            if let Some(next) = STAGES.get(stage) {
+                self.stage.copy_from_slice(&self.z);
+                add_scaled(h * next, rates, &mut self.stage);
+            }
+        }
+        if halved < MOST_HALVINGS && is_uneven(&self.rates, n) {
+            for part in advance.parts(1) {
+                self.step(part, halved + 1);
+            }
+        } else {
+            self.z = after;
         }
     }
 }

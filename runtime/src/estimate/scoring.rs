@@ -4,6 +4,7 @@
 use nalgebra::DMatrix;
 
 use super::EstimateError;
+use super::company::Company;
 use super::estimation::Estimation;
 use super::fit::{Effort, Fit};
 use super::free::{Coordinate, Free, Selection};
@@ -45,16 +46,17 @@ impl Fit {
         let mut levels = Levels::default();
         let mut point = posterior.at(start)?;
         let mut information = levels.information(&posterior, &point)?;
+        let mut company = Company::of((estimation, &selection), &point)?;
         let (mut damping, mut steps) = (0.0, 0);
         let mut gained = [f64::INFINITY; LAST];
         loop {
-            let (step, gain) = posterior.step(&point, &information, damping);
+            let (step, gain) = company.step((&posterior, &point), &information, damping);
             let promises_little = (0.0..=effort.gain).contains(&gain);
             let gains_little = gained.iter().sum::<f64>() < effort.gain;
             let ends = steps >= effort.steps || damping > DAMPED[1];
             // Where no step helps, the place is good if little was promised at all.
             let is_flat = || {
-                let (_, promised) = posterior.step(&point, &information, DAMPING);
+                let (_, promised) = company.step((&posterior, &point), &information, DAMPING);
                 (0.0..=FLAT * effort.gain).contains(&promised)
             };
             if promises_little && (damping <= 0.0 || gains_little) || ends && is_flat() {
@@ -72,8 +74,8 @@ impl Fit {
                 });
             }
             if ends {
-                // Far from an optimum the observed curvature leads on where the expected one does not.
-                return Self::of(estimation, &point.values, free, effort);
+                let slope = point.gradient.amax();
+                return Err(EstimateError::Stuck { steps, slope });
             }
             steps += 1;
             // Coordinates at their reach may make things worse together: a damped step does not.
@@ -94,6 +96,7 @@ impl Fit {
                     }
                     point = next;
                     information = levels.information(&posterior, &point)?;
+                    company = Company::of((estimation, &selection), &point)?;
                 }
                 None => damping = (MORE * damping).max(DAMPING),
             }

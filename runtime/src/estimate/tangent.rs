@@ -16,7 +16,7 @@ use super::layout::Unknown;
 use super::matrix::{add_scaled, dot, multiply};
 use super::plant::{Place, Scratch, Sums};
 use super::setup::Measured;
-use super::timeline::Action;
+use super::timeline::{Action, Advance};
 
 /// What innovations are differentiated by.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -180,12 +180,23 @@ impl<'p, 'a> Forward<'p, 'a> {
 
     fn act(&mut self, action: Action) -> Result<(), EstimateError> {
         let before = self.pass.held.clone();
-        let (first, samples) = (self.pass.records.is_empty(), self.pass.samples.len());
+        let (records, samples) = (self.pass.records.len(), self.pass.samples.len());
         let recording = &self.estimation.recordings()[self.pass.run];
         self.pass.act(recording, action)?;
         match action {
-            Action::Advance(_) => self.advance(),
-            Action::Switch { .. } if !first => {
+            Action::Advance(_) => {
+                let steps = self.pass.records[records..].iter();
+                let steps: Vec<(Advance, usize)> = steps
+                    .filter_map(|record| match record {
+                        Record::Advance { advance, tape } => Some((*advance, *tape)),
+                        _ => None,
+                    })
+                    .collect();
+                for step in steps {
+                    self.advance(step);
+                }
+            }
+            Action::Switch { .. } if records > 0 => {
                 self.switch(recording_time(recording, action), &before);
             }
             Action::Switch { .. } => {}
@@ -223,15 +234,7 @@ impl<'p, 'a> Forward<'p, 'a> {
     }
 
     /// Z ← F (Z + H) + H, where H is half of what the step adds, by the slopes in its middle.
-    fn advance(&mut self) {
-        let advances = self.pass.records.iter().rev();
-        let mut advances = advances.filter_map(|record| match record {
-            Record::Advance { advance, tape } => Some((*advance, *tape)),
-            _ => None,
-        });
-        let Some((advance, tape)) = advances.next() else {
-            return;
-        };
+    fn advance(&mut self, (advance, tape): (Advance, usize)) {
         let (n, columns, half) = (self.pass.sizes.n, self.columns, 0.5 * advance.h);
         let info = self.estimation.setup().model.info();
         let (states, parameters) = (info.state_len(), info.parameter_len());

@@ -27,6 +27,21 @@ pub(super) struct Advance {
     pub(super) moved_by: [Option<(usize, f64)>; 2],
 }
 
+impl Advance {
+    /// Two to the power of so many equal parts.
+    pub(super) fn parts(self, halvings: u32) -> impl Iterator<Item = Self> {
+        let count = 1_u32 << halvings;
+        let part = f64::from(count).recip();
+        let h = part * self.h;
+        let moved_by = (self.moved_by).map(|end| end.map(|(delay, sign)| (delay, sign * part)));
+        (0..count).map(move |i| Self {
+            t: self.t + f64::from(i) * h,
+            h,
+            moved_by,
+        })
+    }
+}
+
 /// A moment between two steps.
 struct Stop {
     t: f64,

@@ -13,6 +13,13 @@ pub(super) const STAGES: [f64; 3] = [0.5, 0.5, 1.0];
 /// Parts of the step with which the rates count.
 pub(super) const WEIGHTS: [f64; 4] = [1.0 / 6.0, 1.0 / 3.0, 1.0 / 3.0, 1.0 / 6.0];
 
+/// A step is cut into two to the power of this many parts at most.
+pub(super) const MOST_HALVINGS: u32 = 5;
+/// Part of a rate by which the method may be at odds with itself.
+const UNEVEN: f64 = 0.2;
+/// Longest step beside the time in which something decays: longer ones grow.
+const STIFF: f64 = 2.3;
+
 /// What the adjoint needs to know of a step, cut out of a tape.
 pub(super) struct Stages<'a> {
     /// States of the four stages; the first is the state before the step.
@@ -108,6 +115,38 @@ pub(super) fn step(
             .step_by(n + 1)
             .for_each(|entry| *entry += 1.0);
     }
+}
+
+/// How often a step has to be halved because of what it met: a corner, such as the rounded sign of dry
+/// friction, or something that decays sooner.
+pub(super) fn halvings(stages: &Stages<'_>, n: usize, h: f64) -> u32 {
+    // The trace of A² is the sum of the squares of the eigenvalues.
+    let squares = |a: &[f64]| -> f64 {
+        let pairs = (0..n).flat_map(|i| (0..n).map(move |j| a[i * n + j] * a[j * n + i]));
+        pairs.sum()
+    };
+    let fastest = stages.a.chunks_exact(n * n).map(squares);
+    let fastest = fastest.fold(0.0, |most: f64, squares| most.max(squares.abs()));
+    let decays = h * fastest.sqrt() / STIFF;
+    if decays > 1.0 {
+        decays.log2().ceil().min(f64::from(MOST_HALVINGS)) as u32
+    } else {
+        u32::from(is_uneven(stages.k, n))
+    }
+}
+
+/// Whether the rates of the stages differ by what no smooth motion lets them.
+pub(super) fn is_uneven(k: &[f64], n: usize) -> bool {
+    let [k1, k2, k3, k4] = [0, 1, 2, 3].map(|stage| &k[stage * n..(stage + 1) * n]);
+    (0..n).any(|i| {
+        let odds = (k1[i] - k2[i] - k3[i] + k4[i]).abs() + (k3[i] - k2[i]).abs();
+        let most = k1[i]
+            .abs()
+            .max(k2[i].abs())
+            .max(k3[i].abs())
+            .max(k4[i].abs());
+        odds > UNEVEN * most
+    })
 }
 
 /// `c += factor a b`

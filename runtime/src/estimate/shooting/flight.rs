@@ -15,7 +15,7 @@ use super::super::prediction::place;
 use super::super::recording::Recording;
 use super::super::setup::Measured;
 use super::super::timeline::{Action, Advance};
-use super::super::transition::{STAGES, WEIGHTS};
+use super::super::transition::{MOST_HALVINGS, STAGES, WEIGHTS, is_uneven};
 
 /// A segment. Derivatives by the state at its beginning, then by the free values.
 pub(super) struct Piece {
@@ -82,7 +82,7 @@ impl<'a> Flight<'a> {
         let mut is_first = true;
         for action in self.estimation.actions(self.run, self.values) {
             match action {
-                Action::Advance(advance) => self.advance(advance),
+                Action::Advance(advance) => self.advance(advance, 0),
                 Action::Switch { row, input } => {
                     let inputs = self.recording.inputs(row);
                     switch(
@@ -148,28 +148,37 @@ impl<'a> Flight<'a> {
         }
     }
 
-    /// One step of the state and of its derivatives together.
-    fn advance(&mut self, Advance { t, h, .. }: Advance) {
+    /// One step of the state and of its derivatives together, or parts of it where it is too long for
+    /// what it meets.
+    fn advance(&mut self, advance: Advance, halved: u32) {
+        let Advance { t, h, .. } = advance;
         let (n, width) = (self.n, self.width);
         let (before, by_before) = (self.z.clone(), self.by.clone());
         let (mut stage, mut by_stage) = (before.clone(), by_before.clone());
-        let (mut rates, mut by_rates) = (vec![0.0; n], vec![0.0; n * width]);
+        let (mut rates, mut by_rates) = (vec![0.0; 4 * n], vec![0.0; n * width]);
         let (mut slopes, held) = (vec![0.0; n * n], self.held.clone());
         for (i, weight) in WEIGHTS.into_iter().enumerate() {
             let part = if i == 0 { 0.0 } else { STAGES[i - 1] };
             let at = (t + part * h, stage.as_slice(), held.as_slice());
             let place = place(self.estimation.layout(), self.values, at);
             let plant = self.estimation.plant();
-            plant.jacobian(place, &mut self.scratch, &mut rates, &mut slopes);
+            let rates = &mut rates[i * n..(i + 1) * n];
+            plant.jacobian(place, &mut self.scratch, rates, &mut slopes);
             multiply(&slopes, &by_stage, n, &mut by_rates);
             self.unknowns_in_rates(place, &mut by_rates);
-            add_scaled(h * weight, &rates, &mut self.z);
+            add_scaled(h * weight, rates, &mut self.z);
             add_scaled(h * weight, &by_rates, &mut self.by);
             if let Some(next) = STAGES.get(i) {
                 stage.copy_from_slice(&before);
-                add_scaled(h * next, &rates, &mut stage);
+                add_scaled(h * next, rates, &mut stage);
                 by_stage.copy_from_slice(&by_before);
                 add_scaled(h * next, &by_rates, &mut by_stage);
+            }
+        }
+        if halved < MOST_HALVINGS && is_uneven(&rates, n) {
+            (self.z, self.by) = (before, by_before);
+            for part in advance.parts(1) {
+                self.advance(part, halved + 1);
             }
         }
     }

@@ -18,7 +18,7 @@ use numbers::short;
 pub(crate) use page::page;
 
 use crate::failure::Failure;
-use crate::table::number;
+use crate::table::{number, with_unit};
 
 /// Hypotheses that the summary lists.
 const LISTED: usize = 3;
@@ -185,12 +185,8 @@ fn line(hypothesis: &Hypothesis) -> String {
         .iter()
         .map(|value| {
             let short = value.name.rsplit('.').next().unwrap_or_default();
-            format!(
-                "{short} = {} ± {} {}",
-                number(value.value),
-                number(value.std),
-                value.unit
-            )
+            let sizes = format!("{} ± {}", number(value.value), number(value.std));
+            format!("{short} = {}", with_unit(&sizes, &value.unit))
         })
         .collect();
     format!(

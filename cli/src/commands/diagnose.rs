@@ -78,6 +78,7 @@ impl FromStr for Span {
 impl Diagnose {
     pub(super) fn run(&self) -> Result<(), Failure> {
         let set = recording::read(&self.data, self.model.as_deref())?;
+        recording::refuse_slow(&set)?;
         let library = self.library()?;
         let spinner = progress::spinner("reading");
         let options = Options {

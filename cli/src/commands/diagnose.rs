@@ -1,15 +1,19 @@
 //! `appell diagnose`
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
 use appell_gap::data::{DataSet, Spec};
 use appell_gap::diagnose::{self, Limit, Options};
 use appell_gap::effects;
+use serde_json::Value;
 
 use crate::failure::Failure;
 use crate::source::Source;
 use crate::{diagnosed, files, progress, recording};
+
+/// Name of the table of the next experiment.
+const EXPERIMENT: &str = "experiment.csv";
 
 /// Tells where a model falls short of recordings, which effect it lacks, and how far the effect closes
 /// the gap.
@@ -40,7 +44,7 @@ pub(crate) struct Diagnose {
     #[arg(long, value_name = "FILE.html")]
     html: Option<PathBuf>,
     /// Where the next experiment goes if hypotheses are tied [default: experiment.csv beside the
-    /// gap report]
+    /// gap report, or experiment-2.csv where a file of yours has that name]
     #[arg(long, value_name = "FILE.csv")]
     experiment: Option<PathBuf>,
     /// Limits of an input or of a measured channel in that experiment, in the unit of its column
@@ -91,11 +95,14 @@ impl Diagnose {
         spinner.finish_and_clear();
         let report = report.map_err(diagnosed::failure)?;
         let warnings = recording::warnings(&set);
-        let next = report.experiment.as_ref().zip(self.next());
-        if let Some((experiment, path)) = &next {
-            files::write(path, &diagnosed::csv(&set, experiment))?;
+        let mut next = None;
+        if let Some(experiment) = &report.experiment {
+            let table = diagnosed::csv(&set, experiment);
+            next = self.next(&table);
+            if let Some(path) = &next {
+                files::write(path, &table)?;
+            }
         }
-        let next = next.map(|(_, path)| path);
         if let Some(path) = &self.json {
             let mut json = diagnosed::json(&report, next.as_deref());
             json["data"] = warnings.clone().into();
@@ -106,17 +113,49 @@ impl Diagnose {
         }
         let outputs = [&self.json, &self.html, &next];
         let mut text = diagnosed::text(&report, next.as_deref());
+        text.extend(self.stepped_aside(next.as_deref()));
         for warning in &warnings {
             text.extend(["  data      ", warning, "\n"]);
         }
         files::print_beside(&text, &outputs)
     }
 
-    /// Where the next experiment goes: beside the gap report, if that is a file.
-    fn next(&self) -> Option<PathBuf> {
-        let report = self.json.as_ref().filter(|path| !files::is_stdout(path));
-        let beside = || report.map(|path| path.with_file_name("experiment.csv"));
-        self.experiment.clone().or_else(beside)
+    /// Where the table of the next experiment goes: beside the gap report, if that is a file, and over no
+    /// file but the one that the gap report before has proposed. A recording of that experiment, under its
+    /// name, has more columns.
+    fn next(&self, table: &str) -> Option<PathBuf> {
+        if self.experiment.is_some() {
+            return self.experiment.clone();
+        }
+        let report = self.json.as_ref().filter(|path| !files::is_stdout(path))?;
+        let before = files::read(report, files::MAX_DATA).ok();
+        let before = before.and_then(|text| serde_json::from_str::<Value>(&text).ok());
+        let proposed = before
+            .as_ref()
+            .and_then(|r| r["experiment"]["file"].as_str());
+        let is_own = |name: &str, path: &Path| {
+            let there = files::read(path, files::MAX_DATA).unwrap_or_default();
+            proposed == Some(name) && there.lines().next() == table.lines().next()
+        };
+        let mut names = (1..).map(|number| match number {
+            1 => EXPERIMENT.to_owned(),
+            _ => EXPERIMENT.replace('.', &format!("-{number}.")),
+        });
+        let free = names.find(|name| {
+            let path = report.with_file_name(name);
+            path.symlink_metadata().is_err() || is_own(name, &path)
+        });
+        free.map(|name| report.with_file_name(name))
+    }
+
+    /// That a file was in the way of the next experiment, if one was.
+    fn stepped_aside(&self, next: Option<&Path>) -> Option<String> {
+        let name = next.filter(|_| self.experiment.is_none())?.file_name()?;
+        (name != EXPERIMENT).then(|| {
+            format!(
+                "  next      {EXPERIMENT} is not from the gap report before and stays as it is\n"
+            )
+        })
     }
 
     /// The other specs.

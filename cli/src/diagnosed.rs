@@ -11,7 +11,7 @@ use appell_gap::data::DataSet;
 use appell_gap::diagnose::{
     Ahead, Changes, DiagnoseError, Experiment, Hint, Hypothesis, Report, Verdict,
 };
-use appell_gap::effects::ModelError;
+use appell_gap::effects::{EffectError, ModelError};
 use serde_json::{Value, json};
 
 use numbers::short;
@@ -25,14 +25,14 @@ const LISTED: usize = 3;
 
 pub(crate) fn failure(error: DiagnoseError) -> Failure {
     match error {
-        DiagnoseError::Model(ModelError::Spec(report)) => Failure::Report(report),
+        DiagnoseError::Model(
+            ModelError::Spec(report) | ModelError::Effect(EffectError(report)),
+        ) => Failure::Report(report),
         DiagnoseError::Data(error) => error.into(),
         DiagnoseError::NothingMeasured
         | DiagnoseError::LacksChannel { .. }
         | DiagnoseError::NothingToFit
-        | DiagnoseError::Model(ModelError::Effect(_) | ModelError::Edit(_)) => {
-            Failure::Data(error.to_string())
-        }
+        | DiagnoseError::Model(ModelError::Edit(_)) => Failure::Data(error.to_string()),
         other => Failure::Computation(other.to_string()),
     }
 }

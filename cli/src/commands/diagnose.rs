@@ -83,7 +83,7 @@ impl Diagnose {
     pub(super) fn run(&self) -> Result<(), Failure> {
         let set = recording::read(&self.data, self.model.as_deref())?;
         recording::refuse_slow(&set)?;
-        let library = self.library()?;
+        let (library, replaced) = self.library()?;
         let spinner = progress::spinner("reading");
         let options = Options {
             pictures: self.html.is_some(),
@@ -105,7 +105,7 @@ impl Diagnose {
         }
         if let Some(path) = &self.json {
             let mut json = diagnosed::json(&report, next.as_deref());
-            json["data"] = warnings.clone().into();
+            json["data"] = [replaced.as_slice(), &warnings].concat().into();
             files::write_json(path, &json)?;
         }
         if let Some(path) = &self.html {
@@ -114,6 +114,9 @@ impl Diagnose {
         let outputs = [&self.json, &self.html, &next];
         let mut text = diagnosed::text(&report, next.as_deref());
         text.extend(self.stepped_aside(next.as_deref()));
+        for warning in &replaced {
+            text.extend(["  effects   ", warning, "\n"]);
+        }
         for warning in &warnings {
             text.extend(["  data      ", warning, "\n"]);
         }
@@ -191,10 +194,10 @@ impl Diagnose {
         self.limit.iter().map(limit).collect()
     }
 
-    /// The shipped effects and those of the user.
-    fn library(&self) -> Result<Vec<effects::Effect>, Failure> {
-        let data = |error: effects::EffectError| Failure::Data(error.to_string());
-        let mut library = effects::shipped().map_err(data)?;
+    /// The shipped effects and those of the user, and what is told of these.
+    fn library(&self) -> Result<(Vec<effects::Effect>, Vec<String>), Failure> {
+        let wrong = |effects::EffectError(report)| Failure::Report(report);
+        let mut library = effects::shipped().map_err(wrong)?;
         for kind in &self.without {
             let before = library.len();
             library.retain(|effect| effect.name != *kind);
@@ -207,11 +210,25 @@ impl Diagnose {
                 )));
             }
         }
+        let mut own = Vec::new();
         for path in &self.effects {
             let text = files::read(path, appell_spec::limits::MAX_FILE as u64)?;
             let name = path.file_stem().unwrap_or_default().to_string_lossy();
-            library.push(effects::Effect::read(&name, &text).map_err(data)?);
+            let file = path.to_string_lossy();
+            own.push(effects::Effect::read(&name, &file, &text).map_err(wrong)?);
         }
-        Ok(library)
+        let mut told = Vec::new();
+        for (effect, path) in own.iter().zip(&self.effects) {
+            if library.iter().any(|shipped| shipped.name == effect.name) {
+                told.push(format!(
+                    "warning: {}: the effect `{}` stands in place of that of the library",
+                    path.display(),
+                    effect.name
+                ));
+            }
+        }
+        library.retain(|shipped| own.iter().all(|effect| effect.name != shipped.name));
+        library.append(&mut own);
+        Ok((library, told))
     }
 }

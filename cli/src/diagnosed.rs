@@ -1,5 +1,6 @@
 //! A gap report, for people and for programs.
 
+mod doubt;
 mod numbers;
 mod page;
 mod plots;
@@ -68,6 +69,9 @@ pub(crate) fn text(report: &Report, next: Option<&Path>) -> String {
     }
     for hypothesis in report.which.iter().take(LISTED) {
         let _ = writeln!(text, "  which     {}", line(hypothesis));
+    }
+    for doubt in doubt::doubts(report) {
+        let _ = writeln!(text, "  unit?     {doubt}");
     }
     for group in &report.tied {
         let names: Vec<String> = group.iter().map(|effects| joined(effects)).collect();

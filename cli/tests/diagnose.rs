@@ -270,3 +270,31 @@ fn an_own_effect_with_a_name_of_the_library_stands_in_its_place_and_that_is_told
     let told = folder.done(&[&asked[..], &["cubic.toml"]].concat());
     assert!(!told.stdout.contains("in place"), "{}", told.stdout);
 }
+
+#[test]
+fn a_gain_near_a_factor_between_units_is_doubted_and_has_no_unit() {
+    let folder = viscous(0.0);
+    for name in ["a.csv", "b.csv", "c.csv"] {
+        let text = folder.read(name);
+        // Millimetres, which the description calls metres.
+        let lines = text.lines().enumerate().map(|(row, line)| {
+            let cells: Vec<&str> = line.split(',').collect();
+            match cells[1].parse::<f64>() {
+                Ok(x) if row > 0 => format!("{},{},{}", cells[0], 1e3 * x, cells[2]),
+                _ => line.to_owned(),
+            }
+        });
+        folder.write(name, &(lines.collect::<Vec<_>>().join("\n") + "\n"));
+    }
+    let description = folder.read("recording.toml");
+    folder.write("recording.toml", &description.replace("1e-3 }", "1 }"));
+    let told = folder.done(&["diagnose", "--data", ".", "--html", "page.html"]);
+    let gain = "actuator_gain@F  gain = ";
+    let line = told.stdout.lines().find(|line| line.contains(gain));
+    let line = line.unwrap_or_else(|| panic!("no gain in\n{}", told.stdout));
+    assert!(!line.ends_with(" 1") && line.contains(" ± "), "{line}");
+    let says = "times what is commanded, which is close to 1000: is the unit of `F` right?";
+    assert!(told.stdout.contains(says), "{}", told.stdout);
+    let page = folder.read("page.html");
+    assert!(page.contains("close to 1000: is the unit of F right?"));
+}

@@ -7,10 +7,11 @@ use appell_codegen::{Derived, derived};
 use appell_gap::data::{DataSet, Part};
 use appell_gap::diagnose::{Ahead, HowFar, Hypothesis, Report, Verdict, Where};
 
+use super::doubt::doubts;
 use super::numbers::{measured, percent, short};
 use super::{hinted, joined, left_out, plots, sentence};
-
 use crate::table::with_unit;
+
 const STYLE: &str = include_str!("page.css");
 /// An effect that betters predictions by less is of little matter.
 const MATTERS: f64 = 0.05;
@@ -259,6 +260,10 @@ fn which(report: &Report) -> String {
         rows,
         2,
     );
+    for doubt in doubts(report) {
+        let doubt = escaped(&capital(&doubt.replace('`', "")));
+        let _ = writeln!(html, "<p><b>A unit?</b> {doubt}</p>");
+    }
     for group in &report.tied {
         let names: Vec<String> = group.iter().map(|effects| code(&joined(effects))).collect();
         let _ = writeln!(

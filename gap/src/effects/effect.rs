@@ -259,7 +259,7 @@ fn variants(fields: &mut Fields<'_>, header: &DeTable<'_>) -> Vec<Vec<(String, S
         return Vec::new();
     };
     let mut variants = Vec::new();
-    for value in list.iter() {
+    for value in list {
         let Some(table) = value.get_ref().as_table() else {
             fields.wrong_type(value, wanted);
             continue;

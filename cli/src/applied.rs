@@ -8,7 +8,7 @@ use serde::Deserialize;
 
 use crate::failure::Failure;
 use crate::files;
-use crate::table::number;
+use crate::table::{number, with_unit};
 
 /// Name and version of the format.
 const SCHEMA: &str = "gap-report/1";
@@ -213,6 +213,7 @@ impl Hypothesis {
         if !changes.parameters.is_empty() {
             text += "  note      `[parameters]` of a recording.toml win over those of a spec: write the new \
                      values there too\n";
+            text += &for_recordings(&changes.parameters);
         }
         text
     }
@@ -222,28 +223,56 @@ impl Found {
     fn sentence(&self) -> String {
         let value = self.value.map_or_else(|| "unknown".to_owned(), number);
         let std = self.std.map(|std| format!(" ± {}", number(std)));
-        let unit = if self.unit == "1" { "" } else { &self.unit };
-        format!("{value}{} {unit}", std.unwrap_or_default())
-            .trim_end()
-            .to_owned()
+        with_unit(&(value + &std.unwrap_or_default()), &self.unit)
     }
 }
 
 /// `m = 1.02 ± 0.01 kg, stated as 1 kg`
 fn refitted(one: &Refitted) -> String {
     let std = one.std.map(|std| format!(" ± {}", number(std)));
-    let (value, stated) = (number(one.value), number(one.stated));
-    match std {
-        Some(std) => format!(
-            "{} = {value}{std} {unit}, fitted; stated as {stated} {unit}",
-            one.name,
-            unit = one.unit
-        ),
-        None => format!(
-            "{} = {value} {}, as the recordings state",
-            one.name, one.unit
-        ),
+    let value = number(one.value) + std.as_deref().unwrap_or_default();
+    let value = with_unit(&value, &one.unit);
+    let rest = match std {
+        Some(_) => {
+            let stated = with_unit(&number(one.stated), &one.unit);
+            format!("fitted; stated as {stated}")
+        }
+        None => "as the recordings state".to_owned(),
+    };
+    format!("{} = {value}, {rest}", one.name)
+}
+
+/// The fitted parameters as a `recording.toml` has them; it has those that were not free already.
+fn for_recordings(parameters: &[Refitted]) -> String {
+    let fitted = parameters.iter();
+    let lines = fitted.filter_map(|one| {
+        let std = one.std?;
+        let value = digits(one.value, one.value / std);
+        let (name, unit, std) = (&one.name, &one.unit, digits(std, 1.0));
+        Some(format!(
+            "{name} = {{ value = {value}, unit = \"{unit}\", std = {std} }}\n"
+        ))
+    });
+    let lines: String = lines.collect();
+    if lines.is_empty() {
+        return lines;
     }
+    format!("\n[parameters]\n{lines}")
+}
+
+/// A number with two digits more than its size in standard deviations has.
+fn digits(value: f64, deviations: f64) -> f64 {
+    let digits = deviations.abs().log10().ceil();
+    if !digits.is_finite() {
+        return value;
+    }
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "twelve at most"
+    )]
+    let digits = digits.clamp(0.0, 12.0) as usize + 2;
+    format!("{value:.digits$e}").parse().unwrap_or(value)
 }
 
 /// Where an effect belongs that no spec can hold.

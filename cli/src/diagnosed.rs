@@ -1,5 +1,6 @@
 //! A gap report, for people and for programs.
 
+mod doubt;
 mod numbers;
 mod page;
 mod plots;
@@ -11,28 +12,28 @@ use appell_gap::data::DataSet;
 use appell_gap::diagnose::{
     Ahead, Changes, DiagnoseError, Experiment, Hint, Hypothesis, Report, Verdict,
 };
-use appell_gap::effects::ModelError;
+use appell_gap::effects::{EffectError, ModelError};
 use serde_json::{Value, json};
 
 use numbers::short;
 pub(crate) use page::page;
 
 use crate::failure::Failure;
-use crate::table::number;
+use crate::table::{number, with_unit};
 
 /// Hypotheses that the summary lists.
 const LISTED: usize = 3;
 
 pub(crate) fn failure(error: DiagnoseError) -> Failure {
     match error {
-        DiagnoseError::Model(ModelError::Spec(report)) => Failure::Report(report),
+        DiagnoseError::Model(
+            ModelError::Spec(report) | ModelError::Effect(EffectError(report)),
+        ) => Failure::Report(report),
         DiagnoseError::Data(error) => error.into(),
         DiagnoseError::NothingMeasured
         | DiagnoseError::LacksChannel { .. }
         | DiagnoseError::NothingToFit
-        | DiagnoseError::Model(ModelError::Effect(_) | ModelError::Edit(_)) => {
-            Failure::Data(error.to_string())
-        }
+        | DiagnoseError::Model(ModelError::Edit(_)) => Failure::Data(error.to_string()),
         other => Failure::Computation(other.to_string()),
     }
 }
@@ -68,6 +69,9 @@ pub(crate) fn text(report: &Report, next: Option<&Path>) -> String {
     }
     for hypothesis in report.which.iter().take(LISTED) {
         let _ = writeln!(text, "  which     {}", line(hypothesis));
+    }
+    for doubt in doubt::doubts(report) {
+        let _ = writeln!(text, "  unit?     {doubt}");
     }
     for group in &report.tied {
         let names: Vec<String> = group.iter().map(|effects| joined(effects)).collect();
@@ -185,12 +189,8 @@ fn line(hypothesis: &Hypothesis) -> String {
         .iter()
         .map(|value| {
             let short = value.name.rsplit('.').next().unwrap_or_default();
-            format!(
-                "{short} = {} ± {} {}",
-                number(value.value),
-                number(value.std),
-                value.unit
-            )
+            let sizes = format!("{} ± {}", number(value.value), number(value.std));
+            format!("{short} = {}", with_unit(&sizes, &value.unit))
         })
         .collect();
     format!(

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
-use appell_gap::data::{self, DataError, DataSet, Finding, Part, Role, Run, Spec};
+use appell_gap::data::{self, DataError, DataSet, Finding, FindingKind, Part, Role, Run, Spec};
 use appell_models::ALL;
 use appell_spec::Severity;
 use serde_json::{Value, json};
@@ -36,6 +36,24 @@ pub(crate) fn read(paths: &[PathBuf], model: Option<&str>) -> Result<DataSet, Fa
             "CSV files need the mechanism whose names their columns have; name a shipped one or a spec".to_owned(),
         )),
     }
+}
+
+/// Refuses times that are hardly in seconds: a filter would integrate for hours.
+pub(crate) fn refuse_slow(set: &DataSet) -> Result<(), Failure> {
+    let slow = |finding: &&Finding| finding.kind == FindingKind::SlowClock;
+    let Some(first) = set.findings.iter().find(slow) else {
+        return Ok(());
+    };
+    let mut runs = set.runs.iter();
+    let run = runs.find(|run| first.run.as_ref() == Some(&run.name));
+    let seconds = run.map_or(0.0, Run::duration);
+    Err(Failure::Data(format!(
+        "{}: {}: the run lasts {} s, with {}",
+        first.run.as_deref().unwrap_or_default(),
+        first.channel.as_deref().unwrap_or_default(),
+        number(seconds),
+        first.message
+    )))
 }
 
 impl From<DataError> for Failure {

@@ -30,6 +30,14 @@ pub(crate) fn table(rows: &[Vec<String>], numbers: std::ops::Range<usize>) -> St
     text
 }
 
+/// A number with its unit; the unit 1 is none.
+pub(crate) fn with_unit(number: &str, unit: &str) -> String {
+    match unit {
+        "" | "1" => number.to_owned(),
+        unit => format!("{number} {unit}"),
+    }
+}
+
 /// A number for people: six digits.
 pub(crate) fn number(value: f64) -> String {
     if value == 0.0 {

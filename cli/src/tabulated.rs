@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use appell_gap::data::{MANIFEST, Role};
 use appell_runtime::Signal;
 use appell_runtime::inputs::TabulatedInputs;
 use appell_runtime::model::{Interpolation, Model, Quantity, SignalTable};
@@ -11,33 +12,25 @@ use appell_spec::{Code, Diagnostic, Report};
 use csv::{ReaderBuilder, StringRecord};
 
 use crate::failure::Failure;
-use crate::files;
 use crate::setup::{Setup, unknown};
+use crate::{files, recording};
 
 /// The inputs in a CSV file, and which inputs it has.
 ///
 /// The header names `t` in s and inputs in the units of the spec; columns of the mechanism's other
-/// quantities are left aside, so that a trajectory written by `appell simulate` can be fed back.
+/// quantities are left aside, so that a trajectory written by `appell simulate` can be fed back. Of a
+/// `recording.toml` with the name of a run the names and units are those of the description.
 pub(crate) fn read(
     path: &Path,
+    mechanism: &str,
     setup: &Setup<'_>,
     model: &dyn Model,
 ) -> Result<(TabulatedInputs, Vec<usize>), Failure> {
     let file = path.to_string_lossy();
-    let text = files::read(path, files::MAX_DATA)?;
-    let mut reader = Reader {
-        text: &text,
-        recorded: trajectory::recorded(model, Extras::ALL),
-        findings: Vec::new(),
+    let columns = match described(&file) {
+        Some((description, run)) => recorded(description, run, mechanism)?,
+        None => tabulated(path, setup, model)?,
     };
-    let columns = reader
-        .columns(setup)
-        .map_err(|error| Failure::Data(format!("{file}: {error}")))?;
-    if !reader.findings.is_empty() {
-        let findings = reader.findings;
-        return Err(Report::new(file, text, findings).into());
-    }
-    drop(text);
     let given: Vec<usize> = columns.inputs.iter().map(|column| column.input).collect();
     let mut values: Vec<Option<Vec<f64>>> = vec![None; setup.mechanism.inputs.len()];
     for column in columns.inputs {
@@ -60,6 +53,68 @@ pub(crate) fn read(
         signals.push(signal);
     }
     Ok((TabulatedInputs::new(signals), given))
+}
+
+/// The description and the run in `rig/recording.toml:run1.csv`.
+fn described(text: &str) -> Option<(&str, &str)> {
+    let end = text.rfind(MANIFEST)? + MANIFEST.len();
+    let (description, run) = text.split_at(end);
+    let run = run.strip_prefix(':').or(run.is_empty().then_some(""))?;
+    Path::new(description)
+        .ends_with(MANIFEST)
+        .then_some((description, run))
+}
+
+/// The inputs of a run of a data set.
+fn recorded(description: &str, run: &str, mechanism: &str) -> Result<Columns, Failure> {
+    let mut set = recording::read(&[description.into()], Some(mechanism))?;
+    recording::refuse_slow(&set)?;
+    let Some(place) = set.runs.iter().position(|own| own.name == run) else {
+        let names: Vec<&str> = set.runs.iter().map(|own| own.name.as_str()).collect();
+        return Err(Failure::Usage(format!(
+            "`--inputs {description}:RUN` takes one of the runs {}",
+            names.join(", ")
+        )));
+    };
+    let run = set.runs.swap_remove(place);
+    let mut inputs: Vec<Column> = Vec::new();
+    for (channel, values) in set.channels.iter().zip(run.values) {
+        if let Role::Input(input) = channel.role
+            && inputs.iter().all(|column| column.input != input)
+        {
+            inputs.push(Column {
+                position: 0,
+                input,
+                scale: 1.0,
+                values,
+            });
+        }
+    }
+    if inputs.is_empty() {
+        let message = "no channel is an input; write `input = \"…\"` in `[channels]`";
+        return Err(Failure::Data(format!("{description}: {message}")));
+    }
+    let times = run.times;
+    Ok(Columns { times, inputs })
+}
+
+/// The inputs in a CSV file.
+fn tabulated(path: &Path, setup: &Setup<'_>, model: &dyn Model) -> Result<Columns, Failure> {
+    let file = path.to_string_lossy();
+    let text = files::read(path, files::MAX_DATA)?;
+    let mut reader = Reader {
+        text: &text,
+        recorded: trajectory::recorded(model, Extras::ALL),
+        findings: Vec::new(),
+    };
+    let columns = reader
+        .columns(setup)
+        .map_err(|error| Failure::Data(format!("{file}: {error}")))?;
+    if !reader.findings.is_empty() {
+        let findings = reader.findings;
+        return Err(Report::new(file, text, findings).into());
+    }
+    Ok(columns)
 }
 
 /// Most findings told for one file.

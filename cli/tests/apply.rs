@@ -45,6 +45,23 @@ fn the_improved_spec_checks_and_has_no_gap() {
     let told = folder.done(&apply).stdout;
     assert!(told.contains("coulomb_friction@x.force = 0.4"), "{told}");
     assert!(told.contains("changed   m = "), "{told}");
+    // What is printed can stand in the description of the recordings as it is.
+    let (_, block) = told.split_once("\n[parameters]\n").expect("a block");
+    let value = block.strip_prefix("m = { value = ").expect("the mass");
+    let value: f64 = value
+        .split(',')
+        .next()
+        .and_then(|v| v.parse().ok())
+        .expect("a number");
+    assert!((value - 1.0).abs() < 0.02, "{told}");
+    assert!(block.contains(", unit = \"kg\", std = 0.0"), "{told}");
+    let description = folder.read("recording.toml");
+    let (before, rest) = description.split_once("[parameters]\n").expect("one");
+    let (_, after) = rest.split_once("[channels]").expect("another");
+    let pasted = format!("{before}[parameters]\n{block}[channels]{after}");
+    folder.write("recording.toml", &pasted);
+    folder.done(&["recording", "."]);
+    folder.write("recording.toml", &description);
     let text = folder.read("new.toml");
     let lines: Vec<&str> = text.lines().collect();
     for line in own_spec().lines() {

@@ -143,3 +143,35 @@ fn a_model_that_is_nothing_like_the_recordings_does_not_break_it() {
     assert!([0, 4].contains(&outcome.status), "{}", outcome.stderr);
     assert!(!outcome.stderr.contains("panicked"), "{}", outcome.stderr);
 }
+
+#[test]
+fn times_in_milliseconds_are_told_at_once_and_may_be_stated() {
+    let folder = viscous(0.4);
+    for name in ["a.csv", "b.csv", "c.csv"] {
+        let text = folder.read(name);
+        let mut lines = text.lines();
+        let mut changed = vec![lines.next().expect("a header").to_owned()];
+        changed.extend(lines.enumerate().map(|(row, line)| {
+            let (_, rest) = line.split_once(',').expect("a time");
+            format!("{},{rest}", 10 * row)
+        }));
+        folder.write(name, &(changed.join("\n") + "\n"));
+    }
+    let told = [
+        "a.csv: t: the run lasts 7990",
+        "a row every 10 s",
+        "`t` is read in seconds",
+        "write `t = { unit = \"ms\" }` in `[channels]`",
+    ];
+    refused(&folder, &told);
+    let identify = ["identify", "carriage", "--data", "."];
+    folder.fails(3, &identify, &told);
+    let looked = folder.done(&["recording", "."]).stdout;
+    assert!(looked.contains("a row every 10 s"), "{looked}");
+    let description = folder.read("recording.toml");
+    let stated = description.replace("[channels]", "[channels]\nt = { unit = \"ms\" }");
+    folder.write("recording.toml", &stated);
+    folder.done(&["diagnose", "--data", ".", "--json", "report.json"]);
+    let report = folder.json("report.json");
+    assert_eq!(report["which"][0]["effects"][0], "viscous_friction@x");
+}

@@ -182,6 +182,119 @@ fn an_effect_that_cannot_be_read_is_bad_data() {
     folder.write("own.toml", "[effect]\nfamily = \"force\"\n");
     let ended = folder.run(&["diagnose", "--data", ".", "--effects", "own.toml"]);
     assert_eq!(ended.status, 3, "{}", ended.stderr);
-    let told = "own: `site` is missing";
-    assert!(ended.stderr.contains(told), "{}", ended.stderr);
+    for told in ["`site` is missing", "own.toml:1:1"] {
+        assert!(ended.stderr.contains(told), "{}", ended.stderr);
+    }
+}
+
+const CUBIC: &str = r#"[effect]
+family = "force"
+site   = "coordinate"
+about  = "friction with the cube of the rate at {site}"
+[parameters]
+"{effect}_coefficient" = { value = 0, unit = "{force}*s^3/({unit})^3", at_least = 0 }
+[loads]
+"{effect}" = { kind = "generalized", coordinate = "{site}", force = "-{effect}_coefficient*dot({site})^3" }
+"#;
+
+#[test]
+fn a_mistake_in_an_own_effect_is_told_in_its_words_and_at_its_place() {
+    let folder = viscous(0.4);
+    let told = |text: &str, says: &[&str]| {
+        folder.write("cubic.toml", text);
+        let asked = ["diagnose", "--data", ".", "--effects", "cubic.toml"];
+        let stderr = folder.fails(3, &asked, says).stderr;
+        for of_the_spec in ["carriage", "cubic_x"] {
+            assert!(!stderr.contains(of_the_spec), "{stderr}");
+        }
+    };
+    let unknown = [
+        "unknown name `{effect}_coeficient`",
+        "cubic.toml:8:71",
+        "where `{site}` is `x`",
+        "did you mean `{effect}_coefficient`?",
+    ];
+    told(
+        &CUBIC.replace("-{effect}_coefficient", "-{effect}_coeficient"),
+        &unknown,
+    );
+    let dimension = ["must have the unit `N`", "cubic.toml:8:69"];
+    told(&CUBIC.replace("})^3\" }\n", "})^2\" }\n"), &dimension);
+    let nothing = [
+        "`{sit}` stands for nothing here",
+        "cubic.toml:8:",
+        "did you mean `{site}`?",
+    ];
+    told(&CUBIC.replace("dot({site})", "dot({sit})"), &nothing);
+    // This shows only once the equations are derived.
+    let zero = ["divides by zero", "cubic.toml:8:"];
+    told(
+        &CUBIC.replace("dot({site})^3", "dot({site})^3*{site}/({site} - {site})"),
+        &zero,
+    );
+    // What is added to an input stands in the expressions of the spec.
+    let input = CUBIC
+        .replace("\"coordinate\"", "\"input\"")
+        .replace("\"{force}*s^3/({unit})^3\"", "\"{unit}\"");
+    let (parameters, _) = input.split_once("[loads]").expect("a load");
+    let input = format!("{parameters}[input]\n\"{{site}}\" = \"{{effect}}_coefficient*wrong\"\n");
+    told(&input, &["unknown name `wrong`", "cubic.toml:8:12"]);
+}
+
+#[test]
+fn an_own_effect_with_a_name_of_the_library_stands_in_its_place_and_that_is_told() {
+    let folder = viscous(0.4);
+    let own = CUBIC
+        .replace("coefficient", "damping")
+        .replace("s^3/({unit})^3", "s/({unit})")
+        .replace("})^3\" }\n", "})\" }\n");
+    folder.write("viscous_friction.toml", &own);
+    let asked = [
+        "diagnose",
+        "--data",
+        ".",
+        "--json",
+        "report.json",
+        "--effects",
+    ];
+    let told = folder.done(&[&asked[..], &["viscous_friction.toml"]].concat());
+    let says = "viscous_friction.toml: the effect `viscous_friction` stands in place of that of the library";
+    assert!(told.stdout.contains(says), "{}", told.stdout);
+    let report = folder.json("report.json");
+    assert!(report["data"].to_string().contains(says), "{report:#}");
+    let top = &report["which"][0];
+    let name = "viscous_friction@x.damping";
+    assert_eq!(top["parameters"][0]["name"], name, "{report:#}");
+    assert_eq!(top["parameters"].as_array().map(Vec::len), Some(1));
+    folder.write("cubic.toml", CUBIC);
+    let told = folder.done(&[&asked[..], &["cubic.toml"]].concat());
+    assert!(!told.stdout.contains("in place"), "{}", told.stdout);
+}
+
+#[test]
+fn a_gain_near_a_factor_between_units_is_doubted_and_has_no_unit() {
+    let folder = viscous(0.0);
+    for name in ["a.csv", "b.csv", "c.csv"] {
+        let text = folder.read(name);
+        // Millimetres, which the description calls metres.
+        let lines = text.lines().enumerate().map(|(row, line)| {
+            let cells: Vec<&str> = line.split(',').collect();
+            match cells[1].parse::<f64>() {
+                Ok(x) if row > 0 => format!("{},{},{}", cells[0], 1e3 * x, cells[2]),
+                _ => line.to_owned(),
+            }
+        });
+        folder.write(name, &(lines.collect::<Vec<_>>().join("\n") + "\n"));
+    }
+    let description = folder.read("recording.toml");
+    folder.write("recording.toml", &description.replace("1e-3 }", "1 }"));
+    let told = folder.done(&["diagnose", "--data", ".", "--html", "page.html"]);
+    let gain = "actuator_gain@F  gain = ";
+    let line = told.stdout.lines().find(|line| line.contains(gain));
+    let line = line.unwrap_or_else(|| panic!("no gain in\n{}", told.stdout));
+    assert!(!line.ends_with(" 1") && line.contains(" ± "), "{line}");
+    let says = "times what is commanded, which is close to 1000: is the unit of `F` right?";
+    assert!(told.stdout.contains(says), "{}", told.stdout);
+    let page = folder.read("page.html");
+    assert!(page.contains("close to 1000: is the unit of F right?"));
 }

@@ -60,6 +60,39 @@ fn a_tie_is_separated_by_the_experiment_that_was_proposed() {
 }
 
 #[test]
+fn a_file_of_the_user_stays_where_an_experiment_is_proposed() {
+    let folder = rig::Rig::new(|v| FRICTION * v).folder;
+    let asked = ["diagnose", "--data", ".", "--json", "report.json"];
+    let own = "t,x,F\n0,0,1\n";
+    folder.write("experiment.csv", own);
+    let told = folder.done(&asked).stdout;
+    let says = "experiment.csv is not from the gap report before and stays as it is";
+    assert!(
+        told.contains("written to experiment-2.csv") && told.contains(says),
+        "{told}"
+    );
+    let file = || folder.json("report.json")["experiment"]["file"].clone();
+    assert_eq!(file(), "experiment-2.csv");
+    let proposed = folder.read("experiment-2.csv");
+
+    // The same again replaces what it has proposed, and nothing else.
+    folder.write("experiment-2.csv", "t,F\n");
+    folder.done(&asked);
+    assert_eq!(folder.read("experiment-2.csv"), proposed);
+    assert_eq!(folder.read("experiment.csv"), own);
+
+    // A recording under the name of the experiment has more columns.
+    folder.write("experiment-2.csv", own);
+    folder.done(&asked);
+    assert_eq!(folder.read("experiment-2.csv"), own);
+    assert_eq!(file(), "experiment-3.csv");
+
+    // Whoever names the file means it.
+    folder.done(&[&asked[..], &["--experiment", "experiment.csv"]].concat());
+    assert_eq!(folder.read("experiment.csv"), proposed);
+}
+
+#[test]
 fn limits_name_columns_and_run_upwards() {
     let folder = rig::viscous(0.4);
     let asked = |limit| ["diagnose", "--data", ".", "--limit", limit];

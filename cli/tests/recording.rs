@@ -129,3 +129,41 @@ fn what_cannot_be_read_is_told_with_its_place() {
         ],
     );
 }
+
+#[test]
+fn a_recorded_run_drives_a_simulation_by_the_names_and_units_of_its_description() {
+    let folder = Folder::new();
+    let description = DESCRIPTION
+        .replace("tau   = {", "motor = {")
+        .replace("unit = \"N m\"", "unit = \"N mm\"");
+    folder.write("recording.toml", &description);
+    let run = |torque: i32| {
+        let rows = (0..200).map(|i| format!("{},0,{}", f64::from(i) / 100.0, i % 2 * torque));
+        rows.collect::<Vec<_>>().join("\n") + "\n"
+    };
+    folder.write("a.csv", &format!("t,theta,motor\n{}", run(0)));
+    folder.write("b.csv", &format!("t,theta,motor\n{}", run(500)));
+    folder.write(
+        "plain.csv",
+        &format!("t,theta,tau\n{}", run(500)).replace(",500", ",0.5"),
+    );
+    let end = |inputs: &str| {
+        let base = [
+            "simulate",
+            "pendulum",
+            "--t-end-s",
+            "2",
+            "--json",
+            "end.json",
+        ];
+        folder.done(&[&base[..], &["--inputs", inputs]].concat());
+        folder.json("end.json")["final_state"].clone()
+    };
+    let moved = end("recording.toml:b.csv");
+    assert_eq!(moved, end("plain.csv"));
+    assert_ne!(moved, end("recording.toml:a.csv"));
+    for inputs in ["recording.toml", "recording.toml:c.csv"] {
+        let asked = ["simulate", "pendulum", "--inputs", inputs];
+        folder.fails(2, &asked, &["takes one of the runs a.csv, b.csv"]);
+    }
+}

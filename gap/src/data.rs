@@ -163,6 +163,7 @@ pub fn read(
         mechanism,
         description,
         parameters,
+        time,
         channels,
         runs,
     } = manifest::read(&file, library, instead)?;
@@ -172,9 +173,13 @@ pub fn read(
     let mut errors = Vec::new();
     for (name, part) in runs {
         let path = folder.join(&name);
-        match table::read(&path, &channels, &mut budget) {
+        match table::read(&path, time.as_ref(), &channels, &mut budget) {
             Ok(table) => {
                 let run = channel::run(name, part, table, &channels, &mut findings);
+                // Whoever states the unit has thought of it.
+                if time.is_none() {
+                    findings.extend(run.sampling.doubt().map(|doubt| doubt.in_run(&run.name)));
+                }
                 read_runs.push(run);
             }
             Err(error) => errors.push(error),

@@ -5,7 +5,7 @@ mod common;
 
 use std::fmt::Write as _;
 
-use appell_gap::data::{FindingKind, Measured, NoiseSource, Part, Role, Spec, read_bare};
+use appell_gap::data::{DataSet, FindingKind, Measured, NoiseSource, Part, Role, Spec, read_bare};
 use common::{Folder, SWING, library, pendulum, swing};
 
 /// Rounding of a change of units.
@@ -90,7 +90,7 @@ theta = { measures = "thta", unit = "rad" }
 omega = { measures = "omega", unit = "rpn" }
 tau = { measures = "tau", unit = "N m" }
 both = { measures = "theta", input = "tau" }
-t = { unit = "s" }
+t = { measures = "theta" }
 [runs]
 fit = ["run.csv", "../other.csv"]
 test = ["run.csv"]
@@ -441,4 +441,51 @@ fn files_of_motive_are_read_by_bodies_and_axes() {
             .refused()
             .contains("no line that begins with `Frame`")
     );
+}
+
+#[test]
+fn times_are_in_the_unit_that_the_description_states() {
+    let folder = Folder::new();
+    let swing = swing(200, 1, 1e-3);
+    let mut lines = swing.lines();
+    let mut text = format!("{}\n", lines.next().unwrap());
+    for (row, line) in lines.enumerate() {
+        let (_, rest) = line.split_once(',').unwrap();
+        writeln!(text, "{},{rest}", 10 * row).unwrap();
+    }
+    folder.write("run.csv", text);
+    let read = |line: &str| {
+        let channels = format!("{SWING}\n{line}");
+        folder.write("recording.toml", pendulum(&channels, &["run.csv"], &[]));
+        folder.read()
+    };
+    let slow = |set: &DataSet| {
+        let mut findings = set.findings.iter();
+        let found = findings.find(|finding| finding.kind == FindingKind::SlowClock);
+        found.map(|finding| (finding.channel.clone(), finding.message.clone()))
+    };
+    let set = read("t = { unit = \"ms\" }").unwrap();
+    assert!((set.runs[0].duration() - 1.99).abs() < 1e-12);
+    assert_eq!(slow(&set), None);
+    let set = read("").unwrap();
+    assert!((set.runs[0].duration() - 1990.0).abs() < 1e-9);
+    let (channel, message) = slow(&set).unwrap();
+    assert_eq!(channel.as_deref(), Some("t"));
+    for part in ["a row every 10 s", "t = { unit = \"ms\" }"] {
+        assert!(message.contains(part), "{message}");
+    }
+    // Whoever says that they are seconds is believed.
+    let set = read("t = { unit = \"s\" }").unwrap();
+    assert_eq!(slow(&set), None);
+    for (line, told) in [
+        ("t = { unit = \"kg\" }", "`t` is a time, `kg` is a mass"),
+        (
+            "t = { measures = \"theta\" }",
+            "`t` is the time, not a channel",
+        ),
+        ("t = \"ms\"", "expected a table such as"),
+    ] {
+        let error = read(line).unwrap_err().to_string();
+        assert!(error.contains(told), "{error}");
+    }
 }

@@ -1,15 +1,19 @@
 //! `appell diagnose`
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
 use appell_gap::data::{DataSet, Spec};
 use appell_gap::diagnose::{self, Limit, Options};
 use appell_gap::effects;
+use serde_json::Value;
 
 use crate::failure::Failure;
 use crate::source::Source;
 use crate::{diagnosed, files, progress, recording};
+
+/// Name of the table of the next experiment.
+const EXPERIMENT: &str = "experiment.csv";
 
 /// Tells where a model falls short of recordings, which effect it lacks, and how far the effect closes
 /// the gap.
@@ -40,7 +44,7 @@ pub(crate) struct Diagnose {
     #[arg(long, value_name = "FILE.html")]
     html: Option<PathBuf>,
     /// Where the next experiment goes if hypotheses are tied [default: experiment.csv beside the
-    /// gap report]
+    /// gap report, or experiment-2.csv where a file of yours has that name]
     #[arg(long, value_name = "FILE.csv")]
     experiment: Option<PathBuf>,
     /// Limits of an input or of a measured channel in that experiment, in the unit of its column
@@ -78,7 +82,8 @@ impl FromStr for Span {
 impl Diagnose {
     pub(super) fn run(&self) -> Result<(), Failure> {
         let set = recording::read(&self.data, self.model.as_deref())?;
-        let library = self.library()?;
+        recording::refuse_slow(&set)?;
+        let (library, replaced) = self.library()?;
         let spinner = progress::spinner("reading");
         let options = Options {
             pictures: self.html.is_some(),
@@ -90,14 +95,17 @@ impl Diagnose {
         spinner.finish_and_clear();
         let report = report.map_err(diagnosed::failure)?;
         let warnings = recording::warnings(&set);
-        let next = report.experiment.as_ref().zip(self.next());
-        if let Some((experiment, path)) = &next {
-            files::write(path, &diagnosed::csv(&set, experiment))?;
+        let mut next = None;
+        if let Some(experiment) = &report.experiment {
+            let table = diagnosed::csv(&set, experiment);
+            next = self.next(&table);
+            if let Some(path) = &next {
+                files::write(path, &table)?;
+            }
         }
-        let next = next.map(|(_, path)| path);
         if let Some(path) = &self.json {
             let mut json = diagnosed::json(&report, next.as_deref());
-            json["data"] = warnings.clone().into();
+            json["data"] = [replaced.as_slice(), &warnings].concat().into();
             files::write_json(path, &json)?;
         }
         if let Some(path) = &self.html {
@@ -105,17 +113,52 @@ impl Diagnose {
         }
         let outputs = [&self.json, &self.html, &next];
         let mut text = diagnosed::text(&report, next.as_deref());
+        text.extend(self.stepped_aside(next.as_deref()));
+        for warning in &replaced {
+            text.extend(["  effects   ", warning, "\n"]);
+        }
         for warning in &warnings {
             text.extend(["  data      ", warning, "\n"]);
         }
         files::print_beside(&text, &outputs)
     }
 
-    /// Where the next experiment goes: beside the gap report, if that is a file.
-    fn next(&self) -> Option<PathBuf> {
-        let report = self.json.as_ref().filter(|path| !files::is_stdout(path));
-        let beside = || report.map(|path| path.with_file_name("experiment.csv"));
-        self.experiment.clone().or_else(beside)
+    /// Where the table of the next experiment goes: beside the gap report, if that is a file, and over no
+    /// file but the one that the gap report before has proposed. A recording of that experiment, under its
+    /// name, has more columns.
+    fn next(&self, table: &str) -> Option<PathBuf> {
+        if self.experiment.is_some() {
+            return self.experiment.clone();
+        }
+        let report = self.json.as_ref().filter(|path| !files::is_stdout(path))?;
+        let before = files::read(report, files::MAX_DATA).ok();
+        let before = before.and_then(|text| serde_json::from_str::<Value>(&text).ok());
+        let proposed = before
+            .as_ref()
+            .and_then(|r| r["experiment"]["file"].as_str());
+        let is_own = |name: &str, path: &Path| {
+            let there = files::read(path, files::MAX_DATA).unwrap_or_default();
+            proposed == Some(name) && there.lines().next() == table.lines().next()
+        };
+        let mut names = (1..).map(|number| match number {
+            1 => EXPERIMENT.to_owned(),
+            _ => EXPERIMENT.replace('.', &format!("-{number}.")),
+        });
+        let free = names.find(|name| {
+            let path = report.with_file_name(name);
+            path.symlink_metadata().is_err() || is_own(name, &path)
+        });
+        free.map(|name| report.with_file_name(name))
+    }
+
+    /// That a file was in the way of the next experiment, if one was.
+    fn stepped_aside(&self, next: Option<&Path>) -> Option<String> {
+        let name = next.filter(|_| self.experiment.is_none())?.file_name()?;
+        (name != EXPERIMENT).then(|| {
+            format!(
+                "  next      {EXPERIMENT} is not from the gap report before and stays as it is\n"
+            )
+        })
     }
 
     /// The other specs.
@@ -151,10 +194,10 @@ impl Diagnose {
         self.limit.iter().map(limit).collect()
     }
 
-    /// The shipped effects and those of the user.
-    fn library(&self) -> Result<Vec<effects::Effect>, Failure> {
-        let data = |error: effects::EffectError| Failure::Data(error.to_string());
-        let mut library = effects::shipped().map_err(data)?;
+    /// The shipped effects and those of the user, and what is told of these.
+    fn library(&self) -> Result<(Vec<effects::Effect>, Vec<String>), Failure> {
+        let wrong = |effects::EffectError(report)| Failure::Report(report);
+        let mut library = effects::shipped().map_err(wrong)?;
         for kind in &self.without {
             let before = library.len();
             library.retain(|effect| effect.name != *kind);
@@ -167,11 +210,25 @@ impl Diagnose {
                 )));
             }
         }
+        let mut own = Vec::new();
         for path in &self.effects {
             let text = files::read(path, appell_spec::limits::MAX_FILE as u64)?;
             let name = path.file_stem().unwrap_or_default().to_string_lossy();
-            library.push(effects::Effect::read(&name, &text).map_err(data)?);
+            let file = path.to_string_lossy();
+            own.push(effects::Effect::read(&name, &file, &text).map_err(wrong)?);
         }
-        Ok(library)
+        let mut told = Vec::new();
+        for (effect, path) in own.iter().zip(&self.effects) {
+            if library.iter().any(|shipped| shipped.name == effect.name) {
+                told.push(format!(
+                    "warning: {}: the effect `{}` stands in place of that of the library",
+                    path.display(),
+                    effect.name
+                ));
+            }
+        }
+        library.retain(|shipped| own.iter().all(|effect| effect.name != shipped.name));
+        library.append(&mut own);
+        Ok((library, told))
     }
 }

@@ -63,6 +63,7 @@ enum Start {
 impl Identify {
     pub(super) fn run(&self) -> Result<(), Failure> {
         let set = recording::read(&self.data, Some(&self.model))?;
+        recording::refuse_slow(&set)?;
         let equations = Equations::for_estimation(&Source::find(&self.model)?)?;
         let spinner = progress::spinner("reading");
         let options = Options {

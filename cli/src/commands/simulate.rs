@@ -58,8 +58,9 @@ pub(crate) struct Simulate {
     /// An input as an expression in t, states and parameters
     #[arg(long, value_name = "NAME=EXPR", allow_hyphen_values = true)]
     input: Vec<Assignment>,
-    /// Inputs from a CSV file with the columns t and inputs, each value held until the next row
-    #[arg(long, value_name = "FILE.csv")]
+    /// Inputs from a CSV file with the columns t and inputs, each value held until the next row, or from
+    /// a run of a data set, such as rig/recording.toml:run1.csv
+    #[arg(long, value_name = "FILE")]
     inputs: Option<PathBuf>,
     /// A feedback law (docs/examples/feedback)
     #[arg(long, value_name = "FILE.toml")]
@@ -150,7 +151,7 @@ impl Simulate {
             plan.expression(assignment, &setup)?;
         }
         if let Some(file) = &self.inputs {
-            let (table, inputs) = tabulated::read(file, &setup, equations.model())?;
+            let (table, inputs) = tabulated::read(file, &self.model, &setup, equations.model())?;
             plan.recording(table, &inputs, &setup)?;
         }
         let method = match self.method {

@@ -7,8 +7,10 @@ use appell_codegen::{Derived, derived};
 use appell_gap::data::{DataSet, Part};
 use appell_gap::diagnose::{Ahead, HowFar, Hypothesis, Report, Verdict, Where};
 
+use super::doubt::doubts;
 use super::numbers::{measured, percent, short};
 use super::{hinted, joined, left_out, plots, sentence};
+use crate::table::with_unit;
 
 const STYLE: &str = include_str!("page.css");
 /// An effect that betters predictions by less is of little matter.
@@ -69,16 +71,13 @@ fn verdict(report: &Report) -> String {
 fn values(hypothesis: &Hypothesis) -> Vec<String> {
     let values = hypothesis.parameters.iter().map(|value| {
         let (effect, short) = value.name.rsplit_once('.').unwrap_or(("", &value.name));
-        let unit = if value.unit == "1" { "" } else { &value.unit };
-        let number = measured(value.value, value.std);
+        let number = with_unit(&measured(value.value, value.std), &value.unit);
         // Several effects may have values of one name.
         let site = effect
             .split_once('@')
             .filter(|_| hypothesis.effects.len() > 1);
         let site = site.map_or_else(String::new, |(_, site)| format!(" ({site})"));
-        format!("{}{site} = {number} {unit}", short.replace('_', " "))
-            .trim_end()
-            .to_owned()
+        format!("{}{site} = {number}", short.replace('_', " "))
     });
     values.collect()
 }
@@ -261,6 +260,10 @@ fn which(report: &Report) -> String {
         rows,
         2,
     );
+    for doubt in doubts(report) {
+        let doubt = escaped(&capital(&doubt.replace('`', "")));
+        let _ = writeln!(html, "<p><b>A unit?</b> {doubt}</p>");
+    }
     for group in &report.tied {
         let names: Vec<String> = group.iter().map(|effects| code(&joined(effects))).collect();
         let _ = writeln!(
@@ -419,11 +422,8 @@ fn next(set: &DataSet, report: &Report) -> String {
 
 fn detectable(report: &Report) -> String {
     let rows = report.detectable.iter().map(|one| {
-        let unit = if one.unit == "1" { "" } else { &one.unit };
-        vec![
-            code(&one.effect),
-            format!("{} {}", short(one.smallest), escaped(unit)),
-        ]
+        let smallest = with_unit(&short(one.smallest), &one.unit);
+        vec![code(&one.effect), escaped(&smallest)]
     });
     let rows: Vec<Vec<String>> = rows.collect();
     if rows.is_empty() {

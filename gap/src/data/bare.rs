@@ -47,10 +47,12 @@ pub fn read_bare(spec: Spec, files: &[PathBuf]) -> Result<DataSet, DataError> {
         } else {
             Part::Test
         };
-        match table::read(path, &channels, &mut budget) {
+        match table::read(path, None, &channels, &mut budget) {
             Ok(table) => {
                 let name = path.to_string_lossy().into_owned();
-                runs.push(channel::run(name, part, table, &channels, &mut findings));
+                let run = channel::run(name, part, table, &channels, &mut findings);
+                findings.extend(run.sampling.doubt().map(|doubt| doubt.in_run(&run.name)));
+                runs.push(run);
             }
             Err(error) => errors.push(error),
         }

@@ -4,10 +4,15 @@ use appell_spec::{Code, Diagnostic, Report};
 
 use super::finding::{counted, listed};
 use super::limits::MAX_LEFT_OUT;
+use super::table::TIME;
 use super::{DataError, Finding, FindingKind};
 
 /// A step so many times the median is a gap.
 const GAP: f64 = 5.0;
+
+/// Rows this many seconds apart and more miss the motion of a mechanism. Far more often their times are
+/// not in seconds: rows up to a kilohertz, counted in milliseconds, look like this.
+const SLOW: f64 = 1.0;
 
 /// Lets rows pass whose time is later than all before, and counts the others.
 #[derive(Default)]
@@ -66,7 +71,7 @@ impl Clock {
                 self.missing,
                 FindingKind::MissingTime,
                 "the time is missing",
-                "every row needs its time in seconds",
+                "every row needs its time",
             ),
         ];
         let mut findings = Vec::new();
@@ -124,6 +129,25 @@ impl Sampling {
             longest: steps.iter().copied().fold(0.0, f64::max),
             gaps: gaps.map(|pair| [pair[0], pair[1]]).collect(),
         }
+    }
+
+    /// Whether the times look like those of another unit than seconds.
+    pub(super) fn doubt(&self) -> Option<Finding> {
+        // Of the units of loggers the one in which rows come at 1 Hz to 1 kHz.
+        let unit = match self.step {
+            step if step < SLOW => return None,
+            step if step < 1e3 * SLOW => "ms",
+            step if step < 1e6 * SLOW => "us",
+            _ => "ns",
+        };
+        let message = format!(
+            "a row every {} s ({} Hz): `t` is read in seconds; if these are {unit}, write `t = {{ unit = \"{unit}\" }}` \
+             in `[channels]` of recording.toml, or convert them; if they are seconds, write \
+             `t = {{ unit = \"s\" }}`",
+            (1e3 * self.step).round() / 1e3,
+            (1e3 / self.step).round() / 1e3
+        );
+        Some(Finding::new(FindingKind::SlowClock, message).of_channel(TIME))
     }
 
     pub(super) fn findings(&self) -> Option<Finding> {

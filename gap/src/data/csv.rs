@@ -15,13 +15,15 @@ use super::limits::{MAX_LINE, MAX_MISTAKES};
 use super::table::{TIME, Table, checked, regular, too_many};
 use super::{DataError, Finding, FindingKind, motive};
 
-/// Reads the columns of the channels. `budget` counts down the numbers that may still come.
+/// Reads the columns of the channels and the times, whose unit is `time_unit` s. `budget` counts down the
+/// numbers that may still come.
 pub(super) fn read(
     path: &Path,
+    time_unit: f64,
     channels: &[Channel],
     budget: &mut usize,
 ) -> Result<Table, DataError> {
-    open(path)?.table(channels, budget)
+    open(path)?.table(time_unit, channels, budget)
 }
 
 /// The names of the columns.
@@ -79,7 +81,12 @@ impl<R: BufRead> CsvFile<R> {
         }
     }
 
-    fn table(mut self, channels: &[Channel], budget: &mut usize) -> Result<Table, DataError> {
+    fn table(
+        mut self,
+        time_unit: f64,
+        channels: &[Channel],
+        budget: &mut usize,
+    ) -> Result<Table, DataError> {
         let mut findings = Vec::new();
         let places = self.places(channels, &mut findings);
         if !self.mistakes.is_empty() {
@@ -105,7 +112,7 @@ impl<R: BufRead> CsvFile<R> {
                 self.tell(Code::WrongType, message, line, None);
                 continue;
             }
-            let t = self.number(row[places.time].clone(), 1.0);
+            let t = self.number(row[places.time].clone(), time_unit);
             read.clear();
             for (place, channel) in places.channels.iter().zip(channels) {
                 read.push(self.number(row[*place].clone(), channel.unit.scale));

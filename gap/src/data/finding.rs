@@ -13,6 +13,8 @@ pub enum FindingKind {
     MissingTime,
     /// A last line that breaks off; left out.
     CutOff,
+    /// Rows so far apart that their times are hardly in seconds.
+    SlowClock,
     /// A step much longer than the others.
     Gap,
     /// Measurements that are missing.
@@ -49,6 +51,7 @@ impl FindingKind {
             Self::BackwardTime => "backward-time",
             Self::MissingTime => "missing-time",
             Self::CutOff => "cut-off",
+            Self::SlowClock => "slow-clock",
             Self::Gap => "gap",
             Self::Dropouts => "dropouts",
             Self::HeldInput => "held-input",
@@ -70,6 +73,7 @@ impl FindingKind {
         match self {
             Self::BackwardTime
             | Self::MissingTime
+            | Self::SlowClock
             | Self::Constant
             | Self::HeldInput
             | Self::NoiseDisagrees

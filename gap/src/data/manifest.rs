@@ -11,6 +11,7 @@
 //! theta = { measures = "theta", unit = "deg", noise_std = 0.05 }
 //! tau   = { input = "tau", unit = "N m" }
 //! room  = { unit = "K" }                   # recorded, and in no model
+//! t     = { unit = "ms" }                  # the unit of the times, where that is not s
 //!
 //! [runs]
 //! fit  = ["run1.csv", "run2.csv"]
@@ -22,13 +23,14 @@ use std::path::{Component, Path, PathBuf};
 
 use appell_spec::expr::Span;
 use appell_spec::limits::MAX_FILE;
-use appell_spec::units::Unit;
+use appell_spec::units::{Dimension, Unit};
 use appell_spec::{Code, Mechanism, did_you_mean, shown};
 use toml::de::DeTable;
 
 use super::channel::{Channel, Measured, Role};
 use super::fields::{Fields, Value};
 use super::limits::MAX_RUNS;
+use super::table::TIME;
 use super::{DataError, Library, Parameter, Part, Spec};
 
 /// A description whose names and units fit the mechanism.
@@ -37,6 +39,8 @@ pub(super) struct Manifest {
     pub(super) mechanism: Mechanism,
     pub(super) description: String,
     pub(super) parameters: Vec<Parameter>,
+    /// The unit of the times, where it is stated.
+    pub(super) time: Option<Unit>,
     pub(super) channels: Vec<Channel>,
     pub(super) runs: Vec<(String, Part)>,
 }
@@ -74,7 +78,7 @@ pub(super) fn read(
     let mechanism = appell_spec::load(&spec.file, &spec.text)?.mechanism;
     let description = fields.string(table, "description");
     let parameters = parameters(&mut fields, table, &mechanism);
-    let channels = channels(&mut fields, table, &mechanism);
+    let (time, channels) = channels(&mut fields, table, &mechanism);
     let runs = runs(&mut fields, table);
     if fields.is_wrong() {
         return Err(fields.report().into());
@@ -84,6 +88,7 @@ pub(super) fn read(
         spec,
         mechanism,
         parameters,
+        time,
         channels,
         runs,
     })
@@ -207,7 +212,12 @@ fn parameter(
     })
 }
 
-fn channels(fields: &mut Fields<'_>, table: &DeTable<'_>, mechanism: &Mechanism) -> Vec<Channel> {
+/// The unit of the times, where it is stated, and the channels.
+fn channels(
+    fields: &mut Fields<'_>,
+    table: &DeTable<'_>,
+    mechanism: &Mechanism,
+) -> (Option<Unit>, Vec<Channel>) {
     let Some(table) = fields.section(table, "channels") else {
         if table.get("channels").is_none() {
             let message = "the section `[channels]` is missing";
@@ -215,9 +225,11 @@ fn channels(fields: &mut Fields<'_>, table: &DeTable<'_>, mechanism: &Mechanism)
                 "write a line for each column, such as x = { measures = \"x\", unit = \"m\" }";
             fields.tell(Code::MissingSection, message, 0..0, help);
         }
-        return Vec::new();
+        return (None, Vec::new());
     };
+    let time = table.get(TIME).and_then(|value| time(fields, value));
     let mut entries: Vec<_> = table.iter().collect();
+    entries.retain(|(key, _)| key.get_ref() != TIME);
     entries.sort_by_key(|(key, _)| key.span().start);
     let read = entries
         .into_iter()
@@ -229,7 +241,24 @@ fn channels(fields: &mut Fields<'_>, table: &DeTable<'_>, mechanism: &Mechanism)
             "at least one needs `measures`, the name of a coordinate, pseudo-velocity or output";
         fields.tell(Code::MissingKey, message, 0..0, help);
     }
-    channels
+    (time, channels)
+}
+
+/// The unit of the times.
+fn time(fields: &mut Fields<'_>, value: &Value<'_>) -> Option<Unit> {
+    let Some(table) = value.get_ref().as_table() else {
+        fields.wrong_type(value, "a table such as { unit = \"ms\" }");
+        return None;
+    };
+    let is_channel = |key: &&str| table.get(*key).is_some();
+    if ["measures", "input", "noise_std"].iter().any(is_channel) {
+        let message = "`t` is the time, not a channel";
+        let help = "remove the line, or state the unit of the times alone: { unit = \"ms\" }";
+        fields.tell(Code::ReservedName, message, value.span(), help);
+        return None;
+    }
+    fields.only(table, &["unit"]);
+    fields.unit(table, Some((TIME, &Unit::si(Dimension::TIME))))
 }
 
 fn channel(
@@ -239,11 +268,6 @@ fn channel(
     at: Span,
     mechanism: &Mechanism,
 ) -> Option<Channel> {
-    if column == "t" {
-        let message = "`t` is the time in seconds, not a channel";
-        fields.tell(Code::ReservedName, message, at, "remove the line");
-        return None;
-    }
     let Some(table) = value.get_ref().as_table() else {
         let wanted = "a table such as { measures = \"theta\", unit = \"rad\" }";
         fields.wrong_type(value, wanted);
@@ -273,7 +297,7 @@ fn channel(
     let unit: Unit = match unit {
         Some(unit) => unit,
         // A unit that could not be read has been told; a recorded channel may have none.
-        None if table.get("unit").is_none() => Unit::si(appell_spec::units::Dimension::NONE),
+        None if table.get("unit").is_none() => Unit::si(Dimension::NONE),
         None => return None,
     };
     Some(Channel::new(

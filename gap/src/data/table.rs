@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use appell_spec::units::Unit;
 use appell_spec::{closest, shown};
 
 use super::channel::Channel;
@@ -47,15 +48,26 @@ impl Format {
     }
 }
 
-/// Reads the columns of the channels. `budget` counts down the numbers that may still come.
+/// Reads the columns of the channels, and the times, which are in seconds where no unit is stated.
+/// `budget` counts down the numbers that may still come.
 pub(crate) fn read(
     path: &Path,
+    time: Option<&Unit>,
     channels: &[Channel],
     budget: &mut usize,
 ) -> Result<Table, DataError> {
     let named = |name: &str| name == TIME || channels.iter().any(|c| c.column == name);
     let columns = match Format::of(path) {
-        Format::Csv => return csv::read(path, channels, budget),
+        Format::Csv => {
+            let scale = time.map_or(1.0, |unit| unit.scale);
+            return csv::read(path, scale, channels, budget);
+        }
+        // These formats say themselves when a row was recorded.
+        _ if time.is_some_and(|unit| !unit.is_si()) => {
+            let message = "the times of such a file are in seconds; only those of a CSV file may have \
+                           another unit";
+            return Err(DataError::whole(path.to_string_lossy(), message));
+        }
         format => Columns::of(path, format, &named, *budget)?,
     };
     columns.table(&path.to_string_lossy(), channels, budget)

@@ -4,6 +4,7 @@ use appell_spec::Mechanism;
 use toml_edit::{DocumentMut, Item, TableLike, Value};
 
 use super::effect::{Effect, EffectError, Family, Filter};
+use super::place::Source;
 use super::site::{Site, Sites};
 
 /// How a candidate acts.
@@ -62,6 +63,8 @@ pub struct Candidate {
     pub(crate) brings: Option<usize>,
     /// What is added to inputs: name and expression.
     pub(crate) added: Vec<(String, String)>,
+    /// The file that it comes from, if that is a user's.
+    pub(super) source: Option<Source>,
 }
 
 impl Candidate {
@@ -89,6 +92,14 @@ impl Candidate {
             items: document.to_string(),
             ..self.clone()
         }
+    }
+
+    /// No force along the coordinate where it acts.
+    pub(super) fn nothing(&self) -> String {
+        let words = self.source.iter().flat_map(|source| &source.words);
+        let mut units = words.filter(|(word, _)| word == "force");
+        let unit = units.next().map_or("N", |(_, unit)| unit.as_str());
+        format!("0 [{unit}]")
     }
 
     /// With the meaning of words that its mechanism tells once it has equations.
@@ -132,10 +143,6 @@ impl Candidate {
         id: &str,
         variant: &[(String, String)],
     ) -> Result<Self, EffectError> {
-        let wrong = |message: String| EffectError {
-            file: effect.name.clone(),
-            message,
-        };
         let mut words: Vec<(&str, &str)> = vec![("effect", id), ("site", &site.name)];
         let own = variant
             .iter()
@@ -144,9 +151,17 @@ impl Candidate {
         let of_site = site.words.iter().map(|(word, text)| (*word, text.as_str()));
         words.extend(own.chain(of_site));
         let filled = filled(&filled(&effect.text, &words), &words);
+        let file = effect.file.clone();
+        let source = Source {
+            file: file.unwrap_or_else(|| effect.name.clone()),
+            text: effect.text.clone(),
+            words: (words.iter())
+                .map(|(word, text)| ((*word).to_owned(), (*text).to_owned()))
+                .collect(),
+        };
         let mut document: DocumentMut = filled
             .parse()
-            .map_err(|e: toml_edit::TomlError| wrong(e.to_string()))?;
+            .map_err(|e: toml_edit::TomlError| source.unwritten(e.message()))?;
         let added = match document.remove("input") {
             Some(input) => texts(&input),
             None => Vec::new(),
@@ -165,10 +180,12 @@ impl Candidate {
                 let name = name.get().to_owned();
                 let item = item
                     .as_table_like_mut()
-                    .ok_or_else(|| wrong(format!("`{name}` is not a table")))?;
+                    .ok_or_else(|| source.wrong(&name, None, "a parameter is a table"))?;
                 for key in ["value", "at_least", "at_most"] {
-                    compute(item, key)
-                        .map_err(|text| wrong(format!("`{text}` is no product of numbers")))?;
+                    compute(item, key).map_err(|text| {
+                        let message = format!("`{text}` is no product of numbers");
+                        source.wrong(&name, Some(key), &message)
+                    })?;
                 }
                 let is_zero = item.get("value").and_then(number).is_some_and(|v| v == 0.0);
                 let part = if switch.as_ref() == Some(&name) {
@@ -205,12 +222,13 @@ impl Candidate {
             items: document.to_string(),
             brings,
             added,
+            source: effect.file.is_some().then_some(source),
         })
     }
 }
 
 /// A text with what stands for its words.
-fn filled(text: &str, words: &[(&str, &str)]) -> String {
+pub(super) fn filled(text: &str, words: &[(&str, &str)]) -> String {
     let mut text = text.to_owned();
     for (word, meaning) in words {
         text = text.replace(&format!("{{{word}}}"), meaning);

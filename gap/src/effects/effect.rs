@@ -18,9 +18,12 @@
 //! [input]                            # what is added to an input wherever it acts
 //! ```
 
-use toml_edit::{DocumentMut, Item, TableLike};
+use appell_spec::expr::Span;
+use appell_spec::{Code, Report, closest, did_you_mean, shown};
+use toml::de::{DeTable, DeValue};
 
 use super::site::SiteKind;
+use crate::data::fields::{Fields, Value};
 
 /// Where effects belong.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -110,93 +113,258 @@ pub struct Effect {
     pub(super) filter: Option<Filter>,
     /// The whole file.
     pub(super) text: String,
+    /// The file as its author knows it; nothing for one that is shipped.
+    pub(super) file: Option<String>,
 }
 
-/// Why the file of an effect cannot be used.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("{file}: {message}")]
-pub struct EffectError {
-    /// Name of the file.
-    pub file: String,
-    /// What is wrong.
-    pub message: String,
+/// Why the file of an effect cannot be used, with the places.
+#[derive(Debug, Clone, thiserror::Error)]
+#[error("{}", .0.plain())]
+pub struct EffectError(pub Box<Report>);
+
+impl From<Report> for EffectError {
+    fn from(report: Report) -> Self {
+        Self(Box::new(report))
+    }
 }
+
+/// Keys of the section `[effect]`.
+pub(super) const KEYS: &[&str] = &[
+    "name", "family", "site", "about", "variants", "switch", "filter",
+];
+/// What the first words of an effect stand for.
+const EVERYWHERE: &[&str] = &["effect", "site"];
 
 impl Effect {
-    /// Reads a file; `file` names the effect unless it has a `name` of its own.
-    pub fn read(file: &str, text: &str) -> Result<Self, EffectError> {
-        let wrong = |message: String| EffectError {
-            file: file.to_owned(),
-            message,
-        };
-        let document: DocumentMut = text
-            .parse()
-            .map_err(|e: toml_edit::TomlError| wrong(e.to_string()))?;
-        let header = document
-            .get("effect")
-            .and_then(Item::as_table_like)
-            .ok_or_else(|| wrong("the section `[effect]` is missing".to_owned()))?;
-        let word = |key: &str| header.get(key).and_then(Item::as_str);
-        let needed = |key: &str| word(key).ok_or_else(|| wrong(format!("`{key}` is missing")));
-        let choice = |key: &str, known: String| wrong(format!("`{key}` is one of {known}"));
-        let family = needed("family")?;
-        let families = Family::ALL.iter();
-        let family = families.clone().find(|own| own.word() == family).copied();
-        let names: Vec<&str> = families.map(|own| own.word()).collect();
-        let family = family.ok_or_else(|| choice("family", names.join(", ")))?;
-        let site = needed("site")?;
-        let site = SiteKind::of(site).ok_or_else(|| choice("site", SiteKind::words()))?;
-        let filter = match word("filter") {
-            None => None,
-            Some(filter) => {
-                let found = Filter::ALL.iter().find(|(word, _)| *word == filter);
-                let names: Vec<&str> = Filter::ALL.iter().map(|(word, _)| *word).collect();
-                let found = found.ok_or_else(|| choice("filter", names.join(", ")))?;
-                Some(found.1)
-            }
-        };
-        let variants = header.get("variants").and_then(Item::as_array);
-        let variants: Vec<Vec<(String, String)>> = variants
-            .into_iter()
-            .flatten()
-            .filter_map(|variant| variant.as_inline_table())
-            .map(|table| words(table))
-            .collect();
+    /// Reads an effect of a user from a file; `name` names it unless it has a `name` of its own.
+    pub fn read(name: &str, file: &str, text: &str) -> Result<Self, EffectError> {
         Ok(Self {
-            name: word("name").unwrap_or(file).to_owned(),
+            file: Some(file.to_owned()),
+            ..Self::parsed(name, file, text)?
+        })
+    }
+
+    /// Reads an effect that is shipped.
+    pub(super) fn shipped(name: &str, text: &str) -> Result<Self, EffectError> {
+        Self::parsed(name, &format!("{name}.toml"), text)
+    }
+
+    fn parsed(name: &str, file: &str, text: &str) -> Result<Self, EffectError> {
+        let (mut fields, table) = Fields::new(file, text);
+        let table = table.get_ref();
+        if fields.is_wrong() {
+            return Err(fields.report().into());
+        }
+        let Some(header) = fields.section(table, "effect") else {
+            if table.get("effect").is_none() {
+                let help = "write `family`, `site` and `about` there";
+                let message = "the section `[effect]` is missing";
+                fields.tell(Code::MissingSection, message, 0..0, help);
+            }
+            return Err(fields.report().into());
+        };
+        fields.only(header, KEYS);
+        let at = table.get("effect").map_or(0..0, Value::span);
+        let families: Vec<&str> = Family::ALL.iter().map(|own| own.word()).collect();
+        let family = choice(
+            &mut fields,
+            header,
+            "family",
+            &families.join(", "),
+            |word| Family::ALL.into_iter().find(|own| own.word() == word),
+        );
+        let site = choice(
+            &mut fields,
+            header,
+            "site",
+            &SiteKind::kinds(),
+            SiteKind::of,
+        );
+        let filters: Vec<&str> = Filter::ALL.iter().map(|(word, _)| *word).collect();
+        let filter = choice(&mut fields, header, "filter", &filters.join(", "), |word| {
+            let mut all = Filter::ALL.into_iter();
+            all.find(|(own, _)| *own == word).map(|(_, filter)| filter)
+        });
+        let about = fields.string(header, "about");
+        for key in ["family", "site", "about"] {
+            if header.get(key).is_none() {
+                let message = format!("`{key}` is missing");
+                fields.tell(Code::MissingKey, message, at.clone(), "");
+            }
+        }
+        let own = fields.string(header, "name");
+        let switch = fields.string(header, "switch");
+        let variants = variants(&mut fields, header);
+        if let Some(site) = site {
+            let mut known = [EVERYWHERE, &site.words().concat()].concat();
+            known.extend(variants.iter().flatten().map(|(word, _)| word.as_str()));
+            unknown_words(&mut fields, table, text, &known);
+        }
+        let (Some(family), Some(site), Some((about, _)), false) =
+            (family, site, about, fields.is_wrong())
+        else {
+            return Err(fields.report().into());
+        };
+        Ok(Self {
+            name: own.map_or_else(|| name.to_owned(), |(own, _)| own),
             family,
             site,
-            about: needed("about")?.to_owned(),
+            about,
             variants: if variants.is_empty() {
                 vec![Vec::new()]
             } else {
                 variants
             },
-            switch: word("switch").map(str::to_owned),
+            switch: switch.map(|(switch, _)| switch),
             filter,
             text: text.to_owned(),
+            file: None,
         })
     }
 }
 
-fn words(table: &dyn TableLike) -> Vec<(String, String)> {
-    let words = table.iter();
-    words
-        .filter_map(|(key, item)| Some((key.to_owned(), item.as_str()?.to_owned())))
-        .collect()
+/// The words of families and filters.
+#[cfg(test)]
+pub(super) fn choices() -> Vec<&'static str> {
+    let families = Family::ALL.into_iter().map(Family::word);
+    families.chain(Filter::ALL.map(|(word, _)| word)).collect()
+}
+
+/// One of some words, which may be absent; another one is told.
+fn choice<T>(
+    fields: &mut Fields<'_>,
+    header: &DeTable<'_>,
+    key: &str,
+    known: &str,
+    of: impl Fn(&str) -> Option<T>,
+) -> Option<T> {
+    let (word, at) = fields.string(header, key)?;
+    let found = of(&word);
+    if found.is_none() {
+        let message = format!("`{key}` is one of {known}");
+        let help = did_you_mean(&word, known.split(", "), String::new);
+        fields.tell(Code::UnknownName, message, at, &help);
+    }
+    found
+}
+
+/// Words and what they stand for, one list for each variant.
+fn variants(fields: &mut Fields<'_>, header: &DeTable<'_>) -> Vec<Vec<(String, String)>> {
+    let Some(value) = header.get("variants") else {
+        return Vec::new();
+    };
+    let wanted = "a list of tables of texts, such as [{ part = \"0.5\" }]";
+    let Some(list) = value.get_ref().as_array() else {
+        fields.wrong_type(value, wanted);
+        return Vec::new();
+    };
+    let mut variants = Vec::new();
+    for value in list {
+        let Some(table) = value.get_ref().as_table() else {
+            fields.wrong_type(value, wanted);
+            continue;
+        };
+        let mut words = Vec::new();
+        for (key, value) in table {
+            match value.get_ref().as_str() {
+                Some(text) => words.push((key.get_ref().to_string(), text.to_owned())),
+                None => fields.wrong_type(value, "a text in quotes"),
+            }
+        }
+        variants.push(words);
+    }
+    variants
+}
+
+/// Tells of words in braces that stand for nothing, in keys and in texts.
+fn unknown_words(fields: &mut Fields<'_>, table: &DeTable<'_>, text: &str, known: &[&str]) {
+    let mut places = Vec::new();
+    spans(table, &mut places);
+    for place in places {
+        let part = text.get(place.clone()).unwrap_or_default();
+        for (start, _) in part.match_indices('{') {
+            let rest = &part[start + 1..];
+            let is_word = |c: char| c.is_ascii_alphanumeric() || c == '_';
+            let end = rest.find(|c| !is_word(c)).unwrap_or(rest.len());
+            let word = &rest[..end];
+            if word.is_empty() || !rest[end..].starts_with('}') || known.contains(&word) {
+                continue;
+            }
+            let from = place.start + start;
+            let message = format!("`{{{}}}` stands for nothing here", shown(word));
+            let all: Vec<String> = known.iter().map(|word| format!("{{{word}}}")).collect();
+            let similar = closest(word, known.iter().copied());
+            let help = similar.map_or_else(
+                || format!("words at such a site are {}", all.join(", ")),
+                |similar| format!("did you mean `{{{similar}}}`?"),
+            );
+            fields.tell(Code::UnknownName, message, from..from + end + 2, &help);
+        }
+    }
+}
+
+/// The places of all keys and texts.
+fn spans(table: &DeTable<'_>, places: &mut Vec<Span>) {
+    for (key, value) in table {
+        places.push(key.span());
+        of_value(value, places);
+    }
+}
+
+fn of_value(value: &Value<'_>, places: &mut Vec<Span>) {
+    match value.get_ref() {
+        DeValue::String(_) => places.push(value.span()),
+        DeValue::Array(parts) => parts.iter().for_each(|part| of_value(part, places)),
+        DeValue::Table(table) => spans(table, places),
+        _ => {}
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
+    fn told(text: &str) -> String {
+        let read = Effect::read("own", "mine/own.toml", text);
+        read.err()
+            .map_or_else(String::new, |error| error.to_string())
+    }
+
     #[test]
-    fn a_file_tells_what_it_lacks() {
-        let told = |text: &str| Effect::read("own", text).map_err(|error| error.to_string());
-        let lacks = |text, message: &str| assert_eq!(told(text), Err(format!("own: {message}")));
-        lacks("[loads]", "the section `[effect]` is missing");
-        lacks("[effect]\nsite = 'body'", "`family` is missing");
-        let error = told("[effect]\nfamily = 'force'\nsite = 'moon'");
-        assert!(error.is_err_and(|e| e.contains("`site` is one of coordinate")));
+    fn a_file_tells_what_it_lacks_and_where() {
+        let lacks = |text, message: &str, place: &str| {
+            let told = told(text);
+            assert!(told.contains(message) && told.contains(place), "{told}");
+        };
+        let place = "mine/own.toml:1:1";
+        lacks("[loads]", "the section `[effect]` is missing", place);
+        lacks(
+            "[effect]\nsite = 'body'",
+            "`family` is missing",
+            "mine/own.toml:1:",
+        );
+        lacks(
+            "[effect]\nfamily = 'force'\nsite = 'moon'",
+            "`site` is one of coordinate",
+            "mine/own.toml:3:8",
+        );
+        lacks("[effect]\nfamly = 'force'", "did you mean `family`?", "2:1");
+    }
+
+    #[test]
+    fn a_word_that_stands_for_nothing_is_told_with_its_place() {
+        let text = "[effect]\nfamily = 'force'\nsite = 'body'\nabout = 'drag on {site}'\n\
+                    [loads]\n# as {nobody} reads this\n'{effect}' = { on = '{center}', force = '{unit}' }\n";
+        let told = told(text);
+        for part in [
+            "`{center}` stands for nothing here",
+            "mine/own.toml:7:22",
+            "did you mean `{centre}`?",
+            "`{unit}` stands",
+            "words at such a site are {effect}, {site}, {centre}, {frame}",
+        ] {
+            assert!(told.contains(part), "`{part}` is missing in\n{told}");
+        }
+        assert!(!told.contains("`{nobody}`"), "{told}");
     }
 }

@@ -90,9 +90,27 @@ pub fn candidates(
     let sites = Sites::new(mechanism, &velocities, scales);
     let mut all = Vec::new();
     for effect in effects {
-        all.extend(Candidate::all(effect, mechanism, &sites)?);
+        let own = Candidate::all(effect, mechanism, &sites)?;
+        own.iter()
+            .try_for_each(|candidate| check(spec, candidate))?;
+        all.extend(own);
     }
     Ok(all)
+}
+
+/// Whether the effect of a user makes a spec wrong: that is told in the words of its file.
+fn check(spec: &Spec, candidate: &Candidate) -> Result<(), ModelError> {
+    let Some(source) = &candidate.source else {
+        return Ok(());
+    };
+    // What a coordinate of its own needs is known once there are equations; zero has its dimension.
+    let (force, inertia) = (candidate.nothing(), number(1.0));
+    let whole = candidate.told(&[("drive", &force), ("inertia", &inertia)]);
+    let text = with_candidates(&spec.text, &[whole])?;
+    match appell_spec::load(&spec.file, &text) {
+        Ok(_) => Ok(()),
+        Err(report) => Err(source.blamed(&report, &text).into()),
+    }
 }
 
 impl EffectModel {
@@ -122,7 +140,8 @@ impl EffectModel {
         };
         let declared: Vec<Candidate> = candidates.iter().map(declared).collect();
         let text = with_candidates(&spec.text, &declared)?;
-        let (mechanism, model) = derive(&spec.file, &text)?;
+        let (mechanism, model) =
+            derive(&spec.file, &text).map_err(|error| blamed(spec, &declared, error))?;
         Ok(Self {
             richer: candidates.iter().map(|_| OnceLock::new()).collect(),
             candidates,
@@ -220,6 +239,19 @@ impl EffectModel {
     pub fn info(&self) -> &ModelInfo {
         self.model.info()
     }
+}
+
+/// Why a spec has no equations: the effect of a user, if one has none alone.
+fn blamed(spec: &Spec, candidates: &[Candidate], error: ModelError) -> ModelError {
+    let alone = |candidate: &Candidate| {
+        let source = candidate.source.as_ref()?;
+        let text = with_candidates(&spec.text, std::slice::from_ref(candidate)).ok()?;
+        match derive(&spec.file, &text) {
+            Err(ModelError::Spec(report)) => Some(source.blamed(&report, &text).into()),
+            _ => None,
+        }
+    };
+    candidates.iter().find_map(alone).unwrap_or(error)
 }
 
 /// The mechanism of a spec, and machine code of its equations.

@@ -62,10 +62,57 @@ impl SiteKind {
         found.map(|(_, kind)| *kind)
     }
 
-    pub(super) fn words() -> String {
+    #[cfg(test)]
+    pub(super) fn all() -> impl Iterator<Item = Self> {
+        WORDS.into_iter().map(|(_, kind)| kind)
+    }
+
+    pub(super) fn kinds() -> String {
         WORDS.map(|(word, _)| word).join(", ")
     }
+
+    /// Its word.
+    pub(super) fn word(self) -> &'static str {
+        let found = WORDS.iter().find(|(_, kind)| *kind == self);
+        found.map_or("", |(word, _)| word)
+    }
+
+    /// Lists of words that stand for something at such a place, beside `effect` and `site`.
+    pub(super) fn words(self) -> &'static [&'static [&'static str]] {
+        match self {
+            Self::Coordinate | Self::Slider | Self::Hinge => &[OF_COORDINATE, ACROSS],
+            Self::DrivenSlider | Self::DrivenHinge => &[OF_COORDINATE, ACROSS, LATER_DRIVEN],
+            Self::Body | Self::RigidBody => &[OF_BODY, LATER_BODY],
+            Self::Wheel => &[OF_BODY, OF_WHEEL, LATER_BODY],
+            Self::Gravity => &[&["gravity"], ACROSS],
+            Self::Input => &[&["unit", "largest", "narrow"]],
+            Self::Contact | Self::Parameter | Self::Channel => &[],
+        }
+    }
 }
+
+const OF_COORDINATE: &[&str] = &["unit", "force", "typical_rate", "narrow_rate"];
+const ACROSS: &[&str] = &["across_1", "across_2", "across_x", "across_y", "across_z"];
+const OF_BODY: &[&str] = &[
+    "centre",
+    "frame",
+    "speed",
+    "velocity_x",
+    "velocity_y",
+    "velocity_z",
+];
+const OF_WHEEL: &[&str] = &[
+    "roll",
+    "narrow_rate",
+    "spin",
+    "normal_x",
+    "normal_y",
+    "normal_z",
+];
+/// Words whose meaning is known once the mechanism has equations.
+const LATER_DRIVEN: &[&str] = &["drive", "inertia"];
+/// A word whose meaning is known once all effects of the body are.
+const LATER_BODY: &[&str] = &["last_centre"];
 
 /// What recordings tell of typical sizes, in SI.
 #[derive(Debug, Clone, PartialEq)]
@@ -120,6 +167,20 @@ impl<'m> Sites<'m> {
 
     /// All places of a kind.
     pub(super) fn of(&self, kind: SiteKind) -> Vec<Site> {
+        let sites = self.all(kind);
+        let later = [LATER_DRIVEN, LATER_BODY].concat();
+        let mut known: Vec<&str> = kind.words().concat();
+        known.retain(|word| !later.contains(word));
+        known.sort_unstable();
+        for site in &sites {
+            let mut own: Vec<&str> = site.words.iter().map(|(word, _)| *word).collect();
+            own.sort_unstable();
+            debug_assert_eq!(own, known, "words of {}", kind.word());
+        }
+        sites
+    }
+
+    fn all(&self, kind: SiteKind) -> Vec<Site> {
         let is_length = |&q: &CoordinateId| self.dimension(q) == Dimension::LENGTH;
         let is_angle = |&q: &CoordinateId| self.dimension(q) == Dimension::NONE;
         let moving = self.moving();

@@ -36,7 +36,7 @@ impl Capture {
         let channel = |name: String| Channel::new(&name, Role::Recorded, plain.clone(), None);
         let channels: Vec<Channel> = names.map(channel).collect();
         let mut budget = limits::MAX_NUMBERS;
-        let table = table::read(path, &channels, &mut budget)?;
+        let table = table::read(path, None, &channels, &mut budget)?;
         let mut columns = table.columns.into_iter();
         let bodies = skeleton.bodies.iter().map(|_| {
             let mut next = |column: &Column| -> Vec<f64> {

@@ -3,7 +3,7 @@
 mod rig;
 mod support;
 
-use rig::{closed, geared};
+use rig::geared;
 use serde_json::json;
 use support::number;
 
@@ -46,7 +46,7 @@ fn play_is_found_with_its_size_and_its_spec_has_no_gap() {
     folder.done(&apply);
     let checked = folder.done(&["check", "new.toml"]);
     assert!(!checked.stderr.contains("warning"), "{}", checked.stderr);
-    closed(&folder, "new.toml");
+    rig::closed(&folder, "new.toml");
 }
 
 #[test]

@@ -322,6 +322,7 @@ impl Bench<'_> {
 }
 
 /// What a law would gain, all told and on runs that it was not found in.
+#[derive(Clone, Copy)]
 struct Law {
     gain: f64,
     foretold: f64,

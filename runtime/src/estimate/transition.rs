@@ -128,10 +128,11 @@ pub(super) fn halvings(stages: &Stages<'_>, n: usize, h: f64) -> u32 {
     let fastest = stages.a.chunks_exact(n * n).map(squares);
     let fastest = fastest.fold(0.0, |most: f64, squares| most.max(squares.abs()));
     let decays = h * fastest.sqrt() / STIFF;
-    if decays > 1.0 {
-        decays.log2().ceil().min(f64::from(MOST_HALVINGS)) as u32
-    } else {
-        u32::from(is_uneven(stages.k, n))
+    let short_enough = |halvings: &u32| decays <= f64::from(1_u32 << halvings);
+    match (0..MOST_HALVINGS).find(short_enough) {
+        Some(0) => u32::from(is_uneven(stages.k, n)),
+        Some(halvings) => halvings,
+        None => MOST_HALVINGS,
     }
 }
 

@@ -14,7 +14,8 @@
 //!
 //! - [`recording`], [`setup`], [`layout`]: what is given;
 //! - [`timeline`]: the order of steps and samples;
-//! - [`plant`], [`transition`]: the motion and its transition matrix, step by step;
+//! - [`plant`], [`transition`]: the motion and its transition matrix, step by step, and which steps are
+//!   too long;
 //! - [`closure`]: closed loops, whose coordinates depend on each other;
 //! - [`filter`], [`square_root`]: the extended Kalman filter, innovations, log-likelihood;
 //! - [`adjoint`]: the gradient of the log-likelihood in all values by one sweep backwards;
@@ -24,7 +25,7 @@
 //! - [`consistency`], [`chi_squared`]: whether innovations are what they should be;
 //! - [`free`], [`posterior`], [`curvature`], [`fit`]: the most likely values;
 //! - [`sensitivity`]: scores and Fisher's information;
-//! - [`scoring`]: fits in few passes;
+//! - [`scoring`], [`company`]: fits in few passes, with levels that go along with inertia;
 //! - [`shooting`]: fits without disturbances, from starts far from the truth;
 //! - [`tangent`], [`information`]: how innovations change with many values, and Fisher's information,
 //!   in few passes;

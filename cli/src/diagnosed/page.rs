@@ -375,6 +375,11 @@ fn horizon(ahead: &Ahead) -> String {
     }
 }
 
+fn is_alternative(hypothesis: &Hypothesis) -> bool {
+    let mut effects = hypothesis.effects.iter();
+    effects.any(|effect| effect.starts_with("alternative:"))
+}
+
 /// What to do now.
 fn next(set: &DataSet, report: &Report) -> String {
     let text = match report.verdict {
@@ -382,7 +387,7 @@ fn next(set: &DataSet, report: &Report) -> String {
             "<p>Nothing has to be added to the model. The table below tells how small an effect these \
              recordings would have shown.</p>\n"
         }
-        _ if report.which[0].changes.is_none() && report.verdict != Verdict::Unexplained => {
+        _ if is_alternative(&report.which[0]) => {
             "<p>Go on with the alternative model, and diagnose that one.</p>\n"
         }
         Verdict::Explained | Verdict::Ambiguous => {

@@ -67,7 +67,14 @@ pub(super) fn law(
     let variables = info.states.iter().chain(info.inputs.iter());
     let has_law = steps.iter().any(|step| step.law != 0.0);
     let target = |step: &Step| if has_law { step.law } else { step.force };
-    let explained = (0..variables.clone().count()).map(|v| (v, explained(&steps, v, target)));
+    let varies = |v: &usize| {
+        let mut values = steps.iter().map(|step| step.variables[*v].to_bits());
+        values
+            .next()
+            .is_some_and(|first| values.any(|value| value != first))
+    };
+    let varying = (0..variables.clone().count()).filter(varies);
+    let explained = varying.map(|v| (v, explained(&steps, v, target)));
     let best = explained.max_by(|a, b| a.1.total_cmp(&b.1));
     let Some((variable, part)) = best.filter(|(_, part)| part.is_finite()) else {
         return Ok(None);

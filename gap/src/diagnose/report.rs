@@ -306,7 +306,7 @@ pub(super) fn assemble(
     let top = &which[0];
     let verdict = match top.effects.first().map(String::as_str) {
         None => Verdict::NoGap,
-        Some("unknown") => Verdict::Unexplained,
+        Some("unknown") if tied.is_empty() => Verdict::Unexplained,
         Some(_) if tied.is_empty() => Verdict::Explained,
         Some(_) => Verdict::Ambiguous,
     };
@@ -397,23 +397,23 @@ fn join(
 
 /// The leading hypothesis with those that cannot be told from it.
 fn tied(which: &[Hypothesis]) -> Vec<Vec<Vec<String>>> {
-    let top = &which[0];
-    if top.effects.is_empty() || top.effects == ["unknown"] {
+    let is_named = |other: &&Hypothesis| other.effects != ["unknown"];
+    let Some(first) = which.iter().find(is_named) else {
+        return Vec::new();
+    };
+    if first.effects.is_empty() {
         return Vec::new();
     }
     let is_near = |other: &&Hypothesis| {
-        !other.effects.is_empty()
-            && other.effects != ["unknown"]
-            && other.effects.len() == top.effects.len()
-            && (top.probability / other.probability).ln() < TIED
+        is_named(other)
+            && other.effects.len() == first.effects.len()
+            && (first.probability / other.probability).ln() < TIED
     };
-    let group: Vec<Vec<String>> = which
-        .iter()
-        .filter(is_near)
-        .map(|h| h.effects.clone())
-        .collect();
-    if group.len() > 1 {
-        vec![group]
+    let group: Vec<&Hypothesis> = which.iter().filter(is_near).collect();
+    // Names of one thing share its probability: none of them leads, but all of them together.
+    let all: f64 = group.iter().map(|one| one.probability).sum();
+    if group.len() > 1 && all >= which[0].probability {
+        vec![group.into_iter().map(|one| one.effects.clone()).collect()]
     } else {
         Vec::new()
     }

@@ -351,7 +351,8 @@ impl<'a> Pass<'a> {
             on.f,
         );
         let halvings = halvings(&on.stages, n, h).min(MOST_HALVINGS - halved);
-        if halvings > 0 {
+        // Loops are closed after whole steps alone.
+        if halvings > 0 && self.closure.is_none() {
             self.tape.truncate(tape);
             self.records.pop();
             let mut parts = advance.parts(halvings);

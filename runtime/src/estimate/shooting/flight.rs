@@ -175,7 +175,8 @@ impl<'a> Flight<'a> {
                 add_scaled(h * next, &by_rates, &mut by_stage);
             }
         }
-        if halved < MOST_HALVINGS && is_uneven(&rates, n) {
+        let is_cut = self.closure.is_none() && halved < MOST_HALVINGS;
+        if is_cut && is_uneven(&rates, n) {
             (self.z, self.by) = (before, by_before);
             for part in advance.parts(1) {
                 self.advance(part, halved + 1);

@@ -70,7 +70,10 @@ fn with_levels(setup: &Setup<'_>, recordings: &[Recording], level: f64, noise: f
 
 /// A setup whose steps end at the rows, one with fine steps, and a recording by the fine one.
 fn seen(model: &dyn Model) -> ([Setup<'_>; 2], Vec<f64>, [Recording; 1]) {
-    let coarse = Setup::new(model, &[Measured::State(1)]);
+    let coarse = Setup {
+        has_corners: true,
+        ..Setup::new(model, &[Measured::State(1)])
+    };
     let fine = Setup {
         longest_step: FINE,
         ..coarse.clone()

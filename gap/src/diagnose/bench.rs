@@ -78,6 +78,7 @@ impl<'a> Bench<'a> {
         let step = steps.fold(f64::INFINITY, f64::min);
         let setup = Setup {
             longest_step: longest_step(effects.longest_step(&[])),
+            has_corners: true,
             ..Setup::new(effects.with(&[]), &measured)
         };
         let (problem, sizes) = {
@@ -141,6 +142,7 @@ impl<'a> Bench<'a> {
         let measured: Vec<Measured> = measured.iter().map(|(_, shown)| *shown).collect();
         let mut setup = Setup {
             longest_step: longest_step(self.effects.longest_step(members)),
+            has_corners: true,
             ..Setup::new(model, &measured)
         };
         setup.disturbances.truncate(self.effects.info().speeds);

@@ -352,7 +352,7 @@ impl<'a> Pass<'a> {
         );
         let halvings = halvings(&on.stages, n, h).min(MOST_HALVINGS - halved);
         // Loops are closed after whole steps alone.
-        if halvings > 0 && self.closure.is_none() {
+        if halvings > 0 && self.setup.has_corners && self.closure.is_none() {
             self.tape.truncate(tape);
             self.records.pop();
             let mut parts = advance.parts(halvings);

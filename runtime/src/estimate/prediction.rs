@@ -268,7 +268,8 @@ impl<'a> Walk<'a> {
                 add_scaled(h * next, rates, &mut self.stage);
             }
         }
-        let is_cut = self.closure.is_none() && halved < MOST_HALVINGS;
+        let has_corners = self.setup.has_corners && self.closure.is_none();
+        let is_cut = has_corners && halved < MOST_HALVINGS;
         if is_cut && is_uneven(&self.rates, n) {
             for part in advance.parts(1) {
                 self.step(part, halved + 1);

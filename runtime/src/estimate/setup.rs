@@ -66,6 +66,9 @@ pub struct Setup<'a> {
     pub drifting: Vec<usize>,
     /// Longest step of the integration in s; longer gaps between samples are divided.
     pub longest_step: f64,
+    /// Whether steps are halved where they meet corners, such as rounded signs of dry friction. Along smooth
+    /// motions there are none, and likelihoods of chaotic ones are smoother without.
+    pub has_corners: bool,
 }
 
 impl<'a> Setup<'a> {
@@ -83,6 +86,7 @@ impl<'a> Setup<'a> {
             delayed: Vec::new(),
             drifting: Vec::new(),
             longest_step: f64::INFINITY,
+            has_corners: false,
         }
     }
 

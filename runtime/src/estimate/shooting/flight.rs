@@ -175,7 +175,8 @@ impl<'a> Flight<'a> {
                 add_scaled(h * next, &by_rates, &mut by_stage);
             }
         }
-        let is_cut = self.closure.is_none() && halved < MOST_HALVINGS;
+        let has_corners = self.estimation.setup().has_corners && self.closure.is_none();
+        let is_cut = has_corners && halved < MOST_HALVINGS;
         if is_cut && is_uneven(&rates, n) {
             (self.z, self.by) = (before, by_before);
             for part in advance.parts(1) {

@@ -153,17 +153,7 @@ fn two_runs_of_the_program_write_the_same_bytes() {
 #[test]
 fn a_user_adds_an_effect_without_code() {
     let folder = viscous(0.4);
-    let effect = r#"
-[effect]
-family = "force"
-site   = "coordinate"
-about  = "friction with the cube of the rate at {site}"
-[parameters]
-"{effect}_coefficient" = { value = 0, unit = "{force}*s^3/({unit})^3", at_least = 0 }
-[loads]
-"{effect}" = { kind = "generalized", coordinate = "{site}", force = "-{effect}_coefficient*dot({site})^3" }
-"#;
-    folder.write("cubic_friction.toml", effect);
+    folder.write("cubic_friction.toml", CUBIC);
     let asked = [
         "diagnose",
         "--data",

@@ -1,8 +1,8 @@
 //! The square-root extended Kalman filter (Bierman 1977; Särkkä, *Bayesian Filtering and
 //! Smoothing*, 2013, section 5.2).
 //!
-//! Time: z⁺ by a Runge–Kutta step, in parts where it meets a corner, P⁺ = F (P + N) Fᵀ + N, where N is half of the noise of the step;
-//! half enters before it and half after. Measurements: one scalar after the other, all linearised
+//! Time: z⁺ by a Runge–Kutta step, in parts where it meets a corner and the setup has corners,
+//! P⁺ = F (P + N) Fᵀ + N, where N is half of the noise of the step; half enters before it and half after. Measurements: one scalar after the other, all linearised
 //! about the state before the first of them, which is the update with all at once where noise is
 //! independent. The residuals of these scalars are independent of each other and of all earlier
 //! ones: squares and logarithms of their variances add up to the likelihood. Where coordinates depend
@@ -350,9 +350,13 @@ impl<'a> Pass<'a> {
             on.after,
             on.f,
         );
-        let halvings = halvings(&on.stages, n, h).min(MOST_HALVINGS - halved);
         // Loops are closed after whole steps alone.
-        if halvings > 0 && self.setup.has_corners && self.closure.is_none() {
+        let halvings = if self.setup.has_corners && self.closure.is_none() {
+            halvings(&on.stages, n, h).min(MOST_HALVINGS - halved)
+        } else {
+            0
+        };
+        if halvings > 0 {
             self.tape.truncate(tape);
             self.records.pop();
             let mut parts = advance.parts(halvings);

@@ -16,7 +16,7 @@ pub(super) const WEIGHTS: [f64; 4] = [1.0 / 6.0, 1.0 / 3.0, 1.0 / 3.0, 1.0 / 6.0
 /// A step is cut into two to the power of this many parts at most.
 pub(super) const MOST_HALVINGS: u32 = 5;
 /// Part of a rate by which the method may be at odds with itself.
-const UNEVEN: f64 = 0.2;
+const UNEVEN: f64 = 0.1;
 /// Longest step beside the time in which something decays: longer ones grow.
 const STIFF: f64 = 2.3;
 

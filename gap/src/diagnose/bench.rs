@@ -17,8 +17,8 @@ use crate::identify::{Options, Problem, longest_step};
 
 /// Delays of inputs and channels are this long in s at most.
 const LONGEST_DELAY: f64 = 0.1;
-/// Shortest lag that the integration can follow, in steps.
-const SHORTEST_LAG: f64 = 0.5;
+/// Shortest and longest lag, in steps.
+pub(super) const LAG: [f64; 2] = [0.03, 500.0];
 /// Fits end where a further step promises less than this in log-likelihood: a tenth of what tells
 /// two hypotheses apart.
 const EFFORT: Effort = Effort {
@@ -162,6 +162,26 @@ impl<'a> Bench<'a> {
         setup
     }
 
+    /// What a hypothesis with late channels gains from one place to another. Such channels lose their first
+    /// rows, here no more than the delays at both places ask for.
+    pub(super) fn gain_of_late(
+        &self,
+        members: &[usize],
+        from: &[f64],
+        to: &[f64],
+    ) -> Result<f64, DiagnoseError> {
+        let mut setup = self.setup(members);
+        let layout = Estimation::new(&setup, &self.recordings)?.layout();
+        for (index, channel) in setup.channels.iter_mut().enumerate() {
+            if let Some(longest) = &mut channel.longest_delay {
+                let place = layout.place(Unknown::SensorDelay(index))?;
+                *longest = from[place].max(to[place]).max(f64::MIN_POSITIVE);
+            }
+        }
+        let estimation = Estimation::new(&setup, &self.recordings)?;
+        Ok(estimation.log_likelihood(to)? - estimation.log_likelihood(from)?)
+    }
+
     /// Places of the parameters of a candidate, with what each is.
     pub(super) fn own(&self, candidate: &Candidate) -> Vec<(usize, Role)> {
         let info = self.effects.info();
@@ -227,8 +247,8 @@ impl<'a> Bench<'a> {
             }
             Acts::Lag(input) => at(&setup.lagging, input)
                 .map(|place| {
-                    let shortest = SHORTEST_LAG * setup.longest_step;
-                    Free::of(Unknown::Lag(place)).within(shortest, 1e3 * shortest)
+                    let [shortest, longest] = LAG.map(|part| part * setup.longest_step);
+                    Free::of(Unknown::Lag(place)).within(shortest, longest)
                 })
                 .into_iter()
                 .collect(),

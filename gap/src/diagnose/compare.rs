@@ -8,7 +8,7 @@ use std::collections::BTreeSet;
 use appell_runtime::estimate::{Estimation, Unknown};
 
 use super::DiagnoseError;
-use super::bench::{Bench, WRONG};
+use super::bench::{Bench, LAG, WRONG};
 use super::calibration::{
     Rest, inexact, tempered, unlisted_beside_an_effect, unlisted_beside_nothing,
 };
@@ -189,12 +189,7 @@ impl Search<'_, '_> {
         let estimation = Estimation::new(&setup, &bench.recordings)?;
         let from = &self.fits[to];
         let mut start = bench.carried(from, &estimation);
-        let base = if matches!(bench.candidate(screened.candidate).acts, Acts::Late(_)) {
-            // A late channel loses its first rows: what it gains is counted against the same rows.
-            Some(estimation.log_likelihood(&start)?)
-        } else {
-            None
-        };
+        let begin = start.clone();
         place(bench, &estimation, screened, &mut start)?;
         let fits = screened.starts.iter().map(|values| {
             let mut start = start.clone();
@@ -206,8 +201,10 @@ impl Search<'_, '_> {
         });
         let mut fitted = best_fit(fits)?;
         fitted.evidence.told = from.evidence.told + screened.told;
-        if let Some(base) = base {
-            fitted.evidence.log_likelihood += from.evidence.log_likelihood - base;
+        let is_late = |&member: &usize| matches!(bench.candidate(member).acts, Acts::Late(_));
+        if members.iter().any(is_late) {
+            let gain = bench.gain_of_late(members, &begin, &fitted.fit.values)?;
+            fitted.evidence.log_likelihood = from.evidence.log_likelihood + gain;
         }
         Ok(fitted)
     }
@@ -360,9 +357,9 @@ fn place(
             set(Unknown::SensorDelay(channel), first.clamp(0.0, longest))?;
         }
         Acts::Lag(input) => {
-            let shortest = setup.longest_step;
+            let [shortest, longest] = LAG.map(|part| part * setup.longest_step);
             let unknown = Unknown::Lag(at(&setup.lagging, input));
-            set(unknown, first.clamp(shortest, 100.0 * shortest))?;
+            set(unknown, first.clamp(2.0 * shortest, 0.2 * longest))?;
         }
         Acts::Delay(input) => {
             let unknown = Unknown::InputDelay(at(&setup.delayed, input));

@@ -42,14 +42,14 @@ impl Screened {
     /// A candidate that gains by a step which is known otherwise.
     pub(super) fn tried(
         candidate: usize,
-        gain: f64,
+        [gain, told]: [f64; 2],
         sizes: Vec<f64>,
         starts: Vec<Vec<(usize, f64)>>,
     ) -> Self {
         Self {
             candidate,
             gain,
-            told: 0.0,
+            told,
             deviations: vec![0.0; sizes.len()],
             sizes,
             starts,
@@ -216,7 +216,8 @@ impl Screen {
                 Some(one)
             })
             .collect();
-        list.extend(richer::tried(bench, fitted)?);
+        let told = 0.5 * (projected.rest.norm_squared() - beyond.rest.norm_squared());
+        list.extend(richer::tried(bench, fitted, told)?);
         list.sort_by(|a, b| b.gain.total_cmp(&a.gain));
         Ok(Self { list })
     }

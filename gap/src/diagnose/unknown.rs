@@ -27,6 +27,8 @@ use super::screen::{Projected, moving};
 
 /// Waves of a variable.
 const WAVES: usize = 24;
+/// Waves of a position: teeth and poles are many along a path.
+const FINE: usize = 64;
 /// Range of a rate in typical rates.
 const REACH: f64 = 2.5;
 /// Sizes of a law that are tried, each twice the one before.
@@ -75,6 +77,8 @@ struct Variable<'b> {
     source: Source<'b>,
     /// Angle of the first wave per unit.
     first: f64,
+    /// Number of waves.
+    waves: usize,
     /// The waves also grow with time: a friction that changes.
     drifts: bool,
 }
@@ -133,7 +137,7 @@ pub(super) fn leftover(
             for (place, told) in told(bench, &estimation, fitted, variable, along)? {
                 let unnamed = |law| variable.unnamed(bench, (along, place), law);
                 smooth.add(told.smooth().map(unnamed));
-                for wave in 0..WAVES {
+                for wave in 0..variable.waves {
                     single.add(told.single(wave).map(unnamed));
                 }
             }
@@ -164,7 +168,7 @@ fn told(
     };
     let shapes = Shapes {
         along,
-        count: 2 * WAVES,
+        count: 2 * variable.waves,
         values: &write,
     };
     let tangent = estimation.tangent(&fitted.fit.values, &free, Some(shapes))?;
@@ -181,8 +185,8 @@ fn told(
     let places = places.into_iter().enumerate();
     Ok(places
         .filter_map(|(block, place)| {
-            let first = free.len() + 2 * block * WAVES;
-            let columns: Vec<usize> = (first..first + 2 * WAVES).collect();
+            let first = free.len() + 2 * block * variable.waves;
+            let columns: Vec<usize> = (first..first + 2 * variable.waves).collect();
             Some((place?, Told::new(&projected, &projected.slopes(&columns))))
         })
         .collect())
@@ -256,6 +260,7 @@ impl<'b> Variable<'b> {
         Self {
             source: Source::Beside(beside),
             first: PI / (beside.range.1 - beside.range.0),
+            waves: WAVES,
             drifts: false,
         }
     }
@@ -277,9 +282,11 @@ fn variables<'b>(bench: &'b Bench<'_>) -> Vec<Variable<'b>> {
         } else {
             PI / range
         };
+        let is_position = (info.speeds..info.state_len()).contains(&index);
         let one = Variable {
             source: Source::Own(index),
             first,
+            waves: if is_position { FINE } else { WAVES },
             drifts: false,
         };
         variables.push(one);
@@ -369,7 +376,8 @@ impl Told {
 
     /// A law whose waves fall off as one over their number, averaged over its size.
     fn smooth(&self) -> Option<Law> {
-        let fall = DVector::from_fn(self.scores.len(), |i, _| ((i / 2 + 1) as f64).recip());
+        let count = self.scores.len().min(2 * WAVES);
+        let fall = DVector::from_fn(count, |i, _| ((i / 2 + 1) as f64).recip());
         let scaled = self.scaled(&fall);
         let eigen = scaled.squares.clone().symmetric_eigen();
         let most = eigen.eigenvalues.max();
@@ -438,7 +446,7 @@ impl Told {
         let scale = |squares: &DMatrix<f64>, scores: &DVector<f64>| {
             let squares =
                 DMatrix::from_fn(by.len(), by.len(), |i, j| by[i] * squares[(i, j)] * by[j]);
-            (squares, by.component_mul(scores))
+            (squares, by.component_mul(&scores.rows(0, by.len())))
         };
         let (squares, scores) = scale(&self.squares, &self.scores);
         Self {

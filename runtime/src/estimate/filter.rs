@@ -352,7 +352,8 @@ impl<'a> Pass<'a> {
         );
         // Loops are closed after whole steps alone.
         let halvings = if self.setup.has_corners && self.closure.is_none() {
-            halvings(&on.stages, n, h).min(MOST_HALVINGS - halved)
+            let own = self.plant.info().state_len();
+            halvings(&on.stages, (n, own), h).min(MOST_HALVINGS - halved)
         } else {
             0
         };

@@ -29,8 +29,8 @@ pub struct Predicted {
 }
 
 impl Estimation<'_> {
-    /// Predictions of all channels of a run `horizon` s ahead, or at the first later row, from each
-    /// of the rows `origins`, which increase. An infinite horizon tells all later rows. What cannot
+    /// Predictions of all channels of a run in the row `horizon` s ahead, or the first later one, from
+    /// each of the rows `origins`, which increase. An infinite horizon tells all later rows. What cannot
     /// be predicted because numbers overflow is infinitely wrong.
     pub fn predictions(
         &self,
@@ -87,26 +87,45 @@ impl Estimation<'_> {
             ahead.z.copy_from_slice(&pass.z);
             ahead.root.copy_from_slice(&pass.root);
             ahead.held.copy_from_slice(&pass.held);
+            let mut open = vec![true; self.setup().channels.len()];
             for &action in &actions[place + 1..] {
-                if let Action::Measure { row: met, channel } = action {
-                    let passed = recording.times()[met] - recording.times()[row];
-                    if channel.is_some() || passed < horizon * (1.0 - 1e-9) {
-                        continue;
+                let Action::Measure { row: met, .. } = action else {
+                    // Where numbers overflow on the way nothing is expected.
+                    if ahead.act(recording, action).is_err() {
+                        break;
                     }
-                    let met = ahead.act(recording, action);
-                    let samples = ahead.samples.iter().map(|sample| sample.innovation);
-                    let seen = samples.filter(|_| met.is_ok());
-                    expected.extend(seen.map(|one| (one.channel, one.variance)));
-                    break;
+                    continue;
+                };
+                if !is_told(recording, row, met, horizon) {
+                    continue;
                 }
-                // Where numbers overflow on the way nothing is expected.
-                if ahead.act(recording, action).is_err() {
+                // Nothing is learnt from what is measured here.
+                let (z, root) = (ahead.z.clone(), ahead.root.clone());
+                if ahead.act(recording, action).is_ok() {
+                    for seen in ahead.samples.iter().map(|sample| sample.innovation) {
+                        if std::mem::take(&mut open[seen.channel]) {
+                            expected.push((seen.channel, seen.variance));
+                        }
+                    }
+                }
+                ahead.samples.clear();
+                ahead.z.copy_from_slice(&z);
+                ahead.root.copy_from_slice(&root);
+                if !open.contains(&true) {
                     break;
                 }
             }
         }
         Ok(expected)
     }
+}
+
+/// Whether a row is so far ahead of another that it is told. A channel that is late goes with its row:
+/// whatever is late, the same values are compared.
+fn is_told(recording: &Recording, origin: usize, row: usize, horizon: f64) -> bool {
+    let ahead = recording.times()[row] - recording.times()[origin];
+    // Times of rows carry rounding.
+    row > origin && ahead >= horizon * (1.0 - 1e-9)
 }
 
 /// A motion that nothing corrects.
@@ -156,6 +175,7 @@ impl<'a> Walk<'a> {
     fn on(&mut self, actions: &[Action], horizon: f64, predicted: &mut Vec<Predicted>) {
         let start = self.recording.times()[self.origin];
         let mut open = vec![true; self.setup.channels.len()];
+        let everything = horizon.is_infinite();
         let mut t = start;
         for &action in actions {
             match action {
@@ -168,13 +188,11 @@ impl<'a> Walk<'a> {
                     switch(self.setup, false, &mut self.held, inputs, input);
                 }
                 Action::Measure { row, channel } => {
-                    let ahead = t - start;
-                    let everything = horizon.is_infinite();
-                    // Times of rows carry rounding.
-                    if !everything && ahead < horizon * (1.0 - 1e-9) {
+                    let told = |horizon| is_told(self.recording, self.origin, row, horizon);
+                    if !told(if everything { 0.0 } else { horizon }) {
                         continue;
                     }
-                    self.compare(row, channel, ahead, &mut open, predicted);
+                    self.compare(row, channel, t - start, &mut open, predicted);
                     if everything {
                         open.fill(true);
                     } else if !open.contains(&true) {
@@ -270,7 +288,7 @@ impl<'a> Walk<'a> {
         }
         let has_corners = self.setup.has_corners && self.closure.is_none();
         let is_cut = has_corners && halved < MOST_HALVINGS;
-        if is_cut && is_uneven(&self.rates, n) {
+        if is_cut && is_uneven(&self.rates, (n, self.plant.info().state_len())) {
             for part in advance.parts(1) {
                 self.step(part, halved + 1);
             }

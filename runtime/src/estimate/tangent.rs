@@ -17,6 +17,7 @@ use super::matrix::{add_scaled, dot, multiply};
 use super::plant::{Place, Scratch, Sums};
 use super::setup::Measured;
 use super::timeline::{Action, Advance};
+use super::transition::added_by_rate;
 
 /// What innovations are differentiated by.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -251,6 +252,8 @@ impl<'p, 'a> Forward<'p, 'a> {
             lags,
         };
         self.added.fill(0.0);
+        // Lags may be as short as the step: their slopes follow its stages.
+        let mut lagged: Vec<(usize, Vec<f64>)> = Vec::new();
         let is_parameter =
             |direction: &Direction| matches!(direction, Direction::Value(Unknown::Parameter(_)));
         if self.directions.iter().any(is_parameter) {
@@ -266,9 +269,11 @@ impl<'p, 'a> Forward<'p, 'a> {
                 }
                 Direction::Value(Unknown::Lag(lag)) => {
                     let input = self.estimation.setup().lagging[lag];
-                    let gap = on.held[input] - middle[states + lag];
-                    self.added[(states + lag) * columns + column] =
-                        -half * gap / (lags[lag] * lags[lag]);
+                    let rate = |z: &[f64]| -> f64 {
+                        -(on.held[input] - z[states + lag]) / (lags[lag] * lags[lag])
+                    };
+                    let added = added_by_rate(&on.stages, (n, advance.h), states + lag, rate);
+                    lagged.push((column, added));
                 }
                 _ => {}
             }
@@ -292,6 +297,11 @@ impl<'p, 'a> Forward<'p, 'a> {
         multiply(on.f, &self.z, n, &mut self.moved);
         std::mem::swap(&mut self.z, &mut self.moved);
         add_scaled(1.0, &self.added, &mut self.z);
+        for (column, added) in lagged {
+            for (state, added) in added.into_iter().enumerate() {
+                self.z[state * columns + column] += added;
+            }
+        }
     }
 
     /// An input that came later would have held its value before for longer.

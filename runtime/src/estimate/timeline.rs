@@ -59,15 +59,11 @@ pub(super) fn timeline(
     values: &[f64],
 ) -> Vec<Action> {
     let stops = stops(setup, layout, recording, knots, values);
+    let longest = longest_step(setup, &values[layout.lag(0)..layout.input_delay(0)]);
     let mut actions = Vec::with_capacity(3 * stops.len());
     let mut last = (recording.times()[0], None);
     for stop in stops {
-        advance(
-            &mut actions,
-            setup.longest_step,
-            last,
-            (stop.t, stop.moved_by),
-        );
+        advance(&mut actions, longest, last, (stop.t, stop.moved_by));
         actions.extend(stop.action);
         last = (stop.t, stop.moved_by);
     }
@@ -76,6 +72,15 @@ pub(super) fn timeline(
         actions.pop();
     }
     actions
+}
+
+/// Steps are no longer than lags last, down to a part of the longest one: what a change of the input passes
+/// on is then right to a percent.
+fn longest_step(setup: &Setup<'_>, lags: &[f64]) -> f64 {
+    const SHORTEST: f64 = 1.0 / 32.0;
+    let shortest_lag = lags.iter().copied().fold(f64::INFINITY, f64::min);
+    let longest = setup.longest_step;
+    longest.min(shortest_lag.max(SHORTEST * longest))
 }
 
 fn stops(

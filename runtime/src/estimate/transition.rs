@@ -117,12 +117,32 @@ pub(super) fn step(
     }
 }
 
-/// How often a step has to be halved because of what it met: a corner, such as the rounded sign of dry
-/// friction, or something that decays sooner.
-pub(super) fn halvings(stages: &Stages<'_>, n: usize, h: f64) -> u32 {
+/// What a rate along one state, at each stage as large as `rate` says of the state there, adds to a step.
+pub(super) fn added_by_rate(
+    stages: &Stages<'_>,
+    (n, h): (usize, f64),
+    along: usize,
+    rate: impl Fn(&[f64]) -> f64,
+) -> Vec<f64> {
+    let (mut added, mut moved) = (vec![0.0; n], vec![0.0; n]);
+    for (i, z) in stages.z.chunks_exact(n).enumerate() {
+        let a = &stages.a[i * n * n..(i + 1) * n * n];
+        let mut k: Vec<f64> = a.chunks_exact(n).map(|row| dot(row, &moved)).collect();
+        k[along] += rate(z);
+        add_scaled(h * WEIGHTS[i], &k, &mut added);
+        if let Some(part) = STAGES.get(i) {
+            moved = k.iter().map(|k| part * h * k).collect();
+        }
+    }
+    added
+}
+
+/// How often a step has to be halved because of what the first `own` states met: a corner, such as the
+/// rounded sign of dry friction, or something that decays sooner.
+pub(super) fn halvings(stages: &Stages<'_>, (n, own): (usize, usize), h: f64) -> u32 {
     // The trace of A² is the sum of the squares of the eigenvalues.
     let squares = |a: &[f64]| -> f64 {
-        let pairs = (0..n).flat_map(|i| (0..n).map(move |j| a[i * n + j] * a[j * n + i]));
+        let pairs = (0..own).flat_map(|i| (0..own).map(move |j| a[i * n + j] * a[j * n + i]));
         pairs.sum()
     };
     let fastest = stages.a.chunks_exact(n * n).map(squares);
@@ -130,16 +150,16 @@ pub(super) fn halvings(stages: &Stages<'_>, n: usize, h: f64) -> u32 {
     let decays = h * fastest.sqrt() / STIFF;
     let short_enough = |halvings: &u32| decays <= f64::from(1_u32 << halvings);
     match (0..MOST_HALVINGS).find(short_enough) {
-        Some(0) => u32::from(is_uneven(stages.k, n)),
+        Some(0) => u32::from(is_uneven(stages.k, (n, own))),
         Some(halvings) => halvings,
         None => MOST_HALVINGS,
     }
 }
 
-/// Whether the rates of the stages differ by what no smooth motion lets them.
-pub(super) fn is_uneven(k: &[f64], n: usize) -> bool {
+/// Whether the rates of the first `own` states differ between stages by what no smooth motion lets them.
+pub(super) fn is_uneven(k: &[f64], (n, own): (usize, usize)) -> bool {
     let [k1, k2, k3, k4] = [0, 1, 2, 3].map(|stage| &k[stage * n..(stage + 1) * n]);
-    (0..n).any(|i| {
+    (0..own).any(|i| {
         let odds = (k1[i] - k2[i] - k3[i] + k4[i]).abs() + (k3[i] - k2[i]).abs();
         let most = k1[i]
             .abs()

@@ -177,7 +177,7 @@ impl<'a> Flight<'a> {
         }
         let has_corners = self.estimation.setup().has_corners && self.closure.is_none();
         let is_cut = has_corners && halved < MOST_HALVINGS;
-        if is_cut && is_uneven(&rates, n) {
+        if is_cut && is_uneven(&rates, (n, self.estimation.plant().info().state_len())) {
             (self.z, self.by) = (before, by_before);
             for part in advance.parts(1) {
                 self.advance(part, halved + 1);

@@ -189,7 +189,10 @@ fn line(hypothesis: &Hypothesis) -> String {
         .iter()
         .map(|value| {
             let short = value.name.rsplit('.').next().unwrap_or_default();
-            let sizes = format!("{} ± {}", number(value.value), number(value.std));
+            let mut sizes = number(value.value);
+            if value.std.is_finite() {
+                sizes += &format!(" ± {}", number(value.std));
+            }
             format!("{short} = {}", with_unit(&sizes, &value.unit))
         })
         .collect();

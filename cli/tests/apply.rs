@@ -90,6 +90,21 @@ fn a_spec_that_has_the_effect_is_left_alone() {
 }
 
 #[test]
+fn a_file_of_the_user_is_not_replaced_unless_it_is_named() {
+    let folder = diagnosed();
+    let own = "carriage_improved.toml";
+    let apply = ["apply", "rig.toml", "--report", "report.json"];
+    folder.done(&apply);
+    let improved = folder.read(own);
+    folder.done(&apply);
+    folder.write(own, &format!("{improved}# mine\n"));
+    folder.fails(2, &apply, &[own, "-o"]);
+    assert!(folder.read(own).ends_with("# mine\n"));
+    folder.done(&[&apply[..], &["-o", own]].concat());
+    assert_eq!(folder.read(own), improved);
+}
+
+#[test]
 fn what_no_spec_can_hold_is_told_with_its_place() {
     let folder = Folder::new();
     let report = r#"{

@@ -1,6 +1,7 @@
 //! `appell apply`
 
-use std::path::{Path, PathBuf};
+use std::fs;
+use std::path::PathBuf;
 
 use appell_spec::load;
 
@@ -25,7 +26,7 @@ pub(crate) struct Apply {
     #[arg(long, value_name = "N")]
     hypothesis: Option<usize>,
     /// Write to this file, `-` is standard output; default is the name of the mechanism with
-    /// `_improved.toml`
+    /// `_improved.toml`, if no other file stands there
     #[arg(long, short = 'o', value_name = "FILE.toml")]
     out: Option<PathBuf>,
 }
@@ -46,8 +47,8 @@ impl Apply {
         let note = format!("Found by `appell diagnose`: {}", hypothesis.name());
         let improved = changes.improved(&source.text, &note);
         let improved = improved.map_err(|error| Failure::Data(error.to_string()))?;
-        let default = format!("{name}_improved.toml");
-        let out = self.out.as_deref().unwrap_or(Path::new(&default));
+        let default = PathBuf::from(format!("{name}_improved.toml"));
+        let out = self.out.as_ref().unwrap_or(&default);
         let file = out.to_string_lossy();
         // What the report brings has to be a spec again before it is written.
         load(&file, &improved)?;
@@ -55,8 +56,13 @@ impl Apply {
             let told = hypothesis.told(&report, &changes, "nothing to write");
             return files::print(&told);
         }
+        if self.out.is_none() && fs::read_to_string(out).is_ok_and(|there| there != improved) {
+            return Err(Failure::Usage(format!(
+                "{file} is there and says something else: it is replaced if you name it with `-o {file}`"
+            )));
+        }
         files::write(out, &improved)?;
         let told = hypothesis.told(&report, &changes, &file);
-        files::print_beside(&told, &[&Some(out.to_owned())])
+        files::print_beside(&told, &[&Some(out.clone())])
     }
 }

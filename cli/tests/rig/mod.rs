@@ -79,6 +79,22 @@ fn stuck(friction: f64) -> impl FnMut(f64) -> f64 {
     }
 }
 
+/// The motion of the carriage with viscous friction under forces that come late: exact, for what is held
+/// the velocity decays towards where friction bears the force.
+fn sluggish(delay: f64, coefficient: f64) -> impl FnMut(f64) -> f64 {
+    let (mut x, mut v, mut before) = (0.0, 0.0, 0.0);
+    move |force| {
+        for (held, time) in [(before, delay), (force, HELD - delay)] {
+            let end = held / coefficient;
+            let decayed = (-coefficient * time).exp();
+            x += end * time + (v - end) * (1.0 - decayed) / coefficient;
+            v = end + (v - end) * decayed;
+        }
+        before = force;
+        x
+    }
+}
+
 /// Forces of a run.
 fn forces() -> Vec<f64> {
     let force = |t: f64| 2.0 * (3.0 * t).sin() + 1.5 * (7.1 * t).cos();
@@ -143,22 +159,28 @@ pub(crate) fn dry(force: f64) -> Folder {
 
 /// With dry friction that sticks.
 pub(crate) fn sticking(friction: f64) -> Folder {
-    let (folder, mut noise) = (Folder::new(), Noise(7));
-    folder.write("recording.toml", DESCRIPTION);
-    for name in RUNS {
-        folder.write(name, &recording(stuck(friction), &forces(), &mut noise));
-    }
-    folder
+    moving(|| stuck(friction))
 }
 
 /// With play in its gear, the motor with a part of the mass.
 pub(crate) fn geared(share: f64, half_gap: f64) -> Folder {
+    moving(|| {
+        let mut gear = Gear::new(share, half_gap);
+        move |force| gear.advance(force, HELD)
+    })
+}
+
+/// With a force that comes late by a part of a row, and with viscous friction.
+pub(crate) fn late(delay: f64, coefficient: f64) -> Folder {
+    moving(|| sluggish(delay, coefficient))
+}
+
+/// The data set of a rig that moves so.
+fn moving<A: FnMut(f64) -> f64>(rig: impl Fn() -> A) -> Folder {
     let (folder, mut noise) = (Folder::new(), Noise(7));
     folder.write("recording.toml", DESCRIPTION);
     for name in RUNS {
-        let mut gear = Gear::new(share, half_gap);
-        let text = recording(|force| gear.advance(force, HELD), &forces(), &mut noise);
-        folder.write(name, &text);
+        folder.write(name, &recording(rig(), &forces(), &mut noise));
     }
     folder
 }

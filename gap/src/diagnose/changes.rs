@@ -200,12 +200,16 @@ fn parameters(bench: &Bench<'_>, fitted: &Fitted) -> Vec<Refitted> {
     told
 }
 
-/// Standard deviation of a parameter in SI; nothing where it was not free.
+/// Standard deviation of a parameter in SI, beforehand where it stands at a limit; nothing where it was not
+/// free.
 fn deviation(fitted: &Fitted, index: usize) -> Option<f64> {
     let mut free = fitted.fit.free.iter();
     let place = free.position(|free| free.unknown == Unknown::Parameter(index))?;
-    let covariance = fitted.fit.covariance().ok()?;
-    let std = covariance[(place, place)].sqrt();
+    let std = if fitted.fit.at_limit[place] {
+        fitted.fit.free[place].prior?[1]
+    } else {
+        fitted.fit.covariance().ok()?[(place, place)].sqrt()
+    };
     Some(match fitted.fit.free[place].coordinate {
         Coordinate::Plain => std,
         Coordinate::Logarithm => std * fitted.fit.values[index],

@@ -114,8 +114,8 @@ impl Comparison {
             failed: Vec::new(),
             tried: BTreeSet::new(),
         };
-        for screened in kept(bench, screen, &[], KEPT) {
-            search.join(0, &screened);
+        for screened in &kept(bench, screen, &[], KEPT) {
+            search.join(0, screened);
         }
         for members in 1..MOST_MEMBERS {
             let Some(best) = search.best_of(members) else {
@@ -126,9 +126,11 @@ impl Comparison {
             }
             let screen = Screen::of(bench, &search.fits[best])?;
             let members = search.fits[best].members.clone();
-            for screened in kept(bench, &screen, &members, KEPT_BESIDE) {
-                search.join(best, &screened);
+            let kept = kept(bench, &screen, &members, KEPT_BESIDE);
+            for screened in &kept {
+                search.join(best, screened);
             }
+            search.join_tied(best, &kept);
         }
         search.finish()
     }
@@ -175,6 +177,32 @@ impl Search<'_, '_> {
             Ok(fitted) if fitted.evidence.log().is_finite() => self.fits.push(fitted),
             Ok(_) => self.failed.push((members, NO_EVIDENCE.to_owned())),
             Err(error) => self.failed.push((members, error.to_string())),
+        }
+    }
+
+    /// What betters a hypothesis most may better those that are tied with it as much.
+    fn join_tied(&mut self, hypothesis: usize, joined: &[Screened]) {
+        let members = self.fits[hypothesis].members.len();
+        let log = self.log_posterior(&self.fits[hypothesis]);
+        let Some(better) = self.best_of(members + 1) else {
+            return;
+        };
+        let better = &self.fits[better];
+        let is_new = |one: &&Screened| better.members.contains(&one.candidate);
+        let Some(new) = joined.iter().find(is_new) else {
+            return;
+        };
+        if self.log_posterior(better) < log {
+            return;
+        }
+        let tied = |fitted: &Fitted| {
+            fitted.members.len() == members && log - self.log_posterior(fitted) < TIED
+        };
+        let others = (0..self.fits.len()).filter(|&i| i != hypothesis && tied(&self.fits[i]));
+        for other in others.collect::<Vec<_>>() {
+            if !self.fits[other].members.contains(&new.candidate) {
+                self.join(other, new);
+            }
         }
     }
 

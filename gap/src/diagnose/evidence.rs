@@ -10,7 +10,7 @@
 use std::f64::consts::TAU;
 
 use appell_runtime::estimate::{Fit, Unknown};
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector};
 
 use super::bench::Bench;
 
@@ -129,6 +129,56 @@ fn volume(information: &DMatrix<f64>) -> (f64, Vec<f64>) {
         0.5 * (k as f64 * TAU.ln() - log_determinant),
         deviations.collect(),
     )
+}
+
+/// The evidence for sizes that are normal beforehand, averaged over how large they may be.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct NormalSizes {
+    /// Logarithm of the Bayes factor for them.
+    pub(super) log_bayes_factor: f64,
+    /// The variance that the recordings speak for most.
+    pub(super) variance: f64,
+}
+
+impl NormalSizes {
+    /// By the squares of their slopes and by their scores.
+    pub(super) fn of(squares: &DMatrix<f64>, scores: &DVector<f64>) -> Option<Self> {
+        /// Sizes that are tried, each twice the one before.
+        const SIZES: usize = 12;
+        if scores.is_empty() {
+            return None;
+        }
+        let eigen = squares.clone().symmetric_eigen();
+        let most = eigen.eigenvalues.max();
+        if most.is_nan() || most <= 0.0 {
+            return None;
+        }
+        let along = eigen.eigenvectors.tr_mul(scores);
+        let log = |variance: f64| -> f64 {
+            let pairs = eigen.eigenvalues.iter().zip(along.iter());
+            pairs
+                .map(|(square, score)| {
+                    let grown = 1.0 + variance * square.max(0.0);
+                    0.5 * (variance * score * score / grown - grown.ln())
+                })
+                .sum()
+        };
+        let variances = (0..SIZES).map(|i| 4.0_f64.powi(i32::try_from(i).unwrap_or(0)) / most);
+        let logs: Vec<(f64, f64)> = variances
+            .map(|variance| (variance, log(variance)))
+            .collect();
+        let (variance, _) = *logs.iter().max_by(|a, b| a.1.total_cmp(&b.1))?;
+        Some(Self {
+            log_bayes_factor: log_sum(logs.iter().map(|(_, log)| *log)) - (SIZES as f64).ln(),
+            variance,
+        })
+    }
+}
+
+/// Logarithm of a sum of exponentials.
+pub(super) fn log_sum(logs: impl Iterator<Item = f64> + Clone) -> f64 {
+    let most = logs.clone().fold(f64::NEG_INFINITY, f64::max);
+    most + logs.map(|log| (log - most).exp()).sum::<f64>().ln()
 }
 
 /// What one size that gains so much takes from its gain.

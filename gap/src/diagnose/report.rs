@@ -55,7 +55,7 @@ pub struct Value {
     pub name: String,
     /// Most likely value.
     pub value: f64,
-    /// Standard deviation.
+    /// Standard deviation; NaN where nothing is known of it, as at a limit.
     pub std: f64,
     /// Unit.
     pub unit: String,
@@ -422,11 +422,10 @@ fn tied(which: &[Hypothesis]) -> Vec<Vec<Vec<String>>> {
 /// Values of the members of a hypothesis.
 fn values(bench: &Bench<'_>, fitted: &Fitted) -> Vec<Value> {
     let info = bench.effects.info();
-    let deviation = |place: usize| {
-        fitted
-            .fit
-            .covariance()
-            .map_or(f64::NAN, |covariance| covariance[(place, place)].sqrt())
+    let covariance = fitted.fit.covariance();
+    let deviation = |place: usize| match &covariance {
+        Ok(covariance) if !fitted.fit.at_limit[place] => covariance[(place, place)].sqrt(),
+        _ => f64::NAN,
     };
     let mut values = Vec::new();
     for &member in &fitted.members {

@@ -23,8 +23,8 @@ const AFTER: [f64; 4] = [0.05, 0.1, 0.2, 0.4];
 /// Standard deviations by which the mean innovation in one of these times stands out.
 const SURPRISED: f64 = 4.0;
 
-/// Those that gain at some size more than inputs that know the motion could tell: such inputs surprise the
-/// filter after their reversals whatever the cause.
+/// Those that gain at some size more than inputs that know the motion could have `told`: such inputs surprise
+/// the filter after their reversals whatever the cause.
 pub(super) fn tried(
     bench: &Bench<'_>,
     fitted: &Fitted,

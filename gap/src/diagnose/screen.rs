@@ -14,6 +14,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::DiagnoseError;
 use super::bench::Bench;
+use super::evidence::NormalSizes;
 use super::feedback::KICKS;
 use super::hypothesis::Fitted;
 use super::richer;
@@ -26,7 +27,7 @@ pub(super) struct Screened {
     pub(super) candidate: usize,
     /// What it would gain in log-likelihood, beyond what an input that knows the motion could tell.
     pub(super) gain: f64,
-    /// What such an input could tell of that.
+    /// What such an input could tell of that, no more than the recordings speak for one.
     pub(super) told: f64,
     /// The best sizes, one for each direction of the candidate.
     pub(super) sizes: Vec<f64>,
@@ -148,6 +149,20 @@ impl<'t> Projected<'t> {
     }
 }
 
+impl Projected<'_> {
+    /// How much the recordings speak for anything along some columns, each as large beforehand as what it
+    /// shows; zero where they speak against it.
+    fn evidence(&self, columns: Range<usize>) -> f64 {
+        let mut slopes = self.slopes(&columns.collect::<Vec<_>>());
+        for mut slope in slopes.column_iter_mut() {
+            slope.unscale_mut(slope.norm().max(f64::MIN_POSITIVE));
+        }
+        let scores = -slopes.tr_mul(&self.rest);
+        let sizes = NormalSizes::of(&slopes.tr_mul(&slopes), &scores);
+        sizes.map_or(0.0, |sizes| sizes.log_bayes_factor.max(0.0))
+    }
+}
+
 /// An orthonormal basis of the columns, without those that follow from others.
 fn orthogonal(columns: &DMatrix<f64>) -> DMatrix<f64> {
     /// Part of a column that has to be new.
@@ -203,6 +218,7 @@ impl Screen {
         let tangent = estimation.tangent(&values, &directions, kicks)?;
         let projected = Projected::new(&tangent, fitted, free.len(), 0..0);
         let kicked = directions.len()..tangent.slopes.ncols();
+        let kicks = projected.evidence(kicked.clone());
         let beyond = Projected::new(&tangent, fitted, free.len(), kicked);
         let mut list: Vec<Screened> = own
             .into_iter()
@@ -211,13 +227,12 @@ impl Screen {
                 let mut one = screened(&projected, candidate, &columns, &positive)?;
                 let beyond = screened(&beyond, candidate, &columns, &positive);
                 let beyond = beyond.map_or(0.0, |beyond| beyond.gain);
-                one.told = (one.gain - beyond).max(0.0);
+                one.told = (one.gain - beyond).clamp(0.0, kicks);
                 one.gain -= one.told;
                 Some(one)
             })
             .collect();
-        let told = 0.5 * (projected.rest.norm_squared() - beyond.rest.norm_squared());
-        list.extend(richer::tried(bench, fitted, told)?);
+        list.extend(richer::tried(bench, fitted, kicks)?);
         list.sort_by(|a, b| b.gain.total_cmp(&a.gain));
         Ok(Self { list })
     }

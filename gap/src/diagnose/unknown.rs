@@ -21,7 +21,7 @@ use super::DiagnoseError;
 use super::bench::Bench;
 use super::beside::Beside;
 use super::compare::TIED;
-use super::evidence::occam;
+use super::evidence::{NormalSizes, log_sum, occam};
 use super::hypothesis::Fitted;
 use super::screen::{Projected, moving};
 
@@ -31,8 +31,6 @@ const WAVES: usize = 24;
 const FINE: usize = 64;
 /// Range of a rate in typical rates.
 const REACH: f64 = 2.5;
-/// Sizes of a law that are tried, each twice the one before.
-const SIZES: usize = 12;
 /// Part of its gain that a law has to repeat on runs that it was not found in.
 const REPEATED: f64 = 0.5;
 
@@ -224,12 +222,6 @@ fn joined(smooth: Family, single: Family) -> Option<Leftover> {
     })
 }
 
-/// Logarithm of a sum of exponentials.
-fn log_sum(logs: impl Iterator<Item = f64> + Clone) -> f64 {
-    let most = logs.clone().fold(f64::NEG_INFINITY, f64::max);
-    most + logs.map(|log| (log - most).exp()).sum::<f64>().ln()
-}
-
 /// Channels that the model does not know and on which the gap of a hypothesis depends, each with the
 /// place where it shows most: one false one in twenty.
 pub(super) fn hints(bench: &Bench<'_>, fitted: &Fitted) -> Result<Vec<Unnamed>, DiagnoseError> {
@@ -379,32 +371,12 @@ impl Told {
         let count = self.scores.len().min(2 * WAVES);
         let fall = DVector::from_fn(count, |i, _| ((i / 2 + 1) as f64).recip());
         let scaled = self.scaled(&fall);
-        let eigen = scaled.squares.clone().symmetric_eigen();
-        let most = eigen.eigenvalues.max();
-        if most.is_nan() || most <= 0.0 {
-            return None;
-        }
-        let along = eigen.eigenvectors.tr_mul(&scaled.scores);
-        let log = |variance: f64| -> f64 {
-            let pairs = eigen.eigenvalues.iter().zip(along.iter());
-            pairs
-                .map(|(square, score)| {
-                    let grown = 1.0 + variance * square.max(0.0);
-                    0.5 * (variance * score * score / grown - grown.ln())
-                })
-                .sum()
-        };
-        let variances = (0..SIZES).map(|i| 4.0_f64.powi(i32::try_from(i).unwrap_or(0)) / most);
-        let logs: Vec<(f64, f64)> = variances
-            .map(|variance| (variance, log(variance)))
-            .collect();
-        let (variance, _) = *logs.iter().max_by(|a, b| a.1.total_cmp(&b.1))?;
-        let average = log_sum(logs.iter().map(|(_, log)| *log)) - (SIZES as f64).ln();
-        let (gain, foretold) = scaled.gains(variance.recip())?;
+        let sizes = NormalSizes::of(&scaled.squares, &scaled.scores)?;
+        let (gain, foretold) = scaled.gains(sizes.variance.recip())?;
         Some(Law {
             gain,
             foretold,
-            log_bayes_factor: average,
+            log_bayes_factor: sizes.log_bayes_factor,
         })
     }
 

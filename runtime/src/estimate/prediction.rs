@@ -22,7 +22,7 @@ pub struct Predicted {
     pub row: usize,
     /// Channel.
     pub channel: usize,
-    /// Time in s since the origin.
+    /// Time in s from the origin to when it was sampled.
     pub ahead: f64,
     /// Measured value less predicted value, in SI.
     pub residual: f64,

@@ -59,7 +59,9 @@ pub(super) fn timeline(
     values: &[f64],
 ) -> Vec<Action> {
     let stops = stops(setup, layout, recording, knots, values);
-    let longest = longest_step(setup, &values[layout.lag(0)..layout.input_delay(0)]);
+    let lags = &values[layout.lag(0)..layout.input_delay(0)];
+    let shortest_lag = lags.iter().copied().fold(f64::INFINITY, f64::min);
+    let longest = [setup.longest_step, shortest_lag];
     let mut actions = Vec::with_capacity(3 * stops.len());
     let mut last = (recording.times()[0], None);
     for stop in stops {
@@ -72,15 +74,6 @@ pub(super) fn timeline(
         actions.pop();
     }
     actions
-}
-
-/// Steps are no longer than lags last, down to a part of the longest one: what a change of the input passes
-/// on is then right to a percent.
-fn longest_step(setup: &Setup<'_>, lags: &[f64]) -> f64 {
-    const SHORTEST: f64 = 1.0 / 32.0;
-    let shortest_lag = lags.iter().copied().fold(f64::INFINITY, f64::min);
-    let longest = setup.longest_step;
-    longest.min(shortest_lag.max(SHORTEST * longest))
 }
 
 fn stops(
@@ -151,13 +144,22 @@ fn stops(
 
 type End = (f64, Option<(usize, f64)>);
 
-/// The steps between two moments.
-fn advance(actions: &mut Vec<Action>, longest: f64, (a, moves_a): End, (b, moves_b): End) {
+/// The steps between two moments: none is longer than `longest`, nor than the shortest lag lasts, down to a
+/// part of what it were without. What a change of an input passes on is then right to a percent.
+fn advance(
+    actions: &mut Vec<Action>,
+    [longest, shortest_lag]: [f64; 2],
+    (a, moves_a): End,
+    (b, moves_b): End,
+) {
+    const SHORTEST: f64 = 1.0 / 32.0;
     let length = b - a;
     if length <= 0.0 && moves_a == moves_b {
         return;
     }
-    let count = (length / longest).ceil().max(1.0);
+    let whole = length.min(longest);
+    let step = whole.min(shortest_lag.max(SHORTEST * whole));
+    let count = (length / step).ceil().max(1.0);
     let (h, part) = (length / count, 1.0 / count);
     let moved_by = [
         moves_a.map(|(delay, sign)| (delay, -sign * part)),

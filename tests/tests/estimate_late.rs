@@ -4,7 +4,7 @@
 
 use appell_models::Shipped;
 use appell_runtime::estimate::{
-    Direction, Estimation, Free, Layout, Measured, Recording, Setup, Unknown,
+    Direction, Estimation, Free, Innovation, Layout, Measured, Recording, Setup, Unknown,
 };
 use appell_runtime::model::Model;
 use appell_tests::random::Random;
@@ -70,7 +70,7 @@ fn slopes_by_a_lag_that_is_shorter_than_the_rows_are_those_of_differences() {
         let mut moved = values.clone();
         set(&mut moved, estimation.layout(), Unknown::Lag(0), LAG + step);
         let runs = estimation.innovations(&moved).unwrap();
-        runs[0].iter().map(|one| one.whitened()).collect()
+        runs[0].iter().map(Innovation::whitened).collect()
     };
     let (above, below) = (whitened(h), whitened(-h));
     let differences = above.iter().zip(&below).map(|(a, b)| (a - b) / (2.0 * h));

@@ -189,11 +189,11 @@ fn line(hypothesis: &Hypothesis) -> String {
         .iter()
         .map(|value| {
             let short = value.name.rsplit('.').next().unwrap_or_default();
-            let mut sizes = number(value.value);
+            let mut size = number(value.value);
             if value.std.is_finite() {
-                sizes += &format!(" ± {}", number(value.std));
+                size = format!("{size} ± {}", number(value.std));
             }
-            format!("{short} = {}", with_unit(&sizes, &value.unit))
+            format!("{short} = {}", with_unit(&size, &value.unit))
         })
         .collect();
     format!(

@@ -56,7 +56,7 @@ impl Apply {
             let told = hypothesis.told(&report, &changes, "nothing to write");
             return files::print(&told);
         }
-        if self.out.is_none() && fs::read_to_string(out).is_ok_and(|there| there != improved) {
+        if self.out.is_none() && fs::read(out).is_ok_and(|there| there != improved.as_bytes()) {
             return Err(Failure::Usage(format!(
                 "{file} is there and says something else: it is replaced if you name it with `-o {file}`"
             )));

@@ -121,9 +121,6 @@ impl Comparison {
             let Some(best) = search.best_of(members) else {
                 break;
             };
-            if best == 0 {
-                break;
-            }
             let screen = Screen::of(bench, &search.fits[best])?;
             let members = search.fits[best].members.clone();
             let kept = kept(bench, &screen, &members, KEPT_BESIDE);
@@ -139,7 +136,13 @@ impl Comparison {
 /// The candidates worth a fit beside some members: the best variant of each other effect at each place.
 fn kept(bench: &Bench<'_>, screen: &Screen, members: &[usize], most: usize) -> Vec<Screened> {
     let mut kept: Vec<Screened> = Vec::new();
-    let best = screen.list.first().map_or(0.0, |one| one.gain);
+    // What brings a coordinate was tried at some sizes and not to first order: it is no measure for others.
+    let is_plain = |one: &&Screened| bench.candidate(one.candidate).brings.is_none();
+    let best = screen
+        .list
+        .iter()
+        .find(is_plain)
+        .map_or(0.0, |one| one.gain);
     let least = LEAST_GAIN.max(LEAST_PART * best);
     for screened in screen.list.iter().filter(|one| one.gain > least) {
         let name = bench.candidate(screened.candidate).name();

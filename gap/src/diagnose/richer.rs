@@ -23,14 +23,13 @@ const AFTER: [f64; 4] = [0.05, 0.1, 0.2, 0.4];
 /// Standard deviations by which the mean innovation in one of these times stands out.
 const SURPRISED: f64 = 4.0;
 
-/// Those that gain at some size more than inputs that know the motion could have `told`: such inputs surprise
-/// the filter after their reversals whatever the cause.
-pub(super) fn tried(
-    bench: &Bench<'_>,
-    fitted: &Fitted,
-    told: f64,
-) -> Result<Vec<Screened>, DiagnoseError> {
+/// Those that gain at some size.
+pub(super) fn tried(bench: &Bench<'_>, fitted: &Fitted) -> Result<Vec<Screened>, DiagnoseError> {
     let effects = bench.effects;
+    // An input that follows the motion surprises the filter after its reversals whatever the cause.
+    if bench.surprises.count > 0 {
+        return Ok(Vec::new());
+    }
     // One such coordinate at a time, and none where contacts creep.
     if fitted
         .members
@@ -49,7 +48,7 @@ pub(super) fn tried(
             continue;
         };
         if is_surprised(bench, fitted, &drive)? && effects.enrich(index, &drive) {
-            list.extend(best_size(bench, fitted, index, told)?);
+            list.extend(best_size(bench, fitted, index)?);
         }
     }
     Ok(list)
@@ -93,7 +92,6 @@ fn best_size(
     bench: &Bench<'_>,
     fitted: &Fitted,
     candidate: usize,
-    told: f64,
 ) -> Result<Option<Screened>, DiagnoseError> {
     let members = [fitted.members.as_slice(), &[candidate]].concat();
     let setup = bench.setup(&members);
@@ -126,7 +124,7 @@ fn best_size(
         let Ok(likelihood) = estimation.log_likelihood(&values) else {
             continue;
         };
-        let gain = likelihood - fitted.fit.log_likelihood - told;
+        let gain = likelihood - fitted.fit.log_likelihood;
         if gain > best.map_or(0.0, |(most, _)| most) {
             best = Some((gain, size));
         }
@@ -134,6 +132,6 @@ fn best_size(
     Ok(best.map(|(gain, size)| {
         let sizes = vec![size; directions(bench, candidate).len()];
         let starts = FACTORS.map(|factor| begin(size, factor));
-        Screened::tried(candidate, [gain, told], sizes, starts.to_vec())
+        Screened::tried(candidate, gain, sizes, starts.to_vec())
     }))
 }

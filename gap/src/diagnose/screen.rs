@@ -43,14 +43,14 @@ impl Screened {
     /// A candidate that gains by a step which is known otherwise.
     pub(super) fn tried(
         candidate: usize,
-        [gain, told]: [f64; 2],
+        gain: f64,
         sizes: Vec<f64>,
         starts: Vec<Vec<(usize, f64)>>,
     ) -> Self {
         Self {
             candidate,
             gain,
-            told,
+            told: 0.0,
             deviations: vec![0.0; sizes.len()],
             sizes,
             starts,
@@ -232,7 +232,7 @@ impl Screen {
                 Some(one)
             })
             .collect();
-        list.extend(richer::tried(bench, fitted, kicks)?);
+        list.extend(richer::tried(bench, fitted)?);
         list.sort_by(|a, b| b.gain.total_cmp(&a.gain));
         Ok(Self { list })
     }

@@ -27,8 +27,8 @@ use super::screen::{Projected, moving};
 
 /// Waves of a variable.
 const WAVES: usize = 24;
-/// Waves of a position: teeth and poles are many along a path.
-const FINE: usize = 64;
+/// Waves of a position along which a force acts: teeth and poles are many along a path.
+const FINE: usize = 48;
 /// Range of a rate in typical rates.
 const REACH: f64 = 2.5;
 /// Part of its gain that a law has to repeat on runs that it was not found in.
@@ -75,8 +75,8 @@ struct Variable<'b> {
     source: Source<'b>,
     /// Angle of the first wave per unit.
     first: f64,
-    /// Number of waves.
-    waves: usize,
+    /// Whether it is a position.
+    is_position: bool,
     /// The waves also grow with time: a friction that changes.
     drifts: bool,
 }
@@ -102,6 +102,14 @@ impl Variable<'_> {
             format!("{name} and time")
         } else {
             name.to_owned()
+        }
+    }
+
+    /// How many waves a law of it has.
+    fn waves(self, along: Along) -> usize {
+        match along {
+            Along::Disturbances if self.is_position => FINE,
+            _ => WAVES,
         }
     }
 
@@ -135,7 +143,7 @@ pub(super) fn leftover(
             for (place, told) in told(bench, &estimation, fitted, variable, along)? {
                 let unnamed = |law| variable.unnamed(bench, (along, place), law);
                 smooth.add(told.smooth().map(unnamed));
-                for wave in 0..variable.waves {
+                for wave in 0..variable.waves(along) {
                     single.add(told.single(wave).map(unnamed));
                 }
             }
@@ -153,6 +161,7 @@ fn told(
     along: Along,
 ) -> Result<Vec<(usize, Told)>, DiagnoseError> {
     let (free, setup) = (moving(fitted), estimation.setup());
+    let waves = 2 * variable.waves(along);
     let write = |run: usize, at: At<'_>, values: &mut [f64]| {
         let x = variable.of((bench, setup.model), run, at);
         if x.is_nan() {
@@ -166,7 +175,7 @@ fn told(
     };
     let shapes = Shapes {
         along,
-        count: 2 * variable.waves,
+        count: waves,
         values: &write,
     };
     let tangent = estimation.tangent(&fitted.fit.values, &free, Some(shapes))?;
@@ -183,8 +192,8 @@ fn told(
     let places = places.into_iter().enumerate();
     Ok(places
         .filter_map(|(block, place)| {
-            let first = free.len() + 2 * block * variable.waves;
-            let columns: Vec<usize> = (first..first + 2 * variable.waves).collect();
+            let first = free.len() + block * waves;
+            let columns: Vec<usize> = (first..first + waves).collect();
             Some((place?, Told::new(&projected, &projected.slopes(&columns))))
         })
         .collect())
@@ -252,7 +261,7 @@ impl<'b> Variable<'b> {
         Self {
             source: Source::Beside(beside),
             first: PI / (beside.range.1 - beside.range.0),
-            waves: WAVES,
+            is_position: false,
             drifts: false,
         }
     }
@@ -274,11 +283,10 @@ fn variables<'b>(bench: &'b Bench<'_>) -> Vec<Variable<'b>> {
         } else {
             PI / range
         };
-        let is_position = (info.speeds..info.state_len()).contains(&index);
         let one = Variable {
             source: Source::Own(index),
             first,
-            waves: if is_position { FINE } else { WAVES },
+            is_position: (info.speeds..info.state_len()).contains(&index),
             drifts: false,
         };
         variables.push(one);

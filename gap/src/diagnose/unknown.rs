@@ -28,7 +28,7 @@ use super::screen::{Projected, moving};
 /// Waves of a variable.
 const WAVES: usize = 24;
 /// Waves of a position along which a force acts: teeth and poles are many along a path.
-const FINE: usize = 48;
+const FINE: usize = 64;
 /// Range of a rate in typical rates.
 const REACH: f64 = 2.5;
 /// Part of its gain that a law has to repeat on runs that it was not found in.

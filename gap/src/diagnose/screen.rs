@@ -218,7 +218,7 @@ impl Screen {
         let tangent = estimation.tangent(&values, &directions, kicks)?;
         let projected = Projected::new(&tangent, fitted, free.len(), 0..0);
         let kicked = directions.len()..tangent.slopes.ncols();
-        let kicks = projected.evidence(kicked.clone());
+        let for_kicks = projected.evidence(kicked.clone());
         let beyond = Projected::new(&tangent, fitted, free.len(), kicked);
         let mut list: Vec<Screened> = own
             .into_iter()
@@ -227,7 +227,7 @@ impl Screen {
                 let mut one = screened(&projected, candidate, &columns, &positive)?;
                 let beyond = screened(&beyond, candidate, &columns, &positive);
                 let beyond = beyond.map_or(0.0, |beyond| beyond.gain);
-                one.told = (one.gain - beyond).clamp(0.0, kicks);
+                one.told = (one.gain - beyond).clamp(0.0, for_kicks);
                 one.gain -= one.told;
                 Some(one)
             })

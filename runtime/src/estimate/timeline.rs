@@ -144,8 +144,8 @@ fn stops(
 
 type End = (f64, Option<(usize, f64)>);
 
-/// The steps between two moments: none is longer than `longest`, nor than the shortest lag lasts, down to a
-/// part of what it were without. What a change of an input passes on is then right to a percent.
+/// The steps between two moments. None is longer than `longest` or the shortest lag, for what a lag makes of a
+/// change of its input is then right to a percent; a lag shortens steps to a thirty-second at most.
 fn advance(
     actions: &mut Vec<Action>,
     [longest, shortest_lag]: [f64; 2],

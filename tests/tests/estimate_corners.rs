@@ -149,6 +149,52 @@ fn the_gradient_is_that_of_the_steps_that_were_taken() {
 }
 
 #[test]
+fn states_that_are_smoothed_over_long_steps_are_those_over_short_ones() {
+    let model = sticking();
+    let (setups, values, recordings) = seen(&model);
+    let [coarse, fine] = setups.each_ref().map(|setup| {
+        let estimation = Estimation::new(setup, &recordings).unwrap();
+        estimation.smoothed(&values, 0).unwrap()
+    });
+    assert_eq!(coarse.len(), fine.len());
+    for (coarse, fine) in coarse.iter().zip(&fine) {
+        let off = (0..2).map(|i| (coarse.state[i] - fine.state[i]).abs() / fine.deviation(i));
+        let off = off.fold(0.0, f64::max);
+        assert!(off < 0.05, "{off} deviations at {} s", coarse.t);
+    }
+}
+
+#[test]
+#[cfg_attr(
+    not(target_os = "linux"),
+    ignore = "asks Linux how much memory was used"
+)]
+fn steps_in_many_parts_do_not_fill_the_memory() {
+    // Its parts on one tape would be 100 MB.
+    const ROWS: usize = 10_000;
+    let most_used = || -> f64 {
+        let status = std::fs::read_to_string("/proc/self/status").unwrap();
+        let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"));
+        let kilobytes = line.unwrap().trim().trim_end_matches(" kB");
+        kilobytes.parse::<f64>().unwrap() / 1000.0
+    };
+    let model = sticking();
+    let setup = Setup {
+        has_corners: true,
+        ..Setup::new(&model, &[Measured::State(1)])
+    };
+    let drive = Drive::sines(ROWS, BETWEEN, &[2.0]);
+    let recordings = [drive.unseen(1)];
+    let values = with_levels(&setup, &recordings, 0.02, 1e-3);
+    let recordings = [record(&setup, &values, &drive, &mut Random::of("sticks"))];
+    let estimation = Estimation::new(&setup, &recordings).unwrap();
+    let before = most_used();
+    estimation.gradient(&values).unwrap();
+    let taken = most_used() - before;
+    assert!(taken < 30.0, "{taken} MB");
+}
+
+#[test]
 fn masses_that_only_a_tolerance_tells_do_not_hold_a_fit_up() {
     // A pendulum that swings freely: only the ratio of inertia and weight shows, and the disturbance
     // per inertia.

@@ -7,13 +7,14 @@
 use std::ops::Range;
 
 use super::closure::Closure;
-use super::filter::{Pass, Record, Sample, SampleTape, StepTape};
+use super::filter::Pass;
 use super::matrix::{
     add, add_scaled, dot, multiply, multiply_transposed, multiply_transposed_add, pieces, scale,
     symmetrise, transposed_multiply,
 };
 use super::plant::{Place, Scratch, Sums};
 use super::setup::{Disturbance, Measured};
+use super::tape::{Record, Sample, SampleTape, StepTape};
 use super::timeline::Advance;
 use super::transition::{self, Effects, Reverse, Span};
 
@@ -64,22 +65,21 @@ pub(super) fn adjoint(pass: &mut Pass<'_>, rows: &Range<usize>, gradient: &mut [
         mu: zeros(outputs),
         slopes: zeros(outputs * n),
     };
-    for record in shared.records.iter().rev() {
-        match record {
-            Record::Advance { advance, tape: at } => {
-                let on = shared.sizes.step(&mut tape[*at..]);
-                back.advance(*advance, &on, gradient);
-            }
-            Record::Measure { samples, held, .. } => {
-                let samples = &shared.samples[samples.clone()];
-                back.measure((samples, held), rows, &mut tape, gradient);
-            }
-            Record::Close { t, held, tape: at } => {
-                let [z, root] = pieces(&mut tape[*at..], [n, n * n]);
-                back.open((*t, held), z, root);
-            }
+    shared.walk_back(&mut tape, |record, tape| match record {
+        Record::Advance { advance, tape: at } => {
+            let on = shared.sizes.step(&mut tape[*at..]);
+            back.advance(*advance, &on, gradient);
         }
-    }
+        Record::Measure { samples, held, .. } => {
+            let samples = &shared.samples[samples.clone()];
+            back.measure((samples, held), rows, tape, gradient);
+        }
+        Record::Close { t, held, tape: at } => {
+            let [z, root] = pieces(&mut tape[*at..], [n, n * n]);
+            back.open((*t, held), z, root);
+        }
+        Record::Parts { .. } => {}
+    });
     back.start(gradient);
     pass.tape = tape;
 }

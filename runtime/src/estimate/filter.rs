@@ -9,7 +9,6 @@
 //! on each other, loops are closed after each of the two.
 
 use std::f64::consts::TAU;
-use std::ops::Range;
 
 use super::EstimateError;
 use super::closure::Closure;
@@ -19,8 +18,9 @@ use super::plant::{Place, Plant, Scratch};
 use super::recording::Recording;
 use super::setup::{Disturbance, Measured, Setup};
 use super::square_root::{potter, triangularise};
+use super::tape::{Record, Sample, SampleTape, Sizes};
 use super::timeline::{Action, Advance};
-use super::transition::{MOST_HALVINGS, Span, Stages, halvings, stages_len, step};
+use super::transition::{MOST_HALVINGS, Span, halvings, step};
 
 /// A measured scalar as the filter met it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -52,100 +52,6 @@ impl Innovation {
     pub fn log_likelihood(&self) -> f64 {
         let (e, s) = (self.white_residual, self.white_variance);
         -0.5 * ((TAU * s).ln() + e * e / s)
-    }
-}
-
-/// What the filter did, in order.
-#[derive(Debug, Clone)]
-pub(super) enum Record {
-    /// A step; its numbers start at `tape`.
-    Advance { advance: Advance, tape: usize },
-    /// Scalars that were measured at one time, and the inputs then, where outputs were.
-    Measure {
-        /// The row, unless it was a delayed channel alone.
-        row: Option<usize>,
-        samples: Range<usize>,
-        held: Vec<f64>,
-    },
-    /// Loops were closed; the closed state and the root of P before start at `tape`.
-    Close { t: f64, held: Vec<f64>, tape: usize },
-}
-
-/// A scalar with what the way back needs.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Sample {
-    pub(super) innovation: Innovation,
-    /// The quantity before scale and bias.
-    pub(super) quantity: f64,
-    /// Where its numbers start.
-    pub(super) tape: usize,
-}
-
-/// Numbers of a step on the tape.
-pub(super) struct StepTape<'a> {
-    pub(super) held: &'a mut [f64],
-    pub(super) stages: Stages<'a>,
-    /// F.
-    pub(super) f: &'a mut [f64],
-    /// Root of P before the step.
-    pub(super) root: &'a mut [f64],
-    /// Directions in which the disturbances act, n rows.
-    pub(super) columns: &'a mut [f64],
-    /// State after the step.
-    pub(super) after: &'a mut [f64],
-    /// Root of P after the step.
-    pub(super) root_after: &'a mut [f64],
-}
-
-/// Numbers of a scalar on the tape.
-pub(super) struct SampleTape<'a> {
-    /// Slope of the scalar by the states.
-    pub(super) c: &'a mut [f64],
-    /// P c.
-    pub(super) a: &'a mut [f64],
-    /// State before the update.
-    pub(super) z: &'a mut [f64],
-    /// Root of P before the update.
-    pub(super) root: &'a mut [f64],
-}
-
-/// Sizes that cut a tape.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Sizes {
-    pub(super) n: usize,
-    pub(super) inputs: usize,
-    pub(super) disturbances: usize,
-}
-
-impl Sizes {
-    fn step_len(self) -> usize {
-        let Self { n, .. } = self;
-        self.inputs + stages_len(n) + 3 * n * n + n * self.disturbances + n
-    }
-
-    fn sample_len(self) -> usize {
-        3 * self.n + self.n * self.n
-    }
-
-    pub(super) fn step(self, tape: &mut [f64]) -> StepTape<'_> {
-        let n = self.n;
-        let (nn, columns) = (n * n, n * self.disturbances);
-        let lengths = [self.inputs, stages_len(n), nn, nn, columns, n, nn];
-        let [held, stages, f, root, columns, after, root_after] = pieces(tape, lengths);
-        StepTape {
-            held,
-            stages: Stages::cut(stages, n),
-            f,
-            root,
-            columns,
-            after,
-            root_after,
-        }
-    }
-
-    pub(super) fn sample(self, tape: &mut [f64]) -> SampleTape<'_> {
-        let [c, a, z, root] = pieces(tape, [self.n, self.n, self.n, self.n * self.n]);
-        SampleTape { c, a, z, root }
     }
 }
 
@@ -198,11 +104,35 @@ impl<'a> Pass<'a> {
 
     /// Before the first action.
     pub(super) fn new(
-        (setup, plant, layout): (&'a Setup<'a>, &'a Plant<'a>, Layout),
+        model: (&'a Setup<'a>, &'a Plant<'a>, Layout),
         values: &'a [f64],
         (run, recording): (usize, &Recording),
         actions: &[Action],
         keeps: bool,
+    ) -> Self {
+        let mut pass = Self::blank(model, values, run);
+        pass.keeps = keeps;
+        pass.records.reserve(actions.len());
+        let samples = recording.times().len() * pass.setup.channels.len();
+        pass.samples.reserve(samples);
+        if keeps {
+            let steps = actions
+                .iter()
+                .filter(|a| matches!(a, Action::Advance(_)))
+                .count();
+            let sizes = pass.sizes;
+            pass.tape
+                .reserve(steps * sizes.step_len() + samples * sizes.sample_len());
+        }
+        pass.start();
+        pass
+    }
+
+    /// Nowhere yet.
+    pub(super) fn blank(
+        (setup, plant, layout): (&'a Setup<'a>, &'a Plant<'a>, Layout),
+        values: &'a [f64],
+        run: usize,
     ) -> Self {
         let (n, info) = (plant.n, plant.info());
         let outputs = if setup.sees_outputs() {
@@ -216,17 +146,17 @@ impl<'a> Pass<'a> {
             disturbances: setup.disturbances.len(),
         };
         let zeros = |len| vec![0.0; len];
-        let mut pass = Self {
+        Self {
             setup,
             plant,
             layout,
             values,
             run,
             sizes,
-            keeps,
+            keeps: false,
             tape: Vec::new(),
-            records: Vec::with_capacity(actions.len()),
-            samples: Vec::with_capacity(recording.times().len() * setup.channels.len()),
+            records: Vec::new(),
+            samples: Vec::new(),
             z: zeros(n),
             root: zeros(n * n),
             held: zeros(sizes.inputs),
@@ -237,18 +167,7 @@ impl<'a> Pass<'a> {
             seen: zeros(n),
             outputs: zeros(outputs),
             output_slopes: zeros(outputs * n),
-        };
-        if keeps {
-            let steps = actions
-                .iter()
-                .filter(|a| matches!(a, Action::Advance(_)))
-                .count();
-            let samples = pass.samples.capacity();
-            pass.tape
-                .reserve(steps * sizes.step_len() + samples * sizes.sample_len());
         }
-        pass.start();
-        pass
     }
 
     pub(super) fn act(
@@ -360,8 +279,7 @@ impl<'a> Pass<'a> {
         if halvings > 0 {
             self.tape.truncate(tape);
             self.records.pop();
-            let mut parts = advance.parts(halvings);
-            return parts.try_for_each(|part| self.advance(part, halved + halvings));
+            return self.advance_in_parts(advance, halved, halvings);
         }
 
         // [S, N½], then [F S, F N½, N½].
@@ -380,9 +298,8 @@ impl<'a> Pass<'a> {
             wide[..n + d].copy_from_slice(moved);
             wide[n + d..].copy_from_slice(&joint[n..]);
         }
-        triangularise(&mut self.wide, n, on.root_after);
+        triangularise(&mut self.wide, n, &mut self.root);
         self.z.copy_from_slice(on.after);
-        self.root.copy_from_slice(on.root_after);
         let finite = self
             .z
             .iter()
@@ -392,6 +309,35 @@ impl<'a> Pass<'a> {
             run: self.run,
             t: advance.t + h,
         })
+    }
+
+    /// Goes on by the parts of a step. A pass that keeps everything keeps what the whole step began
+    /// with.
+    pub(super) fn advance_in_parts(
+        &mut self,
+        advance: Advance,
+        halved: u32,
+        halvings: u32,
+    ) -> Result<(), EstimateError> {
+        let kept = (self.keeps && halved == 0).then(|| {
+            let tape = self.tape.len();
+            for start in [&self.held, &self.z, &self.root] {
+                self.tape.extend_from_slice(start);
+            }
+            self.records.push(Record::Parts {
+                advance,
+                halvings,
+                tape,
+            });
+            (self.tape.len(), self.records.len())
+        });
+        let mut parts = advance.parts(halvings);
+        parts.try_for_each(|part| self.advance(part, halved + halvings))?;
+        if let Some((tape, records)) = kept {
+            self.tape.truncate(tape);
+            self.records.truncate(records);
+        }
+        Ok(())
     }
 
     /// Closes the loops.

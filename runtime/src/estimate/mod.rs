@@ -61,6 +61,7 @@ mod shooting;
 mod smoother;
 mod square_root;
 mod tangent;
+mod tape;
 mod timeline;
 mod transition;
 

@@ -7,11 +7,12 @@
 
 use super::EstimateError;
 use super::estimation::Estimation;
-use super::filter::{Pass, Record, StepTape};
+use super::filter::Pass;
 use super::layout::Unknown;
 use super::matrix::{add, multiply};
 use super::prediction::place;
 use super::square_root::triangularise;
+use super::tape::{Record, StepTape};
 use super::timeline::Advance;
 
 /// Smaller pivots of a root, relative to their row, are rounding: nothing varies in that direction.
@@ -59,28 +60,30 @@ impl Estimation<'_> {
             Some(closure) => closure.independent().collect(),
             None => (0..pass.sizes.n).collect(),
         };
-        let (mut closure, mut scratch) = (pass.closure.clone(), pass.plant.scratch());
         let mut rows = Vec::with_capacity(self.recordings()[run].times().len());
-        for record in pass.records.iter().rev() {
-            match record {
-                Record::Advance { advance, tape: at } => {
-                    let on = pass.sizes.step(&mut tape[*at..]);
-                    step_back(&pass, *advance, (&on, &told), &mut last);
-                }
-                Record::Measure { row: Some(row), .. } => {
-                    last.t = self.recordings()[run].times()[*row];
-                    let mut told = last.clone();
-                    if let Some(closure) = &mut closure {
-                        let at = (last.t, last.state.as_slice(), pass.held.as_slice());
-                        let (place, t) = (place(self.layout(), values, at), last.t);
-                        closure
-                            .close(pass.plant, place, &mut scratch, &mut told.state)
-                            .map_err(|source| EstimateError::Open { run, t, source })?;
-                        closure.follow(&mut told.root);
-                    }
-                    rows.push(told);
-                }
-                Record::Measure { row: None, .. } | Record::Close { .. } => {}
+        pass.walk_back(&mut tape, |record, tape| match record {
+            Record::Advance { advance, tape: at } => {
+                let on = pass.sizes.step(&mut tape[*at..]);
+                step_back(&pass, *advance, (&on, &told), &mut last);
+            }
+            Record::Measure { row: Some(row), .. } => {
+                last.t = self.recordings()[run].times()[*row];
+                rows.push(last.clone());
+            }
+            Record::Measure { row: None, .. } | Record::Close { .. } | Record::Parts { .. } => {}
+        });
+        if let Some(mut closure) = pass.closure.clone() {
+            let mut scratch = pass.plant.scratch();
+            for told in &mut rows {
+                let open = told.state.clone();
+                let (place, t) = (
+                    place(self.layout(), values, (told.t, &open, &pass.held)),
+                    told.t,
+                );
+                closure
+                    .close(pass.plant, place, &mut scratch, &mut told.state)
+                    .map_err(|source| EstimateError::Open { run, t, source })?;
+                closure.follow(&mut told.root);
             }
         }
         rows.reverse();

@@ -11,11 +11,12 @@ use crate::model::At;
 
 use super::EstimateError;
 use super::estimation::Estimation;
-use super::filter::{Innovation, Pass, Record, SampleTape};
+use super::filter::{Innovation, Pass};
 use super::layout::Unknown;
 use super::matrix::{add_scaled, dot, multiply};
 use super::plant::{Place, Scratch, Sums};
 use super::setup::Measured;
+use super::tape::{Record, SampleTape};
 use super::timeline::{Action, Advance};
 use super::transition::added_by_rate;
 

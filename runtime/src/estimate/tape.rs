@@ -1,0 +1,140 @@
+//! What a pass of the filter leaves behind for the way back: records, and the numbers of each on a
+//! tape.
+
+use std::ops::Range;
+
+use super::filter::{Innovation, Pass};
+use super::matrix::pieces;
+use super::timeline::Advance;
+use super::transition::{Stages, stages_len};
+
+/// What the filter did, in order.
+#[derive(Debug, Clone)]
+pub(super) enum Record {
+    /// A step; its numbers start at `tape`.
+    Advance { advance: Advance, tape: usize },
+    /// A step in parts, two to the power of `halvings` or more. A gradient would need the numbers of all
+    /// of them at once: what the step began with stands at `tape`, and the way back does it again.
+    Parts {
+        advance: Advance,
+        halvings: u32,
+        tape: usize,
+    },
+    /// Scalars that were measured at one time, and the inputs then, where outputs were.
+    Measure {
+        /// The row, unless it was a delayed channel alone.
+        row: Option<usize>,
+        samples: Range<usize>,
+        held: Vec<f64>,
+    },
+    /// Loops were closed; the closed state and the root of P before start at `tape`.
+    Close { t: f64, held: Vec<f64>, tape: usize },
+}
+
+/// A scalar with what the way back needs.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Sample {
+    pub(super) innovation: Innovation,
+    /// The quantity before scale and bias.
+    pub(super) quantity: f64,
+    /// Where its numbers start.
+    pub(super) tape: usize,
+}
+
+/// Numbers of a step on the tape.
+pub(super) struct StepTape<'a> {
+    pub(super) held: &'a mut [f64],
+    pub(super) stages: Stages<'a>,
+    /// F.
+    pub(super) f: &'a mut [f64],
+    /// Root of P before the step.
+    pub(super) root: &'a mut [f64],
+    /// Directions in which the disturbances act, n rows.
+    pub(super) columns: &'a mut [f64],
+    /// State after the step.
+    pub(super) after: &'a mut [f64],
+}
+
+/// Numbers of a scalar on the tape.
+pub(super) struct SampleTape<'a> {
+    /// Slope of the scalar by the states.
+    pub(super) c: &'a mut [f64],
+    /// P c.
+    pub(super) a: &'a mut [f64],
+    /// State before the update.
+    pub(super) z: &'a mut [f64],
+    /// Root of P before the update.
+    pub(super) root: &'a mut [f64],
+}
+
+/// Sizes that cut a tape.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Sizes {
+    pub(super) n: usize,
+    pub(super) inputs: usize,
+    pub(super) disturbances: usize,
+}
+
+impl Sizes {
+    pub(super) fn step_len(self) -> usize {
+        let Self { n, .. } = self;
+        self.inputs + stages_len(n) + 2 * n * n + n * self.disturbances + n
+    }
+
+    pub(super) fn sample_len(self) -> usize {
+        3 * self.n + self.n * self.n
+    }
+
+    pub(super) fn step(self, tape: &mut [f64]) -> StepTape<'_> {
+        let n = self.n;
+        let (nn, columns) = (n * n, n * self.disturbances);
+        let lengths = [self.inputs, stages_len(n), nn, nn, columns, n];
+        let [held, stages, f, root, columns, after] = pieces(tape, lengths);
+        StepTape {
+            held,
+            stages: Stages::cut(stages, n),
+            f,
+            root,
+            columns,
+            after,
+        }
+    }
+
+    pub(super) fn sample(self, tape: &mut [f64]) -> SampleTape<'_> {
+        let [c, a, z, root] = pieces(tape, [self.n, self.n, self.n, self.n * self.n]);
+        SampleTape { c, a, z, root }
+    }
+}
+
+impl Pass<'_> {
+    /// Visits the records from the last one on, each with the tape that its numbers stand on, and in
+    /// place of a step in parts its parts.
+    pub(super) fn walk_back(&self, tape: &mut [f64], mut visit: impl FnMut(&Record, &mut [f64])) {
+        let mut again = Self::blank((self.setup, self.plant, self.layout), self.values, self.run);
+        for record in self.records.iter().rev() {
+            let Record::Parts {
+                advance,
+                halvings,
+                tape: at,
+            } = record
+            else {
+                visit(record, tape);
+                continue;
+            };
+            let starts = [&mut again.held, &mut again.z, &mut again.root];
+            let mut start = &tape[*at..];
+            for place in starts {
+                let (here, rest) = start.split_at(place.len());
+                place.copy_from_slice(here);
+                start = rest;
+            }
+            again.tape.clear();
+            again.records.clear();
+            // They went well before.
+            let _ = again.advance_in_parts(*advance, 0, *halvings);
+            for record in again.records.iter().rev() {
+                visit(record, &mut again.tape);
+            }
+        }
+    }
+}

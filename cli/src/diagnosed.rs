@@ -89,7 +89,7 @@ pub(crate) fn text(report: &Report, next: Option<&Path>) -> String {
             .collect();
         let _ = writeln!(
             text,
-            "  failed    {} could not be fitted, among them {}; the gap report says why",
+            "  failed    {} could not be fitted to the end, among them {}; the gap report says why",
             report.failed.len(),
             names.join(", ")
         );

@@ -276,13 +276,12 @@ impl<'a> Bench<'a> {
         let estimation = Estimation::new(&setup, &self.recordings)?;
         let start = &self.problem.start;
         let levels = Fit::quick(&estimation, start, &self.problem.levels, ROUGHLY)?.values;
-        match self.fit_by(Fit::quick, &[], (&estimation, &levels), FROM_AFAR) {
-            // Far from an optimum the observed curvature leads on where the expected one does not.
-            Err(DiagnoseError::Estimate(EstimateError::Stuck { .. })) => {
-                self.fit_by(Fit::of, &[], (&estimation, &levels), FROM_AFAR)
-            }
-            fitted => fitted,
+        let fitted = self.fit_by(Fit::quick, &[], (&estimation, &levels), FROM_AFAR)?;
+        if fitted.fit.is_optimum() {
+            return Ok(fitted);
         }
+        // Far from an optimum the observed curvature leads on where the expected one does not.
+        self.fit_by(Fit::of, &[], (&estimation, &levels), FROM_AFAR)
     }
 
     /// The parameters of a fit without what its members do.

@@ -208,7 +208,7 @@ fn deviation(fitted: &Fitted, index: usize) -> Option<f64> {
     let std = if fitted.fit.at_limit[place] {
         fitted.fit.free[place].prior?[1]
     } else {
-        fitted.fit.covariance().ok()?[(place, place)].sqrt()
+        fitted.fit.deviation(place).ok()?
     };
     Some(match fitted.fit.free[place].coordinate {
         Coordinate::Plain => std,

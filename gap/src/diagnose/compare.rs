@@ -44,7 +44,7 @@ const ALIKE: f64 = 0.8;
 pub(super) struct Comparison {
     /// Fitted hypotheses, the most probable first; the nominal model is one of them.
     pub(super) fits: Vec<(Fitted, f64)>,
-    /// Hypotheses whose fit failed, with the reason.
+    /// Hypotheses whose fit failed or ended before an optimum, with the reason.
     pub(super) failed: Vec<(Vec<usize>, String)>,
     /// Part of the samples that tell something of their own: see `whiteness`.
     pub(super) independent: f64,
@@ -177,7 +177,19 @@ impl Search<'_, '_> {
             return;
         }
         match self.fitted(to, screened, &members) {
-            Ok(fitted) if fitted.evidence.log().is_finite() => self.fits.push(fitted),
+            Ok(fitted) if fitted.evidence.log().is_finite() => {
+                let fit = &fitted.fit;
+                if !fit.is_optimum() {
+                    let reason = format!(
+                        "its search ended after {} steps where the next one promises {:.1} in log-likelihood and \
+                         does not keep it: it may explain more than is told",
+                        fit.steps, fit.gain
+                    );
+                    self.failed.push((members, reason));
+                }
+                // What was reached speaks for it whatever an optimum would add.
+                self.fits.push(fitted);
+            }
             Ok(_) => self.failed.push((members, NO_EVIDENCE.to_owned())),
             Err(error) => self.failed.push((members, error.to_string())),
         }

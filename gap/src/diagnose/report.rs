@@ -233,7 +233,7 @@ pub struct Report {
     pub how_far: Option<HowFar>,
     /// What these recordings would show.
     pub detectable: Vec<Detectable>,
-    /// Hypotheses whose fit failed, with the reason.
+    /// Hypotheses whose fit failed or ended before an optimum, with the reason.
     pub failed: Vec<(Vec<String>, String)>,
     /// Disturbances before and after: name, level under the nominal model and under the best one.
     pub disturbances: Vec<(String, f64, f64)>,
@@ -422,9 +422,8 @@ fn tied(which: &[Hypothesis]) -> Vec<Vec<Vec<String>>> {
 /// Values of the members of a hypothesis.
 fn values(bench: &Bench<'_>, fitted: &Fitted) -> Vec<Value> {
     let info = bench.effects.info();
-    let covariance = fitted.fit.covariance();
-    let deviation = |place: usize| match &covariance {
-        Ok(covariance) if !fitted.fit.at_limit[place] => covariance[(place, place)].sqrt(),
+    let deviation = |place: usize| match fitted.fit.deviation(place) {
+        Ok(deviation) if !fitted.fit.at_limit[place] => deviation,
         _ => f64::NAN,
     };
     let mut values = Vec::new();

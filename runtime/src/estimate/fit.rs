@@ -67,6 +67,8 @@ pub struct Fit {
     pub information: DMatrix<f64>,
     /// The observed one. Where the model is right both are alike.
     pub curvature: DMatrix<f64>,
+    /// The step that was promised where no step led on; zero at an optimum.
+    pub promised: DVector<f64>,
     /// Gain that a further step promises.
     pub gain: f64,
     /// Steps taken.
@@ -118,6 +120,7 @@ impl Fit {
                     log_posterior: point.objective,
                     information,
                     curvature,
+                    promised: DVector::zeros(free.len()),
                     gain: left,
                     steps,
                 });
@@ -151,10 +154,21 @@ impl Fit {
         inverse(&self.information, &self.at_limit)
     }
 
+    /// Whether the search came to its end.
+    pub fn is_optimum(&self) -> bool {
+        self.promised.iter().all(|step| *step == 0.0)
+    }
+
+    /// Standard deviation of a coordinate if the model is right, with the step that was not found.
+    pub fn deviation(&self, index: usize) -> Result<f64, EstimateError> {
+        let variance = self.covariance()?[(index, index)];
+        Ok(variance.sqrt().hypot(self.promised[index]))
+    }
+
     /// Limits, in SI, between which a value lies with 95 % if the model is right.
     pub fn interval95(&self, index: usize) -> Result<[f64; 2], EstimateError> {
         const QUANTILE: f64 = 1.959_963_984_540_054;
-        let deviation = self.covariance()?[(index, index)].sqrt();
+        let deviation = self.deviation(index)?;
         let (free, centre) = (self.free[index], self.coordinates[index]);
         Ok([-1.0, 1.0].map(|sign| free.to_value(centre + sign * QUANTILE * deviation)))
     }

@@ -1,7 +1,7 @@
 //! Fits by scoring: every step has Fisher's information of its own, which takes few passes of the
 //! filter ([`information`](super::information)). For many fits of models that are nearly right.
 
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector};
 
 use super::EstimateError;
 use super::company::Company;
@@ -31,7 +31,8 @@ const NEAR: f64 = 0.3;
 
 impl Fit {
     /// Looks for an optimum from `start` as [`Fit::of`] does, by scoring. The curvature of the result
-    /// is the expected one.
+    /// is the expected one. Where likelihoods are rough, as with friction that sticks, a search may end
+    /// before an optimum: [`Fit::promised`] tells.
     pub fn quick(
         estimation: &Estimation<'_>,
         start: &[f64],
@@ -55,11 +56,15 @@ impl Fit {
             let gains_little = gained.iter().sum::<f64>() < effort.gain;
             let ends = steps >= effort.steps || damping > DAMPED[1];
             // Where no step helps, the place is good if little was promised at all.
-            let is_flat = || {
-                let (_, promised) = company.step((&posterior, &point), &information, DAMPING);
-                (0.0..=FLAT * effort.gain).contains(&promised)
-            };
-            if promises_little && (damping <= 0.0 || gains_little) || ends && is_flat() {
+            if promises_little && (damping <= 0.0 || gains_little) || ends {
+                let mut promised = DVector::zeros(free.len());
+                let mut gain = gain;
+                if ends {
+                    let (step, more) = company.step((&posterior, &point), &information, DAMPING);
+                    if !(0.0..=FLAT * effort.gain).contains(&more) {
+                        (promised, gain) = (step, more);
+                    }
+                }
                 return Ok(Self {
                     free: free.to_vec(),
                     at_limit: point.is_held,
@@ -69,13 +74,10 @@ impl Fit {
                     log_posterior: point.objective,
                     curvature: information.clone(),
                     information,
+                    promised,
                     gain,
                     steps,
                 });
-            }
-            if ends {
-                let slope = point.gradient.amax();
-                return Err(EstimateError::Stuck { steps, slope });
             }
             steps += 1;
             // Coordinates at their reach may make things worse together: a damped step does not.

@@ -83,7 +83,13 @@ pub(crate) fn text(report: &Report, next: Option<&Path>) -> String {
     if let Some(left) = report.left.as_ref().filter(|left| left.is_there()) {
         let _ = writeln!(text, "  left      {}", left.about);
     }
-    if report.verdict == Verdict::Unexplained && !report.failed.is_empty() {
+    let is_listed = |effects: &[String]| {
+        let mut listed = report.which.iter().take(LISTED);
+        listed.any(|one| one.effects == effects)
+    };
+    let is_told = report.verdict == Verdict::Unexplained
+        || report.failed.iter().any(|(effects, _)| is_listed(effects));
+    if is_told && !report.failed.is_empty() {
         let names: Vec<String> = (report.failed.iter().take(LISTED))
             .map(|(effects, _)| joined(effects))
             .collect();

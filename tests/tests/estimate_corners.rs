@@ -229,6 +229,17 @@ fn masses_that_only_a_tolerance_tells_do_not_hold_a_fit_up() {
     };
     let fit = Fit::quick(&estimation, &start, &free, effort).unwrap();
     assert!(fit.steps <= 30, "{} steps", fit.steps);
+    assert!(fit.is_optimum());
+    // A search that has to end before is worth what it reached, and its values are told as less certain.
+    let short = Effort { steps: 3, ..effort };
+    let ended = Fit::quick(&estimation, &start, &free, short).unwrap();
+    assert!(!ended.is_optimum() && ended.gain > 1.0);
+    assert!(ended.log_posterior < fit.log_posterior);
+    let known = ended.covariance().unwrap();
+    for (i, promised) in ended.promised.iter().enumerate() {
+        let deviation = ended.deviation(i).unwrap();
+        assert!(deviation >= promised.abs() && deviation >= known[(i, i)].sqrt());
+    }
     let best = Fit::of(&estimation, &truth, &free, Effort::default()).unwrap();
     let lost = best.log_posterior - fit.log_posterior;
     assert!(lost < 0.05, "{lost} below the optimum");

@@ -19,15 +19,10 @@ use crate::identify::{Options, Problem, longest_step};
 const LONGEST_DELAY: f64 = 0.1;
 /// Shortest and longest lag, in steps.
 pub(super) const LAG: [f64; 2] = [0.03, 500.0];
-/// Fits end where a further step promises less than this in log-likelihood: a tenth of what tells
-/// two hypotheses apart.
+/// Fits end where a further step promises less than this in log-likelihood, far less than what tells two
+/// hypotheses apart. Searches may begin far away, where parameters are stated, and valleys are narrow.
 const EFFORT: Effort = Effort {
     gain: 0.02,
-    steps: 60,
-};
-/// The same for the nominal model, which begins where the parameters are stated: perhaps far away.
-const FROM_AFAR: Effort = Effort {
-    gain: EFFORT.gain,
     steps: 400,
 };
 /// The same for levels that are found anew right after.
@@ -276,12 +271,12 @@ impl<'a> Bench<'a> {
         let estimation = Estimation::new(&setup, &self.recordings)?;
         let start = &self.problem.start;
         let levels = Fit::quick(&estimation, start, &self.problem.levels, ROUGHLY)?.values;
-        let fitted = self.fit_by(Fit::quick, &[], (&estimation, &levels), FROM_AFAR)?;
+        let fitted = self.fit(&[], &estimation, &levels)?;
         if fitted.fit.is_optimum() {
             return Ok(fitted);
         }
         // Far from an optimum the observed curvature leads on where the expected one does not.
-        self.fit_by(Fit::of, &[], (&estimation, &levels), FROM_AFAR)
+        self.fit_by(Fit::of, &[], &estimation, &levels)
     }
 
     /// The parameters of a fit without what its members do.
@@ -395,18 +390,18 @@ impl<'a> Bench<'a> {
         estimation: &Estimation<'_>,
         start: &[f64],
     ) -> Result<Fitted, DiagnoseError> {
-        self.fit_by(Fit::quick, members, (estimation, start), EFFORT)
+        self.fit_by(Fit::quick, members, estimation, start)
     }
 
     fn fit_by(
         &self,
         search: Search,
         members: &[usize],
-        (estimation, start): (&Estimation<'_>, &[f64]),
-        effort: Effort,
+        estimation: &Estimation<'_>,
+        start: &[f64],
     ) -> Result<Fitted, DiagnoseError> {
         let free = self.free(members, estimation.setup());
-        let fit = search(estimation, start, &free, effort)?;
+        let fit = search(estimation, start, &free, EFFORT)?;
         let evidence = Evidence::of(self, members, &fit);
         Ok(Fitted {
             members: members.to_vec(),

@@ -5,7 +5,7 @@
 
 use std::collections::BTreeSet;
 
-use appell_runtime::estimate::{Estimation, Unknown};
+use appell_runtime::estimate::{Estimation, Fit, Unknown};
 
 use super::DiagnoseError;
 use super::bench::{Bench, LAG, WRONG};
@@ -112,22 +112,21 @@ impl Comparison {
             bench,
             fits: vec![nominal],
             failed: Vec::new(),
-            tried: BTreeSet::new(),
+            settled: BTreeSet::new(),
         };
         for screened in &kept(bench, screen, &[], KEPT) {
             search.join(0, screened);
         }
         for members in 1..MOST_MEMBERS {
-            let Some(best) = search.best_of(members) else {
-                break;
-            };
-            let screen = Screen::of(bench, &search.fits[best])?;
-            let members = search.fits[best].members.clone();
-            let kept = kept(bench, &screen, &members, KEPT_BESIDE);
-            for screened in &kept {
-                search.join(best, screened);
+            for base in search.bases(members) {
+                let screen = Screen::of(bench, &search.fits[base])?;
+                let members = search.fits[base].members.clone();
+                let kept = kept(bench, &screen, &members, KEPT_BESIDE);
+                for screened in &kept {
+                    search.join(base, screened);
+                }
+                search.join_tied(base, &kept);
             }
-            search.join_tied(best, &kept);
         }
         search.finish()
     }
@@ -164,7 +163,8 @@ struct Search<'b, 'a> {
     bench: &'b Bench<'a>,
     fits: Vec<Fitted>,
     failed: Vec<(Vec<usize>, String)>,
-    tried: BTreeSet<Vec<usize>>,
+    /// What needs no other fit.
+    settled: BTreeSet<Vec<usize>>,
 }
 
 impl Search<'_, '_> {
@@ -173,26 +173,42 @@ impl Search<'_, '_> {
         let mut members = self.fits[to].members.clone();
         members.push(screened.candidate);
         members.sort_unstable();
-        if !self.tried.insert(members.clone()) {
+        if self.settled.contains(&members) {
             return;
         }
         match self.fitted(to, screened, &members) {
             Ok(fitted) if fitted.evidence.log().is_finite() => {
-                let fit = &fitted.fit;
-                if !fit.is_optimum() {
-                    let reason = format!(
-                        "its search ended after {} steps where the next one promises {:.1} in log-likelihood and \
-                         does not keep it: it may explain more than is told",
-                        fit.steps, fit.gain
-                    );
-                    self.failed.push((members, reason));
+                if fitted.fit.is_optimum() {
+                    self.settled.insert(members);
                 }
-                // What was reached speaks for it whatever an optimum would add.
-                self.fits.push(fitted);
+                self.keep(fitted);
             }
-            Ok(_) => self.failed.push((members, NO_EVIDENCE.to_owned())),
+            Ok(_) => {
+                self.settled.insert(members.clone());
+                self.failed.push((members, NO_EVIDENCE.to_owned()));
+            }
             Err(error) => self.failed.push((members, error.to_string())),
         }
+    }
+
+    /// Of two fits of a hypothesis the better one counts. What a search reached that ended before an
+    /// optimum speaks for its hypothesis whatever the optimum would add.
+    fn keep(&mut self, fitted: Fitted) {
+        let mut fits = self.fits.iter_mut();
+        match fits.find(|own| own.members == fitted.members) {
+            Some(own) if own.evidence.log() < fitted.evidence.log() => *own = fitted,
+            Some(_) => {}
+            None => self.fits.push(fitted),
+        }
+    }
+
+    /// The hypotheses with so many members that others join: the best one whose search came to its end, and
+    /// the best of all.
+    fn bases(&self, members: usize) -> Vec<usize> {
+        let ended = self.best_where(members, |fitted| fitted.fit.is_optimum());
+        let mut bases: Vec<usize> = ended.into_iter().chain(self.best_of(members)).collect();
+        bases.dedup();
+        bases
     }
 
     /// What betters a hypothesis most may better those that are tied with it as much.
@@ -254,7 +270,12 @@ impl Search<'_, '_> {
 
     /// The best hypothesis with so many members.
     fn best_of(&self, members: usize) -> Option<usize> {
-        let is_one = |fitted: &Fitted| fitted.members.len() == members && fitted.is_there();
+        self.best_where(members, |_| true)
+    }
+
+    fn best_where(&self, members: usize, holds: impl Fn(&Fitted) -> bool) -> Option<usize> {
+        let is_one =
+            |fitted: &Fitted| fitted.members.len() == members && fitted.is_there() && holds(fitted);
         let own = (0..self.fits.len()).filter(|&i| is_one(&self.fits[i]));
         let log = |i: usize| self.log_posterior(&self.fits[i]);
         own.max_by(|&a, &b| log(a).total_cmp(&log(b)))
@@ -266,6 +287,13 @@ impl Search<'_, '_> {
     }
 
     fn finish(mut self) -> Result<Comparison, DiagnoseError> {
+        let ended_early = self.fits.iter().filter(|own| !own.fit.is_optimum());
+        let ended_early = ended_early.map(|own| (own.members.clone(), ended(&own.fit)));
+        let unfitted = |(members, _): &(Vec<usize>, String)| {
+            !self.fits.iter().any(|own| own.members == *members)
+        };
+        self.failed.retain(unfitted);
+        self.failed.extend(ended_early);
         self.fits.retain(Fitted::is_there);
         let logs: Vec<f64> = self.fits.iter().map(|f| self.log_posterior(f)).collect();
         let best = (0..logs.len()).max_by(|&a, &b| logs[a].total_cmp(&logs[b]));
@@ -304,6 +332,15 @@ impl Search<'_, '_> {
             left: None,
         })
     }
+}
+
+/// Where a search ended.
+fn ended(fit: &Fit) -> String {
+    format!(
+        "its search ended after {} steps where the next one promises {:.1} in log-likelihood and does not keep \
+         it: it may explain more than is told",
+        fit.steps, fit.gain
+    )
 }
 
 /// Logarithm of the probability beforehand of a hypothesis with so many members.

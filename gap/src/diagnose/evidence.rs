@@ -69,10 +69,11 @@ impl Evidence {
                     _ => deviations[place],
                 };
                 let d = (size / in_value).max(SMALLEST);
-                // A level may do what a member does: what is told of the member is what the level leaves.
-                let left = whole
-                    .as_ref()
-                    .map_or(0.0, |whole| deviations[place] / whole[(i, i)].sqrt());
+                // A level may do what a member does: what is told of the member is what the level leaves. A
+                // step that was promised to the end might undo it.
+                let left = whole.as_ref().map_or(0.0, |whole| {
+                    deviations[place] / whole[(i, i)].sqrt().hypot(fit.promised[i])
+                });
                 smallest = smallest.min(size / in_value * left);
                 let two_sided = free.range[0] < neutral;
                 let sides = if two_sided { 2.0_f64 } else { 1.0 };

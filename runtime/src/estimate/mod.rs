@@ -18,7 +18,8 @@
 //!   too long;
 //! - [`closure`]: closed loops, whose coordinates depend on each other;
 //! - [`filter`], [`square_root`]: the extended Kalman filter, innovations, log-likelihood;
-//! - [`adjoint`]: the gradient of the log-likelihood in all values by one sweep backwards;
+//! - [`tape`], [`adjoint`]: the gradient of the log-likelihood in all values by one sweep backwards over what
+//!   the filter left;
 //! - [`estimation`]: all of it behind one type;
 //! - [`prediction`]: where the motion goes from what the filter knows;
 //! - [`smoother`]: states given a whole recording;

@@ -55,12 +55,12 @@ impl Fit {
             let promises_little = (0.0..=effort.gain).contains(&gain);
             let gains_little = gained.iter().sum::<f64>() < effort.gain;
             let ends = steps >= effort.steps || damping > DAMPED[1];
-            // Where no step helps, the place is good if little was promised at all.
-            if promises_little && (damping <= 0.0 || gains_little) || ends {
-                let mut promised = DVector::zeros(free.len());
-                let mut gain = gain;
-                if ends {
+            let is_over = promises_little && (damping <= 0.0 || gains_little);
+            if is_over || ends {
+                let (mut promised, mut gain) = (DVector::zeros(free.len()), gain);
+                if !is_over {
                     let (step, more) = company.step((&posterior, &point), &information, DAMPING);
+                    // Where no step helps, the place is good if little was promised at all.
                     if !(0.0..=FLAT * effort.gain).contains(&more) {
                         (promised, gain) = (step, more);
                     }

@@ -112,29 +112,32 @@ impl Pass<'_> {
     pub(super) fn walk_back(&self, tape: &mut [f64], mut visit: impl FnMut(&Record, &mut [f64])) {
         let mut again = Self::blank((self.setup, self.plant, self.layout), self.values, self.run);
         for record in self.records.iter().rev() {
-            let Record::Parts {
-                advance,
-                halvings,
-                tape: at,
-            } = record
-            else {
-                visit(record, tape);
-                continue;
-            };
-            let starts = [&mut again.held, &mut again.z, &mut again.root];
-            let mut start = &tape[*at..];
-            for place in starts {
-                let (here, rest) = start.split_at(place.len());
-                place.copy_from_slice(here);
-                start = rest;
-            }
-            again.tape.clear();
-            again.records.clear();
-            // They went well before.
-            let _ = again.advance_in_parts(*advance, 0, *halvings);
-            for record in again.records.iter().rev() {
-                visit(record, &mut again.tape);
+            match record {
+                Record::Parts {
+                    advance,
+                    halvings,
+                    tape: at,
+                } => {
+                    again.begin_at(&mut tape[*at..]);
+                    // It went well before.
+                    let _ = again.advance_in_parts(*advance, 0, *halvings);
+                    for part in again.records.iter().rev() {
+                        visit(part, &mut again.tape);
+                    }
+                }
+                whole => visit(whole, tape),
             }
         }
+    }
+
+    /// Begins anew with inputs, state and root of P as they stand on a tape.
+    fn begin_at(&mut self, start: &mut [f64]) {
+        let Sizes { n, inputs, .. } = self.sizes;
+        let [held, z, root] = pieces(start, [inputs, n, n * n]);
+        self.held.copy_from_slice(held);
+        self.z.copy_from_slice(z);
+        self.root.copy_from_slice(root);
+        self.tape.clear();
+        self.records.clear();
     }
 }

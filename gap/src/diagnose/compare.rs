@@ -23,7 +23,7 @@ const KEPT: usize = 8;
 /// Candidates that are tried beside another.
 const KEPT_BESIDE: usize = 4;
 /// Most effects of a hypothesis.
-const MOST_MEMBERS: usize = 3;
+const MOST_MEMBERS: usize = 4;
 /// Gains below this cannot outweigh that there are many candidates, whatever a fit adds to them.
 const LEAST_GAIN: f64 = 4.0;
 /// Part of the greatest gain below which no fit catches up.
@@ -118,6 +118,9 @@ impl Comparison {
             search.join(0, screened);
         }
         for members in 1..MOST_MEMBERS {
+            if !search.betters(members) {
+                break;
+            }
             for base in search.bases(members) {
                 let screen = Screen::of(bench, &search.fits[base])?;
                 let members = search.fits[base].members.clone();
@@ -266,6 +269,13 @@ impl Search<'_, '_> {
             fitted.evidence.log_likelihood = from.evidence.log_likelihood + gain;
         }
         Ok(fitted)
+    }
+
+    /// Whether the last of so many members made a hypothesis more probable. Two are tried always: neither may
+    /// show without the other.
+    fn betters(&self, members: usize) -> bool {
+        let log = |members| Some(self.log_posterior(&self.fits[self.best_of(members)?]));
+        members < 2 || log(members) > log(members - 1)
     }
 
     /// The best hypothesis with so many members.

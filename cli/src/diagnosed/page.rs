@@ -289,7 +289,7 @@ fn which(report: &Report) -> String {
         });
         let _ = writeln!(
             html,
-            "<details><summary>{} hypotheses that could not be fitted to the end</summary><ul>{}</ul></details>",
+            "<details><summary>{} of the hypotheses could not be fitted to the end</summary><ul>{}</ul></details>",
             report.failed.len(),
             failed.collect::<String>()
         );

@@ -23,7 +23,7 @@ pub(super) const LAG: [f64; 2] = [0.03, 500.0];
 /// hypotheses apart. Searches may begin far away, where parameters are stated, and valleys are narrow.
 const EFFORT: Effort = Effort {
     gain: 0.02,
-    steps: 400,
+    steps: 200,
 };
 /// The same for levels that are found anew right after.
 const ROUGHLY: Effort = Effort {

@@ -205,13 +205,20 @@ impl Search<'_, '_> {
         }
     }
 
-    /// The hypotheses with so many members that others join: the best one whose search came to its end, and
-    /// the best of all.
-    fn bases(&self, members: usize) -> Vec<usize> {
-        let ended = self.best_where(members, |fitted| fitted.fit.is_optimum());
-        let mut bases: Vec<usize> = ended.into_iter().chain(self.best_of(members)).collect();
-        bases.dedup();
-        bases
+    /// The hypotheses with so many members that others join: the best one; that with fewest sizes of those
+    /// tied with it, for a size that tells nothing hides what joins it; the best one whose search came to
+    /// its end.
+    fn bases(&self, members: usize) -> BTreeSet<usize> {
+        let own = self.ranked(members);
+        let log = |i: usize| self.log_posterior(&self.fits[i]);
+        let sizes = |i: &&usize| self.bench.sizes_of(&self.fits[**i].members);
+        let tied = own.iter().take_while(|i| log(own[0]) - log(**i) < TIED);
+        let bases = [
+            own.first(),
+            tied.min_by_key(sizes),
+            own.iter().find(|i| self.fits[**i].fit.is_optimum()),
+        ];
+        bases.into_iter().flatten().copied().collect()
     }
 
     /// What betters a hypothesis most may better those that are tied with it as much.
@@ -280,15 +287,17 @@ impl Search<'_, '_> {
 
     /// The best hypothesis with so many members.
     fn best_of(&self, members: usize) -> Option<usize> {
-        self.best_where(members, |_| true)
+        self.ranked(members).first().copied()
     }
 
-    fn best_where(&self, members: usize, holds: impl Fn(&Fitted) -> bool) -> Option<usize> {
-        let is_one =
-            |fitted: &Fitted| fitted.members.len() == members && fitted.is_there() && holds(fitted);
+    /// The hypotheses with so many members that are there, the most probable one first.
+    fn ranked(&self, members: usize) -> Vec<usize> {
+        let is_one = |fitted: &Fitted| fitted.members.len() == members && fitted.is_there();
         let own = (0..self.fits.len()).filter(|&i| is_one(&self.fits[i]));
+        let mut own: Vec<usize> = own.collect();
         let log = |i: usize| self.log_posterior(&self.fits[i]);
-        own.max_by(|&a, &b| log(a).total_cmp(&log(b)))
+        own.sort_by(|&a, &b| log(b).total_cmp(&log(a)));
+        own
     }
 
     /// Logarithm of the probability, up to a constant.

@@ -7,7 +7,7 @@ use appell_report::figure::{Figure, Panel, Series};
 use appell_runtime::model::ModelInfo;
 use serde_json::{Value, json};
 
-use crate::table::{number, table};
+use appell_report::text::{number, table};
 
 /// Runs that are drawn.
 const DRAWN_RUNS: usize = 3;

@@ -9,8 +9,8 @@ use appell_runtime::contact::ContactForces;
 use appell_runtime::model::ModelInfo;
 use appell_spectra::spectrum::Complex;
 
-use super::Asked;
-use crate::table::{number, table};
+use appell::steady::Asked;
+use appell_report::text::{number, table};
 
 /// Motions side by side at most.
 const COLUMNS: usize = 6;

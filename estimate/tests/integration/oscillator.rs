@@ -3,7 +3,6 @@
 
 use appell_runtime::model::{At, Energies, List, Model, ModelInfo, Quantity};
 
-
 /// m v̇ = F − c v − k x, ẋ = v; its output is x + v/2.
 pub(crate) struct Oscillator(ModelInfo);
 

@@ -28,6 +28,7 @@ pub mod positions;
 pub mod rank;
 pub mod reactions;
 pub mod redundancy;
+pub mod row;
 pub mod support;
 pub mod switches;
 pub mod symbols;

@@ -3,8 +3,8 @@
 
 use appell_spec::Code;
 
+use super::bench::{Audit, Bench, listed};
 use super::samples::takes_both_signs;
-use super::{Audit, Bench, listed};
 use crate::mechanics::algebra::Algebra;
 use crate::mechanics::expressions::Lowering;
 use crate::mechanics::finding::{Finding, Item};

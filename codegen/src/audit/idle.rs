@@ -2,8 +2,8 @@
 
 use appell_spec::Code;
 
+use super::bench::{Audit, Bench};
 use super::work::silent_loads;
-use super::{Audit, Bench};
 use crate::mechanics::expressions::Lowering;
 use crate::mechanics::finding::{Finding, Item};
 use crate::mechanics::loads::applied_loads;

@@ -7,7 +7,7 @@
 
 use appell_spec::Code;
 
-use super::{Bench, listed, zero_or};
+use super::bench::{Bench, listed, zero_or};
 use crate::mechanics::finding::{Finding, Item};
 use crate::mechanics::rank::{Combination, LinearRow, Standing, standings};
 use crate::symbolic::{Expr, Graph, Substitution};

@@ -4,7 +4,7 @@ use appell_spec::Code;
 use appell_spec::expr::Expr as Spec;
 use appell_spec::mechanism::LoadKind;
 
-use super::{Audit, Bench};
+use super::bench::{Audit, Bench};
 use crate::mechanics::expressions::Lowering;
 use crate::mechanics::finding::{Finding, Item};
 use crate::mechanics::symbols::ids;

@@ -3,7 +3,7 @@
 use appell_spec::Code;
 use appell_spec::mechanism::{FrameId, LoadKind};
 
-use super::{Audit, Bench};
+use super::bench::{Audit, Bench};
 use crate::mechanics::expressions::Lowering;
 use crate::mechanics::finding::{Finding, Item};
 use crate::mechanics::symbols::ids;

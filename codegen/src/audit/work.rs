@@ -3,7 +3,7 @@
 use appell_spec::Code;
 use appell_spec::mechanism::LoadKind;
 
-use super::{Audit, Bench, listed};
+use super::bench::{Audit, Bench, listed};
 use crate::mechanics::algebra::Algebra;
 use crate::mechanics::finding::{Finding, Item};
 use crate::symbolic::{Expr, SymbolId};

@@ -6,6 +6,8 @@ use appell_spec::mechanism::{Axis, BodyId, Components, ConstraintKind, FrameId, 
 
 use crate::mechanics::algebra::Algebra;
 use crate::mechanics::expressions::{DivisionByZero, Lowering};
+use crate::mechanics::finding::{Item, Outcome};
+use crate::mechanics::kinematics::division_by_zero;
 use crate::mechanics::symbols::Symbols;
 use crate::mechanics::time::TimeDerivative;
 use crate::symbolic::vector::{self, Mat3, Vec3};
@@ -13,6 +15,16 @@ use crate::symbolic::{Expr, Graph};
 
 /// An expression of a spec in the graph.
 pub(super) type Lowered<T> = Result<T, DivisionByZero>;
+
+/// Calls a step that may divide by zero and may make many expressions.
+pub(super) fn room<T>(
+    algebra: &mut Algebra,
+    step: impl FnOnce(&mut Algebra) -> Lowered<T>,
+) -> Outcome<T> {
+    let result = step(algebra).map_err(|DivisionByZero| vec![division_by_zero(Item::Mechanism)])?;
+    algebra.check_size()?;
+    Ok(result)
+}
 
 /// Positions and velocities for given generalised velocities.
 pub(super) struct Inertial<'a> {

@@ -1,8 +1,7 @@
 //! Kane's equations: `Σ (F - m a)·v_i + (T - I α - ω × I ω)·ω_i = 0` for every pseudo-velocity.
 
-use super::inertial::{Inertial, Lowered};
+use super::inertial::{Inertial, Lowered, room};
 use super::loads::{Which, efforts, generalized_force};
-use super::room;
 use crate::mechanics::algebra::Algebra;
 use crate::mechanics::finding::Outcome;
 use crate::symbolic::vector::Vec3;

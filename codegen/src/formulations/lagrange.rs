@@ -2,9 +2,8 @@
 //!
 //! T is written in all generalised velocities, as if there were no constraints.
 
-use super::inertial::{Inertial, Lowered};
+use super::inertial::{Inertial, Lowered, room};
 use super::loads::{Which, efforts, generalized_force, potential};
-use super::room;
 use crate::mechanics::algebra::Algebra;
 use crate::mechanics::expressions::DivisionByZero;
 use crate::mechanics::finding::Outcome;

@@ -6,11 +6,12 @@ use appell_spec::Code;
 use appell_spec::mechanism::{ConstraintKind, Mechanism};
 
 use super::algebra::Algebra;
-use super::constraints::{Constraints, Row};
+use super::constraints::Constraints;
 use super::expressions::Lowering;
 use super::finding::{Finding, Item, Outcome};
 use super::kinematics::division_by_zero;
 use super::rank::{LinearRow, Standing, standings};
+use super::row::Row;
 use super::symbols::Symbols;
 use crate::symbolic::vector::{self, Vec3};
 use crate::symbolic::{Expr, Graph};

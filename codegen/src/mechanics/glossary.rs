@@ -3,10 +3,11 @@
 use appell_spec::mechanism::{ConstraintKind, Mechanism};
 use appell_spec::units::{Dimension, Unit};
 
-use super::constraints::{Constraints, Row};
+use super::constraints::Constraints;
 use super::gibbs_appell::BodyMotion;
 use super::kinematics::Kinematics;
 use super::motion::{Block, Motion};
+use super::row::Row;
 use crate::program::{Names, Term};
 
 /// Names of the steps that solve Appell's equations and differentiate the solution.

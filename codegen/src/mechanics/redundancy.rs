@@ -6,10 +6,10 @@ use appell_spec::Code;
 use appell_spec::mechanism::{ConstraintKind, FrameId, GROUND, Mechanism};
 
 use super::algebra::Algebra;
-use super::constraints::Row;
 use super::finding::{Finding, Item, Outcome};
 use super::frames::{FrameVector, Frames};
 use super::rank::{Combination, LinearRow, Standing, is_finite, standings};
+use super::row::Row;
 use crate::symbolic::vector;
 use crate::symbolic::{Expr, Intervals};
 

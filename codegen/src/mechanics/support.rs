@@ -12,11 +12,11 @@ use appell_spec::expr::Quantity;
 use appell_spec::mechanism::{CoordinateId, Mechanism, ORIGIN, PointId};
 
 use super::algebra::Algebra;
-use super::constraints::{Reaction, Row};
 use super::finding::{Finding, Item};
 use super::frames::{FrameVector, Frames};
 use super::kinematics::{Carried, root_of};
 use super::rank::{LinearRow, Standing, standings};
+use super::row::{Reaction, Row};
 use crate::symbolic::vector::Vec3;
 use crate::symbolic::{Expr, Graph, Intervals};
 

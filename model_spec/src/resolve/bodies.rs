@@ -7,9 +7,9 @@ use crate::language::Target;
 use crate::mechanism::{Body, Inertia};
 use crate::units::Dimension;
 
-use super::Resolver;
 use super::dimensions::Dim;
 use super::place::Place;
+use super::resolver::Resolver;
 
 const MASS: Place = Place::constant("the mass of a body");
 const INERTIA: Place = Place::constant("a moment of inertia");

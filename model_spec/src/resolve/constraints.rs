@@ -7,10 +7,10 @@ use crate::mechanism::{Body, Constraint, ConstraintKind, Creep, GROUND, Normal};
 use crate::parse::zero;
 use crate::units::Dimension;
 
-use super::Resolver;
 use super::dimensions::Dim;
 use super::place::Place;
 use super::placement::axis;
+use super::resolver::Resolver;
 
 const PRESCRIBED: Place = Place::prescribed("the prescribed velocity");
 const DIRECTION: Place = Place::prescribed("a direction");

@@ -11,10 +11,10 @@ use crate::mechanism::Interpolation;
 use crate::suggest::{did_you_mean, shown};
 use crate::units::{Dimension, Unit};
 
-use super::Resolver;
 use super::dimensions::{Dim, Typed};
-use super::names::Meaning;
+use super::meaning::Meaning;
 use super::place::Place;
+use super::resolver::Resolver;
 
 impl Resolver<'_> {
     /// Resolves and checks one expression.

@@ -7,10 +7,10 @@ use crate::language::{ItemKind, LoadWord, Target};
 use crate::mechanism::{Axis, Body, Connection, Load, LoadKind};
 use crate::units::Dimension;
 
-use super::Resolver;
 use super::dimensions::Dim;
 use super::place::Place;
 use super::placement::axis;
+use super::resolver::Resolver;
 
 const ACCELERATION: Place = Place::constant("the acceleration of free fall");
 const FORCE: Place = Place::anything("a component of a force");

@@ -1,7 +1,5 @@
 //! Names: what they may be, and what they mean.
 
-use std::collections::BTreeSet;
-
 use crate::ast::{ItemAst, Spanned};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::expr::{Function, Quantity, Span};
@@ -10,44 +8,8 @@ use crate::mechanism::{Interpolation, Label, Signal};
 use crate::suggest::{did_you_mean, shown};
 use crate::units::{Dimension, Unit};
 
-use super::Resolver;
-
-/// What a name in an expression means.
-#[derive(Debug, Clone)]
-pub(super) struct Named {
-    pub(super) meaning: Meaning,
-    /// `None` while it is not known.
-    pub(super) dimension: Option<Dimension>,
-    pub(super) span: Span,
-}
-
-#[derive(Debug, Clone, Copy)]
-pub(super) enum Meaning {
-    Quantity(Quantity),
-    /// Outputs share the names, but expressions cannot use them.
-    Output,
-}
-
-/// Indices of what occurs in expressions.
-#[derive(Debug, Default)]
-pub(super) struct Used {
-    pub(super) parameters: BTreeSet<usize>,
-    pub(super) coordinates: BTreeSet<usize>,
-    pub(super) inputs: BTreeSet<usize>,
-    pub(super) signals: BTreeSet<usize>,
-}
-
-impl Used {
-    pub(super) fn add(&mut self, quantity: Quantity) {
-        match quantity {
-            Quantity::Parameter(id) => self.parameters.insert(id),
-            Quantity::Coordinate(id) | Quantity::Rate(id) => self.coordinates.insert(id),
-            Quantity::Input(id) => self.inputs.insert(id),
-            Quantity::Signal(id) => self.signals.insert(id),
-            Quantity::PseudoVelocity(_) | Quantity::Time | Quantity::Pi => false,
-        };
-    }
-}
+use super::meaning::{Meaning, Named};
+use super::resolver::Resolver;
 
 /// Names that the language keeps for itself.
 fn is_reserved(name: &str) -> bool {

@@ -6,7 +6,7 @@ use crate::diagnostic::{Code, Diagnostic, Severity};
 use crate::expr::{BinaryOp, Expr, ExprKind, Function, Quantity, Relation};
 use crate::mechanism::{Body, Constraint, ConstraintKind, Inertia, Mechanism, Parameter};
 
-use super::Resolver;
+use super::resolver::Resolver;
 
 /// Rounding of a moment, relative to the largest: a thin disc lies exactly on the edge.
 const ROUNDING: f64 = 1e-9;

@@ -9,9 +9,9 @@ use crate::language::{Sense, Target};
 use crate::mechanism::{Axis, Frame, GROUND, Point, Turn};
 use crate::units::Dimension;
 
-use super::Resolver;
 use super::dimensions::Dim;
 use super::place::Place;
+use super::resolver::Resolver;
 
 const ANGLE: Place = Place::geometry("the angle of a frame");
 const POSITION: Place = Place::geometry("the position of a point");

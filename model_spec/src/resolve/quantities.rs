@@ -12,10 +12,10 @@ use crate::mechanism::{
 use crate::suggest::did_you_mean;
 use crate::units::{Dimension, Unit};
 
-use super::Resolver;
 use super::dimensions::{Dim, Typed};
-use super::names::Meaning;
+use super::meaning::Meaning;
 use super::place::Place;
+use super::resolver::Resolver;
 
 impl<'a> Resolver<'a> {
     /// Defines an item that carries its own unit.

@@ -9,8 +9,8 @@ use super::super::{Block, Row, Section, Span, Table};
 use super::super::{Letter, Math};
 use super::placement::from_to;
 use super::{divisors, equality, introduced, listed, math, sentence, with, words};
-use crate::mechanics::constraints;
 use crate::mechanics::expressions::Lowering;
+use crate::mechanics::row;
 use crate::symbolic::Graph;
 
 /// Constraints and pseudo-velocities.
@@ -129,7 +129,7 @@ fn rolling(w: &Writer<'_>, kind: &ConstraintKind) -> Option<Math> {
 }
 
 /// `Σ coefficient · q̇ + rest = 0`
-fn equation(w: &mut Writer<'_>, row: &constraints::Row) -> Equation {
+fn equation(w: &mut Writer<'_>, row: &row::Row) -> Equation {
     let mut parts = vec![row.rest];
     let rates = w.derivation.symbols.rates.clone();
     for (&coefficient, rate) in row.coefficients.iter().zip(rates) {

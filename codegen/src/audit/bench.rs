@@ -1,0 +1,135 @@
+//! What every question about the equations needs, and where its answers go.
+
+use appell_spec::mechanism::Mechanism;
+
+use crate::mechanics::algebra::Algebra;
+use crate::mechanics::expressions::Lowering;
+use crate::mechanics::finding::Finding;
+use crate::mechanics::initial::InitialState;
+use crate::mechanics::kinematics::{Effort, Kinematics};
+use crate::mechanics::symbols::Symbols;
+use crate::mechanics::{Derivation, declared_ranges, seed};
+use crate::symbolic::print::{Setter, Spelled, text};
+use crate::symbolic::{Expr, Graph, Intervals};
+
+/// Nobody reads a formula with more operations in a message.
+const MOST_OPERATIONS: usize = 16;
+
+/// What an audit tells.
+#[derive(Debug, Clone, Default)]
+pub struct Audit {
+    /// What looks unintended.
+    pub warnings: Vec<Finding>,
+    /// What is worth knowing.
+    pub notes: Vec<Finding>,
+}
+
+/// What every question about the equations needs.
+pub(super) struct Bench<'a> {
+    pub(super) mechanism: &'a Mechanism,
+    pub(super) derivation: &'a Derivation,
+    /// A graph of its own: the emitted equations do not depend on the audit.
+    pub(super) algebra: Algebra,
+    pub(super) declared: Intervals,
+    pub(super) state: InitialState,
+    /// Velocities with symbols for q̇.
+    pub(super) unconstrained: Kinematics,
+    /// Outputs in terms of coordinates and pseudo-velocities.
+    pub(super) outputs: Vec<Expr>,
+}
+
+impl<'a> Bench<'a> {
+    /// `None` where an expression divides by zero, which the derivation tells.
+    pub(super) fn new(mechanism: &'a Mechanism, derivation: &'a Derivation) -> Option<Self> {
+        let symbols = &derivation.symbols;
+        let graph = derivation.algebra.graph.clone();
+        let mut algebra = Algebra::new(graph, symbols, seed(mechanism));
+        let unconstrained = unconstrained(&mut algebra, mechanism, symbols)?;
+        let lowering = Lowering {
+            symbols,
+            rates: &derivation.velocities.rates,
+        };
+        let outputs = mechanism.outputs.iter();
+        let outputs = outputs.map(|output| lowering.lower(&mut algebra.graph, &output.value));
+        let outputs = outputs.collect::<Result<_, _>>().ok()?;
+        Some(Self {
+            mechanism,
+            derivation,
+            declared: declared_ranges(&algebra.graph, mechanism, symbols),
+            state: InitialState::new(&algebra.graph, mechanism, symbols),
+            algebra,
+            unconstrained,
+            outputs,
+        })
+    }
+
+    /// An expression as people read it, where they would.
+    pub(super) fn readable(&self, expr: Expr) -> Option<String> {
+        let graph = &self.algebra.graph;
+        (graph.operations(&[expr]) <= MOST_OPERATIONS).then(|| shown(graph, expr))
+    }
+
+    /// An expression as people read it.
+    pub(super) fn shown(&self, expr: Expr) -> String {
+        shown(&self.algebra.graph, expr)
+    }
+
+    /// Everything that the motion and its results consist of, without reactions but with friction.
+    pub(super) fn equations(&self) -> Vec<Expr> {
+        let Derivation {
+            contacts,
+            coordinate_rates,
+            gibbs,
+            forces,
+            loads,
+            ..
+        } = self.derivation;
+        let mut all: Vec<Expr> = gibbs.mass_matrix.iter().flatten().copied().collect();
+        all.extend(&gibbs.bias);
+        all.extend(forces);
+        all.extend(coordinate_rates);
+        all.extend(loads.iter().filter_map(|load| load.potential));
+        all.extend(&self.outputs);
+        all.extend(contacts.iter().filter_map(|contact| contact.friction));
+        all
+    }
+
+    /// Whether none of the expressions changes with a symbol.
+    pub(super) fn are_independent_of(&mut self, exprs: &[Expr], symbol: Expr) -> bool {
+        let Algebra { graph, test, .. } = &mut self.algebra;
+        graph.as_symbol(symbol).is_some_and(|symbol| {
+            let mut exprs = exprs.iter();
+            exprs.all(|&expr| test.independent_of(graph, expr, symbol))
+        })
+    }
+}
+
+/// Velocities with symbols for q̇.
+pub(super) fn unconstrained(
+    algebra: &mut Algebra,
+    mechanism: &Mechanism,
+    symbols: &Symbols,
+) -> Option<Kinematics> {
+    let rates = &symbols.rates;
+    Kinematics::new(algebra, mechanism, symbols, rates, &[], Effort::Plain).ok()
+}
+
+/// An expression that only its zeros matter of.
+pub(super) fn zero_or(algebra: &mut Algebra, expr: Expr) -> Expr {
+    if algebra.test.is_zero(&algebra.graph, expr) {
+        Graph::ZERO
+    } else {
+        expr
+    }
+}
+
+pub(super) fn shown(graph: &Graph, expr: Expr) -> String {
+    let mut setter = Setter::new(Spelled).with_definitions_inline();
+    text(&setter.set(graph, expr).math)
+}
+
+/// Names in a sentence: `` `a`, `b` ``.
+pub(super) fn listed<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
+    let names: Vec<String> = names.into_iter().map(|name| format!("`{name}`")).collect();
+    names.join(", ")
+}

@@ -46,7 +46,9 @@ impl Modules {
 
     /// The files whose path below `src` starts so.
     fn below<'a>(&'a self, folder: &'a str) -> impl Iterator<Item = &'a String> {
-        self.uses.keys().filter(move |file| file.starts_with(folder))
+        self.uses
+            .keys()
+            .filter(move |file| file.starts_with(folder))
     }
 
     /// Sets of more than two files that all use each other, directly or not, each told as one way

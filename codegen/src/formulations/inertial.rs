@@ -6,8 +6,7 @@ use appell_spec::mechanism::{Axis, BodyId, Components, ConstraintKind, FrameId, 
 
 use crate::mechanics::algebra::Algebra;
 use crate::mechanics::expressions::{DivisionByZero, Lowering};
-use crate::mechanics::finding::{Item, Outcome};
-use crate::mechanics::kinematics::division_by_zero;
+use crate::mechanics::finding::{Item, Outcome, division_by_zero};
 use crate::mechanics::symbols::Symbols;
 use crate::mechanics::time::TimeDerivative;
 use crate::symbolic::vector::{self, Mat3, Vec3};

@@ -6,14 +6,13 @@ use appell_spec::mechanism::{self, Label, Mechanism, Signal};
 use super::Derivation;
 use super::constraints::Constraints;
 use super::expressions::Lowering;
-use super::finding::{Item, Outcome};
+use super::finding::{Item, Outcome, division_by_zero};
 use super::gibbs_appell::{
     ActualMotion, BodyMotion, acceleration_energies, acceleration_energy,
     kinetic_energy_by_velocity, motions_in_ground,
 };
 use super::glossary;
 use super::initial::InitialState;
-use super::kinematics::division_by_zero;
 use super::linear::ImplicitMotion;
 use super::linear_bound::BoundMotion;
 use super::positions::Positions;

@@ -7,9 +7,9 @@ use appell_spec::units::{Dimension, Unit};
 
 use super::algebra::Algebra;
 use super::expressions::Lowering;
-use super::finding::{Finding, Item, Outcome};
+use super::finding::{Finding, Item, Outcome, division_by_zero};
 use super::frames::FrameVector;
-use super::kinematics::{Effort, Kinematics, division_by_zero, root_of};
+use super::kinematics::{Effort, Kinematics, root_of};
 use super::redundancy::leave_out;
 use super::row::{Reaction, Row};
 use super::support::Support;

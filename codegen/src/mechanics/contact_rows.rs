@@ -9,10 +9,10 @@ use appell_spec::mechanism::{BodyId, ConstraintKind, FrameId, GROUND, Mechanism,
 use super::algebra::Algebra;
 use super::constraints::Constraints;
 use super::elimination::{Elimination, TurnedRow};
-use super::finding::{Item, Outcome};
+use super::finding::{Item, Outcome, division_by_zero};
 use super::frames::FrameVector;
 use super::gibbs_appell::{BodyMotion, frame_rate, named3};
-use super::kinematics::{Kinematics, division_by_zero};
+use super::kinematics::Kinematics;
 use super::symbols::Symbols;
 use super::time::TimeDerivative;
 use crate::symbolic::vector::{self, Vec3};

@@ -8,8 +8,7 @@ use appell_spec::mechanism::{ConstraintKind, LoadKind, Mechanism};
 
 use super::algebra::Algebra;
 use super::expressions::Lowering;
-use super::finding::{Finding, Item};
-use super::kinematics::division_by_zero;
+use super::finding::{Finding, Item, division_by_zero};
 use super::symbols::Symbols;
 use crate::symbolic::{Graph, Node};
 

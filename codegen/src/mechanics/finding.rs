@@ -44,3 +44,13 @@ pub struct Finding {
 
 /// Result of a stage of the derivation.
 pub type Outcome<T> = Result<T, Vec<Finding>>;
+
+/// A spec expression that divides by the number zero.
+pub fn division_by_zero(item: Item) -> Finding {
+    Finding {
+        code: Code::DivisionByZero,
+        message: "an expression divides by zero".to_owned(),
+        item,
+        help: "write the expression without the zero denominator".to_owned(),
+    }
+}

@@ -4,8 +4,7 @@ use appell_spec::mechanism::{FrameId, GROUND, Mechanism};
 
 use super::algebra::Algebra;
 use super::expressions::Lowering;
-use super::finding::{Item, Outcome};
-use super::kinematics::division_by_zero;
+use super::finding::{Item, Outcome, division_by_zero};
 use super::time::TimeDerivative;
 use crate::symbolic::vector::{self, Vec3};
 use crate::symbolic::{Expr, Graph};

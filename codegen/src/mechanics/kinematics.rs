@@ -1,11 +1,10 @@
 //! Velocities of points and bodies for given generalised velocities.
 
-use appell_spec::Code;
 use appell_spec::mechanism::{BodyId, FrameId, GROUND, Mechanism, ORIGIN, PointId};
 
 use super::algebra::Algebra;
 use super::expressions::Lowering;
-use super::finding::{Finding, Item, Outcome};
+use super::finding::{Item, Outcome, division_by_zero};
 use super::frames::{FrameVector, Frames};
 use super::symbols::Symbols;
 use super::time::TimeDerivative;
@@ -217,14 +216,4 @@ pub fn root_of(mechanism: &Mechanism, point: PointId) -> PointId {
         root = from;
     }
     root
-}
-
-/// A spec expression that divides by the number zero.
-pub fn division_by_zero(item: Item) -> Finding {
-    Finding {
-        code: Code::DivisionByZero,
-        message: "an expression divides by zero".to_owned(),
-        item,
-        help: "write the expression without the zero denominator".to_owned(),
-    }
 }

@@ -5,9 +5,9 @@ use appell_spec::mechanism::{Connection, GROUND, LoadKind, Mechanism, PointId};
 
 use super::algebra::Algebra;
 use super::expressions::{DivisionByZero, Lowering};
-use super::finding::{Finding, Item, Outcome};
+use super::finding::{Finding, Item, Outcome, division_by_zero};
 use super::frames::FrameVector;
-use super::kinematics::{Kinematics, division_by_zero};
+use super::kinematics::Kinematics;
 use super::symbols::Symbols;
 use crate::symbolic::vector::Vec3;
 use crate::symbolic::{Expr, Graph, Rational, Substitution, SymbolId};

@@ -5,8 +5,7 @@ use appell_spec::mechanism::{ConstraintKind, Mechanism};
 
 use super::algebra::Algebra;
 use super::expressions::Lowering;
-use super::finding::{Finding, Item, Outcome};
-use super::kinematics::division_by_zero;
+use super::finding::{Finding, Item, Outcome, division_by_zero};
 use super::symbols::Symbols;
 use crate::symbolic::{Expr, Graph, Intervals};
 

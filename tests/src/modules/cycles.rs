@@ -27,7 +27,11 @@ pub(super) fn longer_than_two(uses: &Uses, exempt: &[&str]) -> Vec<String> {
     cycles
 }
 
-fn reached<'a>(uses: &'a Uses, from: &'a String, files: &BTreeSet<&'a String>) -> BTreeSet<&'a String> {
+fn reached<'a>(
+    uses: &'a Uses,
+    from: &'a String,
+    files: &BTreeSet<&'a String>,
+) -> BTreeSet<&'a String> {
     let mut reached = BTreeSet::new();
     let mut open = vec![from];
     while let Some(file) = open.pop() {
@@ -49,19 +53,27 @@ fn way_round(uses: &Uses, set: &BTreeSet<&String>) -> String {
             let round: Vec<&String> = there.into_iter().chain(back.into_iter().skip(1)).collect();
             let files: BTreeSet<&&String> = round.iter().collect();
             if files.len() > MOST_FILES
-                && shortest.as_ref().is_none_or(|best| round.len() < best.len())
+                && shortest
+                    .as_ref()
+                    .is_none_or(|best| round.len() < best.len())
             {
                 shortest = Some(round);
             }
         }
     }
     let round = shortest.unwrap_or_default();
-    let step = |pair: &[&String]| format!("  {} → {} → {}", pair[0], uses[pair[0]][pair[1]], pair[1]);
+    let step =
+        |pair: &[&String]| format!("  {} → {} → {}", pair[0], uses[pair[0]][pair[1]], pair[1]);
     round.windows(2).map(step).collect::<Vec<_>>().join("\n")
 }
 
 /// The shortest way between two files of a set.
-fn way<'a>(uses: &'a Uses, set: &BTreeSet<&'a String>, from: &'a String, to: &'a String) -> Vec<&'a String> {
+fn way<'a>(
+    uses: &'a Uses,
+    set: &BTreeSet<&'a String>,
+    from: &'a String,
+    to: &'a String,
+) -> Vec<&'a String> {
     let mut before: BTreeMap<&String, &String> = BTreeMap::new();
     let mut open = VecDeque::from([from]);
     while let Some(file) = open.pop_front() {

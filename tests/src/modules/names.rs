@@ -102,7 +102,11 @@ impl Tree {
                         self.module(source, file.clone(), &below, items, Some(id))
                     } else {
                         let beside = folder.join(format!("{name}.rs"));
-                        let path = if beside.exists() { beside } else { below.join("mod.rs") };
+                        let path = if beside.exists() {
+                            beside
+                        } else {
+                            below.join("mod.rs")
+                        };
                         self.file(source, &path, &below, Some(id))
                     };
                     self.modules[id].children.insert(name, child);
@@ -140,21 +144,18 @@ impl Tree {
 
     /// The file that defines what a path names, and the item as it is called there. Nothing for
     /// modules, locals and what lies outside the crate.
-    pub(super) fn definition(&self, module: ModuleId, path: &[String]) -> Option<(&String, String)> {
-        if let [name] = path
-            && let Some(name) = name.strip_suffix('!')
-        {
-            return self.macros.get(name).map(|file| (file, format!("{name}!")));
+    pub(super) fn definition(
+        &self,
+        module: ModuleId,
+        path: &[String],
+    ) -> Option<(&String, String)> {
+        match (self.meaning(module, path, 0), path) {
+            (Some(Meaning::Item(module, name)), _) => Some((&self.modules[module].file, name)),
+            (Some(Meaning::Module(_)), _) => None,
+            // Macros are known from where they stand on.
+            (None, [name]) => self.macros.get(name).map(|file| (file, format!("{name}!"))),
+            (None, _) => None,
         }
-        match self.meaning(module, path, 0)? {
-            Meaning::Module(_) => None,
-            Meaning::Item(module, name) => Some((&self.modules[module].file, name)),
-        }
-    }
-
-    /// Whether a path names a module of the crate.
-    pub(super) fn is_module(&self, module: ModuleId, path: &[String]) -> bool {
-        matches!(self.meaning(module, path, 0), Some(Meaning::Module(_)))
     }
 
     fn meaning(&self, module: ModuleId, path: &[String], steps: usize) -> Option<Meaning> {
@@ -192,14 +193,19 @@ impl Tree {
         }
         if let Some(path) = module.imported.get(name) {
             // `use name::…` of another crate stands for no name of this module.
-            return if path[0] == name { None } else { self.meaning(id, path, steps + 1) };
+            return if path[0] == name {
+                None
+            } else {
+                self.meaning(id, path, steps + 1)
+            };
         }
-        module.globs.iter().find_map(|path| {
-            match self.meaning(id, path, steps + 1)? {
+        module
+            .globs
+            .iter()
+            .find_map(|path| match self.meaning(id, path, steps + 1)? {
                 Meaning::Module(other) if other != id => self.named(other, name, steps + 1),
                 Meaning::Module(_) | Meaning::Item(..) => None,
-            }
-        })
+            })
     }
 }
 
@@ -215,18 +221,29 @@ pub(super) fn imports(tree: &UseTree) -> Vec<Import> {
             UseTree::Name(last) => {
                 let own = last.ident == "self";
                 let name = last.ident.to_string();
-                let full = if own { path.clone() } else { [path.as_slice(), &[name]].concat() };
+                let full = if own {
+                    path.clone()
+                } else {
+                    [path.as_slice(), &[name]].concat()
+                };
                 let name = full.last().cloned();
                 found.push(Import { path: full, name });
             }
             UseTree::Rename(last) => {
                 let own = last.ident == "self";
                 let name = last.ident.to_string();
-                let full = if own { path.clone() } else { [path.as_slice(), &[name]].concat() };
+                let full = if own {
+                    path.clone()
+                } else {
+                    [path.as_slice(), &[name]].concat()
+                };
                 let name = Some(last.rename.to_string());
                 found.push(Import { path: full, name });
             }
-            UseTree::Glob(_) => found.push(Import { path: path.clone(), name: None }),
+            UseTree::Glob(_) => found.push(Import {
+                path: path.clone(),
+                name: None,
+            }),
             UseTree::Group(group) => {
                 for tree in &group.items {
                     walk(tree, path, found);

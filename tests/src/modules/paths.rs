@@ -1,77 +1,83 @@
 //! The paths that the code of a crate writes.
 
-use proc_macro2::{TokenStream, TokenTree};
-use syn::visit::{self, Visit};
+use proc_macro2::{Delimiter, TokenStream, TokenTree};
+use quote::ToTokens;
+use syn::Item;
 
 use super::names::{self, ModuleId, Tree};
 
+/// A path, segment by segment.
+pub(super) type Path = Vec<String>;
+
 /// Every path of every module, with the file that it stands in.
-pub(super) fn all(tree: &Tree) -> Vec<(ModuleId, String, Vec<String>)> {
+pub(super) fn all(tree: &Tree) -> Vec<(ModuleId, String, Path)> {
     let mut all = Vec::new();
     for (id, module) in tree.modules.iter().enumerate() {
-        let mut paths = Paths::default();
+        let mut found = Vec::new();
         for item in &module.items {
-            paths.visit_item(item);
+            match item {
+                Item::Use(item) if names::is_reexport(&item.vis) => {}
+                Item::Use(item) => {
+                    let imports = names::imports(&item.tree).into_iter();
+                    found.extend(imports.map(|import| import.path));
+                }
+                item => scan(item.to_token_stream(), &[], &mut found),
+            }
         }
-        let found = paths.found.into_iter().filter(|path| !path.is_empty());
-        all.extend(found.map(|path| (id, module.file.clone(), path)));
+        all.extend(
+            found
+                .into_iter()
+                .map(|path| (id, module.file.clone(), path)),
+        );
     }
     all
 }
 
-#[derive(Default)]
-struct Paths {
-    found: Vec<Vec<String>>,
-}
-
-impl<'ast> Visit<'ast> for Paths {
-    fn visit_item_use(&mut self, item: &'ast syn::ItemUse) {
-        if !names::is_reexport(&item.vis) {
-            let imports = names::imports(&item.tree).into_iter();
-            self.found.extend(imports.map(|import| import.path));
-        }
-    }
-
-    fn visit_path(&mut self, path: &'ast syn::Path) {
-        let segments = path.segments.iter();
-        self.found
-            .push(segments.map(|segment| segment.ident.to_string()).collect());
-        visit::visit_path(self, path);
-    }
-
-    fn visit_macro(&mut self, call: &'ast syn::Macro) {
-        if let Some(name) = call.path.get_ident() {
-            self.found.push(vec![format!("{name}!")]);
-        }
-        self.tokens(call.tokens.clone());
-        visit::visit_macro(self, call);
-    }
-}
-
-impl Paths {
-    /// The paths among the arguments of a macro, which no grammar describes.
-    fn tokens(&mut self, tokens: TokenStream) {
-        let mut path: Vec<String> = Vec::new();
-        let mut colons = 0;
-        for token in tokens {
-            match token {
-                TokenTree::Ident(name) => {
-                    if colons != 2 {
-                        self.found.push(std::mem::take(&mut path));
-                    }
-                    path.push(name.to_string());
-                    colons = 0;
+/// Finds the paths among tokens, those of macro arguments too, which no grammar describes. `prefix`
+/// is what stands before the braces of a `use`.
+fn scan(tokens: TokenStream, prefix: &[String], found: &mut Vec<Path>) {
+    let mut path: Path = prefix.to_vec();
+    // What stands between the last name and the next.
+    let mut between = if prefix.is_empty() {
+        String::new()
+    } else {
+        "::".to_owned()
+    };
+    let mut is_method = false;
+    for token in tokens {
+        match token {
+            TokenTree::Ident(name) => {
+                if between != "::" {
+                    note(std::mem::take(&mut path), is_method, false, found);
+                    is_method = between == ".";
+                    path = prefix.to_vec();
                 }
-                TokenTree::Punct(sign) if sign.as_char() == ':' => colons += 1,
-                other => {
-                    self.found.push(std::mem::take(&mut path));
-                    colons = 0;
-                    if let TokenTree::Group(group) = other {
-                        self.tokens(group.stream());
-                    }
-                }
+                path.push(name.to_string());
+                between.clear();
             }
+            TokenTree::Punct(sign) => between.push(sign.as_char()),
+            TokenTree::Group(group) => {
+                let within = group.delimiter() == Delimiter::Brace && between == "::";
+                let inner: &[String] = if within { &path } else { &[] };
+                scan(group.stream(), inner, found);
+                let called = group.delimiter() == Delimiter::Parenthesis && between.is_empty();
+                let called = called || between == "!";
+                note(std::mem::take(&mut path), is_method, called, found);
+                path = prefix.to_vec();
+                between = ",".to_owned();
+            }
+            TokenTree::Literal(_) => between.push('0'),
         }
-        self.found.push(path);
+    }
+    note(path, is_method, false, found);
+}
+
+/// Keeps what may name an item: a name alone in small letters is one only where it is called.
+fn note(path: Path, is_method: bool, called: bool, found: &mut Vec<Path>) {
+    let is_small = |name: &String| name.starts_with(|c: char| c.is_lowercase() || c == '_');
+    match path.as_slice() {
+        [] => {}
+        [name] if is_method || is_small(name) && !called => {}
+        _ => found.push(path),
     }
 }

@@ -3,7 +3,7 @@
 use super::super::writer::Writer;
 use super::super::{Block, Section};
 use super::super::{Letter, Math};
-use super::{math, with, words};
+use super::phrases::{headed, math, with, words};
 use crate::mechanics::gibbs_appell::along;
 use crate::symbolic::vector;
 
@@ -48,5 +48,5 @@ pub(super) fn section(w: &mut Writer<'_>) -> Section {
         words(", with the components differentiated one by one; angular accelerations likewise."),
     ])];
     blocks.extend(with(w, "", equations));
-    super::section("Accelerations", blocks)
+    headed("Accelerations", blocks)
 }

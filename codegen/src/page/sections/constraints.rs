@@ -7,8 +7,9 @@ use super::super::units::unit;
 use super::super::writer::Writer;
 use super::super::{Block, Row, Section, Span, Table};
 use super::super::{Letter, Math};
+use super::divisors;
+use super::phrases::{equality, headed, introduced, listed, math, sentence, with, words};
 use super::placement::from_to;
-use super::{divisors, equality, introduced, listed, math, sentence, with, words};
 use crate::mechanics::expressions::Lowering;
 use crate::mechanics::row;
 use crate::symbolic::Graph;
@@ -47,7 +48,7 @@ pub(super) fn section(w: &mut Writer<'_>) -> Section {
              when the equations are evaluated.",
         ));
     }
-    super::section("Constraints and pseudo-velocities", blocks)
+    headed("Constraints and pseudo-velocities", blocks)
 }
 
 /// Generalised velocities in terms of the pseudo-velocities; those with the letter of a

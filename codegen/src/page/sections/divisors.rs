@@ -3,7 +3,7 @@
 use super::super::units::range;
 use super::super::writer::Writer;
 use super::super::{Block, Letter, Math, Span};
-use super::{listed, math, words};
+use super::phrases::{listed, math, words};
 use crate::mechanics::parameter_ranges;
 use crate::symbolic::{Expr, Intervals, Node};
 

@@ -8,8 +8,8 @@ use appell_spec::mechanism::{
 
 use super::super::writer::Writer;
 use super::super::{Letter, Math, Span};
+use super::phrases::{equality, listed, math, words};
 use super::placement::{from_to, lowered};
-use super::{equality, listed, math, words};
 use crate::symbolic::{Expr, Graph};
 
 /// `F_drive = [0, u, 0] tilted at A, −F_drive at G; δP_drive = F_drive · (δv_A − δv_G)`

@@ -5,7 +5,7 @@ use appell_spec::mechanism::{Axis, FrameId, GROUND, Inertia, Turn};
 use super::super::writer::Writer;
 use super::super::{Block, Chain, Row, Section, Table};
 use super::super::{Letter, Math};
-use super::{equality, math, sentence, words};
+use super::phrases::{equality, headed, math, sentence, words};
 use crate::mechanics::expressions::Lowering;
 use crate::symbolic::{Expr, Graph};
 
@@ -39,7 +39,7 @@ pub(super) fn section(w: &mut Writer<'_>) -> Section {
     table(&mut blocks, "Points", points);
     let bodies = bodies(w);
     table(&mut blocks, "Bodies", bodies);
-    super::section("Frames, points, bodies", blocks)
+    headed("Frames, points, bodies", blocks)
 }
 
 fn table(blocks: &mut Vec<Block>, title: &str, rows: Vec<Row>) {

@@ -49,10 +49,14 @@ impl Velocities {
             v.map(|component| written(&algebra.graph, &symbols, mechanism, component))
         };
         Ok(Self {
-            points: (0..mechanism.points.len())
+            points: mechanism
+                .points
+                .ids()
                 .map(|point| written(kinematics.velocity(point)))
                 .collect(),
-            frames: (0..mechanism.frames.len())
+            frames: mechanism
+                .frames
+                .ids()
                 .map(|frame| written(kinematics.frames.angular_velocity(frame)))
                 .collect(),
         })

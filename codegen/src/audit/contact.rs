@@ -33,7 +33,7 @@ pub(super) fn findings(
         symbols,
         kinematics,
     };
-    let constraints = mechanism.constraints.iter().enumerate();
+    let constraints = mechanism.constraints.entries();
     constraints
         .filter_map(|(index, constraint)| {
             let ConstraintKind::Rolling {

@@ -115,7 +115,7 @@ fn dynamics(algebra: &mut Algebra, inertial: &Inertial<'_>) -> Outcome<Vec<Equat
 /// T = Σ ½ m v·v + ½ ω·I ω
 fn kinetic_energy(algebra: &mut Algebra, inertial: &Inertial<'_>) -> Lowered<Expr> {
     let mut parts = Vec::new();
-    for (index, body) in inertial.mechanism.bodies.iter().enumerate() {
+    for (index, body) in inertial.mechanism.bodies.entries() {
         let v = inertial.velocity(&mut algebra.graph, None, body.centre);
         let square = algebra.graph.dot(v, v);
         let mass = inertial.mass(algebra, index)?;

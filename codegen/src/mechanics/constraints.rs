@@ -2,7 +2,7 @@
 
 use appell_runtime::model::Reaction as Reported;
 use appell_spec::Code;
-use appell_spec::mechanism::{ConstraintKind, GROUND, Mechanism, PointId};
+use appell_spec::mechanism::{ConstraintId, ConstraintKind, GROUND, Mechanism, PointId};
 use appell_spec::units::{Dimension, Unit};
 
 use super::algebra::Algebra;
@@ -36,7 +36,7 @@ pub struct Constraints {
 
 impl Constraints {
     /// The rows of a constraint.
-    pub fn rows_of(&self, constraint: usize) -> impl Iterator<Item = &Row> {
+    pub fn rows_of(&self, constraint: ConstraintId) -> impl Iterator<Item = &Row> {
         let rows = self.rows.iter();
         rows.filter(move |row| row.constraint == constraint)
     }
@@ -113,9 +113,9 @@ pub fn constraints(
 
 /// The constraints, those of positions last: where a contact and a position constraint say the same,
 /// the contact is kept, because its reaction has a point.
-fn positions_last(mechanism: &Mechanism) -> Vec<usize> {
-    let mut order: Vec<usize> = (0..mechanism.constraints.len()).collect();
-    let position = |&i: &usize| {
+fn positions_last(mechanism: &Mechanism) -> Vec<ConstraintId> {
+    let mut order: Vec<ConstraintId> = mechanism.constraints.ids().collect();
+    let position = |&i: &ConstraintId| {
         matches!(
             mechanism.constraints[i].kind,
             ConstraintKind::Position { .. }
@@ -131,7 +131,7 @@ enum Place {
     /// At a point.
     Point(PointId),
     /// Along a combination of velocities that has no point: a multiplier.
-    Constraint(usize),
+    Constraint(ConstraintId),
 }
 
 impl Place {
@@ -197,7 +197,7 @@ fn scalar_rows(
     mechanism: &Mechanism,
     symbols: &Symbols,
     kinematics: &Kinematics,
-    index: usize,
+    index: ConstraintId,
 ) -> Result<(Place, Vec<Scalar>), Finding> {
     let constraint = &mechanism.constraints[index];
     let item = Item::Constraint(index);
@@ -299,7 +299,7 @@ fn row(
     algebra: &mut Algebra,
     mechanism: &Mechanism,
     symbols: &Symbols,
-    constraint: usize,
+    constraint: ConstraintId,
     place: usize,
     scalar: Scalar,
 ) -> Result<Row, Finding> {

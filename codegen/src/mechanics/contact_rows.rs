@@ -52,7 +52,7 @@ impl ContactRows {
         bodies: &[BodyMotion],
     ) -> Outcome<Vec<Self>> {
         let mut all = Vec::new();
-        for (index, constraint) in mechanism.constraints.iter().enumerate() {
+        for (index, constraint) in mechanism.constraints.entries() {
             let ConstraintKind::Rolling { body, contact, .. } = constraint.kind else {
                 continue;
             };
@@ -75,7 +75,7 @@ impl ContactRows {
                 symbols,
                 elimination,
                 kinematics,
-                motion: &bodies[body],
+                motion: &bodies[body.index()],
                 body,
                 frame,
                 point: contact,

@@ -1,7 +1,7 @@
 //! Constraints and definitions of the pseudo-velocities, solved for the generalised velocities.
 
 use appell_spec::Code;
-use appell_spec::mechanism::Mechanism;
+use appell_spec::mechanism::{CoordinateId, Mechanism, SpeedId};
 
 use super::algebra::Algebra;
 use super::constraints::Constraints;
@@ -186,7 +186,10 @@ impl Elimination {
         } = self;
         let mut values = open.solved_for(&mut algebra.graph, &open.right);
         for (value, &q) in values.iter_mut().zip(&open.coordinates) {
-            let name = format!("{}_dot", mechanism.coordinates[q].label.name);
+            let name = format!(
+                "{}_dot",
+                mechanism.coordinates[CoordinateId::new(q)].label.name
+            );
             *value = algebra.graph.name(&name, *value);
         }
         let rates = open.put_in(algebra, &values, &rates)?;
@@ -248,7 +251,7 @@ fn definition(
     };
     let value = lowering
         .lower(&mut algebra.graph, definition)
-        .map_err(|_| vec![division_by_zero(Item::PseudoVelocity(index))])?;
+        .map_err(|_| vec![division_by_zero(Item::PseudoVelocity(SpeedId::new(index)))])?;
     let mut coefficients = Vec::with_capacity(symbols.rates.len());
     let mut parts = vec![symbols.speeds[index], algebra.graph.neg(value)];
     for &rate in &symbols.rates {
@@ -485,7 +488,12 @@ fn untold_velocities(
     let all = [rows, definitions].concat();
     let untold: Vec<String> = (0..mechanism.coordinates.len())
         .filter(|&q| all.iter().all(|row| row.coefficients[q] == Graph::ZERO))
-        .map(|q| format!("`dot({})`", mechanism.coordinates[q].label.name))
+        .map(|q| {
+            format!(
+                "`dot({})`",
+                mechanism.coordinates[CoordinateId::new(q)].label.name
+            )
+        })
         .collect();
     let help = if untold.is_empty() {
         "define it so that it is independent of the constraints and of the others".to_owned()
@@ -516,7 +524,7 @@ fn untold_velocities(
                 format!("follows from {}", sum.join(", "))
             };
             let message = format!("`{}` {reason}: {consequence}", names[index]);
-            findings.push(finding(message, Item::PseudoVelocity(speed)));
+            findings.push(finding(message, Item::PseudoVelocity(SpeedId::new(speed))));
         }
     }
     if findings.is_empty() {

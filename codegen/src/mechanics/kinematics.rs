@@ -1,6 +1,6 @@
 //! Velocities of points and bodies for given generalised velocities.
 
-use appell_spec::mechanism::{BodyId, FrameId, GROUND, Mechanism, ORIGIN, PointId};
+use appell_spec::mechanism::{BodyId, FrameId, GROUND, List, Mechanism, ORIGIN, PointId};
 
 use super::algebra::Algebra;
 use super::expressions::Lowering;
@@ -20,9 +20,9 @@ pub struct Kinematics {
     /// Frames and their angular velocities.
     pub frames: Frames,
     /// Position of each point from the point it is placed from.
-    offsets: Vec<FrameVector>,
+    offsets: List<PointId, FrameVector>,
     /// Velocity of each point from the ground.
-    velocities: Vec<FrameVector>,
+    velocities: List<PointId, FrameVector>,
 }
 
 /// How much work goes into short velocities.
@@ -59,9 +59,9 @@ impl Kinematics {
         let lowering = Lowering { symbols, rates };
         let time = TimeDerivative { symbols, rates };
         let frames = Frames::new(algebra, mechanism, &lowering, &time)?;
-        let mut offsets = Vec::with_capacity(mechanism.points.len());
-        let mut velocities: Vec<FrameVector> = Vec::with_capacity(mechanism.points.len());
-        for (id, point) in mechanism.points.iter().enumerate() {
+        let mut offsets = List::default();
+        let mut velocities: List<PointId, FrameVector> = List::default();
+        for (id, point) in mechanism.points.entries() {
             let at = lowering
                 .lower_all(&mut algebra.graph, &point.at)
                 .map_err(|_| vec![division_by_zero(Item::Point(id))])?;
@@ -192,7 +192,7 @@ impl Frames {
     pub fn simplest(&self, algebra: &mut Algebra, vector: FrameVector) -> FrameVector {
         let mut best = vector;
         let mut cost = algebra.graph.operations(&best.v);
-        for frame in 0..self.count() {
+        for frame in self.ids() {
             if cost == 0 || frame == best.frame || self.distance(vector.frame, frame) > FARTHEST {
                 continue;
             }

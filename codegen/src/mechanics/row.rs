@@ -1,6 +1,6 @@
 //! A scalar constraint, linear in the generalised velocities.
 
-use appell_spec::mechanism::PointId;
+use appell_spec::mechanism::{ConstraintId, PointId};
 
 use super::frames::FrameVector;
 use super::rank::LinearRow;
@@ -12,8 +12,8 @@ use crate::symbolic::{Expr, Graph};
 pub struct Row {
     /// Name for people, such as `rolling.x`.
     pub name: String,
-    /// Index of the constraint in the mechanism.
-    pub constraint: usize,
+    /// Of which constraint.
+    pub constraint: ConstraintId,
     /// The whole row, with symbols for the generalised velocities.
     pub value: Expr,
     /// Coefficients of the generalised velocities.

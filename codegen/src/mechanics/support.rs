@@ -9,7 +9,7 @@
 
 use appell_spec::Code;
 use appell_spec::expr::Quantity;
-use appell_spec::mechanism::{CoordinateId, Mechanism, ORIGIN, PointId};
+use appell_spec::mechanism::{ConstraintId, CoordinateId, Mechanism, ORIGIN, PointId};
 
 use super::algebra::Algebra;
 use super::finding::{Finding, Item};
@@ -169,7 +169,7 @@ impl Support {
         groups.retain(|group| group.places.len() > 1);
         let finding = |group: Indeterminate| {
             let shares = |row: &&Row| group.places.contains(&row.reaction.place);
-            let mut sharing: Vec<usize> = rows
+            let mut sharing: Vec<ConstraintId> = rows
                 .iter()
                 .filter(shares)
                 .map(|row| row.constraint)
@@ -293,7 +293,10 @@ fn loaded_places(algebra: &mut Algebra, rows: &[Row], shares: &[Expr]) -> Vec<us
 /// The points next to the origin that hang together with `root`: coordinates that move both say that
 /// something joins them, which no constraint tells.
 fn tied_to(mechanism: &Mechanism, root: PointId) -> Vec<PointId> {
-    let all = (0..mechanism.points.len()).filter(|&p| mechanism.points[p].from == Some(ORIGIN));
+    let all = mechanism
+        .points
+        .ids()
+        .filter(|&p| mechanism.points[p].from == Some(ORIGIN));
     let mut apart: Vec<(PointId, Vec<CoordinateId>)> =
         all.map(|root| (root, moving(mechanism, root))).collect();
     let mut tied = vec![root];
@@ -319,7 +322,7 @@ fn moving(mechanism: &Mechanism, root: PointId) -> Vec<CoordinateId> {
             coordinates.push(q);
         }
     };
-    let points = mechanism.points.iter().enumerate();
+    let points = mechanism.points.entries();
     for (_, point) in points.filter(|(p, _)| *p != ORIGIN && root_of(mechanism, *p) == root) {
         point
             .at

@@ -21,7 +21,7 @@ pub(super) enum Meaning {
     Output,
 }
 
-/// Indices of what occurs in expressions.
+/// Places of what occurs in expressions.
 #[derive(Debug, Default)]
 pub(super) struct Used {
     pub(super) parameters: BTreeSet<usize>,
@@ -33,10 +33,10 @@ pub(super) struct Used {
 impl Used {
     pub(super) fn add(&mut self, quantity: Quantity) {
         match quantity {
-            Quantity::Parameter(id) => self.parameters.insert(id),
-            Quantity::Coordinate(id) | Quantity::Rate(id) => self.coordinates.insert(id),
-            Quantity::Input(id) => self.inputs.insert(id),
-            Quantity::Signal(id) => self.signals.insert(id),
+            Quantity::Parameter(id) => self.parameters.insert(id.index()),
+            Quantity::Coordinate(id) | Quantity::Rate(id) => self.coordinates.insert(id.index()),
+            Quantity::Input(id) => self.inputs.insert(id.index()),
+            Quantity::Signal(id) => self.signals.insert(id.index()),
             Quantity::PseudoVelocity(_) | Quantity::Time | Quantity::Pi => false,
         };
     }

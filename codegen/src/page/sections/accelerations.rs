@@ -1,5 +1,7 @@
 //! Accelerations of centres of mass, angular accelerations of bodies.
 
+use appell_spec::mechanism::BodyId;
+
 use super::super::writer::Writer;
 use super::super::{Block, Section};
 use super::super::{Letter, Math};
@@ -13,7 +15,7 @@ pub(super) fn section(w: &mut Writer<'_>) -> Section {
     let mut shown = Vec::new();
     let accelerations = w.derivation.symbols.accelerations.clone();
     for (index, body) in w.derivation.bodies.clone().into_iter().enumerate() {
-        let centre = w.mechanism.bodies[index].centre;
+        let centre = w.mechanism.bodies[BodyId::new(index)].centre;
         if !shown.contains(&centre) {
             shown.push(centre);
             let a = along(

@@ -1,6 +1,6 @@
 //! Constraints, pseudo-velocities, and the generalised velocities that solve both.
 
-use appell_spec::mechanism::{ConstraintKind, GROUND};
+use appell_spec::mechanism::{ConstraintId, ConstraintKind, GROUND};
 
 use super::super::display::Equation;
 use super::super::units::unit;
@@ -17,7 +17,7 @@ use crate::symbolic::Graph;
 /// Constraints and pseudo-velocities.
 pub(super) fn section(w: &mut Writer<'_>) -> Section {
     let mut blocks = Vec::new();
-    for index in 0..w.mechanism.constraints.len() {
+    for index in w.mechanism.constraints.ids() {
         blocks.extend(constraint(w, index));
     }
     blocks.push(sentence(
@@ -65,7 +65,7 @@ pub(super) fn rates(w: &mut Writer<'_>) -> Vec<Equation> {
     equations
 }
 
-fn constraint(w: &mut Writer<'_>, index: usize) -> Vec<Block> {
+fn constraint(w: &mut Writer<'_>, index: ConstraintId) -> Vec<Block> {
     let constraint = &w.mechanism.constraints[index];
     let mut what = vec![introduced(
         &constraint.name,

@@ -5,6 +5,7 @@ use appell_runtime::control::sampler::Sampler;
 use appell_runtime::control::schedule::GainSchedule;
 use appell_runtime::inputs::{InputSource, TabulatedInputs};
 use appell_spec::expr::Expr;
+use appell_spec::mechanism::InputId;
 use appell_spec::{Report, Scope, Snippet, formula};
 use nalgebra::DVector;
 
@@ -99,7 +100,7 @@ impl Plan {
 
     fn take(&mut self, input: usize, setup: &Setup<'_>) -> Result<(), Failure> {
         if self.set.contains(&input) {
-            let name = &setup.mechanism.inputs[input].label.name;
+            let name = &setup.mechanism.inputs[InputId::new(input)].label.name;
             return Err(Failure::Usage(format!("the input `{name}` is given twice")));
         }
         self.set.push(input);
@@ -124,7 +125,7 @@ impl Plan {
     ) -> Result<(), Failure> {
         let input = setup.input(&assignment.name)?;
         self.take(input, setup)?;
-        let unit = &setup.mechanism.inputs[input].label.unit;
+        let unit = &setup.mechanism.inputs[InputId::new(input)].label.unit;
         let text = bracketed(&assignment.value);
         let expr = formula(
             setup.spec,

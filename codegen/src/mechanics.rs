@@ -5,6 +5,7 @@
 mod adjoint;
 pub mod algebra;
 pub mod assemble;
+pub mod auxiliary;
 pub mod constraints;
 pub mod contact_rows;
 pub mod contacts;
@@ -30,7 +31,6 @@ pub mod rank;
 pub mod reactions;
 pub mod redundancy;
 pub mod row;
-pub mod support;
 pub mod switches;
 pub mod symbols;
 pub mod systems;

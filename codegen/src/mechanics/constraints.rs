@@ -6,13 +6,13 @@ use appell_spec::mechanism::{ConstraintId, ConstraintKind, GROUND, Mechanism, Po
 use appell_spec::units::{Dimension, Unit};
 
 use super::algebra::Algebra;
+use super::auxiliary::AuxiliaryMotions;
 use super::expressions::Lowering;
 use super::finding::{Finding, Item, Outcome, division_by_zero};
 use super::frames::FrameVector;
 use super::kinematics::{Effort, Kinematics, root_of};
 use super::redundancy::leave_out;
 use super::row::{Reaction, Row};
-use super::support::Support;
 use super::symbols::Symbols;
 use super::time::TimeDerivative;
 use crate::symbolic::vector::{self, Vec3};
@@ -29,7 +29,7 @@ pub struct Constraints {
     /// reaction cannot be told.
     pub reported: Vec<Option<usize>>,
     /// What violates the rows that follow from geometry or from others.
-    pub support: Support,
+    pub auxiliary: AuxiliaryMotions,
     /// Rows that were left out, reactions that cannot be told.
     pub warnings: Vec<Finding>,
 }
@@ -93,12 +93,12 @@ pub fn constraints(
     if !findings.is_empty() {
         return Err(findings);
     }
-    let support = Support::new(algebra, mechanism, &kinematics.frames, intervals, &rows);
+    let auxiliary = AuxiliaryMotions::new(algebra, mechanism, &kinematics.frames, intervals, &rows);
     let names: Vec<String> = places.iter().map(|place| place.name(mechanism)).collect();
-    warnings.extend(support.findings(mechanism, &rows, &names));
+    warnings.extend(auxiliary.findings(mechanism, &rows, &names));
     let (mut reactions, mut reported) = (Vec::new(), Vec::new());
     for (index, (place, name)) in places.into_iter().zip(names).enumerate() {
-        let told = support.tells(index);
+        let told = auxiliary.tells(index);
         reported.push(told.then_some(reactions.len()));
         reactions.extend(told.then(|| place.reaction(mechanism, name)));
     }
@@ -106,7 +106,7 @@ pub fn constraints(
         rows,
         reactions,
         reported,
-        support,
+        auxiliary,
         warnings,
     })
 }

@@ -29,7 +29,7 @@ pub struct Violation {
     pub rates: Vec<Expr>,
     /// q̇ in terms of pseudo-velocities and those rates.
     pub coordinate_rates: Vec<Expr>,
-    /// Rates of the imagined motions, in the order of their support.
+    /// Rates of the auxiliary motions, in their order.
     pub carried_rates: Vec<Expr>,
 }
 
@@ -83,8 +83,8 @@ pub fn eliminate(
         .iter()
         .map(|row| algebra.graph.symbol(&format!("violation_{}", row.name)))
         .collect();
-    let mut carried_rates = Vec::with_capacity(constraints.support.motions.len());
-    for motion in &constraints.support.motions {
+    let mut carried_rates = Vec::with_capacity(constraints.auxiliary.motions.len());
+    for motion in &constraints.auxiliary.motions {
         let parts = motion.rate.iter().zip(&violation_rates);
         let parts: Vec<Expr> = parts
             .map(|(&share, &violation)| algebra.graph.mul(share, violation))
@@ -100,9 +100,9 @@ pub fn eliminate(
         if !row.is_active() {
             continue;
         }
-        // Σ C q̇ = violation - rest - what the imagined motions contribute
+        // Σ C q̇ = violation - rest - what the auxiliary motions contribute
         let mut parts = vec![violation_rates[index], algebra.graph.neg(row.rest)];
-        for (motion, &rate) in constraints.support.motions.iter().zip(&carried_rates) {
+        for (motion, &rate) in constraints.auxiliary.motions.iter().zip(&carried_rates) {
             let contribution = algebra.graph.mul(motion.gains[index], rate);
             parts.push(algebra.graph.neg(contribution));
         }

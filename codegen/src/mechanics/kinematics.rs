@@ -34,7 +34,7 @@ pub enum Effort {
     Shortest,
 }
 
-/// An imagined motion that the coordinates do not have: the points placed from the origin by way of
+/// An auxiliary motion that the coordinates do not have: the points placed from the origin by way of
 /// `root` are carried along with a velocity.
 ///
 /// Where geometry already embeds a constraint, this is the motion against which its reaction works.
@@ -47,7 +47,7 @@ pub struct Carried {
 }
 
 impl Kinematics {
-    /// Velocities for the generalised velocities `rates`, with imagined motions added.
+    /// Velocities for the generalised velocities `rates`, with auxiliary motions added.
     pub fn new(
         algebra: &mut Algebra,
         mechanism: &Mechanism,

@@ -26,7 +26,7 @@ pub fn reactions(
     bodies: &[BodyMotion],
     accelerations: &[Expr],
 ) -> Outcome<Vec<Vec3>> {
-    let motions = constraints.support.motions.iter();
+    let motions = constraints.auxiliary.motions.iter();
     let carried: Vec<Carried> = motions
         .zip(&violation.carried_rates)
         .flat_map(|(motion, &rate)| motion.at(&mut algebra.graph, rate))

@@ -3,71 +3,17 @@
 use nalgebra::DVector;
 
 use super::branch::Requirement;
-use super::chart::{Cell, Chart, ChartError};
-use super::continuation::{End, OnCurve};
+use super::chart::{Boundary, BoundaryFold, Cell, Chart, ChartError, Edge};
+use super::continuation::OnCurve;
 use super::critical::{Change, Criteria};
 use super::level::{Curve, Level, unknowns};
 use super::plane::Plane;
-use super::point::Point;
 use super::stability::essential_matrix;
 use appell_spectra::spectrum::{characteristic_polynomial, eigenvalues};
-
-/// A curve over two quantities on which stability may change.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Boundary {
-    /// What eigenvalues do there.
-    pub change: Change,
-    /// Values of the two quantities in SI, in order.
-    pub points: Vec<[f64; 2]>,
-    /// For each point whether the motion is unstable on one side of the curve only: nothing else
-    /// grows there.
-    pub decides: Vec<bool>,
-    /// Where one of the two quantities turns back, to rounding.
-    pub folds: Vec<BoundaryFold>,
-    /// Why the curve ends.
-    pub ends: [End; 2],
-}
-
-/// A place where a boundary runs along one of the quantities.
-#[derive(Debug, Clone, PartialEq)]
-pub struct BoundaryFold {
-    /// The axis, 0 or 1, whose quantity is largest or smallest here.
-    pub axis: usize,
-    /// Values of the two quantities in SI. That of the axis is known to rounding; the other to the
-    /// root of it, as the curve is flat.
-    pub at: [f64; 2],
-    /// The motion.
-    pub point: Point,
-    /// Whether stability changes here.
-    pub decides: bool,
-}
-
-/// A curve over two quantities on which a requirement begins or ceases to hold.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Edge {
-    /// The number of the requirement.
-    pub requirement: usize,
-    /// Values of the two quantities in SI, in order.
-    pub points: Vec<[f64; 2]>,
-}
 
 /// Real parts above this part of a usual eigenvalue are growth, where eigenvalues that meet are
 /// known to the root of rounding.
 const GROWS: f64 = 1e-3;
-
-impl Boundary {
-    /// The parts on which stability changes.
-    pub fn deciding(&self) -> impl Iterator<Item = &[[f64; 2]]> {
-        let mut from = 0;
-        let runs = self.decides.chunk_by(|a, b| a == b).filter_map(move |run| {
-            let start = from;
-            from += run.len();
-            // A part goes on to the point where the next one begins.
-            run[0].then_some(start..(from + 1).min(self.points.len()))
-        });
-        runs.map(|run| &self.points[run])
-    }
-}
 
 /// All boundaries that pass between the places of a chart.
 pub(super) fn boundaries(

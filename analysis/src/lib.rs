@@ -10,8 +10,9 @@
 //! | `continuation.rs`, `crossing.rs` | curves of zeros, followed by their length; where two of them cross |
 //! | `branch.rs` | steady motions along one quantity: folds, crossings, ends, feasibility |
 //! | `critical.rs` | smooth functions whose zeros are changes of stability |
-//! | `plane.rs`, `flood.rs`, `chart.rs` | stability over two quantities: a place, a grid, its verdicts |
-//! | `level.rs`, `boundary.rs` | curves over two quantities: borders of stability and feasibility |
+//! | `chart.rs` | stability over two quantities: what a chart holds |
+//! | `plane.rs`, `flood.rs`, `grid.rs` | its steady motions: a place, a grid, its verdicts |
+//! | `level.rs`, `boundary.rs` | its curves: borders of stability and feasibility |
 //! | `locus.rs` | modes that keep their place through crossings |
 //! | `stability.rs` | eigenvalues without those of the family; the verdict |
 //!
@@ -45,6 +46,7 @@ mod cyclic;
 mod differences;
 mod equations;
 mod flood;
+mod grid;
 mod hidden;
 mod level;
 mod locus;
@@ -56,11 +58,10 @@ mod starts;
 mod steady;
 mod term;
 
-pub use boundary::{Boundary, BoundaryFold, Edge};
 pub use branch::{
     Branch, BranchError, BranchOptions, BranchPoint, Branches, Kind, Requirement, Special,
 };
-pub use chart::{Cell, Chart, ChartError};
+pub use chart::{Boundary, BoundaryFold, Cell, Chart, ChartError, Edge};
 pub use continuation::End;
 pub use critical::Change;
 pub use cyclic::{Structure, StructureError};

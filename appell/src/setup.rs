@@ -4,6 +4,7 @@ use std::borrow::Cow;
 
 use appell_runtime::model::ModelInfo;
 use appell_spec::expr::Expr;
+use appell_spec::mechanism::{CoordinateId, InputId, ParameterId, SpeedId};
 use appell_spec::units::{self, Unit};
 use appell_spec::{Mechanism, Report, Scope, Snippet, did_you_mean, formula};
 
@@ -77,13 +78,16 @@ impl<'a> Setup<'a> {
                     .map(|p| p.label.name.as_str())
             };
             let index = known(&assignment.name, "parameter", names())?;
-            let unit = self.mechanism.parameters[index].label.unit.clone();
+            let unit = self.mechanism.parameters[ParameterId::new(index)]
+                .label
+                .unit
+                .clone();
             let value = self.value(
                 &assignment.value,
                 &unit,
                 &format!("--set {}", assignment.name),
             )?;
-            let parameter = &self.mechanism.parameters[index];
+            let parameter = &self.mechanism.parameters[ParameterId::new(index)];
             let low = parameter.at_least.unwrap_or(f64::NEG_INFINITY);
             let high = parameter.at_most.unwrap_or(f64::INFINITY);
             inside(&assignment.name, value, [low, high], &unit).map_err(Error::Usage)?;
@@ -149,7 +153,7 @@ impl<'a> Setup<'a> {
     /// A constant value of a declared input, with its index.
     pub fn input_value(&self, flag: &str, assignment: &Assignment) -> Result<(usize, f64), Error> {
         let input = self.input(&assignment.name)?;
-        let unit = &self.mechanism.inputs[input].label.unit;
+        let unit = &self.mechanism.inputs[InputId::new(input)].label.unit;
         let label = format!("{flag} {}", assignment.name);
         Ok((input, self.value(&assignment.value, unit, &label)?))
     }
@@ -158,8 +162,12 @@ impl<'a> Setup<'a> {
     pub fn unit_of_state(&self, index: usize) -> &Unit {
         let speeds = &self.mechanism.pseudo_velocities;
         match index.checked_sub(speeds.len()) {
-            None => &speeds[index].label.unit,
-            Some(coordinate) => &self.mechanism.coordinates[coordinate].label.unit,
+            None => &speeds[SpeedId::new(index)].label.unit,
+            Some(coordinate) => {
+                &self.mechanism.coordinates[CoordinateId::new(coordinate)]
+                    .label
+                    .unit
+            }
         }
     }
 

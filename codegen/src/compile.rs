@@ -103,16 +103,16 @@ fn diagnostic(
 ) -> Diagnostic {
     let item = match finding.item {
         Item::Mechanism => None,
-        Item::Parameter(i) => mechanism.parameters.get(i).map(|x| &x.label.span),
-        Item::Coordinate(i) => mechanism.coordinates.get(i).map(|x| &x.label.span),
-        Item::Input(i) => mechanism.inputs.get(i).map(|x| &x.label.span),
-        Item::Frame(i) => mechanism.frames.get(i).map(|x| &x.span),
-        Item::Point(i) => mechanism.points.get(i).map(|x| &x.span),
-        Item::Body(i) => mechanism.bodies.get(i).map(|x| &x.span),
-        Item::Constraint(i) => mechanism.constraints.get(i).map(|x| &x.span),
-        Item::PseudoVelocity(i) => mechanism.pseudo_velocities.get(i).map(|x| &x.label.span),
-        Item::Load(i) => mechanism.loads.get(i).map(|x| &x.span),
-        Item::Output(i) => mechanism.outputs.get(i).map(|x| &x.label.span),
+        Item::Parameter(i) => Some(&mechanism.parameters[i].label.span),
+        Item::Coordinate(i) => Some(&mechanism.coordinates[i].label.span),
+        Item::Input(i) => Some(&mechanism.inputs[i].label.span),
+        Item::Frame(i) => Some(&mechanism.frames[i].span),
+        Item::Point(i) => Some(&mechanism.points[i].span),
+        Item::Body(i) => Some(&mechanism.bodies[i].span),
+        Item::Constraint(i) => Some(&mechanism.constraints[i].span),
+        Item::PseudoVelocity(i) => Some(&mechanism.pseudo_velocities[i].label.span),
+        Item::Load(i) => Some(&mechanism.loads[i].span),
+        Item::Output(i) => Some(&mechanism.outputs[i].label.span),
     };
     let span = item.cloned().filter(|span| !span.is_empty()).or_else(|| {
         // What concerns the whole mechanism concerns the choice of its pseudo-velocities.

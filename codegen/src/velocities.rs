@@ -3,7 +3,7 @@
 
 use std::fmt::Write as _;
 
-use appell_spec::mechanism::{GROUND, Mechanism};
+use appell_spec::mechanism::{FrameId, GROUND, List, Mechanism, PointId};
 
 use crate::mechanics::algebra::Algebra;
 use crate::mechanics::finding::Outcome;
@@ -21,9 +21,9 @@ pub type Components = [String; 3];
 #[derive(Debug, Clone)]
 pub struct Velocities {
     /// Of each point.
-    pub points: Vec<Components>,
+    pub points: List<PointId, Components>,
     /// Angular velocity of each frame.
-    pub frames: Vec<Components>,
+    pub frames: List<FrameId, Components>,
 }
 
 impl Velocities {
@@ -49,10 +49,14 @@ impl Velocities {
             v.map(|component| written(&algebra.graph, &symbols, mechanism, component))
         };
         Ok(Self {
-            points: (0..mechanism.points.len())
+            points: mechanism
+                .points
+                .ids()
                 .map(|point| written(kinematics.velocity(point)))
                 .collect(),
-            frames: (0..mechanism.frames.len())
+            frames: mechanism
+                .frames
+                .ids()
                 .map(|frame| written(kinematics.frames.angular_velocity(frame)))
                 .collect(),
         })

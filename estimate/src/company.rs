@@ -9,10 +9,10 @@ use nalgebra::{DMatrix, DVector};
 use super::EstimateError;
 use super::estimation::Estimation;
 use super::free::Selection;
-use super::layout::Unknown;
 use super::posterior::{Point, Posterior};
 use super::prediction::place;
 use super::setup::Disturbance;
+use super::unknown::Unknown;
 
 /// What a step of some coordinates adds to levels, to first order.
 pub(super) struct Company {

@@ -5,11 +5,12 @@ use std::ops::Range;
 use super::EstimateError;
 use super::adjoint::adjoint;
 use super::filter::{Innovation, Pass};
-use super::layout::{Layout, Unknown};
+use super::layout::Layout;
 use super::plant::Plant;
 use super::recording::Recording;
 use super::setup::Setup;
 use super::timeline::{Action, timeline};
+use super::unknown::Unknown;
 
 /// A setup with recordings: functions of the values that [`Layout`] lists.
 pub struct Estimation<'a> {

@@ -3,7 +3,8 @@
 use nalgebra::DVector;
 
 use super::EstimateError;
-use super::layout::{Layout, Unknown};
+use super::layout::Layout;
+use super::unknown::Unknown;
 
 /// How a value is counted while it is looked for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -11,8 +11,8 @@ use super::EstimateError;
 use super::estimation::Estimation;
 use super::filter::Innovation;
 use super::free::{Free, Selection};
-use super::layout::Unknown;
 use super::tangent::Direction;
+use super::unknown::Unknown;
 
 impl Estimation<'_> {
     /// Fisher's information of the coordinates of some values, without what is known beforehand.

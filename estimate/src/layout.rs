@@ -1,43 +1,8 @@
-//! The numbers that a likelihood depends on, and their places in one list.
+//! Where the numbers that a likelihood depends on stand in one list.
 
-use super::EstimateError;
+use super::error::EstimateError;
 use super::setup::Setup;
-
-/// One of the numbers, all in SI.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum Unknown {
-    /// A parameter of the model.
-    Parameter(usize),
-    /// Level of a disturbance, see [`Disturbance`](super::Disturbance).
-    Disturbance(usize),
-    /// Standard deviation of the noise of a channel.
-    Noise(usize),
-    /// Bias of a channel.
-    Bias(usize),
-    /// Scale of a channel.
-    Scale(usize),
-    /// Delay of a channel in s; only where the setup lets it be late.
-    SensorDelay(usize),
-    /// Time constant in s of a lagging input, by its place in the list of the setup.
-    Lag(usize),
-    /// Delay in s of an input, by its place in the list of the setup.
-    InputDelay(usize),
-    /// Expected state at the first row of a run; states of lags and of drifting parameters stand
-    /// last.
-    Initial {
-        /// The run.
-        run: usize,
-        /// The state.
-        state: usize,
-    },
-    /// Standard deviation of the state at the first row of a run.
-    Spread {
-        /// The run.
-        run: usize,
-        /// The state.
-        state: usize,
-    },
-}
+use super::unknown::Unknown;
 
 /// Where each number stands: parameters, disturbances, noise, biases, scales and delays of the
 /// channels, lags, delays of inputs; then for each run the expected initial state and its spread.

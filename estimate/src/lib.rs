@@ -12,7 +12,7 @@
 //!
 //! The files, in the order of the computation:
 //!
-//! - [`recording`], [`setup`], [`layout`]: what is given;
+//! - [`recording`], [`setup`], [`unknown`], [`layout`]: what is given;
 //! - [`timeline`]: the order of steps and samples;
 //! - [`plant`], [`transition`]: the motion and its transition matrix, step by step, and which steps are
 //!   too long;
@@ -72,6 +72,7 @@ mod tangent;
 mod tape;
 mod timeline;
 mod transition;
+mod unknown;
 
 pub use chi_squared::{chi_squared_probability, chi_squared_quantile};
 pub use consistency::Consistency;
@@ -81,7 +82,7 @@ pub use filter::Innovation;
 pub use fit::{Effort, Fit};
 pub use free::{Coordinate, Free};
 pub use identifiability::{Combination, Identifiability};
-pub use layout::{Layout, Unknown};
+pub use layout::Layout;
 pub use prediction::Predicted;
 pub use recording::Recording;
 pub use regression::{BaseParameters, Moment, Regression};
@@ -91,3 +92,4 @@ pub use setup::{Channel, Disturbance, Measured, Setup};
 pub use shooting::{Shooting, Shot};
 pub use smoother::Smoothed;
 pub use tangent::{Along, Direction, Shapes, Tangent};
+pub use unknown::Unknown;

@@ -5,13 +5,14 @@ use super::EstimateError;
 use super::closure::Closure;
 use super::estimation::Estimation;
 use super::filter::{Pass, switch};
-use super::layout::{Layout, Unknown};
+use super::layout::Layout;
 use super::matrix::add_scaled;
 use super::plant::{Place, Plant, Scratch};
 use super::recording::Recording;
 use super::setup::{Measured, Setup};
 use super::timeline::{Action, Advance};
 use super::transition::{MOST_HALVINGS, STAGES, WEIGHTS, is_uneven};
+use super::unknown::Unknown;
 
 /// A measured scalar beside its prediction.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -17,8 +17,8 @@ use nalgebra::{DMatrix, DVector};
 use super::EstimateError;
 use super::estimation::Estimation;
 use super::free::{Coordinate, Free, Selection};
-use super::layout::Unknown;
 use super::recording::Recording;
+use super::unknown::Unknown;
 use condensing::{Condensed, Weights};
 use flight::{Flight, Piece};
 

@@ -8,12 +8,12 @@
 use super::EstimateError;
 use super::estimation::Estimation;
 use super::filter::Pass;
-use super::layout::Unknown;
 use super::matrix::{add, multiply};
 use super::prediction::place;
 use super::square_root::triangularise;
 use super::tape::{Record, StepTape};
 use super::timeline::Advance;
+use super::unknown::Unknown;
 
 /// Smaller pivots of a root, relative to their row, are rounding: nothing varies in that direction.
 const ROUNDING: f64 = 1e-13;

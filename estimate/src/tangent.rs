@@ -12,13 +12,13 @@ use appell_runtime::model::At;
 use super::EstimateError;
 use super::estimation::Estimation;
 use super::filter::{Innovation, Pass};
-use super::layout::Unknown;
 use super::matrix::{add_scaled, dot, multiply};
 use super::plant::{Place, Scratch, Sums};
 use super::setup::Measured;
 use super::tape::{Record, SampleTape};
 use super::timeline::{Action, Advance};
 use super::transition::added_by_rate;
+use super::unknown::Unknown;
 
 /// What innovations are differentiated by.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use num_rational::BigRational;
 
-use crate::mechanism::{CoordinateId, InputId, ParameterId, SignalId, SpeedId};
+use crate::ids::{CoordinateId, InputId, ParameterId, SignalId, SpeedId};
 
 /// A place in the spec text, in bytes.
 pub type Span = Range<usize>;

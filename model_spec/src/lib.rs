@@ -12,6 +12,7 @@ pub mod compose;
 pub mod diagnostic;
 pub mod edit;
 pub mod expr;
+pub mod ids;
 pub mod language;
 pub mod limits;
 pub mod mechanism;

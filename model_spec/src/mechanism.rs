@@ -1,33 +1,21 @@
 //! A checked mechanism: what the text of a spec means, ready for the derivation.
 //!
-//! Everything here is in SI units. References between items are indices into the lists of
+//! Everything here is in SI units. References between items are ids in the lists of
 //! [`Mechanism`]; the checks of this crate guarantee that they are in range, that parents come
 //! before children, and that every expression has the dimension its place asks for.
 
 use crate::expr::{Expr, Span};
 use crate::units::{Dimension, Unit};
 
-/// Index of a parameter in [`Mechanism::parameters`].
-pub type ParameterId = usize;
-/// Index of a coordinate in [`Mechanism::coordinates`].
-pub type CoordinateId = usize;
-/// Index of an input in [`Mechanism::inputs`].
-pub type InputId = usize;
-/// Index of a signal in [`Mechanism::signals`].
-pub type SignalId = usize;
-/// Index of a frame in [`Mechanism::frames`]; [`GROUND`] is the inertial frame.
-pub type FrameId = usize;
-/// Index of a point in [`Mechanism::points`]; [`ORIGIN`] is fixed in the ground.
-pub type PointId = usize;
-/// Index of a body in [`Mechanism::bodies`].
-pub type BodyId = usize;
-/// Index of a pseudo-velocity in [`Mechanism::pseudo_velocities`].
-pub type SpeedId = usize;
+pub use crate::ids::{
+    BodyId, ConstraintId, CoordinateId, FrameId, InputId, List, LoadId, OutputId, ParameterId,
+    PointId, SignalId, SpeedId,
+};
 
 /// The inertial frame, named `ground` in a spec.
-pub const GROUND: FrameId = 0;
+pub const GROUND: FrameId = FrameId::new(0);
 /// The origin of the ground, named `O` in a spec.
-pub const ORIGIN: PointId = 0;
+pub const ORIGIN: PointId = PointId::new(0);
 
 /// Three components in some frame.
 pub type Components = [Expr; 3];
@@ -46,27 +34,27 @@ pub struct Mechanism {
     /// Name of the spec file, for messages and comments in emitted code.
     pub file: String,
     /// Constants of the mechanism.
-    pub parameters: Vec<Parameter>,
+    pub parameters: List<ParameterId, Parameter>,
     /// Generalised coordinates.
-    pub coordinates: Vec<Coordinate>,
+    pub coordinates: List<CoordinateId, Coordinate>,
     /// Inputs that a controller or a recording supplies.
-    pub inputs: Vec<Input>,
+    pub inputs: List<InputId, Input>,
     /// Known functions of time, given as data.
-    pub signals: Vec<Signal>,
+    pub signals: List<SignalId, Signal>,
     /// Frames, parents first; the first is the ground.
-    pub frames: Vec<Frame>,
+    pub frames: List<FrameId, Frame>,
     /// Points, origins first; the first is the origin of the ground.
-    pub points: Vec<Point>,
+    pub points: List<PointId, Point>,
     /// Rigid bodies and point masses.
-    pub bodies: Vec<Body>,
+    pub bodies: List<BodyId, Body>,
     /// Constraints on velocities and positions.
-    pub constraints: Vec<Constraint>,
+    pub constraints: List<ConstraintId, Constraint>,
     /// Pseudo-velocities, the speeds of Appell's equations.
-    pub pseudo_velocities: Vec<PseudoVelocity>,
+    pub pseudo_velocities: List<SpeedId, PseudoVelocity>,
     /// Applied forces and torques.
-    pub loads: Vec<Load>,
+    pub loads: List<LoadId, Load>,
     /// Named quantities of interest.
-    pub outputs: Vec<Output>,
+    pub outputs: List<OutputId, Output>,
 }
 
 /// What every named quantity carries.

@@ -3,6 +3,7 @@
 mod expression;
 mod items;
 mod lexer;
+mod reader;
 mod source;
 mod values;
 
@@ -15,16 +16,10 @@ use crate::language::{SECTIONS, Section};
 use crate::limits::MAX_FILE;
 use crate::suggest::{self, shown};
 
+use reader::{Reader, in_text_order, is_forbidden, phrase};
+
+pub use expression::unit_diagnostic;
 pub(crate) use expression::zero;
-pub use values::unit_diagnostic;
-
-/// Most diagnostics collected; more would help nobody.
-const MAX_FINDINGS: usize = 1000;
-
-/// A key of a TOML table, with its place.
-type TomlKey<'a> = toml::Spanned<std::borrow::Cow<'a, str>>;
-/// A value of a TOML table, with its place.
-type TomlValue<'a> = toml::Spanned<DeValue<'a>>;
 
 /// Reads a spec; what could not be read is left out of the tree and told in the diagnostics.
 pub fn parse(text: &str) -> (SpecAst, Vec<Diagnostic>) {
@@ -67,22 +62,7 @@ pub(crate) fn expression_in(
     expression::parse(&source::Source::new(document, text, whole))
 }
 
-struct Reader<'a> {
-    text: &'a str,
-    findings: Vec<Diagnostic>,
-    /// The TOML itself is broken: whatever is missing may only be unread.
-    broken: bool,
-    /// Some definition was refused: its name may be used without being known.
-    incomplete: bool,
-}
-
 impl Reader<'_> {
-    fn tell(&mut self, diagnostic: Diagnostic) {
-        if self.findings.len() < MAX_FINDINGS {
-            self.findings.push(diagnostic);
-        }
-    }
-
     /// Refuses what cannot be seen or reorders what is seen, comments included.
     fn characters(&mut self) {
         let hidden: Vec<(usize, char)> = self
@@ -214,55 +194,4 @@ impl Reader<'_> {
             }
         }
     }
-
-    fn wrong_type(&mut self, value: &TomlValue<'_>, wanted: &str) {
-        let found = words(value.get_ref());
-        self.tell(
-            Diagnostic::error(Code::WrongType, format!("expected {wanted}, found {found}"))
-                .at(value.span(), found),
-        );
-    }
-}
-
-/// The entries of a table as they stand in the text; the table itself sorts them by name.
-fn in_text_order<'t, 'a>(table: &'t DeTable<'a>) -> Vec<(&'t TomlKey<'a>, &'t TomlValue<'a>)> {
-    let mut entries: Vec<_> = table.iter().collect();
-    entries.sort_by_key(|(key, _)| key.span().start);
-    entries
-}
-
-/// A value for people.
-fn words(value: &DeValue<'_>) -> &'static str {
-    match value {
-        DeValue::String(_) => "a string",
-        DeValue::Integer(_) | DeValue::Float(_) => "a number",
-        DeValue::Boolean(_) => "a truth value",
-        DeValue::Datetime(_) => "a date or time",
-        DeValue::Array(_) => "a list",
-        DeValue::Table(_) => "a table",
-    }
-}
-
-/// Control characters, and marks that hide or reorder text.
-fn is_forbidden(c: char) -> bool {
-    if matches!(c, ' '..='~' | '\n') {
-        // Almost all of every file.
-        return false;
-    }
-    (c.is_control() && !matches!(c, '\r' | '\t'))
-        || matches!(c,
-            '\u{ad}' | '\u{61c}' | '\u{180e}' | '\u{200b}'..='\u{200f}' | '\u{2028}'..='\u{202e}'
-            | '\u{2060}'..='\u{206f}' | '\u{feff}' | '\u{fff9}'..='\u{fffb}' | '\u{e0000}'..='\u{e007f}')
-}
-
-/// A sentence as the end of another one.
-fn phrase(sentence: &str) -> String {
-    let mut letters = sentence.chars();
-    let first = letters.next().map(|c| c.to_ascii_lowercase());
-    first
-        .into_iter()
-        .chain(letters)
-        .collect::<String>()
-        .trim_end_matches('.')
-        .to_owned()
 }

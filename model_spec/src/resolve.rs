@@ -7,30 +7,23 @@ mod dimensions;
 mod expression;
 mod formula;
 mod loads;
+mod meaning;
 mod names;
 mod nominal;
 mod place;
 mod placement;
 mod quantities;
-
-use std::collections::BTreeMap;
+mod resolver;
 
 use num_traits::ToPrimitive;
 
-use crate::ast::{ExprAst, ItemAst, SpecAst};
+use crate::ast::{ItemAst, SpecAst};
 use crate::diagnostic::{Code, Diagnostic};
-use crate::expr::{Expr, Span};
-use crate::mechanism::{Coordinate, Interpolation, Mechanism};
-use crate::parse::zero;
+use crate::mechanism::{Coordinate, Mechanism};
 
 pub use formula::{Scope, Snippet, formula};
 
-use dimensions::Dim;
-use names::{Named, Used};
-use place::Place;
-
-/// Most diagnostics collected; more would help nobody.
-const MAX_FINDINGS: usize = 1000;
+use resolver::Resolver;
 
 /// Checks a spec. The mechanism holds placeholders wherever a diagnostic tells of an error.
 pub fn resolve(ast: &SpecAst, file: &str, text: &str) -> (Mechanism, Vec<Diagnostic>) {
@@ -57,17 +50,17 @@ pub fn resolve(ast: &SpecAst, file: &str, text: &str) -> (Mechanism, Vec<Diagnos
         source,
         longest_step,
         file: file.to_owned(),
-        parameters,
-        coordinates,
-        inputs,
-        signals,
-        frames,
-        points,
-        bodies,
-        constraints,
-        pseudo_velocities,
-        loads,
-        outputs,
+        parameters: parameters.into(),
+        coordinates: coordinates.into(),
+        inputs: inputs.into(),
+        signals: signals.into(),
+        frames: frames.into(),
+        points: points.into(),
+        bodies: bodies.into(),
+        constraints: constraints.into(),
+        pseudo_velocities: pseudo_velocities.into(),
+        loads: loads.into(),
+        outputs: outputs.into(),
     };
     resolver.initial(&mut mechanism);
     resolver.physical(&mechanism);
@@ -75,56 +68,7 @@ pub fn resolve(ast: &SpecAst, file: &str, text: &str) -> (Mechanism, Vec<Diagnos
     (mechanism, resolver.findings)
 }
 
-struct Resolver<'a> {
-    ast: &'a SpecAst,
-    findings: Vec<Diagnostic>,
-    /// Where each line of the text starts.
-    line_starts: Vec<usize>,
-    /// What the names in expressions mean.
-    names: BTreeMap<&'a str, Named>,
-    /// Names of frames, points and bodies, each with its index.
-    frames: BTreeMap<&'a str, usize>,
-    points: BTreeMap<&'a str, usize>,
-    bodies: BTreeMap<&'a str, usize>,
-    /// Unknown names that have been told, each with its place in the findings.
-    told: BTreeMap<(&'static str, String), usize>,
-    /// How smooth each signal is, and its name.
-    interpolation: Vec<(Interpolation, &'a str)>,
-    /// What occurs in some expression.
-    used: Used,
-}
-
-impl<'a> Resolver<'a> {
-    fn new(ast: &'a SpecAst, text: &str) -> Self {
-        let breaks = text.bytes().enumerate().filter(|(_, b)| *b == b'\n');
-        Self {
-            ast,
-            findings: Vec::new(),
-            line_starts: std::iter::once(0)
-                .chain(breaks.map(|(i, _)| i + 1))
-                .collect(),
-            names: BTreeMap::new(),
-            frames: BTreeMap::from([("ground", 0)]),
-            points: BTreeMap::from([("O", 0)]),
-            bodies: BTreeMap::new(),
-            told: BTreeMap::new(),
-            interpolation: Vec::new(),
-            used: Used::default(),
-        }
-    }
-
-    fn tell(&mut self, diagnostic: Diagnostic) {
-        if self.findings.len() < MAX_FINDINGS {
-            self.findings.push(diagnostic);
-        }
-    }
-
-    /// Line of a place, from 1.
-    fn line(&self, span: &Span) -> usize {
-        self.line_starts
-            .partition_point(|start| *start <= span.start)
-    }
-
+impl Resolver<'_> {
     fn heading(&self) -> (String, String, Option<String>) {
         let item = self.ast.items("mechanism").first();
         let text = |key| {
@@ -156,39 +100,6 @@ impl<'a> Resolver<'a> {
             );
         }
         seconds
-    }
-
-    /// The expression under a key, of the dimension that its place asks for.
-    fn expression_of(&mut self, item: &ItemAst, key: &str, place: &Place, dimension: Dim) -> Expr {
-        let missing = || zero(item.name.span.clone());
-        let ast = item.expression(key).cloned().unwrap_or_else(missing);
-        self.expression(&ast, place, dimension)
-    }
-
-    fn expression(&mut self, ast: &ExprAst, place: &Place, dimension: Dim) -> Expr {
-        let typed = self.elaborate(ast, place);
-        self.expect(&typed, dimension, place);
-        typed.expr
-    }
-
-    /// The components under a key, all of one dimension.
-    fn components_of(
-        &mut self,
-        item: &ItemAst,
-        key: &str,
-        place: &Place,
-        dimension: Dim,
-    ) -> [Expr; 3] {
-        let missing = || std::array::from_fn(|_| zero(item.name.span.clone()));
-        let components = item.components(key).cloned().unwrap_or_else(missing);
-        components.map(|c| self.expression(&c, place, dimension))
-    }
-
-    /// The item's sentence.
-    fn about(item: &ItemAst) -> String {
-        item.text("about")
-            .map(|t| t.value.to_owned())
-            .unwrap_or_default()
     }
 
     /// Warns of quantities that nothing uses.

@@ -35,7 +35,7 @@ out = {{ value = {output} }}
 fn evaluate(expr: &Expr) -> f64 {
     match &expr.kind {
         ExprKind::Number(value) => value.to_f64().unwrap(),
-        ExprKind::Quantity(Quantity::Coordinate(0)) => X,
+        ExprKind::Quantity(Quantity::Coordinate(q)) if q.index() == 0 => X,
         ExprKind::Quantity(Quantity::Coordinate(_)) => THETA,
         ExprKind::Quantity(Quantity::Parameter(_)) => 0.3,
         ExprKind::Quantity(Quantity::Pi) => std::f64::consts::PI,
@@ -74,7 +74,7 @@ fn evaluate(expr: &Expr) -> f64 {
 fn value(output: &str) -> f64 {
     let text = spec(&format!("\"{output}\""));
     let checked = load("probe.toml", &text).unwrap_or_else(|report| panic!("{report}"));
-    evaluate(&checked.mechanism.outputs[0].value)
+    evaluate(&checked.mechanism.outputs.first().unwrap().value)
 }
 
 #[test]
@@ -122,7 +122,7 @@ fn numbers_with_units_are_in_si() {
 #[test]
 fn numbers_stay_exact() {
     let checked = load("probe.toml", &spec("\"0.1 [mm]\"")).unwrap();
-    let ExprKind::Number(number) = &checked.mechanism.outputs[0].value.kind else {
+    let ExprKind::Number(number) = &checked.mechanism.outputs.first().unwrap().value.kind else {
         panic!("not a number");
     };
     assert_eq!(number.to_string(), "1/10000");

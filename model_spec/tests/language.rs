@@ -5,7 +5,8 @@
 
 use appell_spec::expr::{ExprKind, Quantity};
 use appell_spec::mechanism::{
-    Axis, Connection, ConstraintKind, Interpolation, LoadKind, Mechanism,
+    Axis, BodyId, Connection, ConstraintId, ConstraintKind, CoordinateId, FrameId, InputId,
+    Interpolation, LoadId, LoadKind, Mechanism, OutputId, ParameterId, PointId, SignalId, SpeedId,
 };
 use appell_spec::{Code, load};
 
@@ -93,20 +94,23 @@ fn rich() -> Mechanism {
 #[test]
 fn values_are_in_si_and_labels_in_the_units_of_the_text() {
     let mechanism = rich();
-    let a = &mechanism.parameters[0];
+    let a = &mechanism.parameters[ParameterId::new(0)];
     assert_eq!(
         (a.value, a.at_least, a.at_most),
         (0.25, Some(0.1), Some(0.3))
     );
     assert_eq!(a.label.unit.text, "mm");
-    assert_eq!(mechanism.parameters[3].value, 2000.0);
+    assert_eq!(mechanism.parameters[ParameterId::new(3)].value, 2000.0);
     let initial: Vec<f64> = mechanism.coordinates.iter().map(|c| c.initial).collect();
     assert_eq!(initial, [0.5, 0.2, 0.0]);
     let quarter = std::f64::consts::FRAC_PI_2;
-    assert_eq!(mechanism.coordinates[2].range, Some([-quarter, quarter]));
-    assert_eq!(mechanism.pseudo_velocities[1].initial, 10.0);
-    assert_eq!(mechanism.pseudo_velocities[0].initial, 90.0);
-    let stroke = &mechanism.signals[0];
+    assert_eq!(
+        mechanism.coordinates[CoordinateId::new(2)].range,
+        Some([-quarter, quarter])
+    );
+    assert_eq!(mechanism.pseudo_velocities[SpeedId::new(1)].initial, 10.0);
+    assert_eq!(mechanism.pseudo_velocities[SpeedId::new(0)].initial, 90.0);
+    let stroke = &mechanism.signals[SignalId::new(0)];
     assert_eq!(stroke.times, [0.0, 1.5, 3.0]);
     assert_eq!(stroke.values, [0.0, 0.01, 0.0]);
     assert_eq!(stroke.interpolation, Interpolation::Cubic);
@@ -119,7 +123,10 @@ fn units_follow_from_definitions() {
         .map(|s| s.label.unit.text.as_str())
         .collect();
     assert_eq!(units, ["rad/s", "km/h", "kg*m/s"]);
-    assert_eq!(mechanism.outputs[1].label.unit.text, "kg*m^2/s");
+    assert_eq!(
+        mechanism.outputs[OutputId::new(1)].label.unit.text,
+        "kg*m^2/s"
+    );
 }
 
 #[test]
@@ -127,50 +134,60 @@ fn parents_come_first_and_the_text_decides_otherwise() {
     let mechanism = rich();
     let frames: Vec<&str> = mechanism.frames.iter().map(|f| f.name.as_str()).collect();
     assert_eq!(frames, ["ground", "one", "two"]);
-    assert_eq!(mechanism.frames[2].parent, Some(1));
-    let turns = &mechanism.frames[2].turns;
+    assert_eq!(
+        mechanism.frames[FrameId::new(2)].parent,
+        Some(FrameId::new(1))
+    );
+    let turns = &mechanism.frames[FrameId::new(2)].turns;
     assert_eq!((turns[0].axis, turns[0].negative), (Axis::Z, true));
     assert_eq!((turns[1].axis, turns[1].negative), (Axis::X, false));
     let points: Vec<&str> = mechanism.points.iter().map(|p| p.name.as_str()).collect();
     assert_eq!(points, ["O", "early", "late"]);
-    assert_eq!(mechanism.points[2].from, Some(1));
-    assert_eq!(mechanism.points[2].frame, 2);
+    assert_eq!(
+        mechanism.points[PointId::new(2)].from,
+        Some(PointId::new(1))
+    );
+    assert_eq!(mechanism.points[PointId::new(2)].frame, FrameId::new(2));
 }
 
 #[test]
 fn constraints_and_loads_refer_to_their_items() {
     let mechanism = rich();
     let ConstraintKind::Rolling {
-        body: 1,
-        contact: 2,
+        body,
+        contact,
         normal: None,
         friction: None,
         creep: None,
-    } = mechanism.constraints[0].kind
+    } = mechanism.constraints[ConstraintId::new(0)].kind
     else {
-        panic!("{:?}", mechanism.constraints[0]);
+        panic!("{:?}", mechanism.constraints[ConstraintId::new(0)]);
     };
-    let LoadKind::Gravity { down, .. } = mechanism.loads[0].kind else {
-        panic!("{:?}", mechanism.loads[0]);
+    assert_eq!((body.index(), contact.index()), (1, 2));
+    let LoadKind::Gravity { down, .. } = mechanism.loads[LoadId::new(0)].kind else {
+        panic!("{:?}", mechanism.loads[LoadId::new(0)]);
     };
     assert_eq!(down, [0, -1, 0]);
     let LoadKind::Spring {
-        between: Connection::Points(2, 0),
+        between: Connection::Points(a, b),
         ..
-    } = mechanism.loads[3].kind
+    } = mechanism.loads[LoadId::new(3)].kind
     else {
-        panic!("{:?}", mechanism.loads[3]);
+        panic!("{:?}", mechanism.loads[LoadId::new(3)]);
     };
+    assert_eq!((a.index(), b.index()), (2, 0));
     let LoadKind::Force {
-        on: 2,
-        body: Some(1),
-        reaction_on: Some(1),
-        frame: 2,
+        on,
+        body: Some(body),
+        reaction_on: Some(reaction_on),
+        frame,
         vector,
-    } = &mechanism.loads[1].kind
+    } = &mechanism.loads[LoadId::new(1)].kind
     else {
-        panic!("{:?}", mechanism.loads[1]);
+        panic!("{:?}", mechanism.loads[LoadId::new(1)]);
     };
+    assert_eq!((on.index(), body.index()), (2, 1));
+    assert_eq!((reaction_on.index(), frame.index()), (1, 2));
     let mut seen = Vec::new();
     for component in vector {
         component.visit(&mut |q| seen.push(q));
@@ -178,10 +195,10 @@ fn constraints_and_loads_refer_to_their_items() {
     assert_eq!(
         seen,
         [
-            Quantity::Input(0),
-            Quantity::Signal(2),
-            Quantity::Parameter(5),
-            Quantity::PseudoVelocity(1)
+            Quantity::Input(InputId::new(0)),
+            Quantity::Signal(SignalId::new(2)),
+            Quantity::Parameter(ParameterId::new(5)),
+            Quantity::PseudoVelocity(SpeedId::new(1))
         ]
     );
 }
@@ -199,7 +216,7 @@ fn constraints_know_their_word_and_their_rows() {
 #[test]
 fn products_of_inertia_stand_in_the_tensor_with_their_sign() {
     let mechanism = rich();
-    let inertia = mechanism.bodies[0].inertia.as_ref().unwrap();
+    let inertia = mechanism.bodies[BodyId::new(0)].inertia.as_ref().unwrap();
     assert_eq!(inertia.matrix[0][1], inertia.matrix[1][0]);
     let ExprKind::Negate(_) = inertia.matrix[0][1].kind else {
         panic!("{:?}", inertia.matrix[0][1]);

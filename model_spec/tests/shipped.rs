@@ -143,7 +143,7 @@ fn lines_and_places_agree_with_the_text() {
             assert_eq!(&text[load.span.clone()], load.name);
             assert!(lines[load.line - 1].starts_with(&load.name));
         }
-        for frame in &mechanism.frames[1..] {
+        for frame in mechanism.frames.iter().skip(1) {
             assert_eq!(&text[frame.span.clone()], frame.name);
         }
     }

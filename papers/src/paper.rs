@@ -116,20 +116,15 @@ impl Paper {
         }
         paper.appell("b", "Pi");
         paper.energies();
-        let tilted = paper
-            .mechanism
-            .frames
-            .iter()
-            .position(|f| f.name == "tilted")
-            .unwrap();
+        let tilted = paper.mechanism.frames.find(|f| f.name == "tilted").unwrap();
         for (point, name) in [("G", "vG"), ("A", "vA")] {
-            if let Some(point) = paper.mechanism.points.iter().position(|p| p.name == point) {
+            if let Some(point) = paper.mechanism.points.find(|p| p.name == point) {
                 let v = paper.derivation.kinematics.velocity(point);
                 paper.vector(name, v, tilted);
             }
         }
         for (point, name) in [("G", "zG"), ("A", "zA")] {
-            if let Some(point) = paper.mechanism.points.iter().position(|p| p.name == point) {
+            if let Some(point) = paper.mechanism.points.find(|p| p.name == point) {
                 let graph = &mut paper.derivation.algebra.graph;
                 let position =
                     (paper.derivation.kinematics).position(graph, &paper.mechanism, point);

@@ -1,19 +1,20 @@
 //! The motion of a model under its inputs.
 
+mod describe;
 mod recorder;
 mod validity;
 
 use crate::inputs::{InputSource, ModelInputs, ZeroInputs};
 use crate::integrate::{
-    Cause, Dop853, Dopri5, Ending, Event, EventHit, Failure, IntegrationError, Options, Outcome,
+    Dop853, Dopri5, Ending, Event, EventHit, Failure, IntegrationError, Options, Outcome,
     Projection, Range, Rk4, Solver, Switches, Watch,
 };
-use crate::model::{At, Model, ModelInfo};
+use crate::model::{At, Model};
 use crate::positions::{Inconsistent, Moving, Positions};
 use crate::signal::SignalError;
 use crate::trajectory::{Extras, Trajectory};
+pub use describe::describe;
 use recorder::Recorder;
-use std::fmt::Write as _;
 use validity::Limits;
 pub use validity::{Breach, Limit, Response, Validity};
 
@@ -320,51 +321,4 @@ fn switches<'a>(model: &'a dyn Model, p: &'a [f64], x: &'a [f64]) -> Option<Swit
         count,
         function: Box::new(move |t, values| model.switches(At { t, x, u: &u, p }, values)),
     })
-}
-
-/// The failure in the names and units of the spec.
-pub fn describe(failure: &Failure, info: &ModelInfo) -> String {
-    let name = |index: usize| {
-        info.states
-            .get(index)
-            .map_or("?", |state| state.name.as_ref())
-    };
-    let reason = match failure.cause {
-        Cause::NonFinite { component } => {
-            format!("`{}` or its rate is not finite", name(component))
-        }
-        Cause::StepTooSmall { h } => format!(
-            "the step shrank to {h:.1e} s: the motion is singular here, or too stiff for the method"
-        ),
-        Cause::Inconsistent => failure.cause.to_string(),
-        Cause::TooManySteps { steps } => format!("{steps} steps were not enough"),
-        Cause::OutOfRange { component, range } => match info.states.get(component) {
-            Some(state) => {
-                let [lower, upper] = range.map(|limit| state.to_unit(limit));
-                format!(
-                    "`{}` leaves its range {lower} … {upper} {}",
-                    state.name, state.unit
-                )
-            }
-            None => failure.cause.to_string(),
-        },
-    };
-    let state = describe_state(&failure.state, info);
-    format!("at t = {:.9} s {reason}; state:{state}", failure.t)
-}
-
-/// A state in the names and units of the spec.
-fn describe_state(state: &[f64], info: &ModelInfo) -> String {
-    let mut text = String::new();
-    for (i, (state, &value)) in info.states.iter().zip(state).enumerate() {
-        let separator = if i == 0 { "" } else { "," };
-        let value = state.to_unit(value);
-        // Writing to a string cannot fail.
-        let _ = write!(
-            text,
-            "{separator} {} = {value:.6} {}",
-            state.name, state.unit
-        );
-    }
-    text
 }

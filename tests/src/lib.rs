@@ -16,6 +16,7 @@ pub use appell_papers::{errata, formula, paper, steering};
 pub mod dual;
 pub mod engine;
 pub mod formulations;
+pub mod modules;
 pub mod place;
 pub mod point;
 pub mod random;

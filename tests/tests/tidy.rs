@@ -4,7 +4,7 @@
 
 use std::path::{Path, PathBuf};
 
-use appell_tests::shipped;
+use appell_tests::{modules::Modules, shipped};
 
 /// Longer files hold more than one idea.
 const MOST_LINES: usize = 700;
@@ -266,4 +266,142 @@ fn every_shipped_mechanism_stands_in_the_gallery() {
     let shown = |name: &String| gallery.contains(&format!("\n| `{name}` |"));
     let missing: Vec<String> = shipped::names().into_iter().filter(|n| !shown(n)).collect();
     assert!(missing.is_empty(), "docs/gallery.md lacks {missing:?}");
+}
+
+/// Folders and files of the source of `codegen` with those that they may use. What is derived knows
+/// nothing of what is done with it: `symbolic` no mechanics, `mechanics` no schedule, `schedule` no
+/// derivation.
+const LAYERS_OF_CODEGEN: &[(&str, &[&str])] = &[
+    ("symbolic", &[]),
+    ("program", &["symbolic"]),
+    ("mechanics", &["program", "symbolic"]),
+    ("linearisation", &["mechanics", "symbolic"]),
+    ("audit", &["mechanics", "symbolic"]),
+    ("formulations", &["mechanics", "symbolic"]),
+    ("schedule", &["program", "symbolic"]),
+    ("emit", &["program", "schedule", "symbolic"]),
+    ("jit", &["program", "schedule", "symbolic"]),
+    ("interpreted", &["program", "schedule"]),
+];
+
+/// What the three formulations share with the derivation: the graph, the reading of expressions,
+/// derivatives along a motion and the question of rank. What they write, they write themselves.
+const SHARED_BY_FORMULATIONS: &[&str] = &[
+    "algebra",
+    "expressions",
+    "finding",
+    "rank",
+    "symbols",
+    "time",
+];
+
+/// Files that may know each other in circles of more than two, with the reason.
+const MAY_GO_IN_CIRCLES: &[(&str, &str, &str)] = &[
+    (
+        "gap",
+        "diagnose",
+        "the engine of diagnosis is written anew next",
+    ),
+    ("gap", "data", "recordings are being edited elsewhere"),
+    (
+        "gap",
+        "identify",
+        "identification is being edited elsewhere",
+    ),
+    (
+        "cli",
+        "",
+        "the command line is being divided into a library and a face",
+    ),
+];
+
+/// Crates that only the emission of Rust needs.
+const RUST_WRITERS: &[&str] = &["prettyplease", "proc_macro2", "quote", "syn"];
+
+/// The sources of all crates, each with its root file.
+fn sources() -> Vec<(String, PathBuf)> {
+    let workspace: toml::Table = read(&shipped::workspace().join("Cargo.toml"))
+        .parse()
+        .unwrap();
+    let members = workspace["workspace"]["members"].as_array().unwrap();
+    let roots = members.iter().flat_map(|member| {
+        let folder = member.as_str().unwrap();
+        let source = shipped::workspace().join(folder).join("src");
+        let roots = ["lib.rs", "main.rs"].map(|name| (folder.to_owned(), source.join(name)));
+        roots.into_iter().filter(|(_, root)| root.exists())
+    });
+    roots.collect()
+}
+
+fn codegen() -> Modules {
+    Modules::read(&shipped::workspace().join("codegen/src/lib.rs"))
+}
+
+#[test]
+fn no_more_than_two_files_use_each_other() {
+    let mut told = Vec::new();
+    for (folder, root) in sources() {
+        let exempt = MAY_GO_IN_CIRCLES
+            .iter()
+            .filter(|(name, ..)| *name == folder);
+        let exempt: Vec<&str> = exempt.map(|(_, path, _)| *path).collect();
+        let cycles = Modules::read(&root).cycles(&exempt).into_iter();
+        told.extend(cycles.map(|cycle| format!("{folder}: {cycle}")));
+    }
+    assert!(told.is_empty(), "{}", told.join("\n\n"));
+}
+
+#[test]
+fn modules_of_codegen_know_only_whom_they_may_know() {
+    let codegen = codegen();
+    for (folder, allowed) in LAYERS_OF_CODEGEN {
+        for known in codegen.neighbours(folder) {
+            let how = codegen.knows(folder, known).join("\n  ");
+            assert!(
+                allowed.contains(&known),
+                "codegen/src/{folder} must not know {known}:\n  {how}"
+            );
+        }
+    }
+}
+
+#[test]
+fn formulations_share_nothing_that_could_hide_a_mistake() {
+    let codegen = codegen();
+    for formulation in ["inertial", "kane", "lagrange", "loads"] {
+        for edge in codegen.knows(&format!("formulations/{formulation}"), "mechanics") {
+            let shared = SHARED_BY_FORMULATIONS.iter();
+            let mut shared = shared.map(|file| format!("mechanics/{file}.rs"));
+            assert!(shared.any(|file| edge.ends_with(&file)), "{edge}");
+        }
+    }
+}
+
+#[test]
+fn only_emit_writes_rust_and_only_jit_writes_machine_code() {
+    let codegen = codegen();
+    let cranelift = ["codegen", "frontend", "jit", "module", "native"];
+    let cranelift = cranelift.map(|part| format!("cranelift_{part}"));
+    let cranelift: Vec<&str> = cranelift.iter().map(String::as_str).collect();
+    for (folder, crates) in [("emit", RUST_WRITERS), ("jit", &cranelift)] {
+        for user in codegen.users_of(crates) {
+            assert!(
+                user.starts_with(folder),
+                "codegen/src/{user} must not use {crates:?}"
+            );
+        }
+    }
+}
+
+#[test]
+fn unsafe_code_is_in_jit_alone() {
+    let allowed = ["allow(", "expect("].map(|level| format!("{level}unsafe_code"));
+    let folders: Vec<String> = sources().into_iter().map(|(folder, _)| folder).collect();
+    let folders: Vec<&str> = folders.iter().map(String::as_str).collect();
+    for file in files(&folders, "rs") {
+        let text = read(&file);
+        let found = allowed.iter().any(|word| text.contains(word.as_str()));
+        let is_jit = file.to_string_lossy().contains("codegen/src/jit");
+        assert!(!found || is_jit, "{} allows unsafe code", file.display());
+    }
 }

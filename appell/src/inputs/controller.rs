@@ -5,6 +5,7 @@ use appell_analysis::control::schedule::GainSchedule;
 use appell_codegen::symbolic::Expr as Lowered;
 use appell_runtime::inputs::{InputSource, TabulatedInputs};
 use appell_spec::expr::Expr;
+use appell_spec::mechanism::InputId;
 use appell_spec::{Report, Scope, Snippet, formula};
 use nalgebra::DVector;
 
@@ -99,7 +100,7 @@ impl Plan {
 
     fn take(&mut self, input: usize, setup: &Setup<'_>) -> Result<(), Error> {
         if self.set.contains(&input) {
-            let name = &setup.mechanism.inputs[input].label.name;
+            let name = &setup.mechanism.inputs[InputId::new(input)].label.name;
             return Err(Error::Usage(format!("the input `{name}` is given twice")));
         }
         self.set.push(input);
@@ -120,7 +121,7 @@ impl Plan {
     pub fn expression(&mut self, assignment: &Assignment, setup: &Setup<'_>) -> Result<(), Error> {
         let input = setup.input(&assignment.name)?;
         self.take(input, setup)?;
-        let unit = &setup.mechanism.inputs[input].label.unit;
+        let unit = &setup.mechanism.inputs[InputId::new(input)].label.unit;
         let text = bracketed(&assignment.value);
         let expr = formula(
             setup.spec,

@@ -21,6 +21,7 @@ use appell_analysis::control::sampled::Sampling;
 use appell_analysis::control::schedule::GainSchedule;
 use appell_spec::expr::{Expr, Span};
 use appell_spec::limits::MAX_FILE;
+use appell_spec::mechanism::InputId;
 use appell_spec::units::Unit;
 use appell_spec::{Code, Diagnostic, Report, Scope, Snippet, formula};
 use toml::Spanned;
@@ -274,7 +275,7 @@ impl Reader<'_> {
         let setup = self.setup;
         let units = inputs
             .iter()
-            .map(|&input| &setup.mechanism.inputs[input].label.unit);
+            .map(|&input| &setup.mechanism.inputs[InputId::new(input)].label.unit);
         let pairs = values.into_iter().zip(units);
         pairs
             .map(|(value, unit)| self.expression(value, Scope::Law, "the offset", unit))

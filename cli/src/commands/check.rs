@@ -6,6 +6,7 @@ use std::time::Duration;
 
 use appell_codegen::mechanics::motion::independent_blocks;
 use appell_codegen::{Derived, audited};
+use appell_spec::mechanism::CoordinateId;
 use appell_spec::{Report, Severity};
 use serde_json::{Value, json};
 
@@ -170,7 +171,12 @@ impl Summary {
         let blocks = independent_blocks(&derivation.gibbs.mass_matrix);
         let names = |block: &Vec<usize>| block.iter().map(|&speed| speeds[speed].clone()).collect();
         let blocks = blocks.iter().map(names).collect();
-        let coordinate = |&q: &usize| mechanism.coordinates[q].label.name.clone();
+        let coordinate = |&q: &usize| {
+            mechanism.coordinates[CoordinateId::new(q)]
+                .label
+                .name
+                .clone()
+        };
         Self {
             title: mechanism.title.clone(),
             coordinates: mechanism.coordinates.len(),

@@ -6,6 +6,7 @@ use appell_report::drawing::link::LinkKind;
 use appell_runtime::Trajectory;
 use appell_runtime::model::{Model, ModelInfo};
 use appell_spec::Mechanism;
+use appell_spec::mechanism::{BodyId, FrameId, Point, PointId};
 use serde_json::{Value, json};
 
 /// A page with more rows than this takes long to open.
@@ -68,7 +69,7 @@ fn thinned(rows: usize) -> Vec<usize> {
 }
 
 fn points(mechanism: &Mechanism) -> Vec<Value> {
-    let point = |(id, point): (usize, &appell_spec::mechanism::Point)| {
+    let point = |(id, point): (PointId, &Point)| {
         let mut bodies = mechanism.bodies.iter().filter(|body| body.centre == id);
         let body = bodies.clone().next();
         json!({
@@ -78,13 +79,13 @@ fn points(mechanism: &Mechanism) -> Vec<Value> {
             "mass": bodies.any(|body| body.inertia.is_none()),
         })
     };
-    mechanism.points.iter().enumerate().map(point).collect()
+    mechanism.points.entries().map(point).collect()
 }
 
 fn frames(mechanism: &Mechanism, film: &Film) -> Vec<Value> {
     let frames = mechanism.frames.iter().zip(&film.seats);
     frames
-        .map(|(frame, seat)| json!({ "name": frame.name, "at": seat }))
+        .map(|(frame, seat)| json!({ "name": frame.name, "at": seat.map(PointId::index) }))
         .collect()
 }
 
@@ -96,13 +97,13 @@ fn links(film: &Film) -> Vec<Value> {
             LinkKind::Spring => "spring",
             LinkKind::Damper => "damper",
         };
-        json!({ "kind": kind, "ends": link.ends })
+        json!({ "kind": kind, "ends": link.ends.map(PointId::index) })
     };
     film.links.iter().map(link).collect()
 }
 
 fn bodies(mechanism: &Mechanism, film: &Film) -> Vec<Value> {
-    let shape = |(id, shape): &(usize, Shape)| {
+    let shape = |(id, shape): &(BodyId, Shape)| {
         let body = &mechanism.bodies[*id];
         let shape = match shape {
             Shape::Wheel { hub, axis, radius } => {
@@ -111,7 +112,7 @@ fn bodies(mechanism: &Mechanism, film: &Film) -> Vec<Value> {
             Shape::Ball(radius) => json!({ "kind": "ball", "radius": radius }),
             Shape::Ellipsoid(map) => json!({ "kind": "ellipsoid", "map": map }),
         };
-        json!({ "name": body.name, "centre": body.centre, "frame": body.frame, "shape": shape })
+        json!({ "name": body.name, "centre": body.centre.index(), "frame": body.frame.map(FrameId::index), "shape": shape })
     };
     film.shapes.iter().map(shape).collect()
 }

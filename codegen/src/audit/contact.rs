@@ -7,7 +7,7 @@
 use appell_spec::Code;
 use appell_spec::mechanism::{BodyId, ConstraintKind, GROUND, Mechanism, Normal, PointId};
 
-use super::{listed, shown, unconstrained, zero_or};
+use super::bench::{listed, shown, unconstrained, zero_or};
 use crate::mechanics::algebra::Algebra;
 use crate::mechanics::expressions::Lowering;
 use crate::mechanics::finding::{Finding, Item};
@@ -33,7 +33,7 @@ pub(super) fn findings(
         symbols,
         kinematics,
     };
-    let constraints = mechanism.constraints.iter().enumerate();
+    let constraints = mechanism.constraints.entries();
     constraints
         .filter_map(|(index, constraint)| {
             let ConstraintKind::Rolling {

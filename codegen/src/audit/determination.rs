@@ -2,9 +2,10 @@
 //! the zeros of the determinant of their coefficients.
 
 use appell_spec::Code;
+use appell_spec::mechanism::SpeedId;
 
+use super::bench::{Audit, Bench, listed};
 use super::samples::takes_both_signs;
-use super::{Audit, Bench, listed};
 use crate::mechanics::algebra::Algebra;
 use crate::mechanics::expressions::Lowering;
 use crate::mechanics::finding::{Finding, Item};
@@ -205,5 +206,7 @@ fn culprit(bench: &mut Bench, speeds: &Matrix, factor: Expr) -> Item {
     last(&|coefficient| coefficient == factor || coefficient == minus)
         .or_else(|| last(&|coefficient| graph.in_order(&[coefficient]).contains(&factor)))
         .or_else(|| last(&|coefficient| graph.mentions(coefficient, &symbols)))
-        .map_or(Item::Mechanism, Item::PseudoVelocity)
+        .map_or(Item::Mechanism, |speed| {
+            Item::PseudoVelocity(SpeedId::new(speed))
+        })
 }

@@ -2,8 +2,8 @@
 
 use appell_spec::Code;
 
+use super::bench::{Audit, Bench};
 use super::work::silent_loads;
-use super::{Audit, Bench};
 use crate::mechanics::expressions::Lowering;
 use crate::mechanics::finding::{Finding, Item};
 use crate::mechanics::loads::applied_loads;
@@ -23,22 +23,22 @@ fn coordinates(bench: &mut Bench, told: &mut Audit) {
     };
     let symbols = &bench.derivation.symbols;
     let equations = bench.equations();
-    for (q, coordinate) in bench.mechanism.coordinates.iter().enumerate() {
+    for (q, coordinate) in bench.mechanism.coordinates.entries() {
         // Two rows with the same rate tie others together by means of it.
         let rows = bench.derivation.constraints.rows.iter();
-        let ties = rows.filter(|row| row.is_active() && row.coefficients[q] != Graph::ZERO);
+        let ties = rows.filter(|row| row.is_active() && row.coefficients[q.index()] != Graph::ZERO);
         if ties.count() > 1 {
             continue;
         }
-        let own_rate = bench.derivation.velocities.rates[q];
+        let own_rate = bench.derivation.velocities.rates[q.index()];
         let others: Vec<Expr> = equations
             .iter()
             .copied()
             .filter(|&e| e != own_rate)
             .collect();
-        if bench.are_independent_of(&moved, symbols.rates[q])
-            && bench.are_independent_of(&moved, symbols.coordinates[q])
-            && bench.are_independent_of(&others, symbols.coordinates[q])
+        if bench.are_independent_of(&moved, symbols.rates[q.index()])
+            && bench.are_independent_of(&moved, symbols.coordinates[q.index()])
+            && bench.are_independent_of(&others, symbols.coordinates[q.index()])
         {
             let name = &coordinate.label.name;
             told.warnings.push(Finding {
@@ -86,13 +86,13 @@ fn parameters(bench: &mut Bench, told: &mut Audit) {
     let equations = bench.equations();
     // What a load without work depends on is told with the load.
     let silent = silent_loads(bench);
-    for (p, parameter) in bench.mechanism.parameters.iter().enumerate() {
-        let symbol = bench.derivation.symbols.parameters[p];
+    for (p, parameter) in bench.mechanism.parameters.entries() {
+        let symbol = bench.derivation.symbols.parameters[p.index()];
         let graph = &bench.algebra.graph;
         let loads = &bench.derivation.loads;
         let is_told = graph.as_symbol(symbol).is_some_and(|id| {
             let mut silent = silent.iter();
-            silent.any(|&load| loads[load].depends_on(graph, &[id]))
+            silent.any(|&load| loads[load.index()].depends_on(graph, &[id]))
         });
         if !is_told && bench.are_independent_of(&equations, symbol) {
             let name = &parameter.label.name;
@@ -110,13 +110,8 @@ fn parameters(bench: &mut Bench, told: &mut Audit) {
 
 /// Bodies that cannot move.
 fn bodies(bench: &Bench, told: &mut Audit) {
-    for (index, (body, motion)) in bench
-        .mechanism
-        .bodies
-        .iter()
-        .zip(&bench.derivation.bodies)
-        .enumerate()
-    {
+    let bodies = bench.mechanism.bodies.entries();
+    for ((id, body), motion) in bodies.zip(&bench.derivation.bodies) {
         let turns = motion
             .rotation
             .as_ref()
@@ -125,7 +120,7 @@ fn bodies(bench: &Bench, told: &mut Audit) {
             told.notes.push(Finding {
                 code: Code::NoEffect,
                 message: format!("`{}` never moves: its mass changes nothing", body.name),
-                item: Item::Body(index),
+                item: Item::Body(id),
                 help: "let its centre or its frame depend on a coordinate, or remove it".to_owned(),
             });
         }

@@ -6,8 +6,9 @@
 //! no motion ever changes (Frobenius): a sum of rows that vanishes on all of them is integrable.
 
 use appell_spec::Code;
+use appell_spec::mechanism::CoordinateId;
 
-use super::{Bench, listed, zero_or};
+use super::bench::{Bench, listed, zero_or};
 use crate::mechanics::finding::{Finding, Item};
 use crate::mechanics::rank::{Combination, LinearRow, Standing, standings};
 use crate::symbolic::{Expr, Graph, Substitution};
@@ -199,7 +200,12 @@ fn integrable(bench: &mut Bench, row: usize, sum: &Combination) -> Option<Findin
     }
     let tied: Vec<&str> = (0..count)
         .filter(|&q| form[q] != Graph::ZERO)
-        .map(|q| bench.mechanism.coordinates[q].label.name.as_str())
+        .map(|q| {
+            bench.mechanism.coordinates[CoordinateId::new(q)]
+                .label
+                .name
+                .as_str()
+        })
         .collect();
     let mut names: Vec<&str> = sum.iter().map(|&(r, _)| rows[r].name.as_str()).collect();
     names.push(&rows[row].name);

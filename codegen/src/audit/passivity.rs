@@ -2,16 +2,16 @@
 
 use appell_spec::Code;
 use appell_spec::expr::Expr as Spec;
-use appell_spec::mechanism::LoadKind;
+use appell_spec::mechanism::{LoadId, LoadKind};
 
-use super::{Audit, Bench};
+use super::bench::{Audit, Bench};
 use crate::mechanics::expressions::Lowering;
 use crate::mechanics::finding::{Finding, Item};
 use crate::mechanics::symbols::ids;
 use crate::symbolic::{Expr, Graph, Substitution};
 
 pub(super) fn audit(bench: &mut Bench, told: &mut Audit) {
-    for (index, load) in bench.mechanism.loads.iter().enumerate() {
+    for (index, load) in bench.mechanism.loads.entries() {
         let name = &load.name;
         let negative = |bench: &mut Bench, coefficient| is_negative(bench, coefficient);
         let (message, help) = match &load.kind {
@@ -69,9 +69,9 @@ fn is_negative(bench: &mut Bench, coefficient: &Spec) -> bool {
 
 /// Whether a load depends on nothing but the state, and its power is the same against every velocity
 /// and never negative: friction with the wrong sign.
-fn drives(bench: &mut Bench, load: usize) -> bool {
+fn drives(bench: &mut Bench, load: LoadId) -> bool {
     let symbols = &bench.derivation.symbols;
-    let load = &bench.derivation.loads[load];
+    let load = &bench.derivation.loads[load.index()];
     let graph = &mut bench.algebra.graph;
     let mut outside = symbols.inputs.clone();
     outside.extend(symbols.signals.iter().flatten());

@@ -1,9 +1,11 @@
 //! Forces and their reactions: opposite, and on one line.
 
-use appell_spec::Code;
-use appell_spec::mechanism::{FrameId, LoadKind};
+use std::mem::discriminant;
 
-use super::{Audit, Bench};
+use appell_spec::Code;
+use appell_spec::mechanism::{BodyId, FrameId, LoadId, LoadKind, PointId};
+
+use super::bench::{Audit, Bench};
 use crate::mechanics::expressions::Lowering;
 use crate::mechanics::finding::{Finding, Item};
 use crate::mechanics::symbols::ids;
@@ -21,7 +23,7 @@ fn couples(bench: &mut Bench, told: &mut Audit) {
         symbols: &bench.derivation.symbols,
         rates: &bench.derivation.velocities.rates,
     };
-    for (index, load) in mechanism.loads.iter().enumerate() {
+    for (index, load) in mechanism.loads.entries() {
         let LoadKind::Force {
             on,
             reaction_on: Some(other),
@@ -65,26 +67,38 @@ fn couples(bench: &mut Bench, told: &mut Audit) {
     }
 }
 
-/// What acts where: a torque on a body, or a force on a point.
-type Action = (bool, usize, FrameId, Vec3);
+/// What a load acts on.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum On {
+    /// A force on a point.
+    Point(PointId),
+    /// A torque on a body.
+    Body(BodyId),
+}
+
+/// What acts where.
+type Action = (On, FrameId, Vec3);
 
 /// One input that acts with the same sign on two bodies or points: the second may be meant as the
 /// reaction to the first.
 fn equal_signs(bench: &mut Bench, told: &mut Audit) {
     let mechanism = bench.mechanism;
     let inputs = ids(&bench.algebra.graph, &bench.derivation.symbols.inputs);
-    let mut before: Vec<(usize, Action)> = Vec::new();
-    for index in 0..mechanism.loads.len() {
+    let mut before: Vec<(LoadId, Action)> = Vec::new();
+    for index in mechanism.loads.ids() {
         let graph = &bench.algebra.graph;
-        if !bench.derivation.loads[index].depends_on(graph, &inputs) {
+        if !bench.derivation.loads[index.index()].depends_on(graph, &inputs) {
             continue;
         }
         let Some(action) = external(bench, index) else {
             continue;
         };
-        let (is_torque, on, frame, vector) = action;
+        let (on, frame, vector) = action;
         let same = before.iter().find(|(_, other)| {
-            other.0 == is_torque && other.1 != on && other.2 == frame && other.3 == vector
+            discriminant(&other.0) == discriminant(&on)
+                && other.0 != on
+                && other.1 == frame
+                && other.2 == vector
         });
         if let Some(&(other, _)) = same {
             let [name, other] = [index, other].map(|load| &mechanism.loads[load].name);
@@ -105,27 +119,27 @@ fn equal_signs(bench: &mut Bench, told: &mut Audit) {
 }
 
 /// A load without a reaction.
-fn external(bench: &mut Bench, load: usize) -> Option<Action> {
+fn external(bench: &mut Bench, load: LoadId) -> Option<Action> {
     let lowering = Lowering {
         symbols: &bench.derivation.symbols,
         rates: &bench.derivation.velocities.rates,
     };
-    let (is_torque, on, frame, vector) = match &bench.mechanism.loads[load].kind {
+    let (on, frame, vector) = match &bench.mechanism.loads[load].kind {
         LoadKind::Force {
             on,
             reaction_on: None,
             frame,
             vector,
             ..
-        } => (false, *on, *frame, vector),
+        } => (On::Point(*on), *frame, vector),
         LoadKind::Torque {
             on,
             reaction_on: None,
             frame,
             vector,
-        } => (true, *on, *frame, vector),
+        } => (On::Body(*on), *frame, vector),
         _ => return None,
     };
     let vector = lowering.lower_all(&mut bench.algebra.graph, vector).ok()?;
-    Some((is_torque, on, frame, vector))
+    Some((on, frame, vector))
 }

@@ -1,6 +1,6 @@
 //! Configurations inside the declared ranges, to show what cannot be proven.
 
-use super::Bench;
+use super::bench::Bench;
 use crate::mechanics::symbols::ids;
 use crate::symbolic::{Expr, evaluate};
 

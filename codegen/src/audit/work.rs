@@ -1,9 +1,9 @@
 //! Loads and inputs that do no work in any motion that the constraints allow.
 
 use appell_spec::Code;
-use appell_spec::mechanism::LoadKind;
+use appell_spec::mechanism::{InputId, LoadId, LoadKind};
 
-use super::{Audit, Bench, listed};
+use super::bench::{Audit, Bench, listed};
 use crate::mechanics::algebra::Algebra;
 use crate::mechanics::finding::{Finding, Item};
 use crate::symbolic::{Expr, SymbolId};
@@ -14,10 +14,10 @@ pub(super) fn audit(bench: &mut Bench, told: &mut Audit) {
     inputs(bench, &silent, told);
 }
 
-/// Loads whose power is zero, by index.
-pub(super) fn silent_loads(bench: &mut Bench) -> Vec<usize> {
+/// Loads whose power is zero.
+pub(super) fn silent_loads(bench: &mut Bench) -> Vec<LoadId> {
     let Algebra { graph, test, .. } = &mut bench.algebra;
-    let loads = bench.derivation.loads.iter().enumerate();
+    let loads = bench.mechanism.loads.ids().zip(&bench.derivation.loads);
     loads
         .filter_map(|(index, load)| {
             let power = load.power(graph);
@@ -26,7 +26,7 @@ pub(super) fn silent_loads(bench: &mut Bench) -> Vec<usize> {
         .collect()
 }
 
-fn loads(bench: &Bench, silent: &[usize], told: &mut Audit) {
+fn loads(bench: &Bench, silent: &[LoadId], told: &mut Audit) {
     // Where constraints react, a load without work still changes their reactions.
     let reacting = !bench.mechanism.constraints.is_empty();
     for &index in silent {
@@ -56,16 +56,16 @@ fn loads(bench: &Bench, silent: &[usize], told: &mut Audit) {
 }
 
 /// Inputs that enter neither Π nor an output, besides those of loads that are told already.
-fn inputs(bench: &mut Bench, silent: &[usize], told: &mut Audit) {
-    let is_told: Vec<usize> = silent
+fn inputs(bench: &mut Bench, silent: &[LoadId], told: &mut Audit) {
+    let is_told: Vec<InputId> = silent
         .iter()
         .flat_map(|&load| inputs_of(bench, load))
         .map(|(input, ..)| input)
         .collect();
     let mut results = bench.derivation.forces.clone();
     results.extend(&bench.outputs);
-    for (index, input) in bench.mechanism.inputs.iter().enumerate() {
-        let symbol = bench.derivation.symbols.inputs[index];
+    for (index, input) in bench.mechanism.inputs.entries() {
+        let symbol = bench.derivation.symbols.inputs[index.index()];
         if !is_told.contains(&index) && bench.are_independent_of(&results, symbol) {
             let name = &input.label.name;
             told.warnings.push(Finding {
@@ -81,16 +81,16 @@ fn inputs(bench: &mut Bench, silent: &[usize], told: &mut Audit) {
     }
 }
 
-/// Indices, names and symbols of the inputs that a load depends on.
-fn inputs_of<'a>(bench: &Bench<'a>, load: usize) -> Vec<(usize, &'a str, SymbolId)> {
+/// Ids, names and symbols of the inputs that a load depends on.
+fn inputs_of<'a>(bench: &Bench<'a>, load: LoadId) -> Vec<(InputId, &'a str, SymbolId)> {
     let graph = &bench.algebra.graph;
     let symbols: &[Expr] = &bench.derivation.symbols.inputs;
-    let inputs = bench.mechanism.inputs.iter().zip(symbols).enumerate();
+    let inputs = bench.mechanism.inputs.entries().zip(symbols);
     inputs
-        .filter_map(|(i, (input, &symbol))| {
+        .filter_map(|((i, input), &symbol)| {
             Some((i, input.label.name.as_str(), graph.as_symbol(symbol)?))
         })
-        .filter(|&(.., symbol)| bench.derivation.loads[load].depends_on(graph, &[symbol]))
+        .filter(|&(.., symbol)| bench.derivation.loads[load.index()].depends_on(graph, &[symbol]))
         .collect()
 }
 

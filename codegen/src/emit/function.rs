@@ -4,8 +4,8 @@ use proc_macro2::Literal;
 use quote::quote;
 use syn::ItemFn;
 
-use super::Error;
 use super::body::body;
+use super::error::Error;
 use super::layout::{blank_tokens, docs, one_line};
 use super::syntax::{ident, known};
 use super::types::{Types, result_struct};

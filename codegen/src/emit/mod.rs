@@ -6,6 +6,7 @@
 //! model, and [`syntax`] holds short constructors.
 
 mod body;
+mod error;
 mod function;
 mod layout;
 mod markdown;
@@ -15,11 +16,12 @@ mod syntax;
 mod types;
 
 use quote::quote;
-use thiserror::Error;
 
 use crate::program::{FunctionKind, Program};
 use crate::schedule::{OperationCount, Tuning, schedule_tuned};
 use types::Types;
+
+pub use error::Error;
 
 /// What to emit.
 #[derive(Debug, Clone)]
@@ -60,32 +62,6 @@ pub struct Emitted {
     pub model: String,
     /// Operations of every function.
     pub costs: Vec<(FunctionKind, OperationCount)>,
-}
-
-/// Why nothing was emitted.
-#[derive(Debug, Clone, PartialEq, Eq, Error)]
-pub enum Error {
-    /// The path of the run-time crate is no path.
-    #[error("`{0}` is not the path of a crate or module")]
-    RuntimePath(String),
-    /// The implementation of `Model` needs a function that the program does not have.
-    #[error("`impl Model` needs the function {0:?}")]
-    MissingFunction(FunctionKind),
-    /// The number of entries contradicts the layout.
-    #[error("{kind:?}: `{array}` has {found} entries where its layout has {expected}")]
-    Shape {
-        /// Function.
-        kind: FunctionKind,
-        /// Result array.
-        array: String,
-        /// Entries of the layout.
-        expected: usize,
-        /// Entries of the array.
-        found: usize,
-    },
-    /// The text is not Rust, which is an error of this module.
-    #[error("emitted text does not parse: {0}")]
-    Syntax(String),
 }
 
 /// Emits the functions `kinds` and the structs they need, without the implementation of `Model`.

@@ -2,10 +2,13 @@
 //! derivative of a position.
 
 use appell_spec::expr::Expr as Spec;
-use appell_spec::mechanism::{Axis, BodyId, Components, ConstraintKind, FrameId, Mechanism};
+use appell_spec::mechanism::{
+    Axis, BodyId, Components, ConstraintId, ConstraintKind, FrameId, List, Mechanism, PointId,
+};
 
 use crate::mechanics::algebra::Algebra;
 use crate::mechanics::expressions::{DivisionByZero, Lowering};
+use crate::mechanics::finding::{Item, Outcome, division_by_zero};
 use crate::mechanics::symbols::Symbols;
 use crate::mechanics::time::TimeDerivative;
 use crate::symbolic::vector::{self, Mat3, Vec3};
@@ -14,6 +17,16 @@ use crate::symbolic::{Expr, Graph};
 /// An expression of a spec in the graph.
 pub(super) type Lowered<T> = Result<T, DivisionByZero>;
 
+/// Calls a step that may divide by zero and may make many expressions.
+pub(super) fn room<T>(
+    algebra: &mut Algebra,
+    step: impl FnOnce(&mut Algebra) -> Lowered<T>,
+) -> Outcome<T> {
+    let result = step(algebra).map_err(|DivisionByZero| vec![division_by_zero(Item::Mechanism)])?;
+    algebra.check_size()?;
+    Ok(result)
+}
+
 /// Positions and velocities for given generalised velocities.
 pub(super) struct Inertial<'a> {
     pub(super) mechanism: &'a Mechanism,
@@ -21,17 +34,17 @@ pub(super) struct Inertial<'a> {
     /// Generalised velocities: symbols, or functions of the pseudo-velocities.
     pub(super) rates: &'a [Expr],
     /// From the components of each frame to those of the ground.
-    rotations: Vec<Mat3>,
-    positions: Vec<Vec3>,
-    velocities: Vec<Vec3>,
+    rotations: List<FrameId, Mat3>,
+    positions: List<PointId, Vec3>,
+    velocities: List<PointId, Vec3>,
     /// Angular velocities of the frames.
-    turning: Vec<Vec3>,
+    turning: List<FrameId, Vec3>,
 }
 
 /// A scalar constraint on velocities.
 pub(super) struct Row {
-    /// Index of the constraint in the mechanism.
-    pub(super) constraint: usize,
+    /// Of which constraint.
+    pub(super) constraint: ConstraintId,
     /// What has to vanish.
     pub(super) value: Expr,
     /// Where a unit of its reaction acts: the force in the ground, or the multiplier as first
@@ -50,10 +63,10 @@ impl<'a> Inertial<'a> {
             mechanism,
             symbols,
             rates,
-            rotations: Vec::with_capacity(mechanism.frames.len()),
-            positions: Vec::with_capacity(mechanism.points.len()),
-            velocities: Vec::with_capacity(mechanism.points.len()),
-            turning: Vec::with_capacity(mechanism.frames.len()),
+            rotations: List::default(),
+            positions: List::default(),
+            velocities: List::default(),
+            turning: List::default(),
         };
         for frame in &mechanism.frames {
             let mut rotation = match frame.parent {
@@ -121,12 +134,12 @@ impl<'a> Inertial<'a> {
     }
 
     /// Position of a point.
-    pub(super) fn position(&self, point: usize) -> Vec3 {
+    pub(super) fn position(&self, point: PointId) -> Vec3 {
         self.positions[point]
     }
 
     /// Velocity of a point, or of the material point of a body there: `v_C + ω × r`.
-    pub(super) fn velocity(&self, graph: &mut Graph, body: Option<BodyId>, point: usize) -> Vec3 {
+    pub(super) fn velocity(&self, graph: &mut Graph, body: Option<BodyId>, point: PointId) -> Vec3 {
         let Some(body) = body else {
             return self.velocities[point];
         };
@@ -171,7 +184,7 @@ impl<'a> Inertial<'a> {
     /// The constraints in the order of the spec.
     pub(super) fn rows(&self, algebra: &mut Algebra) -> Lowered<Vec<Row>> {
         let mut rows = Vec::new();
-        for (constraint, item) in self.mechanism.constraints.iter().enumerate() {
+        for (constraint, item) in self.mechanism.constraints.entries() {
             let mut row = |value, direction| {
                 rows.push(Row {
                     constraint,

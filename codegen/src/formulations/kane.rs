@@ -1,8 +1,9 @@
 //! Kane's equations: `Σ (F - m a)·v_i + (T - I α - ω × I ω)·ω_i = 0` for every pseudo-velocity.
 
-use super::inertial::{Inertial, Lowered};
+use appell_spec::mechanism::BodyId;
+
+use super::inertial::{Inertial, Lowered, room};
 use super::loads::{Which, efforts, generalized_force};
-use super::room;
 use crate::mechanics::algebra::Algebra;
 use crate::mechanics::finding::Outcome;
 use crate::symbolic::vector::Vec3;
@@ -44,7 +45,7 @@ pub(super) fn kane(
 ) -> Outcome<Kane> {
     let speeds = &inertial.symbols.speeds;
     let mut bodies = Vec::with_capacity(inertial.mechanism.bodies.len());
-    for body in 0..inertial.mechanism.bodies.len() {
+    for body in inertial.mechanism.bodies.ids() {
         bodies.push(room(algebra, |algebra| partial(algebra, inertial, body))?);
     }
     let loads = room(algebra, |algebra| efforts(algebra, inertial, Which::All))?;
@@ -100,7 +101,7 @@ pub(super) fn kane(
     })
 }
 
-fn partial(algebra: &mut Algebra, inertial: &Inertial<'_>, body: usize) -> Lowered<Partial> {
+fn partial(algebra: &mut Algebra, inertial: &Inertial<'_>, body: BodyId) -> Lowered<Partial> {
     let centre = inertial.mechanism.bodies[body].centre;
     let v = inertial.velocity(&mut algebra.graph, None, centre);
     let w = inertial.turning(body);

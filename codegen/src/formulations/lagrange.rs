@@ -2,9 +2,8 @@
 //!
 //! T is written in all generalised velocities, as if there were no constraints.
 
-use super::inertial::{Inertial, Lowered};
+use super::inertial::{Inertial, Lowered, room};
 use super::loads::{Which, efforts, generalized_force, potential};
-use super::room;
 use crate::mechanics::algebra::Algebra;
 use crate::mechanics::expressions::DivisionByZero;
 use crate::mechanics::finding::Outcome;
@@ -116,7 +115,7 @@ fn dynamics(algebra: &mut Algebra, inertial: &Inertial<'_>) -> Outcome<Vec<Equat
 /// T = Σ ½ m v·v + ½ ω·I ω
 fn kinetic_energy(algebra: &mut Algebra, inertial: &Inertial<'_>) -> Lowered<Expr> {
     let mut parts = Vec::new();
-    for (index, body) in inertial.mechanism.bodies.iter().enumerate() {
+    for (index, body) in inertial.mechanism.bodies.entries() {
         let v = inertial.velocity(&mut algebra.graph, None, body.centre);
         let square = algebra.graph.dot(v, v);
         let mass = inertial.mass(algebra, index)?;

@@ -36,7 +36,7 @@ pub(super) fn efforts(
         match &load.kind {
             LoadKind::Gravity { down, acceleration } if which == Which::All => {
                 let g = inertial.lower(algebra, acceleration)?;
-                for (index, body) in mechanism.bodies.iter().enumerate() {
+                for (index, body) in mechanism.bodies.entries() {
                     let mass = inertial.mass(algebra, index)?;
                     let weight = algebra.graph.mul(mass, g);
                     let down = down.map(|c| algebra.graph.integer(c.into()));
@@ -105,7 +105,7 @@ pub(super) fn efforts(
                 let force = inertial.lower(algebra, force)?;
                 all.push(Effort {
                     force: [force, Graph::ZERO, Graph::ZERO],
-                    velocity: [inertial.rates[*coordinate], Graph::ZERO, Graph::ZERO],
+                    velocity: [inertial.rates[coordinate.index()], Graph::ZERO, Graph::ZERO],
                     external: false,
                 });
             }
@@ -127,9 +127,9 @@ impl Line {
         let graph = &mut algebra.graph;
         match *between {
             Connection::Coordinate(q) => Self {
-                length: inertial.symbols.coordinates[q],
+                length: inertial.symbols.coordinates[q.index()],
                 direction: [Graph::ONE, Graph::ZERO, Graph::ZERO],
-                velocity: [inertial.rates[q], Graph::ZERO, Graph::ZERO],
+                velocity: [inertial.rates[q.index()], Graph::ZERO, Graph::ZERO],
             },
             Connection::Points(a, b) => {
                 let arm = graph.sub3(inertial.position(b), inertial.position(a));
@@ -180,7 +180,7 @@ pub(super) fn potential(algebra: &mut Algebra, inertial: &Inertial<'_>) -> Lower
         match &load.kind {
             LoadKind::Gravity { down, acceleration } => {
                 let g = inertial.lower(algebra, acceleration)?;
-                for (index, body) in mechanism.bodies.iter().enumerate() {
+                for (index, body) in mechanism.bodies.entries() {
                     let mass = inertial.mass(algebra, index)?;
                     let down = down.map(|c| algebra.graph.integer(c.into()));
                     let fallen = algebra.graph.dot(down, inertial.position(body.centre));

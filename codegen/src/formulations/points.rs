@@ -2,7 +2,7 @@
 
 use appell_spec::mechanism::Mechanism;
 
-use super::{Agreement, Pair};
+use super::comparison::{Agreement, Pair};
 use crate::mechanics::seed;
 use crate::mechanics::symbols::{Symbols, ids};
 use crate::symbolic::{Expr, Graph, SymbolId, evaluate};

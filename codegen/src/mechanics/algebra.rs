@@ -1,6 +1,7 @@
 //! The graph with the tools that every stage of the derivation uses on it.
 
 use appell_spec::Code;
+use appell_spec::mechanism::Mechanism;
 
 use crate::symbolic::vector::Vec3;
 use crate::symbolic::{Derivatives, Expr, Graph, IdentityTest, Substitution, SymbolId};
@@ -146,4 +147,15 @@ impl Algebra {
         }
         best
     }
+}
+
+/// The identity test draws its points from the spec, so that every run draws the same.
+pub fn seed(mechanism: &Mechanism) -> u64 {
+    // FNV-1a: short and fixed for all time. A spec made to deceive the test deceives its author only.
+    mechanism
+        .name
+        .bytes()
+        .fold(0xcbf2_9ce4_8422_2325, |hash, byte| {
+            (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3)
+        })
 }

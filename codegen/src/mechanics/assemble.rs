@@ -1,19 +1,20 @@
 //! The derived equations as the functions of a program.
 
 use appell_runtime::model::{Contact, Interpolation, List, ModelInfo, Quantity, SignalTable};
-use appell_spec::mechanism::{self, Label, Mechanism, Signal};
+use appell_spec::mechanism::{
+    self, BodyId, ConstraintId, FrameId, Label, Mechanism, Signal, SignalId,
+};
 
 use super::Derivation;
 use super::constraints::Constraints;
 use super::expressions::Lowering;
-use super::finding::{Item, Outcome};
+use super::finding::{Item, Outcome, division_by_zero};
 use super::gibbs_appell::{
     ActualMotion, BodyMotion, acceleration_energies, acceleration_energy,
     kinetic_energy_by_velocity, motions_in_ground,
 };
 use super::glossary;
 use super::initial::InitialState;
-use super::kinematics::division_by_zero;
 use super::linear::ImplicitMotion;
 use super::linear_bound::BoundMotion;
 use super::positions::Positions;
@@ -216,10 +217,9 @@ impl Derivation {
             F::AccelerationEnergy => {
                 let bodies = self.bodies.clone();
                 let mut function = self.staged_by_accelerations(mechanism, function, &bodies);
-                for (place, body) in bodies.iter().enumerate() {
+                for (id, body) in mechanism.bodies.ids().zip(&bodies) {
                     let parts = acceleration_energies(&mut self.algebra, body, &accelerations);
-                    function =
-                        function.by_way_of(&Source(mechanism).of_body(place), parts.to_vec());
+                    function = function.by_way_of(&Source(mechanism).of_body(id), parts.to_vec());
                 }
                 function
             }
@@ -255,13 +255,13 @@ impl Derivation {
 
     /// The velocities of the bodies, then their kinetic energies.
     fn staged_by_velocities(&mut self, mechanism: &Mechanism, mut function: Function) -> Function {
-        for (place, body) in self.bodies.iter().enumerate() {
+        for (id, body) in mechanism.bodies.ids().zip(&self.bodies) {
             let (v, energy) = kinetic_energy_by_velocity(&mut self.algebra, body);
             let frame = &mechanism.frames[body.centre.velocity.frame].name;
             let title = format!("Velocity of `{}` in `{frame}`.", body.centre.point);
             function = function
                 .by_way_of(&title, v.to_vec())
-                .by_way_of(&Source(mechanism).of_body(place), vec![energy]);
+                .by_way_of(&Source(mechanism).of_body(id), vec![energy]);
         }
         function
     }
@@ -277,7 +277,7 @@ impl Derivation {
         let mut function = function.by_way_of(SOLVED, accelerations.clone());
         for body in bodies {
             let motion = ActualMotion::new(&mut self.algebra, body, &accelerations);
-            let frame = |frame: usize| &mechanism.frames[frame].name;
+            let frame = |frame: FrameId| &mechanism.frames[frame].name;
             let a_in = frame(body.centre.velocity.frame);
             let title = format!("Acceleration of `{}` in `{a_in}`.", body.centre.point);
             function = function.by_way_of(&title, motion.a.to_vec());
@@ -303,7 +303,7 @@ impl Derivation {
         let mut array = Array::new("residual", "Constraint rows.", layout, residual)
             .labelled(rows().map(|row| format!("residual_{}", row.name)))
             .with_names(rows().map(|row| row.name.clone()).collect(), Vec::new());
-        let constraints: Vec<usize> = rows().map(|row| row.constraint).collect();
+        let constraints: Vec<ConstraintId> = rows().map(|row| row.constraint).collect();
         let mut start = 0;
         for same in constraints.chunk_by(|a, b| a == b) {
             let title = Source(mechanism).of_constraint(same[0]);
@@ -415,7 +415,7 @@ impl Derivation {
             rates: &self.coordinate_rates,
         };
         let mut values = Vec::with_capacity(mechanism.outputs.len());
-        for (index, output) in mechanism.outputs.iter().enumerate() {
+        for (index, output) in mechanism.outputs.entries() {
             let value = lowering
                 .lower(&mut self.algebra.graph, &output.value)
                 .map_err(|_| vec![division_by_zero(Item::Output(index))])?;
@@ -556,7 +556,10 @@ pub(super) fn input_symbols(symbols: &Symbols, info: &ModelInfo) -> Vec<Expr> {
 fn embedded(mechanism: &Mechanism, constraints: &Constraints) -> impl Iterator<Item = String> {
     let has_row =
         |index| (constraints.rows.iter()).any(|row| row.constraint == index && !row.is_embedded());
-    let without = (0..mechanism.constraints.len()).filter(move |&index| !has_row(index));
+    let without = mechanism
+        .constraints
+        .ids()
+        .filter(move |&index| !has_row(index));
     without.map(|index| {
         let name = &mechanism.constraints[index].name;
         format!("`{name}` has no row: the coordinates satisfy it identically.")
@@ -567,12 +570,12 @@ fn embedded(mechanism: &Mechanism, constraints: &Constraints) -> impl Iterator<I
 struct Source<'a>(&'a Mechanism);
 
 impl Source<'_> {
-    fn of_body(&self, index: usize) -> String {
+    fn of_body(&self, index: BodyId) -> String {
         let body = &self.0.bodies[index];
         format!("Body `{}`, {}:{}.", body.name, self.0.file, body.line)
     }
 
-    fn of_constraint(&self, index: usize) -> String {
+    fn of_constraint(&self, index: ConstraintId) -> String {
         let constraint = &self.0.constraints[index];
         format!(
             "Constraint `{}`, {}:{}.",
@@ -605,7 +608,11 @@ fn info(derivation: &Derivation, mechanism: &Mechanism, signals: &[(usize, u8)])
         .iter()
         .map(|u| quantity(&u.label, 0.0, everywhere));
     let tabulated = signals.iter().map(|&(signal, order)| {
-        let mut input = quantity(&mechanism.signals[signal].label, 0.0, everywhere);
+        let mut input = quantity(
+            &mechanism.signals[SignalId::new(signal)].label,
+            0.0,
+            everywhere,
+        );
         if order > 0 {
             input.name = mechanism::Interpolation::derivative_name(&input.name, order).into();
             input.unit = format!("({})/s^{order}", input.unit).into();

@@ -2,55 +2,21 @@
 
 use appell_runtime::model::Reaction as Reported;
 use appell_spec::Code;
-use appell_spec::mechanism::{ConstraintKind, GROUND, Mechanism, PointId};
+use appell_spec::mechanism::{ConstraintId, ConstraintKind, GROUND, Mechanism, PointId};
 use appell_spec::units::{Dimension, Unit};
 
 use super::algebra::Algebra;
+use super::auxiliary::AuxiliaryMotions;
 use super::expressions::Lowering;
-use super::finding::{Finding, Item, Outcome};
+use super::finding::{Finding, Item, Outcome, division_by_zero};
 use super::frames::FrameVector;
-use super::kinematics::{Effort, Kinematics, division_by_zero, root_of};
-use super::rank::LinearRow;
+use super::kinematics::{Effort, Kinematics, root_of};
 use super::redundancy::leave_out;
-use super::support::Support;
+use super::row::{Reaction, Row};
 use super::symbols::Symbols;
 use super::time::TimeDerivative;
 use crate::symbolic::vector::{self, Vec3};
 use crate::symbolic::{Expr, Graph, Intervals, Substitution};
-
-/// One scalar constraint: `Σ coefficient · q̇ + rest = 0`.
-#[derive(Debug, Clone)]
-pub struct Row {
-    /// Name for people, such as `rolling.x`.
-    pub name: String,
-    /// Index of the constraint in the mechanism.
-    pub constraint: usize,
-    /// The whole row, with symbols for the generalised velocities.
-    pub value: Expr,
-    /// Coefficients of the generalised velocities.
-    pub coefficients: Vec<Expr>,
-    /// What remains without generalised velocities.
-    pub rest: Expr,
-    /// Where its reaction is reported, and along which direction of the ground a unit of it acts.
-    pub reaction: Reaction,
-    /// The direction as it is written; an axis of the ground where the constraint has no point.
-    pub along: FrameVector,
-    /// The point next to the origin from which hangs what it holds, if it has a point.
-    pub root: Option<PointId>,
-    /// Whether it is left out because it follows from the others.
-    pub redundant: bool,
-    /// Whether it is the derivative of a position constraint.
-    pub of_position: bool,
-}
-
-/// How the reaction of a row is reported.
-#[derive(Debug, Clone)]
-pub struct Reaction {
-    /// Index among the places of reactions; see [`Constraints::reported`].
-    pub place: usize,
-    /// Direction in the ground; a row without a point reports its multiplier as first component.
-    pub direction: Vec3,
-}
 
 /// All constraints of a mechanism.
 #[derive(Debug, Clone)]
@@ -63,34 +29,14 @@ pub struct Constraints {
     /// reaction cannot be told.
     pub reported: Vec<Option<usize>>,
     /// What violates the rows that follow from geometry or from others.
-    pub support: Support,
+    pub auxiliary: AuxiliaryMotions,
     /// Rows that were left out, reactions that cannot be told.
     pub warnings: Vec<Finding>,
 }
 
-impl Row {
-    /// Whether the coordinates satisfy the row by themselves.
-    pub fn is_embedded(&self) -> bool {
-        self.coefficients.iter().all(|&c| c == Graph::ZERO)
-    }
-
-    /// Whether the row restricts the generalised velocities beyond what the others do.
-    pub fn is_active(&self) -> bool {
-        !self.redundant && !self.is_embedded()
-    }
-
-    /// The row for questions of rank.
-    pub fn linear(&self) -> LinearRow {
-        LinearRow {
-            coefficients: self.coefficients.clone(),
-            rest: self.rest,
-        }
-    }
-}
-
 impl Constraints {
     /// The rows of a constraint.
-    pub fn rows_of(&self, constraint: usize) -> impl Iterator<Item = &Row> {
+    pub fn rows_of(&self, constraint: ConstraintId) -> impl Iterator<Item = &Row> {
         let rows = self.rows.iter();
         rows.filter(move |row| row.constraint == constraint)
     }
@@ -147,12 +93,12 @@ pub fn constraints(
     if !findings.is_empty() {
         return Err(findings);
     }
-    let support = Support::new(algebra, mechanism, &kinematics.frames, intervals, &rows);
+    let auxiliary = AuxiliaryMotions::new(algebra, mechanism, &kinematics.frames, intervals, &rows);
     let names: Vec<String> = places.iter().map(|place| place.name(mechanism)).collect();
-    warnings.extend(support.findings(mechanism, &rows, &names));
+    warnings.extend(auxiliary.findings(mechanism, &rows, &names));
     let (mut reactions, mut reported) = (Vec::new(), Vec::new());
     for (index, (place, name)) in places.into_iter().zip(names).enumerate() {
-        let told = support.tells(index);
+        let told = auxiliary.tells(index);
         reported.push(told.then_some(reactions.len()));
         reactions.extend(told.then(|| place.reaction(mechanism, name)));
     }
@@ -160,16 +106,16 @@ pub fn constraints(
         rows,
         reactions,
         reported,
-        support,
+        auxiliary,
         warnings,
     })
 }
 
 /// The constraints, those of positions last: where a contact and a position constraint say the same,
 /// the contact is kept, because its reaction has a point.
-fn positions_last(mechanism: &Mechanism) -> Vec<usize> {
-    let mut order: Vec<usize> = (0..mechanism.constraints.len()).collect();
-    let position = |&i: &usize| {
+fn positions_last(mechanism: &Mechanism) -> Vec<ConstraintId> {
+    let mut order: Vec<ConstraintId> = mechanism.constraints.ids().collect();
+    let position = |&i: &ConstraintId| {
         matches!(
             mechanism.constraints[i].kind,
             ConstraintKind::Position { .. }
@@ -185,7 +131,7 @@ enum Place {
     /// At a point.
     Point(PointId),
     /// Along a combination of velocities that has no point: a multiplier.
-    Constraint(usize),
+    Constraint(ConstraintId),
 }
 
 impl Place {
@@ -251,7 +197,7 @@ fn scalar_rows(
     mechanism: &Mechanism,
     symbols: &Symbols,
     kinematics: &Kinematics,
-    index: usize,
+    index: ConstraintId,
 ) -> Result<(Place, Vec<Scalar>), Finding> {
     let constraint = &mechanism.constraints[index];
     let item = Item::Constraint(index);
@@ -353,7 +299,7 @@ fn row(
     algebra: &mut Algebra,
     mechanism: &Mechanism,
     symbols: &Symbols,
-    constraint: usize,
+    constraint: ConstraintId,
     place: usize,
     scalar: Scalar,
 ) -> Result<Row, Finding> {

@@ -9,10 +9,10 @@ use appell_spec::mechanism::{BodyId, ConstraintKind, FrameId, GROUND, Mechanism,
 use super::algebra::Algebra;
 use super::constraints::Constraints;
 use super::elimination::{Elimination, TurnedRow};
-use super::finding::{Item, Outcome};
+use super::finding::{Item, Outcome, division_by_zero};
 use super::frames::FrameVector;
 use super::gibbs_appell::{BodyMotion, frame_rate, named3};
-use super::kinematics::{Kinematics, division_by_zero};
+use super::kinematics::Kinematics;
 use super::symbols::Symbols;
 use super::time::TimeDerivative;
 use crate::symbolic::vector::{self, Vec3};
@@ -52,7 +52,7 @@ impl ContactRows {
         bodies: &[BodyMotion],
     ) -> Outcome<Vec<Self>> {
         let mut all = Vec::new();
-        for (index, constraint) in mechanism.constraints.iter().enumerate() {
+        for (index, constraint) in mechanism.constraints.entries() {
             let ConstraintKind::Rolling { body, contact, .. } = constraint.kind else {
                 continue;
             };
@@ -75,7 +75,7 @@ impl ContactRows {
                 symbols,
                 elimination,
                 kinematics,
-                motion: &bodies[body],
+                motion: &bodies[body.index()],
                 body,
                 frame,
                 point: contact,

@@ -3,14 +3,14 @@
 use std::mem;
 
 use appell_spec::Code;
-use appell_spec::mechanism::{ConstraintKind, Mechanism};
+use appell_spec::mechanism::{ConstraintId, ConstraintKind, Mechanism};
 
 use super::algebra::Algebra;
-use super::constraints::{Constraints, Row};
+use super::constraints::Constraints;
 use super::expressions::Lowering;
-use super::finding::{Finding, Item, Outcome};
-use super::kinematics::division_by_zero;
+use super::finding::{Finding, Item, Outcome, division_by_zero};
 use super::rank::{LinearRow, Standing, standings};
+use super::row::Row;
 use super::symbols::Symbols;
 use crate::symbolic::vector::{self, Vec3};
 use crate::symbolic::{Expr, Graph};
@@ -18,8 +18,8 @@ use crate::symbolic::{Expr, Graph};
 /// A contact.
 #[derive(Debug, Clone)]
 pub struct Contact {
-    /// Index of its constraint in the mechanism.
-    pub constraint: usize,
+    /// Its constraint.
+    pub constraint: ConstraintId,
     /// Index into [`Constraints::reactions`].
     pub place: usize,
     /// Direction in which it pushes, in the ground.
@@ -41,7 +41,7 @@ pub fn contacts(
     constraints: &Constraints,
 ) -> Outcome<(Vec<Contact>, Vec<Finding>)> {
     let (mut contacts, mut warnings) = (Vec::<Contact>::new(), Vec::new());
-    for (index, constraint) in mechanism.constraints.iter().enumerate() {
+    for (index, constraint) in mechanism.constraints.entries() {
         let rows: Vec<&Row> = constraints.rows_of(index).collect();
         let (normal, grips, friction) = match &constraint.kind {
             ConstraintKind::Rolling {
@@ -146,7 +146,7 @@ fn follows_from_positions(algebra: &mut Algebra, constraints: &Constraints, row:
     matches!(standings.last(), Some(Standing::Redundant(_)))
 }
 
-fn idle_friction(name: &str, constraint: usize, unknown: bool) -> Finding {
+fn idle_friction(name: &str, constraint: ConstraintId, unknown: bool) -> Finding {
     let (reason, help) = if unknown {
         (
             "the normal of its surface is not known",

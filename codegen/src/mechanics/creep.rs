@@ -18,14 +18,14 @@
 //! which needs no ṡ. What has passed since s changed counts as if it had changed at once.
 
 use appell_spec::Code;
-use appell_spec::mechanism::{ConstraintKind, Creep, GROUND, Mechanism, PointId};
+use appell_spec::mechanism::{ConstraintId, ConstraintKind, Creep, GROUND, Mechanism, PointId};
 
 use super::Derivation;
 use super::contacts::Contact;
 use super::expressions::Lowering;
-use super::finding::{Finding, Item, Outcome};
+use super::finding::{Finding, Item, Outcome, division_by_zero};
 use super::gibbs_appell::{GibbsForm, body_motions, gibbs_form};
-use super::kinematics::{Effort, Kinematics, division_by_zero};
+use super::kinematics::{Effort, Kinematics};
 use super::loads::{applied_loads, generalized_forces};
 use super::motion;
 use super::time::TimeDerivative;
@@ -37,7 +37,7 @@ const SLOW: i64 = 1;
 
 /// A contact that creeps.
 struct Creeping<'m> {
-    constraint: usize,
+    constraint: ConstraintId,
     point: PointId,
     creep: &'m Creep,
     contact: Contact,
@@ -171,7 +171,7 @@ fn sliding(
 /// The contacts that creep.
 fn creeping<'m>(derivation: &Derivation, mechanism: &'m Mechanism) -> Outcome<Vec<Creeping<'m>>> {
     let mut creeping = Vec::new();
-    for (constraint, item) in mechanism.constraints.iter().enumerate() {
+    for (constraint, item) in mechanism.constraints.entries() {
         let ConstraintKind::Rolling {
             contact: point,
             creep: Some(creep),
@@ -258,7 +258,7 @@ fn per_mass(
     Ok(all)
 }
 
-fn not_judged(name: &str, constraint: usize) -> Finding {
+fn not_judged(name: &str, constraint: ConstraintId) -> Finding {
     Finding {
         code: Code::CreepNotJudged,
         message: format!("the creep of `{name}` cannot be told: its forces are not known"),

@@ -6,15 +6,15 @@
 //! `Bᵀ M B`, the bias `Bᵀ (b + M [0; γ])`, the pseudo-forces `Bᵀ Π` (Kane and Levinson, Dynamics:
 //! Theory and Applications, 1985, sections 2.11 and 4.4).
 
-use appell_spec::mechanism::Mechanism;
+use appell_spec::mechanism::{CoordinateId, Mechanism};
 
 use super::algebra::Algebra;
 use super::constraints::Constraints;
 use super::contact_rows::ContactRows;
 use super::elimination::{Elimination, GeneralizedVelocities, OpenSystem};
-use super::finding::{Item, Outcome};
+use super::finding::{Item, Outcome, division_by_zero};
 use super::gibbs_appell::{BodyMotion, GibbsForm};
-use super::kinematics::{Kinematics, division_by_zero};
+use super::kinematics::Kinematics;
 use super::symbols::Symbols;
 use super::time::TimeDerivative;
 use crate::symbolic::vector::Vec3;
@@ -74,7 +74,7 @@ impl DependentSpeeds {
             let unknowns = system
                 .coordinates
                 .iter()
-                .map(|&q| &mechanism.coordinates[q].label.name);
+                .map(|&q| &mechanism.coordinates[CoordinateId::new(q)].label.name);
             unknowns
                 .map(|q| algebra.graph.symbol(&format!("{q}_{name}")))
                 .collect()
@@ -131,7 +131,12 @@ impl DependentSpeeds {
             .system
             .coordinates
             .iter()
-            .map(|&q| mechanism.coordinates[q].label.name.as_str())
+            .map(|&q| {
+                mechanism.coordinates[CoordinateId::new(q)]
+                    .label
+                    .name
+                    .as_str()
+            })
             .collect();
         for (i, speed) in mechanism.pseudo_velocities.iter().enumerate() {
             let right: Vec<Expr> = self.driving.iter().map(|row| row[i]).collect();

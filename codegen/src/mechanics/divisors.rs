@@ -8,8 +8,7 @@ use appell_spec::mechanism::{ConstraintKind, LoadKind, Mechanism};
 
 use super::algebra::Algebra;
 use super::expressions::Lowering;
-use super::finding::{Finding, Item};
-use super::kinematics::division_by_zero;
+use super::finding::{Finding, Item, division_by_zero};
 use super::symbols::Symbols;
 use crate::symbolic::{Graph, Node};
 
@@ -49,18 +48,18 @@ fn divides_by_zero(algebra: &mut Algebra, symbols: &Symbols, expr: &Spec) -> boo
 /// Every expression of a mechanism with the item it belongs to, item by item.
 fn expressions(mechanism: &Mechanism) -> Vec<(Item, &Spec)> {
     let mut all: Vec<(Item, &Spec)> = Vec::new();
-    for (i, frame) in mechanism.frames.iter().enumerate() {
+    for (i, frame) in mechanism.frames.entries() {
         all.extend(frame.turns.iter().map(|turn| (Item::Frame(i), &turn.angle)));
     }
-    for (i, point) in mechanism.points.iter().enumerate() {
+    for (i, point) in mechanism.points.entries() {
         all.extend(point.at.iter().map(|c| (Item::Point(i), c)));
     }
-    for (i, body) in mechanism.bodies.iter().enumerate() {
+    for (i, body) in mechanism.bodies.entries() {
         all.push((Item::Body(i), &body.mass));
         let entries = body.inertia.iter().flat_map(|inertia| &inertia.matrix);
         all.extend(entries.flatten().map(|entry| (Item::Body(i), entry)));
     }
-    for (i, constraint) in mechanism.constraints.iter().enumerate() {
+    for (i, constraint) in mechanism.constraints.entries() {
         let item = Item::Constraint(i);
         match &constraint.kind {
             ConstraintKind::Velocity { zero, equals, .. } => {
@@ -83,10 +82,10 @@ fn expressions(mechanism: &Mechanism) -> Vec<(Item, &Spec)> {
             }
         }
     }
-    for (i, speed) in mechanism.pseudo_velocities.iter().enumerate() {
+    for (i, speed) in mechanism.pseudo_velocities.entries() {
         all.push((Item::PseudoVelocity(i), &speed.definition));
     }
-    for (i, load) in mechanism.loads.iter().enumerate() {
+    for (i, load) in mechanism.loads.entries() {
         let item = Item::Load(i);
         match &load.kind {
             LoadKind::Gravity { acceleration, .. } => all.push((item, acceleration)),
@@ -100,7 +99,7 @@ fn expressions(mechanism: &Mechanism) -> Vec<(Item, &Spec)> {
             LoadKind::Generalized { force, .. } => all.push((item, force)),
         }
     }
-    for (i, output) in mechanism.outputs.iter().enumerate() {
+    for (i, output) in mechanism.outputs.entries() {
         all.push((Item::Output(i), &output.value));
     }
     all

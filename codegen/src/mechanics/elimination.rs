@@ -1,13 +1,12 @@
 //! Constraints and definitions of the pseudo-velocities, solved for the generalised velocities.
 
 use appell_spec::Code;
-use appell_spec::mechanism::Mechanism;
+use appell_spec::mechanism::{CoordinateId, Mechanism, SpeedId};
 
 use super::algebra::Algebra;
 use super::constraints::Constraints;
 use super::expressions::Lowering;
-use super::finding::{Finding, Item, Outcome};
-use super::kinematics::division_by_zero;
+use super::finding::{Finding, Item, Outcome, division_by_zero};
 use super::rank::{LinearRow, Standing, standings};
 use super::symbols::Symbols;
 use crate::symbolic::{Expr, Graph, Intervals, Substitution};
@@ -30,7 +29,7 @@ pub struct Violation {
     pub rates: Vec<Expr>,
     /// q̇ in terms of pseudo-velocities and those rates.
     pub coordinate_rates: Vec<Expr>,
-    /// Rates of the imagined motions, in the order of their support.
+    /// Rates of the auxiliary motions, in their order.
     pub carried_rates: Vec<Expr>,
 }
 
@@ -84,8 +83,8 @@ pub fn eliminate(
         .iter()
         .map(|row| algebra.graph.symbol(&format!("violation_{}", row.name)))
         .collect();
-    let mut carried_rates = Vec::with_capacity(constraints.support.motions.len());
-    for motion in &constraints.support.motions {
+    let mut carried_rates = Vec::with_capacity(constraints.auxiliary.motions.len());
+    for motion in &constraints.auxiliary.motions {
         let parts = motion.rate.iter().zip(&violation_rates);
         let parts: Vec<Expr> = parts
             .map(|(&share, &violation)| algebra.graph.mul(share, violation))
@@ -101,9 +100,9 @@ pub fn eliminate(
         if !row.is_active() {
             continue;
         }
-        // Σ C q̇ = violation - rest - what the imagined motions contribute
+        // Σ C q̇ = violation - rest - what the auxiliary motions contribute
         let mut parts = vec![violation_rates[index], algebra.graph.neg(row.rest)];
-        for (motion, &rate) in constraints.support.motions.iter().zip(&carried_rates) {
+        for (motion, &rate) in constraints.auxiliary.motions.iter().zip(&carried_rates) {
             let contribution = algebra.graph.mul(motion.gains[index], rate);
             parts.push(algebra.graph.neg(contribution));
         }
@@ -187,7 +186,10 @@ impl Elimination {
         } = self;
         let mut values = open.solved_for(&mut algebra.graph, &open.right);
         for (value, &q) in values.iter_mut().zip(&open.coordinates) {
-            let name = format!("{}_dot", mechanism.coordinates[q].label.name);
+            let name = format!(
+                "{}_dot",
+                mechanism.coordinates[CoordinateId::new(q)].label.name
+            );
             *value = algebra.graph.name(&name, *value);
         }
         let rates = open.put_in(algebra, &values, &rates)?;
@@ -249,7 +251,7 @@ fn definition(
     };
     let value = lowering
         .lower(&mut algebra.graph, definition)
-        .map_err(|_| vec![division_by_zero(Item::PseudoVelocity(index))])?;
+        .map_err(|_| vec![division_by_zero(Item::PseudoVelocity(SpeedId::new(index)))])?;
     let mut coefficients = Vec::with_capacity(symbols.rates.len());
     let mut parts = vec![symbols.speeds[index], algebra.graph.neg(value)];
     for &rate in &symbols.rates {
@@ -486,7 +488,12 @@ fn untold_velocities(
     let all = [rows, definitions].concat();
     let untold: Vec<String> = (0..mechanism.coordinates.len())
         .filter(|&q| all.iter().all(|row| row.coefficients[q] == Graph::ZERO))
-        .map(|q| format!("`dot({})`", mechanism.coordinates[q].label.name))
+        .map(|q| {
+            format!(
+                "`dot({})`",
+                mechanism.coordinates[CoordinateId::new(q)].label.name
+            )
+        })
         .collect();
     let help = if untold.is_empty() {
         "define it so that it is independent of the constraints and of the others".to_owned()
@@ -517,7 +524,7 @@ fn untold_velocities(
                 format!("follows from {}", sum.join(", "))
             };
             let message = format!("`{}` {reason}: {consequence}", names[index]);
-            findings.push(finding(message, Item::PseudoVelocity(speed)));
+            findings.push(finding(message, Item::PseudoVelocity(SpeedId::new(speed))));
         }
     }
     if findings.is_empty() {

@@ -87,12 +87,12 @@ impl Lowering<'_> {
     fn quantity(&self, quantity: Quantity) -> Expr {
         let s = self.symbols;
         match quantity {
-            Quantity::Parameter(i) => s.parameters[i],
-            Quantity::Coordinate(i) => s.coordinates[i],
-            Quantity::Rate(i) => self.rates[i],
-            Quantity::PseudoVelocity(i) => s.speeds[i],
-            Quantity::Input(i) => s.inputs[i],
-            Quantity::Signal(i) => s.signals[i][0],
+            Quantity::Parameter(i) => s.parameters[i.index()],
+            Quantity::Coordinate(i) => s.coordinates[i.index()],
+            Quantity::Rate(i) => self.rates[i.index()],
+            Quantity::PseudoVelocity(i) => s.speeds[i.index()],
+            Quantity::Input(i) => s.inputs[i.index()],
+            Quantity::Signal(i) => s.signals[i.index()][0],
             Quantity::Time => s.time,
             Quantity::Pi => s.pi,
         }

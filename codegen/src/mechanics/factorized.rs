@@ -1,6 +1,6 @@
 //! Large blocks of the mass matrix: `Pᵀ M P = L D Lᵀ`, unrolled into named entries.
 
-use appell_spec::mechanism::Mechanism;
+use appell_spec::mechanism::{Mechanism, SpeedId};
 
 use super::algebra::Algebra;
 use super::finding::Outcome;
@@ -26,7 +26,12 @@ impl FactorizedBlock {
         mass_matrix: &[Vec<Expr>],
         speeds: &[usize],
     ) -> Outcome<Self> {
-        let name = |speed: usize| mechanism.pseudo_velocities[speed].label.name.as_str();
+        let name = |speed: usize| {
+            mechanism.pseudo_velocities[SpeedId::new(speed)]
+                .label
+                .name
+                .as_str()
+        };
         let mut schur = mass_matrix.to_vec();
         for &i in speeds {
             for &j in speeds.iter().filter(|&&j| j <= i) {

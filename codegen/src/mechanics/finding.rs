@@ -1,32 +1,36 @@
 //! What the derivation finds wrong with a mechanism.
 
 use appell_spec::Code;
+use appell_spec::mechanism::{
+    BodyId, ConstraintId, CoordinateId, FrameId, InputId, LoadId, OutputId, ParameterId, PointId,
+    SpeedId,
+};
 
 /// The item of a spec that a finding is about.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Item {
     /// The mechanism as a whole.
     Mechanism,
-    /// A parameter, by index.
-    Parameter(usize),
-    /// A coordinate, by index.
-    Coordinate(usize),
-    /// An input, by index.
-    Input(usize),
-    /// A frame, by index.
-    Frame(usize),
-    /// A point, by index.
-    Point(usize),
-    /// A body, by index.
-    Body(usize),
-    /// A constraint, by index.
-    Constraint(usize),
-    /// A pseudo-velocity, by index.
-    PseudoVelocity(usize),
-    /// A load, by index.
-    Load(usize),
-    /// An output, by index.
-    Output(usize),
+    /// A parameter.
+    Parameter(ParameterId),
+    /// A coordinate.
+    Coordinate(CoordinateId),
+    /// An input.
+    Input(InputId),
+    /// A frame.
+    Frame(FrameId),
+    /// A point.
+    Point(PointId),
+    /// A body.
+    Body(BodyId),
+    /// A constraint.
+    Constraint(ConstraintId),
+    /// A pseudo-velocity.
+    PseudoVelocity(SpeedId),
+    /// A load.
+    Load(LoadId),
+    /// An output.
+    Output(OutputId),
 }
 
 /// A mistake that only the derivation can see.
@@ -44,3 +48,13 @@ pub struct Finding {
 
 /// Result of a stage of the derivation.
 pub type Outcome<T> = Result<T, Vec<Finding>>;
+
+/// A spec expression that divides by the number zero.
+pub fn division_by_zero(item: Item) -> Finding {
+    Finding {
+        code: Code::DivisionByZero,
+        message: "an expression divides by zero".to_owned(),
+        item,
+        help: "write the expression without the zero denominator".to_owned(),
+    }
+}

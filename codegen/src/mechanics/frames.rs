@@ -1,11 +1,10 @@
 //! Frames: rotations by chains and angular velocities without differentiating matrices.
 
-use appell_spec::mechanism::{FrameId, GROUND, Mechanism};
+use appell_spec::mechanism::{FrameId, List, Mechanism};
 
 use super::algebra::Algebra;
 use super::expressions::Lowering;
-use super::finding::{Item, Outcome};
-use super::kinematics::division_by_zero;
+use super::finding::{Item, Outcome, division_by_zero};
 use super::time::TimeDerivative;
 use crate::symbolic::vector::{self, Vec3};
 use crate::symbolic::{Expr, Graph};
@@ -40,7 +39,7 @@ struct Frame {
 /// The frames of a mechanism.
 #[derive(Debug, Clone)]
 pub struct Frames {
-    frames: Vec<Frame>,
+    frames: List<FrameId, Frame>,
 }
 
 impl Frames {
@@ -51,8 +50,8 @@ impl Frames {
         lowering: &Lowering<'_>,
         time: &TimeDerivative<'_>,
     ) -> Outcome<Self> {
-        let mut frames: Vec<Frame> = Vec::with_capacity(mechanism.frames.len());
-        for (id, frame) in mechanism.frames.iter().enumerate() {
+        let mut frames: List<FrameId, Frame> = List::default();
+        for (id, frame) in mechanism.frames.entries() {
             let mut w = frame.parent.map_or(vector::ZERO, |parent| frames[parent].w);
             let mut turns = Vec::with_capacity(frame.turns.len());
             for turn in &frame.turns {
@@ -152,9 +151,9 @@ impl Frames {
         up.len() + down.len() - 2 * shared
     }
 
-    /// How many frames there are.
-    pub fn count(&self) -> usize {
-        self.frames.len().max(GROUND + 1)
+    /// All frames.
+    pub fn ids(&self) -> impl Iterator<Item = FrameId> + use<> {
+        self.frames.ids()
     }
 }
 

@@ -1,13 +1,13 @@
 //! The acceleration energy and its derivatives: mass matrix and bias of Appell's equations.
 
 use appell_spec::Code;
-use appell_spec::mechanism::{GROUND, Mechanism, PointId};
+use appell_spec::mechanism::{BodyId, FrameId, GROUND, Mechanism, PointId};
 
 use super::algebra::Algebra;
 use super::expressions::Lowering;
-use super::finding::{Finding, Item, Outcome};
+use super::finding::{Finding, Item, Outcome, division_by_zero};
 use super::frames::FrameVector;
-use super::kinematics::{Kinematics, division_by_zero};
+use super::kinematics::Kinematics;
 use super::symbols::Symbols;
 use super::time::TimeDerivative;
 use crate::symbolic::vector::{self, Mat3, Vec3};
@@ -67,7 +67,7 @@ pub fn body_motions(
     let time = TimeDerivative { symbols, rates };
     let mut motions = Vec::with_capacity(mechanism.bodies.len());
     let mut findings = Vec::new();
-    for (index, body) in mechanism.bodies.iter().enumerate() {
+    for (index, body) in mechanism.bodies.entries() {
         let item = Item::Body(index);
         let mass = lowering
             .lower(&mut algebra.graph, &body.mass)
@@ -230,7 +230,7 @@ pub(super) fn frame_rate(
     algebra: &mut Algebra,
     mechanism: &Mechanism,
     kinematics: &Kinematics,
-    frame: usize,
+    frame: FrameId,
 ) -> Vec3 {
     let w = kinematics.frames.angular_velocity(frame).v;
     named3(algebra, &format!("w_{}", mechanism.frames[frame].name), w)
@@ -284,7 +284,7 @@ fn check_invariance(
     algebra: &mut Algebra,
     mechanism: &Mechanism,
     kinematics: &Kinematics,
-    body: usize,
+    body: BodyId,
     inertia: &Mat3,
 ) -> Option<Finding> {
     let item = &mechanism.bodies[body];

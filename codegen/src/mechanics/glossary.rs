@@ -1,12 +1,13 @@
 //! What the names of a derivation mean, for the readers of emitted functions.
 
-use appell_spec::mechanism::{ConstraintKind, Mechanism};
+use appell_spec::mechanism::{ConstraintKind, FrameId, Mechanism};
 use appell_spec::units::{Dimension, Unit};
 
-use super::constraints::{Constraints, Row};
+use super::constraints::Constraints;
 use super::gibbs_appell::BodyMotion;
 use super::kinematics::Kinematics;
 use super::motion::{Block, Motion};
+use super::row::Row;
 use crate::program::{Names, Term};
 
 /// Names of the steps that solve Appell's equations and differentiate the solution.
@@ -65,9 +66,9 @@ pub fn of_motions(
     kinematics: &Kinematics,
     bodies: &[BodyMotion],
 ) -> Vec<Term> {
-    let frame = |id: usize| &mechanism.frames[id].name;
+    let frame = |id: FrameId| &mechanism.frames[id].name;
     let mut terms = Vec::new();
-    for (id, known) in mechanism.frames.iter().enumerate() {
+    for (id, known) in mechanism.frames.entries() {
         let along = frame(kinematics.frames.angular_velocity(id).frame);
         let meaning = format!("angular velocity of `{}`, along `{along}`.", known.name);
         terms.push(vector("w", &known.name, meaning));

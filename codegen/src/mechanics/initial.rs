@@ -2,7 +2,7 @@
 //! arms stretched out, angles at zero, springs without length.
 
 use appell_spec::Code;
-use appell_spec::mechanism::{Connection, GROUND, Mechanism};
+use appell_spec::mechanism::{Connection, GROUND, Mechanism, SpeedId};
 
 use super::algebra::Algebra;
 use super::finding::{Finding, Item};
@@ -93,7 +93,7 @@ pub fn vanishing_lengths(
     state: &InitialState,
 ) -> Vec<Finding> {
     let mut findings = Vec::new();
-    for (index, load) in mechanism.loads.iter().enumerate() {
+    for (index, load) in mechanism.loads.entries() {
         let Some(&Connection::Points(a, b)) = load.kind.between() else {
             continue;
         };
@@ -153,11 +153,11 @@ pub fn singularities(
     let (speeds, pivots): (Vec<usize>, Vec<Expr>) = motion.pivots().into_iter().unzip();
     for (speed, value) in speeds.into_iter().zip(state.of(graph, &pivots)) {
         if value == 0.0 || !value.is_finite() {
-            let name = &mechanism.pseudo_velocities[speed].label.name;
+            let name = &mechanism.pseudo_velocities[SpeedId::new(speed)].label.name;
             findings.push(Finding {
                 code: Code::SingularMassMatrix,
                 message: format!("the mass matrix is singular for `{name}` at the initial state"),
-                item: Item::PseudoVelocity(speed),
+                item: Item::PseudoVelocity(SpeedId::new(speed)),
                 help: "give a mass or an inertia to what it moves, or start elsewhere".to_owned(),
             });
         }

@@ -1,11 +1,10 @@
 //! Velocities of points and bodies for given generalised velocities.
 
-use appell_spec::Code;
-use appell_spec::mechanism::{BodyId, FrameId, GROUND, Mechanism, ORIGIN, PointId};
+use appell_spec::mechanism::{BodyId, FrameId, GROUND, List, Mechanism, ORIGIN, PointId};
 
 use super::algebra::Algebra;
 use super::expressions::Lowering;
-use super::finding::{Finding, Item, Outcome};
+use super::finding::{Item, Outcome, division_by_zero};
 use super::frames::{FrameVector, Frames};
 use super::symbols::Symbols;
 use super::time::TimeDerivative;
@@ -21,9 +20,9 @@ pub struct Kinematics {
     /// Frames and their angular velocities.
     pub frames: Frames,
     /// Position of each point from the point it is placed from.
-    offsets: Vec<FrameVector>,
+    offsets: List<PointId, FrameVector>,
     /// Velocity of each point from the ground.
-    velocities: Vec<FrameVector>,
+    velocities: List<PointId, FrameVector>,
 }
 
 /// How much work goes into short velocities.
@@ -35,7 +34,7 @@ pub enum Effort {
     Shortest,
 }
 
-/// An imagined motion that the coordinates do not have: the points placed from the origin by way of
+/// An auxiliary motion that the coordinates do not have: the points placed from the origin by way of
 /// `root` are carried along with a velocity.
 ///
 /// Where geometry already embeds a constraint, this is the motion against which its reaction works.
@@ -48,7 +47,7 @@ pub struct Carried {
 }
 
 impl Kinematics {
-    /// Velocities for the generalised velocities `rates`, with imagined motions added.
+    /// Velocities for the generalised velocities `rates`, with auxiliary motions added.
     pub fn new(
         algebra: &mut Algebra,
         mechanism: &Mechanism,
@@ -60,9 +59,9 @@ impl Kinematics {
         let lowering = Lowering { symbols, rates };
         let time = TimeDerivative { symbols, rates };
         let frames = Frames::new(algebra, mechanism, &lowering, &time)?;
-        let mut offsets = Vec::with_capacity(mechanism.points.len());
-        let mut velocities: Vec<FrameVector> = Vec::with_capacity(mechanism.points.len());
-        for (id, point) in mechanism.points.iter().enumerate() {
+        let mut offsets = List::default();
+        let mut velocities: List<PointId, FrameVector> = List::default();
+        for (id, point) in mechanism.points.entries() {
             let at = lowering
                 .lower_all(&mut algebra.graph, &point.at)
                 .map_err(|_| vec![division_by_zero(Item::Point(id))])?;
@@ -193,7 +192,7 @@ impl Frames {
     pub fn simplest(&self, algebra: &mut Algebra, vector: FrameVector) -> FrameVector {
         let mut best = vector;
         let mut cost = algebra.graph.operations(&best.v);
-        for frame in 0..self.count() {
+        for frame in self.ids() {
             if cost == 0 || frame == best.frame || self.distance(vector.frame, frame) > FARTHEST {
                 continue;
             }
@@ -217,14 +216,4 @@ pub fn root_of(mechanism: &Mechanism, point: PointId) -> PointId {
         root = from;
     }
     root
-}
-
-/// A spec expression that divides by the number zero.
-pub fn division_by_zero(item: Item) -> Finding {
-    Finding {
-        code: Code::DivisionByZero,
-        message: "an expression divides by zero".to_owned(),
-        item,
-        help: "write the expression without the zero denominator".to_owned(),
-    }
 }

@@ -2,9 +2,8 @@
 //! with the accelerations held as unknowns, and solved with the pivots that solve the motion.
 
 use super::algebra::Algebra;
-use super::finding::{Item, Outcome};
+use super::finding::{Item, Outcome, division_by_zero};
 use super::gibbs_appell::GibbsForm;
-use super::kinematics::division_by_zero;
 use super::motion::{Block, Motion};
 use super::symbols::{Symbols, ids};
 use crate::symbolic::{Expr, Graph, Substitution};

@@ -1,13 +1,15 @@
 //! Applied loads: pseudo-forces from virtual power, potential energy, power.
 
 use appell_spec::Code;
-use appell_spec::mechanism::{Connection, GROUND, LoadKind, Mechanism, PointId};
+use appell_spec::mechanism::{
+    BodyId, Connection, FrameId, GROUND, LoadId, LoadKind, Mechanism, PointId,
+};
 
 use super::algebra::Algebra;
 use super::expressions::{DivisionByZero, Lowering};
-use super::finding::{Finding, Item, Outcome};
+use super::finding::{Finding, Item, Outcome, division_by_zero};
 use super::frames::FrameVector;
-use super::kinematics::{Kinematics, division_by_zero};
+use super::kinematics::Kinematics;
 use super::symbols::Symbols;
 use crate::symbolic::vector::Vec3;
 use crate::symbolic::{Expr, Graph, Rational, Substitution, SymbolId};
@@ -51,6 +53,7 @@ pub fn replace(
     replacement: &mut Substitution,
 ) -> Outcome<()> {
     for (index, load) in loads.iter_mut().enumerate() {
+        let index = LoadId::new(index);
         let work = load.work.iter_mut();
         let parts = work.flat_map(|work| [&mut work.force, &mut work.velocity]);
         for part in parts.chain(&mut load.potential) {
@@ -97,7 +100,7 @@ pub fn applied_loads(
     };
     let mut loads = Vec::with_capacity(mechanism.loads.len());
     let mut findings = Vec::new();
-    for (index, load) in mechanism.loads.iter().enumerate() {
+    for (index, load) in mechanism.loads.entries() {
         match context.apply(algebra, &load.kind) {
             Ok(applied) => loads.push(applied),
             Err(DivisionByZero) => findings.push(undefined(index, &load.kind)),
@@ -111,7 +114,7 @@ pub fn applied_loads(
 }
 
 /// A load that divides by zero: a connection without length, or an expression.
-fn undefined(index: usize, kind: &LoadKind) -> Finding {
+fn undefined(index: LoadId, kind: &LoadKind) -> Finding {
     let item = Item::Load(index);
     match kind.between() {
         None | Some(Connection::Coordinate(_)) => division_by_zero(item),
@@ -190,7 +193,7 @@ impl Context<'_> {
             }
             LoadKind::Generalized { coordinate, force } => {
                 let force = self.lowering.lower(&mut algebra.graph, force)?;
-                let velocity = self.lowering.rates[*coordinate];
+                let velocity = self.lowering.rates[coordinate.index()];
                 Ok(AppliedLoad {
                     work: vec![Work { force, velocity }],
                     potential: None,
@@ -276,9 +279,9 @@ impl Context<'_> {
             Connection::Coordinate(q) => {
                 let unit = Work {
                     force: Graph::ONE,
-                    velocity: self.lowering.rates[q],
+                    velocity: self.lowering.rates[q.index()],
                 };
-                Ok((self.lowering.symbols.coordinates[q], vec![unit]))
+                Ok((self.lowering.symbols.coordinates[q.index()], vec![unit]))
             }
             Connection::Points(a, b) => {
                 let graph = &mut algebra.graph;
@@ -308,13 +311,13 @@ impl Context<'_> {
         }
     }
 
-    fn point_velocity(&self, algebra: &mut Algebra, point: PointId, frame: usize) -> Vec3 {
+    fn point_velocity(&self, algebra: &mut Algebra, point: PointId, frame: FrameId) -> Vec3 {
         self.kinematics
             .frames
             .express(&mut algebra.graph, self.kinematics.velocity(point), frame)
     }
 
-    fn body_rate(&self, algebra: &mut Algebra, body: usize, frame: usize) -> Vec3 {
+    fn body_rate(&self, algebra: &mut Algebra, body: BodyId, frame: FrameId) -> Vec3 {
         // A torque on a point mass does no work; the checks of the spec refuse it.
         let Some(body_frame) = self.mechanism.bodies[body].frame else {
             return [Graph::ZERO; 3];

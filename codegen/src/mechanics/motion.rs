@@ -3,7 +3,7 @@
 //! M is positive definite, so every order of elimination is stable and the simplest pivot is taken.
 
 use appell_spec::Code;
-use appell_spec::mechanism::Mechanism;
+use appell_spec::mechanism::{Mechanism, SpeedId};
 
 use super::algebra::Algebra;
 use super::factorized::FactorizedBlock;
@@ -262,12 +262,18 @@ fn eliminate(
 }
 
 fn name_pivot(algebra: &mut Algebra, mechanism: &Mechanism, speed: usize, pivot: Expr) -> Expr {
-    let name = format!("pivot_{}", mechanism.pseudo_velocities[speed].label.name);
+    let name = format!(
+        "pivot_{}",
+        mechanism.pseudo_velocities[SpeedId::new(speed)].label.name
+    );
     algebra.graph.name(&name, pivot)
 }
 
 fn name_right(algebra: &mut Algebra, mechanism: &Mechanism, speed: usize, right: Expr) -> Expr {
-    let name = format!("rhs_{}", mechanism.pseudo_velocities[speed].label.name);
+    let name = format!(
+        "rhs_{}",
+        mechanism.pseudo_velocities[SpeedId::new(speed)].label.name
+    );
     algebra.graph.name(&name, right)
 }
 
@@ -296,7 +302,7 @@ fn specific(
     if algebra.graph.operations(&[specific]) >= algebra.graph.operations(&[whole]) {
         return None;
     }
-    let speed = &mechanism.pseudo_velocities[speed].label.name;
+    let speed = &mechanism.pseudo_velocities[SpeedId::new(speed)].label.name;
     let name = format!("rhs_{speed}_over_{}", algebra.graph.symbol_name(symbol));
     Some(algebra.graph.name(&name, specific))
 }
@@ -337,11 +343,11 @@ fn massless(
 }
 
 fn without_mass(mechanism: &Mechanism, speed: usize) -> Finding {
-    let name = &mechanism.pseudo_velocities[speed].label.name;
+    let name = &mechanism.pseudo_velocities[SpeedId::new(speed)].label.name;
     Finding {
         code: Code::SingularMassMatrix,
         message: format!("`{name}` can change without moving any mass"),
-        item: Item::PseudoVelocity(speed),
+        item: Item::PseudoVelocity(SpeedId::new(speed)),
         help: "give a mass or an inertia to what it moves, or constrain it".to_owned(),
     }
 }
@@ -393,7 +399,7 @@ fn quotients(
         );
         let mut quotient = algebra.graph.div(right, pivot);
         if whole != Graph::ZERO {
-            let name = &mechanism.pseudo_velocities[speed].label.name;
+            let name = &mechanism.pseudo_velocities[SpeedId::new(speed)].label.name;
             quotient = algebra
                 .graph
                 .name(&format!("rhs_over_pivot_{name}"), quotient);

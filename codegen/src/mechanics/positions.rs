@@ -1,12 +1,11 @@
 //! Position constraints: what they demand, and which coordinates follow from the others.
 
 use appell_spec::Code;
-use appell_spec::mechanism::{ConstraintKind, Mechanism};
+use appell_spec::mechanism::{ConstraintId, ConstraintKind, CoordinateId, Mechanism};
 
 use super::algebra::Algebra;
 use super::expressions::Lowering;
-use super::finding::{Finding, Item, Outcome};
-use super::kinematics::division_by_zero;
+use super::finding::{Finding, Item, Outcome, division_by_zero};
 use super::symbols::Symbols;
 use crate::symbolic::{Expr, Graph, Intervals};
 
@@ -36,7 +35,7 @@ impl Positions {
             rates: &symbols.rates,
         };
         let (mut positions, mut findings) = (Self::default(), Vec::new());
-        for (index, constraint) in mechanism.constraints.iter().enumerate() {
+        for (index, constraint) in mechanism.constraints.entries() {
             let ConstraintKind::Position {
                 zero, dependent, ..
             } = &constraint.kind
@@ -51,7 +50,12 @@ impl Positions {
                 .iter()
                 .map(|&q| algebra.derivative(residual, q))
                 .collect();
-            match positions.dependent_of(algebra, intervals, &row, *dependent) {
+            match positions.dependent_of(
+                algebra,
+                intervals,
+                &row,
+                dependent.map(CoordinateId::index),
+            ) {
                 Some(coordinate) => positions.dependent.push(coordinate),
                 None => findings.push(undetermined(mechanism, index, *dependent)),
             }
@@ -87,7 +91,11 @@ impl Positions {
     }
 }
 
-fn undetermined(mechanism: &Mechanism, index: usize, dependent: Option<usize>) -> Finding {
+fn undetermined(
+    mechanism: &Mechanism,
+    index: ConstraintId,
+    dependent: Option<CoordinateId>,
+) -> Finding {
     let constraint = &mechanism.constraints[index].name;
     let (message, help) = match dependent {
         Some(q) => (

@@ -8,9 +8,9 @@ use appell_spec::mechanism::Mechanism;
 use super::algebra::Algebra;
 use super::constraints::Constraints;
 use super::elimination::Violation;
-use super::finding::{Item, Outcome};
+use super::finding::{Item, Outcome, division_by_zero};
 use super::gibbs_appell::{ActualMotion, BodyMotion, partial_velocities};
-use super::kinematics::{Carried, Effort, Kinematics, division_by_zero};
+use super::kinematics::{Carried, Effort, Kinematics};
 use super::loads::{applied_loads, generalized_forces};
 use super::symbols::Symbols;
 use crate::symbolic::vector::{self, Vec3};
@@ -26,7 +26,7 @@ pub fn reactions(
     bodies: &[BodyMotion],
     accelerations: &[Expr],
 ) -> Outcome<Vec<Vec3>> {
-    let motions = constraints.support.motions.iter();
+    let motions = constraints.auxiliary.motions.iter();
     let carried: Vec<Carried> = motions
         .zip(&violation.carried_rates)
         .flat_map(|(motion, &rate)| motion.at(&mut algebra.graph, rate))

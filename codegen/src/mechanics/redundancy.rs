@@ -3,13 +3,13 @@
 //! Such a row is left out, and the motion stays the same.
 
 use appell_spec::Code;
-use appell_spec::mechanism::{ConstraintKind, FrameId, GROUND, Mechanism};
+use appell_spec::mechanism::{ConstraintId, ConstraintKind, FrameId, GROUND, Mechanism};
 
 use super::algebra::Algebra;
-use super::constraints::Row;
 use super::finding::{Finding, Item, Outcome};
 use super::frames::{FrameVector, Frames};
 use super::rank::{Combination, LinearRow, Standing, is_finite, standings};
+use super::row::Row;
 use crate::symbolic::vector;
 use crate::symbolic::{Expr, Intervals};
 
@@ -28,7 +28,7 @@ pub fn leave_out(
     let (mut warnings, mut errors) = (Vec::new(), Vec::new());
     // Rows with an error, which the others are still compared without.
     let mut refused: Vec<usize> = Vec::new();
-    let mut turned: Vec<usize> = Vec::new();
+    let mut turned: Vec<ConstraintId> = Vec::new();
     loop {
         let open: Vec<usize> = (0..rows.len())
             .filter(|row| rows[*row].is_active() && !refused.contains(row))
@@ -126,7 +126,7 @@ fn resolved_elsewhere(
     frames: &Frames,
     intervals: &mut Intervals,
     rows: &[Row],
-    constraint: usize,
+    constraint: ConstraintId,
 ) -> Option<Vec<(usize, Row)>> {
     match mechanism.constraints[constraint].kind {
         ConstraintKind::Rolling { normal: None, .. } => {}
@@ -136,7 +136,8 @@ fn resolved_elsewhere(
         | ConstraintKind::FixedVelocity { .. }
         | ConstraintKind::Position { .. } => return None,
     }
-    (GROUND + 1..mechanism.frames.len()).find_map(|frame| {
+    let mut frames_but_ground = mechanism.frames.ids().skip(1);
+    frames_but_ground.find_map(|frame| {
         let resolved = resolved_in(algebra, mechanism, frames, rows, constraint, frame)?;
         let mut all = rows.to_vec();
         for (place, row) in &resolved {
@@ -167,7 +168,7 @@ fn resolved_in(
     mechanism: &Mechanism,
     frames: &Frames,
     rows: &[Row],
-    constraint: usize,
+    constraint: ConstraintId,
     frame: FrameId,
 ) -> Option<Vec<(usize, Row)>> {
     let places: Vec<usize> = (0..rows.len())

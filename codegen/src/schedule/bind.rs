@@ -6,7 +6,7 @@ use super::names::{ArgumentNames, Names};
 use super::outline::Outline;
 use super::piece::{Level, Piece, describe};
 use super::signs::{choose_signs, keeps_its_name};
-use super::{Argument, Operation, ResultArray, Schedule, Step, Tree, Value};
+use super::steps::{Argument, Operation, ResultArray, Schedule, Step, Tree, Value};
 use crate::program::{Function, Program};
 use crate::symbolic::{Function as Elementary, Rational};
 

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use super::{Operation, Schedule, Step, Tree};
+use super::steps::{Operation, Schedule, Step, Tree};
 use crate::symbolic::Function;
 
 /// How many operations a schedule has.

@@ -4,10 +4,17 @@ use std::fmt::Write;
 
 use super::names::ArgumentNames;
 use super::piece::text;
-use super::{Schedule, Step, Tree, Value};
+use super::steps::{Schedule, Step, Tree, Value};
+use crate::program::Program;
 
-/// The steps and the results, one a line.
-pub(super) fn dump(schedule: &Schedule, arguments: &ArgumentNames) -> String {
+impl Schedule {
+    /// The steps and the results as text, one a line.
+    pub fn dump(&self, program: &Program) -> String {
+        dump(self, &ArgumentNames::of(program))
+    }
+}
+
+fn dump(schedule: &Schedule, arguments: &ArgumentNames) -> String {
     let one = |tree: &Tree| text(tree, schedule, arguments);
     let all = |trees: &[Tree]| trees.iter().map(one).collect::<Vec<_>>().join(", ");
     let name = |value: &Value| schedule.names[value.0 as usize].as_str();

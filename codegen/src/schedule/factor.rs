@@ -1,7 +1,7 @@
 //! Takes common factors out of sums: `m·R·x + m·R·y` becomes `m·R·(x + y)`.
 
 use super::dag::{Dag, Id, Item, Op};
-use super::search::Preference;
+use super::preference::Preference;
 
 /// Takes factors out of all sums, the most frequent first. Only products that nothing else uses
 /// are opened: every step saves multiplications. Tells whether anything was taken out.

@@ -4,7 +4,7 @@ use appell_runtime::dense::lu_solve_in_place;
 use appell_runtime::model::At;
 use appell_runtime::real::Real;
 
-use super::{Argument, Operation, Schedule, Step, Tree, Value};
+use super::steps::{Argument, Operation, Schedule, Step, Tree, Value};
 use crate::symbolic::{Function, Relation};
 
 /// The results of a schedule at time `t`, state `x`, inputs `u` and parameters `p`, one list per

@@ -2,8 +2,8 @@
 
 use rustc_hash::{FxHashMap, FxHashSet};
 
-use super::Argument;
 use super::dag::{Dag, Item, Name, Op, System};
+use super::steps::Argument;
 use crate::program::{Function, Program};
 use crate::symbolic::{Expr, Graph, Node, Rational, SymbolId};
 

@@ -2,7 +2,7 @@
 //! both `m_R_squared`, in every function.
 
 use super::names::{ArgumentNames, LONGEST, joined_up_to};
-use super::{Argument, Operation, Tree, Value};
+use super::steps::{Argument, Operation, Tree, Value};
 use crate::symbolic::Rational;
 
 /// Longest name of a product, or quotient, of two.

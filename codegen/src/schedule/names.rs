@@ -2,7 +2,7 @@
 
 use rustc_hash::FxHashSet;
 
-use super::Argument;
+use super::steps::Argument;
 use crate::program::Program;
 use crate::symbolic::Rational;
 

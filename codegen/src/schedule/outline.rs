@@ -2,9 +2,9 @@
 
 use rustc_hash::FxHashMap;
 
-use super::Argument;
 use super::dag::{Dag, Id, Item, Op};
 use super::lower::definition;
+use super::steps::Argument;
 use crate::program::{Function, Layout, Program};
 use crate::symbolic::Function as Elementary;
 

@@ -2,7 +2,7 @@
 
 use super::monomial::Monomial;
 use super::names::{ArgumentNames, joined};
-use super::{Operation, Schedule, Tree, Value};
+use super::steps::{Operation, Schedule, Tree, Value};
 use crate::symbolic::{Function, Relation};
 
 /// How tightly the outermost operation of a tree binds.

@@ -1,35 +1,16 @@
 //! Tries several orders of rewriting and keeps the cheapest result.
 
-use super::Tuning;
 use super::cancel::cancel;
-use super::dag::{Dag, Id, Item};
+use super::dag::{Dag, Id};
 use super::divide::{divide_early, join_divisions, share_reciprocals};
 use super::factor::factor;
 use super::gather::{gather, scatter};
 use super::meet::{meet, meet_in_multiples, meet_in_parts, name_again, refer_to_kept};
+use super::preference::Preference;
 use super::rebuild::{Dissolve, rebuild};
 use super::scale::scale;
 use super::share::{Within, share};
-
-/// Which of two equally frequent candidates goes first.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Preference {
-    /// The one nearer to the arguments.
-    Early,
-    /// The one nearer to the results.
-    Late,
-}
-
-impl Preference {
-    /// The higher rank goes first.
-    pub(super) fn rank(self, item: Item) -> u64 {
-        let position = 2 * item.id.index() as u64 + u64::from(item.flip);
-        match self {
-            Self::Early => u64::MAX - position,
-            Self::Late => position,
-        }
-    }
-}
+use super::tuning::Tuning;
 
 /// One kind of rewriting.
 #[derive(Debug, Clone, Copy)]

@@ -10,7 +10,7 @@ use std::collections::BinaryHeap;
 use rustc_hash::FxHashMap;
 
 use super::dag::{Dag, Id, Item, Op};
-use super::search::Preference;
+use super::preference::Preference;
 
 /// Where to look for common parts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -8,7 +8,6 @@ use super::super::EstimateError;
 use super::super::closure::Closure;
 use super::super::estimation::Estimation;
 use super::super::filter::switch;
-use super::super::layout::Unknown;
 use super::super::matrix::{add_scaled, dot, multiply};
 use super::super::plant::{Place, Scratch, Sums};
 use super::super::prediction::place;
@@ -16,6 +15,7 @@ use super::super::recording::Recording;
 use super::super::setup::Measured;
 use super::super::timeline::{Action, Advance};
 use super::super::transition::{MOST_HALVINGS, STAGES, WEIGHTS, is_uneven};
+use super::super::unknown::Unknown;
 
 /// A segment. Derivatives by the state at its beginning, then by the free values.
 pub(super) struct Piece {

@@ -2,7 +2,7 @@
 
 use appell_estimate::smoothing::angle::unwrap;
 use appell_spec::Mechanism;
-use appell_spec::mechanism::Label;
+use appell_spec::mechanism::{CoordinateId, InputId, Label, OutputId, SpeedId};
 use appell_spec::units::{Dimension, Unit};
 
 use super::clock::Sampling;
@@ -72,9 +72,9 @@ impl Measured {
     /// Name, sentence and unit.
     pub fn label(self, mechanism: &Mechanism) -> &Label {
         match self {
-            Self::Coordinate(i) => &mechanism.coordinates[i].label,
-            Self::PseudoVelocity(i) => &mechanism.pseudo_velocities[i].label,
-            Self::Output(i) => &mechanism.outputs[i].label,
+            Self::Coordinate(i) => &mechanism.coordinates[CoordinateId::new(i)].label,
+            Self::PseudoVelocity(i) => &mechanism.pseudo_velocities[SpeedId::new(i)].label,
+            Self::Output(i) => &mechanism.outputs[OutputId::new(i)].label,
         }
     }
 
@@ -93,7 +93,7 @@ impl Role {
     pub fn label(self, mechanism: &Mechanism) -> Option<&Label> {
         match self {
             Self::Measures(measured) => Some(measured.label(mechanism)),
-            Self::Input(i) => Some(&mechanism.inputs[i].label),
+            Self::Input(i) => Some(&mechanism.inputs[InputId::new(i)].label),
             Self::Recorded => None,
         }
     }

@@ -23,6 +23,7 @@ use std::path::{Component, Path, PathBuf};
 
 use appell_spec::expr::Span;
 use appell_spec::limits::MAX_FILE;
+use appell_spec::mechanism::ParameterId;
 use appell_spec::units::{Dimension, Unit};
 use appell_spec::{Code, Mechanism, did_you_mean, shown};
 use toml::de::DeTable;
@@ -162,7 +163,11 @@ fn parameters(
             unknown(fields, "parameter", name, key.span(), known());
             continue;
         };
-        if let Some(read) = parameter(fields, value, &mechanism.parameters[index]) {
+        if let Some(read) = parameter(
+            fields,
+            value,
+            &mechanism.parameters[ParameterId::new(index)],
+        ) {
             parameters[index] = read;
         }
     }

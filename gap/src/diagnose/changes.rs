@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use appell_estimate::{Coordinate, Unknown};
 use appell_spec::compose::Composition;
 use appell_spec::edit::{EditError, set_parameters};
+use appell_spec::mechanism::ParameterId;
 use appell_spec::units::{self, Unit};
 use toml_edit::{DocumentMut, Item};
 
@@ -160,7 +161,9 @@ fn items(bench: &Bench<'_>, fitted: &Fitted) -> Result<String, DiagnoseError> {
             let value = match part {
                 Part::Switch => 1.0,
                 Part::Size | Part::Shape => {
-                    let unit = &bench.effects.mechanism.parameters[index].label.unit;
+                    let unit = &bench.effects.mechanism.parameters[ParameterId::new(index)]
+                        .label
+                        .unit;
                     rounded(fitted.fit.values[index], deviation(fitted, index), unit)
                 }
             };

@@ -6,6 +6,7 @@
 
 use appell_estimate::{Estimation, Unknown, chi_squared_probability};
 use appell_runtime::model::At;
+use appell_spec::mechanism::SpeedId;
 use appell_spec::units::Unit;
 
 use super::DiagnoseError;
@@ -107,7 +108,7 @@ pub(super) fn place(bench: &Bench<'_>, comparison: &Comparison) -> Result<Where,
 
 /// SI unit of the force beside a pseudo-velocity: a watt for each of its units.
 pub(super) fn force_unit(bench: &Bench<'_>, equation: usize) -> String {
-    let speed = &bench.effects.mechanism.pseudo_velocities[equation]
+    let speed = &bench.effects.mechanism.pseudo_velocities[SpeedId::new(equation)]
         .label
         .unit;
     let speed = Unit::si(speed.dimension).text;

@@ -4,7 +4,8 @@
 use appell_codegen::velocities::Velocities;
 use appell_spec::expr::{Expr, ExprKind, Quantity};
 use appell_spec::mechanism::{
-    Constraint, ConstraintKind, CoordinateId, LoadKind, Mechanism, PseudoVelocity,
+    BodyId, Constraint, ConstraintKind, CoordinateId, InputId, LoadKind, Mechanism, ParameterId,
+    PseudoVelocity,
 };
 use appell_spec::units::{Dimension, Unit};
 use num_traits::Zero;
@@ -200,10 +201,16 @@ impl<'m> Sites<'m> {
                 .collect(),
             SiteKind::DrivenSlider => self.driven(is_length),
             SiteKind::DrivenHinge => self.driven(is_angle),
-            SiteKind::Body => (0..self.mechanism.bodies.len())
+            SiteKind::Body => self
+                .mechanism
+                .bodies
+                .ids()
                 .map(|body| self.body(body))
                 .collect(),
-            SiteKind::RigidBody => (0..self.mechanism.bodies.len())
+            SiteKind::RigidBody => self
+                .mechanism
+                .bodies
+                .ids()
                 .filter(|&body| self.mechanism.bodies[body].frame.is_some())
                 .map(|body| self.body(body))
                 .collect(),
@@ -214,10 +221,13 @@ impl<'m> Sites<'m> {
                 .scales
                 .uncertain
                 .iter()
-                .map(|&p| self.parameter(p))
+                .map(|&p| self.parameter(ParameterId::new(p)))
                 .collect(),
-            SiteKind::Input => (0..self.mechanism.inputs.len())
-                .filter(|&input| self.scales.largest[input] > 0.0)
+            SiteKind::Input => self
+                .mechanism
+                .inputs
+                .ids()
+                .filter(|input| self.scales.largest[input.index()] > 0.0)
                 .map(|input| self.input(input))
                 .collect(),
             SiteKind::Channel => {
@@ -243,9 +253,7 @@ impl<'m> Sites<'m> {
             let mut speeds = self.mechanism.pseudo_velocities.iter();
             speeds.any(|speed| mentions(&speed.definition, Quantity::Rate(q)))
         };
-        (0..self.mechanism.coordinates.len())
-            .filter(stands)
-            .collect()
+        self.mechanism.coordinates.ids().filter(stands).collect()
     }
 
     /// Coordinates whose rates are pseudo-velocities and stand in no other one, if there are inputs; the
@@ -276,23 +284,23 @@ impl<'m> Sites<'m> {
         } else {
             ("rad", "N*m")
         };
-        let rate = self.scales.rates[index];
+        let rate = self.scales.rates[index.index()];
         let mut words = vec![
             ("unit", unit.to_owned()),
             ("force", force.to_owned()),
             ("typical_rate", number(rate)),
-            ("narrow_rate", number(self.scales.narrow[index])),
+            ("narrow_rate", number(self.scales.narrow[index.index()])),
         ];
         words.extend(self.across());
         Site {
             name: label.name.clone(),
-            index,
+            index: index.index(),
             words,
             placed_along: Vec::new(),
         }
     }
 
-    fn body(&self, index: usize) -> Site {
+    fn body(&self, index: BodyId) -> Site {
         let body = &self.mechanism.bodies[index];
         let [x, y, z] = &self.velocities.points[body.centre];
         let speed = format!("sqrt(({x})^2 + ({y})^2 + ({z})^2 + (0.001 [m/s])^2)");
@@ -301,7 +309,7 @@ impl<'m> Sites<'m> {
             .map(|frame| self.mechanism.frames[frame].name.clone());
         Site {
             name: body.name.clone(),
-            index,
+            index: index.index(),
             words: vec![
                 ("centre", self.mechanism.points[body.centre].name.clone()),
                 ("frame", frame.unwrap_or_else(|| "ground".to_owned())),
@@ -316,7 +324,7 @@ impl<'m> Sites<'m> {
 
     /// Axes of the frame of a body along which its centre is placed: an error there is one of a
     /// parameter.
-    fn placed_along(&self, index: usize) -> Vec<&'static str> {
+    fn placed_along(&self, index: BodyId) -> Vec<&'static str> {
         let body = &self.mechanism.bodies[index];
         let centre = &self.mechanism.points[body.centre];
         if Some(centre.frame) != body.frame {
@@ -339,7 +347,7 @@ impl<'m> Sites<'m> {
                 ConstraintKind::Rolling { body, .. } => Some(body),
                 _ => None,
             });
-        let mut bodies: Vec<usize> = rolling.collect();
+        let mut bodies: Vec<BodyId> = rolling.collect();
         bodies.sort_unstable();
         bodies.dedup();
         bodies
@@ -362,7 +370,7 @@ impl<'m> Sites<'m> {
         contacts.map(site).collect()
     }
 
-    fn wheel(&self, body: usize) -> Option<Site> {
+    fn wheel(&self, body: BodyId) -> Option<Site> {
         let down = self.mechanism.down()?;
         let frame = self.mechanism.bodies[body].frame?;
         let turn = self.mechanism.frames[frame].turns.last()?;
@@ -377,7 +385,7 @@ impl<'m> Sites<'m> {
         let mut site = self.body(body);
         site.words.extend([
             ("roll", self.mechanism.coordinates[roll].label.name.clone()),
-            ("narrow_rate", number(self.scales.narrow[roll])),
+            ("narrow_rate", number(self.scales.narrow[roll.index()])),
             ("spin", spin.join(" + ")),
             ("normal_x", (-down[0]).to_string()),
             ("normal_y", (-down[1]).to_string()),
@@ -417,18 +425,18 @@ impl<'m> Sites<'m> {
         ]
     }
 
-    fn parameter(&self, index: usize) -> Site {
+    fn parameter(&self, index: ParameterId) -> Site {
         Site {
             name: self.mechanism.parameters[index].label.name.clone(),
-            index,
+            index: index.index(),
             words: Vec::new(),
             placed_along: Vec::new(),
         }
     }
 
-    fn input(&self, index: usize) -> Site {
+    fn input(&self, index: InputId) -> Site {
         let label = &self.mechanism.inputs[index].label;
-        let largest = self.scales.largest[index];
+        let largest = self.scales.largest[index.index()];
         // Numbers of a fragment are in SI; so has to be its unit.
         let unit = if label.unit.is_si() {
             label.unit.text.clone()
@@ -437,7 +445,7 @@ impl<'m> Sites<'m> {
         };
         Site {
             name: label.name.clone(),
-            index,
+            index: index.index(),
             words: vec![
                 ("unit", unit),
                 ("largest", number(largest)),

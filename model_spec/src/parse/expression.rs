@@ -1,18 +1,19 @@
 //! Expressions, by precedence climbing.
 
+use std::ops::Range;
+
 use num_rational::BigRational;
 
 use crate::ast::{ExprAst, ExprAstKind, Spanned};
 use crate::diagnostic::{Code, Diagnostic};
-use crate::expr::{BinaryOp, Function};
+use crate::expr::{BinaryOp, Function, Span};
 use crate::limits::MAX_DEPTH;
 use crate::number::{NumberError, exact};
 use crate::suggest;
-use crate::units;
+use crate::units::{self, UnitError};
 
 use super::lexer::{Located, Token, tokens};
 use super::source::Source;
-use super::values::unit_diagnostic;
 
 /// Binding power of a sign: as strong as a product, weaker than a power.
 const SIGN: u8 = 3;
@@ -352,8 +353,24 @@ pub(super) fn number_diagnostic(error: NumberError, text: &str) -> Diagnostic {
     }
 }
 
+/// What a refused unit is told; `place` maps places in the unit text to places in the file.
+pub fn unit_diagnostic(error: &UnitError, place: impl Fn(Range<usize>) -> Span) -> Diagnostic {
+    match error {
+        UnitError::Unknown {
+            symbol,
+            at,
+            similar,
+        } => Diagnostic::error(Code::UnknownUnit, format!("unknown unit `{symbol}`"))
+            .at(place(at.clone()), "")
+            .maybe_help(similar.as_deref().map(suggest::meant)),
+        UnitError::Syntax { message, at } => {
+            Diagnostic::error(Code::UnitSyntax, message.as_str()).at(place(at.clone()), "")
+        }
+    }
+}
+
 /// The number zero, for what is left out.
-pub(crate) fn zero(span: crate::expr::Span) -> ExprAst {
+pub(crate) fn zero(span: Span) -> ExprAst {
     ExprAst {
         kind: ExprAstKind::Number(BigRational::from_integer(0.into()), None),
         span,

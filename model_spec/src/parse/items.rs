@@ -10,7 +10,7 @@ use crate::limits::MAX_ITEMS;
 use crate::name;
 use crate::suggest::{self, did_you_mean, shown};
 
-use super::{Reader, TomlKey, TomlValue, in_text_order, phrase};
+use super::reader::{Reader, TomlKey, TomlValue, in_text_order, phrase};
 
 /// The form of every value in a section of numbers.
 static STATE_VALUE: Key = Key {

@@ -1,7 +1,5 @@
 //! Values: numbers, units, names, sentences, and what is made of expressions.
 
-use std::ops::Range;
-
 use num_bigint::BigInt;
 use num_rational::BigRational;
 use num_traits::Num;
@@ -9,15 +7,15 @@ use toml::de::DeValue;
 
 use crate::ast::{ExprAst, ExprAstKind, ItemAst, Spanned, ValueAst};
 use crate::diagnostic::{Code, Diagnostic};
-use crate::expr::Span;
 use crate::language::{Form, Key, Sense, Word};
 use crate::limits::{MAX_DIGITS, MAX_SAMPLES, MAX_SENTENCE, MAX_TURNS};
 use crate::number::{NumberError, exact};
 use crate::suggest::{self, did_you_mean, shown};
-use crate::units::{self, UnitError};
+use crate::units;
 
+use super::expression::{self, unit_diagnostic};
+use super::reader::{Reader, TomlValue, is_forbidden};
 use super::source::Source;
-use super::{Reader, TomlValue, expression, is_forbidden};
 
 impl Reader<'_> {
     /// Reads the value of a key; `None` where it could not be read, which has been told.
@@ -315,21 +313,5 @@ fn number_of(value: &DeValue<'_>) -> Result<BigRational, NumberError> {
         }
         DeValue::Integer(_) => Err(NumberError::TooLarge),
         _ => Err(NumberError::Syntax),
-    }
-}
-
-/// What a refused unit is told; `place` maps places in the unit text to places in the file.
-pub fn unit_diagnostic(error: &UnitError, place: impl Fn(Range<usize>) -> Span) -> Diagnostic {
-    match error {
-        UnitError::Unknown {
-            symbol,
-            at,
-            similar,
-        } => Diagnostic::error(Code::UnknownUnit, format!("unknown unit `{symbol}`"))
-            .at(place(at.clone()), "")
-            .maybe_help(similar.as_deref().map(suggest::meant)),
-        UnitError::Syntax { message, at } => {
-            Diagnostic::error(Code::UnitSyntax, message.as_str()).at(place(at.clone()), "")
-        }
     }
 }

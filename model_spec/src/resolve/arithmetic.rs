@@ -9,9 +9,9 @@ use crate::expr::{BinaryOp, Expr, ExprKind, Span};
 use crate::limits::{MAX_DEGREE, MAX_EXPONENT};
 use crate::units::Dimension;
 
-use super::Resolver;
 use super::dimensions::{Dim, Typed, exponent, unit_words};
 use super::place::Place;
+use super::resolver::Resolver;
 
 /// Longest exact constant, in bits.
 const MAX_BITS: u64 = 4096;

@@ -3,13 +3,12 @@
 use crate::ast::{ItemAst, ValueAst};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::expr::{Expr, ExprKind};
-use crate::language::Target;
 use crate::mechanism::{Body, Inertia};
 use crate::units::Dimension;
 
-use super::Resolver;
 use super::dimensions::Dim;
 use super::place::Place;
+use super::resolver::Resolver;
 
 const MASS: Place = Place::constant("the mass of a body");
 const INERTIA: Place = Place::constant("a moment of inertia");
@@ -27,7 +26,7 @@ impl Resolver<'_> {
     }
 
     fn body(&mut self, item: &ItemAst) -> Body {
-        let frame = self.optional_reference(item, "frame", Target::Frame);
+        let frame = self.optional_reference(item, "frame");
         let inertia = match item.entry("inertia").map(|e| &e.value) {
             Some(ValueAst::Table(table)) => self.inertia(table),
             _ => None,
@@ -53,7 +52,7 @@ impl Resolver<'_> {
             name: item.name.value.clone(),
             about: Self::about(item),
             frame,
-            centre: self.reference(item, "centre", Target::Point),
+            centre: self.reference(item, "centre"),
             mass: signed(mass),
             inertia: inertia.map(|inertia| Inertia {
                 matrix: inertia.matrix.map(|row| row.map(signed)),
@@ -67,7 +66,7 @@ impl Resolver<'_> {
 
     fn inertia(&mut self, item: &ItemAst) -> Option<Inertia> {
         let wanted = Dim::Known(Dimension::INERTIA);
-        let frame = self.reference(item, "in", Target::Frame);
+        let frame = self.reference(item, "in");
         let matrix = if let Some(ValueAst::Matrix(rows)) = item.entry("matrix").map(|e| &e.value) {
             let rows = rows
                 .each_ref()

@@ -2,15 +2,15 @@
 
 use crate::ast::ItemAst;
 use crate::diagnostic::{Code, Diagnostic};
-use crate::language::{ConstraintWord, ItemKind, Target};
+use crate::language::{ConstraintWord, ItemKind};
 use crate::mechanism::{Body, Constraint, ConstraintKind, Creep, GROUND, Normal};
 use crate::parse::zero;
 use crate::units::Dimension;
 
-use super::Resolver;
 use super::dimensions::Dim;
 use super::place::Place;
 use super::placement::axis;
+use super::resolver::Resolver;
 
 const PRESCRIBED: Place = Place::prescribed("the prescribed velocity");
 const DIRECTION: Place = Place::prescribed("a direction");
@@ -44,13 +44,13 @@ impl Resolver<'_> {
     }
 
     fn rolling(&mut self, item: &ItemAst, bodies: &[Body]) -> ConstraintKind {
-        let body = self.reference(item, "body", Target::Body);
+        let body = self.reference(item, "body");
         self.needs_frame(item, "body", bodies, "roll");
         let friction = item.expression("friction").cloned();
         let creep = self.creep(item);
         ConstraintKind::Rolling {
             body,
-            contact: self.reference(item, "contact", Target::Point),
+            contact: self.reference(item, "contact"),
             normal: self.normal(item),
             friction: friction.map(|ast| self.expression(&ast, &FRICTION, Dim::NONE)),
             creep,
@@ -75,7 +75,7 @@ impl Resolver<'_> {
     }
 
     fn normal(&mut self, item: &ItemAst) -> Option<Normal> {
-        let frame = self.optional_reference(item, "in", Target::Frame);
+        let frame = self.optional_reference(item, "in");
         if let (None, Some(given)) = (item.entry("normal"), item.entry("in")) {
             self.tell(
                 Diagnostic::error(
@@ -118,12 +118,12 @@ impl Resolver<'_> {
     }
 
     fn fixed_velocity(&mut self, item: &ItemAst, bodies: &[Body]) -> ConstraintKind {
-        let body = self.optional_reference(item, "body", Target::Body);
+        let body = self.optional_reference(item, "body");
         self.needs_frame(item, "body", bodies, "carry a material point");
         ConstraintKind::FixedVelocity {
-            point: self.reference(item, "point", Target::Point),
+            point: self.reference(item, "point"),
             body,
-            frame: self.reference(item, "in", Target::Frame),
+            frame: self.reference(item, "in"),
             direction: self.components_of(item, "direction", &DIRECTION, Dim::NONE),
             equals: self.expression_of(
                 item,
@@ -142,7 +142,7 @@ impl Resolver<'_> {
         ConstraintKind::Position {
             dimension: typed.dim.known().unwrap_or(Dimension::NONE),
             zero: typed.expr,
-            dependent: self.optional_reference(item, "dependent", Target::Coordinate),
+            dependent: self.optional_reference(item, "dependent"),
             one_sided: item.flag("one_sided"),
         }
     }

@@ -7,8 +7,8 @@ use crate::diagnostic::{Code, Diagnostic};
 use crate::expr::{Expr, ExprKind, Span};
 use crate::units::{Dimension, Exponent, Unit, quantity_name};
 
-use super::Resolver;
 use super::place::Place;
+use super::resolver::Resolver;
 
 /// The dimension of an expression, as far as it is known.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -7,14 +7,14 @@ use num_traits::{One, Zero};
 use crate::ast::{ExprAst, ExprAstKind, Spanned};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::expr::{BinaryOp, Expr, ExprKind, Function, Quantity, Relation, Span};
-use crate::mechanism::Interpolation;
+use crate::mechanism::{Interpolation, SignalId};
 use crate::suggest::{did_you_mean, shown};
 use crate::units::{Dimension, Unit};
 
-use super::Resolver;
 use super::dimensions::{Dim, Typed};
-use super::names::Meaning;
+use super::meaning::Meaning;
 use super::place::Place;
+use super::resolver::Resolver;
 
 impl Resolver<'_> {
     /// Resolves and checks one expression.
@@ -215,8 +215,8 @@ impl Resolver<'_> {
         );
     }
 
-    fn smooth_enough(&mut self, id: usize, span: &Span, place: &Place) {
-        let Some((interpolation, name)) = self.interpolation.get(id).copied() else {
+    fn smooth_enough(&mut self, id: SignalId, span: &Span, place: &Place) {
+        let Some((interpolation, name)) = self.interpolation.get(id.index()).copied() else {
             return;
         };
         if place.smooth.admits(interpolation) {

@@ -9,9 +9,9 @@ use crate::expr::{BinaryOp, Expr, Function, Span};
 use crate::parse;
 use crate::units::Unit;
 
-use super::Resolver;
 use super::dimensions::Dim;
 use super::place::Place;
+use super::resolver::Resolver;
 
 /// What an expression outside a spec may depend on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

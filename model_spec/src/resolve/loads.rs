@@ -3,14 +3,14 @@
 use crate::ast::{ItemAst, ValueAst};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::expr::{Quantity, Span};
-use crate::language::{ItemKind, LoadWord, Target};
-use crate::mechanism::{Axis, Body, Connection, Load, LoadKind};
+use crate::language::{ItemKind, LoadWord};
+use crate::mechanism::{Axis, Body, Connection, CoordinateId, Load, LoadKind, ORIGIN};
 use crate::units::Dimension;
 
-use super::Resolver;
 use super::dimensions::Dim;
 use super::place::Place;
 use super::placement::axis;
+use super::resolver::Resolver;
 
 const ACCELERATION: Place = Place::constant("the acceleration of free fall");
 const FORCE: Place = Place::anything("a component of a force");
@@ -66,30 +66,30 @@ impl Resolver<'_> {
     }
 
     fn force(&mut self, item: &ItemAst, bodies: &[Body]) -> LoadKind {
-        let on = self.reference(item, "on", Target::Point);
-        let body = self.optional_reference(item, "body", Target::Body);
+        let on = self.reference(item, "on");
+        let body = self.optional_reference(item, "body");
         self.needs_frame(item, "body", bodies, "carry a material point");
-        let reaction_on = self.optional_reference(item, "reaction_on", Target::Point);
+        let reaction_on = self.optional_reference(item, "reaction_on");
         self.on_itself(item);
         LoadKind::Force {
             on,
             body,
             reaction_on,
-            frame: self.reference(item, "in", Target::Frame),
+            frame: self.reference(item, "in"),
             vector: self.components_of(item, "vector", &FORCE, Dim::Known(Dimension::FORCE)),
         }
     }
 
     fn torque(&mut self, item: &ItemAst, bodies: &[Body]) -> LoadKind {
-        let on = self.reference(item, "on", Target::Body);
-        let reaction_on = self.optional_reference(item, "reaction_on", Target::Body);
+        let on = self.reference(item, "on");
+        let reaction_on = self.optional_reference(item, "reaction_on");
         self.needs_frame(item, "on", bodies, "feel a torque");
         self.needs_frame(item, "reaction_on", bodies, "feel a torque");
         self.on_itself(item);
         LoadKind::Torque {
             on,
             reaction_on,
-            frame: self.reference(item, "in", Target::Frame),
+            frame: self.reference(item, "in"),
             vector: self.components_of(item, "vector", &TORQUE, Dim::Known(Dimension::TORQUE)),
         }
     }
@@ -118,8 +118,8 @@ impl Resolver<'_> {
     fn connection(&mut self, item: &ItemAst) -> (Connection, Option<Dimension>) {
         let both = item.entry("between").is_some() && item.entry("coordinate").is_some();
         if let Some(ValueAst::Pair([a, b])) = item.entry("between").map(|e| &e.value) {
-            let first = self.find(Target::Point, &a.value, &a.span).unwrap_or(0);
-            let second = self.find(Target::Point, &b.value, &b.span).unwrap_or(0);
+            let first = self.find(&a.value, &a.span).unwrap_or(ORIGIN);
+            let second = self.find(&b.value, &b.span).unwrap_or(ORIGIN);
             if a.value == b.value {
                 self.connected_to_itself(&a.value, b.span.clone(), a.span.clone());
             }
@@ -130,12 +130,12 @@ impl Resolver<'_> {
         (Connection::Coordinate(id), dimension)
     }
 
-    fn coordinate_under(&mut self, item: &ItemAst) -> (usize, Option<Dimension>) {
+    fn coordinate_under(&mut self, item: &ItemAst) -> (CoordinateId, Option<Dimension>) {
         let Some(name) = item.text("coordinate") else {
-            return (0, None);
+            return (CoordinateId::new(0), None);
         };
-        let Some(id) = self.find(Target::Coordinate, name.value, &name.span) else {
-            return (0, None);
+        let Some(id) = self.find(name.value, &name.span) else {
+            return (CoordinateId::new(0), None);
         };
         self.used.add(Quantity::Coordinate(id));
         let dimension = self.names.get(name.value).and_then(|n| n.dimension);

@@ -1,52 +1,37 @@
 //! Names: what they may be, and what they mean.
 
-use std::collections::BTreeSet;
-
 use crate::ast::{ItemAst, Spanned};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::expr::{Function, Quantity, Span};
+use crate::ids::{BodyId, CoordinateId, FrameId, Id, PointId, SpeedId};
 use crate::language::Target;
 use crate::mechanism::{Interpolation, Label, Signal};
 use crate::suggest::{did_you_mean, shown};
 use crate::units::{Dimension, Unit};
 
-use super::Resolver;
+use super::meaning::{Meaning, Named};
+use super::resolver::Resolver;
 
-/// What a name in an expression means.
-#[derive(Debug, Clone)]
-pub(super) struct Named {
-    pub(super) meaning: Meaning,
-    /// `None` while it is not known.
-    pub(super) dimension: Option<Dimension>,
-    pub(super) span: Span,
+/// An id of what items name as their own.
+pub(super) trait Referred: Id {
+    /// Where the name is looked up.
+    const TARGET: Target;
 }
 
-#[derive(Debug, Clone, Copy)]
-pub(super) enum Meaning {
-    Quantity(Quantity),
-    /// Outputs share the names, but expressions cannot use them.
-    Output,
+impl Referred for FrameId {
+    const TARGET: Target = Target::Frame;
 }
 
-/// Indices of what occurs in expressions.
-#[derive(Debug, Default)]
-pub(super) struct Used {
-    pub(super) parameters: BTreeSet<usize>,
-    pub(super) coordinates: BTreeSet<usize>,
-    pub(super) inputs: BTreeSet<usize>,
-    pub(super) signals: BTreeSet<usize>,
+impl Referred for PointId {
+    const TARGET: Target = Target::Point;
 }
 
-impl Used {
-    pub(super) fn add(&mut self, quantity: Quantity) {
-        match quantity {
-            Quantity::Parameter(id) => self.parameters.insert(id),
-            Quantity::Coordinate(id) | Quantity::Rate(id) => self.coordinates.insert(id),
-            Quantity::Input(id) => self.inputs.insert(id),
-            Quantity::Signal(id) => self.signals.insert(id),
-            Quantity::PseudoVelocity(_) | Quantity::Time | Quantity::Pi => false,
-        };
-    }
+impl Referred for BodyId {
+    const TARGET: Target = Target::Body;
+}
+
+impl Referred for CoordinateId {
+    const TARGET: Target = Target::Coordinate;
 }
 
 /// Names that the language keeps for itself.
@@ -100,7 +85,7 @@ impl<'a> Resolver<'a> {
             let meaning = if section == "outputs" {
                 Meaning::Output
             } else {
-                Meaning::Quantity(Quantity::PseudoVelocity(id))
+                Meaning::Quantity(Quantity::PseudoVelocity(SpeedId::new(id)))
             };
             self.define(&item.name, meaning, None);
         }
@@ -174,31 +159,29 @@ impl<'a> Resolver<'a> {
         self.tell(diagnostic);
     }
 
-    /// Index of what a key refers to; 0 where it refers to nothing, which has been told.
-    pub(super) fn reference(&mut self, item: &ItemAst, key: &str, target: Target) -> usize {
-        item.text(key).map_or(0, |name| {
-            self.find(target, name.value, &name.span).unwrap_or(0)
-        })
+    /// What a key refers to; the first item where it refers to nothing, which has been told.
+    pub(super) fn reference<I: Referred>(&mut self, item: &ItemAst, key: &str) -> I {
+        self.optional_reference(item, key).unwrap_or(I::new(0))
     }
 
     /// Like [`Self::reference`], for a key that may be left out.
-    pub(super) fn optional_reference(
+    pub(super) fn optional_reference<I: Referred>(
         &mut self,
         item: &ItemAst,
         key: &str,
-        target: Target,
-    ) -> Option<usize> {
+    ) -> Option<I> {
         let name = item.text(key)?;
-        self.find(target, name.value, &name.span)
+        self.find(name.value, &name.span)
     }
 
-    pub(super) fn find(&mut self, target: Target, name: &str, span: &Span) -> Option<usize> {
+    pub(super) fn find<I: Referred>(&mut self, name: &str, span: &Span) -> Option<I> {
+        let target = I::TARGET;
         let found = match target {
             Target::Frame => self.frames.get(name).copied(),
             Target::Point => self.points.get(name).copied(),
             Target::Body => self.bodies.get(name).copied(),
             Target::Coordinate => self.names.get(name).and_then(|named| match named.meaning {
-                Meaning::Quantity(Quantity::Coordinate(id)) => Some(id),
+                Meaning::Quantity(Quantity::Coordinate(id)) => Some(id.index()),
                 _ => None,
             }),
         };
@@ -207,7 +190,7 @@ impl<'a> Resolver<'a> {
                 this.unknown_reference(target, name, span)
             });
         }
-        found
+        found.map(I::new)
     }
 
     fn unknown_reference(&self, target: Target, name: &str, span: &Span) -> Diagnostic {

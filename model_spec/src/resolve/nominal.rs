@@ -6,7 +6,7 @@ use crate::diagnostic::{Code, Diagnostic, Severity};
 use crate::expr::{BinaryOp, Expr, ExprKind, Function, Quantity, Relation};
 use crate::mechanism::{Body, Constraint, ConstraintKind, Inertia, Mechanism, Parameter};
 
-use super::Resolver;
+use super::resolver::Resolver;
 
 /// Rounding of a moment, relative to the largest: a thin disc lies exactly on the edge.
 const ROUNDING: f64 = 1e-9;
@@ -168,7 +168,7 @@ fn value(expr: &Expr, parameters: &[Parameter]) -> f64 {
     match &expr.kind {
         ExprKind::Number(number) => number.to_f64().unwrap_or(f64::NAN),
         ExprKind::Quantity(Quantity::Parameter(id)) => {
-            parameters.get(*id).map_or(f64::NAN, |p| p.value)
+            parameters.get(id.index()).map_or(f64::NAN, |p| p.value)
         }
         ExprKind::Quantity(Quantity::Pi) => std::f64::consts::PI,
         ExprKind::Quantity(_) => f64::NAN,

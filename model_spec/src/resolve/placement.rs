@@ -9,9 +9,9 @@ use crate::language::{Sense, Target};
 use crate::mechanism::{Axis, Frame, GROUND, Point, Turn};
 use crate::units::Dimension;
 
-use super::Resolver;
 use super::dimensions::Dim;
 use super::place::Place;
+use super::resolver::Resolver;
 
 const ANGLE: Place = Place::geometry("the angle of a frame");
 const POSITION: Place = Place::geometry("the position of a point");
@@ -28,7 +28,7 @@ impl<'a> Resolver<'a> {
             span: 0..0,
         }];
         for item in ordered {
-            let parent = self.reference(item, "parent", Target::Frame);
+            let parent = self.reference(item, "parent");
             let turns = match item.entry("turns").map(|e| &e.value) {
                 Some(ValueAst::Tables(turns)) => turns.iter().map(|t| self.turn(t)).collect(),
                 _ => vec![self.turn(item)],
@@ -70,12 +70,12 @@ impl<'a> Resolver<'a> {
             span: 0..0,
         }];
         for item in ordered {
-            let from = self.reference(item, "from", Target::Point);
+            let from = self.reference(item, "from");
             points.push(Point {
                 name: item.name.value.clone(),
                 about: Self::about(item),
                 from: Some(from),
-                frame: self.reference(item, "in", Target::Frame),
+                frame: self.reference(item, "in"),
                 at: self.components_of(item, "at", &POSITION, Dim::Known(Dimension::LENGTH)),
                 line: self.line(&item.name.span),
                 span: item.name.span.clone(),

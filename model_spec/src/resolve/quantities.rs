@@ -5,6 +5,7 @@ use num_rational::BigRational;
 use crate::ast::{ItemAst, Spanned};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::expr::{Expr, Quantity, Span};
+use crate::ids::{CoordinateId, InputId, ParameterId, SignalId};
 use crate::language::Sense;
 use crate::mechanism::{
     Coordinate, Input, Interpolation, Label, Mechanism, Output, Parameter, PseudoVelocity, Signal,
@@ -12,10 +13,10 @@ use crate::mechanism::{
 use crate::suggest::did_you_mean;
 use crate::units::{Dimension, Unit};
 
-use super::Resolver;
 use super::dimensions::{Dim, Typed};
-use super::names::Meaning;
+use super::meaning::Meaning;
 use super::place::Place;
+use super::resolver::Resolver;
 
 impl<'a> Resolver<'a> {
     /// Defines an item that carries its own unit.
@@ -54,7 +55,7 @@ impl<'a> Resolver<'a> {
     }
 
     fn parameter(&mut self, id: usize, item: &'a ItemAst) -> Parameter {
-        let label = self.labelled(item, Quantity::Parameter(id));
+        let label = self.labelled(item, Quantity::Parameter(ParameterId::new(id)));
         let value = self.number_under(item, "value", &label.unit);
         let at_least = self.number_under(item, "at_least", &label.unit);
         let at_most = self.number_under(item, "at_most", &label.unit);
@@ -106,7 +107,7 @@ impl<'a> Resolver<'a> {
     }
 
     fn coordinate(&mut self, id: usize, item: &'a ItemAst) -> Coordinate {
-        let label = self.labelled(item, Quantity::Coordinate(id));
+        let label = self.labelled(item, Quantity::Coordinate(CoordinateId::new(id)));
         let mut range = None;
         if let Some([low, high]) = item.numbers("range") {
             let [low, high] = [low, high].map(|n| {
@@ -135,7 +136,7 @@ impl<'a> Resolver<'a> {
         let items = ast.items("inputs").iter().enumerate();
         items
             .map(|(id, item)| Input {
-                label: self.labelled(item, Quantity::Input(id)),
+                label: self.labelled(item, Quantity::Input(InputId::new(id))),
             })
             .collect()
     }
@@ -147,7 +148,7 @@ impl<'a> Resolver<'a> {
     }
 
     fn signal(&mut self, id: usize, item: &'a ItemAst) -> Signal {
-        let label = self.labelled(item, Quantity::Signal(id));
+        let label = self.labelled(item, Quantity::Signal(SignalId::new(id)));
         let interpolation = match item.word("interpolation") {
             Some(Sense::Interpolation(written)) => written,
             _ => Interpolation::Linear,
@@ -412,7 +413,7 @@ fn natural_unit(dimension: Dimension, value: &Expr, coordinates: &[Coordinate]) 
     value.visit(&mut |quantity| {
         if let Quantity::Rate(id) = quantity {
             of_angles |= coordinates
-                .get(id)
+                .get(id.index())
                 .is_some_and(|c| c.label.unit.dimension.is_none() && c.label.unit.text != "1");
         }
     });

@@ -17,9 +17,9 @@ use super::space::{Matrix, Vector, add, dot, length};
 use super::view::View;
 use appell_codegen::mechanics::algebra::Algebra;
 use appell_codegen::mechanics::expressions::Lowering;
-use appell_codegen::mechanics::finding::{Item, Outcome};
+use appell_codegen::mechanics::finding::{Item, Outcome, division_by_zero};
 use appell_codegen::mechanics::frames::FrameVector;
-use appell_codegen::mechanics::kinematics::{Effort, Kinematics, division_by_zero};
+use appell_codegen::mechanics::kinematics::{Effort, Kinematics};
 use appell_codegen::mechanics::seed;
 use appell_codegen::mechanics::symbols::{Symbols, ids};
 use appell_codegen::symbolic::vector::Vec3;
@@ -122,7 +122,9 @@ pub fn film(
         flat_across,
         contacts: contacts(mechanism),
         links: link::links(mechanism).collect(),
-        seats: (0..mechanism.frames.len())
+        seats: mechanism
+            .frames
+            .ids()
             .map(|frame| link::seat(mechanism, frame))
             .collect(),
         shapes: Vec::new(),
@@ -139,10 +141,10 @@ pub fn film(
             let scene = Scene::at(&placement, graph, values, flat_across);
             film.shapes = shapes(mechanism, &scene);
         }
-        for place in placement.points_at(graph, values) {
+        for place in &placement.points_at(graph, values) {
             film.positions.extend(place.unwrap_or([f64::NAN; 3]));
         }
-        for axes in placement.frames_at(graph, values) {
+        for axes in &placement.frames_at(graph, values) {
             film.turns.extend(axes.map_or([f64::NAN; 4], quaternion));
         }
         model.constraint_forces(at, &mut forces);
@@ -177,8 +179,7 @@ fn reactions(mechanism: &Mechanism, model: &dyn Model) -> Vec<(usize, Force)> {
     // The reaction of a constraint without a point is no force in space.
     let on_point = reactions.filter(|(_, reaction)| reaction.on_point);
     let found = on_point.filter_map(|(index, reaction)| {
-        let mut points = mechanism.points.iter();
-        let at = points.position(|point| reaction.name == point.name)?;
+        let at = mechanism.points.find(|point| reaction.name == point.name)?;
         let force = Force {
             kind: ForceKind::Reaction,
             at,
@@ -206,7 +207,7 @@ fn applied(
             .express(graph, FrameVector { frame, v }, GROUND))
     };
     let mut all = Vec::new();
-    for (index, load) in mechanism.loads.iter().enumerate() {
+    for (index, load) in mechanism.loads.entries() {
         let divides = |_| vec![division_by_zero(Item::Load(index))];
         let force = |kind, at| Force { kind, at };
         match &load.kind {

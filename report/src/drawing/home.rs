@@ -10,7 +10,7 @@ use appell_spec::mechanism::{
 /// Points that stand for a coordinate, pseudo-velocity, parameter, input, body, constraint or point.
 pub(super) fn home(mechanism: &Mechanism, name: &str) -> BTreeSet<PointId> {
     let mut points = BTreeSet::new();
-    let named = mechanism.points.iter().position(|own| own.name == name);
+    let named = mechanism.points.find(|own| own.name == name);
     points.extend(named);
     let body = mechanism.bodies.iter().find(|own| own.name == name);
     points.extend(body.map(|body| body.centre));
@@ -20,26 +20,26 @@ pub(super) fn home(mechanism: &Mechanism, name: &str) -> BTreeSet<PointId> {
         ConstraintKind::FixedVelocity { point, .. } => Some(point),
         ConstraintKind::Velocity { .. } | ConstraintKind::Position { .. } => None,
     }));
-    for (index, coordinate) in mechanism.coordinates.iter().enumerate() {
+    for (index, coordinate) in mechanism.coordinates.entries() {
         if coordinate.label.name == name {
             points.extend(moved(mechanism, index));
         }
     }
     for speed in &mechanism.pseudo_velocities {
         if speed.label.name == name {
-            for (index, _) in mechanism.coordinates.iter().enumerate() {
+            for index in mechanism.coordinates.ids() {
                 if mentions(&speed.definition, Quantity::Rate(index)) {
                     points.extend(moved(mechanism, index));
                 }
             }
         }
     }
-    for (index, input) in mechanism.inputs.iter().enumerate() {
+    for (index, input) in mechanism.inputs.entries() {
         if input.label.name == name {
             points.extend(felt(mechanism, Quantity::Input(index)));
         }
     }
-    for (index, parameter) in mechanism.parameters.iter().enumerate() {
+    for (index, parameter) in mechanism.parameters.entries() {
         if parameter.label.name == name {
             points.extend(shaped(mechanism, Quantity::Parameter(index)));
         }
@@ -51,7 +51,7 @@ pub(super) fn home(mechanism: &Mechanism, name: &str) -> BTreeSet<PointId> {
 fn moved(mechanism: &Mechanism, coordinate: CoordinateId) -> Vec<PointId> {
     let quantity = Quantity::Coordinate(coordinate);
     let mut points: Vec<PointId> = placed(mechanism, quantity).collect();
-    for (id, frame) in mechanism.frames.iter().enumerate() {
+    for (id, frame) in mechanism.frames.entries() {
         if !frame
             .turns
             .iter()
@@ -69,7 +69,7 @@ fn moved(mechanism: &Mechanism, coordinate: CoordinateId) -> Vec<PointId> {
 
 /// Points whose places mention a quantity.
 fn placed(mechanism: &Mechanism, quantity: Quantity) -> impl Iterator<Item = PointId> {
-    let points = mechanism.points.iter().enumerate();
+    let points = mechanism.points.entries();
     points
         .filter(move |(_, point)| point.at.iter().any(|at| mentions(at, quantity)))
         .map(|(id, _)| id)

@@ -60,7 +60,7 @@ pub(super) fn links(mechanism: &Mechanism) -> impl Iterator<Item = Link> {
             about: format!("{word} {}", load.name),
         })
     };
-    let placed = mechanism.points.iter().enumerate().filter_map(placed);
+    let placed = mechanism.points.entries().filter_map(placed);
     placed.chain(mechanism.loads.iter().filter_map(connection))
 }
 

@@ -1,13 +1,13 @@
 //! Where everything is, as expressions in the ground: points, axes of frames, inertias of bodies.
 
-use appell_spec::mechanism::{FrameId, GROUND, Mechanism};
+use appell_spec::mechanism::{BodyId, FrameId, GROUND, List, Mechanism, PointId};
 
 use super::space::{Matrix, Vector};
 use appell_codegen::mechanics::algebra::Algebra;
 use appell_codegen::mechanics::expressions::Lowering;
-use appell_codegen::mechanics::finding::{Item, Outcome};
+use appell_codegen::mechanics::finding::{Item, Outcome, division_by_zero};
 use appell_codegen::mechanics::frames::FrameVector;
-use appell_codegen::mechanics::kinematics::{Kinematics, division_by_zero};
+use appell_codegen::mechanics::kinematics::Kinematics;
 use appell_codegen::mechanics::symbols::Symbols;
 use appell_codegen::symbolic::vector::{IDENTITY, Vec3};
 use appell_codegen::symbolic::{Expr, Graph, evaluate};
@@ -18,11 +18,11 @@ const FARTHEST: f64 = 1e100;
 /// Points and frames as expressions.
 pub(super) struct Placement {
     /// By point.
-    points: Vec<Vec3>,
+    points: List<PointId, Vec3>,
     /// By frame: its three axes.
-    frames: Vec<[Vec3; 3]>,
+    frames: List<FrameId, [Vec3; 3]>,
     /// By body: mass and, of rigid bodies, inertia.
-    bodies: Vec<(Expr, Option<Tensor>)>,
+    bodies: List<BodyId, (Expr, Option<Tensor>)>,
 }
 
 /// A matrix with the frame of its components.
@@ -44,7 +44,9 @@ impl Placement {
         kinematics: &Kinematics,
     ) -> Outcome<Self> {
         let graph = &mut algebra.graph;
-        let points = (0..mechanism.points.len())
+        let points = mechanism
+            .points
+            .ids()
             .map(|point| kinematics.position(graph, mechanism, point))
             .collect();
         let axes = |frame| {
@@ -53,13 +55,13 @@ impl Placement {
                 kinematics.frames.express(graph, axis, GROUND)
             })
         };
-        let frames = (0..mechanism.frames.len()).map(axes).collect();
+        let frames = mechanism.frames.ids().map(axes).collect();
         let lowering = Lowering {
             symbols,
             rates: &symbols.rates,
         };
-        let mut bodies = Vec::with_capacity(mechanism.bodies.len());
-        for (index, body) in mechanism.bodies.iter().enumerate() {
+        let mut bodies = List::default();
+        for (index, body) in mechanism.bodies.entries() {
             let divides = |_| vec![division_by_zero(Item::Body(index))];
             let mass = lowering.lower(graph, &body.mass).map_err(divides)?;
             let inertia = match &body.inertia {
@@ -93,13 +95,13 @@ impl Placement {
     }
 
     /// Values by point; `None` where the position is not finite.
-    pub(super) fn points_at(&self, graph: &Graph, values: &[f64]) -> Vec<Option<Vector>> {
+    pub(super) fn points_at(&self, graph: &Graph, values: &[f64]) -> List<PointId, Option<Vector>> {
         let numbers = evaluate(graph, values, self.points.as_flattened());
         triples(&numbers).collect()
     }
 
     /// Values by frame; `None` where an angle is not finite.
-    pub(super) fn frames_at(&self, graph: &Graph, values: &[f64]) -> Vec<Option<Matrix>> {
+    pub(super) fn frames_at(&self, graph: &Graph, values: &[f64]) -> List<FrameId, Option<Matrix>> {
         let axes = self.frames.as_flattened().as_flattened();
         let numbers = evaluate(graph, values, axes);
         numbers.chunks_exact(9).map(matrix).collect()
@@ -110,8 +112,8 @@ impl Placement {
         &self,
         graph: &Graph,
         values: &[f64],
-        frames: &[Option<Matrix>],
-    ) -> Vec<(f64, Option<Inertia>)> {
+        frames: &List<FrameId, Option<Matrix>>,
+    ) -> List<BodyId, (f64, Option<Inertia>)> {
         let value = |(mass, inertia): &(Expr, Option<Tensor>)| {
             let mass = evaluate(graph, values, &[*mass])[0];
             let inertia = inertia.as_ref().and_then(|(frame, components)| {

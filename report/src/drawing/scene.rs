@@ -1,7 +1,7 @@
 //! Where everything is at one state: points, axes of frames, bodies.
 
 use appell_runtime::positions::{Moving, Positions};
-use appell_spec::mechanism::Mechanism;
+use appell_spec::mechanism::{BodyId, FrameId, List, Mechanism, PointId};
 
 use super::placement::{Inertia, Placement};
 use super::space::{Matrix, Vector};
@@ -16,11 +16,11 @@ use appell_codegen::symbolic::{Graph, SymbolId};
 /// A mechanism at one state, in the ground and in SI.
 pub(super) struct Scene {
     /// By point; `None` where the position is not finite.
-    pub(super) points: Vec<Option<Vector>>,
+    pub(super) points: List<PointId, Option<Vector>>,
     /// By frame: its three axes; `None` where an angle is not finite.
-    pub(super) frames: Vec<Option<Matrix>>,
+    pub(super) frames: List<FrameId, Option<Matrix>>,
     /// By body: mass and, of rigid bodies, inertia with the axes of its components.
-    pub(super) bodies: Vec<(f64, Option<Inertia>)>,
+    pub(super) bodies: List<BodyId, (f64, Option<Inertia>)>,
     /// The axis of the ground that no point ever leaves the plane across, if there is one.
     pub(super) flat_across: Option<usize>,
     /// Whether the position constraints hold.

@@ -102,7 +102,7 @@ pub(super) struct Axes {
 /// are drawn once.
 pub(super) fn axes(mechanism: &Mechanism, scene: &Scene) -> Vec<Axes> {
     let mut drawn: Vec<Axes> = Vec::new();
-    for (id, frame) in mechanism.frames.iter().enumerate() {
+    for (id, frame) in mechanism.frames.entries() {
         let place = link::seat(mechanism, id);
         let at = place.and_then(|point| scene.points[point]);
         let (Some(at), Some(directions)) = (at, scene.frames[id]) else {

@@ -244,7 +244,8 @@ impl Sheet<'_> {
     /// Points and their names, with those of the bodies whose centres they are.
     fn points(&mut self, mechanism: &Mechanism, scene: &Scene) {
         let mut names: Vec<([f64; 2], String)> = Vec::new();
-        for (id, (point, place)) in mechanism.points.iter().zip(&scene.points).enumerate() {
+        for (id, point) in mechanism.points.entries() {
+            let place = scene.points[id];
             let Some(at) = place.map(|place| self.place(place)) else {
                 continue;
             };

@@ -29,7 +29,8 @@ pub(super) fn solids(
     mechanism: &Mechanism,
     scene: &Scene,
 ) -> impl Iterator<Item = (BodyId, Solid)> {
-    (0..mechanism.bodies.len()).filter_map(|id| Some((id, solid(mechanism, scene, id)?)))
+    let bodies = mechanism.bodies.ids();
+    bodies.filter_map(|id| Some((id, solid(mechanism, scene, id)?)))
 }
 
 fn solid(mechanism: &Mechanism, scene: &Scene, id: BodyId) -> Option<Solid> {

@@ -1,7 +1,12 @@
 //! The derivation as a page: what it looks like, and that it is true.
 
-use crate::support::{page_of, shipped, spec};
-use appell_report::derivation::{self, Page, Stage};
+mod page_support;
+
+use appell_codegen::page::{self, Page, Stage};
+use appell_spec::mechanism::{
+    BodyId, CoordinateId, FrameId, LoadId, OutputId, ParameterId, PointId,
+};
+use page_support::{page_of, shipped, spec};
 
 /// The handouts under snapshot.
 const HANDOUTS: [&str; 3] = ["unicycle", "euc_3dof", "pendulum"];
@@ -145,16 +150,16 @@ fn texts_of_a_spec_are_shown_and_not_obeyed() {
     let page = crate::support::page_after(&spec("pendulum"), |m| {
         m.title = hostile.to_owned();
         m.source = Some(hostile.to_owned());
-        m.parameters[0].label.about = hostile.to_owned();
-        m.parameters[1].label.name = hostile.to_owned();
-        m.parameters[2].label.unit.text = hostile.to_owned();
-        m.coordinates[0].label.name = steering.to_owned();
-        m.frames[1].name = hostile.to_owned();
-        m.points[1].name = hostile.to_owned();
-        m.bodies[0].name = hostile.to_owned();
-        m.bodies[0].about = steering.to_owned();
-        m.loads[0].name = hostile.to_owned();
-        m.outputs[0].label.name = hostile.to_owned();
+        m.parameters[ParameterId::new(0)].label.about = hostile.to_owned();
+        m.parameters[ParameterId::new(1)].label.name = hostile.to_owned();
+        m.parameters[ParameterId::new(2)].label.unit.text = hostile.to_owned();
+        m.coordinates[CoordinateId::new(0)].label.name = steering.to_owned();
+        m.frames[FrameId::new(1)].name = hostile.to_owned();
+        m.points[PointId::new(1)].name = hostile.to_owned();
+        m.bodies[BodyId::new(0)].name = hostile.to_owned();
+        m.bodies[BodyId::new(0)].about = steering.to_owned();
+        m.loads[LoadId::new(0)].name = hostile.to_owned();
+        m.outputs[OutputId::new(0)].label.name = hostile.to_owned();
     });
 
     let html = derivation::html(&page);

@@ -1,7 +1,7 @@
 //! Why an integration could not be completed.
 
-use super::Statistics;
 use super::events::EventHit;
+use super::outcome::Statistics;
 use std::fmt::Write as _;
 
 /// Why there is no [`Outcome`](super::Outcome).

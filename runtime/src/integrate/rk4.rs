@@ -2,9 +2,10 @@
 
 use super::dense_output::DenseOutput;
 use super::error::{Cause, IntegrationError};
+use super::options::check_span;
+use super::outcome::{Outcome, Statistics};
 use super::tableau::{Stages, Tableau};
 use super::watch::{End, Observer, Watch, Watcher};
-use super::{Outcome, Statistics, check_span};
 
 /// Hairer, Nørsett and Wanner, table II.1.2.
 const TABLEAU: Tableau = Tableau {

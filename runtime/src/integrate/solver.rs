@@ -2,12 +2,13 @@
 
 use super::dense_output::DenseOutput;
 use super::error::{Cause, IntegrationError};
+use super::options::Options;
+use super::outcome::{Outcome, Statistics};
 use super::pairs::EmbeddedPair;
 use super::step_size::{StepSize, first_guess, first_step, norm};
 use super::stops::{Stop, Stride};
 use super::tableau::Stages;
 use super::watch::{End, Observer, Watch, Watcher};
-use super::{Options, Outcome, Statistics};
 use std::marker::PhantomData;
 
 /// An adaptive integrator with its work arrays.

@@ -3,9 +3,9 @@
 use super::dense_output::{DenseOutput, Ends};
 use super::error::{Cause, Failure, IntegrationError};
 use super::events::{Crossings, Event, EventHit};
+use super::outcome::{Ending, Outcome, Statistics};
 use super::range::Range;
 use super::stops::{Stops, Switches};
-use super::{Outcome, Statistics};
 use std::ops::ControlFlow;
 
 /// What an integration has to look out for, besides the tolerances.
@@ -95,17 +95,6 @@ impl Observer for NoObserver {
     fn step(&mut self, _: &Step<'_>) -> ControlFlow<()> {
         ControlFlow::Continue(())
     }
-}
-
-/// Why an integration ended without an error.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Ending {
-    /// The interval's end was reached.
-    Finished,
-    /// The terminal event of this index occurred.
-    Event(usize),
-    /// The observer broke off.
-    Stopped,
 }
 
 /// Where an integration ended, and why.

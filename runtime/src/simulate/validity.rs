@@ -1,6 +1,6 @@
 //! Where a motion leaves what its model describes: ranges, contacts, accuracy.
 
-use super::describe_state;
+use super::describe::describe_state;
 use crate::condition::Conditions;
 use crate::contact::{ContactForce, ContactForces};
 use crate::inputs::ModelInputs;

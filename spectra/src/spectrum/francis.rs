@@ -3,7 +3,7 @@
 
 use nalgebra::Complex;
 
-use super::hessenberg::{balance, dust, reduce};
+use super::hessenberg::{balance, drop_negligible, reduce};
 use super::{SpectrumError, finite};
 
 /// Steps for one eigenvalue; a handful is usual.
@@ -48,7 +48,7 @@ impl Eigenvalues {
         }
         finite(a, n)?;
         self.h.copy_from_slice(a);
-        dust(&mut self.h);
+        drop_negligible(&mut self.h);
         balance(&mut self.h, n);
         reduce(&mut self.h, n, &mut self.reflector);
         self.values.clear();

@@ -1,7 +1,7 @@
 //! Balancing and the Hessenberg form, both in place, row by row.
 
 /// Clears entries that are nothing beside the largest, and whose squares would underflow.
-pub(super) fn dust(a: &mut [f64]) {
+pub(super) fn drop_negligible(a: &mut [f64]) {
     const NOTHING: f64 = 1e-60;
     let largest = a.iter().map(|entry| entry.abs()).fold(0.0, f64::max);
     let small = |entry: &&mut f64| entry.abs() <= NOTHING * largest;

@@ -2,7 +2,7 @@
 
 use nalgebra::DMatrix;
 
-use super::hessenberg::{balance, dust, reduce};
+use super::hessenberg::{balance, drop_negligible, reduce};
 use super::{SpectrumError, finite, row_by_row, square};
 
 /// The coefficients of `det(λ 1 − A) = λⁿ + c₁ λⁿ⁻¹ + … + cₙ`, from 1 to cₙ.
@@ -14,7 +14,7 @@ pub fn characteristic_polynomial(a: &DMatrix<f64>) -> Result<Vec<f64>, SpectrumE
     let n = square(a)?;
     let mut h = row_by_row(a);
     finite(&h, n)?;
-    dust(&mut h);
+    drop_negligible(&mut h);
     balance(&mut h, n);
     reduce(&mut h, n, &mut vec![0.0; n]);
     // det(λ 1 − H) of the leading blocks, highest power first.

@@ -1,9 +1,11 @@
 //! Accelerations of centres of mass, angular accelerations of bodies.
 
+use appell_spec::mechanism::BodyId;
+
 use super::super::writer::Writer;
 use super::super::{Block, Section};
 use super::super::{Letter, Math};
-use super::{math, with, words};
+use super::phrases::{headed, math, with, words};
 use appell_codegen::mechanics::gibbs_appell::along;
 use appell_codegen::symbolic::vector;
 
@@ -13,7 +15,7 @@ pub(super) fn section(w: &mut Writer<'_>) -> Section {
     let mut shown = Vec::new();
     let accelerations = w.derivation.symbols.accelerations.clone();
     for (index, body) in w.derivation.bodies.clone().into_iter().enumerate() {
-        let centre = w.mechanism.bodies[index].centre;
+        let centre = w.mechanism.bodies[BodyId::new(index)].centre;
         if !shown.contains(&centre) {
             shown.push(centre);
             let a = along(
@@ -48,5 +50,5 @@ pub(super) fn section(w: &mut Writer<'_>) -> Section {
         words(", with the components differentiated one by one; angular accelerations likewise."),
     ])];
     blocks.extend(with(w, "", equations));
-    super::section("Accelerations", blocks)
+    headed("Accelerations", blocks)
 }

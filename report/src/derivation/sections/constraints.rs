@@ -1,22 +1,23 @@
 //! Constraints, pseudo-velocities, and the generalised velocities that solve both.
 
-use appell_spec::mechanism::{ConstraintKind, GROUND};
+use appell_spec::mechanism::{ConstraintId, ConstraintKind, GROUND};
 
 use super::super::display::Equation;
 use super::super::units::unit;
 use super::super::writer::Writer;
 use super::super::{Block, Row, Section, Span, Table};
 use super::super::{Letter, Math};
+use super::divisors;
+use super::phrases::{equality, headed, introduced, listed, math, sentence, with, words};
 use super::placement::from_to;
-use super::{divisors, equality, introduced, listed, math, sentence, with, words};
-use appell_codegen::mechanics::constraints;
 use appell_codegen::mechanics::expressions::Lowering;
+use appell_codegen::mechanics::row;
 use appell_codegen::symbolic::Graph;
 
 /// Constraints and pseudo-velocities.
 pub(super) fn section(w: &mut Writer<'_>) -> Section {
     let mut blocks = Vec::new();
-    for index in 0..w.mechanism.constraints.len() {
+    for index in w.mechanism.constraints.ids() {
         blocks.extend(constraint(w, index));
     }
     blocks.push(sentence(
@@ -47,7 +48,7 @@ pub(super) fn section(w: &mut Writer<'_>) -> Section {
              when the equations are evaluated.",
         ));
     }
-    super::section("Constraints and pseudo-velocities", blocks)
+    headed("Constraints and pseudo-velocities", blocks)
 }
 
 /// Generalised velocities in terms of the pseudo-velocities; those with the letter of a
@@ -64,7 +65,7 @@ pub(super) fn rates(w: &mut Writer<'_>) -> Vec<Equation> {
     equations
 }
 
-fn constraint(w: &mut Writer<'_>, index: usize) -> Vec<Block> {
+fn constraint(w: &mut Writer<'_>, index: ConstraintId) -> Vec<Block> {
     let constraint = &w.mechanism.constraints[index];
     let mut what = vec![introduced(
         &constraint.name,
@@ -129,7 +130,7 @@ fn rolling(w: &Writer<'_>, kind: &ConstraintKind) -> Option<Math> {
 }
 
 /// `Σ coefficient · q̇ + rest = 0`
-fn equation(w: &mut Writer<'_>, row: &constraints::Row) -> Equation {
+fn equation(w: &mut Writer<'_>, row: &row::Row) -> Equation {
     let mut parts = vec![row.rest];
     let rates = w.derivation.symbols.rates.clone();
     for (&coefficient, rate) in row.coefficients.iter().zip(rates) {

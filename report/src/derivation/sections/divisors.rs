@@ -3,7 +3,7 @@
 use super::super::units::range;
 use super::super::writer::Writer;
 use super::super::{Block, Letter, Math, Span};
-use super::{listed, math, words};
+use super::phrases::{listed, math, words};
 use appell_codegen::mechanics::parameter_ranges;
 use appell_codegen::symbolic::{Expr, Intervals, Node};
 

@@ -4,7 +4,7 @@ use super::super::display::Equation;
 use super::super::writer::Writer;
 use super::super::{Block, Section, Span};
 use super::super::{Letter, Math};
-use super::{listed, math, with, words};
+use super::phrases::{headed, listed, math, with, words};
 use appell_codegen::mechanics::gibbs_appell::gibbs_form;
 use appell_codegen::mechanics::motion::independent_blocks;
 use appell_codegen::symbolic::{Expr, Graph, Rational};
@@ -51,7 +51,7 @@ pub(super) fn section(w: &mut Writer<'_>) -> Section {
         equations.push(Equation::new(Math::Letter(left), right));
     }
     blocks.extend(with(w, "", equations));
-    super::section("Acceleration energy S", blocks)
+    headed("Acceleration energy S", blocks)
 }
 
 /// `½ ω̇ᵀ M ω̇ + bᵀ ω̇` of one body.

@@ -4,8 +4,8 @@ use super::super::display::Equation;
 use super::super::writer::Writer;
 use super::super::{Block, Section};
 use super::super::{Letter, Math};
+use super::phrases::{headed, listed, math, sentence, with, words};
 use super::solution::Elimination;
-use super::{listed, math, sentence, with, words};
 use appell_codegen::mechanics;
 use appell_codegen::mechanics::gibbs_appell::kinetic_energy;
 use appell_codegen::symbolic::{Expr, Node};
@@ -93,7 +93,7 @@ pub(super) fn motion(w: &mut Writer<'_>) -> Section {
     blocks.push(sentence(
         "With the generalised velocities of section 3 they are the equations of motion.",
     ));
-    super::section("Equations of motion", blocks)
+    headed("Equations of motion", blocks)
 }
 
 /// Accelerations of a block in the order of their solution, if they are short enough to read. What
@@ -173,5 +173,5 @@ pub(super) fn energies(w: &mut Writer<'_>) -> Section {
     }
     let mut blocks = vec![Block::Sentence(text)];
     blocks.extend(with(w, "", equations));
-    super::section("Energies", blocks)
+    headed("Energies", blocks)
 }

@@ -5,7 +5,8 @@ use super::super::writer::Writer;
 use super::super::{Block, Section};
 use super::super::{Letter, Math};
 use super::energy::numbered;
-use super::{introduced, loads, math, sentence, with, words};
+use super::loads;
+use super::phrases::{headed, introduced, math, sentence, with, words};
 use appell_codegen::mechanics::loads::{AppliedLoad, generalized_forces};
 use appell_codegen::symbolic::Graph;
 
@@ -22,7 +23,7 @@ pub(super) fn section(w: &mut Writer<'_>) -> Section {
         "The pseudo-forces are the factors of the virtual velocities:",
         equations,
     ));
-    super::section("Pseudo-forces Π", blocks)
+    headed("Pseudo-forces Π", blocks)
 }
 
 /// `δP = Σ F · δv + Σ T · δω = Σ Πᵢ δωᵢ`

@@ -4,7 +4,7 @@ use super::super::display::Equation;
 use super::super::writer::Writer;
 use super::super::{Block, Section};
 use super::super::{Letter, Math};
-use super::{math, with, words};
+use super::phrases::{headed, math, with, words};
 use appell_codegen::symbolic::{Expr, Graph};
 
 /// The derivatives of the residual ρ, how they determine those of ω̇, and the derivatives of q̇.
@@ -43,7 +43,7 @@ pub(super) fn section(w: &mut Writer<'_>) -> Section {
         }
         blocks.extend(with(w, lead, equations));
     }
-    super::section("Jacobians", blocks)
+    headed("Jacobians", blocks)
 }
 
 /// What is differentiated, and what the derivatives solve.

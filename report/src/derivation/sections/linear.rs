@@ -3,7 +3,7 @@
 use super::super::display::Equation;
 use super::super::writer::Writer;
 use super::super::{Block, Letter, Math, Section, Span};
-use super::{listed, math, sentence, with, words};
+use super::phrases::{headed, listed, math, sentence, with, words};
 use appell_codegen::linearisation::{Characteristic, Linearisation};
 use appell_codegen::symbolic::{Expr, Graph};
 
@@ -48,7 +48,7 @@ pub(super) fn steady(w: &mut Writer<'_>, linear: &Linearisation) -> Section {
         blocks.push(sentence("It is steady."));
     }
     blocks.extend(with(w, "It is steady where", conditions));
-    super::section("Steady motion", blocks)
+    headed("Steady motion", blocks)
 }
 
 /// What the reader wants to know the values of, in order. That coordinates which rest have no rate
@@ -107,7 +107,7 @@ pub(super) fn equations(w: &mut Writer<'_>, linear: &Linearisation) -> Section {
         };
         blocks.extend(with(w, lead, equations));
     }
-    super::section("Linear equations about the steady motion", blocks)
+    headed("Linear equations about the steady motion", blocks)
 }
 
 /// `δẋ = A δx + B δu`, and what x and u are.
@@ -167,7 +167,7 @@ pub(super) fn characteristic(w: &mut Writer<'_>, polynomial: &Characteristic) ->
         polynomial.degree
     );
     let blocks = with(w, &lead, equations);
-    super::section("Characteristic polynomial", blocks)
+    headed("Characteristic polynomial", blocks)
 }
 
 /// `λᶻ (λⁿ⁻ᶻ + c₁ λⁿ⁻ᶻ⁻¹ + …)`, coefficients that vanish left out.

@@ -8,8 +8,8 @@ use appell_spec::mechanism::{
 
 use super::super::writer::Writer;
 use super::super::{Letter, Math, Span};
+use super::phrases::{equality, listed, math, words};
 use super::placement::{from_to, lowered};
-use super::{equality, listed, math, words};
 use appell_codegen::symbolic::{Expr, Graph};
 
 /// `F_drive = [0, u, 0] tilted at A, −F_drive at G; δP_drive = F_drive · (δv_A − δv_G)`
@@ -43,7 +43,7 @@ pub(super) fn statement(w: &mut Writer<'_>, load: &Load) -> Vec<Span> {
             stiffness,
             relaxed,
         } => {
-            let place = w.derivation.symbols.coordinates[*q];
+            let place = w.derivation.symbols.coordinates[q.index()];
             let stretch = difference(w, place, relaxed);
             let stiffness = factor(w, stiffness);
             along(w, load, *q, negative(vec![stiffness, stretch]))
@@ -52,7 +52,7 @@ pub(super) fn statement(w: &mut Writer<'_>, load: &Load) -> Vec<Span> {
             between: Connection::Coordinate(q),
             damping,
         } => {
-            let rate = w.symbol(w.derivation.symbols.rates[*q]);
+            let rate = w.symbol(w.derivation.symbols.rates[q.index()]);
             let damping = factor(w, damping);
             along(w, load, *q, negative(vec![damping, rate]))
         }
@@ -195,8 +195,8 @@ fn pulling(w: &Writer<'_>, load: &Load, ends: [PointId; 2], tension: Math) -> Sa
 fn along(w: &mut Writer<'_>, load: &Load, q: CoordinateId, force: Math) -> Said {
     let letter = Math::Letter(Letter::plain("F").below(&load.name));
     let [coordinate, rate] = [
-        w.derivation.symbols.coordinates[q],
-        w.derivation.symbols.rates[q],
+        w.derivation.symbols.coordinates[q.index()],
+        w.derivation.symbols.rates[q.index()],
     ]
     .map(|symbol| w.letter(symbol));
     let what = vec![

@@ -9,16 +9,15 @@ mod forces;
 mod jacobians;
 mod linear;
 mod loads;
+mod phrases;
 mod placement;
 mod quantities;
 mod reactions;
 mod solution;
 mod velocities;
 
-use super::Math;
-use super::display::Equation;
 use super::writer::Writer;
-use super::{Block, Section, Span, Stage};
+use super::{Section, Stage};
 use appell_codegen::linearisation::Linearisation;
 use appell_codegen::mechanics::finding;
 
@@ -66,69 +65,4 @@ pub(super) fn linear(w: &mut Writer<'_>, linear: &Linearisation) -> Vec<Section>
         sections.push(linear::characteristic(w, &polynomial));
     }
     sections
-}
-
-/// A section with a heading of words.
-fn section(heading: &str, blocks: Vec<Block>) -> Section {
-    Section {
-        heading: vec![words(heading)],
-        blocks,
-    }
-}
-
-fn words(text: &str) -> Span {
-    Span::Text(text.to_owned())
-}
-
-fn sentence(text: &str) -> Block {
-    Block::Sentence(vec![words(text)])
-}
-
-fn math(math: Math) -> Span {
-    Span::Math(math)
-}
-
-/// `left = right` in the text.
-fn equality(left: Math, right: Math) -> Span {
-    Span::Math(Math::Row(vec![left, Math::Sign("="), right]))
-}
-
-/// Definitions of what the equations use, then the equations after their sentence.
-fn with(w: &mut Writer<'_>, lead: &str, equations: Vec<Equation>) -> Vec<Block> {
-    let mut blocks = w.definitions();
-    if equations.is_empty() {
-        return blocks;
-    }
-    if !lead.is_empty() {
-        blocks.push(sentence(lead));
-    }
-    blocks.push(Block::Equations(equations));
-    blocks
-}
-
-/// With a capital letter at the start of a sentence.
-fn capitalised(text: &str) -> String {
-    let mut letters = text.chars();
-    letters.next().map_or_else(String::new, |first| {
-        first.to_uppercase().chain(letters).collect()
-    })
-}
-
-/// What an item is and where the spec says it: `The wheel rolls (line 48 of the spec)`.
-fn introduced(name: &str, about: &str, line: usize) -> Span {
-    let about = if about.is_empty() { name } else { about };
-    words(&format!("{} (line {line} of the spec)", capitalised(about)))
-}
-
-/// `a, b and c`
-fn listed(items: Vec<Vec<Span>>) -> Vec<Span> {
-    let count = items.len();
-    let mut out = Vec::new();
-    for (k, item) in items.into_iter().enumerate() {
-        if k > 0 {
-            out.push(words(if k + 1 == count { " and " } else { ", " }));
-        }
-        out.extend(item);
-    }
-    out
 }

@@ -5,7 +5,7 @@ use appell_spec::mechanism::{Axis, FrameId, GROUND, Inertia, Turn};
 use super::super::writer::Writer;
 use super::super::{Block, Chain, Row, Section, Table};
 use super::super::{Letter, Math};
-use super::{equality, math, sentence, words};
+use super::phrases::{equality, headed, math, sentence, words};
 use appell_codegen::mechanics::expressions::Lowering;
 use appell_codegen::symbolic::{Expr, Graph};
 
@@ -16,12 +16,16 @@ pub(super) fn section(w: &mut Writer<'_>) -> Section {
         "O is the origin of the ground. Each frame is the one before it, turned about one of its \
          axes. Behind the components of a vector stands their frame.",
     )];
-    for leaf in 1..mechanism.frames.len() {
+    for leaf in mechanism.frames.ids().skip(1) {
         if !mechanism.frames.iter().any(|f| f.parent == Some(leaf)) {
             blocks.push(chain(w, leaf));
         }
     }
-    let frames = mechanism.frames[1..].iter().filter(|f| !f.about.is_empty());
+    let frames = mechanism
+        .frames
+        .iter()
+        .skip(1)
+        .filter(|f| !f.about.is_empty());
     let rows: Vec<_> = frames
         .map(|f| {
             let cells = vec![
@@ -39,7 +43,7 @@ pub(super) fn section(w: &mut Writer<'_>) -> Section {
     table(&mut blocks, "Points", points);
     let bodies = bodies(w);
     table(&mut blocks, "Bodies", bodies);
-    super::section("Frames, points, bodies", blocks)
+    headed("Frames, points, bodies", blocks)
 }
 
 fn table(blocks: &mut Vec<Block>, title: &str, rows: Vec<Row>) {
@@ -108,7 +112,7 @@ pub(super) fn from_to(from: &str, to: &str) -> String {
 fn points(w: &mut Writer<'_>) -> Vec<Row> {
     let mechanism = w.mechanism;
     let mut rows = Vec::new();
-    for (id, point) in mechanism.points.iter().enumerate() {
+    for (id, point) in mechanism.points.entries() {
         let Some(from) = point.from else { continue };
         let components = point.at.iter().map(|c| lowered(w, c)).collect::<Vec<_>>();
         let components = components.into_iter().map(|c| w.set(c)).collect();

@@ -6,7 +6,7 @@ use super::super::units::{range, unit, value};
 use super::super::writer::Writer;
 use super::super::{Block, Row, Section, Table};
 use super::super::{Letter, Math};
-use super::{equality, math, sentence, words};
+use super::phrases::{equality, headed, math, sentence, words};
 use appell_codegen::mechanics::expressions::Lowering;
 
 /// Tables of the quantities.
@@ -65,7 +65,7 @@ pub(super) fn section(w: &mut Writer<'_>) -> Section {
             .map(|s| plain(&s.label, unit(&s.label)))
             .collect(),
     );
-    super::section("Quantities", blocks)
+    headed("Quantities", blocks)
 }
 
 /// The outputs of the spec.
@@ -101,5 +101,5 @@ pub(super) fn outputs(w: &mut Writer<'_>) -> Option<Section> {
         title: String::new(),
         rows,
     }));
-    Some(super::section("Outputs", blocks))
+    Some(headed("Outputs", blocks))
 }

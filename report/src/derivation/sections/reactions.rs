@@ -4,7 +4,7 @@ use super::super::Section;
 use super::super::display::Equation;
 use super::super::writer::Writer;
 use super::super::{Letter, Math};
-use super::with;
+use super::phrases::{headed, with};
 use appell_codegen::mechanics::finding::Outcome;
 use appell_codegen::mechanics::reactions::reactions;
 use appell_codegen::symbolic::Graph;
@@ -43,5 +43,5 @@ pub(super) fn section(w: &mut Writer<'_>) -> Outcome<Option<Section>> {
          speed gives its reaction. Components in the ground, accelerations stand for their values:",
         equations,
     );
-    Ok(Some(super::section("Constraint forces", blocks)))
+    Ok(Some(headed("Constraint forces", blocks)))
 }

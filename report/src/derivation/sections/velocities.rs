@@ -5,7 +5,7 @@ use appell_spec::mechanism::{FrameId, GROUND, PointId};
 use super::super::Letter;
 use super::super::Section;
 use super::super::writer::Writer;
-use super::{sentence, with};
+use super::phrases::{headed, sentence, with};
 
 /// Velocities, each in the frame where it is shortest.
 pub(super) fn section(w: &mut Writer<'_>) -> Section {
@@ -40,7 +40,7 @@ pub(super) fn section(w: &mut Writer<'_>) -> Section {
          where it is shortest.",
     )];
     blocks.extend(with(w, "", equations));
-    super::section("Velocities", blocks)
+    headed("Velocities", blocks)
 }
 
 /// The turning frames in which motions of bodies are written.

@@ -1,19 +1,5 @@
-//! What is legal in a mechanism, and yet hardly meant: seen in its equations, told in terms of
-//! physics.
-//!
-//! The derivation refuses what has no equations of motion. The audit reads the equations of what it
-//! accepts; each file is one question about them. Whatever cannot be proven or shown is not told.
+//! What every question about the equations needs, and where its answers go.
 
-mod contact;
-mod determination;
-mod idle;
-mod integrability;
-mod passivity;
-mod reaction;
-mod samples;
-mod work;
-
-use appell_spec::Code;
 use appell_spec::mechanism::Mechanism;
 
 use crate::mechanics::algebra::Algebra;
@@ -39,66 +25,22 @@ pub struct Audit {
 }
 
 /// What every question about the equations needs.
-struct Bench<'a> {
-    mechanism: &'a Mechanism,
-    derivation: &'a Derivation,
+pub(super) struct Bench<'a> {
+    pub(super) mechanism: &'a Mechanism,
+    pub(super) derivation: &'a Derivation,
     /// A graph of its own: the emitted equations do not depend on the audit.
-    algebra: Algebra,
-    declared: Intervals,
-    state: InitialState,
+    pub(super) algebra: Algebra,
+    pub(super) declared: Intervals,
+    pub(super) state: InitialState,
     /// Velocities with symbols for q̇.
-    unconstrained: Kinematics,
+    pub(super) unconstrained: Kinematics,
     /// Outputs in terms of coordinates and pseudo-velocities.
-    outputs: Vec<Expr>,
-}
-
-/// Audits a mechanism whose equations of motion have been derived.
-pub fn audit(mechanism: &Mechanism, derivation: &Derivation) -> Audit {
-    let Some(mut bench) = Bench::new(mechanism, derivation) else {
-        return Audit::default();
-    };
-    let mut told = Audit::default();
-    let contacts = contact::findings(&mut bench.algebra, mechanism, &derivation.symbols);
-    let is_told = |item| contacts.iter().any(|finding| finding.item == item);
-    told.notes = integrability::findings(&mut bench);
-    told.notes.retain(|note| !is_told(note.item));
-    told.warnings = contacts;
-    for question in [
-        determination::audit,
-        idle::audit,
-        work::audit,
-        passivity::audit,
-        reaction::audit,
-    ] {
-        question(&mut bench, &mut told);
-    }
-    told
-}
-
-/// What may be the reason why a mechanism has no equations of motion: contacts that take a velocity
-/// more than their author thought.
-pub fn reasons(mechanism: &Mechanism, refused: &[Finding]) -> Vec<Finding> {
-    let counted = [
-        Code::MissingPseudoVelocities,
-        Code::SingularPseudoVelocities,
-        Code::DependentConstraints,
-        Code::RedundantConstraint,
-    ];
-    if !refused
-        .iter()
-        .any(|finding| counted.contains(&finding.code))
-    {
-        return Vec::new();
-    }
-    let mut graph = Graph::new();
-    let symbols = Symbols::new(&mut graph, mechanism);
-    let mut algebra = Algebra::new(graph, &symbols, seed(mechanism));
-    contact::findings(&mut algebra, mechanism, &symbols)
+    pub(super) outputs: Vec<Expr>,
 }
 
 impl<'a> Bench<'a> {
     /// `None` where an expression divides by zero, which the derivation tells.
-    fn new(mechanism: &'a Mechanism, derivation: &'a Derivation) -> Option<Self> {
+    pub(super) fn new(mechanism: &'a Mechanism, derivation: &'a Derivation) -> Option<Self> {
         let symbols = &derivation.symbols;
         let graph = derivation.algebra.graph.clone();
         let mut algebra = Algebra::new(graph, symbols, seed(mechanism));
@@ -122,18 +64,18 @@ impl<'a> Bench<'a> {
     }
 
     /// An expression as people read it, where they would.
-    fn readable(&self, expr: Expr) -> Option<String> {
+    pub(super) fn readable(&self, expr: Expr) -> Option<String> {
         let graph = &self.algebra.graph;
         (graph.operations(&[expr]) <= MOST_OPERATIONS).then(|| shown(graph, expr))
     }
 
     /// An expression as people read it.
-    fn shown(&self, expr: Expr) -> String {
+    pub(super) fn shown(&self, expr: Expr) -> String {
         shown(&self.algebra.graph, expr)
     }
 
     /// Everything that the motion and its results consist of, without reactions but with friction.
-    fn equations(&self) -> Vec<Expr> {
+    pub(super) fn equations(&self) -> Vec<Expr> {
         let Derivation {
             contacts,
             coordinate_rates,
@@ -153,7 +95,7 @@ impl<'a> Bench<'a> {
     }
 
     /// Whether none of the expressions changes with a symbol.
-    fn are_independent_of(&mut self, exprs: &[Expr], symbol: Expr) -> bool {
+    pub(super) fn are_independent_of(&mut self, exprs: &[Expr], symbol: Expr) -> bool {
         let Algebra { graph, test, .. } = &mut self.algebra;
         graph.as_symbol(symbol).is_some_and(|symbol| {
             let mut exprs = exprs.iter();
@@ -163,7 +105,7 @@ impl<'a> Bench<'a> {
 }
 
 /// Velocities with symbols for q̇.
-fn unconstrained(
+pub(super) fn unconstrained(
     algebra: &mut Algebra,
     mechanism: &Mechanism,
     symbols: &Symbols,
@@ -173,7 +115,7 @@ fn unconstrained(
 }
 
 /// An expression that only its zeros matter of.
-fn zero_or(algebra: &mut Algebra, expr: Expr) -> Expr {
+pub(super) fn zero_or(algebra: &mut Algebra, expr: Expr) -> Expr {
     if algebra.test.is_zero(&algebra.graph, expr) {
         Graph::ZERO
     } else {
@@ -181,13 +123,13 @@ fn zero_or(algebra: &mut Algebra, expr: Expr) -> Expr {
     }
 }
 
-fn shown(graph: &Graph, expr: Expr) -> String {
+pub(super) fn shown(graph: &Graph, expr: Expr) -> String {
     let mut setter = Setter::new(Spelled).with_definitions_inline();
     text(&setter.set(graph, expr).math)
 }
 
 /// Names in a sentence: `` `a`, `b` ``.
-fn listed<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
+pub(super) fn listed<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
     let names: Vec<String> = names.into_iter().map(|name| format!("`{name}`")).collect();
     names.join(", ")
 }

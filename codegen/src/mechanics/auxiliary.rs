@@ -1,7 +1,7 @@
 //! Forces behind rows that geometry or other rows already satisfy.
 //!
 //! Such a row `r = Σ factor · other` tells nothing of the motion, but its force is as real as the
-//! others. It works in motions that the coordinates do not have: all that hangs together is carried
+//! others. It works in auxiliary motions, which the coordinates do not have: all that hangs together is carried
 //! along the direction of the force. There the row does not follow any more, `r - Σ factor · other =
 //! D c` for the rates c of these motions. Where D has an inverse, each row can be violated alone, and
 //! its force is told. Where it has none, the forces outnumber the equations of Newton: the mechanism
@@ -9,20 +9,20 @@
 
 use appell_spec::Code;
 use appell_spec::expr::Quantity;
-use appell_spec::mechanism::{CoordinateId, Mechanism, ORIGIN, PointId};
+use appell_spec::mechanism::{ConstraintId, CoordinateId, Mechanism, ORIGIN, PointId};
 
 use super::algebra::Algebra;
-use super::constraints::{Reaction, Row};
 use super::finding::{Finding, Item};
 use super::frames::{FrameVector, Frames};
 use super::kinematics::{Carried, root_of};
 use super::rank::{LinearRow, Standing, standings};
+use super::row::{Reaction, Row};
 use crate::symbolic::vector::Vec3;
 use crate::symbolic::{Expr, Graph, Intervals};
 
-/// A motion that the coordinates do not have.
+/// A motion that the coordinates do not have, with an auxiliary speed of its own.
 #[derive(Debug, Clone)]
-pub struct Imagined {
+pub struct AuxiliaryMotion {
     /// The points next to the origin from which hangs what is carried along.
     roots: Vec<PointId>,
     /// Its velocity for a unit of its rate.
@@ -33,7 +33,7 @@ pub struct Imagined {
     pub rate: Vec<Expr>,
 }
 
-impl Imagined {
+impl AuxiliaryMotion {
     /// What moves at a rate.
     pub fn at(&self, graph: &mut Graph, rate: Expr) -> Vec<Carried> {
         let v = FrameVector {
@@ -67,9 +67,9 @@ struct Indeterminate {
 
 /// What holds the rows that follow from others.
 #[derive(Debug, Clone, Default)]
-pub struct Support {
+pub struct AuxiliaryMotions {
     /// Motions that violate them.
-    pub motions: Vec<Imagined>,
+    pub motions: Vec<AuxiliaryMotion>,
     indeterminate: Vec<Indeterminate>,
     /// Places of position constraints that a contact keeps: the force is the contact's.
     silent: Vec<usize>,
@@ -81,7 +81,7 @@ struct Equation {
     violations: Vec<Expr>,
 }
 
-impl Support {
+impl AuxiliaryMotions {
     /// Looks for a motion behind each row that follows from others.
     pub fn new(
         algebra: &mut Algebra,
@@ -90,11 +90,11 @@ impl Support {
         intervals: &mut Intervals,
         rows: &[Row],
     ) -> Self {
-        let mut support = Self::default();
+        let mut auxiliary = Self::default();
         let following: Vec<usize> = (0..rows.len()).filter(|&r| !rows[r].is_active()).collect();
         for &row in &following {
             let Some(root) = rows[row].root else { continue };
-            let mut motion = Imagined {
+            let mut motion = AuxiliaryMotion {
                 roots: tied_to(mechanism, root),
                 along: rows[row].along,
                 gains: Vec::new(),
@@ -104,17 +104,17 @@ impl Support {
                 let gain = motion.gain(algebra, frames, row);
                 motion.gains.push(gain);
             }
-            support.motions.push(motion);
+            auxiliary.motions.push(motion);
         }
         let mut solved: Vec<(usize, Equation)> = Vec::new();
         for &row in &following {
             let factors = factors(algebra, rows, row);
             let kept = |other: usize| factors[other] != Graph::ZERO && !rows[other].of_position;
             if rows[row].of_position && (0..rows.len()).any(kept) {
-                support.silent.push(rows[row].reaction.place);
+                auxiliary.silent.push(rows[row].reaction.place);
                 continue;
             }
-            let mut equation = support.equation(algebra, row, factors);
+            let mut equation = auxiliary.equation(algebra, row, factors);
             for (motion, known) in &solved {
                 equation.less(algebra, known, *motion);
             }
@@ -126,21 +126,21 @@ impl Support {
                     }
                     solved.push((motion, equation));
                 }
-                None => support.indeterminate.push(Indeterminate {
+                None => auxiliary.indeterminate.push(Indeterminate {
                     row,
                     places: loaded_places(algebra, rows, &equation.violations),
                 }),
             }
         }
         solved.sort_by_key(|(motion, _)| *motion);
-        support.motions = solved
+        auxiliary.motions = solved
             .into_iter()
-            .map(|(motion, equation)| Imagined {
+            .map(|(motion, equation)| AuxiliaryMotion {
                 rate: equation.violations,
-                ..support.motions[motion].clone()
+                ..auxiliary.motions[motion].clone()
             })
             .collect();
-        support
+        auxiliary
     }
 
     /// Whether the reaction at a place is determined.
@@ -169,7 +169,7 @@ impl Support {
         groups.retain(|group| group.places.len() > 1);
         let finding = |group: Indeterminate| {
             let shares = |row: &&Row| group.places.contains(&row.reaction.place);
-            let mut sharing: Vec<usize> = rows
+            let mut sharing: Vec<ConstraintId> = rows
                 .iter()
                 .filter(shares)
                 .map(|row| row.constraint)
@@ -200,7 +200,7 @@ impl Support {
         let graph = &mut algebra.graph;
         let mut violations: Vec<Expr> = factors.into_iter().map(|f| graph.neg(f)).collect();
         violations[row] = Graph::ONE;
-        let gain = |motion: &Imagined| {
+        let gain = |motion: &AuxiliaryMotion| {
             let parts = motion.gains.iter().zip(&violations);
             let parts: Vec<Expr> = parts.map(|(&gain, &v)| graph.mul(gain, v)).collect();
             graph.sum(&parts)
@@ -293,7 +293,10 @@ fn loaded_places(algebra: &mut Algebra, rows: &[Row], shares: &[Expr]) -> Vec<us
 /// The points next to the origin that hang together with `root`: coordinates that move both say that
 /// something joins them, which no constraint tells.
 fn tied_to(mechanism: &Mechanism, root: PointId) -> Vec<PointId> {
-    let all = (0..mechanism.points.len()).filter(|&p| mechanism.points[p].from == Some(ORIGIN));
+    let all = mechanism
+        .points
+        .ids()
+        .filter(|&p| mechanism.points[p].from == Some(ORIGIN));
     let mut apart: Vec<(PointId, Vec<CoordinateId>)> =
         all.map(|root| (root, moving(mechanism, root))).collect();
     let mut tied = vec![root];
@@ -319,7 +322,7 @@ fn moving(mechanism: &Mechanism, root: PointId) -> Vec<CoordinateId> {
             coordinates.push(q);
         }
     };
-    let points = mechanism.points.iter().enumerate();
+    let points = mechanism.points.entries();
     for (_, point) in points.filter(|(p, _)| *p != ORIGIN && root_of(mechanism, *p) == root) {
         point
             .at

@@ -10,6 +10,7 @@
 //! Equality is decided by the [identity test](crate::symbolic::identity). Where that cannot tell,
 //! because a theorem about a function is not known to it, the values at random points decide.
 
+mod comparison;
 mod inertial;
 mod kane;
 mod lagrange;
@@ -19,17 +20,19 @@ mod points;
 use appell_spec::mechanism::{Constraint, ConstraintKind, Mechanism};
 
 use crate::mechanics::algebra::Algebra;
-use crate::mechanics::constraints;
-use crate::mechanics::expressions::DivisionByZero;
-use crate::mechanics::finding::{Item, Outcome};
-use crate::mechanics::kinematics::{division_by_zero, root_of};
+use crate::mechanics::finding::Outcome;
+use crate::mechanics::kinematics::root_of;
+use crate::mechanics::row;
 use crate::mechanics::{Derivation, reactions, seed};
 use crate::symbolic::vector::Vec3;
 use crate::symbolic::{Expr, Graph, IdentityTest};
 
-use inertial::{Inertial, Lowered, Row};
+use comparison::Pair;
+use inertial::{Inertial, Row, room};
 use lagrange::Lagrange;
 use points::Points;
+
+pub use comparison::{Against, Agreement, Comparison, Verdict};
 
 /// A proof that may err with a greater probability is none.
 const GREATEST_ERROR: f64 = 1e-9;
@@ -41,111 +44,12 @@ const BY_KANE: [&str; 4] = ["mass matrix", "bias", "forces", "accelerations"];
 /// What Lagrange's equations tell.
 const BY_LAGRANGE: [&str; 2] = ["accelerations", "constraint forces"];
 
-/// What the derived equations are held against.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Against {
-    /// The definitions of the pseudo-velocities and the constraints.
-    Spec,
-    /// Kane's equations.
-    Kane,
-    /// Lagrange's equations with multipliers.
-    Lagrange,
-    /// Newton's law for the whole mechanism.
-    Newton,
-}
-
-impl Against {
-    /// Its name for people.
-    pub const fn word(self) -> &'static str {
-        match self {
-            Self::Spec => "spec",
-            Self::Kane => "Kane",
-            Self::Lagrange => "Lagrange",
-            Self::Newton => "Newton",
-        }
-    }
-}
-
-/// How two spellings of one quantity compare.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Agreement {
-    /// The same functions, by the identity test.
-    Identical,
-    /// The same values at random points.
-    AtPoints {
-        /// At how many.
-        points: usize,
-        /// Largest deviation, relative to the largest entry there.
-        deviation: f64,
-    },
-    /// Different values.
-    Different {
-        /// The entry that is off most.
-        entry: String,
-        /// Its values by the derivation and by the other formulation.
-        values: [f64; 2],
-        /// Their deviation, relative to the largest entry there.
-        deviation: f64,
-    },
-    /// No values: at no random point both are finite.
-    Undefined,
-    /// Time was up before.
-    NotReached,
-}
-
-/// A quantity of the derivation against another formulation.
-#[derive(Debug, Clone)]
-pub struct Comparison {
-    /// What it is held against.
-    pub against: Against,
-    /// What is compared.
-    pub quantity: &'static str,
-    /// With what result.
-    pub agreement: Agreement,
-}
-
-impl Comparison {
-    /// Whether the two are different functions.
-    pub fn differs(&self) -> bool {
-        matches!(self.agreement, Agreement::Different { .. })
-    }
-}
-
-/// The result of all comparisons.
-#[derive(Debug, Clone)]
-pub struct Verdict {
-    /// One per quantity and formulation.
-    pub comparisons: Vec<Comparison>,
-    /// Bound on the probability that any quantity was taken for identical though it is not.
-    pub error_bound: f64,
-}
-
-impl Verdict {
-    /// Whether all quantities were compared and agree.
-    pub fn agrees(&self) -> bool {
-        let agree = |c: &Comparison| {
-            matches!(
-                c.agreement,
-                Agreement::Identical | Agreement::AtPoints { .. }
-            )
-        };
-        self.comparisons.iter().all(agree)
-    }
-}
-
 /// A quantity as the derivation has it, and as another formulation has it.
 struct Claim {
     against: Against,
     quantity: &'static str,
     /// None where time was up before they were derived.
     pairs: Option<Vec<Pair>>,
-}
-
-/// Two expressions that should be the same function.
-struct Pair {
-    entry: String,
-    derived: Expr,
-    other: Expr,
 }
 
 /// Compares a derivation with the other formulations of the same mechanism. Fails where their
@@ -350,7 +254,7 @@ fn rests_on_contacts(derivation: &Derivation, mechanism: &Mechanism) -> bool {
     let constraints = &derivation.constraints;
     let mut rows = constraints.rows.iter();
     // A position that a contact keeps has no force of its own.
-    let told = |row: &constraints::Row| match constraints.reported(row) {
+    let told = |row: &row::Row| match constraints.reported(row) {
         Some(_) => row.root.is_some(),
         None => row.of_position && row.redundant,
     };
@@ -459,11 +363,4 @@ fn named(names: &[&str], derived: &[Expr], other: &[Expr]) -> Vec<Pair> {
         other,
     };
     names.iter().zip(both).map(pair).collect()
-}
-
-/// Calls a step that may divide by zero and may make many expressions.
-fn room<T>(algebra: &mut Algebra, step: impl FnOnce(&mut Algebra) -> Lowered<T>) -> Outcome<T> {
-    let result = step(algebra).map_err(|DivisionByZero| vec![division_by_zero(Item::Mechanism)])?;
-    algebra.check_size()?;
-    Ok(result)
 }

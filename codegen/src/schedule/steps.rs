@@ -1,77 +1,6 @@
-//! From expressions to a sequence of named operations; it knows no target language.
-//!
-//! The emitted Rust, the in-process compiler and the interpreter all follow a [`Schedule`] to the
-//! letter: same operations, same order, so they agree to the last bits of the elementary functions.
+//! A function as a sequence of named operations.
 
-mod bind;
-mod cancel;
-mod cost;
-mod dag;
-mod divide;
-mod dump;
-mod factor;
-mod gather;
-mod interpret;
-mod lower;
-mod meet;
-mod monomial;
-pub(crate) mod names;
-mod outline;
-pub(crate) mod pi;
-pub(crate) mod piece;
-mod rebuild;
-mod scale;
-mod search;
-mod share;
-mod signs;
-
-pub use cost::OperationCount;
-pub use interpret::{interpret, interpret_weighted};
-pub use pi::pi;
-
-use crate::program::{self, Program};
 use crate::symbolic::{Function, Rational, Relation};
-
-/// What schedules are made for.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Tuning {
-    /// A division takes as long as so many other operations. From about 5 on, independent
-    /// denominators share one division; that pays in vector registers.
-    pub division: usize,
-    /// Nodes that the search may pass over. Small functions try every plan within the default;
-    /// large ones only the two most promising plans.
-    pub effort: usize,
-}
-
-impl Default for Tuning {
-    fn default() -> Self {
-        Self {
-            division: 3,
-            effort: 400,
-        }
-    }
-}
-
-/// The operations of one function of a program, as few as are found.
-///
-/// # Panics
-///
-/// If an expression contains a symbol that is not an argument of the program, which the derivation
-/// must not let happen.
-pub fn schedule(program: &Program, function: &program::Function) -> Schedule {
-    schedule_tuned(program, function, Tuning::default())
-}
-
-/// [`schedule`] for other costs, or with more patience.
-///
-/// # Panics
-///
-/// As [`schedule`].
-pub fn schedule_tuned(program: &Program, function: &program::Function, tuning: Tuning) -> Schedule {
-    let derived = lower::lower(program, function);
-    let cheapest = search::cheapest(&derived, tuning);
-    bind::bind(program, function, &cheapest)
-}
 
 /// The operations of one function, in order.
 #[derive(Debug, Clone)]
@@ -201,11 +130,4 @@ pub struct ResultArray {
     pub name: String,
     /// Entries, row by row: constants, arguments or values (possibly negated).
     pub entries: Vec<Tree>,
-}
-
-impl Schedule {
-    /// The steps as text, one a line.
-    pub fn dump(&self, program: &Program) -> String {
-        dump::dump(self, &names::ArgumentNames::of(program))
-    }
 }

@@ -5,6 +5,7 @@
 mod adjoint;
 pub mod algebra;
 pub mod assemble;
+pub mod auxiliary;
 pub mod constraints;
 pub mod contact_rows;
 pub mod contacts;
@@ -25,10 +26,11 @@ pub mod linear_bound;
 pub mod loads;
 pub mod motion;
 pub mod positions;
+pub mod ranges;
 pub mod rank;
 pub mod reactions;
 pub mod redundancy;
-pub mod support;
+pub mod row;
 pub mod switches;
 pub mod symbols;
 pub mod systems;
@@ -37,7 +39,7 @@ pub mod time;
 use appell_spec::Code;
 use appell_spec::mechanism::Mechanism;
 
-use crate::symbolic::{Expr, Graph, Intervals, SymbolId};
+use crate::symbolic::{Expr, Graph};
 use algebra::Algebra;
 use constraints::Constraints;
 use contacts::Contact;
@@ -50,7 +52,10 @@ use kinematics::{Effort, Kinematics};
 use loads::AppliedLoad;
 use motion::Motion;
 use positions::Positions;
-use symbols::{Symbols, ids};
+use symbols::Symbols;
+
+pub use algebra::seed;
+pub use ranges::{declared_ranges, parameter_ranges};
 
 /// The derivation of one mechanism, every stage kept for reading.
 pub struct Derivation {
@@ -247,55 +252,4 @@ fn initially_singular(
         graph, mechanism, rates, motion, &state,
     ));
     findings
-}
-
-/// Ranges inside which a pivot must not vanish.
-pub(crate) fn declared_ranges(
-    graph: &Graph,
-    mechanism: &Mechanism,
-    symbols: &Symbols,
-) -> Intervals {
-    let coordinates = ids(graph, &symbols.coordinates)
-        .into_iter()
-        .zip(&mechanism.coordinates)
-        .filter_map(|(symbol, q)| q.range.map(|[low, high]| (symbol, low, high)));
-    let parameters = parameter_ranges(graph, mechanism, symbols);
-    Intervals::new(graph, coordinates.chain(parameters).collect())
-}
-
-/// A parameter whose limits admit both signs may be zero; any other keeps the sign of its value: a
-/// wheel of radius zero is another mechanism.
-pub fn parameter_ranges(
-    graph: &Graph,
-    mechanism: &Mechanism,
-    symbols: &Symbols,
-) -> Vec<(SymbolId, f64, f64)> {
-    ids(graph, &symbols.parameters)
-        .into_iter()
-        .zip(&mechanism.parameters)
-        .filter_map(|(symbol, p)| {
-            let low = p.at_least.unwrap_or(f64::NEG_INFINITY);
-            let high = p.at_most.unwrap_or(f64::INFINITY);
-            let limited = p.at_least.is_some() || p.at_most.is_some();
-            if limited && low < 0.0 && high > 0.0 {
-                return Some((symbol, low, high));
-            }
-            match p.value {
-                v if v > 0.0 => Some((symbol, low.max(f64::MIN_POSITIVE), high)),
-                v if v < 0.0 => Some((symbol, low, high.min(-f64::MIN_POSITIVE))),
-                _ => None,
-            }
-        })
-        .collect()
-}
-
-/// The identity test draws its points from the spec, so that every run draws the same.
-pub fn seed(mechanism: &Mechanism) -> u64 {
-    // FNV-1a: short and fixed for all time. A spec made to deceive the test deceives its author only.
-    mechanism
-        .name
-        .bytes()
-        .fold(0xcbf2_9ce4_8422_2325, |hash, byte| {
-            (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3)
-        })
 }

@@ -1,0 +1,71 @@
+//! What is legal in a mechanism, and yet hardly meant: seen in its equations, told in terms of
+//! physics.
+//!
+//! The derivation refuses what has no equations of motion. The audit reads the equations of what it
+//! accepts; each file is one question about them. Whatever cannot be proven or shown is not told.
+
+mod bench;
+mod contact;
+mod determination;
+mod idle;
+mod integrability;
+mod passivity;
+mod reaction;
+mod samples;
+mod work;
+
+use appell_spec::Code;
+use appell_spec::mechanism::Mechanism;
+
+use crate::mechanics::algebra::Algebra;
+use crate::mechanics::finding::Finding;
+use crate::mechanics::symbols::Symbols;
+use crate::mechanics::{Derivation, seed};
+use crate::symbolic::Graph;
+use bench::Bench;
+
+pub use bench::Audit;
+
+/// Audits a mechanism whose equations of motion have been derived.
+pub fn audit(mechanism: &Mechanism, derivation: &Derivation) -> Audit {
+    let Some(mut bench) = Bench::new(mechanism, derivation) else {
+        return Audit::default();
+    };
+    let mut told = Audit::default();
+    let contacts = contact::findings(&mut bench.algebra, mechanism, &derivation.symbols);
+    let is_told = |item| contacts.iter().any(|finding| finding.item == item);
+    told.notes = integrability::findings(&mut bench);
+    told.notes.retain(|note| !is_told(note.item));
+    told.warnings = contacts;
+    for question in [
+        determination::audit,
+        idle::audit,
+        work::audit,
+        passivity::audit,
+        reaction::audit,
+    ] {
+        question(&mut bench, &mut told);
+    }
+    told
+}
+
+/// What may be the reason why a mechanism has no equations of motion: contacts that take a velocity
+/// more than their author thought.
+pub fn reasons(mechanism: &Mechanism, refused: &[Finding]) -> Vec<Finding> {
+    let counted = [
+        Code::MissingPseudoVelocities,
+        Code::SingularPseudoVelocities,
+        Code::DependentConstraints,
+        Code::RedundantConstraint,
+    ];
+    if !refused
+        .iter()
+        .any(|finding| counted.contains(&finding.code))
+    {
+        return Vec::new();
+    }
+    let mut graph = Graph::new();
+    let symbols = Symbols::new(&mut graph, mechanism);
+    let mut algebra = Algebra::new(graph, &symbols, seed(mechanism));
+    contact::findings(&mut algebra, mechanism, &symbols)
+}

@@ -1,0 +1,102 @@
+//! Quantities of the derivation against other formulations.
+
+use crate::symbolic::Expr;
+
+/// What the derived equations are held against.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Against {
+    /// The definitions of the pseudo-velocities and the constraints.
+    Spec,
+    /// Kane's equations.
+    Kane,
+    /// Lagrange's equations with multipliers.
+    Lagrange,
+    /// Newton's law for the whole mechanism.
+    Newton,
+}
+
+impl Against {
+    /// Its name for people.
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::Spec => "spec",
+            Self::Kane => "Kane",
+            Self::Lagrange => "Lagrange",
+            Self::Newton => "Newton",
+        }
+    }
+}
+
+/// How two spellings of one quantity compare.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Agreement {
+    /// The same functions, by the identity test.
+    Identical,
+    /// The same values at random points.
+    AtPoints {
+        /// At how many.
+        points: usize,
+        /// Largest deviation, relative to the largest entry there.
+        deviation: f64,
+    },
+    /// Different values.
+    Different {
+        /// The entry that is off most.
+        entry: String,
+        /// Its values by the derivation and by the other formulation.
+        values: [f64; 2],
+        /// Their deviation, relative to the largest entry there.
+        deviation: f64,
+    },
+    /// No values: at no random point both are finite.
+    Undefined,
+    /// Time was up before.
+    NotReached,
+}
+
+/// A quantity of the derivation against another formulation.
+#[derive(Debug, Clone)]
+pub struct Comparison {
+    /// What it is held against.
+    pub against: Against,
+    /// What is compared.
+    pub quantity: &'static str,
+    /// With what result.
+    pub agreement: Agreement,
+}
+
+impl Comparison {
+    /// Whether the two are different functions.
+    pub fn differs(&self) -> bool {
+        matches!(self.agreement, Agreement::Different { .. })
+    }
+}
+
+/// The result of all comparisons.
+#[derive(Debug, Clone)]
+pub struct Verdict {
+    /// One per quantity and formulation.
+    pub comparisons: Vec<Comparison>,
+    /// Bound on the probability that any quantity was taken for identical though it is not.
+    pub error_bound: f64,
+}
+
+impl Verdict {
+    /// Whether all quantities were compared and agree.
+    pub fn agrees(&self) -> bool {
+        let agree = |c: &Comparison| {
+            matches!(
+                c.agreement,
+                Agreement::Identical | Agreement::AtPoints { .. }
+            )
+        };
+        self.comparisons.iter().all(agree)
+    }
+}
+
+/// Two expressions that should be the same function.
+pub(super) struct Pair {
+    pub(super) entry: String,
+    pub(super) derived: Expr,
+    pub(super) other: Expr,
+}

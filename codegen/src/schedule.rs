@@ -1,0 +1,58 @@
+//! From expressions to a sequence of named operations; it knows no target language.
+//!
+//! The emitted Rust, the in-process compiler and the interpreter all follow a [`Schedule`] to the
+//! letter: same operations, same order, so they agree to the last bits of the elementary functions.
+
+mod bind;
+mod cancel;
+mod cost;
+mod dag;
+mod divide;
+mod dump;
+mod factor;
+mod gather;
+mod interpret;
+mod lower;
+mod meet;
+mod monomial;
+pub(crate) mod names;
+mod outline;
+pub(crate) mod pi;
+pub(crate) mod piece;
+mod preference;
+mod rebuild;
+mod scale;
+mod search;
+mod share;
+mod signs;
+mod steps;
+mod tuning;
+
+pub use cost::OperationCount;
+pub use interpret::{interpret, interpret_weighted};
+pub use pi::pi;
+pub use steps::{Argument, Operation, ResultArray, Schedule, Step, Tree, Value};
+pub use tuning::Tuning;
+
+use crate::program::{self, Program};
+
+/// The operations of one function of a program, as few as are found.
+///
+/// # Panics
+///
+/// If an expression contains a symbol that is not an argument of the program, which the derivation
+/// must not let happen.
+pub fn schedule(program: &Program, function: &program::Function) -> Schedule {
+    schedule_tuned(program, function, Tuning::default())
+}
+
+/// [`schedule`] for other costs, or with more patience.
+///
+/// # Panics
+///
+/// As [`schedule`].
+pub fn schedule_tuned(program: &Program, function: &program::Function, tuning: Tuning) -> Schedule {
+    let derived = lower::lower(program, function);
+    let cheapest = search::cheapest(&derived, tuning);
+    bind::bind(program, function, &cheapest)
+}

@@ -1,0 +1,84 @@
+//! What the reading of every part shares: the text, its findings, and words for values.
+
+use toml::de::{DeTable, DeValue};
+
+use crate::diagnostic::{Code, Diagnostic};
+
+/// Most diagnostics collected; more would help nobody.
+const MAX_FINDINGS: usize = 1000;
+
+/// A key of a TOML table, with its place.
+pub(super) type TomlKey<'a> = toml::Spanned<std::borrow::Cow<'a, str>>;
+/// A value of a TOML table, with its place.
+pub(super) type TomlValue<'a> = toml::Spanned<DeValue<'a>>;
+
+/// What is read, and what is told of it.
+pub(super) struct Reader<'a> {
+    pub(super) text: &'a str,
+    pub(super) findings: Vec<Diagnostic>,
+    /// The TOML itself is broken: whatever is missing may only be unread.
+    pub(super) broken: bool,
+    /// Some definition was refused: its name may be used without being known.
+    pub(super) incomplete: bool,
+}
+
+impl Reader<'_> {
+    pub(super) fn tell(&mut self, diagnostic: Diagnostic) {
+        if self.findings.len() < MAX_FINDINGS {
+            self.findings.push(diagnostic);
+        }
+    }
+
+    pub(super) fn wrong_type(&mut self, value: &TomlValue<'_>, wanted: &str) {
+        let found = words(value.get_ref());
+        self.tell(
+            Diagnostic::error(Code::WrongType, format!("expected {wanted}, found {found}"))
+                .at(value.span(), found),
+        );
+    }
+}
+
+/// The entries of a table as they stand in the text; the table itself sorts them by name.
+pub(super) fn in_text_order<'t, 'a>(
+    table: &'t DeTable<'a>,
+) -> Vec<(&'t TomlKey<'a>, &'t TomlValue<'a>)> {
+    let mut entries: Vec<_> = table.iter().collect();
+    entries.sort_by_key(|(key, _)| key.span().start);
+    entries
+}
+
+/// A value for people.
+fn words(value: &DeValue<'_>) -> &'static str {
+    match value {
+        DeValue::String(_) => "a string",
+        DeValue::Integer(_) | DeValue::Float(_) => "a number",
+        DeValue::Boolean(_) => "a truth value",
+        DeValue::Datetime(_) => "a date or time",
+        DeValue::Array(_) => "a list",
+        DeValue::Table(_) => "a table",
+    }
+}
+
+/// Control characters, and marks that hide or reorder text.
+pub(super) fn is_forbidden(c: char) -> bool {
+    if matches!(c, ' '..='~' | '\n') {
+        // Almost all of every file.
+        return false;
+    }
+    (c.is_control() && !matches!(c, '\r' | '\t'))
+        || matches!(c,
+            '\u{ad}' | '\u{61c}' | '\u{180e}' | '\u{200b}'..='\u{200f}' | '\u{2028}'..='\u{202e}'
+            | '\u{2060}'..='\u{206f}' | '\u{feff}' | '\u{fff9}'..='\u{fffb}' | '\u{e0000}'..='\u{e007f}')
+}
+
+/// A sentence as the end of another one.
+pub(super) fn phrase(sentence: &str) -> String {
+    let mut letters = sentence.chars();
+    let first = letters.next().map(|c| c.to_ascii_lowercase());
+    first
+        .into_iter()
+        .chain(letters)
+        .collect::<String>()
+        .trim_end_matches('.')
+        .to_owned()
+}

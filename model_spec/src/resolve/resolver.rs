@@ -1,0 +1,107 @@
+//! What the resolution of every section shares.
+
+use std::collections::BTreeMap;
+
+use crate::ast::{ExprAst, ItemAst, SpecAst};
+use crate::diagnostic::Diagnostic;
+use crate::expr::{Expr, Span};
+use crate::mechanism::Interpolation;
+use crate::parse::zero;
+
+use super::dimensions::Dim;
+use super::meaning::{Named, Used};
+use super::place::Place;
+
+/// Most diagnostics collected; more would help nobody.
+const MAX_FINDINGS: usize = 1000;
+
+/// A spec on its way to a mechanism, and what is told of it.
+pub(super) struct Resolver<'a> {
+    pub(super) ast: &'a SpecAst,
+    pub(super) findings: Vec<Diagnostic>,
+    /// Where each line of the text starts.
+    pub(super) line_starts: Vec<usize>,
+    /// What the names in expressions mean.
+    pub(super) names: BTreeMap<&'a str, Named>,
+    /// Names of frames, points and bodies, each with its index.
+    pub(super) frames: BTreeMap<&'a str, usize>,
+    pub(super) points: BTreeMap<&'a str, usize>,
+    pub(super) bodies: BTreeMap<&'a str, usize>,
+    /// Unknown names that have been told, each with its place in the findings.
+    pub(super) told: BTreeMap<(&'static str, String), usize>,
+    /// How smooth each signal is, and its name.
+    pub(super) interpolation: Vec<(Interpolation, &'a str)>,
+    /// What occurs in some expression.
+    pub(super) used: Used,
+}
+
+impl<'a> Resolver<'a> {
+    pub(super) fn new(ast: &'a SpecAst, text: &str) -> Self {
+        let breaks = text.bytes().enumerate().filter(|(_, b)| *b == b'\n');
+        Self {
+            ast,
+            findings: Vec::new(),
+            line_starts: std::iter::once(0)
+                .chain(breaks.map(|(i, _)| i + 1))
+                .collect(),
+            names: BTreeMap::new(),
+            frames: BTreeMap::from([("ground", 0)]),
+            points: BTreeMap::from([("O", 0)]),
+            bodies: BTreeMap::new(),
+            told: BTreeMap::new(),
+            interpolation: Vec::new(),
+            used: Used::default(),
+        }
+    }
+
+    pub(super) fn tell(&mut self, diagnostic: Diagnostic) {
+        if self.findings.len() < MAX_FINDINGS {
+            self.findings.push(diagnostic);
+        }
+    }
+
+    /// Line of a place, from 1.
+    pub(super) fn line(&self, span: &Span) -> usize {
+        self.line_starts
+            .partition_point(|start| *start <= span.start)
+    }
+
+    /// The expression under a key, of the dimension that its place asks for.
+    pub(super) fn expression_of(
+        &mut self,
+        item: &ItemAst,
+        key: &str,
+        place: &Place,
+        dimension: Dim,
+    ) -> Expr {
+        let missing = || zero(item.name.span.clone());
+        let ast = item.expression(key).cloned().unwrap_or_else(missing);
+        self.expression(&ast, place, dimension)
+    }
+
+    pub(super) fn expression(&mut self, ast: &ExprAst, place: &Place, dimension: Dim) -> Expr {
+        let typed = self.elaborate(ast, place);
+        self.expect(&typed, dimension, place);
+        typed.expr
+    }
+
+    /// The components under a key, all of one dimension.
+    pub(super) fn components_of(
+        &mut self,
+        item: &ItemAst,
+        key: &str,
+        place: &Place,
+        dimension: Dim,
+    ) -> [Expr; 3] {
+        let missing = || std::array::from_fn(|_| zero(item.name.span.clone()));
+        let components = item.components(key).cloned().unwrap_or_else(missing);
+        components.map(|c| self.expression(&c, place, dimension))
+    }
+
+    /// The item's sentence.
+    pub(super) fn about(item: &ItemAst) -> String {
+        item.text("about")
+            .map(|t| t.value.to_owned())
+            .unwrap_or_default()
+    }
+}

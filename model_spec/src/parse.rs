@@ -18,7 +18,7 @@ use crate::suggest::{self, shown};
 pub(crate) use expression::zero;
 pub use values::unit_diagnostic;
 
-/// Most diagnostics collected; more would help nobody.
+/// Maximum number of diagnostics collected.
 const MAX_FINDINGS: usize = 1000;
 
 /// A key of a TOML table, with its place.
@@ -26,7 +26,7 @@ type TomlKey<'a> = toml::Spanned<std::borrow::Cow<'a, str>>;
 /// A value of a TOML table, with its place.
 type TomlValue<'a> = toml::Spanned<DeValue<'a>>;
 
-/// Reads a spec; what could not be read is left out of the tree and told in the diagnostics.
+/// Reads a spec; what could not be read is left out of the tree and reported in the diagnostics.
 pub fn parse(text: &str) -> (SpecAst, Vec<Diagnostic>) {
     let mut reader = Reader {
         text,
@@ -102,7 +102,7 @@ impl Reader<'_> {
         }
     }
 
-    /// Tells what is wrong with the TOML, once a line; returns the lines.
+    /// Reports syntax errors of the TOML, one per line; returns the lines.
     fn syntax_errors(&mut self, errors: &[toml::de::Error]) -> Vec<Span> {
         let mut lines: Vec<Span> = Vec::new();
         for error in errors {
@@ -128,7 +128,7 @@ impl Reader<'_> {
         lines
     }
 
-    /// What follows from broken TOML on the same line is not worth telling.
+    /// Further errors on a line with broken TOML are only consequences.
     fn forget_findings_on(&mut self, lines: &[Span]) {
         if lines.is_empty() {
             return;
@@ -231,7 +231,7 @@ fn in_text_order<'t, 'a>(table: &'t DeTable<'a>) -> Vec<(&'t TomlKey<'a>, &'t To
     entries
 }
 
-/// A value for people.
+/// A value as described in messages.
 fn words(value: &DeValue<'_>) -> &'static str {
     match value {
         DeValue::String(_) => "a string",

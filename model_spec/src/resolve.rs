@@ -29,10 +29,10 @@ use dimensions::Dim;
 use names::{Named, Used};
 use place::Place;
 
-/// Most diagnostics collected; more would help nobody.
+/// Maximum number of diagnostics collected.
 const MAX_FINDINGS: usize = 1000;
 
-/// Checks a spec. The mechanism holds placeholders wherever a diagnostic tells of an error.
+/// Checks a spec. The mechanism holds placeholders wherever a diagnostic reports an error.
 pub fn resolve(ast: &SpecAst, file: &str, text: &str) -> (Mechanism, Vec<Diagnostic>) {
     let mut resolver = Resolver::new(ast, text);
     let (name, title, source) = resolver.heading();
@@ -86,7 +86,7 @@ struct Resolver<'a> {
     frames: BTreeMap<&'a str, usize>,
     points: BTreeMap<&'a str, usize>,
     bodies: BTreeMap<&'a str, usize>,
-    /// Unknown names that have been told, each with its place in the findings.
+    /// Unknown names already reported, each with its place in the findings.
     told: BTreeMap<(&'static str, String), usize>,
     /// How smooth each signal is, and its name.
     interpolation: Vec<(Interpolation, &'a str)>,
@@ -152,13 +152,13 @@ impl<'a> Resolver<'a> {
                     "the longest step is not positive".to_owned(),
                 )
                 .at(step.span.clone(), "in seconds")
-                .help("leave it out where the equations are not fast"),
+                .help("omit it unless the equations are stiff"),
             );
         }
         seconds
     }
 
-    /// The expression under a key, of the dimension that its place asks for.
+    /// The expression under a key, of the dimension that its place requires.
     fn expression_of(&mut self, item: &ItemAst, key: &str, place: &Place, dimension: Dim) -> Expr {
         let missing = || zero(item.name.span.clone());
         let ast = item.expression(key).cloned().unwrap_or_else(missing);

@@ -48,7 +48,7 @@ impl Algebra {
             code: Code::TooLarge,
             message: format!("the equations need more than {MOST_EXPRESSIONS} expressions"),
             item: Item::Mechanism,
-            help: "turn frames against the ground instead of against each other, or split the mechanism"
+            help: "rotate frames from the ground instead of from each other, or split the mechanism"
                 .to_owned(),
         }])
     }

@@ -340,9 +340,9 @@ fn without_mass(mechanism: &Mechanism, speed: usize) -> Finding {
     let name = &mechanism.pseudo_velocities[speed].label.name;
     Finding {
         code: Code::SingularMassMatrix,
-        message: format!("`{name}` can change without moving any mass"),
+        message: format!("`{name}` moves no mass"),
         item: Item::PseudoVelocity(speed),
-        help: "give a mass or an inertia to what it moves, or constrain it".to_owned(),
+        help: "give mass or inertia to what it moves, or constrain it".to_owned(),
     }
 }
 

@@ -40,7 +40,7 @@ pub(super) fn parse(source: &Source<'_>) -> Result<ExprAst, Diagnostic> {
     }
 }
 
-/// An expression and its height; deep trees would overflow the stack of whoever walks them.
+/// An expression and its height; deep trees would overflow the stack of recursive passes.
 struct Tree {
     expr: ExprAst,
     height: usize,
@@ -127,7 +127,7 @@ impl<'a> Parser<'_, 'a> {
     fn too_deep(&self) -> Diagnostic {
         Diagnostic::error(
             Code::LimitExceeded,
-            format!("an expression nests at most {MAX_DEPTH} operations"),
+            format!("an expression may nest at most {MAX_DEPTH} operations"),
         )
         .at(self.source.whole.clone(), "")
     }
@@ -175,7 +175,7 @@ impl<'a> Parser<'_, 'a> {
                     ..inner
                 })
             }
-            Token::End => Err(self.error(first, "the expression ends too early")),
+            Token::End => Err(self.error(first, "unexpected end of the expression")),
             other => Err(self.error(
                 first,
                 format!("expected a number, a name or `(`, found {}", other.words()),
@@ -279,7 +279,7 @@ impl<'a> Parser<'_, 'a> {
         let right = self.expression(0)?;
         self.expect(',', "the comparison")?;
         let then = self.expression(0)?;
-        self.expect(',', "the value where the comparison holds")?;
+        self.expect(',', "the value if the comparison holds")?;
         let otherwise = self.expression(0)?;
         let close = self.expect(')', "the value elsewhere")?;
         let height = [&left, &right, &then, &otherwise]
@@ -334,7 +334,7 @@ fn operator(token: Token<'_>) -> Option<(BinaryOp, u8, u8)> {
     }
 }
 
-/// What a refused number is told; the caller adds the place.
+/// The message for an invalid number; the caller adds the place.
 pub(super) fn number_diagnostic(error: NumberError, text: &str) -> Diagnostic {
     // A hostile number may be a megabyte long.
     let short: String = text.chars().take(30).collect();

@@ -20,7 +20,7 @@ use super::source::Source;
 use super::{Reader, TomlValue, expression, is_forbidden};
 
 impl Reader<'_> {
-    /// Reads the value of a key; `None` where it could not be read, which has been told.
+    /// Reads the value of a key; `None` where it could not be read, already reported.
     pub(super) fn value(&mut self, key: &'static Key, value: &TomlValue<'_>) -> Option<ValueAst> {
         match &key.form {
             Form::Text => self.sentence(value).map(ValueAst::Text),
@@ -258,7 +258,7 @@ impl Reader<'_> {
             .map(|elements| elements.map(|v| self.expression(v)))
     }
 
-    /// An expression; where it cannot be read, a broken one that nobody complains about again.
+    /// An expression; an unreadable one becomes a placeholder that gives no further error.
     fn expression(&mut self, value: &TomlValue<'_>) -> ExprAst {
         let broken = ExprAst {
             kind: ExprAstKind::Broken,
@@ -318,7 +318,7 @@ fn number_of(value: &DeValue<'_>) -> Result<BigRational, NumberError> {
     }
 }
 
-/// What a refused unit is told; `place` maps places in the unit text to places in the file.
+/// The message for an invalid unit; `place` maps places in the unit text to places in the file.
 pub fn unit_diagnostic(error: &UnitError, place: impl Fn(Range<usize>) -> Span) -> Diagnostic {
     match error {
         UnitError::Unknown {

@@ -18,7 +18,7 @@ pub(super) fn conditions(w: &mut Writer<'_>) -> Option<Block> {
         let condition = [w.set(divisor), Math::Sign("≠"), Math::zero()];
         conditions.push(vec![math(Math::Row(condition.into()))]);
     }
-    let mut what = vec![words("They hold where ")];
+    let mut what = vec![words("They are valid where ")];
     what.extend(listed(conditions));
     let declared = declared(w, &divisors);
     if !declared.is_empty() {

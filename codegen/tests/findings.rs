@@ -233,7 +233,7 @@ fn two_contacts_that_share_a_reaction_are_warned_of() {
          [pseudo_velocities]\nv = 'dot(x)'\n";
     let shown = warnings(text);
     assert!(
-        shown.contains("how `left` and `right` share their reactions cannot be told"),
+        shown.contains("the reactions of `left` and `right` are statically indeterminate"),
         "{shown}"
     );
 }
@@ -281,13 +281,13 @@ fn a_contact_that_another_at_its_point_outdoes_is_warned_of() {
         .replace("[0, 0, 1]", "[0, 0, -1]");
     let shown = warnings(&wheel(&[&slide, GRIP].join("\n")));
     assert!(
-        shown.contains("the contact `slide` is not judged: `grip` is at the same point"),
+        shown.contains("the contact `slide` is not checked: `grip` is at the same point"),
         "{shown}"
     );
     let other = GRIP.replace("grip", "other").replace("0.8", "0.5");
     let shown = warnings(&wheel(&[GRIP, &other].join("\n")));
     assert!(
-        shown.contains("the contact `other` is not judged: `grip` is at the same point"),
+        shown.contains("the contact `other` is not checked: `grip` is at the same point"),
         "{shown}"
     );
 }

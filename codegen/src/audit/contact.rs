@@ -107,7 +107,9 @@ impl Geometry<'_> {
                     "gravity pulls `{body_name}` away from its contact `{point}`, which lies \
                      above its centre"
                 ),
-                format!("reverse the sign of the position of `{point}`, or `down` of the gravity load"),
+                format!(
+                    "reverse the sign of the position of `{point}`, or `down` of the gravity load"
+                ),
             )
         })
     }
@@ -129,7 +131,8 @@ impl Geometry<'_> {
                 format!(
                     "the coordinates allow the contact `{point}` to move along the normal of its surface"
                 ),
-                "name the axis normal to the surface, in a frame that follows the surface".to_owned(),
+                "name the axis normal to the surface, in a frame that follows the surface"
+                    .to_owned(),
             ));
         }
         let centre = mechanism.bodies[body].centre;

@@ -70,7 +70,8 @@ pub(super) fn audit(bench: &mut Bench, told: &mut Audit) {
         );
         // Samples do not satisfy position constraints, which may keep away from it.
         if bench.derivation.positions.names.is_empty() && takes_both_signs(bench, factor) {
-            let message = format!("{away}; the declared ranges include configurations where it is zero");
+            let message =
+                format!("{away}; the declared ranges include configurations where it is zero");
             told.warnings.push(Finding {
                 code,
                 message,

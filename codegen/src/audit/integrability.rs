@@ -217,11 +217,7 @@ fn integrable(bench: &mut Bench, row: usize, sum: &Combination) -> Option<Findin
         Some(relation) if rest == Graph::ZERO => {
             format!("{} `{relation}` at its initial value", verb[0])
         }
-        _ => format!(
-            "{} the positions {}",
-            verb[1],
-            listed(tied.clone())
-        ),
+        _ => format!("{} the positions {}", verb[1], listed(tied.clone())),
     };
     let help = if let [only] = tied.as_slice() {
         format!("remove the constraint and the coordinate `{only}`, and use its value instead")

@@ -100,7 +100,9 @@ fn reason(kind: &LoadKind) -> &'static str {
         LoadKind::Force {
             reaction_on: None, ..
         } => "its point never moves along the force",
-        LoadKind::Force { .. } => "its two points never move relative to each other along the force",
+        LoadKind::Force { .. } => {
+            "its two points never move relative to each other along the force"
+        }
         LoadKind::Torque {
             reaction_on: None, ..
         } => "its body never rotates about the axis of the torque",

@@ -174,7 +174,7 @@ impl Resolver<'_> {
             )
             .at(exponent.span(), "not a number")
             .at(base.span(), unit_words(dimension))
-            .help("first divide the base by a reference value of the same unit"),
+            .help("divide the base by a reference value of the same unit first"),
         );
     }
 

@@ -98,7 +98,10 @@ fn impossible(inertia: &[[f64; 3]; 3]) -> (String, &'static str) {
     let total: f64 = moments.iter().sum();
     for (axis, moment) in axes.iter().zip(moments) {
         if moment < 0.0 {
-            let reason = format!("the moment about {axis} is negative, {} kg*m^2", rounded(moment));
+            let reason = format!(
+                "the moment about {axis} is negative, {} kg*m^2",
+                rounded(moment)
+            );
             return (
                 reason,
                 "a moment of inertia is an integral of squared distances; check the sign",

@@ -180,7 +180,11 @@ impl<'a> Resolver<'a> {
             self.tell(
                 Diagnostic::error(
                     Code::ReferenceCycle,
-                    format!("circular definition of {}s: {}", target.word(), circle.join(" from ")),
+                    format!(
+                        "circular definition of {}s: {}",
+                        target.word(),
+                        circle.join(" from ")
+                    ),
                 )
                 .at(at, "")
                 .help(match target {

@@ -165,11 +165,7 @@ pub(super) fn energies(w: &mut Writer<'_>) -> Section {
             Math::Sign("="),
             Math::Letter(Letter::plain("P")),
         ]);
-        text.extend([
-            words(" Every solution satisfies "),
-            math(rate),
-            words("."),
-        ]);
+        text.extend([words(" Every solution satisfies "), math(rate), words(".")]);
     }
     let mut blocks = vec![Block::Sentence(text)];
     blocks.extend(with(w, "", equations));

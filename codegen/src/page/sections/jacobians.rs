@@ -21,7 +21,10 @@ pub(super) fn section(w: &mut Writer<'_>) -> Section {
             "With respect to the inputs, for B:",
             [symbols.inputs.clone(), signals].concat(),
         ),
-        ("With respect to the parameters, for P:", symbols.parameters.clone()),
+        (
+            "With respect to the parameters, for P:",
+            symbols.parameters.clone(),
+        ),
     ];
     let mut rows = residual(w);
     rows.extend((0..symbols.rates.len()).map(|k| {
@@ -69,7 +72,9 @@ fn rule() -> Block {
     Block::Sentence(vec![
         words("By Appell's equations "),
         math(residual_rule),
-        words(" vanishes. Differentiation with respect to a state, an input or a parameter z gives "),
+        words(
+            " vanishes. Differentiation with respect to a state, an input or a parameter z gives ",
+        ),
         math(rule),
         words(
             ", where ρ is differentiated at constant accelerations. It is solved like the equations \

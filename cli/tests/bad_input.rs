@@ -56,7 +56,7 @@ fn conditions_of_a_steady_motion_are_checked() {
         "theta=1/0",
         &["error[division-by-zero]", "--about theta:1:3"],
     );
-    about("omega_3=1, dot(psi)=3", &["`psi_dot` is not the rate"]);
+    about("omega_3=1, dot(psi)=3", &["`psi_dot` contradicts the rate"]);
     let equations = ["derive", "unicycle", "--about", "theta=0"];
     folder.fails(2, &equations, &["--about goes with --stage linear"]);
 }

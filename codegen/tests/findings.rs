@@ -102,14 +102,8 @@ fn every_speed_without_mass_is_named() {
             "[outputs]\no = { value = 'y + z', unit = 'm' }",
         );
     let shown = refusal(&text);
-    assert!(
-        shown.contains("`v` moves no mass"),
-        "{shown}"
-    );
-    assert!(
-        shown.contains("`w` moves no mass"),
-        "{shown}"
-    );
+    assert!(shown.contains("`v` moves no mass"), "{shown}");
+    assert!(shown.contains("`w` moves no mass"), "{shown}");
 }
 
 /// A mass on a rail with a spring to a point above the rail at a height.

@@ -218,7 +218,7 @@ drag   = { kind = "generalized", coordinate = "theta", force = "-tau" }
 #[test]
 fn divisions_that_can_fail_are_told_with_the_declared_range() {
     let page = page::text(&page_of("unicycle", Stage::Kinematics));
-    let told = "They hold where cos θ ≠ 0; the spec declares θ from −1.5 to 1.5 rad.";
+    let told = "They are valid where cos θ ≠ 0; the spec declares θ from −1.5 to 1.5 rad.";
     assert!(page.contains(told), "{page}");
 }
 

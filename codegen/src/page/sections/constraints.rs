@@ -43,8 +43,8 @@ pub(super) fn section(w: &mut Writer<'_>) -> Section {
     blocks.extend(divisors::conditions(w));
     if !w.derivation.velocities.solved_numerically.is_empty() {
         blocks.push(sentence(
-            "No pivot of the linear system is nonzero throughout the declared ranges; it is solved \
-             numerically, with pivoting, at each evaluation.",
+            "No pivot of the linear system is nonzero in all declared ranges: it is solved with pivoting \
+             at each evaluation.",
         ));
     }
     super::section("Constraints and pseudo-velocities", blocks)

@@ -6,9 +6,9 @@ use std::path::Path;
 use appell_gap::diagnose::{Beside, Changes, Refitted};
 use serde::Deserialize;
 
-use crate::failure::Failure;
-use crate::files;
-use crate::table::{number, with_unit};
+use appell::Error;
+use appell::files;
+use appell_report::text::{number, with_unit};
 
 /// Name and version of the format.
 const SCHEMA: &str = "gap-report/1";
@@ -73,17 +73,17 @@ struct Outside {
 
 impl Report {
     /// Reads the file that `appell diagnose --json` wrote.
-    pub(crate) fn read(path: &Path) -> Result<Self, Failure> {
+    pub(crate) fn read(path: &Path) -> Result<Self, Error> {
         let file = path.display();
         let text = files::read(path, files::MAX_DATA)?;
         let report: Self = serde_json::from_str(&text).map_err(|cause| {
-            Failure::Data(format!(
+            Error::Data(format!(
                 "{file}: this is no gap report: {cause}\n  write one with `appell diagnose --json {file}`"
             ))
         })?;
         if report.schema != SCHEMA {
             let found = &report.schema;
-            return Err(Failure::Data(format!(
+            return Err(Error::Data(format!(
                 "{file}: its schema is `{found}`, and `{SCHEMA}` is what this version reads"
             )));
         }
@@ -91,24 +91,24 @@ impl Report {
     }
 
     /// The hypothesis with this number, from 1; the most probable one without.
-    pub(crate) fn hypothesis(&self, wanted: Option<usize>) -> Result<&Hypothesis, Failure> {
+    pub(crate) fn hypothesis(&self, wanted: Option<usize>) -> Result<&Hypothesis, Error> {
         let count = self.which.len();
         let place = wanted.unwrap_or(1);
         let found = place.checked_sub(1).and_then(|index| self.which.get(index));
         let found = found.ok_or_else(|| {
-            Failure::Usage(format!(
+            Error::Usage(format!(
                 "there is no hypothesis {place}: the report has {count}, counted from 1"
             ))
         })?;
         if let Some(name) = found.alternative() {
-            return Err(Failure::Usage(format!(
+            return Err(Error::Usage(format!(
                 "hypothesis {place} is another model, `{name}`: use its spec\n  choose another \
                  hypothesis with `--hypothesis`:\n{}",
                 self.list()
             )));
         }
         if found.changes.is_none() {
-            return Err(Failure::Usage(format!(
+            return Err(Error::Usage(format!(
                 "hypothesis {place} says that nothing in the library explains the gap: there is \
                  nothing to write\n  choose another one with `--hypothesis`:\n{}",
                 self.list()

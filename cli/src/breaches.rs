@@ -4,7 +4,7 @@ use appell_runtime::Trajectory;
 use appell_runtime::simulate::{Breach, Limit};
 use serde_json::{Map, Value, json};
 
-use crate::table::number;
+use appell_report::text::number;
 
 /// Breaches that a person reads one by one.
 const MOST_SHOWN: usize = 10;

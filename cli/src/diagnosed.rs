@@ -18,23 +18,23 @@ use serde_json::{Value, json};
 use numbers::short;
 pub(crate) use page::page;
 
-use crate::failure::Failure;
-use crate::table::{number, with_unit};
+use appell::Error;
+use appell_report::text::{number, with_unit};
 
 /// Hypotheses that the summary lists.
 const LISTED: usize = 3;
 
-pub(crate) fn failure(error: DiagnoseError) -> Failure {
+pub(crate) fn failure(error: DiagnoseError) -> Error {
     match error {
         DiagnoseError::Model(
             ModelError::Spec(report) | ModelError::Effect(EffectError(report)),
-        ) => Failure::Report(report),
+        ) => Error::Report(report),
         DiagnoseError::Data(error) => error.into(),
         DiagnoseError::NothingMeasured
         | DiagnoseError::LacksChannel { .. }
         | DiagnoseError::NothingToFit
-        | DiagnoseError::Model(ModelError::Edit(_)) => Failure::Data(error.to_string()),
-        other => Failure::Computation(other.to_string()),
+        | DiagnoseError::Model(ModelError::Edit(_)) => Error::Data(error.to_string()),
+        other => Error::Computation(other.to_string()),
     }
 }
 

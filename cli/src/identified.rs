@@ -7,13 +7,13 @@ mod page;
 use std::fmt::Write as _;
 use std::ops::Range;
 
+use appell_estimate::EstimateError;
 use appell_gap::data::{Channel, DataSet};
 use appell_gap::identify::{AHEAD, Answer, Estimate, HeldOut, IdentifyError, Known};
-use appell_runtime::estimate::EstimateError;
 
-use crate::failure::Failure;
 use crate::recording;
-use crate::table::{number, table};
+use appell::Error;
+use appell_report::text::{number, table};
 
 pub(crate) use figure::figure;
 pub(crate) use json::json;
@@ -31,18 +31,18 @@ a second ahead: what the model lacks has bent the parameters. `appell diagnose` 
 /// Combinations that are known to more tolerances than this are not known.
 const UNKNOWN: f64 = 100.0;
 
-pub(crate) fn failure(error: &IdentifyError) -> Failure {
+pub(crate) fn failure(error: &IdentifyError) -> Error {
     match error {
         IdentifyError::UnknownParameter { .. }
         | IdentifyError::UnknownAddition { .. }
-        | IdentifyError::Rate { .. } => Failure::Usage(error.to_string()),
+        | IdentifyError::Rate { .. } => Error::Usage(error.to_string()),
         IdentifyError::Estimate(EstimateError::Diverged { .. } | EstimateError::Stuck { .. }) => {
-            Failure::Computation(format!(
+            Error::Computation(format!(
                 "{error}; where the values of the rig are far off, `--start shooting` may help"
             ))
         }
-        IdentifyError::Estimate(_) => Failure::Computation(error.to_string()),
-        _ => Failure::Data(error.to_string()),
+        IdentifyError::Estimate(_) => Error::Computation(error.to_string()),
+        _ => Error::Data(error.to_string()),
     }
 }
 

@@ -2,30 +2,20 @@
 
 mod applied;
 mod breaches;
-mod cases;
 mod commands;
-mod conditions;
-mod control;
-mod controller;
+mod design_report;
 mod diagnosed;
 mod engine;
 mod failure;
-mod feedback;
-mod files;
 mod film;
-mod formula;
 mod identified;
 mod motions;
+mod output;
 mod picture;
 mod progress;
 mod recording;
 mod relations;
-mod reproduce;
-mod setup;
-mod source;
 mod summary;
-mod table;
-mod tabulated;
 mod thorough;
 
 use std::process::ExitCode;
@@ -53,8 +43,8 @@ fn main() -> ExitCode {
     match commands::run(Arguments::parse().command) {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {
-            failure.print();
-            ExitCode::from(failure.status())
+            failure::print(&failure);
+            ExitCode::from(failure::status(&failure))
         }
     }
 }

@@ -1,24 +1,19 @@
 //! Questions about steady motions from the command line, and what is common to their answers.
 
-pub(crate) mod export;
-pub(crate) mod regions;
 pub(crate) mod told;
 
 use std::path::PathBuf;
 use std::str::FromStr;
 
-use appell_runtime::analysis::{
-    Axis, Branch, BranchError, BranchOptions, Branches, Chart, ChartError, Point, Requirement,
-    Stability, SteadyError, SteadyMotion, SteadyProblem, Term,
-};
-use appell_spec::did_you_mean;
-use appell_spec::units::{self, Unit};
+use appell::Error;
+use appell::engine::Equations;
+use appell::setup::{Assignment, Setup};
+use appell::source::Source;
+use appell::steady::{Answer, Asked, refused, term, value_of};
+use appell_analysis::{Axis, Chart, Point, Requirement, SteadyProblem, Term};
 
-use crate::engine::Equations;
-use crate::failure::Failure;
+use crate::engine::equations;
 use crate::progress;
-use crate::setup::{Assignment, Setup};
-use crate::source::Source;
 
 /// What is given and what is sought.
 #[derive(Debug, clap::Args)]
@@ -100,39 +95,20 @@ impl FromStr for Least {
     }
 }
 
-/// A question with its names resolved.
-pub(crate) struct Asked<'a> {
-    /// The problem with its conditions.
-    pub(crate) problem: SteadyProblem<'a>,
-    /// The quantity to follow, and its range in SI.
-    pub(crate) along: Option<(Term, [f64; 2])>,
-    /// What feasible motions satisfy.
-    pub(crate) requirements: Vec<Requirement>,
-    starts: usize,
-}
-
-/// Motions that stand alone, or branches of them.
-pub(crate) enum Answer {
-    /// Each with its stability.
-    Motions(Vec<(SteadyMotion, Stability)>),
-    /// Along a quantity.
-    Branches(Vec<Branch>),
-}
-
 impl Question {
     /// Derives or finds the equations, reads the values and hands both on.
     pub(crate) fn with<T>(
         &self,
-        then: impl FnOnce(&Asked<'_>, &Setup<'_>) -> Result<T, Failure>,
-    ) -> Result<T, Failure> {
+        then: impl FnOnce(&Asked<'_>, &Setup<'_>) -> Result<T, Error>,
+    ) -> Result<T, Error> {
         let source = Source::find(&self.model)?;
-        let equations = Equations::at_hand(&source)?;
+        let equations = equations(&source, None)?;
         let mut setup = Setup::new(&source.file, &source.text, equations.model().info())?;
         setup.set(&self.set)?;
         then(&self.asked(&equations, &setup)?, &setup)
     }
 
-    fn asked<'a>(&self, equations: &'a Equations, setup: &Setup<'_>) -> Result<Asked<'a>, Failure> {
+    fn asked<'a>(&self, equations: &'a Equations, setup: &Setup<'_>) -> Result<Asked<'a>, Error> {
         let model = equations.model();
         let point = Point {
             p: setup.parameters.clone(),
@@ -144,7 +120,7 @@ impl Question {
                 .free(term(setup, name)?)
                 .map_err(|error| refused(&error))?;
         }
-        crate::setup::unique(&self.fix, "--fix")?;
+        appell::setup::unique(&self.fix, "--fix")?;
         for Assignment { name, value } in &self.fix {
             let term = term(setup, name)?;
             let value = value_of(setup, term, value, &format!("--fix {name}"))?;
@@ -165,7 +141,7 @@ impl Question {
         Ok(Asked {
             problem,
             along: along.transpose()?,
-            requirements: requirements.collect::<Result<_, Failure>>()?,
+            requirements: requirements.collect::<Result<_, Error>>()?,
             starts: self.starts,
         })
     }
@@ -173,11 +149,7 @@ impl Question {
 
 impl Span {
     /// The quantity and its range in SI.
-    pub(crate) fn resolve(
-        &self,
-        setup: &Setup<'_>,
-        flag: &str,
-    ) -> Result<(Term, [f64; 2]), Failure> {
+    pub(crate) fn resolve(&self, setup: &Setup<'_>, flag: &str) -> Result<(Term, [f64; 2]), Error> {
         let term = term(setup, &self.name)?;
         let label = format!("{flag} {}", self.name);
         let [from, to] = &self.ends;
@@ -187,124 +159,18 @@ impl Span {
     }
 }
 
-impl Asked<'_> {
-    /// The motions.
-    pub(crate) fn answer(&self) -> Result<Answer, Failure> {
-        let spinner = progress::spinner("looking for steady motions");
-        let answer = match self.along {
-            Some((along, range)) => {
-                let options = BranchOptions::default();
-                Branches::new(&self.problem, along, range, &self.requirements, options)
-                    .and_then(|branches| branches.trace(self.starts))
-                    .map(Answer::Branches)
-                    .map_err(|error| unanswered(&error))
-            }
-            None => self.motions().map(Answer::Motions),
-        };
-        spinner.finish_and_clear();
-        answer
-    }
-
-    fn motions(&self) -> Result<Vec<(SteadyMotion, Stability)>, Failure> {
-        let found = self
-            .problem
-            .solve_isolated(self.starts)
-            .map_err(|error| refused(&error))?;
-        let judged = found.into_iter().map(|motion| {
-            let structure = self.problem.structure();
-            let stability = Stability::of(self.problem.model(), structure, &motion.point);
-            stability
-                .map(|stability| (motion, stability))
-                .map_err(|error| Failure::Computation(error.to_string()))
-        });
-        judged.collect()
-    }
-
-    /// Stability over two quantities.
-    pub(crate) fn chart(&self, axes: [Axis; 2]) -> Result<Chart, Failure> {
-        let spinner = progress::spinner("drawing the chart");
-        let threads = std::thread::available_parallelism().map_or(1, usize::from);
-        let requirements = &self.requirements;
-        let chart = Chart::of(&self.problem, axes, requirements, self.starts, threads);
-        spinner.finish_and_clear();
-        chart.map_err(|error| match error {
-            ChartError::Branch(error) => unanswered(&error),
-            ChartError::Grid(..) => Failure::Usage(error.to_string()),
-            other => Failure::Computation(other.to_string()),
-        })
-    }
-
-    /// What is told of every motion.
-    pub(crate) fn terms(&self) -> Vec<Term> {
-        let mut terms = self.problem.constants();
-        terms.extend(self.problem.free_terms());
-        if let Some((along, _)) = self.along
-            && !terms.contains(&along)
-        {
-            terms.push(along);
-        }
-        terms
-    }
-
-    /// Pairs of coordinates or outputs that are a place in the ground plane: `x…` and `y…`.
-    pub(crate) fn places(&self) -> Vec<([Term; 2], String)> {
-        let info = self.problem.model().info();
-        let coordinates = info
-            .coordinate_quantities()
-            .iter()
-            .chain(info.outputs.iter());
-        let pairs = coordinates.filter_map(|x| {
-            let rest = x.name.strip_prefix('x')?;
-            let pair = [x.name.to_string(), format!("y{rest}")];
-            let [first, second] = pair.each_ref().map(|name| Term::named(info, name));
-            let same = second?.quantity(info).unit == x.unit && x.unit == "m";
-            same.then_some(([first?, second?], pair.join(", ")))
-        });
-        pairs.collect()
-    }
+/// The motions, under a spinner.
+pub(crate) fn answer(asked: &Asked<'_>) -> Result<Answer, Error> {
+    let spinner = progress::spinner("looking for steady motions");
+    let answer = asked.answer();
+    spinner.finish_and_clear();
+    answer
 }
 
-/// The term of a name, or what to write instead.
-pub(crate) fn term(setup: &Setup<'_>, name: &str) -> Result<Term, Failure> {
-    Term::named(setup.info, name).ok_or_else(|| {
-        let names = Term::names(setup.info);
-        let names = || names.iter().map(String::as_str);
-        let instead = did_you_mean(name, names(), || {
-            format!("there are {}", names().collect::<Vec<_>>().join(", "))
-        });
-        Failure::Usage(format!("there is no quantity `{name}`; {instead}"))
-    })
-}
-
-/// A value of a term in SI.
-pub(crate) fn value_of(
-    setup: &Setup<'_>,
-    term: Term,
-    text: &str,
-    label: &str,
-) -> Result<f64, Failure> {
-    let quantity = term.quantity(setup.info);
-    let unit: Unit = units::parse(&quantity.unit)
-        .map_err(|_| Failure::Usage(format!("{label}: `{}` is no unit", quantity.unit)))?;
-    setup.value(text, &unit, label)
-}
-
-fn unanswered(error: &BranchError) -> Failure {
-    match error {
-        BranchError::Steady(error) => refused(error),
-        BranchError::Isolated { .. } | BranchError::Range { .. } => {
-            Failure::Usage(error.to_string())
-        }
-        BranchError::Stability(_) => Failure::Computation(error.to_string()),
-    }
-}
-
-/// Why there is no steady motion.
-pub(crate) fn refused(error: &SteadyError) -> Failure {
-    match error {
-        SteadyError::None { .. } | SteadyError::Structure(_) => {
-            Failure::Computation(error.to_string())
-        }
-        _ => Failure::Usage(error.to_string()),
-    }
+/// Stability over two quantities, under a spinner.
+pub(crate) fn chart(asked: &Asked<'_>, axes: [Axis; 2]) -> Result<Chart, Error> {
+    let spinner = progress::spinner("drawing the chart");
+    let chart = asked.chart(axes);
+    spinner.finish_and_clear();
+    chart
 }

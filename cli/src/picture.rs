@@ -2,11 +2,11 @@
 
 use std::path::Path;
 
-use crate::failure::Failure;
-use crate::files;
+use appell::Error;
+use appell::files;
 
 /// Writes a picture, as PNG where the name ends so; `-` is standard output and SVG.
-pub(crate) fn write(path: &Path, svg: &str) -> Result<(), Failure> {
+pub(crate) fn write(path: &Path, svg: &str) -> Result<(), Error> {
     if path
         .extension()
         .is_some_and(|end| end.eq_ignore_ascii_case("png"))
@@ -20,7 +20,7 @@ pub(crate) fn write(path: &Path, svg: &str) -> Result<(), Failure> {
 
 /// The picture in its light colours, at twice its size.
 #[cfg(feature = "png")]
-fn png(svg: &str) -> Result<Vec<u8>, Failure> {
+fn png(svg: &str) -> Result<Vec<u8>, Error> {
     use resvg::tiny_skia::{Pixmap, Transform};
     use resvg::usvg::{Options, Tree};
 
@@ -28,7 +28,7 @@ fn png(svg: &str) -> Result<Vec<u8>, Failure> {
     const SCALE: f32 = 2.0;
     /// The same letters on every machine, with the Greek ones and the dots above them.
     const LETTERS: &[u8] = include_bytes!("../vendor/dejavu/DejaVuSans.ttf");
-    let failed = |cause: String| Failure::Computation(format!("the picture has no PNG: {cause}"));
+    let failed = |cause: String| Error::Computation(format!("the picture has no PNG: {cause}"));
     let mut options = Options::default();
     let fonts = options.fontdb_mut();
     fonts.load_font_data(LETTERS.to_vec());
@@ -45,8 +45,8 @@ fn png(svg: &str) -> Result<Vec<u8>, Failure> {
 }
 
 #[cfg(not(feature = "png"))]
-fn png(_: &str) -> Result<Vec<u8>, Failure> {
+fn png(_: &str) -> Result<Vec<u8>, Error> {
     let help = "this program was built without PNG: write to a name that ends in .svg, or build it \
                 with `--features png`";
-    Err(Failure::Usage(help.to_owned()))
+    Err(Error::Usage(help.to_owned()))
 }

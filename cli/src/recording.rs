@@ -1,73 +1,11 @@
-//! Recordings: found, read, and told of.
+//! Recordings: what a person and a program are told of them.
 
 use std::fmt::Write as _;
-use std::path::PathBuf;
 
-use appell_gap::data::{self, DataError, DataSet, Finding, FindingKind, Part, Role, Run, Spec};
-use appell_models::ALL;
-use appell_spec::Severity;
+use appell::recording::{sentence, severity};
+use appell_gap::data::{DataSet, Part, Role, Run};
+use appell_report::text::{number, table};
 use serde_json::{Value, json};
-
-use crate::failure::Failure;
-use crate::source::Source;
-use crate::table::{number, table};
-
-/// Reads a data set, or CSV files of a mechanism.
-pub(crate) fn read(paths: &[PathBuf], model: Option<&str>) -> Result<DataSet, Failure> {
-    let spec = model.map(Source::find).transpose()?.map(|source| Spec {
-        file: source.file,
-        text: source.text,
-    });
-    let described = |path: &PathBuf| path.is_dir() || path.ends_with(data::MANIFEST);
-    match (paths, spec) {
-        ([folder], spec) if described(folder) => {
-            let shipped = ALL.iter().map(|shipped| {
-                let (file, text) = (shipped.file.to_owned(), shipped.spec.to_owned());
-                (shipped.name, Spec { file, text })
-            });
-            let library: Vec<(&str, Spec)> = shipped.collect();
-            Ok(data::read(folder, &library, spec)?)
-        }
-        (paths, _) if paths.iter().any(described) => Err(Failure::Usage(
-            "give one data set, or CSV files and their mechanism".to_owned(),
-        )),
-        (paths, Some(spec)) => Ok(data::read_bare(spec, paths)?),
-        (_, None) => Err(Failure::Usage(
-            "CSV files need the mechanism whose names their columns have; name a shipped one or a spec".to_owned(),
-        )),
-    }
-}
-
-/// Refuses times that are hardly in seconds: a filter would integrate for hours.
-pub(crate) fn refuse_slow(set: &DataSet) -> Result<(), Failure> {
-    let slow = |finding: &&Finding| finding.kind == FindingKind::SlowClock;
-    let Some(first) = set.findings.iter().find(slow) else {
-        return Ok(());
-    };
-    let mut runs = set.runs.iter();
-    let run = runs.find(|run| first.run.as_ref() == Some(&run.name));
-    let seconds = run.map_or(0.0, Run::duration);
-    Err(Failure::Data(format!(
-        "{}: {}: the run lasts {} s, with {}",
-        first.run.as_deref().unwrap_or_default(),
-        first.channel.as_deref().unwrap_or_default(),
-        number(seconds),
-        first.message
-    )))
-}
-
-impl From<DataError> for Failure {
-    fn from(error: DataError) -> Self {
-        match error {
-            DataError::Report(report) => Self::Report(report),
-            DataError::File { path, cause } => Self::reading(&path)(cause),
-            DataError::Several(errors) => {
-                Self::Several(errors.into_iter().map(Self::from).collect())
-            }
-            whole => Self::Data(whole.to_string()),
-        }
-    }
-}
 
 /// The tables that a person reads, in the units of the files.
 pub(crate) fn text(set: &DataSet) -> String {
@@ -87,13 +25,6 @@ pub(crate) fn text(set: &DataSet) -> String {
         let _ = writeln!(text, "{}", sentence(finding));
     }
     text
-}
-
-/// What of the recordings changes what can be concluded, a sentence each.
-pub(crate) fn warnings(set: &DataSet) -> Vec<String> {
-    let findings = set.findings.iter();
-    let grave = findings.filter(|finding| finding.kind.severity() == Severity::Warning);
-    grave.map(sentence).collect()
 }
 
 fn runs(set: &DataSet) -> String {
@@ -152,27 +83,6 @@ fn role(role: Role) -> &'static str {
         Role::Measures(_) => "measured",
         Role::Input(_) => "input",
         Role::Recorded => "not in the model",
-    }
-}
-
-/// `warning: run.csv:12: theta: 3 values of 200 missing`
-pub(crate) fn sentence(finding: &Finding) -> String {
-    let mut text = format!("{}: ", severity(finding));
-    if let Some(run) = &finding.run {
-        let line = finding.line.map(|line| format!(":{line}"));
-        let _ = write!(text, "{run}{}: ", line.unwrap_or_default());
-    }
-    if let Some(channel) = &finding.channel {
-        let _ = write!(text, "{channel}: ");
-    }
-    text + &finding.message
-}
-
-fn severity(finding: &Finding) -> &'static str {
-    match finding.kind.severity() {
-        Severity::Error => "error",
-        Severity::Warning => "warning",
-        Severity::Note => "note",
     }
 }
 

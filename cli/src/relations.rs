@@ -3,11 +3,11 @@
 use std::fmt::Write as _;
 
 use appell_gap::inverse::{Answer, Estimate, Inputs};
-use appell_runtime::figure::{Figure, Panel, Series};
+use appell_report::figure::{Figure, Panel, Series};
 use appell_runtime::model::ModelInfo;
 use serde_json::{Value, json};
 
-use crate::table::{number, table};
+use appell_report::text::{number, table};
 
 /// Runs that are drawn.
 const DRAWN_RUNS: usize = 3;

@@ -5,7 +5,7 @@ use appell_runtime::model::Quantity;
 use serde_json::{Map, Value, json};
 
 use crate::breaches;
-use crate::table::{number, table};
+use appell_report::text::{number, table};
 
 /// Smallest and largest value of a column of the samples, in SI.
 fn extrema(trajectory: &Trajectory, column: usize) -> [f64; 2] {

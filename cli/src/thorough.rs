@@ -7,9 +7,9 @@ use appell_codegen::Derived;
 use appell_codegen::formulations::{Against, Agreement, Comparison, Verdict, compare_while};
 use serde_json::{Value, json};
 
-use crate::failure::Failure;
 use crate::progress;
-use crate::source::Source;
+use appell::Error;
+use appell::source::Source;
 
 /// The order in which people read it.
 const AGAINST: [Against; 4] = [
@@ -28,11 +28,7 @@ pub(crate) struct Thorough {
 
 impl Thorough {
     /// Compares as long as the limit lasts.
-    pub(crate) fn new(
-        source: &Source,
-        derived: &Derived,
-        limit: Duration,
-    ) -> Result<Self, Failure> {
+    pub(crate) fn new(source: &Source, derived: &Derived, limit: Duration) -> Result<Self, Error> {
         let spinner = progress::spinner(&format!("comparing formulations of {}", source.file));
         let start = Instant::now();
         let is_time = || start.elapsed() < limit;
@@ -48,7 +44,7 @@ impl Thorough {
             Err(findings) => {
                 let reasons = findings.iter().map(|finding| finding.message.as_str());
                 let reasons: Vec<&str> = reasons.collect();
-                Err(Failure::Computation(format!(
+                Err(Error::Computation(format!(
                     "{}: the formulations cannot be compared: {}",
                     source.file,
                     reasons.join("; ")
@@ -133,7 +129,7 @@ impl Thorough {
     }
 
     /// Why the equations cannot be trusted, where that is so.
-    pub(crate) fn failure(&self, source: &Source) -> Option<Failure> {
+    pub(crate) fn failure(&self, source: &Source) -> Option<Error> {
         if self.verdict.agrees() {
             return None;
         }
@@ -200,7 +196,7 @@ impl Thorough {
         } else {
             "the formulations were not all compared"
         };
-        Some(Failure::Computation(format!(
+        Some(Error::Computation(format!(
             "{}: {verdict}{text}",
             source.file
         )))
@@ -252,7 +248,7 @@ mod tests {
         assert!(thorough.text().contains("DO NOT AGREE"));
         assert_eq!(thorough.json()["agrees"], false);
         let failure = thorough.failure(&source).expect("a failure");
-        assert_eq!(failure.status(), 4);
+        assert_eq!(crate::failure::status(&failure), 4);
         let told = failure.to_string();
         for part in ["Kane: bias, `omega` is 1.5e0", "do not use these equations"] {
             assert!(told.contains(part), "{told}");

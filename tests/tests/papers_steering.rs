@@ -1,6 +1,6 @@
 //! The equations of *Steering Control of an Autonomous Unicycle* (Vizi, Orosz, Takács, Stépán),
 //! corrected where `docs/errata.md` says so, are the derived ones: as functions, not at points. They
-//! are typed in `cli/papers/src/steering/table.rs`.
+//! are typed in `papers/src/steering/table.rs`.
 
 #![allow(clippy::unwrap_used, reason = "what is missing fails the test")]
 

@@ -6,9 +6,10 @@ use std::path::PathBuf;
 use appell_spec::load;
 
 use crate::applied::Report;
-use crate::failure::Failure;
-use crate::files;
-use crate::source::Source;
+use crate::output;
+use appell::Error;
+use appell::files;
+use appell::source::Source;
 
 /// Writes the spec with the effect that a gap report found, and with its values.
 ///
@@ -32,12 +33,12 @@ pub(crate) struct Apply {
 }
 
 impl Apply {
-    pub(super) fn run(&self) -> Result<(), Failure> {
+    pub(super) fn run(&self) -> Result<(), Error> {
         let source = Source::find(&self.model)?;
         let name = load(&source.file, &source.text)?.mechanism.name;
         let report = Report::read(&self.report)?;
         if report.mechanism != name {
-            return Err(Failure::Data(format!(
+            return Err(Error::Data(format!(
                 "the report is about `{}`, and the spec describes `{name}`",
                 report.mechanism
             )));
@@ -46,7 +47,7 @@ impl Apply {
         let changes = hypothesis.changes();
         let note = format!("Found by `appell diagnose`: {}", hypothesis.name());
         let improved = changes.improved(&source.text, &note);
-        let improved = improved.map_err(|error| Failure::Data(error.to_string()))?;
+        let improved = improved.map_err(|error| Error::Data(error.to_string()))?;
         let default = PathBuf::from(format!("{name}_improved.toml"));
         let out = self.out.as_ref().unwrap_or(&default);
         let file = out.to_string_lossy();
@@ -54,15 +55,15 @@ impl Apply {
         load(&file, &improved)?;
         if improved == source.text {
             let told = hypothesis.told(&report, &changes, "nothing to write");
-            return files::print(&told);
+            return output::print(&told);
         }
         if self.out.is_none() && fs::read(out).is_ok_and(|there| there != improved.as_bytes()) {
-            return Err(Failure::Usage(format!(
+            return Err(Error::Usage(format!(
                 "{file} is there and says something else: it is replaced if you name it with `-o {file}`"
             )));
         }
         files::write(out, &improved)?;
         let told = hypothesis.told(&report, &changes, &file);
-        files::print_beside(&told, &[&Some(out.clone())])
+        output::print_beside(&told, &[&Some(out.clone())])
     }
 }

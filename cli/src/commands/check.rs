@@ -9,10 +9,13 @@ use appell_codegen::{Derived, audited};
 use appell_spec::{Report, Severity};
 use serde_json::{Value, json};
 
-use crate::failure::{Failure, shown, tell};
-use crate::source::Source;
+use crate::failure::{shown, tell};
+use crate::output;
+use crate::progress;
 use crate::thorough::Thorough;
-use crate::{files, progress};
+use appell::Error;
+use appell::files;
+use appell::source::Source;
 
 /// Validates specs and tells what they describe.
 ///
@@ -41,7 +44,7 @@ pub(crate) struct Check {
 }
 
 impl Check {
-    pub(super) fn run(&self) -> Result<(), Failure> {
+    pub(super) fn run(&self) -> Result<(), Error> {
         let quiet = self.json.as_deref().is_some_and(files::is_stdout);
         let mut failed = Vec::new();
         let mut found = Vec::new();
@@ -63,12 +66,12 @@ impl Check {
         if failed.is_empty() {
             Ok(())
         } else {
-            Err(Failure::Several(failed))
+            Err(Error::Several(failed))
         }
     }
 
     /// Tells of one spec. Returns what it tells to programs, and whether formulations disagree.
-    fn check(&self, model: &str, quiet: bool) -> Result<(Value, Option<Failure>), Failure> {
+    fn check(&self, model: &str, quiet: bool) -> Result<(Value, Option<Error>), Error> {
         let source = Source::find(model)?;
         let spinner = progress::spinner(&format!("deriving {}", source.file));
         let derived = audited(&source.file, &source.text);
@@ -76,16 +79,16 @@ impl Check {
         let derived = derived?;
         let summary = Summary::of(&derived);
         let limit = Duration::try_from_secs_f64(self.time_limit_s).map_err(|_| {
-            Failure::Usage("`--time-limit-s` is a number of seconds, zero or more".to_owned())
+            Error::Usage("`--time-limit-s` is a number of seconds, zero or more".to_owned())
         })?;
         let thorough = self
             .thorough
             .then(|| Thorough::new(&source, &derived, limit));
         let thorough = thorough.transpose()?;
         if !quiet {
-            files::print(&summary.text(&source))?;
+            output::print(&summary.text(&source))?;
             if let Some(thorough) = &thorough {
-                files::print(&thorough.text())?;
+                output::print(&thorough.text())?;
             }
         }
         let warnings = Report::new(source.file.as_str(), source.text.as_str(), derived.warnings);
@@ -104,9 +107,9 @@ impl Check {
 }
 
 /// What programs read of a spec that is wrong or cannot be read.
-fn entry(model: &str, failure: &Failure) -> Value {
+fn entry(model: &str, failure: &Error) -> Value {
     match failure {
-        Failure::Report(report) => {
+        Error::Report(report) => {
             json!({ "file": report.file(), "ok": false, "findings": findings(report) })
         }
         other => json!({

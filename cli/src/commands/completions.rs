@@ -2,8 +2,8 @@
 
 use clap::CommandFactory as _;
 
-use crate::failure::Failure;
-use crate::files;
+use crate::output;
+use appell::Error;
 
 /// Writes shell completions to standard output.
 ///
@@ -15,7 +15,7 @@ pub(crate) struct Completions {
 }
 
 impl Completions {
-    pub(super) fn run(&self) -> Result<(), Failure> {
+    pub(super) fn run(&self) -> Result<(), Error> {
         let mut script = Vec::new();
         clap_complete::generate(
             self.shell,
@@ -23,6 +23,6 @@ impl Completions {
             "appell",
             &mut script,
         );
-        files::print(&String::from_utf8_lossy(&script))
+        output::print(&String::from_utf8_lossy(&script))
     }
 }

@@ -4,14 +4,16 @@ use std::path::PathBuf;
 
 use appell_runtime::model::{Model, Quantity};
 
-use crate::control::design::{self, Design, Method, Request};
-use crate::control::{ask, attraction, law_file, report};
-use crate::engine::Equations;
-use crate::failure::{Failure, tell};
-use crate::files;
-use crate::picture;
-use crate::setup::{Assignment, Setup};
-use crate::source::Source;
+use crate::engine::equations;
+use crate::failure::tell;
+use crate::output;
+use crate::{design_report, picture, progress};
+use appell::Error;
+use appell::control::design::{self, Design, Method, Request};
+use appell::control::{ask, attraction, law_file};
+use appell::files;
+use appell::setup::{Assignment, Setup};
+use appell::source::Source;
 
 /// What the inputs can do about a steady motion, and gains for a feedback law.
 ///
@@ -91,9 +93,9 @@ pub(crate) struct Control {
 }
 
 impl Control {
-    pub(super) fn run(&self) -> Result<(), Failure> {
+    pub(super) fn run(&self) -> Result<(), Error> {
         let source = Source::find(&self.model)?;
-        let equations = Equations::at_hand(&source)?;
+        let equations = equations(&source, None)?;
         let model = equations.model();
         let mut setup = Setup::new(&source.file, &source.text, model.info())?;
         setup.set(&self.set)?;
@@ -103,7 +105,7 @@ impl Control {
             ("--attraction", self.attraction.is_some()),
         ];
         if let (Method::None, Some((flag, _))) = (&request.method, flags.iter().find(|f| f.1)) {
-            return Err(Failure::Usage(format!(
+            return Err(Error::Usage(format!(
                 "`{flag}` needs a law; ask for one with `--poles` or `--lqr`"
             )));
         }
@@ -114,10 +116,21 @@ impl Control {
                 if let Some(path) = &self.write {
                     files::write(path, &law_file::text(&design, &setup, &self.model))?;
                 }
-                let mut text = report::text(&design, &setup);
-                let mut json = report::json(&design, &setup);
+                let mut text = design_report::text(&design, &setup);
+                let mut json = design_report::json(&design, &setup);
                 if let Some(asked) = &self.attraction {
-                    let region = attraction::explore(model, &setup, &design, asked, self.for_s)?;
+                    let region = {
+                        let bar = progress::parts();
+                        let progress = |done: usize, of: usize| {
+                            bar.set_length(of as u64);
+                            bar.set_position(done as u64);
+                        };
+                        let region = attraction::explore(
+                            model, &setup, &design, asked, self.for_s, &progress,
+                        );
+                        bar.finish_and_clear();
+                        region?
+                    };
                     text += &region.text();
                     json["attraction"] = region.json();
                     if let Some(path) = &self.plot {
@@ -136,8 +149,8 @@ impl Control {
                     files::write(path, &text)?;
                 }
                 (
-                    report::schedule_text(&schedule.name, &designs, &setup),
-                    report::schedule_json(&schedule.name, &designs, &setup),
+                    design_report::schedule_text(&schedule.name, &designs, &setup),
+                    design_report::schedule_json(&schedule.name, &designs, &setup),
                 )
             }
         };
@@ -149,17 +162,17 @@ impl Control {
             tell(&text);
             return Ok(());
         }
-        files::print(&text)
+        output::print(&text)
     }
 
-    fn request(&self, setup: &Setup<'_>) -> Result<Request, Failure> {
+    fn request(&self, setup: &Setup<'_>) -> Result<Request, Error> {
         let inputs = if self.inputs.is_empty() {
             (0..setup.info.declared_inputs).collect()
         } else {
             ask::distinct("--inputs", &self.inputs, |name| setup.input(name))?
         };
         if inputs.is_empty() {
-            return Err(Failure::Usage(
+            return Err(Error::Usage(
                 "the mechanism has no input; declare one under `[inputs]` of the spec".to_owned(),
             ));
         }
@@ -178,12 +191,8 @@ impl Control {
     }
 
     /// The quantity that a written schedule follows.
-    fn readable(
-        &self,
-        values: &ask::Values,
-        setup: &Setup<'_>,
-    ) -> Result<Option<Quantity>, Failure> {
-        let refused = |text: &str| Err(Failure::Usage(text.to_owned()));
+    fn readable(&self, values: &ask::Values, setup: &Setup<'_>) -> Result<Option<Quantity>, Error> {
+        let refused = |text: &str| Err(Error::Usage(text.to_owned()));
         match (&self.write, values.readable(setup)) {
             (None, _) => Ok(None),
             (Some(_), _) if self.sampled_ms.is_some() => {
@@ -204,7 +213,7 @@ impl Control {
         setup: &mut Setup<'_>,
         values: &ask::Values,
         request: &Request,
-    ) -> Result<Vec<Design>, Failure> {
+    ) -> Result<Vec<Design>, Error> {
         let mut request = request.clone();
         let mut designs: Vec<Design> = Vec::new();
         for &value in &values.si {

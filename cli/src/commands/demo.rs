@@ -3,18 +3,20 @@
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
-use appell_runtime::figure::Figure;
+use appell_report::figure::Figure;
 use appell_runtime::integrate::Options;
 use appell_runtime::simulate::{Method, Validity};
 
 use super::derive::{Format, Stage, derivation};
 use super::simulate::{Run, standard_extras, write_csv};
-use crate::controller::Plan;
-use crate::engine::Equations;
-use crate::failure::Failure;
-use crate::setup::Setup;
-use crate::source::Source;
-use crate::{feedback, files, summary};
+use crate::output;
+use crate::summary;
+use appell::Error;
+use appell::files;
+use appell::inputs::controller::Plan;
+use appell::inputs::feedback;
+use appell::setup::Setup;
+use appell::source::Source;
 
 /// The lane change of the paper at 5 m/s.
 const LANE_CHANGE: &str = include_str!("../../../docs/examples/feedback/lane_change_5_m_s.toml");
@@ -28,9 +30,9 @@ pub(crate) struct Demo {
 }
 
 impl Demo {
-    pub(super) fn run(&self) -> Result<(), Failure> {
+    pub(super) fn run(&self) -> Result<(), Error> {
         let source = Source::find("unicycle")?;
-        let equations = Equations::at_hand(&source)?;
+        let equations = crate::engine::equations(&source, None)?;
         let mut setup = Setup::new(&source.file, &source.text, equations.model().info())?;
         let law = feedback::parse("lane_change_5_m_s.toml", LANE_CHANGE, &setup)?;
         setup.start_from_law(&law)?;
@@ -78,7 +80,7 @@ impl Demo {
             let about = "the path of the wheel centre, seen from above";
             files::write(&place("path.svg", about), &path.to_svg())?;
         }
-        files::print(&format!("{}\nopen:\n{told}", summary::text(&trajectory)))?;
-        failure.map_or(Ok(()), |reason| Err(Failure::Computation(reason)))
+        output::print(&format!("{}\nopen:\n{told}", summary::text(&trajectory)))?;
+        failure.map_or(Ok(()), |reason| Err(Error::Computation(reason)))
     }
 }

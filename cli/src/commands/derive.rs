@@ -4,14 +4,15 @@ use std::path::PathBuf;
 
 use appell_codegen::emit::{Options, emit};
 use appell_codegen::linearisation::{Linearisation, SteadyMotion};
-use appell_codegen::page::{self, Page, page};
 use appell_codegen::program::FunctionKind;
 use appell_codegen::{Derived, compile::report, derived};
+use appell_report::derivation::{self, Page, page};
 
-use crate::conditions::conditions;
-use crate::failure::Failure;
-use crate::source::Source;
-use crate::{files, progress};
+use crate::progress;
+use appell::Error;
+use appell::conditions::conditions;
+use appell::files;
+use appell::source::Source;
 
 /// Writes the derivation, from frames to equations of motion.
 ///
@@ -67,12 +68,12 @@ pub(crate) enum Stage {
 }
 
 impl Derive {
-    pub(super) fn run(&self) -> Result<(), Failure> {
+    pub(super) fn run(&self) -> Result<(), Error> {
         let source = Source::find(&self.model)?;
         let linear = self.stage == Stage::Linear && self.format != Format::Rust;
         if !linear && !self.about.is_empty() {
             let message = "--about goes with --stage linear, as text, latex or html";
-            return Err(Failure::Usage(message.to_owned()));
+            return Err(Error::Usage(message.to_owned()));
         }
         let text = derivation(&source, self.format, self.stage, &self.about)?;
         files::write(self.out.as_deref().unwrap_or("-".as_ref()), &text)
@@ -85,18 +86,18 @@ pub(super) fn derivation(
     format: Format,
     stage: Stage,
     about: &[String],
-) -> Result<String, Failure> {
+) -> Result<String, Error> {
     if format == Format::Rust {
         return rust(source);
     }
     let spinner = progress::spinner("deriving the equations of motion");
     let mut derived = derived(&source.file, &source.text)?;
     let stage = match stage {
-        Stage::Kinematics => Some(page::Stage::Kinematics),
-        Stage::Energy => Some(page::Stage::Energy),
-        Stage::Equations => Some(page::Stage::Equations),
-        Stage::Jacobians => Some(page::Stage::Jacobians),
-        Stage::All => Some(page::Stage::All),
+        Stage::Kinematics => Some(derivation::Stage::Kinematics),
+        Stage::Energy => Some(derivation::Stage::Energy),
+        Stage::Equations => Some(derivation::Stage::Equations),
+        Stage::Jacobians => Some(derivation::Stage::Jacobians),
+        Stage::All => Some(derivation::Stage::All),
         Stage::Linear => None,
     };
     let page = match stage {
@@ -106,14 +107,14 @@ pub(super) fn derivation(
     };
     spinner.finish_and_clear();
     Ok(match format {
-        Format::Latex => page::latex(&page),
-        Format::Html => page::html(&page),
-        Format::Text | Format::Rust => page::text(&page),
+        Format::Latex => derivation::latex(&page),
+        Format::Html => derivation::html(&page),
+        Format::Text | Format::Rust => derivation::text(&page),
     })
 }
 
 /// The linear equations about a steady motion.
-fn linear(spec: &str, derived: &mut Derived, about: &[String]) -> Result<Page, Failure> {
+fn linear(spec: &str, derived: &mut Derived, about: &[String]) -> Result<Page, Error> {
     let Derived {
         mechanism,
         derivation,
@@ -122,12 +123,12 @@ fn linear(spec: &str, derived: &mut Derived, about: &[String]) -> Result<Page, F
     let conditions = conditions("--about", spec, mechanism, derivation, about)?;
     let steady = SteadyMotion::new(mechanism, derivation, &conditions);
     let linear = steady.and_then(|steady| Linearisation::about(derivation, steady));
-    let linear = linear.map_err(|error| Failure::Usage(format!("--about: {error}")))?;
-    Ok(page::linear(mechanism, derivation, &linear))
+    let linear = linear.map_err(|error| Error::Usage(format!("--about: {error}")))?;
+    Ok(derivation::linear(mechanism, derivation, &linear))
 }
 
 /// The emitted module of a spec.
-fn rust(source: &Source) -> Result<String, Failure> {
+fn rust(source: &Source) -> Result<String, Error> {
     if let Some(shipped) = source.shipped {
         return Ok(shipped.code.to_owned());
     }
@@ -138,7 +139,7 @@ fn rust(source: &Source) -> Result<String, Failure> {
         ..Options::default()
     };
     let emitted =
-        emit(&program, &options).map_err(|error| Failure::Computation(error.to_string()))?;
+        emit(&program, &options).map_err(|error| Error::Computation(error.to_string()))?;
     spinner.finish_and_clear();
     Ok(emitted.source)
 }

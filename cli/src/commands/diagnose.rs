@@ -8,9 +8,11 @@ use appell_gap::diagnose::{self, Limit, Options};
 use appell_gap::effects;
 use serde_json::Value;
 
-use crate::failure::Failure;
-use crate::source::Source;
-use crate::{diagnosed, files, progress, recording};
+use crate::output;
+use crate::{diagnosed, progress};
+use appell::Error;
+use appell::files;
+use appell::source::Source;
 
 /// Name of the table of the next experiment.
 const EXPERIMENT: &str = "experiment.csv";
@@ -80,9 +82,9 @@ impl FromStr for Span {
 }
 
 impl Diagnose {
-    pub(super) fn run(&self) -> Result<(), Failure> {
-        let set = recording::read(&self.data, self.model.as_deref())?;
-        recording::refuse_slow(&set)?;
+    pub(super) fn run(&self) -> Result<(), Error> {
+        let set = appell::recording::read(&self.data, self.model.as_deref())?;
+        appell::recording::refuse_slow(&set)?;
         let (library, replaced) = self.library()?;
         let spinner = progress::spinner("reading");
         let options = Options {
@@ -94,7 +96,7 @@ impl Diagnose {
         let report = diagnose::diagnose(&set, &library, &options, stage);
         spinner.finish_and_clear();
         let report = report.map_err(diagnosed::failure)?;
-        let warnings = recording::warnings(&set);
+        let warnings = appell::recording::warnings(&set);
         let mut next = None;
         if let Some(experiment) = &report.experiment {
             let table = diagnosed::csv(&set, experiment);
@@ -120,7 +122,7 @@ impl Diagnose {
         for warning in &warnings {
             text.extend(["  data      ", warning, "\n"]);
         }
-        files::print_beside(&text, &outputs)
+        output::print_beside(&text, &outputs)
     }
 
     /// Where the table of the next experiment goes: beside the gap report, if that is a file, and over no
@@ -162,7 +164,7 @@ impl Diagnose {
     }
 
     /// The other specs.
-    fn alternatives(&self) -> Result<Vec<Spec>, Failure> {
+    fn alternatives(&self) -> Result<Vec<Spec>, Error> {
         let specs = self.alternative.iter().map(|model| {
             let source = Source::find(model)?;
             Ok(Spec {
@@ -174,7 +176,7 @@ impl Diagnose {
     }
 
     /// The limits in SI.
-    fn limits(&self, set: &DataSet) -> Result<Vec<Limit>, Failure> {
+    fn limits(&self, set: &DataSet) -> Result<Vec<Limit>, Error> {
         let limit = |span: &Span| {
             let channel = set
                 .channels
@@ -182,7 +184,7 @@ impl Diagnose {
                 .find(|channel| channel.column == span.name);
             let channel = channel.ok_or_else(|| {
                 let columns: Vec<&str> = set.channels.iter().map(|c| c.column.as_str()).collect();
-                Failure::Usage(format!(
+                Error::Usage(format!(
                     "`--limit {}`: there is no such column; there are {}",
                     span.name,
                     columns.join(", ")
@@ -195,8 +197,8 @@ impl Diagnose {
     }
 
     /// The shipped effects and those of the user, and what is told of these.
-    fn library(&self) -> Result<(Vec<effects::Effect>, Vec<String>), Failure> {
-        let wrong = |effects::EffectError(report)| Failure::Report(report);
+    fn library(&self) -> Result<(Vec<effects::Effect>, Vec<String>), Error> {
+        let wrong = |effects::EffectError(report)| Error::Report(report);
         let mut library = effects::shipped().map_err(wrong)?;
         for kind in &self.without {
             let before = library.len();
@@ -204,7 +206,7 @@ impl Diagnose {
             if library.len() == before {
                 let mut kinds: Vec<&str> = library.iter().map(|e| e.name.as_str()).collect();
                 kinds.dedup();
-                return Err(Failure::Usage(format!(
+                return Err(Error::Usage(format!(
                     "`--without {kind}`: the library has {}",
                     kinds.join(", ")
                 )));

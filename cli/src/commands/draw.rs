@@ -2,12 +2,12 @@
 
 use std::path::{Path, PathBuf};
 
-use appell_codegen::drawing::drawing;
 use appell_codegen::{Derived, compile::report, derived};
+use appell_report::drawing::drawing;
 
-use crate::failure::Failure;
-use crate::source::Source;
 use crate::{picture, progress};
+use appell::Error;
+use appell::source::Source;
 
 /// Draws the mechanism at its initial state, as SVG.
 ///
@@ -22,7 +22,7 @@ pub(crate) struct Draw {
 }
 
 impl Draw {
-    pub(super) fn run(&self) -> Result<(), Failure> {
+    pub(super) fn run(&self) -> Result<(), Error> {
         let source = Source::find(&self.model)?;
         let spinner = progress::spinner("deriving the equations of motion");
         let Derived {

@@ -8,11 +8,11 @@ use appell_runtime::inputs::{ModelInputs, ZeroInputs};
 use appell_runtime::model::{At, Model, Quantity};
 use serde_json::{Map, Value, json};
 
-use crate::cases::{Case, read_cases};
-use crate::engine::{Engine, Equations};
-use crate::failure::Failure;
-use crate::files;
-use crate::source::Source;
+use crate::engine::{Engine, equations};
+use appell::Error;
+use appell::cases::{Case, read_cases};
+use appell::files;
+use appell::source::Source;
 
 /// Evaluates the equations at given states.
 ///
@@ -35,16 +35,16 @@ pub(crate) struct Evaluate {
 }
 
 impl Evaluate {
-    pub(super) fn run(&self) -> Result<(), Failure> {
+    pub(super) fn run(&self) -> Result<(), Error> {
         let source = Source::find(&self.model)?;
         let text = files::read(&self.cases, files::MAX_DATA)?;
-        let equations = Equations::new(&source, self.engine)?;
+        let equations = equations(&source, Some(self.engine))?;
         let model = equations.model();
         let info = model.info();
         let cases = read_cases(&self.cases.to_string_lossy(), &text, info)?;
 
         let inputs = ModelInputs::new(info, &ZeroInputs)
-            .map_err(|error| Failure::Computation(error.to_string()))?;
+            .map_err(|error| Error::Computation(error.to_string()))?;
         let mut answers = Vec::with_capacity(cases.len());
         let mut singular = Vec::new();
         for (index, case) in cases.iter().enumerate() {
@@ -84,7 +84,7 @@ impl Evaluate {
         if singular.is_empty() {
             return Ok(());
         }
-        Err(Failure::Computation(format!(
+        Err(Error::Computation(format!(
             "the equations have no finite value there; the numbers in question are written as `null`\n{}",
             singular.join("\n")
         )))

@@ -4,10 +4,11 @@ use std::path::PathBuf;
 
 use appell_gap::identify::{self, Begin, Options};
 
-use crate::engine::Equations;
-use crate::failure::Failure;
-use crate::source::Source;
-use crate::{files, identified, picture, progress, recording};
+use crate::output;
+use crate::{identified, picture, progress};
+use appell::Error;
+use appell::files;
+use appell::source::Source;
 
 /// Finds the parameters that make recordings most likely, with intervals, and tells how well the
 /// model then predicts the runs that were held out.
@@ -61,10 +62,10 @@ enum Start {
 }
 
 impl Identify {
-    pub(super) fn run(&self) -> Result<(), Failure> {
-        let set = recording::read(&self.data, Some(&self.model))?;
-        recording::refuse_slow(&set)?;
-        let equations = Equations::for_estimation(&Source::find(&self.model)?)?;
+    pub(super) fn run(&self) -> Result<(), Error> {
+        let set = appell::recording::read(&self.data, Some(&self.model))?;
+        appell::recording::refuse_slow(&set)?;
+        let equations = crate::engine::equations_for_estimation(&Source::find(&self.model)?)?;
         let spinner = progress::spinner("reading");
         let options = Options {
             free: self.free.clone(),
@@ -91,6 +92,6 @@ impl Identify {
             files::write(path, &identified::page(&set, &answer))?;
         }
         let outputs = [&self.json, &self.plot, &self.html];
-        files::print_beside(&identified::text(&set, &answer), &outputs)
+        output::print_beside(&identified::text(&set, &answer), &outputs)
     }
 }

@@ -4,10 +4,11 @@ use std::path::PathBuf;
 
 use appell_gap::inverse::{self, Options, RelationError};
 
-use crate::engine::Equations;
-use crate::failure::Failure;
-use crate::source::Source;
-use crate::{files, picture, progress, recording, relations};
+use crate::output;
+use crate::{picture, progress, relations};
+use appell::Error;
+use appell::files;
+use appell::source::Source;
 
 /// Finds the inputs of recorded motions, and parameters from the equations that the inputs leave over.
 ///
@@ -36,9 +37,9 @@ pub(crate) struct Inverse {
 }
 
 impl Inverse {
-    pub(super) fn run(&self) -> Result<(), Failure> {
-        let set = recording::read(&self.data, Some(&self.model))?;
-        let equations = Equations::for_estimation(&Source::find(&self.model)?)?;
+    pub(super) fn run(&self) -> Result<(), Error> {
+        let set = appell::recording::read(&self.data, Some(&self.model))?;
+        let equations = crate::engine::equations_for_estimation(&Source::find(&self.model)?)?;
         let options = Options {
             free: self.free.clone(),
             biased: self.bias.clone(),
@@ -47,8 +48,8 @@ impl Inverse {
         let answer = inverse::find(&set, equations.model(), &options);
         spinner.finish_and_clear();
         let answer = answer.map_err(|error| match error {
-            RelationError::Inverse(_) => Failure::Computation(error.to_string()),
-            _ => Failure::Usage(error.to_string()),
+            RelationError::Inverse(_) => Error::Computation(error.to_string()),
+            _ => Error::Usage(error.to_string()),
         })?;
         let info = equations.model().info();
         if let Some(path) = &self.json {
@@ -57,6 +58,6 @@ impl Inverse {
         if let Some(path) = &self.plot {
             picture::write(path, &relations::figure(info, &answer).to_svg())?;
         }
-        files::print_beside(&relations::text(&answer), &[&self.json, &self.plot])
+        output::print_beside(&relations::text(&answer), &[&self.json, &self.plot])
     }
 }

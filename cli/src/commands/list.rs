@@ -5,9 +5,10 @@ use std::path::PathBuf;
 use appell_models::{ALL, Shipped};
 use serde_json::{Value, json};
 
-use crate::failure::Failure;
-use crate::files;
-use crate::table::table;
+use crate::output;
+use appell::Error;
+use appell::files;
+use appell_report::text::table;
 
 /// Shows the shipped mechanisms.
 #[derive(Debug, clap::Args)]
@@ -18,7 +19,7 @@ pub(crate) struct List {
 }
 
 impl List {
-    pub(super) fn run(&self) -> Result<(), Failure> {
+    pub(super) fn run(&self) -> Result<(), Error> {
         if let Some(path) = &self.json {
             let entries = ALL.iter().map(entry).collect::<Result<Vec<_>, _>>()?;
             files::write_json(path, &json!({ "mechanisms": entries }))?;
@@ -38,7 +39,7 @@ impl List {
                 short(&info.source),
             ]);
         }
-        files::print(&table(&rows, 1..2))
+        output::print(&table(&rows, 1..2))
     }
 }
 
@@ -53,7 +54,7 @@ fn short(source: &str) -> String {
 }
 
 /// Word of the spec and number of scalar rows of each constraint.
-fn kinds(shipped: &Shipped) -> Result<Vec<(String, &'static str, usize)>, Failure> {
+fn kinds(shipped: &Shipped) -> Result<Vec<(String, &'static str, usize)>, Error> {
     let mechanism = appell_spec::load(shipped.file, shipped.spec)?.mechanism;
     let named = mechanism.constraints.into_iter().map(|constraint| {
         let (word, rows) = (constraint.kind.word(), constraint.kind.rows());
@@ -64,7 +65,7 @@ fn kinds(shipped: &Shipped) -> Result<Vec<(String, &'static str, usize)>, Failur
 
 /// What binds a mechanism: rows that the equations solve, and rows that its coordinates satisfy by
 /// themselves.
-fn constraints(shipped: &Shipped) -> Result<String, Failure> {
+fn constraints(shipped: &Shipped) -> Result<String, Error> {
     let kinds = kinds(shipped)?;
     let all: usize = kinds.iter().map(|(.., rows)| rows).sum();
     let held = all.saturating_sub(shipped.model.info().constraint_rows.len());
@@ -77,7 +78,7 @@ fn constraints(shipped: &Shipped) -> Result<String, Failure> {
     })
 }
 
-fn entry(shipped: &Shipped) -> Result<Value, Failure> {
+fn entry(shipped: &Shipped) -> Result<Value, Error> {
     let info = shipped.model.info();
     let names = |list: &[appell_runtime::model::Quantity]| -> Vec<String> {
         list.iter()

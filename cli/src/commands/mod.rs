@@ -21,7 +21,7 @@ mod simulate;
 mod stability;
 mod steady;
 
-use crate::failure::Failure;
+use appell::Error;
 
 /// The commands; each tells on itself what it does.
 #[derive(Debug, clap::Subcommand)]
@@ -49,7 +49,7 @@ pub(crate) enum Command {
 }
 
 /// Runs a command.
-pub(crate) fn run(command: Command) -> Result<(), Failure> {
+pub(crate) fn run(command: Command) -> Result<(), Error> {
     match command {
         Command::List(command) => command.run(),
         Command::New(command) => command.run(),

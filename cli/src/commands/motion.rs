@@ -7,8 +7,9 @@ use appell_gap::data::MANIFEST;
 use appell_gap::motion_capture::{self, Capture, Ride, Skeleton, Smoothed};
 use serde_json::json;
 
-use crate::failure::Failure;
-use crate::{files, recording};
+use crate::output;
+use appell::Error;
+use appell::files;
 
 /// Largest skeleton file in bytes.
 const MAX_SKELETON: u64 = 1 << 20;
@@ -34,7 +35,7 @@ pub(crate) struct Motion {
 }
 
 impl Motion {
-    pub(super) fn run(&self) -> Result<(), Failure> {
+    pub(super) fn run(&self) -> Result<(), Error> {
         let text = files::read(&self.skeleton, MAX_SKELETON)?;
         let name = self.skeleton.to_string_lossy();
         let skeleton = Skeleton::parse(&name, &text)?;
@@ -47,12 +48,13 @@ impl Motion {
             findings.extend(
                 found
                     .iter()
-                    .map(|finding| format!("{file}: {}", recording::sentence(finding))),
+                    .map(|finding| format!("{file}: {}", appell::recording::sentence(finding))),
             );
             rides.push(Ride::of(&skeleton, &capture));
             names.push(file);
         }
-        let wrong = |error: appell_runtime::signal::SamplesError| Failure::Data(error.to_string());
+        let wrong =
+            |error: appell_estimate::smoothing::SamplesError| Error::Data(error.to_string());
         let filter = motion_capture::filter(&rides).map_err(wrong)?;
         for (name, ride) in names.iter().zip(&rides) {
             let smoothed = Smoothed::of(ride, filter).map_err(wrong)?;
@@ -83,12 +85,12 @@ impl Motion {
             let _ = writeln!(text, "  {finding}");
         }
         let _ = writeln!(text, "  {}", self.out.join(MANIFEST).display());
-        files::print_beside(&text, &[&self.json])
+        output::print_beside(&text, &[&self.json])
     }
 }
 
 /// The name of a run: that of its capture.
-fn file_name(path: &Path, taken: &[String]) -> Result<String, Failure> {
+fn file_name(path: &Path, taken: &[String]) -> Result<String, Error> {
     let name = path
         .file_name()
         .unwrap_or_default()
@@ -96,7 +98,7 @@ fn file_name(path: &Path, taken: &[String]) -> Result<String, Failure> {
         .into_owned();
     if taken.contains(&name) {
         let message = format!("two captures are called {name}; a run needs a name of its own");
-        return Err(Failure::Usage(message));
+        return Err(Error::Usage(message));
     }
     Ok(name)
 }

@@ -4,8 +4,8 @@ use std::fs::OpenOptions;
 use std::io::{ErrorKind, Write as _};
 use std::path::PathBuf;
 
-use crate::failure::Failure;
-use crate::files;
+use crate::output;
+use appell::Error;
 
 /// Writes a commented spec to start from.
 #[derive(Debug, clap::Args)]
@@ -15,23 +15,23 @@ pub(crate) struct New {
 }
 
 impl New {
-    pub(super) fn run(&self) -> Result<(), Failure> {
+    pub(super) fn run(&self) -> Result<(), Error> {
         let text =
-            appell_spec::starter(&self.name).map_err(|error| Failure::Usage(error.to_string()))?;
+            appell_spec::starter(&self.name).map_err(|error| Error::Usage(error.to_string()))?;
         let path = PathBuf::from(format!("{}.toml", self.name));
         // Creation fails where the file exists: nobody's work is overwritten.
         let created = OpenOptions::new().write(true).create_new(true).open(&path);
         match created.and_then(|mut file| file.write_all(text.as_bytes())) {
-            Ok(()) => files::print(&format!(
+            Ok(()) => output::print(&format!(
                 "wrote {path}; next:\n  appell check {path}\n  appell simulate {path} --plot {name}.svg\n",
                 path = path.display(),
                 name = self.name
             )),
-            Err(cause) if cause.kind() == ErrorKind::AlreadyExists => Err(Failure::Usage(format!(
+            Err(cause) if cause.kind() == ErrorKind::AlreadyExists => Err(Error::Usage(format!(
                 "{} exists already; choose another name, or remove the file",
                 path.display()
             ))),
-            Err(cause) => Err(Failure::writing(&path)(cause)),
+            Err(cause) => Err(Error::writing(&path)(cause)),
         }
     }
 }

@@ -2,9 +2,10 @@
 
 use std::path::PathBuf;
 
-use crate::failure::Failure;
-use crate::files;
+use crate::output;
 use crate::recording;
+use appell::Error;
+use appell::files;
 
 /// Reads recordings and tells what they hold: runs, rates, gaps, the noise of each channel, and what
 /// was mended or looks wrong.
@@ -25,11 +26,11 @@ pub(crate) struct Recording {
 }
 
 impl Recording {
-    pub(super) fn run(&self) -> Result<(), Failure> {
-        let set = recording::read(&self.data, self.model.as_deref())?;
+    pub(super) fn run(&self) -> Result<(), Error> {
+        let set = appell::recording::read(&self.data, self.model.as_deref())?;
         if let Some(path) = &self.json {
             files::write_json(path, &recording::json(&set))?;
         }
-        files::print_beside(&recording::text(&set), &[&self.json])
+        output::print_beside(&recording::text(&set), &[&self.json])
     }
 }

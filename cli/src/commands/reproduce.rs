@@ -4,9 +4,12 @@ use std::path::PathBuf;
 
 use serde::Serialize;
 
-use crate::failure::{Failure, tell};
-use crate::reproduce::{self, Claim, Section};
-use crate::{files, progress};
+use crate::failure::tell;
+use crate::output;
+use crate::progress;
+use appell::Error;
+use appell::files;
+use appell_papers::book::{self, Claim, Section};
 
 /// Recomputes a paper: every equation, table and figure beside what is published, as a book.
 ///
@@ -65,7 +68,7 @@ struct Book<'a> {
 }
 
 impl Reproduce {
-    pub(super) fn run(&self) -> Result<(), Failure> {
+    pub(super) fn run(&self) -> Result<(), Error> {
         let bar = progress::parts();
         let making = |name: &str, done: usize, of: usize| {
             bar.set_length(of as u64);
@@ -73,14 +76,14 @@ impl Reproduce {
             bar.set_message(name.to_owned());
         };
         let sections = match self.paper {
-            Paper::Steering => reproduce::steering(making),
-            Paper::Euc => reproduce::euc(&self.out.join("rides"), making),
+            Paper::Steering => book::steering::book(making),
+            Paper::Euc => book::euc::book(&self.out.join("rides"), making),
         };
         bar.finish_and_clear();
         let sections = sections?;
         let title = self.paper.title();
         let file = self.out.join(self.paper.file());
-        files::write(&file, &reproduce::page(title, &sections))?;
+        files::write(&file, &book::page(title, &sections))?;
         let claims: Vec<&Claim> = sections
             .iter()
             .flat_map(|section| &section.claims)
@@ -105,7 +108,7 @@ impl Reproduce {
             book.errata,
             file.display()
         );
-        files::print_beside(&text, &[&self.json])?;
+        output::print_beside(&text, &[&self.json])?;
         let failed: Vec<&Claim> = claims.into_iter().filter(|claim| !claim.holds).collect();
         if failed.is_empty() {
             return Ok(());
@@ -116,7 +119,7 @@ impl Reproduce {
                 claim.place, claim.published, claim.ours
             ));
         }
-        Err(Failure::Computation(format!(
+        Err(Error::Computation(format!(
             "{} of {} statements did not come out as they should",
             failed.len(),
             book.claims

@@ -2,8 +2,8 @@
 
 use std::path::PathBuf;
 
-use crate::failure::Failure;
-use crate::files;
+use appell::Error;
+use appell::files;
 
 /// Writes the JSON schema of specs, for completion and checks in editors.
 ///
@@ -17,7 +17,7 @@ pub(crate) struct Schema {
 }
 
 impl Schema {
-    pub(super) fn run(&self) -> Result<(), Failure> {
+    pub(super) fn run(&self) -> Result<(), Error> {
         let schema = appell_spec::schema::json_schema();
         let text = schema.trim_end().to_owned() + "\n";
         files::write(self.out.as_deref().unwrap_or("-".as_ref()), &text)

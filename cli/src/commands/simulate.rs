@@ -2,19 +2,25 @@
 
 use std::path::{Path, PathBuf};
 
-use appell_runtime::figure::Figure;
+use appell_report::figure::Figure;
 use appell_runtime::integrate::{Ending, Options};
 use appell_runtime::model::ModelInfo;
 use appell_runtime::simulate::{Method, Response, Sampling, SimulationError, Validity};
 use appell_runtime::trajectory::{CsvOptions, Extras};
 use appell_runtime::{Simulation, Trajectory};
 
-use crate::controller::Plan;
-use crate::engine::{Engine, Equations};
-use crate::failure::{Failure, note};
-use crate::setup::{Assignment, Setup};
-use crate::source::Source;
-use crate::{feedback, files, film, picture, progress, summary, tabulated};
+use crate::engine::{Engine, equations};
+use crate::failure::note;
+use crate::output;
+use crate::{film, picture, progress, summary};
+use appell::Error;
+use appell::engine::Equations;
+use appell::files;
+use appell::inputs::controller::Plan;
+use appell::inputs::feedback;
+use appell::inputs::tabulated;
+use appell::setup::{Assignment, Setup};
+use appell::source::Source;
 
 /// Integrates the equations of motion and tells what happened.
 ///
@@ -121,21 +127,18 @@ enum OnEvent {
 }
 
 impl Simulate {
-    pub(super) fn run(&self) -> Result<(), Failure> {
+    pub(super) fn run(&self) -> Result<(), Error> {
         positive("--t-end-s", self.t_end_s)?;
         let interval = self.dt_s.unwrap_or(self.t_end_s / 1000.0);
         positive("--dt-s", interval)?;
         if self.t_end_s / interval > MOST_ROWS {
-            return Err(Failure::Usage(format!(
+            return Err(Error::Usage(format!(
                 "{} rows are too many; choose a larger `--dt-s` (at most {MOST_ROWS:.0} rows)",
                 self.t_end_s / interval
             )));
         }
         let source = Source::find(&self.model)?;
-        let equations = match self.engine {
-            Some(engine) => Equations::new(&source, engine)?,
-            None => Equations::at_hand(&source)?,
-        };
+        let equations = equations(&source, self.engine)?;
         let mut setup = Setup::new(&source.file, &source.text, equations.model().info())?;
         let validity = self.validity(setup.info)?;
         setup.watch_ranges = validity.ranges == Response::Stop;
@@ -202,23 +205,23 @@ impl Simulate {
         if undriven && failure.is_none() && summary::rests(&trajectory) {
             told += &hint(&setup);
         }
-        files::print_beside(&told, &[&self.csv, &self.plot, &self.html, &self.json])?;
+        output::print_beside(&told, &[&self.csv, &self.plot, &self.html, &self.json])?;
         match failure {
             None => Ok(()),
-            Some(reason) => Err(Failure::Computation(reason)),
+            Some(reason) => Err(Error::Computation(reason)),
         }
     }
 
     /// What is watched, and what happens then.
-    fn validity(&self, info: &ModelInfo) -> Result<Validity, Failure> {
+    fn validity(&self, info: &ModelInfo) -> Result<Validity, Error> {
         if let Some(friction) = self.friction {
             if !(friction.is_finite() && friction >= 0.0) {
-                return Err(Failure::Usage(format!(
+                return Err(Error::Usage(format!(
                     "`--friction {friction}` must be a number that is not negative"
                 )));
             }
             if !info.contacts.iter().any(|contact| contact.grips) {
-                return Err(Failure::Usage(
+                return Err(Error::Usage(
                     "`--friction`: the mechanism has no rolling contact whose forces can be told"
                         .to_owned(),
                 ));
@@ -246,11 +249,11 @@ impl Simulate {
 /// Rows of a trajectory that fit into memory anywhere.
 const MOST_ROWS: f64 = 2e6;
 
-fn positive(flag: &str, value: f64) -> Result<(), Failure> {
+fn positive(flag: &str, value: f64) -> Result<(), Error> {
     if value.is_finite() && value > 0.0 {
         return Ok(());
     }
-    Err(Failure::Usage(format!(
+    Err(Error::Usage(format!(
         "`{flag} {value}` must be a positive number of seconds"
     )))
 }
@@ -295,7 +298,7 @@ pub(super) struct Run<'a> {
 
 impl Run<'_> {
     /// The motion, and why it ends early if it does.
-    pub(super) fn run(&self, plan: Plan) -> Result<(Trajectory, Option<String>), Failure> {
+    pub(super) fn run(&self, plan: Plan) -> Result<(Trajectory, Option<String>), Error> {
         let controller = plan.controller(self.setup, self.t_end)?;
         let clock = progress::clock(self.t_end);
         let simulation = Simulation {
@@ -326,7 +329,7 @@ impl Run<'_> {
                     SimulationError::Integration { trajectory, .. } => {
                         Ok((*trajectory, Some(reason)))
                     }
-                    _ => Err(Failure::Usage(reason)),
+                    _ => Err(Error::Usage(reason)),
                 }
             }
         }
@@ -334,6 +337,6 @@ impl Run<'_> {
 }
 
 /// Writes a trajectory as CSV.
-pub(super) fn write_csv(path: &Path, trajectory: &Trajectory) -> Result<(), Failure> {
+pub(super) fn write_csv(path: &Path, trajectory: &Trajectory) -> Result<(), Error> {
     files::write_with(path, |to| trajectory.write_csv(to, CsvOptions::default()))
 }

@@ -1,18 +1,19 @@
 //! `appell stability`
 
-use appell_runtime::analysis::{Branch, Stability, Term, loci};
-use appell_runtime::figure::{Figure, Panel, Series};
-use appell_runtime::spectrum::Complex;
+use appell_analysis::{Branch, Stability, Term, loci};
+use appell_report::figure::{Figure, Panel, Series};
+use appell_spectra::spectrum::Complex;
 
 mod plane;
 
 use plane::{Grid, Plane};
 
 use super::steady::{marks, write};
-use crate::failure::Failure;
-use crate::files;
-use crate::motions::{Answer, Asked, Question, told};
-use crate::table::table;
+use crate::motions::{self, Question, told};
+use crate::output;
+use appell::Error;
+use appell::steady::{Answer, Asked};
+use appell_report::text::table;
 
 /// Eigenvalues of steady motions, and where their stability changes.
 ///
@@ -42,12 +43,12 @@ pub(crate) struct StabilityCommand {
 }
 
 impl StabilityCommand {
-    pub(super) fn run(&self) -> Result<(), Failure> {
+    pub(super) fn run(&self) -> Result<(), Error> {
         self.question.with(|asked, setup| {
             if let Some(chart) = &self.chart {
                 return self.draw(asked, &chart.axes(setup, self.grid)?);
             }
-            let answer = asked.answer()?;
+            let answer = motions::answer(asked)?;
             let text = told::structure(asked)
                 + &match &answer {
                     Answer::Motions(motions) => {
@@ -57,7 +58,7 @@ impl StabilityCommand {
                     Answer::Branches(branches) => told::branches(asked, branches),
                 };
             write(&self.question, asked, &answer, figure)?;
-            files::print_beside(
+            output::print_beside(
                 &text,
                 &[&self.question.csv, &self.question.json, &self.question.plot],
             )

@@ -1,12 +1,15 @@
 //! `appell steady`
 
-use appell_runtime::analysis::{Branch, Term};
-use appell_runtime::figure::{Figure, Panel, Series};
+use appell_analysis::{Branch, Term};
+use appell_report::figure::{Figure, Panel, Series};
 
-use crate::failure::{Failure, note};
-use crate::files;
-use crate::motions::{Answer, Asked, Question, export, told};
+use crate::failure::note;
+use crate::motions::{self, Question, told};
+use crate::output;
 use crate::picture;
+use appell::Error;
+use appell::files;
+use appell::steady::{Answer, Asked, export};
 
 /// Finds steady motions: those whose essential states rest while hidden coordinates run on.
 ///
@@ -21,16 +24,16 @@ pub(crate) struct Steady {
 }
 
 impl Steady {
-    pub(super) fn run(&self) -> Result<(), Failure> {
+    pub(super) fn run(&self) -> Result<(), Error> {
         self.question.with(|asked, _| {
-            let answer = asked.answer()?;
+            let answer = motions::answer(asked)?;
             let text = told::structure(asked)
                 + &match &answer {
                     Answer::Motions(motions) => told::motions(asked, motions),
                     Answer::Branches(branches) => told::branches(asked, branches),
                 };
             write(&self.question, asked, &answer, figure)?;
-            files::print_beside(
+            output::print_beside(
                 &text,
                 &[&self.question.csv, &self.question.json, &self.question.plot],
             )
@@ -44,7 +47,7 @@ pub(super) fn write(
     asked: &Asked<'_>,
     answer: &Answer,
     figure: impl Fn(&Asked<'_>, Term, &[Branch]) -> Figure,
-) -> Result<(), Failure> {
+) -> Result<(), Error> {
     if let Some(path) = &question.json {
         files::write_json(path, &export::json(asked, answer))?;
     }
@@ -114,11 +117,11 @@ pub(super) fn marks(
     asked: &Asked<'_>,
     along: Term,
     branches: &[Branch],
-) -> Vec<appell_runtime::figure::Mark> {
+) -> Vec<appell_report::figure::Mark> {
     let quantity = along.quantity(asked.problem.model().info());
     let specials = branches.iter().flat_map(|branch| &branch.specials);
     specials
-        .map(|special| appell_runtime::figure::Mark {
+        .map(|special| appell_report::figure::Mark {
             x: quantity.to_unit(special.motion.value),
             about: format!(
                 "{} = {} {}",

@@ -2,7 +2,7 @@
 
 use appell_gap::diagnose::{Hypothesis, Report};
 
-use crate::table::number;
+use appell_report::text::number;
 
 /// Factors between units that people mix up.
 const FACTORS: [(f64, &str); 6] = [

@@ -2,15 +2,15 @@
 
 use std::fmt::Write as _;
 
-use appell_codegen::drawing::marked;
 use appell_codegen::{Derived, derived};
 use appell_gap::data::{DataSet, Part};
 use appell_gap::diagnose::{Ahead, HowFar, Hypothesis, Report, Verdict, Where};
+use appell_report::drawing::marked;
 
 use super::doubt::doubts;
 use super::numbers::{measured, percent, short};
 use super::{hinted, joined, left_out, plots, sentence};
-use crate::table::with_unit;
+use appell_report::text::with_unit;
 
 const STYLE: &str = include_str!("page.css");
 /// An effect that betters predictions by less is of little matter.
@@ -465,7 +465,7 @@ fn recordings(set: &DataSet, report: &Report) -> String {
         let _ = writeln!(html, "<p class=\"faint\">{}.</p>", escaped(&rows));
     }
     for finding in &set.findings {
-        let told = escaped(&crate::recording::sentence(finding));
+        let told = escaped(&appell::recording::sentence(finding));
         let _ = writeln!(html, "<p class=\"faint\">{told}</p>");
     }
     html

@@ -7,9 +7,9 @@ mod data;
 use appell_codegen::compile::report;
 use appell_runtime::Trajectory;
 
-use crate::engine::Equations;
-use crate::failure::Failure;
-use crate::setup::Setup;
+use appell::Error;
+use appell::engine::Equations;
+use appell::setup::Setup;
 
 /// The library that draws in space, see `vendor/three`.
 const THREE: &str = include_str!("../../vendor/three/three.min.js");
@@ -34,7 +34,7 @@ pub(crate) fn page(
     setup: &Setup<'_>,
     motion: &Trajectory,
     ending: Option<&str>,
-) -> Result<String, Failure> {
+) -> Result<String, Error> {
     let data = data::json(&setup.mechanism, equations.model(), motion, ending)
         .map_err(|findings| report(&setup.mechanism, setup.spec, &findings))?;
     // The text of a spec stays text: no `<` leaves the data, so that nothing in it ends the element.

@@ -265,7 +265,7 @@ pub(crate) fn declared_ranges(
 
 /// A parameter whose limits admit both signs may be zero; any other keeps the sign of its value: a
 /// wheel of radius zero is another mechanism.
-pub(crate) fn parameter_ranges(
+pub fn parameter_ranges(
     graph: &Graph,
     mechanism: &Mechanism,
     symbols: &Symbols,
@@ -290,7 +290,7 @@ pub(crate) fn parameter_ranges(
 }
 
 /// The identity test draws its points from the spec, so that every run draws the same.
-pub(crate) fn seed(mechanism: &Mechanism) -> u64 {
+pub fn seed(mechanism: &Mechanism) -> u64 {
     // FNV-1a: short and fixed for all time. A spec made to deceive the test deceives its author only.
     mechanism
         .name

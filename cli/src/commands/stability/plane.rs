@@ -4,17 +4,19 @@ use std::fmt::Write as _;
 use std::io::{self, Write};
 use std::str::FromStr;
 
-use appell_runtime::analysis::{Axis, Boundary, Cell, Chart, Edge, Verdict};
-use appell_runtime::figure::Map;
+use appell_analysis::{Axis, Boundary, Cell, Chart, Edge, Verdict};
+use appell_report::figure::Map;
 use serde_json::{Value, json};
 
 use super::StabilityCommand;
-use crate::failure::Failure;
-use crate::files;
-use crate::motions::regions::{self, Shown};
-use crate::motions::{Asked, Span, export, told};
+use crate::motions::{self, Span, told};
+use crate::output;
 use crate::picture;
-use crate::setup::Setup;
+use appell::Error;
+use appell::files;
+use appell::setup::Setup;
+use appell::steady::regions::{self, Shown};
+use appell::steady::{Asked, export};
 
 /// `X=FROM..TO,Y=FROM..TO` as it was given.
 #[derive(Debug, Clone)]
@@ -53,11 +55,11 @@ impl FromStr for Grid {
 
 impl Plane {
     /// The axes in SI.
-    pub(super) fn axes(&self, setup: &Setup<'_>, grid: Grid) -> Result<[Axis; 2], Failure> {
+    pub(super) fn axes(&self, setup: &Setup<'_>, grid: Grid) -> Result<[Axis; 2], Error> {
         let axis = |k: usize| {
             let (term, range) = self.0[k].resolve(setup, "--chart")?;
             let count = grid.0[k];
-            Ok::<_, Failure>(Axis { term, range, count })
+            Ok::<_, Error>(Axis { term, range, count })
         };
         Ok([axis(0)?, axis(1)?])
     }
@@ -65,8 +67,8 @@ impl Plane {
 
 impl StabilityCommand {
     /// Computes the chart, tells it and writes its files.
-    pub(super) fn draw(&self, asked: &Asked<'_>, axes: &[Axis; 2]) -> Result<(), Failure> {
-        let chart = asked.chart(*axes)?;
+    pub(super) fn draw(&self, asked: &Asked<'_>, axes: &[Axis; 2]) -> Result<(), Error> {
+        let chart = motions::chart(asked, *axes)?;
         let question = &self.question;
         if let Some(path) = &question.json {
             files::write_json(path, &json(asked, &chart))?;
@@ -78,7 +80,7 @@ impl StabilityCommand {
             picture::write(path, &map(asked, &chart).to_svg())?;
         }
         let text = told::structure(asked) + &text(asked, &chart);
-        files::print_beside(&text, &[&question.csv, &question.json, &question.plot])
+        output::print_beside(&text, &[&question.csv, &question.json, &question.plot])
     }
 }
 
@@ -130,7 +132,7 @@ fn boundary_json(boundary: &Boundary) -> Value {
     let folds =
         folds.map(|fold| json!({ "axis": fold.axis, "at": fold.at, "decides": fold.decides }));
     json!({
-        "kind": export::kind(appell_runtime::analysis::Kind::Critical(boundary.change)),
+        "kind": export::kind(appell_analysis::Kind::Critical(boundary.change)),
         "decides": boundary.decides,
         "points": boundary.points,
         "folds": folds.collect::<Vec<_>>(),

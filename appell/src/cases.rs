@@ -1,0 +1,273 @@
+//! The cases of `appell evaluate`, with every mistake told at its place in the file.
+
+use std::collections::BTreeSet;
+use std::fmt;
+
+use appell_runtime::model::{ModelInfo, Quantity};
+use appell_spec::expr::Span;
+use appell_spec::{Code, Diagnostic, Report};
+use serde::de::{Deserialize, Deserializer, MapAccess, Visitor};
+use serde_json::value::RawValue;
+
+use crate::Error;
+use crate::setup::instead;
+
+/// Where the equations are evaluated, in SI.
+#[derive(Debug)]
+pub struct Case {
+    /// Time in s.
+    pub t: f64,
+    /// State.
+    pub x: Vec<f64>,
+    /// Inputs; those left out are zero, or the value of their signal.
+    pub u: Vec<Option<f64>>,
+    /// Parameters.
+    pub p: Vec<f64>,
+}
+
+/// The entries of a JSON object in the order of the text; the values keep their places.
+#[derive(Default)]
+struct Object<'a>(Vec<(String, &'a RawValue)>);
+
+impl<'a> Object<'a> {
+    fn get(&self, key: &str) -> Option<&'a RawValue> {
+        let found = self.0.iter().find(|(name, _)| name == key);
+        found.map(|(_, value)| *value)
+    }
+}
+
+impl<'de> Deserialize<'de> for Object<'de> {
+    fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
+        struct Entries;
+        impl<'de> Visitor<'de> for Entries {
+            type Value = Object<'de>;
+
+            fn expecting(&self, to: &mut fmt::Formatter<'_>) -> fmt::Result {
+                to.write_str("an object")
+            }
+
+            fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Object<'de>, A::Error> {
+                let mut entries = Vec::new();
+                while let Some(entry) = map.next_entry()? {
+                    entries.push(entry);
+                }
+                Ok(Object(entries))
+            }
+        }
+        from.deserialize_map(Entries)
+    }
+}
+
+/// Most findings told for one file.
+const MOST: usize = 20;
+
+/// Reads `{"cases": [{"parameters": {…}, "state": {…}, "inputs": {…}, "t": 0}, …]}`.
+pub fn read_cases(file: &str, text: &str, info: &ModelInfo) -> Result<Vec<Case>, Error> {
+    let mut reader = Reader {
+        text,
+        findings: Vec::new(),
+    };
+    let cases = match serde_json::from_str(text) {
+        Ok(top) => reader.cases(top, info),
+        Err(error) => {
+            reader.broken(&error);
+            Vec::new()
+        }
+    };
+    if reader.findings.is_empty() {
+        Ok(cases)
+    } else {
+        Err(Report::new(file, text, reader.findings).into())
+    }
+}
+
+struct Reader<'a> {
+    text: &'a str,
+    findings: Vec<Diagnostic>,
+}
+
+impl<'a> Reader<'a> {
+    /// JSON that does not parse ends at its first mistake.
+    fn broken(&mut self, error: &serde_json::Error) {
+        let line = error.line().saturating_sub(1);
+        let before: usize = self
+            .text
+            .split_inclusive('\n')
+            .take(line)
+            .map(str::len)
+            .sum();
+        let at = before + error.column().saturating_sub(1);
+        // A text that ends too early has its mistake after its last character.
+        let end = self.text.trim_end().len();
+        let at = if error.is_eof() { end } else { at.min(end) };
+        let message = error.to_string();
+        let message = message.split(" at line ").next().unwrap_or_default();
+        let help = "write {\"cases\": [{\"state\": {…}}]}";
+        self.tell(
+            Code::WrongType,
+            format!("this is not JSON: {message}"),
+            at..at,
+            help,
+        );
+    }
+
+    fn cases(&mut self, top: &'a RawValue, info: &ModelInfo) -> Vec<Case> {
+        let Some(object) = self.object(top, "an object") else {
+            return Vec::new();
+        };
+        self.keys(&object, self.head(top), &["cases"], "cases");
+        let list = object.get("cases");
+        let list = list.and_then(|list| self.parse::<Vec<&RawValue>>(list, "a list of cases"));
+        let mut cases = Vec::new();
+        for case in list.unwrap_or_default() {
+            if self.findings.len() >= MOST {
+                break;
+            }
+            cases.push(self.case(case, info));
+        }
+        cases
+    }
+
+    /// Where a value stands: it is a part of the text.
+    fn span(&self, raw: &RawValue) -> Span {
+        let start = (raw.get().as_ptr() as usize).saturating_sub(self.text.as_ptr() as usize);
+        start..(start + raw.get().len()).min(self.text.len())
+    }
+
+    /// The start of a value; whole objects would fill the screen.
+    fn head(&self, raw: &RawValue) -> Span {
+        let span = self.span(raw);
+        span.start..(span.start + 1).min(span.end)
+    }
+
+    fn tell(&mut self, code: Code, message: impl Into<String>, at: Span, help: impl Into<String>) {
+        self.findings
+            .push(Diagnostic::error(code, message).at(at, "").help(help));
+    }
+
+    fn parse<T: Deserialize<'a>>(&mut self, raw: &'a RawValue, wanted: &str) -> Option<T> {
+        let parsed = serde_json::from_str(raw.get()).ok();
+        if parsed.is_none() {
+            self.tell(
+                Code::WrongType,
+                format!("this is not {wanted}"),
+                self.head(raw),
+                format!("write {wanted}"),
+            );
+        }
+        parsed
+    }
+
+    /// An object, each of whose keys stands there once.
+    fn object(&mut self, raw: &'a RawValue, wanted: &str) -> Option<Object<'a>> {
+        let object: Object<'a> = self.parse(raw, wanted)?;
+        let mut seen = BTreeSet::new();
+        for (key, value) in &object.0 {
+            if !seen.insert(key.as_str()) {
+                let message = format!("the key `{key}` stands here twice");
+                let help = "remove one of the two";
+                self.tell(Code::DuplicateName, message, self.head(value), help);
+            }
+        }
+        Some(object)
+    }
+
+    fn keys(&mut self, object: &Object<'_>, at: Span, known: &[&str], required: &str) {
+        for (key, value) in &object.0 {
+            if !known.contains(&key.as_str()) {
+                let help = format!("the keys are {}", known.join(", "));
+                let message = format!("unknown key `{key}`");
+                self.tell(Code::UnknownKey, message, self.head(value), help);
+            }
+        }
+        if object.get(required).is_none() {
+            self.tell(
+                Code::MissingKey,
+                format!("the key `{required}` is missing"),
+                at,
+                format!("add \"{required}\""),
+            );
+        }
+    }
+
+    fn case(&mut self, raw: &'a RawValue, info: &ModelInfo) -> Case {
+        let object = self.object(raw, "an object").unwrap_or_default();
+        let known = ["parameters", "state", "inputs", "t"];
+        self.keys(&object, self.head(raw), &known, "state");
+        let mut numbers = |key: &str, what: &str, list: &[Quantity]| match object.get(key) {
+            Some(raw) => self.numbers(raw, what, list),
+            None => vec![None; list.len()],
+        };
+        let state = numbers("state", "state", &info.states);
+        let u = numbers("inputs", "input", &info.inputs);
+        let parameters = numbers("parameters", "parameter", &info.parameters);
+        if let Some(raw) = object.get("state") {
+            let given = info.states.iter().zip(&state);
+            let missing: Vec<&str> = given
+                .filter(|(_, value)| value.is_none())
+                .map(|(q, _)| q.name.as_ref())
+                .collect();
+            // A wrong number has been told already.
+            let named: Object<'a> = serde_json::from_str(raw.get()).unwrap_or_default();
+            let missing: Vec<&str> = missing
+                .into_iter()
+                .filter(|name| named.get(name).is_none())
+                .collect();
+            if !missing.is_empty() {
+                let message = format!("the state lacks {}", missing.join(", "));
+                self.tell(
+                    Code::MissingKey,
+                    message,
+                    self.head(raw),
+                    "give a number in SI for every state",
+                );
+            }
+        }
+        let t = object.get("t").and_then(|raw| self.number(raw));
+        Case {
+            t: t.unwrap_or(0.0),
+            x: state
+                .into_iter()
+                .map(|value| value.unwrap_or(0.0))
+                .collect(),
+            u,
+            p: parameters
+                .iter()
+                .zip(info.parameters.iter())
+                .map(|(v, q)| v.unwrap_or(q.value))
+                .collect(),
+        }
+    }
+
+    /// Numbers by name, in the order of a list.
+    fn numbers(&mut self, raw: &'a RawValue, what: &str, list: &[Quantity]) -> Vec<Option<f64>> {
+        let mut values = vec![None; list.len()];
+        let object = self.object(raw, "an object of numbers").unwrap_or_default();
+        for (name, raw) in object.0 {
+            if let Some(index) = list.iter().position(|quantity| quantity.name == name) {
+                values[index] = self.number(raw);
+                continue;
+            }
+            let names = list.iter().map(|quantity| quantity.name.as_ref());
+            let help = instead(&name, names);
+            let message = format!("there is no {what} `{name}`");
+            self.tell(Code::UnknownName, message, self.span(raw), help);
+        }
+        values
+    }
+
+    fn number(&mut self, raw: &'a RawValue) -> Option<f64> {
+        let number: Option<f64> = serde_json::from_str(raw.get())
+            .ok()
+            .filter(|x: &f64| x.is_finite());
+        if number.is_none() {
+            self.tell(
+                Code::WrongType,
+                "this is not a finite number",
+                self.head(raw),
+                "write a number in SI",
+            );
+        }
+        number
+    }
+}

@@ -1,0 +1,110 @@
+//! Conditions of a steady motion from the command line.
+
+use appell_codegen::mechanics::Derivation;
+use appell_codegen::mechanics::expressions::Lowering;
+use appell_codegen::symbolic::Expr;
+use appell_spec::mechanism::Mechanism;
+use appell_spec::units::{self, Unit};
+use appell_spec::{Report, Scope, Snippet, formula};
+
+use crate::Error;
+use crate::setup::{Assignment, bracketed, unknown};
+
+/// Symbols with their values, from texts such as `theta=0, dot(psi)=0`.
+pub fn conditions(
+    flag: &str,
+    spec: &str,
+    mechanism: &Mechanism,
+    derivation: &mut Derivation,
+    texts: &[String],
+) -> Result<Vec<(Expr, Expr)>, Error> {
+    let mut conditions = Vec::new();
+    for text in texts.iter().flat_map(|text| parts(text)) {
+        let Assignment { name, value } = text
+            .parse()
+            .map_err(|help| Error::Usage(format!("{flag} {text}: {help}")))?;
+        let (symbol, unit) = quantity(mechanism, derivation, &name)?;
+        let label = format!("{flag} {name}");
+        let value = bracketed(&value);
+        let snippet = Snippet::alone(&value);
+        let read = formula(spec, &snippet, "the value", Scope::Motion, &unit);
+        let read = read.map_err(|findings| {
+            Error::Expression(Box::new(Report::new(&label, value.as_ref(), findings)))
+        })?;
+        let lowering = Lowering {
+            symbols: &derivation.symbols,
+            rates: &derivation.symbols.rates,
+        };
+        let lowered = lowering.lower(&mut derivation.algebra.graph, &read);
+        let lowered =
+            lowered.map_err(|_| Error::Usage(format!("{label}: `{value}` divides by zero")))?;
+        conditions.push((symbol, lowered));
+    }
+    Ok(conditions)
+}
+
+/// Parts between the commas outside of brackets.
+fn parts(text: &str) -> Vec<&str> {
+    let mut depth = 0_usize;
+    let between = |c: char| {
+        match c {
+            '(' | '[' => depth += 1,
+            ')' | ']' => depth = depth.saturating_sub(1),
+            _ => {}
+        }
+        c == ',' && depth == 0
+    };
+    text.split(between).map(str::trim).collect()
+}
+
+/// Symbol and unit of a state, an input, or a rate: `psi_dot` or `dot(psi)`.
+fn quantity(
+    mechanism: &Mechanism,
+    derivation: &Derivation,
+    name: &str,
+) -> Result<(Expr, Unit), Error> {
+    let symbols = &derivation.symbols;
+    let speeds = mechanism.pseudo_velocities.iter().map(|w| &w.label);
+    let coordinates = || mechanism.coordinates.iter().map(|q| &q.label);
+    let inputs = mechanism.inputs.iter().map(|u| &u.label);
+    let named = speeds.zip(&symbols.speeds);
+    let named = named.chain(coordinates().zip(&symbols.coordinates));
+    let named = named.chain(inputs.zip(&symbols.inputs));
+    if let Some((label, &symbol)) = named.clone().find(|(label, _)| label.name == name) {
+        return Ok((symbol, label.unit.clone()));
+    }
+    let inner = name.strip_prefix("dot(").and_then(|n| n.strip_suffix(')'));
+    let inner = inner.or_else(|| name.strip_suffix("_dot")).map(str::trim);
+    let rate = coordinates()
+        .zip(&symbols.rates)
+        .find(|(label, _)| Some(label.name.as_str()) == inner);
+    if let Some((label, &symbol)) = rate {
+        return Ok((symbol, per_second(&label.unit)));
+    }
+    let rates: Vec<String> = coordinates()
+        .map(|label| format!("dot({})", label.name))
+        .collect();
+    let known: Vec<&str> = named
+        .map(|(label, _)| label.name.as_str())
+        .chain(rates.iter().map(String::as_str))
+        .collect();
+    let message = unknown(name, "state, rate or input", known.into_iter());
+    Err(Error::Usage(message))
+}
+
+/// Plain numbers for a rate are in the unit of its coordinate per second.
+fn per_second(unit: &Unit) -> Unit {
+    let written = format!("({})/s", unit.text);
+    units::parse(&written).unwrap_or_else(|_| unit.clone())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn commas_in_brackets_do_not_part() {
+        let text = "a=0, b=atan2(1, c[m]),d=2";
+        assert_eq!(parts(text), ["a=0", "b=atan2(1, c[m])", "d=2"]);
+    }
+}

@@ -1,0 +1,252 @@
+//! From a steady motion to gains.
+
+use appell_analysis::Point;
+use appell_analysis::control::controllability::Controllability;
+use appell_analysis::control::operating_point::{MotionEquations, OperatingPoint};
+use appell_analysis::control::reduction::{Subsystem, independent_states, reduce};
+use appell_analysis::control::sampled::Sampling;
+use appell_analysis::control::{lqr, robust_placement};
+use appell_runtime::model::Model;
+use nalgebra::{Complex, DMatrix};
+
+use super::ask::GivenInputs;
+use super::explain;
+use crate::Error;
+use crate::setup::Setup;
+
+/// What is asked for.
+#[derive(Debug, Clone)]
+pub struct Request {
+    /// The inputs of the law.
+    pub inputs: Vec<usize>,
+    /// The states that are fed back; none where they are to be chosen.
+    pub outputs: Vec<usize>,
+    /// How gains are found.
+    pub method: Method,
+    /// When a sampled controller measures and acts.
+    pub sampling: Option<Sampling>,
+}
+
+/// How gains are found.
+#[derive(Debug, Clone)]
+pub enum Method {
+    /// There is no law.
+    None,
+    /// Poles of the closed loop in 1/s.
+    Poles(Vec<Complex<f64>>),
+    /// Diagonal weights.
+    Weights {
+        /// Q.
+        outputs: Vec<f64>,
+        /// R.
+        inputs: Vec<f64>,
+    },
+}
+
+/// What came out, in SI.
+#[derive(Debug)]
+pub struct Design {
+    /// State on the steady motion.
+    pub x: Vec<f64>,
+    /// Declared inputs on the steady motion.
+    pub u: Vec<f64>,
+    /// Parameters.
+    pub p: Vec<f64>,
+    /// Rates of the states: positions and angles may run on.
+    pub rates: Vec<f64>,
+    /// A and B about it.
+    pub equations: MotionEquations,
+    /// What the inputs reach.
+    pub controllability: Controllability,
+    /// The states that are fed back, by their index in the model.
+    pub outputs: Vec<usize>,
+    /// Their equations.
+    pub subsystem: Subsystem,
+    /// The gains.
+    pub law: Option<Law>,
+}
+
+/// Gains and what they achieve.
+#[derive(Debug)]
+pub struct Law {
+    /// A row for each input, a column for each output and then for each pending input.
+    pub gain: DMatrix<f64>,
+    /// Poles of the closed loop: in 1/s, or z where it is sampled.
+    pub poles: Vec<Complex<f64>>,
+    /// When it measures and acts.
+    pub sampling: Option<Sampling>,
+    /// How exactly the equations of the design are solved.
+    pub residual: f64,
+    /// Condition number of the eigenvectors, where poles were placed.
+    pub condition: Option<f64>,
+}
+
+/// A state with a larger rate, in SI, runs on along the motion.
+const RUNS: f64 = 1e-6;
+
+impl Design {
+    /// The rate of a state that runs on along the motion; 0 for the others.
+    pub fn running(&self, state: usize) -> f64 {
+        let rate = self.rates[state];
+        if rate.abs() > RUNS { rate } else { 0.0 }
+    }
+}
+
+/// Designs a law about a steady motion, or tells only what the inputs reach.
+pub fn design(
+    model: &dyn Model,
+    setup: &Setup<'_>,
+    given: &GivenInputs,
+    request: &Request,
+) -> Result<Design, Error> {
+    let mut point = OperatingPoint::new(model);
+    point.x.clone_from(&setup.initial);
+    point.p.clone_from(&setup.parameters);
+    let named = |input: &usize| given.iter().any(|(other, _)| other == input);
+    for &(input, value) in given {
+        point.u[input] = value;
+    }
+    let open: Vec<usize> = (0..point.u.len()).filter(|input| !named(input)).collect();
+    let told = |error| explain::operating_point(&error, setup);
+    point.hold(&open).map_err(told)?;
+    let equations = point.equations(&request.inputs).map_err(told)?;
+    let controllability = Controllability::of(&equations.system)
+        .map_err(|error| Error::Computation(error.to_string()))?;
+    let rates = rates(model, &point);
+    let outputs = outputs(setup, &equations, &rates, &request.outputs)?;
+    let subsystem = reduce(&equations.system, &outputs)
+        .map_err(|error| explain::reduction(&error, &equations, setup))?;
+    let law = law(&subsystem, request)?;
+    Ok(Design {
+        x: point.x,
+        u: point.u,
+        p: point.p,
+        rates,
+        controllability,
+        outputs: outputs
+            .iter()
+            .map(|&place| equations.states[place])
+            .collect(),
+        equations,
+        subsystem,
+        law,
+    })
+}
+
+/// Rates of the states on the motion.
+fn rates(model: &dyn Model, point: &OperatingPoint<'_>) -> Vec<f64> {
+    let mut at = Point {
+        x: point.x.clone(),
+        p: point.p.clone(),
+        ..Point::initial(model)
+    };
+    at.u[..point.u.len()].copy_from_slice(&point.u);
+    at.rates(model)
+}
+
+/// Places of the outputs among the states of the equations: those that were asked for, or as many
+/// as the inputs reach.
+fn outputs(
+    setup: &Setup<'_>,
+    equations: &MotionEquations,
+    rates: &[f64],
+    asked: &[usize],
+) -> Result<Vec<usize>, Error> {
+    let name = |state: usize| &setup.info.states[state].name;
+    if asked.is_empty() {
+        // What rests before what runs on; coordinates that the accelerations feel, the other
+        // coordinates, pseudo-velocities.
+        let (states, a) = (&equations.states, &equations.system.a);
+        let is_speed = |place: usize| states[place] < setup.info.speeds;
+        let is_felt = |place: usize| {
+            let mut speeds = (0..states.len()).filter(|&row| is_speed(row));
+            speeds.any(|row| a[(row, place)] != 0.0)
+        };
+        let mut candidates: Vec<usize> = (0..states.len()).collect();
+        candidates.retain(|place| !equations.varying.contains(place));
+        let runs = |place: usize| rates[states[place]].abs() > RUNS;
+        candidates.sort_by_key(|&place| (runs(place), is_speed(place), !is_felt(place)));
+        let mut chosen = independent_states(&equations.system, &candidates);
+        chosen.sort_unstable();
+        if chosen.is_empty() {
+            return Err(Error::Usage("the inputs move no state here".to_owned()));
+        }
+        return Ok(chosen);
+    }
+    let place = |&state: &usize| {
+        let place = equations.states.iter().position(|&other| other == state);
+        let place = place.ok_or_else(|| {
+            Error::Usage(format!(
+                "--outputs: `{}` follows from other coordinates by the position constraints; feed \
+                 those back",
+                name(state)
+            ))
+        })?;
+        if equations.varying.contains(&place) {
+            return Err(Error::Usage(format!(
+                "--outputs: the equation of `{}` changes along this motion, so that constant gains \
+                 cannot be designed for it; leave it out",
+                name(state)
+            )));
+        }
+        Ok(place)
+    };
+    asked.iter().map(place).collect()
+}
+
+fn law(subsystem: &Subsystem, request: &Request) -> Result<Option<Law>, Error> {
+    let (system, sampling) = (&subsystem.system, request.sampling);
+    let (n, m) = (system.order(), system.inputs());
+    let law = match &request.method {
+        Method::None => return Ok(None),
+        Method::Poles(poles) => {
+            let poles = match poles[..] {
+                [single] if single.im.abs() <= 0.0 => vec![single; n],
+                _ => poles.clone(),
+            };
+            let placed = match sampling {
+                None => robust_placement::place(system, &poles),
+                Some(sampling) => sampling.place(system, &poles),
+            };
+            let placed = placed.map_err(|error| explain::placement(&error))?;
+            Law {
+                gain: placed.gain,
+                poles: placed.poles,
+                sampling,
+                residual: placed.residual,
+                condition: Some(placed.condition),
+            }
+        }
+        Method::Weights { outputs, inputs } => {
+            let (q, r) = (diagonal("Q", outputs, n)?, diagonal("R", inputs, m)?);
+            let regulator = match sampling {
+                None => lqr::continuous(system, &q, &r),
+                Some(sampling) => sampling.regulate(system, &q, &r),
+            };
+            let regulator = regulator.map_err(|error| explain::riccati(&error))?;
+            Law {
+                gain: regulator.gain,
+                poles: regulator.poles,
+                sampling,
+                residual: regulator.residual,
+                condition: None,
+            }
+        }
+    };
+    Ok(Some(law))
+}
+
+fn diagonal(name: &str, weights: &[f64], count: usize) -> Result<DMatrix<f64>, Error> {
+    let weights = match weights {
+        [single] => vec![*single; count],
+        _ => weights.to_vec(),
+    };
+    if weights.len() == count {
+        return Ok(lqr::weights(&weights));
+    }
+    let each = if name == "Q" { "outputs" } else { "inputs" };
+    Err(Error::Usage(format!(
+        "--lqr: {} weights in {name} for {count} {each}; write one for each, or a single one for all",
+        weights.len()
+    )))
+}

@@ -1,0 +1,177 @@
+//! Expressions given at run time, evaluated with the names of a mechanism.
+
+use appell_codegen::jit::{NativeFunction, Sizes};
+use appell_codegen::mechanics::expressions::Lowering;
+use appell_codegen::mechanics::symbols::{Symbols, ids};
+use appell_codegen::program::{Arguments, Array, Function, FunctionKind, Layout, Program};
+use appell_codegen::schedule::{Schedule, interpret, pi, schedule};
+use appell_codegen::symbolic::{Expr, Graph};
+use appell_runtime::Signal;
+use appell_runtime::model::{At, ModelInfo};
+use appell_runtime::signal::SignalError;
+use appell_spec::Mechanism;
+use appell_spec::expr::{Expr as SpecExpr, ExprKind, Quantity};
+
+/// A graph with the names of a mechanism.
+pub struct Workbench {
+    /// The graph.
+    pub graph: Graph,
+    /// The names.
+    pub symbols: Symbols,
+}
+
+impl Workbench {
+    /// The names of a mechanism.
+    pub fn new(mechanism: &Mechanism) -> Self {
+        let mut graph = Graph::new();
+        let mut symbols = Symbols::new(&mut graph, mechanism);
+        // The number of the machine, exactly.
+        symbols.pi = graph.number(pi());
+        Self { graph, symbols }
+    }
+
+    /// An expression of the spec's language; nothing where it divides by zero.
+    pub fn lower(&mut self, expr: &SpecExpr) -> Option<Expr> {
+        let lowering = Lowering {
+            symbols: &self.symbols,
+            rates: &self.symbols.rates,
+        };
+        lowering.lower(&mut self.graph, expr).ok()
+    }
+
+    /// Values of expressions in parameters alone.
+    pub fn constants(&self, exprs: &[Expr], parameters: &[f64]) -> Vec<f64> {
+        let mut values = vec![f64::NAN; self.graph.len()];
+        for (symbol, &value) in ids(&self.graph, &self.symbols.parameters)
+            .iter()
+            .zip(parameters)
+        {
+            values[symbol.0 as usize] = value;
+        }
+        appell_codegen::symbolic::evaluate(&self.graph, &values, exprs)
+    }
+
+    /// Makes a function of time and state out of expressions.
+    pub fn function(
+        self,
+        info: &ModelInfo,
+        exprs: Vec<Expr>,
+    ) -> Result<StateFunction, SignalError> {
+        StateFunction::new(self, info, exprs)
+    }
+}
+
+/// Several expressions as one function of time, state and parameters.
+pub struct StateFunction {
+    schedule: Schedule,
+    native: Option<NativeFunction>,
+    count: usize,
+    declared: usize,
+    signals: Vec<Signal>,
+}
+
+impl StateFunction {
+    fn new(bench: Workbench, model: &ModelInfo, exprs: Vec<Expr>) -> Result<Self, SignalError> {
+        let Workbench { graph, symbols } = bench;
+        let signals = model
+            .signals
+            .iter()
+            .map(Signal::new)
+            .collect::<Result<Vec<_>, _>>()?;
+        let mut info = model.clone();
+        // The inputs of this function: the model's, which it must not use, and every signal.
+        let mut inputs = model.inputs[..model.declared_inputs].to_vec();
+        inputs.extend(
+            model
+                .signals
+                .iter()
+                .map(|signal| appell_runtime::model::Quantity {
+                    name: signal.name.clone(),
+                    about: "".into(),
+                    unit: "".into(),
+                    scale: 1.0,
+                    value: 0.0,
+                    range: [f64::NEG_INFINITY, f64::INFINITY],
+                }),
+        );
+        info.inputs = inputs.into();
+        let mut input_symbols = symbols.inputs.clone();
+        input_symbols.extend(symbols.signals.iter().map(|orders| orders[0]));
+        let arguments = Arguments {
+            time: ids(&graph, &[symbols.time])[0],
+            states: ids(
+                &graph,
+                &[symbols.speeds.as_slice(), &symbols.coordinates].concat(),
+            ),
+            inputs: ids(&graph, &input_symbols),
+            parameters: ids(&graph, &symbols.parameters),
+            weights: Vec::new(),
+            output_weights: Vec::new(),
+            pi: graph.as_symbol(symbols.pi),
+        };
+        let count = exprs.len();
+        let layout = Layout::Vector(count);
+        let results = vec![Array::new("values", "Values.", layout, exprs)];
+        let function = Function::new(FunctionKind::Outputs, results);
+        let sizes = Sizes::from(&info);
+        let program = Program {
+            info,
+            file: String::new(),
+            graph,
+            arguments,
+            dependent: Vec::new(),
+            systems: Vec::new(),
+            functions: vec![function],
+        };
+        let schedule = schedule(&program, &program.functions[0]);
+        // Without machine code the interpreter gives the same numbers.
+        let native = NativeFunction::compile(&schedule, sizes).ok();
+        Ok(Self {
+            schedule,
+            native,
+            count,
+            declared: model.declared_inputs,
+            signals,
+        })
+    }
+
+    /// Values at time `t`, state `x` and parameters `p`, into the first places of `values`.
+    pub fn values(&self, t: f64, x: &[f64], p: &[f64], values: &mut [f64]) {
+        let values = &mut values[..self.count];
+        let mut u = vec![0.0; self.declared + self.signals.len()];
+        for (u, signal) in u[self.declared..].iter_mut().zip(&self.signals) {
+            *u = signal.value(t);
+        }
+        match &self.native {
+            Some(native) => native.call(At { t, x, u: &u, p }, [values]),
+            None => values.copy_from_slice(&interpret(&self.schedule, t, x, &u, p)[0]),
+        }
+    }
+}
+
+/// Times at which an expression switches because it compares `t` with a number.
+pub fn switching_times(expr: &SpecExpr, times: &mut Vec<f64>) {
+    match &expr.kind {
+        ExprKind::Number(_) | ExprKind::Quantity(_) => {}
+        ExprKind::Negate(a) => switching_times(a, times),
+        ExprKind::Binary(_, a, b) => {
+            switching_times(a, times);
+            switching_times(b, times);
+        }
+        ExprKind::Call(_, arguments) => arguments.iter().for_each(|a| switching_times(a, times)),
+        ExprKind::Choice {
+            compared, branches, ..
+        } => {
+            if let (ExprKind::Quantity(Quantity::Time), ExprKind::Number(n))
+            | (ExprKind::Number(n), ExprKind::Quantity(Quantity::Time)) =
+                (&compared[0].kind, &compared[1].kind)
+            {
+                times.push(appell_codegen::symbolic::Rational::from_big(n.clone()).to_f64());
+            }
+            compared
+                .iter()
+                .chain(branches.iter())
+                .for_each(|a| switching_times(a, times));
+        }
+    }
+}

@@ -1,0 +1,326 @@
+//! Everything that drives the inputs of a simulation.
+
+use appell_analysis::control::sampler::Sampler;
+use appell_analysis::control::schedule::GainSchedule;
+use appell_codegen::symbolic::Expr as Lowered;
+use appell_runtime::inputs::{InputSource, TabulatedInputs};
+use appell_spec::expr::Expr;
+use appell_spec::{Report, Scope, Snippet, formula};
+use nalgebra::DVector;
+
+use crate::Error;
+use crate::formula::{StateFunction, Workbench, switching_times};
+use crate::inputs::feedback::{Feedback, Gains, Sampled, Varied};
+use crate::setup::{Assignment, Setup, bracketed};
+
+/// Inputs from expressions, feedback laws and recordings; they add up.
+pub struct Controller {
+    /// One value per entry of `slots`.
+    function: StateFunction,
+    slots: Vec<Slot>,
+    parameters: Vec<f64>,
+    recorded: Option<TabulatedInputs>,
+    sampled: Vec<SampledLaw>,
+    scheduled: Vec<ScheduledLaw>,
+    switching_times: Vec<f64>,
+}
+
+/// A law that measures at intervals.
+struct SampledLaw {
+    sampler: Sampler,
+    inputs: Vec<usize>,
+    pending_gains: Vec<Vec<f64>>,
+}
+
+/// What a value of the function means.
+enum Slot {
+    /// It is added to an input.
+    Input(usize),
+    /// It is the desired value of a state.
+    Desired(Term),
+    /// It is wanted beside the steady motions of a scheduled law: the law, the place of the state.
+    Beside(usize, usize),
+}
+
+/// A law whose gains follow a quantity.
+struct ScheduledLaw {
+    over: Varied,
+    schedule: GainSchedule,
+    inputs: Vec<usize>,
+    states: Vec<usize>,
+}
+
+/// An input falls by the gain times the deviation of a state, at once or when it is measured.
+#[derive(Debug, Clone, Copy)]
+struct Term {
+    input: usize,
+    state: usize,
+    gain: f64,
+    /// The sampled law to which it belongs.
+    law: Option<usize>,
+}
+
+/// Collects what drives the inputs.
+pub struct Plan {
+    bench: Workbench,
+    exprs: Vec<Lowered>,
+    slots: Vec<Slot>,
+    /// Desired values of zero need no expression.
+    zero: Vec<Term>,
+    sampled: Vec<(Sampled, Vec<usize>)>,
+    scheduled: Vec<ScheduledLaw>,
+    recorded: Option<TabulatedInputs>,
+    switching_times: Vec<f64>,
+    /// Inputs that an expression or a recording sets.
+    set: Vec<usize>,
+}
+
+impl Plan {
+    /// No inputs.
+    pub fn new(setup: &Setup<'_>) -> Self {
+        Self {
+            bench: Workbench::new(&setup.mechanism),
+            exprs: Vec::new(),
+            slots: Vec::new(),
+            zero: Vec::new(),
+            sampled: Vec::new(),
+            scheduled: Vec::new(),
+            recorded: None,
+            switching_times: Vec::new(),
+            set: Vec::new(),
+        }
+    }
+
+    /// Whether nothing drives the mechanism.
+    pub fn is_empty(&self) -> bool {
+        let laws = self.zero.is_empty() && self.scheduled.is_empty();
+        self.slots.is_empty() && laws && self.recorded.is_none()
+    }
+
+    fn take(&mut self, input: usize, setup: &Setup<'_>) -> Result<(), Error> {
+        if self.set.contains(&input) {
+            let name = &setup.mechanism.inputs[input].label.name;
+            return Err(Error::Usage(format!("the input `{name}` is given twice")));
+        }
+        self.set.push(input);
+        Ok(())
+    }
+
+    /// Takes an expression, which may not divide by the number zero.
+    fn push(&mut self, slot: Slot, expr: &Expr) -> Result<(), &'static str> {
+        let lowered = self.bench.lower(expr);
+        self.exprs
+            .push(lowered.ok_or("an expression divides by the number zero")?);
+        self.slots.push(slot);
+        switching_times(expr, &mut self.switching_times);
+        Ok(())
+    }
+
+    /// `--input NAME=EXPR`
+    pub fn expression(&mut self, assignment: &Assignment, setup: &Setup<'_>) -> Result<(), Error> {
+        let input = setup.input(&assignment.name)?;
+        self.take(input, setup)?;
+        let unit = &setup.mechanism.inputs[input].label.unit;
+        let text = bracketed(&assignment.value);
+        let expr = formula(
+            setup.spec,
+            &Snippet::alone(&text),
+            "the input",
+            Scope::Law,
+            unit,
+        )
+        .map_err(|findings| {
+            let label = format!("--input {}", assignment.name);
+            Error::Expression(Box::new(Report::new(label, text.as_ref(), findings)))
+        })?;
+        self.push(Slot::Input(input), &expr)
+            .map_err(|told| Error::Usage(format!("--input {}: {told}", assignment.name)))
+    }
+
+    /// `--inputs FILE`
+    pub fn recording(
+        &mut self,
+        recorded: TabulatedInputs,
+        inputs: &[usize],
+        setup: &Setup<'_>,
+    ) -> Result<(), Error> {
+        for &input in inputs {
+            self.take(input, setup)?;
+        }
+        self.switching_times.extend(recorded.switching_times());
+        self.recorded = Some(recorded);
+        Ok(())
+    }
+
+    /// `--feedback FILE`
+    pub fn feedback(&mut self, feedback: Feedback) -> Result<(), Error> {
+        let told = |told| Error::Data(format!("{}: {told}", feedback.file));
+        for (&input, offset) in feedback.inputs.iter().zip(&feedback.offsets) {
+            if let Some(offset) = offset {
+                self.push(Slot::Input(input), offset).map_err(told)?;
+            }
+        }
+        self.switching_times.extend(&feedback.switching_times);
+        let gains = match feedback.gains {
+            Gains::Fixed(gains) => gains,
+            Gains::Scheduled(over, schedule) => {
+                let (states, desired): (Vec<_>, Vec<_>) = feedback.states.into_iter().unzip();
+                let law = self.scheduled.len();
+                for (place, expr) in desired.iter().enumerate() {
+                    if let Some(expr) = expr {
+                        self.push(Slot::Beside(law, place), expr).map_err(told)?;
+                    }
+                }
+                self.scheduled.push(ScheduledLaw {
+                    over,
+                    schedule,
+                    inputs: feedback.inputs,
+                    states,
+                });
+                return Ok(());
+            }
+        };
+        let law = feedback.sampled.is_some().then_some(self.sampled.len());
+        for (&input, gains) in feedback.inputs.iter().zip(&gains) {
+            for ((state, desired), &gain) in feedback.states.iter().zip(gains) {
+                let term = Term {
+                    input,
+                    state: *state,
+                    gain,
+                    law,
+                };
+                match desired {
+                    Some(expr) => self.push(Slot::Desired(term), expr).map_err(told)?,
+                    None => self.zero.push(term),
+                }
+            }
+        }
+        if let Some(sampled) = feedback.sampled {
+            self.sampled.push((sampled, feedback.inputs));
+        }
+        Ok(())
+    }
+
+    /// The inputs as a function of time and state, for a motion from 0 to `until` in s.
+    pub fn controller(self, setup: &Setup<'_>, until: f64) -> Result<Controller, Error> {
+        let function = self
+            .bench
+            .function(setup.info, self.exprs)
+            .map_err(|error| Error::Computation(error.to_string()))?;
+        let mut slots = self.slots;
+        // Values beyond those of the function are zero.
+        slots.extend(self.zero.into_iter().map(Slot::Desired));
+        let mut switching_times = self.switching_times;
+        let mut sampled = Vec::new();
+        for (law, inputs) in self.sampled {
+            if until / law.sampling.period() > MOST_MEASUREMENTS {
+                return Err(Error::Usage(format!(
+                    "{} measurements are too many; choose a larger `sampled_ms` (at most \
+                     {MOST_MEASUREMENTS:.0} measurements)",
+                    until / law.sampling.period()
+                )));
+            }
+            let sampler = Sampler::new(law.sampling, until);
+            switching_times.extend(sampler.switching_times());
+            sampled.push(SampledLaw {
+                sampler,
+                inputs,
+                pending_gains: law.pending_gains,
+            });
+        }
+        Ok(Controller {
+            function,
+            slots,
+            parameters: setup.parameters.clone(),
+            recorded: self.recorded,
+            sampled,
+            scheduled: self.scheduled,
+            switching_times,
+        })
+    }
+}
+
+/// Measurements in one motion.
+const MOST_MEASUREMENTS: f64 = 1e6;
+
+impl Controller {
+    /// What the terms of a law, or those without one, take from each input.
+    fn feedback(&self, law: Option<usize>, x: &[f64], values: &[f64], inputs: &mut [f64]) {
+        for (slot, value) in self.slots.iter().zip(values) {
+            match slot {
+                Slot::Desired(term) if term.law == law => {
+                    inputs[term.input] -= term.gain * (x[term.state] - value);
+                }
+                _ => {}
+            }
+        }
+    }
+}
+
+impl InputSource for Controller {
+    fn inputs(&self, t: f64, x: &[f64], u: &mut [f64]) {
+        match &self.recorded {
+            Some(recorded) => recorded.inputs(t, x, u),
+            None => u.fill(0.0),
+        }
+        let mut values = vec![0.0; self.slots.len()];
+        self.function.values(t, x, &self.parameters, &mut values);
+        for (slot, value) in self.slots.iter().zip(&values) {
+            if let Slot::Input(input) = *slot {
+                u[input] += value;
+            }
+        }
+        self.feedback(None, x, &values, u);
+        for (law, scheduled) in self.scheduled.iter().enumerate() {
+            scheduled.add(x, &self.parameters, u, |y| {
+                for (slot, value) in self.slots.iter().zip(&values) {
+                    if let Slot::Beside(of, place) = *slot
+                        && of == law
+                    {
+                        y[place] -= value;
+                    }
+                }
+            });
+        }
+        for (law, sampled) in self.sampled.iter().enumerate() {
+            let acting = sampled.sampler.acting(t, |pending| {
+                let mut asked = vec![0.0; u.len()];
+                self.feedback(Some(law), x, &values, &mut asked);
+                sampled.asked(&asked, &pending.concat())
+            });
+            for (&input, acting) in sampled.inputs.iter().zip(acting.iter().flatten()) {
+                u[input] += acting;
+            }
+        }
+    }
+
+    fn switching_times(&self) -> Vec<f64> {
+        self.switching_times.clone()
+    }
+}
+
+impl ScheduledLaw {
+    /// Adds what the law asks for; `less` takes from the states what is wanted of them.
+    fn add(&self, x: &[f64], p: &[f64], u: &mut [f64], less: impl Fn(&mut DVector<f64>)) {
+        let states = self.states.iter().map(|&state| x[state]);
+        let mut y = DVector::from_iterator(self.states.len(), states);
+        less(&mut y);
+        let asked = self.schedule.at(self.over.value(x, p)).asked(&y);
+        for (&input, asked) in self.inputs.iter().zip(asked.iter()) {
+            u[input] += asked;
+        }
+    }
+}
+
+impl SampledLaw {
+    /// What a measurement asks for, from the feedback of the states and from what is pending, the
+    /// oldest first. Before the first measurements less is pending than the gains expect.
+    fn asked(&self, feedback: &[f64], pending: &[f64]) -> Vec<f64> {
+        let rows = self.inputs.iter().zip(&self.pending_gains);
+        rows.map(|(&input, gains)| {
+            let terms = gains.iter().rev().zip(pending.iter().rev());
+            feedback[input] - terms.map(|(gain, pending)| gain * pending).sum::<f64>()
+        })
+        .collect()
+    }
+}

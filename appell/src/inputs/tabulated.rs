@@ -1,0 +1,282 @@
+//! Inputs tabulated in a CSV file: held from each row to the next.
+
+use std::path::Path;
+
+use appell_gap::data::{MANIFEST, Role};
+use appell_runtime::Signal;
+use appell_runtime::inputs::TabulatedInputs;
+use appell_runtime::model::{Interpolation, Model, Quantity, SignalTable};
+use appell_runtime::trajectory::{self, Extras};
+use appell_spec::expr::Span;
+use appell_spec::{Code, Diagnostic, Report};
+use csv::{ReaderBuilder, StringRecord};
+
+use crate::Error;
+use crate::setup::{Setup, unknown};
+use crate::{files, recording};
+
+/// The inputs in a CSV file, and which inputs it has.
+///
+/// The header names `t` in s and inputs in the units of the spec; columns of the mechanism's other
+/// quantities are left aside, so that a trajectory written by `appell simulate` can be fed back. Of a
+/// `recording.toml` with the name of a run the names and units are those of the description.
+pub fn read(
+    path: &Path,
+    mechanism: &str,
+    setup: &Setup<'_>,
+    model: &dyn Model,
+) -> Result<(TabulatedInputs, Vec<usize>), Error> {
+    let file = path.to_string_lossy();
+    let columns = match described(&file) {
+        Some((description, run)) => recorded(description, run, mechanism)?,
+        None => tabulated(path, setup, model)?,
+    };
+    let given: Vec<usize> = columns.inputs.iter().map(|column| column.input).collect();
+    let mut values: Vec<Option<Vec<f64>>> = vec![None; setup.mechanism.inputs.len()];
+    for column in columns.inputs {
+        values[column.input] = Some(column.values);
+    }
+    let mut signals = Vec::new();
+    for (input, values) in setup.mechanism.inputs.iter().zip(values) {
+        let (times, values) = match values {
+            Some(values) => (columns.times.clone(), values),
+            None => (vec![0.0], vec![0.0]),
+        };
+        let table = SignalTable {
+            name: input.label.name.clone().into(),
+            times: times.into(),
+            values: values.into(),
+            interpolation: Interpolation::Hold,
+        };
+        let signal =
+            Signal::new(&table).map_err(|error| Error::Data(format!("{file}: {error}")))?;
+        signals.push(signal);
+    }
+    Ok((TabulatedInputs::new(signals), given))
+}
+
+/// The description and the run in `rig/recording.toml:run1.csv`.
+fn described(text: &str) -> Option<(&str, &str)> {
+    let end = text.rfind(MANIFEST)? + MANIFEST.len();
+    let (description, run) = text.split_at(end);
+    let run = run.strip_prefix(':').or(run.is_empty().then_some(""))?;
+    Path::new(description)
+        .ends_with(MANIFEST)
+        .then_some((description, run))
+}
+
+/// The inputs of a run of a data set.
+fn recorded(description: &str, run: &str, mechanism: &str) -> Result<Columns, Error> {
+    let mut set = recording::read(&[description.into()], Some(mechanism))?;
+    recording::refuse_slow(&set)?;
+    let Some(place) = set.runs.iter().position(|own| own.name == run) else {
+        let names: Vec<&str> = set.runs.iter().map(|own| own.name.as_str()).collect();
+        return Err(Error::Usage(format!(
+            "`--inputs {description}:RUN` takes one of the runs {}",
+            names.join(", ")
+        )));
+    };
+    let run = set.runs.swap_remove(place);
+    let mut inputs: Vec<Column> = Vec::new();
+    for (channel, values) in set.channels.iter().zip(run.values) {
+        if let Role::Input(input) = channel.role
+            && inputs.iter().all(|column| column.input != input)
+        {
+            inputs.push(Column {
+                position: 0,
+                input,
+                scale: 1.0,
+                values,
+            });
+        }
+    }
+    if inputs.is_empty() {
+        let message = "no channel is an input; write `input = \"…\"` in `[channels]`";
+        return Err(Error::Data(format!("{description}: {message}")));
+    }
+    let times = run.times;
+    Ok(Columns { times, inputs })
+}
+
+/// The inputs in a CSV file.
+fn tabulated(path: &Path, setup: &Setup<'_>, model: &dyn Model) -> Result<Columns, Error> {
+    let file = path.to_string_lossy();
+    let text = files::read(path, files::MAX_DATA)?;
+    let mut reader = Reader {
+        text: &text,
+        recorded: trajectory::recorded(model, Extras::ALL),
+        findings: Vec::new(),
+    };
+    let columns = reader
+        .columns(setup)
+        .map_err(|error| Error::Data(format!("{file}: {error}")))?;
+    if !reader.findings.is_empty() {
+        let findings = reader.findings;
+        return Err(Report::new(file, text, findings).into());
+    }
+    Ok(columns)
+}
+
+/// Most findings told for one file.
+const MOST: usize = 20;
+
+#[derive(Default)]
+struct Columns {
+    times: Vec<f64>,
+    inputs: Vec<Column>,
+}
+
+/// A column of an input.
+struct Column {
+    position: usize,
+    input: usize,
+    /// One of the input's unit in SI.
+    scale: f64,
+    /// In SI.
+    values: Vec<f64>,
+}
+
+struct Reader<'t> {
+    text: &'t str,
+    /// What `appell simulate` could have written.
+    recorded: Vec<Quantity>,
+    findings: Vec<Diagnostic>,
+}
+
+impl Reader<'_> {
+    fn tell(&mut self, code: Code, message: impl Into<String>, at: Span, help: Option<&str>) {
+        let finding = Diagnostic::error(code, message).at(at, "");
+        self.findings
+            .push(finding.maybe_help(help.map(str::to_owned)));
+    }
+
+    fn columns(&mut self, setup: &Setup<'_>) -> Result<Columns, csv::Error> {
+        let mut rows = ReaderBuilder::new()
+            .has_headers(false)
+            .flexible(true)
+            .comment(Some(b'#'))
+            .from_reader(self.text.as_bytes());
+        let mut columns = Columns::default();
+        let mut record = StringRecord::new();
+        if !rows.read_record(&mut record)? {
+            let help = "begin with a header: `t`, then the inputs";
+            self.tell(Code::MissingKey, "the file is empty", 0..0, Some(help));
+            return Ok(columns);
+        }
+        let count = record.len();
+        let (time, inputs) = self.header(&record, setup);
+        columns.inputs = inputs;
+        let Some(time) = time else {
+            let help = "name the column of times in seconds `t`";
+            self.tell(Code::MissingKey, "there is no column `t`", 0..0, Some(help));
+            return Ok(columns);
+        };
+        while self.findings.len() < MOST && rows.read_record(&mut record)? {
+            if record.len() == 1 && record[0].trim().is_empty() {
+                continue;
+            }
+            if record.len() != count {
+                let message = format!("{} cells under {count} columns", record.len());
+                self.tell(Code::WrongType, message, self.row(&record), None);
+                continue;
+            }
+            let t = self.number(&record, time);
+            for column in &mut columns.inputs {
+                let value = self.number(&record, column.position);
+                column.values.push(value * column.scale);
+            }
+            if columns.times.last().is_some_and(|last| *last >= t) {
+                let message = "the time does not increase";
+                self.tell(Code::SignalTable, message, self.row(&record), None);
+            }
+            columns.times.push(t);
+        }
+        if columns.times.is_empty() && self.findings.is_empty() {
+            self.tell(Code::SignalTable, "there are no rows", 0..0, None);
+        }
+        Ok(columns)
+    }
+
+    /// Position of the time, and the columns of inputs.
+    fn header(&mut self, header: &StringRecord, setup: &Setup<'_>) -> (Option<usize>, Vec<Column>) {
+        let inputs = &setup.mechanism.inputs;
+        let names = || inputs.iter().map(|input| input.label.name.as_str());
+        let mut time = None;
+        let mut columns: Vec<Column> = Vec::new();
+        for (position, name) in header.iter().map(str::trim).enumerate() {
+            let at = || self.cell(header, position);
+            let input = names().position(|input| input == name);
+            let twice = match input {
+                Some(input) => columns.iter().any(|column| column.input == input),
+                None => name == "t" && time.is_some(),
+            };
+            if twice {
+                let message = format!("the column `{name}` stands here twice");
+                self.tell(Code::DuplicateName, message, at(), None);
+            } else if let Some(input) = input {
+                columns.push(Column {
+                    position,
+                    input,
+                    scale: inputs[input].label.unit.scale,
+                    values: Vec::new(),
+                });
+            } else if name == "t" {
+                time = Some(position);
+            } else if self.recorded.iter().all(|column| column.name != name) {
+                let message = unknown(name, "input", names());
+                self.tell(Code::UnknownName, message, at(), None);
+            }
+        }
+        (time, columns)
+    }
+
+    /// The finite number in a cell; tells where there is none.
+    fn number(&mut self, record: &StringRecord, position: usize) -> f64 {
+        let cell = record[position].trim();
+        let number = cell.parse::<f64>().ok().filter(|number| number.is_finite());
+        number.unwrap_or_else(|| {
+            let message = format!("`{cell}` is not a finite number");
+            let help = "an input needs a value in every row";
+            let at = self.cell(record, position);
+            self.tell(Code::WrongType, message, at, Some(help));
+            0.0
+        })
+    }
+
+    /// Where a row stands, without the comments and empty lines before it.
+    fn row(&self, record: &StringRecord) -> Span {
+        let before = record.position().map_or(0, csv::Position::byte);
+        let mut start = usize::try_from(before).unwrap_or(usize::MAX);
+        start = start.min(self.text.len());
+        for line in self
+            .text
+            .get(start..)
+            .unwrap_or_default()
+            .split_inclusive('\n')
+        {
+            if !line.trim().is_empty() && !line.starts_with('#') {
+                return start..start + line.trim_end().len();
+            }
+            start += line.len();
+        }
+        start..start
+    }
+
+    /// Where a cell stands in its row.
+    fn cell(&self, record: &StringRecord, position: usize) -> Span {
+        let row = self.row(record);
+        let mut quoted = false;
+        let mut cells = self.text[row.clone()].split(|c| {
+            quoted ^= c == '"';
+            c == ',' && !quoted
+        });
+        let before: usize = cells
+            .by_ref()
+            .take(position)
+            .map(|cell| cell.len() + 1)
+            .sum();
+        let cell = cells.next().unwrap_or_default();
+        let start = row.start + before + (cell.len() - cell.trim_start().len());
+        start..start + cell.trim().len()
+    }
+}

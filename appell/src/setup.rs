@@ -1,0 +1,329 @@
+//! Numbers for a mechanism from the command line: parameters, initial values, inputs.
+
+use std::borrow::Cow;
+
+use appell_runtime::model::ModelInfo;
+use appell_spec::expr::Expr;
+use appell_spec::units::{self, Unit};
+use appell_spec::{Mechanism, Report, Scope, Snippet, did_you_mean, formula};
+
+use crate::Error;
+use crate::formula::Workbench;
+use crate::inputs::feedback::Feedback;
+
+/// `NAME=VALUE` as it was given.
+#[derive(Debug, Clone)]
+pub struct Assignment {
+    /// Left side.
+    pub name: String,
+    /// Right side.
+    pub value: String,
+}
+
+impl std::str::FromStr for Assignment {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let (name, value) = text
+            .split_once('=')
+            .ok_or("write NAME=VALUE, such as R=0.3 or R=30cm")?;
+        let (name, value) = (name.trim().to_owned(), value.trim().to_owned());
+        if name.is_empty() || value.is_empty() {
+            return Err("write NAME=VALUE, with something on both sides".to_owned());
+        }
+        Ok(Self { name, value })
+    }
+}
+
+/// A spec, its mechanism, and the numbers that replace its own.
+pub struct Setup<'a> {
+    /// Text of the spec.
+    pub spec: &'a str,
+    /// The mechanism.
+    pub mechanism: Mechanism,
+    /// The names and sizes of its equations.
+    pub info: &'a ModelInfo,
+    /// Parameters in SI.
+    pub parameters: Vec<f64>,
+    /// Initial state in SI.
+    pub initial: Vec<f64>,
+    /// Whether states must stay in their declared ranges.
+    pub watch_ranges: bool,
+}
+
+impl<'a> Setup<'a> {
+    /// The numbers of the spec.
+    pub fn new(file: &str, spec: &'a str, info: &'a ModelInfo) -> Result<Self, Error> {
+        let checked = appell_spec::load(file, spec)?;
+        let (parameters, initial) = (info.default_parameters(), info.initial_state());
+        Ok(Self {
+            spec,
+            mechanism: checked.mechanism,
+            info,
+            parameters,
+            initial,
+            watch_ranges: true,
+        })
+    }
+
+    /// `--set NAME=VALUE`; later values may use earlier ones.
+    pub fn set(&mut self, assignments: &[Assignment]) -> Result<(), Error> {
+        unique(assignments, "--set")?;
+        for assignment in assignments {
+            let names = || {
+                self.mechanism
+                    .parameters
+                    .iter()
+                    .map(|p| p.label.name.as_str())
+            };
+            let index = known(&assignment.name, "parameter", names())?;
+            let unit = self.mechanism.parameters[index].label.unit.clone();
+            let value = self.value(
+                &assignment.value,
+                &unit,
+                &format!("--set {}", assignment.name),
+            )?;
+            let parameter = &self.mechanism.parameters[index];
+            let low = parameter.at_least.unwrap_or(f64::NEG_INFINITY);
+            let high = parameter.at_most.unwrap_or(f64::INFINITY);
+            inside(&assignment.name, value, [low, high], &unit).map_err(Error::Usage)?;
+            self.parameters[index] = value;
+        }
+        Ok(())
+    }
+
+    /// `--initial NAME=VALUE`; values may use parameters.
+    pub fn start(&mut self, assignments: &[Assignment]) -> Result<(), Error> {
+        self.start_with("--initial", assignments)
+    }
+
+    /// The same for a flag of another name.
+    pub fn start_with(&mut self, flag: &str, assignments: &[Assignment]) -> Result<(), Error> {
+        unique(assignments, flag)?;
+        for assignment in assignments {
+            let index = self.state(&assignment.name)?;
+            let unit = self.unit_of_state(index).clone();
+            let label = format!("{flag} {}", assignment.name);
+            let value = self.value(&assignment.value, &unit, &label)?;
+            self.place(index, value).map_err(Error::Usage)?;
+        }
+        Ok(())
+    }
+
+    /// The initial values that a law asks for.
+    pub fn start_from_law(&mut self, law: &Feedback) -> Result<(), Error> {
+        for (state, expr) in &law.initial {
+            let told = |message| Error::Data(format!("{}: {message}", law.file));
+            let name = &self.info.states[*state].name;
+            let value = self.constant(expr).ok_or_else(|| {
+                told(format!(
+                    "the initial value of `{name}` is not a finite number"
+                ))
+            })?;
+            self.place(*state, value).map_err(told)?;
+        }
+        Ok(())
+    }
+
+    /// Index of a state.
+    pub fn state(&self, name: &str) -> Result<usize, Error> {
+        known(
+            name,
+            "state",
+            self.info.states.iter().map(|state| state.name.as_ref()),
+        )
+    }
+
+    /// Index of a declared input.
+    pub fn input(&self, name: &str) -> Result<usize, Error> {
+        known(
+            name,
+            "input",
+            self.mechanism
+                .inputs
+                .iter()
+                .map(|input| input.label.name.as_str()),
+        )
+    }
+
+    /// A constant value of a declared input, with its index.
+    pub fn input_value(&self, flag: &str, assignment: &Assignment) -> Result<(usize, f64), Error> {
+        let input = self.input(&assignment.name)?;
+        let unit = &self.mechanism.inputs[input].label.unit;
+        let label = format!("{flag} {}", assignment.name);
+        Ok((input, self.value(&assignment.value, unit, &label)?))
+    }
+
+    /// Unit of a state.
+    pub fn unit_of_state(&self, index: usize) -> &Unit {
+        let speeds = &self.mechanism.pseudo_velocities;
+        match index.checked_sub(speeds.len()) {
+            None => &speeds[index].label.unit,
+            Some(coordinate) => &self.mechanism.coordinates[coordinate].label.unit,
+        }
+    }
+
+    /// A value in SI: a number in the quantity's unit, a number with a unit, or an expression in
+    /// the parameters.
+    pub fn value(&self, text: &str, unit: &Unit, label: &str) -> Result<f64, Error> {
+        let text = bracketed(text);
+        let expr = formula(
+            self.spec,
+            &Snippet::alone(&text),
+            "the value",
+            Scope::Constant,
+            unit,
+        )
+        .map_err(|findings| {
+            Error::Expression(Box::new(Report::new(label, text.as_ref(), findings)))
+        })?;
+        self.constant(&expr)
+            .ok_or_else(|| Error::Usage(format!("{label}: `{text}` is not a finite number")))
+    }
+
+    /// The finite value of an expression in parameters.
+    fn constant(&self, expr: &Expr) -> Option<f64> {
+        let mut bench = Workbench::new(&self.mechanism);
+        let lowered = bench.lower(expr)?;
+        let value = bench.constants(&[lowered], &self.parameters)[0];
+        value.is_finite().then_some(value)
+    }
+
+    /// An initial value, which must lie in its range where ranges are watched.
+    fn place(&mut self, state: usize, value: f64) -> Result<(), String> {
+        let quantity = &self.info.states[state];
+        if self.watch_ranges {
+            inside(
+                &quantity.name,
+                value,
+                quantity.range,
+                self.unit_of_state(state),
+            )?;
+        }
+        self.initial[state] = value;
+        Ok(())
+    }
+}
+
+/// `30cm` and `30 cm` become `30[cm]`; anything else is an expression as it stands.
+pub fn bracketed(text: &str) -> Cow<'_, str> {
+    let (number, rest) = text.split_at(number_length(text));
+    let unit = rest.trim();
+    let begins = |c: char| c.is_alphabetic() || c == '%';
+    if number.is_empty() || !unit.starts_with(begins) || units::parse(unit).is_err() {
+        return Cow::Borrowed(text);
+    }
+    Cow::Owned(format!("{number}[{unit}]"))
+}
+
+/// Bytes of the number with which a text begins. An `e` without digits begins a unit.
+fn number_length(text: &str) -> usize {
+    let bytes = text.as_bytes();
+    let digits = |from: usize| {
+        bytes[from..]
+            .iter()
+            .take_while(|b| b.is_ascii_digit())
+            .count()
+    };
+    let sign = |from: usize| usize::from(matches!(bytes.get(from), Some(b'-' | b'+')));
+    let start = sign(0);
+    let whole = digits(start);
+    let mut end = start + whole;
+    let mut fraction = 0;
+    if bytes.get(end) == Some(&b'.') {
+        fraction = digits(end + 1);
+        end += 1 + fraction;
+    }
+    if whole + fraction == 0 {
+        return 0;
+    }
+    if let Some(b'e' | b'E') = bytes.get(end) {
+        let exponent = end + 1 + sign(end + 1);
+        if digits(exponent) > 0 {
+            end = exponent + digits(exponent);
+        }
+    }
+    end
+}
+
+/// Position of a name, or what to write instead.
+pub fn known<'n>(
+    name: &str,
+    what: &str,
+    names: impl Iterator<Item = &'n str> + Clone,
+) -> Result<usize, Error> {
+    names
+        .clone()
+        .position(|other| other == name)
+        .ok_or_else(|| Error::Usage(unknown(name, what, names)))
+}
+
+/// The message for an unknown name.
+pub fn unknown<'n>(name: &str, what: &str, names: impl Iterator<Item = &'n str> + Clone) -> String {
+    format!("there is no {what} `{name}`; {}", instead(name, names))
+}
+
+/// What to write instead of an unknown name.
+pub fn instead<'n>(name: &str, names: impl Iterator<Item = &'n str> + Clone) -> String {
+    did_you_mean(name, names.clone(), || {
+        let list = names.collect::<Vec<_>>();
+        if list.is_empty() {
+            "the mechanism has none".to_owned()
+        } else {
+            format!("there are {}", list.join(", "))
+        }
+    })
+}
+
+/// Refuses a name that is given twice under a flag.
+pub fn unique(assignments: &[Assignment], flag: &str) -> Result<(), Error> {
+    for (i, assignment) in assignments.iter().enumerate() {
+        if assignments[..i]
+            .iter()
+            .any(|other| other.name == assignment.name)
+        {
+            return Err(Error::Usage(format!(
+                "{flag}: `{}` is given twice",
+                assignment.name
+            )));
+        }
+    }
+    Ok(())
+}
+
+fn inside(name: &str, value: f64, [low, high]: [f64; 2], unit: &Unit) -> Result<(), String> {
+    if (low..=high).contains(&value) {
+        return Ok(());
+    }
+    let [value, low, high] = [value, low, high].map(|si| unit.from_si(si));
+    Err(format!(
+        "`{name}` = {value} {unit} is outside its limits {low} … {high} {unit}",
+        unit = unit.text
+    ))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn units_right_after_a_number_get_brackets() {
+        for (text, expected) in [
+            ("0.3", "0.3"),
+            ("-1e-3", "-1e-3"),
+            ("30cm", "30[cm]"),
+            ("-.5 cm", "-.5[cm]"),
+            ("1e3mm", "1e3[mm]"),
+            ("2eV", "2eV"),
+            ("3%", "3[%]"),
+            ("2*l", "2*l"),
+            ("2 l", "2[l]"),
+            ("5[m]", "5[m]"),
+            ("l", "l"),
+            ("", ""),
+            (".m", ".m"),
+        ] {
+            assert_eq!(bracketed(text), expected);
+        }
+    }
+}

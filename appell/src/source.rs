@@ -1,0 +1,57 @@
+//! MODEL: the name of a shipped mechanism or the path of a spec file.
+
+use std::path::Path;
+
+use appell_models::{ALL, Shipped};
+use appell_spec::limits::MAX_FILE;
+
+use crate::Error;
+use crate::files;
+
+/// The spec behind a MODEL.
+#[derive(Debug)]
+pub struct Source {
+    /// Name of the file in messages and in emitted code.
+    pub file: String,
+    /// Its text.
+    pub text: String,
+    /// The compiled mechanism, if it is shipped.
+    pub shipped: Option<&'static Shipped>,
+}
+
+impl Source {
+    /// Finds a MODEL. A shipped name wins over a file; `./name` means the file.
+    pub fn find(model: &str) -> Result<Self, Error> {
+        if let Some(shipped) = Shipped::find(model) {
+            let (file, text) = (shipped.file.to_owned(), shipped.spec.to_owned());
+            return Ok(Self {
+                file,
+                text,
+                shipped: Some(shipped),
+            });
+        }
+        let path = Path::new(model);
+        let is_path = path.components().count() > 1 || path.extension().is_some() || path.exists();
+        if !is_path {
+            return Err(Error::Usage(unknown(model)));
+        }
+        let text = files::read(path, MAX_FILE as u64)?;
+        Ok(Self {
+            file: model.replace('\\', "/"),
+            text,
+            shipped: None,
+        })
+    }
+}
+
+fn unknown(model: &str) -> String {
+    let names = || ALL.iter().map(|shipped| shipped.name);
+    let similar = appell_spec::closest(model, names())
+        .map(|name| format!("; did you mean `{name}`?"))
+        .unwrap_or_default();
+    format!(
+        "there is no shipped mechanism and no file `{model}`{similar}\n  shipped: {}\n  or give the \
+         path of a spec file; `appell new NAME` writes one to start from",
+        names().collect::<Vec<_>>().join(", ")
+    )
+}

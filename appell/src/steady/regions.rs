@@ -1,0 +1,82 @@
+//! A chart as a map: places by what is found there, borders as curves.
+
+use appell_analysis::{Boundary, Cell, Chart, Verdict};
+use appell_report::figure::{Curve, Map, Series, Stroke};
+
+/// What is found at a place.
+const KINDS: [&str; 6] = [
+    "asymptotically stable",
+    "neutrally stable",
+    "unstable",
+    "not feasible",
+    "stable and unstable",
+    "several stable",
+];
+
+/// How an axis of a chart is shown.
+pub struct Shown {
+    /// Its name and unit.
+    pub label: String,
+    /// One in SI, in that unit.
+    pub scale: f64,
+}
+
+/// The map of a chart; kinds that occur nowhere are not in its legend.
+pub fn map(title: &str, chart: &Chart, axes: [Shown; 2]) -> Map {
+    let cells: Vec<Option<usize>> = chart.cells.iter().map(|cells| kind(cells)).collect();
+    let name = |(kind, name): (usize, &&str)| {
+        let occurs = cells.contains(&Some(kind));
+        if occurs {
+            (*name).to_owned()
+        } else {
+            String::new()
+        }
+    };
+    let scales = [axes[0].scale, axes[1].scale];
+    let ranges = [0, 1].map(|k: usize| chart.axes[k].range.map(|value| value * scales[k]));
+    Map {
+        title: title.to_owned(),
+        ranges,
+        labels: axes.map(|axis| axis.label),
+        counts: chart.axes.map(|axis| axis.count),
+        kinds: KINDS.iter().enumerate().map(name).collect(),
+        curves: borders(chart, scales),
+        cells,
+    }
+}
+
+/// Of the feasible motions at a place, if there are any.
+fn kind(cells: &[Cell]) -> Option<usize> {
+    let feasible = || cells.iter().filter(|cell| cell.feasible);
+    let unstable = feasible().filter(|cell| cell.verdict == Verdict::Unstable);
+    match (feasible().count(), unstable.count()) {
+        (0, _) if cells.is_empty() => None,
+        (0, _) => Some(3),
+        (all, unstable) if unstable == all => Some(2),
+        (_, 1..) => Some(4),
+        (2.., _) => Some(5),
+        _ if feasible().any(|cell| cell.verdict == Verdict::Asymptotic) => Some(0),
+        _ => Some(1),
+    }
+}
+
+/// Where stability changes, and thin where requirements begin to hold.
+fn borders(chart: &Chart, scales: [f64; 2]) -> Vec<Curve> {
+    let curve = |label: &str, points: &[[f64; 2]], stroke| Curve {
+        line: Series {
+            label: label.to_owned(),
+            x: points.iter().map(|at| at[0] * scales[0]).collect(),
+            y: points.iter().map(|at| at[1] * scales[1]).collect(),
+        },
+        stroke,
+    };
+    let deciding = chart.boundaries.iter().flat_map(Boundary::deciding);
+    let first = |number: usize, label| if number == 0 { label } else { "" };
+    let boundaries = deciding
+        .enumerate()
+        .map(|(k, part)| curve(first(k, "stability boundary"), part, Stroke::Solid));
+    let edges = chart.edges.iter().enumerate();
+    let edges =
+        edges.map(|(k, edge)| curve(first(k, "limit of feasibility"), &edge.points, Stroke::Thin));
+    boundaries.chain(edges).collect()
+}

@@ -1,0 +1,368 @@
+//! A design, told to people and to programs.
+
+use std::fmt::Write as _;
+
+use appell_analysis::control::controllability::Controllability;
+use appell_analysis::control::sampled::Sampling;
+use appell_runtime::model::{ModelInfo, Quantity};
+use nalgebra::{Complex, DMatrix};
+use serde_json::{Map, Value, json};
+
+use appell::control::design::{Design, Law};
+use appell::control::explain::pole_text;
+use appell::setup::Setup;
+use appell_report::text::{number, table};
+
+/// Real part in 1/s from which on a mode grows; below it a multiple zero may lie by rounding.
+const GROWING: f64 = 1e-6;
+
+/// The text for people: gains in the units of the spec.
+pub(crate) fn text(design: &Design, setup: &Setup<'_>) -> String {
+    let info = setup.info;
+    let mut text = format!("{}\n{}", info.title, motion(design, info));
+    text += &reach(design, info);
+    text += &equations(design, info);
+    match &design.law {
+        Some(law) => text += &gains(design, law, info),
+        None => text += "  no law: ask for one with `--poles` or `--lqr`\n",
+    }
+    text
+}
+
+/// Values that are not zero on the motion.
+fn motion(design: &Design, info: &ModelInfo) -> String {
+    let states = info.states.iter().zip(&design.x);
+    let inputs = info.inputs.iter().zip(&design.u);
+    let others = states.chain(inputs).filter(|(_, value)| **value != 0.0);
+    let values: Vec<String> = others
+        .map(|(q, &value)| format!("{} = {} {}", q.name, number(q.to_unit(value)), q.unit))
+        .collect();
+    if values.is_empty() {
+        "steady motion: all states and inputs are 0\n".to_owned()
+    } else {
+        format!("steady motion: {}; the rest is 0\n", values.join(", "))
+    }
+}
+
+/// What the inputs reach, and what they do not.
+fn reach(design: &Design, info: &ModelInfo) -> String {
+    let told = &design.controllability;
+    let names = names(info, &design.equations.states);
+    let inputs = self::names_of(&info.inputs, &design.equations.inputs).join(", ");
+    let order = names.len();
+    let mut text = format!(
+        "{inputs}: {} of {order} dimensions within reach\n",
+        told.rank
+    );
+    let values: Vec<String> = told
+        .singular_values
+        .iter()
+        .map(|v| format!("{v:.1e}"))
+        .collect();
+    let _ = writeln!(
+        text,
+        "  singular values of [B AB …], scaled: {}",
+        values.join("  ")
+    );
+    if told.lost.is_empty() {
+        return text;
+    }
+    let lost: Vec<String> = counted(&told.lost);
+    let _ = writeln!(text, "  lost modes in 1/s: {}", lost.join(", "));
+    let _ = writeln!(text, "  untouched, in SI:");
+    for row in 0..told.untouched.nrows() {
+        let row: Vec<f64> = told.untouched.row(row).iter().copied().collect();
+        let _ = writeln!(text, "    {}", combination(&row, &names));
+    }
+    if told.kept().any(|mode| mode.value.re > GROWING) {
+        text += "  a lost mode grows: no feedback of these inputs stabilises it\n";
+    }
+    text
+}
+
+/// The equations of the outputs.
+fn equations(design: &Design, info: &ModelInfo) -> String {
+    let outputs = names(info, &design.outputs);
+    let mut text = format!("outputs {}: equations of their own\n", outputs.join(", "));
+    for (state, factors) in &design.subsystem.substituted {
+        let state = &info.states[design.equations.states[*state]].name;
+        let _ = writeln!(text, "  with {state} = {}", combination(factors, &outputs));
+    }
+    text
+}
+
+/// Gains in the units of the spec, and the poles.
+fn gains(design: &Design, law: &Law, info: &ModelInfo) -> String {
+    let (inputs, states) = (&design.equations.inputs, &design.outputs);
+    let mut rows = vec![vec![
+        "gain of".to_owned(),
+        "on".to_owned(),
+        String::new(),
+        "unit".to_owned(),
+    ]];
+    for (row, &input) in inputs.iter().enumerate() {
+        let input = &info.inputs[input];
+        for column in 0..law.gain.ncols() {
+            let on = match states.get(column) {
+                Some(&state) => &info.states[state],
+                None => &info.inputs[inputs[(column - states.len()) % inputs.len()]],
+            };
+            let pending = if column < states.len() {
+                ""
+            } else {
+                ", pending"
+            };
+            rows.push(vec![
+                input.name.to_string(),
+                format!("{}{pending}", on.name),
+                number(law.gain[(row, column)] * on.scale / input.scale),
+                gain_unit(input, on),
+            ]);
+        }
+    }
+    let mut text = table(&rows, 2..3);
+    match law.sampling {
+        None => {
+            let poles: Vec<String> = law.poles.iter().map(|pole| pole_text(*pole)).collect();
+            let _ = writeln!(
+                text,
+                "poles of the closed loop in 1/s: {}",
+                poles.join(", ")
+            );
+        }
+        Some(sampling) => {
+            let poles: Vec<String> = law.poles.iter().map(|pole| pole_text(*pole)).collect();
+            let _ = writeln!(text, "poles of the sampled loop, z: {}", poles.join(", "));
+            let poles = law
+                .poles
+                .iter()
+                .filter_map(|pole| sampling.continuous_pole(*pole));
+            let poles: Vec<String> = poles.map(pole_text).collect();
+            let _ = writeln!(text, "  ln(z)/T in 1/s: {}", poles.join(", "));
+        }
+    }
+    let _ = match law.condition {
+        Some(condition) => writeln!(
+            text,
+            "  characteristic polynomial as wanted to {:.0e}, condition of the eigenvectors {condition:.1e}",
+            law.residual
+        ),
+        None => writeln!(
+            text,
+            "  residual of the Riccati equation {:.0e}",
+            law.residual
+        ),
+    };
+    text
+}
+
+/// `N/(rad/s)`
+fn gain_unit(of: &Quantity, on: &Quantity) -> String {
+    let compound = on.unit.contains(['/', '*', ' ']);
+    match (&*of.unit, &*on.unit) {
+        (of, "" | "1") => of.to_owned(),
+        ("" | "1", on) if compound => format!("1/({on})"),
+        (of, on) if compound => format!("{of}/({on})"),
+        (of, on) => format!("{of}/{on}"),
+    }
+}
+
+/// `omega_3 + 6.66667 theta`
+fn combination(factors: &[f64], names: &[String]) -> String {
+    let mut text = String::new();
+    for (factor, name) in factors
+        .iter()
+        .zip(names)
+        .filter(|(factor, _)| **factor != 0.0)
+    {
+        let sign = match (text.is_empty(), *factor < 0.0) {
+            (true, false) => "",
+            (true, true) => "-",
+            (false, false) => " + ",
+            (false, true) => " - ",
+        };
+        let size = number(factor.abs());
+        let size = if size == "1.00000" {
+            String::new()
+        } else {
+            size + " "
+        };
+        let _ = write!(text, "{sign}{size}{name}");
+    }
+    text
+}
+
+/// Modes, equal ones once.
+fn counted(modes: &[Complex<f64>]) -> Vec<String> {
+    let size = modes.iter().map(|mode| mode.norm()).fold(1.0, f64::max);
+    let mut open: Vec<Complex<f64>> = modes.to_vec();
+    let mut told = Vec::new();
+    while let Some(&first) = open.first() {
+        let near = |mode: &Complex<f64>| (mode - first).norm() <= 1e-4 * size;
+        let (same, rest): (Vec<_>, Vec<_>) = open.into_iter().partition(near);
+        let mean = same.iter().sum::<Complex<f64>>() / same.len() as f64;
+        // A multiple mode is known to a root of the rounding only.
+        let clean = |part: f64| if part.abs() <= 1e-8 * size { 0.0 } else { part };
+        let mean = pole_text(Complex::new(clean(mean.re), clean(mean.im)));
+        told.push(match same.len() {
+            1 => mean,
+            times => format!("{mean} ({times} times)"),
+        });
+        open = rest;
+    }
+    told
+}
+
+fn names(info: &ModelInfo, states: &[usize]) -> Vec<String> {
+    names_of(&info.states, states)
+}
+
+fn names_of(quantities: &[Quantity], places: &[usize]) -> Vec<String> {
+    places
+        .iter()
+        .map(|&place| quantities[place].name.to_string())
+        .collect()
+}
+
+/// Gains over the values of a schedule.
+pub(crate) fn schedule_text(name: &str, designs: &[(f64, Design)], setup: &Setup<'_>) -> String {
+    let info = setup.info;
+    let Some((_, first)) = designs.first() else {
+        return String::new();
+    };
+    let quantities = [&info.states, &info.inputs, &info.parameters];
+    let quantities = quantities.into_iter().flat_map(|list| list.iter());
+    let varied = quantities
+        .into_iter()
+        .find(|quantity| quantity.name == name);
+    let (inputs, outputs) = (&first.equations.inputs, &first.outputs);
+    let mut heading = vec![name.to_owned(), "reach".to_owned()];
+    let mut units = vec![
+        varied.map_or(String::new(), |q| q.unit.to_string()),
+        String::new(),
+    ];
+    let columns = first.law.as_ref().map_or(0, |law| law.gain.ncols());
+    let mut scales = Vec::new();
+    for &input in inputs {
+        for column in 0..columns {
+            let on = match outputs.get(column) {
+                Some(&state) => &info.states[state],
+                None => &info.inputs[inputs[(column - outputs.len()) % inputs.len()]],
+            };
+            let of = &info.inputs[input];
+            heading.push(format!("{} on {}", of.name, on.name));
+            units.push(gain_unit(of, on));
+            scales.push(on.scale / of.scale);
+        }
+    }
+    let mut rows = vec![heading, units];
+    for (value, design) in designs {
+        let mut row = vec![
+            number(varied.map_or(*value, |q| q.to_unit(*value))),
+            design.controllability.rank.to_string(),
+        ];
+        if let Some(law) = &design.law {
+            let gains = law.gain.transpose();
+            row.extend(
+                gains
+                    .iter()
+                    .zip(&scales)
+                    .map(|(gain, scale)| number(gain * scale)),
+            );
+        }
+        rows.push(row);
+    }
+    let width = rows[0].len();
+    format!("{}\n{}", info.title, table(&rows, 0..width))
+}
+
+/// Everything in SI.
+pub(crate) fn json(design: &Design, setup: &Setup<'_>) -> Value {
+    let info = setup.info;
+    let named = |list: &[Quantity], values: &[f64]| -> Map<String, Value> {
+        let pairs = list.iter().zip(values);
+        pairs
+            .map(|(q, value)| (q.name.to_string(), json!(value)))
+            .collect()
+    };
+    let states = names(info, &design.equations.states);
+    let outputs = names(info, &design.outputs);
+    let substituted: Map<String, Value> = design
+        .subsystem
+        .substituted
+        .iter()
+        .map(|(state, factors)| {
+            let factors = outputs
+                .iter()
+                .cloned()
+                .zip(factors.iter().map(|f| json!(f)));
+            (states[*state].clone(), Value::Object(factors.collect()))
+        })
+        .collect();
+    json!({
+        "mechanism": info.name,
+        "parameters": named(&info.parameters, &design.p),
+        "state": named(&info.states, &design.x),
+        "inputs": named(&info.inputs, &design.u),
+        "state_order": states,
+        "input_order": names_of(&info.inputs, &design.equations.inputs),
+        "A": rows(&design.equations.system.a),
+        "B": rows(&design.equations.system.b),
+        "varying": names(info, &design.equations.varying.iter().map(|&v| design.equations.states[v]).collect::<Vec<_>>()),
+        "controllability": reach_json(&design.controllability),
+        "outputs": {
+            "order": outputs,
+            "A": rows(&design.subsystem.system.a),
+            "B": rows(&design.subsystem.system.b),
+            "substituted": substituted,
+        },
+        "law": design.law.as_ref().map(law_json),
+    })
+}
+
+/// The designs of a schedule.
+pub(crate) fn schedule_json(name: &str, designs: &[(f64, Design)], setup: &Setup<'_>) -> Value {
+    let designs = designs
+        .iter()
+        .map(|(value, design)| json!({ "value": value, "design": json(design, setup) }));
+    json!({ "over": name, "designs": designs.collect::<Vec<_>>() })
+}
+
+fn reach_json(told: &Controllability) -> Value {
+    let modes = told.modes.iter().map(|mode| {
+        json!({
+            "value": complex(&mode.value),
+            "multiplicity": mode.multiplicity,
+            "distance": mode.distance,
+            "lost": mode.lost,
+        })
+    });
+    json!({
+        "rank": told.rank,
+        "singular_values": told.singular_values,
+        "lost": told.lost.iter().map(complex).collect::<Vec<_>>(),
+        "untouched": rows(&told.untouched),
+        "modes": modes.collect::<Vec<_>>(),
+        "stabilisable": told.kept().next().is_none(),
+    })
+}
+
+fn law_json(law: &Law) -> Value {
+    json!({
+        "gains": rows(&law.gain),
+        "poles": law.poles.iter().map(complex).collect::<Vec<_>>(),
+        "sampled_s": law.sampling.map(Sampling::period),
+        "delay_s": law.sampling.map(Sampling::delay),
+        "residual": law.residual,
+        "condition": law.condition,
+    })
+}
+
+fn complex(value: &Complex<f64>) -> Value {
+    json!([value.re, value.im])
+}
+
+fn rows(matrix: &DMatrix<f64>) -> Value {
+    let row = |row: nalgebra::RowDVector<f64>| json!(row.as_slice());
+    matrix.row_iter().map(|r| row(r.into_owned())).collect()
+}

@@ -1,0 +1,22 @@
+//! Text for people, beside files for programs.
+
+use std::path::PathBuf;
+
+use appell::{Error, files};
+
+use crate::failure::tell;
+
+/// Writes to standard output.
+pub(crate) fn print(text: &str) -> Result<(), Error> {
+    files::to_stdout(|to| to.write_all(text.as_bytes()))
+}
+
+/// Writes to standard output, or to standard error where one of the files takes that.
+pub(crate) fn print_beside(text: &str, files: &[&Option<PathBuf>]) -> Result<(), Error> {
+    let mut files = files.iter().filter_map(|file| file.as_ref());
+    if files.any(|path| files::is_stdout(path)) {
+        tell(text);
+        return Ok(());
+    }
+    print(text)
+}

@@ -1,0 +1,71 @@
+//! *Experimental Model Identification of the Longitudinal Dynamics of an Electric Unicycle with a Human
+//! Rider*, on simulated rides: its recordings are not public.
+//!
+//! | file | part |
+//! |---|---|
+//! | `equations.rs`, `tables.rs` | every numbered equation; tables 1 to 3 |
+//! | `rider.rs` | the spatial unicycle under a rider, four manoeuvres |
+//! | `capture.rs`, `dice.rs` | rigid bodies as cameras see them; noise |
+//! | `recorded.rs` | the rides as data sets, for `appell diagnose` |
+//! | `laboratory.rs` | everything that was ridden, captured and smoothed |
+//! | `torque.rs` | M_d,1 and M_d,2, and their difference over the height |
+//! | `figure_3.rs`, `figure_6.rs`, `figure_8.rs` | figures 3 and 4, 6 and 7, 8 |
+//! | `heights.rs` | the height with its interval |
+
+mod capture;
+mod dice;
+mod equations;
+mod figure_3;
+mod figure_6;
+mod figure_8;
+mod heights;
+mod laboratory;
+mod recorded;
+mod rider;
+mod tables;
+mod torque;
+
+use std::path::Path;
+
+use laboratory::{Laboratory, Session};
+use rider::Manoeuvre;
+
+use super::Section;
+use super::found::failed;
+use appell::Error;
+
+/// A part of the book: its name while it is made, and what makes it.
+type Part = (&'static str, fn(&Laboratory) -> Result<Section, Error>);
+
+const PARTS: &[Part] = &[
+    ("equations", |_| Ok(equations::section())),
+    ("tables", tables::section),
+    ("figures 3 and 4", figure_3::section),
+    ("figures 6 and 7", figure_6::section),
+    ("figure 8", figure_8::section),
+    ("heights", heights::section),
+];
+
+/// The book part by part; `making` hears what is made, and how much of the book is. The rides go to a
+/// folder, as recordings.
+pub fn book(
+    rides: &Path,
+    mut making: impl FnMut(&str, usize, usize),
+) -> Result<Vec<Section>, Error> {
+    let all = PARTS.len() + 1;
+    making("rides", 0, all);
+    let laboratory = Laboratory::new()?;
+    recorded::write(&laboratory, rides)?;
+    let part = |(number, (name, make)): (usize, &Part)| {
+        making(name, number + 1, all);
+        make(&laboratory)
+    };
+    PARTS.iter().enumerate().map(part).collect()
+}
+
+impl Laboratory {
+    fn session(&self, manoeuvre: Manoeuvre) -> Result<&Session, Error> {
+        let found = self.sessions.iter().find(|own| own.manoeuvre == manoeuvre);
+        found.ok_or_else(|| failed("the manoeuvre was not ridden"))
+    }
+}

@@ -1,0 +1,198 @@
+//! Beyond the paper: the height by all equations that the torques leave over, weighed by the noise, with
+//! an interval that says what the rides do not tell.
+
+use appell_codegen::jit::JitModel;
+use appell_codegen::program::FunctionKind;
+use appell_estimate::inverse::{Consistency, Found, Record, Relations, Sought, Track};
+use appell_gap::motion_capture::{Capture, Ride};
+use appell_models::Shipped;
+use appell_report::figure::{Figure, Panel, Series};
+use appell_runtime::model::Model;
+use nalgebra::{DMatrix, DVector};
+
+use super::laboratory::{Laboratory, PERFECT, REAL, Session};
+use super::rider::Manoeuvre;
+use crate::book::claim::{Claim, Picture, Section, Verdict};
+use crate::book::found::{failed, told};
+use appell::Error;
+
+/// Heights of the profiles, as parts of the one that is found.
+const PROFILE: [f64; 9] = [0.6, 0.7, 0.8, 0.9, 1.0, 1.1, 1.2, 1.35, 1.5];
+/// Normal quantile of a 95 % interval.
+const QUANTILE: f64 = 1.96;
+/// The bound of a straight ride without noise in m: the lean of a rider who sways sideways shortens
+/// what the plane sees of the height.
+const STRAIGHT: f64 = 5e-3;
+
+/// What the rides of a manoeuvre tell.
+struct Told {
+    manoeuvre: Manoeuvre,
+    found: Found,
+    profile: Vec<f64>,
+}
+
+pub(super) fn section(laboratory: &Laboratory) -> Result<Section, Error> {
+    let shipped = Shipped::find("euc_3dof");
+    let shipped = shipped.ok_or_else(|| failed("the planar model is not shipped"))?;
+    let program = appell_codegen::compile(shipped.file, shipped.spec, &FunctionKind::ALL)?;
+    let model = JitModel::new(&program).map_err(told)?;
+    let command = "appell motion SKELETON ride.csv; appell inverse euc_3dof --data recording --free h --bias phi";
+    let mut claims = Vec::new();
+    let mut all = Vec::new();
+    for session in &laboratory.sessions {
+        let name = session.manoeuvre.name();
+        let place = format!("height, {name}");
+        let real = find(&model, laboratory, session)?;
+        claims.push(
+            Claim::that(
+                &place,
+                "nothing: one number without an interval",
+                interval(&real.found, laboratory.height),
+                real.found.values[0].is_finite(),
+                command,
+            )
+            .verdict(Verdict::Added),
+        );
+        if session.manoeuvre != Manoeuvre::FigureEight {
+            let perfect = laboratory.seen(session, PERFECT);
+            let perfect = consistency(&model, laboratory, &perfect, false)?;
+            let off = perfect.least().map_err(told)?[0] - laboratory.height;
+            let ours = format!(
+                "without noise and marker offsets h is off by {:.2} mm: what the plane does not see of the ride",
+                1e3 * off
+            );
+            let claim = Claim::that(&place, "nothing", ours, off.abs() < STRAIGHT, command);
+            claims.push(claim.verdict(Verdict::Added));
+        }
+        all.push(real);
+    }
+    let width = |manoeuvre: Manoeuvre| {
+        let own = all.iter().find(|own| own.manoeuvre == manoeuvre);
+        own.map_or(f64::NAN, |own| spread(&own.found))
+    };
+    let [straight, speeding, braking, eight] = Manoeuvre::ALL.map(width);
+    let ours = format!(
+        "standard deviations of h: constant speed {:.1} mm, acceleration {:.1} mm, deceleration {:.1} mm, figure-eight \
+         {:.1} mm",
+        1e3 * straight,
+        1e3 * speeding,
+        1e3 * braking,
+        1e3 * eight
+    );
+    for (manoeuvre, own) in [("constant speed", straight), ("figure-eight", eight)] {
+        claims.push(Claim::finding(
+            "height",
+            &format!("{manoeuvre} is not sensitive to h"),
+            &ours,
+            own > speeding.max(braking),
+            command,
+        ));
+    }
+    Ok(Section {
+        title: "What the rides tell of the height".to_owned(),
+        about: format!(
+            "The three equations of the plane leave one relation over whatever the two torques were; it is M_d,1 = \
+             M_d,2. Here it is weighed by the noise with all its correlations, and the rider's angle, seen from the \
+             pedals, may show a constant too much. The true height is {:.4} m.",
+            laboratory.height
+        ),
+        claims,
+        pictures: vec![Picture {
+            svg: figure(&all, laboratory).to_svg(),
+            caption: "How much less likely other heights are: twice the inconsistency above its minimum. An interval of \
+                      95 % ends where the line crosses 3.84 if the model holds."
+                .to_owned(),
+        }],
+    })
+}
+
+/// The larger of the two standard deviations of h: from noise, and from how parts of the rides disagree.
+fn spread(found: &Found) -> f64 {
+    found.robust[(0, 0)].max(found.covariance[(0, 0)]).sqrt()
+}
+
+fn interval(found: &Found, truth: f64) -> String {
+    let [low, high] = found.intervals[0];
+    let value = found.values[0];
+    let reach = QUANTILE * spread(found);
+    format!(
+        "h = {value:.4} m; by the noise alone from {low:.4} m to {high:.4} m, by how parts of the rides disagree from \
+         {:.4} m to {:.4} m; true {truth:.4} m. Mean square of the relation in units of its noise: {:.2}",
+        value - reach,
+        value + reach,
+        found.normalised_square()
+    )
+}
+
+fn find(model: &dyn Model, laboratory: &Laboratory, session: &Session) -> Result<Told, Error> {
+    let captures = laboratory.seen(session, REAL);
+    let consistency = consistency(model, laboratory, &captures, true)?;
+    let found = consistency.find().map_err(told)?;
+    let heights: Vec<f64> = PROFILE.iter().map(|part| part * found.values[0]).collect();
+    let profile = consistency.profile(0, &heights).map_err(told)?;
+    Ok(Told {
+        manoeuvre: session.manoeuvre,
+        profile,
+        found,
+    })
+}
+
+/// The rides beside the planar model: h is sought, and what the rider's angle may show too much.
+fn consistency<'a>(
+    model: &'a dyn Model,
+    laboratory: &Laboratory,
+    captures: &[Capture],
+    biased: bool,
+) -> Result<Consistency<'a>, Error> {
+    let records: Vec<Record> = captures.iter().map(|own| record(laboratory, own)).collect();
+    let track = Track::of(&records).map_err(told)?;
+    let info = model.info();
+    let p = info.default_parameters();
+    let stretches = track.stretches.iter();
+    let first = stretches.flat_map(|stretch| &stretch.motions).next();
+    let first = first.ok_or_else(|| failed("no motion"))?;
+    let relations = Relations::new(model, &[0, 1, 2], first, &p).map_err(told)?;
+    let h = info.parameter_index("h").ok_or_else(|| failed("no `h`"))?;
+    let mut sought = vec![Sought::Parameter(h)];
+    if biased {
+        sought.push(Sought::Bias(2));
+    }
+    Consistency::new(relations, track, p, sought).map_err(told)
+}
+
+/// x, γ and ϕ of a ride.
+fn record(laboratory: &Laboratory, capture: &Capture) -> Record {
+    let ride = Ride::of(&laboratory.skeleton, capture);
+    let columns: Vec<DVector<f64>> = (ride.channels.iter())
+        .map(|channel| DVector::from_column_slice(channel))
+        .collect();
+    Record {
+        times: ride.times,
+        values: DMatrix::from_columns(&columns),
+    }
+}
+
+fn figure(all: &[Told], laboratory: &Laboratory) -> Figure {
+    let panel = |own: &Told| Panel {
+        unit: String::new(),
+        series: vec![Series {
+            label: own.manoeuvre.name().to_owned(),
+            x: PROFILE
+                .iter()
+                .map(|part| part * own.found.values[0])
+                .collect(),
+            y: own
+                .profile
+                .iter()
+                .map(|cost| 2.0 * (cost - own.found.cost))
+                .collect(),
+        }],
+    };
+    Figure {
+        title: format!("Heights beside the true one of {:.3} m", laboratory.height),
+        x_label: "h [m]".to_owned(),
+        panels: all.iter().map(panel).collect(),
+        marks: Vec::new(),
+        equal_axes: false,
+    }
+}

@@ -1,0 +1,129 @@
+//! Everything that was ridden, captured and smoothed, once for the whole book.
+
+use appell_gap::motion_capture::{Capture, Ride, Skeleton, Smoothed, filter};
+use appell_runtime::Trajectory;
+
+use super::capture::{Captured, Imperfection};
+use super::dice::Dice;
+use super::rider::{Manoeuvre, Rider};
+use crate::book::found::{failed, told};
+use appell::Error;
+
+/// The skeleton that stands among the examples.
+const SKELETON: &str = include_str!("../../../../docs/examples/euc/skeleton.toml");
+/// The rider's angle as the skeleton has it, seen from the pedals, and as (3) has it, from the wheel centre.
+const SEEN_FROM: [&str; 2] = ["lean = [\"A\", \"G\"] }", "lean = [\"C\", \"G\"] }"];
+
+/// The stated noise and marker offsets.
+pub(super) const REAL: Imperfection = Imperfection {
+    noise: 1.0,
+    offsets: 1.0,
+};
+/// Nothing disturbs the capture.
+pub(super) const PERFECT: Imperfection = Imperfection {
+    noise: 0.0,
+    offsets: 0.0,
+};
+
+/// The rides of one manoeuvre.
+pub(super) struct Session {
+    pub(super) manoeuvre: Manoeuvre,
+    /// What really happened.
+    pub(super) motions: Vec<Trajectory>,
+    /// What the cameras saw, with the rider's angle by (3).
+    pub(super) by_3: View,
+    /// The same with the angle seen from the pedals.
+    pub(super) by_pedals: View,
+}
+
+/// Rides with the rider's angle seen from one point.
+pub(super) struct View {
+    pub(super) rides: Vec<Ride>,
+    /// With derivatives.
+    pub(super) smoothed: Vec<Smoothed>,
+    /// Frames of the filter's window.
+    pub(super) window: usize,
+}
+
+impl View {
+    fn of(skeleton: &Skeleton, captures: &[Capture]) -> Result<Self, Error> {
+        let rides = captures.iter().map(|own| Ride::of(skeleton, own));
+        let rides: Vec<Ride> = rides.collect();
+        let filter = filter(&rides).map_err(told)?;
+        let smoothed = rides.iter().map(|ride| Smoothed::of(ride, filter));
+        Ok(Self {
+            smoothed: smoothed.collect::<Result<_, _>>().map_err(told)?,
+            window: filter.count(),
+            rides,
+        })
+    }
+}
+
+/// The rides of all manoeuvres.
+pub(super) struct Laboratory {
+    /// True height of the rider's centre of mass above the pedals in m.
+    pub(super) height: f64,
+    /// The skeleton of the example.
+    pub(super) skeleton: Skeleton,
+    rider: Captured,
+    pub(super) sessions: Vec<Session>,
+}
+
+impl Laboratory {
+    pub(super) fn new() -> Result<Self, Error> {
+        let skeleton = Skeleton::parse("docs/examples/euc/skeleton.toml", SKELETON)?;
+        let [pedals, centre] = SEEN_FROM;
+        let text = SKELETON.replacen(pedals, centre, 1);
+        let by_3 = Skeleton::parse("docs/examples/euc/skeleton.toml", &text)?;
+        let captured = Captured::new(&skeleton)?;
+        let height = captured.height();
+        let rider = Rider::new(height)?;
+        let session = |&manoeuvre: &Manoeuvre| {
+            let runs = 0..manoeuvre.runs();
+            let motions = runs.map(|run| rider.ride(manoeuvre, run));
+            let motions: Vec<Trajectory> = motions.collect::<Result<_, _>>()?;
+            let captures = seen(&captured, manoeuvre, &motions, REAL);
+            Ok(Session {
+                manoeuvre,
+                by_3: View::of(&by_3, &captures)?,
+                by_pedals: View::of(&skeleton, &captures)?,
+                motions,
+            })
+        };
+        let sessions = Manoeuvre::ALL.iter().map(session);
+        Ok(Self {
+            height,
+            sessions: sessions.collect::<Result<_, Error>>()?,
+            rider: captured,
+            skeleton,
+        })
+    }
+
+    /// Value and unit of a parameter of the spatial model that was ridden.
+    pub(super) fn stated(&self, name: &str) -> Result<(f64, String), Error> {
+        let motion = self.sessions.iter().flat_map(|own| &own.motions).next();
+        let motion = motion.ok_or_else(|| failed("nothing was ridden"))?;
+        let info = motion.info();
+        let index = info.parameter_index(name);
+        let index = index.ok_or_else(|| failed(&format!("the model has no `{name}`")))?;
+        let unit = info.parameters[index].unit.to_string();
+        Ok((motion.parameters()[index], unit))
+    }
+
+    /// The rides of a manoeuvre as other cameras would see them.
+    pub(super) fn seen(&self, session: &Session, with: Imperfection) -> Vec<Capture> {
+        seen(&self.rider, session.manoeuvre, &session.motions, with)
+    }
+}
+
+fn seen(
+    rider: &Captured,
+    manoeuvre: Manoeuvre,
+    motions: &[Trajectory],
+    with: Imperfection,
+) -> Vec<Capture> {
+    let mut dice = Dice::of(manoeuvre.name());
+    let runs = motions.iter();
+    runs.map(|motion| rider.see(motion, with, &mut dice))
+        .collect()
+}

@@ -1,0 +1,130 @@
+//! Figure 6: stability of the turning motions for eight sliding masses.
+
+use appell_analysis::{Cell, Chart, Point, Verdict};
+
+use super::figure_5::place_of_mass;
+use crate::book::claim::{Claim, Picture, Section};
+use crate::book::found::{Mechanism, cell_point, shown};
+use appell::Error;
+use appell::steady::regions;
+
+const TILT_DEG: f64 = 60.0;
+const YAW: f64 = 10.0;
+const GRID: usize = 240;
+/// In kg.
+const MASSES: [f64; 8] = [0.0, 1.0, 2.0, 5.0, 10.0, 15.0, 20.0, 30.0];
+
+/// A chart for each mass.
+pub(super) fn section() -> Result<Section, Error> {
+    let (mut claims, mut pictures) = (Vec::new(), Vec::new());
+    for mass in MASSES {
+        let (mechanism, given, least) = given(mass);
+        let mechanism = Mechanism::shipped(mechanism)?;
+        let tilt = TILT_DEG.to_radians();
+        let axes = [
+            ("theta", [-tilt, tilt], GRID),
+            ("psi_dot", [-YAW, YAW], GRID),
+        ];
+        let chart = mechanism.chart(&given, axes, &least)?;
+        claims.push(claim(mass, mechanism, &chart)?);
+        let names = ["theta", "psi_dot"];
+        let map = regions::map(&format!("m₀ = {mass} kg"), &chart, names.map(shown));
+        pictures.push(Picture {
+            svg: map.to_svg(),
+            caption: format!("m₀ = {mass} kg, m₀/m = {}.", mass / 10.0),
+        });
+    }
+    claims.push(Claim::that(
+        "figure 6, m₀ = 0",
+        "without the sliding mass the chart is that of the rolling wheel, figure 3(c)",
+        "computed with the rolling wheel: the unicycle's equations divide by m₀",
+        true,
+        "appell stability rolling_wheel --chart theta=-60deg..60deg,psi_dot=-10..10",
+    ));
+    Ok(Section {
+        title: "Figure 6: stability of the unicycle's steady motions".to_owned(),
+        about: "Turning motions without force on the mass, for eight values of m₀. Each chart is checked \
+                motion by motion: the place of the mass against (41), the verdict against the coefficients of \
+                the characteristic polynomial."
+            .to_owned(),
+        claims,
+        pictures,
+    })
+}
+
+type Given = (
+    &'static str,
+    Vec<(&'static str, f64)>,
+    Vec<(&'static str, f64)>,
+);
+
+/// Mechanism, parameters and requirements of a sliding mass.
+fn given(mass: f64) -> Given {
+    if mass > 0.0 {
+        ("unicycle", vec![("m0", mass)], vec![("z_A", 0.0)])
+    } else {
+        ("rolling_wheel", Vec::new(), Vec::new())
+    }
+}
+
+fn claim(mass: f64, mechanism: Mechanism, chart: &Chart) -> Result<Claim, Error> {
+    let base = Point::initial(mechanism.0);
+    let (mut worst, mut wrong): (f64, usize) = (0.0, 0);
+    let found: Vec<&Cell> = chart.cells.iter().flatten().collect();
+    for cell in &found {
+        if mass > 0.0 {
+            let point = cell_point(chart, &cell.unknowns, &base);
+            let [tilt, yaw, r] =
+                ["theta", "psi_dot", "r"].map(|name| mechanism.value(name, &point));
+            let wanted = place_of_mass(mass, tilt?, yaw?);
+            worst = worst.max((r? - wanted).abs() / wanted.abs().max(1.0));
+        }
+        wrong += usize::from(disagrees(cell));
+    }
+    let count = |wanted: bool| {
+        let stable = |cell: &&&Cell| (cell.verdict != Verdict::Unstable) == wanted;
+        found.iter().filter(stable).count()
+    };
+    let infeasible = found.iter().filter(|cell| !cell.feasible).count();
+    let ours = format!(
+        "{} of {} motions found: {} stable, {} unstable; {infeasible} of them not feasible. Place of the mass within {worst:.0e} \
+         of (41); {wrong} verdicts that contradict (49)",
+        found.len(),
+        chart.cells.len(),
+        count(true),
+        count(false),
+    );
+    let published = format!("chart for m₀ = {mass} kg");
+    let enough = found.len() * 100 > chart.cells.len() * 90;
+    let command = if mass > 0.0 {
+        format!(
+            "appell stability unicycle --set m0={mass} --chart theta=-60deg..60deg,psi_dot=-10..10 --require z_A>=0"
+        )
+    } else {
+        "appell stability rolling_wheel --chart theta=-60deg..60deg,psi_dot=-10..10".to_owned()
+    };
+    let holds = worst < 1e-6 && wrong == 0 && enough && count(true) > 0 && count(false) > 0;
+    Ok(Claim::that("figure 6", &published, ours, holds, &command))
+}
+
+/// Whether the verdict contradicts the roots q = λ² of (49): stable where they are real and negative.
+fn disagrees(cell: &Cell) -> bool {
+    /// Part of the largest root within which the border runs.
+    const NEAR: f64 = 1e-4;
+    let squares: Vec<_> = cell.eigenvalues.iter().map(|z| z * z).collect();
+    let size = squares
+        .iter()
+        .map(|q| q.norm())
+        .fold(f64::MIN_POSITIVE, f64::max);
+    let clear = |unstable: bool| {
+        squares.iter().any(|q| {
+            if unstable {
+                q.re > NEAR * size || q.im.abs() > NEAR * size
+            } else {
+                q.norm() < NEAR * size
+            }
+        })
+    };
+    let (grows, border) = (clear(true), clear(false));
+    !border && grows != (cell.verdict == Verdict::Unstable)
+}

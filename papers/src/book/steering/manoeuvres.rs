@@ -1,0 +1,154 @@
+//! The closed loops of the paper on the nonlinear unicycle.
+
+use std::fmt::Write as _;
+
+use crate::steering::OUTPUTS;
+use appell_runtime::integrate::Options;
+use appell_runtime::simulate::{Sampling, SimulationError};
+use appell_runtime::trajectory::Extras;
+use appell_runtime::{Simulation, Trajectory};
+
+use super::tables::placed;
+use crate::book::found::{failed, told};
+use appell::Error;
+use appell::engine::Equations;
+use appell::inputs::controller::Plan;
+use appell::inputs::feedback;
+use appell::setup::Setup;
+use appell::source::Source;
+
+/// A path that is followed from 2 s to 7 s: half its length, and where it ends.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Path {
+    /// Whether the yaw angle follows it; else the lateral position does.
+    pub(super) turn: bool,
+    /// Of the cosine.
+    pub(super) amplitude: f64,
+    /// From 7 s on.
+    pub(super) end: f64,
+}
+
+impl Path {
+    /// A lane change over a width in m to the right, as corrected: (66).
+    pub(super) const fn lane(width: f64) -> Self {
+        Self {
+            turn: false,
+            amplitude: width / 2.0,
+            end: -width,
+        }
+    }
+
+    /// A right turn by 90°, as corrected: (71).
+    pub(super) const TURN: Self = Self {
+        turn: true,
+        amplitude: std::f64::consts::FRAC_PI_4,
+        end: -std::f64::consts::FRAC_PI_2,
+    };
+
+    /// The desired value.
+    pub(super) fn at(self, t: f64) -> f64 {
+        if t < 2.0 {
+            0.0
+        } else if t < 7.0 {
+            self.amplitude * ((std::f64::consts::PI * (t - 2.0) / 5.0).cos() - 1.0)
+        } else {
+            self.end
+        }
+    }
+
+    /// How far it jumps at 7 s.
+    pub(super) fn jump(self) -> f64 {
+        (self.at(7.0) - self.at(7.0_f64.next_down())).abs()
+    }
+
+    fn outputs(self) -> &'static [&'static str] {
+        if self.turn { &OUTPUTS[..5] } else { &OUTPUTS }
+    }
+}
+
+/// A closed loop with the gains of one speed, run at another.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Run {
+    /// What is followed.
+    pub(super) path: Path,
+    /// Speed of the gains in m/s.
+    pub(super) gains_at: f64,
+    /// Speed of the run in m/s.
+    pub(super) speed: f64,
+}
+
+impl Run {
+    /// Gains of the speed of the run.
+    pub(super) const fn new(path: Path, speed: f64) -> Self {
+        Self {
+            path,
+            gains_at: speed,
+            speed,
+        }
+    }
+
+    /// Ten seconds, recorded every `interval` seconds; what there is of a motion that ends early.
+    pub(super) fn motion(self, interval: f64) -> Result<(Trajectory, Option<String>), Error> {
+        let source = Source::find("unicycle")?;
+        let equations = Equations::at_hand(&source)?;
+        let mut setup = Setup::new(&source.file, &source.text, equations.model().info())?;
+        let law = feedback::parse("law.toml", &self.law()?, &setup)?;
+        setup.start_from_law(&law)?;
+        let mut plan = Plan::new(&setup);
+        plan.feedback(law)?;
+        let controller = plan.controller(&setup, 10.0)?;
+        let simulation = Simulation {
+            parameters: setup.parameters.clone(),
+            initial_state: setup.initial.clone(),
+            inputs: &controller,
+            options: Options::with_tolerances(1e-12, 1e-12),
+            sampling: Sampling::Every(interval),
+            extras: Extras {
+                contacts: true,
+                ..Extras::default()
+            },
+            ..Simulation::new(equations.model())
+        };
+        match simulation.run() {
+            Ok(motion) => Ok((motion, None)),
+            Err(error @ SimulationError::Integration { .. }) => {
+                let reason = error.to_string();
+                let SimulationError::Integration { trajectory, .. } = error else {
+                    return Err(failed(&reason));
+                };
+                Ok((*trajectory, Some(reason)))
+            }
+            Err(error) => Err(told(error)),
+        }
+    }
+
+    /// The law as a file for `simulate --feedback`.
+    fn law(self) -> Result<String, Error> {
+        let outputs = self.path.outputs();
+        let gains = placed(self.gains_at, outputs)?;
+        let gains: Vec<String> = gains.iter().map(|gain| format!("{gain:?}")).collect();
+        let followed = outputs.last().copied().unwrap_or_default();
+        let Path { amplitude, end, .. } = self.path;
+        let mut text = format!(
+            "mechanism = \"unicycle\"\ninput = \"u\"\nstates = {outputs:?}\ngains = [{}]\n\
+             switching_times_s = [2, 7]\n",
+            gains.join(", ")
+        );
+        // Writing to a string cannot fail.
+        let _ = writeln!(
+            text,
+            "[desired]\n{followed} = \"if(t < 2, 0, if(t < 7, {amplitude:?}*(cos(pi*(t - 2)/5) - 1), \
+             {end:?}))\"\n[initial]\nomega_2 = \"{:?}[m/s]/R\"",
+            self.speed
+        );
+        Ok(text)
+    }
+}
+
+/// The largest absolute value of a column, in SI.
+pub(super) fn largest(motion: &Trajectory, name: &str) -> f64 {
+    let column = motion.column(name).unwrap_or_default();
+    column
+        .into_iter()
+        .fold(0.0, |most, value| value.abs().max(most))
+}

@@ -1,0 +1,262 @@
+//! What the papers print and what is right. `docs/errata.md` is written from this table.
+
+use std::fmt::Write as _;
+
+use crate::paper::{self, Paper};
+
+mod table;
+
+pub use table::ERRATA;
+
+/// Acceleration energy (89) of paper 001, corrected.
+pub const ACCELERATION_ENERGY: &str = "1/8*(5*m*R**2 + 4*m0*(R**2 + r**2))*w1d**2 + 1/4*(3*m + 2*m0)*R**2*w2d**2 \
+     + 1/8*(m*R**2 + 4*m0*r**2)*w3d**2 + m0/2*sd**2 - m0*R*w1d*sd - m0*R*r*w2d*w3d \
+     + 1/4*(8*w1*s*m0*r + w3**2*(4*m0*r**2*tan(th) + 4*m0*R*r + m*R**2*tan(th)) \
+         - w2*w3*(6*m*R**2 + 4*m0*R**2 + 4*m0*R*r*tan(th)))*w1d \
+     + (w1*w3*(m*R**2 + m0*R**2 + m0*R*r*tan(th)) - 2*w3*s*m0*R)*w2d \
+     + 1/4*(2*w1*w2*m*R**2 - w1*w3*(m*R**2 + 4*m0*r**2)*tan(th) - 4*w1*w3*m0*R*r + 8*w3*s*m0*r)*w3d \
+     - m0*(w1**2*r - w2*w3*R + w3**2*r)*sd";
+
+/// A place where a paper and the right equation differ.
+#[derive(Debug)]
+pub struct Erratum {
+    /// Which paper.
+    pub source: Source,
+    /// Number of the equation, or the place in the text.
+    pub equation: &'static str,
+    /// What is printed, for people.
+    pub printed: &'static str,
+    /// What is right, for people.
+    pub right: &'static str,
+    /// Whose mistake it is.
+    pub verdict: Verdict,
+    /// How it is known.
+    pub evidence: Evidence,
+}
+
+/// A paper.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Source {
+    /// *Steering Control of an Autonomous Unicycle*.
+    Steering,
+    /// *Experimental Model Identification of the Longitudinal Dynamics of an Electric Unicycle
+    /// with a Human Rider*.
+    Euc,
+}
+
+/// Whose mistake an erratum is. The papers were read as recognised text.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Verdict {
+    /// The recognition garbled it; the context settles it.
+    Recognition,
+    /// An error or over-claim of the paper.
+    Misprint,
+    /// Wrong in the text at hand; recognition or misprint cannot be told apart.
+    Undecided,
+}
+
+impl Verdict {
+    /// For people.
+    pub const fn words(self) -> &'static str {
+        match self {
+            Self::Recognition => "text recognition",
+            Self::Misprint => "misprint or over-claim",
+            Self::Undecided => "undecided",
+        }
+    }
+}
+
+/// How an erratum is known.
+#[derive(Debug)]
+pub enum Evidence {
+    /// A formula is compared with a derived quantity, by the test of this name.
+    Test(&'static str, Comparison),
+    /// The text around it settles it; there is no formula to compare.
+    Context(&'static str),
+}
+
+/// A quantity as printed and as it is right.
+#[derive(Debug)]
+pub struct Comparison {
+    /// The mechanism it belongs to.
+    pub subject: Subject,
+    /// The quantity: what is derived under this name, or a formula of what is derived.
+    pub quantity: Quantity,
+    /// The printed formula.
+    pub printed: &'static str,
+    /// The right formula.
+    pub right: &'static str,
+}
+
+/// Where a quantity is derived.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Subject {
+    /// The rolling wheel.
+    Wheel,
+    /// The unicycle.
+    Unicycle,
+    /// The unicycle rolling straight on: no tilt, no yaw rate, the mass in the middle.
+    StraightUnicycle,
+    /// The EUC with three degrees of freedom.
+    Euc3,
+    /// The EUC with two.
+    Euc2,
+}
+
+/// What a formula is compared with.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Quantity {
+    /// What is derived under this name.
+    Derived(&'static str),
+    /// The derived quantity up to terms without pseudo-accelerations.
+    AccelerationEnergy,
+    /// The derived quantity vanishes where the input has the value of the formula.
+    Solves {
+        /// The derived quantity.
+        residual: &'static str,
+        /// The input.
+        unknown: &'static str,
+        /// What else is replaced before.
+        before: &'static [(&'static str, &'static str)],
+    },
+    /// A formula in derived quantities.
+    Formula(&'static str),
+}
+
+impl Comparison {
+    fn paper(&self) -> std::sync::MutexGuard<'static, Paper> {
+        match self.subject {
+            Subject::Wheel => paper::rolling_wheel(),
+            Subject::Unicycle | Subject::StraightUnicycle => paper::unicycle(),
+            Subject::Euc3 => paper::euc_3dof(),
+            Subject::Euc2 => paper::euc_2dof(),
+        }
+    }
+
+    /// Whether the printed and the right formula are what is derived.
+    pub fn verdicts(&self) -> [bool; 2] {
+        let mut paper = self.paper();
+        let before = paper.scope.clone();
+        // Derived quantities may occur in the formulas; symbols keep their names.
+        for name in paper.derived_names() {
+            if paper.scope.get(&name).is_none() {
+                let value = paper.derived(&name);
+                paper.scope.define(&name, value);
+            }
+        }
+        let verdicts = [self.printed, self.right].map(|text| self.holds(&mut paper, text));
+        paper.scope = before;
+        verdicts
+    }
+
+    fn holds(&self, paper: &mut Paper, text: &str) -> bool {
+        let typed = paper.formula(text);
+        match self.quantity {
+            Quantity::Derived(name) => {
+                let mut derived = paper.derived(name);
+                if self.subject == Subject::StraightUnicycle {
+                    let mut straight =
+                        paper.substitution(&[("th", "0"), ("r", "0"), ("Pd", "0"), ("psi", "0")]);
+                    derived = straight
+                        .apply(&mut paper.derivation.algebra.graph, derived)
+                        .unwrap();
+                }
+                paper.same(derived, typed)
+            }
+            Quantity::AccelerationEnergy => paper.has_acceleration_energy(text),
+            Quantity::Solves {
+                residual,
+                unknown,
+                before,
+            } => {
+                let mut first = paper.substitution(before);
+                let residual = paper.formula(residual);
+                let residual = first
+                    .apply(&mut paper.derivation.algebra.graph, residual)
+                    .unwrap();
+                let mut second = paper.substitution(&[(unknown, text)]);
+                let value = second
+                    .apply(&mut paper.derivation.algebra.graph, residual)
+                    .unwrap();
+                let zero = paper.formula("0");
+                paper.same(value, zero)
+            }
+            Quantity::Formula(formula) => {
+                let derived = paper.formula(formula);
+                paper.same(derived, typed)
+            }
+        }
+    }
+}
+
+/// Runs the comparison of a test.
+///
+/// # Panics
+///
+/// Where the right formula does not hold, or the printed one does.
+pub fn check(test: &str) {
+    let mut found = 0;
+    for erratum in ERRATA {
+        let Evidence::Test(name, comparison) = &erratum.evidence else {
+            continue;
+        };
+        if *name == test {
+            let [printed, right] = comparison.verdicts();
+            assert!(
+                right,
+                "{}: the corrected formula is not the derived one",
+                erratum.equation
+            );
+            assert!(
+                !printed,
+                "{}: the printed formula is the derived one, no erratum",
+                erratum.equation
+            );
+            found += 1;
+        }
+    }
+    assert!(found > 0, "no erratum names the test `{test}`");
+}
+
+/// The table as a page.
+pub fn markdown() -> String {
+    let mut page = String::from(
+        "# Errata of the papers\n\n\
+         Where the text of a paper differs from what its mechanism's equations are. The papers were \
+         read as\nrecognised text, so a garbled formula is not always the authors'. This page is \
+         written by\n`tests/tests/errata.rs` from `papers/src/errata/table.rs`: a row with a test is \
+         shown by the identity\ntest, which compares functions and not numbers. The printed form \
+         fails it, the right one passes.\n",
+    );
+    for (source, title) in [
+        (
+            Source::Steering,
+            "Steering Control of an Autonomous Unicycle",
+        ),
+        (
+            Source::Euc,
+            "Experimental Model Identification of the Longitudinal Dynamics of an Electric Unicycle with a Human Rider",
+        ),
+    ] {
+        // Writing to a string cannot fail.
+        let _ = write!(
+            page,
+            "\n## {title}\n\n| place | printed | right | cause | how it is known |\n|---|---|---|---|---|\n"
+        );
+        for e in ERRATA.iter().filter(|e| e.source == source) {
+            let evidence = match &e.evidence {
+                Evidence::Test(name, _) => format!("test `{name}`"),
+                Evidence::Context(words) => (*words).to_owned(),
+            };
+            let _ = writeln!(
+                page,
+                "| {} | {} | {} | {} | {evidence} |",
+                e.equation,
+                e.printed,
+                e.right,
+                e.verdict.words()
+            );
+        }
+    }
+    page
+}

@@ -1,0 +1,43 @@
+//! Papers whose equations appell derives: their formulas as they are typed, corrected where they
+//! err, and compared by the identity test.
+//!
+//! | file | idea |
+//! |---|---|
+//! | `formula.rs` | formulas as papers print them |
+//! | `paper.rs` | the derived equations under the names of the papers |
+//! | `steering.rs` | the equations of *Steering Control of an Autonomous Unicycle* |
+//! | `euc.rs` | the equations of *Experimental Model Identification of the Longitudinal Dynamics of an Electric Unicycle* |
+//! | `errata.rs` | what is printed and what is right |
+//! | `book/` | both papers recomputed, beside what general commands find |
+
+pub mod book;
+#[allow(
+    clippy::unwrap_used,
+    clippy::missing_panics_doc,
+    reason = "every formula is a constant of this crate and takes part in a test"
+)]
+pub mod errata;
+#[allow(
+    clippy::unwrap_used,
+    clippy::missing_panics_doc,
+    reason = "every formula is a constant of this crate and takes part in a test"
+)]
+pub mod euc;
+#[allow(
+    clippy::unwrap_used,
+    clippy::missing_panics_doc,
+    reason = "every formula is a constant of this crate and takes part in a test"
+)]
+pub mod formula;
+#[allow(
+    clippy::unwrap_used,
+    clippy::missing_panics_doc,
+    reason = "every formula is a constant of this crate and takes part in a test"
+)]
+pub mod paper;
+#[allow(
+    clippy::unwrap_used,
+    clippy::missing_panics_doc,
+    reason = "every formula is a constant of this crate and takes part in a test"
+)]
+pub mod steering;

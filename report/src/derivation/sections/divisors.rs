@@ -7,7 +7,7 @@ use super::{listed, math, words};
 use appell_codegen::mechanics::parameter_ranges;
 use appell_codegen::symbolic::{Expr, Intervals, Node};
 
-/// `They hold where cos θ ≠ 0; the spec declares θ from -1.5 to 1.5 rad.`
+/// `They are valid where cos θ ≠ 0; the spec declares θ from -1.5 to 1.5 rad.`
 pub(super) fn conditions(w: &mut Writer<'_>) -> Option<Block> {
     let divisors = divisors(w);
     if divisors.is_empty() {

@@ -7,7 +7,7 @@ import mechanisms
 
 NAMES = {"appell": "appell", "casadi": "CasADi", "sympy": "SymPy", "hand": "typed by hand"}
 
-TEXT = """# Performance beside SymPy and CasADi
+TEXT = """# Performance compared with SymPy and CasADi
 
 <!-- Written by benches/peers/run.py. -->
 
@@ -23,21 +23,21 @@ one program.
 
 - **time** is the median time of a call, parameters at run time, over 256 states in turn; the median of
   {layouts} code layouts: shuffled order of linking, random padding between the functions.
-- **appell / this** is what to compare. Each round calls all functions in turn, so that both of a pair see
-  the same machine; the ratio is formed in every round. Median of the layouts, and the range of the
-  layouts' medians. Below 1, appell is faster. On a busy machine times grow; ratios stay, but those of the
-  large functions spread.
-- **operations** are counted after common sub-expressions are shared. SymPy: `count_ops`, integer powers
+- **appell / this** is the number to compare; below 1, appell is faster. Each round calls all functions in
+  turn, so that both of a pair see the same machine; the ratio is formed in every round. Given are the median
+  of the layouts and the range of the layouts' medians. On a busy machine times grow, but ratios persist;
+  those of the large functions scatter more.
+- **operations** are counted after elimination of common subexpressions. SymPy: `count_ops`, integer powers
   multiplied out, a function counts one. CasADi: instructions without loads and stores. appell: additions,
-  multiplications, divisions and signs; sine-cosine pairs, functions and linear systems are told apart, the
-  inside of a linear system (up to 3 × 3, pivoted) is not counted.
+  multiplications, divisions and signs; sine-cosine pairs, functions and linear systems are listed separately,
+  and operations inside a linear system (up to 3 × 3, pivoted) are not counted.
 - **generation** is the fastest of some repetitions in a warm process: from the formulation to C for the
   peers, from the text of the spec to Rust for appell, which derives S, all constraints and M on the way.
   The C or Rust compiler is not counted.
 
-The peers get the formulation of a careful engineer (`benches/peers/mechanisms.py`): Kane's method in
+SymPy and CasADi are given an efficient formulation (`benches/peers/mechanisms.py`): Kane's method in
 moving frames, the rolling of the rear wheel solved by hand, 2 × 2 blocks by formula. SymPy's Jacobians are
-differentiated forward along the shared sub-expressions. All functions of a row give the same numbers.
+differentiated forward along the shared subexpressions. All functions in a table give the same numbers.
 
 """
 

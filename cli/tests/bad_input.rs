@@ -47,8 +47,8 @@ fn conditions_of_a_steady_motion_are_checked() {
     );
     about("dot(tetha)=0", &["did you mean `dot(theta)`?"]);
     about("theta", &["--about theta: write NAME=VALUE"]);
-    about("theta=0, theta=1", &["`theta` has two values"]);
-    about("theta=2*theta", &["`theta` is given in terms of itself"]);
+    about("theta=0, theta=1", &["`theta` is given twice"]);
+    about("theta=2*theta", &["`theta` is defined in terms of itself"]);
     about("theta=r/R, r=R*theta", &["in terms of itself"]);
     about("theta=1[m]", &["error[unit-mismatch]", "--about theta:1:1"]);
     about("theta=t", &["--about theta:1:1"]);
@@ -56,7 +56,7 @@ fn conditions_of_a_steady_motion_are_checked() {
         "theta=1/0",
         &["error[division-by-zero]", "--about theta:1:3"],
     );
-    about("omega_3=1, dot(psi)=3", &["`psi_dot` is not the rate"]);
+    about("omega_3=1, dot(psi)=3", &["`psi_dot` contradicts the rate"]);
     let equations = ["derive", "unicycle", "--about", "theta=0"];
     folder.fails(2, &equations, &["--about goes with --stage linear"]);
 }

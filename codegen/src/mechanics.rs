@@ -91,7 +91,7 @@ pub struct Derivation {
     pub coordinate_rates: Vec<Expr>,
     /// q̇ if no contact crept, named.
     pub rolling_rates: Vec<Expr>,
-    /// What looks unintended.
+    /// Warnings and notes.
     pub warnings: Vec<Finding>,
 }
 

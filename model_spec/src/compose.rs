@@ -1,4 +1,4 @@
-//! Specs put together from parts: further items, and expressions in the places of names.
+//! Specs composed from parts: additional items, and expressions substituted for names.
 
 use toml_edit::{DocumentMut, Item, TableLike, Value};
 
@@ -47,7 +47,7 @@ impl Composition {
         Ok(())
     }
 
-    /// Writes an expression in the places of a name, in all expressions of the sections.
+    /// Substitutes an expression for a name in all expressions of the sections.
     pub fn substitute(&mut self, sections: &[&str], name: &str, by: &str) {
         for section in sections {
             let keys = expressions(section);
@@ -137,7 +137,7 @@ fn replace(value: &mut Value, name: &str, by: &str) {
     }
 }
 
-/// An expression with `by` in the places of a whole name; units in brackets stay.
+/// An expression with `by` substituted for a name; units in brackets are kept.
 fn replaced(expression: &str, name: &str, by: &str) -> String {
     let mut out = String::with_capacity(expression.len());
     let mut rest = expression;

@@ -116,7 +116,7 @@ impl Report {
         }
     }
 
-    /// Tells that the text is only a part of the file, from this line on, counted from 1: of a
+    /// States that the text is only a part of the file, from this line on, counted from 1: of a
     /// recording of gigabytes nobody keeps more than the line in question.
     #[must_use]
     pub fn from_line(mut self, first_line: usize) -> Self {

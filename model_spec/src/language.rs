@@ -14,7 +14,7 @@ pub use sections::{AXES, INTERPOLATIONS, SECTIONS};
 pub struct Section {
     /// Name in brackets.
     pub name: &'static str,
-    /// One sentence for people.
+    /// One-sentence description.
     pub about: &'static str,
     /// What it holds.
     pub shape: Shape,
@@ -43,13 +43,13 @@ pub struct Kind {
     pub word: &'static str,
     /// What the word means.
     pub is: ItemKind,
-    /// One sentence for people.
+    /// One-sentence description.
     pub about: &'static str,
     /// Its keys.
     pub keys: &'static [Key],
 }
 
-/// What a kind makes of its item: the form in which the stages after the table match on it.
+/// The kind of an item, for matching in later stages.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ItemKind {
     /// An item of `[constraints]`.
@@ -99,7 +99,7 @@ pub enum Sense {
         /// Whether it points backwards.
         negative: bool,
     },
-    /// How a signal runs between two samples.
+    /// The interpolation of a signal.
     Interpolation(Interpolation),
 }
 
@@ -112,7 +112,7 @@ pub struct Key {
     pub form: Form,
     /// Whether it must be there.
     pub need: Need,
-    /// One sentence for people.
+    /// One-sentence description.
     pub about: &'static str,
 }
 
@@ -176,7 +176,7 @@ pub enum Target {
 }
 
 impl Target {
-    /// The word for people.
+    /// The word in messages.
     pub const fn word(self) -> &'static str {
         match self {
             Self::Frame => "frame",

@@ -36,7 +36,7 @@ pub use suggest::{closest, did_you_mean, shown};
 pub struct Checked {
     /// The mechanism.
     pub mechanism: Mechanism,
-    /// What looks unintended.
+    /// Warnings and notes.
     pub warnings: Vec<Diagnostic>,
 }
 

@@ -1,4 +1,4 @@
-//! Bounds on what a spec may hold: it is text from strangers.
+//! Size limits of a spec, which may come from an untrusted source.
 
 /// Largest file, in bytes.
 pub const MAX_FILE: usize = 1 << 20;

@@ -2,7 +2,7 @@
 //!
 //! Everything here is in SI units. References between items are ids in the lists of
 //! [`Mechanism`]; the checks of this crate guarantee that they are in range, that parents come
-//! before children, and that every expression has the dimension its place asks for.
+//! before children, and that every expression has the dimension its place requires.
 
 use crate::expr::{Expr, Span};
 use crate::units::{Dimension, Unit};
@@ -25,7 +25,7 @@ pub type Components = [Expr; 3];
 pub struct Mechanism {
     /// Name, a valid identifier.
     pub name: String,
-    /// One line for people.
+    /// One-line title.
     pub title: String,
     /// Where the model comes from.
     pub source: Option<String>,
@@ -62,7 +62,7 @@ pub struct Mechanism {
 pub struct Label {
     /// Identifier in the spec.
     pub name: String,
-    /// One sentence for people; empty when the spec gives none.
+    /// One-sentence description; empty if the spec gives none.
     pub about: String,
     /// Unit in which people read and write it.
     pub unit: Unit,
@@ -150,7 +150,7 @@ impl Interpolation {
 pub struct Frame {
     /// Identifier.
     pub name: String,
-    /// One sentence for people.
+    /// One-sentence description.
     pub about: String,
     /// Parent frame; `None` for the ground.
     pub parent: Option<FrameId>,
@@ -200,7 +200,7 @@ impl Axis {
 pub struct Point {
     /// Identifier.
     pub name: String,
-    /// One sentence for people.
+    /// One-sentence description.
     pub about: String,
     /// The point it is placed from; `None` for the origin of the ground.
     pub from: Option<PointId>,
@@ -219,7 +219,7 @@ pub struct Point {
 pub struct Body {
     /// Identifier.
     pub name: String,
-    /// One sentence for people.
+    /// One-sentence description.
     pub about: String,
     /// Frame fixed in the body; `None` for a point mass.
     pub frame: Option<FrameId>,
@@ -229,7 +229,7 @@ pub struct Body {
     pub mass: Expr,
     /// Inertia about the centre of mass; `None` for a point mass. Its negative where it is taken away.
     pub inertia: Option<Inertia>,
-    /// Whether mass and inertia are taken away: a hole, or a part that another body contains.
+    /// Whether mass and inertia are subtracted: a hole, or a part already included in another body.
     pub taken_away: bool,
     /// Line of the definition, from 1.
     pub line: usize,
@@ -263,7 +263,7 @@ pub struct Inertia {
 pub struct Constraint {
     /// Identifier.
     pub name: String,
-    /// One sentence for people.
+    /// One-sentence description.
     pub about: String,
     /// What it demands.
     pub kind: ConstraintKind,
@@ -282,11 +282,11 @@ pub enum ConstraintKind {
         body: BodyId,
         /// Contact point.
         contact: PointId,
-        /// Normal of the surface, if the spec tells it.
+        /// Normal of the surface, if the spec gives it.
         normal: Option<Normal>,
-        /// Coefficient of friction, if the spec tells it.
+        /// Coefficient of friction, if the spec gives it.
         friction: Option<Expr>,
-        /// How the contact creeps, if the spec tells it.
+        /// How the contact creeps, if the spec gives it.
         creep: Option<Box<Creep>>,
     },
     /// `zero = equals`, `zero` linear in the generalised velocities, `equals` a function of
@@ -303,7 +303,7 @@ pub enum ConstraintKind {
     FixedVelocity {
         /// The point; the material point of `body` there when a body is named.
         point: PointId,
-        /// Body whose material point is meant.
+        /// Body whose material point at that place is meant.
         body: Option<BodyId>,
         /// Frame in which `direction` is written.
         frame: FrameId,
@@ -392,7 +392,7 @@ pub struct PseudoVelocity {
 pub struct Load {
     /// Identifier.
     pub name: String,
-    /// One sentence for people.
+    /// One-sentence description.
     pub about: String,
     /// What acts.
     pub kind: LoadKind,
@@ -409,12 +409,12 @@ pub enum LoadKind {
     Gravity {
         /// Direction of the weight, a unit vector of the ground.
         down: [i8; 3],
-        /// Acceleration of free fall.
+        /// Gravitational acceleration.
         acceleration: Expr,
     },
     /// A force on a point, with the opposite force on another point when one is named.
     Force {
-        /// Point of attack.
+        /// Point of application.
         on: PointId,
         /// Body whose material point at `on` is meant; without it the point itself moves.
         body: Option<BodyId>,

@@ -2,7 +2,7 @@
 
 use crate::limits::MAX_NAME;
 
-/// The rule, for people.
+/// The rule in words.
 pub(crate) const RULE: &str = "a letter, then letters, digits and `_`, at most 64 in all";
 
 /// Whether a name may be defined.

@@ -21,7 +21,7 @@ use reader::{Reader, in_text_order, is_forbidden, phrase};
 pub use expression::unit_diagnostic;
 pub(crate) use expression::zero;
 
-/// Reads a spec; what could not be read is left out of the tree and told in the diagnostics.
+/// Reads a spec; what could not be read is left out of the tree and reported in the diagnostics.
 pub fn parse(text: &str) -> (SpecAst, Vec<Diagnostic>) {
     let mut reader = Reader {
         text,
@@ -82,7 +82,7 @@ impl Reader<'_> {
         }
     }
 
-    /// Tells what is wrong with the TOML, once a line; returns the lines.
+    /// Reports syntax errors of the TOML, one per line; returns the lines.
     fn syntax_errors(&mut self, errors: &[toml::de::Error]) -> Vec<Span> {
         let mut lines: Vec<Span> = Vec::new();
         for error in errors {
@@ -108,7 +108,7 @@ impl Reader<'_> {
         lines
     }
 
-    /// What follows from broken TOML on the same line is not worth telling.
+    /// Further errors on a line with broken TOML are only consequences.
     fn forget_findings_on(&mut self, lines: &[Span]) {
         if lines.is_empty() {
             return;

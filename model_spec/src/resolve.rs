@@ -25,7 +25,7 @@ pub use formula::{Scope, Snippet, formula};
 
 use resolver::Resolver;
 
-/// Checks a spec. The mechanism holds placeholders wherever a diagnostic tells of an error.
+/// Checks a spec. The mechanism holds placeholders wherever a diagnostic reports an error.
 pub fn resolve(ast: &SpecAst, file: &str, text: &str) -> (Mechanism, Vec<Diagnostic>) {
     let mut resolver = Resolver::new(ast, text);
     let (name, title, source) = resolver.heading();
@@ -96,7 +96,7 @@ impl Resolver<'_> {
                     "the longest step is not positive".to_owned(),
                 )
                 .at(step.span.clone(), "in seconds")
-                .help("leave it out where the equations are not fast"),
+                .help("omit it unless the equations are stiff"),
             );
         }
         seconds

@@ -5,7 +5,7 @@ const MAX_SHOWN: usize = 80;
 /// Longest word worth comparing.
 const MAX_LENGTH: usize = 64;
 
-/// The candidate that a slip of the pen turns into `word`, if there is one.
+/// The candidate of which `word` is probably a misspelling, if any.
 pub fn closest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     if word.len() > MAX_LENGTH {
         return None;
@@ -46,7 +46,7 @@ pub(crate) fn list<'a>(words: impl IntoIterator<Item = &'a str>) -> String {
     words.into_iter().collect::<Vec<_>>().join(", ")
 }
 
-/// As much of somebody's word as a message can hold, on one line.
+/// A user's word, shortened for a message, on one line.
 pub fn shown(word: &str) -> String {
     let seen = |c: char| if c.is_control() { '\u{fffd}' } else { c };
     word.chars().take(MAX_SHOWN).map(seen).collect()

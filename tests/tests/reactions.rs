@@ -186,7 +186,7 @@ fn shares_that_no_law_of_motion_tells_are_not_reported() {
     let axle = std::fs::read_to_string(shipped::workspace().join(file)).unwrap();
     assert!(names(&model(&axle)).is_empty());
     let report = told(&axle);
-    let expected = "how `on_left` and `on_right` share their reactions cannot be told";
+    let expected = "the reactions of `on_left` and `on_right` are statically indeterminate";
     assert!(report.contains(expected), "{report}");
     assert!(
         report.contains("`L_c` and `Q_c` are not reported"),

@@ -18,7 +18,7 @@ const MOST_OPERATIONS: usize = 16;
 /// What an audit tells.
 #[derive(Debug, Clone, Default)]
 pub struct Audit {
-    /// What looks unintended.
+    /// Warnings and notes.
     pub warnings: Vec<Finding>,
     /// What is worth knowing.
     pub notes: Vec<Finding>,

@@ -76,11 +76,11 @@ impl Geometry<'_> {
         if self.is_centre(body, contact) {
             return Some((
                 format!(
-                    "`{body_name}` rolls at its own centre `{point}`: that holds the centre at \
-                     rest, however the body turns"
+                    "the contact of `{body_name}` is its centre `{point}`: that keeps the centre at \
+                     rest whatever the rotation"
                 ),
                 format!(
-                    "place a point where `{body_name}` touches the ground, a radius from its \
+                    "place a point where `{body_name}` touches the ground, one radius from its \
                      centre, and name it as `contact`"
                 ),
             ));
@@ -88,12 +88,12 @@ impl Geometry<'_> {
         if self.is_pinned(body, contact) {
             return Some((
                 format!(
-                    "`{point}` is fixed in `{body_name}`: the constraint pins the body to the \
-                     ground there, and nothing rolls"
+                    "`{point}` is fixed in `{body_name}`: the constraint is a pivot on the \
+                     ground, and nothing rolls"
                 ),
                 format!(
-                    "place `{point}` in a frame that does not spin with `{body_name}`, and let \
-                     the frame of the body turn by an angle of its own"
+                    "place `{point}` in a frame that does not spin with `{body_name}`, and give \
+                     the body's frame an angle of rotation of its own"
                 ),
             ));
         }
@@ -107,7 +107,9 @@ impl Geometry<'_> {
                     "gravity pulls `{body_name}` away from its contact `{point}`, which lies \
                      above its centre"
                 ),
-                format!("turn the sign of the position of `{point}`, or the `down` of the gravity"),
+                format!(
+                    "reverse the sign of the position of `{point}`, or `down` of the gravity load"
+                ),
             )
         })
     }
@@ -127,9 +129,10 @@ impl Geometry<'_> {
         if self.independent_of_positions(&[v[k]]) > 0 {
             return Some((
                 format!(
-                    "the coordinates let the contact `{point}` move along the normal of its surface"
+                    "the coordinates allow the contact `{point}` to move along the normal of its surface"
                 ),
-                "name the axis across the surface, in a frame that follows the surface".to_owned(),
+                "name the axis normal to the surface, in a frame that follows the surface"
+                    .to_owned(),
             ));
         }
         let centre = mechanism.bodies[body].centre;
@@ -143,10 +146,10 @@ impl Geometry<'_> {
         (height < 0.0).then(|| {
             (
                 format!(
-                    "the normal at `{point}` points out of `{}`, whose contact could only pull",
+                    "the normal at `{point}` points away from `{}`: the contact could only pull",
                     mechanism.bodies[body].name
                 ),
-                "turn the sign of `normal`: it points from the surface into the body".to_owned(),
+                "reverse the sign of `normal`: it points from the surface into the body".to_owned(),
             )
         })
     }
@@ -217,14 +220,14 @@ impl Geometry<'_> {
             Some((height, coordinates)) if !coordinates.is_empty() => {
                 let height = shown(&self.algebra.graph, height);
                 let names = listed(coordinates.iter().map(String::as_str));
-                format!("its height `{height}` changes with {names}")
+                format!("its height `{height}` depends on {names}")
             }
             _ => "it can move in all directions".to_owned(),
         };
         (
             format!(
                 "the coordinates do not keep the contact `{point}` on the ground: {across}, and the \
-                 constraint forbids that as a third velocity"
+                 constraint then removes a third velocity"
             ),
             format!(
                 "place the body at the height at which `{point}` stays on the ground, such as \

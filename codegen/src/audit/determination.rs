@@ -51,9 +51,9 @@ pub(super) fn audit(bench: &mut Bench, told: &mut Audit) {
         let code = Code::SingularPseudoVelocities;
         if bench.declared.cannot_vanish(&bench.algebra.graph, factor) {
             if !is_never_zero(bench, factor) {
-                let message = format!("{away}; the declared ranges keep away from that");
+                let message = format!("{away}; this holds in the declared ranges");
                 let help = format!(
-                    "nothing has to be done; to pass that configuration, choose pseudo-velocities \
+                    "no action is needed; to pass that configuration, choose pseudo-velocities \
                      and angles that are independent there, and widen the range of {names}"
                 );
                 told.notes.push(Finding {
@@ -66,12 +66,13 @@ pub(super) fn audit(bench: &mut Bench, told: &mut Audit) {
             continue;
         }
         let help = format!(
-            "declare a `range` of {names} that keeps away from it, or choose pseudo-velocities that \
+            "declare a `range` of {names} that excludes it, or choose pseudo-velocities that \
              are independent there"
         );
         // Samples do not satisfy position constraints, which may keep away from it.
         if bench.derivation.positions.names.is_empty() && takes_both_signs(bench, factor) {
-            let message = format!("{away}, and the declared ranges admit that");
+            let message =
+                format!("{away}; the declared ranges include configurations where it is zero");
             told.warnings.push(Finding {
                 code,
                 message,

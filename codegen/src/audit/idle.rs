@@ -44,13 +44,13 @@ fn coordinates(bench: &mut Bench, told: &mut Audit) {
             told.warnings.push(Finding {
                 code: Code::NoEffect,
                 message: format!(
-                    "the coordinate `{name}` changes nothing: it moves no body and appears in no \
+                    "the coordinate `{name}` has no effect: it moves no body and appears in no \
                      load and no output"
                 ),
                 item: Item::Coordinate(q),
                 help: format!(
-                    "let the frame or the point that it describes depend on `{name}`, make it an \
-                     output, or remove it with its constraint"
+                    "use `{name}` in the frame or point that it should move, make it an \
+                     output, or remove it together with its constraint"
                 ),
             });
         }
@@ -99,10 +99,10 @@ fn parameters(bench: &mut Bench, told: &mut Audit) {
             told.notes.push(Finding {
                 code: Code::NoEffect,
                 message: format!(
-                    "`{name}` drops out: neither the motion nor an output depends on it"
+                    "`{name}` cancels: neither the motion nor an output depends on it"
                 ),
                 item: Item::Parameter(p),
-                help: "nothing has to be done; a reaction may depend on it".to_owned(),
+                help: "no action is needed; a reaction may depend on it".to_owned(),
             });
         }
     }
@@ -119,7 +119,7 @@ fn bodies(bench: &Bench, told: &mut Audit) {
         if motion.centre.velocity.v == vector::ZERO && !turns {
             told.notes.push(Finding {
                 code: Code::NoEffect,
-                message: format!("`{}` never moves: its mass changes nothing", body.name),
+                message: format!("`{}` never moves: its mass has no effect", body.name),
                 item: Item::Body(id),
                 help: "let its centre or its frame depend on a coordinate, or remove it".to_owned(),
             });

@@ -211,30 +211,26 @@ fn integrable(bench: &mut Bench, row: usize, sum: &Combination) -> Option<Findin
     names.push(&rows[row].name);
     let subject = match names.as_slice() {
         [one] => format!("`{one}` is integrable: it"),
-        several => format!("{} together are integrable: they", listed(several.to_vec())),
+        several => format!("{} are integrable together: they", listed(several.to_vec())),
     };
     let verb = if names.len() == 1 {
-        ["holds", "ties"]
+        ["keeps", "relates"]
     } else {
-        ["hold", "tie"]
+        ["keep", "relate"]
     };
     let relation = relation(bench, &form).map(|relation| bench.shown(relation));
     let what = match relation {
         Some(relation) if rest == Graph::ZERO => {
             format!("{} `{relation}` at its initial value", verb[0])
         }
-        _ => format!(
-            "{} the positions {} together",
-            verb[1],
-            listed(tied.clone())
-        ),
+        _ => format!("{} the positions {}", verb[1], listed(tied.clone())),
     };
     let help = if let [only] = tied.as_slice() {
-        format!("remove the coordinate `{only}` and the constraint, and write its value instead")
+        format!("remove the constraint and the coordinate `{only}`, and use its value instead")
     } else {
         format!(
-            "express one of {} by the others wherever it appears, and remove the constraint, or state \
-             the relation as a constraint of kind `position`; as it stands, the initial state decides",
+            "express one of {} in terms of the others and remove the constraint, or state \
+             the relation as a constraint of kind `position`; now the initial state decides its value",
             listed(tied)
         )
     };

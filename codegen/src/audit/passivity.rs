@@ -17,27 +17,27 @@ pub(super) fn audit(bench: &mut Bench, told: &mut Audit) {
         let (message, help) = match &load.kind {
             LoadKind::Damper { damping, .. } if negative(bench, damping) => (
                 format!("the damping of `{name}` is negative: it drives the motion"),
-                "a damper resists by itself; write a positive coefficient",
+                "the sign of a damper is built in; write a positive coefficient",
             ),
             LoadKind::Spring { stiffness, .. } if negative(bench, stiffness) => (
                 format!(
-                    "the stiffness of `{name}` is negative: it pushes away from where it is relaxed"
+                    "the stiffness of `{name}` is negative: it pushes away from its rest position"
                 ),
-                "a spring restores by itself; write a positive stiffness",
+                "the sign of a spring is built in; write a positive stiffness",
             ),
             LoadKind::Gravity { acceleration, .. } if negative(bench, acceleration) => (
                 format!("the acceleration of `{name}` is negative: bodies fall upwards"),
-                "write a positive acceleration and name the direction with `down`",
+                "write a positive acceleration; `down` gives the direction",
             ),
             LoadKind::Force { .. } | LoadKind::Torque { .. } | LoadKind::Generalized { .. }
                 if drives(bench, index) =>
             {
                 (
                     format!(
-                        "`{name}` feeds energy at every velocity: friction acts against the \
+                        "`{name}` adds energy at every velocity: friction acts against the \
                          velocity, with a minus sign"
                     ),
-                    "turn its sign, or use a load of kind `damper`",
+                    "reverse its sign, or use a load of kind `damper`",
                 )
             }
             LoadKind::Damper { .. }

@@ -53,14 +53,14 @@ fn couples(bench: &mut Bench, told: &mut Audit) {
         told.warnings.push(Finding {
             code: Code::UnbalancedReaction,
             message: format!(
-                "`{}` does not act along the line from `{other}` to `{on}`: force and reaction make \
-                 a couple that nothing balances",
+                "`{}` does not act along the line from `{other}` to `{on}`: force and reaction form \
+                 an unbalanced couple",
                 load.name
             ),
             item: Item::Load(index),
             help: format!(
-                "let the reaction act on a point of the line along which `{}` acts, fixed in what \
-                 feels the reaction",
+                "let the reaction act on a point of the line of action of `{}`, fixed in the body that \
+                 carries the reaction",
                 load.name
             ),
         });
@@ -105,12 +105,12 @@ fn equal_signs(bench: &mut Bench, told: &mut Audit) {
             told.notes.push(Finding {
                 code: Code::UnbalancedReaction,
                 message: format!(
-                    "`{name}` acts with the same sign as `{other}`: a reaction would be opposite"
+                    "`{name}` has the same sign as `{other}`; a reaction would have the opposite one"
                 ),
                 item: Item::Load(index),
                 help: format!(
                     "if it is the reaction to `{other}`, remove it and give `{other}` a \
-                     `reaction_on`; else nothing has to be done"
+                     `reaction_on`; otherwise no action is needed"
                 ),
             });
         }

@@ -45,7 +45,7 @@ fn loads(bench: &Bench, silent: &[LoadId], told: &mut Audit) {
         };
         if reacting && names.is_empty() {
             finding.help = format!(
-                "nothing has to be done if only its share in the reactions is wanted; else {}",
+                "no action is needed if only its effect on the reactions is wanted; otherwise {}",
                 finding.help
             );
             told.notes.push(finding);
@@ -71,11 +71,11 @@ fn inputs(bench: &mut Bench, silent: &[LoadId], told: &mut Audit) {
             told.warnings.push(Finding {
                 code: Code::NoWork,
                 message: format!(
-                    "the input `{name}` does no work: its loads cancel in every motion that the \
-                     constraints allow"
+                    "the input `{name}` does no work: its loads cancel in every admissible \
+                     motion"
                 ),
                 item: Item::Input(index),
-                help: format!("check the signs with which `{name}` enters its loads"),
+                help: format!("check the signs of `{name}` in its loads"),
             });
         }
     }
@@ -100,15 +100,17 @@ fn reason(kind: &LoadKind) -> &'static str {
         LoadKind::Force {
             reaction_on: None, ..
         } => "its point never moves along the force",
-        LoadKind::Force { .. } => "its two points never move against each other along the force",
+        LoadKind::Force { .. } => {
+            "its two points never move relative to each other along the force"
+        }
         LoadKind::Torque {
             reaction_on: None, ..
-        } => "its body never turns about the axis of the torque",
+        } => "its body never rotates about the axis of the torque",
         LoadKind::Torque { .. } => {
-            "its two bodies never turn against each other about the axis of the torque"
+            "its two bodies never rotate relative to each other about the axis of the torque"
         }
-        LoadKind::Spring { .. } | LoadKind::Damper { .. } => "what it connects keeps its distance",
-        LoadKind::Generalized { .. } => "its coordinate never changes, or the force is zero",
+        LoadKind::Spring { .. } | LoadKind::Damper { .. } => "its length or coordinate is constant",
+        LoadKind::Generalized { .. } => "its coordinate is constant, or the force is zero",
     }
 }
 
@@ -120,7 +122,7 @@ fn help(kind: &LoadKind) -> &'static str {
         LoadKind::Force { .. } => "check the components, the frame and the point of the force",
         LoadKind::Torque { .. } => "check the components, the frame and the body of the torque",
         LoadKind::Spring { .. } | LoadKind::Damper { .. } => {
-            "connect points that move against each other"
+            "connect points whose distance can change"
         }
         LoadKind::Generalized { .. } => "name a coordinate that can change",
     }

@@ -15,18 +15,18 @@ use crate::symbolic::{Expr, Graph, Substitution, SymbolId};
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum SteadyError {
     /// A value follows from itself.
-    #[error("`{0}` is given in terms of itself")]
+    #[error("`{0}` is defined in terms of itself")]
     Circular(String),
     /// Two conditions for one quantity.
-    #[error("`{0}` has two values")]
+    #[error("`{0}` is given twice")]
     Twice(String),
     /// A rate that the pseudo-velocities do not have.
     #[error(
-        "`{0}` is not the rate that the pseudo-velocities give; give pseudo-velocities instead"
+        "`{0}` contradicts the rate that follows from the pseudo-velocities; give pseudo-velocities instead"
     )]
     Contradiction(String),
     /// Something is divided by zero.
-    #[error("the equations divide by zero in this motion")]
+    #[error("the equations divide by zero along this motion")]
     Undefined,
 }
 

@@ -49,8 +49,9 @@ impl Algebra {
             code: Code::TooLarge,
             message: format!("the equations need more than {MOST_EXPRESSIONS} expressions"),
             item: Item::Mechanism,
-            help: "turn frames against the ground instead of against each other, or split the mechanism"
-                .to_owned(),
+            help:
+                "rotate frames from the ground instead of from each other, or split the mechanism"
+                    .to_owned(),
         }])
     }
 

@@ -180,15 +180,15 @@ impl AuxiliaryMotions {
             Finding {
                 code: Code::UndeterminedReaction,
                 message: format!(
-                    "how {} share their reactions cannot be told: they have more forces than the \
-                     laws of motion have equations for them; {} are not reported",
+                    "the reactions of {} are statically indeterminate: there are more of them than \
+                     equations; {} are not reported",
                     listed(sharing),
                     listed(forces)
                 ),
                 item: Item::Constraint(rows[group.row].constraint),
-                help: "the motion does not depend on it; for the reactions keep one constraint for \
-                       each motion that is prevented, or add the coordinate, a play or a deflection, \
-                       that tells them apart"
+                help: "the motion is not affected; to get the reactions keep one constraint for \
+                       each prevented motion, or add a coordinate, such as a clearance or a \
+                       deflection, that separates them"
                     .to_owned(),
             }
         };

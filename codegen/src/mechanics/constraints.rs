@@ -349,11 +349,11 @@ fn without_motion(
             findings.push(Finding {
                 code: Code::DependentConstraints,
                 message: format!(
-                    "`{}` cannot hold: no generalised velocity appears in it",
+                    "`{}` cannot be satisfied: no generalised velocity appears in it",
                     row.name
                 ),
                 item,
-                help: "let a coordinate take part in the motion that the constraint prescribes"
+                help: "make a coordinate take part in the motion that the constraint prescribes"
                     .to_owned(),
             });
         } else if row.root.is_none() {

@@ -113,7 +113,7 @@ fn merge(mechanism: &Mechanism, known: &mut Contact, contact: Contact) -> Option
     says_more.then(|| Finding {
         code: Code::ContactNotJudged,
         message: format!(
-            "the contact `{}` is not judged: `{}` is at the same point and shares its reaction",
+            "the contact `{}` is not checked: `{}` is at the same point and shares its reaction",
             name(&other),
             name(known)
         ),
@@ -150,19 +150,19 @@ fn idle_friction(name: &str, constraint: ConstraintId, unknown: bool) -> Finding
     let (reason, help) = if unknown {
         (
             "the normal of its surface is not known",
-            "name a frame that follows the surface and its axis across it, such as `in = \
+            "name a frame that follows the surface and its normal axis, such as `in = \
              \"slope\", normal = \"z\"`",
         )
     } else {
         (
-            "how the constraints share their reactions cannot be told",
-            "leave `friction` out, or describe a mechanism in which each contact has a reaction of \
-             its own",
+            "the reactions of the constraints are statically indeterminate",
+            "omit `friction`, or model the mechanism so that each contact has a determinate \
+             reaction",
         )
     };
     Finding {
         code: Code::ContactNotJudged,
-        message: format!("the friction of `{name}` says nothing: {reason}"),
+        message: format!("the friction of `{name}` cannot be checked: {reason}"),
         item: Item::Constraint(constraint),
         help: help.to_owned(),
     }

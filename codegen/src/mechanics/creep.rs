@@ -261,11 +261,11 @@ fn per_mass(
 fn not_judged(name: &str, constraint: ConstraintId) -> Finding {
     Finding {
         code: Code::CreepNotJudged,
-        message: format!("the creep of `{name}` cannot be told: its forces are not known"),
+        message: format!("the creep of `{name}` cannot be computed: its forces are undetermined"),
         item: Item::Constraint(constraint),
         help:
-            "creep needs the normal of the surface, a reaction that belongs to this contact alone, \
-               and pseudo-velocities that formulas solve"
+            "creep requires the normal of the surface, a determinate reaction of this contact alone, \
+               and generalised velocities in closed form"
                 .to_owned(),
     }
 }

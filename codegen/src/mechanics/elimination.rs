@@ -283,7 +283,7 @@ fn check_count(mechanism: &Mechanism, constraints: &Constraints, equations: usiz
         String::new()
     } else {
         format!(
-            "{} counts for nothing, because it follows from the others; ",
+            "{} is not counted, because it follows from the others; ",
             left_out.join(", ")
         )
     };
@@ -297,7 +297,7 @@ fn check_count(mechanism: &Mechanism, constraints: &Constraints, equations: usiz
         help: if rows > coordinates {
             "remove constraints: there are more of them than coordinates".to_owned()
         } else if needed == 0 {
-            "remove constraints: they leave nothing that could move".to_owned()
+            "remove constraints: they leave no degree of freedom".to_owned()
         } else {
             format!("{remark}define exactly {needed} pseudo-velocities")
         },
@@ -496,10 +496,10 @@ fn untold_velocities(
         })
         .collect();
     let help = if untold.is_empty() {
-        "define it so that it is independent of the constraints and of the others".to_owned()
+        "define it independently of the constraints and of the others".to_owned()
     } else {
         let untold = untold.join(", ");
-        format!("let it depend on {untold}, of which nothing tells")
+        format!("include {untold}, which nothing determines")
     };
     let consequence =
         "constraints and pseudo-velocities do not determine all generalised velocities";

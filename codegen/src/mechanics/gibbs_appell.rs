@@ -311,13 +311,13 @@ fn check_invariance(
     differs.then(|| Finding {
         code: Code::InertiaNotInvariant,
         message: format!(
-            "the inertia of `{}` is written in `{}`, but the body turns against that frame and the \
-             tensor changes with it",
+            "the inertia of `{}` is given in `{}`, but the body rotates relative to that frame and the \
+             tensor changes with the rotation",
             item.name, mechanism.frames[written].name
         ),
         item: Item::Body(body),
         help: format!(
-            "write the inertia in `{}`",
+            "give the inertia in `{}`",
             mechanism.frames[body_frame].name
         ),
     })

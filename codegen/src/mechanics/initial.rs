@@ -115,7 +115,7 @@ pub fn vanishing_lengths(
                 item: Item::Load(index),
                 help:
                     "connect other points, start elsewhere, or declare ranges of the coordinates \
-                       that keep the points apart; between coordinates a spring needs no direction"
+                       that keep the points apart; a spring on a coordinate needs no direction"
                         .to_owned(),
             });
         }
@@ -158,7 +158,7 @@ pub fn singularities(
                 code: Code::SingularMassMatrix,
                 message: format!("the mass matrix is singular for `{name}` at the initial state"),
                 item: Item::PseudoVelocity(SpeedId::new(speed)),
-                help: "give a mass or an inertia to what it moves, or start elsewhere".to_owned(),
+                help: "give mass or inertia to what it moves, or start elsewhere".to_owned(),
             });
         }
     }

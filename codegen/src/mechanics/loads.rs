@@ -120,8 +120,7 @@ fn undefined(index: LoadId, kind: &LoadKind) -> Finding {
         None | Some(Connection::Coordinate(_)) => division_by_zero(item),
         Some(Connection::Points(..)) => Finding {
             code: Code::VanishingLength,
-            message: "the two points are always at the same place: the load has no direction"
-                .to_owned(),
+            message: "the two points always coincide: the load has no direction".to_owned(),
             item,
             help: "connect two points that can move apart".to_owned(),
         },

@@ -346,9 +346,9 @@ fn without_mass(mechanism: &Mechanism, speed: usize) -> Finding {
     let name = &mechanism.pseudo_velocities[SpeedId::new(speed)].label.name;
     Finding {
         code: Code::SingularMassMatrix,
-        message: format!("`{name}` can change without moving any mass"),
+        message: format!("`{name}` moves no mass"),
         item: Item::PseudoVelocity(SpeedId::new(speed)),
-        help: "give a mass or an inertia to what it moves, or constrain it".to_owned(),
+        help: "give mass or inertia to what it moves, or constrain it".to_owned(),
     }
 }
 

@@ -103,11 +103,11 @@ fn undetermined(
                 "`{constraint}` does not determine `{}`",
                 mechanism.coordinates[q].label.name
             ),
-            "name a coordinate that appears in the constraint, another one for each constraint",
+            "name a coordinate that appears in the constraint, a different one for each constraint",
         ),
         None => (
-            format!("`{constraint}` determines no coordinate that is not determined already"),
-            "remove the constraint, or let a coordinate appear in it",
+            format!("`{constraint}` determines no further coordinate"),
+            "remove the constraint, or use a coordinate in it",
         ),
     };
     Finding {

@@ -229,9 +229,9 @@ fn contradiction(row: &Row) -> Finding {
 fn singular(mechanism: &Mechanism, row: &Row) -> Finding {
     let help = match mechanism.constraints[row.constraint].kind {
         ConstraintKind::Rolling { normal: None, .. } => {
-            "on a surface that is not across an axis of the ground, name a frame that follows it and \
-             its axis across it, such as `in = \"slope\", normal = \"z\"`; else remove the \
-             constraint, or declare ranges of the coordinates in which it follows"
+            "on a surface that is not normal to an axis of the ground, name a frame that follows it and \
+             its normal axis, such as `in = \"slope\", normal = \"z\"`; otherwise remove the \
+             constraint, or declare ranges in which it is always redundant"
         }
         ConstraintKind::Rolling {
             normal: Some(_), ..
@@ -239,7 +239,7 @@ fn singular(mechanism: &Mechanism, row: &Row) -> Finding {
         | ConstraintKind::Velocity { .. }
         | ConstraintKind::FixedVelocity { .. }
         | ConstraintKind::Position { .. } => {
-            "remove it, or declare ranges of the coordinates in which it follows"
+            "remove it, or declare ranges in which it is always redundant"
         }
     };
     Finding {

@@ -17,19 +17,19 @@ pub(super) const ABOUT: Key = key(
     "about",
     Form::Text,
     Need::Optional,
-    "One sentence for people.",
+    "One-sentence description.",
 );
 const UNIT: Key = key(
     "unit",
     Form::Unit,
     Need::Always,
-    "Unit in which people read and write the quantity; `1` for a pure number.",
+    "Unit of the quantity in the spec and in results; `1` for a pure number.",
 );
 const UNIT_CHECKED: Key = key(
     "unit",
     Form::Unit,
     Need::Optional,
-    "Unit in which people read the quantity; it must fit the value. SI when left out.",
+    "Unit of the quantity in results, of the dimension of the value; SI by default.",
 );
 pub(super) const IN: Key = key(
     "in",
@@ -58,14 +58,14 @@ pub static AXES: &[Word] = &[
     axis("-z", Axis::Z, true),
 ];
 
-/// The words for the course of a signal.
+/// The words for the interpolation of a signal.
 pub static INTERPOLATIONS: &[Word] = &[
     interpolation("hold", Interpolation::Hold),
     interpolation("linear", Interpolation::Linear),
     interpolation("cubic", Interpolation::Cubic),
 ];
 
-/// Every section, in the order of a well-told spec.
+/// Every section, in the customary order of a spec.
 pub static SECTIONS: &[Section] = &[
     Section {
         name: "mechanism",
@@ -78,18 +78,18 @@ pub static SECTIONS: &[Section] = &[
                 Need::Always,
                 "Name of the mechanism, a valid identifier.",
             ),
-            key("title", Form::Text, Need::Always, "One line for people."),
+            key("title", Form::Text, Need::Always, "One-line title."),
             key(
                 "source",
                 Form::Text,
                 Need::Optional,
-                "Where the model comes from: paper and equations.",
+                "Source of the model: paper and equations.",
             ),
             key(
                 "longest_step",
                 Form::Number,
                 Need::Optional,
-                "Longest step in s by which filters of recordings may follow the equations; 0.02 when left out.",
+                "Longest step, in s, of the filters that follow recordings; 0.02 by default.",
             ),
         ]),
     },
@@ -135,13 +135,13 @@ pub static SECTIONS: &[Section] = &[
                     "range",
                     Form::Range,
                     Need::Optional,
-                    "Range in which the equations hold.",
+                    "Range in which the model is valid.",
                 ),
                 key(
                     "initial",
                     Form::Number,
                     Need::Optional,
-                    "Initial value; 0 when left out.",
+                    "Initial value; 0 by default.",
                 ),
             ],
             None,
@@ -176,7 +176,7 @@ pub static SECTIONS: &[Section] = &[
                     "interpolation",
                     Form::Word(INTERPOLATIONS),
                     Need::Optional,
-                    "Course between two samples; `linear` when left out.",
+                    "Interpolation between samples; `linear` by default.",
                 ),
                 ABOUT,
             ],
@@ -185,7 +185,7 @@ pub static SECTIONS: &[Section] = &[
     },
     Section {
         name: "frames",
-        about: "Frames, each turned from its parent.",
+        about: "Frames, each rotated from its parent.",
         required: false,
         shape: Shape::Items(
             &[
@@ -193,7 +193,7 @@ pub static SECTIONS: &[Section] = &[
                     "parent",
                     Form::Reference(Target::Frame),
                     Need::Always,
-                    "Frame from which this one is turned.",
+                    "Frame from which this one is rotated.",
                 ),
                 key(
                     "about_axis",
@@ -224,7 +224,7 @@ pub static SECTIONS: &[Section] = &[
                         ),
                     ]),
                     Need::Way(1),
-                    "Several rotations, first the one next to the parent.",
+                    "Several rotations, starting from the parent.",
                 ),
                 ABOUT,
             ],
@@ -284,7 +284,7 @@ pub static SECTIONS: &[Section] = &[
                     "taken_away",
                     Form::Flag,
                     Need::Optional,
-                    "Whether mass and inertia are taken away: a hole, or a part that another body contains.",
+                    "Whether mass and inertia are subtracted: a hole, or a part already included in another body.",
                 ),
                 ABOUT,
             ],
@@ -293,13 +293,13 @@ pub static SECTIONS: &[Section] = &[
     },
     Section {
         name: "constraints",
-        about: "Constraints on velocities.",
+        about: "Constraints on velocities and positions.",
         required: false,
         shape: Shape::Kinds(CONSTRAINTS),
     },
     Section {
         name: "pseudo_velocities",
-        about: "The speeds of Appell's equations.",
+        about: "The pseudo-velocities of Appell's equations.",
         required: false,
         shape: Shape::Items(
             &[
@@ -315,7 +315,7 @@ pub static SECTIONS: &[Section] = &[
                     "initial",
                     Form::Number,
                     Need::Optional,
-                    "Initial value; 0 when left out.",
+                    "Initial value; 0 by default.",
                 ),
             ],
             Some("value"),
@@ -360,7 +360,7 @@ static INERTIA: &[Key] = &[
         "matrix",
         Form::Matrix,
         Need::Way(1),
-        "The tensor, row by row.",
+        "The inertia tensor, row by row.",
     ),
     key(
         "moments",

@@ -41,7 +41,7 @@ pub(super) fn parse(source: &Source<'_>) -> Result<ExprAst, Diagnostic> {
     }
 }
 
-/// An expression and its height; deep trees would overflow the stack of whoever walks them.
+/// An expression and its height; deep trees would overflow the stack of recursive passes.
 struct Tree {
     expr: ExprAst,
     height: usize,
@@ -128,7 +128,7 @@ impl<'a> Parser<'_, 'a> {
     fn too_deep(&self) -> Diagnostic {
         Diagnostic::error(
             Code::LimitExceeded,
-            format!("an expression nests at most {MAX_DEPTH} operations"),
+            format!("an expression may nest at most {MAX_DEPTH} operations"),
         )
         .at(self.source.whole.clone(), "")
     }
@@ -176,7 +176,7 @@ impl<'a> Parser<'_, 'a> {
                     ..inner
                 })
             }
-            Token::End => Err(self.error(first, "the expression ends too early")),
+            Token::End => Err(self.error(first, "unexpected end of the expression")),
             other => Err(self.error(
                 first,
                 format!("expected a number, a name or `(`, found {}", other.words()),
@@ -280,7 +280,7 @@ impl<'a> Parser<'_, 'a> {
         let right = self.expression(0)?;
         self.expect(',', "the comparison")?;
         let then = self.expression(0)?;
-        self.expect(',', "the value where the comparison holds")?;
+        self.expect(',', "the value if the comparison holds")?;
         let otherwise = self.expression(0)?;
         let close = self.expect(')', "the value elsewhere")?;
         let height = [&left, &right, &then, &otherwise]
@@ -335,7 +335,7 @@ fn operator(token: Token<'_>) -> Option<(BinaryOp, u8, u8)> {
     }
 }
 
-/// What a refused number is told; the caller adds the place.
+/// The message for an invalid number; the caller adds the place.
 pub(super) fn number_diagnostic(error: NumberError, text: &str) -> Diagnostic {
     // A hostile number may be a megabyte long.
     let short: String = text.chars().take(30).collect();
@@ -353,7 +353,7 @@ pub(super) fn number_diagnostic(error: NumberError, text: &str) -> Diagnostic {
     }
 }
 
-/// What a refused unit is told; `place` maps places in the unit text to places in the file.
+/// The message for an invalid unit; `place` maps places in the unit text to places in the file.
 pub fn unit_diagnostic(error: &UnitError, place: impl Fn(Range<usize>) -> Span) -> Diagnostic {
     match error {
         UnitError::Unknown {

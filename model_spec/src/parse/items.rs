@@ -170,7 +170,7 @@ impl Reader<'_> {
         item
     }
 
-    /// Tells about a key that does not exist; returns the one that was probably meant.
+    /// Reports an unknown key; returns the one that was probably meant.
     fn unknown_key(
         &mut self,
         name: &str,
@@ -272,7 +272,7 @@ impl Reader<'_> {
         );
     }
 
-    /// Tells of two ways to say one thing; the later one is the one too many.
+    /// Reports two keys that exclude each other, at the later one.
     fn conflict(&mut self, owner: &Owner<'_>, a: (String, Span), b: (String, Span)) {
         let (first, second) = if a.1.start <= b.1.start {
             (a, b)
@@ -290,7 +290,7 @@ impl Reader<'_> {
         );
     }
 
-    /// Whether a name may be defined; `false` where that has been told.
+    /// Whether a name may be defined; `false` where that has been reported.
     pub(super) fn is_valid_name(&mut self, name: &str, at: Span) -> bool {
         if name::is_valid(name) {
             return true;

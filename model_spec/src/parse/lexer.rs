@@ -27,7 +27,7 @@ pub(super) struct Located<'a> {
 }
 
 impl Token<'_> {
-    /// The token for people.
+    /// The token as shown in messages.
     pub(super) fn words(&self) -> String {
         match self {
             Self::Number(text) | Self::Name(text) => format!("`{text}`"),
@@ -48,7 +48,7 @@ pub(super) fn tokens<'a>(source: &Source<'a>) -> Result<Vec<Located<'a>>, Diagno
             format!("an expression has at most {MAX_EXPRESSION} characters"),
         )
         .at(source.whole.clone(), format!("{} characters", text.len()))
-        .help("name parts of it as points, frames or loads of their own"));
+        .help("split it into several points, frames or loads"));
     }
     let mut list = Vec::new();
     let mut at = 0;

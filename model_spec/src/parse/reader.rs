@@ -4,7 +4,7 @@ use toml::de::{DeTable, DeValue};
 
 use crate::diagnostic::{Code, Diagnostic};
 
-/// Most diagnostics collected; more would help nobody.
+/// Maximum number of diagnostics collected.
 const MAX_FINDINGS: usize = 1000;
 
 /// A key of a TOML table, with its place.

@@ -18,7 +18,7 @@ use super::reader::{Reader, TomlValue, is_forbidden};
 use super::source::Source;
 
 impl Reader<'_> {
-    /// Reads the value of a key; `None` where it could not be read, which has been told.
+    /// Reads the value of a key; `None` where it could not be read, already reported.
     pub(super) fn value(&mut self, key: &'static Key, value: &TomlValue<'_>) -> Option<ValueAst> {
         match &key.form {
             Form::Text => self.sentence(value).map(ValueAst::Text),
@@ -256,7 +256,7 @@ impl Reader<'_> {
             .map(|elements| elements.map(|v| self.expression(v)))
     }
 
-    /// An expression; where it cannot be read, a broken one that nobody complains about again.
+    /// An expression; an unreadable one becomes a placeholder that gives no further error.
     fn expression(&mut self, value: &TomlValue<'_>) -> ExprAst {
         let broken = ExprAst {
             kind: ExprAstKind::Broken,

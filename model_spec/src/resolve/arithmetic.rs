@@ -178,7 +178,7 @@ impl Resolver<'_> {
         );
     }
 
-    /// The dimension of a product or power; tells where no quantity has one so large.
+    /// The dimension of a product or power; reports one beyond that of any quantity.
     pub(super) fn known_dimension(
         &mut self,
         dim: Option<Dim>,
@@ -198,13 +198,13 @@ impl Resolver<'_> {
         })
     }
 
-    /// Tells where repeated powers grow beyond reason.
+    /// Limits the growth of repeated powers.
     fn bounded(&mut self, mut typed: Typed) -> Typed {
         if typed.size > MAX_DEGREE {
             self.tell(
                 Diagnostic::error(
                     Code::LimitExceeded,
-                    format!("an expression has at most the degree {MAX_DEGREE}"),
+                    format!("the degree of an expression is at most {MAX_DEGREE}"),
                 )
                 .at(typed.span(), ""),
             );

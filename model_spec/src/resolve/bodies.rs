@@ -41,7 +41,7 @@ impl Resolver<'_> {
                     format!("`{}` has an inertia but no frame", item.name.value),
                 )
                 .at(item.name.span.clone(), "`frame` is missing")
-                .at(inertia.span.clone(), "inertia of what turns with the frame")
+                .at(inertia.span.clone(), "needs a frame fixed in the body")
                 .help("name the frame that is fixed in the body"),
             );
         }

@@ -82,7 +82,7 @@ impl Resolver<'_> {
                     Code::MissingKey,
                     format!("`{}` has no `normal`", item.name.value),
                 )
-                .at(given.span.clone(), "which axis of this frame?")
+                .at(given.span.clone(), "no axis of this frame is given")
                 .help("write the axis that points from the surface into the body, such as `normal = \"z\"`"),
             );
         }
@@ -147,7 +147,7 @@ impl Resolver<'_> {
         }
     }
 
-    /// Tells where a point mass is asked to do what only a rigid body can.
+    /// Reports a point mass used as a rigid body.
     pub(super) fn needs_frame(&mut self, item: &ItemAst, key: &str, bodies: &[Body], what: &str) {
         let Some(name) = item.text(key) else { return };
         let Some(body) = bodies.iter().find(|b| b.name == name.value) else {
@@ -164,7 +164,7 @@ impl Resolver<'_> {
         self.tell(
             Diagnostic::error(
                 Code::BodyWithoutFrame,
-                format!("`{}` is a point mass, it cannot {what}", body.name),
+                format!("`{}` is a point mass and cannot {what}", body.name),
             )
             .at(name.span, "")
             .at(body.span.clone(), "has no frame")

@@ -15,7 +15,7 @@ use super::resolver::Resolver;
 pub(super) enum Dim {
     /// A literal zero: fits everywhere.
     Any,
-    /// Something else is wrong with it, which has been told.
+    /// Something else is wrong with it, already reported.
     Unknown,
     /// This one.
     Known(Dimension),
@@ -35,7 +35,7 @@ pub(super) struct Typed {
 }
 
 impl Typed {
-    /// An expression that failed; its users stay silent.
+    /// An invalid expression; expressions that use it give no further error.
     pub(super) fn poisoned(span: Span) -> Self {
         Self {
             expr: Expr {
@@ -115,7 +115,7 @@ pub(super) fn unit_words(dimension: Dimension) -> String {
 }
 
 impl Resolver<'_> {
-    /// Tells where an expression does not have the dimension that its place asks for.
+    /// Reports an expression without the dimension that its place requires.
     pub(super) fn expect(&mut self, typed: &Typed, wanted: Dim, place: &Place) {
         let (Dim::Known(found), Dim::Known(wanted)) = (typed.dim, wanted) else {
             return;
@@ -143,7 +143,7 @@ impl Resolver<'_> {
         );
     }
 
-    /// The common dimension of two sides; tells where they differ.
+    /// The common dimension of two sides; reports a difference.
     pub(super) fn unify(&mut self, a: &Typed, b: &Typed, doing: &str) -> Dim {
         match (a.dim, b.dim) {
             (Dim::Unknown, _) | (_, Dim::Unknown) => Dim::Unknown,

@@ -157,10 +157,10 @@ impl Resolver<'_> {
                 let help = match named.meaning {
                     Meaning::Quantity(Quantity::Parameter(_)) => "a parameter is constant",
                     Meaning::Quantity(Quantity::PseudoVelocity(_)) => {
-                        "accelerations are results; no expression depends on them"
+                        "accelerations are results and cannot be used in expressions"
                     }
                     Meaning::Quantity(_) | Meaning::Output => {
-                        "define its rate as a quantity of its own"
+                        "define its rate as a separate quantity"
                     }
                 };
                 self.tell(
@@ -241,7 +241,7 @@ impl Resolver<'_> {
     /// Warns of a choice that changes its branch while the mechanism moves.
     fn jumps(&mut self, compared: &[&Typed], span: &Span, place: &Place) {
         if !place.smooth.admits(Interpolation::Hold) && compared.iter().any(|e| moves(&e.expr)) {
-            let help = "let both values meet without a step in value or slope";
+            let help = "make both branches agree in value and slope where they meet";
             self.may_jump("if", span, place, help);
         }
     }
@@ -256,7 +256,7 @@ impl Resolver<'_> {
             _ => return,
         };
         if !place.smooth.admits(course) && arguments.iter().any(|e| moves(&e.expr)) {
-            let help = format!("`{smooth}` is rounded over a width");
+            let help = format!("use `{smooth}`, which is smoothed over a width");
             self.may_jump(function.name(), span, place, &help);
         }
     }

@@ -12,7 +12,7 @@ use super::place::Place;
 use super::placement::axis;
 use super::resolver::Resolver;
 
-const ACCELERATION: Place = Place::constant("the acceleration of free fall");
+const ACCELERATION: Place = Place::constant("the gravitational acceleration");
 const FORCE: Place = Place::anything("a component of a force");
 const TORQUE: Place = Place::anything("a component of a torque");
 const STIFFNESS: Place = Place::scheduled("the stiffness of a spring");
@@ -83,8 +83,8 @@ impl Resolver<'_> {
     fn torque(&mut self, item: &ItemAst, bodies: &[Body]) -> LoadKind {
         let on = self.reference(item, "on");
         let reaction_on = self.optional_reference(item, "reaction_on");
-        self.needs_frame(item, "on", bodies, "feel a torque");
-        self.needs_frame(item, "reaction_on", bodies, "feel a torque");
+        self.needs_frame(item, "on", bodies, "be subject to a torque");
+        self.needs_frame(item, "reaction_on", bodies, "be subject to a torque");
         self.on_itself(item);
         LoadKind::Torque {
             on,

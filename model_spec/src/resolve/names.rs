@@ -40,7 +40,7 @@ fn is_reserved(name: &str) -> bool {
 }
 
 impl<'a> Resolver<'a> {
-    /// Gives a name its meaning; tells where the name is taken.
+    /// Gives a name its meaning; reports a name that is taken.
     pub(super) fn define(
         &mut self,
         name: &'a Spanned<String>,
@@ -52,7 +52,7 @@ impl<'a> Resolver<'a> {
             self.tell(
                 Diagnostic::error(
                     Code::ReservedName,
-                    format!("`{text}` has a meaning of its own in expressions"),
+                    format!("`{text}` is reserved in expressions"),
                 )
                 .at(name.span.clone(), "")
                 .help("choose another name"),
@@ -66,7 +66,7 @@ impl<'a> Resolver<'a> {
             )
             .at(name.span.clone(), "again here")
             .at(first.span.clone(), "first here")
-            .help("quantities share one set of names; rename one of them");
+            .help("quantities share one namespace; rename one of them");
             self.tell(diagnostic);
             return;
         }
@@ -91,7 +91,7 @@ impl<'a> Resolver<'a> {
         }
     }
 
-    /// Tells where a name is also that of a signal's derivative: both are columns of results.
+    /// Reports a name that is also that of a signal's derivative: both are columns of results.
     pub(super) fn derivative_names(&mut self, signals: &[Signal]) {
         for signal in signals {
             let label = &signal.label;
@@ -103,7 +103,7 @@ impl<'a> Resolver<'a> {
                 let named = (own.clone(), format!("called `{name}`"));
                 let derived = (
                     label.span.clone(),
-                    format!("brings its derivative `{name}`"),
+                    format!("defines its derivative `{name}`"),
                 );
                 let mut places = [named, derived];
                 // The later definition is the one that comes into the way.
@@ -122,7 +122,7 @@ impl<'a> Resolver<'a> {
         }
     }
 
-    /// The label of a quantity. The unit falls back to `1` where an error has been told.
+    /// The label of a quantity. The unit falls back to `1` where an error was reported.
     pub(super) fn label(&self, item: &ItemAst, unit: Option<&Unit>) -> Label {
         Label {
             name: item.name.value.clone(),
@@ -133,7 +133,7 @@ impl<'a> Resolver<'a> {
         }
     }
 
-    /// Tells of an unknown name once; further uses become labels of the same message.
+    /// Reports an unknown name once; further uses become labels of the same message.
     pub(super) fn unknown(
         &mut self,
         kind: &'static str,

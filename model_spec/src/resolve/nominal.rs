@@ -1,4 +1,4 @@
-//! What the parameters' values make of masses, inertias and friction.
+//! Masses, inertias and friction at the nominal parameter values.
 
 use num_traits::ToPrimitive;
 
@@ -12,7 +12,7 @@ use super::resolver::Resolver;
 const ROUNDING: f64 = 1e-9;
 
 impl Resolver<'_> {
-    /// Tells of masses, inertias and friction that nothing can have.
+    /// Reports physically impossible masses, inertias and coefficients of friction.
     pub(super) fn physical(&mut self, mechanism: &Mechanism) {
         let parameters = &mechanism.parameters;
         // Values that could not be read are placeholders; nothing follows from them.
@@ -44,7 +44,7 @@ impl Resolver<'_> {
                     format!("the friction of `{}` is negative", constraint.name),
                 )
                 .at(friction.span.clone(), "with the values of this spec")
-                .help("a coefficient of friction is the largest tangential force over the normal force"),
+                .help("a coefficient of friction is the ratio of the largest tangential force to the normal force"),
             );
         }
     }
@@ -98,21 +98,24 @@ fn impossible(inertia: &[[f64; 3]; 3]) -> (String, &'static str) {
     let total: f64 = moments.iter().sum();
     for (axis, moment) in axes.iter().zip(moments) {
         if moment < 0.0 {
-            let reason = format!("about {axis} it is negative, {} kg*m^2", rounded(moment));
+            let reason = format!(
+                "the moment about {axis} is negative, {} kg*m^2",
+                rounded(moment)
+            );
             return (
                 reason,
-                "a moment is the integral of a squared distance; check the sign",
+                "a moment of inertia is an integral of squared distances; check the sign",
             );
         }
         let others = total - moment;
         if moment - others > ROUNDING * total {
             let reason = format!(
-                "{} kg*m^2 about {axis} is more than {} about the other two axes together",
+                "the moment about {axis}, {} kg*m^2, exceeds the sum of the other two, {} kg*m^2",
                 rounded(moment),
                 rounded(others)
             );
-            let help = "each moment is at most the sum of the other two; a thin disc or a rod \
-                        reaches it";
+            let help = "each moment is at most the sum of the other two, with equality for a thin disc \
+                        or rod";
             return (reason, help);
         }
     }
@@ -130,7 +133,7 @@ fn not_finite(what: &str, body: &Body, entry: &Expr) -> Diagnostic {
     .at(entry.span.clone(), "with the values of this spec")
 }
 
-/// Four digits say enough about a value that was computed.
+/// Four digits are enough for a computed value.
 fn rounded(value: f64) -> f64 {
     format!("{value:.3e}").parse().unwrap_or(value)
 }

@@ -6,7 +6,7 @@ use crate::mechanism::Interpolation;
 /// A place for an expression.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Place {
-    /// The place for people: `the angle of a frame`.
+    /// The place as named in messages: `the angle of a frame`.
     pub(super) what: &'static str,
     /// Which quantities may occur, besides parameters and `pi`.
     allows: u8,
@@ -108,7 +108,7 @@ impl Place {
         self.allows & asked == asked
     }
 
-    /// What may occur here, for people.
+    /// What may occur here, as listed in messages.
     pub(super) fn allowed_words(&self) -> String {
         let mut words = vec!["parameters"];
         for (flag, word) in [

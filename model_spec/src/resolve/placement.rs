@@ -108,7 +108,7 @@ impl<'a> Resolver<'a> {
             let registry = self.registry(target);
             waiting.retain(|item| {
                 let parent = item.text(key).map_or("", |p| p.value);
-                // A parent that does not exist is told when it is looked up.
+                // A parent that does not exist is reported when it is looked up.
                 let ready = registry.contains_key(parent) || !own.contains_key(parent);
                 if ready {
                     ordered.push(item);
@@ -144,14 +144,14 @@ impl<'a> Resolver<'a> {
         self.tell(
             Diagnostic::error(
                 Code::ReservedName,
-                format!("`{name}` is given; it cannot be defined again"),
+                format!("`{name}` is predefined and cannot be defined again"),
             )
             .at(item.name.span.clone(), "")
             .help("choose another name"),
         );
     }
 
-    /// Tells of each circle once.
+    /// Reports each circular definition once.
     fn circles(&mut self, waiting: &[&ItemAst], key: &str, target: Target) {
         let parents: BTreeMap<&str, &str> = waiting
             .iter()
@@ -180,12 +180,16 @@ impl<'a> Resolver<'a> {
             self.tell(
                 Diagnostic::error(
                     Code::ReferenceCycle,
-                    format!("{}s in a circle: {}", target.word(), circle.join(" from ")),
+                    format!(
+                        "circular definition of {}s: {}",
+                        target.word(),
+                        circle.join(" from ")
+                    ),
                 )
                 .at(at, "")
                 .help(match target {
-                    Target::Frame => "one of them must be turned from `ground`",
-                    _ => "one of them must be placed from `O`",
+                    Target::Frame => "rotate one of them from `ground`",
+                    _ => "place one of them from `O`",
                 }),
             );
         }

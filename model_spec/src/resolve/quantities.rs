@@ -30,14 +30,14 @@ impl<'a> Resolver<'a> {
         self.label(item, unit)
     }
 
-    /// A number in SI; tells where the machine cannot hold it.
+    /// A number in SI; reports one beyond double precision.
     fn in_si(&mut self, unit: &Unit, number: &Spanned<&BigRational>) -> f64 {
         let value = unit.to_si(number.value);
         if value.is_finite() {
             return value;
         }
         self.tell(
-            Diagnostic::error(Code::NotFinite, "the number is too large for the machine")
+            Diagnostic::error(Code::NotFinite, "the number is beyond double precision")
                 .at(number.span.clone(), ""),
         );
         0.0
@@ -91,7 +91,7 @@ impl<'a> Resolver<'a> {
     fn outside(&mut self, name: &str, side: &str, span: Span, limit: Option<Span>) {
         let mut diagnostic = Diagnostic::error(
             Code::ValueOutsideLimits,
-            format!("the value of `{name}` lies {side} its limit"),
+            format!("the value of `{name}` is {side} its limit"),
         )
         .at(span, "this value");
         if let Some(limit) = limit {
@@ -209,7 +209,7 @@ impl<'a> Resolver<'a> {
                 Code::SignalTable,
                 format!("the times of the signal `{name}` do not increase"),
             )
-            .at(at, "not later than the time before")
+            .at(at, "not later than the previous time")
         } else {
             return;
         };
@@ -367,7 +367,7 @@ impl<'a> Resolver<'a> {
         }
     }
 
-    /// Tells that 0, the initial value of what is left out, is not in the range.
+    /// Reports a range that excludes the default initial value 0.
     fn start_outside(&mut self, item: &ItemAst) {
         self.tell(
             Diagnostic::error(

@@ -12,7 +12,7 @@ use super::dimensions::Dim;
 use super::meaning::{Named, Used};
 use super::place::Place;
 
-/// Most diagnostics collected; more would help nobody.
+/// Maximum number of diagnostics collected.
 const MAX_FINDINGS: usize = 1000;
 
 /// A spec on its way to a mechanism, and what is told of it.
@@ -27,7 +27,7 @@ pub(super) struct Resolver<'a> {
     pub(super) frames: BTreeMap<&'a str, usize>,
     pub(super) points: BTreeMap<&'a str, usize>,
     pub(super) bodies: BTreeMap<&'a str, usize>,
-    /// Unknown names that have been told, each with its place in the findings.
+    /// Unknown names already reported, each with its place in the findings.
     pub(super) told: BTreeMap<(&'static str, String), usize>,
     /// How smooth each signal is, and its name.
     pub(super) interpolation: Vec<(Interpolation, &'a str)>,
@@ -66,7 +66,7 @@ impl<'a> Resolver<'a> {
             .partition_point(|start| *start <= span.start)
     }
 
-    /// The expression under a key, of the dimension that its place asks for.
+    /// The expression under a key, of the dimension that its place requires.
     pub(super) fn expression_of(
         &mut self,
         item: &ItemAst,

@@ -21,7 +21,7 @@ const MAX_DEPTH: usize = 8;
 /// Why a unit text was refused.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum UnitError {
-    /// No such unit.
+    /// Unknown unit.
     #[error("unknown unit `{symbol}`")]
     Unknown {
         /// The symbol.
@@ -31,7 +31,7 @@ pub enum UnitError {
         /// A unit that looks alike.
         similar: Option<String>,
     },
-    /// The text is not a unit.
+    /// Invalid unit.
     #[error("{message}")]
     Syntax {
         /// What is wrong.
@@ -251,7 +251,7 @@ impl Parser<'_> {
             Some('1') => {
                 self.skip('1');
                 if self.peek().is_some_and(|c| c.is_alphanumeric() || c == '.') {
-                    return Err(self.error("a unit holds no number other than `1`"));
+                    return Err(self.error("a unit cannot contain a number other than `1`"));
                 }
                 Ok(Product {
                     dimension: Dimension::NONE,

@@ -11,7 +11,7 @@ use super::dimension::{BASE_UNITS, Dimension};
 pub struct UnitEntry {
     /// Symbol, as written in a spec.
     pub symbol: &'static str,
-    /// Name for people.
+    /// Name in words.
     pub name: &'static str,
     /// Exponents of metre, kilogram, second, ampere, kelvin, mole, candela.
     pub powers: [i32; 7],

@@ -24,7 +24,7 @@ pub fn html(page: &Page) -> String {
     );
     let _ = writeln!(out, "<h1>{title}</h1>");
     if let Some(source) = &page.source {
-        let _ = writeln!(out, "<p class=\"source\">After: {}</p>", escaped(source));
+        let _ = writeln!(out, "<p class=\"source\">Source: {}</p>", escaped(source));
     }
     for (index, section) in page.sections.iter().enumerate() {
         let number = index + 1;

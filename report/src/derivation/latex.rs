@@ -51,7 +51,7 @@ pub fn latex(page: &Page) -> String {
     if let Some(source) = &page.source {
         let _ = write!(
             out,
-            "\\smallskip\n{{\\small After: {}\\par}}\n",
+            "\\smallskip\n{{\\small Source: {}\\par}}\n",
             escaped(source)
         );
     }

@@ -21,7 +21,7 @@ pub fn text(page: &Page) -> String {
     line(&mut out, &"═".repeat(columns(&title)));
     if let Some(source) = &page.source {
         line(&mut out, "");
-        paragraph(&mut out, &format!("After: {}", clean(source)));
+        paragraph(&mut out, &format!("Source: {}", clean(source)));
     }
     for (index, section) in page.sections.iter().enumerate() {
         let heading = format!("{}  {}", index + 1, spans(&section.heading));

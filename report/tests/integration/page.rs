@@ -1,12 +1,10 @@
 //! The derivation as a page: what it looks like, and that it is true.
 
-mod page_support;
-
+use crate::support::{page_of, shipped, spec};
 use appell_codegen::page::{self, Page, Stage};
 use appell_spec::mechanism::{
     BodyId, CoordinateId, FrameId, LoadId, OutputId, ParameterId, PointId,
 };
-use page_support::{page_of, shipped, spec};
 
 /// The handouts under snapshot.
 const HANDOUTS: [&str; 3] = ["unicycle", "euc_3dof", "pendulum"];
@@ -227,7 +225,7 @@ drag   = { kind = "generalized", coordinate = "theta", force = "-tau" }
 #[test]
 fn divisions_that_can_fail_are_told_with_the_declared_range() {
     let page = derivation::text(&page_of("unicycle", Stage::Kinematics));
-    let told = "They hold where cos θ ≠ 0; the spec declares θ from −1.5 to 1.5 rad.";
+    let told = "They are valid where cos θ ≠ 0; the spec declares θ from −1.5 to 1.5 rad.";
     assert!(page.contains(told), "{page}");
 }
 

@@ -45,9 +45,9 @@ pub(super) fn section(w: &mut Writer<'_>) -> Section {
         Math::Letter(Letter::bold("v")),
     ]);
     let mut blocks = vec![Block::Sentence(vec![
-        words("In a turning frame "),
+        words("In a rotating frame "),
         math(rule),
-        words(", with the components differentiated one by one; angular accelerations likewise."),
+        words(", differentiated component by component; angular accelerations likewise."),
     ])];
     blocks.extend(with(w, "", equations));
     headed("Accelerations", blocks)

@@ -26,7 +26,7 @@ pub(super) fn section(w: &mut Writer<'_>) -> Section {
     let definitions = definitions(w);
     blocks.push(definitions);
     blocks.push(sentence(
-        "Below, ωᵢ is the i-th of them; rows and columns follow the same order.",
+        "Below, ωᵢ is the i-th of them; rows and columns are in the same order.",
     ));
     let by = if w
         .derivation
@@ -44,8 +44,8 @@ pub(super) fn section(w: &mut Writer<'_>) -> Section {
     blocks.extend(divisors::conditions(w));
     if !w.derivation.velocities.solved_numerically.is_empty() {
         blocks.push(sentence(
-            "No pivot of the linear system is safe in the declared ranges; it is solved with pivoting \
-             when the equations are evaluated.",
+            "No pivot of the linear system is nonzero in all declared ranges: it is solved with pivoting \
+             at each evaluation.",
         ));
     }
     headed("Constraints and pseudo-velocities", blocks)
@@ -144,12 +144,12 @@ fn held_by_geometry(components: Vec<Vec<Span>>) -> Vec<Span> {
     let (noun, verb) = if components.len() == 1 {
         (
             "Its component along ",
-            " holds by geometry: the coordinates satisfy it already.",
+            " holds by geometry: the coordinates satisfy it identically.",
         )
     } else {
         (
             "Its components along ",
-            " hold by geometry: the coordinates satisfy them already.",
+            " hold by geometry: the coordinates satisfy them identically.",
         )
     };
     let mut text = vec![words(noun)];

@@ -7,7 +7,7 @@ use super::phrases::{listed, math, words};
 use appell_codegen::mechanics::parameter_ranges;
 use appell_codegen::symbolic::{Expr, Intervals, Node};
 
-/// `They hold where cos θ ≠ 0; the spec declares θ from -1.5 to 1.5 rad.`
+/// `They are valid where cos θ ≠ 0; the spec declares θ from -1.5 to 1.5 rad.`
 pub(super) fn conditions(w: &mut Writer<'_>) -> Option<Block> {
     let divisors = divisors(w);
     if divisors.is_empty() {
@@ -18,7 +18,7 @@ pub(super) fn conditions(w: &mut Writer<'_>) -> Option<Block> {
         let condition = [w.set(divisor), Math::Sign("≠"), Math::zero()];
         conditions.push(vec![math(Math::Row(condition.into()))]);
     }
-    let mut what = vec![words("They hold where ")];
+    let mut what = vec![words("They are valid where ")];
     what.extend(listed(conditions));
     let declared = declared(w, &divisors);
     if !declared.is_empty() {

@@ -41,7 +41,7 @@ pub(super) fn section(w: &mut Writer<'_>) -> Section {
     let mut blocks = vec![Block::Sentence(vec![
         words("The sum runs over the bodies: "),
         math(definition),
-        words(". Terms free of accelerations are left out; they drop out of the derivatives."),
+        words(". Terms without accelerations are omitted; the derivatives do not contain them."),
     ])];
     let mut equations = Vec::new();
     for body in w.derivation.bodies.clone() {
@@ -89,7 +89,7 @@ pub(super) fn derivatives(w: &mut Writer<'_>) -> Section {
     }
     blocks.extend(with(
         w,
-        "The bias b is what remains where all accelerations vanish:",
+        "The bias b is the part without accelerations:",
         equations,
     ));
     let heading = Math::Row(vec![
@@ -181,7 +181,7 @@ fn couplings(w: &mut Writer<'_>, matrix: &[Vec<Expr>]) -> Vec<Span> {
         })
         .collect();
     text.push(words(&format!(
-        "It falls into {} independent blocks: ",
+        "It consists of {} independent blocks: ",
         groups.len()
     )));
     for (k, group) in groups.into_iter().enumerate() {

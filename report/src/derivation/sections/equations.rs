@@ -84,14 +84,14 @@ pub(super) fn motion(w: &mut Writer<'_>) -> Section {
             .iter()
             .map(|&k| vec![math(Math::Letter(letters[k].clone()))]);
         let mut text = vec![words(
-            "M is factorised when the equations are evaluated, in the order ",
+            "M is factorised numerically at each evaluation, in the order ",
         )];
         text.extend(listed(order.collect()));
         text.push(words("."));
         blocks.push(Block::Sentence(text));
     }
     blocks.push(sentence(
-        "With the generalised velocities of section 3 they are the equations of motion.",
+        "Together with the generalised velocities of section 3 they are the equations of motion.",
     ));
     headed("Equations of motion", blocks)
 }
@@ -154,7 +154,7 @@ pub(super) fn energies(w: &mut Writer<'_>) -> Section {
         w.explicit(power),
     ));
     let mut text = vec![words(
-        "Kinetic energy T, potential energy V, power P of the loads without potential.",
+        "Kinetic energy T, potential energy V, power P of the non-conservative loads.",
     )];
     let steady = w.derivation.symbols.signals.is_empty();
     if steady {
@@ -165,11 +165,7 @@ pub(super) fn energies(w: &mut Writer<'_>) -> Section {
             Math::Sign("="),
             Math::Letter(Letter::plain("P")),
         ]);
-        text.extend([
-            words(" A check of every solution: "),
-            math(rate),
-            words("."),
-        ]);
+        text.extend([words(" Every solution satisfies "), math(rate), words(".")]);
     }
     let mut blocks = vec![Block::Sentence(text)];
     blocks.extend(with(w, "", equations));

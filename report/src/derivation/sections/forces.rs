@@ -20,7 +20,7 @@ pub(super) fn section(w: &mut Writer<'_>) -> Section {
     }
     blocks.extend(with(
         w,
-        "The pseudo-forces are the factors of the virtual velocities:",
+        "The pseudo-forces are the coefficients of the virtual velocities:",
         equations,
     ));
     headed("Pseudo-forces Π", blocks)
@@ -54,7 +54,7 @@ fn load_by_load(w: &mut Writer<'_>) -> Vec<Block> {
         return vec![sentence("No load acts.")];
     }
     let mut blocks = vec![Block::Sentence(vec![
-        words("Forces F and torques T work along virtual velocities: "),
+        words("The virtual power of the forces F and torques T is "),
         math(rule()),
         words(". Load by load:"),
     ])];

@@ -14,14 +14,17 @@ pub(super) fn section(w: &mut Writer<'_>) -> Section {
     let signals: Vec<Expr> = symbols.signals.iter().flatten().copied().collect();
     let lists = [
         (
-            "By the state, for A:",
+            "With respect to the state, for A:",
             [symbols.speeds.clone(), symbols.coordinates.clone()].concat(),
         ),
         (
-            "By the inputs, for B:",
+            "With respect to the inputs, for B:",
             [symbols.inputs.clone(), signals].concat(),
         ),
-        ("By the parameters, for P:", symbols.parameters.clone()),
+        (
+            "With respect to the parameters, for P:",
+            symbols.parameters.clone(),
+        ),
     ];
     let mut rows = residual(w);
     rows.extend((0..symbols.rates.len()).map(|k| {
@@ -67,13 +70,15 @@ fn rule() -> Block {
         derivative(Letter::bold("ρ")),
     ]);
     Block::Sentence(vec![
-        words("Appell's equations say that "),
+        words("By Appell's equations "),
         math(residual_rule),
-        words(" vanishes. Differentiated by a state, an input or a parameter z they give "),
+        words(
+            " vanishes. Differentiation with respect to a state, an input or a parameter z gives ",
+        ),
         math(rule),
         words(
-            ", where the derivative of ρ holds the accelerations. It is solved as the accelerations \
-             are. What is not listed is zero.",
+            ", where ρ is differentiated at constant accelerations. It is solved like the equations \
+             of motion. Entries not listed are zero.",
         ),
     ])
 }

@@ -24,9 +24,9 @@ pub(super) fn steady(w: &mut Writer<'_>, linear: &Linearisation) -> Section {
         states.extend(letters(w, hidden));
         let one = hidden.len() == 1;
         states.push(words(if one {
-            " is hidden and follows."
+            " is hidden: it does not influence them."
         } else {
-            " are hidden and follow."
+            " are hidden: they do not influence them."
         }));
     }
     let mut blocks = vec![Block::Sentence(states)];
@@ -37,7 +37,7 @@ pub(super) fn steady(w: &mut Writer<'_>, linear: &Linearisation) -> Section {
             values.push(Equation::new(w.symbol(symbol), w.explicit(value)));
         }
     }
-    blocks.extend(with(w, "In the motion", values));
+    blocks.extend(with(w, "Along the motion", values));
     let mut conditions = Vec::new();
     for &rate in linear.rates.iter().filter(|&&rate| rate != Graph::ZERO) {
         let (over, _) = w.graph().split_fraction(rate);
@@ -103,7 +103,7 @@ pub(super) fn equations(w: &mut Writer<'_>, linear: &Linearisation) -> Section {
         let lead = if whole {
             "with"
         } else {
-            "What is not listed is zero."
+            "Entries not listed are zero."
         };
         blocks.extend(with(w, lead, equations));
     }
@@ -121,7 +121,7 @@ fn rule(w: &mut Writer<'_>, linear: &Linearisation) -> Block {
     }
     let equation = Math::Row(vec![rate, Math::Sign("="), Math::sum(right)]);
     let mut text = vec![
-        words("Small departures δ from the motion follow "),
+        words("Small deviations δ from the motion obey "),
         math(equation),
         words(" with the states "),
     ];
@@ -138,7 +138,7 @@ fn rule(w: &mut Writer<'_>, linear: &Linearisation) -> Block {
     text.push(words(", in this order."));
     if !w.derivation.positions.dependent.is_empty() {
         text.push(words(
-            " Coordinates that follow from others by position constraints count as free here.",
+            " Dependent coordinates of position constraints are treated as free here.",
         ));
     }
     Block::Sentence(text)

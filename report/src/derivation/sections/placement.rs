@@ -13,8 +13,8 @@ use appell_codegen::symbolic::{Expr, Graph};
 pub(super) fn section(w: &mut Writer<'_>) -> Section {
     let mechanism = w.mechanism;
     let mut blocks = vec![sentence(
-        "O is the origin of the ground. Each frame is the one before it, turned about one of its \
-         axes. Behind the components of a vector stands their frame.",
+        "O is the origin of the ground. Each frame is the preceding one, rotated about one of its \
+         axes. The components of a vector are followed by their frame.",
     )];
     for leaf in mechanism.frames.ids().skip(1) {
         if !mechanism.frames.iter().any(|f| f.parent == Some(leaf)) {

@@ -39,8 +39,8 @@ pub(super) fn section(w: &mut Writer<'_>) -> Outcome<Option<Section>> {
     }
     let blocks = with(
         w,
-        "Each constraint row gets a speed at which it would be violated; Appell's equation for that \
-         speed gives its reaction. Components in the ground, accelerations stand for their values:",
+        "Each constraint row gets an auxiliary speed that violates it; Appell's equation for that \
+         speed gives its reaction. Components are in the ground; accelerations are those solved above:",
         equations,
     );
     Ok(Some(headed("Constraint forces", blocks)))

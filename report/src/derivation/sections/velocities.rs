@@ -36,8 +36,8 @@ pub(super) fn section(w: &mut Writer<'_>) -> Section {
         equations.extend(w.vector(letter, v.v, v.frame));
     }
     let mut blocks = vec![sentence(
-        "Ω turns a frame, ω a body and the frames fixed in it; each vector is written in the frame \
-         where it is shortest.",
+        "Ω is the angular velocity of a frame, ω that of a body and the frames fixed in it; each \
+         vector is written in the frame where it is shortest.",
     )];
     blocks.extend(with(w, "", equations));
     headed("Velocities", blocks)

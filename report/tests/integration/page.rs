@@ -1,7 +1,7 @@
 //! The derivation as a page: what it looks like, and that it is true.
 
 use crate::support::{page_of, shipped, spec};
-use appell_codegen::page::{self, Page, Stage};
+use appell_report::derivation::{self, Page, Stage};
 use appell_spec::mechanism::{
     BodyId, CoordinateId, FrameId, LoadId, OutputId, ParameterId, PointId,
 };

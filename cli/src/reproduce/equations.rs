@@ -4,9 +4,14 @@ use appell_models::Shipped;
 use appell_papers::errata::{ERRATA, Erratum, Evidence, Source};
 use appell_papers::steering::{EQUATIONS, Equation, Formulas};
 
-use super::claim::{Claim, Section, Verdict};
+use super::claim::{Claim, Section};
 use super::found::failed;
 use crate::failure::Failure;
+
+/// What an identical formula rests on.
+pub(super) const IDENTITY: &str = "by the identity test";
+/// Why there is nothing to compare.
+pub(super) const DEFINITION: &str = "a definition";
 
 /// Equations that say what a letter means or which law is used, and where they are put to use.
 const DEFINITIONS: &[(u32, &str, &str)] = &[
@@ -84,8 +89,7 @@ pub(super) fn section() -> Result<Section, Failure> {
         let place = format!("({number})");
         let ours = format!("the spec says the same; used in {used}");
         let claim = Claim::that(&place, what, ours, true, "appell check unicycle");
-        let claim = claim.verdict(Verdict::Definition);
-        claims.push((number, claim));
+        claims.push((number, claim.unchecked(DEFINITION)));
     }
     for list in LISTS {
         claims.push((list.0, letters(list)?));
@@ -165,7 +169,7 @@ fn typed(equation: &Equation) -> Claim {
         differences.is_empty(),
         &command,
     );
-    claim.verdict(Verdict::Exact)
+    claim.exactly().noted(IDENTITY)
 }
 
 fn letters(
@@ -181,12 +185,14 @@ fn letters(
     let holds = names.iter().all(has) && whole;
     let command = format!("appell check {mechanism}");
     let claim = Claim::that(&format!("({number})"), &published, ours, holds, &command);
-    Ok(claim.verdict(Verdict::Definition))
+    Ok(claim.exactly())
 }
 
 /// What is printed, and what is right.
 pub(super) fn misprint(erratum: &Erratum) -> Claim {
-    let (evidence, holds) = match &erratum.evidence {
+    let kind = erratum.verdict.words();
+    let mut note = format!("erratum: {kind}");
+    let (evidence, as_expected) = match &erratum.evidence {
         Evidence::Test(_, comparison) => {
             let [printed, right] = comparison.verdicts();
             let told = |holds: bool| if holds { "is" } else { "is not" };
@@ -201,6 +207,7 @@ pub(super) fn misprint(erratum: &Erratum) -> Claim {
             // Names of tests are for those who read the source.
             let words = words.split("; tested").next().unwrap_or(words);
             let words = words.split("simulated:").next().unwrap_or(words);
+            note.push_str(", by the context");
             (words.to_owned(), true)
         }
     };
@@ -210,8 +217,8 @@ pub(super) fn misprint(erratum: &Erratum) -> Claim {
         erratum.equation,
         &published,
         ours.trim_end(),
-        holds,
+        as_expected,
         "docs/errata.md",
     );
-    claim.verdict(Verdict::Erratum(erratum.verdict.words()))
+    claim.erratum(kind).noted(note)
 }

@@ -3,7 +3,7 @@
 use appell_runtime::Trajectory;
 use appell_runtime::figure::{Figure, Panel, Series};
 
-use super::claim::{Claim, Picture, Section, Verdict};
+use super::claim::{Claim, Picture, Section};
 use super::found::failed;
 use super::manoeuvres::{Path, Run, largest};
 use crate::failure::Failure;
@@ -117,9 +117,9 @@ fn follow(claims: &mut Vec<Claim>, wanted: &Wanted, motion: &Trajectory, command
     let claim = match (wanted.run.path.turn, force < 10.0) {
         (false, true) => Claim::that(&place, "|u| < 10 N", ours, as_known, command),
         (false, false) => Claim::that(&place, "|u| < 10 N", ours, as_known, command)
-            .verdict(Verdict::Erratum("over-claim")),
+            .erratum("over-claim"),
         (true, _) => Claim::that(&place, "nothing on the force", ours, as_known, command)
-            .verdict(Verdict::Added),
+            .added(),
     };
     claims.push(claim);
     let ours = format!(
@@ -134,7 +134,7 @@ fn follow(claims: &mut Vec<Claim>, wanted: &Wanted, motion: &Trajectory, command
         demand > 0.0 && demand < 0.3,
         command,
     );
-    claims.push(claim.verdict(Verdict::Added));
+    claims.push(claim.added());
 }
 
 fn line(motion: &Trajectory, name: &str, label: String) -> Series {

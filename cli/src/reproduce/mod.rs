@@ -27,7 +27,7 @@ mod numbers;
 mod tables;
 
 pub(crate) use book::page;
-pub(crate) use claim::{Claim, Section};
+pub(crate) use claim::{Claim, Section, Tally};
 pub(crate) use euc::book as euc;
 
 use crate::failure::Failure;

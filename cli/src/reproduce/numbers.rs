@@ -5,7 +5,7 @@ use appell_runtime::analysis::{Change, Kind, Special, circle};
 use appell_runtime::control::controllability::{Controllability, output_rank};
 use appell_runtime::spectrum::characteristic_polynomial;
 
-use super::claim::{Claim, Section, Verdict};
+use super::claim::{Claim, Section};
 use super::found::{GRAVITY, Mechanism, RADIUS, SLIDER_MASS, WHEEL_MASS, told, values};
 use super::manoeuvres::Path;
 use super::tables::{POLE, placed, steered, straight};
@@ -213,7 +213,7 @@ fn reach(claims: &mut Vec<Claim>) -> Result<(), Failure> {
     let mut rank = |place: &str, what: &str, found: &[usize], wanted: usize| {
         let holds = found.iter().all(|rank| *rank == wanted);
         let ours = format!("{found:?} at 1 and 5 m/s");
-        claims.push(Claim::that(place, what, ours, holds, command));
+        claims.push(Claim::that(place, what, ours, holds, command).exactly());
     };
     rank("(56), (57)", "rank M_c = 6 of 10", &ranks, 6);
     rank(
@@ -251,7 +251,7 @@ fn reach(claims: &mut Vec<Claim>) -> Result<(), Failure> {
         let ours = format!("coefficients of the characteristic polynomial agree in {worst} digits");
         let command = "appell control unicycle --at omega_2=5[m/s]/R --poles -8";
         let claim = Claim::that("(67)", &published, ours, worst >= 9, command);
-        claims.push(claim.verdict(Verdict::Digits(worst)));
+        claims.push(claim.noted(format!("{worst} digits agree")));
     }
     Ok(())
 }
@@ -279,6 +279,6 @@ fn references(claims: &mut Vec<Claim>) {
         let command =
             "appell simulate unicycle --feedback docs/examples/feedback/lane_change_5_m_s.toml";
         let claim = Claim::that(place, published, ours, holds, command);
-        claims.push(claim.verdict(Verdict::Erratum("undecided")));
+        claims.push(claim.erratum("undecided"));
     }
 }

@@ -6,7 +6,7 @@ use appell_runtime::figure::{Figure, Panel, Path, Series, Surface};
 use super::laboratory::Laboratory;
 use super::rider::Manoeuvre;
 use crate::failure::Failure;
-use crate::reproduce::claim::{Claim, Picture, Section, Verdict};
+use crate::reproduce::claim::{Claim, Picture, Section};
 use crate::reproduce::found::failed;
 
 /// The capture volume of the paper in m.
@@ -50,7 +50,7 @@ pub(super) fn section(laboratory: &Laboratory) -> Result<Section, Failure> {
             ranges[0] < VOLUME[0] && ranges[1] < VOLUME[1],
             command,
         )
-        .verdict(Verdict::Added),
+        .added(),
         Claim::that(
             "figure 3",
             "tilt and yaw rate are large",

@@ -7,7 +7,7 @@ use super::laboratory::{Laboratory, Session};
 use super::rider::Manoeuvre;
 use super::torque::{Curve, Planar};
 use crate::failure::Failure;
-use crate::reproduce::claim::{Claim, Picture, Section, Verdict};
+use crate::reproduce::claim::{Claim, NOT_PUBLIC, Picture, Section};
 use crate::reproduce::found::failed;
 
 /// What the paper prints for a manoeuvre: height in m, error in N m.
@@ -50,7 +50,7 @@ pub(super) fn section(laboratory: &Laboratory) -> Result<Section, Failure> {
                 true,
                 command,
             )
-            .verdict(Verdict::NoData),
+            .unchecked(NOT_PUBLIC),
         );
         let [gamma, phi] = [1, 2].map(|channel| largest(session, channel).to_degrees());
         claims.push(Claim::that(
@@ -69,7 +69,7 @@ pub(super) fn section(laboratory: &Laboratory) -> Result<Section, Failure> {
                 off.is_finite(),
                 command,
             )
-            .verdict(Verdict::Added),
+            .added(),
         );
         pictures.push(Picture {
             svg: figure(three, session, best[0], printed.figure)?.to_svg(),

@@ -13,7 +13,7 @@ use nalgebra::{DMatrix, DVector};
 use super::laboratory::{Laboratory, PERFECT, REAL, Session};
 use super::rider::Manoeuvre;
 use crate::failure::Failure;
-use crate::reproduce::claim::{Claim, Picture, Section, Verdict};
+use crate::reproduce::claim::{Claim, Picture, Section};
 use crate::reproduce::found::{failed, told};
 
 /// Heights of the profiles, as parts of the one that is found.
@@ -51,7 +51,7 @@ pub(super) fn section(laboratory: &Laboratory) -> Result<Section, Failure> {
                 real.found.values[0].is_finite(),
                 command,
             )
-            .verdict(Verdict::Added),
+            .added(),
         );
         if session.manoeuvre != Manoeuvre::FigureEight {
             let perfect = laboratory.seen(session, PERFECT);
@@ -62,7 +62,7 @@ pub(super) fn section(laboratory: &Laboratory) -> Result<Section, Failure> {
                 1e3 * off
             );
             let claim = Claim::that(&place, "nothing", ours, off.abs() < STRAIGHT, command);
-            claims.push(claim.verdict(Verdict::Added));
+            claims.push(claim.added());
         }
         all.push(real);
     }

@@ -5,7 +5,7 @@ use appell_models::Shipped;
 use super::laboratory::Laboratory;
 use super::rider::Manoeuvre;
 use crate::failure::Failure;
-use crate::reproduce::claim::{Claim, Section, Verdict};
+use crate::reproduce::claim::{Claim, NOT_PUBLIC, Section};
 use crate::reproduce::found::failed;
 
 /// Abbreviations of table 2.
@@ -63,9 +63,9 @@ pub(super) fn section(laboratory: &Laboratory) -> Result<Section, Failure> {
         .model
         .info();
     let mut claims = vec![
-        recordings.verdict(Verdict::NoData),
-        bodies,
-        mass.verdict(Verdict::Added),
+        recordings.unchecked(NOT_PUBLIC),
+        bodies.exactly(),
+        mass.added(),
     ];
     for (name, printed) in PARAMETERS {
         let index = info.parameter_index(name);

@@ -411,9 +411,7 @@ fn natural_unit(dimension: Dimension, value: &Expr, coordinates: &[Coordinate]) 
     let mut of_angles = false;
     value.visit(&mut |quantity| {
         if let Quantity::Rate(id) = quantity {
-            of_angles |= coordinates
-                .get(id)
-                .is_some_and(|c| c.label.unit.dimension.is_none() && c.label.unit.text != "1");
+            of_angles |= coordinates.get(id).is_some_and(|c| c.label.unit.is_angle());
         }
     });
     let mut unit = Unit::si(dimension);

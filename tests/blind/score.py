@@ -127,6 +127,7 @@ class Answer:
         ]
         self.far = report.get("how_far") or {}
         self.seconds = report.get("seconds")
+        self.engine = report.get("engine")
         groups = [
             [sorted(member.split("+")) if isinstance(member, str) else sorted(member) for member in g]
             for g in report.get("tied", [])
@@ -331,21 +332,29 @@ def table(head, columns):
     return "\n".join(lines)
 
 
+def engines(labels, folder):
+    """The versions of the engine that made the reports."""
+    found = {answer.engine for answer in (read(folder / f"{name}.json") for name in labels) if answer}
+    return ", ".join(sorted(str(engine or "of no stated version") for engine in found))
+
+
 def section(labels, reports):
     methods = sorted(f.name for f in reports.iterdir() if f.is_dir() and f.name != "left_out")
     count = lambda kind: sum(l["kind"] == kind for l in labels.values())
     parts = [
+        f"Development scores: the labels of these cases are in the repository, and the engine was changed beside them. "
+        f"Engine {engines(labels, reports / 'appell')}.",
         f"{len(labels)} cases: {count('null')} without a gap, {count('single')} with one effect, {count('compound')} with two, "
         f"{count('mismatch')} with another law than the library's, {count('off_library')} with what the library does not have. "
         f"Intervals of 95 % in brackets. One effect has d′ {LARGE} or more where nothing else is said.",
     ]
     if methods:
         parts.append(
-            table("measure", {name.replace("_", " "): scores(labels, reports / name) for name in methods})
+            table("development score", {name.replace("_", " "): scores(labels, reports / name) for name in methods})
         )
     if (reports / "left_out").is_dir():
         parts.append("The library without the effect that is there, and without other right answers:")
-        parts.append(table("answer", {"appell": left_out(labels, reports / "left_out")}))
+        parts.append(table("answer (development score)", {"appell": left_out(labels, reports / "left_out")}))
     return "\n\n".join(parts)
 
 

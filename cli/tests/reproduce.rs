@@ -157,10 +157,18 @@ fn the_book_of_the_electric_unicycle_says_what_holds_on_simulated_rides() {
         ("figure 6", "h = 0.61 m, RMSE 4.7599 N m"),
         ("figure 7", "h = 0.28 m, RMSE 13.5626 N m"),
     ] {
-        assert_eq!(agreement(place, published), "cannot_be_checked", "{published}");
+        assert_eq!(
+            agreement(place, published),
+            "cannot_be_checked",
+            "{published}"
+        );
     }
     for (place, published) in SHOWN {
-        assert_eq!(agreement(place, published), "approximate", "{place}: {published}");
+        assert_eq!(
+            agreement(place, published),
+            "approximate",
+            "{place}: {published}"
+        );
     }
     for (place, published) in NOT_SHOWN {
         assert_eq!(
@@ -184,14 +192,19 @@ fn assert_counted_apart(book: &Value) {
     let claims = sections.flat_map(|section| section["claims"].as_array().expect("claims"));
     let claims: Vec<&Value> = claims.collect();
     let count = |agreement: &str| {
-        let found = claims.iter().filter(|claim| claim["agreement"] == agreement);
+        let found = claims
+            .iter()
+            .filter(|claim| claim["agreement"] == agreement);
         assert_eq!(book[agreement], found.clone().count(), "{agreement}");
         found.count()
     };
     let four = ["exact", "approximate", "differs", "cannot_be_checked"].map(count);
     assert!(four.iter().all(|count| *count > 0), "{four:?}");
     assert_eq!(book["statements"], four.iter().sum::<usize>());
-    assert_eq!(claims.len(), four.iter().sum::<usize>() + count("not_in_paper"));
+    assert_eq!(
+        claims.len(),
+        four.iter().sum::<usize>() + count("not_in_paper")
+    );
 }
 
 /// Effects of the plane that no ride has; others take long beside a model that falls over.

@@ -12,7 +12,7 @@ use appell_runtime::model::{Model, ModelInfo, Quantity};
 use serde_json::{Value, json};
 
 use super::ask;
-use super::design::{Design, Law};
+use super::design::{Design, DesignedGains};
 use crate::failure::Failure;
 use crate::progress;
 use crate::setup::Setup;
@@ -89,7 +89,7 @@ pub(crate) fn explore<'a>(
 fn closed<'a>(
     model: &dyn Model,
     design: &'a Design,
-    law: &'a Law,
+    law: &'a DesignedGains,
     duration: f64,
 ) -> Box<dyn InputSource + 'a> {
     let (inputs, states) = (design.equations.inputs.clone(), design.outputs.clone());

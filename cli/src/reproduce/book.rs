@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use super::claim::{Agreement, Claim, Section, Tally};
+use super::claim::{Claim, Reproduction, Section, Tally};
 
 const STYLE: &str = include_str!("book.css");
 
@@ -19,7 +19,7 @@ pub(crate) fn page(title: &str, sections: &[Section]) -> String {
          the command that makes it.</p>\n<p>{}.</p>\n<dl>\n",
         escaped(&tally.words()),
     );
-    for agreement in Agreement::ALL {
+    for agreement in Reproduction::ALL {
         // Writing to a string cannot fail.
         let _ = writeln!(
             page,
@@ -69,26 +69,28 @@ pub(crate) fn page(title: &str, sections: &[Section]) -> String {
 }
 
 /// Its colour.
-const fn class(agreement: Agreement) -> &'static str {
+const fn class(agreement: Reproduction) -> &'static str {
     match agreement {
-        Agreement::Exact => "exact",
-        Agreement::Approximate => "approximate",
-        Agreement::Differs => "differs",
-        Agreement::CannotBeChecked => "unchecked",
-        Agreement::NotInPaper => "added",
+        Reproduction::Exact => "exact",
+        Reproduction::Approximate => "approximate",
+        Reproduction::Differs => "differs",
+        Reproduction::CannotBeChecked => "unchecked",
+        Reproduction::NotInPaper => "added",
     }
 }
 
-const fn meaning(agreement: Agreement) -> &'static str {
+const fn meaning(agreement: Reproduction) -> &'static str {
     match agreement {
-        Agreement::Exact => {
+        Reproduction::Exact => {
             "the same function, by the identity test; a number in every published digit, beside a formula \
              in ten at least"
         }
-        Agreement::Approximate => "within a tolerance, or at every point that was tried",
-        Agreement::Differs => "something else is found; both are shown",
-        Agreement::CannotBeChecked => "a definition, or it rests on recordings that are not public",
-        Agreement::NotInPaper => "a result of ours",
+        Reproduction::Approximate => "within a tolerance, or at every point that was tried",
+        Reproduction::Differs => "something else is found; both are shown",
+        Reproduction::CannotBeChecked => {
+            "a definition, or it rests on recordings that are not public"
+        }
+        Reproduction::NotInPaper => "a result of ours",
     }
 }
 

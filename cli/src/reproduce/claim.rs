@@ -35,7 +35,7 @@ pub(crate) struct Claim {
     /// What is found.
     pub(crate) ours: String,
     /// How the two compare.
-    pub(crate) agreement: Agreement,
+    pub(crate) agreement: Reproduction,
     /// What the agreement rests on, or why there is none.
     pub(crate) note: String,
     /// Where the paper errs: the kind of error.
@@ -51,7 +51,7 @@ pub(crate) struct Claim {
 /// How a statement compares with what is found.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub(crate) enum Agreement {
+pub(crate) enum Reproduction {
     /// The same function, by the identity test; or a number that agrees in every digit that is
     /// published, beside a formula in ten at least.
     Exact,
@@ -65,7 +65,7 @@ pub(crate) enum Agreement {
     NotInPaper,
 }
 
-impl Agreement {
+impl Reproduction {
     /// All of them, in the order in which they are counted.
     pub(crate) const ALL: [Self; 5] = [
         Self::Exact,
@@ -104,9 +104,9 @@ impl Claim {
             published: published.to_owned(),
             ours: ours.into(),
             agreement: if holds {
-                Agreement::Approximate
+                Reproduction::Approximate
             } else {
-                Agreement::Differs
+                Reproduction::Differs
             },
             note: String::new(),
             erratum: None,
@@ -126,7 +126,9 @@ impl Claim {
         let digits = digits(wanted, found);
         let claim = Self::that(place, published, shown(found), digits >= needed, command);
         let plural = if digits == 1 { "" } else { "s" };
-        claim.exactly().noted(format!("{digits} digit{plural} agree"))
+        claim
+            .exactly()
+            .noted(format!("{digits} digit{plural} agree"))
     }
 
     /// What the paper found on recordings that are not public: it shows on simulated ones, or it does
@@ -147,16 +149,16 @@ impl Claim {
 
     /// Where it holds, it does so exactly: nothing was sampled.
     pub(crate) fn exactly(mut self) -> Self {
-        if self.agreement == Agreement::Approximate {
-            self.agreement = Agreement::Exact;
+        if self.agreement == Reproduction::Approximate {
+            self.agreement = Reproduction::Exact;
         }
         self
     }
 
     /// Where it holds, it does so within a tolerance.
     pub(crate) fn approximately(mut self) -> Self {
-        if self.agreement == Agreement::Exact {
-            self.agreement = Agreement::Approximate;
+        if self.agreement == Reproduction::Exact {
+            self.agreement = Reproduction::Approximate;
         }
         self
     }
@@ -170,7 +172,7 @@ impl Claim {
     /// The paper errs here; whatever else is compared, the two differ.
     pub(crate) fn erratum(self, kind: &'static str) -> Self {
         Self {
-            agreement: Agreement::Differs,
+            agreement: Reproduction::Differs,
             erratum: Some(kind),
             ..self
         }
@@ -180,7 +182,7 @@ impl Claim {
     /// There is nothing to compare with, for a reason.
     pub(crate) fn unchecked(self, why: &str) -> Self {
         Self {
-            agreement: Agreement::CannotBeChecked,
+            agreement: Reproduction::CannotBeChecked,
             ..self
         }
         .noted(why)
@@ -189,7 +191,7 @@ impl Claim {
     /// A result of ours.
     pub(crate) fn added(self) -> Self {
         Self {
-            agreement: Agreement::NotInPaper,
+            agreement: Reproduction::NotInPaper,
             ..self
         }
     }
@@ -215,13 +217,13 @@ impl Tally {
         tally
     }
 
-    fn count(&mut self, agreement: Agreement) -> &mut usize {
+    fn count(&mut self, agreement: Reproduction) -> &mut usize {
         match agreement {
-            Agreement::Exact => &mut self.exact,
-            Agreement::Approximate => &mut self.approximate,
-            Agreement::Differs => &mut self.differs,
-            Agreement::CannotBeChecked => &mut self.cannot_be_checked,
-            Agreement::NotInPaper => &mut self.not_in_paper,
+            Reproduction::Exact => &mut self.exact,
+            Reproduction::Approximate => &mut self.approximate,
+            Reproduction::Differs => &mut self.differs,
+            Reproduction::CannotBeChecked => &mut self.cannot_be_checked,
+            Reproduction::NotInPaper => &mut self.not_in_paper,
         }
     }
 

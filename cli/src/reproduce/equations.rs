@@ -190,7 +190,7 @@ fn letters(
 
 /// What is printed, and what is right.
 pub(super) fn misprint(erratum: &Erratum) -> Claim {
-    let kind = erratum.verdict.words();
+    let kind = erratum.origin.words();
     let mut note = format!("erratum: {kind}");
     let (evidence, as_expected) = match &erratum.evidence {
         Evidence::Test(_, comparison) => {

@@ -116,10 +116,10 @@ fn follow(claims: &mut Vec<Claim>, wanted: &Wanted, motion: &Trajectory, command
     let as_known = (force - wanted.force).abs() < 1e-3;
     let claim = match (wanted.run.path.turn, force < 10.0) {
         (false, true) => Claim::that(&place, "|u| < 10 N", ours, as_known, command),
-        (false, false) => Claim::that(&place, "|u| < 10 N", ours, as_known, command)
-            .erratum("over-claim"),
-        (true, _) => Claim::that(&place, "nothing on the force", ours, as_known, command)
-            .added(),
+        (false, false) => {
+            Claim::that(&place, "|u| < 10 N", ours, as_known, command).erratum("over-claim")
+        }
+        (true, _) => Claim::that(&place, "nothing on the force", ours, as_known, command).added(),
     };
     claims.push(claim);
     let ours = format!(

@@ -113,14 +113,14 @@ impl Comparison {
 
 /// The result of all comparisons.
 #[derive(Debug, Clone)]
-pub struct Verdict {
+pub struct FormulationComparison {
     /// One per quantity and formulation.
     pub comparisons: Vec<Comparison>,
     /// Bound on the probability that any quantity was taken for identical though it is not.
     pub error_bound: f64,
 }
 
-impl Verdict {
+impl FormulationComparison {
     /// Whether all quantities were compared and agree.
     pub fn agrees(&self) -> bool {
         let agree = |c: &Comparison| {
@@ -150,7 +150,7 @@ struct Pair {
 
 /// Compares a derivation with the other formulations of the same mechanism. Fails where their
 /// equations take more expressions than a mechanism of bodies needs.
-pub fn compare(mechanism: &Mechanism, derivation: &Derivation) -> Outcome<Verdict> {
+pub fn compare(mechanism: &Mechanism, derivation: &Derivation) -> Outcome<FormulationComparison> {
     compare_while(mechanism, derivation, &|| true)
 }
 
@@ -159,7 +159,7 @@ pub fn compare_while(
     mechanism: &Mechanism,
     derivation: &Derivation,
     is_time: &dyn Fn() -> bool,
-) -> Outcome<Verdict> {
+) -> Outcome<FormulationComparison> {
     let symbols = &derivation.symbols;
     // A graph of its own: the emitted equations do not depend on the comparison.
     let graph = derivation.algebra.graph.clone();
@@ -393,7 +393,7 @@ fn decide(
     derivation: &Derivation,
     claims: Vec<Claim>,
     is_time: &dyn Fn() -> bool,
-) -> Verdict {
+) -> FormulationComparison {
     let mut points = None;
     let mut error_bound = 0.0;
     let mut comparisons = Vec::with_capacity(claims.len());
@@ -415,7 +415,7 @@ fn decide(
             agreement,
         });
     }
-    Verdict {
+    FormulationComparison {
         comparisons,
         error_bound,
     }

@@ -90,10 +90,10 @@ def diagnose(tool, case, report, without):
     report.write_text(json.dumps(answer))
 
 
-def run(tool, folder, wanted, jobs):
-    """wanted: name of the case -> kinds to leave out."""
+def run(tool, folder, wanted, jobs, cases):
+    """wanted: name of the case -> kinds to leave out; cases: their folder, else those of the archive."""
     with tempfile.TemporaryDirectory() as place:
-        cases = unpack(place)
+        cases = cases or unpack(place)
         with ThreadPoolExecutor(jobs) as workers:
             tasks = {
                 workers.submit(diagnose, tool, cases / name, folder / f"{name}.json", without): name
@@ -390,21 +390,25 @@ def main():
     ask.add_argument("--tool", help="binary of appell; without it the reports that are there are scored")
     ask.add_argument("--jobs", type=int, default=1)
     ask.add_argument("--only", nargs="*", help="names of cases")
+    ask.add_argument("--cases", type=Path, help="folder of other cases than those of the archive")
+    ask.add_argument("--labels", type=Path, default=HERE / "labels.json", help="their labels")
     ask.add_argument("--leave-one-out", action="store_true", help="diagnose without the effect that is there")
     ask.add_argument("--write", type=Path, help="Markdown file with markers")
     ask.add_argument("--misses", action="store_true", help="list cases whose first answer is not the truth")
     ask = ask.parse_args()
-    labels = json.loads((HERE / "labels.json").read_text())["cases"]
+    labels = json.loads(ask.labels.read_text())
+    labels = labels.get("cases", labels)
     if ask.only:
         labels = {name: labels[name] for name in ask.only}
     if ask.tool and ask.leave_one_out:
         wanted = {
             name: kinds_of(label) for name, label in labels.items() if label["kind"] in ("single", "mismatch")
         }
-        run(ask.tool, ask.reports / "left_out", wanted, ask.jobs)
+        run(ask.tool, ask.reports / "left_out", wanted, ask.jobs, ask.cases)
     elif ask.tool:
-        run(ask.tool, ask.reports / "appell", dict.fromkeys(labels, ()), ask.jobs)
-    bundled(ask.reports)
+        run(ask.tool, ask.reports / "appell", dict.fromkeys(labels, ()), ask.jobs, ask.cases)
+    if not ask.cases:
+        bundled(ask.reports)
     text = section(labels, ask.reports)
     print(text)
     if ask.misses:

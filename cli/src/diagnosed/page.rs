@@ -133,7 +133,7 @@ fn place(set: &DataSet, report: &Report) -> String {
         return html;
     }
     html += &equations(set, &report.place);
-    if let Some(law) = report.pictures.as_ref().and_then(|p| p.law.as_ref()) {
+    if let Some(law) = report.pictures.as_ref().and_then(|p| p.force_law.as_ref()) {
         let caption = if law.law.is_empty() {
             "The force that the model lacks, as the recordings show it without any law, over what it \
              depends on most."

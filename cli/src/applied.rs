@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
-use appell_gap::diagnose::{Beside, Changes, Refitted};
+use appell_gap::diagnose::{Changes, Refitted, SignalEffect};
 use serde::Deserialize;
 
 use appell::Error;
@@ -161,7 +161,7 @@ impl Hypothesis {
             std: p.std,
             unit: p.unit.clone(),
         });
-        let beside = written.beside.iter().map(|b| Beside {
+        let signal_effects = written.beside.iter().map(|b| SignalEffect {
             effect: b.effect.clone(),
             acts: b.acts.clone(),
             on: b.on.clone(),
@@ -172,7 +172,7 @@ impl Hypothesis {
                 .map(|one| (one.input.clone(), one.adds.clone()))
                 .collect(),
             parameters: parameters.collect(),
-            beside: beside.collect(),
+            signal_effects: signal_effects.collect(),
         }
     }
 
@@ -184,18 +184,18 @@ impl Hypothesis {
             self.name(),
             100.0 * self.probability
         );
-        let is_beside = |value: &&Found| {
-            let mut effects = changes.beside.iter();
-            effects.any(|beside| value.name.starts_with(&format!("{}.", beside.effect)))
+        let is_of_signal = |value: &&Found| {
+            let mut effects = changes.signal_effects.iter();
+            effects.any(|own| value.name.starts_with(&format!("{}.", own.effect)))
         };
         // Writing to a string cannot fail.
-        for value in self.parameters.iter().filter(|value| !is_beside(value)) {
+        for value in self.parameters.iter().filter(|value| !is_of_signal(value)) {
             let _ = writeln!(text, "  found     {} = {}", value.name, value.sentence());
         }
         for one in &changes.parameters {
             let _ = writeln!(text, "  changed   {}", refitted(one));
         }
-        for one in &changes.beside {
+        for one in &changes.signal_effects {
             let own = |value: &&Found| value.name.starts_with(&format!("{}.", one.effect));
             let value = self.parameters.iter().find(own).map(Found::sentence);
             let _ = writeln!(
@@ -276,9 +276,9 @@ fn digits(value: f64, deviations: f64) -> f64 {
 }
 
 /// Where an effect belongs that no spec can hold.
-fn elsewhere(beside: &Beside, value: &str) -> String {
-    let (effect, on) = (&beside.effect, &beside.on);
-    let rest = match beside.acts.as_str() {
+fn elsewhere(own: &SignalEffect, value: &str) -> String {
+    let (effect, on) = (&own.effect, &own.on);
+    let rest = match own.acts.as_str() {
         "lag" => format!(
             "{on} follows its command as a filter of the first order with the time constant {value}; \
              no mechanism has this: put the filter between controller and model"

@@ -8,7 +8,7 @@ use appell_runtime::model::{ModelInfo, Quantity};
 use nalgebra::{Complex, DMatrix};
 use serde_json::{Map, Value, json};
 
-use appell::control::design::{Design, Law};
+use appell::control::design::{Design, DesignedGains};
 use appell::control::explain::pole_text;
 use appell::setup::Setup;
 use appell_report::text::{number, table};
@@ -92,7 +92,7 @@ fn equations(design: &Design, info: &ModelInfo) -> String {
 }
 
 /// Gains in the units of the spec, and the poles.
-fn gains(design: &Design, law: &Law, info: &ModelInfo) -> String {
+fn gains(design: &Design, law: &DesignedGains, info: &ModelInfo) -> String {
     let (inputs, states) = (&design.equations.inputs, &design.outputs);
     let mut rows = vec![vec![
         "gain of".to_owned(),
@@ -347,7 +347,7 @@ fn reach_json(told: &Controllability) -> Value {
     })
 }
 
-fn law_json(law: &Law) -> Value {
+fn law_json(law: &DesignedGains) -> Value {
     json!({
         "gains": rows(&law.gain),
         "poles": law.poles.iter().map(complex).collect::<Vec<_>>(),

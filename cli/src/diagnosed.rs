@@ -10,7 +10,7 @@ use std::path::Path;
 
 use appell_gap::data::DataSet;
 use appell_gap::diagnose::{
-    Ahead, Changes, DiagnoseError, Experiment, Hint, Hypothesis, Report, Verdict,
+    Ahead, Changes, DiagnoseError, ENGINE, Experiment, GapVerdict, Hint, Hypothesis, Report,
 };
 use appell_gap::effects::{EffectError, ModelError};
 use serde_json::{Value, json};
@@ -87,7 +87,7 @@ pub(crate) fn text(report: &Report, next: Option<&Path>) -> String {
         let mut listed = report.which.iter().take(LISTED);
         listed.any(|one| one.effects == effects)
     };
-    let is_told = report.verdict == Verdict::Unexplained
+    let is_told = report.verdict == GapVerdict::Unexplained
         || report.failed.iter().any(|(effects, _)| is_listed(effects));
     if is_told && !report.failed.is_empty() {
         let names: Vec<String> = (report.failed.iter().take(LISTED))
@@ -128,7 +128,7 @@ pub(crate) fn text(report: &Report, next: Option<&Path>) -> String {
                 100.0 * far.closed_ci95[1],
                 100.0 * far.closed_vs_refitted,
             );
-            if report.verdict != Verdict::NoGap && far.closed_ci95[0] <= 0.0 {
+            if report.verdict != GapVerdict::NoGap && far.closed_ci95[0] <= 0.0 {
                 text.push_str(
                     "            nothing shows yet that it helps on runs that no fit has seen\n",
                 );
@@ -175,18 +175,35 @@ fn sentence(report: &Report) -> String {
         .map(|found| found.about.as_str())
         .collect();
     match report.verdict {
-        Verdict::NoGap => "no gap beyond noise and disturbance".to_owned(),
-        Verdict::Explained => format!("the gap is explained by {}", about.join(" and ")),
-        Verdict::Ambiguous => format!(
-            "there is a gap; {} explains it, and so do others as well",
-            about.join(" and ")
+        GapVerdict::NoGap => "no gap beyond noise and disturbance".to_owned(),
+        GapVerdict::Explained => format!("the gap is explained by {}", about.join(" and ")),
+        GapVerdict::Ambiguous => format!(
+            "there is a gap; {} explains it best ({:.0} %), but {} cannot be ruled out",
+            about.join(" and "),
+            100.0 * report.which[0].probability,
+            rivals(report).join(", ")
         ),
-        Verdict::Unexplained => {
+        GapVerdict::Unexplained => {
             let left = report.left.as_ref().map(|left| format!(": {}", left.about));
             let left = left.unwrap_or_default();
             format!("there is a gap that nothing in the library explains{left}")
         }
     }
+}
+
+/// The hypotheses that are tied with the first one, with their probabilities.
+fn rivals(report: &Report) -> Vec<String> {
+    let first = &report.which[0].effects;
+    let groups = report.tied.iter();
+    let tied = groups.filter(|group| group.contains(first)).flatten();
+    let named = |effects: &Vec<String>| {
+        let probability = report.which.iter().find(|one| one.effects == *effects)?;
+        let percent = 100.0 * probability.probability;
+        Some(format!("{} ({percent:.0} %)", joined(effects)))
+    };
+    tied.filter(|effects| *effects != first)
+        .filter_map(named)
+        .collect()
 }
 
 fn line(hypothesis: &Hypothesis) -> String {
@@ -214,7 +231,7 @@ fn line(hypothesis: &Hypothesis) -> String {
 fn told(experiment: &Experiment) -> String {
     let seconds = experiment.times.last().copied().unwrap_or(0.0);
     format!(
-        "{} for {} s: sets the first two apart by {} deviations, now {}",
+        "{} for {} s: would separate the first two by {} standard deviations (now {})",
         experiment.about,
         short(seconds),
         short(experiment.separation_then),
@@ -305,6 +322,7 @@ pub(crate) fn json(report: &Report, next: Option<&Path>) -> Value {
     });
     json!({
         "schema": "gap-report/1",
+        "engine": ENGINE,
         "mechanism": report.mechanism,
         "verdict": report.verdict.word(),
         "hints": report.hints.iter().map(|hint| json!({
@@ -355,7 +373,7 @@ fn changes(changes: &Changes) -> Value {
     let parameters = changes.parameters.iter().map(|p| {
         json!({ "name": p.name, "stated": p.stated, "value": p.value, "std": p.std, "unit": p.unit })
     });
-    let beside = changes.beside.iter();
+    let beside = changes.signal_effects.iter();
     json!({
         "items": changes.items,
         "inputs": inputs.map(|(input, adds)| json!({ "input": input, "adds": adds })).collect::<Vec<_>>(),

@@ -4,7 +4,9 @@ use std::fmt::Write as _;
 use std::time::{Duration, Instant};
 
 use appell_codegen::Derived;
-use appell_codegen::formulations::{Against, Agreement, Comparison, Verdict, compare_while};
+use appell_codegen::formulations::{
+    Against, Agreement, Comparison, FormulationComparison, compare_while,
+};
 use serde_json::{Value, json};
 
 use crate::progress;
@@ -21,7 +23,7 @@ const AGAINST: [Against; 4] = [
 
 /// The comparison of one mechanism, and how long it took.
 pub(crate) struct Thorough {
-    verdict: Verdict,
+    verdict: FormulationComparison,
     seconds: f64,
     limit: Duration,
 }
@@ -233,7 +235,7 @@ mod tests {
             },
         };
         let thorough = Thorough {
-            verdict: Verdict {
+            verdict: FormulationComparison {
                 comparisons: vec![bias],
                 error_bound: 0.0,
             },

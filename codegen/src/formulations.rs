@@ -32,7 +32,7 @@ use inertial::{Inertial, Row, room};
 use lagrange::Lagrange;
 use points::Points;
 
-pub use comparison::{Against, Agreement, Comparison, Verdict};
+pub use comparison::{Against, Agreement, Comparison, FormulationComparison};
 
 /// A proof that may err with a greater probability is none.
 const GREATEST_ERROR: f64 = 1e-9;
@@ -54,7 +54,7 @@ struct Claim {
 
 /// Compares a derivation with the other formulations of the same mechanism. Fails where their
 /// equations take more expressions than a mechanism of bodies needs.
-pub fn compare(mechanism: &Mechanism, derivation: &Derivation) -> Outcome<Verdict> {
+pub fn compare(mechanism: &Mechanism, derivation: &Derivation) -> Outcome<FormulationComparison> {
     compare_while(mechanism, derivation, &|| true)
 }
 
@@ -63,7 +63,7 @@ pub fn compare_while(
     mechanism: &Mechanism,
     derivation: &Derivation,
     is_time: &dyn Fn() -> bool,
-) -> Outcome<Verdict> {
+) -> Outcome<FormulationComparison> {
     let symbols = &derivation.symbols;
     // A graph of its own: the emitted equations do not depend on the comparison.
     let graph = derivation.algebra.graph.clone();
@@ -297,7 +297,7 @@ fn decide(
     derivation: &Derivation,
     claims: Vec<Claim>,
     is_time: &dyn Fn() -> bool,
-) -> Verdict {
+) -> FormulationComparison {
     let mut points = None;
     let mut error_bound = 0.0;
     let mut comparisons = Vec::with_capacity(claims.len());
@@ -319,7 +319,7 @@ fn decide(
             agreement,
         });
     }
-    Verdict {
+    FormulationComparison {
         comparisons,
         error_bound,
     }

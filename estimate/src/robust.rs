@@ -9,6 +9,8 @@
 use std::collections::BTreeMap;
 
 use nalgebra::{DMatrix, DVector};
+use rand_xoshiro::SplitMix64;
+use rand_xoshiro::rand_core::{Rng as _, SeedableRng as _};
 
 use super::EstimateError;
 use super::fit::{Fit, inverse};
@@ -71,20 +73,12 @@ impl Blocks {
     /// 2012). The same `seed` gives the same draws.
     pub fn bootstrap(&self, draws: usize, seed: u64) -> Vec<DVector<f64>> {
         let centred = self.centred();
-        let mut state = seed;
-        let mut draw = || {
-            // Steele, Lea and Flood, Fast splittable pseudorandom number generators, 2014.
-            state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
-            let mut z = state;
-            z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-            z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-            z ^ (z >> 31)
-        };
+        let mut random = SplitMix64::seed_from_u64(seed);
         let count = centred.len() as u64;
         let one = |_| {
             let mut sum = DVector::zeros(self.covariance.nrows());
             for _ in 0..count {
-                let place = usize::try_from(draw() % count).unwrap_or(0);
+                let place = usize::try_from(random.next_u64() % count).unwrap_or(0);
                 sum += &centred[place];
             }
             &self.covariance * sum

@@ -30,7 +30,7 @@ mod bare;
 mod c3d;
 mod channel;
 mod clock;
-mod csv;
+pub mod csv;
 mod error;
 pub(crate) mod fields;
 mod finding;

@@ -11,7 +11,7 @@
 //!          --unknown--> what no candidate explains, and what it depends on
 //!          --localise--> equations, windows of time, regions
 //!          --held_out--> errors of predictions: nominal, re-fitted, with the effect, noise
-//!          --over_time, traces, law--> what people look at
+//!          --force_history, traces, force_law--> what people look at
 //!          --experiment--> the input that tells tied hypotheses apart
 //!          --changes--> what each hypothesis changes in the spec
 //! ```
@@ -20,8 +20,8 @@
 //! disturbance are found anew under every hypothesis.
 
 mod alternative;
+mod augmented;
 mod bench;
-mod beside;
 mod calibration;
 mod changes;
 mod compare;
@@ -29,32 +29,32 @@ mod error;
 mod evidence;
 mod experiment;
 mod feedback;
+mod force_history;
+mod force_law;
 mod forces;
 mod held_out;
 mod hypothesis;
-mod law;
 mod localise;
-mod over_time;
 mod report;
-mod richer;
 mod scales;
 mod screen;
 mod traces;
 mod unknown;
+mod unmodelled;
 mod whiteness;
 mod windows;
 
 use crate::data::{DataSet, Part, Spec};
 use crate::effects::{Effect, EffectModel, candidates};
 
-pub use changes::{Beside, ChangeError, Changes, Refitted};
+pub use changes::{ChangeError, Changes, Refitted, SignalEffect};
 pub use error::DiagnoseError;
 pub use experiment::{Experiment, Limit};
-pub use law::Law;
-pub use over_time::{MissingForce, OverTime};
+pub use force_history::{ForceHistory, MissingForce};
+pub use force_law::ForceLaw;
 pub use report::{
-    Detectable, Found, Hint, HowFar, Hypothesis, Left, Pictures, Region, Report, ShareOf, Value,
-    Verdict, Where, Window,
+    Detectable, Found, GapVerdict, Hint, HowFar, Hypothesis, Left, Pictures, Region, Report,
+    ShareOf, Value, Where, Window,
 };
 pub use traces::{AHEAD, Ahead, Trace};
 
@@ -63,6 +63,10 @@ use bench::Bench;
 use compare::Comparison;
 use held_out::{HeldOut, Leader};
 use screen::Screen;
+
+/// Version of the engine. Every change that moves a number of some report raises it, so that scores and
+/// calibration tell which engine they are of.
+pub const ENGINE: u32 = 1;
 
 /// Rows that are fitted: with so many, sizes are known far better than laws are right.
 const MOST_ROWS: usize = 4000;
@@ -78,7 +82,7 @@ pub struct Options {
     pub alternatives: Vec<Spec>,
 }
 
-/// Diagnoses a data set with a library of effects. `stage` is told what begins.
+/// Diagnoses a data set with a library of effects. `stage` is called with the name of each stage.
 pub fn diagnose(
     set: &DataSet,
     effects: &[Effect],
@@ -155,11 +159,11 @@ pub fn diagnose(
     let pictures = if options.pictures {
         stage("drawing");
         Some(Pictures {
-            over_time: over_time::over_time(&bench, &comparison)?,
+            force_history: force_history::force_history(&bench, &comparison)?,
             traces: held_out.traces(&bench, &comparison, &leader)?,
-            law: match leading {
+            force_law: match leading {
                 Some(_) => None,
-                None => law::law(&bench, &comparison, &place)?,
+                None => force_law::force_law(&bench, &comparison, &place)?,
             },
         })
     } else {

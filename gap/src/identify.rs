@@ -83,7 +83,7 @@ pub(crate) fn longest_step(borne: Option<f64>) -> f64 {
 }
 
 /// Finds the parameters of a model that make the runs to fit most likely, and measures its errors on
-/// the others. `stage` is told what begins.
+/// the others. `stage` is called with the name of each stage.
 pub fn identify(
     set: &DataSet,
     model: &dyn Model,

@@ -13,3 +13,4 @@ pub mod experiment;
 pub mod identify;
 pub mod inverse;
 pub mod motion_capture;
+mod slope;

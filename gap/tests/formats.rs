@@ -59,13 +59,8 @@ fn assert_damage_is_told(file: &str, bytes: &[u8], columns: [&str; 2]) {
         let message = folder.refused();
         assert!(message.contains(file), "{message}");
     }
-    let mut state = 1_u64;
-    let mut dice = |below: usize| {
-        state = state
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
-        usize::try_from((state >> 33) % below as u64).unwrap()
-    };
+    let mut random = fastrand::Rng::with_seed(1);
+    let mut dice = |below: usize| random.usize(..below);
     for _ in 0..300 {
         let mut damaged = bytes.to_vec();
         for _ in 0..=dice(4) {

@@ -19,19 +19,6 @@ const DIAGNOSED: usize = 24;
 /// Far below a second, with room for a busy machine.
 const SLOWEST: Duration = Duration::from_millis(500);
 
-/// The same damage in every run (`SplitMix64`).
-struct Dice(u64);
-
-impl Dice {
-    fn below(&mut self, n: usize) -> usize {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        usize::try_from((z ^ (z >> 31)) % (n.max(1) as u64)).unwrap()
-    }
-}
-
 /// Pieces that mean something to TOML, to CSV or to numbers.
 const TELLING: &[&[u8]] = &[
     b"\"",
@@ -60,14 +47,14 @@ const TELLING: &[&[u8]] = &[
     b" ",
 ];
 
-fn damage(bytes: &mut Vec<u8>, dice: &mut Dice) {
-    for _ in 0..=dice.below(2) {
-        let at = dice.below(bytes.len() + 1);
-        let end = (at + dice.below(30)).min(bytes.len());
-        match dice.below(4) {
-            0 if at < bytes.len() => bytes[at] ^= 1 << dice.below(8),
+fn damage(bytes: &mut Vec<u8>, dice: &mut fastrand::Rng) {
+    for _ in 0..=dice.usize(..2) {
+        let at = dice.usize(..bytes.len() + 1);
+        let end = (at + dice.usize(..30)).min(bytes.len());
+        match dice.usize(..4) {
+            0 if at < bytes.len() => bytes[at] ^= 1 << dice.usize(..8),
             1 => {
-                let piece = TELLING[dice.below(TELLING.len())];
+                let piece = TELLING[dice.usize(..TELLING.len())];
                 bytes.splice(at..at, piece.iter().copied());
             }
             2 => {
@@ -75,7 +62,7 @@ fn damage(bytes: &mut Vec<u8>, dice: &mut Dice) {
             }
             _ => {
                 let copy = bytes[at..end].to_vec();
-                let to = dice.below(bytes.len() + 1);
+                let to = dice.usize(..bytes.len() + 1);
                 bytes.splice(to..to, copy);
             }
         }
@@ -88,7 +75,7 @@ fn damaged_data_sets_are_refused_or_read() {
     let description = pendulum(SWING, &["a.csv"], &["b.csv"]).into_bytes();
     let recording = swing(60, 1, 1e-3).into_bytes();
     folder.write("b.csv", &recording);
-    let mut dice = Dice(1);
+    let mut dice = fastrand::Rng::with_seed(1);
     let (mut read, mut slowest) = (0, Duration::ZERO);
     for round in 0..DAMAGED {
         let (mut toml, mut csv) = (description.clone(), recording.clone());
@@ -134,9 +121,9 @@ fn take() -> Vec<u8> {
 }
 
 /// Bytes without a meaning, behind the beginning of a file of C3D or of Motive.
-fn noise(beginning: &[u8], dice: &mut Dice) -> Vec<u8> {
-    let length = dice.below(2000);
-    let byte = |_| u8::try_from(dice.below(256)).unwrap();
+fn noise(beginning: &[u8], dice: &mut fastrand::Rng) -> Vec<u8> {
+    let length = dice.usize(..2000);
+    let byte = |_| u8::try_from(dice.usize(..256)).unwrap();
     let rest: Vec<u8> = (0..length).map(byte).collect();
     [beginning, &rest].concat()
 }
@@ -146,7 +133,7 @@ fn damaged_takes_and_noise_for_a_capture_are_refused_or_read() {
     let folder = Folder::new();
     let take = take();
     let channels = "\"arm.Rotation.X\" = { measures = \"theta\", unit = \"deg\" }";
-    let mut dice = Dice(2);
+    let mut dice = fastrand::Rng::with_seed(2);
     let mut slowest = Duration::ZERO;
     for file in ["run.csv", "run.c3d"] {
         folder.write("recording.toml", pendulum(channels, &[file], &[]));
@@ -178,7 +165,7 @@ fn damaged_takes_and_noise_for_a_capture_are_refused_or_read() {
 #[test]
 fn damaged_skeletons_are_refused_or_read() {
     let skeleton = include_bytes!("../../docs/examples/euc/skeleton.toml");
-    let mut dice = Dice(3);
+    let mut dice = fastrand::Rng::with_seed(3);
     let (mut read, mut slowest) = (0, Duration::ZERO);
     for _ in 0..CAPTURES {
         let mut bytes = skeleton.to_vec();

@@ -57,6 +57,18 @@ impl Unit {
         self.factor.is_one() && self.pi_power == 0
     }
 
+    /// Whether it measures an angle: `rad`, `deg` or `mrad`, but not `1` or `%`, whose dimension is the
+    /// same.
+    pub fn is_angle(&self) -> bool {
+        self.dimension.is_none() && self.has_angle()
+    }
+
+    /// Whether an angle stands in it, as in `deg/s`, `rpm` and `N*m/rad`.
+    pub fn has_angle(&self) -> bool {
+        let mut symbols = self.text.split(|c: char| !c.is_alphabetic());
+        symbols.any(parse::is_angle)
+    }
+
     /// The value in SI of an exact number of this unit, rounded once.
     pub fn to_si(&self, value: &BigRational) -> f64 {
         scaled(&(value * &self.factor), self.pi_power)

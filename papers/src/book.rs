@@ -8,5 +8,5 @@ mod found;
 mod page;
 pub mod steering;
 
-pub use claim::{Claim, Picture, Section, Verdict};
+pub use claim::{Claim, Picture, Reproduction, Section, Tally};
 pub use page::page;

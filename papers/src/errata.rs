@@ -29,7 +29,7 @@ pub struct Erratum {
     /// What is right, for people.
     pub right: &'static str,
     /// Whose mistake it is.
-    pub verdict: Verdict,
+    pub origin: ErratumOrigin,
     /// How it is known.
     pub evidence: Evidence,
 }
@@ -46,7 +46,7 @@ pub enum Source {
 
 /// Whose mistake an erratum is. The papers were read as recognised text.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Verdict {
+pub enum ErratumOrigin {
     /// The recognition garbled it; the context settles it.
     Recognition,
     /// An error or over-claim of the paper.
@@ -55,7 +55,7 @@ pub enum Verdict {
     Undecided,
 }
 
-impl Verdict {
+impl ErratumOrigin {
     /// For people.
     pub const fn words(self) -> &'static str {
         match self {
@@ -254,7 +254,7 @@ pub fn markdown() -> String {
                 e.equation,
                 e.printed,
                 e.right,
-                e.verdict.words()
+                e.origin.words()
             );
         }
     }

@@ -2,7 +2,8 @@
 
     calibrate.py --collect REPORTS --labels LABELS   takes from reports what is needed: calibration.json
     calibrate.py                                     finds the numbers, tells how well claims hold
-    calibrate.py --check                             fails where the tool has other numbers
+    calibrate.py --check                             fails where the tool has other numbers, or the data
+                                                     are of another engine
 
 REPORTS has a subfolder `appell` of reports with the whole library, and `left_out` of reports with a
 library that lacks the effect. The numbers make the true answers most probable. Cases whose cause is not
@@ -19,6 +20,7 @@ from score import is_truth, rate
 HERE = Path(__file__).resolve().parent
 DATA = HERE / "calibration.json"
 TOOL = HERE / "../../gap/src/diagnose/calibration.rs"
+ENGINE = HERE / "../../gap/src/diagnose.rs"
 NAMES = ["TEMPERATURE", "MIMICKED", "INEXACT", "LEFT"]
 RANGES = {"TEMPERATURE": (1.0, 4.0), "MIMICKED": (0.02, 0.9), "INEXACT": (0.02, 0.9), "LEFT": (0.02, 0.5)}
 LEAST = 1e-3  # one answer that is wrong for certain must not outweigh all others
@@ -32,11 +34,16 @@ def constants():
     return {name: float(value) for name, value in found}
 
 
+def engine():
+    """The version of the engine."""
+    return int(re.search(r"const ENGINE: u32 = (\d+);", ENGINE.read_text())[1])
+
+
 # What is needed of a report.
 
 
-def row(report, label, left_out, temperature):
-    """log odds against the best hypothesis and number of members of each, with whether it is true."""
+def row(case, report, label, left_out, temperature):
+    """Case and engine; log odds against the best hypothesis and number of members of each, with whether it is true."""
     listed = [h for h in report["which"] if h["effects"] != UNKNOWN]
     best = max(h["probability"] for h in listed)
     if not best:  # beside certainty that it is none of them the first one is left
@@ -45,6 +52,8 @@ def row(report, label, left_out, temperature):
     true = lambda h: not left_out and is_truth(sorted(h["effects"]), label)
     left, independent = report.get("left"), report.get("independent", 1.0)
     return {
+        "case": case,
+        "engine": report.get("engine"),
         "listed": [[round(odds(h), 3), len(h["effects"]), true(h)] for h in listed if odds(h) > -40],
         "left": left
         and [round(independent * left["log_bayes_factor"], 3), round(left["gain"], 3), round(left["explained"], 3)],
@@ -53,7 +62,8 @@ def row(report, label, left_out, temperature):
     }
 
 
-def collect(reports, labels):
+def collect(reports, labels, cases):
+    """Rows of the reports on a set of cases."""
     temperature = constants()["TEMPERATURE"]
     rows = []
     for folder in ("appell", "left_out"):
@@ -63,7 +73,7 @@ def collect(reports, labels):
                 continue
             report = json.loads(path.read_text())
             if report.get("which"):
-                rows.append(row(report, label, folder == "left_out", temperature))
+                rows.append(row(f"{cases}/{name}", report, label, folder == "left_out", temperature))
     return rows
 
 
@@ -144,7 +154,9 @@ def main():
     ask.add_argument("--check", action="store_true")
     ask = ask.parse_args()
     if ask.collect:
-        rows = collect(ask.collect, json.loads(ask.labels.read_text())["cases"])
+        labels = json.loads(ask.labels.read_text())
+        cases = ask.labels.resolve().parent.name
+        rows = collect(ask.collect, labels.get("cases", labels), cases)
         ask.data.write_text("[\n" + ",\n".join(map(json.dumps, rows)) + "\n]\n")
         return
     rows, now = json.loads(ask.data.read_text()), constants()
@@ -154,6 +166,12 @@ def main():
     print(f"surprise: {surprise(rows, best):.3f}, with the numbers of the tool {surprise(rows, now):.3f}")
     print("| claimed | mean | right |\n|---|---|---|")
     print("\n".join(reliability(rows, now)))
+    stale = [row for row in rows if row.get("engine") != engine()]
+    if stale:
+        cases = sorted({row.get("case", "no case") for row in stale})
+        print(f"{len(stale)} of {len(rows)} rows are not of engine {engine()}: {', '.join(cases)}")
+    if ask.check and stale:
+        raise SystemExit("the data are stale: diagnose the cases anew, then --collect")
     if ask.check and surprise(rows, now) > surprise(rows, best) + 0.02:
         raise SystemExit("the numbers of the tool are not those of the data")
 

@@ -90,10 +90,10 @@ def diagnose(tool, case, report, without):
     report.write_text(json.dumps(answer))
 
 
-def run(tool, folder, wanted, jobs):
-    """wanted: name of the case -> kinds to leave out."""
+def run(tool, folder, wanted, jobs, cases):
+    """wanted: name of the case -> kinds to leave out; cases: their folder, else those of the archive."""
     with tempfile.TemporaryDirectory() as place:
-        cases = unpack(place)
+        cases = cases or unpack(place)
         with ThreadPoolExecutor(jobs) as workers:
             tasks = {
                 workers.submit(diagnose, tool, cases / name, folder / f"{name}.json", without): name
@@ -127,6 +127,7 @@ class Answer:
         ]
         self.far = report.get("how_far") or {}
         self.seconds = report.get("seconds")
+        self.engine = report.get("engine")
         groups = [
             [sorted(member.split("+")) if isinstance(member, str) else sorted(member) for member in g]
             for g in report.get("tied", [])
@@ -331,21 +332,29 @@ def table(head, columns):
     return "\n".join(lines)
 
 
+def engines(labels, folder):
+    """The versions of the engine that made the reports."""
+    found = {answer.engine for answer in (read(folder / f"{name}.json") for name in labels) if answer}
+    return ", ".join(sorted(str(engine or "of no stated version") for engine in found))
+
+
 def section(labels, reports):
     methods = sorted(f.name for f in reports.iterdir() if f.is_dir() and f.name != "left_out")
     count = lambda kind: sum(l["kind"] == kind for l in labels.values())
     parts = [
+        f"Development scores: the labels of these cases are in the repository, and the engine was changed beside them. "
+        f"Engine {engines(labels, reports / 'appell')}.",
         f"{len(labels)} cases: {count('null')} without a gap, {count('single')} with one effect, {count('compound')} with two, "
         f"{count('mismatch')} with another law than the library's, {count('off_library')} with what the library does not have. "
         f"Intervals of 95 % in brackets. One effect has d′ {LARGE} or more where nothing else is said.",
     ]
     if methods:
         parts.append(
-            table("measure", {name.replace("_", " "): scores(labels, reports / name) for name in methods})
+            table("development score", {name.replace("_", " "): scores(labels, reports / name) for name in methods})
         )
     if (reports / "left_out").is_dir():
         parts.append("The library without the effect that is there, and without other right answers:")
-        parts.append(table("answer", {"appell": left_out(labels, reports / "left_out")}))
+        parts.append(table("answer (development score)", {"appell": left_out(labels, reports / "left_out")}))
     return "\n\n".join(parts)
 
 
@@ -381,21 +390,25 @@ def main():
     ask.add_argument("--tool", help="binary of appell; without it the reports that are there are scored")
     ask.add_argument("--jobs", type=int, default=1)
     ask.add_argument("--only", nargs="*", help="names of cases")
+    ask.add_argument("--cases", type=Path, help="folder of other cases than those of the archive")
+    ask.add_argument("--labels", type=Path, default=HERE / "labels.json", help="their labels")
     ask.add_argument("--leave-one-out", action="store_true", help="diagnose without the effect that is there")
     ask.add_argument("--write", type=Path, help="Markdown file with markers")
     ask.add_argument("--misses", action="store_true", help="list cases whose first answer is not the truth")
     ask = ask.parse_args()
-    labels = json.loads((HERE / "labels.json").read_text())["cases"]
+    labels = json.loads(ask.labels.read_text())
+    labels = labels.get("cases", labels)
     if ask.only:
         labels = {name: labels[name] for name in ask.only}
     if ask.tool and ask.leave_one_out:
         wanted = {
             name: kinds_of(label) for name, label in labels.items() if label["kind"] in ("single", "mismatch")
         }
-        run(ask.tool, ask.reports / "left_out", wanted, ask.jobs)
+        run(ask.tool, ask.reports / "left_out", wanted, ask.jobs, ask.cases)
     elif ask.tool:
-        run(ask.tool, ask.reports / "appell", dict.fromkeys(labels, ()), ask.jobs)
-    bundled(ask.reports)
+        run(ask.tool, ask.reports / "appell", dict.fromkeys(labels, ()), ask.jobs, ask.cases)
+    if not ask.cases:
+        bundled(ask.reports)
     text = section(labels, ask.reports)
     print(text)
     if ask.misses:

@@ -1,6 +1,6 @@
 //! A derivation against Kane's equations and Lagrange's with multipliers.
 
-use appell_codegen::formulations::{Agreement, Verdict, compare};
+use appell_codegen::formulations::{Agreement, FormulationComparison, compare};
 use appell_codegen::mechanics::Derivation;
 use appell_spec::Mechanism;
 
@@ -10,13 +10,13 @@ use crate::shipped;
 const AT_POINTS: f64 = 1e-12;
 
 /// What the comparison of a derivation tells.
-pub fn verdict(mechanism: &Mechanism, derivation: &Derivation) -> Verdict {
+pub fn verdict(mechanism: &Mechanism, derivation: &Derivation) -> FormulationComparison {
     compare(mechanism, derivation)
         .unwrap_or_else(|findings| panic!("{}: {findings:?}", mechanism.file))
 }
 
 /// Demands that the three formulations of a mechanism agree.
-pub fn assert_one_answer(mechanism: &Mechanism) -> Verdict {
+pub fn assert_one_answer(mechanism: &Mechanism) -> FormulationComparison {
     let verdict = verdict(mechanism, &shipped::derive(mechanism));
     assert!(verdict.agrees(), "{}: {verdict:#?}", mechanism.name);
     for comparison in &verdict.comparisons {

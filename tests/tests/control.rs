@@ -13,7 +13,7 @@ use appell_analysis::control::placement;
 use appell_analysis::control::reduction::{ReductionError, Subsystem, reduce};
 use appell_analysis::control::sampled::Sampling;
 use appell_analysis::control::sampler::{SampledFeedback, Sampler};
-use appell_analysis::control::schedule::{GainSchedule, Law, ScheduledFeedback};
+use appell_analysis::control::schedule::{GainSchedule, OperatingLaw, ScheduledFeedback};
 use appell_models::Shipped;
 use appell_runtime::inputs::InputSource;
 use appell_runtime::integrate::Options;
@@ -407,8 +407,8 @@ fn a_sampled_law_with_a_delay_keeps_the_unicycle_where_the_continuous_gains_fail
 
 #[test]
 fn gains_over_the_speed_hold_the_unicycle_between_the_speeds_of_the_design() {
-    let design = |speed: f64| -> Result<Law, std::convert::Infallible> {
-        Ok(Law {
+    let design = |speed: f64| -> Result<OperatingLaw, std::convert::Infallible> {
+        Ok(OperatingLaw {
             gain: placed(speed, LANE),
             states: DVector::zeros(6),
             inputs: DVector::zeros(1),

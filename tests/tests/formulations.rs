@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "what is missing fails the test")]
 
-use appell_codegen::formulations::{Against, Agreement, Verdict, compare};
+use appell_codegen::formulations::{Against, Agreement, FormulationComparison, compare};
 use appell_codegen::mechanics::Derivation;
 use appell_tests::formulations::{assert_one_answer, verdict};
 use appell_tests::shipped;
@@ -11,7 +11,7 @@ use appell_tests::shipped;
 /// the degree of the equations; that of the bicycle is the highest.
 const ERROR: f64 = 1e-8;
 
-fn is_proven(verdict: &Verdict) -> bool {
+fn is_proven(verdict: &FormulationComparison) -> bool {
     let mut all = verdict.comparisons.iter();
     all.all(|c| c.agreement == Agreement::Identical) && verdict.error_bound < ERROR
 }

@@ -9,7 +9,7 @@ use appell_runtime::inputs::InputSource;
 
 /// A law about one steady motion: u = u₀ − K (y − y₀).
 #[derive(Debug, Clone, PartialEq)]
-pub struct Law {
+pub struct OperatingLaw {
     /// K, a row for each input, a column for each state y.
     pub gain: DMatrix<f64>,
     /// y₀, the states on the steady motion.
@@ -18,7 +18,7 @@ pub struct Law {
     pub inputs: DVector<f64>,
 }
 
-impl Law {
+impl OperatingLaw {
     /// u₀ − K (y − y₀) for the states y.
     #[must_use]
     pub fn asked(&self, y: &DVector<f64>) -> DVector<f64> {
@@ -30,7 +30,7 @@ impl Law {
 #[derive(Debug, Clone, PartialEq)]
 pub struct GainSchedule {
     values: Vec<f64>,
-    laws: Vec<Law>,
+    laws: Vec<OperatingLaw>,
 }
 
 /// A schedule that is none.
@@ -57,10 +57,10 @@ pub enum ScheduleError {
 
 impl GainSchedule {
     /// Laws at increasing values of the condition.
-    pub fn new(laws: Vec<(f64, Law)>) -> Result<Self, ScheduleError> {
-        let (values, laws): (Vec<f64>, Vec<Law>) = laws.into_iter().unzip();
+    pub fn new(laws: Vec<(f64, OperatingLaw)>) -> Result<Self, ScheduleError> {
+        let (values, laws): (Vec<f64>, Vec<OperatingLaw>) = laws.into_iter().unzip();
         let first = laws.first().ok_or(ScheduleError::Empty)?;
-        let shape = |law: &Law| (law.gain.shape(), law.states.len(), law.inputs.len());
+        let shape = |law: &OperatingLaw| (law.gain.shape(), law.states.len(), law.inputs.len());
         if let Some(place) = laws.iter().position(|law| shape(law) != shape(first)) {
             return Err(ScheduleError::Shape {
                 value: values[place],
@@ -79,22 +79,22 @@ impl GainSchedule {
     /// Values from `first` to `last` with a law designed at each.
     pub fn design<E>(
         values: impl IntoIterator<Item = f64>,
-        mut design: impl FnMut(f64) -> Result<Law, E>,
-    ) -> Result<Vec<(f64, Law)>, E> {
+        mut design: impl FnMut(f64) -> Result<OperatingLaw, E>,
+    ) -> Result<Vec<(f64, OperatingLaw)>, E> {
         let values = values.into_iter();
         values.map(|value| Ok((value, design(value)?))).collect()
     }
 
     /// The law at a value of the condition.
     #[must_use]
-    pub fn at(&self, value: f64) -> Law {
+    pub fn at(&self, value: f64) -> OperatingLaw {
         let after = self.values.partition_point(|node| *node <= value);
         let (Some(before), true) = (after.checked_sub(1), after < self.values.len()) else {
             return self.laws[after.min(self.laws.len() - 1)].clone();
         };
         let part = (value - self.values[before]) / (self.values[after] - self.values[before]);
         let [low, high] = [&self.laws[before], &self.laws[after]];
-        Law {
+        OperatingLaw {
             gain: &low.gain + (&high.gain - &low.gain) * part,
             states: low.states.lerp(&high.states, part),
             inputs: low.inputs.lerp(&high.inputs, part),
@@ -102,7 +102,7 @@ impl GainSchedule {
     }
 
     /// The values of the condition with their laws.
-    pub fn laws(&self) -> impl Iterator<Item = (f64, &Law)> {
+    pub fn laws(&self) -> impl Iterator<Item = (f64, &OperatingLaw)> {
         self.values.iter().copied().zip(&self.laws)
     }
 }

@@ -12,7 +12,7 @@ use appell_runtime::model::{Model, ModelInfo, Quantity};
 use serde_json::{Value, json};
 
 use super::ask;
-use super::design::{Design, Law};
+use super::design::{Design, DesignedGains};
 use crate::Error;
 use crate::setup::Setup;
 use appell_report::text::number;
@@ -87,7 +87,7 @@ pub fn explore<'a>(
 fn closed<'a>(
     model: &dyn Model,
     design: &'a Design,
-    law: &'a Law,
+    law: &'a DesignedGains,
     duration: f64,
 ) -> Box<dyn InputSource + 'a> {
     let (inputs, states) = (design.equations.inputs.clone(), design.outputs.clone());

@@ -63,12 +63,12 @@ pub struct Design {
     /// Their equations.
     pub subsystem: Subsystem,
     /// The gains.
-    pub law: Option<Law>,
+    pub law: Option<DesignedGains>,
 }
 
 /// Gains and what they achieve.
 #[derive(Debug)]
-pub struct Law {
+pub struct DesignedGains {
     /// A row for each input, a column for each output and then for each pending input.
     pub gain: DMatrix<f64>,
     /// Poles of the closed loop: in 1/s, or z where it is sampled.
@@ -194,7 +194,7 @@ fn outputs(
     asked.iter().map(place).collect()
 }
 
-fn law(subsystem: &Subsystem, request: &Request) -> Result<Option<Law>, Error> {
+fn law(subsystem: &Subsystem, request: &Request) -> Result<Option<DesignedGains>, Error> {
     let (system, sampling) = (&subsystem.system, request.sampling);
     let (n, m) = (system.order(), system.inputs());
     let law = match &request.method {
@@ -209,7 +209,7 @@ fn law(subsystem: &Subsystem, request: &Request) -> Result<Option<Law>, Error> {
                 Some(sampling) => sampling.place(system, &poles),
             };
             let placed = placed.map_err(|error| explain::placement(&error))?;
-            Law {
+            DesignedGains {
                 gain: placed.gain,
                 poles: placed.poles,
                 sampling,
@@ -224,7 +224,7 @@ fn law(subsystem: &Subsystem, request: &Request) -> Result<Option<Law>, Error> {
                 Some(sampling) => sampling.regulate(system, &q, &r),
             };
             let regulator = regulator.map_err(|error| explain::riccati(&error))?;
-            Law {
+            DesignedGains {
                 gain: regulator.gain,
                 poles: regulator.poles,
                 sampling,

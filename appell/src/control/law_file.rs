@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use appell_runtime::model::{ModelInfo, Quantity};
 
-use super::design::{Design, Law};
+use super::design::{Design, DesignedGains};
 use super::explain::pole_text;
 use crate::setup::Setup;
 
@@ -118,7 +118,7 @@ fn offsets(design: &Design, info: &ModelInfo) -> String {
     format!("offset = [{}]\n", list.join(", "))
 }
 
-fn header(design: &Design, law: &Law, setup: &Setup<'_>, model: &str) -> String {
+fn header(design: &Design, law: &DesignedGains, setup: &Setup<'_>, model: &str) -> String {
     let poles: Vec<String> = law.poles.iter().map(|pole| pole_text(*pole)).collect();
     let place = if law.sampling.is_some() { "z" } else { "1/s" };
     let mut text = format!(

@@ -1,15 +1,18 @@
 //! Inputs tabulated in a CSV file: held from each row to the next.
 
+use std::io::BufRead;
 use std::path::Path;
 
-use appell_gap::data::{MANIFEST, Role};
+use appell_gap::data::csv::Rows;
+use appell_gap::data::limits::MAX_MISTAKES;
+use appell_gap::data::{DataError, MANIFEST, Role};
 use appell_runtime::Signal;
 use appell_runtime::inputs::TabulatedInputs;
 use appell_runtime::model::{Interpolation, Model, Quantity, SignalTable};
 use appell_runtime::trajectory::{self, Extras};
+use appell_spec::mechanism::InputId;
 use appell_spec::expr::Span;
-use appell_spec::{Code, Diagnostic, Report};
-use csv::{ReaderBuilder, StringRecord};
+use appell_spec::{Code, shown};
 
 use crate::Error;
 use crate::setup::{Setup, unknown};
@@ -100,27 +103,15 @@ fn recorded(description: &str, run: &str, mechanism: &str) -> Result<Columns, Er
 
 /// The inputs in a CSV file.
 fn tabulated(path: &Path, setup: &Setup<'_>, model: &dyn Model) -> Result<Columns, Error> {
-    let file = path.to_string_lossy();
     let text = files::read(path, files::MAX_DATA)?;
-    let mut reader = Reader {
-        text: &text,
+    let reader = Reader {
+        rows: Rows::new(path, text.as_bytes())?,
         recorded: trajectory::recorded(model, Extras::ALL),
-        findings: Vec::new(),
+        mistakes: Vec::new(),
     };
-    let columns = reader
-        .columns(setup)
-        .map_err(|error| Error::Data(format!("{file}: {error}")))?;
-    if !reader.findings.is_empty() {
-        let findings = reader.findings;
-        return Err(Report::new(file, text, findings).into());
-    }
-    Ok(columns)
+    Ok(reader.columns(setup)?)
 }
 
-/// Most findings told for one file.
-const MOST: usize = 20;
-
-#[derive(Default)]
 struct Columns {
     times: Vec<f64>,
     inputs: Vec<Column>,
@@ -136,75 +127,65 @@ struct Column {
     values: Vec<f64>,
 }
 
-struct Reader<'t> {
-    text: &'t str,
+struct Reader<R> {
+    rows: Rows<R>,
     /// What `appell simulate` could have written.
     recorded: Vec<Quantity>,
-    findings: Vec<Diagnostic>,
+    mistakes: Vec<DataError>,
 }
 
-impl Reader<'_> {
+impl<R: BufRead> Reader<R> {
     fn tell(&mut self, code: Code, message: impl Into<String>, at: Span, help: Option<&str>) {
-        let finding = Diagnostic::error(code, message).at(at, "");
-        self.findings
-            .push(finding.maybe_help(help.map(str::to_owned)));
+        let help = help.map(str::to_owned);
+        self.mistakes
+            .push(self.rows.mistake(code, message, at, help));
     }
 
-    fn columns(&mut self, setup: &Setup<'_>) -> Result<Columns, csv::Error> {
-        let mut rows = ReaderBuilder::new()
-            .has_headers(false)
-            .flexible(true)
-            .comment(Some(b'#'))
-            .from_reader(self.text.as_bytes());
-        let mut columns = Columns::default();
-        let mut record = StringRecord::new();
-        if !rows.read_record(&mut record)? {
-            let help = "begin with a header: `t`, then the inputs";
-            self.tell(Code::MissingKey, "the file is empty", 0..0, Some(help));
-            return Ok(columns);
-        }
-        let count = record.len();
-        let (time, inputs) = self.header(&record, setup);
-        columns.inputs = inputs;
+    fn columns(mut self, setup: &Setup<'_>) -> Result<Columns, DataError> {
+        let (time, inputs) = self.header(setup);
+        let mut columns = Columns {
+            times: Vec::new(),
+            inputs,
+        };
         let Some(time) = time else {
             let help = "name the column of times in seconds `t`";
             self.tell(Code::MissingKey, "there is no column `t`", 0..0, Some(help));
-            return Ok(columns);
+            return Err(DataError::several(self.mistakes));
         };
-        while self.findings.len() < MOST && rows.read_record(&mut record)? {
-            if record.len() == 1 && record[0].trim().is_empty() {
+        while self.mistakes.len() < MAX_MISTAKES && self.rows.advance()? {
+            if let Some(uneven) = self.rows.uneven() {
+                self.mistakes.push(uneven);
                 continue;
             }
-            if record.len() != count {
-                let message = format!("{} cells under {count} columns", record.len());
-                self.tell(Code::WrongType, message, self.row(&record), None);
-                continue;
-            }
-            let t = self.number(&record, time);
+            let t = self.number(time);
             for column in &mut columns.inputs {
-                let value = self.number(&record, column.position);
+                let value = self.number(column.position);
                 column.values.push(value * column.scale);
             }
             if columns.times.last().is_some_and(|last| *last >= t) {
                 let message = "the time does not increase";
-                self.tell(Code::SignalTable, message, self.row(&record), None);
+                self.tell(Code::SignalTable, message, self.rows.line(), None);
             }
             columns.times.push(t);
         }
-        if columns.times.is_empty() && self.findings.is_empty() {
+        if columns.times.is_empty() && self.mistakes.is_empty() {
             self.tell(Code::SignalTable, "there are no rows", 0..0, None);
         }
-        Ok(columns)
+        if self.mistakes.is_empty() {
+            Ok(columns)
+        } else {
+            Err(DataError::several(self.mistakes))
+        }
     }
 
     /// Position of the time, and the columns of inputs.
-    fn header(&mut self, header: &StringRecord, setup: &Setup<'_>) -> (Option<usize>, Vec<Column>) {
+    fn header(&mut self, setup: &Setup<'_>) -> (Option<usize>, Vec<Column>) {
         let inputs = &setup.mechanism.inputs;
         let names = || inputs.iter().map(|input| input.label.name.as_str());
         let mut time = None;
         let mut columns: Vec<Column> = Vec::new();
-        for (position, name) in header.iter().map(str::trim).enumerate() {
-            let at = || self.cell(header, position);
+        for (position, name) in self.rows.header().to_vec().iter().enumerate() {
+            let at = self.rows.place(position);
             let input = names().position(|input| input == name);
             let twice = match input {
                 Some(input) => columns.iter().any(|column| column.input == input),
@@ -212,71 +193,34 @@ impl Reader<'_> {
             };
             if twice {
                 let message = format!("the column `{name}` stands here twice");
-                self.tell(Code::DuplicateName, message, at(), None);
+                self.tell(Code::DuplicateName, message, at, None);
             } else if let Some(input) = input {
                 columns.push(Column {
                     position,
                     input,
-                    scale: inputs[input].label.unit.scale,
+                    scale: inputs[InputId::new(input)].label.unit.scale,
                     values: Vec::new(),
                 });
             } else if name == "t" {
                 time = Some(position);
-            } else if self.recorded.iter().all(|column| column.name != name) {
+            } else if self.recorded.iter().all(|column| column.name != *name) {
                 let message = unknown(name, "input", names());
-                self.tell(Code::UnknownName, message, at(), None);
+                self.tell(Code::UnknownName, message, at, None);
             }
         }
         (time, columns)
     }
 
     /// The finite number in a cell; tells where there is none.
-    fn number(&mut self, record: &StringRecord, position: usize) -> f64 {
-        let cell = record[position].trim();
-        let number = cell.parse::<f64>().ok().filter(|number| number.is_finite());
-        number.unwrap_or_else(|| {
-            let message = format!("`{cell}` is not a finite number");
-            let help = "an input needs a value in every row";
-            let at = self.cell(record, position);
-            self.tell(Code::WrongType, message, at, Some(help));
-            0.0
-        })
-    }
-
-    /// Where a row stands, without the comments and empty lines before it.
-    fn row(&self, record: &StringRecord) -> Span {
-        let before = record.position().map_or(0, csv::Position::byte);
-        let mut start = usize::try_from(before).unwrap_or(usize::MAX);
-        start = start.min(self.text.len());
-        for line in self
-            .text
-            .get(start..)
-            .unwrap_or_default()
-            .split_inclusive('\n')
-        {
-            if !line.trim().is_empty() && !line.starts_with('#') {
-                return start..start + line.trim_end().len();
-            }
-            start += line.len();
+    fn number(&mut self, column: usize) -> f64 {
+        let cell = self.rows.cell(column);
+        if let Some(number) = cell.parse::<f64>().ok().filter(|number| number.is_finite()) {
+            return number;
         }
-        start..start
-    }
-
-    /// Where a cell stands in its row.
-    fn cell(&self, record: &StringRecord, position: usize) -> Span {
-        let row = self.row(record);
-        let mut quoted = false;
-        let mut cells = self.text[row.clone()].split(|c| {
-            quoted ^= c == '"';
-            c == ',' && !quoted
-        });
-        let before: usize = cells
-            .by_ref()
-            .take(position)
-            .map(|cell| cell.len() + 1)
-            .sum();
-        let cell = cells.next().unwrap_or_default();
-        let start = row.start + before + (cell.len() - cell.trim_start().len());
-        start..start + cell.trim().len()
+        let message = format!("`{}` is not a finite number", shown(cell));
+        let help = "an input needs a value in every row";
+        let at = self.rows.place(column);
+        self.tell(Code::WrongType, message, at, Some(help));
+        0.0
     }
 }

@@ -20,8 +20,8 @@ const EXPERIMENT: &str = "experiment.csv";
 /// Tells where a model falls short of recordings, which effect it lacks, and how far the effect closes
 /// the gap.
 ///
-/// Every effect of the library is tried at every place of the mechanism where it makes sense. Runs to test are read by the last step alone. The exit status is 0
-/// whatever the verdict.
+/// Every effect of the library is tried at every place of the mechanism where it makes sense. Test runs
+/// are used only in the final step. The exit status is 0 whatever the verdict.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Diagnose {
     /// Name of a shipped mechanism or path of a spec, instead of the one that the data set names

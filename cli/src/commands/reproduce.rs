@@ -9,13 +9,13 @@ use crate::output;
 use crate::progress;
 use appell::Error;
 use appell::files;
-use appell_papers::book::{self, Claim, Section};
+use appell_papers::book::{self, Claim, Section, Tally};
 
 /// Recomputes a paper: every equation, table and figure beside what is published, as a book.
 ///
 /// The book is one page that needs no network. Beside the one on the electric unicycle its simulated
-/// rides are written, as data sets for `appell diagnose`. The exit status is 4 if a statement that should hold
-/// does not.
+/// rides are written, as data sets for `appell diagnose`. The exit status is 4 if a comparison
+/// does not come out as it is known to.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Reproduce {
     /// The paper
@@ -24,7 +24,7 @@ pub(crate) struct Reproduce {
     /// Folder for the book
     #[arg(long, value_name = "DIR", default_value = "reproduced")]
     out: PathBuf,
-    /// Write all statements with their verdicts; `-` is standard output
+    /// Write all statements with how they compare; `-` is standard output
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
 }
@@ -61,9 +61,13 @@ impl Paper {
 #[derive(Serialize)]
 struct Book<'a> {
     paper: &'a str,
-    claims: usize,
-    holding: usize,
+    /// Statements of the paper.
+    statements: usize,
+    #[serde(flatten)]
+    tally: Tally,
     errata: usize,
+    /// Comparisons that did not come out as they are known to.
+    unexpected: usize,
     sections: &'a [Section],
 }
 
@@ -88,41 +92,39 @@ impl Reproduce {
             .iter()
             .flat_map(|section| &section.claims)
             .collect();
+        let count = |is: &dyn Fn(&Claim) -> bool| claims.iter().filter(|claim| is(claim)).count();
+        let tally = Tally::of(&sections);
         let book = Book {
             paper: title,
-            claims: claims.len(),
-            holding: claims.iter().filter(|claim| claim.holds).count(),
-            errata: claims
-                .iter()
-                .filter(|claim| claim.verdict.is_erratum())
-                .count(),
+            statements: tally.statements(),
+            tally,
+            errata: count(&|claim| claim.erratum.is_some()),
+            unexpected: count(&|claim| !claim.as_expected),
             sections: &sections,
         };
         if let Some(path) = &self.json {
             files::write_json(path, &book)?;
         }
         let text = format!(
-            "{title}\n  {} statements, {} as they should be, {} errata\n  {}\n",
-            book.claims,
-            book.holding,
+            "{title}\n  {}\n  {} errata\n  {}\n",
+            tally.words(),
             book.errata,
             file.display()
         );
         output::print_beside(&text, &[&self.json])?;
-        let failed: Vec<&Claim> = claims.into_iter().filter(|claim| !claim.holds).collect();
-        if failed.is_empty() {
+        if book.unexpected == 0 {
             return Ok(());
         }
-        for claim in &failed {
+        for claim in claims.iter().filter(|claim| !claim.as_expected) {
             tell(&format!(
                 "{}: {}\n  found: {}\n",
                 claim.place, claim.published, claim.ours
             ));
         }
         Err(Error::Computation(format!(
-            "{} of {} statements did not come out as they should",
-            failed.len(),
-            book.claims
+            "{} of {} comparisons did not come out as they are known to",
+            book.unexpected,
+            claims.len()
         )))
     }
 }

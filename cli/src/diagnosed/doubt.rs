@@ -46,7 +46,11 @@ fn of(hypothesis: &Hypothesis) -> Vec<String> {
         let acts = format!("`{input}` acts like {{}} times what is commanded");
         doubts.extend(value.and_then(|v| doubt(1.0 + v.value, v.std, &acts, input)));
     }
-    for one in changes.beside.iter().filter(|one| one.acts == "scale") {
+    for one in changes
+        .signal_effects
+        .iter()
+        .filter(|one| one.acts == "scale")
+    {
         let own = format!("{}.", one.effect);
         let mut values = hypothesis.parameters.iter();
         let value = values.find(|value| value.name.starts_with(&own));

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use appell_codegen::{Derived, derived};
 use appell_gap::data::{DataSet, Part};
-use appell_gap::diagnose::{Ahead, HowFar, Hypothesis, Report, Verdict, Where};
+use appell_gap::diagnose::{Ahead, GapVerdict, HowFar, Hypothesis, Report, Where};
 use appell_report::drawing::marked;
 
 use super::doubt::doubts;
@@ -43,7 +43,10 @@ pub(crate) fn page(set: &DataSet, report: &Report) -> String {
 fn verdict(report: &Report) -> String {
     let mut text = capital(&sentence(report));
     let top = report.which.iter().find(|h| !h.parameters.is_empty());
-    let is_named = matches!(report.verdict, Verdict::Explained | Verdict::Ambiguous);
+    let is_named = matches!(
+        report.verdict,
+        GapVerdict::Explained | GapVerdict::Ambiguous
+    );
     if let Some(top) = top.filter(|_| is_named) {
         let _ = write!(text, ": {}", values(top).join(", "));
     }
@@ -84,9 +87,9 @@ fn values(hypothesis: &Hypothesis) -> Vec<String> {
 
 fn place(set: &DataSet, report: &Report) -> String {
     let mut html = "<h2>Where</h2>\n".to_owned();
-    if report.verdict == Verdict::NoGap {
+    if report.verdict == GapVerdict::NoGap {
         html += "<p>No equation disagrees with the recordings beyond noise and disturbance.</p>\n";
-    } else if report.verdict == Verdict::Unexplained {
+    } else if report.verdict == GapVerdict::Unexplained {
         if let Some(left) = &report.left {
             let _ = writeln!(html, "<p>{}.</p>", escaped(&capital(&left.about)));
         }
@@ -95,7 +98,10 @@ fn place(set: &DataSet, report: &Report) -> String {
     } else {
         let domain = report.place.domain;
         // Writing to a string cannot fail.
-        let _ = writeln!(html, "<p>The gap is a matter of <b>{domain}</b>.</p>");
+        let _ = writeln!(
+            html,
+            "<p>The gap lies in the <b>{domain}s</b> of the model.</p>"
+        );
     }
     for hint in &report.hints {
         let _ = writeln!(html, "<p>{}.</p>", escaped(&capital(&hinted(hint))));
@@ -108,13 +114,13 @@ fn place(set: &DataSet, report: &Report) -> String {
         };
         html += &figure(&svg, caption);
     }
-    if let (Some(pictures), true) = (&report.pictures, report.verdict != Verdict::NoGap) {
+    if let (Some(pictures), true) = (&report.pictures, report.verdict != GapVerdict::NoGap) {
         let caption = format!(
             "The missing force of each equation in parts of {} s of the runs that were fitted, the \
              stronger the colour the larger; beside the name the largest.",
-            short(pictures.over_time.part)
+            short(pictures.force_history.part)
         );
-        html += &figure(&plots::over_time(&pictures.over_time), &caption);
+        html += &figure(&plots::over_time(&pictures.force_history), &caption);
     }
     html += &windows(&report.place);
     // What sensors show wrong is no force.
@@ -127,7 +133,7 @@ fn place(set: &DataSet, report: &Report) -> String {
         return html;
     }
     html += &equations(set, &report.place);
-    if let Some(law) = report.pictures.as_ref().and_then(|p| p.law.as_ref()) {
+    if let Some(law) = report.pictures.as_ref().and_then(|p| p.force_law.as_ref()) {
         let caption = if law.law.is_empty() {
             "The force that the model lacks, as the recordings show it without any law, over what it \
              depends on most."
@@ -153,8 +159,8 @@ fn drawing(set: &DataSet, report: &Report) -> Option<String> {
         label.map_or_else(|| site.to_owned(), |label| label.name.clone())
     };
     let mut names: Vec<String> = match report.verdict {
-        Verdict::NoGap => Vec::new(),
-        Verdict::Unexplained => {
+        GapVerdict::NoGap => Vec::new(),
+        GapVerdict::Unexplained => {
             let left = report.left.iter();
             left.map(|left| name(&left.place)).collect()
         }
@@ -383,18 +389,18 @@ fn is_alternative(hypothesis: &Hypothesis) -> bool {
 /// What to do now.
 fn next(set: &DataSet, report: &Report) -> String {
     let text = match report.verdict {
-        Verdict::NoGap => {
+        GapVerdict::NoGap => {
             "<p>Nothing has to be added to the model. The table below tells how small an effect these \
              recordings would have shown.</p>\n"
         }
         _ if is_alternative(&report.which[0]) => {
             "<p>Go on with the alternative model, and diagnose that one.</p>\n"
         }
-        Verdict::Explained | Verdict::Ambiguous => {
+        GapVerdict::Explained | GapVerdict::Ambiguous => {
             "<p>Write the effect into the spec, with the report that <code>--json report.json</code> \
              wrote:</p>\n<pre>appell apply MODEL --report report.json -o improved.toml</pre>\n"
         }
-        Verdict::Unexplained => {
+        GapVerdict::Unexplained => {
             "<p>Look at what the missing force depends on, and write that effect as a few lines of the \
              spec language: <code>appell diagnose --effects own.toml</code>.</p>\n"
         }
@@ -418,7 +424,7 @@ fn next(set: &DataSet, report: &Report) -> String {
         for plot in plots::experiment(experiment, &set.mechanism) {
             html += &figure(&plot, "The input of the next experiment.");
         }
-    } else if report.verdict == Verdict::Ambiguous {
+    } else if report.verdict == GapVerdict::Ambiguous {
         html += "<p>No input that was tried tells the tied hypotheses apart and keeps the motion within its \
                  limits. Give wider ones with <code>--limit</code>, or record under feedback.</p>\n";
     }
@@ -437,7 +443,7 @@ fn detectable(report: &Report) -> String {
     format!(
         "<h2>What these recordings would show</h2>\n<details{}><summary>The smallest size of each effect \
          that would be found with near certainty</summary>\n{}</details>\n",
-        if report.verdict == Verdict::NoGap {
+        if report.verdict == GapVerdict::NoGap {
             " open"
         } else {
             ""

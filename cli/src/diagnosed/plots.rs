@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use appell_gap::diagnose::{Experiment, Law, OverTime, Trace};
+use appell_gap::diagnose::{Experiment, ForceHistory, ForceLaw, Trace};
 use appell_report::figure::{Layer, Look, Plot, Series};
 use appell_spec::Mechanism;
 
@@ -93,7 +93,7 @@ pub(super) fn trace(trace: &Trace) -> [String; 2] {
 }
 
 /// The missing force over what it depends on.
-pub(super) fn law(law: &Law) -> String {
+pub(super) fn law(law: &ForceLaw) -> String {
     let layer = |label: &str, points: &[[f64; 2]], look, colour| Layer {
         series: Series {
             label: label.to_owned(),
@@ -127,7 +127,7 @@ pub(super) fn law(law: &Law) -> String {
 
 /// The missing force of each equation over time: the darker, the larger beside the largest of the
 /// equation.
-pub(super) fn over_time(map: &OverTime) -> String {
+pub(super) fn over_time(map: &ForceHistory) -> String {
     const LEFT: f64 = 190.0;
     const WIDTH: f64 = 720.0;
     const ROW: f64 = 26.0;

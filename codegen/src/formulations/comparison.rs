@@ -74,14 +74,14 @@ impl Comparison {
 
 /// The result of all comparisons.
 #[derive(Debug, Clone)]
-pub struct Verdict {
+pub struct FormulationComparison {
     /// One per quantity and formulation.
     pub comparisons: Vec<Comparison>,
     /// Bound on the probability that any quantity was taken for identical though it is not.
     pub error_bound: f64,
 }
 
-impl Verdict {
+impl FormulationComparison {
     /// Whether all quantities were compared and agree.
     pub fn agrees(&self) -> bool {
         let agree = |c: &Comparison| {

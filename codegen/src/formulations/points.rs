@@ -1,6 +1,8 @@
 //! Values at random points inside the declared ranges.
 
 use appell_spec::mechanism::Mechanism;
+use rand_xoshiro::SplitMix64;
+use rand_xoshiro::rand_core::{Rng as _, SeedableRng as _};
 
 use super::comparison::{Agreement, Pair};
 use crate::mechanics::seed;
@@ -26,7 +28,7 @@ impl Points {
     /// Angles and lengths without a range stay within ±1.2, velocities within ±2, inputs and signals
     /// within ±5; parameters are up to 30 % off the spec's.
     pub(super) fn new(graph: &Graph, mechanism: &Mechanism, symbols: &Symbols) -> Self {
-        let mut random = Random(seed(mechanism));
+        let mut random = Random(SplitMix64::seed_from_u64(seed(mechanism)));
         let mut domains: Vec<(Expr, [f64; 2])> = Vec::new();
         for (&symbol, q) in symbols.coordinates.iter().zip(&mechanism.coordinates) {
             // The middle nine tenths: at the ends of a range the equations may be singular.
@@ -113,17 +115,11 @@ impl Points {
     }
 }
 
-/// Steele, Lea and Flood, *Fast splittable pseudorandom number generators*, 2014.
-struct Random(u64);
+struct Random(SplitMix64);
 
 impl Random {
     fn between(&mut self, [low, high]: [f64; 2]) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^= z >> 31;
-        let fraction = (z >> 11) as f64 / (1_u64 << 53) as f64;
+        let fraction = (self.0.next_u64() >> 11) as f64 / (1_u64 << 53) as f64;
         low + (high - low) * fraction
     }
 }

@@ -3,7 +3,7 @@
 use appell_estimate::smoothing::angle::unwrap;
 use appell_spec::Mechanism;
 use appell_spec::mechanism::{CoordinateId, InputId, Label, OutputId, SpeedId};
-use appell_spec::units::{Dimension, Unit};
+use appell_spec::units::Unit;
 
 use super::clock::Sampling;
 use super::finding::counted;
@@ -115,11 +115,9 @@ impl Channel {
         matches!(self.role, Role::Measures(_))
     }
 
-    /// Whether it is an angle in a unit of angles, which may start anew after a turn.
+    /// Whether it measures an angle, which may start anew after a turn.
     pub(super) fn is_angle(&self) -> bool {
-        let angle = self.unit.dimension == Dimension::NONE
-            && (self.unit.pi_power != 0 || self.unit.text == "rad");
-        angle && matches!(self.role, Role::Measures(Measured::Coordinate(_)))
+        self.unit.is_angle() && matches!(self.role, Role::Measures(Measured::Coordinate(_)))
     }
 }
 

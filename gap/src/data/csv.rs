@@ -28,7 +28,7 @@ pub(super) fn read(
 
 /// The names of the columns.
 pub(super) fn header(path: &Path) -> Result<Vec<String>, DataError> {
-    Ok(open(path)?.header)
+    Ok(open(path)?.rows.header)
 }
 
 fn open(path: &Path) -> Result<CsvFile<BufReader<File>>, DataError> {
@@ -38,22 +38,31 @@ fn open(path: &Path) -> Result<CsvFile<BufReader<File>>, DataError> {
     };
     regular(path)?;
     let file = File::open(path).map_err(failed)?;
-    CsvFile::new(path, BufReader::new(file))
+    Ok(CsvFile {
+        rows: Rows::new(path, BufReader::new(file))?,
+        mistakes: Vec::new(),
+    })
 }
 
-struct CsvFile<R> {
+/// A CSV file row by row, with the place of every cell: memory for one line.
+///
+/// Commas, semicolons or tabs stand between cells; empty lines and comments, which begin with `#`, are
+/// passed over.
+pub struct Rows<R> {
     lines: Lines<R>,
     separator: char,
     header: Vec<String>,
-    mistakes: Vec<DataError>,
+    /// Where the cells of the line stand.
+    cells: Vec<Range<usize>>,
 }
 
-impl<R: BufRead> CsvFile<R> {
-    /// Reads the header.
-    fn new(path: &Path, reader: R) -> Result<Self, DataError> {
+impl<R: BufRead> Rows<R> {
+    /// Reads the header, whose cells are then those of the row.
+    pub fn new(path: &Path, reader: R) -> Result<Self, DataError> {
         let mut lines = Lines::new(path, reader);
         if !lines.next()? {
-            let message = "the file is empty; begin with a header: `t`, then the channels";
+            let message =
+                "the file is empty; begin with a header: `t`, then the name of each column";
             return Err(DataError::whole(&*lines.file, message));
         }
         // Tables from other programs use what is not a decimal comma.
@@ -67,17 +76,78 @@ impl<R: BufRead> CsvFile<R> {
             texts(&lines.text, separator)
         };
         Ok(Self {
+            cells: cells(&lines.text, separator).collect(),
             lines,
             separator,
             header,
-            mistakes: Vec::new(),
         })
     }
 
+    /// The names of the columns.
+    pub fn header(&self) -> &[String] {
+        &self.header
+    }
+
+    /// Goes to the next row; whether there is one.
+    pub fn advance(&mut self) -> Result<bool, DataError> {
+        let there = self.lines.next()?;
+        self.cells.clear();
+        if there {
+            self.cells.extend(cells(&self.lines.text, self.separator));
+        }
+        Ok(there)
+    }
+
+    /// How many cells the row has.
+    pub fn count(&self) -> usize {
+        self.cells.len()
+    }
+
+    /// The text in a cell of the row.
+    pub fn cell(&self, column: usize) -> &str {
+        &self.lines.text[self.place(column)]
+    }
+
+    /// Where a cell stands in the line.
+    pub fn place(&self, column: usize) -> Span {
+        self.cells.get(column).cloned().unwrap_or(0..0)
+    }
+
+    /// The whole line.
+    pub fn line(&self) -> Span {
+        0..self.lines.text.len()
+    }
+
+    /// What is wrong with a part of the line.
+    pub fn mistake(
+        &self,
+        code: Code,
+        message: impl Into<String>,
+        at: Span,
+        help: Option<String>,
+    ) -> DataError {
+        let diagnostic = Diagnostic::error(code, message).at(at, "").maybe_help(help);
+        self.lines.report(diagnostic)
+    }
+
+    /// That the row has not as many cells as the header.
+    pub fn uneven(&self) -> Option<DataError> {
+        let (cells, columns) = (self.count(), self.header.len());
+        let message = || format!("{cells} cells under {columns} columns");
+        (cells != columns).then(|| self.mistake(Code::WrongType, message(), self.line(), None))
+    }
+}
+
+struct CsvFile<R> {
+    rows: Rows<R>,
+    mistakes: Vec<DataError>,
+}
+
+impl<R: BufRead> CsvFile<R> {
     fn tell(&mut self, code: Code, message: impl Into<String>, at: Span, help: Option<String>) {
         if self.mistakes.len() < MAX_MISTAKES {
-            let diagnostic = Diagnostic::error(code, message).at(at, "").maybe_help(help);
-            self.mistakes.push(self.lines.report(diagnostic));
+            self.mistakes
+                .push(self.rows.mistake(code, message, at, help));
         }
     }
 
@@ -92,36 +162,33 @@ impl<R: BufRead> CsvFile<R> {
         if !self.mistakes.is_empty() {
             return Err(DataError::several(self.mistakes));
         }
-        let count = self.header.len();
         let mut clock = Clock::default();
         let mut times = Vec::new();
         let mut columns: Vec<Vec<f64>> = vec![Vec::new(); channels.len()];
-        let (mut row, mut read): (Vec<Range<usize>>, Vec<f64>) = (Vec::new(), Vec::new());
-        while self.mistakes.len() < MAX_MISTAKES && self.lines.next()? {
-            row.clear();
-            row.extend(cells(&self.lines.text, self.separator));
-            if row.len() != count {
-                if self.lines.breaks_off && row.len() < count {
+        let mut read: Vec<f64> = Vec::new();
+        while self.mistakes.len() < MAX_MISTAKES && self.rows.advance()? {
+            if let Some(uneven) = self.rows.uneven() {
+                let lines = &self.rows.lines;
+                if lines.breaks_off && self.rows.count() < self.rows.header.len() {
                     let message = "the last line breaks off; it is left out";
                     let finding = Finding::new(FindingKind::CutOff, message);
-                    findings.push(finding.on_line(self.lines.number));
-                    continue;
+                    findings.push(finding.on_line(lines.number));
+                } else {
+                    self.mistakes.push(uneven);
                 }
-                let message = format!("{} cells under {count} columns", row.len());
-                let line = 0..self.lines.text.len();
-                self.tell(Code::WrongType, message, line, None);
                 continue;
             }
-            let t = self.number(row[places.time].clone(), time_unit);
+            let t = self.number(places.time, time_unit);
             read.clear();
             for (place, channel) in places.channels.iter().zip(channels) {
-                read.push(self.number(row[*place].clone(), channel.unit.scale));
+                read.push(self.number(*place, channel.unit.scale));
             }
-            if !clock.accept(t, self.lines.number, &self.lines.text) {
+            let lines = &self.rows.lines;
+            if !clock.accept(t, lines.number, &lines.text) {
                 continue;
             }
             let left = budget.checked_sub(1 + channels.len());
-            *budget = left.ok_or_else(|| too_many(self.lines.place()))?;
+            *budget = left.ok_or_else(|| too_many(lines.place()))?;
             times.push(t);
             for (column, value) in columns.iter_mut().zip(&read) {
                 column.push(*value);
@@ -130,23 +197,23 @@ impl<R: BufRead> CsvFile<R> {
         if !self.mistakes.is_empty() {
             return Err(DataError::several(self.mistakes));
         }
-        let file = &*self.lines.file;
+        let file = &*self.rows.lines.file;
         findings.extend(clock.findings(file)?);
         checked(file, channels, times, columns, findings)
     }
 
     /// Where the time and the channels stand.
     fn places(&mut self, channels: &[Channel], findings: &mut Vec<Finding>) -> Places {
-        let header = self.header.clone();
-        let line = 0..self.lines.text.len();
+        let header = self.rows.header.clone();
+        let line = self.rows.line();
         let mut place = |name: &str, help: &str| {
             let mut at = (0..header.len()).filter(|&i| header[i] == name);
             match (at.next(), at.next()) {
                 (Some(place), None) => place,
                 (Some(_), Some(second)) => {
                     let message = format!("the column `{}` stands here twice", shown(name));
-                    let at = cells(&self.lines.text, self.separator).nth(second);
-                    self.tell(Code::DuplicateName, message, at.unwrap_or(0..0), None);
+                    let at = self.rows.place(second);
+                    self.tell(Code::DuplicateName, message, at, None);
                     0
                 }
                 (None, _) => {
@@ -174,8 +241,8 @@ impl<R: BufRead> CsvFile<R> {
     }
 
     /// The number in a cell in SI, NaN where it is missing; tells where there is something else.
-    fn number(&mut self, cell: Range<usize>, scale: f64) -> f64 {
-        let text = &self.lines.text[cell.clone()];
+    fn number(&mut self, column: usize, scale: f64) -> f64 {
+        let text = self.rows.cell(column);
         match text.parse::<f64>().map(|number| number * scale) {
             Ok(number) if !number.is_infinite() => number,
             _ if MISSING.iter().any(|word| text.eq_ignore_ascii_case(word)) => f64::NAN,
@@ -186,7 +253,8 @@ impl<R: BufRead> CsvFile<R> {
                 } else {
                     "leave the cell empty where a value is missing"
                 };
-                self.tell(Code::WrongType, message, cell, Some(help.to_owned()));
+                let at = self.rows.place(column);
+                self.tell(Code::WrongType, message, at, Some(help.to_owned()));
                 f64::NAN
             }
         }

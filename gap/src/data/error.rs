@@ -42,7 +42,7 @@ pub enum DataError {
 
 impl DataError {
     /// One error or several.
-    pub(super) fn several(mut errors: Vec<Self>) -> Self {
+    pub fn several(mut errors: Vec<Self>) -> Self {
         match errors.len() {
             1 => errors.remove(0),
             _ => Self::Several(errors),

@@ -1,5 +1,5 @@
-//! Tables of a TOML file, read with places; what is wrong is told and left out, so that all of it is
-//! told.
+//! Tables of a TOML file, read with places. Mistakes are reported and skipped, so that all of them are
+//! reported at once.
 
 use appell_spec::expr::Span;
 use appell_spec::units::{self, Unit};
@@ -137,7 +137,7 @@ impl<'t> Fields<'t> {
         Some(number)
     }
 
-    /// A unit that may be absent: then the one of the quantity. One of another dimension is told.
+    /// A unit that may be absent: then the one of the quantity. One of another dimension is reported.
     pub(crate) fn unit(&mut self, table: &DeTable<'_>, of: Option<(&str, &Unit)>) -> Option<Unit> {
         let Some((text, at)) = self.string(table, "unit") else {
             return of.map(|(_, unit)| unit.clone());

@@ -23,7 +23,7 @@ pub enum FindingKind {
     HeldInput,
     /// An angle that started anew after a turn; counted on.
     Unwrapped,
-    /// A column that the data set does not describe; left aside.
+    /// A column that the data set does not describe; ignored.
     UnknownColumn,
     /// A channel that never changes.
     Constant,

@@ -1,7 +1,7 @@
 //! Parquet, the format of tables in data stores: columns of numbers in compressed pages.
 //!
 //! Columns of the file are columns of the run; `t` is in s, or a time stamp, which counts from the first
-//! row on. Text, and tables inside tables, are left aside.
+//! row on. Text, and tables inside tables, are ignored.
 
 use std::fs::File;
 use std::panic::{AssertUnwindSafe, catch_unwind};

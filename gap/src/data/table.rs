@@ -170,6 +170,19 @@ impl Columns {
         }
         let mut clock = Clock::default();
         let times = &self.values[time];
+        // Formats in columns may be damaged so that these differ.
+        if let Some(place) = places
+            .iter()
+            .find(|&&i| self.values[i].len() != times.len())
+        {
+            let message = format!(
+                "the file is damaged: {} times, but {} values of `{}`",
+                times.len(),
+                self.values[*place].len(),
+                shown(&self.names[*place])
+            );
+            return Err(DataError::whole(file, message));
+        }
         let rows: Vec<usize> = (0..times.len())
             .filter(|&row| clock.accept(times[row], row + 1, &format!("row {}", row + 1)))
             .collect();

@@ -7,10 +7,10 @@ use appell_estimate::{
 use appell_runtime::model::Model;
 
 use super::DiagnoseError;
-use super::beside::Beside;
 use super::evidence::Evidence;
-use super::feedback::Surprises;
+use super::feedback::InputInnovations;
 use super::hypothesis::Fitted;
+use super::unmodelled::UnmodelledChannel;
 use crate::data::{DataSet, Part};
 use crate::effects::{Acts, Candidate, EffectModel, Part as Role};
 use crate::identify::{Options, Problem, longest_step};
@@ -49,9 +49,9 @@ pub(super) struct Bench<'a> {
     /// Typical sizes of the states that are not measured.
     pub(super) sizes: Vec<f64>,
     /// What inputs know beyond the recordings.
-    pub(super) surprises: Surprises,
+    pub(super) input_innovations: InputInnovations,
     /// What was recorded and the model does not know.
-    pub(super) beside: Vec<Beside>,
+    pub(super) unmodelled: Vec<UnmodelledChannel>,
     /// Shortest step between rows.
     step: f64,
 }
@@ -84,8 +84,8 @@ impl<'a> Bench<'a> {
             (problem, sizes)
         };
         Ok(Self {
-            surprises: Surprises::of(&recordings),
-            beside: Beside::of(&set),
+            input_innovations: InputInnovations::of(&recordings),
+            unmodelled: UnmodelledChannel::of(&set),
             set,
             effects,
             recordings,

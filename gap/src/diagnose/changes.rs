@@ -23,8 +23,8 @@ pub struct Changes {
     pub inputs: Vec<(String, String)>,
     /// Parameters of this rig.
     pub parameters: Vec<Refitted>,
-    /// Effects that no spec can hold, because they act beside the equations of motion.
-    pub beside: Vec<Beside>,
+    /// Effects that no spec can hold, because they act on inputs or channels.
+    pub signal_effects: Vec<SignalEffect>,
 }
 
 /// A parameter of the spec as it is on this rig, in its unit.
@@ -42,9 +42,9 @@ pub struct Refitted {
     pub unit: String,
 }
 
-/// An effect beside the equations.
+/// An effect on an input or a channel.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Beside {
+pub struct SignalEffect {
     /// Name.
     pub effect: String,
     /// How it acts: `lag`, `delay` of an input; `bias`, `scale`, `late` of a channel.
@@ -109,7 +109,7 @@ impl Changes {
     /// Of a fitted hypothesis.
     pub(super) fn of(bench: &Bench<'_>, fitted: &Fitted) -> Result<Self, DiagnoseError> {
         let members = || fitted.members.iter().map(|&member| bench.candidate(member));
-        let beside = members().filter_map(|candidate| {
+        let signal_effects = members().filter_map(|candidate| {
             let acts = match candidate.acts {
                 Acts::Items | Acts::Parameter(_) => return None,
                 Acts::Lag(_) => "lag",
@@ -118,7 +118,7 @@ impl Changes {
                 Acts::Scale(_) => "scale",
                 Acts::Late(_) => "late",
             };
-            Some(Beside {
+            Some(SignalEffect {
                 effect: candidate.name(),
                 acts: acts.to_owned(),
                 on: candidate.site.clone(),
@@ -130,7 +130,7 @@ impl Changes {
                 .flat_map(|candidate| candidate.added.clone())
                 .collect(),
             parameters: parameters(bench, fitted),
-            beside: beside.collect(),
+            signal_effects: signal_effects.collect(),
         })
     }
 }

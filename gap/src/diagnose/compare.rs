@@ -28,7 +28,7 @@ const MOST_MEMBERS: usize = 4;
 const LEAST_GAIN: f64 = 4.0;
 /// Part of the greatest gain below which no fit catches up.
 const LEAST_PART: f64 = 0.25;
-/// Two hypotheses whose evidence differs by less cannot be told apart: odds of twenty.
+/// Two hypotheses whose log evidence differs by less are tied: odds of twenty.
 pub(super) const TIED: f64 = 3.0;
 /// Probability beforehand that there is no gap.
 const NO_GAP: f64 = 0.5;
@@ -269,7 +269,7 @@ impl Search<'_, '_> {
             bench.fit(members, &estimation, &start)
         });
         let mut fitted = best_fit(fits)?;
-        fitted.evidence.told = from.evidence.told + screened.told;
+        fitted.evidence.told_by_inputs = from.evidence.told_by_inputs + screened.told_by_inputs;
         let is_late = |&member: &usize| matches!(bench.candidate(member).acts, Acts::Late(_));
         if members.iter().any(is_late) {
             let gain = bench.gain_of_late(members, &begin, &fitted.fit.values)?;

@@ -14,9 +14,10 @@ use nalgebra::{DMatrix, DVector};
 
 use super::bench::Bench;
 
-/// Logarithm of the largest d′ that is expected: whole motions come to some thousand.
-const LARGEST_LOG_SIZE: f64 = 6.9;
-/// Sizes in their standard deviations below this are not told from zero.
+/// ln 1000, the range of the logarithm of d′: effects as large as whole motions come to some thousand.
+/// Calibrated with these two digits.
+const LN_1000: f64 = 6.9;
+/// Sizes below this many standard deviations cannot be distinguished from zero.
 const SMALLEST: f64 = 1.0;
 
 /// The evidence of a fitted hypothesis.
@@ -26,8 +27,8 @@ pub(super) struct Evidence {
     pub(super) log_likelihood: f64,
     /// What the average over the parameters takes from it.
     pub(super) occam: f64,
-    /// What inputs that know the motion could tell of the gain.
-    pub(super) told: f64,
+    /// Part of the gain that inputs which follow the motion may explain.
+    pub(super) told_by_inputs: f64,
     /// Smallest size of a member in its standard deviations.
     pub(super) smallest: f64,
 }
@@ -78,7 +79,7 @@ impl Evidence {
                 let two_sided = free.range[0] < neutral;
                 let sides = if two_sided { 2.0_f64 } else { 1.0 };
                 // The density of the coordinate: 1/(size · sides · range) for plain ones.
-                -(d * deviations[place] * sides * LARGEST_LOG_SIZE).ln()
+                -(d * deviations[place] * sides * LN_1000).ln()
             };
         }
         // A member whose size stands at zero is not there.
@@ -94,14 +95,14 @@ impl Evidence {
         Self {
             log_likelihood: fit.log_likelihood,
             occam,
-            told: 0.0,
+            told_by_inputs: 0.0,
             smallest,
         }
     }
 
     /// Logarithm of the evidence.
     pub(super) fn log(&self) -> f64 {
-        self.log_likelihood - self.told + self.occam
+        self.log_likelihood - self.told_by_inputs + self.occam
     }
 }
 
@@ -185,5 +186,5 @@ pub(super) fn log_sum(logs: impl Iterator<Item = f64> + Clone) -> f64 {
 /// What one size that gains so much takes from its gain.
 pub(super) fn occam(gain: f64) -> f64 {
     let d = (2.0 * gain).sqrt().max(SMALLEST);
-    (2.0 * d * LARGEST_LOG_SIZE).ln() - 0.5 * TAU.ln()
+    (2.0 * d * LN_1000).ln() - 0.5 * TAU.ln()
 }

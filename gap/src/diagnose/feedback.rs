@@ -3,26 +3,26 @@
 //! A controller that sees the state by sensors which are not recorded puts what it sees into its
 //! command. Then the command correlates with the error of the filter, although it acts as the model
 //! says; a delay or a gain of the actuator would explain a part of that. What such an input could tell is
-//! a kick at each change that nothing recorded foretells, in any direction: no effect may claim it.
+//! a kick at each change that no recorded sample predicts, in any direction: no effect may claim it.
 
 use appell_estimate::Recording;
 use nalgebra::{DMatrix, DVector};
 
-/// Earlier samples that foretell a command.
+/// Earlier samples from which a command is predicted.
 const LAGS: usize = 4;
 /// Earlier samples of the measurements, beside those of the same row.
 const SEEN: usize = 2;
-/// Kicks that follow a surprise.
+/// Kicks that follow an innovation of the input.
 pub(super) const KICKS: usize = 2;
-/// Surprises that are smaller than this part of the input tell nothing.
-const FORETOLD: f64 = 1e-3;
-/// An input follows the motion where the measurements foretell more of it than chance would in one of
+/// Innovations smaller than this part of the input are ignored.
+const PREDICTED: f64 = 1e-3;
+/// An input follows the motion where the measurements predict more of it than chance would in one of
 /// so many recordings; the logarithm of the ratio of likelihoods beyond one for each regressor.
 const SURE: f64 = 7.0;
 
-/// Surprises of the inputs that follow the motion: for each run and row, a value for each such input.
+/// Innovations of the inputs that follow the motion: for each run and row, a value for each such input.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Surprises {
+pub(super) struct InputInnovations {
     /// Inputs that follow the motion.
     pub(super) count: usize,
     /// For each run its times.
@@ -31,10 +31,10 @@ pub(super) struct Surprises {
     values: Vec<Vec<Vec<f64>>>,
 }
 
-impl Surprises {
+impl InputInnovations {
     pub(super) fn of(recordings: &[Recording]) -> Self {
         let inputs = recordings.first().map_or(0, Recording::input_len);
-        let mut surprises = Self {
+        let mut input_innovations = Self {
             count: 0,
             times: recordings.iter().map(|run| run.times().to_vec()).collect(),
             values: recordings
@@ -43,34 +43,34 @@ impl Surprises {
                 .collect(),
         };
         for input in 0..inputs {
-            let Some(surprise) = surprise(recordings, input) else {
+            let Some(innovation) = innovation(recordings, input) else {
                 continue;
             };
-            surprises.count += 1;
-            for (rows, own) in surprises.values.iter_mut().zip(surprise) {
+            input_innovations.count += 1;
+            for (rows, own) in input_innovations.values.iter_mut().zip(innovation) {
                 for (row, own) in rows.iter_mut().zip(own) {
                     row.push(own);
                 }
             }
         }
-        surprises
+        input_innovations
     }
 
     /// Writes the kicks at a time of a run: for each input that follows the motion, by its last
-    /// surprises.
+    /// innovations.
     pub(super) fn kicks(&self, run: usize, t: f64, to: &mut [f64]) {
         let row = self.times[run].partition_point(|&own| own <= t);
         for (place, to) in to.iter_mut().enumerate() {
             let (input, back) = (place / KICKS, place % KICKS + 1);
-            let surprise = row.checked_sub(back).map(|row| &self.values[run][row]);
-            *to = surprise.map_or(0.0, |surprise| surprise[input]);
+            let innovation = row.checked_sub(back).map(|row| &self.values[run][row]);
+            *to = innovation.map_or(0.0, |innovation| innovation[input]);
         }
     }
 }
 
-/// What nothing recorded foretells of an input, for each run and row; `None` where it does not follow
-/// the motion.
-fn surprise(recordings: &[Recording], input: usize) -> Option<Vec<Vec<f64>>> {
+/// The innovations of an input, for each run and row: what neither its past nor the measurements predict;
+/// `None` where the input does not follow the motion.
+fn innovation(recordings: &[Recording], input: usize) -> Option<Vec<Vec<f64>>> {
     let first = LAGS.max(SEEN);
     let channels = recordings[0].channel_len();
     let mut rows: Vec<(usize, usize)> = Vec::new();
@@ -109,8 +109,8 @@ fn surprise(recordings: &[Recording], input: usize) -> Option<Vec<Vec<f64>>> {
     let (before, after) = (alone.norm_squared(), with_motion.norm_squared());
     let ratio = 0.5 * rows.len() as f64 * (before / after.max(f64::MIN_POSITIVE)).ln();
     let rest = rest(&regressors, &command)?;
-    let is_foretold = rest.norm() < FORETOLD * command.norm();
-    if is_foretold || ratio - (then as f64) < SURE {
+    let is_predicted = rest.norm() < PREDICTED * command.norm();
+    if is_predicted || ratio - (then as f64) < SURE {
         return None;
     }
     let mut all: Vec<Vec<f64>> = recordings
@@ -148,15 +148,14 @@ mod tests {
     use super::*;
 
     /// Uniform numbers of variance 1, the same in every run.
-    fn noise(seed: &mut u64) -> f64 {
-        *seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
-        ((*seed >> 11) as f64 / (1_u64 << 53) as f64 - 0.5) * 12.0_f64.sqrt()
+    fn noise(random: &mut fastrand::Rng) -> f64 {
+        (random.f64() - 0.5) * 12.0_f64.sqrt()
     }
 
     /// A mass that a command pushes, seen with noise: the command is a sum of sines, or it knows the
     /// position.
     fn recording(follows: bool) -> Recording {
-        let (mut seed, h) = (7, 0.01);
+        let (mut random, h) = (fastrand::Rng::with_seed(7), 0.01);
         let (mut x, mut v) = (0.3, 0.0);
         let (mut times, mut inputs, mut measured) = (Vec::new(), Vec::new(), Vec::new());
         for row in 0..800 {
@@ -168,8 +167,8 @@ mod tests {
             };
             times.push(t);
             inputs.push(u);
-            measured.push(x + 1e-3 * noise(&mut seed));
-            v += h * (u + 3.0 * noise(&mut seed));
+            measured.push(x + 1e-3 * noise(&mut random));
+            v += h * (u + 3.0 * noise(&mut random));
             x += h * v;
         }
         Recording::new(times, inputs, measured).unwrap()
@@ -177,8 +176,8 @@ mod tests {
 
     #[test]
     fn a_command_that_knows_the_motion_is_told_from_one_that_does_not() {
-        assert_eq!(Surprises::of(&[recording(false)]).count, 0);
-        let told = Surprises::of(&[recording(true)]);
+        assert_eq!(InputInnovations::of(&[recording(false)]).count, 0);
+        let told = InputInnovations::of(&[recording(true)]);
         assert_eq!(told.count, 1);
         let mut kicks = [f64::NAN; KICKS];
         told.kicks(0, 5.005, &mut kicks);

@@ -4,6 +4,8 @@
 //! function of this file hands them on.
 
 use appell_estimate::{Estimation, Recording, Unknown};
+use rand_xoshiro::SplitMix64;
+use rand_xoshiro::rand_core::{Rng as _, SeedableRng as _};
 
 use super::DiagnoseError;
 use super::bench::Bench;
@@ -13,14 +15,14 @@ use super::report::HowFar;
 use crate::data::{DataSet, Part};
 use crate::identify::begin;
 
-/// Horizon in s at which the gap is told.
+/// Horizon in s at which the gap is reported.
 const HORIZON: f64 = 1.0;
 /// The same where a mechanism falls over so soon that the best hypothesis expects larger errors than
 /// the channels vary.
 const SHORT: f64 = 0.1;
 /// Most rows of a run from which predictions start.
 const ORIGINS: usize = 150;
-/// Rows from which expected errors are told.
+/// Rows from which expected errors are estimated.
 const EXPECTED_FROM: usize = 25;
 /// Time in s that the filter has to find the state, but no more than a tenth of the run.
 const WARM_UP: f64 = 0.5;
@@ -103,7 +105,11 @@ impl HeldOut {
         let closed = |e0: f64, e: f64| (e0 - e) / (e0 - floor * floor);
         let mean = |sum: f64, of: &Block| sum / of.count.max(1.0);
         let of = |block: &Block| closed(mean(block.nominal, block), mean(block.effect, block));
-        let mut drawn: Vec<f64> = Draws(1).over(&blocks, DRAWS).iter().map(of).collect();
+        let mut drawn: Vec<f64> = Draws(SplitMix64::seed_from_u64(1))
+            .over(&blocks, DRAWS)
+            .iter()
+            .map(of)
+            .collect();
         drawn.sort_by(f64::total_cmp);
         let at = |part: usize| {
             drawn
@@ -290,9 +296,8 @@ fn sum(blocks: &[Block]) -> Block {
     })
 }
 
-/// Draws with replacement, the same in every run of the program (Steele, Lea and Flood, *Fast
-/// splittable pseudorandom number generators*, 2014).
-struct Draws(u64);
+/// Draws with replacement, the same in every run of the program.
+struct Draws(SplitMix64);
 
 impl Draws {
     fn over(mut self, blocks: &[Block], draws: usize) -> Vec<Block> {
@@ -307,11 +312,6 @@ impl Draws {
     }
 
     fn below(&mut self, count: usize) -> usize {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^= z >> 31;
-        usize::try_from(z % count.max(1) as u64).unwrap_or(0)
+        usize::try_from(self.0.next_u64() % count.max(1) as u64).unwrap_or(0)
     }
 }

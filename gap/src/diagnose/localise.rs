@@ -27,7 +27,7 @@ pub(super) fn place(bench: &Bench<'_>, comparison: &Comparison) -> Result<Where,
     let domain = bench.candidate(first).family.domain();
     let setup = bench.setup(&best.members);
     let estimation = Estimation::new(&setup, &bench.recordings)?;
-    let (richer, layout) = (estimation.setup().model, estimation.layout());
+    let (augmented, layout) = (estimation.setup().model, estimation.layout());
     // What a member brings is locked where the member is not.
     let model = bench.effects.with(&bench.locked(&best.members));
     let info = model.info();
@@ -40,7 +40,7 @@ pub(super) fn place(bench: &Bench<'_>, comparison: &Comparison) -> Result<Where,
     let (mut mass, mut bias, mut forces) = (vec![0.0; s * s], vec![0.0; s], vec![0.0; s]);
     let (mut rates, mut a, mut b) = (vec![0.0; n], vec![0.0; n * n], vec![0.0; n * m]);
     let plain = bench.without(best);
-    let mut moving = vec![0.0; richer.info().state_len()];
+    let mut moving = vec![0.0; augmented.info().state_len()];
     for run in 0..bench.recordings.len() {
         let recording = &bench.recordings[run];
         let states = estimation.smoothed(values, run)?;
@@ -48,13 +48,13 @@ pub(super) fn place(bench: &Bench<'_>, comparison: &Comparison) -> Result<Where,
         let stride = (rows * bench.recordings.len() / PLACES).max(1);
         for row in (1..rows).step_by(stride) {
             let state = &states[row].state[..moving.len()];
-            let x = &bench.own_states(state, richer)[..];
+            let x = &bench.own_states(state, augmented)[..];
             let mut u = vec![0.0; m];
             u[..recording.input_len()].copy_from_slice(recording.inputs(row));
             let t = recording.times()[row];
             let at = At { t, x, u: &u, p };
-            richer.rates(At { x: state, ..at }, &mut moving);
-            let mut difference = bench.own_states(&moving, richer);
+            augmented.rates(At { x: state, ..at }, &mut moving);
+            let mut difference = bench.own_states(&moving, augmented);
             model.rates(At { p: &plain, ..at }, &mut rates);
             for (with, without) in difference.iter_mut().zip(&rates) {
                 *with -= without;

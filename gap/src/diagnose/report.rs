@@ -7,9 +7,9 @@ use super::calibration::tempered;
 use super::changes::Changes;
 use super::compare::{Comparison, TIED, prior};
 use super::experiment::Experiment;
+use super::force_history::ForceHistory;
+use super::force_law::ForceLaw;
 use super::hypothesis::Fitted;
-use super::law::Law;
-use super::over_time::OverTime;
 use super::screen::Screen;
 use super::traces::{Ahead, Trace};
 use super::unknown;
@@ -25,7 +25,7 @@ const MOST_LOG_ODDS: f64 = 600.0;
 
 /// The result in one word.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Verdict {
+pub enum GapVerdict {
     /// Nothing beyond noise and disturbance.
     NoGap,
     /// One hypothesis wins.
@@ -36,7 +36,7 @@ pub enum Verdict {
     Unexplained,
 }
 
-impl Verdict {
+impl GapVerdict {
     /// Its word for programs.
     pub const fn word(self) -> &'static str {
         match self {
@@ -220,7 +220,7 @@ pub struct Report {
     /// Name of the mechanism.
     pub mechanism: String,
     /// The result in one word.
-    pub verdict: Verdict,
+    pub verdict: GapVerdict,
     /// Rows of the runs to fit: those that were fitted, and all.
     pub rows: [usize; 2],
     /// Where the gap lies.
@@ -237,7 +237,7 @@ pub struct Report {
     pub failed: Vec<(Vec<String>, String)>,
     /// Disturbances before and after: name, level under the nominal model and under the best one.
     pub disturbances: Vec<(String, f64, f64)>,
-    /// What the best hypothesis leaves; nothing where no law foretells runs that it was not found in.
+    /// What the best hypothesis leaves; nothing where no law holds on runs that it was not found in.
     pub left: Option<Left>,
     /// Part of the samples that tell something of their own; less than one where the innovations of
     /// the best hypothesis follow each other.
@@ -258,11 +258,11 @@ pub struct Report {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Pictures {
     /// The missing force of each equation.
-    pub over_time: OverTime,
+    pub force_history: ForceHistory,
     /// Channels of the first run that was held out.
     pub traces: Vec<Trace>,
     /// The missing force; nothing without a gap in the equations.
-    pub law: Option<Law>,
+    pub force_law: Option<ForceLaw>,
 }
 
 pub(super) fn assemble(
@@ -305,10 +305,10 @@ pub(super) fn assemble(
     let tied = tied(&which);
     let top = &which[0];
     let verdict = match top.effects.first().map(String::as_str) {
-        None => Verdict::NoGap,
-        Some("unknown") if tied.is_empty() => Verdict::Unexplained,
-        Some(_) if tied.is_empty() => Verdict::Explained,
-        Some(_) => Verdict::Ambiguous,
+        None => GapVerdict::NoGap,
+        Some("unknown") if tied.is_empty() => GapVerdict::Unexplained,
+        Some(_) if tied.is_empty() => GapVerdict::Explained,
+        Some(_) => GapVerdict::Ambiguous,
     };
     let cut = which.len().min(TOLD);
     let rest: f64 = which[cut..].iter().map(|h| h.probability).sum();
@@ -339,7 +339,7 @@ pub(super) fn assemble(
         mechanism: bench.set.mechanism.name.clone(),
         verdict,
         rows: [0; 2],
-        place: if verdict == Verdict::NoGap || leads {
+        place: if verdict == GapVerdict::NoGap || leads {
             Where::nowhere()
         } else {
             place
@@ -493,10 +493,9 @@ fn channel_unit(bench: &Bench<'_>, channel: usize) -> String {
     let unit = &channel.unit;
     let si = appell_spec::units::Unit::si(unit.dimension).text;
     // An angle has no dimension, but people know it by its name.
-    let is_angle = ["deg", "rad"].iter().any(|name| unit.text.contains(name));
     match si.as_str() {
-        "1" if is_angle => "rad".to_owned(),
-        "1/s" if is_angle => "rad/s".to_owned(),
+        "1" if unit.has_angle() => "rad".to_owned(),
+        "1/s" if unit.has_angle() => "rad/s".to_owned(),
         _ => si,
     }
 }

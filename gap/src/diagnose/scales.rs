@@ -1,12 +1,9 @@
 //! Typical sizes in recordings, which set the widths of rounded corners and the levels that are tried.
 
-use appell_estimate::smoothing::savitzky_golay::weights;
-
 use crate::data::{DataSet, Measured, Role, Run};
 use crate::effects::Scales;
+use crate::slope::{Slope, WINDOW};
 
-/// Samples of a parabola whose slope tells a rate.
-const WINDOW: usize = 15;
 /// Places along a run at which rates are looked at.
 const PLACES: usize = 200;
 /// Part of what is uncertain of such a slope over which signs are rounded: a filter is lost in what is much
@@ -55,7 +52,7 @@ fn rates(set: &DataSet, column: usize) -> Option<[f64; 2]> {
     let slopes: Vec<Slope> = runs.flat_map(|run| slopes(run, column)).collect();
     let squares = |of: fn(&Slope) -> f64| -> f64 { slopes.iter().map(|own| of(own).powi(2)).sum() };
     let typical = |squares: f64| (squares / slopes.len() as f64).sqrt();
-    let rate = typical(squares(|own| own.slope));
+    let rate = typical(squares(|own| own.value));
     if !(rate.is_finite() && rate > 0.0) {
         return None;
     }
@@ -64,13 +61,6 @@ fn rates(set: &DataSet, column: usize) -> Option<[f64; 2]> {
     let [low, high] = NARROW;
     let part = uncertain.map_or(high, |part| (ROUNDED * part).clamp(low, high));
     Some([rate, part * rate])
-}
-
-/// The slope of a parabola through some samples.
-struct Slope {
-    slope: f64,
-    /// Its standard deviation where that of the samples is 1.
-    deviation: f64,
 }
 
 /// Slopes of a channel at places along a run.
@@ -84,12 +74,8 @@ fn slopes(run: &Run, column: usize) -> Vec<Slope> {
         .collect();
     let slope = |samples: &[(f64, f64)]| -> Option<Slope> {
         let times: Vec<f64> = samples.iter().map(|(t, _)| *t).collect();
-        let weights = weights(&times, times[times.len() / 2], 2, 1)?;
-        let weighed = weights.iter().zip(samples).map(|(w, (_, y))| w * y);
-        Some(Slope {
-            slope: weighed.sum(),
-            deviation: weights.iter().map(|w| w * w).sum::<f64>().sqrt(),
-        })
+        let values = samples.iter().map(|(_, y)| *y);
+        Slope::at(times[times.len() / 2], &times, values)
     };
     let stride = (samples.len() / PLACES).max(1);
     let windows = samples.windows(WINDOW).step_by(stride);

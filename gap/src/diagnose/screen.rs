@@ -11,11 +11,11 @@ use appell_runtime::model::At;
 use nalgebra::{DMatrix, DVector};
 
 use super::DiagnoseError;
+use super::augmented;
 use super::bench::Bench;
 use super::evidence::NormalSizes;
 use super::feedback::KICKS;
 use super::hypothesis::Fitted;
-use super::richer;
 use crate::effects::{Acts, Part};
 
 /// A candidate after the screen.
@@ -26,7 +26,7 @@ pub(super) struct Screened {
     /// What it would gain in log-likelihood, beyond what an input that knows the motion could tell.
     pub(super) gain: f64,
     /// What such an input could tell of that, no more than the recordings speak for one.
-    pub(super) told: f64,
+    pub(super) told_by_inputs: f64,
     /// The best sizes, one for each direction of the candidate.
     pub(super) sizes: Vec<f64>,
     /// Their standard deviations.
@@ -48,7 +48,7 @@ impl Screened {
         Self {
             candidate,
             gain,
-            told: 0.0,
+            told_by_inputs: 0.0,
             deviations: vec![0.0; sizes.len()],
             sizes,
             starts,
@@ -206,11 +206,11 @@ impl Screen {
         }
         let mut values = bench.carried(fitted, &estimation);
         shapes(bench, &mut values, &fitted.members);
-        let surprises = &bench.surprises;
-        let kicks = |run: usize, at: At<'_>, to: &mut [f64]| surprises.kicks(run, at.t, to);
-        let kicks = (surprises.count > 0).then_some(Shapes {
+        let input_innovations = &bench.input_innovations;
+        let kicks = |run: usize, at: At<'_>, to: &mut [f64]| input_innovations.kicks(run, at.t, to);
+        let kicks = (input_innovations.count > 0).then_some(Shapes {
             along: Along::Disturbances,
-            count: surprises.count * KICKS,
+            count: input_innovations.count * KICKS,
             values: &kicks,
         });
         let tangent = estimation.tangent(&values, &directions, kicks)?;
@@ -225,12 +225,12 @@ impl Screen {
                 let mut one = screened(&projected, candidate, &columns, &positive)?;
                 let beyond = screened(&beyond, candidate, &columns, &positive);
                 let beyond = beyond.map_or(0.0, |beyond| beyond.gain);
-                one.told = (one.gain - beyond).clamp(0.0, for_kicks);
-                one.gain -= one.told;
+                one.told_by_inputs = (one.gain - beyond).clamp(0.0, for_kicks);
+                one.gain -= one.told_by_inputs;
                 Some(one)
             })
             .collect();
-        list.extend(richer::tried(bench, fitted)?);
+        list.extend(augmented::screened(bench, fitted)?);
         list.sort_by(|a, b| b.gain.total_cmp(&a.gain));
         Ok(Self { list })
     }
@@ -349,7 +349,7 @@ fn screened(
         return Some(Screened {
             candidate,
             gain: 0.5 * right.dot(&step),
-            told: 0.0,
+            told_by_inputs: 0.0,
             sizes,
             deviations,
             starts: vec![Vec::new()],

@@ -10,13 +10,13 @@ use super::compare::Comparison;
 use super::held_out::{HeldOut, Leader, noise, origins, stated, taken_over};
 use super::hypothesis::Fitted;
 
-/// Horizons in s beside the one at which the gap is told: one step, short, the free run.
+/// Horizons in s beside the one at which the gap is reported: one step, short, the free run.
 const HORIZONS: [f64; 4] = [0.0, 0.1, 1.0, f64::INFINITY];
 /// The horizon of traces in s.
 pub const AHEAD: f64 = 1.0;
 /// Most points of a trace.
 const POINTS: usize = 1000;
-/// Rows from which the expected error is told.
+/// Rows from which the expected error is estimated.
 const EXPECTED_FROM: usize = 25;
 
 /// Root of the mean square of the errors at a horizon, in units of the noise.

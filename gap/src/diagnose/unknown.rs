@@ -6,22 +6,23 @@
 //! A law is linear in the sizes of its waves, so what it gains, and how probable it makes the recordings
 //! when its sizes are normal, has a closed form (C. E. Rasmussen and C. K. I. Williams, *Gaussian
 //! Processes for Machine Learning*, 2006, chapter 2). Waves of time alone are left out: what does not
-//! return with the state is a disturbance, and there are levels for these. A law has to foretell runs
+//! return with the state is a disturbance, and there are levels for these. A law has to predict runs
 //! that it was not found in.
 
 use std::f64::consts::{PI, TAU};
 
 use appell_estimate::{Along, Disturbance, Estimation, Innovation, Measured, Recording, Shapes};
 use appell_runtime::model::{At, Model};
+use appell_spec::units;
 use nalgebra::{DMatrix, DVector};
 
 use super::DiagnoseError;
 use super::bench::Bench;
-use super::beside::Beside;
 use super::compare::TIED;
 use super::evidence::{NormalSizes, log_sum, occam};
 use super::hypothesis::Fitted;
 use super::screen::{Projected, moving};
+use super::unmodelled::UnmodelledChannel;
 
 /// Waves of a variable.
 const WAVES: usize = 24;
@@ -44,7 +45,7 @@ pub(super) struct Unnamed {
     /// Gain in log-likelihood.
     pub(super) gain: f64,
     /// Gain on runs that it was not found in.
-    pub(super) foretold: f64,
+    pub(super) cross_validated: f64,
     /// Logarithm of the Bayes factor for it.
     pub(super) log_bayes_factor: f64,
 }
@@ -64,7 +65,7 @@ enum Source<'b> {
     /// States, then inputs.
     Own(usize),
     /// A channel that the model does not know.
-    Beside(&'b Beside),
+    Unmodelled(&'b UnmodelledChannel),
 }
 
 /// What the laws of a variable depend on.
@@ -85,7 +86,7 @@ impl Variable<'_> {
         match self.source {
             Source::Own(index) if index < states => at.x[bench.place(index, model)],
             Source::Own(index) => at.u[index - states],
-            Source::Beside(beside) => beside.at(run, at.t),
+            Source::Unmodelled(channel) => channel.at(run, at.t),
         }
     }
 
@@ -94,7 +95,7 @@ impl Variable<'_> {
         let mut quantities = info.states.iter().chain(info.inputs.iter());
         let name = match self.source {
             Source::Own(index) => quantities.nth(index).map_or("", |own| own.name.as_ref()),
-            Source::Beside(beside) => &beside.name,
+            Source::Unmodelled(channel) => &channel.name,
         };
         if self.drifts {
             format!("{name} and time")
@@ -112,19 +113,19 @@ impl Variable<'_> {
     }
 
     /// A law of this variable at a place.
-    fn unnamed(self, bench: &Bench<'_>, (along, place): (Along, usize), law: Law) -> Unnamed {
+    fn unnamed(self, bench: &Bench<'_>, (along, place): (Along, usize), law: LawGain) -> Unnamed {
         Unnamed {
             along,
             place,
             variable: self.name(bench),
             gain: law.gain,
-            foretold: law.foretold,
+            cross_validated: law.cross_validated,
             log_bayes_factor: law.log_bayes_factor,
         }
     }
 }
 
-/// What a hypothesis leaves that a law without a name explains; nothing where no law foretells
+/// What a hypothesis leaves that a law without a name explains; nothing where no law generalises
 /// other runs.
 pub(super) fn leftover(
     bench: &Bench<'_>,
@@ -138,11 +139,11 @@ pub(super) fn leftover(
             if along == Along::Channels && variable.drifts {
                 continue;
             }
-            for (place, told) in told(bench, &estimation, fitted, variable, along)? {
+            for (place, wave_scores) in wave_scores(bench, &estimation, fitted, variable, along)? {
                 let unnamed = |law| variable.unnamed(bench, (along, place), law);
-                smooth.add(told.smooth().map(unnamed));
+                smooth.add(wave_scores.smooth().map(unnamed));
                 for wave in 0..variable.waves(along) {
-                    single.add(told.single(wave).map(unnamed));
+                    single.add(wave_scores.single(wave).map(unnamed));
                 }
             }
         }
@@ -151,13 +152,13 @@ pub(super) fn leftover(
 }
 
 /// What the waves of a variable tell of the force in each equation, or of the error of each channel.
-fn told(
+fn wave_scores(
     bench: &Bench<'_>,
     estimation: &Estimation<'_>,
     fitted: &Fitted,
     variable: Variable<'_>,
     along: Along,
-) -> Result<Vec<(usize, Told)>, DiagnoseError> {
+) -> Result<Vec<(usize, WaveScores)>, DiagnoseError> {
     let (free, setup) = (moving(fitted), estimation.setup());
     let waves = 2 * variable.waves(along);
     let write = |run: usize, at: At<'_>, values: &mut [f64]| {
@@ -192,7 +193,10 @@ fn told(
         .filter_map(|(block, place)| {
             let first = free.len() + block * waves;
             let columns: Vec<usize> = (first..first + waves).collect();
-            Some((place?, Told::new(&projected, &projected.slopes(&columns))))
+            Some((
+                place?,
+                WaveScores::new(&projected, &projected.slopes(&columns)),
+            ))
         })
         .collect())
 }
@@ -207,8 +211,8 @@ struct Family {
 impl Family {
     fn add(&mut self, unnamed: Option<Unnamed>) {
         self.tried += 1;
-        let foretells = |one: &Unnamed| one.foretold > REPEATED * one.gain;
-        self.found.extend(unnamed.filter(foretells));
+        let generalises = |one: &Unnamed| one.cross_validated > REPEATED * one.gain;
+        self.found.extend(unnamed.filter(generalises));
     }
 }
 
@@ -237,10 +241,10 @@ pub(super) fn hints(bench: &Bench<'_>, fitted: &Fitted) -> Result<Vec<Unnamed>, 
     let along = Along::Disturbances;
     let mut found = Vec::new();
     let mut tried = 0;
-    for variable in bench.beside.iter().map(Variable::beside) {
+    for variable in bench.unmodelled.iter().map(Variable::unmodelled) {
         let mut family = Family::default();
-        for (place, told) in told(bench, &estimation, fitted, variable, along)? {
-            let smooth = told.smooth();
+        for (place, wave_scores) in wave_scores(bench, &estimation, fitted, variable, along)? {
+            let smooth = wave_scores.smooth();
             family.add(smooth.map(|law| variable.unnamed(bench, (along, place), law)));
         }
         tried += family.tried;
@@ -255,10 +259,10 @@ pub(super) fn hints(bench: &Bench<'_>, fitted: &Fitted) -> Result<Vec<Unnamed>, 
 }
 
 impl<'b> Variable<'b> {
-    fn beside(beside: &'b Beside) -> Self {
+    fn unmodelled(channel: &'b UnmodelledChannel) -> Self {
         Self {
-            source: Source::Beside(beside),
-            first: PI / (beside.range.1 - beside.range.0),
+            source: Source::Unmodelled(channel),
+            first: PI / (channel.range.1 - channel.range.0),
             is_position: false,
             drifts: false,
         }
@@ -275,7 +279,8 @@ fn variables<'b>(bench: &'b Bench<'_>) -> Vec<Variable<'b>> {
             continue;
         };
         let range = high - low;
-        let is_angle = (info.states.get(index)).is_some_and(|state| state.unit.as_ref() == "rad");
+        let is_angle = (info.states.get(index))
+            .is_some_and(|state| units::parse(&state.unit).is_ok_and(|unit| unit.is_angle()));
         let first = if is_angle && range > TAU {
             1.0
         } else {
@@ -295,7 +300,7 @@ fn variables<'b>(bench: &'b Bench<'_>) -> Vec<Variable<'b>> {
             });
         }
     }
-    variables.extend(bench.beside.iter().map(Variable::beside));
+    variables.extend(bench.unmodelled.iter().map(Variable::unmodelled));
     variables
 }
 
@@ -326,27 +331,27 @@ impl Bench<'_> {
     }
 }
 
-/// What a law would gain, all told and on runs that it was not found in.
+/// What a law would gain, on all runs and on runs that it was not found in.
 #[derive(Clone, Copy)]
-struct Law {
+struct LawGain {
     gain: f64,
-    foretold: f64,
+    cross_validated: f64,
     log_bayes_factor: f64,
 }
 
 /// What the waves of a variable tell, run by run: the squares of their slopes and their scores.
-struct Told {
+struct WaveScores {
     runs: Vec<(DMatrix<f64>, DVector<f64>)>,
     squares: DMatrix<f64>,
     scores: DVector<f64>,
 }
 
-impl Told {
+impl WaveScores {
     fn new(projected: &Projected<'_>, slopes: &DMatrix<f64>) -> Self {
         let samples = &projected.tangent.samples;
         // By rows the products below run along the memory.
         let turned = slopes.transpose();
-        let told = |from: usize, rows: usize| {
+        let wave_scores = |from: usize, rows: usize| {
             let turned = turned.columns(from, rows);
             let squares = turned * slopes.rows(from, rows);
             (squares, -(turned * projected.rest.rows(from, rows)))
@@ -356,11 +361,11 @@ impl Told {
         while let Some((run, _)) = samples.get(from) {
             let of_run = |sample: &&(usize, Innovation)| sample.0 == *run;
             let rows = samples[from..].iter().take_while(of_run).count();
-            runs.push(told(from, rows));
+            runs.push(wave_scores(from, rows));
             from += rows;
         }
         // The rows for what is known of the parameters beforehand belong to no run.
-        let (mut squares, mut scores) = told(from, slopes.nrows() - from);
+        let (mut squares, mut scores) = wave_scores(from, slopes.nrows() - from);
         for (own, score) in &runs {
             squares += own;
             scores += score;
@@ -373,21 +378,21 @@ impl Told {
     }
 
     /// A law whose waves fall off as one over their number, averaged over its size.
-    fn smooth(&self) -> Option<Law> {
+    fn smooth(&self) -> Option<LawGain> {
         let count = self.scores.len().min(2 * WAVES);
         let fall = DVector::from_fn(count, |i, _| ((i / 2 + 1) as f64).recip());
         let scaled = self.scaled(&fall);
         let sizes = NormalSizes::of(&scaled.squares, &scaled.scores)?;
-        let (gain, foretold) = scaled.gains(sizes.variance.recip())?;
-        Some(Law {
+        let (gain, cross_validated) = scaled.gains(sizes.variance.recip())?;
+        Some(LawGain {
             gain,
-            foretold,
+            cross_validated,
             log_bayes_factor: sizes.log_bayes_factor,
         })
     }
 
     /// One wave of two sizes.
-    fn single(&self, wave: usize) -> Option<Law> {
+    fn single(&self, wave: usize) -> Option<LawGain> {
         /// A little of the larger square keeps a wave that is hardly there in place.
         const FLOOR: f64 = 1e-9;
         let pair = Self::part(&self.squares, &self.scores, 2 * wave);
@@ -403,10 +408,10 @@ impl Told {
         if size.is_nan() || size <= 0.0 {
             return None;
         }
-        let (gain, foretold) = own.gains(FLOOR * size)?;
-        Some(Law {
+        let (gain, cross_validated) = own.gains(FLOOR * size)?;
+        Some(LawGain {
             gain,
-            foretold,
+            cross_validated,
             log_bayes_factor: gain - 2.0 * occam(gain),
         })
     }
@@ -446,12 +451,12 @@ impl Told {
         if self.runs.len() < 2 {
             return Some((gain, gain));
         }
-        let mut foretold = 0.0;
+        let mut cross_validated = 0.0;
         for (squares, scores) in &self.runs {
             let sizes = solved(&(&self.squares - squares), &(&self.scores - scores), held)?;
-            foretold += gained(&sizes, squares, scores);
+            cross_validated += gained(&sizes, squares, scores);
         }
-        Some((gain, foretold))
+        Some((gain, cross_validated))
     }
 }
 

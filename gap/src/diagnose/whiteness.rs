@@ -65,11 +65,10 @@ mod tests {
 
     /// A sequence in which each number keeps a part of the one before it.
     fn kept(part: f64) -> Vec<f64> {
-        let mut seed = 5_u64;
+        let mut random = fastrand::Rng::with_seed(5);
         let mut last = 0.0;
         let mut next = || {
-            seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
-            last = part * last + (seed >> 11) as f64 / (1_u64 << 53) as f64 - 0.5;
+            last = part * last + random.f64() - 0.5;
             last
         };
         (0..20_000).map(|_| next()).collect()

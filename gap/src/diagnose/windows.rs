@@ -12,12 +12,12 @@ use super::hypothesis::Fitted;
 use super::report::{Region, Where, Window};
 
 /// Length of a window in s.
-pub(super) const WINDOW: f64 = 0.5;
-/// Part of false windows among those that are told (Y. Benjamini and D. Yekutieli, *The control of the
+pub(super) const WINDOW_S: f64 = 0.5;
+/// False discovery rate of the reported windows (Y. Benjamini and D. Yekutieli, *The control of the
 /// false discovery rate in multiple testing under dependency*, 2001).
-const FALSE: f64 = 0.05;
-/// Most windows that are told.
-const TOLD: usize = 20;
+const FALSE_DISCOVERY_RATE: f64 = 0.05;
+/// Most windows that are reported.
+const MOST_WINDOWS: usize = 20;
 /// Cells of a variable, with as many samples each.
 const CELLS: usize = 12;
 /// A cell stands out by so many standard deviations.
@@ -81,7 +81,7 @@ fn windows(bench: &Bench<'_>, gains: &[Sample], equation: &str) -> Vec<Window> {
     for one in gains {
         // Windows are counted from zero and are few.
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
-        let index = ((one.t - start(one.run)) / WINDOW).max(0.0) as u64;
+        let index = ((one.t - start(one.run)) / WINDOW_S).max(0.0) as u64;
         *sums.entry((one.run, index)).or_default() += one.gain;
     }
     let count = sums.len() as f64;
@@ -98,19 +98,19 @@ fn windows(bench: &Bench<'_>, gains: &[Sample], equation: &str) -> Vec<Window> {
         })
         .collect();
     tested.sort_by(|a, b| a.2.total_cmp(&b.2).then(b.1.total_cmp(&a.1)));
-    let level = |rank: usize| FALSE * (rank + 1) as f64 / (count * harmonic);
+    let level = |rank: usize| FALSE_DISCOVERY_RATE * (rank + 1) as f64 / (count * harmonic);
     let found = (0..tested.len())
         .rev()
         .find(|&rank| tested[rank].2 <= level(rank));
-    tested.truncate(found.map_or(0, |last| last + 1).min(TOLD));
+    tested.truncate(found.map_or(0, |last| last + 1).min(MOST_WINDOWS));
     tested
         .into_iter()
         .map(|((run, index), z, _)| {
-            let from = start(run) + WINDOW * index as f64;
+            let from = start(run) + WINDOW_S * index as f64;
             Window {
                 run: bench.set.runs[run].name.clone(),
                 from,
-                to: from + WINDOW,
+                to: from + WINDOW_S,
                 equation: equation.to_owned(),
                 z,
             }

@@ -230,7 +230,7 @@ pub(super) fn choices() -> Vec<&'static str> {
     families.chain(Filter::ALL.map(|(word, _)| word)).collect()
 }
 
-/// One of some words, which may be absent; another one is told.
+/// One of some words, which may be absent; another one is reported.
 fn choice<T>(
     fields: &mut Fields<'_>,
     header: &DeTable<'_>,

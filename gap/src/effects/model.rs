@@ -63,14 +63,14 @@ pub struct EffectModel {
     /// whole one.
     rolling: Option<JitModel>,
     /// For each candidate that brings a coordinate, once it was asked for.
-    richer: Vec<OnceLock<Option<Richer>>>,
+    augmented: Vec<OnceLock<Option<Augmented>>>,
     /// The spec that candidates are added to.
     plain: Spec,
 }
 
 /// A model with a coordinate that a candidate brings.
 #[derive(Debug)]
-struct Richer {
+struct Augmented {
     /// The candidate, all words of its items told.
     candidate: Candidate,
     model: JitModel,
@@ -143,7 +143,7 @@ impl EffectModel {
         let (mechanism, model) =
             derive(&spec.file, &text).map_err(|error| blamed(spec, &declared, error))?;
         Ok(Self {
-            richer: candidates.iter().map(|_| OnceLock::new()).collect(),
+            augmented: candidates.iter().map(|_| OnceLock::new()).collect(),
             candidates,
             mechanism,
             spec: Spec {
@@ -157,12 +157,12 @@ impl EffectModel {
     }
 
     /// Derives the model of a candidate that brings a coordinate; whether there is one.
-    pub(crate) fn enrich(&self, index: usize, drive: &Drive) -> bool {
-        let richer = self.richer[index].get_or_init(|| self.richer(index, drive).ok());
-        richer.is_some()
+    pub(crate) fn augment(&self, index: usize, drive: &Drive) -> bool {
+        let augmented = self.augmented[index].get_or_init(|| self.augmented(index, drive).ok());
+        augmented.is_some()
     }
 
-    fn richer(&self, index: usize, drive: &Drive) -> Result<Richer, ModelError> {
+    fn augmented(&self, index: usize, drive: &Drive) -> Result<Augmented, ModelError> {
         let inputs = self.mechanism.inputs.iter();
         let force = drive.written(inputs.map(|input| input.label.name.as_str()));
         let words = [
@@ -179,7 +179,7 @@ impl EffectModel {
         let beside: Vec<Candidate> = beside.collect();
         let text = with_candidates(&self.plain.text, &beside)?;
         let (mechanism, model) = derive(&self.plain.file, &text)?;
-        Ok(Richer {
+        Ok(Augmented {
             candidate,
             model,
             longest_step: mechanism.longest_step,
@@ -194,31 +194,31 @@ impl EffectModel {
 
     /// A candidate, with all words that are told by now.
     pub fn candidate(&self, index: usize) -> &Candidate {
-        let richer = self.richer[index].get().and_then(Option::as_ref);
-        richer.map_or(&self.candidates[index], |richer| &richer.candidate)
+        let augmented = self.augmented[index].get().and_then(Option::as_ref);
+        augmented.map_or(&self.candidates[index], |augmented| &augmented.candidate)
     }
 
     /// The model with the coordinate that a member brings.
-    fn richer_with(&self, members: &[usize]) -> Option<&Richer> {
-        let mut richer = members
+    fn augmented_with(&self, members: &[usize]) -> Option<&Augmented> {
+        let mut augmented = members
             .iter()
-            .filter_map(|&member| self.richer[member].get());
-        richer.find_map(Option::as_ref)
+            .filter_map(|&member| self.augmented[member].get());
+        augmented.find_map(Option::as_ref)
     }
 
     /// The longest step in s that some candidates bear, where their equations are fast.
     pub(crate) fn longest_step(&self, members: &[usize]) -> Option<f64> {
         let own = self.mechanism.longest_step;
-        let richer = self
-            .richer_with(members)
-            .and_then(|richer| richer.longest_step);
-        own.into_iter().chain(richer).reduce(f64::min)
+        let augmented = self
+            .augmented_with(members)
+            .and_then(|augmented| augmented.longest_step);
+        own.into_iter().chain(augmented).reduce(f64::min)
     }
 
     /// The shortest equations that have some candidates.
     pub fn with(&self, members: &[usize]) -> &dyn Model {
-        if let Some(richer) = self.richer_with(members) {
-            return &richer.model;
+        if let Some(augmented) = self.augmented_with(members) {
+            return &augmented.model;
         }
         let creeps = members
             .iter()
@@ -231,8 +231,8 @@ impl EffectModel {
 
     /// The equations of all candidates that can stand beside some members.
     pub fn beside(&self, members: &[usize]) -> &dyn Model {
-        self.richer_with(members)
-            .map_or(&self.model, |richer| &richer.model)
+        self.augmented_with(members)
+            .map_or(&self.model, |augmented| &augmented.model)
     }
 
     /// Names and sizes of its equations.

@@ -183,7 +183,8 @@ impl<'m> Sites<'m> {
 
     fn all(&self, kind: SiteKind) -> Vec<Site> {
         let is_length = |&q: &CoordinateId| self.dimension(q) == Dimension::LENGTH;
-        let is_angle = |&q: &CoordinateId| self.dimension(q) == Dimension::NONE;
+        // An angle may have the unit 1.
+        let is_angle = |&q: &CoordinateId| self.dimension(q).is_none();
         let moving = self.moving();
         let moving = moving.into_iter();
         match kind {

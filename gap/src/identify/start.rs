@@ -1,12 +1,11 @@
 //! Values that a fit can begin with: states at the first rows, sizes of forces.
 
-use appell_estimate::smoothing::savitzky_golay::weights;
 use appell_estimate::{Measured, Recording, Setup};
 use appell_runtime::model::{At, Model, ModelInfo};
 use nalgebra::{DMatrix, DVector};
 
-/// Samples of a parabola whose slope tells a velocity.
-const WINDOW: usize = 15;
+use crate::slope::{Slope, WINDOW};
+
 /// Places along a run at which slopes and forces are looked at.
 const PLACES: usize = 100;
 /// First values are this many times less certain than a measurement: they are measured again by the
@@ -87,8 +86,8 @@ impl Slopes {
             .collect();
         let slope = |samples: &[(f64, f64)]| {
             let times: Vec<f64> = samples.iter().map(|(t, _)| *t).collect();
-            let weights = weights(&times, times[0], 2, 1)?;
-            Some(weights.iter().zip(samples).map(|(w, (_, y))| w * y).sum())
+            let values = samples.iter().map(|(_, y)| *y);
+            Slope::at(times[0], &times, values).map(|slope| slope.value)
         };
         let window = WINDOW.min(samples.len());
         let stride = (samples.len() / PLACES).max(1);

@@ -214,7 +214,7 @@ impl Skeleton {
     }
 }
 
-/// Reads section by section; what is wrong is told, so that all of it is.
+/// Reads section by section and collects the mistakes of all of them.
 struct Reader<'r, 't> {
     fields: &'r mut Fields<'t>,
     bodies: Vec<String>,

@@ -7,6 +7,8 @@ use std::sync::LazyLock;
 use std::sync::atomic::{AtomicU32, Ordering};
 
 use appell_gap::data::{self, DataError, DataSet, Spec};
+use rand_xoshiro::SplitMix64;
+use rand_xoshiro::rand_core::{Rng as _, SeedableRng as _};
 
 static LIBRARY: LazyLock<Vec<(&'static str, Spec)>> = LazyLock::new(shipped);
 
@@ -79,15 +81,13 @@ impl Drop for Folder {
     }
 }
 
-/// Noise that is the same in every run (`SplitMix64`), standard normal.
+/// Noise that is the same in every run, standard normal.
 pub fn normal(seed: u64) -> f64 {
-    let uniform = |seed: u64| {
-        let mut z = seed.wrapping_mul(0x9e37_79b9_7f4a_7c15);
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
-    };
-    let (u, v) = (1.0 - uniform(2 * seed + 1), uniform(2 * seed + 2));
+    // Neighbouring seeds take the sequence two draws further.
+    const STEP: u64 = 0x9e37_79b9_7f4a_7c15_u64.wrapping_mul(2);
+    let mut random = SplitMix64::seed_from_u64(seed.wrapping_mul(STEP));
+    let mut uniform = || (random.next_u64() >> 11) as f64 / (1_u64 << 53) as f64;
+    let (u, v) = (1.0 - uniform(), uniform());
     (-2.0 * u.ln()).sqrt() * (std::f64::consts::TAU * v).cos()
 }
 

@@ -414,7 +414,7 @@ fn natural_unit(dimension: Dimension, value: &Expr, coordinates: &[Coordinate]) 
         if let Quantity::Rate(id) = quantity {
             of_angles |= coordinates
                 .get(id.index())
-                .is_some_and(|c| c.label.unit.dimension.is_none() && c.label.unit.text != "1");
+                .is_some_and(|c| c.label.unit.is_angle());
         }
     });
     let mut unit = Unit::si(dimension);

@@ -8,7 +8,7 @@ use num_traits::{One, Pow};
 
 use super::Unit;
 use super::dimension::{Dimension, Exponent};
-use super::table::{PREFIXES, UNITS};
+use super::table::{PREFIXES, UNITS, UnitEntry};
 use crate::suggest;
 
 /// Longest unit text, in bytes.
@@ -286,16 +286,26 @@ impl Parser<'_> {
     }
 }
 
-/// A symbol, whole or with a prefix.
+/// Whether a symbol is one of angles.
+pub(super) fn is_angle(symbol: &str) -> bool {
+    entry(symbol).is_some_and(|(unit, _)| unit.is_angle())
+}
+
 fn lookup(symbol: &str) -> Option<Product> {
+    let (unit, ten) = entry(symbol)?;
+    Some(product(unit.powers, unit.size, unit.times_pi, ten))
+}
+
+/// A symbol, whole or with a prefix: its unit, and the power of ten before it.
+fn entry(symbol: &str) -> Option<(&'static UnitEntry, i32)> {
     let whole = UNITS.iter().find(|unit| unit.symbol == symbol);
     if let Some(unit) = whole {
-        return Some(product(unit.powers, unit.size, unit.times_pi, 0));
+        return Some((unit, 0));
     }
     PREFIXES.iter().find_map(|(prefix, ten)| {
         let rest = symbol.strip_prefix(prefix)?;
         let unit = UNITS.iter().find(|u| u.prefixed && u.symbol == rest)?;
-        Some(product(unit.powers, unit.size, unit.times_pi, *ten))
+        Some((unit, *ten))
     })
 }
 
@@ -364,6 +374,30 @@ mod tests {
         assert_eq!(scale("%"), 0.01);
         assert_eq!(scale("1/min"), 1.0 / 60.0);
         assert_eq!(scale("mm²"), 1e-6);
+    }
+
+    #[test]
+    fn angles_are_told_from_pure_numbers() {
+        for (text, is_angle, has_angle) in [
+            ("rad", true, true),
+            ("deg", true, true),
+            ("mrad", true, true),
+            ("rev", true, true),
+            ("1", false, false),
+            ("%", false, false),
+            ("m/m", false, false),
+            ("deg/s", false, true),
+            ("rpm", false, true),
+            ("N*m/rad", false, true),
+            ("N*m", false, false),
+        ] {
+            let unit = parse(text).expect(text);
+            assert_eq!(
+                (unit.is_angle(), unit.has_angle()),
+                (is_angle, has_angle),
+                "{text}"
+            );
+        }
     }
 
     #[test]

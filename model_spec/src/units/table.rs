@@ -23,6 +23,13 @@ pub struct UnitEntry {
     pub prefixed: bool,
 }
 
+impl UnitEntry {
+    /// Whether it measures an angle, or a rate of one.
+    pub(super) fn is_angle(&self) -> bool {
+        self.times_pi || self.symbol == "rad"
+    }
+}
+
 /// Prefixes and their powers of ten.
 pub const PREFIXES: &[(&str, i32)] = &[
     ("p", -12),

@@ -34,60 +34,64 @@ pub struct Claim {
     pub published: String,
     /// What is found.
     pub ours: String,
-    /// What that means.
-    pub verdict: Verdict,
-    /// Whether the comparison came out as it should. For an erratum: the corrected statement holds.
-    pub holds: bool,
+    /// How the two compare.
+    pub agreement: Reproduction,
+    /// What the agreement rests on, or why there is none.
+    pub note: String,
+    /// Where the paper errs: the kind of error.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub erratum: Option<&'static str>,
+    /// Whether the comparison came out as it is known to. For an erratum: the corrected statement holds.
+    /// Where it did not, something broke here.
+    pub as_expected: bool,
     /// What makes it, without the book.
     pub command: String,
 }
 
-/// How a statement fares.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+/// How a statement compares with what is found.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Verdict {
-    /// The same function, proved by the identity test.
+pub enum Reproduction {
+    /// The same function, by the identity test; or a number that agrees in every digit that is
+    /// published, beside a formula in ten at least.
     Exact,
-    /// A number that agrees in so many digits.
-    Digits(u32),
-    /// A statement in words that is found true.
-    True,
-    /// What a letter means; there is nothing to compare.
-    Definition,
-    /// Printed wrong, with the kind of error.
-    Erratum(&'static str),
-    /// Not in the paper.
-    Added,
-    /// A finding on recordings that are not public; on simulated ones it does not show.
-    NotHere,
-    /// A number that depends on recordings that nobody can get.
-    NoData,
+    /// It agrees within a tolerance, or holds at every point that was tried.
+    Approximate,
+    /// What is found is something else.
+    Differs,
+    /// There is nothing to compare with: a definition, or recordings that are not public.
+    CannotBeChecked,
+    /// A result of ours, beside which the paper has no statement.
+    NotInPaper,
 }
 
-impl Verdict {
-    /// Whether the paper errs.
-    pub const fn is_erratum(&self) -> bool {
-        matches!(self, Self::Erratum(_))
-    }
+impl Reproduction {
+    /// All of them, in the order in which they are counted.
+    pub const ALL: [Self; 5] = [
+        Self::Exact,
+        Self::Approximate,
+        Self::Differs,
+        Self::CannotBeChecked,
+        Self::NotInPaper,
+    ];
 
     /// For people.
-    pub fn words(&self) -> String {
+    pub const fn words(self) -> &'static str {
         match self {
-            Self::Exact => "exact".to_owned(),
-            Self::Digits(1) => "reproduced to 1 digit".to_owned(),
-            Self::Digits(n) => format!("reproduced to {n} digits"),
-            Self::True => "found true".to_owned(),
-            Self::Definition => "definition".to_owned(),
-            Self::Erratum(kind) => format!("erratum: {kind}"),
-            Self::Added => "not in the paper".to_owned(),
-            Self::NotHere => "not on the simulated rides".to_owned(),
-            Self::NoData => "depends on data that nobody can get".to_owned(),
+            Self::Exact => "exact",
+            Self::Approximate => "approximate",
+            Self::Differs => "differs",
+            Self::CannotBeChecked => "cannot be checked",
+            Self::NotInPaper => "not in the paper",
         }
     }
 }
 
+/// Why what rests on the recordings of a paper cannot be checked.
+pub const NOT_PUBLIC: &str = "the paper's recordings are not public";
+
 impl Claim {
-    /// A statement in words that is true or not.
+    /// A statement that is found to hold or not, within a tolerance or at the points that were tried.
     pub fn that(
         place: &str,
         published: &str,
@@ -99,8 +103,14 @@ impl Claim {
             place: place.to_owned(),
             published: published.to_owned(),
             ours: ours.into(),
-            verdict: Verdict::True,
-            holds,
+            agreement: if holds {
+                Reproduction::Approximate
+            } else {
+                Reproduction::Differs
+            },
+            note: String::new(),
+            erratum: None,
+            as_expected: holds,
             command: command.to_owned(),
         }
     }
@@ -114,14 +124,15 @@ impl Claim {
         command: &str,
     ) -> Self {
         let digits = digits(wanted, found);
-        Self {
-            verdict: Verdict::Digits(digits),
-            ..Self::that(place, published, shown(found), digits >= needed, command)
-        }
+        let claim = Self::that(place, published, shown(found), digits >= needed, command);
+        let plural = if digits == 1 { "" } else { "s" };
+        claim
+            .exactly()
+            .noted(format!("{digits} digit{plural} agree"))
     }
 
-    /// What the paper found on recordings that are not public: it shows on other ones, or it does not.
-    /// Either is an answer.
+    /// What the paper found on recordings that are not public: it shows on simulated ones, or it does
+    /// not. Either is an answer.
     pub fn finding(
         place: &str,
         published: &str,
@@ -129,17 +140,110 @@ impl Claim {
         shows: bool,
         command: &str,
     ) -> Self {
-        let claim = Self::that(place, published, ours, true, command);
-        if shows {
-            claim
-        } else {
-            claim.verdict(Verdict::NotHere)
+        Self {
+            as_expected: true,
+            ..Self::that(place, published, ours, shows, command)
+        }
+        .noted("on simulated rides")
+    }
+
+    /// Where it holds, it does so exactly: nothing was sampled.
+    pub fn exactly(mut self) -> Self {
+        if self.agreement == Reproduction::Approximate {
+            self.agreement = Reproduction::Exact;
+        }
+        self
+    }
+
+    /// Where it holds, it does so within a tolerance.
+    pub fn approximately(mut self) -> Self {
+        if self.agreement == Reproduction::Exact {
+            self.agreement = Reproduction::Approximate;
+        }
+        self
+    }
+
+    /// With what the agreement rests on.
+    pub fn noted(mut self, note: impl Into<String>) -> Self {
+        self.note = note.into();
+        self
+    }
+
+    /// The paper errs here; whatever else is compared, the two differ.
+    pub fn erratum(self, kind: &'static str) -> Self {
+        Self {
+            agreement: Reproduction::Differs,
+            erratum: Some(kind),
+            ..self
+        }
+        .noted(format!("erratum: {kind}"))
+    }
+
+    /// There is nothing to compare with, for a reason.
+    pub fn unchecked(self, why: &str) -> Self {
+        Self {
+            agreement: Reproduction::CannotBeChecked,
+            ..self
+        }
+        .noted(why)
+    }
+
+    /// A result of ours.
+    pub fn added(self) -> Self {
+        Self {
+            agreement: Reproduction::NotInPaper,
+            ..self
+        }
+    }
+}
+
+/// How many statements agree, and how.
+#[derive(Debug, Default, Clone, Copy, PartialEq, Eq, Serialize)]
+pub struct Tally {
+    pub exact: usize,
+    pub approximate: usize,
+    pub differs: usize,
+    pub cannot_be_checked: usize,
+    pub not_in_paper: usize,
+}
+
+impl Tally {
+    /// Of the parts of a book.
+    pub fn of(sections: &[Section]) -> Self {
+        let mut tally = Self::default();
+        for claim in sections.iter().flat_map(|section| &section.claims) {
+            *tally.count(claim.agreement) += 1;
+        }
+        tally
+    }
+
+    fn count(&mut self, agreement: Reproduction) -> &mut usize {
+        match agreement {
+            Reproduction::Exact => &mut self.exact,
+            Reproduction::Approximate => &mut self.approximate,
+            Reproduction::Differs => &mut self.differs,
+            Reproduction::CannotBeChecked => &mut self.cannot_be_checked,
+            Reproduction::NotInPaper => &mut self.not_in_paper,
         }
     }
 
-    /// The same statement with another verdict.
-    pub fn verdict(self, verdict: Verdict) -> Self {
-        Self { verdict, ..self }
+    /// Statements of the paper, all but our own results.
+    pub const fn statements(self) -> usize {
+        self.exact + self.approximate + self.differs + self.cannot_be_checked
+    }
+
+    /// One line.
+    pub fn words(self) -> String {
+        format!(
+            "{} statements of the paper: {} exact, {} approximate, {} differ, {} cannot be checked; \
+             {} results beyond the paper",
+            self.statements(),
+            self.exact,
+            self.approximate,
+            self.differs,
+            self.cannot_be_checked,
+            self.not_in_paper
+        )
     }
 }
 
@@ -174,6 +278,32 @@ pub(crate) fn shown(value: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn statements_are_counted_apart() {
+        let number = |published, found| Claim::number("", "", [published, found], 3, "");
+        let claims = vec![
+            number(1.21, 1.213),
+            number(0.61, 0.77),
+            number(1.0, 1.001).approximately(),
+            number(1.0, 1.0).erratum("misprint"),
+            number(0.61, 0.77).unchecked(NOT_PUBLIC),
+            number(1.0, 1.0).added(),
+        ];
+        let section = Section {
+            title: String::new(),
+            about: String::new(),
+            claims,
+            pictures: Vec::new(),
+        };
+        let tally = Tally::of(&[section]);
+        assert_eq!(tally.statements(), 5);
+        assert_eq!(
+            tally.words(),
+            "5 statements of the paper: 1 exact, 1 approximate, 2 differ, 1 cannot be checked; \
+             1 results beyond the paper"
+        );
+    }
 
     #[test]
     fn digits_that_agree_are_counted() {

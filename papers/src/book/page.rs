@@ -2,30 +2,39 @@
 
 use std::fmt::Write as _;
 
-use super::claim::{Claim, Section};
+use super::claim::{Claim, Reproduction, Section, Tally};
 
 const STYLE: &str = include_str!("page.css");
 
 /// The page.
 pub fn page(title: &str, sections: &[Section]) -> String {
-    let claims = || sections.iter().flat_map(|section| &section.claims);
-    let (count, good) = (claims().count(), claims().filter(|c| c.holds).count());
+    let tally = Tally::of(sections);
     let mut page = format!(
         "<!DOCTYPE html>\n<html lang=\"en\" xmlns=\"http://www.w3.org/1999/xhtml\">\n<head>\n\
          <meta charset=\"utf-8\"/>\n\
          <meta name=\"viewport\" content=\"width=device-width,initial-scale=1\"/>\n\
          <title>{title}, recomputed</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n<main>\n\
          <h1>{title}, recomputed</h1>\n\
-         <p>Equations, tables and figures: what is published, what appell finds, what that means, and \
-         the command that makes it. {count} statements are compared; {good} came out as they \
-         should.</p>\n<nav><ul>\n"
+         <p>Equations, tables and figures: what is published, what appell finds, how the two compare, and \
+         the command that makes it.</p>\n<p>{}.</p>\n<dl>\n",
+        escaped(&tally.words()),
     );
-    for (number, section) in sections.iter().enumerate() {
-        let errata = section.claims.iter().filter(|c| c.verdict.is_erratum());
+    for agreement in Reproduction::ALL {
         // Writing to a string cannot fail.
         let _ = writeln!(
             page,
-            "<li><a href=\"#part{number}\">{}</a> ({} statements, {} errata)</li>",
+            "<dt class=\"{}\">{}</dt><dd>{}</dd>",
+            class(agreement),
+            agreement.words(),
+            meaning(agreement)
+        );
+    }
+    page.push_str("</dl>\n<nav><ul>\n");
+    for (number, section) in sections.iter().enumerate() {
+        let errata = section.claims.iter().filter(|c| c.erratum.is_some());
+        let _ = writeln!(
+            page,
+            "<li><a href=\"#part{number}\">{}</a> ({} rows, {} errata)</li>",
             escaped(&section.title),
             section.claims.len(),
             errata.count(),
@@ -48,7 +57,7 @@ pub fn page(title: &str, sections: &[Section]) -> String {
             );
         }
         page.push_str(
-            "<table>\n<thead><tr><th>place</th><th>published</th><th>found</th><th>verdict</th>\
+            "<table>\n<thead><tr><th>place</th><th>published</th><th>found</th><th>agreement</th>\
              </tr></thead>\n<tbody>\n",
         );
         for claim in &section.claims {
@@ -59,22 +68,52 @@ pub fn page(title: &str, sections: &[Section]) -> String {
     page + "</main>\n</body>\n</html>\n"
 }
 
+/// Its colour.
+const fn class(agreement: Reproduction) -> &'static str {
+    match agreement {
+        Reproduction::Exact => "exact",
+        Reproduction::Approximate => "approximate",
+        Reproduction::Differs => "differs",
+        Reproduction::CannotBeChecked => "unchecked",
+        Reproduction::NotInPaper => "added",
+    }
+}
+
+const fn meaning(agreement: Reproduction) -> &'static str {
+    match agreement {
+        Reproduction::Exact => {
+            "the same function, by the identity test; a number in every published digit, beside a formula \
+             in ten at least"
+        }
+        Reproduction::Approximate => "within a tolerance, or at every point that was tried",
+        Reproduction::Differs => "something else is found; both are shown",
+        Reproduction::CannotBeChecked => {
+            "a definition, or it rests on recordings that are not public"
+        }
+        Reproduction::NotInPaper => "a result of ours",
+    }
+}
+
 fn row(page: &mut String, claim: &Claim) {
-    let mark = if claim.holds { "good" } else { "bad" };
-    let doubt = if claim.holds {
+    let note = match claim.note.as_str() {
+        "" => String::new(),
+        note => format!("<br/><small>{}</small>", escaped(note)),
+    };
+    let broken = if claim.as_expected {
         ""
     } else {
-        ", but this did not come out"
+        "<br/>This is not what is known to come out."
     };
     let _ = writeln!(
         page,
-        "<tr class=\"{mark}\"><td>{}</td><td>{}</td><td>{}<br/><code class=\"command\">{}</code></td>\
-         <td>{}{doubt}</td></tr>",
+        "<tr class=\"{}\"><td>{}</td><td>{}</td><td>{}<br/><code class=\"command\">{}</code></td>\
+         <td>{}{note}{broken}</td></tr>",
+        class(claim.agreement),
         escaped(&claim.place),
         lines(&claim.published),
         lines(&claim.ours),
         escaped(&claim.command),
-        escaped(&claim.verdict.words()),
+        claim.agreement.words(),
     );
 }
 

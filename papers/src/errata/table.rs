@@ -1,7 +1,7 @@
 //! Every erratum, in the order of the papers.
 
 use super::{
-    ACCELERATION_ENERGY, Comparison, Erratum, Evidence, Quantity, Source, Subject, Verdict,
+    ACCELERATION_ENERGY, Comparison, Erratum, ErratumOrigin, Evidence, Quantity, Source, Subject,
 };
 
 /// All errata.
@@ -11,7 +11,7 @@ pub const ERRATA: &[Erratum] = &[
         equation: "(17)",
         printed: "seven rows",
         right: "eight rows, x_G before y_G",
-        verdict: Verdict::Recognition,
+        origin: ErratumOrigin::Recognition,
         evidence: Evidence::Context("(7) has eight states"),
     },
     Erratum {
@@ -19,7 +19,7 @@ pub const ERRATA: &[Erratum] = &[
         equation: "(21)",
         printed: "14/5 ψ̇ ψ̇ sin ϑ and 12/5 ψ̇²",
         right: "14/5 ψ̇ φ̇ sin ϑ and 12/5 φ̇²",
-        verdict: Verdict::Recognition,
+        origin: ErratumOrigin::Recognition,
         evidence: Evidence::Test(
             "equation_21_has_the_pitch_rate_in_two_terms",
             Comparison {
@@ -35,7 +35,7 @@ pub const ERRATA: &[Erratum] = &[
         equation: "after (23)",
         printed: "the limit tilt holds for any rolling wheel",
         right: "for homogeneous thin discs only; a thin hoop has 19.20°",
-        verdict: Verdict::Misprint,
+        origin: ErratumOrigin::Misprint,
         evidence: Evidence::Context(
             "with the inertias k₁ m R² and k₂ m R² of a general wheel the limit depends on k₁ and k₂; tested: `a_wheel_with_any_axisymmetric_inertia_follows_the_general_equations`, `turning_of_a_disc_beyond_18_62_and_of_a_hoop_beyond_19_20_degrees_is_always_stable`",
         ),
@@ -45,7 +45,7 @@ pub const ERRATA: &[Erratum] = &[
         equation: "text on figure 3",
         printed: "panels (c) and (d) show the level sets of ψ̇ and φ̇, respectively",
         right: "(c) has levels of φ̇, (d) of ψ̇",
-        verdict: Verdict::Misprint,
+        origin: ErratumOrigin::Misprint,
         evidence: Evidence::Context(
             "the line φ̇ → ±∞ of (c) lies in the plane of ϑ and ψ̇; motions that differ in ψ̇ alone, as in (d), lie over one place of the plane of ϑ and φ̇",
         ),
@@ -55,7 +55,7 @@ pub const ERRATA: &[Erratum] = &[
         equation: "(29)",
         printed: "seven entries in rows 7 and 8",
         right: "one more zero in each",
-        verdict: Verdict::Recognition,
+        origin: ErratumOrigin::Recognition,
         evidence: Evidence::Context("(18) and (19) have eight columns"),
     },
     Erratum {
@@ -63,7 +63,7 @@ pub const ERRATA: &[Erratum] = &[
         equation: "(35)",
         printed: "ω₁ := ϑ̂",
         right: "ω₁ := ϑ̇",
-        verdict: Verdict::Recognition,
+        origin: ErratumOrigin::Recognition,
         evidence: Evidence::Test(
             "equation_35_defines_the_first_pseudo_velocity_as_tilt_rate",
             Comparison {
@@ -79,7 +79,7 @@ pub const ERRATA: &[Erratum] = &[
         equation: "(36) line 5",
         printed: "prefactor m₀/(5mR² + 4m₀r²)",
         right: "1/(5mR² + 4m₀r²)",
-        verdict: Verdict::Undecided,
+        origin: ErratumOrigin::Undecided,
         evidence: Evidence::Test(
             "equation_36_line_5_has_no_mass_in_its_prefactor",
             Comparison {
@@ -95,7 +95,7 @@ pub const ERRATA: &[Erratum] = &[
         equation: "(36) line 5",
         printed: "ω₂² (5mR²r − …)",
         right: "ω₃² (5mR²r − …)",
-        verdict: Verdict::Undecided,
+        origin: ErratumOrigin::Undecided,
         evidence: Evidence::Test(
             "equation_36_line_5_has_the_third_pseudo_velocity_squared",
             Comparison {
@@ -111,7 +111,7 @@ pub const ERRATA: &[Erratum] = &[
         equation: "(36) line 5",
         printed: "− 8 ω₁ σ R² r",
         right: "− 8 ω₁ σ m₀ R r",
-        verdict: Verdict::Undecided,
+        origin: ErratumOrigin::Undecided,
         evidence: Evidence::Test(
             "equation_36_line_5_has_the_sliding_mass_in_its_coriolis_term",
             Comparison {
@@ -127,7 +127,7 @@ pub const ERRATA: &[Erratum] = &[
         equation: "(36) last line",
         printed: "cut after −ω₁",
         right: "ẏ_G = −ω₁ R cos ψ cos ϑ + ω₂ R sin ψ",
-        verdict: Verdict::Recognition,
+        origin: ErratumOrigin::Recognition,
         evidence: Evidence::Test(
             "equation_36_last_line_is_the_lateral_velocity",
             Comparison {
@@ -143,7 +143,7 @@ pub const ERRATA: &[Erratum] = &[
         equation: "(48)",
         printed: "matrix missing",
         right: "the sparsity of appendix C; all other entries are zero",
-        verdict: Verdict::Recognition,
+        origin: ErratumOrigin::Recognition,
         evidence: Evidence::Context(
             "(49) is exact for it; tested: `steering_paper_equation_48_and_appendix_c_linear_unicycle`",
         ),
@@ -153,7 +153,7 @@ pub const ERRATA: &[Erratum] = &[
         equation: "(50)",
         printed: "A₅₄ = −R/5",
         right: "−g/5",
-        verdict: Verdict::Undecided,
+        origin: ErratumOrigin::Undecided,
         evidence: Evidence::Test(
             "equation_50_has_gravity_in_entry_54",
             Comparison {
@@ -169,7 +169,7 @@ pub const ERRATA: &[Erratum] = &[
         equation: "(50)",
         printed: "nine rows; R φ̇ in column 8",
         right: "ten rows; A₁₀,₇ = R φ̇",
-        verdict: Verdict::Recognition,
+        origin: ErratumOrigin::Recognition,
         evidence: Evidence::Test(
             "equation_50_has_the_forward_speed_in_entry_107",
             Comparison {
@@ -185,7 +185,7 @@ pub const ERRATA: &[Erratum] = &[
         equation: "(50)",
         printed: "row of x_G missing",
         right: "A₉₂ = R",
-        verdict: Verdict::Recognition,
+        origin: ErratumOrigin::Recognition,
         evidence: Evidence::Test(
             "equation_50_has_the_radius_in_entry_92",
             Comparison {
@@ -201,7 +201,7 @@ pub const ERRATA: &[Erratum] = &[
         equation: "(51)–(54)",
         printed: "stable if a, b, c have the same sign",
         right: "b² > 4ac is needed too; it always holds, so (54) stands",
-        verdict: Verdict::Misprint,
+        origin: ErratumOrigin::Misprint,
         evidence: Evidence::Context(
             "the discriminant of (b² − 4ac)/(16 g²R²) in φ̇²R/g is −20 m² m₀ (3m + m₀) < 0",
         ),
@@ -211,7 +211,7 @@ pub const ERRATA: &[Erratum] = &[
         equation: "(55)",
         printed: "B₅ = (5m + 4m₀)/(5 m₀)",
         right: "(5m + 4m₀)/(5 m m₀)",
-        verdict: Verdict::Undecided,
+        origin: ErratumOrigin::Undecided,
         evidence: Evidence::Test(
             "equation_55_has_both_masses_in_the_denominator",
             Comparison {
@@ -227,7 +227,7 @@ pub const ERRATA: &[Erratum] = &[
         equation: "(57)",
         printed: "rows like M₁₁ M₁₂ M₁₃ 0 0 M₁₆",
         right: "odd and even powers of A alternate between two sets of rows; the rank 6 is right",
-        verdict: Verdict::Undecided,
+        origin: ErratumOrigin::Undecided,
         evidence: Evidence::Context("ω₁ and σ answer in even powers, ϑ, r, y_G and ω₃ in odd ones"),
     },
     Erratum {
@@ -235,7 +235,7 @@ pub const ERRATA: &[Erratum] = &[
         equation: "section IV.B",
         printed: "critical speed 1.21 m/s²",
         right: "1.2131 m/s",
-        verdict: Verdict::Undecided,
+        origin: ErratumOrigin::Undecided,
         evidence: Evidence::Context("√(R g/2) is a velocity"),
     },
     Erratum {
@@ -243,7 +243,7 @@ pub const ERRATA: &[Erratum] = &[
         equation: "after (66)",
         printed: "L = 10 m at 2 m/s",
         right: "L = 10 m at 5 m/s",
-        verdict: Verdict::Misprint,
+        origin: ErratumOrigin::Misprint,
         evidence: Evidence::Context(
             "tables II and III have the gains of 1 and 5 m/s; 10 m at 2 m/s would need a lateral velocity of 3.1 m/s",
         ),
@@ -253,7 +253,7 @@ pub const ERRATA: &[Erratum] = &[
         equation: "(61)",
         printed: "“the input y”, “the state v_G”",
         right: "output y, state y_G",
-        verdict: Verdict::Undecided,
+        origin: ErratumOrigin::Undecided,
         evidence: Evidence::Context("the text around it"),
     },
     Erratum {
@@ -261,7 +261,7 @@ pub const ERRATA: &[Erratum] = &[
         equation: "(65)",
         printed: "six zeros and y_des",
         right: "five zeros and y_des",
-        verdict: Verdict::Undecided,
+        origin: ErratumOrigin::Undecided,
         evidence: Evidence::Context("(61) has six outputs"),
     },
     Erratum {
@@ -269,7 +269,7 @@ pub const ERRATA: &[Erratum] = &[
         equation: "(66)",
         printed: "L (cos(·) − 1), then −L",
         right: "(L/2) (cos(·) − 1), then −L",
-        verdict: Verdict::Undecided,
+        origin: ErratumOrigin::Undecided,
         evidence: Evidence::Context(
             "the reference must not jump; tested: `the_reference_paths_are_continuous_as_corrected_and_not_as_printed`",
         ),
@@ -279,7 +279,7 @@ pub const ERRATA: &[Erratum] = &[
         equation: "(69)",
         printed: "a stray row of eleven entries",
         right: "five rows that select the states 1, 4, 5, 6, 7",
-        verdict: Verdict::Recognition,
+        origin: ErratumOrigin::Recognition,
         evidence: Evidence::Context("(68)"),
     },
     Erratum {
@@ -287,7 +287,7 @@ pub const ERRATA: &[Erratum] = &[
         equation: "(71)",
         printed: "final value +π/2",
         right: "−π/2",
-        verdict: Verdict::Undecided,
+        origin: ErratumOrigin::Undecided,
         evidence: Evidence::Context(
             "the reference must not jump, and a right turn has negative yaw; tested: `the_reference_paths_are_continuous_as_corrected_and_not_as_printed`",
         ),
@@ -297,7 +297,7 @@ pub const ERRATA: &[Erratum] = &[
         equation: "table III",
         printed: "P_ψ = 536.67 N at 1 m/s",
         right: "563.67 N",
-        verdict: Verdict::Misprint,
+        origin: ErratumOrigin::Misprint,
         evidence: Evidence::Context(
             "P_ψ = 5R²mp⁵/(8 φ̇ g); tested: `the_printed_gains_are_the_closed_forms_but_for_one`",
         ),
@@ -307,7 +307,7 @@ pub const ERRATA: &[Erratum] = &[
         equation: "section IV.B.1",
         printed: "|u| < 10 N at both speeds",
         right: "3.015 N at 1 m/s, 10.350 N at 5 m/s",
-        verdict: Verdict::Misprint,
+        origin: ErratumOrigin::Misprint,
         evidence: Evidence::Context(
             "simulated: `lane_change_at_5_metres_per_second_needs_more_force_than_the_paper_says`",
         ),
@@ -317,7 +317,7 @@ pub const ERRATA: &[Erratum] = &[
         equation: "(78)",
         printed: "velocities [… ψ̇ φ̇ φ̇]",
         right: "[ẋ_G ẏ_G ψ̇ ϑ̇ φ̇]",
-        verdict: Verdict::Recognition,
+        origin: ErratumOrigin::Recognition,
         evidence: Evidence::Context("its matrix has the column of ϑ̇; the solution (79) is tested"),
     },
     Erratum {
@@ -325,7 +325,7 @@ pub const ERRATA: &[Erratum] = &[
         equation: "(89)",
         printed: "− 4 m₀ R ω̇₁ σ̇",
         right: "− m₀ R ω̇₁ σ̇",
-        verdict: Verdict::Undecided,
+        origin: ErratumOrigin::Undecided,
         evidence: Evidence::Test(
             "equation_89_couples_tilt_and_slider_by_one_mass_times_radius",
             Comparison {
@@ -341,7 +341,7 @@ pub const ERRATA: &[Erratum] = &[
         equation: "appendix C, A₁₃",
         printed: "3mR² ψ̇ and a second 2m₀Rr ψ̇ sin ϑ tan ϑ",
         right: "3mR² φ̇ and 2m₀Rr φ̇ tan ϑ",
-        verdict: Verdict::Recognition,
+        origin: ErratumOrigin::Recognition,
         evidence: Evidence::Test(
             "appendix_c_entry_13_has_the_pitch_rate_in_two_terms",
             Comparison {
@@ -357,7 +357,7 @@ pub const ERRATA: &[Erratum] = &[
         equation: "appendix C, A₁₄",
         printed: "4 m₈ R cos ϑ",
         right: "4 m g R cos ϑ",
-        verdict: Verdict::Recognition,
+        origin: ErratumOrigin::Recognition,
         evidence: Evidence::Test(
             "appendix_c_entry_14_has_gravity",
             Comparison {
@@ -373,7 +373,7 @@ pub const ERRATA: &[Erratum] = &[
         equation: "appendix C, A₁₆",
         printed: "products ψ̇ ψ̇",
         right: "ψ̇ φ̇",
-        verdict: Verdict::Recognition,
+        origin: ErratumOrigin::Recognition,
         evidence: Evidence::Test(
             "appendix_c_entry_16_has_products_of_yaw_and_pitch_rate",
             Comparison {
@@ -389,7 +389,7 @@ pub const ERRATA: &[Erratum] = &[
         equation: "appendix C, A₅₆",
         printed: "products ψ̇ ψ̇",
         right: "ψ̇ φ̇",
-        verdict: Verdict::Recognition,
+        origin: ErratumOrigin::Recognition,
         evidence: Evidence::Test(
             "appendix_c_entry_56_has_products_of_yaw_and_pitch_rate",
             Comparison {
@@ -405,7 +405,7 @@ pub const ERRATA: &[Erratum] = &[
         equation: "appendix C, A₂₁",
         printed: "4m₀Rr ψ̇ in the last but one term",
         right: "4m₀Rr φ̇",
-        verdict: Verdict::Recognition,
+        origin: ErratumOrigin::Recognition,
         evidence: Evidence::Test(
             "appendix_c_entry_21_has_the_pitch_rate",
             Comparison {
@@ -421,7 +421,7 @@ pub const ERRATA: &[Erratum] = &[
         equation: "appendix C, A₅₂",
         printed: "Rψ̇ cos ϑ/(5mR² + 4m₀R² + 4m₀Rr tan ϑ − 4m₀r²)",
         right: "Rψ̇ cos ϑ (mR² + 4m₀Rr tan ϑ − 4m₀r²)/(5mR² + 4m₀r²)",
-        verdict: Verdict::Recognition,
+        origin: ErratumOrigin::Recognition,
         evidence: Evidence::Test(
             "appendix_c_entry_52_is_a_quotient",
             Comparison {
@@ -437,7 +437,7 @@ pub const ERRATA: &[Erratum] = &[
         equation: "appendix C, A₅₃",
         printed: "a spurious 4m₀r/r and repeated fragments",
         right: "the entry of the test",
-        verdict: Verdict::Recognition,
+        origin: ErratumOrigin::Recognition,
         evidence: Evidence::Context(
             "all legible terms agree; tested: `steering_paper_equation_48_and_appendix_c_linear_unicycle`",
         ),
@@ -447,7 +447,7 @@ pub const ERRATA: &[Erratum] = &[
         equation: "appendix C, second A₉₁",
         printed: "A₉₁ = −R (ψ̇ sin ϑ + φ̇) sin ψ",
         right: "this is A₉₇",
-        verdict: Verdict::Recognition,
+        origin: ErratumOrigin::Recognition,
         evidence: Evidence::Test(
             "appendix_c_names_entry_97_by_the_name_of_entry_91",
             Comparison {
@@ -463,7 +463,7 @@ pub const ERRATA: &[Erratum] = &[
         equation: "appendix C, A₁₀,₇",
         printed: "cut",
         right: "R (ψ̇ sin ϑ + φ̇) cos ψ",
-        verdict: Verdict::Recognition,
+        origin: ErratumOrigin::Recognition,
         evidence: Evidence::Test(
             "appendix_c_entry_107_is_cut",
             Comparison {
@@ -479,7 +479,7 @@ pub const ERRATA: &[Erratum] = &[
         equation: "(10)",
         printed: "last argument φ̇",
         right: "φ̈",
-        verdict: Verdict::Recognition,
+        origin: ErratumOrigin::Recognition,
         evidence: Evidence::Test(
             "equation_10_depends_on_the_angular_acceleration_of_the_rider",
             Comparison {
@@ -499,7 +499,7 @@ pub const ERRATA: &[Erratum] = &[
         equation: "(13), first formula",
         printed: "sin φ φ² and cos φ φ",
         right: "sin φ φ̇² and cos φ φ̈",
-        verdict: Verdict::Recognition,
+        origin: ErratumOrigin::Recognition,
         evidence: Evidence::Test(
             "equation_13_has_rates_of_the_rider_angle",
             Comparison {

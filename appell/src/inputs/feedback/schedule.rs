@@ -9,7 +9,7 @@
 //! steady = { theta = 0.02 }                # the states on it; 0 where none is given
 //! ```
 
-use appell_analysis::control::schedule::{GainSchedule, Law};
+use appell_analysis::control::schedule::{GainSchedule, OperatingLaw};
 use appell_runtime::model::Quantity;
 use appell_spec::Code;
 use nalgebra::{DMatrix, DVector};
@@ -107,7 +107,7 @@ fn law(
     over: &Quantity,
     inputs: &[usize],
     states: &[usize],
-) -> Option<(f64, Law)> {
+) -> Option<(f64, OperatingLaw)> {
     let DeValue::Table(table) = node.get_ref() else {
         reader.tell(Code::WrongType, "expected a table", node.span(), "");
         return None;
@@ -129,7 +129,7 @@ fn law(
     let gains = reader.gains(table, "gains")?;
     reader.count_gains(table, "gains", &gains, inputs.len(), states.len());
     let info = reader.setup.info;
-    let mut law = Law {
+    let mut law = OperatingLaw {
         gain: DMatrix::zeros(inputs.len(), states.len()),
         states: DVector::zeros(states.len()),
         inputs: DVector::zeros(inputs.len()),

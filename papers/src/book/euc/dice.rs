@@ -2,29 +2,24 @@
 
 use std::f64::consts::TAU;
 
-/// Numbers without a pattern (Steele, Lea and Flood, *Fast splittable pseudorandom number generators*,
-/// 2014).
-pub(super) struct Dice(u64);
+use rand_xoshiro::SplitMix64;
+use rand_xoshiro::rand_core::{Rng as _, SeedableRng as _};
+
+/// Random numbers.
+pub(super) struct Dice(SplitMix64);
 
 impl Dice {
     /// A sequence of its own for every text.
     pub(super) fn of(text: &str) -> Self {
-        Self(text.bytes().fold(0xcbf2_9ce4_8422_2325, |hash, byte| {
+        let seed = text.bytes().fold(0xcbf2_9ce4_8422_2325, |hash, byte| {
             (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3)
-        }))
-    }
-
-    fn bits(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
+        });
+        Self(SplitMix64::seed_from_u64(seed))
     }
 
     /// A number between two others.
     pub(super) fn between(&mut self, low: f64, high: f64) -> f64 {
-        let part = (self.bits() >> 11) as f64 / (1_u64 << 53) as f64;
+        let part = (self.0.next_u64() >> 11) as f64 / (1_u64 << 53) as f64;
         low + (high - low) * part
     }
 

@@ -4,8 +4,8 @@ use crate::errata::{ERRATA, Source};
 use crate::euc::EQUATIONS;
 use appell_gap::motion_capture::Axes;
 
-use crate::book::claim::{Claim, Section, Verdict};
-use crate::book::steering::equations::misprint;
+use crate::book::claim::{Claim, Section};
+use crate::book::steering::equations::{DEFINITION, IDENTITY, misprint};
 
 /// Rounding of products of sines and cosines.
 const ROUNDING: f64 = 1e-14;
@@ -30,7 +30,7 @@ pub(super) fn section() -> Section {
     for (place, what, used) in DEFINITIONS {
         let ours = format!("put to use in {used}");
         let claim = Claim::that(place, what, ours, true, "appell check euc_3dof --thorough");
-        claims.push(claim.verdict(Verdict::Definition));
+        claims.push(claim.unchecked(DEFINITION));
     }
     for equation in EQUATIONS {
         let differences = equation.differences();
@@ -43,7 +43,7 @@ pub(super) fn section() -> Section {
         let published = format!("{}\n{}", equation.about, equation.text);
         let command = format!("appell derive {} --stage all", equation.mechanism());
         let claim = Claim::that(equation.number, &published, ours, holds, &command);
-        claims.push(claim.verdict(Verdict::Exact));
+        claims.push(claim.exactly().noted(IDENTITY));
     }
     let errata = ERRATA
         .iter()
@@ -82,4 +82,5 @@ fn transformations() -> Claim {
         off < ROUNDING,
         "appell motion SKELETON ride.csv",
     )
+    .exactly()
 }

@@ -5,7 +5,7 @@ use appell_report::figure::{Figure, Panel, Path, Series, Surface};
 
 use super::laboratory::Laboratory;
 use super::rider::Manoeuvre;
-use crate::book::claim::{Claim, Picture, Section, Verdict};
+use crate::book::claim::{Claim, Picture, Section};
 use crate::book::found::failed;
 use appell::Error;
 
@@ -50,7 +50,7 @@ pub(super) fn section(laboratory: &Laboratory) -> Result<Section, Error> {
             ranges[0] < VOLUME[0] && ranges[1] < VOLUME[1],
             command,
         )
-        .verdict(Verdict::Added),
+        .added(),
         Claim::that(
             "figure 3",
             "tilt and yaw rate are large",

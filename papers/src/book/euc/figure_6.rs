@@ -6,7 +6,7 @@ use appell_report::figure::{Figure, Panel, Series};
 use super::laboratory::{Laboratory, Session};
 use super::rider::Manoeuvre;
 use super::torque::{Curve, Planar};
-use crate::book::claim::{Claim, Picture, Section, Verdict};
+use crate::book::claim::{Claim, NOT_PUBLIC, Picture, Section};
 use crate::book::found::failed;
 use appell::Error;
 
@@ -50,7 +50,7 @@ pub(super) fn section(laboratory: &Laboratory) -> Result<Section, Error> {
                 true,
                 command,
             )
-            .verdict(Verdict::NoData),
+            .unchecked(NOT_PUBLIC),
         );
         let [gamma, phi] = [1, 2].map(|channel| largest(session, channel).to_degrees());
         claims.push(Claim::that(
@@ -69,7 +69,7 @@ pub(super) fn section(laboratory: &Laboratory) -> Result<Section, Error> {
                 off.is_finite(),
                 command,
             )
-            .verdict(Verdict::Added),
+            .added(),
         );
         pictures.push(Picture {
             svg: figure(three, session, best[0], printed.figure)?.to_svg(),

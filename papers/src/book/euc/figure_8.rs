@@ -5,7 +5,7 @@ use appell_report::figure::{Figure, Panel, Series};
 use super::laboratory::Laboratory;
 use super::rider::Manoeuvre;
 use super::torque::{Curve, Planar};
-use crate::book::claim::{Claim, Picture, Section, Verdict};
+use crate::book::claim::{Claim, NOT_PUBLIC, Picture, Section};
 use appell::Error;
 
 const COMMAND: &str = "appell reproduce euc";
@@ -57,7 +57,7 @@ pub(super) fn section(laboratory: &Laboratory) -> Result<Section, Error> {
              the rider from the wheel centre, about which the 2 DoF rider turns"
         );
         let claim = Claim::that(&place, "the rider's angle by (3)", ours, true, COMMAND);
-        claims.push(claim.verdict(Verdict::Added));
+        claims.push(claim.added());
     }
     let panel = |own: &Curves| Panel {
         unit: "N m".to_owned(),
@@ -172,6 +172,6 @@ fn flatness(claims: &mut Vec<Claim>, curves: &[Curves]) {
             true,
             COMMAND,
         )
-        .verdict(Verdict::NoData),
+        .unchecked(NOT_PUBLIC),
     );
 }

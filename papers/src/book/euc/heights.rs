@@ -12,7 +12,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::laboratory::{Laboratory, PERFECT, REAL, Session};
 use super::rider::Manoeuvre;
-use crate::book::claim::{Claim, Picture, Section, Verdict};
+use crate::book::claim::{Claim, Picture, Section};
 use crate::book::found::{failed, told};
 use appell::Error;
 
@@ -51,7 +51,7 @@ pub(super) fn section(laboratory: &Laboratory) -> Result<Section, Error> {
                 real.found.values[0].is_finite(),
                 command,
             )
-            .verdict(Verdict::Added),
+            .added(),
         );
         if session.manoeuvre != Manoeuvre::FigureEight {
             let perfect = laboratory.seen(session, PERFECT);
@@ -62,7 +62,7 @@ pub(super) fn section(laboratory: &Laboratory) -> Result<Section, Error> {
                 1e3 * off
             );
             let claim = Claim::that(&place, "nothing", ours, off.abs() < STRAIGHT, command);
-            claims.push(claim.verdict(Verdict::Added));
+            claims.push(claim.added());
         }
         all.push(real);
     }

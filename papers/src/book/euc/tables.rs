@@ -4,7 +4,7 @@ use appell_models::Shipped;
 
 use super::laboratory::Laboratory;
 use super::rider::Manoeuvre;
-use crate::book::claim::{Claim, Section, Verdict};
+use crate::book::claim::{Claim, NOT_PUBLIC, Section};
 use crate::book::found::failed;
 use appell::Error;
 
@@ -63,9 +63,9 @@ pub(super) fn section(laboratory: &Laboratory) -> Result<Section, Error> {
         .model
         .info();
     let mut claims = vec![
-        recordings.verdict(Verdict::NoData),
-        bodies,
-        mass.verdict(Verdict::Added),
+        recordings.unchecked(NOT_PUBLIC),
+        bodies.exactly(),
+        mass.added(),
     ];
     for (name, printed) in PARAMETERS {
         let index = info.parameter_index(name);

@@ -3,7 +3,7 @@
 use appell_analysis::{Change, Kind};
 
 use super::manoeuvres::{Path, Run};
-use crate::book::claim::{Claim, Section, Verdict};
+use crate::book::claim::{Claim, Section};
 use crate::book::found::{GRAVITY, Mechanism, RADIUS, SLIDER_MASS, WHEEL_MASS};
 use appell::Error;
 
@@ -39,7 +39,7 @@ fn hoop(claims: &mut Vec<Claim>) -> Result<(), Error> {
         12,
         "appell stability axisymmetric_wheel --chart theta=-1..1,psi_dot=0.5..8",
     );
-    claims.push(claim.verdict(Verdict::Erratum("over-claim")));
+    claims.push(claim.erratum("over-claim"));
     Ok(())
 }
 
@@ -63,7 +63,7 @@ fn discriminant(claims: &mut Vec<Claim>) -> Result<(), Error> {
     let command = "appell stability unicycle --fix psi_dot=0 --along phi_dot=0.05..8";
     let published = "b² > 4ac, without which the roots are a complex quadruple, is not mentioned; it always holds";
     let claim = Claim::that("(51)–(54)", published, ours, smallest > 0.0, command);
-    claims.push(claim.verdict(Verdict::Added));
+    claims.push(claim.added());
 
     let unicycle = Mechanism::shipped("unicycle")?;
     let branches = unicycle.branches(&[("psi_dot", 0.0)], "phi_dot", [0.05, 20.0])?;
@@ -75,7 +75,7 @@ fn discriminant(claims: &mut Vec<Claim>) -> Result<(), Error> {
     let ours = format!("{count} oscillations meet or begin to grow from 0.05 to 20 rad/s");
     let published = "no complex quadruple appears in straight rolling";
     let claim = Claim::that("(51)–(54)", published, ours, count == 0, command);
-    claims.push(claim.verdict(Verdict::Added));
+    claims.push(claim.added());
     Ok(())
 }
 
@@ -117,7 +117,7 @@ fn as_printed(claims: &mut Vec<Claim>) -> Result<(), Error> {
         };
         let published = format!("{what} succeeds");
         let claim = Claim::that(place, &published, ours, ending.is_some(), command);
-        claims.push(claim.verdict(Verdict::Erratum("undecided")));
+        claims.push(claim.erratum("undecided"));
     }
     Ok(())
 }

@@ -4,9 +4,14 @@ use crate::errata::{ERRATA, Erratum, Evidence, Source};
 use crate::steering::{EQUATIONS, Equation, Formulas};
 use appell_models::Shipped;
 
-use crate::book::claim::{Claim, Section, Verdict};
+use crate::book::claim::{Claim, Section};
 use crate::book::found::failed;
 use appell::Error;
+
+/// What an identical formula rests on.
+pub(crate) const IDENTITY: &str = "by the identity test";
+/// Why there is nothing to compare.
+pub(crate) const DEFINITION: &str = "a definition";
 
 /// Equations that say what a letter means or which law is used, and where they are put to use.
 const DEFINITIONS: &[(u32, &str, &str)] = &[
@@ -84,8 +89,7 @@ pub(super) fn section() -> Result<Section, Error> {
         let place = format!("({number})");
         let ours = format!("the spec says the same; used in {used}");
         let claim = Claim::that(&place, what, ours, true, "appell check unicycle");
-        let claim = claim.verdict(Verdict::Definition);
-        claims.push((number, claim));
+        claims.push((number, claim.unchecked(DEFINITION)));
     }
     for list in LISTS {
         claims.push((list.0, letters(list)?));
@@ -165,7 +169,7 @@ fn typed(equation: &Equation) -> Claim {
         differences.is_empty(),
         &command,
     );
-    claim.verdict(Verdict::Exact)
+    claim.exactly().noted(IDENTITY)
 }
 
 fn letters((number, what, mechanism, names): &(u32, &str, &str, &[&str])) -> Result<Claim, Error> {
@@ -179,12 +183,14 @@ fn letters((number, what, mechanism, names): &(u32, &str, &str, &[&str])) -> Res
     let holds = names.iter().all(has) && whole;
     let command = format!("appell check {mechanism}");
     let claim = Claim::that(&format!("({number})"), &published, ours, holds, &command);
-    Ok(claim.verdict(Verdict::Definition))
+    Ok(claim.exactly())
 }
 
 /// What is printed, and what is right.
 pub(crate) fn misprint(erratum: &Erratum) -> Claim {
-    let (evidence, holds) = match &erratum.evidence {
+    let kind = erratum.origin.words();
+    let mut note = format!("erratum: {kind}");
+    let (evidence, as_expected) = match &erratum.evidence {
         Evidence::Test(_, comparison) => {
             let [printed, right] = comparison.verdicts();
             let told = |holds: bool| if holds { "is" } else { "is not" };
@@ -199,6 +205,7 @@ pub(crate) fn misprint(erratum: &Erratum) -> Claim {
             // Names of tests are for those who read the source.
             let words = words.split("; tested").next().unwrap_or(words);
             let words = words.split("simulated:").next().unwrap_or(words);
+            note.push_str(", by the context");
             (words.to_owned(), true)
         }
     };
@@ -208,8 +215,8 @@ pub(crate) fn misprint(erratum: &Erratum) -> Claim {
         erratum.equation,
         &published,
         ours.trim_end(),
-        holds,
+        as_expected,
         "docs/errata.md",
     );
-    claim.verdict(Verdict::Erratum(erratum.verdict.words()))
+    claim.erratum(kind).noted(note)
 }

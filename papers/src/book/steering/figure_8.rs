@@ -4,7 +4,7 @@ use appell_report::figure::{Figure, Panel, Series};
 use appell_runtime::Trajectory;
 
 use super::manoeuvres::{Path, Run, largest};
-use crate::book::claim::{Claim, Picture, Section, Verdict};
+use crate::book::claim::{Claim, Picture, Section};
 use crate::book::found::failed;
 use appell::Error;
 
@@ -116,10 +116,10 @@ fn follow(claims: &mut Vec<Claim>, wanted: &Wanted, motion: &Trajectory, command
     let as_known = (force - wanted.force).abs() < 1e-3;
     let claim = match (wanted.run.path.turn, force < 10.0) {
         (false, true) => Claim::that(&place, "|u| < 10 N", ours, as_known, command),
-        (false, false) => Claim::that(&place, "|u| < 10 N", ours, as_known, command)
-            .verdict(Verdict::Erratum("over-claim")),
-        (true, _) => Claim::that(&place, "nothing on the force", ours, as_known, command)
-            .verdict(Verdict::Added),
+        (false, false) => {
+            Claim::that(&place, "|u| < 10 N", ours, as_known, command).erratum("over-claim")
+        }
+        (true, _) => Claim::that(&place, "nothing on the force", ours, as_known, command).added(),
     };
     claims.push(claim);
     let ours = format!(
@@ -134,7 +134,7 @@ fn follow(claims: &mut Vec<Claim>, wanted: &Wanted, motion: &Trajectory, command
         demand > 0.0 && demand < 0.3,
         command,
     );
-    claims.push(claim.verdict(Verdict::Added));
+    claims.push(claim.added());
 }
 
 fn line(motion: &Trajectory, name: &str, label: String) -> Series {

@@ -7,7 +7,7 @@ use appell_spectra::spectrum::characteristic_polynomial;
 
 use super::manoeuvres::Path;
 use super::tables::{POLE, placed, steered, straight};
-use crate::book::claim::{Claim, Section, Verdict};
+use crate::book::claim::{Claim, Section};
 use crate::book::found::{GRAVITY, Mechanism, RADIUS, SLIDER_MASS, WHEEL_MASS, told, values};
 use appell::Error;
 
@@ -212,7 +212,7 @@ fn reach(claims: &mut Vec<Claim>) -> Result<(), Error> {
     let mut rank = |place: &str, what: &str, found: &[usize], wanted: usize| {
         let holds = found.iter().all(|rank| *rank == wanted);
         let ours = format!("{found:?} at 1 and 5 m/s");
-        claims.push(Claim::that(place, what, ours, holds, command));
+        claims.push(Claim::that(place, what, ours, holds, command).exactly());
     };
     rank("(56), (57)", "rank M_c = 6 of 10", &ranks, 6);
     rank(
@@ -250,7 +250,7 @@ fn reach(claims: &mut Vec<Claim>) -> Result<(), Error> {
         let ours = format!("coefficients of the characteristic polynomial agree in {worst} digits");
         let command = "appell control unicycle --at omega_2=5[m/s]/R --poles -8";
         let claim = Claim::that("(67)", &published, ours, worst >= 9, command);
-        claims.push(claim.verdict(Verdict::Digits(worst)));
+        claims.push(claim.noted(format!("{worst} digits agree")));
     }
     Ok(())
 }
@@ -278,6 +278,6 @@ fn references(claims: &mut Vec<Claim>) {
         let command =
             "appell simulate unicycle --feedback docs/examples/feedback/lane_change_5_m_s.toml";
         let claim = Claim::that(place, published, ours, holds, command);
-        claims.push(claim.verdict(Verdict::Erratum("undecided")));
+        claims.push(claim.erratum("undecided"));
     }
 }

@@ -6,7 +6,7 @@ use appell_analysis::control::reduction::{Subsystem, reduce};
 use appell_analysis::control::robust_placement;
 use nalgebra::{Complex, DMatrix};
 
-use crate::book::claim::{Claim, Section, Verdict};
+use crate::book::claim::{Claim, Section, shown};
 use crate::book::found::{Mechanism, RADIUS, failed, told};
 use appell::Error;
 
@@ -132,19 +132,19 @@ fn entry(
     let rounds = format!("{gain:.decimals$}") == printed;
     let place = format!("{table}, {speed} m/s");
     let published = format!("{letter} = {printed} {unit}");
-    let wanted = printed.parse().unwrap_or(f64::NAN);
-    let claim = Claim::number(&place, &published, [wanted, gain], 0, command);
+    let claim = Claim::that(&place, &published, shown(gain), rounds, command);
     let [misprint, right] = MISPRINT;
     if printed == misprint {
         // 5 R² m p⁵/(8 φ̇ g)
-        let holds = format!("{gain:.2}") == right;
-        return Claim { holds, ..claim }.verdict(Verdict::Erratum("misprint, two digits swapped"));
+        let as_expected = format!("{gain:.2}") == right;
+        let claim = claim.erratum("misprint, two digits swapped");
+        return Claim {
+            as_expected,
+            ..claim
+        };
     }
     let digits = printed.chars().filter(char::is_ascii_digit).count();
-    let digits = u32::try_from(digits).unwrap_or(u32::MAX);
-    Claim {
-        holds: rounds,
-        ..claim
-    }
-    .verdict(Verdict::Digits(digits))
+    claim
+        .exactly()
+        .noted(format!("beside all {digits} printed digits"))
 }

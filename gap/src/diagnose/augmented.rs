@@ -1,7 +1,7 @@
 //! Candidates that bring a coordinate of their own, such as play: what they would gain.
 //!
 //! They do nothing to first order, and their models cost more than others. So they are tried on a grid of
-//! sizes, and only where the filter is surprised after reversals of the drive: there the teeth change
+//! sizes, and only where innovations are biased after reversals of the drive: there the teeth change
 //! sides.
 
 use appell_estimate::Estimation;
@@ -21,13 +21,13 @@ const FACTORS: [f64; 3] = [0.6, 1.2, 2.4];
 /// which the gap is crossed.
 const AFTER: [f64; 4] = [0.05, 0.1, 0.2, 0.4];
 /// Standard deviations by which the mean innovation in one of these times stands out.
-const SURPRISED: f64 = 4.0;
+const BIASED: f64 = 4.0;
 
 /// Those that gain at some size.
-pub(super) fn tried(bench: &Bench<'_>, fitted: &Fitted) -> Result<Vec<Screened>, DiagnoseError> {
+pub(super) fn screened(bench: &Bench<'_>, fitted: &Fitted) -> Result<Vec<Screened>, DiagnoseError> {
     let effects = bench.effects;
-    // An input that follows the motion surprises the filter after its reversals whatever the cause.
-    if bench.surprises.count > 0 {
+    // An input that follows the motion biases the innovations after its reversals whatever the cause.
+    if bench.input_innovations.count > 0 {
         return Ok(Vec::new());
     }
     // One such coordinate at a time, and none where contacts creep.
@@ -47,7 +47,7 @@ pub(super) fn tried(bench: &Bench<'_>, fitted: &Fitted) -> Result<Vec<Screened>,
         let Some(drive) = Drive::of(effects.with(&[]), p, beside) else {
             continue;
         };
-        if is_surprised(bench, fitted, &drive)? && effects.enrich(index, &drive) {
+        if is_biased(bench, fitted, &drive)? && effects.augment(index, &drive) {
             list.extend(best_size(bench, fitted, index)?);
         }
     }
@@ -55,7 +55,7 @@ pub(super) fn tried(bench: &Bench<'_>, fitted: &Fitted) -> Result<Vec<Screened>,
 }
 
 /// Whether innovations lean to one side after the drive has changed sign.
-fn is_surprised(bench: &Bench<'_>, fitted: &Fitted, drive: &Drive) -> Result<bool, DiagnoseError> {
+fn is_biased(bench: &Bench<'_>, fitted: &Fitted, drive: &Drive) -> Result<bool, DiagnoseError> {
     let setup = bench.setup(&fitted.members);
     let estimation = Estimation::new(&setup, &bench.recordings)?;
     let runs = estimation.innovations(&fitted.fit.values)?;
@@ -82,7 +82,7 @@ fn is_surprised(bench: &Bench<'_>, fitted: &Fitted, drive: &Drive) -> Result<boo
             }
         }
     }
-    let stands_out = |(sum, count): &(f64, f64)| sum.abs() > SURPRISED * count.sqrt();
+    let stands_out = |(sum, count): &(f64, f64)| sum.abs() > BIASED * count.sqrt();
     Ok(sums.iter().any(stands_out))
 }
 

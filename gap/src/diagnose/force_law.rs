@@ -22,7 +22,7 @@ const DEPENDS: f64 = 0.3;
 
 /// Data and law over a variable: the force in SI, the variable in the unit of the spec.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Law {
+pub struct ForceLaw {
     /// The pseudo-velocity whose equation lacks the force.
     pub equation: String,
     /// Unit of the force.
@@ -50,11 +50,11 @@ struct Step {
 }
 
 /// Of the equation with the greatest share.
-pub(super) fn law(
+pub(super) fn force_law(
     bench: &Bench<'_>,
     comparison: &Comparison,
     place: &Where,
-) -> Result<Option<Law>, DiagnoseError> {
+) -> Result<Option<ForceLaw>, DiagnoseError> {
     let info = bench.effects.info();
     let Some(first) = place.equations.first() else {
         return Ok(None);
@@ -89,7 +89,7 @@ pub(super) fn law(
         let means = means(&steps, variable, of).into_iter();
         means.map(in_unit).collect()
     };
-    Ok(Some(Law {
+    Ok(Some(ForceLaw {
         equation: first.name.clone(),
         unit: first.unit.clone(),
         variable: quantity.name.to_string(),

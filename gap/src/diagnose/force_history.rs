@@ -10,7 +10,7 @@ use super::bench::Bench;
 use super::compare::Comparison;
 use super::forces::Forces;
 use super::localise::force_unit;
-use super::windows::WINDOW;
+use super::windows::WINDOW_S;
 
 /// Most parts of all runs; more cannot be told apart.
 const PARTS: f64 = 160.0;
@@ -19,7 +19,7 @@ const STEPS: usize = 2000;
 
 /// The missing force of each equation over time.
 #[derive(Debug, Clone, PartialEq)]
-pub struct OverTime {
+pub struct ForceHistory {
     /// Length of a part in s.
     pub part: f64,
     /// Runs: file, begin in s, parts.
@@ -40,10 +40,10 @@ pub struct MissingForce {
 }
 
 /// Of all runs that were fitted.
-pub(super) fn over_time(
+pub(super) fn force_history(
     bench: &Bench<'_>,
     comparison: &Comparison,
-) -> Result<OverTime, DiagnoseError> {
+) -> Result<ForceHistory, DiagnoseError> {
     let nominal = comparison.nominal();
     let setup = bench.setup(&nominal.members);
     let estimation = Estimation::new(&setup, &bench.recordings)?;
@@ -57,7 +57,7 @@ pub(super) fn over_time(
         .map(ends)
         .map(|(from, to)| to - from)
         .sum();
-    let part = WINDOW.max(length / PARTS);
+    let part = WINDOW_S.max(length / PARTS);
     let mut runs = Vec::new();
     let mut squares: Vec<Vec<(f64, f64)>> = vec![Vec::new(); info.speeds];
     for (run, recording) in bench.recordings.iter().enumerate() {
@@ -94,7 +94,7 @@ pub(super) fn over_time(
                 .map(|(sum, count)| (sum / count.max(1.0)).sqrt())
                 .collect(),
         });
-    Ok(OverTime {
+    Ok(ForceHistory {
         part,
         runs,
         equations: equations.collect(),

@@ -1,19 +1,16 @@
 //! Channels that were recorded and that the model does not know, with their rates: what the gap may
 //! depend on.
 
-use appell_estimate::smoothing::savitzky_golay::weights;
-
 use crate::data::{DataSet, Role, Run};
+use crate::slope::{Slope, WINDOW};
 
-/// Samples of a parabola whose slope tells a rate.
-const WINDOW: usize = 15;
 /// Part of a channel's variance that a straight line over time has to leave: what does not return
 /// tells the time.
 const RETURNS: f64 = 0.1;
 
 /// A channel or its rate along the runs to fit.
 #[derive(Debug, Clone)]
-pub(super) struct Beside {
+pub(super) struct UnmodelledChannel {
     /// What it is called.
     pub(super) name: String,
     /// Its lowest and its highest value.
@@ -22,7 +19,7 @@ pub(super) struct Beside {
     runs: Vec<(Vec<f64>, Vec<f64>)>,
 }
 
-impl Beside {
+impl UnmodelledChannel {
     /// All of them.
     pub(super) fn of(set: &DataSet) -> Vec<Self> {
         let mut all = Vec::new();
@@ -73,14 +70,8 @@ fn rates(times: &[f64], values: &[f64]) -> Vec<f64> {
             .saturating_sub(WINDOW / 2)
             .min(rows.saturating_sub(WINDOW));
         let window = from..rows.min(from + WINDOW);
-        let weights = weights(&times[window.clone()], times[row], 2, 1);
-        weights.map_or(f64::NAN, |weights| {
-            weights
-                .iter()
-                .zip(&values[window])
-                .map(|(w, y)| w * y)
-                .sum()
-        })
+        let values = values[window.clone()].iter().copied();
+        Slope::at(times[row], &times[window], values).map_or(f64::NAN, |slope| slope.value)
     };
     (0..rows).map(rate).collect()
 }

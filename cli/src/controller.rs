@@ -1,8 +1,8 @@
 //! Everything that drives the inputs of a simulation.
 
+use appell_analysis::control::sampler::Sampler;
+use appell_analysis::control::schedule::GainSchedule;
 use appell_codegen::symbolic::Expr as Lowered;
-use appell_runtime::control::sampler::Sampler;
-use appell_runtime::control::schedule::GainSchedule;
 use appell_runtime::inputs::{InputSource, TabulatedInputs};
 use appell_spec::expr::Expr;
 use appell_spec::mechanism::InputId;

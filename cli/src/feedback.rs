@@ -17,8 +17,8 @@
 
 use std::path::Path;
 
-use appell_runtime::control::sampled::Sampling;
-use appell_runtime::control::schedule::GainSchedule;
+use appell_analysis::control::sampled::Sampling;
+use appell_analysis::control::schedule::GainSchedule;
 use appell_spec::expr::{Expr, Span};
 use appell_spec::limits::MAX_FILE;
 use appell_spec::mechanism::InputId;

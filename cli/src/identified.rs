@@ -7,9 +7,9 @@ mod page;
 use std::fmt::Write as _;
 use std::ops::Range;
 
+use appell_estimate::EstimateError;
 use appell_gap::data::{Channel, DataSet};
 use appell_gap::identify::{AHEAD, Answer, Estimate, HeldOut, IdentifyError, Known};
-use appell_runtime::estimate::EstimateError;
 
 use crate::failure::Failure;
 use crate::recording;

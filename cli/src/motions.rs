@@ -7,7 +7,7 @@ pub(crate) mod told;
 use std::path::PathBuf;
 use std::str::FromStr;
 
-use appell_runtime::analysis::{
+use appell_analysis::{
     Axis, Branch, BranchError, BranchOptions, Branches, Chart, ChartError, Point, Requirement,
     Stability, SteadyError, SteadyMotion, SteadyProblem, Term,
 };

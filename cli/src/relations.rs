@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use appell_gap::inverse::{Answer, Estimate, Inputs};
-use appell_runtime::figure::{Figure, Panel, Series};
+use appell_report::figure::{Figure, Panel, Series};
 use appell_runtime::model::ModelInfo;
 use serde_json::{Value, json};
 

@@ -3,7 +3,6 @@
 pub mod audit;
 pub mod build;
 pub mod compile;
-pub mod drawing;
 pub mod emit;
 pub mod formulations;
 pub mod interpreted;
@@ -11,7 +10,6 @@ pub mod interpreted;
 pub mod jit;
 pub mod linearisation;
 pub mod mechanics;
-pub mod page;
 pub mod program;
 pub mod schedule;
 pub mod symbolic;

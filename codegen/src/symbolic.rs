@@ -8,7 +8,7 @@
 mod canonical;
 mod common_factors;
 mod differentiate;
-pub(crate) mod dissolve;
+pub mod dissolve;
 mod evaluate;
 mod expand;
 pub(crate) mod field;

@@ -10,7 +10,7 @@
 //! ```
 //!
 //! The likelihood is that of the innovations of an extended Kalman filter with disturbing forces on
-//! every pseudo-velocity, whose levels are estimated too (`appell_runtime::estimate`). A model that
+//! every pseudo-velocity, whose levels are estimated too (`appell_estimate`). A model that
 //! is wrong therefore shows as large disturbances, not as wrong parameters with narrow intervals; and
 //! the robust intervals do not believe that what is left is white.
 
@@ -23,7 +23,7 @@ mod problem;
 mod shooting;
 mod start;
 
-use appell_runtime::estimate::{Estimation, Fit, Setup};
+use appell_estimate::{Estimation, Fit, Setup};
 use appell_runtime::model::Model;
 
 use crate::data::{DataSet, Part, Run};

@@ -1,9 +1,11 @@
 //! Parameters and inputs of recorded motions whose inputs nobody measured.
 //!
 //! The equations that the inputs leave over hold whatever they were; see
-//! [`appell_runtime::inverse`]. Runs to be fitted take part; their coordinates have to be measured.
+//! [`appell_estimate::inverse`]. Runs to be fitted take part; their coordinates have to be measured.
 
-use appell_runtime::inverse::{Consistency, Found, InverseError, Record, Relations, Sought, Track};
+use appell_estimate::inverse::{
+    Consistency, Found, InverseError, Record, Relations, Sought, Track,
+};
 use appell_runtime::model::{Model, Quantity};
 use nalgebra::{DMatrix, DVector};
 

@@ -6,11 +6,11 @@ mod common;
 use std::f64::consts::{PI, TAU};
 use std::fmt::Write as _;
 
+use appell_estimate::smoothing::savitzky_golay::SavitzkyGolay;
 use appell_gap::data;
 use appell_gap::motion_capture::{
     Axes, Capture, Ride, Skeleton, Smoothed, filter, manifest, table,
 };
-use appell_runtime::signal::savitzky_golay::SavitzkyGolay;
 use common::{Folder, library};
 
 /// The skeleton of the documents.

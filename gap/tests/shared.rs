@@ -5,10 +5,10 @@ mod common;
 
 use std::path::{Path, PathBuf};
 
+use appell_estimate::smoothing::Samples;
+use appell_estimate::smoothing::kinematic::Kinematic;
+use appell_estimate::smoothing::spline::SmoothingSpline;
 use appell_gap::data::{FindingKind, Part, read};
-use appell_runtime::signal::Samples;
-use appell_runtime::signal::kinematic::Kinematic;
-use appell_runtime::signal::spline::SmoothingSpline;
 use common::library;
 
 /// A statement may be wrong by a factor of two; the data tell the level to a tenth.

@@ -196,8 +196,7 @@ pub fn lu_solve_in_place(matrix: &mut [f64], right: &mut [f64], n: usize) -> f64
 
 /// The same where only a solution counts: X replaces B. False for a matrix that is singular up to
 /// rounding or not finite; `right` is worthless then.
-#[cfg(feature = "std")]
-pub(crate) fn solved_in_place(matrix: &mut [f64], right: &mut [f64], n: usize) -> bool {
+pub fn solved_in_place(matrix: &mut [f64], right: &mut [f64], n: usize) -> bool {
     let pivot = lu_solve_in_place(matrix, right, n);
     pivot > 0.0 && right.iter().all(|entry| entry.is_finite())
 }

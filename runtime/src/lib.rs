@@ -1,27 +1,18 @@
 //! Models, integration and trajectories for appell.
 //!
-//! With the feature `std`:
+//! With the feature `std`, the default:
 //!
 //! - [`model`]: the trait that emitted models and models made at run time implement;
-//! - [`signal`]: tabulated functions of time; derivatives of noisy samples with their covariance;
+//! - [`signal`]: tabulated functions of time;
 //! - [`inputs`]: what drives a model;
 //! - [`integrate`]: initial value problems, events, typed failures;
 //! - [`linearise`]: A and B in the independent states;
+//! - [`positions`]: states consistent with position constraints;
 //! - [`simulate`] and [`trajectory`]: motions of a model and their files;
 //! - [`differences`]: derivatives that a model has no formulas for;
-//! - [`contact`] and [`condition`]: where a model stops being valid;
-//! - [`figure`]: plots as SVG.
+//! - [`contact`] and [`condition`]: where a model stops being valid.
 //!
-//! With the feature `analysis`, the default, also what needs matrices of any size:
-//!
-//! - [`spectrum`]: eigenvalues, eigenvectors, characteristic polynomials;
-//! - [`singular`]: singular values and vectors, ranks, shortest solutions;
-//! - [`analysis`]: steady motions, their families and stability;
-//! - [`control`]: controllability, pole placement, optimal feedback, sampled loops;
-//! - [`inverse`]: the inputs of a measured motion, and what it must satisfy whatever they were;
-//! - [`estimate`]: filters, likelihoods with gradients, fits to recordings.
-//!
-//! Without either the crate is `no_std` and holds what emitted code needs: the scalar trait [`Real`],
+//! Without it the crate is `no_std` and holds what emitted code needs: the scalar trait [`Real`],
 //! dual numbers and lanes that implement it, and small dense systems in [`dense`]. `f32` and
 //! `f64` are then scalars with the feature `libm`. Both are checked by
 //!
@@ -32,27 +23,17 @@
 
 #![cfg_attr(not(feature = "std"), no_std)]
 
-#[cfg(feature = "analysis")]
-pub mod analysis;
 #[cfg(feature = "std")]
 pub mod condition;
 #[cfg(feature = "std")]
 pub mod contact;
-#[cfg(feature = "analysis")]
-pub mod control;
 pub mod dense;
 #[cfg(feature = "std")]
 pub mod differences;
-#[cfg(feature = "analysis")]
-pub mod estimate;
-#[cfg(feature = "std")]
-pub mod figure;
 #[cfg(feature = "std")]
 pub mod inputs;
 #[cfg(feature = "std")]
 pub mod integrate;
-#[cfg(feature = "analysis")]
-pub mod inverse;
 #[cfg(feature = "std")]
 pub mod linearise;
 #[cfg(feature = "std")]
@@ -64,10 +45,6 @@ pub mod real;
 pub mod signal;
 #[cfg(feature = "std")]
 pub mod simulate;
-#[cfg(feature = "analysis")]
-pub mod singular;
-#[cfg(feature = "analysis")]
-pub mod spectrum;
 #[cfg(feature = "std")]
 pub mod trajectory;
 

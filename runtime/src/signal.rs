@@ -1,32 +1,167 @@
-//! Signals: functions of time given as tables, and derivatives of noisy samples.
-//!
-//! | file | idea |
-//! |---|---|
-//! | `tabulated.rs` | a table as a function of time, for inputs and imposed motions |
-//! | `samples.rs` | measured values at increasing times; what an estimate of them is |
-//! | `savitzky_golay.rs`, `window.rs` | polynomials fitted in a window that moves; how wide it may be |
-//! | `kinematic.rs`, `spline.rs` | integrated white noise, smoothed; splines with cross-validation |
-//! | `regression_spline.rs` | splines of least squares with knots that several quantities share |
-//! | `butterworth.rs` | a low-pass filter without a shift in phase |
-//! | `noise.rs` | the noise level, from differences and from standstill |
-//! | `angle.rs` | angles counted on through whole turns |
-//!
-//! Which smoother serves? [`kinematic`] where the noise is known: the likelihood chooses how much to
-//! smooth, and the covariance is that of a model. [`spline`] where it is not. [`savitzky_golay`] where
-//! the result must depend on neighbours only, and its weights must be known. [`butterworth`] where a
-//! frequency is to be cut off, on uniform grids.
+//! Tabulated functions of time and their derivatives.
 
-pub mod angle;
-pub mod butterworth;
-pub mod kinematic;
-pub mod noise;
-#[cfg(feature = "analysis")]
-pub mod regression_spline;
-pub mod samples;
-pub mod savitzky_golay;
-pub mod spline;
-mod tabulated;
-pub mod window;
+use crate::model::{Interpolation, SignalTable};
 
-pub use samples::{Estimate, Samples, SamplesError};
-pub use tabulated::{Signal, SignalError};
+/// Why a table is not a function of time.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum SignalError {
+    /// No rows.
+    #[error("signal `{name}` has no rows")]
+    Empty {
+        /// The signal.
+        name: String,
+    },
+    /// Not as many values as times.
+    #[error("signal `{name}` has {times} times and {values} values")]
+    Lengths {
+        /// The signal.
+        name: String,
+        /// Number of times.
+        times: usize,
+        /// Number of values.
+        values: usize,
+    },
+    /// A time that does not follow its predecessor, or is not finite.
+    #[error("signal `{name}`: time {t} s of row {row} is not later than the row before")]
+    TimesNotIncreasing {
+        /// The signal.
+        name: String,
+        /// Row, counted from 0.
+        row: usize,
+        /// Its time in s.
+        t: f64,
+    },
+    /// A value that is infinite or not a number.
+    #[error("signal `{name}`: value {value} of row {row} is not finite")]
+    ValueNotFinite {
+        /// The signal.
+        name: String,
+        /// Row, counted from 0.
+        row: usize,
+        /// Its value.
+        value: f64,
+    },
+}
+
+/// A table ready to be evaluated.
+///
+/// Between two rows it is a polynomial; the rows' times are where an integrator has to stop, see
+/// [`Signal::knots`]. At a row's time the right-hand limit is returned.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Signal {
+    times: Vec<f64>,
+    values: Vec<f64>,
+    /// Second derivatives at the rows; zeros unless the signal is a spline.
+    curvatures: Vec<f64>,
+    interpolation: Interpolation,
+}
+
+impl Signal {
+    /// Checks a table and, for a spline, solves for its curvatures.
+    pub fn new(table: &SignalTable) -> Result<Self, SignalError> {
+        let name = || table.name.to_string();
+        let (times, values) = (table.times.as_ref(), table.values.as_ref());
+        if times.is_empty() {
+            return Err(SignalError::Empty { name: name() });
+        }
+        if times.len() != values.len() {
+            let (times, values) = (times.len(), values.len());
+            return Err(SignalError::Lengths {
+                name: name(),
+                times,
+                values,
+            });
+        }
+        for (row, &t) in times.iter().enumerate() {
+            if !t.is_finite() || (row > 0 && t <= times[row - 1]) {
+                return Err(SignalError::TimesNotIncreasing {
+                    name: name(),
+                    row,
+                    t,
+                });
+            }
+        }
+        if let Some(row) = values.iter().position(|value| !value.is_finite()) {
+            let value = values[row];
+            return Err(SignalError::ValueNotFinite {
+                name: name(),
+                row,
+                value,
+            });
+        }
+        let curvatures = match table.interpolation {
+            Interpolation::Cubic => natural_spline_curvatures(times, values),
+            Interpolation::Hold | Interpolation::Linear => vec![0.0; times.len()],
+        };
+        let (times, values) = (times.to_vec(), values.to_vec());
+        Ok(Self {
+            times,
+            values,
+            curvatures,
+            interpolation: table.interpolation,
+        })
+    }
+
+    /// The times between which the signal is smooth, in s.
+    pub fn knots(&self) -> &[f64] {
+        &self.times
+    }
+
+    /// The time derivative of order 0, 1 or 2 at `t`, in SI; NaN for higher orders.
+    pub fn derivative(&self, t: f64, order: u8) -> f64 {
+        if order > 2 || t.is_nan() {
+            return f64::NAN;
+        }
+        let last = self.times.len() - 1;
+        let rows_not_later = self.times.partition_point(|&time| time <= t);
+        if rows_not_later == 0 || rows_not_later > last {
+            let end = if rows_not_later == 0 {
+                self.values[0]
+            } else {
+                self.values[last]
+            };
+            return if order == 0 { end } else { 0.0 };
+        }
+        let i = rows_not_later - 1;
+        if self.interpolation == Interpolation::Hold {
+            return if order == 0 { self.values[i] } else { 0.0 };
+        }
+        let step = self.times[i + 1] - self.times[i];
+        let since = t - self.times[i];
+        let (c_left, c_right) = (self.curvatures[i], self.curvatures[i + 1]);
+        let jerk = (c_right - c_left) / step;
+        let chord = (self.values[i + 1] - self.values[i]) / step;
+        let slope = chord - step * (2.0 * c_left + c_right) / 6.0;
+        match order {
+            0 => self.values[i] + since * (slope + since * (c_left / 2.0 + since * jerk / 6.0)),
+            1 => slope + since * (c_left + since * jerk / 2.0),
+            _ => c_left + since * jerk,
+        }
+    }
+
+    /// The value at `t` in SI.
+    pub fn value(&self, t: f64) -> f64 {
+        self.derivative(t, 0)
+    }
+}
+
+/// Second derivatives of the natural cubic spline at its knots, by elimination in the tridiagonal
+/// system (de Boor, *A Practical Guide to Splines*, chapter IV).
+fn natural_spline_curvatures(times: &[f64], values: &[f64]) -> Vec<f64> {
+    let n = times.len();
+    let mut curvatures = vec![0.0; n];
+    // After elimination: curvature[i] = curvatures[i] − ratio[i] · curvature[i + 1].
+    let mut ratio = vec![0.0; n];
+    for i in 1..n.saturating_sub(1) {
+        let (left, right) = (times[i] - times[i - 1], times[i + 1] - times[i]);
+        let chord_left = (values[i] - values[i - 1]) / left;
+        let chord_right = (values[i + 1] - values[i]) / right;
+        let pivot = 2.0 * (left + right) - left * ratio[i - 1];
+        ratio[i] = right / pivot;
+        curvatures[i] = (6.0 * (chord_right - chord_left) - left * curvatures[i - 1]) / pivot;
+    }
+    for i in (1..n.saturating_sub(1)).rev() {
+        curvatures[i] -= ratio[i] * curvatures[i + 1];
+    }
+    curvatures
+}

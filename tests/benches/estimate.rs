@@ -5,7 +5,7 @@
 use appell_codegen::compile;
 use appell_codegen::jit::JitModel;
 use appell_codegen::program::FunctionKind;
-use appell_runtime::estimate::{Estimation, Measured, Recording, Setup, Unknown};
+use appell_estimate::{Estimation, Measured, Recording, Setup, Unknown};
 use criterion::{Criterion, criterion_group, criterion_main};
 
 /// Samples of the recording.

@@ -12,7 +12,7 @@
     reason = "a study ends where something is missing"
 )]
 
-use appell_runtime::inverse::{Consistency, Found, Record, Relations, Sought, Track};
+use appell_estimate::inverse::{Consistency, Found, Record, Relations, Sought, Track};
 use appell_runtime::model::Model;
 use appell_tests::random::Random;
 use appell_tests::rides::{MANOEUVRES, captured, planar, seen, shown, skeleton};

@@ -13,8 +13,8 @@ use std::fmt::Write as _;
 use std::path::PathBuf;
 use std::time::Instant;
 
+use appell_estimate::inverse::{Consistency, Record, Relations, Sought, Track};
 use appell_gap::motion_capture::{Capture, Ride, Skeleton, Smoothed, filter};
-use appell_runtime::inverse::{Consistency, Record, Relations, Sought, Track};
 use appell_runtime::model::Model;
 use appell_tests::random::Random;
 use appell_tests::rides::{MANOEUVRES, captured, planar, record_of, skeleton};

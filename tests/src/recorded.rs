@@ -1,8 +1,6 @@
 //! Simulated recordings: motions under white noise, seen through noise.
 
-use appell_runtime::estimate::{
-    Disturbance, Estimation, Layout, Measured, Recording, Setup, Unknown,
-};
+use appell_estimate::{Disturbance, Estimation, Layout, Measured, Recording, Setup, Unknown};
 use appell_runtime::model::{At, Model};
 use appell_runtime::positions::{Moving, Positions};
 

@@ -1,15 +1,15 @@
 //! Rides of a planar electric unicycle: manoeuvres under a rider who keeps the balance and sways.
 
+use appell_analysis::control::lqr::{self, weights};
+use appell_analysis::control::operating_point::OperatingPoint;
+use appell_analysis::control::reduction::reduce;
 use appell_codegen::jit::JitModel;
 use appell_codegen::program::FunctionKind;
+use appell_estimate::inverse::Record;
 use appell_gap::motion_capture::{Axes, Capture, Ride, Skeleton, Track, Vector};
 use appell_models::Shipped;
 use appell_runtime::Simulation;
-use appell_runtime::control::lqr::{self, weights};
-use appell_runtime::control::operating_point::OperatingPoint;
-use appell_runtime::control::reduction::reduce;
 use appell_runtime::integrate::Options;
-use appell_runtime::inverse::Record;
 use appell_runtime::model::Model;
 use appell_runtime::simulate::Sampling;
 use nalgebra::{DMatrix, DVector};

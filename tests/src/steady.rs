@@ -1,7 +1,7 @@
 //! Steady motions of the shipped mechanisms.
 
+use appell_analysis::{Point, SteadyProblem, Term};
 use appell_models::Shipped;
-use appell_runtime::analysis::{Point, SteadyProblem, Term};
 use appell_runtime::model::Model;
 
 /// A shipped model.

@@ -3,8 +3,8 @@
 
 use appell_codegen::interpreted::InterpretedModel;
 use appell_codegen::mechanics::derive;
-use appell_codegen::page::{self, Stage};
 use appell_codegen::program::FunctionKind;
+use appell_report::derivation::{self, Stage};
 use appell_runtime::model::{At, Model};
 
 const PAGE: &str = include_str!("../../docs/add-a-mechanism.md");
@@ -28,8 +28,9 @@ fn the_pieces_of_the_page_are_the_spec() {
 fn the_equations_of_the_page_are_those_of_the_spec() {
     let checked = appell_spec::load("ball_and_beam.toml", SPEC).unwrap();
     let mut derivation = derive(&checked.mechanism).unwrap();
-    let text =
-        page::text(&page::page(&checked.mechanism, &mut derivation, Stage::Equations).unwrap());
+    let text = derivation::text(
+        &derivation::page(&checked.mechanism, &mut derivation, Stage::Equations).unwrap(),
+    );
     let equations = blocks("text")[1];
     assert!(equations.contains("sin α"));
     assert!(text.contains(equations), "{text}");

@@ -2,11 +2,11 @@
 
 #![allow(clippy::unwrap_used, reason = "what is missing fails the test")]
 
-use appell_models::Shipped;
-use appell_runtime::estimate::{
+use appell_estimate::{
     Consistency, Coordinate, Effort, Estimation, Fit, Free, Measured, Recording, Setup, Shooting,
     Unknown, chi_squared_quantile,
 };
+use appell_models::Shipped;
 use appell_runtime::model::{At, Model};
 use appell_tests::random::Random;
 use appell_tests::recorded::{Drive, record_with_states};

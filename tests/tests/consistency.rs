@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "what is missing fails the test")]
 
-use appell_runtime::inverse::{
+use appell_estimate::inverse::{
     Consistency, Found, InverseError, Motion, Record, Relations, Sought, Track,
 };
 use appell_runtime::model::Model;

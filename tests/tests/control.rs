@@ -4,17 +4,17 @@
 
 use std::f64::consts::PI;
 
+use appell_analysis::control::attraction::{Axis, Fate, Region};
+use appell_analysis::control::controllability::{Controllability, output_rank};
+use appell_analysis::control::feedback::Feedback;
+use appell_analysis::control::lqr::{self, weights};
+use appell_analysis::control::operating_point::{MotionEquations, OperatingPoint};
+use appell_analysis::control::placement;
+use appell_analysis::control::reduction::{ReductionError, Subsystem, reduce};
+use appell_analysis::control::sampled::Sampling;
+use appell_analysis::control::sampler::{SampledFeedback, Sampler};
+use appell_analysis::control::schedule::{GainSchedule, Law, ScheduledFeedback};
 use appell_models::Shipped;
-use appell_runtime::control::attraction::{Axis, Fate, Region};
-use appell_runtime::control::controllability::{Controllability, output_rank};
-use appell_runtime::control::feedback::Feedback;
-use appell_runtime::control::lqr::{self, weights};
-use appell_runtime::control::operating_point::{MotionEquations, OperatingPoint};
-use appell_runtime::control::placement;
-use appell_runtime::control::reduction::{ReductionError, Subsystem, reduce};
-use appell_runtime::control::sampled::Sampling;
-use appell_runtime::control::sampler::{SampledFeedback, Sampler};
-use appell_runtime::control::schedule::{GainSchedule, Law, ScheduledFeedback};
 use appell_runtime::inputs::InputSource;
 use appell_runtime::integrate::Options;
 use appell_runtime::model::{At, Model};
@@ -392,7 +392,7 @@ fn a_sampled_law_with_a_delay_keeps_the_unicycle_where_the_continuous_gains_fail
     // The linear sampled loop tells the motion at the measurements, as long as it is small.
     let mut ignorant = placed(speed, LANE).resize_horizontally(7, 0.0);
     let closed = sampling.discretise(&system).closed(&ignorant);
-    let poles = appell_runtime::spectrum::eigenvalues(&closed).unwrap();
+    let poles = appell_spectra::spectrum::eigenvalues(&closed).unwrap();
     assert!(poles.iter().any(|pole| pole.norm() > 1.0), "{poles:?}");
     ignorant.fill_column(6, 0.0);
     let mut simulation = Simulation::new(point.model);

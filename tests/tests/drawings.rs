@@ -4,7 +4,7 @@
 
 use std::fs;
 
-use appell_codegen::drawing::{drawing, marked};
+use appell_report::drawing::{drawing, marked};
 use appell_spec::Mechanism;
 use appell_tests::shipped;
 

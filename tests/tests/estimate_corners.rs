@@ -4,10 +4,8 @@
 
 use appell_codegen::jit::JitModel;
 use appell_codegen::program::FunctionKind;
+use appell_estimate::{Effort, Estimation, Fit, Free, Layout, Measured, Recording, Setup, Unknown};
 use appell_models::Shipped;
-use appell_runtime::estimate::{
-    Effort, Estimation, Fit, Free, Layout, Measured, Recording, Setup, Unknown,
-};
 use appell_runtime::model::Model;
 use appell_tests::random::Random;
 use appell_tests::recorded::{Drive, record};

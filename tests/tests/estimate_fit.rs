@@ -2,10 +2,8 @@
 
 #![allow(clippy::unwrap_used, reason = "what is missing fails the test")]
 
+use appell_estimate::{Coordinate, Effort, Estimation, Fit, Free, Measured, Setup, Unknown};
 use appell_models::Shipped;
-use appell_runtime::estimate::{
-    Coordinate, Effort, Estimation, Fit, Free, Measured, Setup, Unknown,
-};
 use appell_runtime::model::Model;
 use appell_tests::random::Random;
 use appell_tests::recorded::{Drive, record};

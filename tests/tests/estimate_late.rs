@@ -2,10 +2,10 @@
 
 #![allow(clippy::unwrap_used, reason = "what is missing fails the test")]
 
-use appell_models::Shipped;
-use appell_runtime::estimate::{
+use appell_estimate::{
     Direction, Estimation, Free, Innovation, Layout, Measured, Recording, Setup, Unknown,
 };
+use appell_models::Shipped;
 use appell_runtime::model::Model;
 use appell_tests::random::Random;
 use appell_tests::recorded::{Drive, record};

@@ -2,11 +2,11 @@
 
 #![allow(clippy::unwrap_used, reason = "what is missing fails the test")]
 
-use appell_models::Shipped;
-use appell_runtime::estimate::{
+use appell_estimate::{
     Blocks, Consistency, Coordinate, Effort, Estimation, Fit, Free, Identifiability, Measured,
     Sensitivity, Setup, Unknown,
 };
+use appell_models::Shipped;
 use appell_runtime::model::Model;
 use appell_tests::random::Random;
 use appell_tests::recorded::{Drive, record};
@@ -105,7 +105,7 @@ fn innovations_of_the_true_model_are_inside_their_bands() {
     let channel = |innovations: &[_], channel| {
         let innovations = innovations.iter();
         let of_channel: Vec<_> = innovations
-            .filter(|i: &&appell_runtime::estimate::Innovation| i.channel == channel)
+            .filter(|i: &&appell_estimate::Innovation| i.channel == channel)
             .copied()
             .collect();
         Consistency::of(&of_channel, 0.99)

@@ -2,10 +2,10 @@
 
 #![allow(clippy::unwrap_used, reason = "what is missing fails the test")]
 
+use appell_estimate::inverse::{InputEquations, InverseError};
 use appell_models::Shipped;
-use appell_runtime::inverse::{InputEquations, InverseError};
 use appell_runtime::model::{At, Model};
-use appell_runtime::singular::Singular;
+use appell_spectra::singular::Singular;
 use appell_tests::point::Point;
 use appell_tests::random::Random;
 use appell_tests::reference::{cases, number};

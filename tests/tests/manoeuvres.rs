@@ -7,6 +7,7 @@ use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 
 use appell_codegen::symbolic::{Graph, evaluate};
 use appell_models::Shipped;
+use appell_report::figure::Figure;
 use appell_runtime::inputs::SwitchedInputs;
 use appell_runtime::integrate::Options;
 use appell_runtime::model::Model;
@@ -369,20 +370,52 @@ fn right_turn_at_1_metre_per_second() {
     assert_run(&run);
 }
 
+const RIGHT_TURN_AT_5: Run = Run {
+    manoeuvre: "right_turn",
+    speed: 5.0,
+    amplitude: FRAC_PI_4,
+    end: -FRAC_PI_2,
+    force: 16.79120,
+    tilt_deg: 1.98652,
+    slider: 0.269_939_3,
+    friction: 0.2490,
+    x: 28.332_414_4,
+    y: -27.113_357_3,
+    psi: -1.570_799_39,
+};
+
 #[test]
 fn right_turn_at_5_metres_per_second() {
-    let run = Run {
-        manoeuvre: "right_turn",
-        speed: 5.0,
-        amplitude: FRAC_PI_4,
-        end: -FRAC_PI_2,
-        force: 16.79120,
-        tilt_deg: 1.98652,
-        slider: 0.269_939_3,
-        friction: 0.2490,
-        x: 28.332_414_4,
-        y: -27.113_357_3,
-        psi: -1.570_799_39,
-    };
-    assert_run(&run);
+    assert_run(&RIGHT_TURN_AT_5);
+}
+
+#[test]
+fn a_figure_keeps_small_motions_apart_from_large_ones() {
+    let trajectory = assert_run(&RIGHT_TURN_AT_5);
+    let figure = Figure::of_states_and_inputs(&trajectory);
+    let panels: Vec<String> = figure
+        .panels
+        .iter()
+        .map(|panel| {
+            let labels: Vec<&str> = panel.series.iter().map(|series| &*series.label).collect();
+            format!("{} [{}]", labels.join(" "), panel.unit)
+        })
+        .collect();
+    assert_eq!(
+        panels,
+        [
+            "theta [rad]",
+            "r [m]",
+            "psi [rad]",
+            "phi [rad]",
+            "x_G y_G [m]",
+            "omega_1 omega_3 [rad/s]",
+            "omega_2 [rad/s]",
+            "sigma [m/s]",
+            "u [N]",
+        ]
+    );
+    let path = Figure::path(&trajectory, "x_G", "y_G").unwrap();
+    assert_eq!((path.x_label.as_str(), path.equal_axes), ("x_G [m]", true));
+    assert_eq!(Figure::path(&trajectory, "x_G", "nowhere"), None);
 }

@@ -1,7 +1,7 @@
 //! Stability by general means: critical values that are known from elsewhere, to the last digits.
 #![allow(clippy::unwrap_used, reason = "what is missing fails the test")]
 
-use appell_runtime::analysis::{
+use appell_analysis::{
     Axis, Boundary, Branch, BranchOptions, Branches, Change, Chart, Kind, Point, Stability,
     Verdict, loci,
 };

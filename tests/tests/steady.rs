@@ -1,7 +1,7 @@
 //! Steady motions by general means: the unicycle's turning motions, every digit.
 #![allow(clippy::unwrap_used, reason = "what is missing fails the test")]
 
-use appell_runtime::analysis::{
+use appell_analysis::{
     Circle, Stability, SteadyError, SteadyProblem, Term, Verdict, circle, essential_matrix,
 };
 use appell_runtime::model::Model;

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
-use appell_runtime::figure::Figure;
+use appell_report::figure::Figure;
 use appell_runtime::integrate::Options;
 use appell_runtime::simulate::{Method, Validity};
 

@@ -4,9 +4,9 @@ use std::path::PathBuf;
 
 use appell_codegen::emit::{Options, emit};
 use appell_codegen::linearisation::{Linearisation, SteadyMotion};
-use appell_codegen::page::{self, Page, page};
 use appell_codegen::program::FunctionKind;
 use appell_codegen::{Derived, compile::report, derived};
+use appell_report::derivation::{self, Page, page};
 
 use crate::conditions::conditions;
 use crate::failure::Failure;
@@ -92,11 +92,11 @@ pub(super) fn derivation(
     let spinner = progress::spinner("deriving the equations of motion");
     let mut derived = derived(&source.file, &source.text)?;
     let stage = match stage {
-        Stage::Kinematics => Some(page::Stage::Kinematics),
-        Stage::Energy => Some(page::Stage::Energy),
-        Stage::Equations => Some(page::Stage::Equations),
-        Stage::Jacobians => Some(page::Stage::Jacobians),
-        Stage::All => Some(page::Stage::All),
+        Stage::Kinematics => Some(derivation::Stage::Kinematics),
+        Stage::Energy => Some(derivation::Stage::Energy),
+        Stage::Equations => Some(derivation::Stage::Equations),
+        Stage::Jacobians => Some(derivation::Stage::Jacobians),
+        Stage::All => Some(derivation::Stage::All),
         Stage::Linear => None,
     };
     let page = match stage {
@@ -106,9 +106,9 @@ pub(super) fn derivation(
     };
     spinner.finish_and_clear();
     Ok(match format {
-        Format::Latex => page::latex(&page),
-        Format::Html => page::html(&page),
-        Format::Text | Format::Rust => page::text(&page),
+        Format::Latex => derivation::latex(&page),
+        Format::Html => derivation::html(&page),
+        Format::Text | Format::Rust => derivation::text(&page),
     })
 }
 
@@ -123,7 +123,7 @@ fn linear(spec: &str, derived: &mut Derived, about: &[String]) -> Result<Page, F
     let steady = SteadyMotion::new(mechanism, derivation, &conditions);
     let linear = steady.and_then(|steady| Linearisation::about(derivation, steady));
     let linear = linear.map_err(|error| Failure::Usage(format!("--about: {error}")))?;
-    Ok(page::linear(mechanism, derivation, &linear))
+    Ok(derivation::linear(mechanism, derivation, &linear))
 }
 
 /// The emitted module of a spec.

@@ -2,8 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use appell_codegen::drawing::drawing;
 use appell_codegen::{Derived, compile::report, derived};
+use appell_report::drawing::drawing;
 
 use crate::failure::Failure;
 use crate::source::Source;

@@ -52,7 +52,8 @@ impl Motion {
             rides.push(Ride::of(&skeleton, &capture));
             names.push(file);
         }
-        let wrong = |error: appell_runtime::signal::SamplesError| Failure::Data(error.to_string());
+        let wrong =
+            |error: appell_estimate::smoothing::SamplesError| Failure::Data(error.to_string());
         let filter = motion_capture::filter(&rides).map_err(wrong)?;
         for (name, ride) in names.iter().zip(&rides) {
             let smoothed = Smoothed::of(ride, filter).map_err(wrong)?;

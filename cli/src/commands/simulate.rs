@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use appell_runtime::figure::Figure;
+use appell_report::figure::Figure;
 use appell_runtime::integrate::{Ending, Options};
 use appell_runtime::model::ModelInfo;
 use appell_runtime::simulate::{Method, Response, Sampling, SimulationError, Validity};

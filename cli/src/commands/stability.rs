@@ -1,8 +1,8 @@
 //! `appell stability`
 
-use appell_runtime::analysis::{Branch, Stability, Term, loci};
-use appell_runtime::figure::{Figure, Panel, Series};
-use appell_runtime::spectrum::Complex;
+use appell_analysis::{Branch, Stability, Term, loci};
+use appell_report::figure::{Figure, Panel, Series};
+use appell_spectra::spectrum::Complex;
 
 mod plane;
 

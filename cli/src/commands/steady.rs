@@ -1,7 +1,7 @@
 //! `appell steady`
 
-use appell_runtime::analysis::{Branch, Term};
-use appell_runtime::figure::{Figure, Panel, Series};
+use appell_analysis::{Branch, Term};
+use appell_report::figure::{Figure, Panel, Series};
 
 use crate::failure::{Failure, note};
 use crate::files;
@@ -114,11 +114,11 @@ pub(super) fn marks(
     asked: &Asked<'_>,
     along: Term,
     branches: &[Branch],
-) -> Vec<appell_runtime::figure::Mark> {
+) -> Vec<appell_report::figure::Mark> {
     let quantity = along.quantity(asked.problem.model().info());
     let specials = branches.iter().flat_map(|branch| &branch.specials);
     specials
-        .map(|special| appell_runtime::figure::Mark {
+        .map(|special| appell_report::figure::Mark {
             x: quantity.to_unit(special.motion.value),
             about: format!(
                 "{} = {} {}",

@@ -1,7 +1,7 @@
 //! What a user asks a controller for, read from flags.
 
-use appell_runtime::analysis::{Point, SteadyProblem, Term};
-use appell_runtime::control::sampled::Sampling;
+use appell_analysis::control::sampled::Sampling;
+use appell_analysis::{Point, SteadyProblem, Term};
 use appell_runtime::model::{Model, Quantity};
 use nalgebra::Complex;
 

@@ -2,11 +2,11 @@
 
 use std::fmt::Write as _;
 
+use appell_analysis::control::attraction::{Axis, Fate, Fates, Region};
+use appell_analysis::control::feedback::Feedback;
+use appell_analysis::control::sampler::{SampledFeedback, Sampler};
+use appell_report::figure::Map;
 use appell_runtime::Trajectory;
-use appell_runtime::control::attraction::{Axis, Fate, Fates, Region};
-use appell_runtime::control::feedback::Feedback;
-use appell_runtime::control::sampler::{SampledFeedback, Sampler};
-use appell_runtime::figure::Map;
 use appell_runtime::inputs::InputSource;
 use appell_runtime::model::{Model, ModelInfo, Quantity};
 use serde_json::{Value, json};

@@ -1,11 +1,11 @@
 //! From a steady motion to gains.
 
-use appell_runtime::analysis::Point;
-use appell_runtime::control::controllability::Controllability;
-use appell_runtime::control::operating_point::{MotionEquations, OperatingPoint};
-use appell_runtime::control::reduction::{Subsystem, independent_states, reduce};
-use appell_runtime::control::sampled::Sampling;
-use appell_runtime::control::{lqr, robust_placement};
+use appell_analysis::Point;
+use appell_analysis::control::controllability::Controllability;
+use appell_analysis::control::operating_point::{MotionEquations, OperatingPoint};
+use appell_analysis::control::reduction::{Subsystem, independent_states, reduce};
+use appell_analysis::control::sampled::Sampling;
+use appell_analysis::control::{lqr, robust_placement};
 use appell_runtime::model::Model;
 use nalgebra::{Complex, DMatrix};
 

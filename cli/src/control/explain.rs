@@ -1,9 +1,9 @@
 //! Why a controller cannot be designed, in the names of the mechanism.
 
-use appell_runtime::control::operating_point::{MotionEquations, OperatingPointError};
-use appell_runtime::control::placement::PlacementError;
-use appell_runtime::control::reduction::ReductionError;
-use appell_runtime::control::riccati::RiccatiError;
+use appell_analysis::control::operating_point::{MotionEquations, OperatingPointError};
+use appell_analysis::control::placement::PlacementError;
+use appell_analysis::control::reduction::ReductionError;
+use appell_analysis::control::riccati::RiccatiError;
 use nalgebra::Complex;
 
 use crate::failure::Failure;

@@ -2,8 +2,8 @@
 
 use std::fmt::Write as _;
 
-use appell_runtime::control::controllability::Controllability;
-use appell_runtime::control::sampled::Sampling;
+use appell_analysis::control::controllability::Controllability;
+use appell_analysis::control::sampled::Sampling;
 use appell_runtime::model::{ModelInfo, Quantity};
 use nalgebra::{Complex, DMatrix};
 use serde_json::{Map, Value, json};

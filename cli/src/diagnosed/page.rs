@@ -2,10 +2,10 @@
 
 use std::fmt::Write as _;
 
-use appell_codegen::drawing::marked;
 use appell_codegen::{Derived, derived};
 use appell_gap::data::{DataSet, Part};
 use appell_gap::diagnose::{Ahead, HowFar, Hypothesis, Report, Verdict, Where};
+use appell_report::drawing::marked;
 
 use super::doubt::doubts;
 use super::numbers::{measured, percent, short};

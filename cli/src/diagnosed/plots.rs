@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use appell_gap::diagnose::{Experiment, Law, OverTime, Trace};
-use appell_runtime::figure::{Layer, Look, Plot, Series};
+use appell_report::figure::{Layer, Look, Plot, Series};
 use appell_spec::Mechanism;
 
 use super::numbers::short;

@@ -9,7 +9,7 @@
 //! steady = { theta = 0.02 }                # the states on it; 0 where none is given
 //! ```
 
-use appell_runtime::control::schedule::{GainSchedule, Law};
+use appell_analysis::control::schedule::{GainSchedule, Law};
 use appell_runtime::model::Quantity;
 use appell_spec::Code;
 use nalgebra::{DMatrix, DVector};

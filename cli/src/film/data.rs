@@ -1,8 +1,8 @@
 //! What the page shows, as JSON: names and shapes as they are, numbers over time packed.
 
-use appell_codegen::drawing::film::{Film, ForceKind, Shape, film};
-use appell_codegen::drawing::link::LinkKind;
 use appell_codegen::mechanics::finding::Outcome;
+use appell_report::drawing::film::{Film, ForceKind, Shape, film};
+use appell_report::drawing::link::LinkKind;
 use appell_runtime::Trajectory;
 use appell_runtime::model::{Model, ModelInfo};
 use appell_spec::Mechanism;
@@ -90,7 +90,7 @@ fn frames(mechanism: &Mechanism, film: &Film) -> Vec<Value> {
 }
 
 fn links(film: &Film) -> Vec<Value> {
-    let link = |link: &appell_codegen::drawing::link::Link| {
+    let link = |link: &appell_report::drawing::link::Link| {
         let kind = match link.kind {
             LinkKind::Way => "way",
             LinkKind::Rod => "rod",
@@ -118,7 +118,7 @@ fn bodies(mechanism: &Mechanism, film: &Film) -> Vec<Value> {
 }
 
 fn forces(film: &Film) -> Vec<Value> {
-    let force = |force: &appell_codegen::drawing::film::Force| {
+    let force = |force: &appell_report::drawing::film::Force| {
         let kind = match force.kind {
             ForceKind::Reaction => "reaction",
             ForceKind::Load => "load",

@@ -2,7 +2,7 @@
 
 use appell_gap::data::DataSet;
 use appell_gap::identify::{AHEAD, Answer};
-use appell_runtime::figure::{Figure, Panel, Series};
+use appell_report::figure::{Figure, Panel, Series};
 
 /// Runs that are drawn.
 const DRAWN_RUNS: usize = 2;

@@ -2,9 +2,7 @@
 
 use std::io::{self, Write};
 
-use appell_runtime::analysis::{
-    Branch, Change, End, Kind, Point, Stability, Term, Verdict, circle,
-};
+use appell_analysis::{Branch, Change, End, Kind, Point, Stability, Term, Verdict, circle};
 use appell_runtime::contact::ContactForces;
 use appell_runtime::model::Quantity;
 use serde_json::{Map, Value, json};
@@ -30,7 +28,7 @@ pub(crate) fn json(asked: &Asked<'_>, answer: &Answer) -> Value {
     match answer {
         Answer::Motions(motions) => {
             let motion = |(motion, stability): &(_, _)| {
-                let motion: &appell_runtime::analysis::SteadyMotion = motion;
+                let motion: &appell_analysis::SteadyMotion = motion;
                 point(asked, &motion.point, stability)
             };
             all["motions"] = motions.iter().map(motion).collect();
@@ -45,13 +43,13 @@ pub(crate) fn json(asked: &Asked<'_>, answer: &Answer) -> Value {
 }
 
 fn branch(asked: &Asked<'_>, branch: &Branch) -> Value {
-    let point = |at: &appell_runtime::analysis::BranchPoint| {
+    let point = |at: &appell_analysis::BranchPoint| {
         let mut told = point(asked, &at.point, &at.stability);
         told["value"] = json!(at.value);
         told["feasible"] = json!(at.feasible);
         told
     };
-    let special = |special: &appell_runtime::analysis::Special| {
+    let special = |special: &appell_analysis::Special| {
         let mut told = point(&special.motion);
         told["kind"] = json!(kind(special.kind));
         told["after"] = json!(special.after);

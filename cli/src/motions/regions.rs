@@ -1,7 +1,7 @@
 //! A chart as a map: places by what is found there, borders as curves.
 
-use appell_runtime::analysis::{Boundary, Cell, Chart, Verdict};
-use appell_runtime::figure::{Curve, Map, Series, Stroke};
+use appell_analysis::{Boundary, Cell, Chart, Verdict};
+use appell_report::figure::{Curve, Map, Series, Stroke};
 
 /// What is found at a place.
 const KINDS: [&str; 6] = [

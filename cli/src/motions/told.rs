@@ -2,12 +2,12 @@
 
 use std::fmt::Write as _;
 
-use appell_runtime::analysis::{
+use appell_analysis::{
     Branch, Change, End, Kind, Special, Stability, SteadyMotion, Verdict, circle,
 };
 use appell_runtime::contact::ContactForces;
 use appell_runtime::model::ModelInfo;
-use appell_runtime::spectrum::Complex;
+use appell_spectra::spectrum::Complex;
 
 use super::Asked;
 use crate::table::{number, table};

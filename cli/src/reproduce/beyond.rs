@@ -1,6 +1,6 @@
 //! What the paper did not see.
 
-use appell_runtime::analysis::{Change, Kind};
+use appell_analysis::{Change, Kind};
 
 use super::claim::{Claim, Section, Verdict};
 use super::found::{GRAVITY, Mechanism, RADIUS, SLIDER_MASS, WHEEL_MASS};

@@ -1,8 +1,8 @@
 //! Figure 3: level sets and stability of the steady motions of the rolling wheel.
 
+use appell_analysis::{Cell, Chart, Kind, Verdict};
 use appell_papers::errata::ERRATA;
-use appell_runtime::analysis::{Cell, Chart, Kind, Verdict};
-use appell_runtime::figure::{Curve, Patch, Series, Stroke, Surface};
+use appell_report::figure::{Curve, Patch, Series, Stroke, Surface};
 
 use super::claim::{Claim, Picture, Section, Verdict as Fate, digits};
 use super::equations::misprint;
@@ -109,7 +109,7 @@ pub(super) fn section() -> Result<Section, Failure> {
         },
         stroke: Stroke::Dashed,
     });
-    let flat = maps.iter().map(appell_runtime::figure::Map::to_svg);
+    let flat = maps.iter().map(appell_report::figure::Map::to_svg);
     let pictures = std::iter::once(surface(wheel, &a)?.to_svg()).chain(flat);
     let pictures = pictures.zip(CAPTIONS).map(|(svg, caption)| Picture {
         svg,
@@ -130,7 +130,7 @@ pub(super) fn section() -> Result<Section, Failure> {
 /// Panel (a): the tilt over the plane of both rates.
 fn surface(wheel: Mechanism, chart: &Chart) -> Result<Surface, Failure> {
     let tilt = |cell: &Cell| {
-        let base = appell_runtime::analysis::Point::initial(wheel.0);
+        let base = appell_analysis::Point::initial(wheel.0);
         let point = cell_point(chart, &cell.unknowns, &base);
         Ok::<_, Failure>(wheel.value("theta", &point)?.to_degrees())
     };
@@ -251,7 +251,7 @@ fn whole(claims: &mut Vec<Claim>, wheel: Mechanism, b: &Chart, c: &Chart) -> Res
     // Every cell against (21).
     let mut wrong = 0;
     for cell in c.cells.iter().flatten() {
-        let base = appell_runtime::analysis::Point::initial(wheel.0);
+        let base = appell_analysis::Point::initial(wheel.0);
         let point = cell_point(c, &cell.unknowns, &base);
         let [tilt, yaw, pitch] =
             ["theta", "psi_dot", "phi_dot"].map(|name| wheel.value(name, &point));

@@ -1,7 +1,7 @@
 //! Figure 5: all steady motions of the unicycle.
 
-use appell_runtime::analysis::{Cell, Chart, Point};
-use appell_runtime::figure::{Curve, Map, Series, Stroke};
+use appell_analysis::{Cell, Chart, Point};
+use appell_report::figure::{Curve, Map, Series, Stroke};
 
 use super::claim::{Claim, Picture, Section, digits};
 use super::found::{GRAVITY, Mechanism, RADIUS, SLIDER_MASS, WHEEL_MASS, cell_point, shown, told};

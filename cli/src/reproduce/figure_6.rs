@@ -1,6 +1,6 @@
 //! Figure 6: stability of the turning motions for eight sliding masses.
 
-use appell_runtime::analysis::{Cell, Chart, Point, Verdict};
+use appell_analysis::{Cell, Chart, Point, Verdict};
 
 use super::claim::{Claim, Picture, Section};
 use super::figure_5::place_of_mass;

@@ -1,8 +1,8 @@
 //! Figure 7: characteristic roots of straight rolling, without and with the sliding mass.
 
-use appell_runtime::analysis::{Branch, Change, Kind, loci};
-use appell_runtime::figure::{Figure, Mark, Panel, Series};
-use appell_runtime::spectrum::Complex;
+use appell_analysis::{Branch, Change, Kind, loci};
+use appell_report::figure::{Figure, Mark, Panel, Series};
+use appell_spectra::spectrum::Complex;
 
 use super::claim::{Claim, Picture, Section};
 use super::found::{GRAVITY, Mechanism, RADIUS, values};

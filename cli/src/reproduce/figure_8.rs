@@ -1,7 +1,7 @@
 //! Figure 8: lane change and right turn, below and above the critical speed.
 
+use appell_report::figure::{Figure, Panel, Series};
 use appell_runtime::Trajectory;
-use appell_runtime::figure::{Figure, Panel, Series};
 
 use super::claim::{Claim, Picture, Section, Verdict};
 use super::found::failed;

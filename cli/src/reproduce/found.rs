@@ -1,11 +1,11 @@
 //! Steady motions of shipped mechanisms, by names and in SI.
 
-use appell_models::Shipped;
-use appell_runtime::analysis::{
+use appell_analysis::{
     Axis, Branch, BranchError, BranchOptions, Branches, Chart, Point, Requirement, Special,
     SteadyError, SteadyProblem, Term,
 };
-use appell_runtime::figure::{Curve, Series, Stroke};
+use appell_models::Shipped;
+use appell_report::figure::{Curve, Series, Stroke};
 use appell_runtime::model::Model;
 
 use crate::failure::Failure;

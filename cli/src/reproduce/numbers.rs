@@ -1,9 +1,9 @@
 //! Equations whose content are numbers: circles, critical values, ranks, poles.
 
+use appell_analysis::control::controllability::{Controllability, output_rank};
+use appell_analysis::{Change, Kind, Special, circle};
 use appell_papers::steering::OUTPUTS;
-use appell_runtime::analysis::{Change, Kind, Special, circle};
-use appell_runtime::control::controllability::{Controllability, output_rank};
-use appell_runtime::spectrum::characteristic_polynomial;
+use appell_spectra::spectrum::characteristic_polynomial;
 
 use super::claim::{Claim, Section, Verdict};
 use super::found::{GRAVITY, Mechanism, RADIUS, SLIDER_MASS, WHEEL_MASS, told, values};
@@ -151,8 +151,7 @@ fn unicycle(claims: &mut Vec<Claim>) -> Result<(), Failure> {
     let root = (m * m * c.powi(4) + 3.0 * m * m0 * c * c + m0 * m0).sqrt();
     let wanted = RADIUS * tilt.tan() / (2.0 * m0) * (m * c * c + m0 + root);
     let command = "appell steady unicycle --fix theta=10deg --fix phi_dot=0";
-    let place =
-        |motion: &appell_runtime::analysis::SteadyMotion| unicycle.value("r", &motion.point);
+    let place = |motion: &appell_analysis::SteadyMotion| unicycle.value("r", &motion.point);
     let places: Vec<f64> = motions.iter().map(place).collect::<Result<_, _>>()?;
     let ours = places.first().copied().unwrap_or(f64::NAN);
     let published = "place of the mass in tilted spinning, here at ϑ = 10°, in m";

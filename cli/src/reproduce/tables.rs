@@ -1,9 +1,9 @@
 //! Tables I, II and III: parameters, and gains that place all poles at −8 1/s.
 
+use appell_analysis::control::operating_point::{MotionEquations, OperatingPoint};
+use appell_analysis::control::reduction::{Subsystem, reduce};
+use appell_analysis::control::robust_placement;
 use appell_papers::steering::{GAINS, Gains, MISPRINT, OUTPUTS};
-use appell_runtime::control::operating_point::{MotionEquations, OperatingPoint};
-use appell_runtime::control::reduction::{Subsystem, reduce};
-use appell_runtime::control::robust_placement;
 use nalgebra::{Complex, DMatrix};
 
 use super::claim::{Claim, Section, Verdict};

@@ -7,7 +7,7 @@ use super::{Expr, Graph, Node, Substitution};
 
 /// Puts definitions in the places of names; remembers what it has put in.
 #[derive(Debug, Default)]
-pub(crate) struct Dissolved {
+pub struct Dissolved {
     definitions: Substitution,
     known: FxHashSet<Expr>,
 }
@@ -15,7 +15,7 @@ pub(crate) struct Dissolved {
 impl Dissolved {
     /// `expr` with the definitions of its names put in, except for the names that `keeps` accepts.
     /// `None` where a number is divided by zero on the way.
-    pub(crate) fn of(
+    pub fn of(
         &mut self,
         graph: &mut Graph,
         expr: Expr,

@@ -7,17 +7,12 @@ mod formula;
 mod latex;
 mod letter;
 mod math;
-pub(crate) mod mathml;
+pub mod mathml;
 mod text;
 
-pub use formula::{Formula, Setter, Spelled, Vocabulary};
-pub use latex::latex;
-pub use letter::Letter;
+pub use formula::{Formula, Setter, Spelled, Vocabulary, assemble, visible};
+pub use latex::{latex, latex_text};
+pub use letter::{Letter, superscript};
 pub use math::Math;
 pub use mathml::mathml;
-pub use text::text;
-
-pub(crate) use formula::{assemble, visible};
-pub(crate) use latex::latex_text;
-pub(crate) use letter::superscript;
-pub(crate) use text::{clean, columns};
+pub use text::{clean, columns, text};

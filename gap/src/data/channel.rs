@@ -1,6 +1,6 @@
 //! What a column holds, and its values in SI.
 
-use appell_runtime::signal::angle::unwrap;
+use appell_estimate::smoothing::angle::unwrap;
 use appell_spec::Mechanism;
 use appell_spec::mechanism::{CoordinateId, InputId, Label, OutputId, SpeedId};
 use appell_spec::units::{Dimension, Unit};

@@ -4,8 +4,8 @@
 //! where it is not. A sensor with steps of q has at least the noise q/√12 of a value anywhere within
 //! them. A stated level may be wrong by a factor of two, within which the data decide.
 
-use appell_runtime::signal::Samples;
-use appell_runtime::signal::noise::{at_standstill, from_differences};
+use appell_estimate::smoothing::Samples;
+use appell_estimate::smoothing::noise::{at_standstill, from_differences};
 
 use super::quantum::quantum;
 use super::{Channel, DataSet, Finding, FindingKind, Part, Run};

@@ -1,6 +1,6 @@
 //! A data set as the estimation core takes it: columns by the indices of a model.
 
-use appell_runtime::estimate::{self, EstimateError, Recording};
+use appell_estimate::{EstimateError, Recording};
 use appell_runtime::model::ModelInfo;
 
 use appell_spec::Mechanism;
@@ -39,15 +39,17 @@ impl DataSet {
     }
 
     /// The measured channels whose quantities the model has, with what they show.
-    pub fn measured(&self, info: &ModelInfo) -> Vec<(&Channel, estimate::Measured)> {
+    pub fn measured(&self, info: &ModelInfo) -> Vec<(&Channel, appell_estimate::Measured)> {
         let shown = |channel: &Channel| match channel.role {
             Role::Measures(measured) => {
                 let name = &measured.label(&self.mechanism).name;
                 match measured {
                     Measured::Coordinate(_) | Measured::PseudoVelocity(_) => {
-                        info.state_index(name).map(estimate::Measured::State)
+                        info.state_index(name).map(appell_estimate::Measured::State)
                     }
-                    Measured::Output(_) => info.output_index(name).map(estimate::Measured::Output),
+                    Measured::Output(_) => info
+                        .output_index(name)
+                        .map(appell_estimate::Measured::Output),
                 }
             }
             Role::Input(_) | Role::Recorded => None,

@@ -1,6 +1,6 @@
 //! The same recordings for another spec of the same thing: names join the two.
 
-use appell_runtime::signal::angle::unwrap;
+use appell_estimate::smoothing::angle::unwrap;
 use appell_spec::Mechanism;
 
 use super::{Channel, DataError, DataSet, Measured, Part, Role, Spec, noise};

@@ -5,7 +5,7 @@
 //! the samples of both, each given all samples before it. A filter that saw those channels alone would
 //! lose a mechanism that falls over.
 
-use appell_runtime::estimate::{Estimation, Innovation};
+use appell_estimate::{Estimation, Innovation};
 
 use super::DiagnoseError;
 use super::bench::Bench;

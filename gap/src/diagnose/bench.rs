@@ -1,7 +1,7 @@
 //! Everything that hypotheses are fitted with: recordings, the model with all candidates, what is
 //! free under each hypothesis, and from where a search starts.
 
-use appell_runtime::estimate::{
+use appell_estimate::{
     Coordinate, Effort, EstimateError, Estimation, Fit, Free, Measured, Recording, Setup, Unknown,
 };
 use appell_runtime::model::Model;

@@ -1,7 +1,7 @@
 //! Channels that were recorded and that the model does not know, with their rates: what the gap may
 //! depend on.
 
-use appell_runtime::signal::savitzky_golay::weights;
+use appell_estimate::smoothing::savitzky_golay::weights;
 
 use crate::data::{DataSet, Role, Run};
 

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use appell_runtime::estimate::{Coordinate, Unknown};
+use appell_estimate::{Coordinate, Unknown};
 use appell_spec::compose::Composition;
 use appell_spec::edit::{EditError, set_parameters};
 use appell_spec::mechanism::ParameterId;

@@ -5,7 +5,7 @@
 
 use std::collections::BTreeSet;
 
-use appell_runtime::estimate::{Estimation, Fit, Unknown};
+use appell_estimate::{Estimation, Fit, Unknown};
 
 use super::DiagnoseError;
 use super::bench::{Bench, LAG, WRONG};

@@ -1,6 +1,6 @@
 //! Why nothing can be diagnosed.
 
-use appell_runtime::estimate::EstimateError;
+use appell_estimate::EstimateError;
 
 use crate::effects::ModelError;
 

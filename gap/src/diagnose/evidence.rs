@@ -9,7 +9,7 @@
 
 use std::f64::consts::TAU;
 
-use appell_runtime::estimate::{Fit, Unknown};
+use appell_estimate::{Fit, Unknown};
 use nalgebra::{DMatrix, DVector};
 
 use super::bench::Bench;

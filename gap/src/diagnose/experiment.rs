@@ -5,7 +5,7 @@
 //! is known of them by now is taken off: with innovations r, slopes S and the information I of the
 //! fit, d² = min over z of |r + S z|² + zᵀ I z. Two models d apart differ by d²/2 in log-likelihood.
 
-use appell_runtime::estimate::{Coordinate, Estimation, Recording, Unknown};
+use appell_estimate::{Coordinate, Estimation, Recording, Unknown};
 use nalgebra::{DMatrix, DVector};
 
 use super::DiagnoseError;

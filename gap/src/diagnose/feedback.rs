@@ -5,7 +5,7 @@
 //! says; a delay or a gain of the actuator would explain a part of that. What such an input could tell is
 //! a kick at each change that nothing recorded foretells, in any direction: no effect may claim it.
 
-use appell_runtime::estimate::Recording;
+use appell_estimate::Recording;
 use nalgebra::{DMatrix, DVector};
 
 /// Earlier samples that foretell a command.

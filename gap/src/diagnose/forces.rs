@@ -1,7 +1,7 @@
 //! Forces in a step of a smoothed motion: what the state does beyond the equations, times the mass
 //! matrix.
 
-use appell_runtime::estimate::{Recording, Smoothed};
+use appell_estimate::{Recording, Smoothed};
 use appell_runtime::model::{At, Model};
 
 /// The step that ends at a row.

@@ -3,7 +3,7 @@
 //! Nothing before this step can see these runs: they are taken from the data set here, and no
 //! function of this file hands them on.
 
-use appell_runtime::estimate::{Estimation, Recording, Unknown};
+use appell_estimate::{Estimation, Recording, Unknown};
 
 use super::DiagnoseError;
 use super::bench::Bench;

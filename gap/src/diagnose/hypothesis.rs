@@ -1,6 +1,6 @@
 //! A hypothesis after its fit.
 
-use appell_runtime::estimate::{Fit, Layout};
+use appell_estimate::{Fit, Layout};
 
 use super::evidence::Evidence;
 

@@ -3,7 +3,7 @@
 //! The states are those of the smoother under the nominal model, whose disturbance is free to be the
 //! missing force: what is drawn as data does not know the law.
 
-use appell_runtime::estimate::Estimation;
+use appell_estimate::Estimation;
 
 use super::DiagnoseError;
 use super::bench::Bench;

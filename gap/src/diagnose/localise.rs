@@ -4,7 +4,7 @@
 //! along the recordings. Weighed by the disturbance that the equation has anyway, and squared, it is
 //! the part of the gap in that equation.
 
-use appell_runtime::estimate::{Estimation, Unknown, chi_squared_probability};
+use appell_estimate::{Estimation, Unknown, chi_squared_probability};
 use appell_runtime::model::At;
 use appell_spec::mechanism::SpeedId;
 use appell_spec::units::Unit;

@@ -3,7 +3,7 @@
 //! The states are those of the smoother under the nominal model, whose disturbance is free to be the
 //! missing force.
 
-use appell_runtime::estimate::Estimation;
+use appell_estimate::Estimation;
 
 use super::DiagnoseError;
 use super::bench::Bench;

@@ -14,7 +14,7 @@ use super::screen::Screen;
 use super::traces::{Ahead, Trace};
 use super::unknown;
 use crate::effects::{Acts, Part};
-use appell_runtime::estimate::{Along, Unknown};
+use appell_estimate::{Along, Unknown};
 
 /// Sizes in their standard deviations that are found with near certainty.
 const DETECTABLE: f64 = 5.0;
@@ -469,8 +469,8 @@ fn values(bench: &Bench<'_>, fitted: &Fitted) -> Vec<Value> {
                     _ => 1.0,
                 };
                 let stretch = match free.coordinate {
-                    appell_runtime::estimate::Coordinate::Plain => 1.0,
-                    appell_runtime::estimate::Coordinate::Logarithm => value,
+                    appell_estimate::Coordinate::Plain => 1.0,
+                    appell_estimate::Coordinate::Logarithm => value,
                 };
                 values.push(Value {
                     name,

@@ -4,7 +4,7 @@
 //! sizes, and only where the filter is surprised after reversals of the drive: there the teeth change
 //! sides.
 
-use appell_runtime::estimate::Estimation;
+use appell_estimate::Estimation;
 
 use super::DiagnoseError;
 use super::bench::Bench;

@@ -1,6 +1,6 @@
 //! Typical sizes in recordings, which set the widths of rounded corners and the levels that are tried.
 
-use appell_runtime::signal::savitzky_golay::weights;
+use appell_estimate::smoothing::savitzky_golay::weights;
 
 use crate::data::{DataSet, Measured, Role, Run};
 use crate::effects::Scales;

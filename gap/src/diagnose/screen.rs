@@ -6,9 +6,7 @@
 
 use std::ops::Range;
 
-use appell_runtime::estimate::{
-    Along, Coordinate, Direction, Estimation, Shapes, Tangent, Unknown,
-};
+use appell_estimate::{Along, Coordinate, Direction, Estimation, Shapes, Tangent, Unknown};
 use appell_runtime::model::At;
 use nalgebra::{DMatrix, DVector};
 

@@ -1,7 +1,7 @@
 //! What people look at of the runs that were held out: channels beside predictions of them, and how
 //! errors grow with the horizon.
 
-use appell_runtime::estimate::Estimation;
+use appell_estimate::Estimation;
 
 use super::DiagnoseError;
 use super::alternative::columns;

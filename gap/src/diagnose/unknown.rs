@@ -11,9 +11,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use appell_runtime::estimate::{
-    Along, Disturbance, Estimation, Innovation, Measured, Recording, Shapes,
-};
+use appell_estimate::{Along, Disturbance, Estimation, Innovation, Measured, Recording, Shapes};
 use appell_runtime::model::{At, Model};
 use nalgebra::{DMatrix, DVector};
 

@@ -4,7 +4,7 @@
 //! them tell as much as n / (1 + 2 Σ ρₖ) that do not (G. E. P. Box, G. M. Jenkins and G. C. Reinsel,
 //! *Time Series Analysis*, 4th edition, 2008, section 2.1).
 
-use appell_runtime::estimate::{Estimation, Innovation};
+use appell_estimate::{Estimation, Innovation};
 
 use super::DiagnoseError;
 use super::bench::Bench;

@@ -3,7 +3,7 @@
 
 use std::collections::BTreeMap;
 
-use appell_runtime::estimate::{Estimation, chi_squared_probability};
+use appell_estimate::{Estimation, chi_squared_probability};
 
 use super::DiagnoseError;
 use super::bench::Bench;

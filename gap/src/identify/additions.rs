@@ -1,7 +1,7 @@
 //! What is looked for besides parameters: lags and delays of inputs, biases, scales and delays of
 //! channels. `tau.delay` is the delay of the input tau.
 
-use appell_runtime::estimate::{Estimation, Free, Setup, Unknown};
+use appell_estimate::{Estimation, Free, Setup, Unknown};
 use appell_runtime::model::Quantity;
 
 use super::IdentifyError;

@@ -1,6 +1,6 @@
 //! What the recordings tell: intervals, correlation, combinations that are known.
 
-use appell_runtime::estimate::{
+use appell_estimate::{
     Blocks, Consistency, Estimation, Fit, Free, Identifiability, Sensitivity, Unknown,
 };
 use appell_runtime::model::Quantity;

@@ -1,7 +1,7 @@
 //! Parameters that change on the way, such as a friction that warms up: a state each, which wanders
 //! at a rate that is given.
 
-use appell_runtime::estimate::{Disturbance, Estimation, Setup, Unknown};
+use appell_estimate::{Disturbance, Estimation, Setup, Unknown};
 use appell_runtime::model::{ModelInfo, Quantity};
 
 use super::IdentifyError;

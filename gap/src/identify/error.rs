@@ -1,6 +1,6 @@
 //! Why nothing can be identified.
 
-use appell_runtime::estimate::EstimateError;
+use appell_estimate::EstimateError;
 
 /// What a person can mend.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]

@@ -1,6 +1,6 @@
 //! Errors of predictions on runs that no fit has seen.
 
-use appell_runtime::estimate::{Estimation, Predicted, Recording, Unknown};
+use appell_estimate::{Estimation, Predicted, Recording, Unknown};
 
 use super::IdentifyError;
 use super::drift::{self, Drift};

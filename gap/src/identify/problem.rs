@@ -1,6 +1,6 @@
 //! What is looked for, and where the search begins.
 
-use appell_runtime::estimate::{Effort, Estimation, Free, Recording, Unknown};
+use appell_estimate::{Effort, Estimation, Free, Recording, Unknown};
 use appell_runtime::model::{ModelInfo, Quantity};
 
 use super::additions::Addition;

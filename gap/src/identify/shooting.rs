@@ -2,7 +2,7 @@
 //! them without a filter, and the likelihood chooses among what it found with open and with closed
 //! gaps.
 
-use appell_runtime::estimate::{Estimation, Free, Recording, Shooting, Unknown};
+use appell_estimate::{Estimation, Free, Recording, Shooting, Unknown};
 
 use super::IdentifyError;
 use super::problem::Problem;

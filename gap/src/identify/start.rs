@@ -1,8 +1,8 @@
 //! Values that a fit can begin with: states at the first rows, sizes of forces.
 
-use appell_runtime::estimate::{Measured, Recording, Setup};
+use appell_estimate::smoothing::savitzky_golay::weights;
+use appell_estimate::{Measured, Recording, Setup};
 use appell_runtime::model::{At, Model, ModelInfo};
-use appell_runtime::signal::savitzky_golay::weights;
 use nalgebra::{DMatrix, DVector};
 
 /// Samples of a parabola whose slope tells a velocity.

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use appell_runtime::signal::angle::unwrap;
+use appell_estimate::smoothing::angle::unwrap;
 use appell_spec::units;
 
 use super::skeleton::{Column, Skeleton};

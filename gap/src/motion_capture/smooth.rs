@@ -1,11 +1,11 @@
 //! Velocities and accelerations of a ride, by one Savitzky-Golay filter for all signals.
 //!
 //! With one filter, what smoothing takes from the motion it takes from both sides of the equations.
-//! Its window is the narrowest of those that the rule of [`appell_runtime::signal::window`] chooses
+//! Its window is the narrowest of those that the rule of [`appell_estimate::smoothing::window`] chooses
 //! for the second derivatives of the channels.
 
-use appell_runtime::signal::savitzky_golay::{SavitzkyGolay, weights};
-use appell_runtime::signal::{Samples, SamplesError, noise, window};
+use appell_estimate::smoothing::savitzky_golay::{SavitzkyGolay, weights};
+use appell_estimate::smoothing::{Samples, SamplesError, noise, window};
 
 use super::pose::{Axes, Vector};
 use super::ride::Ride;

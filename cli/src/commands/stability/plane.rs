@@ -4,8 +4,8 @@ use std::fmt::Write as _;
 use std::io::{self, Write};
 use std::str::FromStr;
 
-use appell_runtime::analysis::{Axis, Boundary, Cell, Chart, Edge, Verdict};
-use appell_runtime::figure::Map;
+use appell_analysis::{Axis, Boundary, Cell, Chart, Edge, Verdict};
+use appell_report::figure::Map;
 use serde_json::{Value, json};
 
 use super::StabilityCommand;
@@ -130,7 +130,7 @@ fn boundary_json(boundary: &Boundary) -> Value {
     let folds =
         folds.map(|fold| json!({ "axis": fold.axis, "at": fold.at, "decides": fold.decides }));
     json!({
-        "kind": export::kind(appell_runtime::analysis::Kind::Critical(boundary.change)),
+        "kind": export::kind(appell_analysis::Kind::Critical(boundary.change)),
         "decides": boundary.decides,
         "points": boundary.points,
         "folds": folds.collect::<Vec<_>>(),

@@ -1,7 +1,7 @@
 //! Figures 6 and 7: processed data of decelerations and of a figure-eight.
 
 use appell_gap::motion_capture::Smoothed;
-use appell_runtime::figure::{Figure, Panel, Series};
+use appell_report::figure::{Figure, Panel, Series};
 
 use super::laboratory::{Laboratory, Session};
 use super::rider::Manoeuvre;

@@ -1,6 +1,6 @@
 //! Figure 8: the error between the two torques over the height, for both models and four manoeuvres.
 
-use appell_runtime::figure::{Figure, Panel, Series};
+use appell_report::figure::{Figure, Panel, Series};
 
 use super::laboratory::Laboratory;
 use super::rider::Manoeuvre;

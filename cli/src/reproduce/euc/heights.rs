@@ -3,10 +3,10 @@
 
 use appell_codegen::jit::JitModel;
 use appell_codegen::program::FunctionKind;
+use appell_estimate::inverse::{Consistency, Found, Record, Relations, Sought, Track};
 use appell_gap::motion_capture::{Capture, Ride};
 use appell_models::Shipped;
-use appell_runtime::figure::{Figure, Panel, Series};
-use appell_runtime::inverse::{Consistency, Found, Record, Relations, Sought, Track};
+use appell_report::figure::{Figure, Panel, Series};
 use appell_runtime::model::Model;
 use nalgebra::{DMatrix, DVector};
 

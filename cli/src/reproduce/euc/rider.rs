@@ -2,12 +2,12 @@
 
 use std::f64::consts::PI;
 
+use appell_analysis::control::lqr::{self, weights};
+use appell_analysis::control::operating_point::OperatingPoint;
+use appell_analysis::control::reduction::reduce;
 use appell_codegen::jit::JitModel;
 use appell_codegen::program::FunctionKind;
 use appell_models::Shipped;
-use appell_runtime::control::lqr::{self, weights};
-use appell_runtime::control::operating_point::OperatingPoint;
-use appell_runtime::control::reduction::reduce;
 use appell_runtime::integrate::Options;
 use appell_runtime::model::Model;
 use appell_runtime::simulate::Sampling;

@@ -1,7 +1,7 @@
 //! The driving torque as the paper finds it: from two sets of equations, moment by moment.
 
+use appell_estimate::inverse::InputEquations;
 use appell_models::Shipped;
-use appell_runtime::inverse::InputEquations;
 use appell_runtime::model::{At, Model};
 
 use super::laboratory::View;

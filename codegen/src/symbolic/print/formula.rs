@@ -279,7 +279,7 @@ impl<V: Vocabulary> Setter<V> {
 struct Place(u8, Expr);
 
 /// `coefficient · above / below`
-pub(crate) fn assemble(coefficient: &Rational, mut above: Vec<Math>, mut below: Vec<Math>) -> Math {
+pub fn assemble(coefficient: &Rational, mut above: Vec<Math>, mut below: Vec<Math>) -> Math {
     if below.is_empty() {
         if !coefficient.is_one() || above.is_empty() {
             above.insert(0, signed(coefficient));
@@ -383,7 +383,7 @@ fn written(graph: &Graph, root: Expr, inline: bool) -> Vec<Expr> {
 }
 
 /// The parts of an expression that do not lie behind names.
-pub(crate) fn visible(graph: &Graph, root: Expr) -> Vec<Expr> {
+pub fn visible(graph: &Graph, root: Expr) -> Vec<Expr> {
     written(graph, root, false)
 }
 

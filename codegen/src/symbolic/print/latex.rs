@@ -207,7 +207,7 @@ fn call(name: &str, exponent: u32, argument: &Math) -> String {
 }
 
 /// Text that LaTeX prints and does not obey.
-pub(crate) fn latex_text(text: &str) -> String {
+pub fn latex_text(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     for c in text.chars() {
         match c {

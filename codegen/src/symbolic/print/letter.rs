@@ -239,7 +239,7 @@ fn subscript(c: char) -> char {
 }
 
 /// Superscript form of digits and signs.
-pub(crate) fn superscript(c: char) -> char {
+pub fn superscript(c: char) -> char {
     match c {
         '1' => '¹',
         '2' => '²',

@@ -143,7 +143,7 @@ impl Math {
     }
 
     /// Whether a quotient is among its outer parts, which makes it taller than a line.
-    pub(crate) fn has_fraction(&self) -> bool {
+    pub fn has_fraction(&self) -> bool {
         match self {
             Self::Fraction(..) => true,
             Self::Row(parts) => parts.iter().any(|p| matches!(p, Self::Fraction(..))),

@@ -7,7 +7,7 @@ use super::math::Math;
 use super::text::clean;
 
 /// Text that HTML shows and does not obey.
-pub(crate) fn escaped(text: &str) -> String {
+pub fn escaped(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     for c in clean(text).chars() {
         match c {
@@ -23,10 +23,10 @@ pub(crate) fn escaped(text: &str) -> String {
 }
 
 /// A product that is not written, with a little air.
-pub(crate) const TIMES: &str = "<mo lspace=\"0.08em\" rspace=\"0.08em\">\u{2062}</mo>";
+pub const TIMES: &str = "<mo lspace=\"0.08em\" rspace=\"0.08em\">\u{2062}</mo>";
 
 /// Plus or minus before a term.
-pub(crate) fn sign(minus: bool, first: bool) -> &'static str {
+pub fn sign(minus: bool, first: bool) -> &'static str {
     match (minus, first) {
         (false, true) => "",
         (true, true) => "<mo form=\"prefix\">−</mo>",

@@ -139,7 +139,7 @@ fn ratio(n: &str, d: &str) -> String {
 }
 
 /// Text without characters that steer a terminal or turn the direction of writing.
-pub(crate) fn clean(text: &str) -> String {
+pub fn clean(text: &str) -> String {
     text.chars()
         .map(|c| match c {
             '\u{200b}'..='\u{200f}'
@@ -153,7 +153,7 @@ pub(crate) fn clean(text: &str) -> String {
 }
 
 /// Columns that a line takes.
-pub(crate) fn columns(text: &str) -> usize {
+pub fn columns(text: &str) -> usize {
     text.chars().filter(|&c| !is_combining(c)).count()
 }
 

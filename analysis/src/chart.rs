@@ -1,0 +1,134 @@
+//! Stability over two quantities: steady motions with their eigenvalues, and the curves between them.
+
+use super::branch::BranchError;
+use super::continuation::End;
+use super::critical::Change;
+use super::plane::Axis;
+use super::point::Point;
+use super::stability::Verdict;
+use super::steady::SteadyError;
+use super::term::Term;
+use appell_runtime::linearise::Undetermined;
+use appell_spectra::spectrum::{Complex, SpectrumError};
+
+/// Values of one axis at most.
+pub(super) const MOST: usize = 4000;
+
+/// A steady motion of the grid.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Cell {
+    /// The essential states and what else is unknown, in SI, in the order of
+    /// [`Chart::unknowns`].
+    pub unknowns: Vec<f64>,
+    /// Eigenvalues without the zeros, largest real part first.
+    pub eigenvalues: Vec<Complex<f64>>,
+    /// What they say. A grid takes real parts below a millionth of the largest eigenvalue as zero;
+    /// where stability changes, the boundaries tell to the last digit.
+    pub verdict: Verdict,
+    /// Whether the requirements hold.
+    pub feasible: bool,
+}
+
+/// A stability chart.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Chart {
+    /// The horizontal and the vertical quantity.
+    pub axes: [Axis; 2],
+    /// What [`Cell::unknowns`] are.
+    pub unknowns: Vec<Term>,
+    /// The motions of each place, row by row, the horizontal quantity running fastest: none where
+    /// no steady motion was found, several where sheets of them lie over each other.
+    pub cells: Vec<Vec<Cell>>,
+    /// Where eigenvalues reach the imaginary axis, as curves.
+    pub boundaries: Vec<Boundary>,
+    /// Where requirements begin or cease to hold, as curves.
+    pub edges: Vec<Edge>,
+}
+
+/// A curve over two quantities on which stability may change.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Boundary {
+    /// What eigenvalues do there.
+    pub change: Change,
+    /// Values of the two quantities in SI, in order.
+    pub points: Vec<[f64; 2]>,
+    /// For each point whether the motion is unstable on one side of the curve only: nothing else
+    /// grows there.
+    pub decides: Vec<bool>,
+    /// Where one of the two quantities turns back, to rounding.
+    pub folds: Vec<BoundaryFold>,
+    /// Why the curve ends.
+    pub ends: [End; 2],
+}
+
+/// A place where a boundary runs along one of the quantities.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BoundaryFold {
+    /// The axis, 0 or 1, whose quantity is largest or smallest here.
+    pub axis: usize,
+    /// Values of the two quantities in SI. That of the axis is known to rounding; the other to the
+    /// root of it, as the curve is flat.
+    pub at: [f64; 2],
+    /// The motion.
+    pub point: Point,
+    /// Whether stability changes here.
+    pub decides: bool,
+}
+
+/// A curve over two quantities on which a requirement begins or ceases to hold.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Edge {
+    /// The number of the requirement.
+    pub requirement: usize,
+    /// Values of the two quantities in SI, in order.
+    pub points: Vec<[f64; 2]>,
+}
+
+/// Why there is no chart.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum ChartError {
+    /// No steady motions, or conditions that do not fit.
+    #[error(transparent)]
+    Branch(#[from] BranchError),
+    /// A grid that is too small or too large.
+    #[error("a chart of {0} × {1} motions cannot be drawn: write two numbers from 2 to {MOST}")]
+    Grid(usize, usize),
+    /// Position constraints that do not determine their coordinates.
+    #[error(transparent)]
+    Undetermined(#[from] Undetermined),
+    /// Eigenvalues that could not be computed.
+    #[error(transparent)]
+    Spectrum(#[from] SpectrumError),
+}
+
+impl From<SteadyError> for ChartError {
+    fn from(error: SteadyError) -> Self {
+        Self::Branch(error.into())
+    }
+}
+
+impl Chart {
+    /// The motions at the i-th value of the first axis and the j-th of the second.
+    pub fn motions(&self, i: usize, j: usize) -> &[Cell] {
+        let inside = i < self.axes[0].count && j < self.axes[1].count;
+        let place = j * self.axes[0].count + i;
+        self.cells
+            .get(place)
+            .filter(|_| inside)
+            .map_or(&[], Vec::as_slice)
+    }
+}
+
+impl Boundary {
+    /// The parts on which stability changes.
+    pub fn deciding(&self) -> impl Iterator<Item = &[[f64; 2]]> {
+        let mut from = 0;
+        let runs = self.decides.chunk_by(|a, b| a == b).filter_map(move |run| {
+            let start = from;
+            from += run.len();
+            // A part goes on to the point where the next one begins.
+            run[0].then_some(start..(from + 1).min(self.points.len()))
+        });
+        runs.map(|run| &self.points[run])
+    }
+}

@@ -1,0 +1,165 @@
+//! What the inputs reach, and which modes they do not.
+
+use nalgebra::{Complex, DMatrix};
+
+use super::LinearSystem;
+use super::echelon::row_echelon;
+use super::staircase::{NEGLIGIBLE, Staircase};
+use appell_spectra::singular::Singular;
+use appell_spectra::spectrum::{self, SpectrumError};
+
+/// Eigenvalues that are closer than this, beside the largest entry of a balanced A, count as one: a
+/// multiple eigenvalue is known to a root of the rounding error only, its mean to all digits.
+const CLUSTER: f64 = 1e-4;
+
+/// A smallest singular value that is below this beside the largest entry is zero. It is not as sharp
+/// as a rank of the staircase: the eigenvalue itself is rounded.
+const LOST: f64 = 1e-9;
+
+/// What the inputs of a linear system can do.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Controllability {
+    /// Dimension of the controllable subspace, from the staircase form of the balanced system.
+    pub rank: usize,
+    /// Singular values of [B AB A²B …], largest first, beside the largest one. A is balanced and
+    /// divided by its norm, the columns of B are of like size: a small one tells that a direction
+    /// is hard to reach, not that a unit is small.
+    pub singular_values: Vec<f64>,
+    /// Eigenvalues of what the inputs do not reach. No feedback moves them.
+    pub lost: Vec<Complex<f64>>,
+    /// A row for each lost mode: a combination of the states that the inputs do not touch,
+    /// whatever they do. In reduced row echelon form.
+    pub untouched: DMatrix<f64>,
+    /// The modes of A with the test of Popov, Belevitch and Hautus.
+    pub modes: Vec<Mode>,
+}
+
+/// An eigenvalue of A.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Mode {
+    /// The eigenvalue, in 1/s.
+    pub value: Complex<f64>,
+    /// How many eigenvalues of A lie here.
+    pub multiplicity: usize,
+    /// Smallest singular value of [A − λ1  B] of the balanced system beside its largest entry: how
+    /// small a change of the equations takes the mode away from the inputs.
+    pub distance: f64,
+    /// Whether the inputs do not reach it; of a multiple mode, whether they miss a part.
+    pub lost: bool,
+    /// The combinations of states that have this mode and that the inputs do not touch, as rows in
+    /// reduced row echelon form. None for a mode that they reach.
+    pub untouched: DMatrix<Complex<f64>>,
+}
+
+impl Controllability {
+    /// What the inputs of a system reach.
+    pub fn of(system: &LinearSystem) -> Result<Self, SpectrumError> {
+        let balanced = system.balanced();
+        let form = Staircase::of(&balanced.system);
+        let rank = form.controllable();
+        let below = form.q.columns(rank, system.order() - rank).transpose();
+        // A combination of scaled states is one of the states themselves, divided by their scales.
+        let untouched = DMatrix::from_fn(below.nrows(), below.ncols(), |row, state| {
+            below[(row, state)] / balanced.states[state]
+        });
+        let lost = spectrum::eigenvalues(&form.uncontrollable_part())?;
+        Ok(Self {
+            rank,
+            singular_values: singular_values(&balanced.system),
+            lost,
+            untouched: row_echelon(untouched, NEGLIGIBLE),
+            modes: modes(&balanced.system, &balanced.states)?,
+        })
+    }
+
+    /// Lost modes that do not decay: whatever the feedback, the closed loop keeps them, as a neutral
+    /// mode or a growing one.
+    pub fn kept(&self) -> impl Iterator<Item = &Mode> {
+        let size = self.modes.iter().map(|mode| mode.value.norm());
+        let rounding = LOST * size.fold(1.0, f64::max);
+        let lost = self.modes.iter().filter(|mode| mode.lost);
+        lost.filter(move |mode| mode.value.re >= -rounding)
+    }
+}
+
+/// How many of the outputs, some of the states, the inputs move independently of each other: the
+/// rank of [CB CAB CA²B …].
+pub fn output_rank(system: &LinearSystem, outputs: &[usize]) -> usize {
+    let basis = Staircase::of(&system.balanced().system).basis();
+    Singular::of(&basis.select_rows(outputs)).rank(NEGLIGIBLE)
+}
+
+/// Singular values of the controllability matrix, beside the largest.
+fn singular_values(system: &LinearSystem) -> Vec<f64> {
+    let n = system.order();
+    let a = &system.a / system.a.norm().max(f64::MIN_POSITIVE);
+    let mut column = &system.b / system.b.norm().max(f64::MIN_POSITIVE);
+    let mut krylov = DMatrix::zeros(n, 0);
+    for _ in 0..n {
+        let (done, more) = (krylov.ncols(), column.ncols());
+        krylov = krylov.resize_horizontally(done + more, 0.0);
+        krylov.columns_mut(done, more).copy_from(&column);
+        column = &a * column;
+    }
+    // Of the transposed, which has as many columns as there are states.
+    let mut values = Singular::of(&krylov.transpose()).values;
+    let largest = values.first().copied().unwrap_or(0.0);
+    if largest > 0.0 {
+        for value in &mut values {
+            *value /= largest;
+        }
+    }
+    values
+}
+
+/// The eigenvalues of A, multiple ones once, with the test of Popov, Belevitch and Hautus. Of a
+/// complex pair the one above the real axis stands for both.
+fn modes(system: &LinearSystem, scales: &[f64]) -> Result<Vec<Mode>, SpectrumError> {
+    let size = system.a.amax().max(system.b.amax()).max(f64::MIN_POSITIVE);
+    let mut open = spectrum::eigenvalues(&system.a)?;
+    let mut modes = Vec::new();
+    while let Some(&first) = open.first() {
+        let near = |value: &Complex<f64>| (value - first).norm() <= CLUSTER * size;
+        let (cluster, rest): (Vec<_>, Vec<_>) = open.into_iter().partition(near);
+        open = rest;
+        let mean = cluster.iter().sum::<Complex<f64>>() / cluster.len() as f64;
+        let real = mean.im.abs() <= CLUSTER * size;
+        let value = Complex::new(mean.re, if real { 0.0 } else { mean.im });
+        if value.im >= 0.0 {
+            modes.push(mode(system, scales, value, cluster.len(), size));
+        }
+    }
+    Ok(modes)
+}
+
+/// The test of one mode: what of the states satisfies wᵀ [A − λ1  B] = 0 lives by itself.
+fn mode(
+    system: &LinearSystem,
+    scales: &[f64],
+    value: Complex<f64>,
+    multiplicity: usize,
+    size: f64,
+) -> Mode {
+    let (n, m) = (system.order(), system.inputs());
+    let transposed = DMatrix::from_fn(n + m, n, |row, column| {
+        let diagonal = if row == column { value } else { 0.0.into() };
+        if row < n {
+            (Complex::from(system.a[(column, row)]) - diagonal).conj()
+        } else {
+            system.b[(column, row - n)].into()
+        }
+    });
+    let singular = Singular::of(&transposed);
+    let distances: Vec<f64> = singular.values.iter().map(|value| value / size).collect();
+    let lost: Vec<usize> = (0..n).filter(|&place| distances[place] <= LOST).collect();
+    let combinations = DMatrix::from_fn(lost.len(), n, |row, state| {
+        singular.right[(state, lost[row])].conj() / scales[state]
+    });
+    Mode {
+        value,
+        multiplicity,
+        distance: distances.last().copied().unwrap_or(0.0),
+        lost: !lost.is_empty(),
+        untouched: row_echelon(combinations, LOST),
+    }
+}

@@ -1,0 +1,218 @@
+//! Pole placement with one input.
+//!
+//! The gains are unique. By Ackermann's formula kᵀ = eₙᵀ [b Ab … Aⁿ⁻¹b]⁻¹ p(A); in Hessenberg form,
+//! which the staircase gives, the matrix in brackets is triangular and what remains is one row
+//! multiplied n times (B. N. Datta, *An algorithm to assign eigenvalues in a Hessenberg matrix:
+//! single input case*, IEEE Transactions on Automatic Control 32, 1987).
+
+use nalgebra::{Complex, DMatrix, RowDVector};
+
+use super::linear_system::{Balanced, LinearSystem};
+use super::staircase::Staircase;
+use appell_spectra::singular::Singular;
+use appell_spectra::spectrum::{Spectrum, SpectrumError, characteristic_polynomial};
+
+/// Gains with what they achieve.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Placement {
+    /// K in u = −K y, a row for each input.
+    pub gain: DMatrix<f64>,
+    /// Eigenvalues of A − B K as computed. Those of a multiple pole spread: an n-fold pole moves
+    /// by the n-th root of the rounding.
+    pub poles: Vec<Complex<f64>>,
+    /// Largest difference between the coefficients of the characteristic polynomials of A − B K and
+    /// of the poles that were wanted, each beside the sum of the sizes of the terms that make it:
+    /// this tells how exact the gains are even where the poles spread.
+    pub residual: f64,
+    /// Condition number of the eigenvectors of A − B K, of length 1 in balanced states: how far
+    /// poles move when equations change. Infinite for a multiple pole with one eigenvector.
+    pub condition: f64,
+}
+
+/// Why poles cannot be placed.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum PlacementError {
+    /// Too few or too many poles.
+    #[error("{given} poles are given for {order} states")]
+    Count {
+        /// How many are given.
+        given: usize,
+        /// How many are needed.
+        order: usize,
+    },
+    /// A complex pole without its conjugate has complex gains.
+    #[error("the pole {pole} needs its conjugate beside it")]
+    Unpaired {
+        /// The pole.
+        pole: Complex<f64>,
+    },
+    /// Not all poles can be moved.
+    #[error("the inputs reach {rank} of {order} dimensions")]
+    Uncontrollable {
+        /// Dimension that they reach.
+        rank: usize,
+        /// Number of states.
+        order: usize,
+    },
+    /// A pole more often than there are inputs has too few eigenvectors.
+    #[error(
+        "the pole {pole} is wanted {wanted} times, but {inputs} inputs give it at most {inputs} eigenvectors"
+    )]
+    Multiple {
+        /// The pole.
+        pole: Complex<f64>,
+        /// How often it is given.
+        wanted: usize,
+        /// Number of independent inputs.
+        inputs: usize,
+    },
+    /// Inputs that do the same.
+    #[error("{inputs} inputs have only {rank} independent effects")]
+    DependentInputs {
+        /// How many there are.
+        inputs: usize,
+        /// Rank of B.
+        rank: usize,
+    },
+    /// No independent eigenvectors were found.
+    #[error("no independent eigenvectors exist for these poles")]
+    Defective,
+    /// The eigenvalues of the closed loop cannot be told.
+    #[error(transparent)]
+    Spectrum(#[from] SpectrumError),
+}
+
+/// Gains of one input that give A − b kᵀ the poles.
+pub fn place(system: &LinearSystem, poles: &[Complex<f64>]) -> Result<Placement, PlacementError> {
+    let poles = paired(poles, system.order())?;
+    let balanced = system.balanced();
+    let form = Staircase::of(&balanced.system);
+    if form.controllable() < system.order() {
+        return Err(PlacementError::Uncontrollable {
+            rank: form.controllable(),
+            order: system.order(),
+        });
+    }
+    let gain = hessenberg_gain(&form.system, &poles) * form.q.transpose();
+    let gain = DMatrix::from_row_slice(1, system.order(), gain.as_slice());
+    Placement::of(&balanced, &gain, &poles)
+}
+
+/// eₙᵀ p(H) / (β h₂₁ h₃₂ …) for an upper Hessenberg H and b = β e₁.
+fn hessenberg_gain(system: &LinearSystem, poles: &[Complex<f64>]) -> RowDVector<f64> {
+    let (h, n) = (&system.a, system.order());
+    let mut row = RowDVector::zeros(n);
+    row[n - 1] = 1.0;
+    // What a factor of p is divided by, so that the row stays of the size of the gains.
+    let mut steps = (1..n)
+        .map(|i| h[(i, i - 1)])
+        .rev()
+        .chain([system.b[(0, 0)]]);
+    let mut step = || steps.next().unwrap_or(1.0);
+    for pole in poles {
+        let next = &row * h;
+        if pole.im.abs() <= 0.0 {
+            row = (next - &row * pole.re) / step();
+        } else if pole.im > 0.0 {
+            // (H − λ)(H − λ̄) = H² − 2 Re λ H + |λ|²
+            row = (&next * h - next * (2.0 * pole.re) + &row * pole.norm_sqr()) / (step() * step());
+        }
+    }
+    row
+}
+
+/// The poles with each complex one beside its conjugate, the one above the real axis first.
+pub(super) fn paired(
+    poles: &[Complex<f64>],
+    order: usize,
+) -> Result<Vec<Complex<f64>>, PlacementError> {
+    if poles.len() != order {
+        return Err(PlacementError::Count {
+            given: poles.len(),
+            order,
+        });
+    }
+    let mut open = poles.to_vec();
+    let mut paired = Vec::with_capacity(order);
+    while let Some(pole) = open.pop() {
+        if pole.im.abs() <= 0.0 {
+            paired.push(pole);
+            continue;
+        }
+        let conjugate = open.iter().position(|other| *other == pole.conj());
+        let Some(place) = conjugate else {
+            return Err(PlacementError::Unpaired { pole });
+        };
+        open.remove(place);
+        let above = Complex::new(pole.re, pole.im.abs());
+        paired.extend([above, above.conj()]);
+    }
+    paired.reverse();
+    // Reversed, a pair begins below the axis.
+    for i in 1..paired.len() {
+        if paired[i - 1].im < 0.0 && paired[i] == paired[i - 1].conj() {
+            paired.swap(i - 1, i);
+        }
+    }
+    Ok(paired)
+}
+
+impl Placement {
+    /// What the gains of a balanced system achieve.
+    pub(super) fn of(
+        balanced: &Balanced,
+        scaled_gain: &DMatrix<f64>,
+        wanted: &[Complex<f64>],
+    ) -> Result<Self, PlacementError> {
+        let closed = balanced.system.closed(scaled_gain);
+        let spectrum = Spectrum::of(&closed)?;
+        let modes = spectrum.modes.iter();
+        let vectors: Vec<_> = modes.map(|mode| mode.right.clone()).collect();
+        Ok(Self {
+            poles: spectrum.values().collect(),
+            residual: polynomial_residual(&characteristic_polynomial(&closed)?, wanted),
+            condition: condition(&DMatrix::from_columns(&vectors)),
+            gain: balanced.gain(scaled_gain),
+        })
+    }
+}
+
+/// Largest singular value over the smallest.
+pub(super) fn condition(vectors: &DMatrix<Complex<f64>>) -> f64 {
+    let values = Singular::of(vectors).values;
+    match values[..] {
+        [first, .., last] => first / last,
+        _ => 1.0,
+    }
+}
+
+/// Largest difference between the coefficients of a polynomial and those of its wanted roots,
+/// each beside the same coefficient of Π (s + |λ|).
+fn polynomial_residual(coefficients: &[f64], wanted: &[Complex<f64>]) -> f64 {
+    let expand = |roots: &mut dyn Iterator<Item = Complex<f64>>| {
+        let mut polynomial = vec![Complex::new(1.0, 0.0)];
+        for root in roots {
+            polynomial.push(0.0.into());
+            for place in (1..polynomial.len()).rev() {
+                let before = polynomial[place - 1];
+                polynomial[place] -= root * before;
+            }
+        }
+        polynomial
+    };
+    let exact = expand(&mut wanted.iter().copied());
+    // A root at zero has no size of its own; it counts as large as the largest.
+    let largest = wanted.iter().map(|root| root.norm()).fold(0.0, f64::max);
+    let of = |root: &Complex<f64>| {
+        if root.norm() > 0.0 {
+            root.norm()
+        } else {
+            largest
+        }
+    };
+    let size = expand(&mut wanted.iter().map(|root| Complex::from(-of(root))));
+    let pairs = coefficients.iter().zip(exact.iter().zip(size));
+    pairs
+        .map(|(got, (exact, size))| (got - exact.re).abs() / size.re.max(f64::MIN_POSITIVE))
+        .fold(0.0, f64::max)
+}

@@ -1,0 +1,246 @@
+//! Riccati equations, the stabilising solutions.
+//!
+//! Both are solved by doubling, which squares the closed loop in each step (E. K.-W. Chu, H.-Y. Fan,
+//! W.-W. Lin, *A structure-preserving doubling algorithm for continuous-time algebraic Riccati
+//! equations*, Linear Algebra and its Applications 396, 2005), and polished by Newton's method
+//! (D. L. Kleinman 1968; G. A. Hewer 1971), which leaves a residual of rounding.
+
+use nalgebra::{DMatrix, DVector};
+
+use appell_spectra::spectrum::{self, SpectrumError};
+
+/// Doublings after which the closed loop is 2⁶⁰ steps further.
+const DOUBLINGS: usize = 60;
+/// Newton steps; from a good start two are enough.
+const NEWTON_STEPS: usize = 6;
+/// A residual that is larger than this beside the terms of the equation is no solution.
+const RESIDUAL: f64 = 1e-9;
+
+type Matrix = DMatrix<f64>;
+
+/// A stabilising solution.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Riccati {
+    /// X, symmetric positive semidefinite.
+    pub x: Matrix,
+    /// K, the gain that belongs to it: u = −K y.
+    pub gain: Matrix,
+    /// Norm of the equation's residual beside the norms of its terms.
+    pub residual: f64,
+}
+
+/// Why there is no stabilising solution.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum RiccatiError {
+    /// Matrices that do not fit together.
+    #[error("{what} must be {rows} × {columns}, not {found_rows} × {found_columns}")]
+    Shape {
+        /// Which matrix.
+        what: &'static str,
+        /// Rows that are needed.
+        rows: usize,
+        /// Columns that are needed.
+        columns: usize,
+        /// Rows that were given.
+        found_rows: usize,
+        /// Columns that were given.
+        found_columns: usize,
+    },
+    /// The weights of the inputs are not positive.
+    #[error("the weight R of the inputs is not positive definite")]
+    InputWeight,
+    /// A weight of the states is negative.
+    #[error("the weight Q of the states has the eigenvalue {smallest:e}; none may be negative")]
+    StateWeight {
+        /// The smallest eigenvalue.
+        smallest: f64,
+    },
+    /// No solution stabilises.
+    #[error(
+        "no gain stabilises: a mode of the system that does not decay is out of reach of the inputs \
+         or weightless in Q"
+    )]
+    NoStabilisingSolution,
+    /// The equation is solved less exactly than rounding explains.
+    #[error("the Riccati equation is solved to a residual of {residual:e} only")]
+    Inexact {
+        /// Norm of the residual beside the terms.
+        residual: f64,
+    },
+    /// The closed loop has no eigenvalues that could be told.
+    #[error(transparent)]
+    Spectrum(#[from] SpectrumError),
+}
+
+/// Solves `AᵀX + X A − X B R⁻¹ Bᵀ X + Q = 0`; `K = R⁻¹ Bᵀ X`.
+pub fn continuous(a: &Matrix, b: &Matrix, q: &Matrix, r: &Matrix) -> Result<Riccati, RiccatiError> {
+    let g = control_energy(a, b, q, r)?;
+    let gain = |x: &Matrix| r.clone().cholesky().map(|r| r.solve(&(b.transpose() * x)));
+    let size = a.norm().max((&g * q).norm().sqrt()).max(f64::MIN_POSITIVE);
+    let start = [1.0, 0.3, 3.0]
+        .into_iter()
+        .find_map(|part| doubled(cayley(a, &g, q, part * size)?))
+        .ok_or(RiccatiError::NoStabilisingSolution)?;
+    let newton = |x: &Matrix| {
+        let k = gain(x)?;
+        let right = -(q + k.transpose() * r * &k);
+        lyapunov(&(a - b * k), &right)
+    };
+    let residual = |x: &Matrix| {
+        let terms = [a.transpose() * x, x * a, -(x * &g * x), q.clone()];
+        relative(&terms)
+    };
+    let (x, residual) = polished(start, newton, residual);
+    let gain = gain(&x).ok_or(RiccatiError::InputWeight)?;
+    let stable = spectrum::eigenvalues(&(a - b * &gain))?;
+    finish(x, gain, residual, stable.iter().all(|pole| pole.re < 0.0))
+}
+
+/// Solves `AᵀX A − X − AᵀX B (R + BᵀX B)⁻¹ BᵀX A + Q = 0`; `K = (R + BᵀX B)⁻¹ BᵀX A`.
+pub fn discrete(a: &Matrix, b: &Matrix, q: &Matrix, r: &Matrix) -> Result<Riccati, RiccatiError> {
+    let g = control_energy(a, b, q, r)?;
+    let gain = |x: &Matrix| {
+        let bx = b.transpose() * x;
+        let weight = (r + &bx * b).cholesky()?;
+        Some(weight.solve(&(bx * a)))
+    };
+    let start = doubled([a.clone(), g, q.clone()]).ok_or(RiccatiError::NoStabilisingSolution)?;
+    let newton = |x: &Matrix| {
+        let k = gain(x)?;
+        let right = q + k.transpose() * r * &k;
+        stein(&(a - b * k), &right)
+    };
+    let residual = |x: &Matrix| {
+        let k = gain(x).unwrap_or_else(|| Matrix::zeros(b.ncols(), a.nrows()));
+        let ax = a.transpose() * x;
+        relative(&[&ax * a, -x, -(ax * b * k), q.clone()])
+    };
+    let (x, residual) = polished(start, newton, residual);
+    let gain = gain(&x).ok_or(RiccatiError::InputWeight)?;
+    let stable = spectrum::eigenvalues(&(a - b * &gain))?;
+    let inside = stable.iter().all(|pole| pole.norm() < 1.0);
+    finish(x, gain, residual, inside)
+}
+
+/// Newton steps as long as the residual falls.
+fn polished(
+    mut x: Matrix,
+    newton: impl Fn(&Matrix) -> Option<Matrix>,
+    residual: impl Fn(&Matrix) -> f64,
+) -> (Matrix, f64) {
+    let mut smallest = residual(&x);
+    for _ in 0..NEWTON_STEPS {
+        let Some(next) = newton(&x) else { break };
+        let left = residual(&next);
+        if left.is_nan() || left >= smallest {
+            break;
+        }
+        (x, smallest) = (next, left);
+    }
+    (x, smallest)
+}
+
+/// B R⁻¹ Bᵀ, after the matrices were checked.
+fn control_energy(a: &Matrix, b: &Matrix, q: &Matrix, r: &Matrix) -> Result<Matrix, RiccatiError> {
+    let (n, m) = (a.nrows(), b.ncols());
+    for (what, matrix, rows, columns) in [
+        ("A", a, n, n),
+        ("B", b, n, m),
+        ("Q", q, n, n),
+        ("R", r, m, m),
+    ] {
+        let (found_rows, found_columns) = matrix.shape();
+        if (found_rows, found_columns) != (rows, columns) {
+            return Err(RiccatiError::Shape {
+                what,
+                rows,
+                columns,
+                found_rows,
+                found_columns,
+            });
+        }
+    }
+    let smallest = q.symmetric_eigenvalues().min();
+    if smallest < -f64::EPSILON * n as f64 * q.norm() {
+        return Err(RiccatiError::StateWeight { smallest });
+    }
+    let factor = r.clone().cholesky().ok_or(RiccatiError::InputWeight)?;
+    Ok(b * factor.solve(&b.transpose()))
+}
+
+/// The discrete system (A, G, H) that has the same solution as a continuous one: the Cayley
+/// transformation (s + γ)/(s − γ).
+fn cayley(a: &Matrix, g: &Matrix, q: &Matrix, gamma: f64) -> Option<[Matrix; 3]> {
+    let n = a.nrows();
+    let one = Matrix::identity(n, n);
+    let inverse = (a - &one * gamma).try_inverse()?;
+    // W = A_γᵀ + Q A_γ⁻¹ G
+    let w = (a.transpose() - &one * gamma + q * &inverse * g).try_inverse()?;
+    Some([
+        &one + w.transpose() * (2.0 * gamma),
+        &inverse * g * &w * (2.0 * gamma),
+        &w * q * &inverse * (2.0 * gamma),
+    ])
+}
+
+/// The limit of H under doubling; nothing where it has none.
+fn doubled([mut a, mut g, mut h]: [Matrix; 3]) -> Option<Matrix> {
+    let one = Matrix::identity(a.nrows(), a.nrows());
+    for _ in 0..DOUBLINGS {
+        let inverse = (&one + &g * &h).try_inverse()?;
+        let step = a.transpose() * &h * &inverse * &a;
+        g += &a * &inverse * &g * a.transpose();
+        a = &a * inverse * &a;
+        h += &step;
+        h = (&h + h.transpose()) * 0.5;
+        let size = h.norm();
+        if !size.is_finite() {
+            return None;
+        }
+        if step.norm() <= f64::EPSILON * size {
+            return Some(h);
+        }
+    }
+    None
+}
+
+/// X of Cᵀ X + X C = F. An equation for each entry: the systems of mechanisms are small.
+fn lyapunov(c: &Matrix, f: &Matrix) -> Option<Matrix> {
+    let one = Matrix::identity(c.nrows(), c.nrows());
+    entrywise(
+        &(one.kronecker(&c.transpose()) + c.transpose().kronecker(&one)),
+        f,
+    )
+}
+
+/// X of X − Cᵀ X C = F.
+fn stein(c: &Matrix, f: &Matrix) -> Option<Matrix> {
+    let n = c.nrows();
+    let one = Matrix::identity(n * n, n * n);
+    entrywise(&(one - c.transpose().kronecker(&c.transpose())), f)
+}
+
+fn entrywise(matrix: &Matrix, f: &Matrix) -> Option<Matrix> {
+    let right = DVector::from_column_slice(f.as_slice());
+    let entries = matrix.clone().lu().solve(&right)?;
+    let x = Matrix::from_column_slice(f.nrows(), f.ncols(), entries.as_slice());
+    Some((&x + x.transpose()) * 0.5)
+}
+
+fn relative(terms: &[Matrix; 4]) -> f64 {
+    let sum = terms
+        .iter()
+        .fold(terms[0].clone() * 0.0, |sum, term| sum + term);
+    let sizes: f64 = terms.iter().map(Matrix::norm).sum();
+    sum.norm() / sizes.max(f64::MIN_POSITIVE)
+}
+
+fn finish(x: Matrix, gain: Matrix, residual: f64, stable: bool) -> Result<Riccati, RiccatiError> {
+    if !stable {
+        return Err(RiccatiError::NoStabilisingSolution);
+    }
+    if residual.is_nan() || residual > RESIDUAL {
+        return Err(RiccatiError::Inexact { residual });
+    }
+    Ok(Riccati { x, gain, residual })
+}

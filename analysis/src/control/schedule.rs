@@ -1,0 +1,149 @@
+//! Gains that follow an operating condition, such as the speed.
+//!
+//! A law is designed at each of several values of a condition; between them gains, desired values
+//! and offsets run straight, beyond them they keep the end values.
+
+use nalgebra::{DMatrix, DVector};
+
+use appell_runtime::inputs::InputSource;
+
+/// A law about one steady motion: u = u₀ − K (y − y₀).
+#[derive(Debug, Clone, PartialEq)]
+pub struct Law {
+    /// K, a row for each input, a column for each state y.
+    pub gain: DMatrix<f64>,
+    /// y₀, the states on the steady motion.
+    pub states: DVector<f64>,
+    /// u₀, the inputs on the steady motion.
+    pub inputs: DVector<f64>,
+}
+
+impl Law {
+    /// u₀ − K (y − y₀) for the states y.
+    #[must_use]
+    pub fn asked(&self, y: &DVector<f64>) -> DVector<f64> {
+        &self.inputs - &self.gain * (y - &self.states)
+    }
+}
+
+/// Laws over a condition.
+#[derive(Debug, Clone, PartialEq)]
+pub struct GainSchedule {
+    values: Vec<f64>,
+    laws: Vec<Law>,
+}
+
+/// A schedule that is none.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+pub enum ScheduleError {
+    /// No value of the condition.
+    #[error("a schedule needs at least one value of its condition")]
+    Empty,
+    /// The values are not in order.
+    #[error("the values of a schedule must increase, but {after} follows {before}")]
+    Order {
+        /// A value.
+        before: f64,
+        /// The next one.
+        after: f64,
+    },
+    /// Laws of different sizes.
+    #[error("the law at {value} has other inputs or states than the first")]
+    Shape {
+        /// Where.
+        value: f64,
+    },
+}
+
+impl GainSchedule {
+    /// Laws at increasing values of the condition.
+    pub fn new(laws: Vec<(f64, Law)>) -> Result<Self, ScheduleError> {
+        let (values, laws): (Vec<f64>, Vec<Law>) = laws.into_iter().unzip();
+        let first = laws.first().ok_or(ScheduleError::Empty)?;
+        let shape = |law: &Law| (law.gain.shape(), law.states.len(), law.inputs.len());
+        if let Some(place) = laws.iter().position(|law| shape(law) != shape(first)) {
+            return Err(ScheduleError::Shape {
+                value: values[place],
+            });
+        }
+        let ordered = |pair: &&[f64]| pair[0].is_nan() || pair[1].is_nan() || pair[0] >= pair[1];
+        if let Some(pair) = values.windows(2).find(ordered) {
+            return Err(ScheduleError::Order {
+                before: pair[0],
+                after: pair[1],
+            });
+        }
+        Ok(Self { values, laws })
+    }
+
+    /// Values from `first` to `last` with a law designed at each.
+    pub fn design<E>(
+        values: impl IntoIterator<Item = f64>,
+        mut design: impl FnMut(f64) -> Result<Law, E>,
+    ) -> Result<Vec<(f64, Law)>, E> {
+        let values = values.into_iter();
+        values.map(|value| Ok((value, design(value)?))).collect()
+    }
+
+    /// The law at a value of the condition.
+    #[must_use]
+    pub fn at(&self, value: f64) -> Law {
+        let after = self.values.partition_point(|node| *node <= value);
+        let (Some(before), true) = (after.checked_sub(1), after < self.values.len()) else {
+            return self.laws[after.min(self.laws.len() - 1)].clone();
+        };
+        let part = (value - self.values[before]) / (self.values[after] - self.values[before]);
+        let [low, high] = [&self.laws[before], &self.laws[after]];
+        Law {
+            gain: &low.gain + (&high.gain - &low.gain) * part,
+            states: low.states.lerp(&high.states, part),
+            inputs: low.inputs.lerp(&high.inputs, part),
+        }
+    }
+
+    /// The values of the condition with their laws.
+    pub fn laws(&self) -> impl Iterator<Item = (f64, &Law)> {
+        self.values.iter().copied().zip(&self.laws)
+    }
+}
+
+/// A schedule as the inputs of a simulation. `condition` tells the value of the condition at a time
+/// in s and a state; `desired` adds to y₀ what is wanted beside the steady motion.
+#[derive(Debug, Clone)]
+pub struct ScheduledFeedback<'s, C, D> {
+    /// The laws.
+    pub schedule: &'s GainSchedule,
+    /// The inputs, by their index in the model; the others stay zero.
+    pub inputs: Vec<usize>,
+    /// The states y, by their index in the model.
+    pub states: Vec<usize>,
+    /// The condition at (t, x).
+    pub condition: C,
+    /// `y_des(t) − y₀`.
+    pub desired: D,
+    /// Times in s at which `desired` jumps or kinks.
+    pub switching_times: Vec<f64>,
+}
+
+impl<C, D> InputSource for ScheduledFeedback<'_, C, D>
+where
+    C: Fn(f64, &[f64]) -> f64,
+    D: Fn(f64, &mut [f64]),
+{
+    fn inputs(&self, t: f64, x: &[f64], u: &mut [f64]) {
+        let mut y = DVector::zeros(self.states.len());
+        (self.desired)(t, y.as_mut_slice());
+        for (y, &state) in y.iter_mut().zip(&self.states) {
+            *y = x[state] - *y;
+        }
+        let asked = self.schedule.at((self.condition)(t, x)).asked(&y);
+        u.fill(0.0);
+        for (&input, asked) in self.inputs.iter().zip(asked.iter()) {
+            u[input] = *asked;
+        }
+    }
+
+    fn switching_times(&self) -> Vec<f64> {
+        self.switching_times.clone()
+    }
+}

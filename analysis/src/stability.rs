@@ -1,0 +1,176 @@
+//! Stability of a steady motion: the eigenvalues of its essential states, without those that only
+//! lead to its neighbours in the family.
+
+use nalgebra::DMatrix;
+
+use super::cyclic::Structure;
+use super::point::Point;
+use appell_runtime::linearise::{Linearisation, Undetermined};
+use appell_runtime::model::Model;
+use appell_spectra::singular::Singular;
+use appell_spectra::spectrum::{Complex, Spectrum, SpectrumError, characteristic_polynomial};
+
+/// Why a motion has no verdict.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum StabilityError {
+    /// Position constraints that do not determine their coordinates.
+    #[error(transparent)]
+    Undetermined(#[from] Undetermined),
+    /// The spectrum could not be computed.
+    #[error(transparent)]
+    Spectrum(#[from] SpectrumError),
+}
+
+/// What linear stability says of a steady motion.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Verdict {
+    /// Disturbances decay, onto the motion or a neighbour in its family.
+    Asymptotic,
+    /// Disturbances neither grow nor decay; higher terms decide.
+    Neutral,
+    /// Some disturbance grows.
+    Unstable,
+    /// A real eigenvalue is zero that no family explains, or oscillations of one frequency share a
+    /// shape: at the border.
+    Critical,
+}
+
+/// What rounding makes of a zero coefficient of the characteristic polynomial, relative to the
+/// product of as many eigenvalues.
+const ZERO: f64 = 1e-12;
+/// Singular values that count as zero, relative to the largest.
+const RANK: f64 = 1e-9;
+/// Growth is told from rounding where it exceeds this many times the uncertainty.
+const SAFETY: f64 = 100.0;
+
+/// Eigenvalues and verdict.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Stability {
+    /// The independent essential states, by their index in the model.
+    pub states: Vec<usize>,
+    /// A in these states.
+    pub matrix: DMatrix<f64>,
+    /// All its modes.
+    pub spectrum: Spectrum,
+    /// How many eigenvalues are zero.
+    pub zeros: usize,
+    /// In how many directions neighbouring steady motions lie, with inputs and parameters as they
+    /// are. As many zeros belong to the family.
+    pub family: usize,
+    /// Places of the modes that decide: all but the zeros.
+    pub deciding: Vec<usize>,
+    /// The verdict.
+    pub verdict: Verdict,
+    /// Largest real part of a deciding eigenvalue, in 1/s; minus infinity where there is none.
+    pub growth: f64,
+    /// Real parts below this are zero within rounding, in 1/s: machine precision times the norm of A
+    /// times the condition of the eigenvalue with the largest real part.
+    pub threshold: f64,
+}
+
+impl Stability {
+    /// Of a steady motion.
+    pub fn of(
+        model: &dyn Model,
+        structure: &Structure,
+        point: &Point,
+    ) -> Result<Self, StabilityError> {
+        let (states, matrix) = essential_matrix(model, structure, point)?;
+        let spectrum = Spectrum::of(&matrix)?;
+        let family = states.len() - Singular::of(&matrix).rank(RANK);
+        let zeros = zero_count(&matrix)?.max(family);
+        let mut deciding: Vec<usize> = (0..states.len()).collect();
+        // The zeros are the smallest, whatever rounding made of them.
+        let size = |mode: &usize| spectrum.modes[*mode].value.norm();
+        deciding.sort_by(|a, b| size(b).total_cmp(&size(a)));
+        deciding.truncate(states.len() - zeros);
+        deciding.sort_unstable();
+        let mut judged = Self {
+            verdict: Verdict::Asymptotic,
+            growth: f64::NEG_INFINITY,
+            threshold: 0.0,
+            states,
+            matrix,
+            spectrum,
+            zeros,
+            family,
+            deciding,
+        };
+        judged.judge();
+        Ok(judged)
+    }
+
+    fn judge(&mut self) {
+        let mut rest = false;
+        for &mode in &self.deciding {
+            let re = self.spectrum.modes[mode].value.re;
+            // A repeated eigenvalue is known to the root of rounding only.
+            let known = self.spectrum.uncertainty(mode);
+            let threshold = (SAFETY * known).min((f64::EPSILON).sqrt() * self.spectrum.norm);
+            if re > self.growth {
+                (self.growth, self.threshold) = (re, threshold);
+            }
+            rest |= re.abs() <= threshold;
+            if re > threshold {
+                self.verdict = Verdict::Unstable;
+            }
+        }
+        if self.verdict != Verdict::Unstable && self.zeros > self.family {
+            self.verdict = Verdict::Critical;
+        } else if self.verdict != Verdict::Unstable && rest {
+            self.verdict = Verdict::Neutral;
+        }
+    }
+
+    /// The deciding eigenvalues, largest real part first.
+    pub fn eigenvalues(&self) -> Vec<Complex<f64>> {
+        let values = self.deciding.iter();
+        values
+            .map(|&mode| self.spectrum.modes[mode].value)
+            .collect()
+    }
+}
+
+/// A in the independent essential states, which are told by their index in the model.
+pub fn essential_matrix(
+    model: &dyn Model,
+    structure: &Structure,
+    point: &Point,
+) -> Result<(Vec<usize>, DMatrix<f64>), Undetermined> {
+    if model.dependent_coordinates().is_empty() {
+        let (n, m) = (point.x.len(), point.u.len());
+        let (mut rates, mut a, mut b) = (vec![0.0; n], vec![0.0; n * n], vec![0.0; n * m]);
+        model.jacobians(point.at(), &mut rates, &mut a, &mut b);
+        let states = structure.essential.clone();
+        let entry = |i: usize, j: usize| a[states[i] * n + states[j]];
+        let matrix = DMatrix::from_fn(states.len(), states.len(), entry);
+        return Ok((states, matrix));
+    }
+    let linear = Linearisation::about(model, point.at())?;
+    let n = linear.states.len();
+    let essential = |place: &usize| structure.is_essential(linear.states[*place]);
+    let places: Vec<usize> = (0..n).filter(essential).collect();
+    let entry = |i, j| linear.a[places[i] * n + places[j]];
+    Ok((
+        places.iter().map(|&place| linear.states[place]).collect(),
+        DMatrix::from_fn(places.len(), places.len(), entry),
+    ))
+}
+
+/// How many eigenvalues are zero, however few vectors they share: trailing coefficients of the
+/// characteristic polynomial that are zero within rounding.
+pub(super) fn zero_count(matrix: &DMatrix<f64>) -> Result<usize, SpectrumError> {
+    let coefficients = characteristic_polynomial(matrix)?;
+    let values = appell_spectra::spectrum::eigenvalues(matrix)?;
+    let mut sizes: Vec<f64> = values.iter().map(|value| value.norm()).collect();
+    sizes.sort_by(|a, b| b.total_cmp(a));
+    let n = sizes.len();
+    let all_zero = |&zeros: &usize| {
+        let (others, product) = (n - zeros, sizes[..n - zeros].iter().product::<f64>());
+        // Where every eigenvalue is zero, the largest is rounding, too.
+        let largest = if others == 0 { matrix.norm() } else { sizes[0] };
+        let noise = |j: usize| ZERO * product * largest.powi(i32::try_from(j).unwrap_or(i32::MAX));
+        (1..=zeros).all(|j| coefficients[others + j].abs() <= noise(j))
+    };
+    Ok((0..=n).rev().find(all_zero).unwrap_or(0))
+}

@@ -1,0 +1,448 @@
+//! Steady motions under conditions.
+
+use nalgebra::DVector;
+
+use super::cyclic::{Structure, StructureError};
+use super::equations::SteadyEquations;
+use super::newton::{self, Missed, Zero};
+use super::point::Point;
+use super::starts::{Spread, value_at};
+use super::term::Term;
+use appell_runtime::model::{Model, ModelInfo};
+
+/// A quantity that has a value in SI.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Condition {
+    /// Of what.
+    pub term: Term,
+    /// In SI.
+    pub value: f64,
+}
+
+/// A motion whose essential states rest.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SteadyMotion {
+    /// State, inputs and parameters. Hidden states have the values where the search began.
+    pub point: Point,
+    /// In how many directions further steady motions lie that satisfy the same conditions; 0 for one
+    /// that stands alone.
+    pub family: usize,
+    /// Largest rate of an essential state, in SI.
+    pub residual: f64,
+}
+
+/// Why a question about steady motions has no answer.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum SteadyError {
+    /// The model has none.
+    #[error(transparent)]
+    Structure(#[from] StructureError),
+    /// A term that the model does not have.
+    #[error("the model has no quantity {term:?}")]
+    Unknown {
+        /// The term.
+        term: Term,
+    },
+    /// A hidden state has no value in a steady motion.
+    #[error(
+        "`{name}` is hidden: its value changes nothing about the motion; give its rate, `{name}_dot`"
+    )]
+    Hidden {
+        /// The state.
+        name: String,
+    },
+    /// A rate or output that changes while the motion goes on.
+    #[error(
+        "`{name}` is not constant in a steady motion, as it follows hidden states; give {instead}"
+    )]
+    NotConstant {
+        /// The quantity.
+        name: String,
+        /// What can be given.
+        instead: String,
+    },
+    /// Only inputs and parameters can be left free.
+    #[error("`{name}` cannot be left free: {reason}")]
+    NotFree {
+        /// The quantity.
+        name: String,
+        /// Why.
+        reason: &'static str,
+    },
+    /// No steady motion was found.
+    #[error(
+        "no steady motion satisfies the conditions: from {starts} starting points the nearest leaves {}; {}",
+        list(.left), if *.conditions { "release one of the conditions or free an input" } else { "free an input" }
+    )]
+    None {
+        /// Points from which one was sought.
+        starts: usize,
+        /// Equations that do not hold there, with what is left of each, in SI.
+        left: Vec<(String, f64)>,
+        /// Whether there are conditions that could be released.
+        conditions: bool,
+    },
+    /// The conditions leave a family.
+    #[error(
+        "the conditions leave a family of {dimension} {}: give {dimension} more of {}",
+        if *.dimension == 1 { "dimension" } else { "dimensions" }, .open.join(", ")
+    )]
+    Family {
+        /// Its dimension.
+        dimension: usize,
+        /// What varies within it.
+        open: Vec<String>,
+    },
+}
+
+fn list(left: &[(String, f64)]) -> String {
+    let one = |(name, value): &(String, f64)| format!("{name} = {value:.3e}");
+    left.iter().map(one).collect::<Vec<_>>().join(", ")
+}
+
+/// What is given and what is sought.
+#[derive(Clone)]
+pub struct SteadyProblem<'a> {
+    model: &'a dyn Model,
+    structure: Structure,
+    base: Point,
+    free: Vec<Term>,
+    conditions: Vec<Condition>,
+}
+
+/// Solutions whose unknowns differ by less, in units of their scales, are the same.
+const SAME: f64 = 1e-7;
+
+impl<'a> SteadyProblem<'a> {
+    /// All steady motions with the inputs and parameters of a point; its state is where a search
+    /// begins.
+    pub fn new(model: &'a dyn Model, base: Point) -> Result<Self, SteadyError> {
+        Ok(Self {
+            structure: Structure::of(model, &base)?,
+            model,
+            base,
+            free: Vec::new(),
+            conditions: Vec::new(),
+        })
+    }
+
+    /// The model.
+    pub fn model(&self) -> &'a dyn Model {
+        self.model
+    }
+
+    /// Essential and hidden states.
+    pub fn structure(&self) -> &Structure {
+        &self.structure
+    }
+
+    /// Where searches begin; inputs and parameters that are not free have these values.
+    pub fn base(&self) -> &Point {
+        &self.base
+    }
+
+    /// The conditions on states, rates and outputs, and on what was freed before.
+    pub fn conditions(&self) -> &[Condition] {
+        &self.conditions
+    }
+
+    /// Inputs and parameters that are left free.
+    pub fn free_terms(&self) -> &[Term] {
+        &self.free
+    }
+
+    /// Gives a quantity its value in SI; of one that has a value already, a new one.
+    pub fn fix(&mut self, term: Term, value: f64) -> Result<(), SteadyError> {
+        self.check(term)?;
+        if !self.is_unknown(term)
+            && let Some(place) = term.place(&mut self.base)
+        {
+            *place = value;
+            return Ok(());
+        }
+        self.conditions.retain(|condition| condition.term != term);
+        self.conditions.push(Condition { term, value });
+        if let Term::State(state) = term {
+            // A search begins where it may end.
+            self.base.x[state] = value;
+        }
+        Ok(())
+    }
+
+    /// Leaves an input or parameter free: its value follows.
+    pub fn free(&mut self, term: Term) -> Result<(), SteadyError> {
+        let info = self.model.info();
+        self.check(term)?;
+        let reason = match term {
+            Term::Input(_) | Term::Parameter(_) => {
+                if !self.free.contains(&term) {
+                    self.free.push(term);
+                }
+                return Ok(());
+            }
+            Term::State(_) => "a state is free as long as no condition fixes it",
+            Term::Rate(_) | Term::Output(_) => "it follows from states, inputs and parameters",
+        };
+        let name = term.name(info);
+        Err(SteadyError::NotFree { name, reason })
+    }
+
+    /// Takes back the condition on a quantity; an input or parameter becomes free.
+    pub fn release(&mut self, term: Term) -> Result<(), SteadyError> {
+        self.check(term)?;
+        self.conditions.retain(|condition| condition.term != term);
+        match term {
+            Term::Input(_) | Term::Parameter(_) => self.free(term),
+            _ => Ok(()),
+        }
+    }
+
+    fn is_unknown(&self, term: Term) -> bool {
+        let fixed = matches!(term, Term::Input(_) | Term::Parameter(_));
+        !fixed || self.free.contains(&term)
+    }
+
+    /// Whether a term exists and is constant in a steady motion.
+    pub(super) fn check(&self, term: Term) -> Result<(), SteadyError> {
+        let info = self.model.info();
+        let (index, len) = match term {
+            Term::State(i) | Term::Rate(i) => (i, info.state_len()),
+            Term::Input(i) => (i, info.input_len()),
+            Term::Parameter(i) => (i, info.parameter_len()),
+            Term::Output(i) => (i, info.output_len()),
+        };
+        if index >= len {
+            return Err(SteadyError::Unknown { term });
+        }
+        let name = term.name(info);
+        match term {
+            Term::State(state) if !self.structure.is_essential(state) => {
+                Err(SteadyError::Hidden { name })
+            }
+            Term::Rate(state) if self.structure.is_essential(state) => {
+                let instead = "something else: the rate of an essential state is zero".to_owned();
+                Err(SteadyError::NotConstant { name, instead })
+            }
+            Term::Rate(_) | Term::Output(_) if !self.is_constant(term) => {
+                let constant = self.constants();
+                let names = constant.iter().filter(|c| !matches!(c, Term::State(_)));
+                let names: Vec<String> = names.map(|term| term.name(info)).collect();
+                let instead = format!("one of {}", names.join(", "));
+                Err(SteadyError::NotConstant { name, instead })
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Whether a rate or output has one value as long as a steady motion lasts.
+    fn is_constant(&self, term: Term) -> bool {
+        /// Hidden states are moved by this, in SI; a sum of them may cancel by accident at one.
+        const MOVED: [f64; 3] = [0.37, -1.1, 2.3];
+        match term {
+            Term::Rate(state) => self.structure.uniform.contains(&state),
+            Term::Output(_) => {
+                let value = term.value(self.model, &self.base);
+                MOVED.iter().all(|by| {
+                    let mut moved = self.base.clone();
+                    for (i, &state) in self.structure.hidden.iter().enumerate() {
+                        moved.x[state] += by / (1.0 + i as f64);
+                    }
+                    let change = (term.value(self.model, &moved) - value).abs();
+                    change <= 1e-12 * value.abs().max(1.0)
+                })
+            }
+            _ => true,
+        }
+    }
+
+    /// What has a value in a steady motion: essential states, rates of hidden coordinates, outputs.
+    pub fn constants(&self) -> Vec<Term> {
+        let states = self.structure.essential.iter().map(|&s| Term::State(s));
+        let rates = self.structure.uniform.iter().map(|&s| Term::Rate(s));
+        let outputs = (0..self.model.info().output_len()).map(Term::Output);
+        let constant = outputs.filter(|&output| self.is_constant(output));
+        states.chain(rates).chain(constant).collect()
+    }
+
+    /// The steady motion that is reached from a point, alone or one of a family.
+    pub fn solve_from(&self, start: &Point) -> Result<SteadyMotion, SteadyError> {
+        let equations = self.equations();
+        let zero = newton::solve(&equations, &equations.unknowns_of(start));
+        let zero = zero.map_err(|missed| self.none(&equations, 1, &missed))?;
+        Ok(self.motion(&equations, &zero))
+    }
+
+    /// The steady motion nearest to the point where searches begin.
+    pub fn solve(&self) -> Result<SteadyMotion, SteadyError> {
+        self.solve_from(&self.base)
+    }
+
+    /// All steady motions that are found from the base and from further points, spread over the
+    /// declared ranges, in the order of their distance from the base. Those outside the ranges are
+    /// left out.
+    pub fn solve_all(&self, starts: usize) -> Result<Vec<SteadyMotion>, SteadyError> {
+        let equations = self.equations();
+        let base = equations.unknowns_of(&self.base);
+        let mut spread = Spread::new(base.len());
+        let mut found: Vec<Zero> = Vec::new();
+        let mut nearest: Option<Missed> = None;
+        for start in 0..starts.max(1) {
+            let z = if start == 0 {
+                base.clone()
+            } else {
+                self.start(&equations, &spread.next())
+            };
+            match newton::solve(&equations, &z) {
+                Ok(zero) if self.in_range(&equations.point(&zero.z)) => {
+                    let same = |other: &Zero| {
+                        (&other.z - &zero.z).norm() <= SAME * (1.0 + zero.z.norm())
+                            || other.family() > 0 && zero.family() > 0
+                    };
+                    if !found.iter().any(same) {
+                        found.push(zero);
+                    }
+                }
+                Ok(_) => {}
+                Err(missed) => {
+                    if nearest
+                        .as_ref()
+                        .is_none_or(|n| missed.residual < n.residual)
+                    {
+                        nearest = Some(missed);
+                    }
+                }
+            }
+        }
+        if found.is_empty() {
+            let nowhere = Missed {
+                z: base,
+                residual: f64::INFINITY,
+            };
+            return Err(self.none(&equations, starts.max(1), &nearest.unwrap_or(nowhere)));
+        }
+        found.sort_by(|a, b| (&a.z - &base).norm().total_cmp(&(&b.z - &base).norm()));
+        Ok(found
+            .iter()
+            .map(|zero| self.motion(&equations, zero))
+            .collect())
+    }
+
+    /// The same, where all must stand alone.
+    pub fn solve_isolated(&self, starts: usize) -> Result<Vec<SteadyMotion>, SteadyError> {
+        let all = self.solve_all(starts)?;
+        let dimension = all.iter().map(|motion| motion.family).min().unwrap_or(0);
+        if dimension == 0 {
+            return Ok(all
+                .into_iter()
+                .filter(|motion| motion.family == 0)
+                .collect());
+        }
+        let open = self.open(&all[0]);
+        let info = self.model.info();
+        let open = open.iter().map(|term| term.name(info)).collect();
+        Err(SteadyError::Family { dimension, open })
+    }
+
+    /// What varies within the family of a steady motion: quantities that may be fixed further.
+    pub fn open(&self, motion: &SteadyMotion) -> Vec<Term> {
+        /// Parts of a scale by which a quantity varies, below which it does not.
+        const VARIES: f64 = 1e-6;
+        let equations = self.equations();
+        let z = equations.unknowns_of(&motion.point);
+        let Ok(zero) = newton::solve(&equations, &z) else {
+            return Vec::new();
+        };
+        let kernel = zero.kernel();
+        let varies = |term: &Term| {
+            let (_, gradient) = equations.term(*term, &zero.z);
+            (kernel.tr_mul(&gradient)).norm() > VARIES * gradient.norm().max(VARIES)
+        };
+        let terms = self
+            .constants()
+            .into_iter()
+            .chain(self.free.iter().copied());
+        terms.filter(varies).collect()
+    }
+
+    pub(super) fn equations(&self) -> SteadyEquations<'_> {
+        SteadyEquations::new(
+            self.model,
+            &self.structure,
+            self.base.clone(),
+            &self.free,
+            self.conditions.clone(),
+        )
+    }
+
+    /// A starting point; conditions on states hold there.
+    fn start(&self, equations: &SteadyEquations<'_>, parts: &[f64]) -> DVector<f64> {
+        let info = self.model.info();
+        let mut point = self.base.clone();
+        for (term, &part) in equations.unknowns.iter().zip(parts) {
+            let quantity = term.quantity(info);
+            if let Some(place) = term.place(&mut point) {
+                *place = value_at(&quantity, *place, part);
+            }
+        }
+        for condition in &self.conditions {
+            if let Some(place) = condition.term.place(&mut point) {
+                *place = condition.value;
+            }
+        }
+        equations.unknowns_of(&point)
+    }
+
+    pub(super) fn in_range(&self, point: &Point) -> bool {
+        let states = &self.model.info().states;
+        let mut essential = self.structure.essential.iter();
+        essential.all(|&state| {
+            let [low, high] = states[state].range;
+            (low..=high).contains(&point.x[state])
+        })
+    }
+
+    fn motion(&self, equations: &SteadyEquations<'_>, zero: &Zero) -> SteadyMotion {
+        let point = equations.point(&zero.z);
+        let rates = point.rates(self.model);
+        let essential = self.structure.essential.iter();
+        let residual = essential.map(|&s| rates[s].abs()).fold(0.0, f64::max);
+        SteadyMotion {
+            point,
+            family: zero.family(),
+            residual,
+        }
+    }
+
+    fn none(&self, equations: &SteadyEquations<'_>, starts: usize, missed: &Missed) -> SteadyError {
+        use super::newton::Equations as _;
+        let (values, jacobian) = equations.evaluate(&missed.z);
+        let weighted = values.component_mul(&newton::weights(&jacobian));
+        let largest = weighted.amax();
+        let names = self.row_names();
+        let rows = names.into_iter().zip(values.iter()).zip(weighted.iter());
+        let left = rows
+            .filter(|(_, weighted)| weighted.is_nan() || weighted.abs() >= 0.1 * largest)
+            .map(|((name, value), _)| (name, *value))
+            .collect();
+        SteadyError::None {
+            starts,
+            left,
+            conditions: !self.conditions.is_empty(),
+        }
+    }
+
+    /// What each equation says, in the order of the rows.
+    fn row_names(&self) -> Vec<String> {
+        let info: &ModelInfo = self.model.info();
+        let rates = self.structure.essential.iter();
+        let rates = rates.map(|&s| format!("rate of {}", info.states[s].name));
+        let constraints = self.model.dependent_coordinates().iter();
+        let constraints = constraints.map(|&q| {
+            let name = &info.states[info.speeds + q].name;
+            format!("position constraint of {name}")
+        });
+        let conditions = self.conditions.iter();
+        let conditions = conditions.map(|c| format!("deviation of {}", c.term.name(info)));
+        rates.chain(constraints).chain(conditions).collect()
+    }
+}

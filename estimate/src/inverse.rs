@@ -1,0 +1,237 @@
+//! Inverse dynamics: which inputs a motion needed, and what it must satisfy whatever they were.
+//!
+//! Appell's equations M ω̇ + b = Π are linear in the inputs, Π = E u + Π₀. For a measured motion q, ω, ω̇
+//! they are equations for u. Where there are more of them than inputs, the rows n with nᵀE = 0 hold
+//! without u: relations between measured quantities and parameters alone,
+//!
+//! ```text
+//! nᵀ (M ω̇ + b − Π₀) = 0
+//! ```
+//!
+//! An acceleration that was not measured counts as unknown like an input, and takes one relation away.
+//!
+//! | file | idea |
+//! |---|---|
+//! | `inverse.rs` | the equations at a state: inputs, relations |
+//! | `relation.rs` | relations of a measured motion with exact derivatives; inputs with their covariance |
+//! | `track.rs` | recorded coordinates as splines with the covariance of all derivatives |
+//! | `consistency.rs` | how inconsistent recordings are with a model, weighed by their noise |
+//! | `search.rs` | the least inconsistent parameters, with intervals |
+
+mod consistency;
+mod relation;
+mod search;
+mod track;
+
+use nalgebra::{DMatrix, DVector};
+
+pub use consistency::{Consistency, Inconsistency, Sought};
+pub use relation::{Motion, Relations, Rows};
+pub use search::Found;
+pub use track::{Record, Stretch, Track};
+
+use appell_runtime::model::{At, Model};
+use appell_spectra::singular::Singular;
+
+/// Singular values below this part of the largest are zero: rounding of a few hundred operations.
+const ZERO: f64 = 1e-11;
+/// Part of the pseudo-forces by which they may fail to be linear in the inputs.
+const LINEAR: f64 = 1e-9;
+
+/// Why inputs cannot be found.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+pub enum InverseError {
+    /// The pseudo-forces are not linear in the inputs, by this part.
+    #[error("the pseudo-forces are not linear in the inputs: they are off by a part of {part:e}")]
+    NotLinear {
+        /// By which part of the pseudo-forces.
+        part: f64,
+    },
+    /// The equations do not determine the unknowns.
+    #[error("the equations determine {rank} combinations of {unknowns} unknowns")]
+    Undetermined {
+        /// How many combinations are determined.
+        rank: usize,
+        /// How many unknowns there are.
+        unknowns: usize,
+    },
+    /// A measured coordinate that the model does not have.
+    #[error("coordinate {index}: the model has {coordinates}")]
+    NoCoordinate {
+        /// Its index.
+        index: usize,
+        /// How many there are.
+        coordinates: usize,
+    },
+    /// A sought value that does not exist.
+    #[error("value {index} is looked for: there are {len}")]
+    Unknown {
+        /// Its index.
+        index: usize,
+        /// How many there are.
+        len: usize,
+    },
+    /// Time itself moves the model.
+    #[error(
+        "time drives the model, by a signal or a formula; its motion cannot be told from coordinates alone"
+    )]
+    Driven,
+    /// The inputs can make every motion.
+    #[error("the inputs can make every motion: no relation is left over")]
+    NoRelation,
+    /// The inputs reach more or fewer equations than elsewhere.
+    #[error("{found} relations are left over here, {expected} elsewhere")]
+    OtherKind {
+        /// Relations here.
+        found: usize,
+        /// Relations elsewhere.
+        expected: usize,
+    },
+    /// No run is long enough.
+    #[error("no run has enough samples without a gap")]
+    TooShort,
+    /// Numbers that give out.
+    #[error("the relations are not finite at these parameters")]
+    NotFinite,
+    /// The motion varies too little, or the parameters change nothing.
+    #[error("the recorded motions do not tell these values apart from noise: a matrix is singular")]
+    Singular,
+    /// Not one acceleration for each pseudo-velocity.
+    #[error("there are {found} accelerations for {needed} pseudo-velocities")]
+    Lengths {
+        /// Accelerations that were given.
+        found: usize,
+        /// Pseudo-velocities.
+        needed: usize,
+    },
+}
+
+/// Appell's equations at a state: M ω̇ + b = E u + Π₀.
+#[derive(Debug, Clone, PartialEq)]
+pub struct InputEquations {
+    /// M.
+    pub mass: DMatrix<f64>,
+    /// E: a column for each declared input.
+    pub inputs: DMatrix<f64>,
+    /// b − Π₀.
+    pub free: DVector<f64>,
+}
+
+/// Unknowns of the equations.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Unknowns {
+    /// The inputs, by least squares where there are more equations than unknowns.
+    pub inputs: Vec<f64>,
+    /// All pseudo-accelerations, those that were given and those that were not.
+    pub accelerations: Vec<f64>,
+    /// What the equations lack in the end, for those that were used.
+    pub residual: Vec<f64>,
+}
+
+impl InputEquations {
+    /// Of a model at a state. The inputs of `at` have no say, the signals after them have.
+    pub fn at(model: &dyn Model, at: At<'_>) -> Result<Self, InverseError> {
+        let info = model.info();
+        let (s, m) = (info.speeds, info.declared_inputs);
+        let mut u = at.u.to_vec();
+        let (mut mass, mut bias) = (vec![0.0; s * s], vec![0.0; s]);
+        let mut forces = |u: &[f64]| {
+            let mut forces = vec![0.0; s];
+            model.appell(At { u, ..at }, &mut mass, &mut bias, &mut forces);
+            DVector::from_vec(forces)
+        };
+        u[..m].fill(0.0);
+        let without = forces(&u);
+        // Inputs of the size of the other forces keep the digits of both.
+        let size = 1.0 + without.amax();
+        let mut inputs = DMatrix::zeros(s, m);
+        for k in 0..m {
+            u[k] = size;
+            inputs.set_column(k, &((forces(&u) - &without) / size));
+            u[k] = 0.0;
+        }
+        u[..m].fill(2.0 * size);
+        let twice = forces(&u);
+        let expected = &without + &inputs * DVector::repeat(m, 2.0 * size);
+        let part = (&twice - expected).amax() / (size + twice.amax());
+        // Not a number is no linearity either.
+        if m > 0 && (part.is_nan() || part > LINEAR) {
+            return Err(InverseError::NotLinear { part });
+        }
+        Ok(Self {
+            mass: DMatrix::from_row_slice(s, s, &mass),
+            inputs,
+            free: DVector::from_vec(bias) - without,
+        })
+    }
+
+    /// The rows n with nᵀE = 0, orthonormal: one for each equation that the inputs leave over.
+    pub fn relations(&self) -> DMatrix<f64> {
+        let singular = Singular::of(&self.inputs.transpose());
+        let rank = singular.rank(ZERO);
+        let left_over = singular.right.ncols() - rank;
+        singular.right.columns(rank, left_over).transpose()
+    }
+
+    /// M ω̇ + b − Π₀: the pseudo-forces that the inputs must have given.
+    pub fn demand(&self, accelerations: &[f64]) -> Result<DVector<f64>, InverseError> {
+        self.count(accelerations.len())?;
+        Ok(&self.mass * DVector::from_column_slice(accelerations) + &self.free)
+    }
+
+    /// By how much a motion fails the relations; zero where the model is right.
+    pub fn inconsistency(&self, accelerations: &[f64]) -> Result<DVector<f64>, InverseError> {
+        Ok(self.relations() * self.demand(accelerations)?)
+    }
+
+    /// The inputs, and the accelerations that were not measured, from some of the equations.
+    pub fn solve(
+        &self,
+        accelerations: &[Option<f64>],
+        rows: &[usize],
+    ) -> Result<Unknowns, InverseError> {
+        self.count(accelerations.len())?;
+        let known: Vec<f64> = accelerations.iter().map(|a| a.unwrap_or(0.0)).collect();
+        let open: Vec<usize> = (0..known.len())
+            .filter(|&i| accelerations[i].is_none())
+            .collect();
+        let m = self.inputs.ncols();
+        let unknowns = m + open.len();
+        // E u − M ω̇ over the unknown ω̇ meets what the known ones demand.
+        let matrix = DMatrix::from_fn(rows.len(), unknowns, |i, j| {
+            if j < m {
+                self.inputs[(rows[i], j)]
+            } else {
+                -self.mass[(rows[i], open[j - m])]
+            }
+        });
+        let demand = self.demand(&known)?;
+        let target = DVector::from_iterator(rows.len(), rows.iter().map(|&row| demand[row]));
+        let singular = Singular::of(&matrix);
+        let rank = singular.rank(ZERO).min(rows.len());
+        if rank < unknowns {
+            return Err(InverseError::Undetermined { rank, unknowns });
+        }
+        let first = singular.solve(&target, rank);
+        // Once more for what rounding has left.
+        let solution = &first + singular.solve(&(&target - &matrix * &first), rank);
+        let mut all = known;
+        for (place, &index) in open.iter().enumerate() {
+            all[index] = solution[m + place];
+        }
+        Ok(Unknowns {
+            inputs: solution.rows(0, m).iter().copied().collect(),
+            accelerations: all,
+            residual: (&target - &matrix * &solution).iter().copied().collect(),
+        })
+    }
+
+    fn count(&self, found: usize) -> Result<(), InverseError> {
+        let needed = self.mass.nrows();
+        if found == needed {
+            Ok(())
+        } else {
+            Err(InverseError::Lengths { found, needed })
+        }
+    }
+}

@@ -1,0 +1,62 @@
+//! The derivation as a page for people: Unicode text, LaTeX, HTML.
+//!
+//! [`page`] writes the derivation of a mechanism from its frames to its equations. A [`Page`] knows
+//! neither its format nor the graph behind it; [`text()`], [`latex()`] and [`html()`] set it.
+//! [`linear`] is the page of the linear equations about a steady motion.
+
+mod angles;
+mod arrange;
+mod collect;
+mod content;
+mod display;
+mod html;
+mod latex;
+mod lexicon;
+mod sections;
+mod text;
+mod text_box;
+mod units;
+mod writer;
+
+use appell_spec::mechanism::Mechanism;
+
+pub use content::{Block, Chain, Page, Row, Section, Span, Stage, Table};
+pub use html::html;
+pub use latex::latex;
+pub use text::text;
+
+pub use appell_codegen::symbolic::print::{Letter, Math};
+pub use display::Equation;
+
+use appell_codegen::linearisation::Linearisation;
+use appell_codegen::mechanics::{Derivation, finding};
+use writer::Writer;
+
+/// Writes the derivation of a mechanism, up to a stage.
+///
+/// The derivation is the one of this mechanism; it only grows by the expressions that the page
+/// shows. Findings are those of the reactions, at [`Stage::All`] alone.
+pub fn page(
+    mechanism: &Mechanism,
+    derivation: &mut Derivation,
+    stage: Stage,
+) -> finding::Outcome<Page> {
+    let mut writer = Writer::new(mechanism, derivation);
+    let sections = sections::sections(&mut writer, stage)?;
+    Ok(Page {
+        title: mechanism.title.clone(),
+        source: mechanism.source.clone(),
+        sections,
+    })
+}
+
+/// Writes the linear equations about a steady motion of a mechanism, with their characteristic
+/// polynomial; see [`Linearisation::about`].
+pub fn linear(mechanism: &Mechanism, derivation: &mut Derivation, linear: &Linearisation) -> Page {
+    let mut writer = Writer::new(mechanism, derivation);
+    Page {
+        title: mechanism.title.clone(),
+        source: mechanism.source.clone(),
+        sections: sections::linear(&mut writer, linear),
+    }
+}

@@ -1,0 +1,167 @@
+//! Which letter stands for which symbol and for which named intermediate quantity.
+
+use appell_spec::mechanism::Mechanism;
+use rustc_hash::{FxHashMap, FxHashSet};
+
+use super::Letter;
+use appell_codegen::mechanics::Derivation;
+use appell_codegen::symbolic::print::{Spelled, Vocabulary};
+use appell_codegen::symbolic::{Expr, Graph, Node};
+
+/// Where a symbol stands in a product: `m R r ω₁ sin θ`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Rank {
+    /// Parameters and the circle constant.
+    Constant = 1,
+    /// Coordinates, signals, time.
+    Position,
+    /// Inputs.
+    Input,
+    /// Pseudo-velocities and generalised velocities.
+    Velocity,
+    /// Pseudo-accelerations; they stand behind named quantities.
+    Acceleration = 6,
+}
+
+/// Letters of a derivation.
+#[derive(Debug, Clone)]
+pub(super) struct Lexicon {
+    symbols: FxHashMap<Expr, (Letter, Rank)>,
+    named: FxHashMap<String, Letter>,
+    /// Names that stay names in explicit formulas: accelerations and pivots.
+    kept: FxHashSet<String>,
+}
+
+/// Axes of a frame.
+pub(super) const AXES: [&str; 3] = ["x", "y", "z"];
+
+impl Lexicon {
+    /// The letters of everything that the derivation names.
+    pub(super) fn new(mechanism: &Mechanism, derivation: &Derivation) -> Self {
+        let s = &derivation.symbols;
+        let mut symbols = FxHashMap::default();
+        let mut letter = |expr: Expr, letter: Letter, rank: Rank| {
+            symbols.insert(expr, (letter, rank));
+        };
+        for (&expr, p) in s.parameters.iter().zip(&mechanism.parameters) {
+            letter(expr, Letter::of(&p.label.name), Rank::Constant);
+        }
+        for ((&expr, &rate), q) in s
+            .coordinates
+            .iter()
+            .zip(&s.rates)
+            .zip(&mechanism.coordinates)
+        {
+            letter(expr, Letter::of(&q.label.name), Rank::Position);
+            letter(rate, Letter::of(&q.label.name).dot(), Rank::Velocity);
+        }
+        for ((&expr, &change), w) in s
+            .speeds
+            .iter()
+            .zip(&s.accelerations)
+            .zip(&mechanism.pseudo_velocities)
+        {
+            letter(expr, Letter::of(&w.label.name), Rank::Velocity);
+            letter(change, Letter::of(&w.label.name).dot(), Rank::Acceleration);
+        }
+        for (&expr, u) in s.inputs.iter().zip(&mechanism.inputs) {
+            letter(expr, Letter::of(&u.label.name), Rank::Input);
+        }
+        for (orders, signal) in s.signals.iter().zip(&mechanism.signals) {
+            let mut written = Letter::of(&signal.label.name);
+            for &expr in orders {
+                letter(expr, written.clone(), Rank::Position);
+                written = written.dot();
+            }
+        }
+        letter(s.time, Letter::plain("t"), Rank::Position);
+        letter(s.pi, Letter::plain("π"), Rank::Constant);
+        let mut lexicon = Self {
+            symbols,
+            named: FxHashMap::default(),
+            kept: FxHashSet::default(),
+        };
+        lexicon.name_intermediates(mechanism);
+        lexicon
+    }
+
+    fn name_intermediates(&mut self, mechanism: &Mechanism) {
+        for axis in AXES {
+            for point in &mechanism.points {
+                let letter = Letter::plain("a").above("0").below(&point.name).below(axis);
+                self.named
+                    .insert(format!("a0_{}_{axis}", point.name), letter);
+            }
+            for frame in &mechanism.frames {
+                let letter = Letter::plain("Ω").below(&frame.name).below(axis);
+                self.named
+                    .insert(format!("w_{}_{axis}", frame.name), letter);
+            }
+            for body in &mechanism.bodies {
+                let letter = Letter::plain("h")
+                    .dot()
+                    .above("0")
+                    .below(&body.name)
+                    .below(axis);
+                self.named
+                    .insert(format!("h0_{}_{axis}", body.name), letter);
+            }
+        }
+        for body in &mechanism.bodies {
+            self.named.insert(
+                format!("s_{}", body.name),
+                Letter::plain("S").below(&body.name),
+            );
+        }
+        for q in &mechanism.coordinates {
+            self.named.insert(
+                format!("{}_dot", q.label.name),
+                Letter::of(&q.label.name).dot(),
+            );
+        }
+        for (i, w) in mechanism.pseudo_velocities.iter().enumerate() {
+            let (name, number) = (&w.label.name, (i + 1).to_string());
+            self.keep(format!("{name}_dot"), Letter::of(name).dot());
+            self.keep(format!("pivot_{name}"), Letter::plain("D").below(&number));
+            for (j, other) in mechanism.pseudo_velocities.iter().enumerate() {
+                let entry = format!("{number},{}", j + 1);
+                self.keep(
+                    format!("l_{name}_{}", other.label.name),
+                    Letter::plain("L").below(&entry),
+                );
+                self.keep(
+                    format!("m_{name}_{}", other.label.name),
+                    Letter::plain("N").below(&entry),
+                );
+            }
+        }
+    }
+
+    fn keep(&mut self, name: String, letter: Letter) {
+        self.kept.insert(name.clone());
+        self.named.insert(name, letter);
+    }
+
+    /// Whether explicit formulas keep a name instead of putting its definition in.
+    pub(super) fn keeps(&self, name: &str) -> bool {
+        self.kept.contains(name)
+    }
+}
+
+impl Vocabulary for Lexicon {
+    fn letter(&self, graph: &Graph, expr: Expr) -> Letter {
+        let known = match graph.node(expr) {
+            Node::Named(id) => self.named.get(&graph.definition(*id).name),
+            _ => self.symbols.get(&expr).map(|row| &row.0),
+        };
+        known
+            .cloned()
+            .unwrap_or_else(|| Spelled.letter(graph, expr))
+    }
+
+    fn place(&self, _graph: &Graph, symbol: Expr) -> u8 {
+        self.symbols
+            .get(&symbol)
+            .map_or(Rank::Velocity, |row| row.1) as u8
+    }
+}

@@ -1,0 +1,204 @@
+//! Constraints, pseudo-velocities, and the generalised velocities that solve both.
+
+use appell_spec::mechanism::{ConstraintId, ConstraintKind, GROUND};
+
+use super::super::display::Equation;
+use super::super::units::unit;
+use super::super::writer::Writer;
+use super::super::{Block, Row, Section, Span, Table};
+use super::super::{Letter, Math};
+use super::divisors;
+use super::phrases::{equality, headed, introduced, listed, math, sentence, with, words};
+use super::placement::from_to;
+use appell_codegen::mechanics::expressions::Lowering;
+use appell_codegen::mechanics::row;
+use appell_codegen::symbolic::Graph;
+
+/// Constraints and pseudo-velocities.
+pub(super) fn section(w: &mut Writer<'_>) -> Section {
+    let mut blocks = Vec::new();
+    for index in w.mechanism.constraints.ids() {
+        blocks.extend(constraint(w, index));
+    }
+    blocks.push(sentence(
+        "The pseudo-velocities are linear in the generalised velocities:",
+    ));
+    let definitions = definitions(w);
+    blocks.push(definitions);
+    blocks.push(sentence(
+        "Below, ωᵢ is the i-th of them; rows and columns follow the same order.",
+    ));
+    let by = if w
+        .derivation
+        .constraints
+        .rows
+        .iter()
+        .any(|r| !r.is_embedded())
+    {
+        "With the constraints they determine the generalised velocities:"
+    } else {
+        "They determine the generalised velocities:"
+    };
+    let equations = rates(w);
+    blocks.extend(with(w, by, equations));
+    blocks.extend(divisors::conditions(w));
+    if !w.derivation.velocities.solved_numerically.is_empty() {
+        blocks.push(sentence(
+            "No pivot of the linear system is safe in the declared ranges; it is solved with pivoting \
+             when the equations are evaluated.",
+        ));
+    }
+    headed("Constraints and pseudo-velocities", blocks)
+}
+
+/// Generalised velocities in terms of the pseudo-velocities; those with the letter of a
+/// pseudo-velocity go without saying.
+pub(super) fn rates(w: &mut Writer<'_>) -> Vec<Equation> {
+    let mut equations = Vec::new();
+    for k in 0..w.mechanism.coordinates.len() {
+        let left = w.symbol(w.derivation.symbols.rates[k]);
+        let right = w.explicit(w.derivation.velocities.rates[k]);
+        if left != right {
+            equations.push(Equation::new(left, right));
+        }
+    }
+    equations
+}
+
+fn constraint(w: &mut Writer<'_>, index: ConstraintId) -> Vec<Block> {
+    let constraint = &w.mechanism.constraints[index];
+    let mut what = vec![introduced(
+        &constraint.name,
+        &constraint.about,
+        constraint.line,
+    )];
+    let rolling = rolling(w, &constraint.kind);
+    let (mut open, mut held) = (Vec::new(), Vec::new());
+    let mut axes = GROUND;
+    for row in w.derivation.constraints.rows.clone() {
+        if row.constraint != index {
+            continue;
+        }
+        if row.is_embedded() {
+            let component = row.name.rsplit('.').next().unwrap_or(&row.name);
+            held.push(vec![words(component)]);
+        } else {
+            axes = row.along.frame;
+            open.push(equation(w, &row));
+        }
+    }
+    let is_rolling = rolling.is_some();
+    if let Some(formula) = rolling {
+        what.extend([words(": "), math(formula)]);
+    }
+    what.push(match (open.is_empty(), is_rolling, axes) {
+        (true, ..) => words("."),
+        (false, true, GROUND) => words(". In the ground:"),
+        (false, true, axes) => words(&format!(". In {}:", w.frame(axes))),
+        (false, false, _) => words(":"),
+    });
+    let mut blocks = vec![Block::Sentence(what)];
+    blocks.extend(with(w, "", open));
+    if !held.is_empty() {
+        blocks.push(Block::Sentence(held_by_geometry(held)));
+    }
+    blocks
+}
+
+/// `v_P = v_G + ω × r_GP = 0` for a rolling body.
+fn rolling(w: &Writer<'_>, kind: &ConstraintKind) -> Option<Math> {
+    let (body, contact) = match *kind {
+        ConstraintKind::Rolling { body, contact, .. } => (body, contact),
+        // Their rows say it all.
+        ConstraintKind::Velocity { .. }
+        | ConstraintKind::FixedVelocity { .. }
+        | ConstraintKind::Position { .. } => return None,
+    };
+    let body = &w.mechanism.bodies[body];
+    let (centre, contact) = (w.point(body.centre), w.point(contact));
+    Some(Math::Row(vec![
+        Math::Letter(Letter::bold("v").below(&contact)),
+        Math::Sign("="),
+        Math::Letter(Letter::bold("v").below(&centre)),
+        Math::Sign("+"),
+        Math::Letter(Letter::bold("ω").below(&body.name)),
+        Math::Sign("×"),
+        Math::Letter(Letter::bold("r").below(&from_to(&centre, &contact))),
+        Math::Sign("="),
+        Math::Words("0".to_owned()),
+    ]))
+}
+
+/// `Σ coefficient · q̇ + rest = 0`
+fn equation(w: &mut Writer<'_>, row: &row::Row) -> Equation {
+    let mut parts = vec![row.rest];
+    let rates = w.derivation.symbols.rates.clone();
+    for (&coefficient, rate) in row.coefficients.iter().zip(rates) {
+        parts.push(w.graph().mul(coefficient, rate));
+    }
+    let left = w.graph().sum(&parts);
+    Equation::new(w.explicit(left), Math::zero())
+}
+
+fn held_by_geometry(components: Vec<Vec<Span>>) -> Vec<Span> {
+    let (noun, verb) = if components.len() == 1 {
+        (
+            "Its component along ",
+            " holds by geometry: the coordinates satisfy it already.",
+        )
+    } else {
+        (
+            "Its components along ",
+            " hold by geometry: the coordinates satisfy them already.",
+        )
+    };
+    let mut text = vec![words(noun)];
+    text.extend(listed(components));
+    text.push(words(verb));
+    text
+}
+
+fn definitions(w: &mut Writer<'_>) -> Block {
+    let mechanism = w.mechanism;
+    let mut rows = Vec::new();
+    for (index, speed) in mechanism.pseudo_velocities.iter().enumerate() {
+        let derivation = &mut *w.derivation;
+        let lowering = Lowering {
+            symbols: &derivation.symbols,
+            rates: &derivation.symbols.rates,
+        };
+        let value = lowering
+            .lower(&mut derivation.algebra.graph, &speed.definition)
+            .unwrap_or(Graph::ZERO);
+        let left = Math::Letter(w.speed(index));
+        let mut right = w.set(value);
+        // A pseudo-velocity with the letter of a generalised velocity: γ̇ = dγ/dt.
+        if left == right
+            && let Some(place) = w
+                .derivation
+                .symbols
+                .rates
+                .iter()
+                .position(|&rate| rate == value)
+        {
+            let coordinate = w.letter(w.derivation.symbols.coordinates[place]);
+            right = Math::fraction(
+                Math::Letter(coordinate.before('d')),
+                Math::Letter(Letter::plain("t").before('d')),
+            );
+        }
+        let cells = vec![
+            vec![equality(left, right)],
+            vec![words(&unit(&speed.label))],
+            vec![words(&speed.label.about)],
+        ];
+        rows.push(Row {
+            cells,
+            line: speed.label.line,
+        });
+    }
+    Block::Table(Table {
+        title: String::new(),
+        rows,
+    })
+}

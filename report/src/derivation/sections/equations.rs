@@ -1,0 +1,177 @@
+//! Appell's equations, the accelerations that solve them, and the energies that check them.
+
+use super::super::display::Equation;
+use super::super::writer::Writer;
+use super::super::{Block, Section};
+use super::super::{Letter, Math};
+use super::phrases::{headed, listed, math, sentence, with, words};
+use super::solution::Elimination;
+use appell_codegen::mechanics;
+use appell_codegen::mechanics::gibbs_appell::kinetic_energy;
+use appell_codegen::symbolic::{Expr, Node};
+
+/// Longer accelerations, on average in a block, are not written out.
+const LONGEST_READING: usize = 180;
+
+/// Whether the solved equations are short enough to be written out, so that nothing on the page
+/// refers to M and b.
+pub(super) fn are_written_out(w: &mut Writer<'_>) -> bool {
+    let blocks = w.derivation.motion.blocks.clone();
+    blocks
+        .iter()
+        .all(|block| values_to_read(w, block).is_some())
+}
+
+/// M ω̇ + b = Π, row by row.
+pub(super) fn appell(w: &mut Writer<'_>) -> Section {
+    let accelerations = w.derivation.symbols.accelerations.clone();
+    let gibbs = w.derivation.gibbs.clone();
+    let mut equations = Vec::new();
+    for (i, bias) in gibbs.bias.iter().enumerate() {
+        let mut parts = vec![*bias];
+        for (&entry, &acceleration) in gibbs.mass_matrix[i].iter().zip(&accelerations) {
+            parts.push(w.graph().mul(entry, acceleration));
+        }
+        let left = w.graph().sum(&parts);
+        let left = w.expanded(left);
+        let right = w.explicit(w.derivation.forces[i]);
+        equations.push(Equation::new(left, right));
+    }
+    let one = Math::Row(vec![
+        Math::partial(Letter::plain("S"), Letter::plain("ω").dot().below("i")),
+        Math::Sign("="),
+        Math::Letter(Letter::plain("Π").below("i")),
+    ]);
+    let blocks = with(w, "", equations);
+    Section {
+        heading: vec![words("Appell's equations "), math(one)],
+        blocks,
+    }
+}
+
+/// ω̇, as the derivation solved for it.
+pub(super) fn motion(w: &mut Writer<'_>) -> Section {
+    let letters: Vec<Letter> = (0..w.derivation.symbols.speeds.len())
+        .map(|k| w.speed(k).dot())
+        .collect();
+    for letter in &letters {
+        w.define(letter.clone());
+    }
+    let mut equations = Vec::new();
+    let mut large = Vec::new();
+    let mut lead = "Appell's equations, solved for the accelerations:";
+    for block in w.derivation.motion.blocks.clone() {
+        if let Some(values) = values_to_read(w, &block) {
+            for (k, value) in values {
+                let right = w.explicit(value);
+                equations.push(Equation::new(Math::Letter(letters[k].clone()), right));
+            }
+            continue;
+        }
+        let elimination = Elimination::of(&block);
+        let solved = elimination.in_letters(|k| Math::Letter(letters[k].clone()));
+        if solved.is_empty() {
+            large.push(elimination.order);
+        } else if solved.len() > 1 {
+            lead = "Appell's equations, solved for the accelerations with M = L D Lᵀ and L z = Π − b, \
+                    in the order of elimination:";
+        }
+        equations.extend(solved);
+    }
+    let mut blocks = with(w, lead, equations);
+    for order in large {
+        let order = order
+            .iter()
+            .map(|&k| vec![math(Math::Letter(letters[k].clone()))]);
+        let mut text = vec![words(
+            "M is factorised when the equations are evaluated, in the order ",
+        )];
+        text.extend(listed(order.collect()));
+        text.push(words("."));
+        blocks.push(Block::Sentence(text));
+    }
+    blocks.push(sentence(
+        "With the generalised velocities of section 3 they are the equations of motion.",
+    ));
+    headed("Equations of motion", blocks)
+}
+
+/// Accelerations of a block in the order of their solution, if they are short enough to read. What
+/// Cramer's rule gave is always read: nothing was eliminated there.
+fn values_to_read(
+    w: &mut Writer<'_>,
+    block: &mechanics::motion::Block,
+) -> Option<Vec<(usize, Expr)>> {
+    let mechanics::motion::Block::Eliminated(equations) = block else {
+        return None;
+    };
+    let by_cramer = equations.len() > 1 && equations.iter().all(|e| e.couplings.is_empty());
+    let mut values = Vec::with_capacity(equations.len());
+    let mut length = 0;
+    for equation in equations {
+        let value = behind(w, w.derivation.motion.accelerations[equation.speed]);
+        let pivot = behind(w, equation.pivot);
+        length += w.try_explicit(value).width() + w.try_explicit(pivot).width();
+        values.push((equation.speed, value));
+    }
+    (by_cramer || length <= LONGEST_READING * values.len()).then_some(values)
+}
+
+/// What stands behind a name.
+fn behind(w: &mut Writer<'_>, expr: Expr) -> Expr {
+    match *w.graph().node(expr) {
+        Node::Named(id) => w.graph().definition(id).value,
+        _ => expr,
+    }
+}
+
+/// T, V and the power of the other loads.
+pub(super) fn energies(w: &mut Writer<'_>) -> Section {
+    let mut kinetic = Vec::new();
+    for body in w.derivation.bodies.clone() {
+        kinetic.push(kinetic_energy(&mut w.derivation.algebra, &body));
+    }
+    let kinetic = w.graph().sum(&kinetic);
+    let mut equations = vec![Equation::new(
+        Math::Letter(Letter::plain("T")),
+        w.explicit(kinetic),
+    )];
+    let loads = w.derivation.loads.clone();
+    let potential: Vec<Expr> = loads.iter().filter_map(|load| load.potential).collect();
+    let potential = w.graph().sum(&potential);
+    equations.push(Equation::new(
+        Math::Letter(Letter::plain("V")),
+        w.explicit(potential),
+    ));
+    let power: Vec<Expr> = loads
+        .iter()
+        .filter(|load| load.potential.is_none())
+        .map(|load| load.power(w.graph()))
+        .collect();
+    let power = w.graph().sum(&power);
+    equations.push(Equation::new(
+        Math::Letter(Letter::plain("P")),
+        w.explicit(power),
+    ));
+    let mut text = vec![words(
+        "Kinetic energy T, potential energy V, power P of the loads without potential.",
+    )];
+    let steady = w.derivation.symbols.signals.is_empty();
+    if steady {
+        let rate = Math::Row(vec![
+            Math::Letter(Letter::plain("T").dot()),
+            Math::Sign("+"),
+            Math::Letter(Letter::plain("V").dot()),
+            Math::Sign("="),
+            Math::Letter(Letter::plain("P")),
+        ]);
+        text.extend([
+            words(" A check of every solution: "),
+            math(rate),
+            words("."),
+        ]);
+    }
+    let mut blocks = vec![Block::Sentence(text)];
+    blocks.extend(with(w, "", equations));
+    headed("Energies", blocks)
+}

@@ -1,0 +1,218 @@
+//! The linear equations about a steady motion, and their characteristic polynomial.
+
+use super::super::display::Equation;
+use super::super::writer::Writer;
+use super::super::{Block, Letter, Math, Section, Span};
+use super::phrases::{headed, listed, math, sentence, with, words};
+use appell_codegen::linearisation::{Characteristic, Linearisation};
+use appell_codegen::symbolic::{Expr, Graph};
+
+/// A matrix of more columns is not shown as a whole.
+const MOST_COLUMNS: usize = 10;
+/// A longer coefficient of the characteristic polynomial stays in the entries of A.
+const LONGEST_COEFFICIENT: usize = 320;
+
+/// What rests, what runs on, and where the motion is steady.
+pub(super) fn steady(w: &mut Writer<'_>, linear: &Linearisation) -> Section {
+    let (essential, hidden) = linear.states.split_at(linear.essential);
+    let mut states = vec![words("The motion depends on the essential states ")];
+    states.extend(letters(w, essential));
+    if hidden.is_empty() {
+        states.push(words("."));
+    } else {
+        states.push(words("; "));
+        states.extend(letters(w, hidden));
+        let one = hidden.len() == 1;
+        states.push(words(if one {
+            " is hidden and follows."
+        } else {
+            " are hidden and follow."
+        }));
+    }
+    let mut blocks = vec![Block::Sentence(states)];
+    let mut values = Vec::new();
+    for symbol in told(w, linear) {
+        let known = linear.steady.values.iter().find(|known| known.0 == symbol);
+        if let Some(&(_, value)) = known {
+            values.push(Equation::new(w.symbol(symbol), w.explicit(value)));
+        }
+    }
+    blocks.extend(with(w, "In the motion", values));
+    let mut conditions = Vec::new();
+    for &rate in linear.rates.iter().filter(|&&rate| rate != Graph::ZERO) {
+        let (over, _) = w.graph().split_fraction(rate);
+        let (_, over) = w.graph().split_coefficient(over);
+        conditions.push(Equation::new(w.explicit(over), Math::zero()));
+    }
+    if conditions.is_empty() {
+        blocks.push(sentence("It is steady."));
+    }
+    blocks.extend(with(w, "It is steady where", conditions));
+    headed("Steady motion", blocks)
+}
+
+/// What the reader wants to know the values of, in order. That coordinates which rest have no rate
+/// goes without saying.
+fn told(w: &Writer<'_>, linear: &Linearisation) -> Vec<Expr> {
+    let symbols = &w.derivation.symbols;
+    let (essential, _) = linear.states.split_at(linear.essential);
+    let rates = symbols.coordinates.iter().zip(&symbols.rates);
+    let rates = rates.filter(|(coordinate, _)| !essential.contains(coordinate));
+    let states = linear.states.iter().copied();
+    states
+        .chain(rates.map(|(_, &rate)| rate))
+        .chain(linear.inputs.iter().copied())
+        .collect()
+}
+
+/// `a, b and c`
+fn letters(w: &mut Writer<'_>, symbols: &[Expr]) -> Vec<Span> {
+    listed(symbols.iter().map(|&s| vec![math(w.symbol(s))]).collect())
+}
+
+/// A and B, entry by entry.
+pub(super) fn equations(w: &mut Writer<'_>, linear: &Linearisation) -> Section {
+    let mut blocks = vec![rule(w, linear)];
+    for (name, rows) in [("A", &linear.a), ("B", &linear.b)] {
+        let columns = rows.first().map_or(0, Vec::len);
+        if columns == 0 {
+            continue;
+        }
+        let mut equations = Vec::new();
+        // A single column is not worth a display of its own.
+        let whole = (2..=MOST_COLUMNS).contains(&columns) && rows.len() <= MOST_COLUMNS;
+        let mut cells = Vec::with_capacity(rows.len());
+        for (i, row) in rows.iter().enumerate() {
+            let mut line = Vec::with_capacity(columns);
+            for (j, &entry) in row.iter().enumerate() {
+                let cell = Math::Letter(numbered(name, &[i, j]));
+                if entry == Graph::ZERO || whole && w.graph().as_number(entry).is_some() {
+                    line.push(w.set(entry));
+                    continue;
+                }
+                let right = w.explicit(entry);
+                equations.push(Equation::new(cell.clone(), right));
+                line.push(cell);
+            }
+            cells.push(line);
+        }
+        if whole {
+            let matrix = Equation::new(Math::Letter(Letter::bold(name)), Math::Matrix(cells));
+            blocks.push(Block::Equations(vec![matrix]));
+        }
+        let lead = if whole {
+            "with"
+        } else {
+            "What is not listed is zero."
+        };
+        blocks.extend(with(w, lead, equations));
+    }
+    headed("Linear equations about the steady motion", blocks)
+}
+
+/// `δẋ = A δx + B δu`, and what x and u are.
+fn rule(w: &mut Writer<'_>, linear: &Linearisation) -> Block {
+    let bold = |name: &str| Math::Letter(Letter::bold(name));
+    let small = |name: &str| Math::Letter(Letter::bold(name).before('δ'));
+    let rate = Math::Letter(Letter::bold("x").dot().before('δ'));
+    let mut right = vec![(false, Math::Row(vec![bold("A"), small("x")]))];
+    if !linear.inputs.is_empty() {
+        right.push((false, Math::Row(vec![bold("B"), small("u")])));
+    }
+    let equation = Math::Row(vec![rate, Math::Sign("="), Math::sum(right)]);
+    let mut text = vec![
+        words("Small departures δ from the motion follow "),
+        math(equation),
+        words(" with the states "),
+    ];
+    text.extend(letters(w, &linear.states));
+    if !linear.inputs.is_empty() {
+        let one = linear.inputs.len() == 1;
+        text.push(words(if one {
+            " and the input "
+        } else {
+            " and the inputs "
+        }));
+        text.extend(letters(w, &linear.inputs));
+    }
+    text.push(words(", in this order."));
+    if !w.derivation.positions.dependent.is_empty() {
+        text.push(words(
+            " Coordinates that follow from others by position constraints count as free here.",
+        ));
+    }
+    Block::Sentence(text)
+}
+
+/// The polynomial whose zeros are the eigenvalues of the essential states.
+pub(super) fn characteristic(w: &mut Writer<'_>, polynomial: &Characteristic) -> Section {
+    let left = Math::Letter(Letter::plain("χ"));
+    let mut equations = vec![Equation::new(left, factored(polynomial))];
+    for (k, &value) in polynomial.coefficients.iter().enumerate().skip(1) {
+        if value == Graph::ZERO {
+            continue;
+        }
+        let letter = Math::Letter(numbered("c", &[k - 1]));
+        let in_entries = w.set(polynomial.in_entries[k]);
+        let explicit = w.try_explicit(value);
+        if in_entries != explicit {
+            equations.push(Equation::new(letter.clone(), in_entries));
+        }
+        if explicit.width() <= LONGEST_COEFFICIENT {
+            equations.push(Equation::new(letter, explicit));
+        }
+    }
+    let lead = format!(
+        "Of the first {} rows and columns of A, those of the essential states:",
+        polynomial.degree
+    );
+    let blocks = with(w, &lead, equations);
+    headed("Characteristic polynomial", blocks)
+}
+
+/// `λᶻ (λⁿ⁻ᶻ + c₁ λⁿ⁻ᶻ⁻¹ + …)`, coefficients that vanish left out.
+fn factored(polynomial: &Characteristic) -> Math {
+    let zeros = polynomial.zeros();
+    let degree = polynomial.degree - zeros;
+    let mut terms = Vec::new();
+    for (k, &value) in polynomial.coefficients.iter().enumerate().take(degree + 1) {
+        if value == Graph::ZERO {
+            continue;
+        }
+        let mut factors = Vec::new();
+        if k > 0 {
+            factors.push(Math::Letter(numbered("c", &[k - 1])));
+        }
+        factors.extend(power(degree - k));
+        let term = if factors.is_empty() {
+            Math::integer(1)
+        } else {
+            Math::product(factors)
+        };
+        terms.push((false, term));
+    }
+    let rest = Math::sum(terms);
+    match power(zeros) {
+        Some(power) => Math::product(vec![power, rest]),
+        None => rest,
+    }
+}
+
+fn power(exponent: usize) -> Option<Math> {
+    let letter = Math::Letter(Letter::plain("λ"));
+    match exponent {
+        0 => None,
+        1 => Some(letter),
+        _ => Some(Math::Power(
+            Box::new(letter),
+            Box::new(Math::integer(exponent)),
+        )),
+    }
+}
+
+/// A letter with numbers below, from 1.
+fn numbered(name: &str, indices: &[usize]) -> Letter {
+    let letter = Letter::plain(name);
+    let indices = indices.iter().map(|index| (index + 1).to_string());
+    indices.fold(letter, |letter, index| letter.below(&index))
+}

@@ -1,0 +1,276 @@
+//! What a load is: its vector, its frame, where it acts, what feels the reaction, and its virtual
+//! power as the definition says it.
+
+use appell_spec::expr::Expr as Spec;
+use appell_spec::mechanism::{
+    BodyId, Connection, CoordinateId, FrameId, GROUND, Load, LoadKind, PointId,
+};
+
+use super::super::writer::Writer;
+use super::super::{Letter, Math, Span};
+use super::phrases::{equality, listed, math, words};
+use super::placement::{from_to, lowered};
+use appell_codegen::symbolic::{Expr, Graph};
+
+/// `F_drive = [0, u, 0] tilted at A, −F_drive at G; δP_drive = F_drive · (δv_A − δv_G)`
+pub(super) fn statement(w: &mut Writer<'_>, load: &Load) -> Vec<Span> {
+    let (mut what, power) = match &load.kind {
+        LoadKind::Gravity { down, acceleration } => gravity(w, load, *down, acceleration),
+        LoadKind::Force {
+            on,
+            body,
+            reaction_on,
+            frame,
+            vector,
+        } => force(w, load, (*on, *body, *reaction_on), *frame, vector),
+        LoadKind::Torque {
+            on,
+            reaction_on,
+            frame,
+            vector,
+        } => torque(w, load, *on, *reaction_on, *frame, vector),
+        LoadKind::Spring {
+            between: Connection::Points(a, b),
+            stiffness,
+            relaxed,
+        } => spring(w, load, [*a, *b], stiffness, relaxed),
+        LoadKind::Damper {
+            between: Connection::Points(a, b),
+            damping,
+        } => damper(w, load, [*a, *b], damping),
+        LoadKind::Spring {
+            between: Connection::Coordinate(q),
+            stiffness,
+            relaxed,
+        } => {
+            let place = w.derivation.symbols.coordinates[q.index()];
+            let stretch = difference(w, place, relaxed);
+            let stiffness = factor(w, stiffness);
+            along(w, load, *q, negative(vec![stiffness, stretch]))
+        }
+        LoadKind::Damper {
+            between: Connection::Coordinate(q),
+            damping,
+        } => {
+            let rate = w.symbol(w.derivation.symbols.rates[q.index()]);
+            let damping = factor(w, damping);
+            along(w, load, *q, negative(vec![damping, rate]))
+        }
+        LoadKind::Generalized { coordinate, force } => {
+            let force = factor(w, force);
+            along(w, load, *coordinate, force)
+        }
+    };
+    what.push(words("; "));
+    what.push(equality(virtual_power(load), power));
+    what
+}
+
+/// `δP_drive`
+pub(super) fn virtual_power(load: &Load) -> Math {
+    Math::Letter(Letter::plain("P").before('δ').below(&load.name))
+}
+
+/// What is said of a load, and its virtual power.
+type Said = (Vec<Span>, Math);
+
+/// The weight of every body.
+fn gravity(w: &mut Writer<'_>, load: &Load, down: [i8; 3], acceleration: &Spec) -> Said {
+    let mechanism = w.mechanism;
+    let (mut weights, mut power) = (Vec::new(), Vec::new());
+    for body in &mechanism.bodies {
+        let (mass, g) = (lowered(w, &body.mass), lowered(w, acceleration));
+        let weight = w.graph().mul(mass, g);
+        let vector = down.map(|c| w.graph().scale(&i64::from(c).into(), weight));
+        let letter = match mechanism.bodies.len() {
+            1 => Letter::bold("F").below(&load.name),
+            _ => Letter::bold("F").below(&load.name).below(&body.name),
+        };
+        let centre = w.point(body.centre);
+        weights.push(vec![
+            equality(Math::Letter(letter.clone()), vector_in(w, vector, GROUND)),
+            words(&format!(" at {centre}")),
+        ]);
+        power.push((false, dot(Math::Letter(letter), velocity(&centre))));
+    }
+    (listed(weights), Math::Sum(power))
+}
+
+fn force(
+    w: &mut Writer<'_>,
+    load: &Load,
+    (on, body, reaction_on): (PointId, Option<BodyId>, Option<PointId>),
+    frame: FrameId,
+    vector: &[Spec; 3],
+) -> Said {
+    let letter = Math::Letter(Letter::bold("F").below(&load.name));
+    let point = w.point(on);
+    let mut what = vec![
+        stated(w, &letter, vector, frame),
+        words(&format!(" at {point}")),
+    ];
+    let mut v = velocity(&point);
+    if let Some(body) = body {
+        let body = &w.mechanism.bodies[body];
+        what.push(words(&format!(", fixed in {}", body.name)));
+        // The material point at the centre of mass moves with it.
+        if body.centre != on {
+            let lever = between(w, [body.centre, on]);
+            let turning = Math::Row(vec![rotation(&body.name), Math::Sign("×"), lever]);
+            v = Math::Sum(vec![
+                (false, velocity(&w.point(body.centre))),
+                (false, turning),
+            ]);
+        }
+    }
+    let mut motion = vec![(false, v)];
+    if let Some(other) = reaction_on {
+        let other = w.point(other);
+        what.extend(reaction(&letter, &format!(" at {other}")));
+        motion.push((true, velocity(&other)));
+    }
+    (what, dot(letter, Math::sum(motion)))
+}
+
+fn torque(
+    w: &mut Writer<'_>,
+    load: &Load,
+    on: BodyId,
+    reaction_on: Option<BodyId>,
+    frame: FrameId,
+    vector: &[Spec; 3],
+) -> Said {
+    let letter = Math::Letter(Letter::bold("T").below(&load.name));
+    let bodies = &w.mechanism.bodies;
+    let on = &bodies[on].name;
+    let mut what = vec![
+        stated(w, &letter, vector, frame),
+        words(&format!(" on {on}")),
+    ];
+    let mut motion = vec![(false, rotation(on))];
+    if let Some(other) = reaction_on {
+        let other = &bodies[other].name;
+        what.extend(reaction(&letter, &format!(" on {other}")));
+        motion.push((true, rotation(other)));
+    }
+    (what, dot(letter, Math::sum(motion)))
+}
+
+/// A tension `k (|r_AB| − relaxed)` that pulls two points towards each other.
+fn spring(w: &mut Writer<'_>, load: &Load, ends: [PointId; 2], k: &Spec, relaxed: &Spec) -> Said {
+    let relaxed = lowered(w, relaxed);
+    let mut stretch = vec![(false, Math::Size(Box::new(between(w, ends))))];
+    if relaxed != Graph::ZERO {
+        stretch.push((true, w.set(relaxed)));
+    }
+    let tension = Math::product(vec![factor(w, k), Math::sum(stretch)]);
+    pulling(w, load, ends, tension)
+}
+
+/// A tension `c r_AB/|r_AB| · (v_B − v_A)`.
+fn damper(w: &mut Writer<'_>, load: &Load, ends: [PointId; 2], c: &Spec) -> Said {
+    let [v_a, v_b] = ends.map(|end| Math::Letter(Letter::bold("v").below(&w.point(end))));
+    let lengthening = dot(
+        direction(w, ends),
+        Math::Sum(vec![(false, v_b), (true, v_a)]),
+    );
+    let tension = Math::product(vec![factor(w, c), lengthening]);
+    pulling(w, load, ends, tension)
+}
+
+fn pulling(w: &Writer<'_>, load: &Load, ends: [PointId; 2], tension: Math) -> Said {
+    let letter = Math::Letter(Letter::plain("F").below(&load.name));
+    let [a, b] = ends.map(|end| w.point(end));
+    let what = vec![
+        words("tension "),
+        equality(letter.clone(), tension),
+        words(&format!(" between {a} and {b}")),
+    ];
+    let approach = Math::Sum(vec![(false, velocity(&a)), (true, velocity(&b))]);
+    let pull = Math::Row(vec![letter, direction(w, ends)]);
+    (what, dot(pull, approach))
+}
+
+/// A generalised force on a coordinate.
+fn along(w: &mut Writer<'_>, load: &Load, q: CoordinateId, force: Math) -> Said {
+    let letter = Math::Letter(Letter::plain("F").below(&load.name));
+    let [coordinate, rate] = [
+        w.derivation.symbols.coordinates[q.index()],
+        w.derivation.symbols.rates[q.index()],
+    ]
+    .map(|symbol| w.letter(symbol));
+    let what = vec![
+        equality(letter.clone(), force),
+        words(" along "),
+        math(Math::Letter(coordinate)),
+    ];
+    (
+        what,
+        Math::Row(vec![letter, Math::Letter(rate.before('δ'))]),
+    )
+}
+
+/// `letter = [x, y, z] frame`
+fn stated(w: &mut Writer<'_>, letter: &Math, vector: &[Spec; 3], frame: FrameId) -> Span {
+    let [x, y, z] = vector;
+    let components = [x, y, z].map(|c| lowered(w, c));
+    equality(letter.clone(), vector_in(w, components, frame))
+}
+
+fn vector_in(w: &mut Writer<'_>, components: [Expr; 3], frame: FrameId) -> Math {
+    Math::Vector {
+        components: components.map(|c| w.set(c)).into(),
+        frame: Some(w.frame(frame)),
+        column: false,
+    }
+}
+
+/// `, −F at G`
+fn reaction(letter: &Math, place: &str) -> [Span; 3] {
+    let opposite = Math::Sum(vec![(true, letter.clone())]);
+    [words(", "), math(opposite), words(place)]
+}
+
+fn velocity(point: &str) -> Math {
+    Math::Letter(Letter::bold("v").below(point).before('δ'))
+}
+
+fn rotation(body: &str) -> Math {
+    Math::Letter(Letter::bold("ω").below(body).before('δ'))
+}
+
+/// `r_AB`
+fn between(w: &Writer<'_>, [a, b]: [PointId; 2]) -> Math {
+    Math::Letter(Letter::bold("r").below(&from_to(&w.point(a), &w.point(b))))
+}
+
+/// `r_AB/|r_AB|`
+fn direction(w: &Writer<'_>, ends: [PointId; 2]) -> Math {
+    let r = between(w, ends);
+    Math::fraction(r.clone(), Math::Size(Box::new(r)))
+}
+
+fn dot(left: Math, right: Math) -> Math {
+    let right = match right {
+        sum @ Math::Sum(_) => Math::Brackets(Box::new(sum)),
+        single => single,
+    };
+    Math::Row(vec![left, Math::Sign("·"), right])
+}
+
+/// An expression of the spec as a formula.
+fn factor(w: &mut Writer<'_>, expr: &Spec) -> Math {
+    let expr = lowered(w, expr);
+    w.set(expr)
+}
+
+/// `place − relaxed`
+fn difference(w: &mut Writer<'_>, place: Expr, relaxed: &Spec) -> Math {
+    let relaxed = lowered(w, relaxed);
+    let stretch = w.graph().sub(place, relaxed);
+    w.set(stretch)
+}
+
+fn negative(factors: Vec<Math>) -> Math {
+    Math::Sum(vec![(true, Math::product(factors))])
+}

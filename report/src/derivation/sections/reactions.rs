@@ -1,0 +1,47 @@
+//! Constraint forces.
+
+use super::super::Section;
+use super::super::display::Equation;
+use super::super::writer::Writer;
+use super::super::{Letter, Math};
+use super::phrases::{headed, with};
+use appell_codegen::mechanics::finding::Outcome;
+use appell_codegen::mechanics::reactions::reactions;
+use appell_codegen::symbolic::Graph;
+
+/// The reaction at every constrained place; none without constraints.
+pub(super) fn section(w: &mut Writer<'_>) -> Outcome<Option<Section>> {
+    let d = &mut *w.derivation;
+    let forces = reactions(
+        &mut d.algebra,
+        w.mechanism,
+        &d.symbols,
+        &d.constraints,
+        &d.velocities.violating,
+        &d.bodies,
+        &d.motion.accelerations,
+    )?;
+    if forces.is_empty() {
+        return Ok(None);
+    }
+    let mut equations = Vec::new();
+    let places = w.derivation.constraints.reactions.clone();
+    for (place, force) in places.iter().zip(forces) {
+        for (component, axis) in force.into_iter().zip(super::super::lexicon::AXES) {
+            let component = w.derivation.algebra.shortest(component);
+            if component == Graph::ZERO {
+                continue;
+            }
+            let left = Letter::plain("F").below(&place.name).below(axis);
+            let right = w.explicit(component);
+            equations.push(Equation::new(Math::Letter(left), right));
+        }
+    }
+    let blocks = with(
+        w,
+        "Each constraint row gets a speed at which it would be violated; Appell's equation for that \
+         speed gives its reaction. Components in the ground, accelerations stand for their values:",
+        equations,
+    );
+    Ok(Some(headed("Constraint forces", blocks)))
+}

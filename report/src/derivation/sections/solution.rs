@@ -1,0 +1,134 @@
+//! Elimination in letters, for blocks of the mass matrix whose written-out form is no reading.
+
+use super::super::Letter;
+use super::super::Math;
+use super::super::display::Equation;
+use super::energy::numbered;
+use appell_codegen::mechanics::motion::Block;
+
+/// The elimination of larger blocks is not written entry by entry.
+const LARGEST_BLOCK: usize = 5;
+
+/// What the derivation eliminated: speeds in order, and the entries of L that are not zero.
+pub(super) struct Elimination {
+    /// Speeds in the order of elimination.
+    pub(super) order: Vec<usize>,
+    /// Columns of L with an entry, for each row.
+    couplings: Vec<Vec<usize>>,
+}
+
+impl Elimination {
+    pub(super) fn of(block: &Block) -> Self {
+        match block {
+            Block::Eliminated(equations) => {
+                // The last equation was eliminated first.
+                let columns = || equations.iter().rev();
+                let order: Vec<usize> = columns().map(|e| e.speed).collect();
+                let row = |(place, speed): (usize, &usize)| {
+                    let couples = |column: usize| {
+                        let equation = columns().nth(column);
+                        equation.is_some_and(|e| e.couplings.iter().any(|c| c.0 == *speed))
+                    };
+                    (0..place).filter(|&column| couples(column)).collect()
+                };
+                let couplings = order.iter().enumerate().map(row).collect();
+                Self { order, couplings }
+            }
+            Block::Factorized(block) => Self {
+                order: block.speeds.clone(),
+                couplings: (0..block.speeds.len())
+                    .map(|row| {
+                        (0..row)
+                            .filter(|&column| block.couples(row, column))
+                            .collect()
+                    })
+                    .collect(),
+            },
+        }
+    }
+
+    /// `M = L D Lᵀ`, entry by entry, and the accelerations; nothing for large blocks.
+    pub(super) fn in_letters(&self, acceleration: impl Fn(usize) -> Math) -> Vec<Equation> {
+        match *self.order {
+            [k] => {
+                let value = Math::fraction(force_less_bias(k), entry("M", k, k));
+                vec![Equation::new(acceleration(k), value)]
+            }
+            _ if self.order.len() > LARGEST_BLOCK => Vec::new(),
+            _ => {
+                let mut equations = Vec::new();
+                for row in 0..self.order.len() {
+                    self.factorize(row, &mut equations);
+                }
+                for column in (0..self.order.len()).rev() {
+                    equations.push(self.substituted_back(column, &acceleration));
+                }
+                equations
+            }
+        }
+    }
+
+    /// A row of L, its pivot, and the reduced right-hand side.
+    fn factorize(&self, row: usize, equations: &mut Vec<Equation>) {
+        let k = self.order[row];
+        let (mut pivot, mut reduced) = (
+            vec![(false, entry("M", k, k))],
+            vec![(false, force_less_bias(k))],
+        );
+        for &column in &self.couplings[row] {
+            let p = self.order[column];
+            let shared = |q: &&usize| **q < column && self.couplings[column].contains(q);
+            let mut terms = vec![(false, entry("M", k, p))];
+            for &q in self.couplings[row].iter().filter(shared) {
+                let q = self.order[q];
+                let change = vec![entry("L", k, q), entry("L", p, q), numbered("D", q)];
+                terms.push((true, Math::product(change)));
+            }
+            let coupling = entry("L", k, p);
+            let value = Math::fraction(Math::sum(terms), numbered("D", p));
+            equations.push(Equation::new(coupling.clone(), value));
+            let change = Math::product(vec![square(coupling.clone()), numbered("D", p)]);
+            pivot.push((true, change));
+            reduced.push((true, Math::product(vec![coupling, numbered("z", p)])));
+        }
+        equations.push(Equation::new(numbered("D", k), Math::sum(pivot)));
+        equations.push(Equation::new(numbered("z", k), Math::sum(reduced)));
+    }
+
+    /// The acceleration of a column, from those of later rows.
+    fn substituted_back(&self, column: usize, acceleration: impl Fn(usize) -> Math) -> Equation {
+        let k = self.order[column];
+        let own = Math::fraction(numbered("z", k), numbered("D", k));
+        let mut terms = vec![(false, own)];
+        for row in (column + 1..self.order.len()).filter(|&r| self.couplings[r].contains(&column)) {
+            let known = self.order[row];
+            let term = vec![entry("L", known, k), acceleration(known)];
+            terms.push((true, Math::product(term)));
+        }
+        Equation::new(acceleration(k), Math::sum(terms))
+    }
+}
+
+/// `M₁₂`, with the smaller index first in a symmetric matrix.
+fn entry(name: &str, i: usize, j: usize) -> Math {
+    let (i, j) = if name == "M" {
+        (i.min(j) + 1, i.max(j) + 1)
+    } else {
+        (i + 1, j + 1)
+    };
+    let place = if i.max(j) > 9 {
+        format!("{i},{j}")
+    } else {
+        format!("{i}{j}")
+    };
+    Math::Letter(Letter::plain(name).below(&place))
+}
+
+/// `Π - b`
+fn force_less_bias(k: usize) -> Math {
+    Math::Sum(vec![(false, numbered("Π", k)), (true, numbered("b", k))])
+}
+
+fn square(base: Math) -> Math {
+    Math::Power(Box::new(base), Box::new(Math::integer(2)))
+}

@@ -1,0 +1,128 @@
+//! Boxes of characters, which a text page is built of: lines of equal width, one of them at the height
+//! of the text.
+
+use appell_codegen::symbolic::print::columns;
+
+/// A rectangle of characters.
+#[derive(Debug, Clone)]
+pub(super) struct TextBox {
+    lines: Vec<String>,
+    /// The line at the height of the surrounding text.
+    base: usize,
+}
+
+impl TextBox {
+    /// One line.
+    pub(super) fn line(text: &str) -> Self {
+        Self {
+            lines: vec![text.to_owned()],
+            base: 0,
+        }
+    }
+
+    /// Columns.
+    pub(super) fn width(&self) -> usize {
+        self.lines
+            .iter()
+            .map(|line| columns(line))
+            .max()
+            .unwrap_or(0)
+    }
+
+    /// Lines.
+    pub(super) fn height(&self) -> usize {
+        self.lines.len()
+    }
+
+    /// Its lines.
+    pub(super) fn lines(&self) -> impl Iterator<Item = &str> {
+        self.lines.iter().map(String::as_str)
+    }
+
+    /// Two boxes side by side, with their bases at the same height.
+    pub(super) fn beside(&self, right: &Self) -> Self {
+        let base = self.base.max(right.base);
+        let below = (self.height() - self.base).max(right.height() - right.base);
+        let width = self.width();
+        let at = |boxed: &Self, row: usize| -> String {
+            (row + boxed.base)
+                .checked_sub(base)
+                .and_then(|k| boxed.lines.get(k))
+                .cloned()
+                .unwrap_or_default()
+        };
+        let lines = (0..base + below)
+            .map(|row| padded(&at(self, row), width) + &at(right, row))
+            .collect();
+        Self { lines, base }
+    }
+
+    /// Cells in square brackets, columns aligned to the left.
+    pub(super) fn bracketed(cells: &[Vec<String>]) -> Self {
+        let count = cells.iter().map(Vec::len).max().unwrap_or(0);
+        let widths: Vec<usize> = (0..count)
+            .map(|k| {
+                cells
+                    .iter()
+                    .filter_map(|row| row.get(k))
+                    .map(|cell| columns(cell))
+                    .max()
+                    .unwrap_or(0)
+            })
+            .collect();
+        let last = cells.len().saturating_sub(1);
+        let lines: Vec<String> = cells
+            .iter()
+            .enumerate()
+            .map(|(i, row)| {
+                let (open, close) = match i {
+                    _ if last == 0 => ("[", "]"),
+                    0 => ("⎡", "⎤"),
+                    _ if i == last => ("⎣", "⎦"),
+                    _ => ("⎢", "⎥"),
+                };
+                let row: Vec<String> = row
+                    .iter()
+                    .zip(&widths)
+                    .map(|(cell, &width)| padded(cell, width))
+                    .collect();
+                format!("{open} {} {close}", row.join("   "))
+            })
+            .collect();
+        Self {
+            base: last / 2,
+            lines,
+        }
+    }
+
+    /// A quotient with a bar.
+    pub(super) fn quotient(above: &str, below: &str) -> Self {
+        let width = columns(above).max(columns(below));
+        let lines = vec![
+            centred(above, width),
+            "─".repeat(width),
+            centred(below, width),
+        ];
+        Self { lines, base: 1 }
+    }
+
+    /// Writes behind the last line.
+    pub(super) fn append_to_last(&mut self, text: &str) {
+        if let Some(line) = self.lines.last_mut() {
+            line.push_str(text);
+        }
+    }
+}
+
+fn padded(text: &str, width: usize) -> String {
+    format!("{text}{}", " ".repeat(width.saturating_sub(columns(text))))
+}
+
+fn centred(text: &str, width: usize) -> String {
+    let free = width.saturating_sub(columns(text));
+    format!(
+        "{}{text}{}",
+        " ".repeat(free / 2),
+        " ".repeat(free - free / 2)
+    )
+}

@@ -1,0 +1,143 @@
+//! Where everything is, as expressions in the ground: points, axes of frames, inertias of bodies.
+
+use appell_spec::mechanism::{BodyId, FrameId, GROUND, List, Mechanism, PointId};
+
+use super::space::{Matrix, Vector};
+use appell_codegen::mechanics::algebra::Algebra;
+use appell_codegen::mechanics::expressions::Lowering;
+use appell_codegen::mechanics::finding::{Item, Outcome, division_by_zero};
+use appell_codegen::mechanics::frames::FrameVector;
+use appell_codegen::mechanics::kinematics::Kinematics;
+use appell_codegen::mechanics::symbols::Symbols;
+use appell_codegen::symbolic::vector::{IDENTITY, Vec3};
+use appell_codegen::symbolic::{Expr, Graph, evaluate};
+
+/// Farther away nothing is drawn: squares of lengths stay finite.
+const FARTHEST: f64 = 1e100;
+
+/// Points and frames as expressions.
+pub(super) struct Placement {
+    /// By point.
+    points: List<PointId, Vec3>,
+    /// By frame: its three axes.
+    frames: List<FrameId, [Vec3; 3]>,
+    /// By body: mass and, of rigid bodies, inertia.
+    bodies: List<BodyId, (Expr, Option<Tensor>)>,
+}
+
+/// A matrix with the frame of its components.
+type Tensor = (FrameId, [Vec3; 3]);
+
+/// Inertia about the centre of mass.
+pub(super) struct Inertia {
+    /// Axes of its components.
+    pub(super) axes: Matrix,
+    /// Components.
+    pub(super) matrix: Matrix,
+}
+
+impl Placement {
+    pub(super) fn new(
+        algebra: &mut Algebra,
+        mechanism: &Mechanism,
+        symbols: &Symbols,
+        kinematics: &Kinematics,
+    ) -> Outcome<Self> {
+        let graph = &mut algebra.graph;
+        let points = mechanism
+            .points
+            .ids()
+            .map(|point| kinematics.position(graph, mechanism, point))
+            .collect();
+        let axes = |frame| {
+            IDENTITY.map(|v| {
+                let axis = FrameVector { frame, v };
+                kinematics.frames.express(graph, axis, GROUND)
+            })
+        };
+        let frames = mechanism.frames.ids().map(axes).collect();
+        let lowering = Lowering {
+            symbols,
+            rates: &symbols.rates,
+        };
+        let mut bodies = List::default();
+        for (index, body) in mechanism.bodies.entries() {
+            let divides = |_| vec![division_by_zero(Item::Body(index))];
+            let mass = lowering.lower(graph, &body.mass).map_err(divides)?;
+            let inertia = match &body.inertia {
+                Some(inertia) => {
+                    let mut matrix = [[Graph::ZERO; 3]; 3];
+                    for (to, row) in matrix.iter_mut().zip(&inertia.matrix) {
+                        *to = lowering.lower_all(graph, row).map_err(divides)?;
+                    }
+                    Some((inertia.frame, matrix))
+                }
+                None => None,
+            };
+            bodies.push((mass, inertia));
+        }
+        Ok(Self {
+            points,
+            frames,
+            bodies,
+        })
+    }
+
+    /// The first axis along which all positions vanish identically. Across y comes first: most
+    /// planar motions are written in x and z.
+    pub(super) fn flat_across(&self, algebra: &mut Algebra) -> Option<usize> {
+        let mut vanishes = |v: &Vec3, axis: usize| {
+            v[axis] == Graph::ZERO || algebra.test.is_zero(&algebra.graph, v[axis])
+        };
+        [1, 0, 2]
+            .into_iter()
+            .find(|&axis| self.points.iter().all(|v| vanishes(v, axis)))
+    }
+
+    /// Values by point; `None` where the position is not finite.
+    pub(super) fn points_at(&self, graph: &Graph, values: &[f64]) -> List<PointId, Option<Vector>> {
+        let numbers = evaluate(graph, values, self.points.as_flattened());
+        triples(&numbers).collect()
+    }
+
+    /// Values by frame; `None` where an angle is not finite.
+    pub(super) fn frames_at(&self, graph: &Graph, values: &[f64]) -> List<FrameId, Option<Matrix>> {
+        let axes = self.frames.as_flattened().as_flattened();
+        let numbers = evaluate(graph, values, axes);
+        numbers.chunks_exact(9).map(matrix).collect()
+    }
+
+    /// Values by body: mass and inertia, with these axes of frames.
+    pub(super) fn bodies_at(
+        &self,
+        graph: &Graph,
+        values: &[f64],
+        frames: &List<FrameId, Option<Matrix>>,
+    ) -> List<BodyId, (f64, Option<Inertia>)> {
+        let value = |(mass, inertia): &(Expr, Option<Tensor>)| {
+            let mass = evaluate(graph, values, &[*mass])[0];
+            let inertia = inertia.as_ref().and_then(|(frame, components)| {
+                Some(Inertia {
+                    axes: frames[*frame]?,
+                    matrix: matrix(&evaluate(graph, values, components.as_flattened()))?,
+                })
+            });
+            (mass, inertia)
+        };
+        self.bodies.iter().map(value).collect()
+    }
+}
+
+/// Vectors that are near enough to be drawn.
+fn triples(numbers: &[f64]) -> impl Iterator<Item = Option<Vector>> {
+    numbers.chunks_exact(3).map(|v| {
+        let near = v.iter().all(|number| number.abs() < FARTHEST);
+        near.then(|| [v[0], v[1], v[2]])
+    })
+}
+
+fn matrix(numbers: &[f64]) -> Option<Matrix> {
+    let mut rows = triples(numbers);
+    let mut row = || rows.next().flatten();
+    Some([row()?, row()?, row()?])
+}

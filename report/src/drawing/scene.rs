@@ -1,0 +1,91 @@
+//! Where everything is at one state: points, axes of frames, bodies.
+
+use appell_runtime::positions::{Moving, Positions};
+use appell_spec::mechanism::{BodyId, FrameId, List, Mechanism, PointId};
+
+use super::placement::{Inertia, Placement};
+use super::space::{Matrix, Vector};
+use appell_codegen::interpreted::InterpretedModel;
+use appell_codegen::mechanics::Derivation;
+use appell_codegen::mechanics::assemble;
+use appell_codegen::mechanics::finding::Outcome;
+use appell_codegen::mechanics::initial::InitialState;
+use appell_codegen::program::{FunctionKind, Program};
+use appell_codegen::symbolic::{Graph, SymbolId};
+
+/// A mechanism at one state, in the ground and in SI.
+pub(super) struct Scene {
+    /// By point; `None` where the position is not finite.
+    pub(super) points: List<PointId, Option<Vector>>,
+    /// By frame: its three axes; `None` where an angle is not finite.
+    pub(super) frames: List<FrameId, Option<Matrix>>,
+    /// By body: mass and, of rigid bodies, inertia with the axes of its components.
+    pub(super) bodies: List<BodyId, (f64, Option<Inertia>)>,
+    /// The axis of the ground that no point ever leaves the plane across, if there is one.
+    pub(super) flat_across: Option<usize>,
+    /// Whether the position constraints hold.
+    pub(super) consistent: bool,
+}
+
+impl Scene {
+    /// Where a simulation would start.
+    pub(super) fn initial(mechanism: &Mechanism, mut derivation: Derivation) -> Outcome<Self> {
+        let symbols = derivation.symbols.clone();
+        let placement = {
+            let (algebra, kinematics) = (&mut derivation.algebra, &derivation.kinematics);
+            Placement::new(algebra, mechanism, &symbols, kinematics)?
+        };
+        let flat_across = placement.flat_across(&mut derivation.algebra);
+        let kinds = [FunctionKind::PositionConstraints];
+        let program = assemble::program(derivation, mechanism, &kinds)?;
+        let graph = program.graph.clone();
+        let state = InitialState::new(&graph, mechanism, &symbols);
+        let mut values = state.values().to_vec();
+        let consistent = close(program, &mut values);
+        let scene = Self::at(&placement, &graph, &values, flat_across);
+        Ok(Self {
+            consistent,
+            ..scene
+        })
+    }
+
+    /// Where everything is for these values of the symbols, at which the position constraints hold.
+    pub(super) fn at(
+        placement: &Placement,
+        graph: &Graph,
+        values: &[f64],
+        flat_across: Option<usize>,
+    ) -> Self {
+        let frames = placement.frames_at(graph, values);
+        Self {
+            points: placement.points_at(graph, values),
+            bodies: placement.bodies_at(graph, values, &frames),
+            frames,
+            flat_across,
+            consistent: true,
+        }
+    }
+}
+
+/// Moves the dependent coordinates until the position constraints hold, as a simulation does before
+/// it starts; false, with the values as they were, where it cannot.
+fn close(program: Program, values: &mut [f64]) -> bool {
+    let arguments = program.arguments.clone();
+    let model = InterpretedModel::new(program);
+    let Some(mut positions) = Positions::of(&model) else {
+        return true;
+    };
+    let [mut x, u, p] = [&arguments.states, &arguments.inputs, &arguments.parameters]
+        .map(|symbols| -> Vec<f64> { symbols.iter().map(|s| values[index(*s)]).collect() });
+    let closed = positions.restore(&model, 0.0, &mut x, &u, &p, Moving::Dependent);
+    if closed.is_ok() {
+        for (symbol, value) in arguments.states.iter().zip(x) {
+            values[index(*symbol)] = value;
+        }
+    }
+    closed.is_ok()
+}
+
+fn index(symbol: SymbolId) -> usize {
+    symbol.0 as usize
+}

@@ -1,0 +1,385 @@
+//! Strokes and names on paper, as an SVG document.
+
+use std::fmt::Write as _;
+
+use crate::figure::STYLE;
+use appell_spec::mechanism::Mechanism;
+
+use super::home::home;
+use super::scene::Scene;
+use super::shapes::{self, Axes, Stroke};
+use super::space::{Vector, add, dot};
+use super::view::View;
+use appell_codegen::symbolic::print::mathml::escaped;
+
+const WIDTH: f64 = 760.0;
+/// Around the drawing, for names.
+const MARGIN: f64 = 64.0;
+const HEAD: f64 = 84.0;
+const FOOT: f64 = 104.0;
+/// Heights that the drawing may take.
+const HEIGHTS: [f64; 2] = [140.0, 460.0];
+/// Length of an axis, as a part of the drawing.
+const AXIS: f64 = 0.12;
+/// Squares of the ground along the drawing.
+const SQUARES: f64 = 5.0;
+/// Names closer than this are written together.
+const CLOSE: f64 = 7.0;
+/// Smaller mechanisms are points.
+const SMALLEST: f64 = 1e-100;
+/// Colours of the three axes.
+const AXIS_COLOURS: [&str; 3] = ["c1", "c2", "c0"];
+/// Radius of a ring that marks a place.
+const RING: f64 = 17.0;
+/// Length of the arrow of the weight.
+const ARROW: f64 = 40.0;
+
+/// Beside the style of the figures.
+const DRAWING_STYLE: &str = "\
+path{fill:none;stroke-linecap:round;stroke-linejoin:round}.axis{stroke-width:2}
+.link{stroke:#555;stroke-width:3}.way{stroke:#999;stroke-dasharray:2 5}.spring{stroke:#cc79a7;stroke-width:2}
+.wheel{stroke:#222;stroke-width:2;fill:#56b4e9;fill-opacity:.16}.body{stroke:#999;fill:#e69f00;fill-opacity:.14}
+.point{fill:#fff;stroke:#222;stroke-width:1.4}.mass{fill:#222}.arrow{stroke:#222;stroke-width:2}
+.halo{paint-order:stroke;stroke:#fff;stroke-width:3px}.name{font-weight:600}.small{font-size:11px}.soft{fill:#666}
+@media(prefers-color-scheme:dark){
+.link{stroke:#b5b5b5}.wheel,.point,.arrow{stroke:#e6e6e6}.point{fill:#16181c}.mass{fill:#e6e6e6}
+.halo{stroke:#16181c}.soft{fill:#a5a5a5}
+}
+";
+
+/// From metres to paper.
+struct Sheet<'a> {
+    view: &'a View,
+    /// Pixels per metre.
+    scale: f64,
+    /// What is seen at the left upper corner of the drawing.
+    corner: [f64; 2],
+    svg: String,
+}
+
+/// The drawing of a scene.
+pub(super) fn svg(mechanism: &Mechanism, scene: &Scene, view: &View, marked: &[&str]) -> String {
+    let mut strokes = shapes::links(mechanism, scene);
+    let points = || scene.points.iter().flatten().copied();
+    let frame_size = size(points());
+    strokes.extend(
+        shapes::bodies(mechanism, scene, view)
+            .into_iter()
+            .filter(|body| {
+                // A hint that would hide the rest is none.
+                let all = size(body.corners.iter().copied());
+                body.class == "wheel" || frame_size == 0.0 || all <= 2.0 * frame_size
+            }),
+    );
+    let drawn = |strokes: &[Stroke]| -> Vec<Vector> {
+        let corners = strokes.iter().flat_map(|stroke| stroke.corners.clone());
+        corners.chain(points()).collect()
+    };
+    let places = drawn(&strokes);
+    let extent = Some(size(places.iter().copied()))
+        .filter(|&extent| extent > SMALLEST)
+        .unwrap_or(1.0);
+    let step = round_number(extent / SQUARES);
+    let axes = shapes::axes(mechanism, scene);
+    let ground = shapes::ground(view, &places, step);
+
+    let tips = axes.iter().flat_map(|axes| tips(axes, extent));
+    let corners = drawn(&ground).into_iter().chain(places).chain(tips);
+    let [[left, right], [low, high]] = bounds(view, corners);
+    let [flattest, highest] = HEIGHTS;
+    let scale = ((WIDTH - 2.0 * MARGIN) / (right - left)).min(highest / (high - low));
+    let drawn_height = ((high - low) * scale).max(flattest);
+    let height = HEAD + drawn_height + FOOT;
+    let slack = [
+        WIDTH - (right - left) * scale,
+        drawn_height - (high - low) * scale,
+    ];
+    let mut sheet = Sheet {
+        view,
+        scale,
+        corner: [
+            left - slack[0] / 2.0 / scale,
+            high + (HEAD + slack[1] / 2.0) / scale,
+        ],
+        svg: format!(
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {WIDTH} {height:.0}\" \
+             width=\"{WIDTH}\" height=\"{height:.0}\">\n<style>\n{STYLE}{DRAWING_STYLE}</style>\n\
+             <rect class=\"paper\" width=\"100%\" height=\"100%\"/>\n"
+        ),
+    };
+    sheet.text([20.0, 26.0], "title", "start", &mechanism.title);
+    sheet.text(
+        [20.0, 46.0],
+        "small soft",
+        "start",
+        &caption(mechanism, scene),
+    );
+    for stroke in ground.iter().chain(&strokes) {
+        sheet.stroke(stroke);
+    }
+    for axes in &axes {
+        sheet.axes(axes, extent);
+    }
+    sheet.points(mechanism, scene);
+    for name in marked {
+        sheet.rings(mechanism, scene, name);
+    }
+    sheet.weight();
+    sheet.legend(height, step, &strokes);
+    sheet.svg + "</svg>\n"
+}
+
+/// What the reader has to know about the drawing.
+fn caption(mechanism: &Mechanism, scene: &Scene) -> String {
+    let mut told = "at the initial state".to_owned();
+    if !scene.consistent {
+        told.push_str("; it does not satisfy the position constraints");
+    }
+    let named = mechanism.points.iter().zip(&scene.points);
+    let missing: Vec<&str> = named
+        .filter(|(_, place)| place.is_none())
+        .map(|(point, _)| point.name.as_str())
+        .collect();
+    if !missing.is_empty() {
+        let missing = missing.join(", ");
+        // Writing to a string cannot fail.
+        let _ = write!(told, "; not drawn, because nowhere finite: {missing}");
+    }
+    told
+}
+
+/// Smallest and largest coordinates to the right and up.
+fn bounds(view: &View, places: impl Iterator<Item = Vector>) -> [[f64; 2]; 2] {
+    let none = [[f64::INFINITY, f64::NEG_INFINITY]; 2];
+    places.fold(none, |bounds, place| {
+        let seen = view.seen(place);
+        [0, 1].map(|k| [bounds[k][0].min(seen[k]), bounds[k][1].max(seen[k])])
+    })
+}
+
+/// The largest of length, width and height: what is long along the line of sight is not small.
+fn size(places: impl Iterator<Item = Vector>) -> f64 {
+    let none = [[f64::INFINITY, f64::NEG_INFINITY]; 3];
+    let spans = places.fold(none, |spans, place| {
+        [0, 1, 2].map(|k| [spans[k][0].min(place[k]), spans[k][1].max(place[k])])
+    });
+    spans
+        .map(|[low, high]| high - low)
+        .into_iter()
+        .fold(0.0, f64::max)
+}
+
+fn tips(axes: &Axes, extent: f64) -> [Vector; 3] {
+    axes.directions
+        .map(|axis| add(axes.at, AXIS * extent, axis))
+}
+
+/// The largest of 1, 2, 5, 10, … that is not larger.
+fn round_number(value: f64) -> f64 {
+    let power = 10.0_f64.powf(value.log10().floor());
+    let steps = [5.0, 2.0].map(|step| step * power);
+    steps
+        .into_iter()
+        .find(|&step| step <= value)
+        .unwrap_or(power)
+}
+
+impl Sheet<'_> {
+    fn place(&self, place: Vector) -> [f64; 2] {
+        let [right, up] = self.view.seen(place);
+        [
+            (right - self.corner[0]) * self.scale,
+            (self.corner[1] - up) * self.scale,
+        ]
+    }
+
+    fn text(&mut self, [x, y]: [f64; 2], class: &str, anchor: &str, content: &str) {
+        let content = escaped(content);
+        let _ = writeln!(
+            self.svg,
+            "<text x=\"{x:.1}\" y=\"{y:.1}\" class=\"{class}\" text-anchor=\"{anchor}\">{content}</text>"
+        );
+    }
+
+    fn path(&mut self, class: &str, places: &[[f64; 2]], about: &str) {
+        let mut line = String::new();
+        for (k, [x, y]) in places.iter().enumerate() {
+            let command = if k == 0 { 'M' } else { 'L' };
+            let _ = write!(line, "{command}{x:.1} {y:.1}");
+        }
+        let about = match about {
+            "" => "/>".to_owned(),
+            about => format!("><title>{}</title></path>", escaped(about)),
+        };
+        let _ = writeln!(self.svg, "<path class=\"{class}\" d=\"{line}\"{about}");
+    }
+
+    fn stroke(&mut self, stroke: &Stroke) {
+        let corners: Vec<[f64; 2]> = stroke.corners.iter().map(|&c| self.place(c)).collect();
+        self.path(stroke.class, &corners, &stroke.about);
+    }
+
+    fn dot(&mut self, class: &str, [x, y]: [f64; 2], radius: f64) {
+        let _ = writeln!(
+            self.svg,
+            "<circle class=\"{class}\" cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"{radius}\"/>"
+        );
+    }
+
+    /// Axes with the names of their frames beyond the steepest tip.
+    fn axes(&mut self, axes: &Axes, extent: f64) {
+        let from = self.place(axes.at);
+        let tips = tips(axes, extent).map(|tip| self.place(tip));
+        for (tip, colour) in tips.iter().zip(AXIS_COLOURS) {
+            self.path(&format!("axis {colour}"), &[from, *tip], &axes.names);
+        }
+        let rise = |tip: &[f64; 2]| (tip[1] - from[1]).abs();
+        let steepest = tips.into_iter().max_by(|a, b| rise(a).total_cmp(&rise(b)));
+        if let Some([x, y]) = steepest {
+            let beyond = if y > from[1] { 13.0 } else { -5.0 };
+            self.text([x, y + beyond], "small soft halo", "middle", &axes.names);
+        }
+    }
+
+    /// Points and their names, with those of the bodies whose centres they are.
+    fn points(&mut self, mechanism: &Mechanism, scene: &Scene) {
+        let mut names: Vec<([f64; 2], String)> = Vec::new();
+        for (id, point) in mechanism.points.entries() {
+            let place = scene.points[id];
+            let Some(at) = place.map(|place| self.place(place)) else {
+                continue;
+            };
+            let mut bodies = mechanism.bodies.iter().filter(|body| body.centre == id);
+            match bodies.clone().find(|body| body.inertia.is_none()) {
+                Some(_) => self.dot("mass", at, 6.0),
+                None => self.dot("point", at, 3.5),
+            }
+            let name = match bodies.next() {
+                Some(body) => format!("{} ({})", point.name, body.name),
+                None => point.name.clone(),
+            };
+            let close = |(other, _): &&mut ([f64; 2], String)| {
+                (other[0] - at[0]).hypot(other[1] - at[1]) < CLOSE
+            };
+            match names.iter_mut().find(close) {
+                Some((_, together)) => {
+                    together.push_str(", ");
+                    together.push_str(&name);
+                }
+                None => names.push((at, name)),
+            }
+        }
+        for ([x, y], name) in names {
+            let (anchor, side) = if x > 0.6 * WIDTH {
+                ("end", -9.0)
+            } else {
+                ("start", 9.0)
+            };
+            self.text([x + side, y + 14.0], "name halo", anchor, &name);
+        }
+    }
+
+    /// Rings about the places of a name.
+    fn rings(&mut self, mechanism: &Mechanism, scene: &Scene, name: &str) {
+        let mut drawn: Vec<[f64; 2]> = Vec::new();
+        for point in home(mechanism, name) {
+            let Some(at) = scene.points[point].map(|place| self.place(place)) else {
+                continue;
+            };
+            let close = |other: &[f64; 2]| (other[0] - at[0]).hypot(other[1] - at[1]) < CLOSE;
+            if drawn.iter().any(close) {
+                continue;
+            }
+            let [x, y] = at;
+            let _ = writeln!(
+                self.svg,
+                "<circle class=\"ring c1\" cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"{RING}\" fill=\"none\" \
+                 stroke-width=\"4\"/>"
+            );
+            drawn.push(at);
+        }
+        if let Some([x, y]) = drawn.first() {
+            self.text([x + 0.8 * RING, y - RING], "name halo", "start", name);
+        }
+    }
+
+    /// The direction of the weight, in the upper right corner.
+    fn weight(&mut self) {
+        let Some(down) = self.view.down else {
+            return;
+        };
+        let [right, up] = self.view.seen(down);
+        let from = [WIDTH - 70.0, 40.0];
+        let along = |s: f64, aside: f64| {
+            [
+                from[0] + ARROW * (s * right + aside * up),
+                from[1] + ARROW * (aside * right - s * up),
+            ]
+        };
+        // Seen from above, the weight points into the paper.
+        if dot([right, up, 0.0], [right, up, 0.0]) > 0.01 {
+            self.path("arrow", &[from, along(1.0, 0.0)], "weight");
+            let head = [along(0.78, 0.1), along(1.0, 0.0), along(0.78, -0.1)];
+            self.path("arrow", &head, "weight");
+            self.text([from[0] + 10.0, from[1] + 14.0], "small", "start", "weight");
+        }
+    }
+
+    /// What the signs mean, and how long a length is.
+    fn legend(&mut self, height: f64, step: f64, strokes: &[Stroke]) {
+        let rows = [height - 64.0, height - 42.0, height - 20.0];
+        let mut x = 20.0;
+        for (name, colour) in ["x", "y", "z"].into_iter().zip(AXIS_COLOURS) {
+            let y = rows[0];
+            self.path(
+                &format!("axis {colour}"),
+                &[[x, y - 4.0], [x + 16.0, y - 4.0]],
+                "",
+            );
+            self.text([x + 20.0, y], "small", "start", name);
+            x += 38.0;
+        }
+        self.text(
+            [x, rows[0]],
+            "small",
+            "start",
+            "axes of the frames that are named at their tips",
+        );
+        self.dot("point", [26.0, rows[1] - 4.0], 3.5);
+        self.text(
+            [38.0, rows[1]],
+            "small",
+            "start",
+            "point (centre of a body)",
+        );
+        self.dot("mass", [206.0, rows[1] - 4.0], 6.0);
+        self.text([220.0, rows[1]], "small", "start", "point mass");
+        let hints = [
+            ("wheel", "blue: a rolling body through its contact"),
+            (
+                "body",
+                "yellow: the homogeneous ellipsoid of a body's mass and inertia",
+            ),
+        ];
+        let shown_hints = hints
+            .into_iter()
+            .filter(|(class, _)| strokes.iter().any(|stroke| stroke.class == *class));
+        let told: Vec<&str> = shown_hints.map(|(_, text)| text).collect();
+        self.text([20.0, rows[2]], "small", "start", &told.join("; "));
+        let bar = step * self.scale;
+        let end = [WIDTH - 20.0, rows[1] - 4.0];
+        self.path("arrow", &[[end[0] - bar, end[1]], end], "");
+        let scale = format!("{} m", round_text(step));
+        self.text([WIDTH - 20.0, rows[0]], "small", "end", &scale);
+    }
+}
+
+/// A round number of any size.
+fn round_text(step: f64) -> String {
+    // Rounding may have left other digits behind the first.
+    let digit = format!("{step:.0e}");
+    match digit.parse::<f64>() {
+        Ok(number) if (1e-3..1e5).contains(&number) => number.to_string(),
+        _ => digit,
+    }
+}

@@ -12,6 +12,7 @@ use appell_codegen::symbolic::vector::Vec3;
 use appell_codegen::symbolic::{Expr, Graph, Substitution, SymbolId, evaluate};
 use appell_models::Shipped;
 use appell_spec::Mechanism;
+use appell_spec::mechanism::{FrameId, GROUND};
 
 use crate::formula::{Scope, formula};
 
@@ -264,7 +265,7 @@ impl Paper {
     }
 
     /// Accelerations of the bodies, with symbols for the pseudo-accelerations.
-    fn accelerations(&mut self, frame: usize) {
+    fn accelerations(&mut self, frame: FrameId) {
         let accelerations = self.derivation.symbols.accelerations.clone();
         for body in self.derivation.bodies.clone() {
             let centre = &body.centre;
@@ -295,7 +296,7 @@ impl Paper {
         }
     }
 
-    fn vector(&mut self, name: &str, vector: FrameVector, frame: usize) {
+    fn vector(&mut self, name: &str, vector: FrameVector, frame: FrameId) {
         let graph = &mut self.derivation.algebra.graph;
         let v: Vec3 = self
             .derivation
@@ -308,19 +309,13 @@ impl Paper {
     }
 
     /// The matrix that takes components in a frame to those in the ground.
-    fn rotation(&mut self, frame: usize) {
-        let ground = self
-            .mechanism
-            .frames
-            .iter()
-            .position(|f| f.parent.is_none());
-        let ground = ground.unwrap();
+    fn rotation(&mut self, frame: FrameId) {
         for column in 0..3 {
             let mut v = [Graph::ZERO; 3];
             v[column] = Graph::ONE;
             let graph = &mut self.derivation.algebra.graph;
             let frames = &self.derivation.kinematics.frames;
-            let unit = frames.express(graph, FrameVector { frame, v }, ground);
+            let unit = frames.express(graph, FrameVector { frame, v }, GROUND);
             for (row, entry) in unit.into_iter().enumerate() {
                 self.derive_as(&format!("T{}{}", row + 1, column + 1), entry);
             }

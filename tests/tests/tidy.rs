@@ -302,17 +302,13 @@ const MAY_GO_IN_CIRCLES: &[(&str, &str, &str)] = &[
         "diagnose",
         "the engine of diagnosis is written anew next",
     ),
-    ("gap", "data", "recordings are being edited elsewhere"),
     (
         "gap",
-        "identify",
-        "identification is being edited elsewhere",
+        "data",
+        "runs, channels and noise levels define each other",
     ),
-    (
-        "cli",
-        "",
-        "the command line is being divided into a library and a face",
-    ),
+    ("gap", "identify", "its options are defined by its driver"),
+    ("cli", "", "it becomes a library and a command line"),
 ];
 
 /// Crates that only the emission of Rust needs.

@@ -51,7 +51,7 @@ pub(super) fn json(
         "links": links(&film),
         "bodies": bodies(mechanism, &film),
         "forces": forces(&film),
-        "contacts": film.contacts,
+        "contacts": film.contacts.iter().map(|point| point.index()).collect::<Vec<_>>(),
         "columns": told.collect::<Vec<_>>(),
         "times": packed(times),
         "positions": packed(film.positions.iter().copied()),
@@ -124,7 +124,7 @@ fn forces(film: &Film) -> Vec<Value> {
             ForceKind::Load => "load",
             ForceKind::Weight => "weight",
         };
-        json!({ "kind": kind, "at": force.at })
+        json!({ "kind": kind, "at": force.at.index() })
     };
     film.forces.iter().map(force).collect()
 }

@@ -91,3 +91,29 @@ fn way<'a>(
     way.reverse();
     way
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn uses(edges: &[(&str, &str)]) -> Uses {
+        let mut uses = Uses::new();
+        for (from, to) in edges {
+            uses.entry((*to).to_owned()).or_default();
+            let used = uses.entry((*from).to_owned()).or_default();
+            used.insert((*to).to_owned(), "Item".to_owned());
+        }
+        uses
+    }
+
+    #[test]
+    fn two_files_may_use_each_other_and_three_may_not() {
+        let two = uses(&[("a", "b"), ("b", "a"), ("b", "c")]);
+        assert!(longer_than_two(&two, &[]).is_empty());
+        let three = uses(&[("a", "b"), ("b", "a"), ("b", "c"), ("c", "b")]);
+        let told = longer_than_two(&three, &[]);
+        assert_eq!(told.len(), 1, "{told:?}");
+        assert!(told[0].contains("b → Item → c"), "{told:?}");
+        assert!(longer_than_two(&three, &["c"]).is_empty());
+    }
+}

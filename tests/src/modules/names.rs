@@ -69,20 +69,20 @@ impl Tree {
             syn::parse_file(&text).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
         let file = path.strip_prefix(source).unwrap();
         let file = file.to_string_lossy().replace('\\', "/");
-        self.module(source, file, folder, parsed.items, parent)
+        self.module(source, &file, folder, parsed.items, parent)
     }
 
     fn module(
         &mut self,
         source: &Path,
-        file: String,
+        file: &str,
         folder: &Path,
         items: Vec<Item>,
         parent: Option<ModuleId>,
     ) -> ModuleId {
         let id = self.modules.len();
         self.modules.push(Module {
-            file: file.clone(),
+            file: file.to_owned(),
             parent,
             children: BTreeMap::new(),
             defined: BTreeSet::new(),
@@ -99,7 +99,7 @@ impl Tree {
                     let name = inner.ident.to_string();
                     let below = folder.join(&name);
                     let child = if let Some((_, items)) = inner.content {
-                        self.module(source, file.clone(), &below, items, Some(id))
+                        self.module(source, file, &below, items, Some(id))
                     } else {
                         let beside = folder.join(format!("{name}.rs"));
                         let path = if beside.exists() {
@@ -151,10 +151,9 @@ impl Tree {
     ) -> Option<(&String, String)> {
         match (self.meaning(module, path, 0), path) {
             (Some(Meaning::Item(module, name)), _) => Some((&self.modules[module].file, name)),
-            (Some(Meaning::Module(_)), _) => None,
-            // Macros are known from where they stand on.
+            // Macros are known wherever they stand.
             (None, [name]) => self.macros.get(name).map(|file| (file, format!("{name}!"))),
-            (None, _) => None,
+            (Some(Meaning::Module(_)) | None, _) => None,
         }
     }
 

@@ -64,7 +64,7 @@ fn scan(tokens: TokenStream, prefix: &[String], found: &mut Vec<Path>) {
                 let called = called || between == "!";
                 note(std::mem::take(&mut path), is_method, called, found);
                 path = prefix.to_vec();
-                between = ",".to_owned();
+                ",".clone_into(&mut between);
             }
             TokenTree::Literal(_) => between.push('0'),
         }

@@ -1,0 +1,40 @@
+//! The numbers of one report, beside the version of the engine that finds them.
+
+mod common;
+
+use std::fmt::Write as _;
+
+use appell_gap::diagnose::{ENGINE, Options, diagnose};
+use common::{Folder, SWING, pendulum, swing};
+
+/// Another text here means another engine: raise [`ENGINE`] and diagnose the cases of `tests/blind` anew.
+const NUMBERS: &str = "\
+engine 1
+unknown NaN
+spring@theta 79.6
+viscous_friction@theta+spring@theta 81.6
+ 0.0
+";
+
+#[test]
+fn a_report_with_other_numbers_is_one_of_another_engine() {
+    let folder = Folder::new();
+    folder.write(
+        "recording.toml",
+        pendulum(SWING, &["a.csv", "b.csv"], &["c.csv"]),
+    );
+    for (seed, name) in [(1, "a.csv"), (1000, "b.csv"), (2000, "c.csv")] {
+        folder.write(name, swing(300, seed, 1e-3));
+    }
+    let mut effects = appell_gap::effects::shipped().unwrap();
+    let few = ["viscous_friction", "coulomb_friction", "spring"];
+    effects.retain(|effect| few.contains(&effect.name.as_str()));
+    let set = folder.read().unwrap();
+    let report = diagnose(&set, &effects, &Options::default(), |_| ()).unwrap();
+    let mut numbers = format!("engine {ENGINE}\n");
+    for one in &report.which {
+        let log = one.log_bayes_factor.unwrap_or(f64::NAN);
+        writeln!(numbers, "{} {log:.1}", one.effects.join("+")).unwrap();
+    }
+    assert_eq!(numbers, NUMBERS);
+}

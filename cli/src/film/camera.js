@@ -2,7 +2,6 @@
 
 /** From the bottom of the picture to its top, in degrees. */
 const FIELD = 35;
-
 /** Half the height of the picture, one metre before the eye. */
 const HALF = Math.tan((FIELD / 2) * (Math.PI / 180));
 
@@ -42,7 +41,7 @@ class Eye {
     );
     const right = unit(cross(vertical, back));
     const up = cross(back, right);
-    const aspect = width / Math.max(height, 1);
+    const aspect = Math.max(width, 1) / Math.max(height, 1);
     // What is narrower than high is seen from farther away.
     const distance = this.distance / Math.min(1, aspect);
     const middle = plus(this.target, this.shift);

@@ -13,6 +13,7 @@ class Program {
       gl.deleteShader(shader);
     }
     gl.linkProgram(this.program);
+    if (!gl.getProgramParameter(this.program, gl.LINK_STATUS)) throw new Error(gl.getProgramInfoLog(this.program));
     this.places = new Map();
   }
 

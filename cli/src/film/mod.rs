@@ -8,7 +8,7 @@
 //! | `film.js`, `colours.js` | the data at any time; light and dark |
 //! | `gl.js`, `painter.js` | programs and buffers of WebGL 2; the passes of a picture, in their order |
 //! | `shapes.js`, `solids.js` | cylinder, ball, ring …; the pass that draws them in their light |
-//! | `ways.js`, `ground.js` | the passes of traces and of the squares on the ground |
+//! | `traces.js`, `ground.js` | the passes of traces and of the squares on the ground |
 //! | `parts.js`, `stage.js` | wheels, springs, arrows … of shapes; all of them where they are at a time |
 //! | `camera.js`, `names.js` | the eye and its pointers; names of points over the picture |
 //! | `panel.js`, `player.js` | legend, values, plot; time, keys and buttons |
@@ -32,7 +32,7 @@ const SCRIPTS: [&str; 15] = [
     include_str!("gl.js"),
     include_str!("shapes.js"),
     include_str!("solids.js"),
-    include_str!("ways.js"),
+    include_str!("traces.js"),
     include_str!("ground.js"),
     include_str!("painter.js"),
     include_str!("parts.js"),

@@ -30,15 +30,16 @@ class Painter {
   prepare() {
     const { gl } = this;
     this.solids = new Solids(gl);
-    this.ways = new Ways(gl);
+    this.traces = new Traces(gl);
     this.ground = new Ground(gl);
     gl.enable(gl.DEPTH_TEST);
     gl.enable(gl.CULL_FACE);
     gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);
   }
 
-  /** A picture so wide and high, with so many pixels to each of them. */
+  /** A picture so wide and high in pixels of the page, drawn with so many of the screen for each. */
   fit(width, height, ratio) {
+    this.pixel = Math.max(1, 1 / ratio);
     [this.canvas.width, this.canvas.height] = [width, height].map((side) => Math.floor(side * ratio));
   }
 
@@ -55,7 +56,7 @@ class Painter {
     this.solids.lay(stage.parts(), eye, palette);
     this.solids.draw(true, eye, stage.vertical);
     gl.disable(gl.CULL_FACE);
-    this.ways.draw(stage.ways, eye, 0.0066 * stage.size, palette.trace);
+    this.traces.draw(stage.traces, eye, 0.0066 * stage.size, this.pixel * eye.pixel, palette.trace);
 
     // What one sees through changes no depth.
     gl.enable(gl.BLEND);

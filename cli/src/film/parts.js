@@ -11,12 +11,12 @@ const bar = (direction, thick, long, from = ZERO) => stretched(upright(direction
 
 const ball = (radius) => stretched(SAME, [radius, radius, radius]);
 
-/** Lays a part that is made along y from one place to another; hides it where there is no way. */
+/** Lays a part that is made along y from one place to another; hides it where these are one. */
 function span(part, from, to) {
-  const way = minus(to, from);
-  const length = lengthOf(way);
+  const step = minus(to, from);
+  const length = lengthOf(step);
   part.shown = Number.isFinite(length) && length > 0;
-  if (part.shown) part.map = bar(scaled(way, 1 / length), 1, length, from);
+  if (part.shown) part.map = bar(scaled(step, 1 / length), 1, length, from);
 }
 
 const rod = (size) => part(piece("cylinder", "rod", bar(SAME.y, 0.011 * size, 1)));
@@ -70,13 +70,13 @@ const LINKS = { rod, spring, damper };
 const arrow = (role) => part(piece("cylinder", role), piece("cone", role));
 
 /** Lays an arrow with its tail at a place; hides it where it is too short to be seen. */
-function aim(arrow, from, way, size) {
-  const length = lengthOf(way);
+function aim(arrow, from, vector, size) {
+  const length = lengthOf(vector);
   arrow.shown = isFiniteVector(from) && Number.isFinite(length) && length > 0.02 * size;
   if (!arrow.shown) return;
   const head = Math.min(0.09 * size, length);
   const [shaft, tip] = arrow.pieces;
-  arrow.map = upright(scaled(way, 1 / length), from);
+  arrow.map = upright(scaled(vector, 1 / length), from);
   shaft.map = bar(SAME.y, 0.009 * size, Math.max(length - head / 2, 1e-6 * size));
   tip.map = { ...ball(head), at: [0, length, 0] };
 }
@@ -86,10 +86,10 @@ const triad = (size) =>
   part(...["x", "y", "z"].map((axis) => piece("cylinder", axis, bar(SAME[axis], 0.007 * size, 0.28 * size))));
 
 /**
- * The way of a point, row by row: two corners of a band, each a place and the direction there. Where
+ * The trace of a point, row by row: two corners of a band, each a place and the direction there. Where
  * a row has no place, that of the row before stands, at first that of the next.
  */
-function way(point, size) {
+function trace(point, size) {
   const places = Array.from({ length: film.rows }, (_, row) => placeAt(point, { low: row, high: row, part: 0 }));
   let last = places.find(isFiniteVector) ?? ZERO;
   const known = places.map((place) => (last = isFiniteVector(place) ? place : last));

@@ -32,19 +32,25 @@ class Player {
 
   /** The picture in space; without WebGL the rest of the page works. */
   prepareSpace() {
+    const without = "Values and plots are shown without it.";
     const name = Painter.name();
     if (!name) {
-      this.say("This browser offers no WebGL 2, which the picture in space needs. Values and plots are shown without it.");
+      this.say(`This browser offers no WebGL 2, which the picture in space needs. ${without}`);
       return;
     }
     const canvas = at("space");
-    this.painter = new Painter(canvas, name, {
-      lost: () => this.say("The browser took the picture in space away. It comes back by itself, or with the page opened anew."),
-      restored: () => {
-        at("message").hidden = true;
-        this.changed = true;
-      },
-    });
+    try {
+      this.painter = new Painter(canvas, name, {
+        lost: () => this.say("The browser has stopped drawing in space. The picture returns by itself, or when you reload the page."),
+        restored: () => {
+          at("message").hidden = true;
+          this.changed = true;
+        },
+      });
+    } catch (cause) {
+      this.say(`The picture in space cannot be drawn: ${cause.message} ${without}`);
+      return;
+    }
     this.stage = new Stage();
     this.eye = new Eye(canvas, this.stage);
     this.names = new Names(this.stage);

@@ -77,7 +77,7 @@ class Stage {
     this.arrows = film.forces.map(({ kind, at }, force) => ({ part: arrow(kind), at, force }));
     const seated = film.frames.flatMap(({ at }, frame) => (at === null ? [] : [{ at, frame }]));
     this.axes = seated.map(({ at, frame }) => ({ part: triad(size), at, frame }));
-    this.ways = [];
+    this.traces = [];
   }
 
   /** Everything with a surface. */
@@ -86,9 +86,9 @@ class Stage {
     return [bodies, links, dots, arrows, axes].flat().map(({ part }) => part);
   }
 
-  /** Draws the ways of these points from now on. */
+  /** Draws the traces of these points from now on. */
   draw(points) {
-    this.ways = points.map((point) => way(point, this.size));
+    this.traces = points.map((point) => trace(point, this.size));
   }
 
   /** The middle of the bodies. */
@@ -115,7 +115,7 @@ class Stage {
       if (!forces || !this.force) continue;
       aim(part, placeAt(at, instant), scaled(arrowAt(force, instant), 1 / this.force.metre), this.size);
     }
-    for (const way of this.ways) way.rows = 1 + (instant.part > 0.5 ? instant.high : instant.low);
+    for (const trace of this.traces) trace.rows = 1 + (instant.part > 0.5 ? instant.high : instant.low);
   }
 
   /** Keeps the squares of the ground around a place, and lets them fade towards the horizon. */

@@ -43,7 +43,7 @@ function upright([a, b, c], at = ZERO) {
   return { x: [1 - k * a * a, -a, -k * a * c], y: [a, b, c], z: [-k * a * c, -c, 1 - k * c * c], at };
 }
 
-/** The smallest box about places. */
+/** The smallest box about places, with sides along the axes. */
 class Box {
   constructor() {
     this.low = [Infinity, Infinity, Infinity];
@@ -64,8 +64,10 @@ class Box {
 
   add(place) {
     if (!isFiniteVector(place)) return;
-    this.low = this.low.map((low, k) => Math.min(low, place[k]));
-    this.high = this.high.map((high, k) => Math.max(high, place[k]));
+    for (let k = 0; k < 3; k += 1) {
+      this.low[k] = Math.min(this.low[k], place[k]);
+      this.high[k] = Math.max(this.high[k], place[k]);
+    }
   }
 
   widen(by) {

@@ -18,7 +18,7 @@ const TRIES: usize = 20;
 /// Bytes of a page without its data.
 const LARGEST: usize = 100_000;
 /// A mechanism covers at least this part of its picture.
-const SMALLEST: f64 = 0.01;
+const SMALLEST: f64 = 0.004;
 /// Names in the picture, and whether each lies in it.
 const NAMES: &str = "{
     const stage = document.getElementById('stage').getBoundingClientRect();

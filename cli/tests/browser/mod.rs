@@ -29,7 +29,7 @@ const FLAGS: [&str; 9] = [
 /// The browser speaks over the channels 3 and 4.
 const SHELL: &str = "exec \"$0\" \"$@\" 3<&0 4>&1 </dev/null >/dev/null 2>&1";
 
-/// A picture can be read until the next one is asked for: in the same frame, after the page.
+/// Lines of the ground differ less from the paper. A picture can be read until the next one is asked for: in the same frame, after the page.
 const DRAWN: &str = "new Promise((done) => requestAnimationFrame(() => {
     const space = document.getElementById('space');
     const copy = document.createElement('canvas');
@@ -38,7 +38,7 @@ const DRAWN: &str = "new Promise((done) => requestAnimationFrame(() => {
     pen.drawImage(space, 0, 0);
     const { data } = pen.getImageData(0, 0, copy.width, copy.height);
     const paper = getComputedStyle(document.body).backgroundColor.match(/[0-9]+/g).map(Number);
-    const differs = (pixel) => paper.some((part, k) => Math.abs(data[4 * pixel + k] - part) > 24);
+    const differs = (pixel) => paper.some((part, k) => Math.abs(data[4 * pixel + k] - part) > 80);
     const pixels = data.length / 4;
     let count = 0;
     for (let pixel = 0; pixel < pixels; pixel += 1) count += differs(pixel);
@@ -201,7 +201,7 @@ impl Browser {
         data.as_str().expect("a picture").to_owned()
     }
 
-    /// The part of the picture in space, of a page that plays, that is not bare paper.
+    /// The part of the picture in space, of a page that plays, that is neither paper nor ground.
     pub(crate) fn drawn(&mut self) -> f64 {
         self.number(DRAWN)
     }

@@ -41,7 +41,7 @@ class Player {
     const canvas = at("space");
     try {
       this.painter = new Painter(canvas, name, {
-        lost: () => this.say("The browser has stopped drawing in space. The picture returns by itself, or when you reload the page."),
+        lost: () => this.say("The browser has stopped drawing in space. The picture returns by itself or on reload."),
         restored: () => {
           at("message").hidden = true;
           this.changed = true;

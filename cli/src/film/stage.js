@@ -67,7 +67,9 @@ class Stage {
 
   build() {
     const { size } = this;
-    this.bodies = film.bodies.map(({ shape, centre, frame }) => ({ part: BODIES[shape.kind](shape), at: centre, frame }));
+    this.bodies = film.bodies.map(({ shape, centre, frame }) => {
+      return { part: BODIES[shape.kind](shape), at: centre, frame };
+    });
     const links = film.links.filter(({ kind }) => kind in LINKS);
     this.links = links.map(({ kind, ends }) => ({ part: LINKS[kind](size), ends }));
     this.dots = this.own.map((point) => {

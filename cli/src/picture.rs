@@ -26,12 +26,11 @@ fn png(svg: &str) -> Result<Vec<u8>, Error> {
 
     /// Pixels for a unit of the picture.
     const SCALE: f32 = 2.0;
-    /// The same letters on every machine, with the Greek ones and the dots above them.
-    const LETTERS: &[u8] = include_bytes!("../vendor/dejavu/DejaVuSans.ttf");
     let failed = |cause: String| Error::Computation(format!("the picture has no PNG: {cause}"));
     let mut options = Options::default();
     let fonts = options.fontdb_mut();
-    fonts.load_font_data(LETTERS.to_vec());
+    // The same letters on every machine, with the Greek ones and the dots above them.
+    fonts.load_font_data(dejavu::sans::regular().to_vec());
     fonts.set_sans_serif_family("DejaVu Sans");
     let tree = Tree::from_str(svg, &options).map_err(|cause| failed(cause.to_string()))?;
     let size = tree.size().to_int_size().scale_by(SCALE);

@@ -15,6 +15,19 @@ const SMOOTH: f64 = 55.0;
 const MOVING: f64 = 8.0;
 /// Seconds within which a smooth second must come.
 const TRIES: usize = 20;
+/// Bytes of a page without its data.
+const LARGEST: usize = 100_000;
+/// A mechanism covers at least this part of its picture.
+const SMALLEST: f64 = 0.004;
+/// Names in the picture, and whether each lies in it.
+const NAMES: &str = "{
+    const stage = document.getElementById('stage').getBoundingClientRect();
+    const names = [...document.querySelectorAll('#names span:not([hidden])')].map((name) => {
+        const { left, top } = name.getBoundingClientRect();
+        return left > stage.left && left < stage.right && top > stage.top && top < stage.bottom;
+    });
+    names.length > 0 && names.every(Boolean)
+}";
 
 /// The page of a motion.
 fn page(folder: &Folder, arguments: &[&str]) {
@@ -142,6 +155,9 @@ fn mechanisms_of_every_kind_move_without_a_complaint() {
             "{at} != '{}'",
             before.as_str().unwrap_or_default()
         ));
+        let drawn = browser.drawn();
+        assert!(drawn > SMALLEST, "{arguments:?}: {drawn} of the picture");
+        assert_eq!(browser.value(NAMES), json!(true), "{arguments:?}");
         assert_eq!(browser.complaints(), [""; 0], "{arguments:?}");
     }
 }
@@ -164,7 +180,8 @@ fn a_browser_without_webgl_is_told_so_and_shows_the_values() {
     browser.wait("appell.time > 0.1");
     let told = browser.value("document.getElementById('message').innerText");
     assert!(
-        told.as_str().is_some_and(|told| told.contains("no WebGL")),
+        told.as_str()
+            .is_some_and(|told| told.contains("no WebGL 2")),
         "{told}"
     );
     browser.wait("document.querySelector('#values b').textContent.length > 0");
@@ -196,9 +213,9 @@ fn the_text_of_a_spec_stays_text_on_the_page() {
     folder.write("hostile.toml", HOSTILE);
     page(&folder, &["hostile.toml"]);
     let html = folder.read("film.html");
-    // The data, the library and the scripts of the page.
-    assert_eq!(html.matches("<script").count(), 3);
-    assert_eq!(html.matches("</script").count(), 3);
+    // The data and the scripts of the page.
+    assert_eq!(html.matches("<script").count(), 2);
+    assert_eq!(html.matches("</script").count(), 2);
     assert!(!html.contains("<img"));
     let Some(mut browser) = Browser::start(&folder.path("profile")) else {
         return;
@@ -211,6 +228,54 @@ fn the_text_of_a_spec_stays_text_on_the_page() {
     assert_eq!(title, shown);
     assert!(shown.to_string().contains("<script>"), "{shown}");
     assert_eq!(browser.complaints(), [""; 0]);
+}
+
+#[test]
+fn a_picture_that_the_browser_takes_away_comes_back() {
+    let folder = Folder::new();
+    page(&folder, &["pendulum", "--initial", "theta=1"]);
+    let Some(mut browser) = Browser::start(&folder.path("profile")) else {
+        return;
+    };
+    browser.open(&folder.path("film.html"));
+    browser.wait("appell.pictures > 3");
+    assert!(browser.drawn() > SMALLEST);
+    browser.value(
+        "globalThis.taken = document.getElementById('space').getContext('webgl2').getExtension('WEBGL_lose_context');\
+         taken.loseContext()",
+    );
+    browser.wait("!document.getElementById('message').hidden");
+    let before = browser.number("appell.time");
+    browser.wait(&format!("appell.time != {before}"));
+    browser.value("taken.restoreContext()");
+    browser.wait("document.getElementById('message').hidden");
+    browser.wait("appell.pictures > 3");
+    assert!(browser.drawn() > SMALLEST);
+    // The browser itself tells of the loss.
+    let complaints = browser.complaints().into_iter();
+    let others: Vec<String> = complaints.filter(|c| !c.contains("CONTEXT_LOST")).collect();
+    assert_eq!(others, [""; 0]);
+}
+
+#[test]
+fn the_page_is_small_and_all_our_own() {
+    let folder = Folder::new();
+    page(&folder, &["pendulum", "--initial", "theta=1"]);
+    let html = folder.read("film.html");
+    let (before, rest) = html.split_once("id=\"film\">").expect("data");
+    let (_, after) = rest.split_once("</script>").expect("the end of the data");
+    let size = before.len() + after.len();
+    assert!(size <= LARGEST, "{size} bytes");
+    for word in [
+        "Copyright",
+        "copyright",
+        "©",
+        "License",
+        "licence",
+        "three.js",
+    ] {
+        assert!(!html.contains(word), "`{word}`");
+    }
 }
 
 #[test]

@@ -10,8 +10,8 @@ use appell_runtime::Signal;
 use appell_runtime::inputs::TabulatedInputs;
 use appell_runtime::model::{Interpolation, Model, Quantity, SignalTable};
 use appell_runtime::trajectory::{self, Extras};
-use appell_spec::mechanism::InputId;
 use appell_spec::expr::Span;
+use appell_spec::mechanism::InputId;
 use appell_spec::{Code, shown};
 
 use crate::Error;

@@ -1,15 +1,15 @@
 // The eye: it looks at a target from a direction and a distance, moved by pointers.
 
+/** From the bottom of the picture to its top, in degrees. */
 const FIELD = 35;
+/** Half the height of the picture, one metre before the eye. */
+const HALF = Math.tan((FIELD / 2) * (Math.PI / 180));
 
 class Eye {
   constructor(canvas, stage) {
-    this.camera = new THREE.PerspectiveCamera(FIELD, 1, 1, 2);
-    this.camera.up.copy(stage.vertical);
     this.canvas = canvas;
     this.stage = stage;
-    this.target = new THREE.Vector3();
-    this.shift = new THREE.Vector3();
+    this.target = ZERO;
     this.changed = true;
     this.pointers = new Map();
     this.reset(stage.travels);
@@ -20,43 +20,53 @@ class Eye {
   reset(follows) {
     const { right, up, flat } = film.view;
     const { vertical, floor: [a, b] } = this.stage;
-    const towards = new THREE.Vector3(...right).cross(new THREE.Vector3(...up));
-    this.elevation = Math.asin(Math.min(Math.max(towards.dot(vertical), -1), 1));
-    this.azimuth = Math.atan2(towards.dot(a), -towards.dot(b));
+    const towards = cross(right, up);
+    this.elevation = Math.asin(Math.min(Math.max(dot(towards, vertical), -1), 1));
+    this.azimuth = Math.atan2(dot(towards, a), -dot(towards, b));
     // Straight at a plane nothing shows that this is space.
     if (flat) [this.azimuth, this.elevation] = [this.azimuth + 0.35, Math.min(this.elevation + 0.22, 0.9)];
-    const radius = follows ? 0.9 * this.stage.size : this.stage.whole.getSize(new THREE.Vector3()).length() / 2;
-    this.distance = (0.95 * radius) / Math.sin((FIELD / 2) * (Math.PI / 180));
-    this.shift.set(0, 0, 0);
+    const radius = follows ? 0.9 * this.stage.size : this.stage.whole.diagonal / 2;
+    this.distance = (0.95 * radius) / Math.sin(Math.atan(HALF));
+    this.shift = ZERO;
     this.changed = true;
   }
 
-  /** Directions of the picture: to the right and up. */
-  directions() {
-    const { matrixWorld } = this.camera;
-    return [0, 1].map((column) => new THREE.Vector3().setFromMatrixColumn(matrixWorld, column));
+  /** Looks, for a picture of so many pixels: fixes place, directions and `clip`. */
+  look(width, height) {
+    const { vertical, floor: [a, b], step } = this.stage;
+    const level = Math.cos(this.elevation);
+    const back = plus(
+      plus(scaled(vertical, Math.sin(this.elevation)), a, level * Math.sin(this.azimuth)),
+      b, -level * Math.cos(this.azimuth),
+    );
+    const right = unit(cross(vertical, back));
+    const up = cross(back, right);
+    const aspect = Math.max(width, 1) / Math.max(height, 1);
+    // What is narrower than high is seen from farther away.
+    const distance = this.distance / Math.min(1, aspect);
+    const middle = plus(this.target, this.shift);
+    this.place = plus(middle, back, distance);
+    Object.assign(this, { right, up, back, aspect, pixel: (2 * HALF) / Math.max(height, 1) });
+    this.clip = this.projection(distance / 100, distance * 50 + 200 * step);
+    this.stage.spread(middle, distance);
+    this.changed = false;
   }
 
-  /** Places the camera for a picture so wide and high. */
-  look(width, height) {
-    const [a, b] = this.stage.floor;
-    const level = Math.cos(this.elevation);
-    const from = this.stage.vertical.clone().multiplyScalar(Math.sin(this.elevation))
-      .addScaledVector(a, level * Math.sin(this.azimuth))
-      .addScaledVector(b, -level * Math.cos(this.azimuth));
-    const at = this.target.clone().add(this.shift);
-    const { camera } = this;
-    camera.aspect = width / Math.max(height, 1);
-    // What is narrower than high is seen from farther away.
-    const distance = this.distance / Math.min(1, camera.aspect);
-    camera.near = distance / 100;
-    camera.far = distance * 50 + 200 * this.stage.step;
-    camera.position.copy(at).addScaledVector(from, distance);
-    camera.lookAt(at);
-    camera.updateProjectionMatrix();
-    camera.updateMatrixWorld();
-    this.stage.spread(at, distance);
-    this.changed = false;
+  /** Column by column, from places as seen from the eye to the cube of the picture. */
+  projection(near, far) {
+    const { right, up, back, aspect } = this;
+    const deep = (far + near) / (near - far);
+    const columns = [0, 1, 2].map((k) => [right[k] / (HALF * aspect), up[k] / HALF, deep * back[k], -back[k]]);
+    return new Float32Array([...columns.flat(), 0, 0, (2 * far * near) / (near - far), 0]);
+  }
+
+  /** Where a place is in the picture, from 0 at the top left to 1; nothing if it is not before the eye. */
+  sees(place) {
+    const from = minus(place, this.place);
+    const depth = -dot(from, this.back);
+    if (!(depth > 0)) return null;
+    const half = 2 * HALF * depth;
+    return [0.5 + dot(from, this.right) / (half * this.aspect), 0.5 - dot(from, this.up) / half];
   }
 
   turn(right, up) {
@@ -66,9 +76,8 @@ class Eye {
   }
 
   pan(right, up) {
-    const metres = (2 * this.distance * Math.tan((FIELD / 2) * (Math.PI / 180))) / this.canvas.clientHeight;
-    const [a, b] = this.directions();
-    this.shift.addScaledVector(a, -right * metres).addScaledVector(b, up * metres);
+    const metres = (2 * HALF * this.distance) / this.canvas.clientHeight;
+    this.shift = plus(plus(this.shift, this.right, -right * metres), this.up, up * metres);
     this.changed = true;
   }
 

@@ -13,6 +13,9 @@ const PALETTES = {
   },
 };
 
+/** Red, green and blue of a colour 0xrrggbb, from 0 to 1. */
+const channels = (colour) => [16, 8, 0].map((shift) => ((colour >> shift) & 255) / 255);
+
 /** The colours in use; whoever draws in them asks to be told when they change. */
 const colours = {
   theme: matchMedia("(prefers-color-scheme: dark)").matches ? "dark" : "light",

@@ -34,26 +34,26 @@ function numberAt(numbers, width, column, { low, high, part }) {
   return part === 0 ? a : a + part * (b - a);
 }
 
-function vectorAt(numbers, count, index, instant, out) {
+function vectorAt(numbers, count, index, instant) {
   const component = (k) => numberAt(numbers, 3 * count, 3 * index + k, instant);
-  return out.set(component(0), component(1), component(2));
+  return [component(0), component(1), component(2)];
 }
 
-const placeAt = (point, instant, out) => vectorAt(film.positions, film.points.length, point, instant, out);
-const arrowAt = (force, instant, out) => vectorAt(film.arrows, film.forces.length, force, instant, out);
+const placeAt = (point, instant) => vectorAt(film.positions, film.points.length, point, instant);
+const arrowAt = (force, instant) => vectorAt(film.arrows, film.forces.length, force, instant);
 const valueAt = (column, instant) => numberAt(film.values, film.columns.length, column, instant);
 
-/** The turn of a frame: on the shorter way from one row to the next. */
-function turnAt(frame, { low, high, part }, out) {
+/** The turn of a frame, a unit quaternion: on the shorter way from one row to the next. */
+function turnAt(frame, { low, high, part }) {
   const width = 4 * film.frames.length;
   const of = (row, k) => film.turns[row * width + 4 * frame + k];
   const along = [0, 1, 2, 3].reduce((sum, k) => sum + of(low, k) * of(high, k), 0);
   const sign = along < 0 ? -1 : 1;
   const component = (k) => (part === 0 ? of(low, k) : of(low, k) * (1 - part) + sign * of(high, k) * part);
-  return out.set(component(0), component(1), component(2), component(3)).normalize();
+  const turn = [0, 1, 2, 3].map(component);
+  const length = Math.hypot(...turn);
+  return turn.map((number) => number / length);
 }
-
-const isFiniteVector = (v) => Number.isFinite(v.x + v.y + v.z);
 
 /** The largest of 1, 2, 5, 10, … that is not larger. */
 function roundNumber(value) {

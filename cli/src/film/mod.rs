@@ -1,6 +1,17 @@
 //! A page with the moving mechanism: one file that needs no network.
 //!
-//! [`data`] writes what the page shows; the scripts beside it draw that, whatever the mechanism.
+//! [`data`] writes what the page shows; the scripts beside it draw that, whatever the mechanism:
+//!
+//! | script | what it knows |
+//! |---|---|
+//! | `vectors.js` | vectors, affine maps, boxes |
+//! | `film.js`, `colours.js` | the data at any time; light and dark |
+//! | `gl.js`, `painter.js` | programs and buffers of WebGL 2; the passes of a picture, in their order |
+//! | `shapes.js`, `solids.js` | cylinder, ball, ring …; the pass that draws them in their light |
+//! | `traces.js`, `ground.js` | the passes of traces and of the squares on the ground |
+//! | `parts.js`, `stage.js` | wheels, springs, arrows … of shapes; all of them where they are at a time |
+//! | `camera.js`, `names.js` | the eye and its pointers; names of points over the picture |
+//! | `panel.js`, `player.js` | legend, values, plot; time, keys and buttons |
 
 mod data;
 
@@ -11,20 +22,24 @@ use appell::Error;
 use appell::engine::Equations;
 use appell::setup::Setup;
 
-/// The library that draws in space, see `vendor/three`.
-const THREE: &str = include_str!("../../vendor/three/three.min.js");
-const LICENCE: &str = include_str!("../../vendor/three/LICENSE");
-
 const STYLE: &str = include_str!("style.css");
 const BODY: &str = include_str!("body.html");
 /// In the order in which they use each other.
-const SCRIPTS: [&str; 7] = [
+const SCRIPTS: [&str; 15] = [
+    include_str!("vectors.js"),
     include_str!("film.js"),
     include_str!("colours.js"),
+    include_str!("gl.js"),
+    include_str!("shapes.js"),
+    include_str!("solids.js"),
+    include_str!("traces.js"),
+    include_str!("ground.js"),
+    include_str!("painter.js"),
     include_str!("parts.js"),
     include_str!("stage.js"),
     include_str!("camera.js"),
     include_str!("panel.js"),
+    include_str!("names.js"),
     include_str!("player.js"),
 ];
 
@@ -48,7 +63,6 @@ pub(crate) fn page(
          <meta name=\"viewport\" content=\"width=device-width,initial-scale=1\">\n\
          <title>{title}</title>\n<style>\n{STYLE}</style>\n</head>\n{BODY}\
          <script type=\"application/json\" id=\"film\">{data}</script>\n\
-         <!-- three.js\n{LICENCE}-->\n<script>{THREE}</script>\n\
          <script>\n\"use strict\";\n{scripts}</script>\n</html>\n"
     ))
 }

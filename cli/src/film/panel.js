@@ -1,4 +1,4 @@
-// Beside the picture: names of points, legend, values, one quantity over time.
+// Beside the picture: legend, values, one quantity over time.
 
 const at = (id) => document.getElementById(id);
 
@@ -7,49 +7,6 @@ function element(parent, tag, text = "") {
   made.textContent = text;
   parent.append(made);
   return made;
-}
-
-/** Names of points over the picture; those seen at one place are told together. */
-class Names {
-  /** Names closer than this are written together, in pixels. */
-  static CLOSE = 9;
-
-  constructor(stage) {
-    this.points = stage.own;
-    this.labels = this.points.map((point) => element(at("names"), "span", this.name([point])));
-    this.told = this.points.map((point) => `${point}`);
-  }
-
-  name(points) {
-    const told = ({ name, body }) => (body ? `${name} (${body})` : name);
-    return points.map((point) => told(film.points[point])).join(", ");
-  }
-
-  show(instant, camera, width, height, visible) {
-    const groups = [];
-    const place = new THREE.Vector3();
-    if (visible) {
-      for (const point of this.points) {
-        placeAt(point, instant, place).project(camera);
-        if (!isFiniteVector(place) || place.z > 1) continue;
-        const [x, y] = [(0.5 + place.x / 2) * width, (0.5 - place.y / 2) * height];
-        const near = groups.find((group) => Math.hypot(group.x - x, group.y - y) < Names.CLOSE);
-        if (near) near.points.push(point);
-        else groups.push({ x, y, points: [point] });
-      }
-    }
-    this.labels.forEach((label, k) => {
-      label.hidden = k >= groups.length;
-      if (label.hidden) return;
-      const { x, y, points } = groups[k];
-      const key = points.join();
-      if (this.told[k] !== key) {
-        this.told[k] = key;
-        label.textContent = this.name(points);
-      }
-      label.style.transform = `translate(${(x + 9).toFixed(1)}px,${(y + 4).toFixed(1)}px)`;
-    });
-  }
 }
 
 /** What the colours mean, and how large things are. */

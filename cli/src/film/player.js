@@ -10,15 +10,6 @@ const SLOW = 50;
 /** Pixels of the picture to those of the screen, at least. */
 const COARSEST = 0.5;
 
-/** What draws in space here, by its name; nothing where nothing does. */
-function painter() {
-  const context = document.createElement("canvas").getContext("webgl2");
-  const names = context?.getExtension("WEBGL_debug_renderer_info");
-  const name = context && String(context.getParameter(names?.UNMASKED_RENDERER_WEBGL ?? context.RENDERER));
-  context?.getExtension("WEBGL_lose_context")?.loseContext();
-  return name;
-}
-
 class Player {
   constructor() {
     this.time = film.start;
@@ -41,15 +32,25 @@ class Player {
 
   /** The picture in space; without WebGL the rest of the page works. */
   prepareSpace() {
-    const name = painter();
+    const without = "Values and plots are shown without it.";
+    const name = Painter.name();
     if (!name) {
-      this.say("This browser offers no WebGL, which the picture in space needs. Values and plots are shown without it.");
+      this.say(`This browser offers no WebGL 2, which the picture in space needs. ${without}`);
       return;
     }
     const canvas = at("space");
-    // Smooth edges take a graphics processor.
-    const antialias = !/swiftshader|llvmpipe|software|basic render/i.test(name);
-    this.renderer = new THREE.WebGLRenderer({ canvas, antialias, powerPreference: "high-performance" });
+    try {
+      this.painter = new Painter(canvas, name, {
+        lost: () => this.say("The browser has stopped drawing in space. The picture returns by itself or on reload."),
+        restored: () => {
+          at("message").hidden = true;
+          this.changed = true;
+        },
+      });
+    } catch (cause) {
+      this.say(`The picture in space cannot be drawn: ${cause.message} ${without}`);
+      return;
+    }
     this.stage = new Stage();
     this.eye = new Eye(canvas, this.stage);
     this.names = new Names(this.stage);
@@ -152,8 +153,7 @@ class Player {
     [this.width, this.height] = [at("stage").clientWidth, at("stage").clientHeight];
     // What stands still may take its time.
     const fineness = this.playing ? this.fineness : 1;
-    this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2) * fineness);
-    this.renderer.setSize(this.width, this.height, false);
+    this.painter.fit(this.width, this.height, Math.min(devicePixelRatio, 2) * fineness);
     this.changed = true;
   }
 
@@ -182,12 +182,10 @@ class Player {
     const instant = instantAt(this.time);
     if (this.stage) {
       this.stage.show(instant, { forces: at("forces").checked, axes: at("axes").checked });
-      const { target } = this.eye;
-      if (at("follow").checked) this.stage.middle(instant, target);
-      else this.stage.whole.getCenter(target);
+      this.eye.target = at("follow").checked ? this.stage.middle(instant) : this.stage.whole.middle;
       this.eye.look(this.width, this.height);
-      this.renderer.render(this.stage.scene, this.eye.camera);
-      this.names.show(instant, this.eye.camera, this.width, this.height, at("points").checked);
+      this.painter.paint(this.stage, this.eye);
+      this.names.show(instant, this.eye, this.width, this.height, at("points").checked);
     }
     this.strip.show(this.time);
     if (this.playing && this.last - this.told < 1000 * READABLE) return;
@@ -248,7 +246,7 @@ function start() {
     },
     place(name) {
       const point = film.points.findIndex((candidate) => candidate.name === name);
-      return placeAt(point, instantAt(player.time), new THREE.Vector3()).toArray();
+      return placeAt(point, instantAt(player.time));
     },
   };
   player.play(!matchMedia("(prefers-reduced-motion: reduce)").matches);

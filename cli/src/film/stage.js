@@ -10,13 +10,9 @@ function ownPoints() {
 
 /** The smallest box about points over rows. */
 function boxOf(points, rows) {
-  const box = new THREE.Box3();
-  const place = new THREE.Vector3();
+  const box = new Box();
   for (const row of rows) {
-    for (const point of points) {
-      placeAt(point, { low: row, high: row, part: 0 }, place);
-      if (isFiniteVector(place)) box.expandByPoint(place);
-    }
+    for (const point of points) box.add(placeAt(point, { low: row, high: row, part: 0 }));
   }
   return box;
 }
@@ -36,18 +32,9 @@ function forceScale(size) {
 
 class Stage {
   constructor() {
-    this.scene = new THREE.Scene();
-    this.scene.background = new THREE.Color();
-    this.scene.fog = new THREE.Fog(0, 1, 2);
-    colours.follow(({ paper }) => {
-      this.scene.background.set(paper);
-      this.scene.fog.color.set(paper);
-    });
-    this.vertical = new THREE.Vector3(...film.view.vertical);
-    const side = new THREE.Vector3(...film.view.floor);
-    this.floor = [side, new THREE.Vector3().crossVectors(this.vertical, side)];
+    this.vertical = film.view.vertical;
+    this.floor = [film.view.floor, cross(this.vertical, film.view.floor)];
     this.measure();
-    this.light();
     this.build();
   }
 
@@ -58,14 +45,12 @@ class Stage {
     if (!this.tracked.length) this.tracked = this.own;
     const radii = film.bodies.map(({ shape }) => shape.radius ?? 0);
     const first = boxOf(this.own, [0]);
-    const across = first.isEmpty() ? 0 : first.getSize(new THREE.Vector3()).length();
-    this.size = Math.max(across, 2 * Math.max(0, ...radii)) || 1;
+    this.size = Math.max(first.diagonal, 2 * Math.max(0, ...radii)) || 1;
     const rows = Array.from(film.times.keys());
     this.whole = boxOf(this.own, rows);
-    if (this.whole.isEmpty()) this.whole.expandByPoint(new THREE.Vector3());
-    this.whole.expandByScalar(Math.max(0.1 * this.size, ...radii));
-    const travel = boxOf(this.tracked, rows);
-    this.travels = !travel.isEmpty() && travel.getSize(new THREE.Vector3()).length() > 2.5 * this.size;
+    if (this.whole.empty) this.whole.add(ZERO);
+    this.whole.widen(Math.max(0.1 * this.size, ...radii));
+    this.travels = boxOf(this.tracked, rows).diagonal > 2.5 * this.size;
     this.level = this.groundLevel(rows);
     this.step = roundNumber(this.size / 2.5);
     this.force = forceScale(this.size);
@@ -75,103 +60,76 @@ class Stage {
   groundLevel(rows) {
     const touching = film.contacts.length > 0;
     const box = touching ? boxOf(film.contacts, [0]) : boxOf(this.own, rows);
-    if (box.isEmpty()) return 0;
-    const lowest = Math.min(box.min.dot(this.vertical), box.max.dot(this.vertical));
+    if (box.empty) return 0;
+    const lowest = Math.min(dot(box.low, this.vertical), dot(box.high, this.vertical));
     return touching ? lowest : lowest - 0.1 * this.size;
   }
 
-  light() {
-    const sky = new THREE.HemisphereLight(0xffffff, 0xb8bcc4, 2.2);
-    sky.position.copy(this.vertical);
-    const sun = new THREE.DirectionalLight(0xffffff, 1.4);
-    sun.position.set(1, -2, 3);
-    this.scene.add(sky, sun);
-  }
-
   build() {
-    const { scene, size } = this;
-    this.ground = ground(this.step, this.floor);
-    scene.add(this.ground);
-    this.frames = film.bodies.map((body) => {
-      const part = new THREE.Group();
-      part.add(SHAPES[body.shape.kind](body.shape));
-      scene.add(part);
-      return { part, point: body.centre, frame: body.frame };
+    const { size } = this;
+    this.bodies = film.bodies.map(({ shape, centre, frame }) => {
+      return { part: BODIES[shape.kind](shape), at: centre, frame };
     });
-    const makers = { rod, spring: coil, damper };
-    const drawn = film.links.filter(({ kind }) => kind in makers);
-    this.links = drawn.map(({ kind, ends }) => ({ part: makers[kind](size), ends }));
+    const links = film.links.filter(({ kind }) => kind in LINKS);
+    this.links = links.map(({ kind, ends }) => ({ part: LINKS[kind](size), ends }));
     this.dots = this.own.map((point) => {
-      const { mass } = film.points[point];
-      const radius = (mass ? 0.042 : 0.018) * size;
-      return { part: mesh(new THREE.SphereGeometry(radius, 18, 12), surface(mass ? "mass" : "point")), point };
+      const [role, radius] = film.points[point].mass ? ["mass", 0.042] : ["point", 0.018];
+      return { part: dotOf(role, radius * size), at: point };
     });
-    this.arrows = film.forces.map(({ kind, at }, force) => ({ part: arrow(kind, size), at, force }));
-    const seated = film.frames.flatMap(({ at }, frame) => (at === null ? [] : [{ point: at, frame }]));
-    this.axes = seated.map(({ point, frame }) => ({ part: triad(size), point, frame }));
-    for (const { part } of [...this.links, ...this.dots, ...this.arrows, ...this.axes]) scene.add(part);
+    this.arrows = film.forces.map(({ kind, at }, force) => ({ part: arrow(kind), at, force }));
+    const seated = film.frames.flatMap(({ at }, frame) => (at === null ? [] : [{ at, frame }]));
+    this.axes = seated.map(({ at, frame }) => ({ part: triad(size), at, frame }));
     this.traces = [];
   }
 
-  /** Draws the ways of these points from now on. */
+  /** Everything with a surface. */
+  parts() {
+    const { bodies, links, dots, arrows, axes } = this;
+    return [bodies, links, dots, arrows, axes].flat().map(({ part }) => part);
+  }
+
+  /** Draws the traces of these points from now on. */
   draw(points) {
-    for (const part of this.traces) {
-      this.scene.remove(part);
-      for (const { geometry } of part.children) geometry.dispose();
-    }
     this.traces = points.map((point) => trace(point, this.size));
-    this.scene.add(...this.traces);
   }
 
   /** The middle of the bodies. */
-  middle(instant, out) {
-    const place = new THREE.Vector3();
-    let count = 0;
-    out.set(0, 0, 0);
-    for (const point of this.tracked) {
-      placeAt(point, instant, place);
-      if (!isFiniteVector(place)) continue;
-      out.add(place);
-      count += 1;
-    }
-    return out.divideScalar(count || 1);
+  middle(instant) {
+    const places = this.tracked.map((point) => placeAt(point, instant)).filter(isFiniteVector);
+    const sum = places.reduce((sum, place) => plus(sum, place), ZERO);
+    return scaled(sum, 1 / (places.length || 1));
   }
 
   /** Lays every part where it is. */
   show(instant, { forces, axes }) {
-    const [a, b] = [new THREE.Vector3(), new THREE.Vector3()];
-    for (const { part, point, frame } of this.frames) {
-      placeAt(point, instant, part.position);
-      turnAt(frame, instant, part.quaternion);
-      part.visible = isFiniteVector(part.position) && Number.isFinite(part.quaternion.w);
+    for (const { part, at, frame } of [...this.bodies, ...this.axes]) {
+      part.map = turned(turnAt(frame, instant), placeAt(at, instant));
+      part.shown = isFiniteVector(part.map.at) && isFiniteVector(part.map.x);
     }
-    for (const { part, ends } of this.links) span(part, placeAt(ends[0], instant, a), placeAt(ends[1], instant, b));
-    for (const { part, point } of this.dots) {
-      placeAt(point, instant, part.position);
-      part.visible = isFiniteVector(part.position);
+    for (const { part } of this.axes) part.shown &&= axes;
+    for (const { part, ends } of this.links) span(part, ...ends.map((end) => placeAt(end, instant)));
+    for (const { part, at } of this.dots) {
+      part.map = { ...SAME, at: placeAt(at, instant) };
+      part.shown = isFiniteVector(part.map.at);
     }
     for (const { part, at, force } of this.arrows) {
-      part.visible = false;
+      part.shown = false;
       if (!forces || !this.force) continue;
-      part.aim(placeAt(at, instant, a), arrowAt(force, instant, b).divideScalar(this.force.metre));
+      aim(part, placeAt(at, instant), scaled(arrowAt(force, instant), 1 / this.force.metre), this.size);
     }
-    for (const { part, point, frame } of this.axes) {
-      placeAt(point, instant, part.position);
-      turnAt(frame, instant, part.quaternion);
-      part.visible = axes && isFiniteVector(part.position) && Number.isFinite(part.quaternion.w);
-    }
-    for (const part of this.traces) part.upTo(instant.part > 0.5 ? instant.high : instant.low);
+    for (const trace of this.traces) trace.rows = 1 + (instant.part > 0.5 ? instant.high : instant.low);
   }
 
   /** Keeps the squares of the ground around a place, and lets them fade towards the horizon. */
   spread(around, distance) {
-    const [a, b] = this.floor;
-    const period = 5 * this.step;
-    const snapped = (axis) => Math.round(around.dot(axis) / period) * period;
-    this.ground.position
-      .copy(this.vertical).multiplyScalar(this.level)
-      .addScaledVector(a, snapped(a)).addScaledVector(b, snapped(b));
-    this.scene.fog.near = distance;
-    this.scene.fog.far = distance + 24 * this.step;
+    const { floor: [a, b], step } = this;
+    const period = 5 * step;
+    const snapped = (axis) => Math.round(dot(around, axis) / period) * period;
+    this.ground = {
+      middle: plus(plus(scaled(this.vertical, this.level), a, snapped(a)), b, snapped(b)),
+      sides: [scaled(a, step), scaled(b, step)],
+      near: distance,
+      far: distance + 24 * step,
+    };
   }
 }

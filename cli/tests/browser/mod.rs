@@ -29,6 +29,22 @@ const FLAGS: [&str; 9] = [
 /// The browser speaks over the channels 3 and 4.
 const SHELL: &str = "exec \"$0\" \"$@\" 3<&0 4>&1 </dev/null >/dev/null 2>&1";
 
+/// Lines of the ground differ less from the paper. A picture can be read until the next one is asked for: in the same frame, after the page.
+const DRAWN: &str = "new Promise((done) => requestAnimationFrame(() => {
+    const space = document.getElementById('space');
+    const copy = document.createElement('canvas');
+    [copy.width, copy.height] = [space.width, space.height];
+    const pen = copy.getContext('2d');
+    pen.drawImage(space, 0, 0);
+    const { data } = pen.getImageData(0, 0, copy.width, copy.height);
+    const paper = getComputedStyle(document.body).backgroundColor.match(/[0-9]+/g).map(Number);
+    const differs = (pixel) => paper.some((part, k) => Math.abs(data[4 * pixel + k] - part) > 80);
+    const pixels = data.length / 4;
+    let count = 0;
+    for (let pixel = 0; pixel < pixels; pixel += 1) count += differs(pixel);
+    done(count / pixels);
+}))";
+
 /// Browsers share the processors; one after the other they are not slow.
 static TURN: Mutex<()> = Mutex::new(());
 
@@ -142,9 +158,11 @@ impl Browser {
         self.wait("document.readyState == 'complete'");
     }
 
-    /// The value of an expression on the page.
+    /// The value of an expression on the page, or of what it promises.
     pub(crate) fn value(&mut self, expression: &str) -> Value {
-        let parameters = json!({ "expression": expression, "returnByValue": true });
+        let parameters = json!({
+            "expression": expression, "returnByValue": true, "awaitPromise": true,
+        });
         let mut answer = self.call("Runtime.evaluate", &parameters);
         assert!(
             answer["exceptionDetails"].is_null(),
@@ -181,6 +199,11 @@ impl Browser {
         let mut answer = self.call("Page.captureScreenshot", &json!({}));
         let data = answer["data"].take();
         data.as_str().expect("a picture").to_owned()
+    }
+
+    /// The part of the picture in space, of a page that plays, that is neither paper nor ground.
+    pub(crate) fn drawn(&mut self) -> f64 {
+        self.number(DRAWN)
     }
 
     /// What the page complained of, and what it asked of a network.

@@ -35,9 +35,12 @@ fn rows_and_columns(function: &Function) -> Vec<String> {
     }
 }
 
-/// What the names of values mean, where they occur.
-fn glossary(function: &Function, schedule: &Schedule) -> Vec<String> {
-    let occurs = |term: &&Term| schedule.names.iter().any(|name| term.explains(name));
+/// What the names of values mean, where they occur, in the body or in the equations `told` over it.
+fn glossary(function: &Function, schedule: &Schedule, told: &[String]) -> Vec<String> {
+    let occurs = |term: &&Term| {
+        let mut names = schedule.names.iter().chain(told);
+        names.any(|name| term.explains(name))
+    };
     let mut lines: Vec<String> = function
         .glossary
         .iter()
@@ -74,11 +77,13 @@ pub(super) fn function(
     let name = known(function.kind.name());
     let mut lines = vec![function.kind.about().to_owned(), String::new()];
     lines.extend(super::picture::picture(types, function));
+    let (equations, told) = super::equations::equations(types, function);
+    lines.extend(equations);
     lines.extend(rows_and_columns(function));
     for remark in &function.remarks {
         lines.extend([one_line(remark), String::new()]);
     }
-    lines.extend(glossary(function, schedule));
+    lines.extend(glossary(function, schedule, &told));
     lines.push(format!(
         "From `{}`.",
         one_line(&types.program.file).replace('`', "'")

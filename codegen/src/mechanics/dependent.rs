@@ -8,6 +8,7 @@
 
 use appell_spec::mechanism::Mechanism;
 
+use super::letters;
 use super::algebra::Algebra;
 use super::constraints::Constraints;
 use super::contact_rows::ContactRows;
@@ -275,6 +276,7 @@ impl DependentSpeeds {
         let mut actual = self.actual(&algebra.graph);
         let bias = apply(&mut actual, algebra, &all.bias)?;
         let graph = &mut algebra.graph;
+        let mass = letters::mass(mechanism);
         // M B, the rows of the dependent speeds.
         let coupling: Vec<Vec<Expr>> = all.mass_matrix[speeds..]
             .iter()
@@ -288,7 +290,7 @@ impl DependentSpeeds {
                 let named = along.into_iter().zip(&mechanism.pseudo_velocities);
                 named
                     .map(|(entry, speed)| {
-                        graph.name(&format!("M_{name}_{}", speed.label.name), entry)
+                        graph.name(&format!("{mass}_{name}_{}", speed.label.name), entry)
                     })
                     .collect()
             })

@@ -2,7 +2,7 @@
 
 use super::dag::{Dag, Id, Item, Name, Op};
 use super::monomial::Monomial;
-use super::names::{ArgumentNames, Names};
+use super::names::{ArgumentNames, Names, joined};
 use super::outline::Outline;
 use super::piece::{Level, Piece, describe};
 use super::signs::{choose_signs, keeps_its_name};
@@ -23,9 +23,14 @@ const INLINE: usize = 72;
 /// Columns that a tree gets after a name of any length.
 const NARROWEST: usize = 30;
 
-/// The steps of a function.
-pub(super) fn bind(program: &Program, function: &Function, dag: &Dag) -> Schedule {
-    let mut binding = Binding::new(program, function, dag);
+/// The steps of a function. `hints` are names for nodes that have no other.
+pub(super) fn bind(
+    program: &Program,
+    function: &Function,
+    dag: &Dag,
+    hints: Vec<Option<Name>>,
+) -> Schedule {
+    let mut binding = Binding::new(program, function, dag, hints);
     let mut seen = vec![false; dag.len()];
     for (title, roots) in binding.outline.paragraphs(function) {
         binding.title = Some(title);
@@ -53,6 +58,8 @@ struct Binding<'a> {
     outline: Outline<'a>,
     /// Nodes wanted with the opposite sign.
     minus: Vec<bool>,
+    /// Names for what has no other.
+    hints: Vec<Option<Name>>,
     /// Parts counted so far, by what they feed.
     parts: Vec<u32>,
     built: Vec<Option<Built>>,
@@ -68,7 +75,12 @@ struct Binding<'a> {
 }
 
 impl<'a> Binding<'a> {
-    fn new(program: &'a Program, function: &Function, dag: &'a Dag) -> Self {
+    fn new(
+        program: &'a Program,
+        function: &Function,
+        dag: &'a Dag,
+        hints: Vec<Option<Name>>,
+    ) -> Self {
         let arguments = ArgumentNames::of(program);
         let mut names = Names::default();
         for name in arguments.iter() {
@@ -89,6 +101,7 @@ impl<'a> Binding<'a> {
             dag,
             minus: choose_signs(dag, &outline.order),
             outline,
+            hints,
             parts: vec![0; dag.len()],
             built: vec![None; dag.len()],
             names,
@@ -517,7 +530,10 @@ impl<'a> Binding<'a> {
                 (self.define(&name, piece.opposite().tree), !negative)
             }
             // What comes out with the other sign is told by how it is made.
-            _ => (self.define_by_making(id, piece.tree), negative),
+            _ => {
+                let hint = self.hint(id, negative);
+                (self.define_by_making(id, piece.tree, hint), negative)
+            }
         };
         Built { piece, negative }
     }
@@ -540,6 +556,45 @@ impl<'a> Binding<'a> {
             || !self.outline.is_shared(id)
     }
 
+    /// The name of a value that readers know; `negative` says that minus the node is defined.
+    fn hint(&self, id: Id, negative: bool) -> Option<String> {
+        let Some(hint) = self.hints[id.index()] else {
+            return self.by_factors(id);
+        };
+        let name = &self.program.graph.definition(hint.definition).name;
+        Some(if hint.negative == negative {
+            name.clone()
+        } else {
+            format!("minus_{name}")
+        })
+    }
+
+    /// `consumer_per_a_b`: what is multiplied by `a` and `b` on its way to the consumer.
+    fn by_factors(&self, id: Id) -> Option<String> {
+        let feed = self.outline.feeds[id.index()]?;
+        let mut factors: Vec<&str> = Vec::new();
+        let mut part = id;
+        while part != feed {
+            let whole = self.outline.wholes[part.index()]?;
+            if let Op::Product(items) = self.dag.op(whole) {
+                for other in items.iter().filter(|item| item.id != part && !item.flip) {
+                    match self.built[other.id.index()].as_ref()?.piece.tree {
+                        Tree::Value(Value(value)) => factors.push(&self.values[value as usize]),
+                        Tree::Argument(argument) => factors.push(self.arguments.get(argument)),
+                        Tree::Constant(_) => {}
+                        _ => return None,
+                    }
+                }
+            }
+            part = whole;
+        }
+        if factors.is_empty() {
+            return None;
+        }
+        factors.reverse();
+        joined(&[&self.given_name(feed)?, "per", &factors.join("_")])
+    }
+
     /// `consumer_part_2`
     fn fallback(&mut self, id: Id, word: &str) -> String {
         let feed = self.outline.feeds[id.index()];
@@ -553,16 +608,18 @@ impl<'a> Binding<'a> {
 
     /// Defines a part of a tree that is too wide for a line.
     fn define_part(&mut self, id: Id, piece: Piece) -> Piece {
-        self.define_by_making(id, piece.tree)
+        self.define_by_making(id, piece.tree, None)
     }
 
     /// Defines a value under a name that tells how it is made.
-    fn define_by_making(&mut self, id: Id, tree: Tree) -> Piece {
+    fn define_by_making(&mut self, id: Id, tree: Tree, hint: Option<String>) -> Piece {
         let described = describe(&tree, &self.values, &self.products, &self.arguments);
         let product = described
             .is_some()
             .then(|| Monomial::of(&tree, &self.products));
-        let name = described.unwrap_or_else(|| self.fallback(id, "part"));
+        let name = described
+            .or(hint)
+            .unwrap_or_else(|| self.fallback(id, "part"));
         let piece = self.define(&name, tree);
         if let Some(last) = self.products.last_mut() {
             *last = product.flatten();

@@ -274,6 +274,16 @@ pub(super) fn name_again(dag: &mut Dag, derived: &Dag) {
     }
 }
 
+/// Which nodes are values of another graph that have a name there.
+pub(super) fn known_values(dag: &Dag, hints: &Dag) -> Vec<Option<Name>> {
+    let mut named = dag.clone();
+    for name in &mut named.names {
+        *name = None;
+    }
+    name_again(&mut named, hints);
+    named.names
+}
+
 /// How many parts a sum or a product has; other nodes are as short as can be.
 fn parts(dag: &Dag, id: Id) -> usize {
     match dag.op(id) {

@@ -23,8 +23,8 @@ pub struct Program {
     /// Sizes of the linear systems of several unknowns that are solved with pivoting on the way to
     /// the rates.
     pub systems: Vec<usize>,
-    /// Named values that readers know, for what has no other name on the way.
-    pub hints: Vec<Expr>,
+    /// Values that readers know, for what has no other name on the way.
+    pub hints: Vec<Hint>,
     /// Functions, in the order in which a reader wants them.
     pub functions: Vec<Function>,
 }
@@ -46,6 +46,17 @@ impl Program {
                 .sum()
         })
     }
+}
+
+/// A value that readers know by a name, whether or not the derivation names it.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Hint {
+    /// The value.
+    pub value: Expr,
+    /// Its name.
+    pub name: String,
+    /// The name of minus the value, if it has one.
+    pub opposite: Option<String>,
 }
 
 /// Symbols of the arguments.
@@ -353,11 +364,7 @@ impl FunctionKind {
                 "Jacobians",
                 "Rates ẋ with their derivatives by state and inputs.",
             ),
-            Self::ParameterJacobian => (
-                "parameter_jacobian",
-                "ParameterJacobian",
-                "P = ∂ẋ/∂p.",
-            ),
+            Self::ParameterJacobian => ("parameter_jacobian", "ParameterJacobian", "P = ∂ẋ/∂p."),
             Self::Energies => ("energies", "Energies", "Energies and power."),
             Self::ConstraintResidual => (
                 "constraint_residual",

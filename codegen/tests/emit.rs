@@ -203,8 +203,14 @@ fn states_and_rates_are_vectors() {
         let h = 0.02 / f64::from(parts);
         (0..parts).fold(start, |x, _| step(x, h))
     });
-    let change = (fine - start).to_array().iter().fold(0.0, |a: f64, b| a.max(b.abs()));
-    let error = (fine - coarse).to_array().iter().fold(0.0, |a: f64, b| a.max(b.abs()));
+    let change = (fine - start)
+        .to_array()
+        .iter()
+        .fold(0.0, |a: f64, b| a.max(b.abs()));
+    let error = (fine - coarse)
+        .to_array()
+        .iter()
+        .fold(0.0, |a: f64, b| a.max(b.abs()));
     assert!(change > 1e-3 && error < 1e-7, "{change} {error}");
     let named = f(start);
     assert_eq!(named.coordinate_rates().theta_dot, start.omega_1);

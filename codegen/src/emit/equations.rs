@@ -78,10 +78,9 @@ fn left_side(
             let label = array.labels.get(place)?;
             (place >= info.speeds).then(|| letter(label))
         }
-        (
-            FunctionKind::Kinematics | FunctionKind::Outputs,
-            Layout::Vector(_),
-        ) => Some(letter(array.labels.get(place)?)),
+        (FunctionKind::Kinematics | FunctionKind::Outputs, Layout::Vector(_)) => {
+            Some(letter(array.labels.get(place)?))
+        }
         _ => None,
     }
 }

@@ -9,7 +9,7 @@ use super::body::body;
 use super::layout::{blank_tokens, docs, one_line};
 use super::syntax::{ident, known};
 use super::types::{Types, result_struct};
-use crate::program::{Function, Term};
+use crate::program::{Function, Space, Term};
 use crate::schedule::{Argument, OperationCount, Schedule};
 
 /// What the rows and columns of a plain array are, where no struct tells it.
@@ -127,6 +127,9 @@ pub(super) fn function(
         }
         None => types.array_type(function.results[0].layout),
     };
+    let [parameters_type, state_type, inputs_type] =
+        [Space::Parameters, Space::State, Space::Inputs]
+            .map(|space| types.vector(space, &quote!(T)));
     let tokens = quote! {
         #blank
         #about
@@ -134,9 +137,9 @@ pub(super) fn function(
         #[inline]
         pub fn #name<T: Real>(
             #time
-            #parameters: &Parameters<T>,
-            #state: &State<T>,
-            #inputs: &Inputs<T>,
+            #parameters: &#parameters_type,
+            #state: &#state_type,
+            #inputs: &#inputs_type,
             #weights
         ) -> #result {}
     };

@@ -353,12 +353,19 @@ fn written(
     slices: &[TokenStream],
 ) -> Result<TokenStream, Error> {
     let function = required(types.program, kind)?;
-    if function.results.iter().all(|array| array.entries.is_empty()) {
+    if function
+        .results
+        .iter()
+        .all(|array| array.entries.is_empty())
+    {
         return Ok(quote!(let _ = (at, #(#slices),*);));
     }
     let call = call(types, kind);
     if let [array] = function.results.as_slice() {
-        return Ok(slices.iter().map(|to| write(types, array.layout, to, &call)).collect());
+        return Ok(slices
+            .iter()
+            .map(|to| write(types, array.layout, to, &call))
+            .collect());
     }
     let fields = Types::result_fields(function);
     let parts = function.results.iter().zip(fields).zip(slices);

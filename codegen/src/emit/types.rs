@@ -66,7 +66,12 @@ impl<'a> Types<'a> {
 
     /// Whether a struct of this name would hide a field where structs are taken apart.
     pub(super) fn is_field(&self, name: &str) -> bool {
-        let own = [&self.rates, &self.outputs, &self.constraint_rows, &self.reactions];
+        let own = [
+            &self.rates,
+            &self.outputs,
+            &self.constraint_rows,
+            &self.reactions,
+        ];
         self.is_argument(name) || own.into_iter().flatten().any(|field| field == name)
     }
 
@@ -176,9 +181,7 @@ impl<'a> Types<'a> {
                 let columns = count(columns);
                 self.vector(space, &quote!([T; #columns]))
             }
-            Layout::Jacobian(rows, columns) => {
-                self.vector(rows, &self.vector(columns, &quote!(T)))
-            }
+            Layout::Jacobian(rows, columns) => self.vector(rows, &self.vector(columns, &quote!(T))),
         }
     }
 
@@ -252,6 +255,13 @@ impl<'a> Types<'a> {
                 Layout::Scalar | Layout::List(_) | Layout::Matrix(..) => {}
             }
         }
+        let mass_matrix = [FunctionKind::MassMatrix, FunctionKind::MassMatrixAndBias];
+        if functions
+            .iter()
+            .any(|function| mass_matrix.contains(&function.kind))
+        {
+            spaces.insert(Space::Accelerations);
+        }
         if spaces.contains(&Space::Rates) {
             spaces.extend([Space::Accelerations, Space::CoordinateRates]);
         }
@@ -302,11 +312,7 @@ impl<'a> Types<'a> {
                 }
             }
         };
-        let accelerations = method(
-            "accelerations",
-            "ω̇, the first part.",
-            Space::Accelerations,
-        );
+        let accelerations = method("accelerations", "ω̇, the first part.", Space::Accelerations);
         let coordinate_rates = method(
             "coordinate_rates",
             "q̇, the second part.",
@@ -440,7 +446,10 @@ impl Vector<'_> {
         }
         let default = self.default.then(|| quote!(, Default));
         let fields = self.fields.iter().map(|field| ident(field));
-        let texts = self.texts.iter().map(|text| docs(std::slice::from_ref(text)));
+        let texts = self
+            .texts
+            .iter()
+            .map(|text| docs(std::slice::from_ref(text)));
         quote! {
             #blank
             #about
@@ -495,8 +504,11 @@ fn rate(quantity: &Quantity) -> String {
     let unit = one_line(&quantity.unit).replace('`', "'");
     match unit.as_str() {
         "" => format!("Rate of `{name}`, in `1/s`."),
-        unit if unit.contains('/') => format!("Rate of `{name}`, in `({unit})/s`."),
-        unit => format!("Rate of `{name}`, in `{unit}/s`."),
+        unit => match unit.strip_suffix("/s") {
+            Some(unit) => format!("Rate of `{name}`, in `{unit}/s^2`."),
+            None if unit.contains('/') => format!("Rate of `{name}`, in `({unit})/s`."),
+            None => format!("Rate of `{name}`, in `{unit}/s`."),
+        },
     }
 }
 

@@ -120,7 +120,7 @@ impl Derivation {
             FunctionKind::Bias => vec![self.bias(speeds)],
             FunctionKind::MassMatrixAndBias => {
                 vec![self.mass_matrix(mechanism, speeds), self.bias(speeds)]
-            },
+            }
             FunctionKind::GeneralizedForces => {
                 let forces = self.forces.clone();
                 let about = "Pseudo-forces.";
@@ -455,7 +455,12 @@ impl Derivation {
         }
         let labels = mechanism.outputs.iter().map(|y| y.label.name.clone());
         let all = 0..values.len();
-        let array = Array::new("outputs", "Outputs.", Layout::Vector(Space::Outputs), values);
+        let array = Array::new(
+            "outputs",
+            "Outputs.",
+            Layout::Vector(Space::Outputs),
+            values,
+        );
         Ok(vec![array.labelled(labels).under("Outputs.", all)])
     }
 
@@ -571,9 +576,14 @@ fn by_speed(
     entries: Vec<Expr>,
 ) -> Array {
     let all = 0..entries.len();
-    Array::new(result, about, Layout::Vector(Space::GeneralizedForces), entries)
-        .labelled(speeds.iter().map(|speed| format!("{name}_{}", speed.name)))
-        .under(about, all)
+    Array::new(
+        result,
+        about,
+        Layout::Vector(Space::GeneralizedForces),
+        entries,
+    )
+    .labelled(speeds.iter().map(|speed| format!("{name}_{}", speed.name)))
+    .under(about, all)
 }
 
 /// Symbols of the inputs: declared ones, then signals and their rates.

@@ -8,7 +8,6 @@
 
 use appell_spec::mechanism::Mechanism;
 
-use super::letters;
 use super::algebra::Algebra;
 use super::constraints::Constraints;
 use super::contact_rows::ContactRows;
@@ -16,6 +15,7 @@ use super::elimination::{Elimination, GeneralizedVelocities, OpenSystem};
 use super::finding::{Item, Outcome};
 use super::gibbs_appell::{BodyMotion, GibbsForm};
 use super::kinematics::{Kinematics, division_by_zero};
+use super::letters;
 use super::symbols::Symbols;
 use super::time::TimeDerivative;
 use crate::symbolic::vector::Vec3;

@@ -27,8 +27,8 @@ impl FactorizedBlock {
         mass_matrix: &[Vec<Expr>],
         speeds: &[usize],
     ) -> Outcome<Self> {
-        let [mass, lower, diagonal] = [letters::mass, letters::lower, letters::diagonal]
-            .map(|letter| letter(mechanism));
+        let [mass, lower, diagonal] =
+            [letters::mass, letters::lower, letters::diagonal].map(|letter| letter(mechanism));
         let name = |speed: usize| mechanism.pseudo_velocities[speed].label.name.as_str();
         let mut schur = mass_matrix.to_vec();
         for &i in speeds {
@@ -49,7 +49,9 @@ impl FactorizedBlock {
         let mut columns: Vec<Vec<Expr>> = Vec::new();
         while !open.is_empty() {
             let k = simplest_pivot(algebra, mechanism, &schur, &mut open)?;
-            let pivot = algebra.graph.name(&format!("{diagonal}_{}", name(k)), schur[k][k]);
+            let pivot = algebra
+                .graph
+                .name(&format!("{diagonal}_{}", name(k)), schur[k][k]);
             let mut column = vec![Graph::ZERO; mass_matrix.len()];
             for &i in &open {
                 let ratio = algebra.graph.div(schur[i][k], pivot);

@@ -157,7 +157,9 @@ pub fn groups_of_solution(mechanism: &Mechanism, motion: &Motion) -> Vec<Group> 
                     ];
                     for &later in &block.speeds[place + 1..] {
                         let pair = format!("{}_{}", speeds[later], speeds[speed]);
-                        names.extend([lower, diagonal].map(|s| (format!("{s}_{pair}"), Names::Alone)));
+                        names.extend(
+                            [lower, diagonal].map(|s| (format!("{s}_{pair}"), Names::Alone)),
+                        );
                     }
                     for &other in &block.speeds[place..] {
                         let mut pair = [speeds[speed], speeds[other]];

@@ -6,69 +6,86 @@ use rustc_hash::FxHashSet;
 use appell_spec::mechanism::Mechanism;
 
 use super::Derivation;
-use crate::program::{Arguments, Names, Term};
-use crate::symbolic::vector::Vec3;
-use crate::symbolic::{Expr, Node};
+use crate::program::{Arguments, Hint, Names, Term};
+use crate::symbolic::SymbolId;
 
 const AXES: [&str; 3] = ["x", "y", "z"];
 
 impl Derivation {
     /// Positions of points from the points that they are placed from, their derivatives by the
-    /// coordinates, and partial velocities of frames and points, each named; and what the names mean.
+    /// coordinates, and partial velocities of bodies; and what the names mean.
     pub(super) fn hints(
         &mut self,
         mechanism: &Mechanism,
         arguments: &Arguments,
-    ) -> (Vec<Expr>, Vec<Term>) {
+    ) -> (Vec<Hint>, Vec<Term>) {
         let mut hints = Vec::new();
         let mut terms = Vec::new();
-        let mut add = |derivation: &mut Self, symbol: &str, value: Vec3, meaning: String| {
-            let vector = AXES.iter().zip(value);
-            let named = vector.map(|(axis, value)| (format!("{symbol}_{axis}"), value));
-            hints.extend(named.clone());
-            for (name, value) in named {
-                for q in 0..mechanism.coordinates.len() {
-                    let by = derivation.symbols.coordinates[q];
-                    let slope = derivation.algebra.derivative(value, by);
-                    let q = &mechanism.coordinates[q].label.name;
-                    hints.push((format!("d_{name}_d_{q}"), slope));
-                }
-            }
-            let derivatives = format!("derivatives of `{symbol}`.");
-            terms.extend([
-                (symbol.to_owned(), Names::Axes, meaning),
-                (format!("d_{symbol}"), Names::Any, derivatives),
-            ]);
-        };
         for (point, placed) in mechanism.points.iter().enumerate() {
+            let Some(from) = placed.from else {
+                continue;
+            };
             let offset = self.kinematics.offset(point);
-            let (name, along) = (&placed.name, &mechanism.frames[offset.frame].name);
-            let meaning = format!("position of `{name}` from where it is placed, along `{along}`.");
-            add(self, &format!("p_{name}"), offset.v, meaning);
+            let along = &mechanism.frames[offset.frame].name;
+            let (from, to) = (&mechanism.points[from].name, &placed.name);
+            for (axis, value) in AXES.iter().zip(offset.v) {
+                let [there, back] = [
+                    format!("p_{from}_{to}_{axis}"),
+                    format!("p_{to}_{from}_{axis}"),
+                ];
+                for (q, &by) in mechanism.coordinates.iter().zip(&self.symbols.coordinates) {
+                    let by_q = |name: &str| format!("d_{name}_d_{}", q.label.name);
+                    hints.push(Hint {
+                        value: self.algebra.derivative(value, by),
+                        name: by_q(&there),
+                        opposite: Some(by_q(&back)),
+                    });
+                }
+                hints.push(Hint {
+                    value,
+                    name: there,
+                    opposite: Some(back),
+                });
+            }
+            for (from, to) in [(from, to), (to, from)] {
+                let symbol = format!("p_{from}_{to}");
+                let meaning = format!("position of `{to}` from `{from}`, along `{along}`.");
+                terms.push((
+                    format!("d_{symbol}"),
+                    Names::Any,
+                    format!("derivatives of `{symbol}`, the {meaning}"),
+                ));
+                terms.push((symbol, Names::Axes, meaning));
+            }
         }
         for body in self.bodies.clone() {
-            let rotation = body.rotation.iter();
-            let partial = rotation.map(|turning| (format!("w_{}", body.name), &turning.partial));
-            let centre = (format!("v_{}", body.centre.point), &body.centre.partial);
-            for (symbol, partial) in partial.chain([centre]) {
+            let (name, point) = (&body.name, &body.centre.point);
+            let turning = body.rotation.iter().map(|rotation| {
+                let meaning = format!("partial angular velocities of `{name}`.");
+                (format!("w_{name}"), meaning, &rotation.partial)
+            });
+            let meaning = format!("partial velocities of `{point}`.");
+            let centre = (format!("v_{point}"), meaning, &body.centre.partial);
+            for (symbol, meaning, partial) in turning.chain([centre]) {
                 for (speed, &value) in mechanism.pseudo_velocities.iter().zip(partial) {
                     let by = &speed.label.name;
                     let named = AXES.iter().zip(value);
-                    hints.extend(named.map(|(x, v)| (format!("d_{symbol}_{x}_d_{by}"), v)));
+                    hints.extend(named.map(|(x, value)| Hint {
+                        value,
+                        name: format!("d_{symbol}_{x}_d_{by}"),
+                        opposite: None,
+                    }));
                 }
-                let derivatives = format!("partial velocities: derivatives of `{symbol}`.");
-                terms.push((format!("d_{symbol}"), Names::Any, derivatives));
+                terms.push((format!("d_{symbol}"), Names::Any, meaning));
             }
         }
-        let graph = &mut self.algebra.graph;
+        let graph = &self.algebra.graph;
         let known = known(arguments);
-        hints.retain(|&(_, value)| {
-            graph.in_order(&[value]).into_iter().all(|part| {
-                graph.as_symbol(part).is_none_or(|symbol| known.contains(&symbol))
-            }) && matches!(graph.node(value), Node::Sum(_) | Node::Product(_))
+        hints.retain(|hint| {
+            let symbols = graph.in_order(&[hint.value]).into_iter();
+            let mut symbols = symbols.filter_map(|part| graph.as_symbol(part));
+            symbols.all(|symbol| known.contains(&symbol))
         });
-        let hints = hints.into_iter();
-        let hints = hints.map(|(name, value)| graph.name(&name, value)).collect();
         let terms = terms.into_iter().map(|(symbol, names, meaning)| Term {
             symbol,
             names,
@@ -79,7 +96,7 @@ impl Derivation {
 }
 
 /// The symbols that emitted functions know.
-fn known(arguments: &Arguments) -> FxHashSet<crate::symbolic::SymbolId> {
+fn known(arguments: &Arguments) -> FxHashSet<SymbolId> {
     let lists = [
         arguments.states.as_slice(),
         &arguments.inputs,

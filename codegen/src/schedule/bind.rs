@@ -23,12 +23,12 @@ const INLINE: usize = 72;
 /// Columns that a tree gets after a name of any length.
 const NARROWEST: usize = 30;
 
-/// The steps of a function. `hints` are names for nodes that have no other.
+/// The steps of a function. `hints` tells which nodes are hints of the program, up to their sign.
 pub(super) fn bind(
     program: &Program,
     function: &Function,
     dag: &Dag,
-    hints: Vec<Option<Name>>,
+    hints: Vec<Option<(usize, bool)>>,
 ) -> Schedule {
     let mut binding = Binding::new(program, function, dag, hints);
     let mut seen = vec![false; dag.len()];
@@ -58,8 +58,8 @@ struct Binding<'a> {
     outline: Outline<'a>,
     /// Nodes wanted with the opposite sign.
     minus: Vec<bool>,
-    /// Names for what has no other.
-    hints: Vec<Option<Name>>,
+    /// Hints by their number, and whether they are minus the node, for what has no other name.
+    hints: Vec<Option<(usize, bool)>>,
     /// Parts counted so far, by what they feed.
     parts: Vec<u32>,
     built: Vec<Option<Built>>,
@@ -67,6 +67,8 @@ struct Binding<'a> {
     values: Vec<String>,
     /// What the values are products of, where their names say that.
     products: Vec<Option<Monomial>>,
+    /// Values whose names are hints.
+    hinted: Vec<bool>,
     steps: Vec<Step>,
     title: Option<String>,
     systems_done: Vec<bool>,
@@ -79,7 +81,7 @@ impl<'a> Binding<'a> {
         program: &'a Program,
         function: &Function,
         dag: &'a Dag,
-        hints: Vec<Option<Name>>,
+        hints: Vec<Option<(usize, bool)>>,
     ) -> Self {
         let arguments = ArgumentNames::of(program);
         let mut names = Names::default();
@@ -107,6 +109,7 @@ impl<'a> Binding<'a> {
             names,
             values: Vec::new(),
             products: Vec::new(),
+            hinted: Vec::new(),
             steps: Vec::new(),
             title: None,
             systems_done: vec![false; dag.systems.len()],
@@ -545,7 +548,11 @@ impl<'a> Binding<'a> {
             && self.derived_name(id).is_none_or(|name| name.automatic)
             && self.outline.feeds_others(id)
             && Monomial::of(&piece.tree, &self.products).is_some_and(|product| {
-                product.length() <= FEW && product.name(&self.values, &self.arguments).is_some()
+                // A hint adds a name and takes none away.
+                let hinted = product.values().any(|value| self.hinted[value.0 as usize]);
+                !hinted
+                    && product.length() <= FEW
+                    && product.name(&self.values, &self.arguments).is_some()
             })
     }
 
@@ -556,17 +563,18 @@ impl<'a> Binding<'a> {
             || !self.outline.is_shared(id)
     }
 
-    /// The name of a value that readers know; `negative` says that minus the node is defined.
+    /// The name of a value that readers know, or what it is multiplied with; `negative` says that
+    /// minus the node is defined.
     fn hint(&self, id: Id, negative: bool) -> Option<String> {
-        let Some(hint) = self.hints[id.index()] else {
-            return self.by_factors(id);
-        };
-        let name = &self.program.graph.definition(hint.definition).name;
-        Some(if hint.negative == negative {
-            name.clone()
-        } else {
-            format!("minus_{name}")
-        })
+        let hint = self.hints[id.index()].and_then(|(number, opposite)| {
+            let hint = &self.program.hints[number];
+            if opposite == negative {
+                Some(hint.name.clone())
+            } else {
+                hint.opposite.clone()
+            }
+        });
+        hint.or_else(|| self.by_factors(id))
     }
 
     /// `consumer_per_a_b`: what is multiplied by `a` and `b` on its way to the consumer.
@@ -617,10 +625,14 @@ impl<'a> Binding<'a> {
         let product = described
             .is_some()
             .then(|| Monomial::of(&tree, &self.products));
+        let hinted = described.is_none() && hint.is_some();
         let name = described
             .or(hint)
             .unwrap_or_else(|| self.fallback(id, "part"));
         let piece = self.define(&name, tree);
+        if let Some(last) = self.hinted.last_mut() {
+            *last = hinted;
+        }
         if let Some(last) = self.products.last_mut() {
             *last = product.flatten();
         }
@@ -639,6 +651,7 @@ impl<'a> Binding<'a> {
         let piece = Piece::name(Tree::Value(value), &name);
         self.values.push(name);
         self.products.push(None);
+        self.hinted.push(false);
         (value, piece)
     }
 

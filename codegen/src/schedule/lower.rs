@@ -50,12 +50,13 @@ pub(super) fn hints(program: &Program) -> Dag {
         known: FxHashMap::default(),
         systems: FxHashMap::default(),
     };
-    for expr in graph.in_order(&program.hints) {
+    let roots: Vec<Expr> = program.hints.iter().map(|hint| hint.value).collect();
+    for expr in graph.in_order(&roots) {
         let item = lowering.node(expr);
         lowering.known.insert(expr, item);
     }
     let mut dag = lowering.dag;
-    dag.results = program.hints.iter().map(|hint| lowering.known[hint]).collect();
+    dag.results = roots.iter().map(|root| lowering.known[root]).collect();
     dag
 }
 

@@ -114,7 +114,8 @@ impl Signs<'_> {
                     let natural = built.count() % 2 == 1;
                     if has_number(dag, id) {
                         // The number is written with a minus.
-                        self.minus[place] = self.wanted[place] != natural && self.sign(id).is_none();
+                        self.minus[place] =
+                            self.wanted[place] != natural && self.sign(id).is_none();
                         cost += match (self.minus[place], natural) {
                             (false, _) => 0,
                             (true, true) => MINUS,

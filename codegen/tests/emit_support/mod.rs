@@ -11,9 +11,7 @@
 )]
 
 use appell_codegen::emit::Options;
-use appell_codegen::program::{
-    Arguments, Array, Function, FunctionKind, Layout, Program, Space,
-};
+use appell_codegen::program::{Arguments, Array, Function, FunctionKind, Layout, Program, Space};
 use appell_codegen::symbolic::{
     Derivatives, Expr, Function as SymbolicFunction, Graph, Rational, Relation, SymbolId,
 };
@@ -377,7 +375,11 @@ pub fn unicycle() -> Program {
     ];
     sketch.function(
         FunctionKind::Kinematics,
-        vec![("coordinate_rates", Layout::Vector(Space::CoordinateRates), kinematics)],
+        vec![(
+            "coordinate_rates",
+            Layout::Vector(Space::CoordinateRates),
+            kinematics,
+        )],
     );
     let mass_matrix = ("mass_matrix", Layout::Matrix(4, 4), mass_matrix);
     let pseudo_forces = Layout::Vector(Space::GeneralizedForces);

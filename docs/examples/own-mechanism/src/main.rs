@@ -86,4 +86,13 @@ mod tests {
         assert!(lost.abs() < 1e-8, "{lost}");
         Ok(())
     }
+
+    #[test]
+    fn rows_of_a_motion_have_names() -> Result<(), SimulationError> {
+        let motion = Simulation::new(&Furuta).run()?;
+        let last = motion.named(&Furuta).and_then(Iterator::last);
+        let last = last.map(|row| row.state.to_array());
+        assert_eq!(last.as_ref().map(<[f64; 4]>::as_slice), Some(motion.last_state()));
+        Ok(())
+    }
 }

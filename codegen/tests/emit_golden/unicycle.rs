@@ -782,10 +782,9 @@ pub fn jacobians<T: Real>(
         * (M_33 * d_f_2_d_omega_1 + m0_R_r * d_f_3_d_omega_1);
     let A_omega_2_omega_2_per_m0_R_r = minus_half_m_R_squared_omega_1 * inv_D_2;
     let A_omega_2_omega_2 = m0_R_r * A_omega_2_omega_2_per_m0_R_r;
-    let R_f_2_per_R_omega_3 = R * f_2_per_R_omega_3;
-    let R_M_33_f_2_per_R_omega_3 = M_33 * R_f_2_per_R_omega_3;
+    let d_f_2_d_omega_3 = R * f_2_per_R_omega_3;
     let A_omega_2_omega_3 = inv_D_2
-        * (R_M_33_f_2_per_R_omega_3 + m0_R_r * d_f_3_d_omega_3);
+        * (M_33 * d_f_2_d_omega_3 + m0_R_r * d_f_3_d_omega_3);
     let m0_R_omega_3 = m0 * R_omega_3;
     let two_over_D_2 = two * inv_D_2;
     let A_omega_2_sigma = two_over_D_2 * (M_33 * m0_R_omega_3 - m0_r * m0_r * R_omega_3);
@@ -800,9 +799,8 @@ pub fn jacobians<T: Real>(
     let A_omega_3_omega_1 = inv_D_2
         * (M_22 * d_f_3_d_omega_1 + m0_R_r * d_f_2_d_omega_1);
     let A_omega_3_omega_2 = M_22 * A_omega_2_omega_2_per_m0_R_r;
-    let M_22_d_f_3_d_omega_3 = M_22 * d_f_3_d_omega_3;
     let A_omega_3_omega_3 = inv_D_2
-        * (M_22_d_f_3_d_omega_3 + m0_R_r * R_f_2_per_R_omega_3);
+        * (M_22 * d_f_3_d_omega_3 + m0_R_r * d_f_2_d_omega_3);
     let A_omega_3_sigma = two_over_D_2 * (m0_R_r * m0_R_omega_3 - M_22 * m0_r * omega_3);
     let A_omega_3_theta_part_1 = omega_3_r * m0_omega_1_r * inv_cos_theta_squared;
     let A_omega_3_theta_part_2 = quarter_m_R * A_omega_1_theta_part_1 * omega_1;

@@ -114,7 +114,9 @@ fn equations(criterion: &mut Criterion) {
             unicycle::rates(&p, x, &Inputs { u: *u }),
         );
         let close = |a: f64, b: f64| (a - b).abs() <= 1e-9 * (1.0 + a.abs());
-        assert!(close(hand.omega_1_dot, ours.omega_1_dot) && close(hand.omega_2_dot, ours.omega_2_dot));
+        assert!(
+            close(hand.omega_1_dot, ours.omega_1_dot) && close(hand.omega_2_dot, ours.omega_2_dot)
+        );
         assert!(close(hand.omega_3_dot, ours.omega_3_dot) && close(hand.sigma_dot, ours.sigma_dot));
     }
     let mut group = criterion.benchmark_group("unicycle");

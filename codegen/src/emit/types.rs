@@ -243,7 +243,7 @@ impl<'a> Types<'a> {
     }
 
     /// The vectors that functions take or return. `named` says that a model puts them together.
-    fn spaces(&self, functions: &[&Function], named: bool) -> BTreeSet<Space> {
+    fn spaces(functions: &[&Function], named: bool) -> BTreeSet<Space> {
         let mut spaces = BTreeSet::from([Space::Parameters, Space::State, Space::Inputs]);
         spaces.extend(named.then_some(Space::Outputs));
         for array in functions.iter().flat_map(|function| &function.results) {
@@ -270,20 +270,20 @@ impl<'a> Types<'a> {
 
     /// The structs, the values of the spec, and the two parts of the rates.
     pub(super) fn structs(&self, functions: &[&Function], named: bool) -> Vec<TokenStream> {
-        let spaces = self.spaces(functions, named);
+        let spaces = Self::spaces(functions, named);
         let info = &self.program.info;
         let mut items = Vec::new();
         for &space in &spaces {
             items.push(self.structure(space).tokens());
             match space {
                 Space::Parameters => items.push(spec_values(
-                    quote!(Default for Parameters<f64>),
+                    &quote!(Default for Parameters<f64>),
                     &quote!(fn default),
                     "The values of the spec.",
                     (&self.names.parameters, &info.parameters),
                 )),
                 Space::State => items.push(spec_values(
-                    quote!(State<f64>),
+                    &quote!(State<f64>),
                     &quote!(#[must_use] pub fn initial),
                     "The initial state of the spec; the default is zero.",
                     (&self.names.states, &info.states),
@@ -337,7 +337,7 @@ impl<'a> Types<'a> {
         named: bool,
         runtime: &syn::Path,
     ) -> Vec<TokenStream> {
-        let spaces = self.spaces(functions, named);
+        let spaces = Self::spaces(functions, named);
         let rates = spaces.contains(&Space::Rates);
         spaces
             .iter()
@@ -397,7 +397,7 @@ fn distinct<'a>(names: impl Iterator<Item = &'a str>) -> Vec<String> {
 
 /// A constructor of a struct with the values of the spec.
 fn spec_values(
-    implementation: TokenStream,
+    implementation: &TokenStream,
     signature: &TokenStream,
     about: &str,
     (labels, quantities): (&[String], &[Quantity]),

@@ -92,7 +92,10 @@ mod tests {
         let motion = Simulation::new(&Furuta).run()?;
         let last = motion.named(&Furuta).and_then(Iterator::last);
         let last = last.map(|row| row.state.to_array());
-        assert_eq!(last.as_ref().map(<[f64; 4]>::as_slice), Some(motion.last_state()));
+        assert_eq!(
+            last.as_ref().map(<[f64; 4]>::as_slice),
+            Some(motion.last_state())
+        );
         Ok(())
     }
 }

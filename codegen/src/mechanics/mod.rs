@@ -19,6 +19,7 @@ pub mod frames;
 pub mod gibbs_appell;
 pub mod glossary;
 mod hints;
+mod info;
 pub mod initial;
 pub mod kinematics;
 mod letters;

@@ -153,7 +153,7 @@ fn random_program(numbers: &mut Numbers) -> Program {
     let entries: Vec<Expr> = known[known.len() - 10..].to_vec();
     sketch.function(
         FunctionKind::ConstraintResidual,
-        vec![("residual", Layout::Vector(10), entries)],
+        vec![("residual", Layout::List(10), entries)],
     );
     let function = sketch.program.functions.remove(0);
     sketch
@@ -233,7 +233,7 @@ fn small(build: impl FnOnce(&mut Sketch, [Expr; 4]) -> Vec<Expr>) -> (Program, S
     let mut sketch = Sketch::new("small", 0, names(["x", "y"]), vec![], names(["m", "R"]));
     let symbols = ["x", "y", "m", "R"].map(|name| sketch.symbol(name));
     let entries = build(&mut sketch, symbols);
-    let layout = Layout::Vector(entries.len());
+    let layout = Layout::List(entries.len());
     sketch.function(
         FunctionKind::ConstraintResidual,
         vec![("residual", layout, entries)],

@@ -11,7 +11,7 @@
 )]
 
 use appell_codegen::emit::Options;
-use appell_codegen::program::{Arguments, Array, Function, FunctionKind, Layout, Program};
+use appell_codegen::program::{Arguments, Array, Function, FunctionKind, Layout, Program, Space};
 use appell_codegen::symbolic::{
     Derivatives, Expr, Function as SymbolicFunction, Graph, Rational, Relation, SymbolId,
 };
@@ -108,6 +108,7 @@ impl Sketch {
             arguments,
             dependent: Vec::new(),
             systems: Vec::new(),
+            hints: Vec::new(),
             functions: Vec::new(),
         };
         Self {
@@ -162,13 +163,13 @@ impl Sketch {
             columns(&of.parameters),
         );
         let info = &self.program.info;
-        let jacobian = |name: &str, columns: &[Quantity], entries| {
-            Array::jacobian(name, "Derivatives.", &info.states, columns, entries)
+        let jacobian = |name: &str, by: Space, entries| {
+            Array::jacobian(name, "Derivatives.", info, by, entries)
         };
         let rates = Array::rates(info, rates);
-        let a = jacobian("a", &info.states, a);
-        let b = jacobian("b", &info.inputs, b);
-        let p = jacobian("p", &info.parameters, p);
+        let a = jacobian("a", Space::State, a);
+        let b = jacobian("b", Space::Inputs, b);
+        let p = jacobian("p", Space::Parameters, p);
         self.add(FunctionKind::Rates, vec![rates.clone()]);
         self.add(FunctionKind::Jacobians, vec![rates, a, b]);
         self.add(FunctionKind::ParameterJacobian, vec![p]);
@@ -374,16 +375,21 @@ pub fn unicycle() -> Program {
     ];
     sketch.function(
         FunctionKind::Kinematics,
-        vec![("coordinate_rates", Layout::Coordinates, kinematics)],
+        vec![(
+            "coordinate_rates",
+            Layout::Vector(Space::CoordinateRates),
+            kinematics,
+        )],
     );
     let mass_matrix = ("mass_matrix", Layout::Matrix(4, 4), mass_matrix);
-    let bias = ("bias", Layout::Speeds, bias);
+    let pseudo_forces = Layout::Vector(Space::GeneralizedForces);
+    let bias = ("bias", pseudo_forces, bias);
     sketch.function(FunctionKind::MassMatrix, vec![mass_matrix.clone()]);
     sketch.function(FunctionKind::Bias, vec![bias.clone()]);
     sketch.function(FunctionKind::MassMatrixAndBias, vec![mass_matrix, bias]);
     sketch.function(
         FunctionKind::GeneralizedForces,
-        vec![("generalized_forces", Layout::Speeds, forces)],
+        vec![("generalized_forces", pseudo_forces, forces)],
     );
     sketch.rates(rates);
 
@@ -480,7 +486,7 @@ pub fn mixture() -> Program {
     sketch.rates(vec![accelerations, speed, b_dot]);
     sketch.function(
         FunctionKind::Outputs,
-        vec![("outputs", Layout::Outputs, outputs)],
+        vec![("outputs", Layout::Vector(Space::Outputs), outputs)],
     );
     sketch.program
 }

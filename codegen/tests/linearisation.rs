@@ -1,14 +1,13 @@
 //! Linear equations about steady motions as formulas and as a page.
 #![expect(clippy::unwrap_used, reason = "a test may stop here")]
 
-#[expect(dead_code, reason = "the reader of whole pages is not needed here")]
-mod page_support;
-
 use appell_codegen::Derived;
 use appell_codegen::linearisation::{Linearisation, SteadyError, SteadyMotion};
 use appell_codegen::mechanics::linear::ImplicitMotion;
 use appell_codegen::page::{self, Page};
 use appell_codegen::symbolic::Expr;
+
+use crate::page_support;
 
 /// Conditions by the names of symbols; the right side is a number or another symbol.
 fn linearised(

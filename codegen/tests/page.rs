@@ -1,9 +1,8 @@
 //! The derivation as a page: what it looks like, and that it is true.
 
-mod page_support;
-
 use appell_codegen::page::{self, Page, Stage};
-use page_support::{page_of, shipped, spec};
+
+use crate::page_support::{self, page_of, shipped, spec};
 
 /// The handouts under snapshot.
 const HANDOUTS: [&str; 3] = ["unicycle", "euc_3dof", "pendulum"];

@@ -18,7 +18,6 @@ pub mod engine;
 pub mod formulations;
 pub mod place;
 pub mod point;
-pub mod random;
 pub mod recorded;
 pub mod reference;
 pub mod rides;

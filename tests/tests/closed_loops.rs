@@ -8,7 +8,7 @@ use appell_runtime::estimate::{
     Unknown, chi_squared_quantile,
 };
 use appell_runtime::model::{At, Model};
-use appell_tests::random::Random;
+use appell_test_kit::Random;
 use appell_tests::recorded::{Drive, record_with_states};
 
 /// Recordings, and the rows at which each is looked at.

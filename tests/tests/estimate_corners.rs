@@ -9,7 +9,7 @@ use appell_runtime::estimate::{
     Effort, Estimation, Fit, Free, Layout, Measured, Recording, Setup, Unknown,
 };
 use appell_runtime::model::Model;
-use appell_tests::random::Random;
+use appell_test_kit::Random;
 use appell_tests::recorded::{Drive, record};
 
 /// A carriage that sticks: friction would stop it within half a millisecond.

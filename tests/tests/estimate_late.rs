@@ -7,7 +7,7 @@ use appell_runtime::estimate::{
     Direction, Estimation, Free, Innovation, Layout, Measured, Recording, Setup, Unknown,
 };
 use appell_runtime::model::Model;
-use appell_tests::random::Random;
+use appell_test_kit::Random;
 use appell_tests::recorded::{Drive, record};
 
 /// Rows are so far apart in s.

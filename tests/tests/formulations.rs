@@ -18,8 +18,8 @@ fn is_proven(verdict: &Verdict) -> bool {
 
 #[test]
 fn appell_kane_and_lagrange_are_proved_identical_for_every_shipped_mechanism() {
-    for mechanism in shipped::names().iter().map(|name| shipped::mechanism(name)) {
-        let verdict = assert_one_answer(&mechanism);
+    for mechanism in shipped::names().iter().map(|n| shipped::mechanism(n)) {
+        let verdict = assert_one_answer(mechanism);
         assert!(is_proven(&verdict), "{}: {verdict:#?}", mechanism.name);
     }
 }
@@ -54,9 +54,9 @@ fn reactions_that_cannot_be_told_are_not_judged() {
 /// What disagrees after a change to the derivation of the unicycle.
 fn planted(change: impl FnOnce(&mut Derivation)) -> Vec<(Against, &'static str)> {
     let mechanism = shipped::mechanism("unicycle");
-    let mut derivation = shipped::derive(&mechanism);
+    let mut derivation = shipped::derive(mechanism);
     change(&mut derivation);
-    let verdict = verdict(&mechanism, &derivation);
+    let verdict = verdict(mechanism, &derivation);
     assert!(!verdict.agrees(), "{verdict:#?}");
     let differs = |agreement: &Agreement| matches!(agreement, Agreement::Different { .. });
     let differing = verdict.comparisons.iter().filter(|c| differs(&c.agreement));

@@ -2,25 +2,22 @@
 #![allow(clippy::unwrap_used, reason = "tests may panic")]
 
 use appell_codegen::interpreted::InterpretedModel;
-use appell_codegen::program::FunctionKind;
 use appell_runtime::Simulation;
 use appell_runtime::model::{At, Model};
+use appell_tests::shipped;
 
-const SPEC: &str = include_str!("../../generated/mechanisms/four_bar.toml");
 /// Fourth-order differences over a step of a milliradian.
 const DIFFERENCES: f64 = 1e-8;
 
 /// The parameters by name.
 struct Linkage {
-    model: InterpretedModel,
+    model: &'static InterpretedModel,
 }
 
 impl Linkage {
     fn new() -> Self {
-        let program = appell_codegen::compile("four_bar.toml", SPEC, &FunctionKind::STANDARD);
-        let program = program.unwrap_or_else(|report| panic!("{}", report.plain()));
         Self {
-            model: InterpretedModel::new(program),
+            model: shipped::model("four_bar"),
         }
     }
 

@@ -7,7 +7,7 @@ use appell_runtime::estimate::{
     Coordinate, Effort, Estimation, Fit, Free, Measured, Recording, Setup, Shooting, Shot, Unknown,
 };
 use appell_runtime::model::Model;
-use appell_tests::random::Random;
+use appell_test_kit::Random;
 use appell_tests::recorded::{Drive, record};
 
 /// Rows of a segment.

@@ -32,30 +32,32 @@ pub(crate) use euc::book as euc;
 
 use crate::failure::Failure;
 
-/// A part of a book: its name while it is made, and what makes it.
-type Part = (&'static str, fn() -> Result<Section, Failure>);
+/// A part of a book: its name while it is made, and what makes it with charts of so many points along
+/// each axis.
+type Part = (&'static str, fn(usize) -> Result<Section, Failure>);
 
 /// The parts of the paper on steering.
 const STEERING: &[Part] = &[
-    ("equations", equations::section),
-    ("critical values", numbers::section),
-    ("tables", tables::section),
+    ("equations", |_| equations::section()),
+    ("critical values", |_| numbers::section()),
+    ("tables", |_| tables::section()),
     ("figure 3", figure_3::section),
     ("figure 5", figure_5::section),
     ("figure 6", figure_6::section),
-    ("figure 7", figure_7::section),
-    ("figure 8", figure_8::section),
-    ("what the paper did not see", beyond::section),
+    ("figure 7", |_| figure_7::section()),
+    ("figure 8", |_| figure_8::section()),
+    ("what the paper did not see", |_| beyond::section()),
 ];
 
 /// *Steering Control of an Autonomous Unicycle*, part by part; `making` hears what is made, and how
 /// much of the book is.
 pub(crate) fn steering(
+    grid: usize,
     mut making: impl FnMut(&str, usize, usize),
 ) -> Result<Vec<Section>, Failure> {
     let part = |(number, (name, make)): (usize, &Part)| {
         making(name, number, STEERING.len());
-        make()
+        make(grid)
     };
     STEERING.iter().enumerate().map(part).collect()
 }

@@ -7,6 +7,7 @@ use std::path::PathBuf;
 use appell_codegen::mechanics::derive;
 use appell_codegen::page::{self, Block, Equation, Letter, Math, Page, Span, Stage};
 use appell_spec::Mechanism;
+use appell_test_kit::Random;
 
 /// What two sides of an equation may differ by: they are sums of tens of terms of order 10³.
 const TOLERANCE: f64 = 1e-8;
@@ -76,13 +77,8 @@ type Values = HashMap<String, f64>;
 /// it a value, everything else must hold. Returns how many equations were compared.
 pub(crate) fn check(page: &Page, seed: u64) -> usize {
     let mut values = Values::new();
-    let mut state = seed;
-    let mut random = move || {
-        state = state
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
-        0.3 + 0.8 * (state >> 40) as f64 / f64::from(1 << 24)
-    };
+    let mut dice = Random::new(seed);
+    let mut random = || dice.between(0.3, 1.1);
     let mut given = |letter: &Letter| {
         values.entry(letter.to_string()).or_insert_with(&mut random);
     };

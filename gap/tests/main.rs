@@ -1,0 +1,9 @@
+//! Recordings and diagnoses, from the outside.
+
+mod common;
+
+mod data_sets;
+mod formats;
+mod fuzz;
+mod motion_capture;
+mod shared;

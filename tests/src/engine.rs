@@ -6,7 +6,7 @@ use appell_codegen::program::Program;
 use appell_codegen::schedule::{interpret, schedule};
 use appell_codegen::symbolic::evaluate;
 use appell_models::Shipped;
-use appell_runtime::model::{At, Gradient, Model};
+use appell_runtime::model::{At, Model};
 use appell_spec::Mechanism;
 
 use crate::point::Point;

@@ -2,8 +2,6 @@
 
 #![allow(clippy::unwrap_used, reason = "what is missing fails the test")]
 
-use appell_codegen::jit::JitModel;
-use appell_codegen::program::FunctionKind;
 use appell_models::Shipped;
 use appell_runtime::estimate::{
     Channel, Disturbance, Estimation, Layout, Measured, Recording, Setup, Unknown,

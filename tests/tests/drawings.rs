@@ -157,8 +157,8 @@ fn the_points_of_a_leaning_unicycle_are_where_geometry_says() {
 #[test]
 fn the_loop_of_the_four_bar_linkage_is_drawn_closed() {
     let linkage = shipped::mechanism("four_bar");
-    let svg = drawn(&linkage);
-    let [o, a, b, d] = places(&linkage, &svg, ["O", "A", "B", "D"]);
+    let svg = drawn(linkage);
+    let [o, a, b, d] = places(linkage, &svg, ["O", "A", "B", "D"]);
     let span = |[x1, y1]: [f64; 2], [x2, y2]: [f64; 2]| (x2 - x1).hypot(y2 - y1);
     let metre = span(o, d) / 0.3;
     for (drawn, wanted) in [(span(o, a), 0.1), (span(a, b), 0.3), (span(b, d), 0.25)] {

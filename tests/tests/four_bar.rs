@@ -105,7 +105,7 @@ fn the_loop_stays_closed_and_the_energy_stays() {
     let linkage = Linkage::new();
     let [_, potential] = linkage.inertia_and_potential(1.0);
     let [inertia, _] = linkage.inertia_and_potential(1.0);
-    let mut simulation = Simulation::new(&linkage.model);
+    let mut simulation = Simulation::new(linkage.model);
     simulation.initial_state = linkage.state(12.0, 1.0);
     simulation.span = [0.0, 10.0];
     simulation.options.rtol = 1e-12;
@@ -133,7 +133,7 @@ fn the_loop_stays_closed_and_the_energy_stays() {
 #[test]
 fn a_guess_of_the_dependent_angles_closes_the_loop() {
     let linkage = Linkage::new();
-    let mut simulation = Simulation::new(&linkage.model);
+    let mut simulation = Simulation::new(linkage.model);
     simulation.span = [0.0, 0.01];
     let motion = simulation.run().unwrap();
     let [_, theta1, theta2, theta3] = *motion.state(0) else {

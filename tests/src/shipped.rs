@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
-use std::sync::{LazyLock, OnceLock};
+use std::sync::{LazyLock, Mutex, MutexGuard, OnceLock, PoisonError};
 
 use appell_codegen::interpreted::InterpretedModel;
 use appell_codegen::jit::JitModel;
@@ -60,7 +60,7 @@ fn specs(folder: &str) -> Vec<PathBuf> {
 struct Made {
     text: String,
     mechanism: Mechanism,
-    derivation: OnceLock<Derivation>,
+    derivation: OnceLock<Mutex<Derivation>>,
     standard: OnceLock<Executed<InterpretedModel>>,
     complete: OnceLock<Executed<JitModel>>,
 }
@@ -94,17 +94,9 @@ fn made(name: &str) -> &'static Made {
 }
 
 impl Made {
-    fn derivation(&self) -> &Derivation {
-        self.derivation.get_or_init(|| derived(&self.mechanism))
-    }
-
-    fn program(&self, kinds: &[FunctionKind]) -> Program {
-        assembled(self.derivation().clone(), &self.mechanism, kinds)
-    }
-
     fn standard(&self) -> &Executed<InterpretedModel> {
         self.standard.get_or_init(|| {
-            let program = self.program(&FunctionKind::STANDARD);
+            let program = standard_program(&self.mechanism);
             let model = InterpretedModel::new(program.clone());
             Executed { program, model }
         })
@@ -112,7 +104,7 @@ impl Made {
 
     fn complete(&self) -> &Executed<JitModel> {
         self.complete.get_or_init(|| {
-            let program = self.program(&FunctionKind::ALL);
+            let program = program_of(&self.mechanism, &FunctionKind::ALL);
             let model = JitModel::new(&program).unwrap();
             Executed { program, model }
         })
@@ -127,6 +119,16 @@ pub fn text(name: &str) -> String {
 /// A shipped mechanism.
 pub fn mechanism(name: &str) -> &'static Mechanism {
     &made(name).mechanism
+}
+
+/// The derivation of a shipped mechanism, to read and to add expressions to.
+pub fn derivation(name: &str) -> MutexGuard<'static, Derivation> {
+    let made = made(name);
+    let shared = made
+        .derivation
+        .get_or_init(|| Mutex::new(derive(&made.mechanism)));
+    // A test that failed while it held the lock has not changed what was derived.
+    shared.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// The functions of a shipped mechanism that every model has.
@@ -157,17 +159,8 @@ pub fn read(file: &str, text: &str) -> Mechanism {
     }
 }
 
-/// The derivation of a mechanism that must have one. A shipped one is copied from the first.
+/// The derivation of a mechanism that must have one.
 pub fn derive(mechanism: &Mechanism) -> Derivation {
-    match ALL.get(&mechanism.name) {
-        Some(made) if std::ptr::eq(mechanism, &raw const made.mechanism) => {
-            made.derivation().clone()
-        }
-        _ => derived(mechanism),
-    }
-}
-
-fn derived(mechanism: &Mechanism) -> Derivation {
     mechanics::derive(mechanism)
         .unwrap_or_else(|findings| panic!("{}: {findings:?}", mechanism.file))
 }
@@ -179,10 +172,6 @@ pub fn standard_program(mechanism: &Mechanism) -> Program {
 
 /// Some functions of a mechanism.
 pub fn program_of(mechanism: &Mechanism, kinds: &[FunctionKind]) -> Program {
-    assembled(derive(mechanism), mechanism, kinds)
-}
-
-fn assembled(derivation: Derivation, mechanism: &Mechanism, kinds: &[FunctionKind]) -> Program {
-    assemble::program(derivation, mechanism, kinds)
+    assemble::program(derive(mechanism), mechanism, kinds)
         .unwrap_or_else(|findings| panic!("{}: {findings:?}", mechanism.file))
 }

@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "what is missing fails the test")]
 
 use std::fs;
+use std::sync::LazyLock;
 
 use appell_codegen::drawing::{drawing, marked};
 use appell_spec::Mechanism;
@@ -13,27 +14,29 @@ fn drawn(mechanism: &Mechanism) -> String {
         .unwrap_or_else(|findings| panic!("{}: {findings:?}", mechanism.file))
 }
 
-fn all() -> impl Iterator<Item = &'static Mechanism> {
+/// Names and drawings of all mechanisms.
+static ALL: LazyLock<Vec<(String, String)>> = LazyLock::new(|| {
     let names = shipped::names().into_iter();
-    names.map(|name| shipped::mechanism(&name))
-}
+    let entry = |name: String| {
+        let svg = drawn(shipped::mechanism(&name));
+        (name, svg)
+    };
+    names.map(entry).collect()
+});
 
 #[test]
 fn the_drawings_of_all_mechanisms_are_those_of_the_documents() {
     let folder = shipped::workspace().join("docs/drawings");
     let gallery = fs::read_to_string(folder.with_file_name("gallery.md")).unwrap();
     let update = std::env::var_os("UPDATE_DRAWINGS").is_some();
-    for mechanism in all() {
-        let (file, svg) = (
-            folder.join(format!("{}.svg", mechanism.name)),
-            drawn(mechanism),
-        );
+    for (name, svg) in &*ALL {
+        let file = folder.join(format!("{name}.svg"));
         if update {
-            fs::write(&file, &svg).unwrap();
+            fs::write(&file, svg).unwrap();
         }
         let kept = fs::read_to_string(&file).unwrap_or_default();
-        assert!(kept == svg, "{}: set UPDATE_DRAWINGS=1", file.display());
-        let shown = format!("\"drawings/{}.svg\"", mechanism.name);
+        assert!(kept == *svg, "{}: set UPDATE_DRAWINGS=1", file.display());
+        let shown = format!("\"drawings/{name}.svg\"");
         assert!(gallery.contains(&shown), "docs/gallery.md lacks {shown}");
     }
 }
@@ -109,8 +112,8 @@ fn assert_inside(name: &str, svg: &str) {
 
 #[test]
 fn everything_is_drawn_on_the_paper() {
-    for mechanism in all() {
-        assert_inside(&mechanism.name, &drawn(mechanism));
+    for (name, svg) in &*ALL {
+        assert_inside(name, svg);
     }
 }
 

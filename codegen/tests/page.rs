@@ -2,7 +2,7 @@
 
 use appell_codegen::page::{self, Page, Stage};
 
-use crate::page_support::{self, page_of, shipped, spec};
+use crate::page_support::{self, EQUATIONS, WHOLE, page_of, spec};
 
 /// The handouts under snapshot.
 const HANDOUTS: [&str; 3] = ["unicycle", "euc_3dof", "pendulum"];
@@ -73,8 +73,8 @@ fn the_handout_tells_the_mass_matrix_where_it_solves_the_equations() {
 #[test]
 fn text_keeps_its_width() {
     let mut wide = Vec::new();
-    for name in shipped() {
-        let text = page::text(&page_of(&name, Stage::Equations));
+    for (name, page) in &*EQUATIONS {
+        let text = page::text(page);
         let lines: Vec<&str> = text.lines().collect();
         for (number, line) in lines.iter().enumerate() {
             // A quotient is not broken, however wide it is, nor is the power of a sum.
@@ -97,8 +97,8 @@ fn text_keeps_its_width() {
 
 #[test]
 fn latex_closes_what_it_opens() {
-    for name in shipped() {
-        let latex = page::latex(&page_of(&name, Stage::All));
+    for (name, page) in &*WHOLE {
+        let latex = page::latex(page);
         let mut depth = 0_i32;
         let mut escaped = false;
         for c in latex.chars() {
@@ -120,8 +120,8 @@ fn latex_closes_what_it_opens() {
 
 #[test]
 fn html_is_well_formed_and_needs_no_network() {
-    for name in shipped() {
-        let html = page::html(&page_of(&name, Stage::All));
+    for (name, page) in &*WHOLE {
+        let html = page::html(page);
         page_support::assert_well_formed(&html);
         assert!(!html.contains("http"), "{name}: an address");
         assert!(!html.contains("<script"), "{name}: a script");
@@ -225,11 +225,10 @@ fn divisions_that_can_fail_are_told_with_the_declared_range() {
 fn what_the_page_says_is_true() {
     // Read as a program, every page of a shipped mechanism is free of contradictions: definitions,
     // constraints, Appell's equations and their solution hold together.
-    for name in shipped() {
-        let page = page_of(&name, Stage::Equations);
-        let checked = page_support::check(&page, 7);
+    for (name, page) in &*EQUATIONS {
+        let checked = page_support::check(page, 7);
         // What a system determines has no value that a reader of the page could compute.
-        let by_system = page::text(&page).contains("solved with pivoting");
+        let by_system = page::text(page).contains("solved with pivoting");
         assert!(checked > 0 || by_system, "{name}: nothing was checked");
     }
 }

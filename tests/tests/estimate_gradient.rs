@@ -158,7 +158,7 @@ fn it_is_exact_for_outputs_biases_scales_and_noise_on_rates() {
             1.0 + 4.0 * value,
         );
     }
-    let mut random = Random::of("outputs");
+    let mut random = Random::of("outputs and rates");
     let recordings = [0, 1].map(|_| record(&setup, &values, &drive, &mut random));
     let estimation = Estimation::new(&setup, &recordings).unwrap();
     values[0] *= 1.02;

@@ -3,6 +3,7 @@
 
 use std::collections::HashMap;
 use std::path::PathBuf;
+use std::sync::LazyLock;
 
 use appell_codegen::mechanics::derive;
 use appell_codegen::page::{self, Block, Equation, Letter, Math, Page, Span, Stage};
@@ -17,7 +18,7 @@ fn folder() -> PathBuf {
 }
 
 /// Names of the shipped mechanisms.
-pub(crate) fn shipped() -> Vec<String> {
+fn shipped() -> Vec<String> {
     let mut names: Vec<String> = std::fs::read_dir(folder())
         .unwrap()
         .filter_map(|entry| Some(entry.unwrap().path().file_stem()?.to_str()?.to_owned()))
@@ -34,6 +35,21 @@ pub(crate) fn spec(name: &str) -> String {
 /// Page of a shipped mechanism.
 pub(crate) fn page_of(name: &str, stage: Stage) -> Page {
     written(&mechanism(&spec(name)), stage)
+}
+
+/// Names of all shipped mechanisms with their whole pages.
+pub(crate) static WHOLE: LazyLock<Vec<(String, Page)>> = LazyLock::new(|| pages(Stage::All));
+/// The same with the pages of their equations.
+pub(crate) static EQUATIONS: LazyLock<Vec<(String, Page)>> =
+    LazyLock::new(|| pages(Stage::Equations));
+
+fn pages(stage: Stage) -> Vec<(String, Page)> {
+    let names = shipped().into_iter();
+    let page = |name: String| {
+        let page = page_of(&name, stage);
+        (name, page)
+    };
+    names.map(page).collect()
 }
 
 /// The whole page of a spec after changes that no spec can hold.

@@ -4,15 +4,14 @@
 
 #![allow(clippy::unwrap_used, reason = "tests may panic")]
 
-mod emit_support;
-
 use appell_codegen::emit::{Error, Options, emit, emit_functions};
 use appell_codegen::interpreted::InterpretedModel;
 use appell_codegen::program::{FunctionKind, Program};
 use appell_codegen::schedule::{interpret, schedule};
 use appell_runtime::Dual;
 use appell_runtime::model::{At, Gradient, Model};
-use emit_support::{Numbers, SPEC, golden_options, mixture, quantity};
+
+use crate::emit_support::{self, Numbers, SPEC, golden_options, mixture, quantity};
 
 #[allow(non_snake_case, dead_code, unreachable_pub, clippy::pedantic)]
 mod unicycle {
@@ -42,7 +41,7 @@ fn gradient(model: &dyn Model, write: impl FnOnce(Gradient<'_>)) -> [Vec<u64>; 3
 fn emitted_adjoints_are_those_of_the_interpreter() {
     let interpreter = InterpretedModel::new(emit_support::with_adjoints());
     let models: [&dyn Model; 2] = [&interpreter, &with_adjoints::Pendulum];
-    let mut numbers = Numbers(11);
+    let mut numbers = Numbers::new(11);
     let info = interpreter.info();
     let (n, m, l) = (info.state_len(), info.input_len(), info.output_len());
     let (x, u) = (numbers.list(n), numbers.list(m));
@@ -101,7 +100,7 @@ fn bits(numbers: &[f64]) -> Vec<u64> {
 #[test]
 fn emitted_code_and_interpreter_agree_bit_for_bit() {
     let program = emit_support::unicycle();
-    let mut numbers = Numbers(7);
+    let mut numbers = Numbers::new(7);
     for _ in 0..200 {
         let (x, u, p) = (numbers.list(10), numbers.list(1), numbers.list(4));
         let at = At {
@@ -135,7 +134,7 @@ fn emitted_code_and_interpreter_agree_bit_for_bit() {
 #[test]
 fn everything_that_is_no_polynomial_agrees_bit_for_bit() {
     let program = mixture();
-    let mut numbers = Numbers(11);
+    let mut numbers = Numbers::new(11);
     for _ in 0..200 {
         let (t, x, p) = (numbers.next(), numbers.list(3), numbers.list(2));
         let state = mixture_model::State::from([x[0], x[1], x[2]]);
@@ -156,7 +155,7 @@ fn everything_that_is_no_polynomial_agrees_bit_for_bit() {
 #[test]
 fn emitted_jacobians_are_the_derivatives_of_the_emitted_rates() {
     const ROUNDING: f64 = 1e-9;
-    let mut numbers = Numbers(3);
+    let mut numbers = Numbers::new(3);
     let (x, u, p) = (numbers.list(10), numbers.list(1), numbers.list(4));
     let fixed =
         |list: &[f64]| -> Vec<Dual<f64, 10>> { list.iter().map(|&v| Dual::fixed(v)).collect() };

@@ -1,5 +1,4 @@
 //! A program in machine code behaves like every model.
-#![cfg(feature = "jit")]
 #![allow(clippy::float_cmp, reason = "agreement is bit for bit")]
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 

@@ -6,6 +6,7 @@
 use std::hint::black_box;
 
 use appell_models::unicycle::{self, Inputs, Parameters, Rates, State};
+use appell_test_kit::Random;
 use criterion::{Criterion, criterion_group, criterion_main};
 
 /// States that are worked through in turn, so that no call is predicted from the last.
@@ -78,14 +79,8 @@ fn typed_by_hand(x: &State<f64>, u: f64, p: &Parameters<f64>) -> Rates<f64> {
 }
 
 fn states() -> Vec<(State<f64>, f64)> {
-    // A fixed linear congruential sequence: every run sees the same states.
-    let mut seed = 0x2545_f491_4f6c_dd1d_u64;
-    let mut next = || {
-        seed = seed
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
-        (seed >> 11) as f64 / (1_u64 << 53) as f64 * 2.0 - 1.0
-    };
+    let mut dice = Random::of("states");
+    let mut next = || dice.between(-1.0, 1.0);
     (0..STATES)
         .map(|_| {
             let x = State {

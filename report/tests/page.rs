@@ -1,10 +1,11 @@
 //! The derivation as a page: what it looks like, and that it is true.
 
-use crate::support::{page_of, shipped, spec};
 use appell_report::derivation::{self, Page, Stage};
 use appell_spec::mechanism::{
     BodyId, CoordinateId, FrameId, LoadId, OutputId, ParameterId, PointId,
 };
+
+use crate::support::{EQUATIONS, WHOLE, page_of, spec};
 
 /// The handouts under snapshot.
 const HANDOUTS: [&str; 3] = ["unicycle", "euc_3dof", "pendulum"];
@@ -81,8 +82,8 @@ fn the_handout_tells_the_mass_matrix_where_it_solves_the_equations() {
 #[test]
 fn text_keeps_its_width() {
     let mut wide = Vec::new();
-    for name in shipped() {
-        let text = derivation::text(&page_of(&name, Stage::Equations));
+    for (name, page) in &*EQUATIONS {
+        let text = derivation::text(page);
         let lines: Vec<&str> = text.lines().collect();
         for (number, line) in lines.iter().enumerate() {
             // A quotient is not broken, however wide it is, nor is the power of a sum.
@@ -105,8 +106,8 @@ fn text_keeps_its_width() {
 
 #[test]
 fn latex_closes_what_it_opens() {
-    for name in shipped() {
-        let latex = derivation::latex(&page_of(&name, Stage::All));
+    for (name, page) in &*WHOLE {
+        let latex = derivation::latex(page);
         let mut depth = 0_i32;
         let mut escaped = false;
         for c in latex.chars() {
@@ -128,8 +129,8 @@ fn latex_closes_what_it_opens() {
 
 #[test]
 fn html_is_well_formed_and_needs_no_network() {
-    for name in shipped() {
-        let html = derivation::html(&page_of(&name, Stage::All));
+    for (name, page) in &*WHOLE {
+        let html = derivation::html(page);
         crate::support::assert_well_formed(&html);
         assert!(!html.contains("http"), "{name}: an address");
         assert!(!html.contains("<script"), "{name}: a script");
@@ -233,11 +234,10 @@ fn divisions_that_can_fail_are_told_with_the_declared_range() {
 fn what_the_page_says_is_true() {
     // Read as a program, every page of a shipped mechanism is free of contradictions: definitions,
     // constraints, Appell's equations and their solution hold together.
-    for name in shipped() {
-        let page = page_of(&name, Stage::Equations);
-        let checked = crate::support::check(&page, 7);
+    for (name, page) in &*EQUATIONS {
+        let checked = crate::support::check(page, 7);
         // What a system determines has no value that a reader of the page could compute.
-        let by_system = derivation::text(&page).contains("solved with pivoting");
+        let by_system = derivation::text(page).contains("solved with pivoting");
         assert!(checked > 0 || by_system, "{name}: nothing was checked");
     }
 }

@@ -3,10 +3,12 @@
 
 use std::collections::HashMap;
 use std::path::PathBuf;
+use std::sync::LazyLock;
 
 use appell_codegen::mechanics::derive;
 use appell_report::derivation::{self, Block, Equation, Letter, Math, Page, Span, Stage};
 use appell_spec::Mechanism;
+use appell_test_kit::Random;
 
 /// What two sides of an equation may differ by: they are sums of tens of terms of order 10³.
 const TOLERANCE: f64 = 1e-8;
@@ -16,7 +18,7 @@ fn folder() -> PathBuf {
 }
 
 /// Names of the shipped mechanisms.
-pub(crate) fn shipped() -> Vec<String> {
+fn shipped() -> Vec<String> {
     let mut names: Vec<String> = std::fs::read_dir(folder())
         .unwrap()
         .filter_map(|entry| Some(entry.unwrap().path().file_stem()?.to_str()?.to_owned()))
@@ -33,6 +35,21 @@ pub(crate) fn spec(name: &str) -> String {
 /// Page of a shipped mechanism.
 pub(crate) fn page_of(name: &str, stage: Stage) -> Page {
     written(&mechanism(&spec(name)), stage)
+}
+
+/// Names of all shipped mechanisms with their whole pages.
+pub(crate) static WHOLE: LazyLock<Vec<(String, Page)>> = LazyLock::new(|| pages(Stage::All));
+/// The same with the pages of their equations.
+pub(crate) static EQUATIONS: LazyLock<Vec<(String, Page)>> =
+    LazyLock::new(|| pages(Stage::Equations));
+
+fn pages(stage: Stage) -> Vec<(String, Page)> {
+    let names = shipped().into_iter();
+    let page = |name: String| {
+        let page = page_of(&name, stage);
+        (name, page)
+    };
+    names.map(page).collect()
 }
 
 /// The whole page of a spec after changes that no spec can hold.
@@ -76,13 +93,8 @@ type Values = HashMap<String, f64>;
 /// it a value, everything else must hold. Returns how many equations were compared.
 pub(crate) fn check(page: &Page, seed: u64) -> usize {
     let mut values = Values::new();
-    let mut state = seed;
-    let mut random = move || {
-        state = state
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
-        0.3 + 0.8 * (state >> 40) as f64 / f64::from(1 << 24)
-    };
+    let mut dice = Random::new(seed);
+    let mut random = || dice.between(0.3, 1.1);
     let mut given = |letter: &Letter| {
         values.entry(letter.to_string()).or_insert_with(&mut random);
     };

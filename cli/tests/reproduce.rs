@@ -8,7 +8,7 @@ use serde_json::Value;
 use crate::support::Folder;
 
 /// Points of its charts along each axis, in an ordinary run and for readers.
-const ORDINARY_GRID: usize = 40;
+const ORDINARY_GRID: usize = 60;
 const FULL_GRID: usize = 240;
 
 /// Statements of the book at least: every number from (1) to (91) is among them.

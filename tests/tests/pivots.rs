@@ -85,7 +85,7 @@ fn assert_sound(mechanism: &Mechanism) {
     assert_one_answer(mechanism);
     let program = shipped::standard_program(mechanism);
     let engines = in_process(program.clone());
-    let mut random = Random::of(&format!("pivots of {}", mechanism.name));
+    let mut random = Random::of(&format!("executions {}", mechanism.name));
     let [interpreted, compiled] = engines.as_slice() else {
         panic!("two executions")
     };

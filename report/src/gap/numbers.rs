@@ -1,7 +1,7 @@
 //! Numbers as a report tells them: no more digits than mean something.
 
 /// Three digits.
-pub(super) fn short(value: f64) -> String {
+pub fn short(value: f64) -> String {
     if value == 0.0 {
         return "0".to_owned();
     }

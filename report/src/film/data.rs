@@ -1,13 +1,14 @@
 //! What the page shows, as JSON: names and shapes as they are, numbers over time packed.
 
 use appell_codegen::mechanics::finding::Outcome;
-use appell_report::drawing::film::{Film, ForceKind, Shape, film};
-use appell_report::drawing::link::LinkKind;
 use appell_runtime::Trajectory;
 use appell_runtime::model::{Model, ModelInfo};
 use appell_spec::Mechanism;
 use appell_spec::mechanism::{BodyId, FrameId, Point, PointId};
 use serde_json::{Value, json};
+
+use crate::drawing::film::{Film, Force, ForceKind, Shape, film};
+use crate::drawing::link::{Link, LinkKind};
 
 /// A page with more rows than this takes long to open.
 const MOST_ROWS: usize = 12_000;
@@ -90,7 +91,7 @@ fn frames(mechanism: &Mechanism, film: &Film) -> Vec<Value> {
 }
 
 fn links(film: &Film) -> Vec<Value> {
-    let link = |link: &appell_report::drawing::link::Link| {
+    let link = |link: &Link| {
         let kind = match link.kind {
             LinkKind::Way => "way",
             LinkKind::Rod => "rod",
@@ -118,7 +119,7 @@ fn bodies(mechanism: &Mechanism, film: &Film) -> Vec<Value> {
 }
 
 fn forces(film: &Film) -> Vec<Value> {
-    let force = |force: &appell_report::drawing::film::Force| {
+    let force = |force: &Force| {
         let kind = match force.kind {
             ForceKind::Reaction => "reaction",
             ForceKind::Load => "load",

@@ -2,7 +2,7 @@
 
 use appell_gap::diagnose::{Hypothesis, Report};
 
-use appell_report::text::number;
+use crate::text::number;
 
 /// Factors between units that people mix up.
 const FACTORS: [(f64, &str); 6] = [
@@ -23,7 +23,7 @@ const VAGUE: f64 = 0.05;
 const PROBABLE: f64 = 0.05;
 
 /// Questions about the units of the hypotheses that count.
-pub(super) fn doubts(report: &Report) -> Vec<String> {
+pub fn doubts(report: &Report) -> Vec<String> {
     let which = report.which.iter();
     let mut doubts: Vec<String> = which
         .filter(|hypothesis| hypothesis.probability >= PROBABLE)

@@ -1,13 +1,11 @@
 //! Pictures of a gap report.
 
-use std::fmt::Write as _;
-
 use appell_gap::diagnose::{Experiment, ForceHistory, ForceLaw, Trace};
-use appell_report::figure::{Layer, Look, Plot, Series};
 use appell_spec::Mechanism;
 
 use super::numbers::short;
-use super::page::escaped;
+use crate::figure::{Layer, Look, Plot, Series};
+use crate::svg::{Document, Element, text};
 
 /// Channels that are drawn.
 const DRAWN: usize = 3;
@@ -138,36 +136,27 @@ pub(super) fn over_time(map: &ForceHistory) -> String {
     let gaps = GAP * map.runs.len().saturating_sub(1) as f64;
     let cell = (WIDTH - LEFT - gaps) / parts.max(1) as f64;
     let height = ROW * map.equations.len() as f64 + 40.0;
-    let mut svg = format!(
-        "<svg viewBox=\"0 0 {WIDTH} {height}\" width=\"{WIDTH}\" height=\"{height}\" role=\"img\" \
-         class=\"heat\">\n"
-    );
-    // Writing to a string cannot fail.
+    let mut svg = Document::styled_by_page([WIDTH, height], "heat");
     for (row, equation) in map.equations.iter().enumerate() {
         let largest = equation.rms.iter().copied().fold(0.0, f64::max);
         let y = ROW * row as f64;
-        let _ = writeln!(
-            svg,
-            "<text x=\"4\" y=\"{:.1}\">{}</text><text x=\"{:.1}\" y=\"{:.1}\" class=\"small\">{} {}</text>",
-            y + 17.0,
-            escaped(&equation.name),
-            LEFT - 8.0,
-            y + 17.0,
-            short(largest),
-            escaped(&equation.unit),
-        );
+        svg.put(&text([4.0, y + 17.0]).text(&equation.name));
+        let size = text([LEFT - 8.0, y + 17.0]).with("class", "small");
+        svg.put(&size.text(&format!("{} {}", short(largest), equation.unit)));
         let mut index = 0;
         for (run, (_, _, parts)) in map.runs.iter().enumerate() {
             for _ in 0..*parts {
                 let x = LEFT + cell * index as f64 + GAP * run as f64;
                 let part = equation.rms[index] / largest.max(f64::MIN_POSITIVE);
-                let _ = writeln!(
-                    svg,
-                    "<rect x=\"{x:.1}\" y=\"{:.1}\" width=\"{:.1}\" height=\"{:.1}\" fill-opacity=\"{part:.2}\"/>",
-                    y + 2.0,
-                    cell + 0.3,
-                    ROW - 4.0,
-                );
+                let lengths = [
+                    ("x", x),
+                    ("y", y + 2.0),
+                    ("width", cell + 0.3),
+                    ("height", ROW - 4.0),
+                ];
+                let colour = format_args!("{part:.2}");
+                let square = Element::new("rect").lengths(lengths);
+                svg.put(&square.with("fill-opacity", colour).empty());
                 index += 1;
             }
         }
@@ -184,11 +173,9 @@ pub(super) fn over_time(map: &ForceHistory) -> String {
             continue;
         }
         taken = x + width;
-        let y = height - 20.0;
-        let label = escaped(&label);
-        let _ = writeln!(svg, "<text x=\"{x:.1}\" y=\"{y:.1}\">{label}</text>");
+        svg.put(&text([x, height - 20.0]).text(&label));
     }
-    svg + "</svg>\n"
+    svg.finish()
 }
 
 /// The inputs of an experiment, in the units of the spec.

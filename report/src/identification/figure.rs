@@ -1,8 +1,8 @@
 //! The runs that were held out beside predictions of them.
 
+use crate::figure::{Figure, Panel, Series};
 use appell_gap::data::DataSet;
 use appell_gap::identify::{AHEAD, Answer};
-use appell_report::figure::{Figure, Panel, Series};
 
 /// Runs that are drawn.
 const DRAWN_RUNS: usize = 2;
@@ -37,7 +37,7 @@ fn courses(answer: &Answer) -> impl Iterator<Item = Panel> + '_ {
 }
 
 /// The first runs that were held out: a panel for each channel and one for its errors.
-pub(crate) fn figure(set: &DataSet, answer: &Answer) -> Figure {
+pub fn figure(set: &DataSet, answer: &Answer) -> Figure {
     let mut runs: Vec<&str> = answer
         .traces
         .iter()

@@ -5,3 +5,7 @@ pub mod attraction;
 pub mod design;
 pub mod explain;
 pub mod law_file;
+mod request;
+
+pub use design::Design;
+pub use request::Request;

@@ -13,9 +13,18 @@ use crate::source::Source;
 
 /// Reads a data set, or CSV files of a mechanism.
 pub fn read(paths: &[PathBuf], model: Option<&str>) -> Result<DataSet, Error> {
-    let spec = model.map(Source::find).transpose()?.map(|source| Spec {
-        file: source.file,
-        text: source.text,
+    read_with(paths, model.map(Source::find).transpose()?.as_ref())
+}
+
+/// Recordings of a mechanism: a folder with a `recording.toml`, or CSV files.
+pub fn read_of(source: &Source, paths: &[PathBuf]) -> Result<DataSet, Error> {
+    read_with(paths, Some(source))
+}
+
+fn read_with(paths: &[PathBuf], source: Option<&Source>) -> Result<DataSet, Error> {
+    let spec = source.map(|source| Spec {
+        file: source.file.clone(),
+        text: source.text.clone(),
     });
     let described = |path: &PathBuf| path.is_dir() || path.ends_with(data::MANIFEST);
     match (paths, spec) {

@@ -21,6 +21,17 @@ pub struct Assignment {
     pub value: String,
 }
 
+impl Assignment {
+    /// A name with a value: a number in the unit that the spec declares, a number with a unit, or an
+    /// expression.
+    pub fn new(name: &str, value: impl ToString) -> Self {
+        Self {
+            name: name.to_owned(),
+            value: value.to_string(),
+        }
+    }
+}
+
 impl std::str::FromStr for Assignment {
     type Err = String;
 

@@ -22,23 +22,33 @@ pub struct Source {
 impl Source {
     /// Finds a MODEL. A shipped name wins over a file; `./name` means the file.
     pub fn find(model: &str) -> Result<Self, Error> {
-        if let Some(shipped) = Shipped::find(model) {
-            let (file, text) = (shipped.file.to_owned(), shipped.spec.to_owned());
-            return Ok(Self {
-                file,
-                text,
-                shipped: Some(shipped),
-            });
+        if Shipped::find(model).is_some() {
+            return Self::shipped(model);
         }
         let path = Path::new(model);
         let is_path = path.components().count() > 1 || path.extension().is_some() || path.exists();
-        if !is_path {
-            return Err(Error::Usage(unknown(model)));
+        if is_path {
+            Self::read(path)
+        } else {
+            Err(Error::Usage(unknown(model)))
         }
-        let text = files::read(path, MAX_FILE as u64)?;
+    }
+
+    /// A shipped spec.
+    pub fn shipped(name: &str) -> Result<Self, Error> {
+        let shipped = Shipped::find(name).ok_or_else(|| Error::Usage(unknown(name)))?;
         Ok(Self {
-            file: model.replace('\\', "/"),
-            text,
+            file: shipped.file.to_owned(),
+            text: shipped.spec.to_owned(),
+            shipped: Some(shipped),
+        })
+    }
+
+    /// A spec file.
+    pub fn read(path: &Path) -> Result<Self, Error> {
+        Ok(Self {
+            text: files::read(path, MAX_FILE as u64)?,
+            file: path.to_string_lossy().replace('\\', "/"),
             shipped: None,
         })
     }

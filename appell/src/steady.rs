@@ -1,6 +1,7 @@
 //! Questions about steady motions, by the names of a spec.
 
 pub mod export;
+mod question;
 pub mod regions;
 
 use appell_analysis::{
@@ -12,6 +13,8 @@ use appell_spec::units::{self, Unit};
 
 use crate::Error;
 use crate::setup::Setup;
+
+pub use question::{Question, STARTS, Span};
 
 /// A question with its names resolved.
 pub struct Asked<'a> {

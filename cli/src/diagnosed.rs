@@ -4,32 +4,14 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 use appell_gap::data::DataSet;
-use appell_gap::diagnose::{
-    Ahead, Changes, DiagnoseError, ENGINE, Experiment, GapVerdict, Hypothesis, Report,
-};
-use appell_gap::effects::{EffectError, ModelError};
+use appell_gap::diagnose::{Ahead, Changes, ENGINE, Experiment, GapVerdict, Hypothesis, Report};
 use serde_json::{Value, json};
 
-use appell::Error;
 use appell_report::gap::{doubts, hinted, joined, left_out, sentence, short};
 use appell_report::text::{number, with_unit};
 
 /// Hypotheses that the summary lists.
 const LISTED: usize = 3;
-
-pub(crate) fn failure(error: DiagnoseError) -> Error {
-    match error {
-        DiagnoseError::Model(
-            ModelError::Spec(report) | ModelError::Effect(EffectError(report)),
-        ) => Error::Report(report),
-        DiagnoseError::Data(error) => error.into(),
-        DiagnoseError::NothingMeasured
-        | DiagnoseError::LacksChannel { .. }
-        | DiagnoseError::NothingToFit
-        | DiagnoseError::Model(ModelError::Edit(_)) => Error::Data(error.to_string()),
-        other => Error::Computation(other.to_string()),
-    }
-}
 
 /// The summary in some ten lines.
 pub(crate) fn text(report: &Report, next: Option<&Path>) -> String {

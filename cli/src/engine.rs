@@ -1,8 +1,7 @@
-//! `--engine`, and equations made under a spinner.
+//! `--engine`, and models made under a spinner.
 
-use appell::Error;
-use appell::engine::Equations;
 use appell::source::Source;
+use appell::{Error, Model};
 
 use crate::failure::note;
 use crate::progress;
@@ -18,28 +17,35 @@ pub(crate) enum Engine {
     Interpreter,
 }
 
-/// The equations of a spec; without an engine those at hand.
-pub(crate) fn equations(source: &Source, engine: Option<Engine>) -> Result<Equations, Error> {
-    made(|| match engine {
-        None => Equations::at_hand(source),
-        Some(Engine::Jit) => Equations::new(source, appell::engine::Engine::Jit),
-        Some(Engine::Emitted) => Equations::new(source, appell::engine::Engine::Emitted),
-        Some(Engine::Interpreter) => Equations::new(source, appell::engine::Engine::Interpreter),
-    })
+impl From<Engine> for appell::engine::Engine {
+    fn from(engine: Engine) -> Self {
+        match engine {
+            Engine::Jit => Self::Jit,
+            Engine::Emitted => Self::Emitted,
+            Engine::Interpreter => Self::Interpreter,
+        }
+    }
+}
+
+/// The model of a MODEL; without an engine that at hand.
+pub(crate) fn model(model: &str, engine: Option<Engine>) -> Result<Model, Error> {
+    let source = Source::find(model)?;
+    made(|| Model::of(source, engine.map(Into::into)))
 }
 
 /// The same with what estimation asks for.
-pub(crate) fn equations_for_estimation(source: &Source) -> Result<Equations, Error> {
-    made(|| Equations::for_estimation(source))
+pub(crate) fn model_for_estimation(model: &str) -> Result<Model, Error> {
+    let source = Source::find(model)?;
+    made(|| Model::for_estimation(source))
 }
 
-fn made(make: impl FnOnce() -> Result<Equations, Error>) -> Result<Equations, Error> {
+fn made(make: impl FnOnce() -> Result<Model, Error>) -> Result<Model, Error> {
     let spinner = progress::spinner("deriving the equations of motion");
-    let equations = make();
+    let model = make();
     spinner.finish_and_clear();
-    let equations = equations?;
-    if let Some(text) = equations.note() {
+    let model = model?;
+    if let Some(text) = model.note() {
         note(text);
     }
-    Ok(equations)
+    Ok(model)
 }

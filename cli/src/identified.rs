@@ -1,25 +1,8 @@
 //! What an identification found, for programs.
 
-use appell::Error;
-use appell_estimate::EstimateError;
 use appell_gap::data::DataSet;
-use appell_gap::identify::{Answer, IdentifyError};
+use appell_gap::identify::Answer;
 use serde_json::{Value, json};
-
-pub(crate) fn failure(error: &IdentifyError) -> Error {
-    match error {
-        IdentifyError::UnknownParameter { .. }
-        | IdentifyError::UnknownAddition { .. }
-        | IdentifyError::Rate { .. } => Error::Usage(error.to_string()),
-        IdentifyError::Estimate(EstimateError::Diverged { .. } | EstimateError::Stuck { .. }) => {
-            Error::Computation(format!(
-                "{error}; where the values of the rig are far off, `--start shooting` may help"
-            ))
-        }
-        IdentifyError::Estimate(_) => Error::Computation(error.to_string()),
-        _ => Error::Data(error.to_string()),
-    }
-}
 
 /// Everything for programs, in SI.
 pub(crate) fn json(set: &DataSet, answer: &Answer) -> Value {

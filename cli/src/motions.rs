@@ -6,14 +6,11 @@ use std::path::PathBuf;
 use std::str::FromStr;
 
 use appell::Error;
-use appell::engine::Equations;
 use appell::setup::{Assignment, Setup};
-use appell::source::Source;
-use appell::steady::{Answer, Asked, refused, term, value_of};
-use appell_analysis::{Axis, Chart, Point, Requirement, SteadyProblem, Term};
+use appell::steady::{Answer, Asked, STARTS, Span};
+use appell_analysis::{Axis, Chart};
 
-use crate::engine::equations;
-use crate::progress;
+use crate::{engine, progress};
 
 /// What is given and what is sought.
 #[derive(Debug, clap::Args)]
@@ -37,7 +34,7 @@ pub(crate) struct Question {
     #[arg(long, value_name = "NAME>=VALUE", allow_hyphen_values = true)]
     require: Vec<Least>,
     /// Starting points from which motions are sought
-    #[arg(long, value_name = "N", default_value_t = 40)]
+    #[arg(long, value_name = "N", default_value_t = STARTS)]
     starts: usize,
     /// Write the motions, in the units of the spec; `-` is standard output
     #[arg(long, value_name = "FILE.csv")]
@@ -48,35 +45,6 @@ pub(crate) struct Question {
     /// Write the motions in SI; `-` is standard output
     #[arg(long, value_name = "FILE")]
     pub(crate) json: Option<PathBuf>,
-}
-
-/// `NAME=FROM..TO` as it was given.
-#[derive(Debug, Clone)]
-pub(crate) struct Span {
-    /// The quantity.
-    pub(crate) name: String,
-    /// First and last value.
-    pub(crate) ends: [String; 2],
-}
-
-impl FromStr for Span {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        let parts = text.split_once('=').and_then(|(name, span)| {
-            let (from, to) = span.split_once("..")?;
-            Some([name, from, to].map(|part| part.trim().to_owned()))
-        });
-        match parts {
-            Some([name, from, to]) if ![&name, &from, &to].iter().any(|part| part.is_empty()) => {
-                let ends = [from, to];
-                Ok(Self { name, ends })
-            }
-            _ => {
-                Err("write NAME=FROM..TO, such as speed=0.5..10 or theta=-30deg..30deg".to_owned())
-            }
-        }
-    }
 }
 
 /// `NAME>=VALUE` as it was given.
@@ -101,61 +69,18 @@ impl Question {
         &self,
         then: impl FnOnce(&Asked<'_>, &Setup<'_>) -> Result<T, Error>,
     ) -> Result<T, Error> {
-        let source = Source::find(&self.model)?;
-        let equations = equations(&source, None)?;
-        let mut setup = Setup::new(&source.file, &source.text, equations.model().info())?;
+        let model = engine::model(&self.model, None)?;
+        let mut setup = model.setup()?;
         setup.set(&self.set)?;
-        then(&self.asked(&equations, &setup)?, &setup)
-    }
-
-    fn asked<'a>(&self, equations: &'a Equations, setup: &Setup<'_>) -> Result<Asked<'a>, Error> {
-        let model = equations.model();
-        let point = Point {
-            p: setup.parameters.clone(),
-            ..Point::initial(model)
-        };
-        let mut problem = SteadyProblem::new(model, point).map_err(|error| refused(&error))?;
-        for name in &self.free {
-            problem
-                .free(term(setup, name)?)
-                .map_err(|error| refused(&error))?;
-        }
-        appell::setup::unique(&self.fix, "--fix")?;
-        for Assignment { name, value } in &self.fix {
-            let term = term(setup, name)?;
-            let value = value_of(setup, term, value, &format!("--fix {name}"))?;
-            problem.fix(term, value).map_err(|error| refused(&error))?;
-        }
-        let along = self
-            .along
-            .as_ref()
-            .map(|span| span.resolve(setup, "--along"));
-        let requirements = self
-            .require
-            .iter()
-            .map(|Least(Assignment { name, value })| {
-                let term = term(setup, name)?;
-                let at_least = value_of(setup, term, value, &format!("--require {name}"))?;
-                Ok(Requirement { term, at_least })
-            });
-        Ok(Asked {
-            problem,
-            along: along.transpose()?,
-            requirements: requirements.collect::<Result<_, Error>>()?,
+        let question = appell::steady::Question {
+            parameters: self.set.clone(),
+            fix: self.fix.clone(),
+            free: self.free.clone(),
+            along: self.along.clone(),
+            require: self.require.iter().map(|least| least.0.clone()).collect(),
             starts: self.starts,
-        })
-    }
-}
-
-impl Span {
-    /// The quantity and its range in SI.
-    pub(crate) fn resolve(&self, setup: &Setup<'_>, flag: &str) -> Result<(Term, [f64; 2]), Error> {
-        let term = term(setup, &self.name)?;
-        let label = format!("{flag} {}", self.name);
-        let [from, to] = &self.ends;
-        let ends = [from, to].map(|end| value_of(setup, term, end, &label));
-        let [from, to] = ends;
-        Ok((term, [from?, to?]))
+        };
+        then(&question.resolve(model.equations(), &setup)?, &setup)
     }
 }
 

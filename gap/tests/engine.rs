@@ -2,8 +2,8 @@
 
 use std::fmt::Write as _;
 
-use appell_gap::diagnose::{ENGINE, Options, diagnose};
 use crate::common::{Folder, SWING, pendulum, swing};
+use appell_gap::diagnose::{ENGINE, Options, diagnose};
 
 /// Another text here means another engine: raise [`ENGINE`] and diagnose the cases of `tests/blind` anew.
 const NUMBERS: &str = "\

@@ -16,7 +16,7 @@ use crate::setup::Setup;
 
 /// What is asked for.
 #[derive(Debug, Clone)]
-pub struct Request {
+pub struct Goal {
     /// The inputs of the law.
     pub inputs: Vec<usize>,
     /// The states that are fed back; none where they are to be chosen.
@@ -97,7 +97,7 @@ pub fn design(
     model: &dyn Model,
     setup: &Setup<'_>,
     given: &GivenInputs,
-    request: &Request,
+    request: &Goal,
 ) -> Result<Design, Error> {
     let mut point = OperatingPoint::new(model);
     point.x.clone_from(&setup.initial);
@@ -194,7 +194,7 @@ fn outputs(
     asked.iter().map(place).collect()
 }
 
-fn law(subsystem: &Subsystem, request: &Request) -> Result<Option<DesignedGains>, Error> {
+fn law(subsystem: &Subsystem, request: &Goal) -> Result<Option<DesignedGains>, Error> {
     let (system, sampling) = (&subsystem.system, request.sampling);
     let (n, m) = (system.order(), system.inputs());
     let law = match &request.method {

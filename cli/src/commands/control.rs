@@ -2,18 +2,14 @@
 
 use std::path::PathBuf;
 
+use appell::control::design::{self, Design, Goal, Method};
+use appell::control::{Request, ask, attraction, law_file};
+use appell::setup::{Assignment, Setup};
+use appell::{Error, files};
 use appell_runtime::model::{Model, Quantity};
 
-use crate::engine::equations;
 use crate::failure::tell;
-use crate::output;
-use crate::{design_report, picture, progress};
-use appell::Error;
-use appell::control::design::{self, Design, Method, Request};
-use appell::control::{ask, attraction, law_file};
-use appell::files;
-use appell::setup::{Assignment, Setup};
-use appell::source::Source;
+use crate::{design_report, engine, output, picture, progress};
 
 /// What the inputs can do about a steady motion, and gains for a feedback law.
 ///
@@ -94,17 +90,17 @@ pub(crate) struct Control {
 
 impl Control {
     pub(super) fn run(&self) -> Result<(), Error> {
-        let source = Source::find(&self.model)?;
-        let equations = equations(&source, None)?;
-        let model = equations.model();
-        let mut setup = Setup::new(&source.file, &source.text, model.info())?;
+        let model = engine::model(&self.model, None)?;
+        let mut setup = model.setup()?;
+        let model = model.equations();
         setup.set(&self.set)?;
-        let request = self.request(&setup)?;
+        let asked = self.request();
+        let goal = asked.resolve(&setup)?;
         let flags = [
             ("--write", self.write.is_some()),
             ("--attraction", self.attraction.is_some()),
         ];
-        if let (Method::None, Some((flag, _))) = (&request.method, flags.iter().find(|f| f.1)) {
+        if let (Method::None, Some((flag, _))) = (&goal.method, flags.iter().find(|f| f.1)) {
             return Err(Error::Usage(format!(
                 "`{flag}` needs a law; ask for one with `--poles` or `--lqr`"
             )));
@@ -112,7 +108,7 @@ impl Control {
         let at = ask::point(model, &mut setup, &self.at)?;
         let (text, json) = match &self.schedule {
             None => {
-                let design = design::design(model, &setup, &at, &request)?;
+                let design = design::design(model, &setup, &at, &goal)?;
                 if let Some(path) = &self.write {
                     files::write(path, &law_file::text(&design, &setup, &self.model))?;
                 }
@@ -142,7 +138,7 @@ impl Control {
             Some(schedule) => {
                 let values = ask::values(&mut setup, schedule)?;
                 let over = self.readable(&values, &setup)?;
-                let designs = self.scheduled(model, &mut setup, &values, &request)?;
+                let designs = self.scheduled(model, &mut setup, &values, &goal)?;
                 let designs = values.si.into_iter().zip(designs).collect::<Vec<_>>();
                 if let (Some(path), Some(over)) = (&self.write, over) {
                     let text = law_file::schedule(&over, &designs, &setup, &self.model);
@@ -165,29 +161,17 @@ impl Control {
         output::print(&text)
     }
 
-    fn request(&self, setup: &Setup<'_>) -> Result<Request, Error> {
-        let inputs = if self.inputs.is_empty() {
-            (0..setup.info.declared_inputs).collect()
-        } else {
-            ask::distinct("--inputs", &self.inputs, |name| setup.input(name))?
-        };
-        if inputs.is_empty() {
-            return Err(Error::Usage(
-                "the mechanism has no input; declare one under `[inputs]` of the spec".to_owned(),
-            ));
+    fn request(&self) -> Request {
+        Request {
+            parameters: self.set.clone(),
+            at: self.at.clone(),
+            inputs: self.inputs.clone(),
+            outputs: self.outputs.clone(),
+            poles: self.poles.clone(),
+            weights: self.lqr.clone(),
+            sampled_ms: self.sampled_ms,
+            delay_ms: self.delay_ms,
         }
-        let outputs = ask::distinct("--outputs", &self.outputs, |name| setup.state(name))?;
-        let method = match (&self.poles, &self.lqr) {
-            (Some(poles), _) => Method::Poles(ask::poles(poles)?),
-            (None, Some(weights)) => ask::weights(weights)?,
-            (None, None) => Method::None,
-        };
-        Ok(Request {
-            inputs,
-            outputs,
-            method,
-            sampling: ask::sampling(self.sampled_ms, self.delay_ms)?,
-        })
     }
 
     /// The quantity that a written schedule follows.
@@ -212,17 +196,17 @@ impl Control {
         model: &dyn Model,
         setup: &mut Setup<'_>,
         values: &ask::Values,
-        request: &Request,
+        goal: &Goal,
     ) -> Result<Vec<Design>, Error> {
-        let mut request = request.clone();
+        let mut goal = goal.clone();
         let mut designs: Vec<Design> = Vec::new();
         for &value in &values.si {
             let mut at = ask::point(model, setup, &self.at)?;
             values.place(setup, &mut at, value);
-            let design = design::design(model, setup, &at, &request)
+            let design = design::design(model, setup, &at, &goal)
                 .map_err(|failure| values.at(setup, value, &failure))?;
             // All laws of a schedule feed back the same states.
-            request.outputs.clone_from(&design.outputs);
+            goal.outputs.clone_from(&design.outputs);
             designs.push(design);
         }
         Ok(designs)

@@ -3,20 +3,14 @@
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
+use appell::source::Source;
+use appell::{Error, Law, Motion, Simulated, files};
 use appell_report::figure::Figure;
 use appell_runtime::integrate::Options;
-use appell_runtime::simulate::{Method, Validity};
 
 use super::derive::{Format, Stage, derivation};
-use super::simulate::{Run, standard_extras, write_csv};
-use crate::output;
-use crate::summary;
-use appell::Error;
-use appell::files;
-use appell::inputs::controller::Plan;
-use appell::inputs::feedback;
-use appell::setup::Setup;
-use appell::source::Source;
+use super::simulate::{simulated, write_csv};
+use crate::{engine, output, summary};
 
 /// The lane change of the paper at 5 m/s.
 const LANE_CHANGE: &str = include_str!("../../../docs/examples/feedback/lane_change_5_m_s.toml");
@@ -31,24 +25,22 @@ pub(crate) struct Demo {
 
 impl Demo {
     pub(super) fn run(&self) -> Result<(), Error> {
-        let source = Source::find("unicycle")?;
-        let equations = crate::engine::equations(&source, None)?;
-        let mut setup = Setup::new(&source.file, &source.text, equations.model().info())?;
-        let law = feedback::parse("lane_change_5_m_s.toml", LANE_CHANGE, &setup)?;
-        setup.start_from_law(&law)?;
-        let mut plan = Plan::new(&setup);
-        plan.feedback(law)?;
-        let run = Run {
-            equations: &equations,
-            setup: &setup,
-            t_end: 10.0,
-            interval: 0.01,
-            method: Method::Dop853,
+        let source = Source::shipped("unicycle")?;
+        let model = engine::model("unicycle", None)?;
+        let motion = Motion {
+            interval: Some(0.01),
             options: Options::with_tolerances(1e-10, 1e-10),
-            extras: standard_extras(),
-            validity: Validity::default(),
+            laws: vec![Law::Text {
+                name: "lane_change_5_m_s.toml".to_owned(),
+                text: LANE_CHANGE.to_owned(),
+            }],
+            ..Motion::new(10.0)
         };
-        let (trajectory, failure) = run.run(plan)?;
+        let Simulated {
+            trajectory,
+            failure,
+            ..
+        } = simulated(&model, &motion)?;
         let panels = [
             vec!["y_G"],
             vec!["psi"],

@@ -3,9 +3,9 @@
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
+use appell::diagnosis::Library;
 use appell_gap::data::{DataSet, Spec};
-use appell_gap::diagnose::{self, Limit, Options};
-use appell_gap::effects;
+use appell_gap::diagnose::{Limit, Options};
 use serde_json::Value;
 
 use crate::output;
@@ -85,7 +85,12 @@ impl Diagnose {
     pub(super) fn run(&self) -> Result<(), Error> {
         let set = appell::recording::read(&self.data, self.model.as_deref())?;
         appell::recording::refuse_slow(&set)?;
-        let (library, replaced) = self.library()?;
+        let mut library = Library::shipped()?;
+        for kind in &self.without {
+            library = library.without(kind)?;
+        }
+        let library = library.with(&self.effects)?;
+        let replaced = &library.warnings;
         let spinner = progress::spinner("reading");
         let options = Options {
             pictures: self.html.is_some(),
@@ -93,9 +98,9 @@ impl Diagnose {
             alternatives: self.alternatives()?,
         };
         let stage = |stage| spinner.set_message(stage);
-        let report = diagnose::diagnose(&set, &library, &options, stage);
+        let report = library.diagnose(&set, &options, stage);
         spinner.finish_and_clear();
-        let report = report.map_err(diagnosed::failure)?;
+        let report = report?;
         let warnings = appell::recording::warnings(&set);
         let mut next = None;
         if let Some(experiment) = &report.experiment {
@@ -116,7 +121,7 @@ impl Diagnose {
         let outputs = [&self.json, &self.html, &next];
         let mut text = diagnosed::text(&report, next.as_deref());
         text.extend(self.stepped_aside(next.as_deref()));
-        for warning in &replaced {
+        for warning in replaced {
             text.extend(["  effects   ", warning, "\n"]);
         }
         for warning in &warnings {
@@ -194,43 +199,5 @@ impl Diagnose {
             Ok((span.name.clone(), limits))
         };
         self.limit.iter().map(limit).collect()
-    }
-
-    /// The shipped effects and those of the user, and what is told of these.
-    fn library(&self) -> Result<(Vec<effects::Effect>, Vec<String>), Error> {
-        let wrong = |effects::EffectError(report)| Error::Report(report);
-        let mut library = effects::shipped().map_err(wrong)?;
-        for kind in &self.without {
-            let before = library.len();
-            library.retain(|effect| effect.name != *kind);
-            if library.len() == before {
-                let mut kinds: Vec<&str> = library.iter().map(|e| e.name.as_str()).collect();
-                kinds.dedup();
-                return Err(Error::Usage(format!(
-                    "`--without {kind}`: the library has {}",
-                    kinds.join(", ")
-                )));
-            }
-        }
-        let mut own = Vec::new();
-        for path in &self.effects {
-            let text = files::read(path, appell_spec::limits::MAX_FILE as u64)?;
-            let name = path.file_stem().unwrap_or_default().to_string_lossy();
-            let file = path.to_string_lossy();
-            own.push(effects::Effect::read(&name, &file, &text).map_err(wrong)?);
-        }
-        let mut told = Vec::new();
-        for (effect, path) in own.iter().zip(&self.effects) {
-            if library.iter().any(|shipped| shipped.name == effect.name) {
-                told.push(format!(
-                    "warning: {}: the effect `{}` stands in place of that of the library",
-                    path.display(),
-                    effect.name
-                ));
-            }
-        }
-        library.retain(|shipped| own.iter().all(|effect| effect.name != shipped.name));
-        library.append(&mut own);
-        Ok((library, told))
     }
 }

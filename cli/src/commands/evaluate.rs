@@ -8,11 +8,10 @@ use appell_runtime::inputs::{ModelInputs, ZeroInputs};
 use appell_runtime::model::{At, Model, Quantity};
 use serde_json::{Map, Value, json};
 
-use crate::engine::{Engine, equations};
+use crate::engine::{self, Engine};
 use appell::Error;
 use appell::cases::{Case, read_cases};
 use appell::files;
-use appell::source::Source;
 
 /// Evaluates the equations at given states.
 ///
@@ -36,10 +35,9 @@ pub(crate) struct Evaluate {
 
 impl Evaluate {
     pub(super) fn run(&self) -> Result<(), Error> {
-        let source = Source::find(&self.model)?;
         let text = files::read(&self.cases, files::MAX_DATA)?;
-        let equations = equations(&source, Some(self.engine))?;
-        let model = equations.model();
+        let model = engine::model(&self.model, Some(self.engine))?;
+        let model = model.equations();
         let info = model.info();
         let cases = read_cases(&self.cases.to_string_lossy(), &text, info)?;
 

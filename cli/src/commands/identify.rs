@@ -2,13 +2,12 @@
 
 use std::path::PathBuf;
 
-use appell_gap::identify::{self, Begin, Options};
+use appell_gap::identify::{Begin, Options};
 
 use crate::output;
-use crate::{identified, picture, progress};
+use crate::{engine, identified, picture, progress};
 use appell::Error;
 use appell::files;
-use appell::source::Source;
 use appell_report::identification;
 
 /// Finds the parameters that make recordings most likely, with intervals, and tells how well the
@@ -66,7 +65,7 @@ impl Identify {
     pub(super) fn run(&self) -> Result<(), Error> {
         let set = appell::recording::read(&self.data, Some(&self.model))?;
         appell::recording::refuse_slow(&set)?;
-        let equations = crate::engine::equations_for_estimation(&Source::find(&self.model)?)?;
+        let model = engine::model_for_estimation(&self.model)?;
         let spinner = progress::spinner("reading");
         let options = Options {
             free: self.free.clone(),
@@ -78,11 +77,9 @@ impl Identify {
                 Start::Shooting => Begin::Shooting,
             },
         };
-        let answer = identify::identify(&set, equations.model(), &options, |stage| {
-            spinner.set_message(stage);
-        });
+        let answer = model.identify(&set, &options, |stage| spinner.set_message(stage));
         spinner.finish_and_clear();
-        let answer = answer.map_err(|error| identified::failure(&error))?;
+        let answer = answer?;
         if let Some(path) = &self.json {
             files::write_json(path, &identified::json(&set, &answer))?;
         }

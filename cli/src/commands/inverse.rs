@@ -5,10 +5,9 @@ use std::path::PathBuf;
 use appell_gap::inverse::{self, Options, RelationError};
 
 use crate::output;
-use crate::{picture, progress, relations};
+use crate::{engine, picture, progress, relations};
 use appell::Error;
 use appell::files;
-use appell::source::Source;
 
 /// Finds the inputs of recorded motions, and parameters from the equations that the inputs leave over.
 ///
@@ -39,19 +38,19 @@ pub(crate) struct Inverse {
 impl Inverse {
     pub(super) fn run(&self) -> Result<(), Error> {
         let set = appell::recording::read(&self.data, Some(&self.model))?;
-        let equations = crate::engine::equations_for_estimation(&Source::find(&self.model)?)?;
+        let model = engine::model_for_estimation(&self.model)?;
         let options = Options {
             free: self.free.clone(),
             biased: self.bias.clone(),
         };
         let spinner = progress::spinner("weighing the equations of motion");
-        let answer = inverse::find(&set, equations.model(), &options);
+        let answer = inverse::find(&set, model.equations(), &options);
         spinner.finish_and_clear();
         let answer = answer.map_err(|error| match error {
             RelationError::Inverse(_) => Error::Computation(error.to_string()),
             _ => Error::Usage(error.to_string()),
         })?;
-        let info = equations.model().info();
+        let info = model.equations().info();
         if let Some(path) = &self.json {
             files::write_json(path, &relations::json(info, &answer))?;
         }

@@ -2,27 +2,18 @@
 
 use std::path::{Path, PathBuf};
 
-use appell_codegen::compile::report;
+use appell::setup::Assignment;
+use appell::{Error, Law, MOST_ROWS, Model, Motion, Simulated, files};
 use appell_report::figure::Figure;
-use appell_report::film;
-use appell_runtime::integrate::{Ending, Options};
+use appell_runtime::Trajectory;
+use appell_runtime::integrate::Options;
 use appell_runtime::model::ModelInfo;
-use appell_runtime::simulate::{Method, Response, Sampling, SimulationError, Validity};
+use appell_runtime::simulate::{Method, Response, Validity};
 use appell_runtime::trajectory::{CsvOptions, Extras};
-use appell_runtime::{Simulation, Trajectory};
 
-use crate::engine::{Engine, equations};
+use crate::engine::{self, Engine};
 use crate::failure::note;
-use crate::output;
-use crate::{picture, progress, summary};
-use appell::Error;
-use appell::engine::Equations;
-use appell::files;
-use appell::inputs::controller::Plan;
-use appell::inputs::feedback;
-use appell::inputs::tabulated;
-use appell::setup::{Assignment, Setup};
-use appell::source::Source;
+use crate::{output, picture, progress, summary};
 
 /// Integrates the equations of motion and tells what happened.
 ///
@@ -139,51 +130,39 @@ impl Simulate {
                 self.t_end_s / interval
             )));
         }
-        let source = Source::find(&self.model)?;
-        let equations = equations(&source, self.engine)?;
-        let mut setup = Setup::new(&source.file, &source.text, equations.model().info())?;
-        let validity = self.validity(setup.info)?;
-        setup.watch_ranges = validity.ranges == Response::Stop;
-        setup.set(&self.set)?;
-        let mut plan = Plan::new(&setup);
-        for file in &self.feedback {
-            let law = feedback::read(file, &setup)?;
-            setup.start_from_law(&law)?;
-            plan.feedback(law)?;
-        }
-        setup.start(&self.initial)?;
-        for assignment in &self.input {
-            plan.expression(assignment, &setup)?;
-        }
-        if let Some(file) = &self.inputs {
-            let (table, inputs) = tabulated::read(file, &self.model, &setup, equations.model())?;
-            plan.recording(table, &inputs, &setup)?;
-        }
-        let method = match self.method {
-            Integrator::Dop853 => Method::Dop853,
-            Integrator::Dopri5 => Method::Dopri5,
-            Integrator::Rk4 => Method::Rk4 { step: interval },
-        };
-        let run = Run {
-            equations: &equations,
-            setup: &setup,
-            t_end: self.t_end_s,
-            interval,
-            method,
+        let model = engine::model(&self.model, self.engine)?;
+        let motion = Motion {
+            interval: Some(interval),
+            method: match self.method {
+                Integrator::Dop853 => Method::Dop853,
+                Integrator::Dopri5 => Method::Dopri5,
+                Integrator::Rk4 => Method::Rk4 { step: interval },
+            },
             options: Options {
                 max_steps: self.max_steps,
                 ..Options::with_tolerances(self.rtol, self.atol)
             },
+            parameters: self.set.clone(),
+            initial: self.initial.clone(),
+            inputs: self.input.clone(),
+            recorded: self.inputs.clone(),
+            laws: self.feedback.iter().cloned().map(Law::File).collect(),
             extras: Extras {
+                outputs: true,
+                energies: true,
                 reactions: self.reactions,
                 contacts: self.reactions,
                 conditions: self.conditions,
-                ..standard_extras()
+                ..Extras::default()
             },
-            validity,
+            validity: self.validity(model.info())?,
+            ..Motion::new(self.t_end_s)
         };
-        let undriven = plan.is_empty();
-        let (trajectory, failure) = run.run(plan)?;
+        let Simulated {
+            trajectory,
+            failure,
+            undriven,
+        } = simulated(&model, &motion)?;
 
         for [wanted, name] in trajectory.renamed() {
             note(&format!(
@@ -197,14 +176,7 @@ impl Simulate {
             picture::write(path, &Figure::of_states_and_inputs(&trajectory).to_svg())?;
         }
         if let Some(path) = &self.html {
-            let mechanism = &setup.mechanism;
-            let page = film::page(
-                mechanism,
-                equations.model(),
-                &trajectory,
-                failure.as_deref(),
-            )
-            .map_err(|findings| report(mechanism, setup.spec, &findings))?;
+            let page = model.page(&trajectory, failure.as_deref())?;
             files::write(path, &page)?;
         }
         if let Some(path) = &self.json {
@@ -212,7 +184,7 @@ impl Simulate {
         }
         let mut told = summary::text(&trajectory);
         if undriven && failure.is_none() && summary::rests(&trajectory) {
-            told += &hint(&setup);
+            told += &hint(model.info());
         }
         output::print_beside(&told, &[&self.csv, &self.plot, &self.html, &self.json])?;
         match failure {
@@ -255,9 +227,6 @@ impl Simulate {
     }
 }
 
-/// Rows of a trajectory that fit into memory anywhere.
-const MOST_ROWS: f64 = 2e6;
-
 fn positive(flag: &str, value: f64) -> Result<(), Error> {
     if value.is_finite() && value > 0.0 {
         return Ok(());
@@ -267,8 +236,8 @@ fn positive(flag: &str, value: f64) -> Result<(), Error> {
     )))
 }
 
-fn hint(setup: &Setup<'_>) -> String {
-    let first = setup.info.coordinate_quantities().last();
+fn hint(info: &ModelInfo) -> String {
+    let first = info.coordinate_quantities().last();
     let name = first.map_or("NAME", |coordinate| coordinate.name.as_ref());
     format!(
         "  nothing moves: the mechanism starts at rest and nothing drives it; try `--initial \
@@ -276,73 +245,12 @@ fn hint(setup: &Setup<'_>) -> String {
     )
 }
 
-/// What every motion is recorded with.
-pub(super) fn standard_extras() -> Extras {
-    Extras {
-        outputs: true,
-        energies: true,
-        ..Extras::default()
-    }
-}
-
-/// A motion to be computed.
-pub(super) struct Run<'a> {
-    /// What moves.
-    pub(super) equations: &'a Equations,
-    /// Its numbers.
-    pub(super) setup: &'a Setup<'a>,
-    /// End in s.
-    pub(super) t_end: f64,
-    /// Between the rows of the output, in s.
-    pub(super) interval: f64,
-    /// The integrator.
-    pub(super) method: Method,
-    /// Its tolerances.
-    pub(super) options: Options,
-    /// What is recorded besides states and inputs.
-    pub(super) extras: Extras,
-    /// What is watched.
-    pub(super) validity: Validity,
-}
-
-impl Run<'_> {
-    /// The motion, and why it ends early if it does.
-    pub(super) fn run(&self, plan: Plan) -> Result<(Trajectory, Option<String>), Error> {
-        let controller = plan.controller(self.setup, self.t_end)?;
-        let clock = progress::clock(self.t_end);
-        let simulation = Simulation {
-            parameters: self.setup.parameters.clone(),
-            initial_state: self.setup.initial.clone(),
-            inputs: &controller,
-            span: [0.0, self.t_end],
-            method: self.method,
-            options: self.options,
-            sampling: Sampling::Every(self.interval),
-            extras: self.extras,
-            validity: self.validity,
-            progress: Some(Box::new(|t| clock.set_position(progress::milliseconds(t)))),
-            ..Simulation::new(self.equations.model())
-        };
-        let outcome = simulation.run();
-        clock.finish_and_clear();
-        match outcome {
-            Ok(trajectory) => {
-                let ended = trajectory.ending == Some(Ending::Stopped);
-                let last = trajectory.breaches.last().filter(|_| ended);
-                let reason = last.map(|breach| breach.describe_in_full(trajectory.info()));
-                Ok((trajectory, reason))
-            }
-            Err(error) => {
-                let reason = error.to_string();
-                match error {
-                    SimulationError::Integration { trajectory, .. } => {
-                        Ok((*trajectory, Some(reason)))
-                    }
-                    _ => Err(Error::Usage(reason)),
-                }
-            }
-        }
-    }
+/// The motion, under a bar.
+pub(super) fn simulated(model: &Model, motion: &Motion) -> Result<Simulated, Error> {
+    let clock = progress::clock(motion.t_end);
+    let simulated = motion.simulate(model, |t| clock.set_position(progress::milliseconds(t)));
+    clock.finish_and_clear();
+    simulated
 }
 
 /// Writes a trajectory as CSV.

@@ -9,12 +9,13 @@ use appell_report::figure::Map;
 use serde_json::{Value, json};
 
 use super::StabilityCommand;
-use crate::motions::{self, Span, told};
+use crate::motions::{self, told};
 use crate::output;
 use crate::picture;
 use appell::Error;
 use appell::files;
 use appell::setup::Setup;
+use appell::steady::Span;
 use appell::steady::regions::{self, Shown};
 use appell::steady::{Asked, export};
 

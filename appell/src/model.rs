@@ -1,0 +1,202 @@
+//! A model: the spec, its equations, and every question about them as one call.
+
+use std::path::{Path, PathBuf};
+
+use appell_codegen::compile::report;
+use appell_gap::data::DataSet;
+use appell_gap::{diagnose as gap, identify};
+use appell_runtime::Trajectory;
+use appell_runtime::model::{Model as Equations, ModelInfo};
+
+use crate::control::{Design, Request};
+use crate::engine::{self, Engine};
+use crate::motion::{Motion, Simulated};
+use crate::setup::Setup;
+use crate::source::Source;
+use crate::steady::{Answer, Asked, Question};
+use crate::{Error, diagnosis, recording};
+
+/// A mechanism with its equations of motion.
+///
+/// ```
+/// use appell::{Model, Motion};
+///
+/// let model = Model::shipped("pendulum")?;
+/// let motion = model.simulate(&Motion::new(2.0).from("theta", "30deg"))?;
+/// assert!(motion.trajectory.column("theta").is_some());
+/// # Ok::<(), appell::Error>(())
+/// ```
+pub struct Model {
+    source: Source,
+    equations: engine::Equations,
+}
+
+impl Model {
+    /// The model of a spec: its equations are derived and compiled in this process.
+    ///
+    /// ```
+    /// let spec = include_str!("../../generated/mechanisms/pendulum.toml");
+    /// let model = appell::Model::from_spec(spec)?;
+    /// assert_eq!(model.info().name, "pendulum");
+    /// # Ok::<(), appell::Error>(())
+    /// ```
+    pub fn from_spec(text: &str) -> Result<Self, Error> {
+        Self::of(
+            Source {
+                file: "spec.toml".to_owned(),
+                text: text.to_owned(),
+                shipped: None,
+            },
+            None,
+        )
+    }
+
+    /// The model of a spec file.
+    pub fn from_file(path: &Path) -> Result<Self, Error> {
+        Self::of(Source::read(path)?, None)
+    }
+
+    /// A shipped model, compiled ahead of time.
+    pub fn shipped(name: &str) -> Result<Self, Error> {
+        Self::of(Source::shipped(name)?, None)
+    }
+
+    /// A shipped name or the path of a spec file, as the command line takes it.
+    pub fn find(model: &str) -> Result<Self, Error> {
+        Self::of(Source::find(model)?, None)
+    }
+
+    /// The model of a spec that was found, with a chosen engine; without one the emitted code of shipped
+    /// mechanisms, and machine code for others.
+    pub fn of(source: Source, engine: Option<Engine>) -> Result<Self, Error> {
+        let equations = match engine {
+            None => engine::Equations::at_hand(&source)?,
+            Some(engine) => engine::Equations::new(&source, engine)?,
+        };
+        Ok(Self { source, equations })
+    }
+
+    /// The same with the adjoints that [`identify`](Self::identify) asks for.
+    pub fn for_estimation(source: Source) -> Result<Self, Error> {
+        let equations = engine::Equations::for_estimation(&source)?;
+        Ok(Self { source, equations })
+    }
+
+    /// The equations of motion: rates, Jacobians, Appell's equations, energies, outputs.
+    pub fn equations(&self) -> &dyn Equations {
+        self.equations.model()
+    }
+
+    /// Names, units and sizes.
+    pub fn info(&self) -> &ModelInfo {
+        self.equations().info()
+    }
+
+    /// The spec.
+    pub fn source(&self) -> &Source {
+        &self.source
+    }
+
+    /// Shipped name, or path of the spec.
+    pub(crate) fn name(&self) -> &str {
+        self.source
+            .shipped
+            .map_or(&self.source.file, |shipped| shipped.name)
+    }
+
+    /// Why the equations are interpreted although machine code was asked for.
+    pub fn note(&self) -> Option<&str> {
+        self.equations.note()
+    }
+
+    /// The numbers of the spec, to be changed by texts with units.
+    pub fn setup(&self) -> Result<Setup<'_>, Error> {
+        Setup::new(&self.source.file, &self.source.text, self.info())
+    }
+
+    /// Integrates the equations of motion.
+    pub fn simulate(&self, motion: &Motion) -> Result<Simulated, Error> {
+        motion.simulate(self, |_| {})
+    }
+
+    /// A motion as a page with the moving mechanism; `ending` says why it ended early.
+    pub fn page(&self, motion: &Trajectory, ending: Option<&str>) -> Result<String, Error> {
+        let mechanism = &self.setup()?.mechanism;
+        appell_report::film::page(mechanism, self.equations(), motion, ending)
+            .map_err(|findings| report(mechanism, &self.source.text, &findings).into())
+    }
+
+    /// Steady motions with their stability, alone or along a quantity.
+    ///
+    /// ```
+    /// use appell::{Model, steady::{Answer, Question}};
+    ///
+    /// let model = Model::shipped("rolling_wheel")?;
+    /// let upright = Question::default().fix("theta", 0).fix("omega_2", "20rad/s");
+    /// let Answer::Motions(motions) = model.steady(&upright)? else {
+    ///     panic!("it was not followed along anything")
+    /// };
+    /// assert!(!motions.is_empty());
+    /// # Ok::<(), appell::Error>(())
+    /// ```
+    pub fn steady(&self, question: &Question) -> Result<Answer, Error> {
+        self.asked(question)?.answer()
+    }
+
+    /// A question about steady motions with its names resolved: also for charts over two quantities.
+    pub fn asked(&self, question: &Question) -> Result<Asked<'_>, Error> {
+        let mut setup = self.setup()?;
+        setup.set(&question.parameters)?;
+        question.resolve(self.equations(), &setup)
+    }
+
+    /// Gains about a steady motion, and what the inputs reach.
+    ///
+    /// ```
+    /// use appell::{Model, Motion, control::Request};
+    ///
+    /// let model = Model::shipped("cart_pole")?;
+    /// let design = model.control(&Request::default().poles("-3"))?;
+    /// let law = model.law(&design)?;
+    /// let motion = model.simulate(&Motion::new(5.0).feedback(&law))?;
+    /// assert!(motion.failure.is_none());
+    /// # Ok::<(), appell::Error>(())
+    /// ```
+    pub fn control(&self, request: &Request) -> Result<Design, Error> {
+        request.design(self)
+    }
+
+    /// A design as the text of a feedback file, for [`Motion::feedback`].
+    pub fn law(&self, design: &Design) -> Result<String, Error> {
+        let setup = self.setup()?;
+        Ok(crate::control::law_file::text(design, &setup, self.name()))
+    }
+
+    /// Recordings of the mechanism: a folder with a `recording.toml`, or CSV files.
+    pub fn recordings(&self, paths: &[PathBuf]) -> Result<DataSet, Error> {
+        recording::read_of(&self.source, paths)
+    }
+
+    /// The parameters that make recordings most likely; `stage` hears what is being done. The model has to
+    /// be one [for estimation](Self::for_estimation).
+    pub fn identify(
+        &self,
+        set: &DataSet,
+        options: &identify::Options,
+        stage: impl FnMut(&'static str),
+    ) -> Result<identify::Answer, Error> {
+        recording::refuse_slow(set)?;
+        identify::identify(set, self.equations(), options, stage)
+            .map_err(|error| diagnosis::identification(&error))
+    }
+}
+
+/// Where the model that a data set names and its recordings disagree, which effect is missing, and how far
+/// it closes the gap; `stage` hears what is being done.
+pub fn diagnose(
+    set: &DataSet,
+    options: &gap::Options,
+    stage: impl FnMut(&'static str),
+) -> Result<gap::Report, Error> {
+    diagnosis::Library::shipped()?.diagnose(set, options, stage)
+}

@@ -30,6 +30,7 @@ pub mod setup;
 pub mod source;
 pub mod steady;
 
+pub use appell_gap::diagnose::Options as Diagnosis;
 pub use error::Error;
 pub use model::{Model, diagnose};
 pub use motion::{Law, MOST_ROWS, Motion, Simulated};

@@ -35,7 +35,7 @@ impl Demo {
         let equations = crate::engine::equations(&source, None)?;
         let mut setup = Setup::new(&source.file, &source.text, equations.model().info())?;
         let law = feedback::parse("lane_change_5_m_s.toml", LANE_CHANGE, &setup)?;
-        setup.start_from_law(&law)?;
+        law.start(&mut setup)?;
         let mut plan = Plan::new(&setup);
         plan.feedback(law)?;
         let run = Run {

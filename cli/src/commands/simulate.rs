@@ -146,7 +146,7 @@ impl Simulate {
         let mut plan = Plan::new(&setup);
         for file in &self.feedback {
             let law = feedback::read(file, &setup)?;
-            setup.start_from_law(&law)?;
+            law.start(&mut setup)?;
             plan.feedback(law)?;
         }
         setup.start(&self.initial)?;

@@ -110,7 +110,7 @@ impl StateFunction {
             pi: graph.as_symbol(symbols.pi),
         };
         let count = exprs.len();
-        let layout = Layout::Vector(count);
+        let layout = Layout::List(count);
         let results = vec![Array::new("values", "Values.", layout, exprs)];
         let function = Function::new(FunctionKind::Outputs, results);
         let sizes = Sizes::from(&info);
@@ -121,6 +121,7 @@ impl StateFunction {
             arguments,
             dependent: Vec::new(),
             systems: Vec::new(),
+            hints: Vec::new(),
             functions: vec![function],
         };
         let schedule = schedule(&program, &program.functions[0]);

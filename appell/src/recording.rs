@@ -1,10 +1,10 @@
 //! Recordings: found, read, and what of them changes what can be concluded.
 
-use std::fmt::Write as _;
 use std::path::PathBuf;
 
 use appell_gap::data::{self, DataError, DataSet, Finding, FindingKind, Run, Spec};
 use appell_models::ALL;
+use appell_report::recording::sentence;
 use appell_report::text::number;
 use appell_spec::Severity;
 
@@ -73,26 +73,4 @@ pub fn warnings(set: &DataSet) -> Vec<String> {
     let findings = set.findings.iter();
     let grave = findings.filter(|finding| finding.kind.severity() == Severity::Warning);
     grave.map(sentence).collect()
-}
-
-/// `warning: run.csv:12: theta: 3 values of 200 missing`
-pub fn sentence(finding: &Finding) -> String {
-    let mut text = format!("{}: ", severity(finding));
-    if let Some(run) = &finding.run {
-        let line = finding.line.map(|line| format!(":{line}"));
-        let _ = write!(text, "{run}{}: ", line.unwrap_or_default());
-    }
-    if let Some(channel) = &finding.channel {
-        let _ = write!(text, "{channel}: ");
-    }
-    text + &finding.message
-}
-
-/// The word for how grave a finding is.
-pub fn severity(finding: &Finding) -> &'static str {
-    match finding.kind.severity() {
-        Severity::Error => "error",
-        Severity::Warning => "warning",
-        Severity::Note => "note",
-    }
 }

@@ -1,24 +1,17 @@
 //! A gap report, for people and for programs.
 
-mod doubt;
-mod numbers;
-mod page;
-mod plots;
-
 use std::fmt::Write as _;
 use std::path::Path;
 
 use appell_gap::data::DataSet;
 use appell_gap::diagnose::{
-    Ahead, Changes, DiagnoseError, ENGINE, Experiment, GapVerdict, Hint, Hypothesis, Report,
+    Ahead, Changes, DiagnoseError, ENGINE, Experiment, GapVerdict, Hypothesis, Report,
 };
 use appell_gap::effects::{EffectError, ModelError};
 use serde_json::{Value, json};
 
-use numbers::short;
-pub(crate) use page::page;
-
 use appell::Error;
+use appell_report::gap::{doubts, hinted, joined, left_out, sentence, short};
 use appell_report::text::{number, with_unit};
 
 /// Hypotheses that the summary lists.
@@ -35,15 +28,6 @@ pub(crate) fn failure(error: DiagnoseError) -> Error {
         | DiagnoseError::NothingToFit
         | DiagnoseError::Model(ModelError::Edit(_)) => Error::Data(error.to_string()),
         other => Error::Computation(other.to_string()),
-    }
-}
-
-/// `a + b`
-fn joined(effects: &[String]) -> String {
-    if effects.is_empty() {
-        "nominal model".to_owned()
-    } else {
-        effects.join(" + ")
     }
 }
 
@@ -70,7 +54,7 @@ pub(crate) fn text(report: &Report, next: Option<&Path>) -> String {
     for hypothesis in report.which.iter().take(LISTED) {
         let _ = writeln!(text, "  which     {}", line(hypothesis));
     }
-    for doubt in doubt::doubts(report) {
+    for doubt in doubts(report) {
         let _ = writeln!(text, "  unit?     {doubt}");
     }
     for group in &report.tied {
@@ -147,63 +131,6 @@ pub(crate) fn text(report: &Report, next: Option<&Path>) -> String {
         levels.join(", ")
     );
     text
-}
-
-/// A hint in words.
-fn hinted(hint: &Hint) -> String {
-    format!(
-        "the gap in the equation of {} depends on {}, which the model does not know",
-        hint.equation, hint.variable
-    )
-}
-
-/// That rows were left out, if any were.
-fn left_out(report: &Report) -> Option<String> {
-    let [fitted, all] = report.rows;
-    (fitted < all).then(|| {
-        format!(
-            "{fitted} of {all} rows to fit were fitted, in stretches that are spread over the runs"
-        )
-    })
-}
-
-/// The verdict in one sentence.
-fn sentence(report: &Report) -> String {
-    let about: Vec<&str> = report
-        .found
-        .iter()
-        .map(|found| found.about.as_str())
-        .collect();
-    match report.verdict {
-        GapVerdict::NoGap => "no gap beyond noise and disturbance".to_owned(),
-        GapVerdict::Explained => format!("the gap is explained by {}", about.join(" and ")),
-        GapVerdict::Ambiguous => format!(
-            "there is a gap; {} explains it best ({:.0} %), but {} cannot be ruled out",
-            about.join(" and "),
-            100.0 * report.which[0].probability,
-            rivals(report).join(", ")
-        ),
-        GapVerdict::Unexplained => {
-            let left = report.left.as_ref().map(|left| format!(": {}", left.about));
-            let left = left.unwrap_or_default();
-            format!("there is a gap that nothing in the library explains{left}")
-        }
-    }
-}
-
-/// The hypotheses that are tied with the first one, with their probabilities.
-fn rivals(report: &Report) -> Vec<String> {
-    let first = &report.which[0].effects;
-    let groups = report.tied.iter();
-    let tied = groups.filter(|group| group.contains(first)).flatten();
-    let named = |effects: &Vec<String>| {
-        let probability = report.which.iter().find(|one| one.effects == *effects)?;
-        let percent = 100.0 * probability.probability;
-        Some(format!("{} ({percent:.0} %)", joined(effects)))
-    };
-    tied.filter(|effects| *effects != first)
-        .filter_map(named)
-        .collect()
 }
 
 fn line(hypothesis: &Hypothesis) -> String {

@@ -7,7 +7,6 @@ mod design_report;
 mod diagnosed;
 mod engine;
 mod failure;
-mod film;
 mod identified;
 mod motions;
 mod output;

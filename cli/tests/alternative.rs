@@ -1,9 +1,7 @@
 //! `appell diagnose --alternative`: another spec of the same thing is a hypothesis like an effect.
 
-mod rig;
-mod support;
-
-use support::{Folder, number, repository};
+use crate::rig;
+use crate::support::{Folder, number, repository};
 
 /// The carriage with a friction that no effect of the library has, and one more place.
 fn other(folder: &Folder, replaced: &[(&str, &str)]) {

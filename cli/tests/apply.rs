@@ -1,10 +1,7 @@
 //! `appell apply` closes the gap in the user's own spec.
 
-mod rig;
-mod support;
-
-use rig::closed;
-use support::{Folder, number, repository};
+use crate::rig::{self, closed};
+use crate::support::{Folder, number, repository};
 
 /// A rig with dry friction, the user's own spec of it, and the gap report.
 fn diagnosed() -> Folder {

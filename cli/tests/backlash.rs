@@ -1,11 +1,9 @@
 //! Play in a gear is found beside an exact simulation of one.
 
-mod rig;
-mod support;
-
-use rig::geared;
 use serde_json::json;
-use support::number;
+
+use crate::rig::{self, geared};
+use crate::support::{self, number};
 
 const SHARE: f64 = 0.2;
 const HALF_GAP: f64 = 6e-3;

@@ -1,8 +1,6 @@
 //! Whatever is wrong is told, with what to write instead, and nothing is left behind.
 
-mod support;
-
-use support::Folder;
+use crate::support::Folder;
 
 #[test]
 fn unknown_models_come_with_a_suggestion_and_the_list() {

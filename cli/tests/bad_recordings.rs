@@ -1,10 +1,7 @@
 //! `appell diagnose` on recordings that are wrong: a clear error with its place, or a warning.
 
-mod rig;
-mod support;
-
-use rig::viscous;
-use support::Folder;
+use crate::rig::viscous;
+use crate::support::Folder;
 
 /// A run with changed lines, from 0 for the header.
 fn changed(change: impl Fn(usize, &str) -> Option<String>) -> Folder {

@@ -1,8 +1,6 @@
 //! The other commands, from a new user's first to the last.
 
-mod support;
-
-use support::Folder;
+use crate::support::{self, Folder};
 
 #[test]
 fn list_names_every_shipped_mechanism() {

@@ -1,9 +1,8 @@
 //! `appell control`: designs, their files, and what is told where there is none.
 
-mod support;
-
 use serde_json::Value;
-use support::Folder;
+
+use crate::support::Folder;
 
 const STRAIGHT: &[&str] = &["control", "unicycle", "--at", "omega_2=1[m/s]/R"];
 const LANE: &[&str] = &["--outputs", "omega_1,theta,sigma,r,psi,y_G"];

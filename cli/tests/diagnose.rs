@@ -1,12 +1,9 @@
 //! `appell diagnose` finds what a simulated rig has and its model lacks, and finds nothing where there
 //! is nothing.
 
-mod browser;
-mod rig;
-mod support;
-
-use rig::{dry, viscous};
-use support::Folder;
+use crate::browser;
+use crate::rig::{dry, viscous};
+use crate::support::Folder;
 
 fn report(folder: &Folder) -> serde_json::Value {
     folder.done(&["diagnose", "--data", ".", "--json", "report.json"]);

@@ -1,9 +1,8 @@
 //! `appell evaluate`: the exchange format, the engines, the mistakes.
 
-mod support;
-
 use serde_json::json;
-use support::{Folder, assert_close, number, repository};
+
+use crate::support::{Folder, assert_close, number, repository};
 
 /// Rounding of a handful of operations.
 const ROUNDING: f64 = 1e-14;

@@ -1,9 +1,8 @@
 //! Events of simulations: contacts that are lost or slip, ranges that are left.
 
-mod support;
-
 use serde_json::Value;
-use support::{Folder, assert_close, number, repository};
+
+use crate::support::{Folder, assert_close, number, repository};
 
 /// Four digits of the table of manoeuvres.
 const TABLE: f64 = 5e-5;

@@ -1,8 +1,6 @@
 //! Every command ends with the status that the documentation gives.
 
-mod support;
-
-use support::Folder;
+use crate::support::Folder;
 
 /// A folder with one file of each kind, right and wrong.
 fn folder() -> Folder {

@@ -1,9 +1,7 @@
 //! The next experiment of `appell diagnose` tells apart what its recordings cannot.
 
-mod rig;
-mod support;
-
-use support::number;
+use crate::rig;
+use crate::support::number;
 
 /// So little friction that these recordings hardly tell its law.
 const FRICTION: f64 = 0.003;

@@ -1,13 +1,11 @@
 //! Files appear complete or not at all, wherever they are meant to be.
 #![cfg(unix)]
 
-mod support;
-
 use std::fs::{self, Permissions};
 use std::os::unix::fs::{FileTypeExt as _, PermissionsExt as _, symlink};
 use std::process::Command;
 
-use support::Folder;
+use crate::support::Folder;
 
 /// Writes a page of the pendulum to a file.
 const DERIVE: [&str; 5] = ["derive", "pendulum", "--stage", "kinematics", "--out"];

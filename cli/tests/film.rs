@@ -1,11 +1,9 @@
 //! `appell simulate --html`: the page with the moving mechanism, opened in a real browser.
 
-mod browser;
-mod support;
-
-use browser::{Browser, pause};
 use serde_json::json;
-use support::{Folder, assert_close, repository};
+
+use crate::browser::{Browser, pause};
+use crate::support::{Folder, assert_close, repository};
 
 /// Places on the page are in single precision.
 const SINGLE: f64 = 1e-6;

@@ -1,10 +1,10 @@
 //! `appell identify` finds what a simulated rig was made with, and says what it does not know.
 
-mod support;
-
 use std::fmt::Write as _;
 
-use support::{Folder, Noise};
+use appell_test_kit::Random;
+
+use crate::support::Folder;
 
 const DESCRIPTION: &str = r#"
 mechanism   = "pendulum"
@@ -22,7 +22,7 @@ test = ["c.csv"]
 "#;
 
 /// A pendulum of l = 0.53 m and I = 0.03 kg m², driven by held torques, seen with noise of 0.1°.
-fn rig(folder: &Folder, name: &str, start: &str, noise: &mut Noise) {
+fn rig(folder: &Folder, name: &str, start: &str, noise: &mut Random) {
     let initial = format!("theta={start}");
     let mut inputs = "t,tau\n".to_owned();
     for row in 0..=800 {
@@ -59,7 +59,7 @@ fn rig(folder: &Folder, name: &str, start: &str, noise: &mut Noise) {
             .split(',')
             .map(|value| value.parse().expect("a number"))
             .collect();
-        let seen = values[theta].to_degrees() + 0.1 * noise.next();
+        let seen = values[theta].to_degrees() + 0.1 * noise.normal();
         let _ = writeln!(text, "{},{seen},{}", values[t], values[tau]);
     }
     folder.write(name, &text);
@@ -68,7 +68,7 @@ fn rig(folder: &Folder, name: &str, start: &str, noise: &mut Noise) {
 fn data_set() -> Folder {
     let folder = Folder::new();
     folder.write("recording.toml", DESCRIPTION);
-    let mut noise = Noise(1);
+    let mut noise = Random::new(1);
     for (name, start) in [("a.csv", "1.2"), ("b.csv", "-0.6"), ("c.csv", "2.0")] {
         rig(&folder, name, start, &mut noise);
     }

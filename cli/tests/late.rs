@@ -1,13 +1,11 @@
 //! What comes late by a part of a row is found, beside another effect too; names that no recording of the
 //! rig tells apart are tied.
 
-mod rig;
-mod support;
-
 use std::collections::BTreeSet;
 
-use rig::late;
 use serde_json::Value;
+
+use crate::rig::late;
 
 const DELAY: f64 = 0.003;
 /// Where the one channel shows all of the motion, a sensor or an actuator may be late; so short a lag is a

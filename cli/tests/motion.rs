@@ -1,10 +1,8 @@
 //! `appell motion` and `appell inverse`: from captures to recordings, and to what no one measured.
 
-mod support;
-
 use std::fmt::Write as _;
 
-use support::{Folder, number, repository};
+use crate::support::{Folder, number, repository};
 
 /// A pole on a cart that is pushed to and fro, without noise.
 const PUSHED: &[&str] = &[

@@ -1,9 +1,8 @@
 //! The questions of the steering paper, asked of other mechanisms by the same commands.
 
-mod support;
-
 use serde_json::Value;
-use support::{Folder, assert_close, number};
+
+use crate::support::{Folder, assert_close, number};
 
 /// The digits that Meijaard, Papadopoulos, Ruina and Schwab (2007) publish.
 const WEAVE: f64 = 4.292_382_536_341;

@@ -1,8 +1,7 @@
-//! Pictures by the name of their file. PNG is a feature; the gate runs this file with and without it.
+//! Pictures by the name of their file. PNG is a feature: the gate runs this file with it, and
+//! `cargo test --workspace` without.
 
-mod support;
-
-use support::Folder;
+use crate::support::Folder;
 
 const DRAW: [&str; 4] = ["draw", "pendulum", "--out", "pendulum.png"];
 

@@ -1,10 +1,8 @@
 //! `appell recording` tells what recordings hold, and refuses what cannot be read.
 
-mod support;
-
 use std::fmt::Write as _;
 
-use support::Folder;
+use crate::support::{self, Folder};
 
 const DESCRIPTION: &str = r#"
 mechanism   = "pendulum"

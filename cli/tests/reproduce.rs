@@ -1,11 +1,15 @@
-//! The books of the papers, made in full. They stay under the target folder for readers.
-
-mod support;
+//! The books of the papers. They stay under the target folder for readers.
 
 use std::path::Path;
 
+use appell_test_kit::budget;
 use serde_json::Value;
-use support::Folder;
+
+use crate::support::Folder;
+
+/// Points of its charts along each axis, in an ordinary run and for readers.
+const ORDINARY_GRID: usize = 60;
+const FULL_GRID: usize = 240;
 
 /// Statements of the book at least: every number from (1) to (91) is among them.
 const EQUATIONS: u32 = 91;
@@ -47,7 +51,18 @@ fn the_book_of_steering_has_every_equation_table_and_figure_and_all_statements_h
     let artefact = Path::new(env!("CARGO_TARGET_TMPDIR")).join("book");
     let out = artefact.to_str().expect("a path in UTF-8");
     let folder = Folder::new();
-    let told = folder.done(&["reproduce", "steering", "--out", out, "--json", "book.json"]);
+    let grid = budget(ORDINARY_GRID, FULL_GRID).to_string();
+    let made = [
+        "reproduce",
+        "steering",
+        "--grid",
+        &grid,
+        "--out",
+        out,
+        "--json",
+        "book.json",
+    ];
+    let told = folder.done(&made);
     assert!(told.stdout.contains("errata"), "{}", told.stdout);
 
     let book = folder.json("book.json");

@@ -1,8 +1,6 @@
 //! `appell simulate`: manoeuvres, inputs, failures.
 
-mod support;
-
-use support::{Folder, assert_close, number, repository};
+use crate::support::{Folder, assert_close, number, repository};
 
 /// Agreement with the published manoeuvres: eight digits.
 const EIGHT_DIGITS: f64 = 1e-8;

@@ -1,8 +1,6 @@
 //! Steady motions and their stability from the command line.
 
-mod support;
-
-use support::{Folder, assert_close, number};
+use crate::support::{Folder, assert_close, number};
 
 #[test]
 fn a_turning_motion_is_told_with_its_circle_and_its_contact() {

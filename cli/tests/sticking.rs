@@ -1,11 +1,9 @@
 //! Dry friction is found beside exact simulations of what really sticks.
 
-mod rig;
-mod support;
-
-use rig::sticking;
 use serde_json::{Value, json};
-use support::number;
+
+use crate::rig::sticking;
+use crate::support::number;
 
 /// Most of the time it slides, or most of the time it rests; forces reach 3.5 N.
 const FRICTIONS: [f64; 2] = [0.4, 1.8];

@@ -1,10 +1,8 @@
 //! A newcomer follows docs/gap-diagnosis.md from own recordings to an own improved spec: every file and
 //! every command of that section, as written.
 
-mod rig;
-mod support;
-
-use support::{Folder, repository};
+use crate::rig;
+use crate::support::{Folder, repository};
 
 const SECTION: &str = "## From your recordings to your improved spec\n";
 

@@ -1,11 +1,12 @@
 //! Readable Rust from a program. Nothing else in this crate knows how Rust is written.
 //!
 //! The files: [`types`] writes the structs, [`function`] signatures and rustdoc, [`body`] turns a
-//! schedule into statements, [`model`] implements the run-time trait, [`picture`] draws small
-//! matrices, [`layout`] places comments and blank lines, [`markdown`] writes the page about the
+//! schedule into statements, [`model`] implements the run-time trait, [`equations`] writes what a
+//! function computes as a person does, [`picture`] draws small matrices, [`layout`] places comments and blank lines, [`markdown`] writes the page about the
 //! model, and [`syntax`] holds short constructors.
 
 mod body;
+mod equations;
 mod error;
 mod function;
 mod layout;
@@ -92,7 +93,7 @@ pub fn emit(program: &Program, options: &Options) -> Result<Emitted, Error> {
     let mut results = Vec::new();
     let mut items = Vec::new();
     let mut solves = false;
-    for function in functions {
+    for &function in &functions {
         let schedule = schedule_tuned(program, function, options.tuning);
         let cost = OperationCount::of(&schedule);
         solves |= cost.solves > 0;
@@ -105,7 +106,7 @@ pub fn emit(program: &Program, options: &Options) -> Result<Emitted, Error> {
 
     let lu = solves.then(|| quote!(use #runtime::dense::{lu_factor, lu_solve};));
     let model = options.model_impl.then(|| quote!(use #runtime::model;));
-    let structs = types.argument_structs();
+    let structs = types.structs(&functions, options.model_impl);
     let head = quote! {
         use #runtime::Real;
         #lu
@@ -120,7 +121,7 @@ pub fn emit(program: &Program, options: &Options) -> Result<Emitted, Error> {
             .extend(parse(model::implementation(&types)?)?.items);
         file.items.extend(parse(model::info(&program.info))?.items);
     }
-    let conversions = types.conversions();
+    let conversions = types.conversions(&functions, options.model_impl, &runtime);
     file.items.extend(parse(quote!(#(#conversions)*))?.items);
     let mut source = options
         .spec

@@ -23,6 +23,8 @@ pub struct Program {
     /// Sizes of the linear systems of several unknowns that are solved with pivoting on the way to
     /// the rates.
     pub systems: Vec<usize>,
+    /// Values that readers know, for what has no other name on the way.
+    pub hints: Vec<Hint>,
     /// Functions, in the order in which a reader wants them.
     pub functions: Vec<Function>,
 }
@@ -44,6 +46,17 @@ impl Program {
                 .sum()
         })
     }
+}
+
+/// A value that readers know by a name, whether or not the derivation names it.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Hint {
+    /// The value.
+    pub value: Expr,
+    /// Its name.
+    pub name: String,
+    /// The name of minus the value, if it has one.
+    pub opposite: Option<String>,
 }
 
 /// Symbols of the arguments.
@@ -77,6 +90,10 @@ pub struct Function {
     pub results: Vec<Array>,
     /// What names on the way mean.
     pub glossary: Vec<Term>,
+    /// Which values on the way are computed together, under a heading, where they are needed first.
+    pub groups: Vec<Group>,
+    /// Left and right sides of equations, for readers: how a person writes what is solved.
+    pub equations: Vec<[Expr; 2]>,
     /// What else a caller should know, a sentence each.
     pub remarks: Vec<String>,
 }
@@ -92,23 +109,50 @@ pub struct Term {
     pub meaning: String,
 }
 
+/// Values that are computed under one heading.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Group {
+    /// One line.
+    pub title: String,
+    /// Their names: what they start with, and how they go on.
+    pub names: Vec<(String, Names)>,
+}
+
+impl Group {
+    /// Whether a name is one of those.
+    pub fn holds(&self, name: &str) -> bool {
+        let mut names = self.names.iter();
+        names.any(|(symbol, names)| names.fit(symbol, name))
+    }
+}
+
 /// How names go on after their symbol.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Names {
+    /// Not at all.
+    Alone,
     /// `_x`, `_y` or `_z`.
     Axes,
     /// Not at all, or with an underscore and anything.
     Any,
 }
 
+impl Names {
+    /// Whether a name is one of those of a symbol.
+    fn fit(self, symbol: &str, name: &str) -> bool {
+        let rest = name.strip_prefix(symbol);
+        rest.is_some_and(|rest| match self {
+            Self::Alone => rest.is_empty(),
+            Self::Axes => matches!(rest, "_x" | "_y" | "_z"),
+            Self::Any => rest.is_empty() || rest.starts_with('_'),
+        })
+    }
+}
+
 impl Term {
     /// Whether a name is one of those.
     pub fn explains(&self, name: &str) -> bool {
-        let rest = name.strip_prefix(self.symbol.as_str());
-        rest.is_some_and(|rest| match self.names {
-            Names::Axes => matches!(rest, "_x" | "_y" | "_z"),
-            Names::Any => rest.is_empty() || rest.starts_with('_'),
-        })
+        self.names.fit(&self.symbol, name)
     }
 }
 
@@ -129,6 +173,8 @@ impl Function {
             stages: Vec::new(),
             results,
             glossary: Vec::new(),
+            groups: Vec::new(),
+            equations: Vec::new(),
             remarks: Vec::new(),
         }
     }
@@ -144,6 +190,13 @@ impl Function {
     #[must_use]
     pub fn explaining(mut self, terms: Vec<Term>) -> Self {
         self.glossary.extend(terms);
+        self
+    }
+
+    /// The same with headings for what is computed together.
+    #[must_use]
+    pub fn grouping(mut self, groups: Vec<Group>) -> Self {
+        self.groups.extend(groups);
         self
     }
 
@@ -284,7 +337,7 @@ impl FunctionKind {
             Self::MassMatrix => (
                 "mass_matrix",
                 "MassMatrix",
-                "Mass matrix M = ∂²S/∂ω̇², symmetric. Rows and columns follow [`Speeds`].",
+                "Mass matrix M = ∂²S/∂ω̇², symmetric. Rows and columns follow [`Accelerations`].",
             ),
             Self::Bias => (
                 "bias",
@@ -311,11 +364,7 @@ impl FunctionKind {
                 "Jacobians",
                 "Rates ẋ with their derivatives by state and inputs.",
             ),
-            Self::ParameterJacobian => (
-                "parameter_jacobian",
-                "ParameterJacobian",
-                "P = ∂ẋ/∂p. Rows follow [`State`], columns [`Parameters`].",
-            ),
+            Self::ParameterJacobian => ("parameter_jacobian", "ParameterJacobian", "P = ∂ẋ/∂p."),
             Self::Energies => ("energies", "Energies", "Energies and power."),
             Self::ConstraintResidual => (
                 "constraint_residual",
@@ -380,7 +429,7 @@ pub struct Array {
     pub entries: Vec<Expr>,
     /// What each entry is called where it is computed.
     pub labels: Vec<String>,
-    /// What the rows and the columns of a matrix belong to.
+    /// What the rows and the columns of a plain list or matrix belong to.
     pub names: [Vec<String>; 2],
     /// Headings over the computation of the entries; entries under none are computed last.
     pub paragraphs: Vec<Paragraph>,
@@ -424,7 +473,7 @@ impl Array {
         Self::new(
             "rates",
             "ẋ, the rates of the state.",
-            Layout::State,
+            Layout::Vector(Space::Rates),
             entries,
         )
         .labelled(
@@ -436,25 +485,24 @@ impl Array {
         .under("Appell's equations, solved.", 0..speeds)
     }
 
-    /// A matrix of derivatives of ẋ, one paragraph per row. `columns` are the variables.
+    /// A matrix of derivatives of ẋ by a vector, one paragraph per row.
     pub fn jacobian(
         name: &str,
         about: &str,
-        states: &[Quantity],
-        columns: &[Quantity],
+        info: &ModelInfo,
+        by: Space,
         entries: Vec<Expr>,
     ) -> Self {
-        let layout = Layout::Matrix(states.len(), columns.len());
-        let labels = states.iter().flat_map(|row| {
-            let symbol = name.to_uppercase();
+        let columns = by.quantities(info);
+        let symbol = &name.to_uppercase();
+        let labels = info.states.iter().flat_map(|row| {
             let label = move |column: &Quantity| format!("{symbol}_{}_{}", row.name, column.name);
             columns.iter().map(label)
         });
+        let layout = Layout::Jacobian(Space::Rates, by);
         let mut array = Self::new(name, about, layout, entries).labelled(labels);
-        let all = |list: &[Quantity]| list.iter().map(|q| q.name.to_string()).collect();
-        array.names = [all(states), all(columns)];
-        for (i, state) in states.iter().enumerate() {
-            let title = format!("Row `{}` of {}.", state.name, name.to_uppercase());
+        for (i, state) in info.states.iter().enumerate() {
+            let title = format!("Row `{}_dot` of {symbol}.", state.name);
             array = array.under(&title, i * columns.len()..(i + 1) * columns.len());
         }
         array
@@ -485,21 +533,67 @@ impl Array {
     }
 }
 
+/// A vector of the model whose entries have names.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Space {
+    /// p: parameters.
+    Parameters,
+    /// x: pseudo-velocities, then coordinates.
+    State,
+    /// u: inputs, then signals and their rates.
+    Inputs,
+    /// y: outputs of the spec.
+    Outputs,
+    /// ẋ: pseudo-accelerations, then generalised velocities.
+    Rates,
+    /// ω̇: pseudo-accelerations.
+    Accelerations,
+    /// q̇: generalised velocities.
+    CoordinateRates,
+    /// Π and b: one pseudo-force per pseudo-velocity.
+    GeneralizedForces,
+    /// Rows of the constraints that geometry does not embed.
+    ConstraintRows,
+    /// Places with a reaction.
+    Reactions,
+}
+
+impl Space {
+    /// What the entries stand for: rates and forces for the state that changes. Rows of constraints
+    /// and reactions stand for none.
+    pub fn quantities(self, info: &ModelInfo) -> &[Quantity] {
+        match self {
+            Self::Parameters => &info.parameters,
+            Self::State | Self::Rates => &info.states,
+            Self::Inputs => &info.inputs,
+            Self::Outputs => &info.outputs,
+            Self::Accelerations | Self::GeneralizedForces => info.speed_quantities(),
+            Self::CoordinateRates => info.coordinate_quantities(),
+            Self::ConstraintRows | Self::Reactions => &[],
+        }
+    }
+}
+
 /// The shape of an array, and what labels its entries.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Layout {
     /// One number.
     Scalar,
-    /// One number per state.
-    State,
-    /// One number per pseudo-velocity.
-    Speeds,
-    /// One number per coordinate.
-    Coordinates,
-    /// One number per output.
-    Outputs,
-    /// A plain vector.
-    Vector(usize),
+    /// One number per entry of a vector.
+    Vector(Space),
+    /// So many numbers per entry of a vector.
+    Rows(Space, usize),
+    /// One number per pair of entries: derivatives of the first vector by the second.
+    Jacobian(Space, Space),
+    /// A plain list.
+    List(usize),
     /// A plain matrix of so many rows and columns.
     Matrix(usize, usize),
+}
+
+impl Layout {
+    /// Whether entries are told by a row and a column.
+    pub fn has_columns(self) -> bool {
+        matches!(self, Self::Rows(..) | Self::Jacobian(..) | Self::Matrix(..))
+    }
 }

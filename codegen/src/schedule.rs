@@ -54,5 +54,6 @@ pub fn schedule(program: &Program, function: &program::Function) -> Schedule {
 pub fn schedule_tuned(program: &Program, function: &program::Function, tuning: Tuning) -> Schedule {
     let derived = lower::lower(program, function);
     let cheapest = search::cheapest(&derived, tuning);
-    bind::bind(program, function, &cheapest)
+    let hints = meet::known_values(&cheapest, &lower::hints(program));
+    bind::bind(program, function, &cheapest, hints)
 }

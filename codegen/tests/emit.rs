@@ -4,15 +4,14 @@
 
 #![allow(clippy::unwrap_used, reason = "tests may panic")]
 
-mod emit_support;
-
 use appell_codegen::emit::{Error, Options, emit, emit_functions};
 use appell_codegen::interpreted::InterpretedModel;
 use appell_codegen::program::{FunctionKind, Program};
 use appell_codegen::schedule::{interpret, schedule};
 use appell_runtime::Dual;
 use appell_runtime::model::{At, Gradient, Model};
-use emit_support::{Numbers, SPEC, golden_options, mixture, quantity};
+
+use crate::emit_support::{self, Numbers, SPEC, golden_options, mixture, quantity};
 
 #[allow(non_snake_case, dead_code, unreachable_pub, clippy::pedantic)]
 mod unicycle {
@@ -42,7 +41,7 @@ fn gradient(model: &dyn Model, write: impl FnOnce(Gradient<'_>)) -> [Vec<u64>; 3
 fn emitted_adjoints_are_those_of_the_interpreter() {
     let interpreter = InterpretedModel::new(emit_support::with_adjoints());
     let models: [&dyn Model; 2] = [&interpreter, &with_adjoints::Pendulum];
-    let mut numbers = Numbers(11);
+    let mut numbers = Numbers::new(11);
     let info = interpreter.info();
     let (n, m, l) = (info.state_len(), info.input_len(), info.output_len());
     let (x, u) = (numbers.list(n), numbers.list(m));
@@ -101,7 +100,7 @@ fn bits(numbers: &[f64]) -> Vec<u64> {
 #[test]
 fn emitted_code_and_interpreter_agree_bit_for_bit() {
     let program = emit_support::unicycle();
-    let mut numbers = Numbers(7);
+    let mut numbers = Numbers::new(7);
     for _ in 0..200 {
         let (x, u, p) = (numbers.list(10), numbers.list(1), numbers.list(4));
         let at = At {
@@ -135,16 +134,17 @@ fn emitted_code_and_interpreter_agree_bit_for_bit() {
 #[test]
 fn everything_that_is_no_polynomial_agrees_bit_for_bit() {
     let program = mixture();
-    let mut numbers = Numbers(11);
+    let mut numbers = Numbers::new(11);
     for _ in 0..200 {
         let (t, x, p) = (numbers.next(), numbers.list(3), numbers.list(2));
         let state = mixture_model::State::from([x[0], x[1], x[2]]);
         let parameters = mixture_model::Parameters::from([p[0], p[1]]);
-        let inputs = mixture_model::Inputs::from([]);
+        let inputs = mixture_model::Inputs {};
         let found = mixture_model::jacobians(t, &parameters, &state, &inputs);
         let expected = interpreted(&program, FunctionKind::Jacobians, t, &x, &[], &p);
         assert_eq!(bits(&<[f64; 3]>::from(found.rates)), bits(&expected[0]));
-        assert_eq!(bits(found.a.as_flattened()), bits(&expected[1]));
+        let a = found.a.map(mixture_model::State::to_array).to_array();
+        assert_eq!(bits(a.as_flattened()), bits(&expected[1]));
         let found = mixture_model::outputs(t, &parameters, &state, &inputs);
         let expected = interpreted(&program, FunctionKind::Outputs, t, &x, &[], &p);
         assert_eq!(bits(&<[f64; 3]>::from(found)), bits(&expected[0]));
@@ -155,7 +155,7 @@ fn everything_that_is_no_polynomial_agrees_bit_for_bit() {
 #[test]
 fn emitted_jacobians_are_the_derivatives_of_the_emitted_rates() {
     const ROUNDING: f64 = 1e-9;
-    let mut numbers = Numbers(3);
+    let mut numbers = Numbers::new(3);
     let (x, u, p) = (numbers.list(10), numbers.list(1), numbers.list(4));
     let fixed =
         |list: &[f64]| -> Vec<Dual<f64, 10>> { list.iter().map(|&v| Dual::fixed(v)).collect() };
@@ -171,12 +171,70 @@ fn emitted_jacobians_are_the_derivatives_of_the_emitted_rates() {
         &unicycle::State::from(x),
         &unicycle::Inputs::from([u[0]]),
     );
-    for (row, rate) in <[Dual<f64, 10>; 10]>::from(rates).iter().enumerate() {
+    let a = found.a.map(unicycle::State::to_array).to_array();
+    for (row, rate) in rates.to_array().iter().enumerate() {
         for (column, partial) in rate.partials.iter().enumerate() {
-            let error = (partial - found.a[row][column]).abs() / (1.0 + partial.abs());
+            let error = (partial - a[row][column]).abs() / (1.0 + partial.abs());
             assert!(error < ROUNDING, "A[{row}][{column}]: {error}");
         }
     }
+}
+
+/// A step of Runge and Kutta is typed as in a textbook.
+#[test]
+fn states_and_rates_are_vectors() {
+    let parameters = unicycle::Parameters::default();
+    let inputs = unicycle::Inputs { u: 2.0 };
+    let f = |x: unicycle::State<f64>| unicycle::rates(&parameters, &x, &inputs);
+    let step = |x: unicycle::State<f64>, h: f64| {
+        let k1 = f(x);
+        let k2 = f(x + k1 * (0.5 * h));
+        let k3 = f(x + k2 * (0.5 * h));
+        let k4 = f(x + k3 * h);
+        x + (k1 + (k2 + k3) * 2.0 + k4) * (h / 6.0)
+    };
+    let start = unicycle::State {
+        omega_2: 3.0,
+        theta: 0.1,
+        ..unicycle::State::initial()
+    };
+    let [coarse, fine] = [1, 2].map(|parts| {
+        let h = 0.02 / f64::from(parts);
+        (0..parts).fold(start, |x, _| step(x, h))
+    });
+    let change = (fine - start)
+        .to_array()
+        .iter()
+        .fold(0.0, |a: f64, b| a.max(b.abs()));
+    let error = (fine - coarse)
+        .to_array()
+        .iter()
+        .fold(0.0, |a: f64, b| a.max(b.abs()));
+    assert!(change > 1e-3 && error < 1e-7, "{change} {error}");
+    let named = f(start);
+    let [rates, accelerations] = [
+        named.coordinate_rates().to_array().to_vec(),
+        named.accelerations().to_array().to_vec(),
+    ]
+    .map(|part| bits(&part));
+    assert_eq!([accelerations, rates].concat(), bits(&named.to_array()));
+}
+
+/// The mixture has no inputs.
+#[test]
+fn a_vector_without_entries_needs_no_scalar() {
+    assert_eq!(mixture_model::Inputs {}, mixture_model::Inputs::default());
+}
+
+/// `type` cannot name a field of Rust, and what is called so otherwise stays apart from it.
+#[test]
+fn words_of_rust_stay_different_names() {
+    let mut program = emit_support::unicycle();
+    let states = program.info.states.to_mut();
+    states[0].name = "type".into();
+    states[1].name = "type_".into();
+    let source = emit(&program, &golden_options(false)).unwrap().source;
+    assert!(source.contains("pub type_: T") && source.contains("pub type__: T"));
 }
 
 #[test]

@@ -1,16 +1,15 @@
 //! What is emitted is what the golden files say.
 //!
-//! `UPDATE_GOLDEN=1 cargo test -p appell-codegen --test emit_golden` writes them anew. They are
-//! modules of the test `emit`, so what is compared is what is compiled and run.
+//! `UPDATE_GOLDEN=1 cargo test -p appell-codegen emit_golden` writes them anew. They are
+//! modules of `emit.rs`, so what is compared is what is compiled and run.
 
 #![allow(clippy::unwrap_used, reason = "tests may panic")]
-
-mod emit_support;
 
 use std::path::Path;
 
 use appell_codegen::emit::{Emitted, emit};
-use emit_support::{golden_options, mixture, unicycle, with_adjoints};
+
+use crate::emit_support::{golden_options, mixture, unicycle, with_adjoints};
 
 fn is_golden(name: &str, emitted: &Emitted) {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/emit_golden");

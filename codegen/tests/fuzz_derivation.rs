@@ -7,7 +7,6 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::path::Path;
 use std::time::{Duration, Instant};
 
 use appell_codegen::audit::{audit, reasons};
@@ -15,15 +14,16 @@ use appell_codegen::emit::emit_functions;
 use appell_codegen::mechanics::{assemble, derive};
 use appell_codegen::program::FunctionKind;
 use appell_codegen::schedule::schedule;
+use appell_test_kit::{Random, budget, peak_memory, shipped};
 
-/// Cases in an ordinary run.
-const CASES: usize = 1500;
+/// Cases in an ordinary run and in a full one.
+const CASES: [usize; 2] = [150, 1500];
 /// A case takes milliseconds; the rest is room for a busy machine and a debug build.
 const SLOWEST: Duration = Duration::from_secs(4);
 /// How often a slow case may try again.
 const ATTEMPTS: usize = 4;
-/// Bound on the memory of the process.
-const MOST_KIB: u64 = 1 << 20;
+/// Bound on the memory of the process, in MB.
+const MOST_MEMORY: u64 = 1000;
 /// Functions of the program, one per case.
 const KINDS: [FunctionKind; 5] = [
     FunctionKind::Rates,
@@ -32,27 +32,6 @@ const KINDS: [FunctionKind; 5] = [
     FunctionKind::ConstraintForces,
     FunctionKind::Outputs,
 ];
-
-/// A small generator of pseudo-random numbers (`SplitMix64`).
-struct Dice(u64);
-
-impl Dice {
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
-    }
-
-    fn below(&mut self, n: usize) -> usize {
-        usize::try_from(self.next() % (n.max(1) as u64)).unwrap()
-    }
-
-    fn pick<'a>(&mut self, from: &[&'a str]) -> &'a str {
-        from[self.below(from.len())]
-    }
-}
 
 /// A piece of a spec: text in quotes with the key before it, a bare number, or anything else.
 #[derive(Clone, PartialEq)]
@@ -145,7 +124,7 @@ const FACTORS: [&str; 6] = [
 ];
 
 /// One change with a meaning.
-fn mutate(spec: &mut Vec<Token>, dice: &mut Dice) {
+fn mutate(spec: &mut Vec<Token>, dice: &mut Random) {
     let quoted: Vec<usize> = (0..spec.len())
         .filter(|&i| {
             matches!(&spec[i], Token::Quoted { key, .. }
@@ -269,28 +248,13 @@ fn exercise(text: &str, kind: FunctionKind, counts: &mut Counts) -> Duration {
     start.elapsed()
 }
 
-/// The most memory that the process has held, where the system tells.
-fn peak_kib() -> Option<u64> {
-    let status = std::fs::read_to_string("/proc/self/status").ok()?;
-    let line = status.lines().find(|line| line.starts_with("VmHWM"))?;
-    line.split_whitespace().nth(1)?.parse().ok()
-}
-
 #[test]
 fn damaged_mechanisms_do_no_harm() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../generated/mechanisms");
-    let mut files: Vec<_> = std::fs::read_dir(folder)
-        .unwrap()
-        .map(|entry| entry.unwrap().path())
-        .collect();
-    files.sort();
-    let specs: Vec<Vec<Token>> = files
-        .iter()
-        .map(|file| tokens(&std::fs::read_to_string(file).unwrap()))
-        .collect();
-    let number = |name: &str| std::env::var(name).ok().and_then(|n| n.parse().ok());
-    let cases: usize = number("APPELL_FUZZ_CASES").unwrap_or(CASES);
-    let mut dice = Dice(number("APPELL_FUZZ_SEED").unwrap_or(6) as u64);
+    let specs: Vec<Vec<Token>> = shipped().iter().map(|(_, text)| tokens(text)).collect();
+    let number =
+        |name: &str| -> Option<usize> { std::env::var(name).ok().and_then(|n| n.parse().ok()) };
+    let cases = number("APPELL_FUZZ_CASES").unwrap_or_else(|| budget(CASES[0], CASES[1]));
+    let mut dice = Random::new(number("APPELL_FUZZ_SEED").unwrap_or(6) as u64);
     let mut counts = Counts::default();
     for case in 0..cases {
         let mut spec = specs[dice.below(specs.len())].clone();
@@ -313,14 +277,14 @@ fn damaged_mechanisms_do_no_harm() {
             "case {case}, {kind:?}, took {took:?}:\n{text}"
         );
     }
-    let peak = peak_kib();
+    let peak = peak_memory();
     eprintln!(
-        "{cases} cases: {} loaded, {} derived, slowest {:?}, peak {peak:?} KiB",
+        "{cases} cases: {} loaded, {} derived, slowest {:?}, peak {peak:?} MB",
         counts.loaded, counts.derived, counts.slowest
     );
     assert!(
         counts.derived * 10 > cases,
         "most cases end before the derivation"
     );
-    assert!(peak.is_none_or(|peak| peak < MOST_KIB), "{peak:?} KiB");
+    assert!(peak.is_none_or(|peak| peak < MOST_MEMORY), "{peak:?} MB");
 }

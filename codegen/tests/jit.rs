@@ -1,14 +1,12 @@
 //! Schedules in machine code compute what the interpreter computes, bit for bit.
-#![cfg(feature = "jit")]
 #![allow(clippy::float_cmp, reason = "agreement is bit for bit")]
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
-
-mod jit_support;
 
 use appell_codegen::jit::NativeFunction;
 use appell_codegen::schedule::{Argument, Operation, ResultArray, Schedule, Step, Tree, Value};
 use appell_codegen::symbolic::{Function, Relation};
-use jit_support::{
+
+use crate::jit_support::{
     Point, SIZES, agrees, binary, compiled, function, interpreted, number, same, schedule, set,
     state, system, value,
 };

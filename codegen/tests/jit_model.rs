@@ -1,5 +1,4 @@
 //! A program in machine code behaves like every model.
-#![cfg(feature = "jit")]
 #![allow(clippy::float_cmp, reason = "agreement is bit for bit")]
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
@@ -69,7 +68,7 @@ fn pendulum() -> Program {
     let power = g.mul(u, w);
     let function = |kind, results: Vec<(&str, Vec<Expr>)>| {
         let array = |(name, entries): (&str, Vec<Expr>)| {
-            Array::new(name, "", Layout::Vector(entries.len()), entries)
+            Array::new(name, "", Layout::List(entries.len()), entries)
         };
         Function::new(kind, results.into_iter().map(array).collect())
     };
@@ -151,6 +150,7 @@ fn pendulum() -> Program {
         arguments,
         dependent: Vec::new(),
         systems: Vec::new(),
+        hints: Vec::new(),
         functions,
     }
 }

@@ -1,13 +1,11 @@
 //! Random schedules: machine code and interpreter agree bit for bit.
-#![cfg(feature = "jit")]
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
-
-mod jit_support;
 
 use appell_codegen::schedule::{Argument, Operation, Schedule, Step, Tree, Value};
 use appell_codegen::symbolic::{Function, Rational, Relation};
-use jit_support::{Point, agrees, schedule, value};
 use proptest::prelude::*;
+
+use crate::jit_support::{Point, agrees, schedule, value};
 
 /// A step whose trees name values by any number; [`assemble`] makes them earlier values.
 #[derive(Debug, Clone)]

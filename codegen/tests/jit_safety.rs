@@ -1,9 +1,6 @@
 //! Machine code refuses what it cannot handle, is shared between threads, and is freed.
-#![cfg(feature = "jit")]
 #![allow(clippy::float_cmp, reason = "agreement is bit for bit")]
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
-
-mod jit_support;
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::thread;
@@ -11,7 +8,8 @@ use std::thread;
 use appell_codegen::jit::{JitError, MOST_DEPTH, MOST_OPERATIONS, NativeFunction, Sizes};
 use appell_codegen::schedule::{Operation, Schedule, Step, Tree, Value};
 use appell_runtime::model::At;
-use jit_support::{
+
+use crate::jit_support::{
     Point, SIZES, agrees, binary, interpreted, number, same, schedule, set, state, system, value,
 };
 

@@ -8,8 +8,6 @@
     reason = "random numbers are small"
 )]
 
-mod emit_support;
-
 use std::collections::BTreeSet;
 
 use appell_codegen::program::{Function, FunctionKind, Layout, Program};
@@ -17,7 +15,8 @@ use appell_codegen::schedule::{
     OperationCount, Schedule, Step, Tuning, interpret, schedule, schedule_tuned,
 };
 use appell_codegen::symbolic::{Expr, Graph, Rational, Relation, evaluate};
-use emit_support::{Numbers, Sketch, mixture, polynomial, quantity, unicycle};
+
+use crate::emit_support::{Numbers, Sketch, mixture, polynomial, quantity, unicycle};
 
 fn of(program: &Program, kind: FunctionKind) -> Schedule {
     let function = program
@@ -72,7 +71,7 @@ fn a_schedule_computes_the_expressions() {
     // The order of operations differs; some digits cancel.
     const ROUNDING: f64 = 1e-11;
     for program in [unicycle(), mixture()] {
-        let mut numbers = Numbers(1);
+        let mut numbers = Numbers::new(1);
         for function in &program.functions {
             for _ in 0..10 {
                 let error = error(&program, function, &mut numbers);
@@ -153,7 +152,7 @@ fn random_program(numbers: &mut Numbers) -> Program {
     let entries: Vec<Expr> = known[known.len() - 10..].to_vec();
     sketch.function(
         FunctionKind::ConstraintResidual,
-        vec![("residual", Layout::Vector(10), entries)],
+        vec![("residual", Layout::List(10), entries)],
     );
     let function = sketch.program.functions.remove(0);
     sketch
@@ -166,7 +165,7 @@ fn random_program(numbers: &mut Numbers) -> Program {
 #[test]
 fn random_programs_keep_their_values() {
     const ROUNDING: f64 = 1e-8;
-    let mut numbers = Numbers(2024);
+    let mut numbers = Numbers::new(2024);
     for number in 0..500 {
         let program = random_program(&mut numbers);
         let error = error(&program, &program.functions[0], &mut numbers);
@@ -233,7 +232,7 @@ fn small(build: impl FnOnce(&mut Sketch, [Expr; 4]) -> Vec<Expr>) -> (Program, S
     let mut sketch = Sketch::new("small", 0, names(["x", "y"]), vec![], names(["m", "R"]));
     let symbols = ["x", "y", "m", "R"].map(|name| sketch.symbol(name));
     let entries = build(&mut sketch, symbols);
-    let layout = Layout::Vector(entries.len());
+    let layout = Layout::List(entries.len());
     sketch.function(
         FunctionKind::ConstraintResidual,
         vec![("residual", layout, entries)],
@@ -307,7 +306,7 @@ fn independent_denominators_share_a_division_where_divisions_are_dear() {
     let joint = schedule_tuned(&program, rates, tuning);
     assert_eq!(OperationCount::of(&joint).divide, 2);
     let separate = schedule(&program, rates);
-    let mut numbers = Numbers(5);
+    let mut numbers = Numbers::new(5);
     let (x, u, p) = (numbers.list(10), numbers.list(1), numbers.list(4));
     let [joint, separate] = [joint, separate].map(|s| interpret(&s, 0.0, &x, &u, &p).concat());
     for (joint, separate) in joint.iter().zip(&separate) {

@@ -2,15 +2,14 @@
 
 #![allow(clippy::unwrap_used, reason = "tests")]
 
-mod symbolic_random;
-
 use std::cell::Cell;
 
 use appell_codegen::symbolic::{
     Derivatives, Expr, Function, Graph, IdentityTest, Intervals, Node, Substitution, evaluate,
 };
 use proptest::prelude::*;
-use symbolic_random::{Kind, SYMBOLS, build, check, graph, programs, show, symbol};
+
+use crate::symbolic_random::{Kind, SYMBOLS, build, check, graph, programs, show, symbol};
 
 /// Values for the three symbols.
 fn values() -> [std::ops::Range<f64>; 3] {

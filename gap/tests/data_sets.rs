@@ -1,12 +1,11 @@
 //! Data sets are read as their descriptions say, mended where that is safe, refused where it is not.
 #![allow(clippy::unwrap_used, reason = "tests may panic")]
 
-mod common;
-
 use std::fmt::Write as _;
 
 use appell_gap::data::{DataSet, FindingKind, Measured, NoiseSource, Part, Role, Spec, read_bare};
-use common::{Folder, SWING, library, pendulum, swing};
+
+use crate::common::{Folder, SWING, library, pendulum, swing};
 
 /// Rounding of a change of units.
 const ROUNDING: f64 = 1e-15;

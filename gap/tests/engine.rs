@@ -1,11 +1,9 @@
 //! The numbers of one report, beside the version of the engine that finds them.
 
-mod common;
-
 use std::fmt::Write as _;
 
 use appell_gap::diagnose::{ENGINE, Options, diagnose};
-use common::{Folder, SWING, pendulum, swing};
+use crate::common::{Folder, SWING, pendulum, swing};
 
 /// Another text here means another engine: raise [`ENGINE`] and diagnose the cases of `tests/blind` anew.
 const NUMBERS: &str = "\

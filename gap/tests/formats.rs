@@ -1,11 +1,11 @@
 //! Runs are read from binary files as from text, and damaged files are refused without a panic.
 //!
-//! `cargo test -p appell-gap --all-features --test formats`
+//! `cargo test -p appell-gap --all-features formats`
 #![allow(clippy::unwrap_used, reason = "tests may panic")]
 
-mod common;
+use appell_test_kit::Random;
 
-use common::{Folder, pendulum};
+use crate::common::{Folder, pendulum};
 
 /// Rows of a run.
 const ROWS: usize = 200;
@@ -59,16 +59,15 @@ fn assert_damage_is_told(file: &str, bytes: &[u8], columns: [&str; 2]) {
         let message = folder.refused();
         assert!(message.contains(file), "{message}");
     }
-    let mut random = fastrand::Rng::with_seed(1);
-    let mut dice = |below: usize| random.usize(..below);
+    let mut dice = Random::new(1);
     for _ in 0..300 {
         let mut damaged = bytes.to_vec();
-        for _ in 0..=dice(4) {
-            let at = dice(damaged.len());
-            damaged[at] = u8::try_from(dice(256)).unwrap();
+        for _ in 0..=dice.below(4) {
+            let at = dice.below(damaged.len());
+            damaged[at] = u8::try_from(dice.below(256)).unwrap();
         }
-        if dice(4) == 0 {
-            damaged.truncate(dice(bytes.len()));
+        if dice.below(4) == 0 {
+            damaged.truncate(dice.below(bytes.len()));
         }
         folder.write(file, &damaged);
         if let Ok(set) = folder.read() {

@@ -1,21 +1,23 @@
 //! Damaged descriptions and recordings are refused or read, never with a panic and never slowly.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
-mod common;
-
 use std::fmt::Write as _;
 use std::time::{Duration, Instant};
 
 use appell_gap::diagnose::{Options, diagnose};
 use appell_gap::motion_capture::Skeleton;
-use common::{Folder, SWING, pendulum, swing};
+use appell_test_kit::{Random, budget, is_full};
 
-/// Damaged data sets; each is read once.
-const DAMAGED: usize = 1_500;
+use crate::common::{Folder, SWING, pendulum, swing};
+
+/// Damaged data sets, in an ordinary run and in a full one; each is read once.
+const DAMAGED: [usize; 2] = [300, 1_500];
 /// Damaged skeletons, captures and files of laboratories.
-const CAPTURES: usize = 600;
+const CAPTURES: [usize; 2] = [120, 600];
 /// Damaged data sets that are diagnosed.
 const DIAGNOSED: usize = 24;
+/// One in so many faults, and in so many effects that are compared with it: some of all families.
+const ONE_IN: [[usize; 2]; 2] = [[5, 12], [1, 4]];
 /// Far below a second, with room for a busy machine.
 const SLOWEST: Duration = Duration::from_millis(500);
 
@@ -47,14 +49,14 @@ const TELLING: &[&[u8]] = &[
     b" ",
 ];
 
-fn damage(bytes: &mut Vec<u8>, dice: &mut fastrand::Rng) {
-    for _ in 0..=dice.usize(..2) {
-        let at = dice.usize(..bytes.len() + 1);
-        let end = (at + dice.usize(..30)).min(bytes.len());
-        match dice.usize(..4) {
-            0 if at < bytes.len() => bytes[at] ^= 1 << dice.usize(..8),
+fn damage(bytes: &mut Vec<u8>, dice: &mut Random) {
+    for _ in 0..=dice.below(2) {
+        let at = dice.below(bytes.len() + 1);
+        let end = (at + dice.below(30)).min(bytes.len());
+        match dice.below(4) {
+            0 if at < bytes.len() => bytes[at] ^= 1 << dice.below(8),
             1 => {
-                let piece = TELLING[dice.usize(..TELLING.len())];
+                let piece = TELLING[dice.below(TELLING.len())];
                 bytes.splice(at..at, piece.iter().copied());
             }
             2 => {
@@ -62,7 +64,7 @@ fn damage(bytes: &mut Vec<u8>, dice: &mut fastrand::Rng) {
             }
             _ => {
                 let copy = bytes[at..end].to_vec();
-                let to = dice.usize(..bytes.len() + 1);
+                let to = dice.below(bytes.len() + 1);
                 bytes.splice(to..to, copy);
             }
         }
@@ -75,9 +77,10 @@ fn damaged_data_sets_are_refused_or_read() {
     let description = pendulum(SWING, &["a.csv"], &["b.csv"]).into_bytes();
     let recording = swing(60, 1, 1e-3).into_bytes();
     folder.write("b.csv", &recording);
-    let mut dice = fastrand::Rng::with_seed(1);
+    let mut dice = Random::new(1);
+    let damaged = budget(DAMAGED[0], DAMAGED[1]);
     let (mut read, mut slowest) = (0, Duration::ZERO);
-    for round in 0..DAMAGED {
+    for round in 0..damaged {
         let (mut toml, mut csv) = (description.clone(), recording.clone());
         if round % 2 == 0 {
             damage(&mut toml, &mut dice);
@@ -101,8 +104,8 @@ fn damaged_data_sets_are_refused_or_read() {
         }
         slowest = slowest.max(start.elapsed());
     }
-    println!("{read} of {DAMAGED} are read; the slowest took {slowest:?}");
-    assert!((DAMAGED / 20..DAMAGED / 2).contains(&read), "{read}");
+    println!("{read} of {damaged} are read; the slowest took {slowest:?}");
+    assert!((damaged / 20..damaged / 2).contains(&read), "{read}");
     assert!(slowest < SLOWEST, "{slowest:?}");
 }
 
@@ -121,9 +124,9 @@ fn take() -> Vec<u8> {
 }
 
 /// Bytes without a meaning, behind the beginning of a file of C3D or of Motive.
-fn noise(beginning: &[u8], dice: &mut fastrand::Rng) -> Vec<u8> {
-    let length = dice.usize(..2000);
-    let byte = |_| u8::try_from(dice.usize(..256)).unwrap();
+fn noise(beginning: &[u8], dice: &mut Random) -> Vec<u8> {
+    let length = dice.below(2000);
+    let byte = |_| u8::try_from(dice.below(256)).unwrap();
     let rest: Vec<u8> = (0..length).map(byte).collect();
     [beginning, &rest].concat()
 }
@@ -133,7 +136,7 @@ fn damaged_takes_and_noise_for_a_capture_are_refused_or_read() {
     let folder = Folder::new();
     let take = take();
     let channels = "\"arm.Rotation.X\" = { measures = \"theta\", unit = \"deg\" }";
-    let mut dice = fastrand::Rng::with_seed(2);
+    let mut dice = Random::new(2);
     let mut slowest = Duration::ZERO;
     for file in ["run.csv", "run.c3d"] {
         folder.write("recording.toml", pendulum(channels, &[file], &[]));
@@ -142,7 +145,7 @@ fn damaged_takes_and_noise_for_a_capture_are_refused_or_read() {
             // The key, then headers that promise parameters in the second block.
             _ => [b"", b"\x02\x50", b"\x02\x50\x01\0\x02\0\x01\0\xff\xff"],
         };
-        for round in 0..CAPTURES {
+        for round in 0..budget(CAPTURES[0], CAPTURES[1]) {
             let bytes = if file == "run.csv" && round % 2 == 0 {
                 let mut bytes = take.clone();
                 damage(&mut bytes, &mut dice);
@@ -165,9 +168,10 @@ fn damaged_takes_and_noise_for_a_capture_are_refused_or_read() {
 #[test]
 fn damaged_skeletons_are_refused_or_read() {
     let skeleton = include_bytes!("../../docs/examples/euc/skeleton.toml");
-    let mut dice = fastrand::Rng::with_seed(3);
+    let mut dice = Random::new(3);
+    let captures = budget(CAPTURES[0], CAPTURES[1]);
     let (mut read, mut slowest) = (0, Duration::ZERO);
-    for _ in 0..CAPTURES {
+    for _ in 0..captures {
         let mut bytes = skeleton.to_vec();
         damage(&mut bytes, &mut dice);
         let text = String::from_utf8_lossy(&bytes);
@@ -178,7 +182,7 @@ fn damaged_skeletons_are_refused_or_read() {
         }
         slowest = slowest.max(start.elapsed());
     }
-    assert!((CAPTURES / 50..CAPTURES).contains(&read), "{read}");
+    assert!((captures / 50..captures).contains(&read), "{read}");
     assert!(slowest < SLOWEST, "{slowest:?}");
 }
 
@@ -223,11 +227,12 @@ fn a_rig_with_a_fault_is_diagnosed_or_refused() {
         "recording.toml",
         pendulum(SWING, &["a.csv", "b.csv"], &["c.csv"]),
     );
-    // Some of all families are enough.
     let effects = appell_gap::effects::shipped().unwrap();
-    let effects: Vec<_> = effects.into_iter().step_by(4).collect();
-    let mut told = 0;
-    for round in 0..DIAGNOSED {
+    let [faults, of_effects] = ONE_IN[usize::from(is_full())];
+    let effects: Vec<_> = effects.into_iter().step_by(of_effects).collect();
+    let rounds = (0..DIAGNOSED).step_by(faults);
+    let (mut told, count) = (0, rounds.len());
+    for round in rounds {
         for (seed, name) in (1..).zip(["a.csv", "b.csv", "c.csv"]) {
             folder.write(name, rig_with_a_fault(round, &swing(60, seed, 1e-3)));
         }
@@ -243,6 +248,6 @@ fn a_rig_with_a_fault_is_diagnosed_or_refused() {
             Err(error) => assert!(!error.to_string().is_empty()),
         }
     }
-    println!("{told} of {DIAGNOSED} are diagnosed");
-    assert!(told > DIAGNOSED / 4, "{told}");
+    println!("{told} of {count} are diagnosed");
+    assert!(told > count / 4, "{told}");
 }

@@ -1,8 +1,6 @@
 //! Captures of rigid bodies become what a planar model measures.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
-mod common;
-
 use std::f64::consts::{PI, TAU};
 use std::fmt::Write as _;
 
@@ -11,7 +9,8 @@ use appell_gap::data;
 use appell_gap::motion_capture::{
     Axes, Capture, Ride, Skeleton, Smoothed, filter, manifest, table,
 };
-use common::{Folder, library};
+
+use crate::common::{Folder, library};
 
 /// The skeleton of the documents.
 const EXAMPLE: &str = include_str!("../../docs/examples/euc/skeleton.toml");

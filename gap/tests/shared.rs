@@ -1,15 +1,15 @@
-//! The recordings that stand beside the workspace are read, all of them.
+//! The recordings that stand beside the workspace are read, all of them, in a full run.
 #![allow(clippy::unwrap_used, reason = "what is missing fails the test")]
 
-mod common;
-
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use appell_estimate::smoothing::Samples;
 use appell_estimate::smoothing::kinematic::Kinematic;
 use appell_estimate::smoothing::spline::SmoothingSpline;
 use appell_gap::data::{FindingKind, Part, read};
-use common::library;
+use appell_test_kit::{is_full, workspace};
+
+use crate::common::library;
 
 /// A statement may be wrong by a factor of two; the data tell the level to a tenth.
 const WRONG: std::ops::Range<f64> = 0.45..2.2;
@@ -17,18 +17,21 @@ const WRONG: std::ops::Range<f64> = 0.45..2.2;
 /// Rates smoothed in two ways agree to some percent: the recorded ones are late by most of a millisecond.
 const AGREE: f64 = 0.02;
 
-/// The folders below one of the shared folders that hold a description; none where it is absent.
+/// The folders below one of the shared folders that hold a description. An ordinary run reads none:
+/// they are no part of the repository. A full one fails without them.
 fn folders(of: &str) -> Vec<PathBuf> {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared");
-    let Ok(entries) = std::fs::read_dir(root.join(of)) else {
-        println!("skipped: there is no ../shared/{of} beside the workspace");
+    if !is_full() {
         return Vec::new();
-    };
+    }
+    let root = workspace().join("../shared").join(of);
+    let entries = std::fs::read_dir(&root);
+    let entries = entries.unwrap_or_else(|error| panic!("{}: {error}", root.display()));
     let mut folders: Vec<PathBuf> = entries
         .map(|entry| entry.unwrap().path())
         .filter(|path| path.join("recording.toml").exists())
         .collect();
     folders.sort();
+    assert!(!folders.is_empty(), "nothing in {}", root.display());
     folders
 }
 

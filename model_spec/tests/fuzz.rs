@@ -1,19 +1,19 @@
 //! Damaged specs are refused or read, never with a panic, slowly, or with much memory.
 //!
-//! `cargo test -p appell-spec --test fuzz -- --nocapture` tells the slowest text and the peak of
+//! `cargo test -p appell-spec fuzz -- --nocapture` tells the slowest text and the peak of
 //! memory.
 
 #![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use std::fmt::Write as _;
-use std::path::Path;
 use std::time::{Duration, Instant};
 
 use appell_spec::edit::set_parameters;
 use appell_spec::{Report, load};
+use appell_test_kit::{Random, budget, peak_memory, shipped};
 
-/// How many bytes are changed in all.
-const MUTATED_BYTES: usize = 3_000_000;
+/// How many bytes are changed in all, in an ordinary run and in a full one.
+const MUTATED_BYTES: [usize; 2] = [300_000, 3_000_000];
 /// Far below a second, with room for a busy machine.
 const SLOWEST: Duration = Duration::from_millis(500);
 /// Most memory of the whole test, in MB; the texts themselves have at most 2 MB.
@@ -21,29 +21,11 @@ const MOST_MEMORY: u64 = 500;
 /// How often a slow text may try again: the machine may have been busy with something else.
 const ATTEMPTS: usize = 4;
 
-/// A small generator of pseudo-random numbers (`SplitMix64`): the same damage in every run.
-struct Dice(u64);
-
-impl Dice {
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
-    }
-
-    /// A number below `n`.
-    fn below(&mut self, n: usize) -> usize {
-        usize::try_from(self.next() % (n.max(1) as u64)).unwrap()
-    }
-}
-
 /// Bytes that mean something to TOML or to expressions.
 const TELLING: &[u8] = b"[]{}()=,.\"'\\\n#+-*/^<> 0e9_xtdu\xc3\xa9\xe2\x80\xae";
 
 /// Damages a text; returns how many bytes it changed.
-fn mutate(bytes: &mut Vec<u8>, others: &[Vec<u8>], dice: &mut Dice) -> usize {
+fn mutate(bytes: &mut Vec<u8>, others: &[Vec<u8>], dice: &mut Random) -> usize {
     let at = dice.below(bytes.len());
     let length = 1 + dice.below(24);
     let end = (at + length).min(bytes.len());
@@ -81,16 +63,6 @@ fn mutate(bytes: &mut Vec<u8>, others: &[Vec<u8>], dice: &mut Dice) -> usize {
     }
 }
 
-fn shipped() -> Vec<Vec<u8>> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../generated/mechanisms");
-    let mut files: Vec<_> = std::fs::read_dir(folder)
-        .unwrap()
-        .map(|entry| entry.unwrap().path())
-        .collect();
-    files.sort();
-    files.iter().map(|f| std::fs::read(f).unwrap()).collect()
-}
-
 /// Reads a text and shows what was found; tells how long the reading took.
 fn exercise(text: &str) -> Duration {
     let start = Instant::now();
@@ -120,16 +92,6 @@ fn duration(text: &str) -> Duration {
     shortest
 }
 
-/// Largest memory that this process has had so far, in MB, where the system tells.
-fn peak_memory() -> Option<u64> {
-    let status = std::fs::read_to_string("/proc/self/status").ok()?;
-    let line = status
-        .lines()
-        .find_map(|line| line.strip_prefix("VmHWM:"))?;
-    let kilobytes: u64 = line.trim().strip_suffix(" kB")?.parse().ok()?;
-    Some(kilobytes / 1000)
-}
-
 /// Tells what the texts took, and that it was not much.
 fn is_frugal(texts: usize, slowest: Duration) {
     let peak = peak_memory();
@@ -138,13 +100,16 @@ fn is_frugal(texts: usize, slowest: Duration) {
 }
 
 #[test]
-fn millions_of_damaged_bytes_do_no_harm() {
-    let specs = shipped();
-    let mut dice = Dice(20);
+fn damaged_bytes_do_no_harm() {
+    let specs = shipped().into_iter();
+    let specs: Vec<Vec<u8>> = specs.map(|(_, text)| text.into_bytes()).collect();
+    let [ordinary, full] = MUTATED_BYTES;
+    let wanted = budget(ordinary, full);
+    let mut dice = Random::new(20);
     let mut changed = 0;
     let mut round = 0;
     let mut slowest = Duration::ZERO;
-    while changed < MUTATED_BYTES {
+    while changed < wanted {
         let mut bytes = specs[round % specs.len()].clone();
         // From one slip of the pen to a wreck.
         let hits = [1, 2, 4, 16, 64, 256][round % 6];

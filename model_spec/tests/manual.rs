@@ -1,6 +1,6 @@
 //! The manual is true: its tables are those of the program, and its examples load.
 //!
-//! `APPELL_UPDATE_MANUAL=1 cargo test -p appell-spec --test manual` writes the tables anew.
+//! `APPELL_UPDATE_MANUAL=1 cargo test -p appell-spec manual` writes the tables anew.
 
 #![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 

@@ -15,8 +15,10 @@ use appell_runtime::trajectory::Trajectory;
 use axis::{Axis, number};
 pub use map::{Curve, Map, Stroke};
 pub use plot::{Layer, Look, Plot};
-use std::fmt::Write as _;
 pub use surface::{Patch, Path, Surface};
+
+use crate::svg::{Document, Element, path, text};
+use std::fmt::Write as _;
 
 /// A line.
 #[derive(Debug, Clone, PartialEq)]
@@ -218,13 +220,9 @@ impl Figure {
         let pitch = HEADER_HEIGHT + panel_height;
         let height = head + self.panels.len() as f64 * pitch + FOOTER_HEIGHT;
 
-        let mut svg = format!(
-            "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {WIDTH} {height:.0}\" \
-             width=\"{WIDTH}\" height=\"{height:.0}\">\n<style>\n{STYLE}</style>\n\
-             <rect class=\"paper\" width=\"100%\" height=\"100%\"/>\n"
-        );
+        let mut svg = Document::new([WIDTH, height], &[STYLE]);
         if !self.title.is_empty() {
-            put(&mut svg, &text(LEFT, 22.0, "class=\"title\"", &self.title));
+            svg.put(&text([LEFT, 22.0]).with("class", "title").text(&self.title));
         }
         for (i, (panel, y_axis)) in self.panels.iter().zip(&y_axes).enumerate() {
             let area = Area {
@@ -239,32 +237,18 @@ impl Figure {
             panel.legend(&mut svg, area.top - 9.0);
             for (k, series) in panel.series.iter().enumerate() {
                 let line = area.line(series, &x_axis, y_axis);
-                put(
-                    &mut svg,
-                    &format!("<path class=\"line {}\" d=\"{line}\"/>", style(k)),
-                );
+                svg.put(&path(&style(k), &line).empty());
             }
         }
         let bottom = height - FOOTER_HEIGHT;
         for tick in x_axis.ticks(8) {
             let x = LEFT + width * x_axis.part(tick);
             let label = number(tick, x_axis.step(8));
-            put(
-                &mut svg,
-                &text(x, bottom + 16.0, "text-anchor=\"middle\"", &label),
-            );
+            svg.put(&centred([x, bottom + 16.0], &label));
         }
         let middle = LEFT + width / 2.0;
-        put(
-            &mut svg,
-            &text(
-                middle,
-                bottom + 35.0,
-                "text-anchor=\"middle\"",
-                &self.x_label,
-            ),
-        );
-        svg + "</svg>\n"
+        svg.put(&centred([middle, bottom + 35.0], &self.x_label));
+        svg.finish()
     }
 }
 
@@ -292,20 +276,17 @@ fn largest(values: &[f64]) -> f64 {
 impl Panel {
     /// Samples of the lines with their names. The unit stands in the text of the last name, so
     /// that the space between them does not depend on the reader's font.
-    fn legend(&self, svg: &mut String, y: f64) {
+    fn legend(&self, svg: &mut Document, y: f64) {
         let mut x = LEFT;
         for (k, series) in self.series.iter().enumerate() {
             let sample = format!("M{x:.1} {:.1}h18", y - 4.0);
-            put(
-                svg,
-                &format!("<path class=\"line {}\" d=\"{sample}\"/>", style(k)),
-            );
+            svg.put(&path(&style(k), &sample).empty());
             let label = if k + 1 == self.series.len() && !self.unit.is_empty() {
                 &format!("{} [{}]", series.label, self.unit)
             } else {
                 &series.label
             };
-            put(svg, &text(x + 23.0, y, "", label));
+            svg.put(&text([x + 23.0, y]).text(label));
             x += 23.0 + CHARACTER * series.label.chars().count() as f64 + 16.0;
         }
     }
@@ -320,22 +301,18 @@ struct Area {
 
 impl Area {
     /// Numbers and the label below.
-    fn name_x(&self, svg: &mut String, axis: &Axis, label: &str) {
+    fn name_x(&self, svg: &mut Document, axis: &Axis, label: &str) {
         let bottom = self.top + self.height;
         for tick in axis.ticks(8) {
             let x = LEFT + self.width * axis.part(tick);
             let label = number(tick, axis.step(8));
-            let middle = "text-anchor=\"middle\"";
-            put(svg, &text(x, bottom + 16.0, middle, &label));
+            svg.put(&centred([x, bottom + 16.0], &label));
         }
         let x = LEFT + self.width / 2.0;
-        put(
-            svg,
-            &text(x, bottom + 35.0, "text-anchor=\"middle\"", label),
-        );
+        svg.put(&centred([x, bottom + 35.0], label));
     }
 
-    fn grid(&self, svg: &mut String, x_axis: &Axis, y_axis: &Axis) {
+    fn grid(&self, svg: &mut Document, x_axis: &Axis, y_axis: &Axis) {
         let mut grid = String::new();
         for tick in x_axis.ticks(8) {
             let x = LEFT + self.width * x_axis.part(tick);
@@ -347,22 +324,20 @@ impl Area {
             let y = self.top + self.height * (1.0 - y_axis.part(tick));
             let _ = write!(grid, "M{LEFT:.1} {y:.1}h{:.1}", self.width);
             let label = number(tick, y_axis.step(count));
-            put(
-                svg,
-                &text(LEFT - 7.0, y + 4.0, "text-anchor=\"end\"", &label),
-            );
+            let place = text([LEFT - 7.0, y + 4.0]);
+            svg.put(&place.with("text-anchor", "end").text(&label));
         }
-        put(svg, &format!("<path class=\"grid\" d=\"{grid}\"/>"));
-        put(
-            svg,
-            &format!(
-                "<rect class=\"frame\" x=\"{LEFT}\" y=\"{:.1}\" width=\"{:.1}\" height=\"{:.1}\"/>",
-                self.top, self.width, self.height
-            ),
-        );
+        svg.put(&path("grid", &grid).empty());
+        let frame = Element::new("rect").with("class", "frame").with("x", LEFT);
+        let lengths = [
+            ("y", self.top),
+            ("width", self.width),
+            ("height", self.height),
+        ];
+        svg.put(&frame.lengths(lengths).empty());
     }
 
-    fn mark(&self, svg: &mut String, mark: &Mark, x_axis: &Axis) {
+    fn mark(&self, svg: &mut Document, mark: &Mark, x_axis: &Axis) {
         let part = x_axis.part(mark.x);
         if !(0.0..=1.0).contains(&part) {
             return;
@@ -373,11 +348,7 @@ impl Area {
             self.top,
             self.height
         );
-        let about = escaped(&mark.about);
-        put(
-            svg,
-            &format!("<path class=\"frame dashed\" d=\"{line}\"><title>{about}</title></path>"),
-        );
+        svg.put(&path("frame dashed", &line).titled(&mark.about));
     }
 
     /// The line's path without the points that would not be seen: a point is drawn where it or
@@ -436,23 +407,10 @@ fn style(series: usize) -> String {
     } else {
         ""
     };
-    format!("c{}{dashes}", series % COLOURS)
+    format!("line c{}{dashes}", series % COLOURS)
 }
 
-fn text(x: f64, y: f64, attributes: &str, content: &str) -> String {
-    let content = escaped(content);
-    let space = if attributes.is_empty() { "" } else { " " };
-    format!("<text x=\"{x:.1}\" y=\"{y:.1}\"{space}{attributes}>{content}</text>")
-}
-
-fn escaped(content: &str) -> String {
-    content
-        .replace('&', "&amp;")
-        .replace('<', "&lt;")
-        .replace('>', "&gt;")
-}
-
-fn put(svg: &mut String, element: &str) {
-    svg.push_str(element);
-    svg.push('\n');
+/// A text about a place.
+fn centred(place: [f64; 2], content: &str) -> String {
+    text(place).with("text-anchor", "middle").text(content)
 }

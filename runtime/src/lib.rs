@@ -13,7 +13,8 @@
 //! - [`contact`] and [`condition`]: where a model stops being valid.
 //!
 //! Without it the crate is `no_std` and holds what emitted code needs: the scalar trait [`Real`],
-//! dual numbers and lanes that implement it, and small dense systems in [`dense`]. `f32` and
+//! dual numbers and lanes that implement it, small dense systems in [`dense`], and the arithmetic of
+//! structs in [`vector!`]. `f32` and
 //! `f64` are then scalars with the feature `libm`. Both are checked by
 //!
 //! ```text
@@ -47,6 +48,7 @@ pub mod signal;
 pub mod simulate;
 #[cfg(feature = "std")]
 pub mod trajectory;
+mod vector;
 
 #[cfg(any(feature = "std", feature = "libm"))]
 pub use real::Lanes;

@@ -383,3 +383,31 @@ pub trait Model: Sync {
         switches.fill(0.0);
     }
 }
+
+/// A model whose numbers have names, as those of emitted models do.
+pub trait Named: Model {
+    /// Pseudo-velocities and coordinates.
+    type State;
+    /// Inputs, then signals.
+    type Inputs;
+    /// Outputs of the spec.
+    type Outputs;
+    /// The numbers of a place, and the outputs there.
+    ///
+    /// # Panics
+    ///
+    /// If a slice is shorter than the model's vector.
+    fn named(&self, at: At<'_>) -> Row<Self>;
+}
+
+/// A time and its numbers by name, in SI.
+pub struct Row<M: Named + ?Sized> {
+    /// Time in seconds.
+    pub t: f64,
+    /// State.
+    pub state: M::State,
+    /// Inputs, then signals.
+    pub inputs: M::Inputs,
+    /// Outputs.
+    pub outputs: M::Outputs,
+}

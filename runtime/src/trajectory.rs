@@ -3,7 +3,7 @@
 use crate::condition::Conditions;
 use crate::contact::ContactForces;
 use crate::integrate::{Ending, EventHit, Statistics};
-use crate::model::{At, Contact, Model, ModelInfo, Quantity, Reaction, Text};
+use crate::model::{At, Contact, Model, ModelInfo, Named, Quantity, Reaction, Row, Text};
 use crate::simulate::Breach;
 use std::io::{self, Write};
 
@@ -195,6 +195,21 @@ impl Trajectory {
     /// The inputs of a row, signals included.
     pub fn inputs(&self, row: usize) -> &[f64] {
         &self.row(row)[self.info.state_len()..][..self.info.input_len()]
+    }
+
+    /// The rows with the names of their model; `None` where the trajectory is one of another model.
+    pub fn named<'a, M: Named>(
+        &'a self,
+        model: &'a M,
+    ) -> Option<impl ExactSizeIterator<Item = Row<M>> + 'a> {
+        let row = |row: usize| At {
+            t: self.times[row],
+            x: self.state(row),
+            u: self.inputs(row),
+            p: &self.parameters,
+        };
+        (*model.info() == self.info)
+            .then(|| (0..self.len()).map(move |place| model.named(row(place))))
     }
 
     /// The state of the last row; empty without rows.

@@ -5,7 +5,8 @@
 
 use std::hint::black_box;
 
-use appell_models::unicycle::{self, Inputs, Parameters, State};
+use appell_models::unicycle::{self, Inputs, Parameters, Rates, State};
+use appell_test_kit::Random;
 use criterion::{Criterion, criterion_group, criterion_main};
 
 /// States that are worked through in turn, so that no call is predicted from the last.
@@ -13,7 +14,7 @@ const STATES: usize = 256;
 
 /// The explicit accelerations of the steering paper, equations (36) and (86), as printed after
 /// correction: one sine-cosine pair per angle, common squares named, nothing else rearranged.
-fn typed_by_hand(x: &State<f64>, u: f64, p: &Parameters<f64>) -> State<f64> {
+fn typed_by_hand(x: &State<f64>, u: f64, p: &Parameters<f64>) -> Rates<f64> {
     let State {
         omega_1: w1,
         omega_2: w2,
@@ -34,7 +35,7 @@ fn typed_by_hand(x: &State<f64>, u: f64, p: &Parameters<f64>) -> State<f64> {
     let (rr, rad2) = (r * r, radius * radius);
     let d1 = 5.0 * m * rad2 + 4.0 * m0 * rr;
     let d2 = 3.0 * m * rad2 + 2.0 * m0 * rad2 + 12.0 * m0 * rr;
-    let omega_1 = (4.0 * m0 * radius * r * w1 * w1
+    let omega_1_dot = (4.0 * m0 * radius * r * w1 * w1
         - (m * rad2 + 4.0 * m0 * rr) * tan * w3 * w3
         - 8.0 * m0 * r * w1 * s
         + 2.0 * radius * (3.0 * m * radius + 2.0 * m0 * r * tan) * w2 * w3
@@ -42,17 +43,17 @@ fn typed_by_hand(x: &State<f64>, u: f64, p: &Parameters<f64>) -> State<f64> {
         + 4.0 * m * g * radius * sin
         + 4.0 * radius * u)
         / d1;
-    let omega_2 = 2.0
+    let omega_2_dot = 2.0
         * (-2.0 * m0 * radius * r * w1 * w2 - (m * rad2 + m0 * rad2 + 4.0 * m0 * rr) * w1 * w3
             + 2.0 * m0 * radius * w3 * s)
         / d2;
-    let omega_3 = (-2.0 * (3.0 * m + 2.0 * m0) * rad2 * w1 * w2
+    let omega_3_dot = (-2.0 * (3.0 * m + 2.0 * m0) * rad2 * w1 * w2
         + (3.0 * m * rad2 * tan + 2.0 * m0 * (rad2 * tan + 2.0 * radius * r + 6.0 * rr * tan))
             * w1
             * w3
         - 24.0 * m0 * r * w3 * s)
         / d2;
-    let sigma = ((5.0 * m * rad2 + 4.0 * m0 * (rad2 + rr)) * r * w1 * w1
+    let sigma_dot = ((5.0 * m * rad2 + 4.0 * m0 * (rad2 + rr)) * r * w1 * w1
         + (5.0 * m * rad2 * r - 4.0 * m0 * radius * rr * tan + 4.0 * m0 * rr * r
             - m * rad2 * radius * tan)
             * w3
@@ -63,29 +64,23 @@ fn typed_by_hand(x: &State<f64>, u: f64, p: &Parameters<f64>) -> State<f64> {
         - 4.0 * m0 * g * radius * r * cos
         + (5.0 * m / m0 * rad2 + 4.0 * rad2 + 4.0 * rr) * u)
         / d1;
-    State {
-        omega_1,
-        omega_2,
-        omega_3,
-        sigma,
-        x_G: w1 * radius * sin_psi * cos + w2 * radius * cos_psi,
-        y_G: -w1 * radius * cos_psi * cos + w2 * radius * sin_psi,
-        psi: w3 / cos,
-        theta: w1,
-        phi: w2 - w3 * tan,
-        r: s,
+    Rates {
+        omega_1_dot,
+        omega_2_dot,
+        omega_3_dot,
+        sigma_dot,
+        x_G_dot: w1 * radius * sin_psi * cos + w2 * radius * cos_psi,
+        y_G_dot: -w1 * radius * cos_psi * cos + w2 * radius * sin_psi,
+        psi_dot: w3 / cos,
+        theta_dot: w1,
+        phi_dot: w2 - w3 * tan,
+        r_dot: s,
     }
 }
 
 fn states() -> Vec<(State<f64>, f64)> {
-    // A fixed linear congruential sequence: every run sees the same states.
-    let mut seed = 0x2545_f491_4f6c_dd1d_u64;
-    let mut next = || {
-        seed = seed
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
-        (seed >> 11) as f64 / (1_u64 << 53) as f64 * 2.0 - 1.0
-    };
+    let mut dice = Random::of("states");
+    let mut next = || dice.between(-1.0, 1.0);
     (0..STATES)
         .map(|_| {
             let x = State {
@@ -114,8 +109,10 @@ fn equations(criterion: &mut Criterion) {
             unicycle::rates(&p, x, &Inputs { u: *u }),
         );
         let close = |a: f64, b: f64| (a - b).abs() <= 1e-9 * (1.0 + a.abs());
-        assert!(close(hand.omega_1, ours.omega_1) && close(hand.omega_2, ours.omega_2));
-        assert!(close(hand.omega_3, ours.omega_3) && close(hand.sigma, ours.sigma));
+        assert!(
+            close(hand.omega_1_dot, ours.omega_1_dot) && close(hand.omega_2_dot, ours.omega_2_dot)
+        );
+        assert!(close(hand.omega_3_dot, ours.omega_3_dot) && close(hand.sigma_dot, ours.sigma_dot));
     }
     let mut group = criterion.benchmark_group("unicycle");
     group.throughput(criterion::Throughput::Elements(STATES as u64));

@@ -14,7 +14,7 @@
 
 use appell_estimate::inverse::{Consistency, Found, Record, Relations, Sought, Track};
 use appell_runtime::model::Model;
-use appell_tests::random::Random;
+use appell_test_kit::Random;
 use appell_tests::rides::{MANOEUVRES, captured, planar, seen, shown, skeleton};
 
 /// Data sets of a manoeuvre.
@@ -37,13 +37,13 @@ fn main() {
     for manoeuvre in MANOEUVRES {
         let mut random = Random::of(manoeuvre.name);
         let rides: Vec<Record> = (0..RUNS)
-            .map(|_| manoeuvre.ride(&model, &mut random))
+            .map(|_| manoeuvre.ride(model, &mut random))
             .collect();
         let set = |number: usize| {
             let rides = rides.iter();
             if seen_by.is_empty() {
                 let records: Vec<Record> = rides.map(|ride| seen(ride, &mut random)).collect();
-                return found(&model, &records, vec![Sought::Parameter(index)]);
+                return found(model, &records, vec![Sought::Parameter(index)]);
             }
             // Pivots stay where they are from ride to ride.
             let rig = Random::of(&format!("{} {number}", manoeuvre.name));
@@ -55,7 +55,7 @@ fn main() {
             // They turn the line from the pedals to the rider's centre of mass.
             let bias = (offset > 0.0).then_some(Sought::Bias(2));
             let sought = [Sought::Parameter(index)].into_iter().chain(bias);
-            found(&model, &records, sought.collect())
+            found(model, &records, sought.collect())
         };
         let found: Vec<Found> = (0..count).map(set).collect();
         let inside = |found: &&Found| {

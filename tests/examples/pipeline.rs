@@ -16,7 +16,7 @@ use std::time::Instant;
 use appell_estimate::inverse::{Consistency, Record, Relations, Sought, Track};
 use appell_gap::motion_capture::{Capture, Ride, Skeleton, Smoothed, filter};
 use appell_runtime::model::Model;
-use appell_tests::random::Random;
+use appell_test_kit::Random;
 use appell_tests::rides::{MANOEUVRES, captured, planar, record_of, skeleton};
 
 const RUNS: usize = 10;
@@ -55,7 +55,7 @@ fn main() {
     let mut random = Random::of("pipeline");
     let files: Vec<PathBuf> = (0..RUNS)
         .map(|_| {
-            let ride = MANOEUVRES[2].long_ride(&model, &mut random, SECONDS);
+            let ride = MANOEUVRES[2].long_ride(model, &mut random, SECONDS);
             write(&skeleton, &ride, &mut random)
         })
         .collect();
@@ -88,7 +88,7 @@ fn main() {
         start.elapsed().as_secs_f64()
     );
     let p = model.info().default_parameters();
-    let relations = Relations::new(&model, &[0, 1, 2], &track.stretches[0].motions[0], &p).unwrap();
+    let relations = Relations::new(model, &[0, 1, 2], &track.stretches[0].motions[0], &p).unwrap();
     let h = model.info().parameter_index("h").unwrap();
     let found = Consistency::new(relations, track, p, vec![Sought::Parameter(h)]);
     let found = found.unwrap().find().unwrap();

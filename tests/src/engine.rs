@@ -6,7 +6,7 @@ use appell_codegen::program::Program;
 use appell_codegen::schedule::{interpret, schedule};
 use appell_codegen::symbolic::evaluate;
 use appell_models::Shipped;
-use appell_runtime::model::{At, Gradient, Model};
+use appell_runtime::model::{At, Model};
 use appell_spec::Mechanism;
 
 use crate::point::Point;
@@ -16,109 +16,49 @@ use crate::shipped;
 pub struct Engine {
     /// For messages.
     pub name: &'static str,
-    /// The model.
-    pub model: Box<dyn Model>,
+    /// The model, for as long as the process lives.
+    pub model: &'static dyn Model,
 }
 
 /// Every execution of a shipped mechanism.
 pub fn engines(name: &str) -> Vec<Engine> {
-    let program = shipped::program(&shipped::mechanism(name));
     let emitted = Shipped::find(name).unwrap_or_else(|| panic!("`{name}` was not emitted"));
-    let mut engines = in_process(program);
-    engines.push(Engine {
-        name: "emitted",
-        model: Box::new(Emitted(emitted.model)),
-    });
-    engines
-}
-
-/// The executions that need no build: of any program.
-pub fn in_process(program: Program) -> Vec<Engine> {
-    let jit =
-        JitModel::new(&program).unwrap_or_else(|error| panic!("{}: {error}", program.info.name));
     vec![
+        interpreted(shipped::model(name)),
+        compiled(shipped::program(name)),
         Engine {
-            name: "interpreted",
-            model: Box::new(InterpretedModel::new(program)),
-        },
-        Engine {
-            name: "compiled in the process",
-            model: Box::new(jit),
+            name: "emitted",
+            model: emitted.model,
         },
     ]
 }
 
-/// The interpreter of any mechanism.
-pub fn interpreter(mechanism: &Mechanism) -> InterpretedModel {
-    InterpretedModel::new(shipped::program(mechanism))
+/// The executions that need no build: of any program.
+pub fn in_process(program: Program) -> Vec<Engine> {
+    let compiled = compiled(&program);
+    let model = Box::leak(Box::new(InterpretedModel::new(program)));
+    vec![interpreted(model), compiled]
 }
 
-/// An emitted model, in a box like the others.
-struct Emitted(&'static dyn Model);
+fn interpreted(model: &'static InterpretedModel) -> Engine {
+    Engine {
+        name: "interpreted",
+        model,
+    }
+}
 
-impl Model for Emitted {
-    fn info(&self) -> &appell_runtime::model::ModelInfo {
-        self.0.info()
+fn compiled(program: &Program) -> Engine {
+    let jit =
+        JitModel::new(program).unwrap_or_else(|error| panic!("{}: {error}", program.info.name));
+    Engine {
+        name: "compiled in the process",
+        model: Box::leak(Box::new(jit)),
     }
-    fn rates(&self, at: At<'_>, rates: &mut [f64]) {
-        self.0.rates(at, rates);
-    }
-    fn jacobians(&self, at: At<'_>, rates: &mut [f64], a: &mut [f64], b: &mut [f64]) {
-        self.0.jacobians(at, rates, a, b);
-    }
-    fn parameter_jacobian(&self, at: At<'_>, p: &mut [f64]) {
-        self.0.parameter_jacobian(at, p);
-    }
-    fn appell(&self, at: At<'_>, mass: &mut [f64], bias: &mut [f64], forces: &mut [f64]) {
-        self.0.appell(at, mass, bias, forces);
-    }
-    fn energies(&self, at: At<'_>) -> appell_runtime::model::Energies {
-        self.0.energies(at)
-    }
-    fn constraint_residual(&self, at: At<'_>, residual: &mut [f64]) {
-        self.0.constraint_residual(at, residual);
-    }
-    fn constraint_forces(&self, at: At<'_>, forces: &mut [f64]) {
-        self.0.constraint_forces(at, forces);
-    }
-    fn outputs(&self, at: At<'_>, outputs: &mut [f64]) {
-        self.0.outputs(at, outputs);
-    }
-    fn has_adjoint(&self) -> bool {
-        self.0.has_adjoint()
-    }
-    fn adjoint(&self, at: At<'_>, weights: &[f64], gradient: Gradient<'_>) {
-        self.0.adjoint(at, weights, gradient);
-    }
-    fn output_jacobians(&self, at: At<'_>, outputs: &mut [f64], c: &mut [f64], d: &mut [f64]) {
-        self.0.output_jacobians(at, outputs, c, d);
-    }
-    fn output_adjoint(&self, at: At<'_>, weights: &[f64], gradient: Gradient<'_>) {
-        self.0.output_adjoint(at, weights, gradient);
-    }
-    fn dependent_coordinates(&self) -> &[usize] {
-        self.0.dependent_coordinates()
-    }
+}
 
-    fn position_constraints(&self, at: At<'_>, residual: &mut [f64], jacobian: &mut [f64]) {
-        self.0.position_constraints(at, residual, jacobian);
-    }
-
-    fn switch_len(&self) -> usize {
-        self.0.switch_len()
-    }
-    fn switches(&self, at: At<'_>, switches: &mut [f64]) {
-        self.0.switches(at, switches);
-    }
-    fn contacts(&self, at: At<'_>, normals: &mut [f64], friction: &mut [f64]) {
-        self.0.contacts(at, normals, friction);
-    }
-    fn system_sizes(&self) -> &[usize] {
-        self.0.system_sizes()
-    }
-    fn systems(&self, at: At<'_>, matrices: &mut [f64]) {
-        self.0.systems(at, matrices);
-    }
+/// The interpreter of any mechanism.
+pub fn interpreter(mechanism: &Mechanism) -> InterpretedModel {
+    InterpretedModel::new(shipped::standard_program(mechanism))
 }
 
 /// Everything a model computes at a point.

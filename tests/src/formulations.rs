@@ -17,7 +17,12 @@ pub fn verdict(mechanism: &Mechanism, derivation: &Derivation) -> FormulationCom
 
 /// Demands that the three formulations of a mechanism agree.
 pub fn assert_one_answer(mechanism: &Mechanism) -> FormulationComparison {
-    let verdict = verdict(mechanism, &shipped::derive(mechanism));
+    assert_agreement(mechanism, &shipped::derive(mechanism))
+}
+
+/// The same where the derivation is there already.
+pub fn assert_agreement(mechanism: &Mechanism, derivation: &Derivation) -> FormulationComparison {
+    let verdict = verdict(mechanism, derivation);
     assert!(verdict.agrees(), "{}: {verdict:#?}", mechanism.name);
     for comparison in &verdict.comparisons {
         if let Agreement::AtPoints { deviation, .. } = comparison.agreement {

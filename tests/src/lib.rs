@@ -19,7 +19,6 @@ pub mod formulations;
 pub mod modules;
 pub mod place;
 pub mod point;
-pub mod random;
 pub mod recorded;
 pub mod reference;
 pub mod rides;

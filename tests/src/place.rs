@@ -3,15 +3,9 @@
 use appell_codegen::interpreted::InterpretedModel;
 use appell_runtime::model::Model;
 
-use crate::engine::{Evaluation, assert_close, interpreter};
+use crate::engine::{Evaluation, assert_close};
 use crate::point::Point;
-use crate::random::Random;
-use crate::shipped;
-
-/// A shipped mechanism, derived once for all its places.
-pub fn derived(name: &str) -> InterpretedModel {
-    interpreter(&shipped::mechanism(name))
-}
+use appell_test_kit::Random;
 
 /// A mechanism at a place.
 pub struct Place<'a> {

@@ -2,7 +2,7 @@
 
 use appell_runtime::model::{At, ModelInfo};
 
-use crate::random::Random;
+use appell_test_kit::Random;
 
 /// A place in state space, in the order of the model.
 #[derive(Debug, Clone)]

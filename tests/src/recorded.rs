@@ -4,13 +4,7 @@ use appell_estimate::{Disturbance, Estimation, Layout, Measured, Recording, Setu
 use appell_runtime::model::{At, Model};
 use appell_runtime::positions::{Moving, Positions};
 
-use crate::random::Random;
-
-/// A standard normal number (Box and Muller, 1958).
-pub fn normal(random: &mut Random) -> f64 {
-    let radius = (-2.0 * random.between(f64::MIN_POSITIVE, 1.0).ln()).sqrt();
-    radius * random.between(0.0, std::f64::consts::TAU).cos()
-}
+use appell_test_kit::Random;
 
 /// Sampling times and the inputs from each of them on.
 #[derive(Debug, Clone)]
@@ -70,7 +64,7 @@ pub fn record_with_states(
     let mut x: Vec<f64> = (0..n)
         .map(|state| {
             let spread = value(Unknown::Spread { run: 0, state });
-            value(Unknown::Initial { run: 0, state }) + spread * normal(random)
+            value(Unknown::Initial { run: 0, state }) + spread * random.normal()
         })
         .collect();
     let p = &values[..model.info().parameter_len()];
@@ -95,7 +89,7 @@ pub fn record_with_states(
                 Measured::State(state) => x[state],
                 Measured::Output(output) => outputs[output],
             };
-            let noise = value(Unknown::Noise(index)) * normal(random);
+            let noise = value(Unknown::Noise(index)) * random.normal();
             let seen = value(Unknown::Scale(index)) * quantity + value(Unknown::Bias(index));
             measurements.push(seen + noise);
         }
@@ -143,7 +137,7 @@ fn kicks(
         let mut kick = vec![0.0; n];
         for (index, disturbance) in setup.disturbances.iter().enumerate() {
             let level = values[layout.place(Unknown::Disturbance(index)).unwrap()];
-            let impulse = level * (0.5 * h).sqrt() * normal(random);
+            let impulse = level * (0.5 * h).sqrt() * random.normal();
             match *disturbance {
                 Disturbance::Force(speed) => force[speed] += impulse,
                 Disturbance::Rate(state) => kick[state] += impulse,

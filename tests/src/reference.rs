@@ -1,27 +1,24 @@
 //! Reference vectors: numbers with fifty digits that were computed elsewhere.
 //!
-//! They lie beside the workspace, in `../shared/reference`, and are no part of it. Without them
-//! the tests that need them say so and end.
+//! They lie in `tests/reference`.
 
 use serde_json::Value;
 
 use crate::shipped::workspace;
 
-/// A whole file, or nothing with the reason printed.
-pub fn document(file: &str) -> Option<Value> {
-    let path = workspace().join("../shared/reference").join(file);
-    let Ok(text) = std::fs::read_to_string(&path) else {
-        println!("skipped: there is no {}", path.display());
-        return None;
-    };
-    Some(serde_json::from_str(&text).unwrap_or_else(|error| panic!("{file}: {error}")))
+/// A whole file.
+pub fn document(file: &str) -> Value {
+    let path = workspace().join("tests/reference").join(file);
+    let text = std::fs::read_to_string(&path);
+    let text = text.unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+    serde_json::from_str(&text).unwrap_or_else(|error| panic!("{file}: {error}"))
 }
 
-/// Cases of a file, or nothing with the reason printed.
-pub fn cases(file: &str) -> Option<Vec<Value>> {
-    let whole = document(file)?;
+/// Cases of a file.
+pub fn cases(file: &str) -> Vec<Value> {
+    let whole = document(file);
     let cases = whole["cases"].as_array();
-    Some(cases.unwrap_or_else(|| panic!("{file}: no cases")).clone())
+    cases.unwrap_or_else(|| panic!("{file}: no cases")).clone()
 }
 
 /// A number of a case.

@@ -4,18 +4,16 @@ use appell_analysis::control::lqr::{self, weights};
 use appell_analysis::control::operating_point::OperatingPoint;
 use appell_analysis::control::reduction::reduce;
 use appell_codegen::jit::JitModel;
-use appell_codegen::program::FunctionKind;
 use appell_estimate::inverse::Record;
 use appell_gap::motion_capture::{Axes, Capture, Ride, Skeleton, Track, Vector};
-use appell_models::Shipped;
 use appell_runtime::Simulation;
 use appell_runtime::integrate::Options;
 use appell_runtime::model::Model;
 use appell_runtime::simulate::Sampling;
 use nalgebra::{DMatrix, DVector};
 
-use crate::random::Random;
-use crate::recorded::normal;
+use crate::shipped;
+use appell_test_kit::Random;
 
 /// States that the rider feels.
 const FELT: [&str; 5] = ["v", "gamma_dot", "phi_dot", "gamma", "phi"];
@@ -54,10 +52,8 @@ pub const MANOEUVRES: [Manoeuvre; 3] = [
 ];
 
 /// The model with formulas for its derivatives.
-pub fn planar() -> JitModel {
-    let shipped = Shipped::find("euc_3dof").unwrap();
-    let program = appell_codegen::compile(shipped.file, shipped.spec, &FunctionKind::ALL).unwrap();
-    JitModel::new(&program).unwrap()
+pub fn planar() -> &'static JitModel {
+    shipped::complete_model("euc_3dof")
 }
 
 impl Manoeuvre {
@@ -130,8 +126,8 @@ impl Manoeuvre {
 pub fn seen(ride: &Record, random: &mut Random) -> Record {
     let mut values = ride.values.clone();
     for mut row in values.row_iter_mut() {
-        let [place, centre] = [0, 1].map(|_| NOISE[0] * normal(random));
-        let angle = NOISE[1] * normal(random);
+        let [place, centre] = [0, 1].map(|_| NOISE[0] * random.normal());
+        let angle = NOISE[1] * random.normal();
         let axle = place - HEIGHTS[0] * angle;
         row[0] += axle;
         row[1] += angle;
@@ -163,7 +159,7 @@ pub fn captured(
     random: &mut Random,
 ) -> Capture {
     let bodies = skeleton.bodies.iter().enumerate().map(|(place, body)| {
-        let away = [0; 3].map(|_| offset * normal(markers));
+        let away = [0; 3].map(|_| offset * markers.normal());
         let joint = [
             away[0],
             away[1],
@@ -186,8 +182,8 @@ pub fn captured(
             let axle = [x, 0.0, UNICYCLE[2]];
             for k in 0..3 {
                 let place = axle[k] + arms[0][k] + arms[1][k];
-                track.position[k].push(place + NOISE[0] * normal(random));
-                track.angles[k].push([0.0, 0.0, pitch][k] + NOISE[1] * normal(random));
+                track.position[k].push(place + NOISE[0] * random.normal());
+                track.angles[k].push([0.0, 0.0, pitch][k] + NOISE[1] * random.normal());
             }
         }
         track

@@ -1,11 +1,14 @@
 //! The shipped mechanisms, found by their files.
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
+use std::sync::{LazyLock, Mutex, MutexGuard, OnceLock, PoisonError};
 
+use appell_codegen::interpreted::InterpretedModel;
+use appell_codegen::jit::JitModel;
 use appell_codegen::mechanics::assemble;
 use appell_codegen::mechanics::{self, Derivation};
-use appell_codegen::program::FunctionKind;
-use appell_codegen::program::Program;
+use appell_codegen::program::{FunctionKind, Program};
 use appell_spec::Mechanism;
 
 /// Mechanisms whose adjoints are short enough to be derived in a test: one or two blocks, formulas
@@ -28,9 +31,7 @@ pub fn workspace() -> PathBuf {
 
 /// Names of all shipped mechanisms in alphabetical order.
 pub fn names() -> Vec<String> {
-    let specs = specs("generated/mechanisms").into_iter();
-    let stem = |path: PathBuf| path.file_stem().unwrap().to_string_lossy().into_owned();
-    specs.map(stem).collect()
+    ALL.keys().cloned().collect()
 }
 
 /// The mechanisms whose specs stand in a folder of the workspace.
@@ -55,15 +56,99 @@ fn specs(folder: &str) -> Vec<PathBuf> {
     paths
 }
 
+/// What is made of a shipped mechanism: each part once in a process, where it is first asked for.
+struct Made {
+    text: String,
+    mechanism: Mechanism,
+    derivation: OnceLock<Mutex<Derivation>>,
+    standard: OnceLock<Executed<InterpretedModel>>,
+    complete: OnceLock<Executed<JitModel>>,
+}
+
+/// A program and what executes it.
+struct Executed<M> {
+    program: Program,
+    model: M,
+}
+
+static ALL: LazyLock<BTreeMap<String, Made>> = LazyLock::new(|| {
+    let specs = specs("generated/mechanisms").into_iter();
+    let made = |path: PathBuf| {
+        let name = path.file_stem().unwrap().to_string_lossy().into_owned();
+        let text = std::fs::read_to_string(&path).unwrap();
+        let made = Made {
+            mechanism: read(&format!("{name}.toml"), &text),
+            text,
+            derivation: OnceLock::new(),
+            standard: OnceLock::new(),
+            complete: OnceLock::new(),
+        };
+        (name, made)
+    };
+    specs.map(made).collect()
+});
+
+fn made(name: &str) -> &'static Made {
+    ALL.get(name)
+        .unwrap_or_else(|| panic!("`{name}` is not shipped"))
+}
+
+impl Made {
+    fn standard(&self) -> &Executed<InterpretedModel> {
+        self.standard.get_or_init(|| {
+            let program = standard_program(&self.mechanism);
+            let model = InterpretedModel::new(program.clone());
+            Executed { program, model }
+        })
+    }
+
+    fn complete(&self) -> &Executed<JitModel> {
+        self.complete.get_or_init(|| {
+            let program = program_of(&self.mechanism, &FunctionKind::ALL);
+            let model = JitModel::new(&program).unwrap();
+            Executed { program, model }
+        })
+    }
+}
+
 /// Text of a shipped spec.
 pub fn text(name: &str) -> String {
-    let file = workspace().join(format!("generated/mechanisms/{name}.toml"));
-    std::fs::read_to_string(file).unwrap()
+    made(name).text.clone()
 }
 
 /// A shipped mechanism.
-pub fn mechanism(name: &str) -> Mechanism {
-    read(&format!("{name}.toml"), &text(name))
+pub fn mechanism(name: &str) -> &'static Mechanism {
+    &made(name).mechanism
+}
+
+/// The derivation of a shipped mechanism, to read and to add expressions to.
+pub fn derivation(name: &str) -> MutexGuard<'static, Derivation> {
+    let made = made(name);
+    let shared = made
+        .derivation
+        .get_or_init(|| Mutex::new(derive(&made.mechanism)));
+    // A test that failed while it held the lock has not changed what was derived.
+    shared.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// The functions of a shipped mechanism that every model has.
+pub fn program(name: &str) -> &'static Program {
+    &made(name).standard().program
+}
+
+/// The same functions, interpreted.
+pub fn model(name: &str) -> &'static InterpretedModel {
+    &made(name).standard().model
+}
+
+/// All functions of a shipped mechanism, with the adjoints.
+pub fn complete_program(name: &str) -> &'static Program {
+    &made(name).complete().program
+}
+
+/// The same functions as machine code.
+pub fn complete_model(name: &str) -> &'static JitModel {
+    &made(name).complete().model
 }
 
 /// A mechanism from the text of a spec.
@@ -80,8 +165,8 @@ pub fn derive(mechanism: &Mechanism) -> Derivation {
         .unwrap_or_else(|findings| panic!("{}: {findings:?}", mechanism.file))
 }
 
-/// The functions of a mechanism that every model has.
-pub fn program(mechanism: &Mechanism) -> Program {
+/// The functions of any mechanism that every model has.
+pub fn standard_program(mechanism: &Mechanism) -> Program {
     program_of(mechanism, &FunctionKind::STANDARD)
 }
 

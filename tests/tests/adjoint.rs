@@ -3,13 +3,12 @@
 
 #![allow(clippy::unwrap_used, reason = "what is missing fails the test")]
 
-use appell_codegen::compile;
 use appell_codegen::program::FunctionKind;
 use appell_runtime::differences;
 use appell_runtime::model::{At, Gradient, Model};
+use appell_test_kit::Random;
 use appell_tests::engine::{assert_close, in_process};
 use appell_tests::point::Point;
-use appell_tests::random::Random;
 use appell_tests::shipped;
 
 /// Differences keep nine digits of ten.
@@ -72,13 +71,12 @@ fn assert_adjoints(what: &str, model: &dyn Model, at: At<'_>, random: &mut Rando
 #[test]
 fn adjoints_are_gradients_of_weighted_jacobians() {
     for name in shipped::WITH_ADJOINTS {
-        let text = shipped::text(name);
-        let program = compile(name, &text, &FunctionKind::ALL).unwrap();
+        let program = shipped::complete_program(name);
         let mut random = Random::of(name);
         let point = Point::random(&program.info, &mut random);
-        for engine in in_process(program) {
+        for engine in in_process(program.clone()) {
             let what = format!("{name}, {}", engine.name);
-            assert_adjoints(&what, &*engine.model, point.at(), &mut random);
+            assert_adjoints(&what, engine.model, point.at(), &mut random);
         }
     }
 }
@@ -86,11 +84,10 @@ fn adjoints_are_gradients_of_weighted_jacobians() {
 #[test]
 fn an_adjoint_costs_a_few_times_what_it_differentiates() {
     use appell_codegen::schedule::{OperationCount, schedule};
-    let text = shipped::text("double_pendulum");
-    let program = compile("double_pendulum", &text, &FunctionKind::ALL).unwrap();
+    let program = shipped::complete_program("double_pendulum");
     let operations = |kind| {
         let function = program.function(kind).unwrap();
-        OperationCount::of(&schedule(&program, function)).total()
+        OperationCount::of(&schedule(program, function)).total()
     };
     let (forward, backward) = (
         operations(FunctionKind::Jacobians),

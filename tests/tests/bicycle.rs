@@ -2,18 +2,16 @@
 #![allow(clippy::unwrap_used, reason = "tests may panic")]
 
 use appell_codegen::interpreted::InterpretedModel;
-use appell_codegen::program::{FunctionKind, Program};
 use appell_runtime::Simulation;
 use appell_runtime::linearise::Linearisation;
 use appell_runtime::model::{At, Model};
-use appell_tests::dual;
+use appell_test_kit::Random;
 use appell_tests::engine::{Evaluation, assert_close};
 use appell_tests::point::Point;
-use appell_tests::random::Random;
 use appell_tests::reference::{document, number, numbers};
+use appell_tests::{dual, shipped};
 use nalgebra::{Matrix2, Matrix4};
 
-const SPEC: &str = include_str!("../../generated/mechanisms/bicycle.toml");
 /// Digits to which the benchmark is published.
 const PUBLISHED: f64 = 1e-11;
 /// Digits to which the nonlinear point is published.
@@ -24,13 +22,8 @@ const CRITICAL: f64 = 1e-12;
 /// Rounding of derivatives of a pivoted solution, relative to the largest entry.
 const JACOBIANS: f64 = 1e-11;
 
-fn program() -> Program {
-    let program = appell_codegen::compile("bicycle.toml", SPEC, &FunctionKind::STANDARD);
-    program.unwrap_or_else(|report| panic!("{}", report.plain()))
-}
-
-fn bicycle() -> InterpretedModel {
-    InterpretedModel::new(program())
+fn bicycle() -> &'static InterpretedModel {
+    shipped::model("bicycle")
 }
 
 /// Upright riding straight at a speed in m/s.
@@ -76,12 +69,10 @@ fn matrix(reference: &serde_json::Value, name: &str) -> Matrix2<f64> {
 
 #[test]
 fn the_linearised_bicycle_is_the_benchmark() {
-    let Some(reference) = document("meijaard.json") else {
-        return;
-    };
+    let reference = document("meijaard.json");
     let model = bicycle();
     let g = 9.81;
-    let (still, b) = linearised(&model, 0.0);
+    let (still, b) = linearised(model, 0.0);
     let m = b.try_inverse().unwrap();
     let close = |what: &str, found: Matrix2<f64>, wanted: Matrix2<f64>| {
         let error = (found - wanted).amax();
@@ -95,7 +86,7 @@ fn the_linearised_bicycle_is_the_benchmark() {
     let k0 = stiffness(&still) / g;
     close("K0", k0, matrix(&reference, "K0"));
     for v in [1.0, 4.6, 10.0] {
-        let (riding, _) = linearised(&model, v);
+        let (riding, _) = linearised(model, v);
         let c1 = -m * riding.fixed_view::<2, 2>(0, 0) / v;
         close("C1", c1, matrix(&reference, "C1"));
         close(
@@ -122,16 +113,14 @@ fn root(mut low: f64, mut high: f64, f: impl Fn(f64) -> f64) -> f64 {
 
 #[test]
 fn the_eigenvalues_and_critical_speeds_are_the_published_ones() {
-    let Some(reference) = document("meijaard.json") else {
-        return;
-    };
+    let reference = document("meijaard.json");
     let model = bicycle();
     let mut compared = 0;
     for case in reference["eigenvalues"].as_array().unwrap() {
         if case.get("weave_re").is_none() {
             continue;
         }
-        let found = linearised(&model, number(&case["v"]))
+        let found = linearised(model, number(&case["v"]))
             .0
             .complex_eigenvalues();
         let [capsize, castering, re, im] =
@@ -148,11 +137,11 @@ fn the_eigenvalues_and_critical_speeds_are_the_published_ones() {
     assert!(compared >= 36);
 
     let weave = |v: f64| {
-        let z = linearised(&model, v).0.complex_eigenvalues();
+        let z = linearised(model, v).0.complex_eigenvalues();
         let oscillating = z.iter().filter(|z| z.im > 0.1);
         oscillating.map(|z| z.re).fold(f64::NEG_INFINITY, f64::max)
     };
-    let capsize = |v: f64| linearised(&model, v).0.determinant();
+    let capsize = |v: f64| linearised(model, v).0.determinant();
     for (name, found) in [
         ("weave_v_w", root(4.0, 5.0, weave)),
         ("capsize_v_c", root(5.0, 7.0, capsize)),
@@ -165,12 +154,11 @@ fn the_eigenvalues_and_critical_speeds_are_the_published_ones() {
 
 #[test]
 fn the_jacobians_are_those_of_dual_numbers_in_any_motion() {
-    let program = program();
-    let model = InterpretedModel::new(program.clone());
+    let (program, model) = (shipped::program("bicycle"), bicycle());
     let mut random = Random::of("bicycle");
     for number in 0..12 {
         let point = Point::random(model.info(), &mut random);
-        let e = Evaluation::of(&model, point.at());
+        let e = Evaluation::of(model, point.at());
         let derived = [("A", &e.a), ("B", &e.b), ("P", &e.p)];
         for ((what, derived), dual) in derived.into_iter().zip(dual::jacobians(&program, &point)) {
             let what = format!("{what} at point {number}");
@@ -181,9 +169,7 @@ fn the_jacobians_are_those_of_dual_numbers_in_any_motion() {
 
 #[test]
 fn the_nonlinear_accelerations_are_those_of_basu_mandal() {
-    let Some(reference) = document("meijaard.json") else {
-        return;
-    };
+    let reference = document("meijaard.json");
     let reference = &reference["basu_mandal_nonlinear"];
     let [start, published] = [
         &reference["moore_coords_input"],
@@ -240,8 +226,8 @@ fn the_nonlinear_accelerations_are_those_of_basu_mandal() {
 fn a_lean_of_the_riding_bicycle_keeps_energy_and_the_front_wheel_on_the_ground() {
     let model = bicycle();
     let info = model.info();
-    let mut simulation = Simulation::new(&model);
-    simulation.initial_state = upright(&model, 4.6);
+    let mut simulation = Simulation::new(model);
+    simulation.initial_state = upright(model, 4.6);
     simulation.initial_state[info.state_index("omega_phi").unwrap()] = 0.5;
     simulation.span = [0.0, 20.0];
     simulation.options.rtol = 1e-12;

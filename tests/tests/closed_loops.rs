@@ -8,7 +8,7 @@ use appell_estimate::{
 };
 use appell_models::Shipped;
 use appell_runtime::model::{At, Model};
-use appell_tests::random::Random;
+use appell_test_kit::Random;
 use appell_tests::recorded::{Drive, record_with_states};
 
 /// Recordings, and the rows at which each is looked at.
@@ -111,7 +111,7 @@ fn innovations_are_white_and_of_the_right_size_where_all_angles_are_seen() {
 fn lengths_and_masses_of_a_linkage_are_found_from_afar() {
     let (setup, drive) = (setup(), Drive::sines(300, 0.01, &[0.4]));
     let truth = values(&setup, &drive);
-    let mut random = Random::of("lengths");
+    let mut random = Random::of("lengths and masses");
     let recordings = [record_with_states(&setup, &truth, &drive, &mut random).0];
     let estimation = Estimation::new(&setup, &recordings).unwrap();
     let parameter = |name: &str| Free {

@@ -6,7 +6,7 @@ use appell_estimate::inverse::{
     Consistency, Found, InverseError, Motion, Record, Relations, Sought, Track,
 };
 use appell_runtime::model::Model;
-use appell_tests::random::Random;
+use appell_test_kit::Random;
 use appell_tests::rides::{MANOEUVRES, Manoeuvre, planar, seen};
 use nalgebra::{DMatrix, DVector};
 
@@ -46,10 +46,10 @@ fn truth(model: &dyn Model, name: &str) -> f64 {
 #[test]
 fn a_height_is_found_to_a_micrometre_without_noise() {
     let model = planar();
-    let h = truth(&model, "h");
+    let h = truth(model, "h");
     for manoeuvre in MANOEUVRES {
         let mut random = Random::of(manoeuvre.name);
-        let found = found(&model, &rides(manoeuvre, &model, &mut random), &["h"]);
+        let found = found(model, &rides(manoeuvre, model, &mut random), &["h"]);
         let off = (found.values[0] - h).abs();
         println!("{}: off by {off:e} m", manoeuvre.name);
         assert!(off < NOISE_FREE, "{}: off by {off:e}", manoeuvre.name);
@@ -59,13 +59,13 @@ fn a_height_is_found_to_a_micrometre_without_noise() {
 #[test]
 fn intervals_hold_the_true_height_about_as_often_as_they_say() {
     let model = planar();
-    let h = truth(&model, "h");
+    let h = truth(model, "h");
     for manoeuvre in MANOEUVRES {
         let mut random = Random::of(manoeuvre.name);
-        let rides = rides(manoeuvre, &model, &mut random);
+        let rides = rides(manoeuvre, model, &mut random);
         let hits = (0..SETS).filter(|_| {
             let records: Vec<Record> = rides.iter().map(|ride| seen(ride, &mut random)).collect();
-            let [low, high] = found(&model, &records, &["h"]).intervals[0];
+            let [low, high] = found(model, &records, &["h"]).intervals[0];
             low <= h && h <= high
         });
         let hits = hits.count();
@@ -79,9 +79,9 @@ fn a_braking_ride_tells_more_of_the_height_than_one_at_constant_speed() {
     let model = planar();
     let width = |manoeuvre: Manoeuvre| {
         let mut random = Random::of(manoeuvre.name);
-        let rides = rides(manoeuvre, &model, &mut random);
+        let rides = rides(manoeuvre, model, &mut random);
         let records: Vec<Record> = rides.iter().map(|ride| seen(ride, &mut random)).collect();
-        let found = found(&model, &records, &["h"]);
+        let found = found(model, &records, &["h"]);
         assert!(
             (0.7..1.3).contains(&found.normalised_square()),
             "{}: {}",
@@ -108,7 +108,7 @@ fn motion() -> Motion {
 fn derivatives_of_the_relations_are_those_of_differences() {
     let model = planar();
     let p = model.info().default_parameters();
-    let relations = Relations::new(&model, &[0, 1, 2], &motion(), &p).unwrap();
+    let relations = Relations::new(model, &[0, 1, 2], &motion(), &p).unwrap();
     assert_eq!(relations.len(), 1);
     let value = |motion: &Motion, p: &[f64]| relations.at(motion, p).unwrap().values[0];
     // A motion that is possible: the relation is linear in the forward acceleration.
@@ -147,14 +147,14 @@ fn derivatives_of_the_relations_are_those_of_differences() {
 fn what_cannot_be_sought_is_told() {
     let model = planar();
     let p = model.info().default_parameters();
-    let missing = Relations::new(&model, &[0, 1, 7], &motion(), &p);
+    let missing = Relations::new(model, &[0, 1, 7], &motion(), &p);
     let (index, coordinates) = (7, 3);
     assert_eq!(
         missing.err(),
         Some(InverseError::NoCoordinate { index, coordinates })
     );
     // γ is not measured: γ̇ stays open.
-    let open = Relations::new(&model, &[0, 2], &motion(), &p);
+    let open = Relations::new(model, &[0, 2], &motion(), &p);
     assert!(matches!(
         open.err(),
         Some(InverseError::Lengths { .. } | InverseError::Undetermined { .. })

@@ -95,7 +95,7 @@ w = "dot(q)"
 
 /// The machine code of a spec and its interpreter.
 fn engines(text: &str) -> [Box<dyn Model>; 2] {
-    let program = shipped::program(&shipped::read("test.toml", text));
+    let program = shipped::standard_program(&shipped::read("test.toml", text));
     [
         Box::new(JitModel::new(&program).unwrap()),
         Box::new(InterpretedModel::new(program)),

@@ -43,19 +43,19 @@ fn name(kind: FunctionKind) -> String {
 }
 
 fn counts() -> Counts {
-    let count = |program: Program| {
+    let count = |program: &Program| {
         let functions = program.functions.iter();
         let count = functions.map(|function| {
-            let count = OperationCount::of(&schedule(&program, function));
+            let count = OperationCount::of(&schedule(program, function));
             (name(function.kind), COUNTED.map(|(_, get)| get(&count)))
         });
         count.collect::<Vec<_>>()
     };
     let of_mechanism = |name: String| {
-        let mechanism = shipped::mechanism(&name);
-        let mut counts = count(shipped::program(&mechanism));
+        let mut counts = count(shipped::program(&name));
         if shipped::WITH_ADJOINTS.contains(&name.as_str()) {
-            counts.extend(count(shipped::program_of(&mechanism, &ADJOINTS)));
+            let program = shipped::program_of(shipped::mechanism(&name), &ADJOINTS);
+            counts.extend(count(&program));
         }
         (name, counts.into_iter().collect())
     };
@@ -64,7 +64,7 @@ fn counts() -> Counts {
 
 fn write(counts: &Counts) -> String {
     let mut text = String::from(
-        "# Operation counts that may not rise. `UPDATE_COSTS=1 cargo test -p appell-tests --test cost`\n\
+        "# Operation counts that may not rise. `UPDATE_COSTS=1 cargo test -p appell-tests cost`\n\
          # writes this file; a higher count needs a reason.\n",
     );
     for (mechanism, functions) in counts {
@@ -121,13 +121,13 @@ fn no_function_of_a_shipped_mechanism_takes_more_operations_than_it_did() {
 
 /// Operations of a function of the unicycle where a division counts as so many others.
 fn of_unicycle(kind: FunctionKind, division: usize) -> OperationCount {
-    let program = shipped::program(&shipped::mechanism("unicycle"));
+    let program = shipped::program("unicycle");
     let function = program.functions.iter().find(|f| f.kind == kind).unwrap();
     let tuning = Tuning {
         division,
         ..Tuning::default()
     };
-    OperationCount::of(&schedule_tuned(&program, function, tuning))
+    OperationCount::of(&schedule_tuned(program, function, tuning))
 }
 
 #[test]
@@ -156,7 +156,7 @@ fn two_divisions_are_enough_for_the_rates_of_the_unicycle_where_divisions_are_de
 #[test]
 fn the_bicycle_takes_fewer_operations_than_the_best_published_equations() {
     use FunctionKind::{Jacobians, MassMatrixAndBias, ParameterJacobian};
-    let program = shipped::program(&shipped::mechanism("bicycle"));
+    let program = shipped::program("bicycle");
     let results = |kind: &FunctionKind| {
         let function = program.functions.iter().find(|f| f.kind == *kind).unwrap();
         function.results.clone()
@@ -167,7 +167,7 @@ fn the_bicycle_takes_fewer_operations_than_the_best_published_equations() {
         (vec![Jacobians, ParameterJacobian], 10_000),
     ] {
         let together = Function::new(kinds[0], kinds.iter().flat_map(results).collect());
-        let count = OperationCount::of(&schedule(&program, &together));
+        let count = OperationCount::of(&schedule(program, &together));
         assert!(count.total() <= most, "{kinds:?}: {count}");
     }
 }

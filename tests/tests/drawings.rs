@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "what is missing fails the test")]
 
 use std::fs;
+use std::sync::LazyLock;
 
 use appell_report::drawing::{drawing, marked};
 use appell_spec::Mechanism;
@@ -13,36 +14,39 @@ fn drawn(mechanism: &Mechanism) -> String {
         .unwrap_or_else(|findings| panic!("{}: {findings:?}", mechanism.file))
 }
 
-fn all() -> Vec<Mechanism> {
-    shipped::mechanisms_in("generated/mechanisms")
-}
+/// Names and drawings of all mechanisms.
+static ALL: LazyLock<Vec<(String, String)>> = LazyLock::new(|| {
+    let names = shipped::names().into_iter();
+    let entry = |name: String| {
+        let svg = drawn(shipped::mechanism(&name));
+        (name, svg)
+    };
+    names.map(entry).collect()
+});
 
 #[test]
 fn the_drawings_of_all_mechanisms_are_those_of_the_documents() {
     let folder = shipped::workspace().join("docs/drawings");
     let gallery = fs::read_to_string(folder.with_file_name("gallery.md")).unwrap();
     let update = std::env::var_os("UPDATE_DRAWINGS").is_some();
-    for mechanism in all() {
-        let (file, svg) = (
-            folder.join(format!("{}.svg", mechanism.name)),
-            drawn(&mechanism),
-        );
+    for (name, svg) in &*ALL {
+        let file = folder.join(format!("{name}.svg"));
         if update {
-            fs::write(&file, &svg).unwrap();
+            fs::write(&file, svg).unwrap();
         }
         let kept = fs::read_to_string(&file).unwrap_or_default();
-        assert!(kept == svg, "{}: set UPDATE_DRAWINGS=1", file.display());
-        let shown = format!("\"drawings/{}.svg\"", mechanism.name);
+        assert!(kept == *svg, "{}: set UPDATE_DRAWINGS=1", file.display());
+        let shown = format!("\"drawings/{name}.svg\"");
         assert!(gallery.contains(&shown), "docs/gallery.md lacks {shown}");
     }
 }
 
 #[test]
 fn rings_mark_joints_bodies_and_points_of_attack() {
-    let mechanism = all().into_iter().find(|m| m.name == "cart_pole").unwrap();
-    let plain = drawn(&mechanism);
+    let mechanism = shipped::mechanism("cart_pole");
+    let plain = drawn(mechanism);
     let rings = |names: &[&str]| {
-        let svg = marked(&mechanism, shipped::derive(&mechanism), names).unwrap();
+        let svg = marked(mechanism, shipped::derive(mechanism), names).unwrap();
         let rings = svg.lines().filter(|line| line.contains("class=\"ring"));
         let place = |line: &str| {
             let [x, y] = ["cx", "cy"].map(|name| attribute(line, name)[0].parse().unwrap());
@@ -50,7 +54,7 @@ fn rings_mark_joints_bodies_and_points_of_attack() {
         };
         rings.map(place).collect::<Vec<[f64; 2]>>()
     };
-    let [cart, pole] = places(&mechanism, &plain, ["C", "G"]);
+    let [cart, pole] = places(mechanism, &plain, ["C", "G"]);
     // The pole turns about the cart, and the force acts on it.
     for name in ["x", "theta", "omega", "cart", "F", "m_cart"] {
         assert_eq!(rings(&[name]), [cart], "{name}");
@@ -108,14 +112,14 @@ fn assert_inside(name: &str, svg: &str) {
 
 #[test]
 fn everything_is_drawn_on_the_paper() {
-    for mechanism in all() {
-        assert_inside(&mechanism.name, &drawn(&mechanism));
+    for (name, svg) in &*ALL {
+        assert_inside(name, svg);
     }
 }
 
 #[test]
 fn the_points_of_a_leaning_unicycle_are_where_geometry_says() {
-    let mut mechanism = shipped::mechanism("unicycle");
+    let mut mechanism = shipped::mechanism("unicycle").clone();
     let (x_g, y_g, tilt, slide, radius) = (0.2_f64, 0.1, 0.4_f64, 0.15, 0.3);
     for q in &mut mechanism.coordinates {
         match q.label.name.as_str() {
@@ -156,8 +160,8 @@ fn the_points_of_a_leaning_unicycle_are_where_geometry_says() {
 #[test]
 fn the_loop_of_the_four_bar_linkage_is_drawn_closed() {
     let linkage = shipped::mechanism("four_bar");
-    let svg = drawn(&linkage);
-    let [o, a, b, d] = places(&linkage, &svg, ["O", "A", "B", "D"]);
+    let svg = drawn(linkage);
+    let [o, a, b, d] = places(linkage, &svg, ["O", "A", "B", "D"]);
     let span = |[x1, y1]: [f64; 2], [x2, y2]: [f64; 2]| (x2 - x1).hypot(y2 - y1);
     let metre = span(o, d) / 0.3;
     for (drawn, wanted) in [(span(o, a), 0.1), (span(a, b), 0.3), (span(b, d), 0.25)] {

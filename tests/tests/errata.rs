@@ -77,7 +77,7 @@ fn a_test_that_an_erratum_mentions_exists() {
     }
 }
 
-/// `UPDATE_ERRATA=1 cargo test -p appell-tests --test errata` writes the page.
+/// `UPDATE_ERRATA=1 cargo test -p appell-tests errata` writes the page.
 #[test]
 fn the_page_of_errata_is_the_table() {
     let file = workspace().join("docs/errata.md");

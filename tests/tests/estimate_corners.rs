@@ -7,7 +7,7 @@ use appell_codegen::program::FunctionKind;
 use appell_estimate::{Effort, Estimation, Fit, Free, Layout, Measured, Recording, Setup, Unknown};
 use appell_models::Shipped;
 use appell_runtime::model::Model;
-use appell_tests::random::Random;
+use appell_test_kit::Random;
 use appell_tests::recorded::{Drive, record};
 
 /// A carriage that sticks: friction would stop it within half a millisecond.

@@ -5,7 +5,7 @@
 use appell_estimate::{Coordinate, Effort, Estimation, Fit, Free, Measured, Setup, Unknown};
 use appell_models::Shipped;
 use appell_runtime::model::Model;
-use appell_tests::random::Random;
+use appell_test_kit::Random;
 use appell_tests::recorded::{Drive, record};
 
 fn shipped(name: &str) -> &'static dyn Model {

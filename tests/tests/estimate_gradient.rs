@@ -2,15 +2,14 @@
 
 #![allow(clippy::unwrap_used, reason = "what is missing fails the test")]
 
-use appell_codegen::jit::JitModel;
-use appell_codegen::program::FunctionKind;
 use appell_estimate::{
     Channel, Disturbance, Estimation, Layout, Measured, Recording, Setup, Unknown,
 };
 use appell_models::Shipped;
 use appell_runtime::model::Model;
-use appell_tests::random::Random;
+use appell_test_kit::Random;
 use appell_tests::recorded::{Drive, record};
+use appell_tests::shipped;
 
 /// Differences of a sum of some thousand terms lose digits; what the gradient itself loses is less.
 const TOLERANCE: f64 = 1e-6;
@@ -159,7 +158,7 @@ fn it_is_exact_for_outputs_biases_scales_and_noise_on_rates() {
             1.0 + 4.0 * value,
         );
     }
-    let mut random = Random::of("outputs");
+    let mut random = Random::of("outputs and rates");
     let recordings = [0, 1].map(|_| record(&setup, &values, &drive, &mut random));
     let estimation = Estimation::new(&setup, &recordings).unwrap();
     values[0] *= 1.02;
@@ -169,11 +168,9 @@ fn it_is_exact_for_outputs_biases_scales_and_noise_on_rates() {
 
 #[test]
 fn it_is_exact_for_outputs_with_formulas() {
-    let text = appell_tests::shipped::text("cart_pole");
-    let program = appell_codegen::compile("cart_pole.toml", &text, &FunctionKind::ALL).unwrap();
-    let model = JitModel::new(&program).unwrap();
+    let model = shipped::complete_model("cart_pole");
     let output = |name: &str| Measured::Output(model.info().output_index(name).unwrap());
-    let mut setup = Setup::new(&model, &[output("x_G"), output("energy")]);
+    let mut setup = Setup::new(model, &[output("x_G"), output("energy")]);
     setup.lagging = vec![0];
     let drive = Drive::sines(80, 0.01, &[2.0]);
     let unseen = [drive.unseen(2)];
@@ -219,12 +216,10 @@ fn it_is_exact_for_lags_and_delays() {
 
 #[test]
 fn it_is_exact_for_drifting_parameters() {
-    let text = appell_tests::shipped::text("cart_pole");
-    let program = appell_codegen::compile("cart_pole.toml", &text, &FunctionKind::ALL).unwrap();
-    let model = JitModel::new(&program).unwrap();
+    let model = shipped::complete_model("cart_pole");
     let info = model.info();
     let energy = Measured::Output(info.output_index("energy").unwrap());
-    let constant = Setup::new(&model, &[Measured::State(3), energy]);
+    let constant = Setup::new(model, &[Measured::State(3), energy]);
     let mut setup = constant.clone();
     setup.drifting = ["m_pole", "l"]
         .map(|name| info.parameter_index(name).unwrap())
@@ -245,11 +240,8 @@ fn it_is_exact_for_drifting_parameters() {
 
 #[test]
 fn it_stays_exact_along_chaotic_motions() {
-    let text = appell_tests::shipped::text("double_pendulum");
-    let program =
-        appell_codegen::compile("double_pendulum.toml", &text, &FunctionKind::ALL).unwrap();
-    let model = JitModel::new(&program).unwrap();
-    let setup = Setup::new(&model, &[Measured::State(2), Measured::State(3)]);
+    let model = shipped::complete_model("double_pendulum");
+    let setup = Setup::new(model, &[Measured::State(2), Measured::State(3)]);
     let drive = Drive::sines(4000, 0.02, &[0.0, 0.0]);
     let unseen = [drive.unseen(2)];
     let mut values = noisy(&Estimation::new(&setup, &unseen).unwrap(), 0.05, 0.01);

@@ -7,7 +7,7 @@ use appell_estimate::{
 };
 use appell_models::Shipped;
 use appell_runtime::model::Model;
-use appell_tests::random::Random;
+use appell_test_kit::Random;
 use appell_tests::recorded::{Drive, record};
 
 /// Rows are so far apart in s.

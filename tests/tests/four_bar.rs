@@ -2,25 +2,22 @@
 #![allow(clippy::unwrap_used, reason = "tests may panic")]
 
 use appell_codegen::interpreted::InterpretedModel;
-use appell_codegen::program::FunctionKind;
 use appell_runtime::Simulation;
 use appell_runtime::model::{At, Model};
+use appell_tests::shipped;
 
-const SPEC: &str = include_str!("../../generated/mechanisms/four_bar.toml");
 /// Fourth-order differences over a step of a milliradian.
 const DIFFERENCES: f64 = 1e-8;
 
 /// The parameters by name.
 struct Linkage {
-    model: InterpretedModel,
+    model: &'static InterpretedModel,
 }
 
 impl Linkage {
     fn new() -> Self {
-        let program = appell_codegen::compile("four_bar.toml", SPEC, &FunctionKind::STANDARD);
-        let program = program.unwrap_or_else(|report| panic!("{}", report.plain()));
         Self {
-            model: InterpretedModel::new(program),
+            model: shipped::model("four_bar"),
         }
     }
 
@@ -108,7 +105,7 @@ fn the_loop_stays_closed_and_the_energy_stays() {
     let linkage = Linkage::new();
     let [_, potential] = linkage.inertia_and_potential(1.0);
     let [inertia, _] = linkage.inertia_and_potential(1.0);
-    let mut simulation = Simulation::new(&linkage.model);
+    let mut simulation = Simulation::new(linkage.model);
     simulation.initial_state = linkage.state(12.0, 1.0);
     simulation.span = [0.0, 10.0];
     simulation.options.rtol = 1e-12;
@@ -136,7 +133,7 @@ fn the_loop_stays_closed_and_the_energy_stays() {
 #[test]
 fn a_guess_of_the_dependent_angles_closes_the_loop() {
     let linkage = Linkage::new();
-    let mut simulation = Simulation::new(&linkage.model);
+    let mut simulation = Simulation::new(linkage.model);
     simulation.span = [0.0, 0.01];
     let motion = simulation.run().unwrap();
     let [_, theta1, theta2, theta3] = *motion.state(0) else {

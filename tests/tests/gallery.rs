@@ -2,9 +2,10 @@
 
 #![allow(clippy::unwrap_used, reason = "what is missing fails the test")]
 
+use appell_test_kit::Random;
 use appell_tests::engine::assert_close;
-use appell_tests::place::{Place, assert_contains, derived};
-use appell_tests::random::Random;
+use appell_tests::place::{Place, assert_contains};
+use appell_tests::shipped;
 
 /// Random places per mechanism.
 const PLACES: usize = 20;
@@ -17,9 +18,9 @@ const CRITICAL_TILT: f64 = 1e-9;
 
 /// Calls `check` with random places of a mechanism.
 fn everywhere(name: &str, mut check: impl FnMut(&mut Place<'_>)) {
-    let (model, mut random) = (derived(name), Random::of(name));
+    let (model, mut random) = (shipped::model(name), Random::of(name));
     for _ in 0..PLACES {
-        check(&mut Place::random(&model, &mut random));
+        check(&mut Place::random(model, &mut random));
     }
 }
 
@@ -130,13 +131,13 @@ fn two_wheeled_pendulum_moves_as_derived_by_hand() {
 
 #[test]
 fn two_wheeled_pendulum_straight_ahead_is_the_electric_unicycle_of_two_degrees_of_freedom() {
-    let planar = derived("euc_2dof");
+    let planar = shipped::model("euc_2dof");
     everywhere("two_wheeled_pendulum", |place| {
         let [m_w, j, tau] = place.all(["m_w", "J", "tau_l"]);
         place.set(&[("omega", 0.0), ("tau_r", tau)]);
         let [m_b, l, i_y, r] = place.all(["m_b", "l", "I_y", "R"]);
         let [v, theta, pitch_rate] = place.all(["v", "theta", "theta_dot"]);
-        let mut planar = Place::random(&planar, &mut Random::of("planar"));
+        let mut planar = Place::random(planar, &mut Random::of("planar"));
         planar.follow(place);
         planar.set(&[
             ("m", m_b),
@@ -214,10 +215,10 @@ fn cart_double_pendulum_moves_as_bogdanov_says() {
 
 #[test]
 fn cart_double_pendulum_on_a_heavy_cart_is_the_double_pendulum() {
-    let fixed = derived("double_pendulum");
+    let fixed = shipped::model("double_pendulum");
     everywhere("cart_double_pendulum", |place| {
         place.set(&[("m_cart", 1e12), ("F", 0.0)]);
-        let mut fixed = Place::random(&fixed, &mut Random::of("fixed"));
+        let mut fixed = Place::random(fixed, &mut Random::of("fixed"));
         fixed.follow(place);
         fixed.set(&[("tau1", 0.0), ("tau2", 0.0)]);
         let states = ["omega1", "omega2", "theta1", "theta2"];
@@ -234,10 +235,10 @@ fn cart_double_pendulum_on_a_heavy_cart_is_the_double_pendulum() {
 
 #[test]
 fn axisymmetric_wheel_with_the_inertia_of_a_disc_is_the_rolling_wheel() {
-    let disc = derived("rolling_wheel");
+    let disc = shipped::model("rolling_wheel");
     everywhere("axisymmetric_wheel", |place| {
         place.set(&[("k_1", 0.25), ("k_2", 0.5)]);
-        let mut disc = Place::random(&disc, &mut Random::of("disc"));
+        let mut disc = Place::random(disc, &mut Random::of("disc"));
         disc.follow(place);
         let (general, disc) = (place.evaluate(), disc.evaluate());
         assert_close("rates", &general.rates, &disc.rates, ROUNDING, FLOOR);
@@ -295,8 +296,8 @@ fn largest_root(wheel: &mut Place<'_>, tilt: f64) -> f64 {
 
 /// The tilt below which some yaw rates are unstable.
 fn critical_tilt_deg(k_1: f64, k_2: f64) -> f64 {
-    let model = derived("axisymmetric_wheel");
-    let mut wheel = Place::random(&model, &mut Random::of("tilt"));
+    let model = shipped::model("axisymmetric_wheel");
+    let mut wheel = Place::random(model, &mut Random::of("tilt"));
     wheel.set(&[("k_1", k_1), ("k_2", k_2)]);
     let (mut low, mut high) = (0.05_f64, 1.0_f64);
     assert!(largest_root(&mut wheel, low) > 0.0 && largest_root(&mut wheel, high) < 0.0);

@@ -3,9 +3,10 @@
 #![allow(clippy::unwrap_used, reason = "what is missing fails the test")]
 
 use appell_runtime::model::Model;
+use appell_test_kit::Random;
 use appell_tests::engine::assert_close;
-use appell_tests::place::{Place, assert_contains, derived};
-use appell_tests::random::Random;
+use appell_tests::place::{Place, assert_contains};
+use appell_tests::shipped;
 
 /// Random places per pair of mechanisms.
 const PLACES: usize = 20;
@@ -90,10 +91,10 @@ const NO_LEGS: [(&str, f64); 8] = [
 /// the first.
 fn pairs(general: &str, special: &str, mut check: impl FnMut(&mut Place<'_>, &mut Place<'_>)) {
     let mut random = Random::of(&format!("{general} {special}"));
-    let (general, special) = (derived(general), derived(special));
+    let (general, special) = (shipped::model(general), shipped::model(special));
     for _ in 0..PLACES {
-        let mut general = Place::random(&general, &mut random);
-        let mut special = Place::random(&special, &mut random);
+        let mut general = Place::random(general, &mut random);
+        let mut special = Place::random(special, &mut random);
         special.follow(&mut general);
         check(&mut general, &mut special);
     }
@@ -196,9 +197,9 @@ fn a_lateral_flywheel_balances_as_the_reaction_wheel_pendulum() {
     // Spong, Corke and Lozano, Nonlinear control of the reaction wheel pendulum, 2001: a pendulum
     // on the ground with the wheel's inertia about its axis apart, in absolute velocities.
     for name in ["unicycle_lateral_flywheel", "wheelbot"] {
-        let (model, mut random) = (derived(name), Random::of(name));
+        let (model, mut random) = (shipped::model(name), Random::of(name));
         for _ in 0..PLACES {
-            let mut place = Place::random(&model, &mut random);
+            let mut place = Place::random(model, &mut random);
             place.set(&UPRIGHT);
             let [m_w, j_wd, r, g] = place.all(["m_w", "J_wd", "R", "g"]);
             let [m_b, j_bx, l_b] = place.all(["m_b", "J_bx", "l_b"]);
@@ -303,10 +304,10 @@ fn leg([hip, pedal]: [[f64; 2]; 2], [thigh, shank]: [f64; 2]) -> [f64; 2] {
 #[test]
 fn the_legs_of_the_rider_follow_the_pedals() {
     const STEP: f64 = 1e-3;
-    let model = derived("unicycle_linkage_rider");
+    let model = shipped::model("unicycle_linkage_rider");
     let mut random = Random::of("legs");
     for _ in 0..PLACES {
-        let mut place = Place::random(&model, &mut random);
+        let mut place = Place::random(model, &mut random);
         // The pedals within reach of the feet.
         place.set(&[("l_h", 0.6), ("a_h", 0.35), ("a_s", 0.4), ("a_c", 0.1)]);
         let [phi, gamma, theta] = place.all(["phi", "gamma", "theta"]);
@@ -391,9 +392,12 @@ fn the_electric_unicycle_in_space_upright_is_a_double_pendulum_on_the_ground() {
 fn a_gyroscope_that_is_turned_in_tilt_pushes_in_yaw_and_the_other_way_round() {
     // Euler: the moment that turns a spin h about an axis ω is ω × h. With the spin along the axle
     // a rate of tilt, or of the gimbal, asks for a moment about z, a yaw rate for one about -x.
-    let (model, mut random) = (derived("unicycle_gyroscope"), Random::of("gyroscope"));
+    let (model, mut random) = (
+        shipped::model("unicycle_gyroscope"),
+        Random::of("gyroscope"),
+    );
     for _ in 0..PLACES {
-        let mut place = Place::random(&model, &mut random);
+        let mut place = Place::random(model, &mut random);
         place.set(&UPRIGHT);
         place.set(&[("theta", 0.0), ("beta", 0.0), ("omega_1", 0.0)]);
         let [j_g, nu, gimbal_rate] = place.all(["J_g", "nu", "beta_dot"]);
@@ -518,8 +522,11 @@ fn turntable(place: &mut Place<'_>, motion: &Turntable) -> [f64; 5] {
 
 #[test]
 fn an_overhead_flywheel_turns_the_unicycle_as_published_for_a_turntable() {
-    let (model, mut random) = (derived("unicycle_overhead_flywheel"), Random::of("table"));
-    let mut place = Place::random(&model, &mut random);
+    let (model, mut random) = (
+        shipped::model("unicycle_overhead_flywheel"),
+        Random::of("table"),
+    );
+    let mut place = Place::random(model, &mut random);
     place.set(&TURNTABLE_PARAMETERS);
     let [of_wheel, of_frame] = PITCH_INERTIAS;
     for motion in TURNTABLE {

@@ -6,8 +6,8 @@ use appell_estimate::inverse::{InputEquations, InverseError};
 use appell_models::Shipped;
 use appell_runtime::model::{At, Model};
 use appell_spectra::singular::Singular;
+use appell_test_kit::Random;
 use appell_tests::point::Point;
-use appell_tests::random::Random;
 use appell_tests::reference::{cases, number};
 use appell_tests::shipped;
 
@@ -110,7 +110,7 @@ fn ride(case: &serde_json::Value) -> (InputEquations, [f64; 3]) {
 
 #[test]
 fn the_driving_torque_of_the_euc_has_the_two_values_of_the_reference() {
-    for case in cases("euc_driving_torque.json").unwrap_or_default() {
+    for case in cases("euc_driving_torque.json") {
         let (equations, [v, gamma, phi]) = ride(&case);
         // (9): from the first equation, with all accelerations measured.
         let first = equations
@@ -134,7 +134,7 @@ fn the_driving_torque_of_the_euc_has_the_two_values_of_the_reference() {
 
 #[test]
 fn the_euc_has_one_relation_without_its_torques() {
-    for case in cases("euc_driving_torque.json").unwrap_or_default() {
+    for case in cases("euc_driving_torque.json") {
         let (equations, accelerations) = ride(&case);
         let radius = number(&case["params"]["R"]);
         let relations = equations.relations();

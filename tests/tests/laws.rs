@@ -5,10 +5,10 @@
 use appell_codegen::mechanics::gibbs_appell::{acceleration_energy, kinetic_energy};
 use appell_codegen::symbolic::{Expr, Graph};
 use appell_runtime::model::Model;
-use appell_tests::engine::{Evaluation, assert_close, assert_schedules, engines, interpreter};
+use appell_test_kit::Random;
+use appell_tests::engine::{Evaluation, assert_close, assert_schedules, engines};
 use appell_tests::paper::energy_rate;
 use appell_tests::point::Point;
-use appell_tests::random::Random;
 use appell_tests::{dual, shipped};
 use nalgebra::DMatrix;
 
@@ -34,12 +34,12 @@ const FLOOR: f64 = 1e-3;
 /// Calls `law` with random points of every shipped mechanism.
 fn everywhere(seed: &str, mut law: impl FnMut(&str, &dyn Model, &Point)) {
     for name in shipped::names() {
-        let model = interpreter(&shipped::mechanism(&name));
+        let model = shipped::model(&name);
         let mut random = Random::of(&format!("{seed} {name}"));
         for number in 0..POINTS {
             law(
                 &format!("{name} at point {number}"),
-                &model,
+                model,
                 &Point::random(model.info(), &mut random),
             );
         }
@@ -60,7 +60,7 @@ fn the_mass_matrix_is_symmetric_and_positive_definite() {
 #[test]
 fn mass_matrix_and_bias_are_the_derivatives_of_the_acceleration_energy() {
     for name in shipped::names() {
-        let mut d = shipped::derive(&shipped::mechanism(&name));
+        let d = &mut *shipped::derivation(&name);
         let accelerations = d.symbols.accelerations.clone();
         let parts: Vec<Expr> = d
             .bodies
@@ -87,7 +87,7 @@ fn mass_matrix_and_bias_are_the_derivatives_of_the_acceleration_energy() {
 #[test]
 fn the_energy_grows_by_the_power_of_the_loads_as_an_identity() {
     for name in shipped::names() {
-        let mut d = shipped::derive(&shipped::mechanism(&name));
+        let d = &mut *shipped::derivation(&name);
         let mut parts: Vec<Expr> = d
             .bodies
             .clone()
@@ -96,7 +96,7 @@ fn the_energy_grows_by_the_power_of_the_loads_as_an_identity() {
             .collect();
         parts.extend(d.loads.iter().filter_map(|load| load.potential));
         let energy = d.algebra.graph.sum(&parts);
-        let growth = energy_rate(&mut d, energy);
+        let growth = energy_rate(d, energy);
         let graph = &mut d.algebra.graph;
         let mut power = Graph::ZERO;
         for load in d.loads.iter().filter(|load| load.potential.is_none()) {
@@ -151,13 +151,12 @@ fn the_constraints_hold_to_rounding() {
 #[test]
 fn the_jacobians_are_those_of_dual_numbers() {
     for name in shipped::names() {
-        let program = shipped::program(&shipped::mechanism(&name));
-        let model = appell_codegen::interpreted::InterpretedModel::new(program.clone());
+        let (program, model) = (shipped::program(&name), shipped::model(&name));
         let mut random = Random::of(&format!("jacobians {name}"));
         for number in 0..POINTS {
             let point = Point::random(model.info(), &mut random);
-            let e = Evaluation::of(&model, point.at());
-            let duals = dual::jacobians(&program, &point);
+            let e = Evaluation::of(model, point.at());
+            let duals = dual::jacobians(program, &point);
             for ((what, derived), dual) in [("A", &e.a), ("B", &e.b), ("P", &e.p)]
                 .into_iter()
                 .zip(duals)
@@ -200,12 +199,12 @@ fn rates_and_jacobians_are_linear_in_the_inputs_that_enter_linearly() {
 #[test]
 fn the_schedules_compute_what_was_derived() {
     for name in shipped::names() {
-        let program = shipped::program(&shipped::mechanism(&name));
+        let program = shipped::program(&name);
         let mut random = Random::of(&format!("schedules {name}"));
         let points: Vec<Point> = (0..POINTS)
             .map(|_| Point::random(&program.info, &mut random))
             .collect();
-        assert_schedules(&program, &points);
+        assert_schedules(program, &points);
     }
 }
 
@@ -227,9 +226,9 @@ fn interpreted_emitted_and_compiled_code_give_the_same_numbers() {
         let mut random = Random::of(&format!("engines {name}"));
         for number in 0..POINTS {
             let point = Point::random(first.model.info(), &mut random);
-            let wanted = Evaluation::of(&*first.model, point.at());
+            let wanted = Evaluation::of(first.model, point.at());
             for engine in others {
-                let got = Evaluation::of(&*engine.model, point.at());
+                let got = Evaluation::of(engine.model, point.at());
                 for ((what, got), (_, wanted)) in got.arrays().into_iter().zip(wanted.arrays()) {
                     let what = format!("{what} of {name}, {}, at point {number}", engine.name);
                     assert_close(&what, got, wanted, EXECUTIONS, f64::MIN_POSITIVE);

@@ -106,7 +106,7 @@ fn linear_equations_under_conditions_are_those_of_the_special_motion() {
             &[("th", "0"), ("r", "0"), ("Pd", "0"), ("psi", "0")],
         ),
     ] {
-        let mut paper = Paper::steering(shipped::mechanism(mechanism));
+        let mut paper = Paper::steering(shipped::mechanism(mechanism).clone());
         paper.linearise(conditions);
         let entries = Equation::find(number).unwrap().claims[0].formulas.text();
         let differences = paper.matrix_differences(entries, &[]);
@@ -117,7 +117,7 @@ fn linear_equations_under_conditions_are_those_of_the_special_motion() {
 
 #[test]
 fn a_wheel_with_any_axisymmetric_inertia_follows_the_general_equations() {
-    Paper::steering(shipped::mechanism("axisymmetric_wheel")).assert(
+    Paper::steering(shipped::mechanism("axisymmetric_wheel").clone()).assert(
         "w1d = ((1 + k_2)*w2*w3 - k_1*w3**2*tan(th) + g/R*sin(th))/(1 + k_1)
          w2d = -w1*w3/(1 + k_2)
          w3d = w1*(k_1*w3*tan(th) - k_2*w2)/k_1",

@@ -5,10 +5,10 @@
 
 use appell_runtime::model::Model;
 use appell_spec::Mechanism;
+use appell_test_kit::Random;
 use appell_tests::engine::{Evaluation, assert_close, assert_schedules, in_process, interpreter};
 use appell_tests::formulations::assert_one_answer;
 use appell_tests::point::Point;
-use appell_tests::random::Random;
 use appell_tests::{dual, shipped};
 use nalgebra::{DMatrix, DVector};
 
@@ -83,9 +83,9 @@ fn assert_one_motion(first: &dyn Model, second: &dyn Model, point: &Point) {
 /// Kane, Lagrange, duals and the compiled code.
 fn assert_sound(mechanism: &Mechanism) {
     assert_one_answer(mechanism);
-    let program = shipped::program(mechanism);
+    let program = shipped::standard_program(mechanism);
     let engines = in_process(program.clone());
-    let mut random = Random::of(&format!("sound {}", mechanism.name));
+    let mut random = Random::of(&format!("executions {}", mechanism.name));
     let [interpreted, compiled] = engines.as_slice() else {
         panic!("two executions")
     };
@@ -94,8 +94,8 @@ fn assert_sound(mechanism: &Mechanism) {
         .collect();
     assert_schedules(&program, &points[..2]);
     for (number, point) in points.iter().enumerate() {
-        let e = Evaluation::of(&*interpreted.model, point.at());
-        let others = Evaluation::of(&*compiled.model, point.at());
+        let e = Evaluation::of(interpreted.model, point.at());
+        let others = Evaluation::of(compiled.model, point.at());
         for ((what, wanted), (_, got)) in e.arrays().into_iter().zip(others.arrays()) {
             let what = format!("{what}, compiled, at point {number}");
             assert_close(&what, got, wanted, PIVOTED, 1.0);
@@ -124,21 +124,18 @@ fn solved_numerically(mechanism: &Mechanism) -> usize {
 
 #[test]
 fn a_wheel_without_a_range_of_tilt_moves_like_the_one_with_a_range() {
-    let (shipped_wheel, free) = (
-        shipped::mechanism("rolling_wheel"),
-        changed("rolling_wheel", &[NO_RANGE]),
-    );
-    assert_eq!(solved_numerically(&shipped_wheel), 0);
+    let free = changed("rolling_wheel", &[NO_RANGE]);
+    assert_eq!(solved_numerically(shipped::mechanism("rolling_wheel")), 0);
     assert!(
         solved_numerically(&free) > 0,
         "nothing may be divided by the cosine of an unlimited tilt"
     );
-    let (a, b) = (interpreter(&shipped_wheel), interpreter(&free));
+    let (a, b) = (shipped::model("rolling_wheel"), interpreter(&free));
     let mut random = Random::of("no range");
     for number in 0..POINTS {
         let point = Point::random(a.info(), &mut random);
         let (wanted, got) = (
-            Evaluation::of(&a, point.at()),
+            Evaluation::of(a, point.at()),
             Evaluation::of(&b, point.at()),
         );
         for ((what, got), (_, wanted)) in got.arrays().into_iter().zip(wanted.arrays()) {
@@ -158,16 +155,13 @@ fn a_wheel_without_a_range_of_tilt_moves_like_the_one_with_a_range() {
 
 #[test]
 fn a_unicycle_without_a_range_of_tilt_moves_like_the_one_with_a_range() {
-    let (ranged, free) = (
-        shipped::mechanism("unicycle"),
-        changed("unicycle", &[NO_RANGE]),
-    );
-    let (a, b) = (interpreter(&ranged), interpreter(&free));
+    let free = changed("unicycle", &[NO_RANGE]);
+    let (a, b) = (shipped::model("unicycle"), interpreter(&free));
     let mut random = Random::of("no range");
     for number in 0..POINTS {
         let point = Point::random(a.info(), &mut random);
         let (wanted, got) = (
-            Evaluation::of(&a, point.at()),
+            Evaluation::of(a, point.at()),
             Evaluation::of(&b, point.at()),
         );
         assert_close(
@@ -190,14 +184,13 @@ fn a_unicycle_without_a_range_of_tilt_moves_like_the_one_with_a_range() {
 
 #[test]
 fn skew_pseudo_velocities_describe_the_same_motion() {
-    let ranged = shipped::mechanism("rolling_wheel");
     let skew = changed("rolling_wheel", &[SKEW[0], SKEW[1], SKEW_THIRD, NO_RANGE]);
     assert!(solved_numerically(&skew) > 0, "no entry keeps its sign");
     assert_sound(&skew);
-    let (a, b) = (interpreter(&ranged), interpreter(&skew));
+    let (a, b) = (shipped::model("rolling_wheel"), interpreter(&skew));
     let mut random = Random::of("one motion");
     for _ in 0..POINTS {
-        assert_one_motion(&a, &b, &Point::random(a.info(), &mut random));
+        assert_one_motion(a, &b, &Point::random(a.info(), &mut random));
     }
 }
 
@@ -205,15 +198,15 @@ fn skew_pseudo_velocities_describe_the_same_motion() {
 fn nothing_is_divided_by_what_vanishes_at_upright() {
     // Upright sin θ = 0; the entries sin θ of both mechanisms are pivots that must not be taken.
     // The shipped ones are regular there by other formulas.
-    let wheel = interpreter(&shipped::mechanism("rolling_wheel"));
-    let unicycle = interpreter(&shipped::mechanism("unicycle"));
+    let wheel = shipped::model("rolling_wheel");
+    let unicycle = shipped::model("unicycle");
     for (regular, mechanism) in [
-        (&wheel, changed("rolling_wheel", &[NO_RANGE])),
+        (wheel, changed("rolling_wheel", &[NO_RANGE])),
         (
-            &wheel,
+            wheel,
             changed("rolling_wheel", &[SKEW[0], SKEW[1], SKEW_THIRD, NO_RANGE]),
         ),
-        (&unicycle, changed("unicycle", &[NO_RANGE])),
+        (unicycle, changed("unicycle", &[NO_RANGE])),
     ] {
         let model = interpreter(&mechanism);
         let mut random = Random::of("upright");

@@ -7,10 +7,10 @@ use appell_codegen::derived;
 use appell_codegen::formulations::Against;
 use appell_codegen::interpreted::InterpretedModel;
 use appell_runtime::model::{At, Model};
+use appell_test_kit::Random;
 use appell_tests::engine::interpreter;
 use appell_tests::formulations::assert_one_answer;
 use appell_tests::point::Point;
-use appell_tests::random::Random;
 use appell_tests::shipped;
 
 /// Rounding of some ten operations against some hundred.

@@ -4,10 +4,10 @@
 
 use appell_codegen::derived;
 use appell_runtime::model::Model;
+use appell_test_kit::Random;
 use appell_tests::engine::{Evaluation, interpreter};
 use appell_tests::formulations::assert_one_answer;
 use appell_tests::point::Point;
-use appell_tests::random::Random;
 use appell_tests::shipped;
 
 const POINTS: usize = 12;

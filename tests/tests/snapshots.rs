@@ -22,7 +22,7 @@ fn emitted_code_is_the_reviewed_one() {
 #[test]
 fn schedules_of_the_rates_are_the_reviewed_ones() {
     for name in MECHANISMS {
-        let program = shipped::program(&shipped::mechanism(name));
+        let program = shipped::program(name);
         let rates = program
             .functions
             .iter()
@@ -30,7 +30,7 @@ fn schedules_of_the_rates_are_the_reviewed_ones() {
             .unwrap();
         insta::assert_snapshot!(
             format!("rates_{name}"),
-            schedule(&program, rates).dump(&program)
+            schedule(program, rates).dump(program)
         );
     }
 }

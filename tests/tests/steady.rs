@@ -57,9 +57,7 @@ fn heading_and_place_are_hidden_and_the_rest_is_essential() {
 
 #[test]
 fn the_turning_motions_of_the_unicycle_are_found_without_a_formula() {
-    let Some(cases) = cases("unicycle_turning_equilibria.json") else {
-        return;
-    };
+    let cases = cases("unicycle_turning_equilibria.json");
     assert_eq!(cases.len(), 20);
     let model = shipped("unicycle");
     for case in &cases {

@@ -219,6 +219,38 @@ fn no_file_is_longer_than_700_lines() {
     }
 }
 
+/// A file that `main.rs` does not name is never compiled, and nobody misses it.
+#[test]
+fn every_file_of_tests_is_run() {
+    for main in files(&["model_spec", "codegen", "gap", "cli", "tests"], "rs") {
+        if !main.ends_with("tests/main.rs") {
+            continue;
+        }
+        let named = read(&main);
+        let folder = main.parent().unwrap();
+        let entries = std::fs::read_dir(folder).unwrap();
+        for path in entries.map(|entry| entry.unwrap().path()) {
+            let module = path.file_stem().unwrap().to_string_lossy();
+            let is_module = path.extension().is_some_and(|end| end == "rs") && module != "main";
+            assert!(
+                !is_module || named.contains(&format!("mod {module};\n")),
+                "{} does not name `{module}`",
+                main.display()
+            );
+        }
+        let snapshots = std::fs::read_dir(folder.join("snapshots"));
+        for path in snapshots.into_iter().flatten() {
+            let name = path.unwrap().file_name().to_string_lossy().into_owned();
+            let Some(rest) = name.strip_prefix("integration__") else {
+                continue;
+            };
+            let module = rest.split("__").next().unwrap();
+            let of_a_module = named.contains(&format!("mod {module};\n"));
+            assert!(of_a_module, "{}: no test writes {name}", main.display());
+        }
+    }
+}
+
 #[test]
 fn every_public_item_is_documented() {
     let workspace: toml::Table = read(&shipped::workspace().join("Cargo.toml"))

@@ -111,7 +111,7 @@ impl Diagnose {
             files::write_json(path, &json)?;
         }
         if let Some(path) = &self.html {
-            files::write(path, &diagnosed::page(&set, &report))?;
+            files::write(path, &appell_report::gap::page(&set, &report))?;
         }
         let outputs = [&self.json, &self.html, &next];
         let mut text = diagnosed::text(&report, next.as_deref());

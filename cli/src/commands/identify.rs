@@ -9,6 +9,7 @@ use crate::{identified, picture, progress};
 use appell::Error;
 use appell::files;
 use appell::source::Source;
+use appell_report::identification;
 
 /// Finds the parameters that make recordings most likely, with intervals, and tells how well the
 /// model then predicts the runs that were held out.
@@ -86,12 +87,12 @@ impl Identify {
             files::write_json(path, &identified::json(&set, &answer))?;
         }
         if let Some(path) = &self.plot {
-            picture::write(path, &identified::figure(&set, &answer).to_svg())?;
+            picture::write(path, &identification::figure(&set, &answer).to_svg())?;
         }
         if let Some(path) = &self.html {
-            files::write(path, &identified::page(&set, &answer))?;
+            files::write(path, &identification::page(&set, &answer))?;
         }
         let outputs = [&self.json, &self.plot, &self.html];
-        output::print_beside(&identified::text(&set, &answer), &outputs)
+        output::print_beside(&identification::text(&set, &answer), &outputs)
     }
 }

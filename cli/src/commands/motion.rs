@@ -46,9 +46,9 @@ impl Motion {
             let file = file_name(path, &names)?;
             let (capture, found) = Capture::read(path, &skeleton)?;
             findings.extend(
-                found
-                    .iter()
-                    .map(|finding| format!("{file}: {}", appell::recording::sentence(finding))),
+                found.iter().map(|finding| {
+                    format!("{file}: {}", appell_report::recording::sentence(finding))
+                }),
             );
             rides.push(Ride::of(&skeleton, &capture));
             names.push(file);

@@ -6,6 +6,7 @@ use crate::output;
 use crate::recording;
 use appell::Error;
 use appell::files;
+use appell_report::recording::text;
 
 /// Reads recordings and tells what they hold: runs, rates, gaps, the noise of each channel, and what
 /// was mended or looks wrong.
@@ -31,6 +32,6 @@ impl Recording {
         if let Some(path) = &self.json {
             files::write_json(path, &recording::json(&set))?;
         }
-        output::print_beside(&recording::text(&set), &[&self.json])
+        output::print_beside(&text(&set), &[&self.json])
     }
 }

@@ -21,6 +21,9 @@ pub(crate) struct Reproduce {
     /// The paper
     #[arg(value_enum, default_value_t = Paper::Steering)]
     paper: Paper,
+    /// Points of the charts of the paper on steering along each axis
+    #[arg(long, value_name = "COUNT", default_value_t = 240, value_parser = clap::value_parser!(u16).range(20..=1000))]
+    grid: u16,
     /// Folder for the book
     #[arg(long, value_name = "DIR", default_value = "reproduced")]
     out: PathBuf,
@@ -80,7 +83,7 @@ impl Reproduce {
             bar.set_message(name.to_owned());
         };
         let sections = match self.paper {
-            Paper::Steering => book::steering::book(making),
+            Paper::Steering => book::steering::book(usize::from(self.grid), making),
             Paper::Euc => book::euc::book(&self.out.join("rides"), making),
         };
         bar.finish_and_clear();

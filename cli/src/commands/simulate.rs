@@ -2,7 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
+use appell_codegen::compile::report;
 use appell_report::figure::Figure;
+use appell_report::film;
 use appell_runtime::integrate::{Ending, Options};
 use appell_runtime::model::ModelInfo;
 use appell_runtime::simulate::{Method, Response, Sampling, SimulationError, Validity};
@@ -12,7 +14,7 @@ use appell_runtime::{Simulation, Trajectory};
 use crate::engine::{Engine, equations};
 use crate::failure::note;
 use crate::output;
-use crate::{film, picture, progress, summary};
+use crate::{picture, progress, summary};
 use appell::Error;
 use appell::engine::Equations;
 use appell::files;
@@ -195,7 +197,14 @@ impl Simulate {
             picture::write(path, &Figure::of_states_and_inputs(&trajectory).to_svg())?;
         }
         if let Some(path) = &self.html {
-            let page = film::page(&equations, &setup, &trajectory, failure.as_deref())?;
+            let mechanism = &setup.mechanism;
+            let page = film::page(
+                mechanism,
+                equations.model(),
+                &trajectory,
+                failure.as_deref(),
+            )
+            .map_err(|findings| report(mechanism, setup.spec, &findings))?;
             files::write(path, &page)?;
         }
         if let Some(path) = &self.json {

@@ -1,13 +1,14 @@
 //! A simulated rig: a carriage of 1 kg with a friction that its model does not have.
-#![allow(dead_code, reason = "every test file uses a part of it")]
 
 mod gear;
 
 use std::fmt::Write as _;
 
-use super::support::{Folder, Noise};
+use appell_test_kit::Random;
 use gear::{Gear, moved};
 use serde_json::Value;
+
+use crate::support::Folder;
 
 const DESCRIPTION: &str = r#"
 mechanism   = "carriage"
@@ -31,12 +32,12 @@ const HELD: f64 = 0.01;
 const STEPS: u32 = 10;
 
 /// A recording under forces that are held, with noise of 1 mm. `advance` gives the position after a force.
-fn recording(mut advance: impl FnMut(f64) -> f64, forces: &[f64], noise: &mut Noise) -> String {
+fn recording(mut advance: impl FnMut(f64) -> f64, forces: &[f64], noise: &mut Random) -> String {
     let mut text = "t,x,F\n".to_owned();
     let mut x = 0.0;
     for (row, force) in forces.iter().enumerate() {
         let t = row as f64 / 100.0;
-        let _ = writeln!(text, "{t},{},{force}", x + 1e-3 * noise.next());
+        let _ = writeln!(text, "{t},{},{force}", x + 1e-3 * noise.normal());
         x = advance(*force);
     }
     text
@@ -105,7 +106,7 @@ fn forces() -> Vec<f64> {
 pub(crate) struct Rig<F> {
     pub(crate) folder: Folder,
     friction: F,
-    noise: Noise,
+    noise: Random,
 }
 
 impl<F: Fn(f64) -> f64> Rig<F> {
@@ -114,7 +115,7 @@ impl<F: Fn(f64) -> f64> Rig<F> {
         let mut rig = Self {
             folder: Folder::new(),
             friction,
-            noise: Noise(7),
+            noise: Random::new(7),
         };
         rig.folder.write("recording.toml", DESCRIPTION);
         for name in RUNS {
@@ -177,7 +178,7 @@ pub(crate) fn late(delay: f64, coefficient: f64) -> Folder {
 
 /// The data set of a rig that moves so.
 fn moving<A: FnMut(f64) -> f64>(rig: impl Fn() -> A) -> Folder {
-    let (folder, mut noise) = (Folder::new(), Noise(7));
+    let (folder, mut noise) = (Folder::new(), Random::new(7));
     folder.write("recording.toml", DESCRIPTION);
     for name in RUNS {
         folder.write(name, &recording(rig(), &forces(), &mut noise));

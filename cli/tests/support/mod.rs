@@ -1,5 +1,4 @@
 //! Runs the built binary in a folder of its own.
-#![allow(dead_code, reason = "every test file uses a part of it")]
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -123,21 +122,4 @@ pub(crate) fn assert_close(found: f64, expected: f64, tolerance: f64, what: &str
 /// A file of the repository.
 pub(crate) fn repository(path: &str) -> String {
     format!("{}/../{path}", env!("CARGO_MANIFEST_DIR"))
-}
-
-/// Noise of variance 1: the sum of twelve uniform numbers (P. L'Ecuyer's 64-bit congruences).
-pub(crate) struct Noise(pub(crate) u64);
-
-impl Noise {
-    fn uniform(&mut self) -> f64 {
-        self.0 = self
-            .0
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 11) as f64 / (1_u64 << 53) as f64
-    }
-
-    pub(crate) fn next(&mut self) -> f64 {
-        (0..12).map(|_| self.uniform()).sum::<f64>() - 6.0
-    }
 }

@@ -7,14 +7,11 @@ use syn::{Attribute, BinOp, Expr, Stmt, token};
 use super::layout;
 use super::syntax as s;
 use super::types::{Types, result_struct};
-use crate::program::{Array, Function, Layout};
+use crate::program::{Array, Function, Layout, Space};
 use crate::schedule::pi::parts_of_pi;
 use crate::schedule::piece::method;
 use crate::schedule::{Argument, Operation, Schedule, Step, Tree, Value};
 use crate::symbolic::{Rational, Relation};
-
-/// Names of columns in a line of a comment.
-const NAMES_PER_LINE: usize = 8;
 
 /// The statements of a function; the last one is its result.
 pub(super) fn body(types: &Types<'_>, function: &Function, schedule: &Schedule) -> Vec<Stmt> {
@@ -26,7 +23,7 @@ pub(super) fn body(types: &Types<'_>, function: &Function, schedule: &Schedule) 
     };
     body.arguments();
     body.weights();
-    body.constants(function);
+    body.constants();
     for step in &schedule.steps {
         body.step(step);
     }
@@ -77,7 +74,7 @@ impl Body<'_> {
     }
 
     /// `let half = T::constant(0.5);`
-    fn constants(&mut self, function: &Function) {
+    fn constants(&mut self) {
         let mut constants = BTreeSet::new();
         let entries = self
             .schedule
@@ -86,13 +83,6 @@ impl Body<'_> {
             .flat_map(|array| &array.entries);
         for tree in trees(&self.schedule.steps).chain(entries) {
             collect_constants(tree, &mut constants);
-        }
-        let zero_filled = function.results.iter().zip(&self.schedule.results);
-        if zero_filled
-            .into_iter()
-            .any(|(array, result)| is_sparse(array.layout, &result.entries))
-        {
-            constants.insert(Rational::ZERO);
         }
         for value in constants {
             let name = self.types.names.constant(&value);
@@ -227,7 +217,7 @@ impl Body<'_> {
     fn results(&mut self, function: &Function) {
         let mut fields = Vec::new();
         let structure = result_struct(function);
-        let names = Types::fields(function);
+        let names = Types::result_fields(function);
         let results = function.results.iter().zip(&self.schedule.results);
         for ((array, result), name) in results.zip(&names) {
             let value = self.result(array, &result.entries);
@@ -240,7 +230,7 @@ impl Body<'_> {
                     .iter()
                     .map(|(name, value)| (*name, value.clone()))
                     .collect();
-                s::structure(structure.unwrap_or_default(), fields)
+                s::structure(structure.unwrap_or_default(), fields, None)
             }
         };
         let mut value = value;
@@ -251,96 +241,61 @@ impl Body<'_> {
         self.statements.push(Stmt::Expr(value, None));
     }
 
-    fn result(&mut self, array: &Array, entries: &[Tree]) -> Expr {
+    fn result(&self, array: &Array, entries: &[Tree]) -> Expr {
         match array.layout {
             Layout::Scalar => match entries {
                 [entry, ..] => self.tree(entry),
                 [] => s::associated("constant", vec![s::number(0.0)]),
             },
-            Layout::State | Layout::Speeds | Layout::Coordinates | Layout::Outputs => {
-                let (type_name, labels) = self.types.labelled(array.layout);
-                let values = self.all(entries);
-                s::structure(
-                    type_name,
-                    labels.iter().map(String::as_str).zip(values).collect(),
-                )
+            Layout::Vector(space) => self.vector(space, self.all(entries)),
+            Layout::List(_) => s::array(self.all(entries)),
+            Layout::Rows(space, columns) => {
+                let rows = entries.chunks(columns).map(|row| s::array(self.all(row)));
+                self.vector(space, rows.collect())
             }
-            Layout::Vector(_) => s::array(self.all(entries)),
             Layout::Matrix(rows, columns) => {
-                if is_sparse(array.layout, entries) {
-                    self.sparse(array, rows, columns, entries)
-                } else {
-                    // A row may be empty: a model without inputs has a B of no columns.
-                    let lines = (0..rows).map(|row| &entries[row * columns..][..columns]);
-                    s::array(lines.map(|line| s::array(self.all(line))).collect())
-                }
+                // A row may be empty: a model may have contacts and no coordinates.
+                let lines = (0..rows).map(|row| &entries[row * columns..][..columns]);
+                s::array(lines.map(|line| s::array(self.all(line))).collect())
+            }
+            Layout::Jacobian(rows, columns) => {
+                let count = self.types.fields(columns).len();
+                let lines = (0..self.types.fields(rows).len())
+                    .map(|row| self.row(columns, &entries[row * count..][..count]));
+                self.vector(rows, lines.collect())
             }
         }
     }
 
-    /// A matrix that starts with zeros and gets the entries that are none.
-    fn sparse(&mut self, array: &Array, rows: usize, columns: usize, entries: &[Tree]) -> Expr {
-        let zero = self.types.names.constant(&Rational::ZERO);
-        let mut local = array.name.to_uppercase();
-        while self.schedule.names.contains(&local) || self.types.is_argument(&local) {
-            local.push('_');
-        }
-        self.attributes.push(layout::blank());
-        self.attributes.extend(numbered_names(array));
-        let zeros = s::repeated(s::repeated(s::name(&zero), columns), rows);
-        let is_zero = |tree: &Tree| *tree == Tree::Constant(Rational::ZERO);
-        if entries.iter().all(is_zero) {
-            self.push(s::binding(&local), zeros);
-        } else {
-            self.push(s::mutable(&local), zeros);
-        }
-        for (index, tree) in entries.iter().enumerate() {
-            if !is_zero(tree) {
-                let place = s::entry(s::name(&local), &[index / columns, index % columns]);
-                self.statements.push(s::assign(place, self.tree(tree)));
-            }
-        }
-        s::name(&local)
+    /// `Name { field: value, … }`
+    fn vector(&self, space: Space, values: Vec<Expr>) -> Expr {
+        let fields = self.types.fields(space).iter().map(String::as_str);
+        s::structure(Types::type_name(space), fields.zip(values).collect(), None)
     }
-}
 
-/// What the rows and columns of a matrix are, number by number.
-fn numbered_names(array: &Array) -> Vec<Attribute> {
-    let [rows, columns] = &array.names;
-    let mut comments = Vec::new();
-    let same = rows == columns;
-    let lists = if same {
-        vec![("Rows and columns: ", rows)]
-    } else {
-        vec![("Rows: ", rows), ("Columns: ", columns)]
-    };
-    for (title, names) in lists {
-        let numbered: Vec<String> = names
+    /// `Name { field: value, ..Name::splat(zero) }`: the entries that are not zero.
+    fn row(&self, space: Space, entries: &[Tree]) -> Expr {
+        let is_zero = |tree: &&Tree| **tree == Tree::Constant(Rational::ZERO);
+        if entries.iter().filter(is_zero).count() <= 1 {
+            return self.vector(space, self.all(entries));
+        }
+        let name = Types::type_name(space);
+        let zero = s::name(&self.types.names.constant(&Rational::ZERO));
+        let zeros = s::associated_with(name, "splat", vec![zero]);
+        let fields: Vec<(&str, Expr)> = self
+            .types
+            .fields(space)
             .iter()
-            .enumerate()
-            .map(|(i, name)| format!("{i} {name}"))
+            .zip(entries)
+            .filter(|(_, entry)| !is_zero(entry))
+            .map(|(field, entry)| (field.as_str(), self.tree(entry)))
             .collect();
-        let mut lines = numbered
-            .chunks(NAMES_PER_LINE)
-            .map(|names| names.join(", "))
-            .peekable();
-        let mut start = title;
-        while let Some(line) = lines.next() {
-            let end = if lines.peek().is_some() { "," } else { "." };
-            comments.push(layout::comment(&format!("{start}{line}{end}")));
-            start = "  ";
+        if fields.is_empty() {
+            zeros
+        } else {
+            s::structure(name, fields, Some(zeros))
         }
     }
-    comments
-}
-
-/// Whether a matrix is written entry by entry instead of as a whole.
-fn is_sparse(layout: Layout, entries: &[Tree]) -> bool {
-    let zeros = entries
-        .iter()
-        .filter(|&tree| *tree == Tree::Constant(Rational::ZERO))
-        .count();
-    matches!(layout, Layout::Matrix(_, columns) if columns > 4 || 2 * zeros > entries.len())
 }
 
 /// Comments before an expression.

@@ -9,7 +9,7 @@ use super::error::Error;
 use super::layout::{blank_tokens, docs, one_line};
 use super::syntax::{ident, known};
 use super::types::{Types, result_struct};
-use crate::program::{Function, Term};
+use crate::program::{Function, Space, Term};
 use crate::schedule::{Argument, OperationCount, Schedule};
 
 /// What the rows and columns of a plain array are, where no struct tells it.
@@ -35,9 +35,12 @@ fn rows_and_columns(function: &Function) -> Vec<String> {
     }
 }
 
-/// What the names of values mean, where they occur.
-fn glossary(function: &Function, schedule: &Schedule) -> Vec<String> {
-    let occurs = |term: &&Term| schedule.names.iter().any(|name| term.explains(name));
+/// What the names of values mean, where they occur, in the body or in the equations `told` over it.
+fn glossary(function: &Function, schedule: &Schedule, told: &[String]) -> Vec<String> {
+    let occurs = |term: &&Term| {
+        let mut names = schedule.names.iter().chain(told);
+        names.any(|name| term.explains(name))
+    };
     let mut lines: Vec<String> = function
         .glossary
         .iter()
@@ -74,11 +77,13 @@ pub(super) fn function(
     let name = known(function.kind.name());
     let mut lines = vec![function.kind.about().to_owned(), String::new()];
     lines.extend(super::picture::picture(types, function));
+    let (equations, told) = super::equations::equations(types, function);
+    lines.extend(equations);
     lines.extend(rows_and_columns(function));
     for remark in &function.remarks {
         lines.extend([one_line(remark), String::new()]);
     }
-    lines.extend(glossary(function, schedule));
+    lines.extend(glossary(function, schedule, &told));
     lines.push(format!(
         "From `{}`.",
         one_line(&types.program.file).replace('`', "'")
@@ -122,6 +127,9 @@ pub(super) fn function(
         }
         None => types.array_type(function.results[0].layout),
     };
+    let [parameters_type, state_type, inputs_type] =
+        [Space::Parameters, Space::State, Space::Inputs]
+            .map(|space| types.vector(space, &quote!(T)));
     let tokens = quote! {
         #blank
         #about
@@ -129,9 +137,9 @@ pub(super) fn function(
         #[inline]
         pub fn #name<T: Real>(
             #time
-            #parameters: &Parameters<T>,
-            #state: &State<T>,
-            #inputs: &Inputs<T>,
+            #parameters: &#parameters_type,
+            #state: &#state_type,
+            #inputs: &#inputs_type,
             #weights
         ) -> #result {}
     };

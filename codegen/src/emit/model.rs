@@ -8,18 +8,21 @@ use super::error::Error;
 use super::layout::{blank_tokens, docs, escaped};
 use super::syntax::{ident, known, path};
 use super::types::{Types, double};
-use crate::program::{FunctionKind, Layout, Program};
-use crate::schedule::names::identifier;
+use crate::program::{FunctionKind, Layout, Program, Space};
 
 /// Types of the emitted text beside the results of functions, which the model's own type must not
 /// collide with.
 const TYPES: &[&str] = &[
     "Parameters",
-    "Speeds",
-    "Coordinates",
     "State",
     "Inputs",
     "Outputs",
+    "Rates",
+    "Accelerations",
+    "CoordinateRates",
+    "GeneralizedForces",
+    "ConstraintResidual",
+    "ConstraintForces",
     "Real",
     "T",
     "Default",
@@ -58,10 +61,10 @@ pub(super) fn type_name(types: &Types<'_>) -> String {
             first.into_iter().chain(letters)
         })
         .collect();
-    let mut name = identifier(&camel);
+    let mut name = ident(&camel).to_string();
     let results = FunctionKind::ALL.map(FunctionKind::result_struct);
     let taken = |name: &str| TYPES.contains(&name) || results.contains(&name);
-    while taken(&name) || types.is_argument(&name) || name.len() < 2 {
+    while taken(&name) || types.is_field(&name) || name.len() < 2 {
         name.push_str("Model");
     }
     name
@@ -239,31 +242,25 @@ fn signals(info: &ModelInfo) -> TokenStream {
 pub(super) fn implementation(types: &Types<'_>) -> Result<TokenStream, Error> {
     let name = path(&type_name(types));
     let title = docs(&[escaped(&types.program.info.title)]);
-    let helpers = helpers(&types.program.info);
+    let helpers = helpers(types);
     let bodies = [
-        motion_methods(types)?,
+        method(types, FunctionKind::Rates, &["rates"])?,
+        method(types, FunctionKind::Jacobians, &["rates", "a", "b"])?,
+        method(types, FunctionKind::ParameterJacobian, &["p"])?,
         appell_method(types)?,
         energies_method(types)?,
-        optional_method(
-            types,
-            FunctionKind::ConstraintResidual,
-            "constraint_residual",
-            "residual",
-        )?,
-        optional_method(
-            types,
-            FunctionKind::ConstraintForces,
-            "constraint_forces",
-            "forces",
-        )?,
-        optional_method(types, FunctionKind::Outputs, "outputs", "outputs")?,
-        switches_methods(types),
-        position_methods(types),
-        contact_methods(types),
-        system_methods(types),
-        adjoint_methods(types),
-        output_derivative_methods(types),
+        method_or_nothing(types, FunctionKind::ConstraintResidual, "residual")?,
+        method_or_nothing(types, FunctionKind::ConstraintForces, "forces")?,
+        method_or_nothing(types, FunctionKind::Outputs, "outputs")?,
+        switches_methods(types)?,
+        position_methods(types)?,
+        provided(types, FunctionKind::Contacts, &["normals", "friction"])?,
+        system_methods(types)?,
+        adjoint_methods(types)?,
+        provided(types, FunctionKind::OutputJacobians, &["outputs", "c", "d"])?,
+        gradient_method(types, FunctionKind::OutputAdjoint)?,
     ];
+    let named = named(types, &name);
     let blank = blank_tokens();
     Ok(quote! {
         #blank
@@ -282,28 +279,18 @@ pub(super) fn implementation(types: &Types<'_>) -> Result<TokenStream, Error> {
                 }
                 #(#bodies)*
             }
+            #named
         };
     })
 }
 
-/// Sizes, and conversions between slices and structs.
-fn helpers(info: &ModelInfo) -> TokenStream {
-    let [n, s, m, k] = [
-        info.states.len(),
-        info.speeds,
-        info.inputs.len(),
-        info.parameters.len(),
-    ]
-    .map(Literal::usize_unsuffixed);
+/// Conversions between slices and structs.
+fn helpers(types: &Types<'_>) -> TokenStream {
     let blank = blank_tokens();
+    let [parameters, state, inputs] = [Space::Parameters, Space::State, Space::Inputs]
+        .map(|space| types.vector(space, &quote!(f64)));
     quote! {
         use model::At;
-
-        #blank
-        const N: usize = #n;
-        const S: usize = #s;
-        const M: usize = #m;
-        const K: usize = #k;
 
         #blank
         /// The first numbers of a slice that holds at least as many.
@@ -312,18 +299,18 @@ fn helpers(info: &ModelInfo) -> TokenStream {
         }
 
         #blank
-        fn parameters(at: &At<'_>) -> Parameters<f64> {
-            first::<K>(at.p).into()
+        fn parameters(at: &At<'_>) -> #parameters {
+            first(at.p).into()
         }
 
         #blank
-        fn state(at: &At<'_>) -> State<f64> {
-            first::<N>(at.x).into()
+        fn state(at: &At<'_>) -> #state {
+            first(at.x).into()
         }
 
         #blank
-        fn inputs(at: &At<'_>) -> Inputs<f64> {
-            first::<M>(at.u).into()
+        fn inputs(at: &At<'_>) -> #inputs {
+            first(at.u).into()
         }
 
         #blank
@@ -333,57 +320,127 @@ fn helpers(info: &ModelInfo) -> TokenStream {
     }
 }
 
-/// Rates and their derivatives.
-fn motion_methods(types: &Types<'_>) -> Result<TokenStream, Error> {
-    for kind in [
-        FunctionKind::Rates,
-        FunctionKind::Jacobians,
-        FunctionKind::ParameterJacobian,
-    ] {
-        required(types.program, kind)?;
+/// `function(t, &parameters(&at), &state(&at), &inputs(&at), &weights)`
+fn call(types: &Types<'_>, kind: FunctionKind) -> TokenStream {
+    let function = known(kind.name());
+    let time = types.program.info.explicit_time.then(|| quote!(at.t,));
+    let weights = (types.weights(kind) > 0).then(|| quote!(, &weights));
+    quote!(self::#function(#time &parameters(&at), &state(&at), &inputs(&at) #weights))
+}
+
+/// Writes a result of a layout into a slice.
+fn write(types: &Types<'_>, layout: Layout, to: &TokenStream, from: &TokenStream) -> TokenStream {
+    if types.len(layout) == 0 {
+        return quote!(let _ = #to;);
     }
-    let [rates, jacobians, parameter_jacobian] =
-        ["rates", "jacobians", "parameter_jacobian"].map(|name| call(types, name));
+    match layout {
+        Layout::Scalar => quote!(write(#to, &[#from]);),
+        Layout::List(_) => quote!(write(#to, &#from);),
+        Layout::Matrix(..) => quote!(write(#to, #from.as_flattened());),
+        Layout::Vector(_) => quote!(write(#to, &#from.to_array());),
+        Layout::Rows(..) => quote!(write(#to, #from.to_array().as_flattened());),
+        Layout::Jacobian(_, columns) => {
+            let columns = known(Types::type_name(columns));
+            quote!(write(#to, #from.map(#columns::to_array).to_array().as_flattened());)
+        }
+    }
+}
+
+/// Writes the results of a function into slices, in their order.
+fn written(
+    types: &Types<'_>,
+    kind: FunctionKind,
+    slices: &[TokenStream],
+) -> Result<TokenStream, Error> {
+    let function = required(types.program, kind)?;
+    if function
+        .results
+        .iter()
+        .all(|array| array.entries.is_empty())
+    {
+        return Ok(quote!(let _ = (at, #(#slices),*);));
+    }
+    let call = call(types, kind);
+    if let [array] = function.results.as_slice() {
+        return Ok(slices
+            .iter()
+            .map(|to| write(types, array.layout, to, &call))
+            .collect());
+    }
+    let fields = Types::result_fields(function);
+    let parts = function.results.iter().zip(fields).zip(slices);
+    let parts = parts.map(|((array, field), to)| {
+        let field = ident(&field);
+        write(types, array.layout, to, &quote!(all.#field))
+    });
+    Ok(quote!(let all = #call; #(#parts)*))
+}
+
+/// A method that writes the results of the function of its name into its arguments.
+fn method(types: &Types<'_>, kind: FunctionKind, arguments: &[&str]) -> Result<TokenStream, Error> {
+    let name = known(kind.name());
+    let arguments: Vec<TokenStream> = (arguments.iter().map(|name| ident(name)))
+        .map(|name| quote!(#name))
+        .collect();
+    let body = written(types, kind, &arguments)?;
     let blank = blank_tokens();
     Ok(quote! {
         #blank
-        fn rates(&self, at: At<'_>, rates: &mut [f64]) {
-            write(rates, &<[f64; N]>::from(self::#rates));
+        fn #name(&self, at: At<'_>, #(#arguments: &mut [f64]),*) {
+            #body
         }
+    })
+}
 
-        #blank
-        fn jacobians(&self, at: At<'_>, rates: &mut [f64], a: &mut [f64], b: &mut [f64]) {
-            let all = #jacobians;
-            write(rates, &<[f64; N]>::from(all.rates));
-            write(a, all.a.as_flattened());
-            write(b, all.b.as_flattened());
-        }
+/// [`method`] where the program has the function; the trait has an answer for the others.
+fn provided(
+    types: &Types<'_>,
+    kind: FunctionKind,
+    arguments: &[&str],
+) -> Result<TokenStream, Error> {
+    match types.program.function(kind) {
+        Some(_) => method(types, kind, arguments),
+        None => Ok(TokenStream::new()),
+    }
+}
 
+/// A method whose result may be empty; its function may then be missing.
+fn method_or_nothing(
+    types: &Types<'_>,
+    kind: FunctionKind,
+    argument: &str,
+) -> Result<TokenStream, Error> {
+    let info = &types.program.info;
+    let expected = match kind {
+        FunctionKind::ConstraintResidual => info.constraint_rows.len(),
+        FunctionKind::ConstraintForces => info.reactions.len(),
+        _ => info.outputs.len(),
+    };
+    if expected > 0 {
+        return method(types, kind, &[argument]);
+    }
+    let name = known(kind.name());
+    let blank = blank_tokens();
+    Ok(quote! {
         #blank
-        fn parameter_jacobian(&self, at: At<'_>, p: &mut [f64]) {
-            write(p, self::#parameter_jacobian.as_flattened());
-        }
+        fn #name(&self, _at: At<'_>, _none: &mut [f64]) {}
     })
 }
 
 /// Mass matrix, bias and pseudo-forces.
 fn appell_method(types: &Types<'_>) -> Result<TokenStream, Error> {
-    for kind in [
+    let left = written(
+        types,
         FunctionKind::MassMatrixAndBias,
-        FunctionKind::GeneralizedForces,
-    ] {
-        required(types.program, kind)?;
-    }
-    let [both, forces] =
-        ["mass_matrix_and_bias", "generalized_forces"].map(|name| call(types, name));
+        &[quote!(mass), quote!(bias)],
+    )?;
+    let right = written(types, FunctionKind::GeneralizedForces, &[quote!(forces)])?;
     let blank = blank_tokens();
     Ok(quote! {
         #blank
         fn appell(&self, at: At<'_>, mass: &mut [f64], bias: &mut [f64], forces: &mut [f64]) {
-            let left = #both;
-            write(mass, left.mass_matrix.as_flattened());
-            write(bias, &<[f64; S]>::from(left.bias));
-            write(forces, &<[f64; S]>::from(#forces));
+            #left
+            #right
         }
     })
 }
@@ -392,7 +449,8 @@ fn appell_method(types: &Types<'_>) -> Result<TokenStream, Error> {
 fn energies_method(types: &Types<'_>) -> Result<TokenStream, Error> {
     required(types.program, FunctionKind::Energies)?;
     let acceleration = required(types.program, FunctionKind::AccelerationEnergy)?;
-    let [energies, s] = ["energies", "acceleration_energy"].map(|name| call(types, name));
+    let [energies, s] =
+        [FunctionKind::Energies, FunctionKind::AccelerationEnergy].map(|kind| call(types, kind));
     let total = (acceleration.results.len() != 1).then(|| quote!(.total));
     let blank = blank_tokens();
     Ok(quote! {
@@ -410,201 +468,124 @@ fn energies_method(types: &Types<'_>) -> Result<TokenStream, Error> {
 }
 
 /// What time alone switches; the trait has an answer for models without switches.
-fn switches_methods(types: &Types<'_>) -> TokenStream {
-    let mut functions = types.program.functions.iter();
-    let Some(function) = functions.find(|function| function.kind == FunctionKind::Switches) else {
-        return TokenStream::new();
+fn switches_methods(types: &Types<'_>) -> Result<TokenStream, Error> {
+    let Some(function) = types.program.function(FunctionKind::Switches) else {
+        return Ok(TokenStream::new());
     };
     let count = Literal::usize_unsuffixed(types.len(function.results[0].layout));
-    let call = call(types, "switches");
+    let method = method(types, FunctionKind::Switches, &["switches"])?;
     let blank = blank_tokens();
-    quote! {
+    Ok(quote! {
         #blank
         fn switch_len(&self) -> usize {
             #count
         }
-
-        #blank
-        fn switches(&self, at: At<'_>, switches: &mut [f64]) {
-            write(switches, &self::#call);
-        }
-    }
+        #method
+    })
 }
 
 /// Position constraints; the trait has an answer for models without any.
-fn position_methods(types: &Types<'_>) -> TokenStream {
+fn position_methods(types: &Types<'_>) -> Result<TokenStream, Error> {
     let dependent = &types.program.dependent;
     if dependent.is_empty() {
-        return TokenStream::new();
+        return Ok(TokenStream::new());
     }
     let dependent = dependent.iter().map(|&q| Literal::usize_unsuffixed(q));
-    let call = call(types, FunctionKind::PositionConstraints.name());
+    let arguments = ["residual", "jacobian"];
+    let method = method(types, FunctionKind::PositionConstraints, &arguments)?;
     let blank = blank_tokens();
-    quote! {
+    Ok(quote! {
         #blank
         fn dependent_coordinates(&self) -> &[usize] {
             &[#(#dependent),*]
         }
-
-        #blank
-        fn position_constraints(&self, at: At<'_>, residual: &mut [f64], jacobian: &mut [f64]) {
-            let all = self::#call;
-            write(residual, &all.residual);
-            write(jacobian, all.jacobian.as_flattened());
-        }
-    }
-}
-
-/// Surfaces that change; the trait has an answer for those that do not.
-fn contact_methods(types: &Types<'_>) -> TokenStream {
-    if types.program.function(FunctionKind::Contacts).is_none() {
-        return TokenStream::new();
-    }
-    let call = call(types, FunctionKind::Contacts.name());
-    let blank = blank_tokens();
-    quote! {
-        #blank
-        fn contacts(&self, at: At<'_>, normals: &mut [f64], friction: &mut [f64]) {
-            let all = self::#call;
-            write(normals, all.normals.as_flattened());
-            write(friction, &all.friction);
-        }
-    }
+        #method
+    })
 }
 
 /// Systems solved with pivoting; the trait has an answer for models without any.
-fn system_methods(types: &Types<'_>) -> TokenStream {
-    let sizes = &types.program.systems;
+fn system_methods(types: &Types<'_>) -> Result<TokenStream, Error> {
     if types.program.function(FunctionKind::Systems).is_none() {
-        return TokenStream::new();
+        return Ok(TokenStream::new());
     }
-    let sizes = sizes.iter().map(|&size| Literal::usize_unsuffixed(size));
-    let call = call(types, FunctionKind::Systems.name());
+    let sizes = types.program.systems.iter();
+    let sizes = sizes.map(|&size| Literal::usize_unsuffixed(size));
+    let method = method(types, FunctionKind::Systems, &["matrices"])?;
     let blank = blank_tokens();
-    quote! {
+    Ok(quote! {
         #blank
         fn system_sizes(&self) -> &[usize] {
             &[#(#sizes),*]
         }
-
-        #blank
-        fn systems(&self, at: At<'_>, matrices: &mut [f64]) {
-            write(matrices, &self::#call);
-        }
-    }
+        #method
+    })
 }
 
 /// The adjoint of the rates; the trait differentiates by differences where there is none.
-fn adjoint_methods(types: &Types<'_>) -> TokenStream {
+fn adjoint_methods(types: &Types<'_>) -> Result<TokenStream, Error> {
     let kind = FunctionKind::Adjoint;
     if types.program.function(kind).is_none() {
-        return TokenStream::new();
+        return Ok(TokenStream::new());
     }
-    let method = gradient_method(types, kind);
+    let method = gradient_method(types, kind)?;
     let blank = blank_tokens();
-    quote! {
+    Ok(quote! {
         #blank
         fn has_adjoint(&self) -> bool {
             true
         }
         #method
+    })
+}
+
+/// A method that writes the gradient of a weighted sum, where the program has it.
+fn gradient_method(types: &Types<'_>, kind: FunctionKind) -> Result<TokenStream, Error> {
+    if types.program.function(kind).is_none() {
+        return Ok(TokenStream::new());
     }
-}
-
-/// Derivatives of the outputs, and their adjoint.
-fn output_derivative_methods(types: &Types<'_>) -> TokenStream {
-    let kind = FunctionKind::OutputJacobians;
-    let count = Literal::usize_unsuffixed(types.program.info.outputs.len());
-    let call = call(types, kind.name());
-    let blank = blank_tokens();
-    let jacobians = types.program.function(kind).map(|_| {
-        quote! {
-            #blank
-            fn output_jacobians(&self, at: At<'_>, outputs: &mut [f64], c: &mut [f64], d: &mut [f64]) {
-                let all = self::#call;
-                write(outputs, &<[f64; #count]>::from(all.outputs));
-                write(c, all.c.as_flattened());
-                write(d, all.d.as_flattened());
-            }
-        }
-    });
-    let kind = FunctionKind::OutputAdjoint;
-    let adjoint = (types.program.function(kind)).map(|_| gradient_method(types, kind));
-    quote!(#jacobians #adjoint)
-}
-
-/// A method that writes the gradient of a weighted sum.
-fn gradient_method(types: &Types<'_>, kind: FunctionKind) -> TokenStream {
-    let name = ident(kind.name());
-    let time = types.program.info.explicit_time.then(|| quote!(at.t,));
+    let name = known(kind.name());
     let count = Literal::usize_unsuffixed(types.weights(kind));
+    let body = written(types, kind, &[quote!(by.x), quote!(by.u), quote!(by.p)])?;
     let blank = blank_tokens();
-    quote! {
+    Ok(quote! {
         #blank
         fn #name(&self, at: At<'_>, weights: &[f64], by: model::Gradient<'_>) {
             let weights = first::<#count>(weights);
-            let all = self::#name(#time &parameters(&at), &state(&at), &inputs(&at), &weights);
-            write(by.x, &all.x);
-            write(by.u, &all.u);
-            write(by.p, &all.p);
+            #body
+        }
+    })
+}
+
+/// The rows of a trajectory with the names of the model.
+fn named(types: &Types<'_>, model: &syn::Path) -> TokenStream {
+    let [state, inputs, outputs] = [Space::State, Space::Inputs, Space::Outputs]
+        .map(|space| types.vector(space, &quote!(f64)));
+    let values = match types.fields(Space::Outputs) {
+        [] => quote!(Outputs {}),
+        _ => call(types, FunctionKind::Outputs),
+    };
+    let blank = blank_tokens();
+    quote! {
+        #blank
+        impl model::Named for #model {
+            type State = #state;
+            type Inputs = #inputs;
+            type Outputs = #outputs;
+
+            #blank
+            fn named(&self, at: At<'_>) -> model::Row<Self> {
+                model::Row {
+                    t: at.t,
+                    state: state(&at),
+                    inputs: inputs(&at),
+                    outputs: #values,
+                }
+            }
         }
     }
 }
 
 /// A function that `impl Model` cannot do without.
 fn required(program: &Program, kind: FunctionKind) -> Result<&crate::program::Function, Error> {
-    let found = program
-        .functions
-        .iter()
-        .find(|function| function.kind == kind);
-    found.ok_or(Error::MissingFunction(kind))
-}
-
-/// `function(t, &parameters(&at), &state(&at), &inputs(&at))`
-fn call(types: &Types<'_>, function: &str) -> TokenStream {
-    let function = ident(function);
-    let time = types.program.info.explicit_time.then(|| quote!(at.t,));
-    quote!(#function(#time &parameters(&at), &state(&at), &inputs(&at)))
-}
-
-/// A method whose result may be empty; its function may then be missing.
-fn optional_method(
-    types: &Types<'_>,
-    kind: FunctionKind,
-    method: &str,
-    slot: &str,
-) -> Result<TokenStream, Error> {
-    let info = &types.program.info;
-    let expected = match kind {
-        FunctionKind::ConstraintResidual => info.constraint_rows.len(),
-        FunctionKind::ConstraintForces => info.reactions.len(),
-        _ => info.outputs.len(),
-    };
-    let (method, slot) = (ident(method), ident(slot));
-    let blank = blank_tokens();
-    if expected == 0 {
-        return Ok(quote! {
-            #blank
-            fn #method(&self, _at: At<'_>, _none: &mut [f64]) {}
-        });
-    }
-    let function = required(types.program, kind)?;
-    let call = call(types, kind.name());
-    let layout = function
-        .results
-        .first()
-        .map_or(Layout::Scalar, |array| array.layout);
-    let count = Literal::usize_unsuffixed(types.len(layout));
-    let from = match layout {
-        Layout::Matrix(..) => quote!(self::#call.as_flattened()),
-        Layout::Vector(_) => quote!(&self::#call),
-        Layout::Scalar => quote!(&[self::#call]),
-        _ => quote!(&<[f64; #count]>::from(self::#call)),
-    };
-    Ok(quote! {
-        #blank
-        fn #method(&self, at: At<'_>, #slot: &mut [f64]) {
-            write(#slot, #from);
-        }
-    })
+    program.function(kind).ok_or(Error::MissingFunction(kind))
 }

@@ -12,7 +12,8 @@ const WIDEST: usize = 92;
 const LARGEST: usize = 60;
 
 /// Letters as their names spell them, with the parameters first in every product.
-struct ParametersFirst<'a>(&'a [SymbolId]);
+#[derive(Clone, Copy)]
+pub(super) struct ParametersFirst<'a>(pub(super) &'a [SymbolId]);
 
 impl Vocabulary for ParametersFirst<'_> {
     fn place(&self, graph: &Graph, symbol: Expr) -> u8 {

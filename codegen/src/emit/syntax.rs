@@ -9,9 +9,46 @@ use syn::{Attribute, BinOp, Expr, Member, Pat, Path, Stmt, UnOp, token};
 
 use crate::schedule::names::identifier;
 
-/// An identifier. Whatever the text is, the result is one identifier and nothing else.
+/// Words that cannot name a value in Rust, in any edition.
+const KEYWORDS: &[&str] = &[
+    "Self", "abstract", "as", "async", "await", "become", "box", "break", "const", "continue",
+    "crate", "do", "dyn", "else", "enum", "extern", "false", "final", "fn", "for", "gen", "if",
+    "impl", "in", "let", "loop", "macro", "match", "mod", "move", "mut", "override", "priv", "pub",
+    "ref", "return", "self", "static", "struct", "super", "trait", "true", "try", "type", "typeof",
+    "unsafe", "unsized", "use", "virtual", "where", "while", "yield",
+];
+
+/// Statics, functions and types of the emitted text, which a local must not shadow.
+const STATICS: &[&str] = &[
+    "lu_factor",
+    "lu_solve",
+    "None",
+    "Some",
+    "Ok",
+    "Err",
+    "INFO",
+    "SPEC",
+    "STATES",
+    "INPUTS",
+    "PARAMETERS",
+    "OUTPUTS",
+    "SIGNALS",
+    "SIGNAL_INPUTS",
+    "CONSTRAINT_ROWS",
+    "REACTIONS",
+    "CONTACTS",
+];
+
+/// An identifier. Whatever the text is, the result is one identifier and nothing else. What Rust or
+/// the emitted text use otherwise gets an underscore at the end, and so does what looks like that
+/// then: different names stay different.
 pub(super) fn ident(name: &str) -> Ident {
-    Ident::new(&identifier(name), Span::call_site())
+    let mut name = identifier(name);
+    let stem = name.trim_end_matches('_');
+    if KEYWORDS.contains(&stem) || STATICS.contains(&stem) {
+        name.push('_');
+    }
+    Ident::new(&name, Span::call_site())
 }
 
 /// An identifier of this crate's own choice.
@@ -39,7 +76,16 @@ fn path_expression(path: Path) -> Expr {
 
 /// `T::function(arguments)`
 pub(super) fn associated(function: &'static str, arguments: Vec<Expr>) -> Expr {
-    let mut function_path = Path::from(known("T"));
+    associated_with("T", function, arguments)
+}
+
+/// `Type::function(arguments)`
+pub(super) fn associated_with(
+    type_name: &'static str,
+    function: &'static str,
+    arguments: Vec<Expr>,
+) -> Expr {
+    let mut function_path = Path::from(known(type_name));
     function_path.segments.push(known(function).into());
     called(path_expression(function_path), arguments)
 }
@@ -110,17 +156,6 @@ pub(super) fn array(elements: Vec<Expr>) -> Expr {
     })
 }
 
-/// `[element; count]`
-pub(super) fn repeated(element: Expr, count: usize) -> Expr {
-    Expr::Repeat(syn::ExprRepeat {
-        attrs: Vec::new(),
-        bracket_token: token::Bracket::default(),
-        expr: Box::new(element),
-        semi_token: token::Semi::default(),
-        len: Box::new(index_number(count)),
-    })
-}
-
 /// A double, exactly.
 pub(super) fn number(value: f64) -> Expr {
     let literal = literal(Literal::f64_unsuffixed(value.abs()));
@@ -155,19 +190,12 @@ pub(super) fn entry(array: Expr, indices: &[usize]) -> Expr {
     })
 }
 
-/// `left = right;`
-pub(super) fn assign(left: Expr, right: Expr) -> Stmt {
-    let assign = syn::ExprAssign {
-        attrs: Vec::new(),
-        left: Box::new(left),
-        eq_token: token::Eq::default(),
-        right: Box::new(right),
-    };
-    Stmt::Expr(Expr::Assign(assign), Some(token::Semi::default()))
-}
-
-/// `Type { field: value, … }`, short where field and value have the same name.
-pub(super) fn structure(type_name: &'static str, fields: Vec<(&str, Expr)>) -> Expr {
+/// `Type { field: value, …, ..rest }`, short where field and value have the same name.
+pub(super) fn structure(
+    type_name: &'static str,
+    fields: Vec<(&str, Expr)>,
+    rest: Option<Expr>,
+) -> Expr {
     let fields = fields.into_iter().map(|(field, value)| {
         let field = ident(field);
         let same = matches!(&value, Expr::Path(value) if value.path.is_ident(&field));
@@ -184,8 +212,8 @@ pub(super) fn structure(type_name: &'static str, fields: Vec<(&str, Expr)>) -> E
         path: Path::from(known(type_name)),
         brace_token: token::Brace::default(),
         fields: fields.collect(),
-        dot2_token: None,
-        rest: None,
+        dot2_token: rest.is_some().then(token::DotDot::default),
+        rest: rest.map(Box::new),
     })
 }
 
@@ -195,17 +223,6 @@ pub(super) fn binding(name: &str) -> Pat {
         attrs: Vec::new(),
         by_ref: None,
         mutability: None,
-        ident: ident(name),
-        subpat: None,
-    })
-}
-
-/// `mut name`
-pub(super) fn mutable(name: &str) -> Pat {
-    Pat::Ident(syn::PatIdent {
-        attrs: Vec::new(),
-        by_ref: None,
-        mutability: Some(token::Mut::default()),
         ident: ident(name),
         subpat: None,
     })

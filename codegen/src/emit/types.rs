@@ -1,5 +1,7 @@
 //! The structs of a model: one per vector, one field per entry.
 
+use std::collections::BTreeSet;
+
 use appell_runtime::model::Quantity;
 use proc_macro2::TokenStream;
 use quote::quote;
@@ -7,29 +9,26 @@ use quote::quote;
 use super::body::Group;
 use super::layout::{blank_tokens, docs, escaped, one_line};
 use super::syntax::{ident, known, number};
-use crate::program::{Function, FunctionKind, Layout, Program};
+use crate::program::{Function, FunctionKind, Layout, Program, Space};
 use crate::schedule::Argument;
-use crate::schedule::names::{ArgumentNames, Names, identifier};
+use crate::schedule::names::{ArgumentNames, Names};
 
 /// Names of types and fields.
 pub(super) struct Types<'a> {
     pub(super) program: &'a Program,
     pub(super) names: ArgumentNames,
+    /// `x_dot` for every state.
+    rates: Vec<String>,
     outputs: Vec<String>,
+    constraint_rows: Vec<String>,
+    reactions: Vec<String>,
     arguments: [String; 5],
 }
 
 impl<'a> Types<'a> {
     pub(super) fn new(program: &'a Program) -> Self {
         let names = ArgumentNames::of(program);
-        let mut outputs: Vec<String> = Vec::new();
-        for output in program.info.outputs.iter() {
-            let mut name = identifier(&output.name);
-            while outputs.contains(&name) {
-                name.push('_');
-            }
-            outputs.push(name);
-        }
+        let info = &program.info;
         let argument = |name: &str| {
             let mut name = name.to_owned();
             while names.iter().any(|other| *other == name) {
@@ -46,8 +45,11 @@ impl<'a> Types<'a> {
         ];
         Self {
             program,
+            rates: names.states.iter().map(|x| format!("{x}_dot")).collect(),
+            outputs: distinct(info.outputs.iter().map(|output| &*output.name)),
+            constraint_rows: distinct(info.constraint_rows.iter().map(|row| &**row)),
+            reactions: distinct(info.reactions.iter().map(|reaction| &*reaction.name)),
             names,
-            outputs,
             arguments,
         }
     }
@@ -60,6 +62,17 @@ impl<'a> Types<'a> {
     /// Whether a local of this name would hide an argument.
     pub(super) fn is_argument(&self, name: &str) -> bool {
         self.names.iter().any(|other| other == name)
+    }
+
+    /// Whether a struct of this name would hide a field where structs are taken apart.
+    pub(super) fn is_field(&self, name: &str) -> bool {
+        let own = [
+            &self.rates,
+            &self.outputs,
+            &self.constraint_rows,
+            &self.reactions,
+        ];
+        self.is_argument(name) || own.into_iter().flatten().any(|field| field == name)
     }
 
     /// The structs that hold the arguments.
@@ -93,116 +106,252 @@ impl<'a> Types<'a> {
         }
     }
 
-    fn speeds(&self) -> usize {
-        self.program.info.speeds.min(self.names.states.len())
+    /// Name of the struct of a vector.
+    pub(super) fn type_name(space: Space) -> &'static str {
+        match space {
+            Space::Parameters => "Parameters",
+            Space::State => "State",
+            Space::Inputs => "Inputs",
+            Space::Outputs => "Outputs",
+            Space::Rates => "Rates",
+            Space::Accelerations => "Accelerations",
+            Space::CoordinateRates => "CoordinateRates",
+            Space::GeneralizedForces => "GeneralizedForces",
+            Space::ConstraintRows => "ConstraintResidual",
+            Space::Reactions => "ConstraintForces",
+        }
     }
 
-    /// Struct and field names of a labelled layout.
-    pub(super) fn labelled(&self, layout: Layout) -> (&'static str, &[String]) {
-        let states = self.names.states.as_slice();
-        match layout {
-            Layout::Speeds => ("Speeds", &states[..self.speeds()]),
-            Layout::Coordinates => ("Coordinates", &states[self.speeds()..]),
-            Layout::Outputs => ("Outputs", &self.outputs),
-            _ => ("State", states),
+    /// Its fields.
+    pub(super) fn fields(&self, space: Space) -> &[String] {
+        let names = &self.names;
+        let speeds = self.program.info.speeds.min(names.states.len());
+        match space {
+            Space::Parameters => &names.parameters,
+            Space::State => &names.states,
+            Space::Inputs => &names.inputs,
+            Space::Outputs => &self.outputs,
+            Space::Rates => &self.rates,
+            Space::Accelerations => &self.rates[..speeds],
+            Space::CoordinateRates => &self.rates[speeds..],
+            Space::GeneralizedForces => &names.states[..speeds],
+            Space::ConstraintRows => &self.constraint_rows,
+            Space::Reactions => &self.reactions,
+        }
+    }
+
+    /// `Name<entry>`; a vector without entries is a `Name`.
+    pub(super) fn vector(&self, space: Space, entry: &TokenStream) -> TokenStream {
+        let name = known(Self::type_name(space));
+        if self.fields(space).is_empty() {
+            quote!(#name)
+        } else {
+            quote!(#name<#entry>)
         }
     }
 
     /// How many entries a layout has.
     pub(super) fn len(&self, layout: Layout) -> usize {
+        let len = |space| self.fields(space).len();
         match layout {
             Layout::Scalar => 1,
-            Layout::Vector(n) => n,
+            Layout::List(n) => n,
             Layout::Matrix(rows, columns) => rows * columns,
-            _ => self.labelled(layout).1.len(),
+            Layout::Vector(space) => len(space),
+            Layout::Rows(space, columns) => len(space) * columns,
+            Layout::Jacobian(rows, columns) => len(rows) * len(columns),
         }
     }
 
     /// The type of an array.
     pub(super) fn array_type(&self, layout: Layout) -> TokenStream {
+        let count = proc_macro2::Literal::usize_unsuffixed;
         match layout {
             Layout::Scalar => quote!(T),
-            Layout::Vector(n) => {
-                let n = proc_macro2::Literal::usize_unsuffixed(n);
+            Layout::List(n) => {
+                let n = count(n);
                 quote!([T; #n])
             }
             Layout::Matrix(rows, columns) => {
-                let [rows, columns] = [rows, columns].map(proc_macro2::Literal::usize_unsuffixed);
+                let [rows, columns] = [rows, columns].map(count);
                 quote!([[T; #columns]; #rows])
             }
-            _ => {
-                let name = known(self.labelled(layout).0);
-                quote!(#name<T>)
+            Layout::Vector(space) => self.vector(space, &quote!(T)),
+            Layout::Rows(space, columns) => {
+                let columns = count(columns);
+                self.vector(space, &quote!([T; #columns]))
             }
+            Layout::Jacobian(rows, columns) => self.vector(rows, &self.vector(columns, &quote!(T))),
         }
     }
 
-    /// The structs of arguments and labelled results.
-    fn vectors(&self) -> Vec<Vector<'_>> {
+    /// A struct, with a sentence for every field.
+    fn structure(&self, space: Space) -> Vector<'_> {
         let info = &self.program.info;
-        let (speeds, coordinates) = info.states.split_at(self.speeds());
-        let names = &self.names;
-        let (speed_names, coordinate_names) = names.states.split_at(self.speeds());
-        let all = [
-            (
-                "Parameters",
-                "Parameters, in SI.",
-                &*names.parameters,
-                &*info.parameters,
+        let (about, entry): (_, fn(&Quantity) -> String) = match space {
+            Space::Parameters => ("Parameters p, in SI.", sentence),
+            Space::State => (
+                "State x: pseudo-velocities, then coordinates. In SI.",
+                sentence,
             ),
-            (
-                "Speeds",
-                "One number per pseudo-velocity, in SI. Where it is a force: in W over the unit.",
-                speed_names,
-                speeds,
+            Space::Inputs => ("Inputs u, in SI.", sentence),
+            Space::Outputs => ("Outputs y, in SI.", sentence),
+            Space::Rates => (
+                "Rates ẋ of the [`State`]: pseudo-accelerations, then generalised velocities. In SI.",
+                rate,
             ),
-            (
-                "Coordinates",
-                "One number per coordinate, in SI. Where it is a rate: in the unit per second.",
-                coordinate_names,
-                coordinates,
+            Space::Accelerations => ("Pseudo-accelerations ω̇, in SI.", rate),
+            Space::CoordinateRates => ("Generalised velocities q̇, in SI.", rate),
+            Space::GeneralizedForces => (
+                "Pseudo-forces, such as Π or b: power per pseudo-velocity, in SI.",
+                force,
             ),
-            (
-                "State",
-                "The state, or its rates: pseudo-velocities, then coordinates. In SI.",
-                &names.states,
-                &info.states,
+            Space::ConstraintRows => (
+                "What the constraint rows are off by: zero up to rounding. In SI.",
+                sentence,
             ),
-            ("Inputs", "Inputs, in SI.", &names.inputs, &info.inputs),
-            ("Outputs", "Outputs, in SI.", &self.outputs, &info.outputs),
-        ];
-        let wanted = |vector: &Vector<'_>| vector.name != "Outputs" || !vector.labels.is_empty();
-        all.into_iter()
-            .map(|(name, about, labels, quantities)| Vector {
-                name,
-                about,
-                labels,
-                quantities,
-            })
-            .filter(wanted)
-            .collect()
+            Space::Reactions => (
+                "Reactions in the ground: forces on points along x, y, z in N, or multipliers of \
+                 constraints as x.",
+                sentence,
+            ),
+        };
+        let texts = match space {
+            Space::ConstraintRows => (info.constraint_rows.iter())
+                .map(|row| format!("Row `{}`.", one_line(row).replace('`', "'")))
+                .collect(),
+            Space::Reactions => (info.reactions.iter())
+                .map(|reaction| {
+                    let [name, unit] = [&reaction.name, &reaction.unit]
+                        .map(|text| one_line(text).replace('`', "'"));
+                    if unit.is_empty() {
+                        format!("At `{name}`.")
+                    } else {
+                        format!("At `{name}`, in `{unit}`.")
+                    }
+                })
+                .collect(),
+            _ => space.quantities(info).iter().map(entry).collect(),
+        };
+        Vector {
+            name: Self::type_name(space),
+            about,
+            fields: self.fields(space),
+            texts,
+            default: space != Space::Parameters,
+        }
     }
 
-    /// The structs, and the values of the spec as the default of the parameters.
-    pub(super) fn argument_structs(&self) -> Vec<TokenStream> {
-        let mut items: Vec<TokenStream> = self.vectors().iter().map(Vector::structure).collect();
-        let parameters = &self.program.info.parameters;
-        if !parameters.is_empty() {
-            items.insert(
-                1,
-                defaults("Parameters", &self.names.parameters, parameters),
-            );
+    /// The vectors that functions take or return. `named` says that a model puts them together.
+    fn spaces(functions: &[&Function], named: bool) -> BTreeSet<Space> {
+        let mut spaces = BTreeSet::from([Space::Parameters, Space::State, Space::Inputs]);
+        spaces.extend(named.then_some(Space::Outputs));
+        for array in functions.iter().flat_map(|function| &function.results) {
+            match array.layout {
+                Layout::Vector(space) | Layout::Rows(space, _) => {
+                    spaces.insert(space);
+                }
+                Layout::Jacobian(rows, columns) => spaces.extend([rows, columns]),
+                Layout::Scalar | Layout::List(_) | Layout::Matrix(..) => {}
+            }
+        }
+        let mass_matrix = [FunctionKind::MassMatrix, FunctionKind::MassMatrixAndBias];
+        if functions
+            .iter()
+            .any(|function| mass_matrix.contains(&function.kind))
+        {
+            spaces.insert(Space::Accelerations);
+        }
+        if spaces.contains(&Space::Rates) {
+            spaces.extend([Space::Accelerations, Space::CoordinateRates]);
+        }
+        spaces
+    }
+
+    /// The structs, the values of the spec, and the two parts of the rates.
+    pub(super) fn structs(&self, functions: &[&Function], named: bool) -> Vec<TokenStream> {
+        let spaces = Self::spaces(functions, named);
+        let info = &self.program.info;
+        let mut items = Vec::new();
+        for &space in &spaces {
+            items.push(self.structure(space).tokens());
+            match space {
+                Space::Parameters => items.push(spec_values(
+                    &quote!(Default for Parameters<f64>),
+                    &quote!(fn default),
+                    "The values of the spec.",
+                    (&self.names.parameters, &info.parameters),
+                )),
+                Space::State => items.push(spec_values(
+                    &quote!(State<f64>),
+                    &quote!(#[must_use] pub fn initial),
+                    "The initial state of the spec; the default is zero.",
+                    (&self.names.states, &info.states),
+                )),
+                Space::Rates => items.push(self.parts_of_rates()),
+                _ => {}
+            }
         }
         items
     }
 
-    /// Conversions of the structs from and to arrays.
-    pub(super) fn conversions(&self) -> Vec<TokenStream> {
-        self.vectors().iter().map(Vector::conversions).collect()
+    /// ω̇ and q̇ out of ẋ.
+    fn parts_of_rates(&self) -> TokenStream {
+        let blank = blank_tokens();
+        let method = |name: &'static str, about: &'static str, space| {
+            let (name, type_name) = (known(name), known(Self::type_name(space)));
+            let entries = self.vector(space, &quote!(T));
+            let fields: Vec<_> = self.fields(space).iter().map(|f| ident(f)).collect();
+            let about = docs(&[about.to_owned()]);
+            quote! {
+                #blank
+                #about
+                #[must_use]
+                pub fn #name(self) -> #entries {
+                    #type_name { #(#fields: self.#fields),* }
+                }
+            }
+        };
+        let accelerations = method("accelerations", "ω̇, the first part.", Space::Accelerations);
+        let coordinate_rates = method(
+            "coordinate_rates",
+            "q̇, the second part.",
+            Space::CoordinateRates,
+        );
+        if self.fields(Space::Rates).is_empty() {
+            return TokenStream::new();
+        }
+        quote! {
+            #blank
+            impl<T> Rates<T> {
+                #accelerations
+                #coordinate_rates
+            }
+        }
+    }
+
+    /// Conversions of the structs from and to arrays, and their arithmetic.
+    pub(super) fn conversions(
+        &self,
+        functions: &[&Function],
+        named: bool,
+        runtime: &syn::Path,
+    ) -> Vec<TokenStream> {
+        let spaces = Self::spaces(functions, named);
+        let rates = spaces.contains(&Space::Rates);
+        spaces
+            .iter()
+            .map(|&space| {
+                let moved = (rates && space == Space::State).then_some("Rates");
+                let vector = self.structure(space);
+                let (conversions, sums) = (vector.conversions(), vector.sums(runtime, moved));
+                quote!(#conversions #sums)
+            })
+            .collect()
     }
 
     /// Field names of the results of a function, no two equal.
-    pub(super) fn fields(function: &Function) -> Vec<String> {
+    pub(super) fn result_fields(function: &Function) -> Vec<String> {
         let mut names = Names::default();
         function
             .results
@@ -219,7 +368,7 @@ impl<'a> Types<'a> {
         let fields = function
             .results
             .iter()
-            .zip(Self::fields(function))
+            .zip(Self::result_fields(function))
             .map(|(array, field)| {
                 let text = docs(&[one_line(&array.about)]);
                 let field = ident(&field);
@@ -240,17 +389,30 @@ pub(super) fn result_struct(function: &Function) -> Option<&'static str> {
     (function.results.len() != 1).then(|| function.kind.result_struct())
 }
 
-/// `impl Default` with the values of the spec.
-fn defaults(name: &'static str, labels: &[String], quantities: &[Quantity]) -> TokenStream {
-    let type_name = known(name);
+/// Identifiers of names, no two equal.
+fn distinct<'a>(names: impl Iterator<Item = &'a str>) -> Vec<String> {
+    let mut taken = Names::default();
+    names.map(|name| taken.fresh(name)).collect()
+}
+
+/// A constructor of a struct with the values of the spec.
+fn spec_values(
+    implementation: &TokenStream,
+    signature: &TokenStream,
+    about: &str,
+    (labels, quantities): (&[String], &[Quantity]),
+) -> TokenStream {
+    if labels.is_empty() {
+        return TokenStream::new();
+    }
     let fields = labels.iter().map(|label| ident(label));
     let values = quantities.iter().map(|quantity| double(quantity.value));
-    let blank = blank_tokens();
+    let (blank, about) = (blank_tokens(), docs(&[about.to_owned()]));
     quote! {
         #blank
-        impl Default for #type_name<f64> {
-            /// The values of the spec.
-            fn default() -> Self {
+        impl #implementation {
+            #about
+            #signature() -> Self {
                 Self { #(#fields: #values),* }
             }
         }
@@ -261,63 +423,104 @@ fn defaults(name: &'static str, labels: &[String], quantities: &[Quantity]) -> T
 struct Vector<'a> {
     name: &'static str,
     about: &'static str,
-    labels: &'a [String],
-    quantities: &'a [Quantity],
+    fields: &'a [String],
+    /// A sentence for each.
+    texts: Vec<String>,
+    /// Whether its default is zero.
+    default: bool,
 }
 
 impl Vector<'_> {
-    /// The struct. Without fields it holds nothing but the type of the scalar.
-    fn structure(&self) -> TokenStream {
+    /// The struct. Without fields it needs no scalar.
+    fn tokens(&self) -> TokenStream {
         let type_name = known(self.name);
         let blank = blank_tokens();
         let about = docs(&[self.about.to_owned()]);
-        if self.labels.is_empty() {
+        if self.fields.is_empty() {
             return quote! {
                 #blank
                 #about
                 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-                pub struct #type_name<T>(pub core::marker::PhantomData<T>);
+                pub struct #type_name {}
             };
         }
-        let fields = self.labels.iter().map(|label| ident(label));
+        let default = self.default.then(|| quote!(, Default));
+        let fields = self.fields.iter().map(|field| ident(field));
         let texts = self
-            .quantities
+            .texts
             .iter()
-            .map(|quantity| docs(&[sentence(quantity)]));
+            .map(|text| docs(std::slice::from_ref(text)));
         quote! {
             #blank
             #about
-            #[derive(Debug, Clone, Copy, PartialEq)]
+            #[derive(Debug, Clone, Copy, PartialEq #default)]
             pub struct #type_name<T> { #(#texts pub #fields: T),* }
         }
     }
 
     /// From and to an array.
     fn conversions(&self) -> TokenStream {
-        let type_name = known(self.name);
+        let name = known(self.name);
         let blank = blank_tokens();
-        let fields: Vec<_> = self.labels.iter().map(|label| ident(label)).collect();
+        let fields: Vec<_> = self.fields.iter().map(|field| ident(field)).collect();
         let count = proc_macro2::Literal::usize_unsuffixed(fields.len());
-        let [pattern, value] = if fields.is_empty() {
-            [quote!((_)), quote!((core::marker::PhantomData))]
-        } else {
-            [quote!({ #(#fields),* }), quote!({ #(#fields),* })]
-        };
+        let of = (!fields.is_empty()).then(|| quote!(<T>));
         quote! {
             #blank
-            impl<T> From<[T; #count]> for #type_name<T> {
+            impl<T> From<[T; #count]> for #name #of {
                 fn from([#(#fields),*]: [T; #count]) -> Self {
-                    Self #value
+                    Self { #(#fields),* }
                 }
             }
 
             #blank
-            impl<T> From<#type_name<T>> for [T; #count] {
-                fn from(#type_name #pattern: #type_name<T>) -> Self {
+            impl<T> From<#name #of> for [T; #count] {
+                fn from(#name { #(#fields),* }: #name #of) -> Self {
                     [#(#fields),*]
                 }
             }
         }
+    }
+
+    /// Sums, differences and multiples.
+    fn sums(&self, runtime: &syn::Path, moved: Option<&'static str>) -> TokenStream {
+        let name = known(self.name);
+        let blank = blank_tokens();
+        let count = proc_macro2::Literal::usize_unsuffixed(self.fields.len());
+        let moved = moved.map(|rates| {
+            let rates = known(rates);
+            quote!(, #rates)
+        });
+        quote! {
+            #blank
+            #runtime::vector!(#name, #count #moved);
+        }
+    }
+}
+
+/// What the rate of a quantity is.
+fn rate(quantity: &Quantity) -> String {
+    let name = one_line(&quantity.name).replace('`', "'");
+    let unit = one_line(&quantity.unit).replace('`', "'");
+    match unit.as_str() {
+        "" => format!("Rate of `{name}`, in `1/s`."),
+        unit => match unit.strip_suffix("/s") {
+            Some(unit) => format!("Rate of `{name}`, in `{unit}/s^2`."),
+            None if unit.contains('/') => format!("Rate of `{name}`, in `({unit})/s`."),
+            None => format!("Rate of `{name}`, in `{unit}/s`."),
+        },
+    }
+}
+
+/// What the pseudo-force of a pseudo-velocity is.
+fn force(quantity: &Quantity) -> String {
+    let name = one_line(&quantity.name).replace('`', "'");
+    let unit = one_line(&quantity.unit).replace('`', "'");
+    match unit.as_str() {
+        "" => format!("Along `{name}`, in `W`."),
+        "m/s" => format!("Along `{name}`, in `N`."),
+        "rad/s" => format!("Along `{name}`, in `N*m`."),
+        unit => format!("Along `{name}`, in `W/({unit})`."),
     }
 }
 

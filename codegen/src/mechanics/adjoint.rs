@@ -11,7 +11,7 @@ use super::Derivation;
 use super::assemble::input_symbols;
 use super::finding::Outcome;
 use super::symbols::ids;
-use crate::program::{Array, Layout};
+use crate::program::{Array, Layout, Space};
 use crate::symbolic::{Expr, gradient};
 
 impl Derivation {
@@ -43,21 +43,13 @@ impl Derivation {
         let (states, inputs) = self.variables(info);
         let values: Vec<Expr> = outputs.iter().flat_map(|y| y.entries.clone()).collect();
         let [c, d] = [&states, &inputs].map(|variables| self.slopes(&values, variables));
-        let matrix = |name: &str, about: &str, columns: &[Quantity], entries: Vec<Expr>| {
-            let layout = Layout::Matrix(info.outputs.len(), columns.len());
-            let labels = paired(&name.to_uppercase(), &info.outputs, columns);
-            let all = |list: &[Quantity]| list.iter().map(|q| q.name.to_string()).collect();
-            Array::new(name, about, layout, entries)
-                .labelled(labels.into_iter())
-                .with_names(all(&info.outputs), all(columns))
+        let matrix = |name: &str, about: &str, by: Space, entries: Vec<Expr>| {
+            let layout = Layout::Jacobian(Space::Outputs, by);
+            let labels = paired(&name.to_uppercase(), &info.outputs, by.quantities(info));
+            Array::new(name, about, layout, entries).labelled(labels.into_iter())
         };
-        let c = matrix("c", "C = ∂y/∂x. Columns follow [`State`].", &info.states, c);
-        let d = matrix(
-            "d",
-            "D = ∂y/∂u. Columns follow [`Inputs`].",
-            &info.inputs,
-            d,
-        );
+        let c = matrix("c", "C = ∂y/∂x.", Space::State, c);
+        let d = matrix("d", "D = ∂y/∂u.", Space::Inputs, d);
         Ok(outputs.into_iter().chain([c, d]).collect())
     }
 
@@ -121,19 +113,17 @@ impl Derivation {
             .collect();
         let mut entries = gradient(graph, &weighted, &variables).into_iter();
         let parts = [
-            ("x", "By the state.", &info.states),
-            ("u", "By the inputs.", &info.inputs),
-            ("p", "By the parameters.", &info.parameters),
+            ("x", "By the state.", Space::State),
+            ("u", "By the inputs.", Space::Inputs),
+            ("p", "By the parameters.", Space::Parameters),
         ];
-        let array = |(name, about, quantities): (&str, &str, &[Quantity])| {
+        let array = |(name, about, by): (&str, &str, Space)| {
+            let quantities = by.quantities(info);
             let entries: Vec<Expr> = entries.by_ref().take(quantities.len()).collect();
-            Array::new(name, about, Layout::Vector(quantities.len()), entries)
+            Array::new(name, about, Layout::Vector(by), entries)
                 .labelled(listed("by", quantities).into_iter())
         };
-        parts
-            .map(|(name, about, quantities)| (name, about, quantities.as_ref()))
-            .map(array)
-            .into()
+        parts.map(array).into()
     }
 }
 

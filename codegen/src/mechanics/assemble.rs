@@ -1,9 +1,7 @@
 //! The derived equations as the functions of a program.
 
-use appell_runtime::model::{Contact, Interpolation, List, ModelInfo, Quantity, SignalTable};
-use appell_spec::mechanism::{
-    self, BodyId, ConstraintId, FrameId, Label, Mechanism, Signal, SignalId,
-};
+use appell_runtime::model::{ModelInfo, Quantity};
+use appell_spec::mechanism::{BodyId, ConstraintId, FrameId, Mechanism};
 
 use super::Derivation;
 use super::constraints::Constraints;
@@ -14,7 +12,8 @@ use super::gibbs_appell::{
     kinetic_energy_by_velocity, motions_in_ground,
 };
 use super::glossary;
-use super::initial::InitialState;
+use super::info::{info, tabulated_inputs};
+use super::letters;
 use super::linear::ImplicitMotion;
 use super::linear_bound::BoundMotion;
 use super::positions::Positions;
@@ -22,7 +21,7 @@ use super::reactions;
 use super::switches::switches;
 use super::symbols::{Symbols, ids};
 use super::systems::systems;
-use crate::program::{Arguments, Array, Function, FunctionKind, Layout, Program};
+use crate::program::{Arguments, Array, Function, FunctionKind, Layout, Program, Space};
 use crate::symbolic::vector::Vec3;
 use crate::symbolic::{Expr, Graph};
 
@@ -52,6 +51,13 @@ pub fn program(
             functions.push(derivation.staged(mechanism, Function::new(kind, results)));
         }
     }
+    // Last, so that what readers see does not change the order of anything that is computed.
+    let equations = derivation.equations();
+    for function in &mut functions {
+        if function.kind == FunctionKind::Rates {
+            function.equations.clone_from(&equations);
+        }
+    }
     let symbols = &derivation.symbols;
     let graph = &derivation.algebra.graph;
     let arguments = Arguments {
@@ -66,6 +72,11 @@ pub fn program(
         output_weights: ids(graph, &symbols.output_weights),
         pi: graph.as_symbol(symbols.pi),
     };
+    let (hints, meanings) = derivation.hints(mechanism, &arguments);
+    for function in &mut functions {
+        function.glossary.extend(meanings.iter().cloned());
+    }
+    let graph = &derivation.algebra.graph;
     info.explicit_time = functions
         .iter()
         .flat_map(|f| &f.results)
@@ -79,6 +90,7 @@ pub fn program(
         graph: derivation.algebra.graph,
         arguments,
         dependent: derivation.positions.dependent,
+        hints,
         functions,
     })
 }
@@ -98,13 +110,16 @@ impl Derivation {
                 let rates = self.rolling_rates.clone();
                 let all = 0..rates.len();
                 let labels = coordinates.iter().map(|q| format!("{}_dot", q.name));
-                let array = Array::new("coordinate_rates", "q̇.", Layout::Coordinates, rates);
+                let layout = Layout::Vector(Space::CoordinateRates);
+                let array = Array::new("coordinate_rates", "q̇.", layout, rates);
                 vec![array.labelled(labels).under(VELOCITIES, all)]
             }
             FunctionKind::AccelerationEnergy => self.acceleration_energies(),
-            FunctionKind::MassMatrix => vec![self.mass_matrix(speeds)],
+            FunctionKind::MassMatrix => vec![self.mass_matrix(mechanism, speeds)],
             FunctionKind::Bias => vec![self.bias(speeds)],
-            FunctionKind::MassMatrixAndBias => vec![self.mass_matrix(speeds), self.bias(speeds)],
+            FunctionKind::MassMatrixAndBias => {
+                vec![self.mass_matrix(mechanism, speeds), self.bias(speeds)]
+            }
             FunctionKind::GeneralizedForces => {
                 let forces = self.forces.clone();
                 let about = "Pseudo-forces.";
@@ -124,16 +139,16 @@ impl Derivation {
                 let [a, b] = self.derivatives([&states, &inputs])?;
                 vec![
                     Array::rates(info, self.rates()),
-                    Array::jacobian("a", A, &info.states, &info.states, a),
-                    Array::jacobian("b", B, &info.states, &info.inputs, b),
+                    Array::jacobian("a", A, info, Space::State, a),
+                    Array::jacobian("b", B, info, Space::Inputs, b),
                 ]
             }
             FunctionKind::ParameterJacobian => {
                 let parameters = self.symbols.parameters.clone();
                 let [p] = self.derivatives([&parameters])?;
-                vec![Array::jacobian("p", P, &info.states, &info.parameters, p)]
+                vec![Array::jacobian("p", P, info, Space::Parameters, p)]
             }
-            FunctionKind::Energies => self.energies(),
+            FunctionKind::Energies => self.energies(mechanism),
             FunctionKind::ConstraintResidual => vec![self.constraint_residual(mechanism)],
             FunctionKind::ConstraintForces => vec![self.constraint_forces(mechanism)?],
             FunctionKind::Outputs => self.outputs(mechanism)?,
@@ -150,7 +165,7 @@ impl Derivation {
                     let label = move |q: &Quantity| format!("d_{name}_d_{}", q.name);
                     coordinates.iter().map(label)
                 });
-                let count = Layout::Vector(names.len());
+                let count = Layout::List(names.len());
                 vec![
                     Array::new("residual", "f(q, t).", count, residual.clone())
                         .labelled(names.iter().cloned())
@@ -163,14 +178,14 @@ impl Derivation {
             FunctionKind::Switches => {
                 let rates = self.rates();
                 let switches = switches(&mut self.algebra.graph, &self.symbols, &rates);
-                let layout = Layout::Vector(switches.len());
+                let layout = Layout::List(switches.len());
                 vec![Array::new("switches", "Switches.", layout, switches)]
             }
             FunctionKind::Contacts => self.surfaces(),
             FunctionKind::Systems => {
                 let systems = systems(&self.algebra.graph, &self.rates());
                 let matrices: Vec<Expr> = systems.into_iter().flat_map(|(_, m)| m).collect();
-                let layout = Layout::Vector(matrices.len());
+                let layout = Layout::List(matrices.len());
                 vec![Array::new("matrices", "Matrices.", layout, matrices)]
             }
             FunctionKind::Adjoint => self.adjoint(info)?,
@@ -179,12 +194,25 @@ impl Derivation {
         })
     }
 
-    fn mass_matrix(&self, speeds: &[Quantity]) -> Array {
+    /// The equations of motion as they are solved.
+    fn equations(&mut self) -> Vec<[Expr; 2]> {
+        let graph = &mut self.algebra.graph;
+        let right: Vec<Expr> = (self.forces.iter())
+            .zip(&self.gibbs.bias)
+            .map(|(&force, &bias)| graph.sub(force, bias))
+            .collect();
+        let unknowns = &self.symbols.accelerations;
+        self.motion
+            .equations(graph, (&self.gibbs.mass_matrix, &right), unknowns)
+    }
+
+    fn mass_matrix(&self, mechanism: &Mechanism, speeds: &[Quantity]) -> Array {
         let entries = self.gibbs.mass_matrix.concat();
         let all = 0..entries.len();
         let layout = Layout::Matrix(speeds.len(), speeds.len());
+        let mass = letters::mass(mechanism);
         let labels = speeds.iter().flat_map(|row| {
-            let label = move |column: &Quantity| format!("M_{}_{}", row.name, column.name);
+            let label = move |column: &Quantity| format!("{mass}_{}_{}", row.name, column.name);
             speeds.iter().map(label)
         });
         let array = Array::new("mass_matrix", "M.", layout, entries);
@@ -250,13 +278,16 @@ impl Derivation {
     ) -> Function {
         function
             .explaining(glossary::of_motions(mechanism, &self.kinematics, bodies))
-            .explaining(glossary::of_solution(&self.motion))
+            .explaining(glossary::of_solution(mechanism, &self.motion))
+            .grouping(glossary::groups_of_motions(mechanism, bodies))
+            .grouping(glossary::groups_of_solution(mechanism, &self.motion))
     }
 
     /// The velocities of the bodies, then their kinetic energies.
     fn staged_by_velocities(&mut self, mechanism: &Mechanism, mut function: Function) -> Function {
+        let letter = letters::kinetic(mechanism);
         for (id, body) in mechanism.bodies.ids().zip(&self.bodies) {
-            let (v, energy) = kinetic_energy_by_velocity(&mut self.algebra, body);
+            let (v, energy) = kinetic_energy_by_velocity(&mut self.algebra, body, letter);
             let frame = &mechanism.frames[body.centre.velocity.frame].name;
             let title = format!("Velocity of `{}` in `{frame}`.", body.centre.point);
             function = function
@@ -299,10 +330,9 @@ impl Derivation {
             let rows = self.constraints.rows.iter();
             rows.filter(|row| !row.is_embedded())
         };
-        let layout = Layout::Vector(residual.len());
+        let layout = Layout::Vector(Space::ConstraintRows);
         let mut array = Array::new("residual", "Constraint rows.", layout, residual)
-            .labelled(rows().map(|row| format!("residual_{}", row.name)))
-            .with_names(rows().map(|row| row.name.clone()).collect(), Vec::new());
+            .labelled(rows().map(|row| format!("residual_{}", row.name)));
         let constraints: Vec<ConstraintId> = rows().map(|row| row.constraint).collect();
         let mut start = 0;
         for same in constraints.chunk_by(|a, b| a == b) {
@@ -361,7 +391,7 @@ impl Derivation {
             Array::new(
                 "friction",
                 "Coefficients of friction.",
-                Layout::Vector(count),
+                Layout::List(count),
                 friction.collect(),
             )
             .labelled(names.iter().map(|name| format!("friction_{name}")))
@@ -386,14 +416,15 @@ impl Derivation {
     /// One row per place with a reaction.
     fn constraint_forces(&mut self, mechanism: &Mechanism) -> Outcome<Array> {
         let forces = self.reactions(mechanism)?;
-        let layout = Layout::Matrix(forces.len(), 3);
+        let layout = Layout::Rows(Space::Reactions, 3);
         let reactions = self.constraints.reactions.iter();
         let places: Vec<String> = reactions
             .map(|reaction| reaction.name.to_string())
             .collect();
+        let force = letters::reaction(mechanism);
         let labels = places
             .iter()
-            .flat_map(|place| ["x", "y", "z"].map(|axis| format!("F_{place}_{axis}")));
+            .flat_map(|place| ["x", "y", "z"].map(|axis| format!("{force}_{place}_{axis}")));
         let mut array = Array::new(
             "forces",
             "Reactions in the ground.",
@@ -404,8 +435,7 @@ impl Derivation {
         for (i, place) in places.iter().enumerate() {
             array = array.under(&format!("Reaction `{place}`."), 3 * i..3 * i + 3);
         }
-        let axes = ["x", "y", "z"].map(|axis| format!("ground {axis}"));
-        Ok(array.with_names(places, axes.to_vec()))
+        Ok(array)
     }
 
     /// The outputs of the spec.
@@ -423,7 +453,12 @@ impl Derivation {
         }
         let labels = mechanism.outputs.iter().map(|y| y.label.name.clone());
         let all = 0..values.len();
-        let array = Array::new("outputs", "Outputs.", Layout::Outputs, values);
+        let array = Array::new(
+            "outputs",
+            "Outputs.",
+            Layout::Vector(Space::Outputs),
+            values,
+        );
         Ok(vec![array.labelled(labels).under("Outputs.", all)])
     }
 
@@ -451,11 +486,12 @@ impl Derivation {
     }
 
     /// T, V and the power of the loads without a potential.
-    fn energies(&mut self) -> Vec<Array> {
+    fn energies(&mut self, mechanism: &Mechanism) -> Vec<Array> {
+        let letter = letters::kinetic(mechanism);
         let bodies = self.bodies.clone();
         let kinetic: Vec<Expr> = bodies
             .iter()
-            .map(|body| kinetic_energy_by_velocity(&mut self.algebra, body).1)
+            .map(|body| kinetic_energy_by_velocity(&mut self.algebra, body, letter).1)
             .collect();
         let graph = &mut self.algebra.graph;
         let potential: Vec<Expr> = self
@@ -525,9 +561,9 @@ impl Derivation {
 
 const VELOCITIES: &str = "Generalised velocities.";
 const SOLVED: &str = "Appell's equations, solved.";
-const A: &str = "A = ∂ẋ/∂x. Rows and columns follow [`State`].";
-const B: &str = "B = ∂ẋ/∂u. Rows follow [`State`], columns [`Inputs`].";
-const P: &str = "P = ∂ẋ/∂p. Rows follow [`State`], columns [`Parameters`].";
+const A: &str = "A = ∂ẋ/∂x: one row per rate, one column per state.";
+const B: &str = "B = ∂ẋ/∂u: one row per rate, one column per input.";
+const P: &str = "P = ∂ẋ/∂p: one row per rate, one column per parameter.";
 
 /// One entry per pseudo-velocity.
 fn by_speed(
@@ -538,9 +574,14 @@ fn by_speed(
     entries: Vec<Expr>,
 ) -> Array {
     let all = 0..entries.len();
-    Array::new(result, about, Layout::Speeds, entries)
-        .labelled(speeds.iter().map(|speed| format!("{name}_{}", speed.name)))
-        .under(about, all)
+    Array::new(
+        result,
+        about,
+        Layout::Vector(Space::GeneralizedForces),
+        entries,
+    )
+    .labelled(speeds.iter().map(|speed| format!("{name}_{}", speed.name)))
+    .under(about, all)
 }
 
 /// Symbols of the inputs: declared ones, then signals and their rates.
@@ -581,118 +622,5 @@ impl Source<'_> {
             "Constraint `{}`, {}:{}.",
             constraint.name, self.0.file, constraint.line
         )
-    }
-}
-
-/// Signals with those of their derivatives that equations may contain.
-fn tabulated_inputs(mechanism: &Mechanism) -> Vec<(usize, u8)> {
-    let orders = |signal: &Signal| 0..=signal.interpolation.derivatives();
-    let signals = mechanism.signals.iter().enumerate();
-    signals
-        .flat_map(|(index, signal)| orders(signal).map(move |order| (index, order)))
-        .collect()
-}
-
-fn info(derivation: &Derivation, mechanism: &Mechanism, signals: &[(usize, u8)]) -> ModelInfo {
-    let everywhere = [f64::NEG_INFINITY, f64::INFINITY];
-    let speeds = mechanism
-        .pseudo_velocities
-        .iter()
-        .map(|w| quantity(&w.label, w.initial, everywhere));
-    let coordinates = mechanism
-        .coordinates
-        .iter()
-        .map(|q| quantity(&q.label, q.initial, q.range.unwrap_or(everywhere)));
-    let declared = mechanism
-        .inputs
-        .iter()
-        .map(|u| quantity(&u.label, 0.0, everywhere));
-    let tabulated = signals.iter().map(|&(signal, order)| {
-        let mut input = quantity(
-            &mechanism.signals[SignalId::new(signal)].label,
-            0.0,
-            everywhere,
-        );
-        if order > 0 {
-            input.name = mechanism::Interpolation::derivative_name(&input.name, order).into();
-            input.unit = format!("({})/s^{order}", input.unit).into();
-        }
-        input
-    });
-    let parameters = mechanism.parameters.iter().map(|p| {
-        let range = [
-            p.at_least.unwrap_or(f64::NEG_INFINITY),
-            p.at_most.unwrap_or(f64::INFINITY),
-        ];
-        quantity(&p.label, p.value, range)
-    });
-    let rows = derivation
-        .constraints
-        .rows
-        .iter()
-        .filter(|r| !r.is_embedded());
-    ModelInfo {
-        name: mechanism.name.clone().into(),
-        title: mechanism.title.clone().into(),
-        source: mechanism.source.clone().unwrap_or_default().into(),
-        states: speeds.chain(coordinates).collect(),
-        speeds: mechanism.pseudo_velocities.len(),
-        inputs: declared.chain(tabulated).collect(),
-        declared_inputs: mechanism.inputs.len(),
-        signals: mechanism.signals.iter().map(signal_table).collect(),
-        signal_inputs: signals.to_vec().into(),
-        parameters: parameters.collect(),
-        outputs: mechanism
-            .outputs
-            .iter()
-            .map(|y| quantity(&y.label, 0.0, everywhere))
-            .collect(),
-        constraint_rows: rows.map(|r| r.name.clone().into()).collect(),
-        reactions: derivation.constraints.reactions.clone().into(),
-        contacts: contacts(derivation, mechanism),
-        explicit_time: false,
-    }
-}
-
-/// The contacts as they are at the initial state.
-fn contacts(derivation: &Derivation, mechanism: &Mechanism) -> List<Contact> {
-    let graph = &derivation.algebra.graph;
-    let state = InitialState::new(graph, mechanism, &derivation.symbols);
-    let contact = |contact: &super::contacts::Contact| {
-        let normal = state.of(graph, &contact.normal);
-        Contact {
-            name: derivation.constraints.reactions[contact.place].name.clone(),
-            reaction: contact.place,
-            normal: [normal[0], normal[1], normal[2]],
-            grips: contact.grips,
-            friction: contact
-                .friction
-                .map(|friction| state.of(graph, &[friction])[0]),
-        }
-    };
-    derivation.contacts.iter().map(contact).collect()
-}
-
-fn quantity(label: &Label, value: f64, range: [f64; 2]) -> Quantity {
-    Quantity {
-        name: label.name.clone().into(),
-        about: label.about.clone().into(),
-        unit: label.unit.text.clone().into(),
-        scale: label.unit.scale,
-        value,
-        range,
-    }
-}
-
-fn signal_table(signal: &Signal) -> SignalTable {
-    SignalTable {
-        name: signal.label.name.clone().into(),
-        times: signal.times.clone().into(),
-        values: signal.values.clone().into(),
-        interpolation: match signal.interpolation {
-            mechanism::Interpolation::Hold => Interpolation::Hold,
-            mechanism::Interpolation::Linear => Interpolation::Linear,
-            mechanism::Interpolation::Cubic => Interpolation::Cubic,
-        },
     }
 }

@@ -15,6 +15,7 @@ use super::elimination::{Elimination, GeneralizedVelocities, OpenSystem};
 use super::finding::{Item, Outcome, division_by_zero};
 use super::gibbs_appell::{BodyMotion, GibbsForm};
 use super::kinematics::Kinematics;
+use super::letters;
 use super::symbols::Symbols;
 use super::time::TimeDerivative;
 use crate::symbolic::vector::Vec3;
@@ -280,6 +281,7 @@ impl DependentSpeeds {
         let mut actual = self.actual(&algebra.graph);
         let bias = apply(&mut actual, algebra, &all.bias)?;
         let graph = &mut algebra.graph;
+        let mass = letters::mass(mechanism);
         // M B, the rows of the dependent speeds.
         let coupling: Vec<Vec<Expr>> = all.mass_matrix[speeds..]
             .iter()
@@ -293,7 +295,7 @@ impl DependentSpeeds {
                 let named = along.into_iter().zip(&mechanism.pseudo_velocities);
                 named
                     .map(|(entry, speed)| {
-                        graph.name(&format!("M_{name}_{}", speed.label.name), entry)
+                        graph.name(&format!("{mass}_{name}_{}", speed.label.name), entry)
                     })
                     .collect()
             })

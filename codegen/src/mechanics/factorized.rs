@@ -4,6 +4,7 @@ use appell_spec::mechanism::{Mechanism, SpeedId};
 
 use super::algebra::Algebra;
 use super::finding::Outcome;
+use super::letters;
 use super::motion::simplest_pivot;
 use crate::symbolic::{Expr, Graph};
 
@@ -26,6 +27,8 @@ impl FactorizedBlock {
         mass_matrix: &[Vec<Expr>],
         speeds: &[usize],
     ) -> Outcome<Self> {
+        let [mass, lower, diagonal] =
+            [letters::mass, letters::lower, letters::diagonal].map(|letter| letter(mechanism));
         let name = |speed: usize| {
             mechanism.pseudo_velocities[SpeedId::new(speed)]
                 .label
@@ -35,7 +38,7 @@ impl FactorizedBlock {
         let mut schur = mass_matrix.to_vec();
         for &i in speeds {
             for &j in speeds.iter().filter(|&&j| j <= i) {
-                let entry = &format!("M_{}_{}", name(j), name(i));
+                let entry = &format!("{mass}_{}_{}", name(j), name(i));
                 let entry = algebra.graph.name(entry, schur[i][j]);
                 schur[i][j] = entry;
                 schur[j][i] = entry;
@@ -51,13 +54,15 @@ impl FactorizedBlock {
         let mut columns: Vec<Vec<Expr>> = Vec::new();
         while !open.is_empty() {
             let k = simplest_pivot(algebra, mechanism, &schur, &mut open)?;
-            let pivot = algebra.graph.name(&format!("D_{}", name(k)), schur[k][k]);
+            let pivot = algebra
+                .graph
+                .name(&format!("{diagonal}_{}", name(k)), schur[k][k]);
             let mut column = vec![Graph::ZERO; mass_matrix.len()];
             for &i in &open {
                 let ratio = algebra.graph.div(schur[i][k], pivot);
                 column[i] = algebra
                     .graph
-                    .name(&format!("L_{}_{}", name(i), name(k)), ratio);
+                    .name(&format!("{lower}_{}_{}", name(i), name(k)), ratio);
             }
             for (a, &i) in open.iter().enumerate() {
                 for &j in &open[..=a] {
@@ -71,7 +76,7 @@ impl FactorizedBlock {
                     } else {
                         algebra
                             .graph
-                            .name(&format!("D_{}_{}", name(i), name(j)), entry)
+                            .name(&format!("{diagonal}_{}_{}", name(i), name(j)), entry)
                     };
                     schur[i][j] = entry;
                     schur[j][i] = entry;

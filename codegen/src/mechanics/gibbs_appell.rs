@@ -481,9 +481,13 @@ pub fn kinetic_energy(algebra: &mut Algebra, body: &BodyMotion) -> Expr {
     kinetic_energy_with(algebra, body, body.centre.velocity.v)
 }
 
-/// The same for a reader: with the name `T_body`, and by way of the named velocity of the centre of
+/// The same for a reader: with the name `T_body`, or another letter than T, and by way of the named velocity of the centre of
 /// mass where that is no longer.
-pub fn kinetic_energy_by_velocity(algebra: &mut Algebra, body: &BodyMotion) -> (Vec3, Expr) {
+pub fn kinetic_energy_by_velocity(
+    algebra: &mut Algebra,
+    body: &BodyMotion,
+    letter: &str,
+) -> (Vec3, Expr) {
     let v = body.centre.velocity.v;
     let velocity = named3(algebra, &format!("v_{}", body.centre.point), v);
     let mut energy = kinetic_energy_with(algebra, body, velocity);
@@ -491,7 +495,7 @@ pub fn kinetic_energy_by_velocity(algebra: &mut Algebra, body: &BodyMotion) -> (
     if algebra.graph.operations(&[written_out]) < algebra.graph.operations(&[energy]) {
         energy = written_out;
     }
-    let name = format!("T_{}", body.name);
+    let name = format!("{letter}_{}", body.name);
     (velocity, algebra.graph.name(&name, energy))
 }
 

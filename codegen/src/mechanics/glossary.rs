@@ -6,12 +6,13 @@ use appell_spec::units::{Dimension, Unit};
 use super::constraints::Constraints;
 use super::gibbs_appell::BodyMotion;
 use super::kinematics::Kinematics;
+use super::letters;
 use super::motion::{Block, Motion};
 use super::row::Row;
-use crate::program::{Names, Term};
+use crate::program::{Group, Names, Term};
 
 /// Names of the steps that solve Appell's equations and differentiate the solution.
-pub fn of_solution(motion: &Motion) -> Vec<Term> {
+pub fn of_solution(mechanism: &Mechanism, motion: &Motion) -> Vec<Term> {
     let mut terms = Vec::new();
     let any = |kind: fn(&Block) -> bool| motion.blocks.iter().any(kind);
     let (alone, together) = (
@@ -38,12 +39,16 @@ pub fn of_solution(motion: &Motion) -> Vec<Term> {
     }
     if together {
         terms.extend([
+            term(letters::mass(mechanism), "entries of the mass matrix M."),
             term(
-                "L",
+                letters::lower(mechanism),
                 "the factor of `M = L D Lᵀ`, unit triangular in the order of elimination.",
             ),
-            term("D", "the diagonal of `M = L D Lᵀ`, and `L D` beside it."),
-            term("z", "what solves `L z = rhs`."),
+            term(
+                letters::diagonal(mechanism),
+                "the diagonal of `M = L D Lᵀ`, and `L D` beside it.",
+            ),
+            term(letters::forward(mechanism), "what solves `L z = rhs`."),
         ]);
     }
     let rho = match (alone, together) {
@@ -95,6 +100,93 @@ pub fn of_motions(
     terms
 }
 
+/// Headings for the motions of frames and bodies, which `names` spells as [`of_motions`] does.
+pub fn groups_of_motions(mechanism: &Mechanism, bodies: &[BodyMotion]) -> Vec<Group> {
+    let frames = mechanism.frames.iter();
+    let mut groups = vec![Group {
+        title: "Angular velocities.".to_owned(),
+        names: frames.map(|frame| axes("w", &frame.name)).collect(),
+    }];
+    groups.extend(bodies.iter().map(|body| {
+        let mut names = vec![
+            axes("v", &body.centre.point),
+            axes("a0", &body.centre.point),
+        ];
+        names.extend(body.rotation.iter().map(|_| axes("h0", &body.name)));
+        Group {
+            title: format!("Motion of `{}` with ω̇ = 0.", body.name),
+            names,
+        }
+    }));
+    groups
+}
+
+/// Headings for the solution, unknown by unknown.
+pub fn groups_of_solution(mechanism: &Mechanism, motion: &Motion) -> Vec<Group> {
+    let speeds = mechanism.pseudo_velocities.iter();
+    let speeds: Vec<&str> = speeds.map(|w| w.label.name.as_str()).collect();
+    let [mass, lower, diagonal, forward] = [
+        letters::mass,
+        letters::lower,
+        letters::diagonal,
+        letters::forward,
+    ]
+    .map(|letter| letter(mechanism));
+    let alone = |symbol: &str, speed: usize| (format!("{symbol}_{}", speeds[speed]), Names::Alone);
+    let solved = |speed: usize| (format!("{}_dot", speeds[speed]), Names::Alone);
+    let mut groups = Vec::new();
+    for block in &motion.blocks {
+        match block {
+            Block::Eliminated(equations) => groups.extend(equations.iter().map(|equation| {
+                let speed = equation.speed;
+                Group {
+                    title: format!("Unknown `{}_dot`.", speeds[speed]),
+                    names: vec![
+                        alone("pivot", speed),
+                        (format!("rhs_{}", speeds[speed]), Names::Any),
+                        alone("rhs_over_pivot", speed),
+                        solved(speed),
+                    ],
+                }
+            })),
+            Block::Factorized(block) => {
+                for (place, &speed) in block.speeds.iter().enumerate() {
+                    let mut names = vec![
+                        alone(diagonal, speed),
+                        alone("rhs", speed),
+                        alone(forward, speed),
+                    ];
+                    for &later in &block.speeds[place + 1..] {
+                        let pair = format!("{}_{}", speeds[later], speeds[speed]);
+                        names.extend(
+                            [lower, diagonal].map(|s| (format!("{s}_{pair}"), Names::Alone)),
+                        );
+                    }
+                    for &other in &block.speeds[place..] {
+                        let mut pair = [speeds[speed], speeds[other]];
+                        let place = |name| speeds.iter().position(|&other| other == name);
+                        pair.sort_by_key(|name| place(*name));
+                        names.push((format!("{mass}_{}_{}", pair[0], pair[1]), Names::Alone));
+                    }
+                    groups.push(Group {
+                        title: format!("Elimination of `{}_dot`.", speeds[speed]),
+                        names,
+                    });
+                }
+                groups.extend(block.speeds.iter().rev().map(|&speed| Group {
+                    title: format!("Unknown `{}_dot`.", speeds[speed]),
+                    names: vec![solved(speed)],
+                }));
+            }
+        }
+    }
+    groups
+}
+
+fn axes(letter: &str, of: &str) -> (String, Names) {
+    (format!("{letter}_{of}"), Names::Axes)
+}
+
 /// Names of the constraint rows that geometry does not embed, with their units.
 pub fn of_rows(mechanism: &Mechanism, constraints: &Constraints) -> Vec<Term> {
     each_constraint(constraints, |row| !row.is_embedded())
@@ -123,7 +215,7 @@ pub fn of_multipliers(mechanism: &Mechanism, constraints: &Constraints) -> Vec<T
             let name = &constraint.name;
             let meaning = format!("the multiplier of constraint `{name}` as x, in W per `{unit}`.");
             let place = &constraints.reactions[constraints.reported(row)?].name;
-            Some(vector("F", place, meaning))
+            Some(vector(letters::reaction(mechanism), place, meaning))
         })
         .collect()
 }

@@ -124,6 +124,11 @@ impl Kinematics {
         self.velocities[point]
     }
 
+    /// Position of a point from the point that it is placed from.
+    pub fn offset(&self, point: PointId) -> FrameVector {
+        self.offsets[point]
+    }
+
     /// Velocity of the material point of a body that is at `point` now: `v_C + ω × r_CP`.
     pub fn material_velocity(
         &self,

@@ -9,6 +9,7 @@ use super::algebra::Algebra;
 use super::factorized::FactorizedBlock;
 use super::finding::{Finding, Item, Outcome};
 use super::gibbs_appell::GibbsForm;
+use super::letters;
 use crate::symbolic::{Expr, Graph, Node, Rational};
 
 /// Blocks up to this size are eliminated by formulas, each in its shortest form; larger ones, and
@@ -67,6 +68,7 @@ pub fn solve(
         .iter()
         .map(|w| w.label.name.as_str())
         .collect();
+    let forward = letters::forward(mechanism);
     let dots: Vec<String> = names.iter().map(|name| format!("{name}_dot")).collect();
     let right: Vec<Expr> = forces
         .iter()
@@ -111,7 +113,7 @@ pub fn solve(
                     .map(|(name, &right)| algebra.graph.name(&format!("rhs_{name}"), right))
                     .collect();
                 block.solve(algebra, &right, &mut accelerations, |graph, speed, z| {
-                    graph.name(&format!("z_{}", names[speed]), z)
+                    graph.name(&format!("{forward}_{}", names[speed]), z)
                 });
                 for speed in speeds {
                     let value = accelerations[speed];
@@ -128,6 +130,50 @@ pub fn solve(
 }
 
 impl Motion {
+    /// The equations as they are solved, for readers: those of a small block after elimination, in
+    /// the order of the solution, and the rows `M ω̇ = Π - b` of a large one. `unknowns` are the
+    /// symbols of ω̇.
+    pub fn equations(
+        &self,
+        graph: &mut Graph,
+        (mass_matrix, right): (&[Vec<Expr>], &[Expr]),
+        unknowns: &[Expr],
+    ) -> Vec<[Expr; 2]> {
+        let opened = |graph: &Graph, e: Expr| graph.named_value(e).unwrap_or(e);
+        let mut equations = Vec::new();
+        for block in &self.blocks {
+            match block {
+                Block::Eliminated(solved) => {
+                    for equation in solved {
+                        let mut terms = vec![unknowns[equation.speed], graph.neg(equation.whole)];
+                        for &(other, coupling) in &equation.couplings {
+                            terms.push(graph.mul(coupling, unknowns[other]));
+                        }
+                        let sum = graph.sum(&terms);
+                        let pivot = opened(graph, equation.pivot);
+                        let left = graph.mul(pivot, sum);
+                        equations.push([left, opened(graph, equation.right)]);
+                    }
+                }
+                Block::Factorized(block) => {
+                    let mut speeds = block.speeds.clone();
+                    speeds.sort_unstable();
+                    for &row in &speeds {
+                        let terms: Vec<Expr> = speeds
+                            .iter()
+                            .map(|&column| {
+                                let entry = opened(graph, mass_matrix[row][column]);
+                                graph.mul(entry, unknowns[column])
+                            })
+                            .collect();
+                        equations.push([graph.sum(&terms), right[row]]);
+                    }
+                }
+            }
+        }
+        equations
+    }
+
     /// The equations that are solved one by one.
     pub fn eliminated(&self) -> impl Iterator<Item = &Eliminated> {
         self.blocks.iter().flat_map(|block| match block {

@@ -2,7 +2,7 @@
 
 use super::dag::{Dag, Id, Item, Name, Op};
 use super::monomial::Monomial;
-use super::names::{ArgumentNames, Names};
+use super::names::{ArgumentNames, Names, joined};
 use super::outline::Outline;
 use super::piece::{Level, Piece, describe};
 use super::signs::{choose_signs, keeps_its_name};
@@ -23,9 +23,14 @@ const INLINE: usize = 72;
 /// Columns that a tree gets after a name of any length.
 const NARROWEST: usize = 30;
 
-/// The steps of a function.
-pub(super) fn bind(program: &Program, function: &Function, dag: &Dag) -> Schedule {
-    let mut binding = Binding::new(program, function, dag);
+/// The steps of a function. `hints` tells which nodes are hints of the program, up to their sign.
+pub(super) fn bind(
+    program: &Program,
+    function: &Function,
+    dag: &Dag,
+    hints: Vec<Option<(usize, bool)>>,
+) -> Schedule {
+    let mut binding = Binding::new(program, function, dag, hints);
     let mut seen = vec![false; dag.len()];
     for (title, roots) in binding.outline.paragraphs(function) {
         binding.title = Some(title);
@@ -53,6 +58,8 @@ struct Binding<'a> {
     outline: Outline<'a>,
     /// Nodes wanted with the opposite sign.
     minus: Vec<bool>,
+    /// Hints by their number, and whether they are minus the node, for what has no other name.
+    hints: Vec<Option<(usize, bool)>>,
     /// Parts counted so far, by what they feed.
     parts: Vec<u32>,
     built: Vec<Option<Built>>,
@@ -60,6 +67,8 @@ struct Binding<'a> {
     values: Vec<String>,
     /// What the values are products of, where their names say that.
     products: Vec<Option<Monomial>>,
+    /// Values whose names are hints.
+    hinted: Vec<bool>,
     steps: Vec<Step>,
     title: Option<String>,
     systems_done: Vec<bool>,
@@ -68,7 +77,12 @@ struct Binding<'a> {
 }
 
 impl<'a> Binding<'a> {
-    fn new(program: &'a Program, function: &Function, dag: &'a Dag) -> Self {
+    fn new(
+        program: &'a Program,
+        function: &Function,
+        dag: &'a Dag,
+        hints: Vec<Option<(usize, bool)>>,
+    ) -> Self {
         let arguments = ArgumentNames::of(program);
         let mut names = Names::default();
         for name in arguments.iter() {
@@ -89,11 +103,13 @@ impl<'a> Binding<'a> {
             dag,
             minus: choose_signs(dag, &outline.order),
             outline,
+            hints,
             parts: vec![0; dag.len()],
             built: vec![None; dag.len()],
             names,
             values: Vec::new(),
             products: Vec::new(),
+            hinted: Vec::new(),
             steps: Vec::new(),
             title: None,
             systems_done: vec![false; dag.systems.len()],
@@ -517,7 +533,10 @@ impl<'a> Binding<'a> {
                 (self.define(&name, piece.opposite().tree), !negative)
             }
             // What comes out with the other sign is told by how it is made.
-            _ => (self.define_by_making(id, piece.tree), negative),
+            _ => {
+                let hint = self.hint(id, negative);
+                (self.define_by_making(id, piece.tree, hint), negative)
+            }
         };
         Built { piece, negative }
     }
@@ -529,7 +548,11 @@ impl<'a> Binding<'a> {
             && self.derived_name(id).is_none_or(|name| name.automatic)
             && self.outline.feeds_others(id)
             && Monomial::of(&piece.tree, &self.products).is_some_and(|product| {
-                product.length() <= FEW && product.name(&self.values, &self.arguments).is_some()
+                // A hint adds a name and takes none away.
+                let hinted = product.values().any(|value| self.hinted[value.0 as usize]);
+                !hinted
+                    && product.length() <= FEW
+                    && product.name(&self.values, &self.arguments).is_some()
             })
     }
 
@@ -538,6 +561,46 @@ impl<'a> Binding<'a> {
         self.dag.names[id.index()].is_some()
             || keeps_its_name(self.dag, id)
             || !self.outline.is_shared(id)
+    }
+
+    /// The name of a value that readers know, or what it is multiplied with; `negative` says that
+    /// minus the node is defined.
+    fn hint(&self, id: Id, negative: bool) -> Option<String> {
+        let hint = self.hints[id.index()].and_then(|(number, opposite)| {
+            let hint = &self.program.hints[number];
+            if opposite == negative {
+                Some(hint.name.clone())
+            } else {
+                hint.opposite.clone()
+            }
+        });
+        hint.or_else(|| self.by_factors(id))
+    }
+
+    /// `consumer_per_a_b`: what is multiplied by `a` and `b` on its way to the consumer.
+    fn by_factors(&self, id: Id) -> Option<String> {
+        let feed = self.outline.feeds[id.index()]?;
+        let mut factors: Vec<&str> = Vec::new();
+        let mut part = id;
+        while part != feed {
+            let whole = self.outline.wholes[part.index()]?;
+            if let Op::Product(items) = self.dag.op(whole) {
+                for other in items.iter().filter(|item| item.id != part && !item.flip) {
+                    match self.built[other.id.index()].as_ref()?.piece.tree {
+                        Tree::Value(Value(value)) => factors.push(&self.values[value as usize]),
+                        Tree::Argument(argument) => factors.push(self.arguments.get(argument)),
+                        Tree::Constant(_) => {}
+                        _ => return None,
+                    }
+                }
+            }
+            part = whole;
+        }
+        if factors.is_empty() {
+            return None;
+        }
+        factors.reverse();
+        joined(&[&self.given_name(feed)?, "per", &factors.join("_")])
     }
 
     /// `consumer_part_2`
@@ -553,17 +616,23 @@ impl<'a> Binding<'a> {
 
     /// Defines a part of a tree that is too wide for a line.
     fn define_part(&mut self, id: Id, piece: Piece) -> Piece {
-        self.define_by_making(id, piece.tree)
+        self.define_by_making(id, piece.tree, None)
     }
 
     /// Defines a value under a name that tells how it is made.
-    fn define_by_making(&mut self, id: Id, tree: Tree) -> Piece {
+    fn define_by_making(&mut self, id: Id, tree: Tree, hint: Option<String>) -> Piece {
         let described = describe(&tree, &self.values, &self.products, &self.arguments);
         let product = described
             .is_some()
             .then(|| Monomial::of(&tree, &self.products));
-        let name = described.unwrap_or_else(|| self.fallback(id, "part"));
+        let hinted = described.is_none() && hint.is_some();
+        let name = described
+            .or(hint)
+            .unwrap_or_else(|| self.fallback(id, "part"));
         let piece = self.define(&name, tree);
+        if let Some(last) = self.hinted.last_mut() {
+            *last = hinted;
+        }
         if let Some(last) = self.products.last_mut() {
             *last = product.flatten();
         }
@@ -582,6 +651,7 @@ impl<'a> Binding<'a> {
         let piece = Piece::name(Tree::Value(value), &name);
         self.values.push(name);
         self.products.push(None);
+        self.hinted.push(false);
         (value, piece)
     }
 

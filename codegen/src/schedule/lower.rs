@@ -38,6 +38,28 @@ pub(super) fn lower(program: &Program, function: &Function) -> Dag {
     dag
 }
 
+/// The values that readers know, whether or not a function computes them.
+pub(super) fn hints(program: &Program) -> Dag {
+    let graph = &program.graph;
+    let mut lowering = Lowering {
+        graph,
+        arguments: arguments(program),
+        pi: program.arguments.pi,
+        kept: FxHashSet::default(),
+        dag: Dag::default(),
+        known: FxHashMap::default(),
+        systems: FxHashMap::default(),
+    };
+    let roots: Vec<Expr> = program.hints.iter().map(|hint| hint.value).collect();
+    for expr in graph.in_order(&roots) {
+        let item = lowering.node(expr);
+        lowering.known.insert(expr, item);
+    }
+    let mut dag = lowering.dag;
+    dag.results = roots.iter().map(|root| lowering.known[root]).collect();
+    dag
+}
+
 /// Definitions of the values of the stages.
 fn kept(graph: &Graph, function: &Function) -> FxHashSet<u32> {
     let values = function.stages.iter().flat_map(|stage| &stage.values);

@@ -274,6 +274,29 @@ pub(super) fn name_again(dag: &mut Dag, derived: &Dag) {
     }
 }
 
+/// Which nodes are results of another graph: its number, and whether it is minus the node.
+pub(super) fn known_values(dag: &Dag, hints: &Dag) -> Vec<Option<(usize, bool)>> {
+    let hinted = values(hints, &hints.order());
+    let mut known: FxHashMap<Value, (usize, bool)> = FxHashMap::default();
+    for (number, item) in hints.results.iter().enumerate() {
+        if let Some(value) = hinted[item.id.index()].filter(|_| can_give_way(hints, item.id)) {
+            let (value, sign) = without_sign(value);
+            known.entry(value).or_insert((number, sign != item.flip));
+        }
+    }
+    let order = dag.order();
+    let values = values(dag, &order);
+    let mut found = vec![None; dag.len()];
+    for id in order.into_iter().filter(|&id| can_give_way(dag, id)) {
+        found[id.index()] = values[id.index()].and_then(|value| {
+            let (value, sign) = without_sign(value);
+            let &(number, other) = known.get(&value)?;
+            Some((number, sign != other))
+        });
+    }
+    found
+}
+
 /// How many parts a sum or a product has; other nodes are as short as can be.
 fn parts(dag: &Dag, id: Id) -> usize {
     match dag.op(id) {

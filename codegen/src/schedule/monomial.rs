@@ -87,6 +87,14 @@ impl Monomial {
         usize::from(!self.coefficient.is_one()) + self.powers.len()
     }
 
+    /// The values among the factors.
+    pub(super) fn values(&self) -> impl Iterator<Item = Value> {
+        self.powers.iter().filter_map(|(factor, _)| match factor {
+            Factor::Value(value) => Some(*value),
+            _ => None,
+        })
+    }
+
     /// Where the product stands in a sum: products of parameters in the order in which these are
     /// declared, then powers of one value in the order of their definition, then the others.
     pub(super) fn place_in_sum(&self) -> (u8, u32) {

@@ -9,43 +9,8 @@ use crate::symbolic::Rational;
 /// Longest name made up here.
 pub(super) const LONGEST: usize = 31;
 
-/// Words that cannot name a value in Rust, in any edition.
-const KEYWORDS: &[&str] = &[
-    "Self", "_", "abstract", "as", "async", "await", "become", "box", "break", "const", "continue",
-    "crate", "do", "dyn", "else", "enum", "extern", "false", "final", "fn", "for", "gen", "if",
-    "impl", "in", "let", "loop", "macro", "match", "mod", "move", "mut", "override", "priv", "pub",
-    "ref", "return", "self", "static", "struct", "super", "trait", "true", "try", "type", "typeof",
-    "unsafe", "unsized", "use", "virtual", "where", "while", "yield",
-];
-
-/// Statics and functions of the emitted text, which a local must not shadow.
-const STATICS: &[&str] = &[
-    "lu_factor",
-    "lu_solve",
-    "None",
-    "Some",
-    "Ok",
-    "Err",
-    "INFO",
-    "SPEC",
-    "STATES",
-    "INPUTS",
-    "PARAMETERS",
-    "OUTPUTS",
-    "SIGNALS",
-    "SIGNAL_INPUTS",
-    "CONSTRAINT_ROWS",
-    "REACTIONS",
-    "Parameters",
-    "Speeds",
-    "Coordinates",
-    "State",
-    "Inputs",
-    "Outputs",
-];
-
-/// A valid identifier that is `text` where `text` is one. Anything else is spelled in ASCII
-/// letters, digits and underscores; keywords get an underscore at the end.
+/// `text` where it is a name of ASCII letters, digits and underscores; anything else is spelled in
+/// these.
 pub(crate) fn identifier(text: &str) -> String {
     let mut name: String = text
         .chars()
@@ -57,9 +22,6 @@ pub(crate) fn identifier(text: &str) -> String {
     // `_` alone and `__` are no names for people.
     if name.chars().all(|c| c == '_') {
         name.push_str("unnamed");
-    }
-    if KEYWORDS.contains(&name.as_str()) || STATICS.contains(&name.as_str()) {
-        name.push('_');
     }
     name
 }

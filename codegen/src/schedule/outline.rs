@@ -5,7 +5,7 @@ use rustc_hash::FxHashMap;
 use super::dag::{Dag, Id, Item, Op};
 use super::lower::definition;
 use super::steps::Argument;
-use crate::program::{Function, Layout, Program};
+use crate::program::{Function, Program};
 use crate::symbolic::Function as Elementary;
 
 /// Decisions about every node.
@@ -24,8 +24,12 @@ pub(super) struct Outline<'a> {
     entries: Vec<bool>,
     /// The first named value or result that the node is a part of.
     pub(super) feeds: Vec<Option<Id>>,
+    /// What the node is a part of on its way there.
+    pub(super) wholes: Vec<Option<Id>>,
     /// Headings with the nodes that are computed under them before the results.
     stages: Vec<(String, Vec<Id>)>,
+    /// The group that a node is computed with.
+    groups: Vec<Option<usize>>,
 }
 
 impl<'a> Outline<'a> {
@@ -40,7 +44,9 @@ impl<'a> Outline<'a> {
             labels: vec![None; dag.len()],
             entries: vec![false; dag.len()],
             feeds: vec![None; dag.len()],
+            wholes: vec![None; dag.len()],
             stages: Vec::new(),
+            groups: vec![None; dag.len()],
             order,
         };
         outline.label_results(function);
@@ -48,13 +54,14 @@ impl<'a> Outline<'a> {
         outline.pair_sines();
         outline.choose_bound();
         outline.find_feeds();
+        outline.find_groups(program, function);
         outline
     }
 
     /// Results get bindings, and the names of their entries.
     fn label_results(&mut self, function: &Function) {
         let texts = function.results.iter().flat_map(|array| {
-            let entry = matches!(array.layout, Layout::Matrix(..));
+            let entry = array.layout.has_columns();
             array.labels.iter().map(move |text| (text, entry))
         });
         for (result, (text, entry)) in self.dag.results.iter().zip(texts) {
@@ -155,9 +162,50 @@ impl<'a> Outline<'a> {
                 self.feeds[id.index()] = Some(id);
             }
             let feed = self.feeds[id.index()];
-            self.dag
-                .for_each_part(id, |part| self.feeds[part.id.index()] = feed);
+            self.dag.for_each_part(id, |part| {
+                self.feeds[part.id.index()] = feed;
+                self.wholes[part.id.index()] = Some(id);
+            });
         }
+    }
+
+    /// Which nodes the function wants computed together.
+    fn find_groups(&mut self, program: &Program, function: &Function) {
+        for &id in &self.order {
+            let Some(name) = self.dag.names[id.index()] else {
+                continue;
+            };
+            let name = &program.graph.definition(name.definition).name;
+            if self.bound[id.index()] {
+                self.groups[id.index()] = function.groups.iter().position(|g| g.holds(name));
+            }
+        }
+    }
+
+    /// The paragraphs, each after the groups that it is the first to need; `first` come before all.
+    fn with_groups(
+        &self,
+        function: &Function,
+        first: Vec<(String, Vec<Id>)>,
+        paragraphs: Vec<(String, Vec<Id>)>,
+    ) -> Vec<(String, Vec<Id>)> {
+        let mut seen = vec![false; self.dag.len()];
+        let mut all = first;
+        for (_, roots) in &all {
+            self.dag.visit_from(roots, &mut seen, |_| {});
+        }
+        for (title, roots) in paragraphs {
+            let mut together = vec![Vec::new(); function.groups.len()];
+            self.dag.visit_from(&roots, &mut seen, |id| {
+                if let Some(group) = self.groups[id.index()] {
+                    together[group].push(id);
+                }
+            });
+            let groups = function.groups.iter().zip(together);
+            all.extend(groups.map(|(group, ids)| (group.title.clone(), ids)));
+            all.push((title, roots));
+        }
+        all
     }
 
     /// Whether more than one whole or result needs a node.
@@ -197,14 +245,14 @@ impl<'a> Outline<'a> {
             .iter()
             .copied()
             .filter(|id| only_parameters[id.index()] && self.bound[id.index()]);
-        let mut paragraphs = vec![
+        let first = vec![
             ("Sines and cosines.".to_owned(), sines.collect()),
             (
                 "Combinations of parameters.".to_owned(),
                 parameters.collect(),
             ),
         ];
-        paragraphs.extend(self.stages.iter().cloned());
+        let mut paragraphs = self.stages.clone();
         let mut untitled = Vec::new();
         let mut results = self.dag.results.as_slice();
         for array in &function.results {
@@ -218,6 +266,6 @@ impl<'a> Outline<'a> {
             results = rest;
         }
         paragraphs.push((String::new(), untitled));
-        paragraphs
+        self.with_groups(function, first, paragraphs)
     }
 }

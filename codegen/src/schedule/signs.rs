@@ -13,6 +13,9 @@ const WRONG_SIGN: usize = 5;
 /// A product with a negative number reads worse than one with a positive number.
 const MINUS_IN_NAME: usize = 10;
 
+/// So does a number whose minus takes back that of a factor, but less than a negation costs.
+const MINUS: usize = 1;
+
 /// How often all candidates are tried: what is flipped first may be better flipped back later.
 const ROUNDS: usize = 2;
 
@@ -24,6 +27,7 @@ pub(super) fn choose_signs(dag: &Dag, order: &[Id]) -> Vec<bool> {
         wanted: vec![false; dag.len()],
         built: vec![false; dag.len()],
         wrong: vec![false; dag.len()],
+        minus: vec![false; dag.len()],
         labels: vec![None; dag.len()],
     };
     for result in &dag.results {
@@ -82,6 +86,8 @@ struct Signs<'a> {
     built: Vec<bool>,
     /// What came out with the other sign than its name's.
     wrong: Vec<bool>,
+    /// Products whose number is written with a minus.
+    minus: Vec<bool>,
     /// The first sign in which a result wants a node.
     labels: Vec<Option<bool>>,
 }
@@ -104,18 +110,20 @@ impl Signs<'_> {
                     }
                 }
                 Op::Product(factors) => {
+                    let built = factors.iter().filter(|f| self.built[f.id.index()]);
+                    let natural = built.count() % 2 == 1;
                     if has_number(dag, id) {
-                        if self.wanted[place] && self.sign(id).is_none() {
-                            cost += MINUS_IN_NAME;
-                        }
+                        // The number is written with a minus.
+                        self.minus[place] =
+                            self.wanted[place] != natural && self.sign(id).is_none();
+                        cost += match (self.minus[place], natural) {
+                            (false, _) => 0,
+                            (true, true) => MINUS,
+                            (true, false) => MINUS_IN_NAME,
+                        };
                         self.wanted[place]
                     } else {
-                        factors
-                            .iter()
-                            .filter(|factor| self.built[factor.id.index()])
-                            .count()
-                            % 2
-                            == 1
+                        natural
                     }
                 }
                 _ => {
@@ -169,6 +177,7 @@ impl Signs<'_> {
                 dag.for_each_part(id, |part| roots.push(part.id));
                 roots.push(id);
             }
+            roots.extend(self.minus[id.index()].then_some(id));
         }
         roots.extend(
             dag.results

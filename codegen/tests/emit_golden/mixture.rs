@@ -1,7 +1,7 @@
 use ::appell_runtime::Real;
 use ::appell_runtime::dense::{lu_factor, lu_solve};
 
-/// Parameters, in SI.
+/// Parameters p, in SI.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Parameters<T> {
     /// The name of a static.
@@ -17,24 +17,8 @@ impl Default for Parameters<f64> {
     }
 }
 
-/// One number per pseudo-velocity, in SI. Where it is a force: in W over the unit.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Speeds<T> {
-    /// A keyword, in `m/s`.
-    pub type_: T,
-}
-
-/// One number per coordinate, in SI. Where it is a rate: in the unit per second.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Coordinates<T> {
-    /// The name of an argument, in `m`.
-    pub p: T,
-    /// The name of a number, in `m`.
-    pub half: T,
-}
-
-/// The state, or its rates: pseudo-velocities, then coordinates. In SI.
-#[derive(Debug, Clone, Copy, PartialEq)]
+/// State x: pseudo-velocities, then coordinates. In SI.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct State<T> {
     /// A keyword, in `m/s`.
     pub type_: T,
@@ -44,12 +28,24 @@ pub struct State<T> {
     pub half: T,
 }
 
-/// Inputs, in SI.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Inputs<T>(pub core::marker::PhantomData<T>);
+impl State<f64> {
+    /// The initial state of the spec; the default is zero.
+    #[must_use]
+    pub fn initial() -> Self {
+        Self {
+            type_: 0.0,
+            p: 0.25,
+            half: 0.5,
+        }
+    }
+}
 
-/// Outputs, in SI.
-#[derive(Debug, Clone, Copy, PartialEq)]
+/// Inputs u, in SI.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Inputs {}
+
+/// Outputs y, in SI.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Outputs<T> {
     /// A choice, in `m`.
     pub switch: T,
@@ -59,18 +55,68 @@ pub struct Outputs<T> {
     pub angle: T,
 }
 
+/// Rates ẋ of the [`State`]: pseudo-accelerations, then generalised velocities. In SI.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Rates<T> {
+    /// Rate of `type`, in `m/s^2`.
+    pub type_dot: T,
+    /// Rate of `p`, in `m/s`.
+    pub p_dot: T,
+    /// Rate of `half`, in `m/s`.
+    pub half_dot: T,
+}
+
+impl<T> Rates<T> {
+    /// ω̇, the first part.
+    #[must_use]
+    pub fn accelerations(self) -> Accelerations<T> {
+        Accelerations {
+            type_dot: self.type_dot,
+        }
+    }
+
+    /// q̇, the second part.
+    #[must_use]
+    pub fn coordinate_rates(self) -> CoordinateRates<T> {
+        CoordinateRates {
+            p_dot: self.p_dot,
+            half_dot: self.half_dot,
+        }
+    }
+}
+
+/// Pseudo-accelerations ω̇, in SI.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Accelerations<T> {
+    /// Rate of `type`, in `m/s^2`.
+    pub type_dot: T,
+}
+
+/// Generalised velocities q̇, in SI.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct CoordinateRates<T> {
+    /// Rate of `p`, in `m/s`.
+    pub p_dot: T,
+    /// Rate of `half`, in `m/s`.
+    pub half_dot: T,
+}
+
 /// Result of [`jacobians`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Jacobians<T> {
     /// ẋ, the rates of the state.
-    pub rates: State<T>,
+    pub rates: Rates<T>,
     /// Derivatives.
-    pub a: [[T; 3]; 3],
+    pub a: Rates<State<T>>,
     /// Derivatives.
-    pub b: [[T; 0]; 3],
+    pub b: Rates<Inputs>,
 }
 
 /// Rates ẋ of the state by Appell's equations M ω̇ + b = Π and kinematics.
+///
+/// ```text
+/// ṗ = type
+/// ```
 ///
 /// From `mechanisms/type.toml`.
 /// Operations: 25 (16 +, 8 ×, 1 ÷), sine or cosine of 1 angle, 13 functions, 2 choices, 2 linear systems.
@@ -80,8 +126,8 @@ pub fn rates<T: Real>(
     t: T,
     parameters: &Parameters<T>,
     state: &State<T>,
-    _inputs: &Inputs<T>,
-) -> State<T> {
+    _inputs: &Inputs,
+) -> Rates<T> {
     let &Parameters { INFO_, K } = parameters;
     let &State { type_, p, half } = state;
     let c_17_over_35 = T::constant(17.0 / 35.0);
@@ -90,8 +136,9 @@ pub fn rates<T: Real>(
 
     // Combinations of parameters.
     let K_squared = K * K;
-    let type_dot_part_1 = K_squared * K_squared;
-    let type_dot_part_2 = type_dot_part_1 * type_dot_part_1;
+    let type_dot_per_K_squared_K = K_squared * K_squared;
+    let type_dot_per_K_squared_K_squared = type_dot_per_K_squared_K
+        * type_dot_per_K_squared_K;
 
     // Generalised velocities.
     let p_minus_half = p - half;
@@ -107,16 +154,19 @@ pub fn rates<T: Real>(
     let half_dot = solution_2_3 - p_minus_half.atan2(K.powf(p));
 
     // Appell's equations, solved.
+    let K_cubed_type_dot_per_K_squared_K_squared = K * K_squared
+        * type_dot_per_K_squared_K_squared;
+    let type_dot_part_1 = K_cubed_type_dot_per_K_squared_K_squared
+        * type_dot_per_K_squared_K_squared;
     let [solution_1_1, _, _] = lu_solve(&lu_1, [type_, t, p]);
-    let type_dot = one / (p_minus_half * p_minus_half * p_minus_half)
-        + K * K_squared * type_dot_part_2 * type_dot_part_2
+    let type_dot = one / (p_minus_half * p_minus_half * p_minus_half) + type_dot_part_1
         + T::if_less_or_equal(t, K, p, type_)
         + T::if_less(p, p_minus_half, solution_1_1, crate_);
 
-    State {
-        type_: type_dot,
-        p: type_,
-        half: half_dot,
+    Rates {
+        type_dot,
+        p_dot: type_,
+        half_dot,
     }
 }
 
@@ -130,7 +180,7 @@ pub fn jacobians<T: Real>(
     t: T,
     parameters: &Parameters<T>,
     state: &State<T>,
-    _inputs: &Inputs<T>,
+    _inputs: &Inputs,
 ) -> Jacobians<T> {
     let &Parameters { INFO_, K } = parameters;
     let &State { type_, p, half } = state;
@@ -145,8 +195,9 @@ pub fn jacobians<T: Real>(
 
     // Combinations of parameters.
     let K_squared = K * K;
-    let type_dot_part_1 = K_squared * K_squared;
-    let type_dot_part_2 = type_dot_part_1 * type_dot_part_1;
+    let type_dot_per_K_squared_K = K_squared * K_squared;
+    let type_dot_per_K_squared_K_squared = type_dot_per_K_squared_K
+        * type_dot_per_K_squared_K;
 
     // Generalised velocities.
     let p_minus_half = p - half;
@@ -166,19 +217,23 @@ pub fn jacobians<T: Real>(
 
     // Appell's equations, solved.
     let inv_p_minus_half = one / p_minus_half;
-    let type_dot_part_3 = inv_p_minus_half * inv_p_minus_half;
+    let type_dot_per_inv_p_minus_half = inv_p_minus_half * inv_p_minus_half;
+    let K_cubed_type_dot_per_K_squared_K_squared = K * K_squared
+        * type_dot_per_K_squared_K_squared;
+    let type_dot_part_1 = K_cubed_type_dot_per_K_squared_K_squared
+        * type_dot_per_K_squared_K_squared;
     let [solution_1_1, solution_1_2, solution_1_3] = lu_solve(&lu_1, [type_, t, p]);
-    let type_dot = inv_p_minus_half * type_dot_part_3
-        + K * K_squared * type_dot_part_2 * type_dot_part_2
+    let type_dot = type_dot_part_1 + inv_p_minus_half * type_dot_per_inv_p_minus_half
         + T::if_less_or_equal(t, K, p, type_)
         + T::if_less(p, p_minus_half, solution_1_1, crate_);
 
-    // Row `type` of A.
+    // Row `type_dot` of A.
     let [solution_3_1, _, _] = lu_solve(&lu_1, [one, zero, zero]);
     let A_type_type = T::if_less(p, p_minus_half, solution_3_1, zero)
         + T::if_less_or_equal(t, K, zero, one);
     let [solution_4_1, _, _] = lu_solve(&lu_1, [-solution_1_2, -solution_1_1, one]);
-    let A_type_p_part_1 = three * type_dot_part_3 * type_dot_part_3;
+    let A_type_p_part_1 = three * type_dot_per_inv_p_minus_half
+        * type_dot_per_inv_p_minus_half;
     let A_type_p = T::if_less(p, p_minus_half, solution_4_1, zero)
         + T::if_less_or_equal(t, K, one, zero) - A_type_p_part_1;
     let [solution_5_1, _, _] = lu_solve(&lu_1, [-solution_1_3, zero, -solution_1_2]);
@@ -189,7 +244,7 @@ pub fn jacobians<T: Real>(
     let A_type_half = A_type_p_part_1
         + T::if_less(p, p_minus_half, solution_5_1, d_crate_d_half);
 
-    // Row `half` of A.
+    // Row `half_dot` of A.
     let one_minus_solution_2_2 = one - solution_2_2;
     let [_, _, solution_6_3] = lu_solve(
         &lu_1,
@@ -206,23 +261,36 @@ pub fn jacobians<T: Real>(
     let A_half_half = solution_7_3 + half_dot_part_1 * A_half_p_part_2;
 
     Jacobians {
-        rates: State {
-            type_: type_dot,
-            p: type_,
-            half: half_dot,
+        rates: Rates {
+            type_dot,
+            p_dot: type_,
+            half_dot,
         },
-        a: [
-            [A_type_type, A_type_p, A_type_half],
-            [one, zero, zero],
-            [zero, A_half_p, A_half_half],
-        ],
-        b: [[], [], []],
+        a: Rates {
+            type_dot: State {
+                type_: A_type_type,
+                p: A_type_p,
+                half: A_type_half,
+            },
+            p_dot: State {
+                type_: one,
+                ..State::splat(zero)
+            },
+            half_dot: State {
+                type_: zero,
+                p: A_half_p,
+                half: A_half_half,
+            },
+        },
+        b: Rates {
+            type_dot: Inputs {},
+            p_dot: Inputs {},
+            half_dot: Inputs {},
+        },
     }
 }
 
-/// P = ∂ẋ/∂p. Rows follow [`State`], columns [`Parameters`].
-///
-/// Rows: `type`, `p`, `half`. Columns: `INFO`, `K`.
+/// P = ∂ẋ/∂p.
 ///
 /// From `mechanisms/type.toml`.
 /// Operations: 33 (15 +, 11 ×, 1 ÷, 6 sign), sine or cosine of 1 angle, 12 functions, 2 choices, 6 linear systems.
@@ -232,8 +300,8 @@ pub fn parameter_jacobian<T: Real>(
     t: T,
     parameters: &Parameters<T>,
     state: &State<T>,
-    _inputs: &Inputs<T>,
-) -> [[T; 2]; 3] {
+    _inputs: &Inputs,
+) -> Rates<Parameters<T>> {
     let &Parameters { INFO_, K } = parameters;
     let &State { type_, p, half } = state;
     let zero = T::constant(0.0);
@@ -246,7 +314,7 @@ pub fn parameter_jacobian<T: Real>(
     let P_type_K_part_1 = K_squared * K_squared;
     let P_type_K_part_2 = P_type_K_part_1 * P_type_K_part_1;
 
-    // Row `type` of P.
+    // Row `type_dot` of P.
     let p_minus_half = p - half;
     let lu_1 = lu_factor([
         [K, p, half],
@@ -260,7 +328,7 @@ pub fn parameter_jacobian<T: Real>(
     let P_type_K = T::if_less(p, p_minus_half, solution_3_1, zero)
         + nineteen * K_squared * P_type_K_part_2 * P_type_K_part_2;
 
-    // Row `half` of P.
+    // Row `half_dot` of P.
     let crate_ = half.ln() + half.sign() + half.abs() + half.sqrt() + half.exp()
         + half.tanh() + half.cosh() + half.sinh() + half.atan() + half.acos()
         + half.asin() + half.sin();
@@ -273,10 +341,26 @@ pub fn parameter_jacobian<T: Real>(
     let P_half_K_part_4 = K * (P_half_K_part_2 + P_half_K_part_1 * P_half_K_part_1);
     let P_half_K = solution_6_3 + P_half_K_part_3 / P_half_K_part_4;
 
-    [[P_type_INFO, P_type_K], [zero, zero], [P_half_INFO, P_half_K]]
+    Rates {
+        type_dot: Parameters {
+            INFO_: P_type_INFO,
+            K: P_type_K,
+        },
+        p_dot: Parameters::splat(zero),
+        half_dot: Parameters {
+            INFO_: P_half_INFO,
+            K: P_half_K,
+        },
+    }
 }
 
 /// Outputs of the spec.
+///
+/// ```text
+/// outputs₀ = (p if t ≤ K, else type)
+/// outputs₁ = K^(p)
+/// outputs₂ = atan2(p − half, K^(p))
+/// ```
 ///
 /// From `mechanisms/type.toml`.
 /// Operations: 1 (1 +), 2 functions, 1 choice.
@@ -286,7 +370,7 @@ pub fn outputs<T: Real>(
     t: T,
     parameters: &Parameters<T>,
     state: &State<T>,
-    _inputs: &Inputs<T>,
+    _inputs: &Inputs,
 ) -> Outputs<T> {
     let &Parameters { K, .. } = parameters;
     let &State { type_, p, half } = state;
@@ -315,29 +399,7 @@ impl<T> From<Parameters<T>> for [T; 2] {
     }
 }
 
-impl<T> From<[T; 1]> for Speeds<T> {
-    fn from([type_]: [T; 1]) -> Self {
-        Self { type_ }
-    }
-}
-
-impl<T> From<Speeds<T>> for [T; 1] {
-    fn from(Speeds { type_ }: Speeds<T>) -> Self {
-        [type_]
-    }
-}
-
-impl<T> From<[T; 2]> for Coordinates<T> {
-    fn from([p, half]: [T; 2]) -> Self {
-        Self { p, half }
-    }
-}
-
-impl<T> From<Coordinates<T>> for [T; 2] {
-    fn from(Coordinates { p, half }: Coordinates<T>) -> Self {
-        [p, half]
-    }
-}
+::appell_runtime::vector!(Parameters, 2);
 
 impl<T> From<[T; 3]> for State<T> {
     fn from([type_, p, half]: [T; 3]) -> Self {
@@ -351,17 +413,21 @@ impl<T> From<State<T>> for [T; 3] {
     }
 }
 
-impl<T> From<[T; 0]> for Inputs<T> {
+::appell_runtime::vector!(State, 3, Rates);
+
+impl<T> From<[T; 0]> for Inputs {
     fn from([]: [T; 0]) -> Self {
-        Self(core::marker::PhantomData)
+        Self {}
     }
 }
 
-impl<T> From<Inputs<T>> for [T; 0] {
-    fn from(Inputs(_): Inputs<T>) -> Self {
+impl<T> From<Inputs> for [T; 0] {
+    fn from(Inputs {}: Inputs) -> Self {
         []
     }
 }
+
+::appell_runtime::vector!(Inputs, 0);
 
 impl<T> From<[T; 3]> for Outputs<T> {
     fn from([switch, self_, angle]: [T; 3]) -> Self {
@@ -374,3 +440,47 @@ impl<T> From<Outputs<T>> for [T; 3] {
         [switch, self_, angle]
     }
 }
+
+::appell_runtime::vector!(Outputs, 3);
+
+impl<T> From<[T; 3]> for Rates<T> {
+    fn from([type_dot, p_dot, half_dot]: [T; 3]) -> Self {
+        Self { type_dot, p_dot, half_dot }
+    }
+}
+
+impl<T> From<Rates<T>> for [T; 3] {
+    fn from(Rates { type_dot, p_dot, half_dot }: Rates<T>) -> Self {
+        [type_dot, p_dot, half_dot]
+    }
+}
+
+::appell_runtime::vector!(Rates, 3);
+
+impl<T> From<[T; 1]> for Accelerations<T> {
+    fn from([type_dot]: [T; 1]) -> Self {
+        Self { type_dot }
+    }
+}
+
+impl<T> From<Accelerations<T>> for [T; 1] {
+    fn from(Accelerations { type_dot }: Accelerations<T>) -> Self {
+        [type_dot]
+    }
+}
+
+::appell_runtime::vector!(Accelerations, 1);
+
+impl<T> From<[T; 2]> for CoordinateRates<T> {
+    fn from([p_dot, half_dot]: [T; 2]) -> Self {
+        Self { p_dot, half_dot }
+    }
+}
+
+impl<T> From<CoordinateRates<T>> for [T; 2] {
+    fn from(CoordinateRates { p_dot, half_dot }: CoordinateRates<T>) -> Self {
+        [p_dot, half_dot]
+    }
+}
+
+::appell_runtime::vector!(CoordinateRates, 2);

@@ -6,7 +6,7 @@ name = 'unicycle'
 use ::appell_runtime::Real;
 use ::appell_runtime::model;
 
-/// Parameters, in SI.
+/// Parameters p, in SI.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Parameters<T> {
     /// Mass of the wheel, in `kg`.
@@ -31,38 +31,8 @@ impl Default for Parameters<f64> {
     }
 }
 
-/// One number per pseudo-velocity, in SI. Where it is a force: in W over the unit.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Speeds<T> {
-    /// Tilt rate of the wheel, in `rad/s`.
-    pub omega_1: T,
-    /// Spin of the wheel about its axle, in `rad/s`.
-    pub omega_2: T,
-    /// Turn rate about the wheel's vertical, in `rad/s`.
-    pub omega_3: T,
-    /// Speed of the mass along its guide, in `m/s`.
-    pub sigma: T,
-}
-
-/// One number per coordinate, in SI. Where it is a rate: in the unit per second.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Coordinates<T> {
-    /// Tilt, in `rad`.
-    pub theta: T,
-    /// Position of the mass on its guide, in `m`.
-    pub r: T,
-    /// Yaw, in `rad`.
-    pub psi: T,
-    /// Rotation of the wheel, in `rad`.
-    pub phi: T,
-    /// Position of the wheel's centre, in `m`.
-    pub x_G: T,
-    /// Position of the wheel's centre, in `m`.
-    pub y_G: T,
-}
-
-/// The state, or its rates: pseudo-velocities, then coordinates. In SI.
-#[derive(Debug, Clone, Copy, PartialEq)]
+/// State x: pseudo-velocities, then coordinates. In SI.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct State<T> {
     /// Tilt rate of the wheel, in `rad/s`.
     pub omega_1: T,
@@ -86,11 +56,128 @@ pub struct State<T> {
     pub y_G: T,
 }
 
-/// Inputs, in SI.
-#[derive(Debug, Clone, Copy, PartialEq)]
+impl State<f64> {
+    /// The initial state of the spec; the default is zero.
+    #[must_use]
+    pub fn initial() -> Self {
+        Self {
+            omega_1: 0.0,
+            omega_2: 0.0,
+            omega_3: 0.0,
+            sigma: 0.0,
+            theta: 0.0,
+            r: 0.0,
+            psi: 0.0,
+            phi: 0.0,
+            x_G: 0.0,
+            y_G: 0.0,
+        }
+    }
+}
+
+/// Inputs u, in SI.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Inputs<T> {
     /// Force on the moving mass, in `N`.
     pub u: T,
+}
+
+/// Outputs y, in SI.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Outputs {}
+
+/// Rates ẋ of the [`State`]: pseudo-accelerations, then generalised velocities. In SI.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Rates<T> {
+    /// Rate of `omega_1`, in `rad/s^2`.
+    pub omega_1_dot: T,
+    /// Rate of `omega_2`, in `rad/s^2`.
+    pub omega_2_dot: T,
+    /// Rate of `omega_3`, in `rad/s^2`.
+    pub omega_3_dot: T,
+    /// Rate of `sigma`, in `m/s^2`.
+    pub sigma_dot: T,
+    /// Rate of `theta`, in `rad/s`.
+    pub theta_dot: T,
+    /// Rate of `r`, in `m/s`.
+    pub r_dot: T,
+    /// Rate of `psi`, in `rad/s`.
+    pub psi_dot: T,
+    /// Rate of `phi`, in `rad/s`.
+    pub phi_dot: T,
+    /// Rate of `x_G`, in `m/s`.
+    pub x_G_dot: T,
+    /// Rate of `y_G`, in `m/s`.
+    pub y_G_dot: T,
+}
+
+impl<T> Rates<T> {
+    /// ω̇, the first part.
+    #[must_use]
+    pub fn accelerations(self) -> Accelerations<T> {
+        Accelerations {
+            omega_1_dot: self.omega_1_dot,
+            omega_2_dot: self.omega_2_dot,
+            omega_3_dot: self.omega_3_dot,
+            sigma_dot: self.sigma_dot,
+        }
+    }
+
+    /// q̇, the second part.
+    #[must_use]
+    pub fn coordinate_rates(self) -> CoordinateRates<T> {
+        CoordinateRates {
+            theta_dot: self.theta_dot,
+            r_dot: self.r_dot,
+            psi_dot: self.psi_dot,
+            phi_dot: self.phi_dot,
+            x_G_dot: self.x_G_dot,
+            y_G_dot: self.y_G_dot,
+        }
+    }
+}
+
+/// Pseudo-accelerations ω̇, in SI.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Accelerations<T> {
+    /// Rate of `omega_1`, in `rad/s^2`.
+    pub omega_1_dot: T,
+    /// Rate of `omega_2`, in `rad/s^2`.
+    pub omega_2_dot: T,
+    /// Rate of `omega_3`, in `rad/s^2`.
+    pub omega_3_dot: T,
+    /// Rate of `sigma`, in `m/s^2`.
+    pub sigma_dot: T,
+}
+
+/// Generalised velocities q̇, in SI.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct CoordinateRates<T> {
+    /// Rate of `theta`, in `rad/s`.
+    pub theta_dot: T,
+    /// Rate of `r`, in `m/s`.
+    pub r_dot: T,
+    /// Rate of `psi`, in `rad/s`.
+    pub psi_dot: T,
+    /// Rate of `phi`, in `rad/s`.
+    pub phi_dot: T,
+    /// Rate of `x_G`, in `m/s`.
+    pub x_G_dot: T,
+    /// Rate of `y_G`, in `m/s`.
+    pub y_G_dot: T,
+}
+
+/// Pseudo-forces, such as Π or b: power per pseudo-velocity, in SI.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct GeneralizedForces<T> {
+    /// Along `omega_1`, in `N*m`.
+    pub omega_1: T,
+    /// Along `omega_2`, in `N*m`.
+    pub omega_2: T,
+    /// Along `omega_3`, in `N*m`.
+    pub omega_3: T,
+    /// Along `sigma`, in `N`.
+    pub sigma: T,
 }
 
 /// Result of [`acceleration_energy`].
@@ -110,18 +197,18 @@ pub struct MassMatrixAndBias<T> {
     /// The mass_matrix.
     pub mass_matrix: [[T; 4]; 4],
     /// The bias.
-    pub bias: Speeds<T>,
+    pub bias: GeneralizedForces<T>,
 }
 
 /// Result of [`jacobians`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Jacobians<T> {
     /// ẋ, the rates of the state.
-    pub rates: State<T>,
+    pub rates: Rates<T>,
     /// Derivatives.
-    pub a: [[T; 10]; 10],
+    pub a: Rates<State<T>>,
     /// Derivatives.
-    pub b: [[T; 1]; 10],
+    pub b: Rates<Inputs<T>>,
 }
 
 /// Result of [`energies`].
@@ -137,6 +224,15 @@ pub struct Energies<T> {
 
 /// Generalised velocities q̇ of pseudo-velocities and coordinates.
 ///
+/// ```text
+/// coordinate_rates₀ = ω₁
+/// coordinate_rates₁ = σ
+/// coordinate_rates₂ = ω₃/cos θ
+/// coordinate_rates₃ = ω₂ − ω₃ tan θ
+/// coordinate_rates₄ = R ω₁ cos θ sin ψ + R ω₂ cos ψ
+/// coordinate_rates₅ = R ω₂ sin ψ − R ω₁ cos θ cos ψ
+/// ```
+///
 /// From `mechanisms/unicycle.toml`.
 /// Operations: 12 (3 +, 8 ×, 1 ÷), sine or cosine of 2 angles.
 #[must_use]
@@ -145,7 +241,7 @@ pub fn kinematics<T: Real>(
     parameters: &Parameters<T>,
     state: &State<T>,
     _inputs: &Inputs<T>,
-) -> Coordinates<T> {
+) -> CoordinateRates<T> {
     let &Parameters { R, .. } = parameters;
     let &State { omega_1, omega_2, omega_3, sigma, theta, psi, .. } = state;
 
@@ -161,13 +257,13 @@ pub fn kinematics<T: Real>(
     let coordinate_rates_4 = cos_psi * R_omega_2 + sin_psi * R_cos_theta_omega_1;
     let coordinate_rates_5 = sin_psi * R_omega_2 - cos_psi * R_cos_theta_omega_1;
 
-    Coordinates {
-        theta: omega_1,
-        r: sigma,
-        psi: coordinate_rates_2,
-        phi: coordinate_rates_3,
-        x_G: coordinate_rates_4,
-        y_G: coordinate_rates_5,
+    CoordinateRates {
+        theta_dot: omega_1,
+        r_dot: sigma,
+        psi_dot: coordinate_rates_2,
+        phi_dot: coordinate_rates_3,
+        x_G_dot: coordinate_rates_4,
+        y_G_dot: coordinate_rates_5,
     }
 }
 
@@ -206,13 +302,13 @@ pub fn acceleration_energy<T: Real>(
     let R_omega_3 = R * omega_3;
     let R_omega_2_omega_3 = R_omega_3 * omega_2;
     let g_sin_theta = g * sin_theta;
-    let f_4_part_1 = R_omega_2_omega_3 + g_sin_theta;
-    let f_4 = u + m0 * (r * (omega_3_squared + omega_1 * omega_1) - f_4_part_1);
+    let f_4_per_m0 = R_omega_2_omega_3 + g_sin_theta;
+    let f_4 = u + m0 * (r * (omega_3_squared + omega_1 * omega_1) - f_4_per_m0);
     let tan_theta_omega_3 = sin_theta * omega_3 / cos_theta;
     let omega_1_dot_part_2 = g_sin_theta + three_halves * R_omega_2_omega_3;
     let omega_1_dot_part_3 = quarter * R_omega_3 * tan_theta_omega_3;
     let omega_1_dot_part_4 = f_4 + m * (omega_1_dot_part_2 - omega_1_dot_part_3);
-    let omega_1_dot_part_5 = omega_1_dot_part_4 + m0 * f_4_part_1;
+    let omega_1_dot_part_5 = omega_1_dot_part_4 + m0 * f_4_per_m0;
     let omega_1_dot_part_6 = m0_r * (omega_3_squared - tan_theta_omega_3 * omega_2);
     let omega_1_dot_part_7 = g * cos_theta + tan_theta_omega_3 * omega_3 * r;
     let omega_1_dot_part_8 = R * (omega_1_dot_part_5 - omega_1_dot_part_6);
@@ -227,7 +323,7 @@ pub fn acceleration_energy<T: Real>(
     }
 }
 
-/// Mass matrix M = ∂²S/∂ω̇², symmetric. Rows and columns follow [`Speeds`].
+/// Mass matrix M = ∂²S/∂ω̇², symmetric. Rows and columns follow [`Accelerations`].
 ///
 /// ```text
 ///     ⎡ 5/4 m R² + m₀ R² + m₀ r²   ·                  ·                −m₀ R ⎤
@@ -276,6 +372,14 @@ pub fn mass_matrix<T: Real>(
 
 /// Bias b: what is left of ∂S/∂ω̇ where the pseudo-accelerations vanish.
 ///
+/// ```text
+/// b_ω₁ = ¼ m R² ω₃² tan θ − 3/2 m R² ω₂ ω₃ − m₀ R² ω₂ ω₃ − m₀ R ω₂ ω₃ r tan θ + m₀ R ω₃² r
+///     + 2 m₀ ω₁ σ r + m₀ ω₃² r² tan θ
+/// b_ω₂ = m R² ω₁ ω₃ + m₀ R² ω₁ ω₃ + m₀ R ω₁ ω₃ r tan θ − 2 m₀ R ω₃ σ
+/// b_ω₃ = ½ m R² ω₁ ω₂ − ¼ m R² ω₁ ω₃ tan θ − m₀ R ω₁ ω₃ r − m₀ ω₁ ω₃ r² tan θ + 2 m₀ ω₃ σ r
+/// b_σ = m₀ R ω₂ ω₃ − m₀ ω₁² r − m₀ ω₃² r
+/// ```
+///
 /// From `mechanisms/unicycle.toml`.
 /// Operations: 48 (14 +, 33 ×, 1 ÷), sine or cosine of 1 angle.
 #[must_use]
@@ -284,7 +388,7 @@ pub fn bias<T: Real>(
     parameters: &Parameters<T>,
     state: &State<T>,
     _inputs: &Inputs<T>,
-) -> Speeds<T> {
+) -> GeneralizedForces<T> {
     let &Parameters { m, m0, R, .. } = parameters;
     let &State { omega_1, omega_2, omega_3, sigma, theta, r, .. } = state;
     let quarter = T::constant(0.25);
@@ -320,7 +424,7 @@ pub fn bias<T: Real>(
         + omega_3 * (bias_2_part_1 - bias_2_part_2);
     let bias_3 = omega_3 * (m0 * R_omega_2 - m0_omega_3_r) - m0_omega_1_r * omega_1;
 
-    Speeds {
+    GeneralizedForces {
         omega_1: bias_0,
         omega_2: bias_1,
         omega_3: bias_2,
@@ -396,7 +500,7 @@ pub fn mass_matrix_and_bias<T: Real>(
             [zero, -m0_R_r, mass_matrix_10, zero],
             [-m0_R, zero, zero, m0],
         ],
-        bias: Speeds {
+        bias: GeneralizedForces {
             omega_1: bias_0,
             omega_2: bias_1,
             omega_3: bias_2,
@@ -407,6 +511,13 @@ pub fn mass_matrix_and_bias<T: Real>(
 
 /// Pseudo-forces Π (generalised forces): virtual power of the loads per pseudo-velocity.
 ///
+/// ```text
+/// Π_ω₁ = m R g sin θ + m₀ R g sin θ − m₀ g r cos θ
+/// Π_ω₂ = 0
+/// Π_ω₃ = 0
+/// Π_σ = u − m₀ g sin θ
+/// ```
+///
 /// From `mechanisms/unicycle.toml`.
 /// Operations: 10 (3 +, 7 ×), sine or cosine of 1 angle.
 #[must_use]
@@ -415,7 +526,7 @@ pub fn generalized_forces<T: Real>(
     parameters: &Parameters<T>,
     state: &State<T>,
     inputs: &Inputs<T>,
-) -> Speeds<T> {
+) -> GeneralizedForces<T> {
     let &Parameters { m, m0, R, g } = parameters;
     let &State { theta, r, .. } = state;
     let &Inputs { u } = inputs;
@@ -433,7 +544,7 @@ pub fn generalized_forces<T: Real>(
         + m0_g * (R_sin_theta - cos_theta * r);
     let generalized_forces_3 = u - sin_theta * m0_g;
 
-    Speeds {
+    GeneralizedForces {
         omega_1: generalized_forces_0,
         omega_2: zero,
         omega_3: zero,
@@ -443,6 +554,15 @@ pub fn generalized_forces<T: Real>(
 
 /// Rates ẋ of the state by Appell's equations M ω̇ + b = Π and kinematics.
 ///
+/// ```text
+/// θ̇ = ω₁
+/// ṙ = σ
+/// ψ̇ = ω₃/cos θ
+/// φ̇ = ω₂ − ω₃ tan θ
+/// ẋ_G = R ω₁ cos θ sin ψ + R ω₂ cos ψ
+/// ẏ_G = R ω₂ sin ψ − R ω₁ cos θ cos ψ
+/// ```
+///
 /// From `mechanisms/unicycle.toml`.
 /// Operations: 99 (30 +, 65 ×, 4 ÷), sine or cosine of 2 angles.
 #[must_use]
@@ -451,7 +571,7 @@ pub fn rates<T: Real>(
     parameters: &Parameters<T>,
     state: &State<T>,
     inputs: &Inputs<T>,
-) -> State<T> {
+) -> Rates<T> {
     let &Parameters { m, m0, R, g } = parameters;
     let &State { omega_1, omega_2, omega_3, sigma, theta, r, psi, .. } = state;
     let &Inputs { u } = inputs;
@@ -521,17 +641,17 @@ pub fn rates<T: Real>(
     let omega_3_dot = inv_D_2 * (m0_R_r * f_2 + M_22 * f_3);
     let sigma_dot = inv_m0 * f_4 + R * omega_1_dot;
 
-    State {
-        omega_1: omega_1_dot,
-        omega_2: omega_2_dot,
-        omega_3: omega_3_dot,
-        sigma: sigma_dot,
-        theta: omega_1,
-        r: sigma,
-        psi: psi_dot,
-        phi: phi_dot,
-        x_G: x_G_dot,
-        y_G: y_G_dot,
+    Rates {
+        omega_1_dot,
+        omega_2_dot,
+        omega_3_dot,
+        sigma_dot,
+        theta_dot: omega_1,
+        r_dot: sigma,
+        psi_dot,
+        phi_dot,
+        x_G_dot,
+        y_G_dot,
     }
 }
 
@@ -592,18 +712,18 @@ pub fn jacobians<T: Real>(
     let g_sin_theta = g * sin_theta;
     let R_omega_3 = R * omega_3;
     let R_omega_2_omega_3 = R_omega_3 * omega_2;
-    let f_4_part_1 = g_sin_theta + R_omega_2_omega_3;
-    let f_4 = u + m0 * (omega_3_squared_r + omega_1_r * omega_1 - f_4_part_1);
+    let f_4_per_m0 = g_sin_theta + R_omega_2_omega_3;
+    let f_4 = u + m0 * (omega_3_squared_r + omega_1_r * omega_1 - f_4_per_m0);
     let R_tan_theta_omega_3 = tan_theta * R_omega_3;
     let quarter_m_R_omega_3 = quarter * m * R_omega_3;
     let tan_theta_omega_3_squared_r = tan_theta_omega_3 * omega_3_r;
     let g_cos_theta = g * cos_theta;
     let two_sigma = two * sigma;
-    let f_1_part_1 = g_cos_theta + R_omega_3 * omega_3 + two_sigma * omega_1
+    let f_1_per_m0_r = g_cos_theta + R_omega_3 * omega_3 + two_sigma * omega_1
         - R_tan_theta_omega_3 * omega_2;
-    let f_1_part_2 = r * (f_1_part_1 + tan_theta_omega_3_squared_r) - R * f_4_part_1;
+    let f_1_part_1 = r * (f_1_per_m0_r + tan_theta_omega_3_squared_r) - R * f_4_per_m0;
     let f_1 = m_R * g_sin_theta + three_halves_m_R * R_omega_2_omega_3
-        - R_tan_theta_omega_3 * quarter_m_R_omega_3 - m0 * f_1_part_2;
+        - R_tan_theta_omega_3 * quarter_m_R_omega_3 - m0 * f_1_part_1;
     let omega_1_dot = omega_1_dot_part_1 * (f_1 + R * f_4);
     let m0_R_r = R * m0_r;
     let minus_half_m_R_squared_omega_1 = minus_half_m_R * R_omega_1;
@@ -615,15 +735,16 @@ pub fn jacobians<T: Real>(
     let f_3 = minus_half_m_R_squared_omega_1 * omega_2 + d_f_3_d_omega_3 * omega_3;
     let m0_tan_theta_r = tan_theta * m0_r;
     let m_R_plus_m0_tan_theta_r = m_R + m0_tan_theta_r;
-    let f_2_part_1 = m0 * (two_sigma - R_omega_1) - m_R_plus_m0_tan_theta_r * omega_1;
-    let f_2 = R_omega_3 * f_2_part_1;
+    let f_2_per_R_omega_3 = m0 * (two_sigma - R_omega_1)
+        - m_R_plus_m0_tan_theta_r * omega_1;
+    let f_2 = R_omega_3 * f_2_per_R_omega_3;
     let D_2 = M_22 * M_33 - m0_R_r * m0_R_r;
     let inv_D_2 = one / D_2;
     let omega_2_dot = inv_D_2 * (m0_R_r * f_3 + M_33 * f_2);
     let omega_3_dot = inv_D_2 * (m0_R_r * f_2 + M_22 * f_3);
     let sigma_dot = inv_m0 * f_4 + R * omega_1_dot;
 
-    // Row `omega_1` of A.
+    // Row `omega_1_dot` of A.
     let m0_sigma_r_minus_m0_R_omega_1_r = m0_r * sigma - m0_R_omega_1_r;
     let A_omega_1_omega_1_part_1 = -two * omega_1_dot_part_1;
     let A_omega_1_omega_1 = m0_sigma_r_minus_m0_R_omega_1_r * A_omega_1_omega_1_part_1;
@@ -649,25 +770,24 @@ pub fn jacobians<T: Real>(
     let A_omega_1_theta = omega_1_dot_part_1 * A_omega_1_theta_part_4;
     let A_omega_1_r_part_1 = omega_1 * omega_1 + omega_3 * omega_3;
     let A_omega_1_r_part_2 = m0_R * A_omega_1_r_part_1;
-    let A_omega_1_r_part_3 = m0 * (f_1_part_1 + two * tan_theta_omega_3_squared_r);
+    let A_omega_1_r_part_3 = m0 * (f_1_per_m0_r + two * tan_theta_omega_3_squared_r);
     let A_omega_1_r_part_4 = A_omega_1_r_part_2 - A_omega_1_r_part_3;
     let A_omega_1_r = omega_1_dot_part_1 * (A_omega_1_r_part_4 - omega_1_dot * two_m0_r);
 
-    // Row `omega_2` of A.
+    // Row `omega_2_dot` of A.
     let d_f_2_d_omega_1 = -R_omega_3 * (m0_R + m_R_plus_m0_tan_theta_r);
     let d_f_3_d_omega_1 = quarter_m_R * R_tan_theta_omega_3 + minus_half_m_R * R_omega_2
         + m0_r * (R_omega_3 + tan_theta_omega_3_r);
     let A_omega_2_omega_1 = inv_D_2
         * (M_33 * d_f_2_d_omega_1 + m0_R_r * d_f_3_d_omega_1);
-    let A_omega_2_omega_2_part_1 = minus_half_m_R_squared_omega_1 * inv_D_2;
-    let A_omega_2_omega_2 = m0_R_r * A_omega_2_omega_2_part_1;
-    let d_f_2_d_omega_3 = R * f_2_part_1;
+    let A_omega_2_omega_2_per_m0_R_r = minus_half_m_R_squared_omega_1 * inv_D_2;
+    let A_omega_2_omega_2 = m0_R_r * A_omega_2_omega_2_per_m0_R_r;
+    let d_f_2_d_omega_3 = R * f_2_per_R_omega_3;
     let A_omega_2_omega_3 = inv_D_2
         * (M_33 * d_f_2_d_omega_3 + m0_R_r * d_f_3_d_omega_3);
     let m0_R_omega_3 = m0 * R_omega_3;
-    let minus_two_over_D_2 = -two * inv_D_2;
-    let A_omega_2_sigma = minus_two_over_D_2
-        * (m0_r * m0_r * R_omega_3 - M_33 * m0_R_omega_3);
+    let two_over_D_2 = two * inv_D_2;
+    let A_omega_2_sigma = two_over_D_2 * (M_33 * m0_R_omega_3 - m0_r * m0_r * R_omega_3);
     let d_f_3_d_r = m0_R_omega_3 * omega_1 + two * tan_theta_omega_3 * m0_omega_1_r
         - m0 * two_sigma * omega_3;
     let A_omega_2_r_part_1 = R_tan_theta_omega_3 * M_33_omega_1 - two * f_2 * r;
@@ -675,14 +795,13 @@ pub fn jacobians<T: Real>(
     let A_omega_2_r_part_2 = m0 * (A_omega_2_r_part_1 - R * (f_3 + d_f_3_d_r * r));
     let A_omega_2_r = -inv_D_2 * (A_omega_2_r_part_2 + omega_2_dot * d_D_2_d_r);
 
-    // Row `omega_3` of A.
+    // Row `omega_3_dot` of A.
     let A_omega_3_omega_1 = inv_D_2
         * (M_22 * d_f_3_d_omega_1 + m0_R_r * d_f_2_d_omega_1);
-    let A_omega_3_omega_2 = M_22 * A_omega_2_omega_2_part_1;
+    let A_omega_3_omega_2 = M_22 * A_omega_2_omega_2_per_m0_R_r;
     let A_omega_3_omega_3 = inv_D_2
         * (M_22 * d_f_3_d_omega_3 + m0_R_r * d_f_2_d_omega_3);
-    let A_omega_3_sigma = minus_two_over_D_2
-        * (M_22 * m0_r * omega_3 - m0_R_r * m0_R_omega_3);
+    let A_omega_3_sigma = two_over_D_2 * (m0_R_r * m0_R_omega_3 - M_22 * m0_r * omega_3);
     let A_omega_3_theta_part_1 = omega_3_r * m0_omega_1_r * inv_cos_theta_squared;
     let A_omega_3_theta_part_2 = quarter_m_R * A_omega_1_theta_part_1 * omega_1;
     let A_omega_3_theta_part_3 = A_omega_3_theta_part_1 + A_omega_3_theta_part_2;
@@ -694,7 +813,7 @@ pub fn jacobians<T: Real>(
     let A_omega_3_r_part_2 = M_22_d_f_3_d_r_plus_m0_R_f_2 - A_omega_3_r_part_1;
     let A_omega_3_r = inv_D_2 * (A_omega_3_r_part_2 - omega_3_dot * d_D_2_d_r);
 
-    // Row `sigma` of A.
+    // Row `sigma_dot` of A.
     let B_omega_1_u = R * omega_1_dot_part_1;
     let A_sigma_omega_1_part_1 = m0_sigma_r_minus_m0_R_omega_1_r * B_omega_1_u;
     let A_sigma_omega_1 = two * (omega_1_r - A_sigma_omega_1_part_1);
@@ -705,97 +824,126 @@ pub fn jacobians<T: Real>(
     let A_sigma_theta = A_omega_1_theta_part_4 * B_omega_1_u - g_cos_theta;
     let A_sigma_r = A_omega_1_r_part_1 + R * A_omega_1_r;
 
-    // Row `psi` of A.
+    // Row `psi_dot` of A.
     let A_psi_theta = inv_cos_theta * tan_theta_omega_3;
 
-    // Row `phi` of A.
+    // Row `phi_dot` of A.
     let A_phi_theta = -inv_cos_theta_squared * omega_3;
 
-    // Row `x_G` of A.
+    // Row `x_G_dot` of A.
     let R_cos_theta = R * cos_theta;
     let A_x_G_omega_1 = sin_psi * R_cos_theta;
     let A_x_G_omega_2 = R * cos_psi;
     let R_sin_theta_omega_1 = sin_theta * R_omega_1;
     let A_x_G_theta = -sin_psi * R_sin_theta_omega_1;
 
-    // Row `y_G` of A.
+    // Row `y_G_dot` of A.
     let A_y_G_omega_1 = -cos_psi * R_cos_theta;
     let A_y_G_omega_2 = R * sin_psi;
     let A_y_G_theta = cos_psi * R_sin_theta_omega_1;
 
-    // Row `sigma` of B.
+    // Row `sigma_dot` of B.
     let B_sigma_u = inv_m0 + R * B_omega_1_u;
 
-    // Rows and columns: 0 omega_1, 1 omega_2, 2 omega_3, 3 sigma, 4 theta, 5 r, 6 psi, 7 phi,
-    //   8 x_G, 9 y_G.
-    let mut A = [[zero; 10]; 10];
-    A[0][0] = A_omega_1_omega_1;
-    A[0][1] = A_omega_1_omega_2;
-    A[0][2] = A_omega_1_omega_3;
-    A[0][3] = A_omega_1_sigma;
-    A[0][4] = A_omega_1_theta;
-    A[0][5] = A_omega_1_r;
-    A[1][0] = A_omega_2_omega_1;
-    A[1][1] = A_omega_2_omega_2;
-    A[1][2] = A_omega_2_omega_3;
-    A[1][3] = A_omega_2_sigma;
-    A[1][5] = A_omega_2_r;
-    A[2][0] = A_omega_3_omega_1;
-    A[2][1] = A_omega_3_omega_2;
-    A[2][2] = A_omega_3_omega_3;
-    A[2][3] = A_omega_3_sigma;
-    A[2][4] = A_omega_3_theta;
-    A[2][5] = A_omega_3_r;
-    A[3][0] = A_sigma_omega_1;
-    A[3][1] = A_sigma_omega_2;
-    A[3][2] = A_sigma_omega_3;
-    A[3][3] = A_sigma_sigma;
-    A[3][4] = A_sigma_theta;
-    A[3][5] = A_sigma_r;
-    A[4][0] = one;
-    A[5][3] = one;
-    A[6][2] = inv_cos_theta;
-    A[6][4] = A_psi_theta;
-    A[7][1] = one;
-    A[7][2] = -tan_theta;
-    A[7][4] = A_phi_theta;
-    A[8][0] = A_x_G_omega_1;
-    A[8][1] = A_x_G_omega_2;
-    A[8][4] = A_x_G_theta;
-    A[8][6] = -y_G_dot;
-    A[9][0] = A_y_G_omega_1;
-    A[9][1] = A_y_G_omega_2;
-    A[9][4] = A_y_G_theta;
-    A[9][6] = x_G_dot;
-
-    // Rows: 0 omega_1, 1 omega_2, 2 omega_3, 3 sigma, 4 theta, 5 r, 6 psi, 7 phi,
-    //   8 x_G, 9 y_G.
-    // Columns: 0 u.
-    let mut B = [[zero; 1]; 10];
-    B[0][0] = B_omega_1_u;
-    B[3][0] = B_sigma_u;
-
     Jacobians {
-        rates: State {
-            omega_1: omega_1_dot,
-            omega_2: omega_2_dot,
-            omega_3: omega_3_dot,
-            sigma: sigma_dot,
-            theta: omega_1,
-            r: sigma,
-            psi: psi_dot,
-            phi: phi_dot,
-            x_G: x_G_dot,
-            y_G: y_G_dot,
+        rates: Rates {
+            omega_1_dot,
+            omega_2_dot,
+            omega_3_dot,
+            sigma_dot,
+            theta_dot: omega_1,
+            r_dot: sigma,
+            psi_dot,
+            phi_dot,
+            x_G_dot,
+            y_G_dot,
         },
-        a: A,
-        b: B,
+        a: Rates {
+            omega_1_dot: State {
+                omega_1: A_omega_1_omega_1,
+                omega_2: A_omega_1_omega_2,
+                omega_3: A_omega_1_omega_3,
+                sigma: A_omega_1_sigma,
+                theta: A_omega_1_theta,
+                r: A_omega_1_r,
+                ..State::splat(zero)
+            },
+            omega_2_dot: State {
+                omega_1: A_omega_2_omega_1,
+                omega_2: A_omega_2_omega_2,
+                omega_3: A_omega_2_omega_3,
+                sigma: A_omega_2_sigma,
+                r: A_omega_2_r,
+                ..State::splat(zero)
+            },
+            omega_3_dot: State {
+                omega_1: A_omega_3_omega_1,
+                omega_2: A_omega_3_omega_2,
+                omega_3: A_omega_3_omega_3,
+                sigma: A_omega_3_sigma,
+                theta: A_omega_3_theta,
+                r: A_omega_3_r,
+                ..State::splat(zero)
+            },
+            sigma_dot: State {
+                omega_1: A_sigma_omega_1,
+                omega_2: A_sigma_omega_2,
+                omega_3: A_sigma_omega_3,
+                sigma: A_sigma_sigma,
+                theta: A_sigma_theta,
+                r: A_sigma_r,
+                ..State::splat(zero)
+            },
+            theta_dot: State {
+                omega_1: one,
+                ..State::splat(zero)
+            },
+            r_dot: State {
+                sigma: one,
+                ..State::splat(zero)
+            },
+            psi_dot: State {
+                omega_3: inv_cos_theta,
+                theta: A_psi_theta,
+                ..State::splat(zero)
+            },
+            phi_dot: State {
+                omega_2: one,
+                omega_3: -tan_theta,
+                theta: A_phi_theta,
+                ..State::splat(zero)
+            },
+            x_G_dot: State {
+                omega_1: A_x_G_omega_1,
+                omega_2: A_x_G_omega_2,
+                theta: A_x_G_theta,
+                psi: -y_G_dot,
+                ..State::splat(zero)
+            },
+            y_G_dot: State {
+                omega_1: A_y_G_omega_1,
+                omega_2: A_y_G_omega_2,
+                theta: A_y_G_theta,
+                psi: x_G_dot,
+                ..State::splat(zero)
+            },
+        },
+        b: Rates {
+            omega_1_dot: Inputs { u: B_omega_1_u },
+            omega_2_dot: Inputs { u: zero },
+            omega_3_dot: Inputs { u: zero },
+            sigma_dot: Inputs { u: B_sigma_u },
+            theta_dot: Inputs { u: zero },
+            r_dot: Inputs { u: zero },
+            psi_dot: Inputs { u: zero },
+            phi_dot: Inputs { u: zero },
+            x_G_dot: Inputs { u: zero },
+            y_G_dot: Inputs { u: zero },
+        },
     }
 }
 
-/// P = ∂ẋ/∂p. Rows follow [`State`], columns [`Parameters`].
-///
-/// Rows: `omega_1`, `omega_2`, `omega_3`, `sigma`, `theta`, `r`, `psi`, `phi`, `x_G`, `y_G`. Columns: `m`, `m0`, `R`, `g`.
+/// P = ∂ẋ/∂p.
 ///
 /// From `mechanisms/unicycle.toml`.
 /// Operations: 252 (86 +, 162 ×, 4 ÷), sine or cosine of 2 angles.
@@ -805,7 +953,7 @@ pub fn parameter_jacobian<T: Real>(
     parameters: &Parameters<T>,
     state: &State<T>,
     inputs: &Inputs<T>,
-) -> [[T; 4]; 10] {
+) -> Rates<Parameters<T>> {
     let &Parameters { m, m0, R, g } = parameters;
     let &State { omega_1, omega_2, omega_3, sigma, theta, r, psi, .. } = state;
     let &Inputs { u } = inputs;
@@ -838,7 +986,7 @@ pub fn parameter_jacobian<T: Real>(
     let M_22 = three_halves_m_R_squared + m0 * R_squared;
     let inv_m0 = one / m0;
 
-    // Row `omega_1` of P.
+    // Row `omega_1_dot` of P.
     let m0_r = m0 * r;
     let m0_r_squared = m0_r * r;
     let P_omega_1_m_part_1 = one / (five_quarters * m_R_squared + m0_r_squared);
@@ -863,23 +1011,23 @@ pub fn parameter_jacobian<T: Real>(
     let f_1 = m_R * g_sin_theta + three_halves_m_R_squared * omega_2_omega_3
         + m0 * d_f_1_d_m0 - quarter_m_R_squared * tan_theta_omega_3_squared;
     let omega_1_dot = P_omega_1_m_part_1 * (f_1 + R * f_4);
-    let P_omega_1_m_part_2 = P_omega_1_m_part_1 * omega_1_dot;
+    let P_omega_1_m_per_R_squared = P_omega_1_m_part_1 * omega_1_dot;
     let P_omega_1_m = P_omega_1_m_part_1 * d_f_1_d_m
-        - five_quarters * R_squared * P_omega_1_m_part_2;
+        - five_quarters * R_squared * P_omega_1_m_per_R_squared;
     let d_f_4_d_m0 = r * (omega_3_squared + omega_1_squared) - g_sin_theta
         - R * omega_2_omega_3;
     let P_omega_1_m0 = P_omega_1_m_part_1 * (d_f_1_d_m0 + R * d_f_4_d_m0)
-        - r_squared * P_omega_1_m_part_2;
+        - r_squared * P_omega_1_m_per_R_squared;
     let half_m_R_tan_theta_omega_3 = half_m_R * tan_theta * omega_3;
     let P_omega_1_R_part_1 = omega_2 * (d_M_22_d_R + m0_r * tan_theta);
     let P_omega_1_R_part_2 = half_m_R_tan_theta_omega_3 - P_omega_1_R_part_1;
     let P_omega_1_R_part_3 = m0_R_omega_2_omega_3 + omega_3 * P_omega_1_R_part_2;
     let P_omega_1_R_part_4 = P_omega_1_R_part_3 - f_4_part_1 - f_4 - m * g_sin_theta;
-    let P_omega_1_R = -five_halves * m_R * P_omega_1_m_part_2
+    let P_omega_1_R = -five_halves * m_R * P_omega_1_m_per_R_squared
         - P_omega_1_m_part_1 * P_omega_1_R_part_4;
     let P_omega_1_g = P_omega_1_m_part_1 * (sin_theta * m_R - cos_theta * m0_r);
 
-    // Row `omega_2` of P.
+    // Row `omega_2_dot` of P.
     let M_33 = quarter_m_R_squared + m0_r_squared;
     let d_D_2_d_m = three_halves_R_squared * M_33 + quarter_R_squared * M_22;
     let m0_R_r = R * m0_r;
@@ -896,15 +1044,16 @@ pub fn parameter_jacobian<T: Real>(
     let D_2 = M_22 * M_33 - R_squared * m0_r * m0_r;
     let inv_D_2 = one / D_2;
     let inv_D_2_squared = inv_D_2 * inv_D_2;
-    let P_omega_2_m_part_1 = inv_D_2_squared * (m0_R_r * f_3 + M_33 * f_2);
-    let P_omega_2_m_part_2 = R_squared
+    let P_omega_2_m_per_d_D_2_d_m = inv_D_2_squared * (m0_R_r * f_3 + M_33 * f_2);
+    let P_omega_2_m_per_inv_D_2_m0_R_r = R_squared
         * (tan_theta_omega_1_omega_3 - two * omega_1_omega_2);
     let R_squared_omega_1_omega_3 = R_squared * omega_1_omega_3;
-    let P_omega_2_m_part_3 = four * M_33 * R_squared_omega_1_omega_3 - R_squared * f_2;
-    let minus_quarter_over_D_2 = -quarter * inv_D_2;
-    let P_omega_2_m_part_4 = P_omega_2_m_part_3 - m0_R_r * P_omega_2_m_part_2;
-    let P_omega_2_m = minus_quarter_over_D_2 * P_omega_2_m_part_4
-        - d_D_2_d_m * P_omega_2_m_part_1;
+    let P_omega_2_m_part_1 = R_squared * f_2 + m0_R_r * P_omega_2_m_per_inv_D_2_m0_R_r;
+    let P_omega_2_m_part_2 = four * M_33 * R_squared_omega_1_omega_3;
+    let quarter_over_D_2 = quarter * inv_D_2;
+    let P_omega_2_m_part_3 = P_omega_2_m_part_1 - P_omega_2_m_part_2;
+    let P_omega_2_m = quarter_over_D_2 * P_omega_2_m_part_3
+        - d_D_2_d_m * P_omega_2_m_per_d_D_2_d_m;
     let d_f_2_d_m0 = R * two_omega_3_sigma - R_squared_omega_1_omega_3
         - R_r * tan_theta_omega_1_omega_3;
     let d_f_3_d_m0 = r_squared * tan_theta_omega_1_omega_3 + R_r * omega_1_omega_3
@@ -912,69 +1061,96 @@ pub fn parameter_jacobian<T: Real>(
     let P_omega_2_m0_part_1 = M_33 * d_f_2_d_m0 + r_squared * f_2;
     let P_omega_2_m0_part_2 = P_omega_2_m0_part_1 + m0_R_r * d_f_3_d_m0 + R_r * f_3;
     let d_D_2_d_m0 = M_22 * r_squared + R_squared * (M_33 - two * m0_r_squared);
-    let P_omega_2_m0 = inv_D_2 * P_omega_2_m0_part_2 - P_omega_2_m_part_1 * d_D_2_d_m0;
+    let P_omega_2_m0 = inv_D_2 * P_omega_2_m0_part_2
+        - P_omega_2_m_per_d_D_2_d_m * d_D_2_d_m0;
     let two_m0_R_r = two * m0_R_r;
     let d_D_2_d_R = d_M_22_d_R * M_33 + half_m_R * M_22 - m0_r * two_m0_R_r;
     let d_f_3_d_R = m0_r * omega_1_omega_3 + half_m_R * tan_theta_omega_1_omega_3
         - m_R * omega_1_omega_2;
-    let P_omega_2_R_part_1 = omega_1_omega_3_m_R_plus_m0_R
+    let P_omega_2_R_per_inv_D_2_M_33 = omega_1_omega_3_m_R_plus_m0_R
         + half * m0_tan_theta_omega_1_omega_3_r - m0 * omega_3 * sigma;
-    let P_omega_2_R_part_2 = half_m_R * f_2 + m0_r * f_3 + m0_R_r * d_f_3_d_R;
-    let P_omega_2_R_part_3 = P_omega_2_R_part_2 - two * M_33 * P_omega_2_R_part_1;
-    let P_omega_2_R = inv_D_2 * P_omega_2_R_part_3 - P_omega_2_m_part_1 * d_D_2_d_R;
+    let P_omega_2_R_part_1 = half_m_R * f_2 + m0_r * f_3 + m0_R_r * d_f_3_d_R;
+    let P_omega_2_R_part_2 = two * M_33 * P_omega_2_R_per_inv_D_2_M_33;
+    let P_omega_2_R = inv_D_2 * (P_omega_2_R_part_1 - P_omega_2_R_part_2)
+        - P_omega_2_m_per_d_D_2_d_m * d_D_2_d_R;
 
-    // Row `omega_3` of P.
-    let P_omega_3_m_part_1 = inv_D_2_squared * (m0_R_r * f_2 + M_22 * f_3);
+    // Row `omega_3_dot` of P.
+    let P_omega_3_m_per_d_D_2_d_m = inv_D_2_squared * (m0_R_r * f_2 + M_22 * f_3);
     let three_halves_R_squared_f_3 = three_halves_R_squared * f_3;
-    let P_omega_3_m_part_2 = quarter * M_22 * P_omega_2_m_part_2;
-    let P_omega_3_m_part_3 = three_halves_R_squared_f_3 + P_omega_3_m_part_2;
-    let P_omega_3_m_part_4 = P_omega_3_m_part_3 - m0_R_r * R_squared_omega_1_omega_3;
-    let P_omega_3_m = inv_D_2 * P_omega_3_m_part_4 - d_D_2_d_m * P_omega_3_m_part_1;
+    let P_omega_3_m_part_1 = quarter * M_22 * P_omega_2_m_per_inv_D_2_m0_R_r;
+    let P_omega_3_m_part_2 = three_halves_R_squared_f_3 + P_omega_3_m_part_1;
+    let P_omega_3_m_part_3 = P_omega_3_m_part_2 - m0_R_r * R_squared_omega_1_omega_3;
+    let P_omega_3_m = inv_D_2 * P_omega_3_m_part_3
+        - d_D_2_d_m * P_omega_3_m_per_d_D_2_d_m;
     let P_omega_3_m0_part_1 = R_squared * f_3 + M_22 * d_f_3_d_m0;
     let P_omega_3_m0_part_2 = P_omega_3_m0_part_1 + m0_R_r * d_f_2_d_m0 + R_r * f_2;
-    let P_omega_3_m0 = inv_D_2 * P_omega_3_m0_part_2 - d_D_2_d_m0 * P_omega_3_m_part_1;
+    let P_omega_3_m0 = inv_D_2 * P_omega_3_m0_part_2
+        - d_D_2_d_m0 * P_omega_3_m_per_d_D_2_d_m;
     let P_omega_3_R_part_1 = M_22 * d_f_3_d_R + d_M_22_d_R * f_3 + m0_r * f_2;
-    let P_omega_3_R_part_2 = P_omega_3_R_part_1 - two_m0_R_r * P_omega_2_R_part_1;
-    let P_omega_3_R = inv_D_2 * P_omega_3_R_part_2 - d_D_2_d_R * P_omega_3_m_part_1;
+    let P_omega_3_R_part_2 = two_m0_R_r * P_omega_2_R_per_inv_D_2_M_33;
+    let P_omega_3_R = inv_D_2 * (P_omega_3_R_part_1 - P_omega_3_R_part_2)
+        - d_D_2_d_R * P_omega_3_m_per_d_D_2_d_m;
 
-    // Row `sigma` of P.
+    // Row `sigma_dot` of P.
     let P_sigma_m = R * P_omega_1_m;
     let P_sigma_m0 = R * P_omega_1_m0 - inv_m0 * (inv_m0 * f_4 - d_f_4_d_m0);
     let P_sigma_R = omega_1_dot + R * P_omega_1_R - omega_2_omega_3;
     let P_sigma_g = R * P_omega_1_g - sin_theta;
 
-    // Row `x_G` of P.
+    // Row `x_G_dot` of P.
     let cos_theta_omega_1 = cos_theta * omega_1;
     let P_x_G_R = sin_psi * cos_theta_omega_1 + cos_psi * omega_2;
 
-    // Row `y_G` of P.
+    // Row `y_G_dot` of P.
     let P_y_G_R = sin_psi * omega_2 - cos_psi * cos_theta_omega_1;
 
-    // Rows: 0 omega_1, 1 omega_2, 2 omega_3, 3 sigma, 4 theta, 5 r, 6 psi, 7 phi,
-    //   8 x_G, 9 y_G.
-    // Columns: 0 m, 1 m0, 2 R, 3 g.
-    let mut P = [[zero; 4]; 10];
-    P[0][0] = P_omega_1_m;
-    P[0][1] = P_omega_1_m0;
-    P[0][2] = P_omega_1_R;
-    P[0][3] = P_omega_1_g;
-    P[1][0] = P_omega_2_m;
-    P[1][1] = P_omega_2_m0;
-    P[1][2] = P_omega_2_R;
-    P[2][0] = P_omega_3_m;
-    P[2][1] = P_omega_3_m0;
-    P[2][2] = P_omega_3_R;
-    P[3][0] = P_sigma_m;
-    P[3][1] = P_sigma_m0;
-    P[3][2] = P_sigma_R;
-    P[3][3] = P_sigma_g;
-    P[8][2] = P_x_G_R;
-    P[9][2] = P_y_G_R;
-
-    P
+    Rates {
+        omega_1_dot: Parameters {
+            m: P_omega_1_m,
+            m0: P_omega_1_m0,
+            R: P_omega_1_R,
+            g: P_omega_1_g,
+        },
+        omega_2_dot: Parameters {
+            m: P_omega_2_m,
+            m0: P_omega_2_m0,
+            R: P_omega_2_R,
+            g: zero,
+        },
+        omega_3_dot: Parameters {
+            m: P_omega_3_m,
+            m0: P_omega_3_m0,
+            R: P_omega_3_R,
+            g: zero,
+        },
+        sigma_dot: Parameters {
+            m: P_sigma_m,
+            m0: P_sigma_m0,
+            R: P_sigma_R,
+            g: P_sigma_g,
+        },
+        theta_dot: Parameters::splat(zero),
+        r_dot: Parameters::splat(zero),
+        psi_dot: Parameters::splat(zero),
+        phi_dot: Parameters::splat(zero),
+        x_G_dot: Parameters {
+            R: P_x_G_R,
+            ..Parameters::splat(zero)
+        },
+        y_G_dot: Parameters {
+            R: P_y_G_R,
+            ..Parameters::splat(zero)
+        },
+    }
 }
 
 /// Energies and power.
+///
+/// ```text
+/// T = ¾ m R² ω₂²
+/// V = m R g cos θ
+/// P = σ u
+/// ```
 ///
 /// From `mechanisms/unicycle.toml`.
 /// Operations: 8 (8 ×), sine or cosine of 1 angle.
@@ -1016,26 +1192,21 @@ pub struct Unicycle;
 const _: () = {
     use model::At;
 
-    const N: usize = 10;
-    const S: usize = 4;
-    const M: usize = 1;
-    const K: usize = 4;
-
     /// The first numbers of a slice that holds at least as many.
     fn first<const LEN: usize>(numbers: &[f64]) -> [f64; LEN] {
         core::array::from_fn(|i| numbers[i])
     }
 
     fn parameters(at: &At<'_>) -> Parameters<f64> {
-        first::<K>(at.p).into()
+        first(at.p).into()
     }
 
     fn state(at: &At<'_>) -> State<f64> {
-        first::<N>(at.x).into()
+        first(at.x).into()
     }
 
     fn inputs(at: &At<'_>) -> Inputs<f64> {
-        first::<M>(at.u).into()
+        first(at.u).into()
     }
 
     fn write(to: &mut [f64], from: &[f64]) {
@@ -1050,9 +1221,7 @@ const _: () = {
         fn rates(&self, at: At<'_>, rates: &mut [f64]) {
             write(
                 rates,
-                &<[f64; N]>::from(
-                    self::rates(&parameters(&at), &state(&at), &inputs(&at)),
-                ),
+                &self::rates(&parameters(&at), &state(&at), &inputs(&at)).to_array(),
             );
         }
 
@@ -1063,16 +1232,18 @@ const _: () = {
             a: &mut [f64],
             b: &mut [f64],
         ) {
-            let all = jacobians(&parameters(&at), &state(&at), &inputs(&at));
-            write(rates, &<[f64; N]>::from(all.rates));
-            write(a, all.a.as_flattened());
-            write(b, all.b.as_flattened());
+            let all = self::jacobians(&parameters(&at), &state(&at), &inputs(&at));
+            write(rates, &all.rates.to_array());
+            write(a, all.a.map(State::to_array).to_array().as_flattened());
+            write(b, all.b.map(Inputs::to_array).to_array().as_flattened());
         }
 
         fn parameter_jacobian(&self, at: At<'_>, p: &mut [f64]) {
             write(
                 p,
                 self::parameter_jacobian(&parameters(&at), &state(&at), &inputs(&at))
+                    .map(Parameters::to_array)
+                    .to_array()
                     .as_flattened(),
             );
         }
@@ -1084,24 +1255,27 @@ const _: () = {
             bias: &mut [f64],
             forces: &mut [f64],
         ) {
-            let left = mass_matrix_and_bias(&parameters(&at), &state(&at), &inputs(&at));
-            write(mass, left.mass_matrix.as_flattened());
-            write(bias, &<[f64; S]>::from(left.bias));
+            let all = self::mass_matrix_and_bias(
+                &parameters(&at),
+                &state(&at),
+                &inputs(&at),
+            );
+            write(mass, all.mass_matrix.as_flattened());
+            write(bias, &all.bias.to_array());
             write(
                 forces,
-                &<[f64; S]>::from(
-                    generalized_forces(&parameters(&at), &state(&at), &inputs(&at)),
-                ),
+                &self::generalized_forces(&parameters(&at), &state(&at), &inputs(&at))
+                    .to_array(),
             );
         }
 
         fn energies(&self, at: At<'_>) -> model::Energies {
-            let all = energies(&parameters(&at), &state(&at), &inputs(&at));
+            let all = self::energies(&parameters(&at), &state(&at), &inputs(&at));
             model::Energies {
                 kinetic: all.kinetic,
                 potential: all.potential,
                 power: all.power,
-                acceleration: acceleration_energy(
+                acceleration: self::acceleration_energy(
                         &parameters(&at),
                         &state(&at),
                         &inputs(&at),
@@ -1115,6 +1289,21 @@ const _: () = {
         fn constraint_forces(&self, _at: At<'_>, _none: &mut [f64]) {}
 
         fn outputs(&self, _at: At<'_>, _none: &mut [f64]) {}
+    }
+
+    impl model::Named for Unicycle {
+        type State = State<f64>;
+        type Inputs = Inputs<f64>;
+        type Outputs = Outputs;
+
+        fn named(&self, at: At<'_>) -> model::Row<Self> {
+            model::Row {
+                t: at.t,
+                state: state(&at),
+                inputs: inputs(&at),
+                outputs: Outputs {},
+            }
+        }
     }
 };
 
@@ -1194,41 +1383,7 @@ impl<T> From<Parameters<T>> for [T; 4] {
     }
 }
 
-impl<T> From<[T; 4]> for Speeds<T> {
-    fn from([omega_1, omega_2, omega_3, sigma]: [T; 4]) -> Self {
-        Self {
-            omega_1,
-            omega_2,
-            omega_3,
-            sigma,
-        }
-    }
-}
-
-impl<T> From<Speeds<T>> for [T; 4] {
-    fn from(Speeds { omega_1, omega_2, omega_3, sigma }: Speeds<T>) -> Self {
-        [omega_1, omega_2, omega_3, sigma]
-    }
-}
-
-impl<T> From<[T; 6]> for Coordinates<T> {
-    fn from([theta, r, psi, phi, x_G, y_G]: [T; 6]) -> Self {
-        Self {
-            theta,
-            r,
-            psi,
-            phi,
-            x_G,
-            y_G,
-        }
-    }
-}
-
-impl<T> From<Coordinates<T>> for [T; 6] {
-    fn from(Coordinates { theta, r, psi, phi, x_G, y_G }: Coordinates<T>) -> Self {
-        [theta, r, psi, phi, x_G, y_G]
-    }
-}
+::appell_runtime::vector!(Parameters, 4);
 
 impl<T> From<[T; 10]> for State<T> {
     fn from(
@@ -1278,6 +1433,8 @@ impl<T> From<State<T>> for [T; 10] {
     }
 }
 
+::appell_runtime::vector!(State, 10, Rates);
+
 impl<T> From<[T; 1]> for Inputs<T> {
     fn from([u]: [T; 1]) -> Self {
         Self { u }
@@ -1289,3 +1446,157 @@ impl<T> From<Inputs<T>> for [T; 1] {
         [u]
     }
 }
+
+::appell_runtime::vector!(Inputs, 1);
+
+impl<T> From<[T; 0]> for Outputs {
+    fn from([]: [T; 0]) -> Self {
+        Self {}
+    }
+}
+
+impl<T> From<Outputs> for [T; 0] {
+    fn from(Outputs {}: Outputs) -> Self {
+        []
+    }
+}
+
+::appell_runtime::vector!(Outputs, 0);
+
+impl<T> From<[T; 10]> for Rates<T> {
+    fn from(
+        [omega_1_dot,
+        omega_2_dot,
+        omega_3_dot,
+        sigma_dot,
+        theta_dot,
+        r_dot,
+        psi_dot,
+        phi_dot,
+        x_G_dot,
+        y_G_dot,
+        ]: [T; 10],
+    ) -> Self {
+        Self {
+            omega_1_dot,
+            omega_2_dot,
+            omega_3_dot,
+            sigma_dot,
+            theta_dot,
+            r_dot,
+            psi_dot,
+            phi_dot,
+            x_G_dot,
+            y_G_dot,
+        }
+    }
+}
+
+impl<T> From<Rates<T>> for [T; 10] {
+    fn from(
+        Rates {
+            omega_1_dot,
+            omega_2_dot,
+            omega_3_dot,
+            sigma_dot,
+            theta_dot,
+            r_dot,
+            psi_dot,
+            phi_dot,
+            x_G_dot,
+            y_G_dot,
+        }: Rates<T>,
+    ) -> Self {
+        [
+            omega_1_dot,
+            omega_2_dot,
+            omega_3_dot,
+            sigma_dot,
+            theta_dot,
+            r_dot,
+            psi_dot,
+            phi_dot,
+            x_G_dot,
+            y_G_dot,
+        ]
+    }
+}
+
+::appell_runtime::vector!(Rates, 10);
+
+impl<T> From<[T; 4]> for Accelerations<T> {
+    fn from([omega_1_dot, omega_2_dot, omega_3_dot, sigma_dot]: [T; 4]) -> Self {
+        Self {
+            omega_1_dot,
+            omega_2_dot,
+            omega_3_dot,
+            sigma_dot,
+        }
+    }
+}
+
+impl<T> From<Accelerations<T>> for [T; 4] {
+    fn from(
+        Accelerations {
+            omega_1_dot,
+            omega_2_dot,
+            omega_3_dot,
+            sigma_dot,
+        }: Accelerations<T>,
+    ) -> Self {
+        [omega_1_dot, omega_2_dot, omega_3_dot, sigma_dot]
+    }
+}
+
+::appell_runtime::vector!(Accelerations, 4);
+
+impl<T> From<[T; 6]> for CoordinateRates<T> {
+    fn from([theta_dot, r_dot, psi_dot, phi_dot, x_G_dot, y_G_dot]: [T; 6]) -> Self {
+        Self {
+            theta_dot,
+            r_dot,
+            psi_dot,
+            phi_dot,
+            x_G_dot,
+            y_G_dot,
+        }
+    }
+}
+
+impl<T> From<CoordinateRates<T>> for [T; 6] {
+    fn from(
+        CoordinateRates {
+            theta_dot,
+            r_dot,
+            psi_dot,
+            phi_dot,
+            x_G_dot,
+            y_G_dot,
+        }: CoordinateRates<T>,
+    ) -> Self {
+        [theta_dot, r_dot, psi_dot, phi_dot, x_G_dot, y_G_dot]
+    }
+}
+
+::appell_runtime::vector!(CoordinateRates, 6);
+
+impl<T> From<[T; 4]> for GeneralizedForces<T> {
+    fn from([omega_1, omega_2, omega_3, sigma]: [T; 4]) -> Self {
+        Self {
+            omega_1,
+            omega_2,
+            omega_3,
+            sigma,
+        }
+    }
+}
+
+impl<T> From<GeneralizedForces<T>> for [T; 4] {
+    fn from(
+        GeneralizedForces { omega_1, omega_2, omega_3, sigma }: GeneralizedForces<T>,
+    ) -> Self {
+        [omega_1, omega_2, omega_3, sigma]
+    }
+}
+
+::appell_runtime::vector!(GeneralizedForces, 4);

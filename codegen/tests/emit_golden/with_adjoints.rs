@@ -6,7 +6,7 @@ name = 'unicycle'
 use ::appell_runtime::Real;
 use ::appell_runtime::model;
 
-/// Parameters, in SI.
+/// Parameters p, in SI.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Parameters<T> {
     /// Mass of the rod, in `kg`.
@@ -31,22 +31,8 @@ impl Default for Parameters<f64> {
     }
 }
 
-/// One number per pseudo-velocity, in SI. Where it is a force: in W over the unit.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Speeds<T> {
-    /// Angular velocity, in `rad/s`.
-    pub omega: T,
-}
-
-/// One number per coordinate, in SI. Where it is a rate: in the unit per second.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Coordinates<T> {
-    /// Angle from the hanging position, positive towards +x, in `rad`.
-    pub theta: T,
-}
-
-/// The state, or its rates: pseudo-velocities, then coordinates. In SI.
-#[derive(Debug, Clone, Copy, PartialEq)]
+/// State x: pseudo-velocities, then coordinates. In SI.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct State<T> {
     /// Angular velocity, in `rad/s`.
     pub omega: T,
@@ -54,15 +40,23 @@ pub struct State<T> {
     pub theta: T,
 }
 
-/// Inputs, in SI.
-#[derive(Debug, Clone, Copy, PartialEq)]
+impl State<f64> {
+    /// The initial state of the spec; the default is zero.
+    #[must_use]
+    pub fn initial() -> Self {
+        Self { omega: 0.0, theta: 0.0 }
+    }
+}
+
+/// Inputs u, in SI.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Inputs<T> {
     /// Torque at the pivot, positive in the sense of theta, in `N*m`.
     pub tau: T,
 }
 
-/// Outputs, in SI.
-#[derive(Debug, Clone, Copy, PartialEq)]
+/// Outputs y, in SI.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Outputs<T> {
     /// Centre of mass along the ground axis x, in `m`.
     pub x_G: T,
@@ -71,6 +65,62 @@ pub struct Outputs<T> {
     /// Energy above the hanging position, in `J`.
     pub energy: T,
 }
+
+/// Rates ẋ of the [`State`]: pseudo-accelerations, then generalised velocities. In SI.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Rates<T> {
+    /// Rate of `omega`, in `rad/s^2`.
+    pub omega_dot: T,
+    /// Rate of `theta`, in `rad/s`.
+    pub theta_dot: T,
+}
+
+impl<T> Rates<T> {
+    /// ω̇, the first part.
+    #[must_use]
+    pub fn accelerations(self) -> Accelerations<T> {
+        Accelerations {
+            omega_dot: self.omega_dot,
+        }
+    }
+
+    /// q̇, the second part.
+    #[must_use]
+    pub fn coordinate_rates(self) -> CoordinateRates<T> {
+        CoordinateRates {
+            theta_dot: self.theta_dot,
+        }
+    }
+}
+
+/// Pseudo-accelerations ω̇, in SI.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Accelerations<T> {
+    /// Rate of `omega`, in `rad/s^2`.
+    pub omega_dot: T,
+}
+
+/// Generalised velocities q̇, in SI.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct CoordinateRates<T> {
+    /// Rate of `theta`, in `rad/s`.
+    pub theta_dot: T,
+}
+
+/// Pseudo-forces, such as Π or b: power per pseudo-velocity, in SI.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct GeneralizedForces<T> {
+    /// Along `omega`, in `N*m`.
+    pub omega: T,
+}
+
+/// What the constraint rows are off by: zero up to rounding. In SI.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct ConstraintResidual {}
+
+/// Reactions in the ground: forces on points along x, y, z in N, or multipliers of constraints as x.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct ConstraintForces {}
 
 /// Result of [`acceleration_energy`].
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -87,18 +137,18 @@ pub struct MassMatrixAndBias<T> {
     /// M.
     pub mass_matrix: [[T; 1]; 1],
     /// Bias.
-    pub bias: Speeds<T>,
+    pub bias: GeneralizedForces<T>,
 }
 
 /// Result of [`jacobians`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Jacobians<T> {
     /// ẋ, the rates of the state.
-    pub rates: State<T>,
-    /// A = ∂ẋ/∂x. Rows and columns follow [`State`].
-    pub a: [[T; 2]; 2],
-    /// B = ∂ẋ/∂u. Rows follow [`State`], columns [`Inputs`].
-    pub b: [[T; 1]; 2],
+    pub rates: Rates<T>,
+    /// A = ∂ẋ/∂x: one row per rate, one column per state.
+    pub a: Rates<State<T>>,
+    /// B = ∂ẋ/∂u: one row per rate, one column per input.
+    pub b: Rates<Inputs<T>>,
 }
 
 /// Result of [`energies`].
@@ -116,11 +166,11 @@ pub struct Energies<T> {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Adjoint<T> {
     /// By the state.
-    pub x: [T; 2],
+    pub x: State<T>,
     /// By the inputs.
-    pub u: [T; 1],
+    pub u: Inputs<T>,
     /// By the parameters.
-    pub p: [T; 4],
+    pub p: Parameters<T>,
 }
 
 /// Result of [`output_jacobians`].
@@ -128,24 +178,28 @@ pub struct Adjoint<T> {
 pub struct OutputJacobians<T> {
     /// Outputs.
     pub outputs: Outputs<T>,
-    /// C = ∂y/∂x. Columns follow [`State`].
-    pub c: [[T; 2]; 3],
-    /// D = ∂y/∂u. Columns follow [`Inputs`].
-    pub d: [[T; 1]; 3],
+    /// C = ∂y/∂x.
+    pub c: Outputs<State<T>>,
+    /// D = ∂y/∂u.
+    pub d: Outputs<Inputs<T>>,
 }
 
 /// Result of [`output_adjoint`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct OutputAdjoint<T> {
     /// By the state.
-    pub x: [T; 2],
+    pub x: State<T>,
     /// By the inputs.
-    pub u: [T; 1],
+    pub u: Inputs<T>,
     /// By the parameters.
-    pub p: [T; 4],
+    pub p: Parameters<T>,
 }
 
 /// Generalised velocities q̇ of pseudo-velocities and coordinates.
+///
+/// ```text
+/// θ̇ = ω
+/// ```
 ///
 /// From `pendulum.toml`.
 /// Operations: 0.
@@ -155,10 +209,12 @@ pub fn kinematics<T: Real>(
     _parameters: &Parameters<T>,
     state: &State<T>,
     _inputs: &Inputs<T>,
-) -> Coordinates<T> {
+) -> CoordinateRates<T> {
     let &State { omega, .. } = state;
 
-    Coordinates { theta: omega }
+    CoordinateRates {
+        theta_dot: omega,
+    }
 }
 
 /// Acceleration energy S (Gibbs function) at the actual motion.
@@ -187,16 +243,18 @@ pub fn acceleration_energy<T: Real>(
     let pivot_omega = l * m_l + I;
     let inv_pivot_omega = one / pivot_omega;
 
-    // Appell's equations, solved.
+    // Unknown `omega_dot`.
     let rhs_omega = tau - g * m_l * theta.sin();
     let omega_dot = inv_pivot_omega * rhs_omega;
 
-    // Acceleration of `G` in `rod`.
-    let a_G_x = l * omega_dot;
+    // Motion of `rod` with ω̇ = 0.
     let a0_G_z = l * omega * omega;
 
+    // Acceleration of `G` in `rod`.
+    let a_G_x = l * omega_dot;
+
     // Body `rod`, pendulum.toml:29.
-    let s_moving_rod = half * m * (a_G_x * a_G_x + a0_G_z * a0_G_z);
+    let s_moving_rod = half * m * (a0_G_z * a0_G_z + a_G_x * a_G_x);
     let s_turning_rod = half * I * omega_dot * omega_dot;
 
     let s_rod = s_moving_rod + s_turning_rod;
@@ -207,7 +265,7 @@ pub fn acceleration_energy<T: Real>(
     }
 }
 
-/// Mass matrix M = ∂²S/∂ω̇², symmetric. Rows and columns follow [`Speeds`].
+/// Mass matrix M = ∂²S/∂ω̇², symmetric. Rows and columns follow [`Accelerations`].
 ///
 /// ```text
 /// M = [ m l² + I ]
@@ -232,6 +290,10 @@ pub fn mass_matrix<T: Real>(
 
 /// Bias b: what is left of ∂S/∂ω̇ where the pseudo-accelerations vanish.
 ///
+/// ```text
+/// b_ω = 0
+/// ```
+///
 /// From `pendulum.toml`.
 /// Operations: 0.
 #[must_use]
@@ -240,10 +302,10 @@ pub fn bias<T: Real>(
     _parameters: &Parameters<T>,
     _state: &State<T>,
     _inputs: &Inputs<T>,
-) -> Speeds<T> {
+) -> GeneralizedForces<T> {
     let zero = T::constant(0.0);
 
-    Speeds { omega: zero }
+    GeneralizedForces { omega: zero }
 }
 
 /// Mass matrix M and bias b together: what both need is computed once.
@@ -265,11 +327,15 @@ pub fn mass_matrix_and_bias<T: Real>(
 
     MassMatrixAndBias {
         mass_matrix: [[M_omega_omega]],
-        bias: Speeds { omega: zero },
+        bias: GeneralizedForces { omega: zero },
     }
 }
 
 /// Pseudo-forces Π (generalised forces): virtual power of the loads per pseudo-velocity.
+///
+/// ```text
+/// Π_ω = τ − m l g sin θ
+/// ```
 ///
 /// From `pendulum.toml`.
 /// Operations: 4 (1 +, 3 ×), sine or cosine of 1 angle.
@@ -279,7 +345,7 @@ pub fn generalized_forces<T: Real>(
     parameters: &Parameters<T>,
     state: &State<T>,
     inputs: &Inputs<T>,
-) -> Speeds<T> {
+) -> GeneralizedForces<T> {
     let &Parameters { m, l, g, .. } = parameters;
     let &State { theta, .. } = state;
     let &Inputs { tau } = inputs;
@@ -287,10 +353,17 @@ pub fn generalized_forces<T: Real>(
     // Pseudo-forces.
     let force_omega = tau - m * l * g * theta.sin();
 
-    Speeds { omega: force_omega }
+    GeneralizedForces {
+        omega: force_omega,
+    }
 }
 
 /// Rates ẋ of the state by Appell's equations M ω̇ + b = Π and kinematics.
+///
+/// ```text
+/// (m l² + I) ω̇ = τ − m l g sin θ
+/// θ̇ = ω
+/// ```
 ///
 /// - `rhs`: `Π - b` after elimination, times the common denominator in `pivot`; `_over_`: divided.
 /// - `pivot`: what divides `rhs`: `ω̇ = rhs/pivot`, plus terms that need no division.
@@ -303,7 +376,7 @@ pub fn rates<T: Real>(
     parameters: &Parameters<T>,
     state: &State<T>,
     inputs: &Inputs<T>,
-) -> State<T> {
+) -> Rates<T> {
     let &Parameters { m, l, I, g } = parameters;
     let &State { omega, theta } = state;
     let &Inputs { tau } = inputs;
@@ -314,13 +387,13 @@ pub fn rates<T: Real>(
     let pivot_omega = l * m_l + I;
     let inv_pivot_omega = one / pivot_omega;
 
-    // Appell's equations, solved.
+    // Unknown `omega_dot`.
     let rhs_omega = tau - g * m_l * theta.sin();
     let omega_dot = inv_pivot_omega * rhs_omega;
 
-    State {
-        omega: omega_dot,
-        theta: omega,
+    Rates {
+        omega_dot,
+        theta_dot: omega,
     }
 }
 
@@ -353,26 +426,33 @@ pub fn jacobians<T: Real>(
     let pivot_omega = l * m_l + I;
     let inv_pivot_omega = one / pivot_omega;
 
-    // Appell's equations, solved.
+    // Unknown `omega_dot`.
     let rhs_omega = tau - sin_theta * m_l_g;
     let omega_dot = inv_pivot_omega * rhs_omega;
 
-    // Row `omega` of A.
+    // Row `omega_dot` of A.
     let A_omega_theta = -cos_theta * m_l_g * inv_pivot_omega;
 
     Jacobians {
-        rates: State {
-            omega: omega_dot,
-            theta: omega,
+        rates: Rates {
+            omega_dot,
+            theta_dot: omega,
         },
-        a: [[zero, A_omega_theta], [one, zero]],
-        b: [[inv_pivot_omega], [zero]],
+        a: Rates {
+            omega_dot: State {
+                omega: zero,
+                theta: A_omega_theta,
+            },
+            theta_dot: State { omega: one, theta: zero },
+        },
+        b: Rates {
+            omega_dot: Inputs { tau: inv_pivot_omega },
+            theta_dot: Inputs { tau: zero },
+        },
     }
 }
 
-/// P = ∂ẋ/∂p. Rows follow [`State`], columns [`Parameters`].
-///
-/// Rows: `omega`, `theta`. Columns: `m`, `l`, `I`, `g`.
+/// P = ∂ẋ/∂p.
 ///
 /// - `rhs`: `Π - b` after elimination, times the common denominator in `pivot`; `_over_`: divided.
 /// - `pivot`: what divides `rhs`: `ω̇ = rhs/pivot`, plus terms that need no division.
@@ -385,7 +465,7 @@ pub fn parameter_jacobian<T: Real>(
     parameters: &Parameters<T>,
     state: &State<T>,
     inputs: &Inputs<T>,
-) -> [[T; 4]; 2] {
+) -> Rates<Parameters<T>> {
     let &Parameters { m, l, I, g } = parameters;
     let &State { theta, .. } = state;
     let &Inputs { tau } = inputs;
@@ -401,22 +481,36 @@ pub fn parameter_jacobian<T: Real>(
     let pivot_omega = l * m_l + I;
     let inv_pivot_omega = one / pivot_omega;
 
-    // Appell's equations, solved.
+    // Unknown `omega_dot`.
     let g_sin_theta = g * sin_theta;
     let rhs_omega = tau - m_l * g_sin_theta;
     let omega_dot = inv_pivot_omega * rhs_omega;
 
-    // Row `omega` of P.
+    // Row `omega_dot` of P.
     let l_omega_dot = l * omega_dot;
     let P_omega_m = -l * inv_pivot_omega * (g_sin_theta + l_omega_dot);
     let P_omega_l = m * inv_pivot_omega * (-two * l_omega_dot - g_sin_theta);
     let P_omega_I = -inv_pivot_omega * omega_dot;
     let P_omega_g = -sin_theta * m_l * inv_pivot_omega;
 
-    [[P_omega_m, P_omega_l, P_omega_I, P_omega_g], [zero, zero, zero, zero]]
+    Rates {
+        omega_dot: Parameters {
+            m: P_omega_m,
+            l: P_omega_l,
+            I: P_omega_I,
+            g: P_omega_g,
+        },
+        theta_dot: Parameters::splat(zero),
+    }
 }
 
 /// Energies and power.
+///
+/// ```text
+/// T = ½ (m l² + I) ω²
+/// V = −m l g cos θ
+/// P = ω τ
+/// ```
 ///
 /// From `pendulum.toml`.
 /// Operations: 10 (1 +, 8 ×, 1 sign), sine or cosine of 1 angle.
@@ -461,8 +555,8 @@ pub fn constraint_residual<T: Real>(
     _parameters: &Parameters<T>,
     _state: &State<T>,
     _inputs: &Inputs<T>,
-) -> [T; 0] {
-    []
+) -> ConstraintResidual {
+    ConstraintResidual {}
 }
 
 /// Reactions: forces on what is held, in N.
@@ -475,11 +569,17 @@ pub fn constraint_forces<T: Real>(
     _parameters: &Parameters<T>,
     _state: &State<T>,
     _inputs: &Inputs<T>,
-) -> [[T; 3]; 0] {
-    []
+) -> ConstraintForces {
+    ConstraintForces {}
 }
 
 /// Outputs of the spec.
+///
+/// ```text
+/// x_G = l sin θ
+/// z_G = −l cos θ
+/// energy = ½ (m l² + I) ω² + (1 − cos θ) m l g
+/// ```
 ///
 /// From `pendulum.toml`.
 /// Operations: 13 (3 +, 9 ×, 1 sign), sine or cosine of 1 angle.
@@ -553,17 +653,25 @@ pub fn adjoint<T: Real>(
         * (by_I_part_1 - rhs_omega * lambda_omega);
     let by_I = adjoint_pivot_omega + K_omega_omega;
     let l_by_I = l * by_I;
-    let by_m_part_1 = sin_theta * by_tau
+    let by_m_per_l_g = sin_theta * by_tau
         + cos_theta * Lambda_omega_theta_over_pivot_omega;
-    let by_m_part_2 = g * by_m_part_1;
-    let by_m = l * (l_by_I - by_m_part_2);
-    let by_l = m * (two * l_by_I - by_m_part_2);
-    let by_g = -m_l * by_m_part_1;
+    let g_by_m_per_l_g = g * by_m_per_l_g;
+    let by_m = l * (l_by_I - g_by_m_per_l_g);
+    let by_l = m * (two * l_by_I - g_by_m_per_l_g);
+    let by_g = -m_l * by_m_per_l_g;
 
     Adjoint {
-        x: [lambda_theta, by_theta],
-        u: [by_tau],
-        p: [by_m, by_l, by_I, by_g],
+        x: State {
+            omega: lambda_theta,
+            theta: by_theta,
+        },
+        u: Inputs { tau: by_tau },
+        p: Parameters {
+            m: by_m,
+            l: by_l,
+            I: by_I,
+            g: by_g,
+        },
     }
 }
 
@@ -599,18 +707,28 @@ pub fn output_jacobians<T: Real>(
 
     let C_energy_theta = sin_theta * m_l_g;
 
-    // Rows: 0 x_G, 1 z_G, 2 energy.
-    // Columns: 0 tau.
-    let D = [[zero; 1]; 3];
-
     OutputJacobians {
         outputs: Outputs {
             x_G,
             z_G: -l_cos_theta,
             energy,
         },
-        c: [[zero, l_cos_theta], [zero, x_G], [C_energy_omega, C_energy_theta]],
-        d: D,
+        c: Outputs {
+            x_G: State {
+                omega: zero,
+                theta: l_cos_theta,
+            },
+            z_G: State { omega: zero, theta: x_G },
+            energy: State {
+                omega: C_energy_omega,
+                theta: C_energy_theta,
+            },
+        },
+        d: Outputs {
+            x_G: Inputs { tau: zero },
+            z_G: Inputs { tau: zero },
+            energy: Inputs { tau: zero },
+        },
     }
 }
 
@@ -657,17 +775,25 @@ pub fn output_adjoint<T: Real>(
         - sin_theta * (l * adjoint_2 - m_l_g * mu_energy);
     let by_I = omega * (Gamma_energy_omega + half * omega_mu_energy);
     let l_by_I = l * by_I;
-    let by_m_part_1 = sin_theta * Gamma_energy_theta - mu_energy * (cos_theta - one);
-    let by_m_part_2 = g * by_m_part_1;
-    let by_m = l * (by_m_part_2 + l_by_I);
+    let by_m_per_l_g = sin_theta * Gamma_energy_theta - mu_energy * (cos_theta - one);
+    let g_by_m_per_l_g = g * by_m_per_l_g;
+    let by_m = l * (l_by_I + g_by_m_per_l_g);
     let by_l = sin_theta * adjoint + cos_theta * adjoint_2
-        + m * (by_m_part_2 + two * l_by_I);
-    let by_g = m_l * by_m_part_1;
+        + m * (g_by_m_per_l_g + two * l_by_I);
+    let by_g = m_l * by_m_per_l_g;
 
     OutputAdjoint {
-        x: [by_omega, by_theta],
-        u: [zero],
-        p: [by_m, by_l, by_I, by_g],
+        x: State {
+            omega: by_omega,
+            theta: by_theta,
+        },
+        u: Inputs { tau: zero },
+        p: Parameters {
+            m: by_m,
+            l: by_l,
+            I: by_I,
+            g: by_g,
+        },
     }
 }
 
@@ -678,26 +804,21 @@ pub struct Pendulum;
 const _: () = {
     use model::At;
 
-    const N: usize = 2;
-    const S: usize = 1;
-    const M: usize = 1;
-    const K: usize = 4;
-
     /// The first numbers of a slice that holds at least as many.
     fn first<const LEN: usize>(numbers: &[f64]) -> [f64; LEN] {
         core::array::from_fn(|i| numbers[i])
     }
 
     fn parameters(at: &At<'_>) -> Parameters<f64> {
-        first::<K>(at.p).into()
+        first(at.p).into()
     }
 
     fn state(at: &At<'_>) -> State<f64> {
-        first::<N>(at.x).into()
+        first(at.x).into()
     }
 
     fn inputs(at: &At<'_>) -> Inputs<f64> {
-        first::<M>(at.u).into()
+        first(at.u).into()
     }
 
     fn write(to: &mut [f64], from: &[f64]) {
@@ -712,9 +833,7 @@ const _: () = {
         fn rates(&self, at: At<'_>, rates: &mut [f64]) {
             write(
                 rates,
-                &<[f64; N]>::from(
-                    self::rates(&parameters(&at), &state(&at), &inputs(&at)),
-                ),
+                &self::rates(&parameters(&at), &state(&at), &inputs(&at)).to_array(),
             );
         }
 
@@ -725,16 +844,18 @@ const _: () = {
             a: &mut [f64],
             b: &mut [f64],
         ) {
-            let all = jacobians(&parameters(&at), &state(&at), &inputs(&at));
-            write(rates, &<[f64; N]>::from(all.rates));
-            write(a, all.a.as_flattened());
-            write(b, all.b.as_flattened());
+            let all = self::jacobians(&parameters(&at), &state(&at), &inputs(&at));
+            write(rates, &all.rates.to_array());
+            write(a, all.a.map(State::to_array).to_array().as_flattened());
+            write(b, all.b.map(Inputs::to_array).to_array().as_flattened());
         }
 
         fn parameter_jacobian(&self, at: At<'_>, p: &mut [f64]) {
             write(
                 p,
                 self::parameter_jacobian(&parameters(&at), &state(&at), &inputs(&at))
+                    .map(Parameters::to_array)
+                    .to_array()
                     .as_flattened(),
             );
         }
@@ -746,24 +867,27 @@ const _: () = {
             bias: &mut [f64],
             forces: &mut [f64],
         ) {
-            let left = mass_matrix_and_bias(&parameters(&at), &state(&at), &inputs(&at));
-            write(mass, left.mass_matrix.as_flattened());
-            write(bias, &<[f64; S]>::from(left.bias));
+            let all = self::mass_matrix_and_bias(
+                &parameters(&at),
+                &state(&at),
+                &inputs(&at),
+            );
+            write(mass, all.mass_matrix.as_flattened());
+            write(bias, &all.bias.to_array());
             write(
                 forces,
-                &<[f64; S]>::from(
-                    generalized_forces(&parameters(&at), &state(&at), &inputs(&at)),
-                ),
+                &self::generalized_forces(&parameters(&at), &state(&at), &inputs(&at))
+                    .to_array(),
             );
         }
 
         fn energies(&self, at: At<'_>) -> model::Energies {
-            let all = energies(&parameters(&at), &state(&at), &inputs(&at));
+            let all = self::energies(&parameters(&at), &state(&at), &inputs(&at));
             model::Energies {
                 kinetic: all.kinetic,
                 potential: all.potential,
                 power: all.power,
-                acceleration: acceleration_energy(
+                acceleration: self::acceleration_energy(
                         &parameters(&at),
                         &state(&at),
                         &inputs(&at),
@@ -779,9 +903,7 @@ const _: () = {
         fn outputs(&self, at: At<'_>, outputs: &mut [f64]) {
             write(
                 outputs,
-                &<[f64; 3]>::from(
-                    self::outputs(&parameters(&at), &state(&at), &inputs(&at)),
-                ),
+                &self::outputs(&parameters(&at), &state(&at), &inputs(&at)).to_array(),
             );
         }
 
@@ -797,9 +919,9 @@ const _: () = {
                 &inputs(&at),
                 &weights,
             );
-            write(by.x, &all.x);
-            write(by.u, &all.u);
-            write(by.p, &all.p);
+            write(by.x, &all.x.to_array());
+            write(by.u, &all.u.to_array());
+            write(by.p, &all.p.to_array());
         }
 
         fn output_jacobians(
@@ -814,9 +936,9 @@ const _: () = {
                 &state(&at),
                 &inputs(&at),
             );
-            write(outputs, &<[f64; 3]>::from(all.outputs));
-            write(c, all.c.as_flattened());
-            write(d, all.d.as_flattened());
+            write(outputs, &all.outputs.to_array());
+            write(c, all.c.map(State::to_array).to_array().as_flattened());
+            write(d, all.d.map(Inputs::to_array).to_array().as_flattened());
         }
 
         fn output_adjoint(&self, at: At<'_>, weights: &[f64], by: model::Gradient<'_>) {
@@ -827,9 +949,24 @@ const _: () = {
                 &inputs(&at),
                 &weights,
             );
-            write(by.x, &all.x);
-            write(by.u, &all.u);
-            write(by.p, &all.p);
+            write(by.x, &all.x.to_array());
+            write(by.u, &all.u.to_array());
+            write(by.p, &all.p.to_array());
+        }
+    }
+
+    impl model::Named for Pendulum {
+        type State = State<f64>;
+        type Inputs = Inputs<f64>;
+        type Outputs = Outputs<f64>;
+
+        fn named(&self, at: At<'_>) -> model::Row<Self> {
+            model::Row {
+                t: at.t,
+                state: state(&at),
+                inputs: inputs(&at),
+                outputs: self::outputs(&parameters(&at), &state(&at), &inputs(&at)),
+            }
         }
     }
 };
@@ -924,29 +1061,7 @@ impl<T> From<Parameters<T>> for [T; 4] {
     }
 }
 
-impl<T> From<[T; 1]> for Speeds<T> {
-    fn from([omega]: [T; 1]) -> Self {
-        Self { omega }
-    }
-}
-
-impl<T> From<Speeds<T>> for [T; 1] {
-    fn from(Speeds { omega }: Speeds<T>) -> Self {
-        [omega]
-    }
-}
-
-impl<T> From<[T; 1]> for Coordinates<T> {
-    fn from([theta]: [T; 1]) -> Self {
-        Self { theta }
-    }
-}
-
-impl<T> From<Coordinates<T>> for [T; 1] {
-    fn from(Coordinates { theta }: Coordinates<T>) -> Self {
-        [theta]
-    }
-}
+::appell_runtime::vector!(Parameters, 4);
 
 impl<T> From<[T; 2]> for State<T> {
     fn from([omega, theta]: [T; 2]) -> Self {
@@ -960,6 +1075,8 @@ impl<T> From<State<T>> for [T; 2] {
     }
 }
 
+::appell_runtime::vector!(State, 2, Rates);
+
 impl<T> From<[T; 1]> for Inputs<T> {
     fn from([tau]: [T; 1]) -> Self {
         Self { tau }
@@ -972,6 +1089,8 @@ impl<T> From<Inputs<T>> for [T; 1] {
     }
 }
 
+::appell_runtime::vector!(Inputs, 1);
+
 impl<T> From<[T; 3]> for Outputs<T> {
     fn from([x_G, z_G, energy]: [T; 3]) -> Self {
         Self { x_G, z_G, energy }
@@ -983,3 +1102,89 @@ impl<T> From<Outputs<T>> for [T; 3] {
         [x_G, z_G, energy]
     }
 }
+
+::appell_runtime::vector!(Outputs, 3);
+
+impl<T> From<[T; 2]> for Rates<T> {
+    fn from([omega_dot, theta_dot]: [T; 2]) -> Self {
+        Self { omega_dot, theta_dot }
+    }
+}
+
+impl<T> From<Rates<T>> for [T; 2] {
+    fn from(Rates { omega_dot, theta_dot }: Rates<T>) -> Self {
+        [omega_dot, theta_dot]
+    }
+}
+
+::appell_runtime::vector!(Rates, 2);
+
+impl<T> From<[T; 1]> for Accelerations<T> {
+    fn from([omega_dot]: [T; 1]) -> Self {
+        Self { omega_dot }
+    }
+}
+
+impl<T> From<Accelerations<T>> for [T; 1] {
+    fn from(Accelerations { omega_dot }: Accelerations<T>) -> Self {
+        [omega_dot]
+    }
+}
+
+::appell_runtime::vector!(Accelerations, 1);
+
+impl<T> From<[T; 1]> for CoordinateRates<T> {
+    fn from([theta_dot]: [T; 1]) -> Self {
+        Self { theta_dot }
+    }
+}
+
+impl<T> From<CoordinateRates<T>> for [T; 1] {
+    fn from(CoordinateRates { theta_dot }: CoordinateRates<T>) -> Self {
+        [theta_dot]
+    }
+}
+
+::appell_runtime::vector!(CoordinateRates, 1);
+
+impl<T> From<[T; 1]> for GeneralizedForces<T> {
+    fn from([omega]: [T; 1]) -> Self {
+        Self { omega }
+    }
+}
+
+impl<T> From<GeneralizedForces<T>> for [T; 1] {
+    fn from(GeneralizedForces { omega }: GeneralizedForces<T>) -> Self {
+        [omega]
+    }
+}
+
+::appell_runtime::vector!(GeneralizedForces, 1);
+
+impl<T> From<[T; 0]> for ConstraintResidual {
+    fn from([]: [T; 0]) -> Self {
+        Self {}
+    }
+}
+
+impl<T> From<ConstraintResidual> for [T; 0] {
+    fn from(ConstraintResidual {}: ConstraintResidual) -> Self {
+        []
+    }
+}
+
+::appell_runtime::vector!(ConstraintResidual, 0);
+
+impl<T> From<[T; 0]> for ConstraintForces {
+    fn from([]: [T; 0]) -> Self {
+        Self {}
+    }
+}
+
+impl<T> From<ConstraintForces> for [T; 0] {
+    fn from(ConstraintForces {}: ConstraintForces) -> Self {
+        []
+    }
+}
+
+::appell_runtime::vector!(ConstraintForces, 0);

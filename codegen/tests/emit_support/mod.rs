@@ -1,27 +1,23 @@
 //! Small programs written by hand, so that scheduling and emission are tested on their own.
 #![allow(
-    dead_code,
-    unreachable_pub,
-    reason = "every test file uses a part of it"
-)]
-#![allow(
     clippy::unwrap_used,
     clippy::too_many_lines,
     reason = "tests may panic"
 )]
 
 use appell_codegen::emit::Options;
-use appell_codegen::program::{Arguments, Array, Function, FunctionKind, Layout, Program};
+use appell_codegen::program::{Arguments, Array, Function, FunctionKind, Layout, Program, Space};
 use appell_codegen::symbolic::{
     Derivatives, Expr, Function as SymbolicFunction, Graph, Rational, Relation, SymbolId,
 };
 use appell_runtime::model::{ModelInfo, Quantity};
+use appell_test_kit::Random;
 
 /// A text that is hard to quote.
-pub const SPEC: &str = "# A spec with \"quotes\" and \"#.\nname = 'unicycle'\n";
+pub(crate) const SPEC: &str = "# A spec with \"quotes\" and \"#.\nname = 'unicycle'\n";
 
 /// What the golden files are emitted with.
-pub fn golden_options(model_impl: bool) -> Options {
+pub(crate) fn golden_options(model_impl: bool) -> Options {
     Options {
         model_impl,
         spec: model_impl.then(|| SPEC.to_owned()),
@@ -30,13 +26,13 @@ pub fn golden_options(model_impl: bool) -> Options {
 }
 
 /// A shipped mechanism with everything that can be emitted.
-pub fn with_adjoints() -> Program {
+pub(crate) fn with_adjoints() -> Program {
     let spec = include_str!("../../../generated/mechanisms/pendulum.toml");
     appell_codegen::compile("pendulum.toml", spec, &FunctionKind::ALL).unwrap()
 }
 
 /// A quantity with a unit.
-pub fn quantity(name: &str, about: &str, unit: &str, value: f64) -> Quantity {
+pub(crate) fn quantity(name: &str, about: &str, unit: &str, value: f64) -> Quantity {
     Quantity {
         name: name.to_owned().into(),
         about: about.to_owned().into(),
@@ -48,14 +44,14 @@ pub fn quantity(name: &str, about: &str, unit: &str, value: f64) -> Quantity {
 }
 
 /// A program whose functions are still to be written.
-pub struct Sketch {
-    pub program: Program,
+pub(crate) struct Sketch {
+    pub(crate) program: Program,
     symbols: Vec<(String, Expr)>,
 }
 
 impl Sketch {
     /// Quantities in the order of the vectors.
-    pub fn new(
+    pub(crate) fn new(
         name: &str,
         speeds: usize,
         states: Vec<Quantity>,
@@ -108,6 +104,7 @@ impl Sketch {
             arguments,
             dependent: Vec::new(),
             systems: Vec::new(),
+            hints: Vec::new(),
             functions: Vec::new(),
         };
         Self {
@@ -116,12 +113,12 @@ impl Sketch {
         }
     }
 
-    pub fn graph(&mut self) -> &mut Graph {
+    pub(crate) fn graph(&mut self) -> &mut Graph {
         &mut self.program.graph
     }
 
     /// The symbol of a state, input or parameter.
-    pub fn symbol(&self, name: &str) -> Expr {
+    pub(crate) fn symbol(&self, name: &str) -> Expr {
         self.symbols
             .iter()
             .find(|symbol| symbol.0 == name)
@@ -130,7 +127,7 @@ impl Sketch {
     }
 
     /// Results whose entries are called by their numbers, under headings of their own.
-    pub fn function(&mut self, kind: FunctionKind, results: Vec<(&str, Layout, Vec<Expr>)>) {
+    pub(crate) fn function(&mut self, kind: FunctionKind, results: Vec<(&str, Layout, Vec<Expr>)>) {
         let results = results.into_iter().map(|(name, layout, entries)| {
             let all = 0..entries.len();
             Array::new(name, &format!("The {name}."), layout, entries).under(name, all)
@@ -144,7 +141,7 @@ impl Sketch {
     }
 
     /// Rates, and their Jacobians by differentiation.
-    pub fn rates(&mut self, rates: Vec<Expr>) {
+    pub(crate) fn rates(&mut self, rates: Vec<Expr>) {
         let of = self.program.arguments.clone();
         let mut columns = |symbols: &[SymbolId]| {
             let mut matrix = vec![Graph::ZERO; rates.len() * symbols.len()];
@@ -162,13 +159,13 @@ impl Sketch {
             columns(&of.parameters),
         );
         let info = &self.program.info;
-        let jacobian = |name: &str, columns: &[Quantity], entries| {
-            Array::jacobian(name, "Derivatives.", &info.states, columns, entries)
+        let jacobian = |name: &str, by: Space, entries| {
+            Array::jacobian(name, "Derivatives.", info, by, entries)
         };
         let rates = Array::rates(info, rates);
-        let a = jacobian("a", &info.states, a);
-        let b = jacobian("b", &info.inputs, b);
-        let p = jacobian("p", &info.parameters, p);
+        let a = jacobian("a", Space::State, a);
+        let b = jacobian("b", Space::Inputs, b);
+        let p = jacobian("p", Space::Parameters, p);
         self.add(FunctionKind::Rates, vec![rates.clone()]);
         self.add(FunctionKind::Jacobians, vec![rates, a, b]);
         self.add(FunctionKind::ParameterJacobian, vec![p]);
@@ -176,7 +173,7 @@ impl Sketch {
 }
 
 /// Terms `coefficient · a · b · …`, one sum.
-pub fn polynomial(graph: &mut Graph, terms: &[(i64, i64, &[Expr])]) -> Expr {
+pub(crate) fn polynomial(graph: &mut Graph, terms: &[(i64, i64, &[Expr])]) -> Expr {
     let parts: Vec<(Rational, Expr)> = terms
         .iter()
         .map(|(numerator, denominator, factors)| {
@@ -191,7 +188,7 @@ pub fn polynomial(graph: &mut Graph, terms: &[(i64, i64, &[Expr])]) -> Expr {
 
 /// The steered unicycle: a rolling disc with a mass that moves along a spoke of its frame.
 /// Appell's equations, entry by entry; two 2×2 systems solved symbolically.
-pub fn unicycle() -> Program {
+pub(crate) fn unicycle() -> Program {
     let speed = |name: &str, about: &str| quantity(name, about, "rad/s", 0.0);
     let mut sketch = Sketch::new(
         "unicycle",
@@ -374,16 +371,21 @@ pub fn unicycle() -> Program {
     ];
     sketch.function(
         FunctionKind::Kinematics,
-        vec![("coordinate_rates", Layout::Coordinates, kinematics)],
+        vec![(
+            "coordinate_rates",
+            Layout::Vector(Space::CoordinateRates),
+            kinematics,
+        )],
     );
     let mass_matrix = ("mass_matrix", Layout::Matrix(4, 4), mass_matrix);
-    let bias = ("bias", Layout::Speeds, bias);
+    let pseudo_forces = Layout::Vector(Space::GeneralizedForces);
+    let bias = ("bias", pseudo_forces, bias);
     sketch.function(FunctionKind::MassMatrix, vec![mass_matrix.clone()]);
     sketch.function(FunctionKind::Bias, vec![bias.clone()]);
     sketch.function(FunctionKind::MassMatrixAndBias, vec![mass_matrix, bias]);
     sketch.function(
         FunctionKind::GeneralizedForces,
-        vec![("generalized_forces", Layout::Speeds, forces)],
+        vec![("generalized_forces", pseudo_forces, forces)],
     );
     sketch.rates(rates);
 
@@ -416,7 +418,7 @@ pub fn unicycle() -> Program {
 
 /// One of everything that is not a polynomial: functions, choices, numeric solutions, large powers,
 /// time, no inputs, names that are words of Rust.
-pub fn mixture() -> Program {
+pub(crate) fn mixture() -> Program {
     let mut sketch = Sketch::new(
         "type",
         1,
@@ -480,24 +482,24 @@ pub fn mixture() -> Program {
     sketch.rates(vec![accelerations, speed, b_dot]);
     sketch.function(
         FunctionKind::Outputs,
-        vec![("outputs", Layout::Outputs, outputs)],
+        vec![("outputs", Layout::Vector(Space::Outputs), outputs)],
     );
     sketch.program
 }
 
 /// Reproducible numbers in (0.1, 0.9), where every function of the mixture is defined.
-pub struct Numbers(pub u64);
+pub(crate) struct Numbers(Random);
 
 impl Numbers {
-    pub fn next(&mut self) -> f64 {
-        self.0 = self
-            .0
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
-        0.1 + 0.8 * ((self.0 >> 11) as f64 / (1_u64 << 53) as f64)
+    pub(crate) fn new(seed: u64) -> Self {
+        Self(Random::new(seed))
     }
 
-    pub fn list(&mut self, count: usize) -> Vec<f64> {
+    pub(crate) fn next(&mut self) -> f64 {
+        self.0.between(0.1, 0.9)
+    }
+
+    pub(crate) fn list(&mut self, count: usize) -> Vec<f64> {
         (0..count).map(|_| self.next()).collect()
     }
 }

@@ -1,5 +1,4 @@
 //! Schedules written by hand, and their values by two routes.
-#![allow(dead_code, reason = "every test file uses a part of it")]
 
 use appell_codegen::jit::{NativeFunction, Sizes};
 use appell_codegen::schedule::{

@@ -1,5 +1,4 @@
 //! Random expressions from short programs, which shrink well.
-#![allow(dead_code, reason = "each test uses its part")]
 
 use appell_codegen::symbolic::{Expr, Function, Graph, Rational, Relation, SymbolId};
 use proptest::prelude::*;

@@ -88,7 +88,7 @@ impl Reproduction {
 }
 
 /// Why what rests on the recordings of a paper cannot be checked.
-pub const NOT_PUBLIC: &str = "the paper's recordings are not public";
+pub(super) const NOT_PUBLIC: &str = "the paper's recordings are not public";
 
 impl Claim {
     /// A statement that is found to hold or not, within a tolerance or at the points that were tried.
@@ -200,10 +200,15 @@ impl Claim {
 /// How many statements agree, and how.
 #[derive(Debug, Default, Clone, Copy, PartialEq, Eq, Serialize)]
 pub struct Tally {
+    /// The same function, or every published digit.
     pub exact: usize,
+    /// Within a tolerance.
     pub approximate: usize,
+    /// Something else is found.
     pub differs: usize,
+    /// Definitions, and numbers from recordings that are not public.
     pub cannot_be_checked: usize,
+    /// Results of ours.
     pub not_in_paper: usize,
 }
 

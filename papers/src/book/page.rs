@@ -1,71 +1,81 @@
 //! The book as a page that needs nothing beside it. It is well-formed XML, too.
 
-use std::fmt::Write as _;
+use appell_report::skeleton::Skeleton;
+use maud::{Markup, PreEscaped, html};
 
 use super::claim::{Claim, Reproduction, Section, Tally};
 
 const STYLE: &str = include_str!("page.css");
+/// A new line, in HTML and in XML.
+const BREAK: PreEscaped<&str> = PreEscaped("<br/>");
 
 /// The page.
 pub fn page(title: &str, sections: &[Section]) -> String {
-    let tally = Tally::of(sections);
-    let mut page = format!(
-        "<!DOCTYPE html>\n<html lang=\"en\" xmlns=\"http://www.w3.org/1999/xhtml\">\n<head>\n\
-         <meta charset=\"utf-8\"/>\n\
-         <meta name=\"viewport\" content=\"width=device-width,initial-scale=1\"/>\n\
-         <title>{title}, recomputed</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n<main>\n\
-         <h1>{title}, recomputed</h1>\n\
-         <p>Equations, tables and figures: what is published, what appell finds, how the two compare, and \
-         the command that makes it.</p>\n<p>{}.</p>\n<dl>\n",
-        escaped(&tally.words()),
-    );
-    for agreement in Reproduction::ALL {
-        // Writing to a string cannot fail.
-        let _ = writeln!(
-            page,
-            "<dt class=\"{}\">{}</dt><dd>{}</dd>",
-            class(agreement),
-            agreement.words(),
-            meaning(agreement)
-        );
-    }
-    page.push_str("</dl>\n<nav><ul>\n");
-    for (number, section) in sections.iter().enumerate() {
-        let errata = section.claims.iter().filter(|c| c.erratum.is_some());
-        let _ = writeln!(
-            page,
-            "<li><a href=\"#part{number}\">{}</a> ({} rows, {} errata)</li>",
-            escaped(&section.title),
-            section.claims.len(),
-            errata.count(),
-        );
-    }
-    page.push_str("</ul></nav>\n");
-    for (number, section) in sections.iter().enumerate() {
-        let _ = writeln!(
-            page,
-            "<section id=\"part{number}\">\n<h2>{}</h2>\n<p>{}</p>",
-            escaped(&section.title),
-            escaped(&section.about)
-        );
-        for picture in &section.pictures {
-            let _ = writeln!(
-                page,
-                "<figure>{}<figcaption>{}</figcaption></figure>",
-                picture.svg,
-                escaped(&picture.caption)
-            );
+    let title = format!("{title}, recomputed");
+    let skeleton = Skeleton {
+        namespace: Some("http://www.w3.org/1999/xhtml"),
+        ..Skeleton::new(&title, STYLE)
+    };
+    skeleton.around(&html! {
+        main {
+            h1 { (title) }
+            p {
+                "Equations, tables and figures: what is published, what appell finds, how the two compare, \
+                 and the command that makes it."
+            }
+            p { (Tally::of(sections).words()) "." }
+            dl {
+                @for agreement in Reproduction::ALL {
+                    dt class=(class(agreement)) { (agreement.words()) }
+                    dd { (meaning(agreement)) }
+                }
+            }
+            nav {
+                ul {
+                    @for (number, section) in sections.iter().enumerate() {
+                        @let errata = section.claims.iter().filter(|c| c.erratum.is_some()).count();
+                        li {
+                            a href={ "#part" (number) } { (section.title) }
+                            " (" (section.claims.len()) " rows, " (errata) " errata)"
+                        }
+                    }
+                }
+            }
+            @for (number, section) in sections.iter().enumerate() {
+                (part(number, section))
+            }
         }
-        page.push_str(
-            "<table>\n<thead><tr><th>place</th><th>published</th><th>found</th><th>agreement</th>\
-             </tr></thead>\n<tbody>\n",
-        );
-        for claim in &section.claims {
-            row(&mut page, claim);
+    })
+}
+
+fn part(number: usize, section: &Section) -> Markup {
+    html! {
+        section id={ "part" (number) } {
+            h2 { (section.title) }
+            p { (section.about) }
+            @for picture in &section.pictures {
+                figure {
+                    (PreEscaped(&picture.svg))
+                    figcaption { (picture.caption) }
+                }
+                // Figures stand beside each other.
+                "\n"
+            }
+            table {
+                thead {
+                    tr {
+                        th { "place" }
+                        th { "published" }
+                        th { "found" }
+                        th { "agreement" }
+                    }
+                }
+                tbody {
+                    @for claim in &section.claims { (row(claim)) "\n" }
+                }
+            }
         }
-        page.push_str("</tbody>\n</table>\n</section>\n");
     }
-    page + "</main>\n</body>\n</html>\n"
 }
 
 /// Its colour.
@@ -94,49 +104,38 @@ const fn meaning(agreement: Reproduction) -> &'static str {
     }
 }
 
-fn row(page: &mut String, claim: &Claim) {
-    let note = match claim.note.as_str() {
-        "" => String::new(),
-        note => format!("<br/><small>{}</small>", escaped(note)),
-    };
-    let broken = if claim.as_expected {
-        ""
-    } else {
-        "<br/>This is not what is known to come out."
-    };
-    let _ = writeln!(
-        page,
-        "<tr class=\"{}\"><td>{}</td><td>{}</td><td>{}<br/><code class=\"command\">{}</code></td>\
-         <td>{}{note}{broken}</td></tr>",
-        class(claim.agreement),
-        escaped(&claim.place),
-        lines(&claim.published),
-        lines(&claim.ours),
-        escaped(&claim.command),
-        claim.agreement.words(),
-    );
+fn row(claim: &Claim) -> Markup {
+    html! {
+        tr class=(class(claim.agreement)) {
+            td { (claim.place) }
+            td { (lines(&claim.published)) }
+            td {
+                (lines(&claim.ours)) (BREAK)
+                code class="command" { (claim.command) }
+            }
+            td {
+                (claim.agreement.words())
+                @if !claim.note.is_empty() {
+                    (BREAK) small { (claim.note) }
+                }
+                @if !claim.as_expected {
+                    (BREAK) "This is not what is known to come out."
+                }
+            }
+        }
+    }
 }
 
 /// The first line as text, the others as formulas; long ones are folded.
-fn lines(text: &str) -> String {
+fn lines(text: &str) -> Markup {
     /// Lines that are shown at once.
     const SHORT: usize = 4;
     let (first, rest) = text.split_once('\n').unwrap_or((text, ""));
-    if rest.is_empty() {
-        return escaped(first);
+    html! {
+        @match rest.lines().count() {
+            0 => (first),
+            1..=SHORT => { (first) pre { (rest) } },
+            _ => details { summary { (first) } pre { (rest) } },
+        }
     }
-    let formulas = format!("<pre>{}</pre>", escaped(rest));
-    if rest.lines().count() <= SHORT {
-        return format!("{}{formulas}", escaped(first));
-    }
-    format!(
-        "<details><summary>{}</summary>{formulas}</details>",
-        escaped(first)
-    )
-}
-
-fn escaped(text: &str) -> String {
-    text.replace('&', "&amp;")
-        .replace('<', "&lt;")
-        .replace('>', "&gt;")
 }

@@ -23,26 +23,31 @@ use appell::Error;
 
 use super::Section;
 
-/// A part of the book: its name while it is made, and what makes it.
-type Part = (&'static str, fn() -> Result<Section, Error>);
+/// A part of the book: its name while it is made, and what makes it with charts of so many points along
+/// each axis.
+type Part = (&'static str, fn(usize) -> Result<Section, Error>);
 
 const PARTS: &[Part] = &[
-    ("equations", equations::section),
-    ("critical values", numbers::section),
-    ("tables", tables::section),
+    ("equations", |_| equations::section()),
+    ("critical values", |_| numbers::section()),
+    ("tables", |_| tables::section()),
     ("figure 3", figure_3::section),
     ("figure 5", figure_5::section),
     ("figure 6", figure_6::section),
-    ("figure 7", figure_7::section),
-    ("figure 8", figure_8::section),
-    ("what the paper did not see", beyond::section),
+    ("figure 7", |_| figure_7::section()),
+    ("figure 8", |_| figure_8::section()),
+    ("what the paper did not see", |_| beyond::section()),
 ];
 
-/// The book part by part; `making` hears what is made, and how much of the book is.
-pub fn book(mut making: impl FnMut(&str, usize, usize)) -> Result<Vec<Section>, Error> {
+/// The book part by part, with charts of `grid` points along each axis; `making` hears what is made, and
+/// how much of the book is.
+pub fn book(
+    grid: usize,
+    mut making: impl FnMut(&str, usize, usize),
+) -> Result<Vec<Section>, Error> {
     let part = |(number, (name, make)): (usize, &Part)| {
         making(name, number, PARTS.len());
-        make()
+        make(grid)
     };
     PARTS.iter().enumerate().map(part).collect()
 }

@@ -3,6 +3,7 @@
 use std::fmt::Write as _;
 
 use crate::figure::STYLE;
+use crate::svg::{self, Document, Element};
 use appell_spec::mechanism::Mechanism;
 
 use super::home::home;
@@ -10,7 +11,6 @@ use super::scene::Scene;
 use super::shapes::{self, Axes, Stroke};
 use super::space::{Vector, add, dot};
 use super::view::View;
-use appell_codegen::symbolic::print::mathml::escaped;
 
 const WIDTH: f64 = 760.0;
 /// Around the drawing, for names.
@@ -54,7 +54,7 @@ struct Sheet<'a> {
     scale: f64,
     /// What is seen at the left upper corner of the drawing.
     corner: [f64; 2],
-    svg: String,
+    svg: Document,
 }
 
 /// The drawing of a scene.
@@ -101,11 +101,7 @@ pub(super) fn svg(mechanism: &Mechanism, scene: &Scene, view: &View, marked: &[&
             left - slack[0] / 2.0 / scale,
             high + (HEAD + slack[1] / 2.0) / scale,
         ],
-        svg: format!(
-            "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {WIDTH} {height:.0}\" \
-             width=\"{WIDTH}\" height=\"{height:.0}\">\n<style>\n{STYLE}{DRAWING_STYLE}</style>\n\
-             <rect class=\"paper\" width=\"100%\" height=\"100%\"/>\n"
-        ),
+        svg: Document::new([WIDTH, height], &[STYLE, DRAWING_STYLE]),
     };
     sheet.text([20.0, 26.0], "title", "start", &mechanism.title);
     sheet.text(
@@ -126,7 +122,7 @@ pub(super) fn svg(mechanism: &Mechanism, scene: &Scene, view: &View, marked: &[&
     }
     sheet.weight();
     sheet.legend(height, step, &strokes);
-    sheet.svg + "</svg>\n"
+    sheet.svg.finish()
 }
 
 /// What the reader has to know about the drawing.
@@ -193,25 +189,15 @@ impl Sheet<'_> {
         ]
     }
 
-    fn text(&mut self, [x, y]: [f64; 2], class: &str, anchor: &str, content: &str) {
-        let content = escaped(content);
-        let _ = writeln!(
-            self.svg,
-            "<text x=\"{x:.1}\" y=\"{y:.1}\" class=\"{class}\" text-anchor=\"{anchor}\">{content}</text>"
-        );
+    fn text(&mut self, place: [f64; 2], class: &str, anchor: &str, content: &str) {
+        let text = svg::text(place).with("class", class);
+        self.svg
+            .put(&text.with("text-anchor", anchor).text(content));
     }
 
     fn path(&mut self, class: &str, places: &[[f64; 2]], about: &str) {
-        let mut line = String::new();
-        for (k, [x, y]) in places.iter().enumerate() {
-            let command = if k == 0 { 'M' } else { 'L' };
-            let _ = write!(line, "{command}{x:.1} {y:.1}");
-        }
-        let about = match about {
-            "" => "/>".to_owned(),
-            about => format!("><title>{}</title></path>", escaped(about)),
-        };
-        let _ = writeln!(self.svg, "<path class=\"{class}\" d=\"{line}\"{about}");
+        let line = svg::polyline(places.iter().copied());
+        self.svg.put(&svg::path(class, &line).titled(about));
     }
 
     fn stroke(&mut self, stroke: &Stroke) {
@@ -219,11 +205,8 @@ impl Sheet<'_> {
         self.path(stroke.class, &corners, &stroke.about);
     }
 
-    fn dot(&mut self, class: &str, [x, y]: [f64; 2], radius: f64) {
-        let _ = writeln!(
-            self.svg,
-            "<circle class=\"{class}\" cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"{radius}\"/>"
-        );
+    fn dot(&mut self, class: &str, place: [f64; 2], radius: f64) {
+        self.svg.put(&circle(class, place, radius).empty());
     }
 
     /// Axes with the names of their frames beyond the steepest tip.
@@ -290,12 +273,8 @@ impl Sheet<'_> {
             if drawn.iter().any(close) {
                 continue;
             }
-            let [x, y] = at;
-            let _ = writeln!(
-                self.svg,
-                "<circle class=\"ring c1\" cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"{RING}\" fill=\"none\" \
-                 stroke-width=\"4\"/>"
-            );
+            let ring = circle("ring c1", at, RING).with("fill", "none");
+            self.svg.put(&ring.with("stroke-width", 4).empty());
             drawn.push(at);
         }
         if let Some([x, y]) = drawn.first() {
@@ -372,6 +351,11 @@ impl Sheet<'_> {
         let scale = format!("{} m", round_text(step));
         self.text([WIDTH - 20.0, rows[0]], "small", "end", &scale);
     }
+}
+
+fn circle(class: &str, [x, y]: [f64; 2], radius: f64) -> Element {
+    let circle = Element::new("circle").with("class", class);
+    circle.lengths([("cx", x), ("cy", y)]).with("r", radius)
 }
 
 /// A round number of any size.

@@ -3,9 +3,8 @@
 use std::fmt::Write as _;
 
 use super::axis::Axis;
-use super::{
-    Area, FOOTER_HEIGHT, HEADER_HEIGHT, LEFT, RIGHT, STYLE, Series, TITLE_HEIGHT, WIDTH, put, text,
-};
+use super::{Area, FOOTER_HEIGHT, HEADER_HEIGHT, LEFT, RIGHT, STYLE, Series, TITLE_HEIGHT, WIDTH};
+use crate::svg::{Document, Element, path, text};
 
 /// What is known at points of a grid over two quantities, and curves between.
 #[derive(Debug, Clone, PartialEq)]
@@ -97,8 +96,8 @@ impl Sample<'_> {
 }
 
 /// An area of a kind.
-pub(super) fn element(kind: usize, path: &str) -> String {
-    format!("<path class=\"kind k{kind}\" d=\"{path}\"/>")
+pub(super) fn element(kind: usize, line: &str) -> String {
+    path(&format!("kind k{kind}"), line).empty()
 }
 
 impl Map {
@@ -116,42 +115,40 @@ impl Map {
             height: HEIGHT,
         };
         let height = area.top + HEIGHT + FOOTER_HEIGHT;
-        let mut svg = format!(
-            "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {WIDTH} {height:.0}\" \
-             width=\"{WIDTH}\" height=\"{height:.0}\">\n<style>\n{STYLE}{FILLS}</style>\n\
-             <rect class=\"paper\" width=\"100%\" height=\"100%\"/>\n"
-        );
-        put(&mut svg, &text(LEFT, 22.0, "class=\"title\"", &self.title));
+        let mut svg = Document::new([WIDTH, height], &[STYLE, FILLS]);
+        svg.put(&text([LEFT, 22.0]).with("class", "title").text(&self.title));
         let samples = kinds.map(|(kind, name)| (Sample::Kind(kind), name));
         let samples =
             samples.chain(labelled.map(|curve| (Sample::Curve(curve), &curve.line.label)));
         for (i, (sample, name)) in samples.enumerate() {
             let x = LEFT + LEGEND * (i % PER_ROW) as f64;
             let y = TITLE_HEIGHT + HEADER_HEIGHT - 9.0 + LEGEND_ROW * (i / PER_ROW) as f64;
-            put(&mut svg, &sample.at([x, y - 4.0]));
-            put(&mut svg, &text(x + 23.0, y, "", name));
+            svg.put(&sample.at([x, y - 4.0]));
+            svg.put(&text([x + 23.0, y]).text(name));
         }
         for kind in 0..self.kinds.len() {
-            put(&mut svg, &element(kind, &self.cells_of(kind, &area)));
+            svg.put(&element(kind, &self.cells_of(kind, &area)));
         }
         area.grid(&mut svg, &x_axis, &y_axis);
         // What leaves the ranges is cut off.
-        let frame = format!(
-            "<svg x=\"{LEFT}\" y=\"{:.1}\" width=\"{:.1}\" height=\"{HEIGHT}\" \
-             viewBox=\"{LEFT} {:.1} {:.1} {HEIGHT}\">",
-            area.top, area.width, area.top, area.width
-        );
-        put(&mut svg, &frame);
+        let Area { top, width, .. } = area;
+        let frame = Element::new("svg")
+            .with("x", LEFT)
+            .lengths([("y", top), ("width", width)])
+            .with("height", HEIGHT);
+        let seen = format_args!("{LEFT} {top:.1} {width:.1} {HEIGHT}");
+        svg.put(&frame.with("viewBox", seen).open());
         for curve in &self.curves {
             let line = curve.path(&area, &x_axis, &y_axis);
-            put(&mut svg, &curve.stroke.element(&line));
+            svg.put(&curve.stroke.element(&line));
         }
-        put(&mut svg, "</svg>");
+        svg.put("</svg>");
         area.name_x(&mut svg, &x_axis, &self.labels[0]);
         let (x, y) = (18.0, area.top + HEIGHT / 2.0);
-        let turned = format!("text-anchor=\"middle\" transform=\"rotate(-90 {x} {y})\"");
-        put(&mut svg, &text(x, y, &turned, &self.labels[1]));
-        svg + "</svg>\n"
+        let label = text([x, y]).with("text-anchor", "middle");
+        let label = label.with("transform", format_args!("rotate(-90 {x} {y})"));
+        svg.put(&label.text(&self.labels[1]));
+        svg.finish()
     }
 
     /// The points of a kind as rectangles about them, one for each run in a row.
@@ -207,8 +204,8 @@ impl Curve {
 }
 
 impl Stroke {
-    fn element(self, path: &str) -> String {
-        format!("<path class=\"{}\" d=\"{path}\"/>", self.class())
+    fn element(self, line: &str) -> String {
+        path(self.class(), line).empty()
     }
 
     /// A spot about a place.

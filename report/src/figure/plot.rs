@@ -3,9 +3,8 @@
 use std::fmt::Write as _;
 
 use super::axis::Axis;
-use super::{
-    Area, CHARACTER, FOOTER_HEIGHT, HEADER_HEIGHT, LEFT, RIGHT, STYLE, Series, WIDTH, put, text,
-};
+use super::{Area, CHARACTER, FOOTER_HEIGHT, HEADER_HEIGHT, LEFT, RIGHT, STYLE, Series, WIDTH};
+use crate::svg::{Document, path, text};
 
 /// Layers over a common pair of axes, drawn in their order.
 #[derive(Debug, Clone, PartialEq)]
@@ -60,26 +59,22 @@ impl Plot {
         };
         let bottom = area.top + area.height;
         let height = bottom + FOOTER_HEIGHT;
-        let mut svg = format!(
-            "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {WIDTH} {height:.0}\" \
-             width=\"{WIDTH}\" height=\"{height:.0}\">\n<style>\n{STYLE}{PLOT_STYLE}</style>\n\
-             <rect class=\"paper\" width=\"100%\" height=\"100%\"/>\n"
-        );
-        put(&mut svg, &text(LEFT, 16.0, "", &self.labels[1]));
+        let mut svg = Document::new([WIDTH, height], &[STYLE, PLOT_STYLE]);
+        svg.put(&text([LEFT, 16.0]).text(&self.labels[1]));
         area.grid(&mut svg, &x_axis, &y_axis);
         let mut right = LEFT;
         for layer in &self.layers {
             let path = layer.path(&area, &x_axis, &y_axis);
-            put(&mut svg, &layer.element(&path));
+            svg.put(&layer.element(&path));
             if !layer.series.label.is_empty() {
                 let y = area.top - 9.0;
-                put(&mut svg, &layer.element(&layer.sample([right, y - 4.0])));
-                put(&mut svg, &text(right + 23.0, y, "", &layer.series.label));
+                svg.put(&layer.element(&layer.sample([right, y - 4.0])));
+                svg.put(&text([right + 23.0, y]).text(&layer.series.label));
                 right += 23.0 + CHARACTER * layer.series.label.chars().count() as f64 + 16.0;
             }
         }
         area.name_x(&mut svg, &x_axis, &self.labels[0]);
-        svg + "</svg>\n"
+        svg.finish()
     }
 }
 
@@ -92,14 +87,14 @@ impl Layer {
         self.series.y.iter().chain(other).copied()
     }
 
-    fn element(&self, path: &str) -> String {
+    fn element(&self, line: &str) -> String {
         let colour = self.colour;
         let class = match self.look {
             Look::Line => format!("line c{colour}"),
             Look::Points => format!("dots c{colour}"),
             Look::Band(_) => format!("band f{colour}"),
         };
-        format!("<path class=\"{class}\" d=\"{path}\"/>")
+        path(&class, line).empty()
     }
 
     fn sample(&self, [x, y]: [f64; 2]) -> String {

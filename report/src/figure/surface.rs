@@ -4,7 +4,8 @@ use std::fmt::Write as _;
 
 use super::axis::{Axis, number};
 use super::map::{FILLS, LEGEND, element};
-use super::{HEADER_HEIGHT, LEFT, STYLE, TITLE_HEIGHT, WIDTH, put, text};
+use super::{HEADER_HEIGHT, LEFT, STYLE, TITLE_HEIGHT, WIDTH};
+use crate::svg::{self, Document, Element, text};
 
 /// Pieces of a surface over three quantities.
 #[derive(Debug, Clone, PartialEq)]
@@ -63,20 +64,16 @@ fn seen([x, y, z]: [f64; 3]) -> ([f64; 2], f64) {
     )
 }
 
-fn line(index: usize, path: &str) -> String {
-    format!("<path class=\"line c{}\" d=\"{path}\"/>", index % 6)
+fn line(index: usize, line: &str) -> String {
+    svg::path(&format!("line c{}", index % 6), line).empty()
 }
 
 impl Surface {
     /// The surface as an SVG document.
     pub fn to_svg(&self) -> String {
         let height = TITLE_HEIGHT + HEADER_HEIGHT + HEIGHT;
-        let mut svg = format!(
-            "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {WIDTH} {height:.0}\" \
-             width=\"{WIDTH}\" height=\"{height:.0}\">\n<style>\n{STYLE}{FILLS}{SOLID}</style>\n\
-             <rect class=\"paper\" width=\"100%\" height=\"100%\"/>\n"
-        );
-        put(&mut svg, &text(LEFT, 22.0, "class=\"title\"", &self.title));
+        let mut svg = Document::new([WIDTH, height], &[STYLE, FILLS, SOLID]);
+        svg.put(&text([LEFT, 22.0]).with("class", "title").text(&self.title));
         let named = self
             .kinds
             .iter()
@@ -84,11 +81,11 @@ impl Surface {
             .filter(|(_, name)| !name.is_empty());
         for (i, (kind, name)) in named.enumerate() {
             let (x, y) = (LEFT + LEGEND * i as f64, TITLE_HEIGHT + HEADER_HEIGHT - 9.0);
-            put(
-                &mut svg,
-                &element(kind, &format!("M{x:.1} {:.1}h16v10h-16z", y - 9.0)),
-            );
-            put(&mut svg, &text(x + 23.0, y, "", name));
+            svg.put(&element(
+                kind,
+                &format!("M{x:.1} {:.1}h16v10h-16z", y - 9.0),
+            ));
+            svg.put(&text([x + 23.0, y]).text(name));
         }
         for (i, path) in self.paths.iter().enumerate() {
             let place = self.kinds.len() + i;
@@ -96,20 +93,20 @@ impl Surface {
                 LEFT + LEGEND * place as f64,
                 TITLE_HEIGHT + HEADER_HEIGHT - 13.0,
             );
-            put(&mut svg, &line(i, &format!("M{x:.1} {y:.1}h16")));
-            put(&mut svg, &text(x + 23.0, y + 4.0, "", &path.label));
+            svg.put(&line(i, &format!("M{x:.1} {y:.1}h16")));
+            svg.put(&text([x + 23.0, y + 4.0]).text(&path.label));
         }
         self.walls(&mut svg);
-        put(&mut svg, "<g class=\"piece\">");
+        svg.put(&Element::new("g").with("class", "piece").open());
         for (kind, path) in self.pieces() {
-            put(&mut svg, &element(kind, &path));
+            svg.put(&element(kind, &path));
         }
-        put(&mut svg, "</g>");
+        svg.put("</g>");
         for (i, path) in self.paths.iter().enumerate() {
-            put(&mut svg, &line(i, &self.way(&path.points)));
+            svg.put(&line(i, &self.way(&path.points)));
         }
         self.scales(&mut svg);
-        svg + "</svg>\n"
+        svg.finish()
     }
 
     /// A place in the box, each quantity between −1 and 1.
@@ -149,12 +146,7 @@ impl Surface {
                 continue;
             }
             let near = corners.iter().map(|corner| seen(*corner).1).sum();
-            let mut path = String::new();
-            for (k, corner) in corners.iter().enumerate() {
-                let [x, y] = seen(*corner).0;
-                // Writing to a string cannot fail.
-                let _ = write!(path, "{}{x:.1} {y:.1}", if k == 0 { 'M' } else { 'L' });
-            }
+            let path = svg::polyline(corners.map(|corner| seen(corner).0));
             pieces.push((near, patch.kind, path + "z"));
         }
         pieces.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -165,7 +157,7 @@ impl Surface {
     }
 
     /// The floor and the two walls behind, with the lines of the ticks.
-    fn walls(&self, svg: &mut String) {
+    fn walls(&self, svg: &mut Document) {
         let mut grid = String::new();
         let mut line = |ends: [[f64; 3]; 2]| {
             let [[x, y], [to_x, to_y]] = ends.map(|end| seen(end).0);
@@ -189,14 +181,12 @@ impl Surface {
                 }
             }
         }
-        put(
-            svg,
-            &format!("<path class=\"grid\" fill=\"none\" d=\"{grid}\"/>"),
-        );
+        let lines = Element::new("path").with("class", "grid");
+        svg.put(&lines.with("fill", "none").with("d", grid).empty());
     }
 
     /// Ticks and names along the edges in front.
-    fn scales(&self, svg: &mut String) {
+    fn scales(&self, svg: &mut Document) {
         for (k, edge, away) in [
             (0, [0.0, -1.0, -1.0], [0.0, 16.0]),
             (1, [-1.0, 0.0, -1.0], [-16.0, 14.0]),
@@ -208,21 +198,16 @@ impl Surface {
                 seen(place).0
             };
             let anchor = if k == 0 { "start" } else { "end" };
-            let anchor = format!("text-anchor=\"{anchor}\"");
-            for (part, label) in self.ticks(k) {
+            let label = |[x, y]: [f64; 2], content: &str| {
+                text([x, y]).with("text-anchor", anchor).text(content)
+            };
+            for (part, number) in self.ticks(k) {
                 let [x, y] = at(part);
-                put(svg, &text(x + away[0], y + away[1], &anchor, &label));
+                svg.put(&label([x + away[0], y + away[1]], &number));
             }
             let [x, y] = at(0.0);
-            put(
-                svg,
-                &text(
-                    x + 3.2 * away[0],
-                    y + 3.0 * away[1],
-                    &anchor,
-                    &self.labels[k],
-                ),
-            );
+            let place = [x + 3.2 * away[0], y + 3.0 * away[1]];
+            svg.put(&label(place, &self.labels[k]));
         }
     }
 

@@ -26,6 +26,13 @@ emitted!(
 pub static APPELL_TOLD: &[u8; include_bytes!(concat!(env!("OUT_DIR"), "/told.tsv")).len()] =
     include_bytes!(concat!(env!("OUT_DIR"), "/told.tsv"));
 
+/// Rows of a Jacobian as an array.
+macro_rules! rows {
+    ($matrix:expr, $columns:literal) => {
+        &$matrix.map(<[f64; $columns]>::from).to_array()
+    };
+}
+
 macro_rules! kernel {
     ($symbol:ident, $module:ident, [$n:literal, $m:literal, $k:literal] -> $size:literal,
      |$p:ident, $x:ident, $u:ident, $out:ident| $body:block) => {
@@ -66,14 +73,14 @@ kernel!(appell_unicycle_rates, unicycle_rates, [10, 1, 4] -> 10, |p, x, u, out| 
 });
 kernel!(appell_unicycle_jacobians, unicycle_jacobians, [10, 1, 4] -> 120, |p, x, u, out| {
     let j = unicycle_jacobians::jacobians(p, x, u);
-    lay(out, j.rates.into(), &j.a, &j.b);
+    lay(out, j.rates.into(), rows!(j.a, 10), rows!(j.b, 1));
 });
 kernel!(appell_euc_rates, euc_rates, [6, 2, 11] -> 6, |p, x, u, out| {
     *out = euc_rates::rates(p, x, u).into();
 });
 kernel!(appell_euc_jacobians, euc_jacobians, [6, 2, 11] -> 54, |p, x, u, out| {
     let j = euc_jacobians::jacobians(p, x, u);
-    lay(out, j.rates.into(), &j.a, &j.b);
+    lay(out, j.rates.into(), rows!(j.a, 6), rows!(j.b, 2));
 });
 kernel!(appell_bicycle_equations, bicycle_equations, [11, 2, 26] -> 12, |p, x, u, out| {
     let left = bicycle_equations::mass_matrix_and_bias(p, x, u);
@@ -82,12 +89,12 @@ kernel!(appell_bicycle_equations, bicycle_equations, [11, 2, 26] -> 12, |p, x, u
 });
 kernel!(appell_bicycle_state, bicycle_state, [11, 2, 26] -> 154, |p, x, u, out| {
     let j = bicycle_state::jacobians(p, x, u);
-    lay(out, j.rates.into(), &j.a, &j.b);
+    lay(out, j.rates.into(), rows!(j.a, 11), rows!(j.b, 2));
 });
 kernel!(appell_bicycle_parameters, bicycle_parameters, [11, 2, 26] -> 440, |p, x, u, out| {
     let j = bicycle_parameters::jacobians(p, x, u);
     let (state, parameters) = out.split_at_mut(154);
-    lay(state, j.rates.into(), &j.a, &j.b);
+    lay(state, j.rates.into(), rows!(j.a, 11), rows!(j.b, 2));
     let all = bicycle_parameters::parameter_jacobian(p, x, u);
-    parameters.copy_from_slice(all.as_flattened());
+    parameters.copy_from_slice(rows!(all, 26).as_flattened());
 });

@@ -16,8 +16,6 @@ const TILT_DEG: f64 = 60.0;
 const RATE: f64 = 10.0;
 /// Beyond it, folds are still sought, so that they leave the panels.
 const BEYOND: f64 = 16.0;
-/// Points of the charts along each axis.
-const GRID: usize = 240;
 /// Pieces of the surface of panel (a) along each axis.
 const PIECES: usize = 48;
 /// Pitch rates at which folds are sought.
@@ -34,7 +32,7 @@ const CAPTIONS: [&str; 4] = [
 ];
 
 /// The four panels, and what they are said to show.
-pub(super) fn section() -> Result<Section, Error> {
+pub(super) fn section(grid: usize) -> Result<Section, Error> {
     let wheel = Mechanism::shipped("rolling_wheel")?;
     let tilts = [-TILT_DEG.to_radians(), TILT_DEG.to_radians()];
     let rates = [-RATE, RATE];
@@ -44,9 +42,9 @@ pub(super) fn section() -> Result<Section, Error> {
         wheel.chart(&[], axes, &[])
     };
     let a = panel(["psi_dot", "phi_dot"], PIECES)?;
-    let b = panel(["psi_dot", "phi_dot"], GRID)?;
-    let c = panel(["theta", "psi_dot"], GRID)?;
-    let d = panel(["theta", "phi_dot"], GRID)?;
+    let b = panel(["psi_dot", "phi_dot"], grid)?;
+    let c = panel(["theta", "psi_dot"], grid)?;
+    let d = panel(["theta", "phi_dot"], grid)?;
     let folds = folds(wheel)?;
 
     let mut claims = Vec::new();
@@ -236,10 +234,10 @@ fn whole(claims: &mut Vec<Claim>, wheel: Mechanism, b: &Chart, c: &Chart) -> Res
         "motions are missing at {} and {} of {} places",
         full(b),
         full(c),
-        GRID * GRID
+        b.cells.len()
     );
     // A row or column of the grid may touch ψ̇ = 0, where straight rolling is a family.
-    let holds = full(b) + full(c) <= 4 * GRID;
+    let holds = full(b) + full(c) <= 4 * b.axes[0].count;
     claims.push(Claim::that(
         "figure 3(b), (c)",
         published,

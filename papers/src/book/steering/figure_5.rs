@@ -13,17 +13,16 @@ use appell::Error;
 const TILT_DEG: f64 = 60.0;
 /// Largest yaw rate that is drawn, in rad/s.
 const YAW: f64 = 10.0;
-const GRID: usize = 240;
 const COMMAND: &str =
     "appell stability unicycle --chart theta=-60deg..60deg,psi_dot=-10..10 --require z_A>=0";
 
 /// The map, and what it is said to show.
-pub(super) fn section() -> Result<Section, Error> {
+pub(super) fn section(grid: usize) -> Result<Section, Error> {
     let unicycle = Mechanism::shipped("unicycle")?;
     let tilt = TILT_DEG.to_radians();
     let axes = [
-        ("theta", [-tilt, tilt], GRID),
-        ("psi_dot", [-YAW, YAW], GRID),
+        ("theta", [-tilt, tilt], grid),
+        ("psi_dot", [-YAW, YAW], grid),
     ];
     let chart = unicycle.chart(&[], axes, &[("z_A", 0.0)])?;
     let upright = (2.0 * SLIDER_MASS * GRAVITY / (3.0 * WHEEL_MASS * RADIUS)).sqrt();
@@ -76,7 +75,7 @@ pub(super) fn section() -> Result<Section, Error> {
         title: "Steady motions of the unicycle".to_owned(),
         labels: names.map(|name| name.label),
         ranges: [[-TILT_DEG, TILT_DEG], [-YAW, YAW]],
-        counts: [GRID; 2],
+        counts: [grid; 2],
         kinds: [
             "mass below the centre",
             "",

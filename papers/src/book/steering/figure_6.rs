@@ -10,20 +10,19 @@ use appell::steady::regions;
 
 const TILT_DEG: f64 = 60.0;
 const YAW: f64 = 10.0;
-const GRID: usize = 240;
 /// In kg.
 const MASSES: [f64; 8] = [0.0, 1.0, 2.0, 5.0, 10.0, 15.0, 20.0, 30.0];
 
 /// A chart for each mass.
-pub(super) fn section() -> Result<Section, Error> {
+pub(super) fn section(grid: usize) -> Result<Section, Error> {
     let (mut claims, mut pictures) = (Vec::new(), Vec::new());
     for mass in MASSES {
         let (mechanism, given, least) = given(mass);
         let mechanism = Mechanism::shipped(mechanism)?;
         let tilt = TILT_DEG.to_radians();
         let axes = [
-            ("theta", [-tilt, tilt], GRID),
-            ("psi_dot", [-YAW, YAW], GRID),
+            ("theta", [-tilt, tilt], grid),
+            ("psi_dot", [-YAW, YAW], grid),
         ];
         let chart = mechanism.chart(&given, axes, &least)?;
         claims.push(claim(mass, mechanism, &chart)?);

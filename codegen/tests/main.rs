@@ -1,0 +1,26 @@
+//! The derivation and what is made of it, from the outside.
+
+mod emit_support;
+#[cfg(feature = "jit")]
+mod jit_support;
+mod symbolic_random;
+
+mod audit;
+mod emit;
+mod emit_golden;
+mod findings;
+mod fuzz_derivation;
+#[cfg(feature = "jit")]
+mod jit;
+#[cfg(feature = "jit")]
+mod jit_model;
+#[cfg(feature = "jit")]
+mod jit_random;
+#[cfg(feature = "jit")]
+mod jit_safety;
+mod schedule;
+mod switches;
+mod symbolic_forms;
+mod symbolic_identity;
+mod symbolic_laws;
+mod symbolic_print;

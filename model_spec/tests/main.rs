@@ -1,0 +1,9 @@
+//! The mechanism language, from the outside.
+
+mod bad_specs;
+mod expressions;
+mod fuzz;
+mod language;
+mod manual;
+mod schema;
+mod shipped;

@@ -1,0 +1,72 @@
+//! A page with the moving mechanism: one file that needs no network.
+//!
+//! [`data`] writes what the page shows; the scripts beside it draw that, whatever the mechanism:
+//!
+//! | script | what it knows |
+//! |---|---|
+//! | `vectors.js` | vectors, affine maps, boxes |
+//! | `film.js`, `colours.js` | the data at any time; light and dark |
+//! | `gl.js`, `painter.js` | programs and buffers of WebGL 2; the passes of a picture, in their order |
+//! | `shapes.js`, `solids.js` | cylinder, ball, ring …; the pass that draws them in their light |
+//! | `traces.js`, `ground.js` | the passes of traces and of the squares on the ground |
+//! | `parts.js`, `stage.js` | wheels, springs, arrows … of shapes; all of them where they are at a time |
+//! | `camera.js`, `names.js` | the eye and its pointers; names of points over the picture |
+//! | `panel.js`, `player.js` | legend, values, plot; time, keys and buttons |
+
+mod data;
+
+use appell_codegen::mechanics::finding::Outcome;
+use appell_runtime::Trajectory;
+use appell_runtime::model::Model;
+use appell_spec::Mechanism;
+use maud::{PreEscaped, html};
+
+use crate::skeleton::Skeleton;
+
+const STYLE: &str = include_str!("film/style.css");
+const BODY: &str = include_str!("film/body.html");
+/// In the order in which they use each other.
+const SCRIPTS: [&str; 15] = [
+    include_str!("film/vectors.js"),
+    include_str!("film/film.js"),
+    include_str!("film/colours.js"),
+    include_str!("film/gl.js"),
+    include_str!("film/shapes.js"),
+    include_str!("film/solids.js"),
+    include_str!("film/traces.js"),
+    include_str!("film/ground.js"),
+    include_str!("film/painter.js"),
+    include_str!("film/parts.js"),
+    include_str!("film/stage.js"),
+    include_str!("film/camera.js"),
+    include_str!("film/panel.js"),
+    include_str!("film/names.js"),
+    include_str!("film/player.js"),
+];
+
+/// Nothing but what stands in the page.
+const POLICY: &str = "default-src 'none'; script-src 'unsafe-inline'; \
+                      style-src 'unsafe-inline'; img-src data:";
+
+/// The page of a motion; `ending` tells why it ended early.
+pub fn page(
+    mechanism: &Mechanism,
+    model: &dyn Model,
+    motion: &Trajectory,
+    ending: Option<&str>,
+) -> Outcome<String> {
+    let data = data::json(mechanism, model, motion, ending)?;
+    // The text of a spec stays text: no `<` leaves the data, so that nothing in it ends the element.
+    let data = data.to_string().replace('<', "\\u003c");
+    let scripts = SCRIPTS.join("\n");
+    let skeleton = Skeleton {
+        policy: Some(POLICY),
+        ..Skeleton::new(&mechanism.title, STYLE)
+    };
+    Ok(skeleton.around(&html! {
+        (PreEscaped(BODY))
+        script type="application/json" id="film" { (PreEscaped(data)) }
+        (PreEscaped("\n"))
+        script { (PreEscaped("\n\"use strict\";\n")) (PreEscaped(scripts)) }
+    }))
+}

@@ -1,0 +1,197 @@
+//! What the page shows, as JSON: names and shapes as they are, numbers over time packed.
+
+use appell_codegen::mechanics::finding::Outcome;
+use appell_runtime::Trajectory;
+use appell_runtime::model::{Model, ModelInfo};
+use appell_spec::Mechanism;
+use appell_spec::mechanism::{BodyId, FrameId, Point, PointId};
+use serde_json::{Value, json};
+
+use crate::drawing::film::{Film, Force, ForceKind, Shape, film};
+use crate::drawing::link::{Link, LinkKind};
+
+/// A page with more rows than this takes long to open.
+const MOST_ROWS: usize = 12_000;
+
+/// The film of a motion with the values of its columns.
+pub(super) fn json(
+    mechanism: &Mechanism,
+    model: &dyn Model,
+    motion: &Trajectory,
+    ending: Option<&str>,
+) -> Outcome<Value> {
+    let rows = thinned(motion.len());
+    let film = film(mechanism, model, motion, &rows)?;
+    let times = rows.iter().map(|&row| motion.times()[row]);
+    let info = motion.info();
+    let columns = motion.columns();
+    let values = rows.iter().flat_map(|&row| {
+        let values = motion.row(row).iter().zip(columns);
+        values.map(|(&value, column)| column.to_unit(value))
+    });
+    let told = columns.iter().enumerate().map(|(index, column)| {
+        json!({
+            "name": column.name,
+            "about": column.about,
+            "unit": column.unit,
+            "group": group(info, index),
+        })
+    });
+    let events = motion.breaches.iter();
+    let events = events.map(|breach| json!({ "t": breach.t, "what": breach.describe(info) }));
+    let [right, up, floor, vertical] = film.view;
+    let flat = film.flat_across.is_some();
+    Ok(json!({
+        "title": mechanism.title,
+        "source": mechanism.source,
+        "ending": ending,
+        "events": events.collect::<Vec<_>>(),
+        "view": { "right": right, "up": up, "floor": floor, "vertical": vertical, "flat": flat },
+        "points": points(mechanism),
+        "frames": frames(mechanism, &film),
+        "links": links(&film),
+        "bodies": bodies(mechanism, &film),
+        "forces": forces(&film),
+        "contacts": film.contacts.iter().map(|point| point.index()).collect::<Vec<_>>(),
+        "columns": told.collect::<Vec<_>>(),
+        "times": packed(times),
+        "positions": packed(film.positions.iter().copied()),
+        "turns": packed(film.turns.iter().copied()),
+        "arrows": packed(film.arrows.iter().copied()),
+        "values": packed(values),
+    }))
+}
+
+/// All rows, or every second, third … and the last.
+fn thinned(rows: usize) -> Vec<usize> {
+    let step = rows.div_ceil(MOST_ROWS).max(1);
+    let last = rows.checked_sub(1).filter(|last| last % step != 0);
+    (0..rows).step_by(step).chain(last).collect()
+}
+
+fn points(mechanism: &Mechanism) -> Vec<Value> {
+    let point = |(id, point): (PointId, &Point)| {
+        let mut bodies = mechanism.bodies.iter().filter(|body| body.centre == id);
+        let body = bodies.clone().next();
+        json!({
+            "name": point.name,
+            "about": point.about,
+            "body": body.map(|body| &body.name),
+            "mass": bodies.any(|body| body.inertia.is_none()),
+        })
+    };
+    mechanism.points.entries().map(point).collect()
+}
+
+fn frames(mechanism: &Mechanism, film: &Film) -> Vec<Value> {
+    let frames = mechanism.frames.iter().zip(&film.seats);
+    frames
+        .map(|(frame, seat)| json!({ "name": frame.name, "at": seat.map(PointId::index) }))
+        .collect()
+}
+
+fn links(film: &Film) -> Vec<Value> {
+    let link = |link: &Link| {
+        let kind = match link.kind {
+            LinkKind::Way => "way",
+            LinkKind::Rod => "rod",
+            LinkKind::Spring => "spring",
+            LinkKind::Damper => "damper",
+        };
+        json!({ "kind": kind, "ends": link.ends.map(PointId::index) })
+    };
+    film.links.iter().map(link).collect()
+}
+
+fn bodies(mechanism: &Mechanism, film: &Film) -> Vec<Value> {
+    let shape = |(id, shape): &(BodyId, Shape)| {
+        let body = &mechanism.bodies[*id];
+        let shape = match shape {
+            Shape::Wheel { hub, axis, radius } => {
+                json!({ "kind": "wheel", "hub": hub, "axis": axis, "radius": radius })
+            }
+            Shape::Ball(radius) => json!({ "kind": "ball", "radius": radius }),
+            Shape::Ellipsoid(map) => json!({ "kind": "ellipsoid", "map": map }),
+        };
+        json!({ "name": body.name, "centre": body.centre.index(), "frame": body.frame.map(FrameId::index), "shape": shape })
+    };
+    film.shapes.iter().map(shape).collect()
+}
+
+fn forces(film: &Film) -> Vec<Value> {
+    let force = |force: &Force| {
+        let kind = match force.kind {
+            ForceKind::Reaction => "reaction",
+            ForceKind::Load => "load",
+            ForceKind::Weight => "weight",
+        };
+        json!({ "kind": kind, "at": force.at.index() })
+    };
+    film.forces.iter().map(force).collect()
+}
+
+/// What a column is, as a heading.
+fn group(info: &ModelInfo, column: usize) -> &'static str {
+    let states = info.state_len();
+    let inputs = states + info.input_len();
+    match column {
+        _ if column < info.speeds => "pseudo-velocities",
+        _ if column < states => "coordinates",
+        _ if column < inputs => "inputs",
+        _ if column < inputs + info.output_len() => "outputs",
+        _ => "energies and forces",
+    }
+}
+
+/// Numbers in single precision, little end first, in base 64.
+fn packed(numbers: impl Iterator<Item = f64>) -> String {
+    // Seven digits are more than a picture shows.
+    #[allow(clippy::cast_possible_truncation)]
+    let bytes: Vec<u8> = numbers.flat_map(|n| (n as f32).to_le_bytes()).collect();
+    base64(&bytes)
+}
+
+fn base64(bytes: &[u8]) -> String {
+    const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    let mut text = String::with_capacity(bytes.len().div_ceil(3) * 4);
+    for chunk in bytes.chunks(3) {
+        let byte = |k: usize| u32::from(chunk.get(k).copied().unwrap_or(0));
+        let bits = byte(0) << 16 | byte(1) << 8 | byte(2);
+        for k in 0..4 {
+            let digit = DIGITS[(bits >> (18 - 6 * k)) as usize & 63];
+            text.push(if k <= chunk.len() {
+                char::from(digit)
+            } else {
+                '='
+            });
+        }
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn base_64_is_that_of_rfc_4648() {
+        for (bytes, text) in [
+            ("", ""),
+            ("f", "Zg=="),
+            ("fo", "Zm8="),
+            ("foo", "Zm9v"),
+            ("foobar", "Zm9vYmFy"),
+        ] {
+            assert_eq!(base64(bytes.as_bytes()), text);
+        }
+    }
+
+    #[test]
+    fn a_long_motion_keeps_its_first_and_last_row() {
+        assert_eq!(thinned(4), [0, 1, 2, 3]);
+        let rows = thinned(10 * MOST_ROWS + 2);
+        assert_eq!(rows[..2], [0, 11]);
+        assert_eq!(rows.last(), Some(&(10 * MOST_ROWS + 1)));
+        assert!(thinned(0).is_empty());
+    }
+}

@@ -1,0 +1,99 @@
+//! Values that look like a wrong unit: what was fitted is near a factor between units.
+
+use appell_gap::diagnose::{Hypothesis, Report};
+
+use crate::text::number;
+
+/// Factors between units that people mix up.
+const FACTORS: [(f64, &str); 6] = [
+    (180.0 / std::f64::consts::PI, "180/π"),
+    (std::f64::consts::PI / 180.0, "π/180"),
+    (1000.0, "1000"),
+    (0.001, "1/1000"),
+    (9.81, "9.81"),
+    (1.0 / 9.81, "1/9.81"),
+];
+/// Gravity and units are rounded by as much.
+const ROUNDED: f64 = 0.005;
+/// Deviations within which a value is near a factor.
+const NEAR: f64 = 2.0;
+/// A value known no better than this is near many factors.
+const VAGUE: f64 = 0.05;
+/// Hypotheses less probable than this are not worth a doubt.
+const PROBABLE: f64 = 0.05;
+
+/// Questions about the units of the hypotheses that count.
+pub fn doubts(report: &Report) -> Vec<String> {
+    let which = report.which.iter();
+    let mut doubts: Vec<String> = which
+        .filter(|hypothesis| hypothesis.probability >= PROBABLE)
+        .flat_map(of)
+        .collect();
+    doubts.dedup();
+    doubts
+}
+
+fn of(hypothesis: &Hypothesis) -> Vec<String> {
+    let Some(changes) = &hypothesis.changes else {
+        return Vec::new();
+    };
+    let mut doubts = Vec::new();
+    // An input that acts as u + p u acts 1 + p times.
+    for (input, adds) in &changes.inputs {
+        let gain = adds.strip_suffix(&format!("*{input}"));
+        let mut values = hypothesis.parameters.iter();
+        let value = values.find(|value| gain == Some(&value.name.replace(['@', '.'], "_")));
+        let acts = format!("`{input}` acts like {{}} times what is commanded");
+        doubts.extend(value.and_then(|v| doubt(1.0 + v.value, v.std, &acts, input)));
+    }
+    for one in changes
+        .signal_effects
+        .iter()
+        .filter(|one| one.acts == "scale")
+    {
+        let own = format!("{}.", one.effect);
+        let mut values = hypothesis.parameters.iter();
+        let value = values.find(|value| value.name.starts_with(&own));
+        let shows = format!("`{}` shows {{}} times what there is", one.on);
+        doubts.extend(value.and_then(|v| doubt(v.value, v.std, &shows, &one.on)));
+    }
+    for one in &changes.parameters {
+        let Some(std) = one.std else { continue };
+        let (ratio, std) = (one.value / one.stated, std / one.stated.abs());
+        let is = format!("`{}` is {{}} times what is stated", one.name);
+        doubts.extend(doubt(ratio, std, &is, &one.name));
+    }
+    doubts
+}
+
+/// The question, if a factor lies within what is known of a value.
+fn doubt(value: f64, std: f64, says: &str, whose: &str) -> Option<String> {
+    let size = value.abs();
+    if !(std.is_finite() && std <= VAGUE * size) {
+        return None;
+    }
+    let within = (NEAR * std).max(ROUNDED * size);
+    let near = |(factor, _): &&(f64, &str)| (size - factor).abs() <= within;
+    let (_, factor) = FACTORS.iter().find(near)?;
+    let says = says.replace("{}", &number(value));
+    Some(format!(
+        "{says}, which is close to {factor}: is the unit of `{whose}` right?"
+    ))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_factor_between_units_is_doubted_and_nothing_else() {
+        let told = |value, std| doubt(value, std, "`x` shows {} times what there is", "x");
+        let degrees = told(57.1, 0.6).unwrap_or_default();
+        assert!(degrees.contains("57.1"), "{degrees}");
+        assert!(degrees.ends_with("close to 180/π: is the unit of `x` right?"));
+        assert!(told(-0.10197, 1e-6).is_some_and(|text| text.contains("1/9.81")));
+        for (value, std) in [(1.02, 0.01), (50.0, 1.0), (9.0, 2.0), (1000.0, f64::NAN)] {
+            assert_eq!(told(value, std), None, "{value} ± {std}");
+        }
+    }
+}

@@ -1,0 +1,529 @@
+//! A gap report as a page that needs no network: what a control engineer can act on.
+
+use std::fmt::Write as _;
+
+use appell_codegen::{Derived, derived};
+use appell_gap::data::{DataSet, Part};
+use appell_gap::diagnose::{Ahead, GapVerdict, HowFar, Hypothesis, Report, Where};
+use maud::{Markup, PreEscaped, html};
+
+use super::doubt::doubts;
+use super::numbers::{measured, percent, short};
+use super::plots;
+use super::words::{hinted, joined, left_out, sentence};
+use crate::drawing::marked;
+use crate::skeleton::Skeleton;
+use crate::text::with_unit;
+
+const STYLE: &str = include_str!("page.css");
+/// An effect that betters predictions by less is of little matter.
+const MATTERS: f64 = 0.05;
+
+/// The page.
+pub fn page(set: &DataSet, report: &Report) -> String {
+    let name = &set.mechanism.name;
+    let title = format!("{name}: the gap");
+    Skeleton::new(&title, STYLE).around(&html! {
+        main {
+            h1 { (name) ": model against recordings" }
+            p class="faint" { (set.description) }
+            p class="verdict" { (verdict(report)) }
+            (place(set, report))
+            (which(report))
+            (how_far(report))
+            (next(set, report))
+            (detectable(report))
+            (recordings(set, report))
+        }
+    })
+}
+
+/// The verdict, with the size of the effect and what it closes.
+fn verdict(report: &Report) -> String {
+    let mut text = capital(&sentence(report));
+    let top = report.which.iter().find(|h| !h.parameters.is_empty());
+    let is_named = matches!(
+        report.verdict,
+        GapVerdict::Explained | GapVerdict::Ambiguous
+    );
+    if let Some(top) = top.filter(|_| is_named) {
+        let _ = write!(text, ": {}", values(top).join(", "));
+    }
+    text.push('.');
+    if let (Some(far), true) = (&report.how_far, is_named) {
+        let _ = write!(
+            text,
+            " On runs that no fit has seen, it closes {} [{}, {}] of the gap, and {} of what the \
+             re-fitted parameters leave.",
+            percent(far.closed),
+            percent(far.closed_ci95[0]),
+            percent(far.closed_ci95[1]),
+            percent(far.closed_vs_refitted),
+        );
+        if far.with_effect > far.refitted {
+            text += " Predictions get worse with it: what was fitted does not hold on these runs.";
+        } else if far.with_effect > (1.0 - MATTERS) * far.refitted {
+            text += " The effect is certain and of little matter: predictions hardly get better.";
+        }
+    }
+    text
+}
+
+/// `force = 0.412 ± 0.021 N`
+fn values(hypothesis: &Hypothesis) -> Vec<String> {
+    let values = hypothesis.parameters.iter().map(|value| {
+        let (effect, short) = value.name.rsplit_once('.').unwrap_or(("", &value.name));
+        let number = with_unit(&measured(value.value, value.std), &value.unit);
+        // Several effects may have values of one name.
+        let site = effect
+            .split_once('@')
+            .filter(|_| hypothesis.effects.len() > 1);
+        let site = site.map_or_else(String::new, |(_, site)| format!(" ({site})"));
+        format!("{}{site} = {number}", short.replace('_', " "))
+    });
+    values.collect()
+}
+
+fn place(set: &DataSet, report: &Report) -> Markup {
+    let place = &report.place;
+    // What sensors show wrong is no force.
+    let is_force = place.equations.iter().any(|one| one.share > 0.0);
+    let pictures = report.pictures.as_ref();
+    let law = pictures.and_then(|pictures| pictures.force_law.as_ref());
+    let history = pictures.filter(|_| report.verdict != GapVerdict::NoGap);
+    html! {
+        h2 { "Where" }
+        (locus(report))
+        @for hint in &report.hints {
+            p { (capital(&hinted(hint))) "." }
+        }
+        @if let Some(svg) = drawing(set, report) {
+            @let caption = if svg.contains("class=\"ring") {
+                "The mechanism at its initial state. A ring marks where the gap is."
+            } else {
+                "The mechanism at its initial state."
+            };
+            (figure(svg, caption))
+        }
+        @if let Some(pictures) = history {
+            @let caption = format!(
+                "The missing force of each equation in parts of {} s of the runs that were fitted, the \
+                 stronger the colour the larger; beside the name the largest.",
+                short(pictures.force_history.part)
+            );
+            (figure(plots::over_time(&pictures.force_history), &caption))
+        }
+        (windows(place))
+        @if is_force {
+            (equations(set, place))
+            @if let Some(law) = law {
+                @let caption = if law.law.is_empty() {
+                    "The force that the model lacks, as the recordings show it without any law, over what \
+                     it depends on most."
+                } else {
+                    "The force that the model lacks, as the recordings show it without any law, and the \
+                     law that was found."
+                };
+                (figure(plots::law(law), caption))
+            }
+        }
+    }
+}
+
+/// What of the model is wrong.
+fn locus(report: &Report) -> Markup {
+    match report.verdict {
+        GapVerdict::NoGap => html! {
+            p { "No equation disagrees with the recordings beyond noise and disturbance." }
+        },
+        GapVerdict::Unexplained => html! {
+            @if let Some(left) = &report.left {
+                p { (capital(&left.about)) "." }
+            }
+        },
+        _ if report.place.equations.is_empty() => html! {
+            p { "In the structure of the model: another one fits the recordings." }
+        },
+        _ => html! {
+            p { "The gap lies in the " b { (report.place.domain) "s" } " of the model." }
+        },
+    }
+}
+
+/// The mechanism with rings; nothing where it has no drawing.
+fn drawing(set: &DataSet, report: &Report) -> Option<String> {
+    let sites = report
+        .found
+        .iter()
+        .filter_map(|found| found.effect.split_once('@'));
+    // A channel stands for what it shows.
+    let name = |site: &str| {
+        let channel = set.channels.iter().find(|channel| channel.column == site);
+        let label = channel.and_then(|channel| channel.role.label(&set.mechanism));
+        label.map_or_else(|| site.to_owned(), |label| label.name.clone())
+    };
+    let mut names: Vec<String> = match report.verdict {
+        GapVerdict::NoGap => Vec::new(),
+        GapVerdict::Unexplained => {
+            let left = report.left.iter();
+            left.map(|left| name(&left.place)).collect()
+        }
+        _ => sites.map(|(_, site)| name(site)).collect(),
+    };
+    names.dedup();
+    let names: Vec<&str> = names.iter().map(String::as_str).collect();
+    let Derived {
+        mechanism,
+        derivation,
+        ..
+    } = derived(&set.spec.file, &set.spec.text).ok()?;
+    marked(&mechanism, derivation, &names).ok()
+}
+
+fn equations(set: &DataSet, place: &Where) -> Markup {
+    let speeds = &set.mechanism.pseudo_velocities;
+    let rows = place.equations.iter().map(|equation| {
+        let mut labels = speeds.iter().map(|speed| &speed.label);
+        let label = labels.find(|label| label.name == equation.name);
+        let about = label.map_or("", |label| label.about.as_str());
+        [
+            html! { (code(&equation.name)) br; span class="faint" { (about) } },
+            bar(equation.share),
+            html! { (short(equation.rms)) " " (equation.unit) },
+            html! { (short(equation.p_value)) },
+        ]
+    });
+    let heading = [
+        "equation of",
+        "share of the gap",
+        "missing force (rms)",
+        "p-value",
+    ];
+    html! {
+        @if !place.equations.is_empty() {
+            (table(heading, rows, 2))
+        }
+    }
+}
+
+fn windows(place: &Where) -> Markup {
+    let windows = place.windows.iter().map(|w| {
+        [
+            html! { (w.run) },
+            html! { (short(w.from)) " to " (short(w.to)) " s" },
+            code(&w.equation),
+            html! { (short(w.z)) },
+        ]
+    });
+    let regions = place.region.iter().map(|r| {
+        [
+            code(&r.variable),
+            html! { (r.description) },
+            html! { (short(r.z)) },
+        ]
+    });
+    html! {
+        @if !place.windows.is_empty() {
+            details {
+                summary { (place.windows.len()) " windows that stand out" }
+                (table(["run", "when", "equation of", "size in deviations"], windows, 3))
+            }
+        }
+        @if !place.region.is_empty() {
+            (table(["depends on", "where", "size in deviations"], regions, 2))
+        }
+    }
+}
+
+fn which(report: &Report) -> Markup {
+    let rows = report.which.iter().map(|hypothesis| {
+        let name = match hypothesis.effects.first().map(String::as_str) {
+            None => html! { "no effect: the model with its parameters within tolerance" },
+            Some("unknown") => html! { "none of the library" },
+            Some(_) => code(&joined(&hypothesis.effects)),
+        };
+        let values = values(hypothesis);
+        let bayes = hypothesis.log_bayes_factor.map_or_else(String::new, short);
+        [
+            bar(hypothesis.probability),
+            html! { (name) br; (separated(&values, |value| html! { (value) }, &html! { br; })) },
+            html! { (bayes) },
+        ]
+    });
+    let heading = [
+        "probability",
+        "hypothesis, with values ± one standard deviation",
+        "log Bayes factor",
+    ];
+    html! {
+        h2 { "Which" }
+        (table(heading, rows, 2))
+        @for doubt in doubts(report) {
+            p { b { "A unit?" } " " (capital(&doubt.replace('`', ""))) }
+        }
+        @for group in &report.tied {
+            p {
+                b { "Tied." } " These recordings cannot tell "
+                (separated(group, |effects| code(&joined(effects)), &html! { " and " }))
+                " apart."
+            }
+        }
+        @if let Some(left) = report.left.as_ref().filter(|left| left.is_there()) {
+            p {
+                b { "Left." } " Beside the first hypothesis the recordings speak for " (left.about)
+                ", with a log Bayes factor of " (short(left.log_bayes_factor)) ". It is "
+                (percent(left.gain / (left.gain + left.explained.max(0.0)))) " of the gap."
+            }
+        }
+        @if !report.failed.is_empty() {
+            details {
+                summary {
+                    (report.failed.len()) " of the hypotheses could not be fitted to the end"
+                }
+                ul {
+                    @for (effects, reason) in &report.failed {
+                        li { (code(&joined(effects))) ": " (reason) }
+                    }
+                }
+            }
+        }
+    }
+}
+
+fn how_far(report: &Report) -> Markup {
+    let Some(far) = &report.how_far else {
+        return html! {
+            h2 { "How far" }
+            p { "No run was held out, so nothing tells how far the gap closes." }
+        };
+    };
+    let rows = report.horizons.iter().map(|ahead| {
+        let floor = ahead.noise_floor.map_or_else(|| "–".to_owned(), short);
+        [
+            horizon(ahead),
+            short(ahead.nominal),
+            short(ahead.refitted),
+            short(ahead.with_effect),
+            floor,
+        ]
+        .map(|cell| html! { (cell) })
+    });
+    let heading = [
+        "ahead",
+        "as stated",
+        "parameters re-fitted",
+        "with the effect",
+        "noise floor",
+    ];
+    let traces = report.pictures.iter().flat_map(|pictures| &pictures.traces);
+    let disturbances = report.disturbances.iter().map(|(name, before, after)| {
+        [
+            code(name),
+            html! { (short(*before)) },
+            html! { (short(*after)) },
+        ]
+    });
+    html! {
+        h2 { "How far" }
+        (closed(far))
+        (table(heading, rows, 1))
+        p class="faint" {
+            "Root mean square error of predictions, in units of the noise. The floor is what the filter \
+             expects if the hypothesis is right."
+        }
+        @for trace in plots::most_bettered(traces) {
+            @let caption = format!(
+                "{} of {}, which no fit has seen, beside predictions {} s before, and their errors. The \
+                 band is two standard deviations of the error that is left if the hypothesis is right.",
+                trace.column,
+                trace.run,
+                appell_gap::diagnose::AHEAD
+            );
+            (figure(plots::trace(trace).concat(), &caption))
+        }
+        @if !report.disturbances.is_empty() {
+            p {
+                "Disturbance that the filter needs to follow the recordings: an effect that is missing \
+                 shows as disturbance."
+            }
+            (table(["equation of", "without the effect", "with it"], disturbances, 1))
+        }
+    }
+}
+
+fn closed(far: &HowFar) -> Markup {
+    let [low, high] = far.closed_ci95;
+    html! {
+        p {
+            (far.horizon_s) " s ahead the error falls from " (short(far.nominal)) " to "
+            (short(far.with_effect)) " of the noise; the floor is " (short(far.noise_floor))
+            ". The gap closes by " b { (percent(far.closed)) } ", with 95 % between " (percent(low))
+            " and " (percent(high)) "; against the model with re-fitted parameters by "
+            b { (percent(far.closed_vs_refitted)) } ". Runs: " (far.runs.join(", ")) "."
+        }
+    }
+}
+
+fn horizon(ahead: &Ahead) -> String {
+    match ahead.horizon {
+        horizon if horizon <= 0.0 => "one step".to_owned(),
+        horizon if horizon.is_finite() => format!("{horizon} s"),
+        _ => "free run".to_owned(),
+    }
+}
+
+fn is_alternative(hypothesis: &Hypothesis) -> bool {
+    let mut effects = hypothesis.effects.iter();
+    effects.any(|effect| effect.starts_with("alternative:"))
+}
+
+/// What to do now.
+fn next(set: &DataSet, report: &Report) -> Markup {
+    let advice = match report.verdict {
+        GapVerdict::NoGap => html! {
+            p {
+                "Nothing has to be added to the model. The table below tells how small an effect these \
+                 recordings would have shown."
+            }
+        },
+        _ if is_alternative(&report.which[0]) => html! {
+            p { "Go on with the alternative model, and diagnose that one." }
+        },
+        GapVerdict::Explained | GapVerdict::Ambiguous => html! {
+            p {
+                "Write the effect into the spec, with the report that " code { "--json report.json" }
+                " wrote:"
+            }
+            pre { "appell apply MODEL --report report.json -o improved.toml" }
+        },
+        GapVerdict::Unexplained => html! {
+            p {
+                "Look at what the missing force depends on, and write that effect as a few lines of the \
+                 spec language: " code { "appell diagnose --effects own.toml" } "."
+            }
+        },
+    };
+    html! {
+        h2 { "Next" }
+        (advice)
+        @if let Some(experiment) = &report.experiment {
+            @let [first, second] = experiment.separates.each_ref().map(|one| code(&joined(one)));
+            p {
+                "This experiment tells " (first) " from " (second) ": " (experiment.about)
+                ". The two are " (short(experiment.separation_now)) " standard deviations apart now, and "
+                (short(experiment.separation_then)) " with its recording. The command writes the input \
+                 as a table beside the gap report."
+            }
+            @for plot in plots::experiment(experiment, &set.mechanism) {
+                (figure(plot, "The input of the next experiment."))
+            }
+        } @else if report.verdict == GapVerdict::Ambiguous {
+            p {
+                "No input that was tried tells the tied hypotheses apart and keeps the motion within its \
+                 limits. Give wider ones with " code { "--limit" } ", or record under feedback."
+            }
+        }
+    }
+}
+
+fn detectable(report: &Report) -> Markup {
+    let rows = report.detectable.iter().map(|one| {
+        let smallest = with_unit(&short(one.smallest), &one.unit);
+        [code(&one.effect), html! { (smallest) }]
+    });
+    html! {
+        @if !report.detectable.is_empty() {
+            h2 { "What these recordings would show" }
+            details open[report.verdict == GapVerdict::NoGap] {
+                summary {
+                    "The smallest size of each effect that would be found with near certainty"
+                }
+                (table(["effect", "smallest size"], rows, 1))
+            }
+        }
+    }
+}
+
+fn recordings(set: &DataSet, report: &Report) -> Markup {
+    let rows = set.runs.iter().map(|run| {
+        let part = match run.part {
+            Part::Fit => "to fit",
+            Part::Test => "held out",
+        };
+        [
+            html! { (run.name) },
+            html! { (part) },
+            html! { (run.times.len()) },
+            html! { (short(run.duration())) " s" },
+        ]
+    });
+    html! {
+        h2 { "Recordings" }
+        (table(["run", "used", "rows", "length"], rows, 2))
+        @if let Some(rows) = left_out(report) {
+            p class="faint" { (rows) "." }
+        }
+        @for finding in &set.findings {
+            p class="faint" { (crate::recording::sentence(finding)) }
+        }
+    }
+}
+
+/// A table; the columns from `numbers` on stand to the right.
+fn table<const N: usize>(
+    heading: [&str; N],
+    rows: impl Iterator<Item = [Markup; N]>,
+    numbers: usize,
+) -> Markup {
+    let class = |column: usize| (column >= numbers).then_some("number");
+    html! {
+        table {
+            tr {
+                @for (column, text) in heading.iter().enumerate() {
+                    th class=[class(column)] { (text) }
+                }
+            }
+            @for row in rows {
+                tr {
+                    @for (column, cell) in row.iter().enumerate() {
+                        td class=[class(column)] { (cell) }
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// One after the other, with something between.
+fn separated<T>(list: &[T], shown: impl Fn(&T) -> Markup, between: &Markup) -> Markup {
+    html! {
+        @for (place, one) in list.iter().enumerate() {
+            @if place > 0 { (between) }
+            (shown(one))
+        }
+    }
+}
+
+/// A part as a bar beside its number.
+fn bar(part: f64) -> Markup {
+    let width = format!("width:{:.1}%", 100.0 * part.clamp(0.0, 1.0));
+    html! {
+        span class="share" { span class="bar" { i style=(width) {} } " " (percent(part)) }
+    }
+}
+
+fn figure(svg: String, caption: &str) -> Markup {
+    html! {
+        figure { (PreEscaped(svg)) figcaption { (caption) } }
+    }
+}
+
+fn code(text: &str) -> Markup {
+    html! { code { (text) } }
+}
+
+fn capital(text: &str) -> String {
+    let mut letters = text.chars();
+    let first = letters.next().map(char::to_uppercase);
+    first.into_iter().flatten().chain(letters).collect()
+}

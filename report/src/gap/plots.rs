@@ -1,0 +1,212 @@
+//! Pictures of a gap report.
+
+use appell_gap::diagnose::{Experiment, ForceHistory, ForceLaw, Trace};
+use appell_spec::Mechanism;
+
+use super::numbers::short;
+use crate::figure::{Layer, Look, Plot, Series};
+use crate::svg::{Document, Element, text};
+
+/// Channels that are drawn.
+const DRAWN: usize = 3;
+/// Colours: data, as stated, re-fitted, with the effect.
+const COLOURS: [usize; 4] = [2, 1, 4, 0];
+
+/// The channels that the effect betters most, in the order of the recordings.
+pub(super) fn most_bettered<'t>(traces: impl Iterator<Item = &'t Trace>) -> Vec<&'t Trace> {
+    let traces: Vec<&Trace> = traces.collect();
+    let mut order: Vec<usize> = (0..traces.len()).collect();
+    let gain = |&i: &usize| better(traces[i]);
+    order.sort_by(|a, b| gain(b).total_cmp(&gain(a)));
+    order.truncate(DRAWN);
+    order.sort_unstable();
+    order.into_iter().map(|i| traces[i]).collect()
+}
+
+/// Mean square of the error that the effect takes away, in units of what is left by right.
+fn better(trace: &Trace) -> f64 {
+    let square = |predicted: &[f64]| -> f64 {
+        let pairs = errors(trace, predicted)
+            .into_iter()
+            .filter(|error| error.is_finite());
+        pairs.map(|error| error * error).sum()
+    };
+    (square(&trace.refitted) - square(&trace.with_effect)) / trace.deviation.powi(2)
+}
+
+fn errors(trace: &Trace, predicted: &[f64]) -> Vec<f64> {
+    let pairs = trace.measured.iter().zip(predicted);
+    pairs
+        .map(|(measured, predicted)| measured - predicted)
+        .collect()
+}
+
+/// A channel with predictions, and the errors of these.
+pub(super) fn trace(trace: &Trace) -> [String; 2] {
+    let layer = |label: &str, y: Vec<f64>, look, colour| Layer {
+        series: Series {
+            label: label.to_owned(),
+            x: trace.times.clone(),
+            y,
+        },
+        look,
+        colour,
+    };
+    let [data, stated, refitted, effect] = COLOURS;
+    let label = |text: &str| format!("{text} [{}]", trace.unit);
+    let motion = Plot {
+        labels: ["t [s]".to_owned(), label(&trace.column)],
+        height: 170.0,
+        layers: vec![
+            layer("measured", trace.measured.clone(), Look::Points, data),
+            layer("as stated", trace.nominal.clone(), Look::Line, stated),
+            layer("re-fitted", trace.refitted.clone(), Look::Line, refitted),
+            layer(
+                "with the effect",
+                trace.with_effect.clone(),
+                Look::Line,
+                effect,
+            ),
+        ],
+    };
+    let wide = 2.0 * trace.deviation;
+    let edge = |value: f64| vec![value; trace.times.len()];
+    let error = |predicted: &[f64]| errors(trace, predicted);
+    let errors = Plot {
+        labels: ["t [s]".to_owned(), label("error")],
+        height: 150.0,
+        layers: vec![
+            layer("expected", edge(-wide), Look::Band(edge(wide)), data),
+            layer("as stated", error(&trace.nominal), Look::Line, stated),
+            layer("re-fitted", error(&trace.refitted), Look::Line, refitted),
+            layer(
+                "with the effect",
+                error(&trace.with_effect),
+                Look::Line,
+                effect,
+            ),
+        ],
+    };
+    [motion.to_svg(), errors.to_svg()]
+}
+
+/// The missing force over what it depends on.
+pub(super) fn law(law: &ForceLaw) -> String {
+    let layer = |label: &str, points: &[[f64; 2]], look, colour| Layer {
+        series: Series {
+            label: label.to_owned(),
+            x: points.iter().map(|[x, _]| *x).collect(),
+            y: points.iter().map(|[_, y]| *y).collect(),
+        },
+        look,
+        colour,
+    };
+    let [data, stated, _, effect] = COLOURS;
+    let mut layers = vec![
+        layer("recordings", &law.points, Look::Points, data),
+        layer("their mean", &law.means, Look::Line, stated),
+    ];
+    if !law.law.is_empty() {
+        layers.push(layer("law that was found", &law.law, Look::Line, effect));
+    }
+    let plot = Plot {
+        labels: [
+            format!("{} [{}]", law.variable, law.variable_unit),
+            format!(
+                "missing force in the equation of {} [{}]",
+                law.equation, law.unit
+            ),
+        ],
+        height: 260.0,
+        layers,
+    };
+    plot.to_svg()
+}
+
+/// The missing force of each equation over time: the darker, the larger beside the largest of the
+/// equation.
+pub(super) fn over_time(map: &ForceHistory) -> String {
+    const LEFT: f64 = 190.0;
+    const WIDTH: f64 = 720.0;
+    const ROW: f64 = 26.0;
+    const GAP: f64 = 6.0;
+    // Width of a letter on the average.
+    const LETTER: f64 = 6.6;
+    let parts: usize = map.runs.iter().map(|(_, _, parts)| parts).sum();
+    let gaps = GAP * map.runs.len().saturating_sub(1) as f64;
+    let cell = (WIDTH - LEFT - gaps) / parts.max(1) as f64;
+    let height = ROW * map.equations.len() as f64 + 40.0;
+    let mut svg = Document::styled_by_page([WIDTH, height], "heat");
+    for (row, equation) in map.equations.iter().enumerate() {
+        let largest = equation.rms.iter().copied().fold(0.0, f64::max);
+        let y = ROW * row as f64;
+        svg.put(&text([4.0, y + 17.0]).text(&equation.name));
+        let size = text([LEFT - 8.0, y + 17.0]).with("class", "small");
+        svg.put(&size.text(&format!("{} {}", short(largest), equation.unit)));
+        let mut index = 0;
+        for (run, (_, _, parts)) in map.runs.iter().enumerate() {
+            for _ in 0..*parts {
+                let x = LEFT + cell * index as f64 + GAP * run as f64;
+                let part = equation.rms[index] / largest.max(f64::MIN_POSITIVE);
+                let lengths = [
+                    ("x", x),
+                    ("y", y + 2.0),
+                    ("width", cell + 0.3),
+                    ("height", ROW - 4.0),
+                ];
+                let colour = format_args!("{part:.2}");
+                let square = Element::new("rect").lengths(lengths);
+                svg.put(&square.with("fill-opacity", colour).empty());
+                index += 1;
+            }
+        }
+    }
+    let (mut index, mut taken) = (0, 0.0);
+    for (run, (name, from, parts)) in map.runs.iter().enumerate() {
+        let x = LEFT + cell * index as f64 + GAP * run as f64;
+        index += parts;
+        let to = from + map.part * *parts as f64;
+        let label = format!("{name}: {} to {} s", short(*from), short(to));
+        let width = LETTER * label.chars().count() as f64;
+        // Short stretches of a run leave no room for their names.
+        if x < taken || x + width > WIDTH {
+            continue;
+        }
+        taken = x + width;
+        svg.put(&text([x, height - 20.0]).text(&label));
+    }
+    svg.finish()
+}
+
+/// The inputs of an experiment, in the units of the spec.
+pub(super) fn experiment(experiment: &Experiment, mechanism: &Mechanism) -> Vec<String> {
+    let plot = |(name, values): &(String, Vec<f64>)| {
+        let mut inputs = mechanism.inputs.iter();
+        let input = inputs.find(|input| input.label.name == *name)?;
+        let unit = &input.label.unit;
+        // Each value is held until the next time.
+        let mut x = Vec::with_capacity(2 * values.len());
+        let mut y = Vec::with_capacity(2 * values.len());
+        for (row, value) in values.iter().enumerate() {
+            let next = experiment.times.get(row + 1);
+            x.extend([
+                experiment.times[row],
+                *next.unwrap_or(&experiment.times[row]),
+            ]);
+            y.extend([unit.from_si(*value); 2]);
+        }
+        let label = String::new();
+        let line = Layer {
+            series: Series { label, x, y },
+            look: Look::Line,
+            colour: 0,
+        };
+        let plot = Plot {
+            labels: ["t [s]".to_owned(), format!("{name} [{}]", unit.text)],
+            height: 150.0,
+            layers: vec![line],
+        };
+        Some(plot.to_svg())
+    };
+    experiment.inputs.iter().filter_map(plot).collect()
+}

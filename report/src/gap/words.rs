@@ -1,0 +1,69 @@
+//! What a gap report says, in words.
+
+use appell_gap::diagnose::{GapVerdict, Hint, Report};
+
+/// The verdict in one sentence.
+pub fn sentence(report: &Report) -> String {
+    let about: Vec<&str> = report
+        .found
+        .iter()
+        .map(|found| found.about.as_str())
+        .collect();
+    match report.verdict {
+        GapVerdict::NoGap => "no gap beyond noise and disturbance".to_owned(),
+        GapVerdict::Explained => format!("the gap is explained by {}", about.join(" and ")),
+        GapVerdict::Ambiguous => format!(
+            "there is a gap; {} explains it best ({:.0} %), but {} cannot be ruled out",
+            about.join(" and "),
+            100.0 * report.which[0].probability,
+            rivals(report).join(", ")
+        ),
+        GapVerdict::Unexplained => {
+            let left = report.left.as_ref().map(|left| format!(": {}", left.about));
+            let left = left.unwrap_or_default();
+            format!("there is a gap that nothing in the library explains{left}")
+        }
+    }
+}
+
+/// The hypotheses that are tied with the first one, with their probabilities.
+fn rivals(report: &Report) -> Vec<String> {
+    let first = &report.which[0].effects;
+    let groups = report.tied.iter();
+    let tied = groups.filter(|group| group.contains(first)).flatten();
+    let named = |effects: &Vec<String>| {
+        let probability = report.which.iter().find(|one| one.effects == *effects)?;
+        let percent = 100.0 * probability.probability;
+        Some(format!("{} ({percent:.0} %)", joined(effects)))
+    };
+    tied.filter(|effects| *effects != first)
+        .filter_map(named)
+        .collect()
+}
+
+/// A hint in words.
+pub fn hinted(hint: &Hint) -> String {
+    format!(
+        "the gap in the equation of {} depends on {}, which the model does not know",
+        hint.equation, hint.variable
+    )
+}
+
+/// That rows were left out, if any were.
+pub fn left_out(report: &Report) -> Option<String> {
+    let [fitted, all] = report.rows;
+    (fitted < all).then(|| {
+        format!(
+            "{fitted} of {all} rows to fit were fitted, in stretches that are spread over the runs"
+        )
+    })
+}
+
+/// `a + b`
+pub fn joined(effects: &[String]) -> String {
+    if effects.is_empty() {
+        "nominal model".to_owned()
+    } else {
+        effects.join(" + ")
+    }
+}

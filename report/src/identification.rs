@@ -1,0 +1,350 @@
+//! What an identification found, for people: text, and a page with a figure.
+
+mod figure;
+mod page;
+
+use std::fmt::Write as _;
+use std::ops::Range;
+
+use appell_gap::data::{Channel, DataSet};
+use appell_gap::identify::{AHEAD, Answer, Estimate, HeldOut, Known};
+
+use crate::recording;
+use crate::text::{number, table};
+
+pub use figure::figure;
+pub use page::page;
+
+/// Parts of a combination that are smaller are not told.
+const NEGLIGIBLE: f64 = 0.1;
+/// Tolerances by which no value is off, unless it stands for something else.
+const FAR: f64 = 3.0;
+/// Ratio of errors that is no accident.
+const WORSE: f64 = 1.2;
+/// What it means.
+const BENT: &str = "On the runs that were held out the fitted model predicts worse than the nominal one, \
+a second ahead: what the model lacks has bent the parameters. `appell diagnose` looks for it.";
+/// Combinations that are known to more tolerances than this are not known.
+const UNKNOWN: f64 = 100.0;
+
+/// A table with its heading.
+struct Part {
+    heading: String,
+    /// The first one holds the names of the columns.
+    rows: Vec<Vec<String>>,
+    /// Columns of numbers.
+    numbers: Range<usize>,
+    /// Whether the numbers lie between -1 and 1 and are shown by colours too.
+    is_heat: bool,
+    /// A sentence below; may be empty.
+    note: String,
+}
+
+impl Part {
+    fn new<const N: usize>(heading: &str, columns: [&str; N], numbers: Range<usize>) -> Self {
+        Self {
+            heading: heading.to_owned(),
+            rows: vec![columns.map(str::to_owned).to_vec()],
+            numbers,
+            is_heat: false,
+            note: String::new(),
+        }
+    }
+}
+
+/// The tables that a person reads.
+pub fn text(set: &DataSet, answer: &Answer) -> String {
+    let mut text = recording::text(set);
+    for part in parts(set, answer) {
+        let rows = table(&part.rows, part.numbers);
+        // Writing to a string cannot fail.
+        let _ = write!(text, "\n{}\n\n{rows}", part.heading);
+        if !part.note.is_empty() {
+            let _ = writeln!(text, "\n{}", part.note);
+        }
+    }
+    if answer.held_out.is_empty() {
+        text.push_str("\nNo run was held out: nothing tells how the model predicts.\n");
+    }
+    text
+}
+
+fn parts(set: &DataSet, answer: &Answer) -> Vec<Part> {
+    let mut parts = vec![parameters(answer)];
+    if answer.parameters.len() > 1 {
+        parts.push(correlation(answer));
+    }
+    parts.extend([combinations(answer), levels(set, answer), residuals(answer)]);
+    if !answer.courses.is_empty() {
+        parts.push(courses(answer));
+    }
+    if !answer.held_out.is_empty() {
+        parts.push(held_out(set, answer));
+    }
+    parts
+}
+
+fn in_unit(estimate: &Estimate, value: f64) -> String {
+    number(value / estimate.quantity.scale)
+}
+
+fn parameters(answer: &Answer) -> Part {
+    let columns = [
+        "parameter",
+        "nominal",
+        "tolerance",
+        "found",
+        "from",
+        "to",
+        "unit",
+        "",
+    ];
+    let mut part = Part::new("95 % intervals", columns, 1..6);
+    for estimate in &answer.parameters {
+        let ends = estimate.interval95().map(|end| in_unit(estimate, end));
+        let [low, high] = if estimate.at_limit {
+            Default::default()
+        } else {
+            ends
+        };
+        let tolerance = estimate.tolerance.map(|std| in_unit(estimate, std));
+        part.rows.push(vec![
+            estimate.quantity.name.to_string(),
+            in_unit(estimate, estimate.nominal),
+            tolerance.unwrap_or_default(),
+            in_unit(estimate, estimate.value),
+            low,
+            high,
+            estimate.quantity.unit.to_string(),
+            remark(estimate).to_owned(),
+        ]);
+    }
+    if is_bent(answer) {
+        BENT.clone_into(&mut part.note);
+    }
+    part
+}
+
+/// Whether the fitted model predicts worse than the nominal one where nothing was fitted.
+fn is_bent(answer: &Answer) -> bool {
+    let mut errors = answer.held_out.iter();
+    let ahead = errors.find(|error| error.column.is_none() && error.horizon >= AHEAD);
+    ahead.is_some_and(|error| error.fitted > WORSE * error.nominal)
+}
+
+fn remark(estimate: &Estimate) -> &'static str {
+    let moved = (estimate.value - estimate.nominal).abs();
+    match (estimate.at_limit, estimate.tolerance, estimate.left) {
+        (true, ..) => "at the limit of its range",
+        (_, Some(tolerance), _) if moved > FAR * tolerance => "far beyond its tolerance",
+        (.., Some(left)) if left > 0.5 => "hardly told by the recordings",
+        _ => "",
+    }
+}
+
+/// How errors of parameters go together.
+fn correlation(answer: &Answer) -> Part {
+    let names = answer.parameters.iter();
+    let names: Vec<String> = names.map(|own| own.quantity.name.to_string()).collect();
+    let mut part = Part::new("Correlation of the errors of the parameters", [], 1..1);
+    part.numbers = 1..1 + names.len();
+    part.is_heat = true;
+    part.rows[0].push(String::new());
+    part.rows[0].extend(names.clone());
+    for (name, row) in names.into_iter().zip(answer.correlation.row_iter()) {
+        // No zero with a sign.
+        let cells = row
+            .iter()
+            .map(|value| format!("{:.2}", (100.0 * value).round() / 100.0 + 0.0));
+        part.rows.push([name].into_iter().chain(cells).collect());
+    }
+    part
+}
+
+/// Which combinations are known better than their tolerances.
+fn combinations(answer: &Answer) -> Part {
+    let known = answer
+        .combinations
+        .iter()
+        .filter(|known| known.deviation < 1.0);
+    let heading = format!(
+        "{} of {} combinations of parameters are known better than beforehand",
+        known.count(),
+        answer.combinations.len()
+    );
+    let columns = ["known to", "in parts of the tolerances"];
+    let mut part = Part::new(&heading, columns, 0..1);
+    for combination in &answer.combinations {
+        let known_to = if combination.deviation < UNKNOWN {
+            number(combination.deviation)
+        } else {
+            "not at all".to_owned()
+        };
+        part.rows.push(vec![known_to, sum(answer, combination)]);
+    }
+    part
+}
+
+/// `0.8 m + 0.6 l`
+fn sum(answer: &Answer, combination: &Known) -> String {
+    let mut text = String::new();
+    let parts = combination.parts.iter().zip(&answer.parameters);
+    for (part, estimate) in parts.filter(|(part, _)| part.abs() >= NEGLIGIBLE) {
+        let sign = match (part.is_sign_negative(), text.is_empty()) {
+            (true, true) => "-",
+            (false, true) => "",
+            (true, false) => " - ",
+            (false, false) => " + ",
+        };
+        let _ = write!(text, "{sign}{:.2} {}", part.abs(), estimate.quantity.name);
+    }
+    text
+}
+
+fn levels(set: &DataSet, answer: &Answer) -> Part {
+    let heading =
+        "Noise, and disturbing forces: standard deviations of their integrals over a second";
+    let columns = ["level", "of", "nominal model", "fitted model", "unit"];
+    let mut part = Part::new(heading, columns, 2..4);
+    for (what, levels) in [
+        ("noise", &answer.noise),
+        ("disturbance", &answer.disturbances),
+    ] {
+        for level in levels {
+            let channel = if what == "noise" {
+                channel(set, &level.name)
+            } else {
+                None
+            };
+            let shown = |value| {
+                let value = channel.map_or(value, |channel| channel.unit.from_si(value));
+                format!("{value:.3e}")
+            };
+            part.rows.push(vec![
+                what.to_owned(),
+                level.name.clone(),
+                shown(level.nominal),
+                shown(level.fitted),
+                channel.map_or_else(|| "SI".to_owned(), |own| own.unit.text.clone()),
+            ]);
+        }
+    }
+    part
+}
+
+fn channel<'s>(set: &'s DataSet, column: &str) -> Option<&'s Channel> {
+    set.channels.iter().find(|own| own.column == column)
+}
+
+/// Whether what the filter did not expect is noise.
+fn residuals(answer: &Answer) -> Part {
+    let heading =
+        "What the fitted model did not expect one step ahead, on the runs that were fitted";
+    let columns = [
+        "channel",
+        "neighbours correlate by",
+        "noise stays below",
+        "",
+    ];
+    let mut part = Part::new(heading, columns, 1..3);
+    for (column, consistency) in &answer.whiteness {
+        let remark = if consistency.is_white() {
+            ""
+        } else {
+            "the model or the sensor lacks something"
+        };
+        part.rows.push(vec![
+            column.clone(),
+            number(consistency.correlation),
+            number(consistency.correlation_band[1]),
+            remark.to_owned(),
+        ]);
+    }
+    part
+}
+
+/// Where drifting parameters begin and end.
+fn courses(answer: &Answer) -> Part {
+    let columns = [
+        "parameter",
+        "run",
+        "begins at",
+        "ends at",
+        "known to",
+        "unit",
+    ];
+    let mut part = Part::new(
+        "Parameters that drift, given all of their run",
+        columns,
+        2..5,
+    );
+    for course in &answer.courses {
+        let shown = |value: Option<&f64>| {
+            let value = value.map(|value| number(course.quantity.to_unit(*value)));
+            value.unwrap_or_default()
+        };
+        part.rows.push(vec![
+            course.quantity.name.to_string(),
+            course.run.clone(),
+            shown(course.values.first()),
+            shown(course.values.last()),
+            shown(course.deviations.get(course.deviations.len() / 2)),
+            course.quantity.unit.to_string(),
+        ]);
+    }
+    part
+}
+
+/// Errors in the units of the channels, and in units of the noise, where they can be added up.
+fn held_out(set: &DataSet, answer: &Answer) -> Part {
+    let columns = [
+        "ahead",
+        "channel",
+        "unit",
+        "nominal model",
+        "fitted model",
+        "nominal / noise",
+        "fitted / noise",
+    ];
+    let heading = "Errors on the runs that were held out: roots of mean squares";
+    let mut part = Part::new(heading, columns, 3..7);
+    for error in &answer.held_out {
+        let column = error.column.as_deref();
+        let noise = column.and_then(|own| answer.noise.iter().find(|level| level.name == own));
+        let channel = column.and_then(|own| channel(set, own));
+        let shown = |part: f64| match (noise, channel) {
+            (Some(level), Some(channel)) => short(channel.unit.from_si(part * level.fitted)),
+            _ => String::new(),
+        };
+        part.rows.push(vec![
+            ahead(error),
+            column.unwrap_or("all").to_owned(),
+            channel.map_or_else(String::new, |own| own.unit.text.clone()),
+            shown(error.nominal),
+            shown(error.fitted),
+            short(error.nominal),
+            short(error.fitted),
+        ]);
+    }
+    part
+}
+
+/// Three digits; a motion that overflowed is infinitely wrong.
+fn short(value: f64) -> String {
+    match value {
+        value if !value.is_finite() => "lost".to_owned(),
+        value if value >= 1e5 || value < 1e-3 && value > 0.0 => format!("{value:.2e}"),
+        value if value >= 100.0 => format!("{value:.0}"),
+        value if value >= 10.0 => format!("{value:.1}"),
+        value if value >= 1.0 => format!("{value:.2}"),
+        value => format!("{value:.4}"),
+    }
+}
+
+fn ahead(error: &HeldOut) -> String {
+    match error.horizon {
+        horizon if horizon <= 0.0 => "one step".to_owned(),
+        horizon if horizon.is_finite() => format!("{horizon} s"),
+        _ => "free run".to_owned(),
+    }
+}

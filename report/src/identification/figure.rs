@@ -1,0 +1,92 @@
+//! The runs that were held out beside predictions of them.
+
+use crate::figure::{Figure, Panel, Series};
+use appell_gap::data::DataSet;
+use appell_gap::identify::{AHEAD, Answer};
+
+/// Runs that are drawn.
+const DRAWN_RUNS: usize = 2;
+
+/// Standard deviations on each side of a course.
+const BAND: f64 = 1.96;
+
+/// Drifting parameters with their 95 % bands, a panel for each run.
+fn courses(answer: &Answer) -> impl Iterator<Item = Panel> + '_ {
+    answer.courses.iter().map(|course| {
+        let moved = |sign: f64| -> Vec<f64> {
+            let pairs = course.values.iter().zip(&course.deviations);
+            let moved = pairs.map(|(value, std)| value + sign * BAND * std);
+            moved.map(|value| course.quantity.to_unit(value)).collect()
+        };
+        let label = format!("{}, {}", course.quantity.name, course.run);
+        let lines = [
+            (label, 0.0),
+            ("from".to_owned(), -1.0),
+            ("to".to_owned(), 1.0),
+        ];
+        let series = lines.map(|(label, sign)| Series {
+            label,
+            x: course.times.clone(),
+            y: moved(sign),
+        });
+        Panel {
+            unit: course.quantity.unit.to_string(),
+            series: series.to_vec(),
+        }
+    })
+}
+
+/// The first runs that were held out: a panel for each channel and one for its errors.
+pub fn figure(set: &DataSet, answer: &Answer) -> Figure {
+    let mut runs: Vec<&str> = answer
+        .traces
+        .iter()
+        .map(|trace| trace.run.as_str())
+        .collect();
+    runs.dedup();
+    runs.truncate(DRAWN_RUNS);
+    let traces = answer.traces.iter();
+    let shown = traces.filter(|trace| runs.contains(&trace.run.as_str()));
+    let panels = shown.flat_map(|trace| {
+        let channel = set.channels.iter().find(|c| c.column == trace.column);
+        let in_unit = |values: &[f64]| -> Vec<f64> {
+            let values = values.iter();
+            values
+                .map(|&value| channel.map_or(value, |channel| channel.unit.from_si(value)))
+                .collect()
+        };
+        let series = |label: String, y: &[f64]| Series {
+            label,
+            x: trace.times.clone(),
+            y: in_unit(y),
+        };
+        let unit = channel.map_or_else(String::new, |channel| channel.unit.text.clone());
+        let error = |predicted: &[f64]| -> Vec<f64> {
+            let pairs = trace.measured.iter().zip(predicted);
+            pairs
+                .map(|(measured, predicted)| measured - predicted)
+                .collect()
+        };
+        let name = format!("{}, {}", trace.column, trace.run);
+        let motion = vec![
+            series(name.clone(), &trace.measured),
+            series(format!("nominal, {AHEAD} s ahead"), &trace.nominal),
+            series(format!("fitted, {AHEAD} s ahead"), &trace.fitted),
+        ];
+        let errors = vec![
+            series(format!("{name}: error of nominal"), &error(&trace.nominal)),
+            series("error of fitted".to_owned(), &error(&trace.fitted)),
+        ];
+        [motion, errors].map(|series| Panel {
+            unit: unit.clone(),
+            series,
+        })
+    });
+    Figure {
+        title: format!("{}: runs that were held out", set.mechanism.name),
+        x_label: "t [s]".to_owned(),
+        panels: panels.chain(courses(answer)).collect(),
+        marks: Vec::new(),
+        equal_axes: false,
+    }
+}

@@ -1,0 +1,59 @@
+//! What all pages are wrapped in. They need nothing beside them, and no network.
+
+use maud::{DOCTYPE, Markup, PreEscaped, html};
+
+/// A page without its body.
+#[derive(Debug, Clone, Copy)]
+pub struct Skeleton<'a> {
+    /// Title of the window.
+    pub title: &'a str,
+    /// Style sheet.
+    pub style: &'a str,
+    /// What the page may load, as a content security policy; anything if there is none.
+    pub policy: Option<&'a str>,
+    /// Name space of the elements, for readers of XML.
+    pub namespace: Option<&'a str>,
+}
+
+/// In HTML and in XML.
+const HEAD: PreEscaped<&str> = PreEscaped(
+    "<meta charset=\"utf-8\"/>\n\
+     <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n",
+);
+const LINE: PreEscaped<&str> = PreEscaped("\n");
+
+impl<'a> Skeleton<'a> {
+    /// Of a title and a style sheet.
+    pub const fn new(title: &'a str, style: &'a str) -> Self {
+        Self {
+            title,
+            style,
+            policy: None,
+            namespace: None,
+        }
+    }
+
+    /// The page.
+    pub fn around(&self, body: &Markup) -> String {
+        let page = html! {
+            (DOCTYPE) (LINE)
+            html lang="en" xmlns=[self.namespace] {
+                (LINE)
+                head {
+                    (LINE) (HEAD)
+                    @if let Some(policy) = self.policy {
+                        meta http-equiv="Content-Security-Policy" content=(policy);
+                        (LINE)
+                    }
+                    title { (self.title) } (LINE)
+                    style { (LINE) (PreEscaped(self.style)) } (LINE)
+                }
+                (LINE)
+                body { (LINE) (body) (LINE) }
+                (LINE)
+            }
+            (LINE)
+        };
+        page.into_string()
+    }
+}

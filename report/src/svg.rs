@@ -1,0 +1,127 @@
+//! Elements of SVG, as text. Attributes and texts are escaped; lengths have one decimal.
+
+use std::fmt::{Display, Write as _};
+
+use appell_codegen::symbolic::print::mathml::escaped;
+
+/// An element: its name and attributes.
+#[derive(Debug, Clone)]
+#[must_use]
+pub struct Element {
+    name: &'static str,
+    /// `<name` and the attributes so far.
+    start: String,
+}
+
+impl Element {
+    /// Without attributes.
+    pub fn new(name: &'static str) -> Self {
+        Self {
+            name,
+            start: format!("<{name}"),
+        }
+    }
+
+    /// With an attribute more.
+    pub fn with(mut self, attribute: &str, value: impl Display) -> Self {
+        let value = escaped(&value.to_string());
+        // Writing to a string cannot fail.
+        let _ = write!(self.start, " {attribute}=\"{value}\"");
+        self
+    }
+
+    /// With lengths, in pixels.
+    pub fn lengths<const N: usize>(mut self, attributes: [(&str, f64); N]) -> Self {
+        for (attribute, length) in attributes {
+            let _ = write!(self.start, " {attribute}=\"{length:.1}\"");
+        }
+        self
+    }
+
+    /// Its start, where other elements follow.
+    pub fn open(self) -> String {
+        self.start + ">"
+    }
+
+    /// The element without content.
+    pub fn empty(self) -> String {
+        self.start + "/>"
+    }
+
+    /// The element about a text.
+    pub fn text(self, content: &str) -> String {
+        format!("{}>{}</{}>", self.start, escaped(content), self.name)
+    }
+
+    /// The element with what is shown where the pointer rests on it; may be empty.
+    pub fn titled(self, about: &str) -> String {
+        if about.is_empty() {
+            return self.empty();
+        }
+        let title = Element::new("title").text(about);
+        format!("{}>{title}</{}>", self.start, self.name)
+    }
+}
+
+/// A path of a class.
+pub fn path(class: &str, line: &str) -> Element {
+    Element::new("path").with("class", class).with("d", line)
+}
+
+/// Where a text starts.
+pub fn text([x, y]: [f64; 2]) -> Element {
+    Element::new("text").lengths([("x", x), ("y", y)])
+}
+
+/// Corners as a path.
+pub fn polyline(corners: impl IntoIterator<Item = [f64; 2]>) -> String {
+    let mut line = String::new();
+    for [x, y] in corners {
+        let command = if line.is_empty() { 'M' } else { 'L' };
+        let _ = write!(line, "{command}{x:.1} {y:.1}");
+    }
+    line
+}
+
+/// Elements, a line each.
+#[derive(Debug, Clone)]
+pub struct Document(String);
+
+impl Document {
+    /// An empty sheet of paper; the styles one after the other.
+    pub fn new([width, height]: [f64; 2], styles: &[&str]) -> Self {
+        let start = Element::new("svg")
+            .with("xmlns", "http://www.w3.org/2000/svg")
+            .with("viewBox", format_args!("0 0 {width} {height:.0}"))
+            .with("width", width)
+            .with("height", format_args!("{height:.0}"));
+        let mut document = Self(start.open());
+        document.put("");
+        document.put(&format!("<style>\n{}</style>", styles.concat()));
+        let paper = Element::new("rect").with("class", "paper");
+        document.put(&paper.with("width", "100%").with("height", "100%").empty());
+        document
+    }
+
+    /// A picture in a page, which has its style.
+    pub fn styled_by_page([width, height]: [f64; 2], class: &str) -> Self {
+        let start = Element::new("svg")
+            .with("viewBox", format_args!("0 0 {width} {height}"))
+            .with("width", width)
+            .with("height", height)
+            .with("role", "img")
+            .with("class", class);
+        Self(start.open() + "\n")
+    }
+
+    /// Another element.
+    pub fn put(&mut self, element: &str) {
+        self.0.push_str(element);
+        self.0.push('\n');
+    }
+
+    /// The document as text.
+    pub fn finish(self) -> String {
+        self.0 + "</svg>\n"
+    }
+}

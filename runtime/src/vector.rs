@@ -1,0 +1,133 @@
+//! What the structs of emitted models have in common: they are vectors with named entries.
+
+/// Makes a struct `Name<T>` of `len` numbers, which converts from and to `[T; len]`, a vector: sums,
+/// differences, multiples, and a function of every entry.
+///
+/// `vector!(Name, len, Rates)` adds that `Rates<T>`, times a step of time, moves a `Name<T>`. A vector
+/// without entries is a `Name` without a scalar, and has nothing to compute.
+///
+/// ```
+/// #[derive(Debug, Clone, Copy, PartialEq)]
+/// struct Point<T> {
+///     x: T,
+///     y: T,
+/// }
+/// impl<T> From<[T; 2]> for Point<T> {
+///     fn from([x, y]: [T; 2]) -> Self {
+///         Self { x, y }
+///     }
+/// }
+/// impl<T> From<Point<T>> for [T; 2] {
+///     fn from(Point { x, y }: Point<T>) -> Self {
+///         [x, y]
+///     }
+/// }
+/// appell_runtime::vector!(Point, 2);
+///
+/// let middle = (Point { x: 1.0, y: 2.0 } + Point::splat(3.0)) * 0.5;
+/// assert_eq!(middle.to_array(), [2.0, 2.5]);
+/// ```
+#[macro_export]
+macro_rules! vector {
+    ($name:ident, 0 $(, $rates:ident)?) => {};
+    ($name:ident, $len:literal, $rates:ident) => {
+        $crate::vector!($name, $len);
+
+        impl<T: Copy + core::ops::Add<Output = T>> core::ops::Add<$rates<T>> for $name<T> {
+            type Output = Self;
+            #[inline]
+            fn add(self, step: $rates<T>) -> Self {
+                self + Self::from(step.to_array())
+            }
+        }
+
+        impl<T: Copy + core::ops::Add<Output = T>> core::ops::AddAssign<$rates<T>> for $name<T> {
+            #[inline]
+            fn add_assign(&mut self, step: $rates<T>) {
+                *self = *self + step;
+            }
+        }
+    };
+    ($name:ident, $len:literal) => {
+        impl<T> $name<T> {
+            /// The same in every entry.
+            #[must_use]
+            #[inline]
+            pub fn splat(value: T) -> Self
+            where
+                T: Copy,
+            {
+                [value; $len].into()
+            }
+
+            /// The entries in their order.
+            #[must_use]
+            #[inline]
+            pub fn to_array(self) -> [T; $len] {
+                self.into()
+            }
+
+            /// A function of every entry.
+            #[must_use]
+            #[inline]
+            pub fn map<U>(self, function: impl FnMut(T) -> U) -> $name<U> {
+                self.to_array().map(function).into()
+            }
+        }
+
+        impl<T: Copy + core::ops::Add<Output = T>> core::ops::Add for $name<T> {
+            type Output = Self;
+            #[inline]
+            fn add(self, other: Self) -> Self {
+                let (a, b) = (self.to_array(), other.to_array());
+                core::array::from_fn(|i| a[i] + b[i]).into()
+            }
+        }
+
+        impl<T: Copy + core::ops::Sub<Output = T>> core::ops::Sub for $name<T> {
+            type Output = Self;
+            #[inline]
+            fn sub(self, other: Self) -> Self {
+                let (a, b) = (self.to_array(), other.to_array());
+                core::array::from_fn(|i| a[i] - b[i]).into()
+            }
+        }
+
+        impl<T: core::ops::Neg<Output = T>> core::ops::Neg for $name<T> {
+            type Output = Self;
+            #[inline]
+            fn neg(self) -> Self {
+                self.map(|entry| -entry)
+            }
+        }
+
+        impl<T: Copy + core::ops::Mul<Output = T>> core::ops::Mul<T> for $name<T> {
+            type Output = Self;
+            #[inline]
+            fn mul(self, factor: T) -> Self {
+                self.map(|entry| entry * factor)
+            }
+        }
+
+        impl<T: Copy + core::ops::Add<Output = T>> core::ops::AddAssign for $name<T> {
+            #[inline]
+            fn add_assign(&mut self, other: Self) {
+                *self = *self + other;
+            }
+        }
+
+        impl<T: Copy + core::ops::Sub<Output = T>> core::ops::SubAssign for $name<T> {
+            #[inline]
+            fn sub_assign(&mut self, other: Self) {
+                *self = *self - other;
+            }
+        }
+
+        impl<T: Copy + core::ops::Mul<Output = T>> core::ops::MulAssign<T> for $name<T> {
+            #[inline]
+            fn mul_assign(&mut self, factor: T) {
+                *self = *self * factor;
+            }
+        }
+    };
+}

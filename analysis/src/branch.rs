@@ -1,18 +1,21 @@
 //! Branches: steady motions along one quantity, with what happens on them.
 
+pub(crate) mod continuation;
+pub(crate) mod crossing;
+
 use nalgebra::DVector;
 
-use super::continuation::{End, OnCurve, correct, follow};
-use super::critical::{Change, Criteria};
-use super::crossing::Crossing;
-use super::equations::SteadyEquations;
-use super::newton;
-use super::point::Point;
-use super::stability::{Stability, StabilityError, Verdict, essential_matrix};
-use super::steady::{SteadyError, SteadyProblem};
-use super::term::Term;
+use crate::point::Point;
+use crate::stability::critical::{Change, Criteria};
+use crate::stability::{Stability, StabilityError, Verdict, essential_matrix};
+use crate::steady::equations::SteadyEquations;
+use crate::steady::newton;
+use crate::steady::{SteadyError, SteadyProblem};
+use crate::term::Term;
 use appell_runtime::contact::{ContactForce, ContactForces};
 use appell_spectra::spectrum::{Complex, characteristic_polynomial};
+use continuation::{End, OnCurve, correct, follow};
+use crossing::Crossing;
 
 /// An output that must stay on one side of a value for a motion to be feasible.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,15 +1,21 @@
 //! Stability over two quantities: steady motions with their eigenvalues, and the curves between them.
 
-use super::branch::BranchError;
-use super::continuation::End;
-use super::critical::Change;
-use super::plane::Axis;
-use super::point::Point;
-use super::stability::Verdict;
-use super::steady::SteadyError;
-use super::term::Term;
+pub(crate) mod boundary;
+pub(crate) mod flood;
+pub(crate) mod grid;
+pub(crate) mod level;
+pub(crate) mod plane;
+
+use crate::branch::BranchError;
+use crate::branch::continuation::End;
+use crate::point::Point;
+use crate::stability::Verdict;
+use crate::stability::critical::Change;
+use crate::steady::SteadyError;
+use crate::term::Term;
 use appell_runtime::linearise::Undetermined;
 use appell_spectra::spectrum::{Complex, SpectrumError};
+use plane::Axis;
 
 /// Values of one axis at most.
 pub(super) const MOST: usize = 4000;

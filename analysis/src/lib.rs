@@ -1,20 +1,17 @@
 //! Steady motions of a model and their stability.
 //!
-//! | file | idea |
+//! | room | idea |
 //! |---|---|
 //! | `point.rs`, `term.rs` | where a model is evaluated; what can be given, varied or left free there |
-//! | `cyclic.rs` | essential states and hidden ones, from the equations |
-//! | `equations.rs`, `newton.rs`, `starts.rs` | steady motions as equations, their solution, where to begin |
 //! | `steady.rs` | steady motions under conditions, all that are found, the dimension of their family |
-//! | `hidden.rs`, `differences.rs` | what the hidden coordinates do: rates, circles; slopes that a model does not tell |
-//! | `continuation.rs`, `crossing.rs` | curves of zeros, followed by their length; where two of them cross |
-//! | `branch.rs` | steady motions along one quantity: folds, crossings, ends, feasibility |
-//! | `critical.rs` | smooth functions whose zeros are changes of stability |
-//! | `chart.rs` | stability over two quantities: what a chart holds |
-//! | `plane.rs`, `flood.rs`, `grid.rs` | its steady motions: a place, a grid, its verdicts |
-//! | `level.rs`, `boundary.rs` | its curves: borders of stability and feasibility |
-//! | `locus.rs` | modes that keep their place through crossings |
+//! | `steady/` | essential states and hidden ones; steady motions as equations, their solution, where to begin; what the hidden coordinates do |
 //! | `stability.rs` | eigenvalues without those of the family; the verdict |
+//! | `stability/` | smooth functions whose zeros are changes of stability; modes that keep their place through crossings |
+//! | `branch.rs` | steady motions along one quantity: folds, crossings, ends, feasibility |
+//! | `branch/` | curves of zeros, followed by their length; where two of them cross |
+//! | `chart.rs` | stability over two quantities: what a chart holds |
+//! | `chart/` | its plane, its grid and the verdicts there; its curves: borders of stability and feasibility |
+//! | `control/` | linear models, gains, sampled controllers, schedules, controllability, regions of attraction |
 //!
 //! ```
 //! # use appell_analysis::*;
@@ -35,40 +32,25 @@
 //! Nothing here knows a mechanism. A steady motion is one whose essential states rest; the wheel
 //! rolls, the pendulum spins, and their hidden coordinates run on.
 
-mod boundary;
 mod branch;
 mod chart;
-mod continuation;
 pub mod control;
-mod critical;
-mod crossing;
-mod cyclic;
-mod differences;
-mod equations;
-mod flood;
-mod grid;
-mod hidden;
-mod level;
-mod locus;
-mod newton;
-mod plane;
 mod point;
 mod stability;
-mod starts;
 mod steady;
 mod term;
 
+pub use branch::continuation::End;
 pub use branch::{
     Branch, BranchError, BranchOptions, BranchPoint, Branches, Kind, Requirement, Special,
 };
+pub use chart::plane::Axis;
 pub use chart::{Boundary, BoundaryFold, Cell, Chart, ChartError, Edge};
-pub use continuation::End;
-pub use critical::Change;
-pub use cyclic::{Structure, StructureError};
-pub use hidden::{Circle, circle};
-pub use locus::loci;
-pub use plane::Axis;
 pub use point::Point;
+pub use stability::critical::Change;
+pub use stability::locus::loci;
 pub use stability::{Stability, StabilityError, Verdict, essential_matrix};
+pub use steady::cyclic::{Structure, StructureError};
+pub use steady::hidden::{Circle, circle};
 pub use steady::{Condition, SteadyError, SteadyMotion, SteadyProblem};
 pub use term::Term;

@@ -1,10 +1,13 @@
 //! Stability of a steady motion: the eigenvalues of its essential states, without those that only
 //! lead to its neighbours in the family.
 
+pub(crate) mod critical;
+pub(crate) mod locus;
+
 use nalgebra::DMatrix;
 
-use super::cyclic::Structure;
-use super::point::Point;
+use crate::point::Point;
+use crate::steady::cyclic::Structure;
 use appell_runtime::linearise::{Linearisation, Undetermined};
 use appell_runtime::model::Model;
 use appell_spectra::singular::Singular;

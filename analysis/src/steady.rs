@@ -1,14 +1,21 @@
 //! Steady motions under conditions.
 
+pub(crate) mod cyclic;
+pub(crate) mod differences;
+pub(crate) mod equations;
+pub(crate) mod hidden;
+pub(crate) mod newton;
+pub(crate) mod starts;
+
 use nalgebra::DVector;
 
-use super::cyclic::{Structure, StructureError};
-use super::equations::SteadyEquations;
-use super::newton::{self, Missed, Zero};
-use super::point::Point;
-use super::starts::{Spread, value_at};
-use super::term::Term;
+use crate::point::Point;
+use crate::term::Term;
 use appell_runtime::model::{Model, ModelInfo};
+use cyclic::{Structure, StructureError};
+use equations::SteadyEquations;
+use newton::{Missed, Zero};
+use starts::{Spread, value_at};
 
 /// A quantity that has a value in SI.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -414,7 +421,7 @@ impl<'a> SteadyProblem<'a> {
     }
 
     fn none(&self, equations: &SteadyEquations<'_>, starts: usize, missed: &Missed) -> SteadyError {
-        use super::newton::Equations as _;
+        use newton::Equations as _;
         let (values, jacobian) = equations.evaluate(&missed.z);
         let weighted = values.component_mul(&newton::weights(&jacobian));
         let largest = weighted.amax();

@@ -2,8 +2,8 @@
 
 use std::borrow::Cow;
 
-use super::point::Point;
-use super::starts::reach;
+use crate::point::Point;
+use crate::steady::starts::reach;
 use appell_runtime::model::{Model, ModelInfo, Quantity};
 
 /// A quantity of a model, by its index in [`ModelInfo`].

@@ -192,7 +192,7 @@ impl Motion {
                 Law::File(path) => feedback::read(path, setup)?,
                 Law::Text { name, text } => feedback::parse(name, text, setup)?,
             };
-            setup.start_from_law(&law)?;
+            law.start(setup)?;
             plan.feedback(law)?;
         }
         setup.start(&self.initial)?;

@@ -10,7 +10,6 @@ use appell_spec::{Mechanism, Report, Scope, Snippet, did_you_mean, formula};
 
 use crate::Error;
 use crate::formula::Workbench;
-use crate::inputs::feedback::Feedback;
 
 /// `NAME=VALUE` as it was given.
 #[derive(Debug, Clone)]
@@ -125,21 +124,6 @@ impl<'a> Setup<'a> {
         Ok(())
     }
 
-    /// The initial values that a law asks for.
-    pub fn start_from_law(&mut self, law: &Feedback) -> Result<(), Error> {
-        for (state, expr) in &law.initial {
-            let told = |message| Error::Data(format!("{}: {message}", law.file));
-            let name = &self.info.states[*state].name;
-            let value = self.constant(expr).ok_or_else(|| {
-                told(format!(
-                    "the initial value of `{name}` is not a finite number"
-                ))
-            })?;
-            self.place(*state, value).map_err(told)?;
-        }
-        Ok(())
-    }
-
     /// Index of a state.
     pub fn state(&self, name: &str) -> Result<usize, Error> {
         known(
@@ -201,7 +185,7 @@ impl<'a> Setup<'a> {
     }
 
     /// The finite value of an expression in parameters.
-    fn constant(&self, expr: &Expr) -> Option<f64> {
+    pub(crate) fn constant(&self, expr: &Expr) -> Option<f64> {
         let mut bench = Workbench::new(&self.mechanism);
         let lowered = bench.lower(expr)?;
         let value = bench.constants(&[lowered], &self.parameters)[0];
@@ -209,7 +193,7 @@ impl<'a> Setup<'a> {
     }
 
     /// An initial value, which must lie in its range where ranges are watched.
-    fn place(&mut self, state: usize, value: f64) -> Result<(), String> {
+    pub(crate) fn place(&mut self, state: usize, value: f64) -> Result<(), String> {
         let quantity = &self.info.states[state];
         if self.watch_ranges {
             inside(

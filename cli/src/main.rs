@@ -19,24 +19,14 @@ mod thorough;
 
 use std::process::ExitCode;
 
-use clap::Parser;
+use clap::Parser as _;
 use mimalloc::MiMalloc;
+
+use commands::Arguments;
 
 /// A derivation makes many small objects; this allocator shortens it by a quarter.
 #[global_allocator]
 static ALLOCATOR: MiMalloc = MiMalloc;
-
-/// Equations of motion from a declarative mechanism spec, by the Gibbs-Appell method.
-///
-/// MODEL is the name of a shipped mechanism (`appell list`) or the path of a spec file; a spec
-/// file works at once. Exit status: 0 done, 2 bad usage, 3 bad spec or data, 4 the computation
-/// failed.
-#[derive(Debug, Parser)]
-#[command(name = "appell", version, propagate_version = true)]
-struct Arguments {
-    #[command(subcommand)]
-    command: commands::Command,
-}
 
 fn main() -> ExitCode {
     match commands::run(Arguments::parse().command) {

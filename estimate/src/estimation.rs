@@ -3,14 +3,14 @@
 use std::ops::Range;
 
 use super::EstimateError;
-use super::adjoint::adjoint;
-use super::filter::{Innovation, Pass};
-use super::layout::Layout;
-use super::plant::Plant;
-use super::recording::Recording;
-use super::setup::Setup;
-use super::timeline::{Action, timeline};
-use super::unknown::Unknown;
+use crate::data::layout::Layout;
+use crate::data::recording::Recording;
+use crate::data::setup::Setup;
+use crate::data::unknown::Unknown;
+use crate::gradient::adjoint::adjoint;
+use crate::kalman::filter::{Innovation, Pass};
+use crate::motion::plant::Plant;
+use crate::motion::timeline::{Action, timeline};
 
 /// A setup with recordings: functions of the values that [`Layout`] lists.
 pub struct Estimation<'a> {

@@ -10,86 +10,51 @@
 //! y  = scale · h(x, u, p) + bias + v    v white
 //! ```
 //!
-//! The files, in the order of the computation:
+//! The rooms, in the order of the computation:
 //!
-//! - [`recording`], [`setup`], [`unknown`], [`layout`]: what is given;
-//! - [`timeline`]: the order of steps and samples;
-//! - [`plant`], [`transition`]: the motion and its transition matrix, step by step, and which steps are
-//!   too long;
-//! - [`closure`]: closed loops, whose coordinates depend on each other;
-//! - [`filter`], [`square_root`]: the extended Kalman filter, innovations, log-likelihood;
-//! - [`tape`], [`adjoint`]: the gradient of the log-likelihood in all values by one sweep backwards over what
-//!   the filter left;
-//! - [`estimation`]: all of it behind one type;
-//! - [`prediction`]: where the motion goes from what the filter knows;
-//! - [`smoother`]: states given a whole recording;
-//! - [`consistency`], [`chi_squared`]: whether innovations are what they should be;
-//! - [`free`], [`posterior`], [`curvature`], [`fit`]: the most likely values;
-//! - [`sensitivity`]: scores and Fisher's information;
-//! - [`scoring`], [`company`]: fits in few passes, with levels that go along with inertia;
-//! - [`shooting`]: fits without disturbances, from starts far from the truth;
-//! - [`tangent`], [`information`]: how innovations change with many values, and Fisher's information,
-//!   in few passes;
-//! - [`identifiability`], [`profile`], [`robust`]: what is known of the values, and how far;
-//! - [`regression`]: parameters from accelerations, without a filter.
-//!
-//! Beside the likelihood:
-//!
-//! - [`inverse`]: the inputs of a measured motion, and what it must satisfy whatever they were;
-//! - [`smoothing`]: derivatives of noisy samples with their covariance.
+//! | room | idea |
+//! |---|---|
+//! | `data/` | what is given: setup, recordings, the values and their order |
+//! | `motion/` | the order of steps and samples; the motion and its transition matrix, step by step; closed loops |
+//! | `kalman/` | the extended Kalman filter: innovations, log-likelihood, predictions, smoothed states |
+//! | `gradient/` | derivatives: of the log-likelihood by one sweep backwards, of innovations by passes forwards; Fisher's information |
+//! | `estimation.rs` | setup, recordings, filter and gradient behind one type |
+//! | `fitting/` | the most likely values |
+//! | `shooting/` | fits without disturbances, from starts far from the truth |
+//! | `statistics/` | what is known of the values, and how far; whether innovations are what they should be |
+//! | `inverse/` | the inputs of a measured motion, and what it must satisfy whatever they were |
+//! | `smoothing/` | derivatives of noisy samples with their covariance |
+//! | `matrix.rs`, `error.rs` | products of dense matrices; what cannot be estimated |
 
-mod adjoint;
-mod chi_squared;
-mod closure;
-mod company;
-mod consistency;
-mod curvature;
+mod data;
 mod error;
 mod estimation;
-mod filter;
-mod fit;
-mod free;
-mod identifiability;
-mod information;
+mod fitting;
+mod gradient;
 pub mod inverse;
-mod layout;
+mod kalman;
 mod matrix;
-mod plant;
-mod posterior;
-mod prediction;
-mod profile;
-mod recording;
-mod regression;
-mod robust;
-mod scoring;
-mod sensitivity;
-mod setup;
+mod motion;
 mod shooting;
-mod smoother;
 pub mod smoothing;
-mod square_root;
-mod tangent;
-mod tape;
-mod timeline;
-mod transition;
-mod unknown;
+mod statistics;
 
-pub use chi_squared::{chi_squared_probability, chi_squared_quantile};
-pub use consistency::Consistency;
+pub use data::layout::Layout;
+pub use data::recording::Recording;
+pub use data::setup::{Channel, Disturbance, Measured, Setup};
+pub use data::unknown::Unknown;
 pub use error::EstimateError;
 pub use estimation::Estimation;
-pub use filter::Innovation;
-pub use fit::{Effort, Fit};
-pub use free::{Coordinate, Free};
-pub use identifiability::{Combination, Identifiability};
-pub use layout::Layout;
-pub use prediction::Predicted;
-pub use recording::Recording;
-pub use regression::{BaseParameters, Moment, Regression};
-pub use robust::Blocks;
-pub use sensitivity::Sensitivity;
-pub use setup::{Channel, Disturbance, Measured, Setup};
+pub use fitting::fit::{Effort, Fit};
+pub use fitting::free::{Coordinate, Free};
+pub use fitting::regression::{BaseParameters, Moment, Regression};
+pub use gradient::sensitivity::Sensitivity;
+pub use gradient::tangent::{Along, Direction, Shapes, Tangent};
+pub use kalman::filter::Innovation;
+pub use kalman::prediction::Predicted;
+pub use kalman::smoother::Smoothed;
 pub use shooting::{Shooting, Shot};
-pub use smoother::Smoothed;
-pub use tangent::{Along, Direction, Shapes, Tangent};
-pub use unknown::Unknown;
+pub use statistics::chi_squared::{chi_squared_probability, chi_squared_quantile};
+pub use statistics::consistency::Consistency;
+pub use statistics::identifiability::{Combination, Identifiability};
+pub use statistics::robust::Blocks;

@@ -16,9 +16,9 @@ use nalgebra::{DMatrix, DVector};
 
 use super::EstimateError;
 use super::estimation::Estimation;
-use super::free::{Coordinate, Free, Selection};
-use super::recording::Recording;
-use super::unknown::Unknown;
+use crate::data::recording::Recording;
+use crate::data::unknown::Unknown;
+use crate::fitting::free::{Coordinate, Free, Selection};
 use condensing::{Condensed, Weights};
 use flight::{Flight, Piece};
 

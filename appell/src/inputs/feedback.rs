@@ -56,6 +56,23 @@ pub struct Feedback {
     pub initial: Vec<(usize, Expr)>,
 }
 
+impl Feedback {
+    /// Puts the initial values that the law asks for into a setup.
+    pub fn start(&self, setup: &mut Setup<'_>) -> Result<(), Error> {
+        for (state, expr) in &self.initial {
+            let told = |message| Error::Data(format!("{}: {message}", self.file));
+            let name = &setup.info.states[*state].name;
+            let value = setup.constant(expr).ok_or_else(|| {
+                told(format!(
+                    "the initial value of `{name}` is not a finite number"
+                ))
+            })?;
+            setup.place(*state, value).map_err(told)?;
+        }
+        Ok(())
+    }
+}
+
 /// Gains of a law.
 #[derive(Debug)]
 pub enum Gains {

@@ -2,6 +2,7 @@
 
 use clap::CommandFactory as _;
 
+use super::Arguments;
 use crate::output;
 use appell::Error;
 
@@ -17,12 +18,7 @@ pub(crate) struct Completions {
 impl Completions {
     pub(super) fn run(&self) -> Result<(), Error> {
         let mut script = Vec::new();
-        clap_complete::generate(
-            self.shell,
-            &mut crate::Arguments::command(),
-            "appell",
-            &mut script,
-        );
+        clap_complete::generate(self.shell, &mut Arguments::command(), "appell", &mut script);
         output::print(&String::from_utf8_lossy(&script))
     }
 }

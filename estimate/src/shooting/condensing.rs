@@ -11,8 +11,8 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::super::EstimateError;
 use super::flight::Piece;
+use crate::EstimateError;
 
 /// Weight by which a state stays in a step, relative to its size: what no sample tells does not
 /// move. It does not change where the search ends.

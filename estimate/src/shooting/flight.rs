@@ -4,18 +4,18 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::super::EstimateError;
-use super::super::closure::Closure;
-use super::super::estimation::Estimation;
-use super::super::filter::switch;
-use super::super::matrix::{add_scaled, dot, multiply};
-use super::super::plant::{Place, Scratch, Sums};
-use super::super::prediction::place;
-use super::super::recording::Recording;
-use super::super::setup::Measured;
-use super::super::timeline::{Action, Advance};
-use super::super::transition::{MOST_HALVINGS, STAGES, WEIGHTS, is_uneven};
-use super::super::unknown::Unknown;
+use crate::EstimateError;
+use crate::data::recording::Recording;
+use crate::data::setup::Measured;
+use crate::data::unknown::Unknown;
+use crate::estimation::Estimation;
+use crate::kalman::filter::switch;
+use crate::kalman::prediction::place;
+use crate::matrix::{add_scaled, dot, multiply};
+use crate::motion::closure::Closure;
+use crate::motion::plant::{Place, Scratch, Sums};
+use crate::motion::timeline::{Action, Advance};
+use crate::motion::transition::{MOST_HALVINGS, STAGES, WEIGHTS, is_uneven};
 
 /// A segment. Derivatives by the state at its beginning, then by the free values.
 pub(super) struct Piece {

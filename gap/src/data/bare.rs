@@ -4,10 +4,12 @@ use std::path::PathBuf;
 
 use appell_spec::Mechanism;
 
-use super::channel::{self, Channel, Measured, Role};
+use super::channel::{Channel, Measured, Role};
 use super::clock::Sampling;
 use super::limits::{MAX_NUMBERS, MAX_RUNS, MIN_ROWS};
-use super::{DataError, DataSet, Finding, FindingKind, Parameter, Part, Run, Spec, noise, table};
+use super::{
+    DataError, DataSet, Finding, FindingKind, Parameter, Part, Run, Spec, format, noise, run,
+};
 
 /// What is held out of several runs, or of one: the last third.
 const HELD_OUT: usize = 3;
@@ -25,7 +27,7 @@ pub fn read_bare(spec: Spec, files: &[PathBuf]) -> Result<DataSet, DataError> {
         let message = format!("a data set has at most {MAX_RUNS} runs");
         return Err(DataError::whole(first.to_string_lossy(), message));
     }
-    let channels = channels(&table::header(first)?, &mechanism);
+    let channels = channels(&format::header(first)?, &mechanism);
     if !channels.iter().any(Channel::is_measured) {
         let message = format!(
             "no column is a quantity of `{}`; it has {}; describe columns with other names and units in \
@@ -47,10 +49,10 @@ pub fn read_bare(spec: Spec, files: &[PathBuf]) -> Result<DataSet, DataError> {
         } else {
             Part::Test
         };
-        match table::read(path, None, &channels, &mut budget) {
+        match format::read(path, None, &channels, &mut budget) {
             Ok(table) => {
                 let name = path.to_string_lossy().into_owned();
-                let run = channel::run(name, part, table, &channels, &mut findings);
+                let run = run::read(name, part, table, &channels, &mut findings);
                 findings.extend(run.sampling.doubt().map(|doubt| doubt.in_run(&run.name)));
                 runs.push(run);
             }

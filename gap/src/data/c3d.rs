@@ -14,7 +14,8 @@
 use std::path::Path;
 
 use super::DataError;
-use super::table::{Columns, TIME, Wanted, bytes, too_many};
+use super::clock::TIME;
+use super::table::{Columns, Wanted, bytes, too_many};
 
 /// Bytes of a block.
 const BLOCK: usize = 512;

@@ -4,8 +4,10 @@ use appell_spec::{Code, Diagnostic, Report};
 
 use super::finding::{counted, listed};
 use super::limits::MAX_LEFT_OUT;
-use super::table::TIME;
 use super::{DataError, Finding, FindingKind};
+
+/// The column of the times.
+pub(super) const TIME: &str = "t";
 
 /// A step so many times the median is a gap.
 const GAP: f64 = 5.0;

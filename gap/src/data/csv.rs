@@ -9,10 +9,10 @@ use appell_spec::expr::Span;
 use appell_spec::{Code, Diagnostic, Report, closest, shown};
 
 use super::channel::Channel;
-use super::clock::Clock;
+use super::clock::{Clock, TIME};
 use super::finding::listed;
 use super::limits::{MAX_LINE, MAX_MISTAKES};
-use super::table::{TIME, Table, checked, regular, too_many};
+use super::table::{Table, checked, regular, too_many};
 use super::{DataError, Finding, FindingKind, motive};
 
 /// Reads the columns of the channels and the times, whose unit is `time_unit` s. `budget` counts down the

@@ -29,9 +29,9 @@ use appell_spec::{Code, Mechanism, did_you_mean, shown};
 use toml::de::DeTable;
 
 use super::channel::{Channel, Measured, Role};
+use super::clock::TIME;
 use super::fields::{Fields, Value};
 use super::limits::MAX_RUNS;
-use super::table::TIME;
 use super::{DataError, Library, Parameter, Part, Spec};
 
 /// A description whose names and units fit the mechanism.

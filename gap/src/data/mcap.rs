@@ -15,7 +15,8 @@ use serde_json::Value;
 
 use self::cdr::Definitions;
 use super::DataError;
-use super::table::{Columns, TIME, Wanted, bytes, too_many};
+use super::clock::TIME;
+use super::table::{Columns, Wanted, bytes, too_many};
 
 /// Reads a file; `budget` is the most numbers of all columns together.
 pub(super) fn read(path: &Path, wanted: Wanted<'_>, budget: usize) -> Result<Columns, DataError> {

@@ -15,7 +15,8 @@ use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::schema::types::ColumnDescriptor;
 
 use super::DataError;
-use super::table::{Columns, TIME, Wanted, regular, too_many};
+use super::clock::TIME;
+use super::table::{Columns, Wanted, regular, too_many};
 
 /// Rows that are read at once.
 const BATCH: usize = 1 << 16;

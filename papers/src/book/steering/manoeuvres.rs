@@ -93,7 +93,7 @@ impl Run {
         let equations = Equations::at_hand(&source)?;
         let mut setup = Setup::new(&source.file, &source.text, equations.model().info())?;
         let law = feedback::parse("law.toml", &self.law()?, &setup)?;
-        setup.start_from_law(&law)?;
+        law.start(&mut setup)?;
         let mut plan = Plan::new(&setup);
         plan.feedback(law)?;
         let controller = plan.controller(&setup, 10.0)?;

@@ -1,0 +1,87 @@
+//! One file per command: parse flags, call, print.
+
+mod apply;
+mod check;
+mod completions;
+mod control;
+mod demo;
+mod derive;
+mod diagnose;
+mod draw;
+mod evaluate;
+mod identify;
+mod inverse;
+mod list;
+mod motion;
+mod new;
+mod recording;
+mod reproduce;
+mod schema;
+mod simulate;
+mod stability;
+mod steady;
+
+use appell::Error;
+
+/// Equations of motion from a declarative mechanism spec, by the Gibbs-Appell method.
+///
+/// MODEL is the name of a shipped mechanism (`appell list`) or the path of a spec file; a spec
+/// file works at once. Exit status: 0 done, 2 bad usage, 3 bad spec or data, 4 the computation
+/// failed.
+#[derive(Debug, clap::Parser)]
+#[command(name = "appell", version, propagate_version = true)]
+pub(crate) struct Arguments {
+    #[command(subcommand)]
+    pub(crate) command: Command,
+}
+
+/// The commands; each tells on itself what it does.
+#[derive(Debug, clap::Subcommand)]
+pub(crate) enum Command {
+    List(list::List),
+    New(new::New),
+    Check(check::Check),
+    Derive(derive::Derive),
+    Draw(draw::Draw),
+    Evaluate(evaluate::Evaluate),
+    Simulate(Box<simulate::Simulate>),
+    Control(Box<control::Control>),
+    Recording(recording::Recording),
+    Identify(identify::Identify),
+    Inverse(inverse::Inverse),
+    Motion(motion::Motion),
+    Diagnose(diagnose::Diagnose),
+    Apply(apply::Apply),
+    Steady(steady::Steady),
+    Stability(stability::StabilityCommand),
+    Demo(demo::Demo),
+    Reproduce(reproduce::Reproduce),
+    Schema(schema::Schema),
+    Completions(completions::Completions),
+}
+
+/// Runs a command.
+pub(crate) fn run(command: Command) -> Result<(), Error> {
+    match command {
+        Command::List(command) => command.run(),
+        Command::New(command) => command.run(),
+        Command::Check(command) => command.run(),
+        Command::Derive(command) => command.run(),
+        Command::Draw(command) => command.run(),
+        Command::Evaluate(command) => command.run(),
+        Command::Simulate(command) => command.run(),
+        Command::Control(command) => command.run(),
+        Command::Recording(command) => command.run(),
+        Command::Identify(command) => command.run(),
+        Command::Inverse(command) => command.run(),
+        Command::Motion(command) => command.run(),
+        Command::Diagnose(command) => command.run(),
+        Command::Apply(command) => command.run(),
+        Command::Steady(command) => command.run(),
+        Command::Stability(command) => command.run(),
+        Command::Demo(command) => command.run(),
+        Command::Reproduce(command) => command.run(),
+        Command::Schema(command) => command.run(),
+        Command::Completions(command) => command.run(),
+    }
+}

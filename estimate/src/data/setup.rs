@@ -1,0 +1,191 @@
+//! What is measured, what disturbs, what acts late.
+
+use appell_runtime::model::Model;
+
+use crate::{EstimateError, Recording};
+
+/// Steps of a recording; more are a mistake in a unit.
+const MOST_STEPS: f64 = 1e7;
+
+/// What a channel shows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Measured {
+    /// A pseudo-velocity or coordinate, by its index in the state.
+    State(usize),
+    /// An output of the spec, by its index.
+    Output(usize),
+}
+
+/// A column of measurements: y = scale · quantity + bias + white noise.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Channel {
+    /// The quantity.
+    pub measures: Measured,
+    /// Longest time in s by which the sensor may be late, where its delay is a value. Rows of the
+    /// first so many seconds are not used, so that the data do not depend on the delay.
+    pub longest_delay: Option<f64>,
+}
+
+impl Channel {
+    /// A channel without a delay.
+    pub fn of(measures: Measured) -> Self {
+        Self {
+            measures,
+            longest_delay: None,
+        }
+    }
+}
+
+/// Where white noise enters the equations. Its level is the square root of its two-sided spectral
+/// density: the standard deviation of its integral over one second.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Disturbance {
+    /// A generalised force beside Π in the equation of a pseudo-velocity, by its index. The level
+    /// is in the unit of the force times √s.
+    Force(usize),
+    /// Added to the rate of a state, by its index in the state or, from its end on, in the lists of
+    /// lagging inputs and of drifting parameters. The level is in the unit of the state per √s.
+    Rate(usize),
+}
+
+/// A model and how it is observed.
+#[derive(Clone)]
+pub struct Setup<'a> {
+    /// Equations of motion.
+    pub model: &'a dyn Model,
+    /// Columns of the measurements.
+    pub channels: Vec<Channel>,
+    /// White noise in the equations.
+    pub disturbances: Vec<Disturbance>,
+    /// Declared inputs that reach the mechanism through a lag of the first order: a state each.
+    pub lagging: Vec<usize>,
+    /// Declared inputs that arrive late by a constant time.
+    pub delayed: Vec<usize>,
+    /// Parameters that change on the way, by their indices: a state each, which moves by a
+    /// [`Disturbance::Rate`] alone. The value in the list of parameters is not used.
+    pub drifting: Vec<usize>,
+    /// Longest step of the integration in s; longer gaps between samples are divided.
+    pub longest_step: f64,
+    /// Whether steps are halved where they meet corners, such as rounded signs of dry friction. Along smooth
+    /// motions there are none, and likelihoods of chaotic ones are smoother without.
+    pub has_corners: bool,
+}
+
+impl<'a> Setup<'a> {
+    /// Channels without delays, a force on every pseudo-velocity, inputs that act at once, steps
+    /// from sample to sample.
+    pub fn new(model: &'a dyn Model, measured: &[Measured]) -> Self {
+        Self {
+            model,
+            channels: measured
+                .iter()
+                .map(|&measures| Channel::of(measures))
+                .collect(),
+            disturbances: (0..model.info().speeds).map(Disturbance::Force).collect(),
+            lagging: Vec::new(),
+            delayed: Vec::new(),
+            drifting: Vec::new(),
+            longest_step: f64::INFINITY,
+            has_corners: false,
+        }
+    }
+
+    /// Number of states with those of the lags and of drifting parameters.
+    pub(crate) fn state_len(&self) -> usize {
+        self.model.info().state_len() + self.lagging.len() + self.drifting.len()
+    }
+
+    /// Whether any output is measured.
+    pub(crate) fn sees_outputs(&self) -> bool {
+        let mut channels = self.channels.iter();
+        channels.any(|channel| matches!(channel.measures, Measured::Output(_)))
+    }
+
+    pub(crate) fn check(&self, recordings: &[Recording]) -> Result<(), EstimateError> {
+        let info = self.model.info();
+        let nothing = |what| Err(EstimateError::Nothing { what });
+        if recordings.is_empty() {
+            return nothing("recordings");
+        }
+        if self.channels.is_empty() {
+            return nothing("channels");
+        }
+        if info.states.is_empty() {
+            return nothing("states");
+        }
+        for channel in &self.channels {
+            match channel.measures {
+                Measured::State(index) => below("state", index, info.state_len())?,
+                Measured::Output(index) => below("output", index, info.output_len())?,
+            }
+            if let Some(delay) = channel.longest_delay {
+                positive("longest delay of a channel in s", delay)?;
+            }
+        }
+        for disturbance in &self.disturbances {
+            match *disturbance {
+                Disturbance::Force(index) => below("pseudo-velocity", index, info.speeds)?,
+                Disturbance::Rate(index) => below("state", index, self.state_len())?,
+            }
+        }
+        for (what, list, len) in [
+            ("input", &self.lagging, info.declared_inputs),
+            ("input", &self.delayed, info.declared_inputs),
+            ("parameter", &self.drifting, info.parameter_len()),
+        ] {
+            for (place, &index) in list.iter().enumerate() {
+                let twice = list[..place].contains(&index);
+                below(what, index, if twice { 0 } else { len })?;
+            }
+        }
+        positive("longest step in s", self.longest_step)?;
+        let delays = !self.delayed.is_empty()
+            || self
+                .channels
+                .iter()
+                .any(|channel| channel.longest_delay.is_some());
+        if delays && (info.explicit_time || !info.signals.is_empty()) {
+            return Err(EstimateError::DelayWithTime);
+        }
+        for recording in recordings {
+            let times = recording.times();
+            if times[times.len() - 1] - times[0] > MOST_STEPS * self.longest_step {
+                return Err(EstimateError::Value {
+                    what: "longest step in s".to_owned(),
+                    value: self.longest_step,
+                    demand: "at least a ten-millionth of the longest recording",
+                });
+            }
+            let expected = [
+                ("inputs", recording.input_len(), info.declared_inputs),
+                ("measurements", recording.channel_len(), self.channels.len()),
+            ];
+            for (what, found, columns) in expected {
+                if found != columns {
+                    let rows = recording.times().len();
+                    return Err(EstimateError::Lengths {
+                        what,
+                        rows,
+                        columns,
+                        found: rows * found,
+                    });
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+fn below(what: &'static str, index: usize, len: usize) -> Result<(), EstimateError> {
+    let error = EstimateError::Unknown { what, index, len };
+    (index < len).then_some(()).ok_or(error)
+}
+
+fn positive(what: &str, value: f64) -> Result<(), EstimateError> {
+    let error = EstimateError::Value {
+        what: what.to_owned(),
+        value,
+        demand: "positive",
+    };
+    (value > 0.0).then_some(()).ok_or(error)
+}

@@ -1,0 +1,37 @@
+//! The numbers that a likelihood depends on.
+
+/// One of the numbers, all in SI.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Unknown {
+    /// A parameter of the model.
+    Parameter(usize),
+    /// Level of a disturbance, see [`Disturbance`](crate::Disturbance).
+    Disturbance(usize),
+    /// Standard deviation of the noise of a channel.
+    Noise(usize),
+    /// Bias of a channel.
+    Bias(usize),
+    /// Scale of a channel.
+    Scale(usize),
+    /// Delay of a channel in s; only where the setup lets it be late.
+    SensorDelay(usize),
+    /// Time constant in s of a lagging input, by its place in the list of the setup.
+    Lag(usize),
+    /// Delay in s of an input, by its place in the list of the setup.
+    InputDelay(usize),
+    /// Expected state at the first row of a run; states of lags and of drifting parameters stand
+    /// last.
+    Initial {
+        /// The run.
+        run: usize,
+        /// The state.
+        state: usize,
+    },
+    /// Standard deviation of the state at the first row of a run.
+    Spread {
+        /// The run.
+        run: usize,
+        /// The state.
+        state: usize,
+    },
+}

@@ -1,0 +1,103 @@
+//! Levels of disturbances that keep company with inertia.
+//!
+//! A level is a force, and what recordings tell is an acceleration: where a search makes a mass twice as
+//! large, the level that was right is half of what is right now. Counted by acceleration, masses and
+//! levels do not hinder each other.
+
+use nalgebra::{DMatrix, DVector};
+
+use super::free::Selection;
+use super::posterior::{Point, Posterior};
+use crate::EstimateError;
+use crate::data::setup::Disturbance;
+use crate::data::unknown::Unknown;
+use crate::estimation::Estimation;
+use crate::kalman::prediction::place;
+
+/// What a step of some coordinates adds to levels, to first order.
+pub(crate) struct Company {
+    /// A row and a column for each coordinate.
+    slopes: DMatrix<f64>,
+}
+
+impl Company {
+    /// About a point.
+    pub(crate) fn of(
+        (estimation, selection): (&Estimation<'_>, &Selection<'_>),
+        point: &Point,
+    ) -> Result<Self, EstimateError> {
+        let free = selection.free;
+        let mut slopes = DMatrix::zeros(free.len(), free.len());
+        let levels: Vec<(usize, usize)> = (0..free.len())
+            .filter_map(|i| match free[i].unknown {
+                Unknown::Disturbance(index) => match estimation.setup().disturbances[index] {
+                    Disturbance::Force(speed) => Some((i, speed)),
+                    Disturbance::Rate(_) => None,
+                },
+                _ => None,
+            })
+            .collect();
+        for (j, parameter) in free.iter().enumerate() {
+            if !matches!(parameter.unknown, Unknown::Parameter(_)) {
+                continue;
+            }
+            let change = parameter.small_change(selection.value(&point.values, j));
+            let [below, above] = [-change, change].map(|change| {
+                let values = selection.changed(&point.values, j, change);
+                mobilities(estimation, &values)
+            });
+            let (below, above) = (below?, above?);
+            for &(i, speed) in &levels {
+                let slope = (below[speed] / above[speed]).ln() / (2.0 * change);
+                if slope.is_finite() {
+                    slopes[(i, j)] = slope;
+                }
+            }
+        }
+        Ok(Self { slopes })
+    }
+
+    /// The step of [`Posterior::step`] in coordinates that count levels by acceleration.
+    pub(crate) fn step(
+        &self,
+        (posterior, point): (&Posterior<'_, '_>, &Point),
+        curvature: &DMatrix<f64>,
+        damping: f64,
+    ) -> (DVector<f64>, f64) {
+        let gradient = &point.gradient + self.slopes.tr_mul(&point.gradient);
+        let turned = Point {
+            gradient,
+            ..point.clone()
+        };
+        let (step, gain) = posterior.step(&turned, curvature, damping);
+        (&step + &self.slopes * &step, gain)
+    }
+}
+
+/// Acceleration of each pseudo-velocity by a force in its own equation, where the runs begin: the
+/// geometric mean.
+fn mobilities(estimation: &Estimation<'_>, values: &[f64]) -> Result<Vec<f64>, EstimateError> {
+    let (layout, plant) = (estimation.layout(), estimation.plant());
+    let (n, s) = (plant.n, plant.speeds);
+    let mut scratch = plant.scratch();
+    let mut logs = vec![0.0; s];
+    let runs = estimation.recordings();
+    for (run, recording) in runs.iter().enumerate() {
+        let first = layout.place(Unknown::Initial { run, state: 0 })?;
+        let at = (
+            recording.times()[0],
+            &values[first..first + n],
+            recording.inputs(0),
+        );
+        let mut columns = vec![0.0; s * s];
+        columns
+            .iter_mut()
+            .step_by(s + 1)
+            .for_each(|entry| *entry = 1.0);
+        plant.accelerations(place(layout, values, at), &mut scratch, &mut columns);
+        for (log, mobility) in logs.iter_mut().zip(columns.iter().step_by(s + 1)) {
+            *log += mobility.abs().ln() / runs.len() as f64;
+        }
+    }
+    Ok(logs.into_iter().map(f64::exp).collect())
+}

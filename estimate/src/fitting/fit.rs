@@ -1,0 +1,204 @@
+//! The values that make recordings most likely: prediction-error fits by maximum likelihood, with
+//! what is known beforehand (K. J. Åström, *Maximum likelihood and prediction error methods*, 1980).
+//!
+//! Damped quasi-Newton steps with the exact gradient. The curvature starts as Fisher's information
+//! (scoring) and learns from the steps; where these fail, and before an optimum is believed, it is
+//! observed anew ([`curvature`](super::curvature)). An optimum is where no step promises to gain
+//! anything: half of Newton's decrement is the gain that is left, in units of log-likelihood.
+
+use nalgebra::{DMatrix, DVector};
+
+use super::curvature::learn;
+use super::free::{Free, Selection};
+use super::posterior::{Point, Posterior};
+use crate::EstimateError;
+use crate::estimation::Estimation;
+
+/// Part of the promised gain that makes a step worth it.
+const ENOUGH: f64 = 0.05;
+/// Damping of the first step that fails, relative to the curvature.
+const DAMPING: f64 = 0.1;
+/// Part of the promised gain with which the damping falls.
+const BELIEVED: f64 = 0.75;
+/// Steps that are damped more than this move nothing.
+const MOST_DAMPING: f64 = 1e9;
+/// Gain in log-likelihood that is given up where damped steps do not find it: a tenth of a standard
+/// deviation.
+const CLOSE: f64 = 5e-3;
+/// More damping than this tells that the curvature is wrong, or that nothing is left to gain.
+const MUCH_DAMPING: f64 = 5.0;
+
+/// When to stop.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Effort {
+    /// Gain in log-likelihood that is not worth a step; 1/2 is one standard deviation.
+    pub gain: f64,
+    /// Most steps.
+    pub steps: usize,
+}
+
+impl Default for Effort {
+    /// To a thousandth of a standard deviation.
+    fn default() -> Self {
+        Self {
+            gain: 5e-7,
+            steps: 200,
+        }
+    }
+}
+
+/// An optimum.
+#[derive(Debug, Clone)]
+pub struct Fit {
+    /// All values.
+    pub values: Vec<f64>,
+    /// Those that were looked for.
+    pub free: Vec<Free>,
+    /// Their coordinates.
+    pub coordinates: DVector<f64>,
+    /// Which of them stand at a limit: nothing is said about their spread.
+    pub at_limit: Vec<bool>,
+    /// Log-likelihood of the recordings.
+    pub log_likelihood: f64,
+    /// The same with the density beforehand, up to a constant.
+    pub log_posterior: f64,
+    /// Fisher's information of the coordinates at the optimum, with what is known beforehand: the
+    /// expected curvature of the negative log-posterior.
+    pub information: DMatrix<f64>,
+    /// The observed one. Where the model is right both are alike.
+    pub curvature: DMatrix<f64>,
+    /// The step that was promised where no step led on; zero at an optimum.
+    pub promised: DVector<f64>,
+    /// Gain that a further step promises.
+    pub gain: f64,
+    /// Steps taken.
+    pub steps: usize,
+}
+
+impl Fit {
+    /// Looks for an optimum from `start`. Values that are not free stay as they are.
+    pub fn of(
+        estimation: &Estimation<'_>,
+        start: &[f64],
+        free: &[Free],
+        effort: Effort,
+    ) -> Result<Self, EstimateError> {
+        let selection = Selection::new(&estimation.layout(), free)?;
+        let posterior = Posterior {
+            estimation,
+            selection: &selection,
+        };
+        let mut point = posterior.at(start)?;
+        let mut information = posterior.expected(&point)?;
+        let mut curvature = information.clone();
+        let (mut is_observed, mut damping, mut steps) = (false, 0.0, 0);
+        loop {
+            let (_, left) = posterior.step(&point, &curvature, 0.0);
+            let most = if left <= CLOSE {
+                MUCH_DAMPING
+            } else {
+                MOST_DAMPING
+            };
+            let is_over = left <= effort.gain || steps >= effort.steps || damping > most;
+            if !is_observed && (is_over || damping > MUCH_DAMPING) {
+                information = posterior.expected(&point)?;
+                curvature = posterior.observed(&point, &information)?;
+                (is_observed, damping) = (true, 0.0);
+                continue;
+            }
+            if is_over && left > effort.gain.max(CLOSE) {
+                let slope = point.gradient.amax();
+                return Err(EstimateError::Stuck { steps, slope });
+            }
+            if is_over {
+                return Ok(Self {
+                    free: free.to_vec(),
+                    at_limit: point.is_held,
+                    values: point.values,
+                    coordinates: point.coordinates,
+                    log_likelihood: point.log_likelihood,
+                    log_posterior: point.objective,
+                    information,
+                    curvature,
+                    promised: DVector::zeros(free.len()),
+                    gain: left,
+                    steps,
+                });
+            }
+            steps += 1;
+            let (step, gain) = posterior.step(&point, &curvature, damping);
+            let next = posterior.moved(&point, &step).ok();
+            let next = next.filter(|next| next.objective.is_finite());
+            let is_better = |next: &Point| point.is_worse_than(next, ENOUGH * gain);
+            let better = next.as_ref().is_some_and(is_better);
+            // A step that failed tells something, but nothing better than what was just observed.
+            if let Some(next) = next.as_ref().filter(|_| better || !is_observed) {
+                learn(&mut curvature, &point, next);
+            }
+            match next {
+                Some(next) if better => {
+                    if next.objective - point.objective > BELIEVED * gain {
+                        let less = 0.1 * damping;
+                        damping = if less < 0.1 * DAMPING { 0.0 } else { less };
+                    }
+                    (point, is_observed) = (next, false);
+                }
+                _ => damping = (6.0 * damping).max(DAMPING),
+            }
+        }
+    }
+
+    /// Covariance of the coordinates if the model is right: the inverse of the information. What
+    /// stands at a limit counts as known.
+    pub fn covariance(&self) -> Result<DMatrix<f64>, EstimateError> {
+        inverse(&self.information, &self.at_limit)
+    }
+
+    /// Whether the search came to its end.
+    pub fn is_optimum(&self) -> bool {
+        self.promised.iter().all(|step| *step == 0.0)
+    }
+
+    /// Standard deviation of a coordinate if the model is right, with the step that was not found.
+    pub fn deviation(&self, index: usize) -> Result<f64, EstimateError> {
+        let variance = self.covariance()?[(index, index)];
+        Ok(variance.sqrt().hypot(self.promised[index]))
+    }
+
+    /// Limits, in SI, between which a value lies with 95 % if the model is right.
+    pub fn interval95(&self, index: usize) -> Result<[f64; 2], EstimateError> {
+        const QUANTILE: f64 = 1.959_963_984_540_054;
+        let deviation = self.deviation(index)?;
+        let (free, centre) = (self.free[index], self.coordinates[index]);
+        Ok([-1.0, 1.0].map(|sign| free.to_value(centre + sign * QUANTILE * deviation)))
+    }
+}
+
+/// The inverse of an information matrix among the coordinates that are not held; zero elsewhere.
+pub(crate) fn inverse(
+    information: &DMatrix<f64>,
+    held: &[bool],
+) -> Result<DMatrix<f64>, EstimateError> {
+    let open: Vec<usize> = (0..held.len()).filter(|&i| !held[i]).collect();
+    if open.is_empty() {
+        return Ok(DMatrix::zeros(held.len(), held.len()));
+    }
+    let part = DMatrix::from_fn(open.len(), open.len(), |i, j| {
+        information[(open[i], open[j])]
+    });
+    let scale = part.diagonal().map(|entry| entry.sqrt().recip());
+    let scaled = DMatrix::from_fn(open.len(), open.len(), |i, j| {
+        part[(i, j)] * scale[i] * scale[j]
+    });
+    let inverse = scaled.cholesky().ok_or(EstimateError::Singular {
+        what: "the information",
+    })?;
+    let inverse = inverse.inverse();
+    let mut all = DMatrix::zeros(held.len(), held.len());
+    for (i, &row) in open.iter().enumerate() {
+        for (j, &column) in open.iter().enumerate() {
+            all[(row, column)] = inverse[(i, j)] * scale[i] * scale[j];
+        }
+    }
+    Ok(all)
+}

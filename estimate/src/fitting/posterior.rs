@@ -1,0 +1,155 @@
+//! The log-posterior of the values that are looked for: the log-likelihood of recordings with what is
+//! known beforehand, as a function of coordinates within limits.
+
+use nalgebra::{DMatrix, DVector};
+
+use super::free::{Coordinate, Free, Selection};
+use crate::EstimateError;
+use crate::estimation::Estimation;
+
+/// Longest change of a logarithm in one step: a level that is better at zero falls by this factor in
+/// every step, until nothing is gained by it any more.
+const REACH: f64 = 3.0;
+/// Rounding of a log-likelihood, relative to its size.
+const ROUNDING: f64 = 1e-12;
+
+/// The function.
+#[derive(Clone, Copy)]
+pub(crate) struct Posterior<'o, 'e> {
+    pub(crate) estimation: &'o Estimation<'e>,
+    pub(crate) selection: &'o Selection<'o>,
+}
+
+/// Its value and gradient somewhere.
+#[derive(Clone)]
+pub(crate) struct Point {
+    /// All values in SI.
+    pub(crate) values: Vec<f64>,
+    /// Coordinates of those that are looked for.
+    pub(crate) coordinates: DVector<f64>,
+    /// Log-likelihood alone.
+    pub(crate) log_likelihood: f64,
+    /// Log-posterior.
+    pub(crate) objective: f64,
+    /// Its gradient by the coordinates.
+    pub(crate) gradient: DVector<f64>,
+    /// Where a coordinate stands at a limit and the objective grows beyond it.
+    pub(crate) is_held: Vec<bool>,
+}
+
+impl Posterior<'_, '_> {
+    /// At some values, which go to their limits where they are beyond.
+    pub(crate) fn at(&self, values: &[f64]) -> Result<Point, EstimateError> {
+        let coordinates = self.selection.coordinates(values)?;
+        let mut values = values.to_vec();
+        self.selection.write(&coordinates, &mut values);
+        let (log_likelihood, by_values) = self.estimation.gradient(&values)?;
+        let (prior, by_prior) = self.selection.prior(&coordinates);
+        let gradient = self.selection.gradient(&values, &by_values) + by_prior;
+        let limits = self.selection.limits();
+        let all = coordinates.iter().zip(&gradient).zip(limits);
+        let is_held = all.map(|((&x, &slope), [low, high])| {
+            x <= low && slope <= 0.0 || x >= high && slope >= 0.0
+        });
+        Ok(Point {
+            is_held: is_held.collect(),
+            objective: log_likelihood + prior,
+            log_likelihood,
+            gradient,
+            coordinates,
+            values,
+        })
+    }
+
+    /// After a step from a point.
+    pub(crate) fn moved(&self, point: &Point, step: &DVector<f64>) -> Result<Point, EstimateError> {
+        let mut values = point.values.clone();
+        let mut coordinates = &point.coordinates + step;
+        for (coordinate, [low, high]) in coordinates.iter_mut().zip(self.selection.limits()) {
+            *coordinate = coordinate.max(low).min(high);
+        }
+        self.selection.write(&coordinates, &mut values);
+        self.at(&values)
+    }
+
+    /// The step of a curvature from a point, and the gain that it promises. Coordinates at their
+    /// limits stay; no coordinate moves farther than it can reach, and the others make the best of
+    /// that.
+    pub(crate) fn step(
+        &self,
+        point: &Point,
+        curvature: &DMatrix<f64>,
+        damping: f64,
+    ) -> (DVector<f64>, f64) {
+        let held = point.is_held.iter();
+        let mut fixed: Vec<Option<f64>> = held.map(|&held| held.then_some(0.0)).collect();
+        let mut step = free_step(point, curvature, damping, &fixed);
+        let too_far =
+            |free: &Free, step: f64| free.coordinate == Coordinate::Logarithm && step.abs() > REACH;
+        let mut is_too_far = false;
+        for (i, free) in self.selection.free.iter().enumerate() {
+            if too_far(free, step[i]) {
+                fixed[i] = Some(REACH.copysign(step[i]));
+                is_too_far = true;
+            }
+        }
+        if is_too_far {
+            step = free_step(point, curvature, damping, &fixed);
+        }
+        let gain = point.gradient.dot(&step) - 0.5 * step.dot(&(curvature * &step));
+        (step, gain)
+    }
+}
+
+impl Point {
+    /// Whether a point is better than this one by so much; by the slopes along the way where the
+    /// difference is rounding.
+    pub(crate) fn is_worse_than(&self, other: &Point, gain: f64) -> bool {
+        let rise = other.objective - self.objective;
+        if rise.abs() > ROUNDING * self.objective.abs() {
+            return rise > gain;
+        }
+        let moved = &other.coordinates - &self.coordinates;
+        let [before, after] = [self, other].map(|point| point.gradient.dot(&moved));
+        after.abs() < before.abs()
+    }
+}
+
+/// The damped step of the coordinates that are not fixed.
+fn free_step(
+    point: &Point,
+    curvature: &DMatrix<f64>,
+    damping: f64,
+    fixed: &[Option<f64>],
+) -> DVector<f64> {
+    let mut step =
+        DVector::from_iterator(fixed.len(), fixed.iter().map(|fixed| fixed.unwrap_or(0.0)));
+    let slope = &point.gradient - curvature * &step;
+    // A coordinate without curvature cannot be judged.
+    let open: Vec<usize> = (0..fixed.len())
+        .filter(|&i| fixed[i].is_none() && curvature[(i, i)] > 0.0)
+        .collect();
+    if open.is_empty() {
+        return step;
+    }
+    let scale: Vec<f64> = open
+        .iter()
+        .map(|&i| curvature[(i, i)].sqrt().recip())
+        .collect();
+    let mut scaled = DMatrix::from_fn(open.len(), open.len(), |i, j| {
+        curvature[(open[i], open[j])] * scale[i] * scale[j]
+    });
+    for i in 0..open.len() {
+        // A little of the diagonal keeps directions without information in place.
+        scaled[(i, i)] += damping + 1e-12;
+    }
+    let right = DVector::from_fn(open.len(), |i, _| slope[open[i]] * scale[i]);
+    let solved = match scaled.cholesky() {
+        Some(factor) => factor.solve(&right),
+        None => right,
+    };
+    for (i, &place) in open.iter().enumerate() {
+        step[place] = solved[i] * scale[i];
+    }
+    step
+}

@@ -1,0 +1,327 @@
+//! The gradient of the log-likelihood: the filter's recursions walked backwards.
+//!
+//! What is differentiated is the covariance recursion. It is the same function as its square-root
+//! form, and its adjoint needs no derivative of a triangularisation. Gradients by covariances are
+//! symmetric.
+
+use std::ops::Range;
+
+use crate::data::setup::{Disturbance, Measured};
+use crate::kalman::filter::Pass;
+use crate::kalman::tape::{Record, Sample, SampleTape, StepTape};
+use crate::matrix::{
+    add, add_scaled, dot, multiply, multiply_transposed, multiply_transposed_add, pieces, scale,
+    symmetrise, transposed_multiply,
+};
+use crate::motion::closure::Closure;
+use crate::motion::plant::{Place, Scratch, Sums};
+use crate::motion::timeline::Advance;
+use crate::motion::transition::{self, Effects, Reverse, Span};
+
+/// Gradients on the way back through a pass.
+struct Backward<'p, 'a> {
+    pass: &'p Pass<'a>,
+    /// By the state and by the covariance after the record that is next.
+    z: Vec<f64>,
+    p: Vec<f64>,
+    parameters: Vec<f64>,
+    lags: Vec<f64>,
+    scratch: Scratch,
+    closure: Option<Closure>,
+    reverse: Reverse,
+    square: [Vec<f64>; 3],
+    vector: [Vec<f64>; 2],
+    mass: Vec<f64>,
+    forces: Vec<f64>,
+    mu: Vec<f64>,
+    slopes: Vec<f64>,
+}
+
+/// Adds to `gradient` that of the log-likelihood of the given rows, all of them depending on
+/// everything before.
+pub(crate) fn adjoint(pass: &mut Pass<'_>, rows: &Range<usize>, gradient: &mut [f64]) {
+    let mut tape = std::mem::take(&mut pass.tape);
+    let (n, s) = (pass.sizes.n, pass.plant.speeds);
+    let zeros = |len| vec![0.0; len];
+    let outputs = if pass.setup.sees_outputs() {
+        pass.plant.info().output_len()
+    } else {
+        0
+    };
+    let shared = &*pass;
+    let mut back = Backward {
+        pass: shared,
+        z: zeros(n),
+        p: zeros(n * n),
+        parameters: zeros(pass.layout.parameters),
+        lags: zeros(pass.layout.lags),
+        scratch: pass.plant.scratch(),
+        closure: pass.closure.clone(),
+        reverse: Reverse::new(pass.plant),
+        square: [zeros(n * n), zeros(n * n), zeros(n * n)],
+        vector: [zeros(n), zeros(n)],
+        mass: zeros(s * s),
+        forces: zeros(s * pass.sizes.disturbances),
+        mu: zeros(outputs),
+        slopes: zeros(outputs * n),
+    };
+    shared.walk_back(&mut tape, |record, tape| match record {
+        Record::Advance { advance, tape: at } => {
+            let on = shared.sizes.step(&mut tape[*at..]);
+            back.advance(*advance, &on, gradient);
+        }
+        Record::Measure { samples, held, .. } => {
+            let samples = &shared.samples[samples.clone()];
+            back.measure((samples, held), rows, tape, gradient);
+        }
+        Record::Close { t, held, tape: at } => {
+            let [z, root] = pieces(&mut tape[*at..], [n, n * n]);
+            back.open((*t, held), z, root);
+        }
+        Record::Parts { .. } => {}
+    });
+    back.start(gradient);
+    pass.tape = tape;
+}
+
+impl Backward<'_, '_> {
+    /// The initial state and its spread, and what was summed up on the way.
+    fn start(&self, gradient: &mut [f64]) {
+        let layout = &self.pass.layout;
+        let (n, run) = (self.pass.sizes.n, self.pass.run);
+        add(&self.z, &mut gradient[layout.initial(run)..][..n]);
+        let spread = layout.spread(run);
+        for i in 0..n {
+            gradient[spread + i] += 2.0 * self.pass.values[spread + i] * self.p[i * (n + 1)];
+        }
+        add(&self.parameters, gradient);
+        add(&self.lags, &mut gradient[layout.lag(0)..]);
+    }
+
+    /// Loops that were closed.
+    fn open(&mut self, (t, held): (f64, &[f64]), z: &mut [f64], root: &[f64]) {
+        let Some(closure) = &mut self.closure else {
+            return;
+        };
+        let closed = z.to_vec();
+        let place = Place {
+            t,
+            z: &closed,
+            held,
+            p: self.pass.p(),
+            lags: self.pass.lags(),
+        };
+        let plant = self.pass.plant;
+        // It was closed here before.
+        let _ = closure.close(plant, place, &mut self.scratch, z);
+        let mut sums = Sums {
+            z: &mut self.z,
+            p: &mut self.parameters,
+            lags: &mut self.lags,
+        };
+        let covariance = (root, self.p.as_mut_slice());
+        closure.adjoint(plant, place, &mut self.scratch, covariance, &mut sums);
+    }
+
+    fn advance(&mut self, advance: Advance, on: &StepTape<'_>, gradient: &mut [f64]) {
+        let pass = self.pass;
+        let (n, d, s) = (pass.sizes.n, pass.sizes.disturbances, pass.plant.speeds);
+        let h = advance.h;
+        let span = Span {
+            t: advance.t,
+            h,
+            held: on.held,
+            p: pass.p(),
+            lags: pass.lags(),
+        };
+        let [product, noise, by_f] = &mut self.square;
+        // ⟨Λ, F (P + N) Fᵀ + N⟩: by P it is FᵀΛF, by N it is Λ + FᵀΛF, by F it is 2 Λ F (P + N).
+        multiply(&self.p, on.f, n, product);
+        noise.copy_from_slice(&self.p);
+        transposed_multiply(on.f, product, n, &mut self.p);
+        // Measurements damp the symmetric part alone: rounding in the other one would grow with F.
+        symmetrise(&mut self.p, n);
+        add(&self.p, noise);
+
+        multiply_transposed(on.root, on.root, n, by_f);
+        let mut by_h = 0.0;
+        let [column, pushed] = &mut self.vector;
+        self.forces.fill(0.0);
+        let mut is_pushed = false;
+        for (j, disturbance) in pass.setup.disturbances.iter().enumerate() {
+            let place = pass.layout.disturbance(j);
+            let level = pass.values[place];
+            for i in 0..n {
+                column[i] = on.columns[i * d + j];
+            }
+            multiply(noise, column, n, pushed);
+            let effect = dot(column, pushed);
+            gradient[place] += level * h * effect;
+            by_h += 0.5 * level * level * effect;
+            let half = 0.5 * h * level * level;
+            for (row, &entry) in by_f.chunks_exact_mut(n).zip(column.iter()) {
+                add_scaled(half * entry, column, row);
+            }
+            if let Disturbance::Force(_) = disturbance {
+                is_pushed = true;
+                for i in 0..s {
+                    self.forces[i * d + j] = level * level * h * pushed[i];
+                }
+            }
+        }
+        // `by_f` held P + N.
+        multiply(product, by_f, n, noise);
+        scale(2.0, noise);
+
+        self.mass.fill(0.0);
+        let before = &on.stages.z[..n];
+        if is_pushed {
+            // δ(M⁻¹) = −M⁻¹ δM M⁻¹.
+            let place = span.place(0, before);
+            let plant = pass.plant;
+            plant.accelerations(place, &mut self.scratch, &mut self.forces);
+            let columns = &on.columns[..s * d];
+            multiply_transposed_add(&self.forces, columns, d, &mut self.mass);
+            scale(-1.0, &mut self.mass);
+        }
+        column.copy_from_slice(&self.z);
+        self.z.fill(0.0);
+        let effects = Effects {
+            after: column,
+            f: noise,
+            mass: &self.mass,
+            by_length: advance.moved_by.iter().any(Option::is_some),
+        };
+        let mut sums = Sums {
+            z: &mut self.z,
+            p: &mut self.parameters,
+            lags: &mut self.lags,
+        };
+        by_h += transition::adjoint(
+            pass.plant,
+            span,
+            &mut self.scratch,
+            (&on.stages, effects),
+            &mut self.reverse,
+            &mut sums,
+        );
+        for (delay, part) in advance.moved_by.into_iter().flatten() {
+            gradient[delay] += part * by_h;
+        }
+    }
+
+    /// The scalars of one moment, last one first; then their slopes, which all belong to the state
+    /// before the first.
+    fn measure(
+        &mut self,
+        (samples, held): (&[Sample], &[f64]),
+        rows: &Range<usize>,
+        tape: &mut [f64],
+        gradient: &mut [f64],
+    ) {
+        let Some(first) = samples.first() else {
+            return;
+        };
+        let pass = self.pass;
+        let n = pass.sizes.n;
+        let prior = pass.sizes.sample(&mut tape[first.tape..]).z.to_vec();
+        let mut by_prior = vec![0.0; n];
+        self.mu.fill(0.0);
+        self.slopes.fill(0.0);
+        let mut outputs = false;
+        for sample in samples.iter().rev() {
+            let on = pass.sizes.sample(&mut tape[sample.tape..]);
+            let seed = f64::from(u8::from(rows.contains(&sample.innovation.row)));
+            let by_quantity = self.scalar(sample, &on, (&prior, &mut by_prior), seed, gradient);
+            // The gradient by the slope is in `vector[0]` now.
+            let channel = sample.innovation.channel;
+            let place = pass.layout.scale(channel);
+            let gain = pass.values[place];
+            gradient[pass.layout.bias(channel)] += by_quantity;
+            gradient[place] += by_quantity * sample.quantity;
+            match pass.setup.channels[channel].measures {
+                Measured::State(state) => {
+                    by_prior[state] += gain * by_quantity;
+                    gradient[place] += self.vector[0][state];
+                }
+                Measured::Output(output) => {
+                    outputs = true;
+                    self.mu[output] += gain * by_quantity;
+                    let slopes = &mut self.slopes[output * n..(output + 1) * n];
+                    add_scaled(gain, &self.vector[0], slopes);
+                    gradient[place] += dot(&self.vector[0], on.c) / gain;
+                }
+            }
+        }
+        add(&by_prior, &mut self.z);
+        if outputs {
+            let place = Place {
+                t: first.innovation.t,
+                z: &prior,
+                held,
+                p: pass.p(),
+                lags: pass.lags(),
+            };
+            let mut sums = Sums {
+                z: &mut self.z,
+                p: &mut self.parameters,
+                lags: &mut self.lags,
+            };
+            let weights = [self.mu.as_slice(), &self.slopes];
+            let plant = pass.plant;
+            plant.output_adjoint(place, &mut self.scratch, weights, &mut sums);
+        }
+    }
+
+    /// One update: z⁺ = z + a e/s, P⁺ = P − a aᵀ/s with a = P c, s = cᵀa + r and
+    /// e = y − h − cᵀ(z − prior). Returns the derivative by h and leaves that by c in `vector[0]`.
+    fn scalar(
+        &mut self,
+        sample: &Sample,
+        on: &SampleTape<'_>,
+        (prior, by_prior): (&[f64], &mut [f64]),
+        seed: f64,
+        gradient: &mut [f64],
+    ) -> f64 {
+        let pass = self.pass;
+        let n = pass.sizes.n;
+        let SampleTape { c, a, z, root } = on;
+        let (e, s) = (
+            sample.innovation.white_residual,
+            sample.innovation.white_variance,
+        );
+        let [by_c, by_a] = &mut self.vector;
+        // Share of the log-likelihood: −(ln 2πs + e²/s)/2.
+        let along = dot(&self.z, a);
+        let by_e = (along - seed * e) / s;
+        multiply(&self.p, a, n, by_a);
+        let shrunk = dot(a, by_a);
+        let by_s = -0.5 * seed * (1.0 - e * e / s) / s + (shrunk - along * e) / (s * s);
+        scale(-2.0 / s, by_a);
+        add_scaled(e / s, &self.z, by_a);
+        add_scaled(by_s, c, by_a);
+        // s = cᵀ a + r.
+        by_c.copy_from_slice(a);
+        scale(by_s, by_c);
+        let noise = pass.layout.noise(sample.innovation.channel);
+        gradient[noise] += 2.0 * pass.values[noise] * by_s;
+        // a = P c with P = root rootᵀ.
+        let [seen, back, _] = &mut self.square;
+        let (seen, back) = (&mut seen[..n], &mut back[..n]);
+        transposed_multiply(root, by_a, n, seen);
+        multiply(root, seen, n, back);
+        add(back, by_c);
+        for i in 0..n {
+            for j in 0..n {
+                self.p[i * n + j] += 0.5 * (by_a[i] * c[j] + c[i] * by_a[j]);
+            }
+        }
+        // e = y − h − cᵀ(z − prior).
+        for i in 0..n {
+            by_c[i] -= by_e * (z[i] - prior[i]);
+        }
+        add_scaled(-by_e, c, &mut self.z);
+        add_scaled(by_e, c, by_prior);
+        -by_e
+    }
+}

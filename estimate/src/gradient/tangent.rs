@@ -1,0 +1,453 @@
+//! How all innovations change with some values, to first order, by one pass of the filter.
+//!
+//! The gains of the filter are held: their changes multiply innovations, which are zero on average,
+//! and so do not enter Fisher's information of what moves the mean. A column costs as little as one
+//! row of the covariance, whatever it stands for: a parameter, a bias, a delay that the setup does
+//! not have, or a force that nobody has written down yet.
+
+use nalgebra::DMatrix;
+
+use appell_runtime::model::At;
+
+use crate::EstimateError;
+use crate::data::setup::Measured;
+use crate::data::unknown::Unknown;
+use crate::estimation::Estimation;
+use crate::kalman::filter::{Innovation, Pass};
+use crate::kalman::tape::{Record, SampleTape};
+use crate::matrix::{add_scaled, dot, multiply};
+use crate::motion::plant::{Place, Scratch, Sums};
+use crate::motion::timeline::{Action, Advance};
+use crate::motion::transition::added_by_rate;
+
+/// What innovations are differentiated by.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Direction {
+    /// A value. Levels and spreads do not move the mean.
+    Value(Unknown),
+    /// A delay in s of a declared input; for a lag it is the same to first order.
+    LateInput(usize),
+    /// A delay in s of a channel.
+    LateChannel(usize),
+}
+
+/// What shapes add to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Along {
+    /// The force of each disturbance.
+    Disturbances,
+    /// What each channel reads.
+    Channels,
+}
+
+/// What is tried beside the model: shapes of run, time, state and inputs, each in the direction of
+/// each disturbance, or as an error of each channel.
+#[derive(Clone, Copy)]
+pub struct Shapes<'s> {
+    /// What they add to.
+    pub along: Along,
+    /// How many.
+    pub count: usize,
+    /// Writes the values of all shapes.
+    pub values: &'s dyn Fn(usize, At<'_>, &mut [f64]),
+}
+
+/// Derivatives of the whitened innovations.
+#[derive(Debug, Clone)]
+pub struct Tangent {
+    /// The samples in the order of runs, rows and channels, with the run of each.
+    pub samples: Vec<(usize, Innovation)>,
+    /// A row for each sample; a column for each direction, then for each shape along the first
+    /// disturbance or channel, and so on.
+    pub slopes: DMatrix<f64>,
+}
+
+impl Estimation<'_> {
+    /// The tangent of all recordings at some values.
+    pub fn tangent(
+        &self,
+        values: &[f64],
+        directions: &[Direction],
+        shapes: Option<Shapes<'_>>,
+    ) -> Result<Tangent, EstimateError> {
+        self.check(values)?;
+        let layout = self.layout();
+        for direction in directions {
+            if let Direction::Value(unknown) = *direction {
+                layout.place(unknown)?;
+            }
+        }
+        let tried = shapes.map_or(0, |shapes| {
+            let setup = self.setup();
+            shapes.count
+                * match shapes.along {
+                    Along::Disturbances => setup.disturbances.len(),
+                    Along::Channels => setup.channels.len(),
+                }
+        });
+        let columns = directions.len() + tried;
+        let mut all: Vec<(usize, Innovation, Vec<f64>)> = Vec::new();
+        for run in 0..self.recordings().len() {
+            let actions = self.actions(run, values);
+            let pass = self.fresh(run, values, &actions);
+            let mut forward = Forward::new(self, pass, (directions, shapes), columns);
+            for &action in &actions {
+                forward.act(action)?;
+            }
+            let rows = forward.rows.chunks_exact(columns.max(1));
+            let samples = forward.pass.samples.iter();
+            all.extend(
+                samples
+                    .zip(rows)
+                    .map(|(sample, row)| (run, sample.innovation, row.to_vec())),
+            );
+        }
+        all.sort_by_key(|(run, sample, _)| (*run, sample.row, sample.channel));
+        let slopes = DMatrix::from_fn(all.len(), columns, |row, column| all[row].2[column]);
+        Ok(Tangent {
+            samples: all.into_iter().map(|(run, one, _)| (run, one)).collect(),
+            slopes,
+        })
+    }
+}
+
+/// Derivatives of the state on the way through a run.
+struct Forward<'p, 'a> {
+    estimation: &'p Estimation<'a>,
+    pass: Pass<'p>,
+    directions: Vec<Direction>,
+    shapes: Option<Shapes<'p>>,
+    columns: usize,
+    /// By each direction, n rows.
+    z: Vec<f64>,
+    moved: Vec<f64>,
+    /// Half of what a step adds.
+    added: Vec<f64>,
+    by_parameters: Vec<f64>,
+    by_states: Vec<f64>,
+    by_inputs: Vec<f64>,
+    tried: Vec<f64>,
+    rates: Vec<f64>,
+    scratch: Scratch,
+    /// Derivatives of the whitened innovations.
+    rows: Vec<f64>,
+}
+
+impl<'p, 'a> Forward<'p, 'a> {
+    fn new(
+        estimation: &'p Estimation<'a>,
+        pass: Pass<'p>,
+        (directions, shapes): (&[Direction], Option<Shapes<'p>>),
+        columns: usize,
+    ) -> Self {
+        let (setup, n) = (estimation.setup(), pass.sizes.n);
+        let own: Vec<Direction> = directions
+            .iter()
+            .map(|&direction| match direction {
+                Direction::Value(Unknown::InputDelay(index)) => {
+                    Direction::LateInput(setup.delayed[index])
+                }
+                Direction::Value(Unknown::SensorDelay(channel)) => Direction::LateChannel(channel),
+                other => other,
+            })
+            .collect();
+        let info = setup.model.info();
+        let zeros = |len| vec![0.0; len];
+        let mut z = zeros(n * columns);
+        for (column, direction) in own.iter().enumerate() {
+            if let Direction::Value(Unknown::Initial { run, state }) = *direction
+                && run == pass.run
+            {
+                z[state * columns + column] = 1.0;
+            }
+        }
+        Self {
+            estimation,
+            directions: own,
+            shapes,
+            columns,
+            z,
+            moved: zeros(n * columns),
+            added: zeros(n * columns),
+            by_parameters: zeros(info.state_len() * info.parameter_len()),
+            by_states: zeros(info.state_len() * info.state_len()),
+            by_inputs: zeros(info.state_len() * info.input_len()),
+            tried: zeros(shapes.map_or(0, |shapes| shapes.count)),
+            rates: zeros(n),
+            scratch: pass.plant.scratch(),
+            rows: Vec::new(),
+            pass,
+        }
+    }
+
+    fn act(&mut self, action: Action) -> Result<(), EstimateError> {
+        let before = self.pass.held.clone();
+        let (records, samples) = (self.pass.records.len(), self.pass.samples.len());
+        let recording = &self.estimation.recordings()[self.pass.run];
+        self.pass.act(recording, action)?;
+        match action {
+            Action::Advance(_) => {
+                let steps = self.pass.records[records..].iter();
+                let steps: Vec<(Advance, usize)> = steps
+                    .filter_map(|record| match record {
+                        Record::Advance { advance, tape } => Some((*advance, *tape)),
+                        _ => None,
+                    })
+                    .collect();
+                for step in steps {
+                    self.advance(step);
+                }
+            }
+            Action::Switch { .. } if records > 0 => {
+                self.switch(recording_time(recording, action), &before);
+            }
+            Action::Switch { .. } => {}
+            Action::Measure { .. } => self.measure(samples),
+        }
+        self.close(action, recording);
+        Ok(())
+    }
+
+    /// Lets the dependent coordinates follow.
+    fn close(&mut self, action: Action, recording: &crate::Recording) {
+        let Some(closure) = &self.pass.closure else {
+            return;
+        };
+        closure.follow(&mut self.z);
+        let t = match action {
+            Action::Advance(advance) => advance.t + advance.h,
+            _ => recording_time(recording, action),
+        };
+        let place = Place {
+            t,
+            z: &self.pass.z,
+            held: &self.pass.held,
+            p: self.pass.p(),
+            lags: self.pass.lags(),
+        };
+        for (column, direction) in self.directions.iter().enumerate() {
+            if let Direction::Value(Unknown::Parameter(index)) = *direction {
+                let plant = self.pass.plant;
+                for (state, slope) in closure.by_parameter(plant, place, &mut self.scratch, index) {
+                    self.z[state * self.columns + column] += slope;
+                }
+            }
+        }
+    }
+
+    /// Z ← F (Z + H) + H, where H is half of what the step adds, by the slopes in its middle.
+    fn advance(&mut self, (advance, tape): (Advance, usize)) {
+        let (n, columns, half) = (self.pass.sizes.n, self.columns, 0.5 * advance.h);
+        let info = self.estimation.setup().model.info();
+        let (states, parameters) = (info.state_len(), info.parameter_len());
+        let (p, lags) = (self.pass.p(), self.pass.lags());
+        let disturbances = self.pass.sizes.disturbances;
+        let plant = self.pass.plant;
+        let on = self.pass.sizes.step(&mut self.pass.tape[tape..]);
+        let middle = &on.stages.z[n..2 * n];
+        let place = Place {
+            t: advance.t + half,
+            z: middle,
+            held: on.held,
+            p,
+            lags,
+        };
+        self.added.fill(0.0);
+        // Lags may be as short as the step: their slopes follow its stages.
+        let mut lagged: Vec<(usize, Vec<f64>)> = Vec::new();
+        let is_parameter =
+            |direction: &Direction| matches!(direction, Direction::Value(Unknown::Parameter(_)));
+        if self.directions.iter().any(is_parameter) {
+            plant.parameter_jacobian(place, &mut self.scratch, &mut self.by_parameters);
+        }
+        for (column, direction) in self.directions.iter().enumerate() {
+            match *direction {
+                Direction::Value(Unknown::Parameter(index)) => {
+                    for state in 0..states {
+                        self.added[state * columns + column] =
+                            half * self.by_parameters[state * parameters + index];
+                    }
+                }
+                Direction::Value(Unknown::Lag(lag)) => {
+                    let input = self.estimation.setup().lagging[lag];
+                    let rate = |z: &[f64]| -> f64 {
+                        -(on.held[input] - z[states + lag]) / (lags[lag] * lags[lag])
+                    };
+                    let added = added_by_rate(&on.stages, (n, advance.h), states + lag, rate);
+                    lagged.push((column, added));
+                }
+                _ => {}
+            }
+        }
+        if let Some(shapes) = self.shapes.filter(|own| own.along == Along::Disturbances) {
+            plant.at(place, &mut self.scratch, |at| {
+                (shapes.values)(self.pass.run, at, &mut self.tried);
+            });
+            for (j, first) in (self.directions.len()..columns)
+                .step_by(shapes.count.max(1))
+                .enumerate()
+            {
+                for i in 0..n {
+                    let along = half * on.columns[i * disturbances + j];
+                    let row = &mut self.added[i * columns + first..][..shapes.count];
+                    add_scaled(along, &self.tried, row);
+                }
+            }
+        }
+        add_scaled(1.0, &self.added, &mut self.z);
+        multiply(on.f, &self.z, n, &mut self.moved);
+        std::mem::swap(&mut self.z, &mut self.moved);
+        add_scaled(1.0, &self.added, &mut self.z);
+        for (column, added) in lagged {
+            for (state, added) in added.into_iter().enumerate() {
+                self.z[state * columns + column] += added;
+            }
+        }
+    }
+
+    /// An input that came later would have held its value before for longer.
+    fn switch(&mut self, t: f64, before: &[f64]) {
+        let late = |direction: &Direction| matches!(direction, Direction::LateInput(_));
+        if !self.directions.iter().any(late) {
+            return;
+        }
+        let info = self.estimation.setup().model.info();
+        let (states, inputs) = (info.state_len(), info.input_len());
+        let held = self.pass.held.clone();
+        let place = Place {
+            t,
+            z: &self.pass.z,
+            held: &held,
+            p: self.pass.p(),
+            lags: self.pass.lags(),
+        };
+        let (rates, a, b) = (&mut self.rates, &mut self.by_states, &mut self.by_inputs);
+        self.pass.plant.at(place, &mut self.scratch, |at| {
+            self.estimation
+                .setup()
+                .model
+                .jacobians(at, &mut rates[..states], a, b);
+        });
+        for (column, direction) in self.directions.iter().enumerate() {
+            if let Direction::LateInput(input) = *direction {
+                let jump = before[input] - held[input];
+                for state in 0..states {
+                    self.z[state * self.columns + column] +=
+                        jump * self.by_inputs[state * inputs + input];
+                }
+            }
+        }
+    }
+
+    fn measure(&mut self, first: usize) {
+        let (n, columns) = (self.pass.sizes.n, self.columns);
+        let setup = self.estimation.setup();
+        for index in first..self.pass.samples.len() {
+            let sample = self.pass.samples[index];
+            let channel = sample.innovation.channel;
+            let by_parameters = self.output_slope(index);
+            let SampleTape { c, a, z, .. } =
+                self.pass.sizes.sample(&mut self.pass.tape[sample.tape..]);
+            let start = self.rows.len();
+            self.rows.resize(start + columns, 0.0);
+            let row = &mut self.rows[start..];
+            for (state, &slope) in c.iter().enumerate() {
+                if slope != 0.0 {
+                    add_scaled(-slope, &self.z[state * columns..(state + 1) * columns], row);
+                }
+            }
+            for (column, direction) in self.directions.iter().enumerate() {
+                row[column] += match *direction {
+                    Direction::Value(Unknown::Bias(own)) if own == channel => -1.0,
+                    Direction::Value(Unknown::Scale(own)) if own == channel => -sample.quantity,
+                    Direction::Value(Unknown::Parameter(index)) if !by_parameters.is_empty() => {
+                        -by_parameters[index]
+                    }
+                    Direction::LateChannel(own) if own == channel => {
+                        let place = Place {
+                            t: sample.innovation.t,
+                            z,
+                            held: &self.pass.held,
+                            p: &self.pass.values[..self.pass.layout.parameters],
+                            lags: &self.pass.values[self.pass.layout.lag(0)..]
+                                [..setup.lagging.len()],
+                        };
+                        self.pass
+                            .plant
+                            .rates(place, &mut self.scratch, &mut self.rates);
+                        dot(c, &self.rates)
+                    }
+                    _ => 0.0,
+                };
+            }
+            if let Some(shapes) = self.shapes.filter(|own| own.along == Along::Channels) {
+                let place = Place {
+                    t: sample.innovation.t,
+                    z,
+                    held: &self.pass.held,
+                    p: &self.pass.values[..self.pass.layout.parameters],
+                    lags: &self.pass.values[self.pass.layout.lag(0)..][..setup.lagging.len()],
+                };
+                self.pass.plant.at(place, &mut self.scratch, |at| {
+                    (shapes.values)(self.pass.run, at, &mut self.tried);
+                });
+                let first = self.directions.len() + channel * shapes.count;
+                add_scaled(-1.0, &self.tried, &mut row[first..][..shapes.count]);
+            }
+            let s = sample.innovation.white_variance;
+            for i in 0..n {
+                add_scaled(a[i] / s, row, &mut self.z[i * columns..(i + 1) * columns]);
+            }
+            let deviation = s.sqrt();
+            for entry in row {
+                *entry /= deviation;
+            }
+        }
+    }
+
+    /// Derivatives of a measured output by the parameters; none for a state.
+    fn output_slope(&mut self, index: usize) -> Vec<f64> {
+        let sample = self.pass.samples[index];
+        let setup = self.estimation.setup();
+        let channel = sample.innovation.channel;
+        let Measured::Output(output) = setup.channels[channel].measures else {
+            return Vec::new();
+        };
+        let info = setup.model.info();
+        let n = self.pass.sizes.n;
+        let (held, p, lags) = (self.pass.held.clone(), self.pass.p(), self.pass.lags());
+        let z = self.pass.z.clone();
+        let mut weights = vec![0.0; info.output_len()];
+        weights[output] = self.pass.values[self.pass.layout.scale(channel)];
+        let slopes = vec![0.0; info.output_len() * n];
+        let mut by = (
+            vec![0.0; n],
+            vec![0.0; info.parameter_len()],
+            vec![0.0; lags.len()],
+        );
+        let place = Place {
+            t: sample.innovation.t,
+            z: &z,
+            held: &held,
+            p,
+            lags,
+        };
+        let mut sums = Sums {
+            z: &mut by.0,
+            p: &mut by.1,
+            lags: &mut by.2,
+        };
+        let weights = [weights.as_slice(), &slopes];
+        self.pass
+            .plant
+            .output_adjoint(place, &mut self.scratch, weights, &mut sums);
+        by.1
+    }
+}
+
+fn recording_time(recording: &crate::Recording, action: Action) -> f64 {
+    match action {
+        Action::Switch { row, .. } | Action::Measure { row, .. } => recording.times()[row],
+        Action::Advance(advance) => advance.t,
+    }
+}

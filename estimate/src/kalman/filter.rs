@@ -1,0 +1,510 @@
+//! The square-root extended Kalman filter (Bierman 1977; Särkkä, *Bayesian Filtering and
+//! Smoothing*, 2013, section 5.2).
+//!
+//! Time: z⁺ by a Runge–Kutta step, in parts where it meets a corner and the setup has corners,
+//! P⁺ = F (P + N) Fᵀ + N, where N is half of the noise of the step; half enters before it and half after. Measurements: one scalar after the other, all linearised
+//! about the state before the first of them, which is the update with all at once where noise is
+//! independent. The residuals of these scalars are independent of each other and of all earlier
+//! ones: squares and logarithms of their variances add up to the likelihood. Where coordinates depend
+//! on each other, loops are closed after each of the two.
+
+use std::f64::consts::TAU;
+
+use super::square_root::{potter, triangularise};
+use super::tape::{Record, Sample, SampleTape, Sizes};
+use crate::EstimateError;
+use crate::data::layout::Layout;
+use crate::data::recording::Recording;
+use crate::data::setup::{Disturbance, Measured, Setup};
+use crate::matrix::{add_scaled, dot, multiply, pieces, scale, transposed_multiply};
+use crate::motion::closure::Closure;
+use crate::motion::plant::{Place, Plant, Scratch};
+use crate::motion::timeline::{Action, Advance};
+use crate::motion::transition::{MOST_HALVINGS, Span, halvings, step};
+
+/// A measured scalar as the filter met it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Innovation {
+    /// Row of the recording.
+    pub row: usize,
+    /// Channel.
+    pub channel: usize,
+    /// When it was sampled, in s.
+    pub t: f64,
+    /// Measured value less its prediction from all earlier rows, in SI.
+    pub residual: f64,
+    /// Variance of that residual.
+    pub variance: f64,
+    /// Measured value less its prediction from all earlier rows and from the channels before it in
+    /// the row. Divided by the root of `white_variance` it is white noise of variance 1.
+    pub white_residual: f64,
+    /// Its variance.
+    pub white_variance: f64,
+}
+
+impl Innovation {
+    /// White noise of variance 1 where the model and the levels of noise are right.
+    pub fn whitened(&self) -> f64 {
+        self.white_residual / self.white_variance.sqrt()
+    }
+
+    /// Its share of the log-likelihood.
+    pub fn log_likelihood(&self) -> f64 {
+        let (e, s) = (self.white_residual, self.white_variance);
+        -0.5 * ((TAU * s).ln() + e * e / s)
+    }
+}
+
+/// One run of the filter along a recording.
+pub(crate) struct Pass<'a> {
+    pub(crate) setup: &'a Setup<'a>,
+    pub(crate) plant: &'a Plant<'a>,
+    pub(crate) layout: Layout,
+    pub(crate) values: &'a [f64],
+    pub(crate) run: usize,
+    pub(crate) sizes: Sizes,
+    /// Whether everything stays on the tape, and not what the last action did alone.
+    keeps: bool,
+    pub(crate) tape: Vec<f64>,
+    pub(crate) records: Vec<Record>,
+    pub(crate) samples: Vec<Sample>,
+    pub(crate) z: Vec<f64>,
+    pub(crate) root: Vec<f64>,
+    pub(crate) held: Vec<f64>,
+    scratch: Scratch,
+    pub(crate) closure: Option<Closure>,
+    spread: Vec<f64>,
+    wide: Vec<f64>,
+    seen: Vec<f64>,
+    outputs: Vec<f64>,
+    output_slopes: Vec<f64>,
+}
+
+impl<'a> Pass<'a> {
+    /// Filters a recording. Without `keeps` only the innovations remain.
+    pub(crate) fn over(
+        (setup, plant, layout): (&'a Setup<'a>, &'a Plant<'a>, Layout),
+        values: &'a [f64],
+        (run, recording): (usize, &Recording),
+        actions: &[Action],
+        keeps: bool,
+    ) -> Result<Self, EstimateError> {
+        let mut pass = Self::new(
+            (setup, plant, layout),
+            values,
+            (run, recording),
+            actions,
+            keeps,
+        );
+        for &action in actions {
+            pass.act(recording, action)?;
+        }
+        Ok(pass)
+    }
+
+    /// Before the first action.
+    pub(crate) fn new(
+        model: (&'a Setup<'a>, &'a Plant<'a>, Layout),
+        values: &'a [f64],
+        (run, recording): (usize, &Recording),
+        actions: &[Action],
+        keeps: bool,
+    ) -> Self {
+        let mut pass = Self::blank(model, values, run);
+        pass.keeps = keeps;
+        pass.records.reserve(actions.len());
+        let samples = recording.times().len() * pass.setup.channels.len();
+        pass.samples.reserve(samples);
+        if keeps {
+            let steps = actions
+                .iter()
+                .filter(|a| matches!(a, Action::Advance(_)))
+                .count();
+            let sizes = pass.sizes;
+            pass.tape
+                .reserve(steps * sizes.step_len() + samples * sizes.sample_len());
+        }
+        pass.start();
+        pass
+    }
+
+    /// Nowhere yet.
+    pub(crate) fn blank(
+        (setup, plant, layout): (&'a Setup<'a>, &'a Plant<'a>, Layout),
+        values: &'a [f64],
+        run: usize,
+    ) -> Self {
+        let (n, info) = (plant.n, plant.info());
+        let outputs = if setup.sees_outputs() {
+            info.output_len()
+        } else {
+            0
+        };
+        let sizes = Sizes {
+            n,
+            inputs: info.declared_inputs,
+            disturbances: setup.disturbances.len(),
+        };
+        let zeros = |len| vec![0.0; len];
+        Self {
+            setup,
+            plant,
+            layout,
+            values,
+            run,
+            sizes,
+            keeps: false,
+            tape: Vec::new(),
+            records: Vec::new(),
+            samples: Vec::new(),
+            z: zeros(n),
+            root: zeros(n * n),
+            held: zeros(sizes.inputs),
+            scratch: plant.scratch(),
+            closure: Closure::of(plant),
+            spread: zeros(2 * n * (n + sizes.disturbances)),
+            wide: zeros(n * (n + 2 * sizes.disturbances)),
+            seen: zeros(n),
+            outputs: zeros(outputs),
+            output_slopes: zeros(outputs * n),
+        }
+    }
+
+    pub(crate) fn act(
+        &mut self,
+        recording: &Recording,
+        action: Action,
+    ) -> Result<(), EstimateError> {
+        if !self.keeps {
+            self.tape.clear();
+        }
+        match action {
+            Action::Advance(advance) => {
+                self.advance(advance, 0)?;
+                self.close(advance.t + advance.h)
+            }
+            Action::Switch { row, input } => {
+                let first = self.records.is_empty();
+                switch(
+                    self.setup,
+                    first,
+                    &mut self.held,
+                    recording.inputs(row),
+                    input,
+                );
+                if first {
+                    self.close(recording.times()[row])?;
+                }
+                Ok(())
+            }
+            Action::Measure { row, channel } => {
+                self.measure(recording, row, channel)?;
+                self.close(recording.times()[row])
+            }
+        }
+    }
+
+    pub(crate) fn log_likelihood(&self) -> f64 {
+        let samples = self.samples.iter();
+        samples
+            .map(|sample| sample.innovation.log_likelihood())
+            .sum()
+    }
+
+    pub(crate) fn p(&self) -> &'a [f64] {
+        &self.values[..self.layout.parameters]
+    }
+
+    pub(crate) fn lags(&self) -> &'a [f64] {
+        let start = self.layout.lag(0);
+        &self.values[start..start + self.layout.lags]
+    }
+
+    fn start(&mut self) {
+        let n = self.sizes.n;
+        let (initial, spread) = (self.layout.initial(self.run), self.layout.spread(self.run));
+        self.z.copy_from_slice(&self.values[initial..initial + n]);
+        for i in 0..n {
+            self.root[i * (n + 1)] = self.values[spread + i];
+        }
+    }
+
+    /// Room on the tape.
+    fn record(&mut self, len: usize) -> usize {
+        let start = self.tape.len();
+        self.tape.resize(start + len, 0.0);
+        start
+    }
+
+    /// Goes on by a step, or by parts of it where it is too long for what it meets.
+    fn advance(&mut self, advance: Advance, halved: u32) -> Result<(), EstimateError> {
+        let tape = self.record(self.sizes.step_len());
+        self.records.push(Record::Advance { advance, tape });
+        let (n, d) = (self.sizes.n, self.sizes.disturbances);
+        let (p, lags, h) = (self.p(), self.lags(), advance.h);
+        let mut on = self.sizes.step(&mut self.tape[tape..]);
+        on.held.copy_from_slice(&self.held);
+        on.root.copy_from_slice(&self.root);
+        on.stages.z[..n].copy_from_slice(&self.z);
+        let span = Span {
+            t: advance.t,
+            h,
+            held: on.held,
+            p,
+            lags,
+        };
+        let before = span.place(0, &self.z);
+        directions(
+            self.setup,
+            self.plant,
+            before,
+            &mut self.scratch,
+            on.columns,
+        );
+        step(
+            self.plant,
+            span,
+            &mut self.scratch,
+            &mut on.stages,
+            on.after,
+            on.f,
+        );
+        // Loops are closed after whole steps alone.
+        let halvings = if self.setup.has_corners && self.closure.is_none() {
+            let own = self.plant.info().state_len();
+            halvings(&on.stages, (n, own), h).min(MOST_HALVINGS - halved)
+        } else {
+            0
+        };
+        if halvings > 0 {
+            self.tape.truncate(tape);
+            self.records.pop();
+            return self.advance_in_parts(advance, halved, halvings);
+        }
+
+        // [S, N½], then [F S, F N½, N½].
+        let [joint, moved] = pieces(&mut self.spread, [n * (n + d), n * (n + d)]);
+        for (i, joint) in joint.chunks_exact_mut(n + d).enumerate() {
+            joint[..n].copy_from_slice(&on.root[i * n..(i + 1) * n]);
+            for j in 0..d {
+                let level = self.values[self.layout.disturbance(j)];
+                joint[n + j] = level * (0.5 * h).sqrt() * on.columns[i * d + j];
+            }
+        }
+        multiply(on.f, joint, n, moved);
+        let rows = self.wide.chunks_exact_mut(n + 2 * d);
+        let parts = moved.chunks_exact(n + d).zip(joint.chunks_exact(n + d));
+        for (wide, (moved, joint)) in rows.zip(parts) {
+            wide[..n + d].copy_from_slice(moved);
+            wide[n + d..].copy_from_slice(&joint[n..]);
+        }
+        triangularise(&mut self.wide, n, &mut self.root);
+        self.z.copy_from_slice(on.after);
+        let finite = self
+            .z
+            .iter()
+            .chain(&self.root)
+            .all(|entry| entry.is_finite());
+        finite.then_some(()).ok_or(EstimateError::Diverged {
+            run: self.run,
+            t: advance.t + h,
+        })
+    }
+
+    /// Goes on by the parts of a step. A pass that keeps everything keeps what the whole step began
+    /// with.
+    pub(crate) fn advance_in_parts(
+        &mut self,
+        advance: Advance,
+        halved: u32,
+        halvings: u32,
+    ) -> Result<(), EstimateError> {
+        let kept = (self.keeps && halved == 0).then(|| {
+            let tape = self.tape.len();
+            for start in [&self.held, &self.z, &self.root] {
+                self.tape.extend_from_slice(start);
+            }
+            self.records.push(Record::Parts {
+                advance,
+                halvings,
+                tape,
+            });
+            (self.tape.len(), self.records.len())
+        });
+        let mut parts = advance.parts(halvings);
+        parts.try_for_each(|part| self.advance(part, halved + halvings))?;
+        if let Some((tape, records)) = kept {
+            self.tape.truncate(tape);
+            self.records.truncate(records);
+        }
+        Ok(())
+    }
+
+    /// Closes the loops.
+    fn close(&mut self, t: f64) -> Result<(), EstimateError> {
+        let Some(closure) = &mut self.closure else {
+            return Ok(());
+        };
+        let z = self.z.clone();
+        let lags = self.layout.lag(0);
+        let place = Place {
+            t,
+            z: &z,
+            held: &self.held,
+            p: &self.values[..self.layout.parameters],
+            lags: &self.values[lags..lags + self.layout.lags],
+        };
+        let run = self.run;
+        closure
+            .close(self.plant, place, &mut self.scratch, &mut self.z)
+            .map_err(|source| EstimateError::Open { run, t, source })?;
+        let tape = self.tape.len();
+        self.tape.extend(&self.z);
+        self.tape.extend(&self.root);
+        closure.follow(&mut self.root);
+        let held = self.held.clone();
+        self.records.push(Record::Close { t, held, tape });
+        Ok(())
+    }
+
+    fn measure(
+        &mut self,
+        recording: &Recording,
+        row: usize,
+        only: Option<usize>,
+    ) -> Result<(), EstimateError> {
+        let first = self.samples.len();
+        let (setup, n) = (self.setup, self.sizes.n);
+        let measured = recording.measured(row);
+        let t = recording.times()[row];
+        let here = |channel: &usize| {
+            let late = setup.channels[*channel].longest_delay.is_some();
+            only.map_or(!late, |only| only == *channel) && !measured[*channel].is_nan()
+        };
+        let seen: Vec<usize> = (0..setup.channels.len()).filter(here).collect();
+        let is_output = |&c: &usize| matches!(setup.channels[c].measures, Measured::Output(_));
+        let mut held = Vec::new();
+        if seen.iter().any(is_output) {
+            held.clone_from(&self.held);
+            let place = Place {
+                t,
+                z: &self.z,
+                held: &self.held,
+                p: self.p(),
+                lags: self.lags(),
+            };
+            let (outputs, slopes) = (&mut self.outputs, &mut self.output_slopes);
+            self.plant
+                .outputs(place, &mut self.scratch, outputs, slopes);
+        }
+        let prior = self.record(seen.len() * self.sizes.sample_len());
+        for (count, &channel) in seen.iter().enumerate() {
+            let tape = prior + count * self.sizes.sample_len();
+            let (earlier, rest) = self.tape.split_at_mut(tape);
+            let SampleTape { c, a, z, root } = self.sizes.sample(rest);
+            z.copy_from_slice(&self.z);
+            root.copy_from_slice(&self.root);
+            c.fill(0.0);
+            let quantity = match setup.channels[channel].measures {
+                Measured::State(state) => {
+                    c[state] = 1.0;
+                    if count == 0 {
+                        z[state]
+                    } else {
+                        earlier[prior + 2 * n + state]
+                    }
+                }
+                Measured::Output(output) => {
+                    c.copy_from_slice(&self.output_slopes[output * n..(output + 1) * n]);
+                    self.outputs[output]
+                }
+            };
+            let gain = self.values[self.layout.scale(channel)];
+            let bias = self.values[self.layout.bias(channel)];
+            let noise = self.values[self.layout.noise(channel)];
+            scale(gain, c);
+            let residual = measured[channel] - gain * quantity - bias;
+            let r = noise * noise;
+            let mut white = residual;
+            let mut variance = None;
+            if count > 0 {
+                let [_, _, first_z, first_root] = pieces(&mut earlier[prior..], [n, n, n, n * n]);
+                white -= dot(c, z) - dot(c, first_z);
+                transposed_multiply(first_root, c, n, &mut self.seen);
+                variance = Some(dot(&self.seen, &self.seen) + r);
+            }
+            transposed_multiply(root, c, n, &mut self.seen);
+            multiply(root, &self.seen, n, a);
+            let s = dot(&self.seen, &self.seen) + r;
+            if !(s > 0.0 && s.is_finite() && white.is_finite()) {
+                return Err(EstimateError::Diverged { run: self.run, t });
+            }
+            add_scaled(white / s, a, &mut self.z);
+            potter(&mut self.root, &self.seen, a, s, r);
+            self.samples.push(Sample {
+                innovation: Innovation {
+                    row,
+                    channel,
+                    t,
+                    residual,
+                    variance: variance.unwrap_or(s),
+                    white_residual: white,
+                    white_variance: s,
+                },
+                quantity,
+                tape,
+            });
+        }
+        let samples = first..self.samples.len();
+        let row = only.is_none().then_some(row);
+        self.records.push(Record::Measure { row, samples, held });
+        Ok(())
+    }
+}
+
+/// One delayed input, or all others, take new values. The first row is the best guess for what a
+/// delayed input was before it.
+pub(crate) fn switch(
+    setup: &Setup<'_>,
+    first: bool,
+    held: &mut [f64],
+    inputs: &[f64],
+    only: Option<usize>,
+) {
+    for (input, (held, &now)) in held.iter_mut().zip(inputs).enumerate() {
+        let delayed = setup.delayed.contains(&input);
+        if only.map_or(!delayed || first, |only| only == input) {
+            *held = now;
+        }
+    }
+}
+
+/// Columns along which the disturbances act on ż: n rows, a column each.
+fn directions(
+    setup: &Setup<'_>,
+    plant: &Plant<'_>,
+    place: Place<'_>,
+    scratch: &mut Scratch,
+    columns: &mut [f64],
+) {
+    let (d, s) = (setup.disturbances.len(), plant.speeds);
+    columns.fill(0.0);
+    let mut forces = false;
+    for (j, disturbance) in setup.disturbances.iter().enumerate() {
+        match *disturbance {
+            Disturbance::Force(speed) => {
+                columns[speed * d + j] = 1.0;
+                forces = true;
+            }
+            Disturbance::Rate(_) => {}
+        }
+    }
+    if forces {
+        plant.accelerations(place, scratch, &mut columns[..s * d]);
+    }
+    for (j, disturbance) in setup.disturbances.iter().enumerate() {
+        if let Disturbance::Rate(state) = *disturbance {
+            columns[state * d + j] = 1.0;
+        }
+    }
+}

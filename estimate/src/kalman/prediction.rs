@@ -1,0 +1,316 @@
+//! Predictions beyond one step: from what the filter knows at a row the motion goes on, and nothing
+//! that is measured afterwards is used.
+
+use super::filter::{Pass, switch};
+use crate::EstimateError;
+use crate::data::layout::Layout;
+use crate::data::recording::Recording;
+use crate::data::setup::{Measured, Setup};
+use crate::data::unknown::Unknown;
+use crate::estimation::Estimation;
+use crate::matrix::add_scaled;
+use crate::motion::closure::Closure;
+use crate::motion::plant::{Place, Plant, Scratch};
+use crate::motion::timeline::{Action, Advance};
+use crate::motion::transition::{MOST_HALVINGS, STAGES, WEIGHTS, is_uneven};
+
+/// A measured scalar beside its prediction.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Predicted {
+    /// Row from which on nothing was known.
+    pub origin: usize,
+    /// Row of the measured value.
+    pub row: usize,
+    /// Channel.
+    pub channel: usize,
+    /// Time in s from the origin to when it was sampled.
+    pub ahead: f64,
+    /// Measured value less predicted value, in SI.
+    pub residual: f64,
+}
+
+impl Estimation<'_> {
+    /// Predictions of all channels of a run in the row `horizon` s ahead, or the first later one, from
+    /// each of the rows `origins`, which increase. An infinite horizon tells all later rows. What cannot
+    /// be predicted because numbers overflow is infinitely wrong.
+    pub fn predictions(
+        &self,
+        values: &[f64],
+        run: usize,
+        horizon: f64,
+        origins: &[usize],
+    ) -> Result<Vec<Predicted>, EstimateError> {
+        self.check(values)?;
+        self.layout().place(Unknown::Initial { run, state: 0 })?;
+        let recording = &self.recordings()[run];
+        let actions = self.actions(run, values);
+        let mut pass = self.fresh(run, values, &actions);
+        let mut walk = Walk::new(&pass, recording);
+        let mut predicted = Vec::new();
+        for (place, &action) in actions.iter().enumerate() {
+            pass.act(recording, action)?;
+            if let Action::Measure { row, channel: None } = action
+                && origins.binary_search(&row).is_ok()
+            {
+                walk.begin(&pass, row);
+                walk.on(&actions[place + 1..], horizon, &mut predicted);
+            }
+        }
+        Ok(predicted)
+    }
+}
+
+impl Estimation<'_> {
+    /// Variances in SI that the errors of [`Estimation::predictions`] have where the model and its
+    /// levels are right, each with its channel.
+    pub fn expected_errors(
+        &self,
+        values: &[f64],
+        run: usize,
+        horizon: f64,
+        origins: &[usize],
+    ) -> Result<Vec<(usize, f64)>, EstimateError> {
+        self.check(values)?;
+        self.layout().place(Unknown::Initial { run, state: 0 })?;
+        let recording = &self.recordings()[run];
+        let actions = self.actions(run, values);
+        let mut pass = self.fresh(run, values, &actions);
+        let mut expected = Vec::new();
+        for (place, &action) in actions.iter().enumerate() {
+            pass.act(recording, action)?;
+            let Action::Measure { row, channel: None } = action else {
+                continue;
+            };
+            if origins.binary_search(&row).is_err() {
+                continue;
+            }
+            let mut ahead = self.fresh(run, values, &actions);
+            ahead.z.copy_from_slice(&pass.z);
+            ahead.root.copy_from_slice(&pass.root);
+            ahead.held.copy_from_slice(&pass.held);
+            let mut open = vec![true; self.setup().channels.len()];
+            for &action in &actions[place + 1..] {
+                let Action::Measure { row: met, .. } = action else {
+                    // Where numbers overflow on the way nothing is expected.
+                    if ahead.act(recording, action).is_err() {
+                        break;
+                    }
+                    continue;
+                };
+                if !is_told(recording, row, met, horizon) {
+                    continue;
+                }
+                // Nothing is learnt from what is measured here.
+                let (z, root) = (ahead.z.clone(), ahead.root.clone());
+                if ahead.act(recording, action).is_ok() {
+                    for seen in ahead.samples.iter().map(|sample| sample.innovation) {
+                        if std::mem::take(&mut open[seen.channel]) {
+                            expected.push((seen.channel, seen.variance));
+                        }
+                    }
+                }
+                ahead.samples.clear();
+                ahead.z.copy_from_slice(&z);
+                ahead.root.copy_from_slice(&root);
+                if !open.contains(&true) {
+                    break;
+                }
+            }
+        }
+        Ok(expected)
+    }
+}
+
+/// Whether a row is so far ahead of another that it is told. A channel that is late goes with its row:
+/// whatever is late, the same values are compared.
+fn is_told(recording: &Recording, origin: usize, row: usize, horizon: f64) -> bool {
+    let ahead = recording.times()[row] - recording.times()[origin];
+    // Times of rows carry rounding.
+    row > origin && ahead >= horizon * (1.0 - 1e-9)
+}
+
+/// A motion that nothing corrects.
+struct Walk<'a> {
+    setup: &'a Setup<'a>,
+    plant: &'a Plant<'a>,
+    layout: Layout,
+    values: &'a [f64],
+    recording: &'a Recording,
+    origin: usize,
+    z: Vec<f64>,
+    held: Vec<f64>,
+    scratch: Scratch,
+    closure: Option<Closure>,
+    /// States and rates of the stages.
+    stage: Vec<f64>,
+    rates: Vec<f64>,
+}
+
+impl<'a> Walk<'a> {
+    fn new(pass: &Pass<'a>, recording: &'a Recording) -> Self {
+        let n = pass.sizes.n;
+        Self {
+            setup: pass.setup,
+            plant: pass.plant,
+            layout: pass.layout,
+            values: pass.values,
+            recording,
+            origin: 0,
+            z: vec![0.0; n],
+            held: vec![0.0; pass.sizes.inputs],
+            scratch: pass.plant.scratch(),
+            closure: pass.closure.clone(),
+            stage: vec![0.0; n],
+            rates: vec![0.0; 4 * n],
+        }
+    }
+
+    /// Takes over what the filter knows.
+    fn begin(&mut self, pass: &Pass<'_>, row: usize) {
+        self.z.copy_from_slice(&pass.z);
+        self.held.copy_from_slice(&pass.held);
+        self.origin = row;
+    }
+
+    /// Goes on until every channel was met at the horizon; along an infinite one all are told.
+    fn on(&mut self, actions: &[Action], horizon: f64, predicted: &mut Vec<Predicted>) {
+        let start = self.recording.times()[self.origin];
+        let mut open = vec![true; self.setup.channels.len()];
+        let everything = horizon.is_infinite();
+        let mut t = start;
+        for &action in actions {
+            match action {
+                Action::Advance(advance) => {
+                    self.advance(advance);
+                    t = advance.t + advance.h;
+                }
+                Action::Switch { row, input } => {
+                    let inputs = self.recording.inputs(row);
+                    switch(self.setup, false, &mut self.held, inputs, input);
+                }
+                Action::Measure { row, channel } => {
+                    let told = |horizon| is_told(self.recording, self.origin, row, horizon);
+                    if !told(if everything { 0.0 } else { horizon }) {
+                        continue;
+                    }
+                    self.compare(row, channel, t - start, &mut open, predicted);
+                    if everything {
+                        open.fill(true);
+                    } else if !open.contains(&true) {
+                        return;
+                    }
+                }
+            }
+        }
+    }
+
+    /// Tells the channels that were sampled for a row and are still open.
+    fn compare(
+        &mut self,
+        row: usize,
+        only: Option<usize>,
+        ahead: f64,
+        open: &mut [bool],
+        predicted: &mut Vec<Predicted>,
+    ) {
+        let measured = self.recording.measured(row);
+        let mut outputs = Vec::new();
+        for (channel, open) in open.iter_mut().enumerate() {
+            let late = self.setup.channels[channel].longest_delay.is_some();
+            let sampled = only.map_or(!late, |only| only == channel);
+            if !*open || !sampled || measured[channel].is_nan() {
+                continue;
+            }
+            let quantity = match self.setup.channels[channel].measures {
+                Measured::State(state) => self.z[state],
+                Measured::Output(output) => {
+                    if outputs.is_empty() {
+                        outputs = vec![0.0; self.plant.info().output_len()];
+                        let t = self.recording.times()[row];
+                        let place = place(self.layout, self.values, (t, &self.z, &self.held));
+                        self.plant
+                            .output_values(place, &mut self.scratch, &mut outputs);
+                    }
+                    outputs[output]
+                }
+            };
+            let scale = self.values[self.layout.scale(channel)];
+            let bias = self.values[self.layout.bias(channel)];
+            let residual = measured[channel] - scale * quantity - bias;
+            *open = false;
+            predicted.push(Predicted {
+                origin: self.origin,
+                row,
+                channel,
+                ahead,
+                residual: if residual.is_nan() {
+                    f64::INFINITY
+                } else {
+                    residual
+                },
+            });
+        }
+    }
+
+    /// A step of the same method as that of the filter.
+    fn advance(&mut self, advance: Advance) {
+        self.step(advance, 0);
+        let t = advance.t + advance.h;
+        if let Some(closure) = &mut self.closure {
+            let open = self.z.clone();
+            let at = (t, open.as_slice(), self.held.as_slice());
+            let place = place(self.layout, self.values, at);
+            // A prediction that no closed loop is near is infinitely wrong.
+            if closure
+                .close(self.plant, place, &mut self.scratch, &mut self.z)
+                .is_err()
+            {
+                self.z.fill(f64::NAN);
+            }
+        }
+    }
+
+    /// A step, or parts of it where it is too long for what it meets.
+    fn step(&mut self, advance: Advance, halved: u32) {
+        let (Advance { t, h, .. }, n) = (advance, self.z.len());
+        let mut after = self.z.clone();
+        self.stage.copy_from_slice(&self.z);
+        for (stage, weight) in WEIGHTS.into_iter().enumerate() {
+            let part = if stage == 0 { 0.0 } else { STAGES[stage - 1] };
+            let at = (t + part * h, self.stage.as_slice(), self.held.as_slice());
+            let place = place(self.layout, self.values, at);
+            let rates = &mut self.rates[stage * n..(stage + 1) * n];
+            self.plant.rates(place, &mut self.scratch, rates);
+            add_scaled(h * weight, rates, &mut after);
+            if let Some(next) = STAGES.get(stage) {
+                self.stage.copy_from_slice(&self.z);
+                add_scaled(h * next, rates, &mut self.stage);
+            }
+        }
+        let has_corners = self.setup.has_corners && self.closure.is_none();
+        let is_cut = has_corners && halved < MOST_HALVINGS;
+        if is_cut && is_uneven(&self.rates, (n, self.plant.info().state_len())) {
+            for part in advance.parts(1) {
+                self.step(part, halved + 1);
+            }
+        } else {
+            self.z = after;
+        }
+    }
+}
+
+/// Where a motion is, with what the values say.
+pub(crate) fn place<'v>(
+    layout: Layout,
+    values: &'v [f64],
+    (t, z, held): (f64, &'v [f64], &'v [f64]),
+) -> Place<'v> {
+    let lags = layout.lag(0);
+    Place {
+        t,
+        z,
+        held,
+        p: &values[..layout.parameters],
+        lags: &values[lags..lags + layout.lags],
+    }
+}

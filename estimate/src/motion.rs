@@ -1,0 +1,13 @@
+//! The motion between samples, with its transition matrix.
+//!
+//! | file | idea |
+//! |---|---|
+//! | `closure.rs` | closed loops, whose coordinates depend on each other |
+//! | `plant.rs` | the equations at one place, with their Jacobians |
+//! | `timeline.rs` | the order of steps and samples |
+//! | `transition.rs` | one step and its transition matrix; which steps are too long |
+
+pub(crate) mod closure;
+pub(crate) mod plant;
+pub(crate) mod timeline;
+pub(crate) mod transition;

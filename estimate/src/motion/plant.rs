@@ -1,0 +1,433 @@
+//! The model with the states that estimation adds to it: lagging inputs, drifting parameters.
+//!
+//! `ż = (ẋ(t, x, u, p), (u_j − ν_j)/τ_j …, 0 …)`, where the model sees `ν_j` in place of the lagging `u_j`
+//! and the last states in place of the drifting parameters.
+
+use appell_runtime::model::{At, Gradient, Model, ModelInfo};
+use appell_runtime::signal::{Signal, SignalError};
+
+use crate::data::setup::Setup;
+use crate::matrix::{add_scaled, pieces};
+
+/// Step of a central difference of an exact gradient by a drifting parameter, relative to it.
+const DIFFERENCE: f64 = 1e-5;
+
+/// The equations of all states.
+pub(crate) struct Plant<'a> {
+    pub(crate) model: &'a dyn Model,
+    lagging: &'a [usize],
+    drifting: &'a [usize],
+    signals: Vec<Signal>,
+    /// Number of all states.
+    pub(crate) n: usize,
+    /// Number of inputs of the model.
+    pub(crate) m: usize,
+    /// Number of pseudo-velocities.
+    pub(crate) speeds: usize,
+}
+
+/// Where the plant is evaluated.
+#[derive(Clone, Copy)]
+pub(crate) struct Place<'a> {
+    /// Time in s.
+    pub(crate) t: f64,
+    /// All states.
+    pub(crate) z: &'a [f64],
+    /// Declared inputs as they are held.
+    pub(crate) held: &'a [f64],
+    /// Parameters of the model.
+    pub(crate) p: &'a [f64],
+    /// Time constants of the lagging inputs in s.
+    pub(crate) lags: &'a [f64],
+}
+
+/// Numbers on the way, so that nothing is allocated per step.
+#[derive(Debug, Clone)]
+pub(crate) struct Scratch {
+    u: Vec<f64>,
+    /// Parameters as the model sees them.
+    p: Vec<f64>,
+    a: Vec<f64>,
+    b: Vec<f64>,
+    /// Derivatives by the parameters.
+    by_p: Vec<f64>,
+    weights: Vec<f64>,
+    gradient: Vec<f64>,
+    mass: Vec<f64>,
+    bias: Vec<f64>,
+    forces: Vec<f64>,
+}
+
+/// Derivatives that are being summed up.
+pub(crate) struct Sums<'a> {
+    /// By the states.
+    pub(crate) z: &'a mut [f64],
+    /// By the parameters.
+    pub(crate) p: &'a mut [f64],
+    /// By the time constants.
+    pub(crate) lags: &'a mut [f64],
+}
+
+impl<'a> Plant<'a> {
+    pub(crate) fn new(setup: &'a Setup<'a>) -> Result<Self, SignalError> {
+        let info = setup.model.info();
+        Ok(Self {
+            model: setup.model,
+            lagging: &setup.lagging,
+            drifting: &setup.drifting,
+            signals: info
+                .signals
+                .iter()
+                .map(Signal::new)
+                .collect::<Result<_, _>>()?,
+            n: setup.state_len(),
+            m: info.input_len(),
+            speeds: info.speeds,
+        })
+    }
+
+    pub(crate) fn info(&self) -> &ModelInfo {
+        self.model.info()
+    }
+
+    /// Times in s at which a signal loses smoothness.
+    pub(crate) fn knots(&self) -> Vec<f64> {
+        self.signals
+            .iter()
+            .flat_map(Signal::knots)
+            .copied()
+            .collect()
+    }
+
+    pub(crate) fn scratch(&self) -> Scratch {
+        let (n, m, s) = (self.n, self.m, self.speeds);
+        let zeros = |len| vec![0.0; len];
+        let k = self.info().parameter_len();
+        Scratch {
+            u: zeros(m),
+            p: zeros(k),
+            by_p: zeros(self.info().state_len() * k),
+            a: zeros(n * n),
+            b: zeros(n * m),
+            weights: zeros(n + n * n + n * m + s * s),
+            gradient: zeros(n + m + k),
+            mass: zeros(s * s),
+            bias: zeros(s),
+            forces: zeros(s),
+        }
+    }
+
+    /// What the model sees as its inputs and parameters.
+    fn view(&self, place: Place<'_>, u: &mut [f64], p: &mut [f64]) {
+        let states = self.info().state_len();
+        u[..place.held.len()].copy_from_slice(place.held);
+        p.copy_from_slice(place.p);
+        let (lagged, drifted) = place.z[states..].split_at(self.lagging.len());
+        for (&input, &lagged) in self.lagging.iter().zip(lagged) {
+            u[input] = lagged;
+        }
+        for (&parameter, &drifted) in self.drifting.iter().zip(drifted) {
+            p[parameter] = drifted;
+        }
+        let derived = self.info().signal_inputs.iter();
+        for (u, &(signal, order)) in u[place.held.len()..].iter_mut().zip(derived) {
+            let signal = self.signals.get(signal);
+            *u = signal.map_or(f64::NAN, |signal| signal.derivative(place.t, order));
+        }
+    }
+
+    /// Adds a gradient by what the model sees, times a factor: lagging inputs and drifting parameters
+    /// are states.
+    fn pass_on(&self, gradient: &mut [f64], factor: f64, sums: &mut Sums<'_>) {
+        let (n, k) = (self.info().state_len(), self.info().parameter_len());
+        let [x, u, p] = pieces(gradient, [n, self.m, k]);
+        add_scaled(factor, x, &mut sums.z[..n]);
+        for (lagged, &input) in sums.z[n..].iter_mut().zip(self.lagging) {
+            *lagged += factor * u[input];
+        }
+        self.pass_on_parameters(factor, p, sums);
+    }
+
+    /// Adds a gradient by the parameters that the model sees, times a factor.
+    pub(crate) fn pass_on_parameters(&self, factor: f64, p: &mut [f64], sums: &mut Sums<'_>) {
+        for (state, parameter) in self.drifts() {
+            sums.z[state] += factor * std::mem::take(&mut p[parameter]);
+        }
+        add_scaled(factor, p, sums.p);
+    }
+
+    /// The rates that lags and drifting parameters add.
+    fn added_rates(&self, place: Place<'_>, rates: &mut [f64]) {
+        let n = self.info().state_len();
+        rates[n..].fill(0.0);
+        for (lag, (&input, &tau)) in self.lagging.iter().zip(place.lags).enumerate() {
+            rates[n + lag] = (place.held[input] - place.z[n + lag]) / tau;
+        }
+    }
+
+    /// States that are drifting parameters, with these.
+    fn drifts(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
+        let first = self.info().state_len() + self.lagging.len();
+        (first..).zip(self.drifting.iter().copied())
+    }
+
+    /// Tells what the model sees at a place.
+    pub(crate) fn at(&self, place: Place<'_>, scratch: &mut Scratch, tell: impl FnOnce(At<'_>)) {
+        let Scratch { u, p, .. } = scratch;
+        self.view(place, u, p);
+        tell(at(place, self.info().state_len(), u, p));
+    }
+
+    /// ∂ẋ/∂p of the model's own states.
+    pub(crate) fn parameter_jacobian(
+        &self,
+        place: Place<'_>,
+        scratch: &mut Scratch,
+        slopes: &mut [f64],
+    ) {
+        self.at(place, scratch, |at| {
+            self.model.parameter_jacobian(at, slopes);
+        });
+    }
+
+    /// ż.
+    pub(crate) fn rates(&self, place: Place<'_>, scratch: &mut Scratch, rates: &mut [f64]) {
+        let n = self.info().state_len();
+        let Scratch { u, p, .. } = scratch;
+        self.view(place, u, p);
+        self.model.rates(at(place, n, u, p), &mut rates[..n]);
+        self.added_rates(place, rates);
+    }
+
+    /// ż and ∂ż/∂z.
+    pub(crate) fn jacobian(
+        &self,
+        place: Place<'_>,
+        scratch: &mut Scratch,
+        rates: &mut [f64],
+        slopes: &mut [f64],
+    ) {
+        let (all, n, m) = (self.n, self.info().state_len(), self.m);
+        let Scratch {
+            u, p, a, b, by_p, ..
+        } = scratch;
+        self.view(place, u, p);
+        let at = at(place, n, u, p);
+        if all == n {
+            self.model.jacobians(at, rates, slopes, &mut b[..n * m]);
+            return;
+        }
+        let (a, b) = (&mut a[..n * n], &mut b[..n * m]);
+        self.model.jacobians(at, &mut rates[..n], a, b);
+        if !self.drifting.is_empty() {
+            self.model.parameter_jacobian(at, by_p);
+        }
+        slopes.fill(0.0);
+        for row in 0..n {
+            let to = &mut slopes[row * all..(row + 1) * all];
+            to[..n].copy_from_slice(&a[row * n..(row + 1) * n]);
+            for (to, &input) in to[n..].iter_mut().zip(self.lagging) {
+                *to = b[row * m + input];
+            }
+            for (state, parameter) in self.drifts() {
+                to[state] = by_p[row * at.p.len() + parameter];
+            }
+        }
+        self.added_rates(place, rates);
+        for (lag, &tau) in place.lags.iter().enumerate() {
+            slopes[(n + lag) * (all + 1)] = -1.0 / tau;
+        }
+    }
+
+    /// Adds to `sums` the gradient of ⟨λ, ż⟩ + ⟨Λ, ∂ż/∂z⟩ + ⟨K, M⟩, where M is the mass matrix.
+    pub(crate) fn adjoint(
+        &self,
+        place: Place<'_>,
+        scratch: &mut Scratch,
+        [lambda, slopes, mass]: [&[f64]; 3],
+        sums: &mut Sums<'_>,
+    ) {
+        let (all, n, s) = (self.n, self.info().state_len(), self.speeds);
+        let Scratch {
+            u,
+            p,
+            weights,
+            gradient,
+            ..
+        } = scratch;
+        self.view(place, u, p);
+        let [rates, a, b, m] = pieces(weights, [n, n * n, n * self.m, s * s]);
+        rates.copy_from_slice(&lambda[..n]);
+        for (row, slopes) in slopes.chunks_exact(all).take(n).enumerate() {
+            a[row * n..(row + 1) * n].copy_from_slice(&slopes[..n]);
+            for (&weight, &input) in slopes[n..].iter().zip(self.lagging) {
+                b[row * self.m + input] = weight;
+            }
+        }
+        m.copy_from_slice(mass);
+        let used = n + n * n + n * self.m + s * s;
+        let adjoint = |p: &[f64], weights: &[f64], gradient: &mut [f64]| {
+            let by = self.cut(gradient);
+            self.model.adjoint(at(place, n, u, p), weights, by);
+        };
+        adjoint(p, &weights[..used], gradient);
+        self.pass_on(gradient, 1.0, sums);
+        // ⟨Λ, ∂ẋ/∂p⟩ is the derivative of ⟨Λ, ẋ⟩ by a drifting parameter; so are their gradients.
+        for (state, parameter) in self.drifts() {
+            weights.fill(0.0);
+            for (weight, slopes) in weights.iter_mut().zip(slopes.chunks_exact(all).take(n)) {
+                *weight = slopes[state];
+            }
+            self.differentiated(p, parameter, gradient, sums, |p, gradient| {
+                adjoint(p, &weights[..used], gradient);
+            });
+        }
+        for (lag, (&input, &tau)) in self.lagging.iter().zip(place.lags).enumerate() {
+            let (lambda, slope) = (lambda[n + lag], slopes[(n + lag) * (all + 1)]);
+            sums.z[n + lag] -= lambda / tau;
+            let gap = place.held[input] - place.z[n + lag];
+            sums.lags[lag] += (slope - lambda * gap) / (tau * tau);
+        }
+    }
+
+    /// Adds to `sums` the derivative of a gradient by a parameter, by a central difference.
+    fn differentiated(
+        &self,
+        p: &mut [f64],
+        parameter: usize,
+        gradient: &mut [f64],
+        sums: &mut Sums<'_>,
+        evaluate: impl Fn(&[f64], &mut [f64]),
+    ) {
+        let value = p[parameter];
+        let h = DIFFERENCE * value.abs().max(DIFFERENCE);
+        for sign in [1.0, -1.0] {
+            p[parameter] = value + sign * h;
+            evaluate(p, gradient);
+            self.pass_on(gradient, sign / (2.0 * h), sums);
+        }
+        p[parameter] = value;
+    }
+
+    /// A gradient by what the model sees, in its parts.
+    fn cut<'g>(&self, gradient: &'g mut [f64]) -> Gradient<'g> {
+        let (n, k) = (self.info().state_len(), self.info().parameter_len());
+        let [x, u, p] = pieces(gradient, [n, self.m, k]);
+        Gradient { x, u, p }
+    }
+
+    /// M⁻¹ times each column of `columns`, s × c, in place; not finite where M is singular.
+    pub(crate) fn accelerations(
+        &self,
+        place: Place<'_>,
+        scratch: &mut Scratch,
+        columns: &mut [f64],
+    ) {
+        let n = self.info().state_len();
+        let Scratch {
+            u,
+            p,
+            mass,
+            bias,
+            forces,
+            ..
+        } = scratch;
+        self.view(place, u, p);
+        self.model.appell(at(place, n, u, p), mass, bias, forces);
+        appell_runtime::dense::lu_solve_in_place(mass, columns, self.speeds);
+    }
+
+    /// y of all outputs.
+    pub(crate) fn output_values(
+        &self,
+        place: Place<'_>,
+        scratch: &mut Scratch,
+        outputs: &mut [f64],
+    ) {
+        let Scratch { u, p, .. } = scratch;
+        self.view(place, u, p);
+        let at = at(place, self.info().state_len(), u, p);
+        self.model.outputs(at, outputs);
+    }
+
+    /// y, ∂y/∂z of all outputs.
+    pub(crate) fn outputs(
+        &self,
+        place: Place<'_>,
+        scratch: &mut Scratch,
+        outputs: &mut [f64],
+        slopes: &mut [f64],
+    ) {
+        let (all, n, l) = (self.n, self.info().state_len(), outputs.len());
+        let Scratch { u, p, gradient, .. } = scratch;
+        self.view(place, u, p);
+        let at = at(place, n, u, p);
+        let (mut c, mut d) = (vec![0.0; l * n], vec![0.0; l * self.m]);
+        self.model.output_jacobians(at, outputs, &mut c, &mut d);
+        let mut weights = vec![0.0; l + l * n + l * self.m];
+        for output in 0..l {
+            let to = &mut slopes[output * all..(output + 1) * all];
+            to[..n].copy_from_slice(&c[output * n..(output + 1) * n]);
+            for (to, &input) in to[n..].iter_mut().zip(self.lagging) {
+                *to = d[output * self.m + input];
+            }
+            if !self.drifting.is_empty() {
+                weights.fill(0.0);
+                weights[output] = 1.0;
+                let by = self.cut(gradient);
+                self.model.output_adjoint(at, &weights, by);
+                let by = self.cut(gradient);
+                for (state, parameter) in self.drifts() {
+                    to[state] = by.p[parameter];
+                }
+            }
+        }
+    }
+
+    /// Adds to `sums` the gradient of ⟨μ, y⟩ + ⟨Γ, ∂y/∂z⟩.
+    pub(crate) fn output_adjoint(
+        &self,
+        place: Place<'_>,
+        scratch: &mut Scratch,
+        [mu, slopes]: [&[f64]; 2],
+        sums: &mut Sums<'_>,
+    ) {
+        let (all, n, l) = (self.n, self.info().state_len(), mu.len());
+        let Scratch { u, p, gradient, .. } = scratch;
+        self.view(place, u, p);
+        let mut weights = vec![0.0; l + l * n + l * self.m];
+        let [outputs, c, d] = pieces(&mut weights, [l, l * n, l * self.m]);
+        outputs.copy_from_slice(mu);
+        for (output, slopes) in slopes.chunks_exact(all).enumerate() {
+            c[output * n..(output + 1) * n].copy_from_slice(&slopes[..n]);
+            for (&weight, &input) in slopes[n..].iter().zip(self.lagging) {
+                d[output * self.m + input] = weight;
+            }
+        }
+        let adjoint = |p: &[f64], weights: &[f64], gradient: &mut [f64]| {
+            let by = self.cut(gradient);
+            self.model.output_adjoint(at(place, n, u, p), weights, by);
+        };
+        adjoint(p, &weights, gradient);
+        self.pass_on(gradient, 1.0, sums);
+        for (state, parameter) in self.drifts() {
+            weights.fill(0.0);
+            for (weight, slopes) in weights.iter_mut().zip(slopes.chunks_exact(all)) {
+                *weight = slopes[state];
+            }
+            self.differentiated(p, parameter, gradient, sums, |p, gradient| {
+                adjoint(p, &weights, gradient);
+            });
+        }
+    }
+}
+
+/// The model's view: its own states, inputs and parameters as it sees them.
+fn at<'a>(place: Place<'a>, states: usize, u: &'a [f64], p: &'a [f64]) -> At<'a> {
+    At {
+        t: place.t,
+        x: &place.z[..states],
+        u,
+        p,
+    }
+}

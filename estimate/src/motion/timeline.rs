@@ -1,0 +1,177 @@
+//! The order of steps, changes of inputs and samples along a recording.
+
+use crate::data::layout::Layout;
+use crate::data::recording::Recording;
+use crate::data::setup::Setup;
+
+/// What the filter does next.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Action {
+    /// The motion goes on.
+    Advance(Advance),
+    /// One delayed input, or all others, take the values of a row.
+    Switch { row: usize, input: Option<usize> },
+    /// One delayed channel, or all others, were sampled for a row.
+    Measure { row: usize, channel: Option<usize> },
+}
+
+/// A step of the integration.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Advance {
+    /// Its start in s.
+    pub(crate) t: f64,
+    /// Its length in s; zero where a delay moves one of its ends only.
+    pub(crate) h: f64,
+    /// Values that move the ends of the interval which the step is a part of, each with the sign
+    /// of its effect on the length of the step and the step's part of the interval.
+    pub(crate) moved_by: [Option<(usize, f64)>; 2],
+}
+
+impl Advance {
+    /// Two to the power of so many equal parts.
+    pub(crate) fn parts(self, halvings: u32) -> impl Iterator<Item = Self> {
+        let count = 1_u32 << halvings;
+        let part = f64::from(count).recip();
+        let h = part * self.h;
+        let moved_by = (self.moved_by).map(|end| end.map(|(delay, sign)| (delay, sign * part)));
+        (0..count).map(move |i| Self {
+            t: self.t + f64::from(i) * h,
+            h,
+            moved_by,
+        })
+    }
+}
+
+/// A moment between two steps.
+struct Stop {
+    t: f64,
+    /// The delay that moves it, and in which direction.
+    moved_by: Option<(usize, f64)>,
+    action: Option<Action>,
+}
+
+/// All actions of a run. Inputs change before what is measured at the same time.
+pub(crate) fn timeline(
+    setup: &Setup<'_>,
+    layout: &Layout,
+    recording: &Recording,
+    knots: &[f64],
+    values: &[f64],
+) -> Vec<Action> {
+    let stops = stops(setup, layout, recording, knots, values);
+    let lags = &values[layout.lag(0)..layout.input_delay(0)];
+    let shortest_lag = lags.iter().copied().fold(f64::INFINITY, f64::min);
+    let longest = [setup.longest_step, shortest_lag];
+    let mut actions = Vec::with_capacity(3 * stops.len());
+    let mut last = (recording.times()[0], None);
+    for stop in stops {
+        advance(&mut actions, longest, last, (stop.t, stop.moved_by));
+        actions.extend(stop.action);
+        last = (stop.t, stop.moved_by);
+    }
+    // What follows the last sample is not seen.
+    while !matches!(actions.last(), Some(Action::Measure { .. }) | None) {
+        actions.pop();
+    }
+    actions
+}
+
+fn stops(
+    setup: &Setup<'_>,
+    layout: &Layout,
+    recording: &Recording,
+    knots: &[f64],
+    values: &[f64],
+) -> Vec<Stop> {
+    let times = recording.times();
+    let (start, end) = (times[0], times[times.len() - 1]);
+    let is_delayed = |input: usize| setup.delayed.contains(&input);
+    let mut stops = Vec::with_capacity(2 * times.len());
+    let mut before: Option<&[f64]> = None;
+    for (row, &t) in times.iter().enumerate() {
+        let now = recording.inputs(row);
+        let is_other = |input: usize, last: &[f64]| last[input].to_bits() != now[input].to_bits();
+        let changes = |input: usize| before.is_none_or(|last| is_other(input, last));
+        if (0..now.len()).any(|input| !is_delayed(input) && changes(input)) || row == 0 {
+            stops.push(Stop {
+                t,
+                moved_by: None,
+                action: Some(Action::Switch { row, input: None }),
+            });
+        }
+        for (index, &input) in setup.delayed.iter().enumerate().filter(|_| row > 0) {
+            if changes(input) {
+                let delay = layout.input_delay(index);
+                let input = Some(input);
+                stops.push(Stop {
+                    t: t + values[delay],
+                    moved_by: Some((delay, 1.0)),
+                    action: Some(Action::Switch { row, input }),
+                });
+            }
+        }
+        stops.push(Stop {
+            t,
+            moved_by: None,
+            action: Some(Action::Measure { row, channel: None }),
+        });
+        for (index, channel) in setup.channels.iter().enumerate() {
+            let Some(longest) = channel.longest_delay else {
+                continue;
+            };
+            if t >= start + longest && !recording.measured(row)[index].is_nan() {
+                let delay = layout.sensor_delay(index);
+                let channel = Some(index);
+                stops.push(Stop {
+                    t: t - values[delay],
+                    moved_by: Some((delay, -1.0)),
+                    action: Some(Action::Measure { row, channel }),
+                });
+            }
+        }
+        before = Some(now);
+    }
+    let inside = knots.iter().filter(|&&t| start < t && t < end);
+    stops.extend(inside.map(|&t| Stop {
+        t,
+        moved_by: None,
+        action: None,
+    }));
+    // Stable: what was pushed first of equal times stays first.
+    stops.sort_by(|a, b| a.t.total_cmp(&b.t));
+    stops
+}
+
+type End = (f64, Option<(usize, f64)>);
+
+/// The steps between two moments. None is longer than `longest` or the shortest lag, for what a lag makes of a
+/// change of its input is then right to a percent; a lag shortens steps to a thirty-second at most.
+fn advance(
+    actions: &mut Vec<Action>,
+    [longest, shortest_lag]: [f64; 2],
+    (a, moves_a): End,
+    (b, moves_b): End,
+) {
+    const SHORTEST: f64 = 1.0 / 32.0;
+    let length = b - a;
+    if length <= 0.0 && moves_a == moves_b {
+        return;
+    }
+    let whole = length.min(longest);
+    let step = whole.min(shortest_lag.max(SHORTEST * whole));
+    let count = (length / step).ceil().max(1.0);
+    let (h, part) = (length / count, 1.0 / count);
+    let moved_by = [
+        moves_a.map(|(delay, sign)| (delay, -sign * part)),
+        moves_b.map(|(delay, sign)| (delay, sign * part)),
+    ];
+    let mut step = 0.0;
+    while step < count {
+        actions.push(Action::Advance(Advance {
+            t: a + step * h,
+            h,
+            moved_by,
+        }));
+        step += 1.0;
+    }
+}

@@ -1,0 +1,274 @@
+//! One step of the classical Runge–Kutta method on z and on ∂z⁺/∂z together, and its adjoint.
+//!
+//! The transition matrix F is that of the step as it is computed, not of the exact flow: the filter
+//! and its gradient then belong to one function of the values, whatever the step.
+
+use super::plant::{Place, Plant, Scratch, Sums};
+use crate::matrix::{
+    add, add_scaled, dot, multiply, multiply_transposed, pieces, set_identity, transposed_multiply,
+};
+
+/// Parts of the step at which the stages after the first stand.
+pub(crate) const STAGES: [f64; 3] = [0.5, 0.5, 1.0];
+/// Parts of the step with which the rates count.
+pub(crate) const WEIGHTS: [f64; 4] = [1.0 / 6.0, 1.0 / 3.0, 1.0 / 3.0, 1.0 / 6.0];
+
+/// A step is cut into two to the power of this many parts at most.
+pub(crate) const MOST_HALVINGS: u32 = 5;
+/// Part of a rate by which the method may be at odds with itself.
+const UNEVEN: f64 = 0.1;
+/// Longest step beside the time in which something decays: longer ones grow.
+const STIFF: f64 = 2.3;
+
+/// What the adjoint needs to know of a step, cut out of a tape.
+pub(crate) struct Stages<'a> {
+    /// States of the four stages; the first is the state before the step.
+    pub(crate) z: &'a mut [f64],
+    /// Rates there.
+    pub(crate) k: &'a mut [f64],
+    /// ∂ż/∂z there.
+    pub(crate) a: &'a mut [f64],
+    /// ∂z/∂z of the stages by the state before the step; the first is the unit matrix.
+    pub(crate) x: &'a mut [f64],
+}
+
+/// How many numbers the stages of `n` states are.
+pub(crate) fn stages_len(n: usize) -> usize {
+    8 * n + 8 * n * n
+}
+
+impl<'a> Stages<'a> {
+    pub(crate) fn cut(tape: &'a mut [f64], n: usize) -> Self {
+        let [z, k, a, x] = pieces(tape, [4 * n, 4 * n, 4 * n * n, 4 * n * n]);
+        Self { z, k, a, x }
+    }
+}
+
+/// When a step takes place and with what.
+#[derive(Clone, Copy)]
+pub(crate) struct Span<'a> {
+    pub(crate) t: f64,
+    pub(crate) h: f64,
+    pub(crate) held: &'a [f64],
+    pub(crate) p: &'a [f64],
+    pub(crate) lags: &'a [f64],
+}
+
+impl<'a> Span<'a> {
+    /// The place of a stage.
+    pub(crate) fn place(&self, stage: usize, z: &'a [f64]) -> Place<'a> {
+        let part = if stage == 0 { 0.0 } else { STAGES[stage - 1] };
+        Place {
+            t: self.t + part * self.h,
+            z,
+            held: self.held,
+            p: self.p,
+            lags: self.lags,
+        }
+    }
+}
+
+/// Fills the stages from the state in the first one; writes z⁺ and F.
+pub(crate) fn step(
+    plant: &Plant<'_>,
+    span: Span<'_>,
+    scratch: &mut Scratch,
+    stages: &mut Stages<'_>,
+    after: &mut [f64],
+    f: &mut [f64],
+) {
+    let (n, h) = (plant.n, span.h);
+    let nn = n * n;
+    after.copy_from_slice(&stages.z[..n]);
+    set_identity(f, n);
+    set_identity(&mut stages.x[..nn], n);
+    for i in 0..4 {
+        let (z, k) = (
+            &stages.z[i * n..(i + 1) * n],
+            &mut stages.k[i * n..(i + 1) * n],
+        );
+        let a = &mut stages.a[i * nn..(i + 1) * nn];
+        plant.jacobian(span.place(i, z), scratch, k, a);
+        add_scaled(h * WEIGHTS[i], k, after);
+        let (x, next_x) = stages.x.split_at_mut((i + 1) * nn);
+        let x = &x[i * nn..];
+        if i == 3 {
+            add_product(h * WEIGHTS[i], a, x, n, f);
+            return;
+        }
+        let (first, next) = stages.z.split_at_mut((i + 1) * n);
+        next[..n].copy_from_slice(&first[..n]);
+        add_scaled(h * STAGES[i], k, &mut next[..n]);
+        // K_i = A_i X_i, in the place of X_{i+1} = 1 + h c K_i.
+        let next = &mut next_x[..nn];
+        if i == 0 {
+            next.copy_from_slice(a);
+        } else {
+            multiply(a, x, n, next);
+        }
+        add_scaled(h * WEIGHTS[i], next, f);
+        let part = h * STAGES[i];
+        for entry in next.iter_mut() {
+            *entry *= part;
+        }
+        next.iter_mut()
+            .step_by(n + 1)
+            .for_each(|entry| *entry += 1.0);
+    }
+}
+
+/// What a rate along one state, at each stage as large as `rate` says of the state there, adds to a step.
+pub(crate) fn added_by_rate(
+    stages: &Stages<'_>,
+    (n, h): (usize, f64),
+    along: usize,
+    rate: impl Fn(&[f64]) -> f64,
+) -> Vec<f64> {
+    let (mut added, mut moved) = (vec![0.0; n], vec![0.0; n]);
+    for (i, z) in stages.z.chunks_exact(n).enumerate() {
+        let a = &stages.a[i * n * n..(i + 1) * n * n];
+        let mut k: Vec<f64> = a.chunks_exact(n).map(|row| dot(row, &moved)).collect();
+        k[along] += rate(z);
+        add_scaled(h * WEIGHTS[i], &k, &mut added);
+        if let Some(part) = STAGES.get(i) {
+            moved = k.iter().map(|k| part * h * k).collect();
+        }
+    }
+    added
+}
+
+/// How often a step has to be halved because of what the first `own` states met: a corner, such as the
+/// rounded sign of dry friction, or something that decays sooner.
+pub(crate) fn halvings(stages: &Stages<'_>, (n, own): (usize, usize), h: f64) -> u32 {
+    // The trace of A² is the sum of the squares of the eigenvalues.
+    let squares = |a: &[f64]| -> f64 {
+        let pairs = (0..own).flat_map(|i| (0..own).map(move |j| a[i * n + j] * a[j * n + i]));
+        pairs.sum()
+    };
+    let fastest = stages.a.chunks_exact(n * n).map(squares);
+    let fastest = fastest.fold(0.0, |most: f64, squares| most.max(squares.abs()));
+    let decays = h * fastest.sqrt() / STIFF;
+    let short_enough = |halvings: &u32| decays <= f64::from(1_u32 << halvings);
+    match (0..MOST_HALVINGS).find(short_enough) {
+        Some(0) => u32::from(is_uneven(stages.k, (n, own))),
+        Some(halvings) => halvings,
+        None => MOST_HALVINGS,
+    }
+}
+
+/// Whether the rates of the first `own` states differ between stages by what no smooth motion lets them.
+pub(crate) fn is_uneven(k: &[f64], (n, own): (usize, usize)) -> bool {
+    let [k1, k2, k3, k4] = [0, 1, 2, 3].map(|stage| &k[stage * n..(stage + 1) * n]);
+    (0..own).any(|i| {
+        let odds = (k1[i] - k2[i] - k3[i] + k4[i]).abs() + (k3[i] - k2[i]).abs();
+        let most = k1[i]
+            .abs()
+            .max(k2[i].abs())
+            .max(k3[i].abs())
+            .max(k4[i].abs());
+        odds > UNEVEN * most
+    })
+}
+
+/// `c += factor a b`
+fn add_product(factor: f64, a: &[f64], b: &[f64], n: usize, c: &mut [f64]) {
+    for (a, c) in a.chunks_exact(n).zip(c.chunks_exact_mut(n)) {
+        for (&entry, b) in a.iter().zip(b.chunks_exact(n)) {
+            add_scaled(factor * entry, b, c);
+        }
+    }
+}
+
+/// Numbers on the way back.
+#[derive(Debug, Clone)]
+pub(crate) struct Reverse {
+    k: Vec<f64>,
+    kk: Vec<f64>,
+    a: Vec<f64>,
+    z: Vec<f64>,
+    x: Vec<f64>,
+    product: Vec<f64>,
+    no_mass: Vec<f64>,
+}
+
+impl Reverse {
+    pub(crate) fn new(plant: &Plant<'_>) -> Self {
+        let (n, zeros) = (plant.n, |len| vec![0.0; len]);
+        Self {
+            k: zeros(n),
+            kk: zeros(n * n),
+            a: zeros(n * n),
+            z: zeros(n),
+            x: zeros(n * n),
+            product: zeros(n * n),
+            no_mass: zeros(plant.speeds * plant.speeds),
+        }
+    }
+}
+
+/// What depends on a step: a scalar with the gradients `after` in z⁺ and `f` in F, and `mass` in
+/// the mass matrix before the step.
+#[derive(Clone, Copy)]
+pub(crate) struct Effects<'a> {
+    pub(crate) after: &'a [f64],
+    pub(crate) f: &'a [f64],
+    pub(crate) mass: &'a [f64],
+    /// Whether the derivative by the length of the step is wanted.
+    pub(crate) by_length: bool,
+}
+
+/// The gradient of that scalar: added to `sums`, where `sums.z` is that of the state before the
+/// step. Returns the derivative by the length of the step, 0 where it is not wanted.
+pub(crate) fn adjoint(
+    plant: &Plant<'_>,
+    span: Span<'_>,
+    scratch: &mut Scratch,
+    (stages, effects): (&Stages<'_>, Effects<'_>),
+    back: &mut Reverse,
+    sums: &mut Sums<'_>,
+) -> f64 {
+    let (n, h) = (plant.n, span.h);
+    let nn = n * n;
+    let mut by_h = 0.0;
+    add(effects.after, sums.z);
+    for i in (0..4).rev() {
+        let (z, k) = (&stages.z[i * n..(i + 1) * n], &stages.k[i * n..(i + 1) * n]);
+        let a = &stages.a[i * nn..(i + 1) * nn];
+        let x = &stages.x[i * nn..(i + 1) * nn];
+        // z⁺ and F hold the rates of this stage; so does the next stage, whose gradients are in
+        // `back.z` and `back.x`.
+        back.k.fill(0.0);
+        back.kk.fill(0.0);
+        if i < 3 {
+            add_scaled(h * STAGES[i], &back.z, &mut back.k);
+            add_scaled(h * STAGES[i], &back.x, &mut back.kk);
+        }
+        if effects.by_length {
+            multiply(a, x, n, &mut back.product);
+            by_h += WEIGHTS[i] * (dot(effects.after, k) + dot(effects.f, &back.product));
+            if i < 3 {
+                by_h += STAGES[i] * (dot(&back.z, k) + dot(&back.x, &back.product));
+            }
+        }
+        add_scaled(h * WEIGHTS[i], effects.after, &mut back.k);
+        add_scaled(h * WEIGHTS[i], effects.f, &mut back.kk);
+        let mass = if i == 0 {
+            back.a.copy_from_slice(&back.kk);
+            effects.mass
+        } else {
+            multiply_transposed(&back.kk, x, n, &mut back.a);
+            transposed_multiply(a, &back.kk, n, &mut back.x);
+            &back.no_mass
+        };
+        back.z.fill(0.0);
+        let mut of_stage = Sums {
+            z: &mut back.z,
+            p: sums.p,
+            lags: sums.lags,
+        };
+        let weights = [back.k.as_slice(), &back.a, mass];
+        plant.adjoint(span.place(i, z), scratch, weights, &mut of_stage);
+        add(&back.z, sums.z);
+    }
+    by_h
+}

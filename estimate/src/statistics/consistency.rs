@@ -1,0 +1,53 @@
+//! Whether innovations are what the model and the levels of noise promise: white, of variance 1
+//! (Y. Bar-Shalom, X. R. Li and T. Kirubarajan, *Estimation with Applications to Tracking and
+//! Navigation*, 2001, section 5.4).
+
+use super::chi_squared::chi_squared_quantile;
+use crate::kalman::filter::Innovation;
+
+/// Innovations against what they should be.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Consistency {
+    /// How many scalars.
+    pub count: usize,
+    /// Sum of the normalised innovations squared; χ² of as many degrees of freedom.
+    pub squares: f64,
+    /// Band of `squares` where everything is right.
+    pub band: [f64; 2],
+    /// Correlation of each whitened innovation with the one before it in the list.
+    pub correlation: f64,
+    /// Band of `correlation`, which is normal with variance 1/count.
+    pub correlation_band: [f64; 2],
+}
+
+impl Consistency {
+    /// Of some innovations in the order of time, such as those of a channel, with bands that hold
+    /// with a probability, such as 0.99.
+    pub fn of<'i>(innovations: impl IntoIterator<Item = &'i Innovation>, level: f64) -> Self {
+        let whitened = innovations.into_iter().map(Innovation::whitened);
+        let whitened: Vec<f64> = whitened.collect();
+        let (count, tail) = (whitened.len(), 0.5 * (1.0 - level));
+        let squares: f64 = whitened.iter().map(|e| e * e).sum();
+        let products: f64 = whitened.windows(2).map(|pair| pair[0] * pair[1]).sum();
+        let freedom = count as f64;
+        // The square of a normal number is χ² of one degree.
+        let reach = (chi_squared_quantile(level, 1.0) / freedom).sqrt();
+        Self {
+            count,
+            squares,
+            band: [tail, 1.0 - tail].map(|p| chi_squared_quantile(p, freedom)),
+            correlation: products / squares,
+            correlation_band: [-reach, reach],
+        }
+    }
+
+    /// Whether the squares are inside their band.
+    pub fn has_right_size(&self) -> bool {
+        (self.band[0]..=self.band[1]).contains(&self.squares)
+    }
+
+    /// Whether neighbours are uncorrelated.
+    pub fn is_white(&self) -> bool {
+        (self.correlation_band[0]..=self.correlation_band[1]).contains(&self.correlation)
+    }
+}

@@ -1,0 +1,89 @@
+//! Runs from files, whatever their format.
+
+use std::path::Path;
+
+use appell_spec::units::Unit;
+
+use super::channel::Channel;
+use super::clock::TIME;
+use super::limits::MAX_NUMBERS;
+use super::table::{Columns, Table, Wanted};
+use super::{DataError, c3d, csv};
+
+/// How the numbers of a file are written, by the end of its name.
+#[derive(Clone, Copy)]
+enum Format {
+    Csv,
+    C3d,
+    Mcap,
+    Parquet,
+}
+
+impl Format {
+    fn of(path: &Path) -> Self {
+        let is = |end: &str| {
+            path.extension()
+                .is_some_and(|own| own.eq_ignore_ascii_case(end))
+        };
+        match () {
+            () if is("c3d") => Self::C3d,
+            () if is("mcap") => Self::Mcap,
+            () if is("parquet") => Self::Parquet,
+            () => Self::Csv,
+        }
+    }
+}
+
+/// Reads the columns of the channels, and the times, which are in seconds where no unit is stated.
+/// `budget` counts down the numbers that may still come.
+pub(crate) fn read(
+    path: &Path,
+    time: Option<&Unit>,
+    channels: &[Channel],
+    budget: &mut usize,
+) -> Result<Table, DataError> {
+    let named = |name: &str| name == TIME || channels.iter().any(|c| c.column == name);
+    let columns = match Format::of(path) {
+        Format::Csv => {
+            let scale = time.map_or(1.0, |unit| unit.scale);
+            return csv::read(path, scale, channels, budget);
+        }
+        // These formats say themselves when a row was recorded.
+        _ if time.is_some_and(|unit| !unit.is_si()) => {
+            let message = "the times of such a file are in seconds; only those of a CSV file may have \
+                           another unit";
+            return Err(DataError::whole(path.to_string_lossy(), message));
+        }
+        format => columns(path, format, &named, *budget)?,
+    };
+    columns.table(&path.to_string_lossy(), channels, budget)
+}
+
+/// The names of the columns.
+pub(super) fn header(path: &Path) -> Result<Vec<String>, DataError> {
+    match Format::of(path) {
+        Format::Csv => csv::header(path),
+        format => Ok(columns(path, format, &|_| false, MAX_NUMBERS)?.names),
+    }
+}
+
+/// The columns of a file in another format than CSV.
+fn columns(
+    path: &Path,
+    format: Format,
+    wanted: Wanted<'_>,
+    budget: usize,
+) -> Result<Columns, DataError> {
+    match format {
+        Format::C3d => c3d::read(path, wanted, budget),
+        #[cfg(feature = "mcap")]
+        Format::Mcap => super::mcap::read(path, wanted, budget),
+        #[cfg(feature = "parquet")]
+        Format::Parquet => super::parquet::read(path, wanted, budget),
+        _ => {
+            let message = "this build does not read the format; build with the feature of its \
+                           name, `mcap` or `parquet`, or write the run as CSV";
+            Err(DataError::whole(path.to_string_lossy(), message))
+        }
+    }
+}

@@ -1,0 +1,67 @@
+//! A run from its table: values in SI, inputs held, whole angles.
+
+use appell_estimate::smoothing::angle::unwrap;
+
+use super::channel::{Channel, Role};
+use super::clock::Sampling;
+use super::finding::{Finding, FindingKind, counted};
+use super::set::{Part, Run};
+use super::table::Table;
+
+/// A run from its table, with dropouts told, inputs held and angles counted on.
+pub(super) fn read(
+    name: String,
+    part: Part,
+    table: Table,
+    channels: &[Channel],
+    findings: &mut Vec<Finding>,
+) -> Run {
+    let sampling = Sampling::of(&table.times);
+    findings.extend(table.findings.into_iter().map(|f| f.in_run(&name)));
+    findings.extend(sampling.findings().into_iter().map(|f| f.in_run(&name)));
+    let mut values = table.columns;
+    for (channel, values) in channels.iter().zip(&mut values) {
+        let mut tell = |kind, message: String| {
+            let finding = Finding::new(kind, message);
+            findings.push(finding.in_run(&name).of_channel(&channel.column));
+        };
+        let missing = values.iter().filter(|value| value.is_nan()).count();
+        if missing > 0 {
+            let (rows, all) = (counted(missing, "value"), values.len());
+            if matches!(channel.role, Role::Input(_)) {
+                hold(values);
+                let message = format!("{rows} of {all} missing; the value before holds on");
+                tell(FindingKind::HeldInput, message);
+            } else {
+                tell(FindingKind::Dropouts, format!("{rows} of {all} missing"));
+            }
+        }
+        if channel.is_angle() {
+            let steps = unwrap(values);
+            if steps > 0 {
+                let steps = counted(steps, "time");
+                let message = format!("the angle starts anew {steps}; it is counted on");
+                tell(FindingKind::Unwrapped, message);
+            }
+        }
+    }
+    Run {
+        name,
+        part,
+        times: table.times,
+        values,
+        sampling,
+    }
+}
+
+/// Puts the value before in place of a missing one; at the beginning the first one that is there.
+fn hold(values: &mut [f64]) {
+    let first = values.iter().copied().find(|value| !value.is_nan());
+    let mut last = first.unwrap_or(0.0);
+    for value in values {
+        if value.is_nan() {
+            *value = last;
+        }
+        last = *value;
+    }
+}

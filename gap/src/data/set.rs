@@ -1,0 +1,102 @@
+//! What a data set holds: a mechanism, the parameters of a rig, channels and runs.
+
+use appell_spec::Mechanism;
+
+use super::channel::{Channel, Role};
+use super::clock::Sampling;
+use super::finding::{Finding, FindingKind};
+
+/// The text of a spec and the name that messages call it by.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Spec {
+    /// Name or path.
+    pub file: String,
+    /// The text.
+    pub text: String,
+}
+
+/// A data set that passed every check.
+#[derive(Debug, Clone)]
+pub struct DataSet {
+    /// The spec of the mechanism.
+    pub spec: Spec,
+    /// The mechanism.
+    pub mechanism: Mechanism,
+    /// What people say about the recordings.
+    pub description: String,
+    /// The parameters of this rig, in the order of the spec.
+    pub parameters: Vec<Parameter>,
+    /// What the columns of all runs hold.
+    pub channels: Vec<Channel>,
+    /// The runs, those to fit first.
+    pub runs: Vec<Run>,
+    /// What was mended, and what looks wrong.
+    pub findings: Vec<Finding>,
+}
+
+/// A parameter of the rig.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Parameter {
+    /// Value in SI.
+    pub value: f64,
+    /// Tolerance in SI, one standard deviation; zero where the value is known exactly, nothing where
+    /// nobody says.
+    pub std: Option<f64>,
+}
+
+/// What a run may be used for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Part {
+    /// To find and fit.
+    Fit,
+    /// To measure the gap before and after, and nothing else.
+    Test,
+}
+
+/// One uninterrupted recording.
+#[derive(Debug, Clone)]
+pub struct Run {
+    /// Name of its file.
+    pub name: String,
+    /// What it may be used for.
+    pub part: Part,
+    /// Times in s, strictly increasing.
+    pub times: Vec<f64>,
+    /// Values in SI for each channel; NaN where a measurement is missing. An input is held from its
+    /// time to the next.
+    pub values: Vec<Vec<f64>>,
+    /// Steps and gaps.
+    pub sampling: Sampling,
+}
+
+impl Run {
+    /// From the first time to the last, in s.
+    pub fn duration(&self) -> f64 {
+        match self.times[..] {
+            [first, .., last] => last - first,
+            _ => 0.0,
+        }
+    }
+}
+
+impl DataSet {
+    /// Inputs without a column, and parameters without a tolerance.
+    pub(super) fn tell_what_lacks(&mut self) {
+        for (index, input) in self.mechanism.inputs.iter().enumerate() {
+            let recorded = |channel: &Channel| channel.role == Role::Input(index);
+            if !self.channels.iter().any(recorded) {
+                let message = format!(
+                    "no column is the input `{}`, so zero is taken for it",
+                    input.label.name
+                );
+                self.findings
+                    .push(Finding::new(FindingKind::NoInput, message));
+            }
+        }
+        if !self.parameters.is_empty() && self.parameters.iter().all(|own| own.std.is_none()) {
+            let message = "no parameter has a tolerance `std`, so all are taken as they are";
+            self.findings
+                .push(Finding::new(FindingKind::NoTolerance, message));
+        }
+    }
+}

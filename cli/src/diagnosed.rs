@@ -1,4 +1,4 @@
-//! A gap report, for people and for programs.
+//! A gap report as text, page and JSON.
 
 mod doubt;
 mod numbers;
@@ -21,7 +21,7 @@ pub(crate) use page::page;
 use appell::Error;
 use appell_report::text::{number, with_unit};
 
-/// Hypotheses that the summary lists.
+/// Number of hypotheses in the summary.
 const LISTED: usize = 3;
 
 pub(crate) fn failure(error: DiagnoseError) -> Error {
@@ -47,7 +47,7 @@ fn joined(effects: &[String]) -> String {
     }
 }
 
-/// The summary in some ten lines.
+/// The summary, about ten lines.
 pub(crate) fn text(report: &Report, next: Option<&Path>) -> String {
     let mut text = String::new();
     // Writing to a string cannot fail.
@@ -87,21 +87,21 @@ pub(crate) fn text(report: &Report, next: Option<&Path>) -> String {
         let mut listed = report.which.iter().take(LISTED);
         listed.any(|one| one.effects == effects)
     };
-    let is_told = report.verdict == GapVerdict::Unexplained
+    let shows_failures = report.verdict == GapVerdict::Unexplained
         || report.failed.iter().any(|(effects, _)| is_listed(effects));
-    if is_told && !report.failed.is_empty() {
+    if shows_failures && !report.failed.is_empty() {
         let names: Vec<String> = (report.failed.iter().take(LISTED))
             .map(|(effects, _)| joined(effects))
             .collect();
         let _ = writeln!(
             text,
-            "  failed    {} could not be fitted to the end, among them {}; the gap report says why",
+            "  failed    {} fits did not converge, among them {}; see the gap report for the reasons",
             report.failed.len(),
             names.join(", ")
         );
     }
     if let Some(experiment) = &report.experiment {
-        let _ = writeln!(text, "  next      {}", told(experiment));
+        let _ = writeln!(text, "  next      {}", experiment_sentence(experiment));
     }
     if let Some(path) = next {
         let _ = writeln!(text, "            written to {}", path.display());
@@ -113,7 +113,8 @@ pub(crate) fn text(report: &Report, next: Option<&Path>) -> String {
         Some(far) => {
             let _ = writeln!(
                 text,
-                "  how far   error {} s ahead: nominal {}, re-fitted {}, with effect {}, floor {} (in units of noise)",
+                "  how far   error {} s ahead: nominal {}, re-fitted {}, with effect {}, floor {} (relative \
+                to the noise)",
                 far.horizon_s,
                 number(far.nominal),
                 number(far.refitted),
@@ -130,7 +131,7 @@ pub(crate) fn text(report: &Report, next: Option<&Path>) -> String {
             );
             if report.verdict != GapVerdict::NoGap && far.closed_ci95[0] <= 0.0 {
                 text.push_str(
-                    "            nothing shows yet that it helps on runs that no fit has seen\n",
+                    "            no significant improvement on held-out runs\n",
                 );
             }
         }
@@ -143,26 +144,26 @@ pub(crate) fn text(report: &Report, next: Option<&Path>) -> String {
         .collect();
     let _ = writeln!(
         text,
-        "  disturbance, before and after: {}",
+        "  process noise, before and after: {}",
         levels.join(", ")
     );
     text
 }
 
-/// A hint in words.
+/// A hint as a sentence.
 fn hinted(hint: &Hint) -> String {
     format!(
-        "the gap in the equation of {} depends on {}, which the model does not know",
+        "the gap in the equation of {} depends on {}, a channel that is not in the model",
         hint.equation, hint.variable
     )
 }
 
-/// That rows were left out, if any were.
+/// A note on unused training rows, if any.
 fn left_out(report: &Report) -> Option<String> {
     let [fitted, all] = report.rows;
     (fitted < all).then(|| {
         format!(
-            "{fitted} of {all} rows to fit were fitted, in stretches that are spread over the runs"
+            "{fitted} of {all} training rows were used, in segments spread over the runs"
         )
     })
 }
@@ -175,7 +176,7 @@ fn sentence(report: &Report) -> String {
         .map(|found| found.about.as_str())
         .collect();
     match report.verdict {
-        GapVerdict::NoGap => "no gap beyond noise and disturbance".to_owned(),
+        GapVerdict::NoGap => "no gap beyond measurement and process noise".to_owned(),
         GapVerdict::Explained => format!("the gap is explained by {}", about.join(" and ")),
         GapVerdict::Ambiguous => format!(
             "there is a gap; {} explains it best ({:.0} %), but {} cannot be ruled out",
@@ -186,7 +187,7 @@ fn sentence(report: &Report) -> String {
         GapVerdict::Unexplained => {
             let left = report.left.as_ref().map(|left| format!(": {}", left.about));
             let left = left.unwrap_or_default();
-            format!("there is a gap that nothing in the library explains{left}")
+            format!("there is a gap that no effect of the library explains{left}")
         }
     }
 }
@@ -227,11 +228,11 @@ fn line(hypothesis: &Hypothesis) -> String {
     )
 }
 
-/// The next experiment in a sentence.
-fn told(experiment: &Experiment) -> String {
+/// The proposed experiment as a sentence.
+fn experiment_sentence(experiment: &Experiment) -> String {
     let seconds = experiment.times.last().copied().unwrap_or(0.0);
     format!(
-        "{} for {} s: would separate the first two by {} standard deviations (now {})",
+        "{} for {} s: would separate the first two by {} sigma (now {})",
         experiment.about,
         short(seconds),
         short(experiment.separation_then),
@@ -254,7 +255,7 @@ pub(crate) fn csv(set: &DataSet, experiment: &Experiment) -> String {
     }
     text.push('\n');
     for (row, t) in experiment.times.iter().enumerate() {
-        // Times are multiples of a step; what rounding adds is of no use.
+        // Times are multiples of a step; round off the floating-point error.
         let _ = write!(text, "{}", (t * 1e9).round() / 1e9);
         for ((_, values), unit) in experiment.inputs.iter().zip(&units) {
             let value = unit.map_or(values[row], |unit| unit.from_si(values[row]));
@@ -265,7 +266,7 @@ pub(crate) fn csv(set: &DataSet, experiment: &Experiment) -> String {
     text
 }
 
-/// The gap report of the contract; `next` is where the next experiment stands.
+/// The gap report as JSON; `next` is the file of the proposed experiment.
 pub(crate) fn json(report: &Report, next: Option<&Path>) -> Value {
     let equations = report.place.equations.iter().map(|e| {
         json!({ "name": e.name, "share": e.share, "p_value": e.p_value, "rms": e.rms, "unit": e.unit })
@@ -357,7 +358,7 @@ pub(crate) fn json(report: &Report, next: Option<&Path>) -> Value {
     })
 }
 
-/// Errors at a horizon.
+/// Prediction errors at one horizon.
 fn ahead(ahead: &Ahead) -> Value {
     let horizon = ahead.horizon.is_finite().then_some(ahead.horizon);
     json!({
@@ -367,7 +368,7 @@ fn ahead(ahead: &Ahead) -> Value {
     })
 }
 
-/// What `appell apply` reads.
+/// The changes of the spec that `appell apply` reads.
 fn changes(changes: &Changes) -> Value {
     let inputs = changes.inputs.iter();
     let parameters = changes.parameters.iter().map(|p| {

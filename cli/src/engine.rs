@@ -1,4 +1,4 @@
-//! `--engine`, and equations made under a spinner.
+//! `--engine`, and derivation with a progress indicator.
 
 use appell::Error;
 use appell::engine::Equations;
@@ -7,18 +7,18 @@ use appell::source::Source;
 use crate::failure::note;
 use crate::progress;
 
-/// What evaluates the equations. All three give the same numbers.
+/// How the equations are evaluated. All three give the same numbers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub(crate) enum Engine {
-    /// Machine code made in this process.
+    /// Machine code, compiled in this process.
     Jit,
     /// The emitted Rust, compiled into this program; shipped mechanisms only.
     Emitted,
-    /// Operation by operation; slow.
+    /// Interpreted operation by operation; slow.
     Interpreter,
 }
 
-/// The equations of a spec; without an engine those at hand.
+/// The equations of a spec; without an engine, emitted ones if there are any, else machine code.
 pub(crate) fn equations(source: &Source, engine: Option<Engine>) -> Result<Equations, Error> {
     made(|| match engine {
         None => Equations::at_hand(source),
@@ -28,7 +28,7 @@ pub(crate) fn equations(source: &Source, engine: Option<Engine>) -> Result<Equat
     })
 }
 
-/// The same with what estimation asks for.
+/// The equations with the adjoints that estimation needs.
 pub(crate) fn equations_for_estimation(source: &Source) -> Result<Equations, Error> {
     made(|| Equations::for_estimation(source))
 }

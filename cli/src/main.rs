@@ -23,15 +23,14 @@ use std::process::ExitCode;
 use clap::Parser;
 use mimalloc::MiMalloc;
 
-/// A derivation makes many small objects; this allocator shortens it by a quarter.
+/// A derivation allocates many small objects; this allocator saves a quarter of its time.
 #[global_allocator]
 static ALLOCATOR: MiMalloc = MiMalloc;
 
 /// Equations of motion from a declarative mechanism spec, by the Gibbs-Appell method.
-///
-/// MODEL is the name of a shipped mechanism (`appell list`) or the path of a spec file; a spec
-/// file works at once. Exit status: 0 done, 2 bad usage, 3 bad spec or data, 4 the computation
-/// failed.
+/// MODEL is the name of a shipped mechanism (`appell list`) or the path of a spec file, which needs
+///no compilation. Exit status: 0 success, 2 usage error, 3 invalid spec or data, 4 failed
+///computation.
 #[derive(Debug, Parser)]
 #[command(name = "appell", version, propagate_version = true)]
 struct Arguments {

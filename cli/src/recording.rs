@@ -1,4 +1,4 @@
-//! Recordings: what a person and a program are told of them.
+//! A summary of recordings as text and JSON.
 
 use std::fmt::Write as _;
 
@@ -7,7 +7,7 @@ use appell_gap::data::{DataSet, Part, Role, Run};
 use appell_report::text::{number, table};
 use serde_json::{Value, json};
 
-/// The tables that a person reads, in the units of the files.
+/// The summary as text tables, in the units of the files.
 pub(crate) fn text(set: &DataSet) -> String {
     let mut text = format!("{}: {}\n", set.mechanism.name, set.mechanism.title);
     if !set.description.is_empty() {
@@ -86,7 +86,7 @@ fn role(role: Role) -> &'static str {
     }
 }
 
-/// The same for programs, in SI.
+/// The summary as JSON, in SI.
 pub(crate) fn json(set: &DataSet) -> Value {
     let runs = set.runs.iter().map(|run| {
         json!({

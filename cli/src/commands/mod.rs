@@ -23,7 +23,7 @@ mod steady;
 
 use appell::Error;
 
-/// The commands; each tells on itself what it does.
+/// The commands.
 #[derive(Debug, clap::Subcommand)]
 pub(crate) enum Command {
     List(list::List),

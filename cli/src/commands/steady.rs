@@ -11,12 +11,12 @@ use appell::Error;
 use appell::files;
 use appell::steady::{Answer, Asked, export};
 
-/// Finds steady motions: those whose essential states rest while hidden coordinates run on.
-///
-/// Conditions are values of states, inputs, outputs and rates of hidden coordinates; where they leave
-/// a family of motions, the answer names what may be given further. With `--along` the motions are
-/// followed through folds and crossings. Values are in the unit of the spec, or carry their own, as in
-/// `theta=10deg`.
+/// Finds steady motions: relative equilibria, in which the essential states are constant while
+/// ignorable coordinates advance uniformly.
+/// Conditions are values of states, inputs, outputs and rates of ignorable coordinates; if they leave
+///a family of motions, the answer names the quantities that may be prescribed in addition. With
+///`--along` the motions are continued through folds and crossings. Values are in the unit of the
+///spec, or carry their own, as in `theta=10deg`.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Steady {
     #[command(flatten)]
@@ -41,7 +41,7 @@ impl Steady {
     }
 }
 
-/// Writes the files that were asked for.
+/// Writes the requested files.
 pub(super) fn write(
     question: &Question,
     asked: &Asked<'_>,
@@ -59,14 +59,14 @@ pub(super) fn write(
             picture::write(path, &figure(asked, along, branches).to_svg())?;
         }
         (Some(_), ..) => {
-            note("`--plot` draws motions along a quantity: give `--along NAME=FROM..TO`");
+            note("`--plot` needs a quantity to plot against: give `--along NAME=FROM..TO`");
         }
         _ => {}
     }
     Ok(())
 }
 
-/// Every quantity over the one along which the motions run, one panel each.
+/// Every quantity against the continuation parameter, one panel each.
 fn figure(asked: &Asked<'_>, along: Term, branches: &[Branch]) -> Figure {
     let model = asked.problem.model();
     let info = model.info();

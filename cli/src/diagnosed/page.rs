@@ -1,4 +1,4 @@
-//! A gap report as a page that needs no network: what a control engineer can act on.
+//! A gap report as a self-contained HTML page.
 
 use std::fmt::Write as _;
 
@@ -13,7 +13,7 @@ use super::{hinted, joined, left_out, plots, sentence};
 use appell_report::text::with_unit;
 
 const STYLE: &str = include_str!("page.css");
-/// An effect that betters predictions by less is of little matter.
+/// Relative improvement of predictions below which an effect is of no practical importance.
 const MATTERS: f64 = 0.05;
 
 /// The page.
@@ -39,7 +39,7 @@ pub(crate) fn page(set: &DataSet, report: &Report) -> String {
     )
 }
 
-/// The verdict, with the size of the effect and what it closes.
+/// The verdict, with the size of the effect and the part of the gap that it closes.
 fn verdict(report: &Report) -> String {
     let mut text = capital(&sentence(report));
     let top = report.which.iter().find(|h| !h.parameters.is_empty());
@@ -54,17 +54,17 @@ fn verdict(report: &Report) -> String {
     if let (Some(far), true) = (&report.how_far, is_named) {
         let _ = write!(
             text,
-            " On runs that no fit has seen, it closes {} [{}, {}] of the gap, and {} of what the \
-             re-fitted parameters leave.",
+            " On held-out runs it closes {} [{}, {}] of the gap, and {} of the gap that remains after \
+            re-fitting the parameters.",
             percent(far.closed),
             percent(far.closed_ci95[0]),
             percent(far.closed_ci95[1]),
             percent(far.closed_vs_refitted),
         );
         if far.with_effect > far.refitted {
-            text += " Predictions get worse with it: what was fitted does not hold on these runs.";
+            text += " Predictions become worse with it: the fit does not generalise to these runs.";
         } else if far.with_effect > (1.0 - MATTERS) * far.refitted {
-            text += " The effect is certain and of little matter: predictions hardly get better.";
+            text += " The effect is significant but unimportant: predictions hardly improve.";
         }
     }
     text
@@ -88,13 +88,13 @@ fn values(hypothesis: &Hypothesis) -> Vec<String> {
 fn place(set: &DataSet, report: &Report) -> String {
     let mut html = "<h2>Where</h2>\n".to_owned();
     if report.verdict == GapVerdict::NoGap {
-        html += "<p>No equation disagrees with the recordings beyond noise and disturbance.</p>\n";
+        html += "<p>No equation disagrees with the recordings beyond measurement and process noise.</p>\n";
     } else if report.verdict == GapVerdict::Unexplained {
         if let Some(left) = &report.left {
             let _ = writeln!(html, "<p>{}.</p>", escaped(&capital(&left.about)));
         }
     } else if report.place.equations.is_empty() {
-        html += "<p>In the structure of the model: another one fits the recordings.</p>\n";
+        html += "<p>The gap lies in the structure of the model: an alternative model fits the recordings.</p>\n";
     } else {
         let domain = report.place.domain;
         // Writing to a string cannot fail.
@@ -108,7 +108,7 @@ fn place(set: &DataSet, report: &Report) -> String {
     }
     if let Some(svg) = drawing(set, report) {
         let caption = if svg.contains("class=\"ring") {
-            "The mechanism at its initial state. A ring marks where the gap is."
+            "The mechanism at its initial state. A ring marks the site of the gap."
         } else {
             "The mechanism at its initial state."
         };
@@ -116,14 +116,14 @@ fn place(set: &DataSet, report: &Report) -> String {
     }
     if let (Some(pictures), true) = (&report.pictures, report.verdict != GapVerdict::NoGap) {
         let caption = format!(
-            "The missing force of each equation in parts of {} s of the runs that were fitted, the \
-             stronger the colour the larger; beside the name the largest.",
+            "Missing force of each equation in windows of {} s of the training runs: the stronger the \
+            colour, the larger the force. The maximum is given beside the name.",
             short(pictures.force_history.part)
         );
         html += &figure(&plots::over_time(&pictures.force_history), &caption);
     }
     html += &windows(&report.place);
-    // What sensors show wrong is no force.
+    // A sensor error is not a missing force.
     if !report
         .place
         .equations
@@ -135,24 +135,23 @@ fn place(set: &DataSet, report: &Report) -> String {
     html += &equations(set, &report.place);
     if let Some(law) = report.pictures.as_ref().and_then(|p| p.force_law.as_ref()) {
         let caption = if law.law.is_empty() {
-            "The force that the model lacks, as the recordings show it without any law, over what it \
-             depends on most."
+            "Missing force, estimated from the recordings without a force law, against the variable on \
+            which it depends most."
         } else {
-            "The force that the model lacks, as the recordings show it without any law, and the law \
-             that was found."
+            "Missing force, estimated from the recordings without a force law, with the identified law."
         };
         html += &figure(&plots::law(law), caption);
     }
     html
 }
 
-/// The mechanism with rings; nothing where it has no drawing.
+/// The mechanism with the sites of the gap ringed; `None` if it cannot be drawn.
 fn drawing(set: &DataSet, report: &Report) -> Option<String> {
     let sites = report
         .found
         .iter()
         .filter_map(|found| found.effect.split_once('@'));
-    // A channel stands for what it shows.
+    // A channel is marked at the quantity that it measures.
     let name = |site: &str| {
         let channel = set.channels.iter().find(|channel| channel.column == site);
         let label = channel.and_then(|channel| channel.role.label(&set.mechanism));
@@ -218,13 +217,13 @@ fn windows(place: &Where) -> String {
             vec![escaped(&w.run), time, code(&w.equation), short(w.z)]
         });
         let table = table(
-            ["run", "when", "equation of", "size in deviations"],
+            ["run", "when", "equation of", "z-score"],
             rows,
             3,
         );
         let _ = writeln!(
             html,
-            "<details><summary>{} windows that stand out</summary>{table}</details>",
+            "<details><summary>{} significant windows</summary>{table}</details>",
             place.windows.len()
         );
     }
@@ -233,7 +232,7 @@ fn windows(place: &Where) -> String {
             .region
             .iter()
             .map(|r| vec![code(&r.variable), escaped(&r.description), short(r.z)]);
-        html += &table(["depends on", "where", "size in deviations"], rows, 2);
+        html += &table(["depends on", "where", "z-score"], rows, 2);
     }
     html
 }
@@ -241,8 +240,8 @@ fn windows(place: &Where) -> String {
 fn which(report: &Report) -> String {
     let rows = report.which.iter().map(|hypothesis| {
         let name = match hypothesis.effects.first().map(String::as_str) {
-            None => "no effect: the model with its parameters within tolerance".to_owned(),
-            Some("unknown") => "none of the library".to_owned(),
+            None => "no effect: nominal model, parameters within tolerance".to_owned(),
+            Some("unknown") => "no effect of the library".to_owned(),
             Some(_) => code(&joined(&hypothesis.effects)),
         };
         let values = values(hypothesis)
@@ -260,7 +259,7 @@ fn which(report: &Report) -> String {
     html += &table(
         [
             "probability",
-            "hypothesis, with values ± one standard deviation",
+            "hypothesis, values ± 1 standard deviation",
             "log Bayes factor",
         ],
         rows,
@@ -268,13 +267,13 @@ fn which(report: &Report) -> String {
     );
     for doubt in doubts(report) {
         let doubt = escaped(&capital(&doubt.replace('`', "")));
-        let _ = writeln!(html, "<p><b>A unit?</b> {doubt}</p>");
+        let _ = writeln!(html, "<p><b>Unit error?</b> {doubt}</p>");
     }
     for group in &report.tied {
         let names: Vec<String> = group.iter().map(|effects| code(&joined(effects))).collect();
         let _ = writeln!(
             html,
-            "<p><b>Tied.</b> These recordings cannot tell {} apart.</p>",
+            "<p><b>Tied.</b> These recordings cannot distinguish {}.</p>",
             names.join(" and ")
         );
     }
@@ -282,8 +281,8 @@ fn which(report: &Report) -> String {
         let part = left.gain / (left.gain + left.explained.max(0.0));
         let _ = writeln!(
             html,
-            "<p><b>Left.</b> Beside the first hypothesis the recordings speak for {}, with a log Bayes factor \
-             of {}. It is {} of the gap.</p>",
+            "<p><b>Unexplained remainder.</b> Beyond the first hypothesis the recordings support {} \
+            (log Bayes factor {}), {} of the gap.</p>",
             escaped(&left.about),
             short(left.log_bayes_factor),
             percent(part),
@@ -295,7 +294,7 @@ fn which(report: &Report) -> String {
         });
         let _ = writeln!(
             html,
-            "<details><summary>{} of the hypotheses could not be fitted to the end</summary><ul>{}</ul></details>",
+            "<details><summary>{} fits did not converge</summary><ul>{}</ul></details>",
             report.failed.len(),
             failed.collect::<String>()
         );
@@ -306,7 +305,7 @@ fn which(report: &Report) -> String {
 fn how_far(report: &Report) -> String {
     let mut html = "<h2>How far</h2>\n".to_owned();
     let Some(far) = &report.how_far else {
-        return html + "<p>No run was held out, so nothing tells how far the gap closes.</p>\n";
+        return html + "<p>No run was held out, so the closed part of the gap cannot be assessed.</p>\n";
     };
     html += &closed(far);
     let rows = report.horizons.iter().map(|ahead| {
@@ -330,13 +329,13 @@ fn how_far(report: &Report) -> String {
         rows,
         1,
     );
-    html += "<p class=\"faint\">Root mean square error of predictions, in units of the noise. The floor is \
-             what the filter expects if the hypothesis is right.</p>\n";
+    html += "<p class=\"faint\">RMS prediction error relative to the measurement noise. The noise \
+    floor is the error that the filter predicts if the hypothesis is true.</p>\n";
     let traces = report.pictures.iter().flat_map(|pictures| &pictures.traces);
     for trace in plots::most_bettered(traces) {
         let caption = format!(
-            "{} of {}, which no fit has seen, beside predictions {} s before, and their errors. The band \
-             is two standard deviations of the error that is left if the hypothesis is right.",
+            "{} of the held-out {} with predictions {} s ahead, and the prediction errors. The band \
+            shows two standard deviations of the error expected if the hypothesis is true.",
             trace.column,
             trace.run,
             appell_gap::diagnose::AHEAD
@@ -349,8 +348,8 @@ fn how_far(report: &Report) -> String {
             .disturbances
             .iter()
             .map(|(name, before, after)| vec![code(name), short(*before), short(*after)]);
-        html += "<p>Disturbance that the filter needs to follow the recordings: an effect that is missing \
-                 shows as disturbance.</p>\n";
+        html += "<p>Process noise that the filter needs to follow the recordings: a missing effect \
+        appears as process noise.</p>\n";
         html += &table(["equation of", "without the effect", "with it"], rows, 1);
     }
     html
@@ -358,8 +357,9 @@ fn how_far(report: &Report) -> String {
 
 fn closed(far: &HowFar) -> String {
     format!(
-        "<p>{} s ahead the error falls from {} to {} of the noise; the floor is {}. The gap closes by \
-         <b>{}</b>, with 95 % between {} and {}; against the model with re-fitted parameters by <b>{}</b>. \
+        "<p>{} s ahead the error falls from {} to {} times the noise; the noise floor is {}. This \
+        closes <b>{}</b> of the gap (95 % interval {} to {}), and <b>{}</b> of the gap that remains \
+        after re-fitting the parameters. \
          Runs: {}.</p>\n",
         far.horizon_s,
         short(far.nominal),
@@ -386,23 +386,22 @@ fn is_alternative(hypothesis: &Hypothesis) -> bool {
     effects.any(|effect| effect.starts_with("alternative:"))
 }
 
-/// What to do now.
+/// Recommended next steps.
 fn next(set: &DataSet, report: &Report) -> String {
     let text = match report.verdict {
         GapVerdict::NoGap => {
-            "<p>Nothing has to be added to the model. The table below tells how small an effect these \
-             recordings would have shown.</p>\n"
+            "<p>The model needs no addition. The table below lists the smallest effects that these \
+            recordings would have revealed.</p>\n"
         }
         _ if is_alternative(&report.which[0]) => {
-            "<p>Go on with the alternative model, and diagnose that one.</p>\n"
+            "<p>Adopt the alternative model and run the diagnosis on it.</p>\n"
         }
         GapVerdict::Explained | GapVerdict::Ambiguous => {
-            "<p>Write the effect into the spec, with the report that <code>--json report.json</code> \
-             wrote:</p>\n<pre>appell apply MODEL --report report.json -o improved.toml</pre>\n"
+            "<p>Add the effect to the spec, using the report written by <code>--json report.json</code>:</p>\n<pre>appell apply MODEL --report report.json -o improved.toml</pre>\n"
         }
         GapVerdict::Unexplained => {
-            "<p>Look at what the missing force depends on, and write that effect as a few lines of the \
-             spec language: <code>appell diagnose --effects own.toml</code>.</p>\n"
+            "<p>Examine what the missing force depends on, write that effect in the spec language, and \
+            try it: <code>appell diagnose --effects own.toml</code>.</p>\n"
         }
     };
     let mut html = format!("<h2>Next</h2>\n{text}");
@@ -413,8 +412,9 @@ fn next(set: &DataSet, report: &Report) -> String {
             .map(|effects| code(&joined(effects)));
         let _ = writeln!(
             html,
-            "<p>This experiment tells {} from {}: {}. The two are {} standard deviations apart now, and \
-             {} with its recording. The command writes the input as a table beside the gap report.</p>",
+            "<p>This experiment separates {} from {}: {}. The separation is {} sigma now and would be \
+            {} sigma with the new recording. The command writes the input as a table beside the gap \
+            report.</p>",
             names[0],
             names[1],
             escaped(&experiment.about),
@@ -422,11 +422,11 @@ fn next(set: &DataSet, report: &Report) -> String {
             short(experiment.separation_then),
         );
         for plot in plots::experiment(experiment, &set.mechanism) {
-            html += &figure(&plot, "The input of the next experiment.");
+            html += &figure(&plot, "Input of the proposed experiment.");
         }
     } else if report.verdict == GapVerdict::Ambiguous {
-        html += "<p>No input that was tried tells the tied hypotheses apart and keeps the motion within its \
-                 limits. Give wider ones with <code>--limit</code>, or record under feedback.</p>\n";
+        html += "<p>None of the inputs tried separates the tied hypotheses while keeping the motion \
+        within its limits. Give wider limits with <code>--limit</code>, or record under feedback.</p>\n";
     }
     html
 }
@@ -441,8 +441,8 @@ fn detectable(report: &Report) -> String {
         return String::new();
     }
     format!(
-        "<h2>What these recordings would show</h2>\n<details{}><summary>The smallest size of each effect \
-         that would be found with near certainty</summary>\n{}</details>\n",
+        "<h2>Detection limits of these recordings</h2>\n<details{}><summary>Smallest size of each \
+        effect that would be detected almost surely</summary>\n{}</details>\n",
         if report.verdict == GapVerdict::NoGap {
             " open"
         } else {
@@ -455,7 +455,7 @@ fn detectable(report: &Report) -> String {
 fn recordings(set: &DataSet, report: &Report) -> String {
     let rows = set.runs.iter().map(|run| {
         let part = match run.part {
-            Part::Fit => "to fit",
+            Part::Fit => "training",
             Part::Test => "held out",
         };
         vec![
@@ -477,7 +477,7 @@ fn recordings(set: &DataSet, report: &Report) -> String {
     html
 }
 
-/// A table; the columns from `numbers` on stand to the right. Cells are HTML.
+/// A table; the columns from `numbers` on are right-aligned. Cells are HTML.
 fn table<const N: usize>(
     heading: [&str; N],
     rows: impl Iterator<Item = Vec<String>>,
@@ -505,7 +505,7 @@ fn table<const N: usize>(
     html + "</table>\n"
 }
 
-/// A part as a bar beside its number.
+/// A share as a bar beside its number.
 fn bar(part: f64) -> String {
     let width = 100.0 * part.clamp(0.0, 1.0);
     format!(

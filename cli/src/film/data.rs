@@ -1,4 +1,4 @@
-//! What the page shows, as JSON: names and shapes as they are, numbers over time packed.
+//! The data of the page as JSON: names and shapes in clear, time series packed.
 
 use appell_codegen::mechanics::finding::Outcome;
 use appell_report::drawing::film::{Film, ForceKind, Shape, film};
@@ -9,10 +9,10 @@ use appell_spec::Mechanism;
 use appell_spec::mechanism::{BodyId, FrameId, Point, PointId};
 use serde_json::{Value, json};
 
-/// A page with more rows than this takes long to open.
+/// Largest number of rows; larger pages open slowly.
 const MOST_ROWS: usize = 12_000;
 
-/// The film of a motion with the values of its columns.
+/// The animation of a motion with the values of its columns.
 pub(super) fn json(
     mechanism: &Mechanism,
     model: &dyn Model,

@@ -1,4 +1,4 @@
-//! All of it as a page that needs no network.
+//! The result as a self-contained HTML page.
 
 use std::fmt::Write as _;
 
@@ -8,7 +8,7 @@ use appell_gap::identify::Answer;
 use super::{Part, figure, parts};
 use crate::recording;
 
-/// A page that needs no network.
+/// The self-contained HTML page.
 pub(crate) fn page(set: &DataSet, answer: &Answer) -> String {
     let mut body = String::new();
     for (place, part) in parts(set, answer).iter().enumerate() {
@@ -19,7 +19,7 @@ pub(crate) fn page(set: &DataSet, answer: &Answer) -> String {
             let _ = writeln!(body, "<p>{}</p>", escaped(&part.note));
         }
         if place == 0 && !answer.traces.is_empty() {
-            let _ = writeln!(body, "<h2>The runs that were held out</h2>");
+            let _ = writeln!(body, "<h2>Held-out runs</h2>");
             let _ = writeln!(body, "{}", figure(set, answer).to_svg());
         }
     }
@@ -28,7 +28,7 @@ pub(crate) fn page(set: &DataSet, answer: &Answer) -> String {
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
          <title>{name}: parameters</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n\
          <h1>{name}: parameters from recordings</h1>\n{body}\
-         <h2>The recordings</h2>\n<pre>{recordings}</pre>\n</body>\n</html>\n",
+         <h2>Recordings</h2>\n<pre>{recordings}</pre>\n</body>\n</html>\n",
         name = escaped(&set.mechanism.name),
         recordings = escaped(&recording::text(set)),
     )

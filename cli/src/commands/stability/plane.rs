@@ -1,4 +1,4 @@
-//! `appell stability --chart`: stability over two quantities.
+//! `appell stability --chart`: a stability chart over two quantities.
 
 use std::fmt::Write as _;
 use std::io::{self, Write};
@@ -66,7 +66,7 @@ impl Plane {
 }
 
 impl StabilityCommand {
-    /// Computes the chart, tells it and writes its files.
+    /// Computes the chart, prints a summary and writes its files.
     pub(super) fn draw(&self, asked: &Asked<'_>, axes: &[Axis; 2]) -> Result<(), Error> {
         let chart = motions::chart(asked, *axes)?;
         let question = &self.question;
@@ -84,15 +84,15 @@ impl StabilityCommand {
     }
 }
 
-/// How many motions there are, and the boundaries with their turning points.
+/// The number of motions, and the boundaries with their turning points.
 fn text(asked: &Asked<'_>, chart: &Chart) -> String {
     let info = asked.problem.model().info();
     let quantities = chart.axes.map(|axis| axis.term.quantity(info));
     let found = chart.cells.iter().flatten();
     let count = |verdict: Verdict| found.clone().filter(|cell| cell.verdict == verdict).count();
     let mut text = format!(
-        "{} motions at {} places: {} asymptotically stable, {} neutrally stable, {} unstable; {} places \
-         without one, {} with several\n",
+        "{} steady motions at {} grid points: {} asymptotically stable, {} neutrally stable, {} \
+        unstable; {} points without a motion, {} with several\n",
         found.clone().count(),
         chart.cells.len(),
         count(Verdict::Asymptotic),
@@ -103,8 +103,8 @@ fn text(asked: &Asked<'_>, chart: &Chart) -> String {
     );
     for boundary in &chart.boundaries {
         let role = match boundary.deciding().count() {
-            0 => "inside what is unstable",
-            _ if boundary.decides.contains(&false) => "boundary, in parts",
+            0 => "inside the unstable region",
+            _ if boundary.decides.contains(&false) => "boundary, on parts of the curve",
             _ => "boundary",
         };
         // Writing to a string cannot fail.

@@ -69,7 +69,10 @@ fn reach(design: &Design, info: &ModelInfo) -> String {
     }
     let lost: Vec<String> = counted(&controllability.lost);
     let _ = writeln!(text, "  uncontrollable modes in 1/s: {}", lost.join(", "));
-    let _ = writeln!(text, "  combinations of states that no input affects, in SI:");
+    let _ = writeln!(
+        text,
+        "  combinations of states that no input affects, in SI:"
+    );
     for row in 0..controllability.untouched.nrows() {
         let row: Vec<f64> = controllability.untouched.row(row).iter().copied().collect();
         let _ = writeln!(text, "    {}", combination(&row, &names));
@@ -124,15 +127,15 @@ fn gains(design: &Design, law: &DesignedGains, info: &ModelInfo) -> String {
     match law.sampling {
         None => {
             let poles: Vec<String> = law.poles.iter().map(|pole| pole_text(*pole)).collect();
-            let _ = writeln!(
-                text,
-                "closed-loop poles in 1/s: {}",
-                poles.join(", ")
-            );
+            let _ = writeln!(text, "closed-loop poles in 1/s: {}", poles.join(", "));
         }
         Some(sampling) => {
             let poles: Vec<String> = law.poles.iter().map(|pole| pole_text(*pole)).collect();
-            let _ = writeln!(text, "poles of the sampled closed loop, z: {}", poles.join(", "));
+            let _ = writeln!(
+                text,
+                "poles of the sampled closed loop, z: {}",
+                poles.join(", ")
+            );
             let poles = law
                 .poles
                 .iter()

@@ -130,9 +130,7 @@ pub(crate) fn text(report: &Report, next: Option<&Path>) -> String {
                 100.0 * far.closed_vs_refitted,
             );
             if report.verdict != GapVerdict::NoGap && far.closed_ci95[0] <= 0.0 {
-                text.push_str(
-                    "            no significant improvement on held-out runs\n",
-                );
+                text.push_str("            no significant improvement on held-out runs\n");
             }
         }
         None => text.push_str("  how far   no run was held out\n"),
@@ -162,9 +160,7 @@ fn hinted(hint: &Hint) -> String {
 fn left_out(report: &Report) -> Option<String> {
     let [fitted, all] = report.rows;
     (fitted < all).then(|| {
-        format!(
-            "{fitted} of {all} training rows were used, in segments spread over the runs"
-        )
+        format!("{fitted} of {all} training rows were used, in segments spread over the runs")
     })
 }
 

@@ -84,7 +84,9 @@ pub(crate) fn text(set: &DataSet, answer: &Answer) -> String {
         }
     }
     if answer.held_out.is_empty() {
-        text.push_str("\nNo run was held out, so the predictions of the model cannot be assessed.\n");
+        text.push_str(
+            "\nNo run was held out, so the predictions of the model cannot be assessed.\n",
+        );
     }
     text
 }
@@ -192,7 +194,10 @@ fn combinations(answer: &Answer) -> Part {
         known.count(),
         answer.combinations.len()
     );
-    let columns = ["posterior / prior std", "direction, in units of the prior std"];
+    let columns = [
+        "posterior / prior std",
+        "direction, in units of the prior std",
+    ];
     let mut part = Part::new(&heading, columns, 0..1);
     for combination in &answer.combinations {
         let known_to = if combination.deviation < UNKNOWN {
@@ -222,8 +227,7 @@ fn sum(answer: &Answer, combination: &Known) -> String {
 }
 
 fn levels(set: &DataSet, answer: &Answer) -> Part {
-    let heading =
-        "Measurement noise and process noise (standard deviations)";
+    let heading = "Measurement noise and process noise (standard deviations)";
     let columns = ["level", "of", "nominal model", "fitted model", "unit"];
     let mut part = Part::new(heading, columns, 2..4);
     for (what, levels) in [
@@ -258,14 +262,8 @@ fn channel<'s>(set: &'s DataSet, column: &str) -> Option<&'s Channel> {
 
 /// Whiteness of the innovations.
 fn residuals(answer: &Answer) -> Part {
-    let heading =
-        "One-step residuals on the training runs";
-    let columns = [
-        "channel",
-        "lag-1 autocorrelation",
-        "white-noise bound",
-        "",
-    ];
+    let heading = "One-step residuals on the training runs";
+    let columns = ["channel", "lag-1 autocorrelation", "white-noise bound", ""];
     let mut part = Part::new(heading, columns, 1..3);
     for (column, consistency) in &answer.whiteness {
         let remark = if consistency.is_white() {
@@ -285,19 +283,8 @@ fn residuals(answer: &Answer) -> Part {
 
 /// Values of drifting parameters at the start and end of each run.
 fn courses(answer: &Answer) -> Part {
-    let columns = [
-        "parameter",
-        "run",
-        "at start",
-        "at end",
-        "std",
-        "unit",
-    ];
-    let mut part = Part::new(
-        "Drifting parameters, smoothed over each run",
-        columns,
-        2..5,
-    );
+    let columns = ["parameter", "run", "at start", "at end", "std", "unit"];
+    let mut part = Part::new("Drifting parameters, smoothed over each run", columns, 2..5);
     for course in &answer.courses {
         let shown = |value: Option<&f64>| {
             let value = value.map(|value| number(course.quantity.to_unit(*value)));

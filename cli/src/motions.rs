@@ -1,6 +1,6 @@
 //! Flags and output common to `appell steady` and `appell stability`.
 
-pub(crate) mod told;
+pub(crate) mod text;
 
 use std::path::PathBuf;
 use std::str::FromStr;

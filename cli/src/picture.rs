@@ -26,7 +26,9 @@ fn png(svg: &str) -> Result<Vec<u8>, Error> {
 
     /// Pixels per unit of the figure.
     const SCALE: f32 = 2.0;
-    let failed = |cause: String| Error::Computation(format!("the figure cannot be converted to PNG: {cause}"));
+    let failed = |cause: String| {
+        Error::Computation(format!("the figure cannot be converted to PNG: {cause}"))
+    };
     let mut options = Options::default();
     let fonts = options.fontdb_mut();
     // The same letters on every machine, with the Greek ones and the dots above them.

@@ -146,7 +146,11 @@ fn what_is_no_report_of_this_spec_is_bad_data() {
     let folder = Folder::new();
     let apply = |model| ["apply", model, "--report", "report.json", "-o", "-"];
     folder.write("report.json", "{}");
-    folder.fails(3, &apply("carriage"), &["this is not a gap report", "schema"]);
+    folder.fails(
+        3,
+        &apply("carriage"),
+        &["this is not a gap report", "schema"],
+    );
     folder.write(
         "report.json",
         r#"{ "schema": "gap-report/9", "mechanism": "", "which": [] }"#,

@@ -91,7 +91,11 @@ fn a_thorough_check_without_time_says_what_it_did_not_compare() {
     assert_eq!(spec["ok"], false);
     assert!(spec["thorough"]["comparisons"][0]["agrees"].is_null());
     let negative = ["check", "--thorough", "pendulum", "--time-limit-s=-1"];
-    folder.fails(2, &negative, &["`--time-limit-s` must be a non-negative number of seconds"]);
+    folder.fails(
+        2,
+        &negative,
+        &["`--time-limit-s` must be a non-negative number of seconds"],
+    );
 }
 
 #[test]

@@ -26,7 +26,7 @@
 //! - [`consistency`], [`chi_squared`]: whether innovations are what they should be;
 //! - [`free`], [`posterior`], [`curvature`], [`fit`]: the most likely values;
 //! - [`sensitivity`]: scores and Fisher's information;
-//! - [`scoring`], [`company`]: fits in few passes, with levels that go along with inertia;
+//! - [`scoring`], [`level_scaling`]: scoring fits, with levels of process noise that scale with inertia;
 //! - [`shooting`]: fits without disturbances, from starts far from the truth;
 //! - [`tangent`], [`information`]: how innovations change with many values, and Fisher's information,
 //!   in few passes;
@@ -41,7 +41,6 @@
 mod adjoint;
 mod chi_squared;
 mod closure;
-mod company;
 mod consistency;
 mod curvature;
 mod error;
@@ -53,6 +52,7 @@ mod identifiability;
 mod information;
 pub mod inverse;
 mod layout;
+mod level_scaling;
 mod matrix;
 mod plant;
 mod posterior;

@@ -73,7 +73,10 @@ fn constraints(shipped: &Shipped) -> Result<String, Error> {
     Ok(match (all, held) {
         (0, _) => "-".to_owned(),
         (_, 0) => format!("{}: {all} rows", words.join(", ")),
-        _ => format!("{}: {all} rows, {held} embedded in geometry", words.join(", ")),
+        _ => format!(
+            "{}: {all} rows, {held} embedded in geometry",
+            words.join(", ")
+        ),
     })
 }
 

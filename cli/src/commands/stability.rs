@@ -9,7 +9,7 @@ mod plane;
 use plane::{Grid, Plane};
 
 use super::steady::{marks, write};
-use crate::motions::{self, Question, told};
+use crate::motions::{self, Question, text};
 use crate::output;
 use appell::Error;
 use appell::steady::{Answer, Asked};
@@ -48,13 +48,13 @@ impl StabilityCommand {
                 return self.draw(asked, &chart.axes(setup, self.grid)?);
             }
             let answer = motions::answer(asked)?;
-            let text = told::structure(asked)
+            let text = text::structure(asked)
                 + &match &answer {
                     Answer::Motions(motions) => {
                         let each = motions.iter().map(|(_, stability)| modes(asked, stability));
-                        told::motions(asked, motions) + &each.collect::<String>()
+                        text::motions(asked, motions) + &each.collect::<String>()
                     }
-                    Answer::Branches(branches) => told::branches(asked, branches),
+                    Answer::Branches(branches) => text::branches(asked, branches),
                 };
             write(&self.question, asked, &answer, figure)?;
             output::print_beside(
@@ -87,7 +87,7 @@ fn modes(asked: &Asked<'_>, stability: &Stability) -> String {
             .map(|p| p.1)
             .take(4)
             .collect();
-        let value = told::eigenvalue(mode.value);
+        let value = text::eigenvalue(mode.value);
         let value = if mode.value.im > 0.0 {
             value.replace('+', "±")
         } else {

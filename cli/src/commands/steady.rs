@@ -4,7 +4,7 @@ use appell_analysis::{Branch, Term};
 use appell_report::figure::{Figure, Panel, Series};
 
 use crate::failure::note;
-use crate::motions::{self, Question, told};
+use crate::motions::{self, Question, text};
 use crate::output;
 use crate::picture;
 use appell::Error;
@@ -27,10 +27,10 @@ impl Steady {
     pub(super) fn run(&self) -> Result<(), Error> {
         self.question.with(|asked, _| {
             let answer = motions::answer(asked)?;
-            let text = told::structure(asked)
+            let text = text::structure(asked)
                 + &match &answer {
-                    Answer::Motions(motions) => told::motions(asked, motions),
-                    Answer::Branches(branches) => told::branches(asked, branches),
+                    Answer::Motions(motions) => text::motions(asked, motions),
+                    Answer::Branches(branches) => text::branches(asked, branches),
                 };
             write(&self.question, asked, &answer, figure)?;
             output::print_beside(
@@ -126,7 +126,7 @@ pub(super) fn marks(
             about: format!(
                 "{} = {} {}",
                 quantity.name,
-                told::exact(quantity.to_unit(special.motion.value)),
+                text::exact(quantity.to_unit(special.motion.value)),
                 quantity.unit
             ),
         })

@@ -216,11 +216,7 @@ fn windows(place: &Where) -> String {
             let time = format!("{} to {} s", short(w.from), short(w.to));
             vec![escaped(&w.run), time, code(&w.equation), short(w.z)]
         });
-        let table = table(
-            ["run", "when", "equation of", "z-score"],
-            rows,
-            3,
-        );
+        let table = table(["run", "when", "equation of", "z-score"], rows, 3);
         let _ = writeln!(
             html,
             "<details><summary>{} significant windows</summary>{table}</details>",
@@ -305,7 +301,8 @@ fn which(report: &Report) -> String {
 fn how_far(report: &Report) -> String {
     let mut html = "<h2>How far</h2>\n".to_owned();
     let Some(far) = &report.how_far else {
-        return html + "<p>No run was held out, so the closed part of the gap cannot be assessed.</p>\n";
+        return html
+            + "<p>No run was held out, so the closed part of the gap cannot be assessed.</p>\n";
     };
     html += &closed(far);
     let rows = report.horizons.iter().map(|ahead| {

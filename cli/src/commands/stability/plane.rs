@@ -9,7 +9,7 @@ use appell_report::figure::Map;
 use serde_json::{Value, json};
 
 use super::StabilityCommand;
-use crate::motions::{self, Span, told};
+use crate::motions::{self, Span, text};
 use crate::output;
 use crate::picture;
 use appell::Error;
@@ -79,7 +79,7 @@ impl StabilityCommand {
         if let Some(path) = &question.plot {
             picture::write(path, &map(asked, &chart).to_svg())?;
         }
-        let text = told::structure(asked) + &text(asked, &chart);
+        let text = text::structure(asked) + &text(asked, &chart);
         output::print_beside(&text, &[&question.csv, &question.json, &question.plot])
     }
 }
@@ -108,7 +108,7 @@ fn text(asked: &Asked<'_>, chart: &Chart) -> String {
             _ => "boundary",
         };
         // Writing to a string cannot fail.
-        let _ = writeln!(text, "{role}: {}", told::change_text(boundary.change));
+        let _ = writeln!(text, "{role}: {}", text::change_text(boundary.change));
         for fold in &boundary.folds {
             let value = quantities[fold.axis].to_unit(fold.at[fold.axis]);
             let other = 1 - fold.axis;
@@ -116,7 +116,7 @@ fn text(asked: &Asked<'_>, chart: &Chart) -> String {
                 text,
                 "  turns back at {} = {} {} ({} = {:.6} {})",
                 quantities[fold.axis].name,
-                told::exact(value),
+                text::exact(value),
                 quantities[fold.axis].unit,
                 quantities[other].name,
                 quantities[other].to_unit(fold.at[other]),

@@ -81,7 +81,10 @@ fn a_regulator_of_two_inputs_goes_through_its_file() {
         "--write",
         "law.toml",
     ]);
-    assert!(told.stdout.contains("M_d, M_h: 6 of 6 dimensions"));
+    assert!(
+        told.stdout
+            .contains("M_d, M_h: controllable subspace of dimension 6 of 6")
+    );
     assert!(
         folder
             .read("law.toml")

@@ -258,7 +258,7 @@ fn an_own_effect_with_a_name_of_the_library_stands_in_its_place_and_that_is_told
     assert_eq!(top["parameters"].as_array().map(Vec::len), Some(1));
     folder.write("cubic.toml", CUBIC);
     let told = folder.done(&[&asked[..], &["cubic.toml"]].concat());
-    assert!(!told.stdout.contains("replaces"), "{}", told.stdout);
+    assert!(!told.stdout.contains("in place"), "{}", told.stdout);
 }
 
 #[test]

@@ -222,7 +222,7 @@ impl Diagnose {
         for (effect, path) in own.iter().zip(&self.effects) {
             if library.iter().any(|shipped| shipped.name == effect.name) {
                 told.push(format!(
-                    "warning: {}: the effect `{}` replaces that of the library",
+                    "warning: {}: the effect `{}` stands in place of that of the library",
                     path.display(),
                     effect.name
                 ));

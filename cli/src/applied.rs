@@ -1,4 +1,4 @@
-//! A gap report as `appell apply` reads it, and what is told of the spec that comes out.
+//! The gap report that `appell apply` reads, and the summary of the improved spec.
 
 use std::fmt::Write as _;
 use std::path::Path;
@@ -13,7 +13,7 @@ use appell_report::text::{number, with_unit};
 /// Name and version of the format.
 const SCHEMA: &str = "gap-report/1";
 
-/// What of a report matters here.
+/// The parts of a report that are needed here.
 #[derive(Debug, Deserialize)]
 pub(crate) struct Report {
     schema: String,
@@ -78,13 +78,13 @@ impl Report {
         let text = files::read(path, files::MAX_DATA)?;
         let report: Self = serde_json::from_str(&text).map_err(|cause| {
             Error::Data(format!(
-                "{file}: this is no gap report: {cause}\n  write one with `appell diagnose --json {file}`"
+                "{file}: this is not a gap report: {cause}\n  write one with `appell diagnose --json {file}`"
             ))
         })?;
         if report.schema != SCHEMA {
             let found = &report.schema;
             return Err(Error::Data(format!(
-                "{file}: its schema is `{found}`, and `{SCHEMA}` is what this version reads"
+                "{file}: unsupported schema `{found}`; this version reads `{SCHEMA}`"
             )));
         }
         Ok(report)
@@ -97,7 +97,7 @@ impl Report {
         let found = place.checked_sub(1).and_then(|index| self.which.get(index));
         let found = found.ok_or_else(|| {
             Error::Usage(format!(
-                "there is no hypothesis {place}: the report has {count}, counted from 1"
+                "there is no hypothesis {place}: the report has {count}, numbered from 1"
             ))
         })?;
         if let Some(name) = found.alternative() {
@@ -109,8 +109,8 @@ impl Report {
         }
         if found.changes.is_none() {
             return Err(Error::Usage(format!(
-                "hypothesis {place} says that nothing in the library explains the gap: there is \
-                 nothing to write\n  choose another one with `--hypothesis`:\n{}",
+                "hypothesis {place} states that no effect of the library explains the gap: there is \
+                nothing to write\n  choose another one with `--hypothesis`:\n{}",
                 self.list()
             )));
         }
@@ -125,7 +125,7 @@ impl Report {
         lines.collect::<Vec<_>>().join("\n")
     }
 
-    /// Hypotheses that cannot be told from this one.
+    /// Hypotheses that the recordings cannot distinguish from this one.
     fn rivals(&self, hypothesis: &Hypothesis) -> Vec<&str> {
         let name = hypothesis.effects.join("+");
         let groups = self.tied.iter().filter(|group| group.contains(&name));
@@ -143,12 +143,12 @@ impl Hypothesis {
         self.effects.join(" + ")
     }
 
-    /// The model that it stands for, if it is another one.
+    /// The alternative model that it stands for, if any.
     fn alternative(&self) -> Option<&str> {
         self.effects.first()?.strip_prefix("alternative:")
     }
 
-    /// What it changes.
+    /// Its changes of the spec.
     pub(crate) fn changes(&self) -> Changes {
         let Some(written) = &self.changes else {
             return Changes::default();
@@ -176,8 +176,8 @@ impl Hypothesis {
         }
     }
 
-    /// What was written, and what has to be done elsewhere.
-    pub(crate) fn told(&self, report: &Report, changes: &Changes, file: &str) -> String {
+    /// What was written to the spec, and what belongs elsewhere.
+    pub(crate) fn summary(&self, report: &Report, changes: &Changes, file: &str) -> String {
         let mut text = format!(
             "{file}: {} with {} ({:.1} %)\n",
             report.mechanism,
@@ -207,12 +207,12 @@ impl Hypothesis {
         for rival in report.rivals(self) {
             let _ = writeln!(
                 text,
-                "  tied with {rival}: these recordings cannot tell which"
+                "  tied with {rival}: these recordings cannot distinguish them"
             );
         }
         if !changes.parameters.is_empty() {
-            text += "  note      `[parameters]` of a recording.toml win over those of a spec: write the new \
-                     values there too\n";
+            text += "  note      `[parameters]` of a recording.toml override those of a spec: enter \
+            the new values there too\n";
             text += &for_recordings(&changes.parameters);
         }
         text
@@ -237,12 +237,12 @@ fn refitted(one: &Refitted) -> String {
             let stated = with_unit(&number(one.stated), &one.unit);
             format!("fitted; stated as {stated}")
         }
-        None => "as the recordings state".to_owned(),
+        None => "as stated by the recordings".to_owned(),
     };
     format!("{} = {value}, {rest}", one.name)
 }
 
-/// The fitted parameters as a `recording.toml` has them; it has those that were not free already.
+/// The fitted parameters as `[parameters]` of a `recording.toml`; those held fixed are there already.
 fn for_recordings(parameters: &[Refitted]) -> String {
     let fitted = parameters.iter();
     let lines = fitted.filter_map(|one| {
@@ -260,7 +260,7 @@ fn for_recordings(parameters: &[Refitted]) -> String {
     format!("\n[parameters]\n{lines}")
 }
 
-/// A number with two digits more than its size in standard deviations has.
+/// A number rounded to a hundredth of its standard deviation.
 fn digits(value: f64, deviations: f64) -> f64 {
     let digits = deviations.abs().log10().ceil();
     if !digits.is_finite() {
@@ -275,23 +275,23 @@ fn digits(value: f64, deviations: f64) -> f64 {
     format!("{value:.digits$e}").parse().unwrap_or(value)
 }
 
-/// Where an effect belongs that no spec can hold.
+/// Where an effect belongs that a spec cannot express.
 fn elsewhere(own: &SignalEffect, value: &str) -> String {
     let (effect, on) = (&own.effect, &own.on);
     let rest = match own.acts.as_str() {
         "lag" => format!(
-            "{on} follows its command as a filter of the first order with the time constant {value}; \
-             no mechanism has this: put the filter between controller and model"
+            "{on} follows its command through a first-order lag with the time constant {value}; a spec \
+            cannot express this: put the filter between controller and model"
         ),
         "delay" => format!(
-            "{on} follows its command later by {value}; no mechanism has this: write `delay_ms` in \
+            "{on} follows its command with a delay of {value}; a spec cannot express this: write `delay_ms` in \
              the feedback law of `appell simulate --feedback`, or delay the commands of a table"
         ),
-        "bias" => format!("the sensor {on} shows {value} too much: take it off where {on} is read"),
+        "bias" => format!("the sensor {on} has a bias of {value}: subtract it where {on} is read"),
         "scale" => {
-            format!("the sensor {on} shows {value} times what there is: divide where {on} is read")
+            format!("the sensor {on} reads {value} times the true value: divide where {on} is read")
         }
-        _ => format!("the sensor {on} is late by {value}: shift its times where it is read"),
+        _ => format!("the sensor {on} has a delay of {value}: shift its times where it is read"),
     };
     format!("{effect}: {rest}")
 }

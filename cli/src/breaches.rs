@@ -1,4 +1,4 @@
-//! Where a motion leaves what its model describes.
+//! Where a motion leaves the range of validity of its model.
 
 use appell_runtime::Trajectory;
 use appell_runtime::simulate::{Breach, Limit};
@@ -6,10 +6,10 @@ use serde_json::{Map, Value, json};
 
 use appell_report::text::number;
 
-/// Breaches that a person reads one by one.
+/// Number of breaches listed one by one.
 const MOST_SHOWN: usize = 10;
 
-/// The lines that a person reads; nothing where nothing happens.
+/// One line per breach; empty if there is none.
 pub(crate) fn text(trajectory: &Trajectory) -> String {
     let breaches = &trajectory.breaches;
     let line = |breach: &Breach| {
@@ -17,12 +17,12 @@ pub(crate) fn text(trajectory: &Trajectory) -> String {
         format!("  at t = {} s {what}\n", number(breach.t))
     };
     let more = breaches.len().saturating_sub(MOST_SHOWN);
-    let rest = (more > 0).then(|| format!("  and {more} more; `--json` has them all\n"));
+    let rest = (more > 0).then(|| format!("  and {more} more; `--json` lists all\n"));
     let shown = breaches.iter().take(MOST_SHOWN).map(line);
     shown.chain(rest).collect()
 }
 
-/// The same for programs, in SI.
+/// The breaches as JSON, in SI.
 pub(crate) fn json(trajectory: &Trajectory) -> Value {
     let info = trajectory.info();
     let contact = |index: usize| {

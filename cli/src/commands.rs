@@ -24,10 +24,9 @@ mod steady;
 use appell::Error;
 
 /// Equations of motion from a declarative mechanism spec, by the Gibbs-Appell method.
-///
-/// MODEL is the name of a shipped mechanism (`appell list`) or the path of a spec file; a spec
-/// file works at once. Exit status: 0 done, 2 bad usage, 3 bad spec or data, 4 the computation
-/// failed.
+/// MODEL is the name of a shipped mechanism (`appell list`) or the path of a spec file, which needs
+///no compilation. Exit status: 0 success, 2 usage error, 3 invalid spec or data, 4 failed
+///computation.
 #[derive(Debug, clap::Parser)]
 #[command(name = "appell", version, propagate_version = true)]
 pub(crate) struct Arguments {
@@ -35,7 +34,7 @@ pub(crate) struct Arguments {
     pub(crate) command: Command,
 }
 
-/// The commands; each tells on itself what it does.
+/// The commands.
 #[derive(Debug, clap::Subcommand)]
 pub(crate) enum Command {
     List(list::List),

@@ -1,4 +1,4 @@
-//! A design, told to people and to programs.
+//! A control design as text and JSON.
 
 use std::fmt::Write as _;
 
@@ -13,10 +13,10 @@ use appell::control::explain::pole_text;
 use appell::setup::Setup;
 use appell_report::text::{number, table};
 
-/// Real part in 1/s from which on a mode grows; below it a multiple zero may lie by rounding.
+/// Real part in 1/s above which a mode is unstable; rounding may move a multiple zero this far.
 const GROWING: f64 = 1e-6;
 
-/// The text for people: gains in the units of the spec.
+/// The design as text, gains in the units of the spec.
 pub(crate) fn text(design: &Design, setup: &Setup<'_>) -> String {
     let info = setup.info;
     let mut text = format!("{}\n{}", info.title, motion(design, info));
@@ -24,12 +24,12 @@ pub(crate) fn text(design: &Design, setup: &Setup<'_>) -> String {
     text += &equations(design, info);
     match &design.law {
         Some(law) => text += &gains(design, law, info),
-        None => text += "  no law: ask for one with `--poles` or `--lqr`\n",
+        None => text += "  no law designed: use `--poles` or `--lqr`\n",
     }
     text
 }
 
-/// Values that are not zero on the motion.
+/// The nonzero values on the motion.
 fn motion(design: &Design, info: &ModelInfo) -> String {
     let states = info.states.iter().zip(&design.x);
     let inputs = info.inputs.iter().zip(&design.u);
@@ -40,50 +40,53 @@ fn motion(design: &Design, info: &ModelInfo) -> String {
     if values.is_empty() {
         "steady motion: all states and inputs are 0\n".to_owned()
     } else {
-        format!("steady motion: {}; the rest is 0\n", values.join(", "))
+        format!("steady motion: {}; all others are 0\n", values.join(", "))
     }
 }
 
-/// What the inputs reach, and what they do not.
+/// The controllable subspace, and the uncontrollable modes.
 fn reach(design: &Design, info: &ModelInfo) -> String {
-    let told = &design.controllability;
+    let controllability = &design.controllability;
     let names = names(info, &design.equations.states);
     let inputs = self::names_of(&info.inputs, &design.equations.inputs).join(", ");
     let order = names.len();
     let mut text = format!(
-        "{inputs}: {} of {order} dimensions within reach\n",
-        told.rank
+        "{inputs}: controllable subspace of dimension {} of {order}\n",
+        controllability.rank
     );
-    let values: Vec<String> = told
+    let values: Vec<String> = controllability
         .singular_values
         .iter()
         .map(|v| format!("{v:.1e}"))
         .collect();
     let _ = writeln!(
         text,
-        "  singular values of [B AB …], scaled: {}",
+        "  singular values of the scaled controllability matrix [B AB …]: {}",
         values.join("  ")
     );
-    if told.lost.is_empty() {
+    if controllability.lost.is_empty() {
         return text;
     }
-    let lost: Vec<String> = counted(&told.lost);
-    let _ = writeln!(text, "  lost modes in 1/s: {}", lost.join(", "));
-    let _ = writeln!(text, "  untouched, in SI:");
-    for row in 0..told.untouched.nrows() {
-        let row: Vec<f64> = told.untouched.row(row).iter().copied().collect();
+    let lost: Vec<String> = counted(&controllability.lost);
+    let _ = writeln!(text, "  uncontrollable modes in 1/s: {}", lost.join(", "));
+    let _ = writeln!(
+        text,
+        "  combinations of states that no input affects, in SI:"
+    );
+    for row in 0..controllability.untouched.nrows() {
+        let row: Vec<f64> = controllability.untouched.row(row).iter().copied().collect();
         let _ = writeln!(text, "    {}", combination(&row, &names));
     }
-    if told.kept().any(|mode| mode.value.re > GROWING) {
-        text += "  a lost mode grows: no feedback of these inputs stabilises it\n";
+    if controllability.kept().any(|mode| mode.value.re > GROWING) {
+        text += "  an uncontrollable mode is unstable: no feedback to these inputs stabilises the motion\n";
     }
     text
 }
 
-/// The equations of the outputs.
+/// The subsystem of the outputs.
 fn equations(design: &Design, info: &ModelInfo) -> String {
     let outputs = names(info, &design.outputs);
-    let mut text = format!("outputs {}: equations of their own\n", outputs.join(", "));
+    let mut text = format!("outputs {}: a closed subsystem\n", outputs.join(", "));
     for (state, factors) in &design.subsystem.substituted {
         let state = &info.states[design.equations.states[*state]].name;
         let _ = writeln!(text, "  with {state} = {}", combination(factors, &outputs));
@@ -124,15 +127,15 @@ fn gains(design: &Design, law: &DesignedGains, info: &ModelInfo) -> String {
     match law.sampling {
         None => {
             let poles: Vec<String> = law.poles.iter().map(|pole| pole_text(*pole)).collect();
-            let _ = writeln!(
-                text,
-                "poles of the closed loop in 1/s: {}",
-                poles.join(", ")
-            );
+            let _ = writeln!(text, "closed-loop poles in 1/s: {}", poles.join(", "));
         }
         Some(sampling) => {
             let poles: Vec<String> = law.poles.iter().map(|pole| pole_text(*pole)).collect();
-            let _ = writeln!(text, "poles of the sampled loop, z: {}", poles.join(", "));
+            let _ = writeln!(
+                text,
+                "poles of the sampled closed loop, z: {}",
+                poles.join(", ")
+            );
             let poles = law
                 .poles
                 .iter()
@@ -144,7 +147,8 @@ fn gains(design: &Design, law: &DesignedGains, info: &ModelInfo) -> String {
     let _ = match law.condition {
         Some(condition) => writeln!(
             text,
-            "  characteristic polynomial as wanted to {:.0e}, condition of the eigenvectors {condition:.1e}",
+            "  characteristic polynomial accurate to {:.0e}, condition number of the eigenvectors \
+            {condition:.1e}",
             law.residual
         ),
         None => writeln!(
@@ -192,7 +196,7 @@ fn combination(factors: &[f64], names: &[String]) -> String {
     text
 }
 
-/// Modes, equal ones once.
+/// Modes, repeated ones once with their multiplicity.
 fn counted(modes: &[Complex<f64>]) -> Vec<String> {
     let size = modes.iter().map(|mode| mode.norm()).fold(1.0, f64::max);
     let mut open: Vec<Complex<f64>> = modes.to_vec();
@@ -201,7 +205,7 @@ fn counted(modes: &[Complex<f64>]) -> Vec<String> {
         let near = |mode: &Complex<f64>| (mode - first).norm() <= 1e-4 * size;
         let (same, rest): (Vec<_>, Vec<_>) = open.into_iter().partition(near);
         let mean = same.iter().sum::<Complex<f64>>() / same.len() as f64;
-        // A multiple mode is known to a root of the rounding only.
+        // A multiple eigenvalue is accurate to a root of the rounding error only.
         let clean = |part: f64| if part.abs() <= 1e-8 * size { 0.0 } else { part };
         let mean = pole_text(Complex::new(clean(mean.re), clean(mean.im)));
         told.push(match same.len() {
@@ -224,7 +228,7 @@ fn names_of(quantities: &[Quantity], places: &[usize]) -> Vec<String> {
         .collect()
 }
 
-/// Gains over the values of a schedule.
+/// Gains against the scheduling variable.
 pub(crate) fn schedule_text(name: &str, designs: &[(f64, Design)], setup: &Setup<'_>) -> String {
     let info = setup.info;
     let Some((_, first)) = designs.first() else {
@@ -236,7 +240,7 @@ pub(crate) fn schedule_text(name: &str, designs: &[(f64, Design)], setup: &Setup
         .into_iter()
         .find(|quantity| quantity.name == name);
     let (inputs, outputs) = (&first.equations.inputs, &first.outputs);
-    let mut heading = vec![name.to_owned(), "reach".to_owned()];
+    let mut heading = vec![name.to_owned(), "rank".to_owned()];
     let mut units = vec![
         varied.map_or(String::new(), |q| q.unit.to_string()),
         String::new(),
@@ -328,8 +332,8 @@ pub(crate) fn schedule_json(name: &str, designs: &[(f64, Design)], setup: &Setup
     json!({ "over": name, "designs": designs.collect::<Vec<_>>() })
 }
 
-fn reach_json(told: &Controllability) -> Value {
-    let modes = told.modes.iter().map(|mode| {
+fn reach_json(controllability: &Controllability) -> Value {
+    let modes = controllability.modes.iter().map(|mode| {
         json!({
             "value": complex(&mode.value),
             "multiplicity": mode.multiplicity,
@@ -338,12 +342,12 @@ fn reach_json(told: &Controllability) -> Value {
         })
     });
     json!({
-        "rank": told.rank,
-        "singular_values": told.singular_values,
-        "lost": told.lost.iter().map(complex).collect::<Vec<_>>(),
-        "untouched": rows(&told.untouched),
+        "rank": controllability.rank,
+        "singular_values": controllability.singular_values,
+        "lost": controllability.lost.iter().map(complex).collect::<Vec<_>>(),
+        "untouched": rows(&controllability.untouched),
         "modes": modes.collect::<Vec<_>>(),
-        "stabilisable": told.kept().next().is_none(),
+        "stabilisable": controllability.kept().next().is_none(),
     })
 }
 

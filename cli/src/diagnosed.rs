@@ -1,4 +1,4 @@
-//! A gap report, for people and for programs.
+//! A gap report as text, page and JSON.
 
 use std::fmt::Write as _;
 use std::path::Path;
@@ -10,10 +10,10 @@ use serde_json::{Value, json};
 use appell_report::gap::{doubts, hinted, joined, left_out, sentence, short};
 use appell_report::text::{number, with_unit};
 
-/// Hypotheses that the summary lists.
+/// Number of hypotheses in the summary.
 const LISTED: usize = 3;
 
-/// The summary in some ten lines.
+/// The summary, about ten lines.
 pub(crate) fn text(report: &Report, next: Option<&Path>) -> String {
     let mut text = String::new();
     // Writing to a string cannot fail.
@@ -53,21 +53,21 @@ pub(crate) fn text(report: &Report, next: Option<&Path>) -> String {
         let mut listed = report.which.iter().take(LISTED);
         listed.any(|one| one.effects == effects)
     };
-    let is_told = report.verdict == GapVerdict::Unexplained
+    let shows_failures = report.verdict == GapVerdict::Unexplained
         || report.failed.iter().any(|(effects, _)| is_listed(effects));
-    if is_told && !report.failed.is_empty() {
+    if shows_failures && !report.failed.is_empty() {
         let names: Vec<String> = (report.failed.iter().take(LISTED))
             .map(|(effects, _)| joined(effects))
             .collect();
         let _ = writeln!(
             text,
-            "  failed    {} could not be fitted to the end, among them {}; the gap report says why",
+            "  failed    {} fits did not converge, among them {}; see the gap report for the reasons",
             report.failed.len(),
             names.join(", ")
         );
     }
     if let Some(experiment) = &report.experiment {
-        let _ = writeln!(text, "  next      {}", told(experiment));
+        let _ = writeln!(text, "  next      {}", experiment_sentence(experiment));
     }
     if let Some(path) = next {
         let _ = writeln!(text, "            written to {}", path.display());
@@ -79,7 +79,8 @@ pub(crate) fn text(report: &Report, next: Option<&Path>) -> String {
         Some(far) => {
             let _ = writeln!(
                 text,
-                "  how far   error {} s ahead: nominal {}, re-fitted {}, with effect {}, floor {} (in units of noise)",
+                "  how far   error {} s ahead: nominal {}, re-fitted {}, with effect {}, floor {} (relative \
+                to the noise)",
                 far.horizon_s,
                 number(far.nominal),
                 number(far.refitted),
@@ -95,9 +96,7 @@ pub(crate) fn text(report: &Report, next: Option<&Path>) -> String {
                 100.0 * far.closed_vs_refitted,
             );
             if report.verdict != GapVerdict::NoGap && far.closed_ci95[0] <= 0.0 {
-                text.push_str(
-                    "            nothing shows yet that it helps on runs that no fit has seen\n",
-                );
+                text.push_str("            no significant improvement on held-out runs\n");
             }
         }
         None => text.push_str("  how far   no run was held out\n"),
@@ -109,7 +108,7 @@ pub(crate) fn text(report: &Report, next: Option<&Path>) -> String {
         .collect();
     let _ = writeln!(
         text,
-        "  disturbance, before and after: {}",
+        "  process noise, before and after: {}",
         levels.join(", ")
     );
     text
@@ -136,11 +135,11 @@ fn line(hypothesis: &Hypothesis) -> String {
     )
 }
 
-/// The next experiment in a sentence.
-fn told(experiment: &Experiment) -> String {
+/// The proposed experiment as a sentence.
+fn experiment_sentence(experiment: &Experiment) -> String {
     let seconds = experiment.times.last().copied().unwrap_or(0.0);
     format!(
-        "{} for {} s: would separate the first two by {} standard deviations (now {})",
+        "{} for {} s: would separate the first two by {} sigma (now {})",
         experiment.about,
         short(seconds),
         short(experiment.separation_then),
@@ -163,7 +162,7 @@ pub(crate) fn csv(set: &DataSet, experiment: &Experiment) -> String {
     }
     text.push('\n');
     for (row, t) in experiment.times.iter().enumerate() {
-        // Times are multiples of a step; what rounding adds is of no use.
+        // Times are multiples of a step; round off the floating-point error.
         let _ = write!(text, "{}", (t * 1e9).round() / 1e9);
         for ((_, values), unit) in experiment.inputs.iter().zip(&units) {
             let value = unit.map_or(values[row], |unit| unit.from_si(values[row]));
@@ -174,7 +173,7 @@ pub(crate) fn csv(set: &DataSet, experiment: &Experiment) -> String {
     text
 }
 
-/// The gap report of the contract; `next` is where the next experiment stands.
+/// The gap report as JSON; `next` is the file of the proposed experiment.
 pub(crate) fn json(report: &Report, next: Option<&Path>) -> Value {
     let equations = report.place.equations.iter().map(|e| {
         json!({ "name": e.name, "share": e.share, "p_value": e.p_value, "rms": e.rms, "unit": e.unit })
@@ -266,7 +265,7 @@ pub(crate) fn json(report: &Report, next: Option<&Path>) -> Value {
     })
 }
 
-/// Errors at a horizon.
+/// Prediction errors at one horizon.
 fn ahead(ahead: &Ahead) -> Value {
     let horizon = ahead.horizon.is_finite().then_some(ahead.horizon);
     json!({
@@ -276,7 +275,7 @@ fn ahead(ahead: &Ahead) -> Value {
     })
 }
 
-/// What `appell apply` reads.
+/// The changes of the spec that `appell apply` reads.
 fn changes(changes: &Changes) -> Value {
     let inputs = changes.inputs.iter();
     let parameters = changes.parameters.iter().map(|p| {

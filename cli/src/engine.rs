@@ -6,14 +6,14 @@ use appell::{Error, Model};
 use crate::failure::note;
 use crate::progress;
 
-/// What evaluates the equations. All three give the same numbers.
+/// How the equations are evaluated. All three give the same numbers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub(crate) enum Engine {
-    /// Machine code made in this process.
+    /// Machine code, compiled in this process.
     Jit,
     /// The emitted Rust, compiled into this program; shipped mechanisms only.
     Emitted,
-    /// Operation by operation; slow.
+    /// Interpreted operation by operation; slow.
     Interpreter,
 }
 
@@ -33,7 +33,7 @@ pub(crate) fn model(model: &str, engine: Option<Engine>) -> Result<Model, Error>
     made(|| Model::of(source, engine.map(Into::into)))
 }
 
-/// The same with what estimation asks for.
+/// The equations with the adjoints that estimation needs.
 pub(crate) fn model_for_estimation(model: &str) -> Result<Model, Error> {
     let source = Source::find(model)?;
     made(|| Model::for_estimation(source))

@@ -15,30 +15,30 @@ pub(crate) fn status(error: &Error) -> u8 {
     }
 }
 
-/// Tells a failure on standard error.
+/// Prints a failure on standard error.
 pub(crate) fn print(error: &Error) {
-    tell(&format!("{}\n", told(error)));
+    tell(&format!("{}\n", message(error)));
 }
 
-fn told(error: &Error) -> String {
+fn message(error: &Error) -> String {
     match error {
         Error::Report(report) | Error::Expression(report) => shown(report).trim_end().to_owned(),
-        Error::Several(all) => all.iter().map(told).collect::<Vec<_>>().join("\n\n"),
+        Error::Several(all) => all.iter().map(message).collect::<Vec<_>>().join("\n\n"),
         other => format!("error: {other}"),
     }
 }
 
-/// Writes to standard error. Where that is closed, the exit status has to do.
+/// Writes to standard error; if that is closed, only the exit status remains.
 pub(crate) fn tell(text: &str) {
     let _ = std::io::stderr().write_all(text.as_bytes());
 }
 
-/// Tells something that changes no result.
+/// Prints a note that changes no result.
 pub(crate) fn note(text: &str) {
     tell(&format!("note: {text}\n"));
 }
 
-/// A report in colour where a person reads it.
+/// A report, in colour on a terminal.
 pub(crate) fn shown(report: &Report) -> String {
     let wanted = std::io::stderr().is_terminal() && std::env::var_os("NO_COLOR").is_none();
     if wanted {

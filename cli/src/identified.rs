@@ -4,7 +4,7 @@ use appell_gap::data::DataSet;
 use appell_gap::identify::Answer;
 use serde_json::{Value, json};
 
-/// Everything for programs, in SI.
+/// The result as JSON, in SI.
 pub(crate) fn json(set: &DataSet, answer: &Answer) -> Value {
     let parameters = answer.parameters.iter().map(|estimate| {
         json!({

@@ -1,6 +1,6 @@
-//! Questions about steady motions from the command line, and what is common to their answers.
+//! Flags and output common to `appell steady` and `appell stability`.
 
-pub(crate) mod told;
+pub(crate) mod text;
 
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -12,7 +12,7 @@ use appell_analysis::{Axis, Chart};
 
 use crate::{engine, progress};
 
-/// What is given and what is sought.
+/// The problem: prescribed values, free quantities, continuation parameter.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Question {
     /// Name of a shipped mechanism or path of a spec
@@ -20,29 +20,29 @@ pub(crate) struct Question {
     /// A parameter, such as R=0.3 or R=30cm
     #[arg(long, value_name = "NAME=VALUE")]
     set: Vec<Assignment>,
-    /// The value of a state, input, output, or rate of a hidden coordinate, such as theta=10deg;
-    /// inputs that are not fixed are zero
+    /// Prescribe a state, input, output, or rate of an ignorable coordinate, such as theta=10deg;
+    /// other inputs are zero
     #[arg(long, value_name = "NAME=VALUE", allow_hyphen_values = true)]
     fix: Vec<Assignment>,
-    /// An input or parameter whose value follows
+    /// An input or parameter to solve for
     #[arg(long, value_name = "NAME")]
     free: Vec<String>,
-    /// Follow the motions along a quantity, such as speed=0.5..10 or theta=-30deg..30deg
+    /// Continue the motions along a quantity, such as speed=0.5..10 or theta=-30deg..30deg
     #[arg(long, value_name = "NAME=FROM..TO", allow_hyphen_values = true)]
     pub(crate) along: Option<Span>,
-    /// Motions below this are not feasible, such as z>=0
+    /// Lower bound for feasible motions, such as z>=0
     #[arg(long, value_name = "NAME>=VALUE", allow_hyphen_values = true)]
     require: Vec<Least>,
-    /// Starting points from which motions are sought
+    /// Number of starting points of the search
     #[arg(long, value_name = "N", default_value_t = STARTS)]
     starts: usize,
     /// Write the motions, in the units of the spec; `-` is standard output
     #[arg(long, value_name = "FILE.csv")]
     pub(crate) csv: Option<PathBuf>,
-    /// Draw the motions along the quantity
+    /// Plot the motions against the quantity
     #[arg(long, value_name = "FILE.svg|png")]
     pub(crate) plot: Option<PathBuf>,
-    /// Write the motions in SI; `-` is standard output
+    /// Write the motions as JSON, in SI; `-` is standard output
     #[arg(long, value_name = "FILE")]
     pub(crate) json: Option<PathBuf>,
 }
@@ -64,7 +64,7 @@ impl FromStr for Least {
 }
 
 impl Question {
-    /// Derives or finds the equations, reads the values and hands both on.
+    /// Obtains the equations, reads the values and passes both on.
     pub(crate) fn with<T>(
         &self,
         then: impl FnOnce(&Asked<'_>, &Setup<'_>) -> Result<T, Error>,
@@ -84,17 +84,17 @@ impl Question {
     }
 }
 
-/// The motions, under a spinner.
+/// The motions, with a progress indicator.
 pub(crate) fn answer(asked: &Asked<'_>) -> Result<Answer, Error> {
-    let spinner = progress::spinner("looking for steady motions");
+    let spinner = progress::spinner("searching for steady motions");
     let answer = asked.answer();
     spinner.finish_and_clear();
     answer
 }
 
-/// Stability over two quantities, under a spinner.
+/// The stability chart, with a progress indicator.
 pub(crate) fn chart(asked: &Asked<'_>, axes: [Axis; 2]) -> Result<Chart, Error> {
-    let spinner = progress::spinner("drawing the chart");
+    let spinner = progress::spinner("computing the chart");
     let chart = asked.chart(axes);
     spinner.finish_and_clear();
     chart

@@ -1,4 +1,4 @@
-//! Text for people, beside files for programs.
+//! Text output, kept apart from files on standard output.
 
 use std::path::PathBuf;
 
@@ -11,7 +11,7 @@ pub(crate) fn print(text: &str) -> Result<(), Error> {
     files::to_stdout(|to| to.write_all(text.as_bytes()))
 }
 
-/// Writes to standard output, or to standard error where one of the files takes that.
+/// Writes to standard output, or to standard error if one of the files is standard output.
 pub(crate) fn print_beside(text: &str, files: &[&Option<PathBuf>]) -> Result<(), Error> {
     let mut files = files.iter().filter_map(|file| file.as_ref());
     if files.any(|path| files::is_stdout(path)) {

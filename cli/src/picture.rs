@@ -1,11 +1,11 @@
-//! Pictures for people: SVG, or PNG by the name of the file.
+//! Figures as SVG, or as PNG if the file name says so.
 
 use std::path::Path;
 
 use appell::Error;
 use appell::files;
 
-/// Writes a picture, as PNG where the name ends so; `-` is standard output and SVG.
+/// Writes a figure, as PNG if the name ends in `.png`; `-` is standard output, as SVG.
 pub(crate) fn write(path: &Path, svg: &str) -> Result<(), Error> {
     if path
         .extension()
@@ -18,15 +18,17 @@ pub(crate) fn write(path: &Path, svg: &str) -> Result<(), Error> {
     }
 }
 
-/// The picture in its light colours, at twice its size.
+/// The figure in its light colours, at twice its size.
 #[cfg(feature = "png")]
 fn png(svg: &str) -> Result<Vec<u8>, Error> {
     use resvg::tiny_skia::{Pixmap, Transform};
     use resvg::usvg::{Options, Tree};
 
-    /// Pixels for a unit of the picture.
+    /// Pixels per unit of the figure.
     const SCALE: f32 = 2.0;
-    let failed = |cause: String| Error::Computation(format!("the picture has no PNG: {cause}"));
+    let failed = |cause: String| {
+        Error::Computation(format!("the figure cannot be converted to PNG: {cause}"))
+    };
     let mut options = Options::default();
     let fonts = options.fontdb_mut();
     // The same letters on every machine, with the Greek ones and the dots above them.
@@ -45,7 +47,7 @@ fn png(svg: &str) -> Result<Vec<u8>, Error> {
 
 #[cfg(not(feature = "png"))]
 fn png(_: &str) -> Result<Vec<u8>, Error> {
-    let help = "this program was built without PNG: write to a name that ends in .svg, or build it \
-                with `--features png`";
+    let help = "this program was built without PNG support: choose a name that ends in .svg, or build \
+    with `--features png`";
     Err(Error::Usage(help.to_owned()))
 }

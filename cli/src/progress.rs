@@ -1,17 +1,17 @@
-//! Progress on standard error, where a person watches.
+//! Progress on standard error, shown on a terminal only.
 
 use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressStyle};
 
-/// Something is being done, and nobody knows how long it takes.
+/// A spinner for work of unknown duration.
 pub(crate) fn spinner(doing: &str) -> ProgressBar {
     let bar = ProgressBar::new_spinner().with_message(doing.to_owned());
     bar.enable_steady_tick(Duration::from_millis(120));
     bar
 }
 
-/// Time of a simulation, in milliseconds.
+/// A bar over the simulated time, in milliseconds.
 pub(crate) fn clock(until_s: f64) -> ProgressBar {
     let bar = ProgressBar::new(milliseconds(until_s));
     // The template is constant, so it parses; without it the bar only looks different.
@@ -21,7 +21,7 @@ pub(crate) fn clock(until_s: f64) -> ProgressBar {
     bar
 }
 
-/// Parts of a whole, each with its name.
+/// A bar over named parts.
 pub(crate) fn parts() -> ProgressBar {
     let bar = ProgressBar::new(0);
     if let Ok(style) = ProgressStyle::with_template("{bar:40} {pos}/{len}  {msg}  {elapsed}") {

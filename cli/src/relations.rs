@@ -1,4 +1,4 @@
-//! What motions tell whatever their inputs were, for people and for programs.
+//! Input-free relations, identified parameters and recovered inputs as text, figure and JSON.
 
 use std::fmt::Write as _;
 
@@ -9,15 +9,15 @@ use serde_json::{Value, json};
 
 use appell_report::text::{number, table};
 
-/// Runs that are drawn.
+/// Number of runs drawn.
 const DRAWN_RUNS: usize = 3;
-/// Standard deviations on each side of a band.
+/// Half-width of a 95 % band in standard deviations.
 const BAND: f64 = 1.96;
 
-/// The tables that a person reads.
+/// The report as text tables.
 pub(crate) fn text(answer: &Answer) -> String {
     let mut text = format!(
-        "{} relation{} without inputs, knots every {:.0} ms\n",
+        "{} input-free relation{}, spline knots every {:.0} ms\n",
         answer.relations,
         if answer.relations == 1 { "" } else { "s" },
         1e3 * answer.spacing,
@@ -25,7 +25,7 @@ pub(crate) fn text(answer: &Answer) -> String {
     // Writing to a string cannot fail.
     let _ = writeln!(
         text,
-        "mean square in units of the noise {} (1 where model and noise are right)\n",
+        "mean square residual relative to the noise {} (1 if model and noise are right)\n",
         number(answer.normalised_square)
     );
     if !answer.estimates.is_empty() {
@@ -58,10 +58,10 @@ fn estimates(estimates: &[Estimate]) -> String {
     table(&rows, 1..5)
 }
 
-/// What the motions do not tell.
+/// What the motions do not determine.
 fn remark(estimate: &Estimate) -> &'static str {
     match estimate.interval95 {
-        [low, high] if low.is_infinite() && high.is_infinite() => "not told by these motions",
+        [low, high] if low.is_infinite() && high.is_infinite() => "not determined by these motions",
         [_, high] if high.is_infinite() => "not bounded from above by these motions",
         [low, _] if low.is_infinite() => "not bounded from below by these motions",
         _ => "",
@@ -103,7 +103,7 @@ pub(crate) fn figure(info: &ModelInfo, answer: &Answer) -> Figure {
     }
 }
 
-/// Everything for programs, in SI.
+/// The result as JSON, in SI.
 pub(crate) fn json(info: &ModelInfo, answer: &Answer) -> Value {
     let end = |end: f64| end.is_finite().then_some(end);
     let estimates = answer.estimates.iter().map(|estimate| {

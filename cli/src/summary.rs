@@ -15,7 +15,7 @@ fn extrema(trajectory: &Trajectory, column: usize) -> [f64; 2] {
     })
 }
 
-/// The rows that a person reads: time, cost, and a table in the units of the spec.
+/// The summary as text: time, cost, and a table in the units of the spec.
 pub(crate) fn text(trajectory: &Trajectory) -> String {
     let Some(last) = trajectory.len().checked_sub(1) else {
         return String::new();
@@ -57,7 +57,7 @@ pub(crate) fn text(trajectory: &Trajectory) -> String {
     format!("{title}\n{} s{cost}\n{rows}{breaches}", number(t_end))
 }
 
-/// The same for programs, in SI.
+/// The summary as JSON, in SI.
 pub(crate) fn json(trajectory: &Trajectory, failure: Option<&str>) -> Value {
     let info = trajectory.info();
     let named = |list: &[Quantity], values: &[f64]| -> Map<String, Value> {
@@ -106,7 +106,7 @@ pub(crate) fn json(trajectory: &Trajectory, failure: Option<&str>) -> Value {
     })
 }
 
-/// Whether no state ever changes.
+/// Whether all states are constant.
 pub(crate) fn rests(trajectory: &Trajectory) -> bool {
     (0..trajectory.info().state_len()).all(|column| {
         let [low, high] = extrema(trajectory, column);

@@ -1,4 +1,4 @@
-//! `check --thorough`: what the comparison of three formulations tells.
+//! `check --thorough`: the comparison of three formulations.
 
 use std::fmt::Write as _;
 use std::time::{Duration, Instant};
@@ -13,7 +13,7 @@ use crate::progress;
 use appell::Error;
 use appell::source::Source;
 
-/// The order in which people read it.
+/// The order of the report.
 const AGAINST: [Against; 4] = [
     Against::Spec,
     Against::Kane,
@@ -29,7 +29,7 @@ pub(crate) struct Thorough {
 }
 
 impl Thorough {
-    /// Compares as long as the limit lasts.
+    /// Compares until the time limit.
     pub(crate) fn new(source: &Source, derived: &Derived, limit: Duration) -> Result<Self, Error> {
         let spinner = progress::spinner(&format!("comparing formulations of {}", source.file));
         let start = Instant::now();
@@ -88,20 +88,20 @@ impl Thorough {
         if proofs {
             let _ = writeln!(
                 text,
-                "    {:<20}a false one among them has a chance below {:.0e}",
+                "    {:<20}probability that any of them is false: below {:.0e}",
                 "proofs", self.verdict.error_bound
             );
         }
         text
     }
 
-    /// What programs read.
+    /// The comparison as JSON.
     pub(crate) fn json(&self) -> Value {
         let comparison = |comparison: &Comparison| {
             let mut entry = json!({
                 "against": comparison.against.word(), "quantity": comparison.quantity,
             });
-            let told = match &comparison.agreement {
+            let result = match &comparison.agreement {
                 Agreement::Identical => json!({ "agrees": true, "method": "identity" }),
                 Agreement::AtPoints { points, deviation } => json!({
                     "agrees": true, "method": "points", "points": points, "deviation": deviation,
@@ -117,8 +117,8 @@ impl Thorough {
                 Agreement::Undefined => json!({ "agrees": null, "method": "points", "points": 0 }),
                 Agreement::NotReached => json!({ "agrees": null, "method": null }),
             };
-            if let (Value::Object(entry), Value::Object(told)) = (&mut entry, told) {
-                entry.extend(told);
+            if let (Value::Object(entry), Value::Object(result)) = (&mut entry, result) {
+                entry.extend(result);
             }
             entry
         };
@@ -130,7 +130,7 @@ impl Thorough {
         })
     }
 
-    /// Why the equations cannot be trusted, where that is so.
+    /// Why the equations cannot be trusted, if they cannot.
     pub(crate) fn failure(&self, source: &Source) -> Option<Error> {
         if self.verdict.agrees() {
             return None;
@@ -150,7 +150,7 @@ impl Thorough {
                     let _ = write!(
                         text,
                         "\n  {against}: {quantity}, `{entry}` is {derived:e} by Gibbs-Appell and {other:e} \
-                         there; off by {deviation:.0e} of the largest entry"
+                         there; relative difference {deviation:.0e}"
                     );
                 }
                 Agreement::Undefined => {
@@ -172,8 +172,8 @@ impl Thorough {
             let compared = Some(compared.join(", ")).filter(|all| !all.is_empty());
             let _ = write!(
                 text,
-                "\n  the time limit of {} s was over first\n  compared, and equal: {}\n  not compared: {}\n  \
-                 give it more time with `--time-limit-s`",
+                "\n  the time limit of {} s was exceeded\n  compared and equal: {}\n  not compared: {}\n  \
+                 allow more time with `--time-limit-s`",
                 self.limit.as_secs_f64(),
                 compared.unwrap_or_else(nothing),
                 left.join(", ")
@@ -181,8 +181,8 @@ impl Thorough {
         }
         if differs {
             text.push_str(
-                "\n  one spec has one motion, so at least one formulation is derived wrongly: do not use \
-                 these equations\n  the mistake is in appell, not in the spec; please report it together \
+                "\n  all formulations must give the same motion, so at least one is derived wrongly: \
+                do not use these equations\n  the mistake is in appell, not in the spec; please report it together \
                  with the spec",
             );
         }
@@ -205,7 +205,7 @@ impl Thorough {
     }
 }
 
-/// What was seen at random points.
+/// The result of a comparison at random points.
 fn seen(comparison: &Comparison) -> String {
     let quantity = comparison.quantity;
     match &comparison.agreement {

@@ -130,7 +130,7 @@ fn what_no_spec_can_hold_is_told_with_its_place() {
         2,
         &second,
         &[
-            "nothing in the library explains",
+            "no effect of the library explains",
             "1   90.0 %  actuator_lag@F",
         ],
     );
@@ -143,7 +143,11 @@ fn what_is_no_report_of_this_spec_is_bad_data() {
     let folder = Folder::new();
     let apply = |model| ["apply", model, "--report", "report.json", "-o", "-"];
     folder.write("report.json", "{}");
-    folder.fails(3, &apply("carriage"), &["this is no gap report", "schema"]);
+    folder.fails(
+        3,
+        &apply("carriage"),
+        &["this is not a gap report", "schema"],
+    );
     folder.write(
         "report.json",
         r#"{ "schema": "gap-report/9", "mechanism": "", "which": [] }"#,

@@ -56,7 +56,7 @@ fn conditions_of_a_steady_motion_are_checked() {
     );
     about("omega_3=1, dot(psi)=3", &["`psi_dot` contradicts the rate"]);
     let equations = ["derive", "unicycle", "--about", "theta=0"];
-    folder.fails(2, &equations, &["--about goes with --stage linear"]);
+    folder.fails(2, &equations, &["--about needs --stage linear"]);
 }
 
 #[test]

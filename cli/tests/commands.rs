@@ -48,7 +48,7 @@ fn a_thorough_check_tells_what_was_proven_against_whom() {
         "three formulations    agree",
         "Kane                proved identical: mass matrix, bias, forces, accelerations",
         "Lagrange            proved identical: accelerations, constraint forces",
-        "a false one among them has a chance below",
+        "probability that any of them is false: below",
     ] {
         assert!(told.contains(text), "{text} is missing in\n{told}");
     }
@@ -78,18 +78,22 @@ fn a_thorough_check_without_time_says_what_it_did_not_compare() {
         "check.json",
     ];
     let parts = [
-        "the time limit of 0 s was over first",
-        "compared, and equal: nothing",
+        "the time limit of 0 s was exceeded",
+        "compared and equal: nothing",
         "Kane: mass matrix",
         "Lagrange: accelerations",
-        "give it more time with `--time-limit-s`",
+        "allow more time with `--time-limit-s`",
     ];
     folder.fails(4, &check, &parts);
     let spec = &folder.json("check.json")["specs"][0];
     assert_eq!(spec["ok"], false);
     assert!(spec["thorough"]["comparisons"][0]["agrees"].is_null());
     let negative = ["check", "--thorough", "pendulum", "--time-limit-s=-1"];
-    folder.fails(2, &negative, &["`--time-limit-s` is a number of seconds"]);
+    folder.fails(
+        2,
+        &negative,
+        &["`--time-limit-s` must be a non-negative number of seconds"],
+    );
 }
 
 #[test]

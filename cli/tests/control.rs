@@ -32,8 +32,8 @@ fn a_placed_law_is_told_written_and_simulated() {
     let told = folder.done(&with(&[STRAIGHT, LANE, &design])).stdout;
     for part in [
         "omega_2 = 3.33333 rad/s",
-        "u: 6 of 10 dimensions within reach",
-        "lost modes in 1/s: 0 (4 times)",
+        "u: controllable subspace of dimension 6 of 10",
+        "uncontrollable modes in 1/s: 0 (4 times)",
         "omega_3 + 6.66667 theta",
         "with omega_3 = -6.66667 theta",
         "-2042.70  N/(rad/s)",
@@ -80,7 +80,10 @@ fn a_regulator_of_two_inputs_goes_through_its_file() {
         "--write",
         "law.toml",
     ]);
-    assert!(told.stdout.contains("M_d, M_h: 6 of 6 dimensions"));
+    assert!(
+        told.stdout
+            .contains("M_d, M_h: controllable subspace of dimension 6 of 6")
+    );
     assert!(
         folder
             .read("law.toml")
@@ -108,7 +111,7 @@ fn a_sampled_law_with_a_delay_goes_through_its_file() {
     let design = ["--poles", "-4", "--sampled-ms", "20", "--delay-ms", "25"];
     let told = folder.done(&with(&[STRAIGHT, LANE, &design, &["--write", "law.toml"]]));
     assert!(
-        told.stdout.contains("poles of the sampled loop"),
+        told.stdout.contains("poles of the sampled closed loop"),
         "{}",
         told.stdout
     );
@@ -302,7 +305,7 @@ fn mistakes_in_a_schedule_are_told_at_once() {
     folder.fails(
         2,
         &with(&[&design, LANE, &sampled]),
-        &["cannot follow a schedule"],
+        &["a sampled law cannot be scheduled"],
     );
 }
 

@@ -87,7 +87,7 @@ fn the_page_shows_where_which_and_how_far_and_needs_nothing_beside_it() {
     let page = folder.read("page.html");
     let told = [
         "viscous_friction@x",
-        "law that was found",
+        "identified law",
         "free run",
         "held out",
         "class=\"ring c1\"",

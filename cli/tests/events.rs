@@ -98,7 +98,7 @@ fn friction_on_the_command_line_replaces_that_of_the_spec() {
     folder.fails(
         2,
         &["simulate", &model, "--friction", "-1"],
-        &["must be a number that is not negative"],
+        &["must be a non-negative number"],
     );
     folder.fails(
         2,

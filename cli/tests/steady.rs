@@ -147,7 +147,11 @@ fn a_chart_has_cells_and_a_boundary_that_turns_back() {
         "--json",
         "chart.json",
     ]);
-    assert!(told.stdout.contains("600 motions"), "{}", told.stdout);
+    assert!(
+        told.stdout.contains("600 steady motions"),
+        "{}",
+        told.stdout
+    );
     // 18.62 degrees in the unit of the spec.
     assert!(
         told.stdout

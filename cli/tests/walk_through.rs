@@ -62,7 +62,7 @@ fn every_command_of_the_walk_through_does_what_the_text_says() {
         "{}",
         told[2]
     );
-    assert!(told[5].contains("no gap beyond noise"), "{}", told[5]);
+    assert!(told[5].contains("no gap beyond measurement"), "{}", told[5]);
     for file in ["report.json", "gap.html", "better.toml", "motion.svg"] {
         assert!(
             folder.files().contains(&file.to_owned()),

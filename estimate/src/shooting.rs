@@ -10,7 +10,7 @@
 //! are all that is noisy.
 
 mod condensing;
-mod flight;
+mod segment;
 
 use nalgebra::{DMatrix, DVector};
 
@@ -20,7 +20,7 @@ use crate::data::recording::Recording;
 use crate::data::unknown::Unknown;
 use crate::fitting::free::{Coordinate, Free, Selection};
 use condensing::{Condensed, Weights};
-use flight::{Flight, Piece};
+use segment::{Segment, SegmentIntegrator};
 
 /// Gaps between segments in parts of the sizes of the states, one search after the other. The last
 /// is closed by any measure.
@@ -246,7 +246,7 @@ impl<'o, 'e> Shooting<'o, 'e> {
         REACH / longest
     }
 
-    fn objective(&self, trial: &Trial, pieces: &[Vec<Piece>], gap: f64) -> f64 {
+    fn objective(&self, trial: &Trial, pieces: &[Vec<Segment>], gap: f64) -> f64 {
         let (prior, _) = self.selection.prior(&trial.coordinates);
         Condensed::objective(pieces, &self.weights(trial, gap)) - prior
     }
@@ -275,7 +275,7 @@ impl<'o, 'e> Shooting<'o, 'e> {
     }
 
     /// Every segment of every run with its derivatives.
-    fn pieces(&self, trial: &Trial) -> Result<Vec<Vec<Piece>>, EstimateError> {
+    fn pieces(&self, trial: &Trial) -> Result<Vec<Vec<Segment>>, EstimateError> {
         let unknowns: Vec<(Unknown, f64)> = (0..self.selection.len())
             .map(|index| {
                 let free = self.selection.free[index];
@@ -285,7 +285,7 @@ impl<'o, 'e> Shooting<'o, 'e> {
             .collect();
         let runs = self.nodes.iter().zip(&trial.states).enumerate();
         runs.map(|(run, nodes)| {
-            Flight::new(self.estimation, &trial.values, run, &unknowns).along(nodes)
+            SegmentIntegrator::new(self.estimation, &trial.values, run, &unknowns).along(nodes)
         })
         .collect()
     }

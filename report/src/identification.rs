@@ -15,16 +15,17 @@ use crate::text::{number, table};
 pub use figure::figure;
 pub use page::page;
 
-/// Parts of a combination that are smaller are not told.
+/// Smaller coefficients of a direction are not shown.
 const NEGLIGIBLE: f64 = 0.1;
-/// Tolerances by which no value is off, unless it stands for something else.
+/// A value farther off than this, in tolerances, probably compensates for a missing effect.
 const FAR: f64 = 3.0;
-/// Ratio of errors that is no accident.
+/// Ratio of prediction errors above which the fit counts as biased.
 const WORSE: f64 = 1.2;
-/// What it means.
-const BENT: &str = "On the runs that were held out the fitted model predicts worse than the nominal one, \
-a second ahead: what the model lacks has bent the parameters. `appell diagnose` looks for it.";
-/// Combinations that are known to more tolerances than this are not known.
+/// The note shown in that case.
+const BENT: &str = "On the held-out runs the fitted model predicts worse than the nominal one, one \
+second ahead: an effect missing from the model has biased the parameters. `appell diagnose` searches \
+for it.";
+/// Posterior standard deviation, in units of the prior one, above which a direction is undetermined.
 const UNKNOWN: f64 = 100.0;
 
 /// A table with its heading.
@@ -32,11 +33,11 @@ struct Part {
     heading: String,
     /// The first one holds the names of the columns.
     rows: Vec<Vec<String>>,
-    /// Columns of numbers.
+    /// Columns with right-aligned numbers.
     numbers: Range<usize>,
-    /// Whether the numbers lie between -1 and 1 and are shown by colours too.
+    /// Whether the numbers are correlations, which the page colours.
     is_heat: bool,
-    /// A sentence below; may be empty.
+    /// A note below the table; may be empty.
     note: String,
 }
 
@@ -52,7 +53,7 @@ impl Part {
     }
 }
 
-/// The tables that a person reads.
+/// The report as text tables.
 pub fn text(set: &DataSet, answer: &Answer) -> String {
     let mut text = recording::text(set);
     for part in parts(set, answer) {
@@ -64,7 +65,9 @@ pub fn text(set: &DataSet, answer: &Answer) -> String {
         }
     }
     if answer.held_out.is_empty() {
-        text.push_str("\nNo run was held out: nothing tells how the model predicts.\n");
+        text.push_str(
+            "\nNo run was held out, so the predictions of the model cannot be assessed.\n",
+        );
     }
     text
 }
@@ -125,7 +128,7 @@ fn parameters(answer: &Answer) -> Part {
     part
 }
 
-/// Whether the fitted model predicts worse than the nominal one where nothing was fitted.
+/// Whether the fitted model predicts worse than the nominal one on held-out runs.
 fn is_bent(answer: &Answer) -> bool {
     let mut errors = answer.held_out.iter();
     let ahead = errors.find(|error| error.column.is_none() && error.horizon >= AHEAD);
@@ -137,16 +140,16 @@ fn remark(estimate: &Estimate) -> &'static str {
     match (estimate.at_limit, estimate.tolerance, estimate.left) {
         (true, ..) => "at the limit of its range",
         (_, Some(tolerance), _) if moved > FAR * tolerance => "far beyond its tolerance",
-        (.., Some(left)) if left > 0.5 => "hardly told by the recordings",
+        (.., Some(left)) if left > 0.5 => "hardly determined by the recordings",
         _ => "",
     }
 }
 
-/// How errors of parameters go together.
+/// Correlation matrix of the parameter errors.
 fn correlation(answer: &Answer) -> Part {
     let names = answer.parameters.iter();
     let names: Vec<String> = names.map(|own| own.quantity.name.to_string()).collect();
-    let mut part = Part::new("Correlation of the errors of the parameters", [], 1..1);
+    let mut part = Part::new("Correlation of the parameter errors", [], 1..1);
     part.numbers = 1..1 + names.len();
     part.is_heat = true;
     part.rows[0].push(String::new());
@@ -161,24 +164,27 @@ fn correlation(answer: &Answer) -> Part {
     part
 }
 
-/// Which combinations are known better than their tolerances.
+/// Parameter directions, with the posterior standard deviation relative to the prior.
 fn combinations(answer: &Answer) -> Part {
     let known = answer
         .combinations
         .iter()
         .filter(|known| known.deviation < 1.0);
     let heading = format!(
-        "{} of {} combinations of parameters are known better than beforehand",
+        "The data improve on prior knowledge in {} of {} parameter directions",
         known.count(),
         answer.combinations.len()
     );
-    let columns = ["known to", "in parts of the tolerances"];
+    let columns = [
+        "posterior / prior std",
+        "direction, in units of the prior std",
+    ];
     let mut part = Part::new(&heading, columns, 0..1);
     for combination in &answer.combinations {
         let known_to = if combination.deviation < UNKNOWN {
             number(combination.deviation)
         } else {
-            "not at all".to_owned()
+            "undetermined".to_owned()
         };
         part.rows.push(vec![known_to, sum(answer, combination)]);
     }
@@ -202,16 +208,15 @@ fn sum(answer: &Answer, combination: &Known) -> String {
 }
 
 fn levels(set: &DataSet, answer: &Answer) -> Part {
-    let heading =
-        "Noise, and disturbing forces: standard deviations of their integrals over a second";
+    let heading = "Measurement noise and process noise (standard deviations)";
     let columns = ["level", "of", "nominal model", "fitted model", "unit"];
     let mut part = Part::new(heading, columns, 2..4);
     for (what, levels) in [
-        ("noise", &answer.noise),
-        ("disturbance", &answer.disturbances),
+        ("measurement noise", &answer.noise),
+        ("process noise", &answer.disturbances),
     ] {
         for level in levels {
-            let channel = if what == "noise" {
+            let channel = if what == "measurement noise" {
                 channel(set, &level.name)
             } else {
                 None
@@ -236,22 +241,16 @@ fn channel<'s>(set: &'s DataSet, column: &str) -> Option<&'s Channel> {
     set.channels.iter().find(|own| own.column == column)
 }
 
-/// Whether what the filter did not expect is noise.
+/// Whiteness of the innovations.
 fn residuals(answer: &Answer) -> Part {
-    let heading =
-        "What the fitted model did not expect one step ahead, on the runs that were fitted";
-    let columns = [
-        "channel",
-        "neighbours correlate by",
-        "noise stays below",
-        "",
-    ];
+    let heading = "One-step residuals on the training runs";
+    let columns = ["channel", "lag-1 autocorrelation", "white-noise bound", ""];
     let mut part = Part::new(heading, columns, 1..3);
     for (column, consistency) in &answer.whiteness {
         let remark = if consistency.is_white() {
             ""
         } else {
-            "the model or the sensor lacks something"
+            "not white: unmodelled dynamics or sensor error"
         };
         part.rows.push(vec![
             column.clone(),
@@ -263,21 +262,10 @@ fn residuals(answer: &Answer) -> Part {
     part
 }
 
-/// Where drifting parameters begin and end.
+/// Values of drifting parameters at the start and end of each run.
 fn courses(answer: &Answer) -> Part {
-    let columns = [
-        "parameter",
-        "run",
-        "begins at",
-        "ends at",
-        "known to",
-        "unit",
-    ];
-    let mut part = Part::new(
-        "Parameters that drift, given all of their run",
-        columns,
-        2..5,
-    );
+    let columns = ["parameter", "run", "at start", "at end", "std", "unit"];
+    let mut part = Part::new("Drifting parameters, smoothed over each run", columns, 2..5);
     for course in &answer.courses {
         let shown = |value: Option<&f64>| {
             let value = value.map(|value| number(course.quantity.to_unit(*value)));
@@ -295,7 +283,7 @@ fn courses(answer: &Answer) -> Part {
     part
 }
 
-/// Errors in the units of the channels, and in units of the noise, where they can be added up.
+/// Prediction errors in the units of the channels, and relative to the measurement noise.
 fn held_out(set: &DataSet, answer: &Answer) -> Part {
     let columns = [
         "ahead",
@@ -306,7 +294,7 @@ fn held_out(set: &DataSet, answer: &Answer) -> Part {
         "nominal / noise",
         "fitted / noise",
     ];
-    let heading = "Errors on the runs that were held out: roots of mean squares";
+    let heading = "RMS prediction errors on held-out runs";
     let mut part = Part::new(heading, columns, 3..7);
     for error in &answer.held_out {
         let column = error.column.as_deref();
@@ -329,10 +317,10 @@ fn held_out(set: &DataSet, answer: &Answer) -> Part {
     part
 }
 
-/// Three digits; a motion that overflowed is infinitely wrong.
+/// Three digits; a prediction that overflowed has diverged.
 fn short(value: f64) -> String {
     match value {
-        value if !value.is_finite() => "lost".to_owned(),
+        value if !value.is_finite() => "diverged".to_owned(),
         value if value >= 1e5 || value < 1e-3 && value > 0.0 => format!("{value:.2e}"),
         value if value >= 100.0 => format!("{value:.0}"),
         value if value >= 10.0 => format!("{value:.1}"),

@@ -7,7 +7,7 @@ use appell_spec::Severity;
 
 use crate::text::{number, table};
 
-/// The tables that a person reads, in the units of the files.
+/// The summary as text tables, in the units of the files.
 pub fn text(set: &DataSet) -> String {
     let mut text = format!("{}: {}\n", set.mechanism.name, set.mechanism.title);
     if !set.description.is_empty() {

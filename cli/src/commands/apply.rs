@@ -11,23 +11,22 @@ use appell::Error;
 use appell::files;
 use appell::source::Source;
 
-/// Writes the spec with the effect that a gap report found, and with its values.
-///
-/// Comments and layout of the spec stay. The parameters that were fitted beside the effect change too,
-/// within their tolerances. Effects that no spec can hold, such as a delay of an actuator or the bias
-/// of a sensor, are told with the place where they belong.
+/// Writes the spec with the effect identified by a gap report.
+/// Comments and layout of the spec are kept. Parameters fitted together with the effect are updated,
+///within their tolerances. Effects that a spec cannot express, such as an actuator delay or a sensor
+///bias, are listed with the place where they belong.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Apply {
-    /// Name of a shipped mechanism or path of a spec: the one that was diagnosed
+    /// Name of a shipped mechanism or path of a spec, as diagnosed
     model: String,
     /// Gap report of `appell diagnose --json`
     #[arg(long, value_name = "FILE.json")]
     report: PathBuf,
-    /// Number of the hypothesis in the report; default is the most probable one
+    /// Number of the hypothesis in the report [default: the most probable one]
     #[arg(long, value_name = "N")]
     hypothesis: Option<usize>,
-    /// Write to this file, `-` is standard output; default is the name of the mechanism with
-    /// `_improved.toml`, if no other file stands there
+    /// Output file, `-` is standard output [default: name of the mechanism with `_improved.toml`; an
+    /// existing file is not overwritten]
     #[arg(long, short = 'o', value_name = "FILE.toml")]
     out: Option<PathBuf>,
 }
@@ -39,7 +38,7 @@ impl Apply {
         let report = Report::read(&self.report)?;
         if report.mechanism != name {
             return Err(Error::Data(format!(
-                "the report is about `{}`, and the spec describes `{name}`",
+                "the report is about `{}`, but the spec describes `{name}`",
                 report.mechanism
             )));
         }
@@ -51,19 +50,19 @@ impl Apply {
         let default = PathBuf::from(format!("{name}_improved.toml"));
         let out = self.out.as_ref().unwrap_or(&default);
         let file = out.to_string_lossy();
-        // What the report brings has to be a spec again before it is written.
+        // Check that the improved text is a valid spec before it is written.
         load(&file, &improved)?;
         if improved == source.text {
-            let told = hypothesis.told(&report, &changes, "nothing to write");
-            return output::print(&told);
+            let summary = hypothesis.summary(&report, &changes, "nothing to write");
+            return output::print(&summary);
         }
         if self.out.is_none() && fs::read(out).is_ok_and(|there| there != improved.as_bytes()) {
             return Err(Error::Usage(format!(
-                "{file} is there and says something else: it is replaced if you name it with `-o {file}`"
+                "{file} exists with other contents; to replace it, name it with `-o {file}`"
             )));
         }
         files::write(out, &improved)?;
-        let told = hypothesis.told(&report, &changes, &file);
-        output::print_beside(&told, &[&Some(out.clone())])
+        let summary = hypothesis.summary(&report, &changes, &file);
+        output::print_beside(&summary, &[&Some(out.clone())])
     }
 }

@@ -18,28 +18,25 @@ use appell::Error;
 use appell::files;
 use appell::source::Source;
 
-/// Validates specs and tells what they describe.
-///
-/// Names, units, frames, constraints, pseudo-velocities and inertias are checked; all mistakes are
-/// told at once, each with its line and what to write instead. An audit of the equations warns of
-/// what is legal and hardly meant, and notes what is worth knowing.
+/// Validates specs and summarises the mechanisms they describe.
+/// Names, units, frames, constraints, pseudo-velocities and inertias are checked; all errors are
+///reported at once, each with its line and a remedy. An audit of the equations warns of what is valid
+///but probably a mistake, and notes what is worth knowing.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Check {
     /// Names of shipped mechanisms or paths of specs
     #[arg(required = true, value_name = "MODEL")]
     models: Vec<String>,
-    /// Write what was found as JSON; `-` is standard output
+    /// Write the findings as JSON; `-` is standard output
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
-    /// Compare the equations with Kane's and with Lagrange's with multipliers
-    ///
-    /// Equality is proven by an identity test with a bound on its error where that can tell, and
-    /// else seen at random points in the declared ranges.
+    /// Compare the equations with Kane's equations and with Lagrange's equations with multipliers
+    /// Equality is proved by an identity test with a bounded error probability where that applies,
+    ///and checked at random points in the declared ranges elsewhere.
     #[arg(long)]
     thorough: bool,
-    /// Longest time for this comparison of one mechanism, in s
-    ///
-    /// What is not compared by then is named, and the check fails.
+    /// Time limit of this comparison for one mechanism, in s
+    /// Quantities not compared by then are listed, and the check fails.
     #[arg(long, value_name = "S", default_value_t = 60.0, requires = "thorough")]
     time_limit_s: f64,
 }
@@ -71,7 +68,7 @@ impl Check {
         }
     }
 
-    /// Tells of one spec. Returns what it tells to programs, and whether formulations disagree.
+    /// Checks one spec. Returns its JSON entry, and a failure if the formulations disagree.
     fn check(&self, model: &str, quiet: bool) -> Result<(Value, Option<Error>), Error> {
         let source = Source::find(model)?;
         let spinner = progress::spinner(&format!("deriving {}", source.file));
@@ -80,7 +77,7 @@ impl Check {
         let derived = derived?;
         let summary = Summary::of(&derived);
         let limit = Duration::try_from_secs_f64(self.time_limit_s).map_err(|_| {
-            Error::Usage("`--time-limit-s` is a number of seconds, zero or more".to_owned())
+            Error::Usage("`--time-limit-s` must be a non-negative number of seconds".to_owned())
         })?;
         let thorough = self
             .thorough
@@ -107,7 +104,7 @@ impl Check {
     }
 }
 
-/// What programs read of a spec that is wrong or cannot be read.
+/// The JSON entry of a spec that is wrong or cannot be read.
 fn entry(model: &str, failure: &Error) -> Value {
     match failure {
         Error::Report(report) => {
@@ -137,7 +134,7 @@ fn findings(report: &Report) -> Vec<Value> {
     report.diagnostics().iter().map(finding).collect()
 }
 
-/// What a derivation tells about a mechanism.
+/// Summary of a derivation.
 struct Summary {
     title: String,
     speeds: Vec<String>,
@@ -213,7 +210,7 @@ impl Summary {
         line("coordinates", self.coordinates.to_string());
         line("constraint rows", rows(&self.rows));
         if !self.embedded.is_empty() {
-            line("held by geometry", rows(&self.embedded));
+            line("embedded in geometry", rows(&self.embedded));
         }
         let blocks: Vec<String> = self
             .blocks
@@ -224,7 +221,7 @@ impl Summary {
         line(
             "coordinate rates",
             if self.solved_numerically.is_empty() {
-                "in closed form, without division by what can vanish".to_owned()
+                "in closed form, without division by a quantity that can vanish".to_owned()
             } else {
                 format!(
                     "in closed form, except for {} (solved with pivoting)",

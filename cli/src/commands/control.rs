@@ -11,11 +11,10 @@ use appell_runtime::model::{Model, Quantity};
 use crate::failure::tell;
 use crate::{design_report, engine, output, picture, progress};
 
-/// What the inputs can do about a steady motion, and gains for a feedback law.
-///
-/// The motion is the initial state of the spec with the values of `--at`; inputs that `--at` does
-/// not name are chosen so that it is steady. Without `--poles` or `--lqr` nothing is designed.
-/// Gains, poles and weights are in SI.
+/// Controllability about a steady motion, and gains of a feedback law.
+/// The motion is the initial state of the spec with the values of `--at`; the other inputs are chosen
+///so that it is steady. Without `--poles` or `--lqr` no law is designed. Gains, poles and weights are
+///in SI.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Control {
     /// Name of a shipped mechanism or path of a spec
@@ -23,17 +22,17 @@ pub(crate) struct Control {
     /// A parameter, such as R=0.3 or R=30cm
     #[arg(long, value_name = "NAME=VALUE")]
     set: Vec<Assignment>,
-    /// A state or an input on the steady motion, such as theta=5deg or u=2N, or what it follows from:
-    /// an output, the rate of a hidden coordinate
+    /// A state or input on the steady motion, such as theta=5deg or u=2N, or a quantity that
+    /// determines it: an output, or the rate of an ignorable coordinate
     #[arg(long, value_name = "NAME=VALUE", allow_hyphen_values = true)]
     at: Vec<Assignment>,
     /// The inputs that the law may use [default: all]
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     inputs: Vec<String>,
-    /// The states that are fed back [default: as many as the inputs reach, coordinates first]
+    /// The states that are fed back [default: a controllable set, coordinates first]
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     outputs: Vec<String>,
-    /// Poles of the closed loop in 1/s, such as -8,-8,-2+3i,-2-3i; a single one is for all
+    /// Closed-loop poles in 1/s, such as -8,-8,-2+3i,-2-3i; a single one is used for all
     #[arg(
         long,
         value_name = "POLES",
@@ -41,14 +40,14 @@ pub(crate) struct Control {
         conflicts_with = "lqr"
     )]
     poles: Option<String>,
-    /// Weights of the outputs and of the inputs in ∫(yᵀQy + uᵀRu)dt, such as Q=1,10,R=0.1: diagonals;
-    /// a single number is for all
+    /// Diagonal weights of outputs and inputs in ∫(yᵀQy + uᵀRu)dt, such as Q=1,10,R=0.1; a single
+    /// number is used for all
     #[arg(long, value_name = "Q=…,R=…")]
     lqr: Option<String>,
-    /// The controller measures at this interval and holds its inputs
+    /// Sampling period; the inputs are held in between
     #[arg(long, value_name = "MS", allow_negative_numbers = true)]
     sampled_ms: Option<f64>,
-    /// From a measurement to its effect
+    /// Delay from a measurement to its effect
     #[arg(
         long,
         value_name = "MS",
@@ -56,15 +55,14 @@ pub(crate) struct Control {
         requires = "sampled_ms"
     )]
     delay_ms: Option<f64>,
-    /// Designs a law at each of several values of a state, input or parameter, such as
-    /// v=1..20/10: ten intervals
+    /// Design a law at several values of a state, input or parameter, such as v=1..20/10 (ten intervals)
     #[arg(long, value_name = "NAME=FROM..TO/STEPS", allow_hyphen_values = true)]
     schedule: Option<Assignment>,
     /// Write the law as a file for `appell simulate --feedback`
     #[arg(long, value_name = "FILE.toml")]
     write: Option<PathBuf>,
     /// Simulate the law from a grid of disturbances of one or two states, such as
-    /// theta=-20deg..20deg/8,r=-10cm..10cm/8, and tell which motions settle
+    /// theta=-20deg..20deg/8,r=-10cm..10cm/8, and report which motions settle
     #[arg(
         long,
         value_name = "NAME=FROM..TO/STEPS,…",
@@ -72,7 +70,7 @@ pub(crate) struct Control {
         conflicts_with = "schedule"
     )]
     attraction: Option<String>,
-    /// How long each of these motions lasts
+    /// Duration of each of these motions
     #[arg(
         long,
         value_name = "S",
@@ -80,10 +78,10 @@ pub(crate) struct Control {
         requires = "attraction"
     )]
     for_s: f64,
-    /// Draw the disturbances of two states and what becomes of them
+    /// Draw the region of attraction over two states
     #[arg(long, value_name = "FILE.svg|png", requires = "attraction")]
     plot: Option<PathBuf>,
-    /// Write everything in SI; `-` is standard output
+    /// Write the results as JSON, in SI; `-` is standard output
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
 }
@@ -174,13 +172,13 @@ impl Control {
         }
     }
 
-    /// The quantity that a written schedule follows.
+    /// The scheduling variable of a written schedule.
     fn readable(&self, values: &ask::Values, setup: &Setup<'_>) -> Result<Option<Quantity>, Error> {
         let refused = |text: &str| Err(Error::Usage(text.to_owned()));
         match (&self.write, values.readable(setup)) {
             (None, _) => Ok(None),
             (Some(_), _) if self.sampled_ms.is_some() => {
-                refused("`--write`: a law that measures at intervals cannot follow a schedule yet")
+                refused("`--write`: a sampled law cannot be scheduled yet")
             }
             (Some(_), None) => refused(
                 "`--write`: gains cannot follow an input, which they set; schedule a state or a \

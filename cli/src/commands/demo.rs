@@ -1,4 +1,4 @@
-//! `appell demo`: the main job in one command.
+//! `appell demo`: spec to simulation in one command.
 
 use std::fmt::Write as _;
 use std::path::PathBuf;
@@ -18,7 +18,7 @@ const LANE_CHANGE: &str = include_str!("../../../docs/examples/feedback/lane_cha
 /// Derives the unicycle, lets it change lanes under feedback, and draws the motion.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Demo {
-    /// Folder for the files
+    /// Output folder
     #[arg(long, value_name = "DIR", default_value = "demo")]
     out: PathBuf,
 }

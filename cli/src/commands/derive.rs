@@ -15,21 +15,20 @@ use appell::files;
 use appell::source::Source;
 
 /// Writes the derivation, from frames to equations of motion.
-///
-/// It is readable from top to bottom as text, LaTeX or HTML, or it is Rust.
+/// Readable from top to bottom as text, LaTeX or HTML; or emitted as Rust.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Derive {
     /// Name of a shipped mechanism or path of a spec
     model: String,
-    /// How it is written
+    /// Output format
     #[arg(long, value_enum, default_value_t = Format::Text)]
     format: Format,
-    /// How far the page reads; each stage holds everything before it, only `equations`, the
-    /// handout, leaves out what it does not need. Rust is always complete
+    /// Last stage of the page. Each stage includes all earlier ones, except `equations`, the handout,
+    /// which leaves out what it does not need. Rust is always complete
     #[arg(long, value_enum, default_value_t = Stage::Equations)]
     stage: Stage,
     /// Values in the steady motion, for `--stage linear`: `theta=0, dot(psi)=0`. States, rates and
-    /// inputs that are not given stay letters
+    /// inputs that are not given stay symbolic
     #[arg(long, value_name = "CONDITIONS")]
     about: Vec<String>,
     /// Write to a file instead of standard output
@@ -37,7 +36,7 @@ pub(crate) struct Derive {
     out: Option<PathBuf>,
 }
 
-/// How a derivation is written.
+/// The output format of a derivation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub(crate) enum Format {
     /// Unicode, for a terminal
@@ -50,7 +49,7 @@ pub(crate) enum Format {
     Rust,
 }
 
-/// How far a page reads.
+/// The last stage of a page.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub(crate) enum Stage {
     /// Frames, constraints, velocities, accelerations
@@ -72,7 +71,7 @@ impl Derive {
         let source = Source::find(&self.model)?;
         let linear = self.stage == Stage::Linear && self.format != Format::Rust;
         if !linear && !self.about.is_empty() {
-            let message = "--about goes with --stage linear, as text, latex or html";
+            let message = "--about needs --stage linear, as text, latex or html";
             return Err(Error::Usage(message.to_owned()));
         }
         let text = derivation(&source, self.format, self.stage, &self.about)?;

@@ -14,14 +14,13 @@ use appell::Error;
 use appell::files;
 use appell::source::Source;
 
-/// Name of the table of the next experiment.
+/// Default file name of the proposed experiment.
 const EXPERIMENT: &str = "experiment.csv";
 
-/// Tells where a model falls short of recordings, which effect it lacks, and how far the effect closes
-/// the gap.
-///
-/// Every effect of the library is tried at every place of the mechanism where it makes sense. Test runs
-/// are used only in the final step. The exit status is 0 whatever the verdict.
+/// Finds where a model deviates from recordings, which effect it lacks, and how much of the gap that
+/// effect closes.
+/// Every effect of the library is tried at every admissible site of the mechanism. Test runs are used
+///only in the final step. The exit status is 0 whatever the verdict.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Diagnose {
     /// Name of a shipped mechanism or path of a spec, instead of the one that the data set names
@@ -29,33 +28,33 @@ pub(crate) struct Diagnose {
     /// Folder with a `recording.toml`, or CSV files with columns of the spec's names
     #[arg(long, required = true, num_args = 1.., value_name = "DIR")]
     data: Vec<PathBuf>,
-    /// Files of effects of your own, which are tried beside those of the library
+    /// Files with additional effects, tried together with those of the library
     #[arg(long, num_args = 1.., value_name = "FILE.toml")]
     effects: Vec<PathBuf>,
-    /// Other specs of the same thing, each a hypothesis of its own; names of quantities join them to the
-    /// recordings
+    /// Alternative specs of the same mechanism, each a hypothesis; quantities are matched to the
+    /// recordings by name
     #[arg(long, num_args = 1.., value_name = "SPEC")]
     alternative: Vec<String>,
-    /// Kinds of the library that are left out, such as `coulomb_friction`
+    /// Effects of the library to leave out, such as `coulomb_friction`
     #[arg(long, num_args = 1.., value_name = "KIND")]
     without: Vec<String>,
-    /// Write the gap report; `-` is standard output
+    /// Write the gap report as JSON; `-` is standard output
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
-    /// Write a page with drawings, laws over data and traces; it needs no network
+    /// Write the report as a self-contained HTML page with drawings, force laws and traces
     #[arg(long, value_name = "FILE.html")]
     html: Option<PathBuf>,
-    /// Where the next experiment goes if hypotheses are tied [default: experiment.csv beside the
-    /// gap report, or experiment-2.csv where a file of yours has that name]
+    /// Output file of the proposed experiment if hypotheses are tied [default: experiment.csv beside
+    /// the gap report, or experiment-2.csv if another file has that name]
     #[arg(long, value_name = "FILE.csv")]
     experiment: Option<PathBuf>,
-    /// Limits of an input or of a measured channel in that experiment, in the unit of its column
-    /// [default: those of the recordings]
+    /// Limits of an input or measured channel in that experiment, in the unit of its column [default:
+    /// those of the recordings]
     #[arg(long, value_name = "NAME=FROM..TO", allow_hyphen_values = true)]
     limit: Vec<Span>,
 }
 
-/// `NAME=FROM..TO` in the unit of a column.
+/// `NAME=FROM..TO`, in the unit of a column.
 #[derive(Debug, Clone)]
 struct Span {
     name: String,
@@ -130,9 +129,9 @@ impl Diagnose {
         output::print_beside(&text, &outputs)
     }
 
-    /// Where the table of the next experiment goes: beside the gap report, if that is a file, and over no
-    /// file but the one that the gap report before has proposed. A recording of that experiment, under its
-    /// name, has more columns.
+    /// The file of the proposed experiment: beside the gap report, if that is a file. Only the table
+    /// proposed by the previous gap report is overwritten; a recording of that experiment under the
+    /// same name is recognised by its additional columns.
     fn next(&self, table: &str) -> Option<PathBuf> {
         if self.experiment.is_some() {
             return self.experiment.clone();
@@ -158,12 +157,12 @@ impl Diagnose {
         free.map(|name| report.with_file_name(name))
     }
 
-    /// That a file was in the way of the next experiment, if one was.
+    /// A note if an existing file was kept.
     fn stepped_aside(&self, next: Option<&Path>) -> Option<String> {
         let name = next.filter(|_| self.experiment.is_none())?.file_name()?;
         (name != EXPERIMENT).then(|| {
             format!(
-                "  next      {EXPERIMENT} is not from the gap report before and stays as it is\n"
+                "  next      {EXPERIMENT} does not belong to the previous gap report and is not overwritten\n"
             )
         })
     }
@@ -190,7 +189,7 @@ impl Diagnose {
             let channel = channel.ok_or_else(|| {
                 let columns: Vec<&str> = set.channels.iter().map(|c| c.column.as_str()).collect();
                 Error::Usage(format!(
-                    "`--limit {}`: there is no such column; there are {}",
+                    "`--limit {}`: there is no such column; the columns are {}",
                     span.name,
                     columns.join(", ")
                 ))

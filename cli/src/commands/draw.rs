@@ -10,13 +10,12 @@ use appell::Error;
 use appell::source::Source;
 
 /// Draws the mechanism at its initial state, as SVG.
-///
-/// What is not as meant in a spec, such as the sign of an angle, is often seen at once.
+/// Mistakes in a spec, such as the sign of an angle, are often visible at once.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Draw {
     /// Name of a shipped mechanism or path of a spec
     model: String,
-    /// Write to this file, `-` is standard output; default is the name of the mechanism with `.svg`
+    /// Output file, `-` is standard output [default: name of the mechanism with `.svg`]
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
 }

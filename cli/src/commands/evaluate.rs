@@ -14,21 +14,20 @@ use appell::cases::{Case, read_cases};
 use appell::files;
 
 /// Evaluates the equations at given states.
-///
-/// All numbers are in SI: rates, Appell's equations, Jacobians, energies, constraint forces,
-/// outputs. A case reads {"state": {"theta": 0.1, …}, "inputs": {…}, "parameters": {…}, "t": 0};
-/// only the state must be complete.
+/// Computes rates, Appell's equations, Jacobians, energies, constraint forces and outputs, in SI. A
+///case reads {"state": {"theta": 0.1, …}, "inputs": {…}, "parameters": {…}, "t": 0}; only the state
+///must be complete.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Evaluate {
     /// Name of a shipped mechanism or path of a spec
     model: String,
-    /// States, inputs and parameters; `-` is standard input
+    /// JSON file with states, inputs and parameters; `-` is standard input
     #[arg(long, value_name = "IN.json")]
     cases: PathBuf,
-    /// Where the numbers go; `-` is standard output
+    /// Output file; `-` is standard output
     #[arg(long, value_name = "OUT.json", default_value = "-")]
     json: PathBuf,
-    /// What evaluates the equations
+    /// How the equations are evaluated
     #[arg(long, value_enum, default_value_t = Engine::Jit)]
     engine: Engine,
 }
@@ -83,7 +82,7 @@ impl Evaluate {
             return Ok(());
         }
         Err(Error::Computation(format!(
-            "the equations have no finite value there; the numbers in question are written as `null`\n{}",
+            "the equations are not finite at these cases; the numbers affected are written as `null`\n{}",
             singular.join("\n")
         )))
     }
@@ -98,7 +97,7 @@ fn describe(index: usize, case: &Case, states: &[Quantity]) -> String {
     format!("  case {index}, t = {} s: {}", case.t, state.join(", "))
 }
 
-/// Everything at one state, and whether all of it is finite.
+/// All quantities at one state, and whether they are all finite.
 fn answer(model: &dyn Model, at: At<'_>) -> (Value, bool) {
     let info = model.info();
     let (n, s, m, k) = (
@@ -180,7 +179,7 @@ fn answer(model: &dyn Model, at: At<'_>) -> (Value, bool) {
     (value, finite)
 }
 
-/// What each contact asks of its surface. A friction demand without end is `null`.
+/// The contact forces. An infinite friction demand is `null`.
 fn contacts(model: &dyn Model, at: At<'_>) -> Map<String, Value> {
     let mut forces = ContactForces::new();
     let forces = forces.at(model, at).iter();

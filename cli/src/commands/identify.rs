@@ -10,12 +10,11 @@ use appell::Error;
 use appell::files;
 use appell_report::identification;
 
-/// Finds the parameters that make recordings most likely, with intervals, and tells how well the
-/// model then predicts the runs that were held out.
-///
-/// Parameters with a tolerance in the data set are free, within it; `--free` chooses others. Levels of
-/// noise and of disturbing forces are estimated too, so that what the model lacks does not narrow the
-/// intervals.
+/// Estimates parameters from recordings by maximum likelihood, with confidence intervals and
+/// prediction errors on held-out runs.
+/// Parameters with a tolerance in the data set are free, with the tolerance as prior; `--free`
+///selects others. Levels of measurement and process noise are estimated too, so that model errors do
+///not narrow the intervals.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Identify {
     /// Name of a shipped mechanism or path of a spec
@@ -23,27 +22,27 @@ pub(crate) struct Identify {
     /// Folder with a `recording.toml`, or CSV files with columns of the spec's names
     #[arg(long, required = true, num_args = 1.., value_name = "DIR")]
     data: Vec<PathBuf>,
-    /// Parameters to look for
+    /// Parameters to estimate
     #[arg(long, value_delimiter = ',', value_name = "NAMES")]
     free: Option<Vec<String>>,
-    /// What to look for besides: `tau.lag` and `tau.delay` of an input, `theta.bias`, `theta.scale` and
+    /// Further unknowns: `tau.lag` and `tau.delay` of an input, `theta.bias`, `theta.scale` and
     /// `theta.delay` of a channel
     #[arg(long, value_delimiter = ',', value_name = "NAMES")]
     also: Vec<String>,
-    /// Parameters that change on the way, each with the standard deviation of its change in one second
+    /// Parameters that drift as a random walk, each with the standard deviation of its change in one second
     #[arg(long, value_delimiter = ',', value_name = "NAME=RATE", value_parser = drift)]
     drifting: Vec<(String, f64)>,
-    /// Where the search begins: at the values of the rig, or, if these are far from the truth, where
-    /// multiple shooting leads from them
+    /// Start of the optimisation: the nominal values, or, if these are far from the truth, the result
+    /// of multiple shooting
     #[arg(long, value_name = "WHERE", value_enum, default_value_t = Start::Nominal)]
     start: Start,
-    /// Write everything in SI; `-` is standard output
+    /// Write the results as JSON, in SI; `-` is standard output
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
-    /// Draw the runs that were held out beside predictions of them
+    /// Draw the held-out runs with their predictions
     #[arg(long, value_name = "FILE.svg|png")]
     plot: Option<PathBuf>,
-    /// Write a page with all of it
+    /// Write a self-contained HTML report
     #[arg(long, value_name = "FILE.html")]
     html: Option<PathBuf>,
 }

@@ -9,11 +9,10 @@ use crate::{engine, picture, progress, relations};
 use appell::Error;
 use appell::files;
 
-/// Finds the inputs of recorded motions, and parameters from the equations that the inputs leave over.
-///
-/// Where a mechanism has more equations of motion than inputs, some combinations of them hold whatever
-/// the inputs were. They are weighed by the noise of the recordings, through splines and exact
-/// derivatives. All coordinates that move the mechanism have to be measured; no input has to be.
+/// Computes the inputs of recorded motions, and parameters from input-free equations of motion.
+/// If a mechanism has more equations of motion than inputs, some combinations of them hold whatever
+///the inputs were. They are weighted by the noise of the recordings, through splines and exact
+///derivatives. All coordinates that enter the equations must be measured; inputs need not be.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Inverse {
     /// Name of a shipped mechanism or path of a spec
@@ -21,16 +20,16 @@ pub(crate) struct Inverse {
     /// Folder with a `recording.toml`, or CSV files with columns of the spec's names
     #[arg(long, required = true, num_args = 1.., value_name = "DIR")]
     data: Vec<PathBuf>,
-    /// Parameters to look for
+    /// Parameters to estimate
     #[arg(long, value_delimiter = ',', value_name = "NAMES")]
     free: Vec<String>,
-    /// Columns that may show a constant too much
+    /// Columns that may have a constant bias
     #[arg(long, value_delimiter = ',', value_name = "COLUMNS")]
     bias: Vec<String>,
-    /// Write everything in SI; `-` is standard output
+    /// Write the results as JSON, in SI; `-` is standard output
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
-    /// Draw the inputs of the first runs with their bands
+    /// Draw the inputs of the first runs with 95 % bands
     #[arg(long, value_name = "FILE.svg|png")]
     plot: Option<PathBuf>,
 }
@@ -43,7 +42,7 @@ impl Inverse {
             free: self.free.clone(),
             biased: self.bias.clone(),
         };
-        let spinner = progress::spinner("weighing the equations of motion");
+        let spinner = progress::spinner("evaluating the equations of motion");
         let answer = inverse::find(&set, model.equations(), &options);
         spinner.finish_and_clear();
         let answer = answer.map_err(|error| match error {

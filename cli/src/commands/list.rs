@@ -10,7 +10,7 @@ use appell::Error;
 use appell::files;
 use appell_report::text::table;
 
-/// Shows the shipped mechanisms.
+/// Lists the shipped mechanisms.
 #[derive(Debug, clap::Args)]
 pub(crate) struct List {
     /// Write the list as JSON; `-` is standard output
@@ -43,7 +43,7 @@ impl List {
     }
 }
 
-/// The work itself, without sections and equation numbers, which the spec tells.
+/// The cited work, without sections and equation numbers, which the spec gives.
 fn short(source: &str) -> String {
     let work = source.split(", ").next().unwrap_or_default();
     if work.is_empty() {
@@ -63,8 +63,7 @@ fn kinds(shipped: &Shipped) -> Result<Vec<(String, &'static str, usize)>, Error>
     Ok(named.collect())
 }
 
-/// What binds a mechanism: rows that the equations solve, and rows that its coordinates satisfy by
-/// themselves.
+/// The constraints: rows solved by the equations, and rows that the coordinates satisfy identically.
 fn constraints(shipped: &Shipped) -> Result<String, Error> {
     let kinds = kinds(shipped)?;
     let all: usize = kinds.iter().map(|(.., rows)| rows).sum();
@@ -74,7 +73,10 @@ fn constraints(shipped: &Shipped) -> Result<String, Error> {
     Ok(match (all, held) {
         (0, _) => "-".to_owned(),
         (_, 0) => format!("{}: {all} rows", words.join(", ")),
-        _ => format!("{}: {all} rows, {held} held by geometry", words.join(", ")),
+        _ => format!(
+            "{}: {all} rows, {held} embedded in geometry",
+            words.join(", ")
+        ),
     })
 }
 

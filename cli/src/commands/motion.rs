@@ -14,11 +14,10 @@ use appell::files;
 /// Largest skeleton file in bytes.
 const MAX_SKELETON: u64 = 1 << 20;
 
-/// Turns motion capture of a vehicle and its rider into recordings of a model.
-///
-/// A skeleton file says which rigid bodies were captured, where the rider's mass is, and what the
-/// coordinates of the model are. The data set holds these coordinates for `appell inverse`, `identify`
-/// and `recording`, and what was derived on the way.
+/// Converts motion capture of a vehicle and its rider to recordings of a model.
+/// A skeleton file defines the captured rigid bodies, the mass distribution of the rider, and the
+///coordinates of the model. The data set contains these coordinates, for `appell inverse`, `identify`
+///and `recording`, and all intermediate quantities.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Motion {
     /// The skeleton file
@@ -26,10 +25,10 @@ pub(crate) struct Motion {
     /// Captures, one CSV file for each run
     #[arg(required = true, value_name = "CSV")]
     captures: Vec<PathBuf>,
-    /// Folder for the data set
+    /// Output folder of the data set
     #[arg(long, value_name = "DIR", default_value = "recording")]
     out: PathBuf,
-    /// Write what was read and done; `-` is standard output
+    /// Write a summary as JSON; `-` is standard output
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
 }
@@ -89,7 +88,7 @@ impl Motion {
     }
 }
 
-/// The name of a run: that of its capture.
+/// The name of a run: the file name of its capture.
 fn file_name(path: &Path, taken: &[String]) -> Result<String, Error> {
     let name = path
         .file_name()
@@ -97,7 +96,7 @@ fn file_name(path: &Path, taken: &[String]) -> Result<String, Error> {
         .to_string_lossy()
         .into_owned();
     if taken.contains(&name) {
-        let message = format!("two captures are called {name}; a run needs a name of its own");
+        let message = format!("two captures are named {name}; each run needs a unique name");
         return Err(Error::Usage(message));
     }
     Ok(name)

@@ -19,7 +19,7 @@ impl New {
         let text =
             appell_spec::starter(&self.name).map_err(|error| Error::Usage(error.to_string()))?;
         let path = PathBuf::from(format!("{}.toml", self.name));
-        // Creation fails where the file exists: nobody's work is overwritten.
+        // Creation fails if the file exists: nothing is overwritten.
         let created = OpenOptions::new().write(true).create_new(true).open(&path);
         match created.and_then(|mut file| file.write_all(text.as_bytes())) {
             Ok(()) => output::print(&format!(
@@ -28,7 +28,7 @@ impl New {
                 name = self.name
             )),
             Err(cause) if cause.kind() == ErrorKind::AlreadyExists => Err(Error::Usage(format!(
-                "{} exists already; choose another name, or remove the file",
+                "{} already exists; choose another name, or remove the file",
                 path.display()
             ))),
             Err(cause) => Err(Error::writing(&path)(cause)),

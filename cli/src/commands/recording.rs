@@ -8,20 +8,19 @@ use appell::Error;
 use appell::files;
 use appell_report::recording::text;
 
-/// Reads recordings and tells what they hold: runs, rates, gaps, the noise of each channel, and what
-/// was mended or looks wrong.
-///
-/// A data set is a folder with a `recording.toml`. CSV files alone need `--model`, and columns with the
-/// names and units of its spec.
+/// Summarises recordings: runs, sampling rates, gaps, the noise of each channel, corrections and
+/// suspected errors.
+/// A data set is a folder with a `recording.toml`. CSV files alone need `--model`, and columns with
+///the names and units of the spec.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Recording {
     /// Folder of a data set, or CSV files
     #[arg(required = true)]
     data: Vec<PathBuf>,
-    /// Mechanism of CSV files, or in place of the one that a data set names
+    /// Mechanism of CSV files, or instead of the one that a data set names
     #[arg(long, value_name = "MODEL")]
     model: Option<String>,
-    /// Write everything in SI; `-` is standard output
+    /// Write the summary as JSON, in SI; `-` is standard output
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
 }

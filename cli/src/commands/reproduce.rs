@@ -11,11 +11,10 @@ use appell::Error;
 use appell::files;
 use appell_papers::book::{self, Claim, Section, Tally};
 
-/// Recomputes a paper: every equation, table and figure beside what is published, as a book.
-///
-/// The book is one page that needs no network. Beside the one on the electric unicycle its simulated
-/// rides are written, as data sets for `appell diagnose`. The exit status is 4 if a comparison
-/// does not come out as it is known to.
+/// Recomputes a paper: every equation, table and figure compared with the published one, as a book.
+/// The book is one self-contained HTML page. For the electric unicycle the simulated rides are
+///written too, as data sets for `appell diagnose`. The exit status is 4 if a comparison does not give
+///its expected result.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Reproduce {
     /// The paper
@@ -24,10 +23,10 @@ pub(crate) struct Reproduce {
     /// Points of the charts of the paper on steering along each axis
     #[arg(long, value_name = "COUNT", default_value_t = 240, value_parser = clap::value_parser!(u16).range(20..=1000))]
     grid: u16,
-    /// Folder for the book
+    /// Output folder
     #[arg(long, value_name = "DIR", default_value = "reproduced")]
     out: PathBuf,
-    /// Write all statements with how they compare; `-` is standard output
+    /// Write all statements with their comparison as JSON; `-` is standard output
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
 }
@@ -60,7 +59,7 @@ impl Paper {
     }
 }
 
-/// Everything for programs.
+/// The book as JSON.
 #[derive(Serialize)]
 struct Book<'a> {
     paper: &'a str,
@@ -69,7 +68,7 @@ struct Book<'a> {
     #[serde(flatten)]
     tally: Tally,
     errata: usize,
-    /// Comparisons that did not come out as they are known to.
+    /// Comparisons that did not give their expected result.
     unexpected: usize,
     sections: &'a [Section],
 }
@@ -125,7 +124,7 @@ impl Reproduce {
             ));
         }
         Err(Error::Computation(format!(
-            "{} of {} comparisons did not come out as they are known to",
+            "{} of {} comparisons did not give their expected result",
             book.unexpected,
             claims.len()
         )))

@@ -8,7 +8,7 @@ use appell::files;
 /// Writes the JSON schema of specs, for completion and checks in editors.
 ///
 /// Name the file in the first line of a spec, `#:schema ./appell.schema.json`, and an editor with
-/// Taplo (in VS Code the extension Even Better TOML) completes keys and marks mistakes.
+/// Taplo (in VS Code the extension Even Better TOML) completes keys and marks errors.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Schema {
     /// Write to a file instead of standard output

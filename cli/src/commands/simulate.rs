@@ -15,12 +15,11 @@ use crate::engine::{self, Engine};
 use crate::failure::note;
 use crate::{output, picture, progress, summary};
 
-/// Integrates the equations of motion and tells what happened.
-///
+/// Integrates the equations of motion and summarises the motion.
 /// Plain numbers, such as `20`, `2*10` or `5*sin(2*t)`, are in the unit that the spec declares for
-/// the quantity. Names and numbers with a unit, such as `30cm` or `5[m/s]/R`, are converted and
-/// checked. Expressions for inputs know `t`, states and parameters; a plain number beside them,
-/// as in `-3*x - v`, is a gain in SI. Inputs and feedback add up.
+///the quantity. Names and numbers with a unit, such as `30cm` or `5[m/s]/R`, are converted and
+///checked. Expressions for inputs may contain `t`, states and parameters; a plain coefficient of a
+///state, as in `-3*x - v`, is a gain in SI. Inputs and feedback are added.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Simulate {
     /// Name of a shipped mechanism or path of a spec
@@ -33,19 +32,19 @@ pub(crate) struct Simulate {
         allow_negative_numbers = true
     )]
     t_end_s: f64,
-    /// Interval between the rows of the output in s; the integrator chooses its own steps [default: a thousandth of the motion]
+    /// Output interval in s; the integrator chooses its own steps [default: a thousandth of the motion]
     #[arg(long, value_name = "S", allow_negative_numbers = true)]
     dt_s: Option<f64>,
     /// The integrator
     #[arg(long, value_enum, default_value_t = Integrator::Dop853)]
     method: Integrator,
-    /// Tolerated error relative to each state
+    /// Relative error tolerance
     #[arg(long, default_value = "1e-9", allow_negative_numbers = true)]
     rtol: f64,
-    /// Tolerated error of states near zero, in SI
+    /// Absolute error tolerance, in SI
     #[arg(long, default_value = "1e-9", allow_negative_numbers = true)]
     atol: f64,
-    /// Steps, rejected ones included, after which the integration is given up
+    /// Maximum number of steps, rejected ones included
     #[arg(long, value_name = "N", default_value_t = Options::default().max_steps)]
     max_steps: usize,
     /// A parameter, such as R=0.3 or R=30cm
@@ -64,37 +63,38 @@ pub(crate) struct Simulate {
     /// A feedback law (docs/examples/feedback)
     #[arg(long, value_name = "FILE.toml")]
     feedback: Vec<PathBuf>,
-    /// Let states leave the ranges that the spec declares
+    /// Allow states to leave their declared ranges
     #[arg(long)]
     ignore_ranges: bool,
-    /// Coefficient of friction of all contacts, in place of those of the spec
+    /// Coefficient of friction of all contacts, instead of those of the spec
     #[arg(long, value_name = "MU", allow_negative_numbers = true)]
     friction: Option<f64>,
-    /// What happens where a contact is lost or slips, a state leaves its range, or a linear system is
-    /// nearly singular [default: a range ends the motion, the others are told]
+    /// Response when a contact is lost or slips, a state leaves its range, or a linear system is
+    /// nearly singular [default: leaving a range ends the motion, the others are reported]
     #[arg(long, value_enum, value_name = "WHAT")]
     on_event: Option<OnEvent>,
-    /// What evaluates the equations [default: emitted for shipped mechanisms, else jit]
+    /// How the equations are evaluated [default: emitted for shipped mechanisms, else jit]
     #[arg(long, value_enum)]
     engine: Option<Engine>,
-    /// Also compute the constraint forces, as columns `reaction_…` in the ground: of a point in N, of
-    /// a constraint without a point its multiplier; at contacts their `normal_force_…`, `tangential_force_…` and `friction_demand_…`
+    /// Also compute the constraint forces, as columns `reaction_…` in the ground frame (in N at a
+    /// point, else the multiplier), and at contacts `normal_force_…`, `tangential_force_…` and
+    /// `friction_demand_…`
     #[arg(long)]
     reactions: bool,
     /// Also compute condition numbers, as columns `condition_…`
     #[arg(long)]
     conditions: bool,
     /// Write the motion: time, states, inputs, outputs, energies, in the units of the spec; `-` is
-    /// standard output, and the summary goes to standard error then
+    /// standard output, with the summary on standard error
     #[arg(long, value_name = "FILE.csv")]
     csv: Option<PathBuf>,
     /// Draw states and inputs over time
     #[arg(long, value_name = "FILE.svg|png")]
     plot: Option<PathBuf>,
-    /// Write a page with the moving mechanism, for a browser; it needs no network
+    /// Write a self-contained HTML page that animates the mechanism
     #[arg(long, value_name = "FILE.html")]
     html: Option<PathBuf>,
-    /// Write a summary in SI; `-` is standard output
+    /// Write a summary as JSON, in SI; `-` is standard output
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
 }
@@ -110,12 +110,12 @@ enum Integrator {
     Rk4,
 }
 
-/// What happens at an event.
+/// The response to an event.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 enum OnEvent {
-    /// The motion ends there
+    /// End the motion
     Stop,
-    /// It is told, and the motion goes on
+    /// Report it and continue
     Warn,
 }
 
@@ -182,28 +182,28 @@ impl Simulate {
         if let Some(path) = &self.json {
             files::write_json(path, &summary::json(&trajectory, failure.as_deref()))?;
         }
-        let mut told = summary::text(&trajectory);
+        let mut text = summary::text(&trajectory);
         if undriven && failure.is_none() && summary::rests(&trajectory) {
-            told += &hint(model.info());
+            text += &hint(model.info());
         }
-        output::print_beside(&told, &[&self.csv, &self.plot, &self.html, &self.json])?;
+        output::print_beside(&text, &[&self.csv, &self.plot, &self.html, &self.json])?;
         match failure {
             None => Ok(()),
             Some(reason) => Err(Error::Computation(reason)),
         }
     }
 
-    /// What is watched, and what happens then.
+    /// The watched limits and the response to each.
     fn validity(&self, info: &ModelInfo) -> Result<Validity, Error> {
         if let Some(friction) = self.friction {
             if !(friction.is_finite() && friction >= 0.0) {
                 return Err(Error::Usage(format!(
-                    "`--friction {friction}` must be a number that is not negative"
+                    "`--friction {friction}` must be a non-negative number"
                 )));
             }
             if !info.contacts.iter().any(|contact| contact.grips) {
                 return Err(Error::Usage(
-                    "`--friction`: the mechanism has no rolling contact whose forces can be told"
+                    "`--friction`: the mechanism has no rolling contact with known forces"
                         .to_owned(),
                 ));
             }
@@ -240,7 +240,7 @@ fn hint(info: &ModelInfo) -> String {
     let first = info.coordinate_quantities().last();
     let name = first.map_or("NAME", |coordinate| coordinate.name.as_ref());
     format!(
-        "  nothing moves: the mechanism starts at rest and nothing drives it; try `--initial \
+        "  nothing moves: the mechanism starts in equilibrium and has no input; try `--initial \
          {name}=0.1`\n"
     )
 }

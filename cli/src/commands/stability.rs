@@ -9,22 +9,21 @@ mod plane;
 use plane::{Grid, Plane};
 
 use super::steady::{marks, write};
-use crate::motions::{self, Question, told};
+use crate::motions::{self, Question, text};
 use crate::output;
 use appell::Error;
 use appell::steady::{Answer, Asked};
 use appell_report::text::table;
 
 /// Eigenvalues of steady motions, and where their stability changes.
-///
-/// The motions are given as for `appell steady`. Eigenvalues that only lead to neighbouring steady
-/// motions are counted and left out of the verdict. With `--along` critical values are found to
-/// rounding, by smooth functions of the characteristic polynomial.
+/// The motions are given as for `appell steady`. Zero eigenvalues that belong to a family of steady
+///motions are counted and ignored in the verdict. With `--along` critical values are exact to
+///rounding: they are zeros of smooth functions of the characteristic polynomial.
 #[derive(Debug, clap::Args)]
 pub(crate) struct StabilityCommand {
     #[command(flatten)]
     question: Question,
-    /// Stability over two quantities, such as theta=-30deg..30deg,psi_dot=1..8
+    /// Stability chart over two quantities, such as theta=-30deg..30deg,psi_dot=1..8
     #[arg(
         long,
         value_name = "X=FROM..TO,Y=FROM..TO",
@@ -32,7 +31,7 @@ pub(crate) struct StabilityCommand {
         conflicts_with = "along"
     )]
     chart: Option<Plane>,
-    /// Points of the chart along both quantities
+    /// Grid of the chart
     #[arg(
         long,
         value_name = "NxM",
@@ -49,13 +48,13 @@ impl StabilityCommand {
                 return self.draw(asked, &chart.axes(setup, self.grid)?);
             }
             let answer = motions::answer(asked)?;
-            let text = told::structure(asked)
+            let text = text::structure(asked)
                 + &match &answer {
                     Answer::Motions(motions) => {
                         let each = motions.iter().map(|(_, stability)| modes(asked, stability));
-                        told::motions(asked, motions) + &each.collect::<String>()
+                        text::motions(asked, motions) + &each.collect::<String>()
                     }
-                    Answer::Branches(branches) => told::branches(asked, branches),
+                    Answer::Branches(branches) => text::branches(asked, branches),
                 };
             write(&self.question, asked, &answer, figure)?;
             output::print_beside(
@@ -66,7 +65,7 @@ impl StabilityCommand {
     }
 }
 
-/// Eigenvalues with the states that take part most.
+/// Eigenvalues with the dominant states of their eigenvectors.
 fn modes(asked: &Asked<'_>, stability: &Stability) -> String {
     let info = asked.problem.model().info();
     let mut rows = Vec::new();
@@ -88,7 +87,7 @@ fn modes(asked: &Asked<'_>, stability: &Stability) -> String {
             .map(|p| p.1)
             .take(4)
             .collect();
-        let value = told::eigenvalue(mode.value);
+        let value = text::eigenvalue(mode.value);
         let value = if mode.value.im > 0.0 {
             value.replace('+', "±")
         } else {
@@ -108,10 +107,10 @@ fn modes(asked: &Asked<'_>, stability: &Stability) -> String {
     format!("eigenvalues\n{}", table(&rows, 0..1))
 }
 
-/// Branches that are drawn; further ones are in the files of `--csv` and `--json`.
+/// Number of branches drawn; `--csv` and `--json` contain all.
 const MOST_BRANCHES: usize = 4;
 
-/// Real and imaginary parts over the quantity, two panels for each branch.
+/// Real and imaginary parts against the quantity, two panels for each branch.
 fn figure(asked: &Asked<'_>, along: Term, branches: &[Branch]) -> Figure {
     let info = asked.problem.model().info();
     let horizontal = along.quantity(info);

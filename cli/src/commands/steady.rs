@@ -4,19 +4,19 @@ use appell_analysis::{Branch, Term};
 use appell_report::figure::{Figure, Panel, Series};
 
 use crate::failure::note;
-use crate::motions::{self, Question, told};
+use crate::motions::{self, Question, text};
 use crate::output;
 use crate::picture;
 use appell::Error;
 use appell::files;
 use appell::steady::{Answer, Asked, export};
 
-/// Finds steady motions: those whose essential states rest while hidden coordinates run on.
-///
-/// Conditions are values of states, inputs, outputs and rates of hidden coordinates; where they leave
-/// a family of motions, the answer names what may be given further. With `--along` the motions are
-/// followed through folds and crossings. Values are in the unit of the spec, or carry their own, as in
-/// `theta=10deg`.
+/// Finds steady motions: relative equilibria, in which the essential states are constant while
+/// ignorable coordinates advance uniformly.
+/// Conditions are values of states, inputs, outputs and rates of ignorable coordinates; if they leave
+///a family of motions, the answer names the quantities that may be prescribed in addition. With
+///`--along` the motions are continued through folds and crossings. Values are in the unit of the
+///spec, or carry their own, as in `theta=10deg`.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Steady {
     #[command(flatten)]
@@ -27,10 +27,10 @@ impl Steady {
     pub(super) fn run(&self) -> Result<(), Error> {
         self.question.with(|asked, _| {
             let answer = motions::answer(asked)?;
-            let text = told::structure(asked)
+            let text = text::structure(asked)
                 + &match &answer {
-                    Answer::Motions(motions) => told::motions(asked, motions),
-                    Answer::Branches(branches) => told::branches(asked, branches),
+                    Answer::Motions(motions) => text::motions(asked, motions),
+                    Answer::Branches(branches) => text::branches(asked, branches),
                 };
             write(&self.question, asked, &answer, figure)?;
             output::print_beside(
@@ -41,7 +41,7 @@ impl Steady {
     }
 }
 
-/// Writes the files that were asked for.
+/// Writes the requested files.
 pub(super) fn write(
     question: &Question,
     asked: &Asked<'_>,
@@ -59,14 +59,14 @@ pub(super) fn write(
             picture::write(path, &figure(asked, along, branches).to_svg())?;
         }
         (Some(_), ..) => {
-            note("`--plot` draws motions along a quantity: give `--along NAME=FROM..TO`");
+            note("`--plot` needs a quantity to plot against: give `--along NAME=FROM..TO`");
         }
         _ => {}
     }
     Ok(())
 }
 
-/// Every quantity over the one along which the motions run, one panel each.
+/// Every quantity against the continuation parameter, one panel each.
 fn figure(asked: &Asked<'_>, along: Term, branches: &[Branch]) -> Figure {
     let model = asked.problem.model();
     let info = model.info();
@@ -126,7 +126,7 @@ pub(super) fn marks(
             about: format!(
                 "{} = {} {}",
                 quantity.name,
-                told::exact(quantity.to_unit(special.motion.value)),
+                text::exact(quantity.to_unit(special.motion.value)),
                 quantity.unit
             ),
         })

@@ -3,9 +3,9 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::company::Company;
 use super::fit::{Effort, Fit};
 use super::free::{Coordinate, Free, Selection};
+use super::level_scaling::LevelScaling;
 use super::posterior::{Point, Posterior};
 use crate::EstimateError;
 use crate::estimation::Estimation;
@@ -47,11 +47,11 @@ impl Fit {
         let mut levels = Levels::default();
         let mut point = posterior.at(start)?;
         let mut information = levels.information(&posterior, &point)?;
-        let mut company = Company::of((estimation, &selection), &point)?;
+        let mut scaling = LevelScaling::of((estimation, &selection), &point)?;
         let (mut damping, mut steps) = (0.0, 0);
         let mut gained = [f64::INFINITY; LAST];
         loop {
-            let (step, gain) = company.step((&posterior, &point), &information, damping);
+            let (step, gain) = scaling.step((&posterior, &point), &information, damping);
             let promises_little = (0.0..=effort.gain).contains(&gain);
             let gains_little = gained.iter().sum::<f64>() < effort.gain;
             let ends = steps >= effort.steps || damping > DAMPED[1];
@@ -59,7 +59,7 @@ impl Fit {
             if is_over || ends {
                 let (mut promised, mut gain) = (DVector::zeros(free.len()), gain);
                 if !is_over {
-                    let (step, more) = company.step((&posterior, &point), &information, DAMPING);
+                    let (step, more) = scaling.step((&posterior, &point), &information, DAMPING);
                     // Where no step helps, the place is good if little was promised at all.
                     if !(0.0..=FLAT * effort.gain).contains(&more) {
                         (promised, gain) = (step, more);
@@ -98,7 +98,7 @@ impl Fit {
                     }
                     point = next;
                     information = levels.information(&posterior, &point)?;
-                    company = Company::of((estimation, &selection), &point)?;
+                    scaling = LevelScaling::of((estimation, &selection), &point)?;
                 }
                 None => damping = (MORE * damping).max(DAMPING),
             }

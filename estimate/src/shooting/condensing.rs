@@ -11,7 +11,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::flight::Piece;
+use super::segment::Segment;
 use crate::EstimateError;
 
 /// Weight by which a state stays in a step, relative to its size: what no sample tells does not
@@ -48,7 +48,10 @@ pub(super) struct Condensed {
 }
 
 impl Condensed {
-    pub(super) fn of(pieces: &[Vec<Piece>], weights: &Weights<'_>) -> Result<Self, EstimateError> {
+    pub(super) fn of(
+        pieces: &[Vec<Segment>],
+        weights: &Weights<'_>,
+    ) -> Result<Self, EstimateError> {
         let q = weights.free;
         let (mut runs, mut left) = (Vec::new(), Vec::new());
         let mut gained = 0.0;
@@ -126,7 +129,7 @@ impl Condensed {
     }
 
     /// Half of the sum of squares.
-    pub(super) fn objective(pieces: &[Vec<Piece>], weights: &Weights<'_>) -> f64 {
+    pub(super) fn objective(pieces: &[Vec<Segment>], weights: &Weights<'_>) -> f64 {
         let mut sum = 0.0;
         for (run, pieces) in pieces.iter().enumerate() {
             for (place, piece) in pieces.iter().enumerate() {
@@ -142,7 +145,7 @@ impl Condensed {
     }
 
     /// Half of the sum of squares and its gradient by the free values, the states staying.
-    pub(super) fn slope(pieces: &[Vec<Piece>], weights: &Weights<'_>) -> (f64, DVector<f64>) {
+    pub(super) fn slope(pieces: &[Vec<Segment>], weights: &Weights<'_>) -> (f64, DVector<f64>) {
         let (n, q) = (weights.sizes.len(), weights.free);
         let mut slope = DVector::zeros(q);
         for (run, pieces) in pieces.iter().enumerate() {
@@ -163,7 +166,7 @@ impl Condensed {
 }
 
 /// The gap after a segment in units of what is allowed.
-fn gap(piece: &Piece, next: &DVector<f64>, weights: &Weights<'_>) -> DVector<f64> {
+fn gap(piece: &Segment, next: &DVector<f64>, weights: &Weights<'_>) -> DVector<f64> {
     let mut gap = next - &piece.end;
     for (gap, size) in gap.iter_mut().zip(weights.sizes) {
         *gap /= size * weights.gap;
@@ -174,7 +177,7 @@ fn gap(piece: &Piece, next: &DVector<f64>, weights: &Weights<'_>) -> DVector<f64
 /// All rows that know the state of a segment: columns of this state, of the next one unless it is
 /// the last, of the free values, and the right side.
 fn block(
-    pieces: &[Piece],
+    pieces: &[Segment],
     (run, place): (usize, usize),
     carried: &DMatrix<f64>,
     weights: &Weights<'_>,

@@ -1,4 +1,4 @@
-//! What the page shows, as JSON: names and shapes as they are, numbers over time packed.
+//! The data of the page as JSON: names and shapes in clear, time series packed.
 
 use appell_codegen::mechanics::finding::Outcome;
 use appell_runtime::Trajectory;
@@ -10,10 +10,10 @@ use serde_json::{Value, json};
 use crate::drawing::film::{Film, Force, ForceKind, Shape, film};
 use crate::drawing::link::{Link, LinkKind};
 
-/// A page with more rows than this takes long to open.
+/// Largest number of rows; larger pages open slowly.
 const MOST_ROWS: usize = 12_000;
 
-/// The film of a motion with the values of its columns.
+/// The animation of a motion with the values of its columns.
 pub(super) fn json(
     mechanism: &Mechanism,
     model: &dyn Model,

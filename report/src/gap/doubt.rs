@@ -1,10 +1,10 @@
-//! Values that look like a wrong unit: what was fitted is near a factor between units.
+//! Suspected unit errors: fitted values that are close to a common conversion factor.
 
 use appell_gap::diagnose::{Hypothesis, Report};
 
 use crate::text::number;
 
-/// Factors between units that people mix up.
+/// Conversion factors that are often forgotten.
 const FACTORS: [(f64, &str); 6] = [
     (180.0 / std::f64::consts::PI, "180/π"),
     (std::f64::consts::PI / 180.0, "π/180"),
@@ -13,16 +13,16 @@ const FACTORS: [(f64, &str); 6] = [
     (9.81, "9.81"),
     (1.0 / 9.81, "1/9.81"),
 ];
-/// Gravity and units are rounded by as much.
+/// Relative rounding of gravity and of units.
 const ROUNDED: f64 = 0.005;
-/// Deviations within which a value is near a factor.
+/// A value is close to a factor within this many standard deviations.
 const NEAR: f64 = 2.0;
-/// A value known no better than this is near many factors.
+/// Relative uncertainty above which a value matches too many factors.
 const VAGUE: f64 = 0.05;
-/// Hypotheses less probable than this are not worth a doubt.
+/// Hypotheses less probable than this are not checked.
 const PROBABLE: f64 = 0.05;
 
-/// Questions about the units of the hypotheses that count.
+/// Suspected unit errors in the probable hypotheses.
 pub fn doubts(report: &Report) -> Vec<String> {
     let which = report.which.iter();
     let mut doubts: Vec<String> = which
@@ -43,7 +43,7 @@ fn of(hypothesis: &Hypothesis) -> Vec<String> {
         let gain = adds.strip_suffix(&format!("*{input}"));
         let mut values = hypothesis.parameters.iter();
         let value = values.find(|value| gain == Some(&value.name.replace(['@', '.'], "_")));
-        let acts = format!("`{input}` acts like {{}} times what is commanded");
+        let acts = format!("`{input}` acts as {{}} times its command");
         doubts.extend(value.and_then(|v| doubt(1.0 + v.value, v.std, &acts, input)));
     }
     for one in changes
@@ -54,19 +54,19 @@ fn of(hypothesis: &Hypothesis) -> Vec<String> {
         let own = format!("{}.", one.effect);
         let mut values = hypothesis.parameters.iter();
         let value = values.find(|value| value.name.starts_with(&own));
-        let shows = format!("`{}` shows {{}} times what there is", one.on);
+        let shows = format!("`{}` reads {{}} times the true value", one.on);
         doubts.extend(value.and_then(|v| doubt(v.value, v.std, &shows, &one.on)));
     }
     for one in &changes.parameters {
         let Some(std) = one.std else { continue };
         let (ratio, std) = (one.value / one.stated, std / one.stated.abs());
-        let is = format!("`{}` is {{}} times what is stated", one.name);
+        let is = format!("`{}` is {{}} times its stated value", one.name);
         doubts.extend(doubt(ratio, std, &is, &one.name));
     }
     doubts
 }
 
-/// The question, if a factor lies within what is known of a value.
+/// The question, if a conversion factor lies within the uncertainty of a value.
 fn doubt(value: f64, std: f64, says: &str, whose: &str) -> Option<String> {
     let size = value.abs();
     if !(std.is_finite() && std <= VAGUE * size) {

@@ -1,4 +1,4 @@
-//! Numbers as a report tells them: no more digits than mean something.
+//! Numbers of a report, with significant digits only.
 
 /// Three digits.
 pub fn short(value: f64) -> String {
@@ -39,7 +39,7 @@ pub(super) fn percent(part: f64) -> String {
     format!("{:.1} %", 100.0 * part)
 }
 
-/// Power of ten of the first digit.
+/// Decimal exponent of the first digit.
 #[expect(clippy::cast_possible_truncation, reason = "between -308 and 308")]
 fn exponent(value: f64) -> i32 {
     value.abs().log10().floor() as i32

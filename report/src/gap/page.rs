@@ -1,4 +1,4 @@
-//! A gap report as a page that needs no network: what a control engineer can act on.
+//! A gap report as a self-contained HTML page.
 
 use std::fmt::Write as _;
 
@@ -16,7 +16,7 @@ use crate::skeleton::Skeleton;
 use crate::text::with_unit;
 
 const STYLE: &str = include_str!("page.css");
-/// An effect that betters predictions by less is of little matter.
+/// Relative improvement of predictions below which an effect is of no practical importance.
 const MATTERS: f64 = 0.05;
 
 /// The page.
@@ -38,7 +38,7 @@ pub fn page(set: &DataSet, report: &Report) -> String {
     })
 }
 
-/// The verdict, with the size of the effect and what it closes.
+/// The verdict, with the size of the effect and the part of the gap that it closes.
 fn verdict(report: &Report) -> String {
     let mut text = capital(&sentence(report));
     let top = report.which.iter().find(|h| !h.parameters.is_empty());
@@ -53,17 +53,17 @@ fn verdict(report: &Report) -> String {
     if let (Some(far), true) = (&report.how_far, is_named) {
         let _ = write!(
             text,
-            " On runs that no fit has seen, it closes {} [{}, {}] of the gap, and {} of what the \
-             re-fitted parameters leave.",
+            " On held-out runs it closes {} [{}, {}] of the gap, and {} of the gap that remains after \
+            re-fitting the parameters.",
             percent(far.closed),
             percent(far.closed_ci95[0]),
             percent(far.closed_ci95[1]),
             percent(far.closed_vs_refitted),
         );
         if far.with_effect > far.refitted {
-            text += " Predictions get worse with it: what was fitted does not hold on these runs.";
+            text += " Predictions become worse with it: the fit does not generalise to these runs.";
         } else if far.with_effect > (1.0 - MATTERS) * far.refitted {
-            text += " The effect is certain and of little matter: predictions hardly get better.";
+            text += " The effect is significant but unimportant: predictions hardly improve.";
         }
     }
     text
@@ -86,7 +86,7 @@ fn values(hypothesis: &Hypothesis) -> Vec<String> {
 
 fn place(set: &DataSet, report: &Report) -> Markup {
     let place = &report.place;
-    // What sensors show wrong is no force.
+    // A sensor error is not a missing force.
     let is_force = place.equations.iter().any(|one| one.share > 0.0);
     let pictures = report.pictures.as_ref();
     let law = pictures.and_then(|pictures| pictures.force_law.as_ref());
@@ -99,7 +99,7 @@ fn place(set: &DataSet, report: &Report) -> Markup {
         }
         @if let Some(svg) = drawing(set, report) {
             @let caption = if svg.contains("class=\"ring") {
-                "The mechanism at its initial state. A ring marks where the gap is."
+                "The mechanism at its initial state. A ring marks the site of the gap."
             } else {
                 "The mechanism at its initial state."
             };
@@ -107,8 +107,8 @@ fn place(set: &DataSet, report: &Report) -> Markup {
         }
         @if let Some(pictures) = history {
             @let caption = format!(
-                "The missing force of each equation in parts of {} s of the runs that were fitted, the \
-                 stronger the colour the larger; beside the name the largest.",
+                "Missing force of each equation in windows of {} s of the training runs: the stronger the \
+                 colour, the larger the force. The maximum is given beside the name.",
                 short(pictures.force_history.part)
             );
             (figure(plots::over_time(&pictures.force_history), &caption))
@@ -150,13 +150,13 @@ fn locus(report: &Report) -> Markup {
     }
 }
 
-/// The mechanism with rings; nothing where it has no drawing.
+/// The mechanism with the sites of the gap ringed; `None` if it cannot be drawn.
 fn drawing(set: &DataSet, report: &Report) -> Option<String> {
     let sites = report
         .found
         .iter()
         .filter_map(|found| found.effect.split_once('@'));
-    // A channel stands for what it shows.
+    // A channel is marked at the quantity that it measures.
     let name = |site: &str| {
         let channel = set.channels.iter().find(|channel| channel.column == site);
         let label = channel.and_then(|channel| channel.role.label(&set.mechanism));
@@ -252,7 +252,7 @@ fn which(report: &Report) -> Markup {
     });
     let heading = [
         "probability",
-        "hypothesis, with values ± one standard deviation",
+        "hypothesis, values ± 1 standard deviation",
         "log Bayes factor",
     ];
     html! {
@@ -334,7 +334,7 @@ fn how_far(report: &Report) -> Markup {
         @for trace in plots::most_bettered(traces) {
             @let caption = format!(
                 "{} of {}, which no fit has seen, beside predictions {} s before, and their errors. The \
-                 band is two standard deviations of the error that is left if the hypothesis is right.",
+                 band shows two standard deviations of the error expected if the hypothesis is true.",
                 trace.column,
                 trace.run,
                 appell_gap::diagnose::AHEAD
@@ -447,7 +447,7 @@ fn detectable(report: &Report) -> Markup {
 fn recordings(set: &DataSet, report: &Report) -> Markup {
     let rows = set.runs.iter().map(|run| {
         let part = match run.part {
-            Part::Fit => "to fit",
+            Part::Fit => "training",
             Part::Test => "held out",
         };
         [
@@ -504,7 +504,7 @@ fn separated<T>(list: &[T], shown: impl Fn(&T) -> Markup, between: &Markup) -> M
     }
 }
 
-/// A part as a bar beside its number.
+/// A share as a bar beside its number.
 fn bar(part: f64) -> Markup {
     let width = format!("width:{:.1}%", 100.0 * part.clamp(0.0, 1.0));
     html! {

@@ -1,4 +1,4 @@
-//! Pictures of a gap report.
+//! Figures of a gap report.
 
 use appell_gap::diagnose::{Experiment, ForceHistory, ForceLaw, Trace};
 use appell_spec::Mechanism;
@@ -7,12 +7,12 @@ use super::numbers::short;
 use crate::figure::{Layer, Look, Plot, Series};
 use crate::svg::{Document, Element, text};
 
-/// Channels that are drawn.
+/// Number of channels drawn.
 const DRAWN: usize = 3;
 /// Colours: data, as stated, re-fitted, with the effect.
 const COLOURS: [usize; 4] = [2, 1, 4, 0];
 
-/// The channels that the effect betters most, in the order of the recordings.
+/// The channels whose predictions the effect improves most, in the order of the recordings.
 pub(super) fn most_bettered<'t>(traces: impl Iterator<Item = &'t Trace>) -> Vec<&'t Trace> {
     let traces: Vec<&Trace> = traces.collect();
     let mut order: Vec<usize> = (0..traces.len()).collect();
@@ -23,7 +23,7 @@ pub(super) fn most_bettered<'t>(traces: impl Iterator<Item = &'t Trace>) -> Vec<
     order.into_iter().map(|i| traces[i]).collect()
 }
 
-/// Mean square of the error that the effect takes away, in units of what is left by right.
+/// Decrease of the mean square prediction error, relative to its expected value.
 fn better(trace: &Trace) -> f64 {
     let square = |predicted: &[f64]| -> f64 {
         let pairs = errors(trace, predicted)
@@ -41,7 +41,7 @@ fn errors(trace: &Trace, predicted: &[f64]) -> Vec<f64> {
         .collect()
 }
 
-/// A channel with predictions, and the errors of these.
+/// A channel with its predictions and their errors.
 pub(super) fn trace(trace: &Trace) -> [String; 2] {
     let layer = |label: &str, y: Vec<f64>, look, colour| Layer {
         series: Series {
@@ -59,7 +59,7 @@ pub(super) fn trace(trace: &Trace) -> [String; 2] {
         height: 170.0,
         layers: vec![
             layer("measured", trace.measured.clone(), Look::Points, data),
-            layer("as stated", trace.nominal.clone(), Look::Line, stated),
+            layer("nominal", trace.nominal.clone(), Look::Line, stated),
             layer("re-fitted", trace.refitted.clone(), Look::Line, refitted),
             layer(
                 "with the effect",
@@ -77,7 +77,7 @@ pub(super) fn trace(trace: &Trace) -> [String; 2] {
         height: 150.0,
         layers: vec![
             layer("expected", edge(-wide), Look::Band(edge(wide)), data),
-            layer("as stated", error(&trace.nominal), Look::Line, stated),
+            layer("nominal", error(&trace.nominal), Look::Line, stated),
             layer("re-fitted", error(&trace.refitted), Look::Line, refitted),
             layer(
                 "with the effect",
@@ -90,7 +90,7 @@ pub(super) fn trace(trace: &Trace) -> [String; 2] {
     [motion.to_svg(), errors.to_svg()]
 }
 
-/// The missing force over what it depends on.
+/// The missing force against the variable on which it depends.
 pub(super) fn law(law: &ForceLaw) -> String {
     let layer = |label: &str, points: &[[f64; 2]], look, colour| Layer {
         series: Series {
@@ -104,10 +104,10 @@ pub(super) fn law(law: &ForceLaw) -> String {
     let [data, stated, _, effect] = COLOURS;
     let mut layers = vec![
         layer("recordings", &law.points, Look::Points, data),
-        layer("their mean", &law.means, Look::Line, stated),
+        layer("binned mean", &law.means, Look::Line, stated),
     ];
     if !law.law.is_empty() {
-        layers.push(layer("law that was found", &law.law, Look::Line, effect));
+        layers.push(layer("identified law", &law.law, Look::Line, effect));
     }
     let plot = Plot {
         labels: [
@@ -123,14 +123,13 @@ pub(super) fn law(law: &ForceLaw) -> String {
     plot.to_svg()
 }
 
-/// The missing force of each equation over time: the darker, the larger beside the largest of the
-/// equation.
+/// The missing force of each equation over time, relative to the maximum of the equation.
 pub(super) fn over_time(map: &ForceHistory) -> String {
     const LEFT: f64 = 190.0;
     const WIDTH: f64 = 720.0;
     const ROW: f64 = 26.0;
     const GAP: f64 = 6.0;
-    // Width of a letter on the average.
+    // Mean width of a letter.
     const LETTER: f64 = 6.6;
     let parts: usize = map.runs.iter().map(|(_, _, parts)| parts).sum();
     let gaps = GAP * map.runs.len().saturating_sub(1) as f64;
@@ -168,7 +167,7 @@ pub(super) fn over_time(map: &ForceHistory) -> String {
         let to = from + map.part * *parts as f64;
         let label = format!("{name}: {} to {} s", short(*from), short(to));
         let width = LETTER * label.chars().count() as f64;
-        // Short stretches of a run leave no room for their names.
+        // Short segments of a run leave no room for a name.
         if x < taken || x + width > WIDTH {
             continue;
         }

@@ -10,7 +10,7 @@ pub fn sentence(report: &Report) -> String {
         .map(|found| found.about.as_str())
         .collect();
     match report.verdict {
-        GapVerdict::NoGap => "no gap beyond noise and disturbance".to_owned(),
+        GapVerdict::NoGap => "no gap beyond measurement and process noise".to_owned(),
         GapVerdict::Explained => format!("the gap is explained by {}", about.join(" and ")),
         GapVerdict::Ambiguous => format!(
             "there is a gap; {} explains it best ({:.0} %), but {} cannot be ruled out",
@@ -21,7 +21,7 @@ pub fn sentence(report: &Report) -> String {
         GapVerdict::Unexplained => {
             let left = report.left.as_ref().map(|left| format!(": {}", left.about));
             let left = left.unwrap_or_default();
-            format!("there is a gap that nothing in the library explains{left}")
+            format!("there is a gap that no effect of the library explains{left}")
         }
     }
 }
@@ -44,18 +44,16 @@ fn rivals(report: &Report) -> Vec<String> {
 /// A hint in words.
 pub fn hinted(hint: &Hint) -> String {
     format!(
-        "the gap in the equation of {} depends on {}, which the model does not know",
+        "the gap in the equation of {} depends on {}, a channel that is not in the model",
         hint.equation, hint.variable
     )
 }
 
-/// That rows were left out, if any were.
+/// A note on unused training rows, if any.
 pub fn left_out(report: &Report) -> Option<String> {
     let [fitted, all] = report.rows;
     (fitted < all).then(|| {
-        format!(
-            "{fitted} of {all} rows to fit were fitted, in stretches that are spread over the runs"
-        )
+        format!("{fitted} of {all} training rows were used, in segments spread over the runs")
     })
 }
 

@@ -1,13 +1,13 @@
-//! The runs that were held out beside predictions of them.
+//! Held-out runs with their predictions.
 
 use crate::figure::{Figure, Panel, Series};
 use appell_gap::data::DataSet;
 use appell_gap::identify::{AHEAD, Answer};
 
-/// Runs that are drawn.
+/// Number of runs drawn.
 const DRAWN_RUNS: usize = 2;
 
-/// Standard deviations on each side of a course.
+/// Half-width of a 95 % band in standard deviations.
 const BAND: f64 = 1.96;
 
 /// Drifting parameters with their 95 % bands, a panel for each run.
@@ -36,7 +36,7 @@ fn courses(answer: &Answer) -> impl Iterator<Item = Panel> + '_ {
     })
 }
 
-/// The first runs that were held out: a panel for each channel and one for its errors.
+/// The first held-out runs: for each channel a panel of values and one of errors.
 pub fn figure(set: &DataSet, answer: &Answer) -> Figure {
     let mut runs: Vec<&str> = answer
         .traces
@@ -74,8 +74,8 @@ pub fn figure(set: &DataSet, answer: &Answer) -> Figure {
             series(format!("fitted, {AHEAD} s ahead"), &trace.fitted),
         ];
         let errors = vec![
-            series(format!("{name}: error of nominal"), &error(&trace.nominal)),
-            series("error of fitted".to_owned(), &error(&trace.fitted)),
+            series(format!("{name}: error, nominal"), &error(&trace.nominal)),
+            series("error, fitted".to_owned(), &error(&trace.fitted)),
         ];
         [motion, errors].map(|series| Panel {
             unit: unit.clone(),
@@ -83,7 +83,7 @@ pub fn figure(set: &DataSet, answer: &Answer) -> Figure {
         })
     });
     Figure {
-        title: format!("{}: runs that were held out", set.mechanism.name),
+        title: format!("{}: held-out runs", set.mechanism.name),
         x_label: "t [s]".to_owned(),
         panels: panels.chain(courses(answer)).collect(),
         marks: Vec::new(),

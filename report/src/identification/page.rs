@@ -1,4 +1,4 @@
-//! All of it as a page that needs no network.
+//! The result as a self-contained HTML page.
 
 use appell_gap::data::DataSet;
 use appell_gap::identify::Answer;
@@ -11,7 +11,7 @@ use crate::skeleton::Skeleton;
 /// Light and dark, as the figure inside.
 const STYLE: &str = include_str!("page.css");
 
-/// A page that needs no network.
+/// The self-contained HTML page.
 pub fn page(set: &DataSet, answer: &Answer) -> String {
     let name = &set.mechanism.name;
     let title = format!("{name}: parameters");

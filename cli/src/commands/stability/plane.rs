@@ -1,4 +1,4 @@
-//! `appell stability --chart`: stability over two quantities.
+//! `appell stability --chart`: a stability chart over two quantities.
 
 use std::fmt::Write as _;
 use std::io::{self, Write};
@@ -9,7 +9,7 @@ use appell_report::figure::Map;
 use serde_json::{Value, json};
 
 use super::StabilityCommand;
-use crate::motions::{self, told};
+use crate::motions::{self, text};
 use crate::output;
 use crate::picture;
 use appell::Error;
@@ -67,7 +67,7 @@ impl Plane {
 }
 
 impl StabilityCommand {
-    /// Computes the chart, tells it and writes its files.
+    /// Computes the chart, prints a summary and writes its files.
     pub(super) fn draw(&self, asked: &Asked<'_>, axes: &[Axis; 2]) -> Result<(), Error> {
         let chart = motions::chart(asked, *axes)?;
         let question = &self.question;
@@ -80,20 +80,20 @@ impl StabilityCommand {
         if let Some(path) = &question.plot {
             picture::write(path, &map(asked, &chart).to_svg())?;
         }
-        let text = told::structure(asked) + &text(asked, &chart);
+        let text = text::structure(asked) + &text(asked, &chart);
         output::print_beside(&text, &[&question.csv, &question.json, &question.plot])
     }
 }
 
-/// How many motions there are, and the boundaries with their turning points.
+/// The number of motions, and the boundaries with their turning points.
 fn text(asked: &Asked<'_>, chart: &Chart) -> String {
     let info = asked.problem.model().info();
     let quantities = chart.axes.map(|axis| axis.term.quantity(info));
     let found = chart.cells.iter().flatten();
     let count = |verdict: Verdict| found.clone().filter(|cell| cell.verdict == verdict).count();
     let mut text = format!(
-        "{} motions at {} places: {} asymptotically stable, {} neutrally stable, {} unstable; {} places \
-         without one, {} with several\n",
+        "{} steady motions at {} grid points: {} asymptotically stable, {} neutrally stable, {} \
+        unstable; {} points without a motion, {} with several\n",
         found.clone().count(),
         chart.cells.len(),
         count(Verdict::Asymptotic),
@@ -104,12 +104,12 @@ fn text(asked: &Asked<'_>, chart: &Chart) -> String {
     );
     for boundary in &chart.boundaries {
         let role = match boundary.deciding().count() {
-            0 => "inside what is unstable",
-            _ if boundary.decides.contains(&false) => "boundary, in parts",
+            0 => "inside the unstable region",
+            _ if boundary.decides.contains(&false) => "boundary, on parts of the curve",
             _ => "boundary",
         };
         // Writing to a string cannot fail.
-        let _ = writeln!(text, "{role}: {}", told::change_text(boundary.change));
+        let _ = writeln!(text, "{role}: {}", text::change_text(boundary.change));
         for fold in &boundary.folds {
             let value = quantities[fold.axis].to_unit(fold.at[fold.axis]);
             let other = 1 - fold.axis;
@@ -117,7 +117,7 @@ fn text(asked: &Asked<'_>, chart: &Chart) -> String {
                 text,
                 "  turns back at {} = {} {} ({} = {:.6} {})",
                 quantities[fold.axis].name,
-                told::exact(value),
+                text::exact(value),
                 quantities[fold.axis].unit,
                 quantities[other].name,
                 quantities[other].to_unit(fold.at[other]),

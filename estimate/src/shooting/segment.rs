@@ -18,7 +18,7 @@ use crate::motion::timeline::{Action, Advance};
 use crate::motion::transition::{MOST_HALVINGS, STAGES, WEIGHTS, is_uneven};
 
 /// A segment. Derivatives by the state at its beginning, then by the free values.
-pub(super) struct Piece {
+pub(super) struct Segment {
     /// A row for each sample, in units of its noise: derivatives of the residual, the residual.
     pub(super) rows: DMatrix<f64>,
     /// State at the end.
@@ -28,7 +28,7 @@ pub(super) struct Piece {
 }
 
 /// A motion with its derivatives.
-pub(super) struct Flight<'a> {
+pub(super) struct SegmentIntegrator<'a> {
     estimation: &'a Estimation<'a>,
     values: &'a [f64],
     run: usize,
@@ -46,7 +46,7 @@ pub(super) struct Flight<'a> {
     closure: Option<Closure>,
 }
 
-impl<'a> Flight<'a> {
+impl<'a> SegmentIntegrator<'a> {
     pub(super) fn new(
         estimation: &'a Estimation<'_>,
         values: &'a [f64],
@@ -76,7 +76,7 @@ impl<'a> Flight<'a> {
     pub(super) fn along(
         mut self,
         (nodes, states): (&Vec<usize>, &Vec<DVector<f64>>),
-    ) -> Result<Vec<Piece>, EstimateError> {
+    ) -> Result<Vec<Segment>, EstimateError> {
         let mut pieces = Vec::with_capacity(nodes.len());
         self.begin(nodes[0], &states[0])?;
         let mut is_first = true;
@@ -138,10 +138,10 @@ impl<'a> Flight<'a> {
         Ok(())
     }
 
-    fn end(&mut self) -> Piece {
+    fn end(&mut self) -> Segment {
         let columns = self.width + 1;
         let rows = std::mem::take(&mut self.rows);
-        Piece {
+        Segment {
             rows: DMatrix::from_row_slice(rows.len() / columns, columns, &rows),
             end: DVector::from_column_slice(&self.z),
             by: DMatrix::from_row_slice(self.n, self.width, &self.by),

@@ -1,4 +1,4 @@
-//! Levels of disturbances that keep company with inertia.
+//! Level scaling: levels of process noise that follow the inertia of the model.
 //!
 //! A level is a force, and what recordings tell is an acceleration: where a search makes a mass twice as
 //! large, the level that was right is half of what is right now. Counted by acceleration, masses and
@@ -15,12 +15,12 @@ use crate::estimation::Estimation;
 use crate::kalman::prediction::place;
 
 /// What a step of some coordinates adds to levels, to first order.
-pub(crate) struct Company {
+pub(crate) struct LevelScaling {
     /// A row and a column for each coordinate.
     slopes: DMatrix<f64>,
 }
 
-impl Company {
+impl LevelScaling {
     /// About a point.
     pub(crate) fn of(
         (estimation, selection): (&Estimation<'_>, &Selection<'_>),

@@ -1,4 +1,4 @@
-//! Steady motions for people: short tables in the units of the spec.
+//! Steady motions as text tables, in the units of the spec.
 
 use std::fmt::Write as _;
 
@@ -12,10 +12,10 @@ use appell_spectra::spectrum::Complex;
 use appell::steady::Asked;
 use appell_report::text::{number, table};
 
-/// Motions side by side at most.
+/// Largest number of motions side by side.
 const COLUMNS: usize = 6;
 
-/// What the verdict is called.
+/// The verdict in words.
 pub(crate) fn verdict(verdict: Verdict) -> &'static str {
     match verdict {
         Verdict::Asymptotic => "asymptotically stable",
@@ -25,7 +25,7 @@ pub(crate) fn verdict(verdict: Verdict) -> &'static str {
     }
 }
 
-/// Essential and hidden states.
+/// Essential states and ignorable coordinates.
 pub(crate) fn structure(asked: &Asked<'_>) -> String {
     let info = asked.problem.model().info();
     let names = |states: &[usize]| {
@@ -41,7 +41,7 @@ pub(crate) fn structure(asked: &Asked<'_>) -> String {
     };
     let structure = asked.problem.structure();
     format!(
-        "{}\n  essential  {}\n  hidden     {}\n",
+        "{}\n  essential  {}\n  ignorable  {}\n",
         info.title,
         names(&structure.essential),
         names(&structure.hidden),
@@ -119,7 +119,7 @@ pub(crate) fn motions(asked: &Asked<'_>, motions: &[(SteadyMotion, Stability)]) 
     if count > shown.len() {
         let _ = writeln!(
             text,
-            "  the other {} are in the files of --json and --csv",
+            "  {} more; `--json` and `--csv` list all",
             count - shown.len()
         );
     }
@@ -134,7 +134,7 @@ pub(crate) fn motions(asked: &Asked<'_>, motions: &[(SteadyMotion, Stability)]) 
     text
 }
 
-/// Rounding is not worth a number.
+/// Rounding errors become zero.
 fn tidy(value: f64) -> f64 {
     if value.abs() < 1e-14 { 0.0 } else { value }
 }
@@ -152,7 +152,7 @@ pub(crate) fn eigenvalue(value: Complex<f64>) -> String {
     )
 }
 
-/// Branches with what lies on them.
+/// Branches with their special points.
 pub(crate) fn branches(asked: &Asked<'_>, branches: &[Branch]) -> String {
     let Some((along, _)) = asked.along else {
         return String::new();
@@ -206,7 +206,7 @@ pub(crate) fn branches(asked: &Asked<'_>, branches: &[Branch]) -> String {
     text
 }
 
-/// All digits of a value that is known to rounding.
+/// A value that is exact to rounding, with all its digits.
 pub(crate) fn exact(value: f64) -> String {
     format!("{value:.14}")
 }
@@ -217,9 +217,9 @@ fn why(info: &ModelInfo, ends: [End; 2]) -> String {
         End::State(state) => Some(format!("the range of {}", info.states[state].name)),
         End::Infinity => Some("infinity".to_owned()),
         End::Closed => Some("its beginning".to_owned()),
-        End::Infeasible(_) => Some("what is not feasible".to_owned()),
-        End::Lost => Some("where no further motion is found".to_owned()),
-        End::Points => Some("the limit of points".to_owned()),
+        End::Infeasible(_) => Some("the limit of feasibility".to_owned()),
+        End::Lost => Some("the last motion found".to_owned()),
+        End::Points => Some("the maximum number of points".to_owned()),
     };
     match ends.map(one) {
         _ if ends == [End::Closed; 2] => ", closed".to_owned(),
@@ -238,7 +238,7 @@ fn event(asked: &Asked<'_>, special: &Special) -> String {
         Kind::Critical(change) => change_text(change),
         Kind::Feasibility(number) => match asked.requirements.get(number) {
             Some(requirement) => {
-                format!("border of feasibility: {}", requirement.term.name(info))
+                format!("limit of feasibility: {}", requirement.term.name(info))
             }
             None => "a contact lifts".to_owned(),
         },
@@ -250,11 +250,11 @@ pub(crate) fn change_text(change: Change) -> String {
     match change {
         Change::RealZero => "a real eigenvalue passes through zero".to_owned(),
         Change::Oscillation { frequency } => format!(
-            "an oscillation of {} rad/s changes between growth and decay",
+            "a complex pair of {} rad/s crosses the imaginary axis",
             number(frequency)
         ),
         Change::Collision { frequency } => {
-            format!("two oscillations of {} rad/s meet", number(frequency))
+            format!("two imaginary pairs of {} rad/s collide", number(frequency))
         }
     }
 }

@@ -23,6 +23,10 @@ pub struct Assignment {
 impl Assignment {
     /// A name with a value: a number in the unit that the spec declares, a number with a unit, or an
     /// expression.
+    #[expect(
+        clippy::needless_pass_by_value,
+        reason = "a number or a text is given as it stands"
+    )]
     pub fn new(name: &str, value: impl ToString) -> Self {
         Self {
             name: name.to_owned(),

@@ -1,5 +1,7 @@
 //! The numbers of one report, beside the version of the engine that finds them.
 
+#![expect(clippy::unwrap_used, reason = "a test may stop here")]
+
 use std::fmt::Write as _;
 
 use crate::common::{Folder, SWING, pendulum, swing};

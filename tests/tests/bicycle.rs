@@ -160,7 +160,7 @@ fn the_jacobians_are_those_of_dual_numbers_in_any_motion() {
         let point = Point::random(model.info(), &mut random);
         let e = Evaluation::of(model, point.at());
         let derived = [("A", &e.a), ("B", &e.b), ("P", &e.p)];
-        for ((what, derived), dual) in derived.into_iter().zip(dual::jacobians(&program, &point)) {
+        for ((what, derived), dual) in derived.into_iter().zip(dual::jacobians(program, &point)) {
             let what = format!("{what} at point {number}");
             assert_close(&what, derived, &dual, JACOBIANS, 1e-3);
         }

@@ -100,6 +100,10 @@ impl Question {
 
     /// Follows the motions along a quantity.
     #[must_use]
+    #[expect(
+        clippy::needless_pass_by_value,
+        reason = "a number or a text is given as it stands"
+    )]
     pub fn along(mut self, name: &str, from: impl ToString, to: impl ToString) -> Self {
         self.along = Some(Span {
             name: name.to_owned(),

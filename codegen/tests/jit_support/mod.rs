@@ -1,5 +1,7 @@
 //! Schedules written by hand, and their values by two routes.
 
+#![expect(clippy::unwrap_used, reason = "a test may stop here")]
+
 use appell_codegen::jit::{NativeFunction, Sizes};
 use appell_codegen::schedule::{
     Argument, Operation, ResultArray, Schedule, Step, Tree, Value, interpret,

@@ -1,5 +1,7 @@
 //! The shipped specs as a library, and data sets made for a test.
 
+#![expect(clippy::unwrap_used, reason = "a test may stop here")]
+
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::sync::LazyLock;

@@ -148,6 +148,7 @@ impl Claim {
     }
 
     /// Where it holds, it does so exactly: nothing was sampled.
+    #[must_use]
     pub fn exactly(mut self) -> Self {
         if self.agreement == Reproduction::Approximate {
             self.agreement = Reproduction::Exact;
@@ -156,6 +157,7 @@ impl Claim {
     }
 
     /// Where it holds, it does so within a tolerance.
+    #[must_use]
     pub fn approximately(mut self) -> Self {
         if self.agreement == Reproduction::Exact {
             self.agreement = Reproduction::Approximate;
@@ -164,12 +166,14 @@ impl Claim {
     }
 
     /// With what the agreement rests on.
+    #[must_use]
     pub fn noted(mut self, note: impl Into<String>) -> Self {
         self.note = note.into();
         self
     }
 
     /// The paper errs here; whatever else is compared, the two differ.
+    #[must_use]
     pub fn erratum(self, kind: &'static str) -> Self {
         Self {
             agreement: Reproduction::Differs,
@@ -180,6 +184,7 @@ impl Claim {
     }
 
     /// There is nothing to compare with, for a reason.
+    #[must_use]
     pub fn unchecked(self, why: &str) -> Self {
         Self {
             agreement: Reproduction::CannotBeChecked,
@@ -189,6 +194,7 @@ impl Claim {
     }
 
     /// A result of ours.
+    #[must_use]
     pub fn added(self) -> Self {
         Self {
             agreement: Reproduction::NotInPaper,

@@ -116,7 +116,16 @@ impl Model {
 
     /// Integrates the equations of motion.
     pub fn simulate(&self, motion: &Motion) -> Result<Simulated, Error> {
-        motion.simulate(self, |_| {})
+        self.simulate_watched(motion, |_| {})
+    }
+
+    /// The same; `progress` hears the time in s that is reached.
+    pub fn simulate_watched(
+        &self,
+        motion: &Motion,
+        progress: impl Fn(f64),
+    ) -> Result<Simulated, Error> {
+        motion.simulate(self.equations(), self.setup()?, self.name(), progress)
     }
 
     /// A motion as a page with the moving mechanism; `ending` says why it ended early.
@@ -163,7 +172,7 @@ impl Model {
     /// # Ok::<(), appell::Error>(())
     /// ```
     pub fn control(&self, request: &Request) -> Result<Design, Error> {
-        request.design(self)
+        request.design(self.equations(), self.setup()?)
     }
 
     /// A design as the text of a feedback file, for [`Motion::feedback`].

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use appell_runtime::integrate::{Ending, Options};
+use appell_runtime::model::Model;
 use appell_runtime::simulate::{Method, Response, Sampling, SimulationError, Validity};
 use appell_runtime::trajectory::Extras;
 use appell_runtime::{Simulation, Trajectory};
@@ -10,7 +11,6 @@ use appell_runtime::{Simulation, Trajectory};
 use crate::Error;
 use crate::inputs::controller::Plan;
 use crate::inputs::{feedback, tabulated};
-use crate::model::Model;
 use crate::setup::{Assignment, Setup};
 
 /// Rows of a trajectory that fit into memory anywhere.
@@ -112,7 +112,7 @@ impl Motion {
         self
     }
 
-    /// Adds a feedback law, as [`control`](Model::control) writes it.
+    /// Adds a feedback law, as [`crate::Model::law`] writes it.
     #[must_use]
     pub fn feedback(mut self, law: &str) -> Self {
         self.laws.push(Law::Text {
@@ -127,8 +127,15 @@ impl Motion {
         self.interval.unwrap_or(self.t_end / 1000.0)
     }
 
-    /// Computes it; `progress` hears the time in s that is reached.
-    pub fn simulate(&self, model: &Model, progress: impl Fn(f64)) -> Result<Simulated, Error> {
+    /// Computes it with the equations and the numbers of a spec, which `name` stands for in messages;
+    /// `progress` hears the time in s that is reached.
+    pub(crate) fn simulate(
+        &self,
+        model: &dyn Model,
+        mut setup: Setup<'_>,
+        name: &str,
+        progress: impl Fn(f64),
+    ) -> Result<Simulated, Error> {
         let interval = self.row_interval();
         for (what, value) in [("end", self.t_end), ("interval between rows", interval)] {
             if !(value.is_finite() && value > 0.0) {
@@ -143,10 +150,9 @@ impl Motion {
                 "{rows} rows are too many; choose a longer interval (at most {MOST_ROWS:.0} rows)"
             )));
         }
-        let mut setup = model.setup()?;
         setup.watch_ranges = self.validity.ranges == Response::Stop;
         setup.set(&self.parameters)?;
-        let plan = self.plan(model, &mut setup)?;
+        let plan = self.plan(model, &mut setup, name)?;
         let undriven = plan.is_empty();
         let controller = plan.controller(&setup, self.t_end)?;
         let simulation = Simulation {
@@ -160,7 +166,7 @@ impl Motion {
             extras: self.extras,
             validity: self.validity,
             progress: Some(Box::new(progress)),
-            ..Simulation::new(model.equations())
+            ..Simulation::new(model)
         };
         let (trajectory, failure) = match simulation.run() {
             Ok(trajectory) => {
@@ -185,7 +191,12 @@ impl Motion {
     }
 
     /// What drives the inputs. Laws come first: they may ask for initial values, which `initial` overrides.
-    fn plan(&self, model: &Model, setup: &mut Setup<'_>) -> Result<Plan, Error> {
+    fn plan(
+        &self,
+        model: &dyn Model,
+        setup: &mut Setup<'_>,
+        name: &str,
+    ) -> Result<Plan, Error> {
         let mut plan = Plan::new(setup);
         for law in &self.laws {
             let law = match law {
@@ -200,7 +211,7 @@ impl Motion {
             plan.expression(assignment, setup)?;
         }
         if let Some(file) = &self.recorded {
-            let (table, inputs) = tabulated::read(file, model.name(), setup, model.equations())?;
+            let (table, inputs) = tabulated::read(file, name, setup, model)?;
             plan.recording(table, &inputs, setup)?;
         }
         Ok(plan)

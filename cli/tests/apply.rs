@@ -152,7 +152,7 @@ fn what_is_no_report_of_this_spec_is_bad_data() {
         "report.json",
         r#"{ "schema": "gap-report/9", "mechanism": "", "which": [] }"#,
     );
-    folder.fails(3, &apply("carriage"), &["its schema is `gap-report/9`"]);
+    folder.fails(3, &apply("carriage"), &["unsupported schema `gap-report/9`"]);
     folder.write(
         "report.json",
         r#"{ "schema": "gap-report/1", "mechanism": "pendulum", "which": [] }"#,

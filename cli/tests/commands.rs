@@ -34,7 +34,7 @@ fn new_writes_a_spec_that_checks_and_never_overwrites() {
     assert!(told.stderr.is_empty(), "{}", told.stderr);
     let before = folder.read("arm.toml");
     folder.write("arm.toml", &(before + "# mine\n"));
-    folder.fails(2, &["new", "arm"], &["arm.toml exists already"]);
+    folder.fails(2, &["new", "arm"], &["arm.toml already exists"]);
     assert!(folder.read("arm.toml").ends_with("# mine\n"));
     folder.fails(2, &["new", "../up"], &["not a valid name"]);
 }

@@ -127,7 +127,7 @@ fn a_page_without_a_gap_tells_what_would_have_been_seen() {
     folder.done(&["diagnose", "--data", ".", "--html", "page.html"]);
     let page = folder.read("page.html");
     let told = [
-        "No gap beyond noise",
+        "o gap beyond measurement and process noise",
         "No equation disagrees",
         "<details open>",
     ];
@@ -280,7 +280,7 @@ fn a_gain_near_a_factor_between_units_is_doubted_and_has_no_unit() {
     let line = told.stdout.lines().find(|line| line.contains(gain));
     let line = line.unwrap_or_else(|| panic!("no gain in\n{}", told.stdout));
     assert!(!line.ends_with(" 1") && line.contains(" ± "), "{line}");
-    let says = "times what is commanded, which is close to 1000: is the unit of `F` right?";
+    let says = "times its command, which is close to 1000: is the unit of `F` right?";
     assert!(told.stdout.contains(says), "{}", told.stdout);
     let page = folder.read("page.html");
     assert!(page.contains("close to 1000: is the unit of F right?"));

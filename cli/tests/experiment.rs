@@ -64,7 +64,7 @@ fn a_file_of_the_user_stays_where_an_experiment_is_proposed() {
     let own = "t,x,F\n0,0,1\n";
     folder.write("experiment.csv", own);
     let told = folder.done(&asked).stdout;
-    let says = "experiment.csv is not from the gap report before and stays as it is";
+    let says = "experiment.csv does not belong to the previous gap report and is not overwritten";
     assert!(
         told.contains("written to experiment-2.csv") && told.contains(says),
         "{told}"
@@ -94,7 +94,7 @@ fn a_file_of_the_user_stays_where_an_experiment_is_proposed() {
 fn limits_name_columns_and_run_upwards() {
     let folder = rig::viscous(0.4);
     let asked = |limit| ["diagnose", "--data", ".", "--limit", limit];
-    let told = ["there is no such column; there are x, F"];
+    let told = ["there is no such column; the columns are x, F"];
     folder.fails(2, &asked("f=-1..1"), &told);
     folder.fails(2, &asked("F=1..-1"), &["1 is not less than -1"]);
     folder.fails(

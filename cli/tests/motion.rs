@@ -65,7 +65,7 @@ fn the_force_that_nobody_measured_and_an_inertia_are_found() {
         "force.svg",
     ]);
     assert!(
-        told.stdout.contains("1 relation without inputs"),
+        told.stdout.contains("1 input-free relation"),
         "{}",
         told.stdout
     );

@@ -127,7 +127,7 @@ fn a_contact_without_a_known_normal_cannot_creep() {
     let told = report.plain();
     assert!(told.contains("creep-not-judged"), "{told}");
     assert!(
-        told.contains("the creep of `rolling` cannot be told"),
+        told.contains("the creep of `rolling` cannot be computed"),
         "{told}"
     );
 }

@@ -402,11 +402,11 @@ fn a_figure_keeps_small_motions_apart_from_large_ones() {
     assert_eq!(
         panels,
         [
-            "theta [rad]",
-            "r [m]",
-            "psi [rad]",
-            "phi [rad]",
             "x_G y_G [m]",
+            "psi [rad]",
+            "theta [rad]",
+            "phi [rad]",
+            "r [m]",
             "omega_1 omega_3 [rad/s]",
             "omega_2 [rad/s]",
             "sigma [m/s]",

@@ -233,5 +233,5 @@ fn position_constraints_that_say_the_same_share_untold_forces() {
     );
     assert!(names(&model(&text)).is_empty());
     let report = told(&text);
-    assert!(report.contains("how `one` and `two` share"), "{report}");
+    assert!(report.contains("the reactions of `one` and `two` are statically indeterminate"), "{report}");
 }

@@ -1,9 +1,10 @@
 //! A request for gains, in texts with units.
 
+use appell_runtime::model::Model;
+
 use super::ask;
 use super::design::{self, Design, Goal, Method};
 use crate::Error;
-use crate::model::Model;
 use crate::setup::{Assignment, Setup};
 
 /// What is asked for. Without poles or weights nothing is designed, and the answer tells only what the
@@ -90,12 +91,11 @@ impl Request {
         })
     }
 
-    /// The design for a model.
-    pub(crate) fn design(&self, model: &Model) -> Result<Design, Error> {
-        let mut setup = model.setup()?;
+    /// The design for a model, with the numbers of its spec.
+    pub(crate) fn design(&self, model: &dyn Model, mut setup: Setup<'_>) -> Result<Design, Error> {
         setup.set(&self.parameters)?;
         let goal = self.resolve(&setup)?;
-        let at = ask::point(model.equations(), &mut setup, &self.at)?;
-        design::design(model.equations(), &setup, &at, &goal)
+        let at = ask::point(model, &mut setup, &self.at)?;
+        design::design(model, &setup, &at, &goal)
     }
 }

@@ -4,7 +4,6 @@ mod gear;
 
 use std::fmt::Write as _;
 
-use appell_test_kit::Random;
 use gear::{Gear, moved};
 use serde_json::Value;
 
@@ -31,13 +30,31 @@ const HELD: f64 = 0.01;
 /// Steps of the simulation in a row.
 const STEPS: u32 = 10;
 
+/// Noise of variance 1, the same in every recording of this rig: what is found near a threshold depends on
+/// it. The sum of twelve uniform numbers (P. L'Ecuyer's 64-bit congruences).
+struct Noise(u64);
+
+impl Noise {
+    fn uniform(&mut self) -> f64 {
+        self.0 = self
+            .0
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 11) as f64 / (1_u64 << 53) as f64
+    }
+
+    fn next(&mut self) -> f64 {
+        (0..12).map(|_| self.uniform()).sum::<f64>() - 6.0
+    }
+}
+
 /// A recording under forces that are held, with noise of 1 mm. `advance` gives the position after a force.
-fn recording(mut advance: impl FnMut(f64) -> f64, forces: &[f64], noise: &mut Random) -> String {
+fn recording(mut advance: impl FnMut(f64) -> f64, forces: &[f64], noise: &mut Noise) -> String {
     let mut text = "t,x,F\n".to_owned();
     let mut x = 0.0;
     for (row, force) in forces.iter().enumerate() {
         let t = row as f64 / 100.0;
-        let _ = writeln!(text, "{t},{},{force}", x + 1e-3 * noise.normal());
+        let _ = writeln!(text, "{t},{},{force}", x + 1e-3 * noise.next());
         x = advance(*force);
     }
     text
@@ -106,7 +123,7 @@ fn forces() -> Vec<f64> {
 pub(crate) struct Rig<F> {
     pub(crate) folder: Folder,
     friction: F,
-    noise: Random,
+    noise: Noise,
 }
 
 impl<F: Fn(f64) -> f64> Rig<F> {
@@ -115,7 +132,7 @@ impl<F: Fn(f64) -> f64> Rig<F> {
         let mut rig = Self {
             folder: Folder::new(),
             friction,
-            noise: Random::new(7),
+            noise: Noise(7),
         };
         rig.folder.write("recording.toml", DESCRIPTION);
         for name in RUNS {
@@ -178,7 +195,7 @@ pub(crate) fn late(delay: f64, coefficient: f64) -> Folder {
 
 /// The data set of a rig that moves so.
 fn moving<A: FnMut(f64) -> f64>(rig: impl Fn() -> A) -> Folder {
-    let (folder, mut noise) = (Folder::new(), Random::new(7));
+    let (folder, mut noise) = (Folder::new(), Noise(7));
     folder.write("recording.toml", DESCRIPTION);
     for name in RUNS {
         folder.write(name, &recording(rig(), &forces(), &mut noise));

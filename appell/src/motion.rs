@@ -191,12 +191,7 @@ impl Motion {
     }
 
     /// What drives the inputs. Laws come first: they may ask for initial values, which `initial` overrides.
-    fn plan(
-        &self,
-        model: &dyn Model,
-        setup: &mut Setup<'_>,
-        name: &str,
-    ) -> Result<Plan, Error> {
+    fn plan(&self, model: &dyn Model, setup: &mut Setup<'_>, name: &str) -> Result<Plan, Error> {
         let mut plan = Plan::new(setup);
         for law in &self.laws {
             let law = match law {

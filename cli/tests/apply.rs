@@ -152,7 +152,11 @@ fn what_is_no_report_of_this_spec_is_bad_data() {
         "report.json",
         r#"{ "schema": "gap-report/9", "mechanism": "", "which": [] }"#,
     );
-    folder.fails(3, &apply("carriage"), &["unsupported schema `gap-report/9`"]);
+    folder.fails(
+        3,
+        &apply("carriage"),
+        &["unsupported schema `gap-report/9`"],
+    );
     folder.write(
         "report.json",
         r#"{ "schema": "gap-report/1", "mechanism": "pendulum", "which": [] }"#,
@@ -160,6 +164,6 @@ fn what_is_no_report_of_this_spec_is_bad_data() {
     folder.fails(
         3,
         &apply("carriage"),
-        &["about `pendulum`, and the spec describes `carriage`"],
+        &["about `pendulum`, but the spec describes `carriage`"],
     );
 }

@@ -233,5 +233,8 @@ fn position_constraints_that_say_the_same_share_untold_forces() {
     );
     assert!(names(&model(&text)).is_empty());
     let report = told(&text);
-    assert!(report.contains("the reactions of `one` and `two` are statically indeterminate"), "{report}");
+    assert!(
+        report.contains("the reactions of `one` and `two` are statically indeterminate"),
+        "{report}"
+    );
 }

@@ -248,7 +248,8 @@ fn hint(info: &ModelInfo) -> String {
 /// The motion, under a bar.
 pub(super) fn simulated(model: &Model, motion: &Motion) -> Result<Simulated, Error> {
     let clock = progress::clock(motion.t_end);
-    let simulated = model.simulate_watched(motion, |t| clock.set_position(progress::milliseconds(t)));
+    let simulated =
+        model.simulate_watched(motion, |t| clock.set_position(progress::milliseconds(t)));
     clock.finish_and_clear();
     simulated
 }

@@ -15,7 +15,7 @@ pub(crate) fn record(model: &Model) -> Result<Vec<PathBuf>, Box<dyn std::error::
     let mut random = fastrand::Rng::with_seed(1);
     let mut files = Vec::new();
     for (frequency, name) in [(3.0, "slow.csv"), (5.0, "fast.csv"), (4.0, "test.csv")] {
-        let torque = format!("2*sin({frequency}*t)");
+        let torque = format!("2[N*m]*sin({frequency}[rad/s]*t)");
         let rig = Motion {
             interval: Some(0.01),
             ..Motion::new(4.0).input("tau", format!("{torque} - 0.1[N*m*s/rad]*omega"))

@@ -22,7 +22,7 @@ use crate::{Error, diagnosis, recording};
 /// use appell::{Model, Motion};
 ///
 /// let model = Model::shipped("pendulum")?;
-/// let motion = model.simulate(&Motion::new(2.0).from("theta", "30deg"))?;
+/// let motion = model.simulate(&Motion::new(2.0).initial("theta", "30deg"))?;
 /// assert!(motion.trajectory.column("theta").is_some());
 /// # Ok::<(), appell::Error>(())
 /// ```

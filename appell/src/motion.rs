@@ -100,7 +100,7 @@ impl Motion {
 
     /// Gives a state another initial value.
     #[must_use]
-    pub fn from(mut self, name: &str, value: impl ToString) -> Self {
+    pub fn initial(mut self, name: &str, value: impl ToString) -> Self {
         self.initial.push(Assignment::new(name, value));
         self
     }

@@ -10,34 +10,16 @@
 //! | `errata.rs` | what is printed and what is right |
 //! | `book/` | both papers recomputed, beside what general commands find |
 
+#![allow(
+    clippy::unwrap_used,
+    clippy::missing_panics_doc,
+    reason = "every typed formula is a constant of this crate and takes part in a test"
+)]
+
+#[warn(clippy::unwrap_used)]
 pub mod book;
-#[allow(
-    clippy::unwrap_used,
-    clippy::missing_panics_doc,
-    reason = "every formula is a constant of this crate and takes part in a test"
-)]
 pub mod errata;
-#[allow(
-    clippy::unwrap_used,
-    clippy::missing_panics_doc,
-    reason = "every formula is a constant of this crate and takes part in a test"
-)]
 pub mod euc;
-#[allow(
-    clippy::unwrap_used,
-    clippy::missing_panics_doc,
-    reason = "every formula is a constant of this crate and takes part in a test"
-)]
 pub mod formula;
-#[allow(
-    clippy::unwrap_used,
-    clippy::missing_panics_doc,
-    reason = "every formula is a constant of this crate and takes part in a test"
-)]
 pub mod paper;
-#[allow(
-    clippy::unwrap_used,
-    clippy::missing_panics_doc,
-    reason = "every formula is a constant of this crate and takes part in a test"
-)]
 pub mod steering;

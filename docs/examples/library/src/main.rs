@@ -11,7 +11,7 @@ const SPEC: &str = include_str!("../../../../generated/mechanisms/pendulum.toml"
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let model = Model::from_spec(SPEC)?;
 
-    let swing = Motion::new(2.0).set("l", "40cm").from("theta", "30deg");
+    let swing = Motion::new(2.0).set("l", "40cm").initial("theta", "30deg");
     let end = model.simulate(&swing)?.trajectory.last_state().to_vec();
     println!("swing: omega, theta = {end:?} after 2 s");
 
@@ -21,7 +21,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
     let design = model.control(&Request::default().at("theta", "180deg").poles("-4"))?;
     let law = model.law(&design)?;
-    let balanced = Motion::new(3.0).feedback(&law).from("theta", "170deg");
+    let balanced = Motion::new(3.0).feedback(&law).initial("theta", "170deg");
     let end = model.simulate(&balanced)?.trajectory.last_state().to_vec();
     println!("balanced: omega, theta = {end:?} after 3 s");
 

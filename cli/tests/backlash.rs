@@ -1,5 +1,6 @@
 //! Play in a gear is found beside an exact simulation of one.
 
+use appell_test_kit::is_full;
 use serde_json::json;
 
 use crate::rig::{self, geared};
@@ -29,6 +30,9 @@ fn play_is_found_with_its_size_and_its_spec_has_no_gap() {
     assert_eq!(report["where"]["equations"][0]["name"], "v");
     let closed = number(&report, "how_far/closed_vs_refitted");
     assert!(closed > 0.9, "{closed}");
+    if !is_full() {
+        return;
+    }
 
     let spec = support::repository("generated/mechanisms/carriage.toml");
     let spec = std::fs::read_to_string(spec).expect("a shipped spec");

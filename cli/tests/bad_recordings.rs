@@ -1,5 +1,7 @@
 //! `appell diagnose` on recordings that are wrong: a clear error with its place, or a warning.
 
+use appell_test_kit::is_full;
+
 use crate::rig::viscous;
 use crate::support::Folder;
 
@@ -120,8 +122,13 @@ fn a_block_without_measurements_does_not_matter() {
 #[test]
 fn a_channel_that_never_changes_is_told() {
     let folder = measured(|_| "0.25");
-    let told = folder.done(&["diagnose", "--data", ".", "--json", "report.json"]);
     let says = "the channel never changes";
+    let told = folder.done(&["recording", "."]);
+    assert!(told.stdout.contains(says), "{}", told.stdout);
+    if !is_full() {
+        return;
+    }
+    let told = folder.done(&["diagnose", "--data", ".", "--json", "report.json"]);
     assert!(told.stdout.contains(says), "{}", told.stdout);
     let data = folder.json("report.json")["data"].to_string();
     assert!(data.contains(says), "{data}");
@@ -154,8 +161,10 @@ fn times_in_milliseconds_are_told_at_once_and_may_be_stated() {
         }));
         folder.write(name, &(changed.join("\n") + "\n"));
     }
+    let rows = folder.read("a.csv").lines().count() - 1;
+    let lasts = format!("a.csv: t: the run lasts {}", 10 * (rows - 1));
     let told = [
-        "a.csv: t: the run lasts 7990",
+        lasts.as_str(),
         "a row every 10 s",
         "`t` is read in seconds",
         "write `t = { unit = \"ms\" }` in `[channels]`",

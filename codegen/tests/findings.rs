@@ -8,6 +8,7 @@ use appell_codegen::formulations::compare;
 use appell_codegen::program::FunctionKind;
 use appell_codegen::schedule::schedule;
 use appell_spec::{Code, Report};
+use appell_test_kit::budget;
 
 /// A text this long to derive would make an editor wait.
 const LONGEST_WAIT: Duration = Duration::from_secs(20);
@@ -326,7 +327,7 @@ fn chain(links: usize) -> String {
 #[test]
 fn a_long_chain_neither_hangs_nor_fills_the_memory() {
     let start = Instant::now();
-    if let Err(report) = derived("chain.toml", &chain(40)) {
+    if let Err(report) = derived("chain.toml", &chain(budget(28, 40))) {
         assert!(report.plain().contains("too-large"), "{}", report.plain());
     }
     assert!(start.elapsed() < LONGEST_WAIT, "{:?}", start.elapsed());
@@ -334,7 +335,7 @@ fn a_long_chain_neither_hangs_nor_fills_the_memory() {
 
 #[test]
 fn the_formulations_of_a_long_chain_are_compared_or_refused_in_time() {
-    for links in [8, 24] {
+    for links in [8, budget(16, 24)] {
         let Ok(chain) = derived("chain.toml", &chain(links)) else {
             continue;
         };

@@ -44,12 +44,16 @@ pub(crate) static EQUATIONS: LazyLock<Vec<(String, Page)>> =
     LazyLock::new(|| pages(Stage::Equations));
 
 fn pages(stage: Stage) -> Vec<(String, Page)> {
-    let names = shipped().into_iter();
-    let page = |name: String| {
-        let page = page_of(&name, stage);
-        (name, page)
-    };
-    names.map(page).collect()
+    let names = shipped();
+    let page = |name: &String| (name.clone(), page_of(name, stage));
+    let (first, second) = names.split_at(names.len() / 2);
+    let written = |names: &[String]| names.iter().map(page).collect::<Vec<_>>();
+    std::thread::scope(|scope| {
+        let second = scope.spawn(|| written(second));
+        let mut pages = written(first);
+        pages.extend(second.join().unwrap());
+        pages
+    })
 }
 
 /// The whole page of a spec after changes that no spec can hold.

@@ -8,7 +8,7 @@ use appell_estimate::{
 };
 use appell_models::Shipped;
 use appell_runtime::model::Model;
-use appell_test_kit::Random;
+use appell_test_kit::{Random, is_full};
 use appell_tests::recorded::{Drive, record};
 
 fn shipped(name: &str) -> &'static dyn Model {
@@ -75,9 +75,15 @@ fn covered(sets: usize) -> [usize; 3] {
 }
 
 #[test]
-fn intervals_of_95_percent_hold_the_truth_in_93_to_97_percent_of_400_data_sets() {
-    for count in covered(400) {
-        assert!((372..=388).contains(&count), "{count} of 400");
+fn intervals_of_95_percent_hold_the_truth_about_as_often_as_they_say() {
+    // In 93 to 97 % of 400 data sets; in 90 to 100 % of 100, which a right interval leaves once in 100.
+    let (sets, [fewest, most]) = if is_full() {
+        (400, [372, 388])
+    } else {
+        (100, [90, 100])
+    };
+    for count in covered(sets) {
+        assert!((fewest..=most).contains(&count), "{count} of {sets}");
     }
 }
 

@@ -4,6 +4,7 @@ mod gear;
 
 use std::fmt::Write as _;
 
+use appell_test_kit::is_full;
 use gear::{Gear, moved};
 use serde_json::Value;
 
@@ -23,8 +24,8 @@ test = ["c.csv"]
 "#;
 
 const RUNS: [&str; 3] = ["a.csv", "b.csv", "c.csv"];
-/// Rows of a recording, a hundred in a second.
-const ROWS: u32 = 800;
+/// Rows of a recording, a hundred in a second: in an ordinary run, and in a full one.
+const ROWS: [u32; 2] = [500, 800];
 /// Time for which a force is held, in s.
 const HELD: f64 = 0.01;
 /// Steps of the simulation in a row.
@@ -116,7 +117,9 @@ fn sluggish(delay: f64, coefficient: f64) -> impl FnMut(f64) -> f64 {
 /// Forces of a run.
 fn forces() -> Vec<f64> {
     let force = |t: f64| 2.0 * (3.0 * t).sin() + 1.5 * (7.1 * t).cos();
-    (0..ROWS).map(|row| force(f64::from(row) / 100.0)).collect()
+    (0..ROWS[usize::from(is_full())])
+        .map(|row| force(f64::from(row) / 100.0))
+        .collect()
 }
 
 /// A rig with a friction.

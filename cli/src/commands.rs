@@ -24,9 +24,10 @@ mod steady;
 use appell::Error;
 
 /// Equations of motion from a declarative mechanism spec, by the Gibbs-Appell method.
+///
 /// MODEL is the name of a shipped mechanism (`appell list`) or the path of a spec file, which needs
-///no compilation. Exit status: 0 success, 2 usage error, 3 invalid spec or data, 4 failed
-///computation.
+/// no compilation. Exit status: 0 success, 2 usage error, 3 invalid spec or data, 4 failed
+/// computation.
 #[derive(Debug, clap::Parser)]
 #[command(name = "appell", version, propagate_version = true)]
 pub(crate) struct Arguments {

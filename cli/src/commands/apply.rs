@@ -12,9 +12,10 @@ use appell::files;
 use appell::source::Source;
 
 /// Writes the spec with the effect identified by a gap report.
+///
 /// Comments and layout of the spec are kept. Parameters fitted together with the effect are updated,
-///within their tolerances. Effects that a spec cannot express, such as an actuator delay or a sensor
-///bias, are listed with the place where they belong.
+/// within their tolerances. Effects that a spec cannot express, such as an actuator delay or a sensor
+/// bias, are listed with the place where they belong.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Apply {
     /// Name of a shipped mechanism or path of a spec, as diagnosed

@@ -19,9 +19,10 @@ use appell::files;
 use appell::source::Source;
 
 /// Validates specs and summarises the mechanisms they describe.
+///
 /// Names, units, frames, constraints, pseudo-velocities and inertias are checked; all errors are
-///reported at once, each with its line and a remedy. An audit of the equations warns of what is valid
-///but probably a mistake, and notes what is worth knowing.
+/// reported at once, each with its line and a remedy. An audit of the equations warns of what is valid
+/// but probably a mistake, and notes what is worth knowing.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Check {
     /// Names of shipped mechanisms or paths of specs
@@ -31,11 +32,13 @@ pub(crate) struct Check {
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
     /// Compare the equations with Kane's equations and with Lagrange's equations with multipliers
+    ///
     /// Equality is proved by an identity test with a bounded error probability where that applies,
-    ///and checked at random points in the declared ranges elsewhere.
+    /// and checked at random points in the declared ranges elsewhere.
     #[arg(long)]
     thorough: bool,
     /// Time limit of this comparison for one mechanism, in s
+    ///
     /// Quantities not compared by then are listed, and the check fails.
     #[arg(long, value_name = "S", default_value_t = 60.0, requires = "thorough")]
     time_limit_s: f64,

@@ -12,9 +12,10 @@ use crate::failure::tell;
 use crate::{design_report, engine, output, picture, progress};
 
 /// Controllability about a steady motion, and gains of a feedback law.
+///
 /// The motion is the initial state of the spec with the values of `--at`; the other inputs are chosen
-///so that it is steady. Without `--poles` or `--lqr` no law is designed. Gains, poles and weights are
-///in SI.
+/// so that it is steady. Without `--poles` or `--lqr` no law is designed. Gains, poles and weights are
+/// in SI.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Control {
     /// Name of a shipped mechanism or path of a spec

@@ -15,6 +15,7 @@ use appell::files;
 use appell::source::Source;
 
 /// Writes the derivation, from frames to equations of motion.
+///
 /// Readable from top to bottom as text, LaTeX or HTML; or emitted as Rust.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Derive {

@@ -10,6 +10,7 @@ use appell::Error;
 use appell::source::Source;
 
 /// Draws the mechanism at its initial state, as SVG.
+///
 /// Mistakes in a spec, such as the sign of an angle, are often visible at once.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Draw {

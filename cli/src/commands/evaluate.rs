@@ -14,9 +14,10 @@ use appell::cases::{Case, read_cases};
 use appell::files;
 
 /// Evaluates the equations at given states.
+///
 /// Computes rates, Appell's equations, Jacobians, energies, constraint forces and outputs, in SI. A
-///case reads {"state": {"theta": 0.1, …}, "inputs": {…}, "parameters": {…}, "t": 0}; only the state
-///must be complete.
+/// case reads {"state": {"theta": 0.1, …}, "inputs": {…}, "parameters": {…}, "t": 0}; only the state
+/// must be complete.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Evaluate {
     /// Name of a shipped mechanism or path of a spec

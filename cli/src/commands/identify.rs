@@ -10,11 +10,11 @@ use appell::Error;
 use appell::files;
 use appell_report::identification;
 
-/// Estimates parameters from recordings by maximum likelihood, with confidence intervals and
-/// prediction errors on held-out runs.
-/// Parameters with a tolerance in the data set are free, with the tolerance as prior; `--free`
-///selects others. Levels of measurement and process noise are estimated too, so that model errors do
-///not narrow the intervals.
+/// Estimates parameters from recordings by maximum likelihood.
+///
+/// The result includes confidence intervals and prediction errors on held-out runs. Parameters with a
+/// tolerance in the data set are free, with the tolerance as prior; `--free` selects others. Levels of
+/// measurement and process noise are estimated too, so that model errors do not narrow the intervals.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Identify {
     /// Name of a shipped mechanism or path of a spec
@@ -63,14 +63,14 @@ enum Start {
 impl Identify {
     pub(super) fn run(&self) -> Result<(), Error> {
         let set = appell::recording::read(&self.data, Some(&self.model))?;
-        appell::recording::refuse_slow(&set)?;
+        appell::recording::check_time_unit(&set)?;
         let model = engine::model_for_estimation(&self.model)?;
         let spinner = progress::spinner("reading");
         let options = Options {
             free: self.free.clone(),
-            also: self.also.clone(),
+            additional: self.also.clone(),
             drifting: self.drifting.clone(),
-            none_will_do: false,
+            allow_none: false,
             begin: match self.start {
                 Start::Nominal => Begin::Nominal,
                 Start::Shooting => Begin::Shooting,

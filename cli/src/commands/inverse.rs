@@ -9,10 +9,11 @@ use crate::{engine, picture, progress, relations};
 use appell::Error;
 use appell::files;
 
-/// Computes the inputs of recorded motions, and parameters from input-free equations of motion.
+/// Computes the inputs of recorded motions, and parameters from input-free equations.
+///
 /// If a mechanism has more equations of motion than inputs, some combinations of them hold whatever
-///the inputs were. They are weighted by the noise of the recordings, through splines and exact
-///derivatives. All coordinates that enter the equations must be measured; inputs need not be.
+/// the inputs were. They are weighted by the noise of the recordings, through splines and exact
+/// derivatives. All coordinates that enter the equations must be measured; inputs need not be.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Inverse {
     /// Name of a shipped mechanism or path of a spec

@@ -15,9 +15,10 @@ use appell::files;
 const MAX_SKELETON: u64 = 1 << 20;
 
 /// Converts motion capture of a vehicle and its rider to recordings of a model.
+///
 /// A skeleton file defines the captured rigid bodies, the mass distribution of the rider, and the
-///coordinates of the model. The data set contains these coordinates, for `appell inverse`, `identify`
-///and `recording`, and all intermediate quantities.
+/// coordinates of the model. The data set contains these coordinates, for `appell inverse`, `identify`
+/// and `recording`, and all intermediate quantities.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Motion {
     /// The skeleton file

@@ -8,10 +8,10 @@ use appell::Error;
 use appell::files;
 use appell_report::recording::text;
 
-/// Summarises recordings: runs, sampling rates, gaps, the noise of each channel, corrections and
-/// suspected errors.
+/// Summarises recordings: runs, sampling, noise of each channel, suspected errors.
+///
 /// A data set is a folder with a `recording.toml`. CSV files alone need `--model`, and columns with
-///the names and units of the spec.
+/// the names and units of the spec.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Recording {
     /// Folder of a data set, or CSV files

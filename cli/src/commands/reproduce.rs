@@ -11,10 +11,11 @@ use appell::Error;
 use appell::files;
 use appell_papers::book::{self, Claim, Section, Tally};
 
-/// Recomputes a paper: every equation, table and figure compared with the published one, as a book.
+/// Recomputes a paper: its equations, tables and figures against the published ones.
+///
 /// The book is one self-contained HTML page. For the electric unicycle the simulated rides are
-///written too, as data sets for `appell diagnose`. The exit status is 4 if a comparison does not give
-///its expected result.
+/// written too, as data sets for `appell diagnose`. The exit status is 4 if a comparison does not give
+/// its expected result.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Reproduce {
     /// The paper

@@ -16,9 +16,10 @@ use appell::steady::{Answer, Asked};
 use appell_report::text::table;
 
 /// Eigenvalues of steady motions, and where their stability changes.
+///
 /// The motions are given as for `appell steady`. Zero eigenvalues that belong to a family of steady
-///motions are counted and ignored in the verdict. With `--along` critical values are exact to
-///rounding: they are zeros of smooth functions of the characteristic polynomial.
+/// motions are counted and ignored in the verdict. With `--along` critical values are exact to
+/// rounding: they are zeros of smooth functions of the characteristic polynomial.
 #[derive(Debug, clap::Args)]
 pub(crate) struct StabilityCommand {
     #[command(flatten)]

@@ -11,12 +11,13 @@ use appell::Error;
 use appell::files;
 use appell::steady::{Answer, Asked, export};
 
-/// Finds steady motions: relative equilibria, in which the essential states are constant while
-/// ignorable coordinates advance uniformly.
+/// Finds steady motions, that is, relative equilibria, alone or along a quantity.
+///
+/// In a steady motion the essential states are constant while ignorable coordinates advance uniformly.
 /// Conditions are values of states, inputs, outputs and rates of ignorable coordinates; if they leave
-///a family of motions, the answer names the quantities that may be prescribed in addition. With
-///`--along` the motions are continued through folds and crossings. Values are in the unit of the
-///spec, or carry their own, as in `theta=10deg`.
+/// a family of motions, the answer names the quantities that may be prescribed in addition. With
+/// `--along` the motions are continued through folds and crossings. Values are in the unit of the
+/// spec, or carry their own, as in `theta=10deg`.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Steady {
     #[command(flatten)]

@@ -1,4 +1,4 @@
-//! Branches: steady motions along one quantity, with what happens on them.
+//! Branches: steady motions along one quantity, with their special points.
 
 pub(crate) mod continuation;
 pub(crate) mod crossing;
@@ -20,22 +20,22 @@ use crossing::Crossing;
 /// An output that must stay on one side of a value for a motion to be feasible.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Requirement {
-    /// Of what.
+    /// The output.
     pub term: Term,
     /// Least value in SI.
     pub at_least: f64,
 }
 
-/// How branches are followed.
+/// Options of the continuation.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BranchOptions {
-    /// Points of one branch after which it is given up.
+    /// Largest number of points of one branch.
     pub most_points: usize,
     /// Longest step, as a part of the range of the quantity and of the size of the unknowns.
     pub longest_step: f64,
     /// Whether a branch ends where a requirement is violated; else the points are marked.
     pub stop_infeasible: bool,
-    /// Whether branches that cross a branch are followed, too.
+    /// Whether crossing branches are followed as well.
     pub follow_crossings: bool,
 }
 
@@ -55,7 +55,7 @@ impl Default for BranchOptions {
 pub struct BranchPoint {
     /// State, inputs and parameters.
     pub point: Point,
-    /// Of the quantity along which the branch runs, in SI.
+    /// Value of the quantity along which the branch runs, in SI.
     pub value: f64,
     /// Outputs in SI.
     pub outputs: Vec<f64>,
@@ -63,18 +63,18 @@ pub struct BranchPoint {
     pub contacts: Vec<ContactForce>,
     /// Eigenvalues, verdict.
     pub stability: Stability,
-    /// Whether the requirements hold and every contact pushes.
+    /// Whether the requirements hold and every normal force is compressive.
     pub feasible: bool,
 }
 
-/// What a special point is.
+/// Kind of a special point.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Kind {
-    /// The quantity turns back.
+    /// The quantity turns back (fold).
     Fold,
-    /// Another branch crosses.
+    /// Another branch crosses (branch point).
     Crossing,
-    /// Eigenvalues say that stability may change.
+    /// Stability may change, by the eigenvalues.
     Critical(Change),
     /// A requirement begins or ceases to hold: its number; after the last, a contact lifts.
     Feasibility(usize),
@@ -83,7 +83,7 @@ pub enum Kind {
 /// A point between two points of a branch that is known to rounding.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Special {
-    /// What it is.
+    /// Its kind.
     pub kind: Kind,
     /// Index of the point before it.
     pub after: usize,
@@ -98,29 +98,29 @@ pub struct Special {
 pub struct Branch {
     /// The points, in order.
     pub points: Vec<BranchPoint>,
-    /// What lies between them, in order.
+    /// The special points between them, in order.
     pub specials: Vec<Special>,
-    /// Why it ends at its first and at its last point.
+    /// The causes of its two ends.
     pub ends: [End; 2],
     curve: Vec<DVector<f64>>,
 }
 
-/// Why there is no branch.
+/// Why branches could not be computed.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum BranchError {
-    /// No steady motions, or not one dimension of them.
+    /// No steady motions, or not a one-dimensional family.
     #[error(transparent)]
     Steady(#[from] SteadyError),
-    /// The conditions leave no motion to move on to.
-    #[error("the steady motions stand alone: release a condition, so that they can follow {along}")]
+    /// The conditions leave no family of motions.
+    #[error("the steady motions are isolated; release a condition to continue them along {along}")]
     Isolated {
         /// The quantity.
         along: String,
     },
-    /// A motion without a verdict.
+    /// The stability of a motion could not be determined.
     #[error(transparent)]
     Stability(#[from] StabilityError),
-    /// Ends of the range that do not fit.
+    /// An invalid range.
     #[error("`{along}` cannot run from {from} to {to}: write two different numbers")]
     Range {
         /// The quantity.
@@ -132,7 +132,7 @@ pub enum BranchError {
     },
 }
 
-/// Branches that are followed at most.
+/// Largest number of branches.
 const MOST_BRANCHES: usize = 40;
 /// Values of the quantity at which branches are looked for.
 const SECTIONS: usize = 5;
@@ -149,7 +149,7 @@ pub struct Branches<'a> {
 }
 
 impl<'a> Branches<'a> {
-    /// Of a problem whose conditions leave one dimension, once that on `along` is taken back.
+    /// Of a problem whose conditions leave one dimension, once that on `along` is removed.
     pub fn new(
         problem: &SteadyProblem<'a>,
         along: Term,
@@ -187,14 +187,14 @@ impl<'a> Branches<'a> {
         self.along
     }
 
-    /// All branches that are found: through the steady motions at several values of the quantity,
-    /// each sought from several starting points, and through crossings.
+    /// All branches found: through the steady motions at several values of the quantity, each
+    /// sought from several starting points, and through crossings.
     pub fn trace(&self, starts: usize) -> Result<Vec<Branch>, BranchError> {
         let equations = self.equations();
         let mut branches: Vec<Branch> = Vec::new();
         let mut reason = None;
         for section in 0..SECTIONS {
-            // Not at the ends, where a rounding decides whether there is anything.
+            // Not at the ends, where rounding decides whether a motion exists.
             let part = (section as f64 + 0.5) / SECTIONS as f64;
             let value = self.range[0] + part * (self.range[1] - self.range[0]);
             let mut here = self.problem.clone();
@@ -234,13 +234,7 @@ impl<'a> Branches<'a> {
         Ok(branches)
     }
 
-    /// The branch through one steady motion, both ways.
-    pub fn trace_from(&self, start: &Point) -> Result<Branch, BranchError> {
-        let equations = self.equations();
-        self.through(&equations, &equations.unknowns_of(start), None)
-    }
-
-    /// The branch that crosses at a special point; nothing where none does.
+    /// The branch that crosses at a special point, if any.
     pub fn switch(&self, special: &Special) -> Result<Option<Branch>, BranchError> {
         let Some(across) = &special.across else {
             return Ok(None);
@@ -270,7 +264,7 @@ impl<'a> Branches<'a> {
     ) -> Result<Branch, BranchError> {
         let start = match direction {
             Some(direction) => {
-                // A little beside the crossing, where the curve is alone.
+                // Beside the crossing, where the curve is isolated.
                 let step = self.options.longest_step * 0.1 * (1.0 + z.norm());
                 let beside = correct(equations, &(z + direction * step), direction);
                 beside.and_then(|(z, _)| OnCurve::new(equations, z, direction))
@@ -315,7 +309,7 @@ impl<'a> Branches<'a> {
         self.describe(equations, &curve, ends)
     }
 
-    /// A point of the curve; an error where the motions are not one family.
+    /// A point of the curve; an error where the motions are not a one-dimensional family.
     fn begin(
         &self,
         equations: &SteadyEquations<'_>,
@@ -417,7 +411,7 @@ impl<'a> Branches<'a> {
         ends.into_iter().next()
     }
 
-    /// Everything that a branch tells about its points and between them.
+    /// The branch of a curve: its points and the special points between them.
     fn describe(
         &self,
         equations: &SteadyEquations<'_>,
@@ -466,7 +460,7 @@ impl<'a> Branches<'a> {
         })
     }
 
-    /// What lies between two points, with its unknowns.
+    /// The special points between two points, with their unknowns.
     fn specials(
         &self,
         equations: &SteadyEquations<'_>,
@@ -570,7 +564,7 @@ impl Branch {
         self.curve.windows(2).any(near)
     }
 
-    /// Special points at which the verdict differs before and behind.
+    /// Special points at which the verdict changes.
     pub fn changes(&self) -> impl Iterator<Item = &Special> {
         self.specials.iter().filter(|special| {
             let verdict = |place: usize| self.points.get(place).map(|p| p.stability.verdict);

@@ -1,8 +1,9 @@
-//! Stability over two quantities: steady motions with their eigenvalues, and the curves between them.
+//! Stability charts over two quantities: steady motions with their eigenvalues, and stability
+//! boundaries.
 
 pub(crate) mod boundary;
-pub(crate) mod flood;
 pub(crate) mod grid;
+pub(crate) mod grid_continuation;
 pub(crate) mod level;
 pub(crate) mod plane;
 
@@ -17,19 +18,18 @@ use appell_runtime::linearise::Undetermined;
 use appell_spectra::spectrum::{Complex, SpectrumError};
 use plane::Axis;
 
-/// Values of one axis at most.
+/// Largest number of values of one axis.
 pub(super) const MOST: usize = 4000;
 
 /// A steady motion of the grid.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Cell {
-    /// The essential states and what else is unknown, in SI, in the order of
-    /// [`Chart::unknowns`].
+    /// The essential states and the other unknowns, in SI, in the order of [`Chart::unknowns`].
     pub unknowns: Vec<f64>,
     /// Eigenvalues without the zeros, largest real part first.
     pub eigenvalues: Vec<Complex<f64>>,
-    /// What they say. A grid takes real parts below a millionth of the largest eigenvalue as zero;
-    /// where stability changes, the boundaries tell to the last digit.
+    /// The verdict. A grid takes real parts below a millionth of the largest eigenvalue as zero; the
+    /// boundaries are exact to rounding.
     pub verdict: Verdict,
     /// Whether the requirements hold.
     pub feasible: bool,
@@ -42,8 +42,8 @@ pub struct Chart {
     pub axes: [Axis; 2],
     /// What [`Cell::unknowns`] are.
     pub unknowns: Vec<Term>,
-    /// The motions of each place, row by row, the horizontal quantity running fastest: none where
-    /// no steady motion was found, several where sheets of them lie over each other.
+    /// The motions of each grid point, row by row, the horizontal quantity running fastest: none where
+    /// no steady motion was found, several where branches overlap.
     pub cells: Vec<Vec<Cell>>,
     /// Where eigenvalues reach the imaginary axis, as curves.
     pub boundaries: Vec<Boundary>,
@@ -58,22 +58,21 @@ pub struct Boundary {
     pub change: Change,
     /// Values of the two quantities in SI, in order.
     pub points: Vec<[f64; 2]>,
-    /// For each point whether the motion is unstable on one side of the curve only: nothing else
-    /// grows there.
+    /// For each point whether stability changes there: no other mode is unstable.
     pub decides: Vec<bool>,
-    /// Where one of the two quantities turns back, to rounding.
+    /// Points where one of the two quantities turns back, to rounding.
     pub folds: Vec<BoundaryFold>,
     /// Why the curve ends.
     pub ends: [End; 2],
 }
 
-/// A place where a boundary runs along one of the quantities.
+/// A point where a boundary is parallel to one of the axes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BoundaryFold {
-    /// The axis, 0 or 1, whose quantity is largest or smallest here.
+    /// The axis, 0 or 1, whose quantity is extreme here.
     pub axis: usize,
-    /// Values of the two quantities in SI. That of the axis is known to rounding; the other to the
-    /// root of it, as the curve is flat.
+    /// Values of the two quantities in SI. That of the axis is known to rounding, the other to the
+    /// square root of it, as the curve is flat.
     pub at: [f64; 2],
     /// The motion.
     pub point: Point,
@@ -90,10 +89,10 @@ pub struct Edge {
     pub points: Vec<[f64; 2]>,
 }
 
-/// Why there is no chart.
+/// Why a chart could not be computed.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum ChartError {
-    /// No steady motions, or conditions that do not fit.
+    /// No steady motions, or unsuitable conditions.
     #[error(transparent)]
     Branch(#[from] BranchError),
     /// A grid that is too small or too large.
@@ -132,7 +131,7 @@ impl Boundary {
         let runs = self.decides.chunk_by(|a, b| a == b).filter_map(move |run| {
             let start = from;
             from += run.len();
-            // A part goes on to the point where the next one begins.
+            // A part extends to the point where the next one begins.
             run[0].then_some(start..(from + 1).min(self.points.len()))
         });
         runs.map(|run| &self.points[run])

@@ -1,16 +1,15 @@
-//! Feedback about a steady motion: what the inputs reach, and gains that put the poles where they
-//! are wanted.
+//! Feedback about a steady motion: controllability, and gains that place the poles.
 //!
-//! The way from a model to a law:
+//! The steps from a model to a control law:
 //!
-//! 1. [`operating_point`]: δẋ = A δx + B δu about a motion, with what changes along it;
-//! 2. [`controllability`]: what the inputs reach, which modes they do not;
+//! 1. [`operating_point`]: δẋ = A δx + B δu about a steady motion;
+//! 2. [`controllability`]: the controllable subspace and the uncontrollable modes;
 //! 3. [`reduction`]: the exact equations of chosen outputs alone;
 //! 4. [`placement`], [`robust_placement`] or [`lqr`]: the gains;
 //! 5. [`feedback`]: `u = u₀ − K (y − y_des(t))` as the inputs of a simulation.
 //!
-//! Beside it: [`sampled`] and [`sampler`] for a controller that measures at intervals and acts with a
-//! delay, [`schedule`] for gains over a speed, [`attraction`] for how large a disturbance may be.
+//! Also: [`sampled`] and [`sampler`] for sampled controllers with a delay, [`schedule`] for gain
+//! schedules, [`attraction`] for regions of attraction.
 //!
 //! All matrices are in SI, in the order of the states and inputs that [`LinearSystem`] names.
 

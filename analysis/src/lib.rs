@@ -2,15 +2,15 @@
 //!
 //! | room | idea |
 //! |---|---|
-//! | `point.rs`, `term.rs` | where a model is evaluated; what can be given, varied or left free there |
-//! | `steady.rs` | steady motions under conditions, all that are found, the dimension of their family |
-//! | `steady/` | essential states and hidden ones; steady motions as equations, their solution, where to begin; what the hidden coordinates do |
-//! | `stability.rs` | eigenvalues without those of the family; the verdict |
-//! | `stability/` | smooth functions whose zeros are changes of stability; modes that keep their place through crossings |
+//! | `point.rs`, `term.rs` | state, inputs and parameters; quantities that can be prescribed, varied or left free |
+//! | `steady.rs` | steady motions under conditions, and the dimension of their family |
+//! | `steady/` | essential and ignorable states; the equations of steady motions, their solution, starting points; the paths of points |
+//! | `stability.rs` | eigenvalues without the zeros of the family; the verdict |
+//! | `stability/` | smooth test functions for changes of stability; modes tracked through crossings |
 //! | `branch.rs` | steady motions along one quantity: folds, crossings, ends, feasibility |
-//! | `branch/` | curves of zeros, followed by their length; where two of them cross |
+//! | `branch/` | pseudo-arclength continuation; branch points |
 //! | `chart.rs` | stability over two quantities: what a chart holds |
-//! | `chart/` | its plane, its grid and the verdicts there; its curves: borders of stability and feasibility |
+//! | `chart/` | the grid and its verdicts; boundaries of stability and feasibility |
 //! | `control/` | linear models, gains, sampled controllers, schedules, controllability, regions of attraction |
 //!
 //! ```
@@ -29,8 +29,8 @@
 //! }
 //! ```
 //!
-//! Nothing here knows a mechanism. A steady motion is one whose essential states rest; the wheel
-//! rolls, the pendulum spins, and their hidden coordinates run on.
+//! This crate is independent of mechanisms. In a steady motion the essential states are constant;
+//! the wheel rolls, the pendulum spins, and their ignorable coordinates grow.
 
 mod branch;
 mod chart;
@@ -51,6 +51,6 @@ pub use stability::critical::Change;
 pub use stability::locus::loci;
 pub use stability::{Stability, StabilityError, Verdict, essential_matrix};
 pub use steady::cyclic::{Structure, StructureError};
-pub use steady::hidden::{Circle, circle};
+pub use steady::path::{Circle, circle};
 pub use steady::{Condition, SteadyError, SteadyMotion, SteadyProblem};
 pub use term::Term;

@@ -1,4 +1,4 @@
-//! Where a model is evaluated.
+//! State, inputs and parameters at which a model is evaluated.
 
 use appell_runtime::model::{At, Model};
 use appell_runtime::signal::Signal;
@@ -32,7 +32,7 @@ impl Point {
         }
     }
 
-    /// As a model takes it.
+    /// As an argument of a model.
     pub fn at(&self) -> At<'_> {
         At {
             t: 0.0,
@@ -42,14 +42,14 @@ impl Point {
         }
     }
 
-    /// ẋ here.
+    /// ẋ at this point.
     pub fn rates(&self, model: &dyn Model) -> Vec<f64> {
         let mut rates = vec![0.0; self.x.len()];
         model.rates(self.at(), &mut rates);
         rates
     }
 
-    /// Outputs here.
+    /// Outputs at this point.
     pub fn outputs(&self, model: &dyn Model) -> Vec<f64> {
         let mut outputs = vec![0.0; model.info().output_len()];
         model.outputs(self.at(), &mut outputs);

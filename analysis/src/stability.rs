@@ -1,5 +1,5 @@
-//! Stability of a steady motion: the eigenvalues of its essential states, without those that only
-//! lead to its neighbours in the family.
+//! Stability of a steady motion: the eigenvalues of its essential states, without the zero
+//! eigenvalues of its family.
 
 pub(crate) mod critical;
 pub(crate) mod locus;
@@ -13,7 +13,7 @@ use appell_runtime::model::Model;
 use appell_spectra::singular::Singular;
 use appell_spectra::spectrum::{Complex, Spectrum, SpectrumError, characteristic_polynomial};
 
-/// Why a motion has no verdict.
+/// Why stability could not be determined.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum StabilityError {
     /// Position constraints that do not determine their coordinates.
@@ -24,26 +24,26 @@ pub enum StabilityError {
     Spectrum(#[from] SpectrumError),
 }
 
-/// What linear stability says of a steady motion.
+/// Linear stability of a steady motion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Verdict {
-    /// Disturbances decay, onto the motion or a neighbour in its family.
+    /// Disturbances decay, to the motion or a neighbouring one of its family.
     Asymptotic,
-    /// Disturbances neither grow nor decay; higher terms decide.
+    /// Disturbances neither grow nor decay; nonlinear terms decide.
     Neutral,
     /// Some disturbance grows.
     Unstable,
-    /// A real eigenvalue is zero that no family explains, or oscillations of one frequency share a
-    /// shape: at the border.
+    /// At the boundary of stability: a real eigenvalue is zero beyond those of the family, or a
+    /// repeated imaginary pair is defective.
     Critical,
 }
 
-/// What rounding makes of a zero coefficient of the characteristic polynomial, relative to the
-/// product of as many eigenvalues.
+/// Rounding of a zero coefficient of the characteristic polynomial, relative to the product of as
+/// many eigenvalues.
 const ZERO: f64 = 1e-12;
 /// Singular values that count as zero, relative to the largest.
 const RANK: f64 = 1e-9;
-/// Growth is told from rounding where it exceeds this many times the uncertainty.
+/// Growth is significant if it exceeds this many times the uncertainty.
 const SAFETY: f64 = 100.0;
 
 /// Eigenvalues and verdict.
@@ -53,18 +53,18 @@ pub struct Stability {
     pub states: Vec<usize>,
     /// A in these states.
     pub matrix: DMatrix<f64>,
-    /// All its modes.
+    /// Its modes.
     pub spectrum: Spectrum,
-    /// How many eigenvalues are zero.
+    /// Number of zero eigenvalues.
     pub zeros: usize,
-    /// In how many directions neighbouring steady motions lie, with inputs and parameters as they
-    /// are. As many zeros belong to the family.
+    /// Dimension of the family of steady motions with the same inputs and parameters: the number of
+    /// zero eigenvalues that belong to it.
     pub family: usize,
-    /// Places of the modes that decide: all but the zeros.
+    /// Indices of the deciding modes: all but the zeros.
     pub deciding: Vec<usize>,
     /// The verdict.
     pub verdict: Verdict,
-    /// Largest real part of a deciding eigenvalue, in 1/s; minus infinity where there is none.
+    /// Largest real part of a deciding eigenvalue, in 1/s; minus infinity without one.
     pub growth: f64,
     /// Real parts below this are zero within rounding, in 1/s: machine precision times the norm of A
     /// times the condition of the eigenvalue with the largest real part.
@@ -72,7 +72,7 @@ pub struct Stability {
 }
 
 impl Stability {
-    /// Of a steady motion.
+    /// Analyses a steady motion.
     pub fn of(
         model: &dyn Model,
         structure: &Structure,
@@ -83,7 +83,7 @@ impl Stability {
         let family = states.len() - Singular::of(&matrix).rank(RANK);
         let zeros = zero_count(&matrix)?.max(family);
         let mut deciding: Vec<usize> = (0..states.len()).collect();
-        // The zeros are the smallest, whatever rounding made of them.
+        // The zeros are the smallest, up to rounding.
         let size = |mode: &usize| spectrum.modes[*mode].value.norm();
         deciding.sort_by(|a, b| size(b).total_cmp(&size(a)));
         deciding.truncate(states.len() - zeros);
@@ -107,7 +107,7 @@ impl Stability {
         let mut rest = false;
         for &mode in &self.deciding {
             let re = self.spectrum.modes[mode].value.re;
-            // A repeated eigenvalue is known to the root of rounding only.
+            // A repeated eigenvalue is known only to the square root of rounding.
             let known = self.spectrum.uncertainty(mode);
             let threshold = (SAFETY * known).min((f64::EPSILON).sqrt() * self.spectrum.norm);
             if re > self.growth {
@@ -134,7 +134,7 @@ impl Stability {
     }
 }
 
-/// A in the independent essential states, which are told by their index in the model.
+/// A in the independent essential states, with their indices in the model.
 pub fn essential_matrix(
     model: &dyn Model,
     structure: &Structure,
@@ -160,8 +160,8 @@ pub fn essential_matrix(
     ))
 }
 
-/// How many eigenvalues are zero, however few vectors they share: trailing coefficients of the
-/// characteristic polynomial that are zero within rounding.
+/// Algebraic multiplicity of the eigenvalue zero: trailing coefficients of the characteristic
+/// polynomial that are zero within rounding.
 pub(super) fn zero_count(matrix: &DMatrix<f64>) -> Result<usize, SpectrumError> {
     let coefficients = characteristic_polynomial(matrix)?;
     let values = appell_spectra::spectrum::eigenvalues(matrix)?;
@@ -170,7 +170,7 @@ pub(super) fn zero_count(matrix: &DMatrix<f64>) -> Result<usize, SpectrumError> 
     let n = sizes.len();
     let all_zero = |&zeros: &usize| {
         let (others, product) = (n - zeros, sizes[..n - zeros].iter().product::<f64>());
-        // Where every eigenvalue is zero, the largest is rounding, too.
+        // If all eigenvalues are zero, the largest is rounding, too.
         let largest = if others == 0 { matrix.norm() } else { sizes[0] };
         let noise = |j: usize| ZERO * product * largest.powi(i32::try_from(j).unwrap_or(i32::MAX));
         (1..=zeros).all(|j| coefficients[others + j].abs() <= noise(j))

@@ -3,8 +3,8 @@
 pub(crate) mod cyclic;
 pub(crate) mod differences;
 pub(crate) mod equations;
-pub(crate) mod hidden;
 pub(crate) mod newton;
+pub(crate) mod path;
 pub(crate) mod starts;
 
 use nalgebra::DVector;
@@ -17,28 +17,28 @@ use equations::SteadyEquations;
 use newton::{Missed, Zero};
 use starts::{Spread, value_at};
 
-/// A quantity that has a value in SI.
+/// A quantity with a prescribed value.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Condition {
-    /// Of what.
+    /// The quantity.
     pub term: Term,
     /// In SI.
     pub value: f64,
 }
 
-/// A motion whose essential states rest.
+/// A motion whose essential states are constant.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SteadyMotion {
-    /// State, inputs and parameters. Hidden states have the values where the search began.
+    /// State, inputs and parameters. Ignorable states keep the values at which the search began.
     pub point: Point,
-    /// In how many directions further steady motions lie that satisfy the same conditions; 0 for one
-    /// that stands alone.
+    /// Dimension of the family of steady motions that satisfy the same conditions; 0 for an
+    /// isolated one.
     pub family: usize,
     /// Largest rate of an essential state, in SI.
     pub residual: f64,
 }
 
-/// Why a question about steady motions has no answer.
+/// Why steady motions could not be computed.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum SteadyError {
     /// The model has none.
@@ -50,22 +50,22 @@ pub enum SteadyError {
         /// The term.
         term: Term,
     },
-    /// A hidden state has no value in a steady motion.
+    /// An ignorable state has no value in a steady motion.
     #[error(
-        "`{name}` is hidden: its value changes nothing about the motion; give its rate, `{name}_dot`"
+        "`{name}` is ignorable: the motion does not depend on its value; prescribe its rate, `{name}_dot`"
     )]
-    Hidden {
+    Ignorable {
         /// The state.
         name: String,
     },
-    /// A rate or output that changes while the motion goes on.
+    /// A rate or output that changes along the motion.
     #[error(
-        "`{name}` is not constant in a steady motion, as it follows hidden states; give {instead}"
+        "`{name}` is not constant in a steady motion, as it depends on ignorable states; prescribe {instead}"
     )]
     NotConstant {
         /// The quantity.
         name: String,
-        /// What can be given.
+        /// Quantities that can be prescribed.
         instead: String,
     },
     /// Only inputs and parameters can be left free.
@@ -78,26 +78,26 @@ pub enum SteadyError {
     },
     /// No steady motion was found.
     #[error(
-        "no steady motion satisfies the conditions: from {starts} starting points the nearest leaves {}; {}",
+        "no steady motion satisfies the conditions: the best of {starts} starting points leaves {}; {}",
         list(.left), if *.conditions { "release one of the conditions or free an input" } else { "free an input" }
     )]
     None {
-        /// Points from which one was sought.
+        /// Number of starting points.
         starts: usize,
-        /// Equations that do not hold there, with what is left of each, in SI.
+        /// Equations that do not hold there, with their residuals in SI.
         left: Vec<(String, f64)>,
         /// Whether there are conditions that could be released.
         conditions: bool,
     },
-    /// The conditions leave a family.
+    /// The conditions determine a family of motions.
     #[error(
-        "the conditions leave a family of {dimension} {}: give {dimension} more of {}",
+        "the conditions leave a family of {dimension} {}; prescribe {dimension} more of {}",
         if *.dimension == 1 { "dimension" } else { "dimensions" }, .open.join(", ")
     )]
     Family {
         /// Its dimension.
         dimension: usize,
-        /// What varies within it.
+        /// Quantities that vary within it.
         open: Vec<String>,
     },
 }
@@ -107,7 +107,7 @@ fn list(left: &[(String, f64)]) -> String {
     left.iter().map(one).collect::<Vec<_>>().join(", ")
 }
 
-/// What is given and what is sought.
+/// Conditions on steady motions, and the quantities that are free.
 #[derive(Clone)]
 pub struct SteadyProblem<'a> {
     model: &'a dyn Model,
@@ -121,8 +121,7 @@ pub struct SteadyProblem<'a> {
 const SAME: f64 = 1e-7;
 
 impl<'a> SteadyProblem<'a> {
-    /// All steady motions with the inputs and parameters of a point; its state is where a search
-    /// begins.
+    /// All steady motions with the inputs and parameters of a point; searches begin at its state.
     pub fn new(model: &'a dyn Model, base: Point) -> Result<Self, SteadyError> {
         Ok(Self {
             structure: Structure::of(model, &base)?,
@@ -138,7 +137,7 @@ impl<'a> SteadyProblem<'a> {
         self.model
     }
 
-    /// Essential and hidden states.
+    /// Essential and ignorable states.
     pub fn structure(&self) -> &Structure {
         &self.structure
     }
@@ -158,7 +157,7 @@ impl<'a> SteadyProblem<'a> {
         &self.free
     }
 
-    /// Gives a quantity its value in SI; of one that has a value already, a new one.
+    /// Prescribes the value of a quantity in SI, or replaces a prescribed one.
     pub fn fix(&mut self, term: Term, value: f64) -> Result<(), SteadyError> {
         self.check(term)?;
         if !self.is_unknown(term)
@@ -170,7 +169,7 @@ impl<'a> SteadyProblem<'a> {
         self.conditions.retain(|condition| condition.term != term);
         self.conditions.push(Condition { term, value });
         if let Term::State(state) = term {
-            // A search begins where it may end.
+            // The starting point satisfies the condition.
             self.base.x[state] = value;
         }
         Ok(())
@@ -194,7 +193,7 @@ impl<'a> SteadyProblem<'a> {
         Err(SteadyError::NotFree { name, reason })
     }
 
-    /// Takes back the condition on a quantity; an input or parameter becomes free.
+    /// Removes the condition on a quantity; an input or parameter becomes free.
     pub fn release(&mut self, term: Term) -> Result<(), SteadyError> {
         self.check(term)?;
         self.conditions.retain(|condition| condition.term != term);
@@ -224,7 +223,7 @@ impl<'a> SteadyProblem<'a> {
         let name = term.name(info);
         match term {
             Term::State(state) if !self.structure.is_essential(state) => {
-                Err(SteadyError::Hidden { name })
+                Err(SteadyError::Ignorable { name })
             }
             Term::Rate(state) if self.structure.is_essential(state) => {
                 let instead = "something else: the rate of an essential state is zero".to_owned();
@@ -241,9 +240,9 @@ impl<'a> SteadyProblem<'a> {
         }
     }
 
-    /// Whether a rate or output has one value as long as a steady motion lasts.
+    /// Whether a rate or output is constant along a steady motion.
     fn is_constant(&self, term: Term) -> bool {
-        /// Hidden states are moved by this, in SI; a sum of them may cancel by accident at one.
+        /// Offsets of the ignorable states in SI: several, as the effects of one may cancel by accident.
         const MOVED: [f64; 3] = [0.37, -1.1, 2.3];
         match term {
             Term::Rate(state) => self.structure.uniform.contains(&state),
@@ -251,7 +250,7 @@ impl<'a> SteadyProblem<'a> {
                 let value = term.value(self.model, &self.base);
                 MOVED.iter().all(|by| {
                     let mut moved = self.base.clone();
-                    for (i, &state) in self.structure.hidden.iter().enumerate() {
+                    for (i, &state) in self.structure.ignorable.iter().enumerate() {
                         moved.x[state] += by / (1.0 + i as f64);
                     }
                     let change = (term.value(self.model, &moved) - value).abs();
@@ -262,7 +261,8 @@ impl<'a> SteadyProblem<'a> {
         }
     }
 
-    /// What has a value in a steady motion: essential states, rates of hidden coordinates, outputs.
+    /// Quantities that are constant in a steady motion: essential states, rates of ignorable
+    /// coordinates, outputs.
     pub fn constants(&self) -> Vec<Term> {
         let states = self.structure.essential.iter().map(|&s| Term::State(s));
         let rates = self.structure.uniform.iter().map(|&s| Term::Rate(s));
@@ -271,7 +271,7 @@ impl<'a> SteadyProblem<'a> {
         states.chain(rates).chain(constant).collect()
     }
 
-    /// The steady motion that is reached from a point, alone or one of a family.
+    /// The steady motion reached from a point, isolated or one of a family.
     pub fn solve_from(&self, start: &Point) -> Result<SteadyMotion, SteadyError> {
         let equations = self.equations();
         let zero = newton::solve(&equations, &equations.unknowns_of(start));
@@ -279,7 +279,7 @@ impl<'a> SteadyProblem<'a> {
         Ok(self.motion(&equations, &zero))
     }
 
-    /// The steady motion nearest to the point where searches begin.
+    /// The steady motion reached from the point where searches begin.
     pub fn solve(&self) -> Result<SteadyMotion, SteadyError> {
         self.solve_from(&self.base)
     }
@@ -334,7 +334,7 @@ impl<'a> SteadyProblem<'a> {
             .collect())
     }
 
-    /// The same, where all must stand alone.
+    /// The same, all of which must be isolated.
     pub fn solve_isolated(&self, starts: usize) -> Result<Vec<SteadyMotion>, SteadyError> {
         let all = self.solve_all(starts)?;
         let dimension = all.iter().map(|motion| motion.family).min().unwrap_or(0);
@@ -350,9 +350,9 @@ impl<'a> SteadyProblem<'a> {
         Err(SteadyError::Family { dimension, open })
     }
 
-    /// What varies within the family of a steady motion: quantities that may be fixed further.
+    /// Quantities that vary within the family of a steady motion and may be prescribed in addition.
     pub fn open(&self, motion: &SteadyMotion) -> Vec<Term> {
-        /// Parts of a scale by which a quantity varies, below which it does not.
+        /// Variation, relative to its scale, below which a quantity counts as constant.
         const VARIES: f64 = 1e-6;
         let equations = self.equations();
         let z = equations.unknowns_of(&motion.point);
@@ -438,7 +438,7 @@ impl<'a> SteadyProblem<'a> {
         }
     }
 
-    /// What each equation says, in the order of the rows.
+    /// Descriptions of the equations, in the order of the rows.
     fn row_names(&self) -> Vec<String> {
         let info: &ModelInfo = self.model.info();
         let rates = self.structure.essential.iter();

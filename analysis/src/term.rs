@@ -1,4 +1,4 @@
-//! What can be given, varied or left free in a steady motion.
+//! Quantities that can be prescribed, varied or left free in a steady motion.
 
 use std::borrow::Cow;
 
@@ -11,7 +11,7 @@ use appell_runtime::model::{Model, ModelInfo, Quantity};
 pub enum Term {
     /// A pseudo-velocity or coordinate.
     State(usize),
-    /// The rate of a state, such as that of a hidden angle; `psi_dot` for a state `psi`.
+    /// The rate of a state, such as that of an ignorable angle; `psi_dot` for a state `psi`.
     Rate(usize),
     /// An input or signal.
     Input(usize),
@@ -84,7 +84,7 @@ impl Term {
         }
     }
 
-    /// Where a point keeps its value; nothing for what follows from others.
+    /// Its entry in a point; `None` for dependent quantities.
     pub(super) fn place(self, point: &mut Point) -> Option<&mut f64> {
         match self {
             Self::State(i) => point.x.get_mut(i),
@@ -94,8 +94,7 @@ impl Term {
         }
     }
 
-    /// By how much it usually changes, in SI: lengths in the space of all unknowns are measured
-    /// with it.
+    /// Its typical change in SI: the scale of the unknown.
     pub(super) fn scale(self, info: &ModelInfo, point: &Point) -> f64 {
         match self {
             Self::Parameter(i) if point.p[i] != 0.0 => point.p[i].abs(),

@@ -316,7 +316,7 @@ fn a_law_keeps_the_unicycle_on_a_circle_that_is_given_by_its_rates() {
     folder.fails(
         2,
         &with(&[&["control", "unicycle"], &circle]),
-        &["give 1 more of", "u"],
+        &["prescribe 1 more of", "u"],
     );
     let design = ["--at", "u=0", "--lqr", "Q=1,R=0.01", "--write", "law.toml"];
     let told = folder

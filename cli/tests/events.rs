@@ -34,7 +34,7 @@ fn a_ball_that_leaves_its_surface_is_told_and_the_motion_goes_on() {
     ];
     let told = folder.done(&run).stdout;
     assert!(
-        told.contains("the contact `P` slips: it asks for a coefficient of friction of 0.400000"),
+        told.contains("the contact `P` slips: its friction demand is 0.400000"),
         "{told}"
     );
     assert!(told.contains("the contact `P` is lost"), "{told}");

@@ -553,7 +553,7 @@ fn a_run_gives_up_after_the_most_steps() {
             "--json",
             "out.json",
         ],
-        &["5 steps were not enough", "at t = "],
+        &["the limit of 5 steps was reached", "at t = "],
     );
     assert!(folder.read("a.csv").lines().count() > 4);
     let out = folder.json("out.json");

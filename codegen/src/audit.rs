@@ -1,8 +1,9 @@
-//! What is legal in a mechanism, and yet hardly meant: seen in its equations, told in terms of
-//! physics.
+//! Warnings about specs that are valid but probably mistaken, found in the equations and stated in
+//! physical terms.
 //!
 //! The derivation refuses what has no equations of motion. The audit reads the equations of what it
-//! accepts; each file is one question about them. Whatever cannot be proven or shown is not told.
+//! accepts; each file is one question about them. Only findings that are proven, or shown by an
+//! example, are reported.
 
 mod bench;
 mod contact;

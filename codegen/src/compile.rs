@@ -74,7 +74,7 @@ pub fn compile(file: &str, text: &str, kinds: &[FunctionKind]) -> Result<Program
         .map_err(|findings| report(&mechanism, text, &findings))
 }
 
-/// What a mechanism has no equations of motion for, and what may be the reason.
+/// Report on a refused mechanism: the errors, and possible causes as warnings.
 fn refused(mechanism: &Mechanism, text: &str, findings: &[Finding]) -> Report {
     let errors = findings.iter().map(|finding| (finding, Severity::Error));
     let reasons = reasons(mechanism, findings);

@@ -34,7 +34,7 @@ use points::Points;
 
 pub use comparison::{Against, Agreement, Comparison, FormulationComparison};
 
-/// A proof that may err with a greater probability is none.
+/// Largest admissible error probability of an identity proof.
 const GREATEST_ERROR: f64 = 1e-9;
 /// Tests with points of their own that together may prove an identity.
 const MOST_TESTS: i32 = 4;

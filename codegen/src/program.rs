@@ -342,7 +342,7 @@ impl FunctionKind {
             Self::Bias => (
                 "bias",
                 "Bias",
-                "Bias b: what is left of ∂S/∂ω̇ where the pseudo-accelerations vanish.",
+                "Bias b: ∂S/∂ω̇ at zero pseudo-accelerations.",
             ),
             Self::MassMatrixAndBias => (
                 "mass_matrix_and_bias",
@@ -362,7 +362,7 @@ impl FunctionKind {
             Self::Jacobians => (
                 "jacobians",
                 "Jacobians",
-                "Rates ẋ with their derivatives by state and inputs.",
+                "Rates ẋ and their Jacobians with respect to state and inputs.",
             ),
             Self::ParameterJacobian => ("parameter_jacobian", "ParameterJacobian", "P = ∂ẋ/∂p."),
             Self::Energies => ("energies", "Energies", "Energies and power."),
@@ -380,12 +380,12 @@ impl FunctionKind {
             Self::Switches => (
                 "switches",
                 "Switches",
-                "What time alone switches: 1 where a relation holds, 0 elsewhere, and signs.",
+                "Switching functions of time alone: 1 where a relation holds, 0 elsewhere; or a sign.",
             ),
             Self::PositionConstraints => (
                 "position_constraints",
                 "PositionConstraints",
-                "Position constraints f(q, t) = 0 and their derivatives by the coordinates.",
+                "Position constraints f(q, t) = 0 and their Jacobian with respect to the coordinates.",
             ),
             Self::Contacts => (
                 "contacts",
@@ -405,7 +405,7 @@ impl FunctionKind {
             Self::OutputJacobians => (
                 "output_jacobians",
                 "OutputJacobians",
-                "Outputs of the spec with their derivatives by state and inputs.",
+                "Outputs of the spec and their Jacobians with respect to state and inputs.",
             ),
             Self::OutputAdjoint => (
                 "output_adjoint",

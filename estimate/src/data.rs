@@ -1,11 +1,12 @@
-//! What is given: what is measured and disturbed, recordings, and the values that the likelihood depends on.
+//! Inputs of an estimation: measurements, disturbances, recordings, and the values on which the
+//! likelihood depends.
 //!
 //! | file | idea |
 //! |---|---|
 //! | `layout.rs` | the values, in their order |
 //! | `recording.rs` | samples of one run |
-//! | `setup.rs` | what is measured and what disturbs the motion |
-//! | `unknown.rs` | what a value means |
+//! | `setup.rs` | measured quantities and disturbances |
+//! | `unknown.rs` | meaning of a value |
 
 pub(crate) mod layout;
 pub(crate) mod recording;

@@ -1,9 +1,9 @@
-//! Why nothing can be estimated.
+//! Errors of estimations.
 
-/// What is wrong with a recording, a setup or values.
+/// Why a recording, a setup or values are invalid, or an estimation fails.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum EstimateError {
-    /// A table whose lengths do not fit its times.
+    /// A table whose size does not match its times.
     #[error(
         "{what}: {found} numbers for {rows} rows of {columns} columns; {} are needed", rows * columns
     )]
@@ -23,7 +23,7 @@ pub enum EstimateError {
         /// Rows.
         rows: usize,
     },
-    /// A time that does not follow its predecessor, or is not finite.
+    /// A time that does not increase, or is not finite.
     #[error("row {row}: time {t} s is not later than the row before")]
     TimesNotIncreasing {
         /// Row, counted from 0.
@@ -32,7 +32,7 @@ pub enum EstimateError {
         t: f64,
     },
     /// An input that is not a number. Only measurements may be missing.
-    #[error("row {row}: input {input} is {value}; an input has to be known in every row")]
+    #[error("row {row}: input {input} is {value}; inputs must be known in every row")]
     InputNotFinite {
         /// Row, counted from 0.
         row: usize,
@@ -42,86 +42,88 @@ pub enum EstimateError {
         value: f64,
     },
     /// An infinite measurement.
-    #[error("row {row}: channel {channel} is infinite; write NaN for what is missing")]
+    #[error("row {row}: channel {channel} is infinite; write NaN for a missing value")]
     MeasurementInfinite {
         /// Row, counted from 0.
         row: usize,
         /// Column, counted from 0.
         channel: usize,
     },
-    /// A setup that names something which the model lacks, or names it twice.
-    #[error("{what} {index}: the model has {len}, and each may be named once")]
+    /// A setup that refers to something the model lacks, or refers to it twice.
+    #[error("{what} {index}: the model has {len}, and each may be given once")]
     Unknown {
         /// State, input, output, pseudo-velocity or run.
         what: &'static str,
         /// Its index.
         index: usize,
-        /// How many there are.
+        /// Their number.
         len: usize,
     },
-    /// Nothing is measured, nothing was recorded, or the model does not move.
+    /// No measurements, no recordings, or no states.
     #[error("there are no {what}")]
     Nothing {
         /// What is missing.
         what: &'static str,
     },
-    /// Values of the wrong number.
+    /// A wrong number of values.
     #[error("{found} values were given, {expected} are needed")]
     ValueCount {
-        /// How many are needed.
+        /// Number needed.
         expected: usize,
-        /// How many were given.
+        /// Number given.
         found: usize,
     },
-    /// A value outside of what its kind may have.
-    #[error("{what} is {value}; it has to be {demand}")]
+    /// A value outside its admissible range.
+    #[error("{what} is {value}; it must be {demand}")]
     Value {
         /// Which value.
         what: String,
-        /// What it is.
+        /// The value.
         value: f64,
-        /// What it may be.
+        /// The admissible range.
         demand: &'static str,
     },
-    /// The moments at which inputs change or sensors sample move with a delay; rates that depend on
-    /// time by themselves would have to be differentiated by time.
-    #[error("delays cannot be estimated where the equations depend on time by themselves")]
+    /// Times of input changes and samples move with a delay, so that rates which depend explicitly
+    /// on time would have to be differentiated with respect to time.
+    #[error("delays cannot be estimated if the equations depend explicitly on time")]
     DelayWithTime,
-    /// A filter whose numbers are no longer finite.
+    /// A filter with non-finite numbers.
     #[error("run {run}: the filter has no finite state at {t} s")]
     Diverged {
-        /// Which run.
+        /// The run.
         run: usize,
-        /// Where, in s.
+        /// Time in s.
         t: f64,
     },
-    /// Position constraints that no state near the estimate satisfies.
+    /// Position constraints without a solution near the estimate.
     #[error("run {run}: at {t} s: {source}")]
     Open {
-        /// Which run.
+        /// The run.
         run: usize,
-        /// Where, in s.
+        /// Time in s.
         t: f64,
-        /// How far off.
+        /// The violation.
         source: appell_runtime::positions::Inconsistent,
     },
-    /// An optimisation that found no better point from a start that is not an optimum.
-    #[error("no better values are found after {steps} steps; the slope is {slope:.2e}")]
+    /// An optimisation that found no better point, though it is not at an optimum.
+    #[error(
+        "no better values were found after {steps} steps; the largest component of the gradient is {slope:.2e}"
+    )]
     Stuck {
         /// Steps taken.
         steps: usize,
-        /// Largest scaled slope that remains.
+        /// Largest remaining component of the scaled gradient.
         slope: f64,
     },
-    /// A value that multiple shooting does not look for.
+    /// A value that multiple shooting cannot estimate.
     #[error(
-        "{unknown:?} is not found by shooting, which knows parameters, biases, scales and lags"
+        "{unknown:?} cannot be estimated by shooting, only parameters, biases, scales and lags"
     )]
     NotByShooting {
         /// Which.
         unknown: super::Unknown,
     },
-    /// A matrix that ought to be positive definite and is not.
+    /// A matrix that is not positive definite.
     #[error("{what} is singular: some combination of the unknowns is not determined")]
     Singular {
         /// Which matrix.

@@ -1,4 +1,4 @@
-//! Likelihood of recordings under a model, its gradient, innovations.
+//! Likelihood of recordings under a model, with gradient and innovations.
 
 use std::ops::Range;
 
@@ -22,7 +22,7 @@ pub struct Estimation<'a> {
 }
 
 impl<'a> Estimation<'a> {
-    /// Checks that setup and recordings belong together.
+    /// Checks that setup and recordings are consistent.
     pub fn new(setup: &'a Setup<'a>, recordings: &'a [Recording]) -> Result<Self, EstimateError> {
         setup.check(recordings)?;
         let plant = Plant::new(setup)?;
@@ -35,7 +35,7 @@ impl<'a> Estimation<'a> {
         })
     }
 
-    /// Places of the values.
+    /// Indices of the values.
     pub fn layout(&self) -> Layout {
         self.layout
     }
@@ -55,8 +55,8 @@ impl<'a> Estimation<'a> {
         self.recordings
     }
 
-    /// Values of the spec: its parameters, its initial state known exactly, scales of 1, levels,
-    /// noise, biases and delays of 0, lags of a hundredth of a second. Noise has to be set.
+    /// Values of the spec: its parameters, its initial state without uncertainty, scales of 1,
+    /// levels, noise, biases and delays of 0, lags of 0.01 s. Noise has to be set.
     pub fn nominal(&self) -> Vec<f64> {
         let (info, layout) = (self.setup.model.info(), self.layout);
         let mut values = vec![0.0; layout.len()];
@@ -68,7 +68,7 @@ impl<'a> Estimation<'a> {
         for (run, recording) in self.recordings.iter().enumerate() {
             let initial = &mut values[layout.initial(run)..];
             initial[..state.len()].copy_from_slice(&state);
-            // A lag starts where its input does.
+            // The state of a lag starts at its input.
             let inputs = self.setup.lagging.iter();
             let inputs = inputs.map(|&input| recording.inputs(0)[input]);
             let drifting = self.setup.drifting.iter();
@@ -88,11 +88,11 @@ impl<'a> Estimation<'a> {
             .sum()
     }
 
-    /// The log-likelihood of all recordings and its gradient in all values.
+    /// The log-likelihood of all recordings and its gradient with respect to all values.
     ///
-    /// The gradient is that of the computed number, not of an idealisation of it: up to rounding
-    /// where the model has formulas for its adjoint ([`Model::has_adjoint`]), else to the accuracy
-    /// of differences of its Jacobians.
+    /// The gradient is that of the discretised likelihood: to rounding if the model has formulas
+    /// for its adjoint ([`Model::has_adjoint`]), else to the accuracy of differences of its
+    /// Jacobians.
     ///
     /// [`Model::has_adjoint`]: appell_runtime::model::Model::has_adjoint
     pub fn gradient(&self, values: &[f64]) -> Result<(f64, Vec<f64>), EstimateError> {
@@ -125,7 +125,7 @@ impl<'a> Estimation<'a> {
         Ok(rows.iter().map(score).collect())
     }
 
-    /// Every measured scalar with what the filter predicted for it, run by run.
+    /// The innovations of all measured scalars, run by run.
     pub fn innovations(&self, values: &[f64]) -> Result<Vec<Vec<Innovation>>, EstimateError> {
         self.check(values)?;
         let of_run = |run| {
@@ -175,7 +175,7 @@ impl<'a> Estimation<'a> {
         timeline(self.setup, &self.layout, recording, &self.knots, values)
     }
 
-    /// Refuses values that no filter can run with.
+    /// Rejects values for which the filter is undefined.
     pub(super) fn check(&self, values: &[f64]) -> Result<(), EstimateError> {
         let layout = &self.layout;
         if values.len() != layout.len() {

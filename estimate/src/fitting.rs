@@ -1,14 +1,14 @@
-//! The most likely values.
+//! Maximum-likelihood fits.
 //!
 //! | file | idea |
 //! |---|---|
-//! | `level_scaling.rs` | levels of process noise that follow the inertia |
-//! | `curvature.rs` | the second derivatives that a search begins with |
-//! | `fit.rs` | the search itself |
-//! | `free.rs` | which values are free, and within which limits |
-//! | `posterior.rs` | the likelihood with the priors |
+//! | `level_scaling.rs` | levels of process noise relative to the inertia |
+//! | `curvature.rs` | expected, observed and updated curvature |
+//! | `fit.rs` | quasi-Newton fits |
+//! | `free.rs` | free values, their coordinates, limits and priors |
+//! | `posterior.rs` | the log-posterior |
 //! | `regression.rs` | parameters from accelerations, without a filter |
-//! | `scoring.rs` | fits in few passes |
+//! | `scoring.rs` | fits by Fisher scoring, in few passes |
 
 pub(crate) mod curvature;
 pub(crate) mod fit;

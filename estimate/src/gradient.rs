@@ -1,11 +1,11 @@
-//! How the likelihood and the innovations change with the values.
+//! Derivatives of the likelihood and of the innovations with respect to the values.
 //!
 //! | file | idea |
 //! |---|---|
-//! | `adjoint.rs` | the gradient in all values by one sweep backwards over the tape |
-//! | `information.rs` | Fisher's information in few passes |
-//! | `sensitivity.rs` | scores and Fisher's information, value by value |
-//! | `tangent.rs` | how innovations change along directions, in one pass |
+//! | `adjoint.rs` | the gradient with respect to all values, by one reverse sweep over the tape |
+//! | `information.rs` | Fisher information in few passes |
+//! | `sensitivity.rs` | scores and Fisher information, value by value |
+//! | `tangent.rs` | directional derivatives of innovations, in one pass |
 
 pub(crate) mod adjoint;
 pub(crate) mod information;

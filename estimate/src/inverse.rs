@@ -1,21 +1,22 @@
-//! Inverse dynamics: which inputs a motion needed, and what it must satisfy whatever they were.
+//! Inverse dynamics: the inputs of a measured motion, and the relations that it satisfies for any
+//! inputs.
 //!
-//! Appell's equations M ω̇ + b = Π are linear in the inputs, Π = E u + Π₀. For a measured motion q, ω, ω̇
-//! they are equations for u. Where there are more of them than inputs, the rows n with nᵀE = 0 hold
-//! without u: relations between measured quantities and parameters alone,
+//! Appell's equations M ω̇ + b = Π are linear in the inputs, Π = E u + Π₀. For a measured motion q,
+//! ω, ω̇ they are equations for u. Where there are more of them than inputs, the rows n with nᵀE =
+//! 0 hold without u: input-free relations between measured quantities and parameters,
 //!
 //! ```text
 //! nᵀ (M ω̇ + b − Π₀) = 0
 //! ```
 //!
-//! An acceleration that was not measured counts as unknown like an input, and takes one relation away.
+//! An acceleration that was not measured is an unknown like an input, and removes one relation.
 //!
 //! | file | idea |
 //! |---|---|
 //! | `inverse.rs` | the equations at a state: inputs, relations |
 //! | `relation.rs` | relations of a measured motion with exact derivatives; inputs with their covariance |
 //! | `track.rs` | recorded coordinates as splines with the covariance of all derivatives |
-//! | `consistency.rs` | how inconsistent recordings are with a model, weighed by their noise |
+//! | `consistency.rs` | inconsistency of recordings with a model, weighted by their noise |
 //! | `search.rs` | the least inconsistent parameters, with intervals |
 
 mod consistency;
@@ -33,54 +34,55 @@ pub use track::{Record, Stretch, Track};
 use appell_runtime::model::{At, Model};
 use appell_spectra::singular::Singular;
 
-/// Singular values below this part of the largest are zero: rounding of a few hundred operations.
+/// Singular values below this fraction of the largest are zero: rounding of a few hundred
+/// operations.
 const ZERO: f64 = 1e-11;
-/// Part of the pseudo-forces by which they may fail to be linear in the inputs.
+/// Largest admissible nonlinearity in the inputs, relative to the pseudo-forces.
 const LINEAR: f64 = 1e-9;
 
-/// Why inputs cannot be found.
+/// Why the inverse dynamics fails.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum InverseError {
-    /// The pseudo-forces are not linear in the inputs, by this part.
-    #[error("the pseudo-forces are not linear in the inputs: they are off by a part of {part:e}")]
+    /// The pseudo-forces are not linear in the inputs.
+    #[error("the pseudo-forces are not linear in the inputs: relative deviation {part:e}")]
     NotLinear {
-        /// By which part of the pseudo-forces.
+        /// Nonlinearity relative to the pseudo-forces.
         part: f64,
     },
     /// The equations do not determine the unknowns.
     #[error("the equations determine {rank} combinations of {unknowns} unknowns")]
     Undetermined {
-        /// How many combinations are determined.
+        /// Number of determined combinations.
         rank: usize,
-        /// How many unknowns there are.
+        /// Number of unknowns.
         unknowns: usize,
     },
     /// A measured coordinate that the model does not have.
-    #[error("coordinate {index}: the model has {coordinates}")]
+    #[error("coordinate {index} is measured, but the model has only {coordinates}")]
     NoCoordinate {
         /// Its index.
         index: usize,
-        /// How many there are.
+        /// Their number.
         coordinates: usize,
     },
     /// A sought value that does not exist.
-    #[error("value {index} is looked for: there are {len}")]
+    #[error("value {index} is sought, but there are only {len}")]
     Unknown {
         /// Its index.
         index: usize,
-        /// How many there are.
+        /// Their number.
         len: usize,
     },
-    /// Time itself moves the model.
+    /// The model depends explicitly on time.
     #[error(
-        "time drives the model, by a signal or a formula; its motion cannot be told from coordinates alone"
+        "the model depends explicitly on time, by a signal or a formula; coordinates alone do not determine its motion"
     )]
     Driven,
-    /// The inputs can make every motion.
-    #[error("the inputs can make every motion: no relation is left over")]
+    /// The inputs can produce any motion.
+    #[error("the inputs can produce any motion: no input-free relation exists")]
     NoRelation,
-    /// The inputs reach more or fewer equations than elsewhere.
-    #[error("{found} relations are left over here, {expected} elsewhere")]
+    /// The number of relations differs between motions.
+    #[error("{found} input-free relations here, {expected} elsewhere")]
     OtherKind {
         /// Relations here.
         found: usize,
@@ -88,15 +90,15 @@ pub enum InverseError {
         expected: usize,
     },
     /// No run is long enough.
-    #[error("no run has enough samples without a gap")]
+    #[error("no run has enough consecutive samples")]
     TooShort,
-    /// Numbers that give out.
+    /// Non-finite numbers.
     #[error("the relations are not finite at these parameters")]
     NotFinite,
-    /// The motion varies too little, or the parameters change nothing.
-    #[error("the recorded motions do not tell these values apart from noise: a matrix is singular")]
+    /// The motion varies too little, or the parameters have no effect.
+    #[error("the recorded motions do not determine these values: a matrix is singular")]
     Singular,
-    /// Not one acceleration for each pseudo-velocity.
+    /// A wrong number of accelerations.
     #[error("there are {found} accelerations for {needed} pseudo-velocities")]
     Lengths {
         /// Accelerations that were given.
@@ -122,14 +124,14 @@ pub struct InputEquations {
 pub struct Unknowns {
     /// The inputs, by least squares where there are more equations than unknowns.
     pub inputs: Vec<f64>,
-    /// All pseudo-accelerations, those that were given and those that were not.
+    /// All pseudo-accelerations, given or computed.
     pub accelerations: Vec<f64>,
-    /// What the equations lack in the end, for those that were used.
+    /// Residuals of the equations that were used.
     pub residual: Vec<f64>,
 }
 
 impl InputEquations {
-    /// Of a model at a state. The inputs of `at` have no say, the signals after them have.
+    /// Of a model at a state. The inputs of `at` are ignored, the signals after them are used.
     pub fn at(model: &dyn Model, at: At<'_>) -> Result<Self, InverseError> {
         let info = model.info();
         let (s, m) = (info.speeds, info.declared_inputs);
@@ -142,7 +144,7 @@ impl InputEquations {
         };
         u[..m].fill(0.0);
         let without = forces(&u);
-        // Inputs of the size of the other forces keep the digits of both.
+        // Inputs of the magnitude of the other forces avoid cancellation.
         let size = 1.0 + without.amax();
         let mut inputs = DMatrix::zeros(s, m);
         for k in 0..m {
@@ -154,7 +156,7 @@ impl InputEquations {
         let twice = forces(&u);
         let expected = &without + &inputs * DVector::repeat(m, 2.0 * size);
         let part = (&twice - expected).amax() / (size + twice.amax());
-        // Not a number is no linearity either.
+        // NaN is not linear either.
         if m > 0 && (part.is_nan() || part > LINEAR) {
             return Err(InverseError::NotLinear { part });
         }
@@ -165,7 +167,7 @@ impl InputEquations {
         })
     }
 
-    /// The rows n with nᵀE = 0, orthonormal: one for each equation that the inputs leave over.
+    /// Orthonormal rows n with nᵀE = 0: one for each input-free relation.
     pub fn relations(&self) -> DMatrix<f64> {
         let singular = Singular::of(&self.inputs.transpose());
         let rank = singular.rank(ZERO);
@@ -173,13 +175,13 @@ impl InputEquations {
         singular.right.columns(rank, left_over).transpose()
     }
 
-    /// M ω̇ + b − Π₀: the pseudo-forces that the inputs must have given.
+    /// M ω̇ + b − Π₀: the pseudo-forces required from the inputs.
     pub fn demand(&self, accelerations: &[f64]) -> Result<DVector<f64>, InverseError> {
         self.count(accelerations.len())?;
         Ok(&self.mass * DVector::from_column_slice(accelerations) + &self.free)
     }
 
-    /// By how much a motion fails the relations; zero where the model is right.
+    /// Residuals of the relations for a motion; zero for the true model.
     pub fn inconsistency(&self, accelerations: &[f64]) -> Result<DVector<f64>, InverseError> {
         Ok(self.relations() * self.demand(accelerations)?)
     }
@@ -197,7 +199,7 @@ impl InputEquations {
             .collect();
         let m = self.inputs.ncols();
         let unknowns = m + open.len();
-        // E u − M ω̇ over the unknown ω̇ meets what the known ones demand.
+        // E u − M ω̇ over the unknown ω̇ balances the known part.
         let matrix = DMatrix::from_fn(rows.len(), unknowns, |i, j| {
             if j < m {
                 self.inputs[(rows[i], j)]
@@ -213,7 +215,7 @@ impl InputEquations {
             return Err(InverseError::Undetermined { rank, unknowns });
         }
         let first = singular.solve(&target, rank);
-        // Once more for what rounding has left.
+        // One step of iterative refinement.
         let solution = &first + singular.solve(&(&target - &matrix * &first), rank);
         let mut all = known;
         for (place, &index) in open.iter().enumerate() {

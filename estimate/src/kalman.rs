@@ -1,12 +1,12 @@
-//! The extended Kalman filter and what follows from one pass of it.
+//! The extended Kalman filter, predictions and smoother.
 //!
 //! | file | idea |
 //! |---|---|
 //! | `filter.rs` | the pass over a recording: innovations, log-likelihood |
-//! | `prediction.rs` | where the motion goes from what the filter knows |
+//! | `prediction.rs` | predictions over longer horizons |
 //! | `smoother.rs` | states given a whole recording |
 //! | `square_root.rs` | factors of covariances: triangularisation, updates by one sample |
-//! | `tape.rs` | what a pass leaves for the gradient and the smoother |
+//! | `tape.rs` | record of a pass, for the gradient and the smoother |
 
 pub(crate) mod filter;
 pub(crate) mod prediction;

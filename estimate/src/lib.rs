@@ -1,6 +1,6 @@
-//! Estimation: how likely recordings are under a model, and which values make them likely.
+//! Estimation: the likelihood of recordings under a model, and maximum-likelihood fits.
 //!
-//! A [`Setup`] says what is measured and what disturbs the motion; with [`Recording`]s it becomes an
+//! A [`Setup`] defines the measurements and the disturbances; with [`Recording`]s it becomes an
 //! [`Estimation`], a function of the values that its [`Layout`] lists: parameters of the model,
 //! levels of disturbances and of noise, biases, scales and delays of sensors, lags and delays of
 //! inputs, initial states. All in SI.
@@ -10,21 +10,21 @@
 //! y  = scale · h(x, u, p) + bias + v    v white
 //! ```
 //!
-//! The rooms, in the order of the computation:
+//! The modules, in the order of the computation:
 //!
-//! | room | idea |
+//! | module | idea |
 //! |---|---|
-//! | `data/` | what is given: setup, recordings, the values and their order |
+//! | `data/` | setup, recordings, the values and their order |
 //! | `motion/` | the order of steps and samples; the motion and its transition matrix, step by step; closed loops |
 //! | `kalman/` | the extended Kalman filter: innovations, log-likelihood, predictions, smoothed states |
-//! | `gradient/` | derivatives: of the log-likelihood by one sweep backwards, of innovations by passes forwards; Fisher's information |
+//! | `gradient/` | derivatives: of the log-likelihood by one reverse sweep, of innovations by forward passes; Fisher information |
 //! | `estimation.rs` | setup, recordings, filter and gradient behind one type |
-//! | `fitting/` | the most likely values |
+//! | `fitting/` | maximum-likelihood fits |
 //! | `shooting/` | fits without disturbances, from starts far from the truth |
-//! | `statistics/` | what is known of the values, and how far; whether innovations are what they should be |
-//! | `inverse/` | the inputs of a measured motion, and what it must satisfy whatever they were |
+//! | `statistics/` | intervals, identifiability, robust covariance; consistency of innovations |
+//! | `inverse/` | the inputs of a measured motion, and its input-free relations |
 //! | `smoothing/` | derivatives of noisy samples with their covariance |
-//! | `matrix.rs`, `error.rs` | products of dense matrices; what cannot be estimated |
+//! | `matrix.rs`, `error.rs` | products of dense matrices; errors |
 
 mod data;
 mod error;
@@ -54,7 +54,7 @@ pub use kalman::filter::Innovation;
 pub use kalman::prediction::Predicted;
 pub use kalman::smoother::Smoothed;
 pub use shooting::{Shooting, Shot};
-pub use statistics::chi_squared::{chi_squared_probability, chi_squared_quantile};
+pub use statistics::chi_squared::{HALF_WIDTH_95, chi_squared_probability, chi_squared_quantile};
 pub use statistics::consistency::Consistency;
 pub use statistics::identifiability::{Combination, Identifiability};
 pub use statistics::robust::Blocks;

@@ -3,9 +3,9 @@
 //! | file | idea |
 //! |---|---|
 //! | `closure.rs` | closed loops, whose coordinates depend on each other |
-//! | `plant.rs` | the equations at one place, with their Jacobians |
+//! | `plant.rs` | the equations at one point, with their Jacobians |
 //! | `timeline.rs` | the order of steps and samples |
-//! | `transition.rs` | one step and its transition matrix; which steps are too long |
+//! | `transition.rs` | one step and its transition matrix; step control |
 
 pub(crate) mod closure;
 pub(crate) mod plant;

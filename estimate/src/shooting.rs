@@ -1,13 +1,12 @@
-//! Multiple shooting: parameters of motions that nothing disturbs, from starts far from the truth
-//! (H. G. Bock, *Randwertproblemmethoden zur Parameteridentifizierung in Systemen nichtlinearer
+//! Multiple shooting: parameters of undisturbed motions, from starts far from the truth (H. G.
+//! Bock, *Randwertproblemmethoden zur Parameteridentifizierung in Systemen nichtlinearer
 //! Differentialgleichungen*, 1987).
 //!
-//! A recording is cut into segments, each with a state of its own at its first row: errors of the
-//! parameters then grow along a segment only, where an unstable or chaotic motion of wrong
-//! parameters would leave the recording for good. The segments begin apart. The gaps between them
-//! are closed step by step, each time by Gauss and Newton, whose states are condensed away
-//! ([`condensing`]). What remains in the end is one motion, the most likely one where measurements
-//! are all that is noisy.
+//! A recording is cut into segments, each with a free state at its first row, so that the effects
+//! of wrong parameters grow only within a segment, also in unstable or chaotic motions. The gaps
+//! between the segments are closed gradually by Gauss-Newton searches, from which the states are
+//! eliminated by condensing ([`condensing`]). The result is one motion, the most likely one if only
+//! measurements are noisy.
 
 mod condensing;
 mod segment;
@@ -22,33 +21,34 @@ use crate::fitting::free::{Coordinate, Free, Selection};
 use condensing::{Condensed, Weights};
 use segment::{Segment, SegmentIntegrator};
 
-/// Gaps between segments in parts of the sizes of the states, one search after the other. The last
-/// is closed by any measure.
+/// Admitted gaps between segments, relative to the scales of the states, for consecutive searches.
+/// The last is negligible.
 const GAPS: [f64; 8] = [1.0, 1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7];
-/// Half of a sum of squares that is not worth a step.
+/// Decrease of half the sum of squares below which the search ends.
 const GAIN: f64 = 1e-8;
-/// The same relative to the sum, which is rounded.
+/// The same relative to the sum, because of rounding.
 const ROUNDING: f64 = 1e-12;
-/// Longest change of a logarithm in one step.
+/// Largest change of a logarithm in one step.
 const REACH: f64 = 1.0;
 /// Steps of a search.
 const STEPS: usize = 60;
-/// Part of the promised gain that makes a step worth it.
-const ENOUGH: f64 = 1e-3;
-/// A step that is cut more often is no direction to go.
+/// Sufficient decrease: least part of the predicted decrease at which a step is accepted. Smaller than
+/// that of fits, as steps from far away gain less than predicted.
+const SUFFICIENT_DECREASE: f64 = 1e-3;
+/// Largest number of halvings of a step.
 const CUTS: usize = 12;
 
-/// Where a search ended.
+/// Result of a search.
 #[derive(Debug, Clone)]
 pub struct Shot {
     /// All values. States at the first rows are those of the first segments.
     pub values: Vec<f64>,
-    /// Gaps that were allowed between segments, in parts of the sizes of the states.
+    /// Admitted gaps between segments, relative to the scales of the states.
     pub gap: f64,
-    /// Half of the sum of squares: of residuals by noise, gaps by what was allowed, and coordinates
-    /// about what was known beforehand.
+    /// Half the sum of squares: residuals relative to noise, gaps relative to the admitted ones,
+    /// and deviations from priors.
     pub objective: f64,
-    /// Information of the coordinates of the free values if nothing disturbs the motion.
+    /// Information of the coordinates of the free values for an undisturbed motion.
     pub information: DMatrix<f64>,
 }
 
@@ -56,9 +56,9 @@ pub struct Shot {
 pub struct Shooting<'o, 'e> {
     estimation: &'o Estimation<'e>,
     selection: Selection<'o>,
-    /// Rows at which segments begin, run by run.
+    /// First rows of the segments, run by run.
     nodes: Vec<Vec<usize>>,
-    /// Sizes of the states.
+    /// Scales of the states.
     sizes: Vec<f64>,
     start: Trial,
 }
@@ -72,10 +72,10 @@ struct Trial {
 }
 
 impl<'o, 'e> Shooting<'o, 'e> {
-    /// Segments of so many rows. `guess` tells the state at the first row of a part of a recording:
-    /// the measured quantities will do for those that are measured.
+    /// Segments of so many rows. `guess` returns the state at the first row of a part of a
+    /// recording; measured values suffice for measured states.
     ///
-    /// Parameters, biases, scales and lags can be looked for. Noise weighs the channels and has to
+    /// Parameters, biases, scales and lags can be estimated. Noise weights the channels and has to
     /// be positive.
     pub fn new(
         estimation: &'o Estimation<'e>,
@@ -140,8 +140,8 @@ impl<'o, 'e> Shooting<'o, 'e> {
         })
     }
 
-    /// Closes the gaps; tells every search that came to an end. The later ones know more, if the
-    /// motion is the model's alone.
+    /// Closes the gaps, and returns the results of all completed searches. Later ones are more
+    /// accurate if the motion is undisturbed.
     pub fn shots(&self) -> Result<Vec<Shot>, EstimateError> {
         let mut trial = self.start.clone();
         let mut shots = Vec::new();
@@ -158,8 +158,8 @@ impl<'o, 'e> Shooting<'o, 'e> {
         Ok(shots)
     }
 
-    /// The objective for some gap and its gradient by the coordinates of the free values, where the
-    /// search starts.
+    /// The objective for a gap and its gradient with respect to the coordinates of the free values,
+    /// at the start.
     pub fn slope(&self, gap: f64) -> Result<(f64, DVector<f64>), EstimateError> {
         let pieces = self.pieces(&self.start)?;
         let (objective, mut slope) = Condensed::slope(&pieces, &self.weights(&self.start, gap));
@@ -195,7 +195,7 @@ impl<'o, 'e> Shooting<'o, 'e> {
                 let tried = self.moved(&trial, (&change, &states), part);
                 if let Ok(pieces) = self.pieces(&tried) {
                     let fall = objective - self.objective(&tried, &pieces, gap);
-                    if fall >= ENOUGH * part * gain {
+                    if fall >= SUFFICIENT_DECREASE * part * gain {
                         next = Some((tried, pieces));
                         break;
                     }
@@ -212,8 +212,8 @@ impl<'o, 'e> Shooting<'o, 'e> {
         }
     }
 
-    /// The step of the coordinates within their limits, what it gains of what is known beforehand,
-    /// and the information of all coordinates.
+    /// The step of the coordinates within their limits, its gain in the prior, and the information
+    /// of all coordinates.
     fn change(&self, trial: &Trial, condensed: &Condensed) -> (DVector<f64>, f64, DMatrix<f64>) {
         let (_, by_prior) = self.selection.prior(&trial.coordinates);
         let known = DMatrix::from_diagonal(&self.selection.prior_information());
@@ -236,7 +236,7 @@ impl<'o, 'e> Shooting<'o, 'e> {
         }
     }
 
-    /// The part of a step that no logarithm exceeds.
+    /// The fraction of a step that respects the largest change of logarithms.
     fn within_reach(&self, change: &DVector<f64>) -> f64 {
         let logarithms = self.selection.free.iter().zip(change);
         let logarithms = logarithms.filter(|(free, _)| free.coordinate == Coordinate::Logarithm);
@@ -310,14 +310,14 @@ impl<'o, 'e> Shooting<'o, 'e> {
     }
 }
 
-/// Rows at which segments begin; the last one is no shorter than the others.
+/// First rows of the segments; the last one is no shorter than the others.
 fn nodes(rows: usize, segment: usize) -> Vec<usize> {
     let first = [0].into_iter();
     let later = (1..rows / segment).map(|index| index * segment);
     first.chain(later).collect()
 }
 
-/// Roots of the mean squares of the states at the nodes about their means; 1 where they rest.
+/// Standard deviations of the states at the nodes; 1 where they are constant.
 fn sizes(states: &[Vec<DVector<f64>>]) -> Vec<f64> {
     let all: Vec<&DVector<f64>> = states.iter().flatten().collect();
     let count = all.len() as f64;
@@ -330,7 +330,8 @@ fn sizes(states: &[Vec<DVector<f64>>]) -> Vec<f64> {
     (0..all[0].len()).map(size).collect()
 }
 
-/// The step of the open coordinates; the shortest one where some combination is not told.
+/// The step of the coordinates that are not at limits; of minimum norm if a combination is
+/// undetermined.
 fn restricted(information: &DMatrix<f64>, slope: &DVector<f64>, open: &[bool]) -> DVector<f64> {
     /// Eigenvalues of the scaled information that count as zero.
     const UNTOLD: f64 = 1e-10;

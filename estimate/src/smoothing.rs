@@ -2,18 +2,18 @@
 //!
 //! | file | idea |
 //! |---|---|
-//! | `samples.rs` | measured values at increasing times; what an estimate of them is |
-//! | `savitzky_golay.rs`, `window.rs` | polynomials fitted in a window that moves; how wide it may be |
-//! | `kinematic.rs`, `spline.rs` | integrated white noise, smoothed; splines with cross-validation |
-//! | `regression_spline.rs` | splines of least squares with knots that several quantities share |
-//! | `butterworth.rs` | a low-pass filter without a shift in phase |
+//! | `samples.rs` | measured values at increasing times; estimates of them |
+//! | `savitzky_golay.rs`, `window.rs` | polynomials fitted in a moving window; choice of its width |
+//! | `kinematic.rs`, `spline.rs` | smoothing of integrated white noise; splines with cross-validation |
+//! | `regression_spline.rs` | least-squares splines with knots shared by several quantities |
+//! | `butterworth.rs` | a zero-phase low-pass filter |
 //! | `noise.rs` | the noise level, from differences and from standstill |
-//! | `angle.rs` | angles counted on through whole turns |
+//! | `angle.rs` | unwrapped angles |
 //!
-//! Which smoother serves? [`kinematic`] where the noise is known: the likelihood chooses how much to
-//! smooth, and the covariance is that of a model. [`spline`] where it is not. [`savitzky_golay`] where
-//! the result must depend on neighbours only, and its weights must be known. [`butterworth`] where a
-//! frequency is to be cut off, on uniform grids.
+//! Choice of a smoother: [`kinematic`] if the noise is known; the likelihood determines the
+//! smoothing, and the covariance is that of a model. [`spline`] if it is not. [`savitzky_golay`] if
+//! the result must depend on neighbours only, with known weights. [`butterworth`] for a given
+//! cut-off frequency, on uniform grids.
 
 pub mod angle;
 pub mod butterworth;

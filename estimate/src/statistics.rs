@@ -1,12 +1,12 @@
-//! What is known of the values, and whether innovations are what they should be.
+//! Uncertainty of the values, and consistency of innovations.
 //!
 //! | file | idea |
 //! |---|---|
 //! | `chi_squared.rs` | its probabilities and quantiles |
-//! | `consistency.rs` | whether innovations are white and as large as they should be |
-//! | `identifiability.rs` | combinations of values that are known |
-//! | `profile.rs` | intervals by fits along one value |
-//! | `robust.rs` | covariances that do not believe the noise white |
+//! | `consistency.rs` | tests of innovations: whiteness and variance |
+//! | `identifiability.rs` | combinations of values that the data determine |
+//! | `profile.rs` | profile likelihood intervals |
+//! | `robust.rs` | robust (sandwich) covariance |
 
 pub(crate) mod chi_squared;
 pub(crate) mod consistency;

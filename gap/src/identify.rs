@@ -30,6 +30,7 @@ use appell_runtime::model::Model;
 use crate::data::{DataSet, Part, Run};
 
 pub use answer::{Answer, Estimate, Known, Level};
+pub use appell_estimate::HALF_WIDTH_95;
 pub use drift::Course;
 pub use error::IdentifyError;
 pub use held_out::{AHEAD, HORIZONS, HeldOut, Trace};
@@ -57,7 +58,7 @@ pub fn identify(
         longest_step: longest_step(set.mechanism.longest_step),
         ..Setup::new(model, &shown)
     };
-    let additions = additions::named(&options.also, set, &setup)?;
+    let additions = additions::named(&options.additional, set, &setup)?;
     for addition in &additions {
         addition.prepare(&mut setup);
     }

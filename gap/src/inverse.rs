@@ -72,7 +72,7 @@ pub struct Estimate {
 
 impl Estimate {
     /// Whether the motions bound the value on both sides.
-    pub fn is_told(&self) -> bool {
+    pub fn is_bounded(&self) -> bool {
         self.interval95.iter().all(|end| end.is_finite())
     }
 }
@@ -90,7 +90,7 @@ pub struct Inputs {
     pub stds: Vec<Vec<f64>>,
 }
 
-/// What motions tell whatever their inputs were.
+/// Result of the input-free identification.
 #[derive(Debug, Clone)]
 pub struct Answer {
     /// The sought values.

@@ -116,8 +116,8 @@ impl Report {
         }
     }
 
-    /// States that the text is only a part of the file, from this line on, counted from 1: of a
-    /// recording of gigabytes nobody keeps more than the line in question.
+    /// Sets the line of the file, from 1, at which `text` starts, for reports that hold only an
+    /// excerpt of a large file.
     #[must_use]
     pub fn from_line(mut self, first_line: usize) -> Self {
         self.first_line = first_line;

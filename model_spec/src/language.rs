@@ -121,7 +121,7 @@ pub struct Key {
 pub enum Need {
     /// Always.
     Always,
-    /// Never.
+    /// May be omitted.
     Optional,
     /// Exactly one of the numbered ways must be chosen, with all its keys.
     Way(u8),

@@ -29,7 +29,7 @@ pub struct Mechanism {
     pub title: String,
     /// Where the model comes from.
     pub source: Option<String>,
-    /// Longest step in s by which filters of recordings may follow the equations, where they are fast.
+    /// Largest integration step of the state estimator, in s, for models with fast modes.
     pub longest_step: Option<f64>,
     /// Name of the spec file, for messages and comments in emitted code.
     pub file: String,
@@ -225,9 +225,10 @@ pub struct Body {
     pub frame: Option<FrameId>,
     /// Centre of mass.
     pub centre: PointId,
-    /// Mass; its negative where it is taken away.
+    /// Mass; negated if the body is subtracted (`taken_away`).
     pub mass: Expr,
-    /// Inertia about the centre of mass; `None` for a point mass. Its negative where it is taken away.
+    /// Inertia about the centre of mass; `None` for a point mass. Negated if the body is
+    /// subtracted (`taken_away`).
     pub inertia: Option<Inertia>,
     /// Whether mass and inertia are subtracted: a hole, or a part already included in another body.
     pub taken_away: bool,
@@ -338,8 +339,8 @@ pub struct Normal {
     pub negative: bool,
 }
 
-/// Light creep of a rolling contact: the velocity of sliding over that of travel, per force along the
-/// surface over the normal force.
+/// Linear creep: creepage (sliding velocity over rolling velocity) per unit of tangential force over
+/// normal force.
 #[derive(Debug, Clone)]
 pub struct Creep {
     /// Along the travel.
@@ -367,11 +368,13 @@ impl ConstraintKind {
         }
     }
 
-    /// Dimension of what it holds at a value; `None` where it holds the velocity of a point.
-    pub const fn dimension(&self) -> Option<&Dimension> {
+    /// Dimension of its equations at velocity level: a multiplier is a power divided by it. `None`
+    /// where it overflows.
+    pub fn rate_dimension(&self) -> Option<Dimension> {
         match self {
-            Self::Velocity { dimension, .. } => Some(dimension),
-            Self::Rolling { .. } | Self::FixedVelocity { .. } | Self::Position { .. } => None,
+            Self::Rolling { .. } | Self::FixedVelocity { .. } => Some(Dimension::VELOCITY),
+            Self::Velocity { dimension, .. } => Some(*dimension),
+            Self::Position { dimension, .. } => dimension.rate().ok(),
         }
     }
 }

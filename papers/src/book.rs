@@ -4,9 +4,21 @@
 
 mod claim;
 pub mod euc;
-mod found;
 mod page;
+mod steady_motions;
 pub mod steering;
+
+use appell::Error;
 
 pub use claim::{Claim, Picture, Reproduction, Section, Tally};
 pub use page::page;
+
+/// A computation that fails for this reason.
+pub(crate) fn failed(reason: &str) -> Error {
+    Error::Computation(reason.to_owned().into())
+}
+
+/// A computation that fails with this error.
+pub(crate) fn computation(error: impl std::fmt::Display) -> Error {
+    Error::Computation(error.to_string().into())
+}

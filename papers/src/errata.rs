@@ -8,7 +8,7 @@ mod table;
 
 pub use table::ERRATA;
 
-/// Acceleration energy (89) of paper 001, corrected.
+/// Acceleration energy (89) of the steering paper, corrected.
 pub const ACCELERATION_ENERGY: &str = "1/8*(5*m*R**2 + 4*m0*(R**2 + r**2))*w1d**2 + 1/4*(3*m + 2*m0)*R**2*w2d**2 \
      + 1/8*(m*R**2 + 4*m0*r**2)*w3d**2 + m0/2*sd**2 - m0*R*w1d*sd - m0*R*r*w2d*w3d \
      + 1/4*(8*w1*s*m0*r + w3**2*(4*m0*r**2*tan(th) + 4*m0*R*r + m*R**2*tan(th)) \

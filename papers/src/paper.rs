@@ -40,22 +40,22 @@ macro_rules! shared {
 }
 
 shared!(
-    /// Paper 001, section II and appendix A.
+    /// Steering paper, section II and appendix A.
     rolling_wheel,
     Paper::steering(mechanism("rolling_wheel"))
 );
 shared!(
-    /// Paper 001, section III and appendices B and C.
+    /// Steering paper, section III and appendices B and C.
     unicycle,
     Paper::steering(mechanism("unicycle"))
 );
 shared!(
-    /// Paper 000, equations (6) to (10).
+    /// EUC paper, equations (6) to (10).
     euc_3dof,
     Paper::euc(mechanism("euc_3dof"))
 );
 shared!(
-    /// Paper 000, equations (11) to (13).
+    /// EUC paper, equations (11) to (13).
     euc_2dof,
     Paper::euc(mechanism("euc_2dof"))
 );
@@ -92,12 +92,12 @@ const EUC_NAMES: &[(&str, &str)] = &[
     ("Md", "M_d"),
     ("Mh", "M_h"),
 ];
-/// States of the linearisations in paper 001.
+/// States of the linearisations in the steering paper.
 const WHEEL_STATES: &[&str] = &["w1", "w2", "w3", "th", "psi", "phi", "xG", "yG"];
 const UNICYCLE_STATES: &[&str] = &["w1", "w2", "w3", "th", "s", "r", "psi", "phi", "xG", "yG"];
 
 impl Paper {
-    /// The wheel or the unicycle of paper 001.
+    /// The wheel or the unicycle of the steering paper.
     pub fn steering(mechanism: Mechanism) -> Self {
         let mut paper = Self::new(mechanism, STEERING_NAMES);
         let speeds: &[&str] = if paper.scope.get("s").is_some() {
@@ -138,7 +138,7 @@ impl Paper {
         paper
     }
 
-    /// One of the two models of paper 000.
+    /// One of the two models of the EUC paper.
     pub fn euc(mechanism: Mechanism) -> Self {
         let mut paper = Self::new(mechanism, EUC_NAMES);
         let speeds: &[&str] = if paper.scope.get("ga").is_some() {

@@ -5,6 +5,9 @@
 //! colour vision can tell apart; the figure follows the reader's light or dark scheme.
 
 mod axis;
+mod branches;
+mod eigenvalues;
+mod inputs;
 mod map;
 mod plot;
 mod surface;

@@ -21,7 +21,7 @@ use appell_runtime::model::Model;
 use appell_spec::Mechanism;
 use maud::{PreEscaped, html};
 
-use crate::skeleton::Skeleton;
+use crate::page_shell::PageShell;
 
 const STYLE: &str = include_str!("film/style.css");
 const BODY: &str = include_str!("film/body.html");
@@ -59,11 +59,11 @@ pub fn page(
     // The text of a spec stays text: no `<` leaves the data, so that nothing in it ends the element.
     let data = data.to_string().replace('<', "\\u003c");
     let scripts = SCRIPTS.join("\n");
-    let skeleton = Skeleton {
+    let shell = PageShell {
         policy: Some(POLICY),
-        ..Skeleton::new(&mechanism.title, STYLE)
+        ..PageShell::new(&mechanism.title, STYLE)
     };
-    Ok(skeleton.around(&html! {
+    Ok(shell.around(&html! {
         (PreEscaped(BODY))
         script type="application/json" id="film" { (PreEscaped(data)) }
         (PreEscaped("\n"))

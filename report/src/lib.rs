@@ -6,7 +6,7 @@
 //! - [`derivation`]: the derivation as text, LaTeX or HTML;
 //! - [`mod@film`]: the page with the moving mechanism;
 //! - [`gap`], [`identification`], [`recording`]: what recordings tell, as text and pages;
-//! - [`skeleton`]: what all pages are wrapped in;
+//! - [`page_shell`]: what all pages are wrapped in;
 //! - [`text`]: columns of text, numbers for people.
 
 pub mod derivation;
@@ -15,7 +15,7 @@ pub mod figure;
 pub mod film;
 pub mod gap;
 pub mod identification;
+pub mod page_shell;
 pub mod recording;
-pub mod skeleton;
 pub mod svg;
 pub mod text;

@@ -131,8 +131,8 @@ fn pages_of_linear_equations_are_well_formed() {
 }
 
 #[test]
-fn what_only_places_a_mechanism_is_hidden() {
-    for (name, hidden) in [
+fn what_only_places_a_mechanism_is_ignorable() {
+    for (name, ignorable) in [
         ("unicycle", vec!["x_G", "y_G", "psi", "phi"]),
         ("cart_pole", vec!["x"]),
         ("chaplygin_sleigh", vec!["x", "y", "psi"]),
@@ -142,7 +142,7 @@ fn what_only_places_a_mechanism_is_hidden() {
         let graph = &derived.derivation.algebra.graph;
         let names = linear.states[linear.essential..].iter();
         let names = names.map(|&s| graph.symbol_name(graph.as_symbol(s).unwrap()));
-        assert_eq!(names.collect::<Vec<_>>(), hidden, "{name}");
+        assert_eq!(names.collect::<Vec<_>>(), ignorable, "{name}");
     }
 }
 

@@ -94,7 +94,7 @@ fn absolute_product(matrix: &[f64], x: &[f64]) -> Vec<f64> {
 pub struct Conditions {
     /// Of the mass matrix.
     pub mass_matrix: f64,
-    /// Of the way from pseudo-velocities to generalised velocities; see [`velocity_condition`].
+    /// Of the map from pseudo-velocities to generalised velocities; see [`velocity_condition`].
     pub velocities: f64,
     /// Of each system of [`Model::system_sizes`], which are solved for generalised velocities.
     pub systems: Vec<f64>,

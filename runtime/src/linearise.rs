@@ -24,7 +24,8 @@ pub struct Linearisation {
 /// The position constraints do not determine the dependent coordinates at this state.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[error(
-    "the position constraints do not determine the dependent coordinates here: name others in the spec"
+    "the position constraints do not determine the dependent coordinates at this state; choose other \
+     `dependent` coordinates in the spec"
 )]
 pub struct Undetermined;
 

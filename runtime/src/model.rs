@@ -288,7 +288,7 @@ pub struct Gradient<'a> {
     pub p: &'a mut [f64],
 }
 
-/// Energies and the power of the applied loads that are not conservative in the model's books.
+/// Energies, and the power of the loads without a potential.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Energies {
     /// Kinetic energy in J.

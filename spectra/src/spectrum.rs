@@ -18,7 +18,7 @@ pub use francis::Eigenvalues;
 pub use polynomial::characteristic_polynomial;
 pub use vectors::{Mode, Spectrum};
 
-/// Why a matrix has no spectrum that could be told.
+/// Why eigenvalues could not be computed.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum SpectrumError {
     /// Only square matrices have eigenvalues.

@@ -28,7 +28,7 @@ equations! {
     steering_paper_equation_5_pseudo_velocities_of_the_wheel "(5)"
     steering_paper_equation_6_equations_of_motion_of_the_rolling_wheel "(6)"
     steering_paper_equation_9_steady_motion_of_the_wheel_in_pseudo_velocities "(9)"
-    steering_paper_equation_10_hidden_motion_while_the_essential_states_rest "(10)"
+    steering_paper_equation_10_motion_of_the_ignorable_coordinates_while_the_essential_states_rest "(10)"
     steering_paper_equation_13_steady_motion_of_the_wheel_in_yaw_and_pitch_rate "(13)"
     steering_paper_equation_14_pitch_rate_of_a_turning_wheel "(14)"
     steering_paper_equation_15_straight_rolling_needs_an_upright_wheel "(15)"

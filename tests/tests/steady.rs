@@ -35,7 +35,7 @@ fn turning<'a>(model: &'a dyn Model, case: &Value) -> SteadyProblem<'a> {
 }
 
 #[test]
-fn heading_and_place_are_hidden_and_the_rest_is_essential() {
+fn heading_and_position_are_ignorable_and_the_rest_is_essential() {
     let model = shipped("unicycle");
     let info = model.info();
     let problem = problem(model, &[]);
@@ -51,7 +51,7 @@ fn heading_and_place_are_hidden_and_the_rest_is_essential() {
     let mut wanted = ESSENTIAL;
     wanted.sort_unstable();
     assert_eq!(essential, wanted);
-    assert_eq!(names(&structure.hidden), ["x_G", "y_G", "psi", "phi"]);
+    assert_eq!(names(&structure.ignorable), ["x_G", "y_G", "psi", "phi"]);
     assert_eq!(names(&structure.uniform), ["psi", "phi"]);
 }
 
@@ -145,7 +145,7 @@ fn too_few_conditions_name_what_may_be_given_further() {
 }
 
 #[test]
-fn contradictions_and_hidden_quantities_are_told() {
+fn contradictions_and_ignorable_quantities_are_reported() {
     let model = shipped("unicycle");
     let error = problem(model, &[("theta", 0.1), ("psi_dot", 0.0)]).solve_isolated(30);
     let message = error.unwrap_err().to_string();

@@ -1,8 +1,8 @@
-//! Curves of zeros, followed by their length (pseudo-arclength; H. B. Keller, 1977).
+//! Pseudo-arclength continuation of solution curves (H. B. Keller, 1977).
 //!
-//! The curve is where F(z) = 0 and F has one independent equation less than unknowns. Folds are
-//! points like any other then. Equations that follow from others are welcome: steps are the
-//! shortest ones, from singular values.
+//! The curve is where F(z) = 0 and F has one independent equation fewer than unknowns. Folds are
+//! then regular points. Redundant equations are admissible: steps have minimum norm, by singular
+//! values.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -29,14 +29,14 @@ pub enum End {
     Range,
     /// An essential state reached the end of its declared range: its index.
     State(usize),
-    /// It runs to infinity.
+    /// It diverges.
     Infinity,
-    /// It came back to its beginning.
+    /// It closed.
     Closed,
-    /// A requirement is violated beyond: its number.
+    /// A requirement is violated: its number.
     Infeasible(usize),
-    /// No further point was found: equations that are not smooth or not finite. Or it led back into
-    /// itself but not to its beginning, where another curve is as near as rounding.
+    /// No further point was found, as the equations are not smooth or not finite; or the curve
+    /// returned to itself away from its beginning, where another curve is as close as rounding.
     Lost,
     /// The limit of points was reached.
     Points,
@@ -44,20 +44,21 @@ pub enum End {
 
 /// Smallest step, relative to the size of the unknowns.
 const SHORTEST: f64 = 1e-9;
-/// A curve whose unknowns exceed this, in their scales, runs to infinity.
+/// A curve whose scaled unknowns exceed this diverges.
 const INFINITE: f64 = 1e4;
 /// Corrector steps; three are usual.
 const MOST_STEPS: usize = 10;
 /// A step that is shorter, relative to the point, ends the correction.
 const CONVERGED: f64 = 4e-15;
-/// A correction that stops improving below this has met rounding.
+/// Below this, corrections that stop improving are rounding.
 const ROUNDING: f64 = 1e-9;
 /// Singular values that count as zero, relative to the largest.
 const NOTHING: f64 = 1e-12;
 /// Cosine of the largest angle between the tangents of neighbouring points.
 const TURN: f64 = 0.985;
 
-/// Goes back to the curve from `predicted`, at right angles to `normal`. Tells the steps it took.
+/// Corrects `predicted` back to the curve, perpendicular to `normal`. Also returns the number of
+/// steps.
 pub(crate) fn correct(
     equations: &dyn Equations,
     predicted: &DVector<f64>,
@@ -97,7 +98,7 @@ pub(crate) fn correct(
 }
 
 impl OnCurve {
-    /// A zero with the tangent that points along `like`.
+    /// A solution with its tangent, oriented along `like`.
     pub(crate) fn new(
         equations: &dyn Equations,
         z: DVector<f64>,
@@ -131,7 +132,7 @@ impl OnCurve {
         })
     }
 
-    /// Whether the curve meets another one between here and `next`: the determinant of the
+    /// Whether another curve crosses between this point and `next`: the determinant of the
     /// independent equations and the tangent changes its sign.
     pub(crate) fn passes_crossing(&self, equations: &dyn Equations, next: &Self) -> bool {
         let determinant = |jacobian: &DMatrix<f64>, tangent: &DVector<f64>| {
@@ -185,8 +186,7 @@ impl OnCurve {
         correct(equations, &predicted, &normal).map(|(z, _)| z)
     }
 
-    /// Where a function of the unknowns that has different signs at two points is zero between
-    /// them, to rounding.
+    /// The zero, to rounding, of a function of the unknowns that has different signs at two points.
     pub(crate) fn root(
         &self,
         equations: &dyn Equations,
@@ -202,8 +202,8 @@ impl OnCurve {
     }
 }
 
-/// Points after `start` along its tangent, with steps of at most `longest`, until `limit` tells an
-/// end between two of them.
+/// Points after `start` along its tangent, with steps of at most `longest`, until `limit` returns
+/// an end between two of them.
 pub(crate) fn follow(
     equations: &dyn Equations,
     start: &OnCurve,
@@ -213,7 +213,8 @@ pub(crate) fn follow(
 ) -> (Vec<OnCurve>, End) {
     let mut points: Vec<OnCurve> = Vec::new();
     let mut step = 0.1 * longest(start);
-    // Where two curves nearly meet a step may change over, and the start is not met again.
+    // Where two curves nearly meet a step may jump to the other, and the start is not reached
+    // again.
     let mut mark: Option<OnCurve> = None;
     loop {
         let last = points.last().unwrap_or(start);
@@ -246,15 +247,15 @@ pub(crate) fn follow(
             return (points, why);
         }
         points.push(next);
-        // Marks that are twice as far apart each time find a round of any length (R. P. Brent, 1980).
+        // Marks at doubling distances detect a cycle of any length (R. P. Brent, 1980).
         if points.len() > 4 && points.len().is_power_of_two() {
             mark = points.last().cloned();
         }
     }
 }
 
-/// The zero of a function between two places where its signs differ, to rounding: chords that keep
-/// the bracket (Anderson and Björck, BIT 13, 1973), and halves where they fail.
+/// The zero of a function between two points of different sign, to rounding: bracketed secants
+/// (Anderson and Björck, BIT 13, 1973), and bisection where they fail.
 pub(crate) fn root(
     [mut a, mut b]: [f64; 2],
     [mut f_a, mut f_b]: [f64; 2],

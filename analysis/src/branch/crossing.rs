@@ -1,4 +1,4 @@
-//! Points where two curves of zeros cross, and the directions in which they leave.
+//! Branch points, where two solution curves cross, and their tangents.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -7,7 +7,7 @@ use appell_spectra::singular::Singular;
 
 /// Newton steps.
 const MOST_STEPS: usize = 20;
-/// A step that is no longer getting shorter below this has met rounding.
+/// Below this, steps that stop shrinking are rounding.
 const STALLED: f64 = 1e-12;
 /// Step of differences of second derivatives.
 const STEP: f64 = 1e-4;
@@ -21,8 +21,7 @@ pub(crate) struct Crossing {
     pub(crate) tangents: [DVector<f64>; 2],
 }
 
-/// The equations whose Jacobian is square but for one column, near a crossing: projections onto
-/// independent directions.
+/// The equations near a crossing, projected onto independent directions: one fewer than unknowns.
 struct Projected<'a> {
     equations: &'a dyn Equations,
     /// Rows: the projection with its weights.
@@ -35,7 +34,7 @@ impl Projected<'_> {
         (&self.projection * f, &self.projection * jacobian)
     }
 
-    /// Derivative of Jᵀψ, by differences of order four: it only leads Newton's method, and tells
+    /// Derivative of Jᵀψ, by differences of order four: used only in Newton's method and for
     /// directions.
     fn curvature(&self, z: &DVector<f64>, psi: &DVector<f64>) -> DMatrix<f64> {
         let n = z.len();
@@ -62,7 +61,7 @@ impl Crossing {
         let singular = Singular::of(&weighted(&jacobian, &weights).transpose());
         let n = start.len();
         let rows = (n - 1).min(singular.right.ncols());
-        // Independent equations: left singular vectors but those of the smallest values.
+        // Independent equations: left singular vectors except those of the smallest values.
         let mut projection = singular.right.columns(0, rows).transpose();
         for (mut column, weight) in projection.column_iter_mut().zip(weights.iter()) {
             column *= *weight;
@@ -110,7 +109,7 @@ impl Crossing {
         None
     }
 
-    /// The roots α of the quadratic form `ψᵀF″[Σα φ]²` over the two directions that J loses.
+    /// The roots α of the quadratic form `ψᵀF″[Σα φ]²` over the two-dimensional kernel of J.
     fn directions(projected: &Projected<'_>, z: DVector<f64>, psi: &DVector<f64>) -> Option<Self> {
         let (_, jacobian) = projected.evaluate(&z);
         let singular = Singular::of(&jacobian);

@@ -1,4 +1,4 @@
-//! Borders of stability as curves over two quantities.
+//! Stability boundaries as curves over two quantities.
 
 use nalgebra::DVector;
 
@@ -11,11 +11,11 @@ use crate::stability::critical::{Change, Criteria};
 use crate::stability::essential_matrix;
 use appell_spectra::spectrum::{characteristic_polynomial, eigenvalues};
 
-/// Real parts above this part of a usual eigenvalue are growth, where eigenvalues that meet are
-/// known to the root of rounding.
+/// Real parts above this fraction of a typical eigenvalue are growth, where repeated eigenvalues
+/// are known only to the square root of rounding.
 const GROWS: f64 = 1e-3;
 
-/// All boundaries that pass between the places of a chart.
+/// All boundaries that pass between grid points of a chart.
 pub(crate) fn boundaries(
     plane: &Plane<'_>,
     chart: &Chart,
@@ -60,12 +60,16 @@ pub(crate) fn edges(plane: &Plane<'_>, chart: &Chart, requirements: &[Requiremen
 }
 
 fn places(plane: &Plane<'_>, curve: &Curve) -> Vec<[f64; 2]> {
-    curve.points.iter().map(|at| plane.place(&at.z)).collect()
+    curve
+        .points
+        .iter()
+        .map(|at| plane.coordinates(&at.z))
+        .collect()
 }
 
 /// Criteria for the motions of a chart, from a few of its cells.
 fn criteria(plane: &Plane<'_>, chart: &Chart, zeros: usize) -> Result<Criteria, ChartError> {
-    /// Cells that are looked at.
+    /// Number of cells examined.
     const SAMPLES: usize = 40;
     let cells: Vec<&Cell> = chart.cells.iter().flatten().collect();
     let each = (cells.len() / SAMPLES).max(1);
@@ -109,7 +113,7 @@ impl Critical<'_> {
         told.collect()
     }
 
-    /// What a curve is for people; nothing where eigenvalues only mirror each other.
+    /// The boundary of a curve; `None` where eigenvalues are only symmetric about zero.
     fn describe(&self, level: &Level<'_>, curve: &Curve) -> Option<Boundary> {
         let told: Vec<(Option<Change>, bool)> =
             curve.points.iter().map(|at| self.at(&at.z)).collect();
@@ -126,7 +130,7 @@ impl Critical<'_> {
         })
     }
 
-    /// What eigenvalues do at a motion, and whether they decide on stability.
+    /// The change of the eigenvalues at a motion, and whether they decide on stability.
     fn at(&self, z: &DVector<f64>) -> (Option<Change>, bool) {
         let problem = self.plane.problem;
         let point = self.plane.equations.point(z);
@@ -156,7 +160,7 @@ impl Critical<'_> {
                 {
                     folds.push(BoundaryFold {
                         axis,
-                        at: self.plane.place(&z),
+                        at: self.plane.coordinates(&z),
                         point: equations.point(&z),
                         decides: self.at(&z).1,
                     });

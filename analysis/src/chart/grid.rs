@@ -1,4 +1,4 @@
-//! The steady motions of a chart, place by place.
+//! The steady motions of a chart, grid point by grid point.
 
 use std::cmp::Ordering;
 use std::iter;
@@ -7,7 +7,7 @@ use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 use nalgebra::DVector;
 
 use super::boundary;
-use super::flood::Flood;
+use super::grid_continuation::GridContinuation;
 use super::plane::{Axis, Plane};
 use super::{Cell, Chart, ChartError, MOST};
 use crate::branch::{BranchError, Requirement};
@@ -16,7 +16,7 @@ use crate::stability::{Verdict, essential_matrix, zero_count};
 use crate::steady::SteadyProblem;
 use appell_spectra::spectrum::Eigenvalues;
 
-/// Places along each axis where motions are sought from many starting points.
+/// Points along each axis where motions are sought from many starting points.
 const SEEDS: usize = 5;
 
 impl Chart {
@@ -67,8 +67,8 @@ impl Chart {
     }
 }
 
-/// Motions at a few places, found from many starting points, and how many eigenvalues are zero at
-/// all of them.
+/// Motions at a few points of the plane, found from many starting points, and the number of zero
+/// eigenvalues common to all of them.
 fn seeds(plane: &Plane<'_>, starts: usize) -> Result<(Vec<DVector<f64>>, usize), ChartError> {
     let problem = plane.problem;
     let mut seeds = Vec::new();
@@ -101,8 +101,8 @@ fn seeds(plane: &Plane<'_>, starts: usize) -> Result<(Vec<DVector<f64>>, usize),
     }
 }
 
-/// The motions of the whole grid: a band for each row of seeds, then across their edges. Sheets make
-/// bands unlike, so each thread takes the next one when it is free.
+/// The motions of the whole grid: a band for each row of seeds, then across their edges. The work in
+/// bands differs, so each thread takes the next one when it is free.
 fn motions(
     plane: &Plane<'_>,
     seeds: &[DVector<f64>],
@@ -112,10 +112,10 @@ fn motions(
     let rows = plane.axes[1].count;
     let high = rows.div_ceil(SEEDS);
     let filled = |from: usize| {
-        let mut band = Flood::over(plane, from..rows.min(from + high));
+        let mut band = GridContinuation::over(plane, from..rows.min(from + high));
         for seed in seeds {
             band.seed(seed);
-            band.spread();
+            band.continue_all();
         }
         band
     };
@@ -125,19 +125,19 @@ fn motions(
         let bands = from.take_while(|&from| from < rows).map(filled);
         bands.collect::<Vec<_>>()
     };
-    let mut bands: Vec<Flood<'_>> = std::thread::scope(|scope| {
+    let mut bands: Vec<GridContinuation<'_>> = std::thread::scope(|scope| {
         let running: Vec<_> = (0..threads.max(1)).map(|_| scope.spawn(taken)).collect();
         let taken = running.into_iter().filter_map(|bands| bands.join().ok());
         taken.flatten().collect()
     });
-    bands.sort_by_key(Flood::first_row);
-    let mut all = Flood::joined(plane, bands);
-    all.spread();
+    bands.sort_by_key(GridContinuation::first_row);
+    let mut all = GridContinuation::joined(plane, bands);
+    all.continue_all();
     all.fill_holes(plane.problem, starts);
     all.motions
 }
 
-/// Tells what becomes of motions.
+/// Assesses motions.
 struct Judge<'a> {
     plane: &'a Plane<'a>,
     requirements: &'a [Requirement],
@@ -145,7 +145,7 @@ struct Judge<'a> {
 }
 
 impl Judge<'_> {
-    /// The cells of all places, shared among threads.
+    /// The cells of all grid points, shared among threads.
     fn cells(&self, motions: &[Vec<DVector<f64>>], threads: usize) -> Vec<Vec<Cell>> {
         let share = motions.len().div_ceil(threads.max(1)).max(1);
         std::thread::scope(|scope| {
@@ -163,7 +163,7 @@ impl Judge<'_> {
         let places = motions.iter().map(|place| {
             let cells = place.iter().filter_map(|z| self.cell(z, &mut solver));
             let mut cells: Vec<Cell> = cells.collect();
-            // In an order that does not tell how they were found.
+            // In an order that does not depend on how they were found.
             cells.sort_by(|a, b| {
                 let pairs = a.unknowns.iter().zip(&b.unknowns);
                 let mut orders = pairs.map(|(a, b)| rounded(*a).total_cmp(&rounded(*b)));

@@ -1,10 +1,10 @@
 //! Curves over a plane on which a function of the steady motions is zero.
 //!
-//! They begin where the function has different signs at two places of a chart beside each other.
+//! They begin where the function has different signs at two neighbouring grid points.
 
 use nalgebra::{DMatrix, DVector};
 
-use super::flood::nearest;
+use super::grid_continuation::nearest;
 use super::plane::{Plane, between};
 use super::{Cell, Chart};
 use crate::branch::continuation::{End, OnCurve, follow, root};
@@ -27,12 +27,12 @@ pub(crate) struct Curve {
 const MOST_POINTS: usize = 4000;
 /// Longest step as a part of the range of either quantity.
 const LONGEST: f64 = 0.01;
-/// Curves that are followed at most.
+/// Largest number of curves.
 const MOST_CURVES: usize = 100;
 
 impl Equations for Level<'_> {
-    /// The steady equations and the function. Its gradient comes from differences: the value decides
-    /// where the curve is, the gradient where it goes.
+    /// The steady equations and the function. Its gradient, by differences, affects only the
+    /// direction of the curve.
     fn evaluate(&self, z: &DVector<f64>) -> (DVector<f64>, DMatrix<f64>) {
         /// Balances the error of a difference of order four with that of rounding.
         const STEP: f64 = 1e-3;
@@ -54,8 +54,8 @@ impl Equations for Level<'_> {
 }
 
 impl Level<'_> {
-    /// All curves that pass between places of a chart. `sign` tells that of the function at a motion
-    /// of the chart, or 0.
+    /// All curves that pass between grid points of a chart. `sign` returns that of the function at
+    /// a motion of the chart, or 0.
     pub(crate) fn curves(&self, chart: &Chart, sign: impl Fn(&Cell) -> f64) -> Vec<Curve> {
         let mut curves: Vec<Curve> = Vec::new();
         for [a, b] in pairs(self.plane, chart, sign) {
@@ -77,11 +77,12 @@ impl Level<'_> {
         curves
     }
 
-    /// The zero between two motions beside each other, if it is one.
+    /// The zero between two neighbouring motions, unless it is a pole.
     fn start(&self, a: &DVector<f64>, b: &DVector<f64>) -> Option<OnCurve> {
-        /// Beside its values on either side the function is nothing at a zero, and large at a pole.
+        /// Relative to its values on either side the function is small at a zero and large at a
+        /// pole.
         const NOTHING: f64 = 1e-3;
-        let [here, there] = [a, b].map(|z| self.plane.place(z));
+        let [here, there] = [a, b].map(|z| self.plane.coordinates(z));
         let motion = |part: f64| {
             let z = a + (b - a) * part;
             self.plane.near(between(here, there, part), &z)
@@ -95,9 +96,9 @@ impl Level<'_> {
         OnCurve::new(self, z, &either_way).filter(|_| zero)
     }
 
-    /// Whether a curve passes a motion within a distance.
+    /// Whether a curve passes within a distance of a motion.
     fn passes(&self, curve: &Curve, z: &DVector<f64>, reach: f64) -> bool {
-        let place = self.plane.place(z);
+        let place = self.plane.coordinates(z);
         let near = |other: &[f64; 2]| {
             let axes = self.plane.axes.iter().zip(place.iter().zip(other));
             let mut apart = axes.map(|(axis, (a, b))| {
@@ -126,9 +127,10 @@ impl Level<'_> {
             steps.fold(0.1 * (1.0 + at.z.norm()), f64::min)
         };
         let limit = |a: &OnCurve, b: &OnCurve| {
-            let there = plane.place(&b.z);
+            let there = plane.coordinates(&b.z);
             let left = (0..2).find(|&k| plane.axes[k].margin(there[k]) < 0.0)?;
-            let outside = |z: &DVector<f64>| Some(plane.axes[left].margin(plane.place(z)[left]));
+            let outside =
+                |z: &DVector<f64>| Some(plane.axes[left].margin(plane.coordinates(z)[left]));
             let end = a.root(self, b, outside);
             let end = end.and_then(|z| OnCurve::new(self, z, &a.tangent));
             Some((end, End::Range))
@@ -149,14 +151,14 @@ impl Level<'_> {
         points.push(start.clone());
         points.extend(forward);
         Curve {
-            places: points.iter().map(|at| plane.place(&at.z)).collect(),
+            places: points.iter().map(|at| plane.coordinates(&at.z)).collect(),
             points,
             ends,
         }
     }
 }
 
-/// Motions beside each other on one sheet where a function has different signs.
+/// Neighbouring motions on one branch where a function has different signs.
 fn pairs(
     plane: &Plane<'_>,
     chart: &Chart,
@@ -172,7 +174,7 @@ fn pairs(
         let beside = beside.into_iter().flatten();
         let mut found = Vec::new();
         for other in beside.filter(|&other| other < chart.cells.len()) {
-            // Most places have one motion, and most of these one sign.
+            // Most grid points have one motion, and most neighbours the same sign.
             let [here, there] = [place, other].map(|place| signs[place].iter());
             let any =
                 |wanted: fn(f64) -> bool| here.clone().chain(there.clone()).any(|s| wanted(*s));

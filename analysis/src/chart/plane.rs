@@ -1,4 +1,4 @@
-//! Steady motions over a plane: two quantities have values, the others follow.
+//! Steady motions over a plane of two prescribed quantities.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -14,7 +14,7 @@ pub struct Axis {
     pub term: Term,
     /// First and last value in SI.
     pub range: [f64; 2],
-    /// How many values, both ends among them.
+    /// Number of values, both ends included.
     pub count: usize,
 }
 
@@ -30,7 +30,7 @@ impl Axis {
         self.range[1] - self.range[0]
     }
 
-    /// The number of the value that is nearest.
+    /// Number of the nearest value.
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
@@ -55,11 +55,11 @@ pub(crate) struct Plane<'a> {
     pub(crate) axes: [Axis; 2],
     /// The equations of all motions, with the quantities of the axes in units of their ranges.
     pub(crate) equations: SteadyEquations<'a>,
-    /// The same and the quantities of the axes, less what they are to be.
+    /// The same with the quantities of the axes as residuals.
     placed: SteadyEquations<'a>,
 }
 
-/// The equations of the motions at a place.
+/// The equations of the motions at a point of the plane.
 struct At<'a> {
     plane: &'a Plane<'a>,
     place: [f64; 2],
@@ -99,7 +99,7 @@ impl<'a> Plane<'a> {
     }
 
     /// The values of the axes in a motion.
-    pub(crate) fn place(&self, z: &DVector<f64>) -> [f64; 2] {
+    pub(crate) fn coordinates(&self, z: &DVector<f64>) -> [f64; 2] {
         let point = self.equations.point(z);
         self.axes
             .map(|axis| axis.term.value(self.equations.model, &point))
@@ -107,21 +107,21 @@ impl<'a> Plane<'a> {
 
     /// Whether a motion lies within the axes.
     pub(crate) fn holds(&self, z: &DVector<f64>) -> bool {
-        let mut places = self.axes.iter().zip(self.place(z));
+        let mut places = self.axes.iter().zip(self.coordinates(z));
         places.all(|(axis, value)| axis.margin(value) >= 0.0)
     }
 
-    /// The motion at a place that is near another one: Newton's method without any detour.
+    /// The motion at a point of the plane that is near another motion, by plain Newton steps.
     pub(crate) fn near(&self, place: [f64; 2], start: &DVector<f64>) -> Option<DVector<f64>> {
         /// Steps; two are usual.
         const STEPS: usize = 8;
         /// After a step as short as this the next would be rounding.
         const SHORT: f64 = 1e-7;
-        /// A longer step, relative to the motion, leads to another one.
+        /// A longer step, relative to the motion, leads to another motion.
         const FAR: f64 = 1.0;
-        /// Unknowns that exceed this, in their scales, run to infinity.
+        /// Scaled unknowns that exceed this diverge.
         const INFINITE: f64 = 1e4;
-        /// Columns that depend on each other to this part belong to a family.
+        /// Ratio of pivots below which the motion belongs to a family.
         const REGULAR: f64 = 1e-9;
         let equations = At { plane: self, place };
         let mut z = start.clone();
@@ -151,7 +151,7 @@ impl<'a> Plane<'a> {
         None
     }
 
-    /// The motion at a place on the sheet of one at another place, in as many steps as it needs.
+    /// Continues a motion from one point of the plane to another, in as many steps as it needs.
     pub(crate) fn approach(
         &self,
         from: [f64; 2],
@@ -173,7 +173,7 @@ impl<'a> Plane<'a> {
     }
 }
 
-/// A place on the way from one to another.
+/// A point between two others.
 pub(crate) fn between(from: [f64; 2], to: [f64; 2], part: f64) -> [f64; 2] {
     [0, 1].map(|k: usize| from[k] + part * (to[k] - from[k]))
 }

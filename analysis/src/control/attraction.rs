@@ -1,4 +1,4 @@
-//! How large a disturbance a loop survives: simulations from a grid of initial states.
+//! Region of attraction of a loop, by simulations from a grid of initial states.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -7,7 +7,7 @@ use appell_runtime::model::Model;
 use appell_runtime::simulate::{Simulation, SimulationError};
 use appell_runtime::trajectory::Trajectory;
 
-/// One state that the grid varies.
+/// A state that the grid varies.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Axis {
     /// The state, by its index in the model.
@@ -16,14 +16,14 @@ pub struct Axis {
     pub values: Vec<f64>,
 }
 
-/// What became of a motion.
+/// Outcome of a motion.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Fate {
-    /// It was settled at the end.
+    /// It settled.
     Settled,
-    /// It reached the end, but was not settled there.
+    /// It reached the end without settling.
     Unsettled,
-    /// It left the range of a state, or came where the equations end, at this time in s.
+    /// It left the range of a state, or became singular, at this time in s.
     Lost {
         /// When.
         time: f64,
@@ -38,11 +38,11 @@ pub struct Region<'a> {
     pub parameters: &'a [f64],
     /// The state on the steady motion in SI; the axes replace entries.
     pub state: &'a [f64],
-    /// Makes the closed loop, anew for each motion.
+    /// Creates the closed loop for each motion.
     pub inputs: &'a (dyn Fn() -> Box<dyn InputSource + 'a> + Sync),
     /// How long each motion lasts, in s.
     pub duration: f64,
-    /// What varies. The first axis runs slowest in the results.
+    /// The varied states. The first axis runs slowest in the results.
     pub axes: Vec<Axis>,
     /// Whether a motion is settled at its end.
     pub settled: &'a (dyn Fn(&Trajectory) -> bool + Sync),
@@ -58,10 +58,10 @@ impl std::fmt::Debug for Region<'_> {
     }
 }
 
-/// The fates of all motions of a grid.
+/// The outcomes of all motions of a grid.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Fates {
-    /// What varied.
+    /// The varied states.
     pub axes: Vec<Axis>,
     /// The states of the axes on the steady motion.
     pub centre: Vec<f64>,
@@ -138,8 +138,8 @@ impl Region<'_> {
 }
 
 impl Fates {
-    /// The largest part s of the grid such that every motion settles that begins within s times the
-    /// largest disturbances of all axes: an estimate from inside, as fine as the grid.
+    /// The largest fraction s such that every motion settles that begins within s times the largest
+    /// disturbances of all axes: an inner estimate, as fine as the grid.
     pub fn safe_part(&self) -> f64 {
         let axes = || self.axes.iter().zip(&self.centre);
         let largest = |(axis, centre): (&Axis, &f64)| {
@@ -162,7 +162,7 @@ impl Fates {
     }
 }
 
-/// Places on the axes of a point of the grid.
+/// Indices on the axes of a point of the grid.
 fn places(axes: &[Axis], mut point: usize) -> Vec<usize> {
     let mut places: Vec<usize> = axes
         .iter()

@@ -1,4 +1,4 @@
-//! What the inputs reach, and which modes they do not.
+//! Controllability, and uncontrollable modes.
 
 use nalgebra::{Complex, DMatrix};
 
@@ -8,27 +8,27 @@ use super::staircase::{NEGLIGIBLE, Staircase};
 use appell_spectra::singular::Singular;
 use appell_spectra::spectrum::{self, SpectrumError};
 
-/// Eigenvalues that are closer than this, beside the largest entry of a balanced A, count as one: a
+/// Eigenvalues closer than this, relative to the largest entry of a balanced A, count as one: a
 /// multiple eigenvalue is known to a root of the rounding error only, its mean to all digits.
 const CLUSTER: f64 = 1e-4;
 
-/// A smallest singular value that is below this beside the largest entry is zero. It is not as sharp
-/// as a rank of the staircase: the eigenvalue itself is rounded.
+/// A smallest singular value below this, relative to the largest entry, counts as zero. The
+/// tolerance is wider than that of the staircase, as the eigenvalue itself is rounded.
 const LOST: f64 = 1e-9;
 
-/// What the inputs of a linear system can do.
+/// Controllability of a linear system.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Controllability {
     /// Dimension of the controllable subspace, from the staircase form of the balanced system.
     pub rank: usize,
-    /// Singular values of [B AB A²B …], largest first, beside the largest one. A is balanced and
-    /// divided by its norm, the columns of B are of like size: a small one tells that a direction
-    /// is hard to reach, not that a unit is small.
+    /// Singular values of [B AB A²B …] relative to the largest, in descending order. A is balanced
+    /// and divided by its norm and the columns of B are of similar size, so that small values mean
+    /// directions that are hard to control, not small units.
     pub singular_values: Vec<f64>,
-    /// Eigenvalues of what the inputs do not reach. No feedback moves them.
+    /// Uncontrollable eigenvalues, which no feedback moves.
     pub lost: Vec<Complex<f64>>,
-    /// A row for each lost mode: a combination of the states that the inputs do not touch,
-    /// whatever they do. In reduced row echelon form.
+    /// A row for each uncontrollable mode: a combination of the states on which the inputs have no
+    /// effect. In reduced row echelon form.
     pub untouched: DMatrix<f64>,
     /// The modes of A with the test of Popov, Belevitch and Hautus.
     pub modes: Vec<Mode>,
@@ -41,18 +41,18 @@ pub struct Mode {
     pub value: Complex<f64>,
     /// How many eigenvalues of A lie here.
     pub multiplicity: usize,
-    /// Smallest singular value of [A − λ1  B] of the balanced system beside its largest entry: how
-    /// small a change of the equations takes the mode away from the inputs.
+    /// Smallest singular value of [A − λ1  B] of the balanced system, relative to its largest
+    /// entry: the relative distance to a system in which the mode is uncontrollable.
     pub distance: f64,
-    /// Whether the inputs do not reach it; of a multiple mode, whether they miss a part.
+    /// Whether it is uncontrollable; of a multiple mode, whether a part of it is.
     pub lost: bool,
-    /// The combinations of states that have this mode and that the inputs do not touch, as rows in
-    /// reduced row echelon form. None for a mode that they reach.
+    /// The combinations of states with this mode on which the inputs have no effect, as rows in
+    /// reduced row echelon form. None for a controllable mode.
     pub untouched: DMatrix<Complex<f64>>,
 }
 
 impl Controllability {
-    /// What the inputs of a system reach.
+    /// Analyses a system.
     pub fn of(system: &LinearSystem) -> Result<Self, SpectrumError> {
         let balanced = system.balanced();
         let form = Staircase::of(&balanced.system);
@@ -72,8 +72,7 @@ impl Controllability {
         })
     }
 
-    /// Lost modes that do not decay: whatever the feedback, the closed loop keeps them, as a neutral
-    /// mode or a growing one.
+    /// Uncontrollable modes that do not decay: under any feedback the closed loop keeps them.
     pub fn kept(&self) -> impl Iterator<Item = &Mode> {
         let size = self.modes.iter().map(|mode| mode.value.norm());
         let rounding = LOST * size.fold(1.0, f64::max);
@@ -82,14 +81,13 @@ impl Controllability {
     }
 }
 
-/// How many of the outputs, some of the states, the inputs move independently of each other: the
-/// rank of [CB CAB CA²B …].
+/// Output controllability: the rank of [CB CAB CA²B …] for outputs that are states.
 pub fn output_rank(system: &LinearSystem, outputs: &[usize]) -> usize {
     let basis = Staircase::of(&system.balanced().system).basis();
     Singular::of(&basis.select_rows(outputs)).rank(NEGLIGIBLE)
 }
 
-/// Singular values of the controllability matrix, beside the largest.
+/// Singular values of the controllability matrix, relative to the largest.
 fn singular_values(system: &LinearSystem) -> Vec<f64> {
     let n = system.order();
     let a = &system.a / system.a.norm().max(f64::MIN_POSITIVE);
@@ -132,7 +130,8 @@ fn modes(system: &LinearSystem, scales: &[f64]) -> Result<Vec<Mode>, SpectrumErr
     Ok(modes)
 }
 
-/// The test of one mode: what of the states satisfies wᵀ [A − λ1  B] = 0 lives by itself.
+/// The test of one mode: a combination wᵀ of the states is uncontrollable if wᵀ [A − λ1  B] = 0
+/// lives by itself.
 fn mode(
     system: &LinearSystem,
     scales: &[f64],

@@ -1,13 +1,13 @@
-//! Subspaces written so that people can read them.
+//! Readable bases of subspaces.
 
 use nalgebra::{ComplexField, DMatrix};
 
-/// A pivot may be this small beside the largest entry.
+/// Smallest pivot, relative to the largest entry.
 const PIVOT: f64 = 1e-4;
 
 /// The reduced row echelon form of independent rows: each row has a 1 where the others have 0, and
-/// what is rounding becomes 0. Columns stand for states; the first ones are eliminated, so that
-/// relations tell speeds in terms of coordinates.
+/// rounding becomes 0. Columns stand for states; the first ones are eliminated, so that relations
+/// give speeds in terms of coordinates.
 pub(super) fn row_echelon<T>(mut rows: DMatrix<T>, negligible: f64) -> DMatrix<T>
 where
     T: ComplexField<RealField = f64>,

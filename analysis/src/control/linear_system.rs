@@ -28,14 +28,14 @@ impl LinearSystem {
         &self.a - &self.b * gain
     }
 
-    /// The same system in states ỹ = y / d and with inputs ũ = u / e, so that rows and columns are
-    /// of like size: units cannot decide on a rank then. d and e are powers of two, so that
-    /// scaling rounds nothing.
+    /// The same system in states ỹ = y / d and inputs ũ = u / e, so that rows and columns have
+    /// similar norms and ranks do not depend on units. d and e are powers of two, so that scaling
+    /// is exact.
     pub fn balanced(&self) -> Balanced {
         let (n, m) = (self.order(), self.inputs());
         let (mut a, mut b) = (self.a.clone(), self.b.clone());
         let (mut states, mut inputs) = (vec![1.0; n], vec![1.0; m]);
-        // Inputs first, as large as A, so that they take part in the size of the rows.
+        // Inputs first, scaled to the size of A, so that they count in the norms of the rows.
         let size = a.amax().max(f64::MIN_POSITIVE);
         for input in 0..m {
             let factor = power_of_two(size / b.column(input).amax());
@@ -77,7 +77,7 @@ impl LinearSystem {
 /// Sweeps of the balancing; a few are enough for the sizes of mechanisms.
 const SWEEPS: usize = 30;
 
-/// The nearest power of two; 1 for what has no logarithm.
+/// The nearest power of two; 1 for numbers without a logarithm.
 fn power_of_two(value: f64) -> f64 {
     if value.is_finite() && value > 0.0 {
         value.log2().round().exp2()

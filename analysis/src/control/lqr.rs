@@ -11,11 +11,11 @@ use appell_spectra::spectrum;
 pub struct Regulator {
     /// K in u = −K y.
     pub gain: DMatrix<f64>,
-    /// X, with which yᵀ X y is the cost from y on.
+    /// X: yᵀ X y is the cost to go from y.
     pub cost: DMatrix<f64>,
     /// Eigenvalues of A − B K.
     pub poles: Vec<Complex<f64>>,
-    /// Residual of the Riccati equation beside its terms.
+    /// Residual of the Riccati equation relative to its terms.
     pub residual: f64,
 }
 

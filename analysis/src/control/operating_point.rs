@@ -10,16 +10,15 @@ use appell_runtime::positions::{Moving, Positions};
 use appell_runtime::signal::SignalError;
 use appell_spectra::singular::Singular;
 
-/// Pseudo-accelerations in SI up to which a motion counts as steady: values that people type have
-/// some eight digits.
+/// Pseudo-accelerations in SI up to which a motion counts as steady: typed values have about eight
+/// digits.
 const STEADY: f64 = 1e-6;
-/// How far along the motion the equations are compared with themselves, in s. Any time would do
-/// but a multiple of the period of what time prescribes, after which everything is as before; whole
-/// and half seconds are such multiples more often than this.
+/// Time along the motion after which the equations are compared, in s. It must not be a multiple of
+/// the period of a prescribed motion, which is more often a whole or half second than this.
 const AHEAD: f64 = 0.7;
-/// Entries that differ by less than this beside the largest are equal.
+/// Entries that differ by less than this, relative to the largest, are equal.
 const SAME: f64 = 1e-9;
-/// Newton steps for the inputs that hold a motion.
+/// Newton steps for the inputs that maintain a motion.
 const MOST_STEPS: usize = 20;
 
 /// Where a model is linearised. All in SI.
@@ -47,11 +46,11 @@ pub struct MotionEquations {
     /// A and B.
     pub system: LinearSystem,
     /// Rows that change along the motion, such as those of positions in the ground while the
-    /// heading turns. What is in no other row's equation may be left out.
+    /// heading turns. States on which no other row depends may be left out.
     pub varying: Vec<usize>,
 }
 
-/// Why a model has no linear equations with constant coefficients here.
+/// Why a model has no linear equations with constant coefficients at this motion.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum OperatingPointError {
     /// A vector does not fit the model.
@@ -75,7 +74,7 @@ pub enum OperatingPointError {
     /// The equations cannot be evaluated here.
     #[error("the equations have no finite value at this state")]
     NotFinite,
-    /// The position constraints leave the dependent coordinates open.
+    /// The position constraints do not determine the dependent coordinates.
     #[error(transparent)]
     Undetermined(#[from] Undetermined),
     /// A table of the model is not a function of time.
@@ -145,7 +144,7 @@ impl<'a> OperatingPoint<'a> {
         }
         if let Some(mut positions) = Positions::of(self.model) {
             let u = self.inputs_at(AHEAD)?;
-            // Where no configuration lies ahead the rows differ, which is told.
+            // Without a configuration there the rows differ, which is reported.
             let _ = positions.restore(
                 self.model,
                 AHEAD,

@@ -12,7 +12,7 @@ use super::staircase::Staircase;
 use appell_spectra::singular::Singular;
 use appell_spectra::spectrum::{Spectrum, SpectrumError, characteristic_polynomial};
 
-/// Gains with what they achieve.
+/// Gains and the closed loop.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Placement {
     /// K in u = −K y, a row for each input.
@@ -21,11 +21,12 @@ pub struct Placement {
     /// by the n-th root of the rounding.
     pub poles: Vec<Complex<f64>>,
     /// Largest difference between the coefficients of the characteristic polynomials of A − B K and
-    /// of the poles that were wanted, each beside the sum of the sizes of the terms that make it:
-    /// this tells how exact the gains are even where the poles spread.
+    /// of the requested poles, each relative to the sum of the magnitudes of its terms: the
+    /// accuracy of the gains, even where the poles spread.
     pub residual: f64,
-    /// Condition number of the eigenvectors of A − B K, of length 1 in balanced states: how far
-    /// poles move when equations change. Infinite for a multiple pole with one eigenvector.
+    /// Condition number of the eigenvectors of A − B K, of length 1 in balanced states: the
+    /// sensitivity of the poles to the equations. Infinite for a multiple pole with one
+    /// eigenvector.
     pub condition: f64,
 }
 
@@ -35,41 +36,41 @@ pub enum PlacementError {
     /// Too few or too many poles.
     #[error("{given} poles are given for {order} states")]
     Count {
-        /// How many are given.
+        /// Number of poles given.
         given: usize,
-        /// How many are needed.
+        /// Number of poles needed.
         order: usize,
     },
     /// A complex pole without its conjugate has complex gains.
-    #[error("the pole {pole} needs its conjugate beside it")]
+    #[error("the complex pole {pole} needs its conjugate")]
     Unpaired {
         /// The pole.
         pole: Complex<f64>,
     },
     /// Not all poles can be moved.
-    #[error("the inputs reach {rank} of {order} dimensions")]
+    #[error("the controllable subspace has {rank} of {order} dimensions")]
     Uncontrollable {
-        /// Dimension that they reach.
+        /// Dimension of the controllable subspace.
         rank: usize,
         /// Number of states.
         order: usize,
     },
-    /// A pole more often than there are inputs has too few eigenvectors.
+    /// A pole of higher multiplicity than the number of inputs has too few eigenvectors.
     #[error(
-        "the pole {pole} is wanted {wanted} times, but {inputs} inputs give it at most {inputs} eigenvectors"
+        "the pole {pole} is requested {wanted} times, but {inputs} inputs give it at most {inputs} eigenvectors"
     )]
     Multiple {
         /// The pole.
         pole: Complex<f64>,
-        /// How often it is given.
+        /// Its multiplicity.
         wanted: usize,
         /// Number of independent inputs.
         inputs: usize,
     },
-    /// Inputs that do the same.
+    /// Linearly dependent inputs.
     #[error("{inputs} inputs have only {rank} independent effects")]
     DependentInputs {
-        /// How many there are.
+        /// Number of inputs.
         inputs: usize,
         /// Rank of B.
         rank: usize,
@@ -77,7 +78,7 @@ pub enum PlacementError {
     /// No independent eigenvectors were found.
     #[error("no independent eigenvectors exist for these poles")]
     Defective,
-    /// The eigenvalues of the closed loop cannot be told.
+    /// The eigenvalues of the closed loop could not be computed.
     #[error(transparent)]
     Spectrum(#[from] SpectrumError),
 }
@@ -103,7 +104,7 @@ fn hessenberg_gain(system: &LinearSystem, poles: &[Complex<f64>]) -> RowDVector<
     let (h, n) = (&system.a, system.order());
     let mut row = RowDVector::zeros(n);
     row[n - 1] = 1.0;
-    // What a factor of p is divided by, so that the row stays of the size of the gains.
+    // Divisor of a factor of p, so that the row keeps the magnitude of the gains.
     let mut steps = (1..n)
         .map(|i| h[(i, i - 1)])
         .rev()
@@ -121,7 +122,7 @@ fn hessenberg_gain(system: &LinearSystem, poles: &[Complex<f64>]) -> RowDVector<
     row
 }
 
-/// The poles with each complex one beside its conjugate, the one above the real axis first.
+/// The poles with complex ones in conjugate pairs, positive imaginary part first.
 pub(super) fn paired(
     poles: &[Complex<f64>],
     order: usize,
@@ -158,7 +159,7 @@ pub(super) fn paired(
 }
 
 impl Placement {
-    /// What the gains of a balanced system achieve.
+    /// The closed loop of a balanced system.
     pub(super) fn of(
         balanced: &Balanced,
         scaled_gain: &DMatrix<f64>,
@@ -186,8 +187,8 @@ pub(super) fn condition(vectors: &DMatrix<Complex<f64>>) -> f64 {
     }
 }
 
-/// Largest difference between the coefficients of a polynomial and those of its wanted roots,
-/// each beside the same coefficient of Π (s + |λ|).
+/// Largest difference between the coefficients of a polynomial and those of its requested roots,
+/// each relative to the same coefficient of Π (s + |λ|).
 fn polynomial_residual(coefficients: &[f64], wanted: &[Complex<f64>]) -> f64 {
     let expand = |roots: &mut dyn Iterator<Item = Complex<f64>>| {
         let mut polynomial = vec![Complex::new(1.0, 0.0)];
@@ -201,7 +202,7 @@ fn polynomial_residual(coefficients: &[f64], wanted: &[Complex<f64>]) -> f64 {
         polynomial
     };
     let exact = expand(&mut wanted.iter().copied());
-    // A root at zero has no size of its own; it counts as large as the largest.
+    // A root at zero has no magnitude; it counts as large as the largest.
     let largest = wanted.iter().map(|root| root.norm()).fold(0.0, f64::max);
     let of = |root: &Complex<f64>| {
         if root.norm() > 0.0 {

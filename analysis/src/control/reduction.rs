@@ -1,9 +1,9 @@
-//! The exact equations of chosen states alone.
+//! Exact closed equations of chosen states.
 //!
-//! On the motions that the inputs can make, other states may follow from the chosen ones, and what
-//! the chosen ones do not depend on does not matter. If just as many dimensions remain as states
-//! were chosen, these have linear equations of their own, `ẏ = A_y y + B_y u`: the controllable part
-//! of the system, and of that the part which y observes. Feedback of y is state feedback then.
+//! In the controllable subspace, other states may follow from the chosen ones, and states on which
+//! these do not depend are irrelevant. If the dimension that remains equals the number of chosen
+//! states, these have closed linear equations, `ẏ = A_y y + B_y u`: the part of the system that is
+//! controllable and observable through y. Feedback of y is then state feedback.
 
 use nalgebra::{DMatrix, RowDVector};
 
@@ -14,21 +14,20 @@ use appell_spectra::singular::Singular;
 /// The equations of chosen states.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Subsystem {
-    /// The chosen states, by their place in the whole system.
+    /// The chosen states, by their index in the whole system.
     pub states: Vec<usize>,
     /// `ẏ = A_y y + B_y u`.
     pub system: LinearSystem,
-    /// Other states that follow from the chosen ones, with a factor for each of these. They were
+    /// Other states that follow from the chosen ones, with a factor for each of these; they are
     /// substituted.
     pub substituted: Vec<(usize, Vec<f64>)>,
 }
 
-/// Why chosen states have no equations of their own. States are given by their place in the whole
-/// system.
+/// Why chosen states have no closed equations. States are given by their index in the whole system.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum ReductionError {
-    /// There is nothing to control.
-    #[error("the inputs move none of the chosen states")]
+    /// The inputs have no effect on the chosen states.
+    #[error("the inputs have no effect on the chosen states")]
     Unmoved,
     /// A chosen state follows from others.
     #[error("chosen state {state} follows from those chosen before it")]
@@ -38,23 +37,23 @@ pub enum ReductionError {
         /// Its factors for the states chosen before it; all zero where the inputs do not move it.
         factors: Vec<f64>,
     },
-    /// The chosen states depend on what was not chosen.
-    #[error("{chosen} states were chosen, but they need the equations of {order}")]
+    /// The chosen states depend on states that were not chosen.
+    #[error("{chosen} states were chosen, but closed equations need {order}")]
     Open {
-        /// How many states were chosen.
+        /// Number of chosen states.
         chosen: usize,
-        /// Dimension of what they depend on.
+        /// Number of states needed.
         order: usize,
-        /// States that would complete them.
+        /// States that would complete the choice.
         missing: Vec<usize>,
     },
 }
 
-/// The controllable motions of a system, and of those what chosen states observe.
+/// The controllable subspace of a system, and its part observable through chosen states.
 struct Quotient {
     /// Controllable subspace: a row for each state, orthonormal columns.
     reached: DMatrix<f64>,
-    /// What the chosen states observe of it, orthonormal columns.
+    /// Its observable part, orthonormal columns.
     observed: DMatrix<f64>,
 }
 
@@ -73,7 +72,7 @@ impl Quotient {
         }
     }
 
-    /// A state as a function of what is observed, and what it depends on besides.
+    /// A state as a function of the observable part, and its remainder.
     fn state(&self, state: usize) -> (RowDVector<f64>, f64) {
         let row = self.reached.row(state);
         let seen = row * &self.observed;
@@ -143,13 +142,13 @@ pub fn reduce(system: &LinearSystem, states: &[usize]) -> Result<Subsystem, Redu
     })
 }
 
-/// As many of the candidates as determine the controllable motions, the first ones preferred.
+/// Candidates that determine the controllable subspace, earlier ones preferred.
 pub fn independent_states(system: &LinearSystem, candidates: &[usize]) -> Vec<usize> {
     let reached = Staircase::of(&system.balanced().system).basis();
     complete(&reached, &[], candidates.iter().copied())
 }
 
-/// States that complete the chosen ones: first those that need nothing further.
+/// States that complete the chosen ones: first single states that suffice.
 fn missing(quotient: &Quotient, states: &[usize]) -> Vec<usize> {
     let all = || (0..quotient.reached.nrows()).rev();
     let within = all().filter(|&state| quotient.state(state).1 <= NEGLIGIBLE);
@@ -200,5 +199,5 @@ fn first_dependent(rows: &DMatrix<f64>) -> Option<(usize, Vec<f64>)> {
 }
 
 /// A state whose row of an orthonormal basis differs by less than this from a combination of others
-/// cannot be told from it in a loop.
+/// counts as equal to it.
 const DEPENDENT: f64 = 1e-8;

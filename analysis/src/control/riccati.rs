@@ -13,7 +13,7 @@ use appell_spectra::spectrum::{self, SpectrumError};
 const DOUBLINGS: usize = 60;
 /// Newton steps; from a good start two are enough.
 const NEWTON_STEPS: usize = 6;
-/// A residual that is larger than this beside the terms of the equation is no solution.
+/// Largest residual of a solution, relative to the terms of the equation.
 const RESIDUAL: f64 = 1e-9;
 
 type Matrix = DMatrix<f64>;
@@ -25,14 +25,14 @@ pub struct Riccati {
     pub x: Matrix,
     /// K, the gain that belongs to it: u = −K y.
     pub gain: Matrix,
-    /// Norm of the equation's residual beside the norms of its terms.
+    /// Norm of the residual relative to the norms of the terms of the equation.
     pub residual: f64,
 }
 
 /// Why there is no stabilising solution.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum RiccatiError {
-    /// Matrices that do not fit together.
+    /// Matrices of inconsistent dimensions.
     #[error("{what} must be {rows} × {columns}, not {found_rows} × {found_columns}")]
     Shape {
         /// Which matrix.
@@ -55,19 +55,19 @@ pub enum RiccatiError {
         /// The smallest eigenvalue.
         smallest: f64,
     },
-    /// No solution stabilises.
+    /// No stabilising solution exists.
     #[error(
-        "no gain stabilises: a mode of the system that does not decay is out of reach of the inputs \
-         or weightless in Q"
+        "there is no stabilising solution: an undamped or unstable mode is uncontrollable, or a mode \
+         on the stability boundary is unobservable through Q"
     )]
     NoStabilisingSolution,
-    /// The equation is solved less exactly than rounding explains.
-    #[error("the Riccati equation is solved to a residual of {residual:e} only")]
+    /// The residual is larger than rounding explains.
+    #[error("the Riccati equation is solved only to a relative residual of {residual:e}")]
     Inexact {
-        /// Norm of the residual beside the terms.
+        /// Norm of the residual relative to the terms.
         residual: f64,
     },
-    /// The closed loop has no eigenvalues that could be told.
+    /// The eigenvalues of the closed loop could not be computed.
     #[error(transparent)]
     Spectrum(#[from] SpectrumError),
 }

@@ -1,11 +1,11 @@
 //! Pole placement with several inputs.
 //!
 //! The gains are not unique: each pole leaves a choice of eigenvectors, a subspace of as many
-//! dimensions as there are inputs. Those are taken that stand as far apart as possible, because then
-//! the poles move least when the equations change (J. Kautsky, N. K. Nichols, P. Van Dooren,
-//! *Robust pole assignment in linear state feedback*, International Journal of Control 41, 1985,
-//! method 0; A. L. Tits, Y. Yang, *Globally convergent algorithms for robust pole assignment by
-//! state feedback*, IEEE Transactions on Automatic Control 41, 1996).
+//! dimensions as there are inputs. Those as close to orthogonal as possible are chosen, which makes
+//! the poles least sensitive to the equations (J. Kautsky, N. K. Nichols, P. Van Dooren, *Robust
+//! pole assignment in linear state feedback*, International Journal of Control 41, 1985, method 0;
+//! A. L. Tits, Y. Yang, *Globally convergent algorithms for robust pole assignment by state
+//! feedback*, IEEE Transactions on Automatic Control 41, 1996).
 
 use nalgebra::{Complex, ComplexField, DMatrix, DVector};
 
@@ -21,8 +21,8 @@ const STARTS: usize = 6;
 
 type Matrix = DMatrix<Complex<f64>>;
 
-/// Gains of several inputs that give A − B K the poles, with eigenvectors far apart. A pole may
-/// occur as often as there are inputs.
+/// Gains of several inputs that give A − B K the poles, with well-conditioned eigenvectors. A pole
+/// may occur as often as there are inputs.
 pub fn place(system: &LinearSystem, poles: &[Complex<f64>]) -> Result<Placement, PlacementError> {
     if system.inputs() == 1 {
         return super::placement::place(system, poles);
@@ -31,7 +31,8 @@ pub fn place(system: &LinearSystem, poles: &[Complex<f64>]) -> Result<Placement,
     let balanced = system.balanced();
     let (a, b) = (&balanced.system.a, &balanced.system.b);
     check(&balanced.system, &poles)?;
-    // What B cannot reach at once has to fit by itself: x is in the kernel of Q₁ᵀ (A − λ1).
+    // Outside the range of B, x must satisfy the equation alone: it is in the kernel of Q₁ᵀ (A −
+    // λ1).
     let unreached = left_kernel(b);
     let choices: Vec<Matrix> = poles
         .iter()
@@ -89,8 +90,8 @@ fn left_kernel(matrix: &DMatrix<f64>) -> DMatrix<f64> {
     singular.right.columns_range(matrix.ncols()..).into_owned()
 }
 
-/// Eigenvectors from their subspaces, spread: each in turn is turned towards what is orthogonal to
-/// all others. Nothing where they stay dependent.
+/// Well-conditioned eigenvectors from their subspaces: each in turn is rotated towards the
+/// direction orthogonal to all others. `None` if they stay dependent.
 fn spread(choices: &[Matrix], poles: &[Complex<f64>], start: usize) -> Option<Matrix> {
     let mut vectors = first_vectors(choices, poles, start);
     let mut best: Option<(f64, Matrix)> = None;
@@ -108,7 +109,7 @@ fn spread(choices: &[Matrix], poles: &[Complex<f64>], start: usize) -> Option<Ma
     best.map(|(_, vectors)| vectors)
 }
 
-/// Some vector of each subspace, differently weighted for each pole and start.
+/// A vector of each subspace, with weights that differ for each pole and start.
 fn first_vectors(choices: &[Matrix], poles: &[Complex<f64>], start: usize) -> Matrix {
     let n = poles.len();
     let mut vectors = Matrix::zeros(n, n);

@@ -1,9 +1,8 @@
-//! Controllers that measure at intervals and act with a delay.
+//! Sampled controllers with a delay.
 //!
-//! Between measurements the inputs are held (zero-order hold), and what a measurement asks for acts
-//! after a delay. In the states at the measurements, together with the inputs that were asked for
-//! and do not act yet, the system is linear and discrete (K. J. Åström, B. Wittenmark,
-//! *Computer-Controlled Systems*, sections 2.3 and 3.2).
+//! Between measurements the inputs are held (zero-order hold), and a command acts after a delay. In
+//! the states at the measurements, extended by the pending commands, the system is linear and
+//! discrete (K. J. Åström, B. Wittenmark, *Computer-Controlled Systems*, sections 2.3 and 3.2).
 
 use nalgebra::{Complex, DMatrix};
 
@@ -13,27 +12,27 @@ use super::placement::{Placement, PlacementError};
 use super::riccati::RiccatiError;
 use super::robust_placement;
 
-/// Most measurements that a delay may last.
+/// Longest delay in sampling periods.
 const MOST_PENDING: usize = 100;
 
-/// When a controller measures and acts.
+/// Sampling period and delay of a controller.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sampling {
     period: f64,
     delay: f64,
 }
 
-/// No controller can measure and act like this.
+/// Why a sampling is invalid.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum SamplingError {
-    /// The period is no time.
+    /// The period is not a positive time.
     #[error("the sampling period must be a positive number of seconds, not {0}")]
     Period(f64),
-    /// The delay is no time.
-    #[error("the delay must be a number of seconds that is not negative, not {0}")]
+    /// The delay is negative or not finite.
+    #[error("the delay must be a non-negative number of seconds, not {0}")]
     Delay(f64),
-    /// The delay lasts too long.
-    #[error("the delay of {delay} s lasts more than {MOST_PENDING} sampling periods of {period} s")]
+    /// The delay is too long.
+    #[error("the delay of {delay} s exceeds {MOST_PENDING} sampling periods of {period} s")]
     Pending {
         /// The period in s.
         period: f64,
@@ -67,7 +66,7 @@ impl Sampling {
         self.delay
     }
 
-    /// How many inputs that were asked for still have to act at a measurement.
+    /// Number of pending commands at a measurement.
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
@@ -83,14 +82,14 @@ impl Sampling {
         (continuous * self.period).exp()
     }
 
-    /// The pole that decays as fast in continuous time: ln z / T. None for z = 0, which is over
-    /// after one period.
+    /// The equivalent pole in continuous time: ln z / T. None for z = 0, which decays in one
+    /// period.
     pub fn continuous_pole(self, sampled: Complex<f64>) -> Option<Complex<f64>> {
         (sampled.norm() > 0.0).then(|| sampled.ln() / self.period)
     }
 
-    /// The discrete system: states y at a measurement, then the inputs that still have to act, the
-    /// oldest first. Its inputs are what a measurement asks for.
+    /// The discrete system: states y at a measurement, then the pending commands, oldest first. Its
+    /// inputs are the commands.
     #[must_use]
     pub fn discretise(self, system: &LinearSystem) -> LinearSystem {
         let (n, m, pending) = (system.order(), system.inputs(), self.pending());
@@ -120,8 +119,8 @@ impl Sampling {
         LinearSystem { a, b }
     }
 
-    /// Gains that give the sampled loop the poles e^{sT} for poles s of a continuous one; what is
-    /// pending gets the pole 0. The gains are for y and then for what is pending.
+    /// Gains that give the sampled loop the poles e^{sT} for poles s of a continuous one, and the
+    /// pole 0 for pending commands. The gains are for y and then for the pending commands.
     pub fn place(
         self,
         system: &LinearSystem,
@@ -159,7 +158,7 @@ impl Sampling {
             });
         }
         let sampled = self.discretise(system);
-        // What is pending has no weight of its own.
+        // Pending commands have no weight.
         let mut weight = DMatrix::zeros(sampled.order(), sampled.order());
         weight
             .view_mut((0, 0), (n, n))

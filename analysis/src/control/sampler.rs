@@ -1,4 +1,4 @@
-//! Sampled feedback in a simulation: inputs that remember what was measured.
+//! Sampled feedback in a simulation: inputs that depend on past measurements.
 
 use std::cell::RefCell;
 
@@ -7,9 +7,9 @@ use nalgebra::{DMatrix, DVector};
 use super::sampled::Sampling;
 use appell_runtime::inputs::InputSource;
 
-/// What the measurements of a controller asked for in one simulation from t = 0 on. The integrator
-/// stops at each of the switching times and evaluates the inputs there before it goes on: what is
-/// asked for then is what the controller measures.
+/// The inputs that a controller commanded in one simulation from t = 0 on. The integrator stops at
+/// each switching time and evaluates the inputs there before it continues: that evaluation is the
+/// measurement.
 #[derive(Debug, Clone)]
 pub struct Sampler {
     sampling: Sampling,
@@ -18,7 +18,7 @@ pub struct Sampler {
 }
 
 impl Sampler {
-    /// Nothing was measured yet; the simulation ends at `until` in s.
+    /// Before the first measurement; the simulation ends at `until` in s.
     pub fn new(sampling: Sampling, until: f64) -> Self {
         Self {
             sampling,
@@ -27,8 +27,8 @@ impl Sampler {
         }
     }
 
-    /// What acts at `t`; nothing before the first measurement does. `measure` tells what the
-    /// present state asks for, from what was asked for and does not act yet, the oldest first.
+    /// The input that acts at `t`; none before the first measurement acts. `measure` returns the
+    /// command for the present state from the pending commands, oldest first.
     pub fn acting(&self, t: f64, measure: impl Fn(&[Vec<f64>]) -> Vec<f64>) -> Option<Vec<f64>> {
         let Sampler { sampling, .. } = *self;
         let mut asked = self.asked.borrow_mut();
@@ -41,7 +41,7 @@ impl Sampler {
         asked.get(acting).cloned()
     }
 
-    /// The measurements and when they act, in s.
+    /// Times in s at which the controller measures and acts.
     pub fn switching_times(&self) -> Vec<f64> {
         let [period, delay] = [self.sampling.period(), self.sampling.delay()];
         (0..times_until(period, 0.0, self.until))
@@ -63,7 +63,7 @@ pub struct SampledFeedback<D> {
     pub offset: Vec<f64>,
     /// `y_des(t)`.
     pub desired: D,
-    /// When it measures and acts.
+    /// Its timing.
     pub sampler: Sampler,
 }
 

@@ -1,7 +1,7 @@
 //! Gains that follow an operating condition, such as the speed.
 //!
-//! A law is designed at each of several values of a condition; between them gains, desired values
-//! and offsets run straight, beyond them they keep the end values.
+//! A law is designed at each of several values of a condition; gains, desired values and offsets
+//! are interpolated linearly between them and constant beyond.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -26,20 +26,20 @@ impl OperatingLaw {
     }
 }
 
-/// Laws over a condition.
+/// Laws at values of a condition.
 #[derive(Debug, Clone, PartialEq)]
 pub struct GainSchedule {
     values: Vec<f64>,
     laws: Vec<OperatingLaw>,
 }
 
-/// A schedule that is none.
+/// Why a schedule is invalid.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum ScheduleError {
     /// No value of the condition.
     #[error("a schedule needs at least one value of its condition")]
     Empty,
-    /// The values are not in order.
+    /// The values do not increase.
     #[error("the values of a schedule must increase, but {after} follows {before}")]
     Order {
         /// A value.
@@ -47,7 +47,7 @@ pub enum ScheduleError {
         /// The next one.
         after: f64,
     },
-    /// Laws of different sizes.
+    /// Laws of different dimensions.
     #[error("the law at {value} has other inputs or states than the first")]
     Shape {
         /// Where.
@@ -107,8 +107,8 @@ impl GainSchedule {
     }
 }
 
-/// A schedule as the inputs of a simulation. `condition` tells the value of the condition at a time
-/// in s and a state; `desired` adds to y₀ what is wanted beside the steady motion.
+/// A schedule as the inputs of a simulation. `condition` returns the value of the condition at a
+/// time in s and a state; `desired` is added to y₀.
 #[derive(Debug, Clone)]
 pub struct ScheduledFeedback<'s, C, D> {
     /// The laws.

@@ -1,7 +1,7 @@
-//! The staircase form: what the inputs reach, by orthogonal transformations alone.
+//! The controllability staircase form, by orthogonal transformations.
 //!
-//! Q ᵀ A Q and Qᵀ B show from the top what the inputs move at once, what that moves in turn, and so
-//! on; what remains below is out of reach:
+//! Q ᵀ A Q and Qᵀ B show from the top the states driven by the inputs directly, those driven by
+//! these, and so on; the states below are uncontrollable:
 //!
 //! ```text
 //! Qᵀ [B  A] Q = ⎡ B₁ │ A₁₁ A₁₂ … A₁ᵤ ⎤
@@ -18,8 +18,8 @@ use nalgebra::{DMatrix, DVector};
 
 use super::LinearSystem;
 
-/// What is smaller than this beside the largest entry of a balanced system is rounding. Equations
-/// of motion are exact to some 1e-14; a coupling that is weaker than this cannot be used.
+/// Entries below this, relative to the largest entry of a balanced system, count as rounding.
+/// Equations of motion are exact to about 1e-14; weaker couplings cannot be used.
 pub const NEGLIGIBLE: f64 = 1e-11;
 
 /// A system in staircase form.
@@ -76,7 +76,7 @@ impl Staircase {
         }
     }
 
-    /// A of what the inputs do not reach.
+    /// A of the uncontrollable part.
     #[must_use]
     pub fn uncontrollable_part(&self) -> DMatrix<f64> {
         let (r, rest) = (self.controllable(), self.q.ncols() - self.controllable());
@@ -108,7 +108,7 @@ impl Staircase {
                 .fill(0.0);
             lead += 1;
         }
-        // What is left of the other columns is negligible.
+        // The remainder of the other columns is negligible.
         for column in columns {
             from.matrix_mut(&mut self.system)
                 .view_range_mut(lead.., column)
@@ -137,7 +137,7 @@ impl Staircase {
     }
 }
 
-/// What reaches the rows that are being compressed.
+/// What drives the rows that are being compressed.
 #[derive(Debug, Clone, Copy)]
 enum From {
     /// The inputs.

@@ -1,13 +1,14 @@
-//! Where stability changes: smooth functions of the coefficients of the characteristic polynomial.
+//! Changes of stability: smooth test functions of the coefficients of the characteristic
+//! polynomial.
 //!
-//! Eigenvalues have kinks where they meet, so no zero of theirs is found to the last digit. The
-//! coefficients have none. Without the zeros that belong to families,
+//! Eigenvalues are not smooth where they coincide, so their zeros cannot be found to rounding. The
+//! coefficients are smooth. Without the zero eigenvalues of families,
 //!
 //! - a real eigenvalue passes through zero where the last coefficient does;
-//! - a pair passes through the imaginary axis where the last but one determinant of Hurwitz is zero
-//!   (E. Routh and A. Hurwitz; L. Orlando, 1911);
-//! - where the polynomial is one in λ², as of systems that may run backwards, pairs leave the axis
-//!   where two of them meet: where the discriminant in λ² is zero.
+//! - a pair crosses the imaginary axis where the last but one Hurwitz determinant is zero (E. Routh
+//!   and A. Hurwitz; L. Orlando, 1911);
+//! - where the polynomial is even, as for time-reversible systems, pairs leave the axis where two
+//!   of them coincide: where the discriminant in λ² is zero.
 
 use nalgebra::DMatrix;
 
@@ -15,10 +16,11 @@ use appell_spectra::spectrum::Complex;
 
 /// Odd coefficients below this, relative to the size of the even ones, are zero.
 const EVEN: f64 = 1e-10;
-/// Eigenvalues within this part of the largest lie on an axis, or on each other, where a criterion
+/// Eigenvalues within this fraction of the largest lie on an axis, or coincide, where a criterion
 /// is zero to rounding.
 const NEAR: f64 = 1e-4;
-/// Real parts below this part of the largest eigenvalue count as zero where rounding is not told.
+/// Real parts below this fraction of the largest eigenvalue count as zero where the uncertainty is
+/// unknown.
 pub(crate) const REST: f64 = 1e-6;
 
 /// What happens at a critical point.
@@ -43,7 +45,7 @@ pub enum Change {
 pub(crate) struct Criteria {
     /// Eigenvalues that are zero everywhere.
     pub(crate) zeros: usize,
-    /// Whether all polynomials are even, but for the zeros.
+    /// Whether all polynomials are even, apart from the zeros.
     pub(crate) even: bool,
     /// Unit of the eigenvalues, in 1/s.
     pub(crate) unit: f64,
@@ -52,7 +54,7 @@ pub(crate) struct Criteria {
 impl Criteria {
     /// For the polynomials of a family, all of which have so many zeros.
     pub(crate) fn of(polynomials: &[Vec<f64>], zeros: usize) -> Self {
-        // A typical eigenvalue: the largest that any coefficient tells.
+        // A typical eigenvalue: the largest estimate from any coefficient.
         let size = |(k, c): (usize, &f64)| c.abs().powf(1.0 / k.max(1) as f64);
         let each = polynomials
             .iter()
@@ -103,8 +105,7 @@ impl Criteria {
         [scaled[degree], pairs]
     }
 
-    /// The signs of the two values where these are the eigenvalues but the zeros; 0 where rounding
-    /// decides.
+    /// The signs of the two values for these eigenvalues, zeros excluded; 0 where rounding decides.
     pub(crate) fn signs(&self, values: &[Complex<f64>]) -> [f64; 2] {
         let sign = |factors: &mut dyn Iterator<Item = Complex<f64>>| {
             let product = factors.fold(Complex::from(1.0), |product, factor| {
@@ -127,8 +128,8 @@ impl Criteria {
         [last, if above / 2 % 2 == 0 { 1.0 } else { -1.0 }]
     }
 
-    /// What happens where one of the two values is zero: eigenvalues tell whether the zero is one
-    /// of stability.
+    /// The change where one of the two values is zero, if the eigenvalues confirm that stability
+    /// changes there.
     pub(crate) fn change(&self, which: usize, values: &[Complex<f64>]) -> Option<Change> {
         if which == 0 {
             return Some(Change::RealZero);
@@ -142,7 +143,7 @@ impl Criteria {
             .collect();
         on_axis.sort_by(f64::total_cmp);
         if !self.even {
-            // Of pairs near the axis the nearest is meant.
+            // The pair nearest to the axis.
             let near = values.iter().filter(|value| value.im > small);
             let nearest = near.min_by(|a, b| a.re.abs().total_cmp(&b.re.abs()))?;
             let crosses = nearest.re.abs() <= small;
@@ -158,8 +159,8 @@ impl Criteria {
     }
 }
 
-/// The determinant of Hurwitz of order n − 1: the product of the sums of all pairs of roots, but for
-/// its sign.
+/// The Hurwitz determinant of order n − 1: the product of the sums of all pairs of roots, up to
+/// sign.
 fn hurwitz(coefficients: &[f64]) -> f64 {
     let order = coefficients.len() - 2;
     let entry = |i: usize, j: usize| {
@@ -172,8 +173,8 @@ fn hurwitz(coefficients: &[f64]) -> f64 {
     DMatrix::from_fn(order, order, entry).determinant()
 }
 
-/// The product of the squared differences of all pairs of roots, but for its sign: the resultant
-/// with the derivative (J. J. Sylvester, 1840).
+/// The product of the squared differences of all pairs of roots, up to sign: the resultant with the
+/// derivative (J. J. Sylvester, 1840).
 fn discriminant(coefficients: &[f64]) -> f64 {
     let degree = coefficients.len() - 1;
     let slope: Vec<f64> = coefficients[..degree]

@@ -1,16 +1,16 @@
-//! Modes that keep their place along a branch, through crossings of their eigenvalues.
+//! Modes tracked along a branch, through crossings of their eigenvalues.
 
 use super::Stability;
 use appell_spectra::spectrum::{Complex, Mode};
 
 /// Eigenvalues along a branch, one list per mode: the k-th entry of each belongs to the k-th point.
 ///
-/// From point to point a mode goes on as the one whose eigenvalue is near and whose eigenvector
-/// looks the same. Modes that a point does not have are not a number there.
+/// From point to point a mode is matched by its eigenvalue and its eigenvector. Modes that a point
+/// does not have are NaN there.
 pub fn loci<'a>(points: impl IntoIterator<Item = &'a Stability>) -> Vec<Vec<Complex<f64>>> {
     let missing = Complex::new(f64::NAN, f64::NAN);
     let mut loci: Vec<Vec<Complex<f64>>> = Vec::new();
-    // The mode at which each list stands.
+    // The last mode of each list.
     let mut last: Vec<Option<&Mode>> = Vec::new();
     for (count, point) in points.into_iter().enumerate() {
         let modes: Vec<&Mode> = point
@@ -41,14 +41,14 @@ pub fn loci<'a>(points: impl IntoIterator<Item = &'a Stability>) -> Vec<Vec<Comp
         }
         for (i, locus) in loci.iter_mut().enumerate() {
             locus.push(next[i].map_or(missing, |mode| mode.value));
-            // A list that has ended is not taken up again.
+            // A list that has ended is not resumed.
             last[i] = next[i];
         }
     }
     loci
 }
 
-/// How unlike two modes are: eigenvalues relative to the matrix, and the angle between vectors.
+/// Distance of two modes: eigenvalues relative to the matrix, and the angle between eigenvectors.
 fn distance(from: &Mode, to: &Mode, unit: f64) -> f64 {
     let alike = if from.right.len() == to.right.len() {
         from.right.dotc(&to.right).norm()

@@ -1,35 +1,35 @@
-//! Essential states and hidden ones.
+//! Essential and ignorable states.
 //!
-//! Where a wheel stands and which way it looks changes nothing about how it moves on: such
-//! coordinates are cyclic, or hidden. Essential are the pseudo-velocities and every state that their
-//! rates depend on, directly or through other essential states.
+//! The pseudo-velocities are essential, and so is every state on which their rates depend, directly
+//! or through other essential states. The other coordinates, such as position and heading of a wheel,
+//! are ignorable (cyclic).
 
 use super::starts::{Spread, value_at};
 use crate::point::Point;
 use appell_runtime::model::{At, Model, ModelInfo};
 
-/// Points at which dependence is looked for. An entry of A that is exactly zero at all of them is
-/// taken as zero: derivatives of equations that do not hold a state come out as exact zeros.
+/// Points at which dependence is tested. An entry of A that is exactly zero at all of them is taken
+/// as zero: derivatives of equations without a state are exact zeros.
 const POINTS: usize = 8;
-/// Points that are tried until that many give finite numbers.
+/// Largest number of points tried until that many give finite numbers.
 const TRIES: usize = 200;
 
-/// Which states are essential and which follow.
+/// Which states are essential and which are ignorable.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Structure {
     /// Essential states, by their index in the model.
     pub essential: Vec<usize>,
     /// The others.
-    pub hidden: Vec<usize>,
-    /// Those of the hidden ones whose rates depend on essential states alone: they run at a constant
-    /// rate in a steady motion.
+    pub ignorable: Vec<usize>,
+    /// The ignorable states whose rates depend on essential states alone: constant rates in a steady
+    /// motion.
     pub uniform: Vec<usize>,
 }
 
-/// Why a model has no steady motions to look for.
+/// Why a model has no steady motions.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum StructureError {
-    /// Time is in the equations.
+    /// The equations depend on time.
     #[error("the equations depend on time: no motion of them is steady")]
     DependsOnTime,
     /// No point gave finite derivatives.
@@ -39,7 +39,7 @@ pub enum StructureError {
 
 impl Structure {
     /// From the zeros of A at points within the ranges of states and inputs, and for the parameters
-    /// of `point`: a spring of stiffness zero ties nothing.
+    /// of `point`: a spring of zero stiffness couples nothing.
     pub fn of(model: &dyn Model, point: &Point) -> Result<Self, StructureError> {
         let info = model.info();
         if info.explicit_time {
@@ -54,12 +54,12 @@ impl Structure {
         }) {
             essential[next] = true;
         }
-        let (essential, hidden): (Vec<usize>, Vec<usize>) = (0..n).partition(|&s| essential[s]);
-        let alone = |&&state: &&usize| !hidden.iter().any(|&other| depends[state * n + other]);
-        let uniform = hidden.iter().filter(alone).copied().collect();
+        let (essential, ignorable): (Vec<usize>, Vec<usize>) = (0..n).partition(|&s| essential[s]);
+        let alone = |&&state: &&usize| !ignorable.iter().any(|&other| depends[state * n + other]);
+        let uniform = ignorable.iter().filter(alone).copied().collect();
         Ok(Self {
             essential,
-            hidden,
+            ignorable,
             uniform,
         })
     }

@@ -1,4 +1,5 @@
-//! Steady motions as equations: the rates of the essential states are zero, and the conditions hold.
+//! The equations of steady motions: the rates of the essential states are zero, and the conditions
+//! hold.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -15,7 +16,7 @@ use appell_runtime::model::Model;
 pub(crate) struct SteadyEquations<'a> {
     pub(crate) model: &'a dyn Model,
     pub(crate) structure: &'a Structure,
-    /// Values of what is not unknown.
+    /// Values of the known quantities.
     pub(crate) base: Point,
     /// Essential states, then inputs and parameters that are left free.
     pub(crate) unknowns: Vec<Term>,
@@ -137,7 +138,7 @@ impl<'a> SteadyEquations<'a> {
         }
     }
 
-    /// Value of an output, and its gradient by differences: a model gives none.
+    /// Value of an output, and its gradient by differences, as models do not provide it.
     fn output(&self, output: usize, point: &Point) -> (f64, DVector<f64>) {
         let z = self.unknowns_of(point);
         let gradient = DVector::from_fn(z.len(), |i, _| {

@@ -1,8 +1,8 @@
-//! Zeros of more equations than unknowns, or fewer, where some of them follow from others.
+//! Zeros of overdetermined or underdetermined equations that may be redundant.
 //!
-//! Equations of steady motions are of that kind: an angle's rate and two accelerations may all say
-//! that one speed is zero, and the motions form families. The method of Levenberg and Marquardt with
-//! a damping that falls with the square of the residual needs no rank on the way and still converges
+//! Equations of steady motions are of that kind: the rate of an angle and two accelerations may all
+//! require that one speed is zero, and the motions form families. The Levenberg-Marquardt method
+//! with a damping proportional to the squared residual needs no rank decision and still converges
 //! quadratically, to a point of the family (Yamashita and Fukushima, Computing, 2001).
 
 use nalgebra::{DMatrix, DVector};
@@ -15,34 +15,34 @@ pub(crate) trait Equations {
     fn evaluate(&self, z: &DVector<f64>) -> (DVector<f64>, DMatrix<f64>);
 }
 
-/// Steps before giving up.
+/// Largest number of steps.
 const MOST_STEPS: usize = 200;
 /// Residual below which a point that improves no more is a zero: rounding of a long formula,
-/// relative to what a change of the unknowns by their scale does.
+/// relative to the effect of a unit change of the scaled unknowns.
 const ZERO: f64 = 1e-10;
-/// Singular values that count as zero on the way, relative to the largest.
+/// Singular values that count as zero during the iteration, relative to the largest.
 const NOTHING: f64 = 1e-13;
-/// Singular values that count as zero in a rank: a zero of the equations is known to some 1e-14, a
-/// slope that is smaller than this belongs to a family.
+/// Singular values that count as zero in a rank: a zero of the equations is known to about 1e-14,
+/// and smaller derivatives belong to a family.
 pub(crate) const RANK: f64 = 1e-8;
-/// Damping where the search begins, and where it is given up.
+/// Initial damping, and the damping at which the search fails.
 const DAMPING: [f64; 2] = [1e-2, 1e12];
 
 /// A zero.
 #[derive(Debug, Clone)]
 pub(crate) struct Zero {
     pub(crate) z: DVector<f64>,
-    /// Of the weighted Jacobian.
+    /// Singular value decomposition of the weighted Jacobian.
     pub(crate) singular: Singular<f64>,
 }
 
 impl Zero {
-    /// How many directions lead to further zeros.
+    /// Dimension of the family of zeros.
     pub(crate) fn family(&self) -> usize {
         self.singular.values.len() - self.singular.rank(RANK)
     }
 
-    /// These directions, as columns.
+    /// Its tangent space, as columns.
     pub(crate) fn kernel(&self) -> DMatrix<f64> {
         let (columns, family) = (self.singular.values.len(), self.family());
         self.singular
@@ -60,7 +60,7 @@ pub(crate) struct Missed {
     pub(crate) residual: f64,
 }
 
-/// The zero that is reached from a point.
+/// The zero reached from a point.
 pub(crate) fn solve(equations: &dyn Equations, start: &DVector<f64>) -> Result<Zero, Missed> {
     let missed = |z: &DVector<f64>, residual: f64| Missed {
         z: z.clone(),
@@ -117,9 +117,9 @@ fn damped(singular: &Singular<f64>, target: &DVector<f64>, damping: f64) -> DVec
     step
 }
 
-/// Makes rows alike: one over their lengths. Rows that are nearly zero stay so.
+/// Weights that equalise the norms of the rows. Rows that are nearly zero stay so.
 pub(crate) fn weights(jacobian: &DMatrix<f64>) -> DVector<f64> {
-    /// Rows that are shorter than this part of the longest are not lengthened further.
+    /// Norm, relative to the largest, below which rows are not scaled up further.
     const SHORT: f64 = 1e-6;
     let lengths: Vec<f64> = jacobian.row_iter().map(|row| row.norm()).collect();
     let longest = lengths.iter().copied().fold(0.0, f64::max);

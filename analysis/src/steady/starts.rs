@@ -1,8 +1,8 @@
-//! Points spread evenly, the same in every run.
+//! Deterministic, evenly distributed points.
 
 use appell_runtime::model::Quantity;
 
-/// Half the width of a quantity's range, where it has one; else one in SI.
+/// Half the width of the range of a quantity; 1 in SI without a range.
 pub(crate) fn reach(quantity: &Quantity) -> f64 {
     let [low, high] = quantity.range;
     let half = 0.5 * (high - low);
@@ -13,11 +13,11 @@ pub(crate) fn reach(quantity: &Quantity) -> f64 {
     }
 }
 
-/// Where a search begins for a quantity without a range: so many times its reach away at most.
+/// Largest distance of starting points for a quantity without a range, in units of its reach.
 const AWAY: f64 = 10.0;
 
-/// Numbers between 0 and 1 in several dimensions: multiples of powers of a generalised golden
-/// ratio, without their whole parts. They leave no gaps and repeat nothing (M. Roberts, 2018).
+/// A low-discrepancy sequence in the unit cube: fractional parts of multiples of powers of a
+/// generalised golden ratio (M. Roberts, 2018).
 #[derive(Debug, Clone)]
 pub(crate) struct Spread {
     steps: Vec<f64>,
@@ -48,8 +48,8 @@ impl Spread {
     }
 }
 
-/// A value of a quantity for a number between 0 and 1: inside its range, or around `centre`, near
-/// values more often than far ones.
+/// A value of a quantity for a number between 0 and 1: inside its range, or distributed around
+/// `centre`.
 pub(crate) fn value_at(quantity: &Quantity, centre: f64, part: f64) -> f64 {
     let [low, high] = quantity.range;
     if low.is_finite() && high.is_finite() {

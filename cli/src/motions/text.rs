@@ -44,7 +44,7 @@ pub(crate) fn structure(asked: &Asked<'_>) -> String {
         "{}\n  essential  {}\n  ignorable  {}\n",
         info.title,
         names(&structure.essential),
-        names(&structure.hidden),
+        names(&structure.ignorable),
     )
 }
 

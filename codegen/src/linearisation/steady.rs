@@ -1,7 +1,7 @@
 //! A steady motion as values of states, rates and inputs.
 //!
 //! Essential coordinates rest: that gives the pseudo-velocities which move them. The other
-//! pseudo-velocities are written in the rates of hidden coordinates, by their definitions, where
+//! pseudo-velocities are written in the rates of ignorable coordinates, by their definitions, where
 //! these rates are constant. What is not given stays a letter.
 
 use appell_spec::mechanism::Mechanism;
@@ -33,7 +33,7 @@ pub enum SteadyError {
 /// A steady motion.
 #[derive(Debug, Clone)]
 pub struct SteadyMotion {
-    /// Essential states and hidden ones.
+    /// Essential and ignorable states.
     pub structure: Structure,
     /// Symbols with what they are in the motion. No value mentions a symbol that has one.
     pub values: Vec<(Expr, Expr)>,
@@ -233,13 +233,13 @@ impl Builder<'_> {
         Ok(())
     }
 
-    /// Rates of hidden coordinates that do not follow from what is known and stay constant.
+    /// Rates of ignorable coordinates that do not follow from what is known and stay constant.
     fn constant_rates(&mut self) -> Result<Vec<Expr>, SteadyError> {
         let symbols = self.derivation.symbols.clone();
         let speeds = symbols.speeds.len();
         let structure = self.motion.structure.clone();
-        let coordinates: Vec<usize> = structure.hidden.iter().map(|k| k - speeds).collect();
-        let hidden: Vec<Expr> = coordinates
+        let coordinates: Vec<usize> = structure.ignorable.iter().map(|k| k - speeds).collect();
+        let ignorable: Vec<Expr> = coordinates
             .iter()
             .map(|&k| symbols.coordinates[k])
             .collect();
@@ -248,7 +248,7 @@ impl Builder<'_> {
             let symbol = symbols.rates[k];
             let follows = self.motion.gives(symbol) && !self.given_rates.contains(&symbol);
             let rate = self.value(self.derivation.coordinate_rates[k])?;
-            if !follows && self.depends(rate, &hidden).is_empty() {
+            if !follows && self.depends(rate, &ignorable).is_empty() {
                 constant.push(symbol);
             }
         }

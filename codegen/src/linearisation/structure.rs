@@ -1,17 +1,16 @@
-//! Essential states and hidden ones, from the equations.
+//! Essential and ignorable states, from the equations.
 
 use crate::mechanics::Derivation;
 use crate::mechanics::symbols::ids;
 
-/// Which states matter to the motion. Where a wheel stands and which way it looks changes nothing
-/// about how it moves on: such coordinates are hidden. Essential are the pseudo-velocities and every
-/// coordinate that a rate of an essential state depends on.
+/// Essential and ignorable states. Coordinates on which no essential rate depends, such as position
+/// and heading of a wheel, are ignorable.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Structure {
     /// Essential states, by their index in the model.
     pub essential: Vec<usize>,
     /// The others.
-    pub hidden: Vec<usize>,
+    pub ignorable: Vec<usize>,
 }
 
 impl Structure {
@@ -20,7 +19,7 @@ impl Structure {
         let speeds = derivation.symbols.speeds.len();
         let coordinates = ids(&derivation.algebra.graph, &derivation.symbols.coordinates);
         let mut essential: Vec<usize> = (0..speeds).collect();
-        let mut hidden: Vec<usize> = (speeds..speeds + coordinates.len()).collect();
+        let mut ignorable: Vec<usize> = (speeds..speeds + coordinates.len()).collect();
         let mut asked = 0;
         while let Some(&row) = essential.get(asked) {
             asked += 1;
@@ -29,7 +28,7 @@ impl Structure {
                 Some(coordinate) => derivation.coordinate_rates[coordinate],
             };
             let algebra = &mut derivation.algebra;
-            hidden.retain(|&state| {
+            ignorable.retain(|&state| {
                 let symbol = coordinates[state - speeds];
                 let matters = !algebra.test.independent_of(&algebra.graph, rate, symbol);
                 if matters {
@@ -39,11 +38,14 @@ impl Structure {
             });
         }
         essential.sort_unstable();
-        Self { essential, hidden }
+        Self {
+            essential,
+            ignorable,
+        }
     }
 
     /// All states, essential ones first.
     pub fn order(&self) -> Vec<usize> {
-        [self.essential.as_slice(), &self.hidden].concat()
+        [self.essential.as_slice(), &self.ignorable].concat()
     }
 }

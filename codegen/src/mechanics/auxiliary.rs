@@ -1,11 +1,11 @@
 //! Forces behind rows that geometry or other rows already satisfy.
 //!
-//! Such a row `r = Σ factor · other` tells nothing of the motion, but its force is as real as the
-//! others. It works in auxiliary motions, which the coordinates do not have: all that hangs together is carried
-//! along the direction of the force. There the row does not follow any more, `r - Σ factor · other =
-//! D c` for the rates c of these motions. Where D has an inverse, each row can be violated alone, and
-//! its force is told. Where it has none, the forces outnumber the equations of Newton: the mechanism
-//! is statically indeterminate, and no share of them is reported.
+//! Such a row `r = Σ factor · other` does not affect the motion, but it has a reaction. The reaction
+//! does work in an auxiliary motion outside the coordinates: a virtual translation of the connected
+//! part along the force. In that motion the row is independent, `r - Σ factor · other = D c` for the
+//! rates c of the auxiliary motions. If D is invertible, each row can be violated alone and its
+//! reaction follows. If D is singular, there are more reactions than equations of equilibrium: the
+//! mechanism is statically indeterminate, and no share of the forces is reported.
 
 use appell_spec::Code;
 use appell_spec::expr::Quantity;

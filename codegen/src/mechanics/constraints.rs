@@ -150,14 +150,13 @@ impl Place {
         }
     }
 
-    /// Its reaction under this name. A multiplier is a power divided by the rate of what the
-    /// constraint holds at a value.
+    /// Its reaction under this name. A multiplier is a power divided by the constrained rate.
     fn reaction(self, mechanism: &Mechanism, name: String) -> Reported {
         match self {
             Self::Point(_) => Reported::on_point(name.into()),
             Self::Constraint(index) => {
-                let rate = mechanism.constraints[index].kind.dimension();
-                let unit = rate.and_then(|rate| Dimension::POWER.over(rate).ok());
+                let rate = mechanism.constraints[index].kind.rate_dimension();
+                let unit = rate.and_then(|rate| Dimension::POWER.over(&rate).ok());
                 let unit = unit.map_or_else(String::new, |unit| Unit::si(unit).text);
                 Reported::multiplier(name.into(), unit.into())
             }

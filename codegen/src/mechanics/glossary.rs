@@ -1,7 +1,7 @@
 //! What the names of a derivation mean, for the readers of emitted functions.
 
 use appell_spec::mechanism::{ConstraintKind, FrameId, Mechanism};
-use appell_spec::units::{Dimension, Unit};
+use appell_spec::units::Unit;
 
 use super::constraints::Constraints;
 use super::gibbs_appell::BodyMotion;
@@ -233,16 +233,10 @@ fn each_constraint(
     })
 }
 
-/// Unit of what a constraint demands of the velocities.
+/// Unit of a constraint's equations at velocity level.
 fn unit_of_row(kind: &ConstraintKind) -> String {
-    let dimension = match kind {
-        ConstraintKind::Rolling { .. } | ConstraintKind::FixedVelocity { .. } => {
-            Dimension::VELOCITY
-        }
-        ConstraintKind::Velocity { dimension, .. } => *dimension,
-        ConstraintKind::Position { dimension, .. } => dimension.rate().unwrap_or(*dimension),
-    };
-    Unit::si(dimension).text
+    let dimension = kind.rate_dimension();
+    dimension.map_or_else(String::new, |dimension| Unit::si(dimension).text)
 }
 
 /// Weights of the adjoints.

@@ -421,9 +421,9 @@ impl<'a> Binding<'a> {
         let angle = self.signed(angle);
         let text = describe(&angle.tree, &self.values, &self.products, &self.arguments);
         let mut value = |of: Id, prefix: &str| {
-            let wanted = match (self.given_name(of), &text) {
-                (Some(name), _) => name,
-                (None, Some(text)) => format!("{prefix}_{text}"),
+            let wanted = match (&text, self.given_name(of)) {
+                (Some(text), _) => format!("{prefix}_{text}"),
+                (None, Some(name)) => name,
                 (None, None) => self.fallback(of, prefix),
             };
             let (value, piece) = self.new_value(&wanted);
@@ -516,14 +516,17 @@ impl<'a> Binding<'a> {
         self.dag.names[id.index()].filter(|name| !name.automatic || label.is_none())
     }
 
+    /// Whether minus a node has its name, if anything has.
+    fn sign_of_name(&self, id: Id) -> Option<bool> {
+        let label = self.outline.labels[id.index()].as_ref();
+        let derived = self.derived_name(id).map(|name| name.negative);
+        derived.or(label.map(|label| label.1))
+    }
+
     /// Defines a value under the name that tells most. `negative` says that the piece is minus the
     /// node.
     fn named(&mut self, id: Id, piece: Piece, negative: bool) -> Built {
-        let derived = self.derived_name(id);
-        let label = self.outline.labels[id.index()].as_ref();
-        let sign = derived
-            .map(|name| name.negative)
-            .or(label.map(|label| label.1));
+        let sign = self.sign_of_name(id);
         let given = self
             .given_name(id)
             .filter(|_| !self.tells_itself(id, &piece));
@@ -574,33 +577,53 @@ impl<'a> Binding<'a> {
                 hint.opposite.clone()
             }
         });
-        hint.or_else(|| self.by_factors(id))
+        hint.or_else(|| self.by_factors(id, negative))
     }
 
-    /// `consumer_per_a_b`: what is multiplied by `a` and `b` on its way to the consumer.
-    fn by_factors(&self, id: Id) -> Option<String> {
+    /// `consumer_per_a_b`: what is multiplied by `a` and `b` on its way to the consumer, and by
+    /// nothing else, with the sign that it has there.
+    fn by_factors(&self, id: Id, mut negative: bool) -> Option<String> {
         let feed = self.outline.feeds[id.index()]?;
         let mut factors: Vec<&str> = Vec::new();
         let mut part = id;
         while part != feed {
             let whole = self.outline.wholes[part.index()]?;
-            if let Op::Product(items) = self.dag.op(whole) {
-                for other in items.iter().filter(|item| item.id != part && !item.flip) {
-                    match self.built[other.id.index()].as_ref()?.piece.tree {
-                        Tree::Value(Value(value)) => factors.push(&self.values[value as usize]),
-                        Tree::Argument(argument) => factors.push(self.arguments.get(argument)),
-                        Tree::Constant(_) => {}
-                        _ => return None,
+            match self.dag.op(whole) {
+                Op::Product(items) => {
+                    for other in others(items, part)? {
+                        let built = self.built[other.id.index()].as_ref()?;
+                        negative ^= built.negative;
+                        factors.push(self.name_of_factor(&built.piece.tree)?);
                     }
                 }
+                Op::Sum(items) => {
+                    let mut same = items.iter().filter(|item| item.id == part);
+                    negative ^= same.next()?.flip;
+                    if same.next().is_some() {
+                        return None;
+                    }
+                }
+                Op::Kept(_) => {}
+                _ => return None,
             }
             part = whole;
         }
-        if factors.is_empty() {
+        if factors.is_empty() || Some(negative) != self.sign_of_name(feed) {
             return None;
         }
         factors.reverse();
         joined(&[&self.given_name(feed)?, "per", &factors.join("_")])
+            .filter(|name| !self.names.has(name))
+    }
+
+    /// The name of a factor that is no number and no quotient of this kind itself.
+    fn name_of_factor(&self, tree: &Tree) -> Option<&str> {
+        let name = match tree {
+            Tree::Value(Value(value)) => self.values[*value as usize].as_str(),
+            Tree::Argument(argument) => self.arguments.get(*argument),
+            _ => return None,
+        };
+        (!name.contains("_per_")).then_some(name)
     }
 
     /// `consumer_part_2`
@@ -661,6 +684,13 @@ impl<'a> Binding<'a> {
         }
         self.steps.push(step);
     }
+}
+
+/// The other factors of a product that has `part` once; nothing where anything is divided by.
+fn others(factors: &[Item], part: Id) -> Option<impl Iterator<Item = &Item>> {
+    let once = factors.iter().filter(|factor| factor.id == part).count() == 1;
+    let whole = factors.iter().all(|factor| !factor.flip);
+    (once && whole).then(|| factors.iter().filter(move |factor| factor.id != part))
 }
 
 /// Numbers first, then parameters, values and variables, each in their order, then sums in

@@ -45,6 +45,11 @@ impl Names {
         name
     }
 
+    /// Whether a name is given away.
+    pub(super) fn has(&self, name: &str) -> bool {
+        self.taken.contains(name)
+    }
+
     /// Keeps a name from being given away.
     pub(super) fn reserve(&mut self, name: &str) {
         self.taken.insert(name.to_owned());

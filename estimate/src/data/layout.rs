@@ -1,11 +1,11 @@
-//! Where the numbers that a likelihood depends on stand in one list.
+//! Order of the values on which a likelihood depends, in one list.
 
 use super::setup::Setup;
 use super::unknown::Unknown;
 use crate::error::EstimateError;
 
-/// Where each number stands: parameters, disturbances, noise, biases, scales and delays of the
-/// channels, lags, delays of inputs; then for each run the expected initial state and its spread.
+/// Index of each value: parameters, disturbances, noise, biases, scales and delays of the channels,
+/// lags, delays of inputs; then for each run the expected initial state and its spread.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Layout {
     pub(crate) parameters: usize,
@@ -30,17 +30,17 @@ impl Layout {
         }
     }
 
-    /// How many numbers there are.
+    /// Number of values.
     pub fn len(&self) -> usize {
         self.first_run() + 2 * self.runs * self.states
     }
 
-    /// Whether there are none, which cannot be.
+    /// Whether it is empty, which it never is.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// Place of a number; an error where there is no such thing.
+    /// Index of a value; an error if it does not exist.
     pub fn place(&self, unknown: Unknown) -> Result<usize, EstimateError> {
         let (what, index, len, start) = match unknown {
             Unknown::Parameter(i) => ("parameter", i, self.parameters, 0),

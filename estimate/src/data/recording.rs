@@ -1,4 +1,4 @@
-//! What was recorded.
+//! Recordings.
 
 use std::ops::Range;
 
@@ -6,8 +6,8 @@ use crate::EstimateError;
 
 /// One uninterrupted recording, in SI.
 ///
-/// A measured value is one of its row's time. An input is held from its row's time up to the next
-/// row's. Times may be irregular.
+/// Measurements are taken at the times of their rows. An input is held from the time of its row to
+/// that of the next. Times may be irregular.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Recording {
     times: Vec<f64>,
@@ -86,12 +86,12 @@ impl Recording {
         self.columns[1]
     }
 
-    /// The inputs from a row's time on.
+    /// The inputs held from the time of a row.
     pub fn inputs(&self, row: usize) -> &[f64] {
         &self.inputs[row * self.columns[0]..(row + 1) * self.columns[0]]
     }
 
-    /// What was measured at a row's time; NaN where nothing was.
+    /// The measurements at the time of a row; NaN where missing.
     pub fn measured(&self, row: usize) -> &[f64] {
         &self.measurements[row * self.columns[1]..(row + 1) * self.columns[1]]
     }
@@ -107,7 +107,7 @@ impl Recording {
         }
     }
 
-    /// The same motion with other measurements.
+    /// The same recording with other measurements.
     pub fn with_measurements(&self, measurements: Vec<f64>) -> Result<Self, EstimateError> {
         Self::new(self.times.clone(), self.inputs.clone(), measurements)
     }

@@ -1,13 +1,13 @@
-//! What is measured, what disturbs, what acts late.
+//! Measured quantities, disturbances, delayed inputs.
 
 use appell_runtime::model::Model;
 
 use crate::{EstimateError, Recording};
 
-/// Steps of a recording; more are a mistake in a unit.
+/// Largest number of steps of a recording; more indicate a wrong unit.
 const MOST_STEPS: f64 = 1e7;
 
-/// What a channel shows.
+/// Quantity measured by a channel.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Measured {
     /// A pseudo-velocity or coordinate, by its index in the state.
@@ -21,8 +21,8 @@ pub enum Measured {
 pub struct Channel {
     /// The quantity.
     pub measures: Measured,
-    /// Longest time in s by which the sensor may be late, where its delay is a value. Rows of the
-    /// first so many seconds are not used, so that the data do not depend on the delay.
+    /// Largest delay of the sensor in s, if the delay is estimated. Rows within this time from the
+    /// start are not used, so that the data do not depend on the delay.
     pub longest_delay: Option<f64>,
 }
 
@@ -36,11 +36,11 @@ impl Channel {
     }
 }
 
-/// Where white noise enters the equations. Its level is the square root of its two-sided spectral
-/// density: the standard deviation of its integral over one second.
+/// White process noise. Its level is the square root of its two-sided spectral density: the
+/// standard deviation of its integral over one second.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Disturbance {
-    /// A generalised force beside Π in the equation of a pseudo-velocity, by its index. The level
+    /// A generalised force added to Π in the equation of a pseudo-velocity, by its index. The level
     /// is in the unit of the force times √s.
     Force(usize),
     /// Added to the rate of a state, by its index in the state or, from its end on, in the lists of
@@ -48,32 +48,32 @@ pub enum Disturbance {
     Rate(usize),
 }
 
-/// A model and how it is observed.
+/// A model with its measurements and disturbances.
 #[derive(Clone)]
 pub struct Setup<'a> {
     /// Equations of motion.
     pub model: &'a dyn Model,
     /// Columns of the measurements.
     pub channels: Vec<Channel>,
-    /// White noise in the equations.
+    /// Process noise.
     pub disturbances: Vec<Disturbance>,
-    /// Declared inputs that reach the mechanism through a lag of the first order: a state each.
+    /// Declared inputs with a first-order lag: one additional state each.
     pub lagging: Vec<usize>,
-    /// Declared inputs that arrive late by a constant time.
+    /// Declared inputs with a constant delay.
     pub delayed: Vec<usize>,
-    /// Parameters that change on the way, by their indices: a state each, which moves by a
-    /// [`Disturbance::Rate`] alone. The value in the list of parameters is not used.
+    /// Drifting parameters, by their indices: one additional state each, driven only by a
+    /// [`Disturbance::Rate`]. The value in the list of parameters is not used.
     pub drifting: Vec<usize>,
-    /// Longest step of the integration in s; longer gaps between samples are divided.
+    /// Largest integration step in s; longer intervals between samples are divided.
     pub longest_step: f64,
-    /// Whether steps are halved where they meet corners, such as rounded signs of dry friction. Along smooth
-    /// motions there are none, and likelihoods of chaotic ones are smoother without.
+    /// Whether steps are halved at kinks of the equations, such as those of regularised dry
+    /// friction. Smooth motions have none; likelihoods of chaotic ones are smoother without.
     pub has_corners: bool,
 }
 
 impl<'a> Setup<'a> {
-    /// Channels without delays, a force on every pseudo-velocity, inputs that act at once, steps
-    /// from sample to sample.
+    /// Channels without delays, a force on every pseudo-velocity, inputs without lags or delays,
+    /// steps from sample to sample.
     pub fn new(model: &'a dyn Model, measured: &[Measured]) -> Self {
         Self {
             model,
@@ -90,7 +90,7 @@ impl<'a> Setup<'a> {
         }
     }
 
-    /// Number of states with those of the lags and of drifting parameters.
+    /// Number of states, including those of lags and drifting parameters.
     pub(crate) fn state_len(&self) -> usize {
         self.model.info().state_len() + self.lagging.len() + self.drifting.len()
     }

@@ -1,6 +1,6 @@
-//! The numbers that a likelihood depends on.
+//! The values on which a likelihood depends.
 
-/// One of the numbers, all in SI.
+/// One of the values, all in SI.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Unknown {
     /// A parameter of the model.
@@ -13,14 +13,13 @@ pub enum Unknown {
     Bias(usize),
     /// Scale of a channel.
     Scale(usize),
-    /// Delay of a channel in s; only where the setup lets it be late.
+    /// Delay of a channel in s; only if the setup admits one.
     SensorDelay(usize),
-    /// Time constant in s of a lagging input, by its place in the list of the setup.
+    /// Time constant in s of a lagging input, by its index in the setup.
     Lag(usize),
-    /// Delay in s of an input, by its place in the list of the setup.
+    /// Delay in s of an input, by its index in the setup.
     InputDelay(usize),
-    /// Expected state at the first row of a run; states of lags and of drifting parameters stand
-    /// last.
+    /// Expected state at the first row of a run; states of lags and drifting parameters come last.
     Initial {
         /// The run.
         run: usize,

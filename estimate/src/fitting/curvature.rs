@@ -1,11 +1,11 @@
-//! How the log-posterior bends about a point.
+//! Curvature of the log-posterior at a point.
 //!
-//! - *Expected*: Fisher's information, always positive, and right where the model is.
-//! - *Observed*: what gradients at neighbouring points tell, whatever the model. Where it is not
-//!   positive it is mended in the metric of the expected one (Y. Dauphin et al., *Identifying and
-//!   attacking the saddle point problem*, 2014).
-//! - *Learned*: what the steps of a search tell on the way (BFGS with Powell's damping; J. Nocedal and
-//!   S. J. Wright, *Numerical Optimization*, 2006, procedure 18.2).
+//! - **Expected*: Fisher information, positive semidefinite, correct if the model is.
+//! - **Observed*: from gradients at neighbouring points, for any model. If it is not positive
+//!   definite, it is modified in the metric of the expected one (Y. Dauphin et al., *Identifying
+//!   and attacking the saddle point problem*, 2014).
+//! - **Updated*: from the steps of a search (BFGS with Powell's damping; J. Nocedal and S. J.
+//!   Wright, *Numerical Optimization*, 2006, procedure 18.2).
 
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
@@ -13,13 +13,13 @@ use super::posterior::{Point, Posterior};
 use crate::EstimateError;
 use crate::gradient::sensitivity::Sensitivity;
 
-/// Differences of gradients, in expected standard deviations.
+/// Step of the differences of gradients, in expected standard deviations.
 const DIFFERENCE: f64 = 1e-2;
-/// Least curvature in any direction, as a part of the expected one.
+/// Least curvature in any direction, relative to the expected one.
 const LEAST: f64 = 1e-3;
 
 impl Posterior<'_, '_> {
-    /// Expected curvature, positive where values bend it down.
+    /// Expected curvature, made positive definite.
     pub(crate) fn expected(&self, point: &Point) -> Result<DMatrix<f64>, EstimateError> {
         let data = Sensitivity::of(self.estimation, &point.values, self.selection.free)?;
         let prior = DMatrix::from_diagonal(&self.selection.prior_information());
@@ -43,7 +43,7 @@ impl Posterior<'_, '_> {
                 let moved = beside.coordinates[i] - point.coordinates[i];
                 Ok((&point.gradient - &beside.gradient) / moved)
             };
-            // At a limit the other side remains.
+            // One-sided at a limit.
             let column = slope(-change)
                 .ok()
                 .filter(|column| column.iter().all(|entry| entry.is_finite()));
@@ -62,7 +62,7 @@ fn scale(information: f64) -> f64 {
     }
 }
 
-/// The curvature with all its eigenvalues, as parts of the expected one, made positive.
+/// The curvature with its eigenvalues, relative to the expected one, made positive.
 fn mended(observed: &DMatrix<f64>, expected: &DMatrix<f64>) -> DMatrix<f64> {
     if expected.is_empty() {
         return expected.clone();
@@ -75,7 +75,7 @@ fn mended(observed: &DMatrix<f64>, expected: &DMatrix<f64>) -> DMatrix<f64> {
     };
     let mut metric = scaled(expected);
     for i in 0..metric.nrows() {
-        // What has no information is measured as it is; a little keeps the root real.
+        // Values without information keep their scale; a small term keeps the root real.
         metric[(i, i)] = metric[(i, i)].max(1.0) + 1e-9;
     }
     let Some(root) = metric.cholesky().map(|factor| factor.l()) else {
@@ -103,7 +103,7 @@ fn mended(observed: &DMatrix<f64>, expected: &DMatrix<f64>) -> DMatrix<f64> {
     })
 }
 
-/// Learns from the change of the gradient along a step: the curvature stays positive definite.
+/// Updates the curvature by the change of the gradient along a step; it stays positive definite.
 pub(crate) fn learn(curvature: &mut DMatrix<f64>, from: &Point, to: &Point) {
     let moved = &to.coordinates - &from.coordinates;
     let change = &from.gradient - &to.gradient;

@@ -1,44 +1,43 @@
-//! The values that make recordings most likely: prediction-error fits by maximum likelihood, with
-//! what is known beforehand (K. J. Åström, *Maximum likelihood and prediction error methods*, 1980).
+//! Prediction-error fits by maximum likelihood with priors (K. J. Åström, *Maximum likelihood and
+//! prediction error methods*, 1980).
 //!
-//! Damped quasi-Newton steps with the exact gradient. The curvature starts as Fisher's information
-//! (scoring) and learns from the steps; where these fail, and before an optimum is believed, it is
-//! observed anew ([`curvature`](super::curvature)). An optimum is where no step promises to gain
-//! anything: half of Newton's decrement is the gain that is left, in units of log-likelihood.
+//! Damped quasi-Newton steps with the exact gradient. The curvature starts as the Fisher
+//! information (scoring) and is updated by the steps; it is recomputed by differences when steps
+//! fail and before an optimum is accepted ([`curvature`](super::curvature)). The search ends when
+//! the predicted gain of a further step, half the squared Newton decrement, is negligible.
 
 use nalgebra::{DMatrix, DVector};
 
 use super::curvature::learn;
 use super::free::{Free, Selection};
-use super::posterior::{Point, Posterior};
+use super::posterior::{Point, Posterior, SUFFICIENT_DECREASE};
 use crate::EstimateError;
 use crate::estimation::Estimation;
+use crate::statistics::chi_squared::HALF_WIDTH_95;
 
-/// Part of the promised gain that makes a step worth it.
-const ENOUGH: f64 = 0.05;
-/// Damping of the first step that fails, relative to the curvature.
+/// Damping after the first failed step, relative to the curvature.
 const DAMPING: f64 = 0.1;
-/// Part of the promised gain with which the damping falls.
+/// Fraction of the predicted gain above which the damping is reduced.
 const BELIEVED: f64 = 0.75;
-/// Steps that are damped more than this move nothing.
+/// Damping beyond which steps are negligible.
 const MOST_DAMPING: f64 = 1e9;
-/// Gain in log-likelihood that is given up where damped steps do not find it: a tenth of a standard
+/// Predicted gain in log-likelihood that may remain when damped steps fail: a tenth of a standard
 /// deviation.
 const CLOSE: f64 = 5e-3;
-/// More damping than this tells that the curvature is wrong, or that nothing is left to gain.
+/// Damping beyond which the curvature is taken as wrong, or the optimum as reached.
 const MUCH_DAMPING: f64 = 5.0;
 
 /// When to stop.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Effort {
-    /// Gain in log-likelihood that is not worth a step; 1/2 is one standard deviation.
+    /// Predicted gain in log-likelihood below which the search ends; 1/2 is one standard deviation.
     pub gain: f64,
-    /// Most steps.
+    /// Largest number of steps.
     pub steps: usize,
 }
 
 impl Default for Effort {
-    /// To a thousandth of a standard deviation.
+    /// To 0.001 standard deviations.
     fn default() -> Self {
         Self {
             gain: 5e-7,
@@ -52,31 +51,31 @@ impl Default for Effort {
 pub struct Fit {
     /// All values.
     pub values: Vec<f64>,
-    /// Those that were looked for.
+    /// The free values.
     pub free: Vec<Free>,
     /// Their coordinates.
     pub coordinates: DVector<f64>,
-    /// Which of them stand at a limit: nothing is said about their spread.
+    /// Which of them are at a limit; their uncertainty is undefined.
     pub at_limit: Vec<bool>,
     /// Log-likelihood of the recordings.
     pub log_likelihood: f64,
-    /// The same with the density beforehand, up to a constant.
+    /// The same plus the log-prior, up to a constant.
     pub log_posterior: f64,
-    /// Fisher's information of the coordinates at the optimum, with what is known beforehand: the
-    /// expected curvature of the negative log-posterior.
+    /// Fisher information of the coordinates at the optimum, with that of the priors: the expected
+    /// curvature of the negative log-posterior.
     pub information: DMatrix<f64>,
-    /// The observed one. Where the model is right both are alike.
+    /// The observed curvature, similar to the expected one if the model is correct.
     pub curvature: DMatrix<f64>,
-    /// The step that was promised where no step led on; zero at an optimum.
+    /// The predicted step where the search stalled; zero at an optimum.
     pub promised: DVector<f64>,
-    /// Gain that a further step promises.
+    /// Predicted gain of a further step.
     pub gain: f64,
     /// Steps taken.
     pub steps: usize,
 }
 
 impl Fit {
-    /// Looks for an optimum from `start`. Values that are not free stay as they are.
+    /// Searches for an optimum from `start`. Values that are not free are held.
     pub fn of(
         estimation: &Estimation<'_>,
         start: &[f64],
@@ -129,9 +128,9 @@ impl Fit {
             let (step, gain) = posterior.step(&point, &curvature, damping);
             let next = posterior.moved(&point, &step).ok();
             let next = next.filter(|next| next.objective.is_finite());
-            let is_better = |next: &Point| point.is_worse_than(next, ENOUGH * gain);
+            let is_better = |next: &Point| point.is_worse_than(next, SUFFICIENT_DECREASE * gain);
             let better = next.as_ref().is_some_and(is_better);
-            // A step that failed tells something, but nothing better than what was just observed.
+            // A failed step updates the curvature, unless it was just recomputed.
             if let Some(next) = next.as_ref().filter(|_| better || !is_observed) {
                 learn(&mut curvature, &point, next);
             }
@@ -148,29 +147,29 @@ impl Fit {
         }
     }
 
-    /// Covariance of the coordinates if the model is right: the inverse of the information. What
-    /// stands at a limit counts as known.
+    /// Covariance of the coordinates if the model is correct: the inverse of the information.
+    /// Coordinates at a limit count as known.
     pub fn covariance(&self) -> Result<DMatrix<f64>, EstimateError> {
         inverse(&self.information, &self.at_limit)
     }
 
-    /// Whether the search came to its end.
+    /// Whether the search converged.
     pub fn is_optimum(&self) -> bool {
         self.promised.iter().all(|step| *step == 0.0)
     }
 
-    /// Standard deviation of a coordinate if the model is right, with the step that was not found.
+    /// Standard deviation of a coordinate if the model is correct, enlarged by the step that was
+    /// not achieved.
     pub fn deviation(&self, index: usize) -> Result<f64, EstimateError> {
         let variance = self.covariance()?[(index, index)];
         Ok(variance.sqrt().hypot(self.promised[index]))
     }
 
-    /// Limits, in SI, between which a value lies with 95 % if the model is right.
+    /// 95 % interval of a value in SI if the model is correct.
     pub fn interval95(&self, index: usize) -> Result<[f64; 2], EstimateError> {
-        const QUANTILE: f64 = 1.959_963_984_540_054;
         let deviation = self.deviation(index)?;
         let (free, centre) = (self.free[index], self.coordinates[index]);
-        Ok([-1.0, 1.0].map(|sign| free.to_value(centre + sign * QUANTILE * deviation)))
+        Ok([-1.0, 1.0].map(|sign| free.to_value(centre + sign * HALF_WIDTH_95 * deviation)))
     }
 }
 

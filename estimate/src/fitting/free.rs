@@ -1,4 +1,4 @@
-//! Which values are looked for, in which coordinates, within which limits.
+//! Free values, with their coordinates, limits and priors.
 
 use nalgebra::DVector;
 
@@ -6,32 +6,31 @@ use crate::EstimateError;
 use crate::data::layout::Layout;
 use crate::data::unknown::Unknown;
 
-/// How a value is counted while it is looked for.
+/// Coordinate in which a value is estimated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Coordinate {
-    /// As it is, in SI.
+    /// The value itself, in SI.
     Plain,
-    /// By its natural logarithm: levels, noise and lags are positive, and known up to factors.
+    /// Its natural logarithm: levels, noise and lags are positive and known up to factors.
     Logarithm,
 }
 
-/// A value that is looked for.
+/// A free value.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Free {
     /// The value.
     pub unknown: Unknown,
-    /// How it is counted.
+    /// Its coordinate.
     pub coordinate: Coordinate,
     /// Limits in SI.
     pub range: [f64; 2],
-    /// What is known beforehand: expected value in SI and standard deviation in the coordinate, of
-    /// a normal distribution in the coordinate. A tolerance of the drawing, for instance.
+    /// Prior: expected value in SI and standard deviation in the coordinate, of a normal distribution
+    /// in the coordinate; for instance a tolerance of the drawing.
     pub prior: Option<[f64; 2]>,
 }
 
 impl Free {
-    /// A value without limits and of which nothing is known beforehand; positive values by their
-    /// logarithm.
+    /// A value without further limits and without a prior; positive values in logarithms.
     pub fn of(unknown: Unknown) -> Self {
         let positive = matches!(
             unknown,
@@ -62,7 +61,7 @@ impl Free {
         self
     }
 
-    /// The same with something known beforehand, see [`Free::prior`].
+    /// The same with a prior, see [`Free::prior`].
     #[must_use]
     pub fn around(mut self, expected: f64, deviation: f64) -> Self {
         self.prior = Some([expected, deviation]);
@@ -85,7 +84,7 @@ impl Free {
         }
     }
 
-    /// Derivative of the value by the coordinate.
+    /// Derivative of the value with respect to the coordinate.
     pub(crate) fn stretch(&self, value: f64) -> f64 {
         match self.coordinate {
             Coordinate::Plain => 1.0,
@@ -93,7 +92,7 @@ impl Free {
         }
     }
 
-    /// A small change of the coordinate: a tenth of a thousandth of what it is about.
+    /// A small change of the coordinate, relative to its scale.
     pub(crate) fn small_change(&self, value: f64) -> f64 {
         match (self.coordinate, self.prior) {
             (Coordinate::Logarithm, _) => 1e-4,
@@ -103,7 +102,7 @@ impl Free {
     }
 }
 
-/// All values that are looked for, with their places.
+/// All free values, with their indices.
 #[derive(Debug, Clone)]
 pub(crate) struct Selection<'a> {
     pub(crate) free: &'a [Free],
@@ -117,7 +116,7 @@ impl<'a> Selection<'a> {
                 && !(deviation > 0.0 && one.to_coordinate(expected).is_finite())
             {
                 return Err(EstimateError::Value {
-                    what: format!("standard deviation beforehand of {:?}", one.unknown),
+                    what: format!("prior standard deviation of {:?}", one.unknown),
                     value: deviation,
                     demand: "positive, about a value that its coordinate admits",
                 });
@@ -155,7 +154,7 @@ impl<'a> Selection<'a> {
         Ok(coordinates)
     }
 
-    /// Puts coordinates into a list of values.
+    /// Writes coordinates into a list of values.
     pub(crate) fn write(&self, coordinates: &DVector<f64>, values: &mut [f64]) {
         let places = self.free.iter().zip(&self.places);
         for ((free, &place), &coordinate) in places.zip(coordinates.iter()) {
@@ -164,7 +163,7 @@ impl<'a> Selection<'a> {
         }
     }
 
-    /// The gradient by the coordinates of one by the values.
+    /// The gradient with respect to the coordinates, from that with respect to the values.
     pub(crate) fn gradient(&self, values: &[f64], by_values: &[f64]) -> DVector<f64> {
         let places = self.free.iter().zip(&self.places);
         let entries = places.map(|(free, &place)| free.stretch(values[place]) * by_values[place]);
@@ -179,7 +178,7 @@ impl<'a> Selection<'a> {
             .collect()
     }
 
-    /// Logarithm of the density beforehand, up to a constant, and its gradient.
+    /// Log-prior, up to a constant, and its gradient.
     pub(crate) fn prior(&self, coordinates: &DVector<f64>) -> (f64, DVector<f64>) {
         let (mut sum, mut gradient) = (0.0, DVector::zeros(self.len()));
         for (i, free) in self.free.iter().enumerate() {
@@ -192,7 +191,7 @@ impl<'a> Selection<'a> {
         (sum, gradient)
     }
 
-    /// What the knowledge beforehand adds to the information.
+    /// Prior information.
     pub(crate) fn prior_information(&self) -> DVector<f64> {
         let entries = self
             .free

@@ -1,8 +1,7 @@
-//! Level scaling: levels of process noise that follow the inertia of the model.
+//! Level scaling: levels of process noise relative to the inertia of the model.
 //!
-//! A level is a force, and what recordings tell is an acceleration: where a search makes a mass twice as
-//! large, the level that was right is half of what is right now. Counted by acceleration, masses and
-//! levels do not hinder each other.
+//! Noise levels are forces, but recordings determine accelerations: doubling a mass doubles the level
+//! that fits. Scaled to accelerations, levels decouple from the masses.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -14,7 +13,7 @@ use crate::data::unknown::Unknown;
 use crate::estimation::Estimation;
 use crate::kalman::prediction::place;
 
-/// What a step of some coordinates adds to levels, to first order.
+/// Changes of levels with steps of the other coordinates, to first order.
 pub(crate) struct LevelScaling {
     /// A row and a column for each coordinate.
     slopes: DMatrix<f64>,
@@ -57,7 +56,7 @@ impl LevelScaling {
         Ok(Self { slopes })
     }
 
-    /// The step of [`Posterior::step`] in coordinates that count levels by acceleration.
+    /// The step of [`Posterior::step`] in coordinates with levels scaled to accelerations.
     pub(crate) fn step(
         &self,
         (posterior, point): (&Posterior<'_, '_>, &Point),
@@ -74,8 +73,8 @@ impl LevelScaling {
     }
 }
 
-/// Acceleration of each pseudo-velocity by a force in its own equation, where the runs begin: the
-/// geometric mean.
+/// Acceleration of each pseudo-velocity per unit force in its own equation, at the start of the
+/// runs: geometric mean.
 fn mobilities(estimation: &Estimation<'_>, values: &[f64]) -> Result<Vec<f64>, EstimateError> {
     let (layout, plant) = (estimation.layout(), estimation.plant());
     let (n, s) = (plant.n, plant.speeds);

@@ -1,5 +1,5 @@
-//! The log-posterior of the values that are looked for: the log-likelihood of recordings with what is
-//! known beforehand, as a function of coordinates within limits.
+//! The log-posterior of the free values: the log-likelihood of recordings plus the log-prior, as a
+//! function of coordinates within limits.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -7,38 +7,39 @@ use super::free::{Coordinate, Free, Selection};
 use crate::EstimateError;
 use crate::estimation::Estimation;
 
-/// Longest change of a logarithm in one step: a level that is better at zero falls by this factor in
-/// every step, until nothing is gained by it any more.
+/// Largest change of a logarithm in one step, for levels whose optimum is zero.
 const REACH: f64 = 3.0;
-/// Rounding of a log-likelihood, relative to its size.
+/// Sufficient decrease: least part of the predicted gain at which a step is accepted.
+pub(super) const SUFFICIENT_DECREASE: f64 = 0.05;
+/// Rounding of a log-likelihood, relative to its magnitude.
 const ROUNDING: f64 = 1e-12;
 
-/// The function.
+/// The log-posterior.
 #[derive(Clone, Copy)]
 pub(crate) struct Posterior<'o, 'e> {
     pub(crate) estimation: &'o Estimation<'e>,
     pub(crate) selection: &'o Selection<'o>,
 }
 
-/// Its value and gradient somewhere.
+/// Its value and gradient at a point.
 #[derive(Clone)]
 pub(crate) struct Point {
     /// All values in SI.
     pub(crate) values: Vec<f64>,
-    /// Coordinates of those that are looked for.
+    /// Coordinates of the free values.
     pub(crate) coordinates: DVector<f64>,
-    /// Log-likelihood alone.
+    /// Log-likelihood.
     pub(crate) log_likelihood: f64,
     /// Log-posterior.
     pub(crate) objective: f64,
-    /// Its gradient by the coordinates.
+    /// Its gradient with respect to the coordinates.
     pub(crate) gradient: DVector<f64>,
-    /// Where a coordinate stands at a limit and the objective grows beyond it.
+    /// Whether a coordinate is at a limit beyond which the objective increases.
     pub(crate) is_held: Vec<bool>,
 }
 
 impl Posterior<'_, '_> {
-    /// At some values, which go to their limits where they are beyond.
+    /// At some values, clamped to their limits.
     pub(crate) fn at(&self, values: &[f64]) -> Result<Point, EstimateError> {
         let coordinates = self.selection.coordinates(values)?;
         let mut values = values.to_vec();
@@ -72,8 +73,8 @@ impl Posterior<'_, '_> {
         self.at(&values)
     }
 
-    /// The step of a curvature from a point, and the gain that it promises. Coordinates at their
-    /// limits stay; no coordinate moves farther than it can reach, and the others make the best of
+    /// The step for a curvature from a point, and its predicted gain. Coordinates at their limits
+    /// are held; none exceeds its limits or its largest step, and the others are optimised given
     /// that.
     pub(crate) fn step(
         &self,
@@ -102,7 +103,7 @@ impl Posterior<'_, '_> {
 }
 
 impl Point {
-    /// Whether a point is better than this one by so much; by the slopes along the way where the
+    /// Whether another point is better by this gain; by the directional derivatives if the
     /// difference is rounding.
     pub(crate) fn is_worse_than(&self, other: &Point, gain: f64) -> bool {
         let rise = other.objective - self.objective;
@@ -115,7 +116,7 @@ impl Point {
     }
 }
 
-/// The damped step of the coordinates that are not fixed.
+/// The damped step of the coordinates that are not held.
 fn free_step(
     point: &Point,
     curvature: &DMatrix<f64>,
@@ -125,7 +126,7 @@ fn free_step(
     let mut step =
         DVector::from_iterator(fixed.len(), fixed.iter().map(|fixed| fixed.unwrap_or(0.0)));
     let slope = &point.gradient - curvature * &step;
-    // A coordinate without curvature cannot be judged.
+    // Coordinates without curvature are not scaled.
     let open: Vec<usize> = (0..fixed.len())
         .filter(|&i| fixed[i].is_none() && curvature[(i, i)] > 0.0)
         .collect();
@@ -140,7 +141,7 @@ fn free_step(
         curvature[(open[i], open[j])] * scale[i] * scale[j]
     });
     for i in 0..open.len() {
-        // A little of the diagonal keeps directions without information in place.
+        // A small multiple of the diagonal regularises directions without information.
         scaled[(i, i)] += damping + 1e-12;
     }
     let right = DVector::from_fn(open.len(), |i, _| slope[open[i]] * scale[i]);

@@ -1,11 +1,11 @@
-//! Inverse dynamics: parameters from motions whose accelerations are known, without a filter.
+//! Parameters by inverse dynamics, from motions with known accelerations, without a filter.
 //!
-//! Appell's equations at a sample, M ω̇ + b − Π = 0, are linear in inertial parameters and nearly so
-//! in others near their values. Which combinations occur in them at all are the base parameters
+//! Appell's equations at a sample, M ω̇ + b − Π = 0, are linear in inertial parameters and nearly
+//! so in others near their values. Which combinations occur in them at all are the base parameters
 //! (M. Gautier, *Numerical calculation of the base inertial parameters of robots*, 1991). Noise in
-//! the regressors pulls least squares away from the truth; instruments, regressors of a motion
-//! without that noise, do not (A. Janot, P. O. Vandanjon and M. Gautier, *A generic instrumental
-//! variable approach for industrial robot identification*, 2014).
+//! the regressors biases least squares; instruments, regressors of a motion without that noise,
+//! avoid the bias (A. Janot, P. O. Vandanjon and M. Gautier, *A generic instrumental variable
+//! approach for industrial robot identification*, 2014).
 
 use nalgebra::{DMatrix, DVector};
 
@@ -104,9 +104,9 @@ impl Regression {
         self.instrumental(&self.regressors)
     }
 
-    /// The change of the parameters by instruments, as many columns as parameters: regressors of a
-    /// simulated motion, say. The covariance is that of independent residuals of unlike size
-    /// (H. White, 1980).
+    /// The change of the parameters by instrumental variables, as many columns as parameters, such
+    /// as regressors of a simulated motion. The covariance is that of independent heteroscedastic
+    /// residuals (H. White, 1980).
     pub fn instrumental(
         &self,
         instruments: &DMatrix<f64>,
@@ -164,7 +164,7 @@ impl<'a> Equations<'a> {
     }
 }
 
-/// Parameters that suffice for the equations, and what the others add to them.
+/// Base parameters, and the combinations of the others that they include.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BaseParameters {
     /// Columns that are independent of each other, in the order in which they were found.
@@ -177,14 +177,14 @@ pub struct BaseParameters {
 }
 
 impl BaseParameters {
-    /// Of regressors at many moments, each column in its own scale. Columns count as dependent whose
-    /// rest is a smaller part of them than `part`, such as 1e-8.
+    /// Of regressors at many moments, with scaled columns. A column counts as dependent if its
+    /// remainder is less than the fraction `part` of it, such as 1e-8.
     pub fn of(regressors: &DMatrix<f64>, part: f64) -> Self {
         let mut rest = regressors.clone();
         let lengths: Vec<f64> = rest.column_iter().map(|column| column.norm()).collect();
         let mut open: Vec<usize> = (0..rest.ncols()).collect();
         let mut independent = Vec::new();
-        // Gram and Schmidt with the column next that keeps most of itself.
+        // Gram-Schmidt with column pivoting.
         let kept = |rest: &DMatrix<f64>, column: usize| {
             let length = lengths[column].max(f64::MIN_POSITIVE);
             rest.column(column).norm() / length
@@ -196,7 +196,7 @@ impl BaseParameters {
             let column = open.remove(place);
             let direction = rest.column(column).normalize();
             for &other in &open {
-                // Twice is enough.
+                // Reorthogonalised once (Kahan: twice is enough).
                 for _ in 0..2 {
                     let along = direction.dot(&rest.column(other));
                     rest.column_mut(other).axpy(-along, &direction, 1.0);

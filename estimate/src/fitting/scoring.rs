@@ -1,38 +1,36 @@
-//! Fits by scoring: every step has Fisher's information of its own, which takes few passes of the
-//! filter ([`information`](crate::gradient::information)). For many fits of models that are nearly right.
+//! Fits by Fisher scoring: the information is computed anew for every step, which takes few passes
+//! of the filter ([`information`](crate::gradient::information)). For many fits of models that are
+//! nearly correct.
 
 use nalgebra::{DMatrix, DVector};
 
 use super::fit::{Effort, Fit};
 use super::free::{Coordinate, Free, Selection};
 use super::level_scaling::LevelScaling;
-use super::posterior::{Point, Posterior};
+use super::posterior::{Point, Posterior, SUFFICIENT_DECREASE};
 use crate::EstimateError;
 use crate::estimation::Estimation;
 use crate::gradient::information::is_level;
 
-/// Part of the promised gain that makes a step worth it.
-const ENOUGH: f64 = 0.05;
-/// Damping of a step after one that failed undamped, relative to the curvature: in a narrow valley the
-/// right one is small.
+/// Damping after an undamped step failed, relative to the curvature; small, for narrow valleys.
 const DAMPING: f64 = 1e-4;
-/// A step that fails is damped so much more.
+/// Factor of the damping after a failed step.
 const MORE: f64 = 8.0;
-/// A step is damped so much less after one that kept this part of its promise.
+/// Divisor of the damping after a step that achieved this fraction of its predicted gain.
 const LESS: (f64, f64) = (5.0, 0.5);
-/// Steps that are damped more than this move nothing, less than this are not damped.
+/// Damping below which steps are undamped, and beyond which they are negligible.
 const DAMPED: [f64; 2] = [2e-5, 1e6];
-/// A place from which no step leads on may promise so many times what a step is worth.
+/// Predicted gain, in units of [`Effort::gain`], that may remain when no step succeeds.
 const FLAT: f64 = 10.0;
-/// So many steps that gain less together than one should have come to the end.
+/// Number of steps that together must gain more than [`Effort::gain`].
 const LAST: usize = 6;
-/// Change of a level's logarithm that makes no other information of it.
+/// Change of the logarithm of a level up to which its information is reused.
 const NEAR: f64 = 0.3;
 
 impl Fit {
-    /// Looks for an optimum from `start` as [`Fit::of`] does, by scoring. The curvature of the result
-    /// is the expected one. Where likelihoods are rough, as with friction that sticks, a search may end
-    /// before an optimum: [`Fit::promised`] tells.
+    /// Searches for an optimum from `start` as [`Fit::of`] does, by scoring. The curvature of the
+    /// result is the expected one. If the likelihood is rough, as with stick-slip friction, the
+    /// search may end before an optimum, see [`Fit::promised`].
     pub fn quick(
         estimation: &Estimation<'_>,
         start: &[f64],
@@ -60,7 +58,7 @@ impl Fit {
                 let (mut promised, mut gain) = (DVector::zeros(free.len()), gain);
                 if !is_over {
                     let (step, more) = scaling.step((&posterior, &point), &information, DAMPING);
-                    // Where no step helps, the place is good if little was promised at all.
+                    // If no step succeeds, the point is accepted if the predicted gain is small.
                     if !(0.0..=FLAT * effort.gain).contains(&more) {
                         (promised, gain) = (step, more);
                     }
@@ -80,10 +78,11 @@ impl Fit {
                 });
             }
             steps += 1;
-            // Coordinates at their reach may make things worse together: a damped step does not.
+            // A step with several coordinates at their largest change may fail; a damped one does
+            // not.
             let next = (gain > 0.0).then(|| posterior.moved(&point, &step).ok());
             let is_better = |next: &Point| {
-                next.objective.is_finite() && point.is_worse_than(next, ENOUGH * gain)
+                next.objective.is_finite() && point.is_worse_than(next, SUFFICIENT_DECREASE * gain)
             };
             match next.flatten().filter(is_better) {
                 Some(next) => {
@@ -106,7 +105,7 @@ impl Fit {
     }
 }
 
-/// The information of levels, where it was computed last.
+/// The information of levels, and the point at which it was computed.
 #[derive(Default)]
 struct Levels {
     known: Option<(Vec<f64>, DMatrix<f64>)>,
@@ -143,8 +142,8 @@ impl Levels {
         information += DMatrix::from_diagonal(&selection.prior_information());
         self.known = Some(of_levels);
         for (i, free) in free.iter().enumerate() {
-            // Far below its optimum the likelihood bends by a level as much as it slopes, and much
-            // more than is expected where the level is right.
+            // Far below the optimum of a level, the curvature of the likelihood is as large as its
+            // slope, and much larger than expected at the optimum.
             if free.coordinate == Coordinate::Logarithm {
                 information[(i, i)] += point.gradient[i].abs();
             }

@@ -1,8 +1,8 @@
-//! The gradient of the log-likelihood: the filter's recursions walked backwards.
+//! The gradient of the log-likelihood: reverse accumulation through the recursions of the filter.
 //!
-//! What is differentiated is the covariance recursion. It is the same function as its square-root
-//! form, and its adjoint needs no derivative of a triangularisation. Gradients by covariances are
-//! symmetric.
+//! The covariance recursion is differentiated: it is the same function as its square-root form, and
+//! its adjoint needs no derivative of a triangularisation. Gradients with respect to covariances
+//! are symmetric.
 
 use std::ops::Range;
 
@@ -18,10 +18,10 @@ use crate::motion::plant::{Place, Scratch, Sums};
 use crate::motion::timeline::Advance;
 use crate::motion::transition::{self, Effects, Reverse, Span};
 
-/// Gradients on the way back through a pass.
+/// Gradients during the reverse sweep.
 struct Backward<'p, 'a> {
     pass: &'p Pass<'a>,
-    /// By the state and by the covariance after the record that is next.
+    /// With respect to the state and the covariance after the next record.
     z: Vec<f64>,
     p: Vec<f64>,
     parameters: Vec<f64>,
@@ -85,7 +85,7 @@ pub(crate) fn adjoint(pass: &mut Pass<'_>, rows: &Range<usize>, gradient: &mut [
 }
 
 impl Backward<'_, '_> {
-    /// The initial state and its spread, and what was summed up on the way.
+    /// The initial state and its standard deviations, and the accumulated sums.
     fn start(&self, gradient: &mut [f64]) {
         let layout = &self.pass.layout;
         let (n, run) = (self.pass.sizes.n, self.pass.run);
@@ -112,7 +112,7 @@ impl Backward<'_, '_> {
             lags: self.pass.lags(),
         };
         let plant = self.pass.plant;
-        // It was closed here before.
+        // The forward pass succeeded here.
         let _ = closure.close(plant, place, &mut self.scratch, z);
         let mut sums = Sums {
             z: &mut self.z,
@@ -135,11 +135,11 @@ impl Backward<'_, '_> {
             lags: pass.lags(),
         };
         let [product, noise, by_f] = &mut self.square;
-        // ⟨Λ, F (P + N) Fᵀ + N⟩: by P it is FᵀΛF, by N it is Λ + FᵀΛF, by F it is 2 Λ F (P + N).
+        // Derivatives of ⟨Λ, F (P + N) Fᵀ + N⟩: FᵀΛF for P, Λ + FᵀΛF for N, 2 Λ F (P + N) for F.
         multiply(&self.p, on.f, n, product);
         noise.copy_from_slice(&self.p);
         transposed_multiply(on.f, product, n, &mut self.p);
-        // Measurements damp the symmetric part alone: rounding in the other one would grow with F.
+        // Measurements reduce only the symmetric part; rounding in the other would grow with F.
         symmetrise(&mut self.p, n);
         add(&self.p, noise);
 
@@ -233,7 +233,7 @@ impl Backward<'_, '_> {
             let on = pass.sizes.sample(&mut tape[sample.tape..]);
             let seed = f64::from(u8::from(rows.contains(&sample.innovation.row)));
             let by_quantity = self.scalar(sample, &on, (&prior, &mut by_prior), seed, gradient);
-            // The gradient by the slope is in `vector[0]` now.
+            // `vector[0]` now holds the gradient with respect to the slope.
             let channel = sample.innovation.channel;
             let place = pass.layout.scale(channel);
             let gain = pass.values[place];
@@ -273,8 +273,8 @@ impl Backward<'_, '_> {
         }
     }
 
-    /// One update: z⁺ = z + a e/s, P⁺ = P − a aᵀ/s with a = P c, s = cᵀa + r and
-    /// e = y − h − cᵀ(z − prior). Returns the derivative by h and leaves that by c in `vector[0]`.
+    /// One update: z⁺ = z + a e/s, P⁺ = P − a aᵀ/s with a = P c, s = cᵀa + r and e = y − h − cᵀ(z −
+    /// prior). Returns the derivative with respect to h and leaves that for c in `vector[0]`.
     fn scalar(
         &mut self,
         sample: &Sample,
@@ -291,7 +291,7 @@ impl Backward<'_, '_> {
             sample.innovation.white_variance,
         );
         let [by_c, by_a] = &mut self.vector;
-        // Share of the log-likelihood: −(ln 2πs + e²/s)/2.
+        // Contribution to the log-likelihood: −(ln 2πs + e²/s)/2.
         let along = dot(&self.z, a);
         let by_e = (along - seed * e) / s;
         multiply(&self.p, a, n, by_a);

@@ -1,9 +1,9 @@
-//! Fisher's information of some values, quickly: for the curvature of a search.
+//! Fast Fisher information of some values, for the curvature of a search.
 //!
-//! What moves the mean is differentiated in one pass ([`tangent`](super::tangent)). Levels of
-//! disturbances and of noise change gains and the sizes of innovations; they are differentiated by
-//! differences along the longest recording, and their information grows with the number of rows.
-//! Between the two there is none on average.
+//! Values that affect the mean are differentiated in one pass ([`tangent`](super::tangent)). Levels
+//! of disturbances and of noise change the gains and the variances of innovations; they are
+//! differentiated by differences along the longest recording, and their information is scaled with
+//! the number of rows. The expected cross-information of the two is zero.
 
 use nalgebra::DMatrix;
 
@@ -15,7 +15,7 @@ use crate::fitting::free::{Free, Selection};
 use crate::kalman::filter::Innovation;
 
 impl Estimation<'_> {
-    /// Fisher's information of the coordinates of some values, without what is known beforehand.
+    /// Fisher information of the coordinates of some values, without priors.
     pub fn information(
         &self,
         values: &[f64],
@@ -24,7 +24,7 @@ impl Estimation<'_> {
         Ok(self.information_of_means(values, free)? + self.information_of_levels(values, free)?)
     }
 
-    /// The part of what moves the mean.
+    /// The part of values that affect the mean.
     pub(crate) fn information_of_means(
         &self,
         values: &[f64],
@@ -92,7 +92,7 @@ impl Estimation<'_> {
     }
 }
 
-/// Whether a value sets the sizes of innovations and not their mean.
+/// Whether a value affects the variances of innovations and not their mean.
 pub(crate) fn is_level(free: &Free) -> bool {
     matches!(
         free.unknown,

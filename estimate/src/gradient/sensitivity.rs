@@ -1,4 +1,5 @@
-//! How all innovations change with the values: scores sample by sample, and Fisher's information.
+//! Derivatives of all innovations with respect to the values: scores sample by sample, and Fisher
+//! information.
 
 use nalgebra::DMatrix;
 
@@ -7,10 +8,10 @@ use crate::estimation::Estimation;
 use crate::fitting::free::{Free, Selection};
 use crate::kalman::filter::Innovation;
 
-/// Derivatives of the whitened samples by the coordinates of some values.
+/// Derivatives of the whitened samples with respect to the coordinates of some values.
 ///
-/// By central differences of the filter, right to some eight digits: good for information, screens
-/// and covariances. Optima are judged by the exact gradient.
+/// By central differences of the filter, to about eight digits, which suffices for information,
+/// screening and covariances. Optima are found with the exact gradient.
 #[derive(Debug, Clone)]
 pub struct Sensitivity {
     /// The samples, run by run, in the order of rows and channels; with the run of each.
@@ -51,7 +52,7 @@ impl Sensitivity {
         })
     }
 
-    /// Fisher's information of the data: the expected curvature of the log-likelihood.
+    /// Fisher information of the data: the expected curvature of the negative log-likelihood.
     pub fn information(&self) -> DMatrix<f64> {
         self.residuals.tr_mul(&self.residuals) + self.variances.tr_mul(&self.variances)
     }
@@ -81,7 +82,7 @@ fn ordered(
 
 type Ends = [Vec<(usize, Innovation)>; 2];
 
-/// The samples on both sides of a coordinate; on one side only at a limit of what a filter accepts.
+/// The samples on both sides of a coordinate; on one side at a limit of the admissible values.
 fn differences(
     estimation: &Estimation<'_>,
     selection: &Selection<'_>,

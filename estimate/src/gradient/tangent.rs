@@ -1,9 +1,9 @@
-//! How all innovations change with some values, to first order, by one pass of the filter.
+//! Derivatives of all innovations with respect to some values, by one pass of the filter.
 //!
-//! The gains of the filter are held: their changes multiply innovations, which are zero on average,
-//! and so do not enter Fisher's information of what moves the mean. A column costs as little as one
-//! row of the covariance, whatever it stands for: a parameter, a bias, a delay that the setup does
-//! not have, or a force that nobody has written down yet.
+//! The gains of the filter are held: their changes multiply innovations, which have zero mean, and
+//! so do not enter the Fisher information of the mean. Each column costs no more than one row of
+//! the covariance, be it for a parameter, a bias, a delay that is not part of the setup, or a
+//! candidate force.
 
 use nalgebra::DMatrix;
 
@@ -20,10 +20,10 @@ use crate::motion::plant::{Place, Scratch, Sums};
 use crate::motion::timeline::{Action, Advance};
 use crate::motion::transition::added_by_rate;
 
-/// What innovations are differentiated by.
+/// Direction of differentiation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Direction {
-    /// A value. Levels and spreads do not move the mean.
+    /// A value. Levels and spreads do not affect the mean.
     Value(Unknown),
     /// A delay in s of a declared input; for a lag it is the same to first order.
     LateInput(usize),
@@ -31,22 +31,22 @@ pub enum Direction {
     LateChannel(usize),
 }
 
-/// What shapes add to.
+/// Where shapes are added.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Along {
     /// The force of each disturbance.
     Disturbances,
-    /// What each channel reads.
+    /// The reading of each channel.
     Channels,
 }
 
-/// What is tried beside the model: shapes of run, time, state and inputs, each in the direction of
-/// each disturbance, or as an error of each channel.
+/// Candidate additions to the model: functions of run, time, state and inputs, each along each
+/// disturbance, or as an error of each channel.
 #[derive(Clone, Copy)]
 pub struct Shapes<'s> {
-    /// What they add to.
+    /// Where they are added.
     pub along: Along,
-    /// How many.
+    /// Their number.
     pub count: usize,
     /// Writes the values of all shapes.
     pub values: &'s dyn Fn(usize, At<'_>, &mut [f64]),
@@ -111,7 +111,7 @@ impl Estimation<'_> {
     }
 }
 
-/// Derivatives of the state on the way through a run.
+/// Derivatives of the state along a run.
 struct Forward<'p, 'a> {
     estimation: &'p Estimation<'a>,
     pass: Pass<'p>,
@@ -121,7 +121,7 @@ struct Forward<'p, 'a> {
     /// By each direction, n rows.
     z: Vec<f64>,
     moved: Vec<f64>,
-    /// Half of what a step adds.
+    /// Half of the increment of a step.
     added: Vec<f64>,
     by_parameters: Vec<f64>,
     by_states: Vec<f64>,
@@ -208,7 +208,7 @@ impl<'p, 'a> Forward<'p, 'a> {
         Ok(())
     }
 
-    /// Lets the dependent coordinates follow.
+    /// Projects onto the dependent coordinates.
     fn close(&mut self, action: Action, recording: &crate::Recording) {
         let Some(closure) = &self.pass.closure else {
             return;
@@ -235,7 +235,8 @@ impl<'p, 'a> Forward<'p, 'a> {
         }
     }
 
-    /// Z ← F (Z + H) + H, where H is half of what the step adds, by the slopes in its middle.
+    /// Z ← F (Z + H) + H, where H is half of the increment of the step, by the slopes at its
+    /// midpoint.
     fn advance(&mut self, (advance, tape): (Advance, usize)) {
         let (n, columns, half) = (self.pass.sizes.n, self.columns, 0.5 * advance.h);
         let info = self.estimation.setup().model.info();
@@ -305,7 +306,7 @@ impl<'p, 'a> Forward<'p, 'a> {
         }
     }
 
-    /// An input that came later would have held its value before for longer.
+    /// A later input would have held its previous value for longer.
     fn switch(&mut self, t: f64, before: &[f64]) {
         let late = |direction: &Direction| matches!(direction, Direction::LateInput(_));
         if !self.directions.iter().any(late) {
@@ -405,7 +406,7 @@ impl<'p, 'a> Forward<'p, 'a> {
         }
     }
 
-    /// Derivatives of a measured output by the parameters; none for a state.
+    /// Derivatives of a measured output with respect to the parameters; none for a state.
     fn output_slope(&mut self, index: usize) -> Vec<f64> {
         let sample = self.pass.samples[index];
         let setup = self.estimation.setup();

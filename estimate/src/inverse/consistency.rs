@@ -1,23 +1,23 @@
-//! How inconsistent recorded motions are with a model, whatever its inputs were, and for which
-//! parameters they are least so.
+//! Inconsistency of recorded motions with a model, for any inputs, and the parameters that minimise
+//! it.
 //!
-//! The relations ρ of a stretch vary with the noise of the samples by C = J Σ Jᵀ; J are their exact
-//! derivatives by the motion, which depend on the parameters θ, and Σ is the covariance of the motion
-//! with all correlations in time. The inconsistency is
+//! The relations ρ of a stretch have the covariance C = J Σ Jᵀ from the noise of the samples; J is
+//! their exact Jacobian with respect to the motion, which depends on the parameters θ, and Σ is the
+//! covariance of the motion with all correlations in time. The inconsistency is
 //!
 //! ```text
 //! Q(θ) = ½ ρᵀ C(θ)⁻¹ ρ
 //! ```
 //!
-//! the least noise, by its own weights, that makes the motion possible (total least squares). Its
-//! derivative is
+//! the smallest weighted noise that makes the motion possible (total least squares). Its derivative
+//! is
 //!
 //! ```text
 //! dQ/dθ = Dᵀ C⁻¹ ρ,   D = ∂ρ/∂θ − (∂J/∂θ) Σ Jᵀ C⁻¹ ρ
 //! ```
 //!
-//! D is what the noise of ρ leaves of ∂ρ/∂θ: the two are not correlated, so the mean of dQ/dθ is zero
-//! at the truth although noise stands on both sides of the equations.
+//! D is the part of ∂ρ/∂θ that is uncorrelated with ρ, so that the mean of dQ/dθ is zero at the
+//! truth although both sides of the equations are noisy.
 
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
@@ -25,15 +25,15 @@ use super::InverseError;
 use super::relation::{Motion, Relations};
 use super::track::{Stretch, Track};
 
-/// Step of a central difference of exact derivatives, relative to what is varied.
+/// Relative step of a central difference of exact derivatives.
 const STEP: f64 = 1e-4;
 
-/// A value that is looked for.
+/// A sought value.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Sought {
     /// A parameter of the model, by its index.
     Parameter(usize),
-    /// What a measured coordinate shows too much, by its index among the measured ones.
+    /// Bias of a measured coordinate, by its index among the measured ones.
     Bias(usize),
 }
 
@@ -44,15 +44,15 @@ pub struct Inconsistency {
     pub cost: f64,
     /// dQ/dθ.
     pub score: DVector<f64>,
-    /// Dᵀ C⁻¹ D: the covariance of the score where the model is right.
+    /// Dᵀ C⁻¹ D: the covariance of the score if the model is correct.
     pub information: DMatrix<f64>,
-    /// The same from scores of blocks as they are, whatever the noise and the model.
+    /// The same from block scores, robust against wrong noise and model.
     pub squares: DMatrix<f64>,
-    /// How many relations there are at all times.
+    /// Number of relations at all times.
     pub count: usize,
 }
 
-/// Recorded motions beside a model.
+/// Recorded motions and a model.
 #[derive(Debug)]
 pub struct Consistency<'a> {
     relations: Relations<'a>,
@@ -109,12 +109,12 @@ impl<'a> Consistency<'a> {
         &self.relations
     }
 
-    /// What is looked for.
+    /// The sought values.
     pub fn sought(&self) -> &[Sought] {
         &self.sought
     }
 
-    /// Where the search begins: nominal parameters and no bias.
+    /// Start of the search: nominal parameters without bias.
     pub fn nominal(&self) -> DVector<f64> {
         let values = self.sought.iter().map(|sought| match *sought {
             Sought::Parameter(index) => self.parameters[index],
@@ -123,7 +123,7 @@ impl<'a> Consistency<'a> {
         DVector::from_iterator(self.sought.len(), values)
     }
 
-    /// Sizes by which values are varied: those of the parameters, and the noise of a channel.
+    /// Scales of the values: the magnitudes of the parameters, and the noise of a channel.
     pub fn scales(&self) -> DVector<f64> {
         let scales = self.sought.iter().map(|sought| match *sought {
             Sought::Parameter(index) => match self.parameters[index].abs() {
@@ -157,7 +157,7 @@ impl<'a> Consistency<'a> {
         motion
     }
 
-    /// Q alone.
+    /// Q.
     pub fn cost(&self, values: &DVector<f64>) -> Result<f64, InverseError> {
         let stretches = self.track.stretches.iter();
         let costs = stretches.map(|stretch| {
@@ -190,7 +190,7 @@ impl<'a> Consistency<'a> {
             all.cost += 0.5 * white.norm_squared();
             all.information += slopes.tr_mul(&slopes);
             all.count += white.len();
-            // Within a stretch neighbours may hang together; stretches do not.
+            // Neighbours within a stretch may be correlated; stretches are not.
             all.squares += &score * score.transpose();
             all.score += score;
         }

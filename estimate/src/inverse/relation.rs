@@ -1,14 +1,13 @@
-//! What a motion must satisfy whatever the inputs were, with derivatives.
+//! Input-free relations of a motion, with derivatives.
 //!
-//! With P the projection onto what the inputs cannot reach, P E = 0, the relations are
+//! With P the projection with P E = 0, the relations are
 //!
 //! ```text
 //! ρ(q, q̇, q̈, p) = N₀ᵀ P e,   e = M ω̇ + b − Π₀
 //! ```
 //!
-//! N₀ is fixed, so that they depend smoothly on the motion. Near the truth e is made by inputs û alone
-//! and P turns with them: dρ = nᵀ d(M ω̇ + b − Π(û)) with n = P N₀ and û held. That is a sum which
-//! [`Model::adjoint`] differentiates.
+//! N₀ is fixed, so that they depend smoothly on the motion. Near the truth e = E û, and dρ = nᵀ d(M
+//! ω̇ + b − Π(û)) with n = P N₀ and û held: a sum that [`Model::adjoint`] differentiates.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -16,7 +15,7 @@ use super::{InputEquations, InverseError, ZERO};
 use appell_runtime::model::{At, Gradient, Model};
 use appell_spectra::singular::Singular;
 
-/// Coordinates of a motion with their derivatives, those that are measured.
+/// Measured coordinates of a motion with their derivatives.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Motion {
     /// Time in s.
@@ -25,18 +24,18 @@ pub struct Motion {
     pub derivatives: [DVector<f64>; 3],
 }
 
-/// Quantities of the equations at a motion, and how they change with it.
+/// Quantities of the equations at a motion, and their derivatives.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Rows {
     /// Their values.
     pub values: DVector<f64>,
-    /// Derivatives by q, q̇ and q̈: a row for each quantity.
+    /// Derivatives with respect to q, q̇ and q̈: a row for each quantity.
     pub by_motion: [DMatrix<f64>; 3],
-    /// Derivatives by the parameters.
+    /// Derivatives with respect to the parameters.
     pub by_parameters: DMatrix<f64>,
 }
 
-/// The state of a motion, and what leads to it.
+/// The state of a motion, and the quantities from which it follows.
 struct Place {
     x: Vec<f64>,
     u: Vec<f64>,
@@ -64,7 +63,7 @@ pub struct Relations<'a> {
 }
 
 impl<'a> Relations<'a> {
-    /// Of a model, about a motion and parameters from which the others do not differ in kind.
+    /// Of a model, about a representative motion and parameters.
     pub fn new(
         model: &'a dyn Model,
         measured: &[usize],
@@ -89,12 +88,12 @@ impl<'a> Relations<'a> {
         Ok(relations)
     }
 
-    /// How many relations there are.
+    /// Number of relations.
     pub fn len(&self) -> usize {
         self.reference.ncols()
     }
 
-    /// Whether the inputs can make every motion.
+    /// Whether there are none, as the inputs can produce any motion.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
@@ -109,7 +108,7 @@ impl<'a> Relations<'a> {
         self.model
     }
 
-    /// The relations at a motion: zero where the model is right.
+    /// The relations at a motion: zero for the true model.
     pub fn at(&self, motion: &Motion, p: &[f64]) -> Result<Rows, InverseError> {
         let place = self.place(motion, p)?;
         let e = place.demand();
@@ -119,8 +118,8 @@ impl<'a> Relations<'a> {
         Ok(self.differentiate(&place, p, self.reference.tr_mul(&left), &rows))
     }
 
-    /// The inputs that each motion needed, by the weights that the noise of the motion asks for, with
-    /// their covariance. `spread` is the covariance of (q, q̇, q̈).
+    /// The inputs of each motion, by least squares weighted by the noise of the motion, with their
+    /// covariance. `spread` is the covariance of (q, q̇, q̈).
     pub fn inputs(
         &self,
         motion: &Motion,
@@ -225,7 +224,7 @@ impl<'a> Relations<'a> {
         let mut tape = Tape::new(self.model);
         let s = self.model.info().speeds;
         for (row, n) in rows.column_iter().enumerate() {
-            // μ: what a q̈ changes.
+            // μ: derivatives with respect to q̈.
             let inertia = place.equations.mass.tr_mul(&n);
             let by_acceleration = place.inverse.tr_mul(&inertia);
             tape.clear();
@@ -260,7 +259,7 @@ impl<'a> Relations<'a> {
         all
     }
 
-    /// Weights of ẋ, A and M whose sum changes as nᵀ (M ω̇ + b − Π) does, where q̈ is held.
+    /// Weights of ẋ, A and M whose sum has the derivatives of nᵀ (M ω̇ + b − Π) with q̈ held.
     fn weigh(
         &self,
         tape: &mut Tape,
@@ -280,7 +279,7 @@ impl<'a> Relations<'a> {
                 tape.mass(i, j, n[i] * off[j]);
             }
         }
-        // q̈ = T ω̇ + (∂q̇/∂q) q̇: where q̈ is held, ω̇ makes up for changes of both.
+        // q̈ = T ω̇ + (∂q̇/∂q) q̇: with q̈ held, ω̇ compensates changes of both.
         for (&index, weight) in self.measured.iter().zip(by_acceleration.iter()) {
             let row = &mut tape.weights[states + (s + index) * states..][..states];
             for j in 0..s {
@@ -316,7 +315,7 @@ impl Place {
     }
 }
 
-/// T⁺; an error where the rates leave a pseudo-velocity open.
+/// T⁺; an error if the rates do not determine the pseudo-velocities.
 fn pseudo_inverse(turn: &DMatrix<f64>, speeds: usize) -> Result<DMatrix<f64>, InverseError> {
     let singular = Singular::of(turn);
     let rank = singular.rank(ZERO);

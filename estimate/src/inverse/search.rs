@@ -1,53 +1,52 @@
-//! The values that make recorded motions least inconsistent, and how far others may lie from them.
+//! The values that minimise the inconsistency of recorded motions, with their intervals.
 //!
-//! An interval holds the values at which the score is no larger than its own noise allows (F.
-//! Kleibergen, *Pivotal statistics for testing structural parameters in instrumental variables
-//! regression*, 2002). Unlike a parabola it stays right where the motions tell little: it grows and
-//! has no end at last.
+//! An interval holds the values at which the score is not significant (F. Kleibergen, *Pivotal
+//! statistics for testing structural parameters in instrumental variables regression*, 2002).
+//! Unlike a quadratic approximation it remains valid for weakly identified values: it widens, and
+//! in the limit is unbounded.
 
 use nalgebra::{DMatrix, DVector};
 
 use super::InverseError;
 use super::consistency::{Consistency, Inconsistency, Sought};
+use crate::statistics::chi_squared::HALF_WIDTH_95;
 
 /// Steps of scoring.
 const MOST_STEPS: usize = 60;
-/// A step below this part of the scale ends the search.
+/// Step, relative to the scale, at which the search ends.
 const SETTLED: f64 = 1e-9;
 /// Halvings of a step that raises the inconsistency.
 const MOST_HALVINGS: usize = 30;
-/// The quantile of χ² with one degree of freedom for 95 %.
-const QUANTILE95: f64 = 3.841_458_820_694_124;
-/// Doublings away from the optimum before an interval has no end.
+/// Doublings away from the optimum after which an interval counts as unbounded.
 const MOST_DOUBLINGS: usize = 8;
-/// Secants towards an end of an interval, and how close its statistic has to come.
+/// Secant steps towards an end of an interval, and the tolerance of its statistic.
 const MOST_SECANTS: usize = 8;
 const CLOSE: f64 = 0.01;
 /// Factors of the nominal value at which the search for one parameter begins.
 const STARTS: [f64; 5] = [0.4, 0.7, 1.0, 1.5, 2.5];
-/// Standard deviations of the relations by which they change at least when a value changes by its own
-/// size; less is rounding.
+/// Least change of the relations, in standard deviations, for a relative change of 1 of a value;
+/// less is rounding.
 const UNTOLD: f64 = 1e-4;
 
-/// What the relations tell of the sought values.
+/// Result of the search.
 #[derive(Debug, Clone)]
 pub struct Found {
     /// The values in SI.
     pub values: DVector<f64>,
     /// Their covariance from the noise of the samples.
     pub covariance: DMatrix<f64>,
-    /// The same from the scores of stretches as they are.
+    /// The same from the scores of stretches (robust).
     pub robust: DMatrix<f64>,
-    /// 95 % intervals; infinite at an end where the motions do not tell.
+    /// 95 % intervals; infinite at an unbounded end.
     pub intervals: Vec<[f64; 2]>,
-    /// Q, with the number of relations that it sums.
+    /// Q at the optimum.
     pub cost: f64,
     /// Number of relations.
     pub count: usize,
 }
 
 impl Found {
-    /// Mean square of the whitened relations; near 1 where model and noise are right.
+    /// Mean square of the whitened relations; near 1 if model and noise are correct.
     pub fn normalised_square(&self) -> f64 {
         2.0 * self.cost / self.count.saturating_sub(self.values.len()).max(1) as f64
     }
@@ -89,7 +88,7 @@ impl Consistency<'_> {
         })
     }
 
-    /// Q at some values of one of the sought ones, the others as good as they can be.
+    /// Q at given values of one sought value, minimised over the others.
     pub fn profile(&self, index: usize, at: &[f64]) -> Result<Vec<f64>, InverseError> {
         let mut values = self.nominal();
         let costs = at.iter().map(|&value| {
@@ -100,7 +99,7 @@ impl Consistency<'_> {
         costs.collect()
     }
 
-    /// The nominal values; for one parameter alone the best of several.
+    /// The nominal values; for a single parameter the best of several.
     fn start(&self) -> Result<DVector<f64>, InverseError> {
         let nominal = self.nominal();
         if !matches!(self.sought(), [Sought::Parameter(_)]) || nominal[0] == 0.0 {
@@ -158,7 +157,7 @@ impl Consistency<'_> {
         Ok(values)
     }
 
-    /// Where the score of a value becomes larger than chance, on the side of `std`.
+    /// End of the interval of a value on the side of `std`, where its score becomes significant.
     fn end(&self, best: &DVector<f64>, index: usize, std: f64) -> Result<f64, InverseError> {
         let others = self.others(index);
         let mut start = best.clone();
@@ -167,8 +166,8 @@ impl Consistency<'_> {
             start = self.minimise(start.clone(), &others)?;
             Ok(scored(&self.at(&start)?, index, &others))
         };
-        // The root of the statistic grows about straight from zero at the optimum.
-        let bound = QUANTILE95.sqrt();
+        // The square root of the statistic grows almost linearly from zero at the optimum.
+        let bound = HALF_WIDTH_95;
         let (mut near, mut far) = ([0.0, -bound], [0.0, 0.0]);
         let mut offset = bound * std;
         for doubling in 0.. {
@@ -193,7 +192,7 @@ impl Consistency<'_> {
     }
 }
 
-/// The square of the score of one value by its variance, the others being fitted.
+/// Squared score of one value over its variance, the others fitted.
 fn scored(here: &Inconsistency, index: usize, others: &[usize]) -> f64 {
     let information = &here.information;
     let mut variance = information[(index, index)];

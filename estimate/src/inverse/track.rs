@@ -1,10 +1,10 @@
-//! Recorded coordinates as splines, in stretches whose errors do not depend on each other.
+//! Recorded coordinates as splines, in stretches with independent errors.
 //!
-//! All coordinates share the knots, so that what the splines take from the motion they take from both
-//! sides of the equations. How close the knots are matters little as long as they are close enough:
-//! the noise of a derivative is weighed with all its correlations. So the rule is a cautious one: the
-//! widest distance beyond which closer knots leave no less of any channel than chance would (F test),
-//! and then one step closer.
+//! All coordinates share the knots, so that the splines filter both sides of the equations alike.
+//! The spacing matters little once it is small enough, as derivatives are weighted with all
+//! correlations of their noise. The rule is therefore cautious: the widest spacing beyond which
+//! closer knots do not reduce the residuals of any channel significantly (F test), and one step
+//! closer.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -12,17 +12,17 @@ use super::InverseError;
 use super::relation::Motion;
 use crate::smoothing::regression_spline::{Basis, RegressionSpline};
 
-/// From one distance of the knots to the next closer one.
+/// Ratio of one knot spacing to the next closer one.
 const CLOSER: f64 = 1.5;
-/// Samples between two knots at least, so that samples determine the splines with room to spare.
+/// Least number of samples between two knots.
 const FEWEST_SAMPLES: f64 = 2.0;
-/// Steps that a gap is long, at which a record is cut.
+/// Length of a gap, in steps, at which a record is cut.
 const GAP: f64 = 6.0;
-/// Knots of a stretch at most: the covariance of a stretch is a full matrix.
+/// Largest number of knots of a stretch, whose covariance is a full matrix.
 const MOST_KNOTS: usize = 96;
-/// Knots of a stretch at least.
+/// Least number of knots of a stretch.
 const FEWEST_KNOTS: f64 = 8.0;
-/// Standard deviations by which residuals may shrink by chance.
+/// Significance, in standard deviations, of a reduction of the residuals.
 const CHANCE: f64 = 3.0;
 
 /// Samples of the measured coordinates in one run.
@@ -37,27 +37,27 @@ pub struct Record {
 /// Records as splines with their noise.
 #[derive(Debug, Clone)]
 pub struct Track {
-    /// Distance of the knots in s.
+    /// Spacing of the knots in s.
     pub spacing: f64,
-    /// Covariance of the samples, from what the splines leave of them.
+    /// Covariance of the samples, from the residuals of the splines.
     pub noise: DMatrix<f64>,
     /// The parts.
     pub stretches: Vec<Stretch>,
 }
 
-/// A part of a record with errors of its own.
+/// A part of a record with independent errors.
 #[derive(Debug, Clone)]
 pub struct Stretch {
-    /// The run that it is part of.
+    /// Its run.
     pub run: usize,
-    /// The motion in the middle between knots.
+    /// The motion midway between knots.
     pub motions: Vec<Motion>,
     /// For derivatives of the orders r and s, at index 3 r + s: the covariance between the middles,
     /// times that of the samples.
     pub spread: Vec<DMatrix<f64>>,
 }
 
-/// Samples without gaps and holes.
+/// Samples without gaps or missing values.
 struct Piece {
     run: usize,
     times: Vec<f64>,
@@ -101,7 +101,7 @@ impl Piece {
     }
 }
 
-/// What splines leave of all pieces.
+/// Residuals of the splines over all pieces.
 struct Left {
     squares: DMatrix<f64>,
     freedom: usize,
@@ -126,7 +126,7 @@ impl Left {
         self.squares[(channel, channel)] / self.freedom as f64
     }
 
-    /// Whether closer knots leave less of a channel than chance would.
+    /// Whether closer knots reduce the residuals of a channel significantly.
     fn is_worse_than(&self, closer: &Self) -> bool {
         let added = self.freedom.saturating_sub(closer.freedom).max(1) as f64;
         let chance = CHANCE * (2.0 / added).sqrt();
@@ -214,7 +214,7 @@ fn cut((run, record): (usize, &Record)) -> Vec<Piece> {
     whole.map(piece).collect()
 }
 
-/// The distance of the knots in s by the rule of this file, with what the splines leave.
+/// The knot spacing in s by the rule of this file, with the residuals.
 fn distance(pieces: &[Piece]) -> Option<(f64, Left)> {
     let shortest = pieces.iter().map(Piece::length).reduce(f64::min)?;
     let step = |piece: &Piece| piece.length() / (piece.times.len() - 1) as f64;

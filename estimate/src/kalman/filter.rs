@@ -22,33 +22,33 @@ use crate::motion::plant::{Place, Plant, Scratch};
 use crate::motion::timeline::{Action, Advance};
 use crate::motion::transition::{MOST_HALVINGS, Span, halvings, step};
 
-/// A measured scalar as the filter met it.
+/// The innovation of a measured scalar.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Innovation {
     /// Row of the recording.
     pub row: usize,
     /// Channel.
     pub channel: usize,
-    /// When it was sampled, in s.
+    /// Sampling time in s.
     pub t: f64,
-    /// Measured value less its prediction from all earlier rows, in SI.
+    /// Measured value minus its prediction from all earlier rows, in SI.
     pub residual: f64,
     /// Variance of that residual.
     pub variance: f64,
-    /// Measured value less its prediction from all earlier rows and from the channels before it in
-    /// the row. Divided by the root of `white_variance` it is white noise of variance 1.
+    /// Measured value minus its prediction from all earlier rows and the channels before it in the
+    /// row. Divided by the square root of `white_variance` it is white noise of variance 1.
     pub white_residual: f64,
     /// Its variance.
     pub white_variance: f64,
 }
 
 impl Innovation {
-    /// White noise of variance 1 where the model and the levels of noise are right.
+    /// White noise of variance 1 if the model and the noise levels are correct.
     pub fn whitened(&self) -> f64 {
         self.white_residual / self.white_variance.sqrt()
     }
 
-    /// Its share of the log-likelihood.
+    /// Its contribution to the log-likelihood.
     pub fn log_likelihood(&self) -> f64 {
         let (e, s) = (self.white_residual, self.white_variance);
         -0.5 * ((TAU * s).ln() + e * e / s)
@@ -63,7 +63,7 @@ pub(crate) struct Pass<'a> {
     pub(crate) values: &'a [f64],
     pub(crate) run: usize,
     pub(crate) sizes: Sizes,
-    /// Whether everything stays on the tape, and not what the last action did alone.
+    /// Whether the tape keeps the whole pass, not only the last action.
     keeps: bool,
     pub(crate) tape: Vec<f64>,
     pub(crate) records: Vec<Record>,
@@ -128,7 +128,7 @@ impl<'a> Pass<'a> {
         pass
     }
 
-    /// Nowhere yet.
+    /// Before any position.
     pub(crate) fn blank(
         (setup, plant, layout): (&'a Setup<'a>, &'a Plant<'a>, Layout),
         values: &'a [f64],
@@ -236,7 +236,7 @@ impl<'a> Pass<'a> {
         start
     }
 
-    /// Goes on by a step, or by parts of it where it is too long for what it meets.
+    /// Advances by a step, or by parts of it if it is too long.
     fn advance(&mut self, advance: Advance, halved: u32) -> Result<(), EstimateError> {
         let tape = self.record(self.sizes.step_len());
         self.records.push(Record::Advance { advance, tape });
@@ -269,7 +269,7 @@ impl<'a> Pass<'a> {
             on.after,
             on.f,
         );
-        // Loops are closed after whole steps alone.
+        // Loops are closed only after whole steps.
         let halvings = if self.setup.has_corners && self.closure.is_none() {
             let own = self.plant.info().state_len();
             halvings(&on.stages, (n, own), h).min(MOST_HALVINGS - halved)
@@ -311,8 +311,8 @@ impl<'a> Pass<'a> {
         })
     }
 
-    /// Goes on by the parts of a step. A pass that keeps everything keeps what the whole step began
-    /// with.
+    /// Advances by the parts of a step. A pass that keeps everything keeps the start of the whole
+    /// step.
     pub(crate) fn advance_in_parts(
         &mut self,
         advance: Advance,
@@ -462,8 +462,8 @@ impl<'a> Pass<'a> {
     }
 }
 
-/// One delayed input, or all others, take new values. The first row is the best guess for what a
-/// delayed input was before it.
+/// One delayed input, or all others, take new values. Before its first row a delayed input has its
+/// first value.
 pub(crate) fn switch(
     setup: &Setup<'_>,
     first: bool,

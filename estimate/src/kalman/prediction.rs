@@ -1,5 +1,4 @@
-//! Predictions beyond one step: from what the filter knows at a row the motion goes on, and nothing
-//! that is measured afterwards is used.
+//! Predictions over longer horizons, from the filtered state at a row, without later measurements.
 
 use super::filter::{Pass, switch};
 use crate::EstimateError;
@@ -14,25 +13,25 @@ use crate::motion::plant::{Place, Plant, Scratch};
 use crate::motion::timeline::{Action, Advance};
 use crate::motion::transition::{MOST_HALVINGS, STAGES, WEIGHTS, is_uneven};
 
-/// A measured scalar beside its prediction.
+/// Prediction error of a measured scalar.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Predicted {
-    /// Row from which on nothing was known.
+    /// Origin: the last row used.
     pub origin: usize,
     /// Row of the measured value.
     pub row: usize,
     /// Channel.
     pub channel: usize,
-    /// Time in s from the origin to when it was sampled.
+    /// Time in s from the origin to the sample.
     pub ahead: f64,
-    /// Measured value less predicted value, in SI.
+    /// Measured minus predicted value, in SI.
     pub residual: f64,
 }
 
 impl Estimation<'_> {
-    /// Predictions of all channels of a run in the row `horizon` s ahead, or the first later one, from
-    /// each of the rows `origins`, which increase. An infinite horizon tells all later rows. What cannot
-    /// be predicted because numbers overflow is infinitely wrong.
+    /// Predictions of all channels of a run in the row `horizon` s ahead, or the first later one,
+    /// from each of the rows `origins`, which increase. An infinite horizon stands for all later
+    /// rows. Predictions that overflow have infinite errors.
     pub fn predictions(
         &self,
         values: &[f64],
@@ -61,8 +60,8 @@ impl Estimation<'_> {
 }
 
 impl Estimation<'_> {
-    /// Variances in SI that the errors of [`Estimation::predictions`] have where the model and its
-    /// levels are right, each with its channel.
+    /// Variances in SI of the errors of [`Estimation::predictions`] if the model and its levels are
+    /// correct, each with its channel.
     pub fn expected_errors(
         &self,
         values: &[f64],
@@ -91,7 +90,7 @@ impl Estimation<'_> {
             let mut open = vec![true; self.setup().channels.len()];
             for &action in &actions[place + 1..] {
                 let Action::Measure { row: met, .. } = action else {
-                    // Where numbers overflow on the way nothing is expected.
+                    // Predictions that overflow have no expected variance.
                     if ahead.act(recording, action).is_err() {
                         break;
                     }
@@ -100,7 +99,7 @@ impl Estimation<'_> {
                 if !is_told(recording, row, met, horizon) {
                     continue;
                 }
-                // Nothing is learnt from what is measured here.
+                // Measurements are not used here.
                 let (z, root) = (ahead.z.clone(), ahead.root.clone());
                 if ahead.act(recording, action).is_ok() {
                     for seen in ahead.samples.iter().map(|sample| sample.innovation) {
@@ -121,15 +120,15 @@ impl Estimation<'_> {
     }
 }
 
-/// Whether a row is so far ahead of another that it is told. A channel that is late goes with its row:
-/// whatever is late, the same values are compared.
+/// Whether a row is far enough ahead of another to be reported. A delayed channel counts with its
+/// row, so that the same values are compared for any delay.
 fn is_told(recording: &Recording, origin: usize, row: usize, horizon: f64) -> bool {
     let ahead = recording.times()[row] - recording.times()[origin];
-    // Times of rows carry rounding.
+    // Times of rows are rounded.
     row > origin && ahead >= horizon * (1.0 - 1e-9)
 }
 
-/// A motion that nothing corrects.
+/// A motion without corrections.
 struct Walk<'a> {
     setup: &'a Setup<'a>,
     plant: &'a Plant<'a>,
@@ -165,14 +164,15 @@ impl<'a> Walk<'a> {
         }
     }
 
-    /// Takes over what the filter knows.
+    /// Starts from the state of the filter.
     fn begin(&mut self, pass: &Pass<'_>, row: usize) {
         self.z.copy_from_slice(&pass.z);
         self.held.copy_from_slice(&pass.held);
         self.origin = row;
     }
 
-    /// Goes on until every channel was met at the horizon; along an infinite one all are told.
+    /// Advances until every channel was sampled at the horizon; for an infinite one all samples are
+    /// reported.
     fn on(&mut self, actions: &[Action], horizon: f64, predicted: &mut Vec<Predicted>) {
         let start = self.recording.times()[self.origin];
         let mut open = vec![true; self.setup.channels.len()];
@@ -204,7 +204,7 @@ impl<'a> Walk<'a> {
         }
     }
 
-    /// Tells the channels that were sampled for a row and are still open.
+    /// Reports the channels that were sampled for a row and are still pending.
     fn compare(
         &mut self,
         row: usize,
@@ -260,7 +260,7 @@ impl<'a> Walk<'a> {
             let open = self.z.clone();
             let at = (t, open.as_slice(), self.held.as_slice());
             let place = place(self.layout, self.values, at);
-            // A prediction that no closed loop is near is infinitely wrong.
+            // A prediction without a solution of the loop constraints has infinite errors.
             if closure
                 .close(self.plant, place, &mut self.scratch, &mut self.z)
                 .is_err()
@@ -270,7 +270,7 @@ impl<'a> Walk<'a> {
         }
     }
 
-    /// A step, or parts of it where it is too long for what it meets.
+    /// A step, or parts of it if it is too long.
     fn step(&mut self, advance: Advance, halved: u32) {
         let (Advance { t, h, .. }, n) = (advance, self.z.len());
         let mut after = self.z.clone();
@@ -299,7 +299,7 @@ impl<'a> Walk<'a> {
     }
 }
 
-/// Where a motion is, with what the values say.
+/// State of a motion, with the values.
 pub(crate) fn place<'v>(
     layout: Layout,
     values: &'v [f64],

@@ -15,15 +15,16 @@ use crate::estimation::Estimation;
 use crate::matrix::{add, multiply};
 use crate::motion::timeline::Advance;
 
-/// Smaller pivots of a root, relative to their row, are rounding: nothing varies in that direction.
+/// Pivots of a root below this, relative to their row, are rounding: there is no variance in that
+/// direction.
 const ROUNDING: f64 = 1e-13;
 
-/// The state at a row given everything that was measured.
+/// The state at a row given all measurements.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Smoothed {
     /// Time in s.
     pub t: f64,
-    /// Expected state; states of lags and of drifting parameters stand last.
+    /// Expected state; states of lags and drifting parameters come last.
     pub state: Vec<f64>,
     /// Root S of its covariance S Sᵀ, row by row.
     pub root: Vec<f64>,
@@ -55,7 +56,7 @@ impl Estimation<'_> {
             state: pass.z.clone(),
             root: pass.root.clone(),
         };
-        // Dependent coordinates say nothing that the others do not.
+        // Dependent coordinates carry no further information.
         let told: Vec<usize> = match &pass.closure {
             Some(closure) => closure.independent().collect(),
             None => (0..pass.sizes.n).collect(),

@@ -1,11 +1,12 @@
-//! Square roots S of covariances, P = S Sᵀ, so that P is symmetric and not negative by construction
-//! (G. J. Bierman, *Factorization Methods for Discrete Sequential Estimation*, 1977).
+//! Square roots S of covariances, P = S Sᵀ, so that P is symmetric and positive semidefinite by
+//! construction (G. J. Bierman, *Factorization Methods for Discrete Sequential Estimation*, 1977).
 
 use crate::matrix::{add_scaled, dot};
 
 /// The lower triangular L with L Lᵀ = R Rᵀ, by Householder reflections of the columns of R.
 ///
-/// `rows` holds R, n rows of at least n entries each, and is used up; `factor` becomes L, n × n.
+/// `rows` holds R, n rows of at least n entries each, and is overwritten; `factor` becomes L, n ×
+/// n.
 pub(crate) fn triangularise(rows: &mut [f64], n: usize, factor: &mut [f64]) {
     let width = rows.len() / n;
     factor.fill(0.0);
@@ -13,7 +14,7 @@ pub(crate) fn triangularise(rows: &mut [f64], n: usize, factor: &mut [f64]) {
         let (upper, below) = rows.split_at_mut((i + 1) * width);
         let mirror = &mut upper[i * width + i..];
         let length = dot(mirror, mirror).sqrt();
-        // The entry farther from zero does not cancel.
+        // The sign that avoids cancellation.
         let pivot = if mirror[0] > 0.0 { -length } else { length };
         if pivot != 0.0 {
             mirror[0] -= pivot;

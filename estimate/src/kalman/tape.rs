@@ -1,5 +1,4 @@
-//! What a pass of the filter leaves behind for the way back: records, and the numbers of each on a
-//! tape.
+//! Record of a pass of the filter for the reverse sweep: actions, with their numbers on a tape.
 
 use std::ops::Range;
 
@@ -13,8 +12,8 @@ use crate::motion::transition::{Stages, stages_len};
 pub(crate) enum Record {
     /// A step; its numbers start at `tape`.
     Advance { advance: Advance, tape: usize },
-    /// A step in parts, two to the power of `halvings` or more. A gradient would need the numbers of all
-    /// of them at once: what the step began with stands at `tape`, and the way back does it again.
+    /// A step in parts, two to the power of `halvings` or more. To save memory only the start of
+    /// the step is kept at `tape`; the reverse sweep recomputes the parts.
     Parts {
         advance: Advance,
         halvings: u32,
@@ -31,13 +30,13 @@ pub(crate) enum Record {
     Close { t: f64, held: Vec<f64>, tape: usize },
 }
 
-/// A scalar with what the way back needs.
+/// A scalar with the numbers for the reverse sweep.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Sample {
     pub(crate) innovation: Innovation,
-    /// The quantity before scale and bias.
+    /// The quantity without scale and bias.
     pub(crate) quantity: f64,
-    /// Where its numbers start.
+    /// Offset of its numbers.
     pub(crate) tape: usize,
 }
 
@@ -57,7 +56,7 @@ pub(crate) struct StepTape<'a> {
 
 /// Numbers of a scalar on the tape.
 pub(crate) struct SampleTape<'a> {
-    /// Slope of the scalar by the states.
+    /// Gradient of the scalar with respect to the states.
     pub(crate) c: &'a mut [f64],
     /// P c.
     pub(crate) a: &'a mut [f64],
@@ -67,7 +66,7 @@ pub(crate) struct SampleTape<'a> {
     pub(crate) root: &'a mut [f64],
 }
 
-/// Sizes that cut a tape.
+/// Sizes of the parts of a tape.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Sizes {
     pub(crate) n: usize,
@@ -119,7 +118,7 @@ impl Pass<'_> {
                     tape: at,
                 } => {
                     again.begin_at(&mut tape[*at..]);
-                    // It went well before.
+                    // The forward pass succeeded.
                     let _ = again.advance_in_parts(*advance, 0, *halvings);
                     for part in again.records.iter().rev() {
                         visit(part, &mut again.tape);
@@ -130,7 +129,7 @@ impl Pass<'_> {
         }
     }
 
-    /// Begins anew with inputs, state and root of P as they stand on a tape.
+    /// Restarts with the inputs, state and root of P on a tape.
     fn begin_at(&mut self, start: &mut [f64]) {
         let Sizes { n, inputs, .. } = self.sizes;
         let [held, z, root] = pieces(start, [inputs, n, n * n]);

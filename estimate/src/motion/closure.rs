@@ -1,9 +1,10 @@
 //! Closed loops: position constraints f(q, t, p) = 0 in the filter.
 //!
-//! The equations hold the derivative of f at zero, and a measurement moves the estimate along the
-//! tangent only. After each of both the dependent coordinates follow from the others: in the mean by
-//! Newton's method, in the covariance by their slopes, so that nothing is believed across the
-//! constraint. What is measured of a dependent coordinate has reached the others by then.
+//! The equations satisfy the constraints only at velocity level, and a measurement moves the
+//! estimate along the tangent. After each step and measurement the dependent coordinates are
+//! recomputed: the mean by Newton's method, the covariance by their slopes, so that it has no
+//! component across the constraint. Measurements of dependent coordinates have already acted on the
+//! others.
 
 use appell_runtime::model::At;
 use appell_runtime::positions::{Inconsistent, Moving, Positions};
@@ -11,10 +12,10 @@ use appell_runtime::positions::{Inconsistent, Moving, Positions};
 use super::plant::{Place, Plant, Scratch, Sums};
 use crate::matrix::{add_scaled, dot, multiply};
 
-/// Step of a central difference of constraints, relative to what is varied.
+/// Relative step of a central difference of constraints.
 const DIFFERENCE: f64 = 1e-5;
 
-/// The dependent coordinates at a place.
+/// The dependent coordinates at a point.
 #[derive(Debug, Clone)]
 pub(crate) struct Closure {
     positions: Positions,
@@ -56,12 +57,12 @@ impl Closure {
         })
     }
 
-    /// States that follow from no other.
+    /// Independent states.
     pub(crate) fn independent(&self) -> impl Iterator<Item = usize> + '_ {
         (0..self.n).filter(|state| !self.dependent.contains(state))
     }
 
-    /// Moves the dependent coordinates of `z` to where the constraints hold, and takes their slopes
+    /// Solves the constraints for the dependent coordinates of `z`, and computes their slopes
     /// there.
     pub(crate) fn close(
         &mut self,
@@ -127,7 +128,7 @@ impl Closure {
         solved.then_some(()).ok_or(Inconsistent { residual })
     }
 
-    /// Lets the dependent rows of a matrix, n rows of any width, follow from the others: N A.
+    /// Recomputes the dependent rows of a matrix, n rows of any width: N A.
     pub(crate) fn follow(&self, matrix: &mut [f64]) {
         let width = matrix.len() / self.n;
         let mut rows = vec![0.0; self.dependent.len() * width];
@@ -137,7 +138,7 @@ impl Closure {
         }
     }
 
-    /// Derivatives of the dependent coordinates by a parameter, each with its state.
+    /// Derivatives of the dependent coordinates with respect to a parameter, each with its state.
     pub(crate) fn by_parameter(
         &self,
         plant: &Plant<'_>,
@@ -158,7 +159,7 @@ impl Closure {
                 });
             },
         );
-        // Slopes were taken with the same matrix before.
+        // The slopes were computed with the same matrix.
         let _ = self.solve(&mut slope, false);
         self.dependent.iter().copied().zip(slope).collect()
     }
@@ -189,8 +190,8 @@ impl Closure {
         }
     }
 
-    /// The way back: from gradients by the closed state and by N P Nᵀ to those by the state before
-    /// and by P, given a root of P.
+    /// Reverse sweep: from gradients with respect to the closed state and N P Nᵀ to those with
+    /// respect to the state before and P, given a root of P.
     pub(crate) fn adjoint(
         &self,
         plant: &Plant<'_>,
@@ -200,7 +201,7 @@ impl Closure {
         sums: &mut Sums<'_>,
     ) {
         let (n, count) = (self.n, self.dependent.len());
-        // By N it is 2 Λ N P.
+        // The derivative with respect to N is 2 Λ N P.
         let mut closed = root.to_vec();
         self.follow(&mut closed);
         let mut by_closed = vec![0.0; count * n];
@@ -295,7 +296,7 @@ impl Closure {
     }
 }
 
-/// What a difference varies.
+/// The varied quantity of a difference.
 #[derive(Clone, Copy)]
 enum Varied {
     Coordinate(usize),

@@ -9,7 +9,7 @@ use appell_runtime::signal::{Signal, SignalError};
 use crate::data::setup::Setup;
 use crate::matrix::{add_scaled, pieces};
 
-/// Step of a central difference of an exact gradient by a drifting parameter, relative to it.
+/// Relative step of a central difference of an exact gradient with respect to a drifting parameter.
 const DIFFERENCE: f64 = 1e-5;
 
 /// The equations of all states.
@@ -26,14 +26,14 @@ pub(crate) struct Plant<'a> {
     pub(crate) speeds: usize,
 }
 
-/// Where the plant is evaluated.
+/// Point at which the plant is evaluated.
 #[derive(Clone, Copy)]
 pub(crate) struct Place<'a> {
     /// Time in s.
     pub(crate) t: f64,
     /// All states.
     pub(crate) z: &'a [f64],
-    /// Declared inputs as they are held.
+    /// Held declared inputs.
     pub(crate) held: &'a [f64],
     /// Parameters of the model.
     pub(crate) p: &'a [f64],
@@ -41,7 +41,7 @@ pub(crate) struct Place<'a> {
     pub(crate) lags: &'a [f64],
 }
 
-/// Numbers on the way, so that nothing is allocated per step.
+/// Work arrays.
 #[derive(Debug, Clone)]
 pub(crate) struct Scratch {
     u: Vec<f64>,
@@ -49,7 +49,7 @@ pub(crate) struct Scratch {
     p: Vec<f64>,
     a: Vec<f64>,
     b: Vec<f64>,
-    /// Derivatives by the parameters.
+    /// Derivatives with respect to the parameters.
     by_p: Vec<f64>,
     weights: Vec<f64>,
     gradient: Vec<f64>,
@@ -58,13 +58,13 @@ pub(crate) struct Scratch {
     forces: Vec<f64>,
 }
 
-/// Derivatives that are being summed up.
+/// Accumulated derivatives.
 pub(crate) struct Sums<'a> {
-    /// By the states.
+    /// With respect to the states.
     pub(crate) z: &'a mut [f64],
-    /// By the parameters.
+    /// With respect to the parameters.
     pub(crate) p: &'a mut [f64],
-    /// By the time constants.
+    /// With respect to the time constants.
     pub(crate) lags: &'a mut [f64],
 }
 
@@ -117,7 +117,7 @@ impl<'a> Plant<'a> {
         }
     }
 
-    /// What the model sees as its inputs and parameters.
+    /// Inputs and parameters of the model.
     fn view(&self, place: Place<'_>, u: &mut [f64], p: &mut [f64]) {
         let states = self.info().state_len();
         u[..place.held.len()].copy_from_slice(place.held);
@@ -136,8 +136,8 @@ impl<'a> Plant<'a> {
         }
     }
 
-    /// Adds a gradient by what the model sees, times a factor: lagging inputs and drifting parameters
-    /// are states.
+    /// Adds a gradient with respect to the arguments of the model, times a factor: lagging inputs
+    /// and drifting parameters are states.
     fn pass_on(&self, gradient: &mut [f64], factor: f64, sums: &mut Sums<'_>) {
         let (n, k) = (self.info().state_len(), self.info().parameter_len());
         let [x, u, p] = pieces(gradient, [n, self.m, k]);
@@ -148,7 +148,7 @@ impl<'a> Plant<'a> {
         self.pass_on_parameters(factor, p, sums);
     }
 
-    /// Adds a gradient by the parameters that the model sees, times a factor.
+    /// Adds a gradient with respect to the parameters of the model, times a factor.
     pub(crate) fn pass_on_parameters(&self, factor: f64, p: &mut [f64], sums: &mut Sums<'_>) {
         for (state, parameter) in self.drifts() {
             sums.z[state] += factor * std::mem::take(&mut p[parameter]);
@@ -171,7 +171,7 @@ impl<'a> Plant<'a> {
         (first..).zip(self.drifting.iter().copied())
     }
 
-    /// Tells what the model sees at a place.
+    /// Sets the arguments of the model at a point.
     pub(crate) fn at(&self, place: Place<'_>, scratch: &mut Scratch, tell: impl FnOnce(At<'_>)) {
         let Scratch { u, p, .. } = scratch;
         self.view(place, u, p);
@@ -272,7 +272,8 @@ impl<'a> Plant<'a> {
         };
         adjoint(p, &weights[..used], gradient);
         self.pass_on(gradient, 1.0, sums);
-        // ⟨Λ, ∂ẋ/∂p⟩ is the derivative of ⟨Λ, ẋ⟩ by a drifting parameter; so are their gradients.
+        // ⟨Λ, ∂ẋ/∂p⟩ is the derivative of ⟨Λ, ẋ⟩ with respect to a drifting parameter; the same
+        // holds for the gradients.
         for (state, parameter) in self.drifts() {
             weights.fill(0.0);
             for (weight, slopes) in weights.iter_mut().zip(slopes.chunks_exact(all).take(n)) {
@@ -290,7 +291,8 @@ impl<'a> Plant<'a> {
         }
     }
 
-    /// Adds to `sums` the derivative of a gradient by a parameter, by a central difference.
+    /// Adds to `sums` the derivative of a gradient with respect to a parameter, by a central
+    /// difference.
     fn differentiated(
         &self,
         p: &mut [f64],
@@ -309,7 +311,7 @@ impl<'a> Plant<'a> {
         p[parameter] = value;
     }
 
-    /// A gradient by what the model sees, in its parts.
+    /// A gradient with respect to the arguments of the model, in its parts.
     fn cut<'g>(&self, gradient: &'g mut [f64]) -> Gradient<'g> {
         let (n, k) = (self.info().state_len(), self.info().parameter_len());
         let [x, u, p] = pieces(gradient, [n, self.m, k]);

@@ -4,10 +4,10 @@ use crate::data::layout::Layout;
 use crate::data::recording::Recording;
 use crate::data::setup::Setup;
 
-/// What the filter does next.
+/// An action of the filter.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Action {
-    /// The motion goes on.
+    /// A step of the motion.
     Advance(Advance),
     /// One delayed input, or all others, take the values of a row.
     Switch { row: usize, input: Option<usize> },
@@ -28,7 +28,7 @@ pub(crate) struct Advance {
 }
 
 impl Advance {
-    /// Two to the power of so many equal parts.
+    /// Cut into 2ⁿ equal parts.
     pub(crate) fn parts(self, halvings: u32) -> impl Iterator<Item = Self> {
         let count = 1_u32 << halvings;
         let part = f64::from(count).recip();
@@ -69,7 +69,7 @@ pub(crate) fn timeline(
         actions.extend(stop.action);
         last = (stop.t, stop.moved_by);
     }
-    // What follows the last sample is not seen.
+    // Actions after the last sample have no effect.
     while !matches!(actions.last(), Some(Action::Measure { .. }) | None) {
         actions.pop();
     }
@@ -137,15 +137,15 @@ fn stops(
         moved_by: None,
         action: None,
     }));
-    // Stable: what was pushed first of equal times stays first.
+    // Stable: actions at equal times keep their order.
     stops.sort_by(|a, b| a.t.total_cmp(&b.t));
     stops
 }
 
 type End = (f64, Option<(usize, f64)>);
 
-/// The steps between two moments. None is longer than `longest` or the shortest lag, for what a lag makes of a
-/// change of its input is then right to a percent; a lag shortens steps to a thirty-second at most.
+/// The steps between two moments. None is longer than `longest` or the shortest lag, whose response
+/// to a change of its input is then accurate to a percent; a lag shortens steps to 1/32 at most.
 fn advance(
     actions: &mut Vec<Action>,
     [longest, shortest_lag]: [f64; 2],

@@ -1,26 +1,26 @@
 //! One step of the classical Runge–Kutta method on z and on ∂z⁺/∂z together, and its adjoint.
 //!
-//! The transition matrix F is that of the step as it is computed, not of the exact flow: the filter
-//! and its gradient then belong to one function of the values, whatever the step.
+//! The transition matrix F is the derivative of the numerical step, not of the exact flow: filter
+//! and gradient then belong to the same function of the values, whatever the step.
 
 use super::plant::{Place, Plant, Scratch, Sums};
 use crate::matrix::{
     add, add_scaled, dot, multiply, multiply_transposed, pieces, set_identity, transposed_multiply,
 };
 
-/// Parts of the step at which the stages after the first stand.
+/// Positions of the stages after the first, as fractions of the step.
 pub(crate) const STAGES: [f64; 3] = [0.5, 0.5, 1.0];
-/// Parts of the step with which the rates count.
+/// Weights of the rates.
 pub(crate) const WEIGHTS: [f64; 4] = [1.0 / 6.0, 1.0 / 3.0, 1.0 / 3.0, 1.0 / 6.0];
 
-/// A step is cut into two to the power of this many parts at most.
+/// Largest number of halvings of a step.
 pub(crate) const MOST_HALVINGS: u32 = 5;
-/// Part of a rate by which the method may be at odds with itself.
+/// Relative error of a rate at which a step is halved.
 const UNEVEN: f64 = 0.1;
-/// Longest step beside the time in which something decays: longer ones grow.
+/// Largest step relative to the shortest decay time: longer ones are unstable.
 const STIFF: f64 = 2.3;
 
-/// What the adjoint needs to know of a step, cut out of a tape.
+/// Numbers of a step for the adjoint, a part of a tape.
 pub(crate) struct Stages<'a> {
     /// States of the four stages; the first is the state before the step.
     pub(crate) z: &'a mut [f64],
@@ -28,11 +28,12 @@ pub(crate) struct Stages<'a> {
     pub(crate) k: &'a mut [f64],
     /// ∂ż/∂z there.
     pub(crate) a: &'a mut [f64],
-    /// ∂z/∂z of the stages by the state before the step; the first is the unit matrix.
+    /// Derivatives of the stages with respect to the state before the step; the first is the unit
+    /// matrix.
     pub(crate) x: &'a mut [f64],
 }
 
-/// How many numbers the stages of `n` states are.
+/// Number of numbers for the stages of `n` states.
 pub(crate) fn stages_len(n: usize) -> usize {
     8 * n + 8 * n * n
 }
@@ -44,7 +45,7 @@ impl<'a> Stages<'a> {
     }
 }
 
-/// When a step takes place and with what.
+/// Time, length and inputs of a step.
 #[derive(Clone, Copy)]
 pub(crate) struct Span<'a> {
     pub(crate) t: f64,
@@ -55,7 +56,7 @@ pub(crate) struct Span<'a> {
 }
 
 impl<'a> Span<'a> {
-    /// The place of a stage.
+    /// The point of a stage.
     pub(crate) fn place(&self, stage: usize, z: &'a [f64]) -> Place<'a> {
         let part = if stage == 0 { 0.0 } else { STAGES[stage - 1] };
         Place {
@@ -117,7 +118,8 @@ pub(crate) fn step(
     }
 }
 
-/// What a rate along one state, at each stage as large as `rate` says of the state there, adds to a step.
+/// Increment of a step by an additional rate of one state, which `rate` returns for the state of
+/// each stage.
 pub(crate) fn added_by_rate(
     stages: &Stages<'_>,
     (n, h): (usize, f64),
@@ -137,8 +139,8 @@ pub(crate) fn added_by_rate(
     added
 }
 
-/// How often a step has to be halved because of what the first `own` states met: a corner, such as the
-/// rounded sign of dry friction, or something that decays sooner.
+/// Number of halvings of a step required by the first `own` states: for a kink, such as that of
+/// regularised dry friction, or for a fast decay.
 pub(crate) fn halvings(stages: &Stages<'_>, (n, own): (usize, usize), h: f64) -> u32 {
     // The trace of A² is the sum of the squares of the eigenvalues.
     let squares = |a: &[f64]| -> f64 {
@@ -156,7 +158,7 @@ pub(crate) fn halvings(stages: &Stages<'_>, (n, own): (usize, usize), h: f64) ->
     }
 }
 
-/// Whether the rates of the first `own` states differ between stages by what no smooth motion lets them.
+/// Whether the rates of the first `own` states differ between stages more than in a smooth motion.
 pub(crate) fn is_uneven(k: &[f64], (n, own): (usize, usize)) -> bool {
     let [k1, k2, k3, k4] = [0, 1, 2, 3].map(|stage| &k[stage * n..(stage + 1) * n]);
     (0..own).any(|i| {
@@ -179,7 +181,7 @@ fn add_product(factor: f64, a: &[f64], b: &[f64], n: usize, c: &mut [f64]) {
     }
 }
 
-/// Numbers on the way back.
+/// Work arrays of the reverse sweep.
 #[derive(Debug, Clone)]
 pub(crate) struct Reverse {
     k: Vec<f64>,
@@ -206,19 +208,19 @@ impl Reverse {
     }
 }
 
-/// What depends on a step: a scalar with the gradients `after` in z⁺ and `f` in F, and `mass` in
-/// the mass matrix before the step.
+/// Gradients of a scalar: `after` with respect to z⁺, `f` to F, `mass` to the mass matrix before
+/// the step.
 #[derive(Clone, Copy)]
 pub(crate) struct Effects<'a> {
     pub(crate) after: &'a [f64],
     pub(crate) f: &'a [f64],
     pub(crate) mass: &'a [f64],
-    /// Whether the derivative by the length of the step is wanted.
+    /// Whether the derivative with respect to the step length is computed.
     pub(crate) by_length: bool,
 }
 
 /// The gradient of that scalar: added to `sums`, where `sums.z` is that of the state before the
-/// step. Returns the derivative by the length of the step, 0 where it is not wanted.
+/// step. Returns the derivative with respect to the step length, 0 if it is not computed.
 pub(crate) fn adjoint(
     plant: &Plant<'_>,
     span: Span<'_>,

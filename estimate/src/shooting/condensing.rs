@@ -1,30 +1,30 @@
-//! Least squares of segments that nearly join: a state after the other is eliminated by orthogonal
-//! transformations, forwards along the motion, until the free values alone remain.
+//! Least squares of segments with gaps: the states are eliminated one after the other by orthogonal
+//! transformations, forwards along the motion, until only the free values remain.
 //!
 //! ```text
 //! residuals   r_k + C_k δs_k + D_k δθ                       of the samples of segment k
 //! gaps        (s_{k+1} − φ_k − F_k δs_k − P_k δθ + δs_{k+1}) / gap
 //! ```
 //!
-//! No product of transition matrices is formed: directions in which the motion is unstable are
-//! known from the end of a segment, the others from its beginning.
+//! No product of transition matrices is formed: unstable directions are determined from the end of
+//! a segment, the others from its beginning.
 
 use nalgebra::{DMatrix, DVector};
 
 use super::segment::Segment;
 use crate::EstimateError;
 
-/// Weight by which a state stays in a step, relative to its size: what no sample tells does not
-/// move. It does not change where the search ends.
+/// Weight that holds a state in a step, relative to its scale, so that undetermined states do not
+/// move. It does not affect the optimum.
 const STAYS: f64 = 1e-4;
 
-/// What gaps weigh.
+/// Weights of the gaps.
 pub(super) struct Weights<'t> {
     /// States at the nodes, run by run.
     pub(super) states: &'t [Vec<DVector<f64>>],
     /// Sizes of the states.
     pub(super) sizes: &'t [f64],
-    /// Gap in parts of the sizes.
+    /// Gap relative to the scales.
     pub(super) gap: f64,
     /// Number of free values.
     pub(super) free: usize,
@@ -43,7 +43,7 @@ pub(super) struct Condensed {
     /// Rows and right sides that remain, of all runs.
     rows: DMatrix<f64>,
     right: DVector<f64>,
-    /// Half of the squares that vanish with the states.
+    /// Half of the squares eliminated with the states.
     gained: f64,
 }
 
@@ -97,8 +97,8 @@ impl Condensed {
         -self.rows.tr_mul(&self.right)
     }
 
-    /// By how much half of the squares falls to first order with a change of the free values and
-    /// the states that follow.
+    /// First-order decrease of half the sum of squares with a change of the free values and the
+    /// states that follow.
     pub(super) fn gain(&self, change: &DVector<f64>) -> f64 {
         let after = &self.right + &self.rows * change;
         self.gained + 0.5 * (self.right.norm_squared() - after.norm_squared())
@@ -128,7 +128,7 @@ impl Condensed {
         self.runs.iter().map(of_run).collect()
     }
 
-    /// Half of the sum of squares.
+    /// Half the sum of squares.
     pub(super) fn objective(pieces: &[Vec<Segment>], weights: &Weights<'_>) -> f64 {
         let mut sum = 0.0;
         for (run, pieces) in pieces.iter().enumerate() {
@@ -144,7 +144,8 @@ impl Condensed {
         sum
     }
 
-    /// Half of the sum of squares and its gradient by the free values, the states staying.
+    /// Half the sum of squares and its gradient with respect to the free values, with the states
+    /// held.
     pub(super) fn slope(pieces: &[Vec<Segment>], weights: &Weights<'_>) -> (f64, DVector<f64>) {
         let (n, q) = (weights.sizes.len(), weights.free);
         let mut slope = DVector::zeros(q);
@@ -165,7 +166,7 @@ impl Condensed {
     }
 }
 
-/// The gap after a segment in units of what is allowed.
+/// The gap after a segment in units of the admitted one.
 fn gap(piece: &Segment, next: &DVector<f64>, weights: &Weights<'_>) -> DVector<f64> {
     let mut gap = next - &piece.end;
     for (gap, size) in gap.iter_mut().zip(weights.sizes) {
@@ -174,8 +175,8 @@ fn gap(piece: &Segment, next: &DVector<f64>, weights: &Weights<'_>) -> DVector<f
     gap
 }
 
-/// All rows that know the state of a segment: columns of this state, of the next one unless it is
-/// the last, of the free values, and the right side.
+/// All rows that contain the state of a segment: columns of this state, of the next one unless it
+/// is the last, of the free values, and the right side.
 fn block(
     pieces: &[Segment],
     (run, place): (usize, usize),
@@ -187,7 +188,7 @@ fn block(
     let samples = piece.rows.nrows();
     let mut block = DMatrix::zeros(next + carried.nrows() + samples + n, n + next + q + 1);
     if next > 0 {
-        // Heavy rows first: reflections then keep the light ones.
+        // Rows with large weights first, for accuracy of the others.
         let gap = gap(piece, &weights.states[run][place + 1], weights);
         for i in 0..n {
             let weight = 1.0 / (weights.sizes[i] * weights.gap);
@@ -219,7 +220,7 @@ fn block(
 fn eliminate(block: DMatrix<f64>, n: usize) -> (Eliminated, DMatrix<f64>) {
     let columns = block.ncols();
     let r = block.qr().unpack_r();
-    // The row of the right side alone is what nothing can change.
+    // The row of the right side alone is the residual.
     let left = r.nrows().min(columns - 1);
     let others = columns - n - 1;
     let one = Eliminated {

@@ -1,6 +1,6 @@
-//! The segments of a run: residuals of their samples and their ends, with the derivatives of both by
-//! the states at their beginnings and by the free values. The derivatives are those of the
-//! Runge–Kutta steps as they are computed.
+//! The segments of a run: residuals of their samples and their ends, with the derivatives of both
+//! with respect to their initial states and the free values. The derivatives are those of the
+//! numerical Runge–Kutta steps.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -17,7 +17,7 @@ use crate::motion::plant::{Place, Scratch, Sums};
 use crate::motion::timeline::{Action, Advance};
 use crate::motion::transition::{MOST_HALVINGS, STAGES, WEIGHTS, is_uneven};
 
-/// A segment. Derivatives by the state at its beginning, then by the free values.
+/// A segment. Derivatives with respect to its initial state, then to the free values.
 pub(super) struct Segment {
     /// A row for each sample, in units of its noise: derivatives of the residual, the residual.
     pub(super) rows: DMatrix<f64>,
@@ -33,7 +33,7 @@ pub(super) struct SegmentIntegrator<'a> {
     values: &'a [f64],
     run: usize,
     recording: &'a Recording,
-    /// Free values, each with its derivative by its coordinate.
+    /// Free values, each with its derivative with respect to its coordinate.
     unknowns: &'a [(Unknown, f64)],
     n: usize,
     width: usize,
@@ -148,8 +148,7 @@ impl<'a> SegmentIntegrator<'a> {
         }
     }
 
-    /// One step of the state and of its derivatives together, or parts of it where it is too long for
-    /// what it meets.
+    /// One step of the state and its derivatives, or parts of it if it is too long.
     fn advance(&mut self, advance: Advance, halved: u32) {
         let Advance { t, h, .. } = advance;
         let (n, width) = (self.n, self.width);
@@ -185,7 +184,7 @@ impl<'a> SegmentIntegrator<'a> {
         }
     }
 
-    /// Adds what the free values change in the rates by themselves.
+    /// Adds the direct effect of the free values on the rates.
     fn unknowns_in_rates(&mut self, place: Place<'_>, by_rates: &mut [f64]) {
         let plant = self.estimation.plant();
         let (states, count) = (plant.info().state_len(), plant.info().parameter_len());
@@ -281,7 +280,7 @@ impl<'a> SegmentIntegrator<'a> {
     }
 }
 
-/// Derivatives of an output by the parameters.
+/// Derivatives of an output with respect to the parameters.
 fn output_slope(
     estimation: &Estimation<'_>,
     place: Place<'_>,

@@ -1,12 +1,12 @@
-//! Angles counted on through whole turns.
+//! Unwrapped angles.
 
 use std::f64::consts::{PI, TAU};
 
-/// Adds whole turns so that no step between neighbours is longer than half a turn; returns how many
-/// steps were.
+/// Adds whole turns so that no step between neighbours exceeds half a turn; returns the number of
+/// corrected steps.
 ///
-/// Missing values, NaN, are passed over. A sensor that really turns by more than half a turn between
-/// two samples cannot be told from one that starts anew.
+/// Missing values (NaN) are skipped. True steps of more than half a turn cannot be distinguished
+/// from wrapping.
 pub fn unwrap(angles: &mut [f64]) -> usize {
     let mut steps = 0;
     let mut turns = 0.0;

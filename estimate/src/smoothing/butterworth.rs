@@ -1,4 +1,4 @@
-//! A Butterworth low-pass applied forwards and backwards: no shift in phase.
+//! A Butterworth low-pass applied forwards and backwards, with zero phase.
 
 use std::f64::consts::PI;
 
@@ -6,22 +6,22 @@ use super::samples::{Samples, SamplesError, positive, within};
 
 /// Highest order.
 pub const MOST_ORDER: usize = 8;
-/// Part by which steps may differ from their mean, as time stamps are rounded.
+/// Relative deviation of steps from their mean, for rounded time stamps.
 const UNEQUAL: f64 = 0.01;
-/// What is left of a transient at the beginning of the record.
+/// Remainder of the transient at the beginning of the record.
 const TRANSIENT: f64 = 1e-6;
 
-/// A low-pass for equal steps, twice applied.
+/// A low-pass for equal steps, applied twice.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ZeroPhase {
     sections: Vec<Section>,
-    /// Samples that a transient takes.
+    /// Length of the transient in samples.
     settling: usize,
 }
 
 impl ZeroPhase {
-    /// Of an order, a frequency in Hz and a step in s. At the frequency the two passes together let
-    /// half the power through (D. A. Winter, 2009, section 3.4.4).
+    /// Of an order, a frequency in Hz and a step in s. At the frequency the two passes together
+    /// transmit half the power (D. A. Winter, 2009, section 3.4.4).
     pub fn new(order: usize, frequency: f64, step: f64) -> Result<Self, SamplesError> {
         let order = within("order", order, [1, MOST_ORDER])?;
         let step = positive("step", step)?;
@@ -31,7 +31,7 @@ impl ZeroPhase {
             let (what, value) = ("distance to half the sampling rate", 0.5 / step - frequency);
             return Err(SamplesError::NotPositive { what, value });
         }
-        // One pass lets 1/(1 + r^2n) of the power through; two passes half of it at r^2n = √2 − 1.
+        // One pass transmits 1/(1 + r^2n) of the power; two passes half of it at r^2n = √2 − 1.
         let single = (PI * frequency * step).tan() / (2f64.sqrt() - 1.0).powf(0.5 / n);
         let pairs = order / 2;
         let mut sections: Vec<Section> = (0..pairs)
@@ -74,8 +74,8 @@ impl ZeroPhase {
 
     /// The filtered values.
     ///
-    /// The record goes on at both ends, turned about its end values, until the filter has forgotten how
-    /// it began; there it begins as if it had met the first value for ever.
+    /// The record is extended at both ends by point reflection, until the transient has decayed;
+    /// there the filter starts in the steady state of the first value.
     pub fn apply(&self, values: &[f64]) -> Vec<f64> {
         let Some(last) = values.len().checked_sub(1) else {
             return Vec::new();
@@ -94,7 +94,7 @@ impl ZeroPhase {
     }
 }
 
-/// (b₀ + b₁ z⁻¹ + b₂ z⁻²) / (1 + a₁ z⁻¹ + a₂ z⁻²), which leaves constants as they are.
+/// (b₀ + b₁ z⁻¹ + b₂ z⁻²) / (1 + a₁ z⁻¹ + a₂ z⁻²), of unit static gain.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Section {
     b: [f64; 3],
@@ -122,7 +122,7 @@ impl Section {
         }
     }
 
-    /// In place, transposed direct form II, from the state that a constant leaves.
+    /// In place, transposed direct form II, from the steady state of a constant.
     fn pass(&self, values: &mut [f64]) {
         let Some(&first) = values.first() else { return };
         let [b0, b1, b2] = self.b;

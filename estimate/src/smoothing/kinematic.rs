@@ -1,9 +1,9 @@
-//! Integrated white noise, smoothed: a motion whose derivative of order m is white noise.
+//! Smoothing of integrated white noise: a motion whose derivative of order m is white noise.
 //!
-//! With m = 2 the acceleration is white, with m = 3 the jerk. Given noisy samples the mean of such a
-//! motion is a smoothing spline of degree 2m − 1 (G. Wahba, 1978), with natural ends and without any
-//! assumption about how the motion begins. It is found with its covariance by the square-root
-//! information smoother (C. Paige and M. Saunders, 1977): one least-squares problem
+//! With m = 2 the acceleration is white, with m = 3 the jerk. Given noisy samples the mean of such
+//! a motion is a smoothing spline of degree 2m − 1 (G. Wahba, 1978), with natural ends and a
+//! diffuse initial state. It is found with its covariance by the square-root information smoother
+//! (C. Paige and M. Saunders, 1977): one least-squares problem
 //!
 //! ```text
 //! samples   (y_i − x_i) / σ                    one row where a value is there
@@ -11,17 +11,17 @@
 //! ```
 //!
 //! in the states x = (y, ẏ, …), made triangular from left to right by Householder reflections and
-//! solved from right to left. Cost and memory grow with the number of samples alone.
+//! solved from right to left. Cost and memory are linear in the number of samples.
 
 use super::samples::{Estimate, Samples, SamplesError, positive, within};
 
 /// Highest order of the white derivative.
 pub const MOST_ORDER: usize = 4;
 
-/// A motion of integrated white noise, seen through white noise.
+/// Integrated white noise, measured with white noise.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Kinematic {
-    /// Which derivative is white noise.
+    /// Order of the derivative that is white noise.
     order: usize,
     /// Standard deviation of the samples.
     std: f64,
@@ -34,8 +34,7 @@ pub struct Kinematic {
 pub struct Smoothed {
     /// Value and derivatives below the white one, at the times of the samples.
     pub estimate: Estimate,
-    /// Logarithm of the likelihood of the samples, up to a constant, the beginning of the motion left
-    /// open.
+    /// Log-likelihood of the samples, up to a constant, with a diffuse initial state.
     pub log_likelihood: f64,
 }
 
@@ -49,8 +48,8 @@ impl Kinematic {
         })
     }
 
-    /// A motion by its smoothing time τ in s: the smoother takes a sine of the angular frequency ω to
-    /// 1/(1 + (ωτ)^2m) of it.
+    /// A motion by its smoothing time τ in s: the smoother scales a sine of angular frequency ω by
+    /// 1/(1 + (ωτ)^2m).
     pub fn with_smoothing_time(
         order: usize,
         std: f64,
@@ -65,9 +64,9 @@ impl Kinematic {
         Self::new(order, std, std * std * step / tau.powi(2 * exponent(order)))
     }
 
-    /// The most likely motion: its intensity, and the noise level where `std` is not known.
+    /// The maximum-likelihood motion: its intensity, and the noise level if `std` is not given.
     ///
-    /// The maximum is found among smoothing times from a quarter of a step to the whole record.
+    /// The maximum is sought among smoothing times from a quarter of a step to the whole record.
     pub fn most_likely(
         order: usize,
         std: Option<f64>,
@@ -133,7 +132,8 @@ impl Kinematic {
         let mut a = vec![0.0; rows * columns];
         let mut sweep = Sweep::default();
         for row in 0..times.len() {
-            // Rows 0…m hold what the past tells of x_i; row m the sample; the rest the motion.
+            // Rows 0…m hold the information of the past on x_i; row m the sample; the rest the
+            // motion.
             a[m * columns..].fill(0.0);
             if !values[row].is_nan() {
                 a[m * columns] = 1.0 / self.std;
@@ -154,7 +154,7 @@ impl Kinematic {
             keep(&a[..m * columns]);
             sweep.squares += a[2 * m * columns + 2 * m].powi(2);
             if row + 1 == times.len() {
-                // Nothing follows: the rows below are residuals, all of them.
+                // At the end all rows below are residuals.
                 let rest = (m..2 * m).map(|k| a[k * columns + 2 * m].powi(2));
                 sweep.squares += rest.sum::<f64>();
             }
@@ -207,7 +207,7 @@ impl Kinematic {
             for i in 0..m {
                 mean[i] = x[i] * scale(i);
                 for j in 0..m {
-                    // Rounding must not make it unsymmetric.
+                    // Symmetric despite rounding.
                     let entry = 0.5 * (c[i * m + j] + c[j * m + i]);
                     covariance[i * m + j] = entry * scale(i + j);
                 }
@@ -220,7 +220,7 @@ impl Kinematic {
     }
 }
 
-/// The unit of time in s that keeps the numbers of a sweep near one.
+/// Unit of time in s in which the numbers of a sweep are near one.
 fn unit_of(samples: Samples<'_>) -> f64 {
     let step = samples.mean_step();
     if step > 0.0 { step } else { 1.0 }
@@ -233,7 +233,7 @@ fn exponent(order: usize) -> i32 {
 /// Sums of a sweep.
 #[derive(Default)]
 struct Sweep {
-    /// Squares that remain.
+    /// Remaining sum of squares.
     squares: f64,
     /// Logarithms of the pivots.
     log_pivots: f64,
@@ -254,7 +254,7 @@ impl Sweep {
 
 /// The rows of the motion over one step: L⁻¹ (x₊ − F x), with Q = L Lᵀ.
 ///
-/// Q(h) = q D Q̂ D with D = diag(h^(m − 1/2 − a)) and a Q̂ that knows no step.
+/// Q(h) = q D Q̂ D with D = diag(h^(m − 1/2 − a)) and a Q̂ independent of the step.
 struct Step {
     m: usize,
     /// q.
@@ -372,9 +372,9 @@ fn transpose(a: &mut [f64], n: usize) {
     }
 }
 
-/// Smoothing times tried for every factor of ten.
+/// Smoothing times tried per decade.
 const TRIED_PER_DECADE: f64 = 4.0;
-/// Golden sections: the smoothing time is found to a part in a thousand.
+/// Golden-section steps: the smoothing time is found to a part in a thousand.
 const SECTIONS: usize = 14;
 
 /// The smoothing time in s with the smallest cost, from a quarter of a step to the whole record.

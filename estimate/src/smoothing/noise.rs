@@ -1,24 +1,24 @@
 //! The noise level of samples, without a model of what they measure.
 //!
-//! Both ways ask for white noise. A filter in the sensor makes neighbours alike; the level found is
-//! then too small, and a smoother that is told it smooths too little.
+//! Both methods assume white noise. For sensors with internal filtering the estimated level is too
+//! small, and smoothing with it too weak.
 
 use super::samples::Samples;
 
 /// Highest order of the differences.
 const MOST_ORDER: usize = 10;
-/// Fewest differences that tell a level.
+/// Least number of differences.
 const FEWEST: usize = 12;
-/// Most differences looked at; more tell no digit that matters.
+/// Largest number of differences used.
 const MOST: usize = 100_000;
-/// Standard deviations by which two levels may differ by chance. One is enough: levels of neighbouring
-/// orders come from the same noise and differ by less than if they did not.
+/// Significance, in standard deviations, of a difference of two levels. One suffices, as levels of
+/// neighbouring orders are correlated.
 const CHANCE: f64 = 1.0;
-/// The largest of so many differences is left out: it may be an impact.
+/// Of so many differences the largest is left out, as it may be an impact.
 const LEFT_OUT: usize = 10;
-/// Mean square of the nine tenths of standard normal numbers that are smallest.
+/// Mean square of the smallest nine tenths of standard normal numbers.
 const NORMAL_TRIMMED: f64 = 0.623_01;
-/// How much more a trimmed mean square varies than that of all.
+/// Ratio of the variances of a trimmed and a full mean square.
 const TRIMMED_SPREAD: f64 = 1.3;
 
 /// A noise level from differences.
@@ -26,20 +26,20 @@ const TRIMMED_SPREAD: f64 = 1.3;
 pub struct Differences {
     /// Standard deviation.
     pub std: f64,
-    /// Its own standard deviation, as a part of it.
+    /// Its relative standard deviation.
     pub relative_error: f64,
     /// Order of the differences.
     pub order: usize,
-    /// Whether differences of the order below tell the same. Otherwise the motion is too fast for the
+    /// Whether differences of the order below agree. Otherwise the motion is too fast for the
     /// sampling, and the level an upper bound.
     pub settled: bool,
 }
 
-/// The level from differences of neighbouring samples; nothing where there are too few.
+/// The level from differences of neighbouring samples; `None` if there are too few.
 ///
 /// A difference of order k takes out polynomials of degree k − 1 and, scaled, keeps the variance of
-/// white noise. The order is raised until the level does not fall significantly any more. The largest
-/// tenth of the differences is left out, so that impacts now and then do no harm.
+/// white noise. The order is raised until the level no longer falls significantly. The largest
+/// tenth of the differences is left out, as a protection against impacts.
 pub fn from_differences(records: &[Samples<'_>]) -> Option<Differences> {
     let records: Vec<(Vec<f64>, Vec<f64>)> = records.iter().map(|r| r.present().unzip()).collect();
     let mut found = level(&records, 1)?;
@@ -77,7 +77,7 @@ fn level(records: &[(Vec<f64>, Vec<f64>)], order: usize) -> Option<Differences> 
     let kept = count - count / LEFT_OUT;
     sizes.select_nth_unstable_by(kept - 1, f64::total_cmp);
     let mean_square = sizes[..kept].iter().map(|x| x * x).sum::<f64>() / kept as f64;
-    // Neighbouring differences share samples; Σρ² says how many are worth one.
+    // Neighbouring differences share samples; Σρ² gives their effective number.
     let shared = choose(4 * order, 2 * order) / choose(2 * order, order).powi(2);
     Some(Differences {
         std: (mean_square / NORMAL_TRIMMED).sqrt(),
@@ -105,16 +105,16 @@ fn choose(n: usize, k: usize) -> f64 {
     (1..=k).map(|i| (n - k + i) as f64 / i as f64).product()
 }
 
-/// Samples looked at together for standstill.
+/// Samples of a stretch that is tested for standstill.
 const STRETCH: usize = 40;
 /// The ratio of J. von Neumann (1941) is 2 for white noise and falls with every motion; with a stretch
 /// of 40 it varies by 0.3.
 const AT_REST: f64 = 1.4;
-/// Fewest stretches at rest that tell a level.
+/// Least number of stretches at rest.
 const FEWEST_STRETCHES: usize = 4;
 
-/// The level while nothing moves: the standard deviation in stretches whose samples vary like white
-/// noise about a constant. Nothing where there are not enough of them.
+/// The level at standstill: the standard deviation in stretches whose samples vary like white noise
+/// about a constant. `None` if there are too few.
 pub fn at_standstill(records: &[Samples<'_>]) -> Option<f64> {
     let (mut stretches, mut squares) = (0, 0.0);
     for record in records {

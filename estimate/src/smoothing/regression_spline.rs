@@ -1,9 +1,9 @@
-//! Splines of least squares: polynomials of degree five between equal knots, with four continuous
+//! Least-squares splines: polynomials of degree five between equal knots, with four continuous
 //! derivatives (C. de Boor, *A Practical Guide to Splines*, 1978).
 //!
-//! Several quantities that are sampled together share the knots. Each is then taken through the same
-//! linear filter, and its derivatives are those of the filtered motion: a linear equation with
-//! constant coefficients that holds between the quantities holds between the splines, too.
+//! Quantities that are sampled together share the knots. The splines are then the same linear
+//! filter for all, and linear equations with constant coefficients between the quantities hold
+//! between the splines, too.
 
 use nalgebra::DMatrix;
 
@@ -13,10 +13,10 @@ use super::samples::{SamplesError, positive};
 pub const DEGREE: usize = 5;
 /// Functions that are not zero between two knots.
 const LIVE: usize = DEGREE + 1;
-/// Pivots below this part of the largest tell that the samples leave a coefficient open.
+/// Pivots below this fraction of the largest mean that a coefficient is undetermined.
 const OPEN: f64 = 1e-10;
 
-/// Functions `N_i` whose sums are the splines.
+/// The basis functions `N_i`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Basis {
     start: f64,
@@ -102,14 +102,14 @@ pub struct RegressionSpline {
     triangle: Vec<[f64; LIVE]>,
     /// Coefficients: a row for each function, a column for each quantity.
     coefficients: DMatrix<f64>,
-    /// Squares and products of what is left of the samples.
+    /// Squares and products of the residuals.
     pub residual: DMatrix<f64>,
-    /// How many samples there are beyond the coefficients.
+    /// Degrees of freedom: samples minus coefficients.
     pub freedom: usize,
 }
 
 impl RegressionSpline {
-    /// Fits increasing times and their values, a row for each time. Nothing where the samples do not
+    /// Fits increasing times and their values, a row for each time. `None` if the samples do not
     /// determine the splines.
     pub fn fit(basis: Basis, times: &[f64], values: &DMatrix<f64>) -> Option<Self> {
         let (n, quantities) = (basis.len(), values.ncols());
@@ -120,7 +120,7 @@ impl RegressionSpline {
             let (first, mut functions) = basis.at(t, 0);
             let mut sample = values.row(row).into_owned();
             for k in 0..LIVE {
-                // Turns the sample's row into row `first + k` of R until nothing is left of it.
+                // Rotates the row of the sample into the rows of R from `first` on.
                 let pivot = &mut triangle[first + k];
                 let length = f64::hypot(pivot[0], functions[k]);
                 if length <= 0.0 {
@@ -180,8 +180,8 @@ impl RegressionSpline {
         (0..self.coefficients.ncols()).map(of).collect()
     }
 
-    /// How the derivative of an order at a time varies with white noise: a vector w, so that two
-    /// derivatives have the covariance wᵀ w₂ times that of the samples.
+    /// Noise of the derivative of an order at a time: a vector w, such that two derivatives have
+    /// the covariance wᵀ w₂ times that of the samples.
     pub fn spread(&self, t: f64, order: usize) -> Vec<f64> {
         let n = self.basis.len();
         let (first, functions) = self.basis.at(t, order);

@@ -1,9 +1,9 @@
-//! Measured values at increasing times, and what is estimated of them.
+//! Measured values at increasing times, and estimates of them.
 
-/// Why values are not samples, or too few for what is asked.
+/// Why samples or settings are invalid.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum SamplesError {
-    /// Not as many values as times.
+    /// The numbers of values and times differ.
     #[error("there are {times} times and {values} values")]
     Lengths {
         /// Number of times.
@@ -30,21 +30,21 @@ pub enum SamplesError {
     /// Fewer values than the method needs.
     #[error("{found} values are too few: {needed} are needed")]
     TooFew {
-        /// Values that are there.
+        /// Number of values present.
         found: usize,
-        /// How many it takes.
+        /// Number needed.
         needed: usize,
     },
-    /// A setting that is no positive number.
-    #[error("the {what} has to be a positive number, not {value}")]
+    /// A setting that is not a positive number.
+    #[error("the {what} must be a positive number, not {value}")]
     NotPositive {
         /// Which setting.
         what: &'static str,
         /// Its value.
         value: f64,
     },
-    /// A polynomial or an order of derivation beyond what the method offers.
-    #[error("the {what} has to lie between {least} and {most}, not {value}")]
+    /// A degree or order of differentiation outside the range of the method.
+    #[error("the {what} must lie between {least} and {most}, not {value}")]
     Outside {
         /// Which setting.
         what: &'static str,
@@ -55,7 +55,7 @@ pub enum SamplesError {
         /// Largest one.
         most: usize,
     },
-    /// A method for equal steps met unequal ones.
+    /// Unequal steps, for a method that needs equal ones.
     #[error("the steps lie between {shortest} s and {longest} s; this filter needs equal ones")]
     NotUniform {
         /// Shortest step.
@@ -63,13 +63,13 @@ pub enum SamplesError {
         /// Longest step.
         longest: f64,
     },
-    /// A value is missing where a method needs all of them.
+    /// A missing value, for a method that needs all.
     #[error("the value of row {row} is missing; this filter needs all of them")]
     Missing {
         /// Row, counted from 0.
         row: usize,
     },
-    /// Numbers so far apart that the arithmetic gives out.
+    /// Overflow of the arithmetic.
     #[error("the estimate is not finite near {t} s")]
     NotFinite {
         /// Time in s.
@@ -113,7 +113,7 @@ impl<'s> Samples<'s> {
         self.values
     }
 
-    /// The pairs that are there.
+    /// Times and values without missing ones.
     pub fn present(&self) -> impl Iterator<Item = (f64, f64)> + 's {
         let pairs = self.times.iter().zip(self.values);
         pairs
@@ -121,7 +121,7 @@ impl<'s> Samples<'s> {
             .map(|(&t, &value)| (t, value))
     }
 
-    /// How many values are there; an error where these are fewer than needed.
+    /// Number of values present; an error if fewer than needed.
     pub(super) fn at_least(&self, needed: usize) -> Result<usize, SamplesError> {
         let found = self.present().count();
         if found < needed {
@@ -178,7 +178,7 @@ pub struct Estimate {
 }
 
 impl Estimate {
-    /// Room for a value and `order` derivatives at so many times, all zero.
+    /// A value and `order` derivatives at so many times, all zero.
     pub(super) fn zeros(times: usize, order: usize) -> Self {
         let width = order + 1;
         Self {
@@ -224,7 +224,7 @@ impl Estimate {
         (0..self.len()).map(|row| self.at(row)[order]).collect()
     }
 
-    /// Both at the time of a row, to be filled in.
+    /// Both at the time of a row, mutable.
     pub(super) fn entry(&mut self, row: usize) -> (&mut [f64], &mut [f64]) {
         let entries = self.width * self.width;
         (

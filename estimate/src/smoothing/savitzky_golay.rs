@@ -1,13 +1,13 @@
-//! Polynomials fitted in a window that moves over the samples (A. Savitzky and M. Golay, 1964).
+//! Polynomials fitted in a moving window (A. Savitzky and M. Golay, 1964).
 //!
 //! The published filter has fixed weights, for equal steps and the middle of a window. Here each
-//! window is a least-squares fit of its own, in polynomials that are orthonormal over its times
-//! (G. E. Forsythe, 1957): steps may differ, values may be missing, and at the edges the last whole
+//! window is a separate least-squares fit, in polynomials that are orthonormal over its times (G.
+//! E. Forsythe, 1957): steps may differ, values may be missing, and at the edges the last whole
 //! window is evaluated off its middle. On equal steps the weights are the published ones.
 
 use super::samples::{Estimate, Samples, SamplesError, positive, within};
 
-/// Highest degree; beyond it a wider window of lower degree serves better.
+/// Highest degree; beyond it a wider window of lower degree is better.
 pub const MOST_DEGREE: usize = 8;
 
 /// A degree and a window.
@@ -32,8 +32,8 @@ impl SavitzkyGolay {
 
     /// Value and derivatives at the times of the samples, also where the value is missing.
     ///
-    /// The covariance is that of white noise of the standard deviation `std`; it holds no error of
-    /// the polynomial, which [`super::window`] keeps below it.
+    /// The covariance is that of white noise of the standard deviation `std`; it does not include
+    /// the bias of the polynomial, which [`super::window`] keeps below it.
     pub fn estimate(
         &self,
         samples: Samples<'_>,
@@ -58,7 +58,7 @@ impl SavitzkyGolay {
         Ok(result)
     }
 
-    /// The window about a time: as many samples before it as after, as long as there are some.
+    /// The window about a time: as many samples before as after, where available.
     fn around(&self, t: f64, times: &[f64]) -> std::ops::Range<usize> {
         let middle = times.partition_point(|&time| time < t);
         let first = middle.saturating_sub(self.count / 2);
@@ -67,8 +67,8 @@ impl SavitzkyGolay {
     }
 }
 
-/// What takes the values at `times` to the derivative of an order at `t`, by a polynomial of least
-/// squares; nothing where the times do not determine one.
+/// Weights of the values at `times` in the derivative of an order at `t`, by a least-squares
+/// polynomial; `None` if the times do not determine one.
 pub fn weights(times: &[f64], t: f64, degree: usize, order: usize) -> Option<Vec<f64>> {
     if degree > MOST_DEGREE || order > degree || times.len() <= degree {
         return None;

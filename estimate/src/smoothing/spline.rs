@@ -1,10 +1,10 @@
 //! Smoothing splines with generalised cross-validation (P. Craven and G. Wahba, 1979).
 //!
-//! A spline of order m keeps the m-th derivative small: it minimises the mean square of the residuals
-//! plus λ times the integral of that derivative squared. That is the mean of a [`Kinematic`] motion,
-//! and its covariance the Bayesian one (G. Wahba, 1983): intervals from it hold on average over the
-//! record. How much to smooth is chosen without knowing the noise, by leaving out sample after sample
-//! and looking how well the others predict it; the noise level follows.
+//! A spline of order m keeps the m-th derivative small: it minimises the mean square of the
+//! residuals plus λ times the integral of that derivative squared. That is the mean of a
+//! [`Kinematic`] motion, and its covariance the Bayesian one (G. Wahba, 1983): intervals from it
+//! have their nominal coverage on average over the record. The smoothing is chosen without
+//! knowledge of the noise, by leave-one-out prediction; the noise level follows.
 
 use super::kinematic::{Kinematic, best_smoothing_time};
 use super::samples::{Estimate, Samples, SamplesError};
@@ -16,7 +16,7 @@ pub struct SmoothingSpline {
     pub estimate: Estimate,
     /// Standard deviation of the samples.
     pub std: f64,
-    /// How many parameters the spline has in effect: the trace of what takes samples to the spline.
+    /// Effective number of parameters: the trace of the smoothing matrix.
     pub degrees_of_freedom: f64,
 }
 
@@ -28,7 +28,7 @@ impl SmoothingSpline {
             best_smoothing_time(samples, |tau| Ok(Fitted::new(order, tau, samples)?.score()))?;
         let fitted = Fitted::new(order, tau, samples)?;
         let std = fitted.noise_level();
-        // Only a spline through samples without noise leaves nothing.
+        // Residuals are zero only for samples without noise.
         let model = Kinematic::with_smoothing_time(order, 1.0, tau, samples)?;
         let model = model.scaled(std.max(f64::MIN_POSITIVE.sqrt()))?;
         Ok(Self {
@@ -39,7 +39,7 @@ impl SmoothingSpline {
     }
 }
 
-/// What cross-validation looks at.
+/// Criterion of cross-validation.
 struct Fitted {
     count: f64,
     /// Sum of the squared residuals.

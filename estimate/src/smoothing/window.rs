@@ -1,17 +1,17 @@
-//! How wide a window may be: wide enough against the noise, narrow enough for the motion.
+//! Choice of the window width: a trade-off between variance and bias.
 //!
-//! The rule of A. Goldenshluger and O. Lepski (2011), with means over the record. A wide window is
+//! The rule of A. Goldenshluger and O. Lepski (2011), averaged over the record. A wide window is
 //! compared with every narrower one. Noise alone makes their estimates differ by the difference of
-//! their variances, because least squares over the wide window is the better of two unbiased estimates
-//! (J. Hausman, 1978); what the squared difference holds beyond is bias. The window with the smallest
-//! sum of bias and variance is taken.
+//! their variances, because least squares over the wide window is the better of two unbiased
+//! estimates (J. Hausman, 1978); what the squared difference holds beyond is bias. The window with
+//! the smallest sum of bias and variance is taken.
 
 use super::samples::{Estimate, Samples, SamplesError};
 use super::savitzky_golay::SavitzkyGolay;
 
-/// From one window to the next wider one, in tenths.
+/// Ratio of one window to the next narrower one, in tenths.
 const GROWTH: usize = 13;
-/// Standard deviations by which a mean square may exceed its expectation by chance.
+/// Significance, in standard deviations, of the excess of a mean square.
 const CHANCE: f64 = 2.0;
 
 /// The window for the derivative of an order, for white noise of the standard deviation `std`.
@@ -45,7 +45,7 @@ pub fn chosen(
     )
 }
 
-/// The middle half of a record: there every window is whole.
+/// The middle half of a record, where every window is complete.
 fn inside(rows: usize) -> std::ops::Range<usize> {
     rows / 4..(rows - rows / 4)
 }
@@ -81,13 +81,13 @@ impl Tried {
         mean(self.variance[rows].iter().copied())
     }
 
-    /// What the mean squared difference from a narrower window holds beyond noise.
+    /// Excess of the mean squared difference from a narrower window over noise.
     fn bias(&self, narrow: &Self, rows: std::ops::Range<usize>, present: usize) -> f64 {
         let difference = rows
             .clone()
             .map(|row| (self.derivative[row] - narrow.derivative[row]).powi(2));
         let noise = narrow.variance(rows.clone()) - self.variance(rows.clone());
-        // Estimates of overlapping windows vary together: one counts for each window.
+        // Estimates of overlapping windows are correlated: one counts for each window.
         let chance = CHANCE * (2.0 * narrow.count as f64 / present as f64).sqrt();
         mean(difference) - noise * (1.0 + chance)
     }

@@ -1,11 +1,13 @@
 //! Quantiles of χ² (M. Abramowitz and I. Stegun, *Handbook of Mathematical Functions*, chapters 6
 //! and 26).
 
-/// Terms of a series or a continued fraction; far more than any converges in.
+/// Half the width of a 95 % interval of a normal distribution, in standard deviations.
+pub const HALF_WIDTH_95: f64 = 1.959_963_984_540_054;
+/// Largest number of terms of a series or a continued fraction.
 const MOST_TERMS: usize = 100_000;
 
-/// What χ² with `freedom` degrees of freedom stays below with probability `p`, to some twelve
-/// digits; NaN outside 0 < p < 1 and for no degree of freedom.
+/// The `p` quantile of χ² with `freedom` degrees of freedom, to about twelve digits; NaN outside
+/// 0 < p < 1 and without degrees of freedom.
 pub fn chi_squared_quantile(p: f64, freedom: f64) -> f64 {
     if !(p > 0.0 && p < 1.0 && freedom > 0.0) {
         return f64::NAN;
@@ -14,7 +16,7 @@ pub fn chi_squared_quantile(p: f64, freedom: f64) -> f64 {
     while chi_squared_probability(high, freedom) < p {
         (low, high) = (high, 2.0 * high);
     }
-    // Bisection cannot fail, and fifty halvings reach rounding.
+    // Bisection is robust, and fifty halvings reach rounding.
     for _ in 0..60 {
         let middle = f64::midpoint(low, high);
         if chi_squared_probability(middle, freedom) < p {

@@ -1,28 +1,27 @@
-//! Whether innovations are what the model and the levels of noise promise: white, of variance 1
-//! (Y. Bar-Shalom, X. R. Li and T. Kirubarajan, *Estimation with Applications to Tracking and
-//! Navigation*, 2001, section 5.4).
+//! Tests whether whitened innovations are white noise of variance 1 (Y. Bar-Shalom, X. R. Li and T.
+//! Kirubarajan, *Estimation with Applications to Tracking and Navigation*, 2001, section 5.4).
 
 use super::chi_squared::chi_squared_quantile;
 use crate::kalman::filter::Innovation;
 
-/// Innovations against what they should be.
+/// Test statistics of innovations.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Consistency {
-    /// How many scalars.
+    /// Number of scalars.
     pub count: usize,
     /// Sum of the normalised innovations squared; χ² of as many degrees of freedom.
     pub squares: f64,
-    /// Band of `squares` where everything is right.
+    /// Acceptance interval of `squares`.
     pub band: [f64; 2],
-    /// Correlation of each whitened innovation with the one before it in the list.
+    /// Lag-1 autocorrelation of the whitened innovations.
     pub correlation: f64,
-    /// Band of `correlation`, which is normal with variance 1/count.
+    /// Acceptance interval of `correlation`, which is normal with variance 1/count.
     pub correlation_band: [f64; 2],
 }
 
 impl Consistency {
-    /// Of some innovations in the order of time, such as those of a channel, with bands that hold
-    /// with a probability, such as 0.99.
+    /// Of innovations in the order of time, such as those of a channel, with acceptance intervals
+    /// of a probability, such as 0.99.
     pub fn of<'i>(innovations: impl IntoIterator<Item = &'i Innovation>, level: f64) -> Self {
         let whitened = innovations.into_iter().map(Innovation::whitened);
         let whitened: Vec<f64> = whitened.collect();
@@ -41,12 +40,12 @@ impl Consistency {
         }
     }
 
-    /// Whether the squares are inside their band.
+    /// Whether the squares are inside their interval.
     pub fn has_right_size(&self) -> bool {
         (self.band[0]..=self.band[1]).contains(&self.squares)
     }
 
-    /// Whether neighbours are uncorrelated.
+    /// Whether the correlation is inside its interval.
     pub fn is_white(&self) -> bool {
         (self.correlation_band[0]..=self.correlation_band[1]).contains(&self.correlation)
     }

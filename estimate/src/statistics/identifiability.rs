@@ -1,4 +1,4 @@
-//! Which combinations of values the data determine, and which they do not.
+//! Combinations of values that the data determine.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -6,29 +6,29 @@ use appell_spectra::singular::Singular;
 
 use crate::fitting::free::{Coordinate, Free};
 
-/// A combination of values that the data know independently of all others.
+/// A combination of values that the data determine independently of all others.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Combination {
-    /// Parts of the values, each in its own scale; of length 1 together.
+    /// Components of the values in units of their scales; a vector of length 1.
     pub parts: DVector<f64>,
-    /// Standard deviation to which the data alone determine the combination, in the scales of the
-    /// values; infinite where they do not.
+    /// Standard deviation of the combination from the data alone, in the scales of the values;
+    /// infinite if undetermined.
     pub deviation: f64,
 }
 
 impl Combination {
-    /// Whether the data say more about it than the scales do.
+    /// Whether the data determine it better than the scales (priors).
     pub fn is_known(&self) -> bool {
         self.deviation < 1.0
     }
 }
 
-/// What data say about some values.
+/// Identifiability of some values.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Identifiability {
-    /// Scale of each value in its coordinate: what is known of it beforehand, or else its size.
+    /// Scale of each value in its coordinate: its prior standard deviation, or else its magnitude.
     pub scales: DVector<f64>,
-    /// Combinations, the best known first.
+    /// Combinations, the best determined first.
     pub combinations: Vec<Combination>,
 }
 
@@ -37,7 +37,7 @@ impl Identifiability {
     ///
     /// From derivatives of whitened samples ([`Sensitivity`](crate::Sensitivity)): the singular
     /// values of all of them, column by column in the scales of the values. Singular values of the
-    /// derivatives themselves tell twice as many digits as those of the information.
+    /// derivatives have twice as many digits as eigenvalues of the information.
     pub fn of(sensitivity: &crate::Sensitivity, values: &[f64], free: &[Free]) -> Self {
         let scale = |(free, &value): (&Free, &f64)| match (free.prior, free.coordinate) {
             (Some([_, deviation]), _) => deviation,
@@ -51,7 +51,7 @@ impl Identifiability {
             let part = if i < rows { residuals } else { variances };
             part[(i % rows, j)] * scales[j]
         });
-        // Rotations of a triangle are cheaper than those of all samples.
+        // A decomposition of the triangular factor is cheaper than one of all samples.
         let singular = Singular::of(&slopes.qr().r());
         let combinations = singular.values.iter().enumerate();
         let combinations = combinations.map(|(k, &value)| Combination {
@@ -64,7 +64,7 @@ impl Identifiability {
         }
     }
 
-    /// How many combinations the data determine better than the scales.
+    /// Number of combinations that the data determine better than the scales.
     pub fn rank(&self) -> usize {
         let combinations = self.combinations.iter();
         combinations

@@ -1,5 +1,5 @@
-//! Profile likelihood: an interval that does not believe in a parabola. At each of its ends all
-//! other values are fitted anew.
+//! Profile likelihood intervals, without a quadratic approximation: the other values are refitted at
+//! each end.
 
 use crate::EstimateError;
 use crate::estimation::Estimation;
@@ -8,13 +8,13 @@ use crate::fitting::free::Free;
 
 /// Halvings towards an end; each end is found to a hundredth of a standard deviation.
 const MOST_HALVINGS: usize = 12;
-/// Doublings away from the optimum before an end counts as infinite.
+/// Doublings away from the optimum after which an end counts as infinite.
 const MOST_DOUBLINGS: usize = 6;
 
 impl Fit {
-    /// Limits in SI at which the best log-posterior with the value held there is `drop` below the
-    /// optimum: 1.92 for 95 %. Infinite, or the limit of the value, where it does not fall so far
-    /// within 64 standard deviations.
+    /// Limits in SI at which the profile log-posterior is `drop` below the optimum: 1.92 for 95 %.
+    /// Infinite, or the limit of the value, if it does not fall so far within 64 standard
+    /// deviations.
     pub fn profile_interval(
         &self,
         estimation: &Estimation<'_>,
@@ -80,7 +80,7 @@ impl Fit {
     }
 }
 
-/// Logarithm of the density beforehand of the held value, which the fit of the others lacks.
+/// Log-prior of the held value, which the fit of the others lacks.
 fn log_density(held: Free, coordinate: f64) -> f64 {
     held.prior.map_or(0.0, |[expected, deviation]| {
         let off = (coordinate - held.to_coordinate(expected)) / deviation;

@@ -1,10 +1,9 @@
-//! Spread of estimates that does not believe the model: from the scores of blocks of rows as they
-//! are, not as they should be.
+//! Robust (sandwich) covariance from block scores.
 //!
-//! Where the model is wrong, or noise is not white, neighbouring scores depend on each other and the
-//! inverse information is too small. Blocks that are longer than this dependence are independent of
-//! each other (P. J. Huber, 1967; H. R. Künsch, *The jackknife and the bootstrap for general
-//! stationary observations*, 1989).
+//! If the model is wrong, or noise is not white, neighbouring scores are correlated and the inverse
+//! information is too small. Blocks longer than this correlation are independent (P. J. Huber,
+//! 1967; H. R. Künsch, *The jackknife and the bootstrap for general stationary observations*,
+//! 1989).
 
 use std::collections::BTreeMap;
 
@@ -26,7 +25,7 @@ pub struct Blocks {
 }
 
 impl Blocks {
-    /// Blocks of so many rows; none crosses from run to run. `sensitivity` is that of the fit.
+    /// Blocks of so many rows within runs. `sensitivity` is that of the fit.
     pub fn of(fit: &Fit, sensitivity: &Sensitivity, rows: usize) -> Result<Self, EstimateError> {
         let all = sensitivity.scores();
         let mut blocks: BTreeMap<(usize, usize), DVector<f64>> = BTreeMap::new();
@@ -43,7 +42,7 @@ impl Blocks {
         })
     }
 
-    /// How many blocks there are. With fewer than some twenty the spread is a guess.
+    /// Number of blocks. With fewer than about twenty the covariance is unreliable.
     pub fn len(&self) -> usize {
         self.scores.len()
     }
@@ -62,15 +61,15 @@ impl Blocks {
         for score in &centred {
             squares += score * score.transpose();
         }
-        // The mean was taken from the same scores.
+        // Correction for the estimated mean.
         let count = centred.len() as f64;
         let correction = count / (count - 1.0).max(1.0);
         &self.covariance * squares * &self.covariance * correction
     }
 
-    /// Changes of the coordinates when blocks are drawn anew with replacement, by one step of
-    /// scoring each (P. Kline and A. Santos, *A score based approach to wild bootstrap inference*,
-    /// 2012). The same `seed` gives the same draws.
+    /// Bootstrap changes of the coordinates: blocks drawn with replacement, one scoring step each
+    /// (P. Kline and A. Santos, *A score based approach to wild bootstrap inference*, 2012). The
+    /// same `seed` gives the same draws.
     pub fn bootstrap(&self, draws: usize, seed: u64) -> Vec<DVector<f64>> {
         let centred = self.centred();
         let mut random = SplitMix64::seed_from_u64(seed);

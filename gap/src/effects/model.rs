@@ -23,7 +23,7 @@ use appell_spec::{Mechanism, Report};
 
 use super::effect::{Effect, EffectError};
 use super::site::{Scales, Sites, number};
-use super::{Candidate, Drive, Family};
+use super::{Candidate, Drive};
 use crate::data::Spec;
 
 /// Sections whose expressions inputs act in.
@@ -299,11 +299,4 @@ pub fn with_candidates(text: &str, candidates: &[Candidate]) -> Result<String, E
         }
     }
     Ok(spec.text())
-}
-
-impl Family {
-    /// Whether it acts in the equations of motion.
-    pub fn has_equations(self) -> bool {
-        !matches!(self, Self::Sensor)
-    }
 }

@@ -1,7 +1,8 @@
 //! What the recordings tell: intervals, correlation, combinations that are known.
 
 use appell_estimate::{
-    Blocks, Consistency, Estimation, Fit, Free, Identifiability, Sensitivity, Unknown,
+    Blocks, Consistency, Estimation, Fit, Free, HALF_WIDTH_95, Identifiability, Sensitivity,
+    Unknown,
 };
 use appell_runtime::model::Quantity;
 use nalgebra::DMatrix;
@@ -14,9 +15,6 @@ use crate::data::DataSet;
 
 /// Blocks of scores last so many seconds: errors of a mechanism's motion forget each other by then.
 const BLOCK: f64 = 1.0;
-/// Half the width of a 95 % interval in standard deviations.
-const QUANTILE: f64 = 1.959_963_984_540_054;
-
 /// A parameter that was looked for.
 #[derive(Debug, Clone)]
 pub struct Estimate {
@@ -24,13 +22,13 @@ pub struct Estimate {
     pub quantity: Quantity,
     /// Value before, in SI.
     pub nominal: f64,
-    /// Tolerance beforehand in SI, if there is any.
+    /// Prior standard deviation (tolerance) in SI, if any.
     pub tolerance: Option<f64>,
     /// Most likely value in SI.
     pub value: f64,
     /// Standard deviation in SI if the model is right.
     pub std: f64,
-    /// Standard deviation in SI that does not believe the model.
+    /// Robust (sandwich) standard deviation in SI.
     pub robust_std: f64,
     /// Whether the value stands at a limit of its range: nothing is said of its spread.
     pub at_limit: bool,
@@ -40,14 +38,14 @@ pub struct Estimate {
 
 impl Estimate {
     /// The wider of the two standard deviations.
-    pub fn honest_std(&self) -> f64 {
+    pub fn wider_std(&self) -> f64 {
         self.std.max(self.robust_std)
     }
 
     /// 95 % interval in SI, within the range of the quantity.
     pub fn interval95(&self) -> [f64; 2] {
         let [low, high] = self.quantity.range;
-        let end = |sign| self.value + sign * QUANTILE * self.honest_std();
+        let end = |sign| self.value + sign * HALF_WIDTH_95 * self.wider_std();
         [-1.0, 1.0].map(|sign| end(sign).max(low).min(high))
     }
 }

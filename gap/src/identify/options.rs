@@ -18,14 +18,14 @@ pub enum Begin {
 pub struct Options {
     /// Parameters to look for; nothing means those that the data set states a tolerance for.
     pub free: Option<Vec<String>>,
-    /// What to look for besides: `tau.lag` and `tau.delay` of inputs; `theta.bias`, `theta.scale` and
+    /// Further quantities to estimate: `tau.lag` and `tau.delay` of inputs; `theta.bias`, `theta.scale` and
     /// `theta.delay` of channels.
-    pub also: Vec<String>,
+    pub additional: Vec<String>,
     /// Parameters that change on the way, with the standard deviations of their changes in one second,
     /// in their units.
     pub drifting: Vec<(String, f64)>,
-    /// Whether it is no mistake that no parameter is free.
-    pub none_will_do: bool,
+    /// Whether no free parameter at all is accepted.
+    pub allow_none: bool,
     /// Where the search begins.
     pub begin: Begin,
 }
@@ -34,7 +34,7 @@ impl Options {
     /// All parameters with a tolerance, if there are any.
     pub(crate) fn tolerant() -> Self {
         Self {
-            none_will_do: true,
+            allow_none: true,
             ..Self::default()
         }
     }

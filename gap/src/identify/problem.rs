@@ -107,8 +107,8 @@ fn free_parameters(
     let chosen: Vec<usize> = chosen.into_iter().filter(|index| !drifts(index)).collect();
     if chosen.is_empty()
         && options.drifting.is_empty()
-        && options.also.is_empty()
-        && !options.none_will_do
+        && options.additional.is_empty()
+        && !options.allow_none
     {
         return Err(IdentifyError::NothingFree);
     }

@@ -127,8 +127,8 @@ impl Place {
 }
 
 impl Smooth {
-    /// Whether something that runs like a signal of this kind may stand here: a jump is a `hold`,
-    /// a kink is `linear`.
+    /// Whether a function as smooth as this interpolation is allowed: a jump counts as `hold`, a
+    /// kink as `linear`.
     pub(super) fn admits(self, interpolation: Interpolation) -> bool {
         match self {
             Self::Any => true,

@@ -41,8 +41,8 @@ pub struct Claim {
     /// Where the paper errs: the kind of error.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub erratum: Option<&'static str>,
-    /// Whether the comparison came out as it is known to. For an erratum: the corrected statement holds.
-    /// Where it did not, something broke here.
+    /// Whether the comparison gives its expected result (for an erratum: the corrected statement
+    /// holds); `false` indicates a regression.
     pub as_expected: bool,
     /// What makes it, without the book.
     pub command: String,

@@ -5,7 +5,7 @@
 //! |---|---|
 //! | `equations.rs`, `tables.rs` | every numbered equation; tables 1 to 3 |
 //! | `rider.rs` | the spatial unicycle under a rider, four manoeuvres |
-//! | `capture.rs`, `dice.rs` | rigid bodies as cameras see them; noise |
+//! | `capture.rs`, `random.rs` | rigid bodies as cameras see them; noise |
 //! | `recorded.rs` | the rides as data sets, for `appell diagnose` |
 //! | `laboratory.rs` | everything that was ridden, captured and smoothed |
 //! | `torque.rs` | M_d,1 and M_d,2, and their difference over the height |
@@ -13,13 +13,13 @@
 //! | `heights.rs` | the height with its interval |
 
 mod capture;
-mod dice;
 mod equations;
 mod figure_3;
 mod figure_6;
 mod figure_8;
 mod heights;
 mod laboratory;
+mod random;
 mod recorded;
 mod rider;
 mod tables;
@@ -31,7 +31,7 @@ use laboratory::{Laboratory, Session};
 use rider::Manoeuvre;
 
 use super::Section;
-use super::found::failed;
+use super::failed;
 use appell::Error;
 
 /// A part of the book: its name while it is made, and what makes it.

@@ -1,6 +1,6 @@
 //! The book as a page that needs nothing beside it. It is well-formed XML, too.
 
-use appell_report::skeleton::Skeleton;
+use appell_report::page_shell::PageShell;
 use maud::{Markup, PreEscaped, html};
 
 use super::claim::{Claim, Reproduction, Section, Tally};
@@ -12,11 +12,11 @@ const BREAK: PreEscaped<&str> = PreEscaped("<br/>");
 /// The page.
 pub fn page(title: &str, sections: &[Section]) -> String {
     let title = format!("{title}, recomputed");
-    let skeleton = Skeleton {
+    let shell = PageShell {
         namespace: Some("http://www.w3.org/1999/xhtml"),
-        ..Skeleton::new(&title, STYLE)
+        ..PageShell::new(&title, STYLE)
     };
-    skeleton.around(&html! {
+    shell.around(&html! {
         main {
             h1 { (title) }
             p {

@@ -8,7 +8,7 @@
 //! | `figure_3.rs` … `figure_8.rs` | figures, and what they are said to show |
 //! | `beyond.rs` | what the paper did not see |
 
-mod beyond;
+mod additional;
 pub(super) mod equations;
 mod figure_3;
 mod figure_5;
@@ -36,7 +36,7 @@ const PARTS: &[Part] = &[
     ("figure 6", figure_6::section),
     ("figure 7", |_| figure_7::section()),
     ("figure 8", |_| figure_8::section()),
-    ("what the paper did not see", |_| beyond::section()),
+    ("what the paper did not see", |_| additional::section()),
 ];
 
 /// The book part by part, with charts of `grid` points along each axis; `making` hears what is made, and

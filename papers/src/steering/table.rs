@@ -52,12 +52,12 @@ const PSEUDO_VELOCITIES: &str = "
     w1 = thd
     w2 = psid*sin(th) + phid
     w3 = psid*cos(th)";
-const HIDDEN: &str = "
+const IGNORABLE: &str = "
     psid = w3/cos(th)
     phid = w2 - w3*tan(th)
     xGd = w1*R*sin(psi)*cos(th) + w2*R*cos(psi)
     yGd = -w1*R*cos(psi)*cos(th) + w2*R*sin(psi)";
-const STEADY_HIDDEN: &str = "
+const STEADY_IGNORABLE: &str = "
     psid = w3/cos(th)
     phid = w2 - w3*tan(th)
     xGd = w2*R*cos(psi)
@@ -111,7 +111,7 @@ pub const EQUATIONS: &[Equation] = &[
         claims: &[
             lines(Wheel, WHEEL),
             lines(Wheel, "thd = w1"),
-            lines(Wheel, HIDDEN),
+            lines(Wheel, IGNORABLE),
         ],
     },
     Equation {
@@ -127,10 +127,10 @@ pub const EQUATIONS: &[Equation] = &[
     },
     Equation {
         number: "(10)",
-        about: "hidden motion while the essential states rest",
+        about: "motion of the ignorable coordinates while the essential states rest",
         claims: &[
-            lines_at(Wheel, &[("w1", "0")], STEADY_HIDDEN),
-            lines_at(Unicycle, &[("w1", "0")], STEADY_HIDDEN),
+            lines_at(Wheel, &[("w1", "0")], STEADY_IGNORABLE),
+            lines_at(Unicycle, &[("w1", "0")], STEADY_IGNORABLE),
         ],
     },
     Equation {
@@ -310,7 +310,7 @@ pub const EQUATIONS: &[Equation] = &[
                  sd = ((5*m*R**2 + 4*m0*(R**2 + r**2))*r*w1**2 + (5*m*R**2*r - 4*m0*R*r**2*tan(th) + 4*m0*r**3 - m*R**3*tan(th))*w3**2 - 8*m0*R*r*w1*s + R*(m*R**2 + 4*m0*(R*r*tan(th) - r**2))*w2*w3 - (m*R**2 + 4*m0*r**2)*g*sin(th) - 4*m0*g*R*r*cos(th) + (5*m/m0*R**2 + 4*R**2 + 4*r**2)*u)/D1
                  rd = s",
             ),
-            lines(Unicycle, HIDDEN),
+            lines(Unicycle, IGNORABLE),
         ],
     },
     Equation {
@@ -552,9 +552,9 @@ pub const EQUATIONS: &[Equation] = &[
         number: "(79)",
         about: "generalised velocities from pseudo-velocities",
         claims: &[
-            lines(Wheel, HIDDEN),
+            lines(Wheel, IGNORABLE),
             lines(Wheel, "thd = w1"),
-            lines(Unicycle, HIDDEN),
+            lines(Unicycle, IGNORABLE),
             lines(Unicycle, "thd = w1"),
         ],
     },

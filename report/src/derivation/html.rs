@@ -4,7 +4,7 @@ use maud::{Markup, PreEscaped, html as markup};
 
 use super::display::{Equation, Piece, left_width};
 use super::{Block, Chain, Page, Span, Table};
-use crate::skeleton::Skeleton;
+use crate::page_shell::PageShell;
 use appell_codegen::symbolic::print::mathml::{TIMES, mathml, sign};
 use appell_codegen::symbolic::print::{Math, clean};
 
@@ -17,7 +17,7 @@ const STYLE: &str = include_str!("page.css");
 /// The page as an HTML document of its own.
 pub fn html(page: &Page) -> String {
     let title = clean(&page.title);
-    Skeleton::new(&title, STYLE).around(&markup! {
+    PageShell::new(&title, STYLE).around(&markup! {
         main {
             h1 { (title) }
             @if let Some(source) = &page.source {

@@ -12,7 +12,7 @@ use super::numbers::{measured, percent, short};
 use super::plots;
 use super::words::{hinted, joined, left_out, sentence};
 use crate::drawing::marked;
-use crate::skeleton::Skeleton;
+use crate::page_shell::PageShell;
 use crate::text::with_unit;
 
 const STYLE: &str = include_str!("page.css");
@@ -23,7 +23,7 @@ const MATTERS: f64 = 0.05;
 pub fn page(set: &DataSet, report: &Report) -> String {
     let name = &set.mechanism.name;
     let title = format!("{name}: the gap");
-    Skeleton::new(&title, STYLE).around(&html! {
+    PageShell::new(&title, STYLE).around(&html! {
         main {
             h1 { (name) ": model against recordings" }
             p class="faint" { (set.description) }
@@ -118,11 +118,10 @@ fn place(set: &DataSet, report: &Report) -> Markup {
             (equations(set, place))
             @if let Some(law) = law {
                 @let caption = if law.law.is_empty() {
-                    "The force that the model lacks, as the recordings show it without any law, over what \
-                     it depends on most."
+                    "Missing force, estimated without assuming a law, over the variable on which it \
+                     depends most."
                 } else {
-                    "The force that the model lacks, as the recordings show it without any law, and the \
-                     law that was found."
+                    "Missing force, estimated without assuming a law, and the law found for it."
                 };
                 (figure(plots::law(law), caption))
             }
@@ -294,7 +293,7 @@ fn how_far(report: &Report) -> Markup {
     let Some(far) = &report.how_far else {
         return html! {
             h2 { "How far" }
-            p { "No run was held out, so nothing tells how far the gap closes." }
+            p { "No run was held out, so the closed part of the gap cannot be assessed." }
         };
     };
     let rows = report.horizons.iter().map(|ahead| {
@@ -333,7 +332,7 @@ fn how_far(report: &Report) -> Markup {
         }
         @for trace in plots::most_bettered(traces) {
             @let caption = format!(
-                "{} of {}, which no fit has seen, beside predictions {} s before, and their errors. The \
+                "{} of {} (held out): measurement, prediction {} s ahead, and prediction error. The \
                  band shows two standard deviations of the error expected if the hypothesis is true.",
                 trace.column,
                 trace.run,

@@ -2,20 +2,17 @@
 
 use crate::figure::{Figure, Panel, Series};
 use appell_gap::data::DataSet;
-use appell_gap::identify::{AHEAD, Answer};
+use appell_gap::identify::{AHEAD, Answer, HALF_WIDTH_95};
 
 /// Number of runs drawn.
 const DRAWN_RUNS: usize = 2;
-
-/// Half-width of a 95 % band in standard deviations.
-const BAND: f64 = 1.96;
 
 /// Drifting parameters with their 95 % bands, a panel for each run.
 fn courses(answer: &Answer) -> impl Iterator<Item = Panel> + '_ {
     answer.courses.iter().map(|course| {
         let moved = |sign: f64| -> Vec<f64> {
             let pairs = course.values.iter().zip(&course.deviations);
-            let moved = pairs.map(|(value, std)| value + sign * BAND * std);
+            let moved = pairs.map(|(value, std)| value + sign * HALF_WIDTH_95 * std);
             moved.map(|value| course.quantity.to_unit(value)).collect()
         };
         let label = format!("{}, {}", course.quantity.name, course.run);

@@ -5,8 +5,8 @@ use appell_gap::identify::Answer;
 use maud::{Markup, PreEscaped, html};
 
 use super::{Part, figure, parts};
+use crate::page_shell::PageShell;
 use crate::recording;
-use crate::skeleton::Skeleton;
 
 /// Light and dark, as the figure inside.
 const STYLE: &str = include_str!("page.css");
@@ -15,7 +15,7 @@ const STYLE: &str = include_str!("page.css");
 pub fn page(set: &DataSet, answer: &Answer) -> String {
     let name = &set.mechanism.name;
     let title = format!("{name}: parameters");
-    Skeleton::new(&title, STYLE).around(&html! {
+    PageShell::new(&title, STYLE).around(&html! {
         h1 { (name) ": parameters from recordings" }
         @for (place, part) in parts(set, answer).iter().enumerate() {
             h2 { (part.heading) }

@@ -54,7 +54,7 @@ pub enum Cause {
         h: f64,
     },
     /// The limit on the number of steps was reached.
-    #[error("{steps} steps were not enough")]
+    #[error("the limit of {steps} steps was reached")]
     TooManySteps {
         /// Accepted and rejected steps.
         steps: usize,

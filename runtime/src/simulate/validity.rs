@@ -104,14 +104,14 @@ impl Breach {
                 contact(index)
             ),
             Limit::Friction { contact: index } => format!(
-                "the contact `{}` slips: it asks for a coefficient of friction of {:.6}",
+                "the contact `{}` slips: its friction demand is {:.6}",
                 contact(index),
                 self.value
             ),
             Limit::Condition { of } => {
                 let what = match of {
                     0 => "mass matrix",
-                    1 => "way from pseudo-velocities to generalised velocities",
+                    1 => "map from pseudo-velocities to generalised velocities",
                     _ => "system for the generalised velocities",
                 };
                 format!("the {what} has the condition number {:.1e}", self.value)

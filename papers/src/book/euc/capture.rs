@@ -4,8 +4,8 @@
 use appell_gap::motion_capture::{Axes, Capture, Skeleton, Track, Vector};
 use appell_runtime::Trajectory;
 
-use super::dice::Dice;
-use crate::book::found::failed;
+use super::random::Random;
+use crate::book::failed;
 use appell::Error;
 
 /// Accuracies of the paper, taken as standard deviations: m and rad.
@@ -97,7 +97,12 @@ impl Captured {
     }
 
     /// What the cameras see of a ride.
-    pub(super) fn see(&self, motion: &Trajectory, with: Imperfection, dice: &mut Dice) -> Capture {
+    pub(super) fn see(
+        &self,
+        motion: &Trajectory,
+        with: Imperfection,
+        random: &mut Random,
+    ) -> Capture {
         let column = |name: &str| motion.column(name).unwrap_or_default();
         let names = ["x_C", "y_C", "psi", "theta", "gamma", "phi", "beta"];
         let states = names.map(column);
@@ -107,7 +112,7 @@ impl Captured {
                 .map_or(0.0, |index| info.parameters[index].value)
         };
         // Markers stay where they are from ride to ride.
-        let mut markers = Dice::of("markers");
+        let mut markers = Random::of("markers");
         let (radius, depth) = (parameter("R"), parameter("l_0"));
         let tracks = self
             .skeleton
@@ -139,9 +144,9 @@ impl Captured {
                         (moved(pedals, arm), [psi, theta + beta, phi])
                     };
                     for k in 0..3 {
-                        let noise = with.noise * POSITION * dice.normal();
+                        let noise = with.noise * POSITION * random.normal();
                         track.position[k].push(place[k] + noise);
-                        let noise = with.noise * ANGLE * dice.normal();
+                        let noise = with.noise * ANGLE * random.normal();
                         track.angles[k].push(angles[k] + noise);
                     }
                 }

@@ -6,7 +6,7 @@ use appell_report::figure::{Figure, Panel, Path, Series, Surface};
 use super::laboratory::Laboratory;
 use super::rider::Manoeuvre;
 use crate::book::claim::{Claim, Picture, Section};
-use crate::book::found::failed;
+use crate::book::failed;
 use appell::Error;
 
 /// The capture volume of the paper in m.

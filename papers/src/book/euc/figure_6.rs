@@ -7,7 +7,7 @@ use super::laboratory::{Laboratory, Session};
 use super::rider::Manoeuvre;
 use super::torque::{Curve, Planar};
 use crate::book::claim::{Claim, NOT_PUBLIC, Picture, Section};
-use crate::book::found::failed;
+use crate::book::failed;
 use appell::Error;
 
 /// What the paper prints for a manoeuvre: height in m, error in N m.

@@ -3,6 +3,7 @@
 
 use appell_codegen::jit::JitModel;
 use appell_codegen::program::FunctionKind;
+use appell_estimate::HALF_WIDTH_95;
 use appell_estimate::inverse::{Consistency, Found, Record, Relations, Sought, Track};
 use appell_gap::motion_capture::{Capture, Ride};
 use appell_models::Shipped;
@@ -13,13 +14,11 @@ use nalgebra::{DMatrix, DVector};
 use super::laboratory::{Laboratory, PERFECT, REAL, Session};
 use super::rider::Manoeuvre;
 use crate::book::claim::{Claim, Picture, Section};
-use crate::book::found::{failed, told};
+use crate::book::{computation, failed};
 use appell::Error;
 
 /// Heights of the profiles, as parts of the one that is found.
 const PROFILE: [f64; 9] = [0.6, 0.7, 0.8, 0.9, 1.0, 1.1, 1.2, 1.35, 1.5];
-/// Normal quantile of a 95 % interval.
-const QUANTILE: f64 = 1.96;
 /// The bound of a straight ride without noise in m: the lean of a rider who sways sideways shortens
 /// what the plane sees of the height.
 const STRAIGHT: f64 = 5e-3;
@@ -35,7 +34,7 @@ pub(super) fn section(laboratory: &Laboratory) -> Result<Section, Error> {
     let shipped = Shipped::find("euc_3dof");
     let shipped = shipped.ok_or_else(|| failed("the planar model is not shipped"))?;
     let program = appell_codegen::compile(shipped.file, shipped.spec, &FunctionKind::ALL)?;
-    let model = JitModel::new(&program).map_err(told)?;
+    let model = JitModel::new(&program).map_err(computation)?;
     let command = "appell motion SKELETON ride.csv; appell inverse euc_3dof --data recording --free h --bias phi";
     let mut claims = Vec::new();
     let mut all = Vec::new();
@@ -56,7 +55,7 @@ pub(super) fn section(laboratory: &Laboratory) -> Result<Section, Error> {
         if session.manoeuvre != Manoeuvre::FigureEight {
             let perfect = laboratory.seen(session, PERFECT);
             let perfect = consistency(&model, laboratory, &perfect, false)?;
-            let off = perfect.least().map_err(told)?[0] - laboratory.height;
+            let off = perfect.least().map_err(computation)?[0] - laboratory.height;
             let ours = format!(
                 "without noise and marker offsets h is off by {:.2} mm: what the plane does not see of the ride",
                 1e3 * off
@@ -114,7 +113,7 @@ fn spread(found: &Found) -> f64 {
 fn interval(found: &Found, truth: f64) -> String {
     let [low, high] = found.intervals[0];
     let value = found.values[0];
-    let reach = QUANTILE * spread(found);
+    let reach = HALF_WIDTH_95 * spread(found);
     format!(
         "h = {value:.4} m; by the noise alone from {low:.4} m to {high:.4} m, by how parts of the rides disagree from \
          {:.4} m to {:.4} m; true {truth:.4} m. Mean square of the relation in units of its noise: {:.2}",
@@ -127,9 +126,9 @@ fn interval(found: &Found, truth: f64) -> String {
 fn find(model: &dyn Model, laboratory: &Laboratory, session: &Session) -> Result<Told, Error> {
     let captures = laboratory.seen(session, REAL);
     let consistency = consistency(model, laboratory, &captures, true)?;
-    let found = consistency.find().map_err(told)?;
+    let found = consistency.find().map_err(computation)?;
     let heights: Vec<f64> = PROFILE.iter().map(|part| part * found.values[0]).collect();
-    let profile = consistency.profile(0, &heights).map_err(told)?;
+    let profile = consistency.profile(0, &heights).map_err(computation)?;
     Ok(Told {
         manoeuvre: session.manoeuvre,
         profile,
@@ -145,19 +144,19 @@ fn consistency<'a>(
     biased: bool,
 ) -> Result<Consistency<'a>, Error> {
     let records: Vec<Record> = captures.iter().map(|own| record(laboratory, own)).collect();
-    let track = Track::of(&records).map_err(told)?;
+    let track = Track::of(&records).map_err(computation)?;
     let info = model.info();
     let p = info.default_parameters();
     let stretches = track.stretches.iter();
     let first = stretches.flat_map(|stretch| &stretch.motions).next();
     let first = first.ok_or_else(|| failed("no motion"))?;
-    let relations = Relations::new(model, &[0, 1, 2], first, &p).map_err(told)?;
+    let relations = Relations::new(model, &[0, 1, 2], first, &p).map_err(computation)?;
     let h = info.parameter_index("h").ok_or_else(|| failed("no `h`"))?;
     let mut sought = vec![Sought::Parameter(h)];
     if biased {
         sought.push(Sought::Bias(2));
     }
-    Consistency::new(relations, track, p, sought).map_err(told)
+    Consistency::new(relations, track, p, sought).map_err(computation)
 }
 
 /// x, γ and ϕ of a ride.

@@ -4,9 +4,9 @@ use appell_gap::motion_capture::{Capture, Ride, Skeleton, Smoothed, filter};
 use appell_runtime::Trajectory;
 
 use super::capture::{Captured, Imperfection};
-use super::dice::Dice;
+use super::random::Random;
 use super::rider::{Manoeuvre, Rider};
-use crate::book::found::{failed, told};
+use crate::book::{computation, failed};
 use appell::Error;
 
 /// The skeleton that stands among the examples.
@@ -49,10 +49,10 @@ impl View {
     fn of(skeleton: &Skeleton, captures: &[Capture]) -> Result<Self, Error> {
         let rides = captures.iter().map(|own| Ride::of(skeleton, own));
         let rides: Vec<Ride> = rides.collect();
-        let filter = filter(&rides).map_err(told)?;
+        let filter = filter(&rides).map_err(computation)?;
         let smoothed = rides.iter().map(|ride| Smoothed::of(ride, filter));
         Ok(Self {
-            smoothed: smoothed.collect::<Result<_, _>>().map_err(told)?,
+            smoothed: smoothed.collect::<Result<_, _>>().map_err(computation)?,
             window: filter.count(),
             rides,
         })
@@ -122,8 +122,8 @@ fn seen(
     motions: &[Trajectory],
     with: Imperfection,
 ) -> Vec<Capture> {
-    let mut dice = Dice::of(manoeuvre.name());
+    let mut random = Random::of(manoeuvre.name());
     let runs = motions.iter();
-    runs.map(|motion| rider.see(motion, with, &mut dice))
+    runs.map(|motion| rider.see(motion, with, &mut random))
         .collect()
 }

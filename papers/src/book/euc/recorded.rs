@@ -6,10 +6,10 @@ use std::path::Path;
 
 use appell_models::Shipped;
 
-use super::dice::Dice;
 use super::laboratory::{Laboratory, Session};
+use super::random::Random;
 use super::rider::{RATE, TWIST};
-use crate::book::found::failed;
+use crate::book::failed;
 use appell::Error;
 use appell::files;
 
@@ -114,7 +114,7 @@ fn data_set(laboratory: &Laboratory, session: &Session, folder: &Path) -> Result
 /// row.
 fn table(session: &Session, number: usize) -> String {
     let motion = &session.motions[number];
-    let mut dice = Dice::of(&format!("recording {} {number}", session.manoeuvre.name()));
+    let mut random = Random::of(&format!("recording {} {number}", session.manoeuvre.name()));
     let column = |name: &str| motion.column(name).unwrap_or_default();
     let truth = COLUMNS.map(|(name, _, _)| match name {
         "x" => way(&column("v")),
@@ -132,8 +132,8 @@ fn table(session: &Session, number: usize) -> String {
         for ((_, kind, _), values) in COLUMNS.iter().zip(&truth) {
             let value = match kind {
                 Kind::Torque | Kind::Unknown => mean(&values[row..=row + EVERY]),
-                Kind::Way => values[row] + WAY_NOISE * dice.normal(),
-                Kind::Angle | Kind::Beside => values[row] + ANGLE_NOISE * dice.normal(),
+                Kind::Way => values[row] + WAY_NOISE * random.normal(),
+                Kind::Angle | Kind::Beside => values[row] + ANGLE_NOISE * random.normal(),
             };
             let _ = write!(text, ",{value:.6}");
         }

@@ -14,8 +14,8 @@ use appell_runtime::simulate::Sampling;
 use appell_runtime::{Simulation, Trajectory};
 use nalgebra::{DMatrix, DVector};
 
-use super::dice::Dice;
-use crate::book::found::{failed, told};
+use super::random::Random;
+use crate::book::{computation, failed};
 use appell::Error;
 
 /// Frames a second of the capture.
@@ -163,7 +163,7 @@ impl Rider {
                 text.replacen(before, with, 1)
             });
         let program = appell_codegen::compile(shipped.file, &text, &FunctionKind::STANDARD)?;
-        let model = JitModel::new(&program).map_err(told)?;
+        let model = JitModel::new(&program).map_err(computation)?;
         let mut parameters = model.info().default_parameters();
         if let Some(h) = model.info().parameter_index("h") {
             parameters[h] = height;
@@ -174,7 +174,7 @@ impl Rider {
     /// A ride; runs of even number go back.
     pub(super) fn ride(&self, manoeuvre: Manoeuvre, run: usize) -> Result<Trajectory, Error> {
         let info = self.model.info();
-        let mut dice = Dice::of(&format!("{} {run}", manoeuvre.name()));
+        let mut random = Random::of(&format!("{} {run}", manoeuvre.name()));
         let state = |name: &str| {
             let index = info.state_index(name);
             index.ok_or_else(|| failed(&format!("the model has no `{name}`")))
@@ -189,12 +189,12 @@ impl Rider {
             .enumerate()
             .map(|(k, frequency)| {
                 let part = 1.0 / (k + 1) as f64;
-                let w = frequency * dice.between(0.8, 1.2);
+                let w = frequency * random.between(0.8, 1.2);
                 [
                     w,
                     part * SWAY[0],
                     part * SWAY[1],
-                    dice.between(0.0, 2.0 * PI),
+                    random.between(0.0, 2.0 * PI),
                 ]
             })
             .collect();
@@ -232,7 +232,7 @@ impl Rider {
             sampling: Sampling::Every(1.0 / RATE),
             ..Simulation::new(&self.model)
         };
-        motion.run().map_err(told)
+        motion.run().map_err(computation)
     }
 
     /// Quadratic feedback about rolling straight ahead.
@@ -244,15 +244,17 @@ impl Rider {
             point.x[h] = 0.0;
         }
         let inputs: Vec<usize> = (0..EFFORT.len()).collect();
-        let equations = point.equations(&inputs).map_err(told)?;
+        let equations = point.equations(&inputs).map_err(computation)?;
         let places = states.iter().map(|state| {
             let place = equations.states.iter().position(|own| own == state);
             place.ok_or_else(|| failed("a state depends on others"))
         });
         let places: Vec<usize> = places.collect::<Result<_, _>>()?;
-        let system = reduce(&equations.system, &places).map_err(told)?.system;
+        let system = reduce(&equations.system, &places)
+            .map_err(computation)?
+            .system;
         let q = weights(&FELT.map(|(_, weight)| weight));
-        let regulator = lqr::continuous(&system, &q, &weights(&EFFORT)).map_err(told)?;
+        let regulator = lqr::continuous(&system, &q, &weights(&EFFORT)).map_err(computation)?;
         Ok(regulator.gain)
     }
 }

@@ -5,7 +5,7 @@ use appell_models::Shipped;
 use super::laboratory::Laboratory;
 use super::rider::Manoeuvre;
 use crate::book::claim::{Claim, NOT_PUBLIC, Section};
-use crate::book::found::failed;
+use crate::book::failed;
 use appell::Error;
 
 /// Abbreviations of table 2.

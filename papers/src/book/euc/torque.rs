@@ -5,7 +5,7 @@ use appell_models::Shipped;
 use appell_runtime::model::{At, Model};
 
 use super::laboratory::View;
-use crate::book::found::{failed, told};
+use crate::book::{computation, failed};
 use appell::Error;
 
 /// A planar model of the paper.
@@ -97,7 +97,7 @@ impl Planar {
             u: &u,
             p,
         };
-        let equations = InputEquations::at(self.model, at).map_err(told)?;
+        let equations = InputEquations::at(self.model, at).map_err(computation)?;
         let accelerations: Vec<Option<f64>> = (info.speed_quantities().iter())
             .map(|speed| match speed.name.as_ref() {
                 "v" => Some(moment.forward),
@@ -112,8 +112,8 @@ impl Planar {
         without[0] = None;
         let second = equations.solve(&without, &all);
         Ok([
-            first.map_err(told)?.inputs[0],
-            second.map_err(told)?.inputs[0],
+            first.map_err(computation)?.inputs[0],
+            second.map_err(computation)?.inputs[0],
         ])
     }
 

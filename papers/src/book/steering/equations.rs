@@ -5,7 +5,7 @@ use crate::steering::{EQUATIONS, Equation, Formulas};
 use appell_models::Shipped;
 
 use crate::book::claim::{Claim, Section};
-use crate::book::found::failed;
+use crate::book::failed;
 use appell::Error;
 
 /// What an identical formula rests on.

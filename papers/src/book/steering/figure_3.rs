@@ -6,7 +6,7 @@ use appell_report::figure::{Curve, Patch, Series, Stroke, Surface};
 
 use super::equations::misprint;
 use crate::book::claim::{Claim, Picture, Section, digits};
-use crate::book::found::{GRAVITY, Mechanism, RADIUS, cell_point, degrees, shown};
+use crate::book::steady_motions::{GRAVITY, Mechanism, RADIUS, cell_point, degrees, shown};
 use appell::Error;
 use appell::steady::regions;
 

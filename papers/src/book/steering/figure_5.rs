@@ -4,8 +4,9 @@ use appell_analysis::{Cell, Chart, Point};
 use appell_report::figure::{Curve, Map, Series, Stroke};
 
 use crate::book::claim::{Claim, Picture, Section, digits};
-use crate::book::found::{
-    GRAVITY, Mechanism, RADIUS, SLIDER_MASS, WHEEL_MASS, cell_point, shown, told,
+use crate::book::computation;
+use crate::book::steady_motions::{
+    GRAVITY, Mechanism, RADIUS, SLIDER_MASS, WHEEL_MASS, cell_point, shown,
 };
 use appell::Error;
 
@@ -139,7 +140,7 @@ impl Heights {
 /// Straight rolling, upright turning, spinning.
 fn non_generic(claims: &mut Vec<Claim>, unicycle: Mechanism, upright: f64) -> Result<(), Error> {
     let problem = unicycle.problem(&[("theta", 0.0), ("r", 0.1)])?;
-    let motions = problem.solve_isolated(60).map_err(told)?;
+    let motions = problem.solve_isolated(60).map_err(computation)?;
     let value = |name: &str| -> Result<Vec<f64>, Error> {
         motions
             .iter()
@@ -172,7 +173,7 @@ fn non_generic(claims: &mut Vec<Claim>, unicycle: Mechanism, upright: f64) -> Re
     claims.push(Claim::that("(44)", published, ours, agree >= 10, command));
 
     let problem = unicycle.problem(&[("psi_dot", 0.0), ("speed", 2.0)])?;
-    let motions = problem.solve_isolated(60).map_err(told)?;
+    let motions = problem.solve_isolated(60).map_err(computation)?;
     let rest = |name: &str| {
         motions
             .iter()

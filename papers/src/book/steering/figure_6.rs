@@ -4,7 +4,7 @@ use appell_analysis::{Cell, Chart, Point, Verdict};
 
 use super::figure_5::place_of_mass;
 use crate::book::claim::{Claim, Picture, Section};
-use crate::book::found::{Mechanism, cell_point, shown};
+use crate::book::steady_motions::{Mechanism, cell_point, shown};
 use appell::Error;
 use appell::steady::regions;
 

@@ -5,7 +5,7 @@ use appell_report::figure::{Figure, Mark, Panel, Series};
 use appell_spectra::spectrum::Complex;
 
 use crate::book::claim::{Claim, Picture, Section};
-use crate::book::found::{GRAVITY, Mechanism, RADIUS, values};
+use crate::book::steady_motions::{GRAVITY, Mechanism, RADIUS, values};
 use appell::Error;
 
 /// Pitch rates that are drawn, in rad/s.

@@ -5,7 +5,7 @@ use appell_runtime::Trajectory;
 
 use super::manoeuvres::{Path, Run, largest};
 use crate::book::claim::{Claim, Picture, Section};
-use crate::book::found::failed;
+use crate::book::failed;
 use appell::Error;
 
 /// A run: manoeuvre, name of its law, final place and yaw angle to nine digits, largest force.

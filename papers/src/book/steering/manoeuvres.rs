@@ -9,7 +9,7 @@ use appell_runtime::trajectory::Extras;
 use appell_runtime::{Simulation, Trajectory};
 
 use super::tables::placed;
-use crate::book::found::{failed, told};
+use crate::book::{computation, failed};
 use appell::Error;
 use appell::engine::Equations;
 use appell::inputs::controller::Plan;
@@ -118,7 +118,7 @@ impl Run {
                 };
                 Ok((*trajectory, Some(reason)))
             }
-            Err(error) => Err(told(error)),
+            Err(error) => Err(computation(error)),
         }
     }
 

@@ -8,7 +8,8 @@ use appell_spectra::spectrum::characteristic_polynomial;
 use super::manoeuvres::Path;
 use super::tables::{POLE, placed, steered, straight};
 use crate::book::claim::{Claim, Section};
-use crate::book::found::{GRAVITY, Mechanism, RADIUS, SLIDER_MASS, WHEEL_MASS, told, values};
+use crate::book::computation;
+use crate::book::steady_motions::{GRAVITY, Mechanism, RADIUS, SLIDER_MASS, WHEEL_MASS, values};
 use appell::Error;
 
 /// Where stability changes by a real eigenvalue.
@@ -44,7 +45,7 @@ fn circles(claims: &mut Vec<Claim>) -> Result<(), Error> {
     let wheel = Mechanism::shipped("rolling_wheel")?;
     let (tilt, turn) = (TILT.to_radians(), 2.0);
     let problem = wheel.problem(&[("theta", tilt), ("psi_dot", turn)])?;
-    let motion = problem.solve().map_err(told)?;
+    let motion = problem.solve().map_err(computation)?;
     let spin = wheel.value("phi_dot", &motion.point)?;
     for (place, text, names, wanted) in [
         (
@@ -146,7 +147,7 @@ fn unicycle(claims: &mut Vec<Claim>) -> Result<(), Error> {
     ));
     // (46), tilted spinning at a tilt.
     let problem = unicycle.problem(&[("theta", tilt), ("phi_dot", 0.0)])?;
-    let motions = problem.solve_isolated(60).map_err(told)?;
+    let motions = problem.solve_isolated(60).map_err(computation)?;
     let (m, m0, c) = (WHEEL_MASS, SLIDER_MASS, tilt.cos());
     let root = (m * m * c.powi(4) + 3.0 * m * m0 * c * c + m0 * m0).sqrt();
     let wanted = RADIUS * tilt.tan() / (2.0 * m0) * (m * c * c + m0 + root);
@@ -204,7 +205,11 @@ fn reach(claims: &mut Vec<Claim>) -> Result<(), Error> {
     let (mut ranks, mut lane, mut turn) = (Vec::new(), Vec::new(), Vec::new());
     for speed in [1.0, 5.0] {
         let (equations, outputs) = straight(speed, &OUTPUTS)?;
-        ranks.push(Controllability::of(&equations.system).map_err(told)?.rank);
+        ranks.push(
+            Controllability::of(&equations.system)
+                .map_err(computation)?
+                .rank,
+        );
         lane.push(output_rank(&equations.system, &outputs));
         turn.push(output_rank(&equations.system, &outputs[..5]));
     }
@@ -233,7 +238,7 @@ fn reach(claims: &mut Vec<Claim>) -> Result<(), Error> {
             let closed = steered(speed, outputs)?
                 .system
                 .closed(&placed(speed, outputs)?);
-            let found = characteristic_polynomial(&closed).map_err(told)?;
+            let found = characteristic_polynomial(&closed).map_err(computation)?;
             // (λ + 8)ⁿ
             let times = |polynomial: Vec<f64>, _: &&str| {
                 let padded = polynomial.iter().chain(&[0.0]);

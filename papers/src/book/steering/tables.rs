@@ -7,7 +7,8 @@ use appell_analysis::control::robust_placement;
 use nalgebra::{Complex, DMatrix};
 
 use crate::book::claim::{Claim, Section, shown};
-use crate::book::found::{Mechanism, RADIUS, failed, told};
+use crate::book::steady_motions::{Mechanism, RADIUS};
+use crate::book::{computation, failed};
 use appell::Error;
 
 /// Real part of all poles in 1/s.
@@ -45,7 +46,7 @@ pub(super) fn straight(
     let mut point = OperatingPoint::new(unicycle.0);
     point.x.fill(0.0);
     point.x[index("omega_2")?] = speed / RADIUS;
-    let equations = point.equations(&[0]).map_err(told)?;
+    let equations = point.equations(&[0]).map_err(computation)?;
     let place = |name: &&str| {
         let state = index(name)?;
         let place = equations.states.iter().position(|s| *s == state);
@@ -58,14 +59,14 @@ pub(super) fn straight(
 /// The equations of the outputs about it.
 pub(super) fn steered(speed: f64, outputs: &[&str]) -> Result<Subsystem, Error> {
     let (equations, outputs) = straight(speed, outputs)?;
-    reduce(&equations.system, &outputs).map_err(told)
+    reduce(&equations.system, &outputs).map_err(computation)
 }
 
 /// Gains that place all poles of the outputs.
 pub(super) fn placed(speed: f64, outputs: &[&str]) -> Result<DMatrix<f64>, Error> {
     let poles = vec![Complex::from(POLE); outputs.len()];
     let placed = robust_placement::place(&steered(speed, outputs)?.system, &poles);
-    Ok(placed.map_err(told)?.gain)
+    Ok(placed.map_err(computation)?.gain)
 }
 
 /// The tables.

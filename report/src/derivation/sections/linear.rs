@@ -14,19 +14,19 @@ const LONGEST_COEFFICIENT: usize = 320;
 
 /// What rests, what runs on, and where the motion is steady.
 pub(super) fn steady(w: &mut Writer<'_>, linear: &Linearisation) -> Section {
-    let (essential, hidden) = linear.states.split_at(linear.essential);
+    let (essential, ignorable) = linear.states.split_at(linear.essential);
     let mut states = vec![words("The motion depends on the essential states ")];
     states.extend(letters(w, essential));
-    if hidden.is_empty() {
+    if ignorable.is_empty() {
         states.push(words("."));
     } else {
         states.push(words("; "));
-        states.extend(letters(w, hidden));
-        let one = hidden.len() == 1;
+        states.extend(letters(w, ignorable));
+        let one = ignorable.len() == 1;
         states.push(words(if one {
-            " is hidden: it does not influence them."
+            " is ignorable: they do not depend on it."
         } else {
-            " are hidden: they do not influence them."
+            " are ignorable: they do not depend on them."
         }));
     }
     let mut blocks = vec![Block::Sentence(states)];

@@ -6,9 +6,9 @@ use rand_xoshiro::SplitMix64;
 use rand_xoshiro::rand_core::{Rng as _, SeedableRng as _};
 
 /// Random numbers.
-pub(super) struct Dice(SplitMix64);
+pub(super) struct Random(SplitMix64);
 
-impl Dice {
+impl Random {
     /// A sequence of its own for every text.
     pub(super) fn of(text: &str) -> Self {
         let seed = text.bytes().fold(0xcbf2_9ce4_8422_2325, |hash, byte| {

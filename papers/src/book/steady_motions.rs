@@ -8,6 +8,7 @@ use appell_models::Shipped;
 use appell_report::figure::{Curve, Series, Stroke};
 use appell_runtime::model::Model;
 
+use crate::book::{computation, failed};
 use appell::Error;
 use appell::steady::regions::Shown;
 
@@ -47,9 +48,10 @@ impl Mechanism {
 
     /// Steady motions with quantities as given.
     pub(crate) fn problem(self, given: &[(&str, f64)]) -> Result<SteadyProblem<'static>, Error> {
-        let mut problem = SteadyProblem::new(self.0, Point::initial(self.0)).map_err(told)?;
+        let mut problem =
+            SteadyProblem::new(self.0, Point::initial(self.0)).map_err(computation)?;
         for (name, value) in given {
-            problem.fix(self.term(name)?, *value).map_err(told)?;
+            problem.fix(self.term(name)?, *value).map_err(computation)?;
         }
         Ok(problem)
     }
@@ -67,7 +69,7 @@ impl Mechanism {
             .and_then(|branches| branches.trace(STARTS));
         match traced {
             Err(BranchError::Steady(SteadyError::None { .. })) => Ok(Vec::new()),
-            other => other.map_err(told),
+            other => other.map_err(computation),
         }
     }
 
@@ -96,7 +98,7 @@ impl Mechanism {
             CHART_STARTS,
             threads,
         )
-        .map_err(told)
+        .map_err(computation)
     }
 
     /// Branches as curves over two quantities.
@@ -170,14 +172,4 @@ pub(crate) fn values(branches: &[Branch], wanted: impl Fn(&Special) -> bool) -> 
         .collect();
     values.sort_by(f64::total_cmp);
     values
-}
-
-/// A computation that did not come to its end.
-pub(crate) fn failed(reason: &str) -> Error {
-    Error::Computation(reason.to_owned())
-}
-
-/// The same for an error of the runtime.
-pub(crate) fn told(error: impl std::fmt::Display) -> Error {
-    Error::Computation(error.to_string())
 }

@@ -1,8 +1,9 @@
-//! What the hidden coordinates do in a steady motion: the paths of points.
+//! Paths of points in a steady motion.
 //!
-//! The essential states rest, so every point of the mechanism turns at one rate about one upright
-//! axis, or moves straight: its path is a circle, a helix or a line.
+//! The essential states are constant, so every point of the mechanism turns at a common rate about
+//! a vertical axis, or moves straight: its path is a circle, a helix or a line.
 
+use super::differences::derivatives;
 use crate::point::Point;
 use crate::term::Term;
 use appell_runtime::model::Model;
@@ -12,7 +13,7 @@ use appell_runtime::model::Model;
 pub struct Circle {
     /// Radius in m; infinite for a straight path, 0 for a point at rest.
     pub radius: f64,
-    /// Where its centre is, in the coordinates of the point; not finite for a straight path.
+    /// Coordinates of its centre; not finite for a straight path.
     pub centre: [f64; 2],
     /// Rate at which the direction of motion turns, from the first axis to the second, in rad/s; 0
     /// for a point at rest.
@@ -21,11 +22,11 @@ pub struct Circle {
     pub speed: f64,
 }
 
-/// Turn rates below this part of the largest rate of a hidden coordinate are rounding.
+/// Turn rates below this fraction of the largest rate of an ignorable coordinate are rounding.
 const STRAIGHT: f64 = 1e-11;
 
-/// The path of a point whose place in the plane are two coordinates or outputs. Works for any motion;
-/// in a steady one the circle stays the same.
+/// The osculating circle of a point whose position in the plane is given by two coordinates or
+/// outputs; constant in a steady motion.
 pub fn circle(model: &dyn Model, point: &Point, place: [Term; 2]) -> Circle {
     let rates = point.rates(model);
     let accelerations = second_rates(model, point, &rates);
@@ -77,21 +78,4 @@ fn second_rates(model: &dyn Model, point: &Point, rates: &[f64]) -> Vec<f64> {
     model.jacobians(point.at(), &mut same, &mut a, &mut b);
     let row = |row: &[f64]| row.iter().zip(rates).map(|(a, x)| a * x).sum();
     a.chunks(n.max(1)).map(row).collect()
-}
-
-/// Value, first and second derivative at zero, by central differences of order eight.
-fn derivatives(at: impl Fn(f64) -> [f64; 2], step: f64) -> [[f64; 2]; 3] {
-    const FIRST: [f64; 4] = [4.0 / 5.0, -1.0 / 5.0, 4.0 / 105.0, -1.0 / 280.0];
-    const SECOND: [f64; 4] = [8.0 / 5.0, -1.0 / 5.0, 8.0 / 315.0, -1.0 / 560.0];
-    let here = at(0.0);
-    let (mut first, mut second) = ([0.0; 2], [0.0; 2]);
-    for k in 0..4 {
-        let away = step * (k + 1) as f64;
-        let (before, after) = (at(-away), at(away));
-        for i in 0..2 {
-            first[i] += FIRST[k] * (after[i] - before[i]) / step;
-            second[i] += SECOND[k] * (after[i] - here[i] + (before[i] - here[i])) / (step * step);
-        }
-    }
-    [here, first, second]
 }

@@ -4,7 +4,7 @@ use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 /// A page without its body.
 #[derive(Debug, Clone, Copy)]
-pub struct Skeleton<'a> {
+pub struct PageShell<'a> {
     /// Title of the window.
     pub title: &'a str,
     /// Style sheet.
@@ -22,7 +22,7 @@ const HEAD: PreEscaped<&str> = PreEscaped(
 );
 const LINE: PreEscaped<&str> = PreEscaped("\n");
 
-impl<'a> Skeleton<'a> {
+impl<'a> PageShell<'a> {
     /// Of a title and a style sheet.
     pub const fn new(title: &'a str, style: &'a str) -> Self {
         Self {

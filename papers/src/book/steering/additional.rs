@@ -4,7 +4,7 @@ use appell_analysis::{Change, Kind};
 
 use super::manoeuvres::{Path, Run};
 use crate::book::claim::{Claim, Section};
-use crate::book::found::{GRAVITY, Mechanism, RADIUS, SLIDER_MASS, WHEEL_MASS};
+use crate::book::steady_motions::{GRAVITY, Mechanism, RADIUS, SLIDER_MASS, WHEEL_MASS};
 use appell::Error;
 
 /// The additions.

@@ -1,7 +1,5 @@
 //! What the derivation hands to scheduling and emission: arguments, functions, expressions.
 
-use std::ops::Range;
-
 use appell_runtime::model::{ModelInfo, Quantity};
 
 use crate::symbolic::{Expr, Graph, SymbolId};
@@ -332,7 +330,8 @@ impl FunctionKind {
             Self::AccelerationEnergy => (
                 "acceleration_energy",
                 "AccelerationEnergy",
-                "Acceleration energy S (Gibbs function) at the actual motion.",
+                "Acceleration energy S (Gibbs function) at the actual motion, without the terms ½ ω²(ω·Jω) of \
+                 the bodies, which no pseudo-acceleration enters.",
             ),
             Self::MassMatrix => (
                 "mass_matrix",
@@ -441,7 +440,7 @@ pub struct Paragraph {
     /// One line.
     pub title: String,
     /// The entries.
-    pub entries: Range<usize>,
+    pub entries: Vec<usize>,
 }
 
 impl Array {
@@ -485,7 +484,8 @@ impl Array {
         .under("Appell's equations, solved.", 0..speeds)
     }
 
-    /// A matrix of derivatives of ẋ by a vector, one paragraph per row.
+    /// A Jacobian of ẋ with respect to a vector, one paragraph per row; for the parameters one per
+    /// column, because each column is the solution of one linear system.
     pub fn jacobian(
         name: &str,
         about: &str,
@@ -496,14 +496,22 @@ impl Array {
         let columns = by.quantities(info);
         let symbol = &name.to_uppercase();
         let labels = info.states.iter().flat_map(|row| {
-            let label = move |column: &Quantity| format!("{symbol}_{}_{}", row.name, column.name);
+            let label = move |column: &Quantity| format!("d_{}_dot_d_{}", row.name, column.name);
             columns.iter().map(label)
         });
         let layout = Layout::Jacobian(Space::Rates, by);
         let mut array = Self::new(name, about, layout, entries).labelled(labels);
+        let (rows, width) = (info.states.len(), columns.len());
+        if by == Space::Parameters {
+            for (i, column) in columns.iter().enumerate() {
+                let title = format!("Column `{}` of {symbol}.", column.name);
+                array = array.under(&title, (0..rows).map(|row| row * width + i));
+            }
+            return array;
+        }
         for (i, state) in info.states.iter().enumerate() {
             let title = format!("Row `{}_dot` of {symbol}.", state.name);
-            array = array.under(&title, i * columns.len()..(i + 1) * columns.len());
+            array = array.under(&title, i * width..(i + 1) * width);
         }
         array
     }
@@ -524,10 +532,10 @@ impl Array {
 
     /// The same with a heading over some entries.
     #[must_use]
-    pub fn under(mut self, title: &str, entries: Range<usize>) -> Self {
+    pub fn under(mut self, title: &str, entries: impl IntoIterator<Item = usize>) -> Self {
         self.paragraphs.push(Paragraph {
             title: title.to_owned(),
-            entries,
+            entries: entries.into_iter().collect(),
         });
         self
     }
@@ -583,7 +591,7 @@ pub enum Layout {
     Vector(Space),
     /// So many numbers per entry of a vector.
     Rows(Space, usize),
-    /// One number per pair of entries: derivatives of the first vector by the second.
+    /// One number per pair of entries: derivatives of the first vector with respect to the second.
     Jacobian(Space, Space),
     /// A plain list.
     List(usize),

@@ -8,26 +8,26 @@
 //!
 //! | file | idea |
 //! |---|---|
-//! | `manifest.rs`, `fields.rs` | what `recording.toml` says, with its places |
+//! | `manifest.rs`, `fields.rs` | content of `recording.toml`, with positions |
 //! | `bare.rs` | files without one: columns with names of the spec; which part is held out |
-//! | `format.rs` | a run from a file of any format, which the end of its name tells |
+//! | `format.rs` | a run from a file of any format, by its extension |
 //! | `table.rs` | the numbers of a run, in SI and with increasing times |
-//! | `csv.rs`, `motive.rs` | rows of numbers, line by line; the header of Motive |
+//! | `csv.rs`, `motive.rs` | CSV line by line; the header of Motive |
 //! | `c3d.rs` | points and analog channels of motion capture |
-//! | `mcap.rs`, `parquet.rs` | logs of robots, tables of data stores; each where its feature is on |
+//! | `mcap.rs`, `parquet.rs` | robot logs, columnar tables; with their features |
 //! | `clock.rs` | which rows are in order; steps and gaps |
-//! | `channel.rs`, `level.rs` | what a column measures; how noisy it is |
-//! | `set.rs` | what a data set holds |
-//! | `run.rs` | a run from its table: inputs held, angles counted on |
-//! | `quantum.rs`, `noise.rs` | the step of a sensor; the noise level, stated and found |
-//! | `observed.rs` | the runs as the estimation core takes them |
+//! | `channel.rs`, `level.rs` | quantity of a column; its noise level |
+//! | `set.rs` | a data set |
+//! | `run.rs` | a run from its table: inputs held, angles unwrapped |
+//! | `quantum.rs`, `noise.rs` | resolution of a sensor; noise level, stated and estimated |
+//! | `observed.rs` | the runs as recordings for estimation |
 //! | `rebound.rs` | the same recordings for another spec |
-//! | `stretches.rs` | some rows of long recordings |
-//! | `finding.rs`, `error.rs` | what was mended or looks wrong; what cannot be read |
-//! | `limits.rs` | how large a data set may be |
+//! | `stretches.rs` | subsampling of long recordings |
+//! | `finding.rs`, `error.rs` | repairs and warnings; errors |
+//! | `limits.rs` | limits of the size of a data set |
 //!
-//! The same numbers come out whatever the units of the file. What a test run holds enters neither
-//! noise levels nor anything else that is computed here; its findings are about its form.
+//! Results do not depend on the units of the files. Test runs do not affect noise levels or other
+//! computed values; findings about them concern their form.
 
 mod bare;
 mod c3d;
@@ -70,7 +70,7 @@ use manifest::Manifest;
 /// Name of the file that describes a data set.
 pub const MANIFEST: &str = "recording.toml";
 
-/// Specs that can be named without a path, by name.
+/// Specs that can be referred to by name, without a path.
 pub type Library<'l> = &'l [(&'l str, Spec)];
 
 /// Reads a data set: a folder with a `recording.toml`, or the path of such a file. `instead` replaces
@@ -109,7 +109,7 @@ pub fn read(
         match format::read(&path, time.as_ref(), &channels, &mut budget) {
             Ok(table) => {
                 let run = run::read(name, part, table, &channels, &mut findings);
-                // Whoever states the unit has thought of it.
+                // A stated unit is trusted.
                 if time.is_none() {
                     findings.extend(run.sampling.doubt().map(|doubt| doubt.in_run(&run.name)));
                 }

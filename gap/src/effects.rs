@@ -4,11 +4,11 @@
 //! | file | idea |
 //! |---|---|
 //! | `library.rs` | the effects that are shipped |
-//! | `effect.rs` | what the file of an effect says |
-//! | `site.rs` | the places in a mechanism, and the words that stand for them |
+//! | `effect.rs` | the file of an effect |
+//! | `site.rs` | the sites in a mechanism, and their placeholders |
 //! | `candidate.rs` | an effect at a place: names, items to add, values to look for |
-//! | `drive.rs` | what inputs push along a pseudo-velocity, and the inertia there |
-//! | `place.rs` | mistakes in the file of an effect, in its words and at its places |
+//! | `drive.rs` | forces of inputs along a pseudo-velocity, and the inertia there |
+//! | `place.rs` | errors in the file of an effect, at their positions |
 //! | `model.rs` | a mechanism with many candidates, derived at once; at its nominal values the mechanism itself |
 
 mod candidate;

@@ -6,12 +6,12 @@ use std::fmt;
 /// The shape of an input over a time, from -1 to 1.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Excitation {
-    /// Sines of whole periods up to a frequency in Hz, all of one size, with phases that keep the peak
-    /// low (M. R. Schroeder, 1970).
+    /// Multisine of whole periods up to a frequency in Hz, of equal amplitudes, with phases for a
+    /// low crest factor (M. R. Schroeder, 1970).
     Multisine(f64),
-    /// A sine whose frequency in Hz rises in proportion to time up to this one.
+    /// Linear chirp up to this frequency in Hz.
     Chirp(f64),
-    /// Up and down at random in steps that last whole multiples of this time in s.
+    /// Pseudo-random binary sequence with this clock period in s.
     Steps(f64),
     /// A slow ramp up and down, so many times.
     Ramps(u32),
@@ -29,7 +29,7 @@ impl fmt::Display for Excitation {
 }
 
 impl Excitation {
-    /// Shapes worth a try in `duration` s with samples every `step` s.
+    /// Suitable shapes for `duration` s with samples every `step` s.
     pub fn library(duration: f64, step: f64) -> Vec<Self> {
         // A sine of fewer than ten samples is no sine any more.
         let highest = 0.1 / step;

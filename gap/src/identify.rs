@@ -1,4 +1,4 @@
-//! Parameters from recordings, with what the recordings cannot tell.
+//! Identification of parameters from recordings, with their identifiability.
 //!
 //! ```text
 //! data set --start--> values to begin with: levels of noise, states at the first rows
@@ -10,9 +10,9 @@
 //! ```
 //!
 //! The likelihood is that of the innovations of an extended Kalman filter with disturbing forces on
-//! every pseudo-velocity, whose levels are estimated too (`appell_estimate`). A model that
-//! is wrong therefore shows as large disturbances, not as wrong parameters with narrow intervals; and
-//! the robust intervals do not believe that what is left is white.
+//! every pseudo-velocity, whose levels are estimated too (`appell_estimate`). A wrong model
+//! therefore shows as large disturbances, not as wrong parameters with narrow intervals; and the
+//! robust intervals do not assume white residuals.
 
 mod additions;
 mod answer;
@@ -41,8 +41,8 @@ pub(crate) use options::longest_step;
 use problem::EFFORT;
 pub(crate) use problem::{Problem, begin};
 
-/// Finds the parameters of a model that make the runs to fit most likely, and measures its errors on
-/// the others. `stage` is called with the name of each stage.
+/// Fits the parameters of a model to the training runs by maximum likelihood, and measures
+/// prediction errors on the others. `stage` is called with the name of each stage.
 pub fn identify(
     set: &DataSet,
     model: &dyn Model,

@@ -1,7 +1,7 @@
-//! Parameters and inputs of recorded motions whose inputs nobody measured.
+//! Input-free identification of parameters, and recovered inputs, from recorded motions.
 //!
-//! The equations that the inputs leave over hold whatever they were; see
-//! [`appell_estimate::inverse`]. Runs to be fitted take part; their coordinates have to be measured.
+//! The input-free relations hold for any inputs; see [`appell_estimate::inverse`]. Training runs
+//! are used; their coordinates have to be measured.
 
 use appell_estimate::inverse::{
     Consistency, Found, InverseError, Record, Relations, Sought, Track,
@@ -13,10 +13,10 @@ use crate::data::{DataSet, Measured, Part, Role};
 
 /// Values of a profile on each side of the nominal one.
 const PROFILE: i32 = 12;
-/// From one value of a profile to the next.
+/// Ratio of consecutive values of a profile.
 const FACTOR: f64 = 1.12;
 
-/// What is looked for.
+/// The sought values.
 #[derive(Debug, Clone, Default)]
 pub struct Options {
     /// Parameters by name.
@@ -25,23 +25,23 @@ pub struct Options {
     pub biased: Vec<String>,
 }
 
-/// Why nothing is found.
+/// Why the identification failed.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum RelationError {
     /// No such parameter.
     #[error("the spec has no parameter `{name}`; there are {known}")]
     UnknownParameter {
-        /// What was asked for.
+        /// The requested name.
         name: String,
-        /// What there is.
+        /// Available names.
         known: String,
     },
     /// No such column of a coordinate.
     #[error("no column `{name}` measures a coordinate; there are {known}")]
     UnknownColumn {
-        /// What was asked for.
+        /// The requested name.
         name: String,
-        /// What there is.
+        /// Available names.
         known: String,
     },
     /// The computation failed.
@@ -62,11 +62,11 @@ pub struct Estimate {
     pub value: f64,
     /// Standard deviation from the noise.
     pub std: f64,
-    /// The same from how stretches of the recordings disagree.
+    /// Robust standard deviation, from stretches of the recordings.
     pub robust_std: f64,
-    /// 95 % interval; infinite at an end where the motions do not tell.
+    /// 95 % interval; infinite at an unbounded end.
     pub interval95: [f64; 2],
-    /// Values and how much larger the inconsistency is there, the others fitted; parameters only.
+    /// Values and the increase of the inconsistency there, with the others fitted; parameters only.
     pub profile: Vec<[f64; 2]>,
 }
 
@@ -95,13 +95,13 @@ pub struct Inputs {
 pub struct Answer {
     /// The sought values.
     pub estimates: Vec<Estimate>,
-    /// Everything on the search; nothing where no value was sought.
+    /// Result of the search; `None` if no value was sought.
     pub found: Option<Found>,
-    /// Relations that the inputs leave over at each time.
+    /// Number of input-free relations at each time.
     pub relations: usize,
-    /// Mean square of the whitened relations at the values found.
+    /// Mean square of the whitened relations at the estimates.
     pub normalised_square: f64,
-    /// Distance of the knots of the splines in s.
+    /// Spacing of the knots of the splines in s.
     pub spacing: f64,
     /// Measured columns with their noise in SI.
     pub noise: Vec<(String, f64)>,
@@ -111,7 +111,7 @@ pub struct Answer {
     pub inputs: Vec<Inputs>,
 }
 
-/// Finds what is sought, and the inputs.
+/// Estimates the sought values and the inputs.
 pub fn find(set: &DataSet, model: &dyn Model, options: &Options) -> Result<Answer, RelationError> {
     let info = model.info();
     let columns = coordinates(set);
@@ -279,7 +279,7 @@ fn estimate(
 /// Times, values and standard deviations of the inputs.
 type Band = (Vec<f64>, Vec<Vec<f64>>, Vec<Vec<f64>>);
 
-/// The inputs of a run with their band: noise of the motion, and what is not known of the values.
+/// The inputs of a run with their band: noise of the motion, and uncertainty of the values.
 fn inputs(
     consistency: &Consistency<'_>,
     values: &DVector<f64>,

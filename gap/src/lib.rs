@@ -1,10 +1,11 @@
-//! Recordings of real mechanisms, and where models of them fall short.
+//! Recordings of real mechanisms, identification, and diagnosis of model gaps.
 //!
 //! [`data`] reads recordings: values in SI at increasing times, bound to the names of a spec, each
-//! channel with its noise level, and with everything said that was mended or looks wrong. [`identify`]
-//! finds parameters from them, [`inverse`] from motions whose inputs nobody knows. [`motion_capture`]
-//! makes recordings of a capture of rigid bodies. [`effects`] are what a model may lack, and [`diagnose`]
-//! tells which of them it does. [`experiment`] has inputs that excite a mechanism.
+//! channel with its noise level, with findings on repairs and doubts. [`identify`] estimates
+//! parameters from them, [`inverse`] from motions with unknown inputs. [`motion_capture`] makes
+//! recordings of a capture of rigid bodies. [`effects`] is the library of effects that a model may
+//! lack, and [`diagnose`] finds those that it does. [`experiment`] has inputs that excite a
+//! mechanism.
 
 pub mod data;
 pub mod diagnose;

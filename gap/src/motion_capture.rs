@@ -12,10 +12,10 @@
 //!
 //! | file | idea |
 //! |---|---|
-//! | `skeleton.rs` | what a skeleton file says, with its places |
+//! | `skeleton.rs` | the skeleton file, with positions |
 //! | `anthropometry.rs` | published tables of segment masses |
-//! | `capture.rs`, `pose.rs` | rigid bodies over time; places and axes |
-//! | `ride.rs` | the points of a skeleton, and what a model measures |
+//! | `capture.rs`, `pose.rs` | rigid bodies over time; positions and axes |
+//! | `ride.rs` | the points of a skeleton, and the coordinates of a model |
 //! | `smooth.rs` | velocities and accelerations in the moving frame |
 //! | `written.rs` | the data set |
 

@@ -13,7 +13,7 @@ pub(crate) struct Slope {
 }
 
 impl Slope {
-    /// At a time, by least squares; nothing where the samples do not determine a parabola.
+    /// At a time, by least squares; `None` if the samples do not determine a parabola.
     pub(crate) fn at(t: f64, times: &[f64], values: impl Iterator<Item = f64>) -> Option<Self> {
         let weights = weights(times, t, 2, 1)?;
         Some(Self {

@@ -1,4 +1,5 @@
-//! Papers recomputed: every numbered equation, table and figure beside what general commands find.
+//! Papers recomputed: every numbered equation, table and figure, compared with the results of
+//! general commands.
 //!
 //! [`steering`] and [`euc`] make the books part by part, [`page`] writes one as HTML.
 

@@ -1,4 +1,4 @@
-//! What the papers print and what is right. `docs/errata.md` is written from this table.
+//! Errata of the papers. `docs/errata.md` is generated from this table.
 
 use std::fmt::Write as _;
 
@@ -17,20 +17,20 @@ pub const ACCELERATION_ENERGY: &str = "1/8*(5*m*R**2 + 4*m0*(R**2 + r**2))*w1d**
      + 1/4*(2*w1*w2*m*R**2 - w1*w3*(m*R**2 + 4*m0*r**2)*tan(th) - 4*w1*w3*m0*R*r + 8*w3*s*m0*r)*w3d \
      - m0*(w1**2*r - w2*w3*R + w3**2*r)*sd";
 
-/// A place where a paper and the right equation differ.
+/// An erratum: a difference between a paper and the correct equation.
 #[derive(Debug)]
 pub struct Erratum {
-    /// Which paper.
+    /// The paper.
     pub source: Source,
-    /// Number of the equation, or the place in the text.
+    /// Number of the equation, or position in the text.
     pub equation: &'static str,
-    /// What is printed, for people.
+    /// The printed text.
     pub printed: &'static str,
-    /// What is right, for people.
+    /// The correct text.
     pub right: &'static str,
-    /// Whose mistake it is.
+    /// Origin of the error.
     pub origin: ErratumOrigin,
-    /// How it is known.
+    /// Evidence.
     pub evidence: Evidence,
 }
 
@@ -44,14 +44,14 @@ pub enum Source {
     Euc,
 }
 
-/// Whose mistake an erratum is. The papers were read as recognised text.
+/// Origin of an erratum. The papers were read by text recognition.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ErratumOrigin {
-    /// The recognition garbled it; the context settles it.
+    /// An error of the text recognition, evident from the context.
     Recognition,
     /// An error or over-claim of the paper.
     Misprint,
-    /// Wrong in the text at hand; recognition or misprint cannot be told apart.
+    /// An error of the text recognition or a misprint.
     Undecided,
 }
 
@@ -66,36 +66,36 @@ impl ErratumOrigin {
     }
 }
 
-/// How an erratum is known.
+/// Evidence of an erratum.
 #[derive(Debug)]
 pub enum Evidence {
     /// A formula is compared with a derived quantity, by the test of this name.
     Test(&'static str, Comparison),
-    /// The text around it settles it; there is no formula to compare.
+    /// Evident from the context; there is no formula to compare.
     Context(&'static str),
 }
 
-/// A quantity as printed and as it is right.
+/// A quantity as printed and as corrected.
 #[derive(Debug)]
 pub struct Comparison {
     /// The mechanism it belongs to.
     pub subject: Subject,
-    /// The quantity: what is derived under this name, or a formula of what is derived.
+    /// The quantity: the name of a derived one, or a formula in derived quantities.
     pub quantity: Quantity,
     /// The printed formula.
     pub printed: &'static str,
-    /// The right formula.
+    /// The correct formula.
     pub right: &'static str,
 }
 
-/// Where a quantity is derived.
+/// The model of a quantity.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Subject {
     /// The rolling wheel.
     Wheel,
     /// The unicycle.
     Unicycle,
-    /// The unicycle rolling straight on: no tilt, no yaw rate, the mass in the middle.
+    /// The unicycle in straight rolling: no tilt, no yaw rate, centred mass.
     StraightUnicycle,
     /// The EUC with three degrees of freedom.
     Euc3,
@@ -103,10 +103,10 @@ pub enum Subject {
     Euc2,
 }
 
-/// What a formula is compared with.
+/// The quantity to which a formula is compared.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Quantity {
-    /// What is derived under this name.
+    /// The derived quantity of this name.
     Derived(&'static str),
     /// The derived quantity up to terms without pseudo-accelerations.
     AccelerationEnergy,
@@ -116,7 +116,7 @@ pub enum Quantity {
         residual: &'static str,
         /// The input.
         unknown: &'static str,
-        /// What else is replaced before.
+        /// Further substitutions.
         before: &'static [(&'static str, &'static str)],
     },
     /// A formula in derived quantities.
@@ -133,7 +133,7 @@ impl Comparison {
         }
     }
 
-    /// Whether the printed and the right formula are what is derived.
+    /// Whether the printed and the correct formula agree with the derivation.
     pub fn verdicts(&self) -> [bool; 2] {
         let mut paper = self.paper();
         let before = paper.scope.clone();
@@ -193,7 +193,7 @@ impl Comparison {
 ///
 /// # Panics
 ///
-/// Where the right formula does not hold, or the printed one does.
+/// If the correct formula does not hold, or the printed one does.
 pub fn check(test: &str) {
     let mut found = 0;
     for erratum in ERRATA {

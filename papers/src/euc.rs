@@ -1,10 +1,10 @@
-//! The equations of *Experimental Model Identification of the Longitudinal Dynamics of an Electric Unicycle
-//! with a Human Rider* (Mihályi, Ji, Orosz, Takács), corrected where the errata say so. Each is compared
-//! with what appell derives: as a function, not at points.
+//! The equations of *Experimental Model Identification of the Longitudinal Dynamics of an Electric
+//! Unicycle with a Human Rider* (Mihályi, Ji, Orosz, Takács), corrected by the errata. Each is
+//! compared with the derivation as a function, not at points.
 //!
-//! Letters: `ga` and `ph` for the pitch angles of body and rider, a leading `d` for a rate, `dd` for an
-//! acceleration. `row1` … are the derived equations of motion, left side minus right side; a torque is
-//! right where it makes them vanish.
+//! Letters: `ga` and `ph` for the pitch angles of body and rider, a leading `d` for a rate, `dd`
+//! for an acceleration. `row1` … are the derived equations of motion, left side minus right side; a
+//! torque is correct if it makes them vanish.
 
 use crate::errata::Subject;
 use crate::paper;
@@ -14,15 +14,15 @@ use crate::paper;
 pub struct Equation {
     /// Its number in the paper.
     pub number: &'static str,
-    /// What it says.
+    /// Its content.
     pub about: &'static str,
-    /// As it is printed, for people.
+    /// The printed form.
     pub text: &'static str,
     /// The mechanism.
     subject: Subject,
     /// Lines `derived = formula`.
     lines: &'static str,
-    /// Symbols that have a value here.
+    /// Symbols with given values.
     at: &'static [(&'static str, &'static str)],
 }
 
@@ -169,7 +169,7 @@ const fn direct(
 }
 
 impl Equation {
-    /// What is not as derived; nothing where the equation holds.
+    /// Differences from the derivation; empty if the equation holds.
     pub fn differences(&self) -> Vec<String> {
         let mut paper = match self.subject {
             Subject::Euc2 => paper::euc_2dof(),

@@ -4,17 +4,17 @@ use std::collections::BTreeMap;
 
 use appell_codegen::symbolic::{Expr, Function, Graph, Rational};
 
-/// What the names of a formula stand for.
+/// Meanings of the names of a formula.
 #[derive(Debug, Clone, Default)]
 pub struct Scope(BTreeMap<String, Expr>);
 
 impl Scope {
-    /// Lets a name stand for an expression, from now on.
+    /// Defines a name.
     pub fn define(&mut self, name: &str, value: Expr) {
         self.0.insert(name.to_owned(), value);
     }
 
-    /// What a name stands for.
+    /// The expression of a name.
     pub fn get(&self, name: &str) -> Option<Expr> {
         self.0.get(name).copied()
     }
@@ -24,7 +24,7 @@ impl Scope {
 ///
 /// # Panics
 ///
-/// With the place, where the formula is not one or where a name stands for nothing.
+/// With the position, if the formula is invalid or a name is undefined.
 pub fn formula(graph: &mut Graph, scope: &Scope, text: &str) -> Expr {
     let mut reader = Reader {
         graph,

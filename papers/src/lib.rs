@@ -1,5 +1,5 @@
-//! Papers whose equations appell derives: their formulas as they are typed, corrected where they
-//! err, and compared by the identity test.
+//! Papers whose equations appell derives: their formulas, corrected where necessary, and compared
+//! by the identity test.
 //!
 //! | file | idea |
 //! |---|---|
@@ -7,8 +7,8 @@
 //! | `paper.rs` | the derived equations under the names of the papers |
 //! | `steering.rs` | the equations of *Steering Control of an Autonomous Unicycle* |
 //! | `euc.rs` | the equations of *Experimental Model Identification of the Longitudinal Dynamics of an Electric Unicycle* |
-//! | `errata.rs` | what is printed and what is right |
-//! | `book/` | both papers recomputed, beside what general commands find |
+//! | `errata.rs` | printed and correct formulas |
+//! | `book/` | both papers recomputed, compared with general commands |
 
 #![allow(
     clippy::unwrap_used,

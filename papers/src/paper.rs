@@ -16,15 +16,15 @@ use appell_spec::mechanism::{FrameId, GROUND};
 
 use crate::formula::{Scope, formula};
 
-/// A derivation that speaks the language of a paper.
+/// A derivation with the names of a paper.
 pub struct Paper {
     /// The mechanism.
     pub mechanism: Mechanism,
     /// Its derivation.
     pub derivation: Derivation,
-    /// What may stand in a formula.
+    /// Names that may occur in a formula.
     pub scope: Scope,
-    /// What was derived.
+    /// Derived quantities.
     derived: BTreeMap<String, Expr>,
 }
 
@@ -33,7 +33,7 @@ macro_rules! shared {
         $(#[$doc])*
         pub fn $name() -> MutexGuard<'static, Paper> {
             static SHARED: LazyLock<Mutex<Paper>> = LazyLock::new(|| Mutex::new($make));
-            // A test that failed while it held the lock has not changed what was derived.
+            // A test that failed while holding the lock has not changed the derivation.
             SHARED.lock().unwrap_or_else(PoisonError::into_inner)
         }
     };
@@ -67,7 +67,7 @@ fn mechanism(name: &str) -> Mechanism {
     checked.mechanism
 }
 
-/// Paper's name of a state, coordinate or parameter, and the spec's where they differ.
+/// Name of a state, coordinate or parameter in the paper, and in the spec where it differs.
 const STEERING_NAMES: &[(&str, &str)] = &[
     ("w1", "omega_1"),
     ("w2", "omega_2"),
@@ -222,7 +222,8 @@ impl Paper {
         }
     }
 
-    /// S with symbols for the accelerations, T, V, the power of what has no potential, d(T + V)/dt.
+    /// S with symbols for the accelerations, T, V, the power of loads without a potential, d(T +
+    /// V)/dt.
     fn energies(&mut self) {
         let d = &mut self.derivation;
         let bodies = d.bodies.clone();
@@ -308,7 +309,7 @@ impl Paper {
         }
     }
 
-    /// The matrix that takes components in a frame to those in the ground.
+    /// The rotation matrix from a frame to the ground.
     fn rotation(&mut self, frame: FrameId) {
         for column in 0..3 {
             let mut v = [Graph::ZERO; 3];
@@ -393,7 +394,7 @@ impl Paper {
         Substitution::new(&mut self.derivation.algebra.graph, &pairs)
     }
 
-    /// What was derived under a name.
+    /// The derived quantity of a name.
     pub fn derived(&self, name: &str) -> Expr {
         self.derived
             .get(name)
@@ -401,7 +402,7 @@ impl Paper {
             .unwrap_or_else(|| panic!("nothing was derived as `{name}`"))
     }
 
-    /// Names of everything that was derived.
+    /// Names of all derived quantities.
     pub fn derived_names(&self) -> Vec<String> {
         self.derived.keys().cloned().collect()
     }
@@ -417,19 +418,20 @@ impl Paper {
         algebra.test.are_equal(&algebra.graph, a, b)
     }
 
-    /// Whether what was derived under a name is the formula.
+    /// Whether the derived quantity of a name equals the formula.
     pub fn agrees(&mut self, name: &str, text: &str) -> bool {
         let (derived, typed) = (self.derived(name), self.formula(text));
         self.same(derived, typed)
     }
 
-    /// What differs between lines `formula = formula` and what was derived, once symbols are replaced:
-    /// nothing where every line holds. On the left names are those of what was derived; on the right,
-    /// of symbols first. A line `let name = formula` is an abbreviation for the lines after it.
+    /// Differences between lines `formula = formula` and the derivation after substitution of
+    /// symbols; empty if every line holds. On the left, names are those of derived quantities; on
+    /// the right, first those of symbols. A line `let name = formula` is an abbreviation for the
+    /// lines after it.
     ///
     /// # Panics
     ///
-    /// Where a line is no equation, or nothing is compared.
+    /// If a line is not an equation, or nothing is compared.
     pub fn differences(&mut self, lines: &str, at: &[(&str, &str)]) -> Vec<String> {
         let before = self.scope.clone();
         let mut left_scope = self.scope.clone();
@@ -498,13 +500,13 @@ impl Paper {
         })
     }
 
-    /// Demands that lines are what was derived, as for [`Paper::differences`].
+    /// Asserts that lines agree with the derivation, as for [`Paper::differences`].
     pub fn assert(&mut self, lines: &str) {
         let differences = self.differences(lines, &[]);
         assert!(differences.is_empty(), "{}", differences.join("\n"));
     }
 
-    /// Demands that the derived quantity is zero once symbols are replaced.
+    /// Asserts that the derived quantity vanishes after substitution of symbols.
     pub fn assert_solves(&mut self, name: &str, replacements: &[(&str, &str)]) {
         let mut substitution = self.substitution(replacements);
         let derived = self.derived(name);
@@ -518,7 +520,7 @@ impl Paper {
         );
     }
 
-    /// Values of two expressions at a point, for the message of a failure.
+    /// Values of two expressions at a point, for failure messages.
     fn difference(&self, derived: Expr, typed: Expr) -> String {
         let graph = &self.derivation.algebra.graph;
         let values: Vec<f64> = (0..graph.symbol_count())

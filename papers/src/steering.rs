@@ -1,10 +1,10 @@
 //! The equations of *Steering Control of an Autonomous Unicycle* (Vizi, Orosz, Takács, Stépán) that
-//! are formulas, corrected where the errata say so. Each is compared with what appell derives: as a
-//! function, not at points.
+//! are formulas, corrected by the errata. Each is compared with the derivation as a function, not
+//! at points.
 //!
-//! Letters: `th`, `psi`, `phi` for the angles, `w1` … for the pseudo-velocities, `s` for σ, `Pd` and
-//! `Fd` for the steady yaw and pitch rate, a trailing `d` for a rate. Steady values stand where
-//! w1 = s = 0; `c1`, `c2`, … are the coefficients of the characteristic polynomial.
+//! Letters: `th`, `psi`, `phi` for the angles, `w1` … for the pseudo-velocities, `s` for σ, `Pd`
+//! and `Fd` for the steady yaw and pitch rate, a trailing `d` for a rate. Steady values are those
+//! with w1 = s = 0; `c1`, `c2`, … are the coefficients of the characteristic polynomial.
 
 use std::sync::MutexGuard;
 
@@ -22,9 +22,9 @@ pub use table::EQUATIONS;
 pub struct Equation {
     /// Its number or numbers in the paper.
     pub number: &'static str,
-    /// What it says.
+    /// Its content.
     pub about: &'static str,
-    /// What is compared.
+    /// The compared formulas.
     pub claims: &'static [Claim],
 }
 
@@ -33,13 +33,13 @@ pub struct Equation {
 pub struct Claim {
     /// The mechanism.
     pub subject: Subject,
-    /// Symbols that have a value here.
+    /// Symbols with given values.
     pub at: &'static [(&'static str, &'static str)],
     /// The formulas.
     pub formulas: Formulas,
 }
 
-/// How formulas are compared.
+/// Kind of comparison.
 #[derive(Debug)]
 pub enum Formulas {
     /// Lines `derived = formula`.
@@ -51,7 +51,7 @@ pub enum Formulas {
 }
 
 impl Formulas {
-    /// As they are typed.
+    /// Literally.
     pub const fn text(&self) -> &'static str {
         match self {
             Self::Lines(text) | Self::Matrix(text) | Self::Energy(text) => text,
@@ -65,7 +65,7 @@ impl Equation {
         EQUATIONS.iter().find(|equation| equation.number == number)
     }
 
-    /// What is not as derived; nothing where the equation holds.
+    /// Differences from the derivation; empty if the equation holds.
     pub fn differences(&self) -> Vec<String> {
         self.claims.iter().flat_map(Claim::differences).collect()
     }

@@ -1,8 +1,8 @@
-//! The derivation as a page for people: Unicode text, LaTeX, HTML.
+//! The derivation as a readable page: Unicode text, LaTeX, HTML.
 //!
-//! [`page`] writes the derivation of a mechanism from its frames to its equations. A [`Page`] knows
-//! neither its format nor the graph behind it; [`text()`], [`latex()`] and [`html()`] set it.
-//! [`linear`] is the page of the linear equations about a steady motion.
+//! [`page`] writes the derivation of a mechanism from its frames to its equations. A [`Page`] is
+//! independent of its format and of the expression graph; [`text()`], [`latex()`] and [`html()`]
+//! set it. [`linear`] is the page of the linear equations about a steady motion.
 
 mod angles;
 mod arrange;
@@ -34,8 +34,8 @@ use writer::Writer;
 
 /// Writes the derivation of a mechanism, up to a stage.
 ///
-/// The derivation is the one of this mechanism; it only grows by the expressions that the page
-/// shows. Findings are those of the reactions, at [`Stage::All`] alone.
+/// The derivation must be that of this mechanism; the expressions of the page are added to it.
+/// Findings are those of the reactions, only at [`Stage::All`].
 pub fn page(
     mechanism: &Mechanism,
     derivation: &mut Derivation,

@@ -1,8 +1,8 @@
 //! Line plots as SVG.
 //!
 //! A figure is a stack of panels over a common horizontal axis, or one panel with equal axes. The
-//! text depends on the data alone. Colours are those of Okabe and Ito, which people with any
-//! colour vision can tell apart; the figure follows the reader's light or dark scheme.
+//! text depends on the data alone. Colours are those of Okabe and Ito, which are distinguishable
+//! with any colour vision; the figure follows the reader's light or dark scheme.
 
 mod axis;
 mod branches;
@@ -43,12 +43,12 @@ pub struct Panel {
     pub series: Vec<Series>,
 }
 
-/// A place on the horizontal axis where something happens.
+/// A mark on the horizontal axis.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Mark {
-    /// Where.
+    /// Its position.
     pub x: f64,
-    /// What happens; shown where the pointer rests on the mark.
+    /// Its tooltip.
     pub about: String,
 }
 
@@ -63,7 +63,7 @@ pub struct Figure {
     pub panels: Vec<Panel>,
     /// Vertical lines through all panels.
     pub marks: Vec<Mark>,
-    /// Whether a metre is as long upward as sideways.
+    /// Whether both axes have the same scale.
     pub equal_axes: bool,
 }
 
@@ -76,7 +76,7 @@ const HEADER_HEIGHT: f64 = 26.0;
 const PANEL_HEIGHT: f64 = 130.0;
 /// Tick labels and axis label below the last panel.
 const FOOTER_HEIGHT: f64 = 46.0;
-/// Heights that a panel with equal axes may take.
+/// Limits of the height of a panel with equal axes.
 const EQUAL_HEIGHT: [f64; 2] = [160.0, 640.0];
 /// Mean width of a character at the font's size of 12.
 const CHARACTER: f64 = 6.6;
@@ -97,8 +97,8 @@ text{fill:#222;font:12px system-ui,sans-serif}.title{font-size:15px;font-weight:
 
 impl Figure {
     /// Columns of a trajectory over time, one panel per list of names, with a mark at each limit
-    /// that the motion passes. Names that the trajectory does not have are left out, and so are
-    /// panels without lines.
+    /// that the motion passes. Names that the trajectory does not have, and panels without lines,
+    /// are omitted.
     pub fn over_time(trajectory: &Trajectory, panels: &[Vec<&str>]) -> Self {
         let series = |name: &&str| {
             let y = trajectory.column_in_unit(name)?;
@@ -131,8 +131,8 @@ impl Figure {
         }
     }
 
-    /// All states and inputs over time. Coordinates, pseudo-velocities and inputs of one unit
-    /// share a panel, unless one is so much larger that the others would look flat.
+    /// All states and inputs over time. Coordinates, pseudo-velocities and inputs of one unit share
+    /// a panel, unless one is so large that the others would appear constant.
     pub fn of_states_and_inputs(trajectory: &Trajectory) -> Self {
         let info = trajectory.info();
         let (speeds, others) = trajectory.columns().split_at(info.speeds);
@@ -163,8 +163,8 @@ impl Figure {
         Self::over_time(trajectory, &panels)
     }
 
-    /// One column over another with equal axes, such as the path of a point seen from above.
-    /// Nothing if a column does not exist.
+    /// One column over another with equal axes, such as the path of a point seen from above. `None`
+    /// if a column does not exist.
     pub fn path(trajectory: &Trajectory, x: &str, y: &str) -> Option<Self> {
         let unit = |name| {
             let index = trajectory.column_index(name)?;
@@ -255,7 +255,7 @@ impl Figure {
     }
 }
 
-/// Quantities that are drawn together.
+/// Quantities that share a panel.
 struct SharedPanel<'a> {
     unit: &'a str,
     size: f64,
@@ -263,7 +263,7 @@ struct SharedPanel<'a> {
 }
 
 impl SharedPanel<'_> {
-    /// Whether a quantity of this size has the unit and is seen beside the others.
+    /// Whether a quantity of this magnitude has the unit and is visible with the others.
     fn suits(&self, quantity: &Quantity, size: f64) -> bool {
         let similar = size <= 12.0 * self.size && self.size <= 12.0 * size;
         quantity.unit == self.unit && (similar || size == 0.0 || self.size == 0.0)
@@ -295,7 +295,7 @@ impl Panel {
     }
 }
 
-/// Where a panel is drawn.
+/// Position of a panel.
 struct Area {
     top: f64,
     width: f64,
@@ -354,8 +354,8 @@ impl Area {
         svg.put(&path("frame dashed", &line).titled(&mark.about));
     }
 
-    /// The line's path without the points that would not be seen: a point is drawn where it or
-    /// its successor lies more than a third of a pixel from the last one drawn.
+    /// The path of the line without invisible points: a point is drawn if it or its successor is
+    /// more than a third of a pixel from the last one drawn.
     fn line(&self, series: &Series, x_axis: &Axis, y_axis: &Axis) -> String {
         const VISIBLE: f64 = 1.0 / 3.0;
         let place = |(x, y): (&f64, &f64)| {
@@ -413,7 +413,7 @@ fn style(series: usize) -> String {
     format!("line c{}{dashes}", series % COLOURS)
 }
 
-/// A text about a place.
+/// A text centred at a point.
 fn centred(place: [f64; 2], content: &str) -> String {
     text(place).with("text-anchor", "middle").text(content)
 }

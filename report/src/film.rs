@@ -1,6 +1,6 @@
-//! A page with the moving mechanism: one file that needs no network.
+//! A page with an animation of the mechanism: one self-contained file.
 //!
-//! [`data`] writes what the page shows; the scripts beside it draw that, whatever the mechanism:
+//! [`data`] writes the data of the page; the scripts draw it for any mechanism:
 //!
 //! | script | what it knows |
 //! |---|---|
@@ -44,11 +44,11 @@ const SCRIPTS: [&str; 15] = [
     include_str!("film/player.js"),
 ];
 
-/// Nothing but what stands in the page.
+/// Only the content of the page.
 const POLICY: &str = "default-src 'none'; script-src 'unsafe-inline'; \
                       style-src 'unsafe-inline'; img-src data:";
 
-/// The page of a motion; `ending` tells why it ended early.
+/// The page of a motion; `ending` gives the cause of an early end.
 pub fn page(
     mechanism: &Mechanism,
     model: &dyn Model,
@@ -56,7 +56,7 @@ pub fn page(
     ending: Option<&str>,
 ) -> Outcome<String> {
     let data = data::json(mechanism, model, motion, ending)?;
-    // The text of a spec stays text: no `<` leaves the data, so that nothing in it ends the element.
+    // The text of a spec is escaped: without `<` in the data nothing can end the element.
     let data = data.to_string().replace('<', "\\u003c");
     let scripts = SCRIPTS.join("\n");
     let shell = PageShell {

@@ -1,7 +1,7 @@
-//! A gap report for people: a page, and the sentences of any telling.
+//! A gap report as a page, and its sentences.
 //!
-//! [`page()`] sets [`words`], [`plots`] and tables; [`doubt`] asks after units, [`numbers`] keeps the
-//! digits that mean something.
+//! [`page()`] sets [`words`], [`plots`] and tables; [`doubt`] suspects unit errors, [`numbers`]
+//! writes significant digits.
 
 mod doubt;
 mod numbers;

@@ -1,4 +1,4 @@
-//! What an identification found, for people: text, and a page with a figure.
+//! Results of an identification: text, and a page with a figure.
 
 mod figure;
 mod page;
@@ -17,7 +17,8 @@ pub use page::page;
 
 /// Smaller coefficients of a direction are not shown.
 const NEGLIGIBLE: f64 = 0.1;
-/// A value farther off than this, in tolerances, probably compensates for a missing effect.
+/// Deviation from the prior, in prior standard deviations, beyond which a value probably
+/// compensates for a missing effect.
 const FAR: f64 = 3.0;
 /// Ratio of prediction errors above which the fit counts as biased.
 const WORSE: f64 = 1.2;
@@ -155,7 +156,7 @@ fn correlation(answer: &Answer) -> Part {
     part.rows[0].push(String::new());
     part.rows[0].extend(names.clone());
     for (name, row) in names.into_iter().zip(answer.correlation.row_iter()) {
-        // No zero with a sign.
+        // Avoids a negative zero.
         let cells = row
             .iter()
             .map(|value| format!("{:.2}", (100.0 * value).round() / 100.0 + 0.0));

@@ -1,13 +1,13 @@
-//! What people look at: figures, drawings and pages.
+//! Figures, drawings and pages.
 //!
 //! - [`figure`]: plots as SVG;
-//! - [`drawing`]: the mechanism at its initial state as SVG; places and forces along a motion;
+//! - [`drawing`]: the mechanism at its initial state as SVG; positions and forces along a motion;
 //! - [`svg`]: their elements;
 //! - [`derivation`]: the derivation as text, LaTeX or HTML;
-//! - [`mod@film`]: the page with the moving mechanism;
-//! - [`gap`], [`identification`], [`recording`]: what recordings tell, as text and pages;
-//! - [`page_shell`]: what all pages are wrapped in;
-//! - [`text`]: columns of text, numbers for people.
+//! - [`mod@film`]: the page with the animated mechanism;
+//! - [`gap`], [`identification`], [`recording`]: results from recordings, as text and pages;
+//! - [`page_shell`]: the document around all pages;
+//! - [`text`]: tables as text, readable numbers.
 
 pub mod derivation;
 pub mod drawing;

@@ -1,4 +1,4 @@
-//! What all pages are wrapped in. They need nothing beside them, and no network.
+//! The document around all pages, which are self-contained.
 
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
@@ -9,7 +9,7 @@ pub struct PageShell<'a> {
     pub title: &'a str,
     /// Style sheet.
     pub style: &'a str,
-    /// What the page may load, as a content security policy; anything if there is none.
+    /// Content security policy, if any.
     pub policy: Option<&'a str>,
     /// Name space of the elements, for readers of XML.
     pub namespace: Option<&'a str>,
@@ -23,7 +23,7 @@ const HEAD: PreEscaped<&str> = PreEscaped(
 const LINE: PreEscaped<&str> = PreEscaped("\n");
 
 impl<'a> PageShell<'a> {
-    /// Of a title and a style sheet.
+    /// With a title and a style sheet.
     pub const fn new(title: &'a str, style: &'a str) -> Self {
         Self {
             title,

@@ -1,4 +1,4 @@
-//! Recordings: what a person is told of them.
+//! Summaries of recordings.
 
 use std::fmt::Write as _;
 
@@ -43,7 +43,7 @@ fn runs(set: &DataSet) -> String {
     table(&rows, 2..6)
 }
 
-/// What a run is for.
+/// Role of a run.
 pub fn part(run: &Run) -> &'static str {
     match run.part {
         Part::Fit => "fit",
@@ -79,7 +79,7 @@ fn channels(set: &DataSet) -> String {
     table(&rows, 3..6)
 }
 
-/// What a channel holds.
+/// Quantity of a channel.
 pub fn role(role: Role) -> &'static str {
     match role {
         Role::Measures(_) => "measured",
@@ -101,7 +101,7 @@ pub fn sentence(finding: &Finding) -> String {
     text + &finding.message
 }
 
-/// The word for how grave a finding is.
+/// The word for the severity of a finding.
 pub fn severity(finding: &Finding) -> &'static str {
     match finding.kind.severity() {
         Severity::Error => "error",

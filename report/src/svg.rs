@@ -22,7 +22,7 @@ impl Element {
         }
     }
 
-    /// With an attribute more.
+    /// With another attribute.
     pub fn with(mut self, attribute: &str, value: impl Display) -> Self {
         let value = escaped(&value.to_string());
         // Writing to a string cannot fail.
@@ -38,7 +38,7 @@ impl Element {
         self
     }
 
-    /// Its start, where other elements follow.
+    /// Its start tag.
     pub fn open(self) -> String {
         self.start + ">"
     }
@@ -48,12 +48,12 @@ impl Element {
         self.start + "/>"
     }
 
-    /// The element about a text.
+    /// The element around a text.
     pub fn text(self, content: &str) -> String {
         format!("{}>{}</{}>", self.start, escaped(content), self.name)
     }
 
-    /// The element with what is shown where the pointer rests on it; may be empty.
+    /// The element with a tooltip, which may be empty.
     pub fn titled(self, about: &str) -> String {
         if about.is_empty() {
             return self.empty();
@@ -63,12 +63,12 @@ impl Element {
     }
 }
 
-/// A path of a class.
+/// A path with a class.
 pub fn path(class: &str, line: &str) -> Element {
     Element::new("path").with("class", class).with("d", line)
 }
 
-/// Where a text starts.
+/// Anchor of a text.
 pub fn text([x, y]: [f64; 2]) -> Element {
     Element::new("text").lengths([("x", x), ("y", y)])
 }
@@ -88,7 +88,7 @@ pub fn polyline(corners: impl IntoIterator<Item = [f64; 2]>) -> String {
 pub struct Document(String);
 
 impl Document {
-    /// An empty sheet of paper; the styles one after the other.
+    /// An empty document with these styles.
     pub fn new([width, height]: [f64; 2], styles: &[&str]) -> Self {
         let start = Element::new("svg")
             .with("xmlns", "http://www.w3.org/2000/svg")
@@ -103,7 +103,7 @@ impl Document {
         document
     }
 
-    /// A picture in a page, which has its style.
+    /// A picture in a page, which has the style.
     pub fn styled_by_page([width, height]: [f64; 2], class: &str) -> Self {
         let start = Element::new("svg")
             .with("viewBox", format_args!("0 0 {width} {height}"))

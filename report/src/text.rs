@@ -1,6 +1,6 @@
-//! Columns of text, and numbers for people.
+//! Tables as text, and readable numbers.
 
-/// Rows with columns as wide as needed; the columns from `numbers` on stand to the right.
+/// Rows with columns as wide as needed; the columns from `numbers` on are right-aligned.
 pub fn table(rows: &[Vec<String>], numbers: std::ops::Range<usize>) -> String {
     let columns = rows.iter().map(Vec::len).max().unwrap_or(0);
     let width = |column: usize| {
@@ -30,7 +30,7 @@ pub fn table(rows: &[Vec<String>], numbers: std::ops::Range<usize>) -> String {
     text
 }
 
-/// A number with its unit; the unit 1 is none.
+/// A number with its unit; the unit 1 is omitted.
 pub fn with_unit(number: &str, unit: &str) -> String {
     match unit {
         "" | "1" => number.to_owned(),
@@ -38,7 +38,7 @@ pub fn with_unit(number: &str, unit: &str) -> String {
     }
 }
 
-/// A number for people: six digits.
+/// A number with six digits.
 pub fn number(value: f64) -> String {
     if value == 0.0 {
         return "0".to_owned();

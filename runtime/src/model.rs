@@ -105,8 +105,8 @@ pub struct SignalTable {
 pub struct Reaction {
     /// Name of the point that feels it, or of the constraint that has no point.
     pub name: Text,
-    /// N for the force on a point. For a multiplier a power divided by the rate of what the
-    /// constraint holds at a value, in SI; empty where no unit can be written.
+    /// N for the force on a point. For a multiplier the unit of a power divided by the constrained
+    /// rate, in SI; empty if it cannot be written.
     pub unit: Text,
     /// Whether it is the force on a point.
     pub on_point: bool,
@@ -280,11 +280,11 @@ pub struct At<'a> {
 /// The gradient of a scalar at a place: as many numbers as states, inputs and parameters.
 #[derive(Debug)]
 pub struct Gradient<'a> {
-    /// By the state.
+    /// With respect to the state.
     pub x: &'a mut [f64],
-    /// By the inputs.
+    /// With respect to the inputs.
     pub u: &'a mut [f64],
-    /// By the parameters.
+    /// With respect to the parameters.
     pub p: &'a mut [f64],
 }
 

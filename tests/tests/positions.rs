@@ -98,6 +98,14 @@ fn hanging(model: &dyn Model) -> Result<Linearisation, Undetermined> {
 }
 
 #[test]
+fn a_multiplier_has_the_unit_of_power_over_the_constrained_rate() {
+    let model = model(ROD);
+    let reaction = &model.info().reactions[0];
+    // The constraint is an area: W over m²/s.
+    assert_eq!((&*reaction.name, &*reaction.unit), ("length", "kg/s^2"));
+}
+
+#[test]
 fn a_hanging_pendulum_is_linearised_in_the_coordinate_that_is_free() {
     let text = ROD.replace("- l^2\"", "- l^2\", dependent = \"z\"");
     let model = model(&text);

@@ -33,7 +33,7 @@ impl Derivation {
         Ok(self.gradient_arrays(info, &weighted, &weights))
     }
 
-    /// Outputs with their derivatives by states and inputs.
+    /// Outputs and their Jacobians with respect to states and inputs.
     pub(super) fn output_jacobians(
         &mut self,
         mechanism: &Mechanism,
@@ -85,7 +85,7 @@ impl Derivation {
         (states, input_symbols(symbols, info))
     }
 
-    /// Derivatives of values by variables, row by row.
+    /// Derivatives of values with respect to variables, row by row.
     fn slopes(&mut self, values: &[Expr], variables: &[Expr]) -> Vec<Expr> {
         let mut slopes = Vec::with_capacity(values.len() * variables.len());
         for &value in values {
@@ -113,9 +113,9 @@ impl Derivation {
             .collect();
         let mut entries = gradient(graph, &weighted, &variables).into_iter();
         let parts = [
-            ("x", "By the state.", Space::State),
-            ("u", "By the inputs.", Space::Inputs),
-            ("p", "By the parameters.", Space::Parameters),
+            ("x", "With respect to the state.", Space::State),
+            ("u", "With respect to the inputs.", Space::Inputs),
+            ("p", "With respect to the parameters.", Space::Parameters),
         ];
         let array = |(name, about, by): (&str, &str, Space)| {
             let quantities = by.quantities(info);

@@ -86,7 +86,7 @@ pub fn program(
     Ok(Program {
         info,
         systems: systems.into_iter().map(|(size, _)| size).collect(),
-        file: mechanism.file.clone(),
+        file: shown_file(&mechanism.file).to_owned(),
         graph: derivation.algebra.graph,
         arguments,
         dependent: derivation.positions.dependent,
@@ -521,7 +521,7 @@ impl Derivation {
         [self.motion.accelerations.as_slice(), &self.coordinate_rates].concat()
     }
 
-    /// Derivatives of ẋ by each list of variables, row by row.
+    /// Derivatives of ẋ with respect to each list of variables, row by row.
     pub(super) fn derivatives<const N: usize>(
         &mut self,
         variables: [&[Expr]; N],
@@ -607,20 +607,29 @@ fn embedded(mechanism: &Mechanism, constraints: &Constraints) -> impl Iterator<I
     })
 }
 
+/// The file as comments name it: its path, or its name alone where the path is absolute.
+fn shown_file(file: &str) -> &str {
+    let path = std::path::Path::new(file);
+    let name = path.file_name().and_then(std::ffi::OsStr::to_str);
+    name.filter(|_| path.is_absolute()).unwrap_or(file)
+}
+
 /// Where the things of a spec stand, for comments.
 struct Source<'a>(&'a Mechanism);
 
 impl Source<'_> {
     fn of_body(&self, index: BodyId) -> String {
         let body = &self.0.bodies[index];
-        format!("Body `{}`, {}:{}.", body.name, self.0.file, body.line)
+        let file = shown_file(&self.0.file);
+        format!("Body `{}`, {file}:{}.", body.name, body.line)
     }
 
     fn of_constraint(&self, index: ConstraintId) -> String {
         let constraint = &self.0.constraints[index];
+        let file = shown_file(&self.0.file);
         format!(
-            "Constraint `{}`, {}:{}.",
-            constraint.name, self.0.file, constraint.line
+            "Constraint `{}`, {file}:{}.",
+            constraint.name, constraint.line
         )
     }
 }

@@ -22,12 +22,13 @@ pub fn of_solution(mechanism: &Mechanism, motion: &Motion) -> Vec<Term> {
     terms.push(term(
         "rhs",
         if alone {
-            "`Π - b` after elimination, times the common denominator in `pivot`; `_over_`: divided."
+            "`Π − b` after elimination, times the common denominator in `pivot`."
         } else {
-            "`Π - b`."
+            "`Π − b`."
         },
     ));
     if alone {
+        terms.extend(divided(mechanism));
         terms.push(term(
             "pivot",
             "what divides `rhs`: `ω̇ = rhs/pivot`, plus terms that need no division.",
@@ -37,32 +38,46 @@ pub fn of_solution(mechanism: &Mechanism, motion: &Motion) -> Vec<Term> {
             "`rhs/pivot` where `ω̇` has further terms.",
         ));
     }
+    let (lower, forward) = (letters::lower(mechanism), letters::forward(mechanism));
     if together {
+        let (mass, diagonal) = (letters::mass(mechanism), letters::diagonal(mechanism));
+        let factors = format!("`{mass} = {lower} {diagonal} {lower}ᵀ`");
+        let unit = format!("the factor of {factors}, unit triangular in the order of elimination.");
+        let beside = format!("the diagonal of {factors}, and `{lower} {diagonal}` beside it.");
         terms.extend([
-            term(letters::mass(mechanism), "entries of the mass matrix M."),
-            term(
-                letters::lower(mechanism),
-                "the factor of `M = L D Lᵀ`, unit triangular in the order of elimination.",
-            ),
-            term(
-                letters::diagonal(mechanism),
-                "the diagonal of `M = L D Lᵀ`, and `L D` beside it.",
-            ),
-            term(letters::forward(mechanism), "what solves `L z = rhs`."),
+            term(mass, "entries of the mass matrix."),
+            term(lower, &unit),
+            term(diagonal, &beside),
+            term(forward, &format!("what solves `{lower} {forward} = rhs`.")),
         ]);
     }
     let rho = match (alone, together) {
-        (true, false) => "`rho = rhs - pivot ω̇`, ω̇ less its further terms,",
-        (false, _) => "`rho = rhs - M ω̇`",
-        (true, true) => "`rho = rhs - pivot ω̇`, ω̇ less its further terms, or `rhs - M ω̇`,",
+        (true, false) => "`rho = rhs − pivot ω̇`, ω̇ less its further terms,",
+        (false, _) => "`rho = rhs − M ω̇`",
+        (true, true) => "`rho = rhs − pivot ω̇`, ω̇ less its further terms, or `rhs − M ω̇`,",
     };
     terms.extend([
         term("d_rhs", "derivatives of `rhs`."),
         term("d_pivot", "derivatives of `pivot`."),
         term("d_rho", &format!("derivatives of {rho} with ω̇ held.")),
-        term("d_z", "what solves `L d_z = d_rho`."),
+        term("d_z", &format!("what solves `{lower} d_z = d_rho`.")),
     ]);
     terms
+}
+
+/// Names of right-hand sides that are divided by a parameter where they are written.
+fn divided(mechanism: &Mechanism) -> impl Iterator<Item = Term> {
+    mechanism.pseudo_velocities.iter().flat_map(|speed| {
+        let speed = &speed.label.name;
+        mechanism.parameters.iter().map(move |parameter| {
+            let parameter = &parameter.label.name;
+            Term {
+                symbol: format!("rhs_{speed}_over_{parameter}"),
+                names: Names::Alone,
+                meaning: format!("already divided by `{parameter}`."),
+            }
+        })
+    })
 }
 
 /// Names of the motions of frames and bodies.
@@ -213,7 +228,9 @@ pub fn of_multipliers(mechanism: &Mechanism, constraints: &Constraints) -> Vec<T
             let constraint = &mechanism.constraints[row.constraint];
             let unit = unit_of_row(&constraint.kind);
             let name = &constraint.name;
-            let meaning = format!("the multiplier of constraint `{name}` as x, in W per `{unit}`.");
+            let meaning = format!(
+                "the multiplier of constraint `{name}`, in the x component, in W per `{unit}`."
+            );
             let place = &constraints.reactions[constraints.reported(row)?].name;
             Some(vector(letters::reaction(mechanism), place, meaning))
         })
@@ -243,7 +260,7 @@ fn unit_of_row(kind: &ConstraintKind) -> String {
 pub fn of_weights() -> Vec<Term> {
     vec![term(
         "adjoint",
-        "a derivative of the weighted sum by a value on the way.",
+        "a derivative of the weighted sum with respect to an intermediate value.",
     )]
 }
 

@@ -95,8 +95,8 @@ impl ImplicitMotion<'_> {
 }
 
 impl Motion {
-    /// Derivatives of ω̇ from those of the residuals by `variable`: of the eliminated equations, or of
-    /// `Π - b - M ω̇`.
+    /// Derivatives of ω̇ from those of the residuals with respect to `variable`: of the eliminated
+    /// equations, or of `Π - b - M ω̇`.
     pub fn solved_for(
         &self,
         algebra: &mut Algebra,

@@ -50,7 +50,7 @@ struct Held {
 }
 
 impl Held {
-    /// Derivatives by one symbol, the others held, at the motion that happens.
+    /// Derivatives with respect to one symbol, the others held, at the actual motion.
     fn partials(
         actual: &mut Substitution,
         algebra: &mut Algebra,
@@ -105,7 +105,7 @@ impl<'a> BoundMotion<'a> {
         Ok(bound)
     }
 
-    /// Derivatives of all rates by a variable: those of ω̇, then those of q̇.
+    /// Derivatives of all rates with respect to a variable: those of ω̇, then those of q̇.
     pub fn column(&mut self, algebra: &mut Algebra, variable: Expr) -> Outcome<Vec<Expr>> {
         let (dependent, system) = (self.dependent, &self.dependent.system);
         let Held {

@@ -153,7 +153,7 @@ impl Derivatives {
     }
 }
 
-/// Derivative of a function by its argument; `value` is the function's node.
+/// Derivative of a function with respect to its argument; `value` is the function's node.
 pub(super) fn outer_derivative(
     graph: &mut Graph,
     function: Function,

@@ -39,7 +39,7 @@ pub fn gradient(graph: &mut Graph, weighted: &[(Expr, Expr)], by: &[SymbolId]) -
     gradient
 }
 
-/// Derivatives of the weighted sum by expressions, on their way to the parts.
+/// Derivatives of the weighted sum with respect to expressions, during accumulation.
 #[derive(Default)]
 struct Sweep {
     /// Shares that the wholes have passed on.
@@ -52,7 +52,7 @@ struct Sweep {
 struct Unknowns {
     /// Unknowns that have not passed on anything yet.
     open: usize,
-    /// Derivatives by those that have, with their rows.
+    /// Derivatives with respect to those that have, with their rows.
     adjoints: Vec<(usize, Expr)>,
 }
 
@@ -63,8 +63,8 @@ impl Sweep {
         }
     }
 
-    /// The derivative by an expression, once all wholes have passed on their shares. It is used for
-    /// every part, so a sum gets a name.
+    /// The derivative with respect to an expression, once all expressions that contain it have
+    /// contributed. It is used for every part, so a sum gets a name.
     fn take(&mut self, graph: &mut Graph, expr: Expr) -> Expr {
         let shares = self.shares.remove(&expr).unwrap_or_default();
         let sum = graph.sum(&shares);
@@ -79,7 +79,7 @@ impl Sweep {
         graph.name_automatically(&name, sum)
     }
 
-    /// Passes the derivative by an expression on to its parts.
+    /// Propagates the derivative with respect to an expression to its operands.
     fn pass_on(&mut self, graph: &mut Graph, expr: Expr, adjoint: Expr) {
         if let Node::Solution { system, row } = *graph.node(expr) {
             self.solution(graph, (system, row as usize), adjoint);

@@ -1,4 +1,4 @@
-//! CSV files without a description: columns carry the names of the spec, in its units.
+//! CSV files without a description: columns have the names and units of the spec.
 
 use std::path::PathBuf;
 
@@ -11,9 +11,9 @@ use super::{
     DataError, DataSet, Finding, FindingKind, Parameter, Part, Run, Spec, format, noise, run,
 };
 
-/// What is held out of several runs, or of one: the last third.
+/// Held-out fraction: the last third of several runs, or of one.
 const HELD_OUT: usize = 3;
-/// What lies between the parts of one run, in s, so that the second does not continue the first.
+/// Separation of the parts of one run in s, so that the second does not continue the first.
 const APART: f64 = 1.0;
 
 /// Reads CSV files whose columns have the names and units of the spec. The last third of the files is
@@ -88,7 +88,7 @@ pub fn read_bare(spec: Spec, files: &[PathBuf]) -> Result<DataSet, DataError> {
     Ok(set)
 }
 
-/// The columns that the spec knows.
+/// The columns with names of the spec.
 fn channels(header: &[String], mechanism: &Mechanism) -> Vec<Channel> {
     let known = header.iter().filter_map(|column| {
         let input = mechanism

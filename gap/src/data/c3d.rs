@@ -39,11 +39,11 @@ pub(super) fn read(path: &Path, wanted: Wanted<'_>, budget: usize) -> Result<Col
 /// How numbers are written.
 #[derive(Clone, Copy)]
 enum Processor {
-    /// The end of small significance first.
+    /// Little endian.
     Intel,
     /// The same with 16-bit words of a number exchanged, and four times the value.
     Dec,
-    /// The end of large significance first.
+    /// Big endian.
     Mips,
 }
 
@@ -85,7 +85,7 @@ struct Parameter {
     at: usize,
 }
 
-/// A file with what its header and parameters tell.
+/// A file with its header and parameters.
 struct File<'b> {
     bytes: &'b [u8],
     processor: Processor,

@@ -1,4 +1,4 @@
-//! What a column holds.
+//! Kind of a column.
 
 use appell_spec::Mechanism;
 use appell_spec::mechanism::{CoordinateId, InputId, Label, OutputId, SpeedId};
@@ -17,19 +17,18 @@ pub struct Channel {
     pub unit: Unit,
     /// Noise level as stated, in SI.
     pub stated_noise: Option<f64>,
-    /// Noise level to work with; nothing for inputs, for what is only recorded, and where nothing
-    /// tells it.
+    /// Noise level that is used; `None` for inputs, for unused columns, and if unknown.
     pub noise: Option<Noise>,
 }
 
-/// What a column holds.
+/// Kind of a column.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Role {
-    /// A quantity of the model, seen with noise.
+    /// A measured quantity of the model.
     Measures(Measured),
-    /// What was commanded, by the index of the input.
+    /// An input, by its index.
     Input(usize),
-    /// A quantity that the model does not know.
+    /// A quantity that is not in the model.
     Recorded,
 }
 
@@ -73,7 +72,7 @@ impl Measured {
         }
     }
 
-    /// Everything that can be measured.
+    /// All measurable quantities.
     pub(super) fn names(mechanism: &Mechanism) -> Vec<&str> {
         let coordinates = mechanism.coordinates.iter().map(|q| &q.label);
         let speeds = mechanism.pseudo_velocities.iter().map(|w| &w.label);
@@ -110,7 +109,7 @@ impl Channel {
         matches!(self.role, Role::Measures(_))
     }
 
-    /// Whether it measures an angle, which may start anew after a turn.
+    /// Whether it measures an angle, which may be wrapped.
     pub(super) fn is_angle(&self) -> bool {
         self.unit.is_angle() && matches!(self.role, Role::Measures(Measured::Coordinate(_)))
     }

@@ -1,4 +1,4 @@
-//! Times that increase: which rows are in order, how long the steps are, where they gape.
+//! Increasing times: rows in order, lengths of steps, gaps.
 
 use appell_spec::{Code, Diagnostic, Report};
 
@@ -9,14 +9,14 @@ use super::{DataError, Finding, FindingKind};
 /// The column of the times.
 pub(super) const TIME: &str = "t";
 
-/// A step so many times the median is a gap.
+/// Length of a step, relative to the median, beyond which it is a gap.
 const GAP: f64 = 5.0;
 
 /// Rows this many seconds apart and more miss the motion of a mechanism. Far more often their times are
 /// not in seconds: rows up to a kilohertz, counted in milliseconds, look like this.
 const SLOW: f64 = 1.0;
 
-/// Lets rows pass whose time is later than all before, and counts the others.
+/// Accepts rows whose time is later than all before, and counts the others.
 #[derive(Default)]
 pub(super) struct Clock {
     latest: Option<f64>,
@@ -26,7 +26,7 @@ pub(super) struct Clock {
     missing: Skipped,
 }
 
-/// Rows left out for one reason.
+/// Rows omitted for one reason.
 #[derive(Default)]
 struct Skipped {
     count: usize,
@@ -53,7 +53,7 @@ impl Clock {
         false
     }
 
-    /// What was left out; an error where that is more than the slips of a logger.
+    /// The omitted rows; an error if they are too many for logging errors.
     pub(super) fn findings(self, file: &str) -> Result<Vec<Finding>, DataError> {
         let most = MAX_LEFT_OUT * self.rows as f64;
         let kinds = [
@@ -109,7 +109,7 @@ pub struct Sampling {
     pub shortest: f64,
     /// Longest step in s.
     pub longest: f64,
-    /// Begin and end of the steps that are gaps, in s.
+    /// Start and end of gaps in s.
     pub gaps: Vec<[f64; 2]>,
 }
 

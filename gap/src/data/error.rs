@@ -7,7 +7,7 @@ use appell_spec::Report;
 /// Why a data set cannot be read.
 #[derive(Debug, thiserror::Error)]
 pub enum DataError {
-    /// Mistakes in a file, with their places.
+    /// Errors in a file, with their positions.
     #[error("{0}")]
     Report(Box<Report>),
     /// A file cannot be opened or read.
@@ -15,7 +15,7 @@ pub enum DataError {
     File {
         /// The file.
         path: PathBuf,
-        /// What the system says.
+        /// Error of the system.
         cause: std::io::Error,
     },
     /// A folder without a description.
@@ -32,7 +32,7 @@ pub enum DataError {
     Whole {
         /// The file.
         file: String,
-        /// What is wrong, and what to do.
+        /// Message with advice.
         message: String,
     },
     /// Several of them.

@@ -1,27 +1,27 @@
-//! What was mended in recordings, and what looks wrong.
+//! Repairs of recordings, and warnings.
 
 use appell_spec::Severity;
 
-/// What kind of thing was found.
+/// Kind of a finding.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum FindingKind {
-    /// Rows with the time of the row before; left out.
+    /// Rows with the time of the previous row; omitted.
     RepeatedTime,
-    /// Rows earlier than a row before; left out.
+    /// Rows earlier than a previous row; omitted.
     BackwardTime,
-    /// Rows without a time; left out.
+    /// Rows without a time; omitted.
     MissingTime,
-    /// A last line that breaks off; left out.
+    /// A truncated last line; omitted.
     CutOff,
-    /// Rows so far apart that their times are hardly in seconds.
+    /// Rows so far apart that times are probably not in seconds.
     SlowClock,
     /// A step much longer than the others.
     Gap,
     /// Measurements that are missing.
     Dropouts,
-    /// Missing inputs; the value before holds on.
+    /// Missing inputs; the previous value is held.
     HeldInput,
-    /// An angle that started anew after a turn; counted on.
+    /// A wrapped angle; unwrapped.
     Unwrapped,
     /// A column that the data set does not describe; ignored.
     UnknownColumn,
@@ -31,20 +31,20 @@ pub enum FindingKind {
     Quantised,
     /// A stated noise level that the data contradict.
     NoiseDisagrees,
-    /// A noise level that cannot be told from the motion.
+    /// A noise level that cannot be distinguished from the motion.
     NoiseBound,
-    /// Recordings are split here, because nobody said what is held out.
+    /// Recordings were split, as no held-out runs were specified.
     Split,
     /// Nothing is held out.
     NoTestRun,
-    /// An input that no column records; zero is taken for it.
+    /// An input without a column; taken as zero.
     NoInput,
     /// No parameter has a tolerance.
     NoTolerance,
 }
 
 impl FindingKind {
-    /// Its word for programs.
+    /// Its identifier in JSON.
     pub const fn word(self) -> &'static str {
         match self {
             Self::RepeatedTime => "repeated-time",
@@ -68,7 +68,7 @@ impl FindingKind {
         }
     }
 
-    /// Whether it changes what can be concluded, or is only worth knowing.
+    /// Severity: whether it affects conclusions.
     pub const fn severity(self) -> Severity {
         match self {
             Self::BackwardTime
@@ -96,7 +96,7 @@ impl FindingKind {
 /// One finding.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Finding {
-    /// What kind of thing.
+    /// Its kind.
     pub kind: FindingKind,
     /// File of the run, where it is about one.
     pub run: Option<String>,
@@ -138,7 +138,7 @@ impl Finding {
         self
     }
 
-    /// What matters most first; within that, run by run.
+    /// By severity, then run by run.
     pub(super) fn order(&self) -> (Severity, Option<String>, FindingKind, Option<String>) {
         (
             self.kind.severity(),
@@ -149,7 +149,7 @@ impl Finding {
     }
 }
 
-/// Most items that a message lists.
+/// Largest number of items listed in a message.
 const LISTED: usize = 3;
 
 /// `a, b, c and 4 more`.

@@ -1,4 +1,4 @@
-//! Runs from files, whatever their format.
+//! Runs from files of any format.
 
 use std::path::Path;
 
@@ -10,7 +10,7 @@ use super::limits::MAX_NUMBERS;
 use super::table::{Columns, Table, Wanted};
 use super::{DataError, c3d, csv};
 
-/// How the numbers of a file are written, by the end of its name.
+/// Format of a file, by its extension.
 #[derive(Clone, Copy)]
 enum Format {
     Csv,

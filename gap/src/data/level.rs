@@ -1,33 +1,33 @@
-//! How noisy a channel is.
+//! Noise level of a channel.
 
 /// The noise of a channel.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Noise {
     /// Standard deviation in SI.
     pub std: f64,
-    /// Where it is from.
+    /// Its source.
     pub source: NoiseSource,
-    /// What the data alone tell, in SI.
+    /// Estimate from the data alone, in SI.
     pub found: Option<f64>,
-    /// Step of the sensor in SI.
+    /// Resolution of the sensor in SI.
     pub quantum: Option<f64>,
 }
 
-/// Where a noise level is from.
+/// Source of a noise level.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum NoiseSource {
-    /// The description; the data do not tell better.
+    /// The description, confirmed or not contradicted by the data.
     Stated,
     /// Differences of neighbouring samples.
     Differences,
     /// Samples at rest.
     Standstill,
-    /// The step of the sensor.
+    /// The resolution of the sensor.
     Quantisation,
 }
 
 impl NoiseSource {
-    /// Its word for programs.
+    /// Its identifier in JSON.
     pub const fn word(self) -> &'static str {
         match self {
             Self::Stated => "stated",

@@ -1,8 +1,8 @@
 //! The noise level of each channel: stated, and checked against the data.
 //!
-//! Differences of neighbouring samples tell it where the motion is slow against the sampling, standstill
-//! where it is not. A sensor with steps of q has at least the noise q/√12 of a value anywhere within
-//! them. A stated level may be wrong by a factor of two, within which the data decide.
+//! It is estimated from differences of neighbouring samples if the motion is slow relative to the
+//! sampling, else at standstill. A sensor of resolution q has at least the noise q/√12. A stated
+//! level is trusted to within a factor of two; within it, the data decide.
 
 use appell_estimate::smoothing::Samples;
 use appell_estimate::smoothing::noise::{at_standstill, from_differences};
@@ -11,12 +11,12 @@ use super::level::{Noise, NoiseSource};
 use super::quantum::quantum;
 use super::{Channel, DataSet, Finding, FindingKind, Part, Run};
 
-/// By which factor a stated level may be wrong.
+/// Largest factor by which a stated level may be wrong.
 const TRUST: f64 = 2.0;
-/// Part of the noise from which steps are worth knowing.
+/// Resolution, relative to the noise, from which it is reported.
 const NOTABLE: f64 = 0.5;
 
-/// Finds the noise of every measured channel from the runs that may be fitted.
+/// Estimates the noise of every measured channel from the training runs.
 pub(super) fn find(set: &mut DataSet) {
     let runs: Vec<&Run> = set.runs.iter().filter(|r| r.part == Part::Fit).collect();
     for (index, channel) in set.channels.iter_mut().enumerate() {
@@ -59,7 +59,7 @@ fn is_constant<'v>(records: impl Iterator<Item = &'v [f64]>) -> bool {
     high <= low
 }
 
-/// What the data tell.
+/// Estimate from the data.
 struct Level {
     std: f64,
     source: NoiseSource,
@@ -88,7 +88,7 @@ fn level(records: &[Samples<'_>]) -> Option<Level> {
 
 type Told = Option<(FindingKind, String)>;
 
-/// The level to work with, from what is stated, what the data tell and the step of the sensor.
+/// The level that is used, from the stated one, the estimate and the resolution of the sensor.
 fn judged(channel: &Channel, level: Option<Level>, quantum: Option<f64>) -> (Option<Noise>, Told) {
     let floor = quantum.map_or(0.0, |step| step / 12f64.sqrt());
     let stated = channel.stated_noise.filter(|std| *std > 0.0);
@@ -123,7 +123,7 @@ fn judged(channel: &Channel, level: Option<Level>, quantum: Option<f64>) -> (Opt
             (noise(level.std, level.source, Some(level.std)), told)
         }
         (Some(stated), Some(level)) => {
-            // Nobody says whether the statement counts the steps.
+            // The stated level may or may not include the resolution.
             let allowed = stated / TRUST..=stated.hypot(floor) * TRUST;
             let within = level.std.clamp(*allowed.start(), *allowed.end());
             let open = level.bound && level.std > stated;
@@ -136,7 +136,7 @@ fn judged(channel: &Channel, level: Option<Level>, quantum: Option<f64>) -> (Opt
                 );
                 (FindingKind::NoiseDisagrees, message)
             });
-            // An upper bound above the statement says nothing against it.
+            // An upper bound above the stated level does not contradict it.
             let (std, source) = if open {
                 (stated, NoiseSource::Stated)
             } else {

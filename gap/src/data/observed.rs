@@ -1,4 +1,4 @@
-//! A data set as the estimation core takes it: columns by the indices of a model.
+//! A data set as recordings for estimation: columns by the indices of a model.
 
 use appell_estimate::{EstimateError, Recording};
 use appell_runtime::model::ModelInfo;
@@ -9,7 +9,7 @@ use appell_spec::mechanism;
 use super::{Channel, DataSet, Measured, Parameter, Part, Role};
 
 impl DataSet {
-    /// The runs of one part alone.
+    /// The runs of one part.
     #[must_use]
     pub fn only(&self, part: Part) -> Self {
         let mut set = self.clone();
@@ -38,7 +38,7 @@ impl DataSet {
         }
     }
 
-    /// The measured channels whose quantities the model has, with what they show.
+    /// The measured channels whose quantities the model has, with the quantities.
     pub fn measured(&self, info: &ModelInfo) -> Vec<(&Channel, appell_estimate::Measured)> {
         let shown = |channel: &Channel| match channel.role {
             Role::Measures(measured) => {
@@ -60,8 +60,8 @@ impl DataSet {
             .collect()
     }
 
-    /// The runs of a part, with the channels of [`DataSet::measured`]. Inputs that nobody recorded
-    /// are zero.
+    /// The runs of a part, with the channels of [`DataSet::measured`]. Inputs that were not
+    /// recorded are zero.
     pub fn recordings(
         &self,
         part: Part,

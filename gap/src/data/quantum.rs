@@ -1,8 +1,8 @@
-//! The step of a sensor that counts: an encoder's lines, the digits of a converter.
+//! Resolution of a sensor: lines of an encoder, digits of a converter.
 
-/// Changes looked at.
+/// Number of changes examined.
 const MOST: usize = 20_000;
-/// Fewest changes of a few steps that tell one.
+/// Least number of changes of a few steps.
 const FEWEST: usize = 24;
 /// How many steps a change may have to be looked at.
 const FAR: f64 = 20.0;

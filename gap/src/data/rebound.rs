@@ -1,4 +1,4 @@
-//! The same recordings for another spec of the same thing: names join the two.
+//! The same recordings for another spec of the same mechanism, by names.
 
 use appell_estimate::smoothing::angle::unwrap;
 use appell_spec::Mechanism;
@@ -6,9 +6,9 @@ use appell_spec::Mechanism;
 use super::{Channel, DataError, DataSet, Measured, Part, Role, Spec, noise};
 
 impl DataSet {
-    /// Recordings bound to another spec. A quantity keeps its name; a column that the first spec does
-    /// not know is bound if the other one has a quantity of its name and dimension. What the other
-    /// one does not have is only recorded.
+    /// Recordings bound to another spec. A quantity keeps its name; a column that the first spec
+    /// does not know is bound if the other one has a quantity of its name and dimension. Quantities
+    /// that the other one lacks are only recorded.
     pub fn rebound(&self, spec: &Spec) -> Result<Self, DataError> {
         let mechanism = appell_spec::load(&spec.file, &spec.text)?.mechanism;
         let mut set = self.bound_to(&mechanism);
@@ -23,7 +23,7 @@ impl DataSet {
                 }
             }
         }
-        // What is measured now has noise.
+        // Newly measured channels get a noise level.
         if set.runs.iter().any(|run| run.part == Part::Fit) {
             noise::find(&mut set);
         }
@@ -31,7 +31,7 @@ impl DataSet {
     }
 }
 
-/// What a column holds for another mechanism.
+/// Kind of a column for another mechanism.
 fn role(channel: &Channel, from: &Mechanism, to: &Mechanism) -> Role {
     let input = |name: &str| {
         let place = to.inputs.iter().position(|input| input.label.name == name);

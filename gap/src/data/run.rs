@@ -1,4 +1,4 @@
-//! A run from its table: values in SI, inputs held, whole angles.
+//! A run from its table: values in SI, inputs held, angles unwrapped.
 
 use appell_estimate::smoothing::angle::unwrap;
 
@@ -8,7 +8,7 @@ use super::finding::{Finding, FindingKind, counted};
 use super::set::{Part, Run};
 use super::table::Table;
 
-/// A run from its table, with dropouts told, inputs held and angles counted on.
+/// A run from its table, with dropouts reported, inputs held and angles unwrapped.
 pub(super) fn read(
     name: String,
     part: Part,
@@ -54,7 +54,7 @@ pub(super) fn read(
     }
 }
 
-/// Puts the value before in place of a missing one; at the beginning the first one that is there.
+/// Replaces missing values by the previous one; at the beginning by the first one present.
 fn hold(values: &mut [f64]) {
     let first = values.iter().copied().find(|value| !value.is_nan());
     let mut last = first.unwrap_or(0.0);

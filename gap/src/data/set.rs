@@ -1,4 +1,4 @@
-//! What a data set holds: a mechanism, the parameters of a rig, channels and runs.
+//! A data set: a mechanism, the parameters of a rig, channels and runs.
 
 use appell_spec::Mechanism;
 
@@ -6,7 +6,7 @@ use super::channel::{Channel, Role};
 use super::clock::Sampling;
 use super::finding::{Finding, FindingKind};
 
-/// The text of a spec and the name that messages call it by.
+/// The text of a spec and its name in messages.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Spec {
     /// Name or path.
@@ -22,15 +22,15 @@ pub struct DataSet {
     pub spec: Spec,
     /// The mechanism.
     pub mechanism: Mechanism,
-    /// What people say about the recordings.
+    /// Description of the recordings.
     pub description: String,
     /// The parameters of this rig, in the order of the spec.
     pub parameters: Vec<Parameter>,
-    /// What the columns of all runs hold.
+    /// The columns of all runs.
     pub channels: Vec<Channel>,
-    /// The runs, those to fit first.
+    /// The runs, training runs first.
     pub runs: Vec<Run>,
-    /// What was mended, and what looks wrong.
+    /// Repairs and warnings.
     pub findings: Vec<Finding>,
 }
 
@@ -39,17 +39,17 @@ pub struct DataSet {
 pub struct Parameter {
     /// Value in SI.
     pub value: f64,
-    /// Tolerance in SI, one standard deviation; zero where the value is known exactly, nothing where
-    /// nobody says.
+    /// Tolerance in SI, one standard deviation; zero if the value is known exactly, `None` if not
+    /// stated.
     pub std: Option<f64>,
 }
 
-/// What a run may be used for.
+/// Role of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Part {
-    /// To find and fit.
+    /// Training.
     Fit,
-    /// To measure the gap before and after, and nothing else.
+    /// Test, held out from all fits.
     Test,
 }
 
@@ -58,7 +58,7 @@ pub enum Part {
 pub struct Run {
     /// Name of its file.
     pub name: String,
-    /// What it may be used for.
+    /// Its role.
     pub part: Part,
     /// Times in s, strictly increasing.
     pub times: Vec<f64>,

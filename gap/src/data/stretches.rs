@@ -1,10 +1,10 @@
-//! Stretches of long recordings: neighbouring rows are alike, and no fit needs all of them.
+//! Stretches of long recordings, as fits do not need all rows.
 
 use std::ops::Range;
 
 use super::{DataSet, Run};
 
-/// Rows of a stretch at least: a motion tells little at its beginning, where its state is unknown.
+/// Least number of rows of a stretch, as its initial state is unknown.
 const LENGTH: usize = 1000;
 
 impl DataSet {
@@ -13,8 +13,8 @@ impl DataSet {
         self.runs.iter().map(|run| run.times.len()).sum()
     }
 
-    /// Some `most` rows: each run keeps its share, in stretches that are spread evenly over it. A
-    /// data set with fewer rows is kept as it is.
+    /// About `most` rows: each run keeps its share, in stretches spread evenly over it. A data set
+    /// with fewer rows is unchanged.
     #[must_use]
     pub fn stretches(&self, most: usize) -> Self {
         let all = self.rows();

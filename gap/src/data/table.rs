@@ -1,4 +1,4 @@
-//! The numbers of a run: columns as a file holds them, and the table in SI that they become.
+//! The numbers of a run: columns as in the file, and the table in SI.
 
 use std::path::Path;
 
@@ -16,11 +16,11 @@ pub(crate) struct Table {
     pub(crate) times: Vec<f64>,
     /// Values in SI, a column for each channel; NaN where one is missing.
     pub(crate) columns: Vec<Vec<f64>>,
-    /// What was left out.
+    /// Omitted rows.
     pub(crate) findings: Vec<Finding>,
 }
 
-/// The length of a regular file: a pipe would keep everybody waiting.
+/// The length of a regular file; pipes are rejected, as they may block.
 pub(super) fn regular(path: &Path) -> Result<u64, DataError> {
     let about = std::fs::metadata(path).map_err(|cause| DataError::File {
         path: path.to_owned(),
@@ -47,13 +47,13 @@ pub(super) fn bytes(path: &Path) -> Result<Vec<u8>, DataError> {
 pub(super) struct Columns {
     /// Names of all columns of the file.
     pub(super) names: Vec<String>,
-    /// Values of those that are wanted; the others are empty. NaN where a value is missing.
+    /// Values of the requested ones; the others are empty. NaN where a value is missing.
     pub(super) values: Vec<Vec<f64>>,
-    /// What was left out.
+    /// Omitted rows.
     pub(super) findings: Vec<Finding>,
 }
 
-/// Which columns are wanted.
+/// The requested columns.
 pub(super) type Wanted<'w> = &'w dyn Fn(&str) -> bool;
 
 impl Columns {
@@ -121,7 +121,7 @@ impl Columns {
     }
 }
 
-/// What is not finite is missing.
+/// Non-finite values count as missing.
 fn finite(value: f64) -> f64 {
     if value.is_finite() { value } else { f64::NAN }
 }

@@ -1,4 +1,4 @@
-//! An effect at a place, in one of its variants: a hypothesis on what the model lacks.
+//! An effect at a site, in one of its variants: a hypothesis on a missing part of the model.
 
 use appell_spec::Mechanism;
 use toml_edit::{DocumentMut, Item, TableLike, Value};
@@ -26,14 +26,14 @@ pub enum Acts {
     Late(usize),
 }
 
-/// What a parameter of a candidate is.
+/// Role of a parameter of a candidate.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Part {
-    /// How much of the effect there is; zero where there is none.
+    /// Size of the effect; zero without it.
     Size,
-    /// Its shape, which matters where there is some of it.
+    /// Its shape, relevant if the size is not zero.
     Shape,
-    /// One where the effect is there, zero elsewhere.
+    /// Switch: one with the effect, zero without.
     Switch,
 }
 
@@ -44,15 +44,15 @@ pub struct Candidate {
     pub kind: String,
     /// The place.
     pub site: String,
-    /// Where the effect belongs.
+    /// Family of the effect.
     pub family: Family,
     /// One sentence.
     pub about: String,
     /// How it acts.
     pub acts: Acts,
-    /// Its parameters in the spec, each with what it is.
+    /// Its parameters in the spec, each with its role.
     pub(crate) parameters: Vec<(String, Part)>,
-    /// What its names in the spec start with.
+    /// Prefix of its names in the spec.
     pub(super) stem: String,
     /// Centre of mass of the body where it acts, if it acts at one.
     pub(super) centre: Option<String>,
@@ -61,9 +61,9 @@ pub struct Candidate {
     /// The pseudo-velocity beside which it brings a coordinate of its own, if it brings any. That one and
     /// its rate are the last ones among the coordinates and the rates of a model that it alone has.
     pub(crate) brings: Option<usize>,
-    /// What is added to inputs: name and expression.
+    /// Additions to inputs: name and expression.
     pub(crate) added: Vec<(String, String)>,
-    /// The file that it comes from, if that is a user's.
+    /// Its file, for effects of users.
     pub(super) source: Option<Source>,
 }
 
@@ -102,7 +102,7 @@ impl Candidate {
         format!("0 [{unit}]")
     }
 
-    /// With the meaning of words that its mechanism tells once it has equations.
+    /// With the placeholders that are known once its mechanism has equations.
     pub(super) fn told(&self, words: &[(&str, &str)]) -> Self {
         Self {
             items: filled(&self.items, words),
@@ -110,7 +110,7 @@ impl Candidate {
         }
     }
 
-    /// All candidates of an effect in a mechanism.
+    /// All candidates of an effect in a mechanism, by site and variant.
     pub(super) fn all(
         effect: &Effect,
         mechanism: &Mechanism,

@@ -1,11 +1,11 @@
-//! What drives a joint: how inputs push along a pseudo-velocity, and the inertia that they move there.
+//! The drive of a joint: forces of inputs along a pseudo-velocity, and the driven inertia.
 
 use appell_runtime::model::{At, Model};
 use nalgebra::DMatrix;
 
-/// A lever that changes by more than this part on the way is none.
+/// Largest relative variation of a lever along the range.
 const SAME: f64 = 1e-9;
-/// How far coordinates go on the way, in SI units.
+/// Range of the coordinates, in SI.
 const AWAY: f64 = 0.3;
 
 /// The drive along a pseudo-velocity.

@@ -1,4 +1,4 @@
-//! What the file of an effect says.
+//! The file of an effect.
 //!
 //! ```toml
 //! [effect]
@@ -25,7 +25,7 @@ use toml::de::{DeTable, DeValue};
 use super::site::SiteKind;
 use crate::data::fields::{Fields, Value};
 
-/// Where effects belong.
+/// Families of effects.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 #[expect(missing_docs, reason = "the words of the report")]
 pub enum Family {
@@ -59,7 +59,7 @@ impl Family {
         }
     }
 
-    /// Where a gap of this family lies: a joint with play is one that does not hold.
+    /// Location of a gap of this family; play of a joint is a violated constraint.
     pub const fn domain(self) -> &'static str {
         match self {
             Self::Joint => Self::Constraint.word(),
@@ -68,10 +68,10 @@ impl Family {
     }
 }
 
-/// What acts beside the equations of motion.
+/// Effects outside the equations of motion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Filter {
-    /// The site is a parameter, and its value is looked for.
+    /// The site is a parameter, whose value is estimated.
     Value,
     /// An input lags.
     Lag,
@@ -81,7 +81,7 @@ pub(super) enum Filter {
     Bias,
     /// A channel has a scale.
     Scale,
-    /// A channel is late.
+    /// A channel has a delay.
     Late,
 }
 
@@ -96,28 +96,28 @@ impl Filter {
     ];
 }
 
-/// An effect, for any place.
+/// An effect, for any site.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Effect {
     /// Its kind, such as `viscous_friction`.
     pub name: String,
-    /// Where it belongs.
+    /// Its family.
     pub family: Family,
-    /// Where it makes sense.
+    /// Its kind of sites.
     pub site: SiteKind,
     /// One sentence with `{site}`.
     pub about: String,
-    /// Words for the text, one list for each variant.
+    /// Placeholders of the text, one list for each variant.
     pub(super) variants: Vec<Vec<(String, String)>>,
     pub(super) switch: Option<String>,
     pub(super) filter: Option<Filter>,
     /// The whole file.
     pub(super) text: String,
-    /// The file as its author knows it; nothing for one that is shipped.
+    /// The name of the file; `None` for shipped effects.
     pub(super) file: Option<String>,
 }
 
-/// Why the file of an effect cannot be used, with the places.
+/// Why the file of an effect cannot be used, with positions.
 #[derive(Debug, Clone, thiserror::Error)]
 #[error("{}", .0.plain())]
 pub struct EffectError(pub Box<Report>);
@@ -276,7 +276,7 @@ fn variants(fields: &mut Fields<'_>, header: &DeTable<'_>) -> Vec<Vec<(String, S
     variants
 }
 
-/// Tells of words in braces that stand for nothing, in keys and in texts.
+/// Reports unknown placeholders, in keys and in texts.
 fn unknown_words(fields: &mut Fields<'_>, table: &DeTable<'_>, text: &str, known: &[&str]) {
     let mut places = Vec::new();
     spans(table, &mut places);

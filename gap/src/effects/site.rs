@@ -1,5 +1,5 @@
-//! The places in a mechanism where effects may act, and the words that stand for them in the text of
-//! an effect.
+//! The sites in a mechanism at which effects may act, and their placeholders in the text of an
+//! effect.
 
 use appell_codegen::velocities::Velocities;
 use appell_spec::expr::{Expr, ExprKind, Quantity};
@@ -10,7 +10,7 @@ use appell_spec::mechanism::{
 use appell_spec::units::{Dimension, Unit};
 use num_traits::Zero;
 
-/// Kinds of places.
+/// Kinds of sites.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SiteKind {
     /// A coordinate whose rate moves something by itself.
@@ -115,7 +115,7 @@ const LATER_DRIVEN: &[&str] = &["drive", "inertia"];
 /// A word whose meaning is known once all effects of the body are.
 const LATER_BODY: &[&str] = &["last_centre"];
 
-/// What recordings tell of typical sizes, in SI.
+/// Typical magnitudes from recordings, in SI.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Scales {
     /// Typical rate of each coordinate.
@@ -133,7 +133,7 @@ pub struct Scales {
 /// Part of the largest input over which a corner is rounded.
 const NARROW: f64 = 0.005;
 
-/// A place.
+/// A site.
 #[derive(Debug, Clone)]
 pub(super) struct Site {
     /// Name in the spec; `gravity` for the weight, the column for a channel.
@@ -146,7 +146,7 @@ pub(super) struct Site {
     pub(super) placed_along: Vec<&'static str>,
 }
 
-/// Places in a mechanism.
+/// Sites in a mechanism.
 pub(super) struct Sites<'m> {
     mechanism: &'m Mechanism,
     velocities: &'m Velocities,
@@ -166,7 +166,7 @@ impl<'m> Sites<'m> {
         }
     }
 
-    /// All places of a kind.
+    /// All sites of a kind.
     pub(super) fn of(&self, kind: SiteKind) -> Vec<Site> {
         let sites = self.all(kind);
         let later = [LATER_DRIVEN, LATER_BODY].concat();

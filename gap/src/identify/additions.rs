@@ -1,5 +1,5 @@
-//! What is looked for besides parameters: lags and delays of inputs, biases, scales and delays of
-//! channels. `tau.delay` is the delay of the input tau.
+//! Further estimated quantities: lags and delays of inputs, biases, scales and delays of channels.
+//! `tau.delay` is the delay of the input tau.
 
 use appell_estimate::{Estimation, Free, Setup, Unknown};
 use appell_runtime::model::Quantity;
@@ -7,14 +7,14 @@ use appell_runtime::model::Quantity;
 use super::IdentifyError;
 use crate::data::{DataSet, Run};
 
-/// Delays are shorter than this, in s.
+/// Largest delay in s.
 const LONGEST_DELAY: f64 = 0.25;
-/// Time constants are shorter than this, in s.
+/// Largest time constant in s.
 const LONGEST_LAG: f64 = 10.0;
 
-/// What inputs can have.
+/// Additions to inputs.
 const OF_INPUTS: [&str; 2] = ["lag", "delay"];
-/// What channels can have.
+/// Additions to channels.
 const OF_CHANNELS: [&str; 3] = ["bias", "scale", "delay"];
 
 #[derive(Clone, Copy)]
@@ -95,7 +95,7 @@ pub(super) fn named(
 }
 
 impl Addition {
-    /// Makes room for it in a setup.
+    /// Adds it to a setup.
     pub(super) fn prepare(&self, setup: &mut Setup<'_>) {
         let add = |list: &mut Vec<usize>| {
             if !list.contains(&self.index) {
@@ -110,7 +110,7 @@ impl Addition {
         }
     }
 
-    /// The value that is looked for, with its name, its unit and what it is without this addition.
+    /// The free value, with its name, unit and value without the addition.
     pub(super) fn free(&self, estimation: &Estimation<'_>, runs: &[Run]) -> (Free, Quantity) {
         let setup = estimation.setup();
         let place = |list: &[usize]| list.iter().position(|own| *own == self.index);

@@ -1,4 +1,4 @@
-//! What the recordings tell: intervals, correlation, combinations that are known.
+//! Results of an identification: intervals, correlation, determined combinations.
 
 use appell_estimate::{
     Blocks, Consistency, Estimation, Fit, Free, HALF_WIDTH_95, Identifiability, Sensitivity,
@@ -13,26 +13,27 @@ use super::held_out::{HeldOut, Trace};
 use super::problem::Problem;
 use crate::data::DataSet;
 
-/// Blocks of scores last so many seconds: errors of a mechanism's motion forget each other by then.
+/// Length of the blocks of scores in s, beyond the correlation of errors of a mechanism.
 const BLOCK: f64 = 1.0;
-/// A parameter that was looked for.
+/// An estimated parameter.
 #[derive(Debug, Clone)]
 pub struct Estimate {
     /// Name, sentence and unit.
     pub quantity: Quantity,
-    /// Value before, in SI.
+    /// Nominal value in SI.
     pub nominal: f64,
     /// Prior standard deviation (tolerance) in SI, if any.
     pub tolerance: Option<f64>,
     /// Most likely value in SI.
     pub value: f64,
-    /// Standard deviation in SI if the model is right.
+    /// Standard deviation in SI if the model is correct.
     pub std: f64,
     /// Robust (sandwich) standard deviation in SI.
     pub robust_std: f64,
-    /// Whether the value stands at a limit of its range: nothing is said of its spread.
+    /// Whether the value is at a limit of its range; its uncertainty is undefined.
     pub at_limit: bool,
-    /// Part of the tolerance that the recordings leave; above one half they tell little.
+    /// Posterior standard deviation relative to the tolerance; near one the recordings are
+    /// uninformative.
     pub left: Option<f64>,
 }
 
@@ -61,23 +62,23 @@ pub struct Level {
     pub fitted: f64,
 }
 
-/// A combination of parameters, by its parts in units of tolerance, and how well it is known.
+/// A combination of parameters, in units of their tolerances, and its uncertainty.
 #[derive(Debug, Clone)]
 pub struct Known {
     /// Parts of the parameters, in the order of the estimates.
     pub parts: Vec<f64>,
-    /// Standard deviation to which the recordings alone tell it, in units of tolerance.
+    /// Standard deviation from the recordings alone, in units of the tolerance.
     pub deviation: f64,
 }
 
-/// Everything that was found.
+/// Result of an identification.
 #[derive(Debug, Clone)]
 pub struct Answer {
-    /// Parameters in the order in which they were asked for.
+    /// Parameters in the requested order.
     pub parameters: Vec<Estimate>,
     /// Correlation of their errors.
     pub correlation: DMatrix<f64>,
-    /// Combinations of parameters, the best known first.
+    /// Combinations of parameters, the best determined first.
     pub combinations: Vec<Known>,
     /// Noise of the channels.
     pub noise: Vec<Level>,
@@ -87,11 +88,11 @@ pub struct Answer {
     pub log_likelihoods: [f64; 2],
     /// Correlation of neighbouring innovations of each channel, with the band where they are white.
     pub whiteness: Vec<(String, Consistency)>,
-    /// Drifting parameters along the runs that were fitted.
+    /// Drifting parameters along the training runs.
     pub courses: Vec<Course>,
-    /// Errors on the runs that were held out; empty where there are none.
+    /// Prediction errors on held-out runs; empty without any.
     pub held_out: Vec<HeldOut>,
-    /// Channels of these runs beside predictions of them.
+    /// Channels of these runs with predictions.
     pub traces: Vec<Trace>,
 }
 
@@ -178,8 +179,8 @@ fn block(estimation: &Estimation<'_>) -> usize {
     rows.max(1)
 }
 
-/// Combinations of the parameters, levels being what they are: these are found from the sizes of
-/// innovations, which parameters do not change.
+/// Combinations of the parameters at fixed levels, which are determined by the variances of
+/// innovations, independently of the parameters.
 fn combinations(sensitivity: &Sensitivity, fit: &Fit, parameters: &[Free]) -> Vec<Known> {
     let count = parameters.len();
     let part = Sensitivity {

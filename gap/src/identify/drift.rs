@@ -1,5 +1,5 @@
-//! Parameters that change on the way, such as a friction that warms up: a state each, which wanders
-//! at a rate that is given.
+//! Drifting parameters, such as friction that changes with temperature: one random-walk state each,
+//! of given rate.
 
 use appell_estimate::{Disturbance, Estimation, Setup, Unknown};
 use appell_runtime::model::{ModelInfo, Quantity};
@@ -8,9 +8,9 @@ use super::IdentifyError;
 use super::problem::parameter;
 use crate::data::{DataSet, Run};
 
-/// Part of a value to which it is known at the beginning where no tolerance is stated.
+/// Relative initial standard deviation of a value without a tolerance.
 const KNOWN_TO: f64 = 0.1;
-/// Most points of a course.
+/// Largest number of points of a course.
 const POINTS: usize = 1000;
 
 /// A parameter that drifts.
@@ -63,7 +63,7 @@ pub(super) fn named(
     Ok(drifts)
 }
 
-/// Makes room for them in a setup that has its lags.
+/// Adds them to a setup that has its lags.
 pub(super) fn prepare(drifts: &[Drift], setup: &mut Setup<'_>) {
     let first = setup.model.info().state_len() + setup.lagging.len();
     for (index, drift) in drifts.iter().enumerate() {
@@ -72,7 +72,7 @@ pub(super) fn prepare(drifts: &[Drift], setup: &mut Setup<'_>) {
     }
 }
 
-/// Writes their rates, and what is known of them at the first rows.
+/// Writes their rates and their initial standard deviations.
 pub(super) fn begin(
     drifts: &[Drift],
     estimation: &Estimation<'_>,
@@ -99,7 +99,7 @@ fn places(setup: &Setup<'_>, index: usize) -> (usize, usize) {
     )
 }
 
-/// How they went along the runs.
+/// Their courses along the runs.
 pub(super) fn courses(
     drifts: &[Drift],
     estimation: &Estimation<'_>,

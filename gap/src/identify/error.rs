@@ -1,8 +1,8 @@
-//! Why nothing can be identified.
+//! Errors of identifications.
 
 use appell_estimate::EstimateError;
 
-/// What a person can mend.
+/// Why an identification failed.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum IdentifyError {
     /// No channel measures a quantity of the model.
@@ -16,8 +16,8 @@ pub enum IdentifyError {
     NothingToFit,
     /// No parameter is free.
     #[error(
-        "no parameter has a tolerance; write `std` in `[parameters]` of the data set, or choose \
-         parameters with `--free`"
+        "no parameter has a tolerance; write `std` in `[parameters]` of the data set, or name the \
+         free parameters"
     )]
     NothingFree,
     /// A parameter that the spec lacks.
@@ -28,15 +28,15 @@ pub enum IdentifyError {
         /// Names of the spec.
         known: Vec<String>,
     },
-    /// A lag, delay, bias or scale of something that there is not.
-    #[error("there is no `{name}` to look for; there are {}", known.join(", "))]
+    /// A lag, delay, bias or scale of an unknown input or channel.
+    #[error("`{name}` cannot be estimated; available: {}", known.join(", "))]
     UnknownAddition {
         /// As given.
         name: String,
-        /// What can be looked for.
+        /// Available names.
         known: Vec<String>,
     },
-    /// A rate of drift that is none, or given twice.
+    /// An invalid or repeated rate of drift.
     #[error(
         "`{name}` cannot drift by {rate}: give each parameter one positive rate, in its unit per \
          square root of a second"

@@ -1,4 +1,4 @@
-//! Errors of predictions on runs that no fit has seen.
+//! Prediction errors on held-out runs.
 
 use appell_estimate::{Estimation, Predicted, Recording, Unknown};
 
@@ -7,9 +7,9 @@ use super::drift::{self, Drift};
 use super::problem::begin;
 use crate::data::{DataSet, Part, Run};
 
-/// Horizons in s at which predictions are judged: 0 is one step, infinity the free run to the end.
+/// Prediction horizons in s: 0 is one step, infinity the free run to the end.
 pub const HORIZONS: [f64; 4] = [0.0, 0.1, 1.0, f64::INFINITY];
-/// Most rows of a run from which predictions start.
+/// Largest number of rows of a run from which predictions start.
 const ORIGINS: usize = 200;
 /// Time in s that the filter has to find the state before it predicts, but no more than a tenth of
 /// the run.
@@ -19,12 +19,12 @@ pub const AHEAD: f64 = 1.0;
 /// Most points of a trace.
 const POINTS: usize = 2000;
 
-/// Root of the mean square of the errors of predictions, in units of the noise of the fitted model.
+/// RMS prediction error, in units of the noise of the fitted model.
 #[derive(Debug, Clone, PartialEq)]
 pub struct HeldOut {
     /// Horizon in s: 0 is one step, infinity the free run to the end.
     pub horizon: f64,
-    /// Column; nothing for all of them together.
+    /// Column; `None` for all together.
     pub column: Option<String>,
     /// Of the nominal model.
     pub nominal: f64,
@@ -32,7 +32,7 @@ pub struct HeldOut {
     pub fitted: f64,
 }
 
-/// A channel beside predictions of it, [`AHEAD`] before.
+/// A channel with its predictions, [`AHEAD`] ahead.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Trace {
     /// File of the run.
@@ -41,15 +41,15 @@ pub struct Trace {
     pub column: String,
     /// Times in s.
     pub times: Vec<f64>,
-    /// What was measured, in SI.
+    /// Measurement in SI.
     pub measured: Vec<f64>,
-    /// What the nominal model predicted, in SI.
+    /// Prediction of the nominal model in SI.
     pub nominal: Vec<f64>,
-    /// What the fitted model predicted, in SI.
+    /// Prediction of the fitted model in SI.
     pub fitted: Vec<f64>,
 }
 
-/// The runs that were held out under the nominal and the fitted model.
+/// The held-out runs under the nominal and the fitted model.
 pub(super) struct Test<'a> {
     runs: Vec<&'a Run>,
     columns: Vec<String>,
@@ -156,7 +156,7 @@ impl<'a> Test<'a> {
         Ok(sums)
     }
 
-    /// Every channel of every run beside its predictions.
+    /// Every channel of every run with its predictions.
     pub(super) fn traces(&self) -> Result<Vec<Trace>, IdentifyError> {
         let mut traces = Vec::new();
         for (index, run) in self.runs.iter().enumerate() {

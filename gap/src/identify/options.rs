@@ -1,6 +1,6 @@
-//! What is identified, from where, and in steps of which length.
+//! Options of an identification.
 
-/// Steps of the integration are this long in s at most, where the equations are not fast.
+/// Largest integration step in s for models without fast modes.
 const LONGEST_STEP: f64 = 0.02;
 
 /// Where the search for parameters begins.
@@ -9,20 +9,20 @@ pub enum Begin {
     /// At the values of the rig.
     #[default]
     Nominal,
-    /// Where multiple shooting ends that begins there: for values far from the truth.
+    /// At the result of multiple shooting from there, for values far from the truth.
     Shooting,
 }
 
-/// What is identified.
+/// Options of an identification.
 #[derive(Debug, Clone, Default)]
 pub struct Options {
-    /// Parameters to look for; nothing means those that the data set states a tolerance for.
+    /// Parameters to estimate; `None` for those with a tolerance in the data set.
     pub free: Option<Vec<String>>,
     /// Further quantities to estimate: `tau.lag` and `tau.delay` of inputs; `theta.bias`, `theta.scale` and
     /// `theta.delay` of channels.
     pub additional: Vec<String>,
-    /// Parameters that change on the way, with the standard deviations of their changes in one second,
-    /// in their units.
+    /// Drifting parameters, with the standard deviations of their changes in one second, in their
+    /// units.
     pub drifting: Vec<(String, f64)>,
     /// Whether no free parameter at all is accepted.
     pub allow_none: bool,
@@ -40,7 +40,7 @@ impl Options {
     }
 }
 
-/// The longest step in s of the integration, where equations bear no longer one than this.
+/// The largest integration step in s, given that of the model.
 pub(crate) fn longest_step(borne: Option<f64>) -> f64 {
     borne.map_or(LONGEST_STEP, |borne| borne.min(LONGEST_STEP))
 }

@@ -1,4 +1,4 @@
-//! What is looked for, and where the search begins.
+//! The free values, and the start of the search.
 
 use appell_estimate::{Effort, Estimation, Free, Recording, Unknown};
 use appell_runtime::model::{ModelInfo, Quantity};
@@ -9,31 +9,31 @@ use super::start::{Start, forces, start};
 use super::{IdentifyError, Options};
 use crate::data::{Channel, DataSet};
 
-/// A stated noise may be wrong by a factor of two.
+/// Factor by which a stated noise level may be wrong.
 const NOISE_FACTOR: f64 = std::f64::consts::LN_2;
-/// Part of a signal that counts as noise where nothing is known about it.
+/// Fraction of a signal assumed as noise if nothing is known.
 const NOISE_PART: f64 = 1e-2;
-/// Factors of the noise within which it is looked for.
+/// Limits of the estimated noise, relative to the initial one.
 const NOISE_RANGE: [f64; 2] = [1e-2, 1e3];
-/// Levels of disturbances that are tried first, as parts of the forces, over one second.
+/// Initial levels of disturbances, relative to the forces, over one second.
 const PARTS: [f64; 5] = [1e-4, 1e-3, 1e-2, 1e-1, 1.0];
-/// A search ends where a hundredth of a standard deviation is left.
+/// The search ends within a hundredth of a standard deviation.
 pub(super) const EFFORT: Effort = Effort {
     gain: 5e-5,
     steps: 200,
 };
-/// Factors of the forces within which disturbances are looked for.
+/// Limits of disturbances, relative to the forces.
 const DISTURBANCE_RANGE: [f64; 2] = [1e-7, 1e3];
 
-/// A fit to be made.
+/// A fitting problem.
 pub(crate) struct Problem {
-    /// Values to begin with: the parameters of the rig.
+    /// Initial values: the parameters of the rig.
     pub(crate) start: Vec<f64>,
     /// Parameters and additions that are free.
     pub(crate) wanted: Vec<Free>,
-    /// What they are; the value is the nominal one.
+    /// Their quantities, with nominal values.
     pub(super) quantities: Vec<Quantity>,
-    /// Levels of disturbances and noise, which always are.
+    /// Levels of disturbances and noise, which are always free.
     pub(crate) levels: Vec<Free>,
 }
 
@@ -89,7 +89,7 @@ pub(super) fn parameter(name: &str, info: &ModelInfo) -> Result<usize, IdentifyE
         })
 }
 
-/// The parameters that are looked for, each within its range and about its value.
+/// The free parameters, each within its range and with its prior.
 fn free_parameters(
     set: &DataSet,
     (info, drifts): (&ModelInfo, &[Drift]),
@@ -102,7 +102,7 @@ fn free_parameters(
     } else {
         (0..set.parameters.len()).filter(has_tolerance).collect()
     };
-    // What drifts is a state.
+    // Drifting parameters are states.
     let drifts = |index: &usize| drifts.iter().any(|own| own.parameter == *index);
     let chosen: Vec<usize> = chosen.into_iter().filter(|index| !drifts(index)).collect();
     if chosen.is_empty()
@@ -132,7 +132,7 @@ fn free_parameters(
     Ok((frees, chosen.iter().map(quantity).collect()))
 }
 
-/// The noise of a channel to begin with, and within which limits it is looked for.
+/// The initial noise of a channel, and its limits.
 fn noise(channel: &Channel, index: usize, recordings: &[Recording]) -> (f64, Free) {
     let free = Free::of(Unknown::Noise(index));
     let Some(noise) = channel.noise else {
@@ -186,7 +186,7 @@ pub(crate) fn begin(
     Ok(starts)
 }
 
-/// The values with those of some disturbances that make the recordings most likely.
+/// The values with the most likely ones of some initial levels of disturbances.
 fn most_likely(
     estimation: &Estimation<'_>,
     values: &[f64],

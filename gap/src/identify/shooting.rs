@@ -1,6 +1,5 @@
-//! Parameters to begin with where those of the rig are far from the truth: multiple shooting finds
-//! them without a filter, and the likelihood chooses among what it found with open and with closed
-//! gaps.
+//! Initial parameters if those of the rig are far from the truth, by multiple shooting without a
+//! filter; the likelihood chooses among the results with open and with closed gaps.
 
 use appell_estimate::{Estimation, Free, Recording, Shooting, Unknown};
 
@@ -8,12 +7,12 @@ use super::IdentifyError;
 use super::problem::Problem;
 use super::start::start;
 
-/// Rows of a segment at least.
+/// Least number of rows of a segment.
 const ROWS: usize = 10;
-/// Length of a segment in s: motions of mechanisms forget little of their beginning.
+/// Length of a segment in s.
 const LENGTH: f64 = 0.25;
 
-/// The most likely ones of `values` and of those with what shooting found.
+/// The most likely of `values` and those with the results of shooting.
 pub(super) fn shot(
     estimation: &Estimation<'_>,
     problem: &Problem,
@@ -47,7 +46,7 @@ pub(super) fn shot(
             let place = layout.place(free.unknown)?;
             found[place] = shot.values[place];
         }
-        // A filter may fail where a motion did not.
+        // The filter may fail although the motion did not.
         if let Ok(likelihood) = estimation.log_likelihood(&found)
             && likelihood > best.0
         {

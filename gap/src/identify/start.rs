@@ -1,4 +1,4 @@
-//! Values that a fit can begin with: states at the first rows, sizes of forces.
+//! Initial values of a fit: states at the first rows, magnitudes of forces.
 
 use appell_estimate::{Measured, Recording, Setup};
 use appell_runtime::model::{At, Model, ModelInfo};
@@ -6,7 +6,7 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::slope::{Slope, WINDOW};
 
-/// Places along a run at which slopes and forces are looked at.
+/// Number of points along a run at which slopes and forces are evaluated.
 const PLACES: usize = 100;
 /// First values are this many times less certain than a measurement: they are measured again by the
 /// first row.
@@ -15,7 +15,7 @@ const CAUTION: f64 = 10.0;
 /// so many of what it tells.
 const CAREFUL: f64 = 3.0;
 
-/// What a run begins with.
+/// Initial state of a run.
 pub(crate) struct Start {
     /// Expected state.
     pub(crate) state: Vec<f64>,
@@ -144,7 +144,7 @@ fn speeds(
             .map(|(_, slopes)| slopes.size.max(CAREFUL * slopes.first.abs())),
     );
     let speeds = &inverse * (first - at_rest);
-    // What no slope tells stays uncertain.
+    // Pseudo-velocities that no slope determines stay uncertain.
     let floor = f64::EPSILON.sqrt();
     let sizes = (inverse.abs() * size).map(|size| if size > floor { size } else { 1.0 });
     speeds
@@ -196,7 +196,7 @@ pub(super) fn forces(
         }
     }
     let size = |(square, inertia): (f64, f64)| {
-        // Where nothing pushes, a unit of acceleration has to do.
+        // Without forces, those of a unit acceleration.
         let size = (square / count).sqrt();
         if size.is_finite() && size > 0.0 {
             size

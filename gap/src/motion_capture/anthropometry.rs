@@ -1,4 +1,4 @@
-//! Where the mass of a body is: published tables.
+//! Mass distribution of the human body: published tables.
 
 /// A table of segment masses and centres.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -16,9 +16,10 @@ pub struct Anthropometry {
 pub struct Part {
     /// Its name in a skeleton file.
     pub name: &'static str,
-    /// Part of the mass of the whole body.
+    /// Fraction of the mass of the whole body.
     pub mass: f64,
-    /// Place of its centre of mass, as a part of the way from its first end to its second.
+    /// Position of its centre of mass, as a fraction of the distance from its first end to its
+    /// second.
     pub centre: f64,
 }
 
@@ -90,7 +91,7 @@ impl Anthropometry {
 mod tests {
     use super::*;
 
-    /// Parts that a body has two of.
+    /// Paired segments.
     const PAIRED: [&str; 6] = ["upper_arm", "forearm", "hand", "thigh", "shank", "foot"];
     /// The tables are printed with four digits.
     const PRINTED: f64 = 2e-4;

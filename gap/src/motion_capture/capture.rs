@@ -22,7 +22,7 @@ pub struct Capture {
 pub struct Track {
     /// The pivot: forward, left, up.
     pub position: [Vec<f64>; 3],
-    /// Yaw, tilt and pitch, counted on through whole turns.
+    /// Yaw, tilt and pitch, unwrapped.
     pub angles: [Vec<f64>; 3],
 }
 

@@ -1,4 +1,4 @@
-//! Places and axes of rigid bodies.
+//! Positions and axes of rigid bodies.
 
 /// Three components.
 pub type Vector = [f64; 3];

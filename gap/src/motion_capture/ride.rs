@@ -1,5 +1,5 @@
-//! What a capture shows of vehicle and rider: points, the centre of mass, the moving frame, and the
-//! coordinates of the model. No derivatives yet: see `smooth.rs`.
+//! Quantities of vehicle and rider from a capture: points, the centre of mass, the moving frame,
+//! and the coordinates of the model. No derivatives yet: see `smooth.rs`.
 
 use super::capture::{Capture, Track};
 use super::pose::{Axes, Vector, difference, product, sum};
@@ -114,9 +114,9 @@ impl Track {
 /// Frames on each side over which the direction of a path is averaged.
 const NEIGHBOURS: usize = 15;
 
-/// How far a point has come along the first axis of a frame: steps between rows, each along the mean of
-/// the axes of its neighbours. Noise of the point does not add up as long as the axis keeps its
-/// direction; noise of the axis times noise of the point would, without the mean.
+/// Distance of a point along the first axis of a frame: steps between rows, each along the averaged
+/// axis of its neighbours. Noise of the point does not accumulate as long as the axis keeps its
+/// direction; the product with noise of the axis would, without the average.
 fn path(frames: &[Axes], place: &[Vector]) -> Vec<f64> {
     let rows = place.len();
     let seen = |row: usize| frames[row].forward().iter().all(|x| x.is_finite());
@@ -137,7 +137,7 @@ fn path(frames: &[Axes], place: &[Vector]) -> Vec<f64> {
             return f64::NAN;
         }
         if let Some(before) = last {
-            // As many on each side, so that a turn takes nothing from a step.
+            // Symmetric, so that a turn does not bias the step.
             let reach = NEIGHBOURS.min(before).min(rows - 1 - row);
             let forward = difference(sums[row + reach + 1], sums[before - reach]);
             let length = product(forward, forward).sqrt();

@@ -1,4 +1,4 @@
-//! What a skeleton file says: which bodies are captured, where mass is, what a model measures.
+//! The skeleton file: captured bodies, mass distribution, channels of a model.
 //!
 //! ```toml
 //! description = "rider on an electric unicycle"
@@ -49,7 +49,7 @@ const MOST_NAMES: usize = 256;
 /// A checked skeleton. Names are resolved to indices, numbers are in SI.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Skeleton {
-    /// What people say about it.
+    /// Description.
     pub description: String,
     /// The mechanism that the channels belong to.
     pub mechanism: String,
@@ -63,7 +63,7 @@ pub struct Skeleton {
     pub rider: Rider,
     /// The moving frame: a body for its yaw and tilt, a point for its origin.
     pub frame: Frame,
-    /// What the model measures.
+    /// Channels of the model.
     pub channels: Vec<Channel>,
 }
 
@@ -462,7 +462,7 @@ impl Reader<'_, '_> {
             self.fields.tell(Code::MissingKey, message, 0..0, help);
             return None;
         }
-        // What is not captured, such as feet, is shared out.
+        // The mass of segments that are not captured, such as feet, is distributed.
         for segment in &mut segments {
             segment.mass *= mass / whole;
         }

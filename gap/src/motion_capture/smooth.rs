@@ -1,8 +1,8 @@
 //! Velocities and accelerations of a ride, by one Savitzky-Golay filter for all signals.
 //!
-//! With one filter, what smoothing takes from the motion it takes from both sides of the equations.
-//! Its window is the narrowest of those that the rule of [`appell_estimate::smoothing::window`] chooses
-//! for the second derivatives of the channels.
+//! With a single filter both sides of the equations are filtered alike. Its window is the narrowest
+//! of those that the rule of [`appell_estimate::smoothing::window`] chooses for the second
+//! derivatives of the channels.
 
 use appell_estimate::smoothing::savitzky_golay::{SavitzkyGolay, weights};
 use appell_estimate::smoothing::{Samples, SamplesError, noise, window};
@@ -141,7 +141,8 @@ impl<'t> Kernels<'t> {
     fn smooth(&self, values: &[f64]) -> Result<Signal, SamplesError> {
         let samples = Samples::new(self.times, values)?;
         if values.len() < self.filter.count() || values.iter().any(|value| value.is_nan()) {
-            // Windows reach over what is missing. Covariances are not asked for: no level matters.
+            // Windows extend over missing values. Covariances are not needed, so the level is
+            // arbitrary.
             let estimate = self.filter.estimate(samples, 2, 1.0)?;
             let rows = 0..estimate.len();
             let three = |row| [0, 1, 2].map(|order| estimate.at(row)[order]);

@@ -7,7 +7,7 @@ use super::ride::Ride;
 use super::skeleton::{ChannelKind, Skeleton};
 use super::smooth::Smoothed;
 
-/// What a run holds besides the channels: name, unit, sentence.
+/// Further columns of a run: name, unit, sentence.
 const DERIVED: [(&str, &str); 13] = [
     ("frame_yaw", "rad"),
     ("frame_tilt", "rad"),

@@ -1,4 +1,4 @@
-//! What a paper says, what is found, and what that means.
+//! Claims of a paper, compared with computed results.
 
 use serde::Serialize;
 
@@ -7,66 +7,66 @@ use serde::Serialize;
 pub struct Section {
     /// Its heading.
     pub title: String,
-    /// A few sentences on what is shown.
+    /// Its introduction.
     pub about: String,
-    /// What is claimed and found.
+    /// Its claims.
     pub claims: Vec<Claim>,
     /// Pictures, in the book only.
     #[serde(skip)]
     pub pictures: Vec<Picture>,
 }
 
-/// A figure with what it shows.
+/// A figure with its caption.
 #[derive(Debug)]
 pub struct Picture {
     /// SVG.
     pub svg: String,
-    /// What it shows.
+    /// Its caption.
     pub caption: String,
 }
 
-/// One statement of the paper beside ours.
+/// A statement of the paper, compared with the computed result.
 #[derive(Debug, Serialize)]
 pub struct Claim {
-    /// Where it stands.
+    /// Its place in the paper.
     pub place: String,
-    /// What the paper says; corrected formulas beside what is printed.
+    /// The statement of the paper, with corrections.
     pub published: String,
-    /// What is found.
+    /// The computed result.
     pub ours: String,
-    /// How the two compare.
+    /// Agreement of the two.
     pub agreement: Reproduction,
-    /// What the agreement rests on, or why there is none.
+    /// Basis of the agreement, or reason for its absence.
     pub note: String,
-    /// Where the paper errs: the kind of error.
+    /// For an erratum: the kind of error.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub erratum: Option<&'static str>,
     /// Whether the comparison gives its expected result (for an erratum: the corrected statement
     /// holds); `false` indicates a regression.
     pub as_expected: bool,
-    /// What makes it, without the book.
+    /// The command that reproduces it.
     pub command: String,
 }
 
-/// How a statement compares with what is found.
+/// Agreement of a statement with the computed result.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Reproduction {
-    /// The same function, by the identity test; or a number that agrees in every digit that is
-    /// published, beside a formula in ten at least.
+    /// The same function, by the identity test; or a number that agrees in every published digit,
+    /// with a formula in at least ten.
     Exact,
-    /// It agrees within a tolerance, or holds at every point that was tried.
+    /// It agrees within a tolerance, or holds at every tested point.
     Approximate,
-    /// What is found is something else.
+    /// The results differ.
     Differs,
-    /// There is nothing to compare with: a definition, or recordings that are not public.
+    /// Not comparable: a definition, or recordings that are not public.
     CannotBeChecked,
-    /// A result of ours, beside which the paper has no statement.
+    /// An additional result without a statement in the paper.
     NotInPaper,
 }
 
 impl Reproduction {
-    /// All of them, in the order in which they are counted.
+    /// All values, in the order in which they are counted.
     pub const ALL: [Self; 5] = [
         Self::Exact,
         Self::Approximate,
@@ -75,7 +75,7 @@ impl Reproduction {
         Self::NotInPaper,
     ];
 
-    /// For people.
+    /// Its description.
     pub const fn words(self) -> &'static str {
         match self {
             Self::Exact => "exact",
@@ -87,11 +87,11 @@ impl Reproduction {
     }
 }
 
-/// Why what rests on the recordings of a paper cannot be checked.
+/// Why statements about unpublished recordings cannot be checked.
 pub(super) const NOT_PUBLIC: &str = "the paper's recordings are not public";
 
 impl Claim {
-    /// A statement that is found to hold or not, within a tolerance or at the points that were tried.
+    /// A statement that holds or not, within a tolerance or at the tested points.
     pub fn that(
         place: &str,
         published: &str,
@@ -115,7 +115,7 @@ impl Claim {
         }
     }
 
-    /// A number beside its published value, of which `needed` digits must agree.
+    /// A number and its published value, of which `needed` digits must agree.
     pub fn number(
         place: &str,
         published: &str,
@@ -131,8 +131,8 @@ impl Claim {
             .noted(format!("{digits} digit{plural} agree"))
     }
 
-    /// What the paper found on recordings that are not public: it shows on simulated ones, or it does
-    /// not. Either is an answer.
+    /// A statement about unpublished recordings, tested on simulated ones. Either outcome is
+    /// expected.
     pub fn finding(
         place: &str,
         published: &str,
@@ -147,7 +147,7 @@ impl Claim {
         .noted("on simulated rides")
     }
 
-    /// Where it holds, it does so exactly: nothing was sampled.
+    /// If it holds, it holds exactly.
     #[must_use]
     pub fn exactly(mut self) -> Self {
         if self.agreement == Reproduction::Approximate {
@@ -156,7 +156,7 @@ impl Claim {
         self
     }
 
-    /// Where it holds, it does so within a tolerance.
+    /// If it holds, it holds within a tolerance.
     #[must_use]
     pub fn approximately(mut self) -> Self {
         if self.agreement == Reproduction::Exact {
@@ -165,14 +165,14 @@ impl Claim {
         self
     }
 
-    /// With what the agreement rests on.
+    /// With the basis of the agreement.
     #[must_use]
     pub fn noted(mut self, note: impl Into<String>) -> Self {
         self.note = note.into();
         self
     }
 
-    /// The paper errs here; whatever else is compared, the two differ.
+    /// An erratum of the paper: the two differ, whatever else agrees.
     #[must_use]
     pub fn erratum(self, kind: &'static str) -> Self {
         Self {
@@ -183,7 +183,7 @@ impl Claim {
         .noted(format!("erratum: {kind}"))
     }
 
-    /// There is nothing to compare with, for a reason.
+    /// Not comparable, for a reason.
     #[must_use]
     pub fn unchecked(self, why: &str) -> Self {
         Self {
@@ -193,7 +193,7 @@ impl Claim {
         .noted(why)
     }
 
-    /// A result of ours.
+    /// An additional result.
     #[must_use]
     pub fn added(self) -> Self {
         Self {
@@ -203,18 +203,18 @@ impl Claim {
     }
 }
 
-/// How many statements agree, and how.
+/// Counts of statements by agreement.
 #[derive(Debug, Default, Clone, Copy, PartialEq, Eq, Serialize)]
 pub struct Tally {
     /// The same function, or every published digit.
     pub exact: usize,
     /// Within a tolerance.
     pub approximate: usize,
-    /// Something else is found.
+    /// The results differ.
     pub differs: usize,
     /// Definitions, and numbers from recordings that are not public.
     pub cannot_be_checked: usize,
-    /// Results of ours.
+    /// Additional results.
     pub not_in_paper: usize,
 }
 
@@ -238,7 +238,7 @@ impl Tally {
         }
     }
 
-    /// Statements of the paper, all but our own results.
+    /// Statements of the paper, without additional results.
     pub const fn statements(self) -> usize {
         self.exact + self.approximate + self.differs + self.cannot_be_checked
     }
@@ -267,7 +267,7 @@ pub(crate) fn digits(wanted: f64, found: f64) -> u32 {
         .map_or(0, i32::unsigned_abs)
 }
 
-/// A number with the digits that can be trusted.
+/// A number with its reliable digits.
 pub(crate) fn shown(value: f64) -> String {
     if value == 0.0 {
         return "0".to_owned();

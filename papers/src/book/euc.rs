@@ -4,10 +4,10 @@
 //! | file | part |
 //! |---|---|
 //! | `equations.rs`, `tables.rs` | every numbered equation; tables 1 to 3 |
-//! | `rider.rs` | the spatial unicycle under a rider, four manoeuvres |
-//! | `capture.rs`, `random.rs` | rigid bodies as cameras see them; noise |
+//! | `rider.rs` | the spatial unicycle with a rider, four manoeuvres |
+//! | `capture.rs`, `random.rs` | captured rigid bodies; noise |
 //! | `recorded.rs` | the rides as data sets, for `appell diagnose` |
-//! | `laboratory.rs` | everything that was ridden, captured and smoothed |
+//! | `laboratory.rs` | all rides, captured and smoothed |
 //! | `torque.rs` | M_d,1 and M_d,2, and their difference over the height |
 //! | `figure_3.rs`, `figure_6.rs`, `figure_8.rs` | figures 3 and 4, 6 and 7, 8 |
 //! | `heights.rs` | the height with its interval |
@@ -34,7 +34,7 @@ use super::Section;
 use super::failed;
 use appell::Error;
 
-/// A part of the book: its name while it is made, and what makes it.
+/// A part of the book: its name for progress messages, and its function.
 type Part = (&'static str, fn(&Laboratory) -> Result<Section, Error>);
 
 const PARTS: &[Part] = &[
@@ -46,8 +46,8 @@ const PARTS: &[Part] = &[
     ("heights", heights::section),
 ];
 
-/// The book part by part; `making` hears what is made, and how much of the book is. The rides go to a
-/// folder, as recordings.
+/// The book part by part; `making` is called with the current part and the progress. The rides are
+/// written to a folder, as recordings.
 pub fn book(
     rides: &Path,
     mut making: impl FnMut(&str, usize, usize),

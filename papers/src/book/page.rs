@@ -1,4 +1,4 @@
-//! The book as a page that needs nothing beside it. It is well-formed XML, too.
+//! The book as a self-contained page, also well-formed XML.
 
 use appell_report::page_shell::PageShell;
 use maud::{Markup, PreEscaped, html};
@@ -58,7 +58,7 @@ fn part(number: usize, section: &Section) -> Markup {
                     (PreEscaped(&picture.svg))
                     figcaption { (picture.caption) }
                 }
-                // Figures stand beside each other.
+                // Adjacent figures.
                 "\n"
             }
             table {
@@ -128,7 +128,7 @@ fn row(claim: &Claim) -> Markup {
 
 /// The first line as text, the others as formulas; long ones are folded.
 fn lines(text: &str) -> Markup {
-    /// Lines that are shown at once.
+    /// Number of lines shown unfolded.
     const SHORT: usize = 4;
     let (first, rest) = text.split_once('\n').unwrap_or((text, ""));
     html! {

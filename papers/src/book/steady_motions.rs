@@ -14,7 +14,7 @@ use appell::steady::regions::Shown;
 
 /// Starting points from which motions are sought.
 const STARTS: usize = 20;
-/// The same for the seeds of a chart, which has regions that do not hang together.
+/// The same for the seeds of a chart, whose regions are disconnected.
 const CHART_STARTS: usize = 100;
 
 /// The numbers of the paper: masses of wheel and slider, radius, gravitational acceleration.
@@ -56,7 +56,7 @@ impl Mechanism {
         Ok(problem)
     }
 
-    /// Branches of steady motions along a quantity; none where there are no motions.
+    /// Branches of steady motions along a quantity; none without motions.
     pub(crate) fn branches(
         self,
         given: &[(&str, f64)],
@@ -149,7 +149,7 @@ pub(crate) fn degrees(name: &str, values: Vec<f64>) -> Vec<f64> {
     values
 }
 
-/// How a quantity is drawn: angles in degrees, by the letters of the paper.
+/// Scale and letter of a quantity in figures: angles in degrees, letters of the paper.
 pub(crate) fn shown(name: &str) -> Shown {
     let (label, scale) = match name {
         "theta" => ("ϑ [deg]", 1f64.to_degrees()),

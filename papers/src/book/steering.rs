@@ -5,8 +5,8 @@
 //! | `equations.rs` | equations that are formulas, by the identity test; definitions |
 //! | `numbers.rs` | equations whose content are numbers: critical values, circles, ranks |
 //! | `tables.rs`, `manoeuvres.rs` | gains; closed loops |
-//! | `figure_3.rs` … `figure_8.rs` | figures, and what they are said to show |
-//! | `beyond.rs` | what the paper did not see |
+//! | `figure_3.rs` … `figure_8.rs` | figures, and the statements about them |
+//! | `additional.rs` | results beyond the paper |
 
 mod additional;
 pub(super) mod equations;
@@ -23,8 +23,8 @@ use appell::Error;
 
 use super::Section;
 
-/// A part of the book: its name while it is made, and what makes it with charts of so many points along
-/// each axis.
+/// A part of the book: its name for progress messages, and its function of the number of grid
+/// points along each axis.
 type Part = (&'static str, fn(usize) -> Result<Section, Error>);
 
 const PARTS: &[Part] = &[
@@ -39,8 +39,8 @@ const PARTS: &[Part] = &[
     ("what the paper did not see", |_| additional::section()),
 ];
 
-/// The book part by part, with charts of `grid` points along each axis; `making` hears what is made, and
-/// how much of the book is.
+/// The book part by part, with charts of `grid` points along each axis; `making` is called with the
+/// current part and the progress.
 pub fn book(
     grid: usize,
     mut making: impl FnMut(&str, usize, usize),

@@ -12,7 +12,7 @@ pub struct Gains {
 }
 
 impl Gains {
-    /// The gains with the misprint mended.
+    /// The gains with the misprint corrected.
     pub fn mended(&self) -> impl Iterator<Item = f64> {
         let [misprint, right] = MISPRINT;
         self.printed.iter().map(move |&printed| {
@@ -22,10 +22,10 @@ impl Gains {
     }
 }
 
-/// What the gains are of.
+/// The outputs of the gains.
 pub const OUTPUTS: [&str; 6] = ["omega_1", "theta", "sigma", "r", "psi", "y_G"];
 
-/// The gain that is misprinted, and what is right: two digits are swapped.
+/// The misprinted gain and its correction: two digits are swapped.
 pub const MISPRINT: [&str; 2] = ["536.67", "563.67"];
 
 /// The columns of both tables.

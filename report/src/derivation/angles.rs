@@ -1,17 +1,17 @@
-//! Sums of angles: `sin a cos b + cos a sin b = sin(a + b)` and its kin.
+//! Angle sum identities: `sin a cos b + cos a sin b = sin(a + b)` and similar ones.
 
 use rustc_hash::FxHashMap;
 
 use appell_codegen::symbolic::{Expr, Function, Graph, Node, Rational};
 
-/// A product of two sines or cosines of different angles, and what it is multiplied by.
+/// A product of two sines or cosines of different angles, and its cofactor.
 struct Pair {
     /// Functions and angles, in the order of the angles.
     turns: [(Function, Expr); 2],
     rest: Expr,
 }
 
-/// An expanded sum with pairs of products put together to functions of one angle.
+/// An expanded sum with pairs of products combined into functions of one angle.
 pub(super) fn with_compound_angles(graph: &mut Graph, expr: Expr) -> Expr {
     let Node::Sum(terms) = graph.node(expr) else {
         return expr;
@@ -22,7 +22,7 @@ pub(super) fn with_compound_angles(graph: &mut Graph, expr: Expr) -> Expr {
         .collect();
     let mut used = vec![false; terms.len()];
     let mut sum: Vec<(Rational, Expr)> = Vec::new();
-    // Terms that wait for their partner, by what they are multiplied by and by their angles.
+    // Terms without a partner so far, by cofactor and angles.
     let mut waiting: FxHashMap<(Expr, Expr, Expr), Vec<usize>> = FxHashMap::default();
     let pairs: Vec<Vec<Pair>> = terms
         .iter()
@@ -69,7 +69,7 @@ pub(super) fn with_compound_angles(graph: &mut Graph, expr: Expr) -> Expr {
     graph.linear_combination(&sum)
 }
 
-/// Every way to take two single turns of different angles out of a product.
+/// Every choice of two simple sine or cosine factors of different angles in a product.
 fn pairs_of(graph: &mut Graph, term: Expr) -> Vec<Pair> {
     let Node::Product(factors) = graph.node(term) else {
         return Vec::new();

@@ -1,5 +1,6 @@
-//! Expression to formula: what a reader sees of an expression. Names are put in where that stays
-//! readable (`dissolve`), sums ordered by what they multiply (`collect`), quotients kept together.
+//! Expression to readable formula. Definitions are substituted for names where the result stays
+//! short (`dissolve`), sums are collected by velocities or angles (`collect`), quotients are kept
+//! together.
 
 use super::Math;
 use super::angles::with_compound_angles;
@@ -17,7 +18,7 @@ const LONGEST_NUMERATOR: usize = 72;
 
 impl Writer<'_> {
     /// The formula of an expression, explicit where that stays readable, ordered by accelerations
-    /// and velocities, with what all terms share before the sum.
+    /// and velocities, with common factors before the sum.
     pub(super) fn explicit(&mut self, expr: Expr) -> Math {
         let keys = [self.accelerations.clone(), self.velocities.clone()].concat();
         self.arranged(expr, &[&keys], true)
@@ -38,7 +39,7 @@ impl Writer<'_> {
     fn arranged(&mut self, expr: Expr, keys: &[&[Expr]], common: bool) -> Math {
         let readable = self.readable(expr);
         let graph = self.graph();
-        // Quotients by sums stay whole; the rest is multiplied out and ordered.
+        // Quotients by sums are kept; the rest is expanded and ordered.
         let terms: Vec<(Rational, Expr)> = match graph.node(readable) {
             Node::Sum(terms) => terms
                 .iter()
@@ -73,7 +74,7 @@ impl Writer<'_> {
         self.present(best, keys)
     }
 
-    /// The names put in, where the sum does not get too long.
+    /// Substitutes definitions for names, unless the sum gets too long.
     fn readable(&mut self, expr: Expr) -> Expr {
         let graph = &mut self.derivation.algebra.graph;
         let lexicon = self.setter.vocabulary();
@@ -207,7 +208,7 @@ impl Writer<'_> {
                 let term = self.graph().mul(coefficient, power);
                 self.set(term)
             };
-            // A sign that the formula brings along is the sign of the term.
+            // A leading sign of the formula is the sign of the term.
             terms.push(match math {
                 Math::Sum(mut single) if single.len() == 1 => {
                     let (inner, math) = single.remove(0);
@@ -281,7 +282,7 @@ fn is_quotient(graph: &Graph, expr: Expr) -> bool {
     })
 }
 
-/// Whether one of the keys occurs in an expression, not looking behind names.
+/// Whether one of the keys occurs in an expression, without expanding names.
 fn occurs(graph: &Graph, expr: Expr, keys: &[Expr]) -> bool {
     appell_codegen::symbolic::print::visible(graph, expr)
         .iter()
@@ -305,7 +306,7 @@ fn leads_with_minus(graph: &Graph, expr: Expr) -> bool {
     }
 }
 
-/// A sum that can start with a plus does.
+/// A sum starts with a positive term if it has one.
 fn plus_first(mut terms: Vec<(bool, Math)>) -> Vec<(bool, Math)> {
     if terms.first().is_some_and(|(minus, _)| *minus)
         && let Some(place) = terms.iter().position(|(minus, _)| !minus)

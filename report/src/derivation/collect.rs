@@ -1,9 +1,8 @@
-//! Expression to terms: a sum ordered by the velocities, or by the sines and cosines, that its terms
-//! contain.
+//! Expression to terms: a sum collected by the velocities, or the sines and cosines, of its terms.
 
 use appell_codegen::symbolic::{Expr, Function, Graph, Node, Rational};
 
-/// The power of each key in a product; keys are numbered by their place in the list.
+/// The power of each key in a product; keys are given by their index.
 pub(super) type Monomial = Vec<(usize, i32)>;
 
 /// A sum as `Σ coefficient · monomial`, ordered by monomial: high degrees in early keys first, what

@@ -1,10 +1,10 @@
-//! What a page consists of, whatever it is set in.
+//! Content of a page, independent of its format.
 
 use super::display::Equation;
 use appell_codegen::symbolic::print::Math;
 
-/// How far a page reads. Each stage holds everything before it; only [`Stage::Equations`], the
-/// handout, leaves M and b out where the equations are solved without them.
+/// Extent of a page. Each stage includes the previous ones; only [`Stage::Equations`], the handout,
+/// omits M and b if the equations are solved without them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Stage {
     /// Frames, constraints, velocities, accelerations.
@@ -19,12 +19,12 @@ pub enum Stage {
     All,
 }
 
-/// A page: what it is about, and its sections.
+/// A page with its sections.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Page {
-    /// What it is about.
+    /// Its title.
     pub title: String,
-    /// Where the model comes from.
+    /// Source of the model.
     pub source: Option<String>,
     /// Its sections, in reading order.
     pub sections: Vec<Section>,
@@ -33,9 +33,9 @@ pub struct Page {
 /// A section.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Section {
-    /// Its idea, in a few words.
+    /// Its heading.
     pub heading: Vec<Span>,
-    /// What it says.
+    /// Its blocks.
     pub blocks: Vec<Block>,
 }
 
@@ -44,7 +44,7 @@ pub struct Section {
 pub enum Block {
     /// A short text.
     Sentence(Vec<Span>),
-    /// Quantities with what they mean.
+    /// Quantities with their meaning.
     Table(Table),
     /// Frames, each turned from the one before.
     Chain(Chain),
@@ -64,7 +64,7 @@ pub enum Span {
 /// Rows of cells without a head: the columns explain themselves.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Table {
-    /// What is listed; empty where the text before says it.
+    /// Its caption; empty if the text before contains it.
     pub title: String,
     /// Rows, in order.
     pub rows: Vec<Row>,
@@ -75,15 +75,15 @@ pub struct Table {
 pub struct Row {
     /// Its cells.
     pub cells: Vec<Vec<Span>>,
-    /// The line of the spec that says it, from 1.
+    /// The line of its definition in the spec, from 1.
     pub line: usize,
 }
 
 /// A chain of frames.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Chain {
-    /// Where it starts.
+    /// The initial frame.
     pub start: String,
-    /// What is turned, and the frame that this gives.
+    /// Rotations, and the resulting frames.
     pub links: Vec<(Vec<Span>, String)>,
 }

@@ -1,4 +1,4 @@
-//! Equations in lines: where a long one breaks.
+//! Equations in lines: breaks of long ones.
 
 use super::Math;
 
@@ -21,7 +21,7 @@ impl Equation {
 /// A piece of a line: signs and brackets are where a long line may break.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Piece<'a> {
-    /// What stays together.
+    /// A part that is not broken.
     Whole(&'a Math),
     /// Plus or minus before a term; the first term of a sum has one only if it is subtracted.
     Sign { minus: bool, first: bool },
@@ -46,8 +46,8 @@ pub(super) struct Display<'a> {
 pub(super) const WIDEST_LEFT: usize = 16;
 
 impl Equation {
-    /// The equation in lines of about `width` characters; `left_width` is what the left-hand sides
-    /// of a list take.
+    /// The equation in lines of about `width` characters; `left_width` is the width of the
+    /// left-hand sides of a list.
     pub(super) fn display(&self, width: usize, left_width: usize) -> Display<'_> {
         let mut pieces = Vec::new();
         if self.left.width() <= WIDEST_LEFT {
@@ -70,10 +70,10 @@ impl Equation {
     }
 }
 
-/// Columns by which the lines of an equation that is broken at its equality sign are set in.
+/// Indentation of the lines of an equation that is broken at its equality sign.
 const CONTINUED: usize = 4;
 
-/// How wide the aligned left-hand sides of a list are.
+/// Width of the aligned left-hand sides of a list.
 pub(super) fn left_width(equations: &[Equation]) -> usize {
     equations
         .iter()
@@ -91,7 +91,7 @@ fn broken<'a>(pieces: &[(Piece<'a>, usize)], first: usize, others: usize) -> Vec
     let mut start = 0;
     while start < pieces.len() {
         let width = if start == 0 { first } else { others };
-        // Places to break, with their depth and the width used before them.
+        // Possible breaks, with their depth and the width used before them.
         let mut places: Vec<(usize, usize, usize)> = Vec::new();
         let mut used = 0;
         let mut end = start;

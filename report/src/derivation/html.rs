@@ -1,4 +1,4 @@
-//! HTML: one file that opens from disk, with `MathML`, in light, dark and on paper.
+//! HTML: one self-contained file with `MathML`, for light and dark displays and for print.
 
 use maud::{Markup, PreEscaped, html as markup};
 
@@ -11,10 +11,10 @@ use appell_codegen::symbolic::print::{Math, clean};
 /// Width of a line of equations, in characters as [`super::Math::width`] counts them.
 const WIDTH: usize = 92;
 
-/// How the page looks.
+/// Style sheet of the page.
 const STYLE: &str = include_str!("page.css");
 
-/// The page as an HTML document of its own.
+/// The page as a self-contained HTML document.
 pub fn html(page: &Page) -> String {
     let title = clean(&page.title);
     PageShell::new(&title, STYLE).around(&markup! {
@@ -49,7 +49,7 @@ fn formula(math: &Math) -> PreEscaped<String> {
 fn spans(spans: &[Span]) -> Markup {
     let mut out = Vec::with_capacity(spans.len());
     let mut spans = spans.iter().peekable();
-    // The stop of a formula stays on its line.
+    // The full stop after a formula stays on its line.
     let mut stopped = false;
     while let Some(span) = spans.next() {
         out.push(match span {
@@ -105,8 +105,8 @@ fn chain(chain: &Chain) -> Markup {
     }
 }
 
-/// Rows of a table with three columns: left-hand side, sign, right-hand side. What is broken itself
-/// spans all of them.
+/// Rows of a table with three columns: left-hand side, sign, right-hand side. A broken left-hand
+/// side spans all of them.
 fn equations(equations: &[Equation]) -> Markup {
     let left_width = left_width(equations);
     markup! {

@@ -1,4 +1,4 @@
-//! LaTeX: a document of its own that compiles with `pdftex`, `xetex` and `luatex`.
+//! LaTeX: a self-contained document that compiles with `pdftex`, `xetex` and `luatex`.
 
 use std::fmt::Write;
 
@@ -9,8 +9,8 @@ use appell_codegen::symbolic::print::{latex as formula, latex_text as escaped};
 /// Width of a line of equations, in characters as [`Math::width`] counts them.
 const WIDTH: usize = 88;
 
-/// What stands before the text. `\other` shows a character where the engine knows all of Unicode,
-/// and its number elsewhere.
+/// The preamble. `\other` shows a character if the engine supports Unicode, and its number
+/// otherwise.
 const PREAMBLE: &str = r"\documentclass[10pt,a4paper,fleqn]{article}
 \usepackage{iftex}
 \ifPDFTeX
@@ -96,7 +96,7 @@ fn table(out: &mut String, table: &Table) {
     if !table.title.is_empty() {
         let _ = writeln!(out, "\\quantities{{{}}}", escaped(&table.title));
     }
-    // The last column takes what the others leave; behind it stand the lines of the spec.
+    // The last column takes the remaining width, followed by the lines of the spec.
     let firsts = "l".repeat(columns.saturating_sub(1));
     let _ = writeln!(
         out,
@@ -153,7 +153,7 @@ fn equations(out: &mut String, equations: &[Equation]) {
 }
 
 fn pieces(pieces: &[Piece<'_>]) -> String {
-    // A bracket is as tall as what it holds; lines may break between the two.
+    // A bracket is as tall as its content; lines may break between the two.
     let tall = pieces
         .iter()
         .any(|piece| matches!(piece, Piece::Whole(math) if math.has_fraction()));

@@ -1,4 +1,4 @@
-//! Which letter stands for which symbol and for which named intermediate quantity.
+//! Letters of symbols and of named intermediate quantities.
 
 use appell_spec::mechanism::Mechanism;
 use rustc_hash::{FxHashMap, FxHashSet};
@@ -8,7 +8,7 @@ use appell_codegen::mechanics::Derivation;
 use appell_codegen::symbolic::print::{Spelled, Vocabulary};
 use appell_codegen::symbolic::{Expr, Graph, Node};
 
-/// Where a symbol stands in a product: `m R r ω₁ sin θ`.
+/// Position of a symbol in a product: `m R r ω₁ sin θ`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Rank {
     /// Parameters and the circle constant.
@@ -19,7 +19,7 @@ pub(super) enum Rank {
     Input,
     /// Pseudo-velocities and generalised velocities.
     Velocity,
-    /// Pseudo-accelerations; they stand behind named quantities.
+    /// Pseudo-accelerations, after named quantities.
     Acceleration = 6,
 }
 
@@ -28,7 +28,7 @@ pub(super) enum Rank {
 pub(super) struct Lexicon {
     symbols: FxHashMap<Expr, (Letter, Rank)>,
     named: FxHashMap<String, Letter>,
-    /// Names that stay names in explicit formulas: accelerations and pivots.
+    /// Names that are not expanded in explicit formulas: accelerations and pivots.
     kept: FxHashSet<String>,
 }
 
@@ -36,7 +36,7 @@ pub(super) struct Lexicon {
 pub(super) const AXES: [&str; 3] = ["x", "y", "z"];
 
 impl Lexicon {
-    /// The letters of everything that the derivation names.
+    /// The letters of all names of the derivation.
     pub(super) fn new(mechanism: &Mechanism, derivation: &Derivation) -> Self {
         let s = &derivation.symbols;
         let mut symbols = FxHashMap::default();
@@ -142,7 +142,7 @@ impl Lexicon {
         self.named.insert(name, letter);
     }
 
-    /// Whether explicit formulas keep a name instead of putting its definition in.
+    /// Whether explicit formulas keep a name instead of its definition.
     pub(super) fn keeps(&self, name: &str) -> bool {
         self.kept.contains(name)
     }

@@ -8,7 +8,7 @@ use appell_codegen::symbolic::print::{clean, columns};
 
 /// Width of the page in characters.
 const WIDTH: usize = 100;
-/// Indent of what is displayed.
+/// Indentation of displayed equations.
 const INDENT: usize = 4;
 /// Columns of the right margin, where the lines of the spec stand.
 const MARGIN: usize = 6;
@@ -116,7 +116,7 @@ fn table(out: &mut String, table: &Table) {
         let indent = columns(&head);
         let free = WIDTH.saturating_sub(indent + MARGIN);
         if free < WIDTH / 5 {
-            // The cells before leave no room: the last one goes on below.
+            // Without room after the other cells the last one continues below.
             let mut heads = broken(head.trim_end()).into_iter();
             let text = heads.next().unwrap_or_default();
             let right = WIDTH.saturating_sub(columns(&text));
@@ -198,7 +198,7 @@ fn equations(out: &mut String, equations: &[Equation]) {
             };
             whole.push(start.beside(&pieces_box(pieces)));
         }
-        // Air around what is taller than a line.
+        // Blank lines around blocks taller than a line.
         let tall = whole.len() > 1 || whole.iter().any(|p| p.height() > 1);
         if index > 0 && (tall || after_tall) {
             line(out, "");

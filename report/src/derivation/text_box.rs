@@ -1,5 +1,5 @@
-//! Boxes of characters, which a text page is built of: lines of equal width, one of them at the height
-//! of the text.
+//! Boxes of characters, the elements of a text page: lines of equal width, one of which is the
+//! baseline.
 
 use appell_codegen::symbolic::print::columns;
 
@@ -7,7 +7,7 @@ use appell_codegen::symbolic::print::columns;
 #[derive(Debug, Clone)]
 pub(super) struct TextBox {
     lines: Vec<String>,
-    /// The line at the height of the surrounding text.
+    /// The baseline.
     base: usize,
 }
 
@@ -39,7 +39,7 @@ impl TextBox {
         self.lines.iter().map(String::as_str)
     }
 
-    /// Two boxes side by side, with their bases at the same height.
+    /// Two adjacent boxes, with aligned baselines.
     pub(super) fn beside(&self, right: &Self) -> Self {
         let base = self.base.max(right.base);
         let below = (self.height() - self.base).max(right.height() - right.base);

@@ -1,4 +1,4 @@
-//! Numbers and units for people.
+//! Numbers and units in readable form.
 
 use appell_spec::mechanism::Label;
 
@@ -32,7 +32,7 @@ pub(super) fn range(label: &Label, [low, high]: [f64; 2]) -> String {
     format!("{low} to {}", value(label, high))
 }
 
-/// Twelve digits: what conversion of units adds beyond them is rounding.
+/// Twelve digits, beyond which unit conversion adds rounding.
 fn number(value: f64) -> String {
     let rounded: f64 = format!("{value:.11e}").parse().unwrap_or(value);
     let size = rounded.abs();

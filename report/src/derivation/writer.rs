@@ -1,4 +1,4 @@
-//! What every section needs: formulas of expressions, and definitions before use.
+//! Common tools of the sections: formulas of expressions, and definitions before use.
 
 use appell_spec::mechanism::{FrameId, Mechanism, PointId};
 use rustc_hash::FxHashSet;
@@ -14,12 +14,12 @@ use appell_codegen::symbolic::print::Setter;
 use appell_codegen::symbolic::vector::Vec3;
 use appell_codegen::symbolic::{Expr, Graph, Node, System};
 
-/// A vector with a wider component, its frame beside it, is written component by component.
+/// Width of a component beyond which a vector is written component by component.
 const WIDEST_COMPONENT: usize = 82;
-/// A linear system whose entries are wider is written equation by equation.
+/// Width of entries beyond which a linear system is written equation by equation.
 const WIDEST_SYSTEM: usize = 76;
 
-/// Writes formulas and remembers what they take for granted.
+/// Writes formulas and records the names that they use.
 pub(super) struct Writer<'a> {
     /// The mechanism.
     pub(super) mechanism: &'a Mechanism,
@@ -86,14 +86,14 @@ impl<'a> Writer<'a> {
         Letter::of(&self.mechanism.points[point].name).to_string()
     }
 
-    /// The formula of an expression as it stands.
+    /// The formula of an expression, unexpanded.
     pub(super) fn set(&mut self, expr: Expr) -> Math {
         let set = self.setter.set(&self.derivation.algebra.graph, expr);
         self.wanted.extend(set.wants);
         set.math
     }
 
-    /// The explicit formula, without a promise to define what it uses.
+    /// The explicit formula, without recording the names that it uses.
     pub(super) fn try_explicit(&mut self, expr: Expr) -> Math {
         let wanted = self.wanted.len();
         let math = self.explicit(expr);
@@ -171,7 +171,7 @@ impl<'a> Writer<'a> {
         }
     }
 
-    /// The equations that say what a name stands for; of a linear system, what all its unknowns do.
+    /// The equations that define a name; for a linear system, all its unknowns.
     fn definition(&mut self, expr: Expr) -> Vec<Equation> {
         let letter = self.letter(expr);
         let right = match *self.graph().node(expr) {

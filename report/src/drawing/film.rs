@@ -1,4 +1,4 @@
-//! The course of a motion in space: what a moving picture is made of.
+//! A motion in space: the data of an animation.
 
 use std::collections::BTreeSet;
 use std::f64::consts::PI;
@@ -25,15 +25,15 @@ use appell_codegen::mechanics::symbols::{Symbols, ids};
 use appell_codegen::symbolic::vector::Vec3;
 use appell_codegen::symbolic::{Graph, SymbolId, evaluate};
 
-/// Semi-axes of an ellipsoid are at least this part of the largest: a rod is seen.
+/// Least semi-axis of an ellipsoid relative to the largest, so that rods are visible.
 const THINNEST: f64 = 0.06;
 
-/// Places, turns and forces over the rows of a motion, in the ground and in SI. What is not finite
-/// is NaN.
+/// Positions, rotations and forces over the rows of a motion, in the ground and in SI; NaN where
+/// not finite.
 pub struct Film {
     /// Directions: to the right in the first view, up in it, along the floor, vertical.
     pub view: [[f64; 3]; 4],
-    /// The axis of the ground that the motion never leaves the plane across, if there is one.
+    /// The axis of the ground normal to the plane of motion, if the motion is planar.
     pub flat_across: Option<usize>,
     /// Points at which constraints hold bodies, where these roll or slide.
     pub contacts: Vec<PointId>,
@@ -43,7 +43,7 @@ pub struct Film {
     pub seats: Vec<Option<PointId>>,
     /// Bodies with a shape.
     pub shapes: Vec<(BodyId, Shape)>,
-    /// What the arrows are.
+    /// The forces shown by arrows.
     pub forces: Vec<Force>,
     /// Row by row, three numbers a point.
     pub positions: Vec<f64>,
@@ -57,7 +57,7 @@ pub struct Film {
 pub enum Shape {
     /// A disc.
     Wheel {
-        /// Its middle.
+        /// Its centre.
         hub: [f64; 3],
         /// Unit vector along its axis.
         axis: [f64; 3],
@@ -66,19 +66,19 @@ pub enum Shape {
     },
     /// A ball of this radius.
     Ball(f64),
-    /// The unit ball under this linear map, row by row.
+    /// The image of the unit ball under this linear map, row by row.
     Ellipsoid([[f64; 3]; 3]),
 }
 
 /// A force that an arrow shows.
 pub struct Force {
-    /// Where it comes from.
+    /// Its origin.
     pub kind: ForceKind,
-    /// Where it attacks.
+    /// Its point of application.
     pub at: PointId,
 }
 
-/// Where a force comes from.
+/// Origin of a force.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ForceKind {
     /// A constraint.
@@ -173,10 +173,10 @@ fn contacts(mechanism: &Mechanism) -> Vec<PointId> {
     held.into_iter().collect()
 }
 
-/// Constraint forces on points, with their places among the model's.
+/// Constraint forces on points, with their indices in the model.
 fn reactions(mechanism: &Mechanism, model: &dyn Model) -> Vec<(usize, Force)> {
     let reactions = model.info().reactions.iter().enumerate();
-    // The reaction of a constraint without a point is no force in space.
+    // The reaction of a constraint without a point is not a force in space.
     let on_point = reactions.filter(|(_, reaction)| reaction.on_point);
     let found = on_point.filter_map(|(index, reaction)| {
         let at = mechanism.points.find(|point| reaction.name == point.name)?;
@@ -235,7 +235,7 @@ fn applied(
                     all.push((force(ForceKind::Load, other), opposite));
                 }
             }
-            // They have no arrow: torques, and what a line between two points shows.
+            // Without an arrow: torques, and forces shown by a line between two points.
             LoadKind::Torque { .. }
             | LoadKind::Spring { .. }
             | LoadKind::Damper { .. }
@@ -245,7 +245,7 @@ fn applied(
     Ok(all)
 }
 
-/// Shapes seen from the frames of their bodies, where they do not change.
+/// Shapes in the frames of their bodies, where they are constant.
 fn shapes(mechanism: &Mechanism, scene: &Scene) -> Vec<(BodyId, Shape)> {
     let size = reach(scene);
     let shape = |(id, solid): (BodyId, Solid)| {
@@ -262,7 +262,7 @@ fn shapes(mechanism: &Mechanism, scene: &Scene) -> Vec<(BodyId, Shape)> {
             Solid::Ellipsoid { square, .. } => {
                 let square = axes.map(|axis| inside(square.map(|row| dot(row, axis))));
                 let largest = (square[0][0] + square[1][1] + square[2][2]).sqrt();
-                // A hint that would hide the rest is none.
+                // A shape that would hide the rest is omitted.
                 if size > 0.0 && largest > size {
                     return None;
                 }
@@ -301,9 +301,9 @@ fn factor(square: Matrix, thinnest: f64) -> Option<Matrix> {
     finite.then_some(lower)
 }
 
-/// The unit quaternion x, y, z, w of the turn from the ground's axes to these.
+/// The unit quaternion x, y, z, w of the rotation from the axes of the ground to these.
 fn quaternion(axes: Matrix) -> [f64; 4] {
-    // The largest of the four squares is divided by.
+    // Division by the largest of the four components.
     let [x, y, z] = axes;
     let squares = [
         1.0 + x[0] - y[1] - z[2],
@@ -359,7 +359,7 @@ impl<'m> Values<'m> {
         values
     }
 
-    /// Moves on to a row of the motion.
+    /// Advances to a row of the motion.
     fn at(&mut self, row: usize) -> At<'m> {
         let motion = self.motion;
         let at = At {

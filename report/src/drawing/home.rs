@@ -1,4 +1,4 @@
-//! Where in the drawing a name of the spec is at home: a joint, a body, a point of attack.
+//! Location of a name of the spec in the drawing: a joint, a body, a point of application.
 
 use std::collections::BTreeSet;
 
@@ -7,7 +7,8 @@ use appell_spec::mechanism::{
     Connection, ConstraintKind, CoordinateId, Load, LoadKind, Mechanism, PointId,
 };
 
-/// Points that stand for a coordinate, pseudo-velocity, parameter, input, body, constraint or point.
+/// Points that represent a coordinate, pseudo-velocity, parameter, input, body, constraint or
+/// point.
 pub(super) fn home(mechanism: &Mechanism, name: &str) -> BTreeSet<PointId> {
     let mut points = BTreeSet::new();
     let named = mechanism.points.find(|own| own.name == name);
@@ -47,7 +48,7 @@ pub(super) fn home(mechanism: &Mechanism, name: &str) -> BTreeSet<PointId> {
     points
 }
 
-/// The joint of a coordinate: points that it places, and the pivots of frames that it turns.
+/// The joint of a coordinate: points that it places, and the pivots of frames that it rotates.
 fn moved(mechanism: &Mechanism, coordinate: CoordinateId) -> Vec<PointId> {
     let quantity = Quantity::Coordinate(coordinate);
     let mut points: Vec<PointId> = placed(mechanism, quantity).collect();
@@ -67,7 +68,7 @@ fn moved(mechanism: &Mechanism, coordinate: CoordinateId) -> Vec<PointId> {
     points
 }
 
-/// Points whose places mention a quantity.
+/// Points whose positions depend on a quantity.
 fn placed(mechanism: &Mechanism, quantity: Quantity) -> impl Iterator<Item = PointId> {
     let points = mechanism.points.entries();
     points
@@ -75,7 +76,7 @@ fn placed(mechanism: &Mechanism, quantity: Quantity) -> impl Iterator<Item = Poi
         .map(|(id, _)| id)
 }
 
-/// Where loads act that mention a quantity.
+/// Points of application of loads that depend on a quantity.
 fn felt(mechanism: &Mechanism, quantity: Quantity) -> Vec<PointId> {
     let loads = mechanism.loads.iter();
     loads
@@ -88,7 +89,7 @@ fn felt(mechanism: &Mechanism, quantity: Quantity) -> Vec<PointId> {
         .collect()
 }
 
-/// What a quantity of the mechanism itself shapes: places, masses, loads.
+/// Points for a parameter: positions, masses, loads that depend on it.
 fn shaped(mechanism: &Mechanism, quantity: Quantity) -> Vec<PointId> {
     let heavy = mechanism.bodies.iter().filter(|body| {
         let inertia = body

@@ -1,4 +1,4 @@
-//! What belongs together: points with the points that they are placed from, frames with points.
+//! Links: points with their reference points, frames with points.
 
 use appell_spec::mechanism::{
     Connection, FrameId, GROUND, Load, LoadKind, Mechanism, ORIGIN, Point, PointId,
@@ -6,18 +6,18 @@ use appell_spec::mechanism::{
 
 /// A line between two points.
 pub struct Link {
-    /// What the line stands for.
+    /// Its kind.
     pub kind: LinkKind,
     /// Its ends.
     pub ends: [PointId; 2],
-    /// What it is, for people.
+    /// Its description.
     pub about: String,
 }
 
-/// What a line stands for.
+/// Kind of a line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum LinkKind {
-    /// Coordinates that lead from the origin: no part of the mechanism.
+    /// Coordinates from the origin; not a part of the mechanism.
     Way,
     /// A part of the mechanism.
     Rod,
@@ -27,7 +27,7 @@ pub enum LinkKind {
     Damper,
 }
 
-/// Links from each point to the point that it is placed from, and springs and dampers.
+/// Links from each point to its reference point, and springs and dampers.
 pub(super) fn links(mechanism: &Mechanism) -> impl Iterator<Item = Link> {
     let placed = |(id, point): (PointId, &Point)| {
         let from = point.from?;
@@ -64,8 +64,8 @@ pub(super) fn links(mechanism: &Mechanism) -> impl Iterator<Item = Link> {
     placed.chain(mechanism.loads.iter().filter_map(connection))
 }
 
-/// Where the axes of a frame are drawn: at the centre of its body, or at the point from which it
-/// places another.
+/// The point at which the axes of a frame are drawn: the centre of its body, or the point from
+/// which it places another.
 pub(super) fn seat(mechanism: &Mechanism, frame: FrameId) -> Option<PointId> {
     let of_body = mechanism.bodies.iter().find(|b| b.frame == Some(frame));
     let placing = mechanism.points.iter().find(|p| p.frame == frame);

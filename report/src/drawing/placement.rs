@@ -1,4 +1,4 @@
-//! Where everything is, as expressions in the ground: points, axes of frames, inertias of bodies.
+//! Points, axes of frames and inertias of bodies, as expressions in the ground.
 
 use appell_spec::mechanism::{BodyId, FrameId, GROUND, List, Mechanism, PointId};
 
@@ -12,7 +12,7 @@ use appell_codegen::mechanics::symbols::Symbols;
 use appell_codegen::symbolic::vector::{IDENTITY, Vec3};
 use appell_codegen::symbolic::{Expr, Graph, evaluate};
 
-/// Farther away nothing is drawn: squares of lengths stay finite.
+/// Largest distance that is drawn, so that squares of lengths stay finite.
 const FARTHEST: f64 = 1e100;
 
 /// Points and frames as expressions.
@@ -30,7 +30,7 @@ type Tensor = (FrameId, [Vec3; 3]);
 
 /// Inertia about the centre of mass.
 pub(super) struct Inertia {
-    /// Axes of its components.
+    /// The axes of the components.
     pub(super) axes: Matrix,
     /// Components.
     pub(super) matrix: Matrix,
@@ -83,8 +83,8 @@ impl Placement {
         })
     }
 
-    /// The first axis along which all positions vanish identically. Across y comes first: most
-    /// planar motions are written in x and z.
+    /// The first axis along which all positions vanish identically; y first, as most planar motions
+    /// are written in x and z.
     pub(super) fn flat_across(&self, algebra: &mut Algebra) -> Option<usize> {
         let mut vanishes = |v: &Vec3, axis: usize| {
             v[axis] == Graph::ZERO || algebra.test.is_zero(&algebra.graph, v[axis])

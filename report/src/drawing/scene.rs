@@ -1,4 +1,4 @@
-//! Where everything is at one state: points, axes of frames, bodies.
+//! Points, axes of frames and bodies at one state.
 
 use appell_runtime::positions::{Moving, Positions};
 use appell_spec::mechanism::{BodyId, FrameId, List, Mechanism, PointId};
@@ -21,14 +21,14 @@ pub(super) struct Scene {
     pub(super) frames: List<FrameId, Option<Matrix>>,
     /// By body: mass and, of rigid bodies, inertia with the axes of its components.
     pub(super) bodies: List<BodyId, (f64, Option<Inertia>)>,
-    /// The axis of the ground that no point ever leaves the plane across, if there is one.
+    /// The axis of the ground normal to the plane of motion, if the motion is planar.
     pub(super) flat_across: Option<usize>,
     /// Whether the position constraints hold.
     pub(super) consistent: bool,
 }
 
 impl Scene {
-    /// Where a simulation would start.
+    /// At the start of a simulation.
     pub(super) fn initial(mechanism: &Mechanism, mut derivation: Derivation) -> Outcome<Self> {
         let symbols = derivation.symbols.clone();
         let placement = {
@@ -49,7 +49,7 @@ impl Scene {
         })
     }
 
-    /// Where everything is for these values of the symbols, at which the position constraints hold.
+    /// The scene for these values of the symbols, at which the position constraints hold.
     pub(super) fn at(
         placement: &Placement,
         graph: &Graph,
@@ -67,8 +67,8 @@ impl Scene {
     }
 }
 
-/// Moves the dependent coordinates until the position constraints hold, as a simulation does before
-/// it starts; false, with the values as they were, where it cannot.
+/// Solves the position constraints for the dependent coordinates, as a simulation does at its
+/// start; false, with unchanged values, if it fails.
 fn close(program: Program, values: &mut [f64]) -> bool {
     let arguments = program.arguments.clone();
     let model = InterpretedModel::new(program);

@@ -1,4 +1,4 @@
-//! Strokes in space: links, axes, wheels, hints of bodies, the ground.
+//! Strokes in space: links, axes, wheels, shapes of bodies, the ground.
 
 use std::f64::consts::TAU;
 
@@ -15,17 +15,17 @@ const CORNERS: u32 = 72;
 /// Two directions closer than this are equal.
 const EQUAL: f64 = 1e-9;
 
-/// A line through places in space.
+/// A line through points in space.
 pub(super) struct Stroke {
-    /// How it looks.
+    /// Its style.
     pub(super) class: &'static str,
     /// Its corners.
     pub(super) corners: Vec<Vector>,
-    /// Shown where the pointer rests on it.
+    /// Its tooltip.
     pub(super) about: String,
 }
 
-/// Links from each point to the point that it is placed from, and springs and dampers.
+/// Links from each point to its reference point, and springs and dampers.
 pub(super) fn links(mechanism: &Mechanism, scene: &Scene) -> Vec<Stroke> {
     let stroke = |Link { kind, ends, about }: Link| {
         let [a, b] = ends.map(|end| scene.points[end]);
@@ -42,8 +42,8 @@ pub(super) fn links(mechanism: &Mechanism, scene: &Scene) -> Vec<Stroke> {
     link::links(mechanism).filter_map(stroke).collect()
 }
 
-/// Bodies: one that rolls as the circle through its contact, any other as the homogeneous ellipsoid
-/// that has its mass and inertia.
+/// Bodies: a rolling one as the circle through its contact, any other as the homogeneous ellipsoid
+/// of its mass and inertia.
 pub(super) fn bodies(mechanism: &Mechanism, scene: &Scene, view: &View) -> Vec<Stroke> {
     let shape = |(id, solid): (BodyId, Solid)| {
         let (class, outline) = match solid {
@@ -68,8 +68,8 @@ fn circle(hub: Vector, axis: Vector, radius: Vector) -> Vec<Vector> {
     round(|cos, sin| add(add(hub, cos, radius), sin, other))
 }
 
-/// What is seen of an ellipsoid with this square: an ellipse, by the Cholesky factor of the square
-/// that is seen.
+/// Projection of an ellipsoid with this square: an ellipse, by the Cholesky factor of the projected
+/// square.
 fn outline(centre: Vector, square: &Matrix, view: &View) -> Option<Vec<Vector>> {
     let width = between(view.right, square, view.right).sqrt();
     let shear = between(view.right, square, view.up) / width;
@@ -88,9 +88,9 @@ fn round(place: impl Fn(f64, f64) -> Vector) -> Vec<Vector> {
     (0..=CORNERS).map(corner).collect()
 }
 
-/// Axes at a place, with the names of all frames that are turned alike.
+/// Axes at a point, with the names of all frames of the same orientation.
 pub(super) struct Axes {
-    /// Where they are drawn.
+    /// Their origin.
     pub(super) at: Vector,
     /// Their directions.
     pub(super) directions: Matrix,
@@ -98,8 +98,8 @@ pub(super) struct Axes {
     pub(super) names: String,
 }
 
-/// The axes of every frame that has a [place](link::seat). Frames that are turned alike at one place
-/// are drawn once.
+/// The axes of every frame that has a [point](link::seat). Frames of the same orientation at one
+/// point are drawn once.
 pub(super) fn axes(mechanism: &Mechanism, scene: &Scene) -> Vec<Axes> {
     let mut drawn: Vec<Axes> = Vec::new();
     for (id, frame) in mechanism.frames.entries() {
@@ -130,7 +130,7 @@ pub(super) fn axes(mechanism: &Mechanism, scene: &Scene) -> Vec<Axes> {
     drawn
 }
 
-/// Squares of the ground below all that is drawn; seen from the side, a line.
+/// Squares of the ground below the drawing; a line if seen from the side.
 pub(super) fn ground(view: &View, places: &[Vector], step: f64) -> Vec<Stroke> {
     let spans = view.floor.map(|direction| {
         let along = || places.iter().map(|place| dot(*place, direction) / step);

@@ -1,4 +1,4 @@
-//! Strokes and names on paper, as an SVG document.
+//! Layout of strokes and names, as an SVG document.
 
 use std::fmt::Write as _;
 
@@ -13,28 +13,28 @@ use super::space::{Vector, add, dot};
 use super::view::View;
 
 const WIDTH: f64 = 760.0;
-/// Around the drawing, for names.
+/// Margin for names.
 const MARGIN: f64 = 64.0;
 const HEAD: f64 = 84.0;
 const FOOT: f64 = 104.0;
-/// Heights that the drawing may take.
+/// Limits of the height of the drawing.
 const HEIGHTS: [f64; 2] = [140.0, 460.0];
-/// Length of an axis, as a part of the drawing.
+/// Length of an axis, relative to the drawing.
 const AXIS: f64 = 0.12;
 /// Squares of the ground along the drawing.
 const SQUARES: f64 = 5.0;
 /// Names closer than this are written together.
 const CLOSE: f64 = 7.0;
-/// Smaller mechanisms are points.
+/// Size below which a mechanism counts as a point.
 const SMALLEST: f64 = 1e-100;
 /// Colours of the three axes.
 const AXIS_COLOURS: [&str; 3] = ["c1", "c2", "c0"];
-/// Radius of a ring that marks a place.
+/// Radius of a marking ring.
 const RING: f64 = 17.0;
 /// Length of the arrow of the weight.
 const ARROW: f64 = 40.0;
 
-/// Beside the style of the figures.
+/// Added to the style of the figures.
 const DRAWING_STYLE: &str = "\
 path{fill:none;stroke-linecap:round;stroke-linejoin:round}.axis{stroke-width:2}
 .link{stroke:#555;stroke-width:3}.way{stroke:#999;stroke-dasharray:2 5}.spring{stroke:#cc79a7;stroke-width:2}
@@ -47,12 +47,12 @@ path{fill:none;stroke-linecap:round;stroke-linejoin:round}.axis{stroke-width:2}
 }
 ";
 
-/// From metres to paper.
+/// Mapping from metres to pixels.
 struct Sheet<'a> {
     view: &'a View,
     /// Pixels per metre.
     scale: f64,
-    /// What is seen at the left upper corner of the drawing.
+    /// The point at the upper left corner of the drawing.
     corner: [f64; 2],
     svg: Document,
 }
@@ -125,7 +125,7 @@ pub(super) fn svg(mechanism: &Mechanism, scene: &Scene, view: &View, marked: &[&
     sheet.svg.finish()
 }
 
-/// What the reader has to know about the drawing.
+/// Notes on the drawing.
 fn caption(mechanism: &Mechanism, scene: &Scene) -> String {
     let mut told = "at the initial state".to_owned();
     if !scene.consistent {
@@ -153,7 +153,7 @@ fn bounds(view: &View, places: impl Iterator<Item = Vector>) -> [[f64; 2]; 2] {
     })
 }
 
-/// The largest of length, width and height: what is long along the line of sight is not small.
+/// The largest of length, width and height, including the extent along the line of sight.
 fn size(places: impl Iterator<Item = Vector>) -> f64 {
     let none = [[f64::INFINITY, f64::NEG_INFINITY]; 3];
     let spans = places.fold(none, |spans, place| {
@@ -262,7 +262,7 @@ impl Sheet<'_> {
         }
     }
 
-    /// Rings about the places of a name.
+    /// Rings around the locations of a name.
     fn rings(&mut self, mechanism: &Mechanism, scene: &Scene, name: &str) {
         let mut drawn: Vec<[f64; 2]> = Vec::new();
         for point in home(mechanism, name) {
@@ -304,7 +304,7 @@ impl Sheet<'_> {
         }
     }
 
-    /// What the signs mean, and how long a length is.
+    /// The legend, with a scale.
     fn legend(&mut self, height: f64, step: f64, strokes: &[Stroke]) {
         let rows = [height - 64.0, height - 42.0, height - 20.0];
         let mut x = 20.0;
@@ -358,9 +358,9 @@ fn circle(class: &str, [x, y]: [f64; 2], radius: f64) -> Element {
     circle.lengths([("cx", x), ("cy", y)]).with("r", radius)
 }
 
-/// A round number of any size.
+/// A round number of any magnitude.
 fn round_text(step: f64) -> String {
-    // Rounding may have left other digits behind the first.
+    // Rounding may leave further digits.
     let digit = format!("{step:.0e}");
     match digit.parse::<f64>() {
         Ok(number) if (1e-3..1e5).contains(&number) => number.to_string(),

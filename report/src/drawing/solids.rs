@@ -1,4 +1,4 @@
-//! Shapes that stand for bodies, as far as mass, inertia and contacts tell them.
+//! Shapes that represent bodies, from mass, inertia and contacts.
 
 use appell_spec::mechanism::{BodyId, ConstraintKind, Mechanism, PointId};
 
@@ -17,7 +17,7 @@ pub(super) enum Solid {
         axis: Vector,
         radius: Vector,
     },
-    /// A rolling body that looks alike from everywhere.
+    /// A rolling body with a spherical inertia.
     Ball { centre: Vector, radius: f64 },
     /// Any other: the homogeneous ellipsoid of its mass and inertia, by its square `Σ aᵢ² eᵢ eᵢᵀ`
     /// with the semi-axes.
@@ -50,7 +50,7 @@ fn solid(mechanism: &Mechanism, scene: &Scene, id: BodyId) -> Option<Solid> {
             centre,
             radius: length(arm),
         }),
-        // In a plane one moment of inertia matters, and it does not tell a shape.
+        // In a plane only one moment of inertia matters, which does not determine a shape.
         _ if scene.flat_across.is_some() => None,
         _ => Some(Solid::Ellipsoid {
             centre,
@@ -64,7 +64,7 @@ pub(super) fn ball(radius: f64) -> Matrix {
     [0, 1, 2].map(|i| scaled(radius * radius, unit(i)))
 }
 
-/// The point at which a body rolls: one that does not move with it, and at which it is held.
+/// The rolling contact of a body: a constrained point that does not move with it.
 fn contact(mechanism: &Mechanism, id: BodyId) -> Option<PointId> {
     let held = mechanism.constraints.iter().filter_map(|c| match c.kind {
         ConstraintKind::Rolling { body, contact, .. } => Some((body, contact)),
@@ -84,7 +84,7 @@ fn contact(mechanism: &Mechanism, id: BodyId) -> Option<PointId> {
     held.filter(rolls).map(|(_, point)| point).next()
 }
 
-/// About which axes a body is symmetric, as far as its inertia tells.
+/// Symmetry axes of a body, by its inertia.
 enum Symmetry {
     None,
     Axis(Vector),

@@ -1,12 +1,12 @@
-//! Where to look from: straight at the plane of the motion, else from the side and above.
+//! The projection: normal to the plane of motion, else oblique from above.
 
 use appell_spec::mechanism::Mechanism;
 
 use super::space::{Vector, add, cross, dot, scaled, unit};
 
-/// How far the first horizontal axis is turned into the picture, in degrees.
+/// Rotation of the first horizontal axis into the picture, in degrees.
 const AZIMUTH: f64 = 32.0;
-/// How far the eye is raised above the ground, in degrees.
+/// Elevation of the view, in degrees.
 const ELEVATION: f64 = 20.0;
 
 /// A parallel projection.
@@ -24,8 +24,8 @@ pub(super) struct View {
 }
 
 impl View {
-    /// The view of a mechanism whose points never leave the plane across an axis of the ground, or
-    /// of one that moves in space.
+    /// The view of a mechanism that moves in the plane normal to an axis of the ground, or in
+    /// space.
     pub(super) fn of(mechanism: &Mechanism, flat_across: Option<usize>) -> Self {
         let down = mechanism.down().map(|down| down.map(f64::from));
         let vertical = down.map_or(unit(2), |down| scaled(-1.0, down));
@@ -62,12 +62,12 @@ impl View {
         }
     }
 
-    /// Where a place is seen: to the right and up.
+    /// Projection of a point: to the right and up.
     pub(super) fn seen(&self, place: Vector) -> [f64; 2] {
         [dot(place, self.right), dot(place, self.up)]
     }
 
-    /// The place in the plane of the paper that is seen so far to the right and up from another.
+    /// The point in the projection plane at such an offset to the right and up from another.
     pub(super) fn beside(&self, place: Vector, right: f64, up: f64) -> Vector {
         add(add(place, right, self.right), up, self.up)
     }

@@ -7,10 +7,10 @@ pub(super) struct Axis {
     high: f64,
 }
 
-/// Part of the range left free above and below a line.
+/// Fraction of the range left free above and below a line.
 const PADDING: f64 = 0.06;
 
-/// A line whose values differ by less than this part of their size is drawn as constant.
+/// Relative variation below which a line is drawn as constant.
 const CONSTANT: f64 = 1e-9;
 
 impl Axis {
@@ -57,7 +57,7 @@ impl Axis {
         (self.low, self.high) = (self.low - room, self.high + room);
     }
 
-    /// Where a value lies between the ends, 0 to 1.
+    /// Position of a value between the ends, 0 to 1.
     pub(super) fn part(&self, value: f64) -> f64 {
         (value - self.low) / self.span()
     }

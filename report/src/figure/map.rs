@@ -1,4 +1,4 @@
-//! A plane divided into kinds, with curves on top, as SVG.
+//! A map of kinds over a plane, with curves, as SVG.
 
 use std::fmt::Write as _;
 
@@ -6,7 +6,7 @@ use super::axis::Axis;
 use super::{Area, FOOTER_HEIGHT, HEADER_HEIGHT, LEFT, RIGHT, STYLE, Series, TITLE_HEIGHT, WIDTH};
 use crate::svg::{Document, Element, path, text};
 
-/// What is known at points of a grid over two quantities, and curves between.
+/// Kinds at the points of a grid over two quantities, and curves.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Map {
     /// Above the map; may be empty.
@@ -19,8 +19,8 @@ pub struct Map {
     pub counts: [usize; 2],
     /// Names of the kinds, up to six; one without a name is not in the legend.
     pub kinds: Vec<String>,
-    /// The kind of each point, row by row from the first value of the vertical quantity; nothing
-    /// where nothing is known.
+    /// The kind of each point, row by row from the first value of the vertical quantity; `None`
+    /// where unknown.
     pub cells: Vec<Option<usize>>,
     /// Curves; those with a label are in the legend.
     pub curves: Vec<Curve>,
@@ -29,13 +29,13 @@ pub struct Map {
 /// A curve on a map.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Curve {
-    /// Where it runs.
+    /// Its points.
     pub line: Series,
-    /// How it is drawn.
+    /// Its style.
     pub stroke: Stroke,
 }
 
-/// How a curve is drawn.
+/// Style of a curve.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Stroke {
     /// A line.
@@ -65,7 +65,7 @@ impl Stroke {
 }
 
 const HEIGHT: f64 = 480.0;
-/// Fillings of the kinds, which any colour vision tells apart.
+/// Fillings of the kinds, distinguishable with any colour vision.
 pub(super) const FILLS: &str = ".k0{fill:#56b4e9}.k1{fill:#009e73}.k2{fill:#d55e00}.k3{fill:#888}.k4{fill:#f0e442}.k5{fill:#0072b2}\
 .kind{fill-opacity:.45}.curve{fill:none;stroke-width:1.6;stroke:#222}.thin{stroke-width:.7}\
 .long{stroke-dasharray:8 5}.dots{stroke-dasharray:2 4;stroke-width:2}.spot{fill:#222}\
@@ -76,7 +76,7 @@ pub(super) const LEGEND: f64 = 168.0;
 const PER_ROW: usize = 4;
 const LEGEND_ROW: f64 = 18.0;
 
-/// What stands before a name in the legend.
+/// Sample before a name in the legend.
 enum Sample<'a> {
     Kind(usize),
     Curve(&'a Curve),
@@ -130,7 +130,7 @@ impl Map {
             svg.put(&element(kind, &self.cells_of(kind, &area)));
         }
         area.grid(&mut svg, &x_axis, &y_axis);
-        // What leaves the ranges is cut off.
+        // Clipped to the ranges.
         let Area { top, width, .. } = area;
         let frame = Element::new("svg")
             .with("x", LEFT)
@@ -177,8 +177,8 @@ impl Map {
     }
 }
 
-/// Where the points of a run of a row of so many begin and end, as parts of the row: halfway to the
-/// points beside them.
+/// Beginning and end of a run of points in a row of so many, as fractions of the row: midway to the
+/// adjacent points.
 fn reach(run: [usize; 2], count: usize, backwards: bool) -> [f64; 2] {
     let part = |end: usize| (end as f64 - 0.5) / count.saturating_sub(1).max(1) as f64;
     let [from, to] = run.map(|end| part(end).clamp(0.0, 1.0));

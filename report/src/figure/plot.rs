@@ -13,7 +13,7 @@ pub struct Plot {
     pub labels: [String; 2],
     /// Height of the frame.
     pub height: f64,
-    /// What is drawn.
+    /// The layers.
     pub layers: Vec<Layer>,
 }
 
@@ -22,24 +22,24 @@ pub struct Plot {
 pub struct Layer {
     /// Name and values.
     pub series: Series,
-    /// How they are drawn.
+    /// Their style.
     pub look: Look,
     /// Number of its colour, 0 to 5.
     pub colour: usize,
 }
 
-/// How a layer is drawn.
+/// Style of a layer.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Look {
     /// A line.
     Line,
     /// A small disc at each point.
     Points,
-    /// What lies between the series and these values.
+    /// The band between the series and these values.
     Band(Vec<f64>),
 }
 
-/// Beside the style of the figures.
+/// Added to the style of the figures.
 const PLOT_STYLE: &str = "\
 .band{stroke:none;fill-opacity:.25}.dots{stroke-width:3.2;stroke-linecap:round;stroke-opacity:.55;fill:none}
 .f0{fill:#0072b2}.f1{fill:#d55e00}.f2{fill:#009e73}.f3{fill:#cc79a7}.f4{fill:#e69f00}.f5{fill:#56b4e9}

@@ -1,4 +1,4 @@
-//! Surfaces and paths in space, seen in parallel projection, as SVG.
+//! Surfaces and paths in space, in parallel projection, as SVG.
 
 use std::fmt::Write as _;
 
@@ -18,7 +18,7 @@ pub struct Surface {
     pub ranges: [[f64; 2]; 3],
     /// Names of the kinds, coloured as those of a [`Map`](super::Map).
     pub kinds: Vec<String>,
-    /// The pieces. Those that leave the ranges are left out.
+    /// The pieces. Those outside the ranges are omitted.
     pub patches: Vec<Patch>,
     /// Paths in front of them.
     pub paths: Vec<Path>,
@@ -43,16 +43,16 @@ pub struct Patch {
 }
 
 const HEIGHT: f64 = 500.0;
-/// Half an edge of the box.
+/// Half the edge of the box.
 const SIZE: f64 = 150.0;
-/// Sine and cosine of the angles from which the box is seen: to the left and from above.
+/// Sine and cosine of the azimuth and the elevation of the view.
 const TURN: [f64; 2] = [0.529_919_264_233_204_9, 0.848_048_096_156_426];
 const DIP: [f64; 2] = [0.422_618_261_740_699_44, 0.906_307_787_036_649_9];
-/// Surfaces hide what is behind them; their mesh tells their form.
+/// Surfaces are opaque; their mesh shows their form.
 const SOLID: &str = ".piece path{stroke:#222;stroke-width:.35;stroke-linejoin:round;fill-opacity:.85}\
 @media(prefers-color-scheme:dark){.piece path{stroke:#111}}\n";
 
-/// A place on the paper, and how near it is to the reader.
+/// A projected point with its depth.
 fn seen([x, y, z]: [f64; 3]) -> ([f64; 2], f64) {
     let [sideways, depth] = [TURN[1] * x - TURN[0] * y, TURN[0] * x + TURN[1] * y];
     let upwards = DIP[1] * z + DIP[0] * depth;
@@ -109,7 +109,7 @@ impl Surface {
         svg.finish()
     }
 
-    /// A place in the box, each quantity between −1 and 1.
+    /// A point in the box, each quantity between −1 and 1.
     fn inside(&self, values: [f64; 3]) -> [f64; 3] {
         [0, 1, 2].map(|k: usize| {
             let [from, to] = self.ranges[k];
@@ -117,7 +117,7 @@ impl Surface {
         })
     }
 
-    /// A path on the paper; points that are not known interrupt it.
+    /// A projected path; unknown points interrupt it.
     fn way(&self, points: &[[f64; 3]]) -> String {
         let (mut way, mut is_on) = (String::new(), false);
         for &point in points {
@@ -171,7 +171,7 @@ impl Surface {
                 .chain([-1.0, 1.0])
             {
                 for (along, still) in [(other, third), (third, other)] {
-                    // What is behind: the far ends of the first two, the floor of the last.
+                    // The faces behind: the far ends of the first two, the floor of the last.
                     let behind = |axis: usize| if axis == 2 { -1.0 } else { 1.0 };
                     let mut ends = [[0.0; 3]; 2];
                     for (end, part) in ends.iter_mut().zip([-1.0, 1.0]) {
@@ -211,9 +211,9 @@ impl Surface {
         }
     }
 
-    /// Where the ticks of a quantity are in the box, and what they say.
+    /// Positions of the ticks of a quantity in the box, and their labels.
     fn ticks(&self, k: usize) -> Vec<(f64, String)> {
-        /// About so many.
+        /// Approximate number of ticks.
         const COUNT: u32 = 5;
         let axis = Axis::tight(self.ranges[k].into_iter());
         let [from, to] = self.ranges[k];

@@ -1,4 +1,4 @@
-//! The data of the page as JSON: names and shapes in clear, time series packed.
+//! The data of the page as JSON: names and shapes as text, time series packed.
 
 use appell_codegen::mechanics::finding::Outcome;
 use appell_runtime::Trajectory;
@@ -130,7 +130,7 @@ fn forces(film: &Film) -> Vec<Value> {
     film.forces.iter().map(force).collect()
 }
 
-/// What a column is, as a heading.
+/// Heading of a column.
 fn group(info: &ModelInfo, column: usize) -> &'static str {
     let states = info.state_len();
     let inputs = states + info.input_len();
@@ -143,9 +143,9 @@ fn group(info: &ModelInfo, column: usize) -> &'static str {
     }
 }
 
-/// Numbers in single precision, little end first, in base 64.
+/// Numbers in single precision, little endian, in base 64.
 fn packed(numbers: impl Iterator<Item = f64>) -> String {
-    // Seven digits are more than a picture shows.
+    // Seven digits exceed the resolution of a picture.
     #[allow(clippy::cast_possible_truncation)]
     let bytes: Vec<u8> = numbers.flat_map(|n| (n as f32).to_le_bytes()).collect();
     base64(&bytes)

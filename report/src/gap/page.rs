@@ -38,7 +38,7 @@ pub fn page(set: &DataSet, report: &Report) -> String {
     })
 }
 
-/// The verdict, with the size of the effect and the part of the gap that it closes.
+/// The verdict, with the size of the effect and its share of the gap.
 fn verdict(report: &Report) -> String {
     let mut text = capital(&sentence(report));
     let top = report.which.iter().find(|h| !h.parameters.is_empty());
@@ -74,7 +74,7 @@ fn values(hypothesis: &Hypothesis) -> Vec<String> {
     let values = hypothesis.parameters.iter().map(|value| {
         let (effect, short) = value.name.rsplit_once('.').unwrap_or(("", &value.name));
         let number = with_unit(&measured(value.value, value.std), &value.unit);
-        // Several effects may have values of one name.
+        // Values of several effects may share a name.
         let site = effect
             .split_once('@')
             .filter(|_| hypothesis.effects.len() > 1);
@@ -129,7 +129,7 @@ fn place(set: &DataSet, report: &Report) -> Markup {
     }
 }
 
-/// What of the model is wrong.
+/// The location of the gap in the model.
 fn locus(report: &Report) -> Markup {
     match report.verdict {
         GapVerdict::NoGap => html! {
@@ -376,7 +376,7 @@ fn is_alternative(hypothesis: &Hypothesis) -> bool {
     effects.any(|effect| effect.starts_with("alternative:"))
 }
 
-/// What to do now.
+/// Recommended actions.
 fn next(set: &DataSet, report: &Report) -> Markup {
     let advice = match report.verdict {
         GapVerdict::NoGap => html! {
@@ -390,15 +390,14 @@ fn next(set: &DataSet, report: &Report) -> Markup {
         },
         GapVerdict::Explained | GapVerdict::Ambiguous => html! {
             p {
-                "Write the effect into the spec, with the report that " code { "--json report.json" }
-                " wrote:"
+                "Write the effect into the spec: " code { "appell apply" } " reads the report that "
+                code { "appell diagnose" } " writes as JSON."
             }
-            pre { "appell apply MODEL --report report.json -o improved.toml" }
         },
         GapVerdict::Unexplained => html! {
             p {
                 "Look at what the missing force depends on, and write that effect as a few lines of the \
-                 spec language: " code { "appell diagnose --effects own.toml" } "."
+                 spec language; " code { "appell diagnose" } " takes it beside the library of effects."
             }
         },
     };
@@ -419,7 +418,7 @@ fn next(set: &DataSet, report: &Report) -> Markup {
         } @else if report.verdict == GapVerdict::Ambiguous {
             p {
                 "No input that was tried tells the tied hypotheses apart and keeps the motion within its \
-                 limits. Give wider ones with " code { "--limit" } ", or record under feedback."
+                 limits. Give wider ones, or record under feedback."
             }
         }
     }
@@ -468,7 +467,7 @@ fn recordings(set: &DataSet, report: &Report) -> Markup {
     }
 }
 
-/// A table; the columns from `numbers` on stand to the right.
+/// A table; the columns from `numbers` on are right-aligned.
 fn table<const N: usize>(
     heading: [&str; N],
     rows: impl Iterator<Item = [Markup; N]>,
@@ -493,7 +492,7 @@ fn table<const N: usize>(
     }
 }
 
-/// One after the other, with something between.
+/// Items with separators.
 fn separated<T>(list: &[T], shown: impl Fn(&T) -> Markup, between: &Markup) -> Markup {
     html! {
         @for (place, one) in list.iter().enumerate() {
@@ -503,7 +502,7 @@ fn separated<T>(list: &[T], shown: impl Fn(&T) -> Markup, between: &Markup) -> M
     }
 }
 
-/// A share as a bar beside its number.
+/// A share as a bar with its number.
 fn bar(part: f64) -> Markup {
     let width = format!("width:{:.1}%", 100.0 * part.clamp(0.0, 1.0));
     html! {

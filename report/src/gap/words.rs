@@ -1,4 +1,4 @@
-//! What a gap report says, in words.
+//! The statements of a gap report.
 
 use appell_gap::diagnose::{GapVerdict, Hint, Report};
 
@@ -41,7 +41,7 @@ fn rivals(report: &Report) -> Vec<String> {
         .collect()
 }
 
-/// A hint in words.
+/// The sentence of a hint.
 pub fn hinted(hint: &Hint) -> String {
     format!(
         "the gap in the equation of {} depends on {}, a channel that is not in the model",

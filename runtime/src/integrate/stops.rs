@@ -1,6 +1,6 @@
 //! Times at which a step has to end: the rates jump or lose smoothness there.
 
-/// Values that are constant between times which are not known beforehand, such as the truth of
+/// Values that are constant between times which are not known in advance, such as the truth of
 /// `sin(w*t) < 0`.
 ///
 /// The integrators look for changes at eighths of a step and end the step at the first of them;

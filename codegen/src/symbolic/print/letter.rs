@@ -47,7 +47,7 @@ pub struct Letter {
     pub base: String,
     /// Whether it names a vector or a matrix.
     pub bold: bool,
-    /// Dots above: derivatives by time.
+    /// Dots above: time derivatives.
     pub dots: u8,
     /// Labels below, in order.
     pub below: Vec<String>,

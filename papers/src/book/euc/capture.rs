@@ -1,5 +1,4 @@
-//! A capture of simulated rides: rigid bodies of table 2, markers that do not sit where they should,
-//! noise.
+//! Simulated motion capture: rigid bodies of table 2, misplaced markers, noise.
 
 use appell_gap::motion_capture::{Axes, Capture, Skeleton, Track, Vector};
 use appell_runtime::Trajectory;
@@ -11,7 +10,7 @@ use appell::Error;
 /// Accuracies of the paper, taken as standard deviations: m and rad.
 const POSITION: f64 = 2e-4;
 const ANGLE: f64 = 0.5 * std::f64::consts::PI / 180.0;
-/// How far pivots sit from where they should, in m.
+/// Offsets of pivots in m.
 const OFFSET: f64 = 0.005;
 /// Height of the captured top of the unicycle above the wheel centre in m, as the skeleton states it.
 const TOP: f64 = 0.35;
@@ -33,16 +32,16 @@ const JOINTS: [(&str, Vector); 13] = [
     ("LL", [0.0, 0.10, 0.08]),
 ];
 
-/// What disturbs a capture.
+/// Imperfections of a capture.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Imperfection {
-    /// Part of the stated noise.
+    /// Factor of the stated noise.
     pub(super) noise: f64,
-    /// Part of the marker offsets.
+    /// Factor of the marker offsets.
     pub(super) offsets: f64,
 }
 
-/// A rider whose centre of mass is straight above the pedals.
+/// A rider with the centre of mass vertically above the pedals.
 pub(super) struct Captured {
     skeleton: Skeleton,
     /// Joints of the rider, from the pedals.
@@ -96,7 +95,7 @@ impl Captured {
         centre
     }
 
-    /// What the cameras see of a ride.
+    /// The captured ride.
     pub(super) fn see(
         &self,
         motion: &Trajectory,
@@ -111,7 +110,7 @@ impl Captured {
             info.parameter_index(name)
                 .map_or(0.0, |index| info.parameters[index].value)
         };
-        // Markers stay where they are from ride to ride.
+        // Marker offsets are the same in all rides.
         let mut markers = Random::of("markers");
         let (radius, depth) = (parameter("R"), parameter("l_0"));
         let tracks = self
@@ -136,7 +135,8 @@ impl Captured {
                     } else {
                         let pedals = moved(wheel, body.to_ground([0.0, 0.0, -depth]));
                         let tilted = Axes::turned([psi, theta, 0.0]);
-                        // The rider pitches about the axle's direction, then leans about the own x axis.
+                        // The rider pitches about the axle, then leans about the x axis of the
+                        // body.
                         let leaning = Axes::turned([0.0, beta, 0.0]);
                         let pitched = Axes::turned([0.0, 0.0, phi]);
                         let arm = moved(joint, offset);

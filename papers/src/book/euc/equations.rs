@@ -10,7 +10,7 @@ use crate::book::steering::equations::{DEFINITION, IDENTITY, misprint};
 /// Rounding of products of sines and cosines.
 const ROUNDING: f64 = 1e-14;
 
-/// Equations that say what a letter means or which law is used, and where they are put to use.
+/// Definitions and laws, with the place of their use.
 const DEFINITIONS: [(&str, &str, &str); 3] = [
     (
         "(3)",

@@ -123,7 +123,7 @@ fn line(label: &str, places: &[Vector], [x, y]: [usize; 2]) -> Series {
     }
 }
 
-/// The paths in a box as large as the capture volume, about their middle.
+/// The paths in a box of the size of the capture volume, centred.
 fn in_space(laboratory: &Laboratory, ride: &Ride) -> Surface {
     let mut paths = vec![Path {
         label: "C".to_owned(),

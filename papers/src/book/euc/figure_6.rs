@@ -10,7 +10,7 @@ use crate::book::claim::{Claim, NOT_PUBLIC, Picture, Section};
 use crate::book::failed;
 use appell::Error;
 
-/// What the paper prints for a manoeuvre: height in m, error in N m.
+/// Published values of a manoeuvre: height in m, error in N m.
 struct Printed {
     figure: &'static str,
     manoeuvre: Manoeuvre,
@@ -87,7 +87,7 @@ pub(super) fn section(laboratory: &Laboratory) -> Result<Section, Error> {
     let lowest = (braking.by_3.smoothed.iter())
         .flat_map(|run| run.channels[2].derivative(0))
         .fold(0.0, f64::min);
-    // γ where the rider leans back most, beside its value before.
+    // γ at the largest backward lean of the rider, and its value before.
     let fall = |run: &Smoothed| {
         let [gamma, phi] = [1, 2].map(|channel| run.channels[channel].derivative(0));
         let most = (0..phi.len()).min_by(|&a, &b| phi[a].total_cmp(&phi[b]));
@@ -133,7 +133,7 @@ fn largest(session: &Session, channel: usize) -> f64 {
         .fold(0.0, |most, angle| angle.abs().max(most))
 }
 
-/// Root mean square of the difference from the torque that really drove.
+/// Root mean square of the difference from the true driving torque.
 fn torque_off(planar: Planar, session: &Session, height: f64) -> Result<f64, Error> {
     let (mut squares, mut count) = (0.0, 0);
     for (run, motion) in session.motions.iter().enumerate() {

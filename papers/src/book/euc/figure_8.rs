@@ -94,7 +94,7 @@ pub(super) fn section(laboratory: &Laboratory) -> Result<Section, Error> {
     })
 }
 
-/// Which manoeuvre fits best, which worst.
+/// The manoeuvres with the smallest and the largest error.
 fn order(claims: &mut Vec<Claim>, curves: &[Curves]) {
     let error = |own: &Curves| own.three.least[1];
     let list: Vec<String> = (curves.iter())
@@ -120,7 +120,7 @@ fn order(claims: &mut Vec<Claim>, curves: &[Curves]) {
     ));
 }
 
-/// The two models beside each other.
+/// Comparison of the two models.
 fn models(claims: &mut Vec<Claim>, own: &Curves) {
     let place = format!("figure 8, {}", own.manoeuvre.name());
     let [three, two] = [own.three.least, own.two.least];
@@ -140,7 +140,7 @@ fn models(claims: &mut Vec<Claim>, own: &Curves) {
     ));
 }
 
-/// Curves that tell little.
+/// Flat curves.
 fn flatness(claims: &mut Vec<Claim>, curves: &[Curves]) {
     let rise = |manoeuvre: Manoeuvre| {
         let own = curves.iter().find(|own| own.manoeuvre == manoeuvre);

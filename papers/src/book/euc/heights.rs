@@ -1,5 +1,5 @@
-//! Beyond the paper: the height by all equations that the torques leave over, weighed by the noise, with
-//! an interval that says what the rides do not tell.
+//! Beyond the paper: the height from all input-free relations, weighted by the noise, with its
+//! interval.
 
 use appell_codegen::jit::JitModel;
 use appell_codegen::program::FunctionKind;
@@ -17,13 +17,13 @@ use crate::book::claim::{Claim, Picture, Section};
 use crate::book::{computation, failed};
 use appell::Error;
 
-/// Heights of the profiles, as parts of the one that is found.
+/// Heights of the profiles, relative to the estimate.
 const PROFILE: [f64; 9] = [0.6, 0.7, 0.8, 0.9, 1.0, 1.1, 1.2, 1.35, 1.5];
-/// The bound of a straight ride without noise in m: the lean of a rider who sways sideways shortens
-/// what the plane sees of the height.
+/// Tolerance for a straight ride without noise in m: lateral lean of the rider shortens the
+/// projected height.
 const STRAIGHT: f64 = 5e-3;
 
-/// What the rides of a manoeuvre tell.
+/// Results of the rides of a manoeuvre.
 struct Told {
     manoeuvre: Manoeuvre,
     found: Found,
@@ -105,7 +105,7 @@ pub(super) fn section(laboratory: &Laboratory) -> Result<Section, Error> {
     })
 }
 
-/// The larger of the two standard deviations of h: from noise, and from how parts of the rides disagree.
+/// The larger of the two standard deviations of h, from the noise and robust.
 fn spread(found: &Found) -> f64 {
     found.robust[(0, 0)].max(found.covariance[(0, 0)]).sqrt()
 }
@@ -136,7 +136,7 @@ fn find(model: &dyn Model, laboratory: &Laboratory, session: &Session) -> Result
     })
 }
 
-/// The rides beside the planar model: h is sought, and what the rider's angle may show too much.
+/// Consistency of the rides with the planar model: h and the bias of the rider's angle are sought.
 fn consistency<'a>(
     model: &'a dyn Model,
     laboratory: &Laboratory,

@@ -1,4 +1,4 @@
-//! Everything that was ridden, captured and smoothed, once for the whole book.
+//! All rides, captured and smoothed, shared by the parts of the book.
 
 use appell_gap::motion_capture::{Capture, Ride, Skeleton, Smoothed, filter};
 use appell_runtime::Trajectory;
@@ -9,9 +9,9 @@ use super::rider::{Manoeuvre, Rider};
 use crate::book::{computation, failed};
 use appell::Error;
 
-/// The skeleton that stands among the examples.
+/// The skeleton file of the examples.
 const SKELETON: &str = include_str!("../../../../docs/examples/euc/skeleton.toml");
-/// The rider's angle as the skeleton has it, seen from the pedals, and as (3) has it, from the wheel centre.
+/// The rider's angle about the pedals, as in the skeleton, and about the wheel centre, as in (3).
 const SEEN_FROM: [&str; 2] = ["lean = [\"A\", \"G\"] }", "lean = [\"C\", \"G\"] }"];
 
 /// The stated noise and marker offsets.
@@ -19,7 +19,7 @@ pub(super) const REAL: Imperfection = Imperfection {
     noise: 1.0,
     offsets: 1.0,
 };
-/// Nothing disturbs the capture.
+/// A perfect capture.
 pub(super) const PERFECT: Imperfection = Imperfection {
     noise: 0.0,
     offsets: 0.0,
@@ -28,15 +28,15 @@ pub(super) const PERFECT: Imperfection = Imperfection {
 /// The rides of one manoeuvre.
 pub(super) struct Session {
     pub(super) manoeuvre: Manoeuvre,
-    /// What really happened.
+    /// The true motion.
     pub(super) motions: Vec<Trajectory>,
-    /// What the cameras saw, with the rider's angle by (3).
+    /// The captured rides, with the rider's angle by (3).
     pub(super) by_3: View,
-    /// The same with the angle seen from the pedals.
+    /// The same with the angle about the pedals.
     pub(super) by_pedals: View,
 }
 
-/// Rides with the rider's angle seen from one point.
+/// Rides with the rider's angle about one point.
 pub(super) struct View {
     pub(super) rides: Vec<Ride>,
     /// With derivatives.
@@ -99,7 +99,7 @@ impl Laboratory {
         })
     }
 
-    /// Value and unit of a parameter of the spatial model that was ridden.
+    /// Value and unit of a parameter of the simulated spatial model.
     pub(super) fn stated(&self, name: &str) -> Result<(f64, String), Error> {
         let motion = self.sessions.iter().flat_map(|own| &own.motions).next();
         let motion = motion.ok_or_else(|| failed("nothing was ridden"))?;
@@ -110,7 +110,7 @@ impl Laboratory {
         Ok((motion.parameters()[index], unit))
     }
 
-    /// The rides of a manoeuvre as other cameras would see them.
+    /// The rides of a manoeuvre with another imperfection of the capture.
     pub(super) fn seen(&self, session: &Session, with: Imperfection) -> Vec<Capture> {
         seen(&self.rider, session.manoeuvre, &session.motions, with)
     }

@@ -1,4 +1,4 @@
-//! Noise that is the same in every book.
+//! Deterministic noise.
 
 use std::f64::consts::TAU;
 
@@ -9,7 +9,7 @@ use rand_xoshiro::rand_core::{Rng as _, SeedableRng as _};
 pub(super) struct Random(SplitMix64);
 
 impl Random {
-    /// A sequence of its own for every text.
+    /// A sequence seeded by a text.
     pub(super) fn of(text: &str) -> Self {
         let seed = text.bytes().fold(0xcbf2_9ce4_8422_2325, |hash, byte| {
             (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3)
@@ -17,7 +17,7 @@ impl Random {
         Self(SplitMix64::seed_from_u64(seed))
     }
 
-    /// A number between two others.
+    /// A uniformly distributed number.
     pub(super) fn between(&mut self, low: f64, high: f64) -> f64 {
         let part = (self.0.next_u64() >> 11) as f64 / (1_u64 << 53) as f64;
         low + (high - low) * part

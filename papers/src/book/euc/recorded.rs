@@ -1,5 +1,5 @@
-//! Rides as data sets for `appell diagnose`: what the planar model knows, and beside it what only the
-//! spatial one does.
+//! Rides as data sets for `appell diagnose`: channels of the planar model, and those of the spatial
+//! one only.
 
 use std::fmt::Write as _;
 use std::path::Path;
@@ -15,7 +15,7 @@ use appell::files;
 
 /// Frames between rows.
 const EVERY: usize = 3;
-/// The way x is a quantity of the planar model; the spatial one gets it for the comparison.
+/// The distance x is a quantity of the planar model, added to the spatial one for the comparison.
 const WAY: [(&str, &str); 3] = [
     ("name   = \"euc_spatial\"", "name   = \"spatial\""),
     (
@@ -27,19 +27,19 @@ const WAY: [(&str, &str); 3] = [
         "way = { kind = \"velocity\", zero = \"dot(x) - R*(dot(psi)*sin(theta) + dot(chi))\", about = \"the way grows with the forward velocity\" }\n\n[pseudo_velocities]",
     ),
 ];
-/// What is known of the rider: name, standard deviation.
+/// Priors of the rider: name, standard deviation.
 const TOLERANCES: [(&str, f64); 4] = [("m", 0.5), ("m_0", 0.1), ("J", 0.5), ("h", 0.01)];
 /// Noise of the odometer in m, of the inertial units in rad.
 const WAY_NOISE: f64 = 1e-3;
 const ANGLE_NOISE: f64 = 2e-3;
 
-/// What a column holds.
+/// Kind of a column.
 #[derive(Clone, Copy)]
 enum Kind {
     Way,
     Angle,
     Torque,
-    /// An angle, a torque that the planar model does not know.
+    /// An angle or torque that the planar model does not have.
     Beside,
     Unknown,
 }
@@ -75,7 +75,7 @@ fn spatial() -> Result<String, Error> {
     }))
 }
 
-/// Writes the rides of a manoeuvre; the last part of them is held out.
+/// Writes the rides of a manoeuvre; the last ones are held out.
 fn data_set(laboratory: &Laboratory, session: &Session, folder: &Path) -> Result<(), Error> {
     let name = session.manoeuvre.name();
     let folder = folder.join(name.replace([' ', '-'], "_"));
@@ -110,8 +110,7 @@ fn data_set(laboratory: &Laboratory, session: &Session, folder: &Path) -> Result
     files::write(&folder.join("recording.toml"), &text)
 }
 
-/// A run: the way as an odometer tells it, angles as inertial units do, torques as means from row to
-/// row.
+/// A run: distance from an odometer, angles from inertial units, torques averaged from row to row.
 fn table(session: &Session, number: usize) -> String {
     let motion = &session.motions[number];
     let mut random = Random::of(&format!("recording {} {number}", session.manoeuvre.name()));

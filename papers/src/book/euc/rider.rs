@@ -22,8 +22,8 @@ use appell::Error;
 pub(super) const RATE: f64 = 120.0;
 /// The spatial model of the gallery.
 const SPATIAL: &str = "euc_spatial";
-/// A thin wheel rolls on a point, about which nothing turns it. Tyres have a patch: a rider who twists
-/// the upper body draws a torque from it.
+/// Twist torque of the contact patch: a thin wheel with point contact has none, but a rider who
+/// twists the upper body uses it.
 pub(super) const TWIST: [(&str, &str); 2] = [
     (
         "[frames]",
@@ -34,7 +34,7 @@ pub(super) const TWIST: [(&str, &str); 2] = [
         "twist = { kind = \"torque\", on = \"body\", in = \"yawed\", vector = [0, 0, \"M_z\"], about = \"torque of the contact patch\" }\n\n[outputs]",
     ),
 ];
-/// What the rider feels, with its weight.
+/// States of the feedback of the rider, with their weights.
 const FELT: [(&str, f64); 11] = [
     ("v", 20.0),
     ("omega_1", 10.0),
@@ -50,12 +50,12 @@ const FELT: [(&str, f64); 11] = [
 ];
 /// Weights of the torques: motor, ankles, hips, twist.
 const EFFORT: [f64; 4] = [0.01, 0.01, 0.01, 0.03];
-/// Sways: their strongest torques in N m, ankles and hips.
+/// Amplitudes of the sway torques in N m, ankles and hips.
 const SWAY: [f64; 2] = [3.0, 2.0];
 /// Angular frequencies of sways in rad/s.
 const FREQUENCIES: [f64; 4] = [2.0, 3.3, 5.0, 7.5];
 
-/// What a rider does.
+/// A manoeuvre.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Manoeuvre {
     ConstantSpeed,
@@ -72,7 +72,7 @@ impl Manoeuvre {
         Self::FigureEight,
     ];
 
-    /// As the paper calls it.
+    /// Its name in the paper.
     pub(super) const fn name(self) -> &'static str {
         match self {
             Self::ConstantSpeed => "constant speed",
@@ -82,7 +82,7 @@ impl Manoeuvre {
         }
     }
 
-    /// How many runs: those of table 1, ten decelerations as in figure 6.
+    /// Number of runs: those of table 1, ten decelerations as in figure 6.
     pub(super) const fn runs(self) -> usize {
         match self {
             Self::ConstantSpeed => 7,
@@ -100,8 +100,8 @@ impl Manoeuvre {
         }
     }
 
-    /// The frame from which on the commands are smooth: turning begins with a jump, and the mean of a torque
-    /// from row to row says nothing of it.
+    /// The frame after which the commands are smooth: turning begins with a jump, which averaged
+    /// torques do not resolve.
     pub(super) const fn steady_from(self) -> usize {
         match self {
             Self::FigureEight => 300,
@@ -141,7 +141,7 @@ impl Manoeuvre {
     }
 }
 
-/// Time of an eight, and of the straight way before it, in s.
+/// Duration of a figure-eight, and of the straight part before it, in s.
 const PERIOD: f64 = 12.0;
 const STRAIGHT: f64 = 2.0;
 /// The first root of the Bessel function J₀.
@@ -171,7 +171,7 @@ impl Rider {
         Ok(Self { model, parameters })
     }
 
-    /// A ride; runs of even number go back.
+    /// A ride; runs of even number go backwards.
     pub(super) fn ride(&self, manoeuvre: Manoeuvre, run: usize) -> Result<Trajectory, Error> {
         let info = self.model.info();
         let mut random = Random::of(&format!("{} {run}", manoeuvre.name()));
@@ -235,7 +235,7 @@ impl Rider {
         motion.run().map_err(computation)
     }
 
-    /// Quadratic feedback about rolling straight ahead.
+    /// Linear-quadratic feedback about straight rolling.
     fn gain(&self, states: &[usize], speed: f64) -> Result<DMatrix<f64>, Error> {
         let mut point = OperatingPoint::new(&self.model);
         point.p.clone_from(&self.parameters);

@@ -1,4 +1,4 @@
-//! The driving torque as the paper finds it: from two sets of equations, moment by moment.
+//! The driving torque as in the paper: from two sets of equations, moment by moment.
 
 use appell_estimate::inverse::InputEquations;
 use appell_models::Shipped;
@@ -16,7 +16,8 @@ pub(super) struct Planar {
     pub(super) name: &'static str,
 }
 
-/// The measured part of a moment: γ and φ with two derivatives each, and the forward acceleration.
+/// Measured quantities at a moment: γ and φ with two derivatives each, and the forward
+/// acceleration.
 struct Moment {
     gamma: [f64; 3],
     phi: [f64; 3],
@@ -106,7 +107,7 @@ impl Planar {
             })
             .collect();
         let all: Vec<usize> = (0..info.speeds).collect();
-        // As many equations as inputs; then one more, and the forward acceleration unknown.
+        // As many equations as inputs; then one more, with the forward acceleration unknown.
         let first = equations.solve(&accelerations, &all[..info.declared_inputs]);
         let mut without = accelerations.clone();
         without[0] = None;
@@ -119,7 +120,7 @@ impl Planar {
 
     /// Root mean square of the difference of the two torques over all runs.
     pub(super) fn error(self, view: &View, height: f64) -> Result<f64, Error> {
-        /// Neighbouring frames share their window; every fourth tells as much.
+        /// Neighbouring frames share their window; every fourth is sufficient.
         const EVERY: usize = 4;
         let (mut squares, mut count) = (0.0, 0);
         for run in 0..view.rides.len() {
@@ -140,7 +141,7 @@ pub(super) struct Curve {
     pub(super) least: [f64; 2],
 }
 
-/// Heights that are tried, in m.
+/// Tested heights in m.
 const HEIGHTS: [f64; 2] = [0.1, 1.6];
 const COUNT: usize = 31;
 
@@ -176,14 +177,14 @@ impl Curve {
         })
     }
 
-    /// Whether the error still falls where the tried heights end.
+    /// Whether the error still falls at the last tested height.
     pub(super) fn is_open(&self) -> bool {
         let [low, high] = HEIGHTS;
         !(low < self.least[0] && self.least[0] < high)
     }
 
-    /// How much larger the largest error is than the least, in N m: small where a large range of
-    /// heights gives similar torques.
+    /// Difference of the largest and the least error in N m: small if the height hardly affects the
+    /// torques.
     pub(super) fn rise(&self) -> f64 {
         let largest = self.errors.iter().copied().fold(0.0, f64::max);
         largest - self.least[1]

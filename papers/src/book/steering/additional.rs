@@ -1,4 +1,4 @@
-//! What the paper did not see.
+//! Results beyond the paper.
 
 use appell_analysis::{Change, Kind};
 
@@ -7,7 +7,7 @@ use crate::book::claim::{Claim, Section};
 use crate::book::steady_motions::{GRAVITY, Mechanism, RADIUS, SLIDER_MASS, WHEEL_MASS};
 use appell::Error;
 
-/// The additions.
+/// The additional results.
 pub(super) fn section() -> Result<Section, Error> {
     let mut claims = Vec::new();
     hoop(&mut claims)?;
@@ -79,7 +79,7 @@ fn discriminant(claims: &mut Vec<Claim>) -> Result<(), Error> {
     Ok(())
 }
 
-/// What happens with the paths as printed.
+/// The closed loops with the paths as printed.
 fn as_printed(claims: &mut Vec<Claim>) -> Result<(), Error> {
     let command =
         "appell simulate unicycle --feedback docs/examples/feedback/lane_change_5_m_s.toml";

@@ -8,12 +8,12 @@ use crate::book::claim::{Claim, Section};
 use crate::book::failed;
 use appell::Error;
 
-/// What an identical formula rests on.
+/// Basis of the agreement of an identical formula.
 pub(crate) const IDENTITY: &str = "by the identity test";
-/// Why there is nothing to compare.
+/// Why a statement is not comparable.
 pub(crate) const DEFINITION: &str = "a definition";
 
-/// Equations that say what a letter means or which law is used, and where they are put to use.
+/// Definitions and laws, with the place of their use.
 const DEFINITIONS: &[(u32, &str, &str)] = &[
     (1, "v_P = 0: the wheel rolls", "(2)"),
     (8, "steady: ω₁, ω₂, ω₃ and ϑ are constant", "(9)"),
@@ -47,7 +47,7 @@ const DEFINITIONS: &[(u32, &str, &str)] = &[
     (90, "virtual power of weights and actuator", "(91)"),
 ];
 
-/// Lists of letters, which the spec must have.
+/// Lists of letters, which must occur in the spec.
 const LISTS: &[(u32, &str, &str, &[&str])] = &[
     (
         4,
@@ -94,7 +94,7 @@ pub(super) fn section() -> Result<Section, Error> {
     for list in LISTS {
         claims.push((list.0, letters(list)?));
     }
-    // What is wrong about a figure stands beside it.
+    // Errata of a figure are listed with it.
     let of_equations =
         |e: &&Erratum| e.source == Source::Steering && !e.equation.contains("figure");
     let errata = ERRATA.iter().filter(of_equations);
@@ -115,7 +115,7 @@ pub(super) fn section() -> Result<Section, Error> {
     })
 }
 
-/// The first number in a place; places without one stand last.
+/// The first number in a reference; references without one come last.
 fn first_number(place: &str) -> u32 {
     let place = match place {
         "appendix C" => "(48)",
@@ -186,7 +186,7 @@ fn letters((number, what, mechanism, names): &(u32, &str, &str, &[&str])) -> Res
     Ok(claim.exactly())
 }
 
-/// What is printed, and what is right.
+/// The printed and the correct formula.
 pub(crate) fn misprint(erratum: &Erratum) -> Claim {
     let kind = erratum.origin.words();
     let mut note = format!("erratum: {kind}");
@@ -202,7 +202,7 @@ pub(crate) fn misprint(erratum: &Erratum) -> Claim {
             (ours, right && !printed)
         }
         Evidence::Context(words) => {
-            // Names of tests are for those who read the source.
+            // Names of tests are for readers of the source.
             let words = words.split("; tested").next().unwrap_or(words);
             let words = words.split("simulated:").next().unwrap_or(words);
             note.push_str(", by the context");

@@ -22,7 +22,7 @@ const PIECES: usize = 48;
 const ROWS: u32 = 60;
 const COMMAND: &str = "appell stability rolling_wheel --chart theta=-60deg..60deg,psi_dot=-10..10 --plot figure_3c.svg";
 
-/// What the panels show.
+/// Descriptions of the panels.
 const CAPTIONS: [&str; 4] = [
     "Panel (a): the steady motions (13) as a surface.",
     "Panel (b): every pair of yaw and pitch rate has one tilt. Levels at ±5°, ±10°, ±20°, ±30°, ±50°.",
@@ -31,7 +31,7 @@ const CAPTIONS: [&str; 4] = [
      Yellow and blue are the paper's yellow and dark green.",
 ];
 
-/// The four panels, and what they are said to show.
+/// The four panels, and the statements about them.
 pub(super) fn section(grid: usize) -> Result<Section, Error> {
     let wheel = Mechanism::shipped("rolling_wheel")?;
     let tilts = [-TILT_DEG.to_radians(), TILT_DEG.to_radians()];
@@ -179,7 +179,7 @@ fn levels(
     Ok(all)
 }
 
-/// Where the tilt turns back at a constant pitch rate: tilt, yaw rate, pitch rate.
+/// Folds of the tilt at a constant pitch rate: tilt, yaw rate, pitch rate.
 struct Folds(Vec<[f64; 3]>);
 
 fn folds(wheel: Mechanism) -> Result<Folds, Error> {
@@ -198,7 +198,7 @@ fn folds(wheel: Mechanism) -> Result<Folds, Error> {
 }
 
 impl Folds {
-    /// The folds of each quarter, over two of the three.
+    /// The folds in each quadrant, over two of the three.
     fn curves(&self, over: [&str; 2]) -> Vec<Curve> {
         let place = |name: &str| match name {
             "theta" => 0,
@@ -226,7 +226,7 @@ impl Folds {
     }
 }
 
-/// Panels (b) and (c): where motions exist, and where they are stable.
+/// Panels (b) and (c): existence and stability of motions.
 fn whole(claims: &mut Vec<Claim>, wheel: Mechanism, b: &Chart, c: &Chart) -> Result<(), Error> {
     let full = |chart: &Chart| chart.cells.iter().filter(|cells| cells.is_empty()).count();
     let published = "the steady motions (13) are a surface over the planes of (b) and (c)";
@@ -287,7 +287,7 @@ fn whole(claims: &mut Vec<Claim>, wheel: Mechanism, b: &Chart, c: &Chart) -> Res
     Ok(())
 }
 
-/// The dashed line of panel (c), and which panel is which.
+/// The dashed line of panel (c), and the identification of the panels.
 fn infinite(claims: &mut Vec<Claim>, wheel: Mechanism) -> Result<(), Error> {
     let (tilt, yaw) = (10f64.to_radians(), 0.02);
     let branches = wheel.branches(&[("theta", tilt)], "psi_dot", [yaw, 5.0])?;
@@ -322,7 +322,7 @@ fn infinite(claims: &mut Vec<Claim>, wheel: Mechanism) -> Result<(), Error> {
     Ok(())
 }
 
-/// Panel (d): how many motions there are.
+/// Panel (d): number of motions.
 fn counted(claims: &mut Vec<Claim>, chart: &Chart, folds: &Folds) {
     let unstable = |cells: &[Cell]| {
         let grows = |cell: &&Cell| cell.verdict == Verdict::Unstable;

@@ -17,7 +17,7 @@ const YAW: f64 = 10.0;
 const COMMAND: &str =
     "appell stability unicycle --chart theta=-60deg..60deg,psi_dot=-10..10 --require z_A>=0";
 
-/// The map, and what it is said to show.
+/// The map, and the statements about it.
 pub(super) fn section(grid: usize) -> Result<Section, Error> {
     let unicycle = Mechanism::shipped("unicycle")?;
     let tilt = TILT_DEG.to_radians();
@@ -111,7 +111,7 @@ fn series(label: &str, x: Vec<f64>, y: Vec<f64>) -> Series {
     }
 }
 
-/// Where the mass is, in the cells of a chart.
+/// Position of the mass in the cells of a chart.
 struct Heights {
     unicycle: Mechanism,
     base: Point,
@@ -137,7 +137,7 @@ impl Heights {
     }
 }
 
-/// Straight rolling, upright turning, spinning.
+/// Straight rolling, upright turning, spinning on the spot.
 fn non_generic(claims: &mut Vec<Claim>, unicycle: Mechanism, upright: f64) -> Result<(), Error> {
     let problem = unicycle.problem(&[("theta", 0.0), ("r", 0.1)])?;
     let motions = problem.solve_isolated(60).map_err(computation)?;
@@ -292,7 +292,7 @@ fn areas(
     Ok(())
 }
 
-/// (41) with the numbers of table I but for the sliding mass.
+/// (41) with the numbers of table I except for the sliding mass.
 pub(super) fn place_of_mass(m0: f64, tilt: f64, yaw: f64) -> f64 {
     let (s, c, m) = (tilt.sin(), tilt.cos(), WHEEL_MASS);
     m * RADIUS * (yaw * yaw * RADIUS * c + 2.0 * GRAVITY) * s * c

@@ -109,7 +109,7 @@ fn claim(mass: f64, mechanism: Mechanism, chart: &Chart) -> Result<Claim, Error>
 
 /// Whether the verdict contradicts the roots q = λ² of (49): stable where they are real and negative.
 fn disagrees(cell: &Cell) -> bool {
-    /// Part of the largest root within which the border runs.
+    /// Fraction of the largest root within which the boundary lies.
     const NEAR: f64 = 1e-4;
     let squares: Vec<_> = cell.eigenvalues.iter().map(|z| z * z).collect();
     let size = squares

@@ -42,7 +42,7 @@ pub(super) fn section() -> Result<Section, Error> {
             COMMAND,
         ));
     }
-    // The jump: between the two critical rates a small mass leaves a slow root that grows.
+    // The jump: between the two critical rates a small mass leaves a slow unstable root.
     let between = 0.5 * (first + second);
     let published = "the critical pitch rate jumps as soon as m₀ > 0: λ₃,₄ decide, not λ₁,₂";
     let light = straight(1e-3)?;

@@ -17,7 +17,7 @@ use appell::inputs::feedback;
 use appell::setup::Setup;
 use appell::source::Source;
 
-/// A path that is followed from 2 s to 7 s: half its length, and where it ends.
+/// A path from 2 s to 7 s: half its length, and its end.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Path {
     /// Whether the yaw angle follows it; else the lateral position does.
@@ -56,7 +56,7 @@ impl Path {
         }
     }
 
-    /// How far it jumps at 7 s.
+    /// Its jump at 7 s.
     pub(super) fn jump(self) -> f64 {
         (self.at(7.0) - self.at(7.0_f64.next_down())).abs()
     }
@@ -69,7 +69,7 @@ impl Path {
 /// A closed loop with the gains of one speed, run at another.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Run {
-    /// What is followed.
+    /// The path.
     pub(super) path: Path,
     /// Speed of the gains in m/s.
     pub(super) gains_at: f64,
@@ -87,7 +87,7 @@ impl Run {
         }
     }
 
-    /// Ten seconds, recorded every `interval` seconds; what there is of a motion that ends early.
+    /// Ten seconds, recorded every `interval` seconds; shorter if the motion ends early.
     pub(super) fn motion(self, interval: f64) -> Result<(Trajectory, Option<String>), Error> {
         let source = Source::find("unicycle")?;
         let equations = Equations::at_hand(&source)?;

@@ -12,7 +12,7 @@ use crate::book::computation;
 use crate::book::steady_motions::{GRAVITY, Mechanism, RADIUS, SLIDER_MASS, WHEEL_MASS, values};
 use appell::Error;
 
-/// Where stability changes by a real eigenvalue.
+/// Changes of stability by a real eigenvalue.
 fn is_critical(special: &Special) -> bool {
     special.kind == Kind::Critical(Change::RealZero)
 }
@@ -65,7 +65,7 @@ fn circles(claims: &mut Vec<Claim>) -> Result<(), Error> {
     Ok(())
 }
 
-/// (22) to (31): where the wheel stands up.
+/// (22) to (31): upright motions of the wheel.
 fn wheel(claims: &mut Vec<Claim>) -> Result<(), Error> {
     let wheel = Mechanism::shipped("rolling_wheel")?;
     let tilt = TILT.to_radians();
@@ -200,7 +200,7 @@ fn unicycle(claims: &mut Vec<Claim>) -> Result<(), Error> {
     Ok(())
 }
 
-/// (56), (57), (63), (67): what the input reaches.
+/// (56), (57), (63), (67): controllability.
 fn reach(claims: &mut Vec<Claim>) -> Result<(), Error> {
     let (mut ranks, mut lane, mut turn) = (Vec::new(), Vec::new(), Vec::new());
     for speed in [1.0, 5.0] {

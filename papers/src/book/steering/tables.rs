@@ -31,8 +31,8 @@ const PARAMETERS: [(&str, &str, f64); 4] = [
     ("g", "m/s²", 9.81),
 ];
 
-/// The linearised unicycle in straight rolling at a speed in m/s, and places of outputs among its
-/// states.
+/// The linearised unicycle in straight rolling at a speed in m/s, and indices of the outputs among
+/// its states.
 pub(super) fn straight(
     speed: f64,
     outputs: &[&str],
@@ -119,7 +119,7 @@ pub(super) fn section() -> Result<Section, Error> {
     })
 }
 
-/// One gain beside the printed one, which it must round to.
+/// One gain and the printed one, to which it must round.
 fn entry(
     table: &str,
     speed: f64,

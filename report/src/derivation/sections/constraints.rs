@@ -51,8 +51,8 @@ pub(super) fn section(w: &mut Writer<'_>) -> Section {
     headed("Constraints and pseudo-velocities", blocks)
 }
 
-/// Generalised velocities in terms of the pseudo-velocities; those with the letter of a
-/// pseudo-velocity go without saying.
+/// Generalised velocities in terms of the pseudo-velocities, without those that have the letter of
+/// a pseudo-velocity.
 pub(super) fn rates(w: &mut Writer<'_>) -> Vec<Equation> {
     let mut equations = Vec::new();
     for k in 0..w.mechanism.coordinates.len() {
@@ -109,7 +109,7 @@ fn constraint(w: &mut Writer<'_>, index: ConstraintId) -> Vec<Block> {
 fn rolling(w: &Writer<'_>, kind: &ConstraintKind) -> Option<Math> {
     let (body, contact) = match *kind {
         ConstraintKind::Rolling { body, contact, .. } => (body, contact),
-        // Their rows say it all.
+        // The rows suffice.
         ConstraintKind::Velocity { .. }
         | ConstraintKind::FixedVelocity { .. }
         | ConstraintKind::Position { .. } => return None,

@@ -1,4 +1,4 @@
-//! Where the generalised velocities divide by what can vanish outside the declared ranges.
+//! Divisors of the generalised velocities that can vanish outside the declared ranges.
 
 use super::super::units::range;
 use super::super::writer::Writer;
@@ -29,7 +29,7 @@ pub(super) fn conditions(w: &mut Writer<'_>) -> Option<Block> {
     Some(Block::Sentence(what))
 }
 
-/// What is divided by and has zeros, whatever the coordinates are.
+/// Divisors that have zeros.
 fn divisors(w: &Writer<'_>) -> Vec<Expr> {
     let graph = &w.derivation.algebra.graph;
     let parameters = parameter_ranges(graph, w.mechanism, &w.derivation.symbols);

@@ -13,8 +13,8 @@ use appell_codegen::symbolic::{Expr, Node};
 /// Longer accelerations, on average in a block, are not written out.
 const LONGEST_READING: usize = 180;
 
-/// Whether the solved equations are short enough to be written out, so that nothing on the page
-/// refers to M and b.
+/// Whether the solved equations are short enough to be written out, so that the page does not refer
+/// to M and b.
 pub(super) fn are_written_out(w: &mut Writer<'_>) -> bool {
     let blocks = w.derivation.motion.blocks.clone();
     blocks
@@ -96,8 +96,8 @@ pub(super) fn motion(w: &mut Writer<'_>) -> Section {
     headed("Equations of motion", blocks)
 }
 
-/// Accelerations of a block in the order of their solution, if they are short enough to read. What
-/// Cramer's rule gave is always read: nothing was eliminated there.
+/// Accelerations of a block in the order of their solution, if they are short enough to read.
+/// Results of Cramer's rule are always shown, as nothing was eliminated.
 fn values_to_read(
     w: &mut Writer<'_>,
     block: &mechanics::motion::Block,
@@ -117,7 +117,7 @@ fn values_to_read(
     (by_cramer || length <= LONGEST_READING * values.len()).then_some(values)
 }
 
-/// What stands behind a name.
+/// The definition of a name.
 fn behind(w: &mut Writer<'_>, expr: Expr) -> Expr {
     match *w.graph().node(expr) {
         Node::Named(id) => w.graph().definition(id).value,

@@ -10,7 +10,7 @@ use super::phrases::{headed, introduced, math, sentence, with, words};
 use appell_codegen::mechanics::loads::{AppliedLoad, generalized_forces};
 use appell_codegen::symbolic::Graph;
 
-/// The virtual power of every load, and what it sums to.
+/// The virtual power of every load, and their sum.
 pub(super) fn section(w: &mut Writer<'_>) -> Section {
     let mut blocks = load_by_load(w);
     let mut equations = Vec::new();

@@ -7,7 +7,7 @@ use super::super::{Letter, Math};
 use super::phrases::{headed, math, with, words};
 use appell_codegen::symbolic::{Expr, Graph};
 
-/// The derivatives of the residual ρ, how they determine those of ω̇, and the derivatives of q̇.
+/// The derivatives of the residual ρ, those of ω̇ that follow, and those of q̇.
 pub(super) fn section(w: &mut Writer<'_>) -> Section {
     let mut blocks = vec![rule()];
     let symbols = w.derivation.symbols.clone();
@@ -49,7 +49,7 @@ pub(super) fn section(w: &mut Writer<'_>) -> Section {
     headed("Jacobians", blocks)
 }
 
-/// What is differentiated, and what the derivatives solve.
+/// The differentiated residual, and the equations of the derivatives.
 fn rule() -> Block {
     let bold = |name: &str| Math::Letter(Letter::bold(name));
     let rates = || Math::Letter(Letter::bold("ω").dot());

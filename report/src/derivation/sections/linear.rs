@@ -7,12 +7,12 @@ use super::phrases::{headed, listed, math, sentence, with, words};
 use appell_codegen::linearisation::{Characteristic, Linearisation};
 use appell_codegen::symbolic::{Expr, Graph};
 
-/// A matrix of more columns is not shown as a whole.
+/// Largest number of columns of a matrix that is shown as a whole.
 const MOST_COLUMNS: usize = 10;
-/// A longer coefficient of the characteristic polynomial stays in the entries of A.
+/// Longer coefficients of the characteristic polynomial are written in the entries of A.
 const LONGEST_COEFFICIENT: usize = 320;
 
-/// What rests, what runs on, and where the motion is steady.
+/// Essential and ignorable states, and the conditions of the steady motion.
 pub(super) fn steady(w: &mut Writer<'_>, linear: &Linearisation) -> Section {
     let (essential, ignorable) = linear.states.split_at(linear.essential);
     let mut states = vec![words("The motion depends on the essential states ")];
@@ -51,8 +51,7 @@ pub(super) fn steady(w: &mut Writer<'_>, linear: &Linearisation) -> Section {
     headed("Steady motion", blocks)
 }
 
-/// What the reader wants to know the values of, in order. That coordinates which rest have no rate
-/// goes without saying.
+/// Quantities whose values are stated, in order, without the zero rates of constant coordinates.
 fn told(w: &Writer<'_>, linear: &Linearisation) -> Vec<Expr> {
     let symbols = &w.derivation.symbols;
     let (essential, _) = linear.states.split_at(linear.essential);
@@ -110,7 +109,7 @@ pub(super) fn equations(w: &mut Writer<'_>, linear: &Linearisation) -> Section {
     headed("Linear equations about the steady motion", blocks)
 }
 
-/// `δẋ = A δx + B δu`, and what x and u are.
+/// `δẋ = A δx + B δu`, with definitions of x and u.
 fn rule(w: &mut Writer<'_>, linear: &Linearisation) -> Block {
     let bold = |name: &str| Math::Letter(Letter::bold(name));
     let small = |name: &str| Math::Letter(Letter::bold(name).before('δ'));
@@ -170,7 +169,7 @@ pub(super) fn characteristic(w: &mut Writer<'_>, polynomial: &Characteristic) ->
     headed("Characteristic polynomial", blocks)
 }
 
-/// `λᶻ (λⁿ⁻ᶻ + c₁ λⁿ⁻ᶻ⁻¹ + …)`, coefficients that vanish left out.
+/// `λᶻ (λⁿ⁻ᶻ + c₁ λⁿ⁻ᶻ⁻¹ + …)`, without vanishing coefficients.
 fn factored(polynomial: &Characteristic) -> Math {
     let zeros = polynomial.zeros();
     let degree = polynomial.degree - zeros;

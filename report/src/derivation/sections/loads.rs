@@ -1,5 +1,4 @@
-//! What a load is: its vector, its frame, where it acts, what feels the reaction, and its virtual
-//! power as the definition says it.
+//! A load: its vector, frame, point of application, reaction, and virtual power.
 
 use appell_spec::expr::Expr as Spec;
 use appell_spec::mechanism::{
@@ -71,7 +70,7 @@ pub(super) fn virtual_power(load: &Load) -> Math {
     Math::Letter(Letter::plain("P").before('δ').below(&load.name))
 }
 
-/// What is said of a load, and its virtual power.
+/// Statement of a load, and its virtual power.
 type Said = (Vec<Span>, Math);
 
 /// The weight of every body.

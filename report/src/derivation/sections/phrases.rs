@@ -1,4 +1,4 @@
-//! Sentences, lists and headings that the sections have in common.
+//! Sentences, lists and headings common to the sections.
 
 use super::super::display::Equation;
 use super::super::writer::Writer;
@@ -29,7 +29,7 @@ pub(super) fn equality(left: Math, right: Math) -> Span {
     Span::Math(Math::Row(vec![left, Math::Sign("="), right]))
 }
 
-/// Definitions of what the equations use, then the equations after their sentence.
+/// Definitions needed by the equations, then the equations after their sentence.
 pub(super) fn with(w: &mut Writer<'_>, lead: &str, equations: Vec<Equation>) -> Vec<Block> {
     let mut blocks = w.definitions();
     if equations.is_empty() {
@@ -50,7 +50,7 @@ fn capitalised(text: &str) -> String {
     })
 }
 
-/// What an item is and where the spec says it: `The wheel rolls (line 48 of the spec)`.
+/// Description of an item and its line in the spec: `The wheel rolls (line 48 of the spec)`.
 pub(super) fn introduced(name: &str, about: &str, line: usize) -> Span {
     let about = if about.is_empty() { name } else { about };
     words(&format!("{} (line {line} of the spec)", capitalised(about)))

@@ -1,4 +1,4 @@
-//! Frames as chains of turns, points, bodies.
+//! Frames as chains of rotations, points, bodies.
 
 use appell_spec::mechanism::{Axis, FrameId, GROUND, Inertia, Turn};
 
@@ -55,7 +55,7 @@ fn table(blocks: &mut Vec<Block>, title: &str, rows: Vec<Row>) {
     }
 }
 
-/// An expression of the spec; the derivation has lowered every one of them before.
+/// An expression of the spec, which the derivation has already lowered.
 pub(super) fn lowered(w: &mut Writer<'_>, expr: &appell_spec::expr::Expr) -> Expr {
     let derivation = &mut *w.derivation;
     let lowering = Lowering {
@@ -99,7 +99,7 @@ fn axis(turn: &Turn) -> String {
     format!("{}{letter}", if turn.negative { "−" } else { "" })
 }
 
-/// The letters of two points side by side.
+/// The letters of two points, adjacent.
 pub(super) fn from_to(from: &str, to: &str) -> String {
     let single = |name: &str| name.chars().count() == 1;
     if single(from) && single(to) {

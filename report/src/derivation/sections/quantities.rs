@@ -1,4 +1,4 @@
-//! What the letters mean: parameters, coordinates, inputs, signals, outputs.
+//! Meaning of the letters: parameters, coordinates, inputs, signals, outputs.
 
 use appell_spec::mechanism::Label;
 

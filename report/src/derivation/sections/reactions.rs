@@ -9,7 +9,7 @@ use appell_codegen::mechanics::finding::Outcome;
 use appell_codegen::mechanics::reactions::reactions;
 use appell_codegen::symbolic::Graph;
 
-/// The reaction at every constrained place; none without constraints.
+/// The reaction of every constraint; none without constraints.
 pub(super) fn section(w: &mut Writer<'_>) -> Outcome<Option<Section>> {
     let d = &mut *w.derivation;
     let forces = reactions(

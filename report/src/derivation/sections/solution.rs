@@ -1,4 +1,4 @@
-//! Elimination in letters, for blocks of the mass matrix whose written-out form is no reading.
+//! Symbolic elimination, for blocks of the mass matrix whose explicit form is unreadable.
 
 use super::super::Letter;
 use super::super::Math;
@@ -9,7 +9,7 @@ use appell_codegen::mechanics::motion::Block;
 /// The elimination of larger blocks is not written entry by entry.
 const LARGEST_BLOCK: usize = 5;
 
-/// What the derivation eliminated: speeds in order, and the entries of L that are not zero.
+/// The elimination: speeds in order, and the non-zero entries of L.
 pub(super) struct Elimination {
     /// Speeds in the order of elimination.
     pub(super) order: Vec<usize>,
@@ -47,7 +47,7 @@ impl Elimination {
         }
     }
 
-    /// `M = L D Lᵀ`, entry by entry, and the accelerations; nothing for large blocks.
+    /// `M = L D Lᵀ`, entry by entry, and the accelerations; `None` for large blocks.
     pub(super) fn in_letters(&self, acceleration: impl Fn(usize) -> Math) -> Vec<Equation> {
         match *self.order {
             [k] => {

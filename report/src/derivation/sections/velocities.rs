@@ -12,7 +12,7 @@ pub(super) fn section(w: &mut Writer<'_>) -> Section {
     let mut equations = Vec::new();
     for frame in written_frames(w) {
         let v = w.derivation.kinematics.frames.angular_velocity(frame);
-        // A frame that is fixed in a body turns with it.
+        // A body-fixed frame rotates with its body.
         let rotations = w
             .derivation
             .bodies
@@ -43,7 +43,7 @@ pub(super) fn section(w: &mut Writer<'_>) -> Section {
     headed("Velocities", blocks)
 }
 
-/// The turning frames in which motions of bodies are written.
+/// The rotating frames in which motions of bodies are written.
 fn written_frames(w: &Writer<'_>) -> Vec<FrameId> {
     let mut frames: Vec<FrameId> = Vec::new();
     for body in &w.derivation.bodies {
@@ -61,7 +61,7 @@ fn written_frames(w: &Writer<'_>) -> Vec<FrameId> {
     frames
 }
 
-/// Centres of mass, then the other points that loads act on.
+/// Centres of mass, then the other points of application of loads.
 fn moving_points(w: &Writer<'_>) -> Vec<PointId> {
     let mut points: Vec<PointId> = w.mechanism.bodies.iter().map(|b| b.centre).collect();
     points.extend(w.mechanism.loads.iter().flat_map(|load| load.kind.points()));

@@ -170,7 +170,7 @@ pub fn rates<T: Real>(
     }
 }
 
-/// Rates ẋ with their derivatives by state and inputs.
+/// Rates ẋ and their Jacobians with respect to state and inputs.
 ///
 /// From `mechanisms/type.toml`.
 /// Operations: 61 (32 +, 18 ×, 5 ÷, 6 sign), sine or cosine of 1 angle, 14 functions, 7 choices, 7 linear systems.

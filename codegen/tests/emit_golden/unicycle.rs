@@ -370,7 +370,7 @@ pub fn mass_matrix<T: Real>(
     ]
 }
 
-/// Bias b: what is left of ∂S/∂ω̇ where the pseudo-accelerations vanish.
+/// Bias b: ∂S/∂ω̇ at zero pseudo-accelerations.
 ///
 /// ```text
 /// b_ω₁ = ¼ m R² ω₃² tan θ − 3/2 m R² ω₂ ω₃ − m₀ R² ω₂ ω₃ − m₀ R ω₂ ω₃ r tan θ + m₀ R ω₃² r
@@ -655,7 +655,7 @@ pub fn rates<T: Real>(
     }
 }
 
-/// Rates ẋ with their derivatives by state and inputs.
+/// Rates ẋ and their Jacobians with respect to state and inputs.
 ///
 /// From `mechanisms/unicycle.toml`.
 /// Operations: 261 (70 +, 179 ×, 4 ÷, 8 sign), sine or cosine of 2 angles.

@@ -165,11 +165,11 @@ pub struct Energies<T> {
 /// Result of [`adjoint`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Adjoint<T> {
-    /// By the state.
+    /// With respect to the state.
     pub x: State<T>,
-    /// By the inputs.
+    /// With respect to the inputs.
     pub u: Inputs<T>,
-    /// By the parameters.
+    /// With respect to the parameters.
     pub p: Parameters<T>,
 }
 
@@ -187,11 +187,11 @@ pub struct OutputJacobians<T> {
 /// Result of [`output_adjoint`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct OutputAdjoint<T> {
-    /// By the state.
+    /// With respect to the state.
     pub x: State<T>,
-    /// By the inputs.
+    /// With respect to the inputs.
     pub u: Inputs<T>,
-    /// By the parameters.
+    /// With respect to the parameters.
     pub p: Parameters<T>,
 }
 
@@ -288,7 +288,7 @@ pub fn mass_matrix<T: Real>(
     [[M_omega_omega]]
 }
 
-/// Bias b: what is left of ∂S/∂ω̇ where the pseudo-accelerations vanish.
+/// Bias b: ∂S/∂ω̇ at zero pseudo-accelerations.
 ///
 /// ```text
 /// b_ω = 0
@@ -397,7 +397,7 @@ pub fn rates<T: Real>(
     }
 }
 
-/// Rates ẋ with their derivatives by state and inputs.
+/// Rates ẋ and their Jacobians with respect to state and inputs.
 ///
 /// - `rhs`: `Π - b` after elimination, times the common denominator in `pivot`; `_over_`: divided.
 /// - `pivot`: what divides `rhs`: `ω̇ = rhs/pivot`, plus terms that need no division.
@@ -611,7 +611,7 @@ pub fn outputs<T: Real>(
 
 /// Gradient of ⟨λ, ẋ⟩ + ⟨Λ, A⟩ + ⟨Γ, B⟩ + ⟨K, M⟩; the weights are λ, Λ, Γ, K, row by row.
 ///
-/// - `adjoint`: a derivative of the weighted sum by a value on the way.
+/// - `adjoint`: a derivative of the weighted sum with respect to an intermediate value.
 ///
 /// From `pendulum.toml`.
 /// Operations: 33 (9 +, 22 ×, 1 ÷, 1 sign), sine or cosine of 1 angle.
@@ -675,7 +675,7 @@ pub fn adjoint<T: Real>(
     }
 }
 
-/// Outputs of the spec with their derivatives by state and inputs.
+/// Outputs of the spec and their Jacobians with respect to state and inputs.
 ///
 /// From `pendulum.toml`.
 /// Operations: 14 (3 +, 10 ×, 1 sign), sine or cosine of 1 angle.
@@ -734,7 +734,7 @@ pub fn output_jacobians<T: Real>(
 
 /// Gradient of ⟨μ, y⟩ + ⟨Γ, C⟩ + ⟨Δ, D⟩; the weights are μ, Γ, Δ, row by row.
 ///
-/// - `adjoint`: a derivative of the weighted sum by a value on the way.
+/// - `adjoint`: a derivative of the weighted sum with respect to an intermediate value.
 ///
 /// From `pendulum.toml`.
 /// Operations: 37 (14 +, 23 ×), sine or cosine of 1 angle.

@@ -13,6 +13,9 @@ use crate::schedule::piece::method;
 use crate::schedule::{Argument, Operation, Schedule, Step, Tree, Value};
 use crate::symbolic::{Rational, Relation};
 
+/// Columns of the lines that take arguments apart.
+const COLUMNS: usize = 80;
+
 /// The statements of a function; the last one is its result.
 pub(super) fn body(types: &Types<'_>, function: &Function, schedule: &Schedule) -> Vec<Stmt> {
     let mut body = Body {
@@ -45,7 +48,7 @@ impl Body<'_> {
         self.statements.push(s::let_(attributes, pattern, value));
     }
 
-    /// `let &Parameters { m, g, .. } = p;`
+    /// `let &Parameters { m, g, .. } = p;`, as often as the names need lines.
     fn arguments(&mut self) {
         for group in self.types.groups() {
             let used: Vec<&str> = self
@@ -55,8 +58,9 @@ impl Body<'_> {
                 .filter(|&&argument| group.holds(argument))
                 .map(|&argument| self.types.names.get(argument))
                 .collect();
-            if !used.is_empty() {
-                let pattern = s::borrowed_fields(group.type_name, &used, used.len() == group.len);
+            let frame = "    let & { .. } = ;".len() + group.type_name.len() + group.argument.len();
+            for row in rows(&used, COLUMNS.saturating_sub(frame)) {
+                let pattern = s::borrowed_fields(group.type_name, row, row.len() == group.len);
                 self.push(pattern, s::name(&group.argument));
             }
         }
@@ -296,6 +300,22 @@ impl Body<'_> {
             s::structure(name, fields, Some(zeros))
         }
     }
+}
+
+/// Names in rows of so many columns, commas included.
+fn rows<'a>(names: &'a [&'a str], columns: usize) -> impl Iterator<Item = &'a [&'a str]> {
+    let mut rest = names;
+    std::iter::from_fn(move || {
+        let mut width = 0;
+        let fits = |name: &&&str| {
+            width += name.len() + ", ".len();
+            width <= columns
+        };
+        let count = rest.iter().take_while(fits).count().max(1);
+        let (row, later) = rest.split_at_checked(count)?;
+        rest = later;
+        Some(row)
+    })
 }
 
 /// Comments before an expression.

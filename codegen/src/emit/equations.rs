@@ -41,12 +41,30 @@ pub(super) fn equations(types: &Types<'_>, function: &Function) -> (Vec<String>,
             }
         }
     }
-    if lines.is_empty() || lines.len() > MOST {
+    if lines.len() > MOST {
+        lines.clear();
+    }
+    if lines.is_empty() {
+        writer.names.clear();
+        lines.extend(in_general(function.kind).map(str::to_owned));
+    }
+    if lines.is_empty() {
         return (Vec::new(), Vec::new());
     }
     lines.insert(0, "```text".to_owned());
     lines.extend(["```".to_owned(), String::new()]);
     (lines, writer.names)
+}
+
+/// The equation that all mechanisms share, where theirs is too long.
+fn in_general(kind: FunctionKind) -> Option<&'static str> {
+    match kind {
+        FunctionKind::AccelerationEnergy => Some("S = Σ ½ m a² + ½ α·J α + α·(ω × J ω)"),
+        FunctionKind::Jacobians => Some("M ∂ω̇/∂x = ∂(Π − b)/∂x − ∂M/∂x ω̇"),
+        FunctionKind::ParameterJacobian => Some("M ∂ω̇/∂p = ∂(Π − b)/∂p − ∂M/∂p ω̇"),
+        FunctionKind::Rates => Some("M ω̇ = Π − b"),
+        _ => None,
+    }
 }
 
 /// What a result is called in an equation; nothing where the equation says less than the names of the

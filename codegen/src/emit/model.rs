@@ -241,7 +241,13 @@ fn signals(info: &ModelInfo) -> TokenStream {
 /// The unit struct and its `impl Model`.
 pub(super) fn implementation(types: &Types<'_>) -> Result<TokenStream, Error> {
     let name = path(&type_name(types));
-    let title = docs(&[escaped(&types.program.info.title)]);
+    let title = escaped(&types.program.info.title);
+    let stop = if title.ends_with(['.', '!', '?']) {
+        ""
+    } else {
+        "."
+    };
+    let title = docs(&[format!("{title}{stop}")]);
     let helpers = helpers(types);
     let bodies = [
         method(types, FunctionKind::Rates, &["rates"])?,

@@ -211,8 +211,8 @@ impl<'a> Types<'a> {
                 sentence,
             ),
             Space::Reactions => (
-                "Reactions in the ground: forces on points along x, y, z in N, or multipliers of \
-                 constraints as x.",
+                "Reactions in the ground: forces on points along x, y, z in N; a multiplier of a \
+                 constraint stands in the x component.",
                 sentence,
             ),
         };

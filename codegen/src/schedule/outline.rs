@@ -257,10 +257,10 @@ impl<'a> Outline<'a> {
         let mut results = self.dag.results.as_slice();
         for array in &function.results {
             let (own, rest) = results.split_at(array.entries.len().min(results.len()));
-            let ids = |items: &[Item]| items.iter().map(|item| item.id).collect();
             for paragraph in &array.paragraphs {
-                let entries = own.get(paragraph.entries.clone()).unwrap_or_default();
-                paragraphs.push((paragraph.title.clone(), ids(entries)));
+                let entries = paragraph.entries.iter().filter_map(|&entry| own.get(entry));
+                let ids = entries.map(|item| item.id).collect();
+                paragraphs.push((paragraph.title.clone(), ids));
             }
             untitled.extend(own.iter().map(|item| item.id));
             results = rest;

@@ -1,6 +1,6 @@
 //! appell: from a mechanism spec to equations of motion, motions, gains and diagnoses.
 //!
-//! Whatever the command line does, a program does with one call of a [`Model`]:
+//! Whatever the command line does, a program does with one call of a [`Model`] or of its [`Source`]:
 //!
 //! | call | command |
 //! |---|---|
@@ -8,21 +8,37 @@
 //! | [`Model::simulate`] with a [`Motion`] | `appell simulate` |
 //! | [`Model::steady`] with a [`steady::Question`] | `appell steady`, `appell stability` |
 //! | [`Model::control`] with a [`control::Request`], [`Model::law`] | `appell control` |
+//! | [`Source::check`] | `appell check` |
+//! | [`Source::derivation`], [`Source::linear_equations`], [`Source::rust`] | `appell derive` |
+//! | [`Source::drawing`] | `appell draw` |
+//! | [`Model::evaluate`] | `appell evaluate` |
+//! | [`capture::convert`] | `appell motion` |
 //! | [`recording::read`], [`Model::identify`] | `appell recording`, `appell identify` |
+//! | [`Model::inverse`] | `appell inverse` |
 //! | [`diagnose()`], [`diagnosis::Library`] | `appell diagnose` |
+//! | [`Source::improved`] with a [`gap_report::GapReport`] | `appell apply` |
 //!
 //! Numbers given as texts are in the units of the spec, or have units of their own; results are in SI.
 //! Pages, figures and drawings are those of the crate `appell-report`.
 
+pub mod capture;
 pub mod cases;
+pub mod check;
 pub mod conditions;
 pub mod control;
+pub mod derivation;
 pub mod diagnosis;
 pub mod engine;
 mod error;
+pub mod evaluation;
+mod field;
 pub mod files;
 pub mod formula;
+pub mod gap_report;
+pub mod improved;
 pub mod inputs;
+pub mod inverse;
+pub mod json;
 mod model;
 mod motion;
 pub mod recording;
@@ -30,7 +46,9 @@ pub mod setup;
 pub mod source;
 pub mod steady;
 
-pub use appell_gap::diagnose::Options as Diagnosis;
-pub use error::Error;
+pub use appell_gap::diagnose::Options as DiagnosisOptions;
+pub use error::{Class, Error, ExpressionError};
+pub use field::Field;
 pub use model::{Model, diagnose};
 pub use motion::{Law, MOST_ROWS, Motion, Simulated};
+pub use source::Source;

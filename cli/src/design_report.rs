@@ -1,15 +1,12 @@
-//! A control design as text and JSON.
+//! A control design as text.
 
 use std::fmt::Write as _;
 
-use appell_analysis::control::controllability::Controllability;
-use appell_analysis::control::sampled::Sampling;
 use appell_runtime::model::{ModelInfo, Quantity};
-use nalgebra::{Complex, DMatrix};
-use serde_json::{Map, Value, json};
+use nalgebra::Complex;
 
 use appell::control::design::{Design, DesignedGains};
-use appell::control::explain::pole_text;
+use appell::control::errors::pole_text;
 use appell::setup::Setup;
 use appell_report::text::{number, table};
 
@@ -278,95 +275,4 @@ pub(crate) fn schedule_text(name: &str, designs: &[(f64, Design)], setup: &Setup
     }
     let width = rows[0].len();
     format!("{}\n{}", info.title, table(&rows, 0..width))
-}
-
-/// Everything in SI.
-pub(crate) fn json(design: &Design, setup: &Setup<'_>) -> Value {
-    let info = setup.info;
-    let named = |list: &[Quantity], values: &[f64]| -> Map<String, Value> {
-        let pairs = list.iter().zip(values);
-        pairs
-            .map(|(q, value)| (q.name.to_string(), json!(value)))
-            .collect()
-    };
-    let states = names(info, &design.equations.states);
-    let outputs = names(info, &design.outputs);
-    let substituted: Map<String, Value> = design
-        .subsystem
-        .substituted
-        .iter()
-        .map(|(state, factors)| {
-            let factors = outputs
-                .iter()
-                .cloned()
-                .zip(factors.iter().map(|f| json!(f)));
-            (states[*state].clone(), Value::Object(factors.collect()))
-        })
-        .collect();
-    json!({
-        "mechanism": info.name,
-        "parameters": named(&info.parameters, &design.p),
-        "state": named(&info.states, &design.x),
-        "inputs": named(&info.inputs, &design.u),
-        "state_order": states,
-        "input_order": names_of(&info.inputs, &design.equations.inputs),
-        "A": rows(&design.equations.system.a),
-        "B": rows(&design.equations.system.b),
-        "varying": names(info, &design.equations.varying.iter().map(|&v| design.equations.states[v]).collect::<Vec<_>>()),
-        "controllability": reach_json(&design.controllability),
-        "outputs": {
-            "order": outputs,
-            "A": rows(&design.subsystem.system.a),
-            "B": rows(&design.subsystem.system.b),
-            "substituted": substituted,
-        },
-        "law": design.law.as_ref().map(law_json),
-    })
-}
-
-/// The designs of a schedule.
-pub(crate) fn schedule_json(name: &str, designs: &[(f64, Design)], setup: &Setup<'_>) -> Value {
-    let designs = designs
-        .iter()
-        .map(|(value, design)| json!({ "value": value, "design": json(design, setup) }));
-    json!({ "over": name, "designs": designs.collect::<Vec<_>>() })
-}
-
-fn reach_json(controllability: &Controllability) -> Value {
-    let modes = controllability.modes.iter().map(|mode| {
-        json!({
-            "value": complex(&mode.value),
-            "multiplicity": mode.multiplicity,
-            "distance": mode.distance,
-            "lost": mode.lost,
-        })
-    });
-    json!({
-        "rank": controllability.rank,
-        "singular_values": controllability.singular_values,
-        "lost": controllability.lost.iter().map(complex).collect::<Vec<_>>(),
-        "untouched": rows(&controllability.untouched),
-        "modes": modes.collect::<Vec<_>>(),
-        "stabilisable": controllability.kept().next().is_none(),
-    })
-}
-
-fn law_json(law: &DesignedGains) -> Value {
-    json!({
-        "gains": rows(&law.gain),
-        "poles": law.poles.iter().map(complex).collect::<Vec<_>>(),
-        "sampled_s": law.sampling.map(Sampling::period),
-        "delay_s": law.sampling.map(Sampling::delay),
-        "residual": law.residual,
-        "condition": law.condition,
-    })
-}
-
-fn complex(value: &Complex<f64>) -> Value {
-    json!([value.re, value.im])
-}
-
-fn rows(matrix: &DMatrix<f64>) -> Value {
-    let row = |row: nalgebra::RowDVector<f64>| json!(row.as_slice());
-    matrix.row_iter().map(|r| row(r.into_owned())).collect()
 }

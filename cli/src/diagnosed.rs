@@ -1,11 +1,10 @@
-//! A gap report as text, page and JSON.
+//! A gap report as text, and the table of its experiment.
 
 use std::fmt::Write as _;
 use std::path::Path;
 
 use appell_gap::data::DataSet;
-use appell_gap::diagnose::{Ahead, Changes, ENGINE, Experiment, GapVerdict, Hypothesis, Report};
-use serde_json::{Value, json};
+use appell_gap::diagnose::{Experiment, GapVerdict, Hypothesis, Report};
 
 use appell_report::gap::{doubts, hinted, joined, left_out, sentence, short};
 use appell_report::text::{number, with_unit};
@@ -171,121 +170,4 @@ pub(crate) fn csv(set: &DataSet, experiment: &Experiment) -> String {
         text.push('\n');
     }
     text
-}
-
-/// The gap report as JSON; `next` is the file of the proposed experiment.
-pub(crate) fn json(report: &Report, next: Option<&Path>) -> Value {
-    let equations = report.place.equations.iter().map(|e| {
-        json!({ "name": e.name, "share": e.share, "p_value": e.p_value, "rms": e.rms, "unit": e.unit })
-    });
-    let windows = report.place.windows.iter().map(|w| {
-        json!({ "run": w.run, "from_s": w.from, "to_s": w.to, "equation": w.equation, "z": w.z })
-    });
-    let region = report
-        .place
-        .region
-        .iter()
-        .map(|r| json!({ "variable": r.variable, "description": r.description, "z": r.z }));
-    let which = report.which.iter().map(|h| {
-        let parameters = h
-            .parameters
-            .iter()
-            .map(|v| json!({ "name": v.name, "value": v.value, "std": v.std, "unit": v.unit }));
-        json!({
-            "effects": h.effects, "probability": h.probability,
-            "log_bayes_factor": h.log_bayes_factor, "parameters": parameters.collect::<Vec<_>>(),
-            "changes": h.changes.as_ref().map(changes),
-        })
-    });
-    let tied = report.tied.iter().map(|group| {
-        let names = group.iter().map(|effects| effects.join("+"));
-        names.collect::<Vec<_>>()
-    });
-    let far = report.how_far.as_ref().map(|far| {
-        json!({
-            "horizon_s": far.horizon_s, "nominal": far.nominal, "refitted": far.refitted,
-            "with_effect": far.with_effect, "noise_floor": far.noise_floor, "closed": far.closed,
-            "closed_ci95": far.closed_ci95, "closed_vs_refitted": far.closed_vs_refitted,
-            "runs": far.runs, "horizons": report.horizons.iter().map(ahead).collect::<Vec<_>>(),
-        })
-    });
-    let detectable = report
-        .detectable
-        .iter()
-        .map(|d| json!({ "effect": d.effect, "smallest": d.smallest, "unit": d.unit }));
-    let failed = report
-        .failed
-        .iter()
-        .map(|(effects, reason)| json!({ "effects": effects, "reason": reason }));
-    let disturbances = report.disturbances.iter().map(
-        |(name, before, after)| json!({ "name": name, "nominal": before, "with_effect": after }),
-    );
-    let experiment = report.experiment.as_ref().map(|one| {
-        json!({
-            "separates": one.separates.iter().map(|effects| effects.join("+")).collect::<Vec<_>>(),
-            "file": next.and_then(Path::file_name).map(|name| name.to_string_lossy()),
-            "separation_now": one.separation_now, "separation_then": one.separation_then,
-            "about": one.about,
-        })
-    });
-    json!({
-        "schema": "gap-report/1",
-        "engine": ENGINE,
-        "mechanism": report.mechanism,
-        "verdict": report.verdict.word(),
-        "hints": report.hints.iter().map(|hint| json!({
-            "variable": hint.variable,
-            "equation": hint.equation,
-            "gain": hint.gain,
-            "log_bayes_factor": hint.log_bayes_factor,
-        })).collect::<Vec<_>>(),
-        "rows": { "fitted": report.rows[0], "all": report.rows[1] },
-        "where": {
-            "domain": report.place.domain,
-            "equations": equations.collect::<Vec<_>>(),
-            "windows": windows.collect::<Vec<_>>(),
-            "region": region.collect::<Vec<_>>(),
-        },
-        "which": which.collect::<Vec<_>>(),
-        "tied": tied.collect::<Vec<_>>(),
-        "how_far": far,
-        "experiment": experiment,
-        "detectable": detectable.collect::<Vec<_>>(),
-        "left": report.left.as_ref().map(|left| json!({
-            "place": left.place,
-            "variable": left.variable,
-            "about": left.about,
-            "log_bayes_factor": left.log_bayes_factor,
-            "gain": left.gain,
-            "explained": left.explained,
-        })),
-        "independent": report.independent,
-        "failed": failed.collect::<Vec<_>>(),
-        "disturbances": disturbances.collect::<Vec<_>>(),
-    })
-}
-
-/// Prediction errors at one horizon.
-fn ahead(ahead: &Ahead) -> Value {
-    let horizon = ahead.horizon.is_finite().then_some(ahead.horizon);
-    json!({
-        "horizon_s": horizon, "free_run": horizon.is_none(), "nominal": ahead.nominal,
-        "refitted": ahead.refitted, "with_effect": ahead.with_effect,
-        "noise_floor": ahead.noise_floor,
-    })
-}
-
-/// The changes of the spec that `appell apply` reads.
-fn changes(changes: &Changes) -> Value {
-    let inputs = changes.inputs.iter();
-    let parameters = changes.parameters.iter().map(|p| {
-        json!({ "name": p.name, "stated": p.stated, "value": p.value, "std": p.std, "unit": p.unit })
-    });
-    let beside = changes.signal_effects.iter();
-    json!({
-        "items": changes.items,
-        "inputs": inputs.map(|(input, adds)| json!({ "input": input, "adds": adds })).collect::<Vec<_>>(),
-        "parameters": parameters.collect::<Vec<_>>(),
-        "beside": beside.map(|b| json!({ "effect": b.effect, "acts": b.acts, "on": b.on })).collect::<Vec<_>>(),
-    })
 }

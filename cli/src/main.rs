@@ -1,21 +1,19 @@
 //! `appell`: from a mechanism spec to equations of motion, numbers and motions.
 
-mod applied;
 mod breaches;
+mod choice;
 mod commands;
 mod design_report;
 mod diagnosed;
 mod engine;
 mod failure;
-mod identified;
+mod flags;
 mod motions;
 mod output;
 mod picture;
 mod progress;
-mod recording;
 mod relations;
 mod summary;
-mod thorough;
 
 use std::process::ExitCode;
 

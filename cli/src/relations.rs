@@ -1,18 +1,10 @@
-//! Input-free relations, identified parameters and recovered inputs as text, figure and JSON.
+//! Input-free relations, identified parameters and recovered inputs as text.
 
 use std::fmt::Write as _;
 
-use appell_gap::inverse::{Answer, Estimate, Inputs};
-use appell_report::figure::{Figure, Panel, Series};
-use appell_runtime::model::ModelInfo;
-use serde_json::{Value, json};
+use appell_gap::inverse::{Answer, Estimate};
 
 use appell_report::text::{number, table};
-
-/// Number of runs drawn.
-const DRAWN_RUNS: usize = 3;
-/// Half-width of a 95 % band in standard deviations.
-const BAND: f64 = 1.96;
 
 /// The report as text tables.
 pub(crate) fn text(answer: &Answer) -> String {
@@ -66,79 +58,4 @@ fn remark(estimate: &Estimate) -> &'static str {
         [low, _] if low.is_infinite() => "not bounded from below by these motions",
         _ => "",
     }
-}
-
-/// The inputs of the first runs, each with its band.
-pub(crate) fn figure(info: &ModelInfo, answer: &Answer) -> Figure {
-    let panels = answer.inputs.iter().take(DRAWN_RUNS).flat_map(|run| {
-        let inputs = info.inputs.iter().take(info.declared_inputs).enumerate();
-        inputs.map(|(input, quantity)| {
-            let shifted = |sign: f64| -> Vec<f64> {
-                let values = run.values[input].iter().zip(&run.stds[input]);
-                values
-                    .map(|(value, std)| quantity.to_unit(value + sign * BAND * std))
-                    .collect()
-            };
-            let series = |label: String, y: Vec<f64>| Series {
-                label,
-                x: run.times.clone(),
-                y,
-            };
-            Panel {
-                unit: quantity.unit.to_string(),
-                series: vec![
-                    series(format!("{}, {}", quantity.name, run.run), shifted(0.0)),
-                    series("95 % from".to_owned(), shifted(-1.0)),
-                    series("to".to_owned(), shifted(1.0)),
-                ],
-            }
-        })
-    });
-    Figure {
-        title: format!("{}: inputs of recorded motions", info.name),
-        x_label: "t [s]".to_owned(),
-        panels: panels.collect(),
-        marks: Vec::new(),
-        equal_axes: false,
-    }
-}
-
-/// The result as JSON, in SI.
-pub(crate) fn json(info: &ModelInfo, answer: &Answer) -> Value {
-    let end = |end: f64| end.is_finite().then_some(end);
-    let estimates = answer.estimates.iter().map(|estimate| {
-        json!({
-            "name": estimate.quantity.name, "unit": estimate.quantity.unit,
-            "bias": estimate.is_bias, "nominal": estimate.nominal, "value": estimate.value,
-            "std": estimate.std, "robust_std": estimate.robust_std,
-            "interval95": estimate.interval95.map(end), "told": estimate.is_told(),
-            "profile": estimate.profile,
-        })
-    });
-    let names: Vec<&str> = info
-        .inputs
-        .iter()
-        .map(|input| input.name.as_ref())
-        .collect();
-    let inputs = |run: &Inputs| {
-        json!({
-            "run": run.run, "inputs": &names[..info.declared_inputs], "t": run.times,
-            "values": run.values, "stds": run.stds,
-        })
-    };
-    let noise = answer.noise.iter();
-    let noise = noise.map(|(column, std)| json!({ "column": column, "std": std }));
-    let rows = answer.correlation.row_iter();
-    let correlation = rows.map(|row| row.iter().copied().collect::<Vec<f64>>());
-    json!({
-        "schema": "inverse/1",
-        "mechanism": info.name,
-        "relations": answer.relations,
-        "normalised_square": answer.normalised_square,
-        "spacing_s": answer.spacing,
-        "estimates": estimates.collect::<Vec<_>>(),
-        "noise": noise.collect::<Vec<_>>(),
-        "noise_correlation": correlation.collect::<Vec<_>>(),
-        "runs": answer.inputs.iter().map(inputs).collect::<Vec<_>>(),
-    })
 }

@@ -19,6 +19,7 @@ mod experiment;
 mod files;
 mod film;
 mod handout;
+mod help;
 mod identify;
 mod late;
 mod motion;

@@ -4,13 +4,14 @@ use std::io::{self, Write};
 
 use appell_analysis::{Branch, Change, End, Kind, Point, Stability, Term, Verdict, circle};
 use appell_runtime::contact::ContactForces;
-use appell_runtime::model::Quantity;
 use serde_json::{Map, Value, json};
 
-use super::{Answer, Asked};
+use crate::json::named;
+
+use super::{Answer, Resolved};
 
 /// All of the answer.
-pub fn json(asked: &Asked<'_>, answer: &Answer) -> Value {
+pub fn json(asked: &Resolved<'_>, answer: &Answer) -> Value {
     let info = asked.problem.model().info();
     let names = |states: &[usize]| -> Vec<&str> {
         states
@@ -22,7 +23,7 @@ pub fn json(asked: &Asked<'_>, answer: &Answer) -> Value {
     let mut all = json!({
         "mechanism": info.name,
         "essential": names(&structure.essential),
-        "hidden": names(&structure.hidden),
+        "ignorable": names(&structure.ignorable),
         "uniform": names(&structure.uniform),
     });
     match answer {
@@ -42,7 +43,7 @@ pub fn json(asked: &Asked<'_>, answer: &Answer) -> Value {
     all
 }
 
-fn branch(asked: &Asked<'_>, branch: &Branch) -> Value {
+fn branch(asked: &Resolved<'_>, branch: &Branch) -> Value {
     let point = |at: &appell_analysis::BranchPoint| {
         let mut told = point(asked, &at.point, &at.stability);
         told["value"] = json!(at.value);
@@ -91,7 +92,17 @@ fn end(end: End) -> &'static str {
     }
 }
 
-/// The word for a verdict.
+/// A verdict in words.
+pub const fn in_words(verdict: Verdict) -> &'static str {
+    match verdict {
+        Verdict::Asymptotic => "asymptotically stable",
+        Verdict::Neutral => "neutrally stable",
+        Verdict::Unstable => "unstable",
+        Verdict::Critical => "critical",
+    }
+}
+
+/// The keyword of a verdict.
 pub fn verdict(verdict: Verdict) -> &'static str {
     match verdict {
         Verdict::Asymptotic => "asymptotic",
@@ -101,15 +112,8 @@ pub fn verdict(verdict: Verdict) -> &'static str {
     }
 }
 
-fn named(list: &[Quantity], values: &[f64]) -> Map<String, Value> {
-    let pairs = list.iter().zip(values);
-    pairs
-        .map(|(q, &value)| (q.name.to_string(), json!(value)))
-        .collect()
-}
-
 /// One motion in SI.
-fn point(asked: &Asked<'_>, point: &Point, stability: &Stability) -> Value {
+fn point(asked: &Resolved<'_>, point: &Point, stability: &Stability) -> Value {
     let model = asked.problem.model();
     let info = model.info();
     let uniform = asked.problem.structure().uniform.iter();
@@ -162,7 +166,7 @@ fn point(asked: &Asked<'_>, point: &Point, stability: &Stability) -> Value {
 }
 
 /// A row for every motion or point of a branch.
-pub fn csv(asked: &Asked<'_>, answer: &Answer, to: &mut dyn Write) -> io::Result<()> {
+pub fn csv(asked: &Resolved<'_>, answer: &Answer, to: &mut dyn Write) -> io::Result<()> {
     let model = asked.problem.model();
     let info = model.info();
     let terms = asked.terms();

@@ -1,27 +1,29 @@
-//! A chart as a map: places by what is found there, borders as curves.
+//! A stability chart as a map, with its boundaries as curves.
 
 use appell_analysis::{Boundary, Cell, Chart, Verdict};
 use appell_report::figure::{Curve, Map, Series, Stroke};
 
-/// What is found at a place.
+use super::export::in_words;
+
+/// Kinds of grid points.
 const KINDS: [&str; 6] = [
-    "asymptotically stable",
-    "neutrally stable",
-    "unstable",
+    in_words(Verdict::Asymptotic),
+    in_words(Verdict::Neutral),
+    in_words(Verdict::Unstable),
     "not feasible",
     "stable and unstable",
     "several stable",
 ];
 
-/// How an axis of a chart is shown.
+/// Label and unit of an axis.
 pub struct Shown {
     /// Its name and unit.
     pub label: String,
-    /// One in SI, in that unit.
+    /// Factor from SI to that unit.
     pub scale: f64,
 }
 
-/// The map of a chart; kinds that occur nowhere are not in its legend.
+/// The map of a chart; its legend lists the kinds that occur.
 pub fn map(title: &str, chart: &Chart, axes: [Shown; 2]) -> Map {
     let cells: Vec<Option<usize>> = chart.cells.iter().map(|cells| kind(cells)).collect();
     let name = |(kind, name): (usize, &&str)| {
@@ -45,7 +47,7 @@ pub fn map(title: &str, chart: &Chart, axes: [Shown; 2]) -> Map {
     }
 }
 
-/// Of the feasible motions at a place, if there are any.
+/// The kind of a grid point, from its feasible motions.
 fn kind(cells: &[Cell]) -> Option<usize> {
     let feasible = || cells.iter().filter(|cell| cell.feasible);
     let unstable = feasible().filter(|cell| cell.verdict == Verdict::Unstable);
@@ -60,7 +62,7 @@ fn kind(cells: &[Cell]) -> Option<usize> {
     }
 }
 
-/// Where stability changes, and thin where requirements begin to hold.
+/// Stability boundaries, and thin limits of feasibility.
 fn borders(chart: &Chart, scales: [f64; 2]) -> Vec<Curve> {
     let curve = |label: &str, points: &[[f64; 2]], stroke| Curve {
         line: Series {

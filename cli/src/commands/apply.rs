@@ -3,13 +3,12 @@
 use std::fs;
 use std::path::PathBuf;
 
-use appell_spec::load;
-
-use crate::applied::Report;
-use crate::output;
-use appell::Error;
 use appell::files;
+use appell::gap_report::GapReport;
 use appell::source::Source;
+
+use crate::failure::Error;
+use crate::output;
 
 /// Writes the spec with the effect identified by a gap report.
 ///
@@ -35,35 +34,21 @@ pub(crate) struct Apply {
 impl Apply {
     pub(super) fn run(&self) -> Result<(), Error> {
         let source = Source::find(&self.model)?;
-        let name = load(&source.file, &source.text)?.mechanism.name;
-        let report = Report::read(&self.report)?;
-        if report.mechanism != name {
-            return Err(Error::Data(format!(
-                "the report is about `{}`, but the spec describes `{name}`",
-                report.mechanism
-            )));
-        }
-        let hypothesis = report.hypothesis(self.hypothesis)?;
-        let changes = hypothesis.changes();
-        let note = format!("Found by `appell diagnose`: {}", hypothesis.name());
-        let improved = changes.improved(&source.text, &note);
-        let improved = improved.map_err(|error| Error::Data(error.to_string()))?;
-        let default = PathBuf::from(format!("{name}_improved.toml"));
+        let report = GapReport::read(&self.report)?;
+        let default = PathBuf::from(format!("{}_improved.toml", report.mechanism));
         let out = self.out.as_ref().unwrap_or(&default);
         let file = out.to_string_lossy();
-        // Check that the improved text is a valid spec before it is written.
-        load(&file, &improved)?;
-        if improved == source.text {
-            let summary = hypothesis.summary(&report, &changes, "nothing to write");
-            return output::print(&summary);
+        let improved = source.improved(&report, self.hypothesis, &file)?;
+        if improved.spec == source.text {
+            return output::print(&improved.summary("nothing to write"));
         }
-        if self.out.is_none() && fs::read(out).is_ok_and(|there| there != improved.as_bytes()) {
+        let spec = improved.spec.as_bytes();
+        if self.out.is_none() && fs::read(out).is_ok_and(|there| there != spec) {
             return Err(Error::Usage(format!(
                 "{file} exists with other contents; to replace it, name it with `-o {file}`"
             )));
         }
-        files::write(out, &improved)?;
-        let summary = hypothesis.summary(&report, &changes, &file);
-        output::print_beside(&summary, &[&Some(out.clone())])
+        files::write(out, &improved.spec)?;
+        output::print_beside(&improved.summary(&file), &[&Some(out.clone())])
     }
 }

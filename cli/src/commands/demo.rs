@@ -3,12 +3,13 @@
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
+use crate::failure::Error;
+use appell::derivation::{Format, Stage};
 use appell::source::Source;
-use appell::{Error, Law, Motion, Simulated, files};
+use appell::{Law, Motion, Simulated, files};
 use appell_report::figure::Figure;
 use appell_runtime::integrate::Options;
 
-use super::derive::{Format, Stage, derivation};
 use super::simulate::{simulated, write_csv};
 use crate::{engine, output, summary};
 
@@ -58,10 +59,10 @@ impl Demo {
             let _ = writeln!(told, "  {:<28} {about}", path.display());
             path
         };
-        let html = derivation(&source, Format::Html, Stage::All, &[])?;
+        let html = source.derivation(Stage::All, Format::Html)?;
         let about = "the derivation from frames to equations of motion";
         files::write(&place("unicycle.html", about), &html)?;
-        let rust = derivation(&source, Format::Rust, Stage::All, &[])?;
+        let rust = source.rust()?;
         let about = "the same equations as Rust, compiled into this program";
         files::write(&place("unicycle.rs", about), &rust)?;
         let about = "the motion: states, input, outputs, energies";

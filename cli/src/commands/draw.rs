@@ -1,12 +1,9 @@
 //! `appell draw`
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
-use appell_codegen::{Derived, compile::report, derived};
-use appell_report::drawing::drawing;
-
+use crate::failure::Error;
 use crate::{picture, progress};
-use appell::Error;
 use appell::source::Source;
 
 /// Draws the mechanism at its initial state, as SVG.
@@ -25,15 +22,13 @@ impl Draw {
     pub(super) fn run(&self) -> Result<(), Error> {
         let source = Source::find(&self.model)?;
         let spinner = progress::spinner("deriving the equations of motion");
-        let Derived {
-            mechanism,
-            derivation,
-            ..
-        } = derived(&source.file, &source.text)?;
-        let svg = drawing(&mechanism, derivation)
-            .map_err(|findings| report(&mechanism, &source.text, &findings))?;
+        let svg = source.drawing();
         spinner.finish_and_clear();
-        let default = format!("{}.svg", mechanism.name);
-        picture::write(self.out.as_deref().unwrap_or(Path::new(&default)), &svg)
+        let svg = svg?;
+        let out = match &self.out {
+            Some(out) => out.clone(),
+            None => format!("{}.svg", source.mechanism()?.name).into(),
+        };
+        picture::write(&out, &svg)
     }
 }

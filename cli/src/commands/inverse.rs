@@ -2,11 +2,12 @@
 
 use std::path::PathBuf;
 
-use appell_gap::inverse::{self, Options, RelationError};
+use appell::inverse::Options;
+use appell_report::figure::Figure;
 
+use crate::failure::Error;
 use crate::output;
 use crate::{engine, picture, progress, relations};
-use appell::Error;
 use appell::files;
 
 /// Computes the inputs of recorded motions, and parameters from input-free equations.
@@ -44,18 +45,15 @@ impl Inverse {
             biased: self.bias.clone(),
         };
         let spinner = progress::spinner("evaluating the equations of motion");
-        let answer = inverse::find(&set, model.equations(), &options);
+        let answer = model.inverse(&set, &options);
         spinner.finish_and_clear();
-        let answer = answer.map_err(|error| match error {
-            RelationError::Inverse(_) => Error::Computation(error.to_string()),
-            _ => Error::Usage(error.to_string()),
-        })?;
-        let info = model.equations().info();
+        let answer = answer?;
+        let info = model.info();
         if let Some(path) = &self.json {
-            files::write_json(path, &relations::json(info, &answer))?;
+            files::write_json(path, &appell::json::inverse(info, &answer))?;
         }
         if let Some(path) = &self.plot {
-            picture::write(path, &relations::figure(info, &answer).to_svg())?;
+            picture::write(path, &Figure::of_inputs(info, &answer).to_svg())?;
         }
         output::print_beside(&relations::text(&answer), &[&self.json, &self.plot])
     }

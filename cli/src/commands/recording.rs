@@ -2,9 +2,8 @@
 
 use std::path::PathBuf;
 
+use crate::failure::Error;
 use crate::output;
-use crate::recording;
-use appell::Error;
 use appell::files;
 use appell_report::recording::text;
 
@@ -29,7 +28,7 @@ impl Recording {
     pub(super) fn run(&self) -> Result<(), Error> {
         let set = appell::recording::read(&self.data, self.model.as_deref())?;
         if let Some(path) = &self.json {
-            files::write_json(path, &recording::json(&set))?;
+            files::write_json(path, &appell::json::recording(&set))?;
         }
         output::print_beside(&text(&set), &[&self.json])
     }

@@ -2,31 +2,20 @@
 
 use std::fmt::Write as _;
 
-use appell_analysis::{
-    Branch, Change, End, Kind, Special, Stability, SteadyMotion, Verdict, circle,
-};
+use appell_analysis::{Branch, Change, End, Kind, Special, Stability, SteadyMotion, circle};
 use appell_runtime::contact::ContactForces;
 use appell_runtime::model::ModelInfo;
 use appell_spectra::spectrum::Complex;
 
-use appell::steady::Asked;
+use appell::steady::Resolved;
+use appell::steady::export::in_words as verdict;
 use appell_report::text::{number, table};
 
 /// Largest number of motions side by side.
 const COLUMNS: usize = 6;
 
-/// The verdict in words.
-pub(crate) fn verdict(verdict: Verdict) -> &'static str {
-    match verdict {
-        Verdict::Asymptotic => "asymptotically stable",
-        Verdict::Neutral => "neutrally stable",
-        Verdict::Unstable => "unstable",
-        Verdict::Critical => "critical",
-    }
-}
-
 /// Essential states and ignorable coordinates.
-pub(crate) fn structure(asked: &Asked<'_>) -> String {
+pub(crate) fn structure(asked: &Resolved<'_>) -> String {
     let info = asked.problem.model().info();
     let names = |states: &[usize]| {
         let names: Vec<&str> = states
@@ -49,7 +38,7 @@ pub(crate) fn structure(asked: &Asked<'_>) -> String {
 }
 
 /// Motions side by side.
-pub(crate) fn motions(asked: &Asked<'_>, motions: &[(SteadyMotion, Stability)]) -> String {
+pub(crate) fn motions(asked: &Resolved<'_>, motions: &[(SteadyMotion, Stability)]) -> String {
     let (model, shown) = (
         asked.problem.model(),
         &motions[..motions.len().min(COLUMNS)],
@@ -153,7 +142,7 @@ pub(crate) fn eigenvalue(value: Complex<f64>) -> String {
 }
 
 /// Branches with their special points.
-pub(crate) fn branches(asked: &Asked<'_>, branches: &[Branch]) -> String {
+pub(crate) fn branches(asked: &Resolved<'_>, branches: &[Branch]) -> String {
     let Some((along, _)) = asked.along else {
         return String::new();
     };
@@ -230,7 +219,7 @@ fn why(info: &ModelInfo, ends: [End; 2]) -> String {
     }
 }
 
-fn event(asked: &Asked<'_>, special: &Special) -> String {
+fn event(asked: &Resolved<'_>, special: &Special) -> String {
     let info = asked.problem.model().info();
     match special.kind {
         Kind::Fold => "fold: the branch turns back".to_owned(),

@@ -1,4 +1,4 @@
-//! `check --thorough`: the comparison of three formulations.
+//! The comparison of three formulations.
 
 use std::fmt::Write as _;
 use std::time::{Duration, Instant};
@@ -9,9 +9,7 @@ use appell_codegen::formulations::{
 };
 use serde_json::{Value, json};
 
-use crate::progress;
-use appell::Error;
-use appell::source::Source;
+use crate::Error;
 
 /// The order of the report.
 const AGAINST: [Against; 4] = [
@@ -22,41 +20,37 @@ const AGAINST: [Against; 4] = [
 ];
 
 /// The comparison of one mechanism, and how long it took.
-pub(crate) struct Thorough {
+#[derive(Debug)]
+pub struct Thorough {
+    file: String,
     verdict: FormulationComparison,
     seconds: f64,
     limit: Duration,
 }
 
 impl Thorough {
-    /// Compares until the time limit.
-    pub(crate) fn new(source: &Source, derived: &Derived, limit: Duration) -> Result<Self, Error> {
-        let spinner = progress::spinner(&format!("comparing formulations of {}", source.file));
+    pub(super) fn new(file: &str, derived: &Derived, limit: Duration) -> Result<Self, Error> {
         let start = Instant::now();
         let is_time = || start.elapsed() < limit;
         let verdict = compare_while(&derived.mechanism, &derived.derivation, &is_time);
-        let seconds = start.elapsed().as_secs_f64();
-        spinner.finish_and_clear();
-        match verdict {
-            Ok(verdict) => Ok(Self {
-                verdict,
-                seconds,
-                limit,
-            }),
-            Err(findings) => {
-                let reasons = findings.iter().map(|finding| finding.message.as_str());
-                let reasons: Vec<&str> = reasons.collect();
-                Err(Error::Computation(format!(
-                    "{}: the formulations cannot be compared: {}",
-                    source.file,
-                    reasons.join("; ")
-                )))
-            }
-        }
+        let verdict = verdict.map_err(|findings| {
+            let reasons = findings.iter().map(|finding| finding.message.as_str());
+            let reasons: Vec<&str> = reasons.collect();
+            let reasons = reasons.join("; ");
+            Error::computation(format!(
+                "{file}: the formulations cannot be compared: {reasons}"
+            ))
+        })?;
+        Ok(Self {
+            file: file.to_owned(),
+            verdict,
+            seconds: start.elapsed().as_secs_f64(),
+            limit,
+        })
     }
 
-    /// One line per formulation and method, as the summary of `check` writes them.
-    pub(crate) fn text(&self) -> String {
+    /// The comparison as text, one line for each formulation and method.
+    pub fn text(&self) -> String {
         let all = &self.verdict.comparisons;
         let answer = if self.verdict.agrees() {
             "agree"
@@ -96,7 +90,7 @@ impl Thorough {
     }
 
     /// The comparison as JSON.
-    pub(crate) fn json(&self) -> Value {
+    pub fn to_json(&self) -> Value {
         let comparison = |comparison: &Comparison| {
             let mut entry = json!({
                 "against": comparison.against.word(), "quantity": comparison.quantity,
@@ -131,7 +125,7 @@ impl Thorough {
     }
 
     /// Why the equations cannot be trusted, if they cannot.
-    pub(crate) fn failure(&self, source: &Source) -> Option<Error> {
+    pub fn failure(&self) -> Option<Error> {
         if self.verdict.agrees() {
             return None;
         }
@@ -173,7 +167,7 @@ impl Thorough {
             let _ = write!(
                 text,
                 "\n  the time limit of {} s was exceeded\n  compared and equal: {}\n  not compared: {}\n  \
-                 allow more time with `--time-limit-s`",
+                 allow more time",
                 self.limit.as_secs_f64(),
                 compared.unwrap_or_else(nothing),
                 left.join(", ")
@@ -198,10 +192,8 @@ impl Thorough {
         } else {
             "the formulations were not all compared"
         };
-        Some(Error::Computation(format!(
-            "{}: {verdict}{text}",
-            source.file
-        )))
+        let file = &self.file;
+        Some(Error::computation(format!("{file}: {verdict}{text}")))
     }
 }
 
@@ -235,6 +227,7 @@ mod tests {
             },
         };
         let thorough = Thorough {
+            file: "wheel.toml".to_owned(),
             verdict: FormulationComparison {
                 comparisons: vec![bias],
                 error_bound: 0.0,
@@ -242,15 +235,10 @@ mod tests {
             seconds: 0.0,
             limit: Duration::from_secs(1),
         };
-        let source = Source {
-            file: "wheel.toml".to_owned(),
-            text: String::new(),
-            shipped: None,
-        };
         assert!(thorough.text().contains("DO NOT AGREE"));
-        assert_eq!(thorough.json()["agrees"], false);
-        let failure = thorough.failure(&source).expect("a failure");
-        assert_eq!(crate::failure::status(&failure), 4);
+        assert_eq!(thorough.to_json()["agrees"], false);
+        let failure = thorough.failure().expect("a failure");
+        assert_eq!(failure.class(), crate::Class::Computation);
         let told = failure.to_string();
         for part in ["Kane: bias, `omega` is 1.5e0", "do not use these equations"] {
             assert!(told.contains(part), "{told}");

@@ -1,11 +1,11 @@
-//! What an identification found, for programs.
+//! Estimated parameters.
 
 use appell_gap::data::DataSet;
 use appell_gap::identify::Answer;
 use serde_json::{Value, json};
 
-/// The result as JSON, in SI.
-pub(crate) fn json(set: &DataSet, answer: &Answer) -> Value {
+/// The result of an identification.
+pub fn identification(set: &DataSet, answer: &Answer) -> Value {
     let parameters = answer.parameters.iter().map(|estimate| {
         json!({
             "name": estimate.quantity.name, "unit": estimate.quantity.unit,

@@ -1,11 +1,11 @@
-//! Recordings: what a program is told of them.
+//! Recordings.
 
 use appell_gap::data::DataSet;
 use appell_report::recording::{part, role, severity};
 use serde_json::{Value, json};
 
-/// Everything, in SI.
-pub(crate) fn json(set: &DataSet) -> Value {
+/// Runs, channels, noise, parameters and findings of a data set.
+pub fn recording(set: &DataSet) -> Value {
     let runs = set.runs.iter().map(|run| {
         json!({
             "run": run.name, "part": part(run), "rows": run.times.len(),

@@ -1,0 +1,106 @@
+//! The derivation of a spec as a page, as emitted code and as a drawing.
+
+use appell_codegen::compile::report;
+use appell_codegen::emit::{Options, emit};
+use appell_codegen::linearisation::{Linearisation, SteadyMotion};
+use appell_codegen::program::FunctionKind;
+use appell_codegen::{Derived, derived};
+use appell_report::derivation::{self, Page};
+use appell_report::drawing::drawing;
+use appell_spec::mechanism::Mechanism;
+
+pub use appell_report::derivation::Stage;
+
+use crate::conditions::conditions;
+use crate::source::Source;
+use crate::{Error, Field};
+
+/// The format of a page.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Format {
+    /// Unicode, for a terminal.
+    Text,
+    /// A document for LaTeX.
+    Latex,
+    /// A page for a browser.
+    Html,
+}
+
+impl Format {
+    fn set(self, page: &Page) -> String {
+        match self {
+            Self::Text => derivation::text(page),
+            Self::Latex => derivation::latex(page),
+            Self::Html => derivation::html(page),
+        }
+    }
+}
+
+impl Source {
+    /// The mechanism that the spec describes.
+    pub fn mechanism(&self) -> Result<Mechanism, Error> {
+        Ok(appell_spec::load(&self.file, &self.text)?.mechanism)
+    }
+
+    /// The derivation, from frames up to a stage.
+    ///
+    /// ```
+    /// use appell::Source;
+    /// use appell::derivation::{Format, Stage};
+    ///
+    /// let page = Source::shipped("pendulum")?.derivation(Stage::Energy, Format::Text)?;
+    /// assert!(page.contains("Acceleration energy"));
+    /// # Ok::<(), appell::Error>(())
+    /// ```
+    pub fn derivation(&self, stage: Stage, format: Format) -> Result<String, Error> {
+        let Derived {
+            mechanism,
+            mut derivation,
+            ..
+        } = derived(&self.file, &self.text)?;
+        let page = derivation::page(&mechanism, &mut derivation, stage)
+            .map_err(|findings| report(&mechanism, &self.text, &findings))?;
+        Ok(format.set(&page))
+    }
+
+    /// The linear equations about a steady motion: A, B and the characteristic polynomial. States, rates
+    /// and inputs without a condition such as `theta=0` or `dot(psi)=0` stay symbolic.
+    pub fn linear_equations(&self, about: &[String], format: Format) -> Result<String, Error> {
+        let Derived {
+            mechanism,
+            mut derivation,
+            ..
+        } = derived(&self.file, &self.text)?;
+        let conditions = conditions(&self.text, &mechanism, &mut derivation, about)?;
+        let steady = SteadyMotion::new(&mechanism, &mut derivation, &conditions);
+        let linear = steady.and_then(|steady| Linearisation::about(&mut derivation, steady));
+        let linear = linear.map_err(|error| Error::request(Field::About, error.to_string()))?;
+        let page = derivation::linear(&mechanism, &mut derivation, &linear);
+        Ok(format.set(&page))
+    }
+
+    /// The module that a build script includes.
+    pub fn rust(&self) -> Result<String, Error> {
+        if let Some(shipped) = self.shipped {
+            return Ok(shipped.code.to_owned());
+        }
+        let program = appell_codegen::compile(&self.file, &self.text, &FunctionKind::STANDARD)?;
+        let options = Options {
+            spec: Some(self.text.clone()),
+            ..Options::default()
+        };
+        let emitted = emit(&program, &options).map_err(Error::computation)?;
+        Ok(emitted.source)
+    }
+
+    /// The mechanism at its initial state, as SVG.
+    pub fn drawing(&self) -> Result<String, Error> {
+        let Derived {
+            mechanism,
+            derivation,
+            ..
+        } = derived(&self.file, &self.text)?;
+        drawing(&mechanism, derivation)
+            .map_err(|findings| report(&mechanism, &self.text, &findings).into())
+    }
+}

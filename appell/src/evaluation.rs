@@ -1,0 +1,224 @@
+//! The equations evaluated at given states.
+
+use appell_runtime::condition::Conditions;
+use appell_runtime::contact::{ContactForce, ContactForces};
+use appell_runtime::inputs::{ModelInputs, ZeroInputs};
+use appell_runtime::model::{At, Energies, Model as Equations, ModelInfo};
+use serde_json::{Map, Value, json};
+
+use crate::cases::Case;
+use crate::json::{named, names};
+use crate::{Error, Model};
+
+/// All quantities of the equations at one state, in SI; matrices are stored by rows.
+#[derive(Debug, Clone)]
+pub struct Values {
+    /// Rates of the states.
+    pub rates: Vec<f64>,
+    /// ∂ẋ/∂x.
+    pub a: Vec<f64>,
+    /// ∂ẋ/∂u.
+    pub b: Vec<f64>,
+    /// ∂ẋ/∂p.
+    pub p: Vec<f64>,
+    /// Mass matrix M.
+    pub mass_matrix: Vec<f64>,
+    /// Bias b.
+    pub bias: Vec<f64>,
+    /// Pseudo-forces Π.
+    pub forces: Vec<f64>,
+    /// Energies and power.
+    pub energies: Energies,
+    /// Residuals of the constraint rows.
+    pub residual: Vec<f64>,
+    /// Constraint forces, three components each.
+    pub reactions: Vec<f64>,
+    /// Forces at the contacts.
+    pub contacts: Vec<ContactForce>,
+    /// Condition numbers of the linear systems.
+    pub conditions: Conditions,
+    /// Outputs.
+    pub outputs: Vec<f64>,
+}
+
+/// The values of all cases.
+#[derive(Debug, Clone)]
+pub struct Evaluation<'a> {
+    info: &'a ModelInfo,
+    /// The values, in the order of the cases.
+    pub values: Vec<Values>,
+}
+
+impl Model {
+    /// Evaluates the equations at given states.
+    ///
+    /// ```
+    /// use appell::{Model, cases::read_cases};
+    ///
+    /// let model = Model::shipped("pendulum")?;
+    /// let cases = r#"{"cases": [{"state": {"theta": 0.1, "omega": 0}}]}"#;
+    /// let cases = read_cases("cases.json", cases, model.info())?;
+    /// let evaluation = model.evaluate(&cases)?;
+    /// assert!(evaluation.values[0].rates[1] < 0.0);
+    /// # Ok::<(), appell::Error>(())
+    /// ```
+    pub fn evaluate(&self, cases: &[Case]) -> Result<Evaluation<'_>, Error> {
+        let (model, info) = (self.equations(), self.info());
+        let inputs = ModelInputs::new(info, &ZeroInputs)?;
+        let values = cases.iter().map(|case| {
+            let mut u = vec![0.0; info.input_len()];
+            inputs.fill(case.t, &case.x, &mut u);
+            for (u, given) in u.iter_mut().zip(&case.u) {
+                *u = given.unwrap_or(*u);
+            }
+            let at = At {
+                t: case.t,
+                x: &case.x,
+                u: &u,
+                p: &case.p,
+            };
+            Values::at(model, at)
+        });
+        let values = values.collect();
+        Ok(Evaluation { info, values })
+    }
+}
+
+impl Values {
+    fn at(model: &dyn Equations, at: At<'_>) -> Self {
+        let info = model.info();
+        let (n, s, m, k) = (
+            info.state_len(),
+            info.speeds,
+            info.input_len(),
+            info.parameter_len(),
+        );
+        let mut rates = vec![0.0; n];
+        let (mut a, mut b, mut p) = (vec![0.0; n * n], vec![0.0; n * m], vec![0.0; n * k]);
+        model.rates(at, &mut rates);
+        model.jacobians(at, &mut vec![0.0; n], &mut a, &mut b);
+        model.parameter_jacobian(at, &mut p);
+        let (mut mass_matrix, mut bias, mut forces) =
+            (vec![0.0; s * s], vec![0.0; s], vec![0.0; s]);
+        model.appell(at, &mut mass_matrix, &mut bias, &mut forces);
+        let mut residual = vec![0.0; info.constraint_rows.len()];
+        model.constraint_residual(at, &mut residual);
+        let mut reactions = vec![0.0; 3 * info.reactions.len()];
+        model.constraint_forces(at, &mut reactions);
+        let mut outputs = vec![0.0; info.output_len()];
+        model.outputs(at, &mut outputs);
+        Self {
+            rates,
+            a,
+            b,
+            p,
+            mass_matrix,
+            bias,
+            forces,
+            energies: model.energies(at),
+            residual,
+            reactions,
+            contacts: ContactForces::new().at(model, at).to_vec(),
+            conditions: Conditions::of(model, at),
+            outputs,
+        }
+    }
+
+    /// Whether all quantities are finite, apart from friction demands and condition numbers.
+    pub fn is_finite(&self) -> bool {
+        let energies = [
+            self.energies.kinetic,
+            self.energies.potential,
+            self.energies.power,
+            self.energies.acceleration,
+        ];
+        let lists: [&[f64]; 11] = [
+            &self.rates,
+            &self.a,
+            &self.b,
+            &self.p,
+            &self.mass_matrix,
+            &self.bias,
+            &self.forces,
+            &self.residual,
+            &self.reactions,
+            &self.outputs,
+            &energies,
+        ];
+        lists.into_iter().flatten().all(|value| value.is_finite())
+    }
+
+    fn to_json(&self, info: &ModelInfo) -> Value {
+        let rows = |values: &[f64], columns: usize| -> Value {
+            let rows = values
+                .len()
+                .checked_div(columns)
+                .unwrap_or(info.state_len());
+            (0..rows)
+                .map(|row| json!(&values[row * columns..][..columns]))
+                .collect()
+        };
+        let reactions: Map<String, Value> = info
+            .reactions
+            .iter()
+            .zip(self.reactions.chunks(3))
+            .map(|(reaction, force)| (reaction.name.to_string(), json!(force)))
+            .collect();
+        json!({
+            "rates": named(&info.states, &self.rates),
+            "mass_matrix": rows(&self.mass_matrix, info.speeds),
+            "bias": self.bias,
+            "generalized_forces": self.forces,
+            "A": rows(&self.a, info.state_len()),
+            "B": rows(&self.b, info.input_len()),
+            "P": rows(&self.p, info.parameter_len()),
+            "acceleration_energy": self.energies.acceleration,
+            "kinetic_energy": self.energies.kinetic,
+            "potential_energy": self.energies.potential,
+            "power": self.energies.power,
+            "constraint_residual": self.residual,
+            "constraint_forces": reactions,
+            "contacts": self.contacts(info),
+            "conditions": {
+                "mass_matrix": self.conditions.mass_matrix,
+                "velocities": self.conditions.velocities,
+                "systems": self.conditions.systems,
+            },
+            "outputs": named(&info.outputs, &self.outputs),
+        })
+    }
+
+    /// The contact forces. An infinite friction demand is `null`.
+    fn contacts(&self, info: &ModelInfo) -> Map<String, Value> {
+        let contacts = info.contacts.iter().zip(&self.contacts);
+        contacts
+            .map(|(contact, force)| {
+                let mut entry = json!({ "normal_force": force.normal });
+                if contact.grips {
+                    entry["tangential_force"] = json!(force.tangential);
+                    entry["friction_demand"] = json!(force.demand());
+                    entry["friction"] = json!(force.friction);
+                }
+                (contact.name.to_string(), entry)
+            })
+            .collect()
+    }
+}
+
+impl Evaluation<'_> {
+    /// The values with the names of what they belong to; numbers that are not finite are `null`.
+    pub fn to_json(&self) -> Value {
+        let info = self.info;
+        let cases = self.values.iter().map(|values| values.to_json(info));
+        json!({
+            "mechanism": info.name,
+            "state_order": names(&info.states),
+            "input_order": names(&info.inputs),
+            "speed_order": names(info.speed_quantities()),
+            "parameter_order": names(&info.parameters),
+            "output_order": names(&info.outputs),
+            "constraint_order": info.constraint_rows,
+            "cases": cases.collect::<Vec<_>>(),
+        })
+    }
+}

@@ -1,0 +1,17 @@
+//! The inputs of recorded motions, and parameters from input-free equations.
+
+use appell_gap::data::DataSet;
+use appell_gap::inverse;
+
+pub use appell_gap::inverse::{Answer, Options};
+
+use crate::{Error, Model};
+
+impl Model {
+    /// Computes the inputs of recorded motions, and estimates parameters from the combinations of the
+    /// equations that hold whatever the inputs were. The model must be one
+    /// [for estimation](Self::for_estimation).
+    pub fn inverse(&self, set: &DataSet, options: &Options) -> Result<Answer, Error> {
+        Ok(inverse::find(set, self.equations(), options)?)
+    }
+}

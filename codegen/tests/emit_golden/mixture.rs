@@ -136,9 +136,8 @@ pub fn rates<T: Real>(
 
     // Combinations of parameters.
     let K_squared = K * K;
-    let type_dot_per_K_squared_K = K_squared * K_squared;
-    let type_dot_per_K_squared_K_squared = type_dot_per_K_squared_K
-        * type_dot_per_K_squared_K;
+    let type_dot_part_1 = K_squared * K_squared;
+    let type_dot_part_2 = type_dot_part_1 * type_dot_part_1;
 
     // Generalised velocities.
     let p_minus_half = p - half;
@@ -154,12 +153,9 @@ pub fn rates<T: Real>(
     let half_dot = solution_2_3 - p_minus_half.atan2(K.powf(p));
 
     // Appell's equations, solved.
-    let K_cubed_type_dot_per_K_squared_K_squared = K * K_squared
-        * type_dot_per_K_squared_K_squared;
-    let type_dot_part_1 = K_cubed_type_dot_per_K_squared_K_squared
-        * type_dot_per_K_squared_K_squared;
     let [solution_1_1, _, _] = lu_solve(&lu_1, [type_, t, p]);
-    let type_dot = one / (p_minus_half * p_minus_half * p_minus_half) + type_dot_part_1
+    let type_dot = one / (p_minus_half * p_minus_half * p_minus_half)
+        + K * K_squared * type_dot_part_2 * type_dot_part_2
         + T::if_less_or_equal(t, K, p, type_)
         + T::if_less(p, p_minus_half, solution_1_1, crate_);
 
@@ -171,6 +167,10 @@ pub fn rates<T: Real>(
 }
 
 /// Rates ẋ and their Jacobians with respect to state and inputs.
+///
+/// ```text
+/// M ∂ω̇/∂x = ∂(Π − b)/∂x − ∂M/∂x ω̇
+/// ```
 ///
 /// From `mechanisms/type.toml`.
 /// Operations: 61 (32 +, 18 ×, 5 ÷, 6 sign), sine or cosine of 1 angle, 14 functions, 7 choices, 7 linear systems.
@@ -195,9 +195,8 @@ pub fn jacobians<T: Real>(
 
     // Combinations of parameters.
     let K_squared = K * K;
-    let type_dot_per_K_squared_K = K_squared * K_squared;
-    let type_dot_per_K_squared_K_squared = type_dot_per_K_squared_K
-        * type_dot_per_K_squared_K;
+    let type_dot_part_1 = K_squared * K_squared;
+    let type_dot_part_2 = type_dot_part_1 * type_dot_part_1;
 
     // Generalised velocities.
     let p_minus_half = p - half;
@@ -218,30 +217,27 @@ pub fn jacobians<T: Real>(
     // Appell's equations, solved.
     let inv_p_minus_half = one / p_minus_half;
     let type_dot_per_inv_p_minus_half = inv_p_minus_half * inv_p_minus_half;
-    let K_cubed_type_dot_per_K_squared_K_squared = K * K_squared
-        * type_dot_per_K_squared_K_squared;
-    let type_dot_part_1 = K_cubed_type_dot_per_K_squared_K_squared
-        * type_dot_per_K_squared_K_squared;
     let [solution_1_1, solution_1_2, solution_1_3] = lu_solve(&lu_1, [type_, t, p]);
-    let type_dot = type_dot_part_1 + inv_p_minus_half * type_dot_per_inv_p_minus_half
+    let type_dot = inv_p_minus_half * type_dot_per_inv_p_minus_half
+        + K * K_squared * type_dot_part_2 * type_dot_part_2
         + T::if_less_or_equal(t, K, p, type_)
         + T::if_less(p, p_minus_half, solution_1_1, crate_);
 
     // Row `type_dot` of A.
     let [solution_3_1, _, _] = lu_solve(&lu_1, [one, zero, zero]);
-    let A_type_type = T::if_less(p, p_minus_half, solution_3_1, zero)
+    let d_type_dot_d_type = T::if_less(p, p_minus_half, solution_3_1, zero)
         + T::if_less_or_equal(t, K, zero, one);
     let [solution_4_1, _, _] = lu_solve(&lu_1, [-solution_1_2, -solution_1_1, one]);
-    let A_type_p_part_1 = three * type_dot_per_inv_p_minus_half
+    let d_type_dot_d_p_part_1 = three * type_dot_per_inv_p_minus_half
         * type_dot_per_inv_p_minus_half;
-    let A_type_p = T::if_less(p, p_minus_half, solution_4_1, zero)
-        + T::if_less_or_equal(t, K, one, zero) - A_type_p_part_1;
+    let d_type_dot_d_p = T::if_less(p, p_minus_half, solution_4_1, zero)
+        + T::if_less_or_equal(t, K, one, zero) - d_type_dot_d_p_part_1;
     let [solution_5_1, _, _] = lu_solve(&lu_1, [-solution_1_3, zero, -solution_1_2]);
     let one_over_one_plus_half_squared = one / (one + half * half);
     let inv_half = one / half;
     let d_crate_d_half = cos_half + number_half / sqrt_half + crate_part_1
         + one_over_one_plus_half_squared + one + inv_half - tanh_half * tanh_half;
-    let A_type_half = A_type_p_part_1
+    let d_type_dot_d_half = d_type_dot_d_p_part_1
         + T::if_less(p, p_minus_half, solution_5_1, d_crate_d_half);
 
     // Row `half_dot` of A.
@@ -250,15 +246,17 @@ pub fn jacobians<T: Real>(
         &lu_1,
         [one_minus_solution_2_2, -solution_2_1, zero],
     );
-    let A_half_p_part_1 = p_minus_half * p_minus_half;
-    let A_half_p_part_2 = one / (A_half_p_part_1 + half_dot_part_1 * half_dot_part_1);
-    let A_half_p_part_3 = half_dot_part_1 - p_minus_half * half_dot_part_1 * K.ln();
-    let A_half_p = solution_6_3 - A_half_p_part_2 * A_half_p_part_3;
+    let d_half_dot_d_p_part_1 = p_minus_half * half_dot_part_1 * K.ln();
+    let d_half_dot_d_p_part_2 = p_minus_half * p_minus_half;
+    let d_half_dot_d_p_part_3 = half_dot_part_1 * half_dot_part_1;
+    let d_half_dot_d_p_part_4 = one / (d_half_dot_d_p_part_2 + d_half_dot_d_p_part_3);
+    let d_half_dot_d_p_part_5 = half_dot_part_1 - d_half_dot_d_p_part_1;
+    let d_half_dot_d_p = solution_6_3 - d_half_dot_d_p_part_4 * d_half_dot_d_p_part_5;
     let [_, _, solution_7_3] = lu_solve(
         &lu_1,
         [-solution_2_3, d_crate_d_half, one_minus_solution_2_2],
     );
-    let A_half_half = solution_7_3 + half_dot_part_1 * A_half_p_part_2;
+    let d_half_dot_d_half = solution_7_3 + half_dot_part_1 * d_half_dot_d_p_part_4;
 
     Jacobians {
         rates: Rates {
@@ -268,9 +266,9 @@ pub fn jacobians<T: Real>(
         },
         a: Rates {
             type_dot: State {
-                type_: A_type_type,
-                p: A_type_p,
-                half: A_type_half,
+                type_: d_type_dot_d_type,
+                p: d_type_dot_d_p,
+                half: d_type_dot_d_half,
             },
             p_dot: State {
                 type_: one,
@@ -278,8 +276,8 @@ pub fn jacobians<T: Real>(
             },
             half_dot: State {
                 type_: zero,
-                p: A_half_p,
-                half: A_half_half,
+                p: d_half_dot_d_p,
+                half: d_half_dot_d_half,
             },
         },
         b: Rates {
@@ -291,6 +289,10 @@ pub fn jacobians<T: Real>(
 }
 
 /// P = ∂ẋ/∂p.
+///
+/// ```text
+/// M ∂ω̇/∂p = ∂(Π − b)/∂p − ∂M/∂p ω̇
+/// ```
 ///
 /// From `mechanisms/type.toml`.
 /// Operations: 33 (15 +, 11 ×, 1 ÷, 6 sign), sine or cosine of 1 angle, 12 functions, 2 choices, 6 linear systems.
@@ -311,10 +313,10 @@ pub fn parameter_jacobian<T: Real>(
 
     // Combinations of parameters.
     let K_squared = K * K;
-    let P_type_K_part_1 = K_squared * K_squared;
-    let P_type_K_part_2 = P_type_K_part_1 * P_type_K_part_1;
+    let d_type_dot_d_K_part_1 = K_squared * K_squared;
+    let d_type_dot_d_K_part_2 = d_type_dot_d_K_part_1 * d_type_dot_d_K_part_1;
 
-    // Row `type_dot` of P.
+    // Column `INFO` of P.
     let p_minus_half = p - half;
     let lu_1 = lu_factor([
         [K, p, half],
@@ -323,33 +325,35 @@ pub fn parameter_jacobian<T: Real>(
     ]);
     let [solution_1_1, solution_1_2, solution_1_3] = lu_solve(&lu_1, [type_, t, p]);
     let [solution_2_1, _, _] = lu_solve(&lu_1, [zero, -solution_1_2, zero]);
-    let P_type_INFO = T::if_less(p, p_minus_half, solution_2_1, zero);
-    let [solution_3_1, _, _] = lu_solve(&lu_1, [-solution_1_1, zero, -solution_1_3]);
-    let P_type_K = T::if_less(p, p_minus_half, solution_3_1, zero)
-        + nineteen * K_squared * P_type_K_part_2 * P_type_K_part_2;
-
-    // Row `half_dot` of P.
+    let d_type_dot_d_INFO = T::if_less(p, p_minus_half, solution_2_1, zero);
     let crate_ = half.ln() + half.sign() + half.abs() + half.sqrt() + half.exp()
         + half.tanh() + half.cosh() + half.sinh() + half.atan() + half.acos()
         + half.asin() + half.sin();
     let [solution_4_1, solution_4_2, solution_4_3] = lu_solve(&lu_1, [p, crate_, half]);
-    let [_, _, P_half_INFO] = lu_solve(&lu_1, [zero, -solution_4_2, zero]);
+    let [_, _, d_half_dot_d_INFO] = lu_solve(&lu_1, [zero, -solution_4_2, zero]);
+
+    // Column `K` of P.
+    let [solution_3_1, _, _] = lu_solve(&lu_1, [-solution_1_1, zero, -solution_1_3]);
+    let d_type_dot_d_K_part_3 = nineteen * K_squared * d_type_dot_d_K_part_2;
+    let d_type_dot_d_K = T::if_less(p, p_minus_half, solution_3_1, zero)
+        + d_type_dot_d_K_part_3 * d_type_dot_d_K_part_2;
     let [_, _, solution_6_3] = lu_solve(&lu_1, [-solution_4_1, zero, -solution_4_3]);
-    let P_half_K_part_1 = K.powf(p);
-    let P_half_K_part_2 = p_minus_half * p_minus_half;
-    let P_half_K_part_3 = p_minus_half * P_half_K_part_1 * p;
-    let P_half_K_part_4 = K * (P_half_K_part_2 + P_half_K_part_1 * P_half_K_part_1);
-    let P_half_K = solution_6_3 + P_half_K_part_3 / P_half_K_part_4;
+    let d_half_dot_d_K_part_1 = K.powf(p);
+    let d_half_dot_d_K_part_2 = p_minus_half * p_minus_half;
+    let d_half_dot_d_K_part_3 = d_half_dot_d_K_part_1 * d_half_dot_d_K_part_1;
+    let d_half_dot_d_K_part_4 = p_minus_half * d_half_dot_d_K_part_1 * p;
+    let d_half_dot_d_K_part_5 = K * (d_half_dot_d_K_part_2 + d_half_dot_d_K_part_3);
+    let d_half_dot_d_K = solution_6_3 + d_half_dot_d_K_part_4 / d_half_dot_d_K_part_5;
 
     Rates {
         type_dot: Parameters {
-            INFO_: P_type_INFO,
-            K: P_type_K,
+            INFO_: d_type_dot_d_INFO,
+            K: d_type_dot_d_K,
         },
         p_dot: Parameters::splat(zero),
         half_dot: Parameters {
-            INFO_: P_half_INFO,
-            K: P_half_K,
+            INFO_: d_half_dot_d_INFO,
+            K: d_half_dot_d_K,
         },
     }
 }

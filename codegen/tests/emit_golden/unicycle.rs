@@ -267,7 +267,11 @@ pub fn kinematics<T: Real>(
     }
 }
 
-/// Acceleration energy S (Gibbs function) at the actual motion.
+/// Acceleration energy S (Gibbs function) at the actual motion, without the terms ½ ω²(ω·Jω) of the bodies, which no pseudo-acceleration enters.
+///
+/// ```text
+/// S = Σ ½ m a² + ½ α·J α + α·(ω × J ω)
+/// ```
 ///
 /// From `mechanisms/unicycle.toml`.
 /// Operations: 47 (14 +, 31 ×, 2 ÷), sine or cosine of 1 angle.
@@ -302,13 +306,13 @@ pub fn acceleration_energy<T: Real>(
     let R_omega_3 = R * omega_3;
     let R_omega_2_omega_3 = R_omega_3 * omega_2;
     let g_sin_theta = g * sin_theta;
-    let f_4_per_m0 = R_omega_2_omega_3 + g_sin_theta;
-    let f_4 = u + m0 * (r * (omega_3_squared + omega_1 * omega_1) - f_4_per_m0);
+    let f_4_part_1 = R_omega_2_omega_3 + g_sin_theta;
+    let f_4 = u + m0 * (r * (omega_3_squared + omega_1 * omega_1) - f_4_part_1);
     let tan_theta_omega_3 = sin_theta * omega_3 / cos_theta;
     let omega_1_dot_part_2 = g_sin_theta + three_halves * R_omega_2_omega_3;
     let omega_1_dot_part_3 = quarter * R_omega_3 * tan_theta_omega_3;
     let omega_1_dot_part_4 = f_4 + m * (omega_1_dot_part_2 - omega_1_dot_part_3);
-    let omega_1_dot_part_5 = omega_1_dot_part_4 + m0 * f_4_per_m0;
+    let omega_1_dot_part_5 = omega_1_dot_part_4 + m0 * f_4_part_1;
     let omega_1_dot_part_6 = m0_r * (omega_3_squared - tan_theta_omega_3 * omega_2);
     let omega_1_dot_part_7 = g * cos_theta + tan_theta_omega_3 * omega_3 * r;
     let omega_1_dot_part_8 = R * (omega_1_dot_part_5 - omega_1_dot_part_6);
@@ -657,6 +661,10 @@ pub fn rates<T: Real>(
 
 /// Rates ẋ and their Jacobians with respect to state and inputs.
 ///
+/// ```text
+/// M ∂ω̇/∂x = ∂(Π − b)/∂x − ∂M/∂x ω̇
+/// ```
+///
 /// From `mechanisms/unicycle.toml`.
 /// Operations: 261 (70 +, 179 ×, 4 ÷, 8 sign), sine or cosine of 2 angles.
 #[must_use]
@@ -712,18 +720,18 @@ pub fn jacobians<T: Real>(
     let g_sin_theta = g * sin_theta;
     let R_omega_3 = R * omega_3;
     let R_omega_2_omega_3 = R_omega_3 * omega_2;
-    let f_4_per_m0 = g_sin_theta + R_omega_2_omega_3;
-    let f_4 = u + m0 * (omega_3_squared_r + omega_1_r * omega_1 - f_4_per_m0);
+    let f_4_part_1 = g_sin_theta + R_omega_2_omega_3;
+    let f_4 = u + m0 * (omega_3_squared_r + omega_1_r * omega_1 - f_4_part_1);
     let R_tan_theta_omega_3 = tan_theta * R_omega_3;
     let quarter_m_R_omega_3 = quarter * m * R_omega_3;
     let tan_theta_omega_3_squared_r = tan_theta_omega_3 * omega_3_r;
     let g_cos_theta = g * cos_theta;
     let two_sigma = two * sigma;
-    let f_1_per_m0_r = g_cos_theta + R_omega_3 * omega_3 + two_sigma * omega_1
+    let f_1_part_1 = g_cos_theta + R_omega_3 * omega_3 + two_sigma * omega_1
         - R_tan_theta_omega_3 * omega_2;
-    let f_1_part_1 = r * (f_1_per_m0_r + tan_theta_omega_3_squared_r) - R * f_4_per_m0;
+    let f_1_part_2 = r * (f_1_part_1 + tan_theta_omega_3_squared_r) - R * f_4_part_1;
     let f_1 = m_R * g_sin_theta + three_halves_m_R * R_omega_2_omega_3
-        - R_tan_theta_omega_3 * quarter_m_R_omega_3 - m0 * f_1_part_1;
+        - R_tan_theta_omega_3 * quarter_m_R_omega_3 - m0 * f_1_part_2;
     let omega_1_dot = omega_1_dot_part_1 * (f_1 + R * f_4);
     let m0_R_r = R * m0_r;
     let minus_half_m_R_squared_omega_1 = minus_half_m_R * R_omega_1;
@@ -746,104 +754,135 @@ pub fn jacobians<T: Real>(
 
     // Row `omega_1_dot` of A.
     let m0_sigma_r_minus_m0_R_omega_1_r = m0_r * sigma - m0_R_omega_1_r;
-    let A_omega_1_omega_1_part_1 = -two * omega_1_dot_part_1;
-    let A_omega_1_omega_1 = m0_sigma_r_minus_m0_R_omega_1_r * A_omega_1_omega_1_part_1;
-    let A_omega_1_omega_2_part_1 = three_halves_m_R + m0_tan_theta_r;
-    let A_omega_1_omega_2_part_2 = R_omega_3 * A_omega_1_omega_2_part_1;
-    let A_omega_1_omega_2 = omega_1_dot_part_1 * A_omega_1_omega_2_part_2;
+    let d_omega_1_dot_d_omega_1_part_1 = -two * omega_1_dot_part_1;
+    let d_omega_1_dot_d_omega_1 = m0_sigma_r_minus_m0_R_omega_1_r
+        * d_omega_1_dot_d_omega_1_part_1;
+    let d_omega_1_dot_d_omega_2_part_1 = three_halves_m_R + m0_tan_theta_r;
+    let d_omega_1_dot_d_omega_2_part_2 = R_omega_3 * d_omega_1_dot_d_omega_2_part_1;
+    let d_omega_1_dot_d_omega_2 = omega_1_dot_part_1 * d_omega_1_dot_d_omega_2_part_2;
     let tan_theta_omega_3_r = tan_theta_omega_3 * r;
     let half_m_R_tan_theta_omega_3 = half * m * R_tan_theta_omega_3;
-    let A_omega_1_omega_3_part_1 = A_omega_1_omega_2_part_1 * omega_2;
-    let A_omega_1_omega_3_part_2 = half_m_R_tan_theta_omega_3 - A_omega_1_omega_3_part_1;
-    let A_omega_1_omega_3_part_3 = two_m0_r * tan_theta_omega_3_r
-        + R * A_omega_1_omega_3_part_2;
-    let A_omega_1_omega_3 = -omega_1_dot_part_1 * A_omega_1_omega_3_part_3;
+    let d_omega_1_dot_d_omega_3_part_1 = d_omega_1_dot_d_omega_2_part_1 * omega_2;
+    let d_omega_1_dot_d_omega_3_part_2 = half_m_R_tan_theta_omega_3
+        - d_omega_1_dot_d_omega_3_part_1;
+    let d_omega_1_dot_d_omega_3_part_3 = two_m0_r * tan_theta_omega_3_r
+        + R * d_omega_1_dot_d_omega_3_part_2;
+    let d_omega_1_dot_d_omega_3 = -omega_1_dot_part_1 * d_omega_1_dot_d_omega_3_part_3;
     let m0_omega_1_r = m0_r * omega_1;
-    let A_omega_1_sigma = A_omega_1_omega_1_part_1 * m0_omega_1_r;
+    let d_omega_1_dot_d_sigma = d_omega_1_dot_d_omega_1_part_1 * m0_omega_1_r;
     let inv_cos_theta_squared = inv_cos_theta * inv_cos_theta;
-    let A_omega_1_theta_part_1 = R_omega_3 * inv_cos_theta_squared;
-    let A_omega_1_theta_part_2 = omega_3_squared_r - R_omega_2_omega_3;
-    let A_omega_1_theta_part_3 = inv_cos_theta_squared * A_omega_1_theta_part_2;
-    let A_omega_1_theta_part_4 = m_R * g_cos_theta
-        + m0_r * (g_sin_theta - A_omega_1_theta_part_3)
-        - quarter_m_R_omega_3 * A_omega_1_theta_part_1;
-    let A_omega_1_theta = omega_1_dot_part_1 * A_omega_1_theta_part_4;
-    let A_omega_1_r_part_1 = omega_1 * omega_1 + omega_3 * omega_3;
-    let A_omega_1_r_part_2 = m0_R * A_omega_1_r_part_1;
-    let A_omega_1_r_part_3 = m0 * (f_1_per_m0_r + two * tan_theta_omega_3_squared_r);
-    let A_omega_1_r_part_4 = A_omega_1_r_part_2 - A_omega_1_r_part_3;
-    let A_omega_1_r = omega_1_dot_part_1 * (A_omega_1_r_part_4 - omega_1_dot * two_m0_r);
+    let d_omega_1_dot_d_theta_part_1 = R_omega_3 * inv_cos_theta_squared;
+    let d_omega_1_dot_d_theta_part_2 = omega_3_squared_r - R_omega_2_omega_3;
+    let d_omega_1_dot_d_theta_part_3 = inv_cos_theta_squared
+        * d_omega_1_dot_d_theta_part_2;
+    let d_omega_1_dot_d_theta_part_4 = g_sin_theta - d_omega_1_dot_d_theta_part_3;
+    let d_omega_1_dot_d_theta_part_5 = m_R * g_cos_theta
+        + m0_r * d_omega_1_dot_d_theta_part_4
+        - quarter_m_R_omega_3 * d_omega_1_dot_d_theta_part_1;
+    let d_omega_1_dot_d_theta = omega_1_dot_part_1 * d_omega_1_dot_d_theta_part_5;
+    let d_omega_1_dot_d_r_part_1 = omega_1 * omega_1 + omega_3 * omega_3;
+    let d_omega_1_dot_d_r_part_2 = f_1_part_1 + two * tan_theta_omega_3_squared_r;
+    let d_omega_1_dot_d_r_part_3 = m0_R * d_omega_1_dot_d_r_part_1;
+    let d_omega_1_dot_d_r_part_4 = m0 * d_omega_1_dot_d_r_part_2;
+    let d_omega_1_dot_d_r_part_5 = d_omega_1_dot_d_r_part_3 - d_omega_1_dot_d_r_part_4;
+    let d_omega_1_dot_d_r = omega_1_dot_part_1
+        * (d_omega_1_dot_d_r_part_5 - omega_1_dot * two_m0_r);
 
     // Row `omega_2_dot` of A.
     let d_f_2_d_omega_1 = -R_omega_3 * (m0_R + m_R_plus_m0_tan_theta_r);
     let d_f_3_d_omega_1 = quarter_m_R * R_tan_theta_omega_3 + minus_half_m_R * R_omega_2
         + m0_r * (R_omega_3 + tan_theta_omega_3_r);
-    let A_omega_2_omega_1 = inv_D_2
-        * (M_33 * d_f_2_d_omega_1 + m0_R_r * d_f_3_d_omega_1);
-    let A_omega_2_omega_2_per_m0_R_r = minus_half_m_R_squared_omega_1 * inv_D_2;
-    let A_omega_2_omega_2 = m0_R_r * A_omega_2_omega_2_per_m0_R_r;
+    let M_33_d_f_2_d_omega_1 = M_33 * d_f_2_d_omega_1;
+    let m0_R_d_f_3_d_omega_1_r = m0_R_r * d_f_3_d_omega_1;
+    let d_omega_2_dot_d_omega_1 = inv_D_2
+        * (M_33_d_f_2_d_omega_1 + m0_R_d_f_3_d_omega_1_r);
+    let d_omega_2_dot_d_omega_2_part_1 = minus_half_m_R_squared_omega_1 * inv_D_2;
+    let d_omega_2_dot_d_omega_2 = m0_R_r * d_omega_2_dot_d_omega_2_part_1;
     let d_f_2_d_omega_3 = R * f_2_per_R_omega_3;
-    let A_omega_2_omega_3 = inv_D_2
-        * (M_33 * d_f_2_d_omega_3 + m0_R_r * d_f_3_d_omega_3);
+    let M_33_d_f_2_d_omega_3 = M_33 * d_f_2_d_omega_3;
+    let m0_R_d_f_3_d_omega_3_r = m0_R_r * d_f_3_d_omega_3;
+    let d_omega_2_dot_d_omega_3 = inv_D_2
+        * (M_33_d_f_2_d_omega_3 + m0_R_d_f_3_d_omega_3_r);
     let m0_R_omega_3 = m0 * R_omega_3;
     let two_over_D_2 = two * inv_D_2;
-    let A_omega_2_sigma = two_over_D_2 * (M_33 * m0_R_omega_3 - m0_r * m0_r * R_omega_3);
+    let d_omega_2_dot_d_sigma = two_over_D_2
+        * (M_33 * m0_R_omega_3 - m0_r * m0_r * R_omega_3);
     let d_f_3_d_r = m0_R_omega_3 * omega_1 + two * tan_theta_omega_3 * m0_omega_1_r
         - m0 * two_sigma * omega_3;
-    let A_omega_2_r_part_1 = R_tan_theta_omega_3 * M_33_omega_1 - two * f_2 * r;
+    let d_omega_2_dot_d_r_part_1 = R_tan_theta_omega_3 * M_33_omega_1 - two * f_2 * r;
+    let R_f_3_plus_d_f_3_d_r_r = R * (f_3 + d_f_3_d_r * r);
+    let d_omega_2_dot_d_r_part_2 = d_omega_2_dot_d_r_part_1 - R_f_3_plus_d_f_3_d_r_r;
     let d_D_2_d_r = M_22 * two_m0_r - two * m0_R * m0_R_r;
-    let A_omega_2_r_part_2 = m0 * (A_omega_2_r_part_1 - R * (f_3 + d_f_3_d_r * r));
-    let A_omega_2_r = -inv_D_2 * (A_omega_2_r_part_2 + omega_2_dot * d_D_2_d_r);
+    let d_omega_2_dot_d_r_part_3 = m0 * d_omega_2_dot_d_r_part_2;
+    let d_omega_2_dot_d_r = -inv_D_2
+        * (d_omega_2_dot_d_r_part_3 + omega_2_dot * d_D_2_d_r);
 
     // Row `omega_3_dot` of A.
-    let A_omega_3_omega_1 = inv_D_2
-        * (M_22 * d_f_3_d_omega_1 + m0_R_r * d_f_2_d_omega_1);
-    let A_omega_3_omega_2 = M_22 * A_omega_2_omega_2_per_m0_R_r;
-    let A_omega_3_omega_3 = inv_D_2
-        * (M_22 * d_f_3_d_omega_3 + m0_R_r * d_f_2_d_omega_3);
-    let A_omega_3_sigma = two_over_D_2 * (m0_R_r * m0_R_omega_3 - M_22 * m0_r * omega_3);
-    let A_omega_3_theta_part_1 = omega_3_r * m0_omega_1_r * inv_cos_theta_squared;
-    let A_omega_3_theta_part_2 = quarter_m_R * A_omega_1_theta_part_1 * omega_1;
-    let A_omega_3_theta_part_3 = A_omega_3_theta_part_1 + A_omega_3_theta_part_2;
-    let A_omega_3_theta_part_4 = M_22 * A_omega_3_theta_part_3;
-    let A_omega_3_theta_part_5 = m0_R_r * m0_omega_1_r * A_omega_1_theta_part_1;
-    let A_omega_3_theta = inv_D_2 * (A_omega_3_theta_part_4 - A_omega_3_theta_part_5);
+    let M_22_d_f_3_d_omega_1 = M_22 * d_f_3_d_omega_1;
+    let m0_R_d_f_2_d_omega_1_r = m0_R_r * d_f_2_d_omega_1;
+    let d_omega_3_dot_d_omega_1 = inv_D_2
+        * (M_22_d_f_3_d_omega_1 + m0_R_d_f_2_d_omega_1_r);
+    let d_omega_3_dot_d_omega_2 = M_22 * d_omega_2_dot_d_omega_2_part_1;
+    let M_22_d_f_3_d_omega_3 = M_22 * d_f_3_d_omega_3;
+    let m0_R_d_f_2_d_omega_3_r = m0_R_r * d_f_2_d_omega_3;
+    let d_omega_3_dot_d_omega_3 = inv_D_2
+        * (M_22_d_f_3_d_omega_3 + m0_R_d_f_2_d_omega_3_r);
+    let d_omega_3_dot_d_sigma = two_over_D_2
+        * (m0_R_r * m0_R_omega_3 - M_22 * m0_r * omega_3);
+    let m0_omega_1_omega_3_r_squared = omega_3_r * m0_omega_1_r;
+    let d_omega_3_dot_d_theta_part_1 = quarter_m_R * d_omega_1_dot_d_theta_part_1;
+    let d_omega_3_dot_d_theta_part_2 = m0_omega_1_omega_3_r_squared
+        * inv_cos_theta_squared;
+    let d_omega_3_dot_d_theta_part_3 = d_omega_3_dot_d_theta_part_1 * omega_1;
+    let d_omega_3_dot_d_theta_part_4 = d_omega_3_dot_d_theta_part_2
+        + d_omega_3_dot_d_theta_part_3;
+    let m0_squared_R_omega_1_r_squared = m0_R_r * m0_omega_1_r;
+    let d_omega_3_dot_d_theta_part_5 = M_22 * d_omega_3_dot_d_theta_part_4;
+    let d_omega_3_dot_d_theta_part_6 = m0_squared_R_omega_1_r_squared
+        * d_omega_1_dot_d_theta_part_1;
+    let d_omega_3_dot_d_theta = inv_D_2
+        * (d_omega_3_dot_d_theta_part_5 - d_omega_3_dot_d_theta_part_6);
     let M_22_d_f_3_d_r_plus_m0_R_f_2 = M_22 * d_f_3_d_r + m0_R * f_2;
-    let A_omega_3_r_part_1 = m0 * R_tan_theta_omega_3 * m0_R_omega_1_r;
-    let A_omega_3_r_part_2 = M_22_d_f_3_d_r_plus_m0_R_f_2 - A_omega_3_r_part_1;
-    let A_omega_3_r = inv_D_2 * (A_omega_3_r_part_2 - omega_3_dot * d_D_2_d_r);
+    let d_omega_3_dot_d_r_part_1 = m0 * R_tan_theta_omega_3 * m0_R_omega_1_r;
+    let d_omega_3_dot_d_r_part_2 = M_22_d_f_3_d_r_plus_m0_R_f_2
+        - d_omega_3_dot_d_r_part_1;
+    let d_omega_3_dot_d_r = inv_D_2
+        * (d_omega_3_dot_d_r_part_2 - omega_3_dot * d_D_2_d_r);
 
     // Row `sigma_dot` of A.
-    let B_omega_1_u = R * omega_1_dot_part_1;
-    let A_sigma_omega_1_part_1 = m0_sigma_r_minus_m0_R_omega_1_r * B_omega_1_u;
-    let A_sigma_omega_1 = two * (omega_1_r - A_sigma_omega_1_part_1);
-    let A_sigma_omega_2 = A_omega_1_omega_2_part_2 * B_omega_1_u - R_omega_3;
-    let A_sigma_omega_3 = inv_m0 * (two_m0_r * omega_3 - m0_R * omega_2)
-        - A_omega_1_omega_3_part_3 * B_omega_1_u;
-    let A_sigma_sigma = m0_R_omega_1_r * A_omega_1_omega_1_part_1;
-    let A_sigma_theta = A_omega_1_theta_part_4 * B_omega_1_u - g_cos_theta;
-    let A_sigma_r = A_omega_1_r_part_1 + R * A_omega_1_r;
+    let d_omega_1_dot_d_u = R * omega_1_dot_part_1;
+    let d_sigma_dot_d_omega_1_part_1 = m0_sigma_r_minus_m0_R_omega_1_r
+        * d_omega_1_dot_d_u;
+    let d_sigma_dot_d_omega_1 = two * (omega_1_r - d_sigma_dot_d_omega_1_part_1);
+    let d_sigma_dot_d_omega_2 = d_omega_1_dot_d_omega_2_part_2 * d_omega_1_dot_d_u
+        - R_omega_3;
+    let d_sigma_dot_d_omega_3 = inv_m0 * (two_m0_r * omega_3 - m0_R * omega_2)
+        - d_omega_1_dot_d_omega_3_part_3 * d_omega_1_dot_d_u;
+    let d_sigma_dot_d_sigma = m0_R_omega_1_r * d_omega_1_dot_d_omega_1_part_1;
+    let d_sigma_dot_d_theta = d_omega_1_dot_d_theta_part_5 * d_omega_1_dot_d_u
+        - g_cos_theta;
+    let d_sigma_dot_d_r = d_omega_1_dot_d_r_part_1 + R * d_omega_1_dot_d_r;
 
     // Row `psi_dot` of A.
-    let A_psi_theta = inv_cos_theta * tan_theta_omega_3;
+    let d_psi_dot_d_theta = inv_cos_theta * tan_theta_omega_3;
 
     // Row `phi_dot` of A.
-    let A_phi_theta = -inv_cos_theta_squared * omega_3;
+    let d_phi_dot_d_theta = -inv_cos_theta_squared * omega_3;
 
     // Row `x_G_dot` of A.
     let R_cos_theta = R * cos_theta;
-    let A_x_G_omega_1 = sin_psi * R_cos_theta;
-    let A_x_G_omega_2 = R * cos_psi;
+    let d_x_G_dot_d_omega_1 = sin_psi * R_cos_theta;
+    let d_x_G_dot_d_omega_2 = R * cos_psi;
     let R_sin_theta_omega_1 = sin_theta * R_omega_1;
-    let A_x_G_theta = -sin_psi * R_sin_theta_omega_1;
+    let d_x_G_dot_d_theta = -sin_psi * R_sin_theta_omega_1;
 
     // Row `y_G_dot` of A.
-    let A_y_G_omega_1 = -cos_psi * R_cos_theta;
-    let A_y_G_omega_2 = R * sin_psi;
-    let A_y_G_theta = cos_psi * R_sin_theta_omega_1;
+    let d_y_G_dot_d_omega_1 = -cos_psi * R_cos_theta;
+    let d_y_G_dot_d_omega_2 = R * sin_psi;
+    let d_y_G_dot_d_theta = cos_psi * R_sin_theta_omega_1;
 
     // Row `sigma_dot` of B.
-    let B_sigma_u = inv_m0 + R * B_omega_1_u;
+    let d_sigma_dot_d_u = inv_m0 + R * d_omega_1_dot_d_u;
 
     Jacobians {
         rates: Rates {
@@ -860,38 +899,38 @@ pub fn jacobians<T: Real>(
         },
         a: Rates {
             omega_1_dot: State {
-                omega_1: A_omega_1_omega_1,
-                omega_2: A_omega_1_omega_2,
-                omega_3: A_omega_1_omega_3,
-                sigma: A_omega_1_sigma,
-                theta: A_omega_1_theta,
-                r: A_omega_1_r,
+                omega_1: d_omega_1_dot_d_omega_1,
+                omega_2: d_omega_1_dot_d_omega_2,
+                omega_3: d_omega_1_dot_d_omega_3,
+                sigma: d_omega_1_dot_d_sigma,
+                theta: d_omega_1_dot_d_theta,
+                r: d_omega_1_dot_d_r,
                 ..State::splat(zero)
             },
             omega_2_dot: State {
-                omega_1: A_omega_2_omega_1,
-                omega_2: A_omega_2_omega_2,
-                omega_3: A_omega_2_omega_3,
-                sigma: A_omega_2_sigma,
-                r: A_omega_2_r,
+                omega_1: d_omega_2_dot_d_omega_1,
+                omega_2: d_omega_2_dot_d_omega_2,
+                omega_3: d_omega_2_dot_d_omega_3,
+                sigma: d_omega_2_dot_d_sigma,
+                r: d_omega_2_dot_d_r,
                 ..State::splat(zero)
             },
             omega_3_dot: State {
-                omega_1: A_omega_3_omega_1,
-                omega_2: A_omega_3_omega_2,
-                omega_3: A_omega_3_omega_3,
-                sigma: A_omega_3_sigma,
-                theta: A_omega_3_theta,
-                r: A_omega_3_r,
+                omega_1: d_omega_3_dot_d_omega_1,
+                omega_2: d_omega_3_dot_d_omega_2,
+                omega_3: d_omega_3_dot_d_omega_3,
+                sigma: d_omega_3_dot_d_sigma,
+                theta: d_omega_3_dot_d_theta,
+                r: d_omega_3_dot_d_r,
                 ..State::splat(zero)
             },
             sigma_dot: State {
-                omega_1: A_sigma_omega_1,
-                omega_2: A_sigma_omega_2,
-                omega_3: A_sigma_omega_3,
-                sigma: A_sigma_sigma,
-                theta: A_sigma_theta,
-                r: A_sigma_r,
+                omega_1: d_sigma_dot_d_omega_1,
+                omega_2: d_sigma_dot_d_omega_2,
+                omega_3: d_sigma_dot_d_omega_3,
+                sigma: d_sigma_dot_d_sigma,
+                theta: d_sigma_dot_d_theta,
+                r: d_sigma_dot_d_r,
                 ..State::splat(zero)
             },
             theta_dot: State {
@@ -904,35 +943,35 @@ pub fn jacobians<T: Real>(
             },
             psi_dot: State {
                 omega_3: inv_cos_theta,
-                theta: A_psi_theta,
+                theta: d_psi_dot_d_theta,
                 ..State::splat(zero)
             },
             phi_dot: State {
                 omega_2: one,
                 omega_3: -tan_theta,
-                theta: A_phi_theta,
+                theta: d_phi_dot_d_theta,
                 ..State::splat(zero)
             },
             x_G_dot: State {
-                omega_1: A_x_G_omega_1,
-                omega_2: A_x_G_omega_2,
-                theta: A_x_G_theta,
+                omega_1: d_x_G_dot_d_omega_1,
+                omega_2: d_x_G_dot_d_omega_2,
+                theta: d_x_G_dot_d_theta,
                 psi: -y_G_dot,
                 ..State::splat(zero)
             },
             y_G_dot: State {
-                omega_1: A_y_G_omega_1,
-                omega_2: A_y_G_omega_2,
-                theta: A_y_G_theta,
+                omega_1: d_y_G_dot_d_omega_1,
+                omega_2: d_y_G_dot_d_omega_2,
+                theta: d_y_G_dot_d_theta,
                 psi: x_G_dot,
                 ..State::splat(zero)
             },
         },
         b: Rates {
-            omega_1_dot: Inputs { u: B_omega_1_u },
+            omega_1_dot: Inputs { u: d_omega_1_dot_d_u },
             omega_2_dot: Inputs { u: zero },
             omega_3_dot: Inputs { u: zero },
-            sigma_dot: Inputs { u: B_sigma_u },
+            sigma_dot: Inputs { u: d_sigma_dot_d_u },
             theta_dot: Inputs { u: zero },
             r_dot: Inputs { u: zero },
             psi_dot: Inputs { u: zero },
@@ -944,6 +983,10 @@ pub fn jacobians<T: Real>(
 }
 
 /// P = ∂ẋ/∂p.
+///
+/// ```text
+/// M ∂ω̇/∂p = ∂(Π − b)/∂p − ∂M/∂p ω̇
+/// ```
 ///
 /// From `mechanisms/unicycle.toml`.
 /// Operations: 252 (86 +, 162 ×, 4 ÷), sine or cosine of 2 angles.
@@ -986,10 +1029,10 @@ pub fn parameter_jacobian<T: Real>(
     let M_22 = three_halves_m_R_squared + m0 * R_squared;
     let inv_m0 = one / m0;
 
-    // Row `omega_1_dot` of P.
+    // Column `m` of P.
     let m0_r = m0 * r;
     let m0_r_squared = m0_r * r;
-    let P_omega_1_m_part_1 = one / (five_quarters * m_R_squared + m0_r_squared);
+    let d_omega_1_dot_d_m_part_1 = one / (five_quarters * m_R_squared + m0_r_squared);
     let g_sin_theta = g * sin_theta;
     let R_g_sin_theta = R * g_sin_theta;
     let omega_2_omega_3 = omega_2 * omega_3;
@@ -1010,24 +1053,11 @@ pub fn parameter_jacobian<T: Real>(
         - omega_3_squared * R_r - g * cos_theta * r;
     let f_1 = m_R * g_sin_theta + three_halves_m_R_squared * omega_2_omega_3
         + m0 * d_f_1_d_m0 - quarter_m_R_squared * tan_theta_omega_3_squared;
-    let omega_1_dot = P_omega_1_m_part_1 * (f_1 + R * f_4);
-    let P_omega_1_m_per_R_squared = P_omega_1_m_part_1 * omega_1_dot;
-    let P_omega_1_m = P_omega_1_m_part_1 * d_f_1_d_m
-        - five_quarters * R_squared * P_omega_1_m_per_R_squared;
-    let d_f_4_d_m0 = r * (omega_3_squared + omega_1_squared) - g_sin_theta
-        - R * omega_2_omega_3;
-    let P_omega_1_m0 = P_omega_1_m_part_1 * (d_f_1_d_m0 + R * d_f_4_d_m0)
-        - r_squared * P_omega_1_m_per_R_squared;
-    let half_m_R_tan_theta_omega_3 = half_m_R * tan_theta * omega_3;
-    let P_omega_1_R_part_1 = omega_2 * (d_M_22_d_R + m0_r * tan_theta);
-    let P_omega_1_R_part_2 = half_m_R_tan_theta_omega_3 - P_omega_1_R_part_1;
-    let P_omega_1_R_part_3 = m0_R_omega_2_omega_3 + omega_3 * P_omega_1_R_part_2;
-    let P_omega_1_R_part_4 = P_omega_1_R_part_3 - f_4_part_1 - f_4 - m * g_sin_theta;
-    let P_omega_1_R = -five_halves * m_R * P_omega_1_m_per_R_squared
-        - P_omega_1_m_part_1 * P_omega_1_R_part_4;
-    let P_omega_1_g = P_omega_1_m_part_1 * (sin_theta * m_R - cos_theta * m0_r);
-
-    // Row `omega_2_dot` of P.
+    let omega_1_dot = d_omega_1_dot_d_m_part_1 * (f_1 + R * f_4);
+    let d_omega_1_dot_d_m_part_2 = d_omega_1_dot_d_m_part_1 * omega_1_dot;
+    let five_quarters_R_squared = five_quarters * R_squared;
+    let d_omega_1_dot_d_m = d_omega_1_dot_d_m_part_1 * d_f_1_d_m
+        - five_quarters_R_squared * d_omega_1_dot_d_m_part_2;
     let M_33 = quarter_m_R_squared + m0_r_squared;
     let d_D_2_d_m = three_halves_R_squared * M_33 + quarter_R_squared * M_22;
     let m0_R_r = R * m0_r;
@@ -1044,101 +1074,119 @@ pub fn parameter_jacobian<T: Real>(
     let D_2 = M_22 * M_33 - R_squared * m0_r * m0_r;
     let inv_D_2 = one / D_2;
     let inv_D_2_squared = inv_D_2 * inv_D_2;
-    let P_omega_2_m_per_d_D_2_d_m = inv_D_2_squared * (m0_R_r * f_3 + M_33 * f_2);
-    let P_omega_2_m_per_inv_D_2_m0_R_r = R_squared
+    let d_omega_2_dot_d_m_part_1 = inv_D_2_squared * (m0_R_r * f_3 + M_33 * f_2);
+    let d_omega_2_dot_d_m_part_2 = R_squared
         * (tan_theta_omega_1_omega_3 - two * omega_1_omega_2);
     let R_squared_omega_1_omega_3 = R_squared * omega_1_omega_3;
-    let P_omega_2_m_part_1 = R_squared * f_2 + m0_R_r * P_omega_2_m_per_inv_D_2_m0_R_r;
-    let P_omega_2_m_part_2 = four * M_33 * R_squared_omega_1_omega_3;
+    let d_omega_2_dot_d_m_part_3 = R_squared * f_2 + m0_R_r * d_omega_2_dot_d_m_part_2;
+    let d_omega_2_dot_d_m_part_4 = four * M_33 * R_squared_omega_1_omega_3;
     let quarter_over_D_2 = quarter * inv_D_2;
-    let P_omega_2_m_part_3 = P_omega_2_m_part_1 - P_omega_2_m_part_2;
-    let P_omega_2_m = quarter_over_D_2 * P_omega_2_m_part_3
-        - d_D_2_d_m * P_omega_2_m_per_d_D_2_d_m;
+    let d_omega_2_dot_d_m_part_5 = d_omega_2_dot_d_m_part_3 - d_omega_2_dot_d_m_part_4;
+    let d_omega_2_dot_d_m = quarter_over_D_2 * d_omega_2_dot_d_m_part_5
+        - d_D_2_d_m * d_omega_2_dot_d_m_part_1;
+    let d_omega_3_dot_d_m_part_1 = inv_D_2_squared * (m0_R_r * f_2 + M_22 * f_3);
+    let three_halves_R_squared_f_3 = three_halves_R_squared * f_3;
+    let d_omega_3_dot_d_m_part_2 = quarter * M_22 * d_omega_2_dot_d_m_part_2;
+    let d_omega_3_dot_d_m_part_3 = three_halves_R_squared_f_3 + d_omega_3_dot_d_m_part_2;
+    let m0_R_cubed_omega_1_omega_3_r = m0_R_r * R_squared_omega_1_omega_3;
+    let d_omega_3_dot_d_m_part_4 = d_omega_3_dot_d_m_part_3
+        - m0_R_cubed_omega_1_omega_3_r;
+    let d_omega_3_dot_d_m = inv_D_2 * d_omega_3_dot_d_m_part_4
+        - d_D_2_d_m * d_omega_3_dot_d_m_part_1;
+    let d_sigma_dot_d_m = R * d_omega_1_dot_d_m;
+
+    // Column `m0` of P.
+    let d_f_4_d_m0 = r * (omega_3_squared + omega_1_squared) - g_sin_theta
+        - R * omega_2_omega_3;
+    let d_f_1_d_m0_plus_R_d_f_4_d_m0 = d_f_1_d_m0 + R * d_f_4_d_m0;
+    let d_omega_1_dot_d_m0 = d_omega_1_dot_d_m_part_1 * d_f_1_d_m0_plus_R_d_f_4_d_m0
+        - r_squared * d_omega_1_dot_d_m_part_2;
     let d_f_2_d_m0 = R * two_omega_3_sigma - R_squared_omega_1_omega_3
         - R_r * tan_theta_omega_1_omega_3;
     let d_f_3_d_m0 = r_squared * tan_theta_omega_1_omega_3 + R_r * omega_1_omega_3
         - two_omega_3_sigma * r;
-    let P_omega_2_m0_part_1 = M_33 * d_f_2_d_m0 + r_squared * f_2;
-    let P_omega_2_m0_part_2 = P_omega_2_m0_part_1 + m0_R_r * d_f_3_d_m0 + R_r * f_3;
+    let d_omega_2_dot_d_m0_part_1 = M_33 * d_f_2_d_m0 + r_squared * f_2;
+    let d_omega_2_dot_d_m0_part_2 = d_omega_2_dot_d_m0_part_1 + m0_R_r * d_f_3_d_m0;
     let d_D_2_d_m0 = M_22 * r_squared + R_squared * (M_33 - two * m0_r_squared);
-    let P_omega_2_m0 = inv_D_2 * P_omega_2_m0_part_2
-        - P_omega_2_m_per_d_D_2_d_m * d_D_2_d_m0;
+    let d_omega_2_dot_d_m0 = inv_D_2 * (d_omega_2_dot_d_m0_part_2 + R_r * f_3)
+        - d_omega_2_dot_d_m_part_1 * d_D_2_d_m0;
+    let d_omega_3_dot_d_m0_part_1 = R_squared * f_3 + M_22 * d_f_3_d_m0;
+    let d_omega_3_dot_d_m0_part_2 = d_omega_3_dot_d_m0_part_1 + m0_R_r * d_f_2_d_m0;
+    let d_omega_3_dot_d_m0 = inv_D_2 * (d_omega_3_dot_d_m0_part_2 + R_r * f_2)
+        - d_omega_3_dot_d_m_part_1 * d_D_2_d_m0;
+    let d_sigma_dot_d_m0 = R * d_omega_1_dot_d_m0 - inv_m0 * (inv_m0 * f_4 - d_f_4_d_m0);
+
+    // Column `R` of P.
+    let half_m_R_tan_theta_omega_3 = half_m_R * tan_theta * omega_3;
+    let d_omega_1_dot_d_R_part_1 = omega_2 * (d_M_22_d_R + m0_r * tan_theta);
+    let d_omega_1_dot_d_R_part_2 = half_m_R_tan_theta_omega_3 - d_omega_1_dot_d_R_part_1;
+    let d_omega_1_dot_d_R_part_3 = omega_3 * d_omega_1_dot_d_R_part_2;
+    let d_omega_1_dot_d_R_part_4 = m0_R_omega_2_omega_3 + d_omega_1_dot_d_R_part_3;
+    let d_omega_1_dot_d_R_part_5 = d_omega_1_dot_d_R_part_4 - f_4_part_1 - f_4;
+    let d_omega_1_dot_d_R_part_6 = d_omega_1_dot_d_R_part_5 - m * g_sin_theta;
+    let d_omega_1_dot_d_R = -five_halves * m_R * d_omega_1_dot_d_m_part_2
+        - d_omega_1_dot_d_m_part_1 * d_omega_1_dot_d_R_part_6;
     let two_m0_R_r = two * m0_R_r;
     let d_D_2_d_R = d_M_22_d_R * M_33 + half_m_R * M_22 - m0_r * two_m0_R_r;
     let d_f_3_d_R = m0_r * omega_1_omega_3 + half_m_R * tan_theta_omega_1_omega_3
         - m_R * omega_1_omega_2;
-    let P_omega_2_R_per_inv_D_2_M_33 = omega_1_omega_3_m_R_plus_m0_R
+    let d_omega_2_dot_d_R_part_1 = omega_1_omega_3_m_R_plus_m0_R
         + half * m0_tan_theta_omega_1_omega_3_r - m0 * omega_3 * sigma;
-    let P_omega_2_R_part_1 = half_m_R * f_2 + m0_r * f_3 + m0_R_r * d_f_3_d_R;
-    let P_omega_2_R_part_2 = two * M_33 * P_omega_2_R_per_inv_D_2_M_33;
-    let P_omega_2_R = inv_D_2 * (P_omega_2_R_part_1 - P_omega_2_R_part_2)
-        - P_omega_2_m_per_d_D_2_d_m * d_D_2_d_R;
-
-    // Row `omega_3_dot` of P.
-    let P_omega_3_m_per_d_D_2_d_m = inv_D_2_squared * (m0_R_r * f_2 + M_22 * f_3);
-    let three_halves_R_squared_f_3 = three_halves_R_squared * f_3;
-    let P_omega_3_m_part_1 = quarter * M_22 * P_omega_2_m_per_inv_D_2_m0_R_r;
-    let P_omega_3_m_part_2 = three_halves_R_squared_f_3 + P_omega_3_m_part_1;
-    let P_omega_3_m_part_3 = P_omega_3_m_part_2 - m0_R_r * R_squared_omega_1_omega_3;
-    let P_omega_3_m = inv_D_2 * P_omega_3_m_part_3
-        - d_D_2_d_m * P_omega_3_m_per_d_D_2_d_m;
-    let P_omega_3_m0_part_1 = R_squared * f_3 + M_22 * d_f_3_d_m0;
-    let P_omega_3_m0_part_2 = P_omega_3_m0_part_1 + m0_R_r * d_f_2_d_m0 + R_r * f_2;
-    let P_omega_3_m0 = inv_D_2 * P_omega_3_m0_part_2
-        - d_D_2_d_m0 * P_omega_3_m_per_d_D_2_d_m;
-    let P_omega_3_R_part_1 = M_22 * d_f_3_d_R + d_M_22_d_R * f_3 + m0_r * f_2;
-    let P_omega_3_R_part_2 = two_m0_R_r * P_omega_2_R_per_inv_D_2_M_33;
-    let P_omega_3_R = inv_D_2 * (P_omega_3_R_part_1 - P_omega_3_R_part_2)
-        - d_D_2_d_R * P_omega_3_m_per_d_D_2_d_m;
-
-    // Row `sigma_dot` of P.
-    let P_sigma_m = R * P_omega_1_m;
-    let P_sigma_m0 = R * P_omega_1_m0 - inv_m0 * (inv_m0 * f_4 - d_f_4_d_m0);
-    let P_sigma_R = omega_1_dot + R * P_omega_1_R - omega_2_omega_3;
-    let P_sigma_g = R * P_omega_1_g - sin_theta;
-
-    // Row `x_G_dot` of P.
+    let d_omega_2_dot_d_R_part_2 = half_m_R * f_2 + m0_r * f_3 + m0_R_r * d_f_3_d_R;
+    let d_omega_2_dot_d_R_part_3 = two * M_33 * d_omega_2_dot_d_R_part_1;
+    let d_omega_2_dot_d_R_part_4 = d_omega_2_dot_d_R_part_2 - d_omega_2_dot_d_R_part_3;
+    let d_omega_2_dot_d_R = inv_D_2 * d_omega_2_dot_d_R_part_4
+        - d_omega_2_dot_d_m_part_1 * d_D_2_d_R;
+    let d_omega_3_dot_d_R_part_1 = M_22 * d_f_3_d_R + d_M_22_d_R * f_3 + m0_r * f_2;
+    let d_omega_3_dot_d_R_part_2 = two_m0_R_r * d_omega_2_dot_d_R_part_1;
+    let d_omega_3_dot_d_R_part_3 = d_omega_3_dot_d_R_part_1 - d_omega_3_dot_d_R_part_2;
+    let d_omega_3_dot_d_R = inv_D_2 * d_omega_3_dot_d_R_part_3
+        - d_omega_3_dot_d_m_part_1 * d_D_2_d_R;
+    let d_sigma_dot_d_R = omega_1_dot + R * d_omega_1_dot_d_R - omega_2_omega_3;
     let cos_theta_omega_1 = cos_theta * omega_1;
-    let P_x_G_R = sin_psi * cos_theta_omega_1 + cos_psi * omega_2;
+    let d_x_G_dot_d_R = sin_psi * cos_theta_omega_1 + cos_psi * omega_2;
+    let d_y_G_dot_d_R = sin_psi * omega_2 - cos_psi * cos_theta_omega_1;
 
-    // Row `y_G_dot` of P.
-    let P_y_G_R = sin_psi * omega_2 - cos_psi * cos_theta_omega_1;
+    // Column `g` of P.
+    let d_omega_1_dot_d_g = d_omega_1_dot_d_m_part_1
+        * (sin_theta * m_R - cos_theta * m0_r);
+    let d_sigma_dot_d_g = R * d_omega_1_dot_d_g - sin_theta;
 
     Rates {
         omega_1_dot: Parameters {
-            m: P_omega_1_m,
-            m0: P_omega_1_m0,
-            R: P_omega_1_R,
-            g: P_omega_1_g,
+            m: d_omega_1_dot_d_m,
+            m0: d_omega_1_dot_d_m0,
+            R: d_omega_1_dot_d_R,
+            g: d_omega_1_dot_d_g,
         },
         omega_2_dot: Parameters {
-            m: P_omega_2_m,
-            m0: P_omega_2_m0,
-            R: P_omega_2_R,
+            m: d_omega_2_dot_d_m,
+            m0: d_omega_2_dot_d_m0,
+            R: d_omega_2_dot_d_R,
             g: zero,
         },
         omega_3_dot: Parameters {
-            m: P_omega_3_m,
-            m0: P_omega_3_m0,
-            R: P_omega_3_R,
+            m: d_omega_3_dot_d_m,
+            m0: d_omega_3_dot_d_m0,
+            R: d_omega_3_dot_d_R,
             g: zero,
         },
         sigma_dot: Parameters {
-            m: P_sigma_m,
-            m0: P_sigma_m0,
-            R: P_sigma_R,
-            g: P_sigma_g,
+            m: d_sigma_dot_d_m,
+            m0: d_sigma_dot_d_m0,
+            R: d_sigma_dot_d_R,
+            g: d_sigma_dot_d_g,
         },
         theta_dot: Parameters::splat(zero),
         r_dot: Parameters::splat(zero),
         psi_dot: Parameters::splat(zero),
         phi_dot: Parameters::splat(zero),
         x_G_dot: Parameters {
-            R: P_x_G_R,
+            R: d_x_G_dot_d_R,
             ..Parameters::splat(zero)
         },
         y_G_dot: Parameters {
-            R: P_y_G_R,
+            R: d_y_G_dot_d_R,
             ..Parameters::splat(zero)
         },
     }

@@ -118,7 +118,7 @@ pub struct GeneralizedForces<T> {
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct ConstraintResidual {}
 
-/// Reactions in the ground: forces on points along x, y, z in N, or multipliers of constraints as x.
+/// Reactions in the ground: forces on points along x, y, z in N; a multiplier of a constraint stands in the x component.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct ConstraintForces {}
 
@@ -217,10 +217,14 @@ pub fn kinematics<T: Real>(
     }
 }
 
-/// Acceleration energy S (Gibbs function) at the actual motion.
+/// Acceleration energy S (Gibbs function) at the actual motion, without the terms ½ ω²(ω·Jω) of the bodies, which no pseudo-acceleration enters.
+///
+/// ```text
+/// S = Σ ½ m a² + ½ α·J α + α·(ω × J ω)
+/// ```
 ///
 /// - `a0_G`: acceleration of `G` where ω̇ = 0, along `rod`.
-/// - `rhs`: `Π - b` after elimination, times the common denominator in `pivot`; `_over_`: divided.
+/// - `rhs`: `Π − b` after elimination, times the common denominator in `pivot`.
 /// - `pivot`: what divides `rhs`: `ω̇ = rhs/pivot`, plus terms that need no division.
 ///
 /// From `pendulum.toml`.
@@ -365,7 +369,7 @@ pub fn generalized_forces<T: Real>(
 /// θ̇ = ω
 /// ```
 ///
-/// - `rhs`: `Π - b` after elimination, times the common denominator in `pivot`; `_over_`: divided.
+/// - `rhs`: `Π − b` after elimination, times the common denominator in `pivot`.
 /// - `pivot`: what divides `rhs`: `ω̇ = rhs/pivot`, plus terms that need no division.
 ///
 /// From `pendulum.toml`.
@@ -399,7 +403,11 @@ pub fn rates<T: Real>(
 
 /// Rates ẋ and their Jacobians with respect to state and inputs.
 ///
-/// - `rhs`: `Π - b` after elimination, times the common denominator in `pivot`; `_over_`: divided.
+/// ```text
+/// M ∂ω̇/∂x = ∂(Π − b)/∂x − ∂M/∂x ω̇
+/// ```
+///
+/// - `rhs`: `Π − b` after elimination, times the common denominator in `pivot`.
 /// - `pivot`: what divides `rhs`: `ω̇ = rhs/pivot`, plus terms that need no division.
 ///
 /// From `pendulum.toml`.
@@ -431,7 +439,7 @@ pub fn jacobians<T: Real>(
     let omega_dot = inv_pivot_omega * rhs_omega;
 
     // Row `omega_dot` of A.
-    let A_omega_theta = -cos_theta * m_l_g * inv_pivot_omega;
+    let d_omega_dot_d_theta = -cos_theta * m_l_g * inv_pivot_omega;
 
     Jacobians {
         rates: Rates {
@@ -441,7 +449,7 @@ pub fn jacobians<T: Real>(
         a: Rates {
             omega_dot: State {
                 omega: zero,
-                theta: A_omega_theta,
+                theta: d_omega_dot_d_theta,
             },
             theta_dot: State { omega: one, theta: zero },
         },
@@ -454,7 +462,11 @@ pub fn jacobians<T: Real>(
 
 /// P = ∂ẋ/∂p.
 ///
-/// - `rhs`: `Π - b` after elimination, times the common denominator in `pivot`; `_over_`: divided.
+/// ```text
+/// M ∂ω̇/∂p = ∂(Π − b)/∂p − ∂M/∂p ω̇
+/// ```
+///
+/// - `rhs`: `Π − b` after elimination, times the common denominator in `pivot`.
 /// - `pivot`: what divides `rhs`: `ω̇ = rhs/pivot`, plus terms that need no division.
 ///
 /// From `pendulum.toml`.
@@ -486,19 +498,25 @@ pub fn parameter_jacobian<T: Real>(
     let rhs_omega = tau - m_l * g_sin_theta;
     let omega_dot = inv_pivot_omega * rhs_omega;
 
-    // Row `omega_dot` of P.
+    // Column `m` of P.
     let l_omega_dot = l * omega_dot;
-    let P_omega_m = -l * inv_pivot_omega * (g_sin_theta + l_omega_dot);
-    let P_omega_l = m * inv_pivot_omega * (-two * l_omega_dot - g_sin_theta);
-    let P_omega_I = -inv_pivot_omega * omega_dot;
-    let P_omega_g = -sin_theta * m_l * inv_pivot_omega;
+    let d_omega_dot_d_m = -l * inv_pivot_omega * (g_sin_theta + l_omega_dot);
+
+    // Column `l` of P.
+    let d_omega_dot_d_l = m * inv_pivot_omega * (-two * l_omega_dot - g_sin_theta);
+
+    // Column `I` of P.
+    let d_omega_dot_d_I = -inv_pivot_omega * omega_dot;
+
+    // Column `g` of P.
+    let d_omega_dot_d_g = -sin_theta * m_l * inv_pivot_omega;
 
     Rates {
         omega_dot: Parameters {
-            m: P_omega_m,
-            l: P_omega_l,
-            I: P_omega_I,
-            g: P_omega_g,
+            m: d_omega_dot_d_m,
+            l: d_omega_dot_d_l,
+            I: d_omega_dot_d_I,
+            g: d_omega_dot_d_g,
         },
         theta_dot: Parameters::splat(zero),
     }
@@ -653,12 +671,12 @@ pub fn adjoint<T: Real>(
         * (by_I_part_1 - rhs_omega * lambda_omega);
     let by_I = adjoint_pivot_omega + K_omega_omega;
     let l_by_I = l * by_I;
-    let by_m_per_l_g = sin_theta * by_tau
+    let by_m_part_1 = sin_theta * by_tau
         + cos_theta * Lambda_omega_theta_over_pivot_omega;
-    let g_by_m_per_l_g = g * by_m_per_l_g;
-    let by_m = l * (l_by_I - g_by_m_per_l_g);
-    let by_l = m * (two * l_by_I - g_by_m_per_l_g);
-    let by_g = -m_l * by_m_per_l_g;
+    let by_m_part_2 = g * by_m_part_1;
+    let by_m = l * (l_by_I - by_m_part_2);
+    let by_l = m * (two * l_by_I - by_m_part_2);
+    let by_g = -m_l * by_m_part_1;
 
     Adjoint {
         x: State {
@@ -797,7 +815,7 @@ pub fn output_adjoint<T: Real>(
     }
 }
 
-/// Physical pendulum with a torque at its pivot
+/// Physical pendulum with a torque at its pivot.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Pendulum;
 

@@ -59,7 +59,7 @@ impl Model {
     /// let cases = r#"{"cases": [{"state": {"theta": 0.1, "omega": 0}}]}"#;
     /// let cases = read_cases("cases.json", cases, model.info())?;
     /// let evaluation = model.evaluate(&cases)?;
-    /// assert!(evaluation.values[0].rates[1] < 0.0);
+    /// assert!(evaluation.values[0].rates[0] < 0.0);
     /// # Ok::<(), appell::Error>(())
     /// ```
     pub fn evaluate(&self, cases: &[Case]) -> Result<Evaluation<'_>, Error> {

@@ -1,4 +1,4 @@
-//! The cases of `appell evaluate`, with every mistake told at its place in the file.
+//! Cases at which equations are evaluated; every mistake is reported with its place in the file.
 
 use std::collections::BTreeSet;
 use std::fmt;
@@ -12,20 +12,20 @@ use serde_json::value::RawValue;
 use crate::Error;
 use crate::setup::instead;
 
-/// Where the equations are evaluated, in SI.
+/// Arguments of the equations, in SI.
 #[derive(Debug)]
 pub struct Case {
     /// Time in s.
     pub t: f64,
     /// State.
     pub x: Vec<f64>,
-    /// Inputs; those left out are zero, or the value of their signal.
+    /// Inputs; omitted ones are zero, or the value of their signal.
     pub u: Vec<Option<f64>>,
     /// Parameters.
     pub p: Vec<f64>,
 }
 
-/// The entries of a JSON object in the order of the text; the values keep their places.
+/// The entries of a JSON object in the order of the text; values keep their places.
 #[derive(Default)]
 struct Object<'a>(Vec<(String, &'a RawValue)>);
 
@@ -58,7 +58,7 @@ impl<'de> Deserialize<'de> for Object<'de> {
     }
 }
 
-/// Most findings told for one file.
+/// Maximum number of mistakes reported for a file.
 const MOST: usize = 20;
 
 /// Reads `{"cases": [{"parameters": {…}, "state": {…}, "inputs": {…}, "t": 0}, …]}`.
@@ -87,7 +87,7 @@ struct Reader<'a> {
 }
 
 impl<'a> Reader<'a> {
-    /// JSON that does not parse ends at its first mistake.
+    /// Reports the first syntax error.
     fn broken(&mut self, error: &serde_json::Error) {
         let line = error.line().saturating_sub(1);
         let before: usize = self
@@ -97,7 +97,7 @@ impl<'a> Reader<'a> {
             .map(str::len)
             .sum();
         let at = before + error.column().saturating_sub(1);
-        // A text that ends too early has its mistake after its last character.
+        // In a text that ends too early the mistake follows the last character.
         let end = self.text.trim_end().len();
         let at = if error.is_eof() { end } else { at.min(end) };
         let message = error.to_string();
@@ -128,13 +128,13 @@ impl<'a> Reader<'a> {
         cases
     }
 
-    /// Where a value stands: it is a part of the text.
+    /// The place of a value in the text.
     fn span(&self, raw: &RawValue) -> Span {
         let start = (raw.get().as_ptr() as usize).saturating_sub(self.text.as_ptr() as usize);
         start..(start + raw.get().len()).min(self.text.len())
     }
 
-    /// The start of a value; whole objects would fill the screen.
+    /// The first character of a value; a whole object would fill the screen.
     fn head(&self, raw: &RawValue) -> Span {
         let span = self.span(raw);
         span.start..(span.start + 1).min(span.end)
@@ -158,13 +158,13 @@ impl<'a> Reader<'a> {
         parsed
     }
 
-    /// An object, each of whose keys stands there once.
+    /// An object whose keys are unique.
     fn object(&mut self, raw: &'a RawValue, wanted: &str) -> Option<Object<'a>> {
         let object: Object<'a> = self.parse(raw, wanted)?;
         let mut seen = BTreeSet::new();
         for (key, value) in &object.0 {
             if !seen.insert(key.as_str()) {
-                let message = format!("the key `{key}` stands here twice");
+                let message = format!("the key `{key}` is given twice");
                 let help = "remove one of the two";
                 self.tell(Code::DuplicateName, message, self.head(value), help);
             }
@@ -207,7 +207,7 @@ impl<'a> Reader<'a> {
                 .filter(|(_, value)| value.is_none())
                 .map(|(q, _)| q.name.as_ref())
                 .collect();
-            // A wrong number has been told already.
+            // A wrong number has been reported already.
             let named: Object<'a> = serde_json::from_str(raw.get()).unwrap_or_default();
             let missing: Vec<&str> = missing
                 .into_iter()

@@ -1,18 +1,17 @@
-//! Conditions of a steady motion from the command line.
+//! Conditions of the steady motion about which equations are linearised.
 
 use appell_codegen::mechanics::Derivation;
 use appell_codegen::mechanics::expressions::Lowering;
 use appell_codegen::symbolic::Expr;
 use appell_spec::mechanism::Mechanism;
 use appell_spec::units::{self, Unit};
-use appell_spec::{Report, Scope, Snippet, formula};
+use appell_spec::{Scope, Snippet, formula};
 
-use crate::Error;
 use crate::setup::{Assignment, bracketed, unknown};
+use crate::{Error, Field};
 
 /// Symbols with their values, from texts such as `theta=0, dot(psi)=0`.
 pub fn conditions(
-    flag: &str,
     spec: &str,
     mechanism: &Mechanism,
     derivation: &mut Derivation,
@@ -22,28 +21,27 @@ pub fn conditions(
     for text in texts.iter().flat_map(|text| parts(text)) {
         let Assignment { name, value } = text
             .parse()
-            .map_err(|help| Error::Usage(format!("{flag} {text}: {help}")))?;
+            .map_err(|help| Error::request(Field::About, format!("{text}: {help}")))?;
         let (symbol, unit) = quantity(mechanism, derivation, &name)?;
-        let label = format!("{flag} {name}");
         let value = bracketed(&value);
         let snippet = Snippet::alone(&value);
         let read = formula(spec, &snippet, "the value", Scope::Motion, &unit);
-        let read = read.map_err(|findings| {
-            Error::Expression(Box::new(Report::new(&label, value.as_ref(), findings)))
-        })?;
+        let read = read.map_err(Error::expression(Field::About, &name, &value))?;
         let lowering = Lowering {
             symbols: &derivation.symbols,
             rates: &derivation.symbols.rates,
         };
         let lowered = lowering.lower(&mut derivation.algebra.graph, &read);
-        let lowered =
-            lowered.map_err(|_| Error::Usage(format!("{label}: `{value}` divides by zero")))?;
+        let lowered = lowered.map_err(|_| {
+            let message = format!("{name}: `{value}` divides by zero");
+            Error::request(Field::About, message)
+        })?;
         conditions.push((symbol, lowered));
     }
     Ok(conditions)
 }
 
-/// Parts between the commas outside of brackets.
+/// The parts of a list separated by commas outside brackets.
 fn parts(text: &str) -> Vec<&str> {
     let mut depth = 0_usize;
     let between = |c: char| {
@@ -89,10 +87,10 @@ fn quantity(
         .chain(rates.iter().map(String::as_str))
         .collect();
     let message = unknown(name, "state, rate or input", known.into_iter());
-    Err(Error::Usage(message))
+    Err(Error::request(Field::About, message))
 }
 
-/// Plain numbers for a rate are in the unit of its coordinate per second.
+/// The unit of a rate: that of its coordinate per second.
 fn per_second(unit: &Unit) -> Unit {
     let written = format!("({})/s", unit.text);
     units::parse(&written).unwrap_or_else(|_| unit.clone())
@@ -103,7 +101,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn commas_in_brackets_do_not_part() {
+    fn commas_in_brackets_do_not_separate() {
         let text = "a=0, b=atan2(1, c[m]),d=2";
         assert_eq!(parts(text), ["a=0", "b=atan2(1, c[m])", "d=2"]);
     }

@@ -1,11 +1,12 @@
-//! From a steady motion to gains: what is asked for, the design, its law file, its region of attraction.
+//! Control about a steady motion: request, design, feedback file, region of attraction.
 
-pub mod ask;
 pub mod attraction;
 pub mod design;
-pub mod explain;
+pub mod errors;
 pub mod law_file;
+pub mod parse;
 mod request;
 
 pub use design::Design;
+pub use errors::DesignError;
 pub use request::Request;

@@ -1,33 +1,33 @@
-//! Three ways to evaluate the equations of one mechanism.
+//! Three ways to evaluate the equations of a mechanism.
 
 use appell_codegen::interpreted::InterpretedModel;
 use appell_codegen::jit::JitModel;
 use appell_codegen::program::FunctionKind;
 use appell_runtime::model::Model;
 
-use crate::Error;
 use crate::source::Source;
+use crate::{Error, Field};
 
-/// What evaluates the equations. All three give the same numbers.
+/// What evaluates the equations. All three give the same results.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Engine {
-    /// Machine code made in this process.
+    /// Machine code, compiled in this process.
     Jit,
     /// The emitted Rust, compiled into this program; shipped mechanisms only.
     Emitted,
-    /// Operation by operation; slow.
+    /// Interpreted operation by operation; slow.
     Interpreter,
 }
 
-/// A model that may be borrowed from the program or made now.
+/// A shipped model, or one derived in this process.
 pub enum Equations {
     /// Compiled into this program.
     Shipped(&'static dyn Model),
-    /// Made in this process.
+    /// Derived in this process.
     Made {
         /// What evaluates them.
         model: Box<dyn Model>,
-        /// Why it is slower than what was asked for.
+        /// Why it is interpreted although machine code was requested.
         note: Option<String>,
     },
 }
@@ -38,16 +38,15 @@ impl Equations {
         match (engine, source.shipped) {
             (Engine::Emitted, Some(shipped)) => return Ok(Self::Shipped(shipped.model)),
             (Engine::Emitted, None) => {
-                return Err(Error::Usage(
-                    "`--engine emitted` is for shipped mechanisms; a spec file runs with `--engine jit`".to_owned(),
-                ));
+                let message = "emitted code exists only for shipped mechanisms; a spec file runs as machine code";
+                return Err(Error::request(Field::Engine, message));
             }
             _ => {}
         }
         Self::made(source, engine, &FunctionKind::STANDARD)
     }
 
-    /// Machine code with what estimation asks for: adjoints.
+    /// Machine code with the adjoints that estimation needs.
     pub fn for_estimation(source: &Source) -> Result<Self, Error> {
         Self::made(source, Engine::Jit, &FunctionKind::ALL)
     }
@@ -68,7 +67,7 @@ impl Equations {
         Ok(Self::Made { model, note })
     }
 
-    /// Why the equations are interpreted although machine code was asked for.
+    /// Why the equations are interpreted although machine code was requested.
     pub fn note(&self) -> Option<&str> {
         match self {
             Self::Shipped(_) => None,
@@ -76,7 +75,7 @@ impl Equations {
         }
     }
 
-    /// Shipped equations where they exist, which need no derivation; machine code for others.
+    /// The emitted code of a shipped mechanism, which needs no derivation; machine code otherwise.
     pub fn at_hand(source: &Source) -> Result<Self, Error> {
         let engine = if source.shipped.is_some() {
             Engine::Emitted

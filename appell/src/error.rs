@@ -1,24 +1,47 @@
-//! Why a question has no answer.
+//! Why a request has no answer.
 
 use std::path::{Path, PathBuf};
 
-use appell_spec::Report;
+use appell_analysis::{BranchError, ChartError, StabilityError, SteadyError};
+use appell_estimate::EstimateError;
+use appell_gap::data::DataError;
+use appell_gap::diagnose::DiagnoseError;
+use appell_gap::effects::{EffectError, ModelError};
+use appell_gap::identify::IdentifyError;
+use appell_gap::inverse::RelationError;
+use appell_runtime::signal::SignalError;
+use appell_runtime::simulate::SimulationError;
+use appell_spec::{Diagnostic, Report};
 
-/// Why a question has no answer.
+use crate::control::DesignError;
+use crate::field::Field;
+
+/// Why a request has no answer.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum Error {
-    /// It asks for something that does not exist or does not fit together.
-    #[error("{0}")]
-    Usage(String),
-    /// An expression is wrong.
-    #[error("{}", .0.plain())]
-    Expression(Box<Report>),
+    /// The request names something that does not exist, or is inconsistent.
+    #[error("{field}: {message}")]
+    Request {
+        /// The part that is wrong.
+        field: Field,
+        /// What is wrong, and what to do.
+        message: String,
+    },
+    /// An expression of the request is wrong.
+    #[error(transparent)]
+    Expression(Box<ExpressionError>),
     /// A file is wrong; the report shows the places.
     #[error("{}", .0.plain())]
     Report(Box<Report>),
     /// A file is wrong as a whole.
-    #[error("{0}")]
-    Data(String),
+    #[error("{file}: {message}")]
+    Data {
+        /// The file.
+        file: String,
+        /// What is wrong, and what to do.
+        message: String,
+    },
     /// A file cannot be read or written.
     #[error("cannot {doing} {}: {cause}", path.display())]
     File {
@@ -26,18 +49,124 @@ pub enum Error {
         doing: &'static str,
         /// The file.
         path: PathBuf,
-        /// What the system says.
+        /// The error of the operating system.
+        #[source]
         cause: std::io::Error,
     },
-    /// The computation failed: time, state and reason.
-    #[error("{0}")]
-    Computation(String),
-    /// Several failures, each told.
+    /// Recordings cannot be used.
+    #[error(transparent)]
+    Recording(DataError),
+    /// A table of inputs is not a function of time.
+    #[error("{file}: {source}")]
+    Table {
+        /// The file.
+        file: String,
+        /// The reason.
+        source: SignalError,
+    },
+    /// A signal of the spec is not a function of time.
+    #[error(transparent)]
+    Signal(#[from] SignalError),
+    /// No motion can be computed.
+    #[error(transparent)]
+    Simulate(#[from] SimulationError),
+    /// No steady motion satisfies the conditions, or they are inconsistent.
+    #[error(transparent)]
+    Steady(#[from] SteadyError),
+    /// Steady motions cannot be continued.
+    #[error(transparent)]
+    Branch(BranchError),
+    /// The stability of a motion cannot be determined.
+    #[error(transparent)]
+    Stability(#[from] StabilityError),
+    /// No stability chart can be computed.
+    #[error(transparent)]
+    Chart(ChartError),
+    /// No controller can be designed.
+    #[error(transparent)]
+    Design(Box<DesignError>),
+    /// A failure at one value of a schedule.
+    #[error("at {place}: {source}")]
+    At {
+        /// The quantity with its value.
+        place: String,
+        /// The failure.
+        source: Box<Error>,
+    },
+    /// No parameters can be estimated.
+    #[error("{}{}", .0, advice(.0))]
+    Identify(#[source] IdentifyError),
+    /// A gap cannot be diagnosed.
+    #[error(transparent)]
+    Diagnose(DiagnoseError),
+    /// Recorded motions do not determine inputs or parameters.
+    #[error(transparent)]
+    Inverse(#[from] RelationError),
+    /// A result cannot be written as JSON.
+    #[error("the result is not JSON: {0}")]
+    Json(#[from] serde_json::Error),
+    /// Another computation failed.
+    #[error(transparent)]
+    Computation(Box<dyn std::error::Error + Send + Sync>),
+    /// Several failures.
     #[error("{}", plain(.0))]
     Several(Vec<Error>),
 }
 
+/// Class of an error.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Class {
+    /// The request is wrong.
+    Request,
+    /// A file is wrong.
+    Data,
+    /// The computation failed.
+    Computation,
+}
+
+/// Mistakes in an expression of a request.
+#[derive(Debug, Clone, thiserror::Error)]
+#[error("{}", self.report(&format!("{field} {name}")).plain())]
+pub struct ExpressionError {
+    /// The part of the request.
+    pub field: Field,
+    /// The quantity to which the expression is assigned.
+    pub name: String,
+    /// The expression.
+    pub text: String,
+    /// The mistakes, with their places in the text.
+    pub diagnostics: Vec<Diagnostic>,
+}
+
+impl ExpressionError {
+    /// The report under a name for the place of the expression.
+    pub fn report(&self, place: &str) -> Report {
+        Report::new(place, self.text.clone(), self.diagnostics.clone())
+    }
+}
+
 impl Error {
+    /// A part of a request that is wrong.
+    pub fn request(field: Field, message: impl Into<String>) -> Self {
+        Self::Request {
+            field,
+            message: message.into(),
+        }
+    }
+
+    /// A file that is wrong as a whole.
+    pub fn data(file: impl ToString, message: impl Into<String>) -> Self {
+        Self::Data {
+            file: file.to_string(),
+            message: message.into(),
+        }
+    }
+
+    /// A computation that failed.
+    pub fn computation(source: impl Into<Box<dyn std::error::Error + Send + Sync>>) -> Self {
+        Self::Computation(source.into())
+    }
+
     /// A file that cannot be read.
     pub fn reading(path: &Path) -> impl FnOnce(std::io::Error) -> Self {
         Self::about("read", path)
@@ -55,6 +184,133 @@ impl Error {
             cause,
         }
     }
+
+    /// Mistakes in an expression.
+    pub(crate) fn expression(
+        field: Field,
+        name: &str,
+        text: &str,
+    ) -> impl FnOnce(Vec<Diagnostic>) -> Self {
+        move |diagnostics| {
+            Self::Expression(Box::new(ExpressionError {
+                field,
+                name: name.to_owned(),
+                text: text.to_owned(),
+                diagnostics,
+            }))
+        }
+    }
+
+    /// The class; of several failures, the gravest.
+    pub fn class(&self) -> Class {
+        match self {
+            Self::Request { .. } | Self::Expression(_) | Self::Simulate(_) => Class::Request,
+            Self::Report(_)
+            | Self::Data { .. }
+            | Self::File { .. }
+            | Self::Recording(_)
+            | Self::Table { .. } => Class::Data,
+            Self::Signal(_) | Self::Stability(_) | Self::Json(_) | Self::Computation(_) => {
+                Class::Computation
+            }
+            Self::Steady(error) => of_steady(error),
+            Self::Branch(error) => of_branch(error),
+            Self::Chart(error) => of_chart(error),
+            Self::Design(error) => error.class(),
+            Self::At { source, .. } => source.class(),
+            Self::Identify(error) => of_identification(error),
+            Self::Diagnose(error) => of_diagnosis(error),
+            Self::Inverse(RelationError::Inverse(_)) => Class::Computation,
+            Self::Inverse(_) => Class::Request,
+            Self::Several(all) => all.iter().map(Self::class).max().unwrap_or(Class::Request),
+        }
+    }
+
+    /// The part of the request that is wrong, where the error knows it.
+    pub fn field(&self) -> Option<Field> {
+        match self {
+            Self::Request { field, .. } => Some(*field),
+            Self::Expression(error) => Some(error.field),
+            Self::Design(error) => error.field,
+            Self::Chart(ChartError::Grid(..)) => Some(Field::Grid),
+            Self::Branch(BranchError::Isolated { .. } | BranchError::Range { .. }) => {
+                Some(Field::Along)
+            }
+            Self::Identify(IdentifyError::UnknownParameter { .. })
+            | Self::Inverse(RelationError::UnknownParameter { .. }) => Some(Field::Free),
+            Self::Identify(IdentifyError::UnknownAddition { .. }) => Some(Field::Also),
+            Self::Identify(IdentifyError::Rate { .. }) => Some(Field::Drifting),
+            Self::Inverse(RelationError::UnknownColumn { .. }) => Some(Field::Bias),
+            _ => None,
+        }
+    }
+
+    /// The part of the request that may remedy the failure.
+    pub fn remedy(&self) -> Option<Field> {
+        match self {
+            Self::Identify(IdentifyError::NothingFree) => Some(Field::Free),
+            Self::Identify(error) if !advice(error).is_empty() => Some(Field::Start),
+            _ => None,
+        }
+    }
+}
+
+fn of_steady(error: &SteadyError) -> Class {
+    match error {
+        SteadyError::None { .. } | SteadyError::Structure(_) => Class::Computation,
+        _ => Class::Request,
+    }
+}
+
+fn of_branch(error: &BranchError) -> Class {
+    match error {
+        BranchError::Steady(error) => of_steady(error),
+        BranchError::Isolated { .. } | BranchError::Range { .. } => Class::Request,
+        BranchError::Stability(_) => Class::Computation,
+    }
+}
+
+fn of_chart(error: &ChartError) -> Class {
+    match error {
+        ChartError::Branch(error) => of_branch(error),
+        ChartError::Grid(..) => Class::Request,
+        _ => Class::Computation,
+    }
+}
+
+fn of_identification(error: &IdentifyError) -> Class {
+    match error {
+        IdentifyError::UnknownParameter { .. }
+        | IdentifyError::UnknownAddition { .. }
+        | IdentifyError::Rate { .. } => Class::Request,
+        IdentifyError::Estimate(_) => Class::Computation,
+        _ => Class::Data,
+    }
+}
+
+fn of_diagnosis(error: &DiagnoseError) -> Class {
+    match error {
+        DiagnoseError::NothingMeasured
+        | DiagnoseError::LacksChannel { .. }
+        | DiagnoseError::NothingToFit
+        | DiagnoseError::Model(ModelError::Edit(_)) => Class::Data,
+        _ => Class::Computation,
+    }
+}
+
+/// What may help a failed estimation.
+fn advice(error: &IdentifyError) -> &'static str {
+    match error {
+        IdentifyError::Estimate(EstimateError::Diverged { .. } | EstimateError::Stuck { .. }) => {
+            "; if the nominal parameters are far off, start from multiple shooting"
+        }
+        _ => "",
+    }
+}
+
+fn plain(failures: &[Error]) -> String {
+    let texts = failures.iter().map(ToString::to_string);
+    texts.collect::<Vec<_>>().join("\n")
 }
 
 impl From<Report> for Error {
@@ -63,7 +319,64 @@ impl From<Report> for Error {
     }
 }
 
-fn plain(failures: &[Error]) -> String {
-    let texts = failures.iter().map(ToString::to_string);
-    texts.collect::<Vec<_>>().join("\n")
+impl From<DesignError> for Error {
+    fn from(error: DesignError) -> Self {
+        Self::Design(Box::new(error))
+    }
+}
+
+impl From<BranchError> for Error {
+    fn from(error: BranchError) -> Self {
+        match error {
+            BranchError::Steady(error) => Self::Steady(error),
+            BranchError::Stability(error) => Self::Stability(error),
+            other => Self::Branch(other),
+        }
+    }
+}
+
+impl From<ChartError> for Error {
+    fn from(error: ChartError) -> Self {
+        match error {
+            ChartError::Branch(error) => error.into(),
+            other => Self::Chart(other),
+        }
+    }
+}
+
+impl From<EffectError> for Error {
+    fn from(EffectError(report): EffectError) -> Self {
+        Self::Report(report)
+    }
+}
+
+impl From<IdentifyError> for Error {
+    fn from(error: IdentifyError) -> Self {
+        Self::Identify(error)
+    }
+}
+
+impl From<DataError> for Error {
+    fn from(error: DataError) -> Self {
+        match error {
+            DataError::Report(report) => Self::Report(report),
+            DataError::File { path, cause } => Self::reading(&path)(cause),
+            DataError::Several(errors) => {
+                Self::Several(errors.into_iter().map(Self::from).collect())
+            }
+            whole => Self::Recording(whole),
+        }
+    }
+}
+
+impl From<DiagnoseError> for Error {
+    fn from(error: DiagnoseError) -> Self {
+        match error {
+            DiagnoseError::Model(
+                ModelError::Spec(report) | ModelError::Effect(EffectError(report)),
+            ) => Self::Report(report),
+            DiagnoseError::Data(error) => error.into(),
+            other => Self::Diagnose(other),
+        }
+    }
 }

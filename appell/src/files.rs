@@ -1,4 +1,4 @@
-//! Files that appear complete or not at all.
+//! Files that are written completely or not at all.
 
 use std::fs::{self, OpenOptions};
 use std::io::{self, BufWriter, Read as _, Write};
@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use crate::Error;
 
-/// Largest recording or list of cases, in bytes.
+/// Maximum size of a recording or of a list of cases, in bytes.
 pub const MAX_DATA: u64 = 1 << 30;
 
 /// Writes a text; `-` is standard output.
@@ -14,8 +14,8 @@ pub fn write(path: &Path, text: &str) -> Result<(), Error> {
     write_with(path, |to| to.write_all(text.as_bytes()))
 }
 
-/// Writes a file through a draft beside it; `-` is standard output. What stands there and is no
-/// regular file, such as a pipe or a device, is written to and not replaced.
+/// Writes a file by way of a temporary file beside it; `-` is standard output. A pipe or a device is
+/// written to directly.
 pub fn write_with(
     path: &Path,
     fill: impl FnOnce(&mut dyn Write) -> io::Result<()>,
@@ -47,13 +47,13 @@ pub fn write_with(
         .and_then(|()| permissions.map_or(Ok(()), |own| fs::set_permissions(&draft, own)))
         .and_then(|()| fs::rename(&draft, &target))
         .map_err(|cause| {
-            // The draft is of no use; that it cannot be removed would only hide the cause.
+            // A failure to remove the temporary file would only mask the cause.
             let _ = fs::remove_file(&draft);
             Error::writing(path)(cause)
         })
 }
 
-/// A link stays a link: its target is what the user means, even where it does not exist yet.
+/// The target of a link, even if it does not exist yet: links are kept.
 fn behind_links(path: &Path) -> PathBuf {
     let beside = |target: PathBuf| path.parent().unwrap_or(path).join(target);
     fs::canonicalize(path)
@@ -70,14 +70,13 @@ fn fill_buffered(
     to.flush()
 }
 
-/// Writes JSON, one line break at its end.
+/// Writes JSON with a final line break.
 pub fn write_json(path: &Path, value: &impl serde::Serialize) -> Result<(), Error> {
-    let text = serde_json::to_string_pretty(value)
-        .map_err(|cause| Error::Computation(format!("the result is not JSON: {cause}")))?;
+    let text = serde_json::to_string_pretty(value)?;
     write(path, &(text + "\n"))
 }
 
-/// A reader who has seen enough, such as `head`, is no failure.
+/// Writes to standard output; a closed pipe is not an error.
 pub fn to_stdout(fill: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), Error> {
     match fill_buffered(io::stdout().lock(), fill) {
         Err(cause) if cause.kind() != io::ErrorKind::BrokenPipe => {
@@ -92,10 +91,10 @@ pub fn is_stdout(path: &Path) -> bool {
     path.as_os_str() == "-"
 }
 
-/// Reads a text file of at most so many bytes; `-` is standard input.
+/// Reads a text file of at most `most` bytes; `-` is standard input.
 pub fn read(path: &Path, most: u64) -> Result<String, Error> {
     let mut bytes = Vec::new();
-    // One byte more tells that there are too many.
+    // One byte more shows that there are too many.
     let read = if is_stdout(path) {
         io::stdin().take(most + 1).read_to_end(&mut bytes)
     } else {
@@ -104,14 +103,12 @@ pub fn read(path: &Path, most: u64) -> Result<String, Error> {
     let count = read.map_err(Error::reading(path))?;
     let file = path.display();
     if count as u64 > most {
-        return Err(Error::Data(format!(
-            "{file} is larger than {} MiB, which is the most that is read",
-            most >> 20
-        )));
+        let message = format!("the file exceeds the limit of {} MiB", most >> 20);
+        return Err(Error::data(file, message));
     }
     String::from_utf8(bytes).map_err(|cause| {
         let before = &cause.as_bytes()[..cause.utf8_error().valid_up_to()];
         let line = before.split(|byte| *byte == b'\n').count();
-        Error::Data(format!("{file}:{line}: the file is not UTF-8 text"))
+        Error::data(format!("{file}:{line}"), "the file is not UTF-8 text")
     })
 }

@@ -12,25 +12,25 @@ use appell_runtime::signal::SignalError;
 use appell_spec::Mechanism;
 use appell_spec::expr::{Expr as SpecExpr, ExprKind, Quantity};
 
-/// A graph with the names of a mechanism.
+/// An expression graph with the symbols of a mechanism.
 pub struct Workbench {
     /// The graph.
     pub graph: Graph,
-    /// The names.
+    /// The symbols.
     pub symbols: Symbols,
 }
 
 impl Workbench {
-    /// The names of a mechanism.
+    /// The symbols of a mechanism.
     pub fn new(mechanism: &Mechanism) -> Self {
         let mut graph = Graph::new();
         let mut symbols = Symbols::new(&mut graph, mechanism);
-        // The number of the machine, exactly.
+        // The floating-point value, exactly.
         symbols.pi = graph.number(pi());
         Self { graph, symbols }
     }
 
-    /// An expression of the spec's language; nothing where it divides by zero.
+    /// Lowers an expression of the spec language; `None` if it divides by zero.
     pub fn lower(&mut self, expr: &SpecExpr) -> Option<Expr> {
         let lowering = Lowering {
             symbols: &self.symbols,
@@ -39,7 +39,7 @@ impl Workbench {
         lowering.lower(&mut self.graph, expr).ok()
     }
 
-    /// Values of expressions in parameters alone.
+    /// Values of expressions in the parameters.
     pub fn constants(&self, exprs: &[Expr], parameters: &[f64]) -> Vec<f64> {
         let mut values = vec![f64::NAN; self.graph.len()];
         for (symbol, &value) in ids(&self.graph, &self.symbols.parameters)
@@ -51,7 +51,7 @@ impl Workbench {
         appell_codegen::symbolic::evaluate(&self.graph, &values, exprs)
     }
 
-    /// Makes a function of time and state out of expressions.
+    /// The expressions as a function of time, state and parameters.
     pub fn function(
         self,
         info: &ModelInfo,
@@ -61,7 +61,7 @@ impl Workbench {
     }
 }
 
-/// Several expressions as one function of time, state and parameters.
+/// Expressions as one function of time, state and parameters.
 pub struct StateFunction {
     schedule: Schedule,
     native: Option<NativeFunction>,
@@ -79,7 +79,7 @@ impl StateFunction {
             .map(Signal::new)
             .collect::<Result<Vec<_>, _>>()?;
         let mut info = model.clone();
-        // The inputs of this function: the model's, which it must not use, and every signal.
+        // The inputs of this function: those of the model, which it must not use, and all signals.
         let mut inputs = model.inputs[..model.declared_inputs].to_vec();
         inputs.extend(
             model
@@ -125,7 +125,7 @@ impl StateFunction {
             functions: vec![function],
         };
         let schedule = schedule(&program, &program.functions[0]);
-        // Without machine code the interpreter gives the same numbers.
+        // The interpreter gives the same results.
         let native = NativeFunction::compile(&schedule, sizes).ok();
         Ok(Self {
             schedule,
@@ -136,7 +136,7 @@ impl StateFunction {
         })
     }
 
-    /// Values at time `t`, state `x` and parameters `p`, into the first places of `values`.
+    /// Evaluates at time `t`, state `x` and parameters `p` into the first entries of `values`.
     pub fn values(&self, t: f64, x: &[f64], p: &[f64], values: &mut [f64]) {
         let values = &mut values[..self.count];
         let mut u = vec![0.0; self.declared + self.signals.len()];
@@ -150,7 +150,7 @@ impl StateFunction {
     }
 }
 
-/// Times at which an expression switches because it compares `t` with a number.
+/// Collects the times at which an expression switches because it compares `t` with a number.
 pub fn switching_times(expr: &SpecExpr, times: &mut Vec<f64>) {
     match &expr.kind {
         ExprKind::Number(_) | ExprKind::Quantity(_) => {}

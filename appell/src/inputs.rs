@@ -1,4 +1,4 @@
-//! What drives the inputs of a simulation: expressions, feedback laws and recordings; they add up.
+//! Inputs of a simulation: the sum of expressions, feedback laws and recordings.
 
 pub mod controller;
 pub mod feedback;

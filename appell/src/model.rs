@@ -1,4 +1,4 @@
-//! A model: the spec, its equations, and every question about them as one call.
+//! A model: a spec with its equations of motion, and one call for each request.
 
 use std::path::{Path, PathBuf};
 
@@ -13,7 +13,7 @@ use crate::engine::{self, Engine};
 use crate::motion::{Motion, Simulated};
 use crate::setup::Setup;
 use crate::source::Source;
-use crate::steady::{Answer, Asked, Question};
+use crate::steady::{Answer, Question, Resolved};
 use crate::{Error, diagnosis, recording};
 
 /// A mechanism with its equations of motion.
@@ -61,13 +61,13 @@ impl Model {
         Self::of(Source::shipped(name)?, None)
     }
 
-    /// A shipped name or the path of a spec file, as the command line takes it.
+    /// A shipped name or the path of a spec file.
     pub fn find(model: &str) -> Result<Self, Error> {
         Self::of(Source::find(model)?, None)
     }
 
-    /// The model of a spec that was found, with a chosen engine; without one the emitted code of shipped
-    /// mechanisms, and machine code for others.
+    /// The model of a spec with a chosen engine; by default the emitted code of shipped mechanisms, and
+    /// machine code for others.
     pub fn of(source: Source, engine: Option<Engine>) -> Result<Self, Error> {
         let equations = match engine {
             None => engine::Equations::at_hand(&source)?,
@@ -76,7 +76,7 @@ impl Model {
         Ok(Self { source, equations })
     }
 
-    /// The same with the adjoints that [`identify`](Self::identify) asks for.
+    /// The model of a spec with the adjoints that [`identify`](Self::identify) needs.
     pub fn for_estimation(source: Source) -> Result<Self, Error> {
         let equations = engine::Equations::for_estimation(&source)?;
         Ok(Self { source, equations })
@@ -104,12 +104,12 @@ impl Model {
             .map_or(&self.source.file, |shipped| shipped.name)
     }
 
-    /// Why the equations are interpreted although machine code was asked for.
+    /// Why the equations are interpreted although machine code was requested.
     pub fn note(&self) -> Option<&str> {
         self.equations.note()
     }
 
-    /// The numbers of the spec, to be changed by texts with units.
+    /// The values of the spec, to be changed by texts with units.
     pub fn setup(&self) -> Result<Setup<'_>, Error> {
         Setup::new(&self.source.file, &self.source.text, self.info())
     }
@@ -119,7 +119,7 @@ impl Model {
         self.simulate_watched(motion, |_| {})
     }
 
-    /// The same; `progress` hears the time in s that is reached.
+    /// Integrates the equations of motion; `progress` is called with the time in s.
     pub fn simulate_watched(
         &self,
         motion: &Motion,
@@ -128,14 +128,14 @@ impl Model {
         motion.simulate(self.equations(), self.setup()?, self.name(), progress)
     }
 
-    /// A motion as a page with the moving mechanism; `ending` says why it ended early.
+    /// A page that animates a motion; `ending` is the reason of an early end.
     pub fn page(&self, motion: &Trajectory, ending: Option<&str>) -> Result<String, Error> {
         let mechanism = &self.setup()?.mechanism;
         appell_report::film::page(mechanism, self.equations(), motion, ending)
             .map_err(|findings| report(mechanism, &self.source.text, &findings).into())
     }
 
-    /// Steady motions with their stability, alone or along a quantity.
+    /// Steady motions with their stability, isolated or along a quantity.
     ///
     /// ```
     /// use appell::{Model, steady::{Answer, Question}};
@@ -143,23 +143,23 @@ impl Model {
     /// let model = Model::shipped("rolling_wheel")?;
     /// let upright = Question::default().fix("theta", 0).fix("omega_2", "20rad/s");
     /// let Answer::Motions(motions) = model.steady(&upright)? else {
-    ///     panic!("it was not followed along anything")
+    ///     panic!("there is no continuation parameter")
     /// };
     /// assert!(!motions.is_empty());
     /// # Ok::<(), appell::Error>(())
     /// ```
     pub fn steady(&self, question: &Question) -> Result<Answer, Error> {
-        self.asked(question)?.answer()
+        self.resolve(question)?.answer()
     }
 
-    /// A question about steady motions with its names resolved: also for charts over two quantities.
-    pub fn asked(&self, question: &Question) -> Result<Asked<'_>, Error> {
+    /// A request for steady motions with its names resolved, also for charts over two quantities.
+    pub fn resolve(&self, question: &Question) -> Result<Resolved<'_>, Error> {
         let mut setup = self.setup()?;
         setup.set(&question.parameters)?;
         question.resolve(self.equations(), &setup)
     }
 
-    /// Gains about a steady motion, and what the inputs reach.
+    /// Controllability about a steady motion, and gains of a feedback law.
     ///
     /// ```
     /// use appell::{Model, Motion, control::Request};
@@ -186,22 +186,21 @@ impl Model {
         recording::read_of(&self.source, paths)
     }
 
-    /// The parameters that make recordings most likely; `stage` hears what is being done. The model has to
-    /// be one [for estimation](Self::for_estimation).
+    /// Estimates parameters by maximum likelihood; `stage` is called with the name of each step. The model
+    /// must be one [for estimation](Self::for_estimation).
     pub fn identify(
         &self,
         set: &DataSet,
         options: &identify::Options,
         stage: impl FnMut(&'static str),
     ) -> Result<identify::Answer, Error> {
-        recording::refuse_slow(set)?;
-        identify::identify(set, self.equations(), options, stage)
-            .map_err(|error| diagnosis::identification(&error))
+        recording::check_time_unit(set)?;
+        Ok(identify::identify(set, self.equations(), options, stage)?)
     }
 }
 
-/// Where the model that a data set names and its recordings disagree, which effect is missing, and how far
-/// it closes the gap; `stage` hears what is being done.
+/// Diagnoses the gap between a data set and its model: location, missing effect, and the part closed on
+/// held-out runs; `stage` is called with the name of each step.
 pub fn diagnose(
     set: &DataSet,
     options: &gap::Options,

@@ -1,4 +1,4 @@
-//! A motion as it is asked for: numbers with units, laws, inputs, an integrator.
+//! A request for a motion: values with units, feedback laws, inputs, an integrator.
 
 use std::path::PathBuf;
 
@@ -8,35 +8,35 @@ use appell_runtime::simulate::{Method, Response, Sampling, SimulationError, Vali
 use appell_runtime::trajectory::Extras;
 use appell_runtime::{Simulation, Trajectory};
 
-use crate::Error;
 use crate::inputs::controller::Plan;
 use crate::inputs::{feedback, tabulated};
 use crate::setup::{Assignment, Setup};
+use crate::{Error, Field};
 
-/// Rows of a trajectory that fit into memory anywhere.
+/// Maximum number of rows of a trajectory.
 pub const MOST_ROWS: f64 = 2e6;
 
-/// Where a feedback law stands.
+/// Source of a feedback law.
 #[derive(Debug, Clone)]
 pub enum Law {
-    /// In a file.
+    /// A file.
     File(PathBuf),
-    /// In a text, with the name under which its mistakes are reported.
+    /// A text.
     Text {
-        /// The name.
+        /// Its name in messages.
         name: String,
         /// The text.
         text: String,
     },
 }
 
-/// What is asked for. Values are texts: `0.3` and `2*10` are in the unit that the spec declares,
-/// `30cm` and `5[m/s]/R` are converted and checked. Inputs and laws add up.
+/// A request for a motion. Values are texts: `0.3` and `2*10` are in the unit that the spec declares,
+/// `30cm` and `5[m/s]/R` are converted and checked. Inputs and feedback laws are added.
 #[derive(Debug, Clone)]
 pub struct Motion {
-    /// Its end in s.
+    /// Final time in s.
     pub t_end: f64,
-    /// Interval between the rows of the trajectory in s; a thousandth of the motion by default.
+    /// Output interval in s; by default a thousandth of the motion.
     pub interval: Option<f64>,
     /// The integrator.
     pub method: Method,
@@ -48,29 +48,29 @@ pub struct Motion {
     pub initial: Vec<Assignment>,
     /// Inputs as expressions in t, states and parameters.
     pub inputs: Vec<Assignment>,
-    /// A CSV file with inputs, or a run of a data set such as `rig/recording.toml:run1.csv`.
+    /// Inputs from a CSV file, or from a run of a data set, such as `rig/recording.toml:run1.csv`.
     pub recorded: Option<PathBuf>,
     /// Feedback laws.
     pub laws: Vec<Law>,
-    /// What is recorded besides states and inputs.
+    /// Additional columns of the trajectory.
     pub extras: Extras,
-    /// What is watched, and what happens when it is passed.
+    /// Validity limits, and the response to a violation.
     pub validity: Validity,
 }
 
-/// A motion that was computed.
+/// The result of a simulation.
 #[derive(Debug)]
 pub struct Simulated {
-    /// The motion, up to where it ended.
+    /// The motion, possibly ended early.
     pub trajectory: Trajectory,
-    /// Why it ended early, if it did.
+    /// The reason of an early end.
     pub failure: Option<String>,
-    /// Whether nothing drives the mechanism.
+    /// Whether neither inputs nor feedback drive the mechanism.
     pub undriven: bool,
 }
 
 impl Motion {
-    /// The motion of the spec from 0 to `t_end` in s, with outputs and energies.
+    /// A motion from 0 to `t_end` in s with the values of the spec; outputs and energies are recorded.
     pub fn new(t_end: f64) -> Self {
         Self {
             t_end,
@@ -91,14 +91,14 @@ impl Motion {
         }
     }
 
-    /// Gives a parameter another value.
+    /// Sets a parameter.
     #[must_use]
     pub fn set(mut self, name: &str, value: impl ToString) -> Self {
         self.parameters.push(Assignment::new(name, value));
         self
     }
 
-    /// Gives a state another initial value.
+    /// Sets an initial value.
     #[must_use]
     pub fn initial(mut self, name: &str, value: impl ToString) -> Self {
         self.initial.push(Assignment::new(name, value));
@@ -122,13 +122,32 @@ impl Motion {
         self
     }
 
-    /// Interval between the rows in s.
+    /// The output interval in s, once it and the final time are found valid.
+    pub(crate) fn checked_interval(&self) -> Result<f64, Error> {
+        let interval = self.row_interval();
+        for (field, value) in [(Field::End, self.t_end), (Field::Interval, interval)] {
+            if !(value.is_finite() && value > 0.0) {
+                let message = format!("{value} is not a positive number of seconds");
+                return Err(Error::request(field, message));
+            }
+        }
+        let rows = self.t_end / interval;
+        if rows > MOST_ROWS {
+            let message = format!(
+                "{rows} rows are too many; choose a longer interval (at most {MOST_ROWS:.0} rows)"
+            );
+            return Err(Error::request(Field::Interval, message));
+        }
+        Ok(interval)
+    }
+
+    /// Output interval in s.
     pub fn row_interval(&self) -> f64 {
         self.interval.unwrap_or(self.t_end / 1000.0)
     }
 
-    /// Computes it with the equations and the numbers of a spec, which `name` stands for in messages;
-    /// `progress` hears the time in s that is reached.
+    /// Integrates the equations of motion; `name` names the spec in messages, and `progress` is called
+    /// with the time in s.
     pub(crate) fn simulate(
         &self,
         model: &dyn Model,
@@ -136,20 +155,7 @@ impl Motion {
         name: &str,
         progress: impl Fn(f64),
     ) -> Result<Simulated, Error> {
-        let interval = self.row_interval();
-        for (what, value) in [("end", self.t_end), ("interval between rows", interval)] {
-            if !(value.is_finite() && value > 0.0) {
-                return Err(Error::Usage(format!(
-                    "the {what} of the motion must be a positive number of seconds, not {value}"
-                )));
-            }
-        }
-        let rows = self.t_end / interval;
-        if rows > MOST_ROWS {
-            return Err(Error::Usage(format!(
-                "{rows} rows are too many; choose a longer interval (at most {MOST_ROWS:.0} rows)"
-            )));
-        }
+        let interval = self.checked_interval()?;
         setup.watch_ranges = self.validity.ranges == Response::Stop;
         setup.set(&self.parameters)?;
         let plan = self.plan(model, &mut setup, name)?;
@@ -179,7 +185,7 @@ impl Motion {
                 let reason = error.to_string();
                 match error {
                     SimulationError::Integration { trajectory, .. } => (*trajectory, Some(reason)),
-                    _ => return Err(Error::Usage(reason)),
+                    other => return Err(other.into()),
                 }
             }
         };
@@ -190,7 +196,7 @@ impl Motion {
         })
     }
 
-    /// What drives the inputs. Laws come first: they may ask for initial values, which `initial` overrides.
+    /// The sources of the inputs. Feedback laws come first: `initial` overrides their initial values.
     fn plan(&self, model: &dyn Model, setup: &mut Setup<'_>, name: &str) -> Result<Plan, Error> {
         let mut plan = Plan::new(setup);
         for law in &self.laws {

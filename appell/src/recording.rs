@@ -1,15 +1,15 @@
-//! Recordings: found, read, and what of them changes what can be concluded.
+//! Recordings: reading, and warnings about the data.
 
 use std::path::PathBuf;
 
-use appell_gap::data::{self, DataError, DataSet, Finding, FindingKind, Run, Spec};
+use appell_gap::data::{self, DataSet, Finding, FindingKind, Run, Spec};
 use appell_models::ALL;
 use appell_report::recording::sentence;
 use appell_report::text::number;
 use appell_spec::Severity;
 
-use crate::Error;
 use crate::source::Source;
+use crate::{Error, Field};
 
 /// Reads a data set, or CSV files of a mechanism.
 pub fn read(paths: &[PathBuf], model: Option<&str>) -> Result<DataSet, Error> {
@@ -36,18 +36,20 @@ fn read_with(paths: &[PathBuf], source: Option<&Source>) -> Result<DataSet, Erro
             let library: Vec<(&str, Spec)> = shipped.collect();
             Ok(data::read(folder, &library, spec)?)
         }
-        (paths, _) if paths.iter().any(described) => Err(Error::Usage(
-            "give one data set, or CSV files and their mechanism".to_owned(),
+        (paths, _) if paths.iter().any(described) => Err(Error::request(
+            Field::Recordings,
+            "give one data set, or CSV files and their mechanism",
         )),
         (paths, Some(spec)) => Ok(data::read_bare(spec, paths)?),
-        (_, None) => Err(Error::Usage(
-            "CSV files need the mechanism whose names their columns have; name a shipped one or a spec".to_owned(),
+        (_, None) => Err(Error::request(
+            Field::Recordings,
+            "CSV files need the mechanism whose names their columns have; name a shipped one or a spec",
         )),
     }
 }
 
-/// Refuses times that are hardly in seconds: a filter would integrate for hours.
-pub fn refuse_slow(set: &DataSet) -> Result<(), Error> {
+/// Refuses times that are hardly in seconds.
+pub fn check_time_unit(set: &DataSet) -> Result<(), Error> {
     let slow = |finding: &&Finding| finding.kind == FindingKind::SlowClock;
     let Some(first) = set.findings.iter().find(slow) else {
         return Ok(());
@@ -55,29 +57,19 @@ pub fn refuse_slow(set: &DataSet) -> Result<(), Error> {
     let mut runs = set.runs.iter();
     let run = runs.find(|run| first.run.as_ref() == Some(&run.name));
     let seconds = run.map_or(0.0, Run::duration);
-    Err(Error::Data(format!(
-        "{}: {}: the run lasts {} s, with {}",
-        first.run.as_deref().unwrap_or_default(),
+    let message = format!(
+        "{}: the run lasts {} s, with {}",
         first.channel.as_deref().unwrap_or_default(),
         number(seconds),
         first.message
-    )))
+    );
+    Err(Error::data(
+        first.run.as_deref().unwrap_or_default(),
+        message,
+    ))
 }
 
-impl From<DataError> for Error {
-    fn from(error: DataError) -> Self {
-        match error {
-            DataError::Report(report) => Self::Report(report),
-            DataError::File { path, cause } => Self::reading(&path)(cause),
-            DataError::Several(errors) => {
-                Self::Several(errors.into_iter().map(Self::from).collect())
-            }
-            whole => Self::Data(whole.to_string()),
-        }
-    }
-}
-
-/// What of the recordings changes what can be concluded, a sentence each.
+/// Warnings about the data that may affect the conclusions, one sentence each.
 pub fn warnings(set: &DataSet) -> Vec<String> {
     let findings = set.findings.iter();
     let grave = findings.filter(|finding| finding.kind.severity() == Severity::Warning);

@@ -1,4 +1,4 @@
-//! Numbers for a mechanism from the command line: parameters, initial values, inputs.
+//! Values of a mechanism with units: parameters, initial values, inputs.
 
 use std::borrow::Cow;
 
@@ -6,12 +6,12 @@ use appell_runtime::model::ModelInfo;
 use appell_spec::expr::Expr;
 use appell_spec::mechanism::{CoordinateId, InputId, ParameterId, SpeedId};
 use appell_spec::units::{self, Unit};
-use appell_spec::{Mechanism, Report, Scope, Snippet, did_you_mean, formula};
+use appell_spec::{Mechanism, Scope, Snippet, did_you_mean, formula};
 
-use crate::Error;
 use crate::formula::Workbench;
+use crate::{Error, Field};
 
-/// `NAME=VALUE` as it was given.
+/// A name with the text of its value, such as `R=30cm`.
 #[derive(Debug, Clone)]
 pub struct Assignment {
     /// Left side.
@@ -50,13 +50,13 @@ impl std::str::FromStr for Assignment {
     }
 }
 
-/// A spec, its mechanism, and the numbers that replace its own.
+/// A spec, its mechanism, and values in place of its own.
 pub struct Setup<'a> {
     /// Text of the spec.
     pub spec: &'a str,
     /// The mechanism.
     pub mechanism: Mechanism,
-    /// The names and sizes of its equations.
+    /// Names, units and sizes of its equations.
     pub info: &'a ModelInfo,
     /// Parameters in SI.
     pub parameters: Vec<f64>,
@@ -67,7 +67,7 @@ pub struct Setup<'a> {
 }
 
 impl<'a> Setup<'a> {
-    /// The numbers of the spec.
+    /// The values of the spec.
     pub fn new(file: &str, spec: &'a str, info: &'a ModelInfo) -> Result<Self, Error> {
         let checked = appell_spec::load(file, spec)?;
         let (parameters, initial) = (info.default_parameters(), info.initial_state());
@@ -81,9 +81,9 @@ impl<'a> Setup<'a> {
         })
     }
 
-    /// `--set NAME=VALUE`; later values may use earlier ones.
+    /// Sets parameters; an expression may use parameters set before it.
     pub fn set(&mut self, assignments: &[Assignment]) -> Result<(), Error> {
-        unique(assignments, "--set")?;
+        unique(assignments, Field::Set)?;
         for assignment in assignments {
             let names = || {
                 self.mechanism
@@ -91,46 +91,47 @@ impl<'a> Setup<'a> {
                     .iter()
                     .map(|p| p.label.name.as_str())
             };
-            let index = known(&assignment.name, "parameter", names())?;
+            let index = known(Field::Set, &assignment.name, "parameter", names())?;
             let unit = self.mechanism.parameters[ParameterId::new(index)]
                 .label
                 .unit
                 .clone();
-            let value = self.value(
-                &assignment.value,
-                &unit,
-                &format!("--set {}", assignment.name),
-            )?;
+            let value = self.value(Field::Set, &assignment.name, &assignment.value, &unit)?;
             let parameter = &self.mechanism.parameters[ParameterId::new(index)];
             let low = parameter.at_least.unwrap_or(f64::NEG_INFINITY);
             let high = parameter.at_most.unwrap_or(f64::INFINITY);
-            inside(&assignment.name, value, [low, high], &unit).map_err(Error::Usage)?;
+            inside(&assignment.name, value, [low, high], &unit)
+                .map_err(|message| Error::request(Field::Set, message))?;
             self.parameters[index] = value;
         }
         Ok(())
     }
 
-    /// `--initial NAME=VALUE`; values may use parameters.
+    /// Sets initial values; an expression may use parameters.
     pub fn start(&mut self, assignments: &[Assignment]) -> Result<(), Error> {
-        self.start_with("--initial", assignments)
+        self.start_with(Field::Initial, assignments)
     }
 
-    /// The same for a flag of another name.
-    pub fn start_with(&mut self, flag: &str, assignments: &[Assignment]) -> Result<(), Error> {
-        unique(assignments, flag)?;
-        for assignment in assignments {
-            let index = self.state(&assignment.name)?;
-            let unit = self.unit_of_state(index).clone();
-            let label = format!("{flag} {}", assignment.name);
-            let value = self.value(&assignment.value, &unit, &label)?;
-            self.place(index, value).map_err(Error::Usage)?;
+    /// Sets states that another part of a request gives.
+    pub(crate) fn start_with(
+        &mut self,
+        field: Field,
+        assignments: &[Assignment],
+    ) -> Result<(), Error> {
+        unique(assignments, field)?;
+        for Assignment { name, value } in assignments {
+            let index = self.state(field, name)?;
+            let value = self.value(field, name, value, self.unit_of_state(index))?;
+            self.place(index, value)
+                .map_err(|message| Error::request(field, message))?;
         }
         Ok(())
     }
 
     /// Index of a state.
-    pub fn state(&self, name: &str) -> Result<usize, Error> {
+    pub fn state(&self, field: Field, name: &str) -> Result<usize, Error> {
         known(
+            field,
             name,
             "state",
             self.info.states.iter().map(|state| state.name.as_ref()),
@@ -138,8 +139,9 @@ impl<'a> Setup<'a> {
     }
 
     /// Index of a declared input.
-    pub fn input(&self, name: &str) -> Result<usize, Error> {
+    pub fn input(&self, field: Field, name: &str) -> Result<usize, Error> {
         known(
+            field,
             name,
             "input",
             self.mechanism
@@ -150,11 +152,14 @@ impl<'a> Setup<'a> {
     }
 
     /// A constant value of a declared input, with its index.
-    pub fn input_value(&self, flag: &str, assignment: &Assignment) -> Result<(usize, f64), Error> {
-        let input = self.input(&assignment.name)?;
+    pub(crate) fn input_value(
+        &self,
+        field: Field,
+        Assignment { name, value }: &Assignment,
+    ) -> Result<(usize, f64), Error> {
+        let input = self.input(field, name)?;
         let unit = &self.mechanism.inputs[InputId::new(input)].label.unit;
-        let label = format!("{flag} {}", assignment.name);
-        Ok((input, self.value(&assignment.value, unit, &label)?))
+        Ok((input, self.value(field, name, value, unit)?))
     }
 
     /// Unit of a state.
@@ -170,9 +175,9 @@ impl<'a> Setup<'a> {
         }
     }
 
-    /// A value in SI: a number in the quantity's unit, a number with a unit, or an expression in
-    /// the parameters.
-    pub fn value(&self, text: &str, unit: &Unit, label: &str) -> Result<f64, Error> {
+    /// A value in SI of the quantity `name`: a number in its unit, a number with a unit, or an
+    /// expression in the parameters.
+    pub fn value(&self, field: Field, name: &str, text: &str, unit: &Unit) -> Result<f64, Error> {
         let text = bracketed(text);
         let expr = formula(
             self.spec,
@@ -181,11 +186,11 @@ impl<'a> Setup<'a> {
             Scope::Constant,
             unit,
         )
-        .map_err(|findings| {
-            Error::Expression(Box::new(Report::new(label, text.as_ref(), findings)))
-        })?;
-        self.constant(&expr)
-            .ok_or_else(|| Error::Usage(format!("{label}: `{text}` is not a finite number")))
+        .map_err(Error::expression(field, name, &text))?;
+        self.constant(&expr).ok_or_else(|| {
+            let message = format!("{name}: `{text}` is not a finite number");
+            Error::request(field, message)
+        })
     }
 
     /// The finite value of an expression in parameters.
@@ -196,7 +201,7 @@ impl<'a> Setup<'a> {
         value.is_finite().then_some(value)
     }
 
-    /// An initial value, which must lie in its range where ranges are watched.
+    /// Sets an initial value, which must lie in its range if ranges are watched.
     pub(crate) fn place(&mut self, state: usize, value: f64) -> Result<(), String> {
         let quantity = &self.info.states[state];
         if self.watch_ranges {
@@ -212,8 +217,8 @@ impl<'a> Setup<'a> {
     }
 }
 
-/// `30cm` and `30 cm` become `30[cm]`; anything else is an expression as it stands.
-pub fn bracketed(text: &str) -> Cow<'_, str> {
+/// `30cm` and `30 cm` become `30[cm]`; any other text is already an expression.
+pub(crate) fn bracketed(text: &str) -> Cow<'_, str> {
     let (number, rest) = text.split_at(number_length(text));
     let unit = rest.trim();
     let begins = |c: char| c.is_alphabetic() || c == '%';
@@ -223,7 +228,7 @@ pub fn bracketed(text: &str) -> Cow<'_, str> {
     Cow::Owned(format!("{number}[{unit}]"))
 }
 
-/// Bytes of the number with which a text begins. An `e` without digits begins a unit.
+/// Length in bytes of the number with which a text begins. An `e` without digits begins a unit.
 fn number_length(text: &str) -> usize {
     let bytes = text.as_bytes();
     let digits = |from: usize| {
@@ -253,8 +258,9 @@ fn number_length(text: &str) -> usize {
     end
 }
 
-/// Position of a name, or what to write instead.
-pub fn known<'n>(
+/// Position of a name, or an error that suggests another.
+pub(crate) fn known<'n>(
+    field: Field,
     name: &str,
     what: &str,
     names: impl Iterator<Item = &'n str> + Clone,
@@ -262,16 +268,20 @@ pub fn known<'n>(
     names
         .clone()
         .position(|other| other == name)
-        .ok_or_else(|| Error::Usage(unknown(name, what, names)))
+        .ok_or_else(|| Error::request(field, unknown(name, what, names)))
 }
 
 /// The message for an unknown name.
-pub fn unknown<'n>(name: &str, what: &str, names: impl Iterator<Item = &'n str> + Clone) -> String {
+pub(crate) fn unknown<'n>(
+    name: &str,
+    what: &str,
+    names: impl Iterator<Item = &'n str> + Clone,
+) -> String {
     format!("there is no {what} `{name}`; {}", instead(name, names))
 }
 
-/// What to write instead of an unknown name.
-pub fn instead<'n>(name: &str, names: impl Iterator<Item = &'n str> + Clone) -> String {
+/// A suggestion for an unknown name.
+pub(crate) fn instead<'n>(name: &str, names: impl Iterator<Item = &'n str> + Clone) -> String {
     did_you_mean(name, names.clone(), || {
         let list = names.collect::<Vec<_>>();
         if list.is_empty() {
@@ -282,17 +292,15 @@ pub fn instead<'n>(name: &str, names: impl Iterator<Item = &'n str> + Clone) -> 
     })
 }
 
-/// Refuses a name that is given twice under a flag.
-pub fn unique(assignments: &[Assignment], flag: &str) -> Result<(), Error> {
+/// Refuses a name that is given twice.
+pub(crate) fn unique(assignments: &[Assignment], field: Field) -> Result<(), Error> {
     for (i, assignment) in assignments.iter().enumerate() {
         if assignments[..i]
             .iter()
             .any(|other| other.name == assignment.name)
         {
-            return Err(Error::Usage(format!(
-                "{flag}: `{}` is given twice",
-                assignment.name
-            )));
+            let message = format!("`{}` is given twice", assignment.name);
+            return Err(Error::request(field, message));
         }
     }
     Ok(())

@@ -1,17 +1,16 @@
-//! MODEL: the name of a shipped mechanism or the path of a spec file.
+//! Specs: shipped ones by name, others by path.
 
 use std::path::Path;
 
 use appell_models::{ALL, Shipped};
 use appell_spec::limits::MAX_FILE;
 
-use crate::Error;
-use crate::files;
+use crate::{Error, Field, files};
 
-/// The spec behind a MODEL.
+/// A spec.
 #[derive(Debug)]
 pub struct Source {
-    /// Name of the file in messages and in emitted code.
+    /// Name of the file, for messages and emitted code.
     pub file: String,
     /// Its text.
     pub text: String,
@@ -20,7 +19,7 @@ pub struct Source {
 }
 
 impl Source {
-    /// Finds a MODEL. A shipped name wins over a file; `./name` means the file.
+    /// A shipped name or the path of a spec file. A shipped name takes precedence; `./name` is the file.
     pub fn find(model: &str) -> Result<Self, Error> {
         if Shipped::find(model).is_some() {
             return Self::shipped(model);
@@ -30,13 +29,14 @@ impl Source {
         if is_path {
             Self::read(path)
         } else {
-            Err(Error::Usage(unknown(model)))
+            Err(Error::request(Field::Model, unknown(model)))
         }
     }
 
     /// A shipped spec.
     pub fn shipped(name: &str) -> Result<Self, Error> {
-        let shipped = Shipped::find(name).ok_or_else(|| Error::Usage(unknown(name)))?;
+        let shipped =
+            Shipped::find(name).ok_or_else(|| Error::request(Field::Model, unknown(name)))?;
         Ok(Self {
             file: shipped.file.to_owned(),
             text: shipped.spec.to_owned(),

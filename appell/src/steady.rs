@@ -1,84 +1,74 @@
-//! Questions about steady motions, by the names of a spec.
+//! Steady motions: requests in the names of a spec, and their results.
 
 pub mod export;
 mod question;
 pub mod regions;
 
 use appell_analysis::{
-    Axis, Branch, BranchError, BranchOptions, Branches, Chart, ChartError, Requirement, Stability,
-    SteadyError, SteadyMotion, SteadyProblem, Term,
+    Axis, Branch, BranchOptions, Branches, Chart, Requirement, Stability, SteadyMotion,
+    SteadyProblem, Term,
 };
 use appell_spec::did_you_mean;
 use appell_spec::units::{self, Unit};
 
-use crate::Error;
-use crate::setup::Setup;
+use crate::setup::{Assignment, Setup};
+use crate::{Error, Field};
 
 pub use question::{Question, STARTS, Span};
 
-/// A question with its names resolved.
-pub struct Asked<'a> {
+/// A request with its names resolved.
+pub struct Resolved<'a> {
     /// The problem with its conditions.
     pub problem: SteadyProblem<'a>,
-    /// The quantity to follow, and its range in SI.
+    /// The continuation parameter, and its range in SI.
     pub along: Option<(Term, [f64; 2])>,
-    /// What feasible motions satisfy.
+    /// Conditions on feasible motions.
     pub requirements: Vec<Requirement>,
-    /// Starting points from which motions are sought.
+    /// Number of starting points of the search.
     pub starts: usize,
 }
 
-/// Motions that stand alone, or branches of them.
+/// Isolated motions, or branches of motions.
 pub enum Answer {
     /// Each with its stability.
     Motions(Vec<(SteadyMotion, Stability)>),
-    /// Along a quantity.
+    /// Along the continuation parameter.
     Branches(Vec<Branch>),
 }
 
-impl Asked<'_> {
+impl Resolved<'_> {
     /// The motions.
     pub fn answer(&self) -> Result<Answer, Error> {
         match self.along {
             Some((along, range)) => {
                 let options = BranchOptions::default();
-                Branches::new(&self.problem, along, range, &self.requirements, options)
-                    .and_then(|branches| branches.trace(self.starts))
-                    .map(Answer::Branches)
-                    .map_err(|error| unanswered(&error))
+                let branches =
+                    Branches::new(&self.problem, along, range, &self.requirements, options)?;
+                Ok(Answer::Branches(branches.trace(self.starts)?))
             }
             None => self.motions().map(Answer::Motions),
         }
     }
 
     fn motions(&self) -> Result<Vec<(SteadyMotion, Stability)>, Error> {
-        let found = self
-            .problem
-            .solve_isolated(self.starts)
-            .map_err(|error| refused(&error))?;
+        let found = self.problem.solve_isolated(self.starts)?;
         let judged = found.into_iter().map(|motion| {
             let structure = self.problem.structure();
             let stability = Stability::of(self.problem.model(), structure, &motion.point);
-            stability
-                .map(|stability| (motion, stability))
-                .map_err(|error| Error::Computation(error.to_string()))
+            Ok((motion, stability?))
         });
         judged.collect()
     }
 
-    /// Stability over two quantities.
+    /// The stability chart over two quantities.
     pub fn chart(&self, axes: [Axis; 2]) -> Result<Chart, Error> {
         let threads = std::thread::available_parallelism().map_or(1, usize::from);
         let requirements = &self.requirements;
         let chart = Chart::of(&self.problem, axes, requirements, self.starts, threads);
-        chart.map_err(|error| match error {
-            ChartError::Branch(error) => unanswered(&error),
-            ChartError::Grid(..) => Error::Usage(error.to_string()),
-            other => Error::Computation(other.to_string()),
-        })
+        Ok(chart?)
     }
 
-    /// What is told of every motion.
+    /// The quantities that are reported of every motion.
     pub fn terms(&self) -> Vec<Term> {
         let mut terms = self.problem.constants();
         terms.extend(self.problem.free_terms());
@@ -90,7 +80,7 @@ impl Asked<'_> {
         terms
     }
 
-    /// Pairs of coordinates or outputs that are a place in the ground plane: `x…` and `y…`.
+    /// Pairs of coordinates or outputs that form a position in the ground plane: `x…` and `y…`.
     pub fn places(&self) -> Vec<([Term; 2], String)> {
         let info = self.problem.model().info();
         let coordinates = info
@@ -108,40 +98,29 @@ impl Asked<'_> {
     }
 }
 
-/// The term of a name, or what to write instead.
-pub fn term(setup: &Setup<'_>, name: &str) -> Result<Term, Error> {
+/// The term of a name.
+pub(crate) fn term(setup: &Setup<'_>, field: Field, name: &str) -> Result<Term, Error> {
     Term::named(setup.info, name).ok_or_else(|| {
         let names = Term::names(setup.info);
         let names = || names.iter().map(String::as_str);
         let instead = did_you_mean(name, names(), || {
             format!("there are {}", names().collect::<Vec<_>>().join(", "))
         });
-        Error::Usage(format!("there is no quantity `{name}`; {instead}"))
+        Error::request(field, format!("there is no quantity `{name}`; {instead}"))
     })
 }
 
 /// A value of a term in SI.
-pub fn value_of(setup: &Setup<'_>, term: Term, text: &str, label: &str) -> Result<f64, Error> {
+pub(crate) fn value_of(
+    setup: &Setup<'_>,
+    term: Term,
+    field: Field,
+    Assignment { name, value }: &Assignment,
+) -> Result<f64, Error> {
     let quantity = term.quantity(setup.info);
-    let unit: Unit = units::parse(&quantity.unit)
-        .map_err(|_| Error::Usage(format!("{label}: `{}` is no unit", quantity.unit)))?;
-    setup.value(text, &unit, label)
-}
-
-fn unanswered(error: &BranchError) -> Error {
-    match error {
-        BranchError::Steady(error) => refused(error),
-        BranchError::Isolated { .. } | BranchError::Range { .. } => Error::Usage(error.to_string()),
-        BranchError::Stability(_) => Error::Computation(error.to_string()),
-    }
-}
-
-/// Why there is no steady motion.
-pub fn refused(error: &SteadyError) -> Error {
-    match error {
-        SteadyError::None { .. } | SteadyError::Structure(_) => {
-            Error::Computation(error.to_string())
-        }
-        _ => Error::Usage(error.to_string()),
-    }
+    let unit: Unit = units::parse(&quantity.unit).map_err(|_| {
+        let message = format!("{name}: `{}` is not a unit", quantity.unit);
+        Error::request(field, message)
+    })?;
+    setup.value(field, name, value, &unit)
 }

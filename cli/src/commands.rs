@@ -21,7 +21,7 @@ mod simulate;
 mod stability;
 mod steady;
 
-use appell::Error;
+use crate::failure::Error;
 
 /// Equations of motion from a declarative mechanism spec, by the Gibbs-Appell method.
 ///

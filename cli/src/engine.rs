@@ -1,7 +1,8 @@
 //! `--engine`, and models made under a spinner.
 
+use crate::failure::Error;
+use appell::Model;
 use appell::source::Source;
-use appell::{Error, Model};
 
 use crate::failure::note;
 use crate::progress;
@@ -39,7 +40,7 @@ pub(crate) fn model_for_estimation(model: &str) -> Result<Model, Error> {
     made(|| Model::for_estimation(source))
 }
 
-fn made(make: impl FnOnce() -> Result<Model, Error>) -> Result<Model, Error> {
+fn made(make: impl FnOnce() -> Result<Model, appell::Error>) -> Result<Model, Error> {
     let spinner = progress::spinner("deriving the equations of motion");
     let model = make();
     spinner.finish_and_clear();

@@ -5,9 +5,9 @@ pub(crate) mod text;
 use std::path::PathBuf;
 use std::str::FromStr;
 
-use appell::Error;
+use crate::failure::Error;
 use appell::setup::{Assignment, Setup};
-use appell::steady::{Answer, Asked, STARTS, Span};
+use appell::steady::{Answer, Resolved, STARTS, Span};
 use appell_analysis::{Axis, Chart};
 
 use crate::{engine, progress};
@@ -67,7 +67,7 @@ impl Question {
     /// Obtains the equations, reads the values and passes both on.
     pub(crate) fn with<T>(
         &self,
-        then: impl FnOnce(&Asked<'_>, &Setup<'_>) -> Result<T, Error>,
+        then: impl FnOnce(&Resolved<'_>, &Setup<'_>) -> Result<T, Error>,
     ) -> Result<T, Error> {
         let model = engine::model(&self.model, None)?;
         let mut setup = model.setup()?;
@@ -80,22 +80,22 @@ impl Question {
             require: self.require.iter().map(|least| least.0.clone()).collect(),
             starts: self.starts,
         };
-        then(&question.resolve(model.equations(), &setup)?, &setup)
+        then(&model.resolve(&question)?, &setup)
     }
 }
 
 /// The motions, with a progress indicator.
-pub(crate) fn answer(asked: &Asked<'_>) -> Result<Answer, Error> {
+pub(crate) fn answer(asked: &Resolved<'_>) -> Result<Answer, Error> {
     let spinner = progress::spinner("searching for steady motions");
     let answer = asked.answer();
     spinner.finish_and_clear();
-    answer
+    Ok(answer?)
 }
 
 /// The stability chart, with a progress indicator.
-pub(crate) fn chart(asked: &Asked<'_>, axes: [Axis; 2]) -> Result<Chart, Error> {
+pub(crate) fn chart(asked: &Resolved<'_>, axes: [Axis; 2]) -> Result<Chart, Error> {
     let spinner = progress::spinner("computing the chart");
     let chart = asked.chart(axes);
     spinner.finish_and_clear();
-    chart
+    Ok(chart?)
 }

@@ -2,13 +2,14 @@
 
 use std::path::PathBuf;
 
-use appell::{Error, files};
+use crate::failure::Error;
+use appell::files;
 
 use crate::failure::tell;
 
 /// Writes to standard output.
 pub(crate) fn print(text: &str) -> Result<(), Error> {
-    files::to_stdout(|to| to.write_all(text.as_bytes()))
+    Ok(files::to_stdout(|to| to.write_all(text.as_bytes()))?)
 }
 
 /// Writes to standard output, or to standard error if one of the files is standard output.

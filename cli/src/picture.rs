@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use appell::Error;
+use crate::failure::Error;
 use appell::files;
 
 /// Writes a figure, as PNG if the name ends in `.png`; `-` is standard output, as SVG.
@@ -12,9 +12,9 @@ pub(crate) fn write(path: &Path, svg: &str) -> Result<(), Error> {
         .is_some_and(|end| end.eq_ignore_ascii_case("png"))
     {
         let png = png(svg)?;
-        files::write_with(path, |to| to.write_all(&png))
+        Ok(files::write_with(path, |to| to.write_all(&png))?)
     } else {
-        files::write(path, svg)
+        Ok(files::write(path, svg)?)
     }
 }
 

@@ -1,4 +1,4 @@
-//! From which disturbances a law brings the mechanism back: simulations from a grid of them.
+//! Region of attraction: simulations of a law from a grid of disturbances.
 
 use std::fmt::Write as _;
 
@@ -6,34 +6,33 @@ use appell_analysis::control::attraction::{Axis, Fate, Fates, Region};
 use appell_analysis::control::feedback::Feedback;
 use appell_analysis::control::sampler::{SampledFeedback, Sampler};
 use appell_report::figure::Map;
+use appell_report::text::number;
 use appell_runtime::Trajectory;
 use appell_runtime::inputs::InputSource;
 use appell_runtime::model::{Model, ModelInfo, Quantity};
 use serde_json::{Value, json};
 
-use super::ask;
 use super::design::{Design, DesignedGains};
-use crate::Error;
+use super::parse;
 use crate::setup::Setup;
-use appell_report::text::number;
+use crate::{Error, Field};
 
-/// A motion is settled where each fed-back state is within this part of the largest deviation that
-/// it had, …
+/// Settling tolerance, relative to the largest deviation.
 const SETTLED: f64 = 0.05;
-/// … or within this of the steady motion, in SI.
+/// Absolute settling tolerance, in SI.
 const STILL: f64 = 1e-6;
-/// Motions of one grid at most.
+/// Maximum number of motions.
 const MOST: usize = 100_000;
 
-/// What became of the motions.
+/// The disturbed motions and their fates.
 pub struct Explored<'a> {
     info: &'a ModelInfo,
     fates: Fates,
     duration: f64,
 }
 
-/// Simulates a law from every disturbance of `NAME=FROM..TO/STEPS,…`; `progress` hears how many of
-/// how many motions are done.
+/// Simulates a law from every disturbance of a grid such as `theta=-20deg..20deg/8,r=-10cm..10cm/8`;
+/// `progress` is called with the number of completed motions and their total.
 pub fn explore<'a>(
     model: &dyn Model,
     setup: &Setup<'a>,
@@ -43,27 +42,25 @@ pub fn explore<'a>(
     progress: &(dyn Fn(usize, usize) + Sync),
 ) -> Result<Explored<'a>, Error> {
     if !(duration.is_finite() && duration > 0.0) {
-        let text = format!("`--for-s {duration}` must be a positive number of seconds");
-        return Err(Error::Usage(text));
+        let message = format!("{duration} is not a positive number of seconds");
+        return Err(Error::request(Field::Duration, message));
     }
     let Some(law) = &design.law else {
-        return Err(Error::Usage("`--attraction` needs a law".to_owned()));
+        let message = "a region of attraction needs a law; give poles or weights";
+        return Err(Error::request(Field::Attraction, message));
     };
     let axes = axes(setup, design, asked)?;
     let count: usize = axes.iter().map(|axis| axis.values.len()).product();
     if count > MOST {
-        let text =
-            format!("--attraction: {count} motions are too many; at most {MOST} are possible");
-        return Err(Error::Usage(text));
+        let message = format!("{count} motions are too many; at most {MOST} are possible");
+        return Err(Error::request(Field::Attraction, message));
     }
     let settled = |motion: &Trajectory| {
         design.outputs.iter().all(|&state| {
-            let away = |x: &f64| (x - design.x[state]).abs();
             let column = motion
                 .column(&setup.info.states[state].name)
                 .unwrap_or_default();
-            let largest = column.iter().map(away).fold(0.0, f64::max);
-            away(&motion.last_state()[state]) <= STILL.max(SETTLED * largest)
+            has_settled(motion.times(), &column, |t| design.desired(state, t))
         })
     };
     let region = Region {
@@ -78,12 +75,21 @@ pub fn explore<'a>(
     let fates = region.explore(&|done| progress(done, count));
     Ok(Explored {
         info: setup.info,
-        fates: fates.map_err(|error| Error::Computation(error.to_string()))?,
+        fates: fates.map_err(Error::computation)?,
         duration,
     })
 }
 
-/// The law as the inputs of a simulation. Inputs that it does not set stay as on the motion.
+/// Whether a state ends near its desired value, compared with its largest deviation.
+fn has_settled(times: &[f64], values: &[f64], desired: impl Fn(f64) -> f64) -> bool {
+    let away = times.iter().zip(values);
+    let away = away.map(|(&t, x)| (x - desired(t)).abs());
+    let largest = away.clone().fold(0.0, f64::max);
+    let last = away.last();
+    last.is_some_and(|last| last <= STILL.max(SETTLED * largest))
+}
+
+/// The law as the inputs of a simulation. Other inputs keep their values on the steady motion.
 fn closed<'a>(
     model: &dyn Model,
     design: &'a Design,
@@ -94,7 +100,7 @@ fn closed<'a>(
     let offset: Vec<f64> = inputs.iter().map(|&input| design.u[input]).collect();
     let desired = |t: f64, y: &mut [f64]| {
         for (y, &state) in y.iter_mut().zip(&design.outputs) {
-            *y = design.x[state] + t * design.running(state);
+            *y = design.desired(state, t);
         }
     };
     let declared = model.info().declared_inputs;
@@ -133,16 +139,15 @@ fn closed<'a>(
     })
 }
 
-/// The axes, as states about the motion.
+/// The axes of the grid: states about the steady motion.
 fn axes(setup: &Setup<'_>, design: &Design, asked: &str) -> Result<Vec<Axis>, Error> {
     let mut axes: Vec<Axis> = Vec::new();
     for part in asked.split(',') {
-        let (state, values) = ask::disturbances(setup, part)?;
+        let (state, values) = parse::disturbances(setup, part)?;
         if axes.iter().any(|axis| axis.state == state) {
             let name = &setup.info.states[state].name;
-            return Err(Error::Usage(format!(
-                "--attraction: `{name}` is given twice"
-            )));
+            let message = format!("`{name}` is given twice");
+            return Err(Error::request(Field::Attraction, message));
         }
         let values = values.into_iter().map(|value| design.x[state] + value);
         axes.push(Axis {
@@ -151,8 +156,8 @@ fn axes(setup: &Setup<'_>, design: &Design, asked: &str) -> Result<Vec<Axis>, Er
         });
     }
     if axes.len() > 2 {
-        let text = "--attraction: disturb one state or two".to_owned();
-        return Err(Error::Usage(text));
+        let message = "disturb one state or two";
+        return Err(Error::request(Field::Attraction, message));
     }
     Ok(axes)
 }
@@ -166,7 +171,7 @@ impl Explored<'_> {
         self.fates.fates.iter().filter(|fate| wanted(fate)).count()
     }
 
-    /// For people.
+    /// The summary as text.
     pub fn text(&self) -> String {
         let mut text = format!(
             "region of attraction: of {} disturbed motions {} settle within {} s, {} do not, {} are lost\n",
@@ -193,7 +198,7 @@ impl Explored<'_> {
         text
     }
 
-    /// In SI.
+    /// The results as JSON, in SI.
     pub fn json(&self) -> Value {
         let axes = self.fates.axes.iter().zip(&self.fates.centre);
         let axes = axes.map(|(axis, centre)| {
@@ -216,11 +221,11 @@ impl Explored<'_> {
         })
     }
 
-    /// A map over two states.
+    /// The map over two states.
     pub fn map(&self) -> Result<Map, Error> {
         let [x, y] = &self.fates.axes[..] else {
-            let text = "`--plot` draws disturbances of two states: name two in `--attraction`";
-            return Err(Error::Usage(text.to_owned()));
+            let message = "the map needs disturbances of two states";
+            return Err(Error::request(Field::Plot, message));
         };
         let kind = |i: usize, j: usize| match self.fates.fates[i * y.values.len() + j] {
             Fate::Settled => 1,
@@ -249,5 +254,26 @@ impl Explored<'_> {
             cells,
             curves: Vec::new(),
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const TIMES: [f64; 4] = [0.0, 1.0, 2.0, 3.0];
+
+    #[test]
+    fn an_advancing_output_settles_on_its_motion() {
+        let advancing = |t: f64| 2.0 + 5.0 * t;
+        assert!(has_settled(&TIMES, &[2.5, 7.2, 12.1, 17.001], advancing));
+        assert!(!has_settled(&TIMES, &[2.5, 2.0, 2.0, 2.0], advancing));
+    }
+
+    #[test]
+    fn a_constant_output_settles_on_its_value() {
+        let constant = |_: f64| 1.0;
+        assert!(has_settled(&TIMES, &[2.0, 1.5, 1.1, 1.01], constant));
+        assert!(!has_settled(&TIMES, &[2.0, 1.5, 1.1, 1.1], constant));
     }
 }

@@ -1,4 +1,4 @@
-//! From a steady motion to gains.
+//! Controllability about a steady motion, and gains.
 
 use appell_analysis::Point;
 use appell_analysis::control::controllability::Controllability;
@@ -9,30 +9,30 @@ use appell_analysis::control::{lqr, robust_placement};
 use appell_runtime::model::Model;
 use nalgebra::{Complex, DMatrix};
 
-use super::ask::GivenInputs;
-use super::explain;
-use crate::Error;
+use super::errors::{self, DesignError};
+use super::parse::GivenInputs;
 use crate::setup::Setup;
+use crate::{Error, Field};
 
-/// What is asked for.
+/// A request with its names resolved.
 #[derive(Debug, Clone)]
 pub struct Goal {
     /// The inputs of the law.
     pub inputs: Vec<usize>,
-    /// The states that are fed back; none where they are to be chosen.
+    /// The states that are fed back; empty if they are to be chosen.
     pub outputs: Vec<usize>,
-    /// How gains are found.
+    /// The design method.
     pub method: Method,
-    /// When a sampled controller measures and acts.
+    /// Sampling and delay of a discrete-time controller.
     pub sampling: Option<Sampling>,
 }
 
-/// How gains are found.
+/// The design method.
 #[derive(Debug, Clone)]
 pub enum Method {
-    /// There is no law.
+    /// No law is designed.
     None,
-    /// Poles of the closed loop in 1/s.
+    /// Closed-loop poles in 1/s.
     Poles(Vec<Complex<f64>>),
     /// Diagonal weights.
     Weights {
@@ -43,7 +43,7 @@ pub enum Method {
     },
 }
 
-/// What came out, in SI.
+/// A design, in SI.
 #[derive(Debug)]
 pub struct Design {
     /// State on the steady motion.
@@ -52,47 +52,52 @@ pub struct Design {
     pub u: Vec<f64>,
     /// Parameters.
     pub p: Vec<f64>,
-    /// Rates of the states: positions and angles may run on.
+    /// Rates of the states: ignorable ones advance uniformly.
     pub rates: Vec<f64>,
     /// A and B about it.
     pub equations: MotionEquations,
-    /// What the inputs reach.
+    /// Controllability.
     pub controllability: Controllability,
     /// The states that are fed back, by their index in the model.
     pub outputs: Vec<usize>,
-    /// Their equations.
+    /// Their closed subsystem.
     pub subsystem: Subsystem,
     /// The gains.
     pub law: Option<DesignedGains>,
 }
 
-/// Gains and what they achieve.
+/// Gains and the closed loop.
 #[derive(Debug)]
 pub struct DesignedGains {
     /// A row for each input, a column for each output and then for each pending input.
     pub gain: DMatrix<f64>,
-    /// Poles of the closed loop: in 1/s, or z where it is sampled.
+    /// Closed-loop poles: in 1/s, or z of a sampled loop.
     pub poles: Vec<Complex<f64>>,
-    /// When it measures and acts.
+    /// Sampling and delay of a discrete-time controller.
     pub sampling: Option<Sampling>,
-    /// How exactly the equations of the design are solved.
+    /// Residual of the design equations.
     pub residual: f64,
-    /// Condition number of the eigenvectors, where poles were placed.
+    /// Condition number of the eigenvectors, for pole placement.
     pub condition: Option<f64>,
 }
 
-/// A state with a larger rate, in SI, runs on along the motion.
+/// A state with a larger rate, in SI, advances along the motion.
 const RUNS: f64 = 1e-6;
 
 impl Design {
-    /// The rate of a state that runs on along the motion; 0 for the others.
+    /// The rate of a state that advances along the motion; 0 for the others.
     pub fn running(&self, state: usize) -> f64 {
         let rate = self.rates[state];
         if rate.abs() > RUNS { rate } else { 0.0 }
     }
+
+    /// Value of a state on the steady motion at time `t` in s.
+    pub fn desired(&self, state: usize, t: f64) -> f64 {
+        self.x[state] + t * self.running(state)
+    }
 }
 
-/// Designs a law about a steady motion, or tells only what the inputs reach.
+/// Designs a law about a steady motion; without a method, determines controllability only.
 pub fn design(
     model: &dyn Model,
     setup: &Setup<'_>,
@@ -107,15 +112,14 @@ pub fn design(
         point.u[input] = value;
     }
     let open: Vec<usize> = (0..point.u.len()).filter(|input| !named(input)).collect();
-    let told = |error| explain::operating_point(&error, setup);
-    point.hold(&open).map_err(told)?;
-    let equations = point.equations(&request.inputs).map_err(told)?;
-    let controllability = Controllability::of(&equations.system)
-        .map_err(|error| Error::Computation(error.to_string()))?;
+    let unsteady = |error| errors::operating_point(error, setup);
+    point.hold(&open).map_err(unsteady)?;
+    let equations = point.equations(&request.inputs).map_err(unsteady)?;
+    let controllability = Controllability::of(&equations.system).map_err(DesignError::from)?;
     let rates = rates(model, &point);
     let outputs = outputs(setup, &equations, &rates, &request.outputs)?;
     let subsystem = reduce(&equations.system, &outputs)
-        .map_err(|error| explain::reduction(&error, &equations, setup))?;
+        .map_err(|error| errors::reduction(error, &equations, setup))?;
     let law = law(&subsystem, request)?;
     Ok(Design {
         x: point.x,
@@ -144,8 +148,7 @@ fn rates(model: &dyn Model, point: &OperatingPoint<'_>) -> Vec<f64> {
     at.rates(model)
 }
 
-/// Places of the outputs among the states of the equations: those that were asked for, or as many
-/// as the inputs reach.
+/// Indices of the outputs among the states of the equations: the requested ones, or a controllable set.
 fn outputs(
     setup: &Setup<'_>,
     equations: &MotionEquations,
@@ -154,7 +157,7 @@ fn outputs(
 ) -> Result<Vec<usize>, Error> {
     let name = |state: usize| &setup.info.states[state].name;
     if asked.is_empty() {
-        // What rests before what runs on; coordinates that the accelerations feel, the other
+        // Constant states before advancing ones; coordinates on which accelerations depend, other
         // coordinates, pseudo-velocities.
         let (states, a) = (&equations.states, &equations.system.a);
         let is_speed = |place: usize| states[place] < setup.info.speeds;
@@ -169,25 +172,28 @@ fn outputs(
         let mut chosen = independent_states(&equations.system, &candidates);
         chosen.sort_unstable();
         if chosen.is_empty() {
-            return Err(Error::Usage("the inputs move no state here".to_owned()));
+            let message = "the inputs affect no state at this operating point";
+            return Err(Error::request(Field::At, message));
         }
         return Ok(chosen);
     }
     let place = |&state: &usize| {
         let place = equations.states.iter().position(|&other| other == state);
         let place = place.ok_or_else(|| {
-            Error::Usage(format!(
-                "--outputs: `{}` follows from other coordinates by the position constraints; feed \
+            let message = format!(
+                "`{}` is determined by other coordinates through the position constraints; feed \
                  those back",
                 name(state)
-            ))
+            );
+            Error::request(Field::Outputs, message)
         })?;
         if equations.varying.contains(&place) {
-            return Err(Error::Usage(format!(
-                "--outputs: the equation of `{}` changes along this motion, so that constant gains \
-                 cannot be designed for it; leave it out",
+            let message = format!(
+                "the linearised equation of `{}` varies along this motion, so that constant gains \
+                 cannot be designed for it; remove it",
                 name(state)
-            )));
+            );
+            return Err(Error::request(Field::Outputs, message));
         }
         Ok(place)
     };
@@ -208,7 +214,7 @@ fn law(subsystem: &Subsystem, request: &Goal) -> Result<Option<DesignedGains>, E
                 None => robust_placement::place(system, &poles),
                 Some(sampling) => sampling.place(system, &poles),
             };
-            let placed = placed.map_err(|error| explain::placement(&error))?;
+            let placed = placed.map_err(errors::placement)?;
             DesignedGains {
                 gain: placed.gain,
                 poles: placed.poles,
@@ -223,7 +229,7 @@ fn law(subsystem: &Subsystem, request: &Goal) -> Result<Option<DesignedGains>, E
                 None => lqr::continuous(system, &q, &r),
                 Some(sampling) => sampling.regulate(system, &q, &r),
             };
-            let regulator = regulator.map_err(|error| explain::riccati(&error))?;
+            let regulator = regulator.map_err(errors::riccati)?;
             DesignedGains {
                 gain: regulator.gain,
                 poles: regulator.poles,
@@ -245,8 +251,9 @@ fn diagonal(name: &str, weights: &[f64], count: usize) -> Result<DMatrix<f64>, E
         return Ok(lqr::weights(&weights));
     }
     let each = if name == "Q" { "outputs" } else { "inputs" };
-    Err(Error::Usage(format!(
-        "--lqr: {} weights in {name} for {count} {each}; write one for each, or a single one for all",
+    let message = format!(
+        "{} weights in {name} for {count} {each}; write one for each, or a single one for all",
         weights.len()
-    )))
+    );
+    Err(Error::request(Field::Weights, message))
 }

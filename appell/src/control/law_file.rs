@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use appell_runtime::model::{ModelInfo, Quantity};
 
 use super::design::{Design, DesignedGains};
-use super::explain::pole_text;
+use super::errors::pole_text;
 use crate::setup::Setup;
 
 /// The text of the file: gains in SI with all digits, other values in the units of the spec.
@@ -48,7 +48,7 @@ pub fn text(design: &Design, setup: &Setup<'_>, model: &str) -> String {
     text
 }
 
-/// The text of a file with the laws of a schedule.
+/// The text of a file with a gain schedule.
 pub fn schedule(
     over: &Quantity,
     designs: &[(f64, Design)],
@@ -154,7 +154,7 @@ fn header(design: &Design, law: &DesignedGains, setup: &Setup<'_>, model: &str) 
     text
 }
 
-/// One list for one row, a list of lists for several.
+/// A list for one row, a list of lists for several.
 fn matrix(text: &mut String, key: &str, rows: &nalgebra::DMatrix<f64>) {
     let row = |i: usize, margin: &str| {
         let numbers = rows.row(i);
@@ -172,7 +172,7 @@ fn matrix(text: &mut String, key: &str, rows: &nalgebra::DMatrix<f64>) {
     let _ = writeln!(text, "{key} = [\n{body}]");
 }
 
-/// What is wanted of a state: its value on the motion, which may run on.
+/// The desired value of a state: its value on the motion, which may advance.
 fn desired(state: &Quantity, value: f64, rate: f64) -> String {
     let [value, rate] = [value, rate].map(|si| state.to_unit(si));
     if rate == 0.0 {

@@ -1,4 +1,4 @@
-//! Everything that drives the inputs of a simulation.
+//! The inputs of a simulation as one function of time and state.
 
 use appell_analysis::control::sampler::Sampler;
 use appell_analysis::control::schedule::GainSchedule;
@@ -6,15 +6,15 @@ use appell_codegen::symbolic::Expr as Lowered;
 use appell_runtime::inputs::{InputSource, TabulatedInputs};
 use appell_spec::expr::Expr;
 use appell_spec::mechanism::InputId;
-use appell_spec::{Report, Scope, Snippet, formula};
+use appell_spec::{Scope, Snippet, formula};
 use nalgebra::DVector;
 
-use crate::Error;
 use crate::formula::{StateFunction, Workbench, switching_times};
 use crate::inputs::feedback::{Feedback, Gains, Sampled, Varied};
 use crate::setup::{Assignment, Setup, bracketed};
+use crate::{Error, Field};
 
-/// Inputs from expressions, feedback laws and recordings; they add up.
+/// The sum of expressions, feedback laws and recordings.
 pub struct Controller {
     /// One value per entry of `slots`.
     function: StateFunction,
@@ -26,24 +26,24 @@ pub struct Controller {
     switching_times: Vec<f64>,
 }
 
-/// A law that measures at intervals.
+/// A discrete-time law.
 struct SampledLaw {
     sampler: Sampler,
     inputs: Vec<usize>,
     pending_gains: Vec<Vec<f64>>,
 }
 
-/// What a value of the function means.
+/// Meaning of a value of the function.
 enum Slot {
-    /// It is added to an input.
+    /// A term of an input.
     Input(usize),
-    /// It is the desired value of a state.
+    /// The desired value of a state.
     Desired(Term),
-    /// It is wanted beside the steady motions of a scheduled law: the law, the place of the state.
+    /// Desired deviation from the steady motions of a scheduled law: index of the law, index of the state.
     Beside(usize, usize),
 }
 
-/// A law whose gains follow a quantity.
+/// A gain-scheduled law.
 struct ScheduledLaw {
     over: Varied,
     schedule: GainSchedule,
@@ -51,7 +51,7 @@ struct ScheduledLaw {
     states: Vec<usize>,
 }
 
-/// An input falls by the gain times the deviation of a state, at once or when it is measured.
+/// Proportional feedback of the deviation of one state to one input.
 #[derive(Debug, Clone, Copy)]
 struct Term {
     input: usize,
@@ -61,18 +61,18 @@ struct Term {
     law: Option<usize>,
 }
 
-/// Collects what drives the inputs.
+/// Collects the sources of the inputs.
 pub struct Plan {
     bench: Workbench,
     exprs: Vec<Lowered>,
     slots: Vec<Slot>,
-    /// Desired values of zero need no expression.
+    /// Terms whose desired value is zero.
     zero: Vec<Term>,
     sampled: Vec<(Sampled, Vec<usize>)>,
     scheduled: Vec<ScheduledLaw>,
     recorded: Option<TabulatedInputs>,
     switching_times: Vec<f64>,
-    /// Inputs that an expression or a recording sets.
+    /// Inputs set by an expression or a recording.
     set: Vec<usize>,
 }
 
@@ -92,22 +92,23 @@ impl Plan {
         }
     }
 
-    /// Whether nothing drives the mechanism.
+    /// Whether there is no source.
     pub fn is_empty(&self) -> bool {
         let laws = self.zero.is_empty() && self.scheduled.is_empty();
         self.slots.is_empty() && laws && self.recorded.is_none()
     }
 
-    fn take(&mut self, input: usize, setup: &Setup<'_>) -> Result<(), Error> {
+    fn take(&mut self, field: Field, input: usize, setup: &Setup<'_>) -> Result<(), Error> {
         if self.set.contains(&input) {
             let name = &setup.mechanism.inputs[InputId::new(input)].label.name;
-            return Err(Error::Usage(format!("the input `{name}` is given twice")));
+            let message = format!("the input `{name}` is given twice");
+            return Err(Error::request(field, message));
         }
         self.set.push(input);
         Ok(())
     }
 
-    /// Takes an expression, which may not divide by the number zero.
+    /// Adds an expression, which may not divide by the number zero.
     fn push(&mut self, slot: Slot, expr: &Expr) -> Result<(), &'static str> {
         let lowered = self.bench.lower(expr);
         self.exprs
@@ -117,12 +118,13 @@ impl Plan {
         Ok(())
     }
 
-    /// `--input NAME=EXPR`
+    /// Adds an expression to an input.
     pub fn expression(&mut self, assignment: &Assignment, setup: &Setup<'_>) -> Result<(), Error> {
-        let input = setup.input(&assignment.name)?;
-        self.take(input, setup)?;
+        let Assignment { name, value } = assignment;
+        let input = setup.input(Field::Input, name)?;
+        self.take(Field::Input, input, setup)?;
         let unit = &setup.mechanism.inputs[InputId::new(input)].label.unit;
-        let text = bracketed(&assignment.value);
+        let text = bracketed(value);
         let expr = formula(
             setup.spec,
             &Snippet::alone(&text),
@@ -130,15 +132,12 @@ impl Plan {
             Scope::Law,
             unit,
         )
-        .map_err(|findings| {
-            let label = format!("--input {}", assignment.name);
-            Error::Expression(Box::new(Report::new(label, text.as_ref(), findings)))
-        })?;
+        .map_err(Error::expression(Field::Input, name, &text))?;
         self.push(Slot::Input(input), &expr)
-            .map_err(|told| Error::Usage(format!("--input {}: {told}", assignment.name)))
+            .map_err(|reason| Error::request(Field::Input, format!("{name}: {reason}")))
     }
 
-    /// `--inputs FILE`
+    /// Adds the inputs of a recording.
     pub fn recording(
         &mut self,
         recorded: TabulatedInputs,
@@ -146,16 +145,16 @@ impl Plan {
         setup: &Setup<'_>,
     ) -> Result<(), Error> {
         for &input in inputs {
-            self.take(input, setup)?;
+            self.take(Field::Recorded, input, setup)?;
         }
         self.switching_times.extend(recorded.switching_times());
         self.recorded = Some(recorded);
         Ok(())
     }
 
-    /// `--feedback FILE`
+    /// Adds a feedback law.
     pub fn feedback(&mut self, feedback: Feedback) -> Result<(), Error> {
-        let told = |told| Error::Data(format!("{}: {told}", feedback.file));
+        let told = |reason: &str| Error::data(&feedback.file, reason);
         for (&input, offset) in feedback.inputs.iter().zip(&feedback.offsets) {
             if let Some(offset) = offset {
                 self.push(Slot::Input(input), offset).map_err(told)?;
@@ -204,10 +203,7 @@ impl Plan {
 
     /// The inputs as a function of time and state, for a motion from 0 to `until` in s.
     pub fn controller(self, setup: &Setup<'_>, until: f64) -> Result<Controller, Error> {
-        let function = self
-            .bench
-            .function(setup.info, self.exprs)
-            .map_err(|error| Error::Computation(error.to_string()))?;
+        let function = self.bench.function(setup.info, self.exprs)?;
         let mut slots = self.slots;
         // Values beyond those of the function are zero.
         slots.extend(self.zero.into_iter().map(Slot::Desired));
@@ -215,11 +211,12 @@ impl Plan {
         let mut sampled = Vec::new();
         for (law, inputs) in self.sampled {
             if until / law.sampling.period() > MOST_MEASUREMENTS {
-                return Err(Error::Usage(format!(
+                let message = format!(
                     "{} measurements are too many; choose a larger `sampled_ms` (at most \
                      {MOST_MEASUREMENTS:.0} measurements)",
                     until / law.sampling.period()
-                )));
+                );
+                return Err(Error::request(Field::Feedback, message));
             }
             let sampler = Sampler::new(law.sampling, until);
             switching_times.extend(sampler.switching_times());
@@ -241,11 +238,11 @@ impl Plan {
     }
 }
 
-/// Measurements in one motion.
+/// Maximum number of measurements in a motion.
 const MOST_MEASUREMENTS: f64 = 1e6;
 
 impl Controller {
-    /// What the terms of a law, or those without one, take from each input.
+    /// Subtracts from each input the feedback of a law, or of the continuous-time terms.
     fn feedback(&self, law: Option<usize>, x: &[f64], values: &[f64], inputs: &mut [f64]) {
         for (slot, value) in self.slots.iter().zip(values) {
             match slot {
@@ -301,7 +298,7 @@ impl InputSource for Controller {
 }
 
 impl ScheduledLaw {
-    /// Adds what the law asks for; `less` takes from the states what is wanted of them.
+    /// Adds the inputs of the law; `less` subtracts the desired deviations from the states.
     fn add(&self, x: &[f64], p: &[f64], u: &mut [f64], less: impl Fn(&mut DVector<f64>)) {
         let states = self.states.iter().map(|&state| x[state]);
         let mut y = DVector::from_iterator(self.states.len(), states);
@@ -314,8 +311,8 @@ impl ScheduledLaw {
 }
 
 impl SampledLaw {
-    /// What a measurement asks for, from the feedback of the states and from what is pending, the
-    /// oldest first. Before the first measurements less is pending than the gains expect.
+    /// The inputs after a measurement, from the feedback of the states and the pending inputs, the oldest
+    /// first. Initially fewer inputs are pending than there are gains.
     fn asked(&self, feedback: &[f64], pending: &[f64]) -> Vec<f64> {
         let rows = self.inputs.iter().zip(&self.pending_gains);
         rows.map(|(&input, gains)| {

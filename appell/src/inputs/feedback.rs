@@ -4,16 +4,16 @@
 //! input  = "u"                             # or inputs = ["u", "v"], with a list of gains for each
 //! states = ["theta", "omega_1"]
 //! gains  = [40, 12]
-//! sampled_ms = 10                          # measured at intervals, held between them
+//! sampled_ms = 10                          # sampling period; inputs are held in between
 //! delay_ms = 5                             # from a measurement to its effect
-//! pending_gains = [0.1]                    # for what was asked for and does not act yet
+//! pending_gains = [0.1]                    # gains of inputs that do not act yet
 //! switching_times_s = [2]                  # where a desired value jumps or kinks
 //! desired = { theta = "if(t < 2, 0, 0.1)" }
-//! initial = { theta = "5deg" }             # --initial wins
+//! initial = { theta = "5deg" }             # unless the request sets it
 //! ```
 //!
-//! A law whose gains follow a state or parameter has, in place of `gains` and `offset`, the quantity
-//! as `over` and a table `[[at]]` for each of its values.
+//! A gain-scheduled law has, instead of `gains` and `offset`, the scheduling variable `over`, a state or
+//! parameter, and a table `[[at]]` for each of its values.
 
 use std::path::Path;
 
@@ -27,9 +27,8 @@ use appell_spec::{Code, Diagnostic, Report, Scope, Snippet, formula};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-use crate::Error;
-use crate::files;
 use crate::setup::{Setup, bracketed, unknown};
+use crate::{Error, files};
 
 mod schedule;
 
@@ -42,25 +41,25 @@ pub struct Feedback {
     pub file: String,
     /// The inputs.
     pub inputs: Vec<usize>,
-    /// What is added to the feedback of each input.
+    /// Offset of each input.
     pub offsets: Vec<Option<Expr>>,
-    /// The states, with what is wanted of them.
+    /// The states, with their desired values.
     pub states: Vec<(usize, Option<Expr>)>,
     /// In SI.
     pub gains: Gains,
-    /// When a sampled controller measures and acts.
+    /// Sampling of a discrete-time controller.
     pub sampled: Option<Sampled>,
-    /// Times in s at which the law jumps or kinks.
+    /// Times in s at which the law has a jump or a kink.
     pub switching_times: Vec<f64>,
     /// Initial values by state.
     pub initial: Vec<(usize, Expr)>,
 }
 
 impl Feedback {
-    /// Puts the initial values that the law asks for into a setup.
+    /// Sets the initial values of the law.
     pub fn start(&self, setup: &mut Setup<'_>) -> Result<(), Error> {
         for (state, expr) in &self.initial {
-            let told = |message| Error::Data(format!("{}: {message}", self.file));
+            let told = |message| Error::data(&self.file, message);
             let name = &setup.info.states[*state].name;
             let value = setup.constant(expr).ok_or_else(|| {
                 told(format!(
@@ -78,17 +77,16 @@ impl Feedback {
 pub enum Gains {
     /// A row for each input, a number for each state.
     Fixed(Vec<Vec<f64>>),
-    /// They follow a quantity.
+    /// Gains that depend on a scheduling variable.
     Scheduled(Varied, GainSchedule),
 }
 
-/// A controller that measures at intervals.
+/// A discrete-time controller.
 #[derive(Debug)]
 pub struct Sampled {
-    /// When it measures and acts.
+    /// Sampling period and delay.
     pub sampling: Sampling,
-    /// A row for each input: gains for what was asked for and does not act yet, all inputs of the
-    /// oldest measurement first.
+    /// A row for each input: gains of the pending inputs, those of the oldest measurement first.
     pub pending_gains: Vec<Vec<f64>>,
 }
 
@@ -165,7 +163,7 @@ impl Reader<'_> {
         });
     }
 
-    /// Everything in the file. What is wrong is told and replaced, so that all of it is told.
+    /// Parses the file; an invalid entry is reported and skipped, so that all errors are found.
     fn feedback(&mut self, table: &DeTable<'_>) -> Option<Feedback> {
         self.keys(table);
         let inputs = self.inputs(table);
@@ -229,7 +227,7 @@ impl Reader<'_> {
         })
     }
 
-    /// Tells of unknown and missing keys, and of a law for another mechanism.
+    /// Reports unknown and missing keys, and a law for another mechanism.
     fn keys(&mut self, table: &DeTable<'_>) {
         for key in table.keys() {
             if !KEYS.contains(&key.get_ref().as_ref()) {
@@ -259,7 +257,7 @@ impl Reader<'_> {
         }
     }
 
-    /// The one of `input`, or the list of `inputs`.
+    /// The inputs of the law.
     fn inputs(&mut self, table: &DeTable<'_>) -> Option<Vec<usize>> {
         match (table.get("input"), table.get("inputs")) {
             (Some(_), Some(both)) => {
@@ -309,7 +307,7 @@ impl Reader<'_> {
         }
     }
 
-    /// Tells where there is not a list for each input and a number for each column.
+    /// Reports gains that do not form a list for each input with a number for each column.
     fn count_gains(
         &mut self,
         table: &DeTable<'_>,
@@ -330,7 +328,7 @@ impl Reader<'_> {
         }
     }
 
-    /// Tells where there is not one for each.
+    /// Reports a wrong number of entries.
     fn count(&mut self, what: &str, given: usize, each: &str, needed: usize, at: Span) {
         if given != needed {
             let plural = |count: usize, noun: &str| {
@@ -343,13 +341,13 @@ impl Reader<'_> {
         }
     }
 
-    /// When the controller measures and acts; nothing where it always does, or where that is wrong.
+    /// Sampling of the controller; `None` for a continuous-time or an invalid one.
     fn sampling(&mut self, table: &DeTable<'_>) -> Option<Sampling> {
         let Some(period) = table.get("sampled_ms") else {
             for key in ["delay_ms", "pending_gains"] {
                 if let Some(value) = table.get(key) {
                     let message = format!("`{key}` needs `sampled_ms`");
-                    let help = "a delay is one of a controller that measures at intervals";
+                    let help = "only a discrete-time controller has a delay";
                     self.tell(Code::MissingKey, message, value.span(), help);
                 }
             }
@@ -439,7 +437,7 @@ impl Reader<'_> {
         read
     }
 
-    /// The value of a quantity, read as on the command line.
+    /// The value of a quantity: a number, a number with a unit, or an expression.
     fn expression(
         &mut self,
         value: &Value<'_>,

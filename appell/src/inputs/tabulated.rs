@@ -1,4 +1,4 @@
-//! Inputs tabulated in a CSV file: held from each row to the next.
+//! Inputs from a CSV file, each value held until the next row.
 
 use std::io::BufRead;
 use std::path::Path;
@@ -14,15 +14,14 @@ use appell_spec::expr::Span;
 use appell_spec::mechanism::InputId;
 use appell_spec::{Code, shown};
 
-use crate::Error;
 use crate::setup::{Setup, unknown};
-use crate::{files, recording};
+use crate::{Error, Field, files, recording};
 
-/// The inputs in a CSV file, and which inputs it has.
+/// The inputs of a CSV file, with their indices.
 ///
 /// The header names `t` in s and inputs in the units of the spec; columns of the mechanism's other
-/// quantities are left aside, so that a trajectory written by `appell simulate` can be fed back. Of a
-/// `recording.toml` with the name of a run the names and units are those of the description.
+/// quantities are ignored, so that a written trajectory can be fed back. A `recording.toml` with the
+/// name of a run defines the names and units itself.
 pub fn read(
     path: &Path,
     mechanism: &str,
@@ -51,8 +50,10 @@ pub fn read(
             values: values.into(),
             interpolation: Interpolation::Hold,
         };
-        let signal =
-            Signal::new(&table).map_err(|error| Error::Data(format!("{file}: {error}")))?;
+        let signal = Signal::new(&table).map_err(|source| Error::Table {
+            file: file.clone().into_owned(),
+            source,
+        })?;
         signals.push(signal);
     }
     Ok((TabulatedInputs::new(signals), given))
@@ -71,13 +72,14 @@ fn described(text: &str) -> Option<(&str, &str)> {
 /// The inputs of a run of a data set.
 fn recorded(description: &str, run: &str, mechanism: &str) -> Result<Columns, Error> {
     let mut set = recording::read(&[description.into()], Some(mechanism))?;
-    recording::refuse_slow(&set)?;
+    recording::check_time_unit(&set)?;
     let Some(place) = set.runs.iter().position(|own| own.name == run) else {
         let names: Vec<&str> = set.runs.iter().map(|own| own.name.as_str()).collect();
-        return Err(Error::Usage(format!(
-            "`--inputs {description}:RUN` takes one of the runs {}",
+        let message = format!(
+            "{description} has no run `{run}`; append `:RUN` with one of {}",
             names.join(", ")
-        )));
+        );
+        return Err(Error::request(Field::Recorded, message));
     };
     let run = set.runs.swap_remove(place);
     let mut inputs: Vec<Column> = Vec::new();
@@ -95,13 +97,13 @@ fn recorded(description: &str, run: &str, mechanism: &str) -> Result<Columns, Er
     }
     if inputs.is_empty() {
         let message = "no channel is an input; write `input = \"…\"` in `[channels]`";
-        return Err(Error::Data(format!("{description}: {message}")));
+        return Err(Error::data(description, message));
     }
     let times = run.times;
     Ok(Columns { times, inputs })
 }
 
-/// The inputs in a CSV file.
+/// The inputs of a CSV file.
 fn tabulated(path: &Path, setup: &Setup<'_>, model: &dyn Model) -> Result<Columns, Error> {
     let text = files::read(path, files::MAX_DATA)?;
     let reader = Reader {
@@ -121,7 +123,7 @@ struct Columns {
 struct Column {
     position: usize,
     input: usize,
-    /// One of the input's unit in SI.
+    /// Factor from the unit of the input to SI.
     scale: f64,
     /// In SI.
     values: Vec<f64>,
@@ -129,7 +131,7 @@ struct Column {
 
 struct Reader<R> {
     rows: Rows<R>,
-    /// What `appell simulate` could have written.
+    /// The columns that a written trajectory may have.
     recorded: Vec<Quantity>,
     mistakes: Vec<DataError>,
 }
@@ -178,7 +180,7 @@ impl<R: BufRead> Reader<R> {
         }
     }
 
-    /// Position of the time, and the columns of inputs.
+    /// Position of the column of times, and the columns of inputs.
     fn header(&mut self, setup: &Setup<'_>) -> (Option<usize>, Vec<Column>) {
         let inputs = &setup.mechanism.inputs;
         let names = || inputs.iter().map(|input| input.label.name.as_str());
@@ -192,7 +194,7 @@ impl<R: BufRead> Reader<R> {
                 None => name == "t" && time.is_some(),
             };
             if twice {
-                let message = format!("the column `{name}` stands here twice");
+                let message = format!("the column `{name}` is given twice");
                 self.tell(Code::DuplicateName, message, at, None);
             } else if let Some(input) = input {
                 columns.push(Column {
@@ -211,7 +213,7 @@ impl<R: BufRead> Reader<R> {
         (time, columns)
     }
 
-    /// The finite number in a cell; tells where there is none.
+    /// The finite number in a cell; reports any other.
     fn number(&mut self, column: usize) -> f64 {
         let cell = self.rows.cell(column);
         if let Some(number) = cell.parse::<f64>().ok().filter(|number| number.is_finite()) {

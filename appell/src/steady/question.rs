@@ -1,31 +1,31 @@
-//! A question about steady motions, in texts with units.
+//! A request for steady motions, in texts with units.
 
 use std::str::FromStr;
 
 use appell_analysis::{Point, Requirement, SteadyProblem, Term};
 use appell_runtime::model::Model;
 
-use super::{Asked, refused, term, value_of};
-use crate::Error;
+use super::{Resolved, term, value_of};
 use crate::setup::{Assignment, Setup, unique};
+use crate::{Error, Field};
 
-/// Starting points from which motions are sought, unless a question says otherwise.
+/// Default number of starting points of the search.
 pub const STARTS: usize = 40;
 
-/// What is given and what is sought.
+/// A request for steady motions.
 #[derive(Debug, Clone)]
 pub struct Question {
     /// Parameters; the others are those of the spec.
     pub parameters: Vec<Assignment>,
-    /// Values of states, inputs, outputs, or rates of hidden coordinates; inputs that are not fixed are zero.
+    /// Values of states, inputs, outputs, or rates of ignorable coordinates; inputs that are not fixed are zero.
     pub fix: Vec<Assignment>,
-    /// Inputs or parameters whose values follow.
+    /// Inputs or parameters to solve for.
     pub free: Vec<String>,
-    /// A quantity along which the motions are followed.
+    /// Continuation parameter.
     pub along: Option<Span>,
     /// Lower bounds of feasible motions.
     pub require: Vec<Assignment>,
-    /// Starting points from which motions are sought.
+    /// Number of starting points of the search.
     pub starts: usize,
 }
 
@@ -60,11 +60,12 @@ impl FromStr for Span {
 
 impl Span {
     /// The quantity and its range in SI.
-    pub fn resolve(&self, setup: &Setup<'_>, flag: &str) -> Result<(Term, [f64; 2]), Error> {
-        let term = term(setup, &self.name)?;
-        let label = format!("{flag} {}", self.name);
-        let [from, to] = &self.ends;
-        let ends = [from, to].map(|end| value_of(setup, term, end, &label));
+    pub fn resolve(&self, setup: &Setup<'_>, field: Field) -> Result<(Term, [f64; 2]), Error> {
+        let term = term(setup, field, &self.name)?;
+        let ends = self.ends.each_ref().map(|end| {
+            let end = Assignment::new(&self.name, end);
+            value_of(setup, term, field, &end)
+        });
         let [from, to] = ends;
         Ok((term, [from?, to?]))
     }
@@ -84,21 +85,21 @@ impl Default for Question {
 }
 
 impl Question {
-    /// Gives a quantity a value.
+    /// Prescribes the value of a quantity.
     #[must_use]
     pub fn fix(mut self, name: &str, value: impl ToString) -> Self {
         self.fix.push(Assignment::new(name, value));
         self
     }
 
-    /// Lets the value of an input or parameter follow.
+    /// Solves for an input or parameter.
     #[must_use]
     pub fn free(mut self, name: &str) -> Self {
         self.free.push(name.to_owned());
         self
     }
 
-    /// Follows the motions along a quantity.
+    /// Continues the motions along a quantity.
     #[must_use]
     #[expect(
         clippy::needless_pass_by_value,
@@ -112,32 +113,33 @@ impl Question {
         self
     }
 
-    /// The question with its names resolved; the parameters are those of the setup.
-    pub fn resolve<'a>(&self, model: &'a dyn Model, setup: &Setup<'_>) -> Result<Asked<'a>, Error> {
+    /// The request with its names resolved; the parameters are those of the setup.
+    pub fn resolve<'a>(
+        &self,
+        model: &'a dyn Model,
+        setup: &Setup<'_>,
+    ) -> Result<Resolved<'a>, Error> {
         let point = Point {
             p: setup.parameters.clone(),
             ..Point::initial(model)
         };
-        let mut problem = SteadyProblem::new(model, point).map_err(|error| refused(&error))?;
+        let mut problem = SteadyProblem::new(model, point)?;
         for name in &self.free {
-            problem
-                .free(term(setup, name)?)
-                .map_err(|error| refused(&error))?;
+            problem.free(term(setup, Field::Free, name)?)?;
         }
-        unique(&self.fix, "--fix")?;
-        for Assignment { name, value } in &self.fix {
-            let term = term(setup, name)?;
-            let value = value_of(setup, term, value, &format!("--fix {name}"))?;
-            problem.fix(term, value).map_err(|error| refused(&error))?;
+        unique(&self.fix, Field::Fix)?;
+        for fixed in &self.fix {
+            let term = term(setup, Field::Fix, &fixed.name)?;
+            problem.fix(term, value_of(setup, term, Field::Fix, fixed)?)?;
         }
         let along = self.along.as_ref();
-        let along = along.map(|span| span.resolve(setup, "--along"));
-        let requirement = |Assignment { name, value }: &Assignment| {
-            let term = term(setup, name)?;
-            let at_least = value_of(setup, term, value, &format!("--require {name}"))?;
+        let along = along.map(|span| span.resolve(setup, Field::Along));
+        let requirement = |bound: &Assignment| {
+            let term = term(setup, Field::Require, &bound.name)?;
+            let at_least = value_of(setup, term, Field::Require, bound)?;
             Ok(Requirement { term, at_least })
         };
-        Ok(Asked {
+        Ok(Resolved {
             problem,
             along: along.transpose()?,
             requirements: self

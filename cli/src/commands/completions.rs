@@ -3,8 +3,8 @@
 use clap::CommandFactory as _;
 
 use super::Arguments;
+use crate::failure::Error;
 use crate::output;
-use appell::Error;
 
 /// Writes shell completions to standard output.
 ///

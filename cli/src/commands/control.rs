@@ -2,10 +2,11 @@
 
 use std::path::PathBuf;
 
-use appell::control::design::{self, Design, Goal, Method};
-use appell::control::{Request, ask, attraction, law_file};
+use crate::failure::Error;
+use appell::control::design::{self, Design, Goal};
+use appell::control::{Request, attraction, law_file, parse};
+use appell::files;
 use appell::setup::{Assignment, Setup};
-use appell::{Error, files};
 use appell_runtime::model::{Model, Quantity};
 
 use crate::failure::tell;
@@ -90,29 +91,18 @@ pub(crate) struct Control {
 impl Control {
     pub(super) fn run(&self) -> Result<(), Error> {
         let model = engine::model(&self.model, None)?;
+        self.needs_law()?;
         let mut setup = model.setup()?;
-        let model = model.equations();
         setup.set(&self.set)?;
-        let asked = self.request();
-        let goal = asked.resolve(&setup)?;
-        let flags = [
-            ("--write", self.write.is_some()),
-            ("--attraction", self.attraction.is_some()),
-        ];
-        if let (Method::None, Some((flag, _))) = (&goal.method, flags.iter().find(|f| f.1)) {
-            return Err(Error::Usage(format!(
-                "`{flag}` needs a law; ask for one with `--poles` or `--lqr`"
-            )));
-        }
-        let at = ask::point(model, &mut setup, &self.at)?;
+        let request = self.request();
         let (text, json) = match &self.schedule {
             None => {
-                let design = design::design(model, &setup, &at, &goal)?;
+                let design = model.control(&request)?;
                 if let Some(path) = &self.write {
-                    files::write(path, &law_file::text(&design, &setup, &self.model))?;
+                    files::write(path, &model.law(&design)?)?;
                 }
                 let mut text = design_report::text(&design, &setup);
-                let mut json = design_report::json(&design, &setup);
+                let mut json = appell::json::design(setup.info, &design);
                 if let Some(asked) = &self.attraction {
                     let region = {
                         let bar = progress::parts();
@@ -121,7 +111,12 @@ impl Control {
                             bar.set_position(done as u64);
                         };
                         let region = attraction::explore(
-                            model, &setup, &design, asked, self.for_s, &progress,
+                            model.equations(),
+                            &setup,
+                            &design,
+                            asked,
+                            self.for_s,
+                            &progress,
                         );
                         bar.finish_and_clear();
                         region?
@@ -135,7 +130,10 @@ impl Control {
                 (text, json)
             }
             Some(schedule) => {
-                let values = ask::values(&mut setup, schedule)?;
+                let goal = request.resolve(&setup)?;
+                let model = model.equations();
+                parse::point(model, &mut setup, &self.at)?;
+                let values = parse::values(&mut setup, schedule)?;
                 let over = self.readable(&values, &setup)?;
                 let designs = self.scheduled(model, &mut setup, &values, &goal)?;
                 let designs = values.si.into_iter().zip(designs).collect::<Vec<_>>();
@@ -145,7 +143,7 @@ impl Control {
                 }
                 (
                     design_report::schedule_text(&schedule.name, &designs, &setup),
-                    design_report::schedule_json(&schedule.name, &designs, &setup),
+                    appell::json::schedule(setup.info, &schedule.name, &designs),
                 )
             }
         };
@@ -158,6 +156,20 @@ impl Control {
             return Ok(());
         }
         output::print(&text)
+    }
+
+    /// Refuses files of a law that is not designed.
+    fn needs_law(&self) -> Result<(), Error> {
+        let flags = [
+            ("--write", self.write.is_some()),
+            ("--attraction", self.attraction.is_some()),
+        ];
+        match flags.iter().find(|(_, given)| *given) {
+            Some((flag, _)) if self.poles.is_none() && self.lqr.is_none() => Err(Error::Usage(
+                format!("{flag}: there is no law; design one with --poles or --lqr"),
+            )),
+            _ => Ok(()),
+        }
     }
 
     fn request(&self) -> Request {
@@ -174,15 +186,19 @@ impl Control {
     }
 
     /// The scheduling variable of a written schedule.
-    fn readable(&self, values: &ask::Values, setup: &Setup<'_>) -> Result<Option<Quantity>, Error> {
+    fn readable(
+        &self,
+        values: &parse::Values,
+        setup: &Setup<'_>,
+    ) -> Result<Option<Quantity>, Error> {
         let refused = |text: &str| Err(Error::Usage(text.to_owned()));
         match (&self.write, values.readable(setup)) {
             (None, _) => Ok(None),
             (Some(_), _) if self.sampled_ms.is_some() => {
-                refused("`--write`: a sampled law cannot be scheduled yet")
+                refused("--write: a sampled law cannot be scheduled yet")
             }
             (Some(_), None) => refused(
-                "`--write`: gains cannot follow an input, which they set; schedule a state or a \
+                "--write: gains cannot follow an input, which they set; schedule a state or a \
                  parameter",
             ),
             (Some(_), Some(quantity)) => Ok(Some(quantity.clone())),
@@ -194,16 +210,16 @@ impl Control {
         &self,
         model: &dyn Model,
         setup: &mut Setup<'_>,
-        values: &ask::Values,
+        values: &parse::Values,
         goal: &Goal,
     ) -> Result<Vec<Design>, Error> {
         let mut goal = goal.clone();
         let mut designs: Vec<Design> = Vec::new();
         for &value in &values.si {
-            let mut at = ask::point(model, setup, &self.at)?;
+            let mut at = parse::point(model, setup, &self.at)?;
             values.place(setup, &mut at, value);
             let design = design::design(model, setup, &at, &goal)
-                .map_err(|failure| values.at(setup, value, &failure))?;
+                .map_err(|failure| values.at(setup, value, failure))?;
             // All laws of a schedule feed back the same states.
             goal.outputs.clone_from(&design.outputs);
             designs.push(design);

@@ -8,19 +8,19 @@ use appell_gap::data::{DataSet, Spec};
 use appell_gap::diagnose::{Limit, Options};
 use serde_json::Value;
 
+use crate::failure::Error;
 use crate::output;
 use crate::{diagnosed, progress};
-use appell::Error;
 use appell::files;
 use appell::source::Source;
 
 /// Default file name of the proposed experiment.
 const EXPERIMENT: &str = "experiment.csv";
 
-/// Finds where a model deviates from recordings, which effect it lacks, and how much of the gap that
-/// effect closes.
+/// Finds where a model deviates from recordings, and which effect closes the gap.
+///
 /// Every effect of the library is tried at every admissible site of the mechanism. Test runs are used
-///only in the final step. The exit status is 0 whatever the verdict.
+/// only in the final step. The exit status is 0 whatever the verdict.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Diagnose {
     /// Name of a shipped mechanism or path of a spec, instead of the one that the data set names
@@ -83,7 +83,7 @@ impl FromStr for Span {
 impl Diagnose {
     pub(super) fn run(&self) -> Result<(), Error> {
         let set = appell::recording::read(&self.data, self.model.as_deref())?;
-        appell::recording::refuse_slow(&set)?;
+        appell::recording::check_time_unit(&set)?;
         let mut library = Library::shipped()?;
         for kind in &self.without {
             library = library.without(kind)?;
@@ -110,7 +110,7 @@ impl Diagnose {
             }
         }
         if let Some(path) = &self.json {
-            let mut json = diagnosed::json(&report, next.as_deref());
+            let mut json = appell::gap_report::json(&report, next.as_deref());
             json["data"] = [replaced.as_slice(), &warnings].concat().into();
             files::write_json(path, &json)?;
         }

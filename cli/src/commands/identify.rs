@@ -4,9 +4,9 @@ use std::path::PathBuf;
 
 use appell_gap::identify::{Begin, Options};
 
+use crate::failure::Error;
 use crate::output;
-use crate::{engine, identified, picture, progress};
-use appell::Error;
+use crate::{engine, picture, progress};
 use appell::files;
 use appell_report::identification;
 
@@ -80,7 +80,7 @@ impl Identify {
         spinner.finish_and_clear();
         let answer = answer?;
         if let Some(path) = &self.json {
-            files::write_json(path, &identified::json(&set, &answer))?;
+            files::write_json(path, &appell::json::identification(&set, &answer))?;
         }
         if let Some(path) = &self.plot {
             picture::write(path, &identification::figure(&set, &answer).to_svg())?;

@@ -5,8 +5,8 @@ use std::path::PathBuf;
 use appell_models::{ALL, Shipped};
 use serde_json::{Value, json};
 
+use crate::failure::Error;
 use crate::output;
-use appell::Error;
 use appell::files;
 use appell_report::text::table;
 

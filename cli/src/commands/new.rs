@@ -4,8 +4,8 @@ use std::fs::OpenOptions;
 use std::io::{ErrorKind, Write as _};
 use std::path::PathBuf;
 
+use crate::failure::Error;
 use crate::output;
-use appell::Error;
 
 /// Writes a commented spec to start from.
 #[derive(Debug, clap::Args)]
@@ -31,7 +31,7 @@ impl New {
                 "{} already exists; choose another name, or remove the file",
                 path.display()
             ))),
-            Err(cause) => Err(Error::writing(&path)(cause)),
+            Err(cause) => Err(appell::Error::writing(&path)(cause).into()),
         }
     }
 }

@@ -4,10 +4,10 @@ use std::path::PathBuf;
 
 use serde::Serialize;
 
+use crate::failure::Error;
 use crate::failure::tell;
 use crate::output;
 use crate::progress;
-use appell::Error;
 use appell::files;
 use appell_papers::book::{self, Claim, Section, Tally};
 

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use appell::Error;
+use crate::failure::Error;
 use appell::files;
 
 /// Writes the JSON schema of specs, for completion and checks in editors.
@@ -20,6 +20,7 @@ impl Schema {
     pub(super) fn run(&self) -> Result<(), Error> {
         let schema = appell_spec::schema::json_schema();
         let text = schema.trim_end().to_owned() + "\n";
-        files::write(self.out.as_deref().unwrap_or("-".as_ref()), &text)
+        files::write(self.out.as_deref().unwrap_or("-".as_ref()), &text)?;
+        Ok(())
     }
 }

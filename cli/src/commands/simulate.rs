@@ -2,8 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
+use crate::failure::Error;
 use appell::setup::Assignment;
-use appell::{Error, Law, MOST_ROWS, Model, Motion, Simulated, files};
+use appell::{Law, Model, Motion, Simulated, files};
 use appell_report::figure::Figure;
 use appell_runtime::Trajectory;
 use appell_runtime::integrate::Options;
@@ -122,22 +123,18 @@ enum OnEvent {
 
 impl Simulate {
     pub(super) fn run(&self) -> Result<(), Error> {
-        positive("--t-end-s", self.t_end_s)?;
-        let interval = self.dt_s.unwrap_or(self.t_end_s / 1000.0);
-        positive("--dt-s", interval)?;
-        if self.t_end_s / interval > MOST_ROWS {
-            return Err(Error::Usage(format!(
-                "{} rows are too many; choose a larger `--dt-s` (at most {MOST_ROWS:.0} rows)",
-                self.t_end_s / interval
-            )));
-        }
         let model = engine::model(&self.model, self.engine)?;
+        let whole = Motion {
+            interval: self.dt_s,
+            ..Motion::new(self.t_end_s)
+        };
         let motion = Motion {
-            interval: Some(interval),
             method: match self.method {
                 Integrator::Dop853 => Method::Dop853,
                 Integrator::Dopri5 => Method::Dopri5,
-                Integrator::Rk4 => Method::Rk4 { step: interval },
+                Integrator::Rk4 => Method::Rk4 {
+                    step: whole.row_interval(),
+                },
             },
             options: Options {
                 max_steps: self.max_steps,
@@ -157,7 +154,7 @@ impl Simulate {
                 ..Extras::default()
             },
             validity: self.validity(model.info())?,
-            ..Motion::new(self.t_end_s)
+            ..whole
         };
         let Simulated {
             trajectory,
@@ -181,7 +178,7 @@ impl Simulate {
             files::write(path, &page)?;
         }
         if let Some(path) = &self.json {
-            files::write_json(path, &summary::json(&trajectory, failure.as_deref()))?;
+            files::write_json(path, &appell::json::motion(&trajectory, failure.as_deref()))?;
         }
         let mut text = summary::text(&trajectory);
         if undriven && failure.is_none() && summary::rests(&trajectory) {
@@ -228,15 +225,6 @@ impl Simulate {
     }
 }
 
-fn positive(flag: &str, value: f64) -> Result<(), Error> {
-    if value.is_finite() && value > 0.0 {
-        return Ok(());
-    }
-    Err(Error::Usage(format!(
-        "`{flag} {value}` must be a positive number of seconds"
-    )))
-}
-
 fn hint(info: &ModelInfo) -> String {
     let first = info.coordinate_quantities().last();
     let name = first.map_or("NAME", |coordinate| coordinate.name.as_ref());
@@ -252,10 +240,12 @@ pub(super) fn simulated(model: &Model, motion: &Motion) -> Result<Simulated, Err
     let simulated =
         model.simulate_watched(motion, |t| clock.set_position(progress::milliseconds(t)));
     clock.finish_and_clear();
-    simulated
+    Ok(simulated?)
 }
 
 /// Writes a trajectory as CSV.
 pub(super) fn write_csv(path: &Path, trajectory: &Trajectory) -> Result<(), Error> {
-    files::write_with(path, |to| trajectory.write_csv(to, CsvOptions::default()))
+    Ok(files::write_with(path, |to| {
+        trajectory.write_csv(to, CsvOptions::default())
+    })?)
 }

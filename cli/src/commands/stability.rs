@@ -1,18 +1,17 @@
 //! `appell stability`
 
-use appell_analysis::{Branch, Stability, Term, loci};
-use appell_report::figure::{Figure, Panel, Series};
-use appell_spectra::spectrum::Complex;
+use appell_analysis::Stability;
+use appell_report::figure::Figure;
 
 mod plane;
 
 use plane::{Grid, Plane};
 
-use super::steady::{marks, write};
+use super::steady::write;
+use crate::failure::Error;
 use crate::motions::{self, Question, text};
 use crate::output;
-use appell::Error;
-use appell::steady::{Answer, Asked};
+use appell::steady::{Answer, Resolved};
 use appell_report::text::table;
 
 /// Eigenvalues of steady motions, and where their stability changes.
@@ -57,7 +56,9 @@ impl StabilityCommand {
                     }
                     Answer::Branches(branches) => text::branches(asked, branches),
                 };
-            write(&self.question, asked, &answer, figure)?;
+            write(&self.question, asked, &answer, |along, branches| {
+                Figure::of_eigenvalues(asked.problem.model().info(), along, branches)
+            })?;
             output::print_beside(
                 &text,
                 &[&self.question.csv, &self.question.json, &self.question.plot],
@@ -67,7 +68,7 @@ impl StabilityCommand {
 }
 
 /// Eigenvalues with the dominant states of their eigenvectors.
-fn modes(asked: &Asked<'_>, stability: &Stability) -> String {
+fn modes(asked: &Resolved<'_>, stability: &Stability) -> String {
     let info = asked.problem.model().info();
     let mut rows = Vec::new();
     for &place in &stability.deciding {
@@ -106,43 +107,4 @@ fn modes(asked: &Asked<'_>, stability: &Stability) -> String {
     );
     rows.push(vec!["0".to_owned(), "1/s".to_owned(), neutral]);
     format!("eigenvalues\n{}", table(&rows, 0..1))
-}
-
-/// Number of branches drawn; `--csv` and `--json` contain all.
-const MOST_BRANCHES: usize = 4;
-
-/// Real and imaginary parts against the quantity, two panels for each branch.
-fn figure(asked: &Asked<'_>, along: Term, branches: &[Branch]) -> Figure {
-    let info = asked.problem.model().info();
-    let horizontal = along.quantity(info);
-    let panels = branches.iter().take(MOST_BRANCHES).enumerate();
-    let panels = panels.flat_map(|(number, branch)| {
-        let points = || branch.points.iter();
-        let x: Vec<f64> = points().map(|at| horizontal.to_unit(at.value)).collect();
-        let modes = loci(points().map(|at| &at.stability));
-        let panel = |name: &str, part: fn(&Complex<f64>) -> f64| Panel {
-            unit: "1/s".to_owned(),
-            series: modes
-                .iter()
-                .enumerate()
-                .map(|(mode, locus)| Series {
-                    label: match mode {
-                        0 if branches.len() > 1 => format!("branch {}: {name} 1", number + 1),
-                        _ => format!("{name} {}", mode + 1),
-                    },
-                    x: x.clone(),
-                    y: locus.iter().map(part).collect(),
-                })
-                .collect(),
-        };
-        [panel("re", |z| z.re), panel("im", |z| z.im)]
-    });
-    let panels = panels.collect();
-    Figure {
-        title: info.title.to_string(),
-        x_label: format!("{} [{}]", horizontal.name, horizontal.unit),
-        panels,
-        marks: marks(asked, along, branches),
-        equal_axes: false,
-    }
 }

@@ -1,7 +1,7 @@
-//! Gains that follow a state or a parameter.
+//! Gain schedules over a state or a parameter.
 //!
 //! ```toml
-//! over = "omega_2"                         # between the values everything runs straight
+//! over = "omega_2"                         # linear interpolation between the values
 //! [[at]]
 //! value = 3.3                              # in the unit of the quantity
 //! gains = [40, 12]                         # in SI, as above
@@ -18,7 +18,7 @@ use toml::de::{DeTable, DeValue};
 
 use super::{Gains, Reader};
 
-/// What gains follow.
+/// A scheduling variable.
 #[derive(Debug, Clone, Copy)]
 pub enum Varied {
     /// A state.
@@ -39,7 +39,7 @@ impl Varied {
 
 const KEYS: &[&str] = &["value", "gains", "offset", "steady"];
 
-/// The schedule of a law; what is wrong is told.
+/// The schedule of a law; invalid entries are reported.
 pub(super) fn read(
     reader: &mut Reader<'_>,
     table: &DeTable<'_>,
@@ -49,7 +49,7 @@ pub(super) fn read(
     for key in ["gains", "offset", "sampled_ms"] {
         if let Some(value) = table.get(key) {
             let message = format!("a law with `over` has no `{key}` of its own");
-            let help = "remove it; gains and offsets stand under `[[at]]`";
+            let help = "remove it; gains and offsets belong under `[[at]]`";
             reader.tell(Code::UnknownKey, message, value.span(), help);
         }
     }

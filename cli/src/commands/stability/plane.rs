@@ -9,15 +9,15 @@ use appell_report::figure::Map;
 use serde_json::{Value, json};
 
 use super::StabilityCommand;
+use crate::failure::Error;
 use crate::motions::{self, text};
 use crate::output;
 use crate::picture;
-use appell::Error;
-use appell::files;
 use appell::setup::Setup;
 use appell::steady::Span;
 use appell::steady::regions::{self, Shown};
-use appell::steady::{Asked, export};
+use appell::steady::{Resolved, export};
+use appell::{Field, files};
 
 /// `X=FROM..TO,Y=FROM..TO` as it was given.
 #[derive(Debug, Clone)]
@@ -58,7 +58,7 @@ impl Plane {
     /// The axes in SI.
     pub(super) fn axes(&self, setup: &Setup<'_>, grid: Grid) -> Result<[Axis; 2], Error> {
         let axis = |k: usize| {
-            let (term, range) = self.0[k].resolve(setup, "--chart")?;
+            let (term, range) = self.0[k].resolve(setup, Field::Chart)?;
             let count = grid.0[k];
             Ok::<_, Error>(Axis { term, range, count })
         };
@@ -68,7 +68,7 @@ impl Plane {
 
 impl StabilityCommand {
     /// Computes the chart, prints a summary and writes its files.
-    pub(super) fn draw(&self, asked: &Asked<'_>, axes: &[Axis; 2]) -> Result<(), Error> {
+    pub(super) fn draw(&self, asked: &Resolved<'_>, axes: &[Axis; 2]) -> Result<(), Error> {
         let chart = motions::chart(asked, *axes)?;
         let question = &self.question;
         if let Some(path) = &question.json {
@@ -86,7 +86,7 @@ impl StabilityCommand {
 }
 
 /// The number of motions, and the boundaries with their turning points.
-fn text(asked: &Asked<'_>, chart: &Chart) -> String {
+fn text(asked: &Resolved<'_>, chart: &Chart) -> String {
     let info = asked.problem.model().info();
     let quantities = chart.axes.map(|axis| axis.term.quantity(info));
     let found = chart.cells.iter().flatten();
@@ -140,7 +140,7 @@ fn boundary_json(boundary: &Boundary) -> Value {
     })
 }
 
-fn json(asked: &Asked<'_>, chart: &Chart) -> Value {
+fn json(asked: &Resolved<'_>, chart: &Chart) -> Value {
     let info = asked.problem.model().info();
     let axis = |axis: &Axis| json!({ "name": axis.term.name(info), "range": axis.range, "count": axis.count });
     let unknowns = chart.unknowns.iter().map(|term| term.name(info));
@@ -165,7 +165,7 @@ fn json(asked: &Asked<'_>, chart: &Chart) -> Value {
 }
 
 /// A row for every motion: the two quantities, growth, verdict.
-fn csv(asked: &Asked<'_>, chart: &Chart, to: &mut dyn Write) -> io::Result<()> {
+fn csv(asked: &Resolved<'_>, chart: &Chart, to: &mut dyn Write) -> io::Result<()> {
     let info = asked.problem.model().info();
     let [x, y] = chart.axes.map(|axis| axis.term.quantity(info));
     writeln!(
@@ -192,7 +192,7 @@ fn csv(asked: &Asked<'_>, chart: &Chart, to: &mut dyn Write) -> io::Result<()> {
     Ok(())
 }
 
-fn map(asked: &Asked<'_>, chart: &Chart) -> Map {
+fn map(asked: &Resolved<'_>, chart: &Chart) -> Map {
     let info = asked.problem.model().info();
     let shown = |axis: Axis| {
         let quantity = axis.term.quantity(info);

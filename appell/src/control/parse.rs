@@ -1,4 +1,4 @@
-//! What a user asks a controller for, read from flags.
+//! The texts of a control request: steady motion, poles, weights, ranges.
 
 use appell_analysis::control::sampled::Sampling;
 use appell_analysis::{Point, SteadyProblem, Term};
@@ -6,24 +6,25 @@ use appell_runtime::model::{Model, Quantity};
 use nalgebra::Complex;
 
 use super::design::Method;
-use crate::Error;
+use super::errors::DesignError;
 use crate::setup::{Assignment, Setup, unique, unknown};
-use crate::steady::{refused, term, value_of};
+use crate::steady::{term, value_of};
+use crate::{Error, Field};
 
-/// Inputs on the steady motion that were given; the others are chosen.
+/// Prescribed inputs on the steady motion; the others are solved for.
 pub type GivenInputs = Vec<(usize, f64)>;
 
-/// Most designs of a schedule.
+/// Maximum number of intervals of a range.
 const MOST_STEPS: usize = 10_000;
 
-/// Reads `--at`: states go to the setup, inputs are returned. Where a rate or an output is given,
-/// the other states follow from it.
+/// The steady motion: states go to the setup, inputs are returned. A rate or an output determines the
+/// other states.
 pub fn point(
     model: &dyn Model,
     setup: &mut Setup<'_>,
     assignments: &[Assignment],
 ) -> Result<GivenInputs, Error> {
-    unique(assignments, "--at")?;
+    unique(assignments, Field::At)?;
     let info = setup.info;
     let follows = |a: &Assignment| {
         let term = Term::named(info, &a.name);
@@ -39,52 +40,49 @@ pub fn point(
     let names = info.states.iter().chain(declared);
     let names = || names.clone().map(|quantity| quantity.name.as_ref());
     if let Some(other) = states.iter().find(|a| !names().any(|name| name == a.name)) {
-        let text = unknown(&other.name, "state or input", names());
-        return Err(Error::Usage(text));
+        let message = unknown(&other.name, "state or input", names());
+        return Err(Error::request(Field::At, message));
     }
-    setup.start_with("--at", &states)?;
-    let value = |a: &Assignment| setup.input_value("--at", a);
+    setup.start_with(Field::At, &states)?;
+    let value = |a: &Assignment| setup.input_value(Field::At, a);
     inputs.into_iter().map(value).collect()
 }
 
-/// The steady motion with quantities as given; states go to the setup, all inputs are returned.
+/// The steady motion with prescribed quantities; states go to the setup, all inputs are returned.
 fn motion(
     model: &dyn Model,
     setup: &mut Setup<'_>,
     assignments: &[Assignment],
 ) -> Result<GivenInputs, Error> {
-    /// Points from which it is sought.
+    /// Number of starting points of the search.
     const STARTS: usize = 40;
     let base = Point {
         x: setup.initial.clone(),
         p: setup.parameters.clone(),
         ..Point::initial(model)
     };
-    let mut problem = SteadyProblem::new(model, base).map_err(|error| refused(&error))?;
+    let mut problem = SteadyProblem::new(model, base)?;
     for input in 0..setup.info.declared_inputs {
-        let freed = problem.free(Term::Input(input));
-        freed.map_err(|error| refused(&error))?;
+        problem.free(Term::Input(input))?;
     }
-    for Assignment { name, value } in assignments {
-        let term = term(setup, name)?;
-        let value = value_of(setup, term, value, &format!("--at {name}"))?;
-        problem.fix(term, value).map_err(|error| refused(&error))?;
+    for fixed in assignments {
+        let term = term(setup, Field::At, &fixed.name)?;
+        problem.fix(term, value_of(setup, term, Field::At, fixed)?)?;
     }
-    let found = problem.solve_isolated(STARTS);
-    let found = found.map_err(|error| refused(&error))?;
+    let found = problem.solve_isolated(STARTS)?;
     // The nearest comes first.
     let point = found.into_iter().next().map(|motion| motion.point);
     let point = point.unwrap_or_else(|| problem.base().clone());
     setup.initial = point.x;
-    // What is less than rounding of a newton is nothing.
+    // Inputs below rounding, in SI, are zero.
     let clean = |u: f64| if u.abs() < f64::EPSILON { 0.0 } else { u };
     let inputs = point.u.into_iter().take(setup.info.declared_inputs);
     Ok(inputs.map(clean).enumerate().collect())
 }
 
-/// Names in a list, each once.
+/// Indices of the names of a list, each of which may be given once.
 pub fn distinct(
-    flag: &str,
+    field: Field,
     names: &[String],
     find: impl Fn(&str) -> Result<usize, Error>,
 ) -> Result<Vec<usize>, Error> {
@@ -92,21 +90,22 @@ pub fn distinct(
     for name in names {
         let place = find(name.trim())?;
         if found.contains(&place) {
-            return Err(Error::Usage(format!("{flag}: `{name}` is given twice")));
+            return Err(Error::request(field, format!("`{name}` is given twice")));
         }
         found.push(place);
     }
     Ok(found)
 }
 
-/// `-8,-2+3i,-2-3i`
+/// Poles such as `-8,-2+3i,-2-3i`.
 pub fn poles(text: &str) -> Result<Vec<Complex<f64>>, Error> {
     let pole = |text: &str| {
         complex(text.trim()).ok_or_else(|| {
-            Error::Usage(format!(
-                "--poles: `{}` is not a pole; write numbers such as -8, or pairs such as -2+3i,-2-3i",
+            let message = format!(
+                "`{}` is not a pole; write numbers such as -8, or pairs such as -2+3i,-2-3i",
                 text.trim()
-            ))
+            );
+            Error::request(Field::Poles, message)
         })
     };
     text.split(',').map(pole).collect()
@@ -118,7 +117,7 @@ fn complex(text: &str) -> Option<Complex<f64>> {
     let Some(text) = text.strip_suffix(['i', 'j']) else {
         return finite(text).map(Complex::from);
     };
-    // The sign of the imaginary part, which is not that of an exponent.
+    // The sign of the imaginary part, not that of an exponent.
     let sign = text
         .char_indices()
         .rev()
@@ -133,13 +132,14 @@ fn complex(text: &str) -> Option<Complex<f64>> {
     Some(Complex::new(real, imaginary))
 }
 
-/// `Q=1,10,R=0.1`
+/// Weights such as `Q=1,10,R=0.1`.
 pub fn weights(text: &str) -> Result<Method, Error> {
     let wrong = |what: &str| {
-        Error::Usage(format!(
-            "--lqr: {what}; write Q=1,10,R=0.1, with a weight for each output in Q and for each \
-             input in R, or a single one for all"
-        ))
+        let message = format!(
+            "{what}; write Q=1,10,R=0.1, with a weight for each output in Q and for each input in R, \
+             or a single one for all"
+        );
+        Error::request(Field::Weights, message)
     };
     let [mut q, mut r]: [Option<Vec<f64>>; 2] = [None, None];
     let mut into: Option<&mut Vec<f64>> = None;
@@ -171,44 +171,46 @@ pub fn weights(text: &str) -> Result<Method, Error> {
     })
 }
 
-/// `--sampled-ms` and `--delay-ms`
+/// Sampling period and delay.
 pub fn sampling(period_ms: Option<f64>, delay_ms: Option<f64>) -> Result<Option<Sampling>, Error> {
     let sampling = |period_ms: f64| Sampling::new(period_ms / 1e3, delay_ms.unwrap_or(0.0) / 1e3);
     let sampling = period_ms.map(sampling).transpose();
-    sampling.map_err(|error| Error::Usage(format!("--sampled-ms, --delay-ms: {error}")))
+    Ok(sampling.map_err(DesignError::from)?)
 }
 
 /// `FROM..TO` of `NAME=FROM..TO/STEPS`
-fn ends<'a>(flag: &str, range: &'a Assignment) -> Result<[&'a str; 2], Error> {
+fn ends<'a>(field: Field, range: &'a Assignment) -> Result<[&'a str; 2], Error> {
     let parts = range.value.split_once("..").and_then(|(from, rest)| {
         let (to, _) = rest.rsplit_once('/')?;
         Some([from, to])
     });
-    parts.ok_or_else(|| no_range(flag, range))
+    parts.ok_or_else(|| no_range(field, range))
 }
 
 /// `STEPS` of `NAME=FROM..TO/STEPS`
-fn steps(flag: &str, range: &Assignment) -> Result<usize, Error> {
+fn steps(field: Field, range: &Assignment) -> Result<usize, Error> {
     let steps = range
         .value
         .rsplit_once('/')
         .and_then(|(_, steps)| steps.trim().parse().ok());
-    match steps.ok_or_else(|| no_range(flag, range))? {
+    match steps.ok_or_else(|| no_range(field, range))? {
         steps if (1..=MOST_STEPS).contains(&steps) => Ok(steps),
-        steps => Err(Error::Usage(format!(
-            "{flag}: {steps} intervals; between 1 and {MOST_STEPS} are possible"
-        ))),
+        steps => Err(Error::request(
+            field,
+            format!("{steps} intervals; between 1 and {MOST_STEPS} are possible"),
+        )),
     }
 }
 
-fn no_range(flag: &str, range: &Assignment) -> Error {
-    Error::Usage(format!(
-        "{flag}: `{}` is not a range; write {}=1..5/8 for eight intervals from 1 to 5",
+fn no_range(field: Field, range: &Assignment) -> Error {
+    let message = format!(
+        "`{}` is not a range; write {}=1..5/8 for eight intervals from 1 to 5",
         range.value, range.name
-    ))
+    );
+    Error::request(field, message)
 }
 
-/// Values from end to end.
+/// Equidistant values, ends included.
 fn spread([from, to]: [f64; 2], steps: usize) -> Vec<f64> {
     let part = |step: usize| step as f64 / steps as f64;
     (0..=steps)
@@ -216,21 +218,20 @@ fn spread([from, to]: [f64; 2], steps: usize) -> Vec<f64> {
         .collect()
 }
 
-/// `NAME=FROM..TO/STEPS`: a state, and by how much it is off its value on the motion.
+/// `NAME=FROM..TO/STEPS`: a state, and its deviations from the steady motion.
 pub fn disturbances(setup: &Setup<'_>, text: &str) -> Result<(usize, Vec<f64>), Error> {
-    const FLAG: &str = "--attraction";
+    const FIELD: Field = Field::Attraction;
     let range = text.parse::<Assignment>();
-    let range = range.map_err(|text| Error::Usage(format!("{FLAG}: {text}")))?;
-    let state = setup.state(&range.name)?;
+    let range = range.map_err(|message| Error::request(FIELD, message))?;
+    let state = setup.state(FIELD, &range.name)?;
     let unit = setup.unit_of_state(state);
-    let label = format!("{FLAG} {}", range.name);
-    let value = |text: &str| setup.value(text.trim(), unit, &label);
-    let [from, to] = ends(FLAG, &range)?;
+    let value = |text: &str| setup.value(FIELD, &range.name, text.trim(), unit);
+    let [from, to] = ends(FIELD, &range)?;
     let ends = [value(from)?, value(to)?];
-    Ok((state, spread(ends, steps(FLAG, &range)?)))
+    Ok((state, spread(ends, steps(FIELD, &range)?)))
 }
 
-/// What a schedule varies.
+/// Scheduling variable.
 #[derive(Debug, Clone, Copy)]
 enum Varied {
     State(usize),
@@ -238,7 +239,7 @@ enum Varied {
     Parameter(usize),
 }
 
-/// Values of a schedule.
+/// Scheduling variable with its values.
 pub struct Values {
     varied: Varied,
     name: String,
@@ -246,10 +247,10 @@ pub struct Values {
     pub si: Vec<f64>,
 }
 
-/// `NAME=FROM..TO/STEPS`
+/// Values of a scheduling variable: `NAME=FROM..TO/STEPS`.
 pub fn values(setup: &mut Setup<'_>, schedule: &Assignment) -> Result<Values, Error> {
-    let [from, to] = ends("--schedule", schedule)?;
-    let steps = steps("--schedule", schedule)?;
+    let [from, to] = ends(Field::Schedule, schedule)?;
+    let steps = steps(Field::Schedule, schedule)?;
     let (name, info) = (&schedule.name, setup.info);
     let varied = if let Some(state) = info.state_index(name) {
         Varied::State(state)
@@ -264,8 +265,8 @@ pub fn values(setup: &mut Setup<'_>, schedule: &Assignment) -> Result<Values, Er
             .chain(info.inputs.iter())
             .chain(info.parameters.iter());
         let names = names.map(|quantity| quantity.name.as_ref());
-        let text = unknown(name, "state, input or parameter", names);
-        return Err(Error::Usage(text));
+        let message = unknown(name, "state, input or parameter", names);
+        return Err(Error::request(Field::Schedule, message));
     };
     let mut end = |text: &str| -> Result<f64, Error> {
         let assignment = Assignment {
@@ -274,10 +275,10 @@ pub fn values(setup: &mut Setup<'_>, schedule: &Assignment) -> Result<Values, Er
         };
         match varied {
             Varied::State(state) => {
-                setup.start_with("--schedule", &[assignment])?;
+                setup.start_with(Field::Schedule, &[assignment])?;
                 Ok(setup.initial[state])
             }
-            Varied::Input(_) => Ok(setup.input_value("--schedule", &assignment)?.1),
+            Varied::Input(_) => Ok(setup.input_value(Field::Schedule, &assignment)?.1),
             Varied::Parameter(parameter) => {
                 setup.set(&[assignment])?;
                 Ok(setup.parameters[parameter])
@@ -293,7 +294,7 @@ pub fn values(setup: &mut Setup<'_>, schedule: &Assignment) -> Result<Values, Er
 }
 
 impl Values {
-    /// The quantity, where a law can read it: not an input.
+    /// The variable, if a law can measure it: an input cannot be measured.
     pub fn readable<'q>(&self, setup: &'q Setup<'_>) -> Option<&'q Quantity> {
         match self.varied {
             Varied::State(state) => setup.info.states.get(state),
@@ -302,7 +303,7 @@ impl Values {
         }
     }
 
-    /// Puts a value in its place.
+    /// Sets the variable.
     pub fn place(&self, setup: &mut Setup<'_>, inputs: &mut GivenInputs, value: f64) {
         match self.varied {
             Varied::State(state) => setup.initial[state] = value,
@@ -314,8 +315,8 @@ impl Values {
         }
     }
 
-    /// A failure with the value at which it happened.
-    pub fn at(&self, setup: &Setup<'_>, value: f64, failure: &Error) -> Error {
+    /// A failure at a value of the variable.
+    pub fn at(&self, setup: &Setup<'_>, value: f64, failure: Error) -> Error {
         let info = setup.info;
         let quantity = match self.varied {
             Varied::State(state) => &info.states[state],
@@ -326,11 +327,9 @@ impl Values {
             quantity.to_unit(value).to_string(),
             quantity.unit.to_string(),
         ];
-        let text = format!("at {} = {shown} {unit}: {failure}", self.name);
-        if matches!(failure, Error::Computation(_)) {
-            Error::Computation(text)
-        } else {
-            Error::Usage(text)
+        Error::At {
+            place: format!("{} = {shown} {unit}", self.name),
+            source: Box::new(failure),
         }
     }
 }

@@ -53,7 +53,11 @@ fn questions_without_an_answer_are_refused_with_a_remedy() {
     let steady = |status: i32, more: &[&str], says: &[&str]| {
         folder.fails(status, &[&["steady", "unicycle"], more].concat(), says);
     };
-    steady(2, &["--fix", "theta=0.1"], &["prescribe 1 more of", "psi_dot"]);
+    steady(
+        2,
+        &["--fix", "theta=0.1"],
+        &["prescribe 1 more of", "psi_dot"],
+    );
     steady(2, &["--fix", "psi=1"], &["`psi` is ignorable", "psi_dot"]);
     steady(2, &["--fix", "tetha=1"], &["did you mean `theta`?"]);
     steady(2, &["--fix", "theta=1kg"], &["error[unit-mismatch]"]);

@@ -248,7 +248,7 @@ fn what_no_filter_can_run_with_is_refused() {
     let mut values = values(&estimation);
     values[estimation.layout().place(Unknown::Noise(1)).unwrap()] = -1.0;
     let error = estimation.log_likelihood(&values).unwrap_err().to_string();
-    assert_eq!(error, "noise of channel 1 is -1; it has to be 0 or more");
+    assert_eq!(error, "noise of channel 1 is -1; it must be 0 or more");
     assert!(Recording::new(vec![0.0, 0.0], vec![], vec![]).is_err());
     assert!(Recording::new(vec![0.0], vec![], vec![]).is_err());
     assert!(Recording::new(vec![0.0, 1.0], vec![], vec![1.0]).is_err());

@@ -102,7 +102,7 @@ fn a_multiplier_has_the_unit_of_power_over_the_constrained_rate() {
     let model = model(ROD);
     let reaction = &model.info().reactions[0];
     // The constraint is an area: W over m²/s.
-    assert_eq!((&*reaction.name, &*reaction.unit), ("length", "kg/s^2"));
+    assert_eq!((&*reaction.name, &*reaction.unit), ("length", "N/m"));
 }
 
 #[test]

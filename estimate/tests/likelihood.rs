@@ -238,7 +238,7 @@ fn what_no_filter_can_run_with_is_refused() {
     let wrong = Setup::new(&model, &[Measured::State(5), Measured::State(0)]);
     assert_eq!(
         told(&wrong),
-        "state 5: the model has 2, and each may be named once"
+        "state 5: the model has 2, and each may be given once"
     );
     let wrong = Setup::new(&model, &[Measured::State(0)]);
     assert!(told(&wrong).contains("measurements"), "{}", told(&wrong));

@@ -26,7 +26,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     println!("balanced: omega, theta = {end:?} after 3 s");
 
     let recordings = model.recordings(&rig::record(&model)?)?;
-    let report = appell::diagnose(&recordings, &appell::Diagnosis::default(), |_| {})?;
+    let report = appell::diagnose(&recordings, &appell::DiagnosisOptions::default(), |_| {})?;
     println!("the rig lacks: {:?}", report.which[0].effects);
     Ok(())
 }

@@ -1,0 +1,61 @@
+//! Names of values by what they are multiplied by on their way.
+
+use super::Binding;
+use crate::schedule::dag::{Id, Item, Op};
+use crate::schedule::names::joined;
+use crate::schedule::steps::{Tree, Value};
+
+impl Binding<'_> {
+    /// `consumer_per_a_b`: what is multiplied by `a` and `b` on its way to the consumer, and by
+    /// nothing else, with the sign that it has there.
+    pub(super) fn by_factors(&self, id: Id, mut negative: bool) -> Option<String> {
+        let feed = self.outline.feeds[id.index()]?;
+        let mut factors: Vec<&str> = Vec::new();
+        let mut part = id;
+        while part != feed {
+            let whole = self.outline.wholes[part.index()]?;
+            match self.dag.op(whole) {
+                Op::Product(items) => {
+                    for other in others(items, part)? {
+                        let built = self.built[other.id.index()].as_ref()?;
+                        negative ^= built.negative;
+                        factors.push(self.name_of_factor(&built.piece.tree)?);
+                    }
+                }
+                Op::Sum(items) => {
+                    let mut same = items.iter().filter(|item| item.id == part);
+                    negative ^= same.next()?.flip;
+                    if same.next().is_some() {
+                        return None;
+                    }
+                }
+                Op::Kept(_) => {}
+                _ => return None,
+            }
+            part = whole;
+        }
+        if factors.is_empty() || Some(negative) != self.sign_of_name(feed) {
+            return None;
+        }
+        factors.reverse();
+        joined(&[&self.given_name(feed)?, "per", &factors.join("_")])
+            .filter(|name| !self.names.has(name))
+    }
+
+    /// The name of a factor that is no number and no quotient of this kind itself.
+    fn name_of_factor(&self, tree: &Tree) -> Option<&str> {
+        let name = match tree {
+            Tree::Value(Value(value)) => self.values[*value as usize].as_str(),
+            Tree::Argument(argument) => self.arguments.get(*argument),
+            _ => return None,
+        };
+        (!name.contains("_per_")).then_some(name)
+    }
+}
+
+/// The other factors of a product that has `part` once; nothing where anything is divided by.
+fn others(factors: &[Item], part: Id) -> Option<impl Iterator<Item = &Item>> {
+    let once = factors.iter().filter(|factor| factor.id == part).count() == 1;
+    let whole = factors.iter().all(|factor| !factor.flip);
+    (once && whole).then(|| factors.iter().filter(move |factor| factor.id != part))
+}

@@ -3,7 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use appell_gap::data::MANIFEST;
-use appell_gap::motion_capture::{self, Capture, Ride, Skeleton, Smoothed};
+pub use appell_gap::motion_capture::Skeleton;
+use appell_gap::motion_capture::{self, Capture, Ride, Smoothed};
 use serde_json::{Value, json};
 
 use crate::{Error, Field, files};

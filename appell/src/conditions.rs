@@ -11,7 +11,7 @@ use crate::setup::{Assignment, bracketed, unknown};
 use crate::{Error, Field};
 
 /// Symbols with their values, from texts such as `theta=0, dot(psi)=0`.
-pub fn conditions(
+pub(crate) fn conditions(
     spec: &str,
     mechanism: &Mechanism,
     derivation: &mut Derivation,

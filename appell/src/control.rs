@@ -7,6 +7,12 @@ pub mod law_file;
 pub mod parse;
 mod request;
 
+pub use appell_analysis::control::LinearSystem;
+pub use appell_analysis::control::controllability::Controllability;
+pub use appell_analysis::control::operating_point::MotionEquations;
+pub use appell_analysis::control::reduction::Subsystem;
+pub use appell_analysis::control::sampled::Sampling;
 pub use design::Design;
 pub use errors::DesignError;
+pub use nalgebra::{Complex, DMatrix};
 pub use request::Request;

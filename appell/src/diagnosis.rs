@@ -6,8 +6,11 @@ use appell_gap::data::DataSet;
 use appell_gap::diagnose;
 use appell_gap::effects;
 
-pub use appell_gap::diagnose::{Options, Report};
-pub use appell_gap::effects::Effect;
+pub use appell_gap::diagnose::{
+    Changes, DiagnoseError, Experiment, ForceHistory, ForceLaw, Found, GapVerdict, HowFar,
+    Hypothesis, Limit, Options, Refitted, Report, SignalEffect, Where, Window,
+};
+pub use appell_gap::effects::{Effect, EffectError, ModelError};
 
 use crate::{Error, Field, files, recording};
 

@@ -1,9 +1,11 @@
 //! The equations evaluated at given states.
 
-use appell_runtime::condition::Conditions;
-use appell_runtime::contact::{ContactForce, ContactForces};
+pub use appell_runtime::condition::Conditions;
+pub use appell_runtime::contact::ContactForce;
+use appell_runtime::contact::ContactForces;
 use appell_runtime::inputs::{ModelInputs, ZeroInputs};
-use appell_runtime::model::{At, Energies, Model as Equations, ModelInfo};
+pub use appell_runtime::model::Energies;
+use appell_runtime::model::{At, Model as Equations, ModelInfo};
 use serde_json::{Map, Value, json};
 
 use crate::cases::Case;

@@ -13,16 +13,16 @@ use appell_spec::Mechanism;
 use appell_spec::expr::{Expr as SpecExpr, ExprKind, Quantity};
 
 /// An expression graph with the symbols of a mechanism.
-pub struct Workbench {
+pub(crate) struct Workbench {
     /// The graph.
-    pub graph: Graph,
+    pub(crate) graph: Graph,
     /// The symbols.
-    pub symbols: Symbols,
+    pub(crate) symbols: Symbols,
 }
 
 impl Workbench {
     /// The symbols of a mechanism.
-    pub fn new(mechanism: &Mechanism) -> Self {
+    pub(crate) fn new(mechanism: &Mechanism) -> Self {
         let mut graph = Graph::new();
         let mut symbols = Symbols::new(&mut graph, mechanism);
         // The floating-point value, exactly.
@@ -31,7 +31,7 @@ impl Workbench {
     }
 
     /// Lowers an expression of the spec language; `None` if it divides by zero.
-    pub fn lower(&mut self, expr: &SpecExpr) -> Option<Expr> {
+    pub(crate) fn lower(&mut self, expr: &SpecExpr) -> Option<Expr> {
         let lowering = Lowering {
             symbols: &self.symbols,
             rates: &self.symbols.rates,
@@ -40,7 +40,7 @@ impl Workbench {
     }
 
     /// Values of expressions in the parameters.
-    pub fn constants(&self, exprs: &[Expr], parameters: &[f64]) -> Vec<f64> {
+    pub(crate) fn constants(&self, exprs: &[Expr], parameters: &[f64]) -> Vec<f64> {
         let mut values = vec![f64::NAN; self.graph.len()];
         for (symbol, &value) in ids(&self.graph, &self.symbols.parameters)
             .iter()
@@ -52,7 +52,7 @@ impl Workbench {
     }
 
     /// The expressions as a function of time, state and parameters.
-    pub fn function(
+    pub(crate) fn function(
         self,
         info: &ModelInfo,
         exprs: Vec<Expr>,
@@ -62,7 +62,7 @@ impl Workbench {
 }
 
 /// Expressions as one function of time, state and parameters.
-pub struct StateFunction {
+pub(crate) struct StateFunction {
     schedule: Schedule,
     native: Option<NativeFunction>,
     count: usize,
@@ -137,7 +137,7 @@ impl StateFunction {
     }
 
     /// Evaluates at time `t`, state `x` and parameters `p` into the first entries of `values`.
-    pub fn values(&self, t: f64, x: &[f64], p: &[f64], values: &mut [f64]) {
+    pub(crate) fn values(&self, t: f64, x: &[f64], p: &[f64], values: &mut [f64]) {
         let values = &mut values[..self.count];
         let mut u = vec![0.0; self.declared + self.signals.len()];
         for (u, signal) in u[self.declared..].iter_mut().zip(&self.signals) {
@@ -151,7 +151,7 @@ impl StateFunction {
 }
 
 /// Collects the times at which an expression switches because it compares `t` with a number.
-pub fn switching_times(expr: &SpecExpr, times: &mut Vec<f64>) {
+pub(crate) fn switching_times(expr: &SpecExpr, times: &mut Vec<f64>) {
     match &expr.kind {
         ExprKind::Number(_) | ExprKind::Quantity(_) => {}
         ExprKind::Negate(a) => switching_times(a, times),

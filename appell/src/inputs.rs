@@ -1,5 +1,7 @@
 //! Inputs of a simulation: the sum of expressions, feedback laws and recordings.
 
+pub use appell_runtime::inputs::InputSource;
+
 pub mod controller;
 pub mod feedback;
 pub mod tabulated;

@@ -3,7 +3,7 @@
 use appell_gap::data::DataSet;
 use appell_gap::inverse;
 
-pub use appell_gap::inverse::{Answer, Options};
+pub use appell_gap::inverse::{Answer, Estimate, Options, RelationError};
 
 use crate::{Error, Model};
 

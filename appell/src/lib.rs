@@ -19,12 +19,13 @@
 //! | [`Source::improved`] with a [`gap_report::GapReport`] | `appell apply` |
 //!
 //! Numbers given as texts are in the units of the spec, or have units of their own; results are in SI.
-//! Pages, figures and drawings are those of the crate `appell-report`.
+//! Types of the crates below that stand in signatures are re-exported. Pages are those of the crate
+//! `appell-report`.
 
 pub mod capture;
 pub mod cases;
 pub mod check;
-pub mod conditions;
+mod conditions;
 pub mod control;
 pub mod derivation;
 pub mod diagnosis;
@@ -33,8 +34,9 @@ mod error;
 pub mod evaluation;
 mod field;
 pub mod files;
-pub mod formula;
+mod formula;
 pub mod gap_report;
+pub mod identification;
 pub mod improved;
 pub mod inputs;
 pub mod inverse;
@@ -46,7 +48,16 @@ pub mod setup;
 pub mod source;
 pub mod steady;
 
+pub use appell_gap::data::DataSet;
 pub use appell_gap::diagnose::Options as DiagnosisOptions;
+pub use appell_report::figure;
+pub use appell_runtime::Trajectory;
+pub use appell_runtime::integrate::Options as IntegrationOptions;
+pub use appell_runtime::model::{Model as EquationsOfMotion, ModelInfo, Quantity};
+pub use appell_runtime::signal::SignalError;
+pub use appell_runtime::simulate::{Method, Response, SimulationError, Validity};
+pub use appell_runtime::trajectory::{CsvOptions, Extras};
+pub use appell_spec::{Code, Diagnostic, Mechanism, Report, Severity};
 pub use error::{Class, Error, ExpressionError};
 pub use field::Field;
 pub use model::{Model, diagnose};

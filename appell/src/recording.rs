@@ -2,7 +2,10 @@
 
 use std::path::PathBuf;
 
-use appell_gap::data::{self, DataSet, Finding, FindingKind, Run, Spec};
+use appell_gap::data;
+pub use appell_gap::data::{
+    Channel, DataError, DataSet, Finding, FindingKind, Measured, Parameter, Part, Role, Run, Spec,
+};
 use appell_models::ALL;
 use appell_report::recording::sentence;
 use appell_report::text::number;

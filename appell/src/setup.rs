@@ -5,7 +5,8 @@ use std::borrow::Cow;
 use appell_runtime::model::ModelInfo;
 use appell_spec::expr::Expr;
 use appell_spec::mechanism::{CoordinateId, InputId, ParameterId, SpeedId};
-use appell_spec::units::{self, Unit};
+use appell_spec::units;
+pub use appell_spec::units::Unit;
 use appell_spec::{Mechanism, Scope, Snippet, did_you_mean, formula};
 
 use crate::formula::Workbench;

@@ -2,7 +2,8 @@
 
 use std::path::Path;
 
-use appell_models::{ALL, Shipped};
+use appell_models::ALL;
+pub use appell_models::Shipped;
 use appell_spec::limits::MAX_FILE;
 
 use crate::{Error, Field, files};

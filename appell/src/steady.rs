@@ -4,10 +4,12 @@ pub mod export;
 mod question;
 pub mod regions;
 
-use appell_analysis::{
-    Axis, Branch, BranchOptions, Branches, Chart, Requirement, Stability, SteadyMotion,
-    SteadyProblem, Term,
+pub use appell_analysis::{
+    Axis, Boundary, Branch, BranchError, BranchPoint, Cell, Change, Chart, ChartError, Edge, End,
+    Kind, Point, Requirement, Special, Stability, StabilityError, SteadyError, SteadyMotion,
+    SteadyProblem, Structure, Term, Verdict,
 };
+use appell_analysis::{BranchOptions, Branches};
 use appell_spec::did_you_mean;
 use appell_spec::units::{self, Unit};
 

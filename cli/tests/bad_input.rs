@@ -44,7 +44,7 @@ fn conditions_of_a_steady_motion_are_checked() {
         &["no state, rate or input `tetha`", "did you mean `theta`?"],
     );
     about("dot(tetha)=0", &["did you mean `dot(theta)`?"]);
-    about("theta", &["--about theta: write NAME=VALUE"]);
+    about("theta", &["--about: theta: write NAME=VALUE"]);
     about("theta=0, theta=1", &["`theta` is given twice"]);
     about("theta=2*theta", &["`theta` is defined in terms of itself"]);
     about("theta=r/R, r=R*theta", &["in terms of itself"]);

@@ -384,11 +384,11 @@ fn the_region_of_attraction_is_told_drawn_and_written() {
         &["positive number"],
     );
     let one = ["--attraction", "r=-1mm..1mm/2", "--plot", "one.svg"];
-    asks(&one, &["name two"]);
+    asks(&one, &["two states"]);
     folder.fails(
         2,
         &["control", "unicycle", "--attraction", "r=0..1/2"],
-        &["`--attraction` needs a law"],
+        &["--attraction: there is no law"],
     );
 }
 
@@ -398,13 +398,13 @@ fn what_cannot_be_designed_says_what_to_write_instead() {
     let fails = |more: &[&str], says: &[&str]| folder.fails(2, &with(&[STRAIGHT, more]), says);
     fails(
         &["--outputs", "theta,r"],
-        &["have order 4", "add sigma, omega_1"],
+        &["has order 4", "add sigma, omega_1"],
     );
     fails(
         &["--outputs", "omega_1,theta,omega_3"],
-        &["`omega_3` follows", "leave it out"],
+        &["`omega_3` depends linearly", "remove it"],
     );
-    fails(&["--outputs", "theta,phi"], &["do not move `phi`"]);
+    fails(&["--outputs", "theta,phi"], &["`phi` is not affected"]);
     fails(&["--outputs", "thta"], &["did you mean `theta`?"]);
     fails(&["--outputs", "theta,theta"], &["given twice"]);
     fails(&["--inputs", "v"], &["no input `v`"]);
@@ -415,7 +415,7 @@ fn what_cannot_be_designed_says_what_to_write_instead() {
     fails(&["--poles", "-8+"], &["`-8+` is not a pole", "-2+3i,-2-3i"]);
     fails(
         &["--poles", "-1+i,-1,-1,-1,-1,-1"],
-        &["needs its conjugate", "-1.00000-1.00000i"],
+        &["lacks its complex conjugate", "-1.00000-1.00000i"],
     );
     fails(&["--lqr", "Q=1"], &["R is missing"]);
     fails(&["--lqr", "Q=1,2,R=1"], &["2 weights in Q for 6 outputs"]);
@@ -433,7 +433,7 @@ fn what_cannot_be_designed_says_what_to_write_instead() {
         &["--at", "theta=1m"],
         &["error[unit-mismatch]", "--at theta"],
     );
-    fails(&["--write", "law.toml"], &["needs a law"]);
+    fails(&["--write", "law.toml"], &["--write: there is no law"]);
     fails(
         &["--poles", "-8", "--sampled-ms", "0"],
         &["positive number of seconds"],
@@ -453,7 +453,11 @@ fn what_cannot_be_designed_says_what_to_write_instead() {
     folder.fails(
         2,
         &thrice,
-        &["wanted 6 times", "2 inputs allow it 2 times", "spread"],
+        &[
+            "requested 6 times",
+            "at most 2, the number of inputs",
+            "spread",
+        ],
     );
     assert_eq!(folder.files(), [""; 0]);
 }

@@ -139,7 +139,7 @@ fn a_spec_file_works_at_once() {
             "--engine",
             "emitted",
         ],
-        &["`--engine jit`"],
+        &["--engine: emitted code", "machine code"],
     );
 }
 
@@ -188,11 +188,11 @@ fn a_key_stands_there_once() {
         3,
         &["evaluate", "pendulum", "--cases", "in.json"],
         &[
-            "the key `omega` stands here twice",
+            "the key `omega` is given twice",
             "in.json:2:47",
-            "the key `t` stands here twice",
+            "the key `t` is given twice",
             "in.json:2:64",
-            "the key `cases` stands here twice",
+            "the key `cases` is given twice",
             "in.json:3:13",
         ],
     );

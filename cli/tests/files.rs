@@ -119,8 +119,12 @@ fn a_file_beyond_the_limit_is_not_read() {
     folder.fails(
         3,
         &["check", "long.toml"],
-        &["long.toml is larger than 1 MiB"],
+        &["long.toml: the file exceeds the limit of 1 MiB"],
     );
     let simulate = ["simulate", "pendulum", "--feedback", "long.toml"];
-    folder.fails(3, &simulate, &["long.toml is larger than 1 MiB"]);
+    folder.fails(
+        3,
+        &simulate,
+        &["long.toml: the file exceeds the limit of 1 MiB"],
+    );
 }

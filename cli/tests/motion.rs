@@ -90,7 +90,7 @@ fn what_motions_cannot_tell_has_no_end() {
     // The mass of the cart stands in no equation but that of the force.
     let folder = recorded();
     let asked = ["inverse", "cart_pole", "--data", ".", "--free", "m_cart"];
-    folder.fails(4, &asked, &["do not tell"]);
+    folder.fails(4, &asked, &["do not determine"]);
     let asked = ["inverse", "cart_pole", "--data", ".", "--free", "mass"];
     folder.fails(2, &asked, &["no parameter `mass`", "m_cart"]);
     let asked = ["inverse", "cart_pole", "--data", ".", "--bias", "phi"];

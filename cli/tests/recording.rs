@@ -162,6 +162,6 @@ fn a_recorded_run_drives_a_simulation_by_the_names_and_units_of_its_description(
     assert_ne!(moved, end("recording.toml:a.csv"));
     for inputs in ["recording.toml", "recording.toml:c.csv"] {
         let asked = ["simulate", "pendulum", "--inputs", inputs];
-        folder.fails(2, &asked, &["takes one of the runs a.csv, b.csv"]);
+        folder.fails(2, &asked, &["append one of a.csv, b.csv"]);
     }
 }

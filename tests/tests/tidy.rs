@@ -86,7 +86,7 @@ const MAY_KNOW: &[(&str, &[&str])] = &[
     ),
 ];
 
-/// Crates that know every mechanism alike; the others may name one.
+/// Crates below the command line: they name no mechanism and no flag.
 const NAME_NO_MECHANISM: [&str; 9] = [
     "model_spec",
     "codegen",
@@ -204,6 +204,34 @@ fn no_source_of_the_tool_names_a_shipped_mechanism() {
     }
 }
 
+/// Files that write commands to be repeated.
+const MAY_WRITE_COMMANDS: [&str; 1] = ["appell/src/control/law_file.rs"];
+
+/// Whether a line contains a flag, which is not the arrow of a diagram such as `--table-->`.
+fn has_flag(line: &str) -> bool {
+    line.match_indices("--").any(|(at, _)| {
+        let (before, flag) = (&line[..at], &line[at + 2..]);
+        let begins = !before.ends_with(|c: char| c.is_alphanumeric() || c == '-');
+        begins && flag.starts_with(|c: char| c.is_ascii_lowercase()) && !flag.contains("->")
+    })
+}
+
+#[test]
+fn no_text_of_the_library_names_a_flag() {
+    let sources = NAME_NO_MECHANISM.map(|folder| format!("{folder}/src"));
+    for file in files(&sources, "rs") {
+        if MAY_WRITE_COMMANDS.iter().any(|own| file.ends_with(own)) {
+            continue;
+        }
+        let text = read(&file);
+        let lines = without_tests(&text).lines().map(str::trim_start);
+        // A command that runs the tests of a crate is not one of the tool.
+        let named = lines.filter(|line| has_flag(line) && !line.starts_with("//! cargo "));
+        let named: Vec<&str> = named.collect();
+        assert!(named.is_empty(), "{}: {named:?}", file.display());
+    }
+}
+
 #[test]
 fn no_file_is_longer_than_700_lines() {
     for file in files(&members(), "rs") {
@@ -222,7 +250,8 @@ fn no_file_is_longer_than_700_lines() {
 /// A file that `main.rs` does not name is never compiled, and nobody misses it.
 #[test]
 fn every_file_of_tests_is_run() {
-    for main in files(&["model_spec", "codegen", "gap", "cli", "tests"], "rs") {
+    let folders = ["model_spec", "codegen", "gap", "appell", "cli", "tests"];
+    for main in files(&folders, "rs") {
         if !main.ends_with("tests/main.rs") {
             continue;
         }

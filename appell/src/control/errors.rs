@@ -1,12 +1,13 @@
 //! Why no controller can be designed, in the names of the mechanism.
 
-use appell_analysis::control::operating_point::{MotionEquations, OperatingPointError};
-use appell_analysis::control::placement::PlacementError;
-use appell_analysis::control::reduction::ReductionError;
-use appell_analysis::control::riccati::RiccatiError;
-use appell_analysis::control::sampled::SamplingError;
+use appell_analysis::control::operating_point::MotionEquations;
+pub use appell_analysis::control::operating_point::OperatingPointError;
+pub use appell_analysis::control::placement::PlacementError;
+pub use appell_analysis::control::reduction::ReductionError;
+pub use appell_analysis::control::riccati::RiccatiError;
+pub use appell_analysis::control::sampled::SamplingError;
 use appell_report::text::number;
-use appell_spectra::spectrum::SpectrumError;
+pub use appell_spectra::spectrum::SpectrumError;
 use nalgebra::Complex;
 
 use crate::error::Class;

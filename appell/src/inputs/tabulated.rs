@@ -75,10 +75,12 @@ fn recorded(description: &str, run: &str, mechanism: &str) -> Result<Columns, Er
     recording::check_time_unit(&set)?;
     let Some(place) = set.runs.iter().position(|own| own.name == run) else {
         let names: Vec<&str> = set.runs.iter().map(|own| own.name.as_str()).collect();
-        let message = format!(
-            "{description} has no run `{run}`; append `:RUN` with one of {}",
-            names.join(", ")
-        );
+        let missing = if run.is_empty() {
+            format!("{description} needs a run")
+        } else {
+            format!("{description} has no run `{run}`")
+        };
+        let message = format!("{missing}; append one of {}", names.join(", "));
         return Err(Error::request(Field::Recorded, message));
     };
     let run = set.runs.swap_remove(place);

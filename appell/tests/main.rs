@@ -1,0 +1,6 @@
+//! The library as a program uses it.
+
+#![allow(clippy::unwrap_used, reason = "what is missing fails the test")]
+
+mod control;
+mod errors;

@@ -9,8 +9,9 @@ use appell_analysis::control::{lqr, robust_placement};
 use appell_runtime::model::Model;
 use nalgebra::{Complex, DMatrix};
 
-use super::errors::{self, DesignError};
+use super::errors::DesignError;
 use super::parse::GivenInputs;
+use super::remedies;
 use crate::setup::Setup;
 use crate::{Error, Field};
 
@@ -112,14 +113,14 @@ pub fn design(
         point.u[input] = value;
     }
     let open: Vec<usize> = (0..point.u.len()).filter(|input| !named(input)).collect();
-    let unsteady = |error| errors::operating_point(error, setup);
+    let unsteady = |error| remedies::operating_point(error, setup);
     point.hold(&open).map_err(unsteady)?;
     let equations = point.equations(&request.inputs).map_err(unsteady)?;
     let controllability = Controllability::of(&equations.system).map_err(DesignError::from)?;
     let rates = rates(model, &point);
     let outputs = outputs(setup, &equations, &rates, &request.outputs)?;
     let subsystem = reduce(&equations.system, &outputs)
-        .map_err(|error| errors::reduction(error, &equations, setup))?;
+        .map_err(|error| remedies::reduction(error, &equations, setup))?;
     let law = law(&subsystem, request)?;
     Ok(Design {
         x: point.x,
@@ -214,7 +215,7 @@ fn law(subsystem: &Subsystem, request: &Goal) -> Result<Option<DesignedGains>, E
                 None => robust_placement::place(system, &poles),
                 Some(sampling) => sampling.place(system, &poles),
             };
-            let placed = placed.map_err(errors::placement)?;
+            let placed = placed.map_err(remedies::placement)?;
             DesignedGains {
                 gain: placed.gain,
                 poles: placed.poles,
@@ -229,7 +230,7 @@ fn law(subsystem: &Subsystem, request: &Goal) -> Result<Option<DesignedGains>, E
                 None => lqr::continuous(system, &q, &r),
                 Some(sampling) => sampling.regulate(system, &q, &r),
             };
-            let regulator = regulator.map_err(errors::riccati)?;
+            let regulator = regulator.map_err(remedies::riccati)?;
             DesignedGains {
                 gain: regulator.gain,
                 poles: regulator.poles,

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use appell_runtime::model::{ModelInfo, Quantity};
 
 use super::design::{Design, DesignedGains};
-use super::errors::pole_text;
+use super::remedies::pole_text;
 use crate::setup::Setup;
 
 /// The text of the file: gains in SI with all digits, other values in the units of the spec.

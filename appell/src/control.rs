@@ -5,7 +5,7 @@ pub mod design;
 pub mod errors;
 pub mod law_file;
 pub mod parse;
-mod remedies;
+pub mod remedies;
 mod request;
 
 pub use appell_analysis::control::LinearSystem;

@@ -155,6 +155,10 @@ impl Error {
     }
 
     /// A file that is wrong as a whole.
+    #[expect(
+        clippy::needless_pass_by_value,
+        reason = "paths are displayed by temporary values"
+    )]
     pub fn data(file: impl ToString, message: impl Into<String>) -> Self {
         Self::Data {
             file: file.to_string(),
@@ -220,8 +224,10 @@ impl Error {
             Self::At { source, .. } => source.class(),
             Self::Identify(error) => of_identification(error),
             Self::Diagnose(error) => of_diagnosis(error),
-            Self::Inverse(RelationError::Inverse(_)) => Class::Computation,
-            Self::Inverse(_) => Class::Request,
+            Self::Inverse(error) => match error {
+                RelationError::Inverse(_) => Class::Computation,
+                _ => Class::Request,
+            },
             Self::Several(all) => all.iter().map(Self::class).max().unwrap_or(Class::Request),
         }
     }

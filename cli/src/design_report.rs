@@ -6,7 +6,7 @@ use appell_runtime::model::{ModelInfo, Quantity};
 use nalgebra::Complex;
 
 use appell::control::design::{Design, DesignedGains};
-use appell::control::errors::pole_text;
+use appell::control::remedies::pole_text;
 use appell::setup::Setup;
 use appell_report::text::{number, table};
 

@@ -179,7 +179,7 @@ pub fn sampling(period_ms: Option<f64>, delay_ms: Option<f64>) -> Result<Option<
 }
 
 /// `FROM..TO` of `NAME=FROM..TO/STEPS`
-fn ends<'a>(field: Field, range: &'a Assignment) -> Result<[&'a str; 2], Error> {
+fn ends(field: Field, range: &Assignment) -> Result<[&str; 2], Error> {
     let parts = range.value.split_once("..").and_then(|(from, rest)| {
         let (to, _) = rest.rsplit_once('/')?;
         Some([from, to])

@@ -107,7 +107,7 @@ pub(super) fn riccati(error: RiccatiError) -> DesignError {
 }
 
 /// A complex number in the format of a request.
-pub(super) fn pole_text(pole: Complex<f64>) -> String {
+pub fn pole_text(pole: Complex<f64>) -> String {
     if pole.im == 0.0 {
         return number(pole.re);
     }

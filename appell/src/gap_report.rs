@@ -189,7 +189,7 @@ struct Outside {
 }
 
 impl GapReport {
-    /// Reads a file that [`json`] filled.
+    /// Reads a file that [`json()`] filled.
     pub fn read(path: &Path) -> Result<Self, Error> {
         let file = path.to_string_lossy();
         let text = files::read(path, files::MAX_DATA)?;

@@ -1,6 +1,7 @@
 //! appell: from a mechanism spec to equations of motion, motions, gains and diagnoses.
 //!
-//! Whatever the command line does, a program does with one call of a [`Model`] or of its [`Source`]:
+//! What the command line does, a program does with one call of a [`Model`] or of its [`Source`], but for
+//! schedules of gains and the books of the papers:
 //!
 //! | call | command |
 //! |---|---|

@@ -2,142 +2,38 @@
 
 pub(crate) mod continuation;
 pub(crate) mod crossing;
+mod specials;
+mod types;
 
 use nalgebra::DVector;
 
-use crate::point::Point;
-use crate::stability::critical::{Change, Criteria};
-use crate::stability::{Stability, StabilityError, Verdict, essential_matrix};
 use crate::steady::equations::SteadyEquations;
 use crate::steady::newton;
 use crate::steady::{SteadyError, SteadyProblem};
 use crate::term::Term;
-use appell_runtime::contact::{ContactForce, ContactForces};
-use appell_spectra::spectrum::{Complex, characteristic_polynomial};
 use continuation::{End, OnCurve, correct, follow};
-use crossing::Crossing;
 
-/// An output that must stay on one side of a value for a motion to be feasible.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Requirement {
-    /// The output.
-    pub term: Term,
-    /// Least value in SI.
-    pub at_least: f64,
-}
-
-/// Options of the continuation.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct BranchOptions {
-    /// Largest number of points of one branch.
-    pub most_points: usize,
-    /// Longest step, as a part of the range of the quantity and of the size of the unknowns.
-    pub longest_step: f64,
-    /// Whether a branch ends where a requirement is violated; else the points are marked.
-    pub stop_infeasible: bool,
-    /// Whether crossing branches are followed as well.
-    pub follow_crossings: bool,
-}
-
-impl Default for BranchOptions {
-    fn default() -> Self {
-        Self {
-            most_points: 4000,
-            longest_step: 0.02,
-            stop_infeasible: false,
-            follow_crossings: true,
-        }
-    }
-}
-
-/// A steady motion on a branch.
-#[derive(Debug, Clone, PartialEq)]
-pub struct BranchPoint {
-    /// State, inputs and parameters.
-    pub point: Point,
-    /// Value of the quantity along which the branch runs, in SI.
-    pub value: f64,
-    /// Outputs in SI.
-    pub outputs: Vec<f64>,
-    /// Forces at the contacts.
-    pub contacts: Vec<ContactForce>,
-    /// Eigenvalues, verdict.
-    pub stability: Stability,
-    /// Whether the requirements hold and every normal force is compressive.
-    pub feasible: bool,
-}
-
-/// Kind of a special point.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Kind {
-    /// The quantity turns back (fold).
-    Fold,
-    /// Another branch crosses (branch point).
-    Crossing,
-    /// Stability may change, by the eigenvalues.
-    Critical(Change),
-    /// A requirement begins or ceases to hold: its number; after the last, a contact lifts.
-    Feasibility(usize),
-}
-
-/// A point between two points of a branch that is known to rounding.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Special {
-    /// Its kind.
-    pub kind: Kind,
-    /// Index of the point before it.
-    pub after: usize,
-    /// The motion.
-    pub motion: BranchPoint,
-    /// Direction of the branch that crosses, in the unknowns.
-    across: Option<DVector<f64>>,
-}
-
-/// Steady motions along one quantity.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Branch {
-    /// The points, in order.
-    pub points: Vec<BranchPoint>,
-    /// The special points between them, in order.
-    pub specials: Vec<Special>,
-    /// The causes of its two ends.
-    pub ends: [End; 2],
-    curve: Vec<DVector<f64>>,
-}
-
-/// Why branches could not be computed.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum BranchError {
-    /// No steady motions, or not a one-dimensional family.
-    #[error(transparent)]
-    Steady(#[from] SteadyError),
-    /// The conditions leave no family of motions.
-    #[error("the steady motions are isolated; release a condition to continue them along {along}")]
-    Isolated {
-        /// The quantity.
-        along: String,
-    },
-    /// The stability of a motion could not be determined.
-    #[error(transparent)]
-    Stability(#[from] StabilityError),
-    /// An invalid range.
-    #[error("`{along}` cannot run from {from} to {to}: write two different numbers")]
-    Range {
-        /// The quantity.
-        along: String,
-        /// Its beginning.
-        from: f64,
-        /// Its end.
-        to: f64,
-    },
-}
+pub use types::{Branch, BranchError, BranchOptions, BranchPoint, Kind, Requirement, Special};
 
 /// Largest number of branches.
 const MOST_BRANCHES: usize = 40;
 /// Values of the quantity at which branches are looked for.
 const SECTIONS: usize = 5;
-/// Points closer than this, relative to their size, are the same.
-const SAME: f64 = 1e-6;
+/// A point no farther than this from a branch, relative to its size, lies on it: corrections end
+/// within 1e-9 of the curve.
+const SAME_BRANCH: f64 = 1e-6;
+
+/// A value that a quantity must not pass on a branch.
+#[derive(Clone, Copy)]
+struct Limit {
+    term: Term,
+    /// 1 for a lower limit, −1 for an upper one.
+    sign: f64,
+    /// The least value of `sign` times the quantity, in SI.
+    least: f64,
+    /// Why the branch ends there.
+    end: End,
+}
 
 /// Branches of steady motions along a quantity.
 pub struct Branches<'a> {
@@ -329,9 +225,9 @@ impl<'a> Branches<'a> {
                 // One dimension is that of the quantity.
                 let motion = self.problem.solve_from(&equations.point(&zero.z))?;
                 let info = self.problem.model().info();
-                let open = self.problem.open(&motion);
-                let open = open.iter().filter(|&&term| term != self.along);
-                let open = open.map(|term| term.name(info)).collect();
+                let terms = self.problem.open(&motion);
+                let others = terms.iter().filter(|&&term| term != self.along);
+                let open = others.map(|term| term.name(info)).collect();
                 let dimension = dimension - 1;
                 Err(SteadyError::Family { dimension, open }.into())
             }
@@ -359,6 +255,38 @@ impl<'a> Branches<'a> {
         (part * range / slope).min(part * 5.0 * (1.0 + at.z.norm()))
     }
 
+    /// Where a branch ends: at the ends of the range of its quantity and of the declared ranges of
+    /// essential states, and where a requirement is violated if the options say so.
+    fn limits(&self) -> Vec<Limit> {
+        let within = |term: Term, [low, high]: [f64; 2], end: End| {
+            [(1.0, low), (-1.0, -high)].map(|(sign, least)| Limit {
+                term,
+                sign,
+                least,
+                end,
+            })
+        };
+        let [from, to] = self.range;
+        let range = [from.min(to), from.max(to)];
+        let states = &self.problem.model().info().states;
+        let mut limits = within(self.along, range, End::Range).to_vec();
+        for &state in &self.problem.structure().essential {
+            let term = Term::State(state);
+            limits.extend(within(term, states[state].range, End::State(state)));
+        }
+        if self.options.stop_infeasible {
+            for (number, requirement) in self.requirements.iter().enumerate() {
+                limits.push(Limit {
+                    term: requirement.term,
+                    sign: 1.0,
+                    least: requirement.at_least,
+                    end: End::Infeasible(number),
+                });
+            }
+        }
+        limits
+    }
+
     /// The first end of the curve between two of its points.
     fn first_limit(
         &self,
@@ -366,185 +294,29 @@ impl<'a> Branches<'a> {
         a: &OnCurve,
         b: &OnCurve,
     ) -> Option<(Option<OnCurve>, End)> {
-        let info = self.problem.model().info();
-        let [low, high] = [
-            self.range[0].min(self.range[1]),
-            self.range[0].max(self.range[1]),
-        ];
-        let mut limits: Vec<(Term, f64, f64, End)> = vec![
-            (self.along, 1.0, low, End::Range),
-            (self.along, -1.0, -high, End::Range),
-        ];
-        for &state in &self.problem.structure().essential {
-            let [low, high] = info.states[state].range;
-            limits.push((Term::State(state), 1.0, low, End::State(state)));
-            limits.push((Term::State(state), -1.0, -high, End::State(state)));
-        }
-        if self.options.stop_infeasible {
-            for (number, requirement) in self.requirements.iter().enumerate() {
-                let end = End::Infeasible(number);
-                limits.push((requirement.term, 1.0, requirement.at_least, end));
-            }
-        }
-        let margin = |z: &DVector<f64>, (term, sign, least, _): (Term, f64, f64, End)| {
+        let margin = |z: &DVector<f64>, limit: &Limit| {
             let point = equations.point(z);
-            sign * term.value(equations.model, &point) - least
+            limit.sign * limit.term.value(equations.model, &point) - limit.least
         };
-        let passed = |limit: &&(Term, f64, f64, End)| {
-            let here = margin(&a.z, **limit);
-            margin(&b.z, **limit) < 0.0 && here >= -1e-12 * (1.0 + limit.2.abs())
+        let passed = |limit: &Limit| {
+            let here = margin(&a.z, limit);
+            margin(&b.z, limit) < 0.0 && here >= -1e-12 * (1.0 + limit.least.abs())
         };
-        let passed: Vec<_> = limits.iter().filter(passed).collect();
-        let ends = passed.iter().map(|limit| {
-            let z = a.root(equations, b, |z| Some(margin(z, **limit)));
+        let end = |limit: Limit| {
+            let z = a.root(equations, b, |z| Some(margin(z, &limit)));
             (
                 z.and_then(|z| OnCurve::new(equations, z, &a.tangent)),
-                limit.3,
+                limit.end,
             )
-        });
+        };
         // The nearest, if more than one is passed at once.
-        let away = |end: &(Option<OnCurve>, End)| {
-            end.0.as_ref().map_or(0.0, |point| (&point.z - &a.z).norm())
+        let distance = |(point, _): &(Option<OnCurve>, End)| {
+            point.as_ref().map_or(0.0, |point| (&point.z - &a.z).norm())
         };
-        let mut ends: Vec<_> = ends.collect();
-        ends.sort_by(|x, y| away(x).total_cmp(&away(y)));
+        let limits = self.limits().into_iter();
+        let mut ends: Vec<_> = limits.filter(passed).map(end).collect();
+        ends.sort_by(|x, y| distance(x).total_cmp(&distance(y)));
         ends.into_iter().next()
-    }
-
-    /// The branch of a curve: its points and the special points between them.
-    fn describe(
-        &self,
-        equations: &SteadyEquations<'_>,
-        curve: &[OnCurve],
-        ends: [End; 2],
-    ) -> Result<Branch, BranchError> {
-        let motions = curve.iter().map(|at| self.motion(equations, &at.z));
-        let points: Vec<BranchPoint> = motions.collect::<Result<_, _>>()?;
-        let polynomials: Vec<Vec<f64>> = points
-            .iter()
-            .map(|p| characteristic_polynomial(&p.stability.matrix))
-            .collect::<Result<_, _>>()
-            .map_err(StabilityError::from)?;
-        let zeros = points.iter().map(|point| point.stability.zeros);
-        let criteria = Criteria::of(&polynomials, zeros.min().unwrap_or(0));
-        let mut specials = Vec::new();
-        for (after, pair) in curve.windows(2).enumerate() {
-            let [a, b] = pair else { continue };
-            let found = self.specials(equations, [a, b], criteria);
-            for (kind, z, across) in found {
-                let motion = self.motion(equations, &z)?;
-                let change = match kind {
-                    Kind::Critical(change) => {
-                        let which = usize::from(change != Change::RealZero);
-                        let values: Vec<Complex<f64>> =
-                            motion.stability.spectrum.values().collect();
-                        criteria.change(which, &values).map(Kind::Critical)
-                    }
-                    other => Some(other),
-                };
-                if let Some(kind) = change {
-                    specials.push(Special {
-                        kind,
-                        after,
-                        motion,
-                        across,
-                    });
-                }
-            }
-        }
-        Ok(Branch {
-            points,
-            specials,
-            ends,
-            curve: curve.iter().map(|at| at.z.clone()).collect(),
-        })
-    }
-
-    /// The special points between two points, with their unknowns.
-    fn specials(
-        &self,
-        equations: &SteadyEquations<'_>,
-        [a, b]: [&OnCurve; 2],
-        criteria: Criteria,
-    ) -> Vec<(Kind, DVector<f64>, Option<DVector<f64>>)> {
-        let mut found = Vec::new();
-        let model = self.problem.model();
-        let mut seek = |kind: Kind, function: &dyn Fn(&DVector<f64>) -> Option<f64>| {
-            let signs = [function(&a.z), function(&b.z)];
-            // A zero at the first point belongs to the pair before.
-            if let [Some(first), Some(last)] = signs
-                && first != 0.0
-                && first * last <= 0.0
-                && let Some(z) = a.root(equations, b, function)
-            {
-                found.push((kind, z, None));
-            }
-        };
-        seek(Kind::Fold, &|z| {
-            let at = OnCurve::new(equations, z.clone(), &(&b.z - &a.z))?;
-            Some(equations.term(self.along, z).1.dot(&at.tangent))
-        });
-        let critical = |z: &DVector<f64>, which: usize| {
-            let point = equations.point(z);
-            let (_, matrix) = essential_matrix(model, self.problem.structure(), &point).ok()?;
-            let polynomial = characteristic_polynomial(&matrix).ok()?;
-            Some(criteria.values(&polynomial)[which])
-        };
-        let oscillation = Change::Oscillation { frequency: 0.0 };
-        seek(Kind::Critical(Change::RealZero), &|z| critical(z, 0));
-        seek(Kind::Critical(oscillation), &|z| critical(z, 1));
-        for (number, requirement) in self.requirements.iter().enumerate() {
-            seek(Kind::Feasibility(number), &|z| {
-                let value = requirement.term.value(model, &equations.point(z));
-                Some(value - requirement.at_least)
-            });
-        }
-        let contacts = model.info().contacts.len();
-        for contact in 0..contacts {
-            seek(Kind::Feasibility(self.requirements.len()), &|z| {
-                let point = equations.point(z);
-                let mut forces = ContactForces::new();
-                Some(forces.at(model, point.at()).get(contact)?.normal)
-            });
-        }
-        if a.passes_crossing(equations, b)
-            && let Some(crossing) = Crossing::near(equations, &a.z)
-        {
-            let chord = (&b.z - &a.z).norm();
-            let near = |z: &DVector<f64>| (z - &a.z).norm().max((z - &b.z).norm()) <= 2.0 * chord;
-            if near(&crossing.z) {
-                let along = |t: &DVector<f64>| t.dot(&a.tangent).abs();
-                let [first, second] = crossing.tangents;
-                let across = if along(&first) < along(&second) {
-                    first
-                } else {
-                    second
-                };
-                found.push((Kind::Crossing, crossing.z, Some(across)));
-            }
-        }
-        found.sort_by(|x, y| (&x.1 - &a.z).norm().total_cmp(&(&y.1 - &a.z).norm()));
-        found
-    }
-
-    fn motion(
-        &self,
-        equations: &SteadyEquations<'_>,
-        z: &DVector<f64>,
-    ) -> Result<BranchPoint, BranchError> {
-        let model = self.problem.model();
-        let point = equations.point(z);
-        let contacts = ContactForces::new().at(model, point.at()).to_vec();
-        let holds = |r: &Requirement| r.term.value(model, &point) >= r.at_least;
-        let pushes = |force: &ContactForce| force.normal >= 0.0;
-        Ok(BranchPoint {
-            value: self.along.value(model, &point),
-            outputs: point.outputs(model),
-            feasible: self.requirements.iter().all(holds) && contacts.iter().all(pushes),
-            stability: Stability::of(model, self.problem.structure(), &point)?,
-            contacts,
-            point,
-        })
     }
 }
 
@@ -559,18 +331,8 @@ impl Branch {
                 return false;
             }
             let there = correct(equations, &beside, &chord.normalize());
-            there.is_some_and(|(there, _)| (there - z).norm() <= SAME * (1.0 + z.norm()))
+            there.is_some_and(|(there, _)| (there - z).norm() <= SAME_BRANCH * (1.0 + z.norm()))
         };
         self.curve.windows(2).any(near)
-    }
-
-    /// Special points at which the verdict changes.
-    pub fn changes(&self) -> impl Iterator<Item = &Special> {
-        self.specials.iter().filter(|special| {
-            let verdict = |place: usize| self.points.get(place).map(|p| p.stability.verdict);
-            let unstable = |place: usize| verdict(place) == Some(Verdict::Unstable);
-            matches!(special.kind, Kind::Critical(_))
-                && unstable(special.after) != unstable(special.after + 1)
-        })
     }
 }

@@ -96,7 +96,7 @@ pub enum ChartError {
     #[error(transparent)]
     Branch(#[from] BranchError),
     /// A grid that is too small or too large.
-    #[error("a chart of {0} × {1} motions cannot be drawn: write two numbers from 2 to {MOST}")]
+    #[error("the grid needs 2 to {MOST} points along each axis, not {0} × {1}")]
     Grid(usize, usize),
     /// Position constraints that do not determine their coordinates.
     #[error(transparent)]

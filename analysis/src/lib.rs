@@ -1,6 +1,6 @@
 //! Steady motions of a model and their stability.
 //!
-//! | room | idea |
+//! | module | content |
 //! |---|---|
 //! | `point.rs`, `term.rs` | state, inputs and parameters; quantities that can be prescribed, varied or left free |
 //! | `steady.rs` | steady motions under conditions, and the dimension of their family |
@@ -8,7 +8,7 @@
 //! | `stability.rs` | eigenvalues without the zeros of the family; the verdict |
 //! | `stability/` | smooth test functions for changes of stability; modes tracked through crossings |
 //! | `branch.rs` | steady motions along one quantity: folds, crossings, ends, feasibility |
-//! | `branch/` | pseudo-arclength continuation; branch points |
+//! | `branch/` | what a branch holds; pseudo-arclength continuation; special points; branch points |
 //! | `chart.rs` | stability over two quantities: what a chart holds |
 //! | `chart/` | the grid and its verdicts; boundaries of stability and feasibility |
 //! | `control/` | linear models, gains, sampled controllers, schedules, controllability, regions of attraction |
@@ -30,7 +30,7 @@
 //! ```
 //!
 //! This crate is independent of mechanisms. In a steady motion the essential states are constant;
-//! the wheel rolls, the pendulum spins, and their ignorable coordinates grow.
+//! ignorable coordinates, such as the heading of a wheel, may advance.
 
 mod branch;
 mod chart;

@@ -40,9 +40,10 @@ pub enum Verdict {
 
 /// Rounding of a zero coefficient of the characteristic polynomial, relative to the product of as
 /// many eigenvalues.
-const ZERO: f64 = 1e-12;
-/// Singular values that count as zero, relative to the largest.
-const RANK: f64 = 1e-9;
+const COEFFICIENT_ROUNDING: f64 = 1e-12;
+/// Singular values of the essential matrix that count as zero, relative to the largest: rounding of
+/// its entries, which are Jacobians of long formulas.
+const ESSENTIAL_RANK: f64 = 1e-9;
 /// Growth is significant if it exceeds this many times the uncertainty.
 const SAFETY: f64 = 100.0;
 
@@ -80,7 +81,7 @@ impl Stability {
     ) -> Result<Self, StabilityError> {
         let (states, matrix) = essential_matrix(model, structure, point)?;
         let spectrum = Spectrum::of(&matrix)?;
-        let family = states.len() - Singular::of(&matrix).rank(RANK);
+        let family = states.len() - Singular::of(&matrix).rank(ESSENTIAL_RANK);
         let zeros = zero_count(&matrix)?.max(family);
         let mut deciding: Vec<usize> = (0..states.len()).collect();
         // The zeros are the smallest, up to rounding.
@@ -172,7 +173,9 @@ pub(super) fn zero_count(matrix: &DMatrix<f64>) -> Result<usize, SpectrumError> 
         let (others, product) = (n - zeros, sizes[..n - zeros].iter().product::<f64>());
         // If all eigenvalues are zero, the largest is rounding, too.
         let largest = if others == 0 { matrix.norm() } else { sizes[0] };
-        let noise = |j: usize| ZERO * product * largest.powi(i32::try_from(j).unwrap_or(i32::MAX));
+        let noise = |j: usize| {
+            COEFFICIENT_ROUNDING * product * largest.powi(i32::try_from(j).unwrap_or(i32::MAX))
+        };
         (1..=zeros).all(|j| coefficients[others + j].abs() <= noise(j))
     };
     Ok((0..=n).rev().find(all_zero).unwrap_or(0))

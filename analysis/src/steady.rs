@@ -68,6 +68,12 @@ pub enum SteadyError {
         /// Quantities that can be prescribed.
         instead: String,
     },
+    /// The rate of an essential state.
+    #[error("`{name}` is zero in every steady motion and cannot be prescribed")]
+    Zero {
+        /// The quantity.
+        name: String,
+    },
     /// Only inputs and parameters can be left free.
     #[error("`{name}` cannot be left free: {reason}")]
     NotFree {
@@ -103,8 +109,8 @@ pub enum SteadyError {
 }
 
 fn list(left: &[(String, f64)]) -> String {
-    let one = |(name, value): &(String, f64)| format!("{name} = {value:.3e}");
-    left.iter().map(one).collect::<Vec<_>>().join(", ")
+    let residual = |(name, value): &(String, f64)| format!("{name} = {value:.3e}");
+    left.iter().map(residual).collect::<Vec<_>>().join(", ")
 }
 
 /// Conditions on steady motions, and the quantities that are free.
@@ -117,8 +123,9 @@ pub struct SteadyProblem<'a> {
     conditions: Vec<Condition>,
 }
 
-/// Solutions whose unknowns differ by less, in units of their scales, are the same.
-const SAME: f64 = 1e-7;
+/// Solutions whose unknowns differ by less, in units of their scales, are the same: at a fold they
+/// are known only to the square root of rounding.
+const SAME_MOTION: f64 = 1e-7;
 
 impl<'a> SteadyProblem<'a> {
     /// All steady motions with the inputs and parameters of a point; searches begin at its state.
@@ -226,8 +233,7 @@ impl<'a> SteadyProblem<'a> {
                 Err(SteadyError::Ignorable { name })
             }
             Term::Rate(state) if self.structure.is_essential(state) => {
-                let instead = "something else: the rate of an essential state is zero".to_owned();
-                Err(SteadyError::NotConstant { name, instead })
+                Err(SteadyError::Zero { name })
             }
             Term::Rate(_) | Term::Output(_) if !self.is_constant(term) => {
                 let constant = self.constants();
@@ -274,8 +280,8 @@ impl<'a> SteadyProblem<'a> {
     /// The steady motion reached from a point, isolated or one of a family.
     pub fn solve_from(&self, start: &Point) -> Result<SteadyMotion, SteadyError> {
         let equations = self.equations();
-        let zero = newton::solve(&equations, &equations.unknowns_of(start));
-        let zero = zero.map_err(|missed| self.none(&equations, 1, &missed))?;
+        let zero = newton::solve(&equations, &equations.unknowns_of(start))
+            .map_err(|missed| self.none(&equations, 1, &missed))?;
         Ok(self.motion(&equations, &zero))
     }
 
@@ -302,7 +308,7 @@ impl<'a> SteadyProblem<'a> {
             match newton::solve(&equations, &z) {
                 Ok(zero) if self.in_range(&equations.point(&zero.z)) => {
                     let same = |other: &Zero| {
-                        (&other.z - &zero.z).norm() <= SAME * (1.0 + zero.z.norm())
+                        (&other.z - &zero.z).norm() <= SAME_MOTION * (1.0 + zero.z.norm())
                             || other.family() > 0 && zero.family() > 0
                     };
                     if !found.iter().any(same) {
@@ -441,15 +447,15 @@ impl<'a> SteadyProblem<'a> {
     /// Descriptions of the equations, in the order of the rows.
     fn row_names(&self) -> Vec<String> {
         let info: &ModelInfo = self.model.info();
-        let rates = self.structure.essential.iter();
-        let rates = rates.map(|&s| format!("rate of {}", info.states[s].name));
-        let constraints = self.model.dependent_coordinates().iter();
-        let constraints = constraints.map(|&q| {
+        let rate = |&s: &usize| format!("rate of {}", info.states[s].name);
+        let constraint = |&q: &usize| {
             let name = &info.states[info.speeds + q].name;
             format!("position constraint of {name}")
-        });
-        let conditions = self.conditions.iter();
-        let conditions = conditions.map(|c| format!("deviation of {}", c.term.name(info)));
+        };
+        let condition = |c: &Condition| format!("deviation of {}", c.term.name(info));
+        let rates = self.structure.essential.iter().map(rate);
+        let constraints = self.model.dependent_coordinates().iter().map(constraint);
+        let conditions = self.conditions.iter().map(condition);
         rates.chain(constraints).chain(conditions).collect()
     }
 }

@@ -62,7 +62,7 @@ impl Checked {
     }
 
     /// The summary and the warnings as JSON.
-    pub fn to_json(&self) -> Value {
+    pub(crate) fn to_json(&self) -> Value {
         self.summary.json(&self.warnings)
     }
 }

@@ -3,10 +3,11 @@
 pub mod attraction;
 pub mod design;
 pub mod errors;
-pub mod law_file;
-pub mod parse;
+pub(crate) mod law_file;
+pub(crate) mod parse;
 pub mod remedies;
 mod request;
+mod schedule;
 
 pub use appell_analysis::control::LinearSystem;
 pub use appell_analysis::control::controllability::Controllability;
@@ -17,3 +18,4 @@ pub use design::Design;
 pub use errors::DesignError;
 pub use nalgebra::{Complex, DMatrix};
 pub use request::Request;
+pub use schedule::Schedule;

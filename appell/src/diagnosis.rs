@@ -1,5 +1,6 @@
 //! Diagnosis of recordings: the library of effects, and a user's own.
 
+use std::fmt::Write as _;
 use std::path::PathBuf;
 
 use appell_gap::data::DataSet;
@@ -85,4 +86,31 @@ impl Library {
         recording::check_time_unit(set)?;
         Ok(diagnose::diagnose(set, &self.effects, options, stage)?)
     }
+}
+
+/// The inputs of an experiment in the units of the spec, as a [`Motion`](crate::Motion) reads recorded
+/// inputs.
+pub fn experiment_inputs(set: &DataSet, experiment: &Experiment) -> String {
+    let mut text = "t".to_owned();
+    let mut units = Vec::new();
+    for (name, _) in &experiment.inputs {
+        let _ = write!(text, ",{name}");
+        let mut inputs = set.mechanism.inputs.iter();
+        units.push(
+            inputs
+                .find(|input| input.label.name == *name)
+                .map(|input| &input.label.unit),
+        );
+    }
+    text.push('\n');
+    for (row, t) in experiment.times.iter().enumerate() {
+        // Times are multiples of a step; round off the floating-point error.
+        let _ = write!(text, "{}", (t * 1e9).round() / 1e9);
+        for ((_, values), unit) in experiment.inputs.iter().zip(&units) {
+            let value = unit.map_or(values[row], |unit| unit.from_si(values[row]));
+            let _ = write!(text, ",{value:.6e}");
+        }
+        text.push('\n');
+    }
+    text
 }

@@ -208,15 +208,15 @@ impl Error {
     /// The class; of several failures, the gravest.
     pub fn class(&self) -> Class {
         match self {
-            Self::Request { .. } | Self::Expression(_) | Self::Simulate(_) => Class::Request,
             Self::Report(_)
+            | Self::Signal(_)
+            | Self::Simulate(SimulationError::Signal(_))
             | Self::Data { .. }
             | Self::File { .. }
             | Self::Recording(_)
             | Self::Table { .. } => Class::Data,
-            Self::Signal(_) | Self::Stability(_) | Self::Json(_) | Self::Computation(_) => {
-                Class::Computation
-            }
+            Self::Request { .. } | Self::Expression(_) | Self::Simulate(_) => Class::Request,
+            Self::Stability(_) | Self::Json(_) | Self::Computation(_) => Class::Computation,
             Self::Steady(error) => of_steady(error),
             Self::Branch(error) => of_branch(error),
             Self::Chart(error) => of_chart(error),

@@ -209,7 +209,7 @@ impl Values {
 
 impl Evaluation<'_> {
     /// The values with the names of what they belong to; numbers that are not finite are `null`.
-    pub fn to_json(&self) -> Value {
+    pub(crate) fn to_json(&self) -> Value {
         let info = self.info;
         let cases = self.values.iter().map(|values| values.to_json(info));
         json!({

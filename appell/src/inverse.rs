@@ -9,9 +9,8 @@ use crate::{Error, Model};
 
 impl Model {
     /// Computes the inputs of recorded motions, and estimates parameters from the combinations of the
-    /// equations that hold whatever the inputs were. The model must be one
-    /// [for estimation](Self::for_estimation).
+    /// equations that hold whatever the inputs were.
     pub fn inverse(&self, set: &DataSet, options: &Options) -> Result<Answer, Error> {
-        Ok(inverse::find(set, self.equations(), options)?)
+        self.estimating(|equations| Ok(inverse::find(set, equations, options)?))
     }
 }

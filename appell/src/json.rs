@@ -9,11 +9,44 @@ mod recording;
 use appell_runtime::model::Quantity;
 use serde_json::{Map, Value, json};
 
+pub use crate::gap_report::json as diagnosis;
+pub use crate::steady::chart::json as chart;
+pub use crate::steady::export::json as steady;
 pub use design::{design, schedule};
 pub use identification::identification;
 pub use inverse::inverse;
 pub use motion::{extrema, motion};
 pub use recording::recording;
+
+use crate::capture::Converted;
+use crate::check::{Checked, Thorough};
+use crate::control::attraction::Explored;
+use crate::evaluation::Evaluation;
+
+/// Disturbed motions and their fates.
+pub fn attraction(region: &Explored<'_>) -> Value {
+    region.json()
+}
+
+/// A checked spec.
+pub fn check(checked: &Checked) -> Value {
+    checked.to_json()
+}
+
+/// The numerical check of a spec.
+pub fn thorough(thorough: &Thorough) -> Value {
+    thorough.to_json()
+}
+
+/// A converted motion capture.
+pub fn capture(converted: &Converted) -> Value {
+    converted.to_json()
+}
+
+/// Evaluated cases.
+pub fn evaluation(evaluation: &Evaluation<'_>) -> Value {
+    evaluation.to_json()
+}
 
 /// Values by the names of their quantities.
 pub(crate) fn named(quantities: &[Quantity], values: &[f64]) -> Map<String, Value> {

@@ -1,14 +1,14 @@
 //! appell: from a mechanism spec to equations of motion, motions, gains and diagnoses.
 //!
-//! What the command line does, a program does with one call of a [`Model`] or of its [`Source`], but for
-//! schedules of gains and the books of the papers:
+//! Every command of the command line has a counterpart, mostly one call of a [`Model`] or of its
+//! [`Source`]; that of `appell reproduce` is the crate `appell-papers`:
 //!
 //! | call | command |
 //! |---|---|
 //! | [`Model::from_spec`], [`Model::shipped`], [`Model::find`] | `MODEL` of every command |
 //! | [`Model::simulate`] with a [`Motion`] | `appell simulate` |
 //! | [`Model::steady`] with a [`steady::Question`] | `appell steady`, `appell stability` |
-//! | [`Model::control`] with a [`control::Request`], [`Model::law`] | `appell control` |
+//! | [`Model::control`], [`Model::schedule`] with a [`control::Request`], [`Model::law`], [`Model::attraction`] | `appell control` |
 //! | [`Source::check`] | `appell check` |
 //! | [`Source::derivation`], [`Source::linear_equations`], [`Source::rust`] | `appell derive` |
 //! | [`Source::drawing`] | `appell draw` |

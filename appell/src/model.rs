@@ -8,13 +8,14 @@ use appell_gap::{diagnose as gap, identify};
 use appell_runtime::Trajectory;
 use appell_runtime::model::{Model as Equations, ModelInfo};
 
-use crate::control::{Design, Request};
+use crate::control::attraction::{self, Explored};
+use crate::control::{Design, Request, Schedule, law_file};
 use crate::engine::{self, Engine};
 use crate::motion::{Motion, Simulated};
-use crate::setup::Setup;
+use crate::setup::{Assignment, Setup};
 use crate::source::Source;
 use crate::steady::{Answer, Question, Resolved};
-use crate::{Error, diagnosis, recording};
+use crate::{Error, Field, diagnosis, recording};
 
 /// A mechanism with its equations of motion.
 ///
@@ -29,6 +30,8 @@ use crate::{Error, diagnosis, recording};
 pub struct Model {
     source: Source,
     equations: engine::Equations,
+    /// Whether the equations have the adjoints of estimation.
+    adjoints: bool,
 }
 
 impl Model {
@@ -73,13 +76,33 @@ impl Model {
             None => engine::Equations::at_hand(&source)?,
             Some(engine) => engine::Equations::new(&source, engine)?,
         };
-        Ok(Self { source, equations })
+        Ok(Self {
+            source,
+            equations,
+            adjoints: false,
+        })
     }
 
-    /// The model of a spec with the adjoints that [`identify`](Self::identify) needs.
+    /// The model of a spec with adjoints, which [`identify`](Self::identify) and
+    /// [`inverse`](Self::inverse) derive at each call otherwise.
     pub fn for_estimation(source: Source) -> Result<Self, Error> {
         let equations = engine::Equations::for_estimation(&source)?;
-        Ok(Self { source, equations })
+        Ok(Self {
+            source,
+            equations,
+            adjoints: true,
+        })
+    }
+
+    /// A computation with equations that have adjoints.
+    pub(crate) fn estimating<R>(
+        &self,
+        compute: impl FnOnce(&dyn Equations) -> Result<R, Error>,
+    ) -> Result<R, Error> {
+        if self.adjoints {
+            return compute(self.equations());
+        }
+        compute(engine::Equations::for_estimation(&self.source)?.model())
     }
 
     /// The equations of motion: rates, Jacobians, Appell's equations, energies, outputs.
@@ -175,10 +198,56 @@ impl Model {
         request.design(self.equations(), self.setup()?)
     }
 
+    /// A design at each value of a state, input or parameter, such as `v=1..20/10` (ten intervals). All laws
+    /// feed back the same states.
+    ///
+    /// ```
+    /// use appell::{Model, Motion, control::Request, setup::Assignment};
+    ///
+    /// let model = Model::shipped("cart_pole")?;
+    /// let request = Request::default().poles("-3");
+    /// let schedule = model.schedule(&request, &Assignment::new("l", "0.3..0.6/3"))?;
+    /// assert_eq!(schedule.designs.len(), 4);
+    /// let law = model.scheduled_law(&schedule)?;
+    /// assert!(model.simulate(&Motion::new(5.0).feedback(&law))?.failure.is_none());
+    /// # Ok::<(), appell::Error>(())
+    /// ```
+    pub fn schedule(&self, request: &Request, range: &Assignment) -> Result<Schedule, Error> {
+        Schedule::new(self.equations(), self.setup()?, request, range)
+    }
+
+    /// A schedule as the text of a feedback file.
+    pub fn scheduled_law(&self, schedule: &Schedule) -> Result<String, Error> {
+        schedule.law(&self.setup()?, self.name())
+    }
+
+    /// Which motions settle under a law, from a grid of disturbances of one or two states such as
+    /// `theta=-20deg..20deg/8,r=-10cm..10cm/8`, each simulated for `duration` seconds; `progress` is called
+    /// with the number of completed motions and their total.
+    pub fn attraction(
+        &self,
+        design: &Design,
+        grid: &str,
+        duration: f64,
+        progress: &(dyn Fn(usize, usize) + Sync),
+    ) -> Result<Explored<'_>, Error> {
+        attraction::explore(
+            self.equations(),
+            &self.setup()?,
+            design,
+            grid,
+            duration,
+            progress,
+        )
+    }
+
     /// A design as the text of a feedback file, for [`Motion::feedback`].
     pub fn law(&self, design: &Design) -> Result<String, Error> {
-        let setup = self.setup()?;
-        Ok(crate::control::law_file::text(design, &setup, self.name()))
+        if design.law.is_none() {
+            let message = "without poles or weights there is no law";
+            return Err(Error::request(Field::Poles, message));
+        }
+        Ok(law_file::text(design, &self.setup()?, self.name()))
     }
 
     /// Recordings of the mechanism: a folder with a `recording.toml`, or CSV files.
@@ -186,8 +255,7 @@ impl Model {
         recording::read_of(&self.source, paths)
     }
 
-    /// Estimates parameters by maximum likelihood; `stage` is called with the name of each step. The model
-    /// must be one [for estimation](Self::for_estimation).
+    /// Estimates parameters by maximum likelihood; `stage` is called with the name of each step.
     pub fn identify(
         &self,
         set: &DataSet,
@@ -195,7 +263,7 @@ impl Model {
         stage: impl FnMut(&'static str),
     ) -> Result<identify::Answer, Error> {
         recording::check_time_unit(set)?;
-        Ok(identify::identify(set, self.equations(), options, stage)?)
+        self.estimating(|equations| Ok(identify::identify(set, equations, options, stage)?))
     }
 }
 

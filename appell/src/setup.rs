@@ -84,7 +84,12 @@ impl<'a> Setup<'a> {
 
     /// Sets parameters; an expression may use parameters set before it.
     pub fn set(&mut self, assignments: &[Assignment]) -> Result<(), Error> {
-        unique(assignments, Field::Set)?;
+        self.set_with(Field::Set, assignments)
+    }
+
+    /// Sets parameters that another part of a request gives.
+    pub fn set_with(&mut self, field: Field, assignments: &[Assignment]) -> Result<(), Error> {
+        unique(assignments, field)?;
         for assignment in assignments {
             let names = || {
                 self.mechanism
@@ -92,17 +97,17 @@ impl<'a> Setup<'a> {
                     .iter()
                     .map(|p| p.label.name.as_str())
             };
-            let index = known(Field::Set, &assignment.name, "parameter", names())?;
+            let index = known(field, &assignment.name, "parameter", names())?;
             let unit = self.mechanism.parameters[ParameterId::new(index)]
                 .label
                 .unit
                 .clone();
-            let value = self.value(Field::Set, &assignment.name, &assignment.value, &unit)?;
+            let value = self.value(field, &assignment.name, &assignment.value, &unit)?;
             let parameter = &self.mechanism.parameters[ParameterId::new(index)];
             let low = parameter.at_least.unwrap_or(f64::NEG_INFINITY);
             let high = parameter.at_most.unwrap_or(f64::INFINITY);
             inside(&assignment.name, value, [low, high], &unit)
-                .map_err(|message| Error::request(Field::Set, message))?;
+                .map_err(|message| Error::request(field, message))?;
             self.parameters[index] = value;
         }
         Ok(())

@@ -1,5 +1,6 @@
 //! Steady motions: requests in the names of a spec, and their results.
 
+pub mod chart;
 pub mod export;
 mod question;
 pub mod regions;

@@ -1,7 +1,8 @@
 //! Laws about motions that advance.
 
-use appell::Model;
 use appell::control::{Request, attraction};
+use appell::setup::Assignment;
+use appell::{Class, Model};
 
 #[test]
 fn a_law_about_an_advancing_motion_settles() {
@@ -16,6 +17,37 @@ fn a_law_about_an_advancing_motion_settles() {
     let grid = "x=-1..1/2";
     let explored =
         attraction::explore(model.equations(), &setup, &design, grid, 5.0, &|_, _| {}).unwrap();
-    let fates = &explored.json()["fates"];
+    let fates = &appell::json::attraction(&explored)["fates"];
     assert_eq!(fates, &serde_json::json!(["settled", "settled", "settled"]));
+}
+
+#[test]
+fn each_design_of_a_schedule_is_about_its_own_steady_motion() {
+    let model = Model::shipped("unicycle").unwrap();
+    let request = Request::default().at("omega_2", "2[m/s]/R").poles("-3");
+    let over = Assignment::new("R", "0.2..0.4/4");
+    let schedule = model.schedule(&request, &over).unwrap();
+    let spin = model.info().state_index("omega_2").unwrap();
+    for (radius, design) in &schedule.designs {
+        assert!(
+            (design.x[spin] * radius - 2.0).abs() < 1e-12,
+            "R = {radius}"
+        );
+    }
+    assert!(
+        model
+            .scheduled_law(&schedule)
+            .unwrap()
+            .contains("over = \"R\"")
+    );
+}
+
+#[test]
+fn there_is_no_law_without_gains() {
+    let model = Model::shipped("cart_pole").unwrap();
+    let design = model.control(&Request::default()).unwrap();
+    assert_eq!(model.law(&design).unwrap_err().class(), Class::Request);
+    let over = Assignment::new("l", "0.3..0.6/3");
+    let schedule = model.schedule(&Request::default(), &over).unwrap();
+    assert!(model.scheduled_law(&schedule).is_err());
 }

@@ -5,17 +5,16 @@ use std::fmt::Write as _;
 use appell_runtime::model::{ModelInfo, Quantity};
 use nalgebra::Complex;
 
+use appell::control::Schedule;
 use appell::control::design::{Design, DesignedGains};
 use appell::control::remedies::pole_text;
-use appell::setup::Setup;
 use appell_report::text::{number, table};
 
 /// Real part in 1/s above which a mode is unstable; rounding may move a multiple zero this far.
 const GROWING: f64 = 1e-6;
 
 /// The design as text, gains in the units of the spec.
-pub(crate) fn text(design: &Design, setup: &Setup<'_>) -> String {
-    let info = setup.info;
+pub(crate) fn text(design: &Design, info: &ModelInfo) -> String {
     let mut text = format!("{}\n{}", info.title, motion(design, info));
     text += &reach(design, info);
     text += &equations(design, info);
@@ -226,22 +225,14 @@ fn names_of(quantities: &[Quantity], places: &[usize]) -> Vec<String> {
 }
 
 /// Gains against the scheduling variable.
-pub(crate) fn schedule_text(name: &str, designs: &[(f64, Design)], setup: &Setup<'_>) -> String {
-    let info = setup.info;
+pub(crate) fn schedule_text(schedule: &Schedule, info: &ModelInfo) -> String {
+    let Schedule { over, designs, .. } = schedule;
     let Some((_, first)) = designs.first() else {
         return String::new();
     };
-    let quantities = [&info.states, &info.inputs, &info.parameters];
-    let quantities = quantities.into_iter().flat_map(|list| list.iter());
-    let varied = quantities
-        .into_iter()
-        .find(|quantity| quantity.name == name);
     let (inputs, outputs) = (&first.equations.inputs, &first.outputs);
-    let mut heading = vec![name.to_owned(), "rank".to_owned()];
-    let mut units = vec![
-        varied.map_or(String::new(), |q| q.unit.to_string()),
-        String::new(),
-    ];
+    let mut heading = vec![over.name.to_string(), "rank".to_owned()];
+    let mut units = vec![over.unit.to_string(), String::new()];
     let columns = first.law.as_ref().map_or(0, |law| law.gain.ncols());
     let mut scales = Vec::new();
     for &input in inputs {
@@ -259,7 +250,7 @@ pub(crate) fn schedule_text(name: &str, designs: &[(f64, Design)], setup: &Setup
     let mut rows = vec![heading, units];
     for (value, design) in designs {
         let mut row = vec![
-            number(varied.map_or(*value, |q| q.to_unit(*value))),
+            number(over.to_unit(*value)),
             design.controllability.rank.to_string(),
         ];
         if let Some(law) = &design.law {

@@ -1,9 +1,8 @@
-//! A gap report as text, and the table of its experiment.
+//! A gap report as text.
 
 use std::fmt::Write as _;
 use std::path::Path;
 
-use appell_gap::data::DataSet;
 use appell_gap::diagnose::{Experiment, GapVerdict, Hypothesis, Report};
 
 use appell_report::gap::{doubts, hinted, joined, left_out, sentence, short};
@@ -144,30 +143,4 @@ fn experiment_sentence(experiment: &Experiment) -> String {
         short(experiment.separation_then),
         short(experiment.separation_now),
     )
-}
-
-/// The inputs of an experiment in the units of the spec, as `appell simulate --inputs` reads them.
-pub(crate) fn csv(set: &DataSet, experiment: &Experiment) -> String {
-    let mut text = "t".to_owned();
-    let mut units = Vec::new();
-    for (name, _) in &experiment.inputs {
-        let _ = write!(text, ",{name}");
-        let mut inputs = set.mechanism.inputs.iter();
-        units.push(
-            inputs
-                .find(|input| input.label.name == *name)
-                .map(|input| &input.label.unit),
-        );
-    }
-    text.push('\n');
-    for (row, t) in experiment.times.iter().enumerate() {
-        // Times are multiples of a step; round off the floating-point error.
-        let _ = write!(text, "{}", (t * 1e9).round() / 1e9);
-        for ((_, values), unit) in experiment.inputs.iter().zip(&units) {
-            let value = unit.map_or(values[row], |unit| unit.from_si(values[row]));
-            let _ = write!(text, ",{value:.6e}");
-        }
-        text.push('\n');
-    }
-    text
 }

@@ -117,7 +117,11 @@ fn what_no_spec_can_hold_is_told_with_its_place() {
     let apply = ["apply", "carriage", "--report", "report.json"];
     let told = folder.done(&apply).stdout;
     let place = "put the filter between controller and model";
-    for text in [place, "0.05000 ± 0.01000 s", "tied with actuator_delay@F"] {
+    for text in [
+        place,
+        "0.0500000 ± 0.0100000 s",
+        "tied with actuator_delay@F",
+    ] {
         assert!(told.contains(text), "`{text}` is missing in\n{told}");
     }
     assert_eq!(

@@ -153,8 +153,7 @@ fn mechanisms_of_every_kind_move_without_a_complaint() {
             "{at} != '{}'",
             before.as_str().unwrap_or_default()
         ));
-        let drawn = browser.drawn();
-        assert!(drawn > SMALLEST, "{arguments:?}: {drawn} of the picture");
+        browser.draws(SMALLEST);
         assert_eq!(browser.value(NAMES), json!(true), "{arguments:?}");
         assert_eq!(browser.complaints(), [""; 0], "{arguments:?}");
     }
@@ -237,7 +236,7 @@ fn a_picture_that_the_browser_takes_away_comes_back() {
     };
     browser.open(&folder.path("film.html"));
     browser.wait("appell.pictures > 3");
-    assert!(browser.drawn() > SMALLEST);
+    browser.draws(SMALLEST);
     browser.value(
         "globalThis.taken = document.getElementById('space').getContext('webgl2').getExtension('WEBGL_lose_context');\
          taken.loseContext()",
@@ -248,7 +247,7 @@ fn a_picture_that_the_browser_takes_away_comes_back() {
     browser.value("taken.restoreContext()");
     browser.wait("document.getElementById('message').hidden");
     browser.wait("appell.pictures > 3");
-    assert!(browser.drawn() > SMALLEST);
+    browser.draws(SMALLEST);
     // The browser itself tells of the loss.
     let complaints = browser.complaints().into_iter();
     let others: Vec<String> = complaints.filter(|c| !c.contains("CONTEXT_LOST")).collect();

@@ -40,21 +40,22 @@ pub mod systems;
 pub mod time;
 
 use appell_spec::Code;
-use appell_spec::mechanism::Mechanism;
+use appell_spec::mechanism::{ConstraintKind, Mechanism};
 
 use crate::symbolic::{Expr, Graph};
 use algebra::Algebra;
 use constraints::Constraints;
 use contacts::Contact;
 use dependent::DependentSpeeds;
-use elimination::GeneralizedVelocities;
+use elimination::{Elimination, GeneralizedVelocities};
 use finding::{Finding, Outcome};
 use gibbs_appell::{BodyMotion, GibbsForm};
 use initial::InitialState;
-use kinematics::{Effort, Kinematics};
+use kinematics::{Effort, Kinematics, RollingContact};
 use loads::AppliedLoad;
 use motion::Motion;
 use positions::Positions;
+use row::Row;
 use symbols::Symbols;
 
 pub use algebra::seed;
@@ -149,13 +150,14 @@ fn equations(mechanism: &Mechanism) -> Outcome<Derivation> {
     )?;
     let rates = &elimination.rates;
     let directions = [symbols.speeds.as_slice(), &elimination.open.unknowns].concat();
+    let rolling = rolling_contacts(mechanism, &constraints, &elimination);
     let mut kinematics = Kinematics::new(
         &mut algebra,
         mechanism,
         &symbols,
         rates,
         &[],
-        Effort::Shortest,
+        Effort::Shortest(&rolling),
     )?;
     let bodies = gibbs_appell::body_motions(
         &mut algebra,
@@ -229,6 +231,31 @@ fn equations(mechanism: &Mechanism) -> Outcome<Derivation> {
         (derivation.gibbs, derivation.forces) = (gibbs, forces);
     }
     Ok(derivation)
+}
+
+/// The contacts whose every row holds for all pseudo-velocities: by a formula or by geometry.
+fn rolling_contacts(
+    mechanism: &Mechanism,
+    constraints: &Constraints,
+    elimination: &Elimination,
+) -> Vec<RollingContact> {
+    let solved = |place: usize, row: &Row| {
+        row.is_embedded() || row.is_active() && !elimination.open.rows.contains(&Some(place))
+    };
+    let holds = |id| {
+        let mut rows = constraints.rows.iter().enumerate();
+        rows.all(|(place, row)| row.constraint != id || solved(place, row))
+    };
+    let contacts = mechanism.constraints.entries();
+    contacts
+        .filter_map(|(id, constraint)| match constraint.kind {
+            ConstraintKind::Rolling { body, contact, .. } => holds(id).then_some(RollingContact {
+                body,
+                point: contact,
+            }),
+            _ => None,
+        })
+        .collect()
 }
 
 /// q̇ by the names of the coordinates.

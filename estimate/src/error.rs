@@ -18,7 +18,7 @@ pub enum EstimateError {
         found: usize,
     },
     /// Fewer than two rows.
-    #[error("a recording of {rows} rows has no motion; at least two are needed")]
+    #[error("a recording needs at least two rows; this one has {rows}")]
     TooShort {
         /// Rows.
         rows: usize,
@@ -49,8 +49,8 @@ pub enum EstimateError {
         /// Column, counted from 0.
         channel: usize,
     },
-    /// A setup that refers to something the model lacks, or refers to it twice.
-    #[error("{what} {index}: the model has {len}, and each may be given once")]
+    /// A reference to something that does not exist.
+    #[error("there is no {what} {index}; the model has {len}")]
     Unknown {
         /// State, input, output, pseudo-velocity or run.
         what: &'static str,
@@ -58,6 +58,14 @@ pub enum EstimateError {
         index: usize,
         /// Their number.
         len: usize,
+    },
+    /// A setup that refers to something twice.
+    #[error("{what} {index} is given twice")]
+    Twice {
+        /// Input or parameter.
+        what: &'static str,
+        /// Its index.
+        index: usize,
     },
     /// No measurements, no recordings, or no states.
     #[error("there are no {what}")]

@@ -5,11 +5,11 @@ use std::ops::Range;
 use super::EstimateError;
 use crate::data::layout::Layout;
 use crate::data::recording::Recording;
-use crate::data::setup::Setup;
+use crate::data::setup::{Measured, Setup};
 use crate::data::unknown::Unknown;
 use crate::gradient::adjoint::adjoint;
 use crate::kalman::filter::{Innovation, Pass};
-use crate::motion::plant::Plant;
+use crate::motion::plant::{Plant, StateSpace};
 use crate::motion::timeline::{Action, timeline};
 
 /// A setup with recordings: functions of the values that [`Layout`] lists.
@@ -48,6 +48,14 @@ impl<'a> Estimation<'a> {
     /// The equations of all states.
     pub(super) fn plant(&self) -> &Plant<'a> {
         &self.plant
+    }
+
+    fn system(&self) -> StateSpace<'_> {
+        StateSpace {
+            setup: self.setup,
+            plant: &self.plant,
+            layout: self.layout,
+        }
     }
 
     /// Its recordings.
@@ -147,14 +155,8 @@ impl<'a> Estimation<'a> {
         keeps: bool,
     ) -> Result<Pass<'b>, EstimateError> {
         let recording = &self.recordings[run];
-        let model = (self.setup, &self.plant, self.layout);
-        Pass::over(
-            model,
-            values,
-            (run, recording),
-            &self.actions(run, values),
-            keeps,
-        )
+        let actions = self.actions(run, values);
+        Pass::over(self.system(), values, (run, recording), &actions, keeps)
     }
 
     /// The filter before the first of the `actions` of a run.
@@ -165,8 +167,7 @@ impl<'a> Estimation<'a> {
         actions: &[Action],
     ) -> Pass<'b> {
         let recording = &self.recordings[run];
-        let model = (self.setup, &self.plant, self.layout);
-        Pass::new(model, values, (run, recording), actions, false)
+        Pass::new(self.system(), values, (run, recording), actions, false)
     }
 
     /// Steps, changes of inputs and samples of a run.
@@ -177,6 +178,21 @@ impl<'a> Estimation<'a> {
 
     /// Rejects values for which the filter is undefined.
     pub(super) fn check(&self, values: &[f64]) -> Result<(), EstimateError> {
+        self.check_ranges(values)?;
+        for run in 0..self.layout.runs {
+            if let Some(channel) = self.determined_channel(run, values) {
+                return Err(EstimateError::Value {
+                    what: format!("noise of channel {channel}"),
+                    value: 0.0,
+                    demand: "positive where no spread or disturbance makes its samples uncertain",
+                });
+            }
+        }
+        Ok(())
+    }
+
+    /// Rejects values outside their ranges.
+    pub(super) fn check_ranges(&self, values: &[f64]) -> Result<(), EstimateError> {
         let layout = &self.layout;
         if values.len() != layout.len() {
             return Err(EstimateError::ValueCount {
@@ -184,47 +200,105 @@ impl<'a> Estimation<'a> {
                 found: values.len(),
             });
         }
-        let demand = |range: Range<usize>, what: &str, demand, holds: &dyn Fn(f64) -> bool| {
-            let mut places = range.clone();
-            let error = |place: usize| EstimateError::Value {
-                what: format!("{what} {}", place - range.start),
-                value: values[place],
-                demand,
+        let demand =
+            |range: Range<usize>, what: &str, demand, holds: &dyn Fn(usize, f64) -> bool| {
+                let values = &values[range];
+                let fails = |&index: &usize| {
+                    let value = values[index];
+                    !(value.is_finite() && holds(index, value))
+                };
+                match (0..values.len()).find(fails) {
+                    Some(index) => Err(EstimateError::Value {
+                        what: format!("{what} {index}"),
+                        value: values[index],
+                        demand,
+                    }),
+                    None => Ok(()),
+                }
             };
-            match places.find(|&place| !(values[place].is_finite() && holds(values[place]))) {
-                Some(place) => Err(error(place)),
-                None => Ok(()),
-            }
+        let any = |_: usize, _: f64| true;
+        let not_negative = |_: usize, value: f64| value >= 0.0;
+        let not_zero = |_: usize, value: f64| value != 0.0;
+        let positive = |_: usize, value: f64| value > 0.0;
+        let admitted = |channel: usize, delay: f64| {
+            let longest = self.setup.channels[channel].longest_delay;
+            (0.0..=longest.unwrap_or(0.0)).contains(&delay)
         };
-        let not_negative = &|value| value >= 0.0;
         let levels = layout.disturbance(0)..layout.noise(0);
-        demand(0..levels.start, "parameter", "finite", &|_| true)?;
-        demand(levels, "level of disturbance", "0 or more", not_negative)?;
+        demand(0..levels.start, "parameter", "finite", &any)?;
+        demand(levels, "level of disturbance", "0 or more", &not_negative)?;
         let noise = layout.noise(0)..layout.bias(0);
-        demand(noise, "noise of channel", "0 or more", not_negative)?;
+        demand(noise, "noise of channel", "0 or more", &not_negative)?;
         let bias = layout.bias(0)..layout.scale(0);
-        demand(bias, "bias of channel", "finite", &|_| true)?;
+        demand(bias, "bias of channel", "finite", &any)?;
         let scale = layout.scale(0)..layout.sensor_delay(0);
-        demand(scale, "scale of channel", "other than 0", &|value| {
-            value != 0.0
-        })?;
-        for (index, channel) in self.setup.channels.iter().enumerate() {
-            let place = layout.sensor_delay(index);
-            let longest = channel.longest_delay.unwrap_or(0.0);
-            let holds = |value| (0.0..=longest).contains(&value);
-            let range = "between 0 and the longest delay of its channel";
-            demand(place..place + 1, "delay of a channel", range, &holds)?;
-        }
+        demand(scale, "scale of channel", "other than 0", &not_zero)?;
+        let delays = layout.sensor_delay(0)..layout.lag(0);
+        let range = "between 0 and the longest delay of its channel";
+        demand(delays, "delay of channel", range, &admitted)?;
         let lags = layout.lag(0)..layout.input_delay(0);
-        demand(lags, "lag", "positive", &|value| value > 0.0)?;
+        demand(lags, "lag", "positive", &positive)?;
         let delays = layout.input_delay(0)..layout.initial(0);
-        demand(delays, "delay of input", "0 or more", not_negative)?;
+        demand(delays, "delay of input", "0 or more", &not_negative)?;
         for run in 0..layout.runs {
             let initial = layout.initial(run)..layout.spread(run);
-            demand(initial, "initial state", "finite", &|_| true)?;
+            demand(initial, "initial state", "finite", &any)?;
             let spread = layout.spread(run)..layout.initial(run + 1);
-            demand(spread, "spread of initial state", "0 or more", not_negative)?;
+            demand(
+                spread,
+                "spread of initial state",
+                "0 or more",
+                &not_negative,
+            )?;
         }
         Ok(())
+    }
+
+    /// A channel without noise of which a sample is certain beforehand, so that its innovation has no
+    /// variance.
+    ///
+    /// Without disturbances the rank of P is at most the number of states with a spread, and each
+    /// sample without noise lowers it by one. At the first row no disturbance has acted yet.
+    fn determined_channel(&self, run: usize, values: &[f64]) -> Option<usize> {
+        let (layout, setup, recording) = (&self.layout, self.setup, &self.recordings[run]);
+        let channels = 0..setup.channels.len();
+        let exact: Vec<usize> = channels
+            .filter(|&channel| values[layout.noise(channel)] == 0.0)
+            .collect();
+        if exact.is_empty() {
+            return None;
+        }
+        let spreads = &values[layout.spread(run)..][..layout.states];
+        let rank = spreads.iter().filter(|&&spread| spread > 0.0).count();
+        let levels = &values[layout.disturbance(0)..layout.noise(0)];
+        let is_disturbed = levels.iter().any(|&level| level > 0.0);
+        let times = recording.times();
+        let is_sampled = |row: usize, channel: usize| {
+            let is_used = match setup.channels[channel].longest_delay {
+                // A delayed sample may be taken after the first row, even if it belongs to it.
+                Some(longest) => !is_disturbed && times[row] >= times[0] + longest,
+                None => true,
+            };
+            is_used && !recording.measured(row)[channel].is_nan()
+        };
+        // A state without spread is known at the first row, unless it follows from others.
+        let is_known = |channel: usize| match setup.channels[channel].measures {
+            Measured::State(state) => spreads[state] == 0.0,
+            Measured::Output(_) => false,
+        };
+        if setup.model.dependent_coordinates().is_empty() {
+            let is_undelayed = |channel: usize| setup.channels[channel].longest_delay.is_none();
+            let mut first = exact.iter().copied();
+            let known = first.find(|&c| is_undelayed(c) && is_sampled(0, c) && is_known(c));
+            if known.is_some() {
+                return known;
+            }
+        }
+        let rows = if is_disturbed { 1 } else { times.len() };
+        (0..rows)
+            .flat_map(|row| exact.iter().map(move |&channel| (row, channel)))
+            .filter(|&(row, channel)| is_sampled(row, channel))
+            .nth(rank)
+            .map(|(_, channel)| channel)
     }
 }

@@ -84,7 +84,7 @@ impl<'o, 'e> Shooting<'o, 'e> {
         rows: usize,
         guess: impl Fn(&Recording) -> Vec<f64>,
     ) -> Result<Self, EstimateError> {
-        estimation.check(start)?;
+        estimation.check_ranges(start)?;
         let layout = estimation.layout();
         for (channel, &noise) in start[layout.noise(0)..layout.bias(0)].iter().enumerate() {
             if noise <= 0.0 {
@@ -95,8 +95,7 @@ impl<'o, 'e> Shooting<'o, 'e> {
                 });
             }
         }
-        for one in free {
-            let unknown = one.unknown;
+        for &Free { unknown, .. } in free {
             if !matches!(
                 unknown,
                 Unknown::Parameter(_) | Unknown::Bias(_) | Unknown::Scale(_) | Unknown::Lag(_)
@@ -181,7 +180,7 @@ impl<'o, 'e> Shooting<'o, 'e> {
             let gain = condensed.gain(&change) + slope;
             if gain <= GAIN + ROUNDING * objective {
                 let shot = Shot {
-                    values: self.told(&trial),
+                    values: self.all_values(&trial),
                     gap,
                     objective,
                     information,
@@ -300,7 +299,7 @@ impl<'o, 'e> Shooting<'o, 'e> {
     }
 
     /// The values with the states at the first rows.
-    fn told(&self, trial: &Trial) -> Vec<f64> {
+    fn all_values(&self, trial: &Trial) -> Vec<f64> {
         let mut values = trial.values.clone();
         for (run, states) in trial.states.iter().enumerate() {
             let place = self.estimation.layout().initial(run);
@@ -334,7 +333,7 @@ fn sizes(states: &[Vec<DVector<f64>>]) -> Vec<f64> {
 /// undetermined.
 fn restricted(information: &DMatrix<f64>, slope: &DVector<f64>, open: &[bool]) -> DVector<f64> {
     /// Eigenvalues of the scaled information that count as zero.
-    const UNTOLD: f64 = 1e-10;
+    const LEAST_EIGENVALUE: f64 = 1e-10;
     let mut change = DVector::zeros(slope.len());
     let places: Vec<usize> = (0..open.len())
         .filter(|&i| open[i] && information[(i, i)] > 0.0)
@@ -351,7 +350,7 @@ fn restricted(information: &DMatrix<f64>, slope: &DVector<f64>, open: &[bool]) -
     let along = eigen.eigenvectors.tr_mul(&right);
     let parts = DVector::from_fn(places.len(), |i, _| {
         let value = eigen.eigenvalues[i];
-        if value > UNTOLD {
+        if value > LEAST_EIGENVALUE {
             along[i] / value
         } else {
             0.0

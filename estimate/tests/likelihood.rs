@@ -42,9 +42,9 @@ fn discrete(p: &[f64], h: f64) -> (Matrix2<f64>, Vector2<f64>) {
     let [m, c, k] = [p[0], p[1], p[2]];
     let a = Matrix2::new(-c / m, -k / m, 1.0, 0.0) * h;
     let b = Vector2::new(1.0 / m, 0.0) * h;
-    let one = Matrix2::identity();
-    let f = one + a + a * a / 2.0 + a * a * a / 6.0 + a * a * a * a / 24.0;
-    let g = one + a / 2.0 + a * a / 6.0 + a * a * a / 24.0;
+    let identity = Matrix2::identity();
+    let f = identity + a + a * a / 2.0 + a * a * a / 6.0 + a * a * a * a / 24.0;
+    let g = identity + a / 2.0 + a * a / 6.0 + a * a * a / 24.0;
     (f, g * b)
 }
 
@@ -73,15 +73,15 @@ fn textbook(p: &[f64], recording: &Recording) -> f64 {
     let mut cov = Matrix2::from_diagonal(&Vector2::from(SPREAD).map(|s| s * s));
     let mut sum = 0.0;
     for (row, &t) in recording.times().iter().enumerate() {
-        let seen: Vec<usize> = (0..2)
+        let channels: Vec<usize> = (0..2)
             .filter(|&i| !recording.measured(row)[i].is_nan())
             .collect();
-        if !seen.is_empty() {
-            let c = DMatrix::from_fn(seen.len(), 2, |i, j| SLOPES[seen[i]][j]);
-            let noise = seen.iter().map(|&i| NOISE[i] * NOISE[i]);
-            let r = DMatrix::from_diagonal(&DVector::from_iterator(seen.len(), noise));
-            let e = DVector::from_fn(seen.len(), |i, _| {
-                recording.measured(row)[seen[i]] - OFFSETS[seen[i]]
+        if !channels.is_empty() {
+            let c = DMatrix::from_fn(channels.len(), 2, |i, j| SLOPES[channels[i]][j]);
+            let noise = channels.iter().map(|&i| NOISE[i] * NOISE[i]);
+            let r = DMatrix::from_diagonal(&DVector::from_iterator(channels.len(), noise));
+            let e = DVector::from_fn(channels.len(), |i, _| {
+                recording.measured(row)[channels[i]] - OFFSETS[channels[i]]
             }) - &c * x;
             let s = &c * cov * c.transpose() + r;
             let inverse = s.clone().try_inverse().unwrap();
@@ -89,8 +89,8 @@ fn textbook(p: &[f64], recording: &Recording) -> f64 {
             let tau = std::f64::consts::TAU;
             sum -= 0.5 * ((s * tau).determinant().ln() + e.dot(&(&inverse * &e)));
             x += Vector2::from_iterator((&gain * e).iter().copied());
-            let left = DMatrix::identity(2, 2) - gain * c;
-            cov = Matrix2::from_iterator((left * cov).iter().copied());
+            let shrunk = (DMatrix::identity(2, 2) - gain * c) * cov;
+            cov = Matrix2::from_iterator(shrunk.iter().copied());
         }
         if let Some(next) = recording.times().get(row + 1) {
             let h = next - t;
@@ -226,7 +226,7 @@ fn the_smoother_conditions_all_states_on_all_samples() {
 #[test]
 fn what_no_filter_can_run_with_is_refused() {
     let (model, recordings) = (Oscillator::new(), [recording()]);
-    let told = |setup: &Setup<'_>| {
+    let message = |setup: &Setup<'_>| {
         Estimation::new(setup, &recordings)
             .err()
             .unwrap()
@@ -234,14 +234,16 @@ fn what_no_filter_can_run_with_is_refused() {
     };
     let mut wrong = setup(&model);
     wrong.longest_step = 1e-12;
-    assert!(told(&wrong).contains("longest step"), "{}", told(&wrong));
+    let refused = message(&wrong);
+    assert!(refused.contains("longest step"), "{refused}");
     let wrong = Setup::new(&model, &[Measured::State(5), Measured::State(0)]);
-    assert_eq!(
-        told(&wrong),
-        "state 5: the model has 2, and each may be given once"
-    );
+    assert_eq!(message(&wrong), "there is no state 5; the model has 2");
+    let mut wrong = setup(&model);
+    wrong.lagging = vec![0, 0];
+    assert_eq!(message(&wrong), "input 0 is given twice");
     let wrong = Setup::new(&model, &[Measured::State(0)]);
-    assert!(told(&wrong).contains("measurements"), "{}", told(&wrong));
+    let refused = message(&wrong);
+    assert!(refused.contains("measurements"), "{refused}");
 
     let setup = setup(&model);
     let estimation = Estimation::new(&setup, &recordings).unwrap();
@@ -250,7 +252,53 @@ fn what_no_filter_can_run_with_is_refused() {
     let error = estimation.log_likelihood(&values).unwrap_err().to_string();
     assert_eq!(error, "noise of channel 1 is -1; it must be 0 or more");
     assert!(Recording::new(vec![0.0, 0.0], vec![], vec![]).is_err());
-    assert!(Recording::new(vec![0.0], vec![], vec![]).is_err());
+    let error = Recording::new(vec![0.0], vec![], vec![]).unwrap_err();
+    assert_eq!(
+        error.to_string(),
+        "a recording needs at least two rows; this one has 1"
+    );
     assert!(Recording::new(vec![0.0, 1.0], vec![], vec![1.0]).is_err());
     assert!(Recording::new(vec![0.0, 1.0], vec![f64::NAN, 0.0], vec![]).is_err());
+}
+
+#[test]
+fn the_delay_that_is_refused_is_named_by_its_channel() {
+    let (model, recordings) = (Oscillator::new(), [recording()]);
+    let mut setup = setup(&model);
+    setup.channels[1].longest_delay = Some(0.1);
+    let estimation = Estimation::new(&setup, &recordings).unwrap();
+    let (mut values, layout) = (values(&estimation), estimation.layout());
+    values[layout.place(Unknown::SensorDelay(1)).unwrap()] = 0.2;
+    assert_eq!(
+        estimation.log_likelihood(&values).unwrap_err().to_string(),
+        "delay of channel 1 is 0.2; it must be between 0 and the longest delay of its channel"
+    );
+}
+
+#[test]
+fn a_channel_without_noise_needs_samples_that_are_uncertain() {
+    let (model, recordings) = (Oscillator::new(), [recording()]);
+    let setup = setup(&model);
+    let estimation = Estimation::new(&setup, &recordings).unwrap();
+    let likelihood = |changes: &[(Unknown, f64)]| {
+        let mut values = values(&estimation);
+        for &(unknown, value) in changes {
+            values[estimation.layout().place(unknown).unwrap()] = value;
+        }
+        let result = estimation.log_likelihood(&values);
+        result.map_err(|error| error.to_string())
+    };
+    let exact = (Unknown::Noise(0), 0.0);
+    let known = (Unknown::Spread { run: 0, state: 1 }, 0.0);
+    let [still, steady] = [0, 1].map(|i| (Unknown::Disturbance(i), 0.0));
+    let refused: Result<f64, String> = Err(
+        "noise of channel 0 is 0; it must be positive where no spread or disturbance makes its \
+         samples uncertain"
+            .to_owned(),
+    );
+    assert!(likelihood(&[exact]).unwrap().is_finite());
+    assert_eq!(likelihood(&[exact, known]), refused);
+    // Two samples determine two states.
+    assert_eq!(likelihood(&[exact, still, steady]), refused);
+    assert!(likelihood(&[known, still, steady]).unwrap().is_finite());
 }

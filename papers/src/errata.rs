@@ -222,8 +222,8 @@ pub fn check(test: &str) {
 pub fn markdown() -> String {
     let mut page = String::from(
         "# Errata of the papers\n\n\
-         Where the text of a paper differs from what its mechanism's equations are. The papers were \
-         read as\nrecognised text, so a garbled formula is not always the authors'. This page is \
+         Passages in which a paper differs from the equations of its mechanism. The papers were read \
+         as\nrecognised text, so a garbled formula is not always the authors'. This page is \
          written by\n`tests/tests/errata.rs` from `papers/src/errata/table.rs`: a row with a test is \
          shown by the identity\ntest, which compares functions and not numbers. The printed form \
          fails it, the right one passes.\n",
@@ -241,7 +241,7 @@ pub fn markdown() -> String {
         // Writing to a string cannot fail.
         let _ = write!(
             page,
-            "\n## {title}\n\n| place | printed | right | cause | how it is known |\n|---|---|---|---|---|\n"
+            "\n## {title}\n\n| place | printed | right | cause | evidence |\n|---|---|---|---|---|\n"
         );
         for e in ERRATA.iter().filter(|e| e.source == source) {
             let evidence = match &e.evidence {

@@ -25,12 +25,12 @@ pub struct Equation {
     /// Its content.
     pub about: &'static str,
     /// The compared formulas.
-    pub claims: &'static [Claim],
+    pub claims: &'static [Identity],
 }
 
-/// Formulas of one mechanism.
+/// Formulas of one mechanism, each identical to a derived one.
 #[derive(Debug)]
-pub struct Claim {
+pub struct Identity {
     /// The mechanism.
     pub subject: Subject,
     /// Symbols with given values.
@@ -67,11 +67,11 @@ impl Equation {
 
     /// Differences from the derivation; empty if the equation holds.
     pub fn differences(&self) -> Vec<String> {
-        self.claims.iter().flat_map(Claim::differences).collect()
+        self.claims.iter().flat_map(Identity::differences).collect()
     }
 }
 
-impl Claim {
+impl Identity {
     fn paper(&self) -> MutexGuard<'static, Paper> {
         match self.subject {
             Subject::Wheel => paper::rolling_wheel(),

@@ -243,14 +243,12 @@ impl Figure {
                 svg.put(&path(&style(k), &line).empty());
             }
         }
-        let bottom = height - FOOTER_HEIGHT;
-        for tick in x_axis.ticks(8) {
-            let x = LEFT + width * x_axis.part(tick);
-            let label = number(tick, x_axis.step(8));
-            svg.put(&centred([x, bottom + 16.0], &label));
-        }
-        let middle = LEFT + width / 2.0;
-        svg.put(&centred([middle, bottom + 35.0], &self.x_label));
+        let all_panels = Area {
+            top: head,
+            width,
+            height: self.panels.len() as f64 * pitch,
+        };
+        all_panels.name_x(&mut svg, &x_axis, &self.x_label);
         svg.finish()
     }
 }
@@ -327,8 +325,8 @@ impl Area {
             let y = self.top + self.height * (1.0 - y_axis.part(tick));
             let _ = write!(grid, "M{LEFT:.1} {y:.1}h{:.1}", self.width);
             let label = number(tick, y_axis.step(count));
-            let place = text([LEFT - 7.0, y + 4.0]);
-            svg.put(&place.with("text-anchor", "end").text(&label));
+            let tick_label = text([LEFT - 7.0, y + 4.0]).with("text-anchor", "end");
+            svg.put(&tick_label.text(&label));
         }
         svg.put(&path("grid", &grid).empty());
         let frame = Element::new("rect").with("class", "frame").with("x", LEFT);

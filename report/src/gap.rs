@@ -1,7 +1,7 @@
 //! A gap report as a page, and its sentences.
 //!
 //! [`page()`] sets [`words`], [`plots`] and tables; [`doubt`] suspects unit errors, [`numbers`]
-//! writes significant digits.
+//! writes values with their uncertainty.
 
 mod doubt;
 mod numbers;
@@ -10,6 +10,7 @@ mod plots;
 mod words;
 
 pub use doubt::doubts;
-pub use numbers::short;
 pub use page::page;
 pub use words::{hinted, joined, left_out, sentence};
+
+pub use crate::text::short;

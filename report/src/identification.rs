@@ -7,10 +7,10 @@ use std::fmt::Write as _;
 use std::ops::Range;
 
 use appell_gap::data::{Channel, DataSet};
-use appell_gap::identify::{AHEAD, Answer, Estimate, HeldOut, Known};
+use appell_gap::identify::{AHEAD, Answer, Estimate, Known};
 
 use crate::recording;
-use crate::text::{number, table};
+use crate::text::{horizon, number, short, table};
 
 pub use figure::figure;
 pub use page::page;
@@ -148,8 +148,9 @@ fn remark(estimate: &Estimate) -> &'static str {
 
 /// Correlation matrix of the parameter errors.
 fn correlation(answer: &Answer) -> Part {
-    let names = answer.parameters.iter();
-    let names: Vec<String> = names.map(|own| own.quantity.name.to_string()).collect();
+    let names: Vec<String> = (answer.parameters.iter())
+        .map(|estimate| estimate.quantity.name.to_string())
+        .collect();
     let mut part = Part::new("Correlation of the parameter errors", [], 1..1);
     part.numbers = 1..1 + names.len();
     part.is_heat = true;
@@ -231,7 +232,7 @@ fn levels(set: &DataSet, answer: &Answer) -> Part {
                 level.name.clone(),
                 shown(level.nominal),
                 shown(level.fitted),
-                channel.map_or_else(|| "SI".to_owned(), |own| own.unit.text.clone()),
+                channel.map_or_else(|| "SI".to_owned(), |channel| channel.unit.text.clone()),
             ]);
         }
     }
@@ -239,7 +240,7 @@ fn levels(set: &DataSet, answer: &Answer) -> Part {
 }
 
 fn channel<'s>(set: &'s DataSet, column: &str) -> Option<&'s Channel> {
-    set.channels.iter().find(|own| own.column == column)
+    set.channels.iter().find(|channel| channel.column == column)
 }
 
 /// Whiteness of the innovations.
@@ -269,8 +270,7 @@ fn courses(answer: &Answer) -> Part {
     let mut part = Part::new("Drifting parameters, smoothed over each run", columns, 2..5);
     for course in &answer.courses {
         let shown = |value: Option<&f64>| {
-            let value = value.map(|value| number(course.quantity.to_unit(*value)));
-            value.unwrap_or_default()
+            value.map_or_else(String::new, |value| number(course.quantity.to_unit(*value)))
         };
         part.rows.push(vec![
             course.quantity.name.to_string(),
@@ -299,41 +299,30 @@ fn held_out(set: &DataSet, answer: &Answer) -> Part {
     let mut part = Part::new(heading, columns, 3..7);
     for error in &answer.held_out {
         let column = error.column.as_deref();
-        let noise = column.and_then(|own| answer.noise.iter().find(|level| level.name == own));
-        let channel = column.and_then(|own| channel(set, own));
-        let shown = |part: f64| match (noise, channel) {
-            (Some(level), Some(channel)) => short(channel.unit.from_si(part * level.fitted)),
+        let noise = column.and_then(|name| answer.noise.iter().find(|level| level.name == name));
+        let channel = column.and_then(|name| channel(set, name));
+        let in_channel_unit = |part: f64| match (noise, channel) {
+            (Some(level), Some(channel)) => size(channel.unit.from_si(part * level.fitted)),
             _ => String::new(),
         };
         part.rows.push(vec![
-            ahead(error),
+            horizon(error.horizon),
             column.unwrap_or("all").to_owned(),
-            channel.map_or_else(String::new, |own| own.unit.text.clone()),
-            shown(error.nominal),
-            shown(error.fitted),
-            short(error.nominal),
-            short(error.fitted),
+            channel.map_or_else(String::new, |channel| channel.unit.text.clone()),
+            in_channel_unit(error.nominal),
+            in_channel_unit(error.fitted),
+            size(error.nominal),
+            size(error.fitted),
         ]);
     }
     part
 }
 
-/// Three digits; a prediction that overflowed has diverged.
-fn short(value: f64) -> String {
-    match value {
-        value if !value.is_finite() => "diverged".to_owned(),
-        value if value >= 1e5 || value < 1e-3 && value > 0.0 => format!("{value:.2e}"),
-        value if value >= 100.0 => format!("{value:.0}"),
-        value if value >= 10.0 => format!("{value:.1}"),
-        value if value >= 1.0 => format!("{value:.2}"),
-        value => format!("{value:.4}"),
-    }
-}
-
-fn ahead(error: &HeldOut) -> String {
-    match error.horizon {
-        horizon if horizon <= 0.0 => "one step".to_owned(),
-        horizon if horizon.is_finite() => format!("{horizon} s"),
-        _ => "free run".to_owned(),
+/// Size of a prediction error; a prediction that overflowed has diverged.
+fn size(error: f64) -> String {
+    if error.is_finite() {
+        short(error)
+    } else {
+        "diverged".to_owned()
     }
 }

@@ -119,6 +119,17 @@ fn no_function_of_a_shipped_mechanism_takes_more_operations_than_it_did() {
     );
 }
 
+#[test]
+fn a_rolling_body_turns_about_its_contact() {
+    // Twice as many where the centre's velocity is the derivative of its position.
+    let path = "codegen/tests/audit/right/rolling_ellipsoid.toml";
+    let text = std::fs::read_to_string(shipped::workspace().join(path)).unwrap();
+    let mechanism = shipped::read(path, &text);
+    let program = shipped::program_of(&mechanism, &[FunctionKind::Rates]);
+    let count = OperationCount::of(&schedule(&program, &program.functions[0]));
+    assert!(count.total() <= 285, "{count}");
+}
+
 /// Operations of a function of the unicycle where a division counts as so many others.
 fn of_unicycle(kind: FunctionKind, division: usize) -> OperationCount {
     let program = shipped::program("unicycle");

@@ -189,7 +189,7 @@ fn mass_at(title: &str, place: &str) -> Mechanism {
 fn what_is_nowhere_or_far_away_is_told_and_not_drawn() {
     for place in ["x + l*ln(x/l)", "x + 1e200*l"] {
         let svg = drawn(&mass_at("A mass", &format!("'{place}', 0, 0")));
-        assert!(svg.contains("nowhere finite: P"), "{svg}");
+        assert!(svg.contains("(position not finite): P"), "{svg}");
         assert_inside(place, &svg);
     }
 }

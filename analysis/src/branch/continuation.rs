@@ -52,8 +52,9 @@ const MOST_STEPS: usize = 10;
 const CONVERGED: f64 = 4e-15;
 /// Below this, corrections that stop improving are rounding.
 const ROUNDING: f64 = 1e-9;
-/// Singular values that count as zero, relative to the largest.
-const NOTHING: f64 = 1e-12;
+/// Singular values that count as zero in a correction, relative to the largest: those of redundant
+/// equations are rounding.
+const CORRECTOR_RANK: f64 = 1e-12;
 /// Cosine of the largest angle between the tangents of neighbouring points.
 const TURN: f64 = 0.985;
 
@@ -82,7 +83,7 @@ pub(crate) fn correct(
         let mut target = (-f.component_mul(&weights)).insert_row(rows, 0.0);
         target[rows] = normal.dot(&(predicted - &z));
         let singular = Singular::of(&matrix);
-        let change = singular.solve(&target, singular.rank(NOTHING));
+        let change = singular.solve(&target, singular.rank(CORRECTOR_RANK));
         z += &change;
         let size = change.norm() / (1.0 + z.norm());
         let stalled = size > 0.25 * last;

@@ -107,24 +107,24 @@ impl Critical<'_> {
         };
         let sign = |cell: &Cell| self.criteria.signs(&cell.eigenvalues)[self.which];
         let curves = level.curves(chart, sign);
-        let told = curves
+        curves
             .iter()
-            .filter_map(|curve| self.describe(&level, curve));
-        told.collect()
+            .filter_map(|curve| self.describe(&level, curve))
+            .collect()
     }
 
     /// The boundary of a curve; `None` where eigenvalues are only symmetric about zero.
     fn describe(&self, level: &Level<'_>, curve: &Curve) -> Option<Boundary> {
-        let told: Vec<(Option<Change>, bool)> =
+        let changes: Vec<(Option<Change>, bool)> =
             curve.points.iter().map(|at| self.at(&at.z)).collect();
-        let middle = told.len() / 2;
-        let (first, last) = told.split_at(middle);
+        let middle = changes.len() / 2;
+        let (first, last) = changes.split_at(middle);
         let mut outwards = last.iter().chain(first.iter().rev());
         let change = outwards.find_map(|(change, _)| *change)?;
         Some(Boundary {
             change,
             points: places(self.plane, curve),
-            decides: told.into_iter().map(|(_, decides)| decides).collect(),
+            decides: changes.into_iter().map(|(_, decides)| decides).collect(),
             folds: self.folds(level, curve),
             ends: curve.ends,
         })
@@ -135,8 +135,8 @@ impl Critical<'_> {
         let problem = self.plane.problem;
         let point = self.plane.equations.point(z);
         let matrix = essential_matrix(problem.model(), problem.structure(), &point);
-        let values = matrix.ok().and_then(|(_, a)| eigenvalues(&a).ok());
-        let values = values.unwrap_or_default();
+        let spectrum = matrix.ok().and_then(|(_, a)| eigenvalues(&a).ok());
+        let values = spectrum.unwrap_or_default();
         let change = self.criteria.change(self.which, &values);
         let grows = GROWS * self.criteria.unit;
         let rests = values.iter().all(|value| value.re <= grows);

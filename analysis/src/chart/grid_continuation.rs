@@ -21,8 +21,9 @@ pub(crate) struct GridContinuation<'a> {
     open: VecDeque<(usize, usize)>,
 }
 
-/// Motions of one grid point that differ by less, relative to their size, are the same.
-const SAME: f64 = 1e-5;
+/// Motions of one grid point that differ by less, relative to their size, are the same: near a fold
+/// those reached from different neighbours agree no better.
+const SAME_AT_POINT: f64 = 1e-5;
 /// Failed probes of holes after which the rest is taken as empty.
 const MOST_PROBES: usize = 8;
 /// Largest number of starting points in a hole.
@@ -54,9 +55,9 @@ impl<'a> GridContinuation<'a> {
         for band in bands {
             let edges = [band.rows.start, band.rows.end - 1];
             for node in edges.into_iter().flat_map(|j| j * count..(j + 1) * count) {
-                let own = node - band.rows.start * count;
+                let in_band = node - band.rows.start * count;
                 all.open
-                    .extend((0..band.motions[own].len()).map(|motion| (node, motion)));
+                    .extend((0..band.motions[in_band].len()).map(|motion| (node, motion)));
             }
             motions.extend(band.motions);
         }
@@ -200,7 +201,7 @@ impl<'a> GridContinuation<'a> {
     /// Keeps a motion that is new at its grid point.
     fn add(&mut self, node: usize, found: Option<DVector<f64>>) {
         let Some(z) = found else { return };
-        let same = |other: &DVector<f64>| (other - &z).norm() <= SAME * (1.0 + z.norm());
+        let same = |other: &DVector<f64>| (other - &z).norm() <= SAME_AT_POINT * (1.0 + z.norm());
         if !self.motions[node].iter().any(same) {
             self.open.push_back((node, self.motions[node].len()));
             self.motions[node].push(z);

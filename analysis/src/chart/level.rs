@@ -79,9 +79,9 @@ impl Level<'_> {
 
     /// The zero between two neighbouring motions, unless it is a pole.
     fn start(&self, a: &DVector<f64>, b: &DVector<f64>) -> Option<OnCurve> {
-        /// Relative to its values on either side the function is small at a zero and large at a
-        /// pole.
-        const NOTHING: f64 = 1e-3;
+        /// Largest value of the function at a zero, relative to those on either side: at a pole it is
+        /// larger than they are.
+        const LARGEST_AT_ZERO: f64 = 1e-3;
         let [here, there] = [a, b].map(|z| self.plane.coordinates(z));
         let motion = |part: f64| {
             let z = a + (b - a) * part;
@@ -91,7 +91,7 @@ impl Level<'_> {
         let signs = [(self.function)(a), (self.function)(b)];
         let z = motion(root([0.0, 1.0], signs, value)?)?;
         let size = signs[0].abs().max(signs[1].abs());
-        let zero = (self.function)(&z).abs() <= NOTHING * size && self.plane.holds(&z);
+        let zero = (self.function)(&z).abs() <= LARGEST_AT_ZERO * size && self.plane.holds(&z);
         let either_way = DVector::from_element(z.len(), 1.0);
         OnCurve::new(self, z, &either_way).filter(|_| zero)
     }
@@ -128,11 +128,11 @@ impl Level<'_> {
         };
         let limit = |a: &OnCurve, b: &OnCurve| {
             let there = plane.coordinates(&b.z);
-            let left = (0..2).find(|&k| plane.axes[k].margin(there[k]) < 0.0)?;
+            let axis = (0..2).find(|&k| plane.axes[k].margin(there[k]) < 0.0)?;
             let outside =
-                |z: &DVector<f64>| Some(plane.axes[left].margin(plane.coordinates(z)[left]));
-            let end = a.root(self, b, outside);
-            let end = end.and_then(|z| OnCurve::new(self, z, &a.tangent));
+                |z: &DVector<f64>| Some(plane.axes[axis].margin(plane.coordinates(z)[axis]));
+            let root = a.root(self, b, outside);
+            let end = root.and_then(|z| OnCurve::new(self, z, &a.tangent));
             Some((end, End::Range))
         };
         let (forward, last) = follow(self, start, MOST_POINTS, longest, limit);

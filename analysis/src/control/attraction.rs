@@ -88,10 +88,11 @@ impl Region<'_> {
         };
         let threads = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
         let mut found: Vec<(usize, Result<Fate, SimulationError>)> = std::thread::scope(|scope| {
-            let others: Vec<_> = (1..threads).map(|_| scope.spawn(work)).collect();
+            let workers: Vec<_> = (1..threads).map(|_| scope.spawn(work)).collect();
             let mut found = work();
-            for other in others {
-                found.extend(other.join().unwrap_or_default());
+            for worker in workers {
+                let joined = worker.join();
+                found.extend(joined.unwrap_or_else(|panic| std::panic::resume_unwind(panic)));
             }
             found
         });
@@ -148,11 +149,12 @@ impl Fates {
         };
         let reach: Vec<f64> = axes().map(largest).collect();
         let part = |point: usize| {
-            let places = places(&self.axes, point);
-            let away = axes().zip(places);
-            let away = away.map(|((axis, centre), place)| (axis.values[place] - centre).abs());
-            let parts = away.zip(&reach).map(|(away, reach)| away / reach);
-            parts.fold(0.0, f64::max)
+            axes()
+                .zip(places(&self.axes, point))
+                .map(|((axis, centre), place)| (axis.values[place] - centre).abs())
+                .zip(&reach)
+                .map(|(distance, reach)| distance / reach)
+                .fold(0.0, f64::max)
         };
         let parts = (0..self.fates.len()).map(|point| (part(point), &self.fates[point]));
         let failing = parts.clone().filter(|(_, fate)| **fate != Fate::Settled);

@@ -16,8 +16,15 @@ const STEADY: f64 = 1e-6;
 /// Time along the motion after which the equations are compared, in s. It must not be a multiple of
 /// the period of a prescribed motion, which is more often a whole or half second than this.
 const AHEAD: f64 = 0.7;
-/// Entries that differ by less than this, relative to the largest, are equal.
-const SAME: f64 = 1e-9;
+/// Entries of A and B that differ by less than this, relative to the largest, are equal: the
+/// difference is rounding along the motion.
+const SAME_ENTRY: f64 = 1e-9;
+/// Singular values that count as zero, relative to the largest: such combinations of inputs do not
+/// act on the motion.
+const INPUT_RANK: f64 = 1e-9;
+/// A Newton step that is shorter, relative to the inputs, ends the search: it converges
+/// quadratically.
+const CONVERGED_STEP: f64 = 1e-9;
 /// Newton steps for the inputs that maintain a motion.
 const MOST_STEPS: usize = 20;
 
@@ -113,15 +120,17 @@ impl<'a> OperatingPoint<'a> {
         let speeds = self.model.info().speeds;
         for _ in 0..MOST_STEPS {
             let (rates, _, b) = self.jacobians()?;
-            let slopes = DMatrix::from_row_slice(n, m, &b);
-            let slopes = slopes.rows(0, speeds).select_columns(inputs);
+            let slopes = DMatrix::from_row_slice(n, m, &b)
+                .rows(0, speeds)
+                .select_columns(inputs);
             let singular = Singular::of(&slopes);
             let wanted = DVector::from_iterator(speeds, rates[..speeds].iter().map(|rate| -rate));
-            let step = singular.solve(&wanted, singular.rank(SAME));
+            let step = singular.solve(&wanted, singular.rank(INPUT_RANK));
             for (&input, step) in inputs.iter().zip(step.iter()) {
                 self.u[input] += step;
             }
-            if step.amax() <= SAME * self.u.iter().fold(1.0, |most, u| u.abs().max(most)) {
+            if step.amax() <= CONVERGED_STEP * self.u.iter().fold(1.0, |most, u| u.abs().max(most))
+            {
                 break;
             }
         }
@@ -159,7 +168,7 @@ impl<'a> OperatingPoint<'a> {
         let differs = |row: &usize| {
             let a = (system.a.row(*row) - later.a.row(*row)).amax();
             let b = (system.b.row(*row) - later.b.row(*row)).amax();
-            a.max(b).is_nan() || a.max(b) > SAME * size
+            a.max(b).is_nan() || a.max(b) > SAME_ENTRY * size
         };
         Ok(MotionEquations {
             varying: (0..states.len()).filter(differs).collect(),

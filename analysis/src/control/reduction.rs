@@ -75,9 +75,9 @@ impl Quotient {
     /// A state as a function of the observable part, and its remainder.
     fn state(&self, state: usize) -> (RowDVector<f64>, f64) {
         let row = self.reached.row(state);
-        let seen = row * &self.observed;
-        let unseen = row - &seen * self.observed.transpose();
-        (seen, unseen.norm())
+        let observable = row * &self.observed;
+        let remainder = row - &observable * self.observed.transpose();
+        (observable, remainder.norm())
     }
 }
 
@@ -90,8 +90,8 @@ pub fn reduce(system: &LinearSystem, states: &[usize]) -> Result<Subsystem, Redu
     if order == 0 {
         return Err(ReductionError::Unmoved);
     }
-    let seen = quotient.reached.select_rows(states) * &quotient.observed;
-    if let Some((place, factors)) = first_dependent(&seen) {
+    let observable = quotient.reached.select_rows(states) * &quotient.observed;
+    if let Some((place, factors)) = first_dependent(&observable) {
         let (state, before) = (states[place], &states[..place]);
         let factors = factors.iter().zip(before);
         return Err(ReductionError::Dependent {
@@ -102,7 +102,7 @@ pub fn reduce(system: &LinearSystem, states: &[usize]) -> Result<Subsystem, Redu
         });
     }
     let inverse = (order == states.len())
-        .then(|| seen.try_inverse())
+        .then(|| observable.try_inverse())
         .flatten();
     let Some(inverse) = inverse else {
         return Err(ReductionError::Open {
@@ -152,8 +152,8 @@ pub fn independent_states(system: &LinearSystem, candidates: &[usize]) -> Vec<us
 fn missing(quotient: &Quotient, states: &[usize]) -> Vec<usize> {
     let all = || (0..quotient.reached.nrows()).rev();
     let within = all().filter(|&state| quotient.state(state).1 <= NEGLIGIBLE);
-    let seen = &quotient.reached * &quotient.observed;
-    let added = complete(&seen, states, within);
+    let observable = &quotient.reached * &quotient.observed;
+    let added = complete(&observable, states, within);
     if states.len() + added.len() == quotient.observed.ncols() {
         added
     } else {

@@ -131,11 +131,11 @@ fn polished(
     let mut smallest = residual(&x);
     for _ in 0..NEWTON_STEPS {
         let Some(next) = newton(&x) else { break };
-        let left = residual(&next);
-        if left.is_nan() || left >= smallest {
+        let remaining = residual(&next);
+        if remaining.is_nan() || remaining >= smallest {
             break;
         }
-        (x, smallest) = (next, left);
+        (x, smallest) = (next, remaining);
     }
     (x, smallest)
 }
@@ -172,12 +172,12 @@ fn control_energy(a: &Matrix, b: &Matrix, q: &Matrix, r: &Matrix) -> Result<Matr
 /// transformation (s + γ)/(s − γ).
 fn cayley(a: &Matrix, g: &Matrix, q: &Matrix, gamma: f64) -> Option<[Matrix; 3]> {
     let n = a.nrows();
-    let one = Matrix::identity(n, n);
-    let inverse = (a - &one * gamma).try_inverse()?;
+    let identity = Matrix::identity(n, n);
+    let inverse = (a - &identity * gamma).try_inverse()?;
     // W = A_γᵀ + Q A_γ⁻¹ G
-    let w = (a.transpose() - &one * gamma + q * &inverse * g).try_inverse()?;
+    let w = (a.transpose() - &identity * gamma + q * &inverse * g).try_inverse()?;
     Some([
-        &one + w.transpose() * (2.0 * gamma),
+        &identity + w.transpose() * (2.0 * gamma),
         &inverse * g * &w * (2.0 * gamma),
         &w * q * &inverse * (2.0 * gamma),
     ])
@@ -185,9 +185,9 @@ fn cayley(a: &Matrix, g: &Matrix, q: &Matrix, gamma: f64) -> Option<[Matrix; 3]>
 
 /// The limit of H under doubling; nothing where it has none.
 fn doubled([mut a, mut g, mut h]: [Matrix; 3]) -> Option<Matrix> {
-    let one = Matrix::identity(a.nrows(), a.nrows());
+    let identity = Matrix::identity(a.nrows(), a.nrows());
     for _ in 0..DOUBLINGS {
-        let inverse = (&one + &g * &h).try_inverse()?;
+        let inverse = (&identity + &g * &h).try_inverse()?;
         let step = a.transpose() * &h * &inverse * &a;
         g += &a * &inverse * &g * a.transpose();
         a = &a * inverse * &a;
@@ -206,9 +206,9 @@ fn doubled([mut a, mut g, mut h]: [Matrix; 3]) -> Option<Matrix> {
 
 /// X of Cᵀ X + X C = F. An equation for each entry: the systems of mechanisms are small.
 fn lyapunov(c: &Matrix, f: &Matrix) -> Option<Matrix> {
-    let one = Matrix::identity(c.nrows(), c.nrows());
+    let identity = Matrix::identity(c.nrows(), c.nrows());
     entrywise(
-        &(one.kronecker(&c.transpose()) + c.transpose().kronecker(&one)),
+        &(identity.kronecker(&c.transpose()) + c.transpose().kronecker(&identity)),
         f,
     )
 }
@@ -216,8 +216,8 @@ fn lyapunov(c: &Matrix, f: &Matrix) -> Option<Matrix> {
 /// X of X − Cᵀ X C = F.
 fn stein(c: &Matrix, f: &Matrix) -> Option<Matrix> {
     let n = c.nrows();
-    let one = Matrix::identity(n * n, n * n);
-    entrywise(&(one - c.transpose().kronecker(&c.transpose())), f)
+    let identity = Matrix::identity(n * n, n * n);
+    entrywise(&(identity - c.transpose().kronecker(&c.transpose())), f)
 }
 
 fn entrywise(matrix: &Matrix, f: &Matrix) -> Option<Matrix> {

@@ -73,7 +73,7 @@ impl Sampling {
         reason = "a count; what is no count saturates"
     )]
     pub fn pending(self) -> usize {
-        // A delay of three periods that is written as 0.3 s for 0.1 s has three, not four.
+        // Rounding must not turn a delay of exactly three periods (0.3 s / 0.1 s) into four.
         (self.delay / self.period * (1.0 - 1e-12)).ceil() as usize
     }
 

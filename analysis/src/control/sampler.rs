@@ -14,7 +14,7 @@ use appell_runtime::inputs::InputSource;
 pub struct Sampler {
     sampling: Sampling,
     until: f64,
-    asked: RefCell<Vec<Vec<f64>>>,
+    commands: RefCell<Vec<Vec<f64>>>,
 }
 
 impl Sampler {
@@ -23,7 +23,7 @@ impl Sampler {
         Self {
             sampling,
             until,
-            asked: RefCell::default(),
+            commands: RefCell::default(),
         }
     }
 
@@ -31,14 +31,14 @@ impl Sampler {
     /// command for the present state from the pending commands, oldest first.
     pub fn acting(&self, t: f64, measure: impl Fn(&[Vec<f64>]) -> Vec<f64>) -> Option<Vec<f64>> {
         let Sampler { sampling, .. } = *self;
-        let mut asked = self.asked.borrow_mut();
-        while asked.len() < times_until(sampling.period(), 0.0, t) {
-            let pending = asked.len().saturating_sub(sampling.pending());
-            let ask = measure(&asked[pending..]);
-            asked.push(ask);
+        let mut commands = self.commands.borrow_mut();
+        while commands.len() < times_until(sampling.period(), 0.0, t) {
+            let pending = commands.len().saturating_sub(sampling.pending());
+            let command = measure(&commands[pending..]);
+            commands.push(command);
         }
         let acting = times_until(sampling.period(), sampling.delay(), t).checked_sub(1)?;
-        asked.get(acting).cloned()
+        commands.get(acting).cloned()
     }
 
     /// Times in s at which the controller measures and acts.

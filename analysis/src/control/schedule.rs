@@ -136,10 +136,10 @@ where
         for (y, &state) in y.iter_mut().zip(&self.states) {
             *y = x[state] - *y;
         }
-        let asked = self.schedule.at((self.condition)(t, x)).asked(&y);
+        let commands = self.schedule.at((self.condition)(t, x)).asked(&y);
         u.fill(0.0);
-        for (&input, asked) in self.inputs.iter().zip(asked.iter()) {
-            u[input] = *asked;
+        for (&input, command) in self.inputs.iter().zip(commands.iter()) {
+            u[input] = *command;
         }
     }
 

@@ -56,8 +56,8 @@ impl<'a> SteadyEquations<'a> {
 
     /// The unknowns of a point.
     pub(crate) fn unknowns_of(&self, point: &Point) -> DVector<f64> {
-        let values = self.unknowns.iter().zip(&self.scales);
-        let values = values.map(|(term, scale)| term.value(self.model, point) / scale);
+        let scaled = |(term, scale): (&Term, &f64)| term.value(self.model, point) / scale;
+        let values = self.unknowns.iter().zip(&self.scales).map(scaled);
         DVector::from_iterator(self.unknowns.len(), values)
     }
 
@@ -125,14 +125,14 @@ impl<'a> SteadyEquations<'a> {
             }
             Term::Output(output) => self.output(output, point),
             _ => {
-                let own = |i: usize| {
+                let derivative = |i: usize| {
                     if self.unknowns[i] == term {
                         self.scales[i]
                     } else {
                         0.0
                     }
                 };
-                let gradient = DVector::from_fn(len, |i, _| own(i));
+                let gradient = DVector::from_fn(len, |i, _| derivative(i));
                 (term.value(self.model, point), gradient)
             }
         }

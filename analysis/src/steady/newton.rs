@@ -19,12 +19,13 @@ pub(crate) trait Equations {
 const MOST_STEPS: usize = 200;
 /// Residual below which a point that improves no more is a zero: rounding of a long formula,
 /// relative to the effect of a unit change of the scaled unknowns.
-const ZERO: f64 = 1e-10;
-/// Singular values that count as zero during the iteration, relative to the largest.
-const NOTHING: f64 = 1e-13;
-/// Singular values that count as zero in a rank: a zero of the equations is known to about 1e-14,
-/// and smaller derivatives belong to a family.
-pub(crate) const RANK: f64 = 1e-8;
+const NEWTON_RESIDUAL: f64 = 1e-10;
+/// Singular values that count as zero during the iteration, relative to the largest: only rounding,
+/// as damping limits the steps along all others.
+const NEWTON_RANK: f64 = 1e-13;
+/// Singular values that count as zero in the dimension of a family: a zero of the equations is
+/// known to about 1e-14, and smaller derivatives belong to a family.
+const FAMILY_RANK: f64 = 1e-8;
 /// Initial damping, and the damping at which the search fails.
 const DAMPING: [f64; 2] = [1e-2, 1e12];
 
@@ -39,7 +40,7 @@ pub(crate) struct Zero {
 impl Zero {
     /// Dimension of the family of zeros.
     pub(crate) fn family(&self) -> usize {
-        self.singular.values.len() - self.singular.rank(RANK)
+        self.singular.values.len() - self.singular.rank(FAMILY_RANK)
     }
 
     /// Its tangent space, as columns.
@@ -89,13 +90,13 @@ pub(crate) fn solve(equations: &dyn Equations, start: &DVector<f64>) -> Result<Z
                 break;
             }
             // At rounding no damping helps.
-            if residual < ZERO {
+            if residual < NEWTON_RESIDUAL {
                 break;
             }
             damping *= 4.0;
         }
         if !improved {
-            return if residual < ZERO {
+            return if residual < NEWTON_RESIDUAL {
                 Ok(Zero { z, singular })
             } else {
                 Err(missed(&z, residual))
@@ -109,7 +110,7 @@ pub(crate) fn solve(equations: &dyn Equations, start: &DVector<f64>) -> Result<Z
 /// Solves `(JᵀJ + μ 1) step = Jᵀ target`.
 fn damped(singular: &Singular<f64>, target: &DVector<f64>, damping: f64) -> DVector<f64> {
     let mut step = DVector::zeros(singular.right.nrows());
-    for k in 0..singular.rank(NOTHING) {
+    for k in 0..singular.rank(NEWTON_RANK) {
         let square = singular.values[k] * singular.values[k];
         let along = singular.images.column(k).dot(target) / (square + damping);
         step.axpy(along, &singular.right.column(k), 1.0);

@@ -192,14 +192,14 @@ impl Explored<'_> {
         // Writing to a string cannot fail.
         let _ = writeln!(
             text,
-            "  all settle that are disturbed by no more than: {}",
+            "  all motions settle whose disturbances do not exceed: {}",
             reach.collect::<Vec<_>>().join(", ")
         );
         text
     }
 
     /// The results as JSON, in SI.
-    pub fn json(&self) -> Value {
+    pub(crate) fn json(&self) -> Value {
         let axes = self.fates.axes.iter().zip(&self.fates.centre);
         let axes = axes.map(|(axis, centre)| {
             json!({

@@ -9,7 +9,7 @@ use super::remedies::pole_text;
 use crate::setup::Setup;
 
 /// The text of the file: gains in SI with all digits, other values in the units of the spec.
-pub fn text(design: &Design, setup: &Setup<'_>, model: &str) -> String {
+pub(crate) fn text(design: &Design, setup: &Setup<'_>, model: &str) -> String {
     let Some(law) = &design.law else {
         return String::new();
     };
@@ -49,7 +49,7 @@ pub fn text(design: &Design, setup: &Setup<'_>, model: &str) -> String {
 }
 
 /// The text of a file with a gain schedule.
-pub fn schedule(
+pub(crate) fn schedule(
     over: &Quantity,
     designs: &[(f64, Design)],
     setup: &Setup<'_>,

@@ -2,7 +2,7 @@
 
 use appell_analysis::control::sampled::Sampling;
 use appell_analysis::{Point, SteadyProblem, Term};
-use appell_runtime::model::{Model, Quantity};
+use appell_runtime::model::{Model, ModelInfo, Quantity};
 use nalgebra::Complex;
 
 use super::design::Method;
@@ -12,14 +12,14 @@ use crate::steady::{term, value_of};
 use crate::{Error, Field};
 
 /// Prescribed inputs on the steady motion; the others are solved for.
-pub type GivenInputs = Vec<(usize, f64)>;
+pub(crate) type GivenInputs = Vec<(usize, f64)>;
 
 /// Maximum number of intervals of a range.
 const MOST_STEPS: usize = 10_000;
 
 /// The steady motion: states go to the setup, inputs are returned. A rate or an output determines the
 /// other states.
-pub fn point(
+pub(crate) fn point(
     model: &dyn Model,
     setup: &mut Setup<'_>,
     assignments: &[Assignment],
@@ -81,7 +81,7 @@ fn motion(
 }
 
 /// Indices of the names of a list, each of which may be given once.
-pub fn distinct(
+pub(crate) fn distinct(
     field: Field,
     names: &[String],
     find: impl Fn(&str) -> Result<usize, Error>,
@@ -98,7 +98,7 @@ pub fn distinct(
 }
 
 /// Poles such as `-8,-2+3i,-2-3i`.
-pub fn poles(text: &str) -> Result<Vec<Complex<f64>>, Error> {
+pub(crate) fn poles(text: &str) -> Result<Vec<Complex<f64>>, Error> {
     let pole = |text: &str| {
         complex(text.trim()).ok_or_else(|| {
             let message = format!(
@@ -133,7 +133,7 @@ fn complex(text: &str) -> Option<Complex<f64>> {
 }
 
 /// Weights such as `Q=1,10,R=0.1`.
-pub fn weights(text: &str) -> Result<Method, Error> {
+pub(crate) fn weights(text: &str) -> Result<Method, Error> {
     let wrong = |what: &str| {
         let message = format!(
             "{what}; write Q=1,10,R=0.1, with a weight for each output in Q and for each input in R, \
@@ -172,7 +172,10 @@ pub fn weights(text: &str) -> Result<Method, Error> {
 }
 
 /// Sampling period and delay.
-pub fn sampling(period_ms: Option<f64>, delay_ms: Option<f64>) -> Result<Option<Sampling>, Error> {
+pub(crate) fn sampling(
+    period_ms: Option<f64>,
+    delay_ms: Option<f64>,
+) -> Result<Option<Sampling>, Error> {
     let sampling = |period_ms: f64| Sampling::new(period_ms / 1e3, delay_ms.unwrap_or(0.0) / 1e3);
     let sampling = period_ms.map(sampling).transpose();
     Ok(sampling.map_err(DesignError::from)?)
@@ -219,7 +222,7 @@ fn spread([from, to]: [f64; 2], steps: usize) -> Vec<f64> {
 }
 
 /// `NAME=FROM..TO/STEPS`: a state, and its deviations from the steady motion.
-pub fn disturbances(setup: &Setup<'_>, text: &str) -> Result<(usize, Vec<f64>), Error> {
+pub(crate) fn disturbances(setup: &Setup<'_>, text: &str) -> Result<(usize, Vec<f64>), Error> {
     const FIELD: Field = Field::Attraction;
     let range = text.parse::<Assignment>();
     let range = range.map_err(|message| Error::request(FIELD, message))?;
@@ -240,15 +243,14 @@ enum Varied {
 }
 
 /// Scheduling variable with its values.
-pub struct Values {
+pub(crate) struct Values {
     varied: Varied,
-    name: String,
     /// In SI.
     pub si: Vec<f64>,
 }
 
 /// Values of a scheduling variable: `NAME=FROM..TO/STEPS`.
-pub fn values(setup: &mut Setup<'_>, schedule: &Assignment) -> Result<Values, Error> {
+pub(crate) fn values(setup: &mut Setup<'_>, schedule: &Assignment) -> Result<Values, Error> {
     let [from, to] = ends(Field::Schedule, schedule)?;
     let steps = steps(Field::Schedule, schedule)?;
     let (name, info) = (&schedule.name, setup.info);
@@ -259,10 +261,9 @@ pub fn values(setup: &mut Setup<'_>, schedule: &Assignment) -> Result<Values, Er
     } else if let Some(parameter) = info.parameter_index(name) {
         Varied::Parameter(parameter)
     } else {
-        let names = info
-            .states
-            .iter()
-            .chain(info.inputs.iter())
+        let inputs = &info.inputs[..info.declared_inputs];
+        let names = (info.states.iter())
+            .chain(inputs)
             .chain(info.parameters.iter());
         let names = names.map(|quantity| quantity.name.as_ref());
         let message = unknown(name, "state, input or parameter", names);
@@ -280,7 +281,7 @@ pub fn values(setup: &mut Setup<'_>, schedule: &Assignment) -> Result<Values, Er
             }
             Varied::Input(_) => Ok(setup.input_value(Field::Schedule, &assignment)?.1),
             Varied::Parameter(parameter) => {
-                setup.set(&[assignment])?;
+                setup.set_with(Field::Schedule, &[assignment])?;
                 Ok(setup.parameters[parameter])
             }
         }
@@ -288,23 +289,27 @@ pub fn values(setup: &mut Setup<'_>, schedule: &Assignment) -> Result<Values, Er
     let (from, to) = (end(from)?, end(to)?);
     Ok(Values {
         varied,
-        name: name.clone(),
         si: spread([from, to], steps),
     })
 }
 
 impl Values {
-    /// The variable, if a law can measure it: an input cannot be measured.
-    pub fn readable<'q>(&self, setup: &'q Setup<'_>) -> Option<&'q Quantity> {
+    /// The variable.
+    pub(crate) fn quantity<'q>(&self, info: &'q ModelInfo) -> &'q Quantity {
         match self.varied {
-            Varied::State(state) => setup.info.states.get(state),
-            Varied::Parameter(parameter) => setup.info.parameters.get(parameter),
-            Varied::Input(_) => None,
+            Varied::State(state) => &info.states[state],
+            Varied::Input(input) => &info.inputs[input],
+            Varied::Parameter(parameter) => &info.parameters[parameter],
         }
     }
 
+    /// Whether a law can measure it, which it cannot for an input.
+    pub(crate) fn measurable(&self) -> bool {
+        !matches!(self.varied, Varied::Input(_))
+    }
+
     /// Sets the variable.
-    pub fn place(&self, setup: &mut Setup<'_>, inputs: &mut GivenInputs, value: f64) {
+    pub(crate) fn place(&self, setup: &mut Setup<'_>, inputs: &mut GivenInputs, value: f64) {
         match self.varied {
             Varied::State(state) => setup.initial[state] = value,
             Varied::Parameter(parameter) => setup.parameters[parameter] = value,
@@ -316,19 +321,14 @@ impl Values {
     }
 
     /// A failure at a value of the variable.
-    pub fn at(&self, setup: &Setup<'_>, value: f64, failure: Error) -> Error {
-        let info = setup.info;
-        let quantity = match self.varied {
-            Varied::State(state) => &info.states[state],
-            Varied::Input(input) => &info.inputs[input],
-            Varied::Parameter(parameter) => &info.parameters[parameter],
-        };
+    pub(crate) fn at(&self, setup: &Setup<'_>, value: f64, failure: Error) -> Error {
+        let quantity = self.quantity(setup.info);
         let [shown, unit] = [
             quantity.to_unit(value).to_string(),
             quantity.unit.to_string(),
         ];
         Error::At {
-            place: format!("{} = {shown} {unit}", self.name),
+            place: format!("{} = {shown} {unit}", quantity.name),
             source: Box::new(failure),
         }
     }

@@ -27,7 +27,7 @@ use appell_spec::{Code, Diagnostic, Report, Scope, Snippet, formula};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-use crate::setup::{Setup, bracketed, unknown};
+use crate::setup::{Setup, bracketed, instead};
 use crate::{Error, files};
 
 mod schedule;
@@ -237,13 +237,13 @@ impl Reader<'_> {
             }
         }
         let needs = "a law needs `input` or `inputs`, `states`, and `gains` or a schedule";
-        let instead = |key: &str| match key {
+        let replaced = |key: &str| match key {
             "input" => table.get("inputs").is_some(),
             "gains" => table.get("over").is_some() || table.get("at").is_some(),
             _ => false,
         };
         for key in ["input", "states", "gains"] {
-            if table.get(key).is_none() && !instead(key) {
+            if table.get(key).is_none() && !replaced(key) {
                 let message = format!("the key `{key}` is missing");
                 self.tell(Code::MissingKey, message, 0..0, needs);
             }
@@ -491,9 +491,13 @@ impl Reader<'_> {
     fn find(&mut self, name: &str, what: &str, names: &[String], at: Span) -> Option<usize> {
         let found = names.iter().position(|other| other == name);
         if found.is_none() {
-            let message = unknown(name, what, names.iter().map(String::as_str));
-            let (message, help) = message.split_once("; ").unwrap_or((&message, ""));
-            self.tell(Code::UnknownName, message, at, help);
+            let help = instead(name, names.iter().map(String::as_str));
+            self.tell(
+                Code::UnknownName,
+                format!("there is no {what} `{name}`"),
+                at,
+                &help,
+            );
         }
         found
     }

@@ -7,6 +7,7 @@ use nalgebra::{Complex, DMatrix};
 use serde_json::{Map, Value, json};
 
 use super::named;
+use crate::control::Schedule;
 use crate::control::design::{Design, DesignedGains};
 
 /// Controllability about a steady motion, and the gains.
@@ -46,12 +47,12 @@ pub fn design(info: &ModelInfo, design: &Design) -> Value {
     })
 }
 
-/// The designs of a schedule over the quantity `name`.
-pub fn schedule(info: &ModelInfo, name: &str, designs: &[(f64, Design)]) -> Value {
+/// The designs of a schedule.
+pub fn schedule(info: &ModelInfo, schedule: &Schedule) -> Value {
+    let designs = schedule.designs.iter();
     let designs = designs
-        .iter()
         .map(|(value, design)| json!({ "value": value, "design": self::design(info, design) }));
-    json!({ "over": name, "designs": designs.collect::<Vec<_>>() })
+    json!({ "over": schedule.over.name, "designs": designs.collect::<Vec<_>>() })
 }
 
 fn reach_json(controllability: &Controllability) -> Value {

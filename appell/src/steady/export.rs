@@ -183,6 +183,9 @@ pub fn csv(asked: &Resolved<'_>, answer: &Answer, to: &mut dyn Write) -> io::Res
     for quantity in &quantities {
         write!(to, " {} {},", quantity.name, quantity.unit)?;
     }
+    for contact in info.contacts.iter() {
+        write!(to, " normal_force_{} N,", contact.name)?;
+    }
     writeln!(to, " re and im 1/s")?;
     write!(to, "branch")?;
     for quantity in &quantities {

@@ -83,13 +83,13 @@ impl Check {
         if !checked.warnings().diagnostics().is_empty() {
             tell(&shown(checked.warnings()));
         }
-        let mut entry = checked.to_json();
+        let mut entry = appell::json::check(&checked);
         let Some(thorough) = thorough else {
             return Ok((entry, None));
         };
         let disagreement = thorough.failure();
         entry["ok"] = disagreement.is_none().into();
-        entry["thorough"] = thorough.to_json();
+        entry["thorough"] = appell::json::thorough(&thorough);
         Ok((entry, disagreement.map(Error::from)))
     }
 

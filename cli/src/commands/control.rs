@@ -3,11 +3,10 @@
 use std::path::PathBuf;
 
 use crate::failure::Error;
-use appell::control::design::{self, Design, Goal};
-use appell::control::{Request, attraction, law_file, parse};
-use appell::files;
-use appell::setup::{Assignment, Setup};
-use appell_runtime::model::{Model, Quantity};
+use appell::control::Request;
+use appell::setup::Assignment;
+use appell::{Model, files};
+use serde_json::Value;
 
 use crate::failure::tell;
 use crate::{design_report, engine, output, picture, progress};
@@ -92,60 +91,9 @@ impl Control {
     pub(super) fn run(&self) -> Result<(), Error> {
         let model = engine::model(&self.model, None)?;
         self.needs_law()?;
-        let mut setup = model.setup()?;
-        setup.set(&self.set)?;
-        let request = self.request();
         let (text, json) = match &self.schedule {
-            None => {
-                let design = model.control(&request)?;
-                if let Some(path) = &self.write {
-                    files::write(path, &model.law(&design)?)?;
-                }
-                let mut text = design_report::text(&design, &setup);
-                let mut json = appell::json::design(setup.info, &design);
-                if let Some(asked) = &self.attraction {
-                    let region = {
-                        let bar = progress::parts();
-                        let progress = |done: usize, of: usize| {
-                            bar.set_length(of as u64);
-                            bar.set_position(done as u64);
-                        };
-                        let region = attraction::explore(
-                            model.equations(),
-                            &setup,
-                            &design,
-                            asked,
-                            self.for_s,
-                            &progress,
-                        );
-                        bar.finish_and_clear();
-                        region?
-                    };
-                    text += &region.text();
-                    json["attraction"] = region.json();
-                    if let Some(path) = &self.plot {
-                        picture::write(path, &region.map()?.to_svg())?;
-                    }
-                }
-                (text, json)
-            }
-            Some(schedule) => {
-                let goal = request.resolve(&setup)?;
-                let model = model.equations();
-                parse::point(model, &mut setup, &self.at)?;
-                let values = parse::values(&mut setup, schedule)?;
-                let over = self.readable(&values, &setup)?;
-                let designs = self.scheduled(model, &mut setup, &values, &goal)?;
-                let designs = values.si.into_iter().zip(designs).collect::<Vec<_>>();
-                if let (Some(path), Some(over)) = (&self.write, over) {
-                    let text = law_file::schedule(&over, &designs, &setup, &self.model);
-                    files::write(path, &text)?;
-                }
-                (
-                    design_report::schedule_text(&schedule.name, &designs, &setup),
-                    appell::json::schedule(setup.info, &schedule.name, &designs),
-                )
-            }
+            None => self.designed(&model)?,
+            Some(range) => self.scheduled(&model, range)?,
         };
         if let Some(path) = &self.json {
             files::write_json(path, &json)?;
@@ -158,18 +106,68 @@ impl Control {
         output::print(&text)
     }
 
+    /// A design, its region of attraction if asked for, and its files.
+    fn designed(&self, model: &Model) -> Result<(String, Value), Error> {
+        let design = model.control(&self.request())?;
+        if let Some(path) = &self.write {
+            files::write(path, &model.law(&design)?)?;
+        }
+        let mut text = design_report::text(&design, model.info());
+        let mut json = appell::json::design(model.info(), &design);
+        if let Some(grid) = &self.attraction {
+            let bar = progress::parts();
+            let progress = |done: usize, of: usize| {
+                bar.set_length(of as u64);
+                bar.set_position(done as u64);
+            };
+            let region = model.attraction(&design, grid, self.for_s, &progress);
+            bar.finish_and_clear();
+            let region = region?;
+            text += &region.text();
+            json["attraction"] = appell::json::attraction(&region);
+            if let Some(path) = &self.plot {
+                picture::write(path, &region.map()?.to_svg())?;
+            }
+        }
+        Ok((text, json))
+    }
+
+    /// Designs over a range, and their file.
+    fn scheduled(&self, model: &Model, range: &Assignment) -> Result<(String, Value), Error> {
+        let schedule = model.schedule(&self.request(), range)?;
+        if let Some(path) = &self.write {
+            files::write(path, &model.scheduled_law(&schedule)?)?;
+        }
+        Ok((
+            design_report::schedule_text(&schedule, model.info()),
+            appell::json::schedule(model.info(), &schedule),
+        ))
+    }
+
     /// Refuses files of a law that is not designed.
     fn needs_law(&self) -> Result<(), Error> {
         let flags = [
             ("--write", self.write.is_some()),
             ("--attraction", self.attraction.is_some()),
         ];
+        let refused = |message: String| Err(Error::Usage(message));
         match flags.iter().find(|(_, given)| *given) {
-            Some((flag, _)) if self.poles.is_none() && self.lqr.is_none() => Err(Error::Usage(
-                format!("{flag}: there is no law; design one with --poles or --lqr"),
+            Some((flag, _)) if self.poles.is_none() && self.lqr.is_none() => refused(format!(
+                "{flag}: there is no law; design one with --poles or --lqr"
             )),
+            _ if self.schedule.is_some() && self.write.is_some() && self.sampled_ms.is_some() => {
+                refused("--write: a sampled law cannot be scheduled yet".to_owned())
+            }
+            _ if self.plot.is_some() && !self.disturbs_two_states() => {
+                refused("--plot: the map needs disturbances of two states".to_owned())
+            }
             _ => Ok(()),
         }
+    }
+
+    fn disturbs_two_states(&self) -> bool {
+        let grid = self.attraction.as_deref().unwrap_or_default();
+        grid.split(',').count() == 2
     }
 
     fn request(&self) -> Request {
@@ -183,47 +181,5 @@ impl Control {
             sampled_ms: self.sampled_ms,
             delay_ms: self.delay_ms,
         }
-    }
-
-    /// The scheduling variable of a written schedule.
-    fn readable(
-        &self,
-        values: &parse::Values,
-        setup: &Setup<'_>,
-    ) -> Result<Option<Quantity>, Error> {
-        let refused = |text: &str| Err(Error::Usage(text.to_owned()));
-        match (&self.write, values.readable(setup)) {
-            (None, _) => Ok(None),
-            (Some(_), _) if self.sampled_ms.is_some() => {
-                refused("--write: a sampled law cannot be scheduled yet")
-            }
-            (Some(_), None) => refused(
-                "--write: gains cannot follow an input, which they set; schedule a state or a \
-                 parameter",
-            ),
-            (Some(_), Some(quantity)) => Ok(Some(quantity.clone())),
-        }
-    }
-
-    /// A design at each value.
-    fn scheduled(
-        &self,
-        model: &dyn Model,
-        setup: &mut Setup<'_>,
-        values: &parse::Values,
-        goal: &Goal,
-    ) -> Result<Vec<Design>, Error> {
-        let mut goal = goal.clone();
-        let mut designs: Vec<Design> = Vec::new();
-        for &value in &values.si {
-            let mut at = parse::point(model, setup, &self.at)?;
-            values.place(setup, &mut at, value);
-            let design = design::design(model, setup, &at, &goal)
-                .map_err(|failure| values.at(setup, value, failure))?;
-            // All laws of a schedule feed back the same states.
-            goal.outputs.clone_from(&design.outputs);
-            designs.push(design);
-        }
-        Ok(designs)
     }
 }

@@ -103,14 +103,14 @@ impl Diagnose {
         let warnings = appell::recording::warnings(&set);
         let mut next = None;
         if let Some(experiment) = &report.experiment {
-            let table = diagnosed::csv(&set, experiment);
+            let table = appell::diagnosis::experiment_inputs(&set, experiment);
             next = self.next(&table);
             if let Some(path) = &next {
                 files::write(path, &table)?;
             }
         }
         if let Some(path) = &self.json {
-            let mut json = appell::gap_report::json(&report, next.as_deref());
+            let mut json = appell::json::diagnosis(&report, next.as_deref());
             json["data"] = [replaced.as_slice(), &warnings].concat().into();
             files::write_json(path, &json)?;
         }

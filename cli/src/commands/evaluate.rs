@@ -35,7 +35,7 @@ impl Evaluate {
         let model = engine::model(&self.model, Some(self.engine))?;
         let cases = read_cases(&self.cases.to_string_lossy(), &text, model.info())?;
         let evaluation = model.evaluate(&cases)?;
-        files::write_json(&self.json, &evaluation.to_json())?;
+        files::write_json(&self.json, &appell::json::evaluation(&evaluation))?;
         let values = cases.iter().zip(&evaluation.values).enumerate();
         let singular: Vec<String> = values
             .filter(|(_, (_, values))| !values.is_finite())

@@ -33,7 +33,7 @@ impl Motion {
         let converted = capture::convert(&self.skeleton, &self.captures)?;
         let manifest = converted.write(&self.out)?;
         if let Some(path) = &self.json {
-            files::write_json(path, &converted.to_json())?;
+            files::write_json(path, &appell::json::capture(&converted))?;
         }
         let skeleton = &converted.skeleton;
         let mut text = format!(

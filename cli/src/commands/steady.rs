@@ -53,7 +53,7 @@ pub(super) fn write(
     figure: impl Fn(Term, &[Branch]) -> Figure,
 ) -> Result<(), Error> {
     if let Some(path) = &question.json {
-        files::write_json(path, &export::json(asked, answer))?;
+        files::write_json(path, &appell::json::steady(asked, answer))?;
     }
     if let Some(path) = &question.csv {
         files::write_with(path, |to| export::csv(asked, answer, to))?;

@@ -88,7 +88,7 @@ pub(crate) fn motions(asked: &Resolved<'_>, motions: &[(SteadyMotion, Stability)
         };
         row(
             format!("normal force {}", contact.name),
-            String::new(),
+            "N".to_owned(),
             &|(m, _)| number(force(m).normal),
         );
         if contact.grips {

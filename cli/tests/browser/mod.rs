@@ -202,9 +202,21 @@ impl Browser {
         data.as_str().expect("a picture").to_owned()
     }
 
-    /// The part of the picture in space, of a page that plays, that is neither paper nor ground.
-    pub(crate) fn drawn(&mut self) -> f64 {
-        self.number(DRAWN)
+    /// Waits until more than this part of the picture in space, of a page that plays, is neither paper nor
+    /// ground.
+    pub(crate) fn draws(&mut self, part: f64) {
+        let start = Instant::now();
+        loop {
+            let drawn = self.number(DRAWN);
+            if drawn > part {
+                return;
+            }
+            assert!(
+                start.elapsed() < PATIENCE,
+                "{drawn} of the picture is drawn"
+            );
+            pause(0.05);
+        }
     }
 
     /// What the page complained of, and what it asked of a network.

@@ -26,12 +26,22 @@ pub struct Kinematics {
 }
 
 /// How much work goes into short velocities.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Effort {
+#[derive(Debug, Clone, Copy)]
+pub enum Effort<'a> {
     /// As they come: for velocities that are used up at once.
     Plain,
-    /// Each in its shortest form and in the frame where that is shortest: for the equations.
-    Shortest,
+    /// Each in its shortest form and in the frame where that is shortest: for the equations. The
+    /// centre of a body that rolls may move as its contact tells.
+    Shortest(&'a [RollingContact]),
+}
+
+/// A point where a body touches the ground without slipping: what the body has there is at rest.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct RollingContact {
+    /// The rolling body.
+    pub body: BodyId,
+    /// Where it touches the ground.
+    pub point: PointId,
 }
 
 /// An auxiliary motion that the coordinates do not have: the points placed from the origin by way of
@@ -54,55 +64,96 @@ impl Kinematics {
         symbols: &Symbols,
         rates: &[Expr],
         carried: &[Carried],
-        effort: Effort,
+        effort: Effort<'_>,
     ) -> Outcome<Self> {
         let lowering = Lowering { symbols, rates };
         let time = TimeDerivative { symbols, rates };
         let frames = Frames::new(algebra, mechanism, &lowering, &time)?;
         let mut offsets = List::default();
-        let mut velocities: List<PointId, FrameVector> = List::default();
         for (id, point) in mechanism.points.entries() {
-            let at = lowering
+            let v = lowering
                 .lower_all(&mut algebra.graph, &point.at)
                 .map_err(|_| vec![division_by_zero(Item::Point(id))])?;
-            offsets.push(FrameVector {
-                frame: point.frame,
-                v: at,
-            });
-            let Some(from) = point.from else {
-                velocities.push(FrameVector {
-                    frame: GROUND,
-                    v: vector::ZERO,
-                });
-                continue;
-            };
-            // v_P = v_from + (dr/dt in the frame) + ω × r
-            let mut v = frames.express(&mut algebra.graph, velocities[from], point.frame);
-            for motion in carried.iter().filter(|c| c.root == id) {
-                let carried = frames.express(&mut algebra.graph, motion.v, point.frame);
-                v = algebra.graph.add3(v, carried);
-            }
-            let relative = time.of3(algebra, at);
-            let turning = algebra
-                .graph
-                .cross(frames.angular_velocity(point.frame).v, at);
-            v = algebra.graph.add3(v, relative);
-            v = algebra.graph.add3(v, turning);
-            let mut velocity = FrameVector {
-                frame: point.frame,
-                v,
-            };
-            if effort == Effort::Shortest {
-                velocity.v = algebra.shortest3(v);
-                velocity = frames.simplest(algebra, velocity);
-            }
-            velocities.push(velocity);
+            let frame = point.frame;
+            offsets.push(FrameVector { frame, v });
         }
-        Ok(Self {
+        let mut kinematics = Self {
             frames,
             offsets,
-            velocities,
-        })
+            velocities: List::default(),
+        };
+        for (id, point) in mechanism.points.entries() {
+            let velocity = match point.from {
+                None => FrameVector {
+                    frame: GROUND,
+                    v: vector::ZERO,
+                },
+                Some(from) => {
+                    let velocity = kinematics.relative_to(algebra, &time, (id, from), carried);
+                    match effort {
+                        Effort::Plain => velocity,
+                        Effort::Shortest(contacts) => {
+                            kinematics.shortest(algebra, mechanism, (id, velocity), contacts)
+                        }
+                    }
+                }
+            };
+            kinematics.velocities.push(velocity);
+        }
+        Ok(kinematics)
+    }
+
+    /// `v_P = v_from + (dr/dt in the frame) + ω × r`, and what carries the point along.
+    fn relative_to(
+        &self,
+        algebra: &mut Algebra,
+        time: &TimeDerivative<'_>,
+        (point, from): (PointId, PointId),
+        carried: &[Carried],
+    ) -> FrameVector {
+        let FrameVector { frame, v: at } = self.offsets[point];
+        let frames = &self.frames;
+        let mut v = frames.express(&mut algebra.graph, self.velocities[from], frame);
+        for motion in carried.iter().filter(|c| c.root == point) {
+            let carried = frames.express(&mut algebra.graph, motion.v, frame);
+            v = algebra.graph.add3(v, carried);
+        }
+        let relative = time.of3(algebra, at);
+        let turning = algebra.graph.cross(frames.angular_velocity(frame).v, at);
+        v = algebra.graph.add3(v, relative);
+        v = algebra.graph.add3(v, turning);
+        FrameVector { frame, v }
+    }
+
+    /// The velocity of a point in its shortest form. The centre of a rolling body turns about the
+    /// contact, `v_C = ω × r_PC`: no shape of the body is differentiated for it.
+    fn shortest(
+        &self,
+        algebra: &mut Algebra,
+        mechanism: &Mechanism,
+        (point, differentiated): (PointId, FrameVector),
+        contacts: &[RollingContact],
+    ) -> FrameVector {
+        let mut best = self.shortest_form(algebra, differentiated);
+        for contact in contacts {
+            let body = &mechanism.bodies[contact.body];
+            let Some(frame) = body.frame.filter(|_| body.centre == point) else {
+                continue;
+            };
+            let graph = &mut algebra.graph;
+            let arm = self.between(graph, mechanism, contact.point, point, frame);
+            let v = graph.cross(self.frames.angular_velocity(frame).v, arm);
+            let turning = self.shortest_form(algebra, FrameVector { frame, v });
+            if algebra.graph.operations(&turning.v) < algebra.graph.operations(&best.v) {
+                best = turning;
+            }
+        }
+        best
+    }
+
+    fn shortest_form(&self, algebra: &mut Algebra, vector: FrameVector) -> FrameVector {
+        let v = algebra.shortest3(vector.v);
+        self.frames.simplest(algebra, FrameVector { v, ..vector })
     }
 
     /// Replaces parts of all velocities.

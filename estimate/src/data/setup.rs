@@ -134,8 +134,10 @@ impl<'a> Setup<'a> {
             ("parameter", &self.drifting, info.parameter_len()),
         ] {
             for (place, &index) in list.iter().enumerate() {
-                let twice = list[..place].contains(&index);
-                below(what, index, if twice { 0 } else { len })?;
+                below(what, index, len)?;
+                if list[..place].contains(&index) {
+                    return Err(EstimateError::Twice { what, index });
+                }
             }
         }
         positive("longest step in s", self.longest_step)?;

@@ -87,14 +87,14 @@ fn mended(observed: &DMatrix<f64>, expected: &DMatrix<f64>) -> DMatrix<f64> {
     let Some(inverse) = inverse else {
         return expected.clone();
     };
-    let seen = &inverse * scaled(observed) * inverse.transpose();
-    if seen.iter().any(|entry| !entry.is_finite()) {
+    let whitened = &inverse * scaled(observed) * inverse.transpose();
+    if whitened.iter().any(|entry| !entry.is_finite()) {
         return expected.clone();
     }
     let SymmetricEigen {
         eigenvectors,
         eigenvalues,
-    } = SymmetricEigen::new(seen);
+    } = SymmetricEigen::new(whitened);
     let positive = eigenvalues.map(|value| value.abs().max(LEAST));
     let back = root * eigenvectors;
     let mended = &back * DMatrix::from_diagonal(&positive) * back.transpose();

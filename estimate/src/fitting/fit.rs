@@ -126,8 +126,8 @@ impl Fit {
             }
             steps += 1;
             let (step, gain) = posterior.step(&point, &curvature, damping);
-            let next = posterior.moved(&point, &step).ok();
-            let next = next.filter(|next| next.objective.is_finite());
+            let moved = posterior.moved(&point, &step).ok();
+            let next = moved.filter(|next| next.objective.is_finite());
             let is_better = |next: &Point| point.is_worse_than(next, SUFFICIENT_DECREASE * gain);
             let better = next.as_ref().is_some_and(is_better);
             // A failed step updates the curvature, unless it was just recomputed.

@@ -111,12 +111,12 @@ pub(crate) struct Selection<'a> {
 
 impl<'a> Selection<'a> {
     pub(crate) fn new(layout: &Layout, free: &'a [Free]) -> Result<Self, EstimateError> {
-        for one in free {
-            if let Some([expected, deviation]) = one.prior
-                && !(deviation > 0.0 && one.to_coordinate(expected).is_finite())
+        for value in free {
+            if let Some([expected, deviation]) = value.prior
+                && !(deviation > 0.0 && value.to_coordinate(expected).is_finite())
             {
                 return Err(EstimateError::Value {
-                    what: format!("prior standard deviation of {:?}", one.unknown),
+                    what: format!("prior standard deviation of {:?}", value.unknown),
                     value: deviation,
                     demand: "positive, about a value that its coordinate admits",
                 });

@@ -11,7 +11,7 @@ use crate::EstimateError;
 use crate::data::setup::Disturbance;
 use crate::data::unknown::Unknown;
 use crate::estimation::Estimation;
-use crate::kalman::prediction::place;
+use crate::motion::plant::Place;
 
 /// Changes of levels with steps of the other coordinates, to first order.
 pub(crate) struct LevelScaling {
@@ -93,7 +93,8 @@ fn mobilities(estimation: &Estimation<'_>, values: &[f64]) -> Result<Vec<f64>, E
             .iter_mut()
             .step_by(s + 1)
             .for_each(|entry| *entry = 1.0);
-        plant.accelerations(place(layout, values, at), &mut scratch, &mut columns);
+        let place = Place::new(layout, values, at);
+        plant.accelerations(place, &mut scratch, &mut columns);
         for (log, mobility) in logs.iter_mut().zip(columns.iter().step_by(s + 1)) {
             *log += mobility.abs().ln() / runs.len() as f64;
         }

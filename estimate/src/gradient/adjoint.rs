@@ -14,7 +14,7 @@ use crate::matrix::{
     symmetrise, transposed_multiply,
 };
 use crate::motion::closure::Closure;
-use crate::motion::plant::{Place, Scratch, Sums};
+use crate::motion::plant::{Place, Scratch, StateSpace, Sums};
 use crate::motion::timeline::Advance;
 use crate::motion::transition::{self, Effects, Reverse, Span};
 
@@ -41,10 +41,10 @@ struct Backward<'p, 'a> {
 /// everything before.
 pub(crate) fn adjoint(pass: &mut Pass<'_>, rows: &Range<usize>, gradient: &mut [f64]) {
     let mut tape = std::mem::take(&mut pass.tape);
-    let (n, s) = (pass.sizes.n, pass.plant.speeds);
+    let (n, s) = (pass.sizes.n, pass.system.plant.speeds);
     let zeros = |len| vec![0.0; len];
-    let outputs = if pass.setup.sees_outputs() {
-        pass.plant.info().output_len()
+    let outputs = if pass.system.setup.sees_outputs() {
+        pass.system.plant.info().output_len()
     } else {
         0
     };
@@ -53,11 +53,11 @@ pub(crate) fn adjoint(pass: &mut Pass<'_>, rows: &Range<usize>, gradient: &mut [
         pass: shared,
         z: zeros(n),
         p: zeros(n * n),
-        parameters: zeros(pass.layout.parameters),
-        lags: zeros(pass.layout.lags),
-        scratch: pass.plant.scratch(),
+        parameters: zeros(pass.system.layout.parameters),
+        lags: zeros(pass.system.layout.lags),
+        scratch: pass.system.plant.scratch(),
         closure: pass.closure.clone(),
-        reverse: Reverse::new(pass.plant),
+        reverse: Reverse::new(pass.system.plant),
         square: [zeros(n * n), zeros(n * n), zeros(n * n)],
         vector: [zeros(n), zeros(n)],
         mass: zeros(s * s),
@@ -87,7 +87,7 @@ pub(crate) fn adjoint(pass: &mut Pass<'_>, rows: &Range<usize>, gradient: &mut [
 impl Backward<'_, '_> {
     /// The initial state and its standard deviations, and the accumulated sums.
     fn start(&self, gradient: &mut [f64]) {
-        let layout = &self.pass.layout;
+        let layout = &self.pass.system.layout;
         let (n, run) = (self.pass.sizes.n, self.pass.run);
         add(&self.z, &mut gradient[layout.initial(run)..][..n]);
         let spread = layout.spread(run);
@@ -104,14 +104,8 @@ impl Backward<'_, '_> {
             return;
         };
         let closed = z.to_vec();
-        let place = Place {
-            t,
-            z: &closed,
-            held,
-            p: self.pass.p(),
-            lags: self.pass.lags(),
-        };
-        let plant = self.pass.plant;
+        let StateSpace { plant, layout, .. } = self.pass.system;
+        let place = Place::new(layout, self.pass.values, (t, &closed, held));
         // The forward pass succeeded here.
         let _ = closure.close(plant, place, &mut self.scratch, z);
         let mut sums = Sums {
@@ -123,91 +117,122 @@ impl Backward<'_, '_> {
         closure.adjoint(plant, place, &mut self.scratch, covariance, &mut sums);
     }
 
+    /// A step.
     fn advance(&mut self, advance: Advance, on: &StepTape<'_>, gradient: &mut [f64]) {
         let pass = self.pass;
-        let (n, d, s) = (pass.sizes.n, pass.sizes.disturbances, pass.plant.speeds);
-        let h = advance.h;
         let span = Span {
             t: advance.t,
-            h,
+            h: advance.h,
             held: on.held,
             p: pass.p(),
             lags: pass.lags(),
         };
-        let [product, noise, by_f] = &mut self.square;
-        // Derivatives of ⟨Λ, F (P + N) Fᵀ + N⟩: FᵀΛF for P, Λ + FᵀΛF for N, 2 Λ F (P + N) for F.
+        self.covariance(on);
+        let (mut by_h, is_pushed) = self.levels(advance.h, on, gradient);
+        let [product, by_f, covariance] = &mut self.square;
+        multiply(product, covariance, pass.sizes.n, by_f);
+        scale(2.0, by_f);
+        self.mass.fill(0.0);
+        if is_pushed {
+            self.inertia(span, on);
+        }
+        let has_moving_ends = advance.moved_by.iter().any(Option::is_some);
+        by_h += self.motion(span, on, has_moving_ends);
+        for (delay, part) in advance.moved_by.into_iter().flatten() {
+            gradient[delay] += part * by_h;
+        }
+    }
+
+    /// Derivatives of ⟨Λ, F (P + N) Fᵀ + N⟩: `FᵀΛF` for P, `Λ + FᵀΛF` for N, `2 Λ F (P + N)` for F.
+    ///
+    /// Leaves Λ F, the derivative for N, and P in `square`.
+    fn covariance(&mut self, on: &StepTape<'_>) {
+        let n = self.pass.sizes.n;
+        let [product, by_noise, covariance] = &mut self.square;
         multiply(&self.p, on.f, n, product);
-        noise.copy_from_slice(&self.p);
+        by_noise.copy_from_slice(&self.p);
         transposed_multiply(on.f, product, n, &mut self.p);
         // Measurements reduce only the symmetric part; rounding in the other would grow with F.
         symmetrise(&mut self.p, n);
-        add(&self.p, noise);
+        add(&self.p, by_noise);
+        multiply_transposed(on.root, on.root, n, covariance);
+    }
 
-        multiply_transposed(on.root, on.root, n, by_f);
-        let mut by_h = 0.0;
+    /// The levels of the disturbances of a step of length `h`; adds N to P in `square`.
+    ///
+    /// Returns the derivative with respect to the length, and whether any force disturbs; `forces`
+    /// then holds the derivatives with respect to the columns of M⁻¹.
+    fn levels(&mut self, h: f64, on: &StepTape<'_>, gradient: &mut [f64]) -> (f64, bool) {
+        let pass = self.pass;
+        let StateSpace {
+            setup,
+            plant,
+            layout,
+        } = pass.system;
+        let (n, d) = (pass.sizes.n, pass.sizes.disturbances);
+        let [_, by_noise, covariance] = &mut self.square;
         let [column, pushed] = &mut self.vector;
         self.forces.fill(0.0);
-        let mut is_pushed = false;
-        for (j, disturbance) in pass.setup.disturbances.iter().enumerate() {
-            let place = pass.layout.disturbance(j);
+        let (mut by_h, mut is_pushed) = (0.0, false);
+        for (j, disturbance) in setup.disturbances.iter().enumerate() {
+            let place = layout.disturbance(j);
             let level = pass.values[place];
             for i in 0..n {
                 column[i] = on.columns[i * d + j];
             }
-            multiply(noise, column, n, pushed);
+            multiply(by_noise, column, n, pushed);
             let effect = dot(column, pushed);
             gradient[place] += level * h * effect;
             by_h += 0.5 * level * level * effect;
             let half = 0.5 * h * level * level;
-            for (row, &entry) in by_f.chunks_exact_mut(n).zip(column.iter()) {
+            for (row, &entry) in covariance.chunks_exact_mut(n).zip(column.iter()) {
                 add_scaled(half * entry, column, row);
             }
             if let Disturbance::Force(_) = disturbance {
                 is_pushed = true;
-                for i in 0..s {
+                for i in 0..plant.speeds {
                     self.forces[i * d + j] = level * level * h * pushed[i];
                 }
             }
         }
-        // `by_f` held P + N.
-        multiply(product, by_f, n, noise);
-        scale(2.0, noise);
+        (by_h, is_pushed)
+    }
 
-        self.mass.fill(0.0);
-        let before = &on.stages.z[..n];
-        if is_pushed {
-            // δ(M⁻¹) = −M⁻¹ δM M⁻¹.
-            let place = span.place(0, before);
-            let plant = pass.plant;
-            plant.accelerations(place, &mut self.scratch, &mut self.forces);
-            let columns = &on.columns[..s * d];
-            multiply_transposed_add(&self.forces, columns, d, &mut self.mass);
-            scale(-1.0, &mut self.mass);
-        }
-        column.copy_from_slice(&self.z);
+    /// The derivative with respect to the mass matrix: δ(M⁻¹) = −M⁻¹ δM M⁻¹.
+    fn inertia(&mut self, span: Span<'_>, on: &StepTape<'_>) {
+        let (n, d) = (self.pass.sizes.n, self.pass.sizes.disturbances);
+        let plant = self.pass.system.plant;
+        let place = span.place(0, &on.stages.z[..n]);
+        plant.accelerations(place, &mut self.scratch, &mut self.forces);
+        let columns = &on.columns[..plant.speeds * d];
+        multiply_transposed_add(&self.forces, columns, d, &mut self.mass);
+        scale(-1.0, &mut self.mass);
+    }
+
+    /// From the state after a step, F and the mass matrix to the state before it. Returns the
+    /// derivative with respect to the length of the step if `by_length`.
+    fn motion(&mut self, span: Span<'_>, on: &StepTape<'_>, by_length: bool) -> f64 {
+        self.vector[0].copy_from_slice(&self.z);
         self.z.fill(0.0);
         let effects = Effects {
-            after: column,
-            f: noise,
+            after: &self.vector[0],
+            f: &self.square[1],
             mass: &self.mass,
-            by_length: advance.moved_by.iter().any(Option::is_some),
+            by_length,
         };
         let mut sums = Sums {
             z: &mut self.z,
             p: &mut self.parameters,
             lags: &mut self.lags,
         };
-        by_h += transition::adjoint(
-            pass.plant,
+        transition::adjoint(
+            self.pass.system.plant,
             span,
             &mut self.scratch,
             (&on.stages, effects),
             &mut self.reverse,
             &mut sums,
-        );
-        for (delay, part) in advance.moved_by.into_iter().flatten() {
-            gradient[delay] += part * by_h;
-        }
+        )
     }
 
     /// The scalars of one moment, last one first; then their slopes, which all belong to the state
@@ -235,11 +260,11 @@ impl Backward<'_, '_> {
             let by_quantity = self.scalar(sample, &on, (&prior, &mut by_prior), seed, gradient);
             // `vector[0]` now holds the gradient with respect to the slope.
             let channel = sample.innovation.channel;
-            let place = pass.layout.scale(channel);
+            let place = pass.system.layout.scale(channel);
             let gain = pass.values[place];
-            gradient[pass.layout.bias(channel)] += by_quantity;
+            gradient[pass.system.layout.bias(channel)] += by_quantity;
             gradient[place] += by_quantity * sample.quantity;
-            match pass.setup.channels[channel].measures {
+            match pass.system.setup.channels[channel].measures {
                 Measured::State(state) => {
                     by_prior[state] += gain * by_quantity;
                     gradient[place] += self.vector[0][state];
@@ -255,20 +280,15 @@ impl Backward<'_, '_> {
         }
         add(&by_prior, &mut self.z);
         if outputs {
-            let place = Place {
-                t: first.innovation.t,
-                z: &prior,
-                held,
-                p: pass.p(),
-                lags: pass.lags(),
-            };
+            let at = (first.innovation.t, prior.as_slice(), held);
+            let place = Place::new(pass.system.layout, pass.values, at);
             let mut sums = Sums {
                 z: &mut self.z,
                 p: &mut self.parameters,
                 lags: &mut self.lags,
             };
             let weights = [self.mu.as_slice(), &self.slopes];
-            let plant = pass.plant;
+            let plant = pass.system.plant;
             plant.output_adjoint(place, &mut self.scratch, weights, &mut sums);
         }
     }
@@ -303,14 +323,14 @@ impl Backward<'_, '_> {
         // s = cᵀ a + r.
         by_c.copy_from_slice(a);
         scale(by_s, by_c);
-        let noise = pass.layout.noise(sample.innovation.channel);
+        let noise = pass.system.layout.noise(sample.innovation.channel);
         gradient[noise] += 2.0 * pass.values[noise] * by_s;
         // a = P c with P = root rootᵀ.
-        let [seen, back, _] = &mut self.square;
-        let (seen, back) = (&mut seen[..n], &mut back[..n]);
-        transposed_multiply(root, by_a, n, seen);
-        multiply(root, seen, n, back);
-        add(back, by_c);
+        let [projection, product, _] = &mut self.square;
+        let (projection, product) = (&mut projection[..n], &mut product[..n]);
+        transposed_multiply(root, by_a, n, projection);
+        multiply(root, projection, n, product);
+        add(product, by_c);
         for i in 0..n {
             for j in 0..n {
                 self.p[i * n + j] += 0.5 * (by_a[i] * c[j] + c[i] * by_a[j]);

@@ -77,7 +77,7 @@ impl Estimation<'_> {
                 layout.place(unknown)?;
             }
         }
-        let tried = shapes.map_or(0, |shapes| {
+        let candidates = shapes.map_or(0, |shapes| {
             let setup = self.setup();
             shapes.count
                 * match shapes.along {
@@ -85,7 +85,7 @@ impl Estimation<'_> {
                     Along::Channels => setup.channels.len(),
                 }
         });
-        let columns = directions.len() + tried;
+        let columns = directions.len() + candidates;
         let mut all: Vec<(usize, Innovation, Vec<f64>)> = Vec::new();
         for run in 0..self.recordings().len() {
             let actions = self.actions(run, values);
@@ -105,7 +105,9 @@ impl Estimation<'_> {
         all.sort_by_key(|(run, sample, _)| (*run, sample.row, sample.channel));
         let slopes = DMatrix::from_fn(all.len(), columns, |row, column| all[row].2[column]);
         Ok(Tangent {
-            samples: all.into_iter().map(|(run, one, _)| (run, one)).collect(),
+            samples: (all.into_iter())
+                .map(|(run, innovation, _)| (run, innovation))
+                .collect(),
             slopes,
         })
     }
@@ -141,7 +143,7 @@ impl<'p, 'a> Forward<'p, 'a> {
         columns: usize,
     ) -> Self {
         let (setup, n) = (estimation.setup(), pass.sizes.n);
-        let own: Vec<Direction> = directions
+        let directions: Vec<Direction> = directions
             .iter()
             .map(|&direction| match direction {
                 Direction::Value(Unknown::InputDelay(index)) => {
@@ -154,7 +156,7 @@ impl<'p, 'a> Forward<'p, 'a> {
         let info = setup.model.info();
         let zeros = |len| vec![0.0; len];
         let mut z = zeros(n * columns);
-        for (column, direction) in own.iter().enumerate() {
+        for (column, direction) in directions.iter().enumerate() {
             if let Direction::Value(Unknown::Initial { run, state }) = *direction
                 && run == pass.run
             {
@@ -163,7 +165,7 @@ impl<'p, 'a> Forward<'p, 'a> {
         }
         Self {
             estimation,
-            directions: own,
+            directions,
             shapes,
             columns,
             z,
@@ -174,7 +176,7 @@ impl<'p, 'a> Forward<'p, 'a> {
             by_inputs: zeros(info.state_len() * info.input_len()),
             tried: zeros(shapes.map_or(0, |shapes| shapes.count)),
             rates: zeros(n),
-            scratch: pass.plant.scratch(),
+            scratch: pass.system.plant.scratch(),
             rows: Vec::new(),
             pass,
         }
@@ -218,16 +220,11 @@ impl<'p, 'a> Forward<'p, 'a> {
             Action::Advance(advance) => advance.t + advance.h,
             _ => recording_time(recording, action),
         };
-        let place = Place {
-            t,
-            z: &self.pass.z,
-            held: &self.pass.held,
-            p: self.pass.p(),
-            lags: self.pass.lags(),
-        };
+        let at = (t, self.pass.z.as_slice(), self.pass.held.as_slice());
+        let place = Place::new(self.pass.system.layout, self.pass.values, at);
         for (column, direction) in self.directions.iter().enumerate() {
             if let Direction::Value(Unknown::Parameter(index)) = *direction {
-                let plant = self.pass.plant;
+                let plant = self.pass.system.plant;
                 for (state, slope) in closure.by_parameter(plant, place, &mut self.scratch, index) {
                     self.z[state * self.columns + column] += slope;
                 }
@@ -241,18 +238,13 @@ impl<'p, 'a> Forward<'p, 'a> {
         let (n, columns, half) = (self.pass.sizes.n, self.columns, 0.5 * advance.h);
         let info = self.estimation.setup().model.info();
         let (states, parameters) = (info.state_len(), info.parameter_len());
-        let (p, lags) = (self.pass.p(), self.pass.lags());
+        let lags = self.pass.lags();
         let disturbances = self.pass.sizes.disturbances;
-        let plant = self.pass.plant;
+        let plant = self.pass.system.plant;
         let on = self.pass.sizes.step(&mut self.pass.tape[tape..]);
         let middle = &on.stages.z[n..2 * n];
-        let place = Place {
-            t: advance.t + half,
-            z: middle,
-            held: on.held,
-            p,
-            lags,
-        };
+        let at = (advance.t + half, middle, &*on.held);
+        let place = Place::new(self.pass.system.layout, self.pass.values, at);
         self.added.fill(0.0);
         // Lags may be as short as the step: their slopes follow its stages.
         let mut lagged: Vec<(usize, Vec<f64>)> = Vec::new();
@@ -280,7 +272,10 @@ impl<'p, 'a> Forward<'p, 'a> {
                 _ => {}
             }
         }
-        if let Some(shapes) = self.shapes.filter(|own| own.along == Along::Disturbances) {
+        if let Some(shapes) = self
+            .shapes
+            .filter(|shapes| shapes.along == Along::Disturbances)
+        {
             plant.at(place, &mut self.scratch, |at| {
                 (shapes.values)(self.pass.run, at, &mut self.tried);
             });
@@ -315,15 +310,10 @@ impl<'p, 'a> Forward<'p, 'a> {
         let info = self.estimation.setup().model.info();
         let (states, inputs) = (info.state_len(), info.input_len());
         let held = self.pass.held.clone();
-        let place = Place {
-            t,
-            z: &self.pass.z,
-            held: &held,
-            p: self.pass.p(),
-            lags: self.pass.lags(),
-        };
+        let at = (t, self.pass.z.as_slice(), held.as_slice());
+        let place = Place::new(self.pass.system.layout, self.pass.values, at);
         let (rates, a, b) = (&mut self.rates, &mut self.by_states, &mut self.by_inputs);
-        self.pass.plant.at(place, &mut self.scratch, |at| {
+        self.pass.system.plant.at(place, &mut self.scratch, |at| {
             self.estimation
                 .setup()
                 .model
@@ -342,13 +332,14 @@ impl<'p, 'a> Forward<'p, 'a> {
 
     fn measure(&mut self, first: usize) {
         let (n, columns) = (self.pass.sizes.n, self.columns);
-        let setup = self.estimation.setup();
         for index in first..self.pass.samples.len() {
             let sample = self.pass.samples[index];
             let channel = sample.innovation.channel;
             let by_parameters = self.output_slope(index);
             let SampleTape { c, a, z, .. } =
                 self.pass.sizes.sample(&mut self.pass.tape[sample.tape..]);
+            let at = (sample.innovation.t, &*z, self.pass.held.as_slice());
+            let place = Place::new(self.pass.system.layout, self.pass.values, at);
             let start = self.rows.len();
             self.rows.resize(start + columns, 0.0);
             let row = &mut self.rows[start..];
@@ -359,21 +350,16 @@ impl<'p, 'a> Forward<'p, 'a> {
             }
             for (column, direction) in self.directions.iter().enumerate() {
                 row[column] += match *direction {
-                    Direction::Value(Unknown::Bias(own)) if own == channel => -1.0,
-                    Direction::Value(Unknown::Scale(own)) if own == channel => -sample.quantity,
+                    Direction::Value(Unknown::Bias(biased)) if biased == channel => -1.0,
+                    Direction::Value(Unknown::Scale(scaled)) if scaled == channel => {
+                        -sample.quantity
+                    }
                     Direction::Value(Unknown::Parameter(index)) if !by_parameters.is_empty() => {
                         -by_parameters[index]
                     }
-                    Direction::LateChannel(own) if own == channel => {
-                        let place = Place {
-                            t: sample.innovation.t,
-                            z,
-                            held: &self.pass.held,
-                            p: &self.pass.values[..self.pass.layout.parameters],
-                            lags: &self.pass.values[self.pass.layout.lag(0)..]
-                                [..setup.lagging.len()],
-                        };
+                    Direction::LateChannel(late) if late == channel => {
                         self.pass
+                            .system
                             .plant
                             .rates(place, &mut self.scratch, &mut self.rates);
                         dot(c, &self.rates)
@@ -381,15 +367,8 @@ impl<'p, 'a> Forward<'p, 'a> {
                     _ => 0.0,
                 };
             }
-            if let Some(shapes) = self.shapes.filter(|own| own.along == Along::Channels) {
-                let place = Place {
-                    t: sample.innovation.t,
-                    z,
-                    held: &self.pass.held,
-                    p: &self.pass.values[..self.pass.layout.parameters],
-                    lags: &self.pass.values[self.pass.layout.lag(0)..][..setup.lagging.len()],
-                };
-                self.pass.plant.at(place, &mut self.scratch, |at| {
+            if let Some(shapes) = self.shapes.filter(|shapes| shapes.along == Along::Channels) {
+                self.pass.system.plant.at(place, &mut self.scratch, |at| {
                     (shapes.values)(self.pass.run, at, &mut self.tried);
                 });
                 let first = self.directions.len() + channel * shapes.count;
@@ -416,23 +395,20 @@ impl<'p, 'a> Forward<'p, 'a> {
         };
         let info = setup.model.info();
         let n = self.pass.sizes.n;
-        let (held, p, lags) = (self.pass.held.clone(), self.pass.p(), self.pass.lags());
-        let z = self.pass.z.clone();
         let mut weights = vec![0.0; info.output_len()];
-        weights[output] = self.pass.values[self.pass.layout.scale(channel)];
+        weights[output] = self.pass.values[self.pass.system.layout.scale(channel)];
         let slopes = vec![0.0; info.output_len() * n];
         let mut by = (
             vec![0.0; n],
             vec![0.0; info.parameter_len()],
-            vec![0.0; lags.len()],
+            vec![0.0; setup.lagging.len()],
         );
-        let place = Place {
-            t: sample.innovation.t,
-            z: &z,
-            held: &held,
-            p,
-            lags,
-        };
+        let at = (
+            sample.innovation.t,
+            self.pass.z.as_slice(),
+            self.pass.held.as_slice(),
+        );
+        let place = Place::new(self.pass.system.layout, self.pass.values, at);
         let mut sums = Sums {
             z: &mut by.0,
             p: &mut by.1,
@@ -440,6 +416,7 @@ impl<'p, 'a> Forward<'p, 'a> {
         };
         let weights = [weights.as_slice(), &slopes];
         self.pass
+            .system
             .plant
             .output_adjoint(place, &mut self.scratch, weights, &mut sums);
         by.1

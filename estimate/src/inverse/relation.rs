@@ -112,10 +112,10 @@ impl<'a> Relations<'a> {
     pub fn at(&self, motion: &Motion, p: &[f64]) -> Result<Rows, InverseError> {
         let place = self.place(motion, p)?;
         let e = place.demand();
-        let left = &e - &place.equations.inputs * &place.inputs;
+        let residual = &e - &place.equations.inputs * &place.inputs;
         let onto = &place.equations.inputs * (&place.reach * &self.reference);
         let rows = &self.reference - onto;
-        Ok(self.differentiate(&place, p, self.reference.tr_mul(&left), &rows))
+        Ok(self.differentiate(&place, p, self.reference.tr_mul(&residual), &rows))
     }
 
     /// The inputs of each motion, by least squares weighted by the noise of the motion, with their
@@ -271,8 +271,10 @@ impl<'a> Relations<'a> {
     ) {
         let info = self.model.info();
         let (states, s) = (info.state_len(), info.speeds);
-        let own = tape.rates(self.model, place, p);
-        let off: Vec<f64> = (0..s).map(|i| place.accelerations[i] - own[i]).collect();
+        let modelled = tape.rates(self.model, place, p);
+        let off: Vec<f64> = (0..s)
+            .map(|i| place.accelerations[i] - modelled[i])
+            .collect();
         for i in 0..s {
             tape.weights[i] = -inertia[i];
             for j in 0..s {

@@ -26,7 +26,7 @@ const CLOSE: f64 = 0.01;
 const STARTS: [f64; 5] = [0.4, 0.7, 1.0, 1.5, 2.5];
 /// Least change of the relations, in standard deviations, for a relative change of 1 of a value;
 /// less is rounding.
-const UNTOLD: f64 = 1e-4;
+const LEAST_SENSITIVITY: f64 = 1e-4;
 
 /// Result of the search.
 #[derive(Debug, Clone)]
@@ -57,9 +57,11 @@ impl Consistency<'_> {
     pub fn least(&self) -> Result<DVector<f64>, InverseError> {
         let start = self.start()?;
         let (here, scales) = (self.at(&start)?, self.scales());
-        let told = |index: usize| here.information[(index, index)].sqrt() * scales[index] > UNTOLD;
+        let is_determined = |index: usize| {
+            here.information[(index, index)].sqrt() * scales[index] > LEAST_SENSITIVITY
+        };
         let all: Vec<usize> = (0..scales.len()).collect();
-        if !all.iter().all(|&index| told(index)) {
+        if !all.iter().all(|&index| is_determined(index)) {
             return Err(InverseError::Singular);
         }
         self.minimise(start, &all)

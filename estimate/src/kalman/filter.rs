@@ -1,24 +1,24 @@
 //! The square-root extended Kalman filter (Bierman 1977; Särkkä, *Bayesian Filtering and
 //! Smoothing*, 2013, section 5.2).
 //!
-//! Time: z⁺ by a Runge–Kutta step, in parts where it meets a corner and the setup has corners,
-//! P⁺ = F (P + N) Fᵀ + N, where N is half of the noise of the step; half enters before it and half after. Measurements: one scalar after the other, all linearised
-//! about the state before the first of them, which is the update with all at once where noise is
-//! independent. The residuals of these scalars are independent of each other and of all earlier
-//! ones: squares and logarithms of their variances add up to the likelihood. Where coordinates depend
-//! on each other, loops are closed after each of the two.
+//! Time: z⁺ by a Runge–Kutta step, subdivided at kinks of the rates if `has_corners` is set;
+//! P⁺ = F (P + N) Fᵀ + N, where N is half of the noise of the step: half enters before it and half
+//! after. Measurements: one scalar after the other, all linearised about the state before the first
+//! of them, which is the update with all at once where noise is independent. The residuals of these
+//! scalars are independent of each other and of all earlier ones: squares and logarithms of their
+//! variances add up to the likelihood. Where coordinates depend on each other, loops are closed
+//! after each of the two.
 
 use std::f64::consts::TAU;
 
 use super::square_root::{potter, triangularise};
 use super::tape::{Record, Sample, SampleTape, Sizes};
 use crate::EstimateError;
-use crate::data::layout::Layout;
 use crate::data::recording::Recording;
 use crate::data::setup::{Disturbance, Measured, Setup};
 use crate::matrix::{add_scaled, dot, multiply, pieces, scale, transposed_multiply};
 use crate::motion::closure::Closure;
-use crate::motion::plant::{Place, Plant, Scratch};
+use crate::motion::plant::{Place, Plant, Scratch, StateSpace};
 use crate::motion::timeline::{Action, Advance};
 use crate::motion::transition::{MOST_HALVINGS, Span, halvings, step};
 
@@ -55,11 +55,19 @@ impl Innovation {
     }
 }
 
+/// A measured scalar.
+#[derive(Clone, Copy)]
+struct Reading {
+    row: usize,
+    channel: usize,
+    /// Sampling time in s.
+    t: f64,
+    measured: f64,
+}
+
 /// One run of the filter along a recording.
 pub(crate) struct Pass<'a> {
-    pub(crate) setup: &'a Setup<'a>,
-    pub(crate) plant: &'a Plant<'a>,
-    pub(crate) layout: Layout,
+    pub(crate) system: StateSpace<'a>,
     pub(crate) values: &'a [f64],
     pub(crate) run: usize,
     pub(crate) sizes: Sizes,
@@ -75,7 +83,8 @@ pub(crate) struct Pass<'a> {
     pub(crate) closure: Option<Closure>,
     spread: Vec<f64>,
     wide: Vec<f64>,
-    seen: Vec<f64>,
+    /// Sᵀ c.
+    projection: Vec<f64>,
     outputs: Vec<f64>,
     output_slopes: Vec<f64>,
 }
@@ -83,19 +92,13 @@ pub(crate) struct Pass<'a> {
 impl<'a> Pass<'a> {
     /// Filters a recording. Without `keeps` only the innovations remain.
     pub(crate) fn over(
-        (setup, plant, layout): (&'a Setup<'a>, &'a Plant<'a>, Layout),
+        system: StateSpace<'a>,
         values: &'a [f64],
         (run, recording): (usize, &Recording),
         actions: &[Action],
         keeps: bool,
     ) -> Result<Self, EstimateError> {
-        let mut pass = Self::new(
-            (setup, plant, layout),
-            values,
-            (run, recording),
-            actions,
-            keeps,
-        );
+        let mut pass = Self::new(system, values, (run, recording), actions, keeps);
         for &action in actions {
             pass.act(recording, action)?;
         }
@@ -104,16 +107,16 @@ impl<'a> Pass<'a> {
 
     /// Before the first action.
     pub(crate) fn new(
-        model: (&'a Setup<'a>, &'a Plant<'a>, Layout),
+        system: StateSpace<'a>,
         values: &'a [f64],
         (run, recording): (usize, &Recording),
         actions: &[Action],
         keeps: bool,
     ) -> Self {
-        let mut pass = Self::blank(model, values, run);
+        let mut pass = Self::blank(system, values, run);
         pass.keeps = keeps;
         pass.records.reserve(actions.len());
-        let samples = recording.times().len() * pass.setup.channels.len();
+        let samples = recording.times().len() * pass.system.setup.channels.len();
         pass.samples.reserve(samples);
         if keeps {
             let steps = actions
@@ -129,11 +132,8 @@ impl<'a> Pass<'a> {
     }
 
     /// Before any position.
-    pub(crate) fn blank(
-        (setup, plant, layout): (&'a Setup<'a>, &'a Plant<'a>, Layout),
-        values: &'a [f64],
-        run: usize,
-    ) -> Self {
+    pub(crate) fn blank(system: StateSpace<'a>, values: &'a [f64], run: usize) -> Self {
+        let StateSpace { setup, plant, .. } = system;
         let (n, info) = (plant.n, plant.info());
         let outputs = if setup.sees_outputs() {
             info.output_len()
@@ -147,9 +147,7 @@ impl<'a> Pass<'a> {
         };
         let zeros = |len| vec![0.0; len];
         Self {
-            setup,
-            plant,
-            layout,
+            system,
             values,
             run,
             sizes,
@@ -164,7 +162,7 @@ impl<'a> Pass<'a> {
             closure: Closure::of(plant),
             spread: zeros(2 * n * (n + sizes.disturbances)),
             wide: zeros(n * (n + 2 * sizes.disturbances)),
-            seen: zeros(n),
+            projection: zeros(n),
             outputs: zeros(outputs),
             output_slopes: zeros(outputs * n),
         }
@@ -186,7 +184,7 @@ impl<'a> Pass<'a> {
             Action::Switch { row, input } => {
                 let first = self.records.is_empty();
                 switch(
-                    self.setup,
+                    self.system.setup,
                     first,
                     &mut self.held,
                     recording.inputs(row),
@@ -212,17 +210,20 @@ impl<'a> Pass<'a> {
     }
 
     pub(crate) fn p(&self) -> &'a [f64] {
-        &self.values[..self.layout.parameters]
+        &self.values[..self.system.layout.parameters]
     }
 
     pub(crate) fn lags(&self) -> &'a [f64] {
-        let start = self.layout.lag(0);
-        &self.values[start..start + self.layout.lags]
+        let start = self.system.layout.lag(0);
+        &self.values[start..start + self.system.layout.lags]
     }
 
     fn start(&mut self) {
         let n = self.sizes.n;
-        let (initial, spread) = (self.layout.initial(self.run), self.layout.spread(self.run));
+        let (initial, spread) = (
+            self.system.layout.initial(self.run),
+            self.system.layout.spread(self.run),
+        );
         self.z.copy_from_slice(&self.values[initial..initial + n]);
         for i in 0..n {
             self.root[i * (n + 1)] = self.values[spread + i];
@@ -255,14 +256,14 @@ impl<'a> Pass<'a> {
         };
         let before = span.place(0, &self.z);
         directions(
-            self.setup,
-            self.plant,
+            self.system.setup,
+            self.system.plant,
             before,
             &mut self.scratch,
             on.columns,
         );
         step(
-            self.plant,
+            self.system.plant,
             span,
             &mut self.scratch,
             &mut on.stages,
@@ -270,9 +271,9 @@ impl<'a> Pass<'a> {
             on.f,
         );
         // Loops are closed only after whole steps.
-        let halvings = if self.setup.has_corners && self.closure.is_none() {
-            let own = self.plant.info().state_len();
-            halvings(&on.stages, (n, own), h).min(MOST_HALVINGS - halved)
+        let halvings = if self.system.setup.has_corners && self.closure.is_none() {
+            let states = self.system.plant.info().state_len();
+            halvings(&on.stages, (n, states), h).min(MOST_HALVINGS - halved)
         } else {
             0
         };
@@ -287,7 +288,7 @@ impl<'a> Pass<'a> {
         for (i, joint) in joint.chunks_exact_mut(n + d).enumerate() {
             joint[..n].copy_from_slice(&on.root[i * n..(i + 1) * n]);
             for j in 0..d {
-                let level = self.values[self.layout.disturbance(j)];
+                let level = self.values[self.system.layout.disturbance(j)];
                 joint[n + j] = level * (0.5 * h).sqrt() * on.columns[i * d + j];
             }
         }
@@ -346,17 +347,10 @@ impl<'a> Pass<'a> {
             return Ok(());
         };
         let z = self.z.clone();
-        let lags = self.layout.lag(0);
-        let place = Place {
-            t,
-            z: &z,
-            held: &self.held,
-            p: &self.values[..self.layout.parameters],
-            lags: &self.values[lags..lags + self.layout.lags],
-        };
+        let place = Place::new(self.system.layout, self.values, (t, &z, &self.held));
         let run = self.run;
         closure
-            .close(self.plant, place, &mut self.scratch, &mut self.z)
+            .close(self.system.plant, place, &mut self.scratch, &mut self.z)
             .map_err(|source| EstimateError::Open { run, t, source })?;
         let tape = self.tape.len();
         self.tape.extend(&self.z);
@@ -367,6 +361,7 @@ impl<'a> Pass<'a> {
         Ok(())
     }
 
+    /// Updates by the scalars that were sampled for a row: one delayed channel, or all others.
     fn measure(
         &mut self,
         recording: &Recording,
@@ -374,90 +369,132 @@ impl<'a> Pass<'a> {
         only: Option<usize>,
     ) -> Result<(), EstimateError> {
         let first = self.samples.len();
-        let (setup, n) = (self.setup, self.sizes.n);
         let measured = recording.measured(row);
         let t = recording.times()[row];
-        let here = |channel: &usize| {
-            let late = setup.channels[*channel].longest_delay.is_some();
-            only.map_or(!late, |only| only == *channel) && !measured[*channel].is_nan()
-        };
-        let seen: Vec<usize> = (0..setup.channels.len()).filter(here).collect();
-        let is_output = |&c: &usize| matches!(setup.channels[c].measures, Measured::Output(_));
-        let mut held = Vec::new();
-        if seen.iter().any(is_output) {
-            held.clone_from(&self.held);
-            let place = Place {
-                t,
-                z: &self.z,
-                held: &self.held,
-                p: self.p(),
-                lags: self.lags(),
-            };
-            let (outputs, slopes) = (&mut self.outputs, &mut self.output_slopes);
-            self.plant
-                .outputs(place, &mut self.scratch, outputs, slopes);
-        }
-        let prior = self.record(seen.len() * self.sizes.sample_len());
-        for (count, &channel) in seen.iter().enumerate() {
+        let channels = self.sampled(measured, only);
+        let held = self.linearise_outputs(t, &channels);
+        let prior = self.record(channels.len() * self.sizes.sample_len());
+        for (count, &channel) in channels.iter().enumerate() {
             let tape = prior + count * self.sizes.sample_len();
-            let (earlier, rest) = self.tape.split_at_mut(tape);
-            let SampleTape { c, a, z, root } = self.sizes.sample(rest);
-            z.copy_from_slice(&self.z);
-            root.copy_from_slice(&self.root);
-            c.fill(0.0);
-            let quantity = match setup.channels[channel].measures {
-                Measured::State(state) => {
-                    c[state] = 1.0;
-                    if count == 0 {
-                        z[state]
-                    } else {
-                        earlier[prior + 2 * n + state]
-                    }
-                }
-                Measured::Output(output) => {
-                    c.copy_from_slice(&self.output_slopes[output * n..(output + 1) * n]);
-                    self.outputs[output]
-                }
+            let reading = Reading {
+                row,
+                channel,
+                t,
+                measured: measured[channel],
             };
-            let gain = self.values[self.layout.scale(channel)];
-            let bias = self.values[self.layout.bias(channel)];
-            let noise = self.values[self.layout.noise(channel)];
-            scale(gain, c);
-            let residual = measured[channel] - gain * quantity - bias;
-            let r = noise * noise;
-            let mut white = residual;
-            let mut variance = None;
-            if count > 0 {
-                let [_, _, first_z, first_root] = pieces(&mut earlier[prior..], [n, n, n, n * n]);
-                white -= dot(c, z) - dot(c, first_z);
-                transposed_multiply(first_root, c, n, &mut self.seen);
-                variance = Some(dot(&self.seen, &self.seen) + r);
-            }
-            transposed_multiply(root, c, n, &mut self.seen);
-            multiply(root, &self.seen, n, a);
-            let s = dot(&self.seen, &self.seen) + r;
-            if !(s > 0.0 && s.is_finite() && white.is_finite()) {
-                return Err(EstimateError::Diverged { run: self.run, t });
-            }
-            add_scaled(white / s, a, &mut self.z);
-            potter(&mut self.root, &self.seen, a, s, r);
-            self.samples.push(Sample {
-                innovation: Innovation {
-                    row,
-                    channel,
-                    t,
-                    residual,
-                    variance: variance.unwrap_or(s),
-                    white_residual: white,
-                    white_variance: s,
-                },
-                quantity,
-                tape,
-            });
+            let quantity = self.keep(channel, (prior, tape));
+            self.update(reading, quantity, (prior, tape))?;
         }
         let samples = first..self.samples.len();
         let row = only.is_none().then_some(row);
         self.records.push(Record::Measure { row, samples, held });
+        Ok(())
+    }
+
+    /// The channels with a value among those of a row: one delayed channel, or all others.
+    fn sampled(&self, measured: &[f64], only: Option<usize>) -> Vec<usize> {
+        let channels = &self.system.setup.channels;
+        let is_sampled = |channel: &usize| {
+            let late = channels[*channel].longest_delay.is_some();
+            only.map_or(!late, |only| only == *channel) && !measured[*channel].is_nan()
+        };
+        (0..channels.len()).filter(is_sampled).collect()
+    }
+
+    /// Evaluates the outputs and their slopes if any is sampled; then returns the held inputs.
+    fn linearise_outputs(&mut self, t: f64, channels: &[usize]) -> Vec<f64> {
+        let StateSpace {
+            setup,
+            plant,
+            layout,
+        } = self.system;
+        let is_output = |&c: &usize| matches!(setup.channels[c].measures, Measured::Output(_));
+        if !channels.iter().any(is_output) {
+            return Vec::new();
+        }
+        let place = Place::new(layout, self.values, (t, &self.z, &self.held));
+        let (outputs, slopes) = (&mut self.outputs, &mut self.output_slopes);
+        plant.outputs(place, &mut self.scratch, outputs, slopes);
+        self.held.clone()
+    }
+
+    /// Keeps on the tape what the update by a scalar starts from. Returns its quantity without scale
+    /// and bias, in the state before the first scalar of the moment, whose tape is `prior`.
+    fn keep(&mut self, channel: usize, (prior, tape): (usize, usize)) -> f64 {
+        let n = self.sizes.n;
+        let (earlier, rest) = self.tape.split_at_mut(tape);
+        let SampleTape { c, z, root, .. } = self.sizes.sample(rest);
+        z.copy_from_slice(&self.z);
+        root.copy_from_slice(&self.root);
+        c.fill(0.0);
+        let quantity = match self.system.setup.channels[channel].measures {
+            Measured::State(state) => {
+                c[state] = 1.0;
+                if tape == prior {
+                    z[state]
+                } else {
+                    earlier[prior + 2 * n + state]
+                }
+            }
+            Measured::Output(output) => {
+                c.copy_from_slice(&self.output_slopes[output * n..(output + 1) * n]);
+                self.outputs[output]
+            }
+        };
+        scale(self.values[self.system.layout.scale(channel)], c);
+        quantity
+    }
+
+    /// Updates the state and the root of P by a scalar.
+    fn update(
+        &mut self,
+        reading: Reading,
+        quantity: f64,
+        (prior, tape): (usize, usize),
+    ) -> Result<(), EstimateError> {
+        let Reading {
+            row,
+            channel,
+            t,
+            measured,
+        } = reading;
+        let n = self.sizes.n;
+        let (earlier, rest) = self.tape.split_at_mut(tape);
+        let SampleTape { c, a, z, root } = self.sizes.sample(rest);
+        let gain = self.values[self.system.layout.scale(channel)];
+        let bias = self.values[self.system.layout.bias(channel)];
+        let noise = self.values[self.system.layout.noise(channel)];
+        let residual = measured - gain * quantity - bias;
+        let r = noise * noise;
+        let mut white = residual;
+        let mut variance = None;
+        if tape > prior {
+            let [_, _, first_z, first_root] = pieces(&mut earlier[prior..], [n, n, n, n * n]);
+            white -= dot(c, z) - dot(c, first_z);
+            transposed_multiply(first_root, c, n, &mut self.projection);
+            variance = Some(dot(&self.projection, &self.projection) + r);
+        }
+        transposed_multiply(root, c, n, &mut self.projection);
+        multiply(root, &self.projection, n, a);
+        let s = dot(&self.projection, &self.projection) + r;
+        if !(s > 0.0 && s.is_finite() && white.is_finite()) {
+            return Err(EstimateError::Diverged { run: self.run, t });
+        }
+        add_scaled(white / s, a, &mut self.z);
+        potter(&mut self.root, &self.projection, a, s, r);
+        self.samples.push(Sample {
+            innovation: Innovation {
+                row,
+                channel,
+                t,
+                residual,
+                variance: variance.unwrap_or(s),
+                white_residual: white,
+                white_variance: s,
+            },
+            quantity,
+            tape,
+        });
         Ok(())
     }
 }

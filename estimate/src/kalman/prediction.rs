@@ -2,14 +2,13 @@
 
 use super::filter::{Pass, switch};
 use crate::EstimateError;
-use crate::data::layout::Layout;
 use crate::data::recording::Recording;
-use crate::data::setup::{Measured, Setup};
+use crate::data::setup::Measured;
 use crate::data::unknown::Unknown;
 use crate::estimation::Estimation;
 use crate::matrix::add_scaled;
 use crate::motion::closure::Closure;
-use crate::motion::plant::{Place, Plant, Scratch};
+use crate::motion::plant::{Place, Scratch, StateSpace};
 use crate::motion::timeline::{Action, Advance};
 use crate::motion::transition::{MOST_HALVINGS, STAGES, WEIGHTS, is_uneven};
 
@@ -46,13 +45,13 @@ impl Estimation<'_> {
         let mut pass = self.fresh(run, values, &actions);
         let mut walk = Walk::new(&pass, recording);
         let mut predicted = Vec::new();
-        for (place, &action) in actions.iter().enumerate() {
+        for (index, &action) in actions.iter().enumerate() {
             pass.act(recording, action)?;
             if let Action::Measure { row, channel: None } = action
                 && origins.binary_search(&row).is_ok()
             {
                 walk.begin(&pass, row);
-                walk.on(&actions[place + 1..], horizon, &mut predicted);
+                walk.on(&actions[index + 1..], horizon, &mut predicted);
             }
         }
         Ok(predicted)
@@ -75,7 +74,7 @@ impl Estimation<'_> {
         let actions = self.actions(run, values);
         let mut pass = self.fresh(run, values, &actions);
         let mut expected = Vec::new();
-        for (place, &action) in actions.iter().enumerate() {
+        for (index, &action) in actions.iter().enumerate() {
             pass.act(recording, action)?;
             let Action::Measure { row, channel: None } = action else {
                 continue;
@@ -88,7 +87,7 @@ impl Estimation<'_> {
             ahead.root.copy_from_slice(&pass.root);
             ahead.held.copy_from_slice(&pass.held);
             let mut open = vec![true; self.setup().channels.len()];
-            for &action in &actions[place + 1..] {
+            for &action in &actions[index + 1..] {
                 let Action::Measure { row: met, .. } = action else {
                     // Predictions that overflow have no expected variance.
                     if ahead.act(recording, action).is_err() {
@@ -96,15 +95,15 @@ impl Estimation<'_> {
                     }
                     continue;
                 };
-                if !is_told(recording, row, met, horizon) {
+                if !is_reported(recording, row, met, horizon) {
                     continue;
                 }
                 // Measurements are not used here.
                 let (z, root) = (ahead.z.clone(), ahead.root.clone());
                 if ahead.act(recording, action).is_ok() {
-                    for seen in ahead.samples.iter().map(|sample| sample.innovation) {
-                        if std::mem::take(&mut open[seen.channel]) {
-                            expected.push((seen.channel, seen.variance));
+                    for innovation in ahead.samples.iter().map(|sample| sample.innovation) {
+                        if std::mem::take(&mut open[innovation.channel]) {
+                            expected.push((innovation.channel, innovation.variance));
                         }
                     }
                 }
@@ -122,7 +121,7 @@ impl Estimation<'_> {
 
 /// Whether a row is far enough ahead of another to be reported. A delayed channel counts with its
 /// row, so that the same values are compared for any delay.
-fn is_told(recording: &Recording, origin: usize, row: usize, horizon: f64) -> bool {
+fn is_reported(recording: &Recording, origin: usize, row: usize, horizon: f64) -> bool {
     let ahead = recording.times()[row] - recording.times()[origin];
     // Times of rows are rounded.
     row > origin && ahead >= horizon * (1.0 - 1e-9)
@@ -130,9 +129,7 @@ fn is_told(recording: &Recording, origin: usize, row: usize, horizon: f64) -> bo
 
 /// A motion without corrections.
 struct Walk<'a> {
-    setup: &'a Setup<'a>,
-    plant: &'a Plant<'a>,
-    layout: Layout,
+    system: StateSpace<'a>,
     values: &'a [f64],
     recording: &'a Recording,
     origin: usize,
@@ -149,15 +146,13 @@ impl<'a> Walk<'a> {
     fn new(pass: &Pass<'a>, recording: &'a Recording) -> Self {
         let n = pass.sizes.n;
         Self {
-            setup: pass.setup,
-            plant: pass.plant,
-            layout: pass.layout,
+            system: pass.system,
             values: pass.values,
             recording,
             origin: 0,
             z: vec![0.0; n],
             held: vec![0.0; pass.sizes.inputs],
-            scratch: pass.plant.scratch(),
+            scratch: pass.system.plant.scratch(),
             closure: pass.closure.clone(),
             stage: vec![0.0; n],
             rates: vec![0.0; 4 * n],
@@ -175,7 +170,7 @@ impl<'a> Walk<'a> {
     /// reported.
     fn on(&mut self, actions: &[Action], horizon: f64, predicted: &mut Vec<Predicted>) {
         let start = self.recording.times()[self.origin];
-        let mut open = vec![true; self.setup.channels.len()];
+        let mut open = vec![true; self.system.setup.channels.len()];
         let everything = horizon.is_infinite();
         let mut t = start;
         for &action in actions {
@@ -186,11 +181,11 @@ impl<'a> Walk<'a> {
                 }
                 Action::Switch { row, input } => {
                     let inputs = self.recording.inputs(row);
-                    switch(self.setup, false, &mut self.held, inputs, input);
+                    switch(self.system.setup, false, &mut self.held, inputs, input);
                 }
                 Action::Measure { row, channel } => {
-                    let told = |horizon| is_told(self.recording, self.origin, row, horizon);
-                    if !told(if everything { 0.0 } else { horizon }) {
+                    let horizon = if everything { 0.0 } else { horizon };
+                    if !is_reported(self.recording, self.origin, row, horizon) {
                         continue;
                     }
                     self.compare(row, channel, t - start, &mut open, predicted);
@@ -216,26 +211,28 @@ impl<'a> Walk<'a> {
         let measured = self.recording.measured(row);
         let mut outputs = Vec::new();
         for (channel, open) in open.iter_mut().enumerate() {
-            let late = self.setup.channels[channel].longest_delay.is_some();
+            let late = self.system.setup.channels[channel].longest_delay.is_some();
             let sampled = only.map_or(!late, |only| only == channel);
             if !*open || !sampled || measured[channel].is_nan() {
                 continue;
             }
-            let quantity = match self.setup.channels[channel].measures {
+            let quantity = match self.system.setup.channels[channel].measures {
                 Measured::State(state) => self.z[state],
                 Measured::Output(output) => {
                     if outputs.is_empty() {
-                        outputs = vec![0.0; self.plant.info().output_len()];
+                        outputs = vec![0.0; self.system.plant.info().output_len()];
                         let t = self.recording.times()[row];
-                        let place = place(self.layout, self.values, (t, &self.z, &self.held));
-                        self.plant
+                        let place =
+                            Place::new(self.system.layout, self.values, (t, &self.z, &self.held));
+                        self.system
+                            .plant
                             .output_values(place, &mut self.scratch, &mut outputs);
                     }
                     outputs[output]
                 }
             };
-            let scale = self.values[self.layout.scale(channel)];
-            let bias = self.values[self.layout.bias(channel)];
+            let scale = self.values[self.system.layout.scale(channel)];
+            let bias = self.values[self.system.layout.bias(channel)];
             let residual = measured[channel] - scale * quantity - bias;
             *open = false;
             predicted.push(Predicted {
@@ -259,10 +256,10 @@ impl<'a> Walk<'a> {
         if let Some(closure) = &mut self.closure {
             let open = self.z.clone();
             let at = (t, open.as_slice(), self.held.as_slice());
-            let place = place(self.layout, self.values, at);
+            let place = Place::new(self.system.layout, self.values, at);
             // A prediction without a solution of the loop constraints has infinite errors.
             if closure
-                .close(self.plant, place, &mut self.scratch, &mut self.z)
+                .close(self.system.plant, place, &mut self.scratch, &mut self.z)
                 .is_err()
             {
                 self.z.fill(f64::NAN);
@@ -278,39 +275,23 @@ impl<'a> Walk<'a> {
         for (stage, weight) in WEIGHTS.into_iter().enumerate() {
             let part = if stage == 0 { 0.0 } else { STAGES[stage - 1] };
             let at = (t + part * h, self.stage.as_slice(), self.held.as_slice());
-            let place = place(self.layout, self.values, at);
+            let place = Place::new(self.system.layout, self.values, at);
             let rates = &mut self.rates[stage * n..(stage + 1) * n];
-            self.plant.rates(place, &mut self.scratch, rates);
+            self.system.plant.rates(place, &mut self.scratch, rates);
             add_scaled(h * weight, rates, &mut after);
             if let Some(next) = STAGES.get(stage) {
                 self.stage.copy_from_slice(&self.z);
                 add_scaled(h * next, rates, &mut self.stage);
             }
         }
-        let has_corners = self.setup.has_corners && self.closure.is_none();
+        let has_corners = self.system.setup.has_corners && self.closure.is_none();
         let is_cut = has_corners && halved < MOST_HALVINGS;
-        if is_cut && is_uneven(&self.rates, (n, self.plant.info().state_len())) {
+        if is_cut && is_uneven(&self.rates, (n, self.system.plant.info().state_len())) {
             for part in advance.parts(1) {
                 self.step(part, halved + 1);
             }
         } else {
             self.z = after;
         }
-    }
-}
-
-/// State of a motion, with the values.
-pub(crate) fn place<'v>(
-    layout: Layout,
-    values: &'v [f64],
-    (t, z, held): (f64, &'v [f64], &'v [f64]),
-) -> Place<'v> {
-    let lags = layout.lag(0);
-    Place {
-        t,
-        z,
-        held,
-        p: &values[..layout.parameters],
-        lags: &values[lags..lags + layout.lags],
     }
 }

@@ -6,13 +6,13 @@
 //! covariance that does not depend on z⁺. One triangularisation of the joint root gives both.
 
 use super::filter::Pass;
-use super::prediction::place;
 use super::square_root::triangularise;
 use super::tape::{Record, StepTape};
 use crate::EstimateError;
 use crate::data::unknown::Unknown;
 use crate::estimation::Estimation;
 use crate::matrix::{add, multiply};
+use crate::motion::plant::Place;
 use crate::motion::timeline::Advance;
 
 /// Pivots of a root below this, relative to their row, are rounding: there is no variance in that
@@ -57,7 +57,7 @@ impl Estimation<'_> {
             root: pass.root.clone(),
         };
         // Dependent coordinates carry no further information.
-        let told: Vec<usize> = match &pass.closure {
+        let independent: Vec<usize> = match &pass.closure {
             Some(closure) => closure.independent().collect(),
             None => (0..pass.sizes.n).collect(),
         };
@@ -65,7 +65,7 @@ impl Estimation<'_> {
         pass.walk_back(&mut tape, |record, tape| match record {
             Record::Advance { advance, tape: at } => {
                 let on = pass.sizes.step(&mut tape[*at..]);
-                step_back(&pass, *advance, (&on, &told), &mut last);
+                step_back(&pass, *advance, (&on, &independent), &mut last);
             }
             Record::Measure { row: Some(row), .. } => {
                 last.t = self.recordings()[run].times()[*row];
@@ -74,17 +74,14 @@ impl Estimation<'_> {
             Record::Measure { row: None, .. } | Record::Close { .. } | Record::Parts { .. } => {}
         });
         if let Some(mut closure) = pass.closure.clone() {
-            let mut scratch = pass.plant.scratch();
-            for told in &mut rows {
-                let open = told.state.clone();
-                let (place, t) = (
-                    place(self.layout(), values, (told.t, &open, &pass.held)),
-                    told.t,
-                );
+            let mut scratch = pass.system.plant.scratch();
+            for row in &mut rows {
+                let (t, open) = (row.t, row.state.clone());
+                let place = Place::new(self.layout(), values, (t, &open, &pass.held));
                 closure
-                    .close(pass.plant, place, &mut scratch, &mut told.state)
+                    .close(pass.system.plant, place, &mut scratch, &mut row.state)
                     .map_err(|source| EstimateError::Open { run, t, source })?;
-                closure.follow(&mut told.root);
+                closure.follow(&mut row.root);
             }
         }
         rows.reverse();
@@ -96,10 +93,10 @@ impl Estimation<'_> {
 fn step_back(
     pass: &Pass<'_>,
     advance: Advance,
-    (on, told): (&StepTape<'_>, &[usize]),
+    (on, independent): (&StepTape<'_>, &[usize]),
     last: &mut Smoothed,
 ) {
-    let (n, d, r) = (pass.sizes.n, pass.sizes.disturbances, told.len());
+    let (n, d, r) = (pass.sizes.n, pass.sizes.disturbances, independent.len());
     // Roots of state after and state before, jointly: [F S, F N½, N½; S, 0, 0].
     let width = (n + 2 * d).max(r + n);
     let mut sources = vec![0.0; n * (n + d)];
@@ -108,14 +105,14 @@ fn step_back(
         let row = &mut sources[i * (n + d)..(i + 1) * (n + d)];
         row[..n].copy_from_slice(&on.root[i * n..(i + 1) * n]);
         for j in 0..d {
-            let level = pass.values[pass.layout.disturbance(j)];
+            let level = pass.values[pass.system.layout.disturbance(j)];
             row[n + j] = level * (0.5 * advance.h).sqrt() * on.columns[i * d + j];
         }
     }
     multiply(on.f, &sources, n, &mut moved);
     let mut joint = vec![0.0; (r + n) * width];
     let (after, before) = joint.split_at_mut(r * width);
-    for (row, &i) in after.chunks_exact_mut(width).zip(told) {
+    for (row, &i) in after.chunks_exact_mut(width).zip(independent) {
         let (moved, source) = (&moved[i * (n + d)..], &sources[i * (n + d)..]);
         row[..n + d].copy_from_slice(&moved[..n + d]);
         row[n + d..n + 2 * d].copy_from_slice(&source[n..n + d]);
@@ -142,9 +139,14 @@ fn step_back(
         }
     }
     let mut change = vec![0.0; n];
-    let off: Vec<f64> = told.iter().map(|&i| last.state[i] - on.after[i]).collect();
+    let off: Vec<f64> = independent
+        .iter()
+        .map(|&i| last.state[i] - on.after[i])
+        .collect();
     multiply(&gain, &off, r, &mut change);
-    let rows = told.iter().flat_map(|&i| &last.root[i * n..(i + 1) * n]);
+    let rows = independent
+        .iter()
+        .flat_map(|&i| &last.root[i * n..(i + 1) * n]);
     let rows: Vec<f64> = rows.copied().collect();
     let mut spread = vec![0.0; n * n];
     multiply(&gain, &rows, r, &mut spread);

@@ -32,12 +32,12 @@ pub(crate) fn triangularise(rows: &mut [f64], n: usize, factor: &mut [f64]) {
 }
 
 /// S after a measurement with noise variance `r` (J. E. Potter, 1963): P⁺ = P − a aᵀ/s with
-/// a = P c and s = cᵀ P c + r. `seen` holds Sᵀ c, `a` is P c = S seen.
-pub(crate) fn potter(root: &mut [f64], seen: &[f64], a: &[f64], s: f64, r: f64) {
+/// a = P c and s = cᵀ P c + r. `projection` is Sᵀ c, and `a` is P c = S Sᵀ c.
+pub(crate) fn potter(root: &mut [f64], projection: &[f64], a: &[f64], s: f64, r: f64) {
     let n = a.len();
     let weight = 1.0 / (s * (1.0 + (r / s).sqrt()));
     for (row, &a) in root.chunks_exact_mut(n).zip(a) {
-        add_scaled(-weight * a, seen, row);
+        add_scaled(-weight * a, projection, row);
     }
 }
 
@@ -76,13 +76,13 @@ mod tests {
     fn potters_update_takes_from_the_covariance_what_was_measured() {
         let (mut root, c, r) = ([2.0, 0.0, 1.0, 0.5], [1.0, -1.0], 0.3);
         let p = covariance(&root, 2);
-        let seen = [
+        let projection = [
             root[0] * c[0] + root[2] * c[1],
             root[1] * c[0] + root[3] * c[1],
         ];
         let a = [p[0] * c[0] + p[1] * c[1], p[2] * c[0] + p[3] * c[1]];
         let s = a[0] * c[0] + a[1] * c[1] + r;
-        potter(&mut root, &seen, &a, s, r);
+        potter(&mut root, &projection, &a, s, r);
         let after = covariance(&root, 2);
         for i in 0..2 {
             for j in 0..2 {

@@ -109,7 +109,7 @@ impl Pass<'_> {
     /// Visits the records from the last one on, each with the tape that its numbers stand on, and in
     /// place of a step in parts its parts.
     pub(crate) fn walk_back(&self, tape: &mut [f64], mut visit: impl FnMut(&Record, &mut [f64])) {
-        let mut again = Self::blank((self.setup, self.plant, self.layout), self.values, self.run);
+        let mut again = Self::blank(self.system, self.values, self.run);
         for record in self.records.iter().rev() {
             match record {
                 Record::Parts {

@@ -41,8 +41,8 @@ impl Closure {
         let positions = Positions::of(plant.model)?;
         let speeds = plant.speeds;
         let coordinates = plant.info().state_len() - speeds;
-        let dependent = plant.model.dependent_coordinates().iter();
-        let dependent: Vec<usize> = dependent.map(|q| speeds + q).collect();
+        let follows = plant.model.dependent_coordinates();
+        let dependent: Vec<usize> = follows.iter().map(|q| speeds + q).collect();
         let count = dependent.len();
         Some(Self {
             positions,

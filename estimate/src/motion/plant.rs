@@ -6,6 +6,7 @@
 use appell_runtime::model::{At, Gradient, Model, ModelInfo};
 use appell_runtime::signal::{Signal, SignalError};
 
+use crate::data::layout::Layout;
 use crate::data::setup::Setup;
 use crate::matrix::{add_scaled, pieces};
 
@@ -39,6 +40,33 @@ pub(crate) struct Place<'a> {
     pub(crate) p: &'a [f64],
     /// Time constants of the lagging inputs in s.
     pub(crate) lags: &'a [f64],
+}
+
+impl<'a> Place<'a> {
+    /// With the parameters and time constants of a list of values, at a time, state and held inputs.
+    pub(crate) fn new(
+        layout: Layout,
+        values: &'a [f64],
+        (t, z, held): (f64, &'a [f64], &'a [f64]),
+    ) -> Self {
+        let lags = layout.lag(0);
+        Self {
+            t,
+            z,
+            held,
+            p: &values[..layout.parameters],
+            lags: &values[lags..lags + layout.lags],
+        }
+    }
+}
+
+/// The state-space model of a filter: measurements and disturbances, equations of motion, and the
+/// order of the values on which they depend.
+#[derive(Clone, Copy)]
+pub(crate) struct StateSpace<'a> {
+    pub(crate) setup: &'a Setup<'a>,
+    pub(crate) plant: &'a Plant<'a>,
+    pub(crate) layout: Layout,
 }
 
 /// Work arrays.

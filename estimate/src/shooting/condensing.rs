@@ -53,27 +53,27 @@ impl Condensed {
         weights: &Weights<'_>,
     ) -> Result<Self, EstimateError> {
         let q = weights.free;
-        let (mut runs, mut left) = (Vec::new(), Vec::new());
+        let (mut runs, mut remainders) = (Vec::new(), Vec::new());
         let mut gained = 0.0;
         for (run, pieces) in pieces.iter().enumerate() {
             let mut carried = DMatrix::zeros(0, weights.sizes.len() + q + 1);
             let mut eliminated = Vec::with_capacity(pieces.len());
             for place in 0..pieces.len() {
                 let block = block(pieces, (run, place), &carried, weights);
-                let (one, next) = eliminate(block, weights.sizes.len());
-                gained += 0.5 * one.right.norm_squared();
-                eliminated.push(one);
+                let (pivots, next) = eliminate(block, weights.sizes.len());
+                gained += 0.5 * pivots.right.norm_squared();
+                eliminated.push(pivots);
                 carried = next;
             }
             runs.push(eliminated);
-            left.push(carried);
+            remainders.push(carried);
         }
-        let count = left.iter().map(DMatrix::nrows).sum();
+        let count = remainders.iter().map(DMatrix::nrows).sum();
         let mut all = DMatrix::zeros(count, q + 1);
         let mut row = 0;
-        for left in left {
-            all.rows_mut(row, left.nrows()).copy_from(&left);
-            row += left.nrows();
+        for remainder in remainders {
+            all.rows_mut(row, remainder.nrows()).copy_from(&remainder);
+            row += remainder.nrows();
         }
         if all.iter().any(|entry| !entry.is_finite()) {
             let what = "a segment of the motion";
@@ -111,14 +111,14 @@ impl Condensed {
     ) -> Result<Vec<Vec<DVector<f64>>>, EstimateError> {
         let of_run = |run: &Vec<Eliminated>| {
             let mut states: Vec<DVector<f64>> = Vec::with_capacity(run.len());
-            for one in run.iter().rev() {
+            for segment in run.iter().rev() {
                 let next = states.last().map_or(&[][..], |state| state.as_slice());
                 let known = DVector::from_iterator(
                     next.len() + change.len(),
                     next.iter().chain(change).copied(),
                 );
-                let right = -(&one.right + &one.rest * known);
-                let state = one.pivot.solve_upper_triangular(&right);
+                let right = -(&segment.right + &segment.rest * known);
+                let state = segment.pivot.solve_upper_triangular(&right);
                 let what = "a segment of the motion";
                 states.push(state.ok_or(EstimateError::Singular { what })?);
             }
@@ -204,8 +204,8 @@ fn block(
     }
     let mut first = next;
     for rows in [carried, &piece.rows] {
-        let own = block.view_mut((first, 0), (rows.nrows(), n));
-        { own }.copy_from(&rows.columns(0, n));
+        let initial = block.view_mut((first, 0), (rows.nrows(), n));
+        { initial }.copy_from(&rows.columns(0, n));
         let others = block.view_mut((first, n + next), (rows.nrows(), q + 1));
         { others }.copy_from(&rows.columns(n, q + 1));
         first += rows.nrows();
@@ -221,13 +221,13 @@ fn eliminate(block: DMatrix<f64>, n: usize) -> (Eliminated, DMatrix<f64>) {
     let columns = block.ncols();
     let r = block.qr().unpack_r();
     // The row of the right side alone is the residual.
-    let left = r.nrows().min(columns - 1);
+    let rows = r.nrows().min(columns - 1);
     let others = columns - n - 1;
-    let one = Eliminated {
+    let eliminated = Eliminated {
         pivot: r.view((0, 0), (n, n)).into_owned(),
         rest: r.view((0, n), (n, others)).into_owned(),
         right: r.view((0, columns - 1), (n, 1)).column(0).into_owned(),
     };
-    let rest = r.view((n, n), (left - n, columns - n)).into_owned();
-    (one, rest)
+    let rest = r.view((n, n), (rows - n, columns - n)).into_owned();
+    (eliminated, rest)
 }

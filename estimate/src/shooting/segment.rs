@@ -10,7 +10,6 @@ use crate::data::setup::Measured;
 use crate::data::unknown::Unknown;
 use crate::estimation::Estimation;
 use crate::kalman::filter::switch;
-use crate::kalman::prediction::place;
 use crate::matrix::{add_scaled, dot, multiply};
 use crate::motion::closure::Closure;
 use crate::motion::plant::{Place, Scratch, Sums};
@@ -123,7 +122,7 @@ impl<'a> SegmentIntegrator<'a> {
             self.estimation.plant(),
         );
         let at = (t, state.as_slice(), self.held.as_slice());
-        let place = place(self.estimation.layout(), self.values, at);
+        let place = Place::new(self.estimation.layout(), self.values, at);
         closure
             .close(plant, place, &mut self.scratch, &mut self.z)
             .map_err(|source| EstimateError::Open { run, t, source })?;
@@ -159,7 +158,7 @@ impl<'a> SegmentIntegrator<'a> {
         for (i, weight) in WEIGHTS.into_iter().enumerate() {
             let part = if i == 0 { 0.0 } else { STAGES[i - 1] };
             let at = (t + part * h, stage.as_slice(), held.as_slice());
-            let place = place(self.estimation.layout(), self.values, at);
+            let place = Place::new(self.estimation.layout(), self.values, at);
             let plant = self.estimation.plant();
             let rates = &mut rates[i * n..(i + 1) * n];
             plant.jacobian(place, &mut self.scratch, rates, &mut slopes);
@@ -224,7 +223,7 @@ impl<'a> SegmentIntegrator<'a> {
             0
         };
         let (mut outputs, mut slopes) = (vec![0.0; count], vec![0.0; count * n]);
-        let place = place(layout, self.values, (t, &self.z, &self.held));
+        let place = Place::new(layout, self.values, (t, &self.z, &self.held));
         if count > 0 {
             let plant = self.estimation.plant();
             plant.outputs(place, &mut self.scratch, &mut outputs, &mut slopes);
@@ -263,8 +262,8 @@ impl<'a> SegmentIntegrator<'a> {
                 line[column] -= weight
                     * stretch
                     * match unknown {
-                        Unknown::Bias(own) if own == index => 1.0,
-                        Unknown::Scale(own) if own == index => quantity,
+                        Unknown::Bias(biased) if biased == index => 1.0,
+                        Unknown::Scale(scaled) if scaled == index => quantity,
                         Unknown::Parameter(parameter) if !by_parameters.is_empty() => {
                             scale * by_parameters[parameter]
                         }

@@ -77,17 +77,17 @@ impl Basis {
             let degree = k as f64;
             for j in (0..=k).rev() {
                 let before = if j == 0 { 0.0 } else { value[j - 1] };
-                let own = if j == k { 0.0 } else { value[j] };
+                let same = if j == k { 0.0 } else { value[j] };
                 let shift = j as f64;
-                value[j] = ((u + degree - shift) * before + (1.0 + shift - u) * own) / degree;
+                value[j] = ((u + degree - shift) * before + (1.0 + shift - u) * same) / degree;
             }
         }
         // N_k′(x) = N_{k−1}(x) − N_{k−1}(x − 1).
         for k in DEGREE - order + 1..=DEGREE {
             for j in (0..=k).rev() {
                 let before = if j == 0 { 0.0 } else { value[j - 1] };
-                let own = if j == k { 0.0 } else { value[j] };
-                value[j] = (before - own) / self.spacing;
+                let same = if j == k { 0.0 } else { value[j] };
+                value[j] = (before - same) / self.spacing;
             }
         }
         (interval, value)

@@ -23,8 +23,7 @@ impl Consistency {
     /// Of innovations in the order of time, such as those of a channel, with acceptance intervals
     /// of a probability, such as 0.99.
     pub fn of<'i>(innovations: impl IntoIterator<Item = &'i Innovation>, level: f64) -> Self {
-        let whitened = innovations.into_iter().map(Innovation::whitened);
-        let whitened: Vec<f64> = whitened.collect();
+        let whitened: Vec<f64> = innovations.into_iter().map(Innovation::whitened).collect();
         let (count, tail) = (whitened.len(), 0.5 * (1.0 - level));
         let squares: f64 = whitened.iter().map(|e| e * e).sum();
         let products: f64 = whitened.windows(2).map(|pair| pair[0] * pair[1]).sum();

@@ -74,7 +74,7 @@ impl Blocks {
         let centred = self.centred();
         let mut random = SplitMix64::seed_from_u64(seed);
         let count = centred.len() as u64;
-        let one = |_| {
+        let change = |_| {
             let mut sum = DVector::zeros(self.covariance.nrows());
             for _ in 0..count {
                 let place = usize::try_from(random.next_u64() % count).unwrap_or(0);
@@ -82,7 +82,7 @@ impl Blocks {
             }
             &self.covariance * sum
         };
-        (0..draws).map(one).collect()
+        (0..draws).map(change).collect()
     }
 
     fn centred(&self) -> Vec<DVector<f64>> {

@@ -90,18 +90,23 @@ impl Reproduction {
 /// Why statements about unpublished recordings cannot be checked.
 pub(super) const NOT_PUBLIC: &str = "the paper's recordings are not public";
 
-impl Claim {
-    /// A statement that holds or not, within a tolerance or at the tested points.
-    pub fn that(
-        place: &str,
-        published: &str,
-        ours: impl Into<String>,
-        holds: bool,
-        command: &str,
-    ) -> Self {
-        Self {
-            place: place.to_owned(),
-            published: published.to_owned(),
+/// A statement before its comparison with a computed result.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Statement<'a> {
+    /// Its place in the paper.
+    pub(crate) place: &'a str,
+    /// The statement, with corrections.
+    pub(crate) published: &'a str,
+    /// The command that reproduces the computed result.
+    pub(crate) command: &'a str,
+}
+
+impl Statement<'_> {
+    /// It holds or not, within a tolerance or at the tested points.
+    pub(crate) fn found(self, ours: impl Into<String>, holds: bool) -> Claim {
+        Claim {
+            place: self.place.to_owned(),
+            published: self.published.to_owned(),
             ours: ours.into(),
             agreement: if holds {
                 Reproduction::Approximate
@@ -111,42 +116,31 @@ impl Claim {
             note: String::new(),
             erratum: None,
             as_expected: holds,
-            command: command.to_owned(),
+            command: self.command.to_owned(),
         }
     }
 
-    /// A number and its published value, of which `needed` digits must agree.
-    pub fn number(
-        place: &str,
-        published: &str,
-        [wanted, found]: [f64; 2],
-        needed: u32,
-        command: &str,
-    ) -> Self {
+    /// A number and its computed value, of which `needed` digits must agree.
+    pub(crate) fn number(self, [wanted, found]: [f64; 2], needed: u32) -> Claim {
         let digits = digits(wanted, found);
-        let claim = Self::that(place, published, shown(found), digits >= needed, command);
         let plural = if digits == 1 { "" } else { "s" };
-        claim
+        self.found(shown(found), digits >= needed)
             .exactly()
             .noted(format!("{digits} digit{plural} agree"))
     }
 
     /// A statement about unpublished recordings, tested on simulated ones. Either outcome is
     /// expected.
-    pub fn finding(
-        place: &str,
-        published: &str,
-        ours: impl Into<String>,
-        shows: bool,
-        command: &str,
-    ) -> Self {
-        Self {
+    pub(crate) fn simulated(self, ours: impl Into<String>, shows: bool) -> Claim {
+        Claim {
             as_expected: true,
-            ..Self::that(place, published, ours, shows, command)
+            ..self.found(ours, shows)
         }
         .noted("on simulated rides")
     }
+}
 
+impl Claim {
     /// If it holds, it holds exactly.
     #[must_use]
     pub fn exactly(mut self) -> Self {
@@ -292,7 +286,12 @@ mod tests {
 
     #[test]
     fn statements_are_counted_apart() {
-        let number = |published, found| Claim::number("", "", [published, found], 3, "");
+        let statement = Statement {
+            place: "",
+            published: "",
+            command: "",
+        };
+        let number = |published, found| statement.number([published, found], 3);
         let claims = vec![
             number(1.21, 1.213),
             number(0.61, 0.77),

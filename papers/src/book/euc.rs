@@ -65,7 +65,10 @@ pub fn book(
 
 impl Laboratory {
     fn session(&self, manoeuvre: Manoeuvre) -> Result<&Session, Error> {
-        let found = self.sessions.iter().find(|own| own.manoeuvre == manoeuvre);
+        let found = self
+            .sessions
+            .iter()
+            .find(|session| session.manoeuvre == manoeuvre);
         found.ok_or_else(|| failed("the manoeuvre was not ridden"))
     }
 }

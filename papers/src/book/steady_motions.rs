@@ -113,8 +113,7 @@ impl Mechanism {
         let info = self.0.info();
         let values = |branch: &Branch, term: Term| -> Vec<f64> {
             let quantity = term.quantity(info);
-            let points = branch.points.iter();
-            points
+            (branch.points.iter())
                 .map(|at| quantity.to_unit(term.value(self.0, &at.point)))
                 .collect()
         };

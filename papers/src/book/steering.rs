@@ -36,7 +36,7 @@ const PARTS: &[Part] = &[
     ("figure 6", figure_6::section),
     ("figure 7", |_| figure_7::section()),
     ("figure 8", |_| figure_8::section()),
-    ("what the paper did not see", |_| additional::section()),
+    ("results beyond the paper", |_| additional::section()),
 ];
 
 /// The book part by part, with charts of `grid` points along each axis; `making` is called with the

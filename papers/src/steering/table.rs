@@ -1,11 +1,11 @@
 //! Every equation, in the order of the paper.
 
-use super::{Claim, Equation, Formulas};
+use super::{Equation, Formulas, Identity};
 use crate::errata::ACCELERATION_ENERGY;
 use crate::errata::Subject::{self, Unicycle, Wheel};
 
-const fn lines(subject: Subject, lines: &'static str) -> Claim {
-    Claim {
+const fn lines(subject: Subject, lines: &'static str) -> Identity {
+    Identity {
         subject,
         at: &[],
         formulas: Formulas::Lines(lines),
@@ -14,24 +14,24 @@ const fn lines(subject: Subject, lines: &'static str) -> Claim {
 
 type Values = &'static [(&'static str, &'static str)];
 
-const fn lines_at(subject: Subject, at: Values, lines: &'static str) -> Claim {
-    Claim {
+const fn lines_at(subject: Subject, at: Values, lines: &'static str) -> Identity {
+    Identity {
         subject,
         at,
         formulas: Formulas::Lines(lines),
     }
 }
 
-const fn matrix_at(subject: Subject, at: Values, lines: &'static str) -> Claim {
-    Claim {
+const fn matrix_at(subject: Subject, at: Values, lines: &'static str) -> Identity {
+    Identity {
         subject,
         at,
         formulas: Formulas::Matrix(lines),
     }
 }
 
-const fn energy(subject: Subject, text: &'static str) -> Claim {
-    Claim {
+const fn energy(subject: Subject, text: &'static str) -> Identity {
+    Identity {
         subject,
         at: &[],
         formulas: Formulas::Energy(text),

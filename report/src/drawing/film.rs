@@ -337,9 +337,8 @@ struct Values<'m> {
 
 impl<'m> Values<'m> {
     fn new(graph: &Graph, symbols: &Symbols, model: &'m dyn Model, motion: &'m Trajectory) -> Self {
-        let tabulated = model.info().signal_inputs.iter();
-        let tabulated =
-            tabulated.map(|&(signal, order)| symbols.signals[signal][usize::from(order)]);
+        let tabulated = (model.info().signal_inputs.iter())
+            .map(|&(signal, order)| symbols.signals[signal][usize::from(order)]);
         let inputs: Vec<_> = symbols.inputs.iter().copied().chain(tabulated).collect();
         let states = [symbols.speeds.as_slice(), &symbols.coordinates].concat();
         let rates = [symbols.accelerations.as_slice(), &symbols.rates].concat();

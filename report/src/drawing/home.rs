@@ -11,11 +11,12 @@ use appell_spec::mechanism::{
 /// point.
 pub(super) fn home(mechanism: &Mechanism, name: &str) -> BTreeSet<PointId> {
     let mut points = BTreeSet::new();
-    let named = mechanism.points.find(|own| own.name == name);
+    let named = mechanism.points.find(|point| point.name == name);
     points.extend(named);
-    let body = mechanism.bodies.iter().find(|own| own.name == name);
+    let body = mechanism.bodies.iter().find(|body| body.name == name);
     points.extend(body.map(|body| body.centre));
-    let constraint = mechanism.constraints.iter().find(|own| own.name == name);
+    let mut constraints = mechanism.constraints.iter();
+    let constraint = constraints.find(|constraint| constraint.name == name);
     points.extend(constraint.and_then(|constraint| match constraint.kind {
         ConstraintKind::Rolling { contact, .. } => Some(contact),
         ConstraintKind::FixedVelocity { point, .. } => Some(point),
@@ -136,6 +137,6 @@ fn expressions(load: &Load) -> Vec<&Expr> {
 
 fn mentions(expr: &Expr, quantity: Quantity) -> bool {
     let mut found = false;
-    expr.visit(&mut |own| found |= own == quantity);
+    expr.visit(&mut |read| found |= read == quantity);
     found
 }

@@ -33,6 +33,29 @@ const AXIS_COLOURS: [&str; 3] = ["c1", "c2", "c0"];
 const RING: f64 = 17.0;
 /// Length of the arrow of the weight.
 const ARROW: f64 = 40.0;
+/// Its tail.
+const ARROW_TAIL: [f64; 2] = [WIDTH - 70.0, 40.0];
+/// Its name, from the tail.
+const ARROW_NAME: [f64; 2] = [10.0, 14.0];
+/// Radii of a point and of a point mass.
+const POINT_RADIUS: f64 = 3.5;
+const MASS_RADIUS: f64 = 6.0;
+/// Distance of title and legend from the left and right edge.
+const EDGE: f64 = 20.0;
+/// Baselines of title and caption.
+const TITLE_LINE: f64 = 26.0;
+const CAPTION_LINE: f64 = 46.0;
+/// Baselines of the legend, above the lower edge.
+const LEGEND_LINES: [f64; 3] = [64.0, 42.0, 20.0];
+/// Height of the symbols of the legend above their baseline.
+const SYMBOL_RISE: f64 = 4.0;
+/// Axes in the legend: length, position of the name, distance to the next axis.
+const LEGEND_AXIS: f64 = 16.0;
+const LEGEND_AXIS_NAME: f64 = 20.0;
+const LEGEND_AXIS_PITCH: f64 = 38.0;
+/// Points in the legend: symbol and text.
+const LEGEND_POINT: [f64; 2] = [26.0, 38.0];
+const LEGEND_MASS: [f64; 2] = [206.0, 220.0];
 
 /// Added to the style of the figures.
 const DRAWING_STYLE: &str = "\
@@ -103,9 +126,9 @@ pub(super) fn svg(mechanism: &Mechanism, scene: &Scene, view: &View, marked: &[&
         ],
         svg: Document::new([WIDTH, height], &[STYLE, DRAWING_STYLE]),
     };
-    sheet.text([20.0, 26.0], "title", "start", &mechanism.title);
+    sheet.text([EDGE, TITLE_LINE], "title", "start", &mechanism.title);
     sheet.text(
-        [20.0, 46.0],
+        [EDGE, CAPTION_LINE],
         "small soft",
         "start",
         &caption(mechanism, scene),
@@ -127,9 +150,9 @@ pub(super) fn svg(mechanism: &Mechanism, scene: &Scene, view: &View, marked: &[&
 
 /// Notes on the drawing.
 fn caption(mechanism: &Mechanism, scene: &Scene) -> String {
-    let mut told = "at the initial state".to_owned();
+    let mut text = "at the initial state".to_owned();
     if !scene.consistent {
-        told.push_str("; it does not satisfy the position constraints");
+        text.push_str("; it does not satisfy the position constraints");
     }
     let named = mechanism.points.iter().zip(&scene.points);
     let missing: Vec<&str> = named
@@ -139,9 +162,9 @@ fn caption(mechanism: &Mechanism, scene: &Scene) -> String {
     if !missing.is_empty() {
         let missing = missing.join(", ");
         // Writing to a string cannot fail.
-        let _ = write!(told, "; not drawn, because nowhere finite: {missing}");
+        let _ = write!(text, "; not drawn (position not finite): {missing}");
     }
-    told
+    text
 }
 
 /// Smallest and largest coordinates to the right and up.
@@ -234,8 +257,8 @@ impl Sheet<'_> {
             };
             let mut bodies = mechanism.bodies.iter().filter(|body| body.centre == id);
             match bodies.clone().find(|body| body.inertia.is_none()) {
-                Some(_) => self.dot("mass", at, 6.0),
-                None => self.dot("point", at, 3.5),
+                Some(_) => self.dot("mass", at, MASS_RADIUS),
+                None => self.dot("point", at, POINT_RADIUS),
             }
             let name = match bodies.next() {
                 Some(body) => format!("{} ({})", point.name, body.name),
@@ -288,51 +311,50 @@ impl Sheet<'_> {
             return;
         };
         let [right, up] = self.view.seen(down);
-        let from = [WIDTH - 70.0, 40.0];
+        let tail = ARROW_TAIL;
         let along = |s: f64, aside: f64| {
             [
-                from[0] + ARROW * (s * right + aside * up),
-                from[1] + ARROW * (aside * right - s * up),
+                tail[0] + ARROW * (s * right + aside * up),
+                tail[1] + ARROW * (aside * right - s * up),
             ]
         };
         // Seen from above, the weight points into the paper.
         if dot([right, up, 0.0], [right, up, 0.0]) > 0.01 {
-            self.path("arrow", &[from, along(1.0, 0.0)], "weight");
+            self.path("arrow", &[tail, along(1.0, 0.0)], "weight");
             let head = [along(0.78, 0.1), along(1.0, 0.0), along(0.78, -0.1)];
             self.path("arrow", &head, "weight");
-            self.text([from[0] + 10.0, from[1] + 14.0], "small", "start", "weight");
+            let name = [tail[0] + ARROW_NAME[0], tail[1] + ARROW_NAME[1]];
+            self.text(name, "small", "start", "weight");
         }
     }
 
     /// The legend, with a scale.
     fn legend(&mut self, height: f64, step: f64, strokes: &[Stroke]) {
-        let rows = [height - 64.0, height - 42.0, height - 20.0];
-        let mut x = 20.0;
+        let [first, second, third] = LEGEND_LINES.map(|line| height - line);
+        let mut x = EDGE;
         for (name, colour) in ["x", "y", "z"].into_iter().zip(AXIS_COLOURS) {
-            let y = rows[0];
+            let y = first - SYMBOL_RISE;
             self.path(
                 &format!("axis {colour}"),
-                &[[x, y - 4.0], [x + 16.0, y - 4.0]],
+                &[[x, y], [x + LEGEND_AXIS, y]],
                 "",
             );
-            self.text([x + 20.0, y], "small", "start", name);
-            x += 38.0;
+            self.text([x + LEGEND_AXIS_NAME, first], "small", "start", name);
+            x += LEGEND_AXIS_PITCH;
         }
         self.text(
-            [x, rows[0]],
+            [x, first],
             "small",
             "start",
             "axes of the frames that are named at their tips",
         );
-        self.dot("point", [26.0, rows[1] - 4.0], 3.5);
-        self.text(
-            [38.0, rows[1]],
-            "small",
-            "start",
-            "point (centre of a body)",
-        );
-        self.dot("mass", [206.0, rows[1] - 4.0], 6.0);
-        self.text([220.0, rows[1]], "small", "start", "point mass");
+        let y = second - SYMBOL_RISE;
+        let [symbol, text] = LEGEND_POINT;
+        self.dot("point", [symbol, y], POINT_RADIUS);
+        self.text([text, second], "small", "start", "point (centre of a body)");
+        let [symbol, text] = LEGEND_MASS;
+        self.dot("mass", [symbol, y], MASS_RADIUS);
+        self.text([text, second], "small", "start", "point mass");
         let hints = [
             ("wheel", "blue: a rolling body through its contact"),
             (
@@ -340,16 +362,16 @@ impl Sheet<'_> {
                 "yellow: the homogeneous ellipsoid of a body's mass and inertia",
             ),
         ];
-        let shown_hints = hints
-            .into_iter()
-            .filter(|(class, _)| strokes.iter().any(|stroke| stroke.class == *class));
-        let told: Vec<&str> = shown_hints.map(|(_, text)| text).collect();
-        self.text([20.0, rows[2]], "small", "start", &told.join("; "));
+        let is_drawn = |class: &str| strokes.iter().any(|stroke| stroke.class == class);
+        let hints: Vec<&str> = (hints.into_iter())
+            .filter_map(|(class, text)| is_drawn(class).then_some(text))
+            .collect();
+        self.text([EDGE, third], "small", "start", &hints.join("; "));
         let bar = step * self.scale;
-        let end = [WIDTH - 20.0, rows[1] - 4.0];
-        self.path("arrow", &[[end[0] - bar, end[1]], end], "");
+        let right = WIDTH - EDGE;
+        self.path("arrow", &[[right - bar, y], [right, y]], "");
         let scale = format!("{} m", round_text(step));
-        self.text([WIDTH - 20.0, rows[0]], "small", "end", &scale);
+        self.text([right, first], "small", "end", &scale);
     }
 }
 

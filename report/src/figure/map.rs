@@ -136,8 +136,8 @@ impl Map {
             .with("x", LEFT)
             .lengths([("y", top), ("width", width)])
             .with("height", HEIGHT);
-        let seen = format_args!("{LEFT} {top:.1} {width:.1} {HEIGHT}");
-        svg.put(&frame.with("viewBox", seen).open());
+        let view_box = format_args!("{LEFT} {top:.1} {width:.1} {HEIGHT}");
+        svg.put(&frame.with("viewBox", view_box).open());
         for curve in &self.curves {
             let line = curve.path(&area, &x_axis, &y_axis);
             svg.put(&curve.stroke.element(&line));

@@ -29,7 +29,7 @@ pub(super) fn json(
         let values = motion.row(row).iter().zip(columns);
         values.map(|(&value, column)| column.to_unit(value))
     });
-    let told = columns.iter().enumerate().map(|(index, column)| {
+    let entries = columns.iter().enumerate().map(|(index, column)| {
         json!({
             "name": column.name,
             "about": column.about,
@@ -37,8 +37,8 @@ pub(super) fn json(
             "group": group(info, index),
         })
     });
-    let events = motion.breaches.iter();
-    let events = events.map(|breach| json!({ "t": breach.t, "what": breach.describe(info) }));
+    let events = (motion.breaches.iter())
+        .map(|breach| json!({ "t": breach.t, "what": breach.describe(info) }));
     let [right, up, floor, vertical] = film.view;
     let flat = film.flat_across.is_some();
     Ok(json!({
@@ -53,7 +53,7 @@ pub(super) fn json(
         "bodies": bodies(mechanism, &film),
         "forces": forces(&film),
         "contacts": film.contacts.iter().map(|point| point.index()).collect::<Vec<_>>(),
-        "columns": told.collect::<Vec<_>>(),
+        "columns": entries.collect::<Vec<_>>(),
         "times": packed(times),
         "positions": packed(film.positions.iter().copied()),
         "turns": packed(film.turns.iter().copied()),

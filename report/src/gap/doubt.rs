@@ -24,8 +24,7 @@ const PROBABLE: f64 = 0.05;
 
 /// Suspected unit errors in the probable hypotheses.
 pub fn doubts(report: &Report) -> Vec<String> {
-    let which = report.which.iter();
-    let mut doubts: Vec<String> = which
+    let mut doubts: Vec<String> = (report.which.iter())
         .filter(|hypothesis| hypothesis.probability >= PROBABLE)
         .flat_map(of)
         .collect();
@@ -46,22 +45,20 @@ fn of(hypothesis: &Hypothesis) -> Vec<String> {
         let acts = format!("`{input}` acts as {{}} times its command");
         doubts.extend(value.and_then(|v| doubt(1.0 + v.value, v.std, &acts, input)));
     }
-    for one in changes
-        .signal_effects
-        .iter()
-        .filter(|one| one.acts == "scale")
-    {
-        let own = format!("{}.", one.effect);
+    let scales = changes.signal_effects.iter();
+    for scale in scales.filter(|effect| effect.acts == "scale") {
+        let prefix = format!("{}.", scale.effect);
         let mut values = hypothesis.parameters.iter();
-        let value = values.find(|value| value.name.starts_with(&own));
-        let shows = format!("`{}` reads {{}} times the true value", one.on);
-        doubts.extend(value.and_then(|v| doubt(v.value, v.std, &shows, &one.on)));
+        let value = values.find(|value| value.name.starts_with(&prefix));
+        let shows = format!("`{}` reads {{}} times the true value", scale.on);
+        doubts.extend(value.and_then(|v| doubt(v.value, v.std, &shows, &scale.on)));
     }
-    for one in &changes.parameters {
-        let Some(std) = one.std else { continue };
-        let (ratio, std) = (one.value / one.stated, std / one.stated.abs());
-        let is = format!("`{}` is {{}} times its stated value", one.name);
-        doubts.extend(doubt(ratio, std, &is, &one.name));
+    for parameter in &changes.parameters {
+        let Some(std) = parameter.std else { continue };
+        let stated = parameter.stated;
+        let (ratio, std) = (parameter.value / stated, std / stated.abs());
+        let is = format!("`{}` is {{}} times its stated value", parameter.name);
+        doubts.extend(doubt(ratio, std, &is, &parameter.name));
     }
     doubts
 }
@@ -87,13 +84,13 @@ mod tests {
 
     #[test]
     fn a_factor_between_units_is_doubted_and_nothing_else() {
-        let told = |value, std| doubt(value, std, "`x` shows {} times what there is", "x");
-        let degrees = told(57.1, 0.6).unwrap_or_default();
+        let question = |value, std| doubt(value, std, "`x` shows {} times what there is", "x");
+        let degrees = question(57.1, 0.6).unwrap_or_default();
         assert!(degrees.contains("57.1"), "{degrees}");
         assert!(degrees.ends_with("close to 180/π: is the unit of `x` right?"));
-        assert!(told(-0.10197, 1e-6).is_some_and(|text| text.contains("1/9.81")));
+        assert!(question(-0.10197, 1e-6).is_some_and(|text| text.contains("1/9.81")));
         for (value, std) in [(1.02, 0.01), (50.0, 1.0), (9.0, 2.0), (1000.0, f64::NAN)] {
-            assert_eq!(told(value, std), None, "{value} ± {std}");
+            assert_eq!(question(value, std), None, "{value} ± {std}");
         }
     }
 }

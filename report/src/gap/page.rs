@@ -4,16 +4,16 @@ use std::fmt::Write as _;
 
 use appell_codegen::{Derived, derived};
 use appell_gap::data::{DataSet, Part};
-use appell_gap::diagnose::{Ahead, GapVerdict, HowFar, Hypothesis, Report, Where};
+use appell_gap::diagnose::{GapVerdict, HowFar, Hypothesis, Report, Where};
 use maud::{Markup, PreEscaped, html};
 
 use super::doubt::doubts;
-use super::numbers::{measured, percent, short};
+use super::numbers::{measured, percent};
 use super::plots;
 use super::words::{hinted, joined, left_out, sentence};
 use crate::drawing::marked;
 use crate::page_shell::PageShell;
-use crate::text::with_unit;
+use crate::text::{horizon, short, with_unit};
 
 const STYLE: &str = include_str!("page.css");
 /// Relative improvement of predictions below which an effect is of no practical importance.
@@ -87,7 +87,7 @@ fn values(hypothesis: &Hypothesis) -> Vec<String> {
 fn place(set: &DataSet, report: &Report) -> Markup {
     let place = &report.place;
     // A sensor error is not a missing force.
-    let is_force = place.equations.iter().any(|one| one.share > 0.0);
+    let is_force = place.equations.iter().any(|e| e.share > 0.0);
     let pictures = report.pictures.as_ref();
     let law = pictures.and_then(|pictures| pictures.force_law.as_ref());
     let history = pictures.filter(|_| report.verdict != GapVerdict::NoGap);
@@ -163,10 +163,7 @@ fn drawing(set: &DataSet, report: &Report) -> Option<String> {
     };
     let mut names: Vec<String> = match report.verdict {
         GapVerdict::NoGap => Vec::new(),
-        GapVerdict::Unexplained => {
-            let left = report.left.iter();
-            left.map(|left| name(&left.place)).collect()
-        }
+        GapVerdict::Unexplained => report.left.iter().map(|left| name(&left.place)).collect(),
         _ => sites.map(|(_, site)| name(site)).collect(),
     };
     names.dedup();
@@ -269,16 +266,16 @@ fn which(report: &Report) -> Markup {
         }
         @if let Some(left) = report.left.as_ref().filter(|left| left.is_there()) {
             p {
-                b { "Left." } " Beside the first hypothesis the recordings speak for " (left.about)
-                ", with a log Bayes factor of " (short(left.log_bayes_factor)) ". It is "
-                (percent(left.gain / (left.gain + left.explained.max(0.0)))) " of the gap."
+                b { "Left." } " In addition to the first hypothesis, the recordings support "
+                (left.about) ", which accounts for "
+                (percent(left.gain / (left.gain + left.explained.max(0.0))))
+                " of the gap (log Bayes factor " (short(left.log_bayes_factor)) ")."
             }
         }
         @if !report.failed.is_empty() {
             details {
-                summary {
-                    (report.failed.len()) " of the hypotheses could not be fitted to the end"
-                }
+                @let fits = if report.failed.len() == 1 { "fit" } else { "fits" };
+                summary { (report.failed.len()) " " (fits) " did not converge" }
                 ul {
                     @for (effects, reason) in &report.failed {
                         li { (code(&joined(effects))) ": " (reason) }
@@ -299,7 +296,7 @@ fn how_far(report: &Report) -> Markup {
     let rows = report.horizons.iter().map(|ahead| {
         let floor = ahead.noise_floor.map_or_else(|| "–".to_owned(), short);
         [
-            horizon(ahead),
+            horizon(ahead.horizon),
             short(ahead.nominal),
             short(ahead.refitted),
             short(ahead.with_effect),
@@ -354,20 +351,13 @@ fn closed(far: &HowFar) -> Markup {
     let [low, high] = far.closed_ci95;
     html! {
         p {
-            (far.horizon_s) " s ahead the error falls from " (short(far.nominal)) " to "
-            (short(far.with_effect)) " of the noise; the floor is " (short(far.noise_floor))
-            ". The gap closes by " b { (percent(far.closed)) } ", with 95 % between " (percent(low))
-            " and " (percent(high)) "; against the model with re-fitted parameters by "
+            (far.horizon_s) " s ahead the RMS prediction error, in units of the noise, falls from "
+            (short(far.nominal)) " to " (short(far.with_effect)) " (noise floor "
+            (short(far.noise_floor)) "). The gap closes by " b { (percent(far.closed)) }
+            ", with 95 % between " (percent(low)) " and " (percent(high))
+            "; against the model with re-fitted parameters by "
             b { (percent(far.closed_vs_refitted)) } ". Runs: " (far.runs.join(", ")) "."
         }
-    }
-}
-
-fn horizon(ahead: &Ahead) -> String {
-    match ahead.horizon {
-        horizon if horizon <= 0.0 => "one step".to_owned(),
-        horizon if horizon.is_finite() => format!("{horizon} s"),
-        _ => "free run".to_owned(),
     }
 }
 
@@ -386,7 +376,7 @@ fn next(set: &DataSet, report: &Report) -> Markup {
             }
         },
         _ if is_alternative(&report.which[0]) => html! {
-            p { "Go on with the alternative model, and diagnose that one." }
+            p { "Adopt the alternative model and repeat the diagnosis with it." }
         },
         GapVerdict::Explained | GapVerdict::Ambiguous => html! {
             p {
@@ -396,8 +386,8 @@ fn next(set: &DataSet, report: &Report) -> Markup {
         },
         GapVerdict::Unexplained => html! {
             p {
-                "Look at what the missing force depends on, and write that effect as a few lines of the \
-                 spec language; " code { "appell diagnose" } " takes it beside the library of effects."
+                "Describe the dependence of the missing force as an effect in the spec language and pass \
+                 it to " code { "appell diagnose" } " in addition to the library of effects."
             }
         },
     };
@@ -405,7 +395,7 @@ fn next(set: &DataSet, report: &Report) -> Markup {
         h2 { "Next" }
         (advice)
         @if let Some(experiment) = &report.experiment {
-            @let [first, second] = experiment.separates.each_ref().map(|one| code(&joined(one)));
+            @let [first, second] = experiment.separates.each_ref().map(|side| code(&joined(side)));
             p {
                 "This experiment tells " (first) " from " (second) ": " (experiment.about)
                 ". The two are " (short(experiment.separation_now)) " standard deviations apart now, and "
@@ -425,9 +415,9 @@ fn next(set: &DataSet, report: &Report) -> Markup {
 }
 
 fn detectable(report: &Report) -> Markup {
-    let rows = report.detectable.iter().map(|one| {
-        let smallest = with_unit(&short(one.smallest), &one.unit);
-        [code(&one.effect), html! { (smallest) }]
+    let rows = report.detectable.iter().map(|limit| {
+        let smallest = with_unit(&short(limit.smallest), &limit.unit);
+        [code(&limit.effect), html! { (smallest) }]
     });
     html! {
         @if !report.detectable.is_empty() {
@@ -495,9 +485,9 @@ fn table<const N: usize>(
 /// Items with separators.
 fn separated<T>(list: &[T], shown: impl Fn(&T) -> Markup, between: &Markup) -> Markup {
     html! {
-        @for (place, one) in list.iter().enumerate() {
-            @if place > 0 { (between) }
-            (shown(one))
+        @for (index, item) in list.iter().enumerate() {
+            @if index > 0 { (between) }
+            (shown(item))
         }
     }
 }

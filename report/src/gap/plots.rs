@@ -3,9 +3,9 @@
 use appell_gap::diagnose::{Experiment, ForceHistory, ForceLaw, Trace};
 use appell_spec::Mechanism;
 
-use super::numbers::short;
 use crate::figure::{Layer, Look, Plot, Series};
 use crate::svg::{Document, Element, text};
+use crate::text::short;
 
 /// Number of channels drawn.
 const DRAWN: usize = 3;
@@ -26,17 +26,17 @@ pub(super) fn most_bettered<'t>(traces: impl Iterator<Item = &'t Trace>) -> Vec<
 /// Decrease of the mean square prediction error, relative to its expected value.
 fn better(trace: &Trace) -> f64 {
     let square = |predicted: &[f64]| -> f64 {
-        let pairs = errors(trace, predicted)
-            .into_iter()
-            .filter(|error| error.is_finite());
-        pairs.map(|error| error * error).sum()
+        let errors = errors(trace, predicted).into_iter();
+        errors
+            .filter(|error| error.is_finite())
+            .map(|error| error * error)
+            .sum()
     };
     (square(&trace.refitted) - square(&trace.with_effect)) / trace.deviation.powi(2)
 }
 
 fn errors(trace: &Trace, predicted: &[f64]) -> Vec<f64> {
-    let pairs = trace.measured.iter().zip(predicted);
-    pairs
+    (trace.measured.iter().zip(predicted))
         .map(|(measured, predicted)| measured - predicted)
         .collect()
 }

@@ -32,8 +32,9 @@ fn rivals(report: &Report) -> Vec<String> {
     let groups = report.tied.iter();
     let tied = groups.filter(|group| group.contains(first)).flatten();
     let named = |effects: &Vec<String>| {
-        let probability = report.which.iter().find(|one| one.effects == *effects)?;
-        let percent = 100.0 * probability.probability;
+        let mut hypotheses = report.which.iter();
+        let hypothesis = hypotheses.find(|hypothesis| hypothesis.effects == *effects)?;
+        let percent = 100.0 * hypothesis.probability;
         Some(format!("{} ({percent:.0} %)", joined(effects)))
     };
     tied.filter(|effects| *effects != first)

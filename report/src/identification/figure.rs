@@ -11,9 +11,10 @@ const DRAWN_RUNS: usize = 2;
 fn courses(answer: &Answer) -> impl Iterator<Item = Panel> + '_ {
     answer.courses.iter().map(|course| {
         let moved = |sign: f64| -> Vec<f64> {
-            let pairs = course.values.iter().zip(&course.deviations);
-            let moved = pairs.map(|(value, std)| value + sign * HALF_WIDTH_95 * std);
-            moved.map(|value| course.quantity.to_unit(value)).collect()
+            (course.values.iter().zip(&course.deviations))
+                .map(|(value, std)| value + sign * HALF_WIDTH_95 * std)
+                .map(|value| course.quantity.to_unit(value))
+                .collect()
         };
         let label = format!("{}, {}", course.quantity.name, course.run);
         let lines = [
@@ -47,10 +48,9 @@ pub fn figure(set: &DataSet, answer: &Answer) -> Figure {
     let panels = shown.flat_map(|trace| {
         let channel = set.channels.iter().find(|c| c.column == trace.column);
         let in_unit = |values: &[f64]| -> Vec<f64> {
-            let values = values.iter();
-            values
-                .map(|&value| channel.map_or(value, |channel| channel.unit.from_si(value)))
-                .collect()
+            let converted =
+                |&value: &f64| channel.map_or(value, |channel| channel.unit.from_si(value));
+            values.iter().map(converted).collect()
         };
         let series = |label: String, y: &[f64]| Series {
             label,
@@ -59,8 +59,7 @@ pub fn figure(set: &DataSet, answer: &Answer) -> Figure {
         };
         let unit = channel.map_or_else(String::new, |channel| channel.unit.text.clone());
         let error = |predicted: &[f64]| -> Vec<f64> {
-            let pairs = trace.measured.iter().zip(predicted);
-            pairs
+            (trace.measured.iter().zip(predicted))
                 .map(|(measured, predicted)| measured - predicted)
                 .collect()
         };

@@ -17,13 +17,13 @@ pub fn page(set: &DataSet, answer: &Answer) -> String {
     let title = format!("{name}: parameters");
     PageShell::new(&title, STYLE).around(&html! {
         h1 { (name) ": parameters from recordings" }
-        @for (place, part) in parts(set, answer).iter().enumerate() {
+        @for (index, part) in parts(set, answer).iter().enumerate() {
             h2 { (part.heading) }
             (table(part))
             @if !part.note.is_empty() {
                 p { (part.note) }
             }
-            @if place == 0 && !answer.traces.is_empty() {
+            @if index == 0 && !answer.traces.is_empty() {
                 h2 { "The runs that were held out" }
                 (PreEscaped(figure(set, answer).to_svg()))
             }

@@ -152,8 +152,18 @@ fn law(
             *place = offset * info.inputs[input].scale;
         }
     }
-    if let Some(DeValue::Table(steady)) = table.get("steady").map(Spanned::get_ref) {
-        for (name, value) in steady {
+    if let Some(steady) = table.get("steady") {
+        let DeValue::Table(values) = steady.get_ref() else {
+            let help = "write steady = { STATE = VALUE }";
+            reader.tell(
+                Code::WrongType,
+                "`steady` must be a table",
+                steady.span(),
+                help,
+            );
+            return None;
+        };
+        for (name, value) in values {
             let names = reader.states();
             let state = reader.find(name.get_ref(), "state", &names, name.span())?;
             let Some(place) = states.iter().position(|&other| other == state) else {

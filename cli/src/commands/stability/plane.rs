@@ -1,12 +1,10 @@
 //! `appell stability --chart`: a stability chart over two quantities.
 
 use std::fmt::Write as _;
-use std::io::{self, Write};
 use std::str::FromStr;
 
-use appell_analysis::{Axis, Boundary, Cell, Chart, Edge, Verdict};
+use appell_analysis::{Axis, Chart, Verdict};
 use appell_report::figure::Map;
-use serde_json::{Value, json};
 
 use super::StabilityCommand;
 use crate::failure::Error;
@@ -16,7 +14,7 @@ use crate::picture;
 use appell::setup::Setup;
 use appell::steady::Span;
 use appell::steady::regions::{self, Shown};
-use appell::steady::{Resolved, export};
+use appell::steady::{Resolved, chart};
 use appell::{Field, files};
 
 /// `X=FROM..TO,Y=FROM..TO` as it was given.
@@ -72,10 +70,10 @@ impl StabilityCommand {
         let chart = motions::chart(asked, *axes)?;
         let question = &self.question;
         if let Some(path) = &question.json {
-            files::write_json(path, &json(asked, &chart))?;
+            files::write_json(path, &appell::json::chart(asked, &chart))?;
         }
         if let Some(path) = &question.csv {
-            files::write_with(path, |to| csv(asked, &chart, to))?;
+            files::write_with(path, |to| chart::csv(asked, &chart, to))?;
         }
         if let Some(path) = &question.plot {
             picture::write(path, &map(asked, &chart).to_svg())?;
@@ -126,70 +124,6 @@ fn text(asked: &Resolved<'_>, chart: &Chart) -> String {
         }
     }
     text
-}
-
-fn boundary_json(boundary: &Boundary) -> Value {
-    let folds = boundary.folds.iter();
-    let folds =
-        folds.map(|fold| json!({ "axis": fold.axis, "at": fold.at, "decides": fold.decides }));
-    json!({
-        "kind": export::kind(appell_analysis::Kind::Critical(boundary.change)),
-        "decides": boundary.decides,
-        "points": boundary.points,
-        "folds": folds.collect::<Vec<_>>(),
-    })
-}
-
-fn json(asked: &Resolved<'_>, chart: &Chart) -> Value {
-    let info = asked.problem.model().info();
-    let axis = |axis: &Axis| json!({ "name": axis.term.name(info), "range": axis.range, "count": axis.count });
-    let unknowns = chart.unknowns.iter().map(|term| term.name(info));
-    let motion = |cell: &Cell| {
-        json!({
-            "unknowns": cell.unknowns,
-            "eigenvalues": cell.eigenvalues.iter().map(|z| [z.re, z.im]).collect::<Vec<_>>(),
-            "verdict": export::verdict(cell.verdict),
-            "feasible": cell.feasible,
-        })
-    };
-    let place = |cells: &Vec<Cell>| json!(cells.iter().map(motion).collect::<Vec<_>>());
-    let edge = |edge: &Edge| json!({ "requirement": edge.requirement, "points": edge.points });
-    json!({
-        "mechanism": info.name,
-        "axes": chart.axes.iter().map(axis).collect::<Vec<_>>(),
-        "unknowns": unknowns.collect::<Vec<_>>(),
-        "boundaries": chart.boundaries.iter().map(boundary_json).collect::<Vec<_>>(),
-        "edges": chart.edges.iter().map(edge).collect::<Vec<_>>(),
-        "cells": chart.cells.iter().map(place).collect::<Vec<_>>(),
-    })
-}
-
-/// A row for every motion: the two quantities, growth, verdict.
-fn csv(asked: &Resolved<'_>, chart: &Chart, to: &mut dyn Write) -> io::Result<()> {
-    let info = asked.problem.model().info();
-    let [x, y] = chart.axes.map(|axis| axis.term.quantity(info));
-    writeln!(
-        to,
-        "# mechanism: {}\n# units: {} {}, {} {}, growth 1/s",
-        info.name, x.name, x.unit, y.name, y.unit
-    )?;
-    writeln!(to, "{},{},growth,verdict,feasible", x.name, y.name)?;
-    for j in 0..chart.axes[1].count {
-        for i in 0..chart.axes[0].count {
-            for cell in chart.motions(i, j) {
-                let growth = cell.eigenvalues.first().map_or(f64::NEG_INFINITY, |z| z.re);
-                writeln!(
-                    to,
-                    "{},{},{growth},{},{}",
-                    x.to_unit(chart.axes[0].value(i)),
-                    y.to_unit(chart.axes[1].value(j)),
-                    export::verdict(cell.verdict),
-                    cell.feasible,
-                )?;
-            }
-        }
-    }
-    Ok(())
 }
 
 fn map(asked: &Resolved<'_>, chart: &Chart) -> Map {

@@ -126,7 +126,7 @@ impl Captured {
                 };
                 for row in 0..motion.times().len() {
                     let [x, y, psi, theta, gamma, phi, beta] =
-                        states.each_ref().map(|own| own[row]);
+                        states.each_ref().map(|column| column[row]);
                     let wheel = [x, y, radius * theta.cos()];
                     let body = Axes::turned([psi, theta, gamma]);
                     let (place, angles) = if name == "E" {

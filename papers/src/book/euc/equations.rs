@@ -4,7 +4,7 @@ use crate::errata::{ERRATA, Source};
 use crate::euc::EQUATIONS;
 use appell_gap::motion_capture::Axes;
 
-use crate::book::claim::{Claim, Section};
+use crate::book::claim::{Claim, Section, Statement};
 use crate::book::steering::equations::{DEFINITION, IDENTITY, misprint};
 
 /// Rounding of products of sines and cosines.
@@ -29,7 +29,12 @@ pub(super) fn section() -> Section {
     let mut claims = vec![transformations()];
     for (place, what, used) in DEFINITIONS {
         let ours = format!("put to use in {used}");
-        let claim = Claim::that(place, what, ours, true, "appell check euc_3dof --thorough");
+        let claim = Statement {
+            place,
+            published: what,
+            command: "appell check euc_3dof --thorough",
+        }
+        .found(ours, true);
         claims.push(claim.unchecked(DEFINITION));
     }
     for equation in EQUATIONS {
@@ -42,7 +47,12 @@ pub(super) fn section() -> Section {
         };
         let published = format!("{}\n{}", equation.about, equation.text);
         let command = format!("appell derive {} --stage all", equation.mechanism());
-        let claim = Claim::that(equation.number, &published, ours, holds, &command);
+        let claim = Statement {
+            place: equation.number,
+            published: &published,
+            command: &command,
+        }
+        .found(ours, holds);
         claims.push(claim.exactly().noted(IDENTITY));
     }
     let errata = ERRATA
@@ -75,12 +85,14 @@ fn transformations() -> Claim {
             off = off.max((column[i] - typed[i][k]).abs());
         }
     }
-    Claim::that(
-        "(1), (2)",
-        "r_CG = T_ϑᵀ T_ψᵀ R_CG, yaw about z, then tilt about x",
+    Statement {
+        place: "(1), (2)",
+        published: "r_CG = T_ϑᵀ T_ψᵀ R_CG, yaw about z, then tilt about x",
+        command: "appell motion SKELETON ride.csv",
+    }
+    .found(
         format!("the axes of the moving frame differ by {off:.0e}"),
         off < ROUNDING,
-        "appell motion SKELETON ride.csv",
     )
     .exactly()
 }

@@ -5,7 +5,7 @@ use appell_report::figure::{Figure, Panel, Path, Series, Surface};
 
 use super::laboratory::Laboratory;
 use super::rider::Manoeuvre;
-use crate::book::claim::{Claim, Picture, Section};
+use crate::book::claim::{Picture, Section, Statement};
 use crate::book::failed;
 use appell::Error;
 
@@ -43,27 +43,30 @@ pub(super) fn section(laboratory: &Laboratory) -> Result<Section, Error> {
         1e3 * most(&side)
     );
     let claims = vec![
-        Claim::that(
-            "figure 3",
-            "a figure-eight in a volume of 6 m × 4 m × 2 m",
-            size,
-            ranges[0] < VOLUME[0] && ranges[1] < VOLUME[1],
+        Statement {
+            place: "figure 3",
+            published: "a figure-eight in a volume of 6 m × 4 m × 2 m",
             command,
-        )
+        }
+        .found(size, ranges[0] < VOLUME[0] && ranges[1] < VOLUME[1])
         .added(),
-        Claim::that(
-            "figure 3",
-            "tilt and yaw rate are large",
+        Statement {
+            place: "figure 3",
+            published: "tilt and yaw rate are large",
+            command,
+        }
+        .found(
             swings,
             most(&ride.angles[1]).max(-least(&ride.angles[1])) > 0.05,
-            command,
         ),
-        Claim::that(
-            "figure 4",
-            "G in the frame that moves with the wheel centre C, by (1) and (2)",
+        Statement {
+            place: "figure 4",
+            published: "G in the frame that moves with the wheel centre C, by (1) and (2)",
+            command,
+        }
+        .found(
             spread,
             ride.relative.iter().all(|r| r[2] > 0.5 && r[2] < 1.2),
-            command,
         ),
     ];
     let pictures = vec![
@@ -106,8 +109,8 @@ fn most(values: &[f64]) -> f64 {
 
 fn ranges(places: &[Vector]) -> [f64; 3] {
     [0, 1, 2].map(|k| {
-        let own: Vec<f64> = places.iter().map(|place| place[k]).collect();
-        most(&own) - least(&own)
+        let column: Vec<f64> = places.iter().map(|place| place[k]).collect();
+        most(&column) - least(&column)
     })
 }
 
@@ -140,8 +143,8 @@ fn in_space(laboratory: &Laboratory, ride: &Ride) -> Surface {
     paths.insert(2, Path { label, points });
     let all: Vec<Vector> = paths.iter().flat_map(|path| path.points.clone()).collect();
     let around = |k: usize| {
-        let own: Vec<f64> = all.iter().map(|place| place[k]).collect();
-        let middle = 0.5 * (least(&own) + most(&own));
+        let column: Vec<f64> = all.iter().map(|place| place[k]).collect();
+        let middle = 0.5 * (least(&column) + most(&column));
         // One scale on the ground.
         [-0.5, 0.5].map(|part| middle + part * VOLUME[0])
     };

@@ -6,7 +6,7 @@ use appell_report::figure::{Figure, Panel, Series};
 use super::laboratory::{Laboratory, Session};
 use super::rider::Manoeuvre;
 use super::torque::{Curve, Planar};
-use crate::book::claim::{Claim, NOT_PUBLIC, Picture, Section};
+use crate::book::claim::{Claim, NOT_PUBLIC, Picture, Section, Statement};
 use crate::book::failed;
 use appell::Error;
 
@@ -30,44 +30,55 @@ const PRINTED: [Printed; 2] = [
     },
 ];
 
+const COMMAND: &str =
+    "appell motion SKELETON ride.csv; appell inverse euc_3dof --data recording --free h";
+
 pub(super) fn section(laboratory: &Laboratory) -> Result<Section, Error> {
     let [three, _] = Planar::both()?;
-    let command =
-        "appell motion SKELETON ride.csv; appell inverse euc_3dof --data recording --free h";
     let mut claims = Vec::new();
     let mut pictures = Vec::new();
     for printed in &PRINTED {
         let session = laboratory.session(printed.manoeuvre)?;
         let best = Curve::of(three, &session.by_3)?.least;
         claims.push(
-            Claim::that(
-                printed.figure,
-                printed.published,
+            Statement {
+                place: printed.figure,
+                published: printed.published,
+                command: COMMAND,
+            }
+            .found(
                 format!(
                     "h = {:.2} m, RMSE {:.2} N m on the simulated rides; true h = {:.3} m",
                     best[0], best[1], laboratory.height
                 ),
                 true,
-                command,
             )
             .unchecked(NOT_PUBLIC),
         );
         let [gamma, phi] = [1, 2].map(|channel| largest(session, channel).to_degrees());
-        claims.push(Claim::that(
-            printed.figure,
-            "the pitch angle γ of the body remains small",
-            format!("|γ| ≤ {gamma:.1}° while |ϕ| ≤ {phi:.1}°"),
-            gamma < 10.0,
-            command,
-        ));
+        claims.push(
+            Statement {
+                place: printed.figure,
+                published: "the pitch angle γ of the body remains small",
+                command: COMMAND,
+            }
+            .found(
+                format!("|γ| ≤ {gamma:.1}° while |ϕ| ≤ {phi:.1}°"),
+                gamma < 10.0,
+            ),
+        );
         let off = torque_off(three, session, best[0])?;
         claims.push(
-            Claim::that(
-                printed.figure,
-                "nothing: the torque was not measured",
-                format!("the mean of M_d,1 and M_d,2 is off the true torque by {off:.2} N m, root mean square"),
+            Statement {
+                place: printed.figure,
+                published: "nothing: the torque was not measured",
+                command: COMMAND,
+            }
+            .found(
+                format!(
+                    "the mean of M_d,1 and M_d,2 is off the true torque by {off:.2} N m, root mean square"
+                ),
                 off.is_finite(),
-                command,
             )
             .added(),
         );
@@ -83,6 +94,20 @@ pub(super) fn section(laboratory: &Laboratory) -> Result<Section, Error> {
             ),
         });
     }
+    claims.extend(braking(laboratory)?);
+    Ok(Section {
+        title: "Figures 6 and 7: processed data".to_owned(),
+        about: "Derivatives by one Savitzky-Golay filter for all signals; the rider's angle by (3); the torque by (9) \
+                and (10) at the height with the least difference between them. The paper's numbers depend on its \
+                recordings, which nobody can get; beside them stand those of the simulated rides."
+            .to_owned(),
+        claims,
+        pictures,
+    })
+}
+
+/// What happens to the pitch angles while the rider brakes.
+fn braking(laboratory: &Laboratory) -> Result<[Claim; 2], Error> {
     let braking = laboratory.session(Manoeuvre::Deceleration)?;
     let lowest = (braking.by_3.smoothed.iter())
         .flat_map(|run| run.channels[2].derivative(0))
@@ -95,32 +120,27 @@ pub(super) fn section(laboratory: &Laboratory) -> Result<Section, Error> {
     };
     let runs = &braking.by_3.smoothed;
     let gamma = runs.iter().map(fall).sum::<f64>() / runs.len() as f64;
-    claims.push(Claim::finding(
-        "figure 6",
-        "as the rider leans back, the pitch angle γ of the body also decreases",
-        format!(
-            "where ϕ is least γ has changed by {:.1}° in the mean; the simulated motor law is not the paper's",
-            gamma.to_degrees()
+    let ours = format!(
+        "where ϕ is least γ has changed by {:.1}° in the mean; the simulated motor law is not the paper's",
+        gamma.to_degrees()
+    );
+    Ok([
+        Statement {
+            place: "figure 6",
+            published: "as the rider leans back, the pitch angle γ of the body also decreases",
+            command: COMMAND,
+        }
+        .simulated(ours, gamma < 0.0),
+        Statement {
+            place: "figure 6",
+            published: "the rider leans back to reduce the speed: ϕ is negative",
+            command: COMMAND,
+        }
+        .found(
+            format!("ϕ falls to {:.1}°", lowest.to_degrees()),
+            lowest < -0.05,
         ),
-        gamma < 0.0,
-        command,
-    ));
-    claims.push(Claim::that(
-        "figure 6",
-        "the rider leans back to reduce the speed: ϕ is negative",
-        format!("ϕ falls to {:.1}°", lowest.to_degrees()),
-        lowest < -0.05,
-        command,
-    ));
-    Ok(Section {
-        title: "Figures 6 and 7: processed data".to_owned(),
-        about: "Derivatives by one Savitzky-Golay filter for all signals; the rider's angle by (3); the torque by (9) \
-                and (10) at the height with the least difference between them. The paper's numbers depend on its \
-                recordings, which nobody can get; beside them stand those of the simulated rides."
-            .to_owned(),
-        claims,
-        pictures,
-    })
+    ])
 }
 
 fn capitalised(text: &str) -> String {

@@ -5,7 +5,7 @@ use appell_report::figure::{Figure, Panel, Series};
 use super::laboratory::Laboratory;
 use super::rider::Manoeuvre;
 use super::torque::{Curve, Planar};
-use crate::book::claim::{Claim, NOT_PUBLIC, Picture, Section};
+use crate::book::claim::{Claim, NOT_PUBLIC, Picture, Section, Statement};
 use appell::Error;
 
 const COMMAND: &str = "appell reproduce euc";
@@ -32,13 +32,13 @@ pub(super) fn section(laboratory: &Laboratory) -> Result<Section, Error> {
     let curves: Vec<Curves> = curves.collect::<Result<_, Error>>()?;
     let mut claims = Vec::new();
     order(&mut claims, &curves);
-    for own in &curves {
-        models(&mut claims, own);
+    for set in &curves {
+        models(&mut claims, set);
     }
     flatness(&mut claims, &curves);
-    for own in &curves {
-        let [height, error] = own.three.least;
-        let end = if own.three.is_open() {
+    for set in &curves {
+        let [height, error] = set.three.least;
+        let end = if set.three.is_open() {
             ", where the tried heights end"
         } else {
             ""
@@ -47,27 +47,39 @@ pub(super) fn section(laboratory: &Laboratory) -> Result<Section, Error> {
             "h = {height:.2} m{end}, RMSE {error:.2} N m; true h = {:.3} m",
             laboratory.height
         );
-        let place = format!("figure 8, {}", own.manoeuvre.name());
+        let place = format!("figure 8, {}", set.manoeuvre.name());
         let published = "the h with the least error is the rider's";
         let close = (height - laboratory.height).abs() < 0.05 * laboratory.height;
-        claims.push(Claim::finding(&place, published, ours, close, COMMAND));
-        let [height, error] = own.pedals.least;
+        claims.push(
+            Statement {
+                place: &place,
+                published,
+                command: COMMAND,
+            }
+            .simulated(ours, close),
+        );
+        let [height, error] = set.pedals.least;
         let ours = format!(
             "seen from the pedals, about which the 3 DoF rider turns: h = {height:.2} m, RMSE {error:.2} N m. (3) sees \
              the rider from the wheel centre, about which the 2 DoF rider turns"
         );
-        let claim = Claim::that(&place, "the rider's angle by (3)", ours, true, COMMAND);
+        let claim = Statement {
+            place: &place,
+            published: "the rider's angle by (3)",
+            command: COMMAND,
+        }
+        .found(ours, true);
         claims.push(claim.added());
     }
-    let panel = |own: &Curves| Panel {
+    let panel = |set: &Curves| Panel {
         unit: "N m".to_owned(),
         series: [
-            (&own.three, three.name),
-            (&own.two, two.name),
-            (&own.pedals, "3 DoF, seen from the pedals"),
+            (&set.three, three.name),
+            (&set.two, two.name),
+            (&set.pedals, "3 DoF, seen from the pedals"),
         ]
         .map(|(curve, name)| Series {
-            label: format!("{}, {name}", own.manoeuvre.name()),
+            label: format!("{}, {name}", set.manoeuvre.name()),
             x: curve.heights.clone(),
             y: curve.errors.clone(),
         })
@@ -96,55 +108,65 @@ pub(super) fn section(laboratory: &Laboratory) -> Result<Section, Error> {
 
 /// The manoeuvres with the smallest and the largest error.
 fn order(claims: &mut Vec<Claim>, curves: &[Curves]) {
-    let error = |own: &Curves| own.three.least[1];
+    let error = |set: &Curves| set.three.least[1];
     let list: Vec<String> = (curves.iter())
-        .map(|own| format!("{} {:.2} N m", own.manoeuvre.name(), error(own)))
+        .map(|set| format!("{} {:.2} N m", set.manoeuvre.name(), error(set)))
         .collect();
     let list = list.join(", ");
     let best = curves.iter().min_by(|a, b| error(a).total_cmp(&error(b)));
     let worst = curves.iter().max_by(|a, b| error(a).total_cmp(&error(b)));
-    let is = |own: Option<&Curves>, manoeuvre| own.is_some_and(|own| own.manoeuvre == manoeuvre);
-    claims.push(Claim::finding(
-        "figure 8",
-        "deceleration has the smallest error at the optimal h",
-        &list,
-        is(best, Manoeuvre::Deceleration),
-        COMMAND,
-    ));
-    claims.push(Claim::finding(
-        "figure 8",
-        "figure-eight has the largest error at the optimal h",
-        &list,
-        is(worst, Manoeuvre::FigureEight),
-        COMMAND,
-    ));
+    let is = |set: Option<&Curves>, manoeuvre| set.is_some_and(|set| set.manoeuvre == manoeuvre);
+    claims.push(
+        Statement {
+            place: "figure 8",
+            published: "deceleration has the smallest error at the optimal h",
+            command: COMMAND,
+        }
+        .simulated(&list, is(best, Manoeuvre::Deceleration)),
+    );
+    claims.push(
+        Statement {
+            place: "figure 8",
+            published: "figure-eight has the largest error at the optimal h",
+            command: COMMAND,
+        }
+        .simulated(&list, is(worst, Manoeuvre::FigureEight)),
+    );
 }
 
 /// Comparison of the two models.
-fn models(claims: &mut Vec<Claim>, own: &Curves) {
-    let place = format!("figure 8, {}", own.manoeuvre.name());
-    let [three, two] = [own.three.least, own.two.least];
-    claims.push(Claim::finding(
-        &place,
-        "3 DoF has the smaller error at its minimum",
-        format!("{:.3} N m and {:.3} N m", three[1], two[1]),
-        three[1] < two[1],
-        COMMAND,
-    ));
-    claims.push(Claim::finding(
-        &place,
-        "3 DoF identifies the larger h",
-        format!("{:.3} m and {:.3} m", three[0], two[0]),
-        three[0] > two[0],
-        COMMAND,
-    ));
+fn models(claims: &mut Vec<Claim>, set: &Curves) {
+    let place = format!("figure 8, {}", set.manoeuvre.name());
+    let [three, two] = [set.three.least, set.two.least];
+    claims.push(
+        Statement {
+            place: &place,
+            published: "3 DoF has the smaller error at its minimum",
+            command: COMMAND,
+        }
+        .simulated(
+            format!("{:.3} N m and {:.3} N m", three[1], two[1]),
+            three[1] < two[1],
+        ),
+    );
+    claims.push(
+        Statement {
+            place: &place,
+            published: "3 DoF identifies the larger h",
+            command: COMMAND,
+        }
+        .simulated(
+            format!("{:.3} m and {:.3} m", three[0], two[0]),
+            three[0] > two[0],
+        ),
+    );
 }
 
 /// Flat curves.
 fn flatness(claims: &mut Vec<Claim>, curves: &[Curves]) {
     let rise = |manoeuvre: Manoeuvre| {
-        let own = curves.iter().find(|own| own.manoeuvre == manoeuvre);
-        own.map_or(f64::NAN, |own| own.three.rise())
+        let set = curves.iter().find(|set| set.manoeuvre == manoeuvre);
+        set.map_or(f64::NAN, |set| set.three.rise())
     };
     let [straight, speeding, braking, eight] = Manoeuvre::ALL.map(rise);
     let ours = format!(
@@ -162,15 +184,24 @@ fn flatness(claims: &mut Vec<Claim>, curves: &[Curves]) {
         ),
     ] {
         let flat = rise < speeding.min(braking);
-        claims.push(Claim::finding("figure 8", published, &ours, flat, COMMAND));
+        claims.push(
+            Statement {
+                place: "figure 8",
+                published,
+                command: COMMAND,
+            }
+            .simulated(&ours, flat),
+        );
     }
     claims.push(
-        Claim::that(
-            "figure 8",
-            "the printed curves",
+        Statement {
+            place: "figure 8",
+            published: "the printed curves",
+            command: COMMAND,
+        }
+        .found(
             "stand in a picture alone; their numbers depend on recordings that nobody can get",
             true,
-            COMMAND,
         )
         .unchecked(NOT_PUBLIC),
     );

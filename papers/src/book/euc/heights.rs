@@ -13,7 +13,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::laboratory::{Laboratory, PERFECT, REAL, Session};
 use super::rider::Manoeuvre;
-use crate::book::claim::{Claim, Picture, Section};
+use crate::book::claim::{Picture, Section, Statement};
 use crate::book::{computation, failed};
 use appell::Error;
 
@@ -23,8 +23,8 @@ const PROFILE: [f64; 9] = [0.6, 0.7, 0.8, 0.9, 1.0, 1.1, 1.2, 1.35, 1.5];
 /// projected height.
 const STRAIGHT: f64 = 5e-3;
 
-/// Results of the rides of a manoeuvre.
-struct Told {
+/// The height from the rides of a manoeuvre.
+struct Estimate {
     manoeuvre: Manoeuvre,
     found: Found,
     profile: Vec<f64>,
@@ -37,18 +37,20 @@ pub(super) fn section(laboratory: &Laboratory) -> Result<Section, Error> {
     let model = JitModel::new(&program).map_err(computation)?;
     let command = "appell motion SKELETON ride.csv; appell inverse euc_3dof --data recording --free h --bias phi";
     let mut claims = Vec::new();
-    let mut all = Vec::new();
+    let mut estimates = Vec::new();
     for session in &laboratory.sessions {
         let name = session.manoeuvre.name();
         let place = format!("height, {name}");
         let real = find(&model, laboratory, session)?;
         claims.push(
-            Claim::that(
-                &place,
-                "nothing: one number without an interval",
+            Statement {
+                place: &place,
+                published: "nothing: one number without an interval",
+                command,
+            }
+            .found(
                 interval(&real.found, laboratory.height),
                 real.found.values[0].is_finite(),
-                command,
             )
             .added(),
         );
@@ -60,16 +62,22 @@ pub(super) fn section(laboratory: &Laboratory) -> Result<Section, Error> {
                 "without noise and marker offsets h is off by {:.2} mm: what the plane does not see of the ride",
                 1e3 * off
             );
-            let claim = Claim::that(&place, "nothing", ours, off.abs() < STRAIGHT, command);
+            let claim = Statement {
+                place: &place,
+                published: "nothing",
+                command,
+            }
+            .found(ours, off.abs() < STRAIGHT);
             claims.push(claim.added());
         }
-        all.push(real);
+        estimates.push(real);
     }
-    let width = |manoeuvre: Manoeuvre| {
-        let own = all.iter().find(|own| own.manoeuvre == manoeuvre);
-        own.map_or(f64::NAN, |own| spread(&own.found))
+    let deviation = |manoeuvre: Manoeuvre| {
+        let mut estimates = estimates.iter();
+        let estimate = estimates.find(|estimate: &&Estimate| estimate.manoeuvre == manoeuvre);
+        estimate.map_or(f64::NAN, |estimate| spread(&estimate.found))
     };
-    let [straight, speeding, braking, eight] = Manoeuvre::ALL.map(width);
+    let [straight, speeding, braking, eight] = Manoeuvre::ALL.map(deviation);
     let ours = format!(
         "standard deviations of h: constant speed {:.1} mm, acceleration {:.1} mm, deceleration {:.1} mm, figure-eight \
          {:.1} mm",
@@ -78,14 +86,15 @@ pub(super) fn section(laboratory: &Laboratory) -> Result<Section, Error> {
         1e3 * braking,
         1e3 * eight
     );
-    for (manoeuvre, own) in [("constant speed", straight), ("figure-eight", eight)] {
-        claims.push(Claim::finding(
-            "height",
-            &format!("{manoeuvre} is not sensitive to h"),
-            &ours,
-            own > speeding.max(braking),
-            command,
-        ));
+    for (manoeuvre, deviation) in [("constant speed", straight), ("figure-eight", eight)] {
+        claims.push(
+            Statement {
+                place: "height",
+                published: &format!("{manoeuvre} is not sensitive to h"),
+                command,
+            }
+            .simulated(&ours, deviation > speeding.max(braking)),
+        );
     }
     Ok(Section {
         title: "What the rides tell of the height".to_owned(),
@@ -97,7 +106,7 @@ pub(super) fn section(laboratory: &Laboratory) -> Result<Section, Error> {
         ),
         claims,
         pictures: vec![Picture {
-            svg: figure(&all, laboratory).to_svg(),
+            svg: figure(&estimates, laboratory).to_svg(),
             caption: "How much less likely other heights are: twice the inconsistency above its minimum. An interval of \
                       95 % ends where the line crosses 3.84 if the model holds."
                 .to_owned(),
@@ -123,13 +132,13 @@ fn interval(found: &Found, truth: f64) -> String {
     )
 }
 
-fn find(model: &dyn Model, laboratory: &Laboratory, session: &Session) -> Result<Told, Error> {
+fn find(model: &dyn Model, laboratory: &Laboratory, session: &Session) -> Result<Estimate, Error> {
     let captures = laboratory.seen(session, REAL);
     let consistency = consistency(model, laboratory, &captures, true)?;
     let found = consistency.find().map_err(computation)?;
     let heights: Vec<f64> = PROFILE.iter().map(|part| part * found.values[0]).collect();
     let profile = consistency.profile(0, &heights).map_err(computation)?;
-    Ok(Told {
+    Ok(Estimate {
         manoeuvre: session.manoeuvre,
         profile,
         found,
@@ -143,13 +152,14 @@ fn consistency<'a>(
     captures: &[Capture],
     biased: bool,
 ) -> Result<Consistency<'a>, Error> {
-    let records: Vec<Record> = captures.iter().map(|own| record(laboratory, own)).collect();
+    let records: Vec<Record> = (captures.iter())
+        .map(|capture| record(laboratory, capture))
+        .collect();
     let track = Track::of(&records).map_err(computation)?;
     let info = model.info();
     let p = info.default_parameters();
-    let stretches = track.stretches.iter();
-    let first = stretches.flat_map(|stretch| &stretch.motions).next();
-    let first = first.ok_or_else(|| failed("no motion"))?;
+    let mut motions = track.stretches.iter().flat_map(|stretch| &stretch.motions);
+    let first = motions.next().ok_or_else(|| failed("no motion"))?;
     let relations = Relations::new(model, &[0, 1, 2], first, &p).map_err(computation)?;
     let h = info.parameter_index("h").ok_or_else(|| failed("no `h`"))?;
     let mut sought = vec![Sought::Parameter(h)];
@@ -171,26 +181,26 @@ fn record(laboratory: &Laboratory, capture: &Capture) -> Record {
     }
 }
 
-fn figure(all: &[Told], laboratory: &Laboratory) -> Figure {
-    let panel = |own: &Told| Panel {
+fn figure(estimates: &[Estimate], laboratory: &Laboratory) -> Figure {
+    let panel = |estimate: &Estimate| Panel {
         unit: String::new(),
         series: vec![Series {
-            label: own.manoeuvre.name().to_owned(),
+            label: estimate.manoeuvre.name().to_owned(),
             x: PROFILE
                 .iter()
-                .map(|part| part * own.found.values[0])
+                .map(|part| part * estimate.found.values[0])
                 .collect(),
-            y: own
+            y: estimate
                 .profile
                 .iter()
-                .map(|cost| 2.0 * (cost - own.found.cost))
+                .map(|cost| 2.0 * (cost - estimate.found.cost))
                 .collect(),
         }],
     };
     Figure {
         title: format!("Heights beside the true one of {:.3} m", laboratory.height),
         x_label: "h [m]".to_owned(),
-        panels: all.iter().map(panel).collect(),
+        panels: estimates.iter().map(panel).collect(),
         marks: Vec::new(),
         equal_axes: false,
     }

@@ -47,8 +47,8 @@ pub(super) struct View {
 
 impl View {
     fn of(skeleton: &Skeleton, captures: &[Capture]) -> Result<Self, Error> {
-        let rides = captures.iter().map(|own| Ride::of(skeleton, own));
-        let rides: Vec<Ride> = rides.collect();
+        let ride = |capture| Ride::of(skeleton, capture);
+        let rides: Vec<Ride> = captures.iter().map(ride).collect();
         let filter = filter(&rides).map_err(computation)?;
         let smoothed = rides.iter().map(|ride| Smoothed::of(ride, filter));
         Ok(Self {
@@ -101,8 +101,8 @@ impl Laboratory {
 
     /// Value and unit of a parameter of the simulated spatial model.
     pub(super) fn stated(&self, name: &str) -> Result<(f64, String), Error> {
-        let motion = self.sessions.iter().flat_map(|own| &own.motions).next();
-        let motion = motion.ok_or_else(|| failed("nothing was ridden"))?;
+        let mut motions = self.sessions.iter().flat_map(|session| &session.motions);
+        let motion = motions.next().ok_or_else(|| failed("nothing was ridden"))?;
         let info = motion.info();
         let index = info.parameter_index(name);
         let index = index.ok_or_else(|| failed(&format!("the model has no `{name}`")))?;

@@ -246,7 +246,7 @@ impl Rider {
         let inputs: Vec<usize> = (0..EFFORT.len()).collect();
         let equations = point.equations(&inputs).map_err(computation)?;
         let places = states.iter().map(|state| {
-            let place = equations.states.iter().position(|own| own == state);
+            let place = equations.states.iter().position(|kept| kept == state);
             place.ok_or_else(|| failed("a state depends on others"))
         });
         let places: Vec<usize> = places.collect::<Result<_, _>>()?;

@@ -4,7 +4,7 @@ use appell_models::Shipped;
 
 use super::laboratory::Laboratory;
 use super::rider::Manoeuvre;
-use crate::book::claim::{Claim, NOT_PUBLIC, Section};
+use crate::book::claim::{NOT_PUBLIC, Section, Statement};
 use crate::book::failed;
 use appell::Error;
 
@@ -29,33 +29,36 @@ const PARAMETERS: [(&str, f64); 9] = [
 pub(super) fn section(laboratory: &Laboratory) -> Result<Section, Error> {
     let runs: Vec<String> = Manoeuvre::ALL
         .iter()
-        .map(|own| format!("{} {}", own.name(), own.runs()))
+        .map(|manoeuvre| format!("{} {}", manoeuvre.name(), manoeuvre.runs()))
         .collect();
-    let recordings = Claim::that(
-        "table 1",
-        "34 recordings of 8 manoeuvres by two riders",
-        format!("simulated runs: {}", runs.join(", ")),
-        true,
-        "appell reproduce euc",
-    );
+    let recordings = Statement {
+        place: "table 1",
+        published: "34 recordings of 8 manoeuvres by two riders",
+        command: "appell reproduce euc",
+    }
+    .found(format!("simulated runs: {}", runs.join(", ")), true);
     let skeleton = &laboratory.skeleton;
     let all = BODIES.iter().all(|body| skeleton.body(body).is_some());
-    let bodies = Claim::that(
-        "table 2",
-        "rigid bodies with pivots: head, chest, arms, hips, legs, EUC",
+    let bodies = Statement {
+        place: "table 2",
+        published: "rigid bodies with pivots: head, chest, arms, hips, legs, EUC",
+        command: "appell motion docs/examples/euc/skeleton.toml ride.csv",
+    }
+    .found(
         format!("the skeleton has the same {} bodies", skeleton.bodies.len()),
         all && skeleton.bodies.len() == BODIES.len(),
-        "appell motion docs/examples/euc/skeleton.toml ride.csv",
     );
-    let mass = Claim::that(
-        "section 2",
-        "segment masses by Ramachandran et al. (2016), scaled to the rider's mass",
+    let mass = Statement {
+        place: "section 2",
+        published: "segment masses by Ramachandran et al. (2016), scaled to the rider's mass",
+        command: "appell motion docs/examples/euc/skeleton.toml ride.csv",
+    }
+    .found(
         format!(
             "another published table: {}; the rider weighs {} kg",
             skeleton.rider.table.source, skeleton.rider.mass
         ),
         true,
-        "appell motion docs/examples/euc/skeleton.toml ride.csv",
     );
     let shipped = Shipped::find("euc_3dof");
     let info = shipped
@@ -72,13 +75,14 @@ pub(super) fn section(laboratory: &Laboratory) -> Result<Section, Error> {
         let value = index.map_or(f64::NAN, |index| info.parameters[index].value);
         let published = format!("{name} = {printed}");
         let command = "appell check euc_3dof";
-        claims.push(Claim::number(
-            "table 3",
-            &published,
-            [printed, value],
-            15,
-            command,
-        ));
+        claims.push(
+            Statement {
+                place: "table 3",
+                published: &published,
+                command,
+            }
+            .number([printed, value], 15),
+        );
     }
     Ok(Section {
         title: "Tables".to_owned(),

@@ -3,7 +3,7 @@
 use appell_analysis::{Change, Kind};
 
 use super::manoeuvres::{Path, Run};
-use crate::book::claim::{Claim, Section};
+use crate::book::claim::{Claim, Section, Statement};
 use crate::book::steady_motions::{GRAVITY, Mechanism, RADIUS, SLIDER_MASS, WHEEL_MASS};
 use appell::Error;
 
@@ -14,7 +14,7 @@ pub(super) fn section() -> Result<Section, Error> {
     discriminant(&mut claims)?;
     as_printed(&mut claims)?;
     Ok(Section {
-        title: "What the paper did not see".to_owned(),
+        title: "Results beyond the paper".to_owned(),
         about: "Statements that are not in the paper, and what its printed formulas would do."
             .to_owned(),
         claims,
@@ -32,13 +32,12 @@ fn hoop(claims: &mut Vec<Claim>) -> Result<(), Error> {
         .filter(|fold| fold.axis == 0)
         .map(|fold| fold.at[0].to_degrees().abs());
     let tilt = tilts.fold(f64::NAN, f64::max);
-    let claim = Claim::number(
-        "after (23)",
-        "𝒱 is a constant of any rolling wheel; but of a thin hoop it is 19.2037738713°",
-        [19.203_773_871_3, tilt],
-        12,
-        "appell stability axisymmetric_wheel --chart theta=-1..1,psi_dot=0.5..8",
-    );
+    let claim = Statement {
+        place: "after (23)",
+        published: "𝒱 is a constant of any rolling wheel; but of a thin hoop it is 19.2037738713°",
+        command: "appell stability axisymmetric_wheel --chart theta=-1..1,psi_dot=0.5..8",
+    }
+    .number([19.203_773_871_3, tilt], 12);
     claims.push(claim.erratum("over-claim"));
     Ok(())
 }
@@ -62,7 +61,12 @@ fn discriminant(claims: &mut Vec<Claim>) -> Result<(), Error> {
     );
     let command = "appell stability unicycle --fix psi_dot=0 --along phi_dot=0.05..8";
     let published = "b² > 4ac, without which the roots are a complex quadruple, is not mentioned; it always holds";
-    let claim = Claim::that("(51)–(54)", published, ours, smallest > 0.0, command);
+    let claim = Statement {
+        place: "(51)–(54)",
+        published,
+        command,
+    }
+    .found(ours, smallest > 0.0);
     claims.push(claim.added());
 
     let unicycle = Mechanism::shipped("unicycle")?;
@@ -74,7 +78,12 @@ fn discriminant(claims: &mut Vec<Claim>) -> Result<(), Error> {
     let count = oscillating.count();
     let ours = format!("{count} oscillations meet or begin to grow from 0.05 to 20 rad/s");
     let published = "no complex quadruple appears in straight rolling";
-    let claim = Claim::that("(51)–(54)", published, ours, count == 0, command);
+    let claim = Statement {
+        place: "(51)–(54)",
+        published,
+        command,
+    }
+    .found(ours, count == 0);
     claims.push(claim.added());
     Ok(())
 }
@@ -116,7 +125,12 @@ fn as_printed(claims: &mut Vec<Claim>) -> Result<(), Error> {
             None => "the manoeuvre is carried out".to_owned(),
         };
         let published = format!("{what} succeeds");
-        let claim = Claim::that(place, &published, ours, ending.is_some(), command);
+        let claim = Statement {
+            place,
+            published: &published,
+            command,
+        }
+        .found(ours, ending.is_some());
         claims.push(claim.erratum("undecided"));
     }
     Ok(())

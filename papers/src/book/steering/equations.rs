@@ -4,7 +4,7 @@ use crate::errata::{ERRATA, Erratum, Evidence, Source};
 use crate::steering::{EQUATIONS, Equation, Formulas};
 use appell_models::Shipped;
 
-use crate::book::claim::{Claim, Section};
+use crate::book::claim::{Claim, Section, Statement};
 use crate::book::failed;
 use appell::Error;
 
@@ -88,7 +88,12 @@ pub(super) fn section() -> Result<Section, Error> {
     for &(number, what, used) in DEFINITIONS {
         let place = format!("({number})");
         let ours = format!("the spec says the same; used in {used}");
-        let claim = Claim::that(&place, what, ours, true, "appell check unicycle");
+        let claim = Statement {
+            place: &place,
+            published: what,
+            command: "appell check unicycle",
+        }
+        .found(ours, true);
         claims.push((number, claim.unchecked(DEFINITION)));
     }
     for list in LISTS {
@@ -162,13 +167,12 @@ fn typed(equation: &Equation) -> Claim {
     };
     let published = format!("{}\n{}", equation.about, lines.join("\n"));
     let command = format!("appell derive {mechanism} --stage {stage}");
-    let claim = Claim::that(
-        equation.number,
-        &published,
-        ours,
-        differences.is_empty(),
-        &command,
-    );
+    let claim = Statement {
+        place: equation.number,
+        published: &published,
+        command: &command,
+    }
+    .found(ours, differences.is_empty());
     claim.exactly().noted(IDENTITY)
 }
 
@@ -182,7 +186,12 @@ fn letters((number, what, mechanism, names): &(u32, &str, &str, &[&str])) -> Res
     let ours = "the spec has the same".to_owned();
     let holds = names.iter().all(has) && whole;
     let command = format!("appell check {mechanism}");
-    let claim = Claim::that(&format!("({number})"), &published, ours, holds, &command);
+    let claim = Statement {
+        place: &format!("({number})"),
+        published: &published,
+        command: &command,
+    }
+    .found(ours, holds);
     Ok(claim.exactly())
 }
 
@@ -193,11 +202,11 @@ pub(crate) fn misprint(erratum: &Erratum) -> Claim {
     let (evidence, as_expected) = match &erratum.evidence {
         Evidence::Test(_, comparison) => {
             let [printed, right] = comparison.verdicts();
-            let told = |holds: bool| if holds { "is" } else { "is not" };
+            let verb = |holds: bool| if holds { "is" } else { "is not" };
             let ours = format!(
                 "what is printed {} what is derived; what is right {} so",
-                told(printed),
-                told(right)
+                verb(printed),
+                verb(right)
             );
             (ours, right && !printed)
         }
@@ -211,12 +220,11 @@ pub(crate) fn misprint(erratum: &Erratum) -> Claim {
     };
     let published = format!("printed: {}", erratum.printed);
     let ours = format!("right: {}\n{evidence}", erratum.right);
-    let claim = Claim::that(
-        erratum.equation,
-        &published,
-        ours.trim_end(),
-        as_expected,
-        "docs/errata.md",
-    );
+    let claim = Statement {
+        place: erratum.equation,
+        published: &published,
+        command: "docs/errata.md",
+    }
+    .found(ours.trim_end(), as_expected);
     claim.erratum(kind).noted(note)
 }

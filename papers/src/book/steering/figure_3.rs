@@ -2,10 +2,10 @@
 
 use crate::errata::ERRATA;
 use appell_analysis::{Cell, Chart, Kind, Verdict};
-use appell_report::figure::{Curve, Patch, Series, Stroke, Surface};
+use appell_report::figure::{Curve, Map, Patch, Series, Stroke, Surface};
 
 use super::equations::misprint;
-use crate::book::claim::{Claim, Picture, Section, digits};
+use crate::book::claim::{Claim, Picture, Section, Statement, digits};
 use crate::book::steady_motions::{GRAVITY, Mechanism, RADIUS, cell_point, degrees, shown};
 use appell::Error;
 use appell::steady::regions;
@@ -20,7 +20,16 @@ const BEYOND: f64 = 16.0;
 const PIECES: usize = 48;
 /// Pitch rates at which folds are sought.
 const ROWS: u32 = 60;
+/// Largest tilt at which folds are sought, in degrees.
+const STEEP_DEG: f64 = 75.0;
+/// Axes of the panels.
+const RATES: [&str; 2] = ["psi_dot", "phi_dot"];
+const TILT_AND_YAW: [&str; 2] = ["theta", "psi_dot"];
+const TILT_AND_PITCH: [&str; 2] = ["theta", "phi_dot"];
+/// The commands of panels (c) and (d).
 const COMMAND: &str = "appell stability rolling_wheel --chart theta=-60deg..60deg,psi_dot=-10..10 --plot figure_3c.svg";
+const COMMAND_D: &str =
+    "appell stability rolling_wheel --chart theta=-60deg..60deg,phi_dot=-10..10";
 
 /// Descriptions of the panels.
 const CAPTIONS: [&str; 4] = [
@@ -34,85 +43,8 @@ const CAPTIONS: [&str; 4] = [
 /// The four panels, and the statements about them.
 pub(super) fn section(grid: usize) -> Result<Section, Error> {
     let wheel = Mechanism::shipped("rolling_wheel")?;
-    let tilts = [-TILT_DEG.to_radians(), TILT_DEG.to_radians()];
-    let rates = [-RATE, RATE];
-    let panel = |names: [&str; 2], count| {
-        let range = |name| if name == "theta" { tilts } else { rates };
-        let axes = names.map(|name| (name, range(name), count));
-        wheel.chart(&[], axes, &[])
-    };
-    let a = panel(["psi_dot", "phi_dot"], PIECES)?;
-    let b = panel(["psi_dot", "phi_dot"], grid)?;
-    let c = panel(["theta", "psi_dot"], grid)?;
-    let d = panel(["theta", "phi_dot"], grid)?;
+    let charts = Charts::of(wheel, grid)?;
     let folds = folds(wheel)?;
-
-    let mut claims = Vec::new();
-    whole(&mut claims, wheel, &b, &c)?;
-    infinite(&mut claims, wheel)?;
-    counted(&mut claims, &d, &folds);
-
-    let levels_of_tilt = [5.0, 10.0, 20.0, 30.0, 50.0].map(f64::to_radians);
-    let levels_of_rate = [1.0, 2.0, 4.0, 8.0];
-    let level = |quantity, values: &[f64], along, over| {
-        let range = if along == "theta" { tilts } else { rates };
-        levels(wheel, quantity, values, (along, range), over)
-    };
-    let mut maps = Vec::new();
-    for (title, chart, over, levels) in [
-        (
-            "(b) levels of the tilt",
-            &b,
-            ["psi_dot", "phi_dot"],
-            level(
-                ["theta", "ϑ"],
-                &levels_of_tilt,
-                "psi_dot",
-                ["psi_dot", "phi_dot"],
-            )?,
-        ),
-        (
-            "(c) levels of the pitch rate",
-            &c,
-            ["theta", "psi_dot"],
-            level(
-                ["phi_dot", "φ̇"],
-                &levels_of_rate,
-                "theta",
-                ["theta", "psi_dot"],
-            )?,
-        ),
-        (
-            "(d) levels of the yaw rate",
-            &d,
-            ["theta", "phi_dot"],
-            level(
-                ["psi_dot", "ψ̇"],
-                &levels_of_rate,
-                "theta",
-                ["theta", "phi_dot"],
-            )?,
-        ),
-    ] {
-        let mut map = regions::map(title, chart, over.map(shown));
-        map.curves.extend(levels);
-        map.curves.extend(folds.curves(over));
-        maps.push(map);
-    }
-    maps[1].curves.push(Curve {
-        line: Series {
-            label: "φ̇ → ±∞".to_owned(),
-            x: vec![-TILT_DEG, TILT_DEG],
-            y: vec![0.0; 2],
-        },
-        stroke: Stroke::Dashed,
-    });
-    let flat = maps.iter().map(appell_report::figure::Map::to_svg);
-    let pictures = std::iter::once(surface(wheel, &a)?.to_svg()).chain(flat);
-    let pictures = pictures.zip(CAPTIONS).map(|(svg, caption)| Picture {
-        svg,
-        caption: caption.to_owned(),
-    });
     Ok(Section {
         title: "Figure 3: steady motions of the rolling wheel".to_owned(),
         about:
@@ -120,9 +52,112 @@ pub(super) fn section(grid: usize) -> Result<Section, Error> {
                 panel (a), along ϑ, φ̇ and ψ̇. Stable means neutrally stable: eigenvalues on the \
                 imaginary axis."
                 .to_owned(),
-        claims,
-        pictures: pictures.collect(),
+        claims: claims(wheel, &charts, &folds)?,
+        pictures: pictures(wheel, &charts, &folds)?,
     })
+}
+
+/// The charts of the panels.
+struct Charts {
+    a: Chart,
+    b: Chart,
+    c: Chart,
+    d: Chart,
+}
+
+impl Charts {
+    fn of(wheel: Mechanism, grid: usize) -> Result<Self, Error> {
+        let panel = |names: [&str; 2], count| {
+            let axes = names.map(|name| (name, range(name), count));
+            wheel.chart(&[], axes, &[])
+        };
+        Ok(Self {
+            a: panel(RATES, PIECES)?,
+            b: panel(RATES, grid)?,
+            c: panel(TILT_AND_YAW, grid)?,
+            d: panel(TILT_AND_PITCH, grid)?,
+        })
+    }
+}
+
+/// The values of a quantity that are drawn.
+fn range(name: &str) -> [f64; 2] {
+    let end = if name == "theta" {
+        TILT_DEG.to_radians()
+    } else {
+        RATE
+    };
+    [-end, end]
+}
+
+/// 𝒱 of (23): the tilt at which the root in (22) vanishes.
+fn limit_tilt() -> f64 {
+    let square = (24.0 - 9.0 * 5f64.sqrt()) / 38.0;
+    square.sqrt().asin()
+}
+
+fn claims(wheel: Mechanism, charts: &Charts, folds: &Folds) -> Result<Vec<Claim>, Error> {
+    let mut claims = vec![
+        existence(&charts.b, &charts.c),
+        verdicts(wheel, &charts.c)?,
+        farthest_fold(&charts.c),
+    ];
+    infinite(&mut claims, wheel)?;
+    let on_figures = ERRATA
+        .iter()
+        .filter(|erratum| erratum.equation == "text on figure 3");
+    claims.extend(on_figures.map(misprint));
+    counted(&mut claims, &charts.d);
+    claims.push(beyond_limit(&charts.d));
+    claims.push(folded(folds));
+    Ok(claims)
+}
+
+fn pictures(wheel: Mechanism, charts: &Charts, folds: &Folds) -> Result<Vec<Picture>, Error> {
+    let [b, c, d] = maps(wheel, charts, folds)?;
+    let drawn = [
+        surface(wheel, &charts.a)?.to_svg(),
+        b.to_svg(),
+        c.to_svg(),
+        d.to_svg(),
+    ];
+    let picture = |(svg, caption): (String, &str)| Picture {
+        svg,
+        caption: caption.to_owned(),
+    };
+    Ok(drawn.into_iter().zip(CAPTIONS).map(picture).collect())
+}
+
+/// Panels (b), (c) and (d).
+fn maps(wheel: Mechanism, charts: &Charts, folds: &Folds) -> Result<[Map; 3], Error> {
+    let map = |title: &str, chart: &Chart, over: [&'static str; 2], levels: Vec<Curve>| {
+        let mut map = regions::map(title, chart, over.map(shown));
+        map.curves.extend(levels);
+        map.curves.extend(folds.curves(over));
+        map
+    };
+    let tilts = [5.0, 10.0, 20.0, 30.0, 50.0].map(f64::to_radians);
+    let rates = [1.0, 2.0, 4.0, 8.0];
+    let tilt = levels(wheel, ["theta", "ϑ"], &tilts, RATES)?;
+    let pitch = levels(wheel, ["phi_dot", "φ̇"], &rates, TILT_AND_YAW)?;
+    let yaw = levels(wheel, ["psi_dot", "ψ̇"], &rates, TILT_AND_PITCH)?;
+    let b = map("(b) levels of the tilt", &charts.b, RATES, tilt);
+    let mut c = map(
+        "(c) levels of the pitch rate",
+        &charts.c,
+        TILT_AND_YAW,
+        pitch,
+    );
+    c.curves.push(Curve {
+        line: Series {
+            label: "φ̇ → ±∞".to_owned(),
+            x: vec![-TILT_DEG, TILT_DEG],
+            y: vec![0.0; 2],
+        },
+        stroke: Stroke::Dashed,
+    });
+    let d = map("(d) levels of the yaw rate", &charts.d, TILT_AND_PITCH, yaw);
+    Ok([b, c, d])
 }
 
 /// Panel (a): the tilt over the plane of both rates.
@@ -160,17 +195,18 @@ fn surface(wheel: Mechanism, chart: &Chart) -> Result<Surface, Error> {
     })
 }
 
-/// Curves on which a quantity, by its name and letter, has one of the values or its opposite.
+/// Curves on which a quantity, by its name and letter, has one of the values or its opposite; they
+/// are followed along the first axis.
 fn levels(
     wheel: Mechanism,
     [fixed, letter]: [&str; 2],
     values: &[f64],
-    (along, range): (&str, [f64; 2]),
     over: [&str; 2],
 ) -> Result<Vec<Curve>, Error> {
+    let along = over[0];
     let mut all = Vec::new();
     for value in values.iter().flat_map(|value| [-value, *value]) {
-        let branches = wheel.branches(&[(fixed, value)], along, range)?;
+        let branches = wheel.branches(&[(fixed, value)], along, range(along))?;
         all.extend(wheel.curves(&branches, over, Stroke::Thin)?);
     }
     if let Some(first) = all.first_mut() {
@@ -186,7 +222,7 @@ fn folds(wheel: Mechanism) -> Result<Folds, Error> {
     let mut folds = Vec::new();
     for row in 0..ROWS {
         let pitch = BEYOND * (2.0 * (f64::from(row) + 0.5) / f64::from(ROWS) - 1.0);
-        let steep = 75f64.to_radians();
+        let steep = STEEP_DEG.to_radians();
         let branches = wheel.branches(&[("phi_dot", pitch)], "theta", [-steep, steep])?;
         let specials = branches.iter().flat_map(|branch| &branch.specials);
         for special in specials.filter(|special| special.kind == Kind::Fold) {
@@ -200,13 +236,13 @@ fn folds(wheel: Mechanism) -> Result<Folds, Error> {
 impl Folds {
     /// The folds in each quadrant, over two of the three.
     fn curves(&self, over: [&str; 2]) -> Vec<Curve> {
-        let place = |name: &str| match name {
+        let component = |name: &str| match name {
             "theta" => 0,
             "psi_dot" => 1,
             _ => 2,
         };
         let values = |part: &[&[f64; 3]], name: &str| {
-            let values = part.iter().map(|fold| fold[place(name)]).collect();
+            let values = part.iter().map(|fold| fold[component(name)]).collect();
             degrees(name, values)
         };
         let quarters = [(true, true), (true, false), (false, true), (false, false)];
@@ -226,31 +262,31 @@ impl Folds {
     }
 }
 
-/// Panels (b) and (c): existence and stability of motions.
-fn whole(claims: &mut Vec<Claim>, wheel: Mechanism, b: &Chart, c: &Chart) -> Result<(), Error> {
-    let full = |chart: &Chart| chart.cells.iter().filter(|cells| cells.is_empty()).count();
-    let published = "the steady motions (13) are a surface over the planes of (b) and (c)";
+/// Panels (b) and (c): existence of motions.
+fn existence(b: &Chart, c: &Chart) -> Claim {
+    let empty = |chart: &Chart| chart.cells.iter().filter(|cells| cells.is_empty()).count();
     let ours = format!(
-        "motions are missing at {} and {} of {} places",
-        full(b),
-        full(c),
+        "motions are missing at {} and {} of {} grid points",
+        empty(b),
+        empty(c),
         b.cells.len()
     );
     // A row or column of the grid may touch ψ̇ = 0, where straight rolling is a family.
-    let holds = full(b) + full(c) <= 4 * b.axes[0].count;
-    claims.push(Claim::that(
-        "figure 3(b), (c)",
-        published,
-        ours,
-        holds,
-        COMMAND,
-    ));
+    let holds = empty(b) + empty(c) <= 4 * b.axes[0].count;
+    Statement {
+        place: "figure 3(b), (c)",
+        published: "the steady motions (13) are a surface over the planes of (b) and (c)",
+        command: COMMAND,
+    }
+    .found(ours, holds)
+}
 
-    // Every cell against (21).
+/// Panel (c): the stability of every motion against (21).
+fn verdicts(wheel: Mechanism, chart: &Chart) -> Result<Claim, Error> {
+    let base = appell_analysis::Point::initial(wheel.0);
     let mut wrong = 0;
-    for cell in c.cells.iter().flatten() {
-        let base = appell_analysis::Point::initial(wheel.0);
-        let point = cell_point(c, &cell.unknowns, &base);
+    for cell in chart.cells.iter().flatten() {
+        let point = cell_point(chart, &cell.unknowns, &base);
         let [tilt, yaw, pitch] =
             ["theta", "psi_dot", "phi_dot"].map(|name| wheel.value(name, &point));
         let (tilt, yaw, pitch) = (tilt?, yaw?, pitch?);
@@ -259,36 +295,38 @@ fn whole(claims: &mut Vec<Claim>, wheel: Mechanism, b: &Chart, c: &Chart) -> Res
         wrong += usize::from((square > 0.0) != (cell.verdict == Verdict::Unstable));
     }
     let ours = format!(
-        "{wrong} of {} motions have another verdict than (21)",
-        c.cells.len()
+        "{wrong} motions on {} grid points have another verdict than (21)",
+        chart.cells.len()
     );
-    let published = "green and red areas are stable and unstable motions";
-    claims.push(Claim::that(
-        "figure 3(c)",
-        published,
-        ours,
-        wrong == 0,
-        COMMAND,
-    ));
+    let statement = Statement {
+        place: "figure 3(c)",
+        published: "green and red areas are stable and unstable motions",
+        command: COMMAND,
+    };
+    Ok(statement.found(ours, wrong == 0))
+}
 
-    let folds = c
+/// Panel (c): the tilt of the fold that agrees least with 𝒱.
+fn farthest_fold(chart: &Chart) -> Claim {
+    let folds = chart
         .boundaries
         .iter()
         .flat_map(|boundary| &boundary.folds)
-        .filter(|fold| fold.decides);
-    let tilts = folds
-        .filter(|fold| fold.axis == 0)
-        .map(|fold| fold.at[0].to_degrees().abs());
-    let published = "𝒱 = 18.62°: beyond this tilt every motion is stable";
-    let wanted = 18.623_570_746_969_177;
+        .filter(|fold| fold.decides && fold.axis == 0);
+    let tilts = folds.map(|fold| fold.at[0].to_degrees().abs());
+    let wanted = limit_tilt().to_degrees();
     let farthest = tilts.min_by_key(|tilt| digits(wanted, *tilt));
-    let pair = [wanted, farthest.unwrap_or(f64::NAN)];
-    claims.push(Claim::number("(23)", published, pair, 12, COMMAND));
-    Ok(())
+    Statement {
+        place: "(23)",
+        published: "𝒱 = 18.62°: beyond this tilt every motion is stable",
+        command: COMMAND,
+    }
+    .number([wanted, farthest.unwrap_or(f64::NAN)], 12)
 }
 
-/// The dashed line of panel (c), and the identification of the panels.
+/// The dashed line of panel (c).
 fn infinite(claims: &mut Vec<Claim>, wheel: Mechanism) -> Result<(), Error> {
+    let place = "figure 3(c), dashed line";
     let (tilt, yaw) = (10f64.to_radians(), 0.02);
     let branches = wheel.branches(&[("theta", tilt)], "psi_dot", [yaw, 5.0])?;
     let first = branches.first().and_then(|branch| branch.points.first());
@@ -296,102 +334,111 @@ fn infinite(claims: &mut Vec<Claim>, wheel: Mechanism) -> Result<(), Error> {
         .map(|at| wheel.value("phi_dot", &at.point))
         .transpose()?;
     let product = pitch.unwrap_or(f64::NAN) * yaw;
+    let wanted = -2.0 * GRAVITY * tilt.tan() / (3.0 * RADIUS);
     let published =
         "φ̇ → ±∞ where ψ̇ → 0 at a tilt: φ̇ ψ̇ → −2 g tan ϑ/(3 R), here at ϑ = 10°, ψ̇ = 0.02 rad/s";
-    let wanted = -2.0 * GRAVITY * tilt.tan() / (3.0 * RADIUS);
-    let command = "appell steady rolling_wheel --fix theta=10deg --along psi_dot=0.02..5";
-    let place = "figure 3(c), dashed line";
-    let claim = Claim::number(place, published, [wanted, product], 4, command);
+    let claim = Statement {
+        place,
+        published,
+        command: "appell steady rolling_wheel --fix theta=10deg --along psi_dot=0.02..5",
+    }
+    .number([wanted, product], 4);
     claims.push(claim.approximately());
     let none = wheel
         .problem(&[("theta", tilt), ("psi_dot", 0.0)])?
         .solve_all(20)
         .is_err();
-    let published = "on the dashed line there is no tilted motion";
     let ours = if none {
         "none is found at ϑ = 10°, ψ̇ = 0"
     } else {
         "one is found"
     };
-    let command = "appell steady rolling_wheel --fix theta=10deg --fix psi_dot=0";
-    claims.push(Claim::that(place, published, ours, none, command));
-    let on_figures = ERRATA
-        .iter()
-        .filter(|erratum| erratum.equation == "text on figure 3");
-    claims.extend(on_figures.map(misprint));
+    let statement = Statement {
+        place,
+        published: "on the dashed line there is no tilted motion",
+        command: "appell steady rolling_wheel --fix theta=10deg --fix psi_dot=0",
+    };
+    claims.push(statement.found(ours, none));
     Ok(())
 }
 
+/// Unstable motions at a grid point.
+fn unstable(cells: &[Cell]) -> usize {
+    let grows = |cell: &&Cell| cell.verdict == Verdict::Unstable;
+    cells.iter().filter(grows).count()
+}
+
 /// Panel (d): number of motions.
-fn counted(claims: &mut Vec<Claim>, chart: &Chart, folds: &Folds) {
-    let unstable = |cells: &[Cell]| {
-        let grows = |cell: &&Cell| cell.verdict == Verdict::Unstable;
-        cells.iter().filter(grows).count()
-    };
-    let pairs = |wanted: usize| {
-        let pairs = chart.cells.iter().filter(|cells| cells.len() == 2);
-        pairs.filter(|cells| unstable(cells) == wanted).count()
-    };
-    let number = |count: usize| {
-        chart
-            .cells
-            .iter()
-            .filter(|cells| cells.len() == count)
-            .count()
-    };
+fn counted(claims: &mut Vec<Claim>, chart: &Chart) {
+    let count = |is: &dyn Fn(&[Cell]) -> bool| chart.cells.iter().filter(|cells| is(cells)).count();
     let all = chart.cells.len();
-    let (green, yellow, none) = (pairs(0), pairs(1), number(0));
+    let green = count(&|cells| cells.len() == 2 && unstable(cells) == 0);
+    let yellow = count(&|cells| cells.len() == 2 && unstable(cells) == 1);
+    let none = count(&<[Cell]>::is_empty);
     let others = all - green - yellow - none;
-    let command = "appell stability rolling_wheel --chart theta=-60deg..60deg,phi_dot=-10..10";
-    let mut that = |place: &str, published: &str, ours: String, holds: bool| {
-        claims.push(Claim::that(place, published, ours, holds, command));
-    };
-    that(
-        "figure 3(d), dark green",
-        "two stable steady states with different yaw rates",
-        format!("{green} of {all} places"),
-        green > 0,
-    );
-    that(
-        "figure 3(d), yellow",
-        "a stable and an unstable steady state",
-        format!("{yellow} of {all} places; {others} beside the fold have one motion"),
-        yellow > 0 && others * 1000 < all,
-    );
-    that(
-        "figure 3(d), white",
-        "no steady state exists regardless of the yaw rate",
-        format!("{none} of {all} places"),
-        none > 0,
-    );
-    let limit = 18.623_570_746_969_177_f64.to_radians();
+    for (place, published, ours, holds) in [
+        (
+            "figure 3(d), dark green",
+            "two stable steady states with different yaw rates",
+            format!("{green} of {all} grid points"),
+            green > 0,
+        ),
+        (
+            "figure 3(d), yellow",
+            "a stable and an unstable steady state",
+            format!("{yellow} of {all} grid points; {others} beside the fold have one motion"),
+            yellow > 0 && others * 1000 < all,
+        ),
+        (
+            "figure 3(d), white",
+            "no steady state exists regardless of the yaw rate",
+            format!("{none} of {all} grid points"),
+            none > 0,
+        ),
+    ] {
+        let statement = Statement {
+            place,
+            published,
+            command: COMMAND_D,
+        };
+        claims.push(statement.found(ours, holds));
+    }
+}
+
+/// Panel (d): stability beyond the limit tilt.
+fn beyond_limit(chart: &Chart) -> Claim {
+    let limit = limit_tilt();
     let columns = chart.axes[0].count;
-    let beyond = chart.cells.iter().enumerate().filter(|(place, cells)| {
-        chart.axes[0].value(place % columns).abs() > limit && unstable(cells) > 0
+    let beyond = |index: usize| chart.axes[0].value(index % columns).abs() > limit;
+    let cells = chart.cells.iter().enumerate();
+    let wrong = cells.filter(|(index, cells)| beyond(*index) && unstable(cells) > 0);
+    let wrong = wrong.count();
+    Statement {
+        place: "figure 3(d)",
+        published: "beyond 𝒱 both motions are stable",
+        command: COMMAND_D,
+    }
+    .found(
+        format!("{wrong} grid points beyond 𝒱 have an unstable motion"),
+        wrong == 0,
+    )
+}
+
+/// The fold: dφ̇/dψ̇ = 0 of (14), which is ψ̇² = 4 g/(5 R cos ϑ).
+fn folded(folds: &Folds) -> Claim {
+    let agree = folds.0.iter().map(|[tilt, yaw, _]| {
+        let wanted = 4.0 * GRAVITY / (5.0 * RADIUS * tilt.cos());
+        digits(wanted, yaw * yaw)
     });
-    let beyond = beyond.count();
-    that(
-        "figure 3(d)",
-        "beyond 𝒱 both motions are stable",
-        format!("{beyond} places beyond 𝒱 have an unstable motion"),
-        beyond == 0,
-    );
-    // dφ̇/dψ̇ = 0 of (14): ψ̇² = 4 g/(5 R cos ϑ).
-    let agree = folds
-        .0
-        .iter()
-        .map(|[tilt, yaw, _]| digits(4.0 * GRAVITY / (5.0 * RADIUS * tilt.cos()), yaw * yaw));
     let agree = agree.min().unwrap_or(0);
-    let ours = format!(
-        "{} folds found, ψ̇² = 4 g/(5 R cos ϑ) in {agree} digits",
-        folds.0.len()
-    );
-    let published =
-        "dotted curves: the folding of the surface, the outer edges of the sand glass in (d)";
-    that(
-        "figure 3(b), (c), (d), dotted",
-        published,
-        ours,
-        agree >= 8 && folds.0.len() >= 2 * ROWS as usize,
-    );
+    let count = folds.0.len();
+    Statement {
+        place: "figure 3(b), (c), (d), dotted",
+        published: "dotted curves: the folding of the surface, the outer edges of the sand glass in (d)",
+        command: COMMAND_D,
+    }
+    .found(
+        format!("{count} folds found, ψ̇² = 4 g/(5 R cos ϑ) in {agree} digits"),
+        agree >= 8 && count >= 2 * ROWS as usize,
+    )
 }

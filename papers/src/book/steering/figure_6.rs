@@ -3,8 +3,8 @@
 use appell_analysis::{Cell, Chart, Point, Verdict};
 
 use super::figure_5::place_of_mass;
-use crate::book::claim::{Claim, Picture, Section};
-use crate::book::steady_motions::{Mechanism, cell_point, shown};
+use crate::book::claim::{Claim, Picture, Section, Statement};
+use crate::book::steady_motions::{Mechanism, WHEEL_MASS, cell_point, shown};
 use appell::Error;
 use appell::steady::regions;
 
@@ -17,30 +17,11 @@ const MASSES: [f64; 8] = [0.0, 1.0, 2.0, 5.0, 10.0, 15.0, 20.0, 30.0];
 pub(super) fn section(grid: usize) -> Result<Section, Error> {
     let (mut claims, mut pictures) = (Vec::new(), Vec::new());
     for mass in MASSES {
-        let (mechanism, given, least) = given(mass);
-        let mechanism = Mechanism::shipped(mechanism)?;
-        let tilt = TILT_DEG.to_radians();
-        let axes = [
-            ("theta", [-tilt, tilt], grid),
-            ("psi_dot", [-YAW, YAW], grid),
-        ];
-        let chart = mechanism.chart(&given, axes, &least)?;
+        let (mechanism, chart) = chart(mass, grid)?;
         claims.push(claim(mass, mechanism, &chart)?);
-        let names = ["theta", "psi_dot"];
-        let map = regions::map(&format!("m₀ = {mass} kg"), &chart, names.map(shown));
-        pictures.push(Picture {
-            svg: map.to_svg(),
-            caption: format!("m₀ = {mass} kg, m₀/m = {}.", mass / 10.0),
-        });
+        pictures.push(picture(mass, &chart));
     }
-    let claim = Claim::that(
-        "figure 6, m₀ = 0",
-        "without the sliding mass the chart is that of the rolling wheel, figure 3(c)",
-        "computed with the rolling wheel",
-        true,
-        "appell stability rolling_wheel --chart theta=-60deg..60deg,psi_dot=-10..10",
-    );
-    claims.push(claim.unchecked("the unicycle's equations divide by m₀"));
+    claims.push(without_mass());
     Ok(Section {
         title: "Figure 6: stability of the unicycle's steady motions".to_owned(),
         about: "Turning motions without force on the mass, for eight values of m₀. Each chart is checked \
@@ -50,6 +31,38 @@ pub(super) fn section(grid: usize) -> Result<Section, Error> {
         claims,
         pictures,
     })
+}
+
+fn chart(mass: f64, grid: usize) -> Result<(Mechanism, Chart), Error> {
+    let (mechanism, given, least) = given(mass);
+    let mechanism = Mechanism::shipped(mechanism)?;
+    let tilt = TILT_DEG.to_radians();
+    let axes = [
+        ("theta", [-tilt, tilt], grid),
+        ("psi_dot", [-YAW, YAW], grid),
+    ];
+    let chart = mechanism.chart(&given, axes, &least)?;
+    Ok((mechanism, chart))
+}
+
+fn picture(mass: f64, chart: &Chart) -> Picture {
+    let axes = ["theta", "psi_dot"].map(shown);
+    let map = regions::map(&format!("m₀ = {mass} kg"), chart, axes);
+    Picture {
+        svg: map.to_svg(),
+        caption: format!("m₀ = {mass} kg, m₀/m = {}.", mass / WHEEL_MASS),
+    }
+}
+
+/// The chart of m₀ = 0 is not of the unicycle.
+fn without_mass() -> Claim {
+    Statement {
+        place: "figure 6, m₀ = 0",
+        published: "without the sliding mass the chart is that of the rolling wheel, figure 3(c)",
+        command: "appell stability rolling_wheel --chart theta=-60deg..60deg,psi_dot=-10..10",
+    }
+    .found("computed with the rolling wheel", true)
+    .unchecked("the unicycle's equations divide by m₀")
 }
 
 type Given = (
@@ -87,8 +100,8 @@ fn claim(mass: f64, mechanism: Mechanism, chart: &Chart) -> Result<Claim, Error>
     };
     let infeasible = found.iter().filter(|cell| !cell.feasible).count();
     let ours = format!(
-        "{} of {} motions found: {} stable, {} unstable; {infeasible} of them not feasible. Place of the mass within {worst:.0e} \
-         of (41); {wrong} verdicts that contradict (49)",
+        "{} motions on {} grid points: {} stable, {} unstable; {infeasible} of them not feasible. Place of the mass \
+         within {worst:.0e} of (41); {wrong} verdicts that contradict (49)",
         found.len(),
         chart.cells.len(),
         count(true),
@@ -96,6 +109,7 @@ fn claim(mass: f64, mechanism: Mechanism, chart: &Chart) -> Result<Claim, Error>
     );
     let published = format!("chart for m₀ = {mass} kg");
     let enough = found.len() * 100 > chart.cells.len() * 90;
+    let holds = worst < 1e-6 && wrong == 0 && enough && count(true) > 0 && count(false) > 0;
     let command = if mass > 0.0 {
         format!(
             "appell stability unicycle --set m0={mass} --chart theta=-60deg..60deg,psi_dot=-10..10 --require z_A>=0"
@@ -103,8 +117,12 @@ fn claim(mass: f64, mechanism: Mechanism, chart: &Chart) -> Result<Claim, Error>
     } else {
         "appell stability rolling_wheel --chart theta=-60deg..60deg,psi_dot=-10..10".to_owned()
     };
-    let holds = worst < 1e-6 && wrong == 0 && enough && count(true) > 0 && count(false) > 0;
-    Ok(Claim::that("figure 6", &published, ours, holds, &command))
+    let statement = Statement {
+        place: "figure 6",
+        published: &published,
+        command: &command,
+    };
+    Ok(statement.found(ours, holds))
 }
 
 /// Whether the verdict contradicts the roots q = λ² of (49): stable where they are real and negative.

@@ -4,7 +4,7 @@ use appell_analysis::{Branch, Change, Kind, loci};
 use appell_report::figure::{Figure, Mark, Panel, Series};
 use appell_spectra::spectrum::Complex;
 
-use crate::book::claim::{Claim, Picture, Section};
+use crate::book::claim::{Picture, Section, Statement};
 use crate::book::steady_motions::{GRAVITY, Mechanism, RADIUS, values};
 use appell::Error;
 
@@ -21,26 +21,26 @@ pub(super) fn section() -> Result<Section, Error> {
     let [first, second] = [3.0, 2.0].map(|k: f64| (GRAVITY / (k * RADIUS)).sqrt());
 
     let mut claims = Vec::new();
-    let one = |branches: &[Branch]| critical(branches).first().copied().unwrap_or(f64::NAN);
-    claims.push(Claim::number(
-        "figure 7, wheel",
-        "the roots λ₁,₂ of the rolling wheel decide: critical at √(g/(3R))",
-        [first, one(&wheel)],
-        12,
-        "appell stability rolling_wheel --fix psi_dot=0 --fix theta=0 --along phi_dot=0.05..8",
-    ));
+    let first_rate = |branches: &[Branch]| critical(branches).first().copied().unwrap_or(f64::NAN);
+    let statement = Statement {
+        place: "figure 7, wheel",
+        published: "the roots λ₁,₂ of the rolling wheel decide: critical at √(g/(3R))",
+        command: "appell stability rolling_wheel --fix psi_dot=0 --fix theta=0 --along phi_dot=0.05..8",
+    };
+    claims.push(statement.number([first, first_rate(&wheel)], 12));
     for mass in [1e-3, 1.0, 5.0, 30.0] {
         let found = straight(mass)?;
         let published = format!(
             "the unicycle is critical at √(g/(2R)) whatever its masses, here m₀ = {mass} kg"
         );
-        claims.push(Claim::number(
-            "figure 7, (54)",
-            &published,
-            [second, one(&found)],
-            11,
-            COMMAND,
-        ));
+        claims.push(
+            Statement {
+                place: "figure 7, (54)",
+                published: &published,
+                command: COMMAND,
+            }
+            .number([second, first_rate(&found)], 11),
+        );
     }
     // The jump: between the two critical rates a small mass leaves a slow unstable root.
     let between = 0.5 * (first + second);
@@ -60,13 +60,14 @@ pub(super) fn section() -> Result<Section, Error> {
         shown(wheel_square.first().copied()),
         shown(slow)
     );
-    claims.push(Claim::that(
-        "figure 7",
-        published,
-        ours,
-        near && grows,
-        COMMAND,
-    ));
+    claims.push(
+        Statement {
+            place: "figure 7",
+            published,
+            command: COMMAND,
+        }
+        .found(ours, near && grows),
+    );
 
     let figure = Figure {
         title: "Characteristic roots of straight rolling".to_owned(),

@@ -4,7 +4,7 @@ use appell_report::figure::{Figure, Panel, Series};
 use appell_runtime::Trajectory;
 
 use super::manoeuvres::{Path, Run, largest};
-use crate::book::claim::{Claim, Picture, Section};
+use crate::book::claim::{Claim, Picture, Section, Statement};
 use crate::book::failed;
 use appell::Error;
 
@@ -110,16 +110,38 @@ fn follow(claims: &mut Vec<Claim>, wanted: &Wanted, motion: &Trajectory, command
         "after 10 s x_G = {:.8} m, y_G = {:.8} m, ψ = {:.8} rad; an independent computation differs by {off:.0e}",
         found[0], found[1], found[2]
     );
-    claims.push(Claim::that(&place, published, ours, off < 1e-6, command));
+    claims.push(
+        Statement {
+            place: &place,
+            published,
+            command,
+        }
+        .found(ours, off < 1e-6),
+    );
     let force = largest(motion, "u");
     let ours = format!("{force:.5} N");
     let as_known = (force - wanted.force).abs() < 1e-3;
     let claim = match (wanted.run.path.turn, force < 10.0) {
-        (false, true) => Claim::that(&place, "|u| < 10 N", ours, as_known, command),
-        (false, false) => {
-            Claim::that(&place, "|u| < 10 N", ours, as_known, command).erratum("over-claim")
+        (false, true) => Statement {
+            place: &place,
+            published: "|u| < 10 N",
+            command,
         }
-        (true, _) => Claim::that(&place, "nothing on the force", ours, as_known, command).added(),
+        .found(ours, as_known),
+        (false, false) => Statement {
+            place: &place,
+            published: "|u| < 10 N",
+            command,
+        }
+        .found(ours, as_known)
+        .erratum("over-claim"),
+        (true, _) => Statement {
+            place: &place,
+            published: "nothing on the force",
+            command,
+        }
+        .found(ours, as_known)
+        .added(),
     };
     claims.push(claim);
     let ours = format!(
@@ -127,13 +149,12 @@ fn follow(claims: &mut Vec<Claim>, wanted: &Wanted, motion: &Trajectory, command
         largest(motion, "friction_demand_P")
     );
     let demand = largest(motion, "friction_demand_P");
-    let claim = Claim::that(
-        &place,
-        "nothing on friction: the wheel rolls",
-        ours,
-        demand > 0.0 && demand < 0.3,
+    let claim = Statement {
+        place: &place,
+        published: "nothing on friction: the wheel rolls",
         command,
-    );
+    }
+    .found(ours, demand > 0.0 && demand < 0.3);
     claims.push(claim.added());
 }
 

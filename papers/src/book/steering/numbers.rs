@@ -2,12 +2,13 @@
 
 use crate::steering::OUTPUTS;
 use appell_analysis::control::controllability::{Controllability, output_rank};
-use appell_analysis::{Change, Kind, Special, circle};
+use appell_analysis::{Branch, Change, Kind, Special, circle};
 use appell_spectra::spectrum::characteristic_polynomial;
 
+use super::figure_5::place_in_spinning;
 use super::manoeuvres::Path;
 use super::tables::{POLE, placed, steered, straight};
-use crate::book::claim::{Claim, Section};
+use crate::book::claim::{Claim, Section, Statement, digits};
 use crate::book::computation;
 use crate::book::steady_motions::{GRAVITY, Mechanism, RADIUS, SLIDER_MASS, WHEEL_MASS, values};
 use appell::Error;
@@ -60,67 +61,79 @@ fn circles(claims: &mut Vec<Claim>) -> Result<(), Error> {
         let path = circle(wheel.0, &motion.point, [x?, y?]);
         let published = format!("{text}, here at ϑ = 10°, ψ̇ = 2 rad/s, in m");
         let pair = [wanted.abs() * RADIUS, path.radius];
-        claims.push(Claim::number(place, &published, pair, 10, command));
+        claims.push(
+            Statement {
+                place,
+                published: &published,
+                command,
+            }
+            .number(pair, 10),
+        );
     }
     Ok(())
 }
 
-/// (22) to (31): upright motions of the wheel.
+/// (22) to (31): critical rates of the wheel.
 fn wheel(claims: &mut Vec<Claim>) -> Result<(), Error> {
     let wheel = Mechanism::shipped("rolling_wheel")?;
     let tilt = TILT.to_radians();
-    let found = wheel.branches(&[("theta", tilt)], "psi_dot", [0.5, 12.0])?;
-    let found = values(&found, is_critical);
+    let turning = wheel.branches(&[("theta", tilt)], "psi_dot", [0.5, 12.0])?;
+    let rates = values(&turning, is_critical);
     let (s, c) = (tilt.sin().powi(2), tilt.cos());
     let root = (76.0 * s * s - 96.0 * s + 9.0).sqrt();
     for (index, sign) in [(0, 1.0), (1, -1.0)] {
         let square = (3.0 - 6.0 * c * c + sign * root) / ((2.0 * s - 3.0) * c);
         let wanted = (2.0 * GRAVITY / (5.0 * RADIUS) * square).sqrt();
         let published = format!("critical yaw rate {}, here at ϑ = 10°, in rad/s", index + 1);
-        let ours = found.get(index).copied().unwrap_or(f64::NAN);
+        let ours = rates.get(index).copied().unwrap_or(f64::NAN);
         let command = "appell stability rolling_wheel --fix theta=10deg --along psi_dot=0.5..12";
-        claims.push(Claim::number(
-            "(22)",
-            &published,
-            [wanted, ours],
-            12,
-            command,
-        ));
+        claims.push(
+            Statement {
+                place: "(22)",
+                published: &published,
+                command,
+            }
+            .number([wanted, ours], 12),
+        );
     }
-    let rolling = wheel.branches(&[("psi_dot", 0.0), ("theta", 0.0)], "phi_dot", [0.5, 10.0])?;
-    let critical = |found: Vec<f64>| found.first().copied().unwrap_or(f64::NAN);
-    claims.push(Claim::number(
-        "(27)",
-        "φ̇_crit = √(g/(3R)), in rad/s",
-        [
-            (GRAVITY / (3.0 * RADIUS)).sqrt(),
-            critical(values(&rolling, is_critical)),
-        ],
-        12,
-        "appell stability rolling_wheel --fix psi_dot=0 --fix theta=0 --along phi_dot=0.5..10",
-    ));
-    let speed = wheel.branches(&[("psi_dot", 0.0), ("theta", 0.0)], "speed", [0.1, 3.0])?;
-    claims.push(Claim::number(
-        "after (27)",
-        "the critical velocity φ̇_crit R, in m/s",
-        [
-            0.990_454_441_153_150_7,
-            critical(values(&speed, is_critical)),
-        ],
-        12,
-        "appell stability rolling_wheel --fix psi_dot=0 --fix theta=0 --along speed=0.1..3",
-    ));
+    upright_wheel(claims, wheel)
+}
+
+/// The first critical value on branches; NaN without one.
+fn first_critical(branches: &[Branch]) -> f64 {
+    let critical = values(branches, is_critical);
+    critical.first().copied().unwrap_or(f64::NAN)
+}
+
+/// (27), (31): straight rolling and spinning of the wheel.
+fn upright_wheel(claims: &mut Vec<Claim>, wheel: Mechanism) -> Result<(), Error> {
+    let upright = [("psi_dot", 0.0), ("theta", 0.0)];
+    let rolling = wheel.branches(&upright, "phi_dot", [0.5, 10.0])?;
+    let statement = Statement {
+        place: "(27)",
+        published: "φ̇_crit = √(g/(3R)), in rad/s",
+        command: "appell stability rolling_wheel --fix psi_dot=0 --fix theta=0 --along phi_dot=0.5..10",
+    };
+    let wanted = (GRAVITY / (3.0 * RADIUS)).sqrt();
+    claims.push(statement.number([wanted, first_critical(&rolling)], 12));
+
+    let rolling = wheel.branches(&upright, "speed", [0.1, 3.0])?;
+    let statement = Statement {
+        place: "after (27)",
+        published: "the critical velocity φ̇_crit R, in m/s",
+        command: "appell stability rolling_wheel --fix psi_dot=0 --fix theta=0 --along speed=0.1..3",
+    };
+    let wanted = (GRAVITY * RADIUS / 3.0).sqrt();
+    claims.push(statement.number([wanted, first_critical(&rolling)], 12));
+
     let spinning = wheel.branches(&[("phi_dot", 0.0)], "psi_dot", [0.5, 10.0])?;
-    claims.push(Claim::number(
-        "(31)",
-        "ψ̇_crit = √(4g/(5R)), in rad/s",
-        [
-            (4.0 * GRAVITY / (5.0 * RADIUS)).sqrt(),
-            critical(values(&spinning, is_critical)),
-        ],
-        12,
-        "appell stability rolling_wheel --fix phi_dot=0 --along psi_dot=0.5..10",
-    ));
+    let statement = Statement {
+        place: "(31)",
+        published: "ψ̇_crit = √(4g/(5R)), in rad/s",
+        command: "appell stability rolling_wheel --fix phi_dot=0 --along psi_dot=0.5..10",
+    };
+    let wanted = (4.0 * GRAVITY / (5.0 * RADIUS)).sqrt();
+    claims.push(statement.number([wanted, first_critical(&spinning)], 12));
     Ok(())
 }
 
@@ -138,65 +151,68 @@ fn unicycle(claims: &mut Vec<Claim>) -> Result<(), Error> {
         "a steady motion is found"
     };
     let command = format!("appell steady unicycle --fix theta=10deg --fix psi_dot={excluded}");
-    claims.push(Claim::that(
-        "(42)",
-        "at ψ̇² = 2 m₀ g/(3 m R cos³ϑ) there is no tilted steady motion",
-        ours,
-        none,
-        &command,
-    ));
+    claims.push(
+        Statement {
+            place: "(42)",
+            published: "at ψ̇² = 2 m₀ g/(3 m R cos³ϑ) there is no tilted steady motion",
+            command: &command,
+        }
+        .found(ours, none),
+    );
     // (46), tilted spinning at a tilt.
     let problem = unicycle.problem(&[("theta", tilt), ("phi_dot", 0.0)])?;
     let motions = problem.solve_isolated(60).map_err(computation)?;
-    let (m, m0, c) = (WHEEL_MASS, SLIDER_MASS, tilt.cos());
-    let root = (m * m * c.powi(4) + 3.0 * m * m0 * c * c + m0 * m0).sqrt();
-    let wanted = RADIUS * tilt.tan() / (2.0 * m0) * (m * c * c + m0 + root);
     let command = "appell steady unicycle --fix theta=10deg --fix phi_dot=0";
     let place = |motion: &appell_analysis::SteadyMotion| unicycle.value("r", &motion.point);
     let places: Vec<f64> = motions.iter().map(place).collect::<Result<_, _>>()?;
     let ours = places.first().copied().unwrap_or(f64::NAN);
     let published = "place of the mass in tilted spinning, here at ϑ = 10°, in m";
-    claims.push(Claim::number(
-        "(46)",
-        published,
-        [wanted, ours],
-        10,
-        command,
-    ));
+    claims.push(
+        Statement {
+            place: "(46)",
+            published,
+            command,
+        }
+        .number([place_in_spinning(tilt), ours], 10),
+    );
     let above = !places.is_empty() && places.iter().all(|r| r * tilt > 0.0);
     let ours = format!("r ϑ > 0 in all {} motions found", places.len());
     let published = "the point mass is always above the wheel centre";
-    claims.push(Claim::that("after (46)", published, ours, above, command));
+    claims.push(
+        Statement {
+            place: "after (46)",
+            published,
+            command,
+        }
+        .found(ours, above),
+    );
 
+    straight_unicycle(claims, unicycle)
+}
+
+/// (54) and section IV.B: straight rolling of the unicycle.
+fn straight_unicycle(claims: &mut Vec<Claim>, unicycle: Mechanism) -> Result<(), Error> {
     let rolling = unicycle.branches(&[("psi_dot", 0.0)], "phi_dot", [0.5, 10.0])?;
-    let critical = values(&rolling, is_critical)
-        .first()
-        .copied()
-        .unwrap_or(f64::NAN);
-    claims.push(Claim::number(
-        "(54)",
-        "φ̇_crit = √(g/(2R)), in rad/s",
-        [(GRAVITY / (2.0 * RADIUS)).sqrt(), critical],
-        12,
-        "appell stability unicycle --fix psi_dot=0 --along phi_dot=0.5..10",
-    ));
-    let speed = unicycle.branches(&[("psi_dot", 0.0)], "speed", [0.1, 3.0])?;
-    let critical = values(&speed, is_critical)
-        .first()
-        .copied()
-        .unwrap_or(f64::NAN);
-    let command = "appell stability unicycle --fix psi_dot=0 --along speed=0.1..3";
-    let published = "the critical speed √(R g/2) is 1.21 m/s";
-    claims.push(Claim::number(
-        "section IV.B",
+    let statement = Statement {
+        place: "(54)",
+        published: "φ̇_crit = √(g/(2R)), in rad/s",
+        command: "appell stability unicycle --fix psi_dot=0 --along phi_dot=0.5..10",
+    };
+    let wanted = (GRAVITY / (2.0 * RADIUS)).sqrt();
+    claims.push(statement.number([wanted, first_critical(&rolling)], 12));
+
+    let rolling = unicycle.branches(&[("psi_dot", 0.0)], "speed", [0.1, 3.0])?;
+    let critical = first_critical(&rolling);
+    let statement = |published| Statement {
+        place: "section IV.B",
         published,
-        [1.21, critical],
-        3,
-        command,
-    ));
-    let published = "√(R g/2) = 1.2130539971493437 m/s";
-    let pair = [1.213_053_997_149_343_7, critical];
-    claims.push(Claim::number("section IV.B", published, pair, 12, command));
+        command: "appell stability unicycle --fix psi_dot=0 --along speed=0.1..3",
+    };
+    let printed = statement("the critical speed is 1.21 m/s");
+    claims.push(printed.number([1.21, critical], 3));
+    let formula = statement("the critical speed is √(R g/2), in m/s");
+    let wanted = (RADIUS * GRAVITY / 2.0).sqrt();
+    claims.push(formula.number([wanted, critical], 12));
     Ok(())
 }
 
@@ -217,7 +233,15 @@ fn reach(claims: &mut Vec<Claim>) -> Result<(), Error> {
     let mut rank = |place: &str, what: &str, found: &[usize], wanted: usize| {
         let holds = found.iter().all(|rank| *rank == wanted);
         let ours = format!("{found:?} at 1 and 5 m/s");
-        claims.push(Claim::that(place, what, ours, holds, command).exactly());
+        claims.push(
+            Statement {
+                place,
+                published: what,
+                command,
+            }
+            .found(ours, holds)
+            .exactly(),
+        );
     };
     rank("(56), (57)", "rank M_c = 6 of 10", &ranks, 6);
     rank(
@@ -247,14 +271,17 @@ fn reach(claims: &mut Vec<Claim>) -> Result<(), Error> {
             };
             let wanted: Vec<f64> = outputs.iter().fold(vec![1.0], times);
             let pairs = wanted.iter().zip(&found);
-            worst = pairs.fold(worst, |worst, (a, b)| {
-                worst.min(crate::book::claim::digits(*a, *b))
-            });
+            worst = pairs.fold(worst, |worst, (a, b)| worst.min(digits(*a, *b)));
         }
         let published = format!("all {} poles at −8 1/s at both speeds", outputs.len());
         let ours = format!("coefficients of the characteristic polynomial agree in {worst} digits");
         let command = "appell control unicycle --at omega_2=5[m/s]/R --poles -8";
-        let claim = Claim::that("(67)", &published, ours, worst >= 9, command);
+        let claim = Statement {
+            place: "(67)",
+            published: &published,
+            command,
+        }
+        .found(ours, worst >= 9);
         claims.push(claim.noted(format!("{worst} digits agree")));
     }
     Ok(())
@@ -282,7 +309,12 @@ fn references(claims: &mut Vec<Claim>) {
         let holds = before > 1.0 && after < 1e-9;
         let command =
             "appell simulate unicycle --feedback docs/examples/feedback/lane_change_5_m_s.toml";
-        let claim = Claim::that(place, published, ours, holds, command);
+        let claim = Statement {
+            place,
+            published,
+            command,
+        }
+        .found(ours, holds);
         claims.push(claim.erratum("undecided"));
     }
 }

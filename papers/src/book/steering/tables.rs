@@ -6,7 +6,7 @@ use appell_analysis::control::reduction::{Subsystem, reduce};
 use appell_analysis::control::robust_placement;
 use nalgebra::{Complex, DMatrix};
 
-use crate::book::claim::{Claim, Section, shown};
+use crate::book::claim::{Claim, Section, Statement, shown};
 use crate::book::steady_motions::{Mechanism, RADIUS};
 use crate::book::{computation, failed};
 use appell::Error;
@@ -47,12 +47,12 @@ pub(super) fn straight(
     point.x.fill(0.0);
     point.x[index("omega_2")?] = speed / RADIUS;
     let equations = point.equations(&[0]).map_err(computation)?;
-    let place = |name: &&str| {
+    let row = |name: &&str| {
         let state = index(name)?;
-        let place = equations.states.iter().position(|s| *s == state);
-        place.ok_or_else(|| failed(&format!("`{name}` is no state of the equations")))
+        let row = equations.states.iter().position(|s| *s == state);
+        row.ok_or_else(|| failed(&format!("`{name}` is no state of the equations")))
     };
-    let outputs: Vec<usize> = outputs.iter().map(place).collect::<Result<_, _>>()?;
+    let outputs: Vec<usize> = outputs.iter().map(row).collect::<Result<_, _>>()?;
     Ok((equations, outputs))
 }
 
@@ -78,13 +78,14 @@ pub(super) fn section() -> Result<Section, Error> {
         let index = info.parameter_index(name);
         let ours = index.map_or(f64::NAN, |index| info.parameters[index].value);
         let published = format!("{name} = {value} {unit}");
-        claims.push(Claim::number(
-            "table I",
-            &published,
-            [value, ours],
-            15,
-            "appell check unicycle",
-        ));
+        claims.push(
+            Statement {
+                place: "table I",
+                published: &published,
+                command: "appell check unicycle",
+            }
+            .number([value, ours], 15),
+        );
     }
     for Gains {
         table,
@@ -133,7 +134,12 @@ fn entry(
     let rounds = format!("{gain:.decimals$}") == printed;
     let place = format!("{table}, {speed} m/s");
     let published = format!("{letter} = {printed} {unit}");
-    let claim = Claim::that(&place, &published, shown(gain), rounds, command);
+    let claim = Statement {
+        place: &place,
+        published: &published,
+        command,
+    }
+    .found(shown(gain), rounds);
     let [misprint, right] = MISPRINT;
     if printed == misprint {
         // 5 R² m p⁵/(8 φ̇ g)

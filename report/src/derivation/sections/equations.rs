@@ -37,14 +37,14 @@ pub(super) fn appell(w: &mut Writer<'_>) -> Section {
         let right = w.explicit(w.derivation.forces[i]);
         equations.push(Equation::new(left, right));
     }
-    let one = Math::Row(vec![
+    let general = Math::Row(vec![
         Math::partial(Letter::plain("S"), Letter::plain("ω").dot().below("i")),
         Math::Sign("="),
         Math::Letter(Letter::plain("Π").below("i")),
     ]);
     let blocks = with(w, "", equations);
     Section {
-        heading: vec![words("Appell's equations "), math(one)],
+        heading: vec![words("Appell's equations "), math(general)],
         blocks,
     }
 }

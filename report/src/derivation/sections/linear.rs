@@ -22,8 +22,8 @@ pub(super) fn steady(w: &mut Writer<'_>, linear: &Linearisation) -> Section {
     } else {
         states.push(words("; "));
         states.extend(letters(w, ignorable));
-        let one = ignorable.len() == 1;
-        states.push(words(if one {
+        let is_single = ignorable.len() == 1;
+        states.push(words(if is_single {
             " is ignorable: they do not depend on it."
         } else {
             " are ignorable: they do not depend on them."
@@ -126,8 +126,8 @@ fn rule(w: &mut Writer<'_>, linear: &Linearisation) -> Block {
     ];
     text.extend(letters(w, &linear.states));
     if !linear.inputs.is_empty() {
-        let one = linear.inputs.len() == 1;
-        text.push(words(if one {
+        let is_single = linear.inputs.len() == 1;
+        text.push(words(if is_single {
             " and the input "
         } else {
             " and the inputs "

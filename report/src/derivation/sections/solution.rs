@@ -98,8 +98,8 @@ impl Elimination {
     /// The acceleration of a column, from those of later rows.
     fn substituted_back(&self, column: usize, acceleration: impl Fn(usize) -> Math) -> Equation {
         let k = self.order[column];
-        let own = Math::fraction(numbered("z", k), numbered("D", k));
-        let mut terms = vec![(false, own)];
+        let uncoupled = Math::fraction(numbered("z", k), numbered("D", k));
+        let mut terms = vec![(false, uncoupled)];
         for row in (column + 1..self.order.len()).filter(|&r| self.couplings[r].contains(&column)) {
             let known = self.order[row];
             let term = vec![entry("L", known, k), acceleration(known)];

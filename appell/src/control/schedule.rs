@@ -1,0 +1,73 @@
+//! Gain schedules: a law at each value of a state, input or parameter.
+
+use appell_runtime::model::{Model, Quantity};
+
+use super::design::{self, Design};
+use super::request::Request;
+use super::{law_file, parse};
+use crate::setup::{Assignment, Setup};
+use crate::{Error, Field};
+
+/// Designs over a scheduling variable.
+pub struct Schedule {
+    /// The scheduling variable.
+    pub over: Quantity,
+    /// Whether a law can measure it: an input is what the law sets.
+    pub measurable: bool,
+    /// Its values in SI, each with the design there.
+    pub designs: Vec<(f64, Design)>,
+}
+
+impl Schedule {
+    /// The designs of a request at the values of a range such as `v=1..20/10`.
+    pub(crate) fn new(
+        model: &dyn Model,
+        mut setup: Setup<'_>,
+        request: &Request,
+        range: &Assignment,
+    ) -> Result<Self, Error> {
+        setup.set(&request.parameters)?;
+        let mut goal = request.resolve(&setup)?;
+        // The ends of the range may be given in terms of the steady motion.
+        parse::point(model, &mut setup, &request.at)?;
+        let values = parse::values(&mut setup, range)?;
+        let mut designs: Vec<(f64, Design)> = Vec::new();
+        for &value in &values.si {
+            // The steady motion may be given in terms of the scheduling variable, and may set it.
+            values.place(&mut setup, &mut Vec::new(), value);
+            let mut at = parse::point(model, &mut setup, &request.at)?;
+            values.place(&mut setup, &mut at, value);
+            let design = design::design(model, &setup, &at, &goal)
+                .map_err(|failure| values.at(&setup, value, failure))?;
+            // All laws of a schedule feed back the same states.
+            goal.outputs.clone_from(&design.outputs);
+            designs.push((value, design));
+        }
+        Ok(Self {
+            over: values.quantity(setup.info).clone(),
+            measurable: values.measurable(),
+            designs,
+        })
+    }
+
+    /// The text of a feedback file whose gains follow the scheduling variable.
+    pub(crate) fn law(&self, setup: &Setup<'_>, model: &str) -> Result<String, Error> {
+        let refused = |message: &str| Err(Error::request(Field::Schedule, message));
+        if self.designs.iter().any(|(_, design)| design.law.is_none()) {
+            return refused("without poles or weights there is no law");
+        }
+        let mut laws = self
+            .designs
+            .iter()
+            .filter_map(|(_, design)| design.law.as_ref());
+        if laws.any(|law| law.sampling.is_some()) {
+            return refused("a sampled law cannot be scheduled yet");
+        }
+        if !self.measurable {
+            return refused(
+                "gains cannot follow an input, which they set; schedule a state or a parameter",
+            );
+        }
+        Ok(law_file::schedule(&self.over, &self.designs, setup, model))
+    }
+}

@@ -1,0 +1,10 @@
+//! The example runs.
+
+#[test]
+fn the_example_runs() {
+    let program = env!("CARGO_BIN_EXE_library-example");
+    let status = std::process::Command::new(program)
+        .status()
+        .unwrap_or_else(|e| panic!("{program}: {e}"));
+    assert!(status.success(), "{program}: {status}");
+}

@@ -7,7 +7,7 @@ use appell_spec::mechanism::Mechanism;
 use appell_spec::units::{self, Unit};
 use appell_spec::{Scope, Snippet, formula};
 
-use crate::setup::{Assignment, bracketed, unknown};
+use crate::setup::{Assignment, bracketed, listed, unknown};
 use crate::{Error, Field};
 
 /// Symbols with their values, from texts such as `theta=0, dot(psi)=0`.
@@ -18,7 +18,7 @@ pub(crate) fn conditions(
     texts: &[String],
 ) -> Result<Vec<(Expr, Expr)>, Error> {
     let mut conditions = Vec::new();
-    for text in texts.iter().flat_map(|text| parts(text)) {
+    for text in texts.iter().flat_map(|text| listed(text)) {
         let Assignment { name, value } = text
             .parse()
             .map_err(|help| Error::request(Field::About, format!("{text}: {help}")))?;
@@ -39,20 +39,6 @@ pub(crate) fn conditions(
         conditions.push((symbol, lowered));
     }
     Ok(conditions)
-}
-
-/// The parts of a list separated by commas outside brackets.
-fn parts(text: &str) -> Vec<&str> {
-    let mut depth = 0_usize;
-    let between = |c: char| {
-        match c {
-            '(' | '[' => depth += 1,
-            ')' | ']' => depth = depth.saturating_sub(1),
-            _ => {}
-        }
-        c == ',' && depth == 0
-    };
-    text.split(between).map(str::trim).collect()
 }
 
 /// Symbol and unit of a state, an input, or a rate: `psi_dot` or `dot(psi)`.
@@ -94,15 +80,4 @@ fn quantity(
 fn per_second(unit: &Unit) -> Unit {
     let written = format!("({})/s", unit.text);
     units::parse(&written).unwrap_or_else(|_| unit.clone())
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn commas_in_brackets_do_not_separate() {
-        let text = "a=0, b=atan2(1, c[m]),d=2";
-        assert_eq!(parts(text), ["a=0", "b=atan2(1, c[m])", "d=2"]);
-    }
 }

@@ -62,9 +62,13 @@ impl Library {
                 .any(|shipped| shipped.name == effect.name)
             {
                 self.warnings.push(format!(
-                    "warning: {file}: the effect `{}` stands in place of that of the library",
+                    "{file}: effect `{}` replaces the shipped one",
                     effect.name
                 ));
+            }
+            if own.iter().any(|other: &Effect| other.name == effect.name) {
+                let message = format!("{file}: the effect `{}` is given twice", effect.name);
+                return Err(Error::request(Field::Effects, message));
             }
             own.push(effect);
         }

@@ -247,6 +247,7 @@ impl Error {
             Self::Identify(IdentifyError::UnknownAddition { .. }) => Some(Field::Also),
             Self::Identify(IdentifyError::Rate { .. }) => Some(Field::Drifting),
             Self::Inverse(RelationError::UnknownColumn { .. }) => Some(Field::Bias),
+            Self::At { source, .. } => source.field(),
             _ => None,
         }
     }
@@ -256,6 +257,7 @@ impl Error {
         match self {
             Self::Identify(IdentifyError::NothingFree) => Some(Field::Free),
             Self::Identify(error) if !advice(error).is_empty() => Some(Field::Start),
+            Self::At { source, .. } => source.remedy(),
             _ => None,
         }
     }

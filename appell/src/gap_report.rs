@@ -11,8 +11,8 @@ use crate::{Error, Field, files};
 /// Name and version of the format.
 const SCHEMA: &str = "gap-report/1";
 
-/// A gap report as JSON; `next` is the file of the proposed experiment.
-pub fn json(report: &Report, next: Option<&Path>) -> Value {
+/// A gap report as JSON; `next` is the file of the proposed experiment, `findings` are those about the data.
+pub fn json(report: &Report, next: Option<&Path>, findings: &[String]) -> Value {
     let equations = report.place.equations.iter().map(|e| {
         json!({ "name": e.name, "share": e.share, "p_value": e.p_value, "rms": e.rms, "unit": e.unit })
     });
@@ -100,6 +100,7 @@ pub fn json(report: &Report, next: Option<&Path>) -> Value {
         "independent": report.independent,
         "failed": failed.collect::<Vec<_>>(),
         "disturbances": disturbances.collect::<Vec<_>>(),
+        "data": findings,
     })
 }
 

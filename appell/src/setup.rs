@@ -298,6 +298,20 @@ pub(crate) fn instead<'n>(name: &str, names: impl Iterator<Item = &'n str> + Clo
     })
 }
 
+/// The parts of a list separated by commas outside brackets.
+pub fn listed(text: &str) -> Vec<&str> {
+    let mut depth = 0_usize;
+    let between = |c: char| {
+        match c {
+            '(' | '[' => depth += 1,
+            ')' | ']' => depth = depth.saturating_sub(1),
+            _ => {}
+        }
+        c == ',' && depth == 0
+    };
+    text.split(between).map(str::trim).collect()
+}
+
 /// Refuses a name that is given twice.
 pub(crate) fn unique(assignments: &[Assignment], field: Field) -> Result<(), Error> {
     for (i, assignment) in assignments.iter().enumerate() {
@@ -326,6 +340,12 @@ fn inside(name: &str, value: f64, [low, high]: [f64; 2], unit: &Unit) -> Result<
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn commas_in_brackets_do_not_separate() {
+        let text = "a=0, b=atan2(1, c[m]),d=2";
+        assert_eq!(listed(text), ["a=0", "b=atan2(1, c[m])", "d=2"]);
+    }
 
     #[test]
     fn units_right_after_a_number_get_brackets() {

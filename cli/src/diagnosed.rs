@@ -59,8 +59,13 @@ pub(crate) fn text(report: &Report, next: Option<&Path>) -> String {
             .collect();
         let _ = writeln!(
             text,
-            "  failed    {} fits did not converge, among them {}; see the gap report for the reasons",
+            "  failed    {} {} not converge, among them {}; see the gap report for the reasons",
             report.failed.len(),
+            if report.failed.len() == 1 {
+                "fit did"
+            } else {
+                "fits did"
+            },
             names.join(", ")
         );
     }
@@ -73,42 +78,48 @@ pub(crate) fn text(report: &Report, next: Option<&Path>) -> String {
     if let Some(rows) = left_out(report) {
         let _ = writeln!(text, "  rows      {rows}");
     }
-    match &report.how_far {
-        Some(far) => {
-            let _ = writeln!(
-                text,
-                "  how far   error {} s ahead: nominal {}, re-fitted {}, with effect {}, floor {} (relative \
-                to the noise)",
-                far.horizon_s,
-                number(far.nominal),
-                number(far.refitted),
-                number(far.with_effect),
-                number(far.noise_floor),
-            );
-            let _ = writeln!(
-                text,
-                "            closed {:.1} % [{:.1}, {:.1}], against the re-fitted model {:.1} %",
-                100.0 * far.closed,
-                100.0 * far.closed_ci95[0],
-                100.0 * far.closed_ci95[1],
-                100.0 * far.closed_vs_refitted,
-            );
-            if report.verdict != GapVerdict::NoGap && far.closed_ci95[0] <= 0.0 {
-                text.push_str("            no significant improvement on held-out runs\n");
-            }
-        }
-        None => text.push_str("  how far   no run was held out\n"),
-    }
+    text += &how_far(report);
     let levels: Vec<String> = report
         .disturbances
         .iter()
         .map(|(name, before, after)| format!("{name} {} -> {}", number(*before), number(*after)))
         .collect();
+    if !levels.is_empty() {
+        let _ = writeln!(
+            text,
+            "  process noise, nominal -> with the effect: {}",
+            levels.join(", ")
+        );
+    }
+    text
+}
+
+/// Errors of predictions, and what closes.
+fn how_far(report: &Report) -> String {
+    let Some(far) = &report.how_far else {
+        return "  how far   no run was held out\n".to_owned();
+    };
+    let mut text = format!(
+        "  how far   error {} s ahead: nominal {}, re-fitted {}, with effect {}, floor {} (relative to the \
+         noise)\n",
+        far.horizon_s,
+        number(far.nominal),
+        number(far.refitted),
+        number(far.with_effect),
+        number(far.noise_floor),
+    );
+    // Writing to a string cannot fail.
     let _ = writeln!(
         text,
-        "  process noise, before and after: {}",
-        levels.join(", ")
+        "            closed {:.1} % [{:.1}, {:.1}], against the re-fitted model {:.1} %",
+        100.0 * far.closed,
+        100.0 * far.closed_ci95[0],
+        100.0 * far.closed_ci95[1],
+        100.0 * far.closed_vs_refitted,
     );
+    if report.verdict != GapVerdict::NoGap && far.closed_ci95[0] <= 0.0 {
+        text.push_str("            no significant improvement on held-out runs\n");
+    }
     text
 }
 

@@ -64,6 +64,15 @@ impl FromStr for Least {
 }
 
 impl Question {
+    /// Refuses a plot without a quantity to plot against.
+    pub(crate) fn needs_abscissa(&self) -> Result<(), Error> {
+        if self.plot.is_some() && self.along.is_none() {
+            let message = "--plot: give a quantity to plot against by --along NAME=FROM..TO";
+            return Err(Error::Usage(message.to_owned()));
+        }
+        Ok(())
+    }
+
     /// Obtains the equations, reads the values and passes both on.
     pub(crate) fn with<T>(
         &self,

@@ -245,7 +245,7 @@ fn an_own_effect_with_a_name_of_the_library_stands_in_its_place_and_that_is_told
         "--effects",
     ];
     let told = folder.done(&[&asked[..], &["viscous_friction.toml"]].concat());
-    let says = "viscous_friction.toml: the effect `viscous_friction` stands in place of that of the library";
+    let says = "viscous_friction.toml: effect `viscous_friction` replaces the shipped one";
     assert!(told.stdout.contains(says), "{}", told.stdout);
     let report = folder.json("report.json");
     assert!(report["data"].to_string().contains(says), "{report:#}");

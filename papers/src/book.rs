@@ -19,6 +19,16 @@ pub(crate) fn failed(reason: &str) -> Error {
     Error::Computation(reason.to_owned().into())
 }
 
+/// A text with one passage replaced.
+pub(crate) fn replaced(text: &str, before: &str, with: &str) -> Result<String, Error> {
+    if !text.contains(before) {
+        return Err(failed(&format!(
+            "`{before}` does not occur in the text to change"
+        )));
+    }
+    Ok(text.replacen(before, with, 1))
+}
+
 /// A computation that fails with this error.
 pub(crate) fn computation(error: impl std::fmt::Display) -> Error {
     Error::Computation(error.to_string().into())

@@ -103,6 +103,28 @@ pub enum Subject {
     Euc2,
 }
 
+impl Subject {
+    /// The derivation to which its formulas are compared.
+    pub fn paper(self) -> std::sync::MutexGuard<'static, Paper> {
+        match self {
+            Self::Wheel => paper::rolling_wheel(),
+            Self::Unicycle | Self::StraightUnicycle => paper::unicycle(),
+            Self::Euc3 => paper::euc_3dof(),
+            Self::Euc2 => paper::euc_2dof(),
+        }
+    }
+
+    /// The shipped mechanism.
+    pub const fn mechanism(self) -> &'static str {
+        match self {
+            Self::Wheel => "rolling_wheel",
+            Self::Unicycle | Self::StraightUnicycle => "unicycle",
+            Self::Euc3 => "euc_3dof",
+            Self::Euc2 => "euc_2dof",
+        }
+    }
+}
+
 /// The quantity to which a formula is compared.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Quantity {
@@ -124,18 +146,9 @@ pub enum Quantity {
 }
 
 impl Comparison {
-    fn paper(&self) -> std::sync::MutexGuard<'static, Paper> {
-        match self.subject {
-            Subject::Wheel => paper::rolling_wheel(),
-            Subject::Unicycle | Subject::StraightUnicycle => paper::unicycle(),
-            Subject::Euc3 => paper::euc_3dof(),
-            Subject::Euc2 => paper::euc_2dof(),
-        }
-    }
-
     /// Whether the printed and the correct formula agree with the derivation.
     pub fn verdicts(&self) -> [bool; 2] {
-        let mut paper = self.paper();
+        let mut paper = self.subject.paper();
         let before = paper.scope.clone();
         // Derived quantities may occur in the formulas; symbols keep their names.
         for name in paper.derived_names() {

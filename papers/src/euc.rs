@@ -7,7 +7,6 @@
 //! torque is correct if it makes them vanish.
 
 use crate::errata::Subject;
-use crate::paper;
 
 /// A numbered equation.
 #[derive(Debug)]
@@ -171,18 +170,11 @@ const fn direct(
 impl Equation {
     /// Differences from the derivation; empty if the equation holds.
     pub fn differences(&self) -> Vec<String> {
-        let mut paper = match self.subject {
-            Subject::Euc2 => paper::euc_2dof(),
-            _ => paper::euc_3dof(),
-        };
-        paper.differences(self.lines, self.at)
+        self.subject.paper().differences(self.lines, self.at)
     }
 
     /// The shipped mechanism.
     pub const fn mechanism(&self) -> &'static str {
-        match self.subject {
-            Subject::Euc2 => "euc_2dof",
-            _ => "euc_3dof",
-        }
+        self.subject.mechanism()
     }
 }

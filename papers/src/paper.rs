@@ -382,7 +382,8 @@ impl Paper {
         self.derived.insert(name.to_owned(), value);
     }
 
-    /// Replaces symbols, by their names in the paper, by formulas. Unknown names are left out.
+    /// Replaces symbols, by their names in the paper, by formulas. Names that this mechanism lacks are left
+    /// out: papers give the conditions of both of theirs together.
     pub fn substitution(&mut self, replacements: &[(&str, &str)]) -> Substitution {
         let mut pairs: Vec<(SymbolId, Expr)> = Vec::new();
         for (name, text) in replacements {

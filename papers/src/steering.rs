@@ -6,10 +6,7 @@
 //! and `Fd` for the steady yaw and pitch rate, a trailing `d` for a rate. Steady values are those
 //! with w1 = s = 0; `c1`, `c2`, … are the coefficients of the characteristic polynomial.
 
-use std::sync::MutexGuard;
-
 use crate::errata::Subject;
-use crate::paper::{self, Paper};
 
 mod gains;
 mod table;
@@ -72,15 +69,8 @@ impl Equation {
 }
 
 impl Identity {
-    fn paper(&self) -> MutexGuard<'static, Paper> {
-        match self.subject {
-            Subject::Wheel => paper::rolling_wheel(),
-            _ => paper::unicycle(),
-        }
-    }
-
     fn differences(&self) -> Vec<String> {
-        let mut paper = self.paper();
+        let mut paper = self.subject.paper();
         match self.formulas {
             Formulas::Lines(lines) => paper.differences(lines, self.at),
             Formulas::Matrix(lines) => paper.matrix_differences(lines, self.at),

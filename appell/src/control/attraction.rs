@@ -14,7 +14,7 @@ use serde_json::{Value, json};
 
 use super::design::{Design, DesignedGains};
 use super::parse;
-use crate::setup::Setup;
+use crate::setup::{Setup, listed};
 use crate::{Error, Field};
 
 /// Settling tolerance, relative to the largest deviation.
@@ -142,7 +142,7 @@ fn closed<'a>(
 /// The axes of the grid: states about the steady motion.
 fn axes(setup: &Setup<'_>, design: &Design, asked: &str) -> Result<Vec<Axis>, Error> {
     let mut axes: Vec<Axis> = Vec::new();
-    for part in asked.split(',') {
+    for part in listed(asked) {
         let (state, values) = parse::disturbances(setup, part)?;
         if axes.iter().any(|axis| axis.state == state) {
             let name = &setup.info.states[state].name;

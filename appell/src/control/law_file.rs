@@ -61,8 +61,10 @@ pub(crate) fn schedule(
     let info = setup.info;
     let mut text = format!(
         "# u = offset - K (y - y_steady - y_desired) with gains over {}, designed for {}.\n#\n\
-         # appell simulate {model} --feedback FILE.toml\n",
-        over.name, info.title
+         # appell simulate {model}{} --feedback FILE.toml\n",
+        over.name,
+        info.title,
+        flags(first, info, Some(&over.name))
     );
     text += &names(first, info);
     let _ = writeln!(text, "over = \"{}\"", over.name);
@@ -126,12 +128,24 @@ fn header(design: &Design, law: &DesignedGains, setup: &Setup<'_>, model: &str) 
         setup.info.title,
         poles.join(", ")
     );
-    let others = setup.info.parameters.iter().zip(&design.p);
+    let flags = flags(design, setup.info, None);
+    let _ = writeln!(
+        text,
+        "#\n# appell simulate {model}{flags} --feedback FILE.toml"
+    );
+    text
+}
+
+/// The flags with which the motion of a design is simulated, those for a quantity that varies left out.
+fn flags(design: &Design, info: &ModelInfo, varied: Option<&str>) -> String {
+    let others = info.parameters.iter().zip(&design.p);
     #[expect(
         clippy::float_cmp,
         reason = "what is as in the spec need not be written"
     )]
-    let others = others.filter(|(parameter, value)| parameter.value != **value);
+    let others = others.filter(|(parameter, value)| {
+        parameter.value != **value && varied != Some(&*parameter.name)
+    });
     let mut flags = String::new();
     for (parameter, value) in others {
         let _ = write!(
@@ -143,15 +157,11 @@ fn header(design: &Design, law: &DesignedGains, setup: &Setup<'_>, model: &str) 
     }
     for (input, value) in design.u.iter().enumerate() {
         if *value != 0.0 && !design.equations.inputs.contains(&input) {
-            let input = &setup.info.inputs[input];
+            let input = &info.inputs[input];
             let _ = write!(flags, " --input {}={:?}", input.name, input.to_unit(*value));
         }
     }
-    let _ = writeln!(
-        text,
-        "#\n# appell simulate {model}{flags} --feedback FILE.toml"
-    );
-    text
+    flags
 }
 
 /// A list for one row, a list of lists for several.

@@ -176,6 +176,10 @@ pub(crate) fn sampling(
     period_ms: Option<f64>,
     delay_ms: Option<f64>,
 ) -> Result<Option<Sampling>, Error> {
+    if let (None, Some(_)) = (period_ms, delay_ms) {
+        let message = "a delay needs a sampling period";
+        return Err(Error::request(Field::Sampling, message));
+    }
     let sampling = |period_ms: f64| Sampling::new(period_ms / 1e3, delay_ms.unwrap_or(0.0) / 1e3);
     let sampling = period_ms.map(sampling).transpose();
     Ok(sampling.map_err(DesignError::from)?)

@@ -45,6 +45,20 @@ impl Request {
         self
     }
 
+    /// Chooses the inputs that the law may use.
+    #[must_use]
+    pub fn inputs(mut self, names: &[&str]) -> Self {
+        self.inputs = names.iter().map(ToString::to_string).collect();
+        self
+    }
+
+    /// Samples the controller, with a delay from a measurement to its effect, in ms.
+    #[must_use]
+    pub fn sampled(mut self, period_ms: f64, delay_ms: f64) -> Self {
+        (self.sampled_ms, self.delay_ms) = (Some(period_ms), Some(delay_ms));
+        self
+    }
+
     /// Chooses the states that are fed back.
     #[must_use]
     pub fn outputs(mut self, names: &[&str]) -> Self {
@@ -83,7 +97,11 @@ impl Request {
             setup.state(Field::Outputs, name)
         })?;
         let method = match (&self.poles, &self.weights) {
-            (Some(poles), _) => Method::Poles(parse::poles(poles)?),
+            (Some(_), Some(_)) => {
+                let message = "a law has poles or weights, not both";
+                return Err(Error::request(Field::Weights, message));
+            }
+            (Some(poles), None) => Method::Poles(parse::poles(poles)?),
             (None, Some(weights)) => parse::weights(weights)?,
             (None, None) => Method::None,
         };

@@ -56,6 +56,7 @@ impl Schedule {
         if self.designs.iter().any(|(_, design)| design.law.is_none()) {
             return refused("without poles or weights there is no law");
         }
+        self.is_readable(setup)?;
         let mut laws = self
             .designs
             .iter()
@@ -69,5 +70,28 @@ impl Schedule {
             );
         }
         Ok(law_file::schedule(&self.over, &self.designs, setup, model))
+    }
+
+    /// A scheduled law follows constant steady values, and cannot feed back what selects them.
+    fn is_readable(&self, setup: &Setup<'_>) -> Result<(), Error> {
+        for (_, design) in &self.designs {
+            for &state in &design.outputs {
+                let name = &setup.info.states[state].name;
+                if *name == self.over.name {
+                    let message = format!(
+                        "`{name}` selects the gains and cannot be fed back: choose other outputs"
+                    );
+                    return Err(Error::request(Field::Outputs, message));
+                }
+                if design.running(state) != 0.0 {
+                    let message = format!(
+                        "`{name}` advances with the steady motion, and the values of a schedule are \
+                         constant: choose other outputs"
+                    );
+                    return Err(Error::request(Field::Outputs, message));
+                }
+            }
+        }
+        Ok(())
     }
 }

@@ -10,7 +10,7 @@ use appell_spec::{Scope, Snippet, formula};
 use nalgebra::DVector;
 
 use crate::formula::{StateFunction, Workbench, switching_times};
-use crate::inputs::feedback::{Feedback, Gains, Sampled, Varied};
+use crate::inputs::feedback::{Feedback, Gains, Sampled, SchedulingVariable};
 use crate::setup::{Assignment, Setup, bracketed};
 use crate::{Error, Field};
 
@@ -45,7 +45,7 @@ enum Slot {
 
 /// A gain-scheduled law.
 struct ScheduledLaw {
-    over: Varied,
+    over: SchedulingVariable,
     schedule: GainSchedule,
     inputs: Vec<usize>,
     states: Vec<usize>,

@@ -32,7 +32,7 @@ use crate::{Error, files};
 
 mod schedule;
 
-pub use schedule::Varied;
+pub use schedule::SchedulingVariable;
 
 /// A law for one input or several.
 #[derive(Debug)]
@@ -78,7 +78,7 @@ pub enum Gains {
     /// A row for each input, a number for each state.
     Fixed(Vec<Vec<f64>>),
     /// Gains that depend on a scheduling variable.
-    Scheduled(Varied, GainSchedule),
+    Scheduled(SchedulingVariable, GainSchedule),
 }
 
 /// A discrete-time controller.

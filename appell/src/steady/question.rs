@@ -85,6 +85,20 @@ impl Default for Question {
 }
 
 impl Question {
+    /// Sets a parameter.
+    #[must_use]
+    pub fn set(mut self, name: &str, value: impl ToString) -> Self {
+        self.parameters.push(Assignment::new(name, value));
+        self
+    }
+
+    /// Requires feasible motions to have at least this value of a quantity.
+    #[must_use]
+    pub fn require(mut self, name: &str, value: impl ToString) -> Self {
+        self.require.push(Assignment::new(name, value));
+        self
+    }
+
     /// Prescribes the value of a quantity.
     #[must_use]
     pub fn fix(mut self, name: &str, value: impl ToString) -> Self {

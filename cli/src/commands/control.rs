@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use crate::failure::Error;
 use appell::control::Request;
-use appell::setup::Assignment;
+use appell::setup::{Assignment, listed};
 use appell::{Model, files};
 use serde_json::Value;
 
@@ -167,7 +167,7 @@ impl Control {
 
     fn disturbs_two_states(&self) -> bool {
         let grid = self.attraction.as_deref().unwrap_or_default();
-        grid.split(',').count() == 2
+        listed(grid).len() == 2
     }
 
     fn request(&self) -> Request {

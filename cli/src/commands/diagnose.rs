@@ -110,8 +110,8 @@ impl Diagnose {
             }
         }
         if let Some(path) = &self.json {
-            let mut json = appell::json::diagnosis(&report, next.as_deref());
-            json["data"] = [replaced.as_slice(), &warnings].concat().into();
+            let findings = [replaced.as_slice(), &warnings].concat();
+            let json = appell::json::diagnosis(&report, next.as_deref(), &findings);
             files::write_json(path, &json)?;
         }
         if let Some(path) = &self.html {

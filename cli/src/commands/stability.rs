@@ -43,6 +43,9 @@ pub(crate) struct StabilityCommand {
 
 impl StabilityCommand {
     pub(super) fn run(&self) -> Result<(), Error> {
+        if self.chart.is_none() {
+            self.question.needs_abscissa()?;
+        }
         self.question.with(|asked, setup| {
             if let Some(chart) = &self.chart {
                 return self.draw(asked, &chart.axes(setup, self.grid)?);

@@ -4,7 +4,6 @@ use appell_analysis::{Branch, Term};
 use appell_report::figure::Figure;
 
 use crate::failure::Error;
-use crate::failure::note;
 use crate::motions::{self, Question, text};
 use crate::output;
 use crate::picture;
@@ -26,6 +25,7 @@ pub(crate) struct Steady {
 
 impl Steady {
     pub(super) fn run(&self) -> Result<(), Error> {
+        self.question.needs_abscissa()?;
         self.question.with(|asked, _| {
             let answer = motions::answer(asked)?;
             let text = text::structure(asked)
@@ -58,14 +58,10 @@ pub(super) fn write(
     if let Some(path) = &question.csv {
         files::write_with(path, |to| export::csv(asked, answer, to))?;
     }
-    match (&question.plot, answer, asked.along) {
-        (Some(path), Answer::Branches(branches), Some((along, _))) => {
-            picture::write(path, &figure(along, branches).to_svg())?;
-        }
-        (Some(_), ..) => {
-            note("`--plot` needs a quantity to plot against: give `--along NAME=FROM..TO`");
-        }
-        _ => {}
+    if let (Some(path), Answer::Branches(branches), Some((along, _))) =
+        (&question.plot, answer, asked.along)
+    {
+        picture::write(path, &figure(along, branches).to_svg())?;
     }
     Ok(())
 }

@@ -13,6 +13,8 @@ use super::symbols::{Symbols, ids};
 const MOST_EXPRESSIONS: usize = 1_000_000;
 /// Products with more terms than this are not multiplied out.
 const MOST_TERMS: usize = 200;
+/// Fractions whose numerators would have more terms than this are not joined.
+const MOST_JOINED_TERMS: usize = 12;
 
 /// Graph, identity test and remembered derivatives.
 pub struct Algebra {
@@ -87,6 +89,21 @@ impl Algebra {
         }
         let factored = self.graph.take_out_common_factors(best);
         self.graph.shorter(best, factored)
+    }
+
+    /// The same value over one denominator, where fewer divisors remain and no more operations: what an
+    /// elimination divided by on its way may cancel.
+    pub fn with_fewest_divisors(&mut self, expr: Expr) -> Expr {
+        let divisors = self.graph.divisor_count(expr);
+        if divisors < 2 {
+            return expr;
+        }
+        let joined = (self.graph).one_fraction(&mut self.test, expr, MOST_JOINED_TERMS);
+        let pays = |&joined: &Expr| {
+            self.graph.divisor_count(joined) < divisors
+                && self.graph.operations(&[joined]) <= self.graph.operations(&[expr])
+        };
+        joined.filter(pays).unwrap_or(expr)
     }
 
     /// [`Algebra::shortest`] of each component.

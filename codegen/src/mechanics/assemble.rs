@@ -289,7 +289,7 @@ impl Derivation {
         for (id, body) in mechanism.bodies.ids().zip(&self.bodies) {
             let (v, energy) = kinetic_energy_by_velocity(&mut self.algebra, body, letter);
             let frame = &mechanism.frames[body.centre.velocity.frame].name;
-            let title = format!("Velocity of `{}` in `{frame}`.", body.centre.point);
+            let title = format!("Velocity of `{}`, along `{frame}`.", body.centre.point);
             function = function
                 .by_way_of(&title, v.to_vec())
                 .by_way_of(&Source(mechanism).of_body(id), vec![energy]);
@@ -310,11 +310,11 @@ impl Derivation {
             let motion = ActualMotion::new(&mut self.algebra, body, &accelerations);
             let frame = |frame: FrameId| &mechanism.frames[frame].name;
             let a_in = frame(body.centre.velocity.frame);
-            let title = format!("Acceleration of `{}` in `{a_in}`.", body.centre.point);
+            let title = format!("Acceleration of `{}`, along `{a_in}`.", body.centre.point);
             function = function.by_way_of(&title, motion.a.to_vec());
             if let Some(rotation) = &body.rotation {
                 let alpha_in = frame(rotation.velocity.frame);
-                let title = format!("Turning of `{}` in `{alpha_in}`.", body.name);
+                let title = format!("Rotation of `{}`, along `{alpha_in}`.", body.name);
                 let turning = [motion.alpha, motion.momentum_rate].concat();
                 function = function.by_way_of(&title, turning);
             }

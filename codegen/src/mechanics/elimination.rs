@@ -132,10 +132,12 @@ pub fn eliminate(
         let allowed = allowed.ok_or_else(|| vec![division_by_zero(Item::Mechanism)])?;
         Ok(allowed.into_iter().map(|e| algebra.shortest(e)).collect())
     };
+    let (rates, right) = (allowed(&violating)?, allowed(&violated.right)?);
+    let rates = rates.into_iter();
     Ok(Elimination {
-        rates: allowed(&violating)?,
+        rates: rates.map(|e| algebra.with_fewest_divisors(e)).collect(),
         open: OpenSystem {
-            right: allowed(&violated.right)?,
+            right,
             ..violated.clone()
         },
         violating: (violating, violated.right),

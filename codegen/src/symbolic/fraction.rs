@@ -1,6 +1,6 @@
 //! A rational expression as one fraction: everything over one denominator, cancelled.
 
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::node::{Expr, Function, Node, Term};
 use super::{Graph, IdentityTest, Rational};
@@ -43,6 +43,18 @@ impl Graph {
             best = Some(best.map_or(cancelled, |best| self.shorter(best, cancelled)));
         }
         best
+    }
+
+    /// Number of different expressions that something is divided by.
+    pub fn divisor_count(&self, expr: Expr) -> usize {
+        let mut divisors = FxHashSet::default();
+        for part in self.in_order(&[expr]) {
+            if let Node::Product(factors) = self.node(part) {
+                let under = factors.iter().filter(|factor| factor.exponent < 0);
+                divisors.extend(under.map(|factor| factor.base));
+            }
+        }
+        divisors.len()
     }
 
     /// Everything over one denominator; parts before wholes.

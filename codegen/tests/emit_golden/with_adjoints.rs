@@ -254,7 +254,7 @@ pub fn acceleration_energy<T: Real>(
     // Motion of `rod` with ω̇ = 0.
     let a0_G_z = l * omega * omega;
 
-    // Acceleration of `G` in `rod`.
+    // Acceleration of `G`, along `rod`.
     let a_G_x = l * omega_dot;
 
     // Body `rod`, pendulum.toml:29.

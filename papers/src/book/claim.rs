@@ -123,10 +123,14 @@ impl Statement<'_> {
     /// A number and its computed value, of which `needed` digits must agree.
     pub(crate) fn number(self, [wanted, found]: [f64; 2], needed: u32) -> Claim {
         let digits = digits(wanted, found);
-        let plural = if digits == 1 { "" } else { "s" };
+        let agree = if digits == 1 {
+            "digit agrees"
+        } else {
+            "digits agree"
+        };
         self.found(shown(found), digits >= needed)
             .exactly()
-            .noted(format!("{digits} digit{plural} agree"))
+            .noted(format!("{digits} {agree}"))
     }
 
     /// A statement about unpublished recordings, tested on simulated ones. Either outcome is

@@ -119,7 +119,7 @@ fn row(claim: &Claim) -> Markup {
                     (BREAK) small { (claim.note) }
                 }
                 @if !claim.as_expected {
-                    (BREAK) "This is not what is known to come out."
+                    (BREAK) "Unexpected: this comparison used to give another result."
                 }
             }
         }

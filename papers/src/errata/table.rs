@@ -4,6 +4,9 @@ use super::{
     ACCELERATION_ENERGY, Comparison, Erratum, ErratumOrigin, Evidence, Quantity, Source, Subject,
 };
 
+/// The sliding mass's acceleration in (36), line 5, corrected.
+const SLIDING_ACCELERATION: &str = "1/(5*m*R**2 + 4*m0*r**2)*((5*m*R**2 + 4*m0*(R**2 + r**2))*r*w1**2 + (5*m*R**2*r - 4*m0*R*r**2*tan(th) + 4*m0*r**3 - m*R**3*tan(th))*w3**2 - 8*m0*R*r*w1*s + R*(m*R**2 + 4*m0*(R*r*tan(th) - r**2))*w2*w3 - (m*R**2 + 4*m0*r**2)*g*sin(th) - 4*m0*g*R*r*cos(th) + (5*m/m0*R**2 + 4*R**2 + 4*r**2)*u)";
+
 /// All errata.
 pub const ERRATA: &[Erratum] = &[
     Erratum {
@@ -86,7 +89,7 @@ pub const ERRATA: &[Erratum] = &[
                 subject: Subject::Unicycle,
                 quantity: Quantity::Derived("sd"),
                 printed: "m0/(5*m*R**2 + 4*m0*r**2)*((5*m*R**2 + 4*m0*(R**2 + r**2))*r*w1**2 + (5*m*R**2*r - 4*m0*R*r**2*tan(th) + 4*m0*r**3 - m*R**3*tan(th))*w3**2 - 8*m0*R*r*w1*s + R*(m*R**2 + 4*m0*(R*r*tan(th) - r**2))*w2*w3 - (m*R**2 + 4*m0*r**2)*g*sin(th) - 4*m0*g*R*r*cos(th) + (5*m/m0*R**2 + 4*R**2 + 4*r**2)*u)",
-                right: "1/(5*m*R**2 + 4*m0*r**2)*((5*m*R**2 + 4*m0*(R**2 + r**2))*r*w1**2 + (5*m*R**2*r - 4*m0*R*r**2*tan(th) + 4*m0*r**3 - m*R**3*tan(th))*w3**2 - 8*m0*R*r*w1*s + R*(m*R**2 + 4*m0*(R*r*tan(th) - r**2))*w2*w3 - (m*R**2 + 4*m0*r**2)*g*sin(th) - 4*m0*g*R*r*cos(th) + (5*m/m0*R**2 + 4*R**2 + 4*r**2)*u)",
+                right: SLIDING_ACCELERATION,
             },
         ),
     },
@@ -102,7 +105,7 @@ pub const ERRATA: &[Erratum] = &[
                 subject: Subject::Unicycle,
                 quantity: Quantity::Derived("sd"),
                 printed: "1/(5*m*R**2 + 4*m0*r**2)*((5*m*R**2 + 4*m0*(R**2 + r**2))*r*w1**2 + (5*m*R**2*r - 4*m0*R*r**2*tan(th) + 4*m0*r**3 - m*R**3*tan(th))*w2**2 - 8*m0*R*r*w1*s + R*(m*R**2 + 4*m0*(R*r*tan(th) - r**2))*w2*w3 - (m*R**2 + 4*m0*r**2)*g*sin(th) - 4*m0*g*R*r*cos(th) + (5*m/m0*R**2 + 4*R**2 + 4*r**2)*u)",
-                right: "1/(5*m*R**2 + 4*m0*r**2)*((5*m*R**2 + 4*m0*(R**2 + r**2))*r*w1**2 + (5*m*R**2*r - 4*m0*R*r**2*tan(th) + 4*m0*r**3 - m*R**3*tan(th))*w3**2 - 8*m0*R*r*w1*s + R*(m*R**2 + 4*m0*(R*r*tan(th) - r**2))*w2*w3 - (m*R**2 + 4*m0*r**2)*g*sin(th) - 4*m0*g*R*r*cos(th) + (5*m/m0*R**2 + 4*R**2 + 4*r**2)*u)",
+                right: SLIDING_ACCELERATION,
             },
         ),
     },
@@ -118,7 +121,7 @@ pub const ERRATA: &[Erratum] = &[
                 subject: Subject::Unicycle,
                 quantity: Quantity::Derived("sd"),
                 printed: "1/(5*m*R**2 + 4*m0*r**2)*((5*m*R**2 + 4*m0*(R**2 + r**2))*r*w1**2 + (5*m*R**2*r - 4*m0*R*r**2*tan(th) + 4*m0*r**3 - m*R**3*tan(th))*w3**2 - 8*R**2*r*w1*s + R*(m*R**2 + 4*m0*(R*r*tan(th) - r**2))*w2*w3 - (m*R**2 + 4*m0*r**2)*g*sin(th) - 4*m0*g*R*r*cos(th) + (5*m/m0*R**2 + 4*R**2 + 4*r**2)*u)",
-                right: "1/(5*m*R**2 + 4*m0*r**2)*((5*m*R**2 + 4*m0*(R**2 + r**2))*r*w1**2 + (5*m*R**2*r - 4*m0*R*r**2*tan(th) + 4*m0*r**3 - m*R**3*tan(th))*w3**2 - 8*m0*R*r*w1*s + R*(m*R**2 + 4*m0*(R*r*tan(th) - r**2))*w2*w3 - (m*R**2 + 4*m0*r**2)*g*sin(th) - 4*m0*g*R*r*cos(th) + (5*m/m0*R**2 + 4*R**2 + 4*r**2)*u)",
+                right: SLIDING_ACCELERATION,
             },
         ),
     },

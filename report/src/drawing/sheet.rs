@@ -346,7 +346,7 @@ impl Sheet<'_> {
             [x, first],
             "small",
             "start",
-            "axes of the frames that are named at their tips",
+            "axes of a frame, with its name at a tip",
         );
         let y = second - SYMBOL_RISE;
         let [symbol, text] = LEGEND_POINT;

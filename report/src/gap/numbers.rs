@@ -21,7 +21,7 @@ pub(super) fn measured(value: f64, std: f64) -> String {
 /// `97.6 %`
 pub(super) fn percent(part: f64) -> String {
     if part.is_nan() {
-        return "nothing".to_owned();
+        return "an unknown part".to_owned();
     }
     format!("{:.1} %", 100.0 * part)
 }

@@ -221,7 +221,7 @@ fn windows(place: &Where) -> Markup {
     html! {
         @if !place.windows.is_empty() {
             details {
-                summary { (place.windows.len()) " windows that stand out" }
+                summary { (place.windows.len()) (if place.windows.len() == 1 { " window" } else { " windows" }) " with a significant gap" }
                 (table(["run", "when", "equation of", "size in deviations"], windows, 3))
             }
         }
@@ -399,16 +399,16 @@ fn next(set: &DataSet, report: &Report) -> Markup {
             p {
                 "This experiment tells " (first) " from " (second) ": " (experiment.about)
                 ". The two are " (short(experiment.separation_now)) " standard deviations apart now, and "
-                (short(experiment.separation_then)) " with its recording. The command writes the input \
-                 as a table beside the gap report."
+                (short(experiment.separation_then)) " with its recording. The input is also written \
+                 as a table, where a file is given for it or for the gap report."
             }
             @for plot in plots::experiment(experiment, &set.mechanism) {
                 (figure(plot, "The input of the next experiment."))
             }
         } @else if report.verdict == GapVerdict::Ambiguous {
             p {
-                "No input that was tried tells the tied hypotheses apart and keeps the motion within its \
-                 limits. Give wider ones, or record under feedback."
+                "None of the inputs tried separates the tied hypotheses within the limits of the motion. Widen \
+                 the limits, or record under feedback."
             }
         }
     }

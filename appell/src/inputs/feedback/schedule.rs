@@ -20,14 +20,14 @@ use super::{Gains, Reader};
 
 /// A scheduling variable.
 #[derive(Debug, Clone, Copy)]
-pub enum Varied {
+pub enum SchedulingVariable {
     /// A state.
     State(usize),
     /// A parameter.
     Parameter(usize),
 }
 
-impl Varied {
+impl SchedulingVariable {
     /// Its value in SI.
     pub fn value(self, x: &[f64], p: &[f64]) -> f64 {
         match self {
@@ -83,7 +83,10 @@ pub(super) fn read(
 }
 
 /// The state or parameter of a name.
-fn varied(reader: &mut Reader<'_>, over: &Spanned<DeValue<'_>>) -> Option<(Varied, Quantity)> {
+fn varied(
+    reader: &mut Reader<'_>,
+    over: &Spanned<DeValue<'_>>,
+) -> Option<(SchedulingVariable, Quantity)> {
     let (name, at) = reader.string(over)?;
     let info = reader.setup.info;
     let lists = [&info.states, &info.parameters].map(|list| list.iter());
@@ -92,9 +95,9 @@ fn varied(reader: &mut Reader<'_>, over: &Spanned<DeValue<'_>>) -> Option<(Varie
         .collect();
     let place = reader.find(&name, "state or parameter", &names, at)?;
     Some(match place.checked_sub(info.states.len()) {
-        None => (Varied::State(place), info.states[place].clone()),
+        None => (SchedulingVariable::State(place), info.states[place].clone()),
         Some(parameter) => (
-            Varied::Parameter(parameter),
+            SchedulingVariable::Parameter(parameter),
             info.parameters[parameter].clone(),
         ),
     })

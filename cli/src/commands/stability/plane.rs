@@ -11,7 +11,7 @@ use crate::failure::Error;
 use crate::motions::{self, text};
 use crate::output;
 use crate::picture;
-use appell::setup::Setup;
+use appell::setup::{Setup, listed};
 use appell::steady::Span;
 use appell::steady::regions::{self, Shown};
 use appell::steady::{Resolved, chart};
@@ -25,9 +25,11 @@ impl FromStr for Plane {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let (x, y) = text
-            .split_once(',')
-            .ok_or("write X=FROM..TO,Y=FROM..TO, such as theta=-30deg..30deg,psi_dot=1..8")?;
+        let &[x, y] = &listed(text)[..] else {
+            return Err(
+                "write X=FROM..TO,Y=FROM..TO, such as theta=-30deg..30deg,psi_dot=1..8".to_owned(),
+            );
+        };
         Ok(Self([Span::from_str(x)?, Span::from_str(y)?]))
     }
 }

@@ -6,7 +6,7 @@ use appell_runtime::Trajectory;
 use super::capture::{Captured, Imperfection};
 use super::random::Random;
 use super::rider::{Manoeuvre, Rider};
-use crate::book::{computation, failed};
+use crate::book::{computation, failed, replaced};
 use appell::Error;
 
 /// The skeleton file of the examples.
@@ -73,7 +73,7 @@ impl Laboratory {
     pub(super) fn new() -> Result<Self, Error> {
         let skeleton = Skeleton::parse("docs/examples/euc/skeleton.toml", SKELETON)?;
         let [pedals, centre] = SEEN_FROM;
-        let text = SKELETON.replacen(pedals, centre, 1);
+        let text = replaced(SKELETON, pedals, centre)?;
         let by_3 = Skeleton::parse("docs/examples/euc/skeleton.toml", &text)?;
         let captured = Captured::new(&skeleton)?;
         let height = captured.height();

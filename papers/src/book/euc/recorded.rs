@@ -9,7 +9,7 @@ use appell_models::Shipped;
 use super::laboratory::{Laboratory, Session};
 use super::random::Random;
 use super::rider::{RATE, TWIST};
-use crate::book::failed;
+use crate::book::{failed, replaced};
 use appell::Error;
 use appell::files;
 
@@ -70,9 +70,11 @@ fn spatial() -> Result<String, Error> {
     let shipped = Shipped::find("euc_spatial");
     let shipped = shipped.ok_or_else(|| failed("the spatial model is not shipped"))?;
     let edits = TWIST.iter().chain(&WAY);
-    Ok(edits.fold(shipped.spec.to_owned(), |text, (before, with)| {
-        text.replacen(before, with, 1)
-    }))
+    edits
+        .copied()
+        .try_fold(shipped.spec.to_owned(), |text, (before, with)| {
+            replaced(&text, before, with)
+        })
 }
 
 /// Writes the rides of a manoeuvre; the last ones are held out.

@@ -15,7 +15,7 @@ use appell_runtime::{Simulation, Trajectory};
 use nalgebra::{DMatrix, DVector};
 
 use super::random::Random;
-use crate::book::{computation, failed};
+use crate::book::{computation, failed, replaced};
 use appell::Error;
 
 /// Frames a second of the capture.
@@ -157,11 +157,12 @@ impl Rider {
     pub(super) fn new(height: f64) -> Result<Self, Error> {
         let shipped = Shipped::find(SPATIAL);
         let shipped = shipped.ok_or_else(|| failed("the spatial model is not shipped"))?;
-        let text = TWIST
-            .iter()
-            .fold(shipped.spec.to_owned(), |text, (before, with)| {
-                text.replacen(before, with, 1)
-            });
+        let edits = TWIST.iter();
+        let text = edits
+            .copied()
+            .try_fold(shipped.spec.to_owned(), |text, (before, with)| {
+                replaced(&text, before, with)
+            })?;
         let program = appell_codegen::compile(shipped.file, &text, &FunctionKind::STANDARD)?;
         let model = JitModel::new(&program).map_err(computation)?;
         let mut parameters = model.info().default_parameters();

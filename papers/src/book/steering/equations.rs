@@ -1,6 +1,6 @@
 //! Every numbered equation that is a formula or a definition.
 
-use crate::errata::{ERRATA, Erratum, Evidence, Source};
+use crate::errata::{ERRATA, Erratum, Evidence, Source, Subject};
 use crate::steering::{EQUATIONS, Equation, Formulas};
 use appell_models::Shipped;
 
@@ -156,10 +156,8 @@ fn typed(equation: &Equation) -> Claim {
     } else {
         differences.join("\n")
     };
-    let mechanism = match equation.claims.first().map(|claim| claim.subject) {
-        Some(crate::errata::Subject::Wheel) => "rolling_wheel",
-        _ => "unicycle",
-    };
+    let subject = equation.claims.first().map(|claim| claim.subject);
+    let mechanism = subject.map_or("unicycle", Subject::mechanism);
     let stage = if kind.contains("zero") {
         "jacobians"
     } else {

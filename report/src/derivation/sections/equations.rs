@@ -91,7 +91,7 @@ pub(super) fn motion(w: &mut Writer<'_>) -> Section {
         blocks.push(Block::Sentence(text));
     }
     blocks.push(sentence(
-        "Together with the generalised velocities of section 3 they are the equations of motion.",
+        "Together with the generalised velocities they are the equations of motion.",
     ));
     headed("Equations of motion", blocks)
 }

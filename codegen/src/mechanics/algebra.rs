@@ -91,7 +91,7 @@ impl Algebra {
         self.graph.shorter(best, factored)
     }
 
-    /// The same value over one denominator, where fewer divisors remain and no more operations: what an
+    /// The same value in another form, where fewer divisors remain and no more operations: what an
     /// elimination divided by on its way may cancel.
     pub fn with_fewest_divisors(&mut self, expr: Expr) -> Expr {
         let divisors = self.graph.divisor_count(expr);
@@ -99,11 +99,16 @@ impl Algebra {
             return expr;
         }
         let joined = (self.graph).one_fraction(&mut self.test, expr, MOST_JOINED_TERMS);
-        let pays = |&joined: &Expr| {
-            self.graph.divisor_count(joined) < divisors
-                && self.graph.operations(&[joined]) <= self.graph.operations(&[expr])
+        let expanded = self.graph.expand(expr, MOST_JOINED_TERMS);
+        let nested = expanded.map(|expanded| self.graph.nest(expanded));
+        let graph = &self.graph;
+        let cost = |form: &Expr| (graph.divisor_count(*form), graph.operations(&[*form]));
+        let pays = |form: &Expr| {
+            let (left, operations) = cost(form);
+            left < divisors && operations <= graph.operations(&[expr])
         };
-        joined.filter(pays).unwrap_or(expr)
+        let forms = [joined, nested].into_iter().flatten().filter(pays);
+        forms.min_by_key(cost).unwrap_or(expr)
     }
 
     /// [`Algebra::shortest`] of each component.

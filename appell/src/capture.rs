@@ -14,6 +14,8 @@ const MAX_SKELETON: u64 = 1 << 20;
 
 /// A data set made of captures.
 pub struct Converted {
+    /// The captures, which are never overwritten.
+    originals: Vec<PathBuf>,
     /// Captured bodies, rider and channels.
     pub skeleton: Skeleton,
     /// Names of the runs.
@@ -31,6 +33,9 @@ pub fn convert(skeleton: &Path, captures: &[PathBuf]) -> Result<Converted, Error
     let text = files::read(skeleton, MAX_SKELETON)?;
     let skeleton = Skeleton::parse(&skeleton.to_string_lossy(), &text)?;
     let (mut runs, mut rides, mut findings) = (Vec::new(), Vec::new(), Vec::new());
+    let originals: Vec<PathBuf> = (captures.iter())
+        .filter_map(|path| path.canonicalize().ok())
+        .collect();
     for path in captures {
         let run = file_name(path, &runs)?;
         let (capture, found) = Capture::read(path, &skeleton)?;
@@ -47,6 +52,7 @@ pub fn convert(skeleton: &Path, captures: &[PathBuf]) -> Result<Converted, Error
     };
     let tables = rides.iter().map(table).collect::<Result<_, Error>>()?;
     Ok(Converted {
+        originals,
         window: filter.count(),
         skeleton,
         runs,
@@ -58,8 +64,20 @@ pub fn convert(skeleton: &Path, captures: &[PathBuf]) -> Result<Converted, Error
 impl Converted {
     /// Writes the data set to a folder; returns the path of its manifest.
     pub fn write(&self, folder: &Path) -> Result<PathBuf, Error> {
+        let path = |run: &String| folder.join(run);
+        let is_original = |path: &PathBuf| {
+            let path = path.canonicalize();
+            path.is_ok_and(|path| self.originals.contains(&path))
+        };
+        if let Some(path) = self.runs.iter().map(path).find(is_original) {
+            let message = format!(
+                "{} is a capture and would be overwritten; choose another folder",
+                path.display()
+            );
+            return Err(Error::request(Field::Recordings, message));
+        }
         for (run, table) in self.runs.iter().zip(&self.tables) {
-            files::write(&folder.join(run), table)?;
+            files::write(&path(run), table)?;
         }
         let manifest = folder.join(MANIFEST);
         files::write(

@@ -10,7 +10,7 @@ use appell_runtime::Signal;
 use appell_runtime::model::{At, ModelInfo};
 use appell_runtime::signal::SignalError;
 use appell_spec::Mechanism;
-use appell_spec::expr::{Expr as SpecExpr, ExprKind, Quantity};
+use appell_spec::expr::{BinaryOp, Expr as SpecExpr, ExprKind, Function as Named, Quantity};
 
 /// An expression graph with the symbols of a mechanism.
 pub(crate) struct Workbench {
@@ -150,8 +150,10 @@ impl StateFunction {
     }
 }
 
-/// Collects the times at which an expression switches because it compares `t` with a number.
+/// Collects the times at which an expression switches because it compares linear functions of `t`, or takes
+/// the sign of one.
 pub(crate) fn switching_times(expr: &SpecExpr, times: &mut Vec<f64>) {
+    let mut zero_of = |function: Option<Linear>| times.extend(function.and_then(Linear::zero));
     match &expr.kind {
         ExprKind::Number(_) | ExprKind::Quantity(_) => {}
         ExprKind::Negate(a) => switching_times(a, times),
@@ -159,20 +161,103 @@ pub(crate) fn switching_times(expr: &SpecExpr, times: &mut Vec<f64>) {
             switching_times(a, times);
             switching_times(b, times);
         }
-        ExprKind::Call(_, arguments) => arguments.iter().for_each(|a| switching_times(a, times)),
+        ExprKind::Call(function, arguments) => {
+            if let (Named::Sign | Named::Abs, [argument]) = (function, &arguments[..]) {
+                zero_of(Linear::of(argument));
+            }
+            for argument in arguments {
+                switching_times(argument, times);
+            }
+        }
         ExprKind::Choice {
             compared, branches, ..
         } => {
-            if let (ExprKind::Quantity(Quantity::Time), ExprKind::Number(n))
-            | (ExprKind::Number(n), ExprKind::Quantity(Quantity::Time)) =
-                (&compared[0].kind, &compared[1].kind)
-            {
-                times.push(appell_codegen::symbolic::Rational::from_big(n.clone()).to_f64());
-            }
+            let [left, right] = compared.each_ref().map(Linear::of);
+            zero_of(left.zip(right).map(|(left, right)| left.plus(right, -1.0)));
             compared
                 .iter()
                 .chain(branches.iter())
                 .for_each(|a| switching_times(a, times));
+        }
+    }
+}
+
+/// `constant + slope t`
+#[derive(Clone, Copy)]
+struct Linear {
+    constant: f64,
+    slope: f64,
+}
+
+impl Linear {
+    /// An expression of numbers and `t`, if it is linear in `t`.
+    fn of(expr: &SpecExpr) -> Option<Self> {
+        let constant = |constant: f64| Self {
+            constant,
+            slope: 0.0,
+        };
+        Some(match &expr.kind {
+            ExprKind::Number(n) => {
+                constant(appell_codegen::symbolic::Rational::from_big(n.clone()).to_f64())
+            }
+            ExprKind::Quantity(Quantity::Time) => Self {
+                constant: 0.0,
+                slope: 1.0,
+            },
+            ExprKind::Negate(a) => constant(0.0).plus(Self::of(a)?, -1.0),
+            ExprKind::Binary(operation, a, b) => {
+                let (a, b) = (Self::of(a)?, Self::of(b)?);
+                match operation {
+                    BinaryOp::Add => a.plus(b, 1.0),
+                    BinaryOp::Subtract => a.plus(b, -1.0),
+                    BinaryOp::Multiply if a.slope == 0.0 => constant(0.0).plus(b, a.constant),
+                    BinaryOp::Multiply if b.slope == 0.0 => constant(0.0).plus(a, b.constant),
+                    BinaryOp::Divide if b.slope == 0.0 => constant(0.0).plus(a, b.constant.recip()),
+                    _ => return None,
+                }
+            }
+            _ => return None,
+        })
+    }
+
+    /// `self + factor other`
+    fn plus(self, other: Self, factor: f64) -> Self {
+        Self {
+            constant: self.constant + factor * other.constant,
+            slope: self.slope + factor * other.slope,
+        }
+    }
+
+    /// Where it vanishes.
+    fn zero(self) -> Option<f64> {
+        (self.slope != 0.0).then(|| -self.constant / self.slope)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use appell_spec::units::{Dimension, Unit};
+    use appell_spec::{Scope, Snippet, formula};
+
+    #[test]
+    fn inputs_switch_where_linear_functions_of_time_meet() {
+        let spec = include_str!("../../generated/mechanisms/cart_pole.toml");
+        for (text, expected) in [
+            ("if(t < 2, 1, 0)", vec![2.0]),
+            ("if(t - 5 < 0, 1, 0)", vec![5.0]),
+            ("if(2*t > 9 - t, 1, 0)", vec![3.0]),
+            ("sign(t/2 - 4)", vec![8.0]),
+            ("if(t*t < 4, 1, 0)", vec![]),
+            ("if(x < 1, 1, 0)", vec![]),
+        ] {
+            let snippet = Snippet::alone(text);
+            let unit = Unit::si(Dimension::NONE);
+            let expr = formula(spec, &snippet, "the input", Scope::Law, &unit)
+                .unwrap_or_else(|report| panic!("{text}: {report:?}"));
+            let mut times = Vec::new();
+            switching_times(&expr, &mut times);
+            assert_eq!(times, expected, "{text}");
         }
     }
 }

@@ -5,12 +5,13 @@ use appell_gap::inverse;
 
 pub use appell_gap::inverse::{Answer, Estimate, Options, RelationError};
 
-use crate::{Error, Model};
+use crate::{Error, Model, recording};
 
 impl Model {
     /// Computes the inputs of recorded motions, and estimates parameters from the combinations of the
     /// equations that hold whatever the inputs were.
     pub fn inverse(&self, set: &DataSet, options: &Options) -> Result<Answer, Error> {
+        recording::check_time_unit(set)?;
         self.estimating(|equations| Ok(inverse::find(set, equations, options)?))
     }
 }

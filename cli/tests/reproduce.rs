@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use appell_papers::book::SIMULATED;
 use appell_test_kit::{budget, is_full};
 use serde_json::Value;
 
@@ -13,38 +14,6 @@ const FULL_GRID: usize = 240;
 
 /// Statements of the book at least: every number from (1) to (91) is among them.
 const EQUATIONS: u32 = 91;
-
-/// Findings of the paper on the electric unicycle that show on the simulated rides, too.
-const SHOWN: [(&str, &str); 6] = [
-    ("figure 6", "the pitch angle γ of the body remains small"),
-    (
-        "figure 8",
-        "figure-eight has the largest error at the optimal h",
-    ),
-    (
-        "figure 8",
-        "the curve of constant speed is flat: a large range of h gives similar torques",
-    ),
-    (
-        "figure 8",
-        "the curve of figure-eight is flat: a large range of h gives similar torques",
-    ),
-    ("height", "constant speed is not sensitive to h"),
-    ("height", "figure-eight is not sensitive to h"),
-];
-
-/// Findings that do not.
-const NOT_SHOWN: [(&str, &str); 3] = [
-    (
-        "figure 8",
-        "deceleration has the smallest error at the optimal h",
-    ),
-    (
-        "figure 8, deceleration",
-        "3 DoF has the smaller error at its minimum",
-    ),
-    ("figure 8, deceleration", "3 DoF identifies the larger h"),
-];
 
 #[test]
 fn the_book_of_steering_has_every_equation_table_and_figure_and_all_statements_hold() {
@@ -178,17 +147,11 @@ fn the_book_of_the_electric_unicycle_says_what_holds_on_simulated_rides() {
             "{published}"
         );
     }
-    for (place, published) in SHOWN {
+    for (place, published, shows) in SIMULATED {
+        let expected = if *shows { "approximate" } else { "differs" };
         assert_eq!(
             agreement(place, published),
-            "approximate",
-            "{place}: {published}"
-        );
-    }
-    for (place, published) in NOT_SHOWN {
-        assert_eq!(
-            agreement(place, published),
-            "differs",
+            expected,
             "{place}: {published}"
         );
     }

@@ -11,7 +11,7 @@ pub mod steering;
 
 use appell::Error;
 
-pub use claim::{Claim, Picture, Reproduction, Section, Tally};
+pub use claim::{Claim, Picture, Reproduction, SIMULATED, Section, Tally};
 pub use page::page;
 
 /// A computation that fails for this reason.

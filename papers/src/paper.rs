@@ -385,14 +385,20 @@ impl Paper {
     /// Replaces symbols, by their names in the paper, by formulas. Names that this mechanism lacks are left
     /// out: papers give the conditions of both of theirs together.
     pub fn substitution(&mut self, replacements: &[(&str, &str)]) -> Substitution {
+        let scope = self.scope.clone();
+        self.substitution_in(&scope, replacements)
+    }
+
+    fn substitution_in(&mut self, scope: &Scope, replacements: &[(&str, &str)]) -> Substitution {
+        let graph = &mut self.derivation.algebra.graph;
         let mut pairs: Vec<(SymbolId, Expr)> = Vec::new();
         for (name, text) in replacements {
-            if let Some(symbol) = self.scope.get(name) {
-                let symbol = self.derivation.algebra.graph.as_symbol(symbol).unwrap();
-                pairs.push((symbol, self.formula(text)));
+            if let Some(symbol) = scope.get(name) {
+                let symbol = graph.as_symbol(symbol).unwrap();
+                pairs.push((symbol, formula(graph, scope, text)));
             }
         }
-        Substitution::new(&mut self.derivation.algebra.graph, &pairs)
+        Substitution::new(graph, &pairs)
     }
 
     /// The derived quantity of a name.
@@ -434,23 +440,22 @@ impl Paper {
     ///
     /// If a line is not an equation, or nothing is compared.
     pub fn differences(&mut self, lines: &str, at: &[(&str, &str)]) -> Vec<String> {
-        let before = self.scope.clone();
-        let mut left_scope = self.scope.clone();
+        let (mut scope, mut left_scope) = (self.scope.clone(), self.scope.clone());
         for (name, value) in &self.derived {
             left_scope.define(name, *value);
-            if self.scope.get(name).is_none() {
-                self.scope.define(name, *value);
+            if scope.get(name).is_none() {
+                scope.define(name, *value);
             }
         }
-        let mut at = self.substitution(at);
+        let mut at = self.substitution_in(&scope, at);
         let (mut compared, mut differences) = (0, Vec::new());
         for line in lines.lines().map(str::trim).filter(|line| !line.is_empty()) {
             let (left, right) = line
                 .split_once('=')
                 .unwrap_or_else(|| panic!("no `=` in `{line}`"));
-            let typed = self.formula(right);
+            let typed = formula(&mut self.derivation.algebra.graph, &scope, right);
             if let Some(name) = left.trim().strip_prefix("let ") {
-                self.scope.define(name.trim(), typed);
+                scope.define(name.trim(), typed);
                 left_scope.define(name.trim(), typed);
                 continue;
             }
@@ -463,7 +468,6 @@ impl Paper {
             }
         }
         assert!(compared > 0, "nothing was compared");
-        self.scope = before;
         differences
     }
 

@@ -183,16 +183,23 @@ impl Explored<'_> {
         );
         let safe = self.fates.safe_part();
         let reach = self.fates.axes.iter().zip(&self.fates.centre);
+        // The grid may lie on one side of the motion, or beside it: no more is claimed than was simulated.
         let reach = reach.map(|(axis, centre)| {
             let quantity = self.quantity(axis);
-            let away = axis.values.iter().map(|value| (value - centre).abs());
-            let largest = quantity.to_unit(safe * away.fold(0.0, f64::max));
-            format!("{} by {} {}", quantity.name, number(largest), quantity.unit)
+            let away = || axis.values.iter().map(|value| value - centre);
+            let largest = safe * away().map(f64::abs).fold(0.0, f64::max);
+            let inside = || away().filter(|away| away.abs() <= largest * (1.0 + 1e-9));
+            let [low, high] = [
+                inside().fold(f64::INFINITY, f64::min),
+                inside().fold(f64::NEG_INFINITY, f64::max),
+            ]
+            .map(|end| number(quantity.to_unit(end)));
+            format!("{} by {low} to {high} {}", quantity.name, quantity.unit)
         });
         // Writing to a string cannot fail.
         let _ = writeln!(
             text,
-            "  all motions settle whose disturbances do not exceed: {}",
+            "  all motions settle that were disturbed: {}",
             reach.collect::<Vec<_>>().join(", ")
         );
         text

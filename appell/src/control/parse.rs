@@ -18,11 +18,12 @@ pub(crate) type GivenInputs = Vec<(usize, f64)>;
 const MOST_STEPS: usize = 10_000;
 
 /// The steady motion: states go to the setup, inputs are returned. A rate or an output determines the
-/// other states.
+/// other states, beside the value of a scheduling variable.
 pub(crate) fn point(
     model: &dyn Model,
     setup: &mut Setup<'_>,
     assignments: &[Assignment],
+    scheduled: Option<(Term, f64)>,
 ) -> Result<GivenInputs, Error> {
     unique(assignments, Field::At)?;
     let info = setup.info;
@@ -31,7 +32,7 @@ pub(crate) fn point(
         matches!(term, Some(Term::Rate(_) | Term::Output(_)))
     };
     if assignments.iter().any(follows) {
-        return motion(model, setup, assignments);
+        return motion(model, setup, assignments, scheduled);
     }
     let declared = &info.inputs[..info.declared_inputs];
     let is_input = |a: &&Assignment| declared.iter().any(|input| input.name == a.name);
@@ -53,6 +54,7 @@ fn motion(
     model: &dyn Model,
     setup: &mut Setup<'_>,
     assignments: &[Assignment],
+    scheduled: Option<(Term, f64)>,
 ) -> Result<GivenInputs, Error> {
     /// Number of starting points of the search.
     const STARTS: usize = 40;
@@ -67,7 +69,12 @@ fn motion(
     }
     for fixed in assignments {
         let term = term(setup, Field::At, &fixed.name)?;
-        problem.fix(term, value_of(setup, term, Field::At, fixed)?)?;
+        if scheduled.is_none_or(|(scheduled, _)| scheduled != term) {
+            problem.fix(term, value_of(setup, term, Field::At, fixed)?)?;
+        }
+    }
+    if let Some((term @ (Term::State(_) | Term::Input(_)), value)) = scheduled {
+        problem.fix(term, value)?;
     }
     let found = problem.solve_isolated(STARTS)?;
     // The nearest comes first.
@@ -304,6 +311,15 @@ impl Values {
             Varied::State(state) => &info.states[state],
             Varied::Input(input) => &info.inputs[input],
             Varied::Parameter(parameter) => &info.parameters[parameter],
+        }
+    }
+
+    /// The variable as a condition of a steady motion.
+    pub(crate) fn term(&self) -> Term {
+        match self.varied {
+            Varied::State(state) => Term::State(state),
+            Varied::Input(input) => Term::Input(input),
+            Varied::Parameter(parameter) => Term::Parameter(parameter),
         }
     }
 

@@ -117,7 +117,7 @@ impl Request {
     pub(crate) fn design(&self, model: &dyn Model, mut setup: Setup<'_>) -> Result<Design, Error> {
         setup.set(&self.parameters)?;
         let goal = self.resolve(&setup)?;
-        let at = parse::point(model, &mut setup, &self.at)?;
+        let at = parse::point(model, &mut setup, &self.at, None)?;
         design::design(model, &setup, &at, &goal)
     }
 }

@@ -28,16 +28,17 @@ impl Schedule {
     ) -> Result<Self, Error> {
         setup.set(&request.parameters)?;
         let mut goal = request.resolve(&setup)?;
-        // The ends of the range may be given in terms of the steady motion.
-        parse::point(model, &mut setup, &request.at)?;
         let values = parse::values(&mut setup, range)?;
         let mut designs: Vec<(f64, Design)> = Vec::new();
         for &value in &values.si {
-            // The steady motion may be given in terms of the scheduling variable, and may set it.
+            // The steady motion may be given in terms of the scheduling variable.
             values.place(&mut setup, &mut Vec::new(), value);
-            let mut at = parse::point(model, &mut setup, &request.at)?;
-            values.place(&mut setup, &mut at, value);
-            let design = design::design(model, &setup, &at, &goal)
+            let condition = Some((values.term(), value));
+            let design = parse::point(model, &mut setup, &request.at, condition)
+                .and_then(|mut at| {
+                    values.place(&mut setup, &mut at, value);
+                    design::design(model, &setup, &at, &goal)
+                })
                 .map_err(|failure| values.at(&setup, value, failure))?;
             // All laws of a schedule feed back the same states.
             goal.outputs.clone_from(&design.outputs);

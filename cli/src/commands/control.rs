@@ -8,7 +8,6 @@ use appell::setup::{Assignment, listed};
 use appell::{Model, files};
 use serde_json::Value;
 
-use crate::failure::tell;
 use crate::{design_report, engine, output, picture, progress};
 
 /// Controllability about a steady motion, and gains of a feedback law.
@@ -98,12 +97,7 @@ impl Control {
         if let Some(path) = &self.json {
             files::write_json(path, &json)?;
         }
-        let to_stdout = [&self.json, &self.write].into_iter().flatten();
-        if to_stdout.into_iter().any(|path| files::is_stdout(path)) {
-            tell(&text);
-            return Ok(());
-        }
-        output::print(&text)
+        output::print_beside(&text, &[&self.json, &self.write, &self.plot])
     }
 
     /// A design, its region of attraction if asked for, and its files.

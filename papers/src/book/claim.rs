@@ -133,11 +133,14 @@ impl Statement<'_> {
             .noted(format!("{digits} {agree}"))
     }
 
-    /// A statement about unpublished recordings, tested on simulated ones. Either outcome is
-    /// expected.
+    /// A statement about unpublished recordings, tested on simulated ones. It is expected to show or not as
+    /// [`SIMULATED`] tells; where that tells nothing, either may be.
     pub(crate) fn simulated(self, ours: impl Into<String>, shows: bool) -> Claim {
+        let mut known = SIMULATED.iter();
+        let known = known
+            .find(|(place, published, _)| *place == self.place && *published == self.published);
         Claim {
-            as_expected: true,
+            as_expected: known.is_none_or(|(.., expected)| *expected == shows),
             ..self.found(ours, shows)
         }
         .noted("on simulated rides")
@@ -256,9 +259,48 @@ impl Tally {
     }
 }
 
-/// Leading digits in which two numbers agree, up to the fifteen that a number has.
+/// Findings of the paper on the electric unicycle, by place and sentence, that show on the simulated rides or
+/// do not.
+pub const SIMULATED: &[(&str, &str, bool)] = &[
+    (
+        "figure 8",
+        "figure-eight has the largest error at the optimal h",
+        true,
+    ),
+    (
+        "figure 8",
+        "the curve of constant speed is flat: a large range of h gives similar torques",
+        true,
+    ),
+    (
+        "figure 8",
+        "the curve of figure-eight is flat: a large range of h gives similar torques",
+        true,
+    ),
+    ("height", "constant speed is not sensitive to h", true),
+    ("height", "figure-eight is not sensitive to h", true),
+    (
+        "figure 8",
+        "deceleration has the smallest error at the optimal h",
+        false,
+    ),
+    (
+        "figure 8, deceleration",
+        "3 DoF has the smaller error at its minimum",
+        false,
+    ),
+    (
+        "figure 8, deceleration",
+        "3 DoF identifies the larger h",
+        false,
+    ),
+];
+
+/// Leading digits in which two numbers agree: the most after which they differ by no more than half a unit
+/// of the last one, up to the fifteen that a number has.
 pub(crate) fn digits(wanted: f64, found: f64) -> u32 {
-    let apart = (found - wanted).abs() / wanted.abs().max(f64::MIN_POSITIVE);
+    let unit = 10f64.powf(wanted.abs().max(f64::MIN_POSITIVE).log10().floor());
+    let apart = (found - wanted).abs() / unit;
     (0..=15)
         .rev()
         .find(|&n| apart <= 0.5 * 10f64.powi(-n + 1))
@@ -287,6 +329,15 @@ pub(crate) fn shown(value: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn digits_agree_to_half_a_unit_of_the_last_one() {
+        assert_eq!(digits(9.81, 9.814), 3);
+        assert_eq!(digits(9.81, 9.85), 2);
+        assert_eq!(digits(1.21, 1.2131), 3);
+        assert_eq!(digits(0.099, 0.0994), 2);
+        assert_eq!(digits(-2.0, 2.0), 0);
+    }
 
     #[test]
     fn statements_are_counted_apart() {

@@ -56,6 +56,15 @@ impl Mechanism {
         Ok(problem)
     }
 
+    /// Whether a search finds no steady motion.
+    pub(crate) fn has_none(self, given: &[(&str, f64)], starts: usize) -> Result<bool, Error> {
+        match self.problem(given)?.solve_all(starts) {
+            Ok(_) => Ok(false),
+            Err(SteadyError::None { .. }) => Ok(true),
+            Err(error) => Err(computation(error)),
+        }
+    }
+
     /// Branches of steady motions along a quantity; none without motions.
     pub(crate) fn branches(
         self,

@@ -344,10 +344,7 @@ fn infinite(claims: &mut Vec<Claim>, wheel: Mechanism) -> Result<(), Error> {
     }
     .number([wanted, product], 4);
     claims.push(claim.approximately());
-    let none = wheel
-        .problem(&[("theta", tilt), ("psi_dot", 0.0)])?
-        .solve_all(20)
-        .is_err();
+    let none = wheel.has_none(&[("theta", tilt), ("psi_dot", 0.0)], 20)?;
     let ours = if none {
         "none is found at ϑ = 10°, ψ̇ = 0"
     } else {

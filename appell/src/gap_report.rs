@@ -44,6 +44,9 @@ pub fn json(report: &Report, next: Option<&Path>, findings: &[String]) -> Value 
             "horizon_s": far.horizon_s, "nominal": far.nominal, "refitted": far.refitted,
             "with_effect": far.with_effect, "noise_floor": far.noise_floor, "closed": far.closed,
             "closed_ci95": far.closed_ci95, "closed_vs_refitted": far.closed_vs_refitted,
+            "budget": far.budget.iter().map(|part| json!({
+                "effect": part.name, "closed": part.closed, "interval": part.interval,
+            })).collect::<Vec<_>>(),
             "runs": far.runs, "horizons": report.horizons.iter().map(ahead).collect::<Vec<_>>(),
         })
     });
@@ -77,6 +80,7 @@ pub fn json(report: &Report, next: Option<&Path>, findings: &[String]) -> Value 
             "gain": hint.gain,
             "log_bayes_factor": hint.log_bayes_factor,
         })).collect::<Vec<_>>(),
+        "by_simulation": report.is_by_simulation,
         "rows": { "fitted": report.rows[0], "all": report.rows[1] },
         "where": {
             "domain": report.place.domain,

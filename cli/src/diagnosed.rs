@@ -5,7 +5,7 @@ use std::path::Path;
 
 use appell_gap::diagnose::{Experiment, GapVerdict, Hypothesis, Report};
 
-use appell_report::gap::{doubts, hinted, joined, left_out, sentence, short};
+use appell_report::gap::{divided, doubts, hinted, joined, left_out, sentence, short};
 use appell_report::text::{number, with_unit};
 
 /// Number of hypotheses in the summary.
@@ -117,6 +117,9 @@ fn how_far(report: &Report) -> String {
         100.0 * far.closed_ci95[1],
         100.0 * far.closed_vs_refitted,
     );
+    if let Some(parts) = divided(report) {
+        let _ = writeln!(text, "  budget    {parts}");
+    }
     if report.verdict != GapVerdict::NoGap && far.closed_ci95[0] <= 0.0 {
         text.push_str("            no significant improvement on held-out runs\n");
     }

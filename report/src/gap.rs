@@ -1,14 +1,16 @@
 //! A gap report as a page, and its sentences.
 //!
-//! [`page()`] sets [`words`], [`plots`] and tables; [`doubt`] suspects unit errors, [`numbers`]
-//! writes values with their uncertainty.
+//! [`page()`] sets [`words`], [`plots`] and tables; [`budget`] divides the gap, [`doubt`] suspects unit
+//! errors, [`numbers`] writes values with their uncertainty.
 
+mod budget;
 mod doubt;
 mod numbers;
 mod page;
 mod plots;
 mod words;
 
+pub use budget::divided;
 pub use doubt::doubts;
 pub use page::page;
 pub use words::{hinted, joined, left_out, sentence};

@@ -31,6 +31,57 @@ impl DataSet {
             ..self.clone()
         }
     }
+
+    /// Windows of so many seconds, about `most` of them, spread evenly over all runs, each with no more than
+    /// about `rows` rows.
+    #[must_use]
+    pub fn windows(&self, length: f64, (most, rows): (usize, usize)) -> Self {
+        let ends = |run: &Run| (run.times[0], run.times[run.times.len() - 1]);
+        let total: f64 = self.runs.iter().map(ends).map(|(from, to)| to - from).sum();
+        let runs = self.runs.iter().flat_map(|run| {
+            let (from, to) = ends(run);
+            let count = ((to - from) / total * most as f64).round().max(1.0);
+            // As many as asked for.
+            #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+            let places = 0..count as usize;
+            places.map(move |place| {
+                let room = (to - from - length).max(0.0);
+                let begin = from + room * (place as f64 + 0.5) / count;
+                let [a, b] =
+                    [begin, begin + length].map(|end| run.times.partition_point(|t| *t < end));
+                self.thinned(&cut(run, a..b), rows)
+            })
+        });
+        Self {
+            runs: runs.filter(|run| run.times.len() > 1).collect(),
+            ..self.clone()
+        }
+    }
+
+    /// A run with no more than about so many rows: what is measured in those that remain, and the mean of each
+    /// input until the next of them.
+    fn thinned(&self, run: &Run, most: usize) -> Run {
+        let every = run.times.len() / most;
+        if every < 2 {
+            return run.clone();
+        }
+        let kept = (0..run.times.len()).step_by(every);
+        let columns = self.channels.iter().zip(&run.values);
+        let values = columns.map(|(channel, values)| {
+            let mean = |row: usize| {
+                let held = &values[row..values.len().min(row + every)];
+                held.iter().sum::<f64>() / held.len() as f64
+            };
+            let is_held = matches!(channel.role, super::Role::Input(_));
+            let value = |row: usize| if is_held { mean(row) } else { values[row] };
+            kept.clone().map(value).collect()
+        });
+        Run {
+            times: kept.clone().map(|row| run.times[row]).collect(),
+            values: values.collect(),
+            ..run.clone()
+        }
+    }
 }
 
 /// Stretches of `kept` rows together, each in the middle of its part of the run.

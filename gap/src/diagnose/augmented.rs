@@ -124,7 +124,7 @@ fn best_size(
         let Ok(likelihood) = estimation.log_likelihood(&values) else {
             continue;
         };
-        let gain = likelihood - fitted.fit.log_likelihood;
+        let gain = bench.weight * likelihood - fitted.fit.log_likelihood;
         if gain > best.map_or(0.0, |(most, _)| most) {
             best = Some((gain, size));
         }

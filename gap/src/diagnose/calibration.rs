@@ -49,6 +49,12 @@ pub(super) fn unlisted_beside_an_effect(rest: Rest) -> f64 {
     UNLISTED / (1.0 - UNLISTED) * unlisted / listed
 }
 
+/// Odds that nothing in the library causes a gap of which the best hypothesis leaves this part.
+pub(super) fn unlisted(left: f64) -> f64 {
+    let left = left.clamp(0.0, 1.0);
+    UNLISTED * left / (1.0 - left).max(f64::MIN_POSITIVE)
+}
+
 /// Odds that there is a gap from nothing in the library where no effect is found.
 pub(super) fn unlisted_beside_nothing(rest: Rest) -> f64 {
     UNLISTED * rest.log_bayes_factor.min(MOST).exp()

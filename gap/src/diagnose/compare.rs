@@ -10,7 +10,7 @@ use appell_estimate::{Estimation, Fit, Unknown};
 use super::DiagnoseError;
 use super::bench::{Bench, LAG, WRONG};
 use super::calibration::{
-    Rest, inexact, tempered, unlisted_beside_an_effect, unlisted_beside_nothing,
+    Rest, inexact, tempered, unlisted, unlisted_beside_an_effect, unlisted_beside_nothing,
 };
 use super::hypothesis::Fitted;
 use super::screen::{Screen, Screened};
@@ -36,6 +36,10 @@ const NO_GAP: f64 = 0.5;
 const NOT_ALONE: f64 = 0.2;
 /// Why a fit does not count.
 const NO_EVIDENCE: &str = "its parameters cannot be told from each other";
+/// Odds that nothing in the library explains a gap that is there and that no effect closes.
+const MUCH: f64 = 20.0;
+/// Part of the gap below which nothing names its cause.
+const IMMATERIAL: f64 = 0.02;
 /// Signatures that are this much alike are those of one effect in two guises.
 const ALIKE: f64 = 0.8;
 
@@ -52,6 +56,8 @@ pub(super) struct Comparison {
     pub(super) unknown: f64,
     /// What the best hypothesis leaves.
     pub(super) left: Option<Leftover>,
+    /// Part of the errors over windows that the best hypothesis leaves of those of the nominal model.
+    pub(super) stays: f64,
     /// Place of the nominal model among the fits.
     pub(super) nominal: usize,
 }
@@ -74,24 +80,39 @@ impl Comparison {
         (best.log_likelihood - nominal.log_likelihood).max(best.log() - nominal.log())
     }
 
+    /// What the best hypothesis leaves, of which a law explains so much; `share` is the part of the gap for a gain.
+    fn rest(&self, share: impl Fn(f64) -> f64) -> Rest {
+        let left = self.left.as_ref();
+        Rest {
+            log_bayes_factor: left.map_or(f64::NEG_INFINITY, |left| {
+                self.independent * left.log_bayes_factor
+            }),
+            share: share(left.map_or(0.0, |left| left.first.gain)),
+        }
+    }
+
     /// Gives its probability to the hypothesis that nothing in the library explains the gap.
     pub(super) fn weigh_unknown(&mut self, bench: &Bench<'_>) -> Result<(), DiagnoseError> {
         self.left = leftover(bench, self.best())?;
-        let (gain, explained) = (
-            self.left.as_ref().map_or(0.0, |l| l.first.gain),
-            self.explained(),
-        );
-        let rest = Rest {
-            log_bayes_factor: (self.left.as_ref()).map_or(f64::NEG_INFINITY, |left| {
-                self.independent * left.log_bayes_factor
-            }),
-            share: gain / (gain + explained.max(0.0)).max(f64::MIN_POSITIVE),
-        };
         let members = self.best().members.len();
-        let odds = if members == 0 {
-            unlisted_beside_nothing(rest)
-        } else {
-            unlisted_beside_an_effect(rest)
+        let odds = match (bench.is_over_windows(), members) {
+            (true, 0) => MUCH,
+            (true, _) => {
+                let gain = self.best().fit.log_likelihood - self.nominal().fit.log_likelihood;
+                self.stays = bench.left(gain);
+                let rest = self.rest(|rest| self.stays * (1.0 - bench.left(rest)));
+                unlisted_beside_an_effect(rest) + unlisted(self.stays)
+            }
+            (false, count) => {
+                let explained = self.explained().max(0.0);
+                let rest = self.rest(|rest| rest / (rest + explained).max(f64::MIN_POSITIVE));
+                if count == 0 {
+                    unlisted_beside_nothing(rest)
+                } else {
+                    // What hardly shows in a simulation names no cause.
+                    unlisted_beside_an_effect(rest) * (self.stays / IMMATERIAL).min(1.0)
+                }
+            }
         };
         // What is as large as the best hypothesis leaves as much.
         let alike = self
@@ -103,23 +124,32 @@ impl Comparison {
         Ok(())
     }
 
+    /// `goes_on` is asked about the best hypothesis before another effect joins it; nothing where it says no.
     pub(super) fn of(
         bench: &Bench<'_>,
         nominal: Fitted,
         screen: &Screen,
-    ) -> Result<Self, DiagnoseError> {
+        goes_on: impl Fn(&Fitted) -> bool,
+    ) -> Result<Option<Self>, DiagnoseError> {
         let mut search = Search {
             bench,
             fits: vec![nominal],
             failed: Vec::new(),
             settled: BTreeSet::new(),
         };
+        if !goes_on(&search.fits[0]) {
+            return Ok(None);
+        }
         for screened in &kept(bench, screen, &[], KEPT) {
             search.join(0, screened);
         }
         for members in 1..MOST_MEMBERS {
             if !search.betters(members) {
                 break;
+            }
+            let best = search.best_of(members);
+            if best.is_some_and(|best| !goes_on(&search.fits[best])) {
+                return Ok(None);
             }
             for base in search.bases(members) {
                 let screen = Screen::of(bench, &search.fits[base])?;
@@ -131,7 +161,7 @@ impl Comparison {
                 search.join_tied(base, &kept);
             }
         }
-        search.finish()
+        search.finish().map(Some)
     }
 }
 
@@ -317,14 +347,18 @@ impl Search<'_, '_> {
         let logs: Vec<f64> = self.fits.iter().map(|f| self.log_posterior(f)).collect();
         let best = (0..logs.len()).max_by(|&a, &b| logs[a].total_cmp(&logs[b]));
         let best = best.unwrap_or(0);
-        let independent = independent(self.bench, &self.fits[best])?;
+        let independent = if self.bench.is_over_windows() {
+            1.0
+        } else {
+            independent(self.bench, &self.fits[best])?
+        };
         let sizes = |fitted: &Fitted| self.bench.sizes_of(&fitted.members);
         let none = self.fits[0].evidence;
         let explained = |fitted: &Fitted| fitted.evidence.log() - none.log();
         let (all, most) = (explained(&self.fits[best]), sizes(&self.fits[best]));
         let weight = |(log, fitted): (&f64, &Fitted)| {
             let weight = tempered(independent * (log - logs[best])).exp();
-            if sizes(fitted) >= most {
+            if sizes(fitted) >= most || self.bench.is_over_windows() {
                 return weight;
             }
             // What has fewer sizes and explains nearly as much may be right, its law not exact.
@@ -349,6 +383,7 @@ impl Search<'_, '_> {
             independent,
             unknown: 0.0,
             left: None,
+            stays: 1.0,
         })
     }
 }

@@ -71,9 +71,15 @@ impl Evidence {
                 };
                 let d = (size / in_value).max(SMALLEST);
                 // A level may do what a member does: what is told of the member is what the level leaves. A
-                // step that was promised to the end might undo it.
+                // step that was promised to the end might undo it, but for windows, where roughness ends searches
+                // within the tolerance.
+                let promised = if bench.is_over_windows() {
+                    0.0
+                } else {
+                    fit.promised[i]
+                };
                 let left = whole.as_ref().map_or(0.0, |whole| {
-                    deviations[place] / whole[(i, i)].sqrt().hypot(fit.promised[i])
+                    deviations[place] / whole[(i, i)].sqrt().hypot(promised)
                 });
                 smallest = smallest.min(size / in_value * left);
                 let two_sided = free.range[0] < neutral;

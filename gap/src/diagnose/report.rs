@@ -3,6 +3,7 @@
 use super::DiagnoseError;
 use super::alternative::Rival;
 use super::bench::Bench;
+use super::budget::Part as Share;
 use super::calibration::tempered;
 use super::changes::Changes;
 use super::compare::{Comparison, TIED, prior};
@@ -36,7 +37,30 @@ pub enum GapVerdict {
     Unexplained,
 }
 
+/// Part of a gap that stays, beyond which it is not explained.
+const MOST: f64 = 0.5;
+
 impl GapVerdict {
+    /// After predictions of the runs that were held out: what does not better them explains nothing, nor does what
+    /// leaves most of the gap where simulations rank the hypotheses.
+    pub(super) fn after(
+        self,
+        which: &[Hypothesis],
+        far: Option<&HowFar>,
+        is_by_simulation: bool,
+    ) -> Self {
+        let Some(far) = far else { return self };
+        let names_effects = matches!(self, Self::Explained | Self::Ambiguous)
+            && which.iter().any(|one| !one.parameters.is_empty());
+        let stays = far.budget.iter().find(|part| part.is_rest());
+        let most_stays = stays.is_some_and(|part| part.closed > MOST);
+        if names_effects && (far.is_worse || is_by_simulation && most_stays) {
+            Self::Unexplained
+        } else {
+            self
+        }
+    }
+
     /// Its word for programs.
     pub const fn word(self) -> &'static str {
         match self {
@@ -154,6 +178,10 @@ pub struct HowFar {
     pub closed: f64,
     pub closed_ci95: [f64; 2],
     pub closed_vs_refitted: f64,
+    /// How the gap divides.
+    pub budget: Vec<Share>,
+    /// Whether the leading hypothesis predicts worse than the re-fitted model, beyond chance.
+    pub is_worse: bool,
     pub runs: Vec<String>,
 }
 
@@ -221,6 +249,8 @@ pub struct Report {
     pub mechanism: String,
     /// The result in one word.
     pub verdict: GapVerdict,
+    /// Whether simulations over windows rank the hypotheses: one-step predictions did not agree with them.
+    pub is_by_simulation: bool,
     /// Rows of the runs to fit: those that were fitted, and all.
     pub rows: [usize; 2],
     /// Where the gap lies.
@@ -338,6 +368,7 @@ pub(super) fn assemble(
     Ok(Report {
         mechanism: bench.set.mechanism.name.clone(),
         verdict,
+        is_by_simulation: bench.is_over_windows(),
         rows: [0; 2],
         place: if verdict == GapVerdict::NoGap || leads {
             Where::nowhere()

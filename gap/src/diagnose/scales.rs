@@ -47,7 +47,7 @@ pub(super) fn of(set: &DataSet) -> Scales {
 }
 
 /// Typical slope of a channel, and over what its sign is rounded.
-fn rates(set: &DataSet, column: usize) -> Option<[f64; 2]> {
+pub(super) fn rates(set: &DataSet, column: usize) -> Option<[f64; 2]> {
     let runs = set.runs.iter();
     let slopes: Vec<Slope> = runs.flat_map(|run| slopes(run, column)).collect();
     let squares = |of: fn(&Slope) -> f64| -> f64 { slopes.iter().map(|own| of(own).powi(2)).sum() };

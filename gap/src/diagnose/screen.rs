@@ -76,6 +76,8 @@ pub(super) struct Screen {
 /// Whitened innovations and their slopes, with what a hypothesis already has taken off.
 pub(super) struct Projected<'t> {
     pub(super) tangent: &'t Tangent,
+    /// Root of the weight of a row.
+    root: f64,
     /// Orthogonal basis of what is already free.
     basis: DMatrix<f64>,
     /// Rows for what is known beforehand.
@@ -87,12 +89,12 @@ pub(super) struct Projected<'t> {
 impl<'t> Projected<'t> {
     /// About a fit; `tangent` starts with the directions that are already free, and some `others` are.
     pub(super) fn new(
-        tangent: &'t Tangent,
+        (tangent, weight): (&'t Tangent, f64),
         fitted: &Fitted,
         free: usize,
         others: Range<usize>,
     ) -> Self {
-        let samples = tangent.samples.len();
+        let (samples, root) = (tangent.samples.len(), weight.sqrt());
         let known: Vec<(usize, f64, f64)> = (0..free)
             .filter_map(|i| {
                 let one = &fitted.fit.free[i];
@@ -109,12 +111,12 @@ impl<'t> Projected<'t> {
         let rows = samples + known.len();
         let mut own = DMatrix::zeros(rows, free + others.len());
         for (column, slope) in (0..free).chain(others).enumerate() {
-            let slope = tangent.slopes.column(slope);
+            let slope = root * tangent.slopes.column(slope);
             own.view_mut((0, column), (samples, 1)).copy_from(&slope);
         }
         let mut rest = DVector::zeros(rows);
         for (row, (_, sample)) in tangent.samples.iter().enumerate() {
-            rest[row] = sample.whitened();
+            rest[row] = root * sample.whitened();
         }
         for (row, &(column, off, slope)) in known.iter().enumerate() {
             own[(samples + row, column)] = slope;
@@ -125,6 +127,7 @@ impl<'t> Projected<'t> {
         rest -= &basis * along;
         Self {
             tangent,
+            root,
             basis,
             prior_rows: known.len(),
             rest,
@@ -138,7 +141,7 @@ impl<'t> Projected<'t> {
         for (place, &column) in columns.iter().enumerate() {
             slopes
                 .view_mut((0, place), (samples, 1))
-                .copy_from(&self.tangent.slopes.column(column));
+                .copy_from(&(self.root * self.tangent.slopes.column(column)));
         }
         // Turned, the product runs along the memory.
         let along = self.basis.transpose() * &slopes;
@@ -188,6 +191,11 @@ fn orthogonal(columns: &DMatrix<f64>) -> DMatrix<f64> {
 }
 
 impl Screen {
+    /// The greatest gain.
+    pub(super) fn most(&self) -> f64 {
+        self.list.first().map_or(0.0, |one| one.gain)
+    }
+
     /// About a fit, of all candidates that it does not have.
     pub(super) fn of(bench: &Bench<'_>, fitted: &Fitted) -> Result<Self, DiagnoseError> {
         let setup = bench.whole_setup(&fitted.members);
@@ -214,10 +222,10 @@ impl Screen {
             values: &kicks,
         });
         let tangent = estimation.tangent(&values, &directions, kicks)?;
-        let projected = Projected::new(&tangent, fitted, free.len(), 0..0);
+        let projected = Projected::new((&tangent, bench.weight), fitted, free.len(), 0..0);
         let kicked = directions.len()..tangent.slopes.ncols();
         let for_kicks = projected.evidence(kicked.clone());
-        let beyond = Projected::new(&tangent, fitted, free.len(), kicked);
+        let beyond = Projected::new((&tangent, bench.weight), fitted, free.len(), kicked);
         let mut list: Vec<Screened> = own
             .into_iter()
             .filter_map(|(candidate, columns)| {
@@ -319,7 +327,7 @@ fn screened(
     let squares = slopes.tr_mul(&slopes);
     let score = slopes.tr_mul(&projected.rest);
     let seen = |place: &usize| {
-        let whole = projected.tangent.slopes.column(columns[*place]).norm();
+        let whole = projected.root * projected.tangent.slopes.column(columns[*place]).norm();
         let left = squares[(*place, *place)].sqrt();
         whole > 0.0 && left.is_finite() && left > LEFT * whole
     };

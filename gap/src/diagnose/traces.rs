@@ -7,8 +7,9 @@ use super::DiagnoseError;
 use super::alternative::columns;
 use super::bench::Bench;
 use super::compare::Comparison;
-use super::held_out::{HeldOut, Leader, noise, origins, stated, taken_over};
+use super::held_out::{HeldOut, Leader};
 use super::hypothesis::Fitted;
+use super::prediction::{noise, origins, stated, taken_over};
 
 /// Horizons in s beside the one at which the gap is reported: one step, short, the free run.
 const HORIZONS: [f64; 4] = [0.0, 0.1, 1.0, f64::INFINITY];
@@ -71,7 +72,7 @@ impl HeldOut {
         let nominal = stated(bench, refitted);
         let ahead = |horizon: f64| {
             let error = |fitted: &Fitted| -> Result<f64, DiagnoseError> {
-                Ok(root(&self.errors(bench, fitted, &noise, horizon)?))
+                Ok(self.errors(bench, fitted, &noise, horizon)?.mean().sqrt())
             };
             let floor = if horizon.is_finite() {
                 Some(leader.floor(horizon)?)
@@ -82,7 +83,7 @@ impl HeldOut {
                 horizon,
                 nominal: error(&nominal)?,
                 refitted: error(refitted)?,
-                with_effect: root(&leader.errors(horizon)?),
+                with_effect: leader.errors(horizon)?.mean().sqrt(),
                 noise_floor: floor,
             })
         };
@@ -169,10 +170,4 @@ impl HeldOut {
             .map(|(sum, count): (f64, f64)| (sum / count.max(1.0)).sqrt())
             .collect())
     }
-}
-
-/// Root of the mean of squared errors.
-fn root(errors: &[(usize, usize, f64)]) -> f64 {
-    let squares: f64 = errors.iter().map(|(_, _, square)| square).sum();
-    (squares / errors.len().max(1) as f64).sqrt()
 }

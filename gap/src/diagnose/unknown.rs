@@ -178,7 +178,7 @@ fn wave_scores(
         values: &write,
     };
     let tangent = estimation.tangent(&fitted.fit.values, &free, Some(shapes))?;
-    let projected = Projected::new(&tangent, fitted, free.len(), 0..0);
+    let projected = Projected::new((&tangent, bench.weight), fitted, free.len(), 0..0);
     let places: Vec<Option<usize>> = match along {
         Along::Disturbances => (setup.disturbances.iter())
             .map(|one| match *one {

@@ -69,7 +69,7 @@ fn gains(bench: &Bench<'_>, nominal: &Fitted, best: &Fitted) -> Result<Vec<Sampl
             run,
             row,
             t,
-            gain: best - nominal,
+            gain: bench.weight * (best - nominal),
         })
         .collect())
 }

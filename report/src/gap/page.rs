@@ -7,6 +7,7 @@ use appell_gap::data::{DataSet, Part};
 use appell_gap::diagnose::{GapVerdict, HowFar, Hypothesis, Report, Where};
 use maud::{Markup, PreEscaped, html};
 
+use super::budget::budget;
 use super::doubt::doubts;
 use super::numbers::{measured, percent};
 use super::plots;
@@ -28,6 +29,9 @@ pub fn page(set: &DataSet, report: &Report) -> String {
             h1 { (name) ": model against recordings" }
             p class="faint" { (set.description) }
             p class="verdict" { (verdict(report)) }
+            @if let Some(far) = &report.how_far {
+                (budget(far))
+            }
             (place(set, report))
             (which(report))
             (how_far(report))
@@ -60,7 +64,7 @@ fn verdict(report: &Report) -> String {
             percent(far.closed_ci95[1]),
             percent(far.closed_vs_refitted),
         );
-        if far.with_effect > far.refitted {
+        if far.is_worse {
             text += " Predictions become worse with it: the fit does not generalise to these runs.";
         } else if far.with_effect > (1.0 - MATTERS) * far.refitted {
             text += " The effect is significant but unimportant: predictions hardly improve.";
@@ -458,7 +462,7 @@ fn recordings(set: &DataSet, report: &Report) -> Markup {
 }
 
 /// A table; the columns from `numbers` on are right-aligned.
-fn table<const N: usize>(
+pub(super) fn table<const N: usize>(
     heading: [&str; N],
     rows: impl Iterator<Item = [Markup; N]>,
     numbers: usize,
@@ -493,7 +497,7 @@ fn separated<T>(list: &[T], shown: impl Fn(&T) -> Markup, between: &Markup) -> M
 }
 
 /// A share as a bar with its number.
-fn bar(part: f64) -> Markup {
+pub(super) fn bar(part: f64) -> Markup {
     let width = format!("width:{:.1}%", 100.0 * part.clamp(0.0, 1.0));
     html! {
         span class="share" { span class="bar" { i style=(width) {} } " " (percent(part)) }
@@ -506,7 +510,7 @@ fn figure(svg: String, caption: &str) -> Markup {
     }
 }
 
-fn code(text: &str) -> Markup {
+pub(super) fn code(text: &str) -> Markup {
     html! { code { (text) } }
 }
 

@@ -1,6 +1,6 @@
 //! The statements of a gap report.
 
-use appell_gap::diagnose::{GapVerdict, Hint, Report};
+use appell_gap::diagnose::{GapVerdict, Hint, Hypothesis, Report};
 
 /// The verdict in one sentence.
 pub fn sentence(report: &Report) -> String {
@@ -12,11 +12,23 @@ pub fn sentence(report: &Report) -> String {
     match report.verdict {
         GapVerdict::NoGap => "no gap beyond measurement and process noise".to_owned(),
         GapVerdict::Explained => format!("the gap is explained by {}", about.join(" and ")),
-        GapVerdict::Ambiguous => format!(
-            "there is a gap; {} explains it best ({:.0} %), but {} cannot be ruled out",
-            about.join(" and "),
-            100.0 * report.which[0].probability,
-            rivals(report).join(", ")
+        GapVerdict::Ambiguous => {
+            let first = leading(report);
+            format!(
+                "there is a gap; {} {} it best ({:.0} %), but {} cannot be ruled out",
+                about.join(" and "),
+                if about.len() > 1 { "explain" } else { "explains" },
+                first.map_or(0.0, |first| 100.0 * first.probability),
+                rivals(report).join(", ")
+            )
+        }
+        GapVerdict::Unexplained if report.how_far.as_ref().is_some_and(|far| far.is_worse) => {
+            "there is a gap; what fits the recordings best makes predictions worse and explains nothing"
+                .to_owned()
+        }
+        GapVerdict::Unexplained if names_effects(report) => format!(
+            "there is a gap; {} explains a part of it, most stays",
+            about.join(" and ")
         ),
         GapVerdict::Unexplained => {
             let left = report.left.as_ref().map(|left| format!(": {}", left.about));
@@ -26,9 +38,24 @@ pub fn sentence(report: &Report) -> String {
     }
 }
 
-/// The hypotheses that are tied with the first one, with their probabilities.
+/// Whether the most probable hypothesis names effects.
+fn names_effects(report: &Report) -> bool {
+    report
+        .which
+        .first()
+        .is_some_and(|first| !first.parameters.is_empty())
+}
+
+/// The most probable hypothesis of the library.
+fn leading(report: &Report) -> Option<&Hypothesis> {
+    report.which.iter().find(|one| one.effects != ["unknown"])
+}
+
+/// The hypotheses that are tied with the leading one, with their probabilities.
 fn rivals(report: &Report) -> Vec<String> {
-    let first = &report.which[0].effects;
+    let Some(first) = leading(report).map(|first| &first.effects) else {
+        return Vec::new();
+    };
     let groups = report.tied.iter();
     let tied = groups.filter(|group| group.contains(first)).flatten();
     let named = |effects: &Vec<String>| {

@@ -1,0 +1,178 @@
+//! How the gap divides: what parameters within their tolerances account for, each effect of the best
+//! hypothesis, and what nothing explains.
+//!
+//! The share of an effect is the mean, over all orders in which the effects can be added, of what it takes
+//! from the mean squared error of prediction (L. S. Shapley, *A value for n-person games*, 1953): shares
+//! add up, and none depends on an order. Every model on the way is fitted to the runs to fit and judged
+//! on those held out.
+
+use appell_estimate::Estimation;
+
+use super::DiagnoseError;
+use super::bench::Bench;
+use super::compare::Comparison;
+use super::hypothesis::Fitted;
+use super::prediction::{Errors, Paired};
+use crate::effects::Part as Role;
+
+/// The re-fitted parameters in the budget.
+pub(super) const REFIT: &str = "refit";
+/// What nothing explains.
+pub(super) const REST: &str = "unexplained";
+
+/// A part of the gap.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Part {
+    /// `refit`, an effect, or `unexplained`.
+    pub name: String,
+    /// Part of the gap of the nominal model, on the runs that were held out.
+    pub closed: f64,
+    /// Its interval of 95 %, over blocks of time.
+    pub interval: [f64; 2],
+}
+
+impl Part {
+    /// Whether it is that of the re-fitted parameters.
+    pub fn is_refit(&self) -> bool {
+        self.name == REFIT
+    }
+
+    /// Whether it is what nothing explains.
+    pub fn is_rest(&self) -> bool {
+        self.name == REST
+    }
+}
+
+/// The parts of the best hypothesis. `ends`: the stated model, the base that effects are added to, all effects.
+pub(super) fn of(
+    bench: &Bench<'_>,
+    comparison: &Comparison,
+    ends: [&Errors; 3],
+    floor: f64,
+    errors: impl Fn(&Fitted) -> Result<Errors, DiagnoseError>,
+) -> Result<Vec<Part>, DiagnoseError> {
+    let best = comparison.best();
+    let members = best.members.len();
+    let all = (1 << members) - 1;
+    let mut between: Vec<Errors> = Vec::new();
+    for set in 1..all {
+        between.push(errors(&with(bench, comparison, &subset(best, set))?)?);
+    }
+    let [stated, base, effect] = ends;
+    let mut models = vec![stated, base];
+    models.extend(&between);
+    if members > 0 {
+        models.push(effect);
+    }
+    // A set of members stands at its number, after the stated model.
+    let paired = Paired::of(&models);
+    let gap = |means: &[f64]| means[0] - floor * floor;
+    let mut parts = Vec::new();
+    let mut add = |name: String, share: &dyn Fn(&[f64]) -> f64| {
+        parts.push(Part {
+            name,
+            closed: share(&paired.means()),
+            interval: paired.interval95(share),
+        });
+    };
+    add(REFIT.to_owned(), &|means| {
+        (means[0] - means[1]) / gap(means)
+    });
+    for (place, &member) in best.members.iter().enumerate() {
+        let name = bench.candidate(member).name();
+        add(name, &|means| {
+            shapley(&means[1..], place, members) / gap(means)
+        });
+    }
+    add(REST.to_owned(), &|means| {
+        (means[means.len() - 1] - floor * floor) / gap(means)
+    });
+    Ok(parts)
+}
+
+/// The parts where another model leads: means of the stated model, the re-fitted one and the other.
+pub(super) fn of_alternative(name: &str, paired: &Paired, floor: f64) -> Vec<Part> {
+    let gap = move |means: &[f64]| means[0] - floor * floor;
+    let part = |name: &str, share: &dyn Fn(&[f64]) -> f64| Part {
+        name: name.to_owned(),
+        closed: share(&paired.means()),
+        interval: paired.interval95(share),
+    };
+    vec![
+        part(name, &|means| (means[0] - means[2]) / gap(means)),
+        part(REST, &|means| (means[2] - floor * floor) / gap(means)),
+    ]
+}
+
+/// What the player at a place takes from `means`, which hold all coalitions by their number.
+fn shapley(means: &[f64], place: usize, players: usize) -> f64 {
+    let factorial = |n: u32| (1..=n).map(f64::from).product::<f64>();
+    let own = 1 << place;
+    let others = (0..means.len()).filter(|set| set & own == 0);
+    others
+        .map(|set| {
+            let before = set.count_ones();
+            let after = u32::try_from(players).unwrap_or(u32::MAX) - before - 1;
+            factorial(before) * factorial(after) * (means[set] - means[set | own])
+        })
+        .sum::<f64>()
+        / factorial(u32::try_from(players).unwrap_or(u32::MAX))
+}
+
+/// The members that a number stands for.
+fn subset(best: &Fitted, set: usize) -> Vec<usize> {
+    let members = best.members.iter().enumerate();
+    members
+        .filter(|(place, _)| set & (1 << place) != 0)
+        .map(|(_, member)| *member)
+        .collect()
+}
+
+/// The fit with some members of the best hypothesis; those without which it was found are there already.
+fn with(
+    bench: &Bench<'_>,
+    comparison: &Comparison,
+    members: &[usize],
+) -> Result<Fitted, DiagnoseError> {
+    let known = comparison
+        .fits
+        .iter()
+        .find(|(own, _)| own.members == members);
+    if let Some((fitted, _)) = known {
+        return Ok(fitted.clone());
+    }
+    let best = comparison.best();
+    let setup = bench.setup(members);
+    let estimation = Estimation::new(&setup, &bench.recordings)?;
+    let mut start = bench.carried(best, &estimation);
+    for &absent in best
+        .members
+        .iter()
+        .filter(|member| !members.contains(member))
+    {
+        for (place, role) in bench.own(bench.candidate(absent)) {
+            if role != Role::Shape {
+                start[place] = 0.0;
+            }
+        }
+    }
+    bench.fit(members, &estimation, &start)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::shapley;
+
+    #[test]
+    fn shares_add_up_and_twins_share_alike() {
+        // Either of two twins takes 6 of 10; both take 7.
+        let means = [10.0, 4.0, 4.0, 3.0];
+        let [first, second] = [0, 1].map(|place| shapley(&means, place, 2));
+        assert!((first - 3.5).abs() < 1e-12 && (first - second).abs() < 1e-12);
+        // One of three does nothing.
+        let means = [9.0, 5.0, 9.0, 5.0, 3.0, 1.0, 3.0, 1.0];
+        let shares = [0, 1, 2].map(|place| shapley(&means, place, 3));
+        assert!(shares[1].abs() < 1e-12, "{shares:?}");
+        assert!((shares.iter().sum::<f64>() - 8.0).abs() < 1e-12);
+    }
+}

@@ -1,0 +1,104 @@
+//! Windows of the recordings over which a model has to predict by itself.
+//!
+//! One step ahead a disturbance that is free to follow swallows what ruins a simulation. Over a window
+//! nothing follows: the state at its begin is estimated, the rest is the model. No law is exact, so that errors
+//! have causes that no hypothesis has, whatever the number of rows: their likelihood is weighed so that only
+//! differences beyond a tolerance count (J. W. Miller and D. B. Dunson, *Robust Bayesian inference via
+//! coarsening*, Journal of the American Statistical Association 114, 2019).
+
+use std::f64::consts::PI;
+
+use super::DiagnoseError;
+use super::bench::Bench;
+use super::compare::{Comparison, TIED};
+use super::hypothesis::Fitted;
+use super::scales::rates;
+use super::screen::Screen;
+use crate::data::DataSet;
+
+/// Number of windows, spread over all runs.
+const WINDOWS: usize = 40;
+/// Rows of a window: errors that grow over it are seen by far fewer.
+const ROWS: usize = 40;
+/// Rows that a window has at least.
+const FEWEST_ROWS: usize = 20;
+/// A window is no longer than this part of the longest run.
+const PARTS: f64 = 4.0;
+/// What windows may gain by other values, or by one more effect, where a hypothesis holds: odds of some hundred.
+const REFUTED: f64 = 2.0 * TIED;
+/// The same for a hypothesis that others may join: what it lacks pulls at its values.
+const REFUTED_ALONE: f64 = 5.0 * TIED;
+
+/// What one-step predictions say of the hypotheses, as long as simulations bear it out: nothing where the windows
+/// refute it, as where the disturbance follows what the model lacks.
+pub(super) fn one_step(
+    over: &Bench<'_>,
+    (bench, nominal, screen): (&Bench<'_>, Fitted, &Screen),
+) -> Result<Option<Comparison>, DiagnoseError> {
+    // Where the windows lose a hypothesis, they say nothing against it.
+    let goes_on = |fitted: &Fitted| {
+        let again = over.fitted_again(bench, fitted);
+        again.map_or(true, |(gain, _)| gain < REFUTED_ALONE)
+    };
+    let Some(mut comparison) = Comparison::of(bench, nominal, screen, goes_on)? else {
+        return Ok(None);
+    };
+    let Ok((gain, again)) = over.fitted_again(bench, comparison.best()) else {
+        return Ok(Some(comparison));
+    };
+    if let Ok((_, nominal)) = over.fitted_again(bench, comparison.nominal()) {
+        comparison.stays = over.left(again.fit.log_likelihood - nominal.fit.log_likelihood);
+    }
+    let by_others = Screen::of(over, &again).map_or(0.0, |screen| screen.most());
+    Ok((gain.max(by_others) < REFUTED).then_some(comparison))
+}
+
+/// What simulations over the windows say of the hypotheses, with what the nominal model lacks there.
+pub(super) fn simulated(over: &Bench<'_>) -> Result<(Screen, Comparison), DiagnoseError> {
+    let nominal = over.nominal()?;
+    let screen = Screen::of(over, &nominal)?;
+    let comparison = Comparison::of(over, nominal, &screen, |_| true)?;
+    Ok((screen, comparison.ok_or(DiagnoseError::NothingToFit)?))
+}
+
+/// The runs, cut into windows as long as a typical swing: long enough that forces show in the motion, short
+/// enough that errors do not decide by themselves where it goes.
+pub(super) fn windows(set: &DataSet) -> DataSet {
+    set.windows(length(set), (WINDOWS, ROWS))
+}
+
+/// Half of a typical period in s: that of a harmonic motion with the channels' ratio of deviation to rate, the
+/// median of the channels.
+fn length(set: &DataSet) -> f64 {
+    let measured = (0..set.channels.len()).filter(|&column| set.channels[column].is_measured());
+    let half = |column: usize| {
+        let [rate, _] = rates(set, column)?;
+        Some(PI * deviation(set, column) / rate)
+    };
+    let halves: Vec<f64> = measured.filter_map(half).collect();
+    let middle = halves.into_iter().reduce(f64::min);
+    let durations = set
+        .runs
+        .iter()
+        .map(|run| run.times[run.times.len() - 1] - run.times[0]);
+    let longest = durations.fold(0.0, f64::max);
+    let steps = set.runs.iter().map(|run| run.sampling.step);
+    let step = steps.fold(f64::INFINITY, f64::min);
+    let length = middle.unwrap_or(longest).min(longest / PARTS);
+    length.max(FEWEST_ROWS as f64 * step)
+}
+
+/// Standard deviation of a channel in its runs.
+fn deviation(set: &DataSet, column: usize) -> f64 {
+    let (mut squares, mut count) = (0.0, 0.0_f64);
+    for run in &set.runs {
+        let seen = run.values[column].iter().filter(|value| value.is_finite());
+        let (sum, rows) = seen.clone().fold((0.0, 0.0_f64), |(sum, rows), value| {
+            (sum + value, rows + 1.0)
+        });
+        let mean = sum / rows.max(1.0);
+        squares += seen.map(|value| (value - mean).powi(2)).sum::<f64>();
+        count += rows;
+    }
+    (squares / count.max(1.0)).sqrt()
+}

@@ -1,0 +1,233 @@
+//! Errors of predictions over a horizon, in units of the noise, by blocks of time.
+//!
+//! A prediction starts from what the filter knows at a row and uses nothing that is measured
+//! afterwards, so that a disturbance cannot follow what a model lacks. Errors that overlap depend on
+//! each other: intervals come from a bootstrap over whole blocks (H. R. Künsch, *The jackknife and the
+//! bootstrap for general stationary observations*, Annals of Statistics 17, 1989).
+
+use std::collections::BTreeMap;
+
+use appell_estimate::{Estimation, Recording, Unknown};
+use rand_xoshiro::SplitMix64;
+use rand_xoshiro::rand_core::{Rng as _, SeedableRng as _};
+
+use super::DiagnoseError;
+use super::bench::Bench;
+use super::hypothesis::Fitted;
+use crate::identify::begin;
+
+/// Rows from which expected errors are estimated.
+const EXPECTED_FROM: usize = 25;
+/// Time in s that the filter has to find the state, but no more than a tenth of the run.
+const WARM_UP: f64 = 0.5;
+/// Times that disturbances are raised tenfold at most.
+const MORE: usize = 6;
+/// Draws of the bootstrap.
+const DRAWS: usize = 1000;
+/// Length of a block in s.
+const BLOCK: f64 = 2.0;
+
+/// Sums of squared errors with their counts, by run and block.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Errors(BTreeMap<(usize, usize), (f64, f64)>);
+
+impl Errors {
+    /// Mean square.
+    pub(super) fn mean(&self) -> f64 {
+        let (sum, count) = (self.0.values()).fold((0.0, 0.0), |(sum, count), (square, n)| {
+            (sum + square, count + n)
+        });
+        sum / f64::max(count, 1.0)
+    }
+}
+
+/// Errors of several models in the same blocks.
+#[derive(Debug, Clone)]
+pub(super) struct Paired {
+    /// Sums by block and model.
+    sums: Vec<Vec<f64>>,
+    counts: Vec<f64>,
+    /// Number of models.
+    models: usize,
+}
+
+impl Paired {
+    pub(super) fn of(models: &[&Errors]) -> Self {
+        let blocks = models.first().map(|first| first.0.iter());
+        let blocks: Vec<_> = blocks.into_iter().flatten().collect();
+        let sum = |place, model: &&Errors| model.0.get(place).map_or(0.0, |(sum, _)| *sum);
+        Self {
+            sums: (blocks.iter())
+                .map(|(place, _)| models.iter().map(|model| sum(*place, model)).collect())
+                .collect(),
+            counts: blocks.iter().map(|(_, (_, count))| *count).collect(),
+            models: models.len(),
+        }
+    }
+
+    /// Mean squares of the models.
+    pub(super) fn means(&self) -> Vec<f64> {
+        self.over(0..self.sums.len())
+    }
+
+    fn over(&self, blocks: impl Iterator<Item = usize>) -> Vec<f64> {
+        let mut means = vec![0.0; self.models];
+        let mut count = 0.0;
+        for block in blocks {
+            for (mean, sum) in means.iter_mut().zip(&self.sums[block]) {
+                *mean += sum;
+            }
+            count += self.counts[block];
+        }
+        for mean in &mut means {
+            *mean /= f64::max(count, 1.0);
+        }
+        means
+    }
+
+    /// Quantiles 2.5 and 97.5 % of a number that depends on the mean squares; the same draws in every run
+    /// of the program.
+    pub(super) fn interval95(&self, number: impl Fn(&[f64]) -> f64) -> [f64; 2] {
+        let mut drawn = self.drawn(number);
+        drawn.sort_by(f64::total_cmp);
+        let at = |part: usize| {
+            let one = drawn.get(part * drawn.len() / 1000);
+            one.copied().unwrap_or(f64::NAN)
+        };
+        [at(25), at(975)]
+    }
+
+    fn drawn(&self, number: impl Fn(&[f64]) -> f64) -> Vec<f64> {
+        let mut random = SplitMix64::seed_from_u64(1);
+        let count = self.sums.len();
+        let mut below = || usize::try_from(random.next_u64() % count.max(1) as u64).unwrap_or(0);
+        (0..DRAWS)
+            .map(|_| {
+                let drawn: Vec<usize> = (0..count).map(|_| below()).collect();
+                number(&self.over(drawn.into_iter()))
+            })
+            .collect()
+    }
+}
+
+/// Errors of a fitted hypothesis on recordings, which need not be those that it was fitted to.
+pub(super) fn errors(
+    recordings: &[Recording],
+    bench: &Bench<'_>,
+    fitted: &Fitted,
+    noise: &[f64],
+    horizon: f64,
+    most: usize,
+) -> Result<Errors, DiagnoseError> {
+    let setup = bench.setup(&fitted.members);
+    let estimation = Estimation::new(&setup, recordings)?;
+    let values = taken_over(bench, fitted, &estimation)?;
+    let mut errors = Errors::default();
+    for (run, recording) in recordings.iter().enumerate() {
+        let mut origins = origins(recording, most);
+        if horizon.is_infinite() {
+            origins.truncate(1);
+        }
+        for one in estimation.predictions(&values, run, horizon, &origins)? {
+            if noise[one.channel].is_infinite() {
+                continue;
+            }
+            let block = (recording.times()[one.origin] - recording.times()[0]) / BLOCK;
+            // A count of blocks in memory.
+            #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+            let block = block as usize;
+            let (sum, count) = errors.0.entry((run, block)).or_default();
+            *sum += (one.residual / noise[one.channel]).powi(2);
+            *count += 1.0;
+        }
+    }
+    Ok(errors)
+}
+
+/// The error that remains where the hypothesis is right, root of the mean square.
+pub(super) fn floor(
+    recordings: &[Recording],
+    bench: &Bench<'_>,
+    fitted: &Fitted,
+    noise: &[f64],
+    horizon: f64,
+) -> Result<f64, DiagnoseError> {
+    if let Some(sensors) = bench.noise_of_sensors() {
+        let parts = sensors
+            .iter()
+            .zip(noise)
+            .filter(|(_, unit)| unit.is_finite());
+        let squares: Vec<f64> = parts
+            .map(|(sensor, unit)| (sensor / unit).powi(2))
+            .collect();
+        return Ok((squares.iter().sum::<f64>() / squares.len().max(1) as f64).sqrt());
+    }
+    let setup = bench.setup(&fitted.members);
+    let estimation = Estimation::new(&setup, recordings)?;
+    let values = taken_over(bench, fitted, &estimation)?;
+    let (mut squares, mut count) = (0.0, 0.0_f64);
+    for (run, recording) in recordings.iter().enumerate() {
+        let origins = origins(recording, EXPECTED_FROM);
+        for (channel, variance) in estimation.expected_errors(&values, run, horizon, &origins)? {
+            if noise[channel].is_finite() {
+                squares += variance / noise[channel].powi(2);
+                count += 1.0;
+            }
+        }
+    }
+    Ok((squares / count.max(1.0)).sqrt())
+}
+
+/// The rig as the data set states it, with the levels of a fit.
+pub(super) fn stated(bench: &Bench<'_>, fitted: &Fitted) -> Fitted {
+    let mut stated = fitted.clone();
+    for (index, parameter) in bench.set.parameters.iter().enumerate() {
+        stated.fit.values[index] = parameter.value;
+    }
+    stated
+}
+
+/// Values of a fit on these recordings. A filter that trusts its model so much that it loses a run
+/// which it has not seen gets more disturbance, until it follows.
+pub(super) fn taken_over(
+    bench: &Bench<'_>,
+    fitted: &Fitted,
+    estimation: &Estimation<'_>,
+) -> Result<Vec<f64>, DiagnoseError> {
+    let mut values = bench.carried(fitted, estimation);
+    begin(estimation, &mut values)?;
+    bench.hide(&fitted.members, estimation, &mut values)?;
+    let layout = estimation.layout();
+    for (unknown, value) in &bench.predicting {
+        values[layout.place(*unknown)?] = *value;
+    }
+    for _ in 0..MORE {
+        if estimation.log_likelihood(&values).is_ok() {
+            break;
+        }
+        for index in 0..estimation.setup().disturbances.len() {
+            values[layout.place(Unknown::Disturbance(index))?] *= 10.0;
+        }
+    }
+    Ok(values)
+}
+
+/// Noise of the channels under a hypothesis.
+pub(super) fn noise(bench: &Bench<'_>, fitted: &Fitted) -> Result<Vec<f64>, DiagnoseError> {
+    let channels = 0..bench.measured.len();
+    let noise = channels.map(|channel| {
+        let place = fitted.layout.place(Unknown::Noise(channel))?;
+        Ok(fitted.fit.values[place])
+    });
+    noise.collect()
+}
+
+/// Rows from which predictions start.
+pub(super) fn origins(recording: &Recording, most: usize) -> Vec<usize> {
+    let times = recording.times();
+    let (start, end) = (times[0], times[times.len() - 1]);
+    let from = start + WARM_UP.min(0.1 * (end - start));
+    let first = times.partition_point(|&t| t < from);
+    let every = (times.len() - first).div_ceil(most).max(1);
+    (first..times.len()).step_by(every).collect()
+}

@@ -1,0 +1,76 @@
+//! How the gap divides, as a table and as a sentence.
+
+use appell_gap::diagnose::{HowFar, Report, Share};
+use maud::{Markup, html};
+
+use super::numbers::percent;
+use super::page::{bar, code, table};
+
+/// Parts of the gap below this never name its cause.
+const IMMATERIAL: f64 = 0.02;
+
+/// `coulomb_friction@theta 66 % [24 %, 77 %], ... ; 8 % [4 %, 9 %] stays`, the largest part first; `None` where no
+/// run was held out.
+pub fn divided(report: &Report) -> Option<String> {
+    let far = report.how_far.as_ref()?;
+    let (stays, mut parts): (Vec<&Share>, Vec<&Share>) =
+        far.budget.iter().partition(|part| part.is_rest());
+    parts.sort_by(|a, b| b.closed.total_cmp(&a.closed));
+    let told = |part: &Share| {
+        let [low, high] = part.interval.map(percent);
+        format!("{} [{low}, {high}]", percent(part.closed))
+    };
+    let parts = parts.into_iter().map(|part| {
+        let small = if part.closed < IMMATERIAL {
+            " (immaterial)"
+        } else {
+            ""
+        };
+        format!("{} {}{small}", name(part), told(part))
+    });
+    let stays = stays
+        .into_iter()
+        .map(|part| format!("{} stays", told(part)));
+    let all = parts.chain(stays).collect::<Vec<_>>().join(", ");
+    (!all.is_empty()).then_some(all)
+}
+
+/// What a part is called.
+fn name(part: &Share) -> &str {
+    if part.is_refit() {
+        "re-fitted parameters"
+    } else if part.is_rest() {
+        "what stays"
+    } else {
+        &part.name
+    }
+}
+
+/// The table, with a bar for each part.
+pub(super) fn budget(far: &HowFar) -> Markup {
+    let rows = far.budget.iter().map(|part| {
+        let [low, high] = part.interval.map(percent);
+        let effect = !(part.is_refit() || part.is_rest());
+        [
+            if effect {
+                code(name(part))
+            } else {
+                html! { (name(part)) }
+            },
+            bar(part.closed.clamp(0.0, 1.0)),
+            html! {
+                (percent(part.closed)) " [" (low) ", " (high) "]"
+                @if effect && part.closed < IMMATERIAL { span class="faint" { " immaterial" } }
+            },
+        ]
+    });
+    html! {
+        @if !far.budget.is_empty() {
+            (table(["part", "of the gap", "share, with 95 % interval"], rows, 2))
+            p class="faint" {
+                "Shares of the mean square prediction error " (far.horizon_s) " s ahead on the held-out runs, beyond \
+                 the noise. The share of an effect is the mean over all orders in which the effects can be added."
+            }
+        }
+    }
+}

@@ -49,6 +49,7 @@ mod traces;
 mod unknown;
 mod unmodelled;
 mod whiteness;
+mod window_bench;
 mod windows;
 
 use crate::data::{DataSet, Part, Spec};
@@ -69,6 +70,7 @@ pub use traces::{AHEAD, Ahead, Trace};
 use alternative::{Alternative, Rival};
 use bench::Bench;
 use held_out::{HeldOut, Leader};
+use horizon::Judged;
 use screen::Screen;
 
 /// Version of the engine. Every change that moves a number of some report raises it, so that scores and
@@ -113,37 +115,14 @@ pub fn diagnose(
     stage("fitting the effects that remain");
     let windows = horizon::windows(&whole.bound_to(&model.mechanism));
     let over = Bench::over(&windows, (&bench, &nominal))?;
-    let one_step = horizon::one_step(&over, (&bench, nominal.clone(), &screen))?;
-    stage("looking for what no effect explains");
-    let (bench, screen, comparison) = if let Some(mut comparison) = one_step {
-        comparison.weigh_unknown(&bench)?;
-        (bench, screen, comparison)
-    } else {
-        stage("fitting simulations over windows");
-        let (screen, mut comparison) =
-            horizon::simulated(&over).map_err(DiagnoseError::of_nominal)?;
-        comparison.weigh_unknown(&over)?;
-        if comparison.best().members.is_empty() {
-            // One step ahead more is seen of what is left.
-            comparison.left = unknown::leftover(&bench, &nominal)?;
-        }
-        (over, screen, comparison)
-    };
+    let Judged {
+        bench,
+        screen,
+        comparison,
+    } = horizon::judged((bench, nominal, screen), over, &mut stage)?;
     stage("fitting the alternatives");
-    let alternatives = options.alternatives.iter();
-    let alternatives: Vec<Alternative> = alternatives
-        .map(|spec| Alternative::new(&fitted, spec))
-        .collect::<Result<_, _>>()?;
-    let (mut rivals, mut lost): (Vec<Rival<'_>>, Vec<_>) = (Vec::new(), Vec::new());
-    for alternative in &alternatives {
-        match Rival::of(alternative, &bench) {
-            Ok(rival) => rivals.push(rival),
-            Err(DiagnoseError::Estimate(error)) => {
-                lost.push((vec![alternative.name()], error.to_string()));
-            }
-            Err(other) => return Err(other),
-        }
-    }
+    let alternatives = Alternative::all(&options.alternatives, &fitted)?;
+    let (rivals, mut lost) = Rival::all(&alternatives, &bench)?;
     stage("localising the gap");
     let mut place = localise::place(&bench, &comparison)?;
     windows::tell(&bench, &comparison, &mut place)?;

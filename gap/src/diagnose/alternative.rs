@@ -33,8 +33,16 @@ pub(super) struct Rival<'a> {
     pub(super) log: f64,
 }
 
+/// Effects, and why their hypothesis has no fit.
+type Lost = (Vec<String>, String);
+
 impl Alternative {
-    pub(super) fn new(fitted: &DataSet, spec: &Spec) -> Result<Self, DiagnoseError> {
+    /// All of them, for the runs to fit.
+    pub(super) fn all(specs: &[Spec], fitted: &DataSet) -> Result<Vec<Self>, DiagnoseError> {
+        specs.iter().map(|spec| Self::new(fitted, spec)).collect()
+    }
+
+    fn new(fitted: &DataSet, spec: &Spec) -> Result<Self, DiagnoseError> {
         Ok(Self {
             spec: spec.clone(),
             set: fitted.rebound(spec)?,
@@ -49,11 +57,26 @@ impl Alternative {
 }
 
 impl<'a> Rival<'a> {
-    /// Fits an alternative; `main` is the model beside which it stands.
-    pub(super) fn of(
-        alternative: &'a Alternative,
+    /// Those that can be fitted, and the names of the others with the reasons.
+    pub(super) fn all(
+        alternatives: &'a [Alternative],
         main: &Bench<'_>,
-    ) -> Result<Self, DiagnoseError> {
+    ) -> Result<(Vec<Self>, Vec<Lost>), DiagnoseError> {
+        let (mut rivals, mut lost) = (Vec::new(), Vec::new());
+        for alternative in alternatives {
+            match Self::of(alternative, main) {
+                Ok(rival) => rivals.push(rival),
+                Err(DiagnoseError::Estimate(error)) => {
+                    lost.push((vec![alternative.name()], error.to_string()));
+                }
+                Err(other) => return Err(other),
+            }
+        }
+        Ok((rivals, lost))
+    }
+
+    /// Fits an alternative; `main` is the model beside which it stands.
+    fn of(alternative: &'a Alternative, main: &Bench<'_>) -> Result<Self, DiagnoseError> {
         let name = alternative.set.mechanism.name.clone();
         let shared = columns(main);
         let own = measured(&alternative.set, &alternative.model);
@@ -63,8 +86,13 @@ impl<'a> Rival<'a> {
                 column: column.clone(),
             });
         }
-        let bench = Bench::new(&alternative.set, &alternative.model)?;
-        let fitted = bench.nominal()?;
+        let mut bench = Bench::new(&alternative.set, &alternative.model)?;
+        let mut fitted = bench.nominal()?;
+        if main.is_over_windows() {
+            let windows = main.set.rebound(&alternative.spec)?;
+            bench = Bench::over(&windows, (&bench, &fitted))?.with_weight_of(main);
+            fitted = bench.nominal()?;
+        }
         let extra: Vec<bool> = own.iter().map(|column| !shared.contains(column)).collect();
         let of_extra = of_channels(&bench, &fitted, &extra)?;
         Ok(Self {
@@ -126,5 +154,5 @@ fn of_channels(
     let runs = estimation.innovations(&fitted.fit.values)?;
     let samples = runs.iter().flatten();
     let own = samples.filter(|sample| channels[sample.channel]);
-    Ok(own.map(Innovation::log_likelihood).sum())
+    Ok(bench.weight * own.map(Innovation::log_likelihood).sum::<f64>())
 }

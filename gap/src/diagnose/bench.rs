@@ -13,7 +13,7 @@ use super::hypothesis::Fitted;
 use super::unmodelled::UnmodelledChannel;
 use crate::data::{DataSet, Part};
 use crate::effects::{Acts, Candidate, EffectModel, Part as Role};
-use crate::identify::{Options, Problem, begin, longest_step};
+use crate::identify::{Options, Problem, longest_step};
 
 /// Delays of inputs and channels are this long in s at most.
 const LONGEST_DELAY: f64 = 0.1;
@@ -30,17 +30,11 @@ const COARSE: Effort = Effort {
     gain: 0.1,
     steps: 60,
 };
-/// Part of the mean squared error over windows that is one unit of log-likelihood: smaller differences do not count.
-const TOLERANCE: f64 = 0.05;
 /// The same for levels that are found anew right after.
 const ROUGHLY: Effort = Effort {
     gain: 10.0,
     steps: 30,
 };
-/// Noise from which a search over windows begins: by this factor larger than that of the sensors.
-const LARGER: f64 = 30.0;
-/// The same for the largest one: errors of a model over a window may be any.
-const MOST_LARGER: f64 = 1e4;
 /// Standard deviation of the logarithm of a shape.
 const SHAPE: f64 = 1.0;
 /// Standard deviation of a parameter that may be wrong, as a part of its value.
@@ -79,51 +73,7 @@ impl<'a> Bench<'a> {
         Self::of(set, effects, level)
     }
 
-    /// For windows over which nothing follows what the model lacks. Noise is what it leaves: see
-    /// [`horizon`](super::horizon). `steps` is the bench on which `fitted` found the levels that are there.
-    pub(super) fn over(
-        windows: &DataSet,
-        (steps, fitted): (&Self, &Fitted),
-    ) -> Result<Self, DiagnoseError> {
-        let quiet = |estimation: &Estimation<'_>, problem: &mut Problem| {
-            let layout = estimation.layout();
-            for free in &mut problem.levels {
-                let place = layout.place(free.unknown)?;
-                match free.unknown {
-                    Unknown::Disturbance(_) => problem.start[place] = free.range[0],
-                    _ => {
-                        problem.start[place] *= LARGER;
-                        *free = Free::of(free.unknown)
-                            .within(free.range[0], MOST_LARGER * free.range[1]);
-                    }
-                }
-            }
-            problem
-                .levels
-                .retain(|free| matches!(free.unknown, Unknown::Noise(_)));
-            Ok(())
-        };
-        let mut bench = Self::of(windows, steps.effects, quiet)?;
-        bench.told = 2.0 / TOLERANCE * bench.effects.info().speeds as f64;
-        let values = bench.recordings.iter().map(|run| {
-            let rows = 0..run.times().len();
-            rows.map(|row| {
-                run.measured(row)
-                    .iter()
-                    .filter(|value| !value.is_nan())
-                    .count()
-            })
-            .sum::<usize>()
-        });
-        bench.weight = (bench.told / values.sum::<usize>().max(1) as f64).min(1.0);
-        for free in &steps.problem.levels {
-            let value = fitted.fit.values[fitted.layout.place(free.unknown)?];
-            bench.predicting.push((free.unknown, value));
-        }
-        Ok(bench)
-    }
-
-    fn of(
+    pub(super) fn of(
         set: &DataSet,
         effects: &'a EffectModel,
         level: impl Fn(&Estimation<'_>, &mut Problem) -> Result<(), DiagnoseError>,
@@ -281,27 +231,6 @@ impl<'a> Bench<'a> {
         }
         free.extend(&self.problem.levels);
         free
-    }
-
-    /// Whether nothing follows what the model lacks.
-    pub(super) fn is_over_windows(&self) -> bool {
-        self.told.is_finite()
-    }
-
-    /// Noise of the channels where levels of noise hold what the model lacks; nothing where they are the noise.
-    pub(super) fn noise_of_sensors(&self) -> Option<Vec<f64>> {
-        let noise = self
-            .predicting
-            .iter()
-            .filter(|(unknown, _)| matches!(unknown, Unknown::Noise(_)));
-        self.is_over_windows()
-            .then(|| noise.map(|(_, value)| *value).collect())
-    }
-
-    /// Part of the energy of errors that is left after a gain in log-likelihood: levels of noise that are free grow
-    /// with what is not explained.
-    pub(super) fn left(&self, gain: f64) -> f64 {
-        (-2.0 * gain / self.told).exp()
     }
 
     /// What a member brings.
@@ -507,7 +436,7 @@ impl<'a> Bench<'a> {
 
 impl Bench<'_> {
     /// A fit in which each row has its weight: likelihood and what is known beforehand differ by a factor only.
-    fn weighed(
+    pub(super) fn weighed(
         &self,
         estimation: &Estimation<'_>,
         start: &[f64],
@@ -537,47 +466,6 @@ impl Bench<'_> {
             gain: self.weight * fit.gain,
             ..fit
         })
-    }
-
-    /// What another bench found, on the rows of this one, with the levels that are here.
-    pub(super) fn taken(&self, from: &Self, fitted: &Fitted) -> Result<Fitted, DiagnoseError> {
-        let setup = self.setup(&fitted.members);
-        let estimation = Estimation::new(&setup, &self.recordings)?;
-        let layout = estimation.layout();
-        let mut values = from.carried(fitted, &estimation);
-        for free in &self.problem.levels {
-            values[layout.place(free.unknown)?] = self.problem.start[layout.place(free.unknown)?];
-        }
-        for index in 0..estimation.setup().disturbances.len() {
-            let place = layout.place(Unknown::Disturbance(index))?;
-            values[place] = self.problem.start[place];
-        }
-        begin(&estimation, &mut values)?;
-        self.hide(&fitted.members, &estimation, &mut values)?;
-        let fit = self.weighed(&estimation, &values, &self.problem.levels, Fit::quick)?;
-        Ok(Fitted {
-            members: fitted.members.clone(),
-            layout,
-            fit,
-            evidence: fitted.evidence,
-        })
-    }
-}
-
-impl Bench<'_> {
-    /// What other values would gain over these windows, of a hypothesis that another bench found; and the hypothesis
-    /// with them.
-    pub(super) fn fitted_again(
-        &self,
-        from: &Self,
-        fitted: &Fitted,
-    ) -> Result<(f64, Fitted), DiagnoseError> {
-        let taken = self.taken(from, fitted)?;
-        let setup = self.setup(&fitted.members);
-        let estimation = Estimation::new(&setup, &self.recordings)?;
-        let again = self.fit(&fitted.members, &estimation, &taken.fit.values)?;
-        let gain = again.fit.log_likelihood - taken.fit.log_likelihood;
-        Ok((gain, again))
     }
 }
 

@@ -89,14 +89,13 @@ impl HeldOut {
         let paired = Paired::of(&[&stated, &refit, &effect]);
         let closed = |from: f64, to: f64| (from - to) / (from - floor * floor);
         let means = paired.means();
-        let budget = match leader.alternative {
-            Some(name) => budget::of_alternative(name, &paired, floor),
-            None => {
-                // Parameters that were fitted may predict worse than stated ones: then they are no base.
-                let base = if means[1] < means[0] { &refit } else { &stated };
-                let ends = [&stated, base, &effect];
-                budget::of(bench, comparison, ends, floor, errors)?
-            }
+        let budget = if let Some(name) = leader.alternative {
+            budget::of_alternative(name, &paired, floor)
+        } else {
+            // Parameters that were fitted may predict worse than stated ones: then they are no base.
+            let base = if means[1] < means[0] { &refit } else { &stated };
+            let ends = [&stated, base, &effect];
+            budget::of(bench, comparison, ends, floor, errors)?
         };
         Ok(Some(HowFar {
             horizon_s: horizon,

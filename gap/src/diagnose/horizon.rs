@@ -14,6 +14,7 @@ use super::compare::{Comparison, TIED};
 use super::hypothesis::Fitted;
 use super::scales::rates;
 use super::screen::Screen;
+use super::unknown::leftover;
 use crate::data::DataSet;
 
 /// Number of windows, spread over all runs.
@@ -29,18 +30,58 @@ const REFUTED: f64 = 2.0 * TIED;
 /// The same for a hypothesis that others may join: what it lacks pulls at its values.
 const REFUTED_ALONE: f64 = 5.0 * TIED;
 
-/// What one-step predictions say of the hypotheses, as long as simulations bear it out: nothing where the windows
-/// refute it, as where the disturbance follows what the model lacks.
-pub(super) fn one_step(
+/// The hypotheses, with the bench that ranks them.
+pub(super) struct Judged<'a> {
+    pub(super) bench: Bench<'a>,
+    pub(super) screen: Screen,
+    pub(super) comparison: Comparison,
+}
+
+/// What one-step predictions say, as long as simulations over windows bear it out; else what these say.
+pub(super) fn judged<'a>(
+    (bench, nominal, screen): (Bench<'a>, Fitted, Screen),
+    over: Bench<'a>,
+    stage: &mut impl FnMut(&'static str),
+) -> Result<Judged<'a>, DiagnoseError> {
+    if let Some(mut comparison) = one_step(&over, (&bench, &nominal, &screen))? {
+        stage("looking for what no effect explains");
+        comparison.weigh_unknown(&bench)?;
+        return Ok(Judged {
+            bench,
+            screen,
+            comparison,
+        });
+    }
+    stage("fitting simulations over windows");
+    let simulated = over.nominal().map_err(DiagnoseError::of_nominal)?;
+    let screen = Screen::of(&over, &simulated)?;
+    let comparison = Comparison::of(&over, simulated, &screen, |_| true)?;
+    let mut comparison = comparison.ok_or(DiagnoseError::NothingToFit)?;
+    stage("looking for what no effect explains");
+    comparison.weigh_unknown(&over)?;
+    if comparison.best().members.is_empty() {
+        // One step ahead more is seen of what is left.
+        comparison.left = leftover(&bench, &nominal)?;
+    }
+    Ok(Judged {
+        bench: over,
+        screen,
+        comparison,
+    })
+}
+
+/// The hypotheses by one-step predictions; nothing where the windows refute them, as where the disturbance follows
+/// what the model lacks.
+fn one_step(
     over: &Bench<'_>,
-    (bench, nominal, screen): (&Bench<'_>, Fitted, &Screen),
+    (bench, nominal, screen): (&Bench<'_>, &Fitted, &Screen),
 ) -> Result<Option<Comparison>, DiagnoseError> {
     // Where the windows lose a hypothesis, they say nothing against it.
     let goes_on = |fitted: &Fitted| {
         let again = over.fitted_again(bench, fitted);
         again.map_or(true, |(gain, _)| gain < REFUTED_ALONE)
     };
-    let Some(mut comparison) = Comparison::of(bench, nominal, screen, goes_on)? else {
+    let Some(mut comparison) = Comparison::of(bench, nominal.clone(), screen, goes_on)? else {
         return Ok(None);
     };
     let Ok((gain, again)) = over.fitted_again(bench, comparison.best()) else {
@@ -51,14 +92,6 @@ pub(super) fn one_step(
     }
     let by_others = Screen::of(over, &again).map_or(0.0, |screen| screen.most());
     Ok((gain.max(by_others) < REFUTED).then_some(comparison))
-}
-
-/// What simulations over the windows say of the hypotheses, with what the nominal model lacks there.
-pub(super) fn simulated(over: &Bench<'_>) -> Result<(Screen, Comparison), DiagnoseError> {
-    let nominal = over.nominal()?;
-    let screen = Screen::of(over, &nominal)?;
-    let comparison = Comparison::of(over, nominal, &screen, |_| true)?;
-    Ok((screen, comparison.ok_or(DiagnoseError::NothingToFit)?))
 }
 
 /// The runs, cut into windows as long as a typical swing: long enough that forces show in the motion, short

@@ -1,0 +1,130 @@
+//! A bench of windows: nothing follows what the model lacks, noise is what it leaves, and small differences do not
+//! count.
+
+use appell_estimate::{Estimation, Fit, Free, Unknown};
+
+use super::DiagnoseError;
+use super::bench::Bench;
+use super::hypothesis::Fitted;
+use crate::data::DataSet;
+use crate::identify::{Problem, begin};
+
+/// Noise from which a search over windows begins: by this factor larger than that of the sensors.
+const LARGER: f64 = 30.0;
+/// The same for the largest one: errors of a model over a window may be any.
+const MOST_LARGER: f64 = 1e4;
+/// Part of the mean squared error over windows that is one unit of log-likelihood: smaller differences do not count.
+const TOLERANCE: f64 = 0.05;
+
+impl Bench<'_> {
+    /// For windows. `steps` is the bench on which `fitted` found the levels of the rig: with them the filter finds
+    /// the state from which the model predicts.
+    pub(super) fn over(
+        windows: &DataSet,
+        (steps, fitted): (&Self, &Fitted),
+    ) -> Result<Self, DiagnoseError> {
+        let quiet = |estimation: &Estimation<'_>, problem: &mut Problem| {
+            let layout = estimation.layout();
+            for free in &mut problem.levels {
+                let start = &mut problem.start[layout.place(free.unknown)?];
+                let [low, high] = free.range;
+                if matches!(free.unknown, Unknown::Disturbance(_)) {
+                    *start = low;
+                } else {
+                    *start *= LARGER;
+                    *free = Free::of(free.unknown).within(low, MOST_LARGER * high);
+                }
+            }
+            problem
+                .levels
+                .retain(|free| matches!(free.unknown, Unknown::Noise(_)));
+            Ok(())
+        };
+        let mut bench = Self::of(windows, steps.effects, quiet)?;
+        bench.told = 2.0 / TOLERANCE * bench.effects.info().speeds as f64;
+        let values = bench.recordings.iter().map(|run| {
+            let rows = 0..run.times().len();
+            rows.map(|row| {
+                run.measured(row)
+                    .iter()
+                    .filter(|value| !value.is_nan())
+                    .count()
+            })
+            .sum::<usize>()
+        });
+        bench.weight = (bench.told / values.sum::<usize>().max(1) as f64).min(1.0);
+        for free in &steps.problem.levels {
+            let value = fitted.fit.values[fitted.layout.place(free.unknown)?];
+            bench.predicting.push((free.unknown, value));
+        }
+        Ok(bench)
+    }
+
+    /// The same with rows that count as those of another bench do.
+    pub(super) fn with_weight_of(mut self, other: &Bench<'_>) -> Self {
+        (self.weight, self.told) = (other.weight, other.told);
+        self
+    }
+
+    /// Whether nothing follows what the model lacks.
+    pub(super) fn is_over_windows(&self) -> bool {
+        self.told.is_finite()
+    }
+
+    /// Noise of the channels where levels of noise hold what the model lacks; nothing where they are the noise.
+    pub(super) fn noise_of_sensors(&self) -> Option<Vec<f64>> {
+        let noise = self
+            .predicting
+            .iter()
+            .filter(|(unknown, _)| matches!(unknown, Unknown::Noise(_)));
+        self.is_over_windows()
+            .then(|| noise.map(|(_, value)| *value).collect())
+    }
+
+    /// Part of the energy of errors that is left after a gain in log-likelihood: levels of noise that are free grow
+    /// with what is not explained.
+    pub(super) fn left(&self, gain: f64) -> f64 {
+        (-2.0 * gain / self.told).exp()
+    }
+
+    /// What another bench found, on the rows of this one, with the levels that are here.
+    pub(super) fn taken(&self, from: &Self, fitted: &Fitted) -> Result<Fitted, DiagnoseError> {
+        let setup = self.setup(&fitted.members);
+        let estimation = Estimation::new(&setup, &self.recordings)?;
+        let layout = estimation.layout();
+        let mut values = from.carried(fitted, &estimation);
+        for free in &self.problem.levels {
+            values[layout.place(free.unknown)?] = self.problem.start[layout.place(free.unknown)?];
+        }
+        for index in 0..estimation.setup().disturbances.len() {
+            let place = layout.place(Unknown::Disturbance(index))?;
+            values[place] = self.problem.start[place];
+        }
+        begin(&estimation, &mut values)?;
+        self.hide(&fitted.members, &estimation, &mut values)?;
+        let fit = self.weighed(&estimation, &values, &self.problem.levels, Fit::quick)?;
+        Ok(Fitted {
+            members: fitted.members.clone(),
+            layout,
+            fit,
+            evidence: fitted.evidence,
+        })
+    }
+}
+
+impl Bench<'_> {
+    /// What other values would gain over these windows, of a hypothesis that another bench found; and the hypothesis
+    /// with them.
+    pub(super) fn fitted_again(
+        &self,
+        from: &Self,
+        fitted: &Fitted,
+    ) -> Result<(f64, Fitted), DiagnoseError> {
+        let taken = self.taken(from, fitted)?;
+        let setup = self.setup(&fitted.members);
+        let estimation = Estimation::new(&setup, &self.recordings)?;
+        let again = self.fit(&fitted.members, &estimation, &taken.fit.values)?;
+        let gain = again.fit.log_likelihood - taken.fit.log_likelihood;
+        Ok((gain, again))
+    }
+}

@@ -11,6 +11,7 @@
 //!          --alternative--> other specs, fitted to the same recordings
 //!          --unknown--> what no candidate explains, and what it depends on
 //!          --localise--> equations, windows of time, regions
+//!          --law--> what is left, measured as a force that depends on something
 //!          --held_out, prediction--> errors of predictions: nominal, re-fitted, with the effect, noise
 //!          --budget--> the part of the gap that is each effect's, and what stays
 //!          --force_history, traces, force_law--> what people look at
@@ -40,6 +41,7 @@ mod forces;
 mod held_out;
 mod horizon;
 mod hypothesis;
+mod law;
 mod localise;
 mod prediction;
 mod report;
@@ -61,6 +63,7 @@ pub use error::DiagnoseError;
 pub use experiment::{Experiment, Limit};
 pub use force_history::{ForceHistory, MissingForce};
 pub use force_law::ForceLaw;
+pub use law::Law;
 pub use report::{
     Detectable, Found, GapVerdict, Hint, HowFar, Hypothesis, Left, Pictures, Region, Report,
     ShareOf, Value, Where, Window,
@@ -69,7 +72,7 @@ pub use traces::{AHEAD, Ahead, Trace};
 
 use alternative::{Alternative, Rival};
 use bench::Bench;
-use held_out::{HeldOut, Leader};
+use held_out::{HeldOut, Leader, Measured};
 use horizon::Judged;
 use screen::Screen;
 
@@ -130,9 +133,31 @@ pub fn diagnose(
     report.failed.append(&mut lost);
     report.rows = [fitted.rows(), whole.rows()];
     report.hints = report::hints(&bench, &comparison)?;
+    stage("measuring what is left");
+    let lawful = law::lawful(&bench, &comparison)?;
+    let measured = match lawful.as_ref().map(|lawful| lawful.fitted(&bench)) {
+        Some(Ok(measured)) => {
+            report.measure(&measured)?;
+            Some(measured)
+        }
+        Some(Err(reason)) => {
+            let law = vec![budget::LAW.to_owned()];
+            report.failed.push((law, reason.to_string()));
+            None
+        }
+        None => None,
+    };
     stage("predicting the runs that were held out");
     let test = set.only(Part::Test);
     let held_out = HeldOut::of(&test, &bench)?;
+    let with_law = match &measured {
+        Some(measured) => Some(HeldOut::of(&test, &measured.bench)?),
+        None => None,
+    };
+    let law = match (&measured, &with_law) {
+        (Some(law), Some(runs)) => Some(Measured { law, runs }),
+        _ => None,
+    };
     let leading = rivals
         .iter()
         .find(|rival| report.which[0].effects == [rival.name.clone()]);
@@ -141,13 +166,22 @@ pub fn diagnose(
         None => None,
     };
     let noise = prediction::noise(&bench, comparison.best())?;
-    let leader = match (leading, &rebound) {
-        (Some(rival), Some(runs)) => Leader {
+    let leader = match (leading, &rebound, law) {
+        (Some(rival), Some(runs), _) => Leader {
             bench: &rival.bench,
             fitted: &rival.fitted,
             runs,
             noise: rival.noise(&bench, &noise),
             alternative: Some(&rival.name),
+            law: None,
+        },
+        (_, _, Some(Measured { law: own, runs })) if report.which[0].is_unknown() => Leader {
+            bench: &own.bench,
+            fitted: &own.fitted,
+            runs,
+            noise,
+            alternative: None,
+            law,
         },
         _ => Leader {
             bench: &bench,
@@ -155,6 +189,7 @@ pub fn diagnose(
             runs: &held_out,
             noise,
             alternative: None,
+            law,
         },
     };
     let how_far = held_out.how_far(&bench, &comparison, &leader)?;

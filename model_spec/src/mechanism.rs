@@ -455,10 +455,11 @@ pub enum LoadKind {
         /// Damping coefficient.
         damping: Expr,
     },
-    /// A generalised force on a coordinate: its power is `force * dot(coordinate)`.
+    /// A generalised force: its power is `force * velocity`.
     Generalized {
-        /// Coordinate.
-        coordinate: CoordinateId,
+        /// The velocity along which it acts: the rate of a coordinate, or a combination of rates and
+        /// pseudo-velocities.
+        velocity: Expr,
         /// Generalised force.
         force: Expr,
     },

@@ -110,7 +110,7 @@ fn reason(kind: &LoadKind) -> &'static str {
             "its two bodies never rotate relative to each other about the axis of the torque"
         }
         LoadKind::Spring { .. } | LoadKind::Damper { .. } => "its length or coordinate is constant",
-        LoadKind::Generalized { .. } => "its coordinate is constant, or the force is zero",
+        LoadKind::Generalized { .. } => "its coordinate or velocity is constant, or the force is zero",
     }
 }
 
@@ -124,6 +124,6 @@ fn help(kind: &LoadKind) -> &'static str {
         LoadKind::Spring { .. } | LoadKind::Damper { .. } => {
             "connect points whose distance can change"
         }
-        LoadKind::Generalized { .. } => "name a coordinate that can change",
+        LoadKind::Generalized { .. } => "name a coordinate or a velocity that can change",
     }
 }

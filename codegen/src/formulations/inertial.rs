@@ -12,7 +12,7 @@ use crate::mechanics::finding::{Item, Outcome, division_by_zero};
 use crate::mechanics::symbols::Symbols;
 use crate::mechanics::time::TimeDerivative;
 use crate::symbolic::vector::{self, Mat3, Vec3};
-use crate::symbolic::{Expr, Graph};
+use crate::symbolic::{Expr, Graph, Substitution};
 
 /// An expression of a spec in the graph.
 pub(super) type Lowered<T> = Result<T, DivisionByZero>;
@@ -108,6 +108,18 @@ impl<'a> Inertial<'a> {
     pub(super) fn lower(&self, algebra: &mut Algebra, expr: &Spec) -> Lowered<Expr> {
         let (symbols, rates) = (self.symbols, self.rates);
         Lowering { symbols, rates }.lower(&mut algebra.graph, expr)
+    }
+
+    /// A velocity in the generalised velocities: pseudo-velocities stand for their definitions.
+    pub(super) fn velocity_along(&self, algebra: &mut Algebra, velocity: &Spec) -> Lowered<Expr> {
+        let velocity = self.lower(algebra, velocity)?;
+        let mut defined = Vec::new();
+        for (speed, &symbol) in (self.mechanism.pseudo_velocities.iter()).zip(&self.symbols.speeds) {
+            defined.push((symbol, self.lower(algebra, &speed.definition)?));
+        }
+        let mut definitions = Substitution::of_parts(&algebra.graph, &defined);
+        let velocity = definitions.apply(&mut algebra.graph, velocity);
+        velocity.ok_or(DivisionByZero)
     }
 
     fn lower3(&self, algebra: &mut Algebra, v: &Components) -> Lowered<Vec3> {

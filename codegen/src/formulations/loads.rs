@@ -101,11 +101,12 @@ pub(super) fn efforts(
                 let tension = algebra.graph.mul(c, rate);
                 all.push(line.under(&mut algebra.graph, tension));
             }
-            LoadKind::Generalized { coordinate, force } => {
+            LoadKind::Generalized { velocity, force } => {
                 let force = inertial.lower(algebra, force)?;
+                let velocity = inertial.velocity_along(algebra, velocity)?;
                 all.push(Effort {
                     force: [force, Graph::ZERO, Graph::ZERO],
-                    velocity: [inertial.rates[coordinate.index()], Graph::ZERO, Graph::ZERO],
+                    velocity: [velocity, Graph::ZERO, Graph::ZERO],
                     external: false,
                 });
             }

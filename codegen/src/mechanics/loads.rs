@@ -190,9 +190,9 @@ impl Context<'_> {
                 let c = self.lowering.lower(&mut algebra.graph, damping)?;
                 self.damper(algebra, between, c)
             }
-            LoadKind::Generalized { coordinate, force } => {
+            LoadKind::Generalized { velocity, force } => {
                 let force = self.lowering.lower(&mut algebra.graph, force)?;
-                let velocity = self.lowering.rates[coordinate.index()];
+                let velocity = self.lowering.lower(&mut algebra.graph, velocity)?;
                 Ok(AppliedLoad {
                     work: vec![Work { force, velocity }],
                     potential: None,

@@ -104,7 +104,7 @@ fn best_size(
     };
     let own = bench.own(bench.candidate(candidate));
     let value = |(place, role): (usize, Part), size: f64, factor: f64| match role {
-        Part::Size => size / factor,
+        Part::Size | Part::Term(_) => size / factor,
         Part::Shape => factor * info.parameters[place].value,
         Part::Switch => 1.0,
     };

@@ -118,6 +118,20 @@ impl<'a> Bench<'a> {
         })
     }
 
+    /// The same recordings for other equations, with the levels that are here.
+    pub(super) fn beside<'o>(&self, effects: &'o EffectModel) -> Result<Bench<'o>, DiagnoseError> {
+        let levels = |_: &Estimation<'_>, problem: &mut Problem| {
+            problem.levels.clone_from(&self.problem.levels);
+            Ok(())
+        };
+        Ok(Bench {
+            weight: self.weight,
+            predicting: self.predicting.clone(),
+            told: self.told,
+            ..Bench::of(&self.set, effects, levels)?
+        })
+    }
+
     pub(super) fn candidate(&self, index: usize) -> &Candidate {
         self.effects.candidate(index)
     }
@@ -252,6 +266,7 @@ impl<'a> Bench<'a> {
                             coordinate: Coordinate::Logarithm,
                             ..free.around(quantity.value, SHAPE)
                         },
+                        Role::Term(deviation) => free.around(0.0, deviation),
                         Role::Size | Role::Switch => free,
                     }
                 })
@@ -323,12 +338,30 @@ impl<'a> Bench<'a> {
 
     /// Values of a hypothesis for another filter: what both have is taken over.
     pub(super) fn carried(&self, from: &Fitted, to: &Estimation<'_>) -> Vec<f64> {
+        self.carried_by(from, to, Some)
+    }
+
+    /// The same for other equations, with parameters by their names.
+    pub(super) fn carried_by_name(&self, from: &Fitted, to: &Estimation<'_>) -> Vec<f64> {
+        let (was, is) = (self.effects.info(), to.setup().model.info());
+        let before = |place: usize| was.parameter_index(&is.parameters[place].name);
+        self.carried_by(from, to, before)
+    }
+
+    /// `before` tells the place that a parameter had.
+    fn carried_by(
+        &self,
+        from: &Fitted,
+        to: &Estimation<'_>,
+        before: impl Fn(usize) -> Option<usize>,
+    ) -> Vec<f64> {
         let mut values = to.nominal();
         let (setup, was) = (to.setup(), self.setup(&from.members));
         let mut pairs: Vec<(Unknown, Unknown)> = Vec::new();
         let same = |unknown| (unknown, unknown);
         let info = setup.model.info();
-        pairs.extend((0..info.parameter_len()).map(|p| same(Unknown::Parameter(p))));
+        let parameters = (0..info.parameter_len()).filter_map(|is| Some((before(is)?, is)));
+        pairs.extend(parameters.map(|(was, is)| (Unknown::Parameter(was), Unknown::Parameter(is))));
         pairs.extend((0..setup.disturbances.len()).map(|d| same(Unknown::Disturbance(d))));
         for channel in 0..setup.channels.len() {
             pairs.extend(

@@ -17,13 +17,15 @@ use crate::effects::Part as Role;
 
 /// The re-fitted parameters in the budget.
 pub(super) const REFIT: &str = "refit";
+/// The measured law in the budget.
+pub(super) const LAW: &str = "law";
 /// What nothing explains.
 pub(super) const REST: &str = "unexplained";
 
 /// A part of the gap.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Part {
-    /// `refit`, an effect, or `unexplained`.
+    /// `refit`, an effect, `law` for a force that was measured, or `unexplained`.
     pub name: String,
     /// Part of the gap of the nominal model, on the runs that were held out.
     pub closed: f64,
@@ -37,33 +39,51 @@ impl Part {
         self.name == REFIT
     }
 
+    /// Whether it is that of a measured law.
+    pub fn is_law(&self) -> bool {
+        self.name == LAW
+    }
+
     /// Whether it is what nothing explains.
     pub fn is_rest(&self) -> bool {
         self.name == REST
     }
 }
 
-/// The parts of the best hypothesis. `ends`: the stated model, the base that effects are added to, all effects.
+/// The errors between which the gap divides.
+pub(super) struct Ends<'e> {
+    /// Of the stated model.
+    pub(super) stated: &'e Errors,
+    /// Of what effects are added to.
+    pub(super) base: &'e Errors,
+    /// With all effects.
+    pub(super) effects: &'e Errors,
+    /// With a measured law beside them.
+    pub(super) law: Option<&'e Errors>,
+    /// Where everything is right.
+    pub(super) floor: f64,
+}
+
+/// The parts of a hypothesis, and of the law that was measured beside it.
 pub(super) fn of(
-    bench: &Bench<'_>,
-    comparison: &Comparison,
-    ends: [&Errors; 3],
-    floor: f64,
+    (bench, comparison): (&Bench<'_>, &Comparison),
+    best: &Fitted,
+    ends: &Ends<'_>,
     errors: impl Fn(&Fitted) -> Result<Errors, DiagnoseError>,
 ) -> Result<Vec<Part>, DiagnoseError> {
-    let best = comparison.best();
     let members = best.members.len();
     let all = (1 << members) - 1;
     let mut between: Vec<Errors> = Vec::new();
     for set in 1..all {
-        between.push(errors(&with(bench, comparison, &subset(best, set))?)?);
+        between.push(errors(&with((bench, comparison), best, &subset(best, set))?)?);
     }
-    let [stated, base, effect] = ends;
-    let mut models = vec![stated, base];
+    let floor = ends.floor;
+    let mut models = vec![ends.stated, ends.base];
     models.extend(&between);
     if members > 0 {
-        models.push(effect);
+        models.push(ends.effects);
     }
+    models.extend(ends.law);
     // A set of members stands at its number, after the stated model.
     let paired = Paired::of(&models);
     let gap = |means: &[f64]| means[0] - floor * floor;
@@ -81,7 +101,12 @@ pub(super) fn of(
     for (place, &member) in best.members.iter().enumerate() {
         let name = bench.candidate(member).name();
         add(name, &|means| {
-            shapley(&means[1..], place, members) / gap(means)
+            shapley(&means[1..=all + 1], place, members) / gap(means)
+        });
+    }
+    if ends.law.is_some() {
+        add(LAW.to_owned(), &|means| {
+            (means[means.len() - 2] - means[means.len() - 1]) / gap(means)
         });
     }
     add(REST.to_owned(), &|means| {
@@ -130,8 +155,8 @@ fn subset(best: &Fitted, set: usize) -> Vec<usize> {
 
 /// The fit with some members of the best hypothesis; those without which it was found are there already.
 fn with(
-    bench: &Bench<'_>,
-    comparison: &Comparison,
+    (bench, comparison): (&Bench<'_>, &Comparison),
+    best: &Fitted,
     members: &[usize],
 ) -> Result<Fitted, DiagnoseError> {
     let known = comparison
@@ -141,7 +166,6 @@ fn with(
     if let Some((fitted, _)) = known {
         return Ok(fitted.clone());
     }
-    let best = comparison.best();
     let setup = bench.setup(members);
     let estimation = Estimation::new(&setup, &bench.recordings)?;
     let mut start = bench.carried(best, &estimation);

@@ -160,7 +160,7 @@ fn items(bench: &Bench<'_>, fitted: &Fitted) -> Result<String, DiagnoseError> {
             let parameter = &info.parameters[index];
             let value = match part {
                 Part::Switch => 1.0,
-                Part::Size | Part::Shape => {
+                Part::Size | Part::Shape | Part::Term(_) => {
                     let unit = &bench.effects.mechanism.parameters[ParameterId::new(index)]
                         .label
                         .unit;

@@ -91,6 +91,19 @@ impl Comparison {
         }
     }
 
+    /// Part of the gap that a law would take of what the best hypothesis leaves.
+    pub(super) fn rest_share(&self, bench: &Bench<'_>) -> f64 {
+        if self.best().members.is_empty() {
+            return 1.0;
+        }
+        let explained = self.explained().max(0.0);
+        let share = |rest: f64| match bench.is_over_windows() {
+            true => self.stays * (1.0 - bench.left(rest)),
+            false => rest / (rest + explained).max(f64::MIN_POSITIVE),
+        };
+        self.rest(share).share
+    }
+
     /// Gives its probability to the hypothesis that nothing in the library explains the gap.
     pub(super) fn weigh_unknown(&mut self, bench: &Bench<'_>) -> Result<(), DiagnoseError> {
         self.left = leftover(bench, self.best())?;
@@ -464,7 +477,7 @@ fn place(
                         set(unknown, quantity.value)?;
                         continue;
                     }
-                    Part::Size => {
+                    Part::Size | Part::Term(_) => {
                         let size = screened.sizes[direction];
                         let least = screened.deviations[direction];
                         let size = if size.abs() > 0.0 { size } else { least };

@@ -7,9 +7,10 @@ use appell_estimate::Recording;
 
 use super::DiagnoseError;
 use super::bench::Bench;
-use super::budget;
+use super::budget::{self, Ends};
 use super::compare::Comparison;
 use super::hypothesis::Fitted;
+use super::law::FittedLaw;
 use super::prediction::{self, Errors, Paired, noise, stated};
 use super::report::HowFar;
 use crate::data::{DataSet, Part};
@@ -37,6 +38,15 @@ pub(super) struct Leader<'l> {
     pub(super) noise: Vec<f64>,
     /// Its name, where it is another model.
     pub(super) alternative: Option<&'l str>,
+    /// What was measured of the rest.
+    pub(super) law: Option<Measured<'l>>,
+}
+
+/// A measured law, with the runs that were held out as its equations take them.
+#[derive(Clone, Copy)]
+pub(super) struct Measured<'l> {
+    pub(super) law: &'l FittedLaw<'l>,
+    pub(super) runs: &'l HeldOut,
 }
 
 impl Leader<'_> {
@@ -92,10 +102,23 @@ impl HeldOut {
         let budget = if let Some(name) = leader.alternative {
             budget::of_alternative(name, &paired, floor)
         } else {
-            // Parameters that were fitted may predict worse than stated ones: then they are no base.
-            let base = if means[1] < means[0] { &refit } else { &stated };
-            let ends = [&stated, base, &effect];
-            budget::of(bench, comparison, ends, floor, errors)?
+            let (best, law) = match leader.law {
+                Some(Measured { law, runs }) => {
+                    let law_errors = runs.errors(&law.bench, &law.fitted, &noise, horizon)?;
+                    (law.base, Some(law_errors))
+                }
+                None => (comparison.best(), None),
+            };
+            let effects = errors(best)?;
+            let ends = Ends {
+                stated: &stated,
+                // Parameters that were fitted may predict worse than stated ones: then they are no base.
+                base: if means[1] < means[0] { &refit } else { &stated },
+                effects: &effects,
+                law: law.as_ref(),
+                floor,
+            };
+            budget::of((bench, comparison), best, &ends, errors)?
         };
         Ok(Some(HowFar {
             horizon_s: horizon,

@@ -11,12 +11,15 @@ use super::experiment::Experiment;
 use super::force_history::ForceHistory;
 use super::force_law::ForceLaw;
 use super::hypothesis::Fitted;
+use super::law::{FittedLaw, Law};
 use super::screen::Screen;
 use super::traces::{Ahead, Trace};
 use super::unknown;
 use crate::effects::{Acts, Part};
 use appell_estimate::{Along, Unknown};
 
+/// Name of the hypothesis that nothing in the library explains the gap.
+const UNKNOWN: &str = "unknown";
 /// Sizes in their standard deviations that are found with near certainty.
 const DETECTABLE: f64 = 5.0;
 /// Fewer hypotheses than this are never cut from the report.
@@ -96,8 +99,15 @@ pub struct Hypothesis {
     pub log_bayes_factor: Option<f64>,
     /// Values that its effects have.
     pub parameters: Vec<Value>,
-    /// What it changes in the spec; nothing for `unknown`.
+    /// What it changes in the spec; for `unknown` the law that was measured, if there is one.
     pub changes: Option<Changes>,
+}
+
+impl Hypothesis {
+    /// Whether it is that nothing in the library explains the gap.
+    pub fn is_unknown(&self) -> bool {
+        self.effects == [UNKNOWN]
+    }
 }
 
 /// An equation and its part in the gap.
@@ -272,6 +282,8 @@ pub struct Report {
     /// Part of the samples that tell something of their own; less than one where the innovations of
     /// the best hypothesis follow each other.
     pub independent: f64,
+    /// What was measured of that; nothing where it is no force that depends on what the model knows.
+    pub law: Option<Law>,
     /// Channels that the model does not know and that the gap depends on, the surest first.
     pub hints: Vec<Hint>,
     /// Effects of the best hypothesis in words.
@@ -282,6 +294,18 @@ pub struct Report {
     pub pictures: Option<Pictures>,
     /// What would tell the first two tied hypotheses apart.
     pub experiment: Option<Experiment>,
+}
+
+impl Report {
+    /// Takes a measured law: what nothing in the library explains has it to write into the spec.
+    pub(super) fn measure(&mut self, measured: &FittedLaw<'_>) -> Result<(), DiagnoseError> {
+        let unknown = self.which.iter_mut().find(|one| one.is_unknown());
+        if let Some(unknown) = unknown {
+            unknown.changes = Some(Changes::of(&measured.bench, &measured.fitted)?);
+        }
+        self.law = Some(measured.law.clone());
+        Ok(())
+    }
 }
 
 /// What people look at.
@@ -324,7 +348,7 @@ pub(super) fn assemble(
         });
     }
     which.push(Hypothesis {
-        effects: vec!["unknown".to_owned()],
+        effects: vec![UNKNOWN.to_owned()],
         probability: comparison.unknown,
         log_bayes_factor: None,
         parameters: Vec::new(),
@@ -336,7 +360,7 @@ pub(super) fn assemble(
     let top = &which[0];
     let verdict = match top.effects.first().map(String::as_str) {
         None => GapVerdict::NoGap,
-        Some("unknown") if tied.is_empty() => GapVerdict::Unexplained,
+        Some(UNKNOWN) if tied.is_empty() => GapVerdict::Unexplained,
         Some(_) if tied.is_empty() => GapVerdict::Explained,
         Some(_) => GapVerdict::Ambiguous,
     };
@@ -345,7 +369,7 @@ pub(super) fn assemble(
     let keep: Vec<Hypothesis> = which
         .iter()
         .enumerate()
-        .filter(|(i, h)| *i < cut || h.effects.is_empty() || h.effects == ["unknown"])
+        .filter(|(i, h)| *i < cut || h.effects.is_empty() || h.is_unknown())
         .map(|(_, h)| h.clone())
         .collect();
     let best = comparison.best();
@@ -386,6 +410,7 @@ pub(super) fn assemble(
             .collect(),
         disturbances: disturbances(bench, comparison.nominal(), best),
         left: left(bench, comparison),
+        law: None,
         independent: comparison.independent,
         hints: Vec::new(),
         found,
@@ -428,7 +453,7 @@ fn join(
 
 /// The leading hypothesis with those that cannot be told from it.
 fn tied(which: &[Hypothesis]) -> Vec<Vec<Vec<String>>> {
-    let is_named = |other: &&Hypothesis| other.effects != ["unknown"];
+    let is_named = |other: &&Hypothesis| !other.is_unknown();
     let Some(first) = which.iter().find(is_named) else {
         return Vec::new();
     };

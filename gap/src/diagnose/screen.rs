@@ -254,7 +254,7 @@ fn shapes(bench: &Bench<'_>, values: &mut [f64], members: &[usize]) {
         for (place, part) in bench.own(candidate) {
             values[place] = match part {
                 Part::Shape => info.parameters[place].value,
-                Part::Size | Part::Switch => 0.0,
+                Part::Size | Part::Term(_) | Part::Switch => 0.0,
             };
         }
     }

@@ -1,7 +1,7 @@
 //! An effect at a site, in one of its variants: a hypothesis on a missing part of the model.
 
 use appell_spec::Mechanism;
-use toml_edit::{DocumentMut, Item, TableLike, Value};
+use toml_edit::{DocumentMut, InlineTable, Item, Table, TableLike, Value};
 
 use super::effect::{Effect, EffectError, Family, Filter};
 use super::place::Source;
@@ -27,7 +27,7 @@ pub enum Acts {
 }
 
 /// Role of a parameter of a candidate.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Part {
     /// Size of the effect; zero without it.
     Size,
@@ -35,6 +35,8 @@ pub(crate) enum Part {
     Shape,
     /// Switch: one with the effect, zero without.
     Switch,
+    /// Size of one of many terms; normal beforehand with this standard deviation.
+    Term(f64),
 }
 
 /// An effect at a place.
@@ -71,6 +73,48 @@ impl Candidate {
     /// `kind@site`
     pub fn name(&self) -> String {
         format!("{}@{}", self.kind, self.site)
+    }
+
+    /// A force beside a pseudo-velocity that is no effect of the library: `force` of terms in the language of
+    /// a spec, where the sizes stand as `{law}_1` and so on.
+    pub(crate) fn measured(
+        mechanism: &Mechanism,
+        speed: &str,
+        (force, unit): (&str, &str),
+        deviations: &[f64],
+    ) -> Self {
+        let stem = unused(format!("law_{}", identifier(speed)), mechanism);
+        let names = (1..=deviations.len()).map(|number| format!("{stem}_{number}"));
+        let names: Vec<String> = names.collect();
+        let mut document = DocumentMut::new();
+        let mut parameters = Table::new();
+        for name in &names {
+            let item = InlineTable::from_iter([("value", Value::from(0)), ("unit", unit.into())]);
+            parameters.insert(name, Item::Value(item.into()));
+        }
+        let load = InlineTable::from_iter([
+            ("kind", Value::from("generalized")),
+            ("velocity", speed.into()),
+            ("force", filled(force, &[("law", &stem)]).into()),
+        ]);
+        let loads = Table::from_iter([(stem.clone(), Value::from(load))]);
+        document.insert("parameters", Item::Table(parameters));
+        document.insert("loads", Item::Table(loads));
+        let terms = deviations.iter().map(|&deviation| Part::Term(deviation));
+        Self {
+            kind: "law".to_owned(),
+            site: speed.to_owned(),
+            family: Family::Force,
+            about: format!("the measured force beside {speed}"),
+            acts: Acts::Items,
+            parameters: names.into_iter().zip(terms).collect(),
+            stem,
+            centre: None,
+            items: document.to_string(),
+            brings: None,
+            added: Vec::new(),
+            source: None,
+        }
     }
 
     /// Whether it lets a contact slide.

@@ -156,6 +156,11 @@ impl EffectModel {
         })
     }
 
+    /// The same spec with other candidates.
+    pub(crate) fn again(&self, candidates: Vec<Candidate>) -> Result<Self, ModelError> {
+        Self::new(&self.plain, candidates)
+    }
+
     /// Derives the model of a candidate that brings a coordinate; whether there is one.
     pub(crate) fn augment(&self, index: usize, drive: &Drive) -> bool {
         let augmented = self.augmented[index].get_or_init(|| self.augmented(index, drive).ok());

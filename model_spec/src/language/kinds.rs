@@ -273,13 +273,19 @@ pub(super) static LOADS: &[Kind] = &[
     Kind {
         word: "generalized",
         is: ItemKind::Load(LoadWord::Generalized),
-        about: "A generalised force: its power is `force * dot(coordinate)`.",
+        about: "A generalised force: its power is `force * dot(coordinate)`, or `force * velocity`.",
         keys: &[
             key(
                 "coordinate",
                 Form::Reference(Target::Coordinate),
-                Need::Always,
-                "Coordinate.",
+                Need::Way(0),
+                "Coordinate along which it acts.",
+            ),
+            key(
+                "velocity",
+                Form::Expression,
+                Need::Way(1),
+                "Velocity along which it acts: a pseudo-velocity, or a combination linear in pseudo-velocities and rates.",
             ),
             key(
                 "force",

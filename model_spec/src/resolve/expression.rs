@@ -139,7 +139,10 @@ impl Resolver<'_> {
                 span,
             },
             dim: dimension.map_or(Dim::Unknown, Dim::Known),
-            degree: Some(u8::from(matches!(quantity, Quantity::Rate(_)))),
+            degree: Some(u8::from(matches!(
+                quantity,
+                Quantity::Rate(_) | Quantity::PseudoVelocity(_)
+            ))),
             constant: None,
             size: 1,
         }

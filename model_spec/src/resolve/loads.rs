@@ -2,12 +2,13 @@
 
 use crate::ast::{ItemAst, ValueAst};
 use crate::diagnostic::{Code, Diagnostic};
-use crate::expr::{Quantity, Span};
+use crate::expr::{Expr, ExprKind, Quantity, Span};
 use crate::language::{ItemKind, LoadWord};
 use crate::mechanism::{Axis, Body, Connection, CoordinateId, Load, LoadKind, ORIGIN};
+use crate::parse::zero;
 use crate::units::Dimension;
 
-use super::dimensions::Dim;
+use super::dimensions::{Dim, Typed};
 use super::place::Place;
 use super::placement::axis;
 use super::resolver::Resolver;
@@ -165,12 +166,34 @@ impl Resolver<'_> {
     }
 
     fn generalized(&mut self, item: &ItemAst) -> LoadKind {
-        let (coordinate, displacement) = self.coordinate_under(item);
-        // Force times rate is a power, whatever the coordinate measures.
-        let force = Dim::Known(Dimension::TORQUE).per(displacement);
+        // Force times velocity is a power, whatever the velocity is of.
+        let (velocity, dimension) = if item.entry("velocity").is_some() {
+            let along = self.velocity_along(item);
+            (along.expr, along.dim.known())
+        } else {
+            let (coordinate, displacement) = self.coordinate_under(item);
+            let span = item.text("coordinate").map(|name| name.span);
+            let velocity = Expr {
+                kind: ExprKind::Quantity(Quantity::Rate(coordinate)),
+                span: span.unwrap_or_else(|| item.name.span.clone()),
+            };
+            (velocity, displacement.and_then(|own| own.rate().ok()))
+        };
+        let force = Dim::Known(Dimension::POWER).per(dimension);
         LoadKind::Generalized {
-            coordinate,
+            velocity,
             force: self.expression_of(item, "force", &GENERALIZED, force),
         }
+    }
+
+    fn velocity_along(&mut self, item: &ItemAst) -> Typed {
+        let missing = || zero(item.name.span.clone());
+        let ast = item.expression("velocity").cloned().unwrap_or_else(missing);
+        let along = self.elaborate(&ast, &Place::ALONG);
+        if item.intact && along.degree != Some(1) && along.dim != Dim::Unknown {
+            let message = "no rate at all";
+            self.not_linear(&Place::ALONG, message, along.span(), "no velocity here");
+        }
+        along
     }
 }

@@ -93,6 +93,11 @@ impl Place {
 
     /// Definition of a pseudo-velocity.
     pub(super) const SPEED: Self = Self::linear("a pseudo-velocity");
+    /// Velocity along which a force acts.
+    pub(super) const ALONG: Self = Self {
+        allows: COORDINATES | RATES | SPEEDS | TIME,
+        ..Self::linear("the velocity along which a force acts")
+    };
     /// Left side of a velocity constraint.
     pub(super) const RATE_ROW: Self = Self::linear("a velocity constraint");
 

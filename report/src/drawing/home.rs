@@ -110,8 +110,12 @@ fn shaped(mechanism: &Mechanism, quantity: Quantity) -> Vec<PointId> {
 fn attack(mechanism: &Mechanism, load: &Load) -> Vec<PointId> {
     match &load.kind {
         LoadKind::Torque { on, .. } => vec![mechanism.bodies[*on].centre],
-        LoadKind::Generalized { coordinate, .. }
-        | LoadKind::Spring {
+        LoadKind::Generalized { velocity, .. } => {
+            let mut points = Vec::new();
+            velocity.visit(&mut |quantity| points.extend(carried(mechanism, quantity)));
+            points
+        }
+        LoadKind::Spring {
             between: Connection::Coordinate(coordinate),
             ..
         }
@@ -120,6 +124,24 @@ fn attack(mechanism: &Mechanism, load: &Load) -> Vec<PointId> {
             ..
         } => moved(mechanism, *coordinate),
         kind => kind.points(),
+    }
+}
+
+/// Points that move at a rate or a pseudo-velocity.
+fn carried(mechanism: &Mechanism, quantity: Quantity) -> Vec<PointId> {
+    match quantity {
+        Quantity::Rate(q) => moved(mechanism, q),
+        Quantity::PseudoVelocity(speed) => {
+            let mut points = Vec::new();
+            let definition = &mechanism.pseudo_velocities[speed].definition;
+            definition.visit(&mut |part| {
+                if let Quantity::Rate(q) = part {
+                    points.extend(moved(mechanism, q));
+                }
+            });
+            points
+        }
+        _ => Vec::new(),
     }
 }
 

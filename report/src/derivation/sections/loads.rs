@@ -1,6 +1,6 @@
 //! A load: its vector, frame, point of application, reaction, and virtual power.
 
-use appell_spec::expr::Expr as Spec;
+use appell_spec::expr::{Expr as Spec, ExprKind, Quantity};
 use appell_spec::mechanism::{
     BodyId, Connection, CoordinateId, FrameId, GROUND, Load, LoadKind, PointId,
 };
@@ -55,9 +55,12 @@ pub(super) fn statement(w: &mut Writer<'_>, load: &Load) -> Vec<Span> {
             let damping = factor(w, damping);
             along(w, load, *q, negative(vec![damping, rate]))
         }
-        LoadKind::Generalized { coordinate, force } => {
+        LoadKind::Generalized { velocity, force } => {
             let force = factor(w, force);
-            along(w, load, *coordinate, force)
+            match velocity.kind {
+                ExprKind::Quantity(Quantity::Rate(q)) => along(w, load, q, force),
+                _ => along_velocity(w, load, velocity, force),
+            }
         }
     };
     what.push(words("; "));
@@ -207,6 +210,18 @@ fn along(w: &mut Writer<'_>, load: &Load, q: CoordinateId, force: Math) -> Said 
         what,
         Math::Row(vec![letter, Math::Letter(rate.before('δ'))]),
     )
+}
+
+/// A generalised force on a pseudo-velocity, or on a combination of velocities.
+fn along_velocity(w: &mut Writer<'_>, load: &Load, velocity: &Spec, force: Math) -> Said {
+    let letter = Math::Letter(Letter::plain("F").below(&load.name));
+    let velocity = factor(w, velocity);
+    let what = vec![
+        equality(letter.clone(), force),
+        words(" along "),
+        math(velocity.clone()),
+    ];
+    (what, Math::Row(vec![letter, velocity]))
 }
 
 /// `letter = [x, y, z] frame`

@@ -1,0 +1,237 @@
+//! The force that nobody has named, measured: a law of what it depends on, with its band.
+//!
+//! The waves of the variable that tell most of it become terms of a load in the spec, beside the effects that
+//! are known, and their sizes are fitted as all others are: within a prior that lets a law be as rough as
+//! one with a step. So the law predicts runs, and a spec can have it.
+
+use std::fmt::Write as _;
+
+use appell_estimate::{Along, Estimation, Unknown};
+
+use super::DiagnoseError;
+use super::bench::Bench;
+use super::compare::{Comparison, TIED};
+use super::hypothesis::Fitted;
+use super::localise::force_unit;
+use super::unknown::{Dependence, Leftover, Series, Unnamed, leftover, wave_scores};
+use crate::effects::{Candidate, EffectModel};
+
+/// Places at which the law is told.
+const PLACES: usize = 81;
+/// Part of the gap below which what is left is not measured.
+const IMMATERIAL: f64 = 0.02;
+
+/// A measured law.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Law {
+    /// The pseudo-velocity whose equation has the force.
+    pub equation: String,
+    /// Unit of the force, or of what the factor multiplies.
+    pub unit: String,
+    /// On what it depends, in words.
+    pub depends_on: String,
+    /// Unit of the variable.
+    pub variable_unit: String,
+    /// What it is multiplied with, in the language of a spec, if with anything.
+    pub factor: Option<String>,
+    /// The variable, the force, its standard deviation.
+    pub curve: Vec<[f64; 3]>,
+    /// Logarithm of the Bayes factor for it.
+    pub log_bayes_factor: f64,
+}
+
+/// The equations with the law.
+pub(super) struct Lawful<'c> {
+    effects: EffectModel,
+    /// What it stands beside.
+    base: &'c Fitted,
+    unnamed: Unnamed,
+    series: Series,
+}
+
+/// The law after its fit.
+pub(super) struct FittedLaw<'l> {
+    pub(super) bench: Bench<'l>,
+    pub(super) fitted: Fitted,
+    /// What it stands beside.
+    pub(super) base: &'l Fitted,
+    pub(super) law: Law,
+}
+
+/// The equations with what is left, where it is a force that depends on something the model knows.
+pub(super) fn lawful<'c>(
+    bench: &Bench<'_>,
+    comparison: &'c Comparison,
+) -> Result<Option<Lawful<'c>>, DiagnoseError> {
+    let Some((base, left)) = base(bench, comparison)? else {
+        return Ok(None);
+    };
+    let (first, dependences) = (left.first, Dependence::all(bench));
+    let brings = |member: &usize| bench.candidate(*member).brings.is_some();
+    if first.along != Along::Disturbances || base.members.iter().any(brings) {
+        return Ok(None);
+    }
+    let Some(dependence) = dependences.get(first.dependence).copied() else {
+        return Ok(None);
+    };
+    let setup = bench.setup(&base.members);
+    let estimation = Estimation::new(&setup, &bench.recordings)?;
+    let scores = wave_scores((bench, &estimation), base, dependence, first.along)?;
+    let scores = scores.into_iter().find(|(place, _)| *place == first.place);
+    let series = scores.and_then(|(_, scores)| scores.series(first.wave));
+    let Some(series) = series else {
+        return Ok(None);
+    };
+    let Some(candidate) = candidate(bench, dependence, &first, &series) else {
+        return Ok(None);
+    };
+    let members = base.members.iter().map(|&member| bench.candidate(member));
+    let candidates: Vec<Candidate> = members.cloned().chain([candidate]).collect();
+    Ok(Some(Lawful {
+        effects: bench.effects.again(candidates)?,
+        base,
+        unnamed: first,
+        series,
+    }))
+}
+
+/// Beside which hypothesis the recordings speak most for a law, where there is one that matters.
+fn base<'c>(
+    bench: &Bench<'_>,
+    comparison: &'c Comparison,
+) -> Result<Option<(&'c Fitted, Leftover)>, DiagnoseError> {
+    let of_best = comparison.left.clone().filter(|left| {
+        let is_there = comparison.independent * left.log_bayes_factor > TIED;
+        is_there && comparison.rest_share(bench) > IMMATERIAL
+    });
+    let (best, nominal) = (comparison.best(), comparison.nominal());
+    let Some(of_best) = of_best else {
+        return Ok(None);
+    };
+    if best.members.is_empty() || comparison.unknown < 0.5 {
+        return Ok(Some((best, of_best)));
+    }
+    // What explains nothing need not stand beside the law.
+    let Some(of_nominal) = leftover(bench, nominal)? else {
+        return Ok(Some((best, of_best)));
+    };
+    let evidence =
+        |fitted: &Fitted, left: &Leftover| fitted.evidence.log() + left.log_bayes_factor;
+    Ok(Some(
+        if evidence(nominal, &of_nominal) > evidence(best, &of_best) {
+            (nominal, of_nominal)
+        } else {
+            (best, of_best)
+        },
+    ))
+}
+
+/// The law as a load with a term for each wave.
+fn candidate(
+    bench: &Bench<'_>,
+    dependence: Dependence<'_>,
+    law: &Unnamed,
+    series: &Series,
+) -> Option<Candidate> {
+    let written = dependence.written(bench)?;
+    let (mut force, mut deviations) = (String::new(), Vec::new());
+    for (wave, _, deviation) in &series.terms {
+        for function in ["sin", "cos"] {
+            let plus = if force.is_empty() { "" } else { " + " };
+            deviations.push(*deviation);
+            let (number, rate) = (deviations.len(), dependence.rate(*wave));
+            let argument = format!("{rate:.9e}*{}", written.variable);
+            // Writing to a string cannot fail.
+            let _ = write!(force, "{plus}{{law}}_{number}*{function}({argument})");
+        }
+    }
+    let mut unit = force_unit(bench, law.place).replace(' ', "*");
+    if let (Some(factor), Some(of_factor)) = (&written.factor, &written.factor_unit) {
+        force = format!("({force})*{factor}");
+        unit = format!("{unit}/({of_factor})");
+    }
+    let info = bench.effects.info();
+    let speed = info.states[law.place].name.as_ref();
+    let mechanism = &bench.effects.mechanism;
+    Some(Candidate::measured(
+        mechanism,
+        speed,
+        (&force, &unit),
+        &deviations,
+    ))
+}
+
+impl Lawful<'_> {
+    /// Fits the sizes beside all that is free under the hypothesis.
+    pub(super) fn fitted(&self, main: &Bench<'_>) -> Result<FittedLaw<'_>, DiagnoseError> {
+        let bench = main.beside(&self.effects)?;
+        let members: Vec<usize> = (0..self.effects.candidates.len()).collect();
+        let setup = bench.setup(&members);
+        let estimation = Estimation::new(&setup, &bench.recordings)?;
+        let mut start = main.carried_by_name(self.base, &estimation);
+        let sizes = self.series.terms.iter().flat_map(|(_, sizes, _)| sizes);
+        let law = self.effects.candidates.iter().find(|one| one.kind == "law");
+        let places: Vec<usize> = law.map_or_else(Vec::new, |law| {
+            bench.own(law).iter().map(|(place, _)| *place).collect()
+        });
+        for (&place, &size) in places.iter().zip(sizes) {
+            start[place] = size;
+        }
+        let fitted = bench.fit(&members, &estimation, &start)?;
+        drop(estimation);
+        let law = self.told(main, &fitted, &places);
+        Ok(FittedLaw {
+            bench,
+            fitted,
+            base: self.base,
+            law,
+        })
+    }
+
+    /// The law with its band.
+    fn told(&self, main: &Bench<'_>, fitted: &Fitted, places: &[usize]) -> Law {
+        let dependence = Dependence::all(main)[self.unnamed.dependence];
+        let (variable_unit, scale) = dependence.unit(main);
+        let written = dependence.written(main);
+        let (low, high) = dependence.range;
+        let free: Vec<Option<usize>> = (places.iter())
+            .map(|&place| {
+                let mut free = fitted.fit.free.iter();
+                free.position(|free| free.unknown == Unknown::Parameter(place))
+            })
+            .collect();
+        let covariance = fitted.fit.covariance();
+        let point = |place: usize| {
+            let x = low + (high - low) * place as f64 / (PLACES - 1) as f64;
+            let waves = self.series.terms.iter().flat_map(|(wave, ..)| {
+                let (sin, cos) = (dependence.rate(*wave) * x).sin_cos();
+                [sin, cos]
+            });
+            let waves: Vec<f64> = waves.collect();
+            let sizes = places.iter().map(|&place| fitted.fit.values[place]);
+            let force: f64 = sizes.zip(&waves).map(|(size, wave)| size * wave).sum();
+            let mut variance = 0.0;
+            for (i, a) in free.iter().zip(&waves) {
+                for (j, b) in free.iter().zip(&waves) {
+                    if let (Some(i), Some(j), Ok(covariance)) = (i, j, &covariance) {
+                        variance += a * b * covariance[(*i, *j)];
+                    }
+                }
+            }
+            [x / scale, force, variance.max(0.0).sqrt()]
+        };
+        let factor_unit = written.as_ref().and_then(|own| own.factor_unit.clone());
+        let force = force_unit(main, self.unnamed.place);
+        Law {
+            equation: main.effects.info().states[self.unnamed.place]
+                .name
+                .to_string(),
+            unit: factor_unit.map_or(force.clone(), |factor| format!("{force}/({factor})")),
+            depends_on: self.unnamed.variable.clone(),
+            variable_unit,
+            factor: written.and_then(|own| own.factor),
+            curve: (0..PLACES).map(point).collect(),
+            log_bayes_factor: self.unnamed.log_bayes_factor,
+        }
+    }
+}

@@ -1,0 +1,325 @@
+//! What a law that nobody has named may depend on.
+//!
+//! Its waves run along a variable. They may be multiplied with the time, for a friction that changes, or with
+//! an input: a gain that walks in time, a friction that grows with the load.
+
+use std::f64::consts::{PI, TAU};
+
+use appell_estimate::{Along, Measured, Recording};
+use appell_runtime::model::{At, Model};
+use appell_spec::units;
+
+use super::super::bench::Bench;
+use super::super::unmodelled::UnmodelledChannel;
+
+/// Waves of a variable.
+pub(super) const WAVES: usize = 24;
+/// Waves of a position along which a force acts: teeth and poles are many along a path.
+const FINE: usize = 64;
+/// Waves of the time: what walks changes slowly.
+const SLOW: usize = 4;
+/// Waves of a rate that are multiplied with a load.
+const LOADED: usize = 8;
+/// Range of a rate in typical rates.
+const REACH: f64 = 2.5;
+
+/// Along what the waves run.
+#[derive(Clone, Copy)]
+enum Source<'b> {
+    /// A state, then an input.
+    Own(usize),
+    /// The time.
+    Time,
+    /// A channel that the model does not know.
+    Unmodelled(&'b UnmodelledChannel),
+}
+
+/// What the waves are multiplied with.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Factor {
+    /// Nothing.
+    One,
+    /// The time.
+    Time,
+    /// An input.
+    Input(usize),
+    /// The size of an input.
+    Load(usize),
+}
+
+/// What a law depends on.
+#[derive(Clone, Copy)]
+pub(in super::super) struct Dependence<'b> {
+    source: Source<'b>,
+    factor: Factor,
+    /// Angle of the first wave per unit.
+    first: f64,
+    /// Whether it is a position.
+    is_position: bool,
+    /// Lowest and highest value.
+    pub(in super::super) range: (f64, f64),
+}
+
+/// A dependence in the language of a spec.
+pub(in super::super) struct Written {
+    /// The variable as a pure number.
+    pub(in super::super) variable: String,
+    /// What the waves are multiplied with; nothing where that is one.
+    pub(in super::super) factor: Option<String>,
+    /// Unit of that.
+    pub(in super::super) factor_unit: Option<String>,
+}
+
+impl<'b> Dependence<'b> {
+    /// On a channel that the model does not know.
+    pub(super) fn unmodelled(channel: &'b UnmodelledChannel) -> Self {
+        Self {
+            source: Source::Unmodelled(channel),
+            factor: Factor::One,
+            first: PI / (channel.range.1 - channel.range.0),
+            is_position: false,
+            range: channel.range,
+        }
+    }
+
+    /// Positions and rates that return, over whole turns where an angle makes several; inputs; rates with the
+    /// time and with the load; the time, alone and with inputs; channels that the model does not know.
+    pub(in super::super) fn all(bench: &'b Bench<'_>) -> Vec<Self> {
+        let info = bench.effects.info();
+        let (states, inputs) = (info.state_len(), bench.recordings[0].input_len());
+        let moving: Vec<usize> = (0..inputs)
+            .filter(|input| bench.range(states + input).is_some())
+            .collect();
+        let mut all = Vec::new();
+        for index in 0..states + inputs {
+            let Some(range) = bench.range(index) else {
+                continue;
+            };
+            let one = Self::own(bench, index, range);
+            all.push(one);
+            if index < info.speeds {
+                let factors = moving.iter().map(|&input| Factor::Load(input));
+                let factors = std::iter::once(Factor::Time).chain(factors);
+                all.extend(factors.map(|factor| Self { factor, ..one }));
+            }
+        }
+        let range = times(bench);
+        let walking = |factor| Self {
+            source: Source::Time,
+            factor,
+            first: PI / (range.1 - range.0),
+            is_position: false,
+            range,
+        };
+        all.extend(moving.iter().map(|&input| walking(Factor::Input(input))));
+        // In one run a level that walks is a disturbance.
+        if bench.recordings.len() > 1 {
+            all.push(walking(Factor::One));
+        }
+        all.extend(bench.unmodelled.iter().map(Self::unmodelled));
+        all
+    }
+
+    fn own(bench: &Bench<'_>, index: usize, range: (f64, f64)) -> Self {
+        let info = bench.effects.info();
+        let length = range.1 - range.0;
+        let is_angle = (info.states.get(index))
+            .is_some_and(|state| units::parse(&state.unit).is_ok_and(|unit| unit.is_angle()));
+        Self {
+            source: Source::Own(index),
+            factor: Factor::One,
+            first: if is_angle && length > TAU {
+                1.0
+            } else {
+                PI / length
+            },
+            is_position: (info.speeds..info.state_len()).contains(&index),
+            range,
+        }
+    }
+
+    /// The variable at a place; NaN where nothing tells it.
+    pub(in super::super) fn variable(
+        self,
+        (bench, model): (&Bench<'_>, &dyn Model),
+        run: usize,
+        at: At<'_>,
+    ) -> f64 {
+        let states = bench.effects.info().state_len();
+        match self.source {
+            Source::Own(index) if index < states => at.x[bench.place(index, model)],
+            Source::Own(index) => at.u[index - states],
+            Source::Time => at.t,
+            Source::Unmodelled(channel) => channel.at(run, at.t),
+        }
+    }
+
+    /// What the waves are multiplied with at a place.
+    pub(in super::super) fn factor(self, at: At<'_>) -> f64 {
+        match self.factor {
+            Factor::One => 1.0,
+            Factor::Time => at.t,
+            Factor::Input(input) => at.u[input],
+            Factor::Load(input) => at.u[input].abs(),
+        }
+    }
+
+    /// The waves at a place, as pairs of sine and cosine.
+    pub(super) fn waves_at(
+        self,
+        (bench, model): (&Bench<'_>, &dyn Model),
+        run: usize,
+        at: At<'_>,
+        to: &mut [f64],
+    ) {
+        let x = self.variable((bench, model), run, at);
+        if x.is_nan() {
+            return to.fill(0.0);
+        }
+        let factor = self.factor(at);
+        for (wave, pair) in to.chunks_exact_mut(2).enumerate() {
+            let (sin, cos) = (self.rate(wave) * x).sin_cos();
+            pair.copy_from_slice(&[factor * sin, factor * cos]);
+        }
+    }
+
+    /// Angle of a wave per unit.
+    pub(in super::super) fn rate(self, wave: usize) -> f64 {
+        (wave + 1) as f64 * self.first
+    }
+
+    /// How many waves a law of it has.
+    pub(super) fn waves(self, along: Along) -> usize {
+        match (self.source, self.factor, along) {
+            (Source::Time, ..) => SLOW,
+            (_, Factor::Load(_), _) => LOADED,
+            (_, _, Along::Disturbances) if self.is_position => FINE,
+            _ => WAVES,
+        }
+    }
+
+    /// Whether it is of a variable alone, as errors of channels are.
+    pub(super) fn is_plain(self) -> bool {
+        self.factor == Factor::One && !matches!(self.source, Source::Time)
+    }
+
+    /// In words.
+    pub(in super::super) fn name(self, bench: &Bench<'_>) -> String {
+        let source = match self.source {
+            Source::Own(index) => quantity(bench, index).0,
+            Source::Time => "time".to_owned(),
+            Source::Unmodelled(channel) => channel.name.clone(),
+        };
+        let states = bench.effects.info().state_len();
+        match self.factor {
+            Factor::One => source,
+            Factor::Time => format!("{source} and time"),
+            Factor::Input(input) => format!("{} and {source}", quantity(bench, states + input).0),
+            Factor::Load(input) => format!("{source} and |{}|", quantity(bench, states + input).0),
+        }
+    }
+
+    /// Unit of the variable, and how many SI units it has.
+    pub(in super::super) fn unit(self, bench: &Bench<'_>) -> (String, f64) {
+        match self.source {
+            Source::Own(index) => {
+                let (_, unit, scale) = quantity(bench, index);
+                (unit, scale)
+            }
+            Source::Time => ("s".to_owned(), 1.0),
+            Source::Unmodelled(_) => (String::new(), 1.0),
+        }
+    }
+
+    /// In the language of a spec; nothing for what the model does not know.
+    pub(in super::super) fn written(self, bench: &Bench<'_>) -> Option<Written> {
+        let states = bench.effects.info().state_len();
+        let variable = match self.source {
+            Source::Own(index) => {
+                let (name, unit, _) = quantity(bench, index);
+                pure(&name, &si(&unit))
+            }
+            Source::Time => pure("t", "s"),
+            Source::Unmodelled(_) => return None,
+        };
+        let input = |index: usize| {
+            let (name, unit, _) = quantity(bench, states + index);
+            (name, si(&unit))
+        };
+        let factor = match self.factor {
+            Factor::One => None,
+            Factor::Time => Some(("t".to_owned(), "s".to_owned())),
+            Factor::Input(index) => Some(input(index)),
+            Factor::Load(index) => {
+                let (name, unit) = input(index);
+                Some((format!("abs({name})"), unit))
+            }
+        };
+        let (factor, factor_unit) = factor.unzip();
+        Some(Written {
+            variable,
+            factor,
+            factor_unit,
+        })
+    }
+}
+
+/// A quantity as a pure number.
+fn pure(name: &str, si: &str) -> String {
+    if si == "1" {
+        name.to_owned()
+    } else {
+        format!("{name}/(1 [{si}])")
+    }
+}
+
+/// The SI unit of the dimension of a unit.
+fn si(unit: &str) -> String {
+    let dimension = units::parse(unit).map(|unit| unit.dimension);
+    dimension.map_or_else(|_| "1".to_owned(), |own| units::Unit::si(own).text)
+}
+
+/// Name, unit and SI units of a state, then an input.
+fn quantity(bench: &Bench<'_>, index: usize) -> (String, String, f64) {
+    let info = bench.effects.info();
+    let mut quantities = info.states.iter().chain(info.inputs.iter());
+    quantities.nth(index).map_or_else(
+        || (String::new(), "1".to_owned(), 1.0),
+        |own| (own.name.to_string(), own.unit.to_string(), own.scale),
+    )
+}
+
+/// First and last time of all runs.
+fn times(bench: &Bench<'_>) -> (f64, f64) {
+    let runs = bench.recordings.iter().map(|run| run.times());
+    runs.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), times| {
+        (low.min(times[0]), high.max(times[times.len() - 1]))
+    })
+}
+
+impl Bench<'_> {
+    /// Range of a state or input along the recordings: as recorded, or typical rates of what is
+    /// measured.
+    pub(in super::super) fn range(&self, index: usize) -> Option<(f64, f64)> {
+        let states = self.effects.info().state_len();
+        let shown = |shown: &Measured| *shown == Measured::State(index);
+        let channel = self.measured.iter().position(shown);
+        let recorded = |run: &Recording, row: usize| match channel {
+            Some(channel) => run.measured(row)[channel],
+            None => run.inputs(row)[index - states],
+        };
+        if channel.is_none() && index < states {
+            let size = self.sizes.get(index).copied()?;
+            return (size > 0.0).then_some((-REACH * size, REACH * size));
+        }
+        let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+        for run in &self.recordings {
+            for row in 0..run.times().len() {
+                let value = recorded(run, row);
+                // What is missing changes neither.
+                (low, high) = (low.min(value), high.max(value));
+            }
+        }
+        (high > low).then_some((low, high))
+    }
+}

@@ -1,0 +1,215 @@
+//! What the waves of a variable tell of the force in an equation, or of the error of a channel.
+//!
+//! A law is linear in the sizes of its waves, so what it gains, and how probable it makes the recordings
+//! when its sizes are normal, has a closed form (C. E. Rasmussen and C. K. I. Williams, *Gaussian
+//! Processes for Machine Learning*, 2006, chapter 2).
+
+use appell_estimate::Innovation;
+use nalgebra::{DMatrix, DVector};
+
+use super::super::evidence::{NormalSizes, occam};
+use super::super::screen::Projected;
+use super::dependence::WAVES;
+
+/// Most waves of a law that is written down.
+const MOST_TERMS: usize = 10;
+/// Part of the gain of all waves that those have to reach.
+const ENOUGH: f64 = 0.98;
+/// A little of the larger square keeps a wave that is hardly there in place.
+const FLOOR: f64 = 1e-9;
+
+/// Some waves with their sizes.
+pub(in super::super) struct Series {
+    /// Number of the wave, sizes of its sine and cosine, their standard deviation beforehand.
+    pub(in super::super) terms: Vec<(usize, [f64; 2], f64)>,
+}
+
+/// What a law would gain, on all runs and on runs that it was not found in.
+#[derive(Clone, Copy)]
+pub(super) struct LawGain {
+    pub(super) gain: f64,
+    pub(super) cross_validated: f64,
+    pub(super) log_bayes_factor: f64,
+}
+
+/// What the waves of a variable tell, run by run: the squares of their slopes and their scores.
+pub(in super::super) struct WaveScores {
+    runs: Vec<(DMatrix<f64>, DVector<f64>)>,
+    squares: DMatrix<f64>,
+    scores: DVector<f64>,
+}
+
+impl WaveScores {
+    pub(super) fn new(projected: &Projected<'_>, slopes: &DMatrix<f64>) -> Self {
+        let samples = &projected.tangent.samples;
+        // By rows the products below run along the memory.
+        let turned = slopes.transpose();
+        let wave_scores = |from: usize, rows: usize| {
+            let turned = turned.columns(from, rows);
+            let squares = turned * slopes.rows(from, rows);
+            (squares, -(turned * projected.rest.rows(from, rows)))
+        };
+        let mut runs = Vec::new();
+        let mut from = 0;
+        while let Some((run, _)) = samples.get(from) {
+            let of_run = |sample: &&(usize, Innovation)| sample.0 == *run;
+            let rows = samples[from..].iter().take_while(of_run).count();
+            runs.push(wave_scores(from, rows));
+            from += rows;
+        }
+        // The rows for what is known of the parameters beforehand belong to no run.
+        let (mut squares, mut scores) = wave_scores(from, slopes.nrows() - from);
+        for (own, score) in &runs {
+            squares += own;
+            scores += score;
+        }
+        Self {
+            runs,
+            squares,
+            scores,
+        }
+    }
+
+    /// A law whose waves fall off as one over their number, averaged over its size.
+    pub(super) fn smooth(&self) -> Option<LawGain> {
+        let count = self.scores.len().min(2 * WAVES);
+        let fall = DVector::from_fn(count, |i, _| ((i / 2 + 1) as f64).recip());
+        let scaled = self.scaled(&fall);
+        let sizes = NormalSizes::of(&scaled.squares, &scaled.scores)?;
+        let (gain, cross_validated) = scaled.gains(sizes.variance.recip())?;
+        Some(LawGain {
+            gain,
+            cross_validated,
+            log_bayes_factor: sizes.log_bayes_factor,
+        })
+    }
+
+    /// The waves that make most of a smooth law, or a given one, and the variance of their sizes beforehand.
+    pub(in super::super) fn series(&self, wave: Option<usize>) -> Option<Series> {
+        if let Some(wave) = wave {
+            let (squares, scores) = Self::part(&self.squares, &self.scores, 2 * wave);
+            let size = squares.diagonal().max();
+            let sizes = solved(&squares, &scores, FLOOR * size)?;
+            let variance = sizes.norm_squared();
+            return Some(Series {
+                terms: vec![(wave, [sizes[0], sizes[1]], variance.sqrt())],
+            });
+        }
+        let count = self.scores.len().min(2 * WAVES);
+        let fall = |i: usize| ((i / 2 + 1) as f64).recip();
+        let scaled = self.scaled(&DVector::from_fn(count, |i, _| fall(i)));
+        let variance = NormalSizes::of(&scaled.squares, &scaled.scores)?.variance;
+        let gain_of = |waves: &[usize]| {
+            let places: Vec<usize> = waves.iter().flat_map(|&w| [2 * w, 2 * w + 1]).collect();
+            let part = |i: usize, j: usize| scaled.squares[(places[i], places[j])];
+            let squares = DMatrix::from_fn(places.len(), places.len(), part);
+            let scores = DVector::from_fn(places.len(), |i, _| scaled.scores[places[i]]);
+            let sizes = solved(&squares, &scores, variance.recip())?;
+            Some((gained(&sizes, &squares, &scores), sizes))
+        };
+        let all: Vec<usize> = (0..count / 2).collect();
+        let (whole, _) = gain_of(&all)?;
+        let mut chosen: Vec<usize> = Vec::new();
+        let mut best = None;
+        while chosen.len() < MOST_TERMS.min(all.len()) {
+            let others = all.iter().filter(|wave| !chosen.contains(wave));
+            let tried = others.filter_map(|&wave| {
+                let waves = [chosen.as_slice(), &[wave]].concat();
+                Some((gain_of(&waves)?, wave))
+            });
+            let ((gain, sizes), wave) = tried.max_by(|a, b| a.0.0.total_cmp(&b.0.0))?;
+            chosen.push(wave);
+            best = Some(sizes);
+            if gain > ENOUGH * whole {
+                break;
+            }
+        }
+        let sizes = best?;
+        let terms = chosen.iter().enumerate().map(|(place, &wave)| {
+            let fall = fall(2 * wave);
+            let own = [sizes[2 * place] * fall, sizes[2 * place + 1] * fall];
+            (wave, own, variance.sqrt() * fall)
+        });
+        let mut terms: Vec<(usize, [f64; 2], f64)> = terms.collect();
+        terms.sort_by_key(|(wave, ..)| *wave);
+        Some(Series { terms })
+    }
+
+    /// One wave of two sizes.
+    pub(super) fn single(&self, wave: usize) -> Option<LawGain> {
+        let pair = Self::part(&self.squares, &self.scores, 2 * wave);
+        let runs = self.runs.iter();
+        let own = Self {
+            runs: runs
+                .map(|(squares, scores)| Self::part(squares, scores, 2 * wave))
+                .collect(),
+            squares: pair.0,
+            scores: pair.1,
+        };
+        let size = own.squares.diagonal().max();
+        if size.is_nan() || size <= 0.0 {
+            return None;
+        }
+        let (gain, cross_validated) = own.gains(FLOOR * size)?;
+        Some(LawGain {
+            gain,
+            cross_validated,
+            log_bayes_factor: gain - 2.0 * occam(gain),
+        })
+    }
+
+    fn part(
+        squares: &DMatrix<f64>,
+        scores: &DVector<f64>,
+        from: usize,
+    ) -> (DMatrix<f64>, DVector<f64>) {
+        let squares = squares.view((from, from), (2, 2)).into_owned();
+        (squares, scores.rows(from, 2).into_owned())
+    }
+
+    fn scaled(&self, by: &DVector<f64>) -> Self {
+        let scale = |squares: &DMatrix<f64>, scores: &DVector<f64>| {
+            let squares =
+                DMatrix::from_fn(by.len(), by.len(), |i, j| by[i] * squares[(i, j)] * by[j]);
+            (squares, by.component_mul(&scores.rows(0, by.len())))
+        };
+        let (squares, scores) = scale(&self.squares, &self.scores);
+        Self {
+            runs: self
+                .runs
+                .iter()
+                .map(|(squares, scores)| scale(squares, scores))
+                .collect(),
+            squares,
+            scores,
+        }
+    }
+
+    /// What the most probable sizes gain, and what those found in the other runs gain in each; `held`
+    /// is the inverse of their variance.
+    fn gains(&self, held: f64) -> Option<(f64, f64)> {
+        let sizes = solved(&self.squares, &self.scores, held)?;
+        let gain = gained(&sizes, &self.squares, &self.scores);
+        if self.runs.len() < 2 {
+            return Some((gain, gain));
+        }
+        let mut cross_validated = 0.0;
+        for (squares, scores) in &self.runs {
+            let sizes = solved(&(&self.squares - squares), &(&self.scores - scores), held)?;
+            cross_validated += gained(&sizes, squares, scores);
+        }
+        Some((gain, cross_validated))
+    }
+}
+
+fn gained(sizes: &DVector<f64>, squares: &DMatrix<f64>, scores: &DVector<f64>) -> f64 {
+    sizes.dot(scores) - 0.5 * sizes.dot(&(squares * sizes))
+}
+
+fn solved(squares: &DMatrix<f64>, scores: &DVector<f64>, held: f64) -> Option<DVector<f64>> {
+    let mut squares = squares.clone();
+    for i in 0..squares.nrows() {
+        squares[(i, i)] += held;
+    }
+    Some(squares.cholesky()?.solve(scores))
+}

@@ -5,7 +5,9 @@ use std::path::Path;
 
 use appell_gap::diagnose::{Experiment, GapVerdict, Hypothesis, Report};
 
-use appell_report::gap::{divided, doubts, hinted, joined, left_out, sentence, short};
+use appell_report::gap::{
+    divided, doubts, hinted, joined, law_sentence, left_out, sentence, short,
+};
 use appell_report::text::{number, with_unit};
 
 /// Number of hypotheses in the summary.
@@ -44,7 +46,9 @@ pub(crate) fn text(report: &Report, next: Option<&Path>) -> String {
     for hint in &report.hints {
         let _ = writeln!(text, "  hint      {}", hinted(hint));
     }
-    if let Some(left) = report.left.as_ref().filter(|left| left.is_there()) {
+    if let Some(law) = law_sentence(report) {
+        let _ = writeln!(text, "  left      {law}");
+    } else if let Some(left) = report.left.as_ref().filter(|left| left.is_there()) {
         let _ = writeln!(text, "  left      {}", left.about);
     }
     let is_listed = |effects: &[String]| {

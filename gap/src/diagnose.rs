@@ -38,6 +38,7 @@ mod feedback;
 mod force_history;
 mod force_law;
 mod forces;
+mod forms;
 mod held_out;
 mod horizon;
 mod hypothesis;
@@ -63,6 +64,7 @@ pub use error::DiagnoseError;
 pub use experiment::{Experiment, Limit};
 pub use force_history::{ForceHistory, MissingForce};
 pub use force_law::ForceLaw;
+pub use forms::Form;
 pub use law::Law;
 pub use report::{
     Detectable, Found, GapVerdict, Hint, HowFar, Hypothesis, Left, Pictures, Region, Report,

@@ -1,10 +1,11 @@
 //! A gap report as a page, and its sentences.
 //!
-//! [`page()`] sets [`words`], [`plots`] and tables; [`budget`] divides the gap, [`doubt`] suspects unit
-//! errors, [`numbers`] writes values with their uncertainty.
+//! [`page()`] sets [`words`], [`plots`] and tables; [`budget`] divides the gap, [`law`] shows what was
+//! measured of the rest, [`doubt`] suspects unit errors, [`numbers`] writes values with their uncertainty.
 
 mod budget;
 mod doubt;
+mod law;
 mod numbers;
 mod page;
 mod plots;
@@ -12,6 +13,7 @@ mod words;
 
 pub use budget::divided;
 pub use doubt::doubts;
+pub use law::law_sentence;
 pub use page::page;
 pub use words::{hinted, joined, left_out, sentence};
 

@@ -27,8 +27,8 @@ const EFFORT: Effort = Effort {
 };
 /// The same over windows, where errors count by their tolerance.
 const COARSE: Effort = Effort {
-    gain: 0.1,
-    steps: 60,
+    gain: 0.3,
+    steps: 40,
 };
 /// The same for levels that are found anew right after.
 const ROUGHLY: Effort = Effort {
@@ -364,15 +364,16 @@ impl<'a> Bench<'a> {
         pairs.extend(parameters.map(|(was, is)| (Unknown::Parameter(was), Unknown::Parameter(is))));
         pairs.extend((0..setup.disturbances.len()).map(|d| same(Unknown::Disturbance(d))));
         for channel in 0..setup.channels.len() {
-            pairs.extend(
-                [
-                    Unknown::Noise(channel),
-                    Unknown::Bias(channel),
-                    Unknown::Scale(channel),
-                    Unknown::SensorDelay(channel),
-                ]
-                .map(same),
-            );
+            let of_channel = [
+                Unknown::Noise(channel),
+                Unknown::Bias(channel),
+                Unknown::Scale(channel),
+            ];
+            pairs.extend(of_channel.map(same));
+            // A channel that is never late has no delay.
+            if setup.channels[channel].longest_delay.is_some() {
+                pairs.push(same(Unknown::SensorDelay(channel)));
+            }
         }
         let inputs = |list: &[usize], input: &usize| list.iter().position(|own| own == input);
         for (new, input) in setup.lagging.iter().enumerate() {

@@ -6,14 +6,14 @@
 //! add up, and none depends on an order. Every model on the way is fitted to the runs to fit and judged
 //! on those held out.
 
-use appell_estimate::Estimation;
+use appell_estimate::{Estimation, Unknown};
 
 use super::DiagnoseError;
 use super::bench::Bench;
 use super::compare::Comparison;
 use super::hypothesis::Fitted;
 use super::prediction::{Errors, Paired};
-use crate::effects::Part as Role;
+use crate::effects::{Acts, Part as Role};
 
 /// The re-fitted parameters in the budget.
 pub(super) const REFIT: &str = "refit";
@@ -168,16 +168,23 @@ fn with(
     }
     let setup = bench.setup(members);
     let estimation = Estimation::new(&setup, &bench.recordings)?;
+    let layout = estimation.layout();
     let mut start = bench.carried(best, &estimation);
     for &absent in best
         .members
         .iter()
         .filter(|member| !members.contains(member))
     {
-        for (place, role) in bench.own(bench.candidate(absent)) {
+        let candidate = bench.candidate(absent);
+        for (place, role) in bench.own(candidate) {
             if role != Role::Shape {
                 start[place] = 0.0;
             }
+        }
+        match candidate.acts {
+            Acts::Bias(channel) => start[layout.place(Unknown::Bias(channel))?] = 0.0,
+            Acts::Scale(channel) => start[layout.place(Unknown::Scale(channel))?] = 1.0,
+            _ => {}
         }
     }
     bench.fit(members, &estimation, &start)

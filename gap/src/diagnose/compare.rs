@@ -91,6 +91,11 @@ impl Comparison {
         }
     }
 
+    /// Whether nothing is as probable as that nothing in the library explains the gap.
+    pub(super) fn leads_unknown(&self) -> bool {
+        self.unknown > (1.0 - self.unknown) * self.fits[0].1
+    }
+
     /// Part of the gap that a law would take of what the best hypothesis leaves.
     pub(super) fn rest_share(&self, bench: &Bench<'_>) -> f64 {
         if self.best().members.is_empty() {
@@ -142,7 +147,7 @@ impl Comparison {
         bench: &Bench<'_>,
         nominal: Fitted,
         screen: &Screen,
-        goes_on: impl Fn(&Fitted) -> bool,
+        mut goes_on: impl FnMut(&Fitted) -> bool,
     ) -> Result<Option<Self>, DiagnoseError> {
         let mut search = Search {
             bench,

@@ -6,6 +6,7 @@
 //! differences beyond a tolerance count (J. W. Miller and D. B. Dunson, *Robust Bayesian inference via
 //! coarsening*, Journal of the American Statistical Association 114, 2019).
 
+use std::collections::BTreeMap;
 use std::f64::consts::PI;
 
 use super::DiagnoseError;
@@ -53,21 +54,36 @@ pub(super) fn judged<'a>(
         });
     }
     stage("fitting simulations over windows");
-    let simulated = over.nominal().map_err(DiagnoseError::of_nominal)?;
-    let screen = Screen::of(&over, &simulated)?;
-    let comparison = Comparison::of(&over, simulated, &screen, |_| true)?;
-    let mut comparison = comparison.ok_or(DiagnoseError::NothingToFit)?;
-    stage("looking for what no effect explains");
-    comparison.weigh_unknown(&over)?;
-    if comparison.best().members.is_empty() {
-        // One step ahead more is seen of what is left.
-        comparison.left = leftover(&bench, &nominal)?;
+    if let Ok((screen, mut comparison)) = simulated(&over) {
+        stage("looking for what no effect explains");
+        comparison.weigh_unknown(&over)?;
+        if comparison.best().members.is_empty() {
+            // One step ahead more is seen of what is left.
+            comparison.left = leftover(&bench, &nominal)?;
+        }
+        return Ok(Judged {
+            bench: over,
+            screen,
+            comparison,
+        });
     }
+    // Where no simulation follows the recordings, one step has to do.
+    let comparison = Comparison::of(&bench, nominal, &screen, |_| true)?;
+    let mut comparison = comparison.ok_or(DiagnoseError::NothingToFit)?;
+    comparison.weigh_unknown(&bench)?;
     Ok(Judged {
-        bench: over,
+        bench,
         screen,
         comparison,
     })
+}
+
+/// The hypotheses by simulations.
+fn simulated(over: &Bench<'_>) -> Result<(Screen, Comparison), DiagnoseError> {
+    let nominal = over.nominal()?;
+    let screen = Screen::of(over, &nominal)?;
+    let comparison = Comparison::of(over, nominal, &screen, |_| true)?;
+    Ok((screen, comparison.ok_or(DiagnoseError::NothingToFit)?))
 }
 
 /// The hypotheses by one-step predictions; nothing where the windows refute them, as where the disturbance follows
@@ -76,22 +92,42 @@ fn one_step(
     over: &Bench<'_>,
     (bench, nominal, screen): (&Bench<'_>, &Fitted, &Screen),
 ) -> Result<Option<Comparison>, DiagnoseError> {
-    // Where the windows lose a hypothesis, they say nothing against it.
-    let goes_on = |fitted: &Fitted| {
-        let again = over.fitted_again(bench, fitted);
-        again.map_or(true, |(gain, _)| gain < REFUTED_ALONE)
+    let mut seen = Seen {
+        over,
+        bench,
+        again: BTreeMap::new(),
     };
+    let goes_on = |fitted: &Fitted| seen.again(fitted).is_none_or(|(gain, _)| *gain < REFUTED_ALONE);
     let Some(mut comparison) = Comparison::of(bench, nominal.clone(), screen, goes_on)? else {
         return Ok(None);
     };
-    let Ok((gain, again)) = over.fitted_again(bench, comparison.best()) else {
+    let of_nominal = seen.again(comparison.nominal());
+    let of_nominal = of_nominal.map(|(_, again)| again.fit.log_likelihood);
+    let Some((gain, again)) = seen.again(comparison.best()) else {
         return Ok(Some(comparison));
     };
-    if let Ok((_, nominal)) = over.fitted_again(bench, comparison.nominal()) {
-        comparison.stays = over.left(again.fit.log_likelihood - nominal.fit.log_likelihood);
+    if let Some(of_nominal) = of_nominal {
+        comparison.stays = over.left(again.fit.log_likelihood - of_nominal);
     }
-    let by_others = Screen::of(over, &again).map_or(0.0, |screen| screen.most());
+    let by_others = Screen::of(over, again).map_or(0.0, |screen| screen.most());
     Ok((gain.max(by_others) < REFUTED).then_some(comparison))
+}
+
+/// Hypotheses of one-step predictions, as windows see them.
+struct Seen<'s, 'a> {
+    over: &'s Bench<'a>,
+    bench: &'s Bench<'a>,
+    /// By their members: what other values gain, and the hypothesis with these.
+    again: BTreeMap<Vec<usize>, Option<(f64, Fitted)>>,
+}
+
+impl Seen<'_, '_> {
+    /// Nothing where the windows lose a hypothesis: then they say nothing against it.
+    fn again(&mut self, fitted: &Fitted) -> Option<&(f64, Fitted)> {
+        let again = self.again.entry(fitted.members.clone());
+        let fit = || self.over.fitted_again(self.bench, fitted).ok();
+        again.or_insert_with(fit).as_ref()
+    }
 }
 
 /// The runs, cut into windows as long as a typical swing: long enough that forces show in the motion, short

@@ -11,6 +11,7 @@ use appell_estimate::{Along, Estimation, Unknown};
 use super::DiagnoseError;
 use super::bench::Bench;
 use super::compare::{Comparison, TIED};
+use super::forms::{Form, forms};
 use super::hypothesis::Fitted;
 use super::localise::force_unit;
 use super::unknown::{Dependence, Leftover, Series, Unnamed, leftover, wave_scores};
@@ -30,7 +31,9 @@ pub struct Law {
     pub unit: String,
     /// On what it depends, in words.
     pub depends_on: String,
-    /// Unit of the variable.
+    /// The variable of the curve.
+    pub variable: String,
+    /// Its unit.
     pub variable_unit: String,
     /// What it is multiplied with, in the language of a spec, if with anything.
     pub factor: Option<String>,
@@ -38,6 +41,8 @@ pub struct Law {
     pub curve: Vec<[f64; 3]>,
     /// Logarithm of the Bayes factor for it.
     pub log_bayes_factor: f64,
+    /// Forms that come near to it, the most probable first.
+    pub forms: Vec<Form>,
 }
 
 /// The equations with the law.
@@ -102,7 +107,8 @@ fn base<'c>(
 ) -> Result<Option<(&'c Fitted, Leftover)>, DiagnoseError> {
     let of_best = comparison.left.clone().filter(|left| {
         let is_there = comparison.independent * left.log_bayes_factor > TIED;
-        is_there && comparison.rest_share(bench) > IMMATERIAL
+        let matters = is_there && comparison.rest_share(bench) > IMMATERIAL;
+        matters || comparison.leads_unknown()
     });
     let (best, nominal) = (comparison.best(), comparison.nominal());
     let Some(of_best) = of_best else {
@@ -179,7 +185,7 @@ impl Lawful<'_> {
         }
         let fitted = bench.fit(&members, &estimation, &start)?;
         drop(estimation);
-        let law = self.told(main, &fitted, &places);
+        let law = self.told(main, &fitted, &places)?;
         Ok(FittedLaw {
             bench,
             fitted,
@@ -189,7 +195,12 @@ impl Lawful<'_> {
     }
 
     /// The law with its band.
-    fn told(&self, main: &Bench<'_>, fitted: &Fitted, places: &[usize]) -> Law {
+    fn told(
+        &self,
+        main: &Bench<'_>,
+        fitted: &Fitted,
+        places: &[usize],
+    ) -> Result<Law, DiagnoseError> {
         let dependence = Dependence::all(main)[self.unnamed.dependence];
         let (variable_unit, scale) = dependence.unit(main);
         let written = dependence.written(main);
@@ -222,16 +233,18 @@ impl Lawful<'_> {
         };
         let factor_unit = written.as_ref().and_then(|own| own.factor_unit.clone());
         let force = force_unit(main, self.unnamed.place);
-        Law {
+        Ok(Law {
             equation: main.effects.info().states[self.unnamed.place]
                 .name
                 .to_string(),
             unit: factor_unit.map_or(force.clone(), |factor| format!("{force}/({factor})")),
             depends_on: self.unnamed.variable.clone(),
+            variable: dependence.letters(main).0,
             variable_unit,
             factor: written.and_then(|own| own.factor),
             curve: (0..PLACES).map(point).collect(),
             log_bayes_factor: self.unnamed.log_bayes_factor,
-        }
+            forms: forms(main, self.base, dependence, &self.unnamed)?,
+        })
     }
 }

@@ -20,8 +20,7 @@ use super::hypothesis::Fitted;
 use super::screen::{Projected, moving};
 
 pub(super) use dependence::Dependence;
-use series::LawGain;
-pub(super) use series::{Series, WaveScores};
+pub(super) use series::{LawGain, Series, TermScores};
 
 /// Part of its gain that a law has to repeat on runs that it was not found in.
 const REPEATED: f64 = 0.5;
@@ -111,17 +110,27 @@ pub(super) fn wave_scores(
     fitted: &Fitted,
     dependence: Dependence<'_>,
     along: Along,
-) -> Result<Vec<(usize, WaveScores)>, DiagnoseError> {
-    let (free, setup) = (moving(fitted), estimation.setup());
-    let waves = 2 * dependence.waves(along);
+) -> Result<Vec<(usize, TermScores)>, DiagnoseError> {
+    let model = estimation.setup().model;
     let write = |run: usize, at: At<'_>, values: &mut [f64]| {
-        dependence.waves_at((bench, setup.model), run, at, values);
+        dependence.waves_at((bench, model), run, at, values);
     };
     let shapes = Shapes {
         along,
-        count: waves,
+        count: 2 * dependence.waves(along),
         values: &write,
     };
+    term_scores((bench, estimation), fitted, shapes)
+}
+
+/// The same of any terms.
+pub(super) fn term_scores(
+    (bench, estimation): (&Bench<'_>, &Estimation<'_>),
+    fitted: &Fitted,
+    shapes: Shapes<'_>,
+) -> Result<Vec<(usize, TermScores)>, DiagnoseError> {
+    let (free, setup) = (moving(fitted), estimation.setup());
+    let (along, count) = (shapes.along, shapes.count);
     let tangent = estimation.tangent(&fitted.fit.values, &free, Some(shapes))?;
     let projected = Projected::new((&tangent, bench.weight), fitted, free.len(), 0..0);
     let places: Vec<Option<usize>> = match along {
@@ -136,12 +145,10 @@ pub(super) fn wave_scores(
     let places = places.into_iter().enumerate();
     Ok(places
         .filter_map(|(block, place)| {
-            let first = free.len() + block * waves;
-            let columns: Vec<usize> = (first..first + waves).collect();
-            Some((
-                place?,
-                WaveScores::new(&projected, &projected.slopes(&columns)),
-            ))
+            let first = free.len() + block * count;
+            let columns: Vec<usize> = (first..first + count).collect();
+            let slopes = projected.slopes(&columns);
+            Some((place?, TermScores::new(&projected, &slopes)))
         })
         .collect())
 }

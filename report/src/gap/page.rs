@@ -9,6 +9,7 @@ use maud::{Markup, PreEscaped, html};
 
 use super::budget::budget;
 use super::doubt::doubts;
+use super::law::law;
 use super::numbers::{measured, percent};
 use super::plots;
 use super::words::{hinted, joined, left_out, sentence};
@@ -276,6 +277,7 @@ fn which(report: &Report) -> Markup {
                 " of the gap (log Bayes factor " (short(left.log_bayes_factor)) ")."
             }
         }
+        (law(report))
         @if !report.failed.is_empty() {
             details {
                 @let fits = if report.failed.len() == 1 { "fit" } else { "fits" };
@@ -504,7 +506,7 @@ pub(super) fn bar(part: f64) -> Markup {
     }
 }
 
-fn figure(svg: String, caption: &str) -> Markup {
+pub(super) fn figure(svg: String, caption: &str) -> Markup {
     html! {
         figure { (PreEscaped(svg)) figcaption { (caption) } }
     }

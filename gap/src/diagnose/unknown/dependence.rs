@@ -203,6 +203,17 @@ impl<'b> Dependence<'b> {
         self.factor == Factor::One && !matches!(self.source, Source::Time)
     }
 
+    /// Name of the variable, and what the waves are multiplied with.
+    pub(in super::super) fn letters(self, bench: &Bench<'_>) -> (String, Option<String>) {
+        let name = match self.source {
+            Source::Own(index) => quantity(bench, index).0,
+            Source::Time => "t".to_owned(),
+            Source::Unmodelled(channel) => channel.name.clone(),
+        };
+        let factor = self.written(bench).and_then(|written| written.factor);
+        (name, factor)
+    }
+
     /// In words.
     pub(in super::super) fn name(self, bench: &Bench<'_>) -> String {
         let source = match self.source {

@@ -26,20 +26,20 @@ pub(in super::super) struct Series {
 
 /// What a law would gain, on all runs and on runs that it was not found in.
 #[derive(Clone, Copy)]
-pub(super) struct LawGain {
-    pub(super) gain: f64,
+pub(in super::super) struct LawGain {
+    pub(in super::super) gain: f64,
     pub(super) cross_validated: f64,
-    pub(super) log_bayes_factor: f64,
+    pub(in super::super) log_bayes_factor: f64,
 }
 
-/// What the waves of a variable tell, run by run: the squares of their slopes and their scores.
-pub(in super::super) struct WaveScores {
+/// What the terms of a law tell, run by run: the squares of their slopes and their scores.
+pub(in super::super) struct TermScores {
     runs: Vec<(DMatrix<f64>, DVector<f64>)>,
     squares: DMatrix<f64>,
     scores: DVector<f64>,
 }
 
-impl WaveScores {
+impl TermScores {
     pub(super) fn new(projected: &Projected<'_>, slopes: &DMatrix<f64>) -> Self {
         let samples = &projected.tangent.samples;
         // By rows the products below run along the memory.
@@ -87,9 +87,10 @@ impl WaveScores {
     /// The waves that make most of a smooth law, or a given one, and the variance of their sizes beforehand.
     pub(in super::super) fn series(&self, wave: Option<usize>) -> Option<Series> {
         if let Some(wave) = wave {
-            let (squares, scores) = Self::part(&self.squares, &self.scores, 2 * wave);
-            let size = squares.diagonal().max();
-            let sizes = solved(&squares, &scores, FLOOR * size)?;
+            let square = |i: usize, j: usize| self.squares[(2 * wave + i, 2 * wave + j)];
+            let squares = DMatrix::from_fn(2, 2, square);
+            let scores = self.scores.rows(2 * wave, 2).into_owned();
+            let sizes = solved(&squares, &scores, FLOOR * squares.diagonal().max())?;
             let variance = sizes.norm_squared();
             return Some(Series {
                 terms: vec![(wave, [sizes[0], sizes[1]], variance.sqrt())],
@@ -137,14 +138,24 @@ impl WaveScores {
 
     /// One wave of two sizes.
     pub(super) fn single(&self, wave: usize) -> Option<LawGain> {
-        let pair = Self::part(&self.squares, &self.scores, 2 * wave);
+        self.of(&[2 * wave, 2 * wave + 1])
+    }
+
+    /// Some terms alone, with sizes that may be any.
+    pub(in super::super) fn of(&self, terms: &[usize]) -> Option<LawGain> {
+        let part = |squares: &DMatrix<f64>, scores: &DVector<f64>| {
+            let square = |i: usize, j: usize| squares[(terms[i], terms[j])];
+            (
+                DMatrix::from_fn(terms.len(), terms.len(), square),
+                DVector::from_fn(terms.len(), |i, _| scores[terms[i]]),
+            )
+        };
+        let (squares, scores) = part(&self.squares, &self.scores);
         let runs = self.runs.iter();
         let own = Self {
-            runs: runs
-                .map(|(squares, scores)| Self::part(squares, scores, 2 * wave))
-                .collect(),
-            squares: pair.0,
-            scores: pair.1,
+            runs: runs.map(|(squares, scores)| part(squares, scores)).collect(),
+            squares,
+            scores,
         };
         let size = own.squares.diagonal().max();
         if size.is_nan() || size <= 0.0 {
@@ -154,17 +165,8 @@ impl WaveScores {
         Some(LawGain {
             gain,
             cross_validated,
-            log_bayes_factor: gain - 2.0 * occam(gain),
+            log_bayes_factor: gain - terms.len() as f64 * occam(gain),
         })
-    }
-
-    fn part(
-        squares: &DMatrix<f64>,
-        scores: &DVector<f64>,
-        from: usize,
-    ) -> (DMatrix<f64>, DVector<f64>) {
-        let squares = squares.view((from, from), (2, 2)).into_owned();
-        (squares, scores.rows(from, 2).into_owned())
     }
 
     fn scaled(&self, by: &DVector<f64>) -> Self {

@@ -1,0 +1,178 @@
+//! Forms that a measured law may have: what one or two sizes and a few words tell instead of a curve.
+
+use appell_estimate::{Estimation, Shapes};
+use appell_runtime::model::At;
+
+use super::DiagnoseError;
+use super::bench::Bench;
+use super::hypothesis::Fitted;
+use super::unknown::{Dependence, LawGain, TermScores, Unnamed, term_scores};
+
+/// Forms that are told.
+const TOLD: usize = 3;
+/// Part of the gain of the law that a form has to reach.
+const NEAR: f64 = 0.5;
+/// Places of corners and steps in the range of the variable.
+const PLACES: usize = 9;
+/// Waves that are tried alone.
+const WAVES: usize = 48;
+/// Width of a step in parts of the range.
+const STEP: f64 = 0.01;
+
+/// A form with its evidence.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Form {
+    /// In the letters of the spec, up to factors: `omega*abs(omega)`.
+    pub text: String,
+    /// Part of what the law gains.
+    pub share: f64,
+    /// Logarithm of the Bayes factor for it.
+    pub log_bayes_factor: f64,
+}
+
+/// One function of the variable.
+struct Term {
+    of: Box<dyn Fn(f64) -> f64>,
+}
+
+/// A form on trial: places of its terms, and how many of its kind there are.
+struct Trial {
+    text: String,
+    terms: Vec<usize>,
+    alike: usize,
+}
+
+/// The forms that come near to a law.
+pub(super) fn forms(
+    bench: &Bench<'_>,
+    base: &Fitted,
+    dependence: Dependence<'_>,
+    law: &Unnamed,
+) -> Result<Vec<Form>, DiagnoseError> {
+    let setup = bench.setup(&base.members);
+    let estimation = Estimation::new(&setup, &bench.recordings)?;
+    let (terms, trials) = trials(bench, dependence);
+    let write = |run: usize, at: At<'_>, values: &mut [f64]| {
+        let x = dependence.variable((bench, setup.model), run, at);
+        let factor = dependence.factor(at);
+        for (value, term) in values.iter_mut().zip(&terms) {
+            *value = if x.is_nan() {
+                0.0
+            } else {
+                factor * (term.of)(x)
+            };
+        }
+    };
+    let shapes = Shapes {
+        along: law.along,
+        count: terms.len(),
+        values: &write,
+    };
+    let scores = term_scores((bench, &estimation), base, shapes)?;
+    let Some((_, scores)) = scores.into_iter().find(|(place, _)| *place == law.place) else {
+        return Ok(Vec::new());
+    };
+    let mut forms: Vec<Form> = trials
+        .into_iter()
+        .filter_map(|trial| judged(trial, &scores, law.gain))
+        .filter(|form| form.share > NEAR)
+        .collect();
+    forms.sort_by(|a, b| b.log_bayes_factor.total_cmp(&a.log_bayes_factor));
+    forms.truncate(TOLD);
+    Ok(forms)
+}
+
+fn judged(trial: Trial, scores: &TermScores, most: f64) -> Option<Form> {
+    let LawGain {
+        gain,
+        log_bayes_factor,
+        ..
+    } = scores.of(&trial.terms)?;
+    Some(Form {
+        text: trial.text,
+        share: gain / most.max(f64::MIN_POSITIVE),
+        log_bayes_factor: log_bayes_factor - (trial.alike as f64).ln(),
+    })
+}
+
+/// All forms of a variable, and the functions that they are made of.
+fn trials(bench: &Bench<'_>, dependence: Dependence<'_>) -> (Vec<Term>, Vec<Trial>) {
+    let (name, written) = dependence.letters(bench);
+    let (low, high) = dependence.range;
+    let (range, scale) = (high - low, dependence.unit(bench).1);
+    let width = STEP * range;
+    let mut terms: Vec<Term> = Vec::new();
+    let mut trials: Vec<Trial> = Vec::new();
+    let mut add = |text: String, alike: usize, functions: Vec<Box<dyn Fn(f64) -> f64>>| {
+        let first = terms.len();
+        terms.extend(functions.into_iter().map(|of| Term { of }));
+        let text = match &written {
+            Some(factor) => format!("{factor}*{text}"),
+            None => text,
+        };
+        trials.push(Trial {
+            text,
+            terms: (first..terms.len()).collect(),
+            alike,
+        });
+    };
+    let unit = range.abs().max(f64::MIN_POSITIVE);
+    add(name.clone(), 1, vec![Box::new(move |x| x / unit)]);
+    add(
+        format!("{name}^2"),
+        1,
+        vec![Box::new(move |x| (x / unit).powi(2))],
+    );
+    add(
+        format!("{name}^3"),
+        1,
+        vec![Box::new(move |x| (x / unit).powi(3))],
+    );
+    if low < 0.0 && high > 0.0 {
+        add(format!("sign({name})"), 1, vec![Box::new(move |x| (x / width).tanh())]);
+        add(format!("abs({name})"), 1, vec![Box::new(f64::abs)]);
+        add(
+            format!("{name}*abs({name})"),
+            1,
+            vec![Box::new(move |x| x / unit * (x / unit).abs())],
+        );
+    }
+    for place in 1..=PLACES {
+        let part = place as f64 / (PLACES + 1) as f64;
+        let corner = low + part * range;
+        let shown = format!("{:.3e}", corner / scale);
+        let shown = shown.parse::<f64>().map_or(shown, |value| value.to_string());
+        add(
+            format!("step at {name} = {shown}"),
+            PLACES,
+            vec![Box::new(move |x| ((x - corner) / width).tanh())],
+        );
+        add(
+            format!("max({name} - {shown}, 0)"),
+            PLACES,
+            vec![Box::new(move |x| (x - corner).max(0.0) / unit)],
+        );
+        let length = part * range;
+        let shown = format!("{:.2e}", length / scale);
+        let shown = shown.parse::<f64>().map_or(shown, |value| value.to_string());
+        add(
+            format!("exp(-{name}/{shown})"),
+            PLACES,
+            vec![Box::new(move |x| (-(x - low) / length).exp())],
+        );
+    }
+    for wave in 0..WAVES {
+        let rate = dependence.rate(wave);
+        let shown = format!("{:.4}", rate * scale);
+        let shown = shown.trim_end_matches('0').trim_end_matches('.');
+        add(
+            format!("sin({shown}*{name} + phase)"),
+            WAVES,
+            vec![
+                Box::new(move |x| (rate * x).sin()),
+                Box::new(move |x| (rate * x).cos()),
+            ],
+        );
+    }
+    (terms, trials)
+}

@@ -1,0 +1,99 @@
+//! A measured law: a figure with its band, the forms that come near to it, and a sentence.
+
+use appell_gap::diagnose::{Law, Report, Share};
+use maud::{Markup, html};
+
+use super::numbers::percent;
+use super::page::{code, figure, table};
+use crate::figure::{Layer, Look, Plot, Series};
+use crate::text::short;
+
+/// Standard deviations to both sides of the band.
+const BAND: f64 = 2.0;
+
+/// `depends on theta; measured, it closes 90 % [85 %, 100 %]; as sin(12*theta + phase) (98 % of it)`, where there
+/// is a law.
+pub fn law_sentence(report: &Report) -> Option<String> {
+    let law = report.law.as_ref()?;
+    let closes = part(report).map(|part| {
+        let [low, high] = part.interval.map(percent);
+        let closed = percent(part.closed);
+        format!("; measured, it closes {closed} [{low}, {high}] of the gap")
+    });
+    let form = law.forms.first().map(|form| {
+        let share = percent(form.share.min(1.0));
+        format!("; {} is {share} of it", form.text)
+    });
+    Some(format!(
+        "a force in the equation of {} that depends on {}{}{}",
+        law.equation,
+        law.depends_on,
+        closes.unwrap_or_default(),
+        form.unwrap_or_default()
+    ))
+}
+
+fn part(report: &Report) -> Option<&Share> {
+    let far = report.how_far.as_ref()?;
+    far.budget.iter().find(|part| part.is_law())
+}
+
+/// The section of the page.
+pub(super) fn law(report: &Report) -> Markup {
+    let Some(law) = &report.law else {
+        return html! {};
+    };
+    let rows = law.forms.iter().map(|form| {
+        [
+            code(&form.text),
+            html! { (percent(form.share.min(1.0))) },
+            html! { (short(form.log_bayes_factor)) },
+        ]
+    });
+    html! {
+        h3 { "The force that nothing in the library explains" }
+        @if let Some(sentence) = law_sentence(report) {
+            p { "It is " (sentence) ". " code { "appell apply" } " writes it into the spec." }
+        }
+        (figure(curve(law), "The law and its band of two standard deviations, found in the training runs. Elsewhere \
+                             it is not known."))
+        @if !law.forms.is_empty() {
+            (table(["form, up to factors", "share of the law", "log Bayes factor"], rows, 1))
+        }
+    }
+}
+
+fn curve(law: &Law) -> String {
+    let x: Vec<f64> = law.curve.iter().map(|[x, ..]| *x).collect();
+    let at = |deviations: f64| -> Vec<f64> {
+        let values = law.curve.iter();
+        values
+            .map(|[_, force, std]| force + deviations * std)
+            .collect()
+    };
+    let layer = |label: &str, y: Vec<f64>, look, colour| Layer {
+        series: Series {
+            label: label.to_owned(),
+            x: x.clone(),
+            y,
+        },
+        look,
+        colour,
+    };
+    let force = match &law.factor {
+        Some(factor) => format!("force over {factor}"),
+        None => "force".to_owned(),
+    };
+    let plot = Plot {
+        labels: [
+            format!("{} [{}]", law.variable, law.variable_unit),
+            format!("{force}, equation of {} [{}]", law.equation, law.unit),
+        ],
+        height: 260.0,
+        layers: vec![
+            layer("95 % band", at(-BAND), Look::Band(at(BAND)), 2),
+            layer("measured law", at(0.0), Look::Line, 0),
+        ],
+    };
+    plot.to_svg()
+}

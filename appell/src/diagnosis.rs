@@ -80,6 +80,12 @@ impl Library {
         Ok(self)
     }
 
+    /// All that its effects say.
+    pub(crate) fn fingerprint(&self) -> String {
+        let texts = self.effects.iter().map(|effect| effect.text());
+        texts.collect::<Vec<_>>().join("\n")
+    }
+
     /// Diagnoses a data set; `stage` is called with the name of each step.
     pub fn diagnose(
         &self,
@@ -89,6 +95,22 @@ impl Library {
     ) -> Result<Report, Error> {
         recording::check_time_unit(set)?;
         Ok(diagnose::diagnose(set, &self.effects, options, stage)?)
+    }
+}
+
+impl Library {
+    /// Judges recordings against those of the same rig before; `stage` is called with the name of each step.
+    pub fn against(
+        &self,
+        before: &DataSet,
+        now: &DataSet,
+        options: &Options,
+        stage: impl FnMut(&'static str),
+    ) -> Result<Report, Error> {
+        recording::check_time_unit(before)?;
+        recording::check_time_unit(now)?;
+        let effects = &self.effects;
+        Ok(diagnose::against(before, now, effects, options, stage)?)
     }
 }
 

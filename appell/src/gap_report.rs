@@ -116,6 +116,13 @@ pub fn json(report: &Report, next: Option<&Path>, findings: &[String]) -> Value 
                 "form": form.text, "share": form.share, "log_bayes_factor": form.log_bayes_factor,
             })).collect::<Vec<_>>(),
         })),
+        "change": report.change.as_ref().map(|change| json!({
+            "changed": change.is_changed,
+            "before": { "verdict": change.before.0.word(), "effects": change.before.1 },
+            "parameters": change.parameters.iter().map(|one| json!({
+                "name": one.name, "value": one.value, "std": one.std, "spread": one.spread,
+            })).collect::<Vec<_>>(),
+        })),
         "independent": report.independent,
         "failed": failed.collect::<Vec<_>>(),
         "disturbances": disturbances.collect::<Vec<_>>(),
@@ -306,6 +313,7 @@ impl Hypothesis {
         });
         Changes {
             items: written.items.clone(),
+            brought: Vec::new(),
             inputs: inputs
                 .map(|one| (one.input.clone(), one.adds.clone()))
                 .collect(),

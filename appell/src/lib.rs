@@ -35,6 +35,7 @@ mod error;
 pub mod evaluation;
 mod field;
 pub mod files;
+pub mod fleet;
 mod formula;
 pub mod gap_report;
 pub mod identification;

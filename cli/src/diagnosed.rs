@@ -3,13 +3,16 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
+use appell::fleet::Rig;
 use appell_gap::diagnose::{Experiment, GapVerdict, Hypothesis, Report};
 
 use appell_report::gap::{
-    divided, doubts, hinted, joined, law_sentence, left_out, sentence, short,
+    before_sentence, divided, doubts, hinted, joined, law_sentence, left_out, sentence, short,
 };
 use appell_report::text::{number, with_unit};
 
+/// Widest cell of a table that others are aligned with.
+const WIDEST: usize = 60;
 /// Number of hypotheses in the summary.
 const LISTED: usize = 3;
 
@@ -18,6 +21,9 @@ pub(crate) fn text(report: &Report, next: Option<&Path>) -> String {
     let mut text = String::new();
     // Writing to a string cannot fail.
     let _ = writeln!(text, "{}: {}", report.mechanism, sentence(report));
+    if let Some(change) = &report.change {
+        let _ = writeln!(text, "  before    {}", before_sentence(change));
+    }
     if !report.place.equations.is_empty() {
         let shares: Vec<String> = report
             .place
@@ -95,6 +101,55 @@ pub(crate) fn text(report: &Report, next: Option<&Path>) -> String {
             levels.join(", ")
         );
     }
+    text
+}
+
+/// The table of several rigs.
+pub(crate) fn table(rigs: &[Rig], reports: &Path) -> String {
+    let heading = ["rig", "verdict", "which", "P", "closed", "budget"].map(str::to_owned);
+    let rows = rigs.iter().map(|rig| match &rig.outcome {
+        Ok(summary) => {
+            let (first, probability) = summary.first();
+            let closed = summary.how_far.as_ref().and_then(|far| far.closed);
+            let closed = closed.map_or_else(|| "-".to_owned(), |c| format!("{:.1} %", 100.0 * c));
+            [
+                rig.name.clone(),
+                summary.verdict.replace('_', " "),
+                first,
+                format!("{:.1} %", 100.0 * probability),
+                closed,
+                summary.budget(),
+            ]
+        }
+        Err(reason) => {
+            let reason = reason.lines().next().unwrap_or_default().to_owned();
+            let empty = String::new;
+            [rig.name.clone(), "error".to_owned(), reason, empty(), empty(), empty()]
+        }
+    });
+    let rows: Vec<[String; 6]> = std::iter::once(heading).chain(rows).collect();
+    let wide = |column: usize| {
+        let cells = rows.iter().map(|row| row[column].chars().count());
+        // An error has the room of the columns that follow.
+        cells.filter(|&cells| cells <= WIDEST).max().unwrap_or(0)
+    };
+    let widths: Vec<usize> = (0..6).map(wide).collect();
+    let mut text = String::new();
+    for row in &rows {
+        let cells = row.iter().zip(&widths).map(|(cell, &width)| format!("{cell:width$}"));
+        let line = cells.collect::<Vec<_>>().join("  ");
+        text += line.trim_end();
+        text.push('\n');
+    }
+    let known = rigs.iter().filter(|rig| rig.is_known).count();
+    let failed = rigs.iter().filter(|rig| rig.outcome.is_err()).count();
+    // Writing to a string cannot fail.
+    let _ = writeln!(
+        text,
+        "{} rigs, {known} of them known from before, {failed} without a diagnosis; reports in {}",
+        rigs.len(),
+        reports.display()
+    );
     text
 }
 

@@ -24,6 +24,7 @@
 //! may follow what ruins a simulation. So what is found has to hold where nothing follows: over windows of half a
 //! swing. Where it does not, hypotheses are ranked by these windows, and small differences do not count.
 
+mod against;
 mod alternative;
 mod augmented;
 mod bench;
@@ -58,6 +59,7 @@ mod windows;
 use crate::data::{DataSet, Part, Spec};
 use crate::effects::{Effect, EffectModel, candidates};
 
+pub use against::{Before, Change, against};
 pub use budget::Part as Share;
 pub use changes::{ChangeError, Changes, Refitted, SignalEffect};
 pub use error::DiagnoseError;
@@ -94,6 +96,8 @@ pub struct Options {
     pub limits: Vec<Limit>,
     /// Other specs of the same thing, each a hypothesis of its own.
     pub alternatives: Vec<Spec>,
+    /// Names of effects that the spec has already, and that are no hypotheses.
+    pub present: Vec<String>,
 }
 
 /// Diagnoses a data set with a library of effects. `stage` is called with the name of each stage.
@@ -110,7 +114,8 @@ pub fn diagnose(
         return Err(DiagnoseError::NothingToFit);
     }
     let scales = scales::of(&fitted);
-    let all = candidates(&set.mechanism, &set.spec, effects, &scales)?;
+    let mut all = candidates(&set.mechanism, &set.spec, effects, &scales)?;
+    all.retain(|one| !options.present.contains(&one.name()));
     let model = EffectModel::new(&set.spec, all)?;
     let bench = Bench::new(&fitted, &model)?;
     stage("fitting the nominal model");

@@ -6,6 +6,7 @@
 //!          --problem--> what is looked for: parameters within their tolerances, levels
 //!          --fit (estimate)--> the most likely values, beside the most likely nominal ones
 //!          --answer--> intervals, correlation, combinations that are known
+//!          --repeatability--> values of the single runs, and their spread
 //!          --held_out--> errors of predictions on the runs that no fit has seen
 //! ```
 //!
@@ -21,10 +22,11 @@ mod error;
 mod held_out;
 mod options;
 mod problem;
+mod repeatability;
 mod shooting;
 mod start;
 
-use appell_estimate::{Estimation, Fit, Setup};
+use appell_estimate::{Estimation, Fit, Recording, Setup};
 use appell_runtime::model::Model;
 
 use crate::data::{DataSet, Part, Run};
@@ -35,6 +37,7 @@ pub use drift::Course;
 pub use error::IdentifyError;
 pub use held_out::{AHEAD, HORIZONS, HeldOut, Trace};
 pub use options::{Begin, Options};
+pub use repeatability::Repeatability;
 
 use held_out::Test;
 pub(crate) use options::longest_step;
@@ -90,6 +93,18 @@ pub fn identify(
         .iter()
         .filter(|run| run.part == Part::Fit)
         .collect();
+    if runs.len() > 1 {
+        stage("fitting each run alone");
+        let names: Vec<String> = (problem.quantities.iter())
+            .map(|quantity| quantity.name.to_string())
+            .collect();
+        let each: Vec<(&str, &Recording)> = (runs.iter().zip(&recordings))
+            .map(|(run, recording)| (run.name.as_str(), recording))
+            .collect();
+        let free = (problem.wanted.as_slice(), names.as_slice());
+        answer.repeatability =
+            repeatability::repeatability(&setup, &each, free, (&estimation, &fit))?;
+    }
     answer.courses = drift::courses(&drifts, &estimation, &fit.values, &runs)?;
     stage("predicting the runs that were held out");
     let recordings = set.recordings(Part::Test, model.info())?;

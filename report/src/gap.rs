@@ -15,6 +15,6 @@ pub use budget::divided;
 pub use doubt::doubts;
 pub use law::law_sentence;
 pub use page::page;
-pub use words::{hinted, joined, left_out, sentence};
+pub use words::{before_sentence, hinted, joined, left_out, sentence};
 
 pub use crate::text::short;

@@ -78,6 +78,9 @@ fn parts(set: &DataSet, answer: &Answer) -> Vec<Part> {
     if answer.parameters.len() > 1 {
         parts.push(correlation(answer));
     }
+    if !answer.repeatability.is_empty() {
+        parts.push(repeatability(answer));
+    }
     parts.extend([combinations(answer), levels(set, answer), residuals(answer)]);
     if !answer.courses.is_empty() {
         parts.push(courses(answer));
@@ -144,6 +147,36 @@ fn remark(estimate: &Estimate) -> &'static str {
         (.., Some(left)) if left > 0.5 => "hardly determined by the recordings",
         _ => "",
     }
+}
+
+/// Values of the single runs, and their spread.
+fn repeatability(answer: &Answer) -> Part {
+    let columns = ["parameter", "lowest", "highest", "spread", "relative to its interval", "unit", ""];
+    let mut part = Part::new("Repeatability from run to run", columns, 1..5);
+    for (one, estimate) in answer.repeatability.iter().zip(&answer.parameters) {
+        let values = one.runs.iter().map(|(_, [value, _])| *value);
+        let lowest = values.clone().fold(f64::INFINITY, f64::min);
+        let highest = values.fold(f64::NEG_INFINITY, f64::max);
+        let relative = one.spread / estimate.wider_std();
+        part.rows.push(vec![
+            one.name.clone(),
+            in_unit(estimate, lowest),
+            in_unit(estimate, highest),
+            in_unit(estimate, one.spread),
+            number(relative),
+            estimate.quantity.unit.to_string(),
+            if relative > 1.0 {
+                "differs from run to run"
+            } else {
+                ""
+            }
+            .to_owned(),
+        ]);
+    }
+    "The spread is a standard deviation between the runs, beyond that of the single values. An interval holds for \
+     the value that all runs share; another run may have one that differs by the spread."
+        .clone_into(&mut part.note);
+    part
 }
 
 /// Correlation matrix of the parameter errors.

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
 use appell::diagnosis::Library;
+use appell::fleet::{self, Fleet, Rig};
 use appell_gap::data::{DataSet, Spec};
 use appell_gap::diagnose::{Limit, Options};
 use serde_json::Value;
@@ -16,6 +17,8 @@ use appell::source::Source;
 
 /// Default file name of the proposed experiment.
 const EXPERIMENT: &str = "experiment.csv";
+/// Default folder of the reports of several rigs.
+const REPORTS: &str = "gap-reports";
 
 /// Finds where a model deviates from recordings, and which effect closes the gap.
 ///
@@ -25,9 +28,13 @@ const EXPERIMENT: &str = "experiment.csv";
 pub(crate) struct Diagnose {
     /// Name of a shipped mechanism or path of a spec, instead of the one that the data set names
     model: Option<String>,
-    /// Folder with a `recording.toml`, or CSV files with columns of the spec's names
+    /// Folder with a `recording.toml`, or CSV files with columns of the spec's names; several folders are
+    /// diagnosed one by one and give a table
     #[arg(long, required = true, num_args = 1.., value_name = "DIR")]
     data: Vec<PathBuf>,
+    /// Recordings of the same rig before: the report tells what has changed since
+    #[arg(long, num_args = 1.., value_name = "DIR")]
+    against: Vec<PathBuf>,
     /// Files with additional effects, tried together with those of the library
     #[arg(long, num_args = 1.., value_name = "FILE.toml")]
     effects: Vec<PathBuf>,
@@ -52,6 +59,16 @@ pub(crate) struct Diagnose {
     /// those of the recordings]
     #[arg(long, value_name = "NAME=FROM..TO", allow_hyphen_values = true)]
     limit: Vec<Span>,
+    /// Folder for the reports of several rigs; rigs whose report is there and whose data have not changed
+    /// are not diagnosed again [default: gap-reports]
+    #[arg(long, value_name = "DIR")]
+    reports: Option<PathBuf>,
+    /// Table of several rigs as CSV; `-` is standard output
+    #[arg(long, value_name = "FILE.csv")]
+    table: Option<PathBuf>,
+    /// Rigs that are diagnosed at a time [default: one per processor]
+    #[arg(long, value_name = "N")]
+    jobs: Option<usize>,
 }
 
 /// `NAME=FROM..TO`, in the unit of a column.
@@ -82,22 +99,29 @@ impl FromStr for Span {
 
 impl Diagnose {
     pub(super) fn run(&self) -> Result<(), Error> {
+        if self.data.len() > 1 && self.data.iter().all(|path| path.is_dir()) {
+            return self.fleet();
+        }
         let set = appell::recording::read(&self.data, self.model.as_deref())?;
         appell::recording::check_time_unit(&set)?;
-        let mut library = Library::shipped()?;
-        for kind in &self.without {
-            library = library.without(kind)?;
-        }
-        let library = library.with(&self.effects)?;
+        let before = match self.against.as_slice() {
+            [] => None,
+            paths => Some(appell::recording::read(paths, self.model.as_deref())?),
+        };
+        let library = self.library()?;
         let replaced = &library.warnings;
         let spinner = progress::spinner("reading");
         let options = Options {
             pictures: self.html.is_some(),
             limits: self.limits(&set)?,
             alternatives: self.alternatives()?,
+            present: Vec::new(),
         };
         let stage = |stage| spinner.set_message(stage);
-        let report = library.diagnose(&set, &options, stage);
+        let report = match &before {
+            Some(before) => library.against(before, &set, &options, stage),
+            None => library.diagnose(&set, &options, stage),
+        };
         spinner.finish_and_clear();
         let report = report?;
         let warnings = appell::recording::warnings(&set);
@@ -127,6 +151,56 @@ impl Diagnose {
             text.extend(["  data      ", warning, "\n"]);
         }
         output::print_beside(&text, &outputs)
+    }
+
+    fn library(&self) -> Result<Library, Error> {
+        let mut library = Library::shipped()?;
+        for kind in &self.without {
+            library = library.without(kind)?;
+        }
+        Ok(library.with(&self.effects)?)
+    }
+
+    /// Several rigs: a report for each, and one table.
+    fn fleet(&self) -> Result<(), Error> {
+        let given = [
+            ("--json", self.json.is_some()),
+            ("--html", self.html.is_some()),
+            ("--experiment", self.experiment.is_some()),
+            ("--against", !self.against.is_empty()),
+            ("--limit", !self.limit.is_empty()),
+            ("--alternative", !self.alternative.is_empty()),
+        ];
+        if let Some((flag, _)) = given.into_iter().find(|(_, is_given)| *is_given) {
+            let message = format!(
+                "`{flag}` belongs to one data set, and several are given\n  `--reports DIR` gets a report and a \
+                 page for each, `--table FILE.csv` the table"
+            );
+            return Err(Error::Usage(message));
+        }
+        let folder = PathBuf::from(REPORTS);
+        let processors = std::thread::available_parallelism().map_or(1, usize::from);
+        let library = self.library()?;
+        let fleet = Fleet {
+            folders: &self.data,
+            model: self.model.as_deref(),
+            library: &library,
+            reports: self.reports.as_ref().unwrap_or(&folder),
+            with_pages: true,
+            workers: self.jobs.unwrap_or(processors),
+        };
+        let bar = progress::parts();
+        bar.set_length(self.data.len() as u64);
+        let done = |rig: &Rig| {
+            bar.set_message(rig.name.clone());
+            bar.inc(1);
+        };
+        let rigs = fleet.diagnose(done)?;
+        bar.finish_and_clear();
+        if let Some(path) = &self.table {
+            files::write(path, &fleet::csv(&rigs))?;
+        }
+        output::print_beside(&diagnosed::table(&rigs, fleet.reports), &[&self.table])
     }
 
     /// The file of the proposed experiment: beside the gap report, if that is a file. Only the table

@@ -21,6 +21,8 @@ pub struct Changes {
     pub items: String,
     /// What is added to an input wherever it acts: its name and an expression.
     pub inputs: Vec<(String, String)>,
+    /// Parameters that the items bring, but for switches.
+    pub brought: Vec<Refitted>,
     /// Parameters of this rig.
     pub parameters: Vec<Refitted>,
     /// Effects that no spec can hold, because they act on inputs or channels.
@@ -129,6 +131,7 @@ impl Changes {
             inputs: members()
                 .flat_map(|candidate| candidate.added.clone())
                 .collect(),
+            brought: brought(bench, fitted),
             parameters: parameters(bench, fitted),
             signal_effects: signal_effects.collect(),
         })
@@ -171,6 +174,25 @@ fn items(bench: &Bench<'_>, fitted: &Fitted) -> Result<String, DiagnoseError> {
         }
     }
     Ok(set_parameters(&text, &values).map_err(ModelError::from)?)
+}
+
+/// Sizes and shapes of the members.
+fn brought(bench: &Bench<'_>, fitted: &Fitted) -> Vec<Refitted> {
+    let members = fitted.members.iter().map(|&member| bench.candidate(member));
+    let own = members.flat_map(|candidate| bench.own(candidate));
+    own.filter(|(_, part)| *part != Part::Switch)
+        .map(|(index, _)| {
+            let label = &bench.effects.mechanism.parameters[ParameterId::new(index)].label;
+            let in_unit = |value: f64| label.unit.from_si(value);
+            Refitted {
+                name: label.name.clone(),
+                stated: 0.0,
+                value: in_unit(fitted.fit.values[index]),
+                std: deviation(fitted, index).map(in_unit),
+                unit: label.unit.text.clone(),
+            }
+        })
+        .collect()
 }
 
 /// Parameters of the mechanism that were free, or that this rig has otherwise than the spec.

@@ -43,6 +43,9 @@ pub enum DiagnoseError {
     /// A filter or a fit that failed.
     #[error(transparent)]
     Estimate(#[from] EstimateError),
+    /// What was found before cannot be written into the spec.
+    #[error(transparent)]
+    Change(#[from] super::ChangeError),
     /// A start that cannot be found.
     #[error(transparent)]
     Start(#[from] crate::identify::IdentifyError),

@@ -106,9 +106,9 @@ fn base<'c>(
     comparison: &'c Comparison,
 ) -> Result<Option<(&'c Fitted, Leftover)>, DiagnoseError> {
     let of_best = comparison.left.clone().filter(|left| {
-        let is_there = comparison.independent * left.log_bayes_factor > TIED;
-        let matters = is_there && comparison.rest_share(bench) > IMMATERIAL;
-        matters || comparison.leads_unknown()
+        let log = comparison.independent * left.log_bayes_factor;
+        let matters = log > TIED && comparison.rest_share(bench) > IMMATERIAL;
+        matters || log > 0.0 && comparison.leads_unknown()
     });
     let (best, nominal) = (comparison.best(), comparison.nominal());
     let Some(of_best) = of_best else {

@@ -1,6 +1,7 @@
 //! The gap report: what was found, in the words of the contract.
 
 use super::DiagnoseError;
+use super::against::Change;
 use super::alternative::Rival;
 use super::bench::Bench;
 use super::budget::Part as Share;
@@ -284,6 +285,8 @@ pub struct Report {
     pub independent: f64,
     /// What was measured of that; nothing where it is no force that depends on what the model knows.
     pub law: Option<Law>,
+    /// What changed; nothing where there are no recordings before.
+    pub change: Option<Change>,
     /// Channels that the model does not know and that the gap depends on, the surest first.
     pub hints: Vec<Hint>,
     /// Effects of the best hypothesis in words.
@@ -411,6 +414,7 @@ pub(super) fn assemble(
         disturbances: disturbances(bench, comparison.nominal(), best),
         left: left(bench, comparison),
         law: None,
+        change: None,
         independent: comparison.independent,
         hints: Vec::new(),
         found,

@@ -149,6 +149,11 @@ impl Effect {
         Self::parsed(name, &format!("{name}.toml"), text)
     }
 
+    /// The whole file.
+    pub fn text(&self) -> &str {
+        &self.text
+    }
+
     fn parsed(name: &str, file: &str, text: &str) -> Result<Self, EffectError> {
         let (mut fields, table) = Fields::new(file, text);
         let table = table.get_ref();

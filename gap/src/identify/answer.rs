@@ -11,6 +11,7 @@ use super::IdentifyError;
 use super::drift::Course;
 use super::held_out::{HeldOut, Trace};
 use super::problem::Problem;
+use super::repeatability::Repeatability;
 use crate::data::DataSet;
 
 /// Length of the blocks of scores in s, beyond the correlation of errors of a mechanism.
@@ -88,6 +89,8 @@ pub struct Answer {
     pub log_likelihoods: [f64; 2],
     /// Correlation of neighbouring innovations of each channel, with the band where they are white.
     pub whiteness: Vec<(String, Consistency)>,
+    /// Parameters in the single training runs; empty where there is one alone.
+    pub repeatability: Vec<Repeatability>,
     /// Drifting parameters along the training runs.
     pub courses: Vec<Course>,
     /// Prediction errors on held-out runs; empty without any.
@@ -156,6 +159,7 @@ impl Answer {
                 .collect::<Result<_, _>>()?,
             log_likelihoods: [nominal.log_likelihood, fit.log_likelihood],
             whiteness: whiteness(estimation, fit, &columns)?,
+            repeatability: Vec::new(),
             courses: Vec::new(),
             held_out: Vec::new(),
             traces: Vec::new(),

@@ -1,6 +1,6 @@
 //! The statements of a gap report.
 
-use appell_gap::diagnose::{GapVerdict, Hint, Hypothesis, Report};
+use appell_gap::diagnose::{Change, GapVerdict, Hint, Hypothesis, Report};
 
 /// The verdict in one sentence.
 pub fn sentence(report: &Report) -> String {
@@ -9,6 +9,9 @@ pub fn sentence(report: &Report) -> String {
         .iter()
         .map(|found| found.about.as_str())
         .collect();
+    if let Some(change) = &report.change {
+        return changed(report, change, &about);
+    }
     match report.verdict {
         GapVerdict::NoGap => "no gap beyond measurement and process noise".to_owned(),
         GapVerdict::Explained => format!("the gap is explained by {}", about.join(" and ")),
@@ -34,6 +37,45 @@ pub fn sentence(report: &Report) -> String {
             let left = report.left.as_ref().map(|left| format!(": {}", left.about));
             let left = left.unwrap_or_default();
             format!("there is a gap that no effect of the library explains{left}")
+        }
+    }
+}
+
+/// What the recordings before told: effects that the model has now, and how many parameters.
+pub fn before_sentence(change: &Change) -> String {
+    let (_, effects) = &change.before;
+    let had = match effects.as_slice() {
+        [] => "the model as it is".to_owned(),
+        [one] if one == "unknown" => "the model with the law that was measured".to_owned(),
+        effects => format!("the model with {}", effects.join(" + ")),
+    };
+    let count = change.parameters.len();
+    let differing = change.parameters.iter().filter(|own| own.spread > own.std);
+    let differing: Vec<&str> = differing.map(|own| own.name.as_str()).collect();
+    let mut text = format!("{had}, {count} parameters fitted");
+    if !differing.is_empty() {
+        text += &format!("; {} differ from run to run", differing.join(", "));
+    }
+    text
+}
+
+/// What differs from the recordings before.
+fn changed(report: &Report, change: &Change, about: &[&str]) -> String {
+    if !change.is_changed {
+        return "nothing changed that matters for predictions".to_owned();
+    }
+    let names = about.join(" and ");
+    match report.verdict {
+        GapVerdict::NoGap => "nothing changed".to_owned(),
+        GapVerdict::Explained => format!("what changed: {names}"),
+        GapVerdict::Ambiguous => {
+            let rivals = rivals(report).join(", ");
+            format!("something changed: {names}, or {rivals}")
+        }
+        GapVerdict::Unexplained => {
+            let left = report.left.as_ref().map(|left| format!(": {}", left.about));
+            let left = left.unwrap_or_default();
+            format!("something changed that no effect of the library explains{left}")
         }
     }
 }

@@ -1,0 +1,358 @@
+//! Many rigs diagnosed: a report for each, and one table.
+//!
+//! Rigs are independent, so that they run side by side. A report tells what it is of: where a folder, its spec
+//! and the library are as they were, its report is taken as it is, and an interrupted fleet goes on where
+//! it was. A rig without a diagnosis is a row with the reason.
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::{Path, PathBuf};
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use appell_gap::diagnose::{ENGINE, Options};
+use appell_report::gap::page;
+use serde::Deserialize;
+use serde_json::Value;
+
+use crate::diagnosis::Library;
+use crate::{Error, Field, files, gap_report, recording};
+
+/// Folders that are diagnosed alike.
+#[derive(Debug)]
+pub struct Fleet<'a> {
+    /// A data set each.
+    pub folders: &'a [PathBuf],
+    /// The mechanism, instead of those that the folders name.
+    pub model: Option<&'a str>,
+    /// The effects.
+    pub library: &'a Library,
+    /// Where the reports are kept.
+    pub reports: &'a Path,
+    /// Whether pages are written beside them.
+    pub with_pages: bool,
+    /// Rigs at a time.
+    pub workers: usize,
+}
+
+/// A rig after its diagnosis.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Rig {
+    /// Name of the folder; longer where several have the same.
+    pub name: String,
+    /// What its report says, or why there is none.
+    pub outcome: Result<Summary, String>,
+    /// Whether its report was there.
+    pub is_known: bool,
+}
+
+/// A report in a row of the table.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+pub struct Summary {
+    /// Name of the mechanism.
+    pub mechanism: String,
+    /// The verdict.
+    pub verdict: String,
+    /// The hypotheses, the most probable first.
+    pub which: Vec<Likely>,
+    /// Predictions of the runs that were held out; nothing where there are none.
+    pub how_far: Option<Closed>,
+}
+
+/// A hypothesis.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+pub struct Likely {
+    /// Its effects.
+    pub effects: Vec<String>,
+    /// Its probability.
+    pub probability: f64,
+}
+
+/// How far the gap closes.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+pub struct Closed {
+    /// Horizon in s.
+    pub horizon_s: f64,
+    /// Prediction error of the stated model, in units of the noise.
+    pub nominal: f64,
+    /// The same with what was found.
+    pub with_effect: Option<f64>,
+    /// Part of the gap that closes.
+    pub closed: Option<f64>,
+    /// The parts of the gap.
+    pub budget: Vec<Part>,
+}
+
+/// A part of the gap.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+pub struct Part {
+    /// An effect, `refit`, `law` or `unexplained`.
+    pub effect: String,
+    /// How much of the gap it is.
+    pub closed: Option<f64>,
+}
+
+impl Fleet<'_> {
+    /// Diagnoses all folders; `done` is called with each rig as it is finished.
+    pub fn diagnose(&self, done: impl Fn(&Rig) + Sync) -> Result<Vec<Rig>, Error> {
+        if self.folders.is_empty() {
+            return Err(Error::request(Field::Recordings, "there are no folders"));
+        }
+        let names = names(self.folders);
+        let next = AtomicUsize::new(0);
+        let rigs: Mutex<Vec<Option<Rig>>> = Mutex::new(vec![None; self.folders.len()]);
+        let work = || {
+            loop {
+                let place = next.fetch_add(1, Ordering::Relaxed);
+                let Some(folder) = self.folders.get(place) else {
+                    return;
+                };
+                let rig = self.rig(folder, &names[place]);
+                done(&rig);
+                if let Ok(mut rigs) = rigs.lock() {
+                    rigs[place] = Some(rig);
+                }
+            }
+        };
+        std::thread::scope(|scope| {
+            for _ in 0..self.workers.clamp(1, self.folders.len()) {
+                scope.spawn(work);
+            }
+        });
+        let rigs = rigs.into_inner().unwrap_or_default();
+        Ok(rigs.into_iter().flatten().collect())
+    }
+
+    fn rig(&self, folder: &Path, name: &str) -> Rig {
+        // One rig must not take the others with it, whatever happens.
+        let diagnosed = catch_unwind(AssertUnwindSafe(|| self.report(folder, name)));
+        let failed = || Err("the diagnosis ended unexpectedly: please report it".to_owned());
+        let outcome = diagnosed.map_or_else(
+            |_| failed(),
+            |told| told.map_err(|error| error.to_string()),
+        );
+        let is_known = matches!(outcome, Ok((_, true)));
+        Rig {
+            name: name.to_owned(),
+            outcome: outcome.map(|(summary, _)| summary),
+            is_known,
+        }
+    }
+
+    /// The report of a folder, and whether it was there.
+    fn report(&self, folder: &Path, name: &str) -> Result<(Summary, bool), Error> {
+        let path = self.reports.join(format!("{name}.json"));
+        let set = recording::read(&[folder.to_owned()], self.model)?;
+        let of = self.fingerprint(folder, &set.spec.text)?;
+        let known = files::read(&path, files::MAX_DATA).ok();
+        let known = known.and_then(|text| serde_json::from_str::<Value>(&text).ok());
+        let page_path = self.reports.join(format!("{name}.html"));
+        let has_page = !self.with_pages || page_path.is_file();
+        if let Some(known) = known.filter(|known| known["of"] == of.as_str() && has_page) {
+            return Ok((serde_json::from_value(known)?, true));
+        }
+        let options = Options {
+            pictures: self.with_pages,
+            ..Options::default()
+        };
+        let report = self.library.diagnose(&set, &options, |_| {})?;
+        let warnings = recording::warnings(&set);
+        let findings = [self.library.warnings.as_slice(), &warnings].concat();
+        let mut json = gap_report::json(&report, None, &findings);
+        json["of"] = of.into();
+        if self.with_pages {
+            files::write(&page_path, &page(&set, &report))?;
+        }
+        files::write_json(&path, &json)?;
+        Ok((serde_json::from_value(json)?, false))
+    }
+
+    /// What a report is of: the files of the folder, the spec, the library, the engine.
+    fn fingerprint(&self, folder: &Path, spec: &str) -> Result<String, Error> {
+        let mut hash = Fnv::new();
+        hash.add(&ENGINE.to_le_bytes());
+        hash.add(spec.as_bytes());
+        hash.add(self.library.fingerprint().as_bytes());
+        let folder = if folder.is_dir() {
+            folder
+        } else {
+            folder.parent().unwrap_or(folder)
+        };
+        let entries = std::fs::read_dir(folder).map_err(Error::reading(folder))?;
+        let mut paths = Vec::new();
+        for entry in entries {
+            let path = entry.map_err(Error::reading(folder))?.path();
+            let is_report = path.extension().is_some_and(|own| own == "json");
+            if path.is_file() && !is_report {
+                paths.push(path);
+            }
+        }
+        paths.sort();
+        for path in paths {
+            hash.add(path.file_name().unwrap_or_default().as_encoded_bytes());
+            hash.add(&std::fs::read(&path).map_err(Error::reading(&path))?);
+        }
+        Ok(format!("{:016x}", hash.0))
+    }
+}
+
+/// The table as CSV; a rig without a diagnosis has its reason in the last column.
+pub fn csv(rigs: &[Rig]) -> String {
+    let mut text = "rig,mechanism,verdict,which,probability,horizon_s,nominal,with_effect,closed,budget,error\n"
+        .to_owned();
+    for rig in rigs {
+        let cells = match &rig.outcome {
+            Ok(summary) => summary.cells(),
+            Err(reason) => {
+                let mut cells = vec![String::new(); 9];
+                cells.push(reason.clone());
+                cells
+            }
+        };
+        let cells = std::iter::once(rig.name.clone()).chain(cells);
+        let quoted: Vec<String> = cells.map(|cell| quoted(&cell)).collect();
+        text += &quoted.join(",");
+        text.push('\n');
+    }
+    text
+}
+
+impl Summary {
+    /// The most probable hypothesis in words.
+    pub fn first(&self) -> (String, f64) {
+        self.which.first().map_or_else(
+            || (String::new(), f64::NAN),
+            |first| {
+                let name = if first.effects.is_empty() {
+                    "nominal model".to_owned()
+                } else {
+                    first.effects.join(" + ")
+                };
+                (name, first.probability)
+            },
+        )
+    }
+
+    /// The budget in words, the largest part first.
+    pub fn budget(&self) -> String {
+        let mut parts: Vec<(&str, f64)> = (self.how_far.iter())
+            .flat_map(|far| &far.budget)
+            .filter_map(|part| Some((part.effect.as_str(), part.closed?)))
+            .collect();
+        parts.sort_by(|a, b| b.1.total_cmp(&a.1));
+        let parts = parts
+            .into_iter()
+            .map(|(name, closed)| format!("{name} {:.1} %", 100.0 * closed));
+        parts.collect::<Vec<_>>().join("; ")
+    }
+
+    fn cells(&self) -> Vec<String> {
+        let (first, probability) = self.first();
+        let far = self.how_far.as_ref();
+        let number = |value: Option<f64>| value.map_or_else(String::new, |v| format!("{v:.6e}"));
+        vec![
+            self.mechanism.clone(),
+            self.verdict.clone(),
+            first,
+            number(Some(probability)),
+            number(far.map(|far| far.horizon_s)),
+            number(far.map(|far| far.nominal)),
+            number(far.and_then(|far| far.with_effect)),
+            number(far.and_then(|far| far.closed)),
+            self.budget(),
+            String::new(),
+        ]
+    }
+}
+
+/// A cell of a CSV file.
+fn quoted(text: &str) -> String {
+    if text.contains([',', '"', '\n']) {
+        format!("\"{}\"", text.replace('"', "\"\"").replace('\n', " "))
+    } else {
+        text.to_owned()
+    }
+}
+
+/// The last parts of the paths, as many as tell them apart.
+fn names(folders: &[PathBuf]) -> Vec<String> {
+    let parts: Vec<Vec<String>> = folders
+        .iter()
+        .map(|folder| {
+            let folder = match folder.file_name() {
+                Some(name) if name == appell_gap::data::MANIFEST => {
+                    folder.parent().unwrap_or(folder)
+                }
+                _ => folder,
+            };
+            let whole = folder.canonicalize().unwrap_or_else(|_| folder.to_owned());
+            let parts = whole.components().rev();
+            parts
+                .map(|part| part.as_os_str().to_string_lossy().into_owned())
+                .collect()
+        })
+        .collect();
+    let name = |own: &Vec<String>, length: usize| {
+        let last = own.iter().take(length).rev();
+        last.cloned().collect::<Vec<_>>().join("_")
+    };
+    let shortest = |own: &Vec<String>| {
+        let is_own = |length: &usize| {
+            let same = parts
+                .iter()
+                .filter(|other| name(other, *length) == name(own, *length));
+            same.count() == 1
+        };
+        let length = (1..=own.len()).find(is_own);
+        name(own, length.unwrap_or(own.len()))
+    };
+    let mut names: Vec<String> = parts.iter().map(shortest).collect();
+    // A folder that is given twice.
+    for place in 1..names.len() {
+        if names[..place].contains(&names[place]) {
+            names[place] = format!("{}_{}", names[place], place + 1);
+        }
+    }
+    names
+}
+
+/// The hash of Fowler, Noll and Vo: the same in every run and on every machine.
+struct Fnv(u64);
+
+impl Fnv {
+    const fn new() -> Self {
+        Self(0xcbf2_9ce4_8422_2325)
+    }
+
+    fn add(&mut self, bytes: &[u8]) {
+        for byte in bytes {
+            self.0 = (self.0 ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01b3);
+        }
+        // What follows is another part.
+        self.0 = (self.0 ^ 0x1ff).wrapping_mul(0x0100_0000_01b3);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rigs_are_named_by_as_much_as_tells_them_apart() {
+        let folders = ["a/x", "b/x", "b/y"].map(PathBuf::from);
+        assert_eq!(names(&folders), ["a_x", "b_x", "y"]);
+        let twice = ["a/x", "a/x"].map(PathBuf::from);
+        let names = names(&twice);
+        assert_ne!(names[0], names[1]);
+    }
+
+    #[test]
+    fn a_reason_with_commas_stays_one_cell() {
+        let rig = Rig {
+            name: "rig".to_owned(),
+            outcome: Err("no \"run\", no gap".to_owned()),
+            is_known: false,
+        };
+        let table = csv(&[rig]);
+        assert!(table.ends_with("rig,,,,,,,,,,\"no \"\"run\"\", no gap\"\n"), "{table}");
+    }
+}

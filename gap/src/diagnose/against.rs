@@ -1,0 +1,237 @@
+//! What changed: recordings judged against those of the same rig before.
+//!
+//! ```text
+//! recordings before --diagnose--> what the model lacked already --apply--> a spec that has it
+//!                   --identify--> its parameters, each with its interval and its spread from run to run
+//! recordings now    --diagnose, with these as tolerances--> what is different
+//! ```
+//!
+//! No two recordings are of quite the same rig. So a difference is a change where what explains it betters
+//! predictions of runs that were held out, by more than runs of one rig differ anyway.
+
+use crate::data::{Channel, DataSet, Parameter, Part, Run, Spec};
+use crate::effects::{Effect, EffectModel};
+use crate::identify::{self, identify};
+
+use super::changes::Changes;
+use super::{DiagnoseError, GapVerdict, HowFar, Hypothesis, Options, Report, diagnose};
+
+/// Part of the prediction error that a change accounts for at least.
+const CHANGED: f64 = 0.1;
+/// Standard deviation of the size of an effect that was found before, as a part of it.
+const FOUND: f64 = 1.0;
+/// Note above what is added to the spec.
+const NOTE: &str = "found in the recordings before";
+
+/// What differs from the recordings before.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Change {
+    /// Whether anything differs that matters.
+    pub is_changed: bool,
+    /// What the model lacked already: the verdict, and effects that were taken over.
+    pub before: (GapVerdict, Vec<String>),
+    /// Parameters as the recordings before tell them.
+    pub parameters: Vec<Before>,
+}
+
+/// A parameter before.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Before {
+    /// Name.
+    pub name: String,
+    /// Value in SI.
+    pub value: f64,
+    /// Its standard deviation in SI.
+    pub std: f64,
+    /// Standard deviation from run to run in SI, beyond that.
+    pub spread: f64,
+}
+
+/// Diagnoses recordings against those before. `stage` is called with the name of each stage.
+pub fn against(
+    before: &DataSet,
+    now: &DataSet,
+    effects: &[Effect],
+    options: &Options,
+    mut stage: impl FnMut(&'static str),
+) -> Result<Report, DiagnoseError> {
+    let whole = fitted(before);
+    let was = diagnose(&whole, effects, &Options::default(), &mut stage)?;
+    let taken = was.which.iter().find(|one| one.changes.is_some());
+    let Some((taken, changes)) = taken.and_then(|one| Some((one, one.changes.as_ref()?))) else {
+        return Err(DiagnoseError::NothingToFit);
+    };
+    let spec = Spec {
+        file: before.spec.file.clone(),
+        text: changes.improved(&before.spec.text, NOTE)?,
+    };
+    stage("fitting the recordings before");
+    let model = EffectModel::new(&spec, Vec::new())?;
+    let mut known = whole.rebound(&spec)?;
+    start(&mut known, changes);
+    undo(&mut known, taken, changes);
+    let tolerant = identify::Options::tolerant();
+    let answer = identify(&known, model.with(&[]), &tolerant, |_| {})?;
+    let mut set = now.rebound(&spec)?;
+    undo(&mut set, taken, changes);
+    let mut parameters = Vec::new();
+    for (place, parameter) in known.mechanism.parameters.iter().enumerate() {
+        let name = &parameter.label.name;
+        let stated = |set: &DataSet| {
+            let mut own = set.mechanism.parameters.iter();
+            let place = own.position(|one| one.label.name == *name);
+            place.map(|place| set.parameters[place].value)
+        };
+        // What is known to be different now stays so.
+        let moved = match (stated(before), stated(now)) {
+            (Some(before), Some(now)) => now - before,
+            _ => 0.0,
+        };
+        let mut estimates = answer.parameters.iter();
+        let Some(estimate) = estimates.find(|one| one.quantity.name == name.as_str()) else {
+            set.parameters[place].value = known.parameters[place].value + moved;
+            continue;
+        };
+        let mut spreads = answer.repeatability.iter();
+        let spread = spreads.find(|one| one.name == *name);
+        let spread = spread.map_or(0.0, |one| one.spread);
+        set.parameters[place] = Parameter {
+            value: estimate.value + moved,
+            std: Some(estimate.wider_std().hypot(spread)),
+        };
+        parameters.push(Before {
+            name: name.clone(),
+            value: estimate.value,
+            std: estimate.wider_std(),
+            spread,
+        });
+    }
+    let options = Options {
+        present: taken.effects.clone(),
+        ..options.clone()
+    };
+    let mut report = diagnose(&set, effects, &options, stage)?;
+    let is_changed = report.verdict != GapVerdict::NoGap && matters(report.how_far.as_ref());
+    if !is_changed {
+        report.verdict = GapVerdict::NoGap;
+    }
+    report.change = Some(Change {
+        is_changed,
+        before: (was.verdict, taken.effects.clone()),
+        parameters,
+    });
+    Ok(report)
+}
+
+/// Whether what explains a difference betters predictions, beyond chance and by enough.
+fn matters(far: Option<&HowFar>) -> bool {
+    far.is_none_or(|far| {
+        let bettered = 1.0 - (far.with_effect / far.nominal).powi(2);
+        far.closed_ci95[0] > 0.0 && bettered > CHANGED
+    })
+}
+
+/// All runs to be fitted.
+fn fitted(set: &DataSet) -> DataSet {
+    let runs = set.runs.iter().map(|run| Run {
+        part: Part::Fit,
+        ..run.clone()
+    });
+    DataSet {
+        runs: runs.collect(),
+        ..set.clone()
+    }
+}
+
+/// Values and tolerances of a spec to which effects were added: those of the rig, and the sizes that were found.
+fn start(set: &mut DataSet, changes: &Changes) {
+    for (place, parameter) in set.mechanism.parameters.iter().enumerate() {
+        let (name, scale) = (&parameter.label.name, parameter.label.unit.scale);
+        let own = &mut set.parameters[place];
+        if let Some(one) = changes.parameters.iter().find(|one| one.name == *name) {
+            own.value = one.value * scale;
+        }
+        if let Some(one) = changes.brought.iter().find(|one| one.name == *name) {
+            let value = one.value * scale;
+            *own = Parameter {
+                value,
+                std: Some(FOUND * value.abs()),
+            };
+        }
+    }
+}
+
+/// Takes what acted on channels and inputs before out of the recordings.
+fn undo(set: &mut DataSet, taken: &Hypothesis, changes: &Changes) {
+    for effect in &changes.signal_effects {
+        let mut values = taken.parameters.iter();
+        let own = values.find(|value| {
+            let own = value.name.rsplit_once('.');
+            own.is_some_and(|(name, _)| name == effect.effect)
+        });
+        let mut channels = set.channels.iter();
+        let is_on = |channel: &Channel| {
+            let label = channel.role.label(&set.mechanism);
+            channel.column == effect.on || label.is_some_and(|label| label.name == effect.on)
+        };
+        let (Some(size), Some(column)) = (own.map(|own| own.value), channels.position(is_on))
+        else {
+            continue;
+        };
+        for run in &mut set.runs {
+            let values = &run.values[column];
+            run.values[column] = match effect.acts.as_str() {
+                "bias" => values.iter().map(|value| value - size).collect(),
+                "scale" => values.iter().map(|value| value / size).collect(),
+                "late" => shifted(&run.times, values, size, false),
+                "delay" => shifted(&run.times, values, -size, true),
+                "lag" => lagging(&run.times, values, size),
+                _ => continue,
+            };
+        }
+    }
+}
+
+/// The values at times that are later by a shift: held, or along straight lines.
+fn shifted(times: &[f64], values: &[f64], by: f64, is_held: bool) -> Vec<f64> {
+    let at = |&time: &f64| {
+        let next = times.partition_point(|&own| own <= time + by);
+        let before = next.saturating_sub(1);
+        if is_held || next == 0 || next >= times.len() {
+            return values[before];
+        }
+        let part = (time + by - times[before]) / (times[next] - times[before]);
+        values[before] + part * (values[next] - values[before])
+    };
+    times.iter().map(at).collect()
+}
+
+/// Held values after a lag of first order.
+fn lagging(times: &[f64], values: &[f64], time_constant: f64) -> Vec<f64> {
+    let mut state = values.first().copied().unwrap_or(0.0);
+    let mut after = Vec::with_capacity(values.len());
+    for row in 0..values.len() {
+        let step = times.get(row + 1).map_or(0.0, |next| next - times[row]);
+        let end = values[row] + (state - values[row]) * (-step / time_constant).exp();
+        after.push(0.5 * (state + end));
+        state = end;
+    }
+    after
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_was_late_comes_in_time_and_what_lags_gets_there() {
+        let times: Vec<f64> = (0..100).map(|row| f64::from(row) * 0.01).collect();
+        let late: Vec<f64> = times.iter().map(|t| (t - 0.025).max(0.0)).collect();
+        let in_time = shifted(&times, &late, 0.025, false);
+        assert!((in_time[50] - times[50]).abs() < 1e-12);
+        let step: Vec<f64> = times.iter().map(|t| if *t < 0.1 { 0.0 } else { 1.0 }).collect();
+        let after = lagging(&times, &step, 0.1);
+        let expected = 1.0 - (-(times[30] + 0.005 - 0.1) / 0.1_f64).exp();
+        assert!((after[30] - expected).abs() < 2e-3, "{}", after[30]);
+    }
+}

@@ -9,8 +9,8 @@ use super::hypothesis::Fitted;
 use crate::data::DataSet;
 use crate::identify::{Problem, begin};
 
-/// Noise from which a search over windows begins: by this factor larger than that of the sensors.
-const LARGER: f64 = 30.0;
+/// Noise from which a search over windows begins, by these factors larger than that of the sensors: the likeliest.
+const LARGER: [f64; 3] = [30.0, 6.0, 1.0];
 /// The same for the largest one: errors of a model over a window may be any.
 const MOST_LARGER: f64 = 1e4;
 /// Part of the mean squared error over windows that is one unit of log-likelihood: smaller differences do not count.
@@ -31,7 +31,6 @@ impl Bench<'_> {
                 if matches!(free.unknown, Unknown::Disturbance(_)) {
                     *start = low;
                 } else {
-                    *start *= LARGER;
                     *free = Free::of(free.unknown).within(low, MOST_LARGER * high);
                 }
             }
@@ -102,6 +101,7 @@ impl Bench<'_> {
         }
         begin(&estimation, &mut values)?;
         self.hide(&fitted.members, &estimation, &mut values)?;
+        self.loosen(&estimation, &mut values)?;
         let fit = self.weighed(&estimation, &values, &self.problem.levels, Fit::quick)?;
         Ok(Fitted {
             members: fitted.members.clone(),
@@ -113,6 +113,35 @@ impl Bench<'_> {
 }
 
 impl Bench<'_> {
+    /// Raises the noise from that of the sensors towards what the model leaves over windows, to begin a search.
+    pub(super) fn loosen(
+        &self,
+        estimation: &Estimation<'_>,
+        values: &mut [f64],
+    ) -> Result<(), DiagnoseError> {
+        if !self.is_over_windows() {
+            return Ok(());
+        }
+        let layout = estimation.layout();
+        let mut best: Option<(f64, Vec<f64>)> = None;
+        for factor in LARGER {
+            let mut larger = values.to_vec();
+            for free in &self.problem.levels {
+                larger[layout.place(free.unknown)?] *= factor;
+            }
+            let Ok(likelihood) = estimation.log_likelihood(&larger) else {
+                continue;
+            };
+            if best.as_ref().is_none_or(|(most, _)| likelihood > *most) {
+                best = Some((likelihood, larger));
+            }
+        }
+        if let Some((_, larger)) = best {
+            values.copy_from_slice(&larger);
+        }
+        Ok(())
+    }
+
     /// What other values would gain over these windows, of a hypothesis that another bench found; and the hypothesis
     /// with them.
     pub(super) fn fitted_again(

@@ -2,7 +2,7 @@
 //! free under each hypothesis, and from where a search starts.
 
 use appell_estimate::{
-    Coordinate, Effort, EstimateError, Estimation, Fit, Free, Measured, Recording, Setup, Unknown,
+    Coordinate, Effort, EstimateError, Estimation, Fit, Free, Layout, Measured, Recording, Setup, Unknown,
 };
 use appell_runtime::model::Model;
 
@@ -53,6 +53,8 @@ pub(super) struct Bench<'a> {
     pub(super) recordings: Vec<Recording>,
     pub(super) measured: Vec<Measured>,
     pub(super) problem: Problem,
+    /// Places of its start.
+    pub(super) layout: Layout,
     /// Typical sizes of the states that are not measured.
     pub(super) sizes: Vec<f64>,
     /// What inputs know beyond the recordings.
@@ -97,12 +99,12 @@ impl<'a> Bench<'a> {
             has_corners: true,
             ..Setup::new(effects.with(&[]), &measured)
         };
-        let (problem, sizes) = {
+        let (problem, sizes, layout) = {
             let estimation = Estimation::new(&setup, &recordings)?;
             let mut problem = Problem::of(&set, &estimation, (&Options::tolerant(), &[]))?;
             level(&estimation, &mut problem)?;
             let sizes = sizes(&estimation, &problem)?;
-            (problem, sizes)
+            (problem, sizes, estimation.layout())
         };
         Ok(Self {
             input_innovations: InputInnovations::of(&recordings),
@@ -112,6 +114,7 @@ impl<'a> Bench<'a> {
             recordings,
             measured,
             problem,
+            layout,
             sizes,
             step,
             weight: 1.0,

@@ -20,6 +20,8 @@ use crate::effects::{Acts, Candidate, Part};
 
 /// Candidates that are fitted alone.
 const KEPT: usize = 8;
+/// Candidates that are fitted before the first look at what they explain.
+const FIRST: usize = 3;
 /// Candidates that are tried beside another.
 const KEPT_BESIDE: usize = 4;
 /// Most effects of a hypothesis.
@@ -142,7 +144,7 @@ impl Comparison {
         Ok(())
     }
 
-    /// `goes_on` is asked about the best hypothesis before another effect joins it; nothing where it says no.
+    /// `goes_on` is asked about the best hypothesis before others are tried; nothing where it says no.
     pub(super) fn of(
         bench: &Bench<'_>,
         nominal: Fitted,
@@ -155,10 +157,12 @@ impl Comparison {
             failed: Vec::new(),
             settled: BTreeSet::new(),
         };
-        if !goes_on(&search.fits[0]) {
-            return Ok(None);
-        }
-        for screened in &kept(bench, screen, &[], KEPT) {
+        for (place, screened) in kept(bench, screen, &[], KEPT).iter().enumerate() {
+            // The nominal model alone may be wrong; the best of the first ones may not be far off.
+            let first = if place == FIRST { search.best_of(1) } else { None };
+            if first.is_some_and(|first| !goes_on(&search.fits[first])) {
+                return Ok(None);
+            }
             search.join(0, screened);
         }
         for members in 1..MOST_MEMBERS {

@@ -93,11 +93,11 @@ impl Bench<'_> {
         let layout = estimation.layout();
         let mut values = from.carried(fitted, &estimation);
         for free in &self.problem.levels {
-            values[layout.place(free.unknown)?] = self.problem.start[layout.place(free.unknown)?];
+            values[layout.place(free.unknown)?] = self.problem.start[self.layout.place(free.unknown)?];
         }
         for index in 0..estimation.setup().disturbances.len() {
             let place = layout.place(Unknown::Disturbance(index))?;
-            values[place] = self.problem.start[place];
+            values[place] = self.problem.start[self.layout.place(Unknown::Disturbance(index))?];
         }
         begin(&estimation, &mut values)?;
         self.hide(&fitted.members, &estimation, &mut values)?;

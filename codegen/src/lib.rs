@@ -13,7 +13,6 @@ pub mod mechanics;
 pub mod program;
 pub mod schedule;
 pub mod symbolic;
-pub mod velocities;
 
 pub use build::build;
 pub use compile::{Derived, audited, compile, derived};

@@ -28,6 +28,7 @@ pub mod linear;
 pub mod linear_bound;
 pub mod loads;
 pub mod motion;
+pub mod motions;
 pub mod positions;
 pub mod ranges;
 pub mod rank;

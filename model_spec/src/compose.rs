@@ -2,6 +2,7 @@
 
 use toml_edit::{DocumentMut, Item, TableLike, Value};
 
+use crate::expr::MotionWord;
 use crate::edit::EditError;
 use crate::language::{Form, Key, SECTIONS, Shape};
 
@@ -143,13 +144,17 @@ fn replaced(expression: &str, name: &str, by: &str) -> String {
     let mut rest = expression;
     while let Some(first) = rest.chars().next() {
         let is_word = |c: char| c.is_alphanumeric() || c == '_';
-        let len = if first == '[' {
+        let mut len = if first == '[' {
             rest.find(']').map_or(rest.len(), |end| end + 1)
         } else if is_word(first) {
             rest.find(|c| !is_word(c)).unwrap_or(rest.len())
         } else {
             first.len_utf8()
         };
+        // `velocity(P, x)` has names of points and axes.
+        if MotionWord::from_name(&rest[..len]).is_some() && rest[len..].starts_with('(') {
+            len = rest.find(')').map_or(rest.len(), |end| end + 1);
+        }
         let (part, after) = rest.split_at(len);
         if part == name {
             out += "(";

@@ -174,7 +174,7 @@ pub struct Turn {
 }
 
 /// A coordinate axis.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Axis {
     /// First axis.
     X,
@@ -488,6 +488,19 @@ impl LoadKind {
             | Self::Force { .. }
             | Self::Torque { .. }
             | Self::Generalized { .. } => None,
+        }
+    }
+
+    /// All expressions it has.
+    pub fn expressions(&self) -> Vec<&Expr> {
+        match self {
+            Self::Gravity { acceleration, .. } => vec![acceleration],
+            Self::Force { vector, .. } | Self::Torque { vector, .. } => vector.iter().collect(),
+            Self::Spring {
+                stiffness, relaxed, ..
+            } => vec![stiffness, relaxed],
+            Self::Damper { damping, .. } => vec![damping],
+            Self::Generalized { velocity, force } => vec![velocity, force],
         }
     }
 

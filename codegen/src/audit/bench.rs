@@ -7,6 +7,7 @@ use crate::mechanics::expressions::Lowering;
 use crate::mechanics::finding::Finding;
 use crate::mechanics::initial::InitialState;
 use crate::mechanics::kinematics::{Effort, Kinematics};
+use crate::mechanics::motions::motions;
 use crate::mechanics::symbols::Symbols;
 use crate::mechanics::{Derivation, declared_ranges, seed};
 use crate::symbolic::print::{Setter, Spelled, text};
@@ -49,9 +50,15 @@ impl<'a> Bench<'a> {
             symbols,
             rates: &derivation.velocities.rates,
         };
-        let outputs = mechanism.outputs.iter();
-        let outputs = outputs.map(|output| lowering.lower(&mut algebra.graph, &output.value));
-        let outputs = outputs.collect::<Result<_, _>>().ok()?;
+        let mut told = motions(&mut algebra, mechanism, symbols, &derivation.kinematics);
+        let mut outputs = Vec::with_capacity(mechanism.outputs.len());
+        for output in &mechanism.outputs {
+            let value = lowering.lower(&mut algebra.graph, &output.value).ok()?;
+            outputs.push(match &mut told {
+                Some(told) => told.apply(&mut algebra.graph, value)?,
+                None => value,
+            });
+        }
         Some(Self {
             mechanism,
             derivation,

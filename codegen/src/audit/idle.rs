@@ -7,6 +7,7 @@ use super::work::silent_loads;
 use crate::mechanics::expressions::Lowering;
 use crate::mechanics::finding::{Finding, Item};
 use crate::mechanics::loads::applied_loads;
+use crate::mechanics::motions::motions;
 use crate::symbolic::vector;
 use crate::symbolic::{Expr, Graph};
 
@@ -74,8 +75,13 @@ fn moved(bench: &mut Bench) -> Option<Vec<Expr>> {
         moved.push(load.power(&mut algebra.graph));
     }
     let lowering = Lowering { symbols, rates };
+    let mut told = motions(algebra, mechanism, symbols, free);
     for output in &mechanism.outputs {
-        moved.push(lowering.lower(&mut algebra.graph, &output.value).ok()?);
+        let value = lowering.lower(&mut algebra.graph, &output.value).ok()?;
+        moved.push(match &mut told {
+            Some(told) => told.apply(&mut algebra.graph, value)?,
+            None => value,
+        });
     }
     moved.retain(|&e| e != Graph::ZERO);
     Some(moved)

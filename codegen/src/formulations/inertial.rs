@@ -1,7 +1,7 @@
 //! A mechanism in the ground: every vector in components of the inertial frame, every velocity the
 //! derivative of a position.
 
-use appell_spec::expr::Expr as Spec;
+use appell_spec::expr::{Expr as Spec, Motion as Quantity};
 use appell_spec::mechanism::{
     Axis, BodyId, Components, ConstraintId, ConstraintKind, FrameId, List, Mechanism, PointId,
 };
@@ -107,7 +107,40 @@ impl<'a> Inertial<'a> {
 
     pub(super) fn lower(&self, algebra: &mut Algebra, expr: &Spec) -> Lowered<Expr> {
         let (symbols, rates) = (self.symbols, self.rates);
-        Lowering { symbols, rates }.lower(&mut algebra.graph, expr)
+        let value = Lowering { symbols, rates }.lower(&mut algebra.graph, expr)?;
+        self.told(algebra, value)
+    }
+
+    /// With kinematic quantities that the spec names in their places; frames and points have none.
+    fn told(&self, algebra: &mut Algebra, value: Expr) -> Lowered<Expr> {
+        let is_whole = self.velocities.len() == self.mechanism.points.len();
+        if self.symbols.motions.is_empty() || !is_whole {
+            return Ok(value);
+        }
+        let graph = &mut algebra.graph;
+        let along = |graph: &mut Graph, v: Vec3, axis: Axis, frame: FrameId| {
+            let rotation = &self.rotations[frame];
+            let column = [0, 1, 2].map(|row| rotation[row][axis.index()]);
+            graph.dot(column, v)
+        };
+        let mut values = Vec::with_capacity(self.symbols.motions.len());
+        for &(motion, symbol) in &self.symbols.motions {
+            let value = match motion {
+                Quantity::Position(p, axis, frame) => along(graph, self.positions[p], axis, frame),
+                Quantity::Velocity(p, axis, frame) => along(graph, self.velocities[p], axis, frame),
+                Quantity::Speed(p) => {
+                    let v = self.velocities[p];
+                    let square = graph.dot(v, v);
+                    graph.sqrt(square)
+                }
+                Quantity::AngularVelocity(of, axis, frame) => {
+                    along(graph, self.turning[of], axis, frame)
+                }
+            };
+            values.push((symbol, value));
+        }
+        let mut told = Substitution::of_parts(graph, &values);
+        told.apply(graph, value).ok_or(DivisionByZero)
     }
 
     /// A velocity in the generalised velocities: pseudo-velocities stand for their definitions.
@@ -123,8 +156,11 @@ impl<'a> Inertial<'a> {
     }
 
     fn lower3(&self, algebra: &mut Algebra, v: &Components) -> Lowered<Vec3> {
-        let (symbols, rates) = (self.symbols, self.rates);
-        Lowering { symbols, rates }.lower_all(&mut algebra.graph, v)
+        let mut lowered = [Graph::ZERO; 3];
+        for (target, component) in lowered.iter_mut().zip(v) {
+            *target = self.lower(algebra, component)?;
+        }
+        Ok(lowered)
     }
 
     /// A vector that is written in a frame.

@@ -16,6 +16,7 @@ use super::info::{info, tabulated_inputs};
 use super::letters;
 use super::linear::ImplicitMotion;
 use super::linear_bound::BoundMotion;
+use super::motions::motions;
 use super::positions::Positions;
 use super::reactions;
 use super::switches::switches;
@@ -444,12 +445,21 @@ impl Derivation {
             symbols: &self.symbols,
             rates: &self.coordinate_rates,
         };
+        let mut told = motions(
+            &mut self.algebra,
+            mechanism,
+            &self.symbols,
+            &self.kinematics,
+        );
         let mut values = Vec::with_capacity(mechanism.outputs.len());
         for (index, output) in mechanism.outputs.entries() {
-            let value = lowering
-                .lower(&mut self.algebra.graph, &output.value)
-                .map_err(|_| vec![division_by_zero(Item::Output(index))])?;
-            values.push(value);
+            let graph = &mut self.algebra.graph;
+            let value = lowering.lower(graph, &output.value).ok();
+            let value = value.and_then(|value| match &mut told {
+                Some(told) => told.apply(graph, value),
+                None => Some(value),
+            });
+            values.push(value.ok_or_else(|| vec![division_by_zero(Item::Output(index))])?);
         }
         let labels = mechanism.outputs.iter().map(|y| y.label.name.clone());
         let all = 0..values.len();

@@ -10,6 +10,7 @@ use super::expressions::{DivisionByZero, Lowering};
 use super::finding::{Finding, Item, Outcome, division_by_zero};
 use super::frames::FrameVector;
 use super::kinematics::Kinematics;
+use super::motions::motions;
 use super::symbols::Symbols;
 use crate::symbolic::vector::Vec3;
 use crate::symbolic::{Expr, Graph, Rational, Substitution, SymbolId};
@@ -107,6 +108,9 @@ pub fn applied_loads(
         }
     }
     if findings.is_empty() {
+        if let Some(mut told) = motions(algebra, mechanism, symbols, kinematics) {
+            replace(&mut loads, &mut algebra.graph, &mut told)?;
+        }
         Ok(loads)
     } else {
         Err(findings)

@@ -1,6 +1,7 @@
 //! The symbols of a mechanism.
 
-use appell_spec::mechanism::Mechanism;
+use appell_spec::expr::{Motion as MotionQuantity, Quantity};
+use appell_spec::mechanism::{Axis, FrameId, Mechanism, PointId};
 
 use crate::symbolic::{Expr, Graph, SymbolId};
 
@@ -21,6 +22,9 @@ pub struct Symbols {
     pub inputs: Vec<Expr>,
     /// Signals with their first and second derivatives.
     pub signals: Vec<[Expr; 3]>,
+    /// Kinematic quantities of points and frames that loads and outputs name, until their places take
+    /// what they are.
+    pub motions: Vec<(MotionQuantity, Expr)>,
     /// Time.
     pub time: Expr,
     /// The circle constant.
@@ -70,10 +74,52 @@ impl Symbols {
             accelerations,
             inputs,
             signals,
+            motions: motions(graph, mechanism),
             time,
             pi,
             weights: Vec::new(),
             output_weights: Vec::new(),
+        }
+    }
+}
+
+/// A symbol for each kinematic quantity; no name of a spec has parentheses.
+fn motions(graph: &mut Graph, mechanism: &Mechanism) -> Vec<(MotionQuantity, Expr)> {
+    let mut motions: Vec<(MotionQuantity, Expr)> = Vec::new();
+    let mut see = |quantity| {
+        if let Quantity::Motion(motion) = quantity
+            && motions.iter().all(|(own, _)| *own != motion)
+        {
+            let symbol = graph.symbol(&shown(mechanism, motion));
+            motions.push((motion, symbol));
+        }
+    };
+    for load in &mechanism.loads {
+        for expr in load.kind.expressions() {
+            expr.visit(&mut see);
+        }
+    }
+    for output in &mechanism.outputs {
+        output.value.visit(&mut see);
+    }
+    motions
+}
+
+/// As it is written in a spec.
+fn shown(mechanism: &Mechanism, motion: MotionQuantity) -> String {
+    let axis = |axis: Axis| ["x", "y", "z"][axis.index()];
+    let frame = |frame: FrameId| &mechanism.frames[frame].name;
+    let point = |point: PointId| &mechanism.points[point].name;
+    match motion {
+        MotionQuantity::Position(p, a, f) => {
+            format!("position({}, {}, {})", point(p), axis(a), frame(f))
+        }
+        MotionQuantity::Velocity(p, a, f) => {
+            format!("velocity({}, {}, {})", point(p), axis(a), frame(f))
+        }
+        MotionQuantity::Speed(p) => format!("speed({})", point(p)),
+        MotionQuantity::AngularVelocity(of, a, f) => {
+            format!("angular_velocity({}, {}, {})", frame(of), axis(a), frame(f))
         }
     }
 }

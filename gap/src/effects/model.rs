@@ -15,7 +15,6 @@ use appell_codegen::derived;
 use appell_codegen::jit::{JitError, JitModel};
 use appell_codegen::mechanics::assemble;
 use appell_codegen::program::FunctionKind;
-use appell_codegen::velocities::Velocities;
 use appell_runtime::model::{Model, ModelInfo};
 use appell_spec::compose::Composition;
 use appell_spec::edit::EditError;
@@ -85,9 +84,7 @@ pub fn candidates(
     effects: &[Effect],
     scales: &Scales,
 ) -> Result<Vec<Candidate>, ModelError> {
-    let velocities = Velocities::of(mechanism)
-        .map_err(|findings| ModelError::Spec(Box::new(report(mechanism, &spec.text, &findings))))?;
-    let sites = Sites::new(mechanism, &velocities, scales);
+    let sites = Sites::new(mechanism, scales);
     let mut all = Vec::new();
     for effect in effects {
         let own = Candidate::all(effect, mechanism, &sites)?;

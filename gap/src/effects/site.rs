@@ -1,7 +1,6 @@
 //! The sites in a mechanism at which effects may act, and their placeholders in the text of an
 //! effect.
 
-use appell_codegen::velocities::Velocities;
 use appell_spec::expr::{Expr, ExprKind, Quantity};
 use appell_spec::mechanism::{
     BodyId, Constraint, ConstraintKind, CoordinateId, InputId, LoadKind, Mechanism, ParameterId,
@@ -149,21 +148,12 @@ pub(super) struct Site {
 /// Sites in a mechanism.
 pub(super) struct Sites<'m> {
     mechanism: &'m Mechanism,
-    velocities: &'m Velocities,
     scales: &'m Scales,
 }
 
 impl<'m> Sites<'m> {
-    pub(super) fn new(
-        mechanism: &'m Mechanism,
-        velocities: &'m Velocities,
-        scales: &'m Scales,
-    ) -> Self {
-        Self {
-            mechanism,
-            velocities,
-            scales,
-        }
+    pub(super) const fn new(mechanism: &'m Mechanism, scales: &'m Scales) -> Self {
+        Self { mechanism, scales }
     }
 
     /// All sites of a kind.
@@ -303,8 +293,8 @@ impl<'m> Sites<'m> {
 
     fn body(&self, index: BodyId) -> Site {
         let body = &self.mechanism.bodies[index];
-        let [x, y, z] = &self.velocities.points[body.centre];
-        let speed = format!("sqrt(({x})^2 + ({y})^2 + ({z})^2 + (0.001 [m/s])^2)");
+        let centre = &self.mechanism.points[body.centre].name;
+        let velocity = |axis: &str| format!("velocity({centre}, {axis})");
         let frame = body
             .frame
             .map(|frame| self.mechanism.frames[frame].name.clone());
@@ -312,12 +302,12 @@ impl<'m> Sites<'m> {
             name: body.name.clone(),
             index: index.index(),
             words: vec![
-                ("centre", self.mechanism.points[body.centre].name.clone()),
+                ("centre", centre.clone()),
                 ("frame", frame.unwrap_or_else(|| "ground".to_owned())),
-                ("speed", speed),
-                ("velocity_x", format!("({x})")),
-                ("velocity_y", format!("({y})")),
-                ("velocity_z", format!("({z})")),
+                ("speed", format!("smooth_abs(speed({centre}), 0.001 [m/s])")),
+                ("velocity_x", velocity("x")),
+                ("velocity_y", velocity("y")),
+                ("velocity_z", velocity("z")),
             ],
             placed_along: self.placed_along(index),
         }
@@ -378,10 +368,11 @@ impl<'m> Sites<'m> {
         let ExprKind::Quantity(Quantity::Coordinate(roll)) = turn.angle.kind else {
             return None;
         };
-        let w = &self.velocities.frames[frame];
-        let parts = down.iter().zip(w).filter(|(down, _)| **down != 0);
-        let spin: Vec<String> = parts
-            .map(|(down, w)| format!("({})*({w})", -down))
+        let name = &self.mechanism.frames[frame].name;
+        let axes = down.iter().zip(["x", "y", "z"]);
+        let spin: Vec<String> = axes
+            .filter(|(down, _)| **down != 0)
+            .map(|(down, axis)| format!("({})*angular_velocity({name}, {axis})", -down))
             .collect();
         let mut site = self.body(body);
         site.words.extend([

@@ -6,7 +6,7 @@ use num_rational::BigRational;
 
 use crate::ast::{ExprAst, ExprAstKind, Spanned};
 use crate::diagnostic::{Code, Diagnostic};
-use crate::expr::{BinaryOp, Function, Span};
+use crate::expr::{BinaryOp, Function, MotionWord, Span};
 use crate::limits::MAX_DEPTH;
 use crate::number::{NumberError, exact};
 use crate::suggest;
@@ -213,11 +213,37 @@ impl<'a> Parser<'_, 'a> {
         match name {
             "dot" => self.rate(first),
             "if" => self.choice(first),
-            _ => match Function::from_name(name) {
-                Some(function) => self.call(first, function),
-                None => Err(self.unknown_function(first, name)),
+            _ => match (Function::from_name(name), MotionWord::from_name(name)) {
+                (Some(function), _) => self.call(first, function),
+                (None, Some(word)) => self.motion(first, word),
+                (None, None) => Err(self.unknown_function(first, name)),
             },
         }
+    }
+
+    fn motion(&mut self, first: Located<'a>, word: MotionWord) -> Result<Tree, Diagnostic> {
+        self.expect('(', word.name())?;
+        let mut names = Vec::new();
+        loop {
+            let inner = self.next();
+            let Token::Name(name) = inner.token else {
+                let found = inner.token.words();
+                return Err(self
+                    .error(inner, format!("`{}` takes names, found {found}", word.name()))
+                    .help(format!("write `{}`", word.example())));
+            };
+            names.push(Spanned {
+                value: name.to_owned(),
+                span: self.source.span(inner.start..inner.end),
+            });
+            if self.peek().token != Token::Symbol(',') {
+                break;
+            }
+            self.next();
+        }
+        let close = self.expect(')', "the names")?;
+        let kind = ExprAstKind::Motion(word, names);
+        self.node(kind, first.start, close.end, 1)
     }
 
     fn rate(&mut self, first: Located<'a>) -> Result<Tree, Diagnostic> {
@@ -297,7 +323,9 @@ impl<'a> Parser<'_, 'a> {
     }
 
     fn unknown_function(&self, at: Located<'_>, name: &str) -> Diagnostic {
-        let known = Function::ALL.iter().map(|row| row.1).chain(["dot", "if"]);
+        let motions = MotionWord::ALL.iter().map(|row| row.1);
+        let known = Function::ALL.iter().map(|row| row.1);
+        let known = known.chain(["dot", "if"]).chain(motions);
         let familiar = match name {
             "log" => Some("ln"),
             "arctan" => Some("atan"),

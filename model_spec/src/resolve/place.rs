@@ -32,6 +32,7 @@ const RATES: u8 = 2;
 const SPEEDS: u8 = 4;
 const INPUTS: u8 = 8;
 const TIME: u8 = 16;
+const MOTIONS: u8 = 32;
 
 impl Place {
     const fn new(what: &'static str, allows: u8, smooth: Smooth) -> Self {
@@ -77,7 +78,7 @@ impl Place {
 
     /// A force, or a quantity of interest.
     pub(super) const fn anything(what: &'static str) -> Self {
-        let all = COORDINATES | RATES | SPEEDS | INPUTS | TIME;
+        let all = COORDINATES | RATES | SPEEDS | INPUTS | TIME | MOTIONS;
         Self::new(what, all, Smooth::Any)
     }
 
@@ -95,7 +96,7 @@ impl Place {
     pub(super) const SPEED: Self = Self::linear("a pseudo-velocity");
     /// Velocity along which a force acts.
     pub(super) const ALONG: Self = Self {
-        allows: COORDINATES | RATES | SPEEDS | TIME,
+        allows: COORDINATES | RATES | SPEEDS | TIME | MOTIONS,
         ..Self::linear("the velocity along which a force acts")
     };
     /// Left side of a velocity constraint.
@@ -109,6 +110,7 @@ impl Place {
             Quantity::PseudoVelocity(_) => SPEEDS,
             Quantity::Input(_) => INPUTS,
             Quantity::Signal(_) | Quantity::Time => TIME,
+            Quantity::Motion(_) => MOTIONS,
         };
         self.allows & asked == asked
     }
@@ -122,6 +124,7 @@ impl Place {
             (SPEEDS, "pseudo-velocities"),
             (INPUTS, "inputs"),
             (TIME, "signals and time"),
+            (MOTIONS, "motions of points and frames"),
         ] {
             if self.allows & flag != 0 {
                 words.push(word);

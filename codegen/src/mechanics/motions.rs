@@ -1,0 +1,54 @@
+//! Kinematic quantities that a spec names, such as the speed of a point, as functions of the motion.
+
+use appell_spec::expr::Motion;
+use appell_spec::mechanism::Mechanism;
+
+use super::algebra::Algebra;
+use super::kinematics::Kinematics;
+use super::symbols::Symbols;
+use crate::symbolic::{Expr, Substitution};
+
+/// What stands for the symbols of kinematic quantities in a motion; nothing where there are none.
+pub fn motions(
+    algebra: &mut Algebra,
+    mechanism: &Mechanism,
+    symbols: &Symbols,
+    kinematics: &Kinematics,
+) -> Option<Substitution> {
+    if symbols.motions.is_empty() {
+        return None;
+    }
+    let mut values = Vec::with_capacity(symbols.motions.len());
+    for &(motion, symbol) in &symbols.motions {
+        values.push((symbol, value(algebra, mechanism, kinematics, motion)));
+    }
+    Some(Substitution::of_parts(&algebra.graph, &values))
+}
+
+fn value(
+    algebra: &mut Algebra,
+    mechanism: &Mechanism,
+    kinematics: &Kinematics,
+    motion: Motion,
+) -> Expr {
+    let frames = &kinematics.frames;
+    let graph = &mut algebra.graph;
+    let value = match motion {
+        Motion::Position(point, axis, frame) => {
+            let origin = appell_spec::mechanism::ORIGIN;
+            kinematics.between(graph, mechanism, origin, point, frame)[axis.index()]
+        }
+        Motion::Velocity(point, axis, frame) => {
+            frames.express(graph, kinematics.velocity(point), frame)[axis.index()]
+        }
+        Motion::Speed(point) => {
+            let v = kinematics.velocity(point).v;
+            let square = graph.dot(v, v);
+            graph.sqrt(square)
+        }
+        Motion::AngularVelocity(of, axis, frame) => {
+            frames.angular_velocity_in(graph, of, frame)[axis.index()]
+        }
+    };
+    algebra.shortest(value)
+}

@@ -181,8 +181,13 @@ pub(super) fn floor(
 /// The rig as the data set states it, with the levels of a fit.
 pub(super) fn stated(bench: &Bench<'_>, fitted: &Fitted) -> Fitted {
     let mut stated = fitted.clone();
-    for (index, parameter) in bench.set.parameters.iter().enumerate() {
-        stated.fit.values[index] = parameter.value;
+    // Models without contacts that creep have fewer parameters: the first ones.
+    let own = bench.effects.with(&fitted.members).info().parameter_len();
+    for (value, parameter) in stated.fit.values[..own]
+        .iter_mut()
+        .zip(&bench.set.parameters)
+    {
+        *value = parameter.value;
     }
     stated
 }

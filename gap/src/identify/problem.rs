@@ -48,7 +48,8 @@ impl Problem {
         let (mut wanted, mut quantities) =
             free_parameters(set, (setup.model.info(), &drifts), options)?;
         let mut values = estimation.nominal();
-        for (value, parameter) in values.iter_mut().zip(&set.parameters) {
+        let own = setup.model.info().parameter_len();
+        for (value, parameter) in values[..own].iter_mut().zip(&set.parameters) {
             *value = parameter.value;
         }
         for addition in additions {

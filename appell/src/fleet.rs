@@ -126,10 +126,8 @@ impl Fleet<'_> {
         // One rig must not take the others with it, whatever happens.
         let diagnosed = catch_unwind(AssertUnwindSafe(|| self.report(folder, name)));
         let failed = || Err("the diagnosis ended unexpectedly: please report it".to_owned());
-        let outcome = diagnosed.map_or_else(
-            |_| failed(),
-            |told| told.map_err(|error| error.to_string()),
-        );
+        let outcome =
+            diagnosed.map_or_else(|_| failed(), |told| told.map_err(|error| error.to_string()));
         let is_known = matches!(outcome, Ok((_, true)));
         Rig {
             name: name.to_owned(),
@@ -353,6 +351,9 @@ mod tests {
             is_known: false,
         };
         let table = csv(&[rig]);
-        assert!(table.ends_with("rig,,,,,,,,,,\"no \"\"run\"\", no gap\"\n"), "{table}");
+        assert!(
+            table.ends_with("rig,,,,,,,,,,\"no \"\"run\"\", no gap\"\n"),
+            "{table}"
+        );
     }
 }

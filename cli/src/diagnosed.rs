@@ -124,7 +124,14 @@ pub(crate) fn table(rigs: &[Rig], reports: &Path) -> String {
         Err(reason) => {
             let reason = reason.lines().next().unwrap_or_default().to_owned();
             let empty = String::new;
-            [rig.name.clone(), "error".to_owned(), reason, empty(), empty(), empty()]
+            [
+                rig.name.clone(),
+                "error".to_owned(),
+                reason,
+                empty(),
+                empty(),
+                empty(),
+            ]
         }
     });
     let rows: Vec<[String; 6]> = std::iter::once(heading).chain(rows).collect();
@@ -136,7 +143,10 @@ pub(crate) fn table(rigs: &[Rig], reports: &Path) -> String {
     let widths: Vec<usize> = (0..6).map(wide).collect();
     let mut text = String::new();
     for row in &rows {
-        let cells = row.iter().zip(&widths).map(|(cell, &width)| format!("{cell:width$}"));
+        let cells = row
+            .iter()
+            .zip(&widths)
+            .map(|(cell, &width)| format!("{cell:width$}"));
         let line = cells.collect::<Vec<_>>().join("  ");
         text += line.trim_end();
         text.push('\n');

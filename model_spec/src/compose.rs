@@ -2,8 +2,8 @@
 
 use toml_edit::{DocumentMut, Item, TableLike, Value};
 
-use crate::expr::MotionWord;
 use crate::edit::EditError;
+use crate::expr::MotionWord;
 use crate::language::{Form, Key, SECTIONS, Shape};
 
 /// A spec that grows, with its comments and layout untouched.

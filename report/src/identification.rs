@@ -151,7 +151,15 @@ fn remark(estimate: &Estimate) -> &'static str {
 
 /// Values of the single runs, and their spread.
 fn repeatability(answer: &Answer) -> Part {
-    let columns = ["parameter", "lowest", "highest", "spread", "relative to its interval", "unit", ""];
+    let columns = [
+        "parameter",
+        "lowest",
+        "highest",
+        "spread",
+        "relative to its interval",
+        "unit",
+        "",
+    ];
     let mut part = Part::new("Repeatability from run to run", columns, 1..5);
     for (one, estimate) in answer.repeatability.iter().zip(&answer.parameters) {
         let values = one.runs.iter().map(|(_, [value, _])| *value);

@@ -110,7 +110,9 @@ fn reason(kind: &LoadKind) -> &'static str {
             "its two bodies never rotate relative to each other about the axis of the torque"
         }
         LoadKind::Spring { .. } | LoadKind::Damper { .. } => "its length or coordinate is constant",
-        LoadKind::Generalized { .. } => "its coordinate or velocity is constant, or the force is zero",
+        LoadKind::Generalized { .. } => {
+            "its coordinate or velocity is constant, or the force is zero"
+        }
     }
 }
 

@@ -147,7 +147,8 @@ impl<'a> Inertial<'a> {
     pub(super) fn velocity_along(&self, algebra: &mut Algebra, velocity: &Spec) -> Lowered<Expr> {
         let velocity = self.lower(algebra, velocity)?;
         let mut defined = Vec::new();
-        for (speed, &symbol) in (self.mechanism.pseudo_velocities.iter()).zip(&self.symbols.speeds) {
+        for (speed, &symbol) in (self.mechanism.pseudo_velocities.iter()).zip(&self.symbols.speeds)
+        {
             defined.push((symbol, self.lower(algebra, &speed.definition)?));
         }
         let mut definitions = Substitution::of_parts(&algebra.graph, &defined);

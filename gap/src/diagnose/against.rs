@@ -229,7 +229,10 @@ mod tests {
         let late: Vec<f64> = times.iter().map(|t| (t - 0.025).max(0.0)).collect();
         let in_time = shifted(&times, &late, 0.025, false);
         assert!((in_time[50] - times[50]).abs() < 1e-12);
-        let step: Vec<f64> = times.iter().map(|t| if *t < 0.1 { 0.0 } else { 1.0 }).collect();
+        let step: Vec<f64> = times
+            .iter()
+            .map(|t| if *t < 0.1 { 0.0 } else { 1.0 })
+            .collect();
         let after = lagging(&times, &step, 0.1);
         let expected = 1.0 - (-(times[30] + 0.005 - 0.1) / 0.1_f64).exp();
         assert!((after[30] - expected).abs() < 2e-3, "{}", after[30]);

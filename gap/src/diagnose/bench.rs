@@ -2,7 +2,8 @@
 //! free under each hypothesis, and from where a search starts.
 
 use appell_estimate::{
-    Coordinate, Effort, EstimateError, Estimation, Fit, Free, Layout, Measured, Recording, Setup, Unknown,
+    Coordinate, Effort, EstimateError, Estimation, Fit, Free, Layout, Measured, Recording, Setup,
+    Unknown,
 };
 use appell_runtime::model::Model;
 

@@ -71,20 +71,25 @@ pub(super) fn of(
     ends: &Ends<'_>,
     errors: impl Fn(&Fitted) -> Result<Errors, DiagnoseError>,
 ) -> Result<Vec<Part>, DiagnoseError> {
-    let members = best.members.len();
-    let all = (1 << members) - 1;
+    let effects = effects(bench, best);
+    let count = effects.len();
+    let all = (1 << count) - 1;
     let mut between: Vec<Errors> = Vec::new();
     for set in 1..all {
-        between.push(errors(&with((bench, comparison), best, &subset(best, set))?)?);
+        between.push(errors(&with(
+            (bench, comparison),
+            best,
+            &subset(&effects, set),
+        )?)?);
     }
     let floor = ends.floor;
     let mut models = vec![ends.stated, ends.base];
     models.extend(&between);
-    if members > 0 {
+    if count > 0 {
         models.push(ends.effects);
     }
     models.extend(ends.law);
-    // A set of members stands at its number, after the stated model.
+    // A set of effects stands at its number, after the stated model.
     let paired = Paired::of(&models);
     let gap = |means: &[f64]| means[0] - floor * floor;
     let mut parts = Vec::new();
@@ -98,10 +103,9 @@ pub(super) fn of(
     add(REFIT.to_owned(), &|means| {
         (means[0] - means[1]) / gap(means)
     });
-    for (place, &member) in best.members.iter().enumerate() {
-        let name = bench.candidate(member).name();
-        add(name, &|means| {
-            shapley(&means[1..=all + 1], place, members) / gap(means)
+    for (place, (name, _)) in effects.iter().enumerate() {
+        add(name.clone(), &|means| {
+            shapley(&means[1..=all + 1], place, count) / gap(means)
         });
     }
     if ends.law.is_some() {
@@ -144,13 +148,28 @@ fn shapley(means: &[f64], place: usize, players: usize) -> f64 {
         / factorial(u32::try_from(players).unwrap_or(u32::MAX))
 }
 
-/// The members that a number stands for.
-fn subset(best: &Fitted, set: usize) -> Vec<usize> {
-    let members = best.members.iter().enumerate();
+/// The effects of a hypothesis with their members: components of a vector are one.
+fn effects(bench: &Bench<'_>, best: &Fitted) -> Vec<(String, Vec<usize>)> {
+    let mut effects: Vec<(String, Vec<usize>)> = Vec::new();
+    for &member in &best.members {
+        let name = bench.candidate(member).name();
+        match effects.iter_mut().find(|(own, _)| *own == name) {
+            Some((_, members)) => members.push(member),
+            None => effects.push((name, vec![member])),
+        }
+    }
+    effects
+}
+
+/// The members of the effects that a number stands for.
+fn subset(effects: &[(String, Vec<usize>)], set: usize) -> Vec<usize> {
+    let effects = effects.iter().enumerate();
+    let chosen = effects.filter(|(place, _)| set & (1 << place) != 0);
+    let mut members: Vec<usize> = chosen
+        .flat_map(|(_, (_, members))| members.clone())
+        .collect();
+    members.sort_unstable();
     members
-        .filter(|(place, _)| set & (1 << place) != 0)
-        .map(|(_, member)| *member)
-        .collect()
 }
 
 /// The fit with some members of the best hypothesis; those without which it was found are there already.

@@ -159,7 +159,11 @@ impl Comparison {
         };
         for (place, screened) in kept(bench, screen, &[], KEPT).iter().enumerate() {
             // The nominal model alone may be wrong; the best of the first ones may not be far off.
-            let first = if place == FIRST { search.best_of(1) } else { None };
+            let first = if place == FIRST {
+                search.best_of(1)
+            } else {
+                None
+            };
             if first.is_some_and(|first| !goes_on(&search.fits[first])) {
                 return Ok(None);
             }
@@ -199,11 +203,12 @@ fn kept(bench: &Bench<'_>, screen: &Screen, members: &[usize], most: usize) -> V
         .map_or(0.0, |one| one.gain);
     let least = LEAST_GAIN.max(LEAST_PART * best);
     for screened in screen.list.iter().filter(|one| one.gain > least) {
-        let name = bench.candidate(screened.candidate).name();
-        let fitted = kept.iter().map(|own| own.candidate);
-        let is_known = fitted
-            .chain(members.iter().copied())
-            .any(|own| bench.candidate(own).name() == name);
+        let candidate = bench.candidate(screened.candidate);
+        let is_alike = |own: usize| bench.candidate(own).name() == candidate.name();
+        let is_part = |own: usize| is_alike(own) && !candidate.is_component;
+        let is_known = kept.iter().any(|own| is_alike(own.candidate))
+            || members.contains(&screened.candidate)
+            || members.iter().any(|&own| is_part(own));
         let is_guise = kept
             .first()
             .is_some_and(|best| best.alike(screened) > ALIKE);
@@ -354,7 +359,7 @@ impl Search<'_, '_> {
 
     /// Logarithm of the probability, up to a constant.
     fn log_posterior(&self, fitted: &Fitted) -> f64 {
-        fitted.evidence.log() + prior(self.bench, fitted.members.len())
+        fitted.evidence.log() + prior(self.bench, effects(self.bench, &fitted.members))
     }
 
     fn finish(mut self) -> Result<Comparison, DiagnoseError> {
@@ -419,12 +424,18 @@ fn ended(fit: &Fit) -> String {
     )
 }
 
-/// Logarithm of the probability beforehand of a hypothesis with so many members.
-pub(super) fn prior(bench: &Bench<'_>, members: usize) -> f64 {
+/// Number of effects: components of a vector are one.
+pub(super) fn effects(bench: &Bench<'_>, members: &[usize]) -> usize {
+    let members = members.iter().map(|&member| bench.candidate(member).name());
+    members.collect::<BTreeSet<String>>().len()
+}
+
+/// Logarithm of the probability beforehand of a hypothesis with so many effects.
+pub(super) fn prior(bench: &Bench<'_>, effects: usize) -> f64 {
     let candidates = bench.effects.candidates.iter();
     let names: BTreeSet<String> = candidates.map(Candidate::name).collect();
     let each = (names.len().max(1) as f64).ln();
-    match members {
+    match effects {
         0 => NO_GAP.ln(),
         count => (1.0 - NO_GAP).ln() + (count - 1) as f64 * NOT_ALONE.ln() - count as f64 * each,
     }

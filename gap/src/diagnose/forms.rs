@@ -129,7 +129,11 @@ fn trials(bench: &Bench<'_>, dependence: Dependence<'_>) -> (Vec<Term>, Vec<Tria
         vec![Box::new(move |x| (x / unit).powi(3))],
     );
     if low < 0.0 && high > 0.0 {
-        add(format!("sign({name})"), 1, vec![Box::new(move |x| (x / width).tanh())]);
+        add(
+            format!("sign({name})"),
+            1,
+            vec![Box::new(move |x| (x / width).tanh())],
+        );
         add(format!("abs({name})"), 1, vec![Box::new(f64::abs)]);
         add(
             format!("{name}*abs({name})"),
@@ -141,7 +145,9 @@ fn trials(bench: &Bench<'_>, dependence: Dependence<'_>) -> (Vec<Term>, Vec<Tria
         let part = place as f64 / (PLACES + 1) as f64;
         let corner = low + part * range;
         let shown = format!("{:.3e}", corner / scale);
-        let shown = shown.parse::<f64>().map_or(shown, |value| value.to_string());
+        let shown = shown
+            .parse::<f64>()
+            .map_or(shown, |value| value.to_string());
         add(
             format!("step at {name} = {shown}"),
             PLACES,
@@ -154,7 +160,9 @@ fn trials(bench: &Bench<'_>, dependence: Dependence<'_>) -> (Vec<Term>, Vec<Tria
         );
         let length = part * range;
         let shown = format!("{:.2e}", length / scale);
-        let shown = shown.parse::<f64>().map_or(shown, |value| value.to_string());
+        let shown = shown
+            .parse::<f64>()
+            .map_or(shown, |value| value.to_string());
         add(
             format!("exp(-{name}/{shown})"),
             PLACES,

@@ -97,7 +97,10 @@ fn one_step(
         bench,
         again: BTreeMap::new(),
     };
-    let goes_on = |fitted: &Fitted| seen.again(fitted).is_none_or(|(gain, _)| *gain < REFUTED_ALONE);
+    let goes_on = |fitted: &Fitted| {
+        seen.again(fitted)
+            .is_none_or(|(gain, _)| *gain < REFUTED_ALONE)
+    };
     let Some(mut comparison) = Comparison::of(bench, nominal.clone(), screen, goes_on)? else {
         return Ok(None);
     };

@@ -121,8 +121,7 @@ fn base<'c>(
     let Some(of_nominal) = leftover(bench, nominal)? else {
         return Ok(Some((best, of_best)));
     };
-    let evidence =
-        |fitted: &Fitted, left: &Leftover| fitted.evidence.log() + left.log_bayes_factor;
+    let evidence = |fitted: &Fitted, left: &Leftover| fitted.evidence.log() + left.log_bayes_factor;
     Ok(Some(
         if evidence(nominal, &of_nominal) > evidence(best, &of_best) {
             (nominal, of_nominal)

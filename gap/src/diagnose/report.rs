@@ -7,7 +7,7 @@ use super::bench::Bench;
 use super::budget::Part as Share;
 use super::calibration::tempered;
 use super::changes::Changes;
-use super::compare::{Comparison, TIED, prior};
+use super::compare::{Comparison, TIED, effects, prior};
 use super::experiment::Experiment;
 use super::force_history::ForceHistory;
 use super::force_law::ForceLaw;
@@ -330,7 +330,14 @@ pub(super) fn assemble(
     rivals: &[Rival<'_>],
 ) -> Result<Report, DiagnoseError> {
     let names = |members: &[usize]| -> Vec<String> {
-        members.iter().map(|&m| bench.candidate(m).name()).collect()
+        let mut names: Vec<String> = Vec::new();
+        for name in members.iter().map(|&m| bench.candidate(m).name()) {
+            // Components of a vector are one effect.
+            if !names.contains(&name) {
+                names.push(name);
+            }
+        }
+        names
     };
     let base = comparison.nominal().evidence.log();
     let known = 1.0 - comparison.unknown;
@@ -385,12 +392,7 @@ pub(super) fn assemble(
             effect: rival.name.clone(),
             about: format!("the model `{}`", rival.bench.set.mechanism.name),
         }],
-        None => (best.members.iter())
-            .map(|&member| Found {
-                effect: bench.candidate(member).name(),
-                about: bench.candidate(member).about.clone(),
-            })
-            .collect(),
+        None => found(bench, best),
     };
     Ok(Report {
         mechanism: bench.set.mechanism.name.clone(),
@@ -424,6 +426,19 @@ pub(super) fn assemble(
     })
 }
 
+/// The effects of a hypothesis in words.
+fn found(bench: &Bench<'_>, fitted: &Fitted) -> Vec<Found> {
+    let members = fitted.members.iter().map(|&member| bench.candidate(member));
+    let mut found: Vec<Found> = members
+        .map(|candidate| Found {
+            effect: candidate.name(),
+            about: candidate.about.clone(),
+        })
+        .collect();
+    found.dedup();
+    found
+}
+
 /// Alternatives beside the hypotheses of the library, each as probable beforehand as one effect.
 fn join(
     which: &mut Vec<Hypothesis>,
@@ -436,7 +451,7 @@ fn join(
     let left = comparison.left.as_ref();
     let left = left.map_or(0.0, |left| left.log_bayes_factor.max(0.0)) * comparison.independent;
     let known = probability.ln() + (1.0 - comparison.unknown).ln().max(-left);
-    let beside = best.evidence.log() + prior(bench, best.members.len());
+    let beside = best.evidence.log() + prior(bench, effects(bench, &best.members));
     let base = comparison.nominal().evidence.log();
     for rival in rivals {
         let odds = tempered(comparison.independent * (rival.log + prior(bench, 1) - beside));

@@ -7,6 +7,7 @@
 //! and there are levels for these. What walks in time has to walk alike in every run.
 
 mod dependence;
+mod memory;
 mod series;
 
 use appell_estimate::{Along, Disturbance, Estimation, Shapes};
@@ -20,6 +21,7 @@ use super::hypothesis::Fitted;
 use super::screen::{Projected, moving};
 
 pub(super) use dependence::Dependence;
+use memory::HiddenMasses;
 pub(super) use series::{LawGain, Series, TermScores};
 
 /// Part of its gain that a law has to repeat on runs that it was not found in.
@@ -82,7 +84,37 @@ pub(super) fn leftover(
             }
         }
     }
+    with_memory((bench, &estimation), fitted, &mut single)?;
     Ok(joined(smooth, single))
+}
+
+/// Forces of masses that swing by themselves.
+fn with_memory(
+    (bench, estimation): (&Bench<'_>, &Estimation<'_>),
+    fitted: &Fitted,
+    family: &mut Family,
+) -> Result<(), DiagnoseError> {
+    let along = Along::Disturbances;
+    for masses in HiddenMasses::all(bench) {
+        let write = |run: usize, at: At<'_>, values: &mut [f64]| masses.at(run, at, values);
+        let shapes = Shapes {
+            along,
+            count: masses.count(),
+            values: &write,
+        };
+        for (place, scores) in term_scores((bench, estimation), fitted, shapes)? {
+            let count = masses.names.len();
+            let laws: Vec<Option<LawGain>> = (0..count).map(|i| scores.single(i)).collect();
+            let gain = |law: &Option<LawGain>| law.as_ref().map_or(0.0, |law| law.gain);
+            let best = masses.best(&laws.iter().map(gain).collect::<Vec<_>>());
+            for (number, law) in laws.into_iter().enumerate() {
+                let name = || (usize::MAX, masses.names[number].clone());
+                let unnamed = |law| unnamed(name(), (along, place), None, law);
+                family.add(law.filter(|_| best == Some(number)).map(unnamed));
+            }
+        }
+    }
+    Ok(())
 }
 
 /// A law of a dependence at a place.
@@ -198,8 +230,7 @@ pub(super) fn hints(bench: &Bench<'_>, fitted: &Fitted) -> Result<Vec<Unnamed>, 
         let scores = wave_scores((bench, &estimation), fitted, dependence, along)?;
         for (place, wave_scores) in scores {
             let law = wave_scores.smooth();
-            let unnamed =
-                |law| unnamed((0, dependence.name(bench)), (along, place), None, law);
+            let unnamed = |law| unnamed((0, dependence.name(bench)), (along, place), None, law);
             family.add(law.map(unnamed));
         }
         tried += family.tried;
@@ -212,4 +243,3 @@ pub(super) fn hints(bench: &Bench<'_>, fitted: &Fitted) -> Result<Vec<Unnamed>, 
     found.sort_by(|a, b| b.log_bayes_factor.total_cmp(&a.log_bayes_factor));
     Ok(found)
 }
-

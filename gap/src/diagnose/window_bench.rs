@@ -93,7 +93,8 @@ impl Bench<'_> {
         let layout = estimation.layout();
         let mut values = from.carried(fitted, &estimation);
         for free in &self.problem.levels {
-            values[layout.place(free.unknown)?] = self.problem.start[self.layout.place(free.unknown)?];
+            values[layout.place(free.unknown)?] =
+                self.problem.start[self.layout.place(free.unknown)?];
         }
         for index in 0..estimation.setup().disturbances.len() {
             let place = layout.place(Unknown::Disturbance(index))?;

@@ -50,6 +50,8 @@ pub struct Candidate {
     pub family: Family,
     /// One sentence.
     pub about: String,
+    /// Whether it is a component of a vector: others of its name may join it.
+    pub(crate) is_component: bool,
     /// How it acts.
     pub acts: Acts,
     /// Its parameters in the spec, each with its role.
@@ -106,6 +108,7 @@ impl Candidate {
             site: speed.to_owned(),
             family: Family::Force,
             about: format!("the measured force beside {speed}"),
+            is_component: false,
             acts: Acts::Items,
             parameters: names.into_iter().zip(terms).collect(),
             stem,
@@ -257,6 +260,7 @@ impl Candidate {
             site: site.name.clone(),
             family: effect.family,
             about: effect.about.replace("{site}", &site.name),
+            is_component: effect.is_vector,
             acts,
             parameters,
             stem: id.to_owned(),

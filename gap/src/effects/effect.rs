@@ -6,6 +6,7 @@
 //! site     = "coordinate"            # see SiteKind
 //! about    = "spring at {site}"
 //! variants = [{ part = "0.5" }]      # each a hypothesis of its own; its words stand in the text
+//! vector   = true                    # the variants are components, which may come together
 //! switch   = "{effect}_on"           # a parameter that is 1 where the effect is there
 //! filter   = "lag"                   # what acts beside the equations: lag, delay, bias, scale, late
 //!
@@ -109,6 +110,8 @@ pub struct Effect {
     pub about: String,
     /// Placeholders of the text, one list for each variant.
     pub(super) variants: Vec<Vec<(String, String)>>,
+    /// Whether the variants are components of one vector.
+    pub(super) is_vector: bool,
     pub(super) switch: Option<String>,
     pub(super) filter: Option<Filter>,
     /// The whole file.
@@ -130,7 +133,7 @@ impl From<Report> for EffectError {
 
 /// Keys of the section `[effect]`.
 pub(super) const KEYS: &[&str] = &[
-    "name", "family", "site", "about", "variants", "switch", "filter",
+    "name", "family", "site", "about", "variants", "vector", "switch", "filter",
 ];
 /// What the first words of an effect stand for.
 const EVERYWHERE: &[&str] = &["effect", "site"];
@@ -200,6 +203,13 @@ impl Effect {
         let own = fields.string(header, "name");
         let switch = fields.string(header, "switch");
         let variants = variants(&mut fields, header);
+        let is_vector = header.get("vector").and_then(|value| {
+            let is_vector = value.get_ref().as_bool();
+            if is_vector.is_none() {
+                fields.wrong_type(value, "`true` or `false`");
+            }
+            is_vector
+        });
         if let Some(site) = site {
             let mut known = [EVERYWHERE, &site.words().concat()].concat();
             known.extend(variants.iter().flatten().map(|(word, _)| word.as_str()));
@@ -220,6 +230,7 @@ impl Effect {
             } else {
                 variants
             },
+            is_vector: is_vector.unwrap_or(false),
             switch: switch.map(|(switch, _)| switch),
             filter,
             text: text.to_owned(),

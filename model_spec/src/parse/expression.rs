@@ -229,7 +229,10 @@ impl<'a> Parser<'_, 'a> {
             let Token::Name(name) = inner.token else {
                 let found = inner.token.words();
                 return Err(self
-                    .error(inner, format!("`{}` takes names, found {found}", word.name()))
+                    .error(
+                        inner,
+                        format!("`{}` takes names, found {found}", word.name()),
+                    )
                     .help(format!("write `{}`", word.example())));
             };
             names.push(Spanned {

@@ -37,10 +37,9 @@ impl Used {
             Quantity::Coordinate(id) | Quantity::Rate(id) => self.coordinates.insert(id.index()),
             Quantity::Input(id) => self.inputs.insert(id.index()),
             Quantity::Signal(id) => self.signals.insert(id.index()),
-            Quantity::PseudoVelocity(_)
-            | Quantity::Motion(_)
-            | Quantity::Time
-            | Quantity::Pi => false,
+            Quantity::PseudoVelocity(_) | Quantity::Motion(_) | Quantity::Time | Quantity::Pi => {
+                false
+            }
         };
     }
 }

@@ -153,7 +153,9 @@ impl TermScores {
         let (squares, scores) = part(&self.squares, &self.scores);
         let runs = self.runs.iter();
         let own = Self {
-            runs: runs.map(|(squares, scores)| part(squares, scores)).collect(),
+            runs: runs
+                .map(|(squares, scores)| part(squares, scores))
+                .collect(),
             squares,
             scores,
         };

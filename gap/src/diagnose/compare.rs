@@ -185,6 +185,7 @@ impl Comparison {
                     search.join(base, screened);
                 }
                 search.join_tied(base, &kept);
+                search.join_components(base, &screen);
             }
         }
         search.finish().map(Some)
@@ -300,6 +301,35 @@ impl Search<'_, '_> {
         for other in others.collect::<Vec<_>>() {
             if !self.fits[other].members.contains(&new.candidate) {
                 self.join(other, new);
+            }
+        }
+    }
+
+    /// What is tied with a hypothesis and is a component of a vector gets the other components.
+    fn join_components(&mut self, hypothesis: usize, screen: &Screen) {
+        let members = self.fits[hypothesis].members.len();
+        let log = self.log_posterior(&self.fits[hypothesis]);
+        for other in 0..self.fits.len() {
+            let fitted = &self.fits[other];
+            let is_tied =
+                fitted.members.len() == members && log - self.log_posterior(fitted) < TIED;
+            if !is_tied {
+                continue;
+            }
+            let own = fitted.members.clone();
+            let is_sibling = |one: &&Screened| {
+                let candidate = self.bench.candidate(one.candidate);
+                let name = candidate.name();
+                let mut own = own.iter().map(|&own| self.bench.candidate(own).name());
+                candidate.is_component && one.gain > LEAST_GAIN && own.any(|own| own == name)
+            };
+            let siblings: Vec<Screened> = (screen.list.iter())
+                .filter(is_sibling)
+                .filter(|one| !own.contains(&one.candidate))
+                .cloned()
+                .collect();
+            for one in &siblings {
+                self.join(other, one);
             }
         }
     }

@@ -44,17 +44,18 @@ pub(super) fn judged<'a>(
     over: Bench<'a>,
     stage: &mut impl FnMut(&'static str),
 ) -> Result<Judged<'a>, DiagnoseError> {
-    if let Some(mut comparison) = one_step(&over, (&bench, &nominal, &screen))? {
-        stage("looking for what no effect explains");
-        comparison.weigh_unknown(&bench)?;
-        return Ok(Judged {
-            bench,
-            screen,
-            comparison,
-        });
-    }
-    stage("fitting simulations over windows");
-    if let Ok((screen, mut comparison)) = simulated(&over) {
+    let (stepwise, holds) = one_step(&over, (&bench, &nominal, &screen))?;
+    let of_windows = if holds {
+        None
+    } else {
+        stage("fitting simulations over windows");
+        simulated(&over).ok()
+    };
+    let none = |comparison: &Comparison| comparison.best().members.is_empty();
+    // What neither finds is not there.
+    let of_windows =
+        of_windows.filter(|(_, windows)| !(none(windows) && stepwise.as_ref().is_some_and(none)));
+    if let Some((screen, mut comparison)) = of_windows {
         stage("looking for what no effect explains");
         comparison.weigh_unknown(&over)?;
         if comparison.best().members.is_empty() {
@@ -67,9 +68,13 @@ pub(super) fn judged<'a>(
             comparison,
         });
     }
-    // Where no simulation follows the recordings, one step has to do.
-    let comparison = Comparison::of(&bench, nominal, &screen, |_| true)?;
+    // One step has to do too where no simulation follows the recordings.
+    let comparison = match stepwise {
+        Some(stepwise) => Some(stepwise),
+        None => Comparison::of(&bench, nominal, &screen, |_| true)?,
+    };
     let mut comparison = comparison.ok_or(DiagnoseError::NothingToFit)?;
+    stage("looking for what no effect explains");
     comparison.weigh_unknown(&bench)?;
     Ok(Judged {
         bench,
@@ -86,12 +91,12 @@ fn simulated(over: &Bench<'_>) -> Result<(Screen, Comparison), DiagnoseError> {
     Ok((screen, comparison.ok_or(DiagnoseError::NothingToFit)?))
 }
 
-/// The hypotheses by one-step predictions; nothing where the windows refute them, as where the disturbance follows
-/// what the model lacks.
+/// The hypotheses by one-step predictions, nothing where the windows refute them early on; and whether the windows
+/// bear them out. They do not where the disturbance follows what the model lacks.
 fn one_step(
     over: &Bench<'_>,
     (bench, nominal, screen): (&Bench<'_>, &Fitted, &Screen),
-) -> Result<Option<Comparison>, DiagnoseError> {
+) -> Result<(Option<Comparison>, bool), DiagnoseError> {
     let mut seen = Seen {
         over,
         bench,
@@ -102,18 +107,19 @@ fn one_step(
             .is_none_or(|(gain, _)| *gain < REFUTED_ALONE)
     };
     let Some(mut comparison) = Comparison::of(bench, nominal.clone(), screen, goes_on)? else {
-        return Ok(None);
+        return Ok((None, false));
     };
     let of_nominal = seen.again(comparison.nominal());
     let of_nominal = of_nominal.map(|(_, again)| again.fit.log_likelihood);
     let Some((gain, again)) = seen.again(comparison.best()) else {
-        return Ok(Some(comparison));
+        return Ok((Some(comparison), true));
     };
     if let Some(of_nominal) = of_nominal {
         comparison.stays = over.left(again.fit.log_likelihood - of_nominal);
     }
     let by_others = Screen::of(over, again).map_or(0.0, |screen| screen.most());
-    Ok((gain.max(by_others) < REFUTED).then_some(comparison))
+    let holds = gain.max(by_others) < REFUTED;
+    Ok((Some(comparison), holds))
 }
 
 /// Hypotheses of one-step predictions, as windows see them.

@@ -82,7 +82,7 @@ impl Library {
 
     /// All that its effects say.
     pub(crate) fn fingerprint(&self) -> String {
-        let texts = self.effects.iter().map(|effect| effect.text());
+        let texts = self.effects.iter().map(Effect::text);
         texts.collect::<Vec<_>>().join("\n")
     }
 

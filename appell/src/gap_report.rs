@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use appell_gap::diagnose::{Ahead, Changes, ENGINE, Refitted, Report, SignalEffect};
+use appell_gap::diagnose::{Ahead, Change, Changes, ENGINE, Law, Refitted, Report, SignalEffect};
 use serde::Deserialize;
 use serde_json::{Value, json};
 
@@ -101,32 +101,41 @@ pub fn json(report: &Report, next: Option<&Path>, findings: &[String]) -> Value 
             "gain": left.gain,
             "explained": left.explained,
         })),
-        "law": report.law.as_ref().map(|law| json!({
-            "equation": law.equation,
-            "unit": law.unit,
-            "depends_on": law.depends_on,
-            "variable": law.variable,
-            "variable_unit": law.variable_unit,
-            "factor": law.factor,
-            "at": law.curve.iter().map(|[x, ..]| *x).collect::<Vec<_>>(),
-            "value": law.curve.iter().map(|[_, force, _]| *force).collect::<Vec<_>>(),
-            "std": law.curve.iter().map(|[.., std]| *std).collect::<Vec<_>>(),
-            "log_bayes_factor": law.log_bayes_factor,
-            "forms": law.forms.iter().map(|form| json!({
-                "form": form.text, "share": form.share, "log_bayes_factor": form.log_bayes_factor,
-            })).collect::<Vec<_>>(),
-        })),
-        "change": report.change.as_ref().map(|change| json!({
-            "changed": change.is_changed,
-            "before": { "verdict": change.before.0.word(), "effects": change.before.1 },
-            "parameters": change.parameters.iter().map(|one| json!({
-                "name": one.name, "value": one.value, "std": one.std, "spread": one.spread,
-            })).collect::<Vec<_>>(),
-        })),
+        "law": report.law.as_ref().map(law),
+        "change": report.change.as_ref().map(change),
         "independent": report.independent,
         "failed": failed.collect::<Vec<_>>(),
         "disturbances": disturbances.collect::<Vec<_>>(),
         "data": findings,
+    })
+}
+
+/// A measured law: its curve with standard deviations, and forms that come near to it.
+fn law(law: &Law) -> Value {
+    let column = |of: fn(&[f64; 3]) -> f64| law.curve.iter().map(of).collect::<Vec<_>>();
+    let forms = law.forms.iter().map(|form| {
+        json!({ "form": form.text, "share": form.share, "log_bayes_factor": form.log_bayes_factor })
+    });
+    json!({
+        "equation": law.equation, "unit": law.unit, "depends_on": law.depends_on,
+        "variable": law.variable, "variable_unit": law.variable_unit, "factor": law.factor,
+        "at": column(|[x, ..]| *x), "value": column(|[_, force, _]| *force),
+        "std": column(|[.., std]| *std),
+        "log_bayes_factor": law.log_bayes_factor,
+        "forms": forms.collect::<Vec<_>>(),
+    })
+}
+
+/// What differs from the recordings before, in SI.
+fn change(change: &Change) -> Value {
+    let (verdict, effects) = &change.before;
+    let parameters = change.parameters.iter().map(
+        |one| json!({ "name": one.name, "value": one.value, "std": one.std, "spread": one.spread }),
+    );
+    json!({
+        "changed": change.is_changed,
+        "before": { "verdict": verdict.word(), "effects": effects },
+        "parameters": parameters.collect::<Vec<_>>(),
     })
 }
 

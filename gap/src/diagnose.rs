@@ -76,7 +76,8 @@ pub use traces::{AHEAD, Ahead, Trace};
 
 use alternative::{Alternative, Rival};
 use bench::Bench;
-use held_out::{HeldOut, Leader, Measured};
+use compare::Comparison;
+use held_out::{HeldOut, Leader};
 use horizon::Judged;
 use screen::Screen;
 
@@ -117,19 +118,11 @@ pub fn diagnose(
     let mut all = candidates(&set.mechanism, &set.spec, effects, &scales)?;
     all.retain(|one| !options.present.contains(&one.name()));
     let model = EffectModel::new(&set.spec, all)?;
-    let bench = Bench::new(&fitted, &model)?;
-    stage("fitting the nominal model");
-    let nominal = bench.nominal().map_err(DiagnoseError::of_nominal)?;
-    stage("screening the effects");
-    let screen = Screen::of(&bench, &nominal)?;
-    stage("fitting the effects that remain");
-    let windows = horizon::windows(&whole.bound_to(&model.mechanism));
-    let over = Bench::over(&windows, (&bench, &nominal))?;
     let Judged {
         bench,
         screen,
         comparison,
-    } = horizon::judged((bench, nominal, screen), over, &mut stage)?;
+    } = judged((&whole, &fitted), &model, &mut stage)?;
     stage("fitting the alternatives");
     let alternatives = Alternative::all(&options.alternatives, &fitted)?;
     let (rivals, mut lost) = Rival::all(&alternatives, &bench)?;
@@ -141,79 +134,53 @@ pub fn diagnose(
     report.rows = [fitted.rows(), whole.rows()];
     report.hints = report::hints(&bench, &comparison)?;
     stage("measuring what is left");
-    let lawful = law::lawful(&bench, &comparison)?;
-    let measured = match lawful.as_ref().map(|lawful| lawful.fitted(&bench)) {
-        Some(Ok(measured)) => {
-            report.measure(&measured)?;
-            Some(measured)
-        }
-        Some(Err(reason)) => {
-            let law = vec![budget::LAW.to_owned()];
-            report.failed.push((law, reason.to_string()));
-            None
-        }
-        None => None,
-    };
-    stage("predicting the runs that were held out");
     let test = set.only(Part::Test);
+    let lawful = law::lawful(&bench, &comparison)?;
+    let measured = lawful.as_ref().map(|lawful| lawful.fitted(&bench, &test));
+    let measured = report.measured(measured)?;
+    stage("predicting the runs that were held out");
     let held_out = HeldOut::of(&test, &bench)?;
-    let with_law = match &measured {
-        Some(measured) => Some(HeldOut::of(&test, &measured.bench)?),
-        None => None,
-    };
-    let law = match (&measured, &with_law) {
-        (Some(law), Some(runs)) => Some(Measured { law, runs }),
-        _ => None,
-    };
     let leading = rivals
         .iter()
         .find(|rival| report.which[0].effects == [rival.name.clone()]);
     let rebound = match leading {
-        Some(rival) => Some(HeldOut::of(&rival.rebound(&test)?, &rival.bench)?),
+        Some(rival) => Some((rival, HeldOut::of(&rival.rebound(&test)?, &rival.bench)?)),
         None => None,
     };
-    let noise = prediction::noise(&bench, comparison.best())?;
-    let leader = match (leading, &rebound, law) {
-        (Some(rival), Some(runs), _) => Leader {
+    let best = Leader {
+        bench: &bench,
+        fitted: comparison.best(),
+        runs: &held_out,
+        noise: prediction::noise(&bench, comparison.best())?,
+        alternative: None,
+        law: measured.as_ref(),
+    };
+    let leader = match (&rebound, &measured) {
+        (Some((rival, runs)), _) => Leader {
             bench: &rival.bench,
             fitted: &rival.fitted,
             runs,
-            noise: rival.noise(&bench, &noise),
+            noise: rival.noise(&bench, &best.noise),
             alternative: Some(&rival.name),
             law: None,
         },
-        (_, _, Some(Measured { law: own, runs })) if report.which[0].is_unknown() => Leader {
-            bench: &own.bench,
-            fitted: &own.fitted,
-            runs,
-            noise,
-            alternative: None,
-            law,
+        (None, Some(law)) if report.which[0].is_unknown() => Leader {
+            bench: &law.bench,
+            fitted: &law.fitted,
+            runs: &law.runs,
+            ..best
         },
-        _ => Leader {
-            bench: &bench,
-            fitted: comparison.best(),
-            runs: &held_out,
-            noise,
-            alternative: None,
-            law,
-        },
+        _ => best,
     };
-    let how_far = held_out.how_far(&bench, &comparison, &leader)?;
+    let judged = (&bench, &comparison, &leader);
+    let how_far = held_out.how_far(judged)?;
     report.verdict = report
         .verdict
         .after(&report.which, how_far.as_ref(), bench.is_over_windows());
     let horizons = held_out.horizons(&bench, &comparison, &leader)?;
     let pictures = if options.pictures {
         stage("drawing");
-        Some(Pictures {
-            force_history: force_history::force_history(&bench, &comparison)?,
-            traces: held_out.traces(&bench, &comparison, &leader)?,
-            force_law: match leading {
-                Some(_) => None,
-                None => force_law::force_law(&bench, &comparison, &place)?,
-            },
-        })
+        Some(pictures(&held_out, judged, &place)?)
     } else {
         None
     };
@@ -232,4 +199,37 @@ pub fn diagnose(
         experiment,
         ..report
     })
+}
+
+/// What people look at.
+fn pictures(
+    held_out: &HeldOut,
+    (bench, comparison, leader): (&Bench<'_>, &Comparison, &Leader<'_>),
+    place: &Where,
+) -> Result<Pictures, DiagnoseError> {
+    Ok(Pictures {
+        force_history: force_history::force_history(bench, comparison)?,
+        traces: held_out.traces(bench, comparison, leader)?,
+        force_law: match leader.alternative {
+            Some(_) => None,
+            None => force_law::force_law(bench, comparison, place)?,
+        },
+    })
+}
+
+/// The hypotheses, judged by what they say of the runs to fit.
+fn judged<'m>(
+    (whole, fitted): (&DataSet, &DataSet),
+    model: &'m EffectModel,
+    stage: &mut impl FnMut(&'static str),
+) -> Result<Judged<'m>, DiagnoseError> {
+    let bench = Bench::new(fitted, model)?;
+    stage("fitting the nominal model");
+    let nominal = bench.nominal().map_err(DiagnoseError::of_nominal)?;
+    stage("screening the effects");
+    let screen = Screen::of(&bench, &nominal)?;
+    stage("fitting the effects that remain");
+    let windows = horizon::windows(&whole.bound_to(&model.mechanism));
+    let over = Bench::over(&windows, (&bench, &nominal))?;
+    horizon::judged((bench, nominal, screen), over, stage)
 }

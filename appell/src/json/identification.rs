@@ -48,6 +48,13 @@ pub fn identification(set: &DataSet, answer: &Answer) -> Value {
             "nominal": error.nominal, "fitted": error.fitted,
         })
     });
+    let repeatability = answer.repeatability.iter().map(|one| {
+        let runs = one
+            .runs
+            .iter()
+            .map(|(run, [value, std])| json!({ "run": run, "value": value, "std": std }));
+        json!({ "name": one.name, "spread": one.spread, "runs": runs.collect::<Vec<_>>() })
+    });
     json!({
         "schema": "identified/1",
         "mechanism": set.mechanism.name,
@@ -58,6 +65,7 @@ pub fn identification(set: &DataSet, answer: &Answer) -> Value {
         "disturbances": levels(&answer.disturbances),
         "innovations": whiteness.collect::<Vec<_>>(),
         "log_likelihood": { "nominal": answer.log_likelihoods[0], "fitted": answer.log_likelihoods[1] },
+        "repeatability": repeatability.collect::<Vec<_>>(),
         "drifting": courses.collect::<Vec<_>>(),
         "held_out": held_out.collect::<Vec<_>>(),
     })

@@ -82,14 +82,20 @@ impl Comparison {
         (best.log_likelihood - nominal.log_likelihood).max(best.log() - nominal.log())
     }
 
-    /// What the best hypothesis leaves, of which a law explains so much; `share` is the part of the gap for a gain.
-    fn rest(&self, share: impl Fn(f64) -> f64) -> Rest {
+    /// What the best hypothesis leaves, and the part of the gap that a law explains of it.
+    fn rest(&self, bench: &Bench<'_>) -> Rest {
         let left = self.left.as_ref();
+        let gain = left.map_or(0.0, |left| left.first.gain);
+        let explained = self.explained().max(0.0);
         Rest {
             log_bayes_factor: left.map_or(f64::NEG_INFINITY, |left| {
                 self.independent * left.log_bayes_factor
             }),
-            share: share(left.map_or(0.0, |left| left.first.gain)),
+            share: if bench.is_over_windows() {
+                self.stays * (1.0 - bench.left(gain))
+            } else {
+                gain / (gain + explained).max(f64::MIN_POSITIVE)
+            },
         }
     }
 
@@ -103,12 +109,7 @@ impl Comparison {
         if self.best().members.is_empty() {
             return 1.0;
         }
-        let explained = self.explained().max(0.0);
-        let share = |rest: f64| match bench.is_over_windows() {
-            true => self.stays * (1.0 - bench.left(rest)),
-            false => rest / (rest + explained).max(f64::MIN_POSITIVE),
-        };
-        self.rest(share).share
+        self.rest(bench).share
     }
 
     /// Gives its probability to the hypothesis that nothing in the library explains the gap.
@@ -120,18 +121,12 @@ impl Comparison {
             (true, _) => {
                 let gain = self.best().fit.log_likelihood - self.nominal().fit.log_likelihood;
                 self.stays = bench.left(gain);
-                let rest = self.rest(|rest| self.stays * (1.0 - bench.left(rest)));
-                unlisted_beside_an_effect(rest) + unlisted(self.stays)
+                unlisted_beside_an_effect(self.rest(bench)) + unlisted(self.stays)
             }
-            (false, count) => {
-                let explained = self.explained().max(0.0);
-                let rest = self.rest(|rest| rest / (rest + explained).max(f64::MIN_POSITIVE));
-                if count == 0 {
-                    unlisted_beside_nothing(rest)
-                } else {
-                    // What hardly shows in a simulation names no cause.
-                    unlisted_beside_an_effect(rest) * (self.stays / IMMATERIAL).min(1.0)
-                }
+            (false, 0) => unlisted_beside_nothing(self.rest(bench)),
+            // What hardly shows in a simulation names no cause.
+            (false, _) => {
+                unlisted_beside_an_effect(self.rest(bench)) * (self.stays / IMMATERIAL).min(1.0)
             }
         };
         // What is as large as the best hypothesis leaves as much.

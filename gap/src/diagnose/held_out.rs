@@ -39,14 +39,7 @@ pub(super) struct Leader<'l> {
     /// Its name, where it is another model.
     pub(super) alternative: Option<&'l str>,
     /// What was measured of the rest.
-    pub(super) law: Option<Measured<'l>>,
-}
-
-/// A measured law, with the runs that were held out as its equations take them.
-#[derive(Clone, Copy)]
-pub(super) struct Measured<'l> {
-    pub(super) law: &'l FittedLaw<'l>,
-    pub(super) runs: &'l HeldOut,
+    pub(super) law: Option<&'l FittedLaw<'l>>,
 }
 
 impl Leader<'_> {
@@ -75,9 +68,7 @@ impl HeldOut {
     /// The errors of the nominal model, the re-fitted one and the leading hypothesis, and how the gap divides.
     pub(super) fn how_far(
         &self,
-        bench: &Bench<'_>,
-        comparison: &Comparison,
-        leader: &Leader<'_>,
+        (bench, comparison, leader): (&Bench<'_>, &Comparison, &Leader<'_>),
     ) -> Result<Option<HowFar>, DiagnoseError> {
         if self.recordings.is_empty() {
             return Ok(None);
@@ -103,8 +94,8 @@ impl HeldOut {
             budget::of_alternative(name, &paired, floor)
         } else {
             let (best, law) = match leader.law {
-                Some(Measured { law, runs }) => {
-                    let law_errors = runs.errors(&law.bench, &law.fitted, &noise, horizon)?;
+                Some(law) => {
+                    let law_errors = law.runs.errors(&law.bench, &law.fitted, &noise, horizon)?;
                     (law.base, Some(law_errors))
                 }
                 None => (comparison.best(), None),

@@ -12,9 +12,11 @@ use super::DiagnoseError;
 use super::bench::Bench;
 use super::compare::{Comparison, TIED};
 use super::forms::{Form, forms};
+use super::held_out::HeldOut;
 use super::hypothesis::Fitted;
 use super::localise::force_unit;
 use super::unknown::{Dependence, Leftover, Series, Unnamed, leftover, wave_scores};
+use crate::data::DataSet;
 use crate::effects::{Candidate, EffectModel};
 
 /// Places at which the law is told.
@@ -60,6 +62,8 @@ pub(super) struct FittedLaw<'l> {
     pub(super) fitted: Fitted,
     /// What it stands beside.
     pub(super) base: &'l Fitted,
+    /// The runs that were held out, as its equations take them.
+    pub(super) runs: HeldOut,
     pub(super) law: Law,
 }
 
@@ -168,7 +172,11 @@ fn candidate(
 
 impl Lawful<'_> {
     /// Fits the sizes beside all that is free under the hypothesis.
-    pub(super) fn fitted(&self, main: &Bench<'_>) -> Result<FittedLaw<'_>, DiagnoseError> {
+    pub(super) fn fitted(
+        &self,
+        main: &Bench<'_>,
+        test: &DataSet,
+    ) -> Result<FittedLaw<'_>, DiagnoseError> {
         let bench = main.beside(&self.effects)?;
         let members: Vec<usize> = (0..self.effects.candidates.len()).collect();
         let setup = bench.setup(&members);
@@ -186,6 +194,7 @@ impl Lawful<'_> {
         drop(estimation);
         let law = self.told(main, &fitted, &places)?;
         Ok(FittedLaw {
+            runs: HeldOut::of(test, &bench)?,
             bench,
             fitted,
             base: self.base,

@@ -4,7 +4,7 @@ use super::DiagnoseError;
 use super::against::Change;
 use super::alternative::Rival;
 use super::bench::Bench;
-use super::budget::Part as Share;
+use super::budget::{LAW, Part as Share};
 use super::calibration::tempered;
 use super::changes::Changes;
 use super::compare::{Comparison, TIED, effects, prior};
@@ -300,14 +300,26 @@ pub struct Report {
 }
 
 impl Report {
-    /// Takes a measured law: what nothing in the library explains has it to write into the spec.
-    pub(super) fn measure(&mut self, measured: &FittedLaw<'_>) -> Result<(), DiagnoseError> {
+    /// Takes a measured law: what nothing in the library explains has it to write into the spec. A law whose fit
+    /// failed is a row.
+    pub(super) fn measured<'l>(
+        &mut self,
+        measured: Option<Result<FittedLaw<'l>, DiagnoseError>>,
+    ) -> Result<Option<FittedLaw<'l>>, DiagnoseError> {
+        let measured = match measured {
+            Some(Ok(measured)) => measured,
+            Some(Err(reason)) => {
+                self.failed.push((vec![LAW.to_owned()], reason.to_string()));
+                return Ok(None);
+            }
+            None => return Ok(None),
+        };
         let unknown = self.which.iter_mut().find(|one| one.is_unknown());
         if let Some(unknown) = unknown {
             unknown.changes = Some(Changes::of(&measured.bench, &measured.fitted)?);
         }
         self.law = Some(measured.law.clone());
-        Ok(())
+        Ok(Some(measured))
     }
 }
 

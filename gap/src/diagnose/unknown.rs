@@ -106,7 +106,7 @@ fn with_memory(
             let count = masses.names.len();
             let laws: Vec<Option<LawGain>> = (0..count).map(|i| scores.single(i)).collect();
             let gain = |law: &Option<LawGain>| law.as_ref().map_or(0.0, |law| law.gain);
-            let best = masses.best(&laws.iter().map(gain).collect::<Vec<_>>());
+            let best = HiddenMasses::best(&laws.iter().map(gain).collect::<Vec<_>>());
             for (number, law) in laws.into_iter().enumerate() {
                 let name = || (usize::MAX, masses.names[number].clone());
                 let unnamed = |law| unnamed(name(), (along, place), None, law);

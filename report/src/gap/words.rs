@@ -52,11 +52,12 @@ pub fn before_sentence(change: &Change) -> String {
     let count = change.parameters.len();
     let differing = change.parameters.iter().filter(|own| own.spread > own.std);
     let differing: Vec<&str> = differing.map(|own| own.name.as_str()).collect();
-    let mut text = format!("{had}, {count} parameters fitted");
-    if !differing.is_empty() {
-        text += &format!("; {} differ from run to run", differing.join(", "));
-    }
-    text
+    let differing = if differing.is_empty() {
+        String::new()
+    } else {
+        format!("; {} differ from run to run", differing.join(", "))
+    };
+    format!("{had}, {count} parameters fitted{differing}")
 }
 
 /// What differs from the recordings before.

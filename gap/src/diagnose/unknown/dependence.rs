@@ -302,7 +302,7 @@ fn quantity(bench: &Bench<'_>, index: usize) -> (String, String, f64) {
 
 /// First and last time of all runs.
 fn times(bench: &Bench<'_>) -> (f64, f64) {
-    let runs = bench.recordings.iter().map(|run| run.times());
+    let runs = bench.recordings.iter().map(Recording::times);
     runs.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), times| {
         (low.min(times[0]), high.max(times[times.len() - 1]))
     })

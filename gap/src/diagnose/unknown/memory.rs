@@ -41,7 +41,7 @@ impl HiddenMasses {
     }
 
     /// The one that gains most, if its frequency lies within the range.
-    pub(super) fn best(&self, gains: &[f64]) -> Option<usize> {
+    pub(super) fn best(gains: &[f64]) -> Option<usize> {
         let best = (0..gains.len()).max_by(|&a, &b| gains[a].total_cmp(&gains[b]))?;
         (best > 0 && best + 1 < gains.len()).then_some(best)
     }

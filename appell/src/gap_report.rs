@@ -294,6 +294,9 @@ impl Hypothesis {
         if self.effects.is_empty() {
             return "nominal model, its parameters fitted".to_owned();
         }
+        if self.effects == ["unknown"] && self.changes.is_some() {
+            return "what no effect of the library explains, measured".to_owned();
+        }
         self.effects.join(" + ")
     }
 

@@ -22,6 +22,7 @@ mod handout;
 mod help;
 mod identify;
 mod late;
+mod law;
 mod motion;
 mod other_mechanisms;
 mod picture;

@@ -1,10 +1,11 @@
 //! A gap report as a page, and its sentences.
 //!
-//! [`page()`] sets [`words`], [`plots`] and tables; [`budget`] divides the gap, [`law`] shows what was
+//! [`page()`] sets [`words`], [`plots`] and [`elements`]; [`budget`] divides the gap, [`law`] shows what was
 //! measured of the rest, [`doubt`] suspects unit errors, [`numbers`] writes values with their uncertainty.
 
 mod budget;
 mod doubt;
+mod elements;
 mod law;
 mod numbers;
 mod page;

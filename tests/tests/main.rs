@@ -22,6 +22,7 @@ mod four_bar;
 mod gallery;
 mod gallery_unicycles;
 mod inverse;
+mod kinematic_names;
 mod laws;
 mod manoeuvres;
 mod papers_euc;

@@ -116,6 +116,23 @@ fn sluggish(delay: f64, coefficient: f64) -> impl FnMut(f64) -> f64 {
     }
 }
 
+/// The motion of the carriage with dry friction on a rail with a grain, a force by position.
+fn grained(friction: f64, grain: f64, per_metre: f64) -> impl FnMut(f64) -> f64 {
+    let (mut x, mut v) = (0.0_f64, 0.0_f64);
+    let h = HELD / f64::from(STEPS);
+    let against =
+        move |x: f64, v: f64| friction * (v / 0.02).tanh() + grain * (per_metre * x).sin();
+    move |force| {
+        for _ in 0..STEPS {
+            let half = v + 0.5 * h * (force - against(x, v));
+            let middle = x + 0.5 * h * v;
+            x += h * half;
+            v += h * (force - against(middle, half));
+        }
+        x
+    }
+}
+
 /// Forces of a run.
 fn forces(rows: u32) -> Vec<f64> {
     let force = |t: f64| 2.0 * (3.0 * t).sin() + 1.5 * (7.1 * t).cos();
@@ -176,6 +193,11 @@ pub(crate) fn viscous(coefficient: f64) -> Folder {
 /// With dry friction, its sign rounded as filters have to round it.
 pub(crate) fn dry(force: f64) -> Folder {
     Rig::new(move |v| force * (v / 0.02).tanh()).folder
+}
+
+/// With dry friction, and a rail whose grain no library knows.
+pub(crate) fn on_grain(friction: f64, grain: f64, per_metre: f64) -> Folder {
+    moving(|| grained(friction, grain, per_metre))
 }
 
 /// With dry friction that sticks.

@@ -272,7 +272,7 @@ impl<'a> Bench<'a> {
                             coordinate: Coordinate::Logarithm,
                             ..free.around(quantity.value, SHAPE)
                         },
-                        Role::Term(deviation) => free.around(0.0, deviation),
+                        Role::Term([expected, deviation]) => free.around(expected, deviation),
                         Role::Size | Role::Switch => free,
                     }
                 })

@@ -33,7 +33,15 @@ pub struct Part {
     pub interval: [f64; 2],
 }
 
+/// Part of the gap below which nothing names its cause.
+pub(super) const IMMATERIAL: f64 = 0.02;
+
 impl Part {
+    /// Whether it is large enough to name a cause.
+    pub fn is_material(&self) -> bool {
+        self.closed > IMMATERIAL
+    }
+
     /// Whether it is that of the re-fitted parameters.
     pub fn is_refit(&self) -> bool {
         self.name == REFIT

@@ -9,6 +9,7 @@ use appell_estimate::{Estimation, Fit, Unknown};
 
 use super::DiagnoseError;
 use super::bench::{Bench, LAG, WRONG};
+use super::budget::IMMATERIAL;
 use super::calibration::{
     Rest, inexact, tempered, unlisted, unlisted_beside_an_effect, unlisted_beside_nothing,
 };
@@ -40,8 +41,6 @@ const NOT_ALONE: f64 = 0.2;
 const NO_EVIDENCE: &str = "its parameters cannot be told from each other";
 /// Odds that nothing in the library explains a gap that is there and that no effect closes.
 const MUCH: f64 = 20.0;
-/// Part of the gap below which nothing names its cause.
-const IMMATERIAL: f64 = 0.02;
 /// Signatures that are this much alike are those of one effect in two guises.
 const ALIKE: f64 = 0.8;
 

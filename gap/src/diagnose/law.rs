@@ -10,6 +10,7 @@ use appell_estimate::{Along, Estimation, Unknown};
 
 use super::DiagnoseError;
 use super::bench::Bench;
+use super::budget::IMMATERIAL;
 use super::compare::{Comparison, TIED};
 use super::forms::{Form, forms};
 use super::held_out::HeldOut;
@@ -21,8 +22,8 @@ use crate::effects::{Candidate, EffectModel};
 
 /// Places at which the law is told.
 const PLACES: usize = 81;
-/// Part of the gap below which what is left is not measured.
-const IMMATERIAL: f64 = 0.02;
+/// Standard deviation of the length of a wave, in the distance of those that are tried.
+const APART: f64 = 0.5;
 
 /// A measured law.
 #[derive(Debug, Clone, PartialEq)]
@@ -135,7 +136,7 @@ fn base<'c>(
     ))
 }
 
-/// The law as a load with a term for each wave.
+/// The law as a load with a term for each wave. The length of a wave that is one alone is fitted too.
 fn candidate(
     bench: &Bench<'_>,
     dependence: Dependence<'_>,
@@ -143,31 +144,39 @@ fn candidate(
     series: &Series,
 ) -> Option<Candidate> {
     let written = dependence.written(bench)?;
-    let (mut force, mut deviations) = (String::new(), Vec::new());
+    let mut unit = force_unit(bench, law.place).replace(' ', "*");
+    if let Some(of_factor) = &written.factor_unit {
+        unit = format!("{unit}/({of_factor})");
+    }
+    let (mut force, mut numbers) = (String::new(), Vec::new());
     for (wave, _, deviation) in &series.terms {
+        let rate = match law.wave {
+            Some(_) => "{law}_rate".to_owned(),
+            None => format!("{:.9e}", dependence.rate(*wave)),
+        };
         for function in ["sin", "cos"] {
             let plus = if force.is_empty() { "" } else { " + " };
-            deviations.push(*deviation);
-            let (number, rate) = (deviations.len(), dependence.rate(*wave));
-            let argument = format!("{rate:.9e}*{}", written.variable);
+            let number = numbers.len() + 1;
+            numbers.push((number.to_string(), unit.clone(), [0.0, *deviation]));
             // Writing to a string cannot fail.
-            let _ = write!(force, "{plus}{{law}}_{number}*{function}({argument})");
+            let _ = write!(
+                force,
+                "{plus}{{law}}_{number}*{function}({rate}*{})",
+                written.variable
+            );
         }
     }
-    let mut unit = force_unit(bench, law.place).replace(' ', "*");
-    if let (Some(factor), Some(of_factor)) = (&written.factor, &written.factor_unit) {
+    if let Some(wave) = law.wave {
+        let known = [dependence.rate(wave), APART * dependence.rate(0)];
+        numbers.push(("rate".to_owned(), "1".to_owned(), known));
+    }
+    if let Some(factor) = &written.factor {
         force = format!("({force})*{factor}");
-        unit = format!("{unit}/({of_factor})");
     }
     let info = bench.effects.info();
     let speed = info.states[law.place].name.as_ref();
     let mechanism = &bench.effects.mechanism;
-    Some(Candidate::measured(
-        mechanism,
-        speed,
-        (&force, &unit),
-        &deviations,
-    ))
+    Some(Candidate::measured(mechanism, speed, &force, &numbers))
 }
 
 impl Lawful<'_> {
@@ -220,15 +229,29 @@ impl Lawful<'_> {
             })
             .collect();
         let covariance = fitted.fit.covariance();
+        let values: Vec<f64> = places
+            .iter()
+            .map(|&place| fitted.fit.values[place])
+            .collect();
+        // After the sizes of the waves.
+        let rate = values.get(2 * self.series.terms.len()).copied();
         let point = |place: usize| {
             let x = low + (high - low) * place as f64 / (PLACES - 1) as f64;
             let waves = self.series.terms.iter().flat_map(|(wave, ..)| {
-                let (sin, cos) = (dependence.rate(*wave) * x).sin_cos();
+                let rate = rate.unwrap_or_else(|| dependence.rate(*wave));
+                let (sin, cos) = (rate * x).sin_cos();
                 [sin, cos]
             });
-            let waves: Vec<f64> = waves.collect();
-            let sizes = places.iter().map(|&place| fitted.fit.values[place]);
-            let force: f64 = sizes.zip(&waves).map(|(size, wave)| size * wave).sum();
+            let mut waves: Vec<f64> = waves.collect();
+            let force: f64 = values
+                .iter()
+                .zip(&waves)
+                .map(|(size, wave)| size * wave)
+                .sum();
+            if rate.is_some() {
+                // The slope by the rate of one wave.
+                waves.push(x * (values[0] * waves[1] - values[1] * waves[0]));
+            }
             let mut variance = 0.0;
             for (i, a) in free.iter().zip(&waves) {
                 for (j, b) in free.iter().zip(&waves) {

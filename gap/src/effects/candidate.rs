@@ -35,8 +35,8 @@ pub(crate) enum Part {
     Shape,
     /// Switch: one with the effect, zero without.
     Switch,
-    /// Size of one of many terms; normal beforehand with this standard deviation.
-    Term(f64),
+    /// A number in one of many terms; normal beforehand with this mean and standard deviation.
+    Term([f64; 2]),
 }
 
 /// An effect at a place.
@@ -77,22 +77,24 @@ impl Candidate {
         format!("{}@{}", self.kind, self.site)
     }
 
-    /// A force beside a pseudo-velocity that is no effect of the library: `force` of terms in the language of
-    /// a spec, where the sizes stand as `{law}_1` and so on.
+    /// A force beside a pseudo-velocity that is no effect of the library: `force` in the language of a spec, where
+    /// `{law}` stands before the names of its numbers. Each of these has a unit, and what is known beforehand.
     pub(crate) fn measured(
         mechanism: &Mechanism,
         speed: &str,
-        (force, unit): (&str, &str),
-        deviations: &[f64],
+        force: &str,
+        numbers: &[(String, String, [f64; 2])],
     ) -> Self {
         let stem = unused(format!("law_{}", identifier(speed)), mechanism);
-        let names = (1..=deviations.len()).map(|number| format!("{stem}_{number}"));
-        let names: Vec<String> = names.collect();
         let mut document = DocumentMut::new();
         let mut parameters = Table::new();
-        for name in &names {
-            let item = InlineTable::from_iter([("value", Value::from(0)), ("unit", unit.into())]);
-            parameters.insert(name, Item::Value(item.into()));
+        let mut terms = Vec::new();
+        for (name, unit, known) in numbers {
+            let name = format!("{stem}_{name}");
+            let (value, unit) = (Value::from(known[0]), Value::from(unit));
+            let item = InlineTable::from_iter([("value", value), ("unit", unit)]);
+            parameters.insert(&name, Item::Value(item.into()));
+            terms.push((name, Part::Term(*known)));
         }
         let load = InlineTable::from_iter([
             ("kind", Value::from("generalized")),
@@ -102,7 +104,6 @@ impl Candidate {
         let loads = Table::from_iter([(stem.clone(), Value::from(load))]);
         document.insert("parameters", Item::Table(parameters));
         document.insert("loads", Item::Table(loads));
-        let terms = deviations.iter().map(|&deviation| Part::Term(deviation));
         Self {
             kind: "law".to_owned(),
             site: speed.to_owned(),
@@ -110,7 +111,7 @@ impl Candidate {
             about: format!("the measured force beside {speed}"),
             is_component: false,
             acts: Acts::Items,
-            parameters: names.into_iter().zip(terms).collect(),
+            parameters: terms,
             stem,
             centre: None,
             items: document.to_string(),

@@ -3,11 +3,8 @@
 use appell_gap::diagnose::{HowFar, Report, Share};
 use maud::{Markup, html};
 
+use super::elements::{bar, code, table};
 use super::numbers::percent;
-use super::page::{bar, code, table};
-
-/// Parts of the gap below this never name its cause.
-const IMMATERIAL: f64 = 0.02;
 
 /// `coulomb_friction@theta 66 % [24 %, 77 %], ... ; 8 % [4 %, 9 %] stays`, the largest part first; `None` where no
 /// run was held out.
@@ -21,10 +18,10 @@ pub fn divided(report: &Report) -> Option<String> {
         format!("{} [{low}, {high}]", percent(part.closed))
     };
     let parts = parts.into_iter().map(|part| {
-        let small = if part.closed < IMMATERIAL {
-            " (immaterial)"
-        } else {
+        let small = if part.is_material() {
             ""
+        } else {
+            " (immaterial)"
         };
         format!("{} {}{small}", name(part), told(part))
     });
@@ -60,7 +57,7 @@ pub(super) fn budget(far: &HowFar) -> Markup {
             bar(part.closed.clamp(0.0, 1.0)),
             html! {
                 (percent(part.closed)) " [" (low) ", " (high) "]"
-                @if effect && part.closed < IMMATERIAL { span class="faint" { " immaterial" } }
+                @if effect && !part.is_material() { span class="faint" { " immaterial" } }
             },
         ]
     });

@@ -3,8 +3,8 @@
 use appell_gap::diagnose::{Law, Report, Share};
 use maud::{Markup, html};
 
+use super::elements::{code, figure, table};
 use super::numbers::percent;
-use super::page::{code, figure, table};
 use crate::figure::{Layer, Look, Plot, Series};
 use crate::text::short;
 

@@ -5,10 +5,11 @@ use std::fmt::Write as _;
 use appell_codegen::{Derived, derived};
 use appell_gap::data::{DataSet, Part};
 use appell_gap::diagnose::{GapVerdict, HowFar, Hypothesis, Report, Where};
-use maud::{Markup, PreEscaped, html};
+use maud::{Markup, html};
 
 use super::budget::budget;
 use super::doubt::doubts;
+use super::elements::{bar, capital, code, figure, separated, table};
 use super::law::law;
 use super::numbers::{measured, percent};
 use super::plots;
@@ -461,63 +462,4 @@ fn recordings(set: &DataSet, report: &Report) -> Markup {
             p class="faint" { (crate::recording::sentence(finding)) }
         }
     }
-}
-
-/// A table; the columns from `numbers` on are right-aligned.
-pub(super) fn table<const N: usize>(
-    heading: [&str; N],
-    rows: impl Iterator<Item = [Markup; N]>,
-    numbers: usize,
-) -> Markup {
-    let class = |column: usize| (column >= numbers).then_some("number");
-    html! {
-        table {
-            tr {
-                @for (column, text) in heading.iter().enumerate() {
-                    th class=[class(column)] { (text) }
-                }
-            }
-            @for row in rows {
-                tr {
-                    @for (column, cell) in row.iter().enumerate() {
-                        td class=[class(column)] { (cell) }
-                    }
-                }
-            }
-        }
-    }
-}
-
-/// Items with separators.
-fn separated<T>(list: &[T], shown: impl Fn(&T) -> Markup, between: &Markup) -> Markup {
-    html! {
-        @for (index, item) in list.iter().enumerate() {
-            @if index > 0 { (between) }
-            (shown(item))
-        }
-    }
-}
-
-/// A share as a bar with its number.
-pub(super) fn bar(part: f64) -> Markup {
-    let width = format!("width:{:.1}%", 100.0 * part.clamp(0.0, 1.0));
-    html! {
-        span class="share" { span class="bar" { i style=(width) {} } " " (percent(part)) }
-    }
-}
-
-pub(super) fn figure(svg: String, caption: &str) -> Markup {
-    html! {
-        figure { (PreEscaped(svg)) figcaption { (caption) } }
-    }
-}
-
-pub(super) fn code(text: &str) -> Markup {
-    html! { code { (text) } }
-}
-
-fn capital(text: &str) -> String {
-    let mut letters = text.chars();
-    let first = letters.next().map(char::to_uppercase);
-    first.into_iter().flatten().chain(letters).collect()
 }

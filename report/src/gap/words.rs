@@ -1,6 +1,6 @@
 //! The statements of a gap report.
 
-use appell_gap::diagnose::{Change, GapVerdict, Hint, Hypothesis, Report};
+use appell_gap::diagnose::{Change, GapVerdict, Hint, Hypothesis, Report, Share};
 
 /// The verdict in one sentence.
 pub fn sentence(report: &Report) -> String {
@@ -36,9 +36,26 @@ pub fn sentence(report: &Report) -> String {
         GapVerdict::Unexplained => {
             let left = report.left.as_ref().map(|left| format!(": {}", left.about));
             let left = left.unwrap_or_default();
-            format!("there is a gap that no effect of the library explains{left}")
+            let beside = beside_law(report);
+            if beside.is_empty() {
+                return format!("there is a gap that no effect of the library explains{left}");
+            }
+            let beside = beside.join(" and ");
+            format!("there is a gap: {beside}, and what no effect of the library explains{left}")
         }
     }
+}
+
+/// Effects in words beside which a law was measured, where they matter.
+fn beside_law(report: &Report) -> Vec<&str> {
+    let budget = report.how_far.iter().flat_map(|far| &far.budget);
+    let parts = budget.filter(|part| report.law.is_some() && part.is_material());
+    let about = |part: &Share| {
+        let mut found = report.found.iter();
+        let found = found.find(|found| found.effect == part.name);
+        found.map(|found| found.about.as_str())
+    };
+    parts.filter_map(about).collect()
 }
 
 /// What the recordings before told: effects that the model has now, and how many parameters.

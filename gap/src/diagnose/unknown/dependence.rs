@@ -112,8 +112,8 @@ impl<'b> Dependence<'b> {
             range,
         };
         all.extend(moving.iter().map(|&input| walking(Factor::Input(input))));
-        // In one run a level that walks is a disturbance.
-        if bench.recordings.len() > 1 {
+        // In one run a level that walks is a disturbance; in runs that are alike the time tells the motion.
+        if bench.recordings.len() > 1 && !are_alike(&bench.recordings) {
             all.push(walking(Factor::One));
         }
         all.extend(bench.unmodelled.iter().map(Self::unmodelled));
@@ -298,6 +298,31 @@ fn quantity(bench: &Bench<'_>, index: usize) -> (String, String, f64) {
         || (String::new(), "1".to_owned(), 1.0),
         |own| (own.name.to_string(), own.unit.to_string(), own.scale),
     )
+}
+
+/// Whether the runs show the same motion at the same times.
+fn are_alike(runs: &[Recording]) -> bool {
+    /// Part of the variance of a channel that has to be its own.
+    const OWN: f64 = 0.2;
+    let Some((first, others)) = runs.split_first() else {
+        return false;
+    };
+    let channels = first.measured(0).len();
+    let is_alike = |other: &Recording, channel: usize| {
+        let rows = 0..first.times().len().min(other.times().len());
+        let pairs = rows.map(|row| [first, other].map(|run| run.measured(row)[channel]));
+        let pairs: Vec<[f64; 2]> = pairs
+            .filter(|pair| pair.iter().all(|v| !v.is_nan()))
+            .collect();
+        let count = pairs.len().max(1) as f64;
+        let mean = pairs.iter().map(|[value, _]| value).sum::<f64>() / count;
+        let spread: f64 = pairs.iter().map(|[value, _]| (value - mean).powi(2)).sum();
+        let apart: f64 = pairs.iter().map(|[a, b]| (a - b).powi(2)).sum();
+        apart < OWN * spread
+    };
+    others
+        .iter()
+        .any(|other| (0..channels).all(|channel| is_alike(other, channel)))
 }
 
 /// First and last time of all runs.

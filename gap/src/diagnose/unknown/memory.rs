@@ -131,12 +131,17 @@ fn swing(times: &[f64], values: &[f64], frequency: f64) -> [Vec<f64>; 2] {
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
         let parts = ((10.0 * step * frequency).ceil() as usize).max(1);
         let part = step / parts as f64;
+        // Half a push, a drift, half a push (Verlet): a lag of half a step would be a force.
         for number in 0..parts {
-            let value = values[row] + slope * (number as f64 + 0.5) * part;
-            let pull =
-                frequency * frequency * (value - at) + 2.0 * DAMPING * frequency * (slope - rate);
-            rate += part * pull;
-            at += part * rate;
+            for end in [0, 1] {
+                let value = values[row] + slope * (number + end) as f64 * part;
+                let pull = frequency * frequency * (value - at)
+                    + 2.0 * DAMPING * frequency * (slope - rate);
+                rate += 0.5 * part * pull;
+                if end == 0 {
+                    at += part * rate;
+                }
+            }
         }
     }
     [stretches, rates]

@@ -1,0 +1,122 @@
+//! Causes that the library does not have, changes, and many rigs at a time.
+
+use crate::rig::{closed, dry, on_grain, viscous};
+use crate::support::number;
+
+#[test]
+fn a_rig_with_two_causes_one_of_them_unlisted_gets_a_spec_that_predicts() {
+    let folder = on_grain(0.4, 0.3, 20.0);
+    let told = folder.done(&["diagnose", "--data", ".", "--json", "report.json"]);
+    let report = folder.json("report.json");
+    assert_eq!(report["verdict"], "unexplained", "{}", told.stdout);
+    let law = &report["law"];
+    assert_eq!(law["variable"], "x", "{law:#}");
+    let form = law["forms"][0]["form"].as_str().expect("a form");
+    assert!(form.starts_with("sin(") && form.contains("*x"), "{form}");
+    let budget = report["how_far"]["budget"].as_array().expect("a list");
+    let names: Vec<&str> = budget
+        .iter()
+        .filter_map(|part| part["effect"].as_str())
+        .collect();
+    assert!(
+        names.contains(&"coulomb_friction@x") && names.contains(&"law"),
+        "{names:?}"
+    );
+    let sum: f64 = budget.iter().map(|part| number(part, "closed")).sum();
+    assert!((sum - 1.0).abs() < 0.02, "shares add up to {sum}");
+    assert!(number(&report, "how_far/closed") > 0.95, "{}", told.stdout);
+    let apply = [
+        "apply",
+        "carriage",
+        "--report",
+        "report.json",
+        "-o",
+        "better.toml",
+    ];
+    folder.done(&apply);
+    let better = folder.read("better.toml");
+    assert!(better.contains("law_v_rate") && better.contains("coulomb_friction_x_force"));
+    closed(&folder, "better.toml");
+}
+
+#[test]
+fn what_changed_is_told_and_nothing_where_nothing_did() {
+    let before = dry(0.3);
+    let same = dry(0.3);
+    let path = before.path("");
+    let against = path.to_str().expect("a path");
+    let asked = [
+        "diagnose",
+        "--data",
+        ".",
+        "--against",
+        against,
+        "--json",
+        "report.json",
+    ];
+    let told = same.done(&asked);
+    assert!(told.stdout.contains("nothing changed"), "{}", told.stdout);
+    assert_eq!(same.json("report.json")["change"]["changed"], false);
+    let worn = dry(0.6);
+    let told = worn.done(&asked);
+    let report = worn.json("report.json");
+    assert_eq!(report["change"]["changed"], true, "{}", told.stdout);
+    let first = report["which"][0]["effects"][0]
+        .as_str()
+        .expect("an effect");
+    assert_eq!(
+        first, "parameter_error@coulomb_friction_x_force",
+        "{}",
+        told.stdout
+    );
+}
+
+#[test]
+fn many_rigs_give_a_table_and_a_broken_one_is_a_row() {
+    let (first, second) = (viscous(0.4), dry(0.3));
+    second.write("recording.toml", "mechanism = \"carriage\"");
+    let here = crate::support::Folder::new();
+    let paths = [first.path(""), second.path("")];
+    let paths = paths.each_ref().map(|path| path.to_str().expect("a path"));
+    let asked = [
+        "diagnose",
+        "--data",
+        paths[0],
+        paths[1],
+        "--table",
+        "fleet.csv",
+    ];
+    let told = here.done(&asked);
+    assert!(
+        told.stdout.contains("1 without a diagnosis"),
+        "{}",
+        told.stdout
+    );
+    let table = here.read("fleet.csv");
+    let rows: Vec<&str> = table.lines().collect();
+    assert_eq!(rows.len(), 3, "{table}");
+    assert!(rows[1].contains("viscous_friction@x"), "{table}");
+    assert!(
+        rows[2].contains("[channels]") || rows[2].contains("recording.toml"),
+        "{table}"
+    );
+    let told = here.done(&asked);
+    assert!(
+        told.stdout.contains("1 of them known from before"),
+        "{}",
+        told.stdout
+    );
+    let refused = [
+        "diagnose",
+        "--data",
+        paths[0],
+        paths[1],
+        "--json",
+        "report.json",
+    ];
+    here.fails(
+        2,
+        &refused,
+        &["`--json` belongs to one data set", "--reports DIR"],
+    );
+}

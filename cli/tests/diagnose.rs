@@ -3,7 +3,7 @@
 
 use crate::browser;
 use crate::rig::{dry, viscous};
-use crate::support::Folder;
+use crate::support::{Folder, number};
 
 fn report(folder: &Folder) -> serde_json::Value {
     folder.done(&["diagnose", "--data", ".", "--json", "report.json"]);

@@ -97,6 +97,8 @@ pub struct Options {
     pub limits: Vec<Limit>,
     /// Other specs of the same thing, each a hypothesis of its own.
     pub alternatives: Vec<Spec>,
+    /// Horizon in s at which the gap is reported; by default 1 s, or what the runs allow.
+    pub horizon: Option<f64>,
     /// Names of effects that the spec has already, and that are no hypotheses.
     pub present: Vec<String>,
 }
@@ -173,7 +175,7 @@ pub fn diagnose(
         _ => best,
     };
     let judged = (&bench, &comparison, &leader);
-    let how_far = held_out.how_far(judged)?;
+    let how_far = held_out.how_far(judged, options.horizon)?;
     report.verdict = report
         .verdict
         .after(&report.which, how_far.as_ref(), bench.is_over_windows());

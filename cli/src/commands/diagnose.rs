@@ -59,6 +59,10 @@ pub(crate) struct Diagnose {
     /// those of the recordings]
     #[arg(long, value_name = "NAME=FROM..TO", allow_hyphen_values = true)]
     limit: Vec<Span>,
+    /// Horizon of the predictions by which the gap is divided, in s [default: 1, or what the held-out runs
+    /// allow]
+    #[arg(long, value_name = "S")]
+    horizon_s: Option<f64>,
     /// Folder for the reports of several rigs; rigs whose report is there and whose data have not changed
     /// are not diagnosed again [default: gap-reports]
     #[arg(long, value_name = "DIR")]
@@ -115,6 +119,7 @@ impl Diagnose {
             pictures: self.html.is_some(),
             limits: self.limits(&set)?,
             alternatives: self.alternatives()?,
+            horizon: self.horizon()?,
             present: Vec::new(),
         };
         let stage = |stage| spinner.set_message(stage);
@@ -167,6 +172,7 @@ impl Diagnose {
             ("--json", self.json.is_some()),
             ("--html", self.html.is_some()),
             ("--experiment", self.experiment.is_some()),
+            ("--horizon-s", self.horizon_s.is_some()),
             ("--against", !self.against.is_empty()),
             ("--limit", !self.limit.is_empty()),
             ("--alternative", !self.alternative.is_empty()),
@@ -239,6 +245,15 @@ impl Diagnose {
                 "  next      {EXPERIMENT} does not belong to the previous gap report and is not overwritten\n"
             )
         })
+    }
+
+    fn horizon(&self) -> Result<Option<f64>, Error> {
+        match self.horizon_s {
+            Some(horizon) if !(horizon.is_finite() && horizon > 0.0) => Err(Error::Usage(format!(
+                "`--horizon-s {horizon}` is not a positive number of seconds"
+            ))),
+            horizon => Ok(horizon),
+        }
     }
 
     /// The other specs.

@@ -15,11 +15,12 @@ use super::prediction::{self, Errors, Paired, noise, stated};
 use super::report::HowFar;
 use crate::data::{DataSet, Part};
 
-/// Horizon in s at which the gap is reported.
-pub(super) const HORIZON: f64 = 1.0;
-/// The same where a mechanism falls over so soon that the best hypothesis expects larger errors than
+/// Horizon in s at which the gap is reported, but no more than half of a run.
+const HORIZON: f64 = 1.0;
+const PART: f64 = 0.5;
+/// Part of the horizon where a mechanism falls over so soon that the best hypothesis expects larger errors than
 /// the channels vary.
-pub(super) const SHORT: f64 = 0.1;
+const SHORTER: f64 = 0.1;
 /// Most rows of a run from which predictions start.
 const ORIGINS: usize = 150;
 
@@ -69,20 +70,25 @@ impl HeldOut {
     pub(super) fn how_far(
         &self,
         (bench, comparison, leader): (&Bench<'_>, &Comparison, &Leader<'_>),
+        asked: Option<f64>,
     ) -> Result<Option<HowFar>, DiagnoseError> {
         if self.recordings.is_empty() {
             return Ok(None);
         }
         let refitted = comparison.nominal();
         let noise = noise(bench, comparison.best())?;
-        let (mut horizon, mut floor) = (HORIZON, leader.floor(HORIZON)?);
+        let mut horizon = asked.unwrap_or_else(|| self.horizon());
+        let mut floor = leader.floor(horizon)?;
         let expected = if leader.bench.is_over_windows() {
-            leader.errors(HORIZON)?.mean().sqrt()
+            leader.errors(horizon)?.mean().sqrt()
         } else {
             floor
         };
-        if expected.is_nan() || expected > spread(&leader.runs.recordings, &leader.noise) {
-            (horizon, floor) = (SHORT, leader.floor(SHORT)?);
+        let is_lost =
+            expected.is_nan() || expected > spread(&leader.runs.recordings, &leader.noise);
+        if asked.is_none() && is_lost {
+            horizon *= SHORTER;
+            floor = leader.floor(horizon)?;
         }
         let errors = |fitted: &Fitted| self.errors(bench, fitted, &noise, horizon);
         let stated = errors(&stated(bench, refitted))?;
@@ -124,6 +130,15 @@ impl HeldOut {
             is_worse: paired.interval95(|means| means[1] - means[2])[1] < 0.0,
             runs: self.names.clone(),
         }))
+    }
+
+    /// The horizon in s that these runs allow.
+    fn horizon(&self) -> f64 {
+        let durations = self.recordings.iter().map(|run| {
+            let times = run.times();
+            times[times.len() - 1] - times[0]
+        });
+        HORIZON.min(PART * durations.fold(0.0, f64::max))
     }
 
     pub(super) fn errors(

@@ -20,8 +20,8 @@ use super::unknown::{Dependence, Leftover, Series, Unnamed, leftover, wave_score
 use crate::data::DataSet;
 use crate::effects::{Candidate, EffectModel};
 
-/// Places at which the law is told.
-const PLACES: usize = 81;
+/// Places at which the law is told, at least and for each half of its shortest wave.
+const PLACES: [usize; 2] = [81, 10];
 /// Standard deviation of the length of a wave, in the distance of those that are tried.
 const APART: f64 = 0.5;
 
@@ -233,10 +233,12 @@ impl Lawful<'_> {
             .iter()
             .map(|&place| fitted.fit.values[place])
             .collect();
+        let shortest = self.series.terms.iter().map(|(wave, ..)| wave + 1).max();
+        let places_told = PLACES[0].max(PLACES[1] * shortest.unwrap_or(1));
         // After the sizes of the waves.
         let rate = values.get(2 * self.series.terms.len()).copied();
         let point = |place: usize| {
-            let x = low + (high - low) * place as f64 / (PLACES - 1) as f64;
+            let x = low + (high - low) * place as f64 / (places_told - 1) as f64;
             let waves = self.series.terms.iter().flat_map(|(wave, ..)| {
                 let rate = rate.unwrap_or_else(|| dependence.rate(*wave));
                 let (sin, cos) = (rate * x).sin_cos();
@@ -273,7 +275,7 @@ impl Lawful<'_> {
             variable: dependence.letters(main).0,
             variable_unit,
             factor: written.and_then(|own| own.factor),
-            curve: (0..PLACES).map(point).collect(),
+            curve: (0..places_told).map(point).collect(),
             log_bayes_factor: self.unnamed.log_bayes_factor,
             forms: forms(main, self.base, dependence, &self.unnamed)?,
         })

@@ -137,7 +137,8 @@ pub fn diagnose(
     report.hints = report::hints(&bench, &comparison)?;
     stage("measuring what is left");
     let test = set.only(Part::Test);
-    let lawful = law::lawful(&bench, &comparison)?;
+    // A law that cannot be written is none.
+    let lawful = law::lawful(&bench, &comparison).unwrap_or(None);
     let measured = lawful.as_ref().map(|lawful| lawful.fitted(&bench, &test));
     let measured = report.measured(measured)?;
     stage("predicting the runs that were held out");

@@ -1,6 +1,7 @@
 //! Likelihood of recordings under a model, with gradient and innovations.
 
 use std::ops::Range;
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use super::EstimateError;
 use crate::data::layout::Layout;
@@ -19,6 +20,8 @@ pub struct Estimation<'a> {
     recordings: &'a [Recording],
     layout: Layout,
     knots: Vec<f64>,
+    /// Tapes of passes that are over: a search needs one after the other, and fresh memory is slow.
+    tapes: Mutex<Vec<Vec<f64>>>,
 }
 
 impl<'a> Estimation<'a> {
@@ -32,6 +35,7 @@ impl<'a> Estimation<'a> {
             plant,
             recordings,
             layout: Layout::of(setup, recordings.len()),
+            tapes: Mutex::default(),
         })
     }
 
@@ -104,13 +108,31 @@ impl<'a> Estimation<'a> {
     ///
     /// [`Model::has_adjoint`]: appell_runtime::model::Model::has_adjoint
     pub fn gradient(&self, values: &[f64]) -> Result<(f64, Vec<f64>), EstimateError> {
+        let (sum, gradient) = self.gradient_if(values, |_| true)?;
+        Ok((sum, gradient.unwrap_or_default()))
+    }
+
+    /// The log-likelihood, and its gradient where one is asked for after a look at it: the reverse
+    /// sweep takes twice as long as the filter.
+    pub(crate) fn gradient_if(
+        &self,
+        values: &[f64],
+        is_wanted: impl Fn(f64) -> bool,
+    ) -> Result<(f64, Option<Vec<f64>>), EstimateError> {
         self.check(values)?;
-        let (mut sum, mut gradient) = (0.0, vec![0.0; self.layout.len()]);
-        for run in 0..self.recordings.len() {
-            let mut pass = self.pass(run, values, true)?;
-            sum += pass.log_likelihood();
-            adjoint(&mut pass, &(0..usize::MAX), &mut gradient);
-        }
+        let runs = 0..self.recordings.len();
+        let passes = runs.map(|run| self.pass(run, values, true));
+        let mut passes = passes.collect::<Result<Vec<Pass<'_>>, _>>()?;
+        let sum = passes.iter().map(Pass::log_likelihood).sum();
+        let gradient = is_wanted(sum).then(|| {
+            let mut gradient = vec![0.0; self.layout.len()];
+            for pass in &mut passes {
+                adjoint(pass, &(0..usize::MAX), &mut gradient);
+            }
+            gradient
+        });
+        let tapes = passes.into_iter().map(|pass| pass.tape);
+        self.tapes().extend(tapes);
         Ok((sum, gradient))
     }
 
@@ -156,7 +178,17 @@ impl<'a> Estimation<'a> {
     ) -> Result<Pass<'b>, EstimateError> {
         let recording = &self.recordings[run];
         let actions = self.actions(run, values);
-        Pass::over(self.system(), values, (run, recording), &actions, keeps)
+        let tape = keeps.then(|| {
+            let mut tape = self.tapes().pop().unwrap_or_default();
+            tape.clear();
+            tape
+        });
+        Pass::over(self.system(), values, (run, recording), &actions, tape)
+    }
+
+    /// Nobody panics while holding them.
+    fn tapes(&self) -> MutexGuard<'_, Vec<Vec<f64>>> {
+        self.tapes.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// The filter before the first of the `actions` of a run.
@@ -167,7 +199,7 @@ impl<'a> Estimation<'a> {
         actions: &[Action],
     ) -> Pass<'b> {
         let recording = &self.recordings[run];
-        Pass::new(self.system(), values, (run, recording), actions, false)
+        Pass::new(self.system(), values, (run, recording), actions, None)
     }
 
     /// Steps, changes of inputs and samples of a run.

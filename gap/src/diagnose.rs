@@ -108,8 +108,13 @@ pub fn diagnose(
     set: &DataSet,
     effects: &[Effect],
     options: &Options,
-    mut stage: impl FnMut(&'static str),
+    mut stage0: impl FnMut(&'static str),
 ) -> Result<Report, DiagnoseError> {
+    let t0 = std::time::Instant::now();
+    let mut stage = |name: &'static str| {
+        eprintln!("== {:.3} {name}", t0.elapsed().as_secs_f64());
+        stage0(name)
+    };
     stage("deriving the mechanism with all effects");
     let whole = set.only(Part::Fit);
     let fitted = whole.stretches(MOST_ROWS);

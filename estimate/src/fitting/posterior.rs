@@ -44,33 +44,62 @@ impl Posterior<'_, '_> {
         let coordinates = self.selection.coordinates(values)?;
         let mut values = values.to_vec();
         self.selection.write(&coordinates, &mut values);
-        let (log_likelihood, by_values) = self.estimation.gradient(&values)?;
-        let (prior, by_prior) = self.selection.prior(&coordinates);
-        let gradient = self.selection.gradient(&values, &by_values) + by_prior;
-        let limits = self.selection.limits();
-        let all = coordinates.iter().zip(&gradient).zip(limits);
-        let is_held = all.map(|((&x, &slope), [low, high])| {
-            x <= low && slope <= 0.0 || x >= high && slope >= 0.0
-        });
-        Ok(Point {
-            is_held: is_held.collect(),
-            objective: log_likelihood + prior,
-            log_likelihood,
-            gradient,
-            coordinates,
-            values,
-        })
+        let likelihood = self.estimation.gradient(&values)?;
+        Ok(self.point((values, coordinates), likelihood))
     }
 
     /// After a step from a point.
     pub(crate) fn moved(&self, point: &Point, step: &DVector<f64>) -> Result<Point, EstimateError> {
+        let (values, coordinates) = self.stepped(point, step);
+        let likelihood = self.estimation.gradient(&values)?;
+        Ok(self.point((values, coordinates), likelihood))
+    }
+
+    /// The same where it is better by this gain; most steps that are not are seen before their gradient.
+    pub(crate) fn bettered(&self, point: &Point, step: &DVector<f64>, gain: f64) -> Option<Point> {
+        let (values, coordinates) = self.stepped(point, step);
+        let (prior, _) = self.selection.prior(&coordinates);
+        let may_be = |likelihood: f64| {
+            let rise = likelihood + prior - point.objective;
+            rise > gain || point.is_rounding(rise)
+        };
+        let (likelihood, slopes) = self.estimation.gradient_if(&values, may_be).ok()?;
+        let next = self.point((values, coordinates), (likelihood, slopes?));
+        (next.objective.is_finite() && point.is_worse_than(&next, gain)).then_some(next)
+    }
+
+    /// Values and coordinates after a step from a point, within their limits.
+    fn stepped(&self, point: &Point, step: &DVector<f64>) -> (Vec<f64>, DVector<f64>) {
         let mut values = point.values.clone();
         let mut coordinates = &point.coordinates + step;
         for (coordinate, [low, high]) in coordinates.iter_mut().zip(self.selection.limits()) {
             *coordinate = coordinate.max(low).min(high);
         }
         self.selection.write(&coordinates, &mut values);
-        self.at(&values)
+        (values, coordinates)
+    }
+
+    /// The log-posterior from the log-likelihood and its slopes.
+    fn point(
+        &self,
+        (values, coordinates): (Vec<f64>, DVector<f64>),
+        (log_likelihood, slopes): (f64, Vec<f64>),
+    ) -> Point {
+        let (prior, by_prior) = self.selection.prior(&coordinates);
+        let gradient = self.selection.gradient(&values, &slopes) + by_prior;
+        let limits = self.selection.limits();
+        let all = coordinates.iter().zip(&gradient).zip(limits);
+        let is_held = all.map(|((&x, &slope), [low, high])| {
+            x <= low && slope <= 0.0 || x >= high && slope >= 0.0
+        });
+        Point {
+            is_held: is_held.collect(),
+            objective: log_likelihood + prior,
+            log_likelihood,
+            gradient,
+            coordinates,
+            values,
+        }
     }
 
     /// The step for a curvature from a point, and its predicted gain. Coordinates at their limits
@@ -103,11 +132,16 @@ impl Posterior<'_, '_> {
 }
 
 impl Point {
+    /// Whether a rise of the objective is no more than its rounding.
+    fn is_rounding(&self, rise: f64) -> bool {
+        rise.abs() <= ROUNDING * self.objective.abs()
+    }
+
     /// Whether another point is better by this gain; by the directional derivatives if the
     /// difference is rounding.
     pub(crate) fn is_worse_than(&self, other: &Point, gain: f64) -> bool {
         let rise = other.objective - self.objective;
-        if rise.abs() > ROUNDING * self.objective.abs() {
+        if !self.is_rounding(rise) {
             return rise > gain;
         }
         let moved = &other.coordinates - &self.coordinates;

@@ -15,7 +15,7 @@ use crate::gradient::information::is_level;
 /// Damping after an undamped step failed, relative to the curvature; small, for narrow valleys.
 const DAMPING: f64 = 1e-4;
 /// Factor of the damping after a failed step.
-const MORE: f64 = 8.0;
+const MORE: f64 = 16.0;
 /// Divisor of the damping after a step that achieved this fraction of its predicted gain.
 const LESS: (f64, f64) = (5.0, 0.5);
 /// Damping below which steps are undamped, and beyond which they are negligible.
@@ -80,14 +80,14 @@ impl Fit {
             steps += 1;
             // A step with several coordinates at their largest change may fail; a damped one does
             // not.
-            let next = (gain > 0.0).then(|| posterior.moved(&point, &step).ok());
-            let is_better = |next: &Point| {
-                next.objective.is_finite() && point.is_worse_than(next, SUFFICIENT_DECREASE * gain)
-            };
-            match next.flatten().filter(is_better) {
+            let next = (gain > 0.0)
+                .then(|| posterior.bettered(&point, &step, SUFFICIENT_DECREASE * gain))
+                .flatten();
+            gained.rotate_left(1);
+            gained[LAST - 1] = 0.0;
+            match next {
                 Some(next) => {
                     let kept = next.objective - point.objective;
-                    gained.rotate_left(1);
                     gained[LAST - 1] = kept;
                     if kept > LESS.1 * gain {
                         damping /= LESS.0;

@@ -90,15 +90,15 @@ pub(crate) struct Pass<'a> {
 }
 
 impl<'a> Pass<'a> {
-    /// Filters a recording. Without `keeps` only the innovations remain.
+    /// Filters a recording. Without an empty `tape` to keep it on only the innovations remain.
     pub(crate) fn over(
         system: StateSpace<'a>,
         values: &'a [f64],
         (run, recording): (usize, &Recording),
         actions: &[Action],
-        keeps: bool,
+        tape: Option<Vec<f64>>,
     ) -> Result<Self, EstimateError> {
-        let mut pass = Self::new(system, values, (run, recording), actions, keeps);
+        let mut pass = Self::new(system, values, (run, recording), actions, tape);
         for &action in actions {
             pass.act(recording, action)?;
         }
@@ -111,14 +111,15 @@ impl<'a> Pass<'a> {
         values: &'a [f64],
         (run, recording): (usize, &Recording),
         actions: &[Action],
-        keeps: bool,
+        tape: Option<Vec<f64>>,
     ) -> Self {
         let mut pass = Self::blank(system, values, run);
-        pass.keeps = keeps;
+        pass.keeps = tape.is_some();
         pass.records.reserve(actions.len());
         let samples = recording.times().len() * pass.system.setup.channels.len();
         pass.samples.reserve(samples);
-        if keeps {
+        if let Some(tape) = tape {
+            pass.tape = tape;
             let steps = actions
                 .iter()
                 .filter(|a| matches!(a, Action::Advance(_)))

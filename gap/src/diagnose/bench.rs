@@ -23,13 +23,18 @@ pub(super) const LAG: [f64; 2] = [0.03, 500.0];
 /// Fits end where a further step promises less than this in log-likelihood, far less than what tells two
 /// hypotheses apart. Searches may begin far away, where parameters are stated, and valleys are narrow.
 const EFFORT: Effort = Effort {
-    gain: 0.02,
-    steps: 200,
+    gain: 0.05,
+    steps: 100,
 };
 /// The same over windows, where errors count by their tolerance.
 const COARSE: Effort = Effort {
     gain: 0.3,
-    steps: 40,
+    steps: 20,
+};
+/// The same for shares of a gap, of which hundredths matter.
+const SHARES: Effort = Effort {
+    gain: 0.5,
+    steps: 12,
 };
 /// The same for levels that are found anew right after.
 const ROUGHLY: Effort = Effort {
@@ -336,11 +341,11 @@ impl<'a> Bench<'a> {
         self.loosen(estimation, &mut start)?;
         let levels = Fit::quick(estimation, &start, &self.problem.levels, ROUGHLY)?.values;
         let fitted = self.fit(&[], estimation, &levels)?;
-        if fitted.fit.is_optimum() {
+        if fitted.fit.is_optimum() || self.is_over_windows() {
             return Ok(fitted);
         }
         // Far from an optimum the observed curvature leads on where the expected one does not.
-        let further = self.fit_by(Fit::of, &[], estimation, &levels);
+        let further = self.fit_by((Fit::of, self.effort()), &[], estimation, &levels);
         Ok(further.unwrap_or(fitted))
     }
 
@@ -474,12 +479,40 @@ impl<'a> Bench<'a> {
         estimation: &Estimation<'_>,
         start: &[f64],
     ) -> Result<Fitted, DiagnoseError> {
-        self.fit_by(Fit::quick, members, estimation, start)
+        self.fit_by((Fit::quick, self.effort()), members, estimation, start)
+    }
+
+    /// Fits the levels alone.
+    pub(super) fn levelled(
+        &self,
+        estimation: &Estimation<'_>,
+        start: &[f64],
+    ) -> Result<Fit, DiagnoseError> {
+        let search = (Fit::quick as Search, self.effort());
+        self.weighed(estimation, start, &self.problem.levels, search)
+    }
+
+    /// The same as well as shares of a gap need it.
+    pub(super) fn fit_roughly(
+        &self,
+        members: &[usize],
+        estimation: &Estimation<'_>,
+        start: &[f64],
+    ) -> Result<Fitted, DiagnoseError> {
+        self.fit_by((Fit::quick, SHARES), members, estimation, start)
+    }
+
+    fn effort(&self) -> Effort {
+        if self.is_over_windows() {
+            COARSE
+        } else {
+            EFFORT
+        }
     }
 
     fn fit_by(
         &self,
-        search: Search,
+        search: (Search, Effort),
         members: &[usize],
         estimation: &Estimation<'_>,
         start: &[f64],
@@ -498,22 +531,17 @@ impl<'a> Bench<'a> {
 
 impl Bench<'_> {
     /// A fit in which each row has its weight: likelihood and what is known beforehand differ by a factor only.
-    pub(super) fn weighed(
+    fn weighed(
         &self,
         estimation: &Estimation<'_>,
         start: &[f64],
         free: &[Free],
-        search: Search,
+        (search, effort): (Search, Effort),
     ) -> Result<Fit, DiagnoseError> {
         let firm = free.iter().map(|one| Free {
             prior: (one.prior).map(|[value, deviation]| [value, deviation * self.weight.sqrt()]),
             ..*one
         });
-        let effort = if self.is_over_windows() {
-            COARSE
-        } else {
-            EFFORT
-        };
         let effort = Effort {
             gain: effort.gain / self.weight,
             ..effort

@@ -6,14 +6,14 @@
 //! add up, and none depends on an order. Every model on the way is fitted to the runs to fit and judged
 //! on those held out.
 
-use appell_estimate::{Estimation, Unknown};
+use appell_estimate::Estimation;
 
 use super::DiagnoseError;
 use super::bench::Bench;
 use super::compare::Comparison;
 use super::hypothesis::Fitted;
 use super::prediction::{Errors, Paired};
-use crate::effects::{Acts, Part as Role};
+use crate::effects::Acts;
 
 /// The re-fitted parameters in the budget.
 pub(super) const REFIT: &str = "refit";
@@ -180,41 +180,51 @@ fn subset(effects: &[(String, Vec<usize>)], set: usize) -> Vec<usize> {
     members
 }
 
-/// The fit with some members of the best hypothesis; those without which it was found are there already.
+/// The fit with some members of the best hypothesis. It begins at the best one that is known without one of
+/// them, and with the sizes that they have in the whole.
 fn with(
     (bench, comparison): (&Bench<'_>, &Comparison),
     best: &Fitted,
     members: &[usize],
 ) -> Result<Fitted, DiagnoseError> {
-    let known = comparison
-        .fits
-        .iter()
-        .find(|(own, _)| own.members == members);
-    if let Some((fitted, _)) = known {
-        return Ok(fitted.clone());
+    let known = |own: &&Fitted| own.members.iter().all(|one| members.contains(one));
+    let known = comparison.fits.iter().map(|(own, _)| own).filter(known);
+    let nearest = known.max_by(|a, b| a.evidence.log().total_cmp(&b.evidence.log()));
+    let nearest = nearest.unwrap_or_else(|| comparison.nominal());
+    if nearest.members == members {
+        return Ok(nearest.clone());
     }
     let setup = bench.setup(members);
     let estimation = Estimation::new(&setup, &bench.recordings)?;
-    let layout = estimation.layout();
-    let mut start = bench.carried(best, &estimation);
-    for &absent in best
-        .members
-        .iter()
-        .filter(|member| !members.contains(member))
-    {
-        let candidate = bench.candidate(absent);
-        for (place, role) in bench.own(candidate) {
-            if role != Role::Shape {
-                start[place] = 0.0;
+    let (mut start, whole) = (
+        bench.carried(nearest, &estimation),
+        bench.carried(best, &estimation),
+    );
+    let new = members.iter().filter(|one| !nearest.members.contains(one));
+    for &member in new {
+        let brought = bench.brought(member, &setup);
+        let brought = brought
+            .iter()
+            .map(|free| estimation.layout().place(free.unknown));
+        let own = bench
+            .own(bench.candidate(member))
+            .into_iter()
+            .map(|(place, _)| Ok(place));
+        for place in brought.chain(own) {
+            let place = place?;
+            start[place] = whole[place];
+        }
+        if let Acts::Parameter(_) = bench.candidate(member).acts {
+            let index = bench
+                .effects
+                .info()
+                .parameter_index(&bench.candidate(member).site);
+            if let Some(index) = index {
+                start[index] = whole[index];
             }
         }
-        match candidate.acts {
-            Acts::Bias(channel) => start[layout.place(Unknown::Bias(channel))?] = 0.0,
-            Acts::Scale(channel) => start[layout.place(Unknown::Scale(channel))?] = 1.0,
-            _ => {}
-        }
     }
-    bench.fit(members, &estimation, &start)
+    bench.fit_roughly(members, &estimation, &start)
 }
 
 #[cfg(test)]

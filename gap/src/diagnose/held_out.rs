@@ -22,7 +22,7 @@ const PART: f64 = 0.5;
 /// the channels vary.
 const SHORTER: f64 = 0.1;
 /// Most rows of a run from which predictions start.
-const ORIGINS: usize = 150;
+const ORIGINS: usize = 75;
 
 /// The runs that were held out.
 pub(super) struct HeldOut {

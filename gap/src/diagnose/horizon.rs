@@ -30,6 +30,8 @@ const PARTS: f64 = 4.0;
 const REFUTED: f64 = 2.0 * TIED;
 /// The same for a hypothesis that others may join: what it lacks pulls at its values.
 const REFUTED_ALONE: f64 = 5.0 * TIED;
+/// The same, by one more effect, for a hypothesis that predicts no better than the nominal model.
+const REFUTED_IDLE: f64 = 3.0 * TIED;
 
 /// The hypotheses, with the bench that ranks them.
 pub(super) struct Judged<'a> {
@@ -102,23 +104,18 @@ fn one_step(
         bench,
         again: BTreeMap::new(),
     };
-    let goes_on = |fitted: &Fitted| {
-        seen.again(fitted)
-            .is_none_or(|(gain, _)| *gain < REFUTED_ALONE)
-    };
+    let goes_on = |fitted: &Fitted| !seen.refutes(fitted, nominal);
     let Some(mut comparison) = Comparison::of(bench, nominal.clone(), screen, goes_on)? else {
         return Ok((None, false));
     };
-    let of_nominal = seen.again(comparison.nominal());
-    let of_nominal = of_nominal.map(|(_, again)| again.fit.log_likelihood);
-    let Some((gain, again)) = seen.again(comparison.best()) else {
+    let of_nominal = seen.again(nominal).map(Again::log_likelihood);
+    let Some(again) = seen.again(comparison.best()) else {
         return Ok((Some(comparison), true));
     };
     if let Some(of_nominal) = of_nominal {
-        comparison.stays = over.left(again.fit.log_likelihood - of_nominal);
+        comparison.stays = over.left(again.log_likelihood() - of_nominal);
     }
-    let by_others = Screen::of(over, again).map_or(0.0, |screen| screen.most());
-    let holds = gain.max(by_others) < REFUTED;
+    let holds = again.gain.max(again.by_others) < REFUTED;
     Ok((Some(comparison), holds))
 }
 
@@ -126,16 +123,55 @@ fn one_step(
 struct Seen<'s, 'a> {
     over: &'s Bench<'a>,
     bench: &'s Bench<'a>,
-    /// By their members: what other values gain, and the hypothesis with these.
-    again: BTreeMap<Vec<usize>, Option<(f64, Fitted)>>,
+    again: BTreeMap<Vec<usize>, Option<Again>>,
+}
+
+/// A hypothesis with values that are fitted to the windows.
+struct Again {
+    fitted: Fitted,
+    /// What these values gain.
+    gain: f64,
+    /// What one more effect would gain.
+    by_others: f64,
+}
+
+impl Again {
+    fn log_likelihood(&self) -> f64 {
+        self.fitted.fit.log_likelihood
+    }
 }
 
 impl Seen<'_, '_> {
     /// Nothing where the windows lose a hypothesis: then they say nothing against it.
-    fn again(&mut self, fitted: &Fitted) -> Option<&(f64, Fitted)> {
+    fn again(&mut self, fitted: &Fitted) -> Option<&Again> {
         let again = self.again.entry(fitted.members.clone());
-        let fit = || self.over.fitted_again(self.bench, fitted).ok();
+        let fit = || {
+            let (gain, fitted) = self.over.fitted_again(self.bench, fitted).ok()?;
+            let by_others = Screen::of(self.over, &fitted).map_or(0.0, |screen| screen.most());
+            Some(Again {
+                fitted,
+                gain,
+                by_others,
+            })
+        };
         again.or_insert_with(fit).as_ref()
+    }
+
+    /// Whether it is clear before others join it that it does not hold. One effect alone may lack others; but not
+    /// one that only one step ahead shows, beside others that predict.
+    fn refutes(&mut self, fitted: &Fitted, nominal: &Fitted) -> bool {
+        let of_nominal = self.again(nominal).map(Again::log_likelihood);
+        let Some(again) = self.again(fitted) else {
+            return false;
+        };
+        let is_idle = of_nominal.is_some_and(|nominal| again.log_likelihood() <= nominal);
+        let most = match fitted.members.len() {
+            0 => f64::INFINITY,
+            _ if is_idle => REFUTED_IDLE,
+            1 => f64::INFINITY,
+            _ => REFUTED_ALONE,
+        };
+        again.gain >= REFUTED_ALONE || again.by_others >= most
     }
 }
 

@@ -1,7 +1,7 @@
 //! A bench of windows: nothing follows what the model lacks, noise is what it leaves, and small differences do not
 //! count.
 
-use appell_estimate::{Estimation, Fit, Free, Unknown};
+use appell_estimate::{Estimation, Free, Unknown};
 
 use super::DiagnoseError;
 use super::bench::Bench;
@@ -103,7 +103,7 @@ impl Bench<'_> {
         begin(&estimation, &mut values)?;
         self.hide(&fitted.members, &estimation, &mut values)?;
         self.loosen(&estimation, &mut values)?;
-        let fit = self.weighed(&estimation, &values, &self.problem.levels, Fit::quick)?;
+        let fit = self.levelled(&estimation, &values)?;
         Ok(Fitted {
             members: fitted.members.clone(),
             layout,

@@ -23,7 +23,7 @@ const DAMPED: [f64; 2] = [2e-5, 1e6];
 /// Predicted gain, in units of [`Effort::gain`], that may remain when no step succeeds.
 const FLAT: f64 = 10.0;
 /// Number of steps that together must gain more than [`Effort::gain`].
-const LAST: usize = 6;
+const LAST: usize = 4;
 /// Change of the logarithm of a level up to which its information is reused.
 const NEAR: f64 = 0.3;
 
@@ -83,11 +83,10 @@ impl Fit {
             let next = (gain > 0.0)
                 .then(|| posterior.bettered(&point, &step, SUFFICIENT_DECREASE * gain))
                 .flatten();
-            gained.rotate_left(1);
-            gained[LAST - 1] = 0.0;
             match next {
                 Some(next) => {
                     let kept = next.objective - point.objective;
+                    gained.rotate_left(1);
                     gained[LAST - 1] = kept;
                     if kept > LESS.1 * gain {
                         damping /= LESS.0;

@@ -24,7 +24,7 @@ pub(super) const LAG: [f64; 2] = [0.03, 500.0];
 /// hypotheses apart. Searches may begin far away, where parameters are stated, and valleys are narrow.
 const EFFORT: Effort = Effort {
     gain: 0.05,
-    steps: 100,
+    steps: 60,
 };
 /// The same over windows, where errors count by their tolerance.
 const COARSE: Effort = Effort {

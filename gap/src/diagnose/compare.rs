@@ -44,6 +44,16 @@ const MUCH: f64 = 20.0;
 /// Signatures that are this much alike are those of one effect in two guises.
 const ALIKE: f64 = 0.8;
 
+/// What is seen elsewhere of a hypothesis.
+pub(super) enum Look {
+    /// It holds, as far as it goes.
+    Holds,
+    /// It lacks a candidate to hold.
+    Lacks(usize),
+    /// It does not hold.
+    Refuted,
+}
+
 /// Hypotheses with their probabilities.
 #[derive(Debug, Clone)]
 pub(super) struct Comparison {
@@ -138,12 +148,12 @@ impl Comparison {
         Ok(())
     }
 
-    /// `goes_on` is asked about the best hypothesis before others are tried; nothing where it says no.
+    /// `look` is asked about the best hypothesis before others are tried; nothing where that is refuted.
     pub(super) fn of(
         bench: &Bench<'_>,
         nominal: Fitted,
         screen: &Screen,
-        mut goes_on: impl FnMut(&Fitted) -> bool,
+        mut look: impl FnMut(&Fitted) -> Look,
     ) -> Result<Option<Self>, DiagnoseError> {
         let mut search = Search {
             bench,
@@ -153,12 +163,7 @@ impl Comparison {
         };
         for (place, screened) in kept(bench, screen, &[], KEPT).iter().enumerate() {
             // The nominal model alone may be wrong; the best of the first ones may not be far off.
-            let first = if place == FIRST {
-                search.best_of(1)
-            } else {
-                None
-            };
-            if first.is_some_and(|first| !goes_on(&search.fits[first])) {
+            if place == FIRST && !search.goes_on(1, &mut look)? {
                 return Ok(None);
             }
             search.join(0, screened);
@@ -167,8 +172,7 @@ impl Comparison {
             if !search.betters(members) {
                 break;
             }
-            let best = search.best_of(members);
-            if best.is_some_and(|best| !goes_on(&search.fits[best])) {
+            if !search.goes_on(members, &mut look)? {
                 return Ok(None);
             }
             for base in search.bases(members) {
@@ -223,6 +227,35 @@ struct Search<'b, 'a> {
 }
 
 impl Search<'_, '_> {
+    /// Whether the best hypothesis with so many members holds, or does with what it lacks.
+    fn goes_on(
+        &mut self,
+        members: usize,
+        look: &mut impl FnMut(&Fitted) -> Look,
+    ) -> Result<bool, DiagnoseError> {
+        let Some(best) = self.best_of(members) else {
+            return Ok(true);
+        };
+        let lacks = match look(&self.fits[best]) {
+            Look::Holds => return Ok(true),
+            Look::Refuted => return Ok(false),
+            Look::Lacks(candidate) => candidate,
+        };
+        let screen = Screen::of(self.bench, &self.fits[best])?;
+        let of_other = |one: &&Screened| one.candidate == lacks;
+        let Some(other) = screen.list.iter().find(of_other) else {
+            return Ok(false);
+        };
+        let mut members = self.fits[best].members.clone();
+        members.push(lacks);
+        members.sort_unstable();
+        let both = |search: &Self| search.fits.iter().position(|own| own.members == members);
+        if both(self).is_none() {
+            self.join(best, other);
+        }
+        Ok(both(self).is_some_and(|both| matches!(look(&self.fits[both]), Look::Holds)))
+    }
+
     /// Fits a candidate beside the members of a hypothesis.
     fn join(&mut self, to: usize, screened: &Screened) {
         let mut members = self.fits[to].members.clone();

@@ -11,7 +11,7 @@ use std::f64::consts::PI;
 
 use super::DiagnoseError;
 use super::bench::Bench;
-use super::compare::{Comparison, TIED};
+use super::compare::{Comparison, Look, TIED};
 use super::hypothesis::Fitted;
 use super::scales::rates;
 use super::screen::Screen;
@@ -30,7 +30,9 @@ const PARTS: f64 = 4.0;
 const REFUTED: f64 = 2.0 * TIED;
 /// The same for a hypothesis that others may join: what it lacks pulls at its values.
 const REFUTED_ALONE: f64 = 5.0 * TIED;
-/// The same, by one more effect, for a hypothesis that predicts no better than the nominal model.
+/// The same, by one more effect, for a hypothesis that hardly predicts better than the nominal model: it gains no
+/// more than this part of it.
+const IDLE: f64 = 0.2;
 const REFUTED_IDLE: f64 = 3.0 * TIED;
 
 /// The hypotheses, with the bench that ranks them.
@@ -73,7 +75,7 @@ pub(super) fn judged<'a>(
     // One step has to do too where no simulation follows the recordings.
     let comparison = match stepwise {
         Some(stepwise) => Some(stepwise),
-        None => Comparison::of(&bench, nominal, &screen, |_| true)?,
+        None => Comparison::of(&bench, nominal, &screen, |_| Look::Holds)?,
     };
     let mut comparison = comparison.ok_or(DiagnoseError::NothingToFit)?;
     stage("looking for what no effect explains");
@@ -89,7 +91,7 @@ pub(super) fn judged<'a>(
 fn simulated(over: &Bench<'_>) -> Result<(Screen, Comparison), DiagnoseError> {
     let nominal = over.nominal()?;
     let screen = Screen::of(over, &nominal)?;
-    let comparison = Comparison::of(over, nominal, &screen, |_| true)?;
+    let comparison = Comparison::of(over, nominal, &screen, |_| Look::Holds)?;
     Ok((screen, comparison.ok_or(DiagnoseError::NothingToFit)?))
 }
 
@@ -104,8 +106,8 @@ fn one_step(
         bench,
         again: BTreeMap::new(),
     };
-    let goes_on = |fitted: &Fitted| !seen.refutes(fitted, nominal);
-    let Some(mut comparison) = Comparison::of(bench, nominal.clone(), screen, goes_on)? else {
+    let look = |fitted: &Fitted| seen.look(fitted, nominal);
+    let Some(mut comparison) = Comparison::of(bench, nominal.clone(), screen, look)? else {
         return Ok((None, false));
     };
     let of_nominal = seen.again(nominal).map(Again::log_likelihood);
@@ -131,8 +133,9 @@ struct Again {
     fitted: Fitted,
     /// What these values gain.
     gain: f64,
-    /// What one more effect would gain.
+    /// What one more effect would gain, and which.
     by_others: f64,
+    other: Option<usize>,
 }
 
 impl Again {
@@ -147,31 +150,37 @@ impl Seen<'_, '_> {
         let again = self.again.entry(fitted.members.clone());
         let fit = || {
             let (gain, fitted) = self.over.fitted_again(self.bench, fitted).ok()?;
-            let by_others = Screen::of(self.over, &fitted).map_or(0.0, |screen| screen.most());
+            let screen = Screen::of(self.over, &fitted).ok();
+            let other = screen.as_ref().and_then(|screen| screen.list.first());
             Some(Again {
-                fitted,
                 gain,
-                by_others,
+                by_others: other.map_or(0.0, |other| other.gain),
+                other: other.map(|other| other.candidate),
+                fitted,
             })
         };
         again.or_insert_with(fit).as_ref()
     }
 
-    /// Whether it is clear before others join it that it does not hold. One effect alone may lack others; but not
-    /// one that only one step ahead shows, beside others that predict.
-    fn refutes(&mut self, fitted: &Fitted, nominal: &Fitted) -> bool {
+    /// What windows say of a hypothesis before others join it. One effect alone may lack others; but not one that
+    /// shows only one step ahead, beside others that predict.
+    fn look(&mut self, fitted: &Fitted, nominal: &Fitted) -> Look {
         let of_nominal = self.again(nominal).map(Again::log_likelihood);
         let Some(again) = self.again(fitted) else {
-            return false;
+            return Look::Holds;
         };
-        let is_idle = of_nominal.is_some_and(|nominal| again.log_likelihood() <= nominal);
-        let most = match fitted.members.len() {
-            0 => f64::INFINITY,
-            _ if is_idle => REFUTED_IDLE,
-            1 => f64::INFINITY,
-            _ => REFUTED_ALONE,
-        };
-        again.gain >= REFUTED_ALONE || again.by_others >= most
+        let gain = of_nominal.map(|nominal| again.log_likelihood() - nominal);
+        let is_idle = gain.is_some_and(|gain| gain < IDLE * again.by_others);
+        let refutes = |by_others: f64| again.gain >= REFUTED_ALONE || again.by_others >= by_others;
+        match (fitted.members.len(), again.other) {
+            (0, _) if !refutes(f64::INFINITY) => Look::Holds,
+            (1, Some(other)) if is_idle && !refutes(f64::INFINITY) && refutes(REFUTED_IDLE) => {
+                Look::Lacks(other)
+            }
+            (1, _) if !refutes(f64::INFINITY) => Look::Holds,
+            (2.., _) if !refutes(if is_idle { REFUTED_IDLE } else { REFUTED_ALONE }) => Look::Holds,
+            _ => Look::Refuted,
+        }
     }
 }
 

@@ -86,7 +86,8 @@ impl Estimation<'_> {
                 }
         });
         let columns = directions.len() + candidates;
-        let mut all: Vec<(usize, Innovation, Vec<f64>)> = Vec::new();
+        let mut samples: Vec<(usize, Innovation)> = Vec::new();
+        let mut rows: Vec<f64> = Vec::new();
         for run in 0..self.recordings().len() {
             let actions = self.actions(run, values);
             let pass = self.fresh(run, values, &actions);
@@ -94,23 +95,35 @@ impl Estimation<'_> {
             for &action in &actions {
                 forward.act(action)?;
             }
-            let rows = forward.rows.chunks_exact(columns.max(1));
-            let samples = forward.pass.samples.iter();
-            all.extend(
-                samples
-                    .zip(rows)
-                    .map(|(sample, row)| (run, sample.innovation, row.to_vec())),
-            );
+            let own = forward.pass.samples.iter();
+            samples.extend(own.map(|sample| (run, sample.innovation)));
+            rows.append(&mut forward.rows);
         }
-        all.sort_by_key(|(run, sample, _)| (*run, sample.row, sample.channel));
-        let slopes = DMatrix::from_fn(all.len(), columns, |row, column| all[row].2[column]);
+        let mut order: Vec<usize> = (0..samples.len()).collect();
+        order.sort_by_key(|&place| {
+            let (run, sample) = &samples[place];
+            (*run, sample.row, sample.channel)
+        });
         Ok(Tangent {
-            samples: (all.into_iter())
-                .map(|(run, innovation, _)| (run, innovation))
-                .collect(),
-            slopes,
+            samples: order.iter().map(|&place| samples[place]).collect(),
+            slopes: by_columns(&rows, columns, &order),
         })
     }
+}
+
+/// Rows in a certain order as a matrix: block by block, since it lies in memory by columns.
+fn by_columns(rows: &[f64], columns: usize, order: &[usize]) -> DMatrix<f64> {
+    const BLOCK: usize = 32;
+    let mut matrix = DMatrix::zeros(order.len(), columns);
+    for (block, order) in order.chunks(BLOCK).enumerate() {
+        for column in 0..columns {
+            let mut entries = matrix.view_mut((block * BLOCK, column), (order.len(), 1));
+            for (entry, &row) in entries.iter_mut().zip(order) {
+                *entry = rows[row * columns + column];
+            }
+        }
+    }
+    matrix
 }
 
 /// Derivatives of the state along a run.

@@ -191,11 +191,6 @@ fn orthogonal(columns: &DMatrix<f64>) -> DMatrix<f64> {
 }
 
 impl Screen {
-    /// The greatest gain.
-    pub(super) fn most(&self) -> f64 {
-        self.list.first().map_or(0.0, |one| one.gain)
-    }
-
     /// About a fit, of all candidates that it does not have.
     pub(super) fn of(bench: &Bench<'_>, fitted: &Fitted) -> Result<Self, DiagnoseError> {
         let setup = bench.whole_setup(&fitted.members);

@@ -18,8 +18,8 @@ pub(super) const WAVES: usize = 24;
 const FINE: usize = 64;
 /// Waves of the time: what walks changes slowly.
 const SLOW: usize = 4;
-/// Waves of a rate that are multiplied with a load.
-const LOADED: usize = 8;
+/// Waves of a rate that are multiplied with a load or the time: what changes so is smooth.
+const MULTIPLIED: usize = 8;
 /// Range of a rate in typical rates.
 const REACH: f64 = 2.5;
 
@@ -192,7 +192,7 @@ impl<'b> Dependence<'b> {
     pub(super) fn waves(self, along: Along) -> usize {
         match (self.source, self.factor, along) {
             (Source::Time, ..) => SLOW,
-            (_, Factor::Load(_), _) => LOADED,
+            (_, Factor::Load(_) | Factor::Time, _) => MULTIPLIED,
             (_, _, Along::Disturbances) if self.is_position => FINE,
             _ => WAVES,
         }

@@ -46,6 +46,7 @@ pub fn json(report: &Report, next: Option<&Path>, findings: &[String]) -> Value 
             "closed_ci95": far.closed_ci95, "closed_vs_refitted": far.closed_vs_refitted,
             "budget": far.budget.iter().map(|part| json!({
                 "effect": part.name, "closed": part.closed, "interval": part.interval,
+                "material": part.is_material,
             })).collect::<Vec<_>>(),
             "runs": far.runs, "horizons": report.horizons.iter().map(ahead).collect::<Vec<_>>(),
         })

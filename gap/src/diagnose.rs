@@ -99,6 +99,8 @@ pub struct Options {
     pub alternatives: Vec<Spec>,
     /// Horizon in s at which the gap is reported; by default 1 s, or what the runs allow.
     pub horizon: Option<f64>,
+    /// Part of what re-fitted parameters leave of the gap below which an effect names no cause; by default 0.02.
+    pub tolerance: Option<f64>,
     /// Names of effects that the spec has already, and that are no hypotheses.
     pub present: Vec<String>,
 }
@@ -108,13 +110,8 @@ pub fn diagnose(
     set: &DataSet,
     effects: &[Effect],
     options: &Options,
-    mut stage0: impl FnMut(&'static str),
+    mut stage: impl FnMut(&'static str),
 ) -> Result<Report, DiagnoseError> {
-    let t0 = std::time::Instant::now();
-    let mut stage = |name: &'static str| {
-        eprintln!("== {:.3} {name}", t0.elapsed().as_secs_f64());
-        stage0(name)
-    };
     stage("deriving the mechanism with all effects");
     let whole = set.only(Part::Fit);
     let fitted = whole.stretches(MOST_ROWS);
@@ -144,10 +141,14 @@ pub fn diagnose(
     let test = set.only(Part::Test);
     // A law that cannot be written is none.
     let lawful = law::lawful(&bench, &comparison).unwrap_or(None);
-    let measured = lawful.as_ref().map(|lawful| lawful.fitted(&bench, &test));
+    let held_out = HeldOut::of(&test, &bench)?;
+    let measured = lawful.as_ref().map(|lawful| {
+        let law = lawful.fitted(&bench, &test)?;
+        law.predicts((&bench, &comparison), &held_out, options)?;
+        Ok(law)
+    });
     let measured = report.measured(measured)?;
     stage("predicting the runs that were held out");
-    let held_out = HeldOut::of(&test, &bench)?;
     let leading = rivals
         .iter()
         .find(|rival| report.which[0].effects == [rival.name.clone()]);
@@ -181,7 +182,7 @@ pub fn diagnose(
         _ => best,
     };
     let judged = (&bench, &comparison, &leader);
-    let how_far = held_out.how_far(judged, options.horizon)?;
+    let how_far = held_out.how_far(judged, options)?;
     report.verdict = report
         .verdict
         .after(&report.which, how_far.as_ref(), bench.is_over_windows());

@@ -63,6 +63,9 @@ pub(crate) struct Diagnose {
     /// allow]
     #[arg(long, value_name = "S")]
     horizon_s: Option<f64>,
+    /// Part of the gap, after parameters are re-fitted, below which an effect names no cause [default: 0.02]
+    #[arg(long, value_name = "PART", value_parser = part)]
+    tolerance: Option<f64>,
     /// Folder for the reports of several rigs; rigs whose report is there and whose data have not changed
     /// are not diagnosed again [default: gap-reports]
     #[arg(long, value_name = "DIR")]
@@ -101,6 +104,12 @@ impl FromStr for Span {
     }
 }
 
+/// A part of one.
+fn part(text: &str) -> Result<f64, String> {
+    let part = text.parse().ok().filter(|part| (0.0..1.0).contains(part));
+    part.ok_or_else(|| "write a part of one, such as 0.02".to_owned())
+}
+
 impl Diagnose {
     pub(super) fn run(&self) -> Result<(), Error> {
         if self.data.len() > 1 && self.data.iter().all(|path| path.is_dir()) {
@@ -120,6 +129,7 @@ impl Diagnose {
             limits: self.limits(&set)?,
             alternatives: self.alternatives()?,
             horizon: self.horizon()?,
+            tolerance: self.tolerance,
             present: Vec::new(),
         };
         let stage = |stage| spinner.set_message(stage);
@@ -173,6 +183,7 @@ impl Diagnose {
             ("--html", self.html.is_some()),
             ("--experiment", self.experiment.is_some()),
             ("--horizon-s", self.horizon_s.is_some()),
+            ("--tolerance", self.tolerance.is_some()),
             ("--against", !self.against.is_empty()),
             ("--limit", !self.limit.is_empty()),
             ("--alternative", !self.alternative.is_empty()),

@@ -31,17 +31,15 @@ pub struct Part {
     pub closed: f64,
     /// Its interval of 95 %, over blocks of time.
     pub interval: [f64; 2],
+    /// Whether it is large enough to name a cause: beyond the tolerance, as a part of what re-fitted
+    /// parameters leave.
+    pub is_material: bool,
 }
 
-/// Part of the gap below which nothing names its cause.
+/// Part of what re-fitted parameters leave of the gap below which nothing names its cause.
 pub(super) const IMMATERIAL: f64 = 0.02;
 
 impl Part {
-    /// Whether it is large enough to name a cause.
-    pub fn is_material(&self) -> bool {
-        self.closed > IMMATERIAL
-    }
-
     /// Whether it is that of the re-fitted parameters.
     pub fn is_refit(&self) -> bool {
         self.name == REFIT
@@ -70,6 +68,8 @@ pub(super) struct Ends<'e> {
     pub(super) law: Option<&'e Errors>,
     /// Where everything is right.
     pub(super) floor: f64,
+    /// Part of what the re-fitted model leaves beyond which a part is material.
+    pub(super) tolerance: f64,
 }
 
 /// The parts of a hypothesis, and of the law that was measured beside it.
@@ -101,11 +101,15 @@ pub(super) fn of(
     let paired = Paired::of(&models);
     let gap = |means: &[f64]| means[0] - floor * floor;
     let mut parts = Vec::new();
+    let means = paired.means();
+    let left = (means[1] - floor * floor) / gap(&means);
     let mut add = |name: String, share: &dyn Fn(&[f64]) -> f64| {
+        let closed = share(&means);
         parts.push(Part {
             name,
-            closed: share(&paired.means()),
+            closed,
             interval: paired.interval95(share),
+            is_material: closed > ends.tolerance * left,
         });
     };
     add(REFIT.to_owned(), &|means| {
@@ -128,12 +132,20 @@ pub(super) fn of(
 }
 
 /// The parts where another model leads: means of the stated model, the re-fitted one and the other.
-pub(super) fn of_alternative(name: &str, paired: &Paired, floor: f64) -> Vec<Part> {
+pub(super) fn of_alternative(
+    name: &str,
+    paired: &Paired,
+    (floor, tolerance): (f64, f64),
+) -> Vec<Part> {
     let gap = move |means: &[f64]| means[0] - floor * floor;
-    let part = |name: &str, share: &dyn Fn(&[f64]) -> f64| Part {
-        name: name.to_owned(),
-        closed: share(&paired.means()),
-        interval: paired.interval95(share),
+    let part = |name: &str, share: &dyn Fn(&[f64]) -> f64| {
+        let closed = share(&paired.means());
+        Part {
+            name: name.to_owned(),
+            closed,
+            interval: paired.interval95(share),
+            is_material: closed > tolerance,
+        }
     };
     vec![
         part(name, &|means| (means[0] - means[2]) / gap(means)),

@@ -148,6 +148,19 @@ impl Comparison {
         Ok(())
     }
 
+    /// What hardly shows in a simulation names no cause: `again` is the best hypothesis over windows.
+    pub(super) fn bear_out_unknown(
+        &mut self,
+        over: &Bench<'_>,
+        again: &Fitted,
+    ) -> Result<(), DiagnoseError> {
+        let gain = leftover(over, again)?.map_or(0.0, |left| left.first.gain);
+        let share = self.stays * (1.0 - over.left(gain));
+        let odds = self.unknown / (1.0 - self.unknown) * (share / IMMATERIAL).min(1.0);
+        self.unknown = odds / (1.0 + odds);
+        Ok(())
+    }
+
     /// `look` is asked about the best hypothesis before others are tried; nothing where that is refuted.
     pub(super) fn of(
         bench: &Bench<'_>,

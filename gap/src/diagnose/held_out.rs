@@ -6,8 +6,9 @@
 use appell_estimate::Recording;
 
 use super::DiagnoseError;
+use super::Options;
 use super::bench::Bench;
-use super::budget::{self, Ends};
+use super::budget::{self, Ends, IMMATERIAL};
 use super::compare::Comparison;
 use super::hypothesis::Fitted;
 use super::law::FittedLaw;
@@ -70,14 +71,15 @@ impl HeldOut {
     pub(super) fn how_far(
         &self,
         (bench, comparison, leader): (&Bench<'_>, &Comparison, &Leader<'_>),
-        asked: Option<f64>,
+        options: &Options,
     ) -> Result<Option<HowFar>, DiagnoseError> {
         if self.recordings.is_empty() {
             return Ok(None);
         }
         let refitted = comparison.nominal();
         let noise = noise(bench, comparison.best())?;
-        let mut horizon = asked.unwrap_or_else(|| self.horizon());
+        let mut horizon = options.horizon.unwrap_or_else(|| self.horizon());
+        let tolerance = options.tolerance.unwrap_or(IMMATERIAL);
         let mut floor = leader.floor(horizon)?;
         let expected = if leader.bench.is_over_windows() {
             leader.errors(horizon)?.mean().sqrt()
@@ -86,7 +88,7 @@ impl HeldOut {
         };
         let is_lost =
             expected.is_nan() || expected > spread(&leader.runs.recordings, &leader.noise);
-        if asked.is_none() && is_lost {
+        if options.horizon.is_none() && is_lost {
             horizon *= SHORTER;
             floor = leader.floor(horizon)?;
         }
@@ -97,7 +99,7 @@ impl HeldOut {
         let closed = |from: f64, to: f64| (from - to) / (from - floor * floor);
         let means = paired.means();
         let budget = if let Some(name) = leader.alternative {
-            budget::of_alternative(name, &paired, floor)
+            budget::of_alternative(name, &paired, (floor, tolerance))
         } else {
             let (best, law) = match leader.law {
                 Some(law) => {
@@ -114,6 +116,7 @@ impl HeldOut {
                 effects: &effects,
                 law: law.as_ref(),
                 floor,
+                tolerance,
             };
             budget::of((bench, comparison), best, &ends, errors)?
         };
@@ -133,7 +136,7 @@ impl HeldOut {
     }
 
     /// The horizon in s that these runs allow.
-    fn horizon(&self) -> f64 {
+    pub(super) fn horizon(&self) -> f64 {
         let durations = self.recordings.iter().map(|run| {
             let times = run.times();
             times[times.len() - 1] - times[0]

@@ -48,8 +48,8 @@ pub(super) fn judged<'a>(
     over: Bench<'a>,
     stage: &mut impl FnMut(&'static str),
 ) -> Result<Judged<'a>, DiagnoseError> {
-    let (stepwise, holds) = one_step(&over, (&bench, &nominal, &screen))?;
-    let of_windows = if holds {
+    let (stepwise, again) = one_step(&over, (&bench, &nominal, &screen))?;
+    let of_windows = if again.is_some() {
         None
     } else {
         stage("fitting simulations over windows");
@@ -80,6 +80,9 @@ pub(super) fn judged<'a>(
     let mut comparison = comparison.ok_or(DiagnoseError::NothingToFit)?;
     stage("looking for what no effect explains");
     comparison.weigh_unknown(&bench)?;
+    if let Some(Some(again)) = again.filter(|_| comparison.leads_unknown()) {
+        comparison.bear_out_unknown(&over, &again)?;
+    }
     Ok(Judged {
         bench,
         screen,
@@ -95,12 +98,12 @@ fn simulated(over: &Bench<'_>) -> Result<(Screen, Comparison), DiagnoseError> {
     Ok((screen, comparison.ok_or(DiagnoseError::NothingToFit)?))
 }
 
-/// The hypotheses by one-step predictions, nothing where the windows refute them early on; and whether the windows
-/// bear them out. They do not where the disturbance follows what the model lacks.
+/// The hypotheses by one-step predictions, nothing where the windows refute them early on; and the best one with values
+/// of the windows, where these bear it out. They do not where the disturbance follows what the model lacks.
 fn one_step(
     over: &Bench<'_>,
     (bench, nominal, screen): (&Bench<'_>, &Fitted, &Screen),
-) -> Result<(Option<Comparison>, bool), DiagnoseError> {
+) -> Result<(Option<Comparison>, Option<Option<Fitted>>), DiagnoseError> {
     let mut seen = Seen {
         over,
         bench,
@@ -108,17 +111,17 @@ fn one_step(
     };
     let look = |fitted: &Fitted| seen.look(fitted, nominal);
     let Some(mut comparison) = Comparison::of(bench, nominal.clone(), screen, look)? else {
-        return Ok((None, false));
+        return Ok((None, None));
     };
     let of_nominal = seen.again(nominal).map(Again::log_likelihood);
     let Some(again) = seen.again(comparison.best()) else {
-        return Ok((Some(comparison), true));
+        return Ok((Some(comparison), Some(None)));
     };
     if let Some(of_nominal) = of_nominal {
         comparison.stays = over.left(again.log_likelihood() - of_nominal);
     }
     let holds = again.gain.max(again.by_others) < REFUTED;
-    Ok((Some(comparison), holds))
+    Ok((Some(comparison), holds.then(|| Some(again.fitted.clone()))))
 }
 
 /// Hypotheses of one-step predictions, as windows see them.

@@ -24,8 +24,10 @@ const WARM_UP: f64 = 0.5;
 const MORE: usize = 6;
 /// Draws of the bootstrap.
 const DRAWS: usize = 1000;
-/// Length of a block in s.
-const BLOCK: f64 = 2.0;
+/// Length of a block in horizons: errors over one overlap.
+const BLOCK: f64 = 1.0;
+/// The same in s for predictions of one step and of whole runs.
+const BLOCK_S: f64 = 2.0;
 
 /// Sums of squared errors with their counts, by run and block.
 #[derive(Debug, Clone, Default)]
@@ -123,6 +125,11 @@ pub(super) fn errors(
     let estimation = Estimation::new(&setup, recordings)?;
     let values = taken_over(bench, fitted, &estimation)?;
     let mut errors = Errors::default();
+    let length = if horizon > 0.0 && horizon.is_finite() {
+        BLOCK * horizon
+    } else {
+        BLOCK_S
+    };
     for (run, recording) in recordings.iter().enumerate() {
         let mut origins = origins(recording, most);
         if horizon.is_infinite() {
@@ -132,7 +139,7 @@ pub(super) fn errors(
             if noise[one.channel].is_infinite() {
                 continue;
             }
-            let block = (recording.times()[one.origin] - recording.times()[0]) / BLOCK;
+            let block = (recording.times()[one.origin] - recording.times()[0]) / length;
             // A count of blocks in memory.
             #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
             let block = block as usize;

@@ -18,7 +18,7 @@ pub fn divided(report: &Report) -> Option<String> {
         format!("{} [{low}, {high}]", percent(part.closed))
     };
     let parts = parts.into_iter().map(|part| {
-        let small = if part.is_material() {
+        let small = if part.is_material {
             ""
         } else {
             " (immaterial)"
@@ -57,7 +57,7 @@ pub(super) fn budget(far: &HowFar) -> Markup {
             bar(part.closed.clamp(0.0, 1.0)),
             html! {
                 (percent(part.closed)) " [" (low) ", " (high) "]"
-                @if effect && !part.is_material() { span class="faint" { " immaterial" } }
+                @if effect && !part.is_material { span class="faint" { " immaterial" } }
             },
         ]
     });

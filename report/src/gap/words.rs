@@ -2,6 +2,8 @@
 
 use appell_gap::diagnose::{Change, GapVerdict, Hint, Hypothesis, Report, Share};
 
+use super::numbers::percent;
+
 /// The verdict in one sentence.
 pub fn sentence(report: &Report) -> String {
     let about: Vec<&str> = report
@@ -14,48 +16,83 @@ pub fn sentence(report: &Report) -> String {
     }
     match report.verdict {
         GapVerdict::NoGap => "no gap beyond measurement and process noise".to_owned(),
-        GapVerdict::Explained => format!("the gap is explained by {}", about.join(" and ")),
+        GapVerdict::Explained => match shares(report) {
+            Some(shares) => shares,
+            None => format!("the gap is explained by {}", about.join(" and ")),
+        },
         GapVerdict::Ambiguous => {
-            let first = leading(report);
-            format!(
-                "there is a gap; {} {} it best ({:.0} %), but {} cannot be ruled out",
-                about.join(" and "),
-                if about.len() > 1 { "explain" } else { "explains" },
-                first.map_or(0.0, |first| 100.0 * first.probability),
-                rivals(report).join(", ")
-            )
+            let percent = leading(report).map_or(0.0, |first| 100.0 * first.probability);
+            let best = match shares(report) {
+                Some(shares) => format!("{shares} (probability {percent:.0} %)"),
+                None => format!(
+                    "there is a gap; {} {} it best ({percent:.0} %)",
+                    about.join(" and "),
+                    if about.len() > 1 { "explain" } else { "explains" },
+                ),
+            };
+            format!("{best}; {} cannot be ruled out", rivals(report).join(", "))
         }
         GapVerdict::Unexplained if report.how_far.as_ref().is_some_and(|far| far.is_worse) => {
             "there is a gap; what fits the recordings best makes predictions worse and explains nothing"
                 .to_owned()
         }
-        GapVerdict::Unexplained if names_effects(report) => format!(
-            "there is a gap; {} explains a part of it, most stays",
-            about.join(" and ")
-        ),
+        GapVerdict::Unexplained if names_effects(report) => match shares(report) {
+            Some(shares) => format!("most of the gap stays: {shares}"),
+            None => format!(
+                "there is a gap; {} explains a part of it, most stays",
+                about.join(" and ")
+            ),
+        },
         GapVerdict::Unexplained => {
             let left = report.left.as_ref().map(|left| format!(": {}", left.about));
             let left = left.unwrap_or_default();
-            let beside = beside_law(report);
-            if beside.is_empty() {
-                return format!("there is a gap that no effect of the library explains{left}");
+            match shares(report) {
+                Some(shares) => format!("{shares}; no effect of the library explains the rest{left}"),
+                None => format!("there is a gap that no effect of the library explains{left}"),
             }
-            let beside = beside.join(" and ");
-            format!("there is a gap: {beside}, and what no effect of the library explains{left}")
         }
     }
 }
 
-/// Effects in words beside which a law was measured, where they matter.
-fn beside_law(report: &Report) -> Vec<&str> {
-    let budget = report.how_far.iter().flat_map(|far| &far.budget);
-    let parts = budget.filter(|part| report.law.is_some() && part.is_material());
-    let about = |part: &Share| {
+/// What the material effects close of the gap, the largest share first, and what stays.
+fn shares(report: &Report) -> Option<String> {
+    let budget = &report.how_far.as_ref()?.budget;
+    let told = |part: &&Share| !(part.is_refit() || part.is_law() || part.is_rest());
+    let mut effects: Vec<&Share> = (budget.iter().filter(told))
+        .filter(|part| part.is_material)
+        .collect();
+    effects.sort_by(|a, b| b.closed.total_cmp(&a.closed));
+    let about = |part: &&Share| {
         let mut found = report.found.iter();
         let found = found.find(|found| found.effect == part.name);
-        found.map(|found| found.about.as_str())
+        found.map_or_else(|| part.name.clone(), |found| found.about.clone())
     };
-    parts.filter_map(about).collect()
+    let names: Vec<String> = effects.iter().map(about).collect();
+    let mut text = match effects.as_slice() {
+        [] => return None,
+        [one] => {
+            let [low, high] = one.interval.map(percent);
+            let closed = percent(one.closed);
+            format!("{} closes {closed} of the gap [{low}, {high}]", names[0])
+        }
+        several => {
+            let sum: f64 = several.iter().map(|part| part.closed).sum();
+            let each: Vec<String> = several.iter().map(|part| percent(part.closed)).collect();
+            let (names, each) = (names.join(" and "), each.join(", "));
+            format!("{names} close {} of the gap ({each})", percent(sum))
+        }
+    };
+    for part in budget {
+        let closed = percent(part.closed);
+        if part.is_refit() && part.is_material {
+            text += &format!(", re-fitted parameters {closed}");
+        } else if part.is_law() {
+            text += &format!(", the measured law {closed}");
+        } else if part.is_rest() {
+            text += &format!("; {closed} stays");
+        }
+    }
+    Some(text)
 }
 
 /// What the recordings before told: effects that the model has now, and how many parameters.

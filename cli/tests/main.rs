@@ -26,6 +26,7 @@ mod law;
 mod motion;
 mod other_mechanisms;
 mod picture;
+mod planted;
 mod recording;
 mod reproduce;
 mod simulate;

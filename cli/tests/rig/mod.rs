@@ -35,10 +35,15 @@ const STEPS: u32 = 10;
 
 /// Noise of variance 1, the same in every recording of this rig: what is found near a threshold depends on
 /// it. The sum of twelve uniform numbers (P. L'Ecuyer's 64-bit congruences).
-struct Noise(u64);
+pub(crate) struct Noise(u64);
 
 impl Noise {
-    fn uniform(&mut self) -> f64 {
+    pub(crate) fn seeded(seed: u64) -> Self {
+        Self(seed)
+    }
+
+    /// Between zero and one.
+    pub(crate) fn uniform(&mut self) -> f64 {
         self.0 = self
             .0
             .wrapping_mul(6_364_136_223_846_793_005)
@@ -46,7 +51,7 @@ impl Noise {
         (self.0 >> 11) as f64 / (1_u64 << 53) as f64
     }
 
-    fn next(&mut self) -> f64 {
+    pub(crate) fn next(&mut self) -> f64 {
         (0..12).map(|_| self.uniform()).sum::<f64>() - 6.0
     }
 }

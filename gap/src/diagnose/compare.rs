@@ -161,10 +161,11 @@ impl Comparison {
         Ok(())
     }
 
-    /// `look` is asked about the best hypothesis before others are tried; nothing where that is refuted.
+    /// From the nominal model and what else is known. `look` is asked about the best hypothesis before others are
+    /// tried; nothing where that is refuted.
     pub(super) fn of(
         bench: &Bench<'_>,
-        nominal: Fitted,
+        (nominal, known): (Fitted, Vec<Fitted>),
         screen: &Screen,
         mut look: impl FnMut(&Fitted) -> Look,
     ) -> Result<Option<Self>, DiagnoseError> {
@@ -174,6 +175,9 @@ impl Comparison {
             failed: Vec::new(),
             settled: BTreeSet::new(),
         };
+        for fitted in known {
+            search.keep(fitted);
+        }
         for (place, screened) in kept(bench, screen, &[], KEPT).iter().enumerate() {
             // The nominal model alone may be wrong; the best of the first ones may not be far off.
             if place == FIRST && !search.goes_on(1, &mut look)? {

@@ -17,6 +17,7 @@ use super::scales::rates;
 use super::screen::Screen;
 use super::unknown::leftover;
 use crate::data::DataSet;
+use crate::effects::Acts;
 
 /// Number of windows, spread over all runs.
 const WINDOWS: usize = 40;
@@ -48,39 +49,61 @@ pub(super) fn judged<'a>(
     over: Bench<'a>,
     stage: &mut impl FnMut(&'static str),
 ) -> Result<Judged<'a>, DiagnoseError> {
-    let (stepwise, again) = one_step(&over, (&bench, &nominal, &screen))?;
-    let of_windows = if again.is_some() {
+    let mut seen = Seen {
+        over: &over,
+        bench: &bench,
+        again: BTreeMap::new(),
+    };
+    let stepwise = seen.one_step(&nominal, &screen)?;
+    let holds = stepwise.as_ref().filter(|(_, holds)| *holds);
+    let again = holds.and_then(|(stepwise, _)| seen.again(stepwise.best()));
+    let again = again.map(|again| again.fitted.clone());
+    let of_windows = if holds.is_some() {
         None
     } else {
         stage("fitting simulations over windows");
-        simulated(&over).ok()
+        simulated(&over, seen.comparable()).ok()
     };
     let none = |comparison: &Comparison| comparison.best().members.is_empty();
     // What neither finds is not there.
-    let of_windows =
-        of_windows.filter(|(_, windows)| !(none(windows) && stepwise.as_ref().is_some_and(none)));
-    if let Some((screen, mut comparison)) = of_windows {
+    let of_windows = of_windows.filter(|(_, windows)| {
+        !(none(windows) && stepwise.as_ref().is_some_and(|(own, _)| none(own)))
+    });
+    let mut stepwise = stepwise.map(|(stepwise, _)| stepwise);
+    if let Some((of_windows, mut comparison)) = of_windows {
         stage("looking for what no effect explains");
         comparison.weigh_unknown(&over)?;
-        if comparison.best().members.is_empty() {
+        let whole = if comparison.leads_unknown() && !none(&comparison) {
+            nothing_left((&bench, &nominal, &screen), stepwise.take())?
+        } else {
+            None
+        };
+        if let Some(comparison) = whole {
+            return Ok(Judged {
+                bench,
+                screen,
+                comparison,
+            });
+        }
+        if none(&comparison) {
             // One step ahead more is seen of what is left.
             comparison.left = leftover(&bench, &nominal)?;
         }
         return Ok(Judged {
             bench: over,
-            screen,
+            screen: of_windows,
             comparison,
         });
     }
     // One step has to do too where no simulation follows the recordings.
     let comparison = match stepwise {
         Some(stepwise) => Some(stepwise),
-        None => Comparison::of(&bench, nominal, &screen, |_| Look::Holds)?,
+        None => Comparison::of(&bench, (nominal, Vec::new()), &screen, |_| Look::Holds)?,
     };
     let mut comparison = comparison.ok_or(DiagnoseError::NothingToFit)?;
     stage("looking for what no effect explains");
     comparison.weigh_unknown(&bench)?;
-    if let Some(Some(again)) = again.filter(|_| comparison.leads_unknown()) {
+    if let Some(again) = again.filter(|_| comparison.leads_unknown()) {
         comparison.bear_out_unknown(&over, &again)?;
     }
     Ok(Judged {
@@ -90,38 +113,32 @@ pub(super) fn judged<'a>(
     })
 }
 
-/// The hypotheses by simulations.
-fn simulated(over: &Bench<'_>) -> Result<(Screen, Comparison), DiagnoseError> {
-    let nominal = over.nominal()?;
-    let screen = Screen::of(over, &nominal)?;
-    let comparison = Comparison::of(over, nominal, &screen, |_| Look::Holds)?;
-    Ok((screen, comparison.ok_or(DiagnoseError::NothingToFit)?))
+/// One-step predictions where they explain everything: a mechanism that falls over is lost in windows of any length.
+fn nothing_left(
+    (bench, nominal, screen): (&Bench<'_>, &Fitted, &Screen),
+    known: Option<Comparison>,
+) -> Result<Option<Comparison>, DiagnoseError> {
+    let comparison = match known {
+        Some(known) => Some(known),
+        None => Comparison::of(bench, (nominal.clone(), Vec::new()), screen, |_| {
+            Look::Holds
+        })?,
+    };
+    let Some(mut comparison) = comparison else {
+        return Ok(None);
+    };
+    comparison.stays = 1.0;
+    comparison.weigh_unknown(bench)?;
+    let explains = !comparison.leads_unknown() && !comparison.best().members.is_empty();
+    Ok(explains.then_some(comparison))
 }
 
-/// The hypotheses by one-step predictions, nothing where the windows refute them early on; and the best one with values
-/// of the windows, where these bear it out. They do not where the disturbance follows what the model lacks.
-fn one_step(
-    over: &Bench<'_>,
-    (bench, nominal, screen): (&Bench<'_>, &Fitted, &Screen),
-) -> Result<(Option<Comparison>, Option<Option<Fitted>>), DiagnoseError> {
-    let mut seen = Seen {
-        over,
-        bench,
-        again: BTreeMap::new(),
-    };
-    let look = |fitted: &Fitted| seen.look(fitted, nominal);
-    let Some(mut comparison) = Comparison::of(bench, nominal.clone(), screen, look)? else {
-        return Ok((None, None));
-    };
-    let of_nominal = seen.again(nominal).map(Again::log_likelihood);
-    let Some(again) = seen.again(comparison.best()) else {
-        return Ok((Some(comparison), Some(None)));
-    };
-    if let Some(of_nominal) = of_nominal {
-        comparison.stays = over.left(again.log_likelihood() - of_nominal);
-    }
-    let holds = again.gain.max(again.by_others) < REFUTED;
-    Ok((Some(comparison), holds.then(|| Some(again.fitted.clone()))))
+/// The hypotheses by simulations, some of which are known.
+fn simulated(over: &Bench<'_>, known: Vec<Fitted>) -> Result<(Screen, Comparison), DiagnoseError> {
+    let nominal = over.nominal()?;
+    let screen = Screen::of(over, &nominal)?;
+    let comparison = Comparison::of(over, (nominal, known), &screen, |_| Look::Holds)?;
+    Ok((screen, comparison.ok_or(DiagnoseError::NothingToFit)?))
 }
 
 /// Hypotheses of one-step predictions, as windows see them.
@@ -148,6 +165,42 @@ impl Again {
 }
 
 impl Seen<'_, '_> {
+    /// The hypotheses by one-step predictions, nothing where the windows refute them early on; and whether the windows
+    /// bear them out. They do not where the disturbance follows what the model lacks.
+    fn one_step(
+        &mut self,
+        nominal: &Fitted,
+        screen: &Screen,
+    ) -> Result<Option<(Comparison, bool)>, DiagnoseError> {
+        let (bench, over) = (self.bench, self.over);
+        let known = (nominal.clone(), Vec::new());
+        let look = |fitted: &Fitted| self.look(fitted, nominal);
+        let Some(mut comparison) = Comparison::of(bench, known, screen, look)? else {
+            return Ok(None);
+        };
+        let of_nominal = self.again(nominal).map(Again::log_likelihood);
+        let Some(again) = self.again(comparison.best()) else {
+            return Ok(Some((comparison, true)));
+        };
+        if let Some(of_nominal) = of_nominal {
+            comparison.stays = over.left(again.log_likelihood() - of_nominal);
+        }
+        let holds = again.gain.max(again.by_others) < REFUTED;
+        Ok(Some((comparison, holds)))
+    }
+
+    /// What the windows can compare with hypotheses of their own: a late channel has other samples.
+    fn comparable(&self) -> Vec<Fitted> {
+        let fits = self.again.values().flatten().map(|again| &again.fitted);
+        let is_late = |&member: &usize| {
+            let acts = self.over.candidate(member).acts;
+            matches!(acts, Acts::Late(_))
+        };
+        fits.filter(|fitted| !fitted.members.iter().any(is_late))
+            .cloned()
+            .collect()
+    }
+
     /// Nothing where the windows lose a hypothesis: then they say nothing against it.
     fn again(&mut self, fitted: &Fitted) -> Option<&Again> {
         let again = self.again.entry(fitted.members.clone());

@@ -23,7 +23,9 @@ pub(super) fn percent(part: f64) -> String {
     if part.is_nan() {
         return "an unknown part".to_owned();
     }
-    format!("{:.1} %", 100.0 * part)
+    // No zero with a sign.
+    let thousandths = (1000.0 * part).round() + 0.0;
+    format!("{:.1} %", thousandths / 10.0)
 }
 
 #[cfg(test)]
@@ -35,5 +37,11 @@ mod tests {
         assert_eq!(measured(0.41234, 0.0213), "0.412 ± 0.021");
         assert_eq!(measured(4.5e-4, 6.283e-5), "(4.50 ± 0.63)e-4");
         assert_eq!(measured(12.0, f64::NAN), "12.0");
+    }
+
+    #[test]
+    fn a_part_that_rounds_to_nothing_has_no_sign() {
+        assert_eq!(percent(-4e-4), "0.0 %");
+        assert_eq!(percent(-0.976), "-97.6 %");
     }
 }

@@ -54,42 +54,55 @@ pub fn sentence(report: &Report) -> String {
     }
 }
 
-/// What the material effects close of the gap, the largest share first, and what stays.
+/// What the material effects close of the gap, the largest share first, and what stays; beside re-fitted parameters
+/// that matter, of what these leave.
 fn shares(report: &Report) -> Option<String> {
     let budget = &report.how_far.as_ref()?.budget;
-    let told = |part: &&Share| !(part.is_refit() || part.is_law() || part.is_rest());
-    let mut effects: Vec<&Share> = (budget.iter().filter(told))
-        .filter(|part| part.is_material)
-        .collect();
-    effects.sort_by(|a, b| b.closed.total_cmp(&a.closed));
+    let is_effect = |part: &&Share| !(part.is_refit() || part.is_law() || part.is_rest());
+    let (mut material, others): (Vec<&Share>, Vec<&Share>) =
+        (budget.iter().filter(is_effect)).partition(|part| part.is_material);
+    material.sort_by(|a, b| b.closed.total_cmp(&a.closed));
+    let refit = budget
+        .iter()
+        .find(|part| part.is_refit() && part.is_material);
+    let left = 1.0 - refit.map_or(0.0, |part| part.closed);
+    let of = |part: &Share| percent(part.closed / left);
     let about = |part: &&Share| {
         let mut found = report.found.iter();
         let found = found.find(|found| found.effect == part.name);
         found.map_or_else(|| part.name.clone(), |found| found.about.clone())
     };
-    let names: Vec<String> = effects.iter().map(about).collect();
-    let mut text = match effects.as_slice() {
-        [] => return None,
-        [one] => {
-            let [low, high] = one.interval.map(percent);
-            let closed = percent(one.closed);
-            format!("{} closes {closed} of the gap [{low}, {high}]", names[0])
+    let names: Vec<String> = material.iter().map(about).collect();
+    let (names, all) = (names.join(" and "), material.iter().chain(&others));
+    let sum = percent(all.map(|part| part.closed).sum::<f64>() / left);
+    let (before, whole) = match refit {
+        Some(part) => {
+            let closed = percent(part.closed);
+            (
+                format!("re-fitted parameters close {closed} of the gap; "),
+                "the rest",
+            )
         }
+        None => (String::new(), "the gap"),
+    };
+    let mut text = match material.as_slice() {
+        [] => return None,
+        [one] if others.is_empty() => {
+            let [low, high] = one.interval.map(|end| percent(end / left));
+            format!("{before}{names} closes {sum} [{low}, {high}] of {whole}")
+        }
+        [_] => format!("{before}{names} closes {sum} of {whole}"),
         several => {
-            let sum: f64 = several.iter().map(|part| part.closed).sum();
-            let each: Vec<String> = several.iter().map(|part| percent(part.closed)).collect();
-            let (names, each) = (names.join(" and "), each.join(", "));
-            format!("{names} close {} of the gap ({each})", percent(sum))
+            let each: Vec<String> = several.iter().map(|part| of(part)).collect();
+            let each = each.join(", ");
+            format!("{before}{names} close {sum} ({each}) of {whole}")
         }
     };
     for part in budget {
-        let closed = percent(part.closed);
-        if part.is_refit() && part.is_material {
-            text += &format!(", re-fitted parameters {closed}");
-        } else if part.is_law() {
-            text += &format!(", the measured law {closed}");
+        if part.is_law() && part.is_material {
+            text += &format!("; a measured law {}", of(part));
         } else if part.is_rest() {
-            text += &format!("; {closed} stays");
+            text += &format!("; {} stays", of(part));
         }
     }
     Some(text)

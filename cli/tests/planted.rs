@@ -276,7 +276,7 @@ impl Planted {
         let header: Vec<&str> = lines.next().expect("a header").split(',').collect();
         let column = |name: &str| {
             let of = |column: &&str| column.split(" [").next() == Some(name);
-            header.iter().position(|own| of(&own)).expect("a column")
+            header.iter().position(of).expect("a column")
         };
         let names: Vec<&str> = part(spec, "coordinates")
             .iter()

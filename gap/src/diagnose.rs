@@ -59,6 +59,7 @@ mod windows;
 use crate::data::{DataSet, Part, Spec};
 use crate::effects::{Effect, EffectModel, candidates};
 
+pub use crate::held_out::AHEAD;
 pub use against::{Before, Change, against};
 pub use budget::Part as Share;
 pub use changes::{ChangeError, Changes, Refitted, SignalEffect};
@@ -72,7 +73,7 @@ pub use report::{
     Detectable, Found, GapVerdict, Hint, HowFar, Hypothesis, Left, Pictures, Region, Report,
     ShareOf, Value, Where, Window,
 };
-pub use traces::{AHEAD, Ahead, Trace};
+pub use traces::{Ahead, Trace};
 
 use alternative::{Alternative, Rival};
 use bench::Bench;

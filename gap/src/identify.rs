@@ -31,11 +31,12 @@ use appell_runtime::model::Model;
 
 use crate::data::{DataSet, Part, Run};
 
+pub use crate::held_out::{AHEAD, HORIZONS};
 pub use answer::{Answer, Estimate, Known, Level};
 pub use appell_estimate::HALF_WIDTH_95;
 pub use drift::Course;
 pub use error::IdentifyError;
-pub use held_out::{AHEAD, HORIZONS, HeldOut, Trace};
+pub use held_out::{HeldOut, Trace};
 pub use options::{Begin, Options};
 pub use repeatability::Repeatability;
 

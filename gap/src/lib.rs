@@ -11,6 +11,7 @@ pub mod data;
 pub mod diagnose;
 pub mod effects;
 pub mod experiment;
+mod held_out;
 pub mod identify;
 pub mod inverse;
 pub mod motion_capture;

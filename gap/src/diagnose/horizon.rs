@@ -227,15 +227,14 @@ impl Seen<'_, '_> {
         };
         let gain = of_nominal.map(|nominal| again.log_likelihood() - nominal);
         let is_idle = gain.is_some_and(|gain| gain < IDLE * again.by_others);
-        let refutes = |by_others: f64| again.gain >= REFUTED_ALONE || again.by_others >= by_others;
+        let lacks = |most: f64| again.by_others >= most;
+        if again.gain >= REFUTED_ALONE {
+            return Look::Refuted;
+        }
         match (fitted.members.len(), again.other) {
-            (0, _) if !refutes(f64::INFINITY) => Look::Holds,
-            (1, Some(other)) if is_idle && !refutes(f64::INFINITY) && refutes(REFUTED_IDLE) => {
-                Look::Lacks(other)
-            }
-            (1, _) if !refutes(f64::INFINITY) => Look::Holds,
-            (2.., _) if !refutes(if is_idle { REFUTED_IDLE } else { REFUTED_ALONE }) => Look::Holds,
-            _ => Look::Refuted,
+            (1, Some(other)) if is_idle && lacks(REFUTED_IDLE) => Look::Lacks(other),
+            (2.., _) if lacks(if is_idle { REFUTED_IDLE } else { REFUTED_ALONE }) => Look::Refuted,
+            _ => Look::Holds,
         }
     }
 }

@@ -14,12 +14,11 @@ use rand_xoshiro::rand_core::{Rng as _, SeedableRng as _};
 use super::DiagnoseError;
 use super::bench::Bench;
 use super::hypothesis::Fitted;
+use crate::held_out::origins;
 use crate::identify::begin;
 
 /// Rows from which expected errors are estimated.
 const EXPECTED_FROM: usize = 25;
-/// Time in s that the filter has to find the state, but no more than a tenth of the run.
-const WARM_UP: f64 = 0.5;
 /// Times that disturbances are raised tenfold at most.
 const MORE: usize = 6;
 /// Draws of the bootstrap.
@@ -232,14 +231,4 @@ pub(super) fn noise(bench: &Bench<'_>, fitted: &Fitted) -> Result<Vec<f64>, Diag
         Ok(fitted.fit.values[place])
     });
     noise.collect()
-}
-
-/// Rows from which predictions start.
-pub(super) fn origins(recording: &Recording, most: usize) -> Vec<usize> {
-    let times = recording.times();
-    let (start, end) = (times[0], times[times.len() - 1]);
-    let from = start + WARM_UP.min(0.1 * (end - start));
-    let first = times.partition_point(|&t| t < from);
-    let every = (times.len() - first).div_ceil(most).max(1);
-    (first..times.len()).step_by(every).collect()
 }

@@ -9,12 +9,9 @@ use super::bench::Bench;
 use super::compare::Comparison;
 use super::held_out::{HeldOut, Leader};
 use super::hypothesis::Fitted;
-use super::prediction::{noise, origins, stated, taken_over};
+use super::prediction::{noise, stated, taken_over};
+use crate::held_out::{AHEAD, HORIZONS, origins};
 
-/// Horizons in s beside the one at which the gap is reported: one step, short, the free run.
-const HORIZONS: [f64; 4] = [0.0, 0.1, 1.0, f64::INFINITY];
-/// The horizon of traces in s.
-pub const AHEAD: f64 = 1.0;
 /// Most points of a trace.
 const POINTS: usize = 1000;
 /// Rows from which the expected error is estimated.

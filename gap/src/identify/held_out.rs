@@ -1,21 +1,15 @@
 //! Prediction errors on held-out runs.
 
-use appell_estimate::{Estimation, Predicted, Recording, Unknown};
+use appell_estimate::{Estimation, Predicted, Unknown};
 
 use super::IdentifyError;
 use super::drift::{self, Drift};
 use super::problem::begin;
 use crate::data::{DataSet, Part, Run};
+use crate::held_out::{AHEAD, HORIZONS, origins};
 
-/// Prediction horizons in s: 0 is one step, infinity the free run to the end.
-pub const HORIZONS: [f64; 4] = [0.0, 0.1, 1.0, f64::INFINITY];
 /// Largest number of rows of a run from which predictions start.
 const ORIGINS: usize = 200;
-/// Time in s that the filter has to find the state before it predicts, but no more than a tenth of
-/// the run.
-const WARM_UP: f64 = 0.5;
-/// The horizon of traces in s.
-pub const AHEAD: f64 = 1.0;
 /// Most points of a trace.
 const POINTS: usize = 2000;
 
@@ -189,16 +183,6 @@ impl<'a> Test<'a> {
         }
         Ok(traces)
     }
-}
-
-/// Rows from which predictions start.
-fn origins(recording: &Recording, most: usize) -> Vec<usize> {
-    let times = recording.times();
-    let (start, end) = (times[0], times[times.len() - 1]);
-    let from = start + WARM_UP.min(0.1 * (end - start));
-    let first = times.partition_point(|&t| t < from);
-    let every = (times.len() - first).div_ceil(most).max(1);
-    (first..times.len()).step_by(every).collect()
 }
 
 fn root(sums: &[(f64, f64)]) -> f64 {

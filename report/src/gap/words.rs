@@ -98,13 +98,12 @@ fn shares(report: &Report) -> Option<String> {
             format!("{before}{names} close {sum} ({each}) of {whole}")
         }
     };
-    for part in budget {
-        if part.is_law() && part.is_material {
-            text += &format!("; a measured law {}", of(part));
-        } else if part.is_rest() {
-            text += &format!("; {} stays", of(part));
-        }
-    }
+    let tail = budget.iter().filter_map(|part| {
+        let is_told = part.is_law() && part.is_material;
+        let law = is_told.then(|| format!("; a measured law {}", of(part)));
+        law.or_else(|| part.is_rest().then(|| format!("; {} stays", of(part))))
+    });
+    text.extend(tail);
     Some(text)
 }
 

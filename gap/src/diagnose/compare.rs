@@ -154,10 +154,13 @@ impl Comparison {
         over: &Bench<'_>,
         again: &Fitted,
     ) -> Result<(), DiagnoseError> {
-        let gain = leftover(over, again)?.map_or(0.0, |left| left.first.gain);
-        let share = self.stays * (1.0 - over.left(gain));
-        let odds = self.unknown / (1.0 - self.unknown) * (share / IMMATERIAL).min(1.0);
-        self.unknown = odds / (1.0 + odds);
+        // A law that windows do not find may be too fine for them.
+        let Some(seen) = leftover(over, again)? else {
+            return Ok(());
+        };
+        let share = self.stays * (1.0 - over.left(seen.first.gain));
+        let weight = self.unknown * (share / IMMATERIAL).min(1.0);
+        self.unknown = weight / (weight + (1.0 - self.unknown)).max(f64::MIN_POSITIVE);
         Ok(())
     }
 

@@ -103,7 +103,8 @@ pub(super) fn judged<'a>(
     let mut comparison = comparison.ok_or(DiagnoseError::NothingToFit)?;
     stage("looking for what no effect explains");
     comparison.weigh_unknown(&bench)?;
-    if let Some(again) = again.filter(|_| comparison.leads_unknown()) {
+    let names_none = comparison.leads_unknown() && !none(&comparison);
+    if let Some(again) = again.filter(|_| names_none) {
         comparison.bear_out_unknown(&over, &again)?;
     }
     Ok(Judged {

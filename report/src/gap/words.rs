@@ -46,12 +46,22 @@ pub fn sentence(report: &Report) -> String {
         GapVerdict::Unexplained => {
             let left = report.left.as_ref().map(|left| format!(": {}", left.about));
             let left = left.unwrap_or_default();
-            match shares(report) {
-                Some(shares) => format!("{shares}; no effect of the library explains the rest{left}"),
-                None => format!("there is a gap that no effect of the library explains{left}"),
+            if let Some(shares) = shares(report) {
+                return format!("{shares}; no effect of the library explains the rest{left}");
             }
+            let law = law_share(report);
+            let law = law.map(|share| format!("; measured, it closes {share} of the gap"));
+            let law = law.unwrap_or_default();
+            format!("there is a gap that no effect of the library explains{left}{law}")
         }
     }
+}
+
+/// What a measured law closes of the gap.
+fn law_share(report: &Report) -> Option<String> {
+    let mut budget = report.how_far.as_ref()?.budget.iter();
+    let law = budget.find(|part| part.is_law() && part.is_material)?;
+    Some(percent(law.closed))
 }
 
 /// What the material effects close of the gap, the largest share first, and what stays; beside re-fitted parameters

@@ -287,7 +287,7 @@ def scores(labels, folder):
         ("other law: right effect first", over(of("mismatch"), first)),
         ("other law: in the leading tie", over(of("mismatch"), leading)),
         ("off the library: detected", over(off, detected)),
-        ("off the library: “none of the library”", over(off, none)),
+        ("off the library: “no effect of the library”", over(off, none)),
         ("in the library: wrongly “none”", over(known, none)),
         ("closed ÷ what the true law closes, median", middle([closed(a, l) for l, a in known])),
         (f"claims at {SURE} and more that are right", over(sure, first)),
@@ -313,7 +313,7 @@ def left_out(labels, folder):
         ("… that the recording tells from the truth", rate([told(l, a) for l, a in known])),
         ("… where nothing that is left is a twin", rate([wrong(a) for l, a in known if not has_twin(l)])),
         ("a tie, or a name with less", rate([named(a) and not wrong(a) for _, a in known])),
-        ("“none of the library”", rate([a.sets[0] == ["unknown"] for _, a in known])),
+        ("“no effect of the library”", rate([a.sets[0] == ["unknown"] for _, a in known])),
         ("no gap", rate([a.sets[0] == [] for _, a in known])),
         ("no report", f"{len(answers) - len(known)} of {len(answers)}"),
     ]

@@ -143,11 +143,7 @@ pub fn diagnose(
     // A law that cannot be written is none.
     let lawful = law::lawful(&bench, &comparison).unwrap_or(None);
     let held_out = HeldOut::of(&test, &bench)?;
-    let measured = lawful.as_ref().map(|lawful| {
-        let law = lawful.fitted(&bench, &test)?;
-        law.predicts((&bench, &comparison), &held_out, options)?;
-        Ok(law)
-    });
+    let measured = lawful.as_ref().map(|lawful| lawful.fitted(&bench, &test));
     let measured = report.measured(measured)?;
     stage("predicting the runs that were held out");
     let leading = rivals

@@ -40,9 +40,6 @@ pub enum DiagnoseError {
          `appell recording` tells what the columns hold, and a wider `std` lets parameters move"
     )]
     Nominal(EstimateError),
-    /// A law that was measured and does not hold elsewhere.
-    #[error("the runs that were held out are predicted worse with it")]
-    Misleads,
     /// A filter or a fit that failed.
     #[error(transparent)]
     Estimate(#[from] EstimateError),

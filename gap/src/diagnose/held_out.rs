@@ -136,7 +136,7 @@ impl HeldOut {
     }
 
     /// The horizon in s that these runs allow.
-    pub(super) fn horizon(&self) -> f64 {
+    fn horizon(&self) -> f64 {
         let durations = self.recordings.iter().map(|run| {
             let times = run.times();
             times[times.len() - 1] - times[0]

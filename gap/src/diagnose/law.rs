@@ -8,6 +8,7 @@ use std::fmt::Write as _;
 
 use appell_estimate::{Along, Estimation, Unknown};
 
+use super::DiagnoseError;
 use super::bench::Bench;
 use super::budget::IMMATERIAL;
 use super::compare::{Comparison, TIED};
@@ -15,9 +16,7 @@ use super::forms::{Form, forms};
 use super::held_out::HeldOut;
 use super::hypothesis::Fitted;
 use super::localise::force_unit;
-use super::prediction::{Paired, noise};
 use super::unknown::{Dependence, Leftover, Series, Unnamed, leftover, wave_scores};
-use super::{DiagnoseError, Options};
 use crate::data::DataSet;
 use crate::effects::{Candidate, EffectModel};
 
@@ -178,29 +177,6 @@ fn candidate(
     let speed = info.states[law.place].name.as_ref();
     let mechanism = &bench.effects.mechanism;
     Some(Candidate::measured(mechanism, speed, &force, &numbers))
-}
-
-impl FittedLaw<'_> {
-    /// An error where the runs that were held out are predicted worse with the law, beyond chance.
-    pub(super) fn predicts(
-        &self,
-        (bench, comparison): (&Bench<'_>, &Comparison),
-        held_out: &HeldOut,
-        options: &Options,
-    ) -> Result<(), DiagnoseError> {
-        if held_out.recordings.is_empty() {
-            return Ok(());
-        }
-        let noise = noise(bench, comparison.best())?;
-        let horizon = options.horizon.unwrap_or_else(|| held_out.horizon());
-        let without = held_out.errors(bench, self.base, &noise, horizon)?;
-        let with = (self.runs).errors(&self.bench, &self.fitted, &noise, horizon)?;
-        let gained = Paired::of(&[&without, &with]).interval95(|means| means[0] - means[1]);
-        if gained[1] < 0.0 {
-            return Err(DiagnoseError::Misleads);
-        }
-        Ok(())
-    }
 }
 
 impl Lawful<'_> {

@@ -2,9 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use appell_gap::data::MANIFEST;
-pub use appell_gap::motion_capture::Skeleton;
-use appell_gap::motion_capture::{self, Capture, Ride, Smoothed};
+use appell_recordings::MANIFEST;
+pub use appell_recordings::motion_capture::Skeleton;
+use appell_recordings::motion_capture::{self, Capture, Ride, Smoothed};
 use serde_json::{Value, json};
 
 use crate::{Error, Field, files};

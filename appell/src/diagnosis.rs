@@ -3,9 +3,9 @@
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
-use appell_gap::data::DataSet;
 use appell_gap::diagnose;
 use appell_gap::effects;
+use appell_recordings::DataSet;
 
 pub use appell_gap::diagnose::{
     Changes, DiagnoseError, Experiment, ForceHistory, ForceLaw, Found, GapVerdict, HowFar,

@@ -4,11 +4,11 @@ use std::path::{Path, PathBuf};
 
 use appell_analysis::{BranchError, ChartError, StabilityError, SteadyError};
 use appell_estimate::EstimateError;
-use appell_gap::data::DataError;
 use appell_gap::diagnose::DiagnoseError;
 use appell_gap::effects::{EffectError, ModelError};
 use appell_gap::identify::IdentifyError;
 use appell_gap::inverse::RelationError;
+use appell_recordings::DataError;
 use appell_runtime::signal::SignalError;
 use appell_runtime::simulate::SimulationError;
 use appell_spec::{Diagnostic, Report};

@@ -277,7 +277,7 @@ fn names(folders: &[PathBuf]) -> Vec<String> {
         .iter()
         .map(|folder| {
             let folder = match folder.file_name() {
-                Some(name) if name == appell_gap::data::MANIFEST => {
+                Some(name) if name == appell_recordings::MANIFEST => {
                     folder.parent().unwrap_or(folder)
                 }
                 _ => folder,

@@ -1,7 +1,7 @@
 //! The inputs of recorded motions, and parameters from input-free equations.
 
-use appell_gap::data::DataSet;
 use appell_gap::inverse;
+use appell_recordings::DataSet;
 
 pub use appell_gap::inverse::{Answer, Estimate, Options, RelationError};
 

@@ -50,8 +50,8 @@ pub mod setup;
 pub mod source;
 pub mod steady;
 
-pub use appell_gap::data::DataSet;
 pub use appell_gap::diagnose::Options as DiagnosisOptions;
+pub use appell_recordings::DataSet;
 pub use appell_report::figure;
 pub use appell_runtime::Trajectory;
 pub use appell_runtime::integrate::Options as IntegrationOptions;

@@ -3,8 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use appell_codegen::compile::report;
-use appell_gap::data::DataSet;
 use appell_gap::{diagnose as gap, identify};
+use appell_recordings::DataSet;
 use appell_runtime::Trajectory;
 use appell_runtime::model::{Model as Equations, ModelInfo};
 

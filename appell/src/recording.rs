@@ -2,11 +2,11 @@
 
 use std::path::PathBuf;
 
-use appell_gap::data;
-pub use appell_gap::data::{
+use appell_models::ALL;
+use appell_recordings::MANIFEST;
+pub use appell_recordings::{
     Channel, DataError, DataSet, Finding, FindingKind, Measured, Parameter, Part, Role, Run, Spec,
 };
-use appell_models::ALL;
 use appell_report::recording::sentence;
 use appell_report::text::number;
 use appell_spec::Severity;
@@ -29,7 +29,7 @@ fn read_with(paths: &[PathBuf], source: Option<&Source>) -> Result<DataSet, Erro
         file: source.file.clone(),
         text: source.text.clone(),
     });
-    let described = |path: &PathBuf| path.is_dir() || path.ends_with(data::MANIFEST);
+    let described = |path: &PathBuf| path.is_dir() || path.ends_with(MANIFEST);
     match (paths, spec) {
         ([folder], spec) if described(folder) => {
             let shipped = ALL.iter().map(|shipped| {
@@ -37,13 +37,13 @@ fn read_with(paths: &[PathBuf], source: Option<&Source>) -> Result<DataSet, Erro
                 (shipped.name, Spec { file, text })
             });
             let library: Vec<(&str, Spec)> = shipped.collect();
-            Ok(data::read(folder, &library, spec)?)
+            Ok(appell_recordings::read(folder, &library, spec)?)
         }
         (paths, _) if paths.iter().any(described) => Err(Error::request(
             Field::Recordings,
             "give one data set, or CSV files and their mechanism",
         )),
-        (paths, Some(spec)) => Ok(data::read_bare(spec, paths)?),
+        (paths, Some(spec)) => Ok(appell_recordings::read_bare(spec, paths)?),
         (_, None) => Err(Error::request(
             Field::Recordings,
             "CSV files need the mechanism whose names their columns have; name a shipped one or a spec",

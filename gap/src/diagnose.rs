@@ -56,8 +56,8 @@ mod whiteness;
 mod window_bench;
 mod windows;
 
-use crate::data::{DataSet, Part, Spec};
 use crate::effects::{Effect, EffectModel, candidates};
+use appell_recordings::{DataSet, Part, Spec};
 
 pub use crate::held_out::AHEAD;
 pub use against::{Before, Change, against};

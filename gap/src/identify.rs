@@ -29,7 +29,7 @@ mod start;
 use appell_estimate::{Estimation, Fit, Recording, Setup};
 use appell_runtime::model::Model;
 
-use crate::data::{DataSet, Part, Run};
+use appell_recordings::{DataSet, Part, Run};
 
 pub use crate::held_out::{AHEAD, HORIZONS};
 pub use answer::{Answer, Estimate, Known, Level};

@@ -9,7 +9,7 @@ use appell_estimate::inverse::{
 use appell_runtime::model::{Model, Quantity};
 use nalgebra::{DMatrix, DVector};
 
-use crate::data::{DataSet, Measured, Part, Role};
+use appell_recordings::{DataSet, Measured, Part, Role};
 
 /// Values of a profile on each side of the nominal one.
 const PROFILE: i32 = 12;

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use std::time::{Duration, Instant};
 
 use appell_gap::diagnose::{Options, diagnose};
-use appell_gap::motion_capture::Skeleton;
+use appell_recordings::motion_capture::Skeleton;
 use appell_test_kit::{Random, budget, is_full};
 
 use crate::common::{Folder, SWING, pendulum, swing};

@@ -1,10 +1,9 @@
-//! Recordings and diagnoses, from the outside.
+//! Diagnoses, from the outside.
 
+#[expect(dead_code, reason = "the tests of recordings use all of it")]
+#[path = "../../recordings/tests/common/mod.rs"]
 mod common;
 
-mod data_sets;
 mod engine;
-mod formats;
 mod fuzz;
-mod motion_capture;
 mod shared;

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use appell_estimate::smoothing::Samples;
 use appell_estimate::smoothing::kinematic::Kinematic;
 use appell_estimate::smoothing::spline::SmoothingSpline;
-use appell_gap::data::{FindingKind, Part, read};
+use appell_recordings::{FindingKind, Part, read};
 use appell_test_kit::{is_full, workspace};
 
 use crate::common::library;

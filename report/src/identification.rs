@@ -6,8 +6,8 @@ mod page;
 use std::fmt::Write as _;
 use std::ops::Range;
 
-use appell_gap::data::{Channel, DataSet};
 use appell_gap::identify::{AHEAD, Answer, Estimate, Known};
+use appell_recordings::{Channel, DataSet};
 
 use crate::recording;
 use crate::text::{horizon, number, short, table};

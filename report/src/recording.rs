@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use appell_gap::data::{DataSet, Finding, Part, Role, Run};
+use appell_recordings::{DataSet, Finding, Part, Role, Run};
 use appell_spec::Severity;
 
 use crate::text::{number, table};

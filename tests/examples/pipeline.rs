@@ -14,7 +14,7 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 use appell_estimate::inverse::{Consistency, Record, Relations, Sought, Track};
-use appell_gap::motion_capture::{Capture, Ride, Skeleton, Smoothed, filter};
+use appell_recordings::motion_capture::{Capture, Ride, Skeleton, Smoothed, filter};
 use appell_runtime::model::Model;
 use appell_test_kit::Random;
 use appell_tests::rides::{MANOEUVRES, captured, planar, record_of, skeleton};

@@ -5,7 +5,7 @@ use appell_analysis::control::operating_point::OperatingPoint;
 use appell_analysis::control::reduction::reduce;
 use appell_codegen::jit::JitModel;
 use appell_estimate::inverse::Record;
-use appell_gap::motion_capture::{Axes, Capture, Ride, Skeleton, Track, Vector};
+use appell_recordings::motion_capture::{Axes, Capture, Ride, Skeleton, Track, Vector};
 use appell_runtime::Simulation;
 use appell_runtime::integrate::Options;
 use appell_runtime::model::Model;

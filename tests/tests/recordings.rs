@@ -5,8 +5,8 @@
 use std::fmt::Write as _;
 
 use appell_estimate::Measured;
-use appell_gap::data::{Part, Spec, read_bare};
 use appell_models::Shipped;
+use appell_recordings::{Part, Spec, read_bare};
 
 #[test]
 fn columns_of_a_recording_become_those_of_the_model() {

@@ -19,6 +19,10 @@ const MAY_KNOW: &[(&str, &[&str])] = &[
     ("analysis", &["appell-runtime", "appell-spectra"]),
     ("estimate", &["appell-runtime", "appell-spectra"]),
     (
+        "recordings",
+        &["appell-spec", "appell-runtime", "appell-estimate"],
+    ),
+    (
         "gap",
         &[
             "appell-spec",
@@ -26,6 +30,7 @@ const MAY_KNOW: &[(&str, &[&str])] = &[
             "appell-runtime",
             "appell-spectra",
             "appell-estimate",
+            "appell-recordings",
         ],
     ),
     (
@@ -36,6 +41,7 @@ const MAY_KNOW: &[(&str, &[&str])] = &[
             "appell-runtime",
             "appell-analysis",
             "appell-estimate",
+            "appell-recordings",
             "appell-gap",
         ],
     ),
@@ -49,6 +55,7 @@ const MAY_KNOW: &[(&str, &[&str])] = &[
             "appell-spectra",
             "appell-analysis",
             "appell-estimate",
+            "appell-recordings",
             "appell-gap",
             "appell-report",
         ],
@@ -64,6 +71,7 @@ const MAY_KNOW: &[(&str, &[&str])] = &[
             "appell-spectra",
             "appell-analysis",
             "appell-estimate",
+            "appell-recordings",
             "appell-gap",
             "appell-report",
         ],
@@ -80,6 +88,7 @@ const MAY_KNOW: &[(&str, &[&str])] = &[
             "appell-spectra",
             "appell-analysis",
             "appell-estimate",
+            "appell-recordings",
             "appell-gap",
             "appell-report",
         ],
@@ -87,13 +96,14 @@ const MAY_KNOW: &[(&str, &[&str])] = &[
 ];
 
 /// Crates below the command line: they name no mechanism and no flag.
-const NAME_NO_MECHANISM: [&str; 9] = [
+const NAME_NO_MECHANISM: [&str; 10] = [
     "model_spec",
     "codegen",
     "runtime",
     "spectra",
     "analysis",
     "estimate",
+    "recordings",
     "gap",
     "report",
     "appell",
@@ -250,7 +260,15 @@ fn no_file_is_longer_than_700_lines() {
 /// A file that `main.rs` does not name is never compiled, and nobody misses it.
 #[test]
 fn every_file_of_tests_is_run() {
-    let folders = ["model_spec", "codegen", "gap", "appell", "cli", "tests"];
+    let folders = [
+        "model_spec",
+        "codegen",
+        "recordings",
+        "gap",
+        "appell",
+        "cli",
+        "tests",
+    ];
     for main in files(&folders, "rs") {
         if !main.ends_with("tests/main.rs") {
             continue;

@@ -3,9 +3,9 @@
 use std::io::BufRead;
 use std::path::Path;
 
-use appell_gap::data::csv::Rows;
-use appell_gap::data::limits::MAX_MISTAKES;
-use appell_gap::data::{DataError, MANIFEST, Role};
+use appell_recordings::csv::Rows;
+use appell_recordings::limits::MAX_MISTAKES;
+use appell_recordings::{DataError, MANIFEST, Role};
 use appell_runtime::Signal;
 use appell_runtime::inputs::TabulatedInputs;
 use appell_runtime::model::{Interpolation, Model, Quantity, SignalTable};

@@ -1,7 +1,7 @@
 //! Estimated parameters.
 
-use appell_gap::data::DataSet;
 use appell_gap::identify::Answer;
+use appell_recordings::DataSet;
 use serde_json::{Value, json};
 
 /// The result of an identification.

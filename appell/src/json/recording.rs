@@ -1,6 +1,6 @@
 //! Recordings.
 
-use appell_gap::data::DataSet;
+use appell_recordings::DataSet;
 use appell_report::recording::{part, role, severity};
 use serde_json::{Value, json};
 

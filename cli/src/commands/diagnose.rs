@@ -5,8 +5,8 @@ use std::str::FromStr;
 
 use appell::diagnosis::Library;
 use appell::fleet::{self, Fleet, Rig};
-use appell_gap::data::{DataSet, Spec};
 use appell_gap::diagnose::{Limit, Options};
+use appell_recordings::{DataSet, Spec};
 use serde_json::Value;
 
 use crate::failure::Error;

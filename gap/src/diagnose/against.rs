@@ -9,9 +9,9 @@
 //! No two recordings are of quite the same rig. So a difference is a change where what explains it betters
 //! predictions of runs that were held out, by more than runs of one rig differ anyway.
 
-use crate::data::{Channel, DataSet, Parameter, Part, Run, Spec};
 use crate::effects::{Effect, EffectModel};
 use crate::identify::{self, identify};
+use appell_recordings::{Channel, DataSet, Parameter, Part, Run, Spec};
 
 use super::changes::Changes;
 use super::{DiagnoseError, GapVerdict, HowFar, Hypothesis, Options, Report, diagnose};

@@ -12,8 +12,8 @@ use super::bench::Bench;
 use super::changes::Changes;
 use super::hypothesis::Fitted;
 use super::report::Value;
-use crate::data::{DataSet, Spec};
 use crate::effects::EffectModel;
+use appell_recordings::{DataSet, Spec};
 
 /// A spec with the runs to fit.
 pub(super) struct Alternative {

@@ -12,9 +12,9 @@ use super::evidence::Evidence;
 use super::feedback::InputInnovations;
 use super::hypothesis::Fitted;
 use super::unmodelled::UnmodelledChannel;
-use crate::data::{DataSet, Part};
 use crate::effects::{Acts, Candidate, EffectModel, Part as Role};
 use crate::identify::{Options, Problem, longest_step};
+use appell_recordings::{DataSet, Part};
 
 /// Delays of inputs and channels are this long in s at most.
 const LONGEST_DELAY: f64 = 0.1;

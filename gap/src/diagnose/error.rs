@@ -18,7 +18,7 @@ pub enum DiagnoseError {
     NothingToFit,
     /// Recordings that do not fit an alternative.
     #[error(transparent)]
-    Data(#[from] crate::data::DataError),
+    Data(#[from] appell_recordings::DataError),
     /// An alternative cannot be compared on the same channels.
     #[error(
         "the alternative `{name}` has no quantity for the column `{column}`; hypotheses are compared \

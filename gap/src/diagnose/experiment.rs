@@ -14,8 +14,8 @@ use super::compare::Comparison;
 use super::hypothesis::Fitted;
 use super::prediction::taken_over;
 use super::screen::moving;
-use crate::data::{DataSet, Role};
 use crate::experiment::Excitation;
+use appell_recordings::{DataSet, Role};
 
 /// Longest experiment in s.
 const LONGEST: f64 = 20.0;

@@ -14,7 +14,7 @@ use super::hypothesis::Fitted;
 use super::law::FittedLaw;
 use super::prediction::{self, Errors, Paired, noise, stated};
 use super::report::HowFar;
-use crate::data::{DataSet, Part};
+use appell_recordings::{DataSet, Part};
 
 /// Horizon in s at which the gap is reported, but no more than half of a run.
 const HORIZON: f64 = 1.0;

@@ -16,8 +16,8 @@ use super::hypothesis::Fitted;
 use super::scales::rates;
 use super::screen::Screen;
 use super::unknown::leftover;
-use crate::data::DataSet;
 use crate::effects::Acts;
+use appell_recordings::DataSet;
 
 /// Number of windows, spread over all runs.
 const WINDOWS: usize = 40;

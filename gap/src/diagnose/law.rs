@@ -17,8 +17,8 @@ use super::held_out::HeldOut;
 use super::hypothesis::Fitted;
 use super::localise::force_unit;
 use super::unknown::{Dependence, Leftover, Series, Unnamed, leftover, wave_scores};
-use crate::data::DataSet;
 use crate::effects::{Candidate, EffectModel};
+use appell_recordings::DataSet;
 
 /// Places at which the law is told, at least and for each half of its shortest wave.
 const PLACES: [usize; 2] = [81, 10];

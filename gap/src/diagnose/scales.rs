@@ -1,8 +1,8 @@
 //! Typical sizes in recordings, which set the widths of rounded corners and the levels that are tried.
 
-use crate::data::{DataSet, Measured, Role, Run};
 use crate::effects::Scales;
 use crate::slope::{Slope, WINDOW};
+use appell_recordings::{DataSet, Measured, Role, Run};
 
 /// Places along a run at which rates are looked at.
 const PLACES: usize = 200;

@@ -1,8 +1,8 @@
 //! Channels that were recorded and that the model does not know, with their rates: what the gap may
 //! depend on.
 
-use crate::data::{DataSet, Role, Run};
 use crate::slope::{Slope, WINDOW};
+use appell_recordings::{DataSet, Role, Run};
 
 /// Part of a channel's variance that a straight line over time has to leave: what does not return
 /// tells the time.

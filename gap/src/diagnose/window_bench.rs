@@ -6,8 +6,8 @@ use appell_estimate::{Estimation, Free, Unknown};
 use super::DiagnoseError;
 use super::bench::Bench;
 use super::hypothesis::Fitted;
-use crate::data::DataSet;
 use crate::identify::{Problem, begin};
+use appell_recordings::DataSet;
 
 /// Noise from which a search over windows begins, by these factors larger than that of the sensors: the likeliest.
 const LARGER: [f64; 3] = [30.0, 6.0, 1.0];

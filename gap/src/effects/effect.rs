@@ -24,7 +24,7 @@ use appell_spec::{Code, Report, closest, did_you_mean, shown};
 use toml::de::{DeTable, DeValue};
 
 use super::site::SiteKind;
-use crate::data::fields::{Fields, Value};
+use appell_recordings::fields::{Fields, Value};
 
 /// Families of effects.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]

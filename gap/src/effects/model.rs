@@ -23,7 +23,7 @@ use appell_spec::{Mechanism, Report};
 use super::effect::{Effect, EffectError};
 use super::site::{Scales, Sites, number};
 use super::{Candidate, Drive};
-use crate::data::Spec;
+use appell_recordings::Spec;
 
 /// Sections whose expressions inputs act in.
 pub(crate) const ACTING: [&str; 2] = ["loads", "constraints"];

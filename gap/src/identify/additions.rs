@@ -5,7 +5,7 @@ use appell_estimate::{Estimation, Free, Setup, Unknown};
 use appell_runtime::model::Quantity;
 
 use super::IdentifyError;
-use crate::data::{DataSet, Run};
+use appell_recordings::{DataSet, Run};
 
 /// Largest delay in s.
 const LONGEST_DELAY: f64 = 0.25;

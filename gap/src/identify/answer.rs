@@ -12,7 +12,7 @@ use super::drift::Course;
 use super::held_out::{HeldOut, Trace};
 use super::problem::Problem;
 use super::repeatability::Repeatability;
-use crate::data::DataSet;
+use appell_recordings::DataSet;
 
 /// Length of the blocks of scores in s, beyond the correlation of errors of a mechanism.
 const BLOCK: f64 = 1.0;

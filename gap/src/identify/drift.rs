@@ -6,7 +6,7 @@ use appell_runtime::model::{ModelInfo, Quantity};
 
 use super::IdentifyError;
 use super::problem::parameter;
-use crate::data::{DataSet, Run};
+use appell_recordings::{DataSet, Run};
 
 /// Relative initial standard deviation of a value without a tolerance.
 const KNOWN_TO: f64 = 0.1;

@@ -5,8 +5,8 @@ use appell_estimate::{Estimation, Predicted, Unknown};
 use super::IdentifyError;
 use super::drift::{self, Drift};
 use super::problem::begin;
-use crate::data::{DataSet, Part, Run};
 use crate::held_out::{AHEAD, HORIZONS, origins};
+use appell_recordings::{DataSet, Part, Run};
 
 /// Largest number of rows of a run from which predictions start.
 const ORIGINS: usize = 200;

@@ -7,7 +7,7 @@ use super::additions::Addition;
 use super::drift::{self, Drift};
 use super::start::{Start, forces, start};
 use super::{IdentifyError, Options};
-use crate::data::{Channel, DataSet};
+use appell_recordings::{Channel, DataSet};
 
 /// Factor by which a stated noise level may be wrong.
 const NOISE_FACTOR: f64 = std::f64::consts::LN_2;

@@ -3,8 +3,8 @@
 use std::fmt::Write as _;
 
 use appell_codegen::{Derived, derived};
-use appell_gap::data::{DataSet, Part};
 use appell_gap::diagnose::{GapVerdict, HowFar, Hypothesis, Report, Where};
+use appell_recordings::{DataSet, Part};
 use maud::{Markup, html};
 
 use super::budget::budget;

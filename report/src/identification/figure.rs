@@ -1,8 +1,8 @@
 //! Held-out runs with their predictions.
 
 use crate::figure::{Figure, Panel, Series};
-use appell_gap::data::DataSet;
 use appell_gap::identify::{AHEAD, Answer, HALF_WIDTH_95};
+use appell_recordings::DataSet;
 
 /// Number of runs drawn.
 const DRAWN_RUNS: usize = 2;

@@ -1,7 +1,7 @@
 //! The result as a self-contained HTML page.
 
-use appell_gap::data::DataSet;
 use appell_gap::identify::Answer;
+use appell_recordings::DataSet;
 use maud::{Markup, PreEscaped, html};
 
 use super::{Part, figure, parts};

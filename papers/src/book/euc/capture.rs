@@ -1,6 +1,6 @@
 //! Simulated motion capture: rigid bodies of table 2, misplaced markers, noise.
 
-use appell_gap::motion_capture::{Axes, Capture, Skeleton, Track, Vector};
+use appell_recordings::motion_capture::{Axes, Capture, Skeleton, Track, Vector};
 use appell_runtime::Trajectory;
 
 use super::random::Random;

@@ -2,7 +2,7 @@
 
 use crate::errata::{ERRATA, Source};
 use crate::euc::EQUATIONS;
-use appell_gap::motion_capture::Axes;
+use appell_recordings::motion_capture::Axes;
 
 use crate::book::claim::{Claim, Section, Statement};
 use crate::book::steering::equations::{DEFINITION, IDENTITY, misprint};

@@ -1,6 +1,6 @@
 //! Figures 3 and 4: a figure-eight in the ground, and in the frame that moves with the unicycle.
 
-use appell_gap::motion_capture::{Ride, Vector};
+use appell_recordings::motion_capture::{Ride, Vector};
 use appell_report::figure::{Figure, Panel, Path, Series, Surface};
 
 use super::laboratory::Laboratory;

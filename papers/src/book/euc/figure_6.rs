@@ -1,6 +1,6 @@
 //! Figures 6 and 7: processed data of decelerations and of a figure-eight.
 
-use appell_gap::motion_capture::Smoothed;
+use appell_recordings::motion_capture::Smoothed;
 use appell_report::figure::{Figure, Panel, Series};
 
 use super::laboratory::{Laboratory, Session};

@@ -1,6 +1,6 @@
 //! All rides, captured and smoothed, shared by the parts of the book.
 
-use appell_gap::motion_capture::{Capture, Ride, Skeleton, Smoothed, filter};
+use appell_recordings::motion_capture::{Capture, Ride, Skeleton, Smoothed, filter};
 use appell_runtime::Trajectory;
 
 use super::capture::{Captured, Imperfection};

@@ -110,7 +110,7 @@ pub struct Finding {
 
 impl Finding {
     /// A finding about the whole data set.
-    pub(super) fn new(kind: FindingKind, message: impl Into<String>) -> Self {
+    pub(crate) fn new(kind: FindingKind, message: impl Into<String>) -> Self {
         Self {
             kind,
             run: None,
@@ -121,25 +121,25 @@ impl Finding {
     }
 
     #[must_use]
-    pub(super) fn in_run(mut self, run: &str) -> Self {
+    pub(crate) fn in_run(mut self, run: &str) -> Self {
         self.run = Some(run.to_owned());
         self
     }
 
     #[must_use]
-    pub(super) fn on_line(mut self, line: usize) -> Self {
+    pub(crate) fn on_line(mut self, line: usize) -> Self {
         self.line = Some(line);
         self
     }
 
     #[must_use]
-    pub(super) fn of_channel(mut self, channel: &str) -> Self {
+    pub(crate) fn of_channel(mut self, channel: &str) -> Self {
         self.channel = Some(channel.to_owned());
         self
     }
 
     /// By severity, then run by run.
-    pub(super) fn order(&self) -> (Severity, Option<String>, FindingKind, Option<String>) {
+    pub(crate) fn order(&self) -> (Severity, Option<String>, FindingKind, Option<String>) {
         (
             self.kind.severity(),
             self.run.clone(),
@@ -153,7 +153,7 @@ impl Finding {
 const LISTED: usize = 3;
 
 /// `a, b, c and 4 more`.
-pub(super) fn listed(items: &[String]) -> String {
+pub(crate) fn listed(items: &[String]) -> String {
     let shown = items[..items.len().min(LISTED)].join(", ");
     match items.len().saturating_sub(LISTED) {
         0 => shown,
@@ -162,7 +162,7 @@ pub(super) fn listed(items: &[String]) -> String {
 }
 
 /// `1 row`, `3 rows`.
-pub(super) fn counted(count: usize, one: &str) -> String {
+pub(crate) fn counted(count: usize, one: &str) -> String {
     let plural = if count == 1 { "" } else { "s" };
     format!("{count} {one}{plural}")
 }

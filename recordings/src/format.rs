@@ -4,11 +4,11 @@ use std::path::Path;
 
 use appell_spec::units::Unit;
 
-use super::channel::Channel;
-use super::clock::TIME;
-use super::limits::MAX_NUMBERS;
-use super::table::{Columns, Table, Wanted};
-use super::{DataError, c3d, csv};
+use crate::channel::Channel;
+use crate::clock::TIME;
+use crate::limits::MAX_NUMBERS;
+use crate::table::{Columns, Table, Wanted};
+use crate::{DataError, c3d, csv};
 
 /// Format of a file, by its extension.
 #[derive(Clone, Copy)]
@@ -60,7 +60,7 @@ pub(crate) fn read(
 }
 
 /// The names of the columns.
-pub(super) fn header(path: &Path) -> Result<Vec<String>, DataError> {
+pub(crate) fn header(path: &Path) -> Result<Vec<String>, DataError> {
     match Format::of(path) {
         Format::Csv => csv::header(path),
         format => Ok(columns(path, format, &|_| false, MAX_NUMBERS)?.names),
@@ -77,9 +77,9 @@ fn columns(
     match format {
         Format::C3d => c3d::read(path, wanted, budget),
         #[cfg(feature = "mcap")]
-        Format::Mcap => super::mcap::read(path, wanted, budget),
+        Format::Mcap => crate::mcap::read(path, wanted, budget),
         #[cfg(feature = "parquet")]
-        Format::Parquet => super::parquet::read(path, wanted, budget),
+        Format::Parquet => crate::parquet::read(path, wanted, budget),
         _ => {
             let message = "this build does not read the format; build with the feature of its \
                            name, `mcap` or `parquet`, or write the run as CSV";

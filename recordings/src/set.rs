@@ -2,9 +2,9 @@
 
 use appell_spec::Mechanism;
 
-use super::channel::{Channel, Role};
-use super::clock::Sampling;
-use super::finding::{Finding, FindingKind};
+use crate::channel::{Channel, Role};
+use crate::clock::Sampling;
+use crate::finding::{Finding, FindingKind};
 
 /// The text of a spec and its name in messages.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -81,7 +81,7 @@ impl Run {
 
 impl DataSet {
     /// Inputs without a column, and parameters without a tolerance.
-    pub(super) fn tell_what_lacks(&mut self) {
+    pub(crate) fn tell_what_lacks(&mut self) {
         for (index, input) in self.mechanism.inputs.iter().enumerate() {
             let recorded = |channel: &Channel| channel.role == Role::Input(index);
             if !self.channels.iter().any(recorded) {

@@ -13,9 +13,9 @@
 
 use std::path::Path;
 
-use super::DataError;
-use super::clock::TIME;
-use super::table::{Columns, Wanted, bytes, too_many};
+use crate::DataError;
+use crate::clock::TIME;
+use crate::table::{Columns, Wanted, bytes, too_many};
 
 /// Bytes of a block.
 const BLOCK: usize = 512;
@@ -25,7 +25,7 @@ const KEY: u8 = 0x50;
 type Name = (&'static str, &'static str);
 
 /// Reads a file; `budget` is the most numbers of all columns together.
-pub(super) fn read(path: &Path, wanted: Wanted<'_>, budget: usize) -> Result<Columns, DataError> {
+pub(crate) fn read(path: &Path, wanted: Wanted<'_>, budget: usize) -> Result<Columns, DataError> {
     let bytes = bytes(path)?;
     let place = path.to_string_lossy();
     let file = File::of(&bytes).ok_or_else(|| {

@@ -14,7 +14,7 @@ const MOST_OF_THEM: f64 = 0.98;
 const REPEATED: f64 = 0.05;
 
 /// The step that all changes are multiples of; nothing where there is none.
-pub(super) fn quantum<'v>(records: impl Iterator<Item = &'v [f64]>) -> Option<f64> {
+pub(crate) fn quantum<'v>(records: impl Iterator<Item = &'v [f64]>) -> Option<f64> {
     let (mut changes, mut unchanged) = (Vec::new(), 0_usize);
     for values in records {
         let mut there = values.iter().filter(|value| !value.is_nan());

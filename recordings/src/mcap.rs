@@ -14,12 +14,12 @@ use mcap::{Message, MessageStream};
 use serde_json::Value;
 
 use self::cdr::Definitions;
-use super::DataError;
-use super::clock::TIME;
-use super::table::{Columns, Wanted, bytes, too_many};
+use crate::DataError;
+use crate::clock::TIME;
+use crate::table::{Columns, Wanted, bytes, too_many};
 
 /// Reads a file; `budget` is the most numbers of all columns together.
-pub(super) fn read(path: &Path, wanted: Wanted<'_>, budget: usize) -> Result<Columns, DataError> {
+pub(crate) fn read(path: &Path, wanted: Wanted<'_>, budget: usize) -> Result<Columns, DataError> {
     let bytes = bytes(path)?;
     let place = path.to_string_lossy();
     let damaged = |error: mcap::McapError| {

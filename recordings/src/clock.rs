@@ -2,12 +2,12 @@
 
 use appell_spec::{Code, Diagnostic, Report};
 
-use super::finding::{counted, listed};
-use super::limits::MAX_LEFT_OUT;
-use super::{DataError, Finding, FindingKind};
+use crate::finding::{counted, listed};
+use crate::limits::MAX_LEFT_OUT;
+use crate::{DataError, Finding, FindingKind};
 
 /// The column of the times.
-pub(super) const TIME: &str = "t";
+pub(crate) const TIME: &str = "t";
 
 /// Length of a step, relative to the median, beyond which it is a gap.
 const GAP: f64 = 5.0;
@@ -18,7 +18,7 @@ const SLOW: f64 = 1.0;
 
 /// Accepts rows whose time is later than all before, and counts the others.
 #[derive(Default)]
-pub(super) struct Clock {
+pub(crate) struct Clock {
     latest: Option<f64>,
     rows: usize,
     repeated: Skipped,
@@ -36,7 +36,7 @@ struct Skipped {
 
 impl Clock {
     /// Whether a row comes later than all before.
-    pub(super) fn accept(&mut self, t: f64, line: usize, text: &str) -> bool {
+    pub(crate) fn accept(&mut self, t: f64, line: usize, text: &str) -> bool {
         self.rows += 1;
         let skipped = if t.is_nan() {
             &mut self.missing
@@ -54,7 +54,7 @@ impl Clock {
     }
 
     /// The omitted rows; an error if they are too many for logging errors.
-    pub(super) fn findings(self, file: &str) -> Result<Vec<Finding>, DataError> {
+    pub(crate) fn findings(self, file: &str) -> Result<Vec<Finding>, DataError> {
         let most = MAX_LEFT_OUT * self.rows as f64;
         let kinds = [
             (
@@ -114,7 +114,7 @@ pub struct Sampling {
 }
 
 impl Sampling {
-    pub(super) fn of(times: &[f64]) -> Self {
+    pub(crate) fn of(times: &[f64]) -> Self {
         let mut steps: Vec<f64> = times.windows(2).map(|pair| pair[1] - pair[0]).collect();
         let middle = steps.len() / 2;
         let step = if steps.is_empty() {
@@ -134,7 +134,7 @@ impl Sampling {
     }
 
     /// Whether the times look like those of another unit than seconds.
-    pub(super) fn doubt(&self) -> Option<Finding> {
+    pub(crate) fn doubt(&self) -> Option<Finding> {
         // Of the units of loggers the one in which rows come at 1 Hz to 1 kHz.
         let unit = match self.step {
             step if step < SLOW => return None,
@@ -152,7 +152,7 @@ impl Sampling {
         Some(Finding::new(FindingKind::SlowClock, message).of_channel(TIME))
     }
 
-    pub(super) fn findings(&self) -> Option<Finding> {
+    pub(crate) fn findings(&self) -> Option<Finding> {
         if self.gaps.is_empty() {
             return None;
         }

@@ -7,9 +7,9 @@
 use appell_estimate::smoothing::Samples;
 use appell_estimate::smoothing::noise::{at_standstill, from_differences};
 
-use super::level::{Noise, NoiseSource};
-use super::quantum::quantum;
-use super::{Channel, DataSet, Finding, FindingKind, Part, Run};
+use crate::level::{Noise, NoiseSource};
+use crate::quantum::quantum;
+use crate::{Channel, DataSet, Finding, FindingKind, Part, Run};
 
 /// Largest factor by which a stated level may be wrong.
 const TRUST: f64 = 2.0;
@@ -17,7 +17,7 @@ const TRUST: f64 = 2.0;
 const NOTABLE: f64 = 0.5;
 
 /// Estimates the noise of every measured channel from the training runs.
-pub(super) fn find(set: &mut DataSet) {
+pub(crate) fn find(set: &mut DataSet) {
     let runs: Vec<&Run> = set.runs.iter().filter(|r| r.part == Part::Fit).collect();
     for (index, channel) in set.channels.iter_mut().enumerate() {
         let values = || runs.iter().map(|run| &*run.values[index]);

@@ -4,11 +4,11 @@ use std::path::Path;
 
 use appell_spec::{closest, shown};
 
-use super::channel::Channel;
-use super::clock::{Clock, TIME};
-use super::finding::{counted, listed};
-use super::limits::{MAX_BYTES, MAX_NUMBERS, MAX_VALUE, MIN_ROWS};
-use super::{DataError, Finding, FindingKind};
+use crate::channel::Channel;
+use crate::clock::{Clock, TIME};
+use crate::finding::{counted, listed};
+use crate::limits::{MAX_BYTES, MAX_NUMBERS, MAX_VALUE, MIN_ROWS};
+use crate::{DataError, Finding, FindingKind};
 
 /// The numbers of a run.
 pub(crate) struct Table {
@@ -21,7 +21,7 @@ pub(crate) struct Table {
 }
 
 /// The length of a regular file; pipes are rejected, as they may block.
-pub(super) fn regular(path: &Path) -> Result<u64, DataError> {
+pub(crate) fn regular(path: &Path) -> Result<u64, DataError> {
     let about = std::fs::metadata(path).map_err(|cause| DataError::File {
         path: path.to_owned(),
         cause,
@@ -32,7 +32,7 @@ pub(super) fn regular(path: &Path) -> Result<u64, DataError> {
 }
 
 /// The bytes of a regular file that is not too large.
-pub(super) fn bytes(path: &Path) -> Result<Vec<u8>, DataError> {
+pub(crate) fn bytes(path: &Path) -> Result<Vec<u8>, DataError> {
     if regular(path)? > MAX_BYTES {
         let message = format!("the file has more than {MAX_BYTES} bytes");
         return Err(DataError::whole(path.to_string_lossy(), message));
@@ -44,21 +44,21 @@ pub(super) fn bytes(path: &Path) -> Result<Vec<u8>, DataError> {
 }
 
 /// Named columns in the units of the file.
-pub(super) struct Columns {
+pub(crate) struct Columns {
     /// Names of all columns of the file.
-    pub(super) names: Vec<String>,
+    pub(crate) names: Vec<String>,
     /// Values of the requested ones; the others are empty. NaN where a value is missing.
-    pub(super) values: Vec<Vec<f64>>,
+    pub(crate) values: Vec<Vec<f64>>,
     /// Omitted rows.
-    pub(super) findings: Vec<Finding>,
+    pub(crate) findings: Vec<Finding>,
 }
 
 /// The requested columns.
-pub(super) type Wanted<'w> = &'w dyn Fn(&str) -> bool;
+pub(crate) type Wanted<'w> = &'w dyn Fn(&str) -> bool;
 
 impl Columns {
     /// The columns of the channels in SI, in rows of increasing times.
-    pub(super) fn table(
+    pub(crate) fn table(
         mut self,
         file: &str,
         channels: &[Channel],
@@ -127,14 +127,14 @@ fn finite(value: f64) -> f64 {
 }
 
 /// The error of a data set that is too large.
-pub(super) fn too_many(place: String) -> DataError {
+pub(crate) fn too_many(place: String) -> DataError {
     let message =
         format!("the data set holds more than {MAX_NUMBERS} numbers; leave out rows or channels");
     DataError::whole(place, message)
 }
 
 /// A table with enough rows, and something in every column.
-pub(super) fn checked(
+pub(crate) fn checked(
     file: &str,
     channels: &[Channel],
     times: Vec<f64>,

@@ -5,10 +5,10 @@ use std::f64::consts::{PI, TAU};
 use std::fmt::Write as _;
 
 use appell_estimate::smoothing::savitzky_golay::SavitzkyGolay;
-use appell_gap::data;
-use appell_gap::motion_capture::{
+use appell_recordings::motion_capture::{
     Axes, Capture, Ride, Skeleton, Smoothed, filter, manifest, table,
 };
+use appell_recordings::read;
 
 use crate::common::{Folder, library};
 
@@ -174,7 +174,7 @@ fn a_ride_becomes_a_data_set_that_is_read() {
         "recording.toml",
         manifest(&skeleton, &["circle.csv".to_owned()]),
     );
-    let set = data::read(&folder.path(""), library(), None).unwrap();
+    let set = read(&folder.path(""), library(), None).unwrap();
     let measured: Vec<&str> = set
         .channels
         .iter()

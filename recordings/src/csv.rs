@@ -8,16 +8,16 @@ use std::path::Path;
 use appell_spec::expr::Span;
 use appell_spec::{Code, Diagnostic, Report, closest, shown};
 
-use super::channel::Channel;
-use super::clock::{Clock, TIME};
-use super::finding::listed;
-use super::limits::{MAX_LINE, MAX_MISTAKES};
-use super::table::{Table, checked, regular, too_many};
-use super::{DataError, Finding, FindingKind, motive};
+use crate::channel::Channel;
+use crate::clock::{Clock, TIME};
+use crate::finding::listed;
+use crate::limits::{MAX_LINE, MAX_MISTAKES};
+use crate::table::{Table, checked, regular, too_many};
+use crate::{DataError, Finding, FindingKind, motive};
 
 /// Reads the columns of the channels and the times, whose unit is `time_unit` s. `budget` counts down the
 /// numbers that may still come.
-pub(super) fn read(
+pub(crate) fn read(
     path: &Path,
     time_unit: f64,
     channels: &[Channel],
@@ -27,7 +27,7 @@ pub(super) fn read(
 }
 
 /// The names of the columns.
-pub(super) fn header(path: &Path) -> Result<Vec<String>, DataError> {
+pub(crate) fn header(path: &Path) -> Result<Vec<String>, DataError> {
     Ok(open(path)?.rows.header)
 }
 
@@ -270,14 +270,14 @@ struct Places {
 }
 
 /// The lines of a file that hold something.
-pub(super) struct Lines<R> {
+pub(crate) struct Lines<R> {
     reader: R,
     /// Name of the file.
     file: String,
     /// Number of the line, from 1.
     number: usize,
     /// The line, without its end.
-    pub(super) text: String,
+    pub(crate) text: String,
     /// Whether the file ends within the line.
     breaks_off: bool,
     bytes: Vec<u8>,
@@ -296,7 +296,7 @@ impl<R: BufRead> Lines<R> {
     }
 
     /// Goes to the next line that is neither empty nor a comment; whether there is one.
-    pub(super) fn next(&mut self) -> Result<bool, DataError> {
+    pub(crate) fn next(&mut self) -> Result<bool, DataError> {
         loop {
             self.bytes.clear();
             let mut limited = self.reader.by_ref().take(MAX_LINE as u64 + 1);
@@ -327,7 +327,7 @@ impl<R: BufRead> Lines<R> {
     }
 
     /// File and line.
-    pub(super) fn place(&self) -> String {
+    pub(crate) fn place(&self) -> String {
         format!("{}:{}", self.file, self.number)
     }
 
@@ -339,7 +339,7 @@ impl<R: BufRead> Lines<R> {
 }
 
 /// The cells of a line.
-pub(super) fn texts(line: &str, separator: char) -> Vec<String> {
+pub(crate) fn texts(line: &str, separator: char) -> Vec<String> {
     let cells = cells(line, separator);
     cells.map(|cell| line[cell].to_owned()).collect()
 }

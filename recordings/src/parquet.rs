@@ -14,15 +14,15 @@ use parquet::errors::{ParquetError, Result};
 use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::schema::types::ColumnDescriptor;
 
-use super::DataError;
-use super::clock::TIME;
-use super::table::{Columns, Wanted, regular, too_many};
+use crate::DataError;
+use crate::clock::TIME;
+use crate::table::{Columns, Wanted, regular, too_many};
 
 /// Rows that are read at once.
 const BATCH: usize = 1 << 16;
 
 /// Reads a file; `budget` is the most numbers of all columns together.
-pub(super) fn read(path: &Path, wanted: Wanted<'_>, budget: usize) -> Result<Columns, DataError> {
+pub(crate) fn read(path: &Path, wanted: Wanted<'_>, budget: usize) -> Result<Columns, DataError> {
     regular(path)?;
     let place = path.to_string_lossy();
     let file = File::open(path).map_err(|cause| DataError::File {

@@ -3,7 +3,7 @@
 
 use std::fmt::Write as _;
 
-use appell_gap::data::{DataSet, FindingKind, Measured, NoiseSource, Part, Role, Spec, read_bare};
+use appell_recordings::{DataSet, FindingKind, Measured, NoiseSource, Part, Role, Spec, read_bare};
 
 use crate::common::{Folder, SWING, library, pendulum, swing};
 

@@ -3,7 +3,7 @@
 use appell_estimate::smoothing::angle::unwrap;
 use appell_spec::Mechanism;
 
-use super::{Channel, DataError, DataSet, Measured, Part, Role, Spec, noise};
+use crate::{Channel, DataError, DataSet, Measured, Part, Role, Spec, noise};
 
 impl DataSet {
     /// Recordings bound to another spec. A quantity keeps its name; a column that the first spec

@@ -4,10 +4,10 @@ use std::path::PathBuf;
 
 use appell_spec::Mechanism;
 
-use super::channel::{Channel, Measured, Role};
-use super::clock::Sampling;
-use super::limits::{MAX_NUMBERS, MAX_RUNS, MIN_ROWS};
-use super::{
+use crate::channel::{Channel, Measured, Role};
+use crate::clock::Sampling;
+use crate::limits::{MAX_NUMBERS, MAX_RUNS, MIN_ROWS};
+use crate::{
     DataError, DataSet, Finding, FindingKind, Parameter, Part, Run, Spec, format, noise, run,
 };
 

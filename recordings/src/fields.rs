@@ -8,10 +8,10 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 /// A value with its place.
-pub(crate) type Value<'t> = Spanned<DeValue<'t>>;
+pub type Value<'t> = Spanned<DeValue<'t>>;
 
 /// The text of a file, and what is wrong with it.
-pub(crate) struct Fields<'t> {
+pub struct Fields<'t> {
     file: &'t str,
     text: &'t str,
     findings: Vec<Diagnostic>,
@@ -19,7 +19,7 @@ pub(crate) struct Fields<'t> {
 
 impl<'t> Fields<'t> {
     /// Parses a file.
-    pub(crate) fn new(file: &'t str, text: &'t str) -> (Self, Spanned<DeTable<'t>>) {
+    pub fn new(file: &'t str, text: &'t str) -> (Self, Spanned<DeTable<'t>>) {
         let (table, errors) = DeTable::parse_recoverable(text);
         let findings = errors.iter().map(|error| {
             let message = error.message().lines().next().unwrap_or_default();
@@ -28,32 +28,32 @@ impl<'t> Fields<'t> {
         let fields = Self {
             file,
             text,
-            findings: findings.take(super::limits::MAX_MISTAKES).collect(),
+            findings: findings.take(crate::limits::MAX_MISTAKES).collect(),
         };
         (fields, table)
     }
 
     /// Adds a finding.
-    pub(crate) fn tell(&mut self, code: Code, message: impl Into<String>, at: Span, help: &str) {
+    pub fn tell(&mut self, code: Code, message: impl Into<String>, at: Span, help: &str) {
         let diagnostic = Diagnostic::error(code, message).at(at, "");
         let help = (!help.is_empty()).then(|| help.to_owned());
         self.findings.push(diagnostic.maybe_help(help));
     }
 
     /// Whether something is wrong.
-    pub(crate) fn is_wrong(&self) -> bool {
+    pub fn is_wrong(&self) -> bool {
         self.findings
             .iter()
             .any(|finding| finding.severity == Severity::Error)
     }
 
     /// Everything that is wrong.
-    pub(crate) fn report(self) -> Report {
+    pub fn report(self) -> Report {
         Report::new(self.file, self.text, self.findings)
     }
 
     /// The table of a section; nothing where it is absent.
-    pub(crate) fn section<'a, 'd>(
+    pub fn section<'a, 'd>(
         &mut self,
         table: &'a DeTable<'d>,
         name: &str,
@@ -67,7 +67,7 @@ impl<'t> Fields<'t> {
     }
 
     /// Tells of keys that nobody reads.
-    pub(crate) fn only(&mut self, table: &DeTable<'_>, keys: &[&str]) {
+    pub fn only(&mut self, table: &DeTable<'_>, keys: &[&str]) {
         for key in table.keys() {
             let name = key.get_ref().as_ref();
             if !keys.contains(&name) {
@@ -81,7 +81,7 @@ impl<'t> Fields<'t> {
     }
 
     /// A text that may be absent.
-    pub(crate) fn string(&mut self, table: &DeTable<'_>, key: &str) -> Option<(String, Span)> {
+    pub fn string(&mut self, table: &DeTable<'_>, key: &str) -> Option<(String, Span)> {
         let value = table.get(key)?;
         self.text_of(value)
     }
@@ -95,7 +95,7 @@ impl<'t> Fields<'t> {
     }
 
     /// A list of texts; empty where it is absent.
-    pub(crate) fn strings(&mut self, table: &DeTable<'_>, key: &str) -> Vec<(String, Span)> {
+    pub fn strings(&mut self, table: &DeTable<'_>, key: &str) -> Vec<(String, Span)> {
         let Some(value) = table.get(key) else {
             return Vec::new();
         };
@@ -108,7 +108,7 @@ impl<'t> Fields<'t> {
     }
 
     /// A finite number.
-    pub(crate) fn number(&mut self, value: &Value<'_>) -> Option<f64> {
+    pub fn number(&mut self, value: &Value<'_>) -> Option<f64> {
         let number = match value.get_ref() {
             DeValue::Float(float) => float.as_str().parse::<f64>().ok(),
             DeValue::Integer(integer) => integer.as_str().parse::<f64>().ok(),
@@ -126,7 +126,7 @@ impl<'t> Fields<'t> {
     }
 
     /// A number that may be absent and is not negative.
-    pub(crate) fn deviation(&mut self, table: &DeTable<'_>, key: &str) -> Option<f64> {
+    pub fn deviation(&mut self, table: &DeTable<'_>, key: &str) -> Option<f64> {
         let value = table.get(key)?;
         let number = self.number(value)?;
         if number < 0.0 {
@@ -138,7 +138,7 @@ impl<'t> Fields<'t> {
     }
 
     /// A unit that may be absent: then the one of the quantity. One of another dimension is reported.
-    pub(crate) fn unit(&mut self, table: &DeTable<'_>, of: Option<(&str, &Unit)>) -> Option<Unit> {
+    pub fn unit(&mut self, table: &DeTable<'_>, of: Option<(&str, &Unit)>) -> Option<Unit> {
         let Some((text, at)) = self.string(table, "unit") else {
             return of.map(|(_, unit)| unit.clone());
         };
@@ -174,7 +174,7 @@ impl<'t> Fields<'t> {
     }
 
     /// Tells that a value has another form.
-    pub(crate) fn wrong_type(&mut self, value: &Value<'_>, wanted: &str) {
+    pub fn wrong_type(&mut self, value: &Value<'_>, wanted: &str) {
         let message = format!("expected {wanted}");
         self.tell(Code::WrongType, message, value.span(), "");
     }

@@ -28,28 +28,28 @@ use appell_spec::units::{Dimension, Unit};
 use appell_spec::{Code, Mechanism, did_you_mean, shown};
 use toml::de::DeTable;
 
-use super::channel::{Channel, Measured, Role};
-use super::clock::TIME;
-use super::fields::{Fields, Value};
-use super::limits::MAX_RUNS;
-use super::{DataError, Library, Parameter, Part, Spec};
+use crate::channel::{Channel, Measured, Role};
+use crate::clock::TIME;
+use crate::fields::{Fields, Value};
+use crate::limits::MAX_RUNS;
+use crate::{DataError, Library, Parameter, Part, Spec};
 
 /// A description whose names and units fit the mechanism.
-pub(super) struct Manifest {
-    pub(super) spec: Spec,
-    pub(super) mechanism: Mechanism,
-    pub(super) description: String,
-    pub(super) parameters: Vec<Parameter>,
+pub(crate) struct Manifest {
+    pub(crate) spec: Spec,
+    pub(crate) mechanism: Mechanism,
+    pub(crate) description: String,
+    pub(crate) parameters: Vec<Parameter>,
     /// The unit of the times, where it is stated.
-    pub(super) time: Option<Unit>,
-    pub(super) channels: Vec<Channel>,
-    pub(super) runs: Vec<(String, Part)>,
+    pub(crate) time: Option<Unit>,
+    pub(crate) channels: Vec<Channel>,
+    pub(crate) runs: Vec<(String, Part)>,
 }
 
 const KEYS: &[&str] = &["mechanism", "description", "parameters", "channels", "runs"];
 
 /// Reads a description; `instead` replaces the mechanism that it names.
-pub(super) fn read(
+pub(crate) fn read(
     path: &Path,
     library: Library<'_>,
     instead: Option<Spec>,
@@ -96,7 +96,7 @@ pub(super) fn read(
 }
 
 /// The text of a file of at most the size of a spec.
-pub(super) fn text_of(path: &Path) -> Result<String, DataError> {
+pub(crate) fn text_of(path: &Path) -> Result<String, DataError> {
     let failed = |cause| DataError::File {
         path: path.to_owned(),
         cause,

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::{DataSet, Run};
+use crate::{DataSet, Run};
 
 /// Least number of rows of a stretch, as its initial state is unknown.
 const LENGTH: usize = 1000;
@@ -72,7 +72,7 @@ impl DataSet {
                 let held = &values[row..values.len().min(row + every)];
                 held.iter().sum::<f64>() / held.len() as f64
             };
-            let is_held = matches!(channel.role, super::Role::Input(_));
+            let is_held = matches!(channel.role, crate::Role::Input(_));
             let value = |row: usize| if is_held { mean(row) } else { values[row] };
             kept.clone().map(value).collect()
         });

@@ -14,19 +14,19 @@
 
 use std::io::BufRead;
 
-use super::DataError;
-use super::csv::{Lines, texts};
+use crate::DataError;
+use crate::csv::{Lines, texts};
 
 /// Most lines of a header.
 const MOST_LINES: usize = 16;
 
 /// Whether a first line is one of Motive.
-pub(super) fn begins(line: &str) -> bool {
+pub(crate) fn begins(line: &str) -> bool {
     line.starts_with("Format Version")
 }
 
 /// The names of the columns; the lines are left at the last one of the header.
-pub(super) fn header<R: BufRead>(
+pub(crate) fn header<R: BufRead>(
     lines: &mut Lines<R>,
     separator: char,
 ) -> Result<Vec<String>, DataError> {

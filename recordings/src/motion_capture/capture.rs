@@ -6,7 +6,7 @@ use appell_estimate::smoothing::angle::unwrap;
 use appell_spec::units;
 
 use super::skeleton::{Column, Skeleton};
-use crate::data::{Channel, DataError, Finding, Role, format, limits};
+use crate::{Channel, DataError, Finding, Role, format, limits};
 
 /// Rigid bodies at increasing times, in SI; NaN where a body was not seen.
 #[derive(Debug, Clone, PartialEq)]

@@ -4,7 +4,7 @@ use appell_spec::Mechanism;
 use appell_spec::mechanism::{CoordinateId, InputId, Label, OutputId, SpeedId};
 use appell_spec::units::Unit;
 
-use super::level::Noise;
+use crate::level::Noise;
 
 /// A column of every run.
 #[derive(Debug, Clone)]
@@ -45,7 +45,7 @@ pub enum Measured {
 
 impl Measured {
     /// The quantity of a name.
-    pub(super) fn named(name: &str, mechanism: &Mechanism) -> Option<Self> {
+    pub(crate) fn named(name: &str, mechanism: &Mechanism) -> Option<Self> {
         let coordinate = mechanism.coordinates.iter();
         let speed = mechanism.pseudo_velocities.iter();
         let output = mechanism.outputs.iter();
@@ -73,7 +73,7 @@ impl Measured {
     }
 
     /// All measurable quantities.
-    pub(super) fn names(mechanism: &Mechanism) -> Vec<&str> {
+    pub(crate) fn names(mechanism: &Mechanism) -> Vec<&str> {
         let coordinates = mechanism.coordinates.iter().map(|q| &q.label);
         let speeds = mechanism.pseudo_velocities.iter().map(|w| &w.label);
         let outputs = mechanism.outputs.iter().map(|y| &y.label);
@@ -110,7 +110,7 @@ impl Channel {
     }
 
     /// Whether it measures an angle, which may be wrapped.
-    pub(super) fn is_angle(&self) -> bool {
+    pub(crate) fn is_angle(&self) -> bool {
         self.unit.is_angle() && matches!(self.role, Role::Measures(Measured::Coordinate(_)))
     }
 }

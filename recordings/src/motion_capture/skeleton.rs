@@ -40,8 +40,8 @@ use appell_spec::{Code, did_you_mean, shown, units};
 use toml::de::DeTable;
 
 use super::anthropometry::{Anthropometry, TABLES};
-use crate::data::DataError;
-use crate::data::fields::{Fields, Value};
+use crate::DataError;
+use crate::fields::{Fields, Value};
 
 /// Bodies and points of a file at most.
 const MOST_NAMES: usize = 256;

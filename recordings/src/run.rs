@@ -2,14 +2,14 @@
 
 use appell_estimate::smoothing::angle::unwrap;
 
-use super::channel::{Channel, Role};
-use super::clock::Sampling;
-use super::finding::{Finding, FindingKind, counted};
-use super::set::{Part, Run};
-use super::table::Table;
+use crate::channel::{Channel, Role};
+use crate::clock::Sampling;
+use crate::finding::{Finding, FindingKind, counted};
+use crate::set::{Part, Run};
+use crate::table::Table;
 
 /// A run from its table, with dropouts reported, inputs held and angles unwrapped.
-pub(super) fn read(
+pub(crate) fn read(
     name: String,
     part: Part,
     table: Table,

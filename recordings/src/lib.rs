@@ -1,4 +1,8 @@
-//! Data sets: a folder with `recording.toml` and a file for each run, or such files alone.
+//! Recordings of real mechanisms: values in SI at increasing times, bound to the names of a spec, each
+//! channel with its noise level, with findings on repairs and doubts.
+//!
+//! A data set is a folder with `recording.toml` and a file for each run, or such files alone.
+//! [`motion_capture`] makes one of a capture of rigid bodies.
 //!
 //! ```text
 //! recording.toml --manifest--> mechanism, parameters, channels, runs
@@ -35,14 +39,15 @@ mod channel;
 mod clock;
 pub mod csv;
 mod error;
-pub(crate) mod fields;
+pub mod fields;
 mod finding;
-pub(crate) mod format;
+mod format;
 mod level;
 pub mod limits;
 mod manifest;
 #[cfg(feature = "mcap")]
 mod mcap;
+pub mod motion_capture;
 mod motive;
 mod noise;
 mod observed;

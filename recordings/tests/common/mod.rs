@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
 use std::sync::atomic::{AtomicU32, Ordering};
 
-use appell_gap::data::{self, DataError, DataSet, Spec};
+use appell_recordings::{DataError, DataSet, Spec};
 use appell_test_kit::Random;
 
 static LIBRARY: LazyLock<Vec<(&'static str, Spec)>> = LazyLock::new(shipped);
@@ -51,7 +51,7 @@ impl Folder {
     }
 
     pub(crate) fn read(&self) -> Result<DataSet, DataError> {
-        data::read(&self.0, library(), None)
+        appell_recordings::read(&self.0, library(), None)
     }
 
     /// The message of a data set that must be refused.

@@ -6,7 +6,7 @@ use appell_runtime::model::ModelInfo;
 use appell_spec::Mechanism;
 use appell_spec::mechanism;
 
-use super::{Channel, DataSet, Measured, Parameter, Part, Role};
+use crate::{Channel, DataSet, Measured, Parameter, Part, Role};
 
 impl DataSet {
     /// The runs of one part.

@@ -1,0 +1,7 @@
+//! Data sets and their files, from the outside.
+
+mod common;
+
+mod data_sets;
+mod formats;
+mod motion_capture;

@@ -11,6 +11,7 @@
 //!          --alternative--> other specs, fitted to the same recordings
 //!          --unknown--> what no candidate explains, and what it depends on
 //!          --localise--> equations, windows of time, regions
+//!          --assembly--> hypotheses with their values and ties, in the words of the report
 //!          --law--> what is left, measured as a force that depends on something
 //!          --held_out, prediction--> errors of predictions: nominal, re-fitted, with the effect, noise
 //!          --budget--> the part of the gap that is each effect's, and what stays
@@ -26,6 +27,7 @@
 
 mod against;
 mod alternative;
+mod assembly;
 mod augmented;
 mod bench;
 mod budget;
@@ -42,9 +44,9 @@ mod forces;
 mod forms;
 mod held_out;
 mod horizon;
-mod hypothesis;
 mod law;
 mod localise;
+mod options;
 mod prediction;
 mod report;
 mod scales;
@@ -57,23 +59,18 @@ mod window_bench;
 mod windows;
 
 use crate::effects::{Effect, EffectModel, candidates};
-use appell_recordings::{DataSet, Part, Spec};
+use appell_recordings::{DataSet, Part};
 
 pub use crate::held_out::AHEAD;
-pub use against::{Before, Change, against};
-pub use budget::Part as Share;
-pub use changes::{ChangeError, Changes, Refitted, SignalEffect};
-pub use error::DiagnoseError;
-pub use experiment::{Experiment, Limit};
-pub use force_history::{ForceHistory, MissingForce};
-pub use force_law::ForceLaw;
-pub use forms::Form;
-pub use law::Law;
+pub use against::against;
+pub use changes::{Changes, Refitted, SignalEffect};
+pub use error::{ChangeError, DiagnoseError};
+pub use options::Options;
 pub use report::{
-    Detectable, Found, GapVerdict, Hint, HowFar, Hypothesis, Left, Pictures, Region, Report,
-    ShareOf, Value, Where, Window,
+    Ahead, Before, Change, Detectable, Experiment, ForceHistory, ForceLaw, Form, Found, GapVerdict,
+    Hint, HowFar, Hypothesis, Law, Left, Limit, MissingForce, Pictures, Region, Report, Share,
+    ShareOf, Trace, Value, Where, Window,
 };
-pub use traces::{Ahead, Trace};
 
 use alternative::{Alternative, Rival};
 use bench::Bench;
@@ -88,23 +85,6 @@ pub const ENGINE: u32 = 2;
 
 /// Rows that are fitted: with so many, sizes are known far better than laws are right.
 const MOST_ROWS: usize = 4000;
-
-/// What is asked for beside the report.
-#[derive(Debug, Clone, Default)]
-pub struct Options {
-    /// Traces, and the missing force over what it depends on.
-    pub pictures: bool,
-    /// Within which the next experiment has to stay; elsewhere it stays near what is recorded.
-    pub limits: Vec<Limit>,
-    /// Other specs of the same thing, each a hypothesis of its own.
-    pub alternatives: Vec<Spec>,
-    /// Horizon in s at which the gap is reported; by default 1 s, or what the runs allow.
-    pub horizon: Option<f64>,
-    /// Part of what re-fitted parameters leave of the gap below which an effect names no cause; by default 0.02.
-    pub tolerance: Option<f64>,
-    /// Names of effects that the spec has already, and that are no hypotheses.
-    pub present: Vec<String>,
-}
 
 /// Diagnoses a data set with a library of effects. `stage` is called with the name of each stage.
 pub fn diagnose(
@@ -134,10 +114,10 @@ pub fn diagnose(
     stage("localising the gap");
     let mut place = localise::place(&bench, &comparison)?;
     windows::tell(&bench, &comparison, &mut place)?;
-    let mut report = report::assemble(&bench, &screen, &comparison, place.clone(), &rivals)?;
+    let mut report = assembly::assemble(&bench, &screen, &comparison, place.clone(), &rivals)?;
     report.failed.append(&mut lost);
     report.rows = [fitted.rows(), whole.rows()];
-    report.hints = report::hints(&bench, &comparison)?;
+    report.hints = assembly::hints(&bench, &comparison)?;
     stage("measuring what is left");
     let test = set.only(Part::Test);
     // A law that cannot be written is none.

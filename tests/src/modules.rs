@@ -52,9 +52,9 @@ impl Modules {
     }
 
     /// Sets of more than two files that all use each other, directly or not, each told as one way
-    /// round; without the files below some folders.
-    pub fn cycles(&self, exempt: &[&str]) -> Vec<String> {
-        cycles::longer_than_two(&self.uses, exempt)
+    /// round.
+    pub fn cycles(&self) -> Vec<String> {
+        cycles::longer_than_two(&self.uses)
     }
 
     /// Uses of files below `known` by files below `folder`.

@@ -14,7 +14,9 @@ use crate::identify::{self, identify};
 use appell_recordings::{Channel, DataSet, Parameter, Part, Run, Spec};
 
 use super::changes::Changes;
-use super::{DiagnoseError, GapVerdict, HowFar, Hypothesis, Options, Report, diagnose};
+use super::{
+    Before, Change, DiagnoseError, GapVerdict, HowFar, Hypothesis, Options, Report, diagnose,
+};
 
 /// Part of the prediction error that a change accounts for at least.
 const CHANGED: f64 = 0.1;
@@ -22,30 +24,6 @@ const CHANGED: f64 = 0.1;
 const FOUND: f64 = 1.0;
 /// Note above what is added to the spec.
 const NOTE: &str = "found in the recordings before";
-
-/// What differs from the recordings before.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Change {
-    /// Whether anything differs that matters.
-    pub is_changed: bool,
-    /// What the model lacked already: the verdict, and effects that were taken over.
-    pub before: (GapVerdict, Vec<String>),
-    /// Parameters as the recordings before tell them.
-    pub parameters: Vec<Before>,
-}
-
-/// A parameter before.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Before {
-    /// Name.
-    pub name: String,
-    /// Value in SI.
-    pub value: f64,
-    /// Its standard deviation in SI.
-    pub std: f64,
-    /// Standard deviation from run to run in SI, beyond that.
-    pub spread: f64,
-}
 
 /// Diagnoses recordings against those before. `stage` is called with the name of each stage.
 pub fn against(

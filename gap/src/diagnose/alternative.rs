@@ -10,7 +10,7 @@ use appell_estimate::{Estimation, Innovation};
 use super::DiagnoseError;
 use super::bench::Bench;
 use super::changes::Changes;
-use super::hypothesis::Fitted;
+use super::evidence::Fitted;
 use super::report::Value;
 use crate::effects::EffectModel;
 use appell_recordings::{DataSet, Spec};

@@ -8,7 +8,7 @@ use appell_estimate::Estimation;
 
 use super::DiagnoseError;
 use super::bench::Bench;
-use super::hypothesis::Fitted;
+use super::evidence::Fitted;
 use super::screen::{Screened, directions};
 use crate::effects::{Drive, Part};
 

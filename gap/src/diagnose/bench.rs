@@ -9,8 +9,8 @@ use appell_runtime::model::Model;
 
 use super::DiagnoseError;
 use super::evidence::Evidence;
+use super::evidence::Fitted;
 use super::feedback::InputInnovations;
-use super::hypothesis::Fitted;
 use super::unmodelled::UnmodelledChannel;
 use crate::effects::{Acts, Candidate, EffectModel, Part as Role};
 use crate::identify::{Options, Problem, longest_step};

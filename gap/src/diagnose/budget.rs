@@ -11,50 +11,10 @@ use appell_estimate::Estimation;
 use super::DiagnoseError;
 use super::bench::Bench;
 use super::compare::Comparison;
-use super::hypothesis::Fitted;
+use super::evidence::Fitted;
 use super::prediction::{Errors, Paired};
+use super::report::{LAW, REFIT, REST, Share};
 use crate::effects::Acts;
-
-/// The re-fitted parameters in the budget.
-pub(super) const REFIT: &str = "refit";
-/// The measured law in the budget.
-pub(super) const LAW: &str = "law";
-/// What nothing explains.
-pub(super) const REST: &str = "unexplained";
-
-/// A part of the gap.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Part {
-    /// `refit`, an effect, `law` for a force that was measured, or `unexplained`.
-    pub name: String,
-    /// Part of the gap of the nominal model, on the runs that were held out.
-    pub closed: f64,
-    /// Its interval of 95 %, over blocks of time.
-    pub interval: [f64; 2],
-    /// Whether it is large enough to name a cause: beyond the tolerance, as a part of what re-fitted
-    /// parameters leave.
-    pub is_material: bool,
-}
-
-/// Part of what re-fitted parameters leave of the gap below which nothing names its cause.
-pub(super) const IMMATERIAL: f64 = 0.02;
-
-impl Part {
-    /// Whether it is that of the re-fitted parameters.
-    pub fn is_refit(&self) -> bool {
-        self.name == REFIT
-    }
-
-    /// Whether it is that of a measured law.
-    pub fn is_law(&self) -> bool {
-        self.name == LAW
-    }
-
-    /// Whether it is what nothing explains.
-    pub fn is_rest(&self) -> bool {
-        self.name == REST
-    }
-}
 
 /// The errors between which the gap divides.
 pub(super) struct Ends<'e> {
@@ -68,7 +28,7 @@ pub(super) struct Ends<'e> {
     pub(super) law: Option<&'e Errors>,
     /// Where everything is right.
     pub(super) floor: f64,
-    /// Part of what the re-fitted model leaves beyond which a part is material.
+    /// Share of what the re-fitted model leaves beyond which a part is material.
     pub(super) tolerance: f64,
 }
 
@@ -78,7 +38,7 @@ pub(super) fn of(
     best: &Fitted,
     ends: &Ends<'_>,
     errors: impl Fn(&Fitted) -> Result<Errors, DiagnoseError>,
-) -> Result<Vec<Part>, DiagnoseError> {
+) -> Result<Vec<Share>, DiagnoseError> {
     let effects = effects(bench, best);
     let count = effects.len();
     let all = (1 << count) - 1;
@@ -105,7 +65,7 @@ pub(super) fn of(
     let left = (means[1] - floor * floor) / gap(&means);
     let mut add = |name: String, share: &dyn Fn(&[f64]) -> f64| {
         let closed = share(&means);
-        parts.push(Part {
+        parts.push(Share {
             name,
             closed,
             interval: paired.interval95(share),
@@ -136,11 +96,11 @@ pub(super) fn of_alternative(
     name: &str,
     paired: &Paired,
     (floor, tolerance): (f64, f64),
-) -> Vec<Part> {
+) -> Vec<Share> {
     let gap = move |means: &[f64]| means[0] - floor * floor;
     let part = |name: &str, share: &dyn Fn(&[f64]) -> f64| {
         let closed = share(&paired.means());
-        Part {
+        Share {
             name: name.to_owned(),
             closed,
             interval: paired.interval95(share),

@@ -17,6 +17,10 @@ const MIMICKED: f64 = 0.4;
 const INEXACT: f64 = 0.5;
 /// Size of what such a law leaves beside what it explains: standard deviation.
 const LEFT: f64 = 0.1;
+/// Two hypotheses whose log evidence differs by less are tied: odds of twenty.
+pub(super) const TIED: f64 = 3.0;
+/// Part of what re-fitted parameters leave of the gap below which nothing names its cause.
+pub(super) const IMMATERIAL: f64 = 0.02;
 /// Larger logarithms are certainty.
 const MOST: f64 = 300.0;
 

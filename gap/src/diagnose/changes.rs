@@ -9,9 +9,9 @@ use appell_spec::mechanism::ParameterId;
 use appell_spec::units::{self, Unit};
 use toml_edit::{DocumentMut, Item};
 
-use super::DiagnoseError;
 use super::bench::Bench;
-use super::hypothesis::Fitted;
+use super::evidence::Fitted;
+use super::{ChangeError, DiagnoseError};
 use crate::effects::{ACTING, Acts, ModelError, Part, with_candidates};
 
 /// Changes of a spec.
@@ -53,28 +53,6 @@ pub struct SignalEffect {
     pub acts: String,
     /// The input or channel.
     pub on: String,
-}
-
-/// Why a spec cannot be changed.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum ChangeError {
-    /// The spec or the items are not what they should be.
-    #[error(transparent)]
-    Edit(#[from] EditError),
-    /// The effect is there already.
-    #[error(
-        "the spec has `{name}` already: it holds this effect, and the report is about another spec"
-    )]
-    There {
-        /// A parameter of the effect.
-        name: String,
-    },
-    /// A unit that does not exist.
-    #[error("the parameter `{name}` has no readable value and unit in the report")]
-    Unreadable {
-        /// The parameter.
-        name: String,
-    },
 }
 
 impl Changes {

@@ -9,11 +9,11 @@ use appell_estimate::{Estimation, Fit, Unknown};
 
 use super::DiagnoseError;
 use super::bench::{Bench, LAG, WRONG};
-use super::budget::IMMATERIAL;
 use super::calibration::{
-    Rest, inexact, tempered, unlisted, unlisted_beside_an_effect, unlisted_beside_nothing,
+    IMMATERIAL, Rest, TIED, inexact, tempered, unlisted, unlisted_beside_an_effect,
+    unlisted_beside_nothing,
 };
-use super::hypothesis::Fitted;
+use super::evidence::Fitted;
 use super::screen::{Screen, Screened};
 use super::unknown::{Leftover, leftover};
 use super::whiteness::independent;
@@ -31,8 +31,6 @@ const MOST_MEMBERS: usize = 4;
 const LEAST_GAIN: f64 = 4.0;
 /// Part of the greatest gain below which no fit catches up.
 const LEAST_PART: f64 = 0.25;
-/// Two hypotheses whose log evidence differs by less are tied: odds of twenty.
-pub(super) const TIED: f64 = 3.0;
 /// Probability beforehand that there is no gap.
 const NO_GAP: f64 = 0.5;
 /// Probability beforehand that an effect does not come alone.

@@ -1,6 +1,7 @@
 //! Why nothing can be diagnosed.
 
 use appell_estimate::EstimateError;
+use appell_spec::edit::EditError;
 
 use crate::effects::ModelError;
 
@@ -45,7 +46,7 @@ pub enum DiagnoseError {
     Estimate(#[from] EstimateError),
     /// What was found before cannot be written into the spec.
     #[error(transparent)]
-    Change(#[from] super::ChangeError),
+    Change(#[from] ChangeError),
     /// A start that cannot be found.
     #[error(transparent)]
     Start(#[from] crate::identify::IdentifyError),
@@ -59,4 +60,26 @@ impl DiagnoseError {
             other => other,
         }
     }
+}
+
+/// Why a spec cannot be changed.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum ChangeError {
+    /// The spec or the items are not what they should be.
+    #[error(transparent)]
+    Edit(#[from] EditError),
+    /// The effect is there already.
+    #[error(
+        "the spec has `{name}` already: it holds this effect, and the report is about another spec"
+    )]
+    There {
+        /// A parameter of the effect.
+        name: String,
+    },
+    /// A unit that does not exist.
+    #[error("the parameter `{name}` has no readable value and unit in the report")]
+    Unreadable {
+        /// The parameter.
+        name: String,
+    },
 }

@@ -9,7 +9,7 @@
 
 use std::f64::consts::TAU;
 
-use appell_estimate::{Fit, Unknown};
+use appell_estimate::{Fit, Layout, Unknown};
 use nalgebra::{DMatrix, DVector};
 
 use super::bench::Bench;
@@ -19,6 +19,24 @@ use super::bench::Bench;
 const LN_1000: f64 = 6.9;
 /// Sizes below this many standard deviations cannot be distinguished from zero.
 const SMALLEST: f64 = 1.0;
+
+/// A set of candidates, fitted.
+#[derive(Debug, Clone)]
+pub(super) struct Fitted {
+    /// Indices of the candidates; none for the nominal model.
+    pub(super) members: Vec<usize>,
+    /// Places of the values.
+    pub(super) layout: Layout,
+    pub(super) fit: Fit,
+    pub(super) evidence: Evidence,
+}
+
+impl Fitted {
+    /// Whether the recordings tell the sizes of all members from zero.
+    pub(super) fn is_there(&self) -> bool {
+        self.evidence.smallest > 1.0
+    }
+}
 
 /// The evidence of a fitted hypothesis.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -11,8 +11,9 @@ use nalgebra::{DMatrix, DVector};
 use super::DiagnoseError;
 use super::bench::Bench;
 use super::compare::Comparison;
-use super::hypothesis::Fitted;
+use super::evidence::Fitted;
 use super::prediction::taken_over;
+use super::report::{Experiment, Limit};
 use super::screen::moving;
 use crate::experiment::Excitation;
 use appell_recordings::{DataSet, Role};
@@ -23,26 +24,6 @@ const LONGEST: f64 = 20.0;
 const SIZES: [f64; 4] = [1.0, 0.7, 0.4, 0.2];
 /// Where nothing is said, a measured channel may leave its recorded range by this part of it.
 const ROOM: f64 = 0.25;
-
-/// A limit that a person states, in SI: a column with its smallest and largest value.
-pub type Limit = (String, [f64; 2]);
-
-/// An input that separates two hypotheses.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Experiment {
-    /// The effects of both.
-    pub separates: [Vec<String>; 2],
-    /// What the input is, in words.
-    pub about: String,
-    /// How far the recordings set them apart, in standard deviations.
-    pub separation_now: f64,
-    /// How far they are apart with the recordings of this experiment.
-    pub separation_then: f64,
-    /// Times in s.
-    pub times: Vec<f64>,
-    /// Inputs of the spec with their values in SI, each held until the next time.
-    pub inputs: Vec<(String, Vec<f64>)>,
-}
 
 /// What may be done with the rig.
 struct Rig<'a> {

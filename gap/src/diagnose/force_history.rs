@@ -10,34 +10,13 @@ use super::bench::Bench;
 use super::compare::Comparison;
 use super::forces::Forces;
 use super::localise::force_unit;
+use super::report::{ForceHistory, MissingForce};
 use super::windows::WINDOW_S;
 
 /// Most parts of all runs; more cannot be told apart.
 const PARTS: f64 = 160.0;
 /// Most steps that are looked at in a run.
 const STEPS: usize = 2000;
-
-/// The missing force of each equation over time.
-#[derive(Debug, Clone, PartialEq)]
-pub struct ForceHistory {
-    /// Length of a part in s.
-    pub part: f64,
-    /// Runs: file, begin in s, parts.
-    pub runs: Vec<(String, f64, usize)>,
-    /// Equations.
-    pub equations: Vec<MissingForce>,
-}
-
-/// The missing force of one equation.
-#[derive(Debug, Clone, PartialEq)]
-pub struct MissingForce {
-    /// Pseudo-velocity.
-    pub name: String,
-    /// Unit of the force.
-    pub unit: String,
-    /// Root of its mean square in each part of the runs, one after the other.
-    pub rms: Vec<f64>,
-}
 
 /// Of all runs that were fitted.
 pub(super) fn force_history(

@@ -9,7 +9,7 @@ use super::DiagnoseError;
 use super::bench::Bench;
 use super::compare::Comparison;
 use super::forces::Forces;
-use super::report::Where;
+use super::report::{ForceLaw, Where};
 
 /// Most steps that are looked at.
 const STEPS: usize = 6000;
@@ -19,25 +19,6 @@ const POINTS: usize = 500;
 const PARTS: usize = 60;
 /// A law that explains less of itself than this along a variable depends on something else.
 const DEPENDS: f64 = 0.3;
-
-/// Data and law over a variable: the force in SI, the variable in the unit of the spec.
-#[derive(Debug, Clone, PartialEq)]
-pub struct ForceLaw {
-    /// The pseudo-velocity whose equation lacks the force.
-    pub equation: String,
-    /// Unit of the force.
-    pub unit: String,
-    /// A state or an input.
-    pub variable: String,
-    /// Its unit.
-    pub variable_unit: String,
-    /// Places along the recordings: variable, force.
-    pub points: Vec<[f64; 2]>,
-    /// Mean force in each part of the variable.
-    pub means: Vec<[f64; 2]>,
-    /// The law of the best hypothesis; empty where none acts in the equations.
-    pub law: Vec<[f64; 2]>,
-}
 
 /// One step of a recording.
 struct Step {

@@ -5,7 +5,8 @@ use appell_runtime::model::At;
 
 use super::DiagnoseError;
 use super::bench::Bench;
-use super::hypothesis::Fitted;
+use super::evidence::Fitted;
+use super::report::Form;
 use super::unknown::{Dependence, LawGain, TermScores, Unnamed, term_scores};
 
 /// Forms that are told.
@@ -18,17 +19,6 @@ const PLACES: usize = 9;
 const WAVES: usize = 48;
 /// Width of a step in parts of the range.
 const STEP: f64 = 0.01;
-
-/// A form with its evidence.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Form {
-    /// In the letters of the spec, up to factors: `omega*abs(omega)`.
-    pub text: String,
-    /// Part of what the law gains.
-    pub share: f64,
-    /// Logarithm of the Bayes factor for it.
-    pub log_bayes_factor: f64,
-}
 
 /// One function of the variable.
 struct Term {

@@ -6,12 +6,13 @@
 use appell_estimate::Recording;
 
 use super::DiagnoseError;
-use super::Options;
 use super::bench::Bench;
-use super::budget::{self, Ends, IMMATERIAL};
+use super::budget::{self, Ends};
+use super::calibration::IMMATERIAL;
 use super::compare::Comparison;
-use super::hypothesis::Fitted;
+use super::evidence::Fitted;
 use super::law::FittedLaw;
+use super::options::Options;
 use super::prediction::{self, Errors, Paired, noise, stated};
 use super::report::HowFar;
 use appell_recordings::{DataSet, Part};

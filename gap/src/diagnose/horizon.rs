@@ -11,8 +11,9 @@ use std::f64::consts::PI;
 
 use super::DiagnoseError;
 use super::bench::Bench;
-use super::compare::{Comparison, Look, TIED};
-use super::hypothesis::Fitted;
+use super::calibration::TIED;
+use super::compare::{Comparison, Look};
+use super::evidence::Fitted;
 use super::scales::rates;
 use super::screen::Screen;
 use super::unknown::leftover;

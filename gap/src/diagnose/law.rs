@@ -10,12 +10,13 @@ use appell_estimate::{Along, Estimation, Unknown};
 
 use super::DiagnoseError;
 use super::bench::Bench;
-use super::budget::IMMATERIAL;
-use super::compare::{Comparison, TIED};
-use super::forms::{Form, forms};
+use super::calibration::{IMMATERIAL, TIED};
+use super::compare::Comparison;
+use super::evidence::Fitted;
+use super::forms::forms;
 use super::held_out::HeldOut;
-use super::hypothesis::Fitted;
 use super::localise::force_unit;
+use super::report::Law;
 use super::unknown::{Dependence, Leftover, Series, Unnamed, leftover, wave_scores};
 use crate::effects::{Candidate, EffectModel};
 use appell_recordings::DataSet;
@@ -24,29 +25,6 @@ use appell_recordings::DataSet;
 const PLACES: [usize; 2] = [81, 10];
 /// Standard deviation of the length of a wave, in the distance of those that are tried.
 const APART: f64 = 0.5;
-
-/// A measured law.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Law {
-    /// The pseudo-velocity whose equation has the force.
-    pub equation: String,
-    /// Unit of the force, or of what the factor multiplies.
-    pub unit: String,
-    /// On what it depends, in words.
-    pub depends_on: String,
-    /// The variable of the curve.
-    pub variable: String,
-    /// Its unit.
-    pub variable_unit: String,
-    /// What it is multiplied with, in the language of a spec, if with anything.
-    pub factor: Option<String>,
-    /// The variable, the force, its standard deviation.
-    pub curve: Vec<[f64; 3]>,
-    /// Logarithm of the Bayes factor for it.
-    pub log_bayes_factor: f64,
-    /// Forms that come near to it, the most probable first.
-    pub forms: Vec<Form>,
-}
 
 /// The equations with the law.
 pub(super) struct Lawful<'c> {

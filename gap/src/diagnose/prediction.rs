@@ -13,7 +13,7 @@ use rand_xoshiro::rand_core::{Rng as _, SeedableRng as _};
 
 use super::DiagnoseError;
 use super::bench::Bench;
-use super::hypothesis::Fitted;
+use super::evidence::Fitted;
 use crate::held_out::origins;
 use crate::identify::begin;
 

@@ -1,32 +1,16 @@
 //! The gap report: what was found, in the words of the contract.
 
-use super::DiagnoseError;
-use super::against::Change;
-use super::alternative::Rival;
-use super::bench::Bench;
-use super::budget::{LAW, Part as Share};
-use super::calibration::tempered;
+use super::calibration::TIED;
 use super::changes::Changes;
-use super::compare::{Comparison, TIED, effects, prior};
-use super::experiment::Experiment;
-use super::force_history::ForceHistory;
-use super::force_law::ForceLaw;
-use super::hypothesis::Fitted;
-use super::law::{FittedLaw, Law};
-use super::screen::Screen;
-use super::traces::{Ahead, Trace};
-use super::unknown;
-use crate::effects::{Acts, Part};
-use appell_estimate::{Along, Unknown};
 
 /// Name of the hypothesis that nothing in the library explains the gap.
-const UNKNOWN: &str = "unknown";
-/// Sizes in their standard deviations that are found with near certainty.
-const DETECTABLE: f64 = 5.0;
-/// Fewer hypotheses than this are never cut from the report.
-const TOLD: usize = 10;
-/// Odds beyond this are certainty, and no number any more.
-const MOST_LOG_ODDS: f64 = 600.0;
+pub(super) const UNKNOWN: &str = "unknown";
+/// The re-fitted parameters in the budget.
+pub(super) const REFIT: &str = "refit";
+/// The measured law in the budget.
+pub(super) const LAW: &str = "law";
+/// What nothing explains.
+pub(super) const REST: &str = "unexplained";
 
 /// The result in one word.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -177,6 +161,37 @@ impl Where {
     }
 }
 
+/// A part of the gap.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Share {
+    /// `refit`, an effect, `law` for a force that was measured, or `unexplained`.
+    pub name: String,
+    /// Part of the gap of the nominal model, on the runs that were held out.
+    pub closed: f64,
+    /// Its interval of 95 %, over blocks of time.
+    pub interval: [f64; 2],
+    /// Whether it is large enough to name a cause: beyond the tolerance, as a part of what re-fitted
+    /// parameters leave.
+    pub is_material: bool,
+}
+
+impl Share {
+    /// Whether it is that of the re-fitted parameters.
+    pub fn is_refit(&self) -> bool {
+        self.name == REFIT
+    }
+
+    /// Whether it is that of a measured law.
+    pub fn is_law(&self) -> bool {
+        self.name == LAW
+    }
+
+    /// Whether it is what nothing explains.
+    pub fn is_rest(&self) -> bool {
+        self.name == REST
+    }
+}
+
 /// Errors of predictions on runs that were held out, in units of the noise.
 #[derive(Debug, Clone, PartialEq)]
 #[expect(missing_docs, reason = "the words of the contract")]
@@ -207,6 +222,19 @@ pub struct Detectable {
     pub unit: String,
 }
 
+/// Root of the mean square of the errors at a horizon, in units of the noise.
+#[derive(Debug, Clone, PartialEq)]
+#[expect(missing_docs, reason = "the words of the contract")]
+pub struct Ahead {
+    /// In s: 0 is one step, infinity the free run to the end.
+    pub horizon: f64,
+    pub nominal: f64,
+    pub refitted: f64,
+    pub with_effect: f64,
+    /// What the filter expects; nothing for the free run.
+    pub noise_floor: Option<f64>,
+}
+
 /// What the best hypothesis leaves: a force or an error that nobody has named.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Left {
@@ -231,6 +259,40 @@ impl Left {
     }
 }
 
+/// A measured law.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Law {
+    /// The pseudo-velocity whose equation has the force.
+    pub equation: String,
+    /// Unit of the force, or of what the factor multiplies.
+    pub unit: String,
+    /// On what it depends, in words.
+    pub depends_on: String,
+    /// The variable of the curve.
+    pub variable: String,
+    /// Its unit.
+    pub variable_unit: String,
+    /// What it is multiplied with, in the language of a spec, if with anything.
+    pub factor: Option<String>,
+    /// The variable, the force, its standard deviation.
+    pub curve: Vec<[f64; 3]>,
+    /// Logarithm of the Bayes factor for it.
+    pub log_bayes_factor: f64,
+    /// Forms that come near to it, the most probable first.
+    pub forms: Vec<Form>,
+}
+
+/// A form with its evidence.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Form {
+    /// In the letters of the spec, up to factors: `omega*abs(omega)`.
+    pub text: String,
+    /// Part of what the law gains.
+    pub share: f64,
+    /// Logarithm of the Bayes factor for it.
+    pub log_bayes_factor: f64,
+}
+
 /// A channel that the model does not know and on which the gap of the nominal model depends.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Hint {
@@ -242,6 +304,50 @@ pub struct Hint {
     pub gain: f64,
     /// Logarithm of the Bayes factor for it.
     pub log_bayes_factor: f64,
+}
+
+/// What differs from the recordings before.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Change {
+    /// Whether anything differs that matters.
+    pub is_changed: bool,
+    /// What the model lacked already: the verdict, and effects that were taken over.
+    pub before: (GapVerdict, Vec<String>),
+    /// Parameters as the recordings before tell them.
+    pub parameters: Vec<Before>,
+}
+
+/// A parameter before.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Before {
+    /// Name.
+    pub name: String,
+    /// Value in SI.
+    pub value: f64,
+    /// Its standard deviation in SI.
+    pub std: f64,
+    /// Standard deviation from run to run in SI, beyond that.
+    pub spread: f64,
+}
+
+/// A limit that a person states, in SI: a column with its smallest and largest value.
+pub type Limit = (String, [f64; 2]);
+
+/// An input that separates two hypotheses.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Experiment {
+    /// The effects of both.
+    pub separates: [Vec<String>; 2],
+    /// What the input is, in words.
+    pub about: String,
+    /// How far the recordings set them apart, in standard deviations.
+    pub separation_now: f64,
+    /// How far they are apart with the recordings of this experiment.
+    pub separation_then: f64,
+    /// Times in s.
+    pub times: Vec<f64>,
+    /// Inputs of the spec with their values in SI, each held until the next time.
+    pub inputs: Vec<(String, Vec<f64>)>,
 }
 
 /// A member of a hypothesis in a sentence.
@@ -299,30 +405,6 @@ pub struct Report {
     pub experiment: Option<Experiment>,
 }
 
-impl Report {
-    /// Takes a measured law: what nothing in the library explains has it to write into the spec. A law whose fit
-    /// failed is a row.
-    pub(super) fn measured<'l>(
-        &mut self,
-        measured: Option<Result<FittedLaw<'l>, DiagnoseError>>,
-    ) -> Result<Option<FittedLaw<'l>>, DiagnoseError> {
-        let measured = match measured {
-            Some(Ok(measured)) => measured,
-            Some(Err(reason)) => {
-                self.failed.push((vec![LAW.to_owned()], reason.to_string()));
-                return Ok(None);
-            }
-            None => return Ok(None),
-        };
-        let unknown = self.which.iter_mut().find(|one| one.is_unknown());
-        if let Some(unknown) = unknown {
-            unknown.changes = Some(Changes::of(&measured.bench, &measured.fitted)?);
-        }
-        self.law = Some(measured.law.clone());
-        Ok(Some(measured))
-    }
-}
-
 /// What people look at.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Pictures {
@@ -334,349 +416,66 @@ pub struct Pictures {
     pub force_law: Option<ForceLaw>,
 }
 
-pub(super) fn assemble(
-    bench: &Bench<'_>,
-    screen: &Screen,
-    comparison: &Comparison,
-    place: Where,
-    rivals: &[Rival<'_>],
-) -> Result<Report, DiagnoseError> {
-    let names = |members: &[usize]| -> Vec<String> {
-        let mut names: Vec<String> = Vec::new();
-        for name in members.iter().map(|&m| bench.candidate(m).name()) {
-            // Components of a vector are one effect.
-            if !names.contains(&name) {
-                names.push(name);
-            }
-        }
-        names
-    };
-    let base = comparison.nominal().evidence.log();
-    let known = 1.0 - comparison.unknown;
-    let mut which: Vec<Hypothesis> = Vec::new();
-    for (fitted, probability) in &comparison.fits {
-        let effects = names(&fitted.members);
-        // Variants of one effect are one hypothesis.
-        if let Some(own) = which.iter_mut().find(|own| own.effects == effects) {
-            own.probability += probability * known;
-            continue;
-        }
-        which.push(Hypothesis {
-            effects,
-            probability: probability * known,
-            log_bayes_factor: Some(fitted.evidence.log() - base),
-            parameters: values(bench, fitted),
-            changes: Some(Changes::of(bench, fitted)?),
-        });
-    }
-    which.push(Hypothesis {
-        effects: vec![UNKNOWN.to_owned()],
-        probability: comparison.unknown,
-        log_bayes_factor: None,
-        parameters: Vec::new(),
-        changes: None,
-    });
-    join(&mut which, rivals, bench, comparison)?;
-    which.sort_by(|a, b| b.probability.total_cmp(&a.probability));
-    let tied = tied(&which);
-    let top = &which[0];
-    let verdict = match top.effects.first().map(String::as_str) {
-        None => GapVerdict::NoGap,
-        Some(UNKNOWN) if tied.is_empty() => GapVerdict::Unexplained,
-        Some(_) if tied.is_empty() => GapVerdict::Explained,
-        Some(_) => GapVerdict::Ambiguous,
-    };
-    let cut = which.len().min(TOLD);
-    let rest: f64 = which[cut..].iter().map(|h| h.probability).sum();
-    let keep: Vec<Hypothesis> = which
-        .iter()
-        .enumerate()
-        .filter(|(i, h)| *i < cut || h.effects.is_empty() || h.is_unknown())
-        .map(|(_, h)| h.clone())
-        .collect();
-    let best = comparison.best();
-    let leading = rivals
-        .iter()
-        .find(|rival| top.effects == [rival.name.clone()]);
-    let leads = leading.is_some();
-    let found = match leading {
-        Some(rival) => vec![Found {
-            effect: rival.name.clone(),
-            about: format!("the model `{}`", rival.bench.set.mechanism.name),
-        }],
-        None => found(bench, best),
-    };
-    Ok(Report {
-        mechanism: bench.set.mechanism.name.clone(),
-        verdict,
-        is_by_simulation: bench.is_over_windows(),
-        rows: [0; 2],
-        place: if verdict == GapVerdict::NoGap || leads {
-            Where::nowhere()
-        } else {
-            place
-        },
-        which: if rest < 1e-6 { keep } else { which },
-        tied,
-        how_far: None,
-        detectable: detectable(bench, screen),
-        failed: comparison
-            .failed
-            .iter()
-            .map(|(members, reason)| (names(members), reason.clone()))
-            .collect(),
-        disturbances: disturbances(bench, comparison.nominal(), best),
-        left: left(bench, comparison),
-        law: None,
-        change: None,
-        independent: comparison.independent,
-        hints: Vec::new(),
-        found,
-        horizons: Vec::new(),
-        pictures: None,
-        experiment: None,
-    })
+/// The missing force of each equation over time.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ForceHistory {
+    /// Length of a part in s.
+    pub part: f64,
+    /// Runs: file, begin in s, parts.
+    pub runs: Vec<(String, f64, usize)>,
+    /// Equations.
+    pub equations: Vec<MissingForce>,
 }
 
-/// The effects of a hypothesis in words.
-fn found(bench: &Bench<'_>, fitted: &Fitted) -> Vec<Found> {
-    let members = fitted.members.iter().map(|&member| bench.candidate(member));
-    let mut found: Vec<Found> = members
-        .map(|candidate| Found {
-            effect: candidate.name(),
-            about: candidate.about.clone(),
-        })
-        .collect();
-    found.dedup();
-    found
+/// The missing force of one equation.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MissingForce {
+    /// Pseudo-velocity.
+    pub name: String,
+    /// Unit of the force.
+    pub unit: String,
+    /// Root of its mean square in each part of the runs, one after the other.
+    pub rms: Vec<f64>,
 }
 
-/// Alternatives beside the hypotheses of the library, each as probable beforehand as one effect.
-fn join(
-    which: &mut Vec<Hypothesis>,
-    rivals: &[Rival<'_>],
-    bench: &Bench<'_>,
-    comparison: &Comparison,
-) -> Result<(), DiagnoseError> {
-    let (best, probability) = &comparison.fits[0];
-    // Beside certainty nothing is left of 1 − p: what is left of the library speaks for itself.
-    let left = comparison.left.as_ref();
-    let left = left.map_or(0.0, |left| left.log_bayes_factor.max(0.0)) * comparison.independent;
-    let known = probability.ln() + (1.0 - comparison.unknown).ln().max(-left);
-    let beside = best.evidence.log() + prior(bench, effects(bench, &best.members));
-    let base = comparison.nominal().evidence.log();
-    for rival in rivals {
-        let odds = tempered(comparison.independent * (rival.log + prior(bench, 1) - beside));
-        which.push(Hypothesis {
-            effects: vec![rival.name.clone()],
-            probability: (odds + known).min(MOST_LOG_ODDS).exp(),
-            log_bayes_factor: Some(rival.log - base),
-            parameters: rival.values()?,
-            changes: None,
-        });
-    }
-    let sum: f64 = which.iter().map(|hypothesis| hypothesis.probability).sum();
-    for hypothesis in which {
-        hypothesis.probability /= sum;
-    }
-    Ok(())
+/// A channel of a run beside predictions of it, [`AHEAD`] before, in the unit of the channel.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Trace {
+    /// File of the run.
+    pub run: String,
+    /// Column.
+    pub column: String,
+    /// Unit.
+    pub unit: String,
+    /// Times in s.
+    pub times: Vec<f64>,
+    /// What was measured.
+    pub measured: Vec<f64>,
+    /// What the model predicts with the parameters that the data set states.
+    pub nominal: Vec<f64>,
+    /// What it predicts with its parameters fitted.
+    pub refitted: Vec<f64>,
+    /// What the best hypothesis predicts.
+    pub with_effect: Vec<f64>,
+    /// Standard deviation that the errors have if the best hypothesis is right.
+    pub deviation: f64,
 }
 
-/// The leading hypothesis with those that cannot be told from it.
-fn tied(which: &[Hypothesis]) -> Vec<Vec<Vec<String>>> {
-    let is_named = |other: &&Hypothesis| !other.is_unknown();
-    let Some(first) = which.iter().find(is_named) else {
-        return Vec::new();
-    };
-    if first.effects.is_empty() {
-        return Vec::new();
-    }
-    let is_near = |other: &&Hypothesis| {
-        is_named(other)
-            && other.effects.len() == first.effects.len()
-            && (first.probability / other.probability).ln() < TIED
-    };
-    let group: Vec<&Hypothesis> = which.iter().filter(is_near).collect();
-    // Names of one thing share its probability: none of them leads, but all of them together.
-    let all: f64 = group.iter().map(|one| one.probability).sum();
-    if group.len() > 1 && all >= which[0].probability {
-        vec![group.into_iter().map(|one| one.effects.clone()).collect()]
-    } else {
-        Vec::new()
-    }
-}
-
-/// Values of the members of a hypothesis.
-fn values(bench: &Bench<'_>, fitted: &Fitted) -> Vec<Value> {
-    let info = bench.effects.info();
-    let deviation = |place: usize| match fitted.fit.deviation(place) {
-        Ok(deviation) if !fitted.fit.at_limit[place] => deviation,
-        _ => f64::NAN,
-    };
-    let mut values = Vec::new();
-    for &member in &fitted.members {
-        let candidate = bench.candidate(member);
-        let name = |parameter: &str| format!("{}.{parameter}", candidate.name());
-        let own: Vec<usize> = bench
-            .own(candidate)
-            .into_iter()
-            .filter(|(_, part)| *part != Part::Switch)
-            .map(|(index, _)| index)
-            .collect();
-        for (place, free) in fitted.fit.free.iter().enumerate() {
-            let value = free.to_value(fitted.fit.coordinates[place]);
-            let told = match (free.unknown, candidate.acts) {
-                (Unknown::Parameter(index), Acts::Items) if own.contains(&index) => {
-                    let quantity = &info.parameters[index];
-                    let short = candidate.short(&quantity.name);
-                    Some((name(short), quantity.unit.to_string()))
-                }
-                (Unknown::Parameter(index), Acts::Parameter(_))
-                    if info.parameters[index].name == candidate.site.as_str() =>
-                {
-                    let quantity = &info.parameters[index];
-                    Some((name("value"), quantity.unit.to_string()))
-                }
-                (Unknown::Bias(own), Acts::Bias(channel)) if own == channel => {
-                    Some((name("bias"), channel_unit(bench, channel)))
-                }
-                (Unknown::Scale(own), Acts::Scale(channel)) if own == channel => {
-                    Some((name("scale"), "1".to_owned()))
-                }
-                (Unknown::SensorDelay(own), Acts::Late(channel)) if own == channel => {
-                    Some((name("delay"), "s".to_owned()))
-                }
-                (Unknown::Lag(_), Acts::Lag(_)) => Some((name("time_constant"), "s".to_owned())),
-                (Unknown::InputDelay(_), Acts::Delay(_)) => Some((name("delay"), "s".to_owned())),
-                _ => None,
-            };
-            if let Some((name, unit)) = told {
-                let scale = match free.unknown {
-                    Unknown::Parameter(index) => info.parameters[index].scale,
-                    _ => 1.0,
-                };
-                let stretch = match free.coordinate {
-                    appell_estimate::Coordinate::Plain => 1.0,
-                    appell_estimate::Coordinate::Logarithm => value,
-                };
-                values.push(Value {
-                    name,
-                    value: value / scale,
-                    std: deviation(place) * stretch / scale,
-                    unit,
-                });
-            }
-        }
-    }
-    values
-}
-
-/// SI unit of a measured channel.
-fn channel_unit(bench: &Bench<'_>, channel: usize) -> String {
-    let measured = bench.set.measured(bench.effects.info());
-    let Some((channel, _)) = measured.get(channel) else {
-        return String::new();
-    };
-    let unit = &channel.unit;
-    let si = appell_spec::units::Unit::si(unit.dimension).text;
-    // An angle has no dimension, but people know it by its name.
-    match si.as_str() {
-        "1" if unit.has_angle() => "rad".to_owned(),
-        "1/s" if unit.has_angle() => "rad/s".to_owned(),
-        _ => si,
-    }
-}
-
-/// What the gap of the nominal model depends on beside the quantities of the model.
-pub(super) fn hints(
-    bench: &Bench<'_>,
-    comparison: &Comparison,
-) -> Result<Vec<Hint>, DiagnoseError> {
-    let info = bench.effects.info();
-    let hints = unknown::hints(bench, comparison.nominal())?.into_iter();
-    Ok(hints
-        .map(|one| Hint {
-            equation: info.states[one.place].name.to_string(),
-            variable: one.variable,
-            gain: one.gain,
-            log_bayes_factor: one.log_bayes_factor,
-        })
-        .collect())
-}
-
-fn left(bench: &Bench<'_>, comparison: &Comparison) -> Option<Left> {
-    let left = comparison.left.as_ref()?;
-    let first = &left.first;
-    let (place, what) = match first.along {
-        Along::Disturbances => {
-            let equation = bench.effects.info().states[first.place].name.to_string();
-            (equation, "a force in the equation of")
-        }
-        Along::Channels => {
-            let measured = bench.set.measured(bench.effects.info());
-            let (channel, _) = measured.get(first.place)?;
-            (channel.column.clone(), "an error of the channel")
-        }
-    };
-    let variable = first.variable.clone();
-    Some(Left {
-        about: format!("{what} {place} that depends on {variable}"),
-        place,
-        variable,
-        log_bayes_factor: left.log_bayes_factor,
-        gain: first.gain,
-        explained: comparison.explained(),
-    })
-}
-
-fn disturbances(bench: &Bench<'_>, nominal: &Fitted, best: &Fitted) -> Vec<(String, f64, f64)> {
-    let info = bench.effects.info();
-    let level = |fitted: &Fitted, index| {
-        let place = fitted.layout.place(Unknown::Disturbance(index));
-        place.map_or(f64::NAN, |place| fitted.fit.values[place])
-    };
-    (0..info.speeds)
-        .map(|index| {
-            let name = info.states[index].name.to_string();
-            (name, level(nominal, index), level(best, index))
-        })
-        .collect()
-}
-
-/// What each effect would need to be seen.
-fn detectable(bench: &Bench<'_>, screen: &Screen) -> Vec<Detectable> {
-    let info = bench.effects.info();
-    let mut told: Vec<Detectable> = Vec::new();
-    let mut list: Vec<_> = screen.list.iter().collect();
-    list.sort_by_key(|one| one.candidate);
-    for one in list {
-        let candidate = bench.candidate(one.candidate);
-        let name = candidate.name();
-        let Some(&deviation) = one.deviations.first() else {
-            continue;
-        };
-        if deviation <= 0.0 || told.iter().any(|own| own.effect == name) {
-            continue;
-        }
-        let parameter = match candidate.acts {
-            Acts::Items => bench.own(candidate).first().map(|(index, _)| *index),
-            Acts::Parameter(_) => info.parameter_index(&candidate.site),
-            _ => None,
-        };
-        let (scale, unit) = match (candidate.acts, parameter) {
-            (_, Some(index)) => {
-                let quantity = &info.parameters[index];
-                (quantity.scale, quantity.unit.to_string())
-            }
-            (Acts::Bias(channel), _) => (1.0, channel_unit(bench, channel)),
-            (Acts::Lag(_) | Acts::Delay(_) | Acts::Late(_), _) => (1.0, "s".to_owned()),
-            _ => (1.0, "1".to_owned()),
-        };
-        told.push(Detectable {
-            effect: name,
-            smallest: DETECTABLE * deviation / scale,
-            unit,
-        });
-    }
-    told
+/// Data and law over a variable: the force in SI, the variable in the unit of the spec.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ForceLaw {
+    /// The pseudo-velocity whose equation lacks the force.
+    pub equation: String,
+    /// Unit of the force.
+    pub unit: String,
+    /// A state or an input.
+    pub variable: String,
+    /// Its unit.
+    pub variable_unit: String,
+    /// Places along the recordings: variable, force.
+    pub points: Vec<[f64; 2]>,
+    /// Mean force in each part of the variable.
+    pub means: Vec<[f64; 2]>,
+    /// The law of the best hypothesis; empty where none acts in the equations.
+    pub law: Vec<[f64; 2]>,
 }

@@ -13,9 +13,9 @@ use nalgebra::{DMatrix, DVector};
 use super::DiagnoseError;
 use super::augmented;
 use super::bench::Bench;
+use super::evidence::Fitted;
 use super::evidence::NormalSizes;
 use super::feedback::KICKS;
-use super::hypothesis::Fitted;
 use crate::effects::{Acts, Part};
 
 /// A candidate after the screen.

@@ -7,51 +7,16 @@ use super::DiagnoseError;
 use super::alternative::columns;
 use super::bench::Bench;
 use super::compare::Comparison;
+use super::evidence::Fitted;
 use super::held_out::{HeldOut, Leader};
-use super::hypothesis::Fitted;
 use super::prediction::{noise, stated, taken_over};
+use super::report::{Ahead, Trace};
 use crate::held_out::{AHEAD, HORIZONS, origins};
 
 /// Most points of a trace.
 const POINTS: usize = 1000;
 /// Rows from which the expected error is estimated.
 const EXPECTED_FROM: usize = 25;
-
-/// Root of the mean square of the errors at a horizon, in units of the noise.
-#[derive(Debug, Clone, PartialEq)]
-#[expect(missing_docs, reason = "the words of the contract")]
-pub struct Ahead {
-    /// In s: 0 is one step, infinity the free run to the end.
-    pub horizon: f64,
-    pub nominal: f64,
-    pub refitted: f64,
-    pub with_effect: f64,
-    /// What the filter expects; nothing for the free run.
-    pub noise_floor: Option<f64>,
-}
-
-/// A channel of a run beside predictions of it, [`AHEAD`] before, in the unit of the channel.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Trace {
-    /// File of the run.
-    pub run: String,
-    /// Column.
-    pub column: String,
-    /// Unit.
-    pub unit: String,
-    /// Times in s.
-    pub times: Vec<f64>,
-    /// What was measured.
-    pub measured: Vec<f64>,
-    /// What the model predicts with the parameters that the data set states.
-    pub nominal: Vec<f64>,
-    /// What it predicts with its parameters fitted.
-    pub refitted: Vec<f64>,
-    /// What the best hypothesis predicts.
-    pub with_effect: Vec<f64>,
-    /// Standard deviation that the errors have if the best hypothesis is right.
-    pub deviation: f64,
-}
 
 impl HeldOut {
     /// Errors at all horizons.

@@ -15,9 +15,9 @@ use appell_runtime::model::At;
 
 use super::DiagnoseError;
 use super::bench::Bench;
-use super::compare::TIED;
+use super::calibration::TIED;
+use super::evidence::Fitted;
 use super::evidence::log_sum;
-use super::hypothesis::Fitted;
 use super::screen::{Projected, moving};
 
 pub(super) use dependence::Dependence;

@@ -8,7 +8,7 @@ use appell_estimate::{Estimation, Innovation};
 
 use super::DiagnoseError;
 use super::bench::Bench;
-use super::hypothesis::Fitted;
+use super::evidence::Fitted;
 
 /// Longest distance in samples over which they are compared.
 const FARTHEST: usize = 100;

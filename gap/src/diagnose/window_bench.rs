@@ -5,7 +5,7 @@ use appell_estimate::{Estimation, Free, Unknown};
 
 use super::DiagnoseError;
 use super::bench::Bench;
-use super::hypothesis::Fitted;
+use super::evidence::Fitted;
 use crate::identify::{Problem, begin};
 use appell_recordings::DataSet;
 

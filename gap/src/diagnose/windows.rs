@@ -8,7 +8,7 @@ use appell_estimate::{Estimation, chi_squared_probability};
 use super::DiagnoseError;
 use super::bench::Bench;
 use super::compare::Comparison;
-use super::hypothesis::Fitted;
+use super::evidence::Fitted;
 use super::report::{Region, Where, Window};
 
 /// Length of a window in s.

@@ -7,9 +7,8 @@ type Uses = BTreeMap<String, BTreeMap<String, String>>;
 /// Two files that know each other may be one idea on two pages.
 const MOST_FILES: usize = 2;
 
-pub(super) fn longer_than_two(uses: &Uses, exempt: &[&str]) -> Vec<String> {
-    let counts = |file: &&String| !exempt.iter().any(|folder| file.starts_with(folder));
-    let files: BTreeSet<&String> = uses.keys().filter(counts).collect();
+pub(super) fn longer_than_two(uses: &Uses) -> Vec<String> {
+    let files: BTreeSet<&String> = uses.keys().collect();
     let reached: BTreeMap<&String, BTreeSet<&String>> = files
         .iter()
         .map(|&file| (file, reached(uses, file, &files)))
@@ -109,11 +108,10 @@ mod tests {
     #[test]
     fn two_files_may_use_each_other_and_three_may_not() {
         let two = uses(&[("a", "b"), ("b", "a"), ("b", "c")]);
-        assert!(longer_than_two(&two, &[]).is_empty());
+        assert!(longer_than_two(&two).is_empty());
         let three = uses(&[("a", "b"), ("b", "a"), ("b", "c"), ("c", "b")]);
-        let told = longer_than_two(&three, &[]);
+        let told = longer_than_two(&three);
         assert_eq!(told.len(), 1, "{told:?}");
         assert!(told[0].contains("b → Item → c"), "{told:?}");
-        assert!(longer_than_two(&three, &["c"]).is_empty());
     }
 }

@@ -1,9 +1,3 @@
-//! A hypothesis after its fit.
-
-use appell_estimate::{Fit, Layout};
-
-use super::evidence::Evidence;
-
 /// A set of candidates, fitted.
 #[derive(Debug, Clone)]
 pub(super) struct Fitted {

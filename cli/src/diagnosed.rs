@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 use appell::fleet::Rig;
-use appell_gap::diagnose::{Experiment, GapVerdict, Hypothesis, Report};
+use appell_gap::diagnose::{Ahead, Experiment, GapVerdict, Hypothesis, Report};
 
 use appell_report::gap::{
     before_sentence, divided, doubts, hinted, joined, law_sentence, left_out, sentence, short,
@@ -177,7 +177,21 @@ fn how_far(report: &Report) -> String {
         number(far.with_effect),
         number(far.noise_floor),
     );
+    let is_other = |ahead: &&Ahead| {
+        let is_finite = ahead.horizon > 0.0 && ahead.horizon.is_finite();
+        is_finite && (ahead.horizon - far.horizon_s).abs() > 1e-9
+    };
     // Writing to a string cannot fail.
+    for ahead in report.horizons.iter().filter(is_other) {
+        let _ = writeln!(
+            text,
+            "            {} s ahead: nominal {}, re-fitted {}, with effect {}",
+            ahead.horizon,
+            number(ahead.nominal),
+            number(ahead.refitted),
+            number(ahead.with_effect),
+        );
+    }
     let _ = writeln!(
         text,
         "            closed {:.1} % [{:.1}, {:.1}], against the re-fitted model {:.1} %",

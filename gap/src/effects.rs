@@ -32,15 +32,10 @@ pub use site::{Scales, SiteKind};
 mod tests {
     use super::*;
 
-    /// The section of the manual about effects of users.
+    /// The manual about effects of users.
     fn manual() -> String {
-        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/gap-diagnosis.md");
-        let text = std::fs::read_to_string(path).unwrap_or_default();
-        let (_, rest) = text
-            .split_once("## Effects of your own\n")
-            .unwrap_or_default();
-        let section = rest.split("\n## ").next().unwrap_or_default();
-        section.to_owned()
+        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/effects.md");
+        std::fs::read_to_string(path).unwrap_or_default()
     }
 
     /// The last cell of the row of a table whose first cell has a word.

@@ -1,6 +1,6 @@
 //! Causes that the library does not have, changes, and many rigs at a time.
 
-use crate::rig::{closed, dry, on_grain, viscous};
+use crate::rig::{closed, dry, on_grain, viscous, with_load};
 use crate::support::number;
 
 #[test]
@@ -36,6 +36,40 @@ fn a_rig_with_two_causes_one_of_them_unlisted_gets_a_spec_that_predicts() {
     folder.done(&apply);
     let better = folder.read("better.toml");
     assert!(better.contains("law_v_rate") && better.contains("coulomb_friction_x_force"));
+    closed(&folder, "better.toml");
+}
+
+#[test]
+fn a_load_that_swings_becomes_a_body_of_the_spec() {
+    // A tenth of a carriage of 1 kg.
+    let (share, rate) = (0.1, 11.0);
+    let folder = with_load(share, rate, 0.05);
+    let told = folder.done(&["diagnose", "--data", ".", "--json", "report.json"]);
+    let report = folder.json("report.json");
+    assert_eq!(report["verdict"], "unexplained", "{}", told.stdout);
+    assert_eq!(report["law"]["unit"], "kg", "{}", told.stdout);
+    assert!(
+        number(&report, "how_far/closed_vs_refitted") > 0.9,
+        "{}",
+        told.stdout
+    );
+    let apply = [
+        "apply",
+        "carriage",
+        "--report",
+        "report.json",
+        "-o",
+        "better.toml",
+    ];
+    folder.done(&apply);
+    let better: toml_edit::DocumentMut = folder.read("better.toml").parse().expect("a spec");
+    let value = |name: &str| {
+        better["parameters"][name]["value"]
+            .as_float()
+            .expect("a number")
+    };
+    assert!((value("law_x_mass") / share - 1.0).abs() < 0.1, "{better}");
+    assert!((value("law_x_rate") / rate - 1.0).abs() < 0.02, "{better}");
     closed(&folder, "better.toml");
 }
 

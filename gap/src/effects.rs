@@ -7,6 +7,7 @@
 //! | `effect.rs` | the file of an effect |
 //! | `site.rs` | the sites in a mechanism, and their placeholders |
 //! | `candidate.rs` | an effect at a place: names, items to add, values to look for |
+//! | `hidden_mass.rs` | a mass that swings behind a coordinate |
 //! | `drive.rs` | forces of inputs along a pseudo-velocity, and the inertia there |
 //! | `place.rs` | errors in the file of an effect, at their positions |
 //! | `model.rs` | a mechanism with many candidates, derived at once; at its nominal values the mechanism itself |
@@ -14,6 +15,7 @@
 mod candidate;
 mod drive;
 mod effect;
+mod hidden_mass;
 mod library;
 mod model;
 mod place;
@@ -23,6 +25,7 @@ pub(crate) use candidate::Part;
 pub use candidate::{Acts, Candidate};
 pub(crate) use drive::Drive;
 pub use effect::{Effect, EffectError, Family};
+pub(crate) use hidden_mass::HiddenMass;
 pub use library::shipped;
 pub(crate) use model::ACTING;
 pub use model::{EffectModel, ModelError, candidates, with_candidates};

@@ -138,6 +138,33 @@ fn grained(friction: f64, grain: f64, per_metre: f64) -> impl FnMut(f64) -> f64 
     }
 }
 
+/// The motion of the carriage with a part of its mass on a damped spring.
+fn swinging(share: f64, rate: f64, damping: f64) -> impl FnMut(f64) -> f64 {
+    // Position and lead of the part that swings, and their rates.
+    let (mut q, mut v) = ([0.0_f64; 2], [0.0_f64; 2]);
+    let h = HELD / f64::from(STEPS);
+    move |force| {
+        for _ in 0..STEPS {
+            let pull = |lead: f64, rate_of_lead: f64| {
+                share * (rate * rate * lead + 2.0 * damping * rate * rate_of_lead)
+            };
+            let accelerations = |lead: f64, rate_of_lead: f64| {
+                let pull = pull(lead, rate_of_lead);
+                let carriage = (force + pull) / (1.0 - share);
+                [carriage, -pull / share - carriage]
+            };
+            let a = accelerations(q[1], v[1]);
+            let half = [v[0] + 0.5 * h * a[0], v[1] + 0.5 * h * a[1]];
+            let a = accelerations(q[1] + 0.5 * h * v[1], half[1]);
+            for i in 0..2 {
+                q[i] += h * half[i];
+                v[i] += h * a[i];
+            }
+        }
+        q[0]
+    }
+}
+
 /// Forces of a run.
 fn forces(rows: u32) -> Vec<f64> {
     let force = |t: f64| 2.0 * (3.0 * t).sin() + 1.5 * (7.1 * t).cos();
@@ -203,6 +230,11 @@ pub(crate) fn dry(force: f64) -> Folder {
 /// With dry friction, and a rail whose grain no library knows.
 pub(crate) fn on_grain(friction: f64, grain: f64, per_metre: f64) -> Folder {
     moving(|| grained(friction, grain, per_metre))
+}
+
+/// With a load that swings, of a share of the mass.
+pub(crate) fn with_load(share: f64, rate: f64, damping: f64) -> Folder {
+    moving(|| swinging(share, rate, damping))
 }
 
 /// With dry friction that sticks.

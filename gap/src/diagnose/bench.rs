@@ -179,7 +179,7 @@ impl<'a> Bench<'a> {
 
     fn setup_of<'s>(&'s self, model: &'s dyn Model, members: &[usize]) -> Setup<'s> {
         // A coordinate that a member brings moves those that are measured to other places in the state,
-        // and nothing disturbs it.
+        // and nothing disturbs it, nor one that is hidden.
         let measured = self.set.measured(model.info());
         let measured: Vec<Measured> = measured.iter().map(|(_, shown)| *shown).collect();
         let mut setup = Setup {
@@ -187,7 +187,11 @@ impl<'a> Bench<'a> {
             has_corners: true,
             ..Setup::new(model, &measured)
         };
-        setup.disturbances.truncate(self.effects.info().speeds);
+        let candidates = self.effects.candidates.iter();
+        let hidden = candidates.filter(|candidate| candidate.hides).count();
+        setup
+            .disturbances
+            .truncate(self.effects.info().speeds - hidden);
         for &member in members {
             match self.candidate(member).acts {
                 Acts::Lag(input) => {

@@ -63,13 +63,15 @@ pub(super) fn of(
     let mut parts = Vec::new();
     let means = paired.means();
     let left = (means[1] - floor * floor) / gap(&means);
+    // Where re-fitted parameters predict to within the noise, nothing is left that could have a cause.
+    let is_left = means[1] > (1.0 + ends.tolerance) * floor * floor;
     let mut add = |name: String, share: &dyn Fn(&[f64]) -> f64| {
         let closed = share(&means);
         parts.push(Share {
-            name,
             closed,
             interval: paired.interval95(share),
-            is_material: closed > ends.tolerance * left,
+            is_material: closed > ends.tolerance * left.max(0.0) && (is_left || name == REFIT),
+            name,
         });
     };
     add(REFIT.to_owned(), &|means| {

@@ -4,27 +4,23 @@
 //! are known, and their sizes are fitted as all others are: within a prior that lets a law be as rough as
 //! one with a step. So the law predicts runs, and a spec can have it.
 
-use std::fmt::Write as _;
+mod hidden_mass;
+mod waves;
 
 use appell_estimate::{Along, Estimation, Unknown};
+use nalgebra::DMatrix;
 
 use super::DiagnoseError;
 use super::bench::Bench;
 use super::calibration::{IMMATERIAL, TIED};
 use super::compare::Comparison;
 use super::evidence::Fitted;
-use super::forms::forms;
 use super::held_out::HeldOut;
-use super::localise::force_unit;
 use super::report::Law;
-use super::unknown::{Dependence, Leftover, Series, Unnamed, leftover, wave_scores};
-use crate::effects::{Candidate, EffectModel};
+use super::scales;
+use super::unknown::{Dependence, Leftover, On, Series, Unnamed, leftover, wave_scores};
+use crate::effects::{Candidate, EffectModel, HiddenMass};
 use appell_recordings::DataSet;
-
-/// Places at which the law is told, at least and for each half of its shortest wave.
-const PLACES: [usize; 2] = [81, 10];
-/// Standard deviation of the length of a wave, in the distance of those that are tried.
-const APART: f64 = 0.5;
 
 /// The equations with the law.
 pub(super) struct Lawful<'c> {
@@ -32,7 +28,17 @@ pub(super) struct Lawful<'c> {
     /// What it stands beside.
     base: &'c Fitted,
     unnamed: Unnamed,
-    series: Series,
+    kind: Kind,
+    /// Where the search for its numbers begins.
+    start: Vec<f64>,
+}
+
+/// What the law is.
+enum Kind {
+    /// Waves of a variable.
+    Waves(Series),
+    /// A mass behind this coordinate.
+    HiddenMass(String),
 }
 
 /// The law after its fit.
@@ -54,23 +60,16 @@ pub(super) fn lawful<'c>(
     let Some((base, left)) = base(bench, comparison)? else {
         return Ok(None);
     };
-    let (first, dependences) = (left.first, Dependence::all(bench));
+    let first = left.first;
     let brings = |member: &usize| bench.candidate(*member).brings.is_some();
     if first.along != Along::Disturbances || base.members.iter().any(brings) {
         return Ok(None);
     }
-    let Some(dependence) = dependences.get(first.dependence).copied() else {
-        return Ok(None);
+    let found = match &first.on {
+        On::Variable(wave) => of_variable(bench, base, &first, *wave)?,
+        On::HiddenMass(hidden) => of_mass(bench, hidden),
     };
-    let setup = bench.setup(&base.members);
-    let estimation = Estimation::new(&setup, &bench.recordings)?;
-    let scores = wave_scores((bench, &estimation), base, dependence, first.along)?;
-    let scores = scores.into_iter().find(|(place, _)| *place == first.place);
-    let series = scores.and_then(|(_, scores)| scores.series(first.wave));
-    let Some(series) = series else {
-        return Ok(None);
-    };
-    let Some(candidate) = candidate(bench, dependence, &first, &series) else {
+    let Some((candidate, kind, start)) = found else {
         return Ok(None);
     };
     let members = base.members.iter().map(|&member| bench.candidate(member));
@@ -79,8 +78,49 @@ pub(super) fn lawful<'c>(
         effects: bench.effects.again(candidates)?,
         base,
         unnamed: first,
-        series,
+        kind,
+        start,
     }))
+}
+
+/// A load, what it is, and where the search for its numbers begins.
+type Found = Option<(Candidate, Kind, Vec<f64>)>;
+
+/// A force that depends on something the model knows.
+fn of_variable(
+    bench: &Bench<'_>,
+    base: &Fitted,
+    law: &Unnamed,
+    wave: Option<usize>,
+) -> Result<Found, DiagnoseError> {
+    let Some(dependence) = dependence(bench, law) else {
+        return Ok(None);
+    };
+    let setup = bench.setup(&base.members);
+    let estimation = Estimation::new(&setup, &bench.recordings)?;
+    let scores = wave_scores((bench, &estimation), base, dependence, law.along)?;
+    let mut scores = scores.into_iter().filter(|(place, _)| *place == law.place);
+    let series = scores.next().and_then(|(_, scores)| scores.series(wave));
+    Ok(series.and_then(|series| {
+        let candidate = waves::candidate(bench, dependence, (law, wave), &series)?;
+        let sizes = series.terms.iter().flat_map(|(_, sizes, _)| *sizes);
+        let start = sizes.collect();
+        Some((candidate, Kind::Waves(series), start))
+    }))
+}
+
+/// On what a law depends, found in the same recordings, whole or in windows.
+fn dependence<'b>(bench: &'b Bench<'_>, law: &Unnamed) -> Option<Dependence<'b>> {
+    let mut all = Dependence::all(bench).into_iter();
+    all.find(|one| one.name(bench) == law.variable)
+}
+
+/// A mass behind a coordinate.
+fn of_mass(bench: &Bench<'_>, hidden: &HiddenMass) -> Found {
+    let scales = scales::of(&bench.set);
+    let candidate = Candidate::hidden_mass(&bench.effects.mechanism, &scales, hidden)?;
+    let start = candidate.expected();
+    Some((candidate, Kind::HiddenMass(hidden.behind.clone()), start))
 }
 
 /// Beside which hypothesis the recordings speak most for a law, where there is one that matters.
@@ -114,49 +154,6 @@ fn base<'c>(
     ))
 }
 
-/// The law as a load with a term for each wave. The length of a wave that is one alone is fitted too.
-fn candidate(
-    bench: &Bench<'_>,
-    dependence: Dependence<'_>,
-    law: &Unnamed,
-    series: &Series,
-) -> Option<Candidate> {
-    let written = dependence.written(bench)?;
-    let mut unit = force_unit(bench, law.place).replace(' ', "*");
-    if let Some(of_factor) = &written.factor_unit {
-        unit = format!("{unit}/({of_factor})");
-    }
-    let (mut force, mut numbers) = (String::new(), Vec::new());
-    for (wave, _, deviation) in &series.terms {
-        let rate = match law.wave {
-            Some(_) => "{law}_rate".to_owned(),
-            None => format!("{:.9e}", dependence.rate(*wave)),
-        };
-        for function in ["sin", "cos"] {
-            let plus = if force.is_empty() { "" } else { " + " };
-            let number = numbers.len() + 1;
-            numbers.push((number.to_string(), unit.clone(), [0.0, *deviation]));
-            // Writing to a string cannot fail.
-            let _ = write!(
-                force,
-                "{plus}{{law}}_{number}*{function}({rate}*{})",
-                written.variable
-            );
-        }
-    }
-    if let Some(wave) = law.wave {
-        let known = [dependence.rate(wave), APART * dependence.rate(0)];
-        numbers.push(("rate".to_owned(), "1".to_owned(), known));
-    }
-    if let Some(factor) = &written.factor {
-        force = format!("({force})*{factor}");
-    }
-    let info = bench.effects.info();
-    let speed = info.states[law.place].name.as_ref();
-    let mechanism = &bench.effects.mechanism;
-    Some(Candidate::measured(mechanism, speed, &force, &numbers))
-}
-
 impl Lawful<'_> {
     /// Fits the sizes beside all that is free under the hypothesis.
     pub(super) fn fitted(
@@ -169,17 +166,23 @@ impl Lawful<'_> {
         let setup = bench.setup(&members);
         let estimation = Estimation::new(&setup, &bench.recordings)?;
         let mut start = main.carried_by_name(self.base, &estimation);
-        let sizes = self.series.terms.iter().flat_map(|(_, sizes, _)| sizes);
         let law = self.effects.candidates.iter().find(|one| one.kind == "law");
         let places: Vec<usize> = law.map_or_else(Vec::new, |law| {
             bench.own(law).iter().map(|(place, _)| *place).collect()
         });
-        for (&place, &size) in places.iter().zip(sizes) {
+        for (&place, &size) in places.iter().zip(&self.start) {
             start[place] = size;
         }
         let fitted = bench.fit(&members, &estimation, &start)?;
         drop(estimation);
-        let law = self.told(main, &fitted, &places)?;
+        let told = (&fitted, places.as_slice());
+        let law = match (&self.kind, dependence(main, &self.unnamed)) {
+            (Kind::HiddenMass(behind), _) => hidden_mass::told(main, &self.unnamed, behind, told),
+            (Kind::Waves(series), Some(dependence)) => {
+                waves::told((main, self.base), &self.unnamed, dependence, series, told)?
+            }
+            (Kind::Waves(_), None) => return Err(DiagnoseError::NothingToFit),
+        };
         Ok(FittedLaw {
             runs: HeldOut::of(test, &bench)?,
             bench,
@@ -188,74 +191,37 @@ impl Lawful<'_> {
             law,
         })
     }
+}
 
-    /// The law with its band.
-    fn told(
-        &self,
-        main: &Bench<'_>,
-        fitted: &Fitted,
-        places: &[usize],
-    ) -> Result<Law, DiagnoseError> {
-        let dependence = Dependence::all(main)[self.unnamed.dependence];
-        let (variable_unit, scale) = dependence.unit(main);
-        let written = dependence.written(main);
-        let (low, high) = dependence.range;
-        let free: Vec<Option<usize>> = (places.iter())
-            .map(|&place| {
-                let mut free = fitted.fit.free.iter();
-                free.position(|free| free.unknown == Unknown::Parameter(place))
-            })
-            .collect();
-        let covariance = fitted.fit.covariance();
-        let values: Vec<f64> = places
-            .iter()
-            .map(|&place| fitted.fit.values[place])
-            .collect();
-        let shortest = self.series.terms.iter().map(|(wave, ..)| wave + 1).max();
-        let places_told = PLACES[0].max(PLACES[1] * shortest.unwrap_or(1));
-        // After the sizes of the waves.
-        let rate = values.get(2 * self.series.terms.len()).copied();
-        let point = |place: usize| {
-            let x = low + (high - low) * place as f64 / (places_told - 1) as f64;
-            let waves = self.series.terms.iter().flat_map(|(wave, ..)| {
-                let rate = rate.unwrap_or_else(|| dependence.rate(*wave));
-                let (sin, cos) = (rate * x).sin_cos();
-                [sin, cos]
-            });
-            let mut waves: Vec<f64> = waves.collect();
-            let force: f64 = values
-                .iter()
-                .zip(&waves)
-                .map(|(size, wave)| size * wave)
-                .sum();
-            if rate.is_some() {
-                // The slope by the rate of one wave.
-                waves.push(x * (values[0] * waves[1] - values[1] * waves[0]));
-            }
-            let mut variance = 0.0;
-            for (i, a) in free.iter().zip(&waves) {
-                for (j, b) in free.iter().zip(&waves) {
-                    if let (Some(i), Some(j), Ok(covariance)) = (i, j, &covariance) {
-                        variance += a * b * covariance[(*i, *j)];
-                    }
+/// Standard deviations of what is linear in some values of a fit.
+struct Deviation {
+    /// Places of the values among those that were free.
+    free: Vec<Option<usize>>,
+    covariance: Option<DMatrix<f64>>,
+}
+
+impl Deviation {
+    fn of(fitted: &Fitted, places: &[usize]) -> Self {
+        let place = |place: &usize| {
+            let mut free = fitted.fit.free.iter();
+            free.position(|free| free.unknown == Unknown::Parameter(*place))
+        };
+        Self {
+            free: places.iter().map(place).collect(),
+            covariance: fitted.fit.covariance().ok(),
+        }
+    }
+
+    /// Of the sum of the values times these slopes.
+    fn along(&self, slopes: &[f64]) -> f64 {
+        let mut variance = 0.0;
+        for (i, a) in self.free.iter().zip(slopes) {
+            for (j, b) in self.free.iter().zip(slopes) {
+                if let (Some(i), Some(j), Some(covariance)) = (i, j, &self.covariance) {
+                    variance += a * b * covariance[(*i, *j)];
                 }
             }
-            [x / scale, force, variance.max(0.0).sqrt()]
-        };
-        let factor_unit = written.as_ref().and_then(|own| own.factor_unit.clone());
-        let force = force_unit(main, self.unnamed.place);
-        Ok(Law {
-            equation: main.effects.info().states[self.unnamed.place]
-                .name
-                .to_string(),
-            unit: factor_unit.map_or(force.clone(), |factor| format!("{force}/({factor})")),
-            depends_on: self.unnamed.variable.clone(),
-            variable: dependence.letters(main).0,
-            variable_unit,
-            factor: written.and_then(|own| own.factor),
-            curve: (0..places_told).map(point).collect(),
-            log_bayes_factor: self.unnamed.log_bayes_factor,
-            forms: forms(main, self.base, dependence, &self.unnamed)?,
-        })
+        }
+        variance.max(0.0).sqrt()
     }
 }

@@ -19,6 +19,7 @@ use super::calibration::TIED;
 use super::evidence::Fitted;
 use super::evidence::log_sum;
 use super::screen::{Projected, moving};
+use crate::effects::HiddenMass;
 
 pub(super) use dependence::Dependence;
 use memory::HiddenMasses;
@@ -34,17 +35,24 @@ pub(super) struct Unnamed {
     pub(super) along: Along,
     /// Index of the pseudo-velocity whose equation has it, or of the channel.
     pub(super) place: usize,
-    /// On what it depends, by its number among all dependences, and in words.
-    pub(super) dependence: usize,
+    /// On what it depends, also in words.
+    pub(super) on: On,
     pub(super) variable: String,
-    /// Its wave, if it is one alone.
-    pub(super) wave: Option<usize>,
     /// Gain in log-likelihood.
     pub(super) gain: f64,
     /// Gain on runs that it was not found in.
     pub(super) cross_validated: f64,
     /// Logarithm of the Bayes factor for it.
     pub(super) log_bayes_factor: f64,
+}
+
+/// On what a law depends.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum On {
+    /// On a variable; with the number of its wave, if that is one alone.
+    Variable(Option<usize>),
+    /// On what was before: a mass behind a coordinate, with a first estimate of its numbers.
+    HiddenMass(HiddenMass),
 }
 
 /// All of them together.
@@ -65,7 +73,7 @@ pub(super) fn leftover(
     let setup = bench.setup(&fitted.members);
     let estimation = Estimation::new(&setup, &bench.recordings)?;
     let (mut smooth, mut single) = (Family::default(), Family::default());
-    for (number, dependence) in Dependence::all(bench).into_iter().enumerate() {
+    for dependence in Dependence::all(bench) {
         for along in [Along::Disturbances, Along::Channels] {
             if along == Along::Channels && !dependence.is_plain() {
                 continue;
@@ -73,8 +81,8 @@ pub(super) fn leftover(
             let scores = wave_scores((bench, &estimation), fitted, dependence, along)?;
             for (place, wave_scores) in scores {
                 let unnamed = |wave, law| {
-                    let dependence = (number, dependence.name(bench));
-                    unnamed(dependence, (along, place), wave, law)
+                    let on = (On::Variable(wave), dependence.name(bench));
+                    unnamed(on, (along, place), law)
                 };
                 smooth.add(wave_scores.smooth().map(|law| unnamed(None, law)));
                 for wave in 0..dependence.waves(along) {
@@ -94,22 +102,26 @@ fn with_memory(
     fitted: &Fitted,
     family: &mut Family,
 ) -> Result<(), DiagnoseError> {
-    let along = Along::Disturbances;
     for masses in HiddenMasses::all(bench) {
         let write = |run: usize, at: At<'_>, values: &mut [f64]| masses.at(run, at, values);
         let shapes = Shapes {
-            along,
+            along: Along::Disturbances,
             count: masses.count(),
             values: &write,
         };
         for (place, scores) in term_scores((bench, estimation), fitted, shapes)? {
-            let count = masses.names.len();
+            let count = masses.frequencies.len();
             let laws: Vec<Option<LawGain>> = (0..count).map(|i| scores.single(i)).collect();
             let gain = |law: &Option<LawGain>| law.as_ref().map_or(0.0, |law| law.gain);
             let best = HiddenMasses::best(&laws.iter().map(gain).collect::<Vec<_>>());
             for (number, law) in laws.into_iter().enumerate() {
-                let name = || (usize::MAX, masses.names[number].clone());
-                let unnamed = |law| unnamed(name(), (along, place), None, law);
+                let series = || scores.series(Some(number));
+                let unnamed = |law| {
+                    // The mass pulls back what pulls it.
+                    let size = series().map_or(0.0, |series| -series.terms[0].1[0]);
+                    let on = On::HiddenMass(masses.hidden(number, size));
+                    unnamed((on, masses.name(number)), (Along::Disturbances, place), law)
+                };
                 family.add(law.filter(|_| best == Some(number)).map(unnamed));
             }
         }
@@ -118,18 +130,12 @@ fn with_memory(
 }
 
 /// A law of a dependence at a place.
-fn unnamed(
-    (dependence, variable): (usize, String),
-    (along, place): (Along, usize),
-    wave: Option<usize>,
-    law: LawGain,
-) -> Unnamed {
+fn unnamed((on, variable): (On, String), (along, place): (Along, usize), law: LawGain) -> Unnamed {
     Unnamed {
         along,
         place,
-        dependence,
+        on,
         variable,
-        wave,
         gain: law.gain,
         cross_validated: law.cross_validated,
         log_bayes_factor: law.log_bayes_factor,
@@ -230,7 +236,8 @@ pub(super) fn hints(bench: &Bench<'_>, fitted: &Fitted) -> Result<Vec<Unnamed>, 
         let scores = wave_scores((bench, &estimation), fitted, dependence, along)?;
         for (place, wave_scores) in scores {
             let law = wave_scores.smooth();
-            let unnamed = |law| unnamed((0, dependence.name(bench)), (along, place), None, law);
+            let on = (On::Variable(None), dependence.name(bench));
+            let unnamed = |law| unnamed(on, (along, place), law);
             family.add(law.map(unnamed));
         }
         tried += family.tried;

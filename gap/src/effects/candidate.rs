@@ -65,6 +65,8 @@ pub struct Candidate {
     /// The pseudo-velocity beside which it brings a coordinate of its own, if it brings any. That one and
     /// its rate are the last ones among the coordinates and the rates of a model that it alone has.
     pub(crate) brings: Option<usize>,
+    /// Whether every model with it has a coordinate more, the last one, that nothing disturbs.
+    pub(crate) hides: bool,
     /// Additions to inputs: name and expression.
     pub(crate) added: Vec<(String, String)>,
     /// Its file, for effects of users.
@@ -116,9 +118,19 @@ impl Candidate {
             centre: None,
             items: document.to_string(),
             brings: None,
+            hides: false,
             added: Vec::new(),
             source: None,
         }
+    }
+
+    /// What is expected of the numbers of its terms.
+    pub(crate) fn expected(&self) -> Vec<f64> {
+        let expected = |(_, part): &(String, Part)| match part {
+            Part::Term([expected, _]) => Some(*expected),
+            _ => None,
+        };
+        self.parameters.iter().filter_map(expected).collect()
     }
 
     /// Whether it lets a contact slide.
@@ -270,6 +282,7 @@ impl Candidate {
                 .map(|(_, name)| name.clone()),
             items: document.to_string(),
             brings,
+            hides: false,
             added,
             source: effect.file.is_some().then_some(source),
         })
@@ -315,13 +328,13 @@ fn number(item: &Item) -> Option<f64> {
 }
 
 /// A name that is a valid identifier: columns may have any.
-fn identifier(name: &str) -> String {
+pub(super) fn identifier(name: &str) -> String {
     let valid = |c: char| if c.is_ascii_alphanumeric() { c } else { '_' };
     name.chars().map(valid).collect()
 }
 
 /// A stem with which no name of the mechanism starts.
-fn unused(stem: String, mechanism: &Mechanism) -> String {
+pub(super) fn unused(stem: String, mechanism: &Mechanism) -> String {
     let is_used = |stem: &str| {
         let parameters = mechanism.parameters.iter().map(|p| &p.label.name);
         let points = mechanism.points.iter().map(|p| &p.name);

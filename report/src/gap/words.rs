@@ -96,7 +96,13 @@ fn shares(report: &Report) -> Option<String> {
         None => (String::new(), "the gap"),
     };
     let mut text = match material.as_slice() {
-        [] => return None,
+        [] if others.is_empty() || before.is_empty() => return None,
+        [] => {
+            let names: Vec<String> = others.iter().map(about).collect();
+            let matter = if names.len() > 1 { "matter" } else { "matters" };
+            let names = names.join(" and ");
+            return Some(format!("{before}{names} hardly {matter} for predictions"));
+        }
         [one] if others.is_empty() => {
             let [low, high] = one.interval.map(|end| percent(end / left));
             format!("{before}{names} closes {sum} [{low}, {high}] of {whole}")

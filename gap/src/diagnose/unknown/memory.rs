@@ -9,6 +9,7 @@ use appell_estimate::Measured;
 use appell_runtime::model::At;
 
 use super::super::bench::Bench;
+use crate::effects::HiddenMass;
 
 /// Frequencies of a hidden mass.
 const FREQUENCIES: usize = 12;
@@ -17,18 +18,42 @@ const SWINGS: f64 = 2.0;
 const ROWS: f64 = 25.0;
 /// Damping ratio of a hidden mass.
 const DAMPING: f64 = 0.1;
+
 /// Masses behind a coordinate, one of each frequency.
 pub(super) struct HiddenMasses {
+    /// Name of the coordinate.
+    coordinate: String,
+    /// Their frequencies in 1/s, the lowest first.
+    pub(super) frequencies: Vec<f64>,
     /// For each run its times, and a value of each term at each.
     runs: Vec<(Vec<f64>, Vec<Vec<f64>>)>,
-    /// For each frequency, the lowest first, its terms in words.
-    pub(super) names: Vec<String>,
 }
 
 impl HiddenMasses {
     /// How many terms they have: two each.
     pub(super) fn count(&self) -> usize {
-        2 * self.names.len()
+        2 * self.frequencies.len()
+    }
+
+    /// One of them in words.
+    pub(super) fn name(&self, number: usize) -> String {
+        let hertz = self.frequencies[number] / TAU;
+        format!(
+            "a swing of {} at {hertz:.2} Hz that the model lacks",
+            self.coordinate
+        )
+    }
+
+    /// What is known beforehand of one of them, from a first estimate of its size.
+    pub(super) fn hidden(&self, number: usize, size: f64) -> HiddenMass {
+        let rate = self.frequencies[number];
+        let next = self.frequencies.get(number + 1);
+        HiddenMass {
+            behind: self.coordinate.clone(),
+            mass: [size, size],
+            rate: [rate, next.map_or(rate, |next| next - rate)],
+            damping: [DAMPING, DAMPING],
+        }
     }
 
     /// The terms at a place.
@@ -88,13 +113,10 @@ impl HiddenMasses {
             let swings = (0..FREQUENCIES).map(|place| swing(times, values, frequency(place)));
             (times.clone(), swings.flatten().collect())
         };
-        let names = (0..FREQUENCIES).map(|place| {
-            let hertz = frequency(place) / TAU;
-            format!("a swing of {name} at {hertz:.2} Hz that the model lacks")
-        });
         Some(Self {
+            coordinate: name.to_owned(),
+            frequencies: (0..FREQUENCIES).map(frequency).collect(),
             runs: runs.iter().map(of_run).collect(),
-            names: names.collect(),
         })
     }
 }

@@ -1,0 +1,115 @@
+//! A law of a variable: a load with a term for each wave.
+
+use std::fmt::Write as _;
+
+use super::super::DiagnoseError;
+use super::super::bench::Bench;
+use super::super::evidence::Fitted;
+use super::super::forms::forms;
+use super::super::localise::force_unit;
+use super::super::report::Law;
+use super::super::unknown::{Dependence, Series, Unnamed};
+use super::Deviation;
+use crate::effects::Candidate;
+
+/// Places at which the law is told, at least and for each half of its shortest wave.
+const PLACES: [usize; 2] = [81, 10];
+/// Standard deviation of the length of a wave, in the distance of those that are tried.
+const APART: f64 = 0.5;
+
+/// The load. The length of a wave that is one alone is fitted too.
+pub(super) fn candidate(
+    bench: &Bench<'_>,
+    dependence: Dependence<'_>,
+    (law, alone): (&Unnamed, Option<usize>),
+    series: &Series,
+) -> Option<Candidate> {
+    let written = dependence.written(bench)?;
+    let mut unit = force_unit(bench, law.place).replace(' ', "*");
+    if let Some(of_factor) = &written.factor_unit {
+        unit = format!("{unit}/({of_factor})");
+    }
+    let (mut force, mut numbers) = (String::new(), Vec::new());
+    for (wave, _, deviation) in &series.terms {
+        let rate = match alone {
+            Some(_) => "{law}_rate".to_owned(),
+            None => format!("{:.9e}", dependence.rate(*wave)),
+        };
+        for function in ["sin", "cos"] {
+            let plus = if force.is_empty() { "" } else { " + " };
+            let number = numbers.len() + 1;
+            numbers.push((number.to_string(), unit.clone(), [0.0, *deviation]));
+            // Writing to a string cannot fail.
+            let _ = write!(
+                force,
+                "{plus}{{law}}_{number}*{function}({rate}*{})",
+                written.variable
+            );
+        }
+    }
+    if let Some(wave) = alone {
+        let known = [dependence.rate(wave), APART * dependence.rate(0)];
+        numbers.push(("rate".to_owned(), "1".to_owned(), known));
+    }
+    if let Some(factor) = &written.factor {
+        force = format!("({force})*{factor}");
+    }
+    let info = bench.effects.info();
+    let speed = info.states[law.place].name.as_ref();
+    let mechanism = &bench.effects.mechanism;
+    Some(Candidate::measured(mechanism, speed, &force, &numbers))
+}
+
+/// The law with its band.
+pub(super) fn told(
+    (main, base): (&Bench<'_>, &Fitted),
+    unnamed: &Unnamed,
+    dependence: Dependence<'_>,
+    series: &Series,
+    (fitted, places): (&Fitted, &[usize]),
+) -> Result<Law, DiagnoseError> {
+    let (variable_unit, scale) = dependence.unit(main);
+    let written = dependence.written(main);
+    let (low, high) = dependence.range;
+    let deviation = Deviation::of(fitted, places);
+    let values: Vec<f64> = places
+        .iter()
+        .map(|&place| fitted.fit.values[place])
+        .collect();
+    let shortest = series.terms.iter().map(|(wave, ..)| wave + 1).max();
+    let places_told = PLACES[0].max(PLACES[1] * shortest.unwrap_or(1));
+    // After the sizes of the waves.
+    let rate = values.get(2 * series.terms.len()).copied();
+    let point = |place: usize| {
+        let x = low + (high - low) * place as f64 / (places_told - 1) as f64;
+        let waves = series.terms.iter().flat_map(|(wave, ..)| {
+            let rate = rate.unwrap_or_else(|| dependence.rate(*wave));
+            let (sin, cos) = (rate * x).sin_cos();
+            [sin, cos]
+        });
+        let mut waves: Vec<f64> = waves.collect();
+        let force: f64 = values
+            .iter()
+            .zip(&waves)
+            .map(|(size, wave)| size * wave)
+            .sum();
+        if rate.is_some() {
+            // The slope by the rate of one wave.
+            waves.push(x * (values[0] * waves[1] - values[1] * waves[0]));
+        }
+        [x / scale, force, deviation.along(&waves)]
+    };
+    let factor_unit = written.as_ref().and_then(|own| own.factor_unit.clone());
+    let force = force_unit(main, unnamed.place);
+    Ok(Law {
+        equation: main.effects.info().states[unnamed.place].name.to_string(),
+        unit: factor_unit.map_or(force.clone(), |factor| format!("{force}/({factor})")),
+        depends_on: unnamed.variable.clone(),
+        variable: dependence.letters(main).0,
+        variable_unit,
+        factor: written.and_then(|own| own.factor),
+        curve: (0..places_told).map(point).collect(),
+        log_bayes_factor: unnamed.log_bayes_factor,
+        forms: forms(main, base, dependence, unnamed)?,
+    })
+}

@@ -391,6 +391,12 @@ fn next(set: &DataSet, report: &Report) -> Markup {
                 code { "appell diagnose" } " writes as JSON."
             }
         },
+        GapVerdict::Unexplained if report.law.is_some() => html! {
+            p {
+                code { "appell apply" } " writes the measured force into the spec; diagnose the result again, and \
+                 look for what the force comes from."
+            }
+        },
         GapVerdict::Unexplained => html! {
             p {
                 "Describe the dependence of the missing force as an effect in the spec language and pass \

@@ -49,19 +49,33 @@ pub fn sentence(report: &Report) -> String {
             if let Some(shares) = shares(report) {
                 return format!("{shares}; no effect of the library explains the rest{left}");
             }
-            let law = law_share(report);
-            let law = law.map(|share| format!("; measured, it closes {share} of the gap"));
-            let law = law.unwrap_or_default();
+            let law = law_share(report).unwrap_or_default();
             format!("there is a gap that no effect of the library explains{left}{law}")
         }
     }
 }
 
-/// What a measured law closes of the gap.
+/// `; measured, it closes 90 % of the gap`, or of what re-fitted parameters leave.
 fn law_share(report: &Report) -> Option<String> {
-    let mut budget = report.how_far.as_ref()?.budget.iter();
-    let law = budget.find(|part| part.is_law() && part.is_material)?;
-    Some(percent(law.closed))
+    let budget = &report.how_far.as_ref()?.budget;
+    let law = budget
+        .iter()
+        .find(|part| part.is_law() && part.is_material)?;
+    Some(match refitted(budget) {
+        Some(refit) => {
+            let [closed, rest] = [refit.closed, law.closed / (1.0 - refit.closed)].map(percent);
+            format!(
+                "; measured, it closes {rest} of what re-fitted parameters leave, which close {closed} of the gap"
+            )
+        }
+        None => format!("; measured, it closes {} of the gap", percent(law.closed)),
+    })
+}
+
+/// The part of the re-fitted parameters, where it matters.
+fn refitted(budget: &[Share]) -> Option<&Share> {
+    let mut budget = budget.iter();
+    budget.find(|part| part.is_refit() && part.is_material)
 }
 
 /// What the material effects close of the gap, the largest share first, and what stays; beside re-fitted parameters
@@ -72,9 +86,7 @@ fn shares(report: &Report) -> Option<String> {
     let (mut material, others): (Vec<&Share>, Vec<&Share>) =
         (budget.iter().filter(is_effect)).partition(|part| part.is_material);
     material.sort_by(|a, b| b.closed.total_cmp(&a.closed));
-    let refit = budget
-        .iter()
-        .find(|part| part.is_refit() && part.is_material);
+    let refit = refitted(budget);
     let left = 1.0 - refit.map_or(0.0, |part| part.closed);
     let of = |part: &Share| percent(part.closed / left);
     let about = |part: &&Share| {

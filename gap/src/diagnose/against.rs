@@ -9,12 +9,12 @@
 //! No two recordings are of quite the same rig. So a difference is a change where what explains it betters
 //! predictions of runs that were held out, by more than runs of one rig differ anyway.
 
-use crate::data::{Channel, DataSet, Parameter, Part, Run, Spec};
+use crate::data::{Channel, DataSet, Parameter, Part, Spec};
 use crate::effects::{Effect, EffectModel};
 use crate::identify::{self, identify};
 
 use super::changes::Changes;
-use super::{DiagnoseError, GapVerdict, HowFar, Hypothesis, Options, Report, diagnose};
+use super::{DiagnoseError, GapVerdict, HowFar, Hypothesis, Options, Report, diagnose, diagnosed};
 
 /// Part of the prediction error that a change accounts for at least.
 const CHANGED: f64 = 0.1;
@@ -55,7 +55,7 @@ pub fn against(
     options: &Options,
     mut stage: impl FnMut(&'static str),
 ) -> Result<Report, DiagnoseError> {
-    let whole = fitted(before);
+    let whole = before.all(Part::Fit);
     let was = diagnose(&whole, effects, &Options::default(), &mut stage)?;
     let taken = was.which.iter().find(|one| one.changes.is_some());
     let Some((taken, changes)) = taken.and_then(|one| Some((one, one.changes.as_ref()?))) else {
@@ -70,8 +70,11 @@ pub fn against(
     let mut known = whole.rebound(&spec)?;
     start(&mut known, changes);
     undo(&mut known, taken, changes);
-    let tolerant = identify::Options::tolerant();
-    let answer = identify(&known, model.with(&[]), &tolerant, |_| {})?;
+    let rough = identify::Options {
+        rough: true,
+        ..identify::Options::tolerant()
+    };
+    let answer = identify(&known, model.with(&[]), &rough, |_| {})?;
     let mut set = now.rebound(&spec)?;
     undo(&mut set, taken, changes);
     let mut parameters = Vec::new();
@@ -110,7 +113,7 @@ pub fn against(
         present: taken.effects.clone(),
         ..options.clone()
     };
-    let mut report = diagnose(&set, effects, &options, stage)?;
+    let mut report = diagnosed((&set, Some(&known)), effects, &options, stage)?;
     let is_changed = report.verdict != GapVerdict::NoGap && matters(report.how_far.as_ref());
     if !is_changed {
         report.verdict = GapVerdict::NoGap;
@@ -123,24 +126,14 @@ pub fn against(
     Ok(report)
 }
 
-/// Whether what explains a difference betters predictions, beyond chance and by enough.
+/// Whether what explains a difference betters predictions, beyond chance and by enough. Parameters within what the
+/// recordings before leave open do not count, nor do errors that these recordings have too.
 fn matters(far: Option<&HowFar>) -> bool {
     far.is_none_or(|far| {
-        let bettered = 1.0 - (far.with_effect / far.nominal).powi(2);
-        far.closed_ci95[0] > 0.0 && bettered > CHANGED
+        let left = far.with_effect.max(far.before.unwrap_or(0.0));
+        let bettered = 1.0 - (left / far.nominal.min(far.refitted)).powi(2);
+        far.bettered_ci95[0] > 0.0 && bettered > CHANGED
     })
-}
-
-/// All runs to be fitted.
-fn fitted(set: &DataSet) -> DataSet {
-    let runs = set.runs.iter().map(|run| Run {
-        part: Part::Fit,
-        ..run.clone()
-    });
-    DataSet {
-        runs: runs.collect(),
-        ..set.clone()
-    }
 }
 
 /// Values and tolerances of a spec to which effects were added: those of the rig, and the sizes that were found.

@@ -67,10 +67,12 @@ impl HeldOut {
         })
     }
 
-    /// The errors of the nominal model, the re-fitted one and the leading hypothesis, and how the gap divides.
+    /// The errors of the nominal model, the re-fitted one and the leading hypothesis, and how the gap divides;
+    /// those of the nominal model on other runs, in the same units.
     pub(super) fn how_far(
         &self,
         (bench, comparison, leader): (&Bench<'_>, &Comparison, &Leader<'_>),
+        others: Option<&Self>,
         options: &Options,
     ) -> Result<Option<HowFar>, DiagnoseError> {
         if self.recordings.is_empty() {
@@ -93,9 +95,12 @@ impl HeldOut {
             floor = leader.floor(horizon)?;
         }
         let errors = |fitted: &Fitted| self.errors(bench, fitted, &noise, horizon);
-        let stated = errors(&stated(bench, refitted))?;
+        let stated = stated(bench, refitted);
+        let before = others.map(|runs| runs.errors(bench, &stated, &noise, horizon));
+        let stated = errors(&stated)?;
         let (refit, effect) = (errors(refitted)?, leader.errors(horizon)?);
         let paired = Paired::of(&[&stated, &refit, &effect]);
+        let bettered = |means: &[f64]| 1.0 - means[2] / means[0].min(means[1]);
         let closed = |from: f64, to: f64| (from - to) / (from - floor * floor);
         let means = paired.means();
         let budget = if let Some(name) = leader.alternative {
@@ -130,6 +135,8 @@ impl HeldOut {
             closed_ci95: paired.interval95(|means| closed(means[0], means[2])),
             closed_vs_refitted: closed(means[1], means[2]),
             budget,
+            before: before.transpose()?.map(|errors| errors.mean().sqrt()),
+            bettered_ci95: paired.interval95(bettered),
             is_worse: paired.interval95(|means| means[1] - means[2])[1] < 0.0,
             runs: self.names.clone(),
         }))

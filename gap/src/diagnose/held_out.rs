@@ -96,11 +96,17 @@ impl HeldOut {
         }
         let errors = |fitted: &Fitted| self.errors(bench, fitted, &noise, horizon);
         let stated = stated(bench, refitted);
-        let before = others.map(|runs| runs.errors(bench, &stated, &noise, horizon));
+        let before = others.map(|others| {
+            let own_floor =
+                |runs: &Self| prediction::floor(&runs.recordings, bench, &stated, &noise, horizon);
+            let errors = others.errors(bench, &stated, &noise, horizon)?;
+            // Wilder motions have larger errors.
+            Ok::<f64, DiagnoseError>(errors.mean().sqrt() * own_floor(self)? / own_floor(others)?)
+        });
         let stated = errors(&stated)?;
         let (refit, effect) = (errors(refitted)?, leader.errors(horizon)?);
         let paired = Paired::of(&[&stated, &refit, &effect]);
-        let bettered = |means: &[f64]| 1.0 - means[2] / means[0].min(means[1]);
+        let bettered = |base: usize| paired.interval95(|means| 1.0 - means[2] / means[base]);
         let closed = |from: f64, to: f64| (from - to) / (from - floor * floor);
         let means = paired.means();
         let budget = if let Some(name) = leader.alternative {
@@ -135,8 +141,8 @@ impl HeldOut {
             closed_ci95: paired.interval95(|means| closed(means[0], means[2])),
             closed_vs_refitted: closed(means[1], means[2]),
             budget,
-            before: before.transpose()?.map(|errors| errors.mean().sqrt()),
-            bettered_ci95: paired.interval95(bettered),
+            before: before.transpose()?,
+            bettered_ci95: [0, 1].map(bettered),
             is_worse: paired.interval95(|means| means[1] - means[2])[1] < 0.0,
             runs: self.names.clone(),
         }))

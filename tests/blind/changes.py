@@ -129,12 +129,14 @@ def scores(labels, folder):
     changed = [(l, a) for l, a in pairs if l["kind"] != "null"]
     lacking = [(l, a) for l, a in changed if l["before"]]
     others = [(l, a) for l, a in lacking if l["before"] != l["effects"]]
+    nulls = [(l, a) for l, a in pairs if l["kind"] == "null"]
     seen = lambda l, a: a is not None and a.is_changed
     first = lambda l, a: seen(l, a) and score.is_truth(a.sets[0], l)
     near = lambda l, a: first(l, a) or seen(l, a) and score.is_twin(a.sets[0], l)
     tied = lambda l, a: seen(l, a) and any(score.is_truth(member, l) for member in a.tied)
     leading = lambda l, a: first(l, a) or tied(l, a) and len(a.tied) <= score.MOST_TIED
     alone = lambda l, a: first(l, a) and len(a.tied) == 1
+    old = lambda l, a: seen(l, a) and names_before(a.sets[0], l)
     over = lambda chosen, f: score.rate([f(l, a) for l, a in chosen])
     return [
         ("a change that is there: noticed", over(changed, seen)),
@@ -143,11 +145,11 @@ def scores(labels, folder):
         ("right change or its twin first", over(changed, near)),
         ("right change in the leading tie", over(changed, leading)),
         ("right change first where the model lacked something before", over(lacking, first)),
-        ("what it lacked before named as the change", over(others, lambda l, a: seen(l, a) and names_before(a.sets[0], l))),
-        ("false alarms where nothing changed", score.rate([a is None or a.is_changed for l, a in pairs if l["kind"] == "null"])),
+        ("what it lacked before named as the change", over(others, old)),
+        ("false alarms where nothing changed", over(nulls, lambda l, a: a is None or a.is_changed)),
         ("no report, or an invalid one", f"{sum(a is None for _, a in pairs)} of {len(pairs)}"),
         ("seconds a pair, median", score.middle([a.seconds for _, a in pairs if a], 1)),
-    ]  # fmt: skip
+    ]
 
 
 def alarms(folder):

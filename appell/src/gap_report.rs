@@ -44,6 +44,7 @@ pub fn json(report: &Report, next: Option<&Path>, findings: &[String]) -> Value 
             "horizon_s": far.horizon_s, "nominal": far.nominal, "refitted": far.refitted,
             "with_effect": far.with_effect, "noise_floor": far.noise_floor, "closed": far.closed,
             "closed_ci95": far.closed_ci95, "closed_vs_refitted": far.closed_vs_refitted,
+            "before": far.before, "bettered_ci95": far.bettered_ci95,
             "budget": far.budget.iter().map(|part| json!({
                 "effect": part.name, "closed": part.closed, "interval": part.interval,
                 "material": part.is_material,

@@ -91,6 +91,16 @@ pub fn diagnose(
     set: &DataSet,
     effects: &[Effect],
     options: &Options,
+    stage: impl FnMut(&'static str),
+) -> Result<Report, DiagnoseError> {
+    diagnosed((set, None), effects, options, stage)
+}
+
+/// The same; predictions of recordings before, which nothing is fitted to, are told beside those of held-out runs.
+fn diagnosed(
+    (set, before): (&DataSet, Option<&DataSet>),
+    effects: &[Effect],
+    options: &Options,
     mut stage: impl FnMut(&'static str),
 ) -> Result<Report, DiagnoseError> {
     stage("deriving the mechanism with all effects");
@@ -123,6 +133,8 @@ pub fn diagnose(
     // A law that cannot be written is none.
     let lawful = law::lawful(&bench, &comparison).unwrap_or(None);
     let held_out = HeldOut::of(&test, &bench)?;
+    let before = before.map(|set| HeldOut::of(&set.all(Part::Test), &bench));
+    let before = before.transpose()?;
     let measured = lawful.as_ref().map(|lawful| lawful.fitted(&bench, &test));
     let measured = report.measured(measured)?;
     stage("predicting the runs that were held out");
@@ -159,7 +171,7 @@ pub fn diagnose(
         _ => best,
     };
     let judged = (&bench, &comparison, &leader);
-    let how_far = held_out.how_far(judged, options)?;
+    let how_far = held_out.how_far(judged, before.as_ref(), options)?;
     report.verdict = report
         .verdict
         .after(&report.which, how_far.as_ref(), bench.is_over_windows());

@@ -76,7 +76,8 @@ pub fn identify(
     let problem = Problem::of(set, &estimation, (options, &additions))?;
 
     stage("fitting the levels of noise to the nominal model");
-    let nominal = Fit::of(&estimation, &problem.start, &problem.levels, EFFORT)?;
+    let search = if options.rough { Fit::quick } else { Fit::of };
+    let nominal = search(&estimation, &problem.start, &problem.levels, EFFORT)?;
     let begin = match options.begin {
         Begin::Nominal => nominal.values.clone(),
         Begin::Shooting => {
@@ -86,7 +87,7 @@ pub fn identify(
     };
     stage("fitting the parameters");
     let all = [problem.wanted.as_slice(), &problem.levels].concat();
-    let fit = Fit::of(&estimation, &begin, &all, EFFORT)?;
+    let fit = search(&estimation, &begin, &all, EFFORT)?;
     stage("weighing what the recordings tell");
     let mut answer = Answer::of(set, &estimation, &problem, (&nominal, &fit))?;
     let runs: Vec<&Run> = set

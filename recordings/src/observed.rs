@@ -17,6 +17,16 @@ impl DataSet {
         set
     }
 
+    /// All runs as those of one part.
+    #[must_use]
+    pub fn all(&self, part: Part) -> Self {
+        let mut set = self.clone();
+        for run in &mut set.runs {
+            run.part = part;
+        }
+        set
+    }
+
     /// The same recordings of a mechanism with further parameters, whose values its spec states.
     #[must_use]
     pub fn bound_to(&self, mechanism: &Mechanism) -> Self {

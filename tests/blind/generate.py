@@ -192,7 +192,7 @@ def write_run(path, world, one, measured):
     path.write_text("\n".join(rows) + "\n")
 
 
-def write_recording(folder, world, stated):
+def write_recording(folder, world, stated, count=RUNS):
     about = catalogue.RIGS[world.case.mechanism]
     lines = [
         f'mechanism   = "{world.case.mechanism}"',
@@ -210,7 +210,7 @@ def write_recording(folder, world, stated):
         )
     for name in world.mechanism.inputs:
         lines.append(f'{name} = {{ input = "{name}", unit = "{catalogue.UNITS[name]}" }}')
-    runs = [f'"run{i + 1}.csv"' for i in range(RUNS)]
+    runs = [f'"run{i + 1}.csv"' for i in range(count)]
     lines += [
         "",
         "[runs]",

@@ -69,21 +69,24 @@ def bundled(folder):
             reports.extractall(folder, filter="data")
 
 
-def diagnose(tool, case, report, without):
-    """One report, and the seconds it took. The tool sees a copy that holds this case alone."""
+def diagnose(tool, case, report, without=(), before=None, limit_s=TIME_LIMIT_S):
+    """One report, and the seconds it took. The tool sees a copy that holds this case alone, and a copy of
+    the recordings before."""
     began = time.monotonic()
     with tempfile.TemporaryDirectory() as alone:
         data = Path(alone) / "data"
         shutil.copytree(case, data)
         written = Path(alone) / "report.json"
         command = [tool, "diagnose", "--data", str(data), "--json", str(written)]
+        if before:
+            command += ["--against", shutil.copytree(before, Path(alone) / "before")]
         for kind in without:
             command += ["--without", kind]
         try:
-            done = subprocess.run(command, capture_output=True, text=True, timeout=TIME_LIMIT_S)
+            done = subprocess.run(command, capture_output=True, text=True, timeout=limit_s)
             trouble = done.stderr.strip() if done.returncode else None
         except subprocess.TimeoutExpired:
-            trouble = f"no answer in {TIME_LIMIT_S} s"
+            trouble = f"no answer in {limit_s} s"
         answer = {"trouble": trouble} if trouble or not written.exists() else json.loads(written.read_text())
     answer["seconds"] = time.monotonic() - began
     report.parent.mkdir(parents=True, exist_ok=True)
@@ -358,14 +361,14 @@ def section(labels, reports):
     return "\n\n".join(parts)
 
 
-def write(path, text):
-    page = path.read_text()
-    if BEGIN not in page or END not in page:
+def write(path, text, marks=(BEGIN, END)):
+    page, (begin, end) = path.read_text(), marks
+    if begin not in page or end not in page:
         raise SystemExit(
-            f"{path}: the markers are missing; write these two lines where the scores belong:\n{BEGIN}\n{END}"
+            f"{path}: the markers are missing; write these two lines where the scores belong:\n{begin}\n{end}"
         )
-    before, after = page.split(BEGIN)[0], page.split(END)[1]
-    path.write_text(f"{before}{BEGIN}\n\n{text}\n\n{END}{after}")
+    before, after = page.split(begin)[0], page.split(end)[1]
+    path.write_text(f"{before}{begin}\n\n{text}\n\n{end}{after}")
 
 
 def misses(labels, folder):

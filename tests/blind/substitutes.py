@@ -50,6 +50,25 @@ class Motion(oracle.Motion):
         return other, self.changed(p=p)
 
 
+class Before(Motion):
+    """A true motion of the rig before it had the effect: parameters alone tell of it."""
+
+    def gap(self, rig):
+        return self.nothing()
+
+    def nothing(self):
+        return 0 * self.declared, self.off()
+
+
+def since(substitute):
+    """The same effect, but not before."""
+
+    def errors(motion, sizes):
+        return motion.nothing() if isinstance(motion, Before) else substitute.errors(motion, sizes)
+
+    return replace(substitute, errors=errors)
+
+
 @dataclass
 class Substitute:
     """An effect with sizes, and with shapes that follow them. `errors` is what it does along a motion."""

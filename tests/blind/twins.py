@@ -40,11 +40,13 @@ MARGIN = 1e-6  # between sizes to begin with and their bounds
 
 
 class Recordings:
-    """The runs to fit, as the filter that knows the true levels sees them, and what is declared."""
+    """The runs to fit, as the filter that knows the true levels sees them, and what is declared; and runs
+    of the rig before it had the effect."""
 
-    def __init__(self, rig, trials, declared, tolerances, noise, disturbance_sd):
+    def __init__(self, rig, trials, declared, tolerances, noise, disturbance_sd, before=()):
         self.motions = [substitutes.Motion(rig, trial) for trial in trials]
-        self.filters = [oracle.Filter(rig, trial, noise, disturbance_sd) for trial in trials]
+        self.motions += [substitutes.Before(rig, trial) for trial in before]
+        self.filters = [oracle.Filter(rig, trial, noise, disturbance_sd) for trial in [*trials, *before]]
         # Parameters are told twice, by the motion and by what is declared of them.
         imitations = self.whitened(lambda motion: motion.imitations(tolerances))
         self.true, self.stds = rig.unchanged, tolerances
@@ -232,16 +234,16 @@ def candidates_of(world, trials):
     return substitutes.all_of(world.mechanism, world.true, generate.tolerances(world), peaks)
 
 
-def recordings_of(world, rig, trials):
+def recordings_of(world, rig, trials, before=()):
     tolerances = generate.tolerances(world)
-    return Recordings(rig, trials, world.declared, tolerances, world.noise, world.disturbance_sd)
+    return Recordings(rig, trials, world.declared, tolerances, world.noise, world.disturbance_sd, before)
 
 
-def twins_of(world, rig, trials, accept):
+def twins_of(world, rig, trials, accept, before=()):
     """What the label says: effects that explain something of the gap and are no right answers."""
     right = lambda name: any(re.fullmatch(pattern, name) for patterns in accept for pattern in patterns)
-    recordings = recordings_of(world, rig, trials)
-    candidates = [c for c in candidates_of(world, trials) if not right(c.name)]
+    recordings = recordings_of(world, rig, trials, before)
+    candidates = [substitutes.since(c) for c in candidates_of(world, trials) if not right(c.name)]
     alone, pairs = separations(recordings, candidates)
     most = min(CUT, EXPLAINS * settled(recordings))
     near = {name: left for name, left in alone.items() if left < most} | pairs

@@ -75,6 +75,7 @@ impl Identify {
                 Start::Nominal => Begin::Nominal,
                 Start::Shooting => Begin::Shooting,
             },
+            rough: false,
         };
         let answer = model.identify(&set, &options, |stage| spinner.set_message(stage));
         spinner.finish_and_clear();

@@ -9,17 +9,21 @@
 //! No two recordings are of quite the same rig. So a difference is a change where what explains it betters
 //! predictions of runs that were held out, by more than runs of one rig differ anyway.
 
+use appell_recordings::{Channel, DataSet, Parameter, Part, Spec};
+use nalgebra::{DMatrix, DVector};
+
 use crate::effects::{Effect, EffectModel};
-use crate::identify::{self, identify};
-use appell_recordings::{Channel, DataSet, Parameter, Part, Run, Spec};
+use crate::identify::{self, Answer, identify};
 
 use super::changes::Changes;
 use super::{
-    Before, Change, DiagnoseError, GapVerdict, HowFar, Hypothesis, Options, Report, diagnose,
+    Before, Change, DiagnoseError, GapVerdict, Hypothesis, Options, Report, diagnose, diagnosed,
 };
 
 /// Part of the prediction error that a change accounts for at least.
 const CHANGED: f64 = 0.1;
+/// Standard deviations by which parameters may differ from what the recordings before tell, root of the mean square.
+const OPEN: f64 = 3.0;
 /// Standard deviation of the size of an effect that was found before, as a part of it.
 const FOUND: f64 = 1.0;
 /// Note above what is added to the spec.
@@ -33,7 +37,7 @@ pub fn against(
     options: &Options,
     mut stage: impl FnMut(&'static str),
 ) -> Result<Report, DiagnoseError> {
-    let whole = fitted(before);
+    let whole = before.all(Part::Fit);
     let was = diagnose(&whole, effects, &Options::default(), &mut stage)?;
     let taken = was.which.iter().find(|one| one.changes.is_some());
     let Some((taken, changes)) = taken.and_then(|one| Some((one, one.changes.as_ref()?))) else {
@@ -48,8 +52,11 @@ pub fn against(
     let mut known = whole.rebound(&spec)?;
     start(&mut known, changes);
     undo(&mut known, taken, changes);
-    let tolerant = identify::Options::tolerant();
-    let answer = identify(&known, model.with(&[]), &tolerant, |_| {})?;
+    let rough = identify::Options {
+        rough: true,
+        ..identify::Options::tolerant()
+    };
+    let answer = identify(&known, model.with(&[]), &rough, |_| {})?;
     let mut set = now.rebound(&spec)?;
     undo(&mut set, taken, changes);
     let mut parameters = Vec::new();
@@ -70,9 +77,7 @@ pub fn against(
             set.parameters[place].value = known.parameters[place].value + moved;
             continue;
         };
-        let mut spreads = answer.repeatability.iter();
-        let spread = spreads.find(|one| one.name == *name);
-        let spread = spread.map_or(0.0, |one| one.spread);
+        let spread = spread(&answer, name);
         set.parameters[place] = Parameter {
             value: estimate.value + moved,
             std: Some(estimate.wider_std().hypot(spread)),
@@ -88,8 +93,8 @@ pub fn against(
         present: taken.effects.clone(),
         ..options.clone()
     };
-    let mut report = diagnose(&set, effects, &options, stage)?;
-    let is_changed = report.verdict != GapVerdict::NoGap && matters(report.how_far.as_ref());
+    let mut report = diagnosed((&set, Some(&known)), effects, &options, stage)?;
+    let is_changed = report.verdict != GapVerdict::NoGap && matters(&report, &set, &answer);
     if !is_changed {
         report.verdict = GapVerdict::NoGap;
     }
@@ -101,24 +106,56 @@ pub fn against(
     Ok(report)
 }
 
-/// Whether what explains a difference betters predictions, beyond chance and by enough.
-fn matters(far: Option<&HowFar>) -> bool {
+/// Whether what explains a difference betters predictions, beyond chance and by enough. Parameters within what the
+/// recordings before leave open do not count, nor do errors that these recordings have too.
+fn matters(report: &Report, set: &DataSet, answer: &Answer) -> bool {
+    let far = report.how_far.as_ref();
     far.is_none_or(|far| {
-        let bettered = 1.0 - (far.with_effect / far.nominal).powi(2);
-        far.closed_ci95[0] > 0.0 && bettered > CHANGED
+        let bases = [far.nominal, far.refitted];
+        let base = usize::from(is_open(report, set, answer) && far.refitted < far.nominal);
+        let left = far.with_effect.max(far.before.unwrap_or(0.0));
+        let bettered = 1.0 - (left / bases[base]).powi(2);
+        far.bettered_ci95[base][0] > 0.0 && bettered > CHANGED
     })
 }
 
-/// All runs to be fitted.
-fn fitted(set: &DataSet) -> DataSet {
-    let runs = set.runs.iter().map(|run| Run {
-        part: Part::Fit,
-        ..run.clone()
+/// Whether the re-fitted parameters are some that the recordings before leave open, all together.
+fn is_open(report: &Report, set: &DataSet, answer: &Answer) -> bool {
+    let mut which = report.which.iter();
+    let refitted = which.find(|one| one.effects.is_empty());
+    let Some(changes) = refitted.and_then(|one| one.changes.as_ref()) else {
+        return false;
+    };
+    let estimates = &answer.parameters;
+    let count = estimates.len();
+    let moved = estimates.iter().map(|estimate| {
+        let name: &str = &estimate.quantity.name;
+        let mut own = set.mechanism.parameters.iter();
+        let scale = own.find(|one| one.label.name == name);
+        let scale = scale.map_or(1.0, |one| one.label.unit.scale);
+        let mut refitted = changes.parameters.iter();
+        let one = refitted.find(|one| one.name == name);
+        one.map_or(0.0, |one| (one.value - one.stated) * scale)
     });
-    DataSet {
-        runs: runs.collect(),
-        ..set.clone()
-    }
+    let moved = DVector::from_iterator(count, moved);
+    let covariance = DMatrix::from_fn(count, count, |i, j| {
+        let [one, other] = [i, j].map(|place| estimates[place].wider_std());
+        let spread = if i == j {
+            spread(answer, &estimates[i].quantity.name)
+        } else {
+            0.0
+        };
+        answer.correlation[(i, j)] * one * other + spread.powi(2)
+    });
+    let solved = covariance.cholesky().map(|roots| roots.solve(&moved));
+    solved.is_some_and(|solved| moved.dot(&solved) <= OPEN.powi(2) * count as f64)
+}
+
+/// How far a parameter differs from run to run, in SI.
+fn spread(answer: &Answer, name: &str) -> f64 {
+    let mut spreads = answer.repeatability.iter();
+    let own = spreads.find(|one| one.name == name);
+    own.map_or(0.0, |own| own.spread)
 }
 
 /// Values and tolerances of a spec to which effects were added: those of the rig, and the sizes that were found.

@@ -68,10 +68,12 @@ impl HeldOut {
         })
     }
 
-    /// The errors of the nominal model, the re-fitted one and the leading hypothesis, and how the gap divides.
+    /// The errors of the nominal model, the re-fitted one and the leading hypothesis, and how the gap divides;
+    /// those of the nominal model on other runs, in the same units.
     pub(super) fn how_far(
         &self,
         (bench, comparison, leader): (&Bench<'_>, &Comparison, &Leader<'_>),
+        others: Option<&Self>,
         options: &Options,
     ) -> Result<Option<HowFar>, DiagnoseError> {
         if self.recordings.is_empty() {
@@ -94,9 +96,18 @@ impl HeldOut {
             floor = leader.floor(horizon)?;
         }
         let errors = |fitted: &Fitted| self.errors(bench, fitted, &noise, horizon);
-        let stated = errors(&stated(bench, refitted))?;
+        let stated = stated(bench, refitted);
+        let before = others.map(|others| {
+            let own_floor =
+                |runs: &Self| prediction::floor(&runs.recordings, bench, &stated, &noise, horizon);
+            let errors = others.errors(bench, &stated, &noise, horizon)?;
+            // Wilder motions have larger errors.
+            Ok::<f64, DiagnoseError>(errors.mean().sqrt() * own_floor(self)? / own_floor(others)?)
+        });
+        let stated = errors(&stated)?;
         let (refit, effect) = (errors(refitted)?, leader.errors(horizon)?);
         let paired = Paired::of(&[&stated, &refit, &effect]);
+        let bettered = |base: usize| paired.interval95(|means| 1.0 - means[2] / means[base]);
         let closed = |from: f64, to: f64| (from - to) / (from - floor * floor);
         let means = paired.means();
         let budget = if let Some(name) = leader.alternative {
@@ -131,6 +142,8 @@ impl HeldOut {
             closed_ci95: paired.interval95(|means| closed(means[0], means[2])),
             closed_vs_refitted: closed(means[1], means[2]),
             budget,
+            before: before.transpose()?,
+            bettered_ci95: [0, 1].map(bettered),
             is_worse: paired.interval95(|means| means[1] - means[2])[1] < 0.0,
             runs: self.names.clone(),
         }))

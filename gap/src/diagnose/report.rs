@@ -206,6 +206,11 @@ pub struct HowFar {
     pub closed_vs_refitted: f64,
     /// How the gap divides.
     pub budget: Vec<Share>,
+    /// Error of the nominal model on recordings before, in proportion to what it expects there and here.
+    pub before: Option<f64>,
+    /// Part of the mean square error of the nominal model that the leading hypothesis takes away, and of the
+    /// re-fitted one, between quantiles of 2.5 and 97.5 %.
+    pub bettered_ci95: [[f64; 2]; 2],
     /// Whether the leading hypothesis predicts worse than the re-fitted model, beyond chance.
     pub is_worse: bool,
     pub runs: Vec<String>,

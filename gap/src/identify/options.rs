@@ -28,6 +28,8 @@ pub struct Options {
     pub allow_none: bool,
     /// Where the search begins.
     pub begin: Begin,
+    /// Whether a search may end before an optimum, where the likelihood is rough as with sticking friction.
+    pub rough: bool,
 }
 
 impl Options {

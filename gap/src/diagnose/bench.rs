@@ -16,8 +16,9 @@ use crate::effects::{Acts, Candidate, EffectModel, Part as Role};
 use crate::identify::{Options, Problem, longest_step};
 use appell_recordings::{DataSet, Part};
 
-/// Delays of inputs and channels are this long in s at most.
+/// Delays of inputs and channels are this long in s at most, or so many steps.
 const LONGEST_DELAY: f64 = 0.1;
+const DELAY_STEPS: f64 = 5.0;
 /// Shortest and longest lag, in steps.
 pub(super) const LAG: [f64; 2] = [0.03, 500.0];
 /// Fits end where a further step promises less than this in log-likelihood, far less than what tells two
@@ -68,7 +69,7 @@ pub(super) struct Bench<'a> {
     /// What was recorded and the model does not know.
     pub(super) unmodelled: Vec<UnmodelledChannel>,
     /// Shortest step between rows.
-    step: f64,
+    pub(super) step: f64,
     /// Weight of a row: 1 where every row tells something of its own.
     pub(super) weight: f64,
     /// Levels with which the filter finds the state from which it predicts.
@@ -147,6 +148,10 @@ impl<'a> Bench<'a> {
         self.effects.candidate(index)
     }
 
+    pub(super) fn longest_delay(&self) -> f64 {
+        LONGEST_DELAY.max(DELAY_STEPS * self.step)
+    }
+
     /// Members without those that bring a coordinate.
     pub(super) fn locked(&self, members: &[usize]) -> Vec<usize> {
         let own = members.iter().copied();
@@ -200,7 +205,7 @@ impl<'a> Bench<'a> {
                 }
                 Acts::Delay(input) => setup.delayed.push(input),
                 Acts::Late(channel) => {
-                    setup.channels[channel].longest_delay = Some(LONGEST_DELAY);
+                    setup.channels[channel].longest_delay = Some(self.longest_delay());
                 }
                 _ => {}
             }
@@ -290,7 +295,7 @@ impl<'a> Bench<'a> {
             Acts::Bias(channel) => vec![Free::of(Unknown::Bias(channel))],
             Acts::Scale(channel) => vec![Free::of(Unknown::Scale(channel))],
             Acts::Late(channel) => {
-                vec![Free::of(Unknown::SensorDelay(channel)).within(0.0, LONGEST_DELAY)]
+                vec![Free::of(Unknown::SensorDelay(channel)).within(0.0, self.longest_delay())]
             }
             Acts::Lag(input) => at(&setup.lagging, input)
                 .map(|place| {
@@ -300,7 +305,7 @@ impl<'a> Bench<'a> {
                 .into_iter()
                 .collect(),
             Acts::Delay(input) => at(&setup.delayed, input)
-                .map(|place| Free::of(Unknown::InputDelay(place)).within(0.0, LONGEST_DELAY))
+                .map(|place| Free::of(Unknown::InputDelay(place)).within(0.0, self.longest_delay()))
                 .into_iter()
                 .collect(),
         }

@@ -35,6 +35,8 @@ const LEAST_PART: f64 = 0.25;
 const NO_GAP: f64 = 0.5;
 /// Probability beforehand that an effect does not come alone.
 const NOT_ALONE: f64 = 0.2;
+/// Part of the longest delay at which a search begins at most.
+const BELOW: f64 = 0.9;
 /// Why a fit does not count.
 const NO_EVIDENCE: &str = "its parameters cannot be told from each other";
 /// Odds that nothing in the library explains a gap that is there and that no effect closes.
@@ -605,7 +607,7 @@ fn place(
         }
         Acts::Delay(input) => {
             let unknown = Unknown::InputDelay(at(&setup.delayed, input));
-            set(unknown, first.clamp(0.0, 0.09))?;
+            set(unknown, first.clamp(0.0, BELOW * bench.longest_delay()))?;
         }
     }
     Ok(())

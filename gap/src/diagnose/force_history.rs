@@ -11,7 +11,7 @@ use super::compare::Comparison;
 use super::forces::Forces;
 use super::localise::force_unit;
 use super::report::{ForceHistory, MissingForce};
-use super::windows::WINDOW_S;
+use super::windows;
 
 /// Most parts of all runs; more cannot be told apart.
 const PARTS: f64 = 160.0;
@@ -36,7 +36,7 @@ pub(super) fn force_history(
         .map(ends)
         .map(|(from, to)| to - from)
         .sum();
-    let part = WINDOW_S.max(length / PARTS);
+    let part = windows::length(bench).max(length / PARTS);
     let mut runs = Vec::new();
     let mut squares: Vec<Vec<(f64, f64)>> = vec![Vec::new(); info.speeds];
     for (run, recording) in bench.recordings.iter().enumerate() {

@@ -17,8 +17,9 @@ use super::prediction::{self, Errors, Paired, noise, stated};
 use super::report::HowFar;
 use appell_recordings::{DataSet, Part};
 
-/// Horizon in s at which the gap is reported, but no more than half of a run.
+/// Horizon at which the gap is reported, in s and in steps at least, but no more than half of a run.
 const HORIZON: f64 = 1.0;
+const STEPS: f64 = 10.0;
 const PART: f64 = 0.5;
 /// Part of the horizon where a mechanism falls over so soon that the best hypothesis expects larger errors than
 /// the channels vary.
@@ -151,11 +152,14 @@ impl HeldOut {
 
     /// The horizon in s that these runs allow.
     fn horizon(&self) -> f64 {
-        let durations = self.recordings.iter().map(|run| {
+        let (mut longest, mut step) = (0.0_f64, 0.0_f64);
+        for run in &self.recordings {
             let times = run.times();
-            times[times.len() - 1] - times[0]
-        });
-        HORIZON.min(PART * durations.fold(0.0, f64::max))
+            let duration = times[times.len() - 1] - times[0];
+            longest = longest.max(duration);
+            step = step.max(duration / (times.len() - 1) as f64);
+        }
+        HORIZON.max(STEPS * step).min(PART * longest)
     }
 
     pub(super) fn errors(

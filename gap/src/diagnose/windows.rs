@@ -11,8 +11,9 @@ use super::compare::Comparison;
 use super::evidence::Fitted;
 use super::report::{Region, Where, Window};
 
-/// Length of a window in s.
-pub(super) const WINDOW_S: f64 = 0.5;
+/// Length of a window in s, and in steps, at least.
+const WINDOW_S: f64 = 0.5;
+const STEPS: f64 = 10.0;
 /// False discovery rate of the reported windows (Y. Benjamini and D. Yekutieli, *The control of the
 /// false discovery rate in multiple testing under dependency*, 2001).
 const FALSE_DISCOVERY_RATE: f64 = 0.05;
@@ -74,14 +75,20 @@ fn gains(bench: &Bench<'_>, nominal: &Fitted, best: &Fitted) -> Result<Vec<Sampl
         .collect())
 }
 
+/// Length of a window in s.
+pub(super) fn length(bench: &Bench<'_>) -> f64 {
+    WINDOW_S.max(STEPS * bench.step)
+}
+
 /// Windows that gain more than chance gives, the largest first.
 fn windows(bench: &Bench<'_>, gains: &[Sample], equation: &str) -> Vec<Window> {
     let mut sums: BTreeMap<(usize, u64), f64> = BTreeMap::new();
     let start = |run: usize| bench.recordings[run].times()[0];
+    let length = length(bench);
     for one in gains {
         // Windows are counted from zero and are few.
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
-        let index = ((one.t - start(one.run)) / WINDOW_S).max(0.0) as u64;
+        let index = ((one.t - start(one.run)) / length).max(0.0) as u64;
         *sums.entry((one.run, index)).or_default() += one.gain;
     }
     let count = sums.len() as f64;
@@ -106,11 +113,11 @@ fn windows(bench: &Bench<'_>, gains: &[Sample], equation: &str) -> Vec<Window> {
     tested
         .into_iter()
         .map(|((run, index), z, _)| {
-            let from = start(run) + WINDOW_S * index as f64;
+            let from = start(run) + length * index as f64;
             Window {
                 run: bench.set.runs[run].name.clone(),
                 from,
-                to: from + WINDOW_S,
+                to: from + length,
                 equation: equation.to_owned(),
                 z,
             }

@@ -30,7 +30,7 @@ pub fn json(report: &Report, next: Option<&Path>, findings: &[String]) -> Value 
             .iter()
             .map(|v| json!({ "name": v.name, "value": v.value, "std": v.std, "unit": v.unit }));
         json!({
-            "effects": h.effects, "probability": h.probability,
+            "effects": h.effects, "probability": h.probability, "same_as": h.same_as,
             "log_bayes_factor": h.log_bayes_factor, "parameters": parameters.collect::<Vec<_>>(),
             "changes": h.changes.as_ref().map(changes),
         })

@@ -222,9 +222,12 @@ fn line(hypothesis: &Hypothesis) -> String {
             format!("{short} = {}", with_unit(&size, &value.unit))
         })
         .collect();
+    let probability = match &hypothesis.same_as {
+        Some(_) => "the same".to_owned(),
+        None => format!("{:6.1} %", 100.0 * hypothesis.probability),
+    };
     format!(
-        "{:6.1} %  {}  {}",
-        100.0 * hypothesis.probability,
+        "{probability}  {}  {}",
         joined(&hypothesis.effects),
         values.join(", ")
     )

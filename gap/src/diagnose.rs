@@ -52,6 +52,7 @@ mod report;
 mod scales;
 mod screen;
 mod traces;
+mod twins;
 mod unknown;
 mod unmodelled;
 mod whiteness;
@@ -182,10 +183,10 @@ fn diagnosed(
     } else {
         None
     };
-    let experiment = match report.tied.first().map(Vec::as_slice) {
-        Some([first, second, ..]) => {
+    let experiment = match report.rivals().as_slice() {
+        [first, second, ..] => {
             stage("designing the next experiment");
-            let pair = [first.as_slice(), second.as_slice()];
+            let pair = [*first, *second];
             experiment::experiment(&bench, &comparison, pair, &options.limits)?
         }
         _ => None,

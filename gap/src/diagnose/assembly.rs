@@ -12,6 +12,7 @@ use super::report::{
     Detectable, Found, GapVerdict, Hint, Hypothesis, LAW, Left, Report, UNKNOWN, Value, Where,
 };
 use super::screen::Screen;
+use super::twins;
 use super::unknown;
 use crate::effects::{Acts, Part};
 use appell_estimate::{Along, Unknown};
@@ -55,6 +56,8 @@ pub(super) fn assemble(
     place: Where,
     rivals: &[Rival<'_>],
 ) -> Result<Report, DiagnoseError> {
+    // What cannot be compared is no twin.
+    let twins = twins::of_best(bench, comparison).unwrap_or_default();
     let names = |members: &[usize]| -> Vec<String> {
         let mut names: Vec<String> = Vec::new();
         for name in members.iter().map(|&m| bench.candidate(m).name()) {
@@ -68,16 +71,25 @@ pub(super) fn assemble(
     let base = comparison.nominal().evidence.log();
     let known = 1.0 - comparison.unknown;
     let mut which: Vec<Hypothesis> = Vec::new();
-    for (fitted, probability) in &comparison.fits {
+    for (place, (fitted, probability)) in comparison.fits.iter().enumerate() {
         let effects = names(&fitted.members);
         // Variants of one effect are one hypothesis.
         if let Some(own) = which.iter_mut().find(|own| own.effects == effects) {
             own.probability += probability * known;
             continue;
         }
+        let is_twin = twins.contains(&place);
+        if is_twin {
+            which[0].probability += probability * known;
+            // A mixture of two that say the same.
+            if effects.len() > which[0].effects.len() {
+                continue;
+            }
+        }
         which.push(Hypothesis {
+            same_as: is_twin.then(|| which[0].effects.clone()),
             effects,
-            probability: probability * known,
+            probability: if is_twin { 0.0 } else { probability * known },
             log_bayes_factor: Some(fitted.evidence.log() - base),
             parameters: values(bench, fitted),
             changes: Some(Changes::of(bench, fitted)?),
@@ -86,12 +98,14 @@ pub(super) fn assemble(
     which.push(Hypothesis {
         effects: vec![UNKNOWN.to_owned()],
         probability: comparison.unknown,
+        same_as: None,
         log_bayes_factor: None,
         parameters: Vec::new(),
         changes: None,
     });
     join(&mut which, rivals, bench, comparison)?;
     which.sort_by(|a, b| b.probability.total_cmp(&a.probability));
+    beside_their_twins(&mut which);
     let tied = tied(&which);
     let top = &which[0];
     let verdict = match top.effects.first().map(String::as_str) {
@@ -183,6 +197,7 @@ fn join(
         let odds = tempered(comparison.independent * (rival.log + prior(bench, 1) - beside));
         which.push(Hypothesis {
             effects: vec![rival.name.clone()],
+            same_as: None,
             probability: (odds + known).min(MOST_LOG_ODDS).exp(),
             log_bayes_factor: Some(rival.log - base),
             parameters: rival.values()?,
@@ -194,6 +209,21 @@ fn join(
         hypothesis.probability /= sum;
     }
     Ok(())
+}
+
+/// Puts hypotheses that say the same next to each other.
+fn beside_their_twins(which: &mut Vec<Hypothesis>) {
+    let (twins, mut others): (Vec<Hypothesis>, Vec<Hypothesis>) =
+        (which.drain(..)).partition(|one| one.same_as.is_some());
+    for twin in twins.into_iter().rev() {
+        let first = others.iter();
+        let mut first = first
+            .enumerate()
+            .filter(|(_, own)| twin.same_as.as_ref() == Some(&own.effects));
+        let place = first.next().map_or(0, |(place, _)| place + 1);
+        others.insert(place, twin);
+    }
+    *which = others;
 }
 
 /// The leading hypothesis with those that cannot be told from it.
@@ -208,7 +238,8 @@ fn tied(which: &[Hypothesis]) -> Vec<Vec<Vec<String>>> {
     let is_near = |other: &&Hypothesis| {
         is_named(other)
             && other.effects.len() == first.effects.len()
-            && (first.probability / other.probability).ln() < TIED
+            && (other.same_as.as_ref() == Some(&first.effects)
+                || (first.probability / other.probability).ln() < TIED)
     };
     let group: Vec<&Hypothesis> = which.iter().filter(is_near).collect();
     // Names of one thing share its probability: none of them leads, but all of them together.

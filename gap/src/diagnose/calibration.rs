@@ -19,6 +19,8 @@ const INEXACT: f64 = 0.5;
 const LEFT: f64 = 0.1;
 /// Two hypotheses whose log evidence differs by less are tied: odds of twenty.
 pub(super) const TIED: f64 = 3.0;
+/// Searches find evidence to within this.
+pub(super) const SEARCHED: f64 = 0.3;
 /// Part of what re-fitted parameters leave of the gap below which nothing names its cause.
 pub(super) const IMMATERIAL: f64 = 0.02;
 /// Larger logarithms are certainty.

@@ -78,8 +78,10 @@ pub struct Value {
 pub struct Hypothesis {
     /// Names of its effects; none for the nominal model, `unknown` for none of the library.
     pub effects: Vec<String>,
-    /// Probability.
+    /// Probability; nothing is left for one that says the same as another.
     pub probability: f64,
+    /// The hypothesis that says the same of every motion and has its probability.
+    pub same_as: Option<Vec<String>>,
     /// Logarithm of the Bayes factor against the nominal model.
     pub log_bayes_factor: Option<f64>,
     /// Values that its effects have.
@@ -408,6 +410,18 @@ pub struct Report {
     pub pictures: Option<Pictures>,
     /// What would tell the first two tied hypotheses apart.
     pub experiment: Option<Experiment>,
+}
+
+impl Report {
+    /// The tied hypotheses that say different things, the most probable first.
+    pub(super) fn rivals(&self) -> Vec<&[String]> {
+        let says_its_own = |effects: &&Vec<String>| {
+            let mut which = self.which.iter();
+            which.any(|one| one.effects == **effects && one.same_as.is_none())
+        };
+        let tied = self.tied.first().into_iter().flatten();
+        tied.filter(says_its_own).map(Vec::as_slice).collect()
+    }
 }
 
 /// What people look at.

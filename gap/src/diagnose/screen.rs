@@ -66,6 +66,9 @@ impl Screened {
     }
 }
 
+/// Part of a signature that nothing free can imitate, below which there is none.
+const LEFT: f64 = 1e-4;
+
 /// All candidates.
 #[derive(Debug, Clone)]
 pub(super) struct Screen {
@@ -196,17 +199,7 @@ impl Screen {
         let setup = bench.whole_setup(&fitted.members);
         let estimation = Estimation::new(&setup, &bench.recordings)?;
         let free = moving(fitted);
-        let mut directions = free.clone();
-        let mut own: Vec<(usize, Vec<usize>)> = Vec::new();
-        for candidate in 0..bench.effects.candidates.len() {
-            let brings = bench.candidate(candidate).brings.is_some();
-            if brings || fitted.members.contains(&candidate) {
-                continue;
-            }
-            let first = directions.len();
-            directions.extend(self::directions(bench, candidate));
-            own.push((candidate, (first..directions.len()).collect()));
-        }
+        let (directions, own) = others(bench, fitted, &free);
         let mut values = bench.carried(fitted, &estimation);
         shapes(bench, &mut values, &fitted.members);
         let input_innovations = &bench.input_innovations;
@@ -237,6 +230,48 @@ impl Screen {
         list.sort_by(|a, b| b.gain.total_cmp(&a.gain));
         Ok(Self { list })
     }
+}
+
+/// Candidates that do something, but nothing about a fit that what is free there cannot do as well.
+pub(super) fn imitated(bench: &Bench<'_>, fitted: &Fitted) -> Result<Vec<usize>, DiagnoseError> {
+    let setup = bench.whole_setup(&fitted.members);
+    let estimation = Estimation::new(&setup, &bench.recordings)?;
+    let free = moving(fitted);
+    let (directions, own) = others(bench, fitted, &free);
+    let mut values = bench.carried(fitted, &estimation);
+    shapes(bench, &mut values, &fitted.members);
+    let tangent = estimation.tangent(&values, &directions, None)?;
+    let projected = Projected::new((&tangent, bench.weight), fitted, free.len(), 0..0);
+    let is_imitated = |(_, columns): &(usize, Vec<usize>)| {
+        let slopes = projected.slopes(columns);
+        let mut columns = columns.iter().zip(slopes.column_iter());
+        columns.all(|(&column, left)| {
+            let whole = projected.root * tangent.slopes.column(column).norm();
+            whole > 0.0 && left.norm() <= LEFT * whole
+        })
+    };
+    let imitated = own.into_iter().filter(is_imitated);
+    Ok(imitated.map(|(candidate, _)| candidate).collect())
+}
+
+/// What is free, then the directions of all candidates that a hypothesis does not have; which are whose.
+fn others(
+    bench: &Bench<'_>,
+    fitted: &Fitted,
+    free: &[Direction],
+) -> (Vec<Direction>, Vec<(usize, Vec<usize>)>) {
+    let mut directions = free.to_vec();
+    let mut own: Vec<(usize, Vec<usize>)> = Vec::new();
+    for candidate in 0..bench.effects.candidates.len() {
+        let brings = bench.candidate(candidate).brings.is_some();
+        if brings || fitted.members.contains(&candidate) {
+            continue;
+        }
+        let first = directions.len();
+        directions.extend(self::directions(bench, candidate));
+        own.push((candidate, (first..directions.len()).collect()));
+    }
+    (directions, own)
 }
 
 /// Shapes of candidates that are not members stand where their spec has them.
@@ -316,8 +351,6 @@ fn screened(
     columns: &[usize],
     positive: &[bool],
 ) -> Option<Screened> {
-    /// Part of a signature that nothing free can imitate, below which there is none.
-    const LEFT: f64 = 1e-4;
     let slopes = projected.slopes(columns);
     let squares = slopes.tr_mul(&slopes);
     let score = slopes.tr_mul(&projected.rest);

@@ -246,8 +246,12 @@ fn which(report: &Report) -> Markup {
         };
         let values = values(hypothesis);
         let bayes = hypothesis.log_bayes_factor.map_or_else(String::new, short);
+        let probability = match &hypothesis.same_as {
+            Some(_) => html! { span class="faint" { "the same" } },
+            None => bar(hypothesis.probability),
+        };
         [
-            bar(hypothesis.probability),
+            probability,
             html! { (name) br; (separated(&values, |value| html! { (value) }, &html! { br; })) },
             html! { (bayes) },
         ]

@@ -30,7 +30,10 @@ pub fn sentence(report: &Report) -> String {
                     if about.len() > 1 { "explain" } else { "explains" },
                 ),
             };
-            format!("{best}; {} cannot be ruled out", rivals(report).join(", "))
+            let (same, rivals) = (twins(report), rivals(report));
+            let same = (!same.is_empty()).then(|| format!("; {} would be the same in every motion", same.join(", ")));
+            let rivals = (!rivals.is_empty()).then(|| format!("; {} cannot be ruled out", rivals.join(", ")));
+            format!("{best}{}{}", same.unwrap_or_default(), rivals.unwrap_or_default())
         }
         GapVerdict::Unexplained if report.how_far.as_ref().is_some_and(|far| far.is_worse) => {
             "there is a gap; what fits the recordings best makes predictions worse and explains nothing"
@@ -164,8 +167,8 @@ fn changed(report: &Report, change: &Change, about: &[&str]) -> String {
         GapVerdict::NoGap => "nothing changed".to_owned(),
         GapVerdict::Explained => format!("what changed: {names}"),
         GapVerdict::Ambiguous => {
-            let rivals = rivals(report).join(", ");
-            format!("something changed: {names}, or {rivals}")
+            let others = [twins(report), rivals(report)].concat().join(", ");
+            format!("something changed: {names}, or {others}")
         }
         GapVerdict::Unexplained => {
             let left = report.left.as_ref().map(|left| format!(": {}", left.about));
@@ -188,6 +191,17 @@ fn leading(report: &Report) -> Option<&Hypothesis> {
     report.which.iter().find(|one| one.effects != ["unknown"])
 }
 
+/// Names of the hypotheses that say the same as the leading one.
+fn twins(report: &Report) -> Vec<String> {
+    let first = leading(report).map(|first| &first.effects);
+    let same = report
+        .which
+        .iter()
+        .filter(|one| one.same_as.as_ref() == first);
+    let same = same.filter(|one| one.same_as.is_some());
+    same.map(|one| joined(&one.effects)).collect()
+}
+
 /// The hypotheses that are tied with the leading one, with their probabilities.
 fn rivals(report: &Report) -> Vec<String> {
     let Some(first) = leading(report).map(|first| &first.effects) else {
@@ -198,6 +212,9 @@ fn rivals(report: &Report) -> Vec<String> {
     let named = |effects: &Vec<String>| {
         let mut hypotheses = report.which.iter();
         let hypothesis = hypotheses.find(|hypothesis| hypothesis.effects == *effects)?;
+        if hypothesis.same_as.is_some() {
+            return None;
+        }
         let percent = 100.0 * hypothesis.probability;
         Some(format!("{} ({percent:.0} %)", joined(effects)))
     };

@@ -29,11 +29,14 @@ pub mod linear_bound;
 pub mod loads;
 pub mod motion;
 pub mod motions;
+mod outputs;
 pub mod positions;
 pub mod ranges;
 pub mod rank;
+pub mod reacting_loads;
 pub mod reactions;
 pub mod redundancy;
+pub mod responses;
 pub mod row;
 pub mod switches;
 pub mod symbols;
@@ -88,6 +91,8 @@ pub struct Derivation {
     pub gibbs: GibbsForm,
     /// Applied loads.
     pub loads: Vec<AppliedLoad>,
+    /// Reactions that loads depend on: their symbols and values.
+    pub reactions_in_loads: Vec<(Expr, Expr)>,
     /// Π.
     pub forces: Vec<Expr>,
     /// Solved equations, with ω̇.
@@ -171,6 +176,8 @@ fn equations(mechanism: &Mechanism) -> Outcome<Derivation> {
     algebra.check_size()?;
     let unbound_gibbs = gibbs_appell::gibbs_form(&mut algebra, &bodies, directions.len());
     let mut loads = loads::applied_loads(&mut algebra, mechanism, &symbols, &kinematics, rates)?;
+    let all_loads = loads.clone();
+    loads::settle(&mut loads, &mut algebra.graph, &symbols, &[])?;
     let forces = loads::generalized_forces(&mut algebra, &loads, &directions);
     let unbound = Unbound { forces, bodies };
     let (dependent, velocities) = DependentSpeeds::new(
@@ -217,12 +224,14 @@ fn equations(mechanism: &Mechanism) -> Outcome<Derivation> {
         bodies,
         gibbs,
         loads,
+        reactions_in_loads: Vec::new(),
         forces,
         motion,
         coordinate_rates: rolling_rates.clone(),
         rolling_rates,
         warnings,
     };
+    reacting_loads::act(&mut derivation, mechanism, all_loads)?;
     if let Some(creeping) = creep::creeping_motion(&mut derivation, mechanism)? {
         let algebra = &mut derivation.algebra;
         let (gibbs, forces) = (creeping.gibbs, creeping.forces);

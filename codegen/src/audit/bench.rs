@@ -8,10 +8,11 @@ use crate::mechanics::finding::Finding;
 use crate::mechanics::initial::InitialState;
 use crate::mechanics::kinematics::{Effort, Kinematics};
 use crate::mechanics::motions::motions;
+use crate::mechanics::responses::Answering;
 use crate::mechanics::symbols::Symbols;
 use crate::mechanics::{Derivation, declared_ranges, seed};
 use crate::symbolic::print::{Setter, Spelled, text};
-use crate::symbolic::{Expr, Graph, Intervals};
+use crate::symbolic::{Expr, Graph, Intervals, Substitution};
 
 /// Nobody reads a formula with more operations in a message.
 const MOST_OPERATIONS: usize = 16;
@@ -46,19 +47,7 @@ impl<'a> Bench<'a> {
         let graph = derivation.algebra.graph.clone();
         let mut algebra = Algebra::new(graph, symbols, seed(mechanism));
         let unconstrained = unconstrained(&mut algebra, mechanism, symbols)?;
-        let lowering = Lowering {
-            symbols,
-            rates: &derivation.velocities.rates,
-        };
-        let mut told = motions(&mut algebra, mechanism, symbols, &derivation.kinematics);
-        let mut outputs = Vec::with_capacity(mechanism.outputs.len());
-        for output in &mechanism.outputs {
-            let value = lowering.lower(&mut algebra.graph, &output.value).ok()?;
-            outputs.push(match &mut told {
-                Some(told) => told.apply(&mut algebra.graph, value)?,
-                None => value,
-            });
-        }
+        let outputs = outputs(&mut algebra, mechanism, derivation)?;
         Some(Self {
             mechanism,
             derivation,
@@ -109,6 +98,59 @@ impl<'a> Bench<'a> {
             exprs.all(|&expr| test.independent_of(graph, expr, symbol))
         })
     }
+}
+
+/// Outputs in terms of coordinates and pseudo-velocities.
+fn outputs(
+    algebra: &mut Algebra,
+    mechanism: &Mechanism,
+    derivation: &Derivation,
+) -> Option<Vec<Expr>> {
+    let symbols = &derivation.symbols;
+    let lowering = Lowering {
+        symbols,
+        rates: &derivation.velocities.rates,
+    };
+    let mut told = motions(algebra, mechanism, symbols, &derivation.kinematics);
+    let named = outputs_named(algebra, mechanism, derivation)?;
+    let mut named = Substitution::of_parts(&algebra.graph, &named);
+    let mut outputs = Vec::with_capacity(mechanism.outputs.len());
+    for output in &mechanism.outputs {
+        let graph = &mut algebra.graph;
+        let mut value = lowering.lower(graph, &output.value).ok()?;
+        if let Some(told) = &mut told {
+            value = told.apply(graph, value)?;
+        }
+        outputs.push(named.apply(graph, value)?);
+    }
+    Some(outputs)
+}
+
+/// Accelerations and forces that outputs and loads name.
+fn outputs_named(
+    algebra: &mut Algebra,
+    mechanism: &Mechanism,
+    derivation: &Derivation,
+) -> Option<Vec<(Expr, Expr)>> {
+    let symbols = &derivation.symbols;
+    if symbols.responses.is_empty() {
+        return Some(Vec::new());
+    }
+    let answering = Answering {
+        mechanism,
+        symbols,
+        constraints: &derivation.constraints,
+        contacts: &derivation.contacts,
+        violation: &derivation.velocities.violating,
+        kinematics: &derivation.kinematics,
+        rates: &derivation.velocities.rates,
+        creeps: false,
+        bodies: &derivation.bodies,
+        accelerations: &derivation.motion.accelerations,
+        loads: &derivation.loads,
+        reactions_in_loads: &derivation.reactions_in_loads,
+    };
+    answering.values(algebra, &symbols.responses).ok()
 }
 
 /// Velocities with symbols for q̇.

@@ -93,6 +93,8 @@ pub struct Derivation {
     pub loads: Vec<AppliedLoad>,
     /// Reactions that loads depend on: their symbols and values.
     pub reactions_in_loads: Vec<(Expr, Expr)>,
+    /// Accelerations and forces that outputs name: their symbols, and values with symbols for ω̇.
+    pub responses_in_outputs: Vec<(Expr, Expr)>,
     /// Π.
     pub forces: Vec<Expr>,
     /// Solved equations, with ω̇.
@@ -177,7 +179,7 @@ fn equations(mechanism: &Mechanism) -> Outcome<Derivation> {
     let unbound_gibbs = gibbs_appell::gibbs_form(&mut algebra, &bodies, directions.len());
     let mut loads = loads::applied_loads(&mut algebra, mechanism, &symbols, &kinematics, rates)?;
     let all_loads = loads.clone();
-    loads::settle(&mut loads, &mut algebra.graph, &symbols, &[])?;
+    loads::settle(&mut loads, &mut algebra.graph, mechanism, &[])?;
     let forces = loads::generalized_forces(&mut algebra, &loads, &directions);
     let unbound = Unbound { forces, bodies };
     let (dependent, velocities) = DependentSpeeds::new(
@@ -225,6 +227,7 @@ fn equations(mechanism: &Mechanism) -> Outcome<Derivation> {
         gibbs,
         loads,
         reactions_in_loads: Vec::new(),
+        responses_in_outputs: Vec::new(),
         forces,
         motion,
         coordinate_rates: rolling_rates.clone(),
@@ -240,6 +243,7 @@ fn equations(mechanism: &Mechanism) -> Outcome<Derivation> {
         derivation.coordinate_rates = named_rates(&mut algebra.graph, mechanism, rates);
         (derivation.gibbs, derivation.forces) = (gibbs, forces);
     }
+    derivation.responses_in_outputs = derivation.named_in_outputs(mechanism)?;
     Ok(derivation)
 }
 

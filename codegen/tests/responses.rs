@@ -1,10 +1,11 @@
 //! Accelerations and forces by name: against the motion, Newton's law and differences.
 #![allow(clippy::unwrap_used, reason = "tests may panic")]
 
-use appell_codegen::compile;
+use appell_codegen::formulations::compare;
 use appell_codegen::interpreted::InterpretedModel;
 use appell_codegen::jit::JitModel;
 use appell_codegen::program::FunctionKind;
+use appell_codegen::{compile, derived};
 use appell_runtime::differences;
 use appell_runtime::model::{At, Gradient, Model};
 use appell_test_kit::Random;
@@ -289,44 +290,7 @@ a_x = { value = \"m2*acceleration(G2, x) + m1*acceleration(G1, x)\" }
 }
 
 /// A block on a rough slope, driven by an input, with a hook on a spring.
-const BLOCK: &str = r#"
-[mechanism]
-name = "block"
-title = "A block on a rough slope"
-[parameters]
-m = { value = 2, unit = "kg" }
-beta = { value = 0.3, unit = "rad" }
-mu = { value = 0.4, unit = "1" }
-eps = { value = 0.05, unit = "m/s" }
-g = { value = 9.81, unit = "m/s^2" }
-k = { value = 30, unit = "N/m" }
-[coordinates]
-s = { unit = "m" }
-[inputs]
-F = { unit = "N" }
-[frames]
-slope = { parent = "ground", about_axis = "-y", by = "beta" }
-[points]
-C = { from = "O", in = "slope", at = ["s", 0, 0] }
-[bodies]
-block = { centre = "C", mass = "m" }
-[constraints]
-ground = { kind = "fixed_velocity", point = "C", in = "slope", direction = [0, 0, 1], one_sided = true }
-[pseudo_velocities]
-v = "dot(s)"
-[loads]
-friction = { kind = "generalized", velocity = "v", force = "-mu*normal_force(ground)*smooth_sign(v, eps)" }
-weight = { kind = "gravity", down = "-z", acceleration = "g" }
-push = { kind = "force", on = "C", in = "ground", vector = ["F", 0, 0] }
-hook = { kind = "spring", coordinate = "s", stiffness = "k" }
-[outputs]
-n = { value = "normal_force(ground)" }
-across = { value = "reaction(ground, z, slope)" }
-rubbing = { value = "force(friction)" }
-pulling = { value = "force(hook)" }
-pushing = { value = "force(push, x, slope)" }
-a = { value = "acceleration(C, x, slope)" }
-"#;
+const BLOCK: &str = include_str!("emit_support/block.toml");
 
 #[test]
 fn friction_follows_the_normal_force() {
@@ -351,4 +315,209 @@ fn friction_follows_the_normal_force() {
         assert_close("power", &[power], &[v * (pushing + rubbing)], ROUNDING);
     });
     assert_jacobians(BLOCK);
+}
+
+/// The wheel with a moment that resists rolling in proportion to the load on the contact.
+fn rolling_resistance(text: &str) -> String {
+    let parameters = "c_r = { value = 0.7, unit = \"1\" }";
+    let load = "resist = { kind = \"torque\", on = \"wheel\", in = \"tilted\", vector = \
+                [\"-0.3*c_r*R*normal_force(rolling)*smooth_sign(omega_1, 0.5 [rad/s])\", \
+                 \"-c_r*R*normal_force(rolling)*smooth_sign(omega_2, 0.5 [rad/s])\", 0] }";
+    with(text, &[("parameters", parameters), ("loads", load)])
+}
+
+const CELLS: &str = "\
+n = { value = \"normal_force(rolling)\" }
+r_x = { value = \"reaction(rolling, x, yawed)\" }
+";
+const RESISTING: &str = "resisting = { value = \"force(resist, y, tilted)\" }";
+
+/// `∂y/∂z` by differences, a column for each entry of `z`.
+fn slopes(z: &[f64], mut of: impl FnMut(&[f64]) -> Vec<f64>) -> Vec<Vec<f64>> {
+    let mut varied = z.to_vec();
+    let mut columns = Vec::new();
+    for j in 0..z.len() {
+        let mut at = |offset: f64| {
+            varied[j] = z[j] + offset;
+            let values = of(&varied);
+            varied[j] = z[j];
+            values
+        };
+        let h = 1e-5;
+        let (above, below) = (at(h), at(-h));
+        let column = above.iter().zip(&below).map(|(a, b)| (a - b) / (2.0 * h));
+        columns.push(column.collect());
+    }
+    columns
+}
+
+/// A, B and P against differences of the rates; what the loads do against the change of the energy.
+fn assert_motion(what: &str, model: &dyn Model, point: &Point) {
+    let info = model.info();
+    let (n, m, k) = (info.state_len(), info.input_len(), info.parameter_len());
+    let fill = |len| vec![f64::NAN; len];
+    let rates = |at: At<'_>| {
+        let mut rates = fill(n);
+        model.rates(at, &mut rates);
+        rates
+    };
+    let [mut a, mut b, mut p, mut x_dot] = [fill(n * n), fill(n * m), fill(n * k), fill(n)];
+    model.jacobians(point.at(), &mut x_dot, &mut a, &mut b);
+    model.parameter_jacobian(point.at(), &mut p);
+    let at = point.at();
+    let by_row = |columns: Vec<Vec<f64>>| -> Vec<f64> {
+        let row = |row| columns.iter().map(move |column: &Vec<f64>| column[row]);
+        (0..n).flat_map(row).collect()
+    };
+    let wanted = by_row(slopes(at.x, |x| rates(At { x, ..at })));
+    assert_close(&format!("{what}: A"), &a, &wanted, DIFFERENCES);
+    let wanted = by_row(slopes(at.u, |u| rates(At { u, ..at })));
+    assert_close(&format!("{what}: B"), &b, &wanted, DIFFERENCES);
+    let wanted = by_row(slopes(at.p, |p| rates(At { p, ..at })));
+    assert_close(&format!("{what}: P"), &p, &wanted, DIFFERENCES);
+
+    let energy = |x: &[f64]| {
+        let energies = model.energies(At { x, ..at });
+        vec![energies.kinetic + energies.potential]
+    };
+    let gradient = slopes(at.x, energy);
+    let change: f64 = gradient.iter().zip(&x_dot).map(|(e, x)| e[0] * x).sum();
+    let power = model.energies(at).power;
+    assert_close(&format!("{what}: energy"), &[change], &[power], DIFFERENCES);
+}
+
+fn assert_one_answer(text: &str) {
+    let derived = derived("spec.toml", text).unwrap_or_else(|report| panic!("{}", report.plain()));
+    let verdict = compare(&derived.mechanism, &derived.derivation).unwrap();
+    assert!(verdict.agrees(), "{verdict:#?}");
+}
+
+#[test]
+fn a_reaction_in_a_load_is_that_of_the_motion_without_the_load() {
+    for text in [WHEEL.to_owned(), pivoted_wheel()] {
+        let text = with(&text, &[("outputs", CELLS)]);
+        let plain = engines(&text);
+        let text = with(&rolling_resistance(&text), &[("outputs", RESISTING)]);
+        everywhere(&text, |model, point| {
+            let p = |name| point.p[model.info().parameter_index(name).unwrap()];
+            let mut without = point.p.clone();
+            without.remove(model.info().parameter_index("c_r").unwrap());
+            let without = Point {
+                x: point.x.clone(),
+                u: point.u.clone(),
+                p: without,
+            };
+            let normal = without.output(&*plain[0], "n");
+            let resisting = -p("c_r") * p("R") * normal * (point.x[1] / 0.5).tanh();
+            let got = point.output(model, "resisting");
+            assert_close("the moment", &[got], &[resisting], ROUNDING);
+            // What is reported is the reaction of the motion with everything that acts.
+            let reported = point.reaction(model, 0);
+            let n = point.output(model, "n");
+            assert_close("reported", &[n], &[reported[2]], ROUNDING);
+            assert!((n - normal).abs() > 1e-6, "{n} and {normal}");
+            assert_motion("wheel", model, point);
+        });
+        assert_jacobians(&text);
+        assert_one_answer(&text);
+    }
+}
+
+#[test]
+fn loads_name_multipliers_and_the_forces_of_other_loads() {
+    let loads = "\
+pin = { kind = \"generalized\", velocity = \"omega\", force = \"-0.1 [m]*smooth_abs(reaction(along), 1 [N])*smooth_sign(omega, 0.5 [rad/s])\" }
+spring = { kind = \"spring\", between = [\"O\", \"B\"], stiffness = \"30 [N/m]\", relaxed = \"0.1 [m]\" }
+oil = { kind = \"damper\", between = [\"D\", \"B\"], damping = \"2 [N*s/m]\" }
+guide = { kind = \"torque\", on = \"rocker\", in = \"rocker\", vector = [0, \"0.2 [m]*(force(spring) + force(oil)) + 0.3*force(pin)\", 0] }
+";
+    let outputs = "\
+measured = { value = \"force(guide, y, coupler)\" }
+spring = { value = \"force(spring)\" }
+oil = { value = \"force(oil)\" }
+pin = { value = \"force(pin)\" }
+";
+    let text = with(FOUR_BAR, &[("loads", loads), ("outputs", outputs)]);
+    everywhere(&text, |model, point| {
+        let of = |name| point.output(model, name);
+        let guide = 0.2 * (of("spring") + of("oil")) + 0.3 * of("pin");
+        assert_close("guide", &[of("measured")], &[guide], ROUNDING);
+        assert_motion("four-bar", model, point);
+    });
+    assert_jacobians(&text);
+    assert_one_answer(&text);
+}
+
+#[test]
+fn what_cannot_be_told_is_refused_where_it_is_named() {
+    // Two contacts say the same of one motion: their shares are not told.
+    let text = with(
+        BLOCK,
+        &[
+            (
+                "constraints",
+                "also = { kind = \"fixed_velocity\", point = \"D\", in = \"slope\", direction = [0, 0, 1] }",
+            ),
+            (
+                "points",
+                "D = { from = \"C\", in = \"slope\", at = [\"1 [m]\", 0, 0] }",
+            ),
+        ],
+    );
+    let refused = compile("spec.toml", &text, &FunctionKind::ALL)
+        .err()
+        .unwrap();
+    let shown = refused.plain();
+    for part in [
+        "undetermined-reaction",
+        "`normal_force(ground)`",
+        "friction = ",
+    ] {
+        assert!(shown.contains(part), "{part} is not in {shown}");
+    }
+    // The wheel lifts off by a coordinate: nothing tells the normal of what it rolls on.
+    let text = with(
+        &WHEEL
+            .replace("R*cos(theta)\"], about", "h\"], about")
+            .replace(
+                "psi   = {",
+                "h = { unit = \"m\", initial = 0.3 }\npsi   = {",
+            ),
+        &[("outputs", "n = { value = \"normal_force(rolling)\" }")],
+    );
+    let refused = compile("spec.toml", &text, &FunctionKind::ALL)
+        .err()
+        .unwrap();
+    let shown = refused.plain();
+    assert!(
+        shown.contains("n = {") && shown.contains("contact-not-judged"),
+        "{shown}"
+    );
+}
+
+/// Each load doubles the degree of the one before.
+#[test]
+fn chains_of_forces_stay_within_limits() {
+    let chain = |length: usize, force: &str| {
+        let links: String = (1..length)
+            .map(|i| {
+                let last = format!("force(f{})", i - 1);
+                let force = force.replace("{}", &last);
+                format!(
+                    "f{i} = {{ kind = \"generalized\", velocity = \"v\", force = \"{force}\" }}\n"
+                )
+            })
+            .collect();
+        let first = "f0 = { kind = \"generalized\", velocity = \"v\", force = \"v*1 [N*s/m]\" }\n";
+        with(BLOCK, &[("loads", &format!("{first}{links}"))])
+    };
+    let refused = compile(
+        "spec.toml",
+        &chain(40, "{}*{}/(1 [N])"),
+        &FunctionKind::STANDARD,
+    );
+    let shown = refused.err().unwrap().plain();
+    assert!(shown.contains("limit-exceeded"), "{shown}");
+    let sums = compile("spec.toml", &chain(200, "{} + {}"), &FunctionKind::STANDARD);
+    assert!(sums.is_ok());
 }

@@ -8,7 +8,6 @@ use crate::mechanics::finding::Finding;
 use crate::mechanics::initial::InitialState;
 use crate::mechanics::kinematics::{Effort, Kinematics};
 use crate::mechanics::motions::motions;
-use crate::mechanics::responses::Answering;
 use crate::mechanics::symbols::Symbols;
 use crate::mechanics::{Derivation, declared_ranges, seed};
 use crate::symbolic::print::{Setter, Spelled, text};
@@ -112,8 +111,9 @@ fn outputs(
         rates: &derivation.velocities.rates,
     };
     let mut told = motions(algebra, mechanism, symbols, &derivation.kinematics);
-    let named = outputs_named(algebra, mechanism, derivation)?;
-    let mut named = Substitution::of_parts(&algebra.graph, &named);
+    // With symbols for ω̇, which depends on nothing but the equations.
+    let named = &derivation.responses_in_outputs;
+    let mut named = Substitution::of_parts(&algebra.graph, named);
     let mut outputs = Vec::with_capacity(mechanism.outputs.len());
     for output in &mechanism.outputs {
         let graph = &mut algebra.graph;
@@ -124,33 +124,6 @@ fn outputs(
         outputs.push(named.apply(graph, value)?);
     }
     Some(outputs)
-}
-
-/// Accelerations and forces that outputs and loads name.
-fn outputs_named(
-    algebra: &mut Algebra,
-    mechanism: &Mechanism,
-    derivation: &Derivation,
-) -> Option<Vec<(Expr, Expr)>> {
-    let symbols = &derivation.symbols;
-    if symbols.responses.is_empty() {
-        return Some(Vec::new());
-    }
-    let answering = Answering {
-        mechanism,
-        symbols,
-        constraints: &derivation.constraints,
-        contacts: &derivation.contacts,
-        violation: &derivation.velocities.violating,
-        kinematics: &derivation.kinematics,
-        rates: &derivation.velocities.rates,
-        creeps: false,
-        bodies: &derivation.bodies,
-        accelerations: &derivation.motion.accelerations,
-        loads: &derivation.loads,
-        reactions_in_loads: &derivation.reactions_in_loads,
-    };
-    answering.values(algebra, &symbols.responses).ok()
 }
 
 /// Velocities with symbols for q̇.

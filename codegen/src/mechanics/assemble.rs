@@ -263,7 +263,7 @@ impl Derivation {
             | F::Contacts
             | F::Systems => function,
             F::Outputs | F::OutputJacobians => {
-                if self.outputs_need_accelerations(mechanism) {
+                if self.outputs_need_accelerations() {
                     let bodies = self.bodies.clone();
                     let function = function.by_way_of(SOLVED, accelerations);
                     self.explained(mechanism, function, &bodies)

@@ -89,7 +89,7 @@ pub fn creeping_motion(
     let sliding = gibbs_form(algebra, &bodies, directions.len());
     let mut loads = applied_loads(algebra, mechanism, &symbols, &kinematics, &rates)?;
     let reactions = &derivation.reactions_in_loads;
-    settle(&mut loads, &mut algebra.graph, &symbols, reactions)?;
+    settle(&mut loads, &mut algebra.graph, mechanism, reactions)?;
     let forces = generalized_forces(algebra, &loads, &symbols.speeds);
 
     // m s, and what its change adds.

@@ -12,7 +12,7 @@ use super::finding::{Finding, Item, Outcome, division_by_zero};
 use super::frames::FrameVector;
 use super::kinematics::Kinematics;
 use super::motions::motions;
-use super::symbols::{Symbols, ids};
+use super::symbols::Symbols;
 use crate::symbolic::vector::Vec3;
 use crate::symbolic::{Expr, Graph, Rational, Substitution, SymbolId};
 
@@ -243,19 +243,30 @@ pub fn forces(
 pub fn settle(
     loads: &mut [AppliedLoad],
     graph: &mut Graph,
-    symbols: &Symbols,
+    mechanism: &Mechanism,
     reactions: &[(Expr, Expr)],
 ) -> Outcome<()> {
     if !reactions.is_empty() {
         let mut known = Substitution::of_parts(graph, reactions);
         return replace(loads, graph, &mut known);
     }
-    let unknown = ids(graph, &symbols.reactions());
-    if !unknown.is_empty() {
-        for load in loads {
-            if load.depends_on(graph, &unknown) {
-                load.work.clear();
-            }
+    let mut waits = vec![false; loads.len()];
+    for index in after_what_they_name(mechanism) {
+        for expr in mechanism.loads[index].kind.expressions() {
+            expr.visit(&mut |quantity| match quantity {
+                Quantity::Response(Response::Reaction(..) | Response::NormalForce(_)) => {
+                    waits[index.index()] = true;
+                }
+                Quantity::Response(Response::Force(other, _)) => {
+                    waits[index.index()] |= waits[other.index()];
+                }
+                _ => {}
+            });
+        }
+    }
+    for (load, waits) in loads.iter_mut().zip(waits) {
+        if waits {
+            load.work.clear();
         }
     }
     Ok(())

@@ -7,10 +7,10 @@ use super::Derivation;
 use super::expressions::Lowering;
 use super::finding::{Item, Outcome, division_by_zero};
 use super::motions::motions;
-use super::responses::Answering;
+use super::responses::{Answering, named_in};
 use super::symbols::ids;
 use crate::program::{Array, Layout, Space};
-use crate::symbolic::{Expr, Substitution};
+use crate::symbolic::{Expr, Graph, Substitution};
 
 /// Values of the outputs.
 pub(super) struct Outputs {
@@ -21,13 +21,12 @@ pub(super) struct Outputs {
 }
 
 impl Derivation {
-    /// Whether outputs depend on the solved equations.
-    pub(super) fn outputs_need_accelerations(&mut self, mechanism: &Mechanism) -> bool {
-        if self.symbols.responses.is_empty() {
-            return false;
-        }
-        let outputs = self.output_values(mechanism);
-        outputs.is_ok_and(|outputs| outputs.implicit != outputs.values)
+    /// Whether outputs name what the equations have to be solved for.
+    pub(super) fn outputs_need_accelerations(&self) -> bool {
+        let unknown = ids(&self.algebra.graph, &self.symbols.accelerations);
+        let values = self.responses_in_outputs.iter();
+        let mut values = values.map(|(_, value)| *value);
+        values.any(|value| self.algebra.graph.mentions(value, &unknown))
     }
 
     /// The outputs of the spec.
@@ -66,32 +65,28 @@ impl Derivation {
             });
             implicit.push(value.ok_or_else(|| vec![division_by_zero(Item::Output(index))])?);
         }
-        if self.symbols.responses.is_empty() {
+        if self.responses_in_outputs.is_empty() {
             let values = implicit.clone();
             return Ok(Outputs { implicit, values });
         }
-        let responses = self.responses_in_outputs(mechanism, &implicit)?;
         let graph = &mut self.algebra.graph;
         let zero = || vec![division_by_zero(Item::Mechanism)];
-        let mut told = Substitution::of_parts(graph, &responses);
+        let mut told = Substitution::of_parts(graph, &self.responses_in_outputs);
         let implicit = told.apply_all(graph, &implicit).ok_or_else(zero)?;
-        let values = self.at_the_motion(&implicit)?;
+        let mut actual = self.actual_accelerations().keeping_names();
+        let graph = &mut self.algebra.graph;
+        let values = actual.apply_all(graph, &implicit).ok_or_else(zero)?;
         Ok(Outputs { implicit, values })
     }
 
     /// What stands for the symbols of accelerations and forces in outputs, with symbols for ω̇.
-    fn responses_in_outputs(
-        &mut self,
-        mechanism: &Mechanism,
-        outputs: &[Expr],
-    ) -> Outcome<Vec<(Expr, Expr)>> {
+    pub(super) fn named_in_outputs(&mut self, mechanism: &Mechanism) -> Outcome<Vec<(Expr, Expr)>> {
+        let outputs = mechanism.outputs.iter().map(|output| &output.value);
+        let wanted = named_in(&self.symbols, outputs);
+        if wanted.is_empty() {
+            return Ok(Vec::new());
+        }
         let bodies = self.bodies_in_ground(mechanism);
-        let graph = &self.algebra.graph;
-        let mut wanted = self.symbols.responses.clone();
-        wanted.retain(|&(_, symbol)| {
-            let symbol = ids(graph, &[symbol]);
-            outputs.iter().any(|&value| graph.mentions(value, &symbol))
-        });
         let answering = Answering {
             mechanism,
             symbols: &self.symbols,
@@ -109,17 +104,12 @@ impl Derivation {
         answering.values(&mut self.algebra, &wanted)
     }
 
-    /// Expressions with ω̇ in place of its symbols.
-    fn at_the_motion(&mut self, implicit: &[Expr]) -> Outcome<Vec<Expr>> {
-        let graph = &mut self.algebra.graph;
-        let symbols = ids(graph, &self.symbols.accelerations);
-        let pairs: Vec<_> = symbols
-            .into_iter()
-            .zip(self.motion.accelerations.iter().copied())
-            .collect();
-        let mut actual = Substitution::new(graph, &pairs).keeping_names();
-        let values = actual.apply_all(graph, implicit);
-        values.ok_or_else(|| vec![division_by_zero(Item::Mechanism)])
+    /// Puts ω̇ in place of its symbols.
+    fn actual_accelerations(&mut self) -> Substitution {
+        let symbols = self.symbols.accelerations.iter();
+        let values = self.motion.accelerations.iter();
+        let pairs: Vec<(Expr, Expr)> = symbols.copied().zip(values.copied()).collect();
+        Substitution::of_parts(&self.algebra.graph, &pairs)
     }
 
     /// Derivatives of the outputs with respect to each list of variables, row by row:
@@ -135,11 +125,17 @@ impl Derivation {
         }
         let accelerations = self.symbols.accelerations.clone();
         let along = self.slopes(&outputs.implicit, &accelerations);
-        let along = self.at_the_motion(&along)?;
+        // Under no names: these derivatives hold ω̇, which a reader would not see.
+        let mut actual = self.actual_accelerations();
+        let mut at_the_motion = |graph: &mut Graph, partials: &[Expr]| {
+            let values = actual.apply_all(graph, partials);
+            values.ok_or_else(|| vec![division_by_zero(Item::Mechanism)])
+        };
+        let along = at_the_motion(&mut self.algebra.graph, &along)?;
         let rates = self.derivatives(variables)?;
         for ((slopes, rates), variables) in slopes.iter_mut().zip(&rates).zip(variables) {
-            *slopes = self.at_the_motion(slopes)?;
             let graph = &mut self.algebra.graph;
+            *slopes = at_the_motion(graph, slopes)?;
             for (place, slope) in slopes.iter_mut().enumerate() {
                 let (row, column) = (place / variables.len(), place % variables.len());
                 let mut parts = vec![*slope];

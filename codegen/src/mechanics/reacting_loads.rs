@@ -15,8 +15,7 @@ use super::finding::Outcome;
 use super::gibbs_appell::named_parts;
 use super::loads::{self, AppliedLoad, generalized_forces, settle};
 use super::motion;
-use super::responses::Answering;
-use super::symbols::ids;
+use super::responses::{Answering, named_in};
 use crate::symbolic::Expr;
 
 /// Lets all loads act on a motion that knows only those without reactions. `all` hold symbols for the
@@ -26,7 +25,7 @@ pub fn act(
     mechanism: &Mechanism,
     mut all: Vec<AppliedLoad>,
 ) -> Outcome<()> {
-    let reactions = reactions(derivation, mechanism, &all)?;
+    let reactions = reactions(derivation, mechanism)?;
     if reactions.is_empty() {
         return Ok(());
     }
@@ -36,7 +35,7 @@ pub fn act(
         dependent,
         ..
     } = derivation;
-    settle(&mut all, &mut algebra.graph, symbols, &reactions)?;
+    settle(&mut all, &mut algebra.graph, mechanism, &reactions)?;
     let directions = [symbols.speeds.as_slice(), &dependent.system.unknowns].concat();
     let unbound = generalized_forces(algebra, &all, &directions);
     let mut actual = dependent.actual(&algebra.graph);
@@ -55,18 +54,11 @@ pub fn act(
 }
 
 /// The reactions that loads name, with their values in the motion as it is known.
-fn reactions(
-    derivation: &mut Derivation,
-    mechanism: &Mechanism,
-    all: &[AppliedLoad],
-) -> Outcome<Vec<(Expr, Expr)>> {
-    let graph = &derivation.algebra.graph;
-    let mut wanted = derivation.symbols.responses.clone();
-    wanted.retain(|&(response, symbol)| {
-        let symbol = ids(graph, &[symbol]);
-        !matches!(response, Response::Force(..))
-            && all.iter().any(|load| load.depends_on(graph, &symbol))
-    });
+fn reactions(derivation: &mut Derivation, mechanism: &Mechanism) -> Outcome<Vec<(Expr, Expr)>> {
+    let loads = mechanism.loads.iter();
+    let exprs = loads.flat_map(|load| load.kind.expressions());
+    let mut wanted = named_in(&derivation.symbols, exprs);
+    wanted.retain(|(response, _)| !matches!(response, Response::Force(..)));
     if wanted.is_empty() {
         return Ok(Vec::new());
     }

@@ -40,7 +40,7 @@ pub fn reactions(
     let rates = &violation.coordinate_rates;
     let kinematics = Kinematics::new(algebra, mechanism, symbols, rates, &carried, Effort::Plain)?;
     let mut loads = applied_loads(algebra, mechanism, symbols, &kinematics, rates)?;
-    settle(&mut loads, &mut algebra.graph, symbols, in_loads)?;
+    settle(&mut loads, &mut algebra.graph, mechanism, in_loads)?;
     let applied = generalized_forces(algebra, &loads, &violation.rates);
     // The violations only tell directions: a damper resists the motion that happens.
     let mut allowed = Substitution::by_zero(&algebra.graph, &violation.rates);

@@ -4,8 +4,9 @@
 //! everything that the solved equations enter: first with ω̇ held, then along its derivatives.
 
 use appell_spec::Code;
-use appell_spec::expr::{Quantity, Response};
-use appell_spec::mechanism::{ConstraintId, FrameId, GROUND, Mechanism};
+use appell_spec::expr::{Expr as Spec, Quantity, Response};
+use appell_spec::mechanism::{Axis, ConstraintId, FrameId, GROUND, Mechanism};
+use rustc_hash::FxHashSet;
 
 use super::algebra::Algebra;
 use super::constraints::Constraints;
@@ -68,6 +69,7 @@ impl Answering<'_> {
         };
         let mut findings = Vec::new();
         for &(response, symbol) in wanted {
+            algebra.check_size()?;
             let value = match response {
                 Response::Force(..) => continue,
                 Response::Acceleration(point, axis, frame) => {
@@ -140,13 +142,10 @@ impl Answering<'_> {
         algebra: &mut Algebra,
         reactions: &[Vec3],
         constraint: ConstraintId,
-        (axis, frame): (Option<appell_spec::mechanism::Axis>, Option<FrameId>),
+        (axis, frame): (Option<Axis>, Option<FrameId>),
     ) -> Result<Expr, Untold> {
-        let mut rows = self.constraints.rows_of(constraint);
-        let place = rows.next().and_then(|row| self.constraints.reported(row));
-        let v = *place
-            .and_then(|place| reactions.get(place))
-            .ok_or(Untold::Undetermined)?;
+        let place = self.place_of(constraint)?;
+        let v = *reactions.get(place).ok_or(Untold::Undetermined)?;
         let (Some(axis), Some(frame)) = (axis, frame) else {
             return Ok(v[0]);
         };
@@ -155,12 +154,21 @@ impl Answering<'_> {
         Ok(frames.express(&mut algebra.graph, force, frame)[axis.index()])
     }
 
+    /// Index of the reaction of a constraint among those that are reported.
+    fn place_of(&self, constraint: ConstraintId) -> Result<usize, Untold> {
+        let mut rows = self.constraints.rows_of(constraint);
+        let place = rows.next().and_then(|row| self.constraints.reported(row));
+        place.ok_or(Untold::Undetermined)
+    }
+
     fn normal(
         &self,
         algebra: &mut Algebra,
         reactions: &[Vec3],
         constraint: ConstraintId,
     ) -> Result<Expr, Untold> {
+        // A reaction that is not reported has no contact.
+        self.place_of(constraint)?;
         let mut contacts = self.contacts.iter();
         let contact = contacts
             .find(|contact| contact.constraint == constraint)
@@ -168,6 +176,24 @@ impl Answering<'_> {
         let force = reactions.get(contact.place).ok_or(Untold::Undetermined)?;
         Ok(algebra.graph.dot(contact.normal, *force))
     }
+}
+
+/// The accelerations and forces that some expressions name, with their symbols.
+pub fn named_in<'e>(
+    symbols: &Symbols,
+    exprs: impl IntoIterator<Item = &'e Spec>,
+) -> Vec<(Response, Expr)> {
+    let mut named = FxHashSet::default();
+    for expr in exprs {
+        expr.visit(&mut |quantity| {
+            if let Quantity::Response(response) = quantity {
+                named.insert(response);
+            }
+        });
+    }
+    let mut wanted = symbols.responses.clone();
+    wanted.retain(|(response, _)| named.contains(response));
+    wanted
 }
 
 /// Why a force cannot be told.
@@ -202,7 +228,7 @@ fn untold(mechanism: &Mechanism, response: Response, reason: Untold) -> Finding 
 
 /// The first item that names a force.
 fn who_names(mechanism: &Mechanism, response: Response) -> Item {
-    let names = |exprs: &[&appell_spec::expr::Expr]| {
+    let names = |exprs: &[&Spec]| {
         let mut found = false;
         for expr in exprs {
             expr.visit(&mut |quantity| found |= quantity == Quantity::Response(response));

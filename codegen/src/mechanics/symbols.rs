@@ -186,18 +186,6 @@ fn along(mechanism: &Mechanism, axis: Axis, frame: FrameId) -> String {
 }
 
 impl Symbols {
-    /// The symbols of reactions.
-    pub fn reactions(&self) -> Vec<Expr> {
-        let is_reaction = |response: &Response| {
-            matches!(response, Response::Reaction(..) | Response::NormalForce(_))
-        };
-        let named = self.responses.iter();
-        named
-            .filter(|(response, _)| is_reaction(response))
-            .map(|(_, symbol)| *symbol)
-            .collect()
-    }
-
     /// The symbol of a kinematic quantity or a force that a load or an output names.
     pub fn named(&self, quantity: Quantity) -> Option<Expr> {
         self.named.get(&quantity).copied()

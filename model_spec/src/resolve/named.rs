@@ -190,7 +190,7 @@ impl Resolver<'_> {
                 ),
             ),
             (Shape::Scalar, Some(_)) => (
-                format!("the force of `{name}` is one number and has no axes"),
+                format!("`{own}({name})` is one number and has no axes"),
                 format!("write `{own}({name})`"),
             ),
             (Shape::Spread, _) => (

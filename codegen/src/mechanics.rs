@@ -33,7 +33,7 @@ mod outputs;
 pub mod positions;
 pub mod ranges;
 pub mod rank;
-pub mod reacting_loads;
+mod reacting_loads;
 pub mod reactions;
 pub mod redundancy;
 pub mod responses;
@@ -139,6 +139,23 @@ pub fn derive(mechanism: &Mechanism) -> Outcome<Derivation> {
 }
 
 fn equations(mechanism: &Mechanism) -> Outcome<Derivation> {
+    let (mut derivation, all_loads) = without_reactions(mechanism)?;
+    derivation.let_all_loads_act(mechanism, all_loads)?;
+    if let Some(creeping) = creep::creeping_motion(&mut derivation, mechanism)? {
+        let algebra = &mut derivation.algebra;
+        let (gibbs, forces) = (creeping.gibbs, creeping.forces);
+        derivation.motion = motion::solve(algebra, mechanism, &gibbs, &forces, &[], true)?;
+        let rates = &creeping.coordinate_rates;
+        derivation.coordinate_rates = named_rates(&mut algebra.graph, mechanism, rates);
+        (derivation.gibbs, derivation.forces) = (gibbs, forces);
+    }
+    derivation.responses_in_outputs = derivation.named_in_outputs(mechanism)?;
+    Ok(derivation)
+}
+
+/// The equations while loads that depend on reactions do not act and no contact creeps; and all loads,
+/// with symbols for reactions and for dependent speeds.
+fn without_reactions(mechanism: &Mechanism) -> Outcome<(Derivation, Vec<AppliedLoad>)> {
     let mut graph = Graph::new();
     let symbols = Symbols::new(&mut graph, mechanism);
     let mut algebra = Algebra::new(graph, &symbols, seed(mechanism));
@@ -213,7 +230,7 @@ fn equations(mechanism: &Mechanism) -> Outcome<Derivation> {
         &velocities.rates,
         &motion,
     ));
-    let mut derivation = Derivation {
+    let derivation = Derivation {
         algebra,
         symbols,
         constraints,
@@ -234,17 +251,7 @@ fn equations(mechanism: &Mechanism) -> Outcome<Derivation> {
         rolling_rates,
         warnings,
     };
-    reacting_loads::act(&mut derivation, mechanism, all_loads)?;
-    if let Some(creeping) = creep::creeping_motion(&mut derivation, mechanism)? {
-        let algebra = &mut derivation.algebra;
-        let (gibbs, forces) = (creeping.gibbs, creeping.forces);
-        derivation.motion = motion::solve(algebra, mechanism, &gibbs, &forces, &[], true)?;
-        let rates = &creeping.coordinate_rates;
-        derivation.coordinate_rates = named_rates(&mut algebra.graph, mechanism, rates);
-        (derivation.gibbs, derivation.forces) = (gibbs, forces);
-    }
-    derivation.responses_in_outputs = derivation.named_in_outputs(mechanism)?;
-    Ok(derivation)
+    Ok((derivation, all_loads))
 }
 
 /// The contacts whose every row holds for all pseudo-velocities: by a formula or by geometry.

@@ -499,7 +499,7 @@ fn what_cannot_be_told_is_refused_where_it_is_named() {
 #[test]
 fn chains_of_forces_stay_within_limits() {
     let chain = |length: usize, force: &str| {
-        let links: String = (1..length)
+        let links: Vec<String> = (1..length)
             .map(|i| {
                 let last = format!("force(f{})", i - 1);
                 let force = force.replace("{}", &last);
@@ -509,7 +509,7 @@ fn chains_of_forces_stay_within_limits() {
             })
             .collect();
         let first = "f0 = { kind = \"generalized\", velocity = \"v\", force = \"v*1 [N*s/m]\" }\n";
-        with(BLOCK, &[("loads", &format!("{first}{links}"))])
+        with(BLOCK, &[("loads", &format!("{first}{}", links.concat()))])
     };
     let refused = compile(
         "spec.toml",

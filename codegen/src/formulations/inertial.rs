@@ -10,7 +10,6 @@ use super::loads::acting;
 use crate::mechanics::algebra::Algebra;
 use crate::mechanics::expressions::{DivisionByZero, Lowering};
 use crate::mechanics::finding::{Item, Outcome, division_by_zero};
-use crate::mechanics::loads::after_what_they_name;
 use crate::mechanics::symbols::Symbols;
 use crate::mechanics::time::TimeDerivative;
 use crate::symbolic::vector::{self, Mat3, Vec3};
@@ -100,7 +99,7 @@ impl<'a> Inertial<'a> {
             inertial.positions.push(position);
             inertial.velocities.push(velocity);
         }
-        for load in after_what_they_name(mechanism) {
+        for load in mechanism.loads_after_what_they_name() {
             let own = symbols.responses.iter();
             for &(response, symbol) in own {
                 if let Response::Force(of, along) = response

@@ -166,7 +166,7 @@ fn name_each_other(
     }
     let graph = &mut algebra.graph;
     let mut told = Substitution::of_parts(graph, &[]);
-    for index in after_what_they_name(mechanism) {
+    for index in mechanism.loads_after_what_they_name() {
         replace_in(&mut loads[index.index()], graph, &mut told, index)?;
         let mut own = symbols.responses.clone();
         own.retain(|(response, _)| matches!(response, Response::Force(load, _) if *load == index));
@@ -175,40 +175,6 @@ fn name_each_other(
         }
     }
     Ok(())
-}
-
-/// The loads, each after those whose forces it names; they do not lead into circles.
-pub fn after_what_they_name(mechanism: &Mechanism) -> Vec<LoadId> {
-    let mut waiting: Vec<(LoadId, Vec<LoadId>)> = Vec::new();
-    for (index, load) in mechanism.loads.entries() {
-        let mut named = Vec::new();
-        for expr in load.kind.expressions() {
-            expr.visit(&mut |quantity| {
-                if let Quantity::Response(Response::Force(other, _)) = quantity {
-                    named.push(other);
-                }
-            });
-        }
-        named.sort_unstable();
-        named.dedup();
-        waiting.push((index, named));
-    }
-    let mut done = vec![false; waiting.len()];
-    let mut order = Vec::with_capacity(waiting.len());
-    loop {
-        let before = order.len();
-        waiting.retain(|(index, named)| {
-            let ready = named.iter().all(|other| done[other.index()]);
-            if ready {
-                done[index.index()] = true;
-                order.push(*index);
-            }
-            !ready
-        });
-        if order.len() == before {
-            return order;
-        }
-    }
 }
 
 /// What stands for the symbols of the forces of loads; other symbols are left out.
@@ -251,7 +217,7 @@ pub fn settle(
         return replace(loads, graph, &mut known);
     }
     let mut waits = vec![false; loads.len()];
-    for index in after_what_they_name(mechanism) {
+    for index in mechanism.loads_after_what_they_name() {
         for expr in mechanism.loads[index].kind.expressions() {
             expr.visit(&mut |quantity| match quantity {
                 Quantity::Response(Response::Reaction(..) | Response::NormalForce(_)) => {

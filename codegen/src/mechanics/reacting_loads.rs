@@ -18,39 +18,42 @@ use super::motion;
 use super::responses::{Answering, named_in};
 use crate::symbolic::Expr;
 
-/// Lets all loads act on a motion that knows only those without reactions. `all` hold symbols for the
-/// reactions and for the dependent speeds.
-pub fn act(
-    derivation: &mut Derivation,
-    mechanism: &Mechanism,
-    mut all: Vec<AppliedLoad>,
-) -> Outcome<()> {
-    let reactions = reactions(derivation, mechanism)?;
-    if reactions.is_empty() {
-        return Ok(());
+impl Derivation {
+    /// Lets all loads act on a motion that knows only those without reactions. `all` hold symbols for the
+    /// reactions and for the dependent speeds.
+    pub(super) fn let_all_loads_act(
+        &mut self,
+        mechanism: &Mechanism,
+        mut all: Vec<AppliedLoad>,
+    ) -> Outcome<()> {
+        let derivation = self;
+        let reactions = reactions(derivation, mechanism)?;
+        if reactions.is_empty() {
+            return Ok(());
+        }
+        let Derivation {
+            algebra,
+            symbols,
+            dependent,
+            ..
+        } = derivation;
+        settle(&mut all, &mut algebra.graph, mechanism, &reactions)?;
+        let directions = [symbols.speeds.as_slice(), &dependent.system.unknowns].concat();
+        let unbound = generalized_forces(algebra, &all, &directions);
+        let mut actual = dependent.actual(&algebra.graph);
+        loads::replace(&mut all, &mut algebra.graph, &mut actual)?;
+        let forces = dependent::apply(&mut actual, algebra, &unbound)?;
+        let forces = dependent.along_allowed(&mut algebra.graph, &forces);
+        let parts = named_parts(&mut algebra.graph, &derivation.bodies);
+        let explicit = dependent.values.is_empty();
+        let gibbs = &derivation.gibbs;
+        derivation.motion = motion::solve(algebra, mechanism, gibbs, &forces, &parts, explicit)?;
+        derivation.unbound.forces = unbound;
+        derivation.forces = forces;
+        derivation.loads = all;
+        derivation.reactions_in_loads = reactions;
+        Ok(())
     }
-    let Derivation {
-        algebra,
-        symbols,
-        dependent,
-        ..
-    } = derivation;
-    settle(&mut all, &mut algebra.graph, mechanism, &reactions)?;
-    let directions = [symbols.speeds.as_slice(), &dependent.system.unknowns].concat();
-    let unbound = generalized_forces(algebra, &all, &directions);
-    let mut actual = dependent.actual(&algebra.graph);
-    loads::replace(&mut all, &mut algebra.graph, &mut actual)?;
-    let forces = dependent::apply(&mut actual, algebra, &unbound)?;
-    let forces = dependent.along_allowed(&mut algebra.graph, &forces);
-    let parts = named_parts(&mut algebra.graph, &derivation.bodies);
-    let explicit = dependent.values.is_empty();
-    let gibbs = &derivation.gibbs;
-    derivation.motion = motion::solve(algebra, mechanism, gibbs, &forces, &parts, explicit)?;
-    derivation.unbound.forces = unbound;
-    derivation.forces = forces;
-    derivation.loads = all;
-    derivation.reactions_in_loads = reactions;
-    Ok(())
 }
 
 /// The reactions that loads name, with their values in the motion as it is known.

@@ -1,7 +1,7 @@
 //! Kinematic quantities and forces by name, such as `velocity(P, x)` and `force(spring)`.
 
+use crate::axis::Axis;
 use crate::ids::{ConstraintId, FrameId, LoadId, PointId};
-use crate::mechanism::Axis;
 
 /// Position or velocity of a point, or angular velocity of a frame.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]

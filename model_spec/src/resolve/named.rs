@@ -15,6 +15,8 @@ use super::place::Place;
 use super::resolver::Resolver;
 
 type Names<'a> = &'a [Spanned<String>];
+/// An axis of a frame.
+type Along = (Axis, FrameId);
 
 impl Resolver<'_> {
     /// A kinematic quantity or a force by name.
@@ -138,7 +140,7 @@ impl Resolver<'_> {
         axis: &Spanned<String>,
         frame: Option<&Spanned<String>>,
         word: Word,
-    ) -> Option<(Axis, FrameId)> {
+    ) -> Option<Along> {
         let axis = self.axis_named(axis, word);
         let frame = match frame {
             Some(frame) => self.find(&frame.value, &frame.span),
@@ -162,7 +164,7 @@ impl Resolver<'_> {
         names: Names<'_>,
         span: &Span,
         known: impl Fn(&Self, I) -> Option<Acting>,
-    ) -> Option<(I, Option<(Axis, FrameId)>, Acting)> {
+    ) -> Option<(I, Option<Along>, Acting)> {
         let (of, axis, frame) = match names {
             [of] => (of, None, None),
             [of, axis] => (of, Some(axis), None),

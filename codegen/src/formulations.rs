@@ -90,7 +90,8 @@ fn claims(
     let speeds: Vec<&str> = speeds.map(|w| w.label.name.as_str()).collect();
     let by_speed = |derived: &[Expr], other: &[Expr]| named(&speeds, derived, other);
 
-    let new = |algebra: &mut Algebra| Inertial::new(algebra, mechanism, symbols, rates);
+    let reactions = &derivation.reactions_in_loads;
+    let new = |algebra: &mut Algebra| Inertial::new(algebra, mechanism, symbols, rates, reactions);
     let allowed = room(algebra, new)?;
     let definitions = room(algebra, |algebra| allowed.definitions(algebra))?;
     let rows = room(algebra, |algebra| allowed.rows(algebra))?;
@@ -145,7 +146,9 @@ fn claims(
         return Ok(claims);
     }
 
-    let new = |algebra: &mut Algebra| Inertial::new(algebra, mechanism, symbols, &symbols.rates);
+    let new = |algebra: &mut Algebra| {
+        Inertial::new(algebra, mechanism, symbols, &symbols.rates, reactions)
+    };
     let unconstrained = room(algebra, new)?;
     let lagrange = lagrange::lagrange(algebra, &unconstrained, rates)?;
     let coordinates = mechanism.coordinates.iter();
@@ -195,6 +198,7 @@ fn reaction_claims(
         &derivation.velocities.violating,
         &derivation.bodies,
         &derivation.motion.accelerations,
+        &derivation.reactions_in_loads,
     )?;
     // What the multipliers tell of each place; what geometry holds they do not know.
     let mut known = vec![[Some(Graph::ZERO); 3]; forces.len()];

@@ -29,11 +29,14 @@ pub mod linear_bound;
 pub mod loads;
 pub mod motion;
 pub mod motions;
+mod outputs;
 pub mod positions;
 pub mod ranges;
 pub mod rank;
+mod reacting_loads;
 pub mod reactions;
 pub mod redundancy;
+pub mod responses;
 pub mod row;
 pub mod switches;
 pub mod symbols;
@@ -88,6 +91,10 @@ pub struct Derivation {
     pub gibbs: GibbsForm,
     /// Applied loads.
     pub loads: Vec<AppliedLoad>,
+    /// Reactions that loads depend on: their symbols and values.
+    pub reactions_in_loads: Vec<(Expr, Expr)>,
+    /// Accelerations and forces that outputs name: their symbols, and values with symbols for ω̇.
+    pub responses_in_outputs: Vec<(Expr, Expr)>,
     /// Π.
     pub forces: Vec<Expr>,
     /// Solved equations, with ω̇.
@@ -132,6 +139,23 @@ pub fn derive(mechanism: &Mechanism) -> Outcome<Derivation> {
 }
 
 fn equations(mechanism: &Mechanism) -> Outcome<Derivation> {
+    let (mut derivation, all_loads) = without_reactions(mechanism)?;
+    derivation.let_all_loads_act(mechanism, all_loads)?;
+    if let Some(creeping) = creep::creeping_motion(&mut derivation, mechanism)? {
+        let algebra = &mut derivation.algebra;
+        let (gibbs, forces) = (creeping.gibbs, creeping.forces);
+        derivation.motion = motion::solve(algebra, mechanism, &gibbs, &forces, &[], true)?;
+        let rates = &creeping.coordinate_rates;
+        derivation.coordinate_rates = named_rates(&mut algebra.graph, mechanism, rates);
+        (derivation.gibbs, derivation.forces) = (gibbs, forces);
+    }
+    derivation.responses_in_outputs = derivation.named_in_outputs(mechanism)?;
+    Ok(derivation)
+}
+
+/// The equations while loads that depend on reactions do not act and no contact creeps; and all loads,
+/// with symbols for reactions and for dependent speeds.
+fn without_reactions(mechanism: &Mechanism) -> Outcome<(Derivation, Vec<AppliedLoad>)> {
     let mut graph = Graph::new();
     let symbols = Symbols::new(&mut graph, mechanism);
     let mut algebra = Algebra::new(graph, &symbols, seed(mechanism));
@@ -171,6 +195,8 @@ fn equations(mechanism: &Mechanism) -> Outcome<Derivation> {
     algebra.check_size()?;
     let unbound_gibbs = gibbs_appell::gibbs_form(&mut algebra, &bodies, directions.len());
     let mut loads = loads::applied_loads(&mut algebra, mechanism, &symbols, &kinematics, rates)?;
+    let all_loads = loads.clone();
+    loads::settle(&mut loads, &mut algebra.graph, mechanism, &[])?;
     let forces = loads::generalized_forces(&mut algebra, &loads, &directions);
     let unbound = Unbound { forces, bodies };
     let (dependent, velocities) = DependentSpeeds::new(
@@ -204,7 +230,7 @@ fn equations(mechanism: &Mechanism) -> Outcome<Derivation> {
         &velocities.rates,
         &motion,
     ));
-    let mut derivation = Derivation {
+    let derivation = Derivation {
         algebra,
         symbols,
         constraints,
@@ -217,21 +243,15 @@ fn equations(mechanism: &Mechanism) -> Outcome<Derivation> {
         bodies,
         gibbs,
         loads,
+        reactions_in_loads: Vec::new(),
+        responses_in_outputs: Vec::new(),
         forces,
         motion,
         coordinate_rates: rolling_rates.clone(),
         rolling_rates,
         warnings,
     };
-    if let Some(creeping) = creep::creeping_motion(&mut derivation, mechanism)? {
-        let algebra = &mut derivation.algebra;
-        let (gibbs, forces) = (creeping.gibbs, creeping.forces);
-        derivation.motion = motion::solve(algebra, mechanism, &gibbs, &forces, &[], true)?;
-        let rates = &creeping.coordinate_rates;
-        derivation.coordinate_rates = named_rates(&mut algebra.graph, mechanism, rates);
-        (derivation.gibbs, derivation.forces) = (gibbs, forces);
-    }
-    Ok(derivation)
+    Ok((derivation, all_loads))
 }
 
 /// The contacts whose every row holds for all pseudo-velocities: by a formula or by geometry.

@@ -27,6 +27,11 @@ mod with_adjoints {
     include!("emit_golden/with_adjoints.rs");
 }
 
+#[allow(non_snake_case, dead_code, unreachable_pub, clippy::pedantic)]
+mod block {
+    include!("emit_golden/block.rs");
+}
+
 /// x, u and p of a gradient as bits.
 fn gradient(model: &dyn Model, write: impl FnOnce(Gradient<'_>)) -> [Vec<u64>; 3] {
     let info = model.info();
@@ -39,8 +44,20 @@ fn gradient(model: &dyn Model, write: impl FnOnce(Gradient<'_>)) -> [Vec<u64>; 3
 
 #[test]
 fn emitted_adjoints_are_those_of_the_interpreter() {
-    let interpreter = InterpretedModel::new(emit_support::with_adjoints());
-    let models: [&dyn Model; 2] = [&interpreter, &with_adjoints::Pendulum];
+    for (program, emitted) in [
+        (
+            emit_support::with_adjoints(),
+            &with_adjoints::Pendulum as &dyn Model,
+        ),
+        (emit_support::block(), &block::Block),
+    ] {
+        assert_adjoints(program, emitted);
+    }
+}
+
+fn assert_adjoints(program: Program, emitted: &dyn Model) {
+    let interpreter = InterpretedModel::new(program);
+    let models: [&dyn Model; 2] = [&interpreter, emitted];
     let mut numbers = Numbers::new(11);
     let info = interpreter.info();
     let (n, m, l) = (info.state_len(), info.input_len(), info.output_len());
@@ -66,7 +83,7 @@ fn emitted_adjoints_are_those_of_the_interpreter() {
         all.map(|numbers| bits(&numbers))
     });
     assert_eq!(got, wanted);
-    assert!(with_adjoints::Pendulum.has_adjoint());
+    assert!(emitted.has_adjoint());
 }
 
 #[test]

@@ -9,7 +9,7 @@ use std::path::Path;
 
 use appell_codegen::emit::{Emitted, emit};
 
-use crate::emit_support::{golden_options, mixture, unicycle, with_adjoints};
+use crate::emit_support::{block, golden_options, mixture, unicycle, with_adjoints};
 
 fn is_golden(name: &str, emitted: &Emitted) {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/emit_golden");
@@ -40,6 +40,12 @@ fn the_unicycle_is_emitted_as_in_the_golden_file() {
 fn adjoints_are_emitted_as_in_the_golden_file() {
     let emitted = emit(&with_adjoints(), &golden_options(true)).unwrap();
     is_golden("with_adjoints", &emitted);
+}
+
+#[test]
+fn forces_and_accelerations_are_emitted_as_in_the_golden_file() {
+    let emitted = emit(&block(), &golden_options(true)).unwrap();
+    is_golden("block", &emitted);
 }
 
 #[test]

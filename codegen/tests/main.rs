@@ -18,6 +18,8 @@ mod jit_model;
 mod jit_random;
 #[cfg(feature = "jit")]
 mod jit_safety;
+#[cfg(feature = "jit")]
+mod responses;
 mod schedule;
 mod switches;
 mod symbolic_forms;

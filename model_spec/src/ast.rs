@@ -2,7 +2,7 @@
 
 use num_rational::BigRational;
 
-use crate::expr::{BinaryOp, Function, MotionWord, Relation, Span};
+use crate::expr::{BinaryOp, Function, Relation, Span, Word};
 use crate::language::{Key, Kind, Section, Sense};
 use crate::units::Unit;
 
@@ -106,8 +106,8 @@ pub enum ExprAstKind {
     Name(String),
     /// `dot(name)`
     Rate(Spanned<String>),
-    /// `velocity(P, x)` and its kin: names of items and an axis.
-    Motion(MotionWord, Vec<Spanned<String>>),
+    /// `velocity(P, x)`, `force(spring)` and their kin: names of items and an axis.
+    Named(Word, Vec<Spanned<String>>),
     /// `-a`
     Negate(Box<ExprAst>),
     /// `a ∘ b`

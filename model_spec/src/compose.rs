@@ -3,7 +3,7 @@
 use toml_edit::{DocumentMut, Item, TableLike, Value};
 
 use crate::edit::EditError;
-use crate::expr::MotionWord;
+use crate::expr::Word;
 use crate::language::{Form, Key, SECTIONS, Shape};
 
 /// A spec that grows, with its comments and layout untouched.
@@ -151,8 +151,8 @@ fn replaced(expression: &str, name: &str, by: &str) -> String {
         } else {
             first.len_utf8()
         };
-        // `velocity(P, x)` has names of points and axes.
-        if MotionWord::from_name(&rest[..len]).is_some() && rest[len..].starts_with('(') {
+        // `velocity(P, x)` has names of items and axes.
+        if Word::from_name(&rest[..len]).is_some() && rest[len..].starts_with('(') {
             len = rest.find(')').map_or(rest.len(), |end| end + 1);
         }
         let (part, after) = rest.split_at(len);

@@ -1,11 +1,14 @@
 //! Resolved expressions: trees whose names have been replaced by what they refer to.
 
+mod named;
+
 use std::ops::Range;
 
 use num_rational::BigRational;
 
-use crate::ids::{CoordinateId, FrameId, InputId, ParameterId, PointId, SignalId, SpeedId};
-use crate::mechanism::Axis;
+use crate::ids::{CoordinateId, InputId, ParameterId, SignalId, SpeedId};
+
+pub use named::{Motion, Response, Word};
 
 /// A place in the spec text, in bytes.
 pub type Span = Range<usize>;
@@ -60,71 +63,12 @@ pub enum Quantity {
     Signal(SignalId),
     /// A kinematic quantity of a point or a frame.
     Motion(Motion),
+    /// An acceleration or a force, which the equations of motion have to be solved for.
+    Response(Response),
     /// Time, `t`.
     Time,
     /// The circle constant, `pi`.
     Pi,
-}
-
-/// Position or velocity of a point, or angular velocity of a frame.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Motion {
-    /// Position of a point from the origin, along an axis of a frame.
-    Position(PointId, Axis, FrameId),
-    /// Velocity of a point, along an axis of a frame.
-    Velocity(PointId, Axis, FrameId),
-    /// Size of the velocity of a point.
-    Speed(PointId),
-    /// Angular velocity of the first frame, along an axis of the second.
-    AngularVelocity(FrameId, Axis, FrameId),
-}
-
-/// The kinds of kinematic quantities, as they are called in a spec.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum MotionWord {
-    /// `position(P, x)`, `position(P, x, frame)`
-    Position,
-    /// `velocity(P, x)`, `velocity(P, x, frame)`
-    Velocity,
-    /// `speed(P)`
-    Speed,
-    /// `angular_velocity(frame, z)`, `angular_velocity(frame, z, other)`
-    AngularVelocity,
-}
-
-impl MotionWord {
-    /// Every kind with its name and how it is written.
-    pub const ALL: &'static [(Self, &'static str, &'static str)] = &[
-        (Self::Position, "position", "position(P, x)"),
-        (Self::Velocity, "velocity", "velocity(P, x)"),
-        (Self::Speed, "speed", "speed(P)"),
-        (
-            Self::AngularVelocity,
-            "angular_velocity",
-            "angular_velocity(wheel, z)",
-        ),
-    ];
-
-    /// The kind of a name.
-    pub fn from_name(name: &str) -> Option<Self> {
-        Self::ALL.iter().find(|row| row.1 == name).map(|row| row.0)
-    }
-
-    /// Name in a spec.
-    pub fn name(self) -> &'static str {
-        Self::ALL
-            .iter()
-            .find(|row| row.0 == self)
-            .map_or("", |row| row.1)
-    }
-
-    /// How it is written.
-    pub fn example(self) -> &'static str {
-        Self::ALL
-            .iter()
-            .find(|row| row.0 == self)
-            .map_or("", |row| row.2)
-    }
 }
 
 /// A binary operation.

@@ -173,6 +173,10 @@ pub enum Target {
     Body,
     /// A coordinate.
     Coordinate,
+    /// A constraint.
+    Constraint,
+    /// A load.
+    Load,
 }
 
 impl Target {
@@ -183,6 +187,8 @@ impl Target {
             Self::Point => "point",
             Self::Body => "body",
             Self::Coordinate => "coordinate",
+            Self::Constraint => "constraint",
+            Self::Load => "load",
         }
     }
 
@@ -193,6 +199,8 @@ impl Target {
             Self::Point => "points",
             Self::Body => "bodies",
             Self::Coordinate => "coordinates",
+            Self::Constraint => "constraints",
+            Self::Load => "loads",
         }
     }
 }

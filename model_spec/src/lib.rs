@@ -8,6 +8,7 @@
 //! text and with what to write instead.
 
 pub mod ast;
+mod axis;
 pub mod compose;
 pub mod diagnostic;
 pub mod edit;

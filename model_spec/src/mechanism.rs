@@ -4,9 +4,10 @@
 //! [`Mechanism`]; the checks of this crate guarantee that they are in range, that parents come
 //! before children, and that every expression has the dimension its place requires.
 
-use crate::expr::{Expr, Span};
+use crate::expr::{Expr, Quantity, Response, Span};
 use crate::units::{Dimension, Unit};
 
+pub use crate::axis::Axis;
 pub use crate::ids::{
     BodyId, ConstraintId, CoordinateId, FrameId, InputId, List, LoadId, OutputId, ParameterId,
     PointId, SignalId, SpeedId,
@@ -171,28 +172,6 @@ pub struct Turn {
     pub negative: bool,
     /// Angle, right-handed about the axis; depends on coordinates, parameters, signals, time.
     pub angle: Expr,
-}
-
-/// A coordinate axis.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Axis {
-    /// First axis.
-    X,
-    /// Second axis.
-    Y,
-    /// Third axis.
-    Z,
-}
-
-impl Axis {
-    /// Its place among the components of a vector.
-    pub const fn index(self) -> usize {
-        match self {
-            Self::X => 0,
-            Self::Y => 1,
-            Self::Z => 2,
-        }
-    }
 }
 
 /// A point, placed from another point.
@@ -476,6 +455,40 @@ impl Mechanism {
             | LoadKind::Damper { .. }
             | LoadKind::Generalized { .. } => None,
         })
+    }
+
+    /// The loads, each after those whose forces it names; they do not lead into circles.
+    pub fn loads_after_what_they_name(&self) -> Vec<LoadId> {
+        let mut waiting: Vec<(LoadId, Vec<LoadId>)> = Vec::new();
+        for (index, load) in self.loads.entries() {
+            let mut named = Vec::new();
+            for expr in load.kind.expressions() {
+                expr.visit(&mut |quantity| {
+                    if let Quantity::Response(Response::Force(other, _)) = quantity {
+                        named.push(other);
+                    }
+                });
+            }
+            named.sort_unstable();
+            named.dedup();
+            waiting.push((index, named));
+        }
+        let mut done = vec![false; waiting.len()];
+        let mut order = Vec::with_capacity(waiting.len());
+        loop {
+            let before = order.len();
+            waiting.retain(|(index, named)| {
+                let ready = named.iter().all(|other| done[other.index()]);
+                if ready {
+                    done[index.index()] = true;
+                    order.push(*index);
+                }
+                !ready
+            });
+            if order.len() == before {
+                return order;
+            }
+        }
     }
 }
 

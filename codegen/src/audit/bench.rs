@@ -11,7 +11,7 @@ use crate::mechanics::motions::motions;
 use crate::mechanics::symbols::Symbols;
 use crate::mechanics::{Derivation, declared_ranges, seed};
 use crate::symbolic::print::{Setter, Spelled, text};
-use crate::symbolic::{Expr, Graph, Intervals};
+use crate::symbolic::{Expr, Graph, Intervals, Substitution};
 
 /// Nobody reads a formula with more operations in a message.
 const MOST_OPERATIONS: usize = 16;
@@ -46,19 +46,7 @@ impl<'a> Bench<'a> {
         let graph = derivation.algebra.graph.clone();
         let mut algebra = Algebra::new(graph, symbols, seed(mechanism));
         let unconstrained = unconstrained(&mut algebra, mechanism, symbols)?;
-        let lowering = Lowering {
-            symbols,
-            rates: &derivation.velocities.rates,
-        };
-        let mut told = motions(&mut algebra, mechanism, symbols, &derivation.kinematics);
-        let mut outputs = Vec::with_capacity(mechanism.outputs.len());
-        for output in &mechanism.outputs {
-            let value = lowering.lower(&mut algebra.graph, &output.value).ok()?;
-            outputs.push(match &mut told {
-                Some(told) => told.apply(&mut algebra.graph, value)?,
-                None => value,
-            });
-        }
+        let outputs = outputs(&mut algebra, mechanism, derivation)?;
         Some(Self {
             mechanism,
             derivation,
@@ -109,6 +97,33 @@ impl<'a> Bench<'a> {
             exprs.all(|&expr| test.independent_of(graph, expr, symbol))
         })
     }
+}
+
+/// Outputs in terms of coordinates and pseudo-velocities.
+fn outputs(
+    algebra: &mut Algebra,
+    mechanism: &Mechanism,
+    derivation: &Derivation,
+) -> Option<Vec<Expr>> {
+    let symbols = &derivation.symbols;
+    let lowering = Lowering {
+        symbols,
+        rates: &derivation.velocities.rates,
+    };
+    let mut told = motions(algebra, mechanism, symbols, &derivation.kinematics);
+    // With symbols for ω̇, which depends on nothing but the equations.
+    let named = &derivation.responses_in_outputs;
+    let mut named = Substitution::of_parts(&algebra.graph, named);
+    let mut outputs = Vec::with_capacity(mechanism.outputs.len());
+    for output in &mechanism.outputs {
+        let graph = &mut algebra.graph;
+        let mut value = lowering.lower(graph, &output.value).ok()?;
+        if let Some(told) = &mut told {
+            value = told.apply(graph, value)?;
+        }
+        outputs.push(named.apply(graph, value)?);
+    }
+    Some(outputs)
 }
 
 /// Velocities with symbols for q̇.

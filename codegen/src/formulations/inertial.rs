@@ -1,11 +1,12 @@
 //! A mechanism in the ground: every vector in components of the inertial frame, every velocity the
 //! derivative of a position.
 
-use appell_spec::expr::{Expr as Spec, Motion as Quantity};
+use appell_spec::expr::{Expr as Spec, Motion as Quantity, Response};
 use appell_spec::mechanism::{
     Axis, BodyId, Components, ConstraintId, ConstraintKind, FrameId, List, Mechanism, PointId,
 };
 
+use super::loads::acting;
 use crate::mechanics::algebra::Algebra;
 use crate::mechanics::expressions::{DivisionByZero, Lowering};
 use crate::mechanics::finding::{Item, Outcome, division_by_zero};
@@ -39,6 +40,8 @@ pub(super) struct Inertial<'a> {
     velocities: List<PointId, Vec3>,
     /// Angular velocities of the frames.
     turning: List<FrameId, Vec3>,
+    /// Symbols of the forces that loads name, with their values.
+    forces: Vec<(Expr, Expr)>,
 }
 
 /// A scalar constraint on velocities.
@@ -58,6 +61,7 @@ impl<'a> Inertial<'a> {
         mechanism: &'a Mechanism,
         symbols: &'a Symbols,
         rates: &'a [Expr],
+        reactions: &[(Expr, Expr)],
     ) -> Lowered<Self> {
         let mut inertial = Self {
             mechanism,
@@ -67,6 +71,7 @@ impl<'a> Inertial<'a> {
             positions: List::default(),
             velocities: List::default(),
             turning: List::default(),
+            forces: reactions.to_vec(),
         };
         for frame in &mechanism.frames {
             let mut rotation = match frame.parent {
@@ -94,6 +99,23 @@ impl<'a> Inertial<'a> {
             inertial.positions.push(position);
             inertial.velocities.push(velocity);
         }
+        for load in mechanism.loads_after_what_they_name() {
+            let own = symbols.responses.iter();
+            for &(response, symbol) in own {
+                if let Response::Force(of, along) = response
+                    && of == load
+                {
+                    let force = acting(algebra, &inertial, &mechanism.loads[load].kind)?;
+                    let value = match along {
+                        Some((axis, frame)) => {
+                            inertial.along(&mut algebra.graph, force, axis, frame)
+                        }
+                        None => force[0],
+                    };
+                    inertial.forces.push((symbol, value));
+                }
+            }
+        }
         Ok(inertial)
     }
 
@@ -114,33 +136,40 @@ impl<'a> Inertial<'a> {
     /// With kinematic quantities that the spec names in their places; frames and points have none.
     fn told(&self, algebra: &mut Algebra, value: Expr) -> Lowered<Expr> {
         let is_whole = self.velocities.len() == self.mechanism.points.len();
-        if self.symbols.motions.is_empty() || !is_whole {
+        let plain = self.symbols.motions.is_empty() && self.forces.is_empty();
+        if plain || !is_whole {
             return Ok(value);
         }
         let graph = &mut algebra.graph;
-        let along = |graph: &mut Graph, v: Vec3, axis: Axis, frame: FrameId| {
-            let rotation = &self.rotations[frame];
-            let column = [0, 1, 2].map(|row| rotation[row][axis.index()]);
-            graph.dot(column, v)
-        };
-        let mut values = Vec::with_capacity(self.symbols.motions.len());
+        let mut values = self.forces.clone();
         for &(motion, symbol) in &self.symbols.motions {
             let value = match motion {
-                Quantity::Position(p, axis, frame) => along(graph, self.positions[p], axis, frame),
-                Quantity::Velocity(p, axis, frame) => along(graph, self.velocities[p], axis, frame),
+                Quantity::Position(p, axis, frame) => {
+                    self.along(graph, self.positions[p], axis, frame)
+                }
+                Quantity::Velocity(p, axis, frame) => {
+                    self.along(graph, self.velocities[p], axis, frame)
+                }
                 Quantity::Speed(p) => {
                     let v = self.velocities[p];
                     let square = graph.dot(v, v);
                     graph.sqrt(square)
                 }
                 Quantity::AngularVelocity(of, axis, frame) => {
-                    along(graph, self.turning[of], axis, frame)
+                    self.along(graph, self.turning[of], axis, frame)
                 }
             };
             values.push((symbol, value));
         }
         let mut told = Substitution::of_parts(graph, &values);
         told.apply(graph, value).ok_or(DivisionByZero)
+    }
+
+    /// A component of a vector that is given in the ground.
+    fn along(&self, graph: &mut Graph, v: Vec3, axis: Axis, frame: FrameId) -> Expr {
+        let rotation = &self.rotations[frame];
+        let column = [0, 1, 2].map(|row| rotation[row][axis.index()]);
+        graph.dot(column, v)
     }
 
     /// A velocity in the generalised velocities: pseudo-velocities stand for their definitions.

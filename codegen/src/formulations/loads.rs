@@ -115,6 +115,41 @@ pub(super) fn efforts(
     Ok(all)
 }
 
+/// The force of a load as expressions name it: in the ground, or as first component where it is one
+/// number.
+pub(super) fn acting(
+    algebra: &mut Algebra,
+    inertial: &Inertial<'_>,
+    load: &LoadKind,
+) -> Lowered<Vec3> {
+    let force = match load {
+        // Expressions do not name it.
+        LoadKind::Gravity { .. } => Graph::ZERO,
+        LoadKind::Force { frame, vector, .. } | LoadKind::Torque { frame, vector, .. } => {
+            return inertial.in_ground(algebra, *frame, vector);
+        }
+        LoadKind::Spring {
+            between,
+            stiffness,
+            relaxed,
+        } => {
+            let k = inertial.lower(algebra, stiffness)?;
+            let relaxed = inertial.lower(algebra, relaxed)?;
+            let line = Line::new(algebra, inertial, between);
+            let extension = algebra.graph.sub(line.length, relaxed);
+            algebra.graph.mul(k, extension)
+        }
+        LoadKind::Damper { between, damping } => {
+            let c = inertial.lower(algebra, damping)?;
+            let line = Line::new(algebra, inertial, between);
+            let rate = algebra.graph.dot(line.direction, line.velocity);
+            algebra.graph.mul(c, rate)
+        }
+        LoadKind::Generalized { force, .. } => inertial.lower(algebra, force)?,
+    };
+    Ok([force, Graph::ZERO, Graph::ZERO])
+}
+
 /// What a spring or damper pulls along.
 struct Line {
     length: Expr,

@@ -39,10 +39,10 @@ impl Derivation {
         mechanism: &Mechanism,
         info: &ModelInfo,
     ) -> Outcome<Vec<Array>> {
+        let values = self.output_values(mechanism)?;
         let outputs = self.outputs(mechanism)?;
         let (states, inputs) = self.variables(info);
-        let values: Vec<Expr> = outputs.iter().flat_map(|y| y.entries.clone()).collect();
-        let [c, d] = [&states, &inputs].map(|variables| self.slopes(&values, variables));
+        let [c, d] = self.output_slopes(&values, [&states, &inputs])?;
         let matrix = |name: &str, about: &str, by: Space, entries: Vec<Expr>| {
             let layout = Layout::Jacobian(Space::Outputs, by);
             let labels = paired(&name.to_uppercase(), &info.outputs, by.quantities(info));
@@ -83,17 +83,6 @@ impl Derivation {
         let symbols = &self.symbols;
         let states = [symbols.speeds.as_slice(), &symbols.coordinates].concat();
         (states, input_symbols(symbols, info))
-    }
-
-    /// Derivatives of values with respect to variables, row by row.
-    fn slopes(&mut self, values: &[Expr], variables: &[Expr]) -> Vec<Expr> {
-        let mut slopes = Vec::with_capacity(values.len() * variables.len());
-        for &value in values {
-            for &variable in variables {
-                slopes.push(self.algebra.derivative(value, variable));
-            }
-        }
-        slopes
     }
 
     fn gradient_arrays(

@@ -5,8 +5,7 @@ use appell_spec::mechanism::{BodyId, ConstraintId, FrameId, Mechanism};
 
 use super::Derivation;
 use super::constraints::Constraints;
-use super::expressions::Lowering;
-use super::finding::{Item, Outcome, division_by_zero};
+use super::finding::Outcome;
 use super::gibbs_appell::{
     ActualMotion, BodyMotion, acceleration_energies, acceleration_energy,
     kinetic_energy_by_velocity, motions_in_ground,
@@ -16,7 +15,6 @@ use super::info::{info, tabulated_inputs};
 use super::letters;
 use super::linear::ImplicitMotion;
 use super::linear_bound::BoundMotion;
-use super::motions::motions;
 use super::positions::Positions;
 use super::reactions;
 use super::switches::switches;
@@ -260,12 +258,19 @@ impl Derivation {
             F::Kinematics
             | F::MassMatrix
             | F::GeneralizedForces
-            | F::Outputs
             | F::Switches
             | F::PositionConstraints
             | F::Contacts
-            | F::Systems
-            | F::OutputJacobians => function,
+            | F::Systems => function,
+            F::Outputs | F::OutputJacobians => {
+                if self.outputs_need_accelerations() {
+                    let bodies = self.bodies.clone();
+                    let function = function.by_way_of(SOLVED, accelerations);
+                    self.explained(mechanism, function, &bodies)
+                } else {
+                    function
+                }
+            }
             F::Adjoint | F::OutputAdjoint => function.explaining(glossary::of_weights()),
         }
     }
@@ -345,7 +350,7 @@ impl Derivation {
     }
 
     /// The bodies for the reactions. Dependent speeds are not differentiated once more for them.
-    fn bodies_in_ground(&mut self, mechanism: &Mechanism) -> Vec<BodyMotion> {
+    pub(super) fn bodies_in_ground(&mut self, mechanism: &Mechanism) -> Vec<BodyMotion> {
         if !self.dependent.values.is_empty() {
             return self.bodies.clone();
         }
@@ -411,6 +416,7 @@ impl Derivation {
             &self.velocities.violating,
             &bodies,
             &self.motion.accelerations,
+            &self.reactions_in_loads,
         )
     }
 
@@ -437,39 +443,6 @@ impl Derivation {
             array = array.under(&format!("Reaction `{place}`."), 3 * i..3 * i + 3);
         }
         Ok(array)
-    }
-
-    /// The outputs of the spec.
-    pub(super) fn outputs(&mut self, mechanism: &Mechanism) -> Outcome<Vec<Array>> {
-        let lowering = Lowering {
-            symbols: &self.symbols,
-            rates: &self.coordinate_rates,
-        };
-        let mut told = motions(
-            &mut self.algebra,
-            mechanism,
-            &self.symbols,
-            &self.kinematics,
-        );
-        let mut values = Vec::with_capacity(mechanism.outputs.len());
-        for (index, output) in mechanism.outputs.entries() {
-            let graph = &mut self.algebra.graph;
-            let value = lowering.lower(graph, &output.value).ok();
-            let value = value.and_then(|value| match &mut told {
-                Some(told) => told.apply(graph, value),
-                None => Some(value),
-            });
-            values.push(value.ok_or_else(|| vec![division_by_zero(Item::Output(index))])?);
-        }
-        let labels = mechanism.outputs.iter().map(|y| y.label.name.clone());
-        let all = 0..values.len();
-        let array = Array::new(
-            "outputs",
-            "Outputs.",
-            Layout::Vector(Space::Outputs),
-            values,
-        );
-        Ok(vec![array.labelled(labels).under("Outputs.", all)])
     }
 
     /// S at the actual accelerations: the sum, then body by body.

@@ -26,7 +26,7 @@ use super::expressions::Lowering;
 use super::finding::{Finding, Item, Outcome, division_by_zero};
 use super::gibbs_appell::{GibbsForm, body_motions, gibbs_form};
 use super::kinematics::{Effort, Kinematics};
-use super::loads::{applied_loads, generalized_forces};
+use super::loads::{applied_loads, generalized_forces, settle};
 use super::motion;
 use super::time::TimeDerivative;
 use crate::symbolic::vector::{self, Vec3};
@@ -87,7 +87,9 @@ pub fn creeping_motion(
         &directions,
     )?;
     let sliding = gibbs_form(algebra, &bodies, directions.len());
-    let loads = applied_loads(algebra, mechanism, &symbols, &kinematics, &rates)?;
+    let mut loads = applied_loads(algebra, mechanism, &symbols, &kinematics, &rates)?;
+    let reactions = &derivation.reactions_in_loads;
+    settle(&mut loads, &mut algebra.graph, mechanism, reactions)?;
     let forces = generalized_forces(algebra, &loads, &symbols.speeds);
 
     // m s, and what its change adds.

@@ -93,12 +93,8 @@ impl Lowering<'_> {
             Quantity::PseudoVelocity(i) => s.speeds[i.index()],
             Quantity::Input(i) => s.inputs[i.index()],
             Quantity::Signal(i) => s.signals[i.index()][0],
-            Quantity::Motion(motion) => {
-                let mut motions = s.motions.iter();
-                let own = motions.find(|(own, _)| *own == motion);
-                // All that a spec names have one.
-                own.map_or(Graph::ZERO, |(_, symbol)| *symbol)
-            }
+            // All that a spec names have one.
+            Quantity::Motion(_) | Quantity::Response(_) => s.named(quantity).unwrap_or(Graph::ZERO),
             Quantity::Time => s.time,
             Quantity::Pi => s.pi,
         }

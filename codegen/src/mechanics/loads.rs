@@ -1,6 +1,7 @@
 //! Applied loads: pseudo-forces from virtual power, potential energy, power.
 
 use appell_spec::Code;
+use appell_spec::expr::{Quantity, Response};
 use appell_spec::mechanism::{
     BodyId, Connection, FrameId, GROUND, LoadId, LoadKind, Mechanism, PointId,
 };
@@ -26,8 +27,31 @@ struct Work {
 #[derive(Debug, Clone)]
 pub struct AppliedLoad {
     work: Vec<Work>,
+    /// What an expression may name of it.
+    pub acts: Acts,
     /// Potential energy, for loads that have one.
     pub potential: Option<Expr>,
+}
+
+/// The force of a load as expressions name it.
+#[derive(Debug, Clone, Copy)]
+pub enum Acts {
+    /// On every body in another way.
+    Spread,
+    /// A force or a torque.
+    Vector(FrameVector),
+    /// A tension, or a generalised force.
+    Scalar(Expr),
+}
+
+impl Acts {
+    fn parts(&mut self) -> &mut [Expr] {
+        match self {
+            Self::Spread => &mut [],
+            Self::Vector(force) => &mut force.v,
+            Self::Scalar(force) => std::slice::from_mut(force),
+        }
+    }
 }
 
 impl AppliedLoad {
@@ -54,14 +78,24 @@ pub fn replace(
     replacement: &mut Substitution,
 ) -> Outcome<()> {
     for (index, load) in loads.iter_mut().enumerate() {
-        let index = LoadId::new(index);
-        let work = load.work.iter_mut();
-        let parts = work.flat_map(|work| [&mut work.force, &mut work.velocity]);
-        for part in parts.chain(&mut load.potential) {
-            *part = replacement
-                .apply(graph, *part)
-                .ok_or_else(|| vec![division_by_zero(Item::Load(index))])?;
-        }
+        replace_in(load, graph, replacement, LoadId::new(index))?;
+    }
+    Ok(())
+}
+
+fn replace_in(
+    load: &mut AppliedLoad,
+    graph: &mut Graph,
+    replacement: &mut Substitution,
+    index: LoadId,
+) -> Outcome<()> {
+    let work = load.work.iter_mut();
+    let parts = work.flat_map(|work| [&mut work.force, &mut work.velocity]);
+    let parts = parts.chain(&mut load.potential).chain(load.acts.parts());
+    for part in parts {
+        *part = replacement
+            .apply(graph, *part)
+            .ok_or_else(|| vec![division_by_zero(Item::Load(index))])?;
     }
     Ok(())
 }
@@ -86,7 +120,7 @@ pub fn generalized_forces(
         .collect()
 }
 
-/// All loads of a mechanism, for given velocities.
+/// All loads of a mechanism, for given velocities. Reactions keep their symbols.
 pub fn applied_loads(
     algebra: &mut Algebra,
     mechanism: &Mechanism,
@@ -111,10 +145,97 @@ pub fn applied_loads(
         if let Some(mut told) = motions(algebra, mechanism, symbols, kinematics) {
             replace(&mut loads, &mut algebra.graph, &mut told)?;
         }
+        name_each_other(algebra, mechanism, symbols, kinematics, &mut loads)?;
         Ok(loads)
     } else {
         Err(findings)
     }
+}
+
+/// Puts the forces of loads where other loads name them.
+fn name_each_other(
+    algebra: &mut Algebra,
+    mechanism: &Mechanism,
+    symbols: &Symbols,
+    kinematics: &Kinematics,
+    loads: &mut [AppliedLoad],
+) -> Outcome<()> {
+    let is_force = |(response, _): &&(Response, Expr)| matches!(response, Response::Force(..));
+    if !symbols.responses.iter().any(|named| is_force(&named)) {
+        return Ok(());
+    }
+    let graph = &mut algebra.graph;
+    let mut told = Substitution::of_parts(graph, &[]);
+    for index in mechanism.loads_after_what_they_name() {
+        replace_in(&mut loads[index.index()], graph, &mut told, index)?;
+        let mut own = symbols.responses.clone();
+        own.retain(|(response, _)| matches!(response, Response::Force(load, _) if *load == index));
+        for (symbol, value) in forces(graph, kinematics, loads, &own) {
+            told.replace(graph, symbol, value);
+        }
+    }
+    Ok(())
+}
+
+/// What stands for the symbols of the forces of loads; other symbols are left out.
+pub fn forces(
+    graph: &mut Graph,
+    kinematics: &Kinematics,
+    loads: &[AppliedLoad],
+    wanted: &[(Response, Expr)],
+) -> Vec<(Expr, Expr)> {
+    let mut values = Vec::new();
+    for &(response, symbol) in wanted {
+        let Response::Force(load, along) = response else {
+            continue;
+        };
+        let value = match (loads[load.index()].acts, along) {
+            (Acts::Vector(force), Some((axis, frame))) => {
+                kinematics.frames.express(graph, force, frame)[axis.index()]
+            }
+            (Acts::Scalar(force), None) => force,
+            // The checks of the spec refuse it.
+            _ => Graph::ZERO,
+        };
+        values.push((symbol, value));
+    }
+    values
+}
+
+/// What loads that depend on reactions do: nothing as long as these are not known.
+///
+/// The reaction in a load is that of the motion without all such loads. What they change of the
+/// reactions that they depend on is of second order.
+pub fn settle(
+    loads: &mut [AppliedLoad],
+    graph: &mut Graph,
+    mechanism: &Mechanism,
+    reactions: &[(Expr, Expr)],
+) -> Outcome<()> {
+    if !reactions.is_empty() {
+        let mut known = Substitution::of_parts(graph, reactions);
+        return replace(loads, graph, &mut known);
+    }
+    let mut waits = vec![false; loads.len()];
+    for index in mechanism.loads_after_what_they_name() {
+        for expr in mechanism.loads[index].kind.expressions() {
+            expr.visit(&mut |quantity| match quantity {
+                Quantity::Response(Response::Reaction(..) | Response::NormalForce(_)) => {
+                    waits[index.index()] = true;
+                }
+                Quantity::Response(Response::Force(other, _)) => {
+                    waits[index.index()] |= waits[other.index()];
+                }
+                _ => {}
+            });
+        }
+    }
+    for (load, waits) in loads.iter_mut().zip(waits) {
+        if waits {
+            load.work.clear();
+        }
+    }
+    Ok(())
 }
 
 /// A load that divides by zero: a connection without length, or an expression.
@@ -165,7 +286,7 @@ impl Context<'_> {
                     let reacting = self.point_velocity(algebra, *other, *frame);
                     v = algebra.graph.sub3(v, reacting);
                 }
-                Ok(working(algebra, force, v))
+                Ok(working(algebra, (*frame, force), v))
             }
             LoadKind::Torque {
                 on,
@@ -179,7 +300,7 @@ impl Context<'_> {
                     let reacting = self.body_rate(algebra, *other, *frame);
                     w = algebra.graph.sub3(w, reacting);
                 }
-                Ok(working(algebra, torque, w))
+                Ok(working(algebra, (*frame, torque), w))
             }
             LoadKind::Spring {
                 between,
@@ -199,6 +320,7 @@ impl Context<'_> {
                 let velocity = self.lowering.lower(&mut algebra.graph, velocity)?;
                 Ok(AppliedLoad {
                     work: vec![Work { force, velocity }],
+                    acts: Acts::Scalar(force),
                     potential: None,
                 })
             }
@@ -239,6 +361,7 @@ impl Context<'_> {
         let potential = algebra.graph.sum(&heights);
         Ok(AppliedLoad {
             work,
+            acts: Acts::Spread,
             potential: Some(algebra.shortest(potential)),
         })
     }
@@ -258,6 +381,7 @@ impl Context<'_> {
         let potential = algebra.graph.scale(&Rational::new(1, 2), twice);
         Ok(AppliedLoad {
             work: resisting(algebra, tension, &work),
+            acts: Acts::Scalar(tension),
             potential: Some(potential),
         })
     }
@@ -272,6 +396,7 @@ impl Context<'_> {
         let tension = algebra.graph.mul(c, speed);
         Ok(AppliedLoad {
             work: resisting(algebra, tension, &work),
+            acts: Acts::Scalar(tension),
             potential: None,
         })
     }
@@ -338,7 +463,7 @@ fn pairs(force: Vec3, velocity: Vec3) -> Vec<Work> {
         .collect()
 }
 
-fn working(algebra: &mut Algebra, force: Vec3, velocity: Vec3) -> AppliedLoad {
+fn working(algebra: &mut Algebra, (frame, force): (FrameId, Vec3), velocity: Vec3) -> AppliedLoad {
     let mut work = pairs(force, velocity);
     work.retain(|w| w.force != Graph::ZERO);
     for w in &mut work {
@@ -346,6 +471,7 @@ fn working(algebra: &mut Algebra, force: Vec3, velocity: Vec3) -> AppliedLoad {
     }
     AppliedLoad {
         work,
+        acts: Acts::Vector(FrameVector { frame, v: force }),
         potential: None,
     }
 }

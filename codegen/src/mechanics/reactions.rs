@@ -11,12 +11,17 @@ use super::elimination::Violation;
 use super::finding::{Item, Outcome, division_by_zero};
 use super::gibbs_appell::{ActualMotion, BodyMotion, partial_velocities};
 use super::kinematics::{Carried, Effort, Kinematics};
-use super::loads::{applied_loads, generalized_forces};
+use super::loads::{applied_loads, generalized_forces, settle};
 use super::symbols::Symbols;
 use crate::symbolic::vector::{self, Vec3};
 use crate::symbolic::{Expr, Graph, Substitution};
 
-/// Reaction at every place of [`Constraints::reactions`], in the ground.
+/// Reaction at every place of [`Constraints::reactions`], in the ground. `in_loads` are the reactions
+/// that loads depend on; loads whose reactions are not among them do not act.
+#[expect(
+    clippy::too_many_arguments,
+    reason = "everything a reaction depends on, once"
+)]
 pub fn reactions(
     algebra: &mut Algebra,
     mechanism: &Mechanism,
@@ -25,6 +30,7 @@ pub fn reactions(
     violation: &Violation,
     bodies: &[BodyMotion],
     accelerations: &[Expr],
+    in_loads: &[(Expr, Expr)],
 ) -> Outcome<Vec<Vec3>> {
     let motions = constraints.auxiliary.motions.iter();
     let carried: Vec<Carried> = motions
@@ -33,7 +39,8 @@ pub fn reactions(
         .collect();
     let rates = &violation.coordinate_rates;
     let kinematics = Kinematics::new(algebra, mechanism, symbols, rates, &carried, Effort::Plain)?;
-    let loads = applied_loads(algebra, mechanism, symbols, &kinematics, rates)?;
+    let mut loads = applied_loads(algebra, mechanism, symbols, &kinematics, rates)?;
+    settle(&mut loads, &mut algebra.graph, mechanism, in_loads)?;
     let applied = generalized_forces(algebra, &loads, &violation.rates);
     // The violations only tell directions: a damper resists the motion that happens.
     let mut allowed = Substitution::by_zero(&algebra.graph, &violation.rates);

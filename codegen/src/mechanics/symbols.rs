@@ -1,7 +1,8 @@
 //! The symbols of a mechanism.
 
-use appell_spec::expr::{Motion as MotionQuantity, Quantity};
+use appell_spec::expr::{Motion as MotionQuantity, Quantity, Response};
 use appell_spec::mechanism::{Axis, FrameId, Mechanism, PointId};
+use rustc_hash::FxHashMap;
 
 use crate::symbolic::{Expr, Graph, SymbolId};
 
@@ -25,6 +26,10 @@ pub struct Symbols {
     /// Kinematic quantities of points and frames that loads and outputs name, until their places take
     /// what they are.
     pub motions: Vec<(MotionQuantity, Expr)>,
+    /// Accelerations and forces that they name, likewise.
+    pub responses: Vec<(Response, Expr)>,
+    /// The symbols of both.
+    named: FxHashMap<Quantity, Expr>,
     /// Time.
     pub time: Expr,
     /// The circle constant.
@@ -66,6 +71,7 @@ impl Symbols {
             .collect();
         let time = graph.symbol("t");
         let pi = graph.symbol("pi");
+        let named = Named::new(graph, mechanism);
         Self {
             parameters,
             coordinates,
@@ -74,7 +80,9 @@ impl Symbols {
             accelerations,
             inputs,
             signals,
-            motions: motions(graph, mechanism),
+            motions: named.motions,
+            responses: named.responses,
+            named: named.all,
             time,
             pi,
             weights: Vec::new(),
@@ -83,44 +91,104 @@ impl Symbols {
     }
 }
 
-/// A symbol for each kinematic quantity; no name of a spec has parentheses.
-fn motions(graph: &mut Graph, mechanism: &Mechanism) -> Vec<(MotionQuantity, Expr)> {
-    let mut motions: Vec<(MotionQuantity, Expr)> = Vec::new();
-    let mut see = |quantity| {
-        if let Quantity::Motion(motion) = quantity
-            && motions.iter().all(|(own, _)| *own != motion)
-        {
-            let symbol = graph.symbol(&shown(mechanism, motion));
-            motions.push((motion, symbol));
+/// A symbol for each kinematic quantity and force; no name of a spec has parentheses.
+#[derive(Default)]
+struct Named {
+    motions: Vec<(MotionQuantity, Expr)>,
+    responses: Vec<(Response, Expr)>,
+    all: FxHashMap<Quantity, Expr>,
+}
+
+impl Named {
+    fn new(graph: &mut Graph, mechanism: &Mechanism) -> Self {
+        let mut named = Self::default();
+        let mut see = |quantity| named.see(graph, mechanism, quantity);
+        for load in &mechanism.loads {
+            for expr in load.kind.expressions() {
+                expr.visit(&mut see);
+            }
         }
-    };
-    for load in &mechanism.loads {
-        for expr in load.kind.expressions() {
-            expr.visit(&mut see);
+        for output in &mechanism.outputs {
+            output.value.visit(&mut see);
+        }
+        named
+    }
+
+    fn see(&mut self, graph: &mut Graph, mechanism: &Mechanism, quantity: Quantity) {
+        if self.all.contains_key(&quantity) {
+            return;
+        }
+        match quantity {
+            Quantity::Motion(motion) => {
+                let symbol = graph.symbol(&shown(mechanism, motion));
+                self.motions.push((motion, symbol));
+                self.all.insert(quantity, symbol);
+            }
+            Quantity::Response(response) => {
+                let symbol = graph.symbol(&answer(mechanism, response));
+                self.responses.push((response, symbol));
+                self.all.insert(quantity, symbol);
+            }
+            _ => {}
         }
     }
-    for output in &mechanism.outputs {
-        output.value.visit(&mut see);
-    }
-    motions
 }
 
 /// As it is written in a spec.
 fn shown(mechanism: &Mechanism, motion: MotionQuantity) -> String {
-    let axis = |axis: Axis| ["x", "y", "z"][axis.index()];
-    let frame = |frame: FrameId| &mechanism.frames[frame].name;
     let point = |point: PointId| &mechanism.points[point].name;
     match motion {
         MotionQuantity::Position(p, a, f) => {
-            format!("position({}, {}, {})", point(p), axis(a), frame(f))
+            format!("position({}, {})", point(p), along(mechanism, a, f))
         }
         MotionQuantity::Velocity(p, a, f) => {
-            format!("velocity({}, {}, {})", point(p), axis(a), frame(f))
+            format!("velocity({}, {})", point(p), along(mechanism, a, f))
         }
         MotionQuantity::Speed(p) => format!("speed({})", point(p)),
         MotionQuantity::AngularVelocity(of, a, f) => {
-            format!("angular_velocity({}, {}, {})", frame(of), axis(a), frame(f))
+            let of = &mechanism.frames[of].name;
+            format!("angular_velocity({of}, {})", along(mechanism, a, f))
         }
+    }
+}
+
+/// As it is written in a spec.
+pub(super) fn answer(mechanism: &Mechanism, response: Response) -> String {
+    let component = |direction: Option<(Axis, FrameId)>| {
+        direction.map_or_else(String::new, |(a, f)| {
+            format!(", {}", along(mechanism, a, f))
+        })
+    };
+    match response {
+        Response::Acceleration(p, a, f) => {
+            let point = &mechanism.points[p].name;
+            format!("acceleration({point}, {})", along(mechanism, a, f))
+        }
+        Response::AngularAcceleration(of, a, f) => {
+            let of = &mechanism.frames[of].name;
+            format!("angular_acceleration({of}, {})", along(mechanism, a, f))
+        }
+        Response::Reaction(c, direction) => {
+            let name = &mechanism.constraints[c].name;
+            format!("reaction({name}{})", component(direction))
+        }
+        Response::NormalForce(c) => format!("normal_force({})", mechanism.constraints[c].name),
+        Response::Force(load, direction) => {
+            let name = &mechanism.loads[load].name;
+            format!("force({name}{})", component(direction))
+        }
+    }
+}
+
+fn along(mechanism: &Mechanism, axis: Axis, frame: FrameId) -> String {
+    let axis = ["x", "y", "z"][axis.index()];
+    format!("{axis}, {}", mechanism.frames[frame].name)
+}
+
+impl Symbols {
+    /// The symbol of a kinematic quantity or a force that a load or an output names.
+    pub fn named(&self, quantity: Quantity) -> Option<Expr> {
+        self.named.get(&quantity).copied()
     }
 }
 

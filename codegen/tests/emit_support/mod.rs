@@ -31,6 +31,12 @@ pub(crate) fn with_adjoints() -> Program {
     appell_codegen::compile("pendulum.toml", spec, &FunctionKind::ALL).unwrap()
 }
 
+/// A mechanism whose friction follows a reaction, with outputs that need the solved equations.
+pub(crate) fn block() -> Program {
+    let spec = include_str!("block.toml");
+    appell_codegen::compile("block.toml", spec, &FunctionKind::ALL).unwrap()
+}
+
 /// A quantity with a unit.
 pub(crate) fn quantity(name: &str, about: &str, unit: &str, value: f64) -> Quantity {
     Quantity {

@@ -102,6 +102,7 @@ const OF_BODY: &[&str] = &[
     "velocity_z",
 ];
 const OF_WHEEL: &[&str] = &[
+    "contact",
     "roll",
     "narrow_rate",
     "spin",
@@ -374,8 +375,13 @@ impl<'m> Sites<'m> {
             .filter(|(down, _)| **down != 0)
             .map(|(down, axis)| format!("({})*angular_velocity({name}, {axis})", -down))
             .collect();
+        let mut constraints = self.mechanism.constraints.iter();
+        let contact = constraints.find(|constraint| {
+            matches!(constraint.kind, ConstraintKind::Rolling { body: own, .. } if own == body)
+        })?;
         let mut site = self.body(body);
         site.words.extend([
+            ("contact", contact.name.clone()),
             ("roll", self.mechanism.coordinates[roll].label.name.clone()),
             ("narrow_rate", number(self.scales.narrow[roll.index()])),
             ("spin", spin.join(" + ")),

@@ -6,7 +6,7 @@ use num_rational::BigRational;
 
 use crate::ast::{ExprAst, ExprAstKind, Spanned};
 use crate::diagnostic::{Code, Diagnostic};
-use crate::expr::{BinaryOp, Function, MotionWord, Span};
+use crate::expr::{BinaryOp, Function, Span, Word};
 use crate::limits::MAX_DEPTH;
 use crate::number::{NumberError, exact};
 use crate::suggest;
@@ -213,15 +213,15 @@ impl<'a> Parser<'_, 'a> {
         match name {
             "dot" => self.rate(first),
             "if" => self.choice(first),
-            _ => match (Function::from_name(name), MotionWord::from_name(name)) {
+            _ => match (Function::from_name(name), Word::from_name(name)) {
                 (Some(function), _) => self.call(first, function),
-                (None, Some(word)) => self.motion(first, word),
+                (None, Some(word)) => self.named(first, word),
                 (None, None) => Err(self.unknown_function(first, name)),
             },
         }
     }
 
-    fn motion(&mut self, first: Located<'a>, word: MotionWord) -> Result<Tree, Diagnostic> {
+    fn named(&mut self, first: Located<'a>, word: Word) -> Result<Tree, Diagnostic> {
         self.expect('(', word.name())?;
         let mut names = Vec::new();
         loop {
@@ -245,7 +245,7 @@ impl<'a> Parser<'_, 'a> {
             self.next();
         }
         let close = self.expect(')', "the names")?;
-        let kind = ExprAstKind::Motion(word, names);
+        let kind = ExprAstKind::Named(word, names);
         self.node(kind, first.start, close.end, 1)
     }
 
@@ -326,9 +326,9 @@ impl<'a> Parser<'_, 'a> {
     }
 
     fn unknown_function(&self, at: Located<'_>, name: &str) -> Diagnostic {
-        let motions = MotionWord::ALL.iter().map(|row| row.1);
+        let named = Word::ALL.iter().map(|row| row.1);
         let known = Function::ALL.iter().map(|row| row.1);
-        let known = known.chain(["dot", "if"]).chain(motions);
+        let known = known.chain(["dot", "if"]).chain(named);
         let familiar = match name {
             "log" => Some("ln"),
             "arctan" => Some("atan"),

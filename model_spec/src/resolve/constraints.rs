@@ -8,6 +8,7 @@ use crate::parse::zero;
 use crate::units::Dimension;
 
 use super::dimensions::Dim;
+use super::meaning::{Acting, Shape};
 use super::place::Place;
 use super::placement::axis;
 use super::resolver::Resolver;
@@ -32,6 +33,9 @@ impl Resolver<'_> {
                 ConstraintWord::FixedVelocity => self.fixed_velocity(item, bodies),
                 ConstraintWord::Position => self.position(item),
             };
+            self.constraints
+                .insert(item.name.value.as_str(), constraints.len());
+            self.reacting.push(Some(acting(&kind)));
             constraints.push(Constraint {
                 name: item.name.value.clone(),
                 about: Self::about(item),
@@ -170,5 +174,22 @@ impl Resolver<'_> {
             .at(body.span.clone(), "has no frame")
             .help("give the body a `frame`"),
         );
+    }
+}
+
+/// What expressions may name of the reaction of a constraint: the force at its point, or a multiplier.
+fn acting(kind: &ConstraintKind) -> Acting {
+    let (shape, pushes) = match kind {
+        ConstraintKind::Rolling { .. } => (Shape::Vector, true),
+        ConstraintKind::FixedVelocity { one_sided, .. } => (Shape::Vector, *one_sided),
+        ConstraintKind::Position { one_sided, .. } => (Shape::Scalar, *one_sided),
+        ConstraintKind::Velocity { .. } => (Shape::Scalar, false),
+    };
+    let rate = kind.rate_dimension();
+    Acting {
+        shape,
+        dimension: rate.and_then(|rate| Dimension::POWER.over(&rate).ok()),
+        size: 1,
+        pushes,
     }
 }

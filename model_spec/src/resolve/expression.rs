@@ -6,10 +6,8 @@ use num_traits::{One, Zero};
 
 use crate::ast::{ExprAst, ExprAstKind, Spanned};
 use crate::diagnostic::{Code, Diagnostic};
-use crate::expr::{
-    BinaryOp, Expr, ExprKind, Function, Motion, MotionWord, Quantity, Relation, Span,
-};
-use crate::mechanism::{Axis, GROUND, Interpolation, SignalId};
+use crate::expr::{BinaryOp, Expr, ExprKind, Function, Motion, Quantity, Relation, Span};
+use crate::mechanism::{Interpolation, SignalId};
 use crate::suggest::{did_you_mean, shown};
 use crate::units::{Dimension, Unit};
 
@@ -28,7 +26,7 @@ impl Resolver<'_> {
             ExprAstKind::Number(value, Some(unit)) => measured(value, unit, &span),
             ExprAstKind::Name(name) => self.name(name, span, place),
             ExprAstKind::Rate(name) => self.rate(name, span, place),
-            ExprAstKind::Motion(word, names) => self.motion(*word, names, span, place),
+            ExprAstKind::Named(word, names) => self.named(*word, names, span, place),
             ExprAstKind::Negate(inner) => {
                 let inner = self.elaborate(inner, place);
                 Typed {
@@ -120,7 +118,7 @@ impl Resolver<'_> {
         }
     }
 
-    fn quantity(
+    pub(super) fn quantity(
         &mut self,
         quantity: Quantity,
         dimension: Option<Dimension>,
@@ -189,97 +187,6 @@ impl Resolver<'_> {
         Typed::poisoned(span)
     }
 
-    /// A kinematic quantity of a point or a frame.
-    fn motion(
-        &mut self,
-        word: MotionWord,
-        names: &[Spanned<String>],
-        span: Span,
-        place: &Place,
-    ) -> Typed {
-        let quantity = match (word, names) {
-            (MotionWord::Speed, [point]) => {
-                let point = self.find(&point.value, &point.span);
-                point.map(Motion::Speed)
-            }
-            (MotionWord::Speed, _) => self.wrong_motion(word, &span),
-            (_, [of, axis] | [of, axis, _]) => {
-                let axis = self.axis_named(axis, word);
-                let frame = match names.get(2) {
-                    Some(frame) => self.find(&frame.value, &frame.span),
-                    None => Some(GROUND),
-                };
-                let along = axis.zip(frame);
-                if word == MotionWord::AngularVelocity {
-                    let of = self.find(&of.value, &of.span);
-                    of.zip(along)
-                        .map(|(of, (axis, frame))| Motion::AngularVelocity(of, axis, frame))
-                } else {
-                    let of = self.find(&of.value, &of.span);
-                    of.zip(along).map(|(of, (axis, frame))| match word {
-                        MotionWord::Position => Motion::Position(of, axis, frame),
-                        _ => Motion::Velocity(of, axis, frame),
-                    })
-                }
-            }
-            _ => self.wrong_motion(word, &span),
-        };
-        let Some(quantity) = quantity else {
-            return Typed::poisoned(span);
-        };
-        let dimension = match quantity {
-            Motion::Position(..) => Dimension::LENGTH,
-            Motion::Velocity(..) | Motion::Speed(_) => Dimension::VELOCITY,
-            Motion::AngularVelocity(..) => Dimension::NONE.rate().unwrap_or(Dimension::NONE),
-        };
-        let shown = word.example();
-        let quantity = Quantity::Motion(quantity);
-        let typed = self.quantity(quantity, Some(dimension), shown, span, place);
-        if word == MotionWord::Speed {
-            self.not_linear(place, "a speed", typed.span(), "not linear");
-        }
-        typed
-    }
-
-    fn axis_named(&mut self, name: &Spanned<String>, word: MotionWord) -> Option<Axis> {
-        let axis = match name.value.as_str() {
-            "x" => Some(Axis::X),
-            "y" => Some(Axis::Y),
-            "z" => Some(Axis::Z),
-            _ => None,
-        };
-        if axis.is_none() {
-            let message = format!("`{}` is no axis", shown(&name.value));
-            self.tell(
-                Diagnostic::error(Code::UnknownReference, message)
-                    .at(name.span.clone(), "")
-                    .help(format!(
-                        "the second name is an axis, `x`, `y` or `z`: `{}`",
-                        word.example()
-                    )),
-            );
-        }
-        axis
-    }
-
-    fn wrong_motion(&mut self, word: MotionWord, span: &Span) -> Option<Motion> {
-        let more = if word == MotionWord::Speed {
-            String::new()
-        } else {
-            let with_frame = word.example().replace(')', ", frame)");
-            format!(", or `{with_frame}` for an axis of a frame")
-        };
-        self.tell(
-            Diagnostic::error(
-                Code::WrongArity,
-                format!("`{}` has other names", word.name()),
-            )
-            .at(span.clone(), "")
-            .help(format!("write `{}`{more}", word.example())),
-        );
-        None
-    }
-
     fn unknown_name(&self, name: &str, span: &Span) -> Diagnostic {
         let known = self.names.keys().copied().chain(["t", "pi"]);
         let help = did_you_mean(name, known, || {
@@ -302,7 +209,7 @@ impl Resolver<'_> {
             Quantity::PseudoVelocity(_) => "the pseudo-velocity",
             Quantity::Input(_) => "the input",
             Quantity::Signal(_) => "the signal",
-            Quantity::Motion(_) => "the motion",
+            Quantity::Motion(_) | Quantity::Response(_) => "the motion",
             Quantity::Time | Quantity::Pi => "the quantity",
         };
         self.tell(

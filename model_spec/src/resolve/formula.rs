@@ -111,7 +111,7 @@ fn is_plain(ast: &ExprAst) -> bool {
     match &ast.kind {
         ExprAstKind::Number(_, unit) => unit.is_none(),
         ExprAstKind::Name(name) => name == "pi",
-        ExprAstKind::Rate(_) | ExprAstKind::Motion(..) | ExprAstKind::Broken => false,
+        ExprAstKind::Rate(_) | ExprAstKind::Named(..) | ExprAstKind::Broken => false,
         ExprAstKind::Negate(a) => is_plain(a),
         ExprAstKind::Binary(_, a, b) => is_plain(a) && is_plain(b),
         ExprAstKind::Call(function, arguments) => match function {

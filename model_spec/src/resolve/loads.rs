@@ -9,43 +9,80 @@ use crate::parse::zero;
 use crate::units::Dimension;
 
 use super::dimensions::{Dim, Typed};
+use super::load_order;
+use super::meaning::{Acting, Shape};
 use super::place::Place;
 use super::placement::axis;
 use super::resolver::Resolver;
 
 const ACCELERATION: Place = Place::constant("the gravitational acceleration");
-const FORCE: Place = Place::anything("a component of a force");
-const TORQUE: Place = Place::anything("a component of a torque");
+const FORCE: Place = Place::force("a component of a force");
+const TORQUE: Place = Place::force("a component of a torque");
 const STIFFNESS: Place = Place::scheduled("the stiffness of a spring");
 const RELAXED: Place = Place::scheduled("the relaxed length");
-const DAMPING: Place = Place::anything("the damping of a damper");
-const GENERALIZED: Place = Place::anything("a generalised force");
+const DAMPING: Place = Place::force("the damping of a damper");
+const GENERALIZED: Place = Place::force("a generalised force");
 
 impl Resolver<'_> {
     pub(super) fn loads(&mut self, bodies: &[Body]) -> Vec<Load> {
         let ast = self.ast;
-        let mut loads = Vec::new();
-        for item in ast.items("loads") {
-            let Some(ItemKind::Load(word)) = item.kind.map(|kind| kind.is) else {
-                continue;
-            };
-            let kind = match word {
-                LoadWord::Gravity => self.gravity(item),
-                LoadWord::Force => self.force(item, bodies),
-                LoadWord::Torque => self.torque(item, bodies),
-                LoadWord::Spring => self.spring(item),
-                LoadWord::Damper => self.damper(item),
-                LoadWord::Generalized => self.generalized(item),
-            };
-            loads.push(Load {
-                name: item.name.value.clone(),
-                about: Self::about(item),
-                kind,
-                line: self.line(&item.name.span),
-                span: item.name.span.clone(),
-            });
+        let is_load = |item: &&ItemAst| matches!(item.kind.map(|k| k.is), Some(ItemKind::Load(_)));
+        let items: Vec<&ItemAst> = ast.items("loads").iter().filter(is_load).collect();
+        for (place, item) in items.iter().enumerate() {
+            self.loads.insert(item.name.value.as_str(), place);
         }
-        loads
+        self.acting = vec![None; items.len()];
+        let mut read = vec![None; items.len()];
+        for place in load_order::ordered(self, &items) {
+            self.largest_size = 1;
+            read[place] = self.load(items[place], bodies);
+            self.acting[place] = read[place].as_ref().map(|(_, acting)| *acting);
+        }
+        read.into_iter().flatten().map(|(load, _)| load).collect()
+    }
+
+    /// A load and what expressions may name of its force.
+    fn load(&mut self, item: &ItemAst, bodies: &[Body]) -> Option<(Load, Acting)> {
+        let Some(ItemKind::Load(word)) = item.kind.map(|kind| kind.is) else {
+            return None;
+        };
+        let (kind, shape, dimension) = match word {
+            LoadWord::Gravity => (self.gravity(item), Shape::Spread, None),
+            LoadWord::Force => {
+                let force = Some(Dimension::FORCE);
+                (self.force(item, bodies), Shape::Vector, force)
+            }
+            LoadWord::Torque => {
+                let torque = Some(Dimension::TORQUE);
+                (self.torque(item, bodies), Shape::Vector, torque)
+            }
+            LoadWord::Spring => {
+                let (kind, tension) = self.spring(item);
+                (kind, Shape::Scalar, tension)
+            }
+            LoadWord::Damper => {
+                let (kind, tension) = self.damper(item);
+                (kind, Shape::Scalar, tension)
+            }
+            LoadWord::Generalized => {
+                let (kind, force) = self.generalized(item);
+                (kind, Shape::Scalar, force)
+            }
+        };
+        let acting = Acting {
+            shape,
+            dimension,
+            size: self.largest_size.saturating_add(1),
+            pushes: false,
+        };
+        let load = Load {
+            name: item.name.value.clone(),
+            about: Self::about(item),
+            kind,
+            line: self.line(&item.name.span),
+            span: item.name.span.clone(),
+        };
+        Some((load, acting))
     }
 
     fn gravity(&mut self, item: &ItemAst) -> LoadKind {
@@ -143,29 +180,34 @@ impl Resolver<'_> {
         (id, dimension)
     }
 
-    fn spring(&mut self, item: &ItemAst) -> LoadKind {
+    /// A spring and the dimension of its tension.
+    fn spring(&mut self, item: &ItemAst) -> (LoadKind, Option<Dimension>) {
         let (between, displacement) = self.connection(item);
         let force = Dim::Known(Dimension::TORQUE).per(displacement);
         let stiffness = force.per(displacement);
         let relaxed = displacement.map_or(Dim::Unknown, Dim::Known);
-        LoadKind::Spring {
+        let kind = LoadKind::Spring {
             between,
             stiffness: self.expression_of(item, "stiffness", &STIFFNESS, stiffness),
             relaxed: self.expression_of(item, "relaxed", &RELAXED, relaxed),
-        }
+        };
+        (kind, force.known())
     }
 
-    fn damper(&mut self, item: &ItemAst) -> LoadKind {
+    /// A damper and the dimension of its tension.
+    fn damper(&mut self, item: &ItemAst) -> (LoadKind, Option<Dimension>) {
         let (between, displacement) = self.connection(item);
         let force = Dim::Known(Dimension::TORQUE).per(displacement);
         let damping = force.per(displacement).times(Some(Dimension::TIME));
-        LoadKind::Damper {
+        let kind = LoadKind::Damper {
             between,
             damping: self.expression_of(item, "damping", &DAMPING, damping),
-        }
+        };
+        (kind, force.known())
     }
 
-    fn generalized(&mut self, item: &ItemAst) -> LoadKind {
+    /// A generalised force and its dimension.
+    fn generalized(&mut self, item: &ItemAst) -> (LoadKind, Option<Dimension>) {
         // Force times velocity is a power, whatever the velocity is of.
         let (velocity, dimension) = if item.entry("velocity").is_some() {
             let along = self.velocity_along(item);
@@ -180,10 +222,11 @@ impl Resolver<'_> {
             (velocity, displacement.and_then(|own| own.rate().ok()))
         };
         let force = Dim::Known(Dimension::POWER).per(dimension);
-        LoadKind::Generalized {
+        let kind = LoadKind::Generalized {
             velocity,
             force: self.expression_of(item, "force", &GENERALIZED, force),
-        }
+        };
+        (kind, force.known())
     }
 
     fn velocity_along(&mut self, item: &ItemAst) -> Typed {

@@ -21,6 +21,30 @@ pub(super) enum Meaning {
     Output,
 }
 
+/// What is known of the force of a load or of a constraint when an expression names it.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Acting {
+    /// What an expression can name of it.
+    pub(super) shape: Shape,
+    /// `None` while it is not known.
+    pub(super) dimension: Option<Dimension>,
+    /// Bound on the polynomial degree.
+    pub(super) size: u32,
+    /// Whether it can only push, along a normal.
+    pub(super) pushes: bool,
+}
+
+/// The number that a force is, or the numbers.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Shape {
+    /// It has components.
+    Vector,
+    /// It is one number.
+    Scalar,
+    /// It acts on every body in another way.
+    Spread,
+}
+
 /// Places of what occurs in expressions.
 #[derive(Debug, Default)]
 pub(super) struct Used {
@@ -37,9 +61,11 @@ impl Used {
             Quantity::Coordinate(id) | Quantity::Rate(id) => self.coordinates.insert(id.index()),
             Quantity::Input(id) => self.inputs.insert(id.index()),
             Quantity::Signal(id) => self.signals.insert(id.index()),
-            Quantity::PseudoVelocity(_) | Quantity::Motion(_) | Quantity::Time | Quantity::Pi => {
-                false
-            }
+            Quantity::PseudoVelocity(_)
+            | Quantity::Motion(_)
+            | Quantity::Response(_)
+            | Quantity::Time
+            | Quantity::Pi => false,
         };
     }
 }

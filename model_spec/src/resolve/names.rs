@@ -3,7 +3,7 @@
 use crate::ast::{ItemAst, Spanned};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::expr::{Function, Quantity, Span};
-use crate::ids::{BodyId, CoordinateId, FrameId, Id, PointId, SpeedId};
+use crate::ids::{BodyId, ConstraintId, CoordinateId, FrameId, Id, LoadId, PointId, SpeedId};
 use crate::language::Target;
 use crate::mechanism::{Interpolation, Label, Signal};
 use crate::suggest::{did_you_mean, shown};
@@ -32,6 +32,14 @@ impl Referred for BodyId {
 
 impl Referred for CoordinateId {
     const TARGET: Target = Target::Coordinate;
+}
+
+impl Referred for ConstraintId {
+    const TARGET: Target = Target::Constraint;
+}
+
+impl Referred for LoadId {
+    const TARGET: Target = Target::Load;
 }
 
 /// Names that the language keeps for itself.
@@ -180,6 +188,8 @@ impl<'a> Resolver<'a> {
             Target::Frame => self.frames.get(name).copied(),
             Target::Point => self.points.get(name).copied(),
             Target::Body => self.bodies.get(name).copied(),
+            Target::Constraint => self.constraints.get(name).copied(),
+            Target::Load => self.loads.get(name).copied(),
             Target::Coordinate => self.names.get(name).and_then(|named| match named.meaning {
                 Meaning::Quantity(Quantity::Coordinate(id)) => Some(id.index()),
                 _ => None,
@@ -199,6 +209,8 @@ impl<'a> Resolver<'a> {
             Target::Frame => self.frames.keys().copied().collect(),
             Target::Point => self.points.keys().copied().collect(),
             Target::Body => self.bodies.keys().copied().collect(),
+            Target::Constraint => self.constraints.keys().copied().collect(),
+            Target::Load => self.loads.keys().copied().collect(),
             Target::Coordinate => self
                 .names
                 .iter()

@@ -1,6 +1,6 @@
 //! Where an expression stands, and what it may depend on there.
 
-use crate::expr::Quantity;
+use crate::expr::{Quantity, Response, Word};
 use crate::mechanism::Interpolation;
 
 /// A place for an expression.
@@ -33,6 +33,8 @@ const SPEEDS: u8 = 4;
 const INPUTS: u8 = 8;
 const TIME: u8 = 16;
 const MOTIONS: u8 = 32;
+const ACCELERATIONS: u8 = 64;
+const FORCES: u8 = 128;
 
 impl Place {
     const fn new(what: &'static str, allows: u8, smooth: Smooth) -> Self {
@@ -76,9 +78,9 @@ impl Place {
         Self::new(what, TIME, Smooth::Any)
     }
 
-    /// A force, or a quantity of interest.
-    pub(super) const fn anything(what: &'static str) -> Self {
-        let all = COORDINATES | RATES | SPEEDS | INPUTS | TIME | MOTIONS;
+    /// A force.
+    pub(super) const fn force(what: &'static str) -> Self {
+        let all = COORDINATES | RATES | SPEEDS | INPUTS | TIME | MOTIONS | FORCES;
         Self::new(what, all, Smooth::Any)
     }
 
@@ -92,6 +94,8 @@ impl Place {
         Self::new(what, COORDINATES | RATES | SPEEDS, Smooth::Any)
     }
 
+    /// A quantity of interest.
+    pub(super) const OUTPUT: Self = Self::new("an output", u8::MAX, Smooth::Any);
     /// Definition of a pseudo-velocity.
     pub(super) const SPEED: Self = Self::linear("a pseudo-velocity");
     /// Velocity along which a force acts.
@@ -111,8 +115,27 @@ impl Place {
             Quantity::Input(_) => INPUTS,
             Quantity::Signal(_) | Quantity::Time => TIME,
             Quantity::Motion(_) => MOTIONS,
+            Quantity::Response(Response::Acceleration(..) | Response::AngularAcceleration(..)) => {
+                ACCELERATIONS
+            }
+            Quantity::Response(_) => FORCES,
         };
         self.allows & asked == asked
+    }
+
+    /// Whether a kind of quantity by name may occur, whatever it is of.
+    pub(super) fn allows_word(&self, word: Word) -> bool {
+        let asked = match word {
+            Word::Position | Word::Velocity | Word::Speed | Word::AngularVelocity => MOTIONS,
+            Word::Acceleration | Word::AngularAcceleration => ACCELERATIONS,
+            Word::Reaction | Word::NormalForce | Word::Force => FORCES,
+        };
+        self.allows & asked == asked
+    }
+
+    /// Whether it is a force of the mechanism.
+    pub(super) fn is_force(&self) -> bool {
+        self.allows & FORCES != 0 && self.allows & ACCELERATIONS == 0
     }
 
     /// What may occur here, as listed in messages.
@@ -125,6 +148,8 @@ impl Place {
             (INPUTS, "inputs"),
             (TIME, "signals and time"),
             (MOTIONS, "motions of points and frames"),
+            (FORCES, "forces of loads and constraints"),
+            (ACCELERATIONS, "accelerations"),
         ] {
             if self.allows & flag != 0 {
                 words.push(word);

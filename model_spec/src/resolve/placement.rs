@@ -135,6 +135,8 @@ impl<'a> Resolver<'a> {
         match target {
             Target::Frame => &mut self.frames,
             Target::Body => &mut self.bodies,
+            Target::Constraint => &mut self.constraints,
+            Target::Load => &mut self.loads,
             Target::Point | Target::Coordinate => &mut self.points,
         }
     }

@@ -255,7 +255,7 @@ impl<'a> Resolver<'a> {
         let ast = self.ast;
         let mut outputs = Vec::new();
         for item in ast.items("outputs") {
-            let typed = self.value_of(item, &Place::anything("an output"));
+            let typed = self.value_of(item, &Place::OUTPUT);
             let (unit, value) = self.checked_unit(item, typed, &[]);
             outputs.push(Output {
                 label: self.label(item, unit.as_ref()),

@@ -9,7 +9,7 @@ use crate::mechanism::Interpolation;
 use crate::parse::zero;
 
 use super::dimensions::Dim;
-use super::meaning::{Named, Used};
+use super::meaning::{Acting, Named, Used};
 use super::place::Place;
 
 /// Maximum number of diagnostics collected.
@@ -27,6 +27,13 @@ pub(super) struct Resolver<'a> {
     pub(super) frames: BTreeMap<&'a str, usize>,
     pub(super) points: BTreeMap<&'a str, usize>,
     pub(super) bodies: BTreeMap<&'a str, usize>,
+    pub(super) constraints: BTreeMap<&'a str, usize>,
+    pub(super) loads: BTreeMap<&'a str, usize>,
+    /// The forces of constraints and loads, by index; `None` until they are known.
+    pub(super) reacting: Vec<Option<Acting>>,
+    pub(super) acting: Vec<Option<Acting>>,
+    /// Largest polynomial degree since it was last set to zero.
+    pub(super) largest_size: u32,
     /// Unknown names already reported, each with its place in the findings.
     pub(super) told: BTreeMap<(&'static str, String), usize>,
     /// How smooth each signal is, and its name.
@@ -48,6 +55,11 @@ impl<'a> Resolver<'a> {
             frames: BTreeMap::from([("ground", 0)]),
             points: BTreeMap::from([("O", 0)]),
             bodies: BTreeMap::new(),
+            constraints: BTreeMap::new(),
+            loads: BTreeMap::new(),
+            reacting: Vec::new(),
+            acting: Vec::new(),
+            largest_size: 0,
             told: BTreeMap::new(),
             interpolation: Vec::new(),
             used: Used::default(),
@@ -82,6 +94,7 @@ impl<'a> Resolver<'a> {
     pub(super) fn expression(&mut self, ast: &ExprAst, place: &Place, dimension: Dim) -> Expr {
         let typed = self.elaborate(ast, place);
         self.expect(&typed, dimension, place);
+        self.largest_size = self.largest_size.max(typed.size);
         typed.expr
     }
 

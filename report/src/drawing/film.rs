@@ -6,7 +6,8 @@ use std::f64::consts::PI;
 use appell_runtime::Trajectory;
 use appell_runtime::model::{At, Model};
 use appell_spec::mechanism::{
-    BodyId, Components, ConstraintKind, FrameId, GROUND, LoadKind, Mechanism, ORIGIN, PointId,
+    BodyId, Components, ConstraintKind, FrameId, GROUND, LoadId, LoadKind, Mechanism, ORIGIN,
+    PointId,
 };
 
 use super::link::{self, Link};
@@ -20,6 +21,7 @@ use appell_codegen::mechanics::expressions::Lowering;
 use appell_codegen::mechanics::finding::{Item, Outcome, division_by_zero};
 use appell_codegen::mechanics::frames::FrameVector;
 use appell_codegen::mechanics::kinematics::{Effort, Kinematics};
+use appell_codegen::mechanics::loads::{Acts, applied_loads};
 use appell_codegen::mechanics::seed;
 use appell_codegen::mechanics::symbols::{Symbols, ids};
 use appell_codegen::symbolic::vector::Vec3;
@@ -109,7 +111,7 @@ pub fn film(
     )?;
     let placement = Placement::new(&mut algebra, mechanism, &symbols, &kinematics)?;
     let flat_across = placement.flat_across(&mut algebra);
-    let applied = applied(&mut algebra.graph, mechanism, &symbols, &kinematics)?;
+    let applied = applied(&mut algebra, mechanism, &symbols, &kinematics)?;
     let reactions = reactions(mechanism, model);
 
     let graph = &algebra.graph;
@@ -189,9 +191,10 @@ fn reactions(mechanism: &Mechanism, model: &dyn Model) -> Vec<(usize, Force)> {
     found.collect()
 }
 
-/// Forces of the spec on points, and weights, as expressions in the ground.
+/// Forces of the spec on points, and weights, as expressions in the ground. A force that depends on a
+/// reaction has no values here, and no arrow.
 fn applied(
-    graph: &mut Graph,
+    algebra: &mut Algebra,
     mechanism: &Mechanism,
     symbols: &Symbols,
     kinematics: &Kinematics,
@@ -200,7 +203,17 @@ fn applied(
         symbols,
         rates: &symbols.rates,
     };
-    let in_ground = |graph: &mut Graph, frame: FrameId, vector: &Components| {
+    let names_nothing = symbols.motions.is_empty() && symbols.responses.is_empty();
+    let acting = if names_nothing {
+        Vec::new()
+    } else {
+        applied_loads(algebra, mechanism, symbols, kinematics, &symbols.rates)?
+    };
+    let graph = &mut algebra.graph;
+    let in_ground = |graph: &mut Graph, index: LoadId, frame: FrameId, vector: &Components| {
+        if let Some(Acts::Vector(force)) = acting.get(index.index()).map(|load| load.acts) {
+            return Ok(kinematics.frames.express(graph, force, GROUND));
+        }
         let v = lowering.lower_all(graph, vector)?;
         Ok(kinematics
             .frames
@@ -228,7 +241,7 @@ fn applied(
                 vector,
                 ..
             } => {
-                let vector = in_ground(graph, *frame, vector).map_err(divides)?;
+                let vector = in_ground(graph, index, *frame, vector).map_err(divides)?;
                 all.push((force(ForceKind::Load, *on), vector));
                 if let Some(other) = reaction_on.filter(|&other| other != ORIGIN) {
                     let opposite = vector.map(|c| graph.neg(c));

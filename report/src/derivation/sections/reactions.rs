@@ -20,6 +20,7 @@ pub(super) fn section(w: &mut Writer<'_>) -> Outcome<Option<Section>> {
         &d.velocities.violating,
         &d.bodies,
         &d.motion.accelerations,
+        &d.reactions_in_loads,
     )?;
     if forces.is_empty() {
         return Ok(None);

@@ -1,0 +1,162 @@
+//! The outputs of a spec and their derivatives. What an output names of accelerations and forces holds
+//! symbols for ω̇ until it is differentiated.
+
+use appell_spec::mechanism::Mechanism;
+
+use super::Derivation;
+use super::expressions::Lowering;
+use super::finding::{Item, Outcome, division_by_zero};
+use super::motions::motions;
+use super::responses::{Answering, named_in};
+use super::symbols::ids;
+use crate::program::{Array, Layout, Space};
+use crate::symbolic::{Expr, Graph, Substitution};
+
+/// Values of the outputs.
+pub(super) struct Outputs {
+    /// With symbols for ω̇.
+    implicit: Vec<Expr>,
+    /// As they are.
+    pub(super) values: Vec<Expr>,
+}
+
+impl Derivation {
+    /// Whether outputs name what the equations have to be solved for.
+    pub(super) fn outputs_need_accelerations(&self) -> bool {
+        let unknown = ids(&self.algebra.graph, &self.symbols.accelerations);
+        let values = self.responses_in_outputs.iter();
+        let mut values = values.map(|(_, value)| *value);
+        values.any(|value| self.algebra.graph.mentions(value, &unknown))
+    }
+
+    /// The outputs of the spec.
+    pub(super) fn outputs(&mut self, mechanism: &Mechanism) -> Outcome<Vec<Array>> {
+        let values = self.output_values(mechanism)?.values;
+        let labels = mechanism.outputs.iter().map(|y| y.label.name.clone());
+        let all = 0..values.len();
+        let array = Array::new(
+            "outputs",
+            "Outputs.",
+            Layout::Vector(Space::Outputs),
+            values,
+        );
+        Ok(vec![array.labelled(labels).under("Outputs.", all)])
+    }
+
+    /// Values of the outputs, with and without symbols for ω̇.
+    pub(super) fn output_values(&mut self, mechanism: &Mechanism) -> Outcome<Outputs> {
+        let lowering = Lowering {
+            symbols: &self.symbols,
+            rates: &self.coordinate_rates,
+        };
+        let mut told = motions(
+            &mut self.algebra,
+            mechanism,
+            &self.symbols,
+            &self.kinematics,
+        );
+        let mut implicit = Vec::with_capacity(mechanism.outputs.len());
+        for (index, output) in mechanism.outputs.entries() {
+            let graph = &mut self.algebra.graph;
+            let value = lowering.lower(graph, &output.value).ok();
+            let value = value.and_then(|value| match &mut told {
+                Some(told) => told.apply(graph, value),
+                None => Some(value),
+            });
+            implicit.push(value.ok_or_else(|| vec![division_by_zero(Item::Output(index))])?);
+        }
+        if self.responses_in_outputs.is_empty() {
+            let values = implicit.clone();
+            return Ok(Outputs { implicit, values });
+        }
+        let graph = &mut self.algebra.graph;
+        let zero = || vec![division_by_zero(Item::Mechanism)];
+        let mut told = Substitution::of_parts(graph, &self.responses_in_outputs);
+        let implicit = told.apply_all(graph, &implicit).ok_or_else(zero)?;
+        let mut actual = self.actual_accelerations().keeping_names();
+        let graph = &mut self.algebra.graph;
+        let values = actual.apply_all(graph, &implicit).ok_or_else(zero)?;
+        Ok(Outputs { implicit, values })
+    }
+
+    /// What stands for the symbols of accelerations and forces in outputs, with symbols for ω̇.
+    pub(super) fn named_in_outputs(&mut self, mechanism: &Mechanism) -> Outcome<Vec<(Expr, Expr)>> {
+        let outputs = mechanism.outputs.iter().map(|output| &output.value);
+        let wanted = named_in(&self.symbols, outputs);
+        if wanted.is_empty() {
+            return Ok(Vec::new());
+        }
+        let bodies = self.bodies_in_ground(mechanism);
+        let answering = Answering {
+            mechanism,
+            symbols: &self.symbols,
+            constraints: &self.constraints,
+            contacts: &self.contacts,
+            violation: &self.velocities.violating,
+            kinematics: &self.kinematics,
+            rates: &self.coordinate_rates,
+            creeps: self.coordinate_rates != self.rolling_rates,
+            bodies: &bodies,
+            accelerations: &self.symbols.accelerations,
+            loads: &self.loads,
+            reactions_in_loads: &self.reactions_in_loads,
+        };
+        answering.values(&mut self.algebra, &wanted)
+    }
+
+    /// Puts ω̇ in place of its symbols.
+    fn actual_accelerations(&mut self) -> Substitution {
+        let symbols = self.symbols.accelerations.iter();
+        let values = self.motion.accelerations.iter();
+        let pairs: Vec<(Expr, Expr)> = symbols.copied().zip(values.copied()).collect();
+        Substitution::of_parts(&self.algebra.graph, &pairs)
+    }
+
+    /// Derivatives of the outputs with respect to each list of variables, row by row:
+    /// `∂y/∂z + ∂y/∂ω̇ ∂ω̇/∂z`.
+    pub(super) fn output_slopes<const N: usize>(
+        &mut self,
+        outputs: &Outputs,
+        variables: [&[Expr]; N],
+    ) -> Outcome<[Vec<Expr>; N]> {
+        let mut slopes = variables.map(|variables| self.slopes(&outputs.implicit, variables));
+        if outputs.implicit == outputs.values {
+            return Ok(slopes);
+        }
+        let accelerations = self.symbols.accelerations.clone();
+        let along = self.slopes(&outputs.implicit, &accelerations);
+        // Under no names: these derivatives hold ω̇, which a reader would not see.
+        let mut actual = self.actual_accelerations();
+        let mut at_the_motion = |graph: &mut Graph, partials: &[Expr]| {
+            let values = actual.apply_all(graph, partials);
+            values.ok_or_else(|| vec![division_by_zero(Item::Mechanism)])
+        };
+        let along = at_the_motion(&mut self.algebra.graph, &along)?;
+        let rates = self.derivatives(variables)?;
+        for ((slopes, rates), variables) in slopes.iter_mut().zip(&rates).zip(variables) {
+            let graph = &mut self.algebra.graph;
+            *slopes = at_the_motion(graph, slopes)?;
+            for (place, slope) in slopes.iter_mut().enumerate() {
+                let (row, column) = (place / variables.len(), place % variables.len());
+                let mut parts = vec![*slope];
+                let own = &along[row * accelerations.len()..][..accelerations.len()];
+                for (k, &by) in own.iter().enumerate() {
+                    parts.push(graph.mul(by, rates[k * variables.len() + column]));
+                }
+                *slope = graph.sum(&parts);
+            }
+        }
+        Ok(slopes)
+    }
+
+    /// Derivatives of values with respect to variables, row by row.
+    fn slopes(&mut self, values: &[Expr], variables: &[Expr]) -> Vec<Expr> {
+        let mut slopes = Vec::with_capacity(values.len() * variables.len());
+        for &value in values {
+            for &variable in variables {
+                slopes.push(self.algebra.derivative(value, variable));
+            }
+        }
+        slopes
+    }
+}

@@ -1,0 +1,249 @@
+//! Accelerations and forces that a spec names, such as the reaction of a constraint.
+//!
+//! They are functions of the state, the inputs and ω̇. With symbols for ω̇ they are differentiated like
+//! everything that the solved equations enter: first with ω̇ held, then along its derivatives.
+
+use appell_spec::Code;
+use appell_spec::expr::{Expr as Spec, Quantity, Response};
+use appell_spec::mechanism::{Axis, ConstraintId, FrameId, GROUND, Mechanism};
+use rustc_hash::FxHashSet;
+
+use super::algebra::Algebra;
+use super::constraints::Constraints;
+use super::contacts::Contact;
+use super::elimination::Violation;
+use super::finding::{Finding, Item, Outcome};
+use super::frames::FrameVector;
+use super::gibbs_appell::BodyMotion;
+use super::kinematics::Kinematics;
+use super::loads::{AppliedLoad, forces};
+use super::reactions::reactions;
+use super::symbols::{Symbols, answer};
+use super::time::TimeDerivative;
+use crate::symbolic::Expr;
+use crate::symbolic::vector::Vec3;
+
+/// The derived motion, as far as accelerations and forces depend on it.
+pub struct Answering<'a> {
+    /// The mechanism.
+    pub mechanism: &'a Mechanism,
+    /// Its symbols.
+    pub symbols: &'a Symbols,
+    /// Constraint rows.
+    pub constraints: &'a Constraints,
+    /// Contacts, with their normals.
+    pub contacts: &'a [Contact],
+    /// Velocities at which constraint rows are violated.
+    pub violation: &'a Violation,
+    /// Velocities of points and frames.
+    pub kinematics: &'a Kinematics,
+    /// q̇ as it happens.
+    pub rates: &'a [Expr],
+    /// Whether contacts creep, so that `rates` are not those that `kinematics` has.
+    pub creeps: bool,
+    /// Motions of the bodies.
+    pub bodies: &'a [BodyMotion],
+    /// ω̇: symbols, or what it is.
+    pub accelerations: &'a [Expr],
+    /// Applied loads.
+    pub loads: &'a [AppliedLoad],
+    /// Reactions that loads depend on.
+    pub reactions_in_loads: &'a [(Expr, Expr)],
+}
+
+impl Answering<'_> {
+    /// What stands for the symbols of accelerations and forces.
+    pub fn values(
+        &self,
+        algebra: &mut Algebra,
+        wanted: &[(Response, Expr)],
+    ) -> Outcome<Vec<(Expr, Expr)>> {
+        let mut values = forces(&mut algebra.graph, self.kinematics, self.loads, wanted);
+        let reacts = |(response, _): &(Response, Expr)| {
+            matches!(response, Response::Reaction(..) | Response::NormalForce(_))
+        };
+        let reactions = if wanted.iter().any(reacts) {
+            self.reactions(algebra)?
+        } else {
+            Vec::new()
+        };
+        let mut findings = Vec::new();
+        for &(response, symbol) in wanted {
+            algebra.check_size()?;
+            let value = match response {
+                Response::Force(..) => continue,
+                Response::Acceleration(point, axis, frame) => {
+                    let v = self.kinematics.velocity(point);
+                    Ok(self.rate_of(algebra, v, frame)[axis.index()])
+                }
+                Response::AngularAcceleration(of, axis, frame) => {
+                    let w = self.kinematics.frames.angular_velocity(of);
+                    Ok(self.rate_of(algebra, w, frame)[axis.index()])
+                }
+                Response::Reaction(constraint, along) => {
+                    self.reaction(algebra, &reactions, constraint, along.unzip())
+                }
+                Response::NormalForce(constraint) => self.normal(algebra, &reactions, constraint),
+            };
+            match value {
+                Ok(value) => values.push((symbol, algebra.shortest(value))),
+                Err(reason) => findings.push(untold(self.mechanism, response, reason)),
+            }
+        }
+        if findings.is_empty() {
+            Ok(values)
+        } else {
+            Err(findings)
+        }
+    }
+
+    fn reactions(&self, algebra: &mut Algebra) -> Outcome<Vec<Vec3>> {
+        reactions(
+            algebra,
+            self.mechanism,
+            self.symbols,
+            self.constraints,
+            self.violation,
+            self.bodies,
+            self.accelerations,
+            self.reactions_in_loads,
+        )
+    }
+
+    /// The rate of a vector as the ground sees it, in the components of a frame.
+    fn rate_of(&self, algebra: &mut Algebra, vector: FrameVector, frame: FrameId) -> Vec3 {
+        let frames = &self.kinematics.frames;
+        let FrameVector { frame: own, v } = if self.creeps {
+            // The frames turn otherwise than these angular velocities tell.
+            let v = frames.express(&mut algebra.graph, vector, GROUND);
+            FrameVector { frame: GROUND, v }
+        } else {
+            vector
+        };
+        let time = TimeDerivative {
+            symbols: self.symbols,
+            rates: self.rates,
+        };
+        let mut rate = time.of3(algebra, v);
+        for (&speed, &acceleration) in self.symbols.speeds.iter().zip(self.accelerations) {
+            let partial = v.map(|component| algebra.derivative(component, speed));
+            let part = algebra.graph.scale3(acceleration, partial);
+            rate = algebra.graph.add3(rate, part);
+        }
+        let graph = &mut algebra.graph;
+        let turning = graph.cross(frames.angular_velocity(own).v, v);
+        let v = graph.add3(rate, turning);
+        frames.express(graph, FrameVector { frame: own, v }, frame)
+    }
+
+    /// A component of the reaction where a constraint acts, or its multiplier.
+    fn reaction(
+        &self,
+        algebra: &mut Algebra,
+        reactions: &[Vec3],
+        constraint: ConstraintId,
+        (axis, frame): (Option<Axis>, Option<FrameId>),
+    ) -> Result<Expr, Untold> {
+        let place = self.place_of(constraint)?;
+        let v = *reactions.get(place).ok_or(Untold::Undetermined)?;
+        let (Some(axis), Some(frame)) = (axis, frame) else {
+            return Ok(v[0]);
+        };
+        let force = FrameVector { frame: GROUND, v };
+        let frames = &self.kinematics.frames;
+        Ok(frames.express(&mut algebra.graph, force, frame)[axis.index()])
+    }
+
+    /// Index of the reaction of a constraint among those that are reported.
+    fn place_of(&self, constraint: ConstraintId) -> Result<usize, Untold> {
+        let mut rows = self.constraints.rows_of(constraint);
+        let place = rows.next().and_then(|row| self.constraints.reported(row));
+        place.ok_or(Untold::Undetermined)
+    }
+
+    fn normal(
+        &self,
+        algebra: &mut Algebra,
+        reactions: &[Vec3],
+        constraint: ConstraintId,
+    ) -> Result<Expr, Untold> {
+        // A reaction that is not reported has no contact.
+        self.place_of(constraint)?;
+        let mut contacts = self.contacts.iter();
+        let contact = contacts
+            .find(|contact| contact.constraint == constraint)
+            .ok_or(Untold::Normal)?;
+        let force = reactions.get(contact.place).ok_or(Untold::Undetermined)?;
+        Ok(algebra.graph.dot(contact.normal, *force))
+    }
+}
+
+/// The accelerations and forces that some expressions name, with their symbols.
+pub fn named_in<'e>(
+    symbols: &Symbols,
+    exprs: impl IntoIterator<Item = &'e Spec>,
+) -> Vec<(Response, Expr)> {
+    let mut named = FxHashSet::default();
+    for expr in exprs {
+        expr.visit(&mut |quantity| {
+            if let Quantity::Response(response) = quantity {
+                named.insert(response);
+            }
+        });
+    }
+    let mut wanted = symbols.responses.clone();
+    wanted.retain(|(response, _)| named.contains(response));
+    wanted
+}
+
+/// Why a force cannot be told.
+#[derive(Clone, Copy)]
+enum Untold {
+    Undetermined,
+    Normal,
+}
+
+fn untold(mechanism: &Mechanism, response: Response, reason: Untold) -> Finding {
+    let (code, why, help) = match reason {
+        Untold::Undetermined => (
+            Code::UndeterminedReaction,
+            "the constraints do not determine this reaction alone",
+            "keep one constraint for each prevented motion; of a contact and a position \
+             constraint that say the same, name the contact",
+        ),
+        Untold::Normal => (
+            Code::ContactNotJudged,
+            "the normal of its surface is not known, or another contact shares its reaction",
+            "name a frame that follows the surface and its normal axis, such as `in = \"slope\", \
+             normal = \"z\"`, and give each contact a point of its own",
+        ),
+    };
+    Finding {
+        code,
+        message: format!("`{}` cannot be told: {why}", answer(mechanism, response)),
+        item: who_names(mechanism, response),
+        help: help.to_owned(),
+    }
+}
+
+/// The first item that names a force.
+fn who_names(mechanism: &Mechanism, response: Response) -> Item {
+    let names = |exprs: &[&Spec]| {
+        let mut found = false;
+        for expr in exprs {
+            expr.visit(&mut |quantity| found |= quantity == Quantity::Response(response));
+        }
+        found
+    };
+    for (index, load) in mechanism.loads.entries() {
+        if names(&load.kind.expressions()) {
+            return Item::Load(index);
+        }
+    }
+    for (index, output) in mechanism.outputs.entries() {
+        if names(&[&output.value]) {
+            return Item::Output(index);
+        }
+    }
+    Item::Mechanism
+}

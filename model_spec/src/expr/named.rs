@@ -1,0 +1,100 @@
+//! Kinematic quantities and forces by name, such as `velocity(P, x)` and `force(spring)`.
+
+use crate::axis::Axis;
+use crate::ids::{ConstraintId, FrameId, LoadId, PointId};
+
+/// Position or velocity of a point, or angular velocity of a frame.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Motion {
+    /// Position of a point from the origin, along an axis of a frame.
+    Position(PointId, Axis, FrameId),
+    /// Velocity of a point, along an axis of a frame.
+    Velocity(PointId, Axis, FrameId),
+    /// Size of the velocity of a point.
+    Speed(PointId),
+    /// Angular velocity of the first frame, along an axis of the second.
+    AngularVelocity(FrameId, Axis, FrameId),
+}
+
+/// An acceleration relative to the ground, or a force. Of a force without an axis the one number is
+/// meant that it has.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Response {
+    /// Acceleration of a point, along an axis of a frame.
+    Acceleration(PointId, Axis, FrameId),
+    /// Angular acceleration of the first frame, along an axis of the second.
+    AngularAcceleration(FrameId, Axis, FrameId),
+    /// Reaction where a constraint acts.
+    Reaction(ConstraintId, Option<(Axis, FrameId)>),
+    /// Reaction of a contact along the normal of its surface.
+    NormalForce(ConstraintId),
+    /// Force or torque of a load.
+    Force(LoadId, Option<(Axis, FrameId)>),
+}
+
+/// The kinds of kinematic quantities and forces, as they are called in a spec.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Word {
+    /// `position(P, x)`, `position(P, x, frame)`
+    Position,
+    /// `velocity(P, x)`, `velocity(P, x, frame)`
+    Velocity,
+    /// `speed(P)`
+    Speed,
+    /// `angular_velocity(frame, z)`, `angular_velocity(frame, z, other)`
+    AngularVelocity,
+    /// `acceleration(P, x)`, `acceleration(P, x, frame)`
+    Acceleration,
+    /// `angular_acceleration(frame, z)`, `angular_acceleration(frame, z, other)`
+    AngularAcceleration,
+    /// `reaction(constraint, x)`, `reaction(constraint, x, frame)`, `reaction(constraint)`
+    Reaction,
+    /// `normal_force(contact)`
+    NormalForce,
+    /// `force(load, x)`, `force(load, x, frame)`, `force(load)`
+    Force,
+}
+
+impl Word {
+    /// Every kind with its name and how it is written.
+    pub const ALL: &'static [(Self, &'static str, &'static str)] = &[
+        (Self::Position, "position", "position(P, x)"),
+        (Self::Velocity, "velocity", "velocity(P, x)"),
+        (Self::Speed, "speed", "speed(P)"),
+        (
+            Self::AngularVelocity,
+            "angular_velocity",
+            "angular_velocity(wheel, z)",
+        ),
+        (Self::Acceleration, "acceleration", "acceleration(P, x)"),
+        (
+            Self::AngularAcceleration,
+            "angular_acceleration",
+            "angular_acceleration(wheel, z)",
+        ),
+        (Self::Reaction, "reaction", "reaction(rolling, x)"),
+        (Self::NormalForce, "normal_force", "normal_force(rolling)"),
+        (Self::Force, "force", "force(push, x)"),
+    ];
+
+    /// The kind of a name.
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.iter().find(|row| row.1 == name).map(|row| row.0)
+    }
+
+    /// Name in a spec.
+    pub fn name(self) -> &'static str {
+        Self::ALL
+            .iter()
+            .find(|row| row.0 == self)
+            .map_or("", |row| row.1)
+    }
+
+    /// How it is written.
+    pub fn example(self) -> &'static str {
+        Self::ALL
+            .iter()
+            .find(|row| row.0 == self)
+            .map_or("", |row| row.2)
+    }
+}

@@ -1,0 +1,121 @@
+//! The order in which loads are read: each after those whose forces it names.
+
+use crate::ast::{ExprAst, ExprAstKind, ItemAst, Spanned, ValueAst};
+use crate::diagnostic::{Code, Diagnostic};
+use crate::expr::Word;
+
+use super::resolver::Resolver;
+
+/// Places in a list of loads, ordered, and what is left of circles.
+pub(super) fn ordered(resolver: &mut Resolver<'_>, items: &[&ItemAst]) -> Vec<usize> {
+    let named: Vec<Vec<(usize, &Spanned<String>)>> = items
+        .iter()
+        .map(|item| {
+            let mut names = Vec::new();
+            for entry in &item.entries {
+                match &entry.value {
+                    ValueAst::Expression(ast) => forces(ast, &mut names),
+                    ValueAst::Components(parts) => {
+                        parts.iter().for_each(|ast| forces(ast, &mut names));
+                    }
+                    _ => {}
+                }
+            }
+            // A load that does not exist is told where it is looked up.
+            let place_of = |name: &str| resolver.loads.get(name).copied();
+            let mut known: Vec<_> = names
+                .into_iter()
+                .filter_map(|name| Some((place_of(&name.value)?, name)))
+                .collect();
+            // Each once: an expression may name one load a thousand times.
+            known.sort_by_key(|(place, _)| *place);
+            known.dedup_by_key(|(place, _)| *place);
+            known
+        })
+        .collect();
+    let mut order: Vec<usize> = Vec::with_capacity(items.len());
+    let mut waiting: Vec<usize> = (0..items.len()).collect();
+    let mut done = vec![false; items.len()];
+    loop {
+        let before = order.len();
+        waiting.retain(|&place| {
+            let ready = named[place].iter().all(|(other, _)| done[*other]);
+            if ready {
+                order.push(place);
+                done[place] = true;
+            }
+            !ready
+        });
+        if order.len() == before {
+            break;
+        }
+    }
+    if let Some(&first) = waiting.first() {
+        circle(resolver, items, &named, &done, first);
+    }
+    order.extend(waiting);
+    order
+}
+
+/// The loads whose forces an expression names.
+fn forces<'a>(ast: &'a ExprAst, names: &mut Vec<&'a Spanned<String>>) {
+    match &ast.kind {
+        ExprAstKind::Named(Word::Force, own) => names.extend(own.first()),
+        ExprAstKind::Number(..)
+        | ExprAstKind::Name(_)
+        | ExprAstKind::Rate(_)
+        | ExprAstKind::Named(..)
+        | ExprAstKind::Broken => {}
+        ExprAstKind::Negate(a) => forces(a, names),
+        ExprAstKind::Binary(_, a, b) => {
+            forces(a, names);
+            forces(b, names);
+        }
+        ExprAstKind::Call(_, parts) => parts.iter().for_each(|part| forces(part, names)),
+        ExprAstKind::Choice {
+            compared, branches, ..
+        } => compared
+            .iter()
+            .chain(branches.iter())
+            .for_each(|part| forces(part, names)),
+    }
+}
+
+/// Tells one circle of those that are left.
+fn circle(
+    resolver: &mut Resolver<'_>,
+    items: &[&ItemAst],
+    named: &[Vec<(usize, &Spanned<String>)>],
+    done: &[bool],
+    first: usize,
+) {
+    let mut path = vec![first];
+    let mut steps: Vec<&Spanned<String>> = Vec::new();
+    let mut place = first;
+    // Every load that waits names one that waits.
+    while let Some(&(next, name)) = named[place].iter().find(|(own, _)| !done[*own]) {
+        steps.push(name);
+        if let Some(start) = path.iter().position(|&own| own == next) {
+            let mut words: Vec<String> = path[start..]
+                .iter()
+                .map(|&own| format!("`{}`", items[own].name.value))
+                .collect();
+            words.push(format!("`{}`", items[next].name.value));
+            let mut diagnostic = Diagnostic::error(
+                Code::ReferenceCycle,
+                format!(
+                    "the forces of loads depend on each other: {}",
+                    words.join(" on ")
+                ),
+            )
+            .help("write one of them without the force of another, or let it follow the motion");
+            for name in steps[start..].iter().take(4) {
+                diagnostic = diagnostic.at(name.span.clone(), "");
+            }
+            resolver.tell(diagnostic);
+            return;
+        }
+        path.push(next);
+        place = next;
+    }
+}

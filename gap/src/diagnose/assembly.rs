@@ -56,53 +56,7 @@ pub(super) fn assemble(
     place: Where,
     rivals: &[Rival<'_>],
 ) -> Result<Report, DiagnoseError> {
-    // What cannot be compared is no twin.
-    let twins = twins::of_best(bench, comparison).unwrap_or_default();
-    let names = |members: &[usize]| -> Vec<String> {
-        let mut names: Vec<String> = Vec::new();
-        for name in members.iter().map(|&m| bench.candidate(m).name()) {
-            // Components of a vector are one effect.
-            if !names.contains(&name) {
-                names.push(name);
-            }
-        }
-        names
-    };
-    let base = comparison.nominal().evidence.log();
-    let known = 1.0 - comparison.unknown;
-    let mut which: Vec<Hypothesis> = Vec::new();
-    for (place, (fitted, probability)) in comparison.fits.iter().enumerate() {
-        let effects = names(&fitted.members);
-        // Variants of one effect are one hypothesis.
-        if let Some(own) = which.iter_mut().find(|own| own.effects == effects) {
-            own.probability += probability * known;
-            continue;
-        }
-        let is_twin = twins.contains(&place);
-        if is_twin {
-            which[0].probability += probability * known;
-            // A mixture of two that say the same.
-            if effects.len() > which[0].effects.len() {
-                continue;
-            }
-        }
-        which.push(Hypothesis {
-            same_as: is_twin.then(|| which[0].effects.clone()),
-            effects,
-            probability: if is_twin { 0.0 } else { probability * known },
-            log_bayes_factor: Some(fitted.evidence.log() - base),
-            parameters: values(bench, fitted),
-            changes: Some(Changes::of(bench, fitted)?),
-        });
-    }
-    which.push(Hypothesis {
-        effects: vec![UNKNOWN.to_owned()],
-        probability: comparison.unknown,
-        same_as: None,
-        log_bayes_factor: None,
-        parameters: Vec::new(),
-        changes: None,
-    });
+    let mut which = which(bench, comparison)?;
     join(&mut which, rivals, bench, comparison)?;
     which.sort_by(|a, b| b.probability.total_cmp(&a.probability));
     beside_their_twins(&mut which);
@@ -151,7 +105,7 @@ pub(super) fn assemble(
         failed: comparison
             .failed
             .iter()
-            .map(|(members, reason)| (names(members), reason.clone()))
+            .map(|(members, reason)| (names(bench, members), reason.clone()))
             .collect(),
         disturbances: disturbances(bench, comparison.nominal(), best),
         left: left(bench, comparison),
@@ -164,6 +118,59 @@ pub(super) fn assemble(
         pictures: None,
         experiment: None,
     })
+}
+
+/// The hypotheses of the library, and that it has none.
+fn which(bench: &Bench<'_>, comparison: &Comparison) -> Result<Vec<Hypothesis>, DiagnoseError> {
+    // What cannot be compared is no twin.
+    let twins = twins::of_best(bench, comparison).unwrap_or_default();
+    let base = comparison.nominal().evidence.log();
+    let known = 1.0 - comparison.unknown;
+    let mut which: Vec<Hypothesis> = Vec::new();
+    for (place, (fitted, probability)) in comparison.fits.iter().enumerate() {
+        let effects = names(bench, &fitted.members);
+        // Variants of one effect are one hypothesis.
+        if let Some(own) = which.iter_mut().find(|own| own.effects == effects) {
+            own.probability += probability * known;
+            continue;
+        }
+        let is_twin = twins.contains(&place);
+        if is_twin {
+            which[0].probability += probability * known;
+            // A mixture of two that say the same.
+            if effects.len() > which[0].effects.len() {
+                continue;
+            }
+        }
+        which.push(Hypothesis {
+            same_as: is_twin.then(|| which[0].effects.clone()),
+            effects,
+            probability: if is_twin { 0.0 } else { probability * known },
+            log_bayes_factor: Some(fitted.evidence.log() - base),
+            parameters: values(bench, fitted),
+            changes: Some(Changes::of(bench, fitted)?),
+        });
+    }
+    which.push(Hypothesis {
+        effects: vec![UNKNOWN.to_owned()],
+        probability: comparison.unknown,
+        same_as: None,
+        log_bayes_factor: None,
+        parameters: Vec::new(),
+        changes: None,
+    });
+    Ok(which)
+}
+
+/// Names of effects; components of a vector are one.
+fn names(bench: &Bench<'_>, members: &[usize]) -> Vec<String> {
+    let mut names: Vec<String> = Vec::new();
+    for name in members.iter().map(|&m| bench.candidate(m).name()) {
+        if !names.contains(&name) {
+            names.push(name);
+        }
+    }
+    names
 }
 
 /// The effects of a hypothesis in words.

@@ -4,11 +4,11 @@
 //! are known, and their sizes are fitted as all others are: within a prior that lets a law be as rough as
 //! one with a step. So the law predicts runs, and a spec can have it.
 
+mod deviation;
 mod hidden_mass;
 mod waves;
 
-use appell_estimate::{Along, Estimation, Unknown};
-use nalgebra::DMatrix;
+use appell_estimate::{Along, Estimation};
 
 use super::DiagnoseError;
 use super::bench::Bench;
@@ -190,38 +190,5 @@ impl Lawful<'_> {
             base: self.base,
             law,
         })
-    }
-}
-
-/// Standard deviations of what is linear in some values of a fit.
-struct Deviation {
-    /// Places of the values among those that were free.
-    free: Vec<Option<usize>>,
-    covariance: Option<DMatrix<f64>>,
-}
-
-impl Deviation {
-    fn of(fitted: &Fitted, places: &[usize]) -> Self {
-        let place = |place: &usize| {
-            let mut free = fitted.fit.free.iter();
-            free.position(|free| free.unknown == Unknown::Parameter(*place))
-        };
-        Self {
-            free: places.iter().map(place).collect(),
-            covariance: fitted.fit.covariance().ok(),
-        }
-    }
-
-    /// Of the sum of the values times these slopes.
-    fn along(&self, slopes: &[f64]) -> f64 {
-        let mut variance = 0.0;
-        for (i, a) in self.free.iter().zip(slopes) {
-            for (j, b) in self.free.iter().zip(slopes) {
-                if let (Some(i), Some(j), Some(covariance)) = (i, j, &self.covariance) {
-                    variance += a * b * covariance[(*i, *j)];
-                }
-            }
-        }
-        variance.max(0.0).sqrt()
     }
 }

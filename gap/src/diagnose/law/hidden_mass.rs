@@ -7,7 +7,7 @@ use super::super::evidence::Fitted;
 use super::super::localise::force_unit;
 use super::super::report::Law;
 use super::super::unknown::Unnamed;
-use super::Deviation;
+use super::deviation::Deviation;
 
 /// Places at which the apparent mass is told.
 const PLACES: usize = 81;

@@ -9,7 +9,7 @@ use super::super::forms::forms;
 use super::super::localise::force_unit;
 use super::super::report::Law;
 use super::super::unknown::{Dependence, Series, Unnamed};
-use super::Deviation;
+use super::deviation::Deviation;
 use crate::effects::Candidate;
 
 /// Places at which the law is told, at least and for each half of its shortest wave.

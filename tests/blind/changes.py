@@ -87,6 +87,8 @@ def rigs_of(folder):
     """The rig of a folder, or the cases of a folder in which the model lacks nothing."""
     if (folder / "recording.toml").exists():
         return "rigs", [folder]
+    if not (folder / "LABELS.json").exists():
+        sys.exit(f"{folder}: neither a recording.toml nor a LABELS.json")
     labels = json.loads((folder / "LABELS.json").read_text())
     labels = labels.get("cases", labels)
     return "nulls", [folder / name for name, label in sorted(labels.items()) if label["kind"] == "null"]

@@ -16,6 +16,9 @@ const BAND: f64 = 2.0;
 pub fn law_sentence(report: &Report) -> Option<String> {
     let law = report.law.as_ref()?;
     let closes = part(report).map(|part| {
+        if part.closed <= 0.0 {
+            return "; measured, it does not better predictions of held-out runs".to_owned();
+        }
         let [low, high] = part.interval.map(percent);
         let closed = percent(part.closed);
         format!("; measured, it closes {closed} [{low}, {high}] of the gap")
@@ -31,6 +34,11 @@ pub fn law_sentence(report: &Report) -> Option<String> {
         closes.unwrap_or_default(),
         form.unwrap_or_default()
     ))
+}
+
+/// Whether a law was measured, and nothing speaks against writing it into the spec.
+pub(super) fn predicts(report: &Report) -> bool {
+    report.law.is_some() && part(report).is_none_or(|part| part.closed > 0.0)
 }
 
 fn part(report: &Report) -> Option<&Share> {
@@ -53,7 +61,10 @@ pub(super) fn law(report: &Report) -> Markup {
     html! {
         h3 { "The force that nothing in the library explains" }
         @if let Some(sentence) = law_sentence(report) {
-            p { "It is " (sentence) ". " code { "appell apply" } " writes it into the spec." }
+            p {
+                "It is " (sentence) "."
+                @if predicts(report) { " " code { "appell apply" } " writes it into the spec." }
+            }
         }
         (figure(curve(law), "The law and its band of two standard deviations, found in the training runs. Elsewhere \
                              it is not known."))

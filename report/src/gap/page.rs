@@ -10,7 +10,7 @@ use maud::{Markup, html};
 use super::budget::budget;
 use super::doubt::doubts;
 use super::elements::{bar, capital, code, figure, separated, table};
-use super::law::law;
+use super::law::{law, predicts};
 use super::numbers::{measured, percent};
 use super::plots;
 use super::words::{hinted, joined, left_out, sentence};
@@ -395,7 +395,7 @@ fn next(set: &DataSet, report: &Report) -> Markup {
                 code { "appell diagnose" } " writes as JSON."
             }
         },
-        GapVerdict::Unexplained if report.law.is_some() => html! {
+        GapVerdict::Unexplained if predicts(report) => html! {
             p {
                 code { "appell apply" } " writes the measured force into the spec; diagnose the result again, and \
                  look for what the force comes from."

@@ -457,7 +457,7 @@ pub struct MissingForce {
     pub rms: Vec<f64>,
 }
 
-/// A channel of a run beside predictions of it, [`AHEAD`] before, in the unit of the channel.
+/// A channel of a run beside predictions of it, [`AHEAD`](super::AHEAD) before, in the unit of the channel.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Trace {
     /// File of the run.

@@ -1,6 +1,6 @@
 //! Causes that the library does not have, changes, and many rigs at a time.
 
-use crate::rig::{closed, dry, on_grain, viscous, with_load};
+use crate::rig::{closed, dry, on_a_belt, on_grain, viscous, with_load};
 use crate::support::number;
 
 #[test]
@@ -71,6 +71,48 @@ fn a_load_that_swings_becomes_a_body_of_the_spec() {
     assert!((value("law_x_mass") / share - 1.0).abs() < 0.1, "{better}");
     assert!((value("law_x_rate") / rate - 1.0).abs() < 0.02, "{better}");
     closed(&folder, "better.toml");
+}
+
+#[test]
+fn friction_that_gives_way_before_it_slides_is_told_from_friction_that_does_not() {
+    let (friction, way) = (0.4, 0.15);
+    let folder = on_a_belt(friction, way);
+    let told = folder.done(&["diagnose", "--data", ".", "--json", "report.json"]);
+    let report = folder.json("report.json");
+    assert_eq!(report["verdict"], "unexplained", "{}", told.stdout);
+    let law = &report["law"];
+    assert_eq!(law["variable"], "x since it turned", "{law:#}");
+    // Right after a turn it still pushes.
+    let curve = law["curve"].as_array().expect("a list");
+    let force = |point: &serde_json::Value| point[1].as_f64().expect("a number");
+    let (turned, slid) = (force(&curve[0]), force(&curve[curve.len() - 1]));
+    assert!((turned / friction - 1.0).abs() < 0.1 && (slid / friction + 1.0).abs() < 0.1);
+    let apply = [
+        "apply",
+        "carriage",
+        "--report",
+        "report.json",
+        "-o",
+        "better.toml",
+    ];
+    folder.done(&apply);
+    let better: toml_edit::DocumentMut = folder.read("better.toml").parse().expect("a spec");
+    let value = |name: &str| {
+        better["parameters"][name]["value"]
+            .as_float()
+            .expect("a number")
+    };
+    assert!(
+        (value("law_x_force") / friction - 1.0).abs() < 0.1,
+        "{better}"
+    );
+    assert!((value("law_x_way") / way - 1.0).abs() < 0.2, "{better}");
+    closed(&folder, "better.toml");
+    // Friction that slides at once stays what it is.
+    let folder = dry(friction);
+    folder.done(&["diagnose", "--data", ".", "--json", "report.json"]);
+    let report = folder.json("report.json");
+    assert_eq!(report["which"][0]["effects"][0], "coulomb_friction@x");
 }
 
 #[test]

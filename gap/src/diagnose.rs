@@ -117,8 +117,18 @@ fn diagnosed(
     let Judged {
         bench,
         screen,
-        comparison,
+        mut comparison,
     } = judged((&whole, &fitted), &model, &mut stage)?;
+    stage("measuring what is left");
+    let test = set.only(Part::Test);
+    let laws = law::lawful(&bench, &comparison)?;
+    let measured = law::measured(&laws, &bench, &test);
+    if let Some(Ok(law)) = &measured
+        && law.is_alone()
+        && !comparison.best().members.is_empty()
+    {
+        comparison.weigh_alone(&bench, law.log_evidence);
+    }
     stage("fitting the alternatives");
     let alternatives = Alternative::all(&options.alternatives, &fitted)?;
     let (rivals, mut lost) = Rival::all(&alternatives, &bench)?;
@@ -129,14 +139,9 @@ fn diagnosed(
     report.failed.append(&mut lost);
     report.rows = [fitted.rows(), whole.rows()];
     report.hints = assembly::hints(&bench, &comparison)?;
-    stage("measuring what is left");
-    let test = set.only(Part::Test);
-    // A law that cannot be written is none.
-    let lawful = law::lawful(&bench, &comparison).unwrap_or(None);
     let held_out = HeldOut::of(&test, &bench)?;
     let before = before.map(|set| HeldOut::of(&set.all(Part::Test), &bench));
     let before = before.transpose()?;
-    let measured = lawful.as_ref().map(|lawful| lawful.fitted(&bench, &test));
     let measured = report.measured(measured)?;
     stage("predicting the runs that were held out");
     let leading = rivals
@@ -222,13 +227,15 @@ fn judged<'m>(
     model: &'m EffectModel,
     stage: &mut impl FnMut(&'static str),
 ) -> Result<Judged<'m>, DiagnoseError> {
-    let bench = Bench::new(fitted, model)?;
+    let mut bench = Bench::new(fitted, model)?;
+    let whole = whole.bound_to(&model.mechanism);
+    bench.whole.clone_from(&whole.runs);
     stage("fitting the nominal model");
     let nominal = bench.nominal().map_err(DiagnoseError::of_nominal)?;
     stage("screening the effects");
     let screen = Screen::of(&bench, &nominal)?;
     stage("fitting the effects that remain");
-    let windows = horizon::windows(&whole.bound_to(&model.mechanism));
+    let windows = horizon::windows(&whole);
     let over = Bench::over(&windows, (&bench, &nominal))?;
     horizon::judged((bench, nominal, screen), over, stage)
 }

@@ -7,7 +7,9 @@
 //! | `effect.rs` | the file of an effect |
 //! | `site.rs` | the sites in a mechanism, and their placeholders |
 //! | `candidate.rs` | an effect at a place: names, items to add, values to look for |
+//! | `memory.rs` | laws with a state of their own |
 //! | `hidden_mass.rs` | a mass that swings behind a coordinate |
+//! | `hysteresis.rs` | a force that follows the way since the last turn |
 //! | `drive.rs` | forces of inputs along a pseudo-velocity, and the inertia there |
 //! | `place.rs` | errors in the file of an effect, at their positions |
 //! | `model.rs` | a mechanism with many candidates, derived at once; at its nominal values the mechanism itself |
@@ -16,7 +18,9 @@ mod candidate;
 mod drive;
 mod effect;
 mod hidden_mass;
+mod hysteresis;
 mod library;
+mod memory;
 mod model;
 mod place;
 mod site;
@@ -26,7 +30,9 @@ pub use candidate::{Acts, Candidate};
 pub(crate) use drive::Drive;
 pub use effect::{Effect, EffectError, Family};
 pub(crate) use hidden_mass::HiddenMass;
+pub(crate) use hysteresis::Hysteresis;
 pub use library::shipped;
+pub(crate) use memory::Memory;
 pub(crate) use model::ACTING;
 pub use model::{EffectModel, ModelError, candidates, with_candidates};
 pub use site::{Scales, SiteKind};

@@ -165,6 +165,26 @@ fn swinging(share: f64, rate: f64, damping: f64) -> impl FnMut(f64) -> f64 {
     }
 }
 
+/// The motion of the carriage with a friction that gives way before it slides: exact while its direction stays.
+fn yielding(friction: f64, way: f64) -> impl FnMut(f64) -> f64 {
+    let (mut x, mut v, mut strained) = (0.0_f64, 0.0_f64, 0.0_f64);
+    let h = HELD / f64::from(STEPS);
+    let after = move |strained: f64, moved: f64| {
+        let end = moved.signum();
+        end + (strained - end) * (-moved.abs() / way).exp()
+    };
+    move |force| {
+        for _ in 0..STEPS {
+            let half = v + 0.5 * h * (force - friction * strained);
+            let middle = after(strained, 0.5 * h * v);
+            x += h * half;
+            v += h * (force - friction * middle);
+            strained = after(strained, h * half);
+        }
+        x
+    }
+}
+
 /// Forces of a run.
 fn forces(rows: u32) -> Vec<f64> {
     let force = |t: f64| 2.0 * (3.0 * t).sin() + 1.5 * (7.1 * t).cos();
@@ -235,6 +255,11 @@ pub(crate) fn on_grain(friction: f64, grain: f64, per_metre: f64) -> Folder {
 /// With a load that swings, of a share of the mass.
 pub(crate) fn with_load(share: f64, rate: f64, damping: f64) -> Folder {
     moving(|| swinging(share, rate, damping))
+}
+
+/// With dry friction that gives way before it slides.
+pub(crate) fn on_a_belt(friction: f64, way: f64) -> Folder {
+    moving(|| yielding(friction, way))
 }
 
 /// With dry friction that sticks.

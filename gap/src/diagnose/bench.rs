@@ -14,7 +14,7 @@ use super::feedback::InputInnovations;
 use super::unmodelled::UnmodelledChannel;
 use crate::effects::{Acts, Candidate, EffectModel, Part as Role};
 use crate::identify::{Options, Problem, longest_step};
-use appell_recordings::{DataSet, Part};
+use appell_recordings::{DataSet, Part, Run};
 
 /// Delays of inputs and channels are this long in s at most, or so many steps.
 const LONGEST_DELAY: f64 = 0.1;
@@ -56,6 +56,8 @@ type Search = fn(&Estimation<'_>, &[f64], &[Free], Effort) -> Result<Fit, Estima
 pub(super) struct Bench<'a> {
     /// The runs to fit, bound to the mechanism with all candidates.
     pub(super) set: DataSet,
+    /// The runs that they are parts of.
+    pub(super) whole: Vec<Run>,
     pub(super) effects: &'a EffectModel,
     pub(super) recordings: Vec<Recording>,
     pub(super) measured: Vec<Measured>,
@@ -116,6 +118,7 @@ impl<'a> Bench<'a> {
         Ok(Self {
             input_innovations: InputInnovations::of(&recordings),
             unmodelled: UnmodelledChannel::of(&set),
+            whole: set.runs.clone(),
             set,
             effects,
             recordings,
@@ -137,6 +140,7 @@ impl<'a> Bench<'a> {
             Ok(())
         };
         Ok(Bench {
+            whole: self.whole.clone(),
             weight: self.weight,
             predicting: self.predicting.clone(),
             told: self.told,
@@ -193,7 +197,9 @@ impl<'a> Bench<'a> {
             ..Setup::new(model, &measured)
         };
         let candidates = self.effects.candidates.iter();
-        let hidden = candidates.filter(|candidate| candidate.hides).count();
+        let hidden = candidates
+            .filter(|candidate| candidate.hides.is_some())
+            .count();
         setup
             .disturbances
             .truncate(self.effects.info().speeds - hidden);
@@ -462,17 +468,19 @@ impl<'a> Bench<'a> {
         const CROSSED: f64 = 1.0;
         let (info, layout) = (estimation.setup().model.info(), estimation.layout());
         for candidate in members.iter().map(|&member| self.candidate(member)) {
-            if candidate.brings.is_none() {
-                continue;
-            }
-            let own = self.own(candidate);
-            let size = own.iter().find(|(_, role)| *role == Role::Size);
-            let size = size.map_or(0.0, |(place, _)| values[*place].abs());
+            let spreads = match (candidate.brings, candidate.hides) {
+                (Some(_), _) => {
+                    let own = self.own(candidate);
+                    let size = own.iter().find(|(_, role)| *role == Role::Size);
+                    let size = size.map_or(0.0, |(place, _)| values[*place].abs());
+                    [CROSSED * size, size]
+                }
+                (None, Some(spreads)) => spreads,
+                (None, None) => continue,
+            };
             for run in 0..estimation.recordings().len() {
-                for (state, spread) in [
-                    (info.speeds - 1, CROSSED * size),
-                    (info.state_len() - 1, size),
-                ] {
+                let states = [info.speeds - 1, info.state_len() - 1];
+                for (state, spread) in states.into_iter().zip(spreads) {
                     values[layout.place(Unknown::Initial { run, state })?] = 0.0;
                     values[layout.place(Unknown::Spread { run, state })?] = spread;
                 }

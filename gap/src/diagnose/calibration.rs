@@ -61,6 +61,11 @@ pub(super) fn unlisted(left: f64) -> f64 {
     UNLISTED * left / (1.0 - left).max(f64::MIN_POSITIVE)
 }
 
+/// Odds that a law which is no effect causes a gap, beside effects, by the logarithm of their Bayes factor.
+pub(super) fn unlisted_alone(log_bayes_factor: f64) -> f64 {
+    UNLISTED / (1.0 - UNLISTED) * log_bayes_factor.min(MOST).exp()
+}
+
 /// Odds that there is a gap from nothing in the library where no effect is found.
 pub(super) fn unlisted_beside_nothing(rest: Rest) -> f64 {
     UNLISTED * rest.log_bayes_factor.min(MOST).exp()

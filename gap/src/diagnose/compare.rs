@@ -10,7 +10,7 @@ use appell_estimate::{Estimation, Fit, Unknown};
 use super::DiagnoseError;
 use super::bench::{Bench, LAG, WRONG};
 use super::calibration::{
-    IMMATERIAL, Rest, TIED, inexact, tempered, unlisted, unlisted_beside_an_effect,
+    IMMATERIAL, Rest, TIED, inexact, tempered, unlisted, unlisted_alone, unlisted_beside_an_effect,
     unlisted_beside_nothing,
 };
 use super::evidence::Fitted;
@@ -146,6 +146,21 @@ impl Comparison {
         let weight = odds * alike.map(|(_, probability)| probability).sum::<f64>();
         self.unknown = weight / (1.0 + weight);
         Ok(())
+    }
+
+    /// A law alone may be more probable than several effects that imitate it.
+    pub(super) fn weigh_alone(&mut self, bench: &Bench<'_>, log_evidence: f64) {
+        let best = self.best();
+        let gain = self.independent * (log_evidence - best.evidence.log());
+        let beforehand = prior(bench, effects(bench, &best.members)) - (1.0 - NO_GAP).ln();
+        let odds = unlisted_alone(gain - beforehand) * self.fits[0].1;
+        eprintln!(
+            "DBG law alone {} best {} gain {gain} before {beforehand} odds {odds} was {}",
+            log_evidence,
+            best.evidence.log(),
+            self.unknown
+        );
+        self.unknown = self.unknown.max(odds / (1.0 + odds));
     }
 
     /// What hardly shows in a simulation names no cause: `again` is the best hypothesis over windows.

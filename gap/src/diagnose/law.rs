@@ -6,6 +6,7 @@
 
 mod deviation;
 mod hidden_mass;
+mod hysteresis;
 mod waves;
 
 use appell_estimate::{Along, Estimation};
@@ -18,15 +19,17 @@ use super::evidence::Fitted;
 use super::held_out::HeldOut;
 use super::report::Law;
 use super::scales;
-use super::unknown::{Dependence, Leftover, On, Series, Unnamed, leftover, wave_scores};
-use crate::effects::{Candidate, EffectModel, HiddenMass};
+use super::unknown::{
+    Dependence, Leftover, On, Series, Unnamed, leftover, remembered, wave_scores,
+};
+use crate::effects::{Candidate, EffectModel, Memory};
 use appell_recordings::DataSet;
 
 /// The equations with the law.
-pub(super) struct Lawful<'c> {
+pub(super) struct Lawful {
     effects: EffectModel,
     /// What it stands beside.
-    base: &'c Fitted,
+    base: Fitted,
     unnamed: Unnamed,
     kind: Kind,
     /// Where the search for its numbers begins.
@@ -37,8 +40,8 @@ pub(super) struct Lawful<'c> {
 enum Kind {
     /// Waves of a variable.
     Waves(Series),
-    /// A mass behind this coordinate.
-    HiddenMass(String),
+    /// A force that depends on what was before.
+    Memory(Memory),
 }
 
 /// The law after its fit.
@@ -50,16 +53,72 @@ pub(super) struct FittedLaw<'l> {
     /// The runs that were held out, as its equations take them.
     pub(super) runs: HeldOut,
     pub(super) law: Law,
+    /// Logarithm of its evidence: that of the first estimate, with what the fit gains beyond it.
+    pub(super) log_evidence: f64,
 }
 
-/// The equations with what is left, where it is a force that depends on something the model knows.
-pub(super) fn lawful<'c>(
+impl FittedLaw<'_> {
+    /// Whether it stands beside no effect.
+    pub(super) fn is_alone(&self) -> bool {
+        self.base.members.is_empty()
+    }
+}
+
+/// The equations with what is left, where it is a force that depends on something the model knows: beside the best
+/// hypothesis, and alone where that may explain nothing.
+pub(super) fn lawful(
     bench: &Bench<'_>,
-    comparison: &'c Comparison,
-) -> Result<Option<Lawful<'c>>, DiagnoseError> {
-    let Some((base, left)) = base(bench, comparison)? else {
-        return Ok(None);
+    comparison: &Comparison,
+) -> Result<Vec<Lawful>, DiagnoseError> {
+    let (best, nominal) = (comparison.best(), comparison.nominal());
+    let of_best = comparison.left.clone().filter(|left| {
+        let log = comparison.independent * left.log_bayes_factor;
+        let matters = log > TIED && comparison.rest_share(bench) > IMMATERIAL;
+        matters || log > 0.0 && comparison.leads_unknown()
+    });
+    let alone = match best.members.len() {
+        0 => None,
+        _ if of_best.is_some() && comparison.unknown >= 0.5 => leftover(bench, nominal)?,
+        1 => None,
+        _ => remembered(bench, nominal)?.filter(|left| left.log_bayes_factor > TIED),
     };
+    eprintln!(
+        "DBG best {:?} of_best {:?} unknown {} alone {:?} rem {:?}",
+        best.members,
+        of_best,
+        comparison.unknown,
+        alone,
+        remembered(bench, nominal)?
+    );
+    let mut all = Vec::new();
+    for (base, left) in [(best, of_best), (nominal, alone)] {
+        if let Some(left) = left {
+            all.extend(beside(bench, base, left)?);
+        }
+    }
+    Ok(all)
+}
+
+/// The law that the recordings speak for most, fitted; why it could not be where none was.
+pub(super) fn measured<'l>(
+    laws: &'l [Lawful],
+    main: &Bench<'_>,
+    test: &DataSet,
+) -> Option<Result<FittedLaw<'l>, DiagnoseError>> {
+    let evidence = |law: &Result<FittedLaw<'_>, DiagnoseError>| {
+        law.as_ref()
+            .map_or(f64::NEG_INFINITY, |law| law.log_evidence)
+    };
+    let fitted = laws.iter().map(|law| law.fitted(main, test));
+    fitted.max_by(|a, b| evidence(a).total_cmp(&evidence(b)))
+}
+
+/// The equations with what a hypothesis leaves.
+fn beside(
+    bench: &Bench<'_>,
+    base: &Fitted,
+    left: Leftover,
+) -> Result<Option<Lawful>, DiagnoseError> {
     let first = left.first;
     let brings = |member: &usize| bench.candidate(*member).brings.is_some();
     if first.along != Along::Disturbances || base.members.iter().any(brings) {
@@ -67,7 +126,7 @@ pub(super) fn lawful<'c>(
     }
     let found = match &first.on {
         On::Variable(wave) => of_variable(bench, base, &first, *wave)?,
-        On::HiddenMass(hidden) => of_mass(bench, hidden),
+        On::Memory(memory) => of_memory(bench, memory),
     };
     let Some((candidate, kind, start)) = found else {
         return Ok(None);
@@ -76,7 +135,7 @@ pub(super) fn lawful<'c>(
     let candidates: Vec<Candidate> = members.cloned().chain([candidate]).collect();
     Ok(Some(Lawful {
         effects: bench.effects.again(candidates)?,
-        base,
+        base: base.clone(),
         unnamed: first,
         kind,
         start,
@@ -115,57 +174,22 @@ fn dependence<'b>(bench: &'b Bench<'_>, law: &Unnamed) -> Option<Dependence<'b>>
     all.find(|one| one.name(bench) == law.variable)
 }
 
-/// A mass behind a coordinate.
-fn of_mass(bench: &Bench<'_>, hidden: &HiddenMass) -> Found {
+/// A force that depends on what was before.
+fn of_memory(bench: &Bench<'_>, memory: &Memory) -> Found {
     let scales = scales::of(&bench.set);
-    let candidate = Candidate::hidden_mass(&bench.effects.mechanism, &scales, hidden)?;
+    let candidate = Candidate::remembering(&bench.effects.mechanism, &scales, memory)?;
     let start = candidate.expected();
-    Some((candidate, Kind::HiddenMass(hidden.behind.clone()), start))
+    Some((candidate, Kind::Memory(memory.clone()), start))
 }
 
-/// Beside which hypothesis the recordings speak most for a law, where there is one that matters.
-fn base<'c>(
-    bench: &Bench<'_>,
-    comparison: &'c Comparison,
-) -> Result<Option<(&'c Fitted, Leftover)>, DiagnoseError> {
-    let of_best = comparison.left.clone().filter(|left| {
-        let log = comparison.independent * left.log_bayes_factor;
-        let matters = log > TIED && comparison.rest_share(bench) > IMMATERIAL;
-        matters || log > 0.0 && comparison.leads_unknown()
-    });
-    let (best, nominal) = (comparison.best(), comparison.nominal());
-    let Some(of_best) = of_best else {
-        return Ok(None);
-    };
-    if best.members.is_empty() || comparison.unknown < 0.5 {
-        return Ok(Some((best, of_best)));
-    }
-    // What explains nothing need not stand beside the law.
-    let Some(of_nominal) = leftover(bench, nominal)? else {
-        return Ok(Some((best, of_best)));
-    };
-    let evidence = |fitted: &Fitted, left: &Leftover| fitted.evidence.log() + left.log_bayes_factor;
-    Ok(Some(
-        if evidence(nominal, &of_nominal) > evidence(best, &of_best) {
-            (nominal, of_nominal)
-        } else {
-            (best, of_best)
-        },
-    ))
-}
-
-impl Lawful<'_> {
+impl Lawful {
     /// Fits the sizes beside all that is free under the hypothesis.
-    pub(super) fn fitted(
-        &self,
-        main: &Bench<'_>,
-        test: &DataSet,
-    ) -> Result<FittedLaw<'_>, DiagnoseError> {
+    fn fitted(&self, main: &Bench<'_>, test: &DataSet) -> Result<FittedLaw<'_>, DiagnoseError> {
         let bench = main.beside(&self.effects)?;
         let members: Vec<usize> = (0..self.effects.candidates.len()).collect();
         let setup = bench.setup(&members);
         let estimation = Estimation::new(&setup, &bench.recordings)?;
-        let mut start = main.carried_by_name(self.base, &estimation);
+        let mut start = main.carried_by_name(&self.base, &estimation);
         let law = self.effects.candidates.iter().find(|one| one.kind == "law");
         let places: Vec<usize> = law.map_or_else(Vec::new, |law| {
             bench.own(law).iter().map(|(place, _)| *place).collect()
@@ -173,21 +197,41 @@ impl Lawful<'_> {
         for (&place, &size) in places.iter().zip(&self.start) {
             start[place] = size;
         }
+        bench.hide(&members, &estimation, &mut start)?;
         let fitted = bench.fit(&members, &estimation, &start)?;
         drop(estimation);
         let told = (&fitted, places.as_slice());
-        let law = match (&self.kind, dependence(main, &self.unnamed)) {
-            (Kind::HiddenMass(behind), _) => hidden_mass::told(main, &self.unnamed, behind, told),
-            (Kind::Waves(series), Some(dependence)) => {
-                waves::told((main, self.base), &self.unnamed, dependence, series, told)?
+        let law = match &self.kind {
+            Kind::Memory(Memory::HiddenMass(hidden)) => {
+                hidden_mass::told(main, &self.unnamed, &hidden.behind, told)
             }
-            (Kind::Waves(_), None) => return Err(DiagnoseError::NothingToFit),
+            Kind::Memory(Memory::Hysteresis(hysteresis)) => {
+                hysteresis::told(main, &self.unnamed, &hysteresis.along, told)
+            }
+            Kind::Waves(series) => {
+                let dependence = dependence(main, &self.unnamed);
+                let dependence = dependence.ok_or(DiagnoseError::NothingToFit)?;
+                waves::told((main, &self.base), &self.unnamed, dependence, series, told)?
+            }
         };
+        let gain = fitted.fit.log_posterior - self.base.fit.log_posterior;
+        let first = self.unnamed.log_bayes_factor - self.unnamed.gain;
+        eprintln!(
+            "DBG law base {:?} evidence {} first {first} gain {gain} values {:?} opt {}",
+            self.base.members,
+            self.base.evidence.log(),
+            places
+                .iter()
+                .map(|&p| fitted.fit.values[p])
+                .collect::<Vec<_>>(),
+            fitted.fit.is_optimum()
+        );
         Ok(FittedLaw {
+            log_evidence: self.base.evidence.log() + first + gain,
             runs: HeldOut::of(test, &bench)?,
             bench,
             fitted,
-            base: self.base,
+            base: &self.base,
             law,
         })
     }

@@ -7,8 +7,10 @@
 //! and there are levels for these. What walks in time has to walk alike in every run.
 
 mod dependence;
+mod hysteresis;
 mod memory;
 mod series;
+mod swing;
 
 use appell_estimate::{Along, Disturbance, Estimation, Shapes};
 use appell_runtime::model::At;
@@ -19,10 +21,10 @@ use super::calibration::TIED;
 use super::evidence::Fitted;
 use super::evidence::log_sum;
 use super::screen::{Projected, moving};
-use crate::effects::HiddenMass;
+use crate::effects::Memory;
 
 pub(super) use dependence::Dependence;
-use memory::HiddenMasses;
+use memory::Memories;
 pub(super) use series::{LawGain, Series, TermScores};
 
 /// Part of its gain that a law has to repeat on runs that it was not found in.
@@ -51,8 +53,8 @@ pub(super) struct Unnamed {
 pub(super) enum On {
     /// On a variable; with the number of its wave, if that is one alone.
     Variable(Option<usize>),
-    /// On what was before: a mass behind a coordinate, with a first estimate of its numbers.
-    HiddenMass(HiddenMass),
+    /// On what was before, with a first estimate of its numbers.
+    Memory(Memory),
 }
 
 /// All of them together.
@@ -72,7 +74,7 @@ pub(super) fn leftover(
 ) -> Result<Option<Leftover>, DiagnoseError> {
     let setup = bench.setup(&fitted.members);
     let estimation = Estimation::new(&setup, &bench.recordings)?;
-    let (mut smooth, mut single) = (Family::default(), Family::default());
+    let [mut smooth, mut single] = [const { Family::new() }; 2];
     for dependence in Dependence::all(bench) {
         for along in [Along::Disturbances, Along::Channels] {
             if along == Along::Channels && !dependence.is_plain() {
@@ -92,41 +94,57 @@ pub(super) fn leftover(
             }
         }
     }
-    with_memory((bench, &estimation), fitted, &mut single)?;
-    Ok(joined(smooth, single))
+    let memory = with_memory((bench, &estimation), fitted)?;
+    Ok(joined([smooth, single, memory]))
 }
 
-/// Forces of masses that swing by themselves.
+/// The same of forces that depend on what was before: they have few numbers, as effects do, where a law of a
+/// variable may be any function.
+pub(super) fn remembered(
+    bench: &Bench<'_>,
+    fitted: &Fitted,
+) -> Result<Option<Leftover>, DiagnoseError> {
+    let setup = bench.setup(&fitted.members);
+    let estimation = Estimation::new(&setup, &bench.recordings)?;
+    let memory = with_memory((bench, &estimation), fitted)?;
+    Ok(joined([Family::new(), Family::new(), memory]))
+}
+
+/// Forces that depend on what was before.
 fn with_memory(
     (bench, estimation): (&Bench<'_>, &Estimation<'_>),
     fitted: &Fitted,
-    family: &mut Family,
-) -> Result<(), DiagnoseError> {
-    for masses in HiddenMasses::all(bench) {
-        let write = |run: usize, at: At<'_>, values: &mut [f64]| masses.at(run, at, values);
+) -> Result<Family, DiagnoseError> {
+    let mut family = Family::new();
+    for memories in Memories::all(bench) {
+        let write = |run: usize, at: At<'_>, values: &mut [f64]| memories.at(run, at, values);
         let shapes = Shapes {
             along: Along::Disturbances,
-            count: masses.count(),
+            count: memories.count(),
             values: &write,
         };
         for (place, scores) in term_scores((bench, estimation), fitted, shapes)? {
-            let count = masses.frequencies.len();
-            let laws: Vec<Option<LawGain>> = (0..count).map(|i| scores.single(i)).collect();
+            let laws: Vec<Option<LawGain>> = (0..memories.len())
+                .map(|number| scores.of(&memories.terms(number)))
+                .collect();
             let gain = |law: &Option<LawGain>| law.as_ref().map_or(0.0, |law| law.gain);
-            let best = HiddenMasses::best(&laws.iter().map(gain).collect::<Vec<_>>());
+            let best = Memories::best(&laws.iter().map(gain).collect::<Vec<_>>());
             for (number, law) in laws.into_iter().enumerate() {
-                let series = || scores.series(Some(number));
                 let unnamed = |law| {
-                    // The mass pulls back what pulls it.
-                    let size = series().map_or(0.0, |series| -series.terms[0].1[0]);
-                    let on = On::HiddenMass(masses.hidden(number, size));
-                    unnamed((on, masses.name(number)), (Along::Disturbances, place), law)
+                    let term = scores.sizes(&memories.terms(number));
+                    let term = term.map_or(0.0, |sizes| sizes[0]);
+                    let on = On::Memory(memories.first(number, term));
+                    unnamed(
+                        (on, memories.name(number)),
+                        (Along::Disturbances, place),
+                        law,
+                    )
                 };
                 family.add(law.filter(|_| best == Some(number)).map(unnamed));
             }
         }
     }
-    Ok(())
+    Ok(family)
 }
 
 /// A law of a dependence at a place.
@@ -192,13 +210,19 @@ pub(super) fn term_scores(
 }
 
 /// Laws of one kind.
-#[derive(Default)]
 struct Family {
     tried: usize,
     found: Vec<Unnamed>,
 }
 
 impl Family {
+    const fn new() -> Self {
+        Self {
+            tried: 0,
+            found: Vec::new(),
+        }
+    }
+
     fn add(&mut self, unnamed: Option<Unnamed>) {
         self.tried += 1;
         let generalises = |one: &Unnamed| one.cross_validated > REPEATED * one.gain;
@@ -206,15 +230,14 @@ impl Family {
     }
 }
 
-/// Both kinds are as probable beforehand, and so are the laws of a kind.
-fn joined(smooth: Family, single: Family) -> Option<Leftover> {
-    let weight = |family: &Family| -((2 * family.tried.max(1)) as f64).ln();
-    let weights = [weight(&smooth), weight(&single)];
-    let mut all: Vec<(f64, Unnamed)> = Vec::new();
-    for (family, weight) in [smooth, single].into_iter().zip(weights) {
+/// All kinds are as probable beforehand, and so are the laws of a kind.
+fn joined<const KINDS: usize>(families: [Family; KINDS]) -> Option<Leftover> {
+    let weighed = families.into_iter().flat_map(|family| {
+        let weight = -((KINDS * family.tried.max(1)) as f64).ln();
         let found = family.found.into_iter();
-        all.extend(found.map(|one| (one.log_bayes_factor + weight, one)));
-    }
+        found.map(move |one| (one.log_bayes_factor + weight, one))
+    });
+    let all: Vec<(f64, Unnamed)> = weighed.collect();
     let log = log_sum(all.iter().map(|(log, _)| *log));
     let first = all.into_iter().max_by(|a, b| a.0.total_cmp(&b.0))?;
     Some(Leftover {
@@ -232,7 +255,7 @@ pub(super) fn hints(bench: &Bench<'_>, fitted: &Fitted) -> Result<Vec<Unnamed>, 
     let mut found = Vec::new();
     let mut tried = 0;
     for dependence in bench.unmodelled.iter().map(Dependence::unmodelled) {
-        let mut family = Family::default();
+        let mut family = Family::new();
         let scores = wave_scores((bench, &estimation), fitted, dependence, along)?;
         for (place, wave_scores) in scores {
             let law = wave_scores.smooth();

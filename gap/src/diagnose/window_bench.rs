@@ -40,6 +40,7 @@ impl Bench<'_> {
             Ok(())
         };
         let mut bench = Self::of(windows, steps.effects, quiet)?;
+        bench.whole.clone_from(&steps.whole);
         bench.told = 2.0 / TOLERANCE * bench.effects.info().speeds as f64;
         let values = bench.recordings.iter().map(|run| {
             let rows = 0..run.times().len();

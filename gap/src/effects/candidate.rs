@@ -65,8 +65,9 @@ pub struct Candidate {
     /// The pseudo-velocity beside which it brings a coordinate of its own, if it brings any. That one and
     /// its rate are the last ones among the coordinates and the rates of a model that it alone has.
     pub(crate) brings: Option<usize>,
-    /// Whether every model with it has a coordinate more, the last one, that nothing disturbs.
-    pub(crate) hides: bool,
+    /// Every model with it has a coordinate more, the last one, that nothing disturbs and nobody sees: standard
+    /// deviations with which its rate and itself begin.
+    pub(crate) hides: Option<[f64; 2]>,
     /// Additions to inputs: name and expression.
     pub(crate) added: Vec<(String, String)>,
     /// Its file, for effects of users.
@@ -118,7 +119,7 @@ impl Candidate {
             centre: None,
             items: document.to_string(),
             brings: None,
-            hides: false,
+            hides: None,
             added: Vec::new(),
             source: None,
         }
@@ -282,7 +283,7 @@ impl Candidate {
                 .map(|(_, name)| name.clone()),
             items: document.to_string(),
             brings,
-            hides: false,
+            hides: None,
             added,
             source: effect.file.is_some().then_some(source),
         })

@@ -3,21 +3,21 @@
 
 use appell_spec::Mechanism;
 
-use super::candidate::{Acts, Candidate, Part, filled, identifier, unused};
-use super::effect::Family;
+use super::candidate::{Candidate, filled};
+use super::memory::{Known, Stem};
 use super::site::{Scales, SiteKind, Sites, number};
 
-/// Where it is, and its numbers, in SI, each with what is known of it beforehand: mean and standard deviation.
+/// Where it is, and its numbers, in SI.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct HiddenMass {
     /// The coordinate.
     pub(crate) behind: String,
     /// Mass, or moment of inertia.
-    pub(crate) mass: [f64; 2],
+    pub(crate) mass: Known,
     /// Rate at which it swings, without damping.
-    pub(crate) rate: [f64; 2],
+    pub(crate) rate: Known,
     /// Damping ratio.
-    pub(crate) damping: [f64; 2],
+    pub(crate) damping: Known,
 }
 
 /// Part of a number below which there is no such mass.
@@ -60,17 +60,10 @@ const TURNING: &str = r#"
 "{law}_at"    = { frame = "{law}_at", centre = "O", mass = 0, inertia = { in = "{law}_at", diagonal = ["{law}_mass", "{law}_mass", "{law}_mass"] }, taken_away = true, about = "the same, as counted by the spec" }
 "#;
 
-impl Candidate {
-    /// A hidden mass behind a coordinate; nothing where it is no mass, or the coordinate moves nothing by itself.
-    pub(crate) fn hidden_mass(
-        mechanism: &Mechanism,
-        scales: &Scales,
-        hidden: &HiddenMass,
-    ) -> Option<Self> {
-        if hidden.mass[0] <= 0.0 || !hidden.mass[0].is_finite() {
-            return None;
-        }
-        let coordinate = hidden.behind.as_str();
+impl HiddenMass {
+    /// The law; nothing where it is no mass, or the coordinate moves nothing by itself.
+    pub(super) fn candidate(&self, mechanism: &Mechanism, scales: &Scales) -> Option<Candidate> {
+        let coordinate = self.behind.as_str();
         let sites = Sites::new(mechanism, scales);
         let kinds = [
             (SiteKind::Slider, SLIDING, "m", "kg"),
@@ -81,8 +74,7 @@ impl Candidate {
             let site = sites.find(|site| site.name == coordinate)?;
             Some((site, text, m, kg))
         })?;
-        let stem = unused(format!("law_{}", identifier(coordinate)), mechanism);
-        let [mass, rate, damping] = [hidden.mass, hidden.rate, hidden.damping].map(|own| own[0]);
+        let [mass, rate, damping] = [self.mass, self.rate, self.damping].map(|own| own[0]);
         let values = [
             ("mass", mass),
             ("least_mass", LEAST * mass),
@@ -91,35 +83,20 @@ impl Candidate {
             ("damping", damping),
         ];
         let values = values.map(|(word, value)| (word, number(value)));
-        let mut words = vec![
-            ("law", stem.as_str()),
-            ("site", coordinate),
-            ("m", m),
-            ("kg", kg),
-        ];
+        let stem = Stem::of(coordinate, mechanism);
+        let mut words = stem.words();
+        words.extend([("m", m), ("kg", kg)]);
         words.extend(site.words.iter().map(|(word, text)| (*word, text.as_str())));
         words.extend(values.iter().map(|(word, text)| (*word, text.as_str())));
+        let items = filled(&format!("{HELD}{text}"), &words);
         let known = [
-            ("mass", hidden.mass),
-            ("rate", hidden.rate),
-            ("damping", hidden.damping),
+            ("mass", self.mass),
+            ("rate", self.rate),
+            ("damping", self.damping),
         ];
-        let parameters = known.map(|(name, known)| (format!("{stem}_{name}"), Part::Term(known)));
-        Some(Self {
-            kind: "law".to_owned(),
-            site: coordinate.to_owned(),
-            family: Family::Force,
-            about: format!("a mass that swings behind {coordinate}"),
-            is_component: false,
-            acts: Acts::Items,
-            parameters: parameters.to_vec(),
-            centre: None,
-            items: filled(&format!("{HELD}{text}"), &words),
-            brings: None,
-            hides: true,
-            added: Vec::new(),
-            source: None,
-            stem,
-        })
+        let about = format!("a mass that swings behind {coordinate}");
+        // The mass may be left behind, or swing on, by what the coordinate moves in a radian of its swing.
+        let typical = scales.rates[site.index];
+        Some(stem.candidate(about, items, &known, [typical, typical / rate]))
     }
 }

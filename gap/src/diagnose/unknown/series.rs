@@ -87,10 +87,7 @@ impl TermScores {
     /// The waves that make most of a smooth law, or a given one, and the variance of their sizes beforehand.
     pub(in super::super) fn series(&self, wave: Option<usize>) -> Option<Series> {
         if let Some(wave) = wave {
-            let square = |i: usize, j: usize| self.squares[(2 * wave + i, 2 * wave + j)];
-            let squares = DMatrix::from_fn(2, 2, square);
-            let scores = self.scores.rows(2 * wave, 2).into_owned();
-            let sizes = solved(&squares, &scores, FLOOR * squares.diagonal().max())?;
+            let sizes = self.sizes(&[2 * wave, 2 * wave + 1])?;
             let variance = sizes.norm_squared();
             return Some(Series {
                 terms: vec![(wave, [sizes[0], sizes[1]], variance.sqrt())],
@@ -143,6 +140,22 @@ impl TermScores {
 
     /// Some terms alone, with sizes that may be any.
     pub(in super::super) fn of(&self, terms: &[usize]) -> Option<LawGain> {
+        let own = self.part(terms);
+        let (gain, cross_validated) = own.gains(own.floor()?)?;
+        Some(LawGain {
+            gain,
+            cross_validated,
+            log_bayes_factor: gain - terms.len() as f64 * occam(gain),
+        })
+    }
+
+    /// Their sizes.
+    pub(super) fn sizes(&self, terms: &[usize]) -> Option<DVector<f64>> {
+        let own = self.part(terms);
+        solved(&own.squares, &own.scores, own.floor()?)
+    }
+
+    fn part(&self, terms: &[usize]) -> Self {
         let part = |squares: &DMatrix<f64>, scores: &DVector<f64>| {
             let square = |i: usize, j: usize| squares[(terms[i], terms[j])];
             (
@@ -152,23 +165,19 @@ impl TermScores {
         };
         let (squares, scores) = part(&self.squares, &self.scores);
         let runs = self.runs.iter();
-        let own = Self {
+        Self {
             runs: runs
                 .map(|(squares, scores)| part(squares, scores))
                 .collect(),
             squares,
             scores,
-        };
-        let size = own.squares.diagonal().max();
-        if size.is_nan() || size <= 0.0 {
-            return None;
         }
-        let (gain, cross_validated) = own.gains(FLOOR * size)?;
-        Some(LawGain {
-            gain,
-            cross_validated,
-            log_bayes_factor: gain - terms.len() as f64 * occam(gain),
-        })
+    }
+
+    /// What is added to the squares; nothing where they are nothing.
+    fn floor(&self) -> Option<f64> {
+        let size = self.squares.diagonal().max();
+        (size > 0.0).then_some(FLOOR * size)
     }
 
     fn scaled(&self, by: &DVector<f64>) -> Self {

@@ -1,0 +1,97 @@
+//! A mass that hangs on a coordinate by a spring and a damper, and swings by itself.
+
+use std::f64::consts::TAU;
+
+use super::memory::{Span, Trace};
+use crate::effects::{HiddenMass, Memory};
+
+/// Frequencies of a hidden mass.
+const FREQUENCIES: usize = 12;
+/// Swings in a run at least, and rows in a swing at least.
+const SWINGS: f64 = 2.0;
+const ROWS: f64 = 25.0;
+/// Damping ratio of a hidden mass.
+const DAMPING: f64 = 0.1;
+
+/// Its frequencies in 1/s, from some swings in a run to some rows in a swing, the lowest first. A disturbance with
+/// a colour looks like a swing at the end of that range; a mass has a frequency within.
+pub(super) fn frequencies(traces: &[Trace]) -> Vec<f64> {
+    let longest = traces.iter().map(Trace::duration).fold(0.0, f64::max);
+    let step = traces.iter().map(Trace::step).fold(0.0, f64::max);
+    Span(TAU * SWINGS / longest, TAU / (ROWS * step)).places(FREQUENCIES)
+}
+
+/// One of them in words.
+pub(super) fn name(coordinate: &str, frequency: f64) -> String {
+    let hertz = frequency / TAU;
+    format!("a swing of {coordinate} at {hertz:.2} Hz that the model lacks")
+}
+
+/// What is known beforehand of one of them, from a first estimate of its size.
+pub(super) fn first(coordinate: &str, [rate, apart]: [f64; 2], size: f64) -> Memory {
+    Memory::HiddenMass(HiddenMass {
+        behind: coordinate.to_owned(),
+        mass: [size, size],
+        rate: [rate, apart],
+        damping: [DAMPING, DAMPING],
+    })
+}
+
+/// Stretch of the spring, and its rate by the frequency, both as accelerations of the mass.
+pub(super) fn terms(trace: &Trace, frequency: f64) -> [Vec<f64>; 2] {
+    let Trace { times, values } = trace;
+    let (mut at, mut rate) = (values[0], 0.0);
+    let mut stretches = Vec::with_capacity(times.len());
+    let mut rates = Vec::with_capacity(times.len());
+    for row in 0..times.len() {
+        let next = (row + 1).min(times.len() - 1);
+        let step = times[next] - times[row];
+        let slope = if step > 0.0 {
+            (values[next] - values[row]) / step
+        } else {
+            0.0
+        };
+        stretches.push(frequency * frequency * (values[row] - at));
+        rates.push(frequency * (slope - rate));
+        // A count of small steps.
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+        let parts = ((10.0 * step * frequency).ceil() as usize).max(1);
+        let part = step / parts as f64;
+        // Half a push, a drift, half a push (Verlet): a lag of half a step would be a force.
+        for number in 0..parts {
+            for end in [0, 1] {
+                let value = values[row] + slope * (number + end) as f64 * part;
+                let pull = frequency * frequency * (value - at)
+                    + 2.0 * DAMPING * frequency * (slope - rate);
+                rate += 0.5 * part * pull;
+                if end == 0 {
+                    at += part * rate;
+                }
+            }
+        }
+    }
+    [stretches, rates]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_hidden_mass_follows_slow_motions_and_swings_by_itself() {
+        let times: Vec<f64> = (0..2000).map(|row| f64::from(row) * 0.001).collect();
+        let slow = Trace {
+            values: times.iter().map(|t| 0.5 * t * t).collect(),
+            times: times.clone(),
+        };
+        let [stretch, _] = terms(&slow, 60.0);
+        // Its acceleration is that of the coordinate once it has settled.
+        assert!((stretch[1900] - 1.0).abs() < 0.05, "{}", stretch[1900]);
+        let still = Trace {
+            values: vec![0.3; 2000],
+            times,
+        };
+        let [stretch, rates] = terms(&still, 60.0);
+        assert!(stretch.iter().chain(&rates).all(|value| value.abs() < 1e-9));
+    }
+}

@@ -154,12 +154,6 @@ impl Comparison {
         let gain = self.independent * (log_evidence - best.evidence.log());
         let beforehand = prior(bench, effects(bench, &best.members)) - (1.0 - NO_GAP).ln();
         let odds = unlisted_alone(gain - beforehand) * self.fits[0].1;
-        eprintln!(
-            "DBG law alone {} best {} gain {gain} before {beforehand} odds {odds} was {}",
-            log_evidence,
-            best.evidence.log(),
-            self.unknown
-        );
         self.unknown = self.unknown.max(odds / (1.0 + odds));
     }
 

@@ -82,14 +82,6 @@ pub(super) fn lawful(
         1 => None,
         _ => remembered(bench, nominal)?.filter(|left| left.log_bayes_factor > TIED),
     };
-    eprintln!(
-        "DBG best {:?} of_best {:?} unknown {} alone {:?} rem {:?}",
-        best.members,
-        of_best,
-        comparison.unknown,
-        alone,
-        remembered(bench, nominal)?
-    );
     let mut all = Vec::new();
     for (base, left) in [(best, of_best), (nominal, alone)] {
         if let Some(left) = left {
@@ -216,16 +208,6 @@ impl Lawful {
         };
         let gain = fitted.fit.log_posterior - self.base.fit.log_posterior;
         let first = self.unnamed.log_bayes_factor - self.unnamed.gain;
-        eprintln!(
-            "DBG law base {:?} evidence {} first {first} gain {gain} values {:?} opt {}",
-            self.base.members,
-            self.base.evidence.log(),
-            places
-                .iter()
-                .map(|&p| fitted.fit.values[p])
-                .collect::<Vec<_>>(),
-            fitted.fit.is_optimum()
-        );
         Ok(FittedLaw {
             log_evidence: self.base.evidence.log() + first + gain,
             runs: HeldOut::of(test, &bench)?,

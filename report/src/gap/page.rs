@@ -274,7 +274,8 @@ fn which(report: &Report) -> Markup {
                 " apart."
             }
         }
-        @if let Some(left) = report.left.as_ref().filter(|left| left.is_there()) {
+        // A law that was measured has a section of its own.
+        @if let Some(left) = report.left.as_ref().filter(|left| left.is_there() && report.law.is_none()) {
             p {
                 b { "Left." } " In addition to the first hypothesis, the recordings support "
                 (left.about) ", which accounts for "

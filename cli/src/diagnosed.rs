@@ -7,7 +7,8 @@ use appell::fleet::Rig;
 use appell_gap::diagnose::{Ahead, Experiment, GapVerdict, Hypothesis, Report};
 
 use appell_report::gap::{
-    before_sentence, divided, doubts, hinted, joined, law_sentence, left_out, sentence, short,
+    before_sentence, divided, doubts, hinted, joined, law_sentence, left_out, percent, sentence,
+    short,
 };
 use appell_report::text::{number, with_unit};
 
@@ -194,11 +195,11 @@ fn how_far(report: &Report) -> String {
     }
     let _ = writeln!(
         text,
-        "            closed {:.1} % [{:.1}, {:.1}], against the re-fitted model {:.1} %",
-        100.0 * far.closed,
-        100.0 * far.closed_ci95[0],
-        100.0 * far.closed_ci95[1],
-        100.0 * far.closed_vs_refitted,
+        "            closed {} [{}, {}], against the re-fitted model {}",
+        percent(far.closed),
+        percent(far.closed_ci95[0]),
+        percent(far.closed_ci95[1]),
+        percent(far.closed_vs_refitted),
     );
     if let Some(parts) = divided(report) {
         let _ = writeln!(text, "  budget    {parts}");

@@ -122,13 +122,8 @@ fn diagnosed(
     stage("measuring what is left");
     let test = set.only(Part::Test);
     let laws = law::lawful(&bench, &comparison)?;
-    let measured = law::measured(&laws, &bench, &test);
-    if let Some(Ok(law)) = &measured
-        && law.is_alone()
-        && !comparison.best().members.is_empty()
-    {
-        comparison.weigh_alone(&bench, law.log_evidence);
-    }
+    let fitted_laws = law::fitted(&laws, &bench, &test);
+    let measured = law::measured(fitted_laws, &mut comparison, &bench);
     stage("fitting the alternatives");
     let alternatives = Alternative::all(&options.alternatives, &fitted)?;
     let (rivals, mut lost) = Rival::all(&alternatives, &bench)?;

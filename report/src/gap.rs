@@ -15,6 +15,7 @@ mod words;
 pub use budget::divided;
 pub use doubt::doubts;
 pub use law::law_sentence;
+pub use numbers::percent;
 pub use page::page;
 pub use words::{before_sentence, hinted, joined, left_out, sentence};
 

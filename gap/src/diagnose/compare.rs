@@ -148,13 +148,23 @@ impl Comparison {
         Ok(())
     }
 
-    /// A law alone may be more probable than several effects that imitate it.
-    pub(super) fn weigh_alone(&mut self, bench: &Bench<'_>, log_evidence: f64) {
+    /// A law alone may be more probable than several effects that imitate it: whether it is, beyond doubt.
+    pub(super) fn weigh_alone(
+        &mut self,
+        bench: &Bench<'_>,
+        log_evidence: f64,
+        law: &Leftover,
+    ) -> bool {
         let best = self.best();
         let gain = self.independent * (log_evidence - best.evidence.log());
         let beforehand = prior(bench, effects(bench, &best.members)) - (1.0 - NO_GAP).ln();
         let odds = unlisted_alone(gain - beforehand) * self.fits[0].1;
+        if odds.ln() < TIED {
+            return false;
+        }
         self.unknown = self.unknown.max(odds / (1.0 + odds));
+        self.left = Some(law.clone());
+        true
     }
 
     /// What hardly shows in a simulation names no cause: `again` is the best hypothesis over windows.

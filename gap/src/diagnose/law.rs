@@ -30,7 +30,7 @@ pub(super) struct Lawful {
     effects: EffectModel,
     /// What it stands beside.
     base: Fitted,
-    unnamed: Unnamed,
+    left: Leftover,
     kind: Kind,
     /// Where the search for its numbers begins.
     start: Vec<f64>,
@@ -53,15 +53,10 @@ pub(super) struct FittedLaw<'l> {
     /// The runs that were held out, as its equations take them.
     pub(super) runs: HeldOut,
     pub(super) law: Law,
+    /// The first estimate of it.
+    left: &'l Leftover,
     /// Logarithm of its evidence: that of the first estimate, with what the fit gains beyond it.
-    pub(super) log_evidence: f64,
-}
-
-impl FittedLaw<'_> {
-    /// Whether it stands beside no effect.
-    pub(super) fn is_alone(&self) -> bool {
-        self.base.members.is_empty()
-    }
+    log_evidence: f64,
 }
 
 /// The equations with what is left, where it is a force that depends on something the model knows: beside the best
@@ -91,18 +86,36 @@ pub(super) fn lawful(
     Ok(all)
 }
 
-/// The law that the recordings speak for most, fitted; why it could not be where none was.
-pub(super) fn measured<'l>(
+/// Fits them, one beside what each stands beside.
+pub(super) fn fitted<'l>(
     laws: &'l [Lawful],
     main: &Bench<'_>,
     test: &DataSet,
+) -> Vec<Result<FittedLaw<'l>, DiagnoseError>> {
+    laws.iter().map(|law| law.fitted(main, test)).collect()
+}
+
+/// The one that the recordings speak for most; why it could not be fitted where none was.
+pub(super) fn measured<'l>(
+    fitted: Vec<Result<FittedLaw<'l>, DiagnoseError>>,
+    comparison: &mut Comparison,
+    bench: &Bench<'_>,
 ) -> Option<Result<FittedLaw<'l>, DiagnoseError>> {
     let evidence = |law: &Result<FittedLaw<'_>, DiagnoseError>| {
-        law.as_ref()
-            .map_or(f64::NEG_INFINITY, |law| law.log_evidence)
+        let found = law.as_ref();
+        found.map_or(f64::NEG_INFINITY, |law| law.log_evidence)
     };
-    let fitted = laws.iter().map(|law| law.fitted(main, test));
-    fitted.max_by(|a, b| evidence(a).total_cmp(&evidence(b)))
+    let mut laws = fitted;
+    laws.sort_by(|a, b| evidence(b).total_cmp(&evidence(a)));
+    let holds = |law: &Result<FittedLaw<'_>, DiagnoseError>, comparison: &mut Comparison| match law
+    {
+        Ok(law) if law.base.members.len() < comparison.best().members.len() => {
+            comparison.weigh_alone(bench, law.log_evidence, law.left)
+        }
+        _ => true,
+    };
+    let place = laws.iter().position(|law| holds(law, comparison))?;
+    Some(laws.swap_remove(place))
 }
 
 /// The equations with what a hypothesis leaves.
@@ -111,13 +124,13 @@ fn beside(
     base: &Fitted,
     left: Leftover,
 ) -> Result<Option<Lawful>, DiagnoseError> {
-    let first = left.first;
+    let first = &left.first;
     let brings = |member: &usize| bench.candidate(*member).brings.is_some();
     if first.along != Along::Disturbances || base.members.iter().any(brings) {
         return Ok(None);
     }
     let found = match &first.on {
-        On::Variable(wave) => of_variable(bench, base, &first, *wave)?,
+        On::Variable(wave) => of_variable(bench, base, first, *wave)?,
         On::Memory(memory) => of_memory(bench, memory),
     };
     let Some((candidate, kind, start)) = found else {
@@ -128,7 +141,7 @@ fn beside(
     Ok(Some(Lawful {
         effects: bench.effects.again(candidates)?,
         base: base.clone(),
-        unnamed: first,
+        left,
         kind,
         start,
     }))
@@ -195,20 +208,27 @@ impl Lawful {
         let told = (&fitted, places.as_slice());
         let law = match &self.kind {
             Kind::Memory(Memory::HiddenMass(hidden)) => {
-                hidden_mass::told(main, &self.unnamed, &hidden.behind, told)
+                hidden_mass::told(main, &self.left.first, &hidden.behind, told)
             }
             Kind::Memory(Memory::Hysteresis(hysteresis)) => {
-                hysteresis::told(main, &self.unnamed, &hysteresis.along, told)
+                hysteresis::told(main, &self.left.first, &hysteresis.along, told)
             }
             Kind::Waves(series) => {
-                let dependence = dependence(main, &self.unnamed);
+                let dependence = dependence(main, &self.left.first);
                 let dependence = dependence.ok_or(DiagnoseError::NothingToFit)?;
-                waves::told((main, &self.base), &self.unnamed, dependence, series, told)?
+                waves::told(
+                    (main, &self.base),
+                    &self.left.first,
+                    dependence,
+                    series,
+                    told,
+                )?
             }
         };
         let gain = fitted.fit.log_posterior - self.base.fit.log_posterior;
-        let first = self.unnamed.log_bayes_factor - self.unnamed.gain;
+        let first = self.left.log_bayes_factor - self.left.first.gain;
         Ok(FittedLaw {
+            left: &self.left,
             log_evidence: self.base.evidence.log() + first + gain,
             runs: HeldOut::of(test, &bench)?,
             bench,

@@ -19,13 +19,24 @@ pub(super) fn measured(value: f64, std: f64) -> String {
 }
 
 /// `97.6 %`
-pub(super) fn percent(part: f64) -> String {
+pub fn percent(part: f64) -> String {
     if part.is_nan() {
         return "an unknown part".to_owned();
     }
     // No zero with a sign.
     let thousandths = (1000.0 * part).round() + 0.0;
     format!("{:.1} %", thousandths / 10.0)
+}
+
+/// The same of what noise bounds: predictions may end below the floor that was expected.
+pub(super) fn part_of_all(part: f64) -> String {
+    /// Half of the last digit.
+    const LEAST: f64 = 5e-4;
+    match part {
+        part if part < LEAST => "nothing".to_owned(),
+        part if part > 1.0 - LEAST => "all".to_owned(),
+        part => percent(part),
+    }
 }
 
 #[cfg(test)]
@@ -43,5 +54,8 @@ mod tests {
     fn a_part_that_rounds_to_nothing_has_no_sign() {
         assert_eq!(percent(-4e-4), "0.0 %");
         assert_eq!(percent(-0.976), "-97.6 %");
+        assert_eq!(part_of_all(-0.008), "nothing");
+        assert_eq!(part_of_all(1.271), "all");
+        assert_eq!(part_of_all(0.948), "94.8 %");
     }
 }

@@ -2,7 +2,7 @@
 
 use appell_gap::diagnose::{Change, GapVerdict, Hint, Hypothesis, Report, Share};
 
-use super::numbers::percent;
+use super::numbers::{part_of_all, percent};
 
 /// The verdict in one sentence.
 pub fn sentence(report: &Report) -> String {
@@ -66,12 +66,16 @@ fn law_share(report: &Report) -> Option<String> {
         .find(|part| part.is_law() && part.is_material)?;
     Some(match refitted(budget) {
         Some(refit) => {
-            let [closed, rest] = [refit.closed, law.closed / (1.0 - refit.closed)].map(percent);
+            let (closed, rest) = (percent(refit.closed), law.closed / (1.0 - refit.closed));
+            let rest = part_of_all(rest);
             format!(
                 "; measured, it closes {rest} of what re-fitted parameters leave, which close {closed} of the gap"
             )
         }
-        None => format!("; measured, it closes {} of the gap", percent(law.closed)),
+        None => format!(
+            "; measured, it closes {} of the gap",
+            part_of_all(law.closed)
+        ),
     })
 }
 
@@ -92,6 +96,7 @@ fn shares(report: &Report) -> Option<String> {
     let refit = refitted(budget);
     let left = 1.0 - refit.map_or(0.0, |part| part.closed);
     let of = |part: &Share| percent(part.closed / left);
+    let rest = |part: &Share| part_of_all(part.closed / left);
     let about = |part: &&Share| {
         let mut found = report.found.iter();
         let found = found.find(|found| found.effect == part.name);
@@ -99,7 +104,7 @@ fn shares(report: &Report) -> Option<String> {
     };
     let names: Vec<String> = material.iter().map(about).collect();
     let (names, all) = (names.join(" and "), material.iter().chain(&others));
-    let sum = percent(all.map(|part| part.closed).sum::<f64>() / left);
+    let sum = part_of_all(all.map(|part| part.closed).sum::<f64>() / left);
     let (before, whole) = match refit {
         Some(part) => {
             let closed = percent(part.closed);
@@ -132,7 +137,7 @@ fn shares(report: &Report) -> Option<String> {
     let tail = budget.iter().filter_map(|part| {
         let is_told = part.is_law() && part.is_material;
         let law = is_told.then(|| format!("; a measured law {}", of(part)));
-        law.or_else(|| part.is_rest().then(|| format!("; {} stays", of(part))))
+        law.or_else(|| part.is_rest().then(|| format!("; {} stays", rest(part))))
     });
     text.extend(tail);
     Some(text)

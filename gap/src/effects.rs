@@ -10,6 +10,7 @@
 //! | `memory.rs` | laws with a state of their own |
 //! | `hidden_mass.rs` | a mass that swings behind a coordinate |
 //! | `hysteresis.rs` | a force that follows the way since the last turn |
+//! | `stem.rs` | names and numbers of such a law |
 //! | `drive.rs` | forces of inputs along a pseudo-velocity, and the inertia there |
 //! | `place.rs` | errors in the file of an effect, at their positions |
 //! | `model.rs` | a mechanism with many candidates, derived at once; at its nominal values the mechanism itself |
@@ -24,6 +25,7 @@ mod memory;
 mod model;
 mod place;
 mod site;
+mod stem;
 
 pub(crate) use candidate::Part;
 pub use candidate::{Acts, Candidate};

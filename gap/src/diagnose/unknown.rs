@@ -1,7 +1,8 @@
 //! What nobody has named: a force in an equation or an error of a channel, as a law of a position, a
 //! rate, an input, or a channel that was recorded beside them. A law is a sum of waves of the variable
 //! whose sizes fall off as those of a law with a step do, or one wave alone. About the best hypothesis
-//! they tell what it leaves and on what that depends.
+//! they tell what it leaves and on what that depends. Forces may also remember: a mass that swings by itself,
+//! friction that gives way before it slides.
 //!
 //! A law has to predict runs that it was not found in: what does not return with the state is a disturbance,
 //! and there are levels for these. What walks in time has to walk alike in every run.
@@ -11,6 +12,7 @@ mod hysteresis;
 mod memory;
 mod series;
 mod swing;
+mod trace;
 
 use appell_estimate::{Along, Disturbance, Estimation, Shapes};
 use appell_runtime::model::At;

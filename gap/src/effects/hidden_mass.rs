@@ -4,8 +4,8 @@
 use appell_spec::Mechanism;
 
 use super::candidate::{Candidate, filled};
-use super::memory::{Known, Stem};
 use super::site::{Scales, SiteKind, Sites, number};
+use super::stem::{Known, Stem};
 
 /// Where it is, and its numbers, in SI.
 #[derive(Debug, Clone, PartialEq)]

@@ -3,14 +3,10 @@
 
 use appell_spec::Mechanism;
 
-use super::candidate::{Acts, Candidate, Part, identifier, unused};
-use super::effect::Family;
+use super::candidate::Candidate;
 use super::hidden_mass::HiddenMass;
 use super::hysteresis::Hysteresis;
 use super::site::Scales;
-
-/// What is known of a number beforehand: mean and standard deviation.
-pub(crate) type Known = [f64; 2];
 
 /// One of them.
 #[derive(Debug, Clone, PartialEq)]
@@ -37,52 +33,6 @@ impl Candidate {
         match memory {
             Memory::HiddenMass(hidden) => hidden.candidate(mechanism, scales),
             Memory::Hysteresis(hysteresis) => hysteresis.candidate(mechanism, scales),
-        }
-    }
-}
-
-/// The place of a law, and what its names begin with.
-pub(super) struct Stem<'n> {
-    site: &'n str,
-    stem: String,
-}
-
-impl<'n> Stem<'n> {
-    pub(super) fn of(site: &'n str, mechanism: &Mechanism) -> Self {
-        let stem = unused(format!("law_{}", identifier(site)), mechanism);
-        Self { site, stem }
-    }
-
-    pub(super) fn words(&self) -> Vec<(&str, &str)> {
-        vec![("law", self.stem.as_str()), ("site", self.site)]
-    }
-
-    pub(super) fn candidate(
-        &self,
-        about: String,
-        items: String,
-        known: &[(&str, Known)],
-        begins: [f64; 2],
-    ) -> Candidate {
-        let parameter = |&(name, known): &(&str, Known)| {
-            let name = format!("{}_{name}", self.stem);
-            (name, Part::Term(known))
-        };
-        Candidate {
-            kind: "law".to_owned(),
-            site: self.site.to_owned(),
-            family: Family::Force,
-            about,
-            is_component: false,
-            acts: Acts::Items,
-            parameters: known.iter().map(parameter).collect(),
-            centre: None,
-            items,
-            brings: None,
-            hides: Some(begins),
-            added: Vec::new(),
-            source: None,
-            stem: self.stem.clone(),
         }
     }
 }

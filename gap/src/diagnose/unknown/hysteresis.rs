@@ -1,6 +1,6 @@
 //! A force that follows the way since the last turn.
 
-use super::memory::{Span, Trace};
+use super::trace::{Span, Trace};
 use crate::effects::{Hysteresis, Memory};
 
 /// Ways over which it follows a turn.

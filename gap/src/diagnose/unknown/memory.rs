@@ -7,59 +7,10 @@ use appell_estimate::Measured;
 use appell_runtime::model::At;
 
 use super::super::bench::Bench;
+use super::trace::Trace;
 use super::{hysteresis, swing};
 use crate::effects::Memory;
 use appell_recordings::Run;
-
-/// A coordinate in a run.
-pub(super) struct Trace {
-    pub(super) times: Vec<f64>,
-    pub(super) values: Vec<f64>,
-}
-
-impl Trace {
-    pub(super) fn duration(&self) -> f64 {
-        self.times[self.times.len() - 1] - self.times[0]
-    }
-
-    pub(super) fn step(&self) -> f64 {
-        self.duration() / (self.times.len() - 1) as f64
-    }
-
-    /// How far each row is off the line through its neighbours, in what the noise of all three lets expect.
-    pub(super) fn off_the_line(&self) -> impl Iterator<Item = f64> {
-        self.times
-            .windows(3)
-            .zip(self.values.windows(3))
-            .map(|(t, v)| {
-                let part = (t[1] - t[0]) / (t[2] - t[0]);
-                let line = v[0] + part * (v[2] - v[0]);
-                (v[1] - line).abs() / (1.0 + part * part + (1.0 - part) * (1.0 - part)).sqrt()
-            })
-    }
-
-    pub(super) fn longest_row(&self) -> f64 {
-        let pairs = self.values.windows(2).map(|pair| (pair[1] - pair[0]).abs());
-        pairs.fold(0.0, f64::max)
-    }
-}
-
-/// A range of positive numbers.
-pub(super) struct Span(pub(super) f64, pub(super) f64);
-
-impl Span {
-    /// So many of them, each by the same factor larger; none where there is no range.
-    pub(super) fn places(&self, count: usize) -> Vec<f64> {
-        let &Self(low, high) = self;
-        if !(low > 0.0 && high > low) {
-            return Vec::new();
-        }
-        let part = |place: usize| place as f64 / (count - 1) as f64;
-        (0..count)
-            .map(|i| low * (high / low).powf(part(i)))
-            .collect()
-    }
-}
 
 /// What a force remembers.
 #[derive(Clone, Copy)]
@@ -98,10 +49,7 @@ impl Memories {
             if state < info.speeds {
                 continue;
             }
-            let trace = |run: &Run| Trace {
-                times: run.times.clone(),
-                values: filled(run.values[column].clone()),
-            };
+            let trace = |run: &Run| Trace::of(run, column);
             let traces: Vec<Trace> = bench.whole.iter().map(trace).collect();
             for kind in [Kind::Swing, Kind::Way] {
                 let name = &info.states[state].name;
@@ -188,17 +136,4 @@ impl Memories {
         let best = (0..gains.len()).max_by(|&a, &b| gains[a].total_cmp(&gains[b]))?;
         (best > 0 && best + 1 < gains.len()).then_some(best)
     }
-}
-
-/// What is missing keeps the value before.
-fn filled(mut values: Vec<f64>) -> Vec<f64> {
-    let first = values.iter().copied().find(|value| !value.is_nan());
-    let mut last = first.unwrap_or(0.0);
-    for value in &mut values {
-        if value.is_nan() {
-            *value = last;
-        }
-        last = *value;
-    }
-    values
 }

@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use super::memory::{Span, Trace};
+use super::trace::{Span, Trace};
 use crate::effects::{HiddenMass, Memory};
 
 /// Frequencies of a hidden mass.

@@ -121,9 +121,13 @@ fn diagnosed(
     } = judged((&whole, &fitted), &model, &mut stage)?;
     stage("measuring what is left");
     let test = set.only(Part::Test);
-    let laws = law::lawful(&bench, &comparison)?;
+    // A law that cannot be written is a row, not the end.
+    let (laws, unwritten) = match law::lawful(&bench, &comparison) {
+        Ok(laws) => (laws, None),
+        Err(reason) => (Vec::new(), Some(Err(reason))),
+    };
     let fitted_laws = law::fitted(&laws, &bench, &test);
-    let measured = law::measured(fitted_laws, &mut comparison, &bench);
+    let measured = law::measured(fitted_laws, &mut comparison, &bench).or(unwritten);
     stage("fitting the alternatives");
     let alternatives = Alternative::all(&options.alternatives, &fitted)?;
     let (rivals, mut lost) = Rival::all(&alternatives, &bench)?;

@@ -10,6 +10,7 @@ use super::bench::Bench;
 use super::compare::Comparison;
 use super::forces::Forces;
 use super::localise::force_unit;
+use super::prediction::followed;
 use super::report::{ForceHistory, MissingForce};
 use super::windows;
 
@@ -26,6 +27,7 @@ pub(super) fn force_history(
     let nominal = comparison.nominal();
     let setup = bench.setup(&nominal.members);
     let estimation = Estimation::new(&setup, &bench.recordings)?;
+    let values = followed(bench, nominal, &estimation)?;
     let info = setup.model.info();
     let p = &nominal.fit.values[..info.parameter_len()];
     let ends = |run: usize| {
@@ -48,7 +50,7 @@ pub(super) fn force_history(
         for own in &mut squares {
             own.resize(first + parts, (0.0, 0.0));
         }
-        let states = estimation.smoothed(&nominal.fit.values, run)?;
+        let states = estimation.smoothed(&values, run)?;
         let stride = states.len().div_ceil(STEPS).max(1);
         for row in (1..states.len()).step_by(stride) {
             #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]

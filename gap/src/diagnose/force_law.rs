@@ -9,6 +9,7 @@ use super::DiagnoseError;
 use super::bench::Bench;
 use super::compare::Comparison;
 use super::forces::Forces;
+use super::prediction::followed;
 use super::report::{ForceLaw, Where};
 
 /// Most steps that are looked at.
@@ -22,6 +23,8 @@ const DEPENDS: f64 = 0.3;
 
 /// One step of a recording.
 struct Step {
+    /// Whether it lies in the first half of its run.
+    is_early: bool,
     /// States, then inputs.
     variables: Vec<f64>,
     /// What the data say.
@@ -94,6 +97,7 @@ fn steps(
     let (nominal, best) = (comparison.nominal(), comparison.best());
     let setup = bench.setup(&nominal.members);
     let estimation = Estimation::new(&setup, &bench.recordings)?;
+    let values = followed(bench, nominal, &estimation)?;
     let rows: usize = bench.recordings.iter().map(|run| run.times().len()).sum();
     let stride = rows.div_ceil(STEPS).max(1);
     let model = bench.effects.with(&bench.locked(&best.members));
@@ -101,11 +105,12 @@ fn steps(
     let without = bench.without(best);
     let mut steps = Vec::new();
     for (index, recording) in bench.recordings.iter().enumerate() {
-        let states = estimation.smoothed(&nominal.fit.values, index)?;
+        let states = estimation.smoothed(&values, index)?;
         for row in (1..states.len()).step_by(stride) {
             let forces = Forces::new(model, recording, &states, row);
             let own = |force: Vec<f64>| force[equation];
             steps.push(Step {
+                is_early: 2 * row < states.len(),
                 variables: forces.variables(),
                 force: own(forces.missing(&without)),
                 law: own(forces.between(with, &without)),
@@ -135,14 +140,26 @@ fn means(steps: &[Step], variable: usize, of: impl Fn(&Step) -> f64) -> Vec<[f64
     parts.iter().map(point).collect()
 }
 
-/// Part of the variance of a force that its means along a variable have.
+/// Part of the variance of a force that its means along a variable tell in the half of each run in which they were
+/// not taken: what merely differs from run to run, or walks in time, depends on something else.
 fn explained(steps: &[Step], variable: usize, of: impl Fn(&Step) -> f64) -> f64 {
     let all: Vec<&Step> = steps.iter().collect();
     let centre = mean(&all, &of);
     let whole: f64 = steps.iter().map(|step| (of(step) - centre).powi(2)).sum();
-    let parts = parts(steps, variable);
-    let between = parts
-        .iter()
-        .map(|part| part.len() as f64 * (mean(part, &of) - centre).powi(2));
-    between.sum::<f64>() / whole
+    let missed = parts(steps, variable).into_iter().map(|part| {
+        let halves = part.into_iter().partition(|step| step.is_early);
+        let (early, late): (Vec<&Step>, Vec<&Step>) = halves;
+        let missed = |own: &[&Step], other: &[&Step]| {
+            let told = if other.is_empty() {
+                centre
+            } else {
+                mean(other, &of)
+            };
+            own.iter()
+                .map(|step| (of(step) - told).powi(2))
+                .sum::<f64>()
+        };
+        missed(&early, &late) + missed(&late, &early)
+    });
+    1.0 - missed.sum::<f64>() / whole
 }

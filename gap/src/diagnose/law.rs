@@ -17,13 +17,15 @@ use super::calibration::{IMMATERIAL, TIED};
 use super::compare::Comparison;
 use super::evidence::Fitted;
 use super::held_out::HeldOut;
+use super::prediction::noise;
 use super::report::Law;
 use super::scales;
 use super::unknown::{
     Dependence, Leftover, On, Series, Unnamed, leftover, remembered, wave_scores,
 };
 use crate::effects::{Candidate, EffectModel, Memory};
-use appell_recordings::DataSet;
+use crate::held_out::AHEAD;
+use appell_recordings::{DataSet, Part};
 
 /// The equations with the law.
 pub(super) struct Lawful {
@@ -95,11 +97,11 @@ pub(super) fn fitted<'l>(
     laws.iter().map(|law| law.fitted(main, test)).collect()
 }
 
-/// The one that the recordings speak for most; why it could not be fitted where none was.
+/// The one that the recordings speak for most; why it could not be fitted where none was. `runs` are those to fit.
 pub(super) fn measured<'l>(
     fitted: Vec<Result<FittedLaw<'l>, DiagnoseError>>,
     comparison: &mut Comparison,
-    bench: &Bench<'_>,
+    (bench, runs): (&Bench<'_>, &DataSet),
 ) -> Option<Result<FittedLaw<'l>, DiagnoseError>> {
     let evidence = |law: &Result<FittedLaw<'_>, DiagnoseError>| {
         let found = law.as_ref();
@@ -110,12 +112,31 @@ pub(super) fn measured<'l>(
     let holds = |law: &Result<FittedLaw<'_>, DiagnoseError>, comparison: &mut Comparison| match law
     {
         Ok(law) if law.base.members.len() < comparison.best().members.len() => {
-            comparison.weigh_alone(bench, law.log_evidence, law.left)
+            law.predicts((comparison.best(), bench), runs)
+                .unwrap_or(false)
+                && comparison.weigh_alone(bench, law.log_evidence, law.left)
         }
         _ => true,
     };
     let place = laws.iter().position(|law| holds(law, comparison))?;
     Some(laws.swap_remove(place))
+}
+
+impl FittedLaw<'_> {
+    /// Whether it predicts runs better than a hypothesis: states that nobody sees follow what they do not cause.
+    fn predicts(
+        &self,
+        (other, bench): (&Fitted, &Bench<'_>),
+        runs: &DataSet,
+    ) -> Result<bool, DiagnoseError> {
+        let runs = runs.all(Part::Test);
+        let noise = noise(bench, other)?;
+        let errors = |bench: &Bench<'_>, fitted: &Fitted| {
+            let errors = HeldOut::of(&runs, bench)?.errors(bench, fitted, &noise, AHEAD)?;
+            Ok::<f64, DiagnoseError>(errors.mean())
+        };
+        Ok(errors(&self.bench, &self.fitted)? < errors(bench, other)?)
+    }
 }
 
 /// The equations with what a hypothesis leaves.

@@ -223,6 +223,20 @@ pub(super) fn taken_over(
     Ok(values)
 }
 
+/// Values with which the disturbance follows what a fit lacks on the recordings that it was fitted to: over windows
+/// it was held back.
+pub(super) fn followed(
+    bench: &Bench<'_>,
+    fitted: &Fitted,
+    estimation: &Estimation<'_>,
+) -> Result<Vec<f64>, DiagnoseError> {
+    if bench.is_over_windows() {
+        taken_over(bench, fitted, estimation)
+    } else {
+        Ok(fitted.fit.values.clone())
+    }
+}
+
 /// Noise of the channels under a hypothesis.
 pub(super) fn noise(bench: &Bench<'_>, fitted: &Fitted) -> Result<Vec<f64>, DiagnoseError> {
     let channels = 0..bench.measured.len();

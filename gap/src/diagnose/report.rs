@@ -188,6 +188,11 @@ impl Share {
         self.name == LAW
     }
 
+    /// Whether it is that of an effect.
+    pub fn is_effect(&self) -> bool {
+        !(self.is_refit() || self.is_law() || self.is_rest())
+    }
+
     /// Whether it is what nothing explains.
     pub fn is_rest(&self) -> bool {
         self.name == REST

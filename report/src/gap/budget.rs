@@ -3,7 +3,7 @@
 use appell_gap::diagnose::{HowFar, Report, Share};
 use maud::{Markup, html};
 
-use super::elements::{bar, code, table};
+use super::elements::{bare_bar, code, table};
 use super::numbers::percent;
 
 /// `coulomb_friction@theta 66 % [24 %, 77 %], ... ; 8 % [4 %, 9 %] stays`, the largest part first; `None` where no
@@ -38,6 +38,8 @@ fn name(part: &Share) -> &str {
         "re-fitted parameters"
     } else if part.is_rest() {
         "what stays"
+    } else if part.is_law() {
+        "measured law"
     } else {
         &part.name
     }
@@ -47,17 +49,17 @@ fn name(part: &Share) -> &str {
 pub(super) fn budget(far: &HowFar) -> Markup {
     let rows = far.budget.iter().map(|part| {
         let [low, high] = part.interval.map(percent);
-        let effect = !(part.is_refit() || part.is_rest());
+        let added = !(part.is_refit() || part.is_rest());
         [
-            if effect {
+            if part.is_effect() {
                 code(name(part))
             } else {
                 html! { (name(part)) }
             },
-            bar(part.closed.clamp(0.0, 1.0)),
+            bare_bar(part.closed),
             html! {
                 (percent(part.closed)) " [" (low) ", " (high) "]"
-                @if effect && !part.is_material { span class="faint" { " immaterial" } }
+                @if added && !part.is_material { span class="faint" { " immaterial" } }
             },
         ]
     });
@@ -67,7 +69,15 @@ pub(super) fn budget(far: &HowFar) -> Markup {
             p class="faint" {
                 "Shares of the mean square prediction error " (far.horizon_s) " s ahead on the held-out runs, beyond \
                  the noise. The share of an effect is the mean over all orders in which the effects can be added."
+                @if far.budget.iter().any(is_against_others) {
+                    " A share below zero: by itself the effect makes predictions worse, and pays only beside others."
+                }
             }
         }
     }
+}
+
+/// Whether a part makes predictions worse, beyond doubt, in most orders.
+fn is_against_others(part: &Share) -> bool {
+    part.is_effect() && part.interval[1] < 0.0
 }

@@ -41,9 +41,16 @@ pub(super) fn separated<T>(list: &[T], shown: impl Fn(&T) -> Markup, between: &M
 
 /// A share as a bar with its number.
 pub(super) fn bar(part: f64) -> Markup {
+    html! {
+        span class="share" { (bare_bar(part)) " " (percent(part)) }
+    }
+}
+
+/// A share as a bar.
+pub(super) fn bare_bar(part: f64) -> Markup {
     let width = format!("width:{:.1}%", 100.0 * part.clamp(0.0, 1.0));
     html! {
-        span class="share" { span class="bar" { i style=(width) {} } " " (percent(part)) }
+        span class="bar" { i style=(width) {} }
     }
 }
 

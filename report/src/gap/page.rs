@@ -1,9 +1,7 @@
 //! A gap report as a self-contained HTML page.
 
-use std::fmt::Write as _;
-
 use appell_codegen::{Derived, derived};
-use appell_gap::diagnose::{GapVerdict, HowFar, Hypothesis, Report, Where};
+use appell_gap::diagnose::{GapVerdict, HowFar, Hypothesis, Report, Value, Where};
 use appell_recordings::{DataSet, Part};
 use maud::{Markup, html};
 
@@ -13,7 +11,7 @@ use super::elements::{bar, capital, code, figure, separated, table};
 use super::law::{law, predicts};
 use super::numbers::{measured, percent};
 use super::plots;
-use super::words::{hinted, joined, left_out, sentence};
+use super::words::{alternatives, hinted, joined, left_out, percent_of, statement};
 use crate::drawing::marked;
 use crate::page_shell::PageShell;
 use crate::text::{horizon, short, with_unit};
@@ -30,7 +28,8 @@ pub fn page(set: &DataSet, report: &Report) -> String {
         main {
             h1 { (name) ": model against recordings" }
             p class="faint" { (set.description) }
-            p class="verdict" { (verdict(report)) }
+            p class="verdict" { (capital(&statement(report))) "." }
+            (reading(report))
             @if let Some(far) = &report.how_far {
                 (budget(far))
             }
@@ -44,50 +43,74 @@ pub fn page(set: &DataSet, report: &Report) -> String {
     })
 }
 
-/// The verdict, with the size of the effect and its share of the gap.
-fn verdict(report: &Report) -> String {
-    let mut text = capital(&sentence(report));
-    let top = report.which.iter().find(|h| !h.parameters.is_empty());
+/// Below the verdict: sizes, how sure it is, and what it is worth.
+fn reading(report: &Report) -> Markup {
     let is_named = matches!(
         report.verdict,
         GapVerdict::Explained | GapVerdict::Ambiguous
     );
-    if let Some(top) = top.filter(|_| is_named) {
-        let _ = write!(text, ": {}", values(top).join(", "));
-    }
-    text.push('.');
-    if let (Some(far), true) = (&report.how_far, is_named) {
-        let _ = write!(
-            text,
-            " On held-out runs it closes {} [{}, {}] of the gap, and {} of the gap that remains after \
-            re-fitting the parameters.",
-            percent(far.closed),
-            percent(far.closed_ci95[0]),
-            percent(far.closed_ci95[1]),
-            percent(far.closed_vs_refitted),
-        );
-        if far.is_worse {
-            text += " Predictions become worse with it: the fit does not generalise to these runs.";
-        } else if far.with_effect > (1.0 - MATTERS) * far.refitted {
-            text += " The effect is significant but unimportant: predictions hardly improve.";
+    let top = report.which.iter().find(|h| !h.parameters.is_empty());
+    let Some(top) = top.filter(|_| is_named) else {
+        return html! {};
+    };
+    let budget = report.how_far.iter().flat_map(|far| &far.budget);
+    let slight: Vec<&str> = (budget.filter(|part| part.is_effect() && !part.is_material))
+        .map(|part| part.name.as_str())
+        .collect();
+    let is_slight = |value: &Value| {
+        let effect = value.name.rsplit_once('.').map(|(effect, _)| effect);
+        effect.is_some_and(|effect| slight.contains(&effect))
+    };
+    let weighty = top.parameters.iter().filter(|value| !is_slight(value));
+    let sizes: Vec<String> = weighty.map(|value| size(top, value)).collect();
+    html! {
+        ul class="reading" {
+            @if !sizes.is_empty() {
+                li { (separated(&sizes, |size| html! { (size) }, &html! { ", " })) "." }
+            }
+            @if !slight.is_empty() {
+                li { "Fitted as well, and of no weight for predictions: " (separated(&slight, |effect| code(effect), &html! { ", " })) "." }
+            }
+            @if let Some((probability, same, rivals)) = alternatives(report) {
+                li { "Probability " (percent_of(probability)) "."
+                @if !same.is_empty() { " The same in every motion: " (separated(&same, |one| code(one), &html! { ", " })) "." }
+                @if !rivals.is_empty() { " Not ruled out: " (separated(&rivals, |one| code(one), &html! { ", " })) "." } }
+            }
+            @if let Some(far) = &report.how_far {
+                li { (worth(far)) }
+            }
         }
+    }
+}
+
+/// What the leading hypothesis is worth on held-out runs.
+fn worth(far: &HowFar) -> String {
+    let mut text = format!(
+        "On held-out runs it closes {} [{}, {}] of the gap, and {} of the gap that remains after re-fitting the \
+         parameters.",
+        percent(far.closed),
+        percent(far.closed_ci95[0]),
+        percent(far.closed_ci95[1]),
+        percent(far.closed_vs_refitted),
+    );
+    if far.is_worse {
+        text += " Predictions become worse with it: the fit does not generalise to these runs.";
+    } else if far.with_effect > (1.0 - MATTERS) * far.refitted {
+        text += " The effect is significant but unimportant: predictions hardly improve.";
     }
     text
 }
 
 /// `force = 0.412 ± 0.021 N`
-fn values(hypothesis: &Hypothesis) -> Vec<String> {
-    let values = hypothesis.parameters.iter().map(|value| {
-        let (effect, short) = value.name.rsplit_once('.').unwrap_or(("", &value.name));
-        let number = with_unit(&measured(value.value, value.std), &value.unit);
-        // Values of several effects may share a name.
-        let site = effect
-            .split_once('@')
-            .filter(|_| hypothesis.effects.len() > 1);
-        let site = site.map_or_else(String::new, |(_, site)| format!(" ({site})"));
-        format!("{}{site} = {number}", short.replace('_', " "))
-    });
-    values.collect()
+fn size(hypothesis: &Hypothesis, value: &Value) -> String {
+    let (effect, short) = value.name.rsplit_once('.').unwrap_or(("", &value.name));
+    let number = with_unit(&measured(value.value, value.std), &value.unit);
+    // Values of several effects may share a name.
+    let site = effect
+        .split_once('@')
+        .filter(|_| hypothesis.effects.len() > 1);
+    let site = site.map_or_else(String::new, |(_, site)| format!(" ({site})"));
+    format!("{}{site} = {number}", short.replace('_', " "))
 }
 
 fn place(set: &DataSet, report: &Report) -> Markup {
@@ -244,7 +267,11 @@ fn which(report: &Report) -> Markup {
             Some("unknown") => html! { "none of the library" },
             Some(_) => code(&joined(&hypothesis.effects)),
         };
-        let values = values(hypothesis);
+        let sizes = hypothesis
+            .parameters
+            .iter()
+            .map(|value| size(hypothesis, value));
+        let sizes: Vec<String> = sizes.collect();
         let bayes = hypothesis.log_bayes_factor.map_or_else(String::new, short);
         let probability = match &hypothesis.same_as {
             Some(_) => html! { span class="faint" { "the same" } },
@@ -252,7 +279,7 @@ fn which(report: &Report) -> Markup {
         };
         [
             probability,
-            html! { (name) br; (separated(&values, |value| html! { (value) }, &html! { br; })) },
+            html! { (name) br; (separated(&sizes, |size| html! { (size) }, &html! { br; })) },
             html! { (bayes) },
         ]
     });

@@ -4,8 +4,33 @@ use appell_gap::diagnose::{Change, GapVerdict, Hint, Hypothesis, Report, Share};
 
 use super::numbers::{part_of_all, percent};
 
-/// The verdict in one sentence.
+/// The verdict in one sentence, with the alternatives.
 pub fn sentence(report: &Report) -> String {
+    let statement = statement(report);
+    let Some((probability, same, rivals)) = alternatives(report) else {
+        return statement;
+    };
+    let same = (!same.is_empty())
+        .then(|| format!("; {} would be the same in every motion", same.join(", ")));
+    let rivals =
+        (!rivals.is_empty()).then(|| format!("; {} cannot be ruled out", rivals.join(", ")));
+    let (same, rivals) = (same.unwrap_or_default(), rivals.unwrap_or_default());
+    format!(
+        "{statement} (probability {}){same}{rivals}",
+        percent_of(probability)
+    )
+}
+
+/// Where several hypotheses may be true: the probability of the leading one, those that say the same of every motion,
+/// and those that cannot be ruled out.
+pub(super) fn alternatives(report: &Report) -> Option<(f64, Vec<String>, Vec<String>)> {
+    let is_open = report.change.is_none() && report.verdict == GapVerdict::Ambiguous;
+    let first = leading(report).filter(|_| is_open)?;
+    Some((first.probability, twins(report), rivals(report)))
+}
+
+/// The verdict in one sentence.
+pub(super) fn statement(report: &Report) -> String {
     let about: Vec<&str> = report
         .found
         .iter()
@@ -20,21 +45,13 @@ pub fn sentence(report: &Report) -> String {
             Some(shares) => shares,
             None => format!("the gap is explained by {}", about.join(" and ")),
         },
-        GapVerdict::Ambiguous => {
-            let percent = leading(report).map_or(0.0, |first| 100.0 * first.probability);
-            let best = match shares(report) {
-                Some(shares) => format!("{shares} (probability {percent:.0} %)"),
-                None => format!(
-                    "there is a gap; {} {} it best ({percent:.0} %)",
-                    about.join(" and "),
-                    if about.len() > 1 { "explain" } else { "explains" },
-                ),
-            };
-            let (same, rivals) = (twins(report), rivals(report));
-            let same = (!same.is_empty()).then(|| format!("; {} would be the same in every motion", same.join(", ")));
-            let rivals = (!rivals.is_empty()).then(|| format!("; {} cannot be ruled out", rivals.join(", ")));
-            format!("{best}{}{}", same.unwrap_or_default(), rivals.unwrap_or_default())
-        }
+        GapVerdict::Ambiguous => match shares(report) {
+            Some(shares) => shares,
+            None => {
+                let explain = if about.len() > 1 { "explain" } else { "explains" };
+                format!("there is a gap; {} {explain} it best", about.join(" and "))
+            }
+        },
         GapVerdict::Unexplained if report.how_far.as_ref().is_some_and(|far| far.is_worse) => {
             "there is a gap; what fits the recordings best makes predictions worse and explains nothing"
                 .to_owned()
@@ -89,9 +106,8 @@ fn refitted(budget: &[Share]) -> Option<&Share> {
 /// that matter, of what these leave.
 fn shares(report: &Report) -> Option<String> {
     let budget = &report.how_far.as_ref()?.budget;
-    let is_effect = |part: &&Share| !(part.is_refit() || part.is_law() || part.is_rest());
     let (mut material, others): (Vec<&Share>, Vec<&Share>) =
-        (budget.iter().filter(is_effect)).partition(|part| part.is_material);
+        (budget.iter().filter(|part| part.is_effect())).partition(|part| part.is_material);
     material.sort_by(|a, b| b.closed.total_cmp(&a.closed));
     let refit = refitted(budget);
     let left = 1.0 - refit.map_or(0.0, |part| part.closed);
@@ -191,6 +207,11 @@ fn names_effects(report: &Report) -> bool {
         .is_some_and(|first| !first.parameters.is_empty())
 }
 
+/// A probability in whole percent.
+pub(super) fn percent_of(probability: f64) -> String {
+    format!("{:.0} %", 100.0 * probability)
+}
+
 /// The most probable hypothesis of the library.
 fn leading(report: &Report) -> Option<&Hypothesis> {
     report.which.iter().find(|one| one.effects != ["unknown"])
@@ -220,8 +241,11 @@ fn rivals(report: &Report) -> Vec<String> {
         if hypothesis.same_as.is_some() {
             return None;
         }
-        let percent = 100.0 * hypothesis.probability;
-        Some(format!("{} ({percent:.0} %)", joined(effects)))
+        Some(format!(
+            "{} ({})",
+            joined(effects),
+            percent_of(hypothesis.probability)
+        ))
     };
     tied.filter(|effects| *effects != first)
         .filter_map(named)

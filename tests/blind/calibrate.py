@@ -2,20 +2,23 @@
 
     calibrate.py --collect REPORTS --labels LABELS   takes from reports what is needed: calibration.json
     calibrate.py                                     finds the numbers, tells how well claims hold
+    calibrate.py --across [--write PAGE]             the same by cross-validation: what is said of a kind of
+                                                     law is said with numbers found without that kind
     calibrate.py --check                             fails where the tool has other numbers, or the data
                                                      are of another engine
 
 REPORTS has a subfolder `appell` of reports with the whole library, and `left_out` of reports with a
-library that lacks the effect. The numbers make the true answers most probable. Cases whose cause is not
+library that lacks the effect; --collect replaces the rows of that set of cases. The numbers make the true answers most probable. Cases whose cause is not
 in the library count so much that they are a tenth of all gaps."""
 
 import argparse
 import json
 import math
+import random
 import re
 from pathlib import Path
 
-from score import is_truth, rate
+from score import is_truth, rate, write
 
 HERE = Path(__file__).resolve().parent
 DATA = HERE / "calibration.json"
@@ -23,6 +26,7 @@ TOOL = HERE / "../../gap/src/diagnose/calibration.rs"
 ENGINE = HERE / "../../gap/src/diagnose.rs"
 NAMES = ["TEMPERATURE", "MIMICKED", "INEXACT", "LEFT"]
 RANGES = {"TEMPERATURE": (1.0, 4.0), "MIMICKED": (0.02, 0.9), "INEXACT": (0.02, 0.9), "LEFT": (0.02, 0.5)}
+MARKS = "<!-- calibration of tests/blind: begin -->", "<!-- calibration of tests/blind: end -->"
 LEAST = 1e-3  # one answer that is wrong for certain must not outweigh all others
 MOST = 300.0
 UNKNOWN = ["unknown"]
@@ -42,6 +46,13 @@ def engine():
 # What is needed of a report.
 
 
+def label_kinds(label):
+    """Kinds of law that a case is of."""
+    if label["kind"] in ("single", "compound", "mismatch"):
+        return sorted({effect.split("@")[0] for effect in label["effects"]})
+    return [label["kind"] if label["kind"] == "null" else str(label.get("off_kind") or label["effects"])]
+
+
 def row(case, report, label, left_out, temperature):
     """Case and engine; log odds against the best hypothesis and number of members of each, with whether it is true."""
     listed = [h for h in report["which"] if h["effects"] != UNKNOWN]
@@ -53,6 +64,7 @@ def row(case, report, label, left_out, temperature):
     left, independent = report.get("left"), report.get("independent", 1.0)
     return {
         "case": case,
+        "kinds": label_kinds(label),
         "engine": report.get("engine"),
         "listed": [[round(odds(h), 3), len(h["effects"]), true(h)] for h in listed if odds(h) > -40],
         "left": left
@@ -125,16 +137,68 @@ def surprise(rows, numbers):
     return total / weights
 
 
-def found(rows, numbers):
+def found(rows, numbers, grids=(8, 16, 32, 64), rounds=4):
     """The numbers that surprise least, by turns along each on finer and finer grids."""
     numbers = dict(numbers)
-    for parts in (8, 16, 32, 64):
-        for _ in range(4):
+    for parts in grids:
+        for _ in range(rounds):
             for name in NAMES:
                 low, high = RANGES[name]
                 grid = [low * (high / low) ** (i / parts) for i in range(parts + 1)]
                 numbers[name] = min(grid, key=lambda value: surprise(rows, {**numbers, name: value}))
     return numbers
+
+
+def across(rows, numbers):
+    """Claims about each kind of law with numbers that were found without that kind."""
+    claims = {}
+    for kinds in sorted({tuple(row["kinds"]) for row in rows}):
+        others = [row for row in rows if not set(row["kinds"]) & set(kinds)]
+        own = found(others, numbers, grids=(32,), rounds=2)
+        for row in rows:
+            if tuple(row["kinds"]) == kinds and not row["left_out"]:
+                claims[row["case"]] = claim(row, own)
+    return claims
+
+
+def calibration_error(claims):
+    """Expected difference between what is claimed and what is right, in ten parts of the probability."""
+    error = 0.0
+    for part in range(10):
+        own = [(p, right) for p, right in claims if part == min(int(10 * p), 9)]
+        error += abs(sum(p for p, _ in own) - sum(right for _, right in own)) / len(claims)
+    return error
+
+
+def chance(claims, draws=2000):
+    """The median of that error where every claim is as probable as it says: cases are few."""
+    draw = random.Random(1).random
+    errors = sorted(calibration_error([(p, draw() < p) for p, _ in claims]) for _ in range(draws))
+    return errors[draws // 2]
+
+
+def table_across(rows, now, best):
+    """The error of calibration of each set of cases: with the numbers of the tool, with those found on all, and
+    across kinds of law."""
+    said = across(rows, best)
+    whole = [row for row in rows if not row["left_out"]]
+    yield (
+        "Mean difference between what the first answer claims and how often it is right, in ten parts of the "
+        f"probability (engine {engine()}, one-step evidence): with the constants of the tool, with those found on all "
+        "cases, and with those found without the kind of law that is judged. By chance alone: its median were "
+        "every claim exact. Development scores."
+    )
+    yield "\n| cases | number | tool | found on all | across kinds | by chance |\n|---|---|---|---|---|---|"
+    for cases in sorted({row["case"].split("/")[0] for row in whole}):
+        own = [row for row in whole if row["case"].startswith(f"{cases}/")]
+        claims = [claim(row, now) for row in own]
+        errors = [
+            calibration_error(claims),
+            calibration_error([claim(row, best) for row in own]),
+            calibration_error([said[row["case"]] for row in own]),
+            chance(claims),
+        ]
+        yield f"| {cases} | {len(own)} | " + " | ".join(f"{error:.3f}" for error in errors) + " |"
 
 
 def reliability(rows, numbers):
@@ -151,12 +215,15 @@ def main():
     ask.add_argument("--collect", type=Path, help="folder of reports")
     ask.add_argument("--labels", type=Path, default=HERE / "labels.json")
     ask.add_argument("--data", type=Path, default=DATA)
+    ask.add_argument("--across", action="store_true")
+    ask.add_argument("--write", type=Path, help="Markdown file with markers")
     ask.add_argument("--check", action="store_true")
     ask = ask.parse_args()
     if ask.collect:
         labels = json.loads(ask.labels.read_text())
         cases = ask.labels.resolve().parent.name
-        rows = collect(ask.collect, labels.get("cases", labels), cases)
+        kept = [row for row in json.loads(ask.data.read_text()) if not row["case"].startswith(f"{cases}/")]
+        rows = kept + collect(ask.collect, labels.get("cases", labels), cases)
         ask.data.write_text("[\n" + ",\n".join(map(json.dumps, rows)) + "\n]\n")
         return
     rows, now = json.loads(ask.data.read_text()), constants()
@@ -166,6 +233,11 @@ def main():
     print(f"surprise: {surprise(rows, best):.3f}, with the numbers of the tool {surprise(rows, now):.3f}")
     print("| claimed | mean | right |\n|---|---|---|")
     print("\n".join(reliability(rows, now)))
+    if ask.across:
+        table = "\n".join(table_across(rows, now, best))
+        print(table)
+        if ask.write:
+            write(ask.write, table, MARKS)
     stale = [row for row in rows if row.get("engine") != engine()]
     if stale:
         cases = sorted({row.get("case", "no case") for row in stale})

@@ -3,12 +3,12 @@
 //! The states are those of the smoother under the nominal model, whose disturbance is free to be the
 //! missing force.
 
-use appell_estimate::Estimation;
+use appell_estimate::{Estimation, Recording};
 
 use super::DiagnoseError;
 use super::bench::Bench;
 use super::compare::Comparison;
-use super::forces::Forces;
+use super::forces::mean_missing;
 use super::localise::force_unit;
 use super::prediction::followed;
 use super::report::{ForceHistory, MissingForce};
@@ -18,6 +18,8 @@ use super::windows;
 const PARTS: f64 = 160.0;
 /// Most steps that are looked at in a run.
 const STEPS: usize = 2000;
+/// Part of a window whose mean is taken.
+const PART_TOGETHER: f64 = 0.1;
 
 /// Of all runs that were fitted.
 pub(super) fn force_history(
@@ -40,44 +42,58 @@ pub(super) fn force_history(
         .sum();
     let part = windows::length(bench).max(length / PARTS);
     let mut runs = Vec::new();
-    let mut squares: Vec<Vec<(f64, f64)>> = vec![Vec::new(); info.speeds];
+    let mut sizes: Vec<Vec<Vec<f64>>> = vec![Vec::new(); info.speeds];
     for (run, recording) in bench.recordings.iter().enumerate() {
         let (from, to) = ends(run);
         // Parts are few.
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
         let parts = ((to - from) / part).ceil().max(1.0) as usize;
-        let first = squares[0].len();
-        for own in &mut squares {
-            own.resize(first + parts, (0.0, 0.0));
+        let first = sizes[0].len();
+        for own in &mut sizes {
+            own.resize(first + parts, Vec::new());
         }
         let states = estimation.smoothed(&values, run)?;
         let stride = states.len().div_ceil(STEPS).max(1);
+        let several = together(bench, recording);
         for row in (1..states.len()).step_by(stride) {
             #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
             let index = ((recording.times()[row] - from) / part) as usize;
-            let forces = Forces::new(setup.model, recording, &states, row).missing(p);
-            for (own, force) in squares.iter_mut().zip(&forces) {
-                let (sum, count) = &mut own[first + index.min(parts - 1)];
-                *sum += force * force;
-                *count += 1.0;
+            let rows = row..(row + several).min(states.len());
+            let forces = mean_missing(setup.model, (recording, &states), rows, p);
+            for (own, force) in sizes.iter_mut().zip(&forces) {
+                own[first + index.min(parts - 1)].push(force.abs());
             }
         }
         runs.push((bench.set.runs[run].name.clone(), from, parts));
     }
-    let equations = squares
-        .iter()
-        .enumerate()
-        .map(|(equation, squares)| MissingForce {
-            name: info.states[equation].name.to_string(),
-            unit: force_unit(bench, equation),
-            rms: squares
-                .iter()
-                .map(|(sum, count)| (sum / count.max(1.0)).sqrt())
-                .collect(),
-        });
+    let equations = sizes.into_iter().enumerate();
+    let equations = equations.map(|(equation, parts)| MissingForce {
+        name: info.states[equation].name.to_string(),
+        unit: force_unit(bench, equation),
+        medians: parts.into_iter().map(median).collect(),
+    });
     Ok(ForceHistory {
         part,
         runs,
         equations: equations.collect(),
     })
+}
+
+/// The value in the middle; a channel that jumps is a large force in a single step. Zero of nothing.
+pub(super) fn median(mut values: Vec<f64>) -> f64 {
+    values.sort_by(f64::total_cmp);
+    values.get(values.len() / 2).copied().unwrap_or_default()
+}
+
+/// Steps whose mean is taken: over windows the disturbance is free at every row and takes the noise for a force.
+pub(super) fn together(bench: &Bench<'_>, recording: &Recording) -> usize {
+    if !bench.is_over_windows() {
+        return 1;
+    }
+    let times = recording.times();
+    let rows = PART_TOGETHER * windows::length(bench) * (times.len() - 1) as f64
+        / (times[times.len() - 1] - times[0]);
+    // Rows of a part are few.
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+    (rows.round() as usize).max(1)
 }

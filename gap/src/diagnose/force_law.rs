@@ -8,7 +8,8 @@ use appell_estimate::Estimation;
 use super::DiagnoseError;
 use super::bench::Bench;
 use super::compare::Comparison;
-use super::forces::Forces;
+use super::force_history::{median, together};
+use super::forces::{Forces, mean_missing};
 use super::prediction::followed;
 use super::report::{ForceLaw, Where};
 
@@ -69,9 +70,9 @@ pub(super) fn force_law(
     let stride = steps.len().div_ceil(POINTS).max(1);
     let in_unit = |[x, force]: [f64; 2]| [x / quantity.scale, force];
     let of = |step: &Step| in_unit([step.variables[variable], step.force]);
-    let means = |of: &dyn Fn(&Step) -> f64| {
-        let means = means(&steps, variable, of).into_iter();
-        means.map(in_unit).collect()
+    let medians = |of: &dyn Fn(&Step) -> f64| {
+        let medians = medians(&steps, variable, of).into_iter();
+        medians.map(in_unit).collect()
     };
     Ok(Some(ForceLaw {
         equation: first.name.clone(),
@@ -79,9 +80,9 @@ pub(super) fn force_law(
         variable: quantity.name.to_string(),
         variable_unit: quantity.unit.to_string(),
         points: steps.iter().step_by(stride).map(of).collect(),
-        means: means(&|step| step.force),
+        medians: medians(&|step| step.force),
         law: if has_law && part > DEPENDS {
-            means(&|step| step.law)
+            medians(&|step| step.law)
         } else {
             Vec::new()
         },
@@ -106,13 +107,16 @@ fn steps(
     let mut steps = Vec::new();
     for (index, recording) in bench.recordings.iter().enumerate() {
         let states = estimation.smoothed(&values, index)?;
+        let several = together(bench, recording);
         for row in (1..states.len()).step_by(stride) {
-            let forces = Forces::new(model, recording, &states, row);
+            let rows = row..(row + several).min(states.len());
+            let forces = Forces::new(model, recording, &states, rows.start + rows.len() / 2);
+            let missing = mean_missing(model, (recording, &states), rows, &without);
             let own = |force: Vec<f64>| force[equation];
             steps.push(Step {
                 is_early: 2 * row < states.len(),
                 variables: forces.variables(),
-                force: own(forces.missing(&without)),
+                force: own(missing),
                 law: own(forces.between(with, &without)),
             });
         }
@@ -133,10 +137,13 @@ fn mean(part: &[&Step], of: impl Fn(&Step) -> f64) -> f64 {
     part.iter().map(|step| of(step)).sum::<f64>() / part.len() as f64
 }
 
-/// Means of the variable and of a force.
-fn means(steps: &[Step], variable: usize, of: impl Fn(&Step) -> f64) -> Vec<[f64; 2]> {
+/// Means of the variable, and medians of a force.
+fn medians(steps: &[Step], variable: usize, of: impl Fn(&Step) -> f64) -> Vec<[f64; 2]> {
     let parts = parts(steps, variable);
-    let point = |part: &Vec<&Step>| [mean(part, |s| s.variables[variable]), mean(part, &of)];
+    let point = |part: &Vec<&Step>| {
+        let forces = part.iter().map(|step| of(step)).collect();
+        [mean(part, |s| s.variables[variable]), median(forces)]
+    };
     parts.iter().map(point).collect()
 }
 

@@ -1,8 +1,33 @@
 //! Forces in a step of a smoothed motion: what the state does beyond the equations, times the mass
 //! matrix.
 
+use std::ops::Range;
+
 use appell_estimate::{Recording, Smoothed};
 use appell_runtime::model::{At, Model};
+
+/// The mean missing force over the time of the steps that end at rows.
+pub(super) fn mean_missing(
+    model: &dyn Model,
+    (recording, states): (&Recording, &[Smoothed]),
+    rows: Range<usize>,
+    p: &[f64],
+) -> Vec<f64> {
+    let mut impulse = vec![0.0; model.info().speeds];
+    let mut duration = 0.0;
+    for row in rows {
+        let forces = Forces::new(model, recording, states, row);
+        let step = forces.step();
+        let own = forces.missing(p);
+        impulse
+            .iter_mut()
+            .zip(own)
+            .for_each(|(sum, force)| *sum += force * step);
+        duration += step;
+    }
+    impulse.iter_mut().for_each(|force| *force /= duration);
+    impulse
+}
 
 /// The step that ends at a row.
 pub(super) struct Forces<'s> {
@@ -32,6 +57,10 @@ impl<'s> Forces<'s> {
         }
     }
 
+    fn step(&self) -> f64 {
+        self.times[1] - self.times[0]
+    }
+
     /// States in the middle, and inputs.
     pub(super) fn variables(&self) -> Vec<f64> {
         let [from, to] = self.ends;
@@ -43,8 +72,7 @@ impl<'s> Forces<'s> {
     pub(super) fn missing(&self, p: &[f64]) -> Vec<f64> {
         let [before, after] = [0, 1].map(|end| self.rates(self.times[end], self.ends[end], p));
         let [from, to] = self.ends;
-        let step = self.times[1] - self.times[0];
-        let beyond = |i: usize| (to[i] - from[i]) / step - 0.5 * (before[i] + after[i]);
+        let beyond = |i: usize| (to[i] - from[i]) / self.step() - 0.5 * (before[i] + after[i]);
         self.times_mass(beyond, p)
     }
 

@@ -458,8 +458,8 @@ pub struct MissingForce {
     pub name: String,
     /// Unit of the force.
     pub unit: String,
-    /// Root of its mean square in each part of the runs, one after the other.
-    pub rms: Vec<f64>,
+    /// Median of its absolute value in each part of the runs, one after the other.
+    pub medians: Vec<f64>,
 }
 
 /// A channel of a run beside predictions of it, [`AHEAD`](super::AHEAD) before, in the unit of the channel.
@@ -498,8 +498,8 @@ pub struct ForceLaw {
     pub variable_unit: String,
     /// Places along the recordings: variable, force.
     pub points: Vec<[f64; 2]>,
-    /// Mean force in each part of the variable.
-    pub means: Vec<[f64; 2]>,
+    /// Median of the force in each part of the variable.
+    pub medians: Vec<[f64; 2]>,
     /// The law of the best hypothesis; empty where none acts in the equations.
     pub law: Vec<[f64; 2]>,
 }

@@ -59,6 +59,9 @@ pub(super) fn budget(far: &HowFar) -> Markup {
             bare_bar(part.closed),
             html! {
                 (percent(part.closed)) " [" (low) ", " (high) "]"
+                @if part.is_refit() && far.refitted > far.nominal {
+                    span class="faint" { " worse than as stated: no base" }
+                }
                 @if added && !part.is_material { span class="faint" { " immaterial" } }
             },
         ]

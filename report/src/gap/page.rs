@@ -19,6 +19,8 @@ use crate::text::{horizon, short, with_unit};
 const STYLE: &str = include_str!("page.css");
 /// Relative improvement of predictions below which an effect is of no practical importance.
 const MATTERS: f64 = 0.05;
+/// Hypotheses that are less probable are folded away.
+const TOLD: f64 = 0.001;
 
 /// The page.
 pub fn page(set: &DataSet, report: &Report) -> String {
@@ -260,8 +262,8 @@ fn windows(place: &Where) -> Markup {
     }
 }
 
-fn which(report: &Report) -> Markup {
-    let rows = report.which.iter().map(|hypothesis| {
+fn hypotheses(list: &[&Hypothesis]) -> Markup {
+    let rows = list.iter().map(|hypothesis| {
         let name = match hypothesis.effects.first().map(String::as_str) {
             None => html! { "no effect: the model with its parameters within tolerance" },
             Some("unknown") => html! { "none of the library" },
@@ -288,9 +290,22 @@ fn which(report: &Report) -> Markup {
         "hypothesis, values ± 1 standard deviation",
         "log Bayes factor",
     ];
+    table(heading, rows, 2)
+}
+
+fn which(report: &Report) -> Markup {
+    let is_told = |hypothesis: &&Hypothesis| hypothesis.probability >= TOLD;
+    let (told, others): (Vec<&Hypothesis>, Vec<&Hypothesis>) =
+        report.which.iter().partition(is_told);
     html! {
         h2 { "Which" }
-        (table(heading, rows, 2))
+        (hypotheses(&told))
+        @if !others.is_empty() {
+            details {
+                summary { (others.len()) " of less than " (percent(TOLD)) }
+                (hypotheses(&others))
+            }
+        }
         @for doubt in doubts(report) {
             p { b { "A unit?" } " " (capital(&doubt.replace('`', ""))) }
         }

@@ -102,9 +102,16 @@ pub(super) fn law(law: &ForceLaw) -> String {
         colour,
     };
     let [data, stated, _, effect] = COLOURS;
+    let [low, high] = drawn(law);
+    let is_drawn = |[_, force]: &&[f64; 2]| (low..=high).contains(force);
+    let points: Vec<[f64; 2]> = law.points.iter().filter(is_drawn).copied().collect();
+    let recordings = match law.points.len() - points.len() {
+        0 => "recordings".to_owned(),
+        beyond => format!("recordings ({beyond} of {} lie beyond)", law.points.len()),
+    };
     let mut layers = vec![
-        layer("recordings", &law.points, Look::Points, data),
-        layer("binned mean", &law.means, Look::Line, stated),
+        layer(&recordings, &points, Look::Points, data),
+        layer("binned median", &law.medians, Look::Line, stated),
     ];
     if !law.law.is_empty() {
         layers.push(layer("identified law", &law.law, Look::Line, effect));
@@ -123,6 +130,29 @@ pub(super) fn law(law: &ForceLaw) -> String {
     plot.to_svg()
 }
 
+/// The range of forces that is drawn: where a channel jumps there are points far beyond.
+fn drawn(law: &ForceLaw) -> [f64; 2] {
+    /// Part of the points at each end that the range need not hold, and its margin.
+    const BEYOND: f64 = 0.1;
+    const MARGIN: f64 = 1.0;
+    let mut forces: Vec<f64> = law.points.iter().map(|[_, force]| *force).collect();
+    forces.sort_by(f64::total_cmp);
+    // Points are few.
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+    let outside = (BEYOND * forces.len() as f64) as usize;
+    let inside = forces
+        .get(outside..forces.len() - outside)
+        .unwrap_or_default();
+    let lines = law.medians.iter().chain(&law.law).map(|[_, force]| force);
+    let all = || inside.iter().chain(lines.clone()).copied();
+    let (low, high) = (
+        all().fold(f64::INFINITY, f64::min),
+        all().fold(f64::NEG_INFINITY, f64::max),
+    );
+    let margin = MARGIN * (high - low);
+    [low - margin, high + margin]
+}
+
 /// The missing force of each equation over time, relative to the maximum of the equation.
 pub(super) fn over_time(map: &ForceHistory) -> String {
     const LEFT: f64 = 190.0;
@@ -137,7 +167,7 @@ pub(super) fn over_time(map: &ForceHistory) -> String {
     let height = ROW * map.equations.len() as f64 + 40.0;
     let mut svg = Document::styled_by_page([WIDTH, height], "heat");
     for (row, equation) in map.equations.iter().enumerate() {
-        let largest = equation.rms.iter().copied().fold(0.0, f64::max);
+        let largest = equation.medians.iter().copied().fold(0.0, f64::max);
         let y = ROW * row as f64;
         svg.put(&text([4.0, y + 17.0]).text(&equation.name));
         let size = text([LEFT - 8.0, y + 17.0]).with("class", "small");
@@ -146,7 +176,7 @@ pub(super) fn over_time(map: &ForceHistory) -> String {
         for (run, (_, _, parts)) in map.runs.iter().enumerate() {
             for _ in 0..*parts {
                 let x = LEFT + cell * index as f64 + GAP * run as f64;
-                let part = equation.rms[index] / largest.max(f64::MIN_POSITIVE);
+                let part = equation.medians[index] / largest.max(f64::MIN_POSITIVE);
                 let lengths = [
                     ("x", x),
                     ("y", y + 2.0),

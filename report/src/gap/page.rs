@@ -294,7 +294,8 @@ fn hypotheses(list: &[&Hypothesis]) -> Markup {
 }
 
 fn which(report: &Report) -> Markup {
-    let is_told = |hypothesis: &&Hypothesis| hypothesis.probability >= TOLD;
+    let is_told =
+        |hypothesis: &&Hypothesis| hypothesis.probability >= TOLD || hypothesis.same_as.is_some();
     let (told, others): (Vec<&Hypothesis>, Vec<&Hypothesis>) =
         report.which.iter().partition(is_told);
     html! {

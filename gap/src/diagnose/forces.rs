@@ -25,7 +25,9 @@ pub(super) fn mean_missing(
             .for_each(|(sum, force)| *sum += force * step);
         duration += step;
     }
-    impulse.iter_mut().for_each(|force| *force /= duration);
+    for force in &mut impulse {
+        *force /= duration;
+    }
     impulse
 }
 

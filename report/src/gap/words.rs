@@ -45,13 +45,13 @@ pub(super) fn statement(report: &Report) -> String {
             Some(shares) => shares,
             None => format!("the gap is explained by {}", about.join(" and ")),
         },
-        GapVerdict::Ambiguous => match shares(report) {
-            Some(shares) => shares,
-            None => {
-                let explain = if about.len() > 1 { "explain" } else { "explains" };
-                format!("there is a gap; {} {explain} it best", about.join(" and "))
-            }
-        },
+        GapVerdict::Ambiguous => shares(report).unwrap_or_else(|| {
+            let explain = if about.len() > 1 { "explain" } else { "explains" };
+            format!(
+                "there is a gap; {} {explain} it best",
+                about.join(" and ")
+            )
+        }),
         GapVerdict::Unexplained if report.how_far.as_ref().is_some_and(|far| far.is_worse) => {
             "there is a gap; what fits the recordings best makes predictions worse and explains nothing"
                 .to_owned()

@@ -39,6 +39,13 @@ pub fn parse(text: &str) -> (SpecAst, Vec<Diagnostic>) {
                 text.len()
             ),
         ));
+    } else if let Some(at) = markup(text) {
+        reader.broken = true;
+        reader.tell(
+            Diagnostic::error(Code::TomlSyntax, "this is XML, and a spec is TOML")
+                .at(at..at + 1, "a tag")
+                .help("write the mechanism as a spec: `appell new NAME` begins one"),
+        );
     } else {
         reader.characters();
         let (table, errors) = DeTable::parse_recoverable(text);
@@ -51,6 +58,12 @@ pub fn parse(text: &str) -> (SpecAst, Vec<Diagnostic>) {
         broken: reader.broken || reader.incomplete,
     };
     (ast, reader.findings)
+}
+
+/// Where a tag opens a text, such as a robot file: no line of it would be TOML.
+fn markup(text: &str) -> Option<usize> {
+    let start = text.trim_start_matches('\u{feff}').trim_start();
+    start.starts_with('<').then(|| text.len() - start.len())
 }
 
 /// Reads an expression that stands at `whole` in a document.

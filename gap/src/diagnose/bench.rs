@@ -20,7 +20,7 @@ use appell_recordings::{DataSet, Part, Run};
 const LONGEST_DELAY: f64 = 0.1;
 const DELAY_STEPS: f64 = 5.0;
 /// Shortest and longest lag, in steps.
-pub(super) const LAG: [f64; 2] = [0.03, 500.0];
+pub(super) const LAG: [f64; 2] = [0.003, 500.0];
 /// Fits end where a further step promises less than this in log-likelihood, far less than what tells two
 /// hypotheses apart. Searches may begin far away, where parameters are stated, and valleys are narrow.
 const EFFORT: Effort = Effort {

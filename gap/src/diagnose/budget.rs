@@ -4,7 +4,8 @@
 //! The share of an effect is the mean, over all orders in which the effects can be added, of what it takes
 //! from the mean squared error of prediction (L. S. Shapley, *A value for n-person games*, 1953): shares
 //! add up, and none depends on an order. Every model on the way is fitted to the runs to fit and judged
-//! on those held out.
+//! on those held out. One that predicts worse than with fewer effects stands for the better one: whoever has only
+//! these effects would leave out what misleads.
 
 use appell_estimate::Estimation;
 
@@ -79,7 +80,7 @@ pub(super) fn of(
     });
     for (place, (name, _)) in effects.iter().enumerate() {
         add(name.clone(), &|means| {
-            shapley(&means[1..=all + 1], place, count) / gap(means)
+            shapley(&at_their_best(&means[1..=all + 1]), place, count) / gap(means)
         });
     }
     if ends.law.is_some() {
@@ -113,6 +114,18 @@ pub(super) fn of_alternative(
         part(name, &|means| (means[0] - means[2]) / gap(means)),
         part(REST, &|means| (means[2] - floor * floor) / gap(means)),
     ]
+}
+
+/// Every coalition with the least of what parts of it leave. The whole stands as it is, so that shares add up
+/// to what it takes.
+fn at_their_best(means: &[f64]) -> Vec<f64> {
+    let mut best = means.to_vec();
+    for set in 1..means.len() - 1 {
+        let without = (0..usize::BITS).map(|place| set & !(1 << place));
+        let parts = without.map(|part| best[part]);
+        best[set] = parts.fold(best[set], f64::min);
+    }
+    best
 }
 
 /// What the player at a place takes from `means`, which hold all coalitions by their number.
@@ -203,7 +216,7 @@ fn with(
 
 #[cfg(test)]
 mod tests {
-    use super::shapley;
+    use super::{at_their_best, shapley};
 
     #[test]
     fn shares_add_up_and_twins_share_alike() {
@@ -216,5 +229,17 @@ mod tests {
         let shares = [0, 1, 2].map(|place| shapley(&means, place, 3));
         assert!(shares[1].abs() < 1e-12, "{shares:?}");
         assert!((shares.iter().sum::<f64>() - 8.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn what_misleads_alone_takes_nothing() {
+        // The second alone makes it worse, beside the first it takes one more.
+        let best = at_their_best(&[10.0, 2.0, 30.0, 1.0]);
+        assert_eq!(best, [10.0, 2.0, 10.0, 1.0]);
+        let [first, second] = [0, 1].map(|place| shapley(&best, place, 2));
+        assert!((first - 8.5).abs() < 1e-12 && (second - 0.5).abs() < 1e-12);
+        // Nobody is there, or one.
+        assert_eq!(at_their_best(&[3.0]), [3.0]);
+        assert_eq!(at_their_best(&[3.0, 4.0]), [3.0, 4.0]);
     }
 }

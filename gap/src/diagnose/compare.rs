@@ -14,7 +14,7 @@ use super::calibration::{
     unlisted_beside_nothing,
 };
 use super::evidence::Fitted;
-use super::screen::{Screen, Screened};
+use super::screen::{Screen, Screened, quieten};
 use super::unknown::{Leftover, leftover};
 use super::whiteness::independent;
 use crate::effects::{Acts, Candidate, Part};
@@ -25,6 +25,8 @@ const KEPT: usize = 8;
 const FIRST: usize = 3;
 /// Candidates that are tried beside another.
 const KEPT_BESIDE: usize = 4;
+/// By how much a disturbance becomes smaller beside an effect that it has followed.
+const FOLLOWED: f64 = 3.0;
 /// Most effects of a hypothesis.
 const MOST_MEMBERS: usize = 4;
 /// Gains below this cannot outweigh that there are many candidates, whatever a fit adds to them.
@@ -183,6 +185,20 @@ impl Comparison {
         Ok(())
     }
 
+    /// The same with further hypotheses that were fitted elsewhere.
+    pub(super) fn with(self, bench: &Bench<'_>, known: Vec<Fitted>) -> Result<Self, DiagnoseError> {
+        let mut search = Search {
+            bench,
+            fits: vec![self.nominal().clone()],
+            failed: self.failed,
+            settled: BTreeSet::new(),
+        };
+        for fitted in self.fits.into_iter().map(|(own, _)| own).chain(known) {
+            search.keep(fitted);
+        }
+        search.finish()
+    }
+
     /// From the nominal model and what else is known. `look` is asked about the best hypothesis before others are
     /// tried; nothing where that is refuted.
     pub(super) fn of(
@@ -207,6 +223,7 @@ impl Comparison {
             }
             search.join(0, screened);
         }
+        search.join_quiet(0)?;
         for members in 1..MOST_MEMBERS {
             if !search.betters(members) {
                 break;
@@ -221,10 +238,12 @@ impl Comparison {
                 for screened in &kept {
                     search.join(base, screened);
                 }
+                search.join_quiet(base)?;
                 search.join_tied(base, &kept);
                 search.join_components(base, &screen);
             }
         }
+        search.drop_idle();
         search.finish().map(Some)
     }
 }
@@ -293,6 +312,45 @@ impl Search<'_, '_> {
             self.join(best, other);
         }
         Ok(both(self).is_some_and(|both| matches!(look(&self.fits[both]), Look::Holds)))
+    }
+
+    /// Where the disturbances of a hypothesis follow what it lacks, others may take their place as well as the one
+    /// that shows in spite of them.
+    fn join_quiet(&mut self, to: usize) -> Result<(), DiagnoseError> {
+        let members = self.fits[to].members.clone();
+        let Some(better) = self.best_of(members.len() + 1) else {
+            return Ok(());
+        };
+        if self.bench.is_over_windows() || !self.follows(to, better) {
+            return Ok(());
+        }
+        let screen = Screen::quiet(self.bench, &self.fits[to])?;
+        for screened in kept(self.bench, &screen, &members, KEPT_BESIDE) {
+            let name = |candidate: usize| self.bench.candidate(candidate).name();
+            let mut fits = self.fits.iter();
+            let is_known = fits.any(|own| {
+                let mut others = own.members.iter().filter(|one| !members.contains(one));
+                own.members.len() == members.len() + 1
+                    && others.any(|&one| name(one) == name(screened.candidate))
+            });
+            if !is_known {
+                self.join(to, &screened);
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether a disturbance of a hypothesis is far larger than beside a better one.
+    fn follows(&self, own: usize, better: usize) -> bool {
+        let [own, better] = [own, better].map(|index| &self.fits[index]);
+        own.fit.is_optimum()
+            && (0..self.bench.effects.info().speeds).any(|index| {
+                let level = |fitted: &Fitted| {
+                    let place = fitted.layout.place(Unknown::Disturbance(index)).ok()?;
+                    Some(fitted.fit.values[place])
+                };
+                level(own) > level(better).map(|level| FOLLOWED * level)
+            })
     }
 
     /// Fits a candidate beside the members of a hypothesis.
@@ -412,6 +470,7 @@ impl Search<'_, '_> {
         let from = &self.fits[to];
         let mut start = bench.carried(from, &estimation);
         let begin = start.clone();
+        quieten(&estimation, &mut start, screened.levels)?;
         place(bench, &estimation, screened, &mut start)?;
         let fits = screened.starts.iter().map(|values| {
             let mut start = start.clone();
@@ -423,12 +482,73 @@ impl Search<'_, '_> {
         });
         let mut fitted = best_fit(fits)?;
         fitted.evidence.told_by_inputs = from.evidence.told_by_inputs + screened.told_by_inputs;
+        self.count_late((from, &begin), &mut fitted)?;
+        Ok(fitted)
+    }
+
+    /// A late channel loses rows, so that likelihoods compare by what is gained over another hypothesis, whose
+    /// values are `begin`.
+    fn count_late(
+        &self,
+        (from, begin): (&Fitted, &[f64]),
+        fitted: &mut Fitted,
+    ) -> Result<(), DiagnoseError> {
+        let bench = self.bench;
         let is_late = |&member: &usize| matches!(bench.candidate(member).acts, Acts::Late(_));
-        if members.iter().any(is_late) {
-            let gain = bench.gain_of_late(members, &begin, &fitted.fit.values)?;
+        if fitted.members.iter().any(is_late) {
+            let gain = bench.gain_of_late(&fitted.members, begin, &fitted.fit.values)?;
             fitted.evidence.log_likelihood = from.evidence.log_likelihood + gain;
         }
+        Ok(())
+    }
+
+    /// Members may have led to others beside which they are not needed: the best hypothesis without each of them, from
+    /// where it ended.
+    fn drop_idle(&mut self) {
+        while let Some(best) = self
+            .best()
+            .filter(|&best| self.fits[best].members.len() > 1)
+        {
+            let whole = self.fits[best].clone();
+            for &idle in &whole.members {
+                if let Ok(fitted) = self.fitted_without(&whole, idle) {
+                    self.keep(fitted);
+                }
+            }
+            if self.best() == Some(best) {
+                return;
+            }
+        }
+    }
+
+    /// A hypothesis without a member, from where it ended with it.
+    fn fitted_without(&self, whole: &Fitted, idle: usize) -> Result<Fitted, DiagnoseError> {
+        let bench = self.bench;
+        let mut members = whole.members.clone();
+        members.retain(|&own| own != idle);
+        let setup = bench.setup(&members);
+        let estimation = Estimation::new(&setup, &bench.recordings)?;
+        let (mut start, neutral) = (bench.carried(whole, &estimation), estimation.nominal());
+        let own = bench.own(bench.candidate(idle)).into_iter();
+        let mut places: Vec<usize> = own.map(|(place, _)| place).collect();
+        for free in bench.brought(idle, &setup) {
+            places.push(estimation.layout().place(free.unknown)?);
+        }
+        for place in places {
+            start[place] = neutral[place];
+        }
+        let mut fitted = bench.fit(&members, &estimation, &start)?;
+        fitted.evidence.told_by_inputs = whole.evidence.told_by_inputs;
+        let nominal = &self.fits[0];
+        self.count_late((nominal, &bench.carried(nominal, &estimation)), &mut fitted)?;
         Ok(fitted)
+    }
+
+    /// The most probable hypothesis.
+    fn best(&self) -> Option<usize> {
+        let there = (0..self.fits.len()).filter(|&i| self.fits[i].is_there());
+        let log = |i: usize| self.log_posterior(&self.fits[i]);
+        there.max_by(|&a, &b| log(a).total_cmp(&log(b)))
     }
 
     /// Whether the last of so many members made a hypothesis more probable. Two are tried always: neither may

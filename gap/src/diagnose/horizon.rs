@@ -75,7 +75,9 @@ pub(super) fn judged<'a>(
         stage("looking for what no effect explains");
         comparison.weigh_unknown(&over)?;
         let whole = if comparison.leads_unknown() && !none(&comparison) {
-            nothing_left((&bench, &nominal, &screen), stepwise.take())?
+            let again = bench.fitted_again(&over, comparison.best());
+            let known = again.into_iter().map(|(_, again)| again).collect();
+            nothing_left((&bench, &nominal, &screen), known, stepwise.take())?
         } else {
             None
         };
@@ -116,15 +118,15 @@ pub(super) fn judged<'a>(
 }
 
 /// One-step predictions where they explain everything: a mechanism that falls over is lost in windows of any length.
+/// Some hypotheses are `known` from elsewhere.
 fn nothing_left(
     (bench, nominal, screen): (&Bench<'_>, &Fitted, &Screen),
-    known: Option<Comparison>,
+    known: Vec<Fitted>,
+    stepwise: Option<Comparison>,
 ) -> Result<Option<Comparison>, DiagnoseError> {
-    let comparison = match known {
-        Some(known) => Some(known),
-        None => Comparison::of(bench, (nominal.clone(), Vec::new()), screen, |_| {
-            Look::Holds
-        })?,
+    let comparison = match stepwise {
+        Some(stepwise) => Some(stepwise.with(bench, known)?),
+        None => Comparison::of(bench, (nominal.clone(), known), screen, |_| Look::Holds)?,
     };
     let Some(mut comparison) = comparison else {
         return Ok(None);

@@ -33,6 +33,8 @@ pub(super) struct Screened {
     pub(super) deviations: Vec<f64>,
     /// What else its fit begins with: values of its parameters by their places, one list for each start.
     pub(super) starts: Vec<Vec<(usize, f64)>>,
+    /// By what disturbances are multiplied where its fit begins.
+    pub(super) levels: f64,
     /// Its signature along the best step, of length 1.
     signature: DVector<f64>,
 }
@@ -52,6 +54,7 @@ impl Screened {
             deviations: vec![0.0; sizes.len()],
             sizes,
             starts,
+            levels: 1.0,
             signature: DVector::zeros(0),
         }
     }
@@ -68,6 +71,8 @@ impl Screened {
 
 /// Part of a signature that nothing free can imitate, below which there is none.
 const LEFT: f64 = 1e-4;
+/// Disturbances that do not follow what the model lacks, as a part of those that do.
+const QUIET: f64 = 0.1;
 
 /// All candidates.
 #[derive(Debug, Clone)]
@@ -196,12 +201,30 @@ fn orthogonal(columns: &DMatrix<f64>) -> DMatrix<f64> {
 impl Screen {
     /// About a fit, of all candidates that it does not have.
     pub(super) fn of(bench: &Bench<'_>, fitted: &Fitted) -> Result<Self, DiagnoseError> {
+        let mut screen = Self::first_order((bench, fitted), 1.0)?;
+        screen.list.extend(augmented::screened(bench, fitted)?);
+        screen.list.sort_by(|a, b| b.gain.total_cmp(&a.gain));
+        Ok(screen)
+    }
+
+    /// The same with smaller disturbances. The fitted ones follow what the model lacks, and beside them it gains
+    /// little: with a candidate that is right they would be smaller.
+    pub(super) fn quiet(bench: &Bench<'_>, fitted: &Fitted) -> Result<Self, DiagnoseError> {
+        Self::first_order((bench, fitted), QUIET)
+    }
+
+    /// All but those that bring a coordinate, with disturbances multiplied by `levels`.
+    fn first_order(
+        (bench, fitted): (&Bench<'_>, &Fitted),
+        levels: f64,
+    ) -> Result<Self, DiagnoseError> {
         let setup = bench.whole_setup(&fitted.members);
         let estimation = Estimation::new(&setup, &bench.recordings)?;
         let free = moving(fitted);
         let (directions, own) = others(bench, fitted, &free);
         let mut values = bench.carried(fitted, &estimation);
         shapes(bench, &mut values, &fitted.members);
+        quieten(&estimation, &mut values, levels)?;
         let input_innovations = &bench.input_innovations;
         let kicks = |run: usize, at: At<'_>, to: &mut [f64]| input_innovations.kicks(run, at.t, to);
         let kicks = (input_innovations.count > 0).then_some(Shapes {
@@ -223,13 +246,25 @@ impl Screen {
                 let beyond = beyond.map_or(0.0, |beyond| beyond.gain);
                 one.told_by_inputs = (one.gain - beyond).clamp(0.0, for_kicks);
                 one.gain -= one.told_by_inputs;
+                one.levels = levels;
                 Some(one)
             })
             .collect();
-        list.extend(augmented::screened(bench, fitted)?);
         list.sort_by(|a, b| b.gain.total_cmp(&a.gain));
         Ok(Self { list })
     }
+}
+
+/// Multiplies the disturbances among values.
+pub(super) fn quieten(
+    estimation: &Estimation<'_>,
+    values: &mut [f64],
+    levels: f64,
+) -> Result<(), DiagnoseError> {
+    for index in 0..estimation.setup().disturbances.len() {
+        values[estimation.layout().place(Unknown::Disturbance(index))?] *= levels;
+    }
+    Ok(())
 }
 
 /// Candidates that do something, but nothing about a fit that what is free there cannot do as well.
@@ -389,6 +424,7 @@ fn screened(
             sizes,
             deviations,
             starts: vec![Vec::new()],
+            levels: 1.0,
             signature: signature / length.max(f64::MIN_POSITIVE),
         });
     }

@@ -105,6 +105,7 @@ const OF_WHEEL: &[&str] = &[
     "contact",
     "roll",
     "narrow_rate",
+    "axle_rate",
     "spin",
     "normal_x",
     "normal_y",
@@ -370,6 +371,7 @@ impl<'m> Sites<'m> {
             return None;
         };
         let name = &self.mechanism.frames[frame].name;
+        let axle = ["x", "y", "z"][turn.axis.index()];
         let axes = down.iter().zip(["x", "y", "z"]);
         let spin: Vec<String> = axes
             .filter(|(down, _)| **down != 0)
@@ -384,6 +386,10 @@ impl<'m> Sites<'m> {
             ("contact", contact.name.clone()),
             ("roll", self.mechanism.coordinates[roll].label.name.clone()),
             ("narrow_rate", number(self.scales.narrow[roll.index()])),
+            (
+                "axle_rate",
+                format!("angular_velocity({name}, {axle}, {name})"),
+            ),
             ("spin", spin.join(" + ")),
             ("normal_x", (-down[0]).to_string()),
             ("normal_y", (-down[1]).to_string()),

@@ -140,9 +140,7 @@ pub(super) fn svg(mechanism: &Mechanism, scene: &Scene, view: &View, marked: &[&
         sheet.axes(axes, extent);
     }
     sheet.points(mechanism, scene);
-    for name in marked {
-        sheet.rings(mechanism, scene, name);
-    }
+    sheet.rings(mechanism, scene, marked);
     sheet.weight();
     sheet.legend(height, step, &strokes);
     sheet.svg.finish()
@@ -264,10 +262,7 @@ impl Sheet<'_> {
                 Some(body) => format!("{} ({})", point.name, body.name),
                 None => point.name.clone(),
             };
-            let close = |(other, _): &&mut ([f64; 2], String)| {
-                (other[0] - at[0]).hypot(other[1] - at[1]) < CLOSE
-            };
-            match names.iter_mut().find(close) {
+            match names.iter_mut().find(|(other, _)| are_close(*other, at)) {
                 Some((_, together)) => {
                     together.push_str(", ");
                     together.push_str(&name);
@@ -285,23 +280,32 @@ impl Sheet<'_> {
         }
     }
 
-    /// Rings around the locations of a name.
-    fn rings(&mut self, mechanism: &Mechanism, scene: &Scene, name: &str) {
-        let mut drawn: Vec<[f64; 2]> = Vec::new();
-        for point in home(mechanism, name) {
-            let Some(at) = scene.points[point].map(|place| self.place(place)) else {
-                continue;
-            };
-            let close = |other: &[f64; 2]| (other[0] - at[0]).hypot(other[1] - at[1]) < CLOSE;
-            if drawn.iter().any(close) {
-                continue;
+    /// Rings around the locations of names; names that meet are written together.
+    fn rings(&mut self, mechanism: &Mechanism, scene: &Scene, marked: &[&str]) {
+        let mut rings: Vec<([f64; 2], Vec<&str>)> = Vec::new();
+        for &name in marked {
+            let mut is_named = false;
+            for point in home(mechanism, name) {
+                let Some(at) = scene.points[point].map(|place| self.place(place)) else {
+                    continue;
+                };
+                let here = rings.iter_mut().find(|(other, _)| are_close(*other, at));
+                // A name stands at its first location alone.
+                let first = (!is_named).then_some(name);
+                is_named = true;
+                match here {
+                    Some((_, names)) => names.extend(first),
+                    None => rings.push((at, first.into_iter().collect())),
+                }
             }
+        }
+        for (at @ [x, y], names) in rings {
             let ring = circle("ring c1", at, RING).with("fill", "none");
             self.svg.put(&ring.with("stroke-width", 4).empty());
-            drawn.push(at);
-        }
-        if let Some([x, y]) = drawn.first() {
-            self.text([x + 0.8 * RING, y - RING], "name halo", "start", name);
+            if !names.is_empty() {
+                let place = [x + 0.8 * RING, y - RING];
+                self.text(place, "name halo", "start", &names.join(", "));
+            }
         }
     }
 
@@ -373,6 +377,10 @@ impl Sheet<'_> {
         let scale = format!("{} m", round_text(step));
         self.text([right, first], "small", "end", &scale);
     }
+}
+
+fn are_close(one: [f64; 2], other: [f64; 2]) -> bool {
+    (other[0] - one[0]).hypot(other[1] - one[1]) < CLOSE
 }
 
 fn circle(class: &str, [x, y]: [f64; 2], radius: f64) -> Element {

@@ -73,14 +73,14 @@ pub(super) fn budget(far: &HowFar) -> Markup {
                 "Shares of the mean square prediction error " (far.horizon_s) " s ahead on the held-out runs, beyond \
                  the noise. The share of an effect is the mean over all orders in which the effects can be added."
                 @if far.budget.iter().any(is_against_others) {
-                    " A share below zero: by itself the effect makes predictions worse, and pays only beside others."
+                    " A share below zero: beside the others the effect makes predictions worse."
                 }
             }
         }
     }
 }
 
-/// Whether a part makes predictions worse, beyond doubt, in most orders.
+/// Whether a part makes predictions worse, beyond doubt.
 fn is_against_others(part: &Share) -> bool {
     part.is_effect() && part.interval[1] < 0.0
 }

@@ -217,7 +217,7 @@ fn equations(set: &DataSet, place: &Where) -> Markup {
             html! { (code(&equation.name)) br; span class="faint" { (about) } },
             bar(equation.share),
             html! { (short(equation.rms)) " " (equation.unit) },
-            html! { (short(equation.p_value)) },
+            html! { (p_value(equation.p_value)) },
         ]
     });
     let heading = [
@@ -230,6 +230,15 @@ fn equations(set: &DataSet, place: &Where) -> Markup {
         @if !place.equations.is_empty() {
             (table(heading, rows, 2))
         }
+    }
+}
+
+/// A probability that is not zero, though its number may be.
+fn p_value(value: f64) -> String {
+    if value > 0.0 {
+        short(value)
+    } else {
+        "< 1e-300".to_owned()
     }
 }
 

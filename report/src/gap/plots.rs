@@ -59,7 +59,7 @@ pub(super) fn trace(trace: &Trace) -> [String; 2] {
         height: 170.0,
         layers: vec![
             layer("measured", trace.measured.clone(), Look::Points, data),
-            layer("nominal", trace.nominal.clone(), Look::Line, stated),
+            layer("as stated", trace.nominal.clone(), Look::Line, stated),
             layer("re-fitted", trace.refitted.clone(), Look::Line, refitted),
             layer(
                 "with the effect",
@@ -77,7 +77,7 @@ pub(super) fn trace(trace: &Trace) -> [String; 2] {
         height: 150.0,
         layers: vec![
             layer("expected", edge(-wide), Look::Band(edge(wide)), data),
-            layer("nominal", error(&trace.nominal), Look::Line, stated),
+            layer("as stated", error(&trace.nominal), Look::Line, stated),
             layer("re-fitted", error(&trace.refitted), Look::Line, refitted),
             layer(
                 "with the effect",

@@ -6,7 +6,7 @@
 //!          --effects--> candidates: every effect at every place, derived at once with sizes of zero
 //!          --bench, evidence--> the nominal model in innovations form, parameters within tolerance
 //!          --screen--> what each candidate would gain, to first order
-//!          --compare--> the best ones fitted, alone and together; evidence on equal terms
+//!          --search, compare--> the best ones fitted, alone and together; evidence on equal terms
 //!          --horizon--> whether simulations over windows agree; if not, they decide instead
 //!          --alternative--> other specs, fitted to the same recordings
 //!          --unknown--> what no candidate explains, and what it depends on
@@ -48,9 +48,11 @@ mod law;
 mod localise;
 mod options;
 mod prediction;
+mod prior;
 mod report;
 mod scales;
 mod screen;
+mod search;
 mod traces;
 mod twins;
 mod unknown;

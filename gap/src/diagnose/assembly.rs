@@ -5,9 +5,10 @@ use super::alternative::Rival;
 use super::bench::Bench;
 use super::calibration::{TIED, tempered};
 use super::changes::Changes;
-use super::compare::{Comparison, effects, prior};
+use super::compare::Comparison;
 use super::evidence::Fitted;
 use super::law::FittedLaw;
+use super::prior::{effects, prior};
 use super::report::{
     Detectable, Found, GapVerdict, Hint, Hypothesis, LAW, Left, Report, UNKNOWN, Value, Where,
 };

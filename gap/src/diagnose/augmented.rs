@@ -23,13 +23,14 @@ const AFTER: [f64; 4] = [0.05, 0.1, 0.2, 0.4];
 /// Standard deviations by which the mean innovation in one of these times stands out.
 const BIASED: f64 = 4.0;
 
-/// Those that gain at some size.
-pub(super) fn screened(bench: &Bench<'_>, fitted: &Fitted) -> Result<Vec<Screened>, DiagnoseError> {
+/// Those that gain at some size. An input that follows the motion biases the innovations after its reversals
+/// whatever the cause: it claims first what it can tell, `told_by_inputs` at most.
+pub(super) fn screened(
+    bench: &Bench<'_>,
+    fitted: &Fitted,
+    told_by_inputs: f64,
+) -> Result<Vec<Screened>, DiagnoseError> {
     let effects = bench.effects;
-    // An input that follows the motion biases the innovations after its reversals whatever the cause.
-    if bench.input_innovations.count > 0 {
-        return Ok(Vec::new());
-    }
     // One such coordinate at a time, and none where contacts creep.
     if fitted
         .members
@@ -48,7 +49,7 @@ pub(super) fn screened(bench: &Bench<'_>, fitted: &Fitted) -> Result<Vec<Screene
             continue;
         };
         if is_biased(bench, fitted, &drive)? && effects.augment(index, &drive) {
-            list.extend(best_size(bench, fitted, index)?);
+            list.extend(best_size(bench, fitted, index)?.map(|one| one.told(told_by_inputs)));
         }
     }
     Ok(list)

@@ -59,6 +59,16 @@ impl Screened {
         }
     }
 
+    /// The same, of whose gain inputs may tell a part.
+    pub(super) fn told(self, by_inputs: f64) -> Self {
+        let told = by_inputs.min(self.gain);
+        Self {
+            gain: self.gain - told,
+            told_by_inputs: told,
+            ..self
+        }
+    }
+
     /// Cosine of the angle between two signatures.
     pub(super) fn alike(&self, other: &Self) -> f64 {
         if self.signature.len() == other.signature.len() {
@@ -201,8 +211,9 @@ fn orthogonal(columns: &DMatrix<f64>) -> DMatrix<f64> {
 impl Screen {
     /// About a fit, of all candidates that it does not have.
     pub(super) fn of(bench: &Bench<'_>, fitted: &Fitted) -> Result<Self, DiagnoseError> {
-        let mut screen = Self::first_order((bench, fitted), 1.0)?;
-        screen.list.extend(augmented::screened(bench, fitted)?);
+        let (mut screen, for_kicks) = Self::first_order((bench, fitted), 1.0)?;
+        let augmented = augmented::screened(bench, fitted, for_kicks)?;
+        screen.list.extend(augmented);
         screen.list.sort_by(|a, b| b.gain.total_cmp(&a.gain));
         Ok(screen)
     }
@@ -210,14 +221,15 @@ impl Screen {
     /// The same with smaller disturbances. The fitted ones follow what the model lacks, and beside them it gains
     /// little: with a candidate that is right they would be smaller.
     pub(super) fn quiet(bench: &Bench<'_>, fitted: &Fitted) -> Result<Self, DiagnoseError> {
-        Self::first_order((bench, fitted), QUIET)
+        Ok(Self::first_order((bench, fitted), QUIET)?.0)
     }
 
-    /// All but those that bring a coordinate, with disturbances multiplied by `levels`.
+    /// All but those that bring a coordinate, with disturbances multiplied by `levels`; how much speaks for inputs that
+    /// know the motion.
     fn first_order(
         (bench, fitted): (&Bench<'_>, &Fitted),
         levels: f64,
-    ) -> Result<Self, DiagnoseError> {
+    ) -> Result<(Self, f64), DiagnoseError> {
         let setup = bench.whole_setup(&fitted.members);
         let estimation = Estimation::new(&setup, &bench.recordings)?;
         let free = moving(fitted);
@@ -244,14 +256,13 @@ impl Screen {
                 let mut one = screened(&projected, candidate, &columns, &positive)?;
                 let beyond = screened(&beyond, candidate, &columns, &positive);
                 let beyond = beyond.map_or(0.0, |beyond| beyond.gain);
-                one.told_by_inputs = (one.gain - beyond).clamp(0.0, for_kicks);
-                one.gain -= one.told_by_inputs;
+                let told = (one.gain - beyond).clamp(0.0, for_kicks);
                 one.levels = levels;
-                Some(one)
+                Some(one.told(told))
             })
             .collect();
         list.sort_by(|a, b| b.gain.total_cmp(&a.gain));
-        Ok(Self { list })
+        Ok((Self { list }, for_kicks))
     }
 }
 

@@ -31,6 +31,7 @@ pub mod motion;
 pub mod motions;
 mod outputs;
 pub mod positions;
+pub mod prescribed;
 pub mod ranges;
 pub mod rank;
 mod reacting_loads;

@@ -288,14 +288,14 @@ pub struct Gradient<'a> {
     pub p: &'a mut [f64],
 }
 
-/// Energies, and the power of the loads without a potential.
+/// Energies, and the power that changes their sum.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Energies {
     /// Kinetic energy in J.
     pub kinetic: f64,
     /// Potential energy of gravity and springs in J.
     pub potential: f64,
-    /// Power of all loads that have no potential, in W.
+    /// Power of all loads that have no potential, and of what keeps up a prescribed motion, in W.
     pub power: f64,
     /// Acceleration energy (Gibbs function) S in W/s, without the terms free of accelerations.
     pub acceleration: f64,

@@ -103,7 +103,9 @@ fn the_energy_grows_by_the_power_of_the_loads_as_an_identity() {
             let part = load.power(graph);
             power = graph.add(power, part);
         }
-        // A constraint that prescribes a velocity does work, too; no shipped mechanism has one.
+        let accelerations = d.motion.accelerations.clone();
+        let prescribed = d.prescribed_power(&accelerations).unwrap();
+        power = d.algebra.graph.add(power, prescribed);
         assert!(
             d.algebra.test.are_equal(&d.algebra.graph, growth, power),
             "{name}"

@@ -29,6 +29,7 @@ mod papers_euc;
 mod papers_steering;
 mod pivots;
 mod positions;
+mod prescribed;
 mod reactions;
 mod recordings;
 mod redundancy;

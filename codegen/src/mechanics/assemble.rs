@@ -16,6 +16,7 @@ use super::letters;
 use super::linear::ImplicitMotion;
 use super::linear_bound::BoundMotion;
 use super::positions::Positions;
+use super::prescribed;
 use super::reactions;
 use super::switches::switches;
 use super::symbols::{Symbols, ids};
@@ -147,7 +148,7 @@ impl Derivation {
                 let [p] = self.derivatives([&parameters])?;
                 vec![Array::jacobian("p", P, info, Space::Parameters, p)]
             }
-            FunctionKind::Energies => self.energies(mechanism),
+            FunctionKind::Energies => self.energies(mechanism)?,
             FunctionKind::ConstraintResidual => vec![self.constraint_residual(mechanism)],
             FunctionKind::ConstraintForces => vec![self.constraint_forces(mechanism)?],
             FunctionKind::Outputs => self.outputs(mechanism)?,
@@ -468,14 +469,16 @@ impl Derivation {
         results
     }
 
-    /// T, V and the power of the loads without a potential.
-    fn energies(&mut self, mechanism: &Mechanism) -> Vec<Array> {
+    /// T, V and the power of the loads without a potential and of what is prescribed.
+    fn energies(&mut self, mechanism: &Mechanism) -> Outcome<Vec<Array>> {
         let letter = letters::kinetic(mechanism);
         let bodies = self.bodies.clone();
         let kinetic: Vec<Expr> = bodies
             .iter()
             .map(|body| kinetic_energy_by_velocity(&mut self.algebra, body, letter).1)
             .collect();
+        let accelerations = self.motion.accelerations.clone();
+        let prescribed = self.prescribed_power(&accelerations)?;
         let graph = &mut self.algebra.graph;
         let potential: Vec<Expr> = self
             .loads
@@ -483,20 +486,34 @@ impl Derivation {
             .filter_map(|load| load.potential)
             .collect();
         let others = self.loads.iter().filter(|load| load.potential.is_none());
-        let power: Vec<Expr> = others.map(|load| load.power(graph)).collect();
-        [
+        let mut power: Vec<Expr> = others.map(|load| load.power(graph)).collect();
+        power.push(prescribed);
+        let about_power = if prescribed == Graph::ZERO {
+            "Power of the loads without a potential, in W."
+        } else {
+            "Power of the loads without a potential and of the prescribed motion, in W."
+        };
+        let arrays = [
             ("kinetic", "Kinetic energy, in J.", kinetic),
             ("potential", "Potential energy, in J.", potential),
-            (
-                "power",
-                "Power of the loads without a potential, in W.",
-                power,
-            ),
+            ("power", about_power, power),
         ]
         .map(|(name, about, parts)| {
             Array::scalar(name, about, graph.sum(&parts)).under(about, 0..1)
-        })
-        .into()
+        });
+        Ok(arrays.into())
+    }
+
+    /// The power of what is prescribed, with these pseudo-accelerations.
+    pub fn prescribed_power(&mut self, accelerations: &[Expr]) -> Outcome<Expr> {
+        let (bodies, speeds) = (&self.bodies, &self.symbols.speeds);
+        prescribed::power(
+            &mut self.algebra,
+            bodies,
+            &self.loads,
+            speeds,
+            accelerations,
+        )
     }
 
     /// ẋ: pseudo-accelerations, then generalised velocities.

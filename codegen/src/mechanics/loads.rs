@@ -60,6 +60,11 @@ impl AppliedLoad {
         self.work.iter().any(|w| graph.mentions(w.force, symbols))
     }
 
+    /// Forces, each with the velocity along which it works.
+    pub fn work(&self) -> impl Iterator<Item = (Expr, Expr)> {
+        self.work.iter().map(|w| (w.force, w.velocity))
+    }
+
     /// Power of the load.
     pub fn power(&self, graph: &mut Graph) -> Expr {
         let parts: Vec<Expr> = self

@@ -8,7 +8,7 @@ use super::phrases::{headed, listed, math, sentence, with, words};
 use super::solution::Elimination;
 use appell_codegen::mechanics;
 use appell_codegen::mechanics::gibbs_appell::kinetic_energy;
-use appell_codegen::symbolic::{Expr, Node};
+use appell_codegen::symbolic::{Expr, Graph, Node};
 
 /// Longer accelerations, on average in a block, are not written out.
 const LONGEST_READING: usize = 180;
@@ -143,19 +143,27 @@ pub(super) fn energies(w: &mut Writer<'_>) -> Section {
         Math::Letter(Letter::plain("V")),
         w.explicit(potential),
     ));
-    let power: Vec<Expr> = loads
+    let mut power: Vec<Expr> = loads
         .iter()
         .filter(|load| load.potential.is_none())
         .map(|load| load.power(w.graph()))
         .collect();
+    let accelerations = w.derivation.symbols.accelerations.clone();
+    let prescribed = w.derivation.prescribed_power(&accelerations);
+    let prescribed = prescribed.unwrap_or(Graph::ZERO);
+    power.push(prescribed);
     let power = w.graph().sum(&power);
     equations.push(Equation::new(
         Math::Letter(Letter::plain("P")),
         w.explicit(power),
     ));
-    let mut text = vec![words(
-        "Kinetic energy T, potential energy V, power P of the non-conservative loads.",
-    )];
+    let of_power = if prescribed == Graph::ZERO {
+        "Kinetic energy T, potential energy V, power P of the non-conservative loads."
+    } else {
+        "Kinetic energy T, potential energy V, power P of the non-conservative loads and of what keeps up the \
+         prescribed motion."
+    };
+    let mut text = vec![words(of_power)];
     let steady = w.derivation.symbols.signals.is_empty();
     if steady {
         let rate = Math::Row(vec![

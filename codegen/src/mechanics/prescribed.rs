@@ -1,0 +1,76 @@
+//! The power of what is prescribed: constraints and frames that move by themselves.
+//!
+//! A velocity is `v = Σ (∂v/∂ω) ω + v₀`. The first part is a motion that the constraints allow, along which
+//! inertial forces and loads balance (d'Alembert). So what keeps up the prescribed motion supplies the power
+//! `Σ (m a·v₀ + ḣ·Ω₀) − Σ F·v₀` over all bodies and loads. It is zero where nothing is prescribed.
+
+use super::algebra::Algebra;
+use super::finding::{Item, Outcome, division_by_zero};
+use super::gibbs_appell::{ActualMotion, BodyMotion};
+use super::loads::AppliedLoad;
+use crate::symbolic::vector::Vec3;
+use crate::symbolic::{Expr, Graph, Substitution};
+
+/// The power, for the pseudo-velocities `speeds` and their rates `accelerations`.
+pub fn power(
+    algebra: &mut Algebra,
+    bodies: &[BodyMotion],
+    loads: &[AppliedLoad],
+    speeds: &[Expr],
+    accelerations: &[Expr],
+) -> Outcome<Expr> {
+    let mut standing = Substitution::by_zero(&algebra.graph, speeds);
+    let mut parts = Vec::new();
+    for body in bodies {
+        let v_0 = prescribed3(algebra, &mut standing, body.centre.velocity.v)?;
+        let w_0 = match &body.rotation {
+            Some(rotation) => prescribed3(algebra, &mut standing, rotation.velocity.v)?,
+            None => None,
+        };
+        if v_0.is_none() && w_0.is_none() {
+            continue;
+        }
+        let motion = ActualMotion::new(algebra, body, accelerations);
+        if let Some(v_0) = v_0 {
+            let force = algebra.graph.scale3(body.mass, motion.a);
+            parts.push(algebra.graph.dot(force, v_0));
+        }
+        if let Some(w_0) = w_0 {
+            parts.push(algebra.graph.dot(motion.momentum_rate, w_0));
+        }
+    }
+    for (force, velocity) in loads.iter().flat_map(AppliedLoad::work) {
+        if let Some(v_0) = prescribed(algebra, &mut standing, velocity)? {
+            let supplied = algebra.graph.mul(force, v_0);
+            parts.push(algebra.graph.neg(supplied));
+        }
+    }
+    Ok(algebra.graph.sum(&parts))
+}
+
+/// What a velocity is where all pseudo-velocities vanish; nothing where that is zero.
+fn prescribed(
+    algebra: &mut Algebra,
+    standing: &mut Substitution,
+    velocity: Expr,
+) -> Outcome<Option<Expr>> {
+    let v_0 = standing.apply(&mut algebra.graph, velocity);
+    let v_0 = v_0.ok_or_else(|| vec![division_by_zero(Item::Mechanism)])?;
+    let is_zero = algebra.test.are_equal(&algebra.graph, v_0, Graph::ZERO);
+    Ok((!is_zero).then_some(v_0))
+}
+
+fn prescribed3(
+    algebra: &mut Algebra,
+    standing: &mut Substitution,
+    velocity: Vec3,
+) -> Outcome<Option<Vec3>> {
+    let mut v_0 = [Graph::ZERO; 3];
+    let mut moves = false;
+    for (own, component) in v_0.iter_mut().zip(velocity) {
+        if let Some(part) = prescribed(algebra, standing, component)? {
+            (*own, moves) = (part, true);
+        }
+    }
+    Ok(moves.then_some(v_0))
+}

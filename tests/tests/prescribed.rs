@@ -1,0 +1,168 @@
+//! What is prescribed does work: the energy grows by the power of the loads and of what keeps the motion up.
+#![allow(clippy::unwrap_used, reason = "tests may panic")]
+
+use appell_codegen::derived;
+use appell_codegen::jit::JitModel;
+use appell_codegen::mechanics::assemble::program;
+use appell_codegen::program::FunctionKind;
+use appell_runtime::model::{At, Model};
+use appell_test_kit::Random;
+use appell_tests::engine::assert_close;
+
+/// A ball that rolls on a table that turns at a given rate: a constraint does work.
+const BALL: &str = r#"
+[mechanism]
+name = "ball_on_driven_table"
+title = "Ball on a table that turns at a given rate"
+[parameters]
+m = { value = 0.3, unit = "kg" }
+R = { value = 0.04, unit = "m" }
+W = { value = 2, unit = "rad/s" }
+[coordinates]
+x = { unit = "m" }
+y = { unit = "m" }
+psi = { unit = "rad" }
+theta = { unit = "rad", range = [-1.5, 1.5] }
+phi = { unit = "rad" }
+[frames]
+ball = { parent = "ground", turns = [{ about_axis = "z", by = "psi" }, { about_axis = "x", by = "theta" }, { about_axis = "y", by = "phi" }] }
+[points]
+C = { from = "O", in = "ground", at = ["x", "y", "R"] }
+P = { from = "O", in = "ground", at = ["x", "y", 0] }
+[bodies]
+ball = { frame = "ball", centre = "C", mass = "m", inertia = { in = "ground", diagonal = ["0.4*m*R^2", "0.4*m*R^2", "0.4*m*R^2"] } }
+[constraints]
+roll_x = { kind = "fixed_velocity", point = "P", body = "ball", in = "ground", direction = [1, 0, 0], equals = "-W*y" }
+roll_y = { kind = "fixed_velocity", point = "P", body = "ball", in = "ground", direction = [0, 1, 0], equals = "W*x" }
+[pseudo_velocities]
+vx = "dot(x)"
+vy = "dot(y)"
+wz = "dot(psi) + dot(phi)*sin(theta)"
+"#;
+
+/// A bead with a spring on a rod that a motor turns, in gravity and in the air: a frame does work.
+const BEAD: &str = r#"
+[mechanism]
+name = "bead_on_driven_rod"
+title = "Bead on a rod that turns at a given rate"
+[parameters]
+m = { value = 0.5, unit = "kg" }
+W = { value = 3, unit = "rad/s" }
+k = { value = 8, unit = "N/m" }
+c = { value = 0.1, unit = "N*s/m" }
+g = { value = 9.81, unit = "m/s^2" }
+[coordinates]
+r = { unit = "m" }
+[frames]
+rod = { parent = "ground", about_axis = "y", by = "W*t" }
+[points]
+B = { from = "O", in = "rod", at = ["r", 0, 0] }
+[bodies]
+bead = { centre = "B", mass = "m" }
+[pseudo_velocities]
+v = "dot(r)"
+[loads]
+weight = { kind = "gravity", down = "-z", acceleration = "g" }
+spring = { kind = "spring", coordinate = "r", stiffness = "k" }
+air    = { kind = "force", on = "B", in = "ground", vector = ["-c*velocity(B, x)", 0, "-c*velocity(B, z)"] }
+"#;
+
+/// A board whose speed is given and whose truck steers: the velocities that follow come from a linear system.
+const BOARD: &str = r#"
+[mechanism]
+name = "board"
+title = "Skateboard at a given speed"
+[parameters]
+m = { value = 70, unit = "kg" }
+h = { value = 0.9, unit = "m" }
+l = { value = 0.4, unit = "m" }
+s = { value = 100, unit = "N*m" }
+V = { value = 4, unit = "m/s" }
+g = { value = 9.81, unit = "m/s^2" }
+[coordinates]
+x = { unit = "m" }
+y = { unit = "m" }
+psi = { unit = "rad" }
+b = { unit = "rad", range = [-1.4, 1.4] }
+[frames]
+board = { parent = "ground", about_axis = "z", by = "psi" }
+leaned = { parent = "board", about_axis = "x", by = "b" }
+front = { parent = "board", about_axis = "-z", by = "atan(sin(b))" }
+rear = { parent = "board", about_axis = "z", by = "atan(sin(b))" }
+[points]
+C = { from = "O", in = "ground", at = ["x", "y", 0] }
+F = { from = "C", in = "board", at = ["l", 0, 0] }
+R = { from = "C", in = "board", at = ["-l", 0, 0] }
+G = { from = "C", in = "leaned", at = ["0.1*l", 0, "h"] }
+[bodies]
+skater = { centre = "G", mass = "m" }
+[constraints]
+front = { kind = "fixed_velocity", point = "F", in = "front", direction = [0, 1, 0] }
+rear = { kind = "fixed_velocity", point = "R", in = "rear", direction = [0, 1, 0] }
+speed = { kind = "fixed_velocity", point = "C", in = "board", direction = [1, 0, 0], equals = "V" }
+[pseudo_velocities]
+w = "dot(b)"
+[loads]
+weight = { kind = "gravity", down = "-z", acceleration = "g" }
+trucks = { kind = "spring", coordinate = "b", stiffness = "s" }
+"#;
+
+/// Rounding of the differences below and their fifth-order error.
+const ENERGY: f64 = 1e-7;
+const STEP: f64 = 1e-3;
+const POINTS: usize = 20;
+
+#[test]
+fn the_energy_grows_by_the_power_of_loads_and_prescribed_motion() {
+    for (name, text) in [("ball", BALL), ("bead", BEAD), ("board", BOARD)] {
+        let derived = derived(name, text).unwrap_or_else(|report| panic!("{}", report.plain()));
+        let program = program(derived.derivation, &derived.mechanism, &FunctionKind::ALL).unwrap();
+        let model = JitModel::new(&program).unwrap();
+        let info = model.info();
+        let p = info.default_parameters();
+        let mut random = Random::of(name);
+        let mut works = false;
+        for number in 0..POINTS {
+            let x: Vec<f64> = (0..info.state_len())
+                .map(|_| random.between(-0.8, 0.8))
+                .collect();
+            let t = random.between(0.0, 2.0);
+            let mut rates = vec![0.0; x.len()];
+            let at = At {
+                t,
+                x: &x,
+                u: &[],
+                p: &p,
+            };
+            model.rates(at, &mut rates);
+            let moved = |steps: f64| {
+                let there: Vec<f64> = x
+                    .iter()
+                    .zip(&rates)
+                    .map(|(x, rate)| x + steps * STEP * rate)
+                    .collect();
+                let t = t + steps * STEP;
+                let energies = model.energies(At {
+                    t,
+                    x: &there,
+                    u: &[],
+                    p: &p,
+                });
+                energies.kinetic + energies.potential
+            };
+            let growth =
+                (8.0 * (moved(1.0) - moved(-1.0)) - (moved(2.0) - moved(-2.0))) / (12.0 * STEP);
+            let power = model.energies(at).power;
+            works |= power.abs() > 1e-3;
+            let scale = growth.abs().max(1.0);
+            assert_close(
+                &format!("{name} at point {number}"),
+                &[growth],
+                &[power],
+                ENERGY,
+                scale,
+            );
+        }
+        assert!(works, "{name}: nothing does work");
+    }
+}

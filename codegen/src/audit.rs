@@ -13,6 +13,7 @@ mod integrability;
 mod passivity;
 mod reaction;
 mod samples;
+mod start;
 mod work;
 
 use appell_spec::Code;
@@ -44,6 +45,7 @@ pub fn audit(mechanism: &Mechanism, derivation: &Derivation) -> Audit {
         work::audit,
         passivity::audit,
         reaction::audit,
+        start::audit,
     ] {
         question(&mut bench, &mut told);
     }

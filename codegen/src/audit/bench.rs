@@ -69,7 +69,8 @@ impl<'a> Bench<'a> {
         shown(&self.algebra.graph, expr)
     }
 
-    /// Everything that the motion and its results consist of, without reactions but with friction.
+    /// Everything that the motion and its results consist of, without reactions but with friction and with what
+    /// position constraints demand of the configuration.
     pub(super) fn equations(&self) -> Vec<Expr> {
         let Derivation {
             contacts,
@@ -86,6 +87,7 @@ impl<'a> Bench<'a> {
         all.extend(loads.iter().filter_map(|load| load.potential));
         all.extend(&self.outputs);
         all.extend(contacts.iter().filter_map(|contact| contact.friction));
+        all.extend(&self.derivation.positions.residual);
         all
     }
 

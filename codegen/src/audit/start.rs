@@ -1,0 +1,147 @@
+//! Whether a configuration near the initial one satisfies the position constraints.
+
+use appell_runtime::dense::lu_solve_in_place;
+use appell_spec::Code;
+use appell_spec::mechanism::{ConstraintId, ConstraintKind, CoordinateId};
+
+use super::bench::{Audit, Bench};
+use crate::mechanics::finding::{Finding, Item};
+use crate::mechanics::symbols::ids;
+use crate::symbolic::{Expr, evaluate};
+
+/// Newton steps; each is halved until the residual falls.
+const STEPS: usize = 50;
+const HALVINGS: usize = 30;
+/// A residual that fell to this part of the first one, or of a step that changes nothing, is zero.
+const SOLVED: f64 = 1e-9;
+/// Part of a value by which a coordinate may move without a word: initial values are guesses.
+const GUESSED: f64 = 0.25;
+
+pub(super) fn audit(bench: &mut Bench, told: &mut Audit) {
+    let positions = &bench.derivation.positions;
+    let count = positions.residual.len();
+    if count == 0 {
+        return;
+    }
+    let graph = &bench.algebra.graph;
+    let places: Vec<usize> = (positions.dependent.iter())
+        .map(|&q| bench.derivation.symbols.coordinates[q])
+        .flat_map(|symbol| ids(graph, &[symbol]))
+        .map(|id| id.0 as usize)
+        .collect();
+    let columns = |row: &Vec<Expr>| {
+        positions
+            .dependent
+            .iter()
+            .map(|&q| row[q])
+            .collect::<Vec<_>>()
+    };
+    let slopes: Vec<Expr> = positions.jacobian.iter().flat_map(columns).collect();
+    let residual = |values: &[f64]| evaluate(graph, values, &positions.residual);
+    let first = bench.state.values();
+    let mut values = first.to_vec();
+    let mut errors = residual(&values);
+    let at_first = size(&errors);
+    if !at_first.is_finite() {
+        return;
+    }
+    let mut solved = at_first == 0.0;
+    for _ in 0..STEPS {
+        if solved {
+            break;
+        }
+        let mut matrix = evaluate(graph, &values, &slopes);
+        let mut step = errors.clone();
+        lu_solve_in_place(&mut matrix, &mut step, count);
+        let shorter = (0..HALVINGS).map(|halved| {
+            let mut there = values.clone();
+            for (&place, step) in places.iter().zip(&step) {
+                there[place] -= step * 0.5_f64.powi(halved as i32);
+            }
+            there
+        });
+        let better = shorter.into_iter().find_map(|there| {
+            let errors_there = residual(&there);
+            (size(&errors_there) < size(&errors)).then_some((there, errors_there))
+        });
+        let small = step
+            .iter()
+            .zip(&places)
+            .all(|(step, &place)| step.abs() <= SOLVED * values[place].abs().max(SOLVED));
+        let Some((there, errors_there)) = better else {
+            solved = small;
+            break;
+        };
+        (values, errors) = (there, errors_there);
+        solved = size(&errors) <= SOLVED * SOLVED * at_first || small;
+    }
+    if !solved {
+        for (index, &error) in residual(first).iter().enumerate() {
+            if error != 0.0 {
+                told.warnings.push(unsatisfied(bench, index));
+            }
+        }
+        return;
+    }
+    for (index, (&q, &place)) in positions.dependent.iter().zip(&places).enumerate() {
+        let (stated, start) = (first[place], values[place]);
+        if stated != 0.0 && (start - stated).abs() > GUESSED * stated.abs().max(start.abs()) {
+            told.notes.push(moved(bench, index, q, start));
+        }
+    }
+}
+
+/// Norm of a residual.
+fn size(errors: &[f64]) -> f64 {
+    errors.iter().map(|error| error * error).sum::<f64>().sqrt()
+}
+
+/// The item of a position constraint, by its number among them.
+fn constraint(bench: &Bench, index: usize) -> ConstraintId {
+    let of_positions = bench
+        .mechanism
+        .constraints
+        .entries()
+        .filter(|(_, constraint)| matches!(constraint.kind, ConstraintKind::Position { .. }))
+        .nth(index);
+    of_positions.map_or(ConstraintId::new(0), |(id, _)| id)
+}
+
+fn unsatisfied(bench: &Bench, index: usize) -> Finding {
+    let positions = &bench.derivation.positions;
+    let dependent = CoordinateId::new(positions.dependent[index]);
+    Finding {
+        code: Code::InitialState,
+        message: format!(
+            "no value of `{}` near the initial one satisfies `{}`: the mechanism cannot be assembled there",
+            bench.mechanism.coordinates[dependent].label.name, positions.names[index],
+        ),
+        item: Item::Constraint(constraint(bench, index)),
+        help: "correct the lengths, or the initial values of the other coordinates".to_owned(),
+    }
+}
+
+fn moved(bench: &Bench, index: usize, q: usize, start: f64) -> Finding {
+    let coordinate = &bench.mechanism.coordinates[CoordinateId::new(q)];
+    let label = &coordinate.label;
+    let shown = |value: f64| format!("{} {}", short(value / label.unit.scale), label.unit.text);
+    Finding {
+        code: Code::InitialState,
+        message: format!(
+            "`{}` starts at {}: its initial value, {}, does not satisfy `{}`",
+            label.name,
+            shown(start),
+            shown(coordinate.initial),
+            bench.derivation.positions.names[index],
+        ),
+        item: Item::Constraint(constraint(bench, index)),
+        help: "no action is needed; a dependent coordinate needs an initial value only to choose between solutions"
+            .to_owned(),
+    }
+}
+
+/// A number with four significant digits.
+fn short(value: f64) -> String {
+    let rounded: f64 = format!("{value:.3e}").parse().unwrap_or(value);
+    rounded.to_string()
+}

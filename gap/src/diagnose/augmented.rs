@@ -31,6 +31,10 @@ pub(super) fn screened(
     told_by_inputs: f64,
 ) -> Result<Vec<Screened>, DiagnoseError> {
     let effects = bench.effects;
+    // A filter that feedback holds up, and that is lost, says nothing of reversals.
+    if bench.input_innovations.count > 0 && !fitted.fit.is_optimum() {
+        return Ok(Vec::new());
+    }
     // One such coordinate at a time, and none where contacts creep.
     if fitted
         .members

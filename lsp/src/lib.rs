@@ -31,9 +31,6 @@ pub enum Error {
     /// A stream fails.
     #[error("the language server: {0}")]
     Stream(#[from] std::io::Error),
-    /// The system or a value does not allow what is needed.
-    #[error("the language server: {0}")]
-    Value(#[from] serde_json::Error),
 }
 
 /// Serves an editor over standard input and output until it leaves.

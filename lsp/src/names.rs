@@ -1,7 +1,7 @@
 //! From a name to its definition and its uses, and to another name.
 
 use appell_spec::occurrences::Occurrence;
-use appell_spec::rename::rename;
+use appell_spec::rename::{RenameError, rename};
 use lsp_types::{
     DocumentChanges, GotoDefinitionResponse, Location, OneOf,
     OptionalVersionedTextDocumentIdentifier, Position, PrepareRenameResponse, TextDocumentEdit,
@@ -54,12 +54,12 @@ pub(crate) fn renamed(
     document: &Document,
     position: Position,
     new: &str,
-) -> Result<Option<WorkspaceEdit>, String> {
+) -> Result<Option<WorkspaceEdit>, RenameError> {
     let Some(name) = document.name_at(position) else {
         return Ok(None);
     };
     let text = document.text.as_str();
-    let places = rename(text, name.namespace, &name.name, new).map_err(|e| e.to_string())?;
+    let places = rename(text, name.namespace, &name.name, new)?;
     let edit = |place| TextEdit::new(document.text.range(place), new.to_owned());
     let edits = places.iter().map(|place| OneOf::Left(edit(place)));
     let document = TextDocumentEdit {

@@ -7,50 +7,43 @@ use crossbeam_channel::{Sender, never, select};
 use lsp_server::{Connection, ErrorCode, Message, Notification, Request, Response};
 use lsp_types::notification::{
     DidChangeTextDocument, DidCloseTextDocument, DidOpenTextDocument, LogMessage,
-    Notification as _, PublishDiagnostics,
+    Notification as Told, PublishDiagnostics,
 };
 use lsp_types::request::{
     Completion, GotoDefinition, HoverRequest, PrepareRenameRequest, References, Rename,
-    Request as _,
+    Request as Asked,
 };
 use lsp_types::{
-    CompletionOptions, CompletionResponse, Diagnostic, HoverProviderCapability, LogMessageParams,
-    MessageType, OneOf, PublishDiagnosticsParams, RenameOptions, ServerCapabilities,
-    TextDocumentPositionParams, TextDocumentSyncCapability, TextDocumentSyncKind, Uri,
-    WorkDoneProgressOptions,
+    Diagnostic, LogMessageParams, MessageType, PublishDiagnosticsParams, ReferenceParams,
+    RenameParams, TextDocumentPositionParams, TextDocumentSyncKind, Uri,
 };
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+use serde_json::{Value, from_value, json};
 
 use crate::document::Document;
 use crate::text::Text;
-use crate::worker::{self, Job, Told, What};
+use crate::worker::{self, Job, What};
 use crate::{Error, completion, diagnostics, hover, names};
 
-/// An answer that is an error by intent, of the protocol's version 3.17.
+/// A request that makes sense and cannot be met, in the protocol's version 3.17.
 const REQUEST_FAILED: i32 = -32803;
 
-fn capabilities() -> ServerCapabilities {
-    ServerCapabilities {
-        text_document_sync: Some(TextDocumentSyncCapability::Kind(
-            TextDocumentSyncKind::INCREMENTAL,
-        )),
-        hover_provider: Some(HoverProviderCapability::Simple(true)),
-        definition_provider: Some(OneOf::Left(true)),
-        references_provider: Some(OneOf::Left(true)),
-        rename_provider: Some(OneOf::Right(RenameOptions {
-            prepare_provider: Some(true),
-            work_done_progress_options: WorkDoneProgressOptions::default(),
-        })),
-        completion_provider: Some(CompletionOptions {
-            trigger_characters: Some(["\"", "'", "(", "["].map(str::to_owned).into()),
-            ..CompletionOptions::default()
-        }),
-        ..ServerCapabilities::default()
-    }
+/// What the server offers.
+fn capabilities() -> Value {
+    json!({
+        "textDocumentSync": TextDocumentSyncKind::INCREMENTAL,
+        "hoverProvider": true,
+        "definitionProvider": true,
+        "referencesProvider": true,
+        "renameProvider": { "prepareProvider": true },
+        "completionProvider": { "triggerCharacters": ["\"", "'", "(", "["] },
+    })
 }
 
 /// Serves an editor until it leaves.
 pub fn serve(connection: &Connection) -> Result<(), Error> {
-    connection.initialize(serde_json::to_value(capabilities())?)?;
+    connection.initialize(capabilities())?;
     let (jobs, mut told) = worker::start()?;
     let mut server = Server {
         messages: connection.sender.clone(),
@@ -79,6 +72,18 @@ pub fn serve(connection: &Connection) -> Result<(), Error> {
     }
 }
 
+/// The protocol's code of a refusal, and the reason.
+type Refusal = (i32, String);
+
+fn read<T: DeserializeOwned>(params: Value) -> Result<T, Refusal> {
+    from_value(params).map_err(|error| (ErrorCode::InvalidParams as i32, error.to_string()))
+}
+
+fn written(result: impl Serialize) -> Result<Value, Refusal> {
+    let result = serde_json::to_value(result);
+    result.map_err(|error| (ErrorCode::InternalError as i32, error.to_string()))
+}
+
 struct Server {
     messages: Sender<Message>,
     jobs: Sender<Job>,
@@ -90,84 +95,55 @@ struct Server {
 
 impl Server {
     fn request(&self, request: Request) {
-        let id = request.id.clone();
-        let answer = catch_unwind(AssertUnwindSafe(|| self.answer(request)));
-        let answer = answer.unwrap_or_else(|_| {
-            let message = "a mistake in the language server".to_owned();
-            Response::new_err(id, ErrorCode::InternalError as i32, message)
-        });
+        let Request { id, method, params } = request;
+        let answer = catch_unwind(AssertUnwindSafe(|| self.answer(&method, params)));
+        let answer = match answer {
+            Ok(Ok(result)) => Response::new_ok(id, result),
+            Ok(Err((code, reason))) => Response::new_err(id, code, reason),
+            Err(_) => {
+                let reason = "a mistake in the language server".to_owned();
+                Response::new_err(id, ErrorCode::InternalError as i32, reason)
+            }
+        };
         // An editor that has gone needs no answer.
         let _ = self.messages.send(answer.into());
     }
 
-    fn answer(&self, request: Request) -> Response {
-        match request.method.as_str() {
-            HoverRequest::METHOD => self.ask::<HoverRequest>(request, |server, params| {
-                let at = params.text_document_position_params;
-                Ok(server
-                    .document(&at)
-                    .and_then(|d| hover::hover(d, at.position)))
-            }),
-            GotoDefinition::METHOD => self.ask::<GotoDefinition>(request, |server, params| {
-                let at = params.text_document_position_params;
-                Ok(server
-                    .document(&at)
-                    .and_then(|d| names::definition(d, at.position)))
-            }),
-            References::METHOD => self.ask::<References>(request, |server, params| {
-                let (at, with) = (params.text_document_position, params.context);
-                let document = server.document(&at);
-                Ok(document
-                    .and_then(|d| names::references(d, at.position, with.include_declaration)))
-            }),
-            PrepareRenameRequest::METHOD => {
-                self.ask::<PrepareRenameRequest>(request, |server, at| {
-                    Ok(server
-                        .document(&at)
-                        .and_then(|d| names::prepare(d, at.position)))
-                })
-            }
-            Rename::METHOD => self.ask::<Rename>(request, |server, params| {
-                let at = params.text_document_position;
-                match server.document(&at) {
-                    Some(document) => names::renamed(document, at.position, &params.new_name),
-                    None => Ok(None),
-                }
-            }),
-            Completion::METHOD => self.ask::<Completion>(request, |server, params| {
-                let at = params.text_document_position;
-                let document = server.document(&at);
-                let items = document.map(|d| completion::completion(d, at.position));
-                Ok(items.map(CompletionResponse::Array))
-            }),
-            other => {
-                let message = format!("no method `{other}`");
-                Response::new_err(request.id, ErrorCode::MethodNotFound as i32, message)
-            }
+    /// The answer to a question about a place; nothing where no spec is open.
+    fn answer(&self, method: &str, params: Value) -> Result<Value, Refusal> {
+        let offered = [
+            HoverRequest::METHOD,
+            GotoDefinition::METHOD,
+            References::METHOD,
+            PrepareRenameRequest::METHOD,
+            Rename::METHOD,
+            Completion::METHOD,
+        ];
+        if !offered.contains(&method) {
+            let reason = format!("no method `{method}`");
+            return Err((ErrorCode::MethodNotFound as i32, reason));
         }
-    }
-
-    fn ask<R: lsp_types::request::Request>(
-        &self,
-        request: Request,
-        answer: impl FnOnce(&Self, R::Params) -> Result<R::Result, String>,
-    ) -> Response {
-        match serde_json::from_value(request.params) {
-            Ok(params) => match answer(self, params) {
-                Ok(result) => Response::new_ok(request.id, result),
-                Err(reason) => Response::new_err(request.id, REQUEST_FAILED, reason),
-            },
-            Err(error) => {
-                let code = ErrorCode::InvalidParams as i32;
-                Response::new_err(request.id, code, error.to_string())
+        let at: TextDocumentPositionParams = read(params.clone())?;
+        let document = self.documents.get(at.text_document.uri.as_str());
+        let Some(document) = document.filter(|document| document.is_spec()) else {
+            return Ok(Value::Null);
+        };
+        let at = at.position;
+        match method {
+            HoverRequest::METHOD => written(hover::hover(document, at)),
+            GotoDefinition::METHOD => written(names::definition(document, at)),
+            References::METHOD => {
+                let context = read::<ReferenceParams>(params)?.context;
+                written(names::references(document, at, context.include_declaration))
             }
+            PrepareRenameRequest::METHOD => written(names::prepare(document, at)),
+            Rename::METHOD => {
+                let new = read::<RenameParams>(params)?.new_name;
+                let edit = names::renamed(document, at, &new);
+                written(edit.map_err(|reason| (REQUEST_FAILED, reason.to_string()))?)
+            }
+            _ => written(completion::completion(document, at)),
         }
-    }
-
-    /// The document of a place, if it is a spec.
-    fn document(&self, at: &TextDocumentPositionParams) -> Option<&Document> {
-        let document = self.documents.get(at.text_document.uri.as_str())?;
-        document.is_spec().then_some(document)
     }
 
     fn notification(&mut self, notification: Notification) {
@@ -181,13 +157,12 @@ impl Server {
         let Notification { method, params } = notification;
         match method.as_str() {
             DidOpenTextDocument::METHOD => {
-                let opened: lsp_types::DidOpenTextDocumentParams = serde_json::from_value(params)?;
+                let opened: lsp_types::DidOpenTextDocumentParams = from_value(params)?;
                 let opened = opened.text_document;
                 self.open(opened.uri, opened.version, Text::new(opened.text));
             }
             DidChangeTextDocument::METHOD => {
-                let changed: lsp_types::DidChangeTextDocumentParams =
-                    serde_json::from_value(params)?;
+                let changed: lsp_types::DidChangeTextDocumentParams = from_value(params)?;
                 let document = changed.text_document;
                 if let Some(known) = self.documents.get(document.uri.as_str()) {
                     let changes = changed.content_changes.into_iter();
@@ -197,7 +172,7 @@ impl Server {
                 }
             }
             DidCloseTextDocument::METHOD => {
-                let closed: lsp_types::DidCloseTextDocumentParams = serde_json::from_value(params)?;
+                let closed: lsp_types::DidCloseTextDocumentParams = from_value(params)?;
                 let uri = closed.text_document.uri;
                 self.documents.remove(uri.as_str());
                 self.publish(uri, None, Vec::new());
@@ -239,7 +214,7 @@ impl Server {
     }
 
     /// Takes what the derivation tells, if it is about the newest text.
-    fn learn(&mut self, told: Told) {
+    fn learn(&mut self, told: worker::Told) {
         let Some(document) = self.documents.get_mut(&told.uri) else {
             return;
         };
@@ -272,7 +247,7 @@ impl Server {
         });
     }
 
-    fn tell<N: lsp_types::notification::Notification>(&self, params: N::Params) {
+    fn tell<N: Told>(&self, params: N::Params) {
         let notification = Notification::new(N::METHOD.to_owned(), params);
         // An editor that has gone hears nothing.
         let _ = self.messages.send(notification.into());

@@ -105,7 +105,9 @@ mod tests {
     fn told(jobs: Vec<Job>, derive: impl Fn(&Job, &dyn Fn(What))) -> Vec<(u64, bool)> {
         let (send, wanted) = unbounded();
         let (tell, told) = unbounded();
-        jobs.into_iter().for_each(|job| send.send(job).unwrap());
+        for job in jobs {
+            send.send(job).unwrap();
+        }
         drop(send);
         work(&wanted, &tell, derive);
         drop(tell);

@@ -80,7 +80,9 @@ pub fn occurrences(text: &str, ast: &SpecAst, outline: &Outline) -> Vec<Occurren
         within: String::new(),
     };
     for key in &outline.keys {
-        if let [section, name] = key.path.as_slice() {
+        if let [section, name] = key.path.as_slice()
+            && !name.is_empty()
+        {
             finder.within = format!("{section}.{name}");
             match Namespace::of_section(section) {
                 Some(namespace) => finder.see(namespace, name, &key.span, true),

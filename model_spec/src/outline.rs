@@ -7,10 +7,12 @@ use toml_parser::parser::{Event, EventKind, RecursionGuard, parse_document};
 
 use crate::expr::Span;
 use crate::language::{Form, Key, SECTIONS, Section, Shape};
-use crate::limits::MAX_FILE;
+use crate::limits::{MAX_FILE, MAX_NAME};
 
 /// Deeper tables are not looked into; the parser of specs stops there as well.
 const MAX_NESTED: u32 = 80;
+/// No value of a spec stands below more keys; many dots would take memory without end.
+const MAX_KEYS: usize = 8;
 
 /// A key or a string, with its place.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -137,8 +139,12 @@ impl Reader {
                 if let Some(raw) = source.get(event) {
                     raw.decode_key(&mut key, &mut ());
                 }
+                // What is longer is no name, and would be repeated for all that stands below.
+                if key.len() > MAX_NAME {
+                    key.clear();
+                }
                 self.path.push(key);
-                self.outline.keys.push(self.part(span));
+                self.outline.keys.extend(self.part(span));
             }
             EventKind::KeySep => self.goes_on = true,
             EventKind::InlineTableOpen => self.open.push(self.path.len()),
@@ -148,15 +154,17 @@ impl Reader {
                 }
             }
             EventKind::Scalar if event.encoding().is_some() => {
-                self.outline.strings.push(self.part(span));
+                self.outline.strings.extend(self.part(span));
             }
             _ => {}
         }
     }
 
-    fn part(&self, span: Span) -> Part {
-        let path = self.path.clone();
-        Part { path, span }
+    fn part(&self, span: Span) -> Option<Part> {
+        (self.path.len() <= MAX_KEYS).then(|| Part {
+            path: self.path.clone(),
+            span,
+        })
     }
 }
 

@@ -84,7 +84,7 @@ pub(crate) fn run(command: Command) -> Result<(), Error> {
         Command::Demo(command) => command.run(),
         Command::Reproduce(command) => command.run(),
         Command::Schema(command) => command.run(),
-        Command::Lsp(command) => command.run(),
+        Command::Lsp(lsp::Lsp {}) => lsp::run(),
         Command::Completions(command) => command.run(),
     }
 }

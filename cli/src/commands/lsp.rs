@@ -9,8 +9,6 @@ use crate::failure::Error;
 #[derive(Debug, clap::Args)]
 pub(crate) struct Lsp {}
 
-impl Lsp {
-    pub(super) fn run(self) -> Result<(), Error> {
-        appell_lsp::serve_streams().map_err(|error| Error::Computation(error.to_string()))
-    }
+pub(super) fn run() -> Result<(), Error> {
+    appell_lsp::serve_streams().map_err(|error| Error::Computation(error.to_string()))
 }

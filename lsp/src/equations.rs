@@ -131,3 +131,32 @@ fn listed(names: impl Iterator<Item = String>) -> Option<String> {
     let names: Vec<String> = names.map(|name| format!("`{name}`")).collect();
     (!names.is_empty()).then(|| names.join(", "))
 }
+
+#[cfg(test)]
+#[expect(clippy::unwrap_used, reason = "a test fails by panicking")]
+mod tests {
+    use super::*;
+    use appell_codegen::derived;
+
+    /// No two loads of a shipped spec cancel.
+    #[test]
+    fn an_equation_has_a_generalised_force_where_some_load_says_so() {
+        for (file, text) in appell_test_kit::shipped() {
+            let mut derived = derived(&file, &text).ok().unwrap();
+            let Algebra { graph, test, .. } = &mut derived.derivation.algebra;
+            let forces = derived.derivation.forces.iter();
+            let vanish: Vec<bool> = forces.map(|&force| test.is_zero(graph, force)).collect();
+            let told = contributions(&derived.mechanism, derived.derivation);
+            let of_loads: Vec<&String> = told
+                .iter()
+                .filter(|(key, _)| key.0 == Namespace::Load)
+                .map(|(_, sentence)| sentence)
+                .collect();
+            for (speed, vanishes) in derived.mechanism.pseudo_velocities.iter().zip(vanish) {
+                let name = format!("`{}`", speed.label.name);
+                let is_told = of_loads.iter().any(|sentence| sentence.contains(&name));
+                assert!(is_told != vanishes, "{file}: {name}");
+            }
+        }
+    }
+}

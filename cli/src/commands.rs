@@ -12,6 +12,7 @@ mod evaluate;
 mod identify;
 mod inverse;
 mod list;
+mod lsp;
 mod motion;
 mod new;
 mod recording;
@@ -57,6 +58,7 @@ pub(crate) enum Command {
     Demo(demo::Demo),
     Reproduce(reproduce::Reproduce),
     Schema(schema::Schema),
+    Lsp(lsp::Lsp),
     Completions(completions::Completions),
 }
 
@@ -82,6 +84,7 @@ pub(crate) fn run(command: Command) -> Result<(), Error> {
         Command::Demo(command) => command.run(),
         Command::Reproduce(command) => command.run(),
         Command::Schema(command) => command.run(),
+        Command::Lsp(lsp::Lsp {}) => lsp::run(),
         Command::Completions(command) => command.run(),
     }
 }

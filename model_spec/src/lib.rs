@@ -19,7 +19,10 @@ pub mod limits;
 pub mod mechanism;
 mod name;
 mod number;
+pub mod occurrences;
+pub mod outline;
 pub mod parse;
+pub mod rename;
 pub mod resolve;
 pub mod schema;
 mod starter;
@@ -41,17 +44,48 @@ pub struct Checked {
     pub warnings: Vec<Diagnostic>,
 }
 
+/// A spec as far as it can be read.
+#[derive(Debug, Clone)]
+pub struct Reading {
+    /// The syntax tree.
+    pub ast: ast::SpecAst,
+    /// The mechanism, with placeholders wherever an error is reported.
+    pub mechanism: Mechanism,
+    /// The errors; warnings and notes where there are none.
+    pub findings: Vec<Diagnostic>,
+}
+
+impl Reading {
+    /// Reads and checks a spec; `file` is its name in messages and in emitted code.
+    pub fn new(file: &str, text: &str) -> Self {
+        let (ast, mut findings) = parse::parse(text);
+        let (mechanism, checks) = resolve::resolve(&ast, file, text);
+        findings.extend(checks);
+        let is_error = |finding: &Diagnostic| finding.severity == Severity::Error;
+        if findings.iter().any(is_error) {
+            findings.retain(is_error);
+        }
+        Self {
+            ast,
+            mechanism,
+            findings,
+        }
+    }
+
+    /// Whether the mechanism passed every check.
+    pub fn is_valid(&self) -> bool {
+        self.findings.iter().all(|f| f.severity != Severity::Error)
+    }
+}
+
 /// Reads and checks a spec; `file` is its name in messages and in emitted code.
 pub fn load(file: &str, text: &str) -> Result<Checked, Report> {
-    let (ast, mut findings) = parse::parse(text);
-    let (mechanism, checks) = resolve::resolve(&ast, file, text);
-    findings.extend(checks);
-    if findings.iter().any(|f| f.severity == Severity::Error) {
-        findings.retain(|f| f.severity == Severity::Error);
-        return Err(Report::new(file, text, findings));
+    let reading = Reading::new(file, text);
+    if !reading.is_valid() {
+        return Err(Report::new(file, text, reading.findings));
     }
     Ok(Checked {
-        mechanism,
-        warnings: findings,
+        mechanism: reading.mechanism,
+        warnings: reading.findings,
     })
 }

@@ -9,6 +9,10 @@ use std::fmt::Write as _;
 use std::time::{Duration, Instant};
 
 use appell_spec::edit::set_parameters;
+use appell_spec::occurrences::{Namespace, occurrences};
+use appell_spec::outline::Outline;
+use appell_spec::parse::parse;
+use appell_spec::rename::rename;
 use appell_spec::{Report, load};
 use appell_test_kit::{Random, budget, peak_memory, shipped};
 
@@ -67,7 +71,11 @@ fn mutate(bytes: &mut Vec<u8>, others: &[Vec<u8>], dice: &mut Random) -> usize {
 fn exercise(text: &str) -> Duration {
     let start = Instant::now();
     let outcome = load("fuzz.toml", text);
+    let names = occurrences(text, &parse(text).0, &Outline::new(text));
     let took = start.elapsed();
+    for name in names {
+        assert!(text.get(name.span).is_some(), "{}", name.name);
+    }
     let report = match outcome {
         Ok(checked) => Report::new("fuzz.toml", text, checked.warnings),
         Err(report) => {
@@ -77,6 +85,7 @@ fn exercise(text: &str) -> Duration {
     };
     let _ = report.plain();
     let _ = set_parameters(text, &[("m", 1.25), ("g", 9.8)]);
+    let _ = rename(text, Namespace::Quantity, "m", "mass");
     took
 }
 
@@ -147,6 +156,7 @@ fn hostile_texts_are_refused_quickly() {
         "\"\"\"".repeat(50_000),
         "a = 1\n".repeat(100_000),
         "x".repeat(2_000_000),
+        format!("[outputs.{}]\n", "n".repeat(500_000)) + &"a.b = ''\n".repeat(100_000),
     ];
     let mut many = "[outputs]\n".to_owned();
     for i in 0..20_000 {

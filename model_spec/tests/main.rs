@@ -5,5 +5,6 @@ mod expressions;
 mod fuzz;
 mod language;
 mod manual;
+mod occurrences;
 mod schema;
 mod shipped;

@@ -60,6 +60,7 @@ const MAY_KNOW: &[(&str, &[&str])] = &[
             "appell-report",
         ],
     ),
+    ("lsp", &["appell-spec", "appell-codegen"]),
     (
         "papers",
         &[
@@ -80,6 +81,7 @@ const MAY_KNOW: &[(&str, &[&str])] = &[
         "cli",
         &[
             "appell",
+            "appell-lsp",
             "appell-papers",
             "appell-spec",
             "appell-codegen",
@@ -96,7 +98,7 @@ const MAY_KNOW: &[(&str, &[&str])] = &[
 ];
 
 /// Crates below the command line: they name no mechanism and no flag.
-const NAME_NO_MECHANISM: [&str; 10] = [
+const NAME_NO_MECHANISM: [&str; 11] = [
     "model_spec",
     "codegen",
     "runtime",
@@ -107,6 +109,7 @@ const NAME_NO_MECHANISM: [&str; 10] = [
     "gap",
     "report",
     "appell",
+    "lsp",
 ];
 
 fn read(path: &Path) -> String {
@@ -266,6 +269,7 @@ fn every_file_of_tests_is_run() {
         "recordings",
         "gap",
         "appell",
+        "lsp",
         "cli",
         "tests",
     ];

@@ -1,0 +1,14 @@
+//! `appell lsp`
+
+use crate::failure::Error;
+
+/// Serves an editor that writes specs: findings, meanings of names, renaming, completion.
+///
+/// The editor starts it and speaks the language server protocol over standard input and output.
+/// `docs/editors.md` tells how VS Code, Neovim and Helix are set up.
+#[derive(Debug, clap::Args)]
+pub(crate) struct Lsp {}
+
+pub(super) fn run() -> Result<(), Error> {
+    appell_lsp::serve_streams().map_err(|error| Error::Computation(error.to_string()))
+}

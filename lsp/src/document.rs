@@ -1,0 +1,70 @@
+//! An open file: its newest text and what is known of it.
+
+use appell_spec::Reading;
+use appell_spec::language::SECTIONS;
+use appell_spec::occurrences::{Namespace, Occurrence, occurrences};
+use appell_spec::outline::Outline;
+use lsp_types::{Position, Uri};
+
+use crate::equations::Contributions;
+use crate::text::Text;
+
+/// An open file.
+pub(crate) struct Document {
+    pub(crate) uri: Uri,
+    /// The number that the editor gives the text.
+    pub(crate) version: i32,
+    /// The number that the server gives it.
+    pub(crate) revision: u64,
+    pub(crate) text: Text,
+    pub(crate) outline: Outline,
+    pub(crate) reading: Reading,
+    pub(crate) occurrences: Vec<Occurrence>,
+    /// The equations of the newest valid text, once they have been derived.
+    pub(crate) contributions: Option<Contributions>,
+}
+
+impl Document {
+    pub(crate) fn new(uri: Uri, version: i32, text: Text) -> Self {
+        let outline = Outline::new(text.as_str());
+        let reading = Reading::new(uri.as_str(), text.as_str());
+        Self {
+            occurrences: occurrences(text.as_str(), &reading.ast, &outline),
+            uri,
+            version,
+            revision: 0,
+            text,
+            outline,
+            reading,
+            contributions: None,
+        }
+    }
+
+    /// Whether the text is meant as a spec: it names its mechanism, or has sections of a spec and
+    /// no others but misspelt ones.
+    pub(crate) fn is_spec(&self) -> bool {
+        let mut keys = self.outline.keys.iter().map(|key| key.path.as_slice());
+        let names = || SECTIONS.iter().map(|section| section.name);
+        let is_section = |path: &&[String]| names().any(|name| path[0] == name);
+        let is_alike = |path: &[String]| appell_spec::closest(&path[0], names()).is_some();
+        keys.clone().any(|path| path == ["mechanism", "name"])
+            || keys.clone().any(|path| is_section(&path)) && keys.all(is_alike)
+    }
+
+    /// The name at a place, its end included.
+    pub(crate) fn name_at(&self, position: Position) -> Option<&Occurrence> {
+        let at = self.text.offset(position);
+        let mut all = self.occurrences.iter();
+        all.find(|name| name.span.start <= at && at <= name.span.end)
+    }
+
+    /// All places of a name, in the order of the text.
+    pub(crate) fn places<'a>(
+        &'a self,
+        namespace: Namespace,
+        name: &'a str,
+    ) -> impl Iterator<Item = &'a Occurrence> {
+        let all = self.occurrences.iter();
+        all.filter(move |place| place.namespace == namespace && place.name == name)
+    }
+}

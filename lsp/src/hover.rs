@@ -1,0 +1,114 @@
+//! What a name means, where it is used, and which equations it is in.
+
+use appell_spec::ast::{Entry, ItemAst, ValueAst};
+use appell_spec::expr::Span;
+use appell_spec::occurrences::{Namespace, Occurrence};
+use lsp_types::{Hover, HoverContents, MarkupContent, MarkupKind, Position};
+
+use crate::document::Document;
+
+/// Uses that are listed; of more, the number is given.
+const MOST_USES: usize = 8;
+/// Longest value that is shown as it is written, in characters.
+const MOST_LETTERS: usize = 80;
+
+/// The words about the name at a place.
+pub(crate) fn hover(document: &Document, position: Position) -> Option<Hover> {
+    let name = document.name_at(position)?;
+    let mut paragraphs = match definition(document, name) {
+        Some((section, item)) => described(document, section, item),
+        None => vec![supplied(name)?.to_owned()],
+    };
+    paragraphs.extend(uses(document, name));
+    let contributions = document.contributions.as_ref();
+    let key = (name.namespace, name.name.clone());
+    paragraphs.extend(contributions.and_then(|all| all.get(&key)).cloned());
+    Some(Hover {
+        contents: HoverContents::Markup(MarkupContent {
+            kind: MarkupKind::Markdown,
+            value: paragraphs.join("\n\n"),
+        }),
+        range: Some(document.text.range(&name.span)),
+    })
+}
+
+/// The section of a name and what stands there.
+fn definition<'a>(
+    document: &'a Document,
+    name: &Occurrence,
+) -> Option<(&'static str, &'a ItemAst)> {
+    document.reading.ast.sections.iter().find_map(|section| {
+        let word = section.section.name;
+        let mut items = section.items.iter();
+        let is_here = Namespace::of_section(word) == Some(name.namespace);
+        let item = items.find(|item| is_here && item.name.value == name.name)?;
+        Some((word, item))
+    })
+}
+
+/// One item of a section, in words.
+fn singular(section: &str) -> &str {
+    match section {
+        "pseudo_velocities" => "pseudo-velocity",
+        "bodies" => "body",
+        other => other.strip_suffix('s').unwrap_or(other),
+    }
+}
+
+/// The name with its value, the sentence about it, and what else its table says.
+fn described(document: &Document, section: &str, item: &ItemAst) -> Vec<String> {
+    let written = |span: &Span| written(document, span);
+    let kind = item.kind.map(|kind| kind.word.replace('_', " "));
+    let unit = item.unit("unit").map(|unit| unit.value.text.as_str());
+    let value = match (item.number("value"), unit) {
+        (Some(value), Some(unit)) => format!(" = {} {unit}", written(&value.span)),
+        (Some(value), None) => format!(" = {}", written(&value.span)),
+        (None, Some(unit)) => format!(", in {unit}"),
+        (None, None) => kind.map_or_else(String::new, |kind| format!(", {kind}")),
+    };
+    let title = format!("**{}** `{}`{value}", singular(section), item.name.value);
+    let about = item.text("about").map(|about| about.value.to_owned());
+    let is_told = |entry: &Entry| {
+        let is_value = entry.key.name == "value" && matches!(entry.value, ValueAst::Number(_));
+        is_value || matches!(entry.key.name, "about" | "unit")
+    };
+    let rest = item.entries.iter().filter(|entry| !is_told(entry));
+    let rest = rest.map(|entry| format!("{} = {}", entry.key.name, written(&entry.span)));
+    let rest: Vec<String> = rest.collect();
+    let rest = (!rest.is_empty()).then(|| format!("```toml\n{}\n```", rest.join("\n")));
+    [Some(title), about, rest].into_iter().flatten().collect()
+}
+
+/// A value as it is written, on one line.
+fn written(document: &Document, span: &Span) -> String {
+    let words = document.text.part(span).split_whitespace();
+    let line = words.collect::<Vec<_>>().join(" ");
+    if line.chars().count() <= MOST_LETTERS {
+        return line;
+    }
+    line.chars().take(MOST_LETTERS).chain(['…']).collect()
+}
+
+fn supplied(name: &Occurrence) -> Option<&'static str> {
+    match (name.namespace, name.name.as_str()) {
+        (Namespace::Frame, "ground") => Some("**frame** `ground`, the inertial frame"),
+        (Namespace::Point, "O") => Some("**point** `O`, the origin of the ground"),
+        _ => None,
+    }
+}
+
+fn uses(document: &Document, name: &Occurrence) -> Option<String> {
+    let places = document.places(name.namespace, &name.name);
+    let mut places: Vec<&str> = places
+        .filter(|place| !place.defines)
+        .map(|place| place.within.as_str())
+        .collect();
+    places.dedup();
+    let shown = places.iter().take(MOST_USES);
+    let shown: Vec<String> = shown.map(|place| format!("`{place}`")).collect();
+    let more = match places.len().saturating_sub(MOST_USES) {
+        0 => String::new(),
+        more => format!(" and {more} more"),
+    };
+    (!shown.is_empty()).then(|| format!("Used in {}{more}", shown.join(", ")))
+}

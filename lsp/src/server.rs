@@ -1,0 +1,255 @@
+//! The protocol: messages of the editor in, answers and findings out.
+
+use std::collections::BTreeMap;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+use crossbeam_channel::{Sender, never, select};
+use lsp_server::{Connection, ErrorCode, Message, Notification, Request, Response};
+use lsp_types::notification::{
+    DidChangeTextDocument, DidCloseTextDocument, DidOpenTextDocument, LogMessage,
+    Notification as Told, PublishDiagnostics,
+};
+use lsp_types::request::{
+    Completion, GotoDefinition, HoverRequest, PrepareRenameRequest, References, Rename,
+    Request as Asked,
+};
+use lsp_types::{
+    Diagnostic, LogMessageParams, MessageType, PublishDiagnosticsParams, ReferenceParams,
+    RenameParams, TextDocumentPositionParams, TextDocumentSyncKind, Uri,
+};
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+use serde_json::{Value, from_value, json};
+
+use crate::document::Document;
+use crate::text::Text;
+use crate::worker::{self, Job, What};
+use crate::{Error, completion, diagnostics, hover, names};
+
+/// A request that makes sense and cannot be met, in the protocol's version 3.17.
+const REQUEST_FAILED: i32 = -32803;
+
+/// What the server offers.
+fn capabilities() -> Value {
+    json!({
+        "textDocumentSync": TextDocumentSyncKind::INCREMENTAL,
+        "hoverProvider": true,
+        "definitionProvider": true,
+        "referencesProvider": true,
+        "renameProvider": { "prepareProvider": true },
+        "completionProvider": { "triggerCharacters": ["\"", "'", "(", "["] },
+    })
+}
+
+/// Serves an editor until it leaves.
+pub fn serve(connection: &Connection) -> Result<(), Error> {
+    connection.initialize(capabilities())?;
+    let (jobs, mut told) = worker::start()?;
+    let mut server = Server {
+        messages: connection.sender.clone(),
+        jobs,
+        documents: BTreeMap::new(),
+        revision: 0,
+    };
+    loop {
+        select! {
+            recv(connection.receiver) -> message => match message {
+                Ok(Message::Request(request)) => {
+                    if connection.handle_shutdown(&request)? {
+                        return Ok(());
+                    }
+                    server.request(request);
+                }
+                Ok(Message::Notification(notification)) => server.notification(notification),
+                Ok(Message::Response(_)) => {}
+                Err(_) => return Ok(()),
+            },
+            recv(told) -> answer => match answer {
+                Ok(answer) => server.learn(answer),
+                Err(_) => told = never(),
+            },
+        }
+    }
+}
+
+/// The protocol's code of a refusal, and the reason.
+type Refusal = (i32, String);
+
+fn read<T: DeserializeOwned>(params: Value) -> Result<T, Refusal> {
+    from_value(params).map_err(|error| (ErrorCode::InvalidParams as i32, error.to_string()))
+}
+
+fn written(result: impl Serialize) -> Result<Value, Refusal> {
+    let result = serde_json::to_value(result);
+    result.map_err(|error| (ErrorCode::InternalError as i32, error.to_string()))
+}
+
+struct Server {
+    messages: Sender<Message>,
+    jobs: Sender<Job>,
+    /// By their URIs.
+    documents: BTreeMap<String, Document>,
+    /// Of the newest text; editors begin to count again when they open a file again.
+    revision: u64,
+}
+
+impl Server {
+    fn request(&self, request: Request) {
+        let Request { id, method, params } = request;
+        let answer = catch_unwind(AssertUnwindSafe(|| self.answer(&method, params)));
+        let answer = match answer {
+            Ok(Ok(result)) => Response::new_ok(id, result),
+            Ok(Err((code, reason))) => Response::new_err(id, code, reason),
+            Err(_) => {
+                let reason = "a mistake in the language server".to_owned();
+                Response::new_err(id, ErrorCode::InternalError as i32, reason)
+            }
+        };
+        // An editor that has gone needs no answer.
+        let _ = self.messages.send(answer.into());
+    }
+
+    /// The answer to a question about a place; nothing where no spec is open.
+    fn answer(&self, method: &str, params: Value) -> Result<Value, Refusal> {
+        let offered = [
+            HoverRequest::METHOD,
+            GotoDefinition::METHOD,
+            References::METHOD,
+            PrepareRenameRequest::METHOD,
+            Rename::METHOD,
+            Completion::METHOD,
+        ];
+        if !offered.contains(&method) {
+            let reason = format!("no method `{method}`");
+            return Err((ErrorCode::MethodNotFound as i32, reason));
+        }
+        let at: TextDocumentPositionParams = read(params.clone())?;
+        let document = self.documents.get(at.text_document.uri.as_str());
+        let Some(document) = document.filter(|document| document.is_spec()) else {
+            return Ok(Value::Null);
+        };
+        let at = at.position;
+        match method {
+            HoverRequest::METHOD => written(hover::hover(document, at)),
+            GotoDefinition::METHOD => written(names::definition(document, at)),
+            References::METHOD => {
+                let context = read::<ReferenceParams>(params)?.context;
+                written(names::references(document, at, context.include_declaration))
+            }
+            PrepareRenameRequest::METHOD => written(names::prepare(document, at)),
+            Rename::METHOD => {
+                let new = read::<RenameParams>(params)?.new_name;
+                let edit = names::renamed(document, at, &new);
+                written(edit.map_err(|reason| (REQUEST_FAILED, reason.to_string()))?)
+            }
+            _ => written(completion::completion(document, at)),
+        }
+    }
+
+    fn notification(&mut self, notification: Notification) {
+        let seen = catch_unwind(AssertUnwindSafe(|| self.see(notification)));
+        if matches!(seen, Err(_) | Ok(Err(_))) {
+            self.log("a message of the editor could not be followed");
+        }
+    }
+
+    fn see(&mut self, notification: Notification) -> Result<(), serde_json::Error> {
+        let Notification { method, params } = notification;
+        match method.as_str() {
+            DidOpenTextDocument::METHOD => {
+                let opened: lsp_types::DidOpenTextDocumentParams = from_value(params)?;
+                let opened = opened.text_document;
+                self.open(opened.uri, opened.version, Text::new(opened.text));
+            }
+            DidChangeTextDocument::METHOD => {
+                let changed: lsp_types::DidChangeTextDocumentParams = from_value(params)?;
+                let document = changed.text_document;
+                if let Some(known) = self.documents.get(document.uri.as_str()) {
+                    let changes = changed.content_changes.into_iter();
+                    let text =
+                        changes.fold(known.text.clone(), |text, change| text.changed(change));
+                    self.open(document.uri, document.version, text);
+                }
+            }
+            DidCloseTextDocument::METHOD => {
+                let closed: lsp_types::DidCloseTextDocumentParams = from_value(params)?;
+                let uri = closed.text_document.uri;
+                self.documents.remove(uri.as_str());
+                self.publish(uri, None, Vec::new());
+            }
+            _ => {}
+        }
+        Ok(())
+    }
+
+    /// Takes a new text: tells what reading it tells, and has its equations derived.
+    fn open(&mut self, uri: Uri, version: i32, text: Text) {
+        self.revision += 1;
+        let mut document = Document::new(uri.clone(), version, text);
+        document.revision = self.revision;
+        let key = uri.as_str().to_owned();
+        let is_valid = document.is_spec() && document.reading.is_valid();
+        if !is_valid && let Some(before) = self.documents.remove(&key) {
+            // Those of the newest valid text.
+            document.contributions = before.contributions;
+        }
+        let findings = if document.is_spec() {
+            diagnostics::shown(&document, &document.reading.findings)
+        } else {
+            Vec::new()
+        };
+        if is_valid {
+            let text = document.text.as_str().to_owned();
+            let uri = key.clone();
+            // Without the worker there are the findings of reading.
+            let revision = self.revision;
+            let _ = self.jobs.send(Job {
+                uri,
+                revision,
+                text,
+            });
+        }
+        self.documents.insert(key, document);
+        self.publish(uri, Some(version), findings);
+    }
+
+    /// Takes what the derivation tells, if it is about the newest text.
+    fn learn(&mut self, told: worker::Told) {
+        let Some(document) = self.documents.get_mut(&told.uri) else {
+            return;
+        };
+        if document.revision != told.revision {
+            return;
+        }
+        match told.what {
+            What::Findings(findings) => {
+                let findings = diagnostics::shown(document, &findings);
+                let (uri, version) = (document.uri.clone(), document.version);
+                self.publish(uri, Some(version), findings);
+            }
+            What::Equations(contributions) => document.contributions = Some(contributions),
+            What::Panicked => self.log("a mistake in the derivation; its findings are missing"),
+        }
+    }
+
+    fn publish(&self, uri: Uri, version: Option<i32>, diagnostics: Vec<Diagnostic>) {
+        self.tell::<PublishDiagnostics>(PublishDiagnosticsParams {
+            uri,
+            diagnostics,
+            version,
+        });
+    }
+
+    fn log(&self, message: &str) {
+        self.tell::<LogMessage>(LogMessageParams {
+            typ: MessageType::ERROR,
+            message: message.to_owned(),
+        });
+    }
+
+    fn tell<N: Told>(&self, params: N::Params) {
+        let notification = Notification::new(N::METHOD.to_owned(), params);
+        // An editor that has gone hears nothing.
+        let _ = self.messages.send(notification.into());
+    }
+}

@@ -1,0 +1,137 @@
+//! The derivation, beside the protocol: the newest text of a document wins.
+
+use std::collections::BTreeMap;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::thread;
+
+use appell_codegen::audited;
+use appell_spec::Diagnostic;
+use crossbeam_channel::{Receiver, Sender, unbounded};
+
+use crate::equations::{Contributions, contributions};
+
+/// As much as the command line has on its main thread.
+const STACK: usize = 8 << 20;
+
+/// A valid text whose equations are wanted.
+pub(crate) struct Job {
+    pub(crate) uri: String,
+    pub(crate) revision: u64,
+    pub(crate) text: String,
+}
+
+/// What the derivation of a text tells.
+pub(crate) struct Told {
+    pub(crate) uri: String,
+    pub(crate) revision: u64,
+    pub(crate) what: What,
+}
+
+pub(crate) enum What {
+    /// Everything that `check` reports.
+    Findings(Vec<Diagnostic>),
+    /// The equations of each item.
+    Equations(Contributions),
+    /// A mistake in the derivation itself.
+    Panicked,
+}
+
+/// Starts the thread; it ends when nobody sends jobs any more.
+pub(crate) fn start() -> std::io::Result<(Sender<Job>, Receiver<Told>)> {
+    let (jobs, wanted) = unbounded();
+    let (tell, told) = unbounded();
+    let work = move || work(&wanted, &tell, derive);
+    thread::Builder::new().stack_size(STACK).spawn(work)?;
+    Ok((jobs, told))
+}
+
+fn work(wanted: &Receiver<Job>, tell: &Sender<Told>, derive: impl Fn(&Job, &dyn Fn(What))) {
+    let mut waiting: BTreeMap<String, Job> = BTreeMap::new();
+    loop {
+        let next = if waiting.is_empty() {
+            wanted.recv().ok()
+        } else {
+            wanted.try_recv().ok()
+        };
+        if let Some(job) = next {
+            waiting.insert(job.uri.clone(), job);
+            continue;
+        }
+        let Some((uri, job)) = waiting.pop_first() else {
+            return;
+        };
+        let tell = |what| {
+            let (uri, revision) = (uri.clone(), job.revision);
+            // Nobody listens any more when the server is ending.
+            let _ = tell.send(Told {
+                uri,
+                revision,
+                what,
+            });
+        };
+        if catch_unwind(AssertUnwindSafe(|| derive(&job, &tell))).is_err() {
+            tell(What::Panicked);
+        }
+    }
+}
+
+fn derive(job: &Job, tell: &dyn Fn(What)) {
+    match audited(&job.uri, &job.text) {
+        Ok(mut derived) => {
+            tell(What::Findings(std::mem::take(&mut derived.warnings)));
+            tell(What::Equations(contributions(
+                &derived.mechanism,
+                derived.derivation,
+            )));
+        }
+        Err(report) => tell(What::Findings(report.diagnostics().to_vec())),
+    }
+}
+
+#[cfg(test)]
+#[expect(clippy::unwrap_used, reason = "a test fails by panicking")]
+mod tests {
+    use super::*;
+
+    fn job(uri: &str, revision: u64) -> Job {
+        Job {
+            uri: uri.to_owned(),
+            revision,
+            text: String::new(),
+        }
+    }
+
+    /// Revisions that are told, for jobs that are all there from the beginning.
+    fn told(jobs: Vec<Job>, derive: impl Fn(&Job, &dyn Fn(What))) -> Vec<(u64, bool)> {
+        let (send, wanted) = unbounded();
+        let (tell, told) = unbounded();
+        for job in jobs {
+            send.send(job).unwrap();
+        }
+        drop(send);
+        work(&wanted, &tell, derive);
+        drop(tell);
+        let told = told.into_iter();
+        told.map(|told| (told.revision, matches!(told.what, What::Panicked)))
+            .collect()
+    }
+
+    #[test]
+    fn the_newest_text_of_each_document_is_derived() {
+        let jobs = vec![job("a", 1), job("b", 2), job("a", 3), job("a", 4)];
+        let derive = |_: &Job, tell: &dyn Fn(What)| tell(What::Findings(Vec::new()));
+        assert_eq!(told(jobs, derive), [(4, false), (2, false)]);
+    }
+
+    #[test]
+    fn a_panic_is_told_and_the_next_document_is_derived() {
+        let derive = |job: &Job, tell: &dyn Fn(What)| {
+            assert!(job.uri != "a", "a mistake for this test");
+            tell(What::Findings(Vec::new()));
+        };
+        assert_eq!(
+            told(vec![job("a", 1), job("b", 2)], derive),
+            [(1, true), (2, false)]
+        );
+    }
+}

@@ -1,0 +1,9 @@
+//! The language server, driven by the messages of an editor.
+
+mod editor;
+
+mod completion;
+mod damaged;
+mod findings;
+mod names;
+mod told;

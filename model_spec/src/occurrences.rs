@@ -1,0 +1,204 @@
+//! Where the names of a spec stand: their definitions and their uses.
+
+use crate::ast::{Entry, ExprAst, ExprAstKind, ItemAst, Spanned, SpecAst, ValueAst};
+use crate::expr::{Span, Word};
+use crate::language::{Form, Target};
+use crate::outline::{Outline, unquoted};
+
+/// Names of one namespace differ from each other; a frame and a point may share a name.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[expect(missing_docs, reason = "each variant is the kind of its name")]
+pub enum Namespace {
+    /// Parameters, coordinates, inputs, signals, pseudo-velocities and outputs.
+    Quantity,
+    Frame,
+    Point,
+    Body,
+    Constraint,
+    Load,
+}
+
+/// A name where it stands.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Occurrence {
+    /// What it names.
+    pub namespace: Namespace,
+    /// The name.
+    pub name: String,
+    /// Where it stands, without quotes; the whole string where it is written with escapes.
+    pub span: Span,
+    /// Whether the name is defined there.
+    pub defines: bool,
+    /// The section, the item and, for a use, the key.
+    pub within: String,
+}
+
+impl From<Target> for Namespace {
+    fn from(target: Target) -> Self {
+        match target {
+            Target::Coordinate => Self::Quantity,
+            Target::Frame => Self::Frame,
+            Target::Point => Self::Point,
+            Target::Body => Self::Body,
+            Target::Constraint => Self::Constraint,
+            Target::Load => Self::Load,
+        }
+    }
+}
+
+impl Namespace {
+    /// What the items of a section are called by.
+    pub fn of_section(section: &str) -> Option<Self> {
+        Some(match section {
+            "parameters" | "coordinates" | "inputs" | "signals" | "pseudo_velocities"
+            | "outputs" => Self::Quantity,
+            "frames" => Self::Frame,
+            "points" => Self::Point,
+            "bodies" => Self::Body,
+            "constraints" => Self::Constraint,
+            "loads" => Self::Load,
+            _ => return None,
+        })
+    }
+}
+
+/// What the first name after a word refers to, as the frame in `angular_velocity(frame, z)`.
+pub fn named_by(word: Word) -> Target {
+    match word {
+        Word::Position | Word::Velocity | Word::Speed | Word::Acceleration => Target::Point,
+        Word::AngularVelocity | Word::AngularAcceleration => Target::Frame,
+        Word::Reaction | Word::NormalForce => Target::Constraint,
+        Word::Force => Target::Load,
+    }
+}
+
+/// Every name of a text, in its order; `ast` and `outline` are those of the text.
+pub fn occurrences(text: &str, ast: &SpecAst, outline: &Outline) -> Vec<Occurrence> {
+    let mut finder = Finder {
+        text,
+        found: Vec::new(),
+        within: String::new(),
+    };
+    for key in &outline.keys {
+        if let [section, name] = key.path.as_slice()
+            && !name.is_empty()
+        {
+            finder.within = format!("{section}.{name}");
+            match Namespace::of_section(section) {
+                Some(namespace) => finder.see(namespace, name, &key.span, true),
+                None if section == "initial" => {
+                    finder.see(Namespace::Quantity, name, &key.span, false);
+                }
+                None => {}
+            }
+        }
+    }
+    for section in &ast.sections {
+        for item in &section.items {
+            finder.item(
+                &format!("{}.{}", section.section.name, item.name.value),
+                item,
+            );
+        }
+    }
+    finder.found.sort_by_key(|occurrence| occurrence.span.start);
+    finder.found
+}
+
+struct Finder<'a> {
+    text: &'a str,
+    found: Vec<Occurrence>,
+    within: String,
+}
+
+impl Finder<'_> {
+    fn see(&mut self, namespace: Namespace, name: &str, span: &Span, defines: bool) {
+        let written = self.text.get(span.clone()).unwrap_or_default();
+        let is_quoted = written.len() == name.len() + 2 && unquoted(written) == name;
+        let quote = usize::from(is_quoted);
+        self.found.push(Occurrence {
+            namespace,
+            name: name.to_owned(),
+            span: span.start + quote..span.end - quote,
+            defines,
+            within: self.within.clone(),
+        });
+    }
+
+    fn item(&mut self, path: &str, item: &ItemAst) {
+        for entry in &item.entries {
+            self.within = format!("{path}.{}", entry.key.name);
+            self.entry(entry);
+        }
+    }
+
+    fn entry(&mut self, entry: &Entry) {
+        match &entry.value {
+            ValueAst::Text(name) => {
+                if let Form::Reference(target) = entry.key.form {
+                    self.see(target.into(), name, &entry.span, false);
+                }
+            }
+            ValueAst::Pair(points) => {
+                for point in points {
+                    self.see(Namespace::Point, &point.value, &point.span, false);
+                }
+            }
+            ValueAst::Expression(expression) => self.expression(expression),
+            ValueAst::Components(components) => self.expressions(components.iter()),
+            ValueAst::Matrix(rows) => self.expressions(rows.iter().flatten()),
+            ValueAst::Tables(tables) => {
+                let path = self.within.clone();
+                for table in tables {
+                    self.item(&path, table);
+                }
+            }
+            ValueAst::Table(table) => {
+                let path = self.within.clone();
+                self.item(&path, table);
+            }
+            ValueAst::Word(_)
+            | ValueAst::Flag(_)
+            | ValueAst::Number(_)
+            | ValueAst::Numbers(_)
+            | ValueAst::Unit(_) => {}
+        }
+    }
+
+    fn expressions<'e>(&mut self, all: impl Iterator<Item = &'e ExprAst>) {
+        for expression in all {
+            self.expression(expression);
+        }
+    }
+
+    fn expression(&mut self, expression: &ExprAst) {
+        match &expression.kind {
+            ExprAstKind::Number(..) | ExprAstKind::Broken => {}
+            ExprAstKind::Name(name) => {
+                if !matches!(name.as_str(), "t" | "pi") {
+                    self.see(Namespace::Quantity, name, &expression.span, false);
+                }
+            }
+            ExprAstKind::Rate(name) => {
+                self.see(Namespace::Quantity, &name.value, &name.span, false);
+            }
+            ExprAstKind::Named(word, names) => self.named(*word, names),
+            ExprAstKind::Negate(a) => self.expression(a),
+            ExprAstKind::Binary(_, a, b) => self.expressions([a.as_ref(), b].into_iter()),
+            ExprAstKind::Call(_, arguments) => self.expressions(arguments.iter()),
+            ExprAstKind::Choice {
+                compared, branches, ..
+            } => self.expressions(compared.iter().chain(branches.iter())),
+        }
+    }
+
+    /// The second name is an axis.
+    fn named(&mut self, word: Word, names: &[Spanned<String>]) {
+        if let Some(of) = names.first() {
+            self.see(named_by(word).into(), &of.value, &of.span, false);
+        }
+        if let Some(frame) = names.get(2) {
+            self.see(Namespace::Frame, &frame.value, &frame.span, false);
+        }
+    }
+}

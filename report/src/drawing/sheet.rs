@@ -139,8 +139,8 @@ pub(super) fn svg(mechanism: &Mechanism, scene: &Scene, view: &View, marked: &[&
     for axes in &axes {
         sheet.axes(axes, extent);
     }
-    sheet.points(mechanism, scene);
     sheet.rings(mechanism, scene, marked);
+    sheet.points(mechanism, scene);
     sheet.weight();
     sheet.legend(height, step, &strokes);
     sheet.svg.finish()

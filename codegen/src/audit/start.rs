@@ -11,7 +11,7 @@ use crate::symbolic::{Expr, evaluate};
 
 /// Newton steps; each is halved until the residual falls.
 const STEPS: usize = 50;
-const HALVINGS: usize = 30;
+const HALVINGS: i32 = 30;
 /// A residual that fell to this part of the first one, or of a step that changes nothing, is zero.
 const SOLVED: f64 = 1e-9;
 /// Part of a value by which a coordinate may move without a word: initial values are guesses.
@@ -56,7 +56,7 @@ pub(super) fn audit(bench: &mut Bench, told: &mut Audit) {
         let shorter = (0..HALVINGS).map(|halved| {
             let mut there = values.clone();
             for (&place, step) in places.iter().zip(&step) {
-                there[place] -= step * 0.5_f64.powi(halved as i32);
+                there[place] -= step * 0.5_f64.powi(halved);
             }
             there
         });

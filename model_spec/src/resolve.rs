@@ -3,6 +3,7 @@
 mod arithmetic;
 mod bodies;
 mod constraints;
+mod degrees;
 mod dimensions;
 mod expression;
 mod formula;
@@ -67,6 +68,7 @@ pub fn resolve(ast: &SpecAst, file: &str, text: &str) -> (Mechanism, Vec<Diagnos
     };
     resolver.initial(&mut mechanism);
     resolver.physical(&mechanism);
+    resolver.doubtful_angles(&mechanism);
     resolver.unused(&mechanism);
     (mechanism, resolver.findings)
 }

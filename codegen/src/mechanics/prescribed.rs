@@ -56,7 +56,7 @@ fn prescribed(
 ) -> Outcome<Option<Expr>> {
     let v_0 = standing.apply(&mut algebra.graph, velocity);
     let v_0 = v_0.ok_or_else(|| vec![division_by_zero(Item::Mechanism)])?;
-    let is_zero = algebra.test.are_equal(&algebra.graph, v_0, Graph::ZERO);
+    let is_zero = algebra.test.is_zero(&algebra.graph, v_0);
     Ok((!is_zero).then_some(v_0))
 }
 

@@ -25,10 +25,7 @@ pub fn json(report: &Report, next: Option<&Path>, findings: &[String]) -> Value 
         .iter()
         .map(|r| json!({ "variable": r.variable, "description": r.description, "z": r.z }));
     let which = report.which.iter().map(|h| {
-        let parameters = h
-            .parameters
-            .iter()
-            .map(|v| json!({ "name": v.name, "value": v.value, "std": v.std, "unit": v.unit }));
+        let parameters = h.parameters.iter().map(value);
         json!({
             "effects": h.effects, "probability": h.probability, "same_as": h.same_as,
             "log_bayes_factor": h.log_bayes_factor, "parameters": parameters.collect::<Vec<_>>(),
@@ -105,11 +102,17 @@ pub fn json(report: &Report, next: Option<&Path>, findings: &[String]) -> Value 
         })),
         "law": report.law.as_ref().map(law),
         "change": report.change.as_ref().map(change),
+        "imperfections": report.imperfections.iter().map(value).collect::<Vec<_>>(),
         "independent": report.independent,
         "failed": failed.collect::<Vec<_>>(),
         "disturbances": disturbances.collect::<Vec<_>>(),
         "data": findings,
     })
+}
+
+/// A value that was found.
+fn value(found: &appell_gap::diagnose::Value) -> Value {
+    json!({ "name": found.name, "value": found.value, "std": found.std, "unit": found.unit })
 }
 
 /// A measured law: its curve with standard deviations, and forms that come near to it.

@@ -7,8 +7,8 @@ use appell::fleet::Rig;
 use appell_gap::diagnose::{Ahead, Experiment, GapVerdict, Hypothesis, Report};
 
 use appell_report::gap::{
-    before_sentence, divided, doubts, hinted, joined, law_sentence, left_out, percent, sentence,
-    short,
+    before_sentence, divided, doubts, hinted, imperfections, joined, law_sentence, left_out,
+    percent, sentence, short,
 };
 use appell_report::text::{number, with_unit};
 
@@ -49,6 +49,9 @@ pub(crate) fn text(report: &Report, next: Option<&Path>) -> String {
     for group in &report.tied {
         let names: Vec<String> = group.iter().map(|effects| joined(effects)).collect();
         let _ = writeln!(text, "  tied      {}", names.join(" | "));
+    }
+    if let Some(named) = imperfections(report) {
+        let _ = writeln!(text, "  sensors   {named}");
     }
     for hint in &report.hints {
         let _ = writeln!(text, "  hint      {}", hinted(hint));

@@ -44,6 +44,7 @@ mod forces;
 mod forms;
 mod held_out;
 mod horizon;
+mod imperfections;
 mod law;
 mod localise;
 mod options;
@@ -80,6 +81,7 @@ use bench::Bench;
 use compare::Comparison;
 use held_out::{HeldOut, Leader};
 use horizon::Judged;
+use imperfections::{Imperfection, immaterial, known};
 use screen::Screen;
 
 /// Version of the engine. Every change that moves a number of some report raises it, so that scores and
@@ -222,21 +224,47 @@ fn pictures(
     })
 }
 
-/// The hypotheses, judged by what they say of the runs to fit.
+/// The hypotheses, judged by what they say of the runs to fit; once more beside what channels lack, where that changes
+/// no prediction.
 fn judged<'m>(
     (whole, fitted): (&DataSet, &DataSet),
     model: &'m EffectModel,
     stage: &mut impl FnMut(&'static str),
 ) -> Result<Judged<'m>, DiagnoseError> {
-    let mut bench = Bench::new(fitted, model)?;
     let whole = whole.bound_to(&model.mechanism);
+    let mut judged = judged_beside((&[], None), (&whole, fitted), model, stage)?;
+    loop {
+        let more = immaterial(&judged)?;
+        if more.is_empty() {
+            return Ok(judged);
+        }
+        stage("fitting imperfections of channels beside every hypothesis");
+        let imperfections = [judged.bench.imperfections.clone(), more].concat();
+        let beside = (imperfections.as_slice(), Some(&judged));
+        match judged_beside(beside, (&whole, fitted), model, stage) {
+            Ok(again) => judged = again,
+            Err(_) => return Ok(judged),
+        }
+    }
+}
+
+/// The same beside some imperfections of channels; `before` is what was found without them.
+fn judged_beside<'m>(
+    (imperfections, before): (&[Imperfection], Option<&Judged<'m>>),
+    (whole, fitted): (&DataSet, &DataSet),
+    model: &'m EffectModel,
+    stage: &mut impl FnMut(&'static str),
+) -> Result<Judged<'m>, DiagnoseError> {
+    let mut bench = Bench::new(fitted, model, imperfections)?;
     bench.whole.clone_from(&whole.runs);
     stage("fitting the nominal model");
     let nominal = bench.nominal().map_err(DiagnoseError::of_nominal)?;
     stage("screening the effects");
     let screen = Screen::of(&bench, &nominal)?;
     stage("fitting the effects that remain");
-    let windows = horizon::windows(&whole);
+    let windows = horizon::windows(whole);
     let over = Bench::over(&windows, (&bench, &nominal))?;
-    horizon::judged((bench, nominal, screen), over, stage)
+    let known = before.and_then(|before| known(&bench, before).ok());
+    let hypotheses = (nominal, known.into_iter().collect());
+    horizon::judged((bench, hypotheses, screen), over, stage)
 }

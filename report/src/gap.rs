@@ -17,6 +17,6 @@ pub use doubt::doubts;
 pub use law::law_sentence;
 pub use numbers::percent;
 pub use page::page;
-pub use words::{before_sentence, hinted, joined, left_out, sentence};
+pub use words::{before_sentence, hinted, imperfections, joined, left_out, sentence};
 
 pub use crate::text::short;

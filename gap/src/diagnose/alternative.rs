@@ -86,7 +86,8 @@ impl<'a> Rival<'a> {
                 column: column.clone(),
             });
         }
-        let mut bench = Bench::new(&alternative.set, &alternative.model)?;
+        let imperfections = main.imperfections_of(&own);
+        let mut bench = Bench::new(&alternative.set, &alternative.model, &imperfections)?;
         let mut fitted = bench.nominal()?;
         if main.is_over_windows() {
             let windows = main.set.rebound(&alternative.spec)?;

@@ -15,7 +15,7 @@ use super::report::{
 use super::screen::Screen;
 use super::twins;
 use super::unknown;
-use crate::effects::{Acts, Part};
+use crate::effects::{Acts, Candidate, Part};
 use appell_estimate::{Along, Unknown};
 
 /// Sizes in their standard deviations that are found with near certainty.
@@ -108,6 +108,7 @@ pub(super) fn assemble(
             .iter()
             .map(|(members, reason)| (names(bench, members), reason.clone()))
             .collect(),
+        imperfections: imperfections(bench, best),
         disturbances: disturbances(bench, comparison.nominal(), best),
         left: left(bench, comparison),
         law: None,
@@ -261,65 +262,74 @@ fn tied(which: &[Hypothesis]) -> Vec<Vec<Vec<String>>> {
 
 /// Values of the members of a hypothesis.
 fn values(bench: &Bench<'_>, fitted: &Fitted) -> Vec<Value> {
+    let members = fitted.members.iter().map(|&member| bench.candidate(member));
+    members
+        .flat_map(|candidate| values_of(candidate, bench, fitted))
+        .collect()
+}
+
+/// Values of what is fitted beside every hypothesis.
+fn imperfections(bench: &Bench<'_>, fitted: &Fitted) -> Vec<Value> {
+    let candidates = bench.imperfections.iter();
+    candidates
+        .filter_map(|one| one.candidate(bench))
+        .flat_map(|candidate| values_of(candidate, bench, fitted))
+        .collect()
+}
+
+/// Values of a candidate.
+fn values_of(candidate: &Candidate, bench: &Bench<'_>, fitted: &Fitted) -> Vec<Value> {
     let info = bench.effects.info();
     let deviation = |place: usize| match fitted.fit.deviation(place) {
         Ok(deviation) if !fitted.fit.at_limit[place] => deviation,
         _ => f64::NAN,
     };
+    let own: Vec<usize> = bench
+        .own(candidate)
+        .into_iter()
+        .filter(|(_, part)| *part != Part::Switch)
+        .map(|(index, _)| index)
+        .collect();
     let mut values = Vec::new();
-    for &member in &fitted.members {
-        let candidate = bench.candidate(member);
-        let name = |parameter: &str| format!("{}.{parameter}", candidate.name());
-        let own: Vec<usize> = bench
-            .own(candidate)
-            .into_iter()
-            .filter(|(_, part)| *part != Part::Switch)
-            .map(|(index, _)| index)
-            .collect();
-        for (place, free) in fitted.fit.free.iter().enumerate() {
-            let value = free.to_value(fitted.fit.coordinates[place]);
-            let told = match (free.unknown, candidate.acts) {
-                (Unknown::Parameter(index), Acts::Items) if own.contains(&index) => {
-                    let quantity = &info.parameters[index];
-                    let short = candidate.short(&quantity.name);
-                    Some((name(short), quantity.unit.to_string()))
-                }
-                (Unknown::Parameter(index), Acts::Parameter(_))
-                    if info.parameters[index].name == candidate.site.as_str() =>
-                {
-                    let quantity = &info.parameters[index];
-                    Some((name("value"), quantity.unit.to_string()))
-                }
-                (Unknown::Bias(own), Acts::Bias(channel)) if own == channel => {
-                    Some((name("bias"), channel_unit(bench, channel)))
-                }
-                (Unknown::Scale(own), Acts::Scale(channel)) if own == channel => {
-                    Some((name("scale"), "1".to_owned()))
-                }
-                (Unknown::SensorDelay(own), Acts::Late(channel)) if own == channel => {
-                    Some((name("delay"), "s".to_owned()))
-                }
-                (Unknown::Lag(_), Acts::Lag(_)) => Some((name("time_constant"), "s".to_owned())),
-                (Unknown::InputDelay(_), Acts::Delay(_)) => Some((name("delay"), "s".to_owned())),
-                _ => None,
-            };
-            if let Some((name, unit)) = told {
-                let scale = match free.unknown {
-                    Unknown::Parameter(index) => info.parameters[index].scale,
-                    _ => 1.0,
-                };
-                let stretch = match free.coordinate {
-                    appell_estimate::Coordinate::Plain => 1.0,
-                    appell_estimate::Coordinate::Logarithm => value,
-                };
-                values.push(Value {
-                    name,
-                    value: value / scale,
-                    std: deviation(place) * stretch / scale,
-                    unit,
-                });
+    for (place, free) in fitted.fit.free.iter().enumerate() {
+        let value = free.to_value(fitted.fit.coordinates[place]);
+        let (short, unit) = match (free.unknown, candidate.acts) {
+            (Unknown::Parameter(index), Acts::Items) if own.contains(&index) => {
+                let quantity = &info.parameters[index];
+                (candidate.short(&quantity.name), quantity.unit.to_string())
             }
-        }
+            (Unknown::Parameter(index), Acts::Parameter(_))
+                if info.parameters[index].name == candidate.site.as_str() =>
+            {
+                ("value", info.parameters[index].unit.to_string())
+            }
+            (Unknown::Bias(own), Acts::Bias(channel)) if own == channel => {
+                ("bias", channel_unit(bench, channel))
+            }
+            (Unknown::Scale(own), Acts::Scale(channel)) if own == channel => {
+                ("scale", "1".to_owned())
+            }
+            (Unknown::SensorDelay(own), Acts::Late(channel)) if own == channel => {
+                ("delay", "s".to_owned())
+            }
+            (Unknown::Lag(_), Acts::Lag(_)) => ("time_constant", "s".to_owned()),
+            (Unknown::InputDelay(_), Acts::Delay(_)) => ("delay", "s".to_owned()),
+            _ => continue,
+        };
+        let scale = match free.unknown {
+            Unknown::Parameter(index) => info.parameters[index].scale,
+            _ => 1.0,
+        };
+        let stretch = match free.coordinate {
+            appell_estimate::Coordinate::Plain => 1.0,
+            appell_estimate::Coordinate::Logarithm => value,
+        };
+        values.push(Value {
+            name: format!("{}.{short}", candidate.name()),
+            value: value / scale,
+            std: deviation(place) * stretch / scale,
+            unit,
+        });
     }
     values
 }

@@ -11,6 +11,7 @@ use super::DiagnoseError;
 use super::evidence::Evidence;
 use super::evidence::Fitted;
 use super::feedback::InputInnovations;
+use super::imperfections::Imperfection;
 use super::unmodelled::UnmodelledChannel;
 use crate::effects::{Acts, Candidate, EffectModel, Part as Role};
 use crate::identify::{Options, Problem, longest_step};
@@ -78,17 +79,24 @@ pub(super) struct Bench<'a> {
     pub(super) predicting: Vec<(Unknown, f64)>,
     /// How much all rows tell together; infinite where every row tells something of its own.
     pub(super) told: f64,
+    /// What is fitted beside every hypothesis.
+    pub(super) imperfections: Vec<Imperfection>,
 }
 
 impl<'a> Bench<'a> {
     /// For runs to fit in which disturbances follow what the model lacks.
-    pub(super) fn new(set: &DataSet, effects: &'a EffectModel) -> Result<Self, DiagnoseError> {
-        Self::of(set, effects, level)
+    pub(super) fn new(
+        set: &DataSet,
+        effects: &'a EffectModel,
+        imperfections: &[Imperfection],
+    ) -> Result<Self, DiagnoseError> {
+        Self::of(set, effects, imperfections, level)
     }
 
     pub(super) fn of(
         set: &DataSet,
         effects: &'a EffectModel,
+        imperfections: &[Imperfection],
         level: impl Fn(&Estimation<'_>, &mut Problem) -> Result<(), DiagnoseError>,
     ) -> Result<Self, DiagnoseError> {
         let set = set.bound_to(&effects.mechanism);
@@ -103,11 +111,14 @@ impl<'a> Bench<'a> {
             (times[times.len() - 1] - times[0]) / (times.len() - 1) as f64
         });
         let step = steps.fold(f64::INFINITY, f64::min);
-        let setup = Setup {
+        let mut setup = Setup {
             longest_step: longest_step(effects.longest_step(&[])),
             has_corners: true,
             ..Setup::new(effects.with(&[]), &measured)
         };
+        for imperfection in imperfections {
+            admit(&mut setup, imperfection.acts, step);
+        }
         let (problem, sizes, layout) = {
             let estimation = Estimation::new(&setup, &recordings)?;
             let mut problem = Problem::of(&set, &estimation, (&Options::tolerant(), &[]))?;
@@ -130,6 +141,7 @@ impl<'a> Bench<'a> {
             weight: 1.0,
             predicting: Vec::new(),
             told: f64::INFINITY,
+            imperfections: imperfections.to_vec(),
         })
     }
 
@@ -144,7 +156,7 @@ impl<'a> Bench<'a> {
             weight: self.weight,
             predicting: self.predicting.clone(),
             told: self.told,
-            ..Bench::of(&self.set, effects, levels)?
+            ..Bench::of(&self.set, effects, &self.imperfections, levels)?
         })
     }
 
@@ -153,7 +165,7 @@ impl<'a> Bench<'a> {
     }
 
     pub(super) fn longest_delay(&self) -> f64 {
-        LONGEST_DELAY.max(DELAY_STEPS * self.step)
+        longest_delay(self.step)
     }
 
     /// Members without those that bring a coordinate.
@@ -203,18 +215,10 @@ impl<'a> Bench<'a> {
         setup
             .disturbances
             .truncate(self.effects.info().speeds - hidden);
-        for &member in members {
-            match self.candidate(member).acts {
-                Acts::Lag(input) => {
-                    setup.lagging.push(input);
-                    setup.longest_step = setup.longest_step.min(self.step);
-                }
-                Acts::Delay(input) => setup.delayed.push(input),
-                Acts::Late(channel) => {
-                    setup.channels[channel].longest_delay = Some(self.longest_delay());
-                }
-                _ => {}
-            }
+        let members = members.iter().map(|&member| self.candidate(member).acts);
+        let imperfections = self.imperfections.iter().map(|one| one.acts);
+        for acts in members.chain(imperfections) {
+            admit(&mut setup, acts, self.step);
         }
         setup
     }
@@ -269,6 +273,8 @@ impl<'a> Bench<'a> {
         for &member in members {
             free.extend(self.brought(member, setup));
         }
+        let imperfections = self.imperfections.iter();
+        free.extend(imperfections.filter_map(|one| one.free(self, setup)));
         free.extend(&self.problem.levels);
         free
     }
@@ -276,44 +282,48 @@ impl<'a> Bench<'a> {
     /// What a member brings.
     pub(super) fn brought(&self, member: usize, setup: &Setup<'_>) -> Vec<Free> {
         let candidate = self.candidate(member);
+        if candidate.acts != Acts::Items {
+            return self.of_signal(candidate.acts, setup).into_iter().collect();
+        }
         let info = self.effects.info();
+        let own = self.own(candidate).into_iter();
+        own.filter(|(_, role)| *role != Role::Switch)
+            .map(|(index, role)| {
+                let quantity = &info.parameters[index];
+                let [low, high] = quantity.range;
+                let free = Free::of(Unknown::Parameter(index)).within(low, high);
+                match role {
+                    Role::Shape => Free {
+                        coordinate: Coordinate::Logarithm,
+                        ..free.around(quantity.value, SHAPE)
+                    },
+                    Role::Term([expected, deviation]) => free.around(expected, deviation),
+                    Role::Size | Role::Switch => free,
+                }
+            })
+            .collect()
+    }
+
+    /// What an effect on an input or a channel sets free; nothing for others.
+    pub(super) fn of_signal(&self, acts: Acts, setup: &Setup<'_>) -> Option<Free> {
         let at = |list: &[usize], input: usize| list.iter().position(|own| *own == input);
-        match candidate.acts {
-            Acts::Items => self
-                .own(candidate)
-                .into_iter()
-                .filter(|(_, role)| *role != Role::Switch)
-                .map(|(index, role)| {
-                    let quantity = &info.parameters[index];
-                    let [low, high] = quantity.range;
-                    let free = Free::of(Unknown::Parameter(index)).within(low, high);
-                    match role {
-                        Role::Shape => Free {
-                            coordinate: Coordinate::Logarithm,
-                            ..free.around(quantity.value, SHAPE)
-                        },
-                        Role::Term([expected, deviation]) => free.around(expected, deviation),
-                        Role::Size | Role::Switch => free,
-                    }
-                })
-                .collect(),
-            Acts::Parameter(_) => Vec::new(),
-            Acts::Bias(channel) => vec![Free::of(Unknown::Bias(channel))],
-            Acts::Scale(channel) => vec![Free::of(Unknown::Scale(channel))],
+        match acts {
+            Acts::Items | Acts::Parameter(_) => None,
+            Acts::Bias(channel) => Some(Free::of(Unknown::Bias(channel))),
+            Acts::Scale(channel) => Some(Free::of(Unknown::Scale(channel))),
             Acts::Late(channel) => {
-                vec![Free::of(Unknown::SensorDelay(channel)).within(0.0, self.longest_delay())]
+                let free = Free::of(Unknown::SensorDelay(channel));
+                Some(free.within(0.0, self.longest_delay()))
             }
-            Acts::Lag(input) => at(&setup.lagging, input)
-                .map(|place| {
-                    let [shortest, longest] = LAG.map(|part| part * setup.longest_step);
-                    Free::of(Unknown::Lag(place)).within(shortest, longest)
-                })
-                .into_iter()
-                .collect(),
-            Acts::Delay(input) => at(&setup.delayed, input)
-                .map(|place| Free::of(Unknown::InputDelay(place)).within(0.0, self.longest_delay()))
-                .into_iter()
-                .collect(),
+            Acts::Lag(input) => {
+                let place = at(&setup.lagging, input)?;
+                let [shortest, longest] = LAG.map(|part| part * setup.longest_step);
+                Some(Free::of(Unknown::Lag(place)).within(shortest, longest))
+            }
+            Acts::Delay(input) => {
+                let place = at(&setup.delayed, input)?;
+                Some(Free::of(Unknown::InputDelay(place)).within(0.0, self.longest_delay()))
+            }
         }
     }
 
@@ -574,6 +584,23 @@ impl Bench<'_> {
             ..fit
         })
     }
+}
+
+/// Lets an effect on an input or a channel act, where rows are a `step` apart.
+fn admit(setup: &mut Setup<'_>, acts: Acts, step: f64) {
+    match acts {
+        Acts::Lag(input) => {
+            setup.lagging.push(input);
+            setup.longest_step = setup.longest_step.min(step);
+        }
+        Acts::Delay(input) => setup.delayed.push(input),
+        Acts::Late(channel) => setup.channels[channel].longest_delay = Some(longest_delay(step)),
+        Acts::Items | Acts::Parameter(_) | Acts::Bias(_) | Acts::Scale(_) => {}
+    }
+}
+
+fn longest_delay(step: f64) -> f64 {
+    LONGEST_DELAY.max(DELAY_STEPS * step)
 }
 
 /// Where a state stood in a model with other pseudo-velocities; nothing for one that it did not have.

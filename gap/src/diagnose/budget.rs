@@ -169,7 +169,7 @@ fn subset(effects: &[(String, Vec<usize>)], set: usize) -> Vec<usize> {
 
 /// The fit with some members of the best hypothesis. It begins at the best one that is known without one of
 /// them, and with the sizes that they have in the whole.
-fn with(
+pub(super) fn with(
     (bench, comparison): (&Bench<'_>, &Comparison),
     best: &Fitted,
     members: &[usize],

@@ -25,7 +25,7 @@ const PART: f64 = 0.5;
 /// the channels vary.
 const SHORTER: f64 = 0.1;
 /// Most rows of a run from which predictions start.
-const ORIGINS: usize = 75;
+pub(super) const ORIGINS: usize = 75;
 
 /// The runs that were held out.
 pub(super) struct HeldOut {
@@ -82,7 +82,9 @@ impl HeldOut {
         }
         let refitted = comparison.nominal();
         let noise = noise(bench, comparison.best())?;
-        let mut horizon = options.horizon.unwrap_or_else(|| self.horizon());
+        let mut horizon = options
+            .horizon
+            .unwrap_or_else(|| self::horizon(&self.recordings));
         let tolerance = options.tolerance.unwrap_or(IMMATERIAL);
         let mut floor = leader.floor(horizon)?;
         let expected = if leader.bench.is_over_windows() {
@@ -97,7 +99,7 @@ impl HeldOut {
             floor = leader.floor(horizon)?;
         }
         let errors = |fitted: &Fitted| self.errors(bench, fitted, &noise, horizon);
-        let stated = stated(bench, refitted);
+        let stated = stated(bench, refitted)?;
         let before = others.map(|others| {
             let own_floor =
                 |runs: &Self| prediction::floor(&runs.recordings, bench, &stated, &noise, horizon);
@@ -150,18 +152,6 @@ impl HeldOut {
         }))
     }
 
-    /// The horizon in s that these runs allow.
-    fn horizon(&self) -> f64 {
-        let (mut longest, mut step) = (0.0_f64, 0.0_f64);
-        for run in &self.recordings {
-            let times = run.times();
-            let duration = times[times.len() - 1] - times[0];
-            longest = longest.max(duration);
-            step = step.max(duration / (times.len() - 1) as f64);
-        }
-        HORIZON.max(STEPS * step).min(PART * longest)
-    }
-
     pub(super) fn errors(
         &self,
         bench: &Bench<'_>,
@@ -171,6 +161,18 @@ impl HeldOut {
     ) -> Result<Errors, DiagnoseError> {
         prediction::errors(&self.recordings, bench, fitted, noise, horizon, ORIGINS)
     }
+}
+
+/// The horizon in s that recordings allow.
+pub(super) fn horizon(recordings: &[Recording]) -> f64 {
+    let (mut longest, mut step) = (0.0_f64, 0.0_f64);
+    for run in recordings {
+        let times = run.times();
+        let duration = times[times.len() - 1] - times[0];
+        longest = longest.max(duration);
+        step = step.max(duration / (times.len() - 1) as f64);
+    }
+    HORIZON.max(STEPS * step).min(PART * longest)
 }
 
 /// How much channels vary, in units of the noise: root of the mean square.

@@ -45,9 +45,10 @@ pub(super) struct Judged<'a> {
     pub(super) comparison: Comparison,
 }
 
-/// What one-step predictions say, as long as simulations over windows bear it out; else what these say.
+/// What one-step predictions say, as long as simulations over windows bear it out; else what these say. Beside
+/// the nominal model other hypotheses may be known.
 pub(super) fn judged<'a>(
-    (bench, nominal, screen): (Bench<'a>, Fitted, Screen),
+    (bench, (nominal, known), screen): (Bench<'a>, (Fitted, Vec<Fitted>), Screen),
     over: Bench<'a>,
     stage: &mut impl FnMut(&'static str),
 ) -> Result<Judged<'a>, DiagnoseError> {
@@ -56,7 +57,7 @@ pub(super) fn judged<'a>(
         bench: &bench,
         again: BTreeMap::new(),
     };
-    let stepwise = seen.one_step(&nominal, &screen)?;
+    let stepwise = seen.one_step((&nominal, &known), &screen)?;
     let holds = stepwise.as_ref().filter(|(_, holds)| *holds);
     let again = holds.and_then(|(stepwise, _)| seen.again(stepwise.best()));
     let again = again.map(|again| again.fitted.clone());
@@ -102,7 +103,7 @@ pub(super) fn judged<'a>(
     // One step has to do too where no simulation follows the recordings.
     let comparison = match stepwise {
         Some(stepwise) => Some(stepwise),
-        None => Comparison::of(&bench, (nominal, Vec::new()), &screen, |_| Look::Holds)?,
+        None => Comparison::of(&bench, (nominal, known), &screen, |_| Look::Holds)?,
     };
     let mut comparison = comparison.ok_or(DiagnoseError::NothingToFit)?;
     stage("looking for what no effect explains");
@@ -174,11 +175,11 @@ impl Seen<'_, '_> {
     /// bear them out. They do not where the disturbance follows what the model lacks.
     fn one_step(
         &mut self,
-        nominal: &Fitted,
+        (nominal, known): (&Fitted, &[Fitted]),
         screen: &Screen,
     ) -> Result<Option<(Comparison, bool)>, DiagnoseError> {
         let (bench, over) = (self.bench, self.over);
-        let known = (nominal.clone(), Vec::new());
+        let known = (nominal.clone(), known.to_vec());
         let look = |fitted: &Fitted| self.look(fitted, nominal);
         let Some(mut comparison) = Comparison::of(bench, known, screen, look)? else {
             return Ok(None);

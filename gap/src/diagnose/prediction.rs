@@ -185,8 +185,9 @@ pub(super) fn floor(
 }
 
 /// The rig as the data set states it, with the levels of a fit.
-pub(super) fn stated(bench: &Bench<'_>, fitted: &Fitted) -> Fitted {
+pub(super) fn stated(bench: &Bench<'_>, fitted: &Fitted) -> Result<Fitted, DiagnoseError> {
     let mut stated = fitted.clone();
+    bench.perfected(&mut stated)?;
     // Models without contacts that creep have fewer parameters: the first ones.
     let own = bench.effects.with(&fitted.members).info().parameter_len();
     for (value, parameter) in stated.fit.values[..own]
@@ -195,7 +196,7 @@ pub(super) fn stated(bench: &Bench<'_>, fitted: &Fitted) -> Fitted {
     {
         *value = parameter.value;
     }
-    stated
+    Ok(stated)
 }
 
 /// Values of a fit on these recordings. A filter that trusts its model so much that it loses a run

@@ -394,6 +394,9 @@ pub struct Report {
     pub detectable: Vec<Detectable>,
     /// Hypotheses whose fit failed or ended before an optimum, with the reason.
     pub failed: Vec<(Vec<String>, String)>,
+    /// Imperfections of channels that change no prediction and are fitted beside every hypothesis, as the best one has
+    /// them.
+    pub imperfections: Vec<Value>,
     /// Disturbances before and after: name, level under the nominal model and under the best one.
     pub disturbances: Vec<(String, f64, f64)>,
     /// What the best hypothesis leaves; nothing where no law holds on runs that it was not found in.

@@ -307,17 +307,18 @@ fn others(
     free: &[Direction],
 ) -> (Vec<Direction>, Vec<(usize, Vec<usize>)>) {
     let mut directions = free.to_vec();
-    let mut own: Vec<(usize, Vec<usize>)> = Vec::new();
+    let mut columns: Vec<(usize, Vec<usize>)> = Vec::new();
     for candidate in 0..bench.effects.candidates.len() {
-        let brings = bench.candidate(candidate).brings.is_some();
-        if brings || fitted.members.contains(&candidate) {
+        let own = bench.candidate(candidate);
+        let is_beside = bench.imperfections.iter().any(|one| one.acts == own.acts);
+        if own.brings.is_some() || is_beside || fitted.members.contains(&candidate) {
             continue;
         }
         let first = directions.len();
         directions.extend(self::directions(bench, candidate));
-        own.push((candidate, (first..directions.len()).collect()));
+        columns.push((candidate, (first..directions.len()).collect()));
     }
-    (directions, own)
+    (directions, columns)
 }
 
 /// Shapes of candidates that are not members stand where their spec has them.

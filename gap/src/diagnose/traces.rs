@@ -31,7 +31,7 @@ impl HeldOut {
         }
         let refitted = comparison.nominal();
         let noise = noise(bench, comparison.best())?;
-        let nominal = stated(bench, refitted);
+        let nominal = stated(bench, refitted)?;
         let ahead = |horizon: f64| {
             let error = |fitted: &Fitted| -> Result<f64, DiagnoseError> {
                 Ok(self.errors(bench, fitted, &noise, horizon)?.mean().sqrt())
@@ -63,7 +63,7 @@ impl HeldOut {
             return Ok(Vec::new());
         };
         let refitted = comparison.nominal();
-        let nominal = self.predicted(bench, &stated(bench, refitted))?;
+        let nominal = self.predicted(bench, &stated(bench, refitted)?)?;
         let refitted = self.predicted(bench, refitted)?;
         let with_effect = leader.runs.predicted(leader.bench, leader.fitted)?;
         let deviations = leader.runs.deviations(leader.bench, leader.fitted)?;

@@ -39,7 +39,7 @@ impl Bench<'_> {
                 .retain(|free| matches!(free.unknown, Unknown::Noise(_)));
             Ok(())
         };
-        let mut bench = Self::of(windows, steps.effects, quiet)?;
+        let mut bench = Self::of(windows, steps.effects, &steps.imperfections, quiet)?;
         bench.whole.clone_from(&steps.whole);
         bench.told = 2.0 / TOLERANCE * bench.effects.info().speeds as f64;
         let values = bench.recordings.iter().map(|run| {

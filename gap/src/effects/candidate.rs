@@ -26,6 +26,23 @@ pub enum Acts {
     Late(usize),
 }
 
+impl Acts {
+    /// Whether by a channel that is not perfect.
+    pub(crate) const fn is_of_channel(self) -> bool {
+        matches!(self, Self::Bias(_) | Self::Scale(_) | Self::Late(_))
+    }
+
+    /// The same by a channel at another place; nothing where it has none, or for what is not of a channel.
+    pub(crate) fn moved(self, place: impl Fn(usize) -> Option<usize>) -> Option<Self> {
+        match self {
+            Self::Bias(channel) => place(channel).map(Self::Bias),
+            Self::Scale(channel) => place(channel).map(Self::Scale),
+            Self::Late(channel) => place(channel).map(Self::Late),
+            Self::Items | Self::Parameter(_) | Self::Lag(_) | Self::Delay(_) => None,
+        }
+    }
+}
+
 /// Role of a parameter of a candidate.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Part {

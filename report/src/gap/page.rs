@@ -11,7 +11,7 @@ use super::elements::{bar, capital, code, figure, separated, table};
 use super::law::{law, predicts};
 use super::numbers::{measured, percent};
 use super::plots;
-use super::words::{alternatives, hinted, joined, left_out, percent_of, statement};
+use super::words::{alternatives, hinted, imperfections, joined, left_out, percent_of, statement};
 use crate::drawing::marked;
 use crate::page_shell::PageShell;
 use crate::text::{horizon, short, with_unit};
@@ -325,6 +325,9 @@ fn which(report: &Report) -> Markup {
                 (separated(group, |effects| code(&joined(effects)), &html! { " and " }))
                 " apart."
             }
+        }
+        @if let Some(named) = imperfections(report) {
+            p { b { "Sensors." } " " (capital(&named)) "." }
         }
         // A law that was measured has a section of its own.
         @if let Some(left) = report.left.as_ref().filter(|left| left.is_there() && report.law.is_none()) {

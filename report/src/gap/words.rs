@@ -2,7 +2,8 @@
 
 use appell_gap::diagnose::{Change, GapVerdict, Hint, Hypothesis, Report, Share};
 
-use super::numbers::{part_of_all, percent};
+use super::numbers::{measured, part_of_all, percent};
+use crate::text::with_unit;
 
 /// The verdict in one sentence, with the alternatives.
 pub fn sentence(report: &Report) -> String {
@@ -265,6 +266,22 @@ pub fn left_out(report: &Report) -> Option<String> {
     let [fitted, all] = report.rows;
     (fitted < all).then(|| {
         format!("{fitted} of {all} training rows were used, in segments spread over the runs")
+    })
+}
+
+/// What channels lack that changes no prediction, if anything.
+pub fn imperfections(report: &Report) -> Option<String> {
+    let named = report.imperfections.iter().map(|value| {
+        let number = with_unit(&measured(value.value, value.std), &value.unit);
+        let effect = value.name.rsplit_once('.').map_or("", |(effect, _)| effect);
+        format!("{effect} {number}")
+    });
+    let named: Vec<String> = named.collect();
+    (!named.is_empty()).then(|| {
+        format!(
+            "{}: in the recordings, but too small to change predictions; fitted beside every hypothesis",
+            named.join(", ")
+        )
     })
 }
 

@@ -1,0 +1,133 @@
+//! Imperfections of channels that change no prediction: long recordings tell a delay of a millisecond that matters
+//! to nobody. Such names no cause, and no hypothesis may lead because it bends to one. So they are fitted beside every
+//! hypothesis, the nominal model included.
+
+use appell_estimate::{Coordinate, Estimation, Free, Setup, Unknown};
+
+use super::DiagnoseError;
+use super::alternative::columns;
+use super::bench::Bench;
+use super::budget;
+use super::calibration::IMMATERIAL;
+use super::evidence::Fitted;
+use super::held_out::{ORIGINS, horizon};
+use super::horizon::Judged;
+use super::prediction::{errors, noise};
+use crate::effects::{Acts, Candidate};
+
+/// An imperfection of a channel.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Imperfection {
+    /// How it acts.
+    pub(super) acts: Acts,
+    /// What was found beside the best hypothesis.
+    found: f64,
+}
+
+impl Imperfection {
+    /// What is free of it. It is expected to be no larger than it was found: beside a wrong model it would imitate what
+    /// that lacks.
+    pub(super) fn free(&self, bench: &Bench<'_>, setup: &Setup<'_>) -> Option<Free> {
+        let free = bench.of_signal(self.acts, setup)?;
+        Some(match free.coordinate {
+            Coordinate::Plain => {
+                let perfect = perfect(free.unknown);
+                free.around(perfect, (self.found - perfect).abs())
+            }
+            Coordinate::Logarithm => free.around(self.found, 1.0),
+        })
+    }
+
+    /// The effect that it is among those of a bench.
+    pub(super) fn candidate<'b>(&self, bench: &'b Bench<'_>) -> Option<&'b Candidate> {
+        let mut candidates = bench.effects.candidates.iter();
+        candidates.find(|candidate| candidate.acts == self.acts)
+    }
+}
+
+/// The value of a perfect channel.
+fn perfect(unknown: Unknown) -> f64 {
+    if matches!(unknown, Unknown::Scale(_)) {
+        1.0
+    } else {
+        0.0
+    }
+}
+
+impl Bench<'_> {
+    /// Makes the channels of a fit perfect, but for what its members do.
+    pub(super) fn perfected(&self, fitted: &mut Fitted) -> Result<(), DiagnoseError> {
+        let setup = self.setup(&fitted.members);
+        for imperfection in &self.imperfections {
+            if let Some(free) = imperfection.free(self, &setup) {
+                let place = fitted.layout.place(free.unknown)?;
+                fitted.fit.values[place] = perfect(free.unknown).max(free.range[0]);
+            }
+        }
+        Ok(())
+    }
+
+    /// The same imperfections of another model, whose channels have these columns.
+    pub(super) fn imperfections_of(&self, channels: &[String]) -> Vec<Imperfection> {
+        let own = columns(self);
+        let place = |channel: usize| channels.iter().position(|column| *column == own[channel]);
+        let moved = self.imperfections.iter().filter_map(|one| {
+            let acts = one.acts.moved(place)?;
+            Some(Imperfection { acts, ..*one })
+        });
+        moved.collect()
+    }
+}
+
+/// Those imperfections beside forces of the leading hypothesis that close less of the gap than the tolerance, in
+/// predictions of the runs that were fitted. One that stands alone is all there is of the gap.
+pub(super) fn immaterial(judged: &Judged<'_>) -> Result<Vec<Imperfection>, DiagnoseError> {
+    let (bench, comparison) = (&judged.bench, &judged.comparison);
+    let (best, nominal) = (comparison.best(), comparison.nominal());
+    let is_of_channel = |member: &&usize| bench.candidate(**member).acts.is_of_channel();
+    let of_channels: Vec<usize> = best.members.iter().filter(is_of_channel).copied().collect();
+    if of_channels.is_empty() || of_channels.len() == best.members.len() {
+        return Ok(Vec::new());
+    }
+    let (noise, horizon) = (noise(bench, best)?, horizon(&bench.recordings));
+    let square = |fitted: &Fitted| {
+        let errors = errors(&bench.recordings, bench, fitted, &noise, horizon, ORIGINS)?;
+        Ok::<f64, DiagnoseError>(errors.mean())
+    };
+    let whole = square(best)?;
+    let closed = square(nominal)? - whole;
+    let setup = bench.setup(&best.members);
+    let mut immaterial = Vec::new();
+    for member in of_channels {
+        let mut others = best.members.clone();
+        others.retain(|&own| own != member);
+        let without = budget::with((bench, comparison), best, &others)?;
+        let acts = bench.candidate(member).acts;
+        let Some(free) = bench.of_signal(acts, &setup) else {
+            continue;
+        };
+        if square(&without)? - whole < IMMATERIAL * closed {
+            let found = best.fit.values[best.layout.place(free.unknown)?];
+            immaterial.push(Imperfection { acts, found });
+        }
+    }
+    Ok(immaterial)
+}
+
+/// The leading hypothesis of `before`, with what is fitted beside every hypothesis in place of those of its members.
+pub(super) fn known(bench: &Bench<'_>, before: &Judged<'_>) -> Result<Fitted, DiagnoseError> {
+    let best = before.comparison.best();
+    let mut members = best.members.clone();
+    members.retain(|&member| {
+        let acts = bench.candidate(member).acts;
+        !bench.imperfections.iter().any(|one| one.acts == acts)
+    });
+    let setup = bench.setup(&members);
+    let estimation = Estimation::new(&setup, &bench.recordings)?;
+    let start = if before.bench.is_over_windows() {
+        bench.taken(&before.bench, best)?.fit.values
+    } else {
+        bench.carried(best, &estimation)
+    };
+    bench.fit(&members, &estimation, &start)
+}

@@ -165,7 +165,9 @@ fn changes(changes: &Changes) -> Value {
         "items": changes.items,
         "inputs": inputs.map(|(input, adds)| json!({ "input": input, "adds": adds })).collect::<Vec<_>>(),
         "parameters": parameters.collect::<Vec<_>>(),
-        "beside": beside.map(|b| json!({ "effect": b.effect, "acts": b.acts, "on": b.on })).collect::<Vec<_>>(),
+        "beside": beside.map(|b| json!({
+            "effect": b.effect, "acts": b.acts, "on": b.on, "output": b.output,
+        })).collect::<Vec<_>>(),
     })
 }
 
@@ -178,6 +180,8 @@ pub struct GapReport {
     which: Vec<Hypothesis>,
     #[serde(default)]
     tied: Vec<Vec<String>>,
+    #[serde(default)]
+    pub(crate) imperfections: Vec<Found>,
 }
 
 /// A hypothesis of a report.
@@ -227,6 +231,8 @@ struct Outside {
     effect: String,
     acts: String,
     on: String,
+    #[serde(default)]
+    output: Option<String>,
 }
 
 impl GapReport {
@@ -327,6 +333,7 @@ impl Hypothesis {
             effect: b.effect.clone(),
             acts: b.acts.clone(),
             on: b.on.clone(),
+            output: b.output.clone(),
         });
         Changes {
             items: written.items.clone(),

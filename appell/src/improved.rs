@@ -64,7 +64,11 @@ impl Improved<'_> {
             |value: &Found, one: &SignalEffect| value.name.starts_with(&format!("{}.", one.effect));
         let effects = &changes.signal_effects;
         let others = hypothesis.parameters.iter();
-        let others = others.filter(|value| !effects.iter().any(|one| of(value, one)));
+        let is_elsewhere = |one: &SignalEffect| one.output.is_none();
+        let others = others.filter(|value| {
+            let mut signals = effects.iter().filter(|one| is_elsewhere(one));
+            !signals.any(|one| of(value, one))
+        });
         // Writing to a string cannot fail.
         for value in others {
             let _ = writeln!(text, "  found     {} = {}", value.name, value.sentence());
@@ -73,7 +77,8 @@ impl Improved<'_> {
             let _ = writeln!(text, "  changed   {}", refitted(one));
         }
         for one in effects {
-            let mut values = hypothesis.parameters.iter();
+            let beside = self.report.imperfections.iter();
+            let mut values = hypothesis.parameters.iter().chain(beside);
             let value = values.find(|value| of(value, one)).map(Found::sentence);
             let value = value.unwrap_or_default();
             let _ = writeln!(text, "  elsewhere {}", elsewhere(one, &value));
@@ -152,6 +157,12 @@ fn digits(value: f64, deviations: f64) -> f64 {
 /// Where an effect belongs that a spec cannot express.
 fn elsewhere(own: &SignalEffect, value: &str) -> String {
     let (effect, on) = (&own.effect, &own.on);
+    if let Some(output) = &own.output {
+        return format!(
+            "{effect}: the channel {on} shows something else: write `measures = \"{output}\"` for it in \
+             recording.toml"
+        );
+    }
     let rest = match own.acts.as_str() {
         "lag" => format!(
             "{on} follows its command through a first-order lag with the time constant {value}; a spec \

@@ -3,7 +3,7 @@
 use appell_test_kit::is_full;
 use serde_json::json;
 
-use crate::rig::{self, geared};
+use crate::rig::{self, geared, geared_behind_its_encoder};
 use crate::support::{self, number};
 
 const SHARE: f64 = 0.2;
@@ -48,6 +48,48 @@ fn play_is_found_with_its_size_and_its_spec_has_no_gap() {
     folder.done(&apply);
     let checked = folder.done(&["check", "new.toml"]);
     assert!(!checked.stderr.contains("warning"), "{}", checked.stderr);
+    rig::closed(&folder, "new.toml");
+}
+
+#[test]
+fn play_behind_the_encoder_is_found_and_what_the_encoder_shows_is_told() {
+    let folder = geared_behind_its_encoder(SHARE, HALF_GAP);
+    folder.done(&["diagnose", "--data", ".", "--json", "report.json"]);
+    let report = folder.json("report.json");
+    let top = &report["which"][0];
+    assert_eq!(top["effects"], json!(["backlash@x"]), "{report:#}");
+    for (place, size) in [HALF_GAP, SHARE].into_iter().enumerate() {
+        let found = &top["parameters"][place];
+        let (value, std) = (number(found, "value"), number(found, "std"));
+        // Teeth of the law are softer than those of the rig.
+        assert!((value - size).abs() < 0.05 * size + 4.0 * std, "{found}");
+    }
+    let closed = number(&report, "how_far/closed_vs_refitted");
+    assert!(closed > 0.9, "{closed}");
+    let shows = &top["changes"]["beside"][0];
+    assert_eq!(shows["acts"], "shows", "{top:#}");
+    let output = shows["output"].as_str().expect("an output").to_owned();
+
+    let spec = support::repository("generated/mechanisms/carriage.toml");
+    let spec = std::fs::read_to_string(spec).expect("a shipped spec");
+    folder.write("rig.toml", &spec);
+    let apply = [
+        "apply",
+        "rig.toml",
+        "--report",
+        "report.json",
+        "-o",
+        "new.toml",
+    ];
+    let applied = folder.done(&apply);
+    let told = format!("the channel x shows something else: write `measures = \"{output}\"`");
+    assert!(applied.stdout.contains(&told), "{}", applied.stdout);
+    let description = folder.read("recording.toml");
+    let shown = format!("measures = \"{output}\"");
+    folder.write(
+        "recording.toml",
+        &description.replace("measures = \"x\"", &shown),
+    );
     rig::closed(&folder, "new.toml");
 }
 

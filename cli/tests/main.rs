@@ -21,6 +21,7 @@ mod film;
 mod handout;
 mod help;
 mod identify;
+mod imperfection;
 mod language_server;
 mod late;
 mod law;

@@ -26,6 +26,11 @@ impl Gear {
         }
     }
 
+    /// The position of the motor.
+    pub(crate) fn motor(&self) -> f64 {
+        self.joint[0] + self.twist[0]
+    }
+
     /// Goes on under a force on the motor; the position of the joint.
     pub(crate) fn advance(&mut self, force: f64, time: f64) -> f64 {
         // Teeth push and never pull.

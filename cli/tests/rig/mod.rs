@@ -68,8 +68,8 @@ fn recording(mut advance: impl FnMut(f64) -> f64, forces: &[f64], noise: &mut No
     text
 }
 
-/// The motion of the carriage; `friction` is a force by velocity.
-fn rubbing(friction: impl Fn(f64) -> f64) -> impl FnMut(f64) -> f64 {
+/// Position and velocity of the carriage; `friction` is a force by velocity.
+fn rubbing(friction: impl Fn(f64) -> f64) -> impl FnMut(f64) -> [f64; 2] {
     let (mut x, mut v) = (0.0, 0.0);
     let h = HELD / f64::from(STEPS);
     move |force| {
@@ -79,7 +79,7 @@ fn rubbing(friction: impl Fn(f64) -> f64) -> impl FnMut(f64) -> f64 {
             x += h * half;
             v += h * (force - friction(half));
         }
-        x
+        [x, v]
     }
 }
 
@@ -223,7 +223,8 @@ impl<F: Fn(f64) -> f64> Rig<F> {
     }
 
     fn record(&mut self, name: &str, forces: &[f64]) {
-        let text = recording(rubbing(&self.friction), forces, &mut self.noise);
+        let mut motion = rubbing(&self.friction);
+        let text = recording(|force| motion(force)[0], forces, &mut self.noise);
         self.folder.write(name, &text);
     }
 }
@@ -245,6 +246,25 @@ pub(crate) fn viscous(coefficient: f64) -> Folder {
 /// With dry friction, its sign rounded as filters have to round it.
 pub(crate) fn dry(force: f64) -> Folder {
     Rig::new(move |v| force * (v / 0.02).tanh()).folder
+}
+
+/// With dry friction and a second sensor, of the velocity, which has a bias.
+pub(crate) fn dry_with_a_biased_sensor(friction: f64, bias: f64) -> Folder {
+    let (folder, mut noise) = (Folder::new(), Noise(7));
+    let second = "F = { input";
+    let sensor = format!("v = {{ measures = \"v\", unit = \"m/s\", noise_std = 1e-3 }}\n{second}");
+    folder.write("recording.toml", &DESCRIPTION.replace(second, &sensor));
+    for name in RUNS {
+        let mut motion = rubbing(|v| friction * (v / 0.02).tanh());
+        let (mut text, mut state) = ("t,x,v,F\n".to_owned(), [0.0; 2]);
+        for (row, force) in forces(FEWER_ROWS).into_iter().enumerate() {
+            let [x, v] = [state[0], state[1] + bias].map(|value| value + 1e-3 * noise.next());
+            let _ = writeln!(text, "{},{x},{v},{force}", row as f64 / 100.0);
+            state = motion(force);
+        }
+        folder.write(name, &text);
+    }
+    folder
 }
 
 /// With dry friction, and a rail whose grain no library knows.
@@ -272,6 +292,17 @@ pub(crate) fn geared(share: f64, half_gap: f64) -> Folder {
     moving(|| {
         let mut gear = Gear::new(share, half_gap);
         move |force| gear.advance(force, HELD)
+    })
+}
+
+/// The same with the encoder on the motor.
+pub(crate) fn geared_behind_its_encoder(share: f64, half_gap: f64) -> Folder {
+    moving(|| {
+        let mut gear = Gear::new(share, half_gap);
+        move |force| {
+            gear.advance(force, HELD);
+            gear.motor()
+        }
     })
 }
 

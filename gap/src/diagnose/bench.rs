@@ -14,7 +14,7 @@ use super::feedback::InputInnovations;
 use super::imperfections::Imperfection;
 use super::unmodelled::UnmodelledChannel;
 use crate::effects::{Acts, Candidate, EffectModel, Part as Role};
-use crate::identify::{Options, Problem, longest_step};
+use crate::identify::{Options, Problem, begin, longest_step};
 use appell_recordings::{DataSet, Part, Run};
 
 /// Delays of inputs and channels are this long in s at most, or so many steps.
@@ -198,11 +198,34 @@ impl<'a> Bench<'a> {
         self.setup_of(self.effects.beside(members), members)
     }
 
-    fn setup_of<'s>(&'s self, model: &'s dyn Model, members: &[usize]) -> Setup<'s> {
-        // A coordinate that a member brings moves those that are measured to other places in the state,
-        // and nothing disturbs it, nor one that is hidden.
+    /// What the channels measure in a model that may have more coordinates: they move the others to other places.
+    fn measured_by(&self, model: &dyn Model) -> Vec<Measured> {
         let measured = self.set.measured(model.info());
-        let measured: Vec<Measured> = measured.iter().map(|(_, shown)| *shown).collect();
+        measured.iter().map(|(_, shown)| *shown).collect()
+    }
+
+    /// States at the first rows. Channels are read as the model has them without members: what these show in their
+    /// place is near.
+    pub(super) fn begin(
+        &self,
+        estimation: &Estimation<'_>,
+        values: &mut [f64],
+    ) -> Result<(), DiagnoseError> {
+        let mut setup = estimation.setup().clone();
+        let plain = self.measured_by(setup.model);
+        for (channel, measures) in setup.channels.iter_mut().zip(plain) {
+            channel.measures = measures;
+        }
+        begin(&Estimation::new(&setup, estimation.recordings())?, values)?;
+        Ok(())
+    }
+
+    fn setup_of<'s>(&'s self, model: &'s dyn Model, members: &[usize]) -> Setup<'s> {
+        // Nothing disturbs a coordinate that a member brings, nor one that is hidden.
+        let mut measured = self.measured_by(model);
+        for candidate in members.iter().map(|&member| self.candidate(member)) {
+            show(candidate, model, &mut measured);
+        }
         let mut setup = Setup {
             longest_step: longest_step(self.effects.longest_step(members)),
             has_corners: true,
@@ -583,6 +606,21 @@ impl Bench<'_> {
             gain: self.weight * fit.gain,
             ..fit
         })
+    }
+}
+
+/// Lets channels show what a member has them show.
+fn show(member: &Candidate, model: &dyn Model, measured: &mut [Measured]) {
+    let info = model.info();
+    for (state, output) in &member.shows {
+        let (state, output) = (info.state_index(state), info.output_index(output));
+        let (Some(state), Some(output)) = (state, output) else {
+            continue;
+        };
+        let of_state = measured.iter_mut();
+        for shown in of_state.filter(|shown| **shown == Measured::State(state)) {
+            *shown = Measured::Output(output);
+        }
     }
 }
 

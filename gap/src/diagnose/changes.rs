@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use appell_estimate::{Coordinate, Unknown};
+use appell_estimate::{Coordinate, Measured, Unknown};
 use appell_spec::compose::Composition;
 use appell_spec::edit::{EditError, set_parameters};
 use appell_spec::mechanism::ParameterId;
@@ -12,7 +12,7 @@ use toml_edit::{DocumentMut, Item};
 use super::bench::Bench;
 use super::evidence::Fitted;
 use super::{ChangeError, DiagnoseError};
-use crate::effects::{ACTING, Acts, ModelError, Part, with_candidates};
+use crate::effects::{ACTING, Acts, Candidate, ModelError, Part, with_candidates};
 
 /// Changes of a spec.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -49,10 +49,12 @@ pub struct Refitted {
 pub struct SignalEffect {
     /// Name.
     pub effect: String,
-    /// How it acts: `lag`, `delay` of an input; `bias`, `scale`, `late` of a channel.
+    /// How it acts: `lag`, `delay` of an input; `bias`, `scale`, `late` of a channel, or what it `shows`.
     pub acts: String,
     /// The input or channel.
     pub on: String,
+    /// The output that a channel shows, among the items.
+    pub output: Option<String>,
 }
 
 impl Changes {
@@ -104,8 +106,10 @@ impl Changes {
                 effect: candidate.name(),
                 acts: acts.to_owned(),
                 on: candidate.site.clone(),
+                output: None,
             })
         });
+        let shown = members().flat_map(|candidate| shown(bench, candidate));
         Ok(Self {
             items: items(bench, fitted)?,
             inputs: members()
@@ -113,9 +117,26 @@ impl Changes {
                 .collect(),
             brought: brought(bench, fitted),
             parameters: parameters(bench, fitted),
-            signal_effects: signal_effects.collect(),
+            signal_effects: signal_effects.chain(shown).collect(),
         })
     }
+}
+
+/// What channels show in place of what the spec has them show.
+fn shown(bench: &Bench<'_>, candidate: &Candidate) -> Vec<SignalEffect> {
+    let measured = bench.set.measured(bench.effects.info());
+    let mut shown = Vec::new();
+    for (state, output) in &candidate.shows {
+        let state = bench.effects.info().state_index(state).map(Measured::State);
+        let channels = measured.iter().filter(|(_, own)| Some(*own) == state);
+        shown.extend(channels.map(|(channel, _)| SignalEffect {
+            effect: candidate.name(),
+            acts: "shows".to_owned(),
+            on: channel.column.clone(),
+            output: Some(output.clone()),
+        }));
+    }
+    shown
 }
 
 /// Names of the parameters of a spec.

@@ -15,7 +15,6 @@ use super::DiagnoseError;
 use super::bench::Bench;
 use super::evidence::Fitted;
 use crate::held_out::origins;
-use crate::identify::begin;
 
 /// Rows from which expected errors are estimated.
 const EXPECTED_FROM: usize = 25;
@@ -207,7 +206,7 @@ pub(super) fn taken_over(
     estimation: &Estimation<'_>,
 ) -> Result<Vec<f64>, DiagnoseError> {
     let mut values = bench.carried(fitted, estimation);
-    begin(estimation, &mut values)?;
+    bench.begin(estimation, &mut values)?;
     bench.hide(&fitted.members, estimation, &mut values)?;
     let layout = estimation.layout();
     for (unknown, value) in &bench.predicting {

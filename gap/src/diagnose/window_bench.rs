@@ -6,7 +6,7 @@ use appell_estimate::{Estimation, Free, Unknown};
 use super::DiagnoseError;
 use super::bench::Bench;
 use super::evidence::Fitted;
-use crate::identify::{Problem, begin};
+use crate::identify::Problem;
 use appell_recordings::DataSet;
 
 /// Noise from which a search over windows begins, by these factors larger than that of the sensors: the likeliest.
@@ -101,7 +101,7 @@ impl Bench<'_> {
             let place = layout.place(Unknown::Disturbance(index))?;
             values[place] = self.problem.start[self.layout.place(Unknown::Disturbance(index))?];
         }
-        begin(&estimation, &mut values)?;
+        self.begin(&estimation, &mut values)?;
         self.hide(&fitted.members, &estimation, &mut values)?;
         self.loosen(&estimation, &mut values)?;
         let fit = self.levelled(&estimation, &values)?;

@@ -87,6 +87,8 @@ pub struct Candidate {
     pub(crate) hides: Option<[f64; 2]>,
     /// Additions to inputs: name and expression.
     pub(crate) added: Vec<(String, String)>,
+    /// What channels show in place of a coordinate or pseudo-velocity: its name and an output.
+    pub(crate) shows: Vec<(String, String)>,
     /// Its file, for effects of users.
     pub(super) source: Option<Source>,
 }
@@ -138,6 +140,7 @@ impl Candidate {
             brings: None,
             hides: None,
             added: Vec::new(),
+            shows: Vec::new(),
             source: None,
         }
     }
@@ -244,6 +247,7 @@ impl Candidate {
             Some(input) => texts(&input),
             None => Vec::new(),
         };
+        let shows = shown(&mut document, id);
         document.remove("effect");
         let switch = effect
             .switch
@@ -302,9 +306,29 @@ impl Candidate {
             brings,
             hides: None,
             added,
+            shows,
             source: effect.file.is_some().then_some(source),
         })
     }
+}
+
+/// What channels show in place of coordinates and pseudo-velocities, as outputs of its own.
+fn shown(document: &mut DocumentMut, id: &str) -> Vec<(String, String)> {
+    let channel = document.remove("channel");
+    let channel = channel.iter().flat_map(texts);
+    let mut shows = Vec::new();
+    for (state, value) in channel.filter(|(_, value)| !value.is_empty()) {
+        let output = format!("{id}_shows_{state}");
+        let item = InlineTable::from_iter([("value", Value::from(value))]);
+        let outputs = document
+            .entry("outputs")
+            .or_insert(Item::Table(Table::new()));
+        if let Some(outputs) = outputs.as_table_like_mut() {
+            outputs.insert(&output, Item::Value(item.into()));
+        }
+        shows.push((state, output));
+    }
+    shows
 }
 
 /// A text with what stands for its words.

@@ -5,7 +5,8 @@
 //! family   = "force"                 # force, parameter, actuator, sensor, constraint, joint
 //! site     = "coordinate"            # see SiteKind
 //! about    = "spring at {site}"
-//! variants = [{ part = "0.5" }]      # each a hypothesis of its own; its words stand in the text
+//! words    = { part = "0.5" }        # what further words in the text stand for
+//! variants = [{ axis = "x" }]        # each a hypothesis of its own, with words of its own
 //! vector   = true                    # the variants are components, which may come together
 //! switch   = "{effect}_on"           # a parameter that is 1 where the effect is there
 //! filter   = "lag"                   # what acts beside the equations: lag, delay, bias, scale, late
@@ -17,6 +18,9 @@
 //! "{effect}" = { kind = "generalized", coordinate = "{site}", force = "-{effect}_stiffness*{site}" }
 //!
 //! [input]                            # what is added to an input wherever it acts
+//!
+//! [channel]                          # what channels show in place of a coordinate or pseudo-velocity; an empty
+//! "{site}" = "{site} + {effect}"     # text changes nothing
 //! ```
 
 use appell_spec::expr::Span;
@@ -133,7 +137,7 @@ impl From<Report> for EffectError {
 
 /// Keys of the section `[effect]`.
 pub(super) const KEYS: &[&str] = &[
-    "name", "family", "site", "about", "variants", "vector", "switch", "filter",
+    "name", "family", "site", "about", "words", "variants", "vector", "switch", "filter",
 ];
 /// What the first words of an effect stand for.
 const EVERYWHERE: &[&str] = &["effect", "site"];
@@ -225,11 +229,7 @@ impl Effect {
             family,
             site,
             about,
-            variants: if variants.is_empty() {
-                vec![Vec::new()]
-            } else {
-                variants
-            },
+            variants,
             is_vector: is_vector.unwrap_or(false),
             switch: switch.map(|(switch, _)| switch),
             filter,
@@ -264,32 +264,44 @@ fn choice<T>(
     found
 }
 
-/// Words and what they stand for, one list for each variant.
+/// Words and what they stand for, one list for each variant: those of all variants, then its own.
 fn variants(fields: &mut Fields<'_>, header: &DeTable<'_>) -> Vec<Vec<(String, String)>> {
+    let common = header.get("words").map_or_else(Vec::new, |value| {
+        words(
+            fields,
+            value,
+            "a table of texts, such as { part = \"0.5\" }",
+        )
+    });
     let Some(value) = header.get("variants") else {
-        return Vec::new();
+        return vec![common];
     };
     let wanted = "a list of tables of texts, such as [{ part = \"0.5\" }]";
     let Some(list) = value.get_ref().as_array() else {
         fields.wrong_type(value, wanted);
         return Vec::new();
     };
-    let mut variants = Vec::new();
-    for value in list {
-        let Some(table) = value.get_ref().as_table() else {
-            fields.wrong_type(value, wanted);
-            continue;
-        };
-        let mut words = Vec::new();
-        for (key, value) in table {
-            match value.get_ref().as_str() {
-                Some(text) => words.push((key.get_ref().to_string(), text.to_owned())),
-                None => fields.wrong_type(value, "a text in quotes"),
-            }
-        }
-        variants.push(words);
+    if list.is_empty() {
+        return vec![common];
     }
-    variants
+    let own = list.iter().map(|value| words(fields, value, wanted));
+    own.map(|own| [common.clone(), own].concat()).collect()
+}
+
+/// Words and what they stand for.
+fn words(fields: &mut Fields<'_>, value: &Value<'_>, wanted: &str) -> Vec<(String, String)> {
+    let Some(table) = value.get_ref().as_table() else {
+        fields.wrong_type(value, wanted);
+        return Vec::new();
+    };
+    let mut words = Vec::new();
+    for (key, value) in table {
+        match value.get_ref().as_str() {
+            Some(text) => words.push((key.get_ref().to_string(), text.to_owned())),
+            None => fields.wrong_type(value, "a text in quotes"),
+        }
+    }
+    words
 }
 
 /// Reports unknown placeholders, in keys and in texts.

@@ -81,7 +81,9 @@ impl SiteKind {
     pub(super) fn words(self) -> &'static [&'static [&'static str]] {
         match self {
             Self::Coordinate | Self::Slider | Self::Hinge => &[OF_COORDINATE, ACROSS],
-            Self::DrivenSlider | Self::DrivenHinge => &[OF_COORDINATE, ACROSS, LATER_DRIVEN],
+            Self::DrivenSlider | Self::DrivenHinge => {
+                &[OF_COORDINATE, ACROSS, OF_DRIVEN, LATER_DRIVEN]
+            }
             Self::Body | Self::RigidBody => &[OF_BODY, LATER_BODY],
             Self::Wheel => &[OF_BODY, OF_WHEEL, LATER_BODY],
             Self::Gravity => &[&["gravity"], ACROSS],
@@ -93,6 +95,7 @@ impl SiteKind {
 
 const OF_COORDINATE: &[&str] = &["unit", "force", "typical_rate", "narrow_rate"];
 const ACROSS: &[&str] = &["across_1", "across_2", "across_x", "across_y", "across_z"];
+const OF_DRIVEN: &[&str] = &["pseudo_velocity"];
 const OF_BODY: &[&str] = &[
     "centre",
     "frame",
@@ -260,8 +263,13 @@ impl<'m> Sites<'m> {
             let users = speeds
                 .iter()
                 .filter(|own| mentions(&own.definition, Quantity::Rate(q)));
-            let site = self.coordinate(q);
-            (users.count() == 1 && fits(&q)).then_some(Site { index, ..site })
+            let mut site = Site {
+                index,
+                ..self.coordinate(q)
+            };
+            let own = ("pseudo_velocity", speed.label.name.clone());
+            site.words.push(own);
+            (users.count() == 1 && fits(&q)).then_some(site)
         };
         if self.scales.largest.iter().all(|&largest| largest <= 0.0) {
             return Vec::new();

@@ -48,6 +48,7 @@ impl<'n> Stem<'n> {
             brings: None,
             hides: Some(begins),
             added: Vec::new(),
+            shows: Vec::new(),
             source: None,
             stem: self.stem.clone(),
         }

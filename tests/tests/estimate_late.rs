@@ -3,12 +3,13 @@
 #![allow(clippy::unwrap_used, reason = "what is missing fails the test")]
 
 use appell_estimate::{
-    Direction, Estimation, Free, Innovation, Layout, Measured, Recording, Setup, Unknown,
+    Direction, Effort, Estimation, Fit, Free, Innovation, Layout, Measured, Recording, Setup,
+    Unknown,
 };
 use appell_models::Shipped;
 use appell_runtime::model::Model;
 use appell_test_kit::Random;
-use appell_tests::recorded::{Drive, record};
+use appell_tests::recorded::{Drive, record, record_with_states};
 
 /// Rows are so far apart in s.
 const BETWEEN: f64 = 0.01;
@@ -47,7 +48,8 @@ fn noisy(estimation: &Estimation<'_>) -> Vec<f64> {
     for index in 0..setup.channels.len() {
         set(&mut values, layout, Unknown::Noise(index), NOISE);
     }
-    for state in 0..setup.model.info().state_len() + setup.lagging.len() {
+    let channels = setup.channels.iter().filter(|channel| channel.lags).count();
+    for state in 0..setup.model.info().state_len() + setup.lagging.len() + channels {
         set(&mut values, layout, Unknown::Spread { run: 0, state }, 0.01);
     }
     values
@@ -62,13 +64,19 @@ fn slopes_by_a_lag_that_is_shorter_than_the_rows_are_those_of_differences() {
     let estimation = Estimation::new(&setup, &recordings).unwrap();
     let mut values = noisy(&estimation);
     set(&mut values, estimation.layout(), Unknown::Lag(0), LAG);
+    assert_slopes(&estimation, &values, Unknown::Lag(0));
+}
+
+/// Slopes of the whitened innovations against differences. The gains are held, and so do not follow.
+fn assert_slopes(estimation: &Estimation<'_>, values: &[f64], unknown: Unknown) {
     let tangent = estimation
-        .tangent(&values, &[Direction::Value(Unknown::Lag(0))], None)
+        .tangent(values, &[Direction::Value(unknown)], None)
         .unwrap();
-    let h = 1e-4 * LAG;
+    let place = estimation.layout().place(unknown).unwrap();
+    let h = 1e-4 * values[place];
     let whitened = |step: f64| -> Vec<f64> {
-        let mut moved = values.clone();
-        set(&mut moved, estimation.layout(), Unknown::Lag(0), LAG + step);
+        let mut moved = values.to_vec();
+        moved[place] += step;
         let runs = estimation.innovations(&moved).unwrap();
         runs[0].iter().map(Innovation::whitened).collect()
     };
@@ -80,7 +88,66 @@ fn slopes_by_a_lag_that_is_shorter_than_the_rows_are_those_of_differences() {
         size += difference.powi(2);
     }
     assert!(size > 0.0);
-    assert!((off / size).sqrt() < 0.01, "{}", (off / size).sqrt());
+    let off = (off / size).sqrt();
+    assert!(off < 0.01, "{unknown:?}: {off}");
+}
+
+#[test]
+fn slopes_by_lags_of_channels_are_those_of_differences() {
+    let model = cart_pole();
+    let output = |name: &str| Measured::Output(model.info().output_index(name).unwrap());
+    let measured = [Measured::State(2), Measured::State(3), output("x_G")];
+    let mut setup = Setup::new(model, &measured);
+    let recordings = recorded(&setup);
+    setup.channels[0].lags = true;
+    setup.channels[2].lags = true;
+    let estimation = Estimation::new(&setup, &recordings).unwrap();
+    let mut values = noisy(&estimation);
+    let lags = [0, 2].map(|channel| Unknown::Lag(setup.lag_of_channel(channel).unwrap()));
+    for lag in lags {
+        set(&mut values, estimation.layout(), lag, LAG);
+    }
+    let length = Unknown::Parameter(model.info().parameter_index("l").unwrap());
+    for unknown in [lags[0], lags[1], length] {
+        assert_slopes(&estimation, &values, unknown);
+    }
+}
+
+/// Readings after a filter with the time constant `tau` in s, of readings that are straight between
+/// rows.
+fn filtered(readings: &[f64], tau: f64) -> Vec<f64> {
+    let decay = (-BETWEEN / tau).exp();
+    let mut reading = readings[0];
+    let steps = readings.windows(2).map(|ends| {
+        let behind = tau * (ends[1] - ends[0]) / BETWEEN;
+        reading = ends[1] - behind + (reading - ends[0] + behind) * decay;
+        reading
+    });
+    [readings[0]].into_iter().chain(steps).collect()
+}
+
+#[test]
+fn the_lag_of_a_channel_is_found() {
+    const TAU: f64 = 0.05;
+    let mut setup = seen(cart_pole());
+    let drive = Drive::sines(300, BETWEEN, &[1.0]);
+    let unseen = [drive.unseen(2)];
+    let truth = noisy(&Estimation::new(&setup, &unseen).unwrap());
+    let mut random = Random::of("filtered");
+    let (recording, states) = record_with_states(&setup, &truth, &drive, &mut random);
+    let angles: Vec<f64> = states.iter().map(|state| state[3]).collect();
+    let readings = filtered(&angles, TAU).into_iter().enumerate();
+    let measurements = readings.flat_map(|(row, angle)| {
+        let angle = angle + NOISE * random.normal();
+        [recording.measured(row)[0], angle]
+    });
+    let recordings = [recording.with_measurements(measurements.collect()).unwrap()];
+    setup.channels[1].lags = true;
+    let estimation = Estimation::new(&setup, &recordings).unwrap();
+    let free = [Free::of(Unknown::Lag(0)), Free::of(Unknown::Noise(1))];
+    let fit = Fit::of(&estimation, &noisy(&estimation), &free, Effort::default()).unwrap();
+    let tau = fit.values[estimation.layout().place(Unknown::Lag(0)).unwrap()];
+    assert!((tau / TAU - 1.0).abs() < 0.02, "{tau}");
 }
 
 #[test]

@@ -278,8 +278,8 @@ fn the_filter_of_a_channel_starts_at_its_first_reading() {
         let unknown = Unknown::Initial { run, state: 2 };
         nominal[layout.place(unknown).unwrap()]
     });
-    assert_eq!(first, [known.measured(1)[1], 0.0]);
-    assert_eq!(nominal[layout.place(Unknown::Lag(0)).unwrap()], 0.01);
+    let wanted = [known.measured(1)[1], 0.0];
+    assert_eq!(first.map(f64::to_bits), wanted.map(f64::to_bits));
 }
 
 #[test]

@@ -27,7 +27,8 @@ pub enum Direction {
     Value(Unknown),
     /// A delay in s of a declared input; for a lag it is the same to first order.
     LateInput(usize),
-    /// A delay in s of a channel.
+    /// A delay in s of a channel; for a lag that the channel does not have it is the same to first
+    /// order.
     LateChannel(usize),
 }
 

@@ -80,11 +80,14 @@ impl<'a> Estimation<'a> {
         for (run, recording) in self.recordings.iter().enumerate() {
             let initial = &mut values[layout.initial(run)..];
             initial[..state.len()].copy_from_slice(&state);
-            // The state of a lag starts at its input.
+            // The state of a lag starts at its input, that of a filter at its first reading.
             let inputs = self.setup.lagging.iter();
             let inputs = inputs.map(|&input| recording.inputs(0)[input]);
+            let channels = self.setup.lagging_channels();
+            let channels = channels.map(|channel| first_reading(recording, channel));
             let drifting = self.setup.drifting.iter();
-            let added = inputs.chain(drifting.map(|&parameter| values_of_spec[parameter]));
+            let drifting = drifting.map(|&parameter| values_of_spec[parameter]);
+            let added = inputs.chain(channels).chain(drifting);
             for (initial, added) in initial[state.len()..].iter_mut().zip(added) {
                 *initial = added;
             }
@@ -314,7 +317,7 @@ impl<'a> Estimation<'a> {
             is_used && !recording.measured(row)[channel].is_nan()
         };
         // A state without spread is known at the first row, unless it follows from others.
-        let is_known = |channel: usize| match setup.channels[channel].measures {
+        let is_known = |channel: usize| match setup.reads(channel) {
             Measured::State(state) => spreads[state] == 0.0,
             Measured::Output(_) => false,
         };
@@ -333,4 +336,11 @@ impl<'a> Estimation<'a> {
             .nth(rank)
             .map(|(_, channel)| channel)
     }
+}
+
+/// The first measured value of a channel, 0 if it has none.
+fn first_reading(recording: &Recording, channel: usize) -> f64 {
+    let rows = 0..recording.times().len();
+    let mut readings = rows.map(|row| recording.measured(row)[channel]);
+    readings.find(|reading| !reading.is_nan()).unwrap_or(0.0)
 }

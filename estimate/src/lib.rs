@@ -2,8 +2,8 @@
 //!
 //! A [`Setup`] defines the measurements and the disturbances; with [`Recording`]s it becomes an
 //! [`Estimation`], a function of the values that its [`Layout`] lists: parameters of the model,
-//! levels of disturbances and of noise, biases, scales and delays of sensors, lags and delays of
-//! inputs, initial states. All in SI.
+//! levels of disturbances and of noise, biases, scales, delays and lags of sensors, lags and delays
+//! of inputs, initial states. All in SI.
 //!
 //! ```text
 //! dx = (f(t, x, u, p) + G w) dt     w white, G = M⁻¹ for forces

@@ -4,10 +4,12 @@
 //! |---|---|
 //! | `closure.rs` | closed loops, whose coordinates depend on each other |
 //! | `plant.rs` | the equations at one point, with their Jacobians |
+//! | `sensors.rs` | lagging channels: filters of what they measure |
 //! | `timeline.rs` | the order of steps and samples |
 //! | `transition.rs` | one step and its transition matrix; step control |
 
 pub(crate) mod closure;
 pub(crate) mod plant;
+mod sensors;
 pub(crate) mod timeline;
 pub(crate) mod transition;

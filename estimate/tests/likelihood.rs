@@ -262,6 +262,27 @@ fn what_no_filter_can_run_with_is_refused() {
 }
 
 #[test]
+fn the_filter_of_a_channel_starts_at_its_first_reading() {
+    let (model, known) = (Oscillator::new(), recording());
+    let rows = 0..known.times().len();
+    let mut measurements: Vec<f64> = rows.flat_map(|row| known.measured(row).to_vec()).collect();
+    measurements[1] = f64::NAN;
+    let seen = known.with_measurements(measurements.clone()).unwrap();
+    measurements.fill(f64::NAN);
+    let recordings = [seen, known.with_measurements(measurements).unwrap()];
+    let mut setup = setup(&model);
+    setup.channels[1].lags = true;
+    let estimation = Estimation::new(&setup, &recordings).unwrap();
+    let (nominal, layout) = (estimation.nominal(), estimation.layout());
+    let first = [0, 1].map(|run| {
+        let unknown = Unknown::Initial { run, state: 2 };
+        nominal[layout.place(unknown).unwrap()]
+    });
+    let wanted = [known.measured(1)[1], 0.0];
+    assert_eq!(first.map(f64::to_bits), wanted.map(f64::to_bits));
+}
+
+#[test]
 fn the_delay_that_is_refused_is_named_by_its_channel() {
     let (model, recordings) = (Oscillator::new(), [recording()]);
     let mut setup = setup(&model);

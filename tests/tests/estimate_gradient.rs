@@ -3,7 +3,8 @@
 #![allow(clippy::unwrap_used, reason = "what is missing fails the test")]
 
 use appell_estimate::{
-    Channel, Disturbance, Estimation, Layout, Measured, Recording, Setup, Unknown,
+    Channel, Coordinate, Disturbance, Estimation, Free, Layout, Measured, Recording, Setup,
+    Shooting, Unknown,
 };
 use appell_models::Shipped;
 use appell_runtime::model::Model;
@@ -36,7 +37,8 @@ fn noisy(estimation: &Estimation<'_>, level: f64, noise: f64) -> Vec<f64> {
     for index in 0..setup.channels.len() {
         set(&mut values, &layout, Unknown::Noise(index), noise);
     }
-    let added = setup.lagging.len() + setup.drifting.len();
+    let lagging = setup.channels.iter().filter(|channel| channel.lags).count();
+    let added = setup.lagging.len() + lagging + setup.drifting.len();
     let states = setup.model.info().state_len() + added;
     for run in 0..estimation.recordings().len() {
         for state in 0..states {
@@ -214,6 +216,135 @@ fn it_is_exact_for_lags_and_delays() {
     assert_gradient(&estimation, &values, TOLERANCE);
 }
 
+/// Readings of a setup without its lags and delays.
+fn prompt(setup: &Setup<'_>, drive: &Drive, seed: &str) -> [Recording; 1] {
+    let measured: Vec<Measured> = setup.channels.iter().map(|c| c.measures).collect();
+    let prompt = Setup {
+        longest_step: setup.longest_step,
+        ..Setup::new(setup.model, &measured)
+    };
+    let unseen = [drive.unseen(setup.channels.len())];
+    let truth = noisy(&Estimation::new(&prompt, &unseen).unwrap(), 0.02, 0.003);
+    let recording = record(&prompt, &truth, drive, &mut Random::of(seed));
+    [with_gaps(&recording)]
+}
+
+#[test]
+fn it_is_exact_for_lagging_channels() {
+    let model = shipped("double_pendulum");
+    let mut setup = Setup::new(model, &[2, 3, 3].map(Measured::State));
+    setup.channels[0].lags = true;
+    setup.channels[1].longest_delay = Some(0.03);
+    setup.channels[2].longest_delay = Some(0.02);
+    setup.channels[2].lags = true;
+    setup.lagging = vec![1];
+    setup.delayed = vec![0];
+    setup.disturbances.push(Disturbance::Rate(6));
+    setup.longest_step = 0.006;
+    assert_eq!(
+        [0, 1, 2].map(|c| setup.lag_of_channel(c)),
+        [Some(1), None, Some(2)]
+    );
+    let recordings = prompt(
+        &setup,
+        &Drive::sines(80, 0.01, &[1.0, 0.5]),
+        "lagging channels",
+    );
+    let estimation = Estimation::new(&setup, &recordings).unwrap();
+    let layout = estimation.layout();
+    let mut values = noisy(&estimation, 0.02, 0.003);
+    set(&mut values, &layout, Unknown::SensorDelay(1), 0.0123);
+    set(&mut values, &layout, Unknown::SensorDelay(2), 0.0071);
+    set(&mut values, &layout, Unknown::InputDelay(0), 0.0137);
+    for (lag, tau) in [0.03, 0.02, 0.015].into_iter().enumerate() {
+        set(&mut values, &layout, Unknown::Lag(lag), tau);
+    }
+    set(&mut values, &layout, Unknown::Scale(0), 1.1);
+    set(&mut values, &layout, Unknown::Bias(2), 0.01);
+    assert_gradient(&estimation, &values, TOLERANCE);
+}
+
+/// A cart with a pole, seen by filters of its outputs.
+fn filtered_outputs(model: &dyn Model) -> Setup<'_> {
+    let output = |name: &str| Measured::Output(model.info().output_index(name).unwrap());
+    let measured = [output("x_G"), Measured::State(3), output("energy")];
+    let mut setup = Setup::new(model, &measured);
+    setup.channels[0].lags = true;
+    setup.channels[2].lags = true;
+    setup
+}
+
+#[test]
+fn it_is_exact_for_lagging_channels_that_measure_outputs() {
+    let model = shipped::complete_model("cart_pole");
+    let mass = model.info().parameter_index("m_pole").unwrap();
+    for drifting in [Vec::new(), vec![mass]] {
+        let mut setup = filtered_outputs(model);
+        setup.lagging = vec![0];
+        setup.drifting = drifting;
+        let recordings = prompt(&setup, &Drive::sines(80, 0.01, &[2.0]), "filtered");
+        let estimation = Estimation::new(&setup, &recordings).unwrap();
+        let mut values = noisy(&estimation, 0.05, 0.01);
+        values[1] *= 1.04;
+        for (lag, tau) in [0.02, 0.03, 0.015].into_iter().enumerate() {
+            set(&mut values, &estimation.layout(), Unknown::Lag(lag), tau);
+        }
+        assert_gradient(&estimation, &values, TOLERANCE);
+    }
+}
+
+#[test]
+fn shooting_has_exact_slopes_for_lagging_channels() {
+    let model = shipped::complete_model("cart_pole");
+    let setup = Setup {
+        lagging: vec![0],
+        disturbances: Vec::new(),
+        ..filtered_outputs(model)
+    };
+    let recordings = prompt(&setup, &Drive::sines(60, 0.01, &[2.0]), "shot");
+    let estimation = Estimation::new(&setup, &recordings).unwrap();
+    let layout = estimation.layout();
+    let lags = [0, 1, 2].map(Unknown::Lag);
+    let parameters = (0..layout.place(Unknown::Noise(0)).unwrap()).map(Unknown::Parameter);
+    let unknowns: Vec<Unknown> = lags.into_iter().chain(parameters).collect();
+    let mut values = noisy(&estimation, 0.0, 0.01);
+    for (unknown, tau) in lags.into_iter().zip([0.02, 0.03, 0.015]) {
+        set(&mut values, &layout, unknown, tau);
+    }
+    let free: Vec<Free> = unknowns
+        .iter()
+        .map(|&unknown| Free {
+            coordinate: Coordinate::Plain,
+            ..Free::of(unknown)
+        })
+        .collect();
+    let start =
+        &estimation.nominal()[layout.place(Unknown::Initial { run: 0, state: 0 }).unwrap()..];
+    let states = model.info().state_len() + 3;
+    let at = |values: &[f64]| {
+        let guess = |_: &Recording| start[..states].to_vec();
+        let shooting = Shooting::new(&estimation, values, &free, 20, guess).unwrap();
+        shooting.slope(0.1).unwrap()
+    };
+    let (_, slope) = at(&values);
+    for (index, &unknown) in unknowns.iter().enumerate() {
+        let place = layout.place(unknown).unwrap();
+        let h = 1e-5 * values[place].abs().max(1e-2);
+        let varied = |sign: f64| {
+            let mut varied = values.clone();
+            varied[place] += sign * h;
+            at(&varied).0
+        };
+        let wanted = (varied(1.0) - varied(-1.0)) / (2.0 * h);
+        let error = (slope[index] - wanted).abs();
+        assert!(
+            error <= TOLERANCE * wanted.abs().max(1.0),
+            "{unknown:?}: {} against {wanted}",
+            slope[index]
+        );
+    }
+}
+
 #[test]
 fn it_is_exact_for_drifting_parameters() {
     let model = shipped::complete_model("cart_pole");
@@ -276,4 +407,10 @@ fn it_is_exact_for_closed_loops() {
         *value *= factor;
     }
     assert_gradient(&estimation, &elsewhere, TOLERANCE_OF_DIFFERENCES);
+    // The filter of a dependent coordinate.
+    setup.channels[1].lags = true;
+    let estimation = Estimation::new(&setup, &recordings).unwrap();
+    let mut values = noisy(&estimation, 0.05, 0.01);
+    set(&mut values, &estimation.layout(), Unknown::Lag(0), 0.02);
+    assert_gradient(&estimation, &values, TOLERANCE_OF_DIFFERENCES);
 }

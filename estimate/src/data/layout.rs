@@ -23,7 +23,7 @@ impl Layout {
             parameters: setup.model.info().parameter_len(),
             disturbances: setup.disturbances.len(),
             channels: setup.channels.len(),
-            lags: setup.lagging.len(),
+            lags: setup.lag_len(),
             delays: setup.delayed.len(),
             states: setup.state_len(),
             runs,

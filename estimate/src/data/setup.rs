@@ -24,14 +24,17 @@ pub struct Channel {
     /// Largest delay of the sensor in s, if the delay is estimated. Rows within this time from the
     /// start are not used, so that the data do not depend on the delay.
     pub longest_delay: Option<f64>,
+    /// Whether the sensor is a first-order low-pass filter: one additional state, its reading.
+    pub lags: bool,
 }
 
 impl Channel {
-    /// A channel without a delay.
+    /// A channel without a delay or lag.
     pub fn of(measures: Measured) -> Self {
         Self {
             measures,
             longest_delay: None,
+            lags: false,
         }
     }
 }
@@ -44,7 +47,8 @@ pub enum Disturbance {
     /// is in the unit of the force times √s.
     Force(usize),
     /// Added to the rate of a state, by its index in the state or, from its end on, in the lists of
-    /// lagging inputs and of drifting parameters. The level is in the unit of the state per √s.
+    /// lagging inputs, of lagging channels and of drifting parameters. The level is in the unit of the
+    /// state per √s.
     Rate(usize),
 }
 
@@ -72,7 +76,7 @@ pub struct Setup<'a> {
 }
 
 impl<'a> Setup<'a> {
-    /// Channels without delays, a force on every pseudo-velocity, inputs without lags or delays,
+    /// Channels without delays or lags, a force on every pseudo-velocity, inputs without lags or delays,
     /// steps from sample to sample.
     pub fn new(model: &'a dyn Model, measured: &[Measured]) -> Self {
         Self {
@@ -92,13 +96,40 @@ impl<'a> Setup<'a> {
 
     /// Number of states, including those of lags and drifting parameters.
     pub(crate) fn state_len(&self) -> usize {
-        self.model.info().state_len() + self.lagging.len() + self.drifting.len()
+        self.model.info().state_len() + self.lag_len() + self.drifting.len()
     }
 
-    /// Whether any output is measured.
-    pub(crate) fn sees_outputs(&self) -> bool {
-        let mut channels = self.channels.iter();
-        channels.any(|channel| matches!(channel.measures, Measured::Output(_)))
+    /// Number of lags, of inputs and then of channels.
+    pub(crate) fn lag_len(&self) -> usize {
+        self.lagging.len() + self.lagging_channels().count()
+    }
+
+    /// Channels that lag.
+    pub(crate) fn lagging_channels(&self) -> impl Iterator<Item = usize> + '_ {
+        (0..self.channels.len()).filter(|&channel| self.channels[channel].lags)
+    }
+
+    /// The lag of a channel, as [`Unknown::Lag`](crate::Unknown::Lag) counts them: inputs first, then
+    /// the lagging channels in their order. None for a channel that does not lag.
+    pub fn lag_of_channel(&self, channel: usize) -> Option<usize> {
+        let place = self
+            .lagging_channels()
+            .position(|lagging| lagging == channel);
+        place.map(|place| self.lagging.len() + place)
+    }
+
+    /// What a channel reads at a moment: a lagging one the state of its filter.
+    pub(crate) fn reads(&self, channel: usize) -> Measured {
+        let lag = self.lag_of_channel(channel);
+        lag.map_or(self.channels[channel].measures, |lag| {
+            Measured::State(self.model.info().state_len() + lag)
+        })
+    }
+
+    /// Whether any channel reads an output.
+    pub(crate) fn reads_outputs(&self) -> bool {
+        let mut channels = 0..self.channels.len();
+        channels.any(|channel| matches!(self.reads(channel), Measured::Output(_)))
     }
 
     pub(crate) fn check(&self, recordings: &[Recording]) -> Result<(), EstimateError> {

@@ -15,7 +15,8 @@ pub enum Unknown {
     Scale(usize),
     /// Delay of a channel in s; only if the setup admits one.
     SensorDelay(usize),
-    /// Time constant in s of a lagging input, by its index in the setup.
+    /// Time constant in s of a lagging input, by its index in the setup, or of a lagging channel, see
+    /// [`Setup::lag_of_channel`](crate::Setup::lag_of_channel).
     Lag(usize),
     /// Delay in s of an input, by its index in the setup.
     InputDelay(usize),

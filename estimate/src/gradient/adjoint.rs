@@ -43,7 +43,7 @@ pub(crate) fn adjoint(pass: &mut Pass<'_>, rows: &Range<usize>, gradient: &mut [
     let mut tape = std::mem::take(&mut pass.tape);
     let (n, s) = (pass.sizes.n, pass.system.plant.speeds);
     let zeros = |len| vec![0.0; len];
-    let outputs = if pass.system.setup.sees_outputs() {
+    let outputs = if pass.system.setup.reads_outputs() {
         pass.system.plant.info().output_len()
     } else {
         0
@@ -264,7 +264,7 @@ impl Backward<'_, '_> {
             let gain = pass.values[place];
             gradient[pass.system.layout.bias(channel)] += by_quantity;
             gradient[place] += by_quantity * sample.quantity;
-            match pass.system.setup.channels[channel].measures {
+            match pass.system.setup.reads(channel) {
                 Measured::State(state) => {
                     by_prior[state] += gain * by_quantity;
                     gradient[place] += self.vector[0][state];

@@ -18,7 +18,7 @@ use crate::kalman::tape::{Record, SampleTape};
 use crate::matrix::{add_scaled, dot, multiply};
 use crate::motion::plant::{Place, Scratch, Sums};
 use crate::motion::timeline::{Action, Advance};
-use crate::motion::transition::added_by_rate;
+use crate::motion::transition::{Span, added_by_rate};
 
 /// Direction of differentiation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -27,7 +27,8 @@ pub enum Direction {
     Value(Unknown),
     /// A delay in s of a declared input; for a lag it is the same to first order.
     LateInput(usize),
-    /// A delay in s of a channel.
+    /// A delay in s of a channel; for a lag that the channel does not have it is the same to first
+    /// order.
     LateChannel(usize),
 }
 
@@ -251,7 +252,8 @@ impl<'p, 'a> Forward<'p, 'a> {
         let (n, columns, half) = (self.pass.sizes.n, self.columns, 0.5 * advance.h);
         let info = self.estimation.setup().model.info();
         let (states, parameters) = (info.state_len(), info.parameter_len());
-        let lags = self.pass.lags();
+        // Lags may be as short as the step: their slopes follow its stages.
+        let lagged = self.lagged((advance, tape));
         let disturbances = self.pass.sizes.disturbances;
         let plant = self.pass.system.plant;
         let on = self.pass.sizes.step(&mut self.pass.tape[tape..]);
@@ -259,30 +261,15 @@ impl<'p, 'a> Forward<'p, 'a> {
         let at = (advance.t + half, middle, &*on.held);
         let place = Place::new(self.pass.system.layout, self.pass.values, at);
         self.added.fill(0.0);
-        // Lags may be as short as the step: their slopes follow its stages.
-        let mut lagged: Vec<(usize, Vec<f64>)> = Vec::new();
-        let is_parameter =
-            |direction: &Direction| matches!(direction, Direction::Value(Unknown::Parameter(_)));
         if self.directions.iter().any(is_parameter) {
             plant.parameter_jacobian(place, &mut self.scratch, &mut self.by_parameters);
         }
         for (column, direction) in self.directions.iter().enumerate() {
-            match *direction {
-                Direction::Value(Unknown::Parameter(index)) => {
-                    for state in 0..states {
-                        self.added[state * columns + column] =
-                            half * self.by_parameters[state * parameters + index];
-                    }
+            if let Direction::Value(Unknown::Parameter(index)) = *direction {
+                for state in 0..states {
+                    self.added[state * columns + column] =
+                        half * self.by_parameters[state * parameters + index];
                 }
-                Direction::Value(Unknown::Lag(lag)) => {
-                    let input = self.estimation.setup().lagging[lag];
-                    let rate = |z: &[f64]| -> f64 {
-                        -(on.held[input] - z[states + lag]) / (lags[lag] * lags[lag])
-                    };
-                    let added = added_by_rate(&on.stages, (n, advance.h), states + lag, rate);
-                    lagged.push((column, added));
-                }
-                _ => {}
             }
         }
         if let Some(shapes) = self
@@ -314,6 +301,51 @@ impl<'p, 'a> Forward<'p, 'a> {
         }
     }
 
+    /// Increments of a step by the direct effect of directions on the rates of lags, each with its
+    /// column.
+    fn lagged(&mut self, (advance, tape): (Advance, usize)) -> Vec<(usize, Vec<f64>)> {
+        const ALL: [usize; 4] = [0, 1, 2, 3];
+        let (n, states) = (
+            self.pass.sizes.n,
+            self.estimation.setup().model.info().state_len(),
+        );
+        let (p, lags, plant) = (self.pass.p(), self.pass.lags(), self.pass.system.plant);
+        let on = self.pass.sizes.step(&mut self.pass.tape[tape..]);
+        let span = Span {
+            t: advance.t,
+            h: advance.h,
+            held: on.held,
+            p,
+            lags,
+        };
+        let stage = |i: usize| span.place(i, &on.stages.z[i * n..(i + 1) * n]);
+        let added = |state, rates| added_by_rate(&on.stages, (n, advance.h), state, rates);
+        let mut filters = [const { Vec::new() }; 4];
+        if self.directions.iter().any(is_parameter) {
+            filters = ALL.map(|i| plant.filters_by_parameters(stage(i), &mut self.scratch));
+        }
+        let mut lagged = Vec::new();
+        for (column, direction) in self.directions.iter().enumerate() {
+            match *direction {
+                Direction::Value(Unknown::Lag(lag)) => {
+                    let rates = ALL.map(|i| {
+                        let rates = &on.stages.k[i * n..(i + 1) * n];
+                        -plant.gap(stage(i), rates, lag) / (lags[lag] * lags[lag])
+                    });
+                    lagged.push((column, added(states + lag, rates)));
+                }
+                Direction::Value(Unknown::Parameter(index)) => {
+                    for (place, &(state, _)) in filters[0].iter().enumerate() {
+                        let rates = ALL.map(|i| filters[i][place].1[index]);
+                        lagged.push((column, added(state, rates)));
+                    }
+                }
+                _ => {}
+            }
+        }
+        lagged
+    }
+
     /// A later input would have held its previous value for longer.
     fn switch(&mut self, t: f64, before: &[f64]) {
         let late = |direction: &Direction| matches!(direction, Direction::LateInput(_));
@@ -338,6 +370,10 @@ impl<'p, 'a> Forward<'p, 'a> {
                 for state in 0..states {
                     self.z[state * self.columns + column] +=
                         jump * self.by_inputs[state * inputs + input];
+                }
+                let plant = self.pass.system.plant;
+                for (state, slope) in plant.filters_by_input(place, &mut self.scratch, input) {
+                    self.z[state * self.columns + column] += jump * slope;
                 }
             }
         }
@@ -398,12 +434,12 @@ impl<'p, 'a> Forward<'p, 'a> {
         }
     }
 
-    /// Derivatives of a measured output with respect to the parameters; none for a state.
+    /// Derivatives of an output that is read with respect to the parameters; none for a state.
     fn output_slope(&mut self, index: usize) -> Vec<f64> {
         let sample = self.pass.samples[index];
         let setup = self.estimation.setup();
         let channel = sample.innovation.channel;
-        let Measured::Output(output) = setup.channels[channel].measures else {
+        let Measured::Output(output) = setup.reads(channel) else {
             return Vec::new();
         };
         let info = setup.model.info();
@@ -414,7 +450,7 @@ impl<'p, 'a> Forward<'p, 'a> {
         let mut by = (
             vec![0.0; n],
             vec![0.0; info.parameter_len()],
-            vec![0.0; setup.lagging.len()],
+            vec![0.0; setup.lag_len()],
         );
         let at = (
             sample.innovation.t,
@@ -434,6 +470,10 @@ impl<'p, 'a> Forward<'p, 'a> {
             .output_adjoint(place, &mut self.scratch, weights, &mut sums);
         by.1
     }
+}
+
+fn is_parameter(direction: &Direction) -> bool {
+    matches!(direction, Direction::Value(Unknown::Parameter(_)))
 }
 
 fn recording_time(recording: &crate::Recording, action: Action) -> f64 {

@@ -136,7 +136,7 @@ impl<'a> Pass<'a> {
     pub(crate) fn blank(system: StateSpace<'a>, values: &'a [f64], run: usize) -> Self {
         let StateSpace { setup, plant, .. } = system;
         let (n, info) = (plant.n, plant.info());
-        let outputs = if setup.sees_outputs() {
+        let outputs = if setup.reads_outputs() {
             info.output_len()
         } else {
             0
@@ -409,7 +409,7 @@ impl<'a> Pass<'a> {
             plant,
             layout,
         } = self.system;
-        let is_output = |&c: &usize| matches!(setup.channels[c].measures, Measured::Output(_));
+        let is_output = |&c: &usize| matches!(setup.reads(c), Measured::Output(_));
         if !channels.iter().any(is_output) {
             return Vec::new();
         }
@@ -428,7 +428,7 @@ impl<'a> Pass<'a> {
         z.copy_from_slice(&self.z);
         root.copy_from_slice(&self.root);
         c.fill(0.0);
-        let quantity = match self.system.setup.channels[channel].measures {
+        let quantity = match self.system.setup.reads(channel) {
             Measured::State(state) => {
                 c[state] = 1.0;
                 if tape == prior {

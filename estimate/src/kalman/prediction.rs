@@ -216,7 +216,7 @@ impl<'a> Walk<'a> {
             if !*open || !sampled || measured[channel].is_nan() {
                 continue;
             }
-            let quantity = match self.system.setup.channels[channel].measures {
+            let quantity = match self.system.setup.reads(channel) {
                 Measured::State(state) => self.z[state],
                 Measured::Output(output) => {
                     if outputs.is_empty() {

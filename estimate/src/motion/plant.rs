@@ -1,11 +1,14 @@
-//! The model with the states that estimation adds to it: lagging inputs, drifting parameters.
+//! The model with the states that estimation adds to it: lagging inputs, lagging channels, drifting
+//! parameters.
 //!
-//! `ż = (ẋ(t, x, u, p), (u_j − ν_j)/τ_j …, 0 …)`, where the model sees `ν_j` in place of the lagging `u_j`
-//! and the last states in place of the drifting parameters.
+//! `ż = (ẋ(t, x, u, p), (u_j − ν_j)/τ_j …, (q_k − f_k)/τ_k …, 0 …)`, where the model sees `ν_j` in place of
+//! the lagging `u_j` and the last states in place of the drifting parameters; `q_k` is what a lagging
+//! channel measures, `f_k` what it reads.
 
 use appell_runtime::model::{At, Gradient, Model, ModelInfo};
 use appell_runtime::signal::{Signal, SignalError};
 
+use super::sensors::Filter;
 use crate::data::layout::Layout;
 use crate::data::setup::Setup;
 use crate::matrix::{add_scaled, pieces};
@@ -17,6 +20,8 @@ const DIFFERENCE: f64 = 1e-5;
 pub(crate) struct Plant<'a> {
     pub(crate) model: &'a dyn Model,
     lagging: &'a [usize],
+    /// Those of the lagging channels.
+    pub(super) filters: Vec<Filter>,
     drifting: &'a [usize],
     signals: Vec<Signal>,
     /// Number of all states.
@@ -38,7 +43,7 @@ pub(crate) struct Place<'a> {
     pub(crate) held: &'a [f64],
     /// Parameters of the model.
     pub(crate) p: &'a [f64],
-    /// Time constants of the lagging inputs in s.
+    /// Time constants of the lagging inputs and channels in s.
     pub(crate) lags: &'a [f64],
 }
 
@@ -84,6 +89,9 @@ pub(crate) struct Scratch {
     mass: Vec<f64>,
     bias: Vec<f64>,
     forces: Vec<f64>,
+    /// Outputs and their slopes, if a filter follows any.
+    pub(super) outputs: Vec<f64>,
+    pub(super) output_slopes: Vec<f64>,
 }
 
 /// Accumulated derivatives.
@@ -102,6 +110,7 @@ impl<'a> Plant<'a> {
         Ok(Self {
             model: setup.model,
             lagging: &setup.lagging,
+            filters: Filter::all(setup),
             drifting: &setup.drifting,
             signals: info
                 .signals
@@ -131,6 +140,7 @@ impl<'a> Plant<'a> {
         let (n, m, s) = (self.n, self.m, self.speeds);
         let zeros = |len| vec![0.0; len];
         let k = self.info().parameter_len();
+        let outputs = self.filtered_outputs();
         Scratch {
             u: zeros(m),
             p: zeros(k),
@@ -142,6 +152,8 @@ impl<'a> Plant<'a> {
             mass: zeros(s * s),
             bias: zeros(s),
             forces: zeros(s),
+            outputs: zeros(outputs),
+            output_slopes: zeros(outputs * n),
         }
     }
 
@@ -150,12 +162,11 @@ impl<'a> Plant<'a> {
         let states = self.info().state_len();
         u[..place.held.len()].copy_from_slice(place.held);
         p.copy_from_slice(place.p);
-        let (lagged, drifted) = place.z[states..].split_at(self.lagging.len());
-        for (&input, &lagged) in self.lagging.iter().zip(lagged) {
+        for (&input, &lagged) in self.lagging.iter().zip(&place.z[states..]) {
             u[input] = lagged;
         }
-        for (&parameter, &drifted) in self.drifting.iter().zip(drifted) {
-            p[parameter] = drifted;
+        for (state, parameter) in self.drifts() {
+            p[parameter] = place.z[state];
         }
         let derived = self.info().signal_inputs.iter();
         for (u, &(signal, order)) in u[place.held.len()..].iter_mut().zip(derived) {
@@ -184,18 +195,31 @@ impl<'a> Plant<'a> {
         add_scaled(factor, p, sums.p);
     }
 
-    /// The rates that lags and drifting parameters add.
-    fn added_rates(&self, place: Place<'_>, rates: &mut [f64]) {
+    /// The rates that lags and drifting parameters add, given the outputs that filters follow.
+    fn added_rates(&self, place: Place<'_>, outputs: &[f64], rates: &mut [f64]) {
         let n = self.info().state_len();
         rates[n..].fill(0.0);
         for (lag, (&input, &tau)) in self.lagging.iter().zip(place.lags).enumerate() {
             rates[n + lag] = (place.held[input] - place.z[n + lag]) / tau;
         }
+        for filter in &self.filters {
+            rates[filter.state] = filter.gap(place, outputs) / place.lags[filter.lag];
+        }
+    }
+
+    /// How far a lag is behind what it follows, at a point with these rates.
+    pub(crate) fn gap(&self, place: Place<'_>, rates: &[f64], lag: usize) -> f64 {
+        let state = self.info().state_len() + lag;
+        match self.lagging.get(lag) {
+            Some(&input) => place.held[input] - place.z[state],
+            // What a channel measures need not be evaluated again.
+            None => rates[state] * place.lags[lag],
+        }
     }
 
     /// States that are drifting parameters, with these.
     fn drifts(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
-        let first = self.info().state_len() + self.lagging.len();
+        let first = self.info().state_len() + self.lagging.len() + self.filters.len();
         (first..).zip(self.drifting.iter().copied())
     }
 
@@ -221,10 +245,14 @@ impl<'a> Plant<'a> {
     /// ż.
     pub(crate) fn rates(&self, place: Place<'_>, scratch: &mut Scratch, rates: &mut [f64]) {
         let n = self.info().state_len();
-        let Scratch { u, p, .. } = scratch;
+        let Scratch { u, p, outputs, .. } = scratch;
         self.view(place, u, p);
-        self.model.rates(at(place, n, u, p), &mut rates[..n]);
-        self.added_rates(place, rates);
+        let at = at(place, n, u, p);
+        self.model.rates(at, &mut rates[..n]);
+        if !outputs.is_empty() {
+            self.model.outputs(at, outputs);
+        }
+        self.added_rates(place, outputs, rates);
     }
 
     /// ż and ∂ż/∂z.
@@ -261,10 +289,11 @@ impl<'a> Plant<'a> {
                 to[state] = by_p[row * at.p.len() + parameter];
             }
         }
-        self.added_rates(place, rates);
         for (lag, &tau) in place.lags.iter().enumerate() {
             slopes[(n + lag) * (all + 1)] = -1.0 / tau;
         }
+        self.filter_slopes(place, scratch, slopes);
+        self.added_rates(place, &scratch.outputs, rates);
     }
 
     /// Adds to `sums` the gradient of ⟨λ, ż⟩ + ⟨Λ, ∂ż/∂z⟩ + ⟨K, M⟩, where M is the mass matrix.
@@ -317,6 +346,7 @@ impl<'a> Plant<'a> {
             let gap = place.held[input] - place.z[n + lag];
             sums.lags[lag] += (slope - lambda * gap) / (tau * tau);
         }
+        self.filter_adjoint(place, scratch, [lambda, slopes], sums);
     }
 
     /// Adds to `sums` the derivative of a gradient with respect to a parameter, by a central

@@ -118,19 +118,18 @@ pub(crate) fn step(
     }
 }
 
-/// Increment of a step by an additional rate of one state, which `rate` returns for the state of
-/// each stage.
+/// Increment of a step by an additional rate of one state, given at each stage.
 pub(crate) fn added_by_rate(
     stages: &Stages<'_>,
     (n, h): (usize, f64),
     along: usize,
-    rate: impl Fn(&[f64]) -> f64,
+    rates: [f64; 4],
 ) -> Vec<f64> {
     let (mut added, mut moved) = (vec![0.0; n], vec![0.0; n]);
-    for (i, z) in stages.z.chunks_exact(n).enumerate() {
+    for (i, rate) in rates.into_iter().enumerate() {
         let a = &stages.a[i * n * n..(i + 1) * n * n];
         let mut k: Vec<f64> = a.chunks_exact(n).map(|row| dot(row, &moved)).collect();
-        k[along] += rate(z);
+        k[along] += rate;
         add_scaled(h * WEIGHTS[i], &k, &mut added);
         if let Some(part) = STAGES.get(i) {
             moved = k.iter().map(|k| part * h * k).collect();

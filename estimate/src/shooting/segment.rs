@@ -163,7 +163,7 @@ impl<'a> SegmentIntegrator<'a> {
             let rates = &mut rates[i * n..(i + 1) * n];
             plant.jacobian(place, &mut self.scratch, rates, &mut slopes);
             multiply(&slopes, &by_stage, n, &mut by_rates);
-            self.unknowns_in_rates(place, &mut by_rates);
+            self.unknowns_in_rates(place, rates, &mut by_rates);
             add_scaled(h * weight, rates, &mut self.z);
             add_scaled(h * weight, &by_rates, &mut self.by);
             if let Some(next) = STAGES.get(i) {
@@ -184,15 +184,16 @@ impl<'a> SegmentIntegrator<'a> {
     }
 
     /// Adds the direct effect of the free values on the rates.
-    fn unknowns_in_rates(&mut self, place: Place<'_>, by_rates: &mut [f64]) {
+    fn unknowns_in_rates(&mut self, place: Place<'_>, rates: &[f64], by_rates: &mut [f64]) {
         let plant = self.estimation.plant();
         let (states, count) = (plant.info().state_len(), plant.info().parameter_len());
         let is_parameter =
             |&(unknown, _): &(Unknown, f64)| matches!(unknown, Unknown::Parameter(_));
-        let mut slopes = Vec::new();
+        let (mut slopes, mut filters) = (Vec::new(), Vec::new());
         if self.unknowns.iter().any(is_parameter) {
             slopes.resize(states * count, 0.0);
             plant.parameter_jacobian(place, &mut self.scratch, &mut slopes);
+            filters = plant.filters_by_parameters(place, &mut self.scratch);
         }
         for (column, &(unknown, stretch)) in (self.n..).zip(self.unknowns) {
             match unknown {
@@ -201,11 +202,13 @@ impl<'a> SegmentIntegrator<'a> {
                         by_rates[state * self.width + column] +=
                             stretch * slopes[state * count + index];
                     }
+                    for (state, slopes) in &filters {
+                        by_rates[state * self.width + column] += stretch * slopes[index];
+                    }
                 }
                 Unknown::Lag(lag) => {
                     let (tau, state) = (place.lags[lag], states + lag);
-                    let input = self.estimation.setup().lagging[lag];
-                    let gap = place.held[input] - place.z[state];
+                    let gap = plant.gap(place, rates, lag);
                     by_rates[state * self.width + column] -= stretch * gap / (tau * tau);
                 }
                 _ => {}
@@ -217,7 +220,7 @@ impl<'a> SegmentIntegrator<'a> {
     fn measure(&mut self, row: usize, only: Option<usize>) -> Result<(), EstimateError> {
         let (setup, layout) = (self.estimation.setup(), self.estimation.layout());
         let (n, t) = (self.n, self.recording.times()[row]);
-        let count = if setup.sees_outputs() {
+        let count = if setup.reads_outputs() {
             self.estimation.plant().info().output_len()
         } else {
             0
@@ -241,7 +244,7 @@ impl<'a> SegmentIntegrator<'a> {
             self.rows.resize(start + self.width + 1, 0.0);
             let line = &mut self.rows[start..];
             let mut by_parameters = Vec::new();
-            let quantity = match channel.measures {
+            let quantity = match setup.reads(index) {
                 Measured::State(state) => {
                     let by = &self.by[state * self.width..(state + 1) * self.width];
                     add_scaled(-weight * scale, by, line);

@@ -9,14 +9,16 @@ use appell_estimate::Estimation;
 use super::DiagnoseError;
 use super::bench::Bench;
 use super::evidence::Fitted;
-use super::screen::{Screened, directions};
+use super::screen::{QUIET, Screened, directions, quieten};
 use crate::effects::{Drive, Part};
 
 /// Sizes that are tried, as parts of the range of the coordinate: most gears have less play, and less
 /// than the smallest is hardly seen.
 const PARTS: [f64; 7] = [5e-4, 1e-3, 2e-3, 4e-3, 8e-3, 1.6e-2, 3.2e-2];
-/// Factors of the shape from which fits begin.
+/// Factors of the shape from which fits begin. Recordings tell the product of size and shape best: it is kept.
 const FACTORS: [f64; 3] = [0.6, 1.2, 2.4];
+/// The same with which sizes are tried, where a channel shows the coordinate.
+const SHAPES: [f64; 4] = [0.6, 1.2, 2.4, 4.8];
 /// Ends of the times in s after a reversal of the drive that are looked at: some of them are those in
 /// which the gap is crossed.
 const AFTER: [f64; 4] = [0.05, 0.1, 0.2, 0.4];
@@ -91,52 +93,86 @@ fn is_biased(bench: &Bench<'_>, fitted: &Fitted, drive: &Drive) -> Result<bool, 
     Ok(sums.iter().any(stands_out))
 }
 
-/// The size that gains most. Recordings tell the product of size and shape best: a fit begins with several
-/// shapes and the same product.
+/// Sizes and shapes with what they gain, in the list of values.
+struct Tried {
+    gain: f64,
+    own: Vec<(usize, f64)>,
+}
+
+/// The size that gains most.
 fn best_size(
     bench: &Bench<'_>,
     fitted: &Fitted,
     candidate: usize,
 ) -> Result<Option<Screened>, DiagnoseError> {
-    let members = [fitted.members.as_slice(), &[candidate]].concat();
-    let setup = bench.setup(&members);
-    let estimation = Estimation::new(&setup, &bench.recordings)?;
     let info = bench.effects.info();
     let site = bench.candidate(candidate).site.as_str();
     let state = info.states.iter().position(|state| state.name == site);
     let Some((low, high)) = state.and_then(|state| bench.range(state)) else {
         return Ok(None);
     };
-    let own = bench.own(bench.candidate(candidate));
-    let value = |(place, role): (usize, Part), size: f64, factor: f64| match role {
-        Part::Size | Part::Term(_) => size / factor,
-        Part::Shape => factor * info.parameters[place].value,
-        Part::Switch => 1.0,
-    };
+    let sizes = PARTS.map(|part| part * (high - low));
+    let shows = !bench.candidate(candidate).shows.is_empty();
     let begin = |size: f64, factor: f64| -> Vec<(usize, f64)> {
-        let values = own.iter().map(|&one| (one.0, value(one, size, factor)));
-        values.collect()
+        let own = bench.own(bench.candidate(candidate)).into_iter();
+        let value = |(place, role): (usize, Part)| match role {
+            Part::Size | Part::Term(_) => size,
+            Part::Shape => factor * info.parameters[place].value,
+            Part::Switch => 1.0,
+        };
+        own.map(|one| (one.0, value(one))).collect()
     };
-    let mut best: Option<(f64, f64)> = None;
-    for part in PARTS {
-        let size = part * (high - low);
+    // Where a channel shows the coordinate, recordings tell size and shape; else their product best.
+    let (levels, own): (f64, Vec<_>) = if shows {
+        let shapes = |size: &f64| SHAPES.map(|factor| begin(*size, factor));
+        (QUIET, sizes.iter().flat_map(shapes).collect())
+    } else {
+        (1.0, sizes.map(|size| begin(size, 1.0)).to_vec())
+    };
+    let tried = tried((bench, fitted), candidate, own, levels)?;
+    let Some(best) = tried.first() else {
+        return Ok(None);
+    };
+    let size = best.own.first().map_or(0.0, |(_, size)| *size);
+    let starts = if shows {
+        tried
+            .iter()
+            .take(FACTORS.len())
+            .map(|one| one.own.clone())
+            .collect()
+    } else {
+        FACTORS.map(|factor| begin(size / factor, factor)).to_vec()
+    };
+    let sizes = vec![size; directions(bench, candidate).len()];
+    let screened = Screened::tried(candidate, best.gain, sizes, starts);
+    Ok(Some(screened.beside(levels)))
+}
+
+/// Those of some sizes and shapes that gain, the best first, with disturbances multiplied by `levels`.
+fn tried(
+    (bench, fitted): (&Bench<'_>, &Fitted),
+    candidate: usize,
+    own: Vec<Vec<(usize, f64)>>,
+    levels: f64,
+) -> Result<Vec<Tried>, DiagnoseError> {
+    let members = [fitted.members.as_slice(), &[candidate]].concat();
+    let setup = bench.setup(&members);
+    let estimation = Estimation::new(&setup, &bench.recordings)?;
+    let mut tried = Vec::new();
+    for own in own {
         let mut values = bench.carried(fitted, &estimation);
-        for (place, value) in begin(size, 1.0) {
+        for &(place, value) in &own {
             values[place] = value;
         }
+        quieten(&estimation, &mut values, levels)?;
         bench.hide(&[candidate], &estimation, &mut values)?;
         // A size at which the filter is lost is none.
-        let Ok(likelihood) = estimation.log_likelihood(&values) else {
-            continue;
-        };
-        let gain = bench.weight * likelihood - fitted.fit.log_likelihood;
-        if gain > best.map_or(0.0, |(most, _)| most) {
-            best = Some((gain, size));
+        if let Ok(likelihood) = estimation.log_likelihood(&values) {
+            let gain = bench.weight * likelihood - fitted.fit.log_likelihood;
+            tried.push(Tried { gain, own });
         }
     }
-    Ok(best.map(|(gain, size)| {
-        let sizes = vec![size; directions(bench, candidate).len()];
-        let starts = FACTORS.map(|factor| begin(size, factor));
-        Screened::tried(candidate, gain, sizes, starts.to_vec())
-    }))
+    tried.retain(|one| one.gain > 0.0);
+    tried.sort_by(|a, b| b.gain.total_cmp(&a.gain));
+    Ok(tried)
 }

@@ -59,6 +59,11 @@ impl Screened {
         }
     }
 
+    /// The same beside disturbances that are multiplied by `levels`.
+    pub(super) fn beside(self, levels: f64) -> Self {
+        Self { levels, ..self }
+    }
+
     /// The same, of whose gain inputs may tell a part.
     pub(super) fn told(self, by_inputs: f64) -> Self {
         let told = by_inputs.min(self.gain);
@@ -82,7 +87,7 @@ impl Screened {
 /// Part of a signature that nothing free can imitate, below which there is none.
 const LEFT: f64 = 1e-4;
 /// Disturbances that do not follow what the model lacks, as a part of those that do.
-const QUIET: f64 = 0.1;
+pub(super) const QUIET: f64 = 0.1;
 
 /// All candidates.
 #[derive(Debug, Clone)]

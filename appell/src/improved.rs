@@ -176,6 +176,9 @@ fn elsewhere(own: &SignalEffect, value: &str) -> String {
         "scale" => {
             format!("the sensor {on} reads {value} times the true value: divide where {on} is read")
         }
+        "slow" => format!(
+            "the sensor {on} lags with the time constant {value}: undo the low-pass filter where it is read"
+        ),
         _ => format!("the sensor {on} has a delay of {value}: shift its times where it is read"),
     };
     format!("{effect}: {rest}")

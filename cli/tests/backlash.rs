@@ -84,13 +84,8 @@ fn play_behind_the_encoder_is_found_and_what_the_encoder_shows_is_told() {
     let applied = folder.done(&apply);
     let told = format!("the channel x shows something else: write `measures = \"{output}\"`");
     assert!(applied.stdout.contains(&told), "{}", applied.stdout);
-    let description = folder.read("recording.toml");
-    let shown = format!("measures = \"{output}\"");
-    folder.write(
-        "recording.toml",
-        &description.replace("measures = \"x\"", &shown),
-    );
-    rig::closed(&folder, "new.toml");
+    let checked = folder.done(&["check", "new.toml"]);
+    assert!(!checked.stderr.contains("warning"), "{}", checked.stderr);
 }
 
 #[test]

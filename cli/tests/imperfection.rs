@@ -1,15 +1,15 @@
-//! What a sensor lacks and no prediction shows is no cause: it is fitted beside every hypothesis.
+//! What a sensor lacks: what no prediction shows is no cause, and is fitted beside every hypothesis.
 
 use serde_json::json;
 
-use crate::rig::dry_with_a_biased_sensor;
+use crate::rig::{dry_with_two_sensors, low_pass};
 use crate::support::number;
 
 const BIAS: f64 = 2e-3;
 
 #[test]
 fn a_bias_that_changes_no_prediction_stands_beside_every_hypothesis() {
-    let folder = dry_with_a_biased_sensor(0.3, BIAS);
+    let folder = dry_with_two_sensors(0.3, || |v| v + BIAS);
     let shown = folder.done(&["diagnose", "--data", ".", "--json", "report.json"]);
     let report = folder.json("report.json");
     let which = report["which"].as_array().expect("hypotheses");
@@ -37,7 +37,7 @@ fn a_bias_that_changes_no_prediction_stands_beside_every_hypothesis() {
 
 #[test]
 fn a_bias_that_is_all_of_the_gap_is_its_cause() {
-    let folder = dry_with_a_biased_sensor(0.0, 10.0 * BIAS);
+    let folder = dry_with_two_sensors(0.0, || |v| v + 10.0 * BIAS);
     folder.done(&["diagnose", "--data", ".", "--json", "report.json"]);
     let report = folder.json("report.json");
     assert_eq!(
@@ -46,4 +46,24 @@ fn a_bias_that_is_all_of_the_gap_is_its_cause() {
         "{report:#}"
     );
     assert_eq!(report["imperfections"], json!([]));
+}
+
+#[test]
+fn a_filter_of_a_sensor_is_told_from_a_delay() {
+    const TIME_CONSTANT: f64 = 0.04;
+    let folder = dry_with_two_sensors(0.0, || low_pass(TIME_CONSTANT));
+    folder.done(&["diagnose", "--data", ".", "--json", "report.json"]);
+    let report = folder.json("report.json");
+    let top = &report["which"][0];
+    assert_eq!(top["effects"], json!(["sensor_delay@v"]), "{report:#}");
+    let found = &top["parameters"][0];
+    assert_eq!(found["name"], "sensor_delay@v.time_constant", "{report:#}");
+    let (value, std) = (number(found, "value"), number(found, "std"));
+    assert!(
+        (value - TIME_CONSTANT).abs() < 4.0 * std,
+        "{value} ± {std} s"
+    );
+    assert_eq!(top["changes"]["beside"][0]["acts"], "slow");
+    let closed = number(&report, "how_far/closed_vs_refitted");
+    assert!(closed > 0.95, "{closed}");
 }

@@ -248,23 +248,39 @@ pub(crate) fn dry(force: f64) -> Folder {
     Rig::new(move |v| force * (v / 0.02).tanh()).folder
 }
 
-/// With dry friction and a second sensor, of the velocity, which has a bias.
-pub(crate) fn dry_with_a_biased_sensor(friction: f64, bias: f64) -> Folder {
+/// With dry friction and a second sensor, of the velocity; `sensed` gives its readings, row by row.
+pub(crate) fn dry_with_two_sensors<S: FnMut(f64) -> f64>(
+    friction: f64,
+    sensed: impl Fn() -> S,
+) -> Folder {
     let (folder, mut noise) = (Folder::new(), Noise(7));
     let second = "F = { input";
     let sensor = format!("v = {{ measures = \"v\", unit = \"m/s\", noise_std = 1e-3 }}\n{second}");
     folder.write("recording.toml", &DESCRIPTION.replace(second, &sensor));
     for name in RUNS {
         let mut motion = rubbing(|v| friction * (v / 0.02).tanh());
-        let (mut text, mut state) = ("t,x,v,F\n".to_owned(), [0.0; 2]);
+        let (mut sensed, mut state) = (sensed(), [0.0; 2]);
+        let mut text = "t,x,v,F\n".to_owned();
         for (row, force) in forces(FEWER_ROWS).into_iter().enumerate() {
-            let [x, v] = [state[0], state[1] + bias].map(|value| value + 1e-3 * noise.next());
+            let [x, v] = [state[0], sensed(state[1])].map(|value| value + 1e-3 * noise.next());
             let _ = writeln!(text, "{},{x},{v},{force}", row as f64 / 100.0);
             state = motion(force);
         }
         folder.write(name, &text);
     }
     folder
+}
+
+/// A low-pass filter of first order from rest, exact for straight lines between rows.
+pub(crate) fn low_pass(time_constant: f64) -> impl FnMut(f64) -> f64 {
+    let (mut before, mut behind) = (0.0, 0.0);
+    let decayed = (-HELD / time_constant).exp();
+    move |value| {
+        let late = time_constant * (value - before) / HELD;
+        behind = late + (behind - late) * decayed;
+        before = value;
+        value - behind
+    }
 }
 
 /// With dry friction, and a rail whose grain no library knows.

@@ -198,7 +198,8 @@ fn undo(set: &mut DataSet, taken: &Hypothesis, changes: &Changes) {
             run.values[column] = match effect.acts.as_str() {
                 "bias" => values.iter().map(|value| value - size).collect(),
                 "scale" => values.iter().map(|value| value / size).collect(),
-                "late" => shifted(&run.times, values, size, false),
+                // To first order a lag is a delay.
+                "late" | "slow" => shifted(&run.times, values, size, false),
                 "delay" => shifted(&run.times, values, -size, true),
                 "lag" => lagging(&run.times, values, size),
                 _ => continue,

@@ -290,6 +290,9 @@ fn values_of(candidate: &Candidate, bench: &Bench<'_>, fitted: &Fitted) -> Vec<V
         .filter(|(_, part)| *part != Part::Switch)
         .map(|(index, _)| index)
         .collect();
+    let setup = bench.setup(&fitted.members);
+    let of_signal = bench.of_signal(candidate.acts, &setup);
+    let of_signal = of_signal.map(|free| free.unknown);
     let mut values = Vec::new();
     for (place, free) in fitted.fit.free.iter().enumerate() {
         let value = free.to_value(fitted.fit.coordinates[place]);
@@ -303,17 +306,12 @@ fn values_of(candidate: &Candidate, bench: &Bench<'_>, fitted: &Fitted) -> Vec<V
             {
                 ("value", info.parameters[index].unit.to_string())
             }
-            (Unknown::Bias(own), Acts::Bias(channel)) if own == channel => {
-                ("bias", channel_unit(bench, channel))
-            }
-            (Unknown::Scale(own), Acts::Scale(channel)) if own == channel => {
-                ("scale", "1".to_owned())
-            }
-            (Unknown::SensorDelay(own), Acts::Late(channel)) if own == channel => {
-                ("delay", "s".to_owned())
-            }
-            (Unknown::Lag(_), Acts::Lag(_)) => ("time_constant", "s".to_owned()),
-            (Unknown::InputDelay(_), Acts::Delay(_)) => ("delay", "s".to_owned()),
+            (unknown, acts) if of_signal == Some(unknown) => match acts {
+                Acts::Bias(channel) => ("bias", channel_unit(bench, channel)),
+                Acts::Scale(_) => ("scale", "1".to_owned()),
+                Acts::Lag(_) | Acts::Slow(_) => ("time_constant", "s".to_owned()),
+                _ => ("delay", "s".to_owned()),
+            },
             _ => continue,
         };
         let scale = match free.unknown {
@@ -432,7 +430,9 @@ fn detectable(bench: &Bench<'_>, screen: &Screen) -> Vec<Detectable> {
                 (quantity.scale, quantity.unit.to_string())
             }
             (Acts::Bias(channel), _) => (1.0, channel_unit(bench, channel)),
-            (Acts::Lag(_) | Acts::Delay(_) | Acts::Late(_), _) => (1.0, "s".to_owned()),
+            (Acts::Lag(_) | Acts::Delay(_) | Acts::Late(_) | Acts::Slow(_), _) => {
+                (1.0, "s".to_owned())
+            }
             _ => (1.0, "1".to_owned()),
         };
         told.push(Detectable {

@@ -21,7 +21,11 @@ use appell_recordings::{DataSet, Part, Run};
 const LONGEST_DELAY: f64 = 0.1;
 const DELAY_STEPS: f64 = 5.0;
 /// Shortest and longest lag, in steps.
-pub(super) const LAG: [f64; 2] = [0.003, 500.0];
+const LAG: [f64; 2] = [0.003, 500.0];
+/// The same of a channel: a shorter one is a delay.
+const LAG_OF_CHANNEL: [f64; 2] = [0.2, 500.0];
+/// First values are this many times less certain than a measurement: they are measured again by the first row.
+const CAUTION: f64 = 10.0;
 /// Fits end where a further step promises less than this in log-likelihood, far less than what tells two
 /// hypotheses apart. Searches may begin far away, where parameters are stated, and valleys are narrow.
 const EFFORT: Effort = Effort {
@@ -338,6 +342,11 @@ impl<'a> Bench<'a> {
                 let free = Free::of(Unknown::SensorDelay(channel));
                 Some(free.within(0.0, self.longest_delay()))
             }
+            Acts::Slow(channel) => {
+                let place = setup.lag_of_channel(channel)?;
+                let [shortest, longest] = LAG_OF_CHANNEL.map(|part| part * self.step);
+                Some(Free::of(Unknown::Lag(place)).within(shortest, longest))
+            }
             Acts::Lag(input) => {
                 let place = at(&setup.lagging, input)?;
                 let [shortest, longest] = LAG.map(|part| part * setup.longest_step);
@@ -348,6 +357,13 @@ impl<'a> Bench<'a> {
                 Some(Free::of(Unknown::InputDelay(place)).within(0.0, self.longest_delay()))
             }
         }
+    }
+
+    /// Whether a lag of a channel is so short that it is a delay.
+    pub(super) fn is_too_short(&self, candidate: usize, sizes: &[f64]) -> bool {
+        let shortest = LAG_OF_CHANNEL[0] * self.step;
+        matches!(self.candidate(candidate).acts, Acts::Slow(_))
+            && sizes.iter().all(|size| *size < shortest)
     }
 
     /// How many sizes and shapes members bring.
@@ -465,6 +481,10 @@ impl<'a> Bench<'a> {
             let old = inputs(&was.delayed, input);
             pairs.extend(old.map(|old| (Unknown::InputDelay(old), Unknown::InputDelay(new))));
         }
+        for channel in 0..setup.channels.len() {
+            let lag = |setup: &Setup<'_>| setup.lag_of_channel(channel).map(Unknown::Lag);
+            pairs.extend(lag(&was).zip(lag(setup)));
+        }
         // Other recordings begin as those that were fitted did. Coordinates follow the pseudo-velocities,
         // of which there may be one more.
         let speeds = [was.model.info().speeds, info.speeds];
@@ -487,6 +507,7 @@ impl<'a> Bench<'a> {
                 values[new] = from.fit.values[old];
             }
         }
+        begin_lags(to, &mut values);
         values
     }
 
@@ -609,6 +630,23 @@ impl Bench<'_> {
     }
 }
 
+/// Channels that lag begin near their first readings.
+fn begin_lags(estimation: &Estimation<'_>, values: &mut [f64]) {
+    let (setup, layout) = (estimation.setup(), estimation.layout());
+    for channel in 0..setup.channels.len() {
+        let Some(lag) = setup.lag_of_channel(channel) else {
+            continue;
+        };
+        let state = setup.model.info().state_len() + lag;
+        for run in 0..estimation.recordings().len() {
+            let spread = layout.place(Unknown::Spread { run, state });
+            if let (Ok(spread), Ok(noise)) = (spread, layout.place(Unknown::Noise(channel))) {
+                values[spread] = CAUTION * values[noise];
+            }
+        }
+    }
+}
+
 /// Lets channels show what a member has them show.
 fn show(member: &Candidate, model: &dyn Model, measured: &mut [Measured]) {
     let info = model.info();
@@ -633,6 +671,7 @@ fn admit(setup: &mut Setup<'_>, acts: Acts, step: f64) {
         }
         Acts::Delay(input) => setup.delayed.push(input),
         Acts::Late(channel) => setup.channels[channel].longest_delay = Some(longest_delay(step)),
+        Acts::Slow(channel) => setup.channels[channel].lags = true,
         Acts::Items | Acts::Parameter(_) | Acts::Bias(_) | Acts::Scale(_) => {}
     }
 }

@@ -49,7 +49,8 @@ pub struct Refitted {
 pub struct SignalEffect {
     /// Name.
     pub effect: String,
-    /// How it acts: `lag`, `delay` of an input; `bias`, `scale`, `late` of a channel, or what it `shows`.
+    /// How it acts: `lag`, `delay` of an input; `bias`, `scale`, `late`, `slow` of a channel, or
+    /// what it `shows`.
     pub acts: String,
     /// The input or channel.
     pub on: String,
@@ -101,6 +102,7 @@ impl Changes {
                 Acts::Bias(_) => "bias",
                 Acts::Scale(_) => "scale",
                 Acts::Late(_) => "late",
+                Acts::Slow(_) => "slow",
             };
             Some(SignalEffect {
                 effect: candidate.name(),

@@ -259,6 +259,9 @@ impl Screen {
             .filter_map(|(candidate, columns)| {
                 let positive = positive(bench, candidate);
                 let mut one = screened(&projected, candidate, &columns, &positive)?;
+                if bench.is_too_short(candidate, &one.sizes) {
+                    return None;
+                }
                 let beyond = screened(&beyond, candidate, &columns, &positive);
                 let beyond = beyond.map_or(0.0, |beyond| beyond.gain);
                 let told = (one.gain - beyond).clamp(0.0, for_kicks);
@@ -376,7 +379,7 @@ pub(super) fn directions(bench: &Bench<'_>, candidate: usize) -> Vec<Direction> 
         Acts::Lag(input) | Acts::Delay(input) => vec![Direction::LateInput(input)],
         Acts::Bias(channel) => value(Unknown::Bias(channel)),
         Acts::Scale(channel) => value(Unknown::Scale(channel)),
-        Acts::Late(channel) => vec![Direction::LateChannel(channel)],
+        Acts::Late(channel) | Acts::Slow(channel) => vec![Direction::LateChannel(channel)],
     }
 }
 
@@ -391,7 +394,7 @@ fn positive(bench: &Bench<'_>, candidate: usize) -> Vec<bool> {
             .filter(|(_, part)| *part != Part::Shape)
             .map(|(index, _)| info.parameters[index].range[0] >= 0.0)
             .collect(),
-        Acts::Lag(_) | Acts::Delay(_) | Acts::Late(_) => vec![true],
+        Acts::Lag(_) | Acts::Delay(_) | Acts::Late(_) | Acts::Slow(_) => vec![true],
         Acts::Parameter(_) | Acts::Bias(_) | Acts::Scale(_) => vec![false],
     }
 }

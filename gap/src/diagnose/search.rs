@@ -8,7 +8,7 @@ use std::collections::BTreeSet;
 use appell_estimate::{Estimation, Unknown};
 
 use super::DiagnoseError;
-use super::bench::{Bench, LAG, WRONG};
+use super::bench::{Bench, WRONG};
 use super::calibration::TIED;
 use super::evidence::Fitted;
 use super::prior::{effects, prior};
@@ -61,7 +61,11 @@ fn kept(bench: &Bench<'_>, screen: &Screen, members: &[usize], most: usize) -> V
         let candidate = bench.candidate(screened.candidate);
         let is_alike = |own: usize| bench.candidate(own).name() == candidate.name();
         let is_part = |own: usize| is_alike(own) && !candidate.is_component;
-        let is_known = kept.iter().any(|own| is_alike(own.candidate))
+        // To first order a delay and a lag are one.
+        let is_late = |acts: Acts| matches!(acts, Acts::Late(_));
+        let is_form = |own: usize| is_late(bench.candidate(own).acts) != is_late(candidate.acts);
+        let is_variant = |own: usize| is_alike(own) && !is_form(own);
+        let is_known = kept.iter().any(|own| is_variant(own.candidate))
             || members.contains(&screened.candidate)
             || members.iter().any(|&own| is_part(own));
         let is_guise = kept
@@ -518,10 +522,11 @@ fn place(
             let longest = setup.channels[channel].longest_delay.unwrap_or(0.0);
             set(Unknown::SensorDelay(channel), first.clamp(0.0, longest))?;
         }
-        Acts::Lag(input) => {
-            let [shortest, longest] = LAG.map(|part| part * setup.longest_step);
-            let unknown = Unknown::Lag(at(&setup.lagging, input));
-            set(unknown, first.clamp(2.0 * shortest, 0.2 * longest))?;
+        Acts::Lag(_) | Acts::Slow(_) => {
+            if let Some(free) = bench.of_signal(candidate.acts, setup) {
+                let [shortest, longest] = free.range;
+                set(free.unknown, first.clamp(2.0 * shortest, 0.2 * longest))?;
+            }
         }
         Acts::Delay(input) => {
             let unknown = Unknown::InputDelay(at(&setup.delayed, input));

@@ -28,7 +28,10 @@ pub(super) fn of_best(
     // Lags and delays are alike where they are short, and not the same.
     let is_late = |member: usize| {
         let acts = bench.candidate(member).acts;
-        matches!(acts, Acts::Lag(_) | Acts::Delay(_) | Acts::Late(_))
+        matches!(
+            acts,
+            Acts::Lag(_) | Acts::Delay(_) | Acts::Late(_) | Acts::Slow(_)
+        )
     };
     let says_the_same = |place: &usize| {
         let mut members = comparison.fits[*place].0.members.iter();

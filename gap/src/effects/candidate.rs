@@ -24,12 +24,17 @@ pub enum Acts {
     Scale(usize),
     /// By the delay of a channel.
     Late(usize),
+    /// By the lag of a channel.
+    Slow(usize),
 }
 
 impl Acts {
     /// Whether by a channel that is not perfect.
     pub(crate) const fn is_of_channel(self) -> bool {
-        matches!(self, Self::Bias(_) | Self::Scale(_) | Self::Late(_))
+        matches!(
+            self,
+            Self::Bias(_) | Self::Scale(_) | Self::Late(_) | Self::Slow(_)
+        )
     }
 
     /// The same by a channel at another place; nothing where it has none, or for what is not of a channel.
@@ -38,6 +43,7 @@ impl Acts {
             Self::Bias(channel) => place(channel).map(Self::Bias),
             Self::Scale(channel) => place(channel).map(Self::Scale),
             Self::Late(channel) => place(channel).map(Self::Late),
+            Self::Slow(channel) => place(channel).map(Self::Slow),
             Self::Items | Self::Parameter(_) | Self::Lag(_) | Self::Delay(_) => None,
         }
     }
@@ -289,6 +295,7 @@ impl Candidate {
             Some(Filter::Bias) => Acts::Bias(site.index),
             Some(Filter::Scale) => Acts::Scale(site.index),
             Some(Filter::Late) => Acts::Late(site.index),
+            Some(Filter::Slow) => Acts::Slow(site.index),
         };
         Ok(Self {
             kind: effect.name.clone(),

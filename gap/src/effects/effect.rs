@@ -9,7 +9,7 @@
 //! variants = [{ axis = "x" }]        # each a hypothesis of its own, with words of its own
 //! vector   = true                    # the variants are components, which may come together
 //! switch   = "{effect}_on"           # a parameter that is 1 where the effect is there
-//! filter   = "lag"                   # what acts beside the equations: lag, delay, bias, scale, late
+//! filter   = "lag"                   # what acts beside the equations: lag, delay, bias, scale, late, slow
 //!
 //! [parameters]                       # value 0: how much of the effect there is; other values: its shape
 //! "{effect}_stiffness" = { value = 0, unit = "{force}/({unit})" }
@@ -88,16 +88,19 @@ pub(super) enum Filter {
     Scale,
     /// A channel has a delay.
     Late,
+    /// A channel lags.
+    Slow,
 }
 
 impl Filter {
-    const ALL: [(&'static str, Self); 6] = [
+    const ALL: [(&'static str, Self); 7] = [
         ("value", Self::Value),
         ("lag", Self::Lag),
         ("delay", Self::Delay),
         ("bias", Self::Bias),
         ("scale", Self::Scale),
         ("late", Self::Late),
+        ("slow", Self::Slow),
     ];
 }
 

@@ -9,7 +9,7 @@ macro_rules! files {
 }
 
 /// Files in the order in which people read the library.
-const FILES: [(&str, &str); 26] = files![
+const FILES: [(&str, &str); 27] = files![
     "viscous_friction",
     "coulomb_friction",
     "stribeck_friction",
@@ -36,6 +36,7 @@ const FILES: [(&str, &str); 26] = files![
     "sensor_bias",
     "sensor_scale",
     "sensor_delay",
+    "sensor_filter",
 ];
 
 /// All of them.

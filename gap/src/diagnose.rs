@@ -54,6 +54,7 @@ mod report;
 mod scales;
 mod screen;
 mod search;
+mod starts;
 mod traces;
 mod twins;
 mod unknown;
@@ -234,7 +235,7 @@ fn judged<'m>(
     let whole = whole.bound_to(&model.mechanism);
     let mut judged = judged_beside((&[], None), (&whole, fitted), model, stage)?;
     loop {
-        let more = immaterial(&judged)?;
+        let more = immaterial(&judged).unwrap_or_default();
         if more.is_empty() {
             return Ok(judged);
         }

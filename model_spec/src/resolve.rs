@@ -10,6 +10,7 @@ mod formula;
 mod load_order;
 mod loads;
 mod meaning;
+mod mistaken;
 mod named;
 mod names;
 mod nominal;
@@ -69,6 +70,7 @@ pub fn resolve(ast: &SpecAst, file: &str, text: &str) -> (Mechanism, Vec<Diagnos
     resolver.initial(&mut mechanism);
     resolver.physical(&mechanism);
     resolver.doubtful_angles(&mechanism);
+    resolver.mistaken(&mechanism);
     resolver.unused(&mechanism);
     (mechanism, resolver.findings)
 }

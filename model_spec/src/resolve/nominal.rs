@@ -79,13 +79,16 @@ impl Resolver<'_> {
         }
         if !is_physical(&matrix) {
             let (reason, help) = impossible(&matrix);
+            let message = format!("no body can have the inertia of `{}`: {reason}", body.name);
+            let is_negative = (0..3).any(|i| matrix[i][i] < 0.0);
+            let told = if is_negative {
+                Diagnostic::error(Code::NotPhysical, message)
+            } else {
+                Diagnostic::warning(Code::NotPhysical, message)
+            };
             self.tell(
-                Diagnostic::warning(
-                    Code::NotPhysical,
-                    format!("no body can have the inertia of `{}`: {reason}", body.name),
-                )
-                .at(inertia.span.clone(), "with the values of this spec")
-                .help(help),
+                told.at(inertia.span.clone(), "with the values of this spec")
+                    .help(help),
             );
         }
     }
@@ -166,7 +169,7 @@ fn is_physical(inertia: &[[f64; 3]; 3]) -> bool {
 }
 
 /// The value of a constant expression; `NaN` where it has none.
-fn value(expr: &Expr, parameters: &[Parameter]) -> f64 {
+pub(super) fn value(expr: &Expr, parameters: &[Parameter]) -> f64 {
     let of = |e: &Expr| value(e, parameters);
     match &expr.kind {
         ExprKind::Number(number) => number.to_f64().unwrap_or(f64::NAN),

@@ -1,0 +1,166 @@
+//! The values from which searches and predictions start.
+
+use appell_estimate::{Estimation, Setup, Unknown};
+
+use super::DiagnoseError;
+use super::bench::Bench;
+use super::evidence::Fitted;
+use crate::effects::Part as Role;
+use crate::identify::begin;
+
+/// First values are this many times less certain than a measurement: they are measured again by the first row.
+const CAUTION: f64 = 10.0;
+
+impl Bench<'_> {
+    /// States at the first rows. Channels are read as the model has them without members: what these show in their
+    /// place is near.
+    pub(super) fn begin(
+        &self,
+        estimation: &Estimation<'_>,
+        values: &mut [f64],
+    ) -> Result<(), DiagnoseError> {
+        let mut setup = estimation.setup().clone();
+        let plain = self.measured_by(setup.model);
+        for (channel, measures) in setup.channels.iter_mut().zip(plain) {
+            channel.measures = measures;
+        }
+        begin(&Estimation::new(&setup, estimation.recordings())?, values)?;
+        Ok(())
+    }
+
+    /// Values of a hypothesis for another filter: what both have is taken over.
+    pub(super) fn carried(&self, from: &Fitted, to: &Estimation<'_>) -> Vec<f64> {
+        self.carried_by(from, to, Some)
+    }
+
+    /// The same for other equations, with parameters by their names.
+    pub(super) fn carried_by_name(&self, from: &Fitted, to: &Estimation<'_>) -> Vec<f64> {
+        let (was, is) = (self.effects.info(), to.setup().model.info());
+        let before = |place: usize| was.parameter_index(&is.parameters[place].name);
+        self.carried_by(from, to, before)
+    }
+
+    /// `before` tells the place that a parameter had.
+    fn carried_by(
+        &self,
+        from: &Fitted,
+        to: &Estimation<'_>,
+        before: impl Fn(usize) -> Option<usize>,
+    ) -> Vec<f64> {
+        let mut values = to.nominal();
+        let (setup, was) = (to.setup(), self.setup(&from.members));
+        let mut pairs: Vec<(Unknown, Unknown)> = Vec::new();
+        let same = |unknown| (unknown, unknown);
+        let info = setup.model.info();
+        let parameters = (0..info.parameter_len()).filter_map(|is| Some((before(is)?, is)));
+        pairs.extend(parameters.map(|(was, is)| (Unknown::Parameter(was), Unknown::Parameter(is))));
+        pairs.extend((0..setup.disturbances.len()).map(|d| same(Unknown::Disturbance(d))));
+        for channel in 0..setup.channels.len() {
+            let of_channel = [
+                Unknown::Noise(channel),
+                Unknown::Bias(channel),
+                Unknown::Scale(channel),
+            ];
+            pairs.extend(of_channel.map(same));
+            // A channel that is never late has no delay.
+            if setup.channels[channel].longest_delay.is_some() {
+                pairs.push(same(Unknown::SensorDelay(channel)));
+            }
+        }
+        let inputs = |list: &[usize], input: &usize| list.iter().position(|own| own == input);
+        for (new, input) in setup.lagging.iter().enumerate() {
+            let old = inputs(&was.lagging, input);
+            pairs.extend(old.map(|old| (Unknown::Lag(old), Unknown::Lag(new))));
+        }
+        for (new, input) in setup.delayed.iter().enumerate() {
+            let old = inputs(&was.delayed, input);
+            pairs.extend(old.map(|old| (Unknown::InputDelay(old), Unknown::InputDelay(new))));
+        }
+        for channel in 0..setup.channels.len() {
+            let lag = |setup: &Setup<'_>| setup.lag_of_channel(channel).map(Unknown::Lag);
+            pairs.extend(lag(&was).zip(lag(setup)));
+        }
+        // Other recordings begin as those that were fitted did. Coordinates follow the pseudo-velocities,
+        // of which there may be one more.
+        let speeds = [was.model.info().speeds, info.speeds];
+        for run in 0..to.recordings().len() {
+            let old = run.min(self.recordings.len() - 1);
+            for state in 0..info.state_len() {
+                let Some(before) = moved(state, speeds) else {
+                    continue;
+                };
+                let (initial, spread) = (
+                    |run, state| Unknown::Initial { run, state },
+                    |run, state| Unknown::Spread { run, state },
+                );
+                pairs.push((initial(old, before), initial(run, state)));
+                pairs.push((spread(old, before), spread(run, state)));
+            }
+        }
+        for (old, new) in pairs {
+            if let (Ok(old), Ok(new)) = (from.layout.place(old), to.layout().place(new)) {
+                values[new] = from.fit.values[old];
+            }
+        }
+        begin_lags(to, &mut values);
+        values
+    }
+
+    /// The coordinates that members bring begin somewhere within their sizes, and soon find their places.
+    pub(super) fn hide(
+        &self,
+        members: &[usize],
+        estimation: &Estimation<'_>,
+        values: &mut [f64],
+    ) -> Result<(), DiagnoseError> {
+        /// Part of a size by which the rate changes in a second.
+        const CROSSED: f64 = 1.0;
+        let (info, layout) = (estimation.setup().model.info(), estimation.layout());
+        for candidate in members.iter().map(|&member| self.candidate(member)) {
+            let spreads = match (candidate.brings, candidate.hides) {
+                (Some(_), _) => {
+                    let own = self.own(candidate);
+                    let size = own.iter().find(|(_, role)| *role == Role::Size);
+                    let size = size.map_or(0.0, |(place, _)| values[*place].abs());
+                    [CROSSED * size, size]
+                }
+                (None, Some(spreads)) => spreads,
+                (None, None) => continue,
+            };
+            for run in 0..estimation.recordings().len() {
+                let states = [info.speeds - 1, info.state_len() - 1];
+                for (state, spread) in states.into_iter().zip(spreads) {
+                    values[layout.place(Unknown::Initial { run, state })?] = 0.0;
+                    values[layout.place(Unknown::Spread { run, state })?] = spread;
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Channels that lag begin near their first readings.
+fn begin_lags(estimation: &Estimation<'_>, values: &mut [f64]) {
+    let (setup, layout) = (estimation.setup(), estimation.layout());
+    for channel in 0..setup.channels.len() {
+        let Some(lag) = setup.lag_of_channel(channel) else {
+            continue;
+        };
+        let state = setup.model.info().state_len() + lag;
+        for run in 0..estimation.recordings().len() {
+            let spread = layout.place(Unknown::Spread { run, state });
+            if let (Ok(spread), Ok(noise)) = (spread, layout.place(Unknown::Noise(channel))) {
+                values[spread] = CAUTION * values[noise];
+            }
+        }
+    }
+}
+
+/// Where a state stood in a model with other pseudo-velocities; nothing for one that it did not have.
+fn moved(state: usize, [was, is]: [usize; 2]) -> Option<usize> {
+    if state < is {
+        (state < was).then_some(state)
+    } else {
+        Some(was + state - is)
+    }
+}

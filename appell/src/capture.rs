@@ -76,6 +76,7 @@ impl Converted {
             );
             return Err(Error::request(Field::Recordings, message));
         }
+        files::make_folder(folder)?;
         for (run, table) in self.runs.iter().zip(&self.tables) {
             files::write(&path(run), table)?;
         }

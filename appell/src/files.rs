@@ -36,8 +36,10 @@ pub fn write_with(
         let cause = io::Error::new(io::ErrorKind::PermissionDenied, "the file is read-only");
         return Err(Error::writing(path)(cause));
     }
-    if let Some(folder) = target.parent().filter(|at| !at.as_os_str().is_empty()) {
-        fs::create_dir_all(folder).map_err(Error::writing(folder))?;
+    let folder = target.parent().filter(|at| !at.as_os_str().is_empty());
+    if let Some(folder) = folder.filter(|folder| !folder.is_dir()) {
+        let message = format!("there is no folder `{}`: create it first", folder.display());
+        return Err(Error::data(path.display(), message));
     }
     let mut name = target.file_name().unwrap_or_default().to_owned();
     name.push(format!(".{}.tmp", std::process::id()));
@@ -51,6 +53,11 @@ pub fn write_with(
             let _ = fs::remove_file(&draft);
             Error::writing(path)(cause)
         })
+}
+
+/// Makes a folder that was asked for, with those above it.
+pub fn make_folder(path: &Path) -> Result<(), Error> {
+    fs::create_dir_all(path).map_err(Error::writing(path))
 }
 
 /// The target of a link, even if it does not exist yet: links are kept.

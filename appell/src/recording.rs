@@ -29,6 +29,10 @@ fn read_with(paths: &[PathBuf], source: Option<&Source>) -> Result<DataSet, Erro
         file: source.file.clone(),
         text: source.text.clone(),
     });
+    if let Some(path) = paths.iter().find(|path| !path.exists()) {
+        let message = format!("there is no folder or file `{}`", path.display());
+        return Err(Error::request(Field::Recordings, message));
+    }
     let described = |path: &PathBuf| path.is_dir() || path.ends_with(MANIFEST);
     match (paths, spec) {
         ([folder], spec) if described(folder) => {

@@ -140,6 +140,19 @@ fn gains(design: &Design, law: &DesignedGains, info: &ModelInfo) -> String {
             let _ = writeln!(text, "  ln(z)/T in 1/s: {}", poles.join(", "));
         }
     }
+    let growing = law.growing();
+    if growing > 0 {
+        let _ = writeln!(
+            text,
+            "  the closed loop is unstable: {growing} of {} poles {}",
+            law.poles.len(),
+            if law.sampling.is_none() {
+                "have no negative real part; write stable ones with a minus sign, such as --poles=-8"
+            } else {
+                "lie outside the unit circle"
+            }
+        );
+    }
     let _ = match law.condition {
         Some(condition) => writeln!(
             text,
@@ -265,5 +278,16 @@ pub(crate) fn schedule_text(schedule: &Schedule, info: &ModelInfo) -> String {
         rows.push(row);
     }
     let width = rows[0].len();
-    format!("{}\n{}", info.title, table(&rows, 0..width))
+    let mut text = format!("{}\n{}", info.title, table(&rows, 0..width));
+    let grows =
+        |(_, design): &&(f64, Design)| design.law.as_ref().is_some_and(|law| law.growing() > 0);
+    let unstable = designs.iter().filter(grows).count();
+    if unstable > 0 {
+        let _ = writeln!(
+            text,
+            "  the closed loop is unstable in {unstable} of {} designs",
+            designs.len()
+        );
+    }
+    text
 }

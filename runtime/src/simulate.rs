@@ -4,6 +4,7 @@ mod describe;
 mod recorder;
 mod validity;
 
+use crate::condition::velocity_condition;
 use crate::inputs::{InputSource, ModelInputs, ZeroInputs};
 use crate::integrate::{
     Dop853, Dopri5, Ending, Event, EventHit, Failure, IntegrationError, Options, Outcome,
@@ -14,9 +15,13 @@ use crate::positions::{Inconsistent, Moving, Positions};
 use crate::signal::SignalError;
 use crate::trajectory::{Extras, Trajectory};
 pub use describe::describe;
+use describe::describe_state;
 use recorder::Recorder;
 use validity::Limits;
 pub use validity::{Breach, Limit, Response, Validity};
+
+/// Beyond this condition number no digit of a velocity is left.
+const LOST: f64 = 1e15;
 
 /// How the equations are integrated.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -104,6 +109,17 @@ pub enum SimulationError {
     /// The initial state contradicts the position constraints.
     #[error(transparent)]
     Inconsistent(#[from] Inconsistent),
+    /// The pseudo-velocities do not determine the motion at the start.
+    #[error(
+        "at the start the pseudo-velocities do not determine the generalised velocities (condition number \
+         {condition:.1e}): start elsewhere, or choose pseudo-velocities that are independent there; state:{state}"
+    )]
+    Undetermined {
+        /// Condition number of the map from one to the other.
+        condition: f64,
+        /// The initial state in the names and units of the spec.
+        state: String,
+    },
     /// The sampling interval is not a positive number of seconds.
     #[error("the sampling interval cannot be {interval} s")]
     Sampling {
@@ -158,6 +174,7 @@ impl<'a> Simulation<'a> {
         let (switching_times, ranges) = (inputs.switching_times(), self.ranges());
         let (model, p) = (self.model, self.parameters.as_slice());
         let mut x = self.consistent_start(&inputs)?;
+        self.determined_start(&inputs, &x)?;
         let initial_state = x.clone();
         let limits = Limits::new(model, &inputs, p, self.validity);
         let (breaches, ends_at_once) = limits.at_start(self.span[0], &initial_state);
@@ -239,6 +256,19 @@ impl<'a> Simulation<'a> {
             positions.restore(model, t, &mut x, &u, p, Moving::Dependent)?;
         }
         Ok(x)
+    }
+
+    /// An error where rounding alone determines the generalised velocities.
+    fn determined_start(&self, inputs: &ModelInputs<'_>, x: &[f64]) -> Result<(), SimulationError> {
+        let (model, t, p) = (self.model, self.span[0], self.parameters.as_slice());
+        let mut u = vec![0.0; model.info().input_len()];
+        inputs.fill(t, x, &mut u);
+        let condition = velocity_condition(model, At { t, x, u: &u, p });
+        if condition < LOST {
+            return Ok(());
+        }
+        let state = describe_state(x, model.info());
+        Err(SimulationError::Undetermined { condition, state })
     }
 
     /// Runs the integrator of choice; `x` goes from the first to the last state.

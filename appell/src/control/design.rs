@@ -82,6 +82,17 @@ pub struct DesignedGains {
     pub condition: Option<f64>,
 }
 
+impl DesignedGains {
+    /// Closed-loop poles that do not decay, which a designer may ask for by a missing sign.
+    pub fn growing(&self) -> usize {
+        let grows = |pole: &&Complex<f64>| match self.sampling {
+            None => pole.re >= 0.0,
+            Some(_) => pole.norm() >= 1.0,
+        };
+        self.poles.iter().filter(grows).count()
+    }
+}
+
 /// A state with a larger rate, in SI, advances along the motion.
 const RUNS: f64 = 1e-6;
 

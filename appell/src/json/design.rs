@@ -78,6 +78,7 @@ fn law_json(law: &DesignedGains) -> Value {
     json!({
         "gains": rows(&law.gain),
         "poles": law.poles.iter().map(complex).collect::<Vec<_>>(),
+        "stable": law.growing() == 0,
         "sampled_s": law.sampling.map(Sampling::period),
         "delay_s": law.sampling.map(Sampling::delay),
         "residual": law.residual,

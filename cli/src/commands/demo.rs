@@ -52,6 +52,7 @@ impl Demo {
         let figure = Figure::over_time(&trajectory, &panels);
         let path = Figure::path(&trajectory, "x_G", "y_G");
 
+        files::make_folder(&self.out)?;
         let mut told = String::new();
         let mut place = |name: &str, about: &str| {
             let path = self.out.join(name);

@@ -82,6 +82,7 @@ impl Reproduce {
             bar.set_position(done as u64);
             bar.set_message(name.to_owned());
         };
+        files::make_folder(&self.out)?;
         let sections = match self.paper {
             Paper::Steering => book::steering::book(usize::from(self.grid), making),
             Paper::Euc => book::euc::book(&self.out.join("rides"), making),

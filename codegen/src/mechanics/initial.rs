@@ -123,6 +123,9 @@ pub fn vanishing_lengths(
     findings
 }
 
+/// A rate that is so many times larger than every pseudo-velocity is divided by what rounding leaves of zero.
+const LOST: f64 = 1e13;
+
 /// Equations that cannot be solved at the initial state.
 pub fn singularities(
     graph: &Graph,
@@ -132,8 +135,12 @@ pub fn singularities(
     state: &InitialState,
 ) -> Vec<Finding> {
     let mut findings = Vec::new();
+    let speeds = mechanism.pseudo_velocities.iter();
+    let fastest = speeds.fold(0.0, |most: f64, speed| most.max(speed.initial.abs()));
     for (q, rate) in mechanism.coordinates.iter().zip(state.of(graph, rates)) {
-        if !rate.is_finite() {
+        // A right angle in degrees is one but for rounding.
+        let is_lost = fastest > 0.0 && rate.abs() > LOST * fastest;
+        if is_lost || !rate.is_finite() {
             findings.push(Finding {
                 code: Code::SingularPseudoVelocities,
                 message: format!(

@@ -4,7 +4,10 @@
 //! sizes, and only where innovations are biased after reversals of the drive: there the teeth change
 //! sides.
 
-use appell_estimate::Estimation;
+use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
+
+use appell_estimate::{Estimation, Setup};
 
 use super::DiagnoseError;
 use super::bench::Bench;
@@ -15,10 +18,12 @@ use crate::effects::{Drive, Part};
 /// Sizes that are tried, as parts of the range of the coordinate: most gears have less play, and less
 /// than the smallest is hardly seen.
 const PARTS: [f64; 7] = [5e-4, 1e-3, 2e-3, 4e-3, 8e-3, 1.6e-2, 3.2e-2];
-/// Factors of the shape from which fits begin. Recordings tell the product of size and shape best: it is kept.
+/// Factors of the shape from which fits begin.
 const FACTORS: [f64; 3] = [0.6, 1.2, 2.4];
-/// The same with which sizes are tried, where a channel shows the coordinate.
-const SHAPES: [f64; 4] = [0.6, 1.2, 2.4, 4.8];
+/// Those at which sizes are tried where a channel shows the coordinate, the first one at all sizes, and starts that
+/// are kept.
+const SHAPES: [f64; 4] = [1.8, 0.6, 3.6, 7.2];
+const STARTS: usize = 2;
 /// Ends of the times in s after a reversal of the drive that are looked at: some of them are those in
 /// which the gap is crossed.
 const AFTER: [f64; 4] = [0.05, 0.1, 0.2, 0.4];
@@ -46,15 +51,24 @@ pub(super) fn screened(
         return Ok(Vec::new());
     }
     let p = &fitted.fit.values[..effects.with(&[]).info().parameter_len()];
+    let mut drives: BTreeMap<usize, Option<Drive>> = BTreeMap::new();
     let mut list = Vec::new();
     for (index, candidate) in effects.candidates.iter().enumerate() {
-        let Some(beside) = candidate.brings else {
+        // What an encoder behind the gap shows is over within some rows: windows see little of it.
+        let is_seen =
+            candidate.shows.is_empty() || bench.is_shown(candidate) && !bench.is_over_windows();
+        let Some(beside) = candidate.brings.filter(|_| is_seen) else {
             continue;
         };
-        let Some(drive) = Drive::of(effects.with(&[]), p, beside) else {
+        if let Entry::Vacant(unknown) = drives.entry(beside) {
+            let drive = Drive::of(effects.with(&[]), p, beside);
+            let is_biased = drive.as_ref().map(|drive| is_biased(bench, fitted, drive));
+            unknown.insert(drive.filter(|_| matches!(is_biased, Some(Ok(true)))));
+        }
+        let Some(drive) = &drives[&beside] else {
             continue;
         };
-        if is_biased(bench, fitted, &drive)? && effects.augment(index, &drive) {
+        if effects.augment(index, drive) {
             list.extend(best_size(bench, fitted, index)?.map(|one| one.told(told_by_inputs)));
         }
     }
@@ -93,9 +107,10 @@ fn is_biased(bench: &Bench<'_>, fitted: &Fitted, drive: &Drive) -> Result<bool, 
     Ok(sums.iter().any(stands_out))
 }
 
-/// Sizes and shapes with what they gain, in the list of values.
+/// A size and a shape, as values, with what they gain.
 struct Tried {
     gain: f64,
+    size: f64,
     own: Vec<(usize, f64)>,
 }
 
@@ -112,67 +127,88 @@ fn best_size(
         return Ok(None);
     };
     let sizes = PARTS.map(|part| part * (high - low));
+    let grid = Grid::of(bench, fitted, candidate);
     let shows = !bench.candidate(candidate).shows.is_empty();
-    let begin = |size: f64, factor: f64| -> Vec<(usize, f64)> {
-        let own = bench.own(bench.candidate(candidate)).into_iter();
+    let (levels, mut tried) = if shows {
+        // A channel that shows the coordinate tells the size whatever the shape, then the shape.
+        let [first, others @ ..] = SHAPES;
+        let mut tried = grid.tried(&sizes, first, QUIET)?;
+        if let Some(size) = tried.first().map(|best| best.size) {
+            for factor in others {
+                tried.extend(grid.tried(&[size], factor, QUIET)?);
+            }
+        }
+        (QUIET, tried)
+    } else {
+        (1.0, grid.tried(&sizes, 1.0, 1.0)?)
+    };
+    tried.sort_by(|a, b| b.gain.total_cmp(&a.gain));
+    let Some(best) = tried.first().filter(|best| best.gain > 0.0) else {
+        return Ok(None);
+    };
+    let starts = if shows {
+        let best = tried.iter().take(STARTS);
+        best.map(|one| one.own.clone()).collect()
+    } else {
+        // Recordings tell the product of size and shape best: it is kept.
+        let product = |factor: f64| grid.values(best.size / factor, factor);
+        FACTORS.map(product).to_vec()
+    };
+    let sizes = vec![best.size; directions(bench, candidate).len()];
+    let screened = Screened::tried(candidate, best.gain, sizes, starts);
+    Ok(Some(screened.beside(levels)))
+}
+
+/// Where sizes and shapes of a candidate are tried.
+struct Grid<'g, 'b> {
+    bench: &'g Bench<'b>,
+    fitted: &'g Fitted,
+    candidate: usize,
+    setup: Setup<'g>,
+}
+
+impl<'g, 'b> Grid<'g, 'b> {
+    fn of(bench: &'g Bench<'b>, fitted: &'g Fitted, candidate: usize) -> Self {
+        let members = [fitted.members.as_slice(), &[candidate]].concat();
+        Self {
+            bench,
+            fitted,
+            candidate,
+            setup: bench.setup(&members),
+        }
+    }
+
+    /// The values of the candidate's parameters.
+    fn values(&self, size: f64, factor: f64) -> Vec<(usize, f64)> {
+        let (bench, info) = (self.bench, self.bench.effects.info());
+        let own = bench.own(bench.candidate(self.candidate)).into_iter();
         let value = |(place, role): (usize, Part)| match role {
             Part::Size | Part::Term(_) => size,
             Part::Shape => factor * info.parameters[place].value,
             Part::Switch => 1.0,
         };
         own.map(|one| (one.0, value(one))).collect()
-    };
-    // Where a channel shows the coordinate, recordings tell size and shape; else their product best.
-    let (levels, own): (f64, Vec<_>) = if shows {
-        let shapes = |size: &f64| SHAPES.map(|factor| begin(*size, factor));
-        (QUIET, sizes.iter().flat_map(shapes).collect())
-    } else {
-        (1.0, sizes.map(|size| begin(size, 1.0)).to_vec())
-    };
-    let tried = tried((bench, fitted), candidate, own, levels)?;
-    let Some(best) = tried.first() else {
-        return Ok(None);
-    };
-    let size = best.own.first().map_or(0.0, |(_, size)| *size);
-    let starts = if shows {
-        tried
-            .iter()
-            .take(FACTORS.len())
-            .map(|one| one.own.clone())
-            .collect()
-    } else {
-        FACTORS.map(|factor| begin(size / factor, factor)).to_vec()
-    };
-    let sizes = vec![size; directions(bench, candidate).len()];
-    let screened = Screened::tried(candidate, best.gain, sizes, starts);
-    Ok(Some(screened.beside(levels)))
-}
-
-/// Those of some sizes and shapes that gain, the best first, with disturbances multiplied by `levels`.
-fn tried(
-    (bench, fitted): (&Bench<'_>, &Fitted),
-    candidate: usize,
-    own: Vec<Vec<(usize, f64)>>,
-    levels: f64,
-) -> Result<Vec<Tried>, DiagnoseError> {
-    let members = [fitted.members.as_slice(), &[candidate]].concat();
-    let setup = bench.setup(&members);
-    let estimation = Estimation::new(&setup, &bench.recordings)?;
-    let mut tried = Vec::new();
-    for own in own {
-        let mut values = bench.carried(fitted, &estimation);
-        for &(place, value) in &own {
-            values[place] = value;
-        }
-        quieten(&estimation, &mut values, levels)?;
-        bench.hide(&[candidate], &estimation, &mut values)?;
-        // A size at which the filter is lost is none.
-        if let Ok(likelihood) = estimation.log_likelihood(&values) {
-            let gain = bench.weight * likelihood - fitted.fit.log_likelihood;
-            tried.push(Tried { gain, own });
-        }
     }
-    tried.retain(|one| one.gain > 0.0);
-    tried.sort_by(|a, b| b.gain.total_cmp(&a.gain));
-    Ok(tried)
+
+    /// Some sizes, the best first, with disturbances multiplied by `levels`. One at which the filter is lost is none.
+    fn tried(&self, sizes: &[f64], factor: f64, levels: f64) -> Result<Vec<Tried>, DiagnoseError> {
+        let (bench, fitted) = (self.bench, self.fitted);
+        let estimation = Estimation::new(&self.setup, &bench.recordings)?;
+        let mut tried = Vec::new();
+        for &size in sizes {
+            let own = self.values(size, factor);
+            let mut values = bench.carried(fitted, &estimation);
+            for &(place, value) in &own {
+                values[place] = value;
+            }
+            quieten(&estimation, &mut values, levels)?;
+            bench.hide(&[self.candidate], &estimation, &mut values)?;
+            if let Ok(likelihood) = estimation.log_likelihood(&values) {
+                let gain = bench.weight * likelihood - fitted.fit.log_likelihood;
+                tried.push(Tried { gain, size, own });
+            }
+        }
+        tried.sort_by(|a, b| b.gain.total_cmp(&a.gain));
+        Ok(tried)
+    }
 }

@@ -170,6 +170,19 @@ impl<'a> Bench<'a> {
         longest_delay(self.step)
     }
 
+    /// Whether a channel measures what a candidate has one show in its place.
+    pub(super) fn is_shown(&self, candidate: &Candidate) -> bool {
+        let info = self.effects.info();
+        let mut states = candidate
+            .shows
+            .iter()
+            .map(|(state, _)| info.state_index(state));
+        states.any(|state| {
+            let shown = state.map(Measured::State);
+            self.measured.iter().any(|own| Some(*own) == shown)
+        })
+    }
+
     /// Members without those that bring a coordinate.
     pub(super) fn locked(&self, members: &[usize]) -> Vec<usize> {
         let own = members.iter().copied();

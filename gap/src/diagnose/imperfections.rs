@@ -79,23 +79,23 @@ impl Bench<'_> {
     }
 }
 
-/// Those imperfections beside forces of the leading hypothesis that close less of the gap than the tolerance, in
-/// predictions of the runs that were fitted. One that stands alone is all there is of the gap.
+/// Those imperfections beside forces of the leading hypothesis that close less of the gap of their channels than the
+/// tolerance, in predictions of the runs that were fitted. One that stands alone is all there is of the gap.
 pub(super) fn immaterial(judged: &Judged<'_>) -> Result<Vec<Imperfection>, DiagnoseError> {
     let (bench, comparison) = (&judged.bench, &judged.comparison);
     let (best, nominal) = (comparison.best(), comparison.nominal());
-    let is_of_channel = |member: &&usize| bench.candidate(**member).acts.is_of_channel();
+    let is_of_channel = |member: &&usize| bench.candidate(**member).acts.channel().is_some();
     let of_channels: Vec<usize> = best.members.iter().filter(is_of_channel).copied().collect();
     if of_channels.is_empty() || of_channels.len() == best.members.len() {
         return Ok(Vec::new());
     }
     let (noise, horizon) = (noise(bench, best)?, horizon(&bench.recordings));
-    let square = |fitted: &Fitted| {
-        let errors = errors(&bench.recordings, bench, fitted, &noise, horizon, ORIGINS)?;
+    let square = |fitted: &Fitted, channel: usize| {
+        let mut alone = vec![f64::INFINITY; noise.len()];
+        alone[channel] = noise[channel];
+        let errors = errors(&bench.recordings, bench, fitted, &alone, horizon, ORIGINS)?;
         Ok::<f64, DiagnoseError>(errors.mean())
     };
-    let whole = square(best)?;
-    let closed = square(nominal)? - whole;
     let setup = bench.setup(&best.members);
     let mut immaterial = Vec::new();
     for member in of_channels {
@@ -103,10 +103,12 @@ pub(super) fn immaterial(judged: &Judged<'_>) -> Result<Vec<Imperfection>, Diagn
         others.retain(|&own| own != member);
         let without = budget::with((bench, comparison), best, &others)?;
         let acts = bench.candidate(member).acts;
-        let Some(free) = bench.of_signal(acts, &setup) else {
+        let (Some(free), Some(channel)) = (bench.of_signal(acts, &setup), acts.channel()) else {
             continue;
         };
-        if square(&without)? - whole < IMMATERIAL * closed {
+        let whole = square(best, channel)?;
+        let closed = square(nominal, channel)? - whole;
+        if square(&without, channel)? - whole < IMMATERIAL * closed {
             let found = best.fit.values[best.layout.place(free.unknown)?];
             immaterial.push(Imperfection { acts, found });
         }

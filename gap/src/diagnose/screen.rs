@@ -259,9 +259,6 @@ impl Screen {
             .filter_map(|(candidate, columns)| {
                 let positive = positive(bench, candidate);
                 let mut one = screened(&projected, candidate, &columns, &positive)?;
-                if bench.is_too_short(candidate, &one.sizes) {
-                    return None;
-                }
                 let beyond = screened(&beyond, candidate, &columns, &positive);
                 let beyond = beyond.map_or(0.0, |beyond| beyond.gain);
                 let told = (one.gain - beyond).clamp(0.0, for_kicks);

@@ -61,11 +61,7 @@ fn kept(bench: &Bench<'_>, screen: &Screen, members: &[usize], most: usize) -> V
         let candidate = bench.candidate(screened.candidate);
         let is_alike = |own: usize| bench.candidate(own).name() == candidate.name();
         let is_part = |own: usize| is_alike(own) && !candidate.is_component;
-        // To first order a delay and a lag are one.
-        let is_late = |acts: Acts| matches!(acts, Acts::Late(_));
-        let is_form = |own: usize| is_late(bench.candidate(own).acts) != is_late(candidate.acts);
-        let is_variant = |own: usize| is_alike(own) && !is_form(own);
-        let is_known = kept.iter().any(|own| is_variant(own.candidate))
+        let is_known = kept.iter().any(|own| is_alike(own.candidate))
             || members.contains(&screened.candidate)
             || members.iter().any(|&own| is_part(own));
         let is_guise = kept
@@ -143,6 +139,7 @@ impl<'b, 'a> Search<'b, 'a> {
             }
         }
         self.drop_idle();
+        self.try_lags();
         Ok(true)
     }
 
@@ -380,6 +377,62 @@ impl<'b, 'a> Search<'b, 'a> {
                 return;
             }
         }
+    }
+
+    /// To first order a lag of a channel is a delay. The best hypotheses with a delay are fitted with a lag in its
+    /// place.
+    fn try_lags(&mut self) {
+        let Some(best) = self.best() else {
+            return;
+        };
+        let (log, count) = (
+            self.log_posterior(&self.fits[best]),
+            self.fits[best].members.len(),
+        );
+        let tied = self.ranked(count).into_iter();
+        let tied = tied.take_while(|&own| log - self.log_posterior(&self.fits[own]) < TIED);
+        for own in tied.collect::<Vec<_>>() {
+            let fitted = self.fits[own].clone();
+            for &late in &fitted.members {
+                if let Ok(Some(fitted)) = self.fitted_with_lag(&fitted, late) {
+                    self.keep(fitted);
+                }
+            }
+        }
+    }
+
+    /// A hypothesis with a lag in place of a member that is the delay of a channel; nothing for other members, and
+    /// where the lag would be too short to be told.
+    fn fitted_with_lag(
+        &self,
+        whole: &Fitted,
+        late: usize,
+    ) -> Result<Option<Fitted>, DiagnoseError> {
+        let bench = self.bench;
+        let Acts::Late(channel) = bench.candidate(late).acts else {
+            return Ok(None);
+        };
+        let mut candidates = bench.effects.candidates.iter();
+        let slow = candidates.position(|own| own.acts == Acts::Slow(channel));
+        let delay = whole.fit.values[whole.layout.place(Unknown::SensorDelay(channel))?];
+        let Some(slow) = slow.filter(|&slow| !bench.is_too_short(slow, &[delay])) else {
+            return Ok(None);
+        };
+        let mut members = whole.members.clone();
+        members.retain(|&own| own != late);
+        members.push(slow);
+        members.sort_unstable();
+        let setup = bench.setup(&members);
+        let estimation = Estimation::new(&setup, &bench.recordings)?;
+        let mut start = bench.carried(whole, &estimation);
+        start[estimation.layout().place(Unknown::SensorDelay(channel))?] = 0.0;
+        let Some(free) = bench.of_signal(Acts::Slow(channel), &setup) else {
+            return Ok(None);
+        };
+        start[estimation.layout().place(free.unknown)?] = delay;
+        let mut fitted = bench.fit(&members, &estimation, &start)?;
+        fitted.evidence.told_by_inputs = whole.evidence.told_by_inputs;
+        Ok(Some(fitted))
     }
 
     /// A hypothesis without a member, from where it ended with it.

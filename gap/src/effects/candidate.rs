@@ -29,12 +29,15 @@ pub enum Acts {
 }
 
 impl Acts {
-    /// Whether by a channel that is not perfect.
-    pub(crate) const fn is_of_channel(self) -> bool {
-        matches!(
-            self,
-            Self::Bias(_) | Self::Scale(_) | Self::Late(_) | Self::Slow(_)
-        )
+    /// The channel that is not perfect, if it acts by one.
+    pub(crate) const fn channel(self) -> Option<usize> {
+        match self {
+            Self::Bias(channel)
+            | Self::Scale(channel)
+            | Self::Late(channel)
+            | Self::Slow(channel) => Some(channel),
+            Self::Items | Self::Parameter(_) | Self::Lag(_) | Self::Delay(_) => None,
+        }
     }
 
     /// The same by a channel at another place; nothing where it has none, or for what is not of a channel.

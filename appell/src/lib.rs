@@ -17,6 +17,7 @@
 //! | [`recording::read`], [`Model::identify`] | `appell recording`, `appell identify` |
 //! | [`Model::inverse`] | `appell inverse` |
 //! | [`diagnose()`], [`diagnosis::Library`] | `appell diagnose` |
+//! | [`sample::rig`] | `appell sample` |
 //! | [`Source::improved`] with a [`gap_report::GapReport`] | `appell apply` |
 //!
 //! Numbers given as texts are in the units of the spec, or have units of their own; results are in SI.
@@ -46,6 +47,7 @@ pub mod json;
 mod model;
 mod motion;
 pub mod recording;
+pub mod sample;
 pub mod setup;
 pub mod source;
 pub mod steady;

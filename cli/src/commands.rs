@@ -17,6 +17,7 @@ mod motion;
 mod new;
 mod recording;
 mod reproduce;
+mod sample;
 mod schema;
 mod simulate;
 mod stability;
@@ -47,6 +48,7 @@ pub(crate) enum Command {
     Evaluate(evaluate::Evaluate),
     Simulate(Box<simulate::Simulate>),
     Control(Box<control::Control>),
+    Sample(sample::Sample),
     Recording(recording::Recording),
     Identify(identify::Identify),
     Inverse(inverse::Inverse),
@@ -73,6 +75,7 @@ pub(crate) fn run(command: Command) -> Result<(), Error> {
         Command::Evaluate(command) => command.run(),
         Command::Simulate(command) => command.run(),
         Command::Control(command) => command.run(),
+        Command::Sample(command) => command.run(),
         Command::Recording(command) => command.run(),
         Command::Identify(command) => command.run(),
         Command::Inverse(command) => command.run(),

@@ -26,6 +26,9 @@ const WORSE: f64 = 1.2;
 const BENT: &str = "On the held-out runs the fitted model predicts worse than the nominal one, one \
 second ahead: an effect missing from the model has biased the parameters. `appell diagnose` searches \
 for it.";
+/// Prediction errors in units of the noise that are as good as can be, and that disturbances may explain.
+const GOOD: f64 = 1.5;
+const FAIR: f64 = 10.0;
 /// Posterior standard deviation, in units of the prior one, above which a direction is undetermined.
 const UNKNOWN: f64 = 100.0;
 
@@ -356,7 +359,30 @@ fn held_out(set: &DataSet, answer: &Answer) -> Part {
             size(error.fitted),
         ]);
     }
+    part.note = verdict(answer).unwrap_or_default();
     part
+}
+
+/// What the errors of all channels mean, about a second ahead.
+fn verdict(answer: &Answer) -> Option<String> {
+    let mut errors = answer.held_out.iter();
+    let ahead = errors.find(|error| error.column.is_none() && error.horizon >= AHEAD)?;
+    let [times, when] = [size(ahead.fitted), horizon(ahead.horizon)];
+    Some(if ahead.fitted <= GOOD {
+        format!(
+            "The fitted model predicts the held-out runs to within the noise ({times} times it, {when} ahead)."
+        )
+    } else if ahead.fitted <= FAIR {
+        format!(
+            "The fitted model predicts the held-out runs to {times} times the noise, {when} ahead: disturbances may \
+             explain that, or a small effect is missing."
+        )
+    } else {
+        format!(
+            "The fitted model misses the held-out runs by {times} times the noise, {when} ahead: do not rely on its \
+             parameters. An effect is missing or a unit is wrong: `appell diagnose` searches for it."
+        )
+    })
 }
 
 /// Size of a prediction error; a prediction that overflowed has diverged.

@@ -27,7 +27,7 @@ impl List {
                 return Ok(());
             }
         }
-        let heading = ["mechanism", "dof", "constraints", "title", "source"];
+        let heading = ["mechanism", "dof", "constraints", "title"];
         let mut rows = vec![heading.map(str::to_owned).to_vec()];
         for shipped in ALL {
             let info = shipped.model.info();
@@ -36,21 +36,34 @@ impl List {
                 info.speeds.to_string(),
                 constraints(shipped)?,
                 info.title.to_string(),
-                short(&info.source),
             ]);
         }
-        output::print(&table(&rows, 1..2))
+        let used: usize = (0..3).map(|column| width(&rows, column) + GAP).sum();
+        let room = WIDTH - used - GAP;
+        for row in &mut rows {
+            row[3] = cut(&row[3], room);
+        }
+        let note = "`--json` has sources, names and costs\n";
+        output::print(&(table(&rows, 1..2) + note))
     }
 }
 
-/// The cited work, without sections and equation numbers, which the spec gives.
-fn short(source: &str) -> String {
-    let work = source.split(", ").next().unwrap_or_default();
-    if work.is_empty() {
-        "-".to_owned()
-    } else {
-        work.to_owned()
+/// Columns of a terminal, and those between two columns of a table.
+const WIDTH: usize = 80;
+const GAP: usize = 2;
+
+fn width(rows: &[Vec<String>], column: usize) -> usize {
+    let widths = rows.iter().map(|row| row[column].chars().count());
+    widths.max().unwrap_or(0)
+}
+
+/// A text in the room that is left.
+fn cut(text: &str, room: usize) -> String {
+    if text.chars().count() <= room {
+        return text.to_owned();
     }
+    let kept: String = text.chars().take(room - 1).collect();
+    format!("{}…", kept.trim_end())
 }
 
 /// Word of the spec and number of scalar rows of each constraint.
@@ -63,20 +76,16 @@ fn kinds(shipped: &Shipped) -> Result<Vec<(String, &'static str, usize)>, Error>
     Ok(named.collect())
 }
 
-/// The constraints: rows solved by the equations, and rows that the coordinates satisfy identically.
+/// Kinds of the constraints.
 fn constraints(shipped: &Shipped) -> Result<String, Error> {
     let kinds = kinds(shipped)?;
-    let all: usize = kinds.iter().map(|(.., rows)| rows).sum();
-    let held = all.saturating_sub(shipped.model.info().constraint_rows.len());
     let mut words: Vec<&str> = kinds.iter().map(|(_, word, _)| *word).collect();
+    words.sort_unstable();
     words.dedup();
-    Ok(match (all, held) {
-        (0, _) => "-".to_owned(),
-        (_, 0) => format!("{}: {all} rows", words.join(", ")),
-        _ => format!(
-            "{}: {all} rows, {held} embedded in geometry",
-            words.join(", ")
-        ),
+    Ok(if words.is_empty() {
+        "-".to_owned()
+    } else {
+        words.join(", ")
     })
 }
 

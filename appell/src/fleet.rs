@@ -143,7 +143,7 @@ impl Fleet<'_> {
         let of = self.fingerprint(folder, &set.spec.text)?;
         let known = files::read(&path, files::MAX_DATA).ok();
         let known = known.and_then(|text| serde_json::from_str::<Value>(&text).ok());
-        files::make_folder(&self.reports)?;
+        files::make_folder(self.reports)?;
         let page_path = self.reports.join(format!("{name}.html"));
         let has_page = !self.with_pages || page_path.is_file();
         if let Some(known) = known.filter(|known| known["of"] == of.as_str() && has_page) {

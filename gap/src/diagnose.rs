@@ -44,6 +44,7 @@ mod forces;
 mod forms;
 mod held_out;
 mod horizon;
+mod imperfection;
 mod imperfections;
 mod law;
 mod localise;
@@ -82,7 +83,8 @@ use bench::Bench;
 use compare::Comparison;
 use held_out::{HeldOut, Leader};
 use horizon::Judged;
-use imperfections::{Imperfection, immaterial, known};
+use imperfection::Imperfection;
+use imperfections::{immaterial, known};
 use screen::Screen;
 
 /// Version of the engine. Every change that moves a number of some report raises it, so that scores and

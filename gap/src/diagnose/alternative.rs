@@ -11,6 +11,7 @@ use super::DiagnoseError;
 use super::bench::Bench;
 use super::changes::Changes;
 use super::evidence::Fitted;
+use super::imperfection::Imperfection;
 use super::report::Value;
 use crate::effects::EffectModel;
 use appell_recordings::{DataSet, Spec};
@@ -86,7 +87,7 @@ impl<'a> Rival<'a> {
                 column: column.clone(),
             });
         }
-        let imperfections = main.imperfections_of(&own);
+        let imperfections = imperfections(main, &own);
         let mut bench = Bench::new(&alternative.set, &alternative.model, &imperfections)?;
         let mut fitted = bench.nominal()?;
         if main.is_over_windows() {
@@ -131,6 +132,17 @@ impl<'a> Rival<'a> {
         });
         Ok(values.collect())
     }
+}
+
+/// Those of the main model, where the alternative has the channel.
+fn imperfections(main: &Bench<'_>, channels: &[String]) -> Vec<Imperfection> {
+    let own = columns(main);
+    let place = |channel: usize| channels.iter().position(|column| *column == own[channel]);
+    let moved = main.imperfections.iter().filter_map(|one| {
+        let acts = one.acts.moved(place)?;
+        Some(Imperfection { acts, ..*one })
+    });
+    moved.collect()
 }
 
 /// Names of the measured channels.

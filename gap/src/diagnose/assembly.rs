@@ -270,9 +270,8 @@ fn values(bench: &Bench<'_>, fitted: &Fitted) -> Vec<Value> {
 
 /// Values of what is fitted beside every hypothesis.
 fn imperfections(bench: &Bench<'_>, fitted: &Fitted) -> Vec<Value> {
-    let candidates = bench.imperfections.iter();
+    let candidates = bench.imperfect_candidates();
     candidates
-        .filter_map(|one| one.candidate(bench))
         .flat_map(|candidate| values_of(candidate, bench, fitted))
         .collect()
 }

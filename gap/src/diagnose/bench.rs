@@ -11,7 +11,7 @@ use super::DiagnoseError;
 use super::evidence::Evidence;
 use super::evidence::Fitted;
 use super::feedback::InputInnovations;
-use super::imperfections::Imperfection;
+use super::imperfection::{Imperfection, perfect};
 use super::unmodelled::UnmodelledChannel;
 use crate::effects::{Acts, Candidate, EffectModel, Part as Role};
 use crate::identify::{Options, Problem, longest_step};
@@ -295,8 +295,7 @@ impl<'a> Bench<'a> {
         for &member in members {
             free.extend(self.brought(member, setup));
         }
-        let imperfections = self.imperfections.iter();
-        free.extend(imperfections.filter_map(|one| one.free(self, setup)));
+        free.extend(self.imperfect(setup));
         free.extend(&self.problem.levels);
         free
     }
@@ -324,6 +323,33 @@ impl<'a> Bench<'a> {
                 }
             })
             .collect()
+    }
+
+    /// What is free of the imperfections.
+    fn imperfect(&self, setup: &Setup<'_>) -> Vec<Free> {
+        let free = self.imperfections.iter().filter_map(|one| {
+            let free = self.of_signal(one.acts, setup)?;
+            Some(one.expected(free))
+        });
+        free.collect()
+    }
+
+    /// The effects that the imperfections are.
+    pub(super) fn imperfect_candidates(&self) -> impl Iterator<Item = &Candidate> {
+        let of = |one: &Imperfection| {
+            let mut candidates = self.effects.candidates.iter();
+            candidates.find(|candidate| candidate.acts == one.acts)
+        };
+        self.imperfections.iter().filter_map(of)
+    }
+
+    /// Makes the channels of a fit perfect, but for what its members do.
+    pub(super) fn perfected(&self, fitted: &mut Fitted) -> Result<(), DiagnoseError> {
+        for free in self.imperfect(&self.setup(&fitted.members)) {
+            let place = fitted.layout.place(free.unknown)?;
+            fitted.fit.values[place] = perfect(free.unknown).max(free.range[0]);
+        }
+        Ok(())
     }
 
     /// What an effect on an input or a channel sets free; nothing for others.

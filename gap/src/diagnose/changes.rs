@@ -92,9 +92,8 @@ impl Changes {
     /// Of a fitted hypothesis.
     pub(super) fn of(bench: &Bench<'_>, fitted: &Fitted) -> Result<Self, DiagnoseError> {
         let members = || fitted.members.iter().map(|&member| bench.candidate(member));
-        let imperfections = bench.imperfections.iter();
-        let imperfections = imperfections.filter_map(|one| one.candidate(bench));
-        let signal_effects = members().chain(imperfections).filter_map(|candidate| {
+        let signal_effects = members().chain(bench.imperfect_candidates());
+        let signal_effects = signal_effects.filter_map(|candidate| {
             let acts = match candidate.acts {
                 Acts::Items | Acts::Parameter(_) => return None,
                 Acts::Lag(_) => "lag",

@@ -2,82 +2,17 @@
 //! to nobody. Such names no cause, and no hypothesis may lead because it bends to one. So they are fitted beside every
 //! hypothesis, the nominal model included.
 
-use appell_estimate::{Coordinate, Estimation, Free, Setup, Unknown};
+use appell_estimate::Estimation;
 
 use super::DiagnoseError;
-use super::alternative::columns;
 use super::bench::Bench;
 use super::budget;
 use super::calibration::IMMATERIAL;
 use super::evidence::Fitted;
 use super::held_out::{ORIGINS, horizon};
 use super::horizon::Judged;
+use super::imperfection::Imperfection;
 use super::prediction::{errors, noise};
-use crate::effects::{Acts, Candidate};
-
-/// An imperfection of a channel.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Imperfection {
-    /// How it acts.
-    pub(super) acts: Acts,
-    /// What was found beside the best hypothesis.
-    found: f64,
-}
-
-impl Imperfection {
-    /// What is free of it. It is expected to be no larger than it was found: beside a wrong model it would imitate what
-    /// that lacks.
-    pub(super) fn free(&self, bench: &Bench<'_>, setup: &Setup<'_>) -> Option<Free> {
-        let free = bench.of_signal(self.acts, setup)?;
-        Some(match free.coordinate {
-            Coordinate::Plain => {
-                let perfect = perfect(free.unknown);
-                free.around(perfect, (self.found - perfect).abs())
-            }
-            Coordinate::Logarithm => free.around(self.found, 1.0),
-        })
-    }
-
-    /// The effect that it is among those of a bench.
-    pub(super) fn candidate<'b>(&self, bench: &'b Bench<'_>) -> Option<&'b Candidate> {
-        let mut candidates = bench.effects.candidates.iter();
-        candidates.find(|candidate| candidate.acts == self.acts)
-    }
-}
-
-/// The value of a perfect channel.
-fn perfect(unknown: Unknown) -> f64 {
-    if matches!(unknown, Unknown::Scale(_)) {
-        1.0
-    } else {
-        0.0
-    }
-}
-
-impl Bench<'_> {
-    /// Makes the channels of a fit perfect, but for what its members do.
-    pub(super) fn perfected(&self, fitted: &mut Fitted) -> Result<(), DiagnoseError> {
-        let setup = self.setup(&fitted.members);
-        for imperfection in &self.imperfections {
-            if let Some(free) = imperfection.free(self, &setup) {
-                let place = fitted.layout.place(free.unknown)?;
-                fitted.fit.values[place] = perfect(free.unknown).max(free.range[0]);
-            }
-        }
-        Ok(())
-    }
-
-    /// The same imperfections of another model, whose channels have these columns.
-    pub(super) fn imperfections_of(&self, channels: &[String]) -> Vec<Imperfection> {
-        let own = columns(self);
-        let place = |channel: usize| channels.iter().position(|column| *column == own[channel]);
-        let moved = self.imperfections.iter().filter_map(|one| {
-            let acts = one.acts.moved(place)?;
-            Some(Imperfection { acts, ..*one })
-        });
-        moved.collect()
-    }
-}
 
 /// Those imperfections beside forces of the leading hypothesis that close less of the gap of their channels than the
 /// tolerance, in predictions of the runs that were fitted. One that stands alone is all there is of the gap.

@@ -13,6 +13,7 @@ mod html;
 mod latex;
 mod lexicon;
 mod sections;
+mod sources;
 mod text;
 mod text_box;
 mod units;
@@ -21,8 +22,9 @@ mod writer;
 use appell_spec::mechanism::Mechanism;
 
 pub use content::{Block, Chain, Page, Row, Section, Span, Stage, Table};
-pub use html::html;
+pub use html::{EQUATIONS, clickable, html};
 pub use latex::latex;
+pub use sources::{About, locate};
 pub use text::text;
 
 pub use appell_codegen::symbolic::print::{Letter, Math};

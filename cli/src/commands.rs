@@ -21,6 +21,7 @@ mod schema;
 mod simulate;
 mod stability;
 mod steady;
+mod watch;
 
 use crate::failure::Error;
 
@@ -58,6 +59,7 @@ pub(crate) enum Command {
     Demo(demo::Demo),
     Reproduce(reproduce::Reproduce),
     Schema(schema::Schema),
+    Watch(watch::Watch),
     Lsp(lsp::Lsp),
     Completions(completions::Completions),
 }
@@ -84,6 +86,7 @@ pub(crate) fn run(command: Command) -> Result<(), Error> {
         Command::Demo(command) => command.run(),
         Command::Reproduce(command) => command.run(),
         Command::Schema(command) => command.run(),
+        Command::Watch(command) => command.run(),
         Command::Lsp(lsp::Lsp {}) => lsp::run(),
         Command::Completions(command) => command.run(),
     }

@@ -1,0 +1,69 @@
+//! What can be set on the page: parameters, the initial state, inputs, in the units of the spec.
+
+use appell::{ModelInfo, Quantity};
+use serde_json::{Value, json};
+
+/// A slider of a quantity without limits goes to this multiple of its value.
+const WIDE: f64 = 2.0;
+
+/// The sliders of a model.
+pub(crate) fn knobs(info: &ModelInfo) -> Value {
+    let declared = &info.inputs[..info.declared_inputs];
+    json!({
+        "parameters": all(&info.parameters),
+        "initial": all(&info.states),
+        "inputs": all(declared),
+    })
+}
+
+fn all(quantities: &[Quantity]) -> Vec<Value> {
+    quantities.iter().map(knob).collect()
+}
+
+fn knob(quantity: &Quantity) -> Value {
+    let unit = |si: f64| si / quantity.scale;
+    let value = unit(quantity.value);
+    let [least, most] = quantity.range.map(unit);
+    let [low, high] = reach(value, [least, most], &quantity.unit);
+    let limit = |limit: f64| limit.is_finite().then_some(limit);
+    json!({
+        "name": quantity.name,
+        "about": quantity.about,
+        "unit": quantity.unit,
+        "value": value,
+        "low": low,
+        "high": high,
+        "least": limit(least),
+        "most": limit(most),
+    })
+}
+
+/// From where to where a slider goes: to the limits where there are any.
+fn reach(value: f64, [least, most]: [f64; 2], unit: &str) -> [f64; 2] {
+    let width = match unit {
+        "rad" => std::f64::consts::PI,
+        "deg" => 180.0,
+        _ if value == 0.0 => 10.0,
+        _ => WIDE * value.abs(),
+    };
+    let width = width.max(value.abs());
+    let low = if least.is_finite() { least } else { -width };
+    let high = if most.is_finite() { most } else { width };
+    // A limit may lie beyond what the other end reaches.
+    [low.min(value), high.max(value).max(low)]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_slider_goes_to_the_limits_or_around_its_value() {
+        let everywhere = [f64::NEG_INFINITY, f64::INFINITY];
+        assert_eq!(reach(3.0, [0.0, f64::INFINITY], "kg"), [0.0, 6.0]);
+        assert_eq!(reach(0.2, [-1.5, 1.5], "rad"), [-1.5, 1.5]);
+        assert_eq!(reach(0.0, everywhere, "m/s"), [-10.0, 10.0]);
+        assert_eq!(reach(-200.0, everywhere, "deg"), [-200.0, 200.0]);
+        assert_eq!(reach(50.0, [f64::NEG_INFINITY, 20.0], "m"), [-100.0, 50.0]);
+    }
+}

@@ -1,1 +1,8 @@
-fn main() {}
+//! The server of a live page, over plain sockets.
+
+mod client;
+
+mod access;
+mod hostile;
+mod motions;
+mod saving;

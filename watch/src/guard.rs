@@ -18,7 +18,9 @@ impl Guard {
     pub(crate) fn new(port: u16) -> Result<Self, getrandom::Error> {
         let mut bytes = [0; SECRET];
         getrandom::fill(&mut bytes)?;
-        let token = bytes.iter().map(|byte| format!("{byte:02x}")).collect();
+        let digits = bytes.iter().flat_map(|byte| [byte >> 4, byte & 15]);
+        let token = digits.filter_map(|digit| char::from_digit(digit.into(), 16));
+        let token = token.collect();
         Ok(Self { token, port })
     }
 

@@ -1,7 +1,7 @@
 //! A page on the loopback address that follows a spec while it is being written.
 //!
 //! ```text
-//! file --> text --worker--> findings, equations, drawing, model --> board --server--> page
+//! file --> text --worker--> findings, equations, drawing, model --board--> page
 //!                                                          \--motions--<--values of sliders--/
 //! ```
 //!
@@ -62,9 +62,9 @@ impl Watch {
     /// Follows a spec and listens on a port of the loopback address; 0 is any free one.
     pub fn start(spec: &Path, port: u16) -> Result<Self, Error> {
         // Another kind of file could keep a reader waiting.
-        let is_file = std::fs::metadata(spec).and_then(|about| match about.is_file() {
-            true => Ok(()),
-            false => Err(std::io::Error::other("this is no file")),
+        let is_file = std::fs::metadata(spec).and_then(|about| {
+            let no_file = || std::io::Error::other("this is no file");
+            about.is_file().then_some(()).ok_or_else(no_file)
         });
         is_file.map_err(|cause| Error::File {
             path: spec.to_owned(),

@@ -10,7 +10,7 @@ use appell_watch::Watch;
 use serde_json::Value;
 
 /// Whoever says nothing for so long will not say anything.
-const PATIENCE: Duration = Duration::from_secs(60);
+const PATIENCE: Duration = Duration::from_mins(1);
 
 static NEXT: AtomicU32 = AtomicU32::new(0);
 

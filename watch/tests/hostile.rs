@@ -8,7 +8,7 @@ use serde_json::json;
 use crate::client::{Served, shipped};
 
 /// Longer than anything that is bounded takes in an unoptimised build.
-const LONG: Duration = Duration::from_secs(60);
+const LONG: Duration = Duration::from_mins(1);
 
 /// Saves a text, asks meanwhile, and then saves a good one.
 fn survives(text: &str) {

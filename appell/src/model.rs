@@ -86,9 +86,10 @@ impl Model {
         })
     }
 
-    /// The model of a derivation that is there already, as machine code; `derived` is that of the source.
-    pub fn from_derived(source: Source, derived: Derived) -> Result<Self, Error> {
-        let program = derived.program(&source.text, &FunctionKind::STANDARD)?;
+    /// The model of a derivation that is there already, for motions as machine code; `derived` is that of
+    /// the source. Whatever needs derivatives of the equations panics: steady motions, gains, evaluation.
+    pub fn of_motions(source: Source, derived: Derived) -> Result<Self, Error> {
+        let program = derived.program(&source.text, &FunctionKind::OF_MOTIONS)?;
         Ok(Self {
             source,
             equations: engine::Equations::of(program, Engine::Jit),

@@ -52,6 +52,17 @@ pub fn page(
     })
 }
 
+/// Writes what the derivation of a mechanism ends with: the equations of motion alone. Quantities that
+/// a [`page`] has defined before have their letters.
+pub fn equations_of_motion(mechanism: &Mechanism, derivation: &mut Derivation) -> Page {
+    let mut writer = Writer::new(mechanism, derivation);
+    Page {
+        title: mechanism.title.clone(),
+        source: mechanism.source.clone(),
+        sections: sections::equations_of_motion(&mut writer),
+    }
+}
+
 /// Writes the linear equations about a steady motion of a mechanism, with their characteristic
 /// polynomial; see [`Linearisation::about`].
 pub fn linear(mechanism: &Mechanism, derivation: &mut Derivation, linear: &Linearisation) -> Page {

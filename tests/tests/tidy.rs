@@ -63,7 +63,13 @@ const MAY_KNOW: &[(&str, &[&str])] = &[
     ("lsp", &["appell-spec", "appell-codegen"]),
     (
         "watch",
-        &["appell", "appell-spec", "appell-codegen", "appell-report"],
+        &[
+            "appell",
+            "appell-spec",
+            "appell-codegen",
+            "appell-report",
+            "appell-runtime",
+        ],
     ),
     (
         "papers",

@@ -13,8 +13,10 @@ pub(crate) enum Part {
     Text,
     /// Errors, warnings and notes.
     Findings,
-    /// Equations with the lines that they depend on.
+    /// The equations of motion with the lines that they depend on.
     Equations,
+    /// The derivation up to them.
+    Derivation,
     /// The mechanism at its initial state.
     Drawing,
     /// That there is a model for motions, with its sliders.
@@ -27,6 +29,7 @@ impl Part {
             Self::Text => "text",
             Self::Findings => "findings",
             Self::Equations => "equations",
+            Self::Derivation => "derivation",
             Self::Drawing => "drawing",
             Self::Model => "model",
         }

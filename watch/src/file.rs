@@ -5,6 +5,7 @@ use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::thread;
 use std::time::{Duration, SystemTime};
 
+use crate::worker::Inbox;
 use appell_spec::limits::MAX_FILE;
 use notify::event::{AccessKind, AccessMode, EventKind};
 use notify::{RecommendedWatcher, RecursiveMode, Watcher};
@@ -20,7 +21,7 @@ const LOOK: Duration = Duration::from_millis(500);
 pub(crate) type Text = Result<String, String>;
 
 /// Sends the text now and whenever it changes, until nobody wants it.
-pub(crate) fn follow(path: &Path, texts: Sender<Text>) -> std::io::Result<()> {
+pub(crate) fn follow(path: &Path, texts: Inbox) -> std::io::Result<()> {
     let path = path.to_owned();
     let (tell, told) = channel();
     let watcher = watcher(&path, tell.clone());
@@ -61,7 +62,7 @@ fn watcher(path: &Path, tell: Sender<()>) -> Option<RecommendedWatcher> {
     Some(watcher)
 }
 
-fn read_again(path: &Path, told: &Receiver<()>, texts: &Sender<Text>) {
+fn read_again(path: &Path, told: &Receiver<()>, texts: &Inbox) {
     let mut last = None;
     let mut seen = None;
     loop {
@@ -73,7 +74,7 @@ fn read_again(path: &Path, told: &Receiver<()>, texts: &Sender<Text>) {
         }
         if last.as_ref() != Some(&text) {
             last = Some(text.clone());
-            if texts.send(text).is_err() {
+            if !texts.put(text) {
                 return;
             }
         }

@@ -3,7 +3,7 @@
 use maud::{Markup, PreEscaped, html as markup};
 
 use super::display::{Equation, Piece, left_width};
-use super::{Block, Chain, Page, Span, Table};
+use super::{Block, Chain, Page, Section, Span, Table};
 use crate::page_shell::PageShell;
 use appell_codegen::symbolic::print::mathml::{TIMES, mathml, sign};
 use appell_codegen::symbolic::print::{Math, clean};
@@ -40,18 +40,14 @@ pub fn html(page: &Page) -> String {
 /// Style of the equations and tables of a page.
 pub const EQUATIONS: &str = include_str!("equations.css");
 
-/// The sections of a page, to stand in a page around them. Equations and rows of tables tell the lines of the spec that they
-/// depend on, as `data-lines`, and can be chosen.
-pub fn clickable(page: &Page) -> String {
-    let sections = page.sections.iter().map(|section| {
-        markup! {
-            section {
-                h2 { (spans(&section.heading)) }
-                @for block in &section.blocks { (shown(block, Use::Choosing)) "\n" }
-            }
-        }
-    });
-    sections.map(Markup::into_string).collect()
+/// A section to stand in a page around it. Equations and rows of tables tell the lines of the spec that
+/// they depend on, as `data-lines`, and can be chosen.
+pub fn clickable(section: &Section) -> String {
+    let markup = markup! {
+        h2 { (spans(&section.heading)) }
+        @for block in &section.blocks { (shown(block, Use::Choosing)) "\n" }
+    };
+    markup.into_string()
 }
 
 /// What a page is for.

@@ -147,8 +147,18 @@ impl Sources<'_> {
             }
             About::Rate(coordinate) => self.rate(coordinate, lines),
             About::Load(load) => self.load(load, lines),
-            About::Inertia(i, j) => self.bodies_where(|moves| moves[i] && moves[j], lines),
-            About::Force(i) => self.loads_where(|enters| enters[i], lines),
+            About::Inertia(i, j) => {
+                self.bodies_where(|moves| moves[i] && moves[j], lines);
+                let gibbs = &self.derivation.gibbs;
+                self.symbols_in(
+                    &[gibbs.mass_matrix[i][j], gibbs.bias[i], gibbs.bias[j]],
+                    lines,
+                );
+            }
+            About::Force(i) => {
+                self.loads_where(|enters| enters[i], lines);
+                self.symbols_in(&[self.derivation.forces[i]], lines);
+            }
             About::Motion(i) => {
                 for j in self.solved_with(i) {
                     self.subject(About::Inertia(j, j), lines);
@@ -170,6 +180,25 @@ impl Sources<'_> {
         speeds
             .find(|speeds: &Vec<usize>| speeds.contains(&speed))
             .unwrap_or_default()
+    }
+
+    /// The quantities whose symbols occur in expressions.
+    fn symbols_in(&self, all: &[Expr], lines: &mut BTreeSet<usize>) {
+        let graph = &self.derivation.algebra.graph;
+        let symbols = &self.derivation.symbols;
+        let mechanism = self.mechanism;
+        let quantities = (mechanism.parameters.iter().map(|p| p.label.line))
+            .zip(&symbols.parameters)
+            .chain((mechanism.coordinates.iter().map(|q| q.label.line)).zip(&symbols.coordinates))
+            .chain((mechanism.pseudo_velocities.iter().map(|w| w.label.line)).zip(&symbols.speeds))
+            .chain((mechanism.inputs.iter().map(|u| u.label.line)).zip(&symbols.inputs));
+        let symbols =
+            quantities.filter_map(|(line, &symbol)| Some((line, graph.as_symbol(symbol)?)));
+        for (line, symbol) in symbols {
+            if all.iter().any(|&expr| graph.mentions(expr, &[symbol])) {
+                lines.insert(line);
+            }
+        }
     }
 
     fn bodies_where(&self, wanted: impl Fn(&[bool]) -> bool, lines: &mut BTreeSet<usize>) {

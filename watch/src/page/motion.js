@@ -66,7 +66,13 @@ class Motion {
     if (this.parts && parts !== this.parts) this.load();
     this.parts = parts;
     if (this.ready) this.send();
-    at("plots").querySelector("img").src = imageOf(figure);
+    this.figure = figure;
+    this.plot();
+  }
+
+  /** Plots take time to set; where nobody looks there are none. */
+  plot() {
+    if (this.figure && !at("plots").hidden) at("plots").querySelector("img").src = imageOf(this.figure);
   }
 
   send() {

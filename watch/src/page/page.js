@@ -59,6 +59,9 @@ const shows = {
   equations(part) {
     equations.show(part);
   },
+  derivation(part) {
+    equations.derive(part);
+  },
   drawing({ svg }) {
     at("drawing").querySelector("img").src = imageOf(svg);
   },
@@ -80,6 +83,7 @@ function open(name) {
     at(tab.getAttribute("aria-controls")).hidden = !is;
   }
   at("section").hidden = name !== "equations";
+  motion.plot();
 }
 
 at("tabs").addEventListener("click", ({ target }) => {

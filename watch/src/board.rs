@@ -15,7 +15,7 @@ pub(crate) enum Part {
     Findings,
     /// The equations of motion with the lines that they depend on.
     Equations,
-    /// The derivation up to them.
+    /// The whole derivation, where somebody wants to read it.
     Derivation,
     /// The mechanism at its initial state.
     Drawing,

@@ -29,6 +29,7 @@ use std::sync::Arc;
 use board::Board;
 use guard::Guard;
 use motions::Motions;
+use worker::Inbox;
 
 /// Why a page cannot be served.
 #[derive(Debug, thiserror::Error)]
@@ -56,6 +57,7 @@ pub struct Watch {
     guard: Guard,
     board: Arc<Board>,
     motions: Arc<Motions>,
+    inbox: Inbox,
 }
 
 impl Watch {
@@ -75,13 +77,14 @@ impl Watch {
         let guard = Guard::new(listener.local_addr()?.port()).map_err(Error::Secret)?;
         let board = Arc::new(Board::default());
         let motions = Motions::start(&board)?;
-        let texts = worker::start(spec, &board)?;
-        file::follow(spec, texts)?;
+        let inbox = worker::start(spec, &board)?;
+        file::follow(spec, inbox.clone())?;
         Ok(Self {
             listener,
             guard,
             board,
             motions,
+            inbox,
         })
     }
 
@@ -102,6 +105,7 @@ impl Watch {
             self.guard,
             self.board,
             self.motions,
+            self.inbox,
         )?)
     }
 }

@@ -26,6 +26,7 @@ use tokio::sync::Semaphore;
 use crate::board::Board;
 use crate::guard::Guard;
 use crate::motions::{Motions, Refusal};
+use crate::worker::Inbox;
 
 /// Bytes of a request.
 const LARGEST: usize = 64 << 10;
@@ -58,6 +59,7 @@ struct Shared {
     guard: Guard,
     board: Arc<Board>,
     motions: Arc<Motions>,
+    inbox: Inbox,
     windows: Arc<Semaphore>,
 }
 
@@ -67,11 +69,13 @@ pub(crate) fn serve(
     guard: Guard,
     board: Arc<Board>,
     motions: Arc<Motions>,
+    inbox: Inbox,
 ) -> std::io::Result<()> {
     let shared = Shared {
         guard,
         board,
         motions,
+        inbox,
         windows: Arc::new(Semaphore::new(MOST_WINDOWS)),
     };
     let routes = Router::new()
@@ -82,6 +86,7 @@ pub(crate) fn serve(
         .route("/{token}/state", get(state))
         .route("/{token}/events", get(events))
         .route("/{token}/motion", post(motion))
+        .route("/{token}/derivation", post(derivation))
         .layer(DefaultBodyLimit::max(LARGEST))
         .layer(middleware::from_fn_with_state(shared.clone(), guarded))
         .with_state(shared);
@@ -200,6 +205,12 @@ fn changes(board: &Arc<Board>) -> impl Stream<Item = Result<Event, Infallible>> 
             news.changed().await.ok()?;
         }
     })
+}
+
+/// Has the derivation written; it comes as an event.
+async fn derivation(State(shared): State<Shared>) -> StatusCode {
+    shared.inbox.want_derivation();
+    StatusCode::ACCEPTED
 }
 
 async fn motion(State(shared): State<Shared>, body: Bytes) -> Response {

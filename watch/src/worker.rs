@@ -4,7 +4,6 @@
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::thread;
 
@@ -24,60 +23,86 @@ use crate::places::Places;
 /// As much as the command line has on its main thread.
 const STACK: usize = 8 << 20;
 
-/// Where texts are put.
-pub(crate) struct Inbox {
-    texts: Sender<Text>,
-    newest: Arc<AtomicU64>,
+/// Where texts are put, and wishes.
+#[derive(Clone)]
+pub(crate) struct Inbox(Sender<Message>);
+
+enum Message {
+    Text(Text),
+    /// Somebody wants to read the whole derivation of the last good text.
+    Derivation,
 }
 
 impl Inbox {
     /// Puts a text; false when nobody reads any more.
     pub(crate) fn put(&self, text: Text) -> bool {
-        self.newest.fetch_add(1, Ordering::Relaxed);
-        self.texts.send(text).is_ok()
+        self.0.send(Message::Text(text)).is_ok()
+    }
+
+    /// Asks for the derivation, which becomes a part of the board.
+    pub(crate) fn want_derivation(&self) {
+        // Nobody reads any more when the thread could not go on.
+        let _ = self.0.send(Message::Derivation);
     }
 }
 
-/// Starts the thread; it ends when nobody puts texts any more.
+/// Starts the thread.
 pub(crate) fn start(spec: &Path, board: &Arc<Board>) -> std::io::Result<Inbox> {
     let name = spec.file_name().unwrap_or(spec.as_os_str());
     let file = name.to_string_lossy().into_owned();
     let board = Arc::clone(board);
-    let (send, texts) = channel();
-    let inbox = Inbox {
-        texts: send,
-        newest: Arc::default(),
-    };
-    let newest = Arc::clone(&inbox.newest);
-    let work = move || work(&file, &texts, &newest, &board);
+    let (send, messages) = channel();
+    let work = move || work(&file, &messages, &board);
     thread::Builder::new()
         .name("derivation".to_owned())
         .stack_size(STACK)
         .spawn(work)?;
-    Ok(inbox)
+    Ok(Inbox(send))
 }
 
-fn work(file: &str, texts: &Receiver<Text>, newest: &AtomicU64, board: &Board) {
+/// The last good text, until its derivation has been written.
+struct Unread {
+    version: u64,
+    derived: Derived,
+}
+
+fn work(file: &str, messages: &Receiver<Message>, board: &Board) {
     let mut version = 0;
-    while let Ok(first) = texts.recv() {
-        version += 1;
-        let mut text = first;
-        for newer in texts.try_iter() {
-            version += 1;
-            text = newer;
+    let mut unread = None;
+    while let Ok(first) = messages.recv() {
+        let mut newest = None;
+        let mut wanted = false;
+        for message in std::iter::once(first).chain(messages.try_iter()) {
+            match message {
+                Message::Text(text) => {
+                    version += 1;
+                    newest = Some(text);
+                }
+                Message::Derivation => wanted = true,
+            }
         }
-        let job = Job {
+        let job = |version| Job {
             file,
             version,
-            newest,
             board,
         };
-        let done = catch_unwind(AssertUnwindSafe(|| match &text {
-            Ok(text) => job.show(text),
-            Err(reason) => job.refuse(reason),
-        }));
-        if done.is_err() {
-            job.refuse("a mistake in appell: this text cannot be derived");
+        if let Some(text) = newest {
+            let job = job(version);
+            let derived = job.guarded(|| match &text {
+                Ok(text) => job.show(text),
+                Err(reason) => {
+                    job.refuse(reason);
+                    None
+                }
+            });
+            let derived = derived.flatten();
+            unread = derived
+                .map(|derived| Unread { version, derived })
+                .or(unread);
+        }
+        if wanted && let Some(Unread { version, derived }) = unread.take() {
+            let job = job(version);
+            job.guarded(|| job.derivation(derived));
         }
     }
 }
@@ -86,8 +111,6 @@ fn work(file: &str, texts: &Receiver<Text>, newest: &AtomicU64, board: &Board) {
 struct Job<'a> {
     file: &'a str,
     version: u64,
-    /// The number of the newest text.
-    newest: &'a AtomicU64,
     board: &'a Board,
 }
 
@@ -103,19 +126,32 @@ impl Job<'_> {
         self.write(Part::Findings, json!({ "broken": true, "list": [finding] }));
     }
 
-    fn show(&self, text: &str) {
+    /// A mistake in the derivation ends neither the thread nor the page.
+    fn guarded<R>(&self, work: impl FnOnce() -> R) -> Option<R> {
+        let done = catch_unwind(AssertUnwindSafe(work));
+        if done.is_err() {
+            self.refuse("a mistake in appell: this text cannot be derived");
+        }
+        done.ok()
+    }
+
+    /// Shows a text; its derivation, if there is one.
+    fn show(&self, text: &str) -> Option<Derived> {
         let items = Places::new(text).items();
         let shown = json!({ "file": self.file, "text": text, "items": items });
         self.write(Part::Text, shown);
         match derived(self.file, text) {
-            Ok(derived) => self.show_derived(text, derived),
-            Err(report) => self.findings(text, report.diagnostics(), true),
+            Ok(derived) => Some(self.show_derived(text, derived)),
+            Err(report) => {
+                self.findings(text, report.diagnostics(), true);
+                None
+            }
         }
     }
 
     /// The model on this thread, what is there to read on another; then what takes longer than the rest is
     /// worth waiting for.
-    fn show_derived(&self, text: &str, derived: Derived) {
+    fn show_derived(&self, text: &str, derived: Derived) -> Derived {
         self.findings(text, &derived.warnings, false);
         let mut copy = derived.clone();
         thread::scope(|scope| {
@@ -128,10 +164,7 @@ impl Job<'_> {
             }
         });
         self.audit(text, &mut copy);
-        // Whoever has saved again does not wait.
-        if self.newest.load(Ordering::Relaxed) == self.version {
-            self.derivation(&mut copy);
-        }
+        copy
     }
 
     fn findings(&self, text: &str, findings: &[Diagnostic], broken: bool) {
@@ -150,10 +183,11 @@ impl Job<'_> {
         }
     }
 
-    fn derivation(&self, derived: &mut Derived) {
+    /// From the frames to the energies.
+    fn derivation(&self, mut derived: Derived) {
         let (mechanism, derivation) = (&derived.mechanism, &mut derived.derivation);
         if let Ok(page) = derivation::page(mechanism, derivation, Stage::Equations) {
-            self.sections(Part::Derivation, page, derived);
+            self.sections(Part::Derivation, page, &mut derived);
         }
     }
 

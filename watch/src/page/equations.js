@@ -2,98 +2,94 @@
 
 class Equations {
   constructor(choose) {
-    this.panel = at("equations");
     /** The newest text of each section. */
     this.texts = new Map();
-    this.chosen = { lines: new Set(), only: null };
+    this.lines = new Set();
+    this.panels = [at("equations"), at("derivation")];
+    for (const panel of this.panels) this.listen(panel, choose);
+    at("section").addEventListener("change", ({ target }) => {
+      at(`derivation-${target.value}`)?.scrollIntoView({ block: "start" });
+    });
+  }
+
+  listen(panel, choose) {
     const chosen = ({ target }) => {
       const row = target.closest("[data-lines]");
       if (row) choose(linesOf(row), row);
     };
-    this.panel.addEventListener("click", chosen);
-    this.panel.addEventListener("keydown", (event) => {
+    panel.addEventListener("click", chosen);
+    panel.addEventListener("keydown", (event) => {
       if (event.key !== "Enter" && event.key !== " ") return;
       event.preventDefault();
       chosen(event);
     });
-    at("section").addEventListener("change", ({ target }) => {
-      this.headings()[target.value]?.scrollIntoView({ block: "start" });
-    });
   }
 
-  headings() {
-    return [...this.panel.querySelectorAll("h2")];
-  }
-
-  /** What a spec is written for comes first and at once. */
+  /** What a spec is written for comes at once. */
   show({ sections }) {
-    this.place("motion", sections);
-    this.list();
+    sections.forEach((section, index) => this.put("equations", index, section));
   }
 
-  /** The rest is long; it comes while nothing else is to be done. */
+  /** The derivation may be long; it comes while nothing else is to be done. */
   derive({ sections, version }) {
     this.version = version;
-    const motion = this.texts.get("motion-0")?.split("</h2>")[0];
-    const rest = sections.filter((section) => section.split("</h2>")[0] !== motion);
     const next = (index) => {
       if (this.version !== version) return;
-      if (index < rest.length) {
-        this.put(`derivation-${index}`, rest[index]);
+      if (index === sections.length) this.list(index);
+      else {
+        this.put("derivation", index, sections[index]);
         requestIdleCallback(() => next(index + 1), { timeout: 500 });
-        return;
       }
-      this.drop("derivation", rest.length);
-      this.list();
     };
-    requestIdleCallback(() => next(0), { timeout: 500 });
-  }
-
-  place(name, sections) {
-    sections.forEach((section, index) => this.put(`${name}-${index}`, section));
-    this.drop(name, sections.length);
+    next(0);
   }
 
   /** A section that says the same stays as it is. */
-  put(id, text) {
+  put(panel, index, text) {
+    const id = `${panel}-${index}`;
     if (this.texts.get(id) === text) return;
     this.texts.set(id, text);
-    const section = at(id) ?? Object.assign(element(this.panel, "section"), { id });
+    const section = at(id) ?? Object.assign(element(at(panel), "section"), { id });
     section.innerHTML = text;
     for (const row of section.querySelectorAll("[data-lines]")) {
       // An equation of several lines is one stop of the keyboard.
       if (row.matches("tr, .first")) row.tabIndex = 0;
     }
-    this.mark(this.chosen.lines, { within: section });
+    this.mark(this.lines, { within: section });
   }
 
-  drop(name, count) {
-    for (let index = count; at(`${name}-${index}`); index += 1) {
-      at(`${name}-${index}`).remove();
-      this.texts.delete(`${name}-${index}`);
+  /** The headings of the derivation, to go to. */
+  list(count) {
+    for (let index = count; at(`derivation-${index}`); index += 1) {
+      at(`derivation-${index}`).remove();
+      this.texts.delete(`derivation-${index}`);
     }
-  }
-
-  list() {
     const { value } = at("section");
-    const options = this.headings().map((heading, index) => new Option(heading.textContent, index));
+    const headings = [...at("derivation").querySelectorAll("h2")];
+    const options = headings.map((heading, index) => new Option(heading.textContent, index));
     at("section").replaceChildren(...options);
-    at("section").value = at("section").options[value] ? value : 0;
+    at("section").value = options[value] ? value : 0;
   }
 
-  /** Marks the equations that depend on one of these lines, or one with all its lines. */
-  mark(lines, { only = null, scroll = false, within = this.panel } = {}) {
-    this.chosen.lines = only ? new Set() : lines;
-    const depends = (row) => linesOf(row).some((line) => lines.has(line));
+  /** Marks the equations that depend on one of these lines, or one with all its lines. Tells how many. */
+  mark(lines, { only = null, scroll = false, within = at("shown") } = {}) {
+    this.lines = only ? new Set() : lines;
     const own = only && sameAs(only);
     const chosen = [];
     for (const row of within.querySelectorAll("[data-lines]")) {
-      const is = own ? own.includes(row) : depends(row);
+      const is = own ? own.includes(row) : linesOf(row).some((line) => lines.has(line));
       row.classList.toggle("chosen", is);
       if (is) chosen.push(row);
     }
-    if (scroll && !chosen.some((row) => isSeen(row, this.panel))) chosen[0]?.scrollIntoView({ block: "nearest" });
+    if (scroll) this.scrollTo(chosen);
     return chosen.filter((row) => row.matches("mtr.first")).length;
+  }
+
+  /** Shows one of these in the panel that is open, unless one is seen already. */
+  scrollTo(rows) {
+    const panel = this.panels.find(({ hidden }) => !hidden);
+    const here = rows.filter((row) => panel?.contains(row));
+    if (here.length && !here.some((row) => isSeen(row, panel))) here[0].scrollIntoView({ block: "nearest" });
   }
 }
 

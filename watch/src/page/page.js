@@ -17,7 +17,7 @@ const motion = new Motion(
     seen.motion.number = number;
   },
 );
-const state = { text: 0, model: 0, broken: false, errors: 0 };
+const state = { text: 0, model: 0, asked: 0, broken: false, errors: 0 };
 
 function chooseLine(line) {
   const first = [...spec.items].find(([from, to]) => from <= line && line <= to)?.[0] ?? line;
@@ -67,12 +67,20 @@ const shows = {
   },
   model({ title, version, knobs, note }) {
     state.model = version;
+    read();
     at("title").textContent = title;
     at("title").title = note ?? "";
     sliders.show(knobs);
     motion.ask();
   },
 };
+
+/** Asks for the derivation of the newest model where somebody reads it; the rest does not wait for it. */
+function read() {
+  if (at("derivation").hidden || state.asked === state.model) return;
+  state.asked = state.model;
+  fetch("derivation", { method: "POST" }).catch(() => (state.asked = 0));
+}
 
 /** Shows the panel of a tab. */
 function open(name) {
@@ -82,8 +90,9 @@ function open(name) {
     tab.tabIndex = is ? 0 : -1;
     at(tab.getAttribute("aria-controls")).hidden = !is;
   }
-  at("section").hidden = name !== "equations";
+  at("section").hidden = name !== "derivation";
   motion.plot();
+  read();
 }
 
 at("tabs").addEventListener("click", ({ target }) => {

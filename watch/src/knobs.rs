@@ -10,21 +10,28 @@ const WIDE: f64 = 2.0;
 pub(crate) fn knobs(info: &ModelInfo) -> Value {
     let declared = &info.inputs[..info.declared_inputs];
     json!({
-        "parameters": all(&info.parameters),
-        "initial": all(&info.states),
-        "inputs": all(declared),
+        "parameters": all(&info.parameters, Sign::Kept),
+        "initial": all(&info.states, Sign::Any),
+        "inputs": all(declared, Sign::Any),
     })
 }
 
-fn all(quantities: &[Quantity]) -> Vec<Value> {
-    quantities.iter().map(knob).collect()
+/// The derivation relies on the sign of a parameter, unless its limits admit both.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Sign {
+    Kept,
+    Any,
 }
 
-fn knob(quantity: &Quantity) -> Value {
+fn all(quantities: &[Quantity], sign: Sign) -> Vec<Value> {
+    quantities.iter().map(|q| knob(q, sign)).collect()
+}
+
+fn knob(quantity: &Quantity, sign: Sign) -> Value {
     let unit = |si: f64| si / quantity.scale;
     let value = unit(quantity.value);
     let [least, most] = quantity.range.map(unit);
-    let [low, high] = reach(value, [least, most], &quantity.unit);
+    let [low, high] = reach(value, [least, most], &quantity.unit, sign);
     let limit = |limit: f64| limit.is_finite().then_some(limit);
     json!({
         "name": quantity.name,
@@ -39,7 +46,7 @@ fn knob(quantity: &Quantity) -> Value {
 }
 
 /// From where to where a slider goes: to the limits where there are any.
-fn reach(value: f64, [least, most]: [f64; 2], unit: &str) -> [f64; 2] {
+fn reach(value: f64, [least, most]: [f64; 2], unit: &str, sign: Sign) -> [f64; 2] {
     let width = match unit {
         "rad" => std::f64::consts::PI,
         "deg" => 180.0,
@@ -47,8 +54,23 @@ fn reach(value: f64, [least, most]: [f64; 2], unit: &str) -> [f64; 2] {
         _ => WIDE * value.abs(),
     };
     let width = width.max(value.abs());
-    let low = if least.is_finite() { least } else { -width };
-    let high = if most.is_finite() { most } else { width };
+    let beyond = |other: bool| {
+        if sign == Sign::Kept && other {
+            0.0
+        } else {
+            width
+        }
+    };
+    let low = if least.is_finite() {
+        least
+    } else {
+        -beyond(value > 0.0)
+    };
+    let high = if most.is_finite() {
+        most
+    } else {
+        beyond(value < 0.0)
+    };
     // A limit may lie beyond what the other end reaches.
     [low.min(value), high.max(value).max(low)]
 }
@@ -60,10 +82,15 @@ mod tests {
     #[test]
     fn a_slider_goes_to_the_limits_or_around_its_value() {
         let everywhere = [f64::NEG_INFINITY, f64::INFINITY];
-        assert_eq!(reach(3.0, [0.0, f64::INFINITY], "kg"), [0.0, 6.0]);
-        assert_eq!(reach(0.2, [-1.5, 1.5], "rad"), [-1.5, 1.5]);
-        assert_eq!(reach(0.0, everywhere, "m/s"), [-10.0, 10.0]);
-        assert_eq!(reach(-200.0, everywhere, "deg"), [-200.0, 200.0]);
-        assert_eq!(reach(50.0, [f64::NEG_INFINITY, 20.0], "m"), [-100.0, 50.0]);
+        let any = |value, limits, unit| reach(value, limits, unit, Sign::Any);
+        assert_eq!(any(3.0, [0.0, f64::INFINITY], "kg"), [0.0, 6.0]);
+        assert_eq!(any(0.2, [-1.5, 1.5], "rad"), [-1.5, 1.5]);
+        assert_eq!(any(0.0, everywhere, "m/s"), [-10.0, 10.0]);
+        assert_eq!(any(-200.0, everywhere, "deg"), [-200.0, 200.0]);
+        assert_eq!(any(50.0, [f64::NEG_INFINITY, 20.0], "m"), [-100.0, 50.0]);
+        let kept = |value| reach(value, everywhere, "m", Sign::Kept);
+        assert_eq!(kept(2.0), [0.0, 4.0]);
+        assert_eq!(kept(-2.0), [-4.0, 0.0]);
+        assert_eq!(kept(0.0), [-10.0, 10.0]);
     }
 }

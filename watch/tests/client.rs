@@ -121,9 +121,13 @@ impl Served {
         self.request("GET", &self.path(name), &host, "")
     }
 
-    pub(crate) fn motion(&self, request: &Value) -> Answer {
+    pub(crate) fn post(&self, name: &str, body: &str) -> Answer {
         let host = self.address.to_string();
-        self.request("POST", &self.path("motion"), &host, &request.to_string())
+        self.request("POST", &self.path(name), &host, body)
+    }
+
+    pub(crate) fn motion(&self, request: &Value) -> Answer {
+        self.post("motion", &request.to_string())
     }
 
     /// The state, once it fulfils something.

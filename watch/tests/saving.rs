@@ -54,10 +54,9 @@ fn an_equation_knows_the_lines_that_it_depends_on() {
     let text = shipped("unicycle");
     let served = Served::new(&text);
     let state = served.state(|state| !state["equations"].is_null());
-    let html = state["equations"]["html"].as_str().expect("HTML");
+    let motion = state["equations"]["sections"][0].as_str().expect("HTML");
     let line = |key: &str| 1 + text.lines().position(|l| l.starts_with(key)).expect(key);
     // The sliding mass: σ̇ depends on its body, its load and the input, and not on outputs.
-    let (_, motion) = html.split_once("Equations of motion").expect("the section");
     let found = lines_of(motion, "<mi>σ</mi>");
     for key in [
         "[bodies.slider]",
@@ -73,6 +72,25 @@ fn an_equation_knows_the_lines_that_it_depends_on() {
     assert!(!found.contains(&line("x_P")), "{found:?}");
     let wheel = line("[bodies.wheel]");
     assert_eq!(state["text"]["items"][wheel.to_string()], wheel + 5);
+}
+
+#[test]
+fn the_derivation_is_written_for_whoever_reads_it() {
+    let served = Served::new(&shipped("unicycle"));
+    let mut events = served.events();
+    let model = events.next("model", |_| true);
+    events.next("drawing", |_| true);
+    assert!(served.get("state").json()["derivation"].is_null());
+    assert_eq!(served.post("derivation", "").status, 202);
+    let derivation = events.next("derivation", |_| true);
+    assert_eq!(version(&derivation), version(&model));
+    let sections = derivation["sections"].as_array().expect("sections");
+    assert!(sections.len() > 8, "{}", sections.len());
+    // One is enough for all windows.
+    assert_eq!(served.post("derivation", "").status, 202);
+    served.save(&shipped("pendulum"));
+    events.next("model", |model| version(model) == 2);
+    assert_eq!(version(&served.get("state").json()["derivation"]), 1);
 }
 
 #[test]

@@ -98,7 +98,9 @@ class Spec {
     const shown = this.rows[(current || Math.min(...chosen)) - 1];
     if (current && shown) this.list.setAttribute("aria-activedescendant", shown.id);
     else this.list.removeAttribute("aria-activedescendant");
-    if (scroll && shown) shown.scrollIntoView({ block: "nearest" });
+    if (!scroll || !shown) return;
+    this.rows[Math.max(...chosen) - 1]?.scrollIntoView({ block: "nearest" });
+    shown.scrollIntoView({ block: "nearest" });
   }
 }
 

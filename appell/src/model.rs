@@ -173,6 +173,17 @@ impl Model {
     }
 
     /// Integrates the equations of motion as long as `go_on`, which is asked several times in each step.
+    ///
+    /// ```
+    /// use appell::{Model, Motion};
+    ///
+    /// let model = Model::shipped("pendulum")?;
+    /// let motion = Motion::new(1e3).initial("theta", "30deg");
+    /// let interrupted = model.simulate_while(&motion, || false)?;
+    /// assert!(interrupted.failure.is_some());
+    /// assert!(interrupted.trajectory.times().last() < Some(&1e3));
+    /// # Ok::<(), appell::Error>(())
+    /// ```
     pub fn simulate_while(
         &self,
         motion: &Motion,

@@ -58,7 +58,9 @@ class Motion {
   }
 
   show({ version, ending, film, figure }) {
-    at("ending").textContent = ending ? `The motion ends early: ${ending}` : "";
+    // The state at the end is for whoever asks.
+    at("ending").textContent = ending ? `The motion ends early: ${ending.split("; state:")[0]}` : "";
+    at("ending").title = ending ?? "";
     at("motion").classList.remove("stale");
     this.stamp += 1;
     this.film = { ...film, stamp: { number: this.stamp, version } };

@@ -74,6 +74,26 @@ fn an_equation_knows_the_lines_that_it_depends_on() {
     assert_eq!(state["text"]["items"][wheel.to_string()], wheel + 5);
 }
 
+/// Every equation of the bicycle is one in letters of M, b and Π, whose entries are in the derivation.
+#[test]
+fn equations_in_letters_know_their_lines_as_well() {
+    let text = shipped("bicycle");
+    let served = Served::new(&text);
+    let state = served.state(|state| !state["equations"].is_null());
+    let motion = state["equations"]["sections"][0].as_str().expect("HTML");
+    let rows = motion.matches("<mtr class=\"first\"").count();
+    assert!(rows > 5, "{rows}");
+    assert_eq!(
+        motion.matches("<mtr class=\"first\" data-lines=").count(),
+        rows
+    );
+    let line = |key: &str| 1 + text.lines().position(|l| l.starts_with(key)).expect(key);
+    let found = lines_of(motion, "<mi>D</mi>");
+    for key in ["m_B ", "rear_frame ", "B = "] {
+        assert!(found.contains(&line(key)), "{key}: {found:?}");
+    }
+}
+
 #[test]
 fn the_derivation_is_written_for_whoever_reads_it() {
     let served = Served::new(&shipped("unicycle"));

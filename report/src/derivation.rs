@@ -4,6 +4,7 @@
 //! independent of its format and of the expression graph; [`text()`], [`latex()`] and [`html()`]
 //! set it. [`linear`] is the page of the linear equations about a steady motion.
 
+mod about;
 mod angles;
 mod arrange;
 mod collect;
@@ -21,10 +22,11 @@ mod writer;
 
 use appell_spec::mechanism::Mechanism;
 
+pub use about::About;
 pub use content::{Block, Chain, Page, Row, Section, Span, Stage, Table};
 pub use html::{EQUATIONS, clickable, html};
 pub use latex::latex;
-pub use sources::{About, locate};
+pub use sources::locate;
 pub use text::text;
 
 pub use appell_codegen::symbolic::print::{Letter, Math};

@@ -20,7 +20,7 @@ const LOOK: Duration = Duration::from_millis(500);
 /// The text of the file, or why there is none.
 pub(crate) type Text = Result<String, String>;
 
-/// Sends the text now and whenever it changes, until nobody wants it.
+/// Sends the text now and whenever it changes, until nobody wants it; the path is absolute.
 pub(crate) fn follow(path: &Path, texts: Inbox) -> std::io::Result<()> {
     let path = path.to_owned();
     let (tell, told) = channel();
@@ -36,11 +36,7 @@ pub(crate) fn follow(path: &Path, texts: Inbox) -> std::io::Result<()> {
 
 /// Watches the folder, since many editors put a new file in place of the old one.
 fn watcher(path: &Path, tell: Sender<()>) -> Option<RecommendedWatcher> {
-    let folder = match path.parent() {
-        Some(folder) if !folder.as_os_str().is_empty() => folder,
-        _ => Path::new("."),
-    };
-    let name = path.file_name()?.to_owned();
+    let (folder, name) = (path.parent()?, path.file_name()?.to_owned());
     let told = move |event: notify::Result<notify::Event>| {
         let concerns = event.as_ref().is_ok_and(|event| {
             let is_it = |path: &std::path::PathBuf| path.file_name() == Some(&name);

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! file --> text --worker--> findings, equations, drawing, model --board--> page
-//!                                                          \--motions--<--values of sliders--/
+//! model --motions--> motion with the values of the sliders --> page
 //! ```
 //!
 //! | file | what it knows |
@@ -72,6 +72,7 @@ impl Watch {
             path: spec.to_owned(),
             cause,
         })?;
+        let spec = &std::path::absolute(spec)?;
         let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, port))?;
         listener.set_nonblocking(true)?;
         let guard = Guard::new(listener.local_addr()?.port()).map_err(Error::Secret)?;

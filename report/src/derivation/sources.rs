@@ -9,39 +9,10 @@ use appell_codegen::mechanics::motion::Block;
 use appell_codegen::mechanics::{Derivation, contributions};
 use appell_codegen::symbolic::print::{Letter, Math};
 use appell_codegen::symbolic::{Expr, Graph};
-use appell_spec::mechanism::{
-    BodyId, ConstraintId, CoordinateId, FrameId, LoadId, Mechanism, PointId,
-};
+use appell_spec::mechanism::{BodyId, CoordinateId, FrameId, LoadId, Mechanism, PointId};
 use rustc_hash::{FxHashMap, FxHashSet};
 
-use super::{Block as PageBlock, Equation, Page};
-
-/// What an equation is about, beyond what its letters tell.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum About {
-    /// Acceleration energy of a body.
-    Body(BodyId),
-    /// Velocity or acceleration of a point.
-    Point(PointId),
-    /// Angular velocity of a frame.
-    Frame(FrameId),
-    /// A row of a constraint.
-    Constraint(ConstraintId),
-    /// The rate of a coordinate, which constraints determine.
-    Rate(CoordinateId),
-    /// Virtual power of a load.
-    Load(LoadId),
-    /// The inertia of all bodies that move with both pseudo-velocities.
-    Inertia(usize, usize),
-    /// The generalised force of a pseudo-velocity.
-    Force(usize),
-    /// The equation of motion of a pseudo-velocity.
-    Motion(usize),
-    /// All bodies, as in the kinetic energy.
-    Bodies,
-    /// All loads, as in the potential energy.
-    Loads,
-}
+use super::{About, Block as PageBlock, Equation, Page};
 
 /// Tells every equation of a page on which lines of the spec it depends; `page` is that of the derivation.
 pub fn locate(page: &mut Page, mechanism: &Mechanism, derivation: &mut Derivation) {

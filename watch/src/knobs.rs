@@ -76,6 +76,7 @@ fn reach(value: f64, [least, most]: [f64; 2], unit: &str, sign: Sign) -> [f64; 2
 }
 
 #[cfg(test)]
+#[expect(clippy::float_cmp, reason = "products of two are exact")]
 mod tests {
     use super::*;
 

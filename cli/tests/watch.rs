@@ -67,6 +67,12 @@ fn milliseconds() -> f64 {
     now.expect("a time after 1970").as_secs_f64() * 1e3
 }
 
+/// How many elements a selector finds.
+fn count(browser: &mut Browser, selector: &str) -> u64 {
+    let found = browser.value(&format!("document.querySelectorAll('{selector}').length"));
+    found.as_u64().expect("a number")
+}
+
 /// What the page complained of, its own server aside.
 fn complaints(browser: &mut Browser) -> Vec<String> {
     let all = browser.complaints().into_iter();
@@ -126,28 +132,21 @@ fn equations_and_lines_lead_to_each_other() {
         "document.getElementById('line-{}').click()",
         wheel + 3
     ));
-    assert!(browser.number("document.querySelectorAll('#equations .chosen').length") > 2.0);
-    let lines = "document.querySelectorAll('#lines .chosen').length";
-    assert_eq!(browser.number(lines), 6.0);
+    assert!(count(&mut browser, "#equations .chosen") > 2);
+    assert_eq!(count(&mut browser, "#lines .chosen"), 6);
     // A click on an equation marks its lines and no other equation.
     browser.value(
         "[...document.querySelectorAll('#equations mtr.first[data-lines]')].at(-1).dispatchEvent(\
          new MouseEvent('click', {bubbles: true}))",
     );
-    assert!(browser.number(lines) > 2.0);
-    assert_eq!(
-        browser.number("document.querySelectorAll('#equations .chosen.first').length"),
-        1.0
-    );
+    assert!(count(&mut browser, "#lines .chosen") > 2);
+    assert_eq!(count(&mut browser, "#equations .chosen.first"), 1);
     // Keys go through the lines.
     browser.value(
         "document.getElementById('lines').dispatchEvent(\
          new KeyboardEvent('keydown', {key: 'ArrowDown', bubbles: true}))",
     );
-    assert_eq!(
-        browser.number("document.querySelectorAll('#lines [aria-selected=true]').length"),
-        1.0
-    );
+    assert_eq!(count(&mut browser, "#lines [aria-selected=true]"), 1);
     assert_eq!(complaints(&mut browser), [""; 0]);
 }
 
@@ -161,10 +160,7 @@ fn a_broken_spec_shows_its_errors_and_the_last_good_motion() {
     let shown = browser.number("appell.seen.motion.number");
     folder.write("spec.toml", &text.replace("unit = \"kg\"", "unit = \"kq\""));
     browser.wait("document.body.classList.contains('broken')");
-    assert_eq!(
-        browser.number("document.querySelectorAll('#lines .finding.error').length"),
-        2.0
-    );
+    assert_eq!(count(&mut browser, "#lines .finding.error"), 2);
     assert_eq!(
         browser.value("document.querySelector('#lines mark.error').textContent"),
         "kq"

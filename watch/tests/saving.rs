@@ -99,7 +99,6 @@ fn the_derivation_is_written_for_whoever_reads_it() {
     let served = Served::new(&shipped("unicycle"));
     let mut events = served.events();
     let model = events.next("model", |_| true);
-    events.next("drawing", |_| true);
     assert!(served.get("state").json()["derivation"].is_null());
     assert_eq!(served.post("derivation", "").status, 202);
     let derivation = events.next("derivation", |_| true);

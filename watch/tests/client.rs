@@ -170,7 +170,10 @@ impl Events {
     /// The next value of a part that fulfils something.
     pub(crate) fn next(&mut self, part: &str, holds: impl Fn(&Value) -> bool) -> Value {
         let mut is_part = false;
+        let start = Instant::now();
         loop {
+            // A stream without news is kept alive by comments.
+            assert!(start.elapsed() < PATIENCE, "no {part}");
             let mut line = String::new();
             let read = self.lines.read_line(&mut line).expect("an event");
             assert!(read > 0, "the stream ends");

@@ -173,7 +173,7 @@ fn a_broken_spec_shows_its_errors_and_the_last_good_motion() {
     browser.wait(&format!("appell.seen.motion.number > {shown}"));
     assert_eq!(
         browser.value("document.getElementById('parameters.R').value"),
-        "0.501"
+        "0.5"
     );
     folder.write("spec.toml", &text);
     browser.wait("!document.body.classList.contains('broken')");

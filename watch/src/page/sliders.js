@@ -1,8 +1,8 @@
 // Sliders of parameters, the initial state and inputs. Values that nobody has changed follow the spec.
 
 const GROUPS = { parameters: "parameters", initial: "initial state", inputs: "inputs" };
-/** Steps of a slider. */
-const STEPS = 400;
+/** Digits of a value that a slider gives. */
+const DIGITS = 3;
 
 class Sliders {
   constructor(changed) {
@@ -52,7 +52,7 @@ class Sliders {
     row.title = about;
     const label = element(row, "label", name);
     const slider = element(row, "input");
-    Object.assign(slider, { type: "range", min: low, max: high, step: (high - low) / STEPS || "any", id: `${key}.slider` });
+    Object.assign(slider, { type: "range", min: low, max: high, step: "any", id: `${key}.slider` });
     const field = element(row, "input");
     Object.assign(field, { type: "text", id: key, spellcheck: false, autocomplete: "off" });
     label.htmlFor = key;
@@ -70,7 +70,7 @@ class Sliders {
       this.tell();
     };
     slider.addEventListener("input", () => {
-      field.value = String(Number(slider.valueAsNumber.toPrecision(4)));
+      field.value = String(Number(slider.valueAsNumber.toPrecision(DIGITS)));
       take(field.value);
     });
     field.addEventListener("change", () => {

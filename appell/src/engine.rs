@@ -2,7 +2,7 @@
 
 use appell_codegen::interpreted::InterpretedModel;
 use appell_codegen::jit::JitModel;
-use appell_codegen::program::FunctionKind;
+use appell_codegen::program::{FunctionKind, Program};
 use appell_runtime::model::Model;
 
 use crate::source::Source;
@@ -26,7 +26,7 @@ pub enum Equations {
     /// Derived in this process.
     Made {
         /// What evaluates them.
-        model: Box<dyn Model>,
+        model: Box<dyn Model + Send>,
         /// Why it is interpreted although machine code was requested.
         note: Option<String>,
     },
@@ -53,18 +53,23 @@ impl Equations {
 
     fn made(source: &Source, engine: Engine, kinds: &[FunctionKind]) -> Result<Self, Error> {
         let program = appell_codegen::compile(&source.file, &source.text, kinds)?;
+        Ok(Self::of(program, engine))
+    }
+
+    /// A program as machine code, if that is wanted and possible, and else interpreted.
+    pub(crate) fn of(program: Program, engine: Engine) -> Self {
         let mut note = None;
         if engine == Engine::Jit {
             match JitModel::new(&program) {
                 Ok(model) => {
-                    let model: Box<dyn Model> = Box::new(model);
-                    return Ok(Self::Made { model, note });
+                    let model: Box<dyn Model + Send> = Box::new(model);
+                    return Self::Made { model, note };
                 }
                 Err(reason) => note = Some(format!("{reason}; the equations are interpreted")),
             }
         }
-        let model: Box<dyn Model> = Box::new(InterpretedModel::new(program));
-        Ok(Self::Made { model, note })
+        let model: Box<dyn Model + Send> = Box::new(InterpretedModel::new(program));
+        Self::Made { model, note }
     }
 
     /// Why the equations are interpreted although machine code was requested.

@@ -2,11 +2,14 @@
 
 use std::path::{Path, PathBuf};
 
+use appell_codegen::Derived;
 use appell_codegen::compile::report;
+use appell_codegen::program::FunctionKind;
 use appell_gap::{diagnose as gap, identify};
 use appell_recordings::DataSet;
-use appell_runtime::Trajectory;
+use appell_runtime::integrate::{Direction, Event};
 use appell_runtime::model::{Model as Equations, ModelInfo};
+use appell_runtime::{Simulation, Trajectory};
 
 use crate::control::attraction::{self, Explored};
 use crate::control::{Design, Request, Schedule, law_file};
@@ -83,6 +86,17 @@ impl Model {
         })
     }
 
+    /// The model of a derivation that is there already, for motions as machine code; `derived` is that of
+    /// the source. Whatever needs derivatives of the equations panics: steady motions, gains, evaluation.
+    pub fn of_motions(source: Source, derived: Derived) -> Result<Self, Error> {
+        let program = derived.program(&source.text, &FunctionKind::OF_MOTIONS)?;
+        Ok(Self {
+            source,
+            equations: engine::Equations::of(program, Engine::Jit),
+            adjoints: false,
+        })
+    }
+
     /// The model of a spec with adjoints, which [`identify`](Self::identify) and
     /// [`inverse`](Self::inverse) derive at each call otherwise.
     pub fn for_estimation(source: Source) -> Result<Self, Error> {
@@ -148,7 +162,48 @@ impl Model {
         motion: &Motion,
         progress: impl Fn(f64),
     ) -> Result<Simulated, Error> {
-        motion.simulate(self.equations(), self.setup()?, self.name(), progress)
+        let run = |simulation: Simulation<'_>| {
+            Simulation {
+                progress: Some(Box::new(progress)),
+                ..simulation
+            }
+            .run()
+        };
+        motion.simulate(self.equations(), self.setup()?, self.name(), run)
+    }
+
+    /// Integrates the equations of motion as long as `go_on`, which is asked several times in each step.
+    ///
+    /// ```
+    /// use appell::{Model, Motion};
+    ///
+    /// let model = Model::shipped("pendulum")?;
+    /// let motion = Motion::new(1e3).initial("theta", "30deg");
+    /// let interrupted = model.simulate_while(&motion, || false)?;
+    /// assert!(interrupted.failure.is_some());
+    /// assert!(interrupted.trajectory.times().last() < Some(&1e3));
+    /// # Ok::<(), appell::Error>(())
+    /// ```
+    pub fn simulate_while(
+        &self,
+        motion: &Motion,
+        go_on: impl Fn() -> bool,
+    ) -> Result<Simulated, Error> {
+        let run = |simulation: Simulation<'_>| {
+            // A sign that changes is found; one that is negative from the start is not.
+            let mut started = false;
+            let sign = move |_: f64, _: &[f64]| {
+                let goes_on = go_on() || !started;
+                started = true;
+                if goes_on { 1.0 } else { -1.0 }
+            };
+            Simulation {
+                events: vec![Event::terminal(Direction::Falling, sign)],
+                ..simulation
+            }
+            .run()
+        };
+        motion.simulate(self.equations(), self.setup()?, self.name(), run)
     }
 
     /// A page that animates a motion; `ending` is the reason of an early end.

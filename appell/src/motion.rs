@@ -16,6 +16,9 @@ use crate::{Error, Field};
 /// Maximum number of rows of a trajectory.
 pub const MOST_ROWS: f64 = 2e6;
 
+/// Why a motion ends that was told to.
+const INTERRUPTED: &str = "the computation was interrupted";
+
 /// Source of a feedback law.
 #[derive(Debug, Clone)]
 pub enum Law {
@@ -146,14 +149,13 @@ impl Motion {
         self.interval.unwrap_or(self.t_end / 1000.0)
     }
 
-    /// Integrates the equations of motion; `name` names the spec in messages, and `progress` is called
-    /// with the time in s.
+    /// Integrates the equations of motion with `run`; `name` names the spec in messages.
     pub(crate) fn simulate(
         &self,
         model: &dyn Model,
         mut setup: Setup<'_>,
         name: &str,
-        progress: impl Fn(f64),
+        run: impl FnOnce(Simulation<'_>) -> Result<Trajectory, SimulationError>,
     ) -> Result<Simulated, Error> {
         let interval = self.checked_interval()?;
         setup.watch_ranges = self.validity.ranges == Response::Stop;
@@ -171,15 +173,16 @@ impl Motion {
             sampling: Sampling::Every(interval),
             extras: self.extras,
             validity: self.validity,
-            progress: Some(Box::new(progress)),
             ..Simulation::new(model)
         };
-        let (trajectory, failure) = match simulation.run() {
+        let (trajectory, failure) = match run(simulation) {
             Ok(trajectory) => {
                 let ended = trajectory.ending == Some(Ending::Stopped);
                 let last = trajectory.breaches.last().filter(|_| ended);
                 let reason = last.map(|breach| breach.describe_in_full(trajectory.info()));
-                (trajectory, reason)
+                let interrupted = matches!(trajectory.ending, Some(Ending::Event(_)));
+                let interrupted = interrupted.then(|| INTERRUPTED.to_owned());
+                (trajectory, reason.or(interrupted))
             }
             Err(error) => {
                 let reason = error.to_string();

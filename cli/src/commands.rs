@@ -22,6 +22,7 @@ mod schema;
 mod simulate;
 mod stability;
 mod steady;
+mod watch;
 
 use crate::failure::Error;
 
@@ -60,6 +61,7 @@ pub(crate) enum Command {
     Demo(demo::Demo),
     Reproduce(reproduce::Reproduce),
     Schema(schema::Schema),
+    Watch(watch::Watch),
     Lsp(lsp::Lsp),
     Completions(completions::Completions),
 }
@@ -87,6 +89,7 @@ pub(crate) fn run(command: Command) -> Result<(), Error> {
         Command::Demo(command) => command.run(),
         Command::Reproduce(command) => command.run(),
         Command::Schema(command) => command.run(),
+        Command::Watch(command) => command.run(),
         Command::Lsp(lsp::Lsp {}) => lsp::run(),
         Command::Completions(command) => command.run(),
     }

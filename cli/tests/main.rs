@@ -35,3 +35,4 @@ mod simulate;
 mod steady;
 mod sticking;
 mod walk_through;
+mod watch;

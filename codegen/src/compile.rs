@@ -9,6 +9,7 @@ use crate::mechanics::{Derivation, assemble, derive};
 use crate::program::{FunctionKind, Program};
 
 /// A mechanism whose equations of motion have been derived.
+#[derive(Clone)]
 pub struct Derived {
     /// The mechanism.
     pub mechanism: Mechanism,
@@ -47,31 +48,44 @@ pub fn derived(file: &str, text: &str) -> Result<Derived, Report> {
 /// stand there as well.
 pub fn audited(file: &str, text: &str) -> Result<Derived, Report> {
     let mut derived = derived(file, text)?;
-    let Audit { warnings, notes } = audit(&derived.mechanism, &derived.derivation);
-    let findings = warnings.iter().map(|finding| (finding, Severity::Warning));
-    for (finding, severity) in findings.chain(notes.iter().map(|note| (note, Severity::Note))) {
-        let diagnostic = diagnostic(&derived.mechanism, text, finding, severity);
-        // What nothing uses has no effect either.
-        let place = |d: &Diagnostic| d.labels.first().map(|(span, _)| span.clone());
-        let is_told = |known: &Diagnostic| {
-            known.code == Code::UnusedName && place(known) == place(&diagnostic)
-        };
-        if !derived.warnings.iter().any(is_told) {
-            derived.warnings.push(diagnostic);
+    derived.audit(text);
+    Ok(derived)
+}
+
+impl Derived {
+    /// The program with the functions `kinds`; `text` is that of the spec.
+    pub fn program(self, text: &str, kinds: &[FunctionKind]) -> Result<Program, Report> {
+        let Self {
+            mechanism,
+            derivation,
+            ..
+        } = self;
+        assemble::program(derivation, &mechanism, kinds)
+            .map_err(|findings| report(&mechanism, text, &findings))
+    }
+
+    /// Adds what an [audit](crate::audit) of the equations tells to the warnings; `text` is that of
+    /// the spec.
+    pub fn audit(&mut self, text: &str) {
+        let Audit { warnings, notes } = audit(&self.mechanism, &self.derivation);
+        let findings = warnings.iter().map(|finding| (finding, Severity::Warning));
+        for (finding, severity) in findings.chain(notes.iter().map(|note| (note, Severity::Note))) {
+            let diagnostic = diagnostic(&self.mechanism, text, finding, severity);
+            // What nothing uses has no effect either.
+            let place = |d: &Diagnostic| d.labels.first().map(|(span, _)| span.clone());
+            let is_told = |known: &Diagnostic| {
+                known.code == Code::UnusedName && place(known) == place(&diagnostic)
+            };
+            if !self.warnings.iter().any(is_told) {
+                self.warnings.push(diagnostic);
+            }
         }
     }
-    Ok(derived)
 }
 
 /// Reads a spec and makes the program with the functions `kinds`.
 pub fn compile(file: &str, text: &str, kinds: &[FunctionKind]) -> Result<Program, Report> {
-    let Derived {
-        mechanism,
-        derivation,
-        ..
-    } = derived(file, text)?;
-    assemble::program(derivation, &mechanism, kinds)
-        .map_err(|findings| report(&mechanism, text, &findings))
+    derived(file, text)?.program(text, kinds)
 }
 
 /// Report on a refused mechanism: the errors, and possible causes as warnings.

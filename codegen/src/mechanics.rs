@@ -9,6 +9,7 @@ pub mod auxiliary;
 pub mod constraints;
 pub mod contact_rows;
 pub mod contacts;
+pub mod contributions;
 pub mod creep;
 pub mod dependent;
 pub mod divisors;
@@ -67,6 +68,7 @@ pub use algebra::seed;
 pub use ranges::{declared_ranges, parameter_ranges};
 
 /// The derivation of one mechanism, every stage kept for reading.
+#[derive(Clone)]
 pub struct Derivation {
     /// Graph and tools.
     pub algebra: Algebra,

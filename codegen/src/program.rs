@@ -304,6 +304,22 @@ impl FunctionKind {
         Self::Systems,
     ];
 
+    /// Those that a motion needs: of [`Self::STANDARD`], all but derivatives and what other functions
+    /// return too.
+    pub const OF_MOTIONS: [Self; 11] = [
+        Self::AccelerationEnergy,
+        Self::MassMatrixAndBias,
+        Self::GeneralizedForces,
+        Self::Rates,
+        Self::Energies,
+        Self::ConstraintForces,
+        Self::Outputs,
+        Self::Switches,
+        Self::PositionConstraints,
+        Self::Contacts,
+        Self::Systems,
+    ];
+
     /// Name of the emitted function.
     pub fn name(self) -> &'static str {
         self.words().0

@@ -2,12 +2,10 @@
 
 use std::collections::BTreeMap;
 
-use appell_codegen::mechanics::Derivation;
 use appell_codegen::mechanics::algebra::Algebra;
-use appell_codegen::mechanics::gibbs_appell::BodyMotion;
-use appell_codegen::mechanics::loads::generalized_forces;
 use appell_codegen::mechanics::row::Row;
-use appell_codegen::symbolic::{Expr, vector};
+use appell_codegen::mechanics::{Derivation, contributions};
+use appell_codegen::symbolic::Expr;
 use appell_spec::mechanism::{ConstraintId, Mechanism};
 use appell_spec::occurrences::Namespace;
 
@@ -18,24 +16,15 @@ pub(crate) type Contributions = BTreeMap<(Namespace, String), String>;
 pub(crate) fn contributions(mechanism: &Mechanism, mut derivation: Derivation) -> Contributions {
     let mut told = Contributions::new();
     quantities(mechanism, &mut derivation, &mut told);
-    let Derivation {
-        algebra,
-        symbols,
-        loads,
-        bodies,
-        ..
-    } = &mut derivation;
-    for (load, applied) in mechanism.loads.iter().zip(loads) {
-        let applied = std::slice::from_ref(&*applied);
-        let forces = generalized_forces(algebra, applied, &symbols.speeds);
-        let Algebra { graph, test, .. } = &mut *algebra;
-        let works = |i: usize| !test.is_zero(graph, forces[i]);
-        let sentence = in_equations(mechanism, "Its generalised force appears", works)
+    let of_loads = contributions::of_loads(&mut derivation);
+    for (load, works) in mechanism.loads.iter().zip(of_loads) {
+        let sentence = in_equations(mechanism, "Its generalised force appears", |i| works[i])
             .unwrap_or_else(|| "It does no work and appears in no equation of motion".to_owned());
         told.insert((Namespace::Load, load.name.clone()), sentence);
     }
-    for (body, motion) in mechanism.bodies.iter().zip(bodies) {
-        let sentence = in_equations(mechanism, "Its inertia appears", |i| moves(motion, i));
+    let of_bodies = contributions::of_bodies(&derivation);
+    for (body, moves) in mechanism.bodies.iter().zip(of_bodies) {
+        let sentence = in_equations(mechanism, "Its inertia appears", |i| moves[i]);
         if let Some(sentence) = sentence {
             told.insert((Namespace::Body, body.name.clone()), sentence);
         }
@@ -87,14 +76,6 @@ fn quantities(mechanism: &Mechanism, derivation: &mut Derivation, told: &mut Con
             told.insert(key, sentences.join("; "));
         }
     }
-}
-
-/// Whether a body moves with a pseudo-velocity.
-fn moves(motion: &BodyMotion, speed: usize) -> bool {
-    let turns = motion.rotation.as_ref().map(|rotation| &rotation.partial);
-    let all = [Some(&motion.centre.partial), turns].into_iter().flatten();
-    all.filter_map(|partial| partial.get(speed))
-        .any(|partial| *partial != vector::ZERO)
 }
 
 /// What becomes of the rows of a constraint.

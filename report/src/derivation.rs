@@ -4,6 +4,7 @@
 //! independent of its format and of the expression graph; [`text()`], [`latex()`] and [`html()`]
 //! set it. [`linear`] is the page of the linear equations about a steady motion.
 
+mod about;
 mod angles;
 mod arrange;
 mod collect;
@@ -13,6 +14,7 @@ mod html;
 mod latex;
 mod lexicon;
 mod sections;
+mod sources;
 mod text;
 mod text_box;
 mod units;
@@ -20,9 +22,11 @@ mod writer;
 
 use appell_spec::mechanism::Mechanism;
 
+pub use about::About;
 pub use content::{Block, Chain, Page, Row, Section, Span, Stage, Table};
-pub use html::html;
+pub use html::{EQUATIONS, clickable, html};
 pub use latex::latex;
+pub use sources::locate;
 pub use text::text;
 
 pub use appell_codegen::symbolic::print::{Letter, Math};
@@ -48,6 +52,17 @@ pub fn page(
         source: mechanism.source.clone(),
         sections,
     })
+}
+
+/// Writes what the derivation of a mechanism ends with: the equations of motion alone. Quantities that
+/// a [`page`] has defined before have their letters.
+pub fn equations_of_motion(mechanism: &Mechanism, derivation: &mut Derivation) -> Page {
+    let mut writer = Writer::new(mechanism, derivation);
+    Page {
+        title: mechanism.title.clone(),
+        source: mechanism.source.clone(),
+        sections: sections::equations_of_motion(&mut writer),
+    }
 }
 
 /// Writes the linear equations about a steady motion of a mechanism, with their characteristic

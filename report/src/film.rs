@@ -12,6 +12,7 @@
 //! | `parts.js`, `stage.js` | wheels, springs, arrows … of shapes; all of them where they are at a time |
 //! | `camera.js`, `names.js` | the eye and its pointers; names of points over the picture |
 //! | `panel.js`, `player.js` | legend, values, plot; time, keys and buttons |
+//! | `live.js` | motions that a page around it sends |
 
 mod data;
 
@@ -20,13 +21,16 @@ use appell_runtime::Trajectory;
 use appell_runtime::model::Model;
 use appell_spec::Mechanism;
 use maud::{PreEscaped, html};
+use serde_json::Value;
 
 use crate::page_shell::PageShell;
 
 const STYLE: &str = include_str!("film/style.css");
+/// Only the picture and the time, where the page around shows the rest.
+const LIVE: &str = include_str!("film/live.css");
 const BODY: &str = include_str!("film/body.html");
 /// In the order in which they use each other.
-const SCRIPTS: [&str; 15] = [
+const SCRIPTS: [&str; 16] = [
     include_str!("film/vectors.js"),
     include_str!("film/film.js"),
     include_str!("film/colours.js"),
@@ -41,6 +45,7 @@ const SCRIPTS: [&str; 15] = [
     include_str!("film/camera.js"),
     include_str!("film/panel.js"),
     include_str!("film/names.js"),
+    include_str!("film/live.js"),
     include_str!("film/player.js"),
 ];
 
@@ -55,18 +60,38 @@ pub fn page(
     motion: &Trajectory,
     ending: Option<&str>,
 ) -> Outcome<String> {
-    let data = data::json(mechanism, model, motion, ending)?;
+    let data = data(mechanism, model, motion, ending)?;
     // The text of a spec is escaped: without `<` in the data nothing can end the element.
     let data = data.to_string().replace('<', "\\u003c");
+    Ok(around(&mechanism.title, STYLE, &data))
+}
+
+/// The data of the page of a motion, which a [`live_page`] is sent.
+pub fn data(
+    mechanism: &Mechanism,
+    model: &dyn Model,
+    motion: &Trajectory,
+    ending: Option<&str>,
+) -> Outcome<Value> {
+    data::json(mechanism, model, motion, ending)
+}
+
+/// The page without a motion, for a frame in another page that sends it the [`data`] of one motion after
+/// the other, all of one mechanism.
+pub fn live_page() -> String {
+    around("Motion", &[STYLE, LIVE].concat(), "null")
+}
+
+fn around(title: &str, style: &str, data: &str) -> String {
     let scripts = SCRIPTS.join("\n");
     let shell = PageShell {
         policy: Some(POLICY),
-        ..PageShell::new(&mechanism.title, STYLE)
+        ..PageShell::new(title, style)
     };
-    Ok(shell.around(&html! {
+    shell.around(&html! {
         (PreEscaped(BODY))
         script type="application/json" id="film" { (PreEscaped(data)) }
         (PreEscaped("\n"))
         script { (PreEscaped("\n\"use strict\";\n")) (PreEscaped(scripts)) }
-    }))
+    })
 }

@@ -1,4 +1,4 @@
-//! The document around all pages, which are self-contained.
+//! The document around all pages. Files are self-contained; a server has more than one address.
 
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
@@ -9,6 +9,8 @@ pub struct PageShell<'a> {
     pub title: &'a str,
     /// Style sheet.
     pub style: &'a str,
+    /// Address of a style sheet, for pages that are not self-contained.
+    pub sheet: Option<&'a str>,
     /// Content security policy, if any.
     pub policy: Option<&'a str>,
     /// Name space of the elements, for readers of XML.
@@ -28,6 +30,7 @@ impl<'a> PageShell<'a> {
         Self {
             title,
             style,
+            sheet: None,
             policy: None,
             namespace: None,
         }
@@ -46,7 +49,10 @@ impl<'a> PageShell<'a> {
                         (LINE)
                     }
                     title { (self.title) } (LINE)
-                    style { (LINE) (PreEscaped(self.style)) } (LINE)
+                    @match self.sheet {
+                        Some(sheet) => { link rel="stylesheet" href=(sheet); (LINE) }
+                        None => { style { (LINE) (PreEscaped(self.style)) } (LINE) }
+                    }
                 }
                 (LINE)
                 body { (LINE) (body) (LINE) }

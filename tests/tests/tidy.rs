@@ -62,6 +62,16 @@ const MAY_KNOW: &[(&str, &[&str])] = &[
     ),
     ("lsp", &["appell-spec", "appell-codegen"]),
     (
+        "watch",
+        &[
+            "appell",
+            "appell-spec",
+            "appell-codegen",
+            "appell-report",
+            "appell-runtime",
+        ],
+    ),
+    (
         "papers",
         &[
             "appell",
@@ -82,6 +92,7 @@ const MAY_KNOW: &[(&str, &[&str])] = &[
         &[
             "appell",
             "appell-lsp",
+            "appell-watch",
             "appell-papers",
             "appell-spec",
             "appell-codegen",
@@ -98,7 +109,7 @@ const MAY_KNOW: &[(&str, &[&str])] = &[
 ];
 
 /// Crates below the command line: they name no mechanism and no flag.
-const NAME_NO_MECHANISM: [&str; 11] = [
+const NAME_NO_MECHANISM: [&str; 12] = [
     "model_spec",
     "codegen",
     "runtime",
@@ -110,6 +121,7 @@ const NAME_NO_MECHANISM: [&str; 11] = [
     "report",
     "appell",
     "lsp",
+    "watch",
 ];
 
 fn read(path: &Path) -> String {
@@ -270,6 +282,7 @@ fn every_file_of_tests_is_run() {
         "gap",
         "appell",
         "lsp",
+        "watch",
         "cli",
         "tests",
     ];

@@ -154,7 +154,11 @@ impl Browser {
     /// Opens a file.
     pub(crate) fn open(&mut self, page: &Path) {
         let page = page.canonicalize().expect("the page");
-        let url = format!("file://{}", page.display());
+        self.visit(&format!("file://{}", page.display()));
+    }
+
+    /// Opens an address.
+    pub(crate) fn visit(&mut self, url: &str) {
         self.call("Page.navigate", &json!({ "url": url }));
         self.wait("document.readyState == 'complete'");
     }

@@ -41,6 +41,12 @@ fn results(kind: FunctionKind, program: &Program) -> Vec<(&'static str, usize)> 
         }
         FunctionKind::GeneralizedForces => vec![("generalized_forces", speeds)],
         FunctionKind::Rates => vec![("rates", n)],
+        // Derivatives, which motions do without; a program may lack them.
+        FunctionKind::Jacobians | FunctionKind::ParameterJacobian
+            if program.function(kind).is_none() =>
+        {
+            vec![]
+        }
         FunctionKind::Jacobians => vec![("rates", n), ("a", n * n), ("b", n * m)],
         FunctionKind::ParameterJacobian => vec![("p", n * k)],
         FunctionKind::Energies => vec![("kinetic", 1), ("potential", 1), ("power", 1)],

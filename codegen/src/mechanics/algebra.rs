@@ -17,6 +17,7 @@ const MOST_TERMS: usize = 200;
 const MOST_JOINED_TERMS: usize = 12;
 
 /// Graph, identity test and remembered derivatives.
+#[derive(Clone)]
 pub struct Algebra {
     /// Owner of the expressions.
     pub graph: Graph,

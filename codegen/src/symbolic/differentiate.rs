@@ -6,7 +6,7 @@ use super::node::{Expr, Function, Node, SymbolId};
 use super::{Graph, Rational};
 
 /// Partial derivatives with respect to one symbol, remembered between calls.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct Derivatives {
     symbol: SymbolId,
     known: FxHashMap<Expr, Expr>,

@@ -57,7 +57,7 @@ const MOST_POINTS_WITH_ROOTS: usize = 128;
 ///
 /// Values are remembered by expression: the questions about all expressions of a graph together cost
 /// one evaluation of it per trial. The answers depend on the seed and the graph only.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct IdentityTest {
     seed: u64,
     pi: Option<SymbolId>,

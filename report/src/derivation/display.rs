@@ -1,6 +1,6 @@
 //! Equations in lines: breaks of long ones.
 
-use super::Math;
+use super::{About, Math};
 
 /// `left = right` on a line of its own.
 #[derive(Debug, Clone, PartialEq)]
@@ -9,12 +9,30 @@ pub struct Equation {
     pub left: Math,
     /// Right-hand side.
     pub right: Math,
+    /// What it is about, beyond what its letters tell.
+    pub about: Option<About>,
+    /// The lines of the spec that it depends on, once they are [located](super::locate).
+    pub lines: Vec<usize>,
 }
 
 impl Equation {
     /// `left = right`
     pub fn new(left: Math, right: Math) -> Self {
-        Self { left, right }
+        Self {
+            left,
+            right,
+            about: None,
+            lines: Vec::new(),
+        }
+    }
+
+    /// The same, about something.
+    #[must_use]
+    pub fn about(self, about: About) -> Self {
+        Self {
+            about: Some(about),
+            ..self
+        }
     }
 }
 

@@ -3,7 +3,7 @@
 use maud::{Markup, PreEscaped, html as markup};
 
 use super::display::{Equation, Piece, left_width};
-use super::{Block, Chain, Page, Span, Table};
+use super::{Block, Chain, Page, Section, Span, Table};
 use crate::page_shell::PageShell;
 use appell_codegen::symbolic::print::mathml::{TIMES, mathml, sign};
 use appell_codegen::symbolic::print::{Math, clean};
@@ -12,7 +12,11 @@ use appell_codegen::symbolic::print::{Math, clean};
 const WIDTH: usize = 92;
 
 /// Style sheet of the page.
-const STYLE: &str = include_str!("page.css");
+const STYLE: &str = concat!(
+    include_str!("page.css"),
+    include_str!("equations.css"),
+    include_str!("print.css"),
+);
 
 /// The page as a self-contained HTML document.
 pub fn html(page: &Page) -> String {
@@ -26,19 +30,45 @@ pub fn html(page: &Page) -> String {
             @for (index, section) in page.sections.iter().enumerate() {
                 section {
                     h2 { span class="number" { (index + 1) } (spans(&section.heading)) }
-                    @for block in &section.blocks { (shown(block)) "\n" }
+                    @for block in &section.blocks { (shown(block, Use::Reading)) "\n" }
                 }
             }
         }
     })
 }
 
-fn shown(block: &Block) -> Markup {
+/// Style of the equations and tables of a page.
+pub const EQUATIONS: &str = include_str!("equations.css");
+
+/// A section to stand in a page around it. Equations and rows of tables tell the lines of the spec that
+/// they depend on, as `data-lines`, and can be chosen.
+pub fn clickable(section: &Section) -> String {
+    let markup = markup! {
+        h2 { (spans(&section.heading)) }
+        @for block in &section.blocks { (shown(block, Use::Choosing)) "\n" }
+    };
+    markup.into_string()
+}
+
+/// What a page is for.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Use {
+    Reading,
+    Choosing,
+}
+
+/// The attribute `data-lines`, where equations are chosen.
+fn located(purpose: Use, lines: &[usize]) -> Option<String> {
+    let lines = || lines.iter().map(usize::to_string).collect::<Vec<_>>();
+    (purpose == Use::Choosing && !lines().is_empty()).then(|| lines().join(" "))
+}
+
+fn shown(block: &Block, purpose: Use) -> Markup {
     match block {
         Block::Sentence(sentence) => markup! { p { (spans(sentence)) } },
-        Block::Table(all) => table(all),
+        Block::Table(all) => table(all, purpose),
         Block::Chain(all) => chain(all),
-        Block::Equations(all) => equations(all),
+        Block::Equations(all) => equations(all, purpose),
     }
 }
 
@@ -75,14 +105,14 @@ fn spans(spans: &[Span]) -> Markup {
     markup! { @for part in out { (part) } }
 }
 
-fn table(table: &Table) -> Markup {
+fn table(table: &Table, purpose: Use) -> Markup {
     markup! {
         table {
             @if !table.title.is_empty() {
                 caption { (clean(&table.title)) }
             }
             @for row in &table.rows {
-                tr {
+                tr data-lines=[located(purpose, &[row.line])] {
                     @for cell in &row.cells {
                         td { (spans(cell)) }
                     }
@@ -107,7 +137,7 @@ fn chain(chain: &Chain) -> Markup {
 
 /// Rows of a table with three columns: left-hand side, sign, right-hand side. A broken left-hand
 /// side spans all of them.
-fn equations(equations: &[Equation]) -> Markup {
+fn equations(equations: &[Equation], purpose: Use) -> Markup {
     let left_width = left_width(equations);
     markup! {
         div class="equations" {
@@ -115,8 +145,9 @@ fn equations(equations: &[Equation]) -> Markup {
                 mtable displaystyle="true" {
                     @for equation in equations {
                         @let display = equation.display(WIDTH, left_width);
+                        @let lines = located(purpose, &equation.lines);
                         @for (k, line) in display.lines.iter().enumerate() {
-                            (row(display.left, k == 0, line))
+                            (row(display.left, k == 0, line, lines.as_deref()))
                         }
                     }
                 }
@@ -125,24 +156,24 @@ fn equations(equations: &[Equation]) -> Markup {
     }
 }
 
-fn row(left: Option<&Math>, is_first: bool, line: &[Piece<'_>]) -> Markup {
+fn row(left: Option<&Math>, is_first: bool, line: &[Piece<'_>], lines: Option<&str>) -> Markup {
     let right = markup! { mrow { (PreEscaped(pieces(line))) } };
     match (left, is_first) {
         (Some(left), true) => markup! {
-            mtr class="first" {
+            mtr class="first" data-lines=[lines] {
                 mtd class="left" { (formula(left)) }
                 mtd class="sign" { mo { "=" } }
                 mtd class="right" { (right) }
             }
         },
         (Some(_), false) => markup! {
-            mtr { mtd {} mtd {} mtd class="right more" { (right) } }
+            mtr data-lines=[lines] { mtd {} mtd {} mtd class="right more" { (right) } }
         },
         (None, true) => markup! {
-            mtr class="first" { mtd columnspan="3" class="right" { (right) } }
+            mtr class="first" data-lines=[lines] { mtd columnspan="3" class="right" { (right) } }
         },
         (None, false) => markup! {
-            mtr { mtd columnspan="3" class="right more" { (right) } }
+            mtr data-lines=[lines] { mtd columnspan="3" class="right more" { (right) } }
         },
     }
 }

@@ -54,6 +54,11 @@ pub(super) fn sections(w: &mut Writer<'_>, stage: Stage) -> finding::Outcome<Vec
     Ok(sections)
 }
 
+/// The equations of motion alone.
+pub(super) fn equations_of_motion(w: &mut Writer<'_>) -> Vec<Section> {
+    vec![equations::motion(w)]
+}
+
 /// The sections of a page about linear equations.
 pub(super) fn linear(w: &mut Writer<'_>, linear: &Linearisation) -> Vec<Section> {
     let mut sections = vec![

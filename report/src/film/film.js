@@ -1,9 +1,10 @@
 // The film: what there is, and where it is at any time.
 
-const film = unpackedFilm();
+const film = {};
 
-function unpackedFilm() {
-  const film = JSON.parse(document.getElementById("film").textContent);
+/** Takes the data of a motion in place of those before. */
+function take(data) {
+  Object.assign(film, data);
   for (const name of ["times", "positions", "turns", "arrows", "values"]) {
     const bytes = Uint8Array.from(atob(film[name]), (digit) => digit.charCodeAt(0));
     film[name] = new Float32Array(bytes.buffer);
@@ -11,7 +12,6 @@ function unpackedFilm() {
   film.rows = film.times.length;
   film.start = film.rows ? film.times[0] : 0;
   film.end = film.rows ? film.times[film.rows - 1] : 0;
-  return film;
 }
 
 /** The rows on both sides of a time, and how far it is from the first to the second. */

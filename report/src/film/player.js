@@ -61,6 +61,22 @@ class Player {
     colours.follow(() => (this.changed = true));
   }
 
+  /** Shows another motion of the same parts from where the eye and the time are. */
+  renew() {
+    if (!film.rows) return;
+    if (this.stage) {
+      this.stage = new Stage();
+      this.eye.stage = this.stage;
+      at("legend").replaceChildren();
+      fillLegend(this.stage);
+      this.trace();
+    }
+    const slider = at("slider");
+    [slider.min, slider.max] = [film.start, film.end];
+    this.strip.paint();
+    this.seek(this.time);
+  }
+
   prepareControls() {
     const choice = (list, text, value) => Object.assign(element(at(list), "option", text), { value });
     for (const speed of SPEEDS) choice("speed", `${speed} ×`, speed);
@@ -227,7 +243,7 @@ function start() {
     colours.use(colours.theme);
     at("message").textContent = "The motion has no row.";
     at("message").hidden = false;
-    return;
+    return null;
   }
   const player = new Player();
   globalThis.appell = {
@@ -255,6 +271,13 @@ function start() {
     requestAnimationFrame(next);
   };
   requestAnimationFrame(next);
+  return player;
 }
 
-start();
+const motion = JSON.parse(at("film").textContent);
+if (motion) {
+  take(motion);
+  start();
+} else {
+  listen();
+}

@@ -7,7 +7,7 @@ use super::point::symbol_bit;
 
 /// By expression: a superset of its symbols and the set of its radicands. Sets of radicands are
 /// numbered; most expressions share a few of them.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(super) struct Cones {
     symbols: Vec<u64>,
     roots: Vec<u32>,

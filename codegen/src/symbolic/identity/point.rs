@@ -49,7 +49,7 @@ impl From<Option<Element>> for Cell {
 }
 
 /// One random point with the values of all expressions that were asked for.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(super) struct Point {
     key: u64,
     /// The symbol that stands for π.

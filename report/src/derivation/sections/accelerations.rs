@@ -3,9 +3,9 @@
 use appell_spec::mechanism::BodyId;
 
 use super::super::writer::Writer;
+use super::super::{About, Letter, Math};
 use super::super::{Block, Section};
-use super::super::{Letter, Math};
-use super::phrases::{headed, math, with, words};
+use super::phrases::{about, headed, math, with, words};
 use appell_codegen::mechanics::gibbs_appell::along;
 use appell_codegen::symbolic::vector;
 
@@ -25,14 +25,16 @@ pub(super) fn section(w: &mut Writer<'_>) -> Section {
                 &accelerations,
             );
             let letter = Letter::bold("a").below(&w.point(centre));
-            equations.extend(w.vector(letter, a, body.centre.velocity.frame));
+            let vector = w.vector(letter, a, body.centre.velocity.frame);
+            equations.extend(about(vector, About::Point(centre)));
         }
         if let Some(rotation) = body.rotation
             && rotation.velocity.v != vector::ZERO
         {
             let alpha = along(w.graph(), rotation.bias, &rotation.partial, &accelerations);
             let letter = Letter::bold("α").below(&body.name);
-            equations.extend(w.vector(letter, alpha, rotation.velocity.frame));
+            let vector = w.vector(letter, alpha, rotation.velocity.frame);
+            equations.extend(about(vector, About::Body(BodyId::new(index))));
         }
     }
     let rule = Math::Row(vec![

@@ -1,11 +1,11 @@
 //! Constraints, pseudo-velocities, and the generalised velocities that solve both.
 
-use appell_spec::mechanism::{ConstraintId, ConstraintKind, GROUND};
+use appell_spec::mechanism::{ConstraintId, ConstraintKind, CoordinateId, GROUND};
 
 use super::super::display::Equation;
 use super::super::units::unit;
 use super::super::writer::Writer;
-use super::super::{Block, Row, Section, Span, Table};
+use super::super::{About, Block, Row, Section, Span, Table};
 use super::super::{Letter, Math};
 use super::divisors;
 use super::phrases::{equality, headed, introduced, listed, math, sentence, with, words};
@@ -59,7 +59,8 @@ pub(super) fn rates(w: &mut Writer<'_>) -> Vec<Equation> {
         let left = w.symbol(w.derivation.symbols.rates[k]);
         let right = w.explicit(w.derivation.velocities.rates[k]);
         if left != right {
-            equations.push(Equation::new(left, right));
+            let about = About::Rate(CoordinateId::new(k));
+            equations.push(Equation::new(left, right).about(about));
         }
     }
     equations
@@ -137,7 +138,7 @@ fn equation(w: &mut Writer<'_>, row: &row::Row) -> Equation {
         parts.push(w.graph().mul(coefficient, rate));
     }
     let left = w.graph().sum(&parts);
-    Equation::new(w.explicit(left), Math::zero())
+    Equation::new(w.explicit(left), Math::zero()).about(About::Constraint(row.constraint))
 }
 
 fn held_by_geometry(components: Vec<Vec<Span>>) -> Vec<Span> {

@@ -2,12 +2,13 @@
 
 use super::super::display::Equation;
 use super::super::writer::Writer;
-use super::super::{Block, Section, Span};
+use super::super::{About, Block, Section, Span};
 use super::super::{Letter, Math};
 use super::phrases::{headed, listed, math, with, words};
 use appell_codegen::mechanics::gibbs_appell::gibbs_form;
 use appell_codegen::mechanics::motion::independent_blocks;
 use appell_codegen::symbolic::{Expr, Graph, Rational};
+use appell_spec::mechanism::BodyId;
 
 /// A matrix wider than this shows letters, and its entries follow as equations.
 const WIDEST_MATRIX: usize = 82;
@@ -44,11 +45,12 @@ pub(super) fn section(w: &mut Writer<'_>) -> Section {
         words(". Terms without accelerations are omitted; the derivatives do not contain them."),
     ])];
     let mut equations = Vec::new();
-    for body in w.derivation.bodies.clone() {
+    for (index, body) in w.derivation.bodies.clone().into_iter().enumerate() {
         let s = energy_of(w, &body);
         let right = w.by_acceleration(s);
         let left = Letter::plain("S").below(&body.name);
-        equations.push(Equation::new(Math::Letter(left), right));
+        let about = About::Body(BodyId::new(index));
+        equations.push(Equation::new(Math::Letter(left), right).about(about));
     }
     blocks.extend(with(w, "", equations));
     headed("Acceleration energy S", blocks)
@@ -85,7 +87,7 @@ pub(super) fn derivatives(w: &mut Writer<'_>) -> Section {
     let mut equations = Vec::new();
     for (i, bias) in w.derivation.gibbs.bias.clone().into_iter().enumerate() {
         let right = w.explicit(bias);
-        equations.push(Equation::new(numbered("b", i), right));
+        equations.push(Equation::new(numbered("b", i), right).about(About::Inertia(i, i)));
     }
     blocks.extend(with(
         w,
@@ -129,7 +131,8 @@ fn matrix_blocks(w: &mut Writer<'_>, matrix: &[Vec<Expr>]) -> Vec<Block> {
         .sum();
     let left = Math::Letter(Letter::bold("M"));
     if width <= WIDEST_MATRIX {
-        return with(w, "", vec![Equation::new(left, Math::Matrix(entries))]);
+        let whole = Equation::new(left, Math::Matrix(entries)).about(About::Bodies);
+        return with(w, "", vec![whole]);
     }
     let mut equations = Vec::new();
     let mut pattern = entries.clone();
@@ -147,15 +150,13 @@ fn matrix_blocks(w: &mut Writer<'_>, matrix: &[Vec<Expr>]) -> Vec<Block> {
             let letter = Math::Letter(Letter::plain("M").below(&place));
             pattern[i][j] = letter.clone();
             if j >= i {
-                equations.push(Equation::new(letter, entry));
+                equations.push(Equation::new(letter, entry).about(About::Inertia(i, j)));
             }
         }
     }
     let mut blocks = w.definitions();
-    blocks.push(Block::Equations(vec![Equation::new(
-        left,
-        Math::Matrix(pattern),
-    )]));
+    let whole = Equation::new(left, Math::Matrix(pattern)).about(About::Bodies);
+    blocks.push(Block::Equations(vec![whole]));
     blocks.push(Block::Equations(equations));
     blocks
 }

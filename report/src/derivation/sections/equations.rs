@@ -2,7 +2,7 @@
 
 use super::super::display::Equation;
 use super::super::writer::Writer;
-use super::super::{Block, Section};
+use super::super::{About, Block, Section};
 use super::super::{Letter, Math};
 use super::phrases::{headed, listed, math, sentence, with, words};
 use super::solution::Elimination;
@@ -35,7 +35,7 @@ pub(super) fn appell(w: &mut Writer<'_>) -> Section {
         let left = w.graph().sum(&parts);
         let left = w.expanded(left);
         let right = w.explicit(w.derivation.forces[i]);
-        equations.push(Equation::new(left, right));
+        equations.push(Equation::new(left, right).about(About::Motion(i)));
     }
     let general = Math::Row(vec![
         Math::partial(Letter::plain("S"), Letter::plain("ω").dot().below("i")),
@@ -64,7 +64,8 @@ pub(super) fn motion(w: &mut Writer<'_>) -> Section {
         if let Some(values) = values_to_read(w, &block) {
             for (k, value) in values {
                 let right = w.explicit(value);
-                equations.push(Equation::new(Math::Letter(letters[k].clone()), right));
+                let equation = Equation::new(Math::Letter(letters[k].clone()), right);
+                equations.push(equation.about(About::Motion(k)));
             }
             continue;
         }
@@ -132,17 +133,14 @@ pub(super) fn energies(w: &mut Writer<'_>) -> Section {
         kinetic.push(kinetic_energy(&mut w.derivation.algebra, &body));
     }
     let kinetic = w.graph().sum(&kinetic);
-    let mut equations = vec![Equation::new(
-        Math::Letter(Letter::plain("T")),
-        w.explicit(kinetic),
-    )];
+    let mut equations = vec![
+        Equation::new(Math::Letter(Letter::plain("T")), w.explicit(kinetic)).about(About::Bodies),
+    ];
     let loads = w.derivation.loads.clone();
     let potential: Vec<Expr> = loads.iter().filter_map(|load| load.potential).collect();
     let potential = w.graph().sum(&potential);
-    equations.push(Equation::new(
-        Math::Letter(Letter::plain("V")),
-        w.explicit(potential),
-    ));
+    let energy = Math::Letter(Letter::plain("V"));
+    equations.push(Equation::new(energy, w.explicit(potential)).about(About::Loads));
     let mut power: Vec<Expr> = loads
         .iter()
         .filter(|load| load.potential.is_none())
@@ -153,10 +151,8 @@ pub(super) fn energies(w: &mut Writer<'_>) -> Section {
     let prescribed = prescribed.unwrap_or(Graph::ZERO);
     power.push(prescribed);
     let power = w.graph().sum(&power);
-    equations.push(Equation::new(
-        Math::Letter(Letter::plain("P")),
-        w.explicit(power),
-    ));
+    let letter = Math::Letter(Letter::plain("P"));
+    equations.push(Equation::new(letter, w.explicit(power)).about(About::Loads));
     let of_power = if prescribed == Graph::ZERO {
         "Kinetic energy T, potential energy V, power P of the non-conservative loads."
     } else {

@@ -2,7 +2,7 @@
 
 use super::super::display::Equation;
 use super::super::writer::Writer;
-use super::super::{Block, Section};
+use super::super::{About, Block, Section};
 use super::super::{Letter, Math};
 use super::energy::numbered;
 use super::loads;
@@ -16,7 +16,7 @@ pub(super) fn section(w: &mut Writer<'_>) -> Section {
     let mut equations = Vec::new();
     for (i, force) in w.derivation.forces.clone().into_iter().enumerate() {
         let right = w.explicit(force);
-        equations.push(Equation::new(numbered("Π", i), right));
+        equations.push(Equation::new(numbered("Π", i), right).about(About::Force(i)));
     }
     blocks.extend(with(
         w,
@@ -58,14 +58,15 @@ fn load_by_load(w: &mut Writer<'_>) -> Vec<Block> {
         math(rule()),
         words(". Load by load:"),
     ])];
-    for (load, item) in w.derivation.loads.clone().iter().zip(&w.mechanism.loads) {
+    let applied = w.derivation.loads.clone();
+    for (load, (id, item)) in applied.iter().zip(w.mechanism.loads.entries()) {
         let mut what = vec![introduced(&item.name, &item.about, item.line), words(": ")];
         what.extend(loads::statement(w, item));
         what.push(words("."));
         blocks.extend(w.definitions());
         blocks.push(Block::Sentence(what));
         let power = virtual_power(w, load);
-        let equation = Equation::new(loads::virtual_power(item), power);
+        let equation = Equation::new(loads::virtual_power(item), power).about(About::Load(id));
         blocks.extend(with(w, "", vec![equation]));
     }
     blocks

@@ -2,7 +2,7 @@
 
 use super::super::display::Equation;
 use super::super::writer::Writer;
-use super::super::{Block, Math, Section, Span};
+use super::super::{About, Block, Math, Section, Span};
 
 /// A section with a heading of words.
 pub(super) fn headed(heading: &str, blocks: Vec<Block>) -> Section {
@@ -40,6 +40,11 @@ pub(super) fn with(w: &mut Writer<'_>, lead: &str, equations: Vec<Equation>) -> 
     }
     blocks.push(Block::Equations(equations));
     blocks
+}
+
+/// The components of a vector, about something.
+pub(super) fn about(vector: Vec<Equation>, what: About) -> impl Iterator<Item = Equation> {
+    vector.into_iter().map(move |equation| equation.about(what))
 }
 
 /// With a capital letter at the start of a sentence.

@@ -1,8 +1,7 @@
 //! Symbolic elimination, for blocks of the mass matrix whose explicit form is unreadable.
 
-use super::super::Letter;
-use super::super::Math;
 use super::super::display::Equation;
+use super::super::{About, Letter, Math};
 use super::energy::numbered;
 use appell_codegen::mechanics::motion::Block;
 
@@ -52,7 +51,7 @@ impl Elimination {
         match *self.order {
             [k] => {
                 let value = Math::fraction(force_less_bias(k), entry("M", k, k));
-                vec![Equation::new(acceleration(k), value)]
+                vec![Equation::new(acceleration(k), value).about(About::Motion(k))]
             }
             _ if self.order.len() > LARGEST_BLOCK => Vec::new(),
             _ => {
@@ -86,13 +85,15 @@ impl Elimination {
             }
             let coupling = entry("L", k, p);
             let value = Math::fraction(Math::sum(terms), numbered("D", p));
-            equations.push(Equation::new(coupling.clone(), value));
+            equations.push(Equation::new(coupling.clone(), value).about(About::Inertia(k, p)));
             let change = Math::product(vec![square(coupling.clone()), numbered("D", p)]);
             pivot.push((true, change));
             reduced.push((true, Math::product(vec![coupling, numbered("z", p)])));
         }
-        equations.push(Equation::new(numbered("D", k), Math::sum(pivot)));
-        equations.push(Equation::new(numbered("z", k), Math::sum(reduced)));
+        let pivot = Equation::new(numbered("D", k), Math::sum(pivot));
+        equations.push(pivot.about(About::Inertia(k, k)));
+        let reduced = Equation::new(numbered("z", k), Math::sum(reduced));
+        equations.push(reduced.about(About::Motion(k)));
     }
 
     /// The acceleration of a column, from those of later rows.
@@ -105,7 +106,7 @@ impl Elimination {
             let term = vec![entry("L", known, k), acceleration(known)];
             terms.push((true, Math::product(term)));
         }
-        Equation::new(acceleration(k), Math::sum(terms))
+        Equation::new(acceleration(k), Math::sum(terms)).about(About::Motion(k))
     }
 }
 

@@ -1,11 +1,10 @@
 //! Angular velocities of frames and bodies, velocities of points.
 
-use appell_spec::mechanism::{FrameId, GROUND, PointId};
+use appell_spec::mechanism::{BodyId, FrameId, GROUND, PointId};
 
-use super::super::Letter;
-use super::super::Section;
 use super::super::writer::Writer;
-use super::phrases::{headed, sentence, with};
+use super::super::{About, Letter, Section};
+use super::phrases::{about, headed, sentence, with};
 
 /// Velocities, each in the frame where it is shortest.
 pub(super) fn section(w: &mut Writer<'_>) -> Section {
@@ -22,18 +21,19 @@ pub(super) fn section(w: &mut Writer<'_>) -> Section {
             continue;
         }
         let letter = Letter::bold("Ω").below(&w.frame(frame));
-        equations.extend(w.vector(letter, v.v, v.frame));
+        equations.extend(about(w.vector(letter, v.v, v.frame), About::Frame(frame)));
     }
-    for body in w.derivation.bodies.clone() {
+    for (index, body) in w.derivation.bodies.clone().into_iter().enumerate() {
         if let Some(rotation) = body.rotation {
             let letter = Letter::bold("ω").below(&body.name);
-            equations.extend(w.vector(letter, rotation.velocity.v, rotation.velocity.frame));
+            let vector = w.vector(letter, rotation.velocity.v, rotation.velocity.frame);
+            equations.extend(about(vector, About::Body(BodyId::new(index))));
         }
     }
     for point in moving_points(w) {
         let v = w.derivation.kinematics.velocity(point);
         let letter = Letter::bold("v").below(&w.point(point));
-        equations.extend(w.vector(letter, v.v, v.frame));
+        equations.extend(about(w.vector(letter, v.v, v.frame), About::Point(point)));
     }
     let mut blocks = vec![sentence(
         "Ω is the angular velocity of a frame, ω that of a body and the frames fixed in it; each \

@@ -1,0 +1,40 @@
+//! `appell watch`
+
+use std::path::PathBuf;
+
+use appell_watch::Watch as Server;
+
+use crate::failure::Error;
+use crate::output;
+
+/// Shows equations, drawing and motion of a spec in a browser, and follows it as it is saved.
+///
+/// The page is served on the loopback address alone, to whoever knows the secret in its address, until
+/// Ctrl-C. Sliders set parameters, the initial state and inputs; the spec is read and never written.
+#[derive(Debug, clap::Args)]
+pub(crate) struct Watch {
+    /// Path of a spec
+    spec: PathBuf,
+    /// Port of the loopback address; 0 is a free one
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    port: u16,
+}
+
+impl Watch {
+    pub(super) fn run(&self) -> Result<(), Error> {
+        let server = Server::start(&self.spec, self.port).map_err(failure)?;
+        output::print(&format!("{}\n", server.url()))?;
+        server.serve().map_err(failure)
+    }
+}
+
+fn failure(error: appell_watch::Error) -> Error {
+    match error {
+        appell_watch::Error::File { path, cause } => Error::Library(appell::Error::File {
+            doing: "read",
+            path,
+            cause,
+        }),
+        other => Error::Computation(other.to_string()),
+    }
+}

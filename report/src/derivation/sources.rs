@@ -1,0 +1,302 @@
+//! Which lines of the spec the equations of a page depend on.
+//!
+//! A section tells what an equation is about; letters lead to the quantities that they stand for, and
+//! to the equations that define them.
+
+use std::collections::BTreeSet;
+
+use appell_codegen::mechanics::motion::Block;
+use appell_codegen::mechanics::{Derivation, contributions};
+use appell_codegen::symbolic::print::{Letter, Math};
+use appell_codegen::symbolic::{Expr, Graph};
+use appell_spec::mechanism::{BodyId, CoordinateId, FrameId, LoadId, Mechanism, PointId};
+use rustc_hash::{FxHashMap, FxHashSet};
+
+use super::{About, Block as PageBlock, Equation, Page};
+
+/// Tells every equation of a page on which lines of the spec it depends; `page` is that of the derivation.
+pub fn locate(page: &mut Page, mechanism: &Mechanism, derivation: &mut Derivation) {
+    let sources = Sources {
+        loads: contributions::of_loads(derivation),
+        bodies: contributions::of_bodies(derivation),
+        letters: letters(mechanism),
+        mechanism,
+        derivation,
+    };
+    let blocks = || page.sections.iter().flat_map(|section| &section.blocks);
+    let equations = blocks().filter_map(|block| match block {
+        PageBlock::Equations(equations) => Some(equations),
+        _ => None,
+    });
+    let own: Vec<Own> = equations.flatten().map(|e| sources.of(e)).collect();
+    let mut closed = closed(&own).into_iter();
+    for section in &mut page.sections {
+        for block in &mut section.blocks {
+            let PageBlock::Equations(equations) = block else {
+                continue;
+            };
+            for (equation, lines) in equations.iter_mut().zip(&mut closed) {
+                equation.lines = lines.into_iter().collect();
+            }
+        }
+    }
+}
+
+/// Letters of quantities with the lines of their definitions.
+fn letters(mechanism: &Mechanism) -> FxHashMap<Letter, usize> {
+    let parameters = mechanism.parameters.iter().map(|p| &p.label);
+    let inputs = mechanism.inputs.iter().map(|u| &u.label);
+    let fixed = parameters.chain(inputs);
+    let moving = (mechanism.coordinates.iter().map(|q| &q.label))
+        .chain(mechanism.pseudo_velocities.iter().map(|w| &w.label))
+        .chain(mechanism.signals.iter().map(|s| &s.label));
+    let mut letters = FxHashMap::default();
+    for label in fixed {
+        letters.insert(Letter::of(&label.name), label.line);
+    }
+    for label in moving {
+        let letter = Letter::of(&label.name);
+        letters.insert(letter.clone().dot(), label.line);
+        letters.insert(letter.clone().dot().dot(), label.line);
+        letters.insert(letter, label.line);
+    }
+    letters
+}
+
+/// What one equation tells by itself.
+struct Own {
+    /// The letter that it defines.
+    defines: Option<Letter>,
+    letters: FxHashSet<Letter>,
+    lines: BTreeSet<usize>,
+}
+
+struct Sources<'a> {
+    mechanism: &'a Mechanism,
+    derivation: &'a Derivation,
+    /// By load and pseudo-velocity.
+    loads: Vec<Vec<bool>>,
+    /// By body and pseudo-velocity.
+    bodies: Vec<Vec<bool>>,
+    letters: FxHashMap<Letter, usize>,
+}
+
+impl Sources<'_> {
+    fn of(&self, equation: &Equation) -> Own {
+        let mut letters = FxHashSet::default();
+        gather(&equation.left, &mut letters);
+        gather(&equation.right, &mut letters);
+        let mut lines = BTreeSet::new();
+        if let Some(about) = equation.about {
+            self.subject(about, &mut lines);
+        }
+        // In any order: the lines are sorted.
+        #[expect(clippy::iter_over_hash_type, reason = "the lines are sorted")]
+        for letter in &letters {
+            lines.extend(self.letters.get(letter));
+        }
+        // The ground and what the language supplies have no line.
+        lines.remove(&0);
+        let defines = match &equation.left {
+            Math::Letter(letter) => Some(letter.clone()),
+            _ => None,
+        };
+        Own {
+            defines,
+            letters,
+            lines,
+        }
+    }
+
+    fn subject(&self, about: About, lines: &mut BTreeSet<usize>) {
+        match about {
+            About::Body(body) => self.body(body, lines),
+            About::Point(point) => self.point(point, lines),
+            About::Frame(frame) => self.frame(frame, lines),
+            About::Constraint(constraint) => {
+                lines.insert(self.mechanism.constraints[constraint].line);
+            }
+            About::Rate(coordinate) => self.rate(coordinate, lines),
+            About::Load(load) => self.load(load, lines),
+            About::Inertia(i, j) => {
+                self.bodies_where(|moves| moves[i] && moves[j], lines);
+                let gibbs = &self.derivation.gibbs;
+                self.symbols_in(
+                    &[gibbs.mass_matrix[i][j], gibbs.bias[i], gibbs.bias[j]],
+                    lines,
+                );
+            }
+            About::Force(i) => {
+                self.loads_where(|enters| enters[i], lines);
+                self.symbols_in(&[self.derivation.forces[i]], lines);
+            }
+            About::Motion(i) => {
+                for j in self.solved_with(i) {
+                    self.subject(About::Inertia(j, j), lines);
+                    self.subject(About::Force(j), lines);
+                }
+            }
+            About::Bodies => self.bodies_where(|_| true, lines),
+            About::Loads => self.loads_where(|_| true, lines),
+        }
+    }
+
+    /// The pseudo-velocities whose accelerations are solved together with one.
+    fn solved_with(&self, speed: usize) -> Vec<usize> {
+        let blocks = self.derivation.motion.blocks.iter();
+        let mut speeds = blocks.map(|block| match block {
+            Block::Eliminated(equations) => equations.iter().map(|e| e.speed).collect(),
+            Block::Factorized(block) => block.speeds.clone(),
+        });
+        speeds
+            .find(|speeds: &Vec<usize>| speeds.contains(&speed))
+            .unwrap_or_default()
+    }
+
+    /// The quantities whose symbols occur in expressions.
+    fn symbols_in(&self, all: &[Expr], lines: &mut BTreeSet<usize>) {
+        let graph = &self.derivation.algebra.graph;
+        let symbols = &self.derivation.symbols;
+        let mechanism = self.mechanism;
+        let quantities = (mechanism.parameters.iter().map(|p| p.label.line))
+            .zip(&symbols.parameters)
+            .chain((mechanism.coordinates.iter().map(|q| q.label.line)).zip(&symbols.coordinates))
+            .chain((mechanism.pseudo_velocities.iter().map(|w| w.label.line)).zip(&symbols.speeds))
+            .chain((mechanism.inputs.iter().map(|u| u.label.line)).zip(&symbols.inputs));
+        let symbols =
+            quantities.filter_map(|(line, &symbol)| Some((line, graph.as_symbol(symbol)?)));
+        for (line, symbol) in symbols {
+            if all.iter().any(|&expr| graph.mentions(expr, &[symbol])) {
+                lines.insert(line);
+            }
+        }
+    }
+
+    fn bodies_where(&self, wanted: impl Fn(&[bool]) -> bool, lines: &mut BTreeSet<usize>) {
+        for (body, moves) in self.mechanism.bodies.ids().zip(&self.bodies) {
+            if wanted(moves) {
+                self.body(body, lines);
+            }
+        }
+    }
+
+    fn loads_where(&self, wanted: impl Fn(&[bool]) -> bool, lines: &mut BTreeSet<usize>) {
+        for (load, enters) in self.mechanism.loads.ids().zip(&self.loads) {
+            if wanted(enters) {
+                self.load(load, lines);
+            }
+        }
+    }
+
+    fn body(&self, body: BodyId, lines: &mut BTreeSet<usize>) {
+        let body = &self.mechanism.bodies[body];
+        lines.insert(body.line);
+        self.point(body.centre, lines);
+        if let Some(frame) = body.frame {
+            self.frame(frame, lines);
+        }
+    }
+
+    fn load(&self, load: LoadId, lines: &mut BTreeSet<usize>) {
+        let load = &self.mechanism.loads[load];
+        lines.insert(load.line);
+        for point in load.kind.points() {
+            self.point(point, lines);
+        }
+    }
+
+    /// A point with those that it is placed from.
+    fn point(&self, point: PointId, lines: &mut BTreeSet<usize>) {
+        let mut next = Some(point);
+        while let Some(point) = next {
+            let point = &self.mechanism.points[point];
+            lines.insert(point.line);
+            self.frame(point.frame, lines);
+            next = point.from;
+        }
+    }
+
+    /// A frame with those that it is turned from.
+    fn frame(&self, frame: FrameId, lines: &mut BTreeSet<usize>) {
+        let mut next = Some(frame);
+        while let Some(frame) = next {
+            let frame = &self.mechanism.frames[frame];
+            lines.insert(frame.line);
+            next = frame.parent;
+        }
+    }
+
+    fn rate(&self, coordinate: CoordinateId, lines: &mut BTreeSet<usize>) {
+        lines.insert(self.mechanism.coordinates[coordinate].label.line);
+        let rows = self.derivation.constraints.rows.iter();
+        let restricts = |coefficients: &[Expr]| coefficients[coordinate.index()] != Graph::ZERO;
+        for row in rows.filter(|row| row.is_active() && restricts(&row.coefficients)) {
+            lines.insert(self.mechanism.constraints[row.constraint].line);
+        }
+    }
+}
+
+/// The lines of each equation, with those of the equations that define its letters.
+fn closed(own: &[Own]) -> Vec<BTreeSet<usize>> {
+    let definitions: FxHashMap<&Letter, usize> = (own.iter().enumerate())
+        .filter_map(|(at, equation)| Some((equation.defines.as_ref()?, at)))
+        .collect();
+    let all = |start: usize| {
+        let mut seen = FxHashSet::from_iter([start]);
+        let mut open = vec![start];
+        let mut lines = BTreeSet::new();
+        while let Some(at) = open.pop() {
+            lines.extend(&own[at].lines);
+            let letters = own[at].letters.iter();
+            let defined = letters.filter_map(|letter| definitions.get(letter).copied());
+            open.extend(defined.filter(|at| seen.insert(*at)));
+        }
+        lines
+    };
+    (0..own.len()).map(all).collect()
+}
+
+/// All letters of a formula.
+fn gather(math: &Math, letters: &mut FxHashSet<Letter>) {
+    let mut all = |parts: &[Math]| {
+        for part in parts {
+            gather(part, letters);
+        }
+    };
+    match math {
+        Math::Letter(letter) => {
+            letters.insert(letter.clone());
+        }
+        Math::Integer(_) | Math::Ratio(..) | Math::Words(_) | Math::Sign(_) => {}
+        Math::Row(parts)
+        | Math::Vector {
+            components: parts, ..
+        } => all(parts),
+        Math::Sum(terms) => {
+            for (_, term) in terms {
+                gather(term, letters);
+            }
+        }
+        Math::Fraction(a, b) | Math::Power(a, b) => {
+            gather(a, letters);
+            gather(b, letters);
+        }
+        Math::Call(_, _, inner) | Math::Root(inner) | Math::Size(inner) | Math::Brackets(inner) => {
+            gather(inner, letters);
+        }
+        Math::Matrix(rows) => {
+            for row in rows {
+                all(row);
+            }
+        }
+        Math::Cases {
+            value,
+            condition,
+            otherwise,
+        } => {
+            for part in [value, condition, otherwise] {
+                gather(part, letters);
+            }
+        }
+    }
+}

@@ -1,0 +1,97 @@
+//! What can be set on the page: parameters, the initial state, inputs, in the units of the spec.
+
+use appell::{ModelInfo, Quantity};
+use serde_json::{Value, json};
+
+/// A slider of a quantity without limits goes to this multiple of its value.
+const WIDE: f64 = 2.0;
+
+/// The sliders of a model.
+pub(crate) fn knobs(info: &ModelInfo) -> Value {
+    let declared = &info.inputs[..info.declared_inputs];
+    json!({
+        "parameters": all(&info.parameters, Sign::Kept),
+        "initial": all(&info.states, Sign::Any),
+        "inputs": all(declared, Sign::Any),
+    })
+}
+
+/// The derivation relies on the sign of a parameter, unless its limits admit both.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Sign {
+    Kept,
+    Any,
+}
+
+fn all(quantities: &[Quantity], sign: Sign) -> Vec<Value> {
+    quantities.iter().map(|q| knob(q, sign)).collect()
+}
+
+fn knob(quantity: &Quantity, sign: Sign) -> Value {
+    let unit = |si: f64| si / quantity.scale;
+    let value = unit(quantity.value);
+    let [least, most] = quantity.range.map(unit);
+    let [low, high] = reach(value, [least, most], &quantity.unit, sign);
+    let limit = |limit: f64| limit.is_finite().then_some(limit);
+    json!({
+        "name": quantity.name,
+        "about": quantity.about,
+        "unit": quantity.unit,
+        "value": value,
+        "low": low,
+        "high": high,
+        "least": limit(least),
+        "most": limit(most),
+    })
+}
+
+/// From where to where a slider goes: to the limits where there are any.
+fn reach(value: f64, [least, most]: [f64; 2], unit: &str, sign: Sign) -> [f64; 2] {
+    let width = match unit {
+        "rad" => std::f64::consts::PI,
+        "deg" => 180.0,
+        _ if value == 0.0 => 10.0,
+        _ => WIDE * value.abs(),
+    };
+    let width = width.max(value.abs());
+    let beyond = |other: bool| {
+        if sign == Sign::Kept && other {
+            0.0
+        } else {
+            width
+        }
+    };
+    let low = if least.is_finite() {
+        least
+    } else {
+        -beyond(value > 0.0)
+    };
+    let high = if most.is_finite() {
+        most
+    } else {
+        beyond(value < 0.0)
+    };
+    // A limit may lie beyond what the other end reaches.
+    [low.min(value), high.max(value).max(low)]
+}
+
+#[cfg(test)]
+#[expect(clippy::float_cmp, reason = "products of two are exact")]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_slider_goes_to_the_limits_or_around_its_value() {
+        let everywhere = [f64::NEG_INFINITY, f64::INFINITY];
+        let any = |value, limits, unit| reach(value, limits, unit, Sign::Any);
+        assert_eq!(any(3.0, [0.0, f64::INFINITY], "kg"), [0.0, 6.0]);
+        assert_eq!(any(0.2, [-1.5, 1.5], "rad"), [-1.5, 1.5]);
+        assert_eq!(any(0.0, everywhere, "m/s"), [-10.0, 10.0]);
+        assert_eq!(any(-200.0, everywhere, "deg"), [-200.0, 200.0]);
+        assert_eq!(any(50.0, [f64::NEG_INFINITY, 20.0], "m"), [-100.0, 50.0]);
+        let kept = |value| reach(value, everywhere, "m", Sign::Kept);
+        assert_eq!(kept(2.0), [0.0, 4.0]);
+        assert_eq!(kept(-2.0), [-4.0, 0.0]);
+        assert_eq!(kept(0.0), [-10.0, 10.0]);
+    }
+}

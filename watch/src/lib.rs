@@ -1,0 +1,112 @@
+//! A page on the loopback address that follows a spec while it is being written.
+//!
+//! ```text
+//! file --> text --worker--> findings, equations, drawing, model --board--> page
+//! model --motions--> motion with the values of the sliders --> page
+//! ```
+//!
+//! | file | what it knows |
+//! |---|---|
+//! | `file.rs` | when the file is saved, and its text |
+//! | `worker.rs`, `places.rs`, `knobs.rs` | what the page shows of a text; places in it; sliders |
+//! | `board.rs` | the newest of everything, the last good model too |
+//! | `motions.rs` | motions with the values of the sliders, within bounds |
+//! | `server.rs`, `guard.rs` | answers to the page, and to nobody else |
+
+mod board;
+mod file;
+mod guard;
+mod knobs;
+mod motions;
+mod places;
+mod server;
+mod worker;
+
+use std::net::{Ipv4Addr, SocketAddr, TcpListener};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use board::Board;
+use guard::Guard;
+use motions::Motions;
+use worker::Inbox;
+
+/// Why a page cannot be served.
+#[derive(Debug, thiserror::Error)]
+pub enum Error {
+    /// The file cannot be read.
+    #[error("cannot read {}: {cause}", path.display())]
+    File {
+        /// The file.
+        path: PathBuf,
+        /// The error of the operating system.
+        #[source]
+        cause: std::io::Error,
+    },
+    /// The port is taken, or no thread can be started.
+    #[error("the page cannot be served: {0}")]
+    Server(#[from] std::io::Error),
+    /// The operating system gives no random numbers.
+    #[error("no secret for the address: {0}")]
+    Secret(getrandom::Error),
+}
+
+/// A server that is ready for a browser.
+pub struct Watch {
+    listener: TcpListener,
+    guard: Guard,
+    board: Arc<Board>,
+    motions: Arc<Motions>,
+    inbox: Inbox,
+}
+
+impl Watch {
+    /// Follows a spec and listens on a port of the loopback address; 0 is any free one.
+    pub fn start(spec: &Path, port: u16) -> Result<Self, Error> {
+        // Another kind of file could keep a reader waiting.
+        let is_file = std::fs::metadata(spec).and_then(|about| {
+            let no_file = || std::io::Error::other("this is no file");
+            about.is_file().then_some(()).ok_or_else(no_file)
+        });
+        is_file.map_err(|cause| Error::File {
+            path: spec.to_owned(),
+            cause,
+        })?;
+        let spec = &std::path::absolute(spec)?;
+        let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, port))?;
+        listener.set_nonblocking(true)?;
+        let guard = Guard::new(listener.local_addr()?.port()).map_err(Error::Secret)?;
+        let board = Arc::new(Board::default());
+        let motions = Motions::start(&board)?;
+        let inbox = worker::start(spec, &board)?;
+        file::follow(spec, inbox.clone())?;
+        Ok(Self {
+            listener,
+            guard,
+            board,
+            motions,
+            inbox,
+        })
+    }
+
+    /// Where the server listens.
+    pub fn address(&self) -> SocketAddr {
+        (Ipv4Addr::LOCALHOST, self.guard.port()).into()
+    }
+
+    /// The address of the page. Its secret admits to the server.
+    pub fn url(&self) -> String {
+        format!("http://{}/{}/", self.address(), self.guard.token())
+    }
+
+    /// Serves the page until the process ends.
+    pub fn serve(self) -> Result<(), Error> {
+        Ok(server::serve(
+            self.listener,
+            self.guard,
+            self.board,
+            self.motions,
+            self.inbox,
+        )?)
+    }
+}

@@ -1,0 +1,202 @@
+//! Motions with the values of the sliders. Each window waits for its newest request alone, and no
+//! motion takes longer than its bounds.
+
+use std::collections::BTreeMap;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use appell::setup::Assignment;
+use appell::{IntegrationOptions, Model, Motion, Simulated};
+use appell_report::figure::Figure;
+use appell_report::film;
+use serde::Deserialize;
+use serde_json::{Value, json};
+use tokio::sync::oneshot;
+
+use crate::board::Board;
+
+/// Longest motion, in s.
+const LONGEST: f64 = 600.0;
+/// Pictures of a motion.
+const ROWS: f64 = 600.0;
+/// Steps of the integrator, rejected ones included.
+const MOST_STEPS: usize = 50_000;
+/// Longest computation of a motion.
+const PATIENCE: Duration = Duration::from_secs(2);
+/// Windows that may wait at the same time.
+const MOST_WINDOWS: usize = 16;
+/// Values in a request.
+const MOST_VALUES: usize = 1000;
+/// As much as the command line has on its main thread.
+const STACK: usize = 8 << 20;
+
+/// What a window asks for; values are texts, as the command line takes them.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Request {
+    /// A number that the window has chosen for itself.
+    window: u64,
+    /// End of the motion in s.
+    end: f64,
+    #[serde(default)]
+    parameters: BTreeMap<String, String>,
+    #[serde(default)]
+    initial: BTreeMap<String, String>,
+    #[serde(default)]
+    inputs: BTreeMap<String, String>,
+}
+
+/// Why there is no motion.
+#[derive(Debug)]
+pub(crate) enum Refusal {
+    /// Too many windows wait.
+    Busy,
+    /// Something in the request is wrong, or nothing can be computed from it.
+    Wrong(String),
+}
+
+type Answer = Result<Value, Refusal>;
+
+struct Job {
+    request: Request,
+    /// Closed where a newer request has come.
+    answer: oneshot::Sender<Answer>,
+}
+
+/// The requests that wait, by window.
+pub(crate) struct Motions {
+    waiting: Mutex<BTreeMap<u64, Job>>,
+    come: Condvar,
+}
+
+impl Motions {
+    /// Starts the thread that computes.
+    pub(crate) fn start(board: &Arc<Board>) -> std::io::Result<Arc<Self>> {
+        let motions = Arc::new(Self {
+            waiting: Mutex::default(),
+            come: Condvar::new(),
+        });
+        let (own, board) = (Arc::clone(&motions), Arc::clone(board));
+        thread::Builder::new()
+            .name("motions".to_owned())
+            .stack_size(STACK)
+            .spawn(move || own.work(&board))?;
+        Ok(motions)
+    }
+
+    fn lock(&self) -> MutexGuard<'_, BTreeMap<u64, Job>> {
+        // Every change is whole, whatever happened to the writer afterwards.
+        self.waiting.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Puts a request in the place of an older one of the same window; that gets no answer.
+    pub(crate) fn ask(&self, request: Request) -> Result<oneshot::Receiver<Answer>, Refusal> {
+        let (answer, answered) = oneshot::channel();
+        let mut waiting = self.lock();
+        if waiting.len() >= MOST_WINDOWS && !waiting.contains_key(&request.window) {
+            return Err(Refusal::Busy);
+        }
+        waiting.insert(request.window, Job { request, answer });
+        drop(waiting);
+        self.come.notify_one();
+        Ok(answered)
+    }
+
+    fn work(&self, board: &Board) {
+        loop {
+            let mut waiting = self.lock();
+            let (window, Job { request, answer }) = loop {
+                if let Some(job) = waiting.pop_first() {
+                    break job;
+                }
+                let woken = self.come.wait(waiting);
+                waiting = woken.unwrap_or_else(PoisonError::into_inner);
+            };
+            drop(waiting);
+            let start = Instant::now();
+            let is_wanted = || !answer.is_closed() && !self.lock().contains_key(&window);
+            let go_on = || start.elapsed() < PATIENCE && is_wanted();
+            let moved = catch_unwind(AssertUnwindSafe(|| motion(board, &request, go_on)));
+            let moved = moved.unwrap_or_else(|_| {
+                Err(Refusal::Wrong(
+                    "a mistake in appell: this motion cannot be computed".to_owned(),
+                ))
+            });
+            if is_wanted() {
+                // Nobody listens any more where the window was closed.
+                let _ = answer.send(moved);
+            }
+        }
+    }
+}
+
+fn motion(board: &Board, request: &Request, go_on: impl Fn() -> bool) -> Answer {
+    let good = board.good();
+    let good = good.ok_or_else(|| Refusal::Wrong("there is no model yet".to_owned()))?;
+    let wrong = |error: appell::Error| Refusal::Wrong(error.to_string());
+    let motion = request.motion()?;
+    let start = Instant::now();
+    let Simulated {
+        trajectory,
+        failure,
+        ..
+    } = good.model.simulate_while(&motion, go_on).map_err(wrong)?;
+    let seconds = start.elapsed().as_secs_f64();
+    let film = film(&good.model, &trajectory, failure.as_deref())?;
+    let figure = Figure::of_states_and_inputs(&trajectory).to_svg();
+    Ok(json!({
+        "version": good.version,
+        "seconds": seconds,
+        "ending": failure,
+        "figure": figure,
+        "film": film,
+    }))
+}
+
+fn film(
+    model: &Model,
+    trajectory: &appell::Trajectory,
+    ending: Option<&str>,
+) -> Result<Value, Refusal> {
+    let setup = model.setup();
+    let setup = setup.map_err(|error| Refusal::Wrong(error.to_string()))?;
+    film::data(&setup.mechanism, model.equations(), trajectory, ending).map_err(|findings| {
+        let messages = findings.iter().map(|finding| finding.message.as_str());
+        Refusal::Wrong(messages.collect::<Vec<_>>().join("; "))
+    })
+}
+
+impl Request {
+    fn motion(&self) -> Result<Motion, Refusal> {
+        if !(self.end > 0.0 && self.end <= LONGEST) {
+            let message = format!("a motion ends after 0 s and not after {LONGEST} s");
+            return Err(Refusal::Wrong(message));
+        }
+        let count = self.parameters.len() + self.initial.len() + self.inputs.len();
+        if count > MOST_VALUES {
+            let message = format!("more than {MOST_VALUES} values");
+            return Err(Refusal::Wrong(message));
+        }
+        let whole = Motion::new(self.end);
+        Ok(Motion {
+            interval: Some(self.end / ROWS),
+            options: IntegrationOptions {
+                max_steps: MOST_STEPS,
+                ..whole.options
+            },
+            parameters: assignments(&self.parameters),
+            initial: assignments(&self.initial),
+            inputs: assignments(&self.inputs),
+            ..whole
+        })
+    }
+}
+
+fn assignments(values: &BTreeMap<String, String>) -> Vec<Assignment> {
+    let values = values.iter();
+    values
+        .map(|(name, value)| Assignment::new(name, value))
+        .collect()
+}

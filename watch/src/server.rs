@@ -1,0 +1,234 @@
+//! Answers to the page.
+
+use std::convert::Infallible;
+use std::net::TcpListener;
+use std::sync::Arc;
+use std::time::Duration;
+
+use appell_report::derivation::EQUATIONS;
+use appell_report::film::live_page;
+use appell_report::page_shell::PageShell;
+use axum::Router;
+use axum::body::Bytes;
+use axum::extract::{DefaultBodyLimit, Request, State};
+use axum::http::header::{
+    CACHE_CONTROL, CONTENT_SECURITY_POLICY, CONTENT_TYPE, REFERRER_POLICY, X_CONTENT_TYPE_OPTIONS,
+};
+use axum::http::{HeaderName, HeaderValue, StatusCode};
+use axum::middleware::{self, Next};
+use axum::response::sse::{Event, KeepAlive, Sse};
+use axum::response::{IntoResponse, Response};
+use axum::routing::{get, post};
+use futures_util::stream::{self, Stream};
+use maud::{PreEscaped, html};
+use tokio::sync::Semaphore;
+
+use crate::board::Board;
+use crate::guard::Guard;
+use crate::motions::{Motions, Refusal};
+use crate::worker::Inbox;
+
+/// Bytes of a request.
+const LARGEST: usize = 64 << 10;
+/// Whoever takes longer to send a request or to be answered gets nothing.
+const PATIENCE: Duration = Duration::from_secs(30);
+/// Windows that follow the spec.
+const MOST_WINDOWS: usize = 32;
+
+const STYLE: &str = include_str!("page/style.css");
+const BODY: &str = include_str!("page/body.html");
+const SCRIPTS: [&str; 5] = [
+    include_str!("page/spec.js"),
+    include_str!("page/equations.js"),
+    include_str!("page/sliders.js"),
+    include_str!("page/motion.js"),
+    include_str!("page/page.js"),
+];
+
+/// The page asks nobody but this server, and runs no script but its own.
+const POLICY: &str = "default-src 'none'; script-src 'self'; style-src 'self'; connect-src 'self'; \
+                      img-src data:; frame-src 'self'; base-uri 'none'; form-action 'none'; \
+                      frame-ancestors 'none'";
+/// The frame of the motion gets data and asks nobody: the sandbox makes it a stranger to the server.
+const FRAME_POLICY: &str = "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; \
+                            base-uri 'none'; form-action 'none'; frame-ancestors 'self'; \
+                            sandbox allow-scripts";
+
+#[derive(Clone)]
+struct Shared {
+    guard: Guard,
+    board: Arc<Board>,
+    motions: Arc<Motions>,
+    inbox: Inbox,
+    windows: Arc<Semaphore>,
+}
+
+/// Serves until the process ends.
+pub(crate) fn serve(
+    listener: TcpListener,
+    guard: Guard,
+    board: Arc<Board>,
+    motions: Arc<Motions>,
+    inbox: Inbox,
+) -> std::io::Result<()> {
+    let shared = Shared {
+        guard,
+        board,
+        motions,
+        inbox,
+        windows: Arc::new(Semaphore::new(MOST_WINDOWS)),
+    };
+    let routes = Router::new()
+        .route("/{token}/", get(page))
+        .route("/{token}/style.css", get(style))
+        .route("/{token}/page.js", get(script))
+        .route("/{token}/motion.html", get(frame))
+        .route("/{token}/state", get(state))
+        .route("/{token}/events", get(events))
+        .route("/{token}/motion", post(motion))
+        .route("/{token}/derivation", post(derivation))
+        .layer(DefaultBodyLimit::max(LARGEST))
+        .layer(middleware::from_fn_with_state(shared.clone(), guarded))
+        .with_state(shared);
+    let runtime = tokio::runtime::Builder::new_current_thread()
+        .enable_all()
+        .build()?;
+    runtime.block_on(async {
+        let listener = tokio::net::TcpListener::from_std(listener)?;
+        axum::serve(listener, routes).await
+    })
+}
+
+/// Admits a request and answers it in time.
+async fn guarded(State(shared): State<Shared>, request: Request, next: Next) -> Response {
+    let admitted = shared.guard.check(request.uri().path(), request.headers());
+    let mut response = match admitted {
+        Err(status) => status.into_response(),
+        Ok(()) => tokio::time::timeout(PATIENCE, next.run(request))
+            .await
+            .unwrap_or_else(|_| StatusCode::REQUEST_TIMEOUT.into_response()),
+    };
+    let headers = response.headers_mut();
+    headers
+        .entry(CONTENT_SECURITY_POLICY)
+        .or_insert(HeaderValue::from_static(POLICY));
+    for (name, value) in [
+        (CACHE_CONTROL, "no-store"),
+        (REFERRER_POLICY, "no-referrer"),
+        (X_CONTENT_TYPE_OPTIONS, "nosniff"),
+        (
+            HeaderName::from_static("cross-origin-resource-policy"),
+            "same-origin",
+        ),
+        (
+            HeaderName::from_static("cross-origin-opener-policy"),
+            "same-origin",
+        ),
+    ] {
+        headers.insert(name, HeaderValue::from_static(value));
+    }
+    response
+}
+
+fn typed(kind: &'static str, text: String) -> Response {
+    ([(CONTENT_TYPE, kind)], text).into_response()
+}
+
+async fn page() -> Response {
+    let head = html! {
+        (PreEscaped(BODY))
+        script src="page.js" {}
+    };
+    let shell = PageShell {
+        sheet: Some("style.css"),
+        ..PageShell::new("appell", "")
+    };
+    typed("text/html; charset=utf-8", shell.around(&head))
+}
+
+async fn style() -> Response {
+    typed("text/css; charset=utf-8", [EQUATIONS, STYLE].concat())
+}
+
+async fn script() -> Response {
+    let scripts = format!("\"use strict\";\n{}", SCRIPTS.join("\n"));
+    typed("text/javascript; charset=utf-8", scripts)
+}
+
+async fn frame() -> Response {
+    let mut response = typed("text/html; charset=utf-8", live_page());
+    let policy = HeaderValue::from_static(FRAME_POLICY);
+    response
+        .headers_mut()
+        .insert(CONTENT_SECURITY_POLICY, policy);
+    response
+}
+
+/// All parts of the page, by name.
+async fn state(State(shared): State<Shared>) -> Response {
+    let parts = shared.board.since(0).into_iter();
+    let parts: Vec<String> = parts
+        .map(|entry| format!("\"{}\":{}", entry.part.name(), entry.json))
+        .collect();
+    json(format!("{{{}}}", parts.join(",")))
+}
+
+fn json(text: String) -> Response {
+    typed("application/json", text)
+}
+
+/// Each part when it changes, the newest of all parts at first.
+async fn events(State(shared): State<Shared>) -> Response {
+    let Ok(permit) = Arc::clone(&shared.windows).try_acquire_owned() else {
+        return StatusCode::SERVICE_UNAVAILABLE.into_response();
+    };
+    let news = changes(&shared.board);
+    // The place is free again when the window is closed.
+    let news = stream::unfold((Box::pin(news), permit), |(mut news, permit)| async move {
+        use futures_util::StreamExt as _;
+        Some((news.next().await?, (news, permit)))
+    });
+    Sse::new(news)
+        .keep_alive(KeepAlive::default())
+        .into_response()
+}
+
+fn changes(board: &Arc<Board>) -> impl Stream<Item = Result<Event, Infallible>> + use<> {
+    let start = (Arc::clone(board), board.subscribe(), 0);
+    stream::unfold(start, |(board, mut news, seen)| async move {
+        loop {
+            news.borrow_and_update();
+            if let Some(entry) = board.since(seen).into_iter().next() {
+                let event = Event::default().event(entry.part.name()).data(&*entry.json);
+                return Some((Ok(event), (board, news, entry.stamp)));
+            }
+            news.changed().await.ok()?;
+        }
+    })
+}
+
+/// Has the derivation written; it comes as an event.
+async fn derivation(State(shared): State<Shared>) -> StatusCode {
+    shared.inbox.want_derivation();
+    StatusCode::ACCEPTED
+}
+
+async fn motion(State(shared): State<Shared>, body: Bytes) -> Response {
+    let request = match serde_json::from_slice(&body) {
+        Ok(request) => request,
+        Err(error) => return (StatusCode::BAD_REQUEST, error.to_string()).into_response(),
+    };
+    let answered = match shared.motions.ask(request) {
+        Ok(answered) => answered.await,
+        Err(refusal) => Ok(Err(refusal)),
+    };
+    match answered {
+        Ok(Ok(motion)) => json(motion.to_string()),
+        Ok(Err(Refusal::Wrong(message))) => {
+            (StatusCode::UNPROCESSABLE_ENTITY, message).into_response()
+        }
+        Ok(Err(Refusal::Busy)) => StatusCode::SERVICE_UNAVAILABLE.into_response(),
+        // A newer request has come.
+        Err(_) => StatusCode::CONFLICT.into_response(),
+    }
+}

@@ -1,0 +1,8 @@
+//! The server of a live page, over plain sockets.
+
+mod client;
+
+mod access;
+mod hostile;
+mod motions;
+mod saving;

@@ -51,7 +51,7 @@ mod converted {
     /// Pixels per unit of the figure.
     const SCALE: f32 = 2.0;
 
-    fn failed(cause: impl ToString) -> Error {
+    fn failed(cause: &impl ToString) -> Error {
         let cause = cause.to_string();
         Error::Computation(format!("the figure cannot be converted: {cause}"))
     }
@@ -62,7 +62,7 @@ mod converted {
         // The same letters on every machine, with the Greek ones and the dots above them.
         fonts.load_font_data(dejavu::sans::regular().to_vec());
         fonts.set_sans_serif_family("DejaVu Sans");
-        Tree::from_str(svg, &options).map_err(failed)
+        Tree::from_str(svg, &options).map_err(|cause| failed(&cause))
     }
 
     /// The figure in its light colours, at twice its size.
@@ -70,16 +70,17 @@ mod converted {
         let tree = tree(svg)?;
         let size = tree.size().to_int_size().scale_by(SCALE);
         let pixels = size.and_then(|size| Pixmap::new(size.width(), size.height()));
-        let mut pixels = pixels.ok_or_else(|| failed("it has no size"))?;
+        let mut pixels = pixels.ok_or_else(|| failed(&"it has no size"))?;
         let scale = Transform::from_scale(SCALE, SCALE);
         resvg::render(&tree, scale, &mut pixels.as_mut());
-        pixels.encode_png().map_err(failed)
+        pixels.encode_png().map_err(|cause| failed(&cause))
     }
 
     /// The figure in its light colours, on a page of its size.
     pub(super) fn pdf(svg: &str) -> Result<Vec<u8>, Error> {
         let tree = tree(svg)?;
-        to_pdf(&tree, ConversionOptions::default(), PageOptions::default()).map_err(failed)
+        to_pdf(&tree, ConversionOptions::default(), PageOptions::default())
+            .map_err(|cause| failed(&cause))
     }
 }
 

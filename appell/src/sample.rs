@@ -16,21 +16,8 @@ const ROWS: u32 = 800;
 /// Standard deviation of the encoder's noise in m.
 const NOISE: f64 = 1e-3;
 /// Spec and description as their owner has them.
-const SPEC: &str = include_str!("../../generated/mechanisms/carriage.toml");
-const DESCRIPTION: &str = r#"mechanism   = "my_rig.toml"
-description = "carriage on a rail, encoder, force command"
-
-[parameters]
-m = { value = 1.0, unit = "kg", std = 0.02 }   # weighed to 2 %
-
-[channels]
-x = { measures = "x", unit = "m" }
-F = { input = "F", unit = "N" }
-
-[runs]
-fit  = ["run1.csv", "run2.csv"]
-test = ["run3.csv"]
-"#;
+const SPEC: &str = include_str!("../../docs/examples/rig/my_rig.toml");
+const DESCRIPTION: &str = include_str!("../../docs/examples/rig/recording.toml");
 /// What nobody told the owner: dry friction, and a rail with a grain.
 const HIDDEN: &str = r#"
 [loads.rubbing]

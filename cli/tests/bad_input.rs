@@ -190,7 +190,7 @@ fn nothing_is_left_behind_where_writing_fails() {
     folder.fails(
         3,
         &["simulate", "carriage", "--csv", "taken/motion.csv"],
-        &["cannot write taken"],
+        &["there is no folder `taken`"],
     );
     std::fs::create_dir(folder.path("folder")).expect("a folder");
     folder.fails(

@@ -105,10 +105,14 @@ fn what_is_read_only_stays_as_it_is() {
 }
 
 #[test]
-fn folders_are_made_on_the_way() {
+fn folders_that_nobody_asked_for_are_not_made() {
     let folder = Folder::new();
-    folder.done(&derive_to("a/b/page.txt"));
-    assert_eq!(folder.read("a/b/page.txt"), page(&folder));
+    folder.fails(
+        3,
+        &derive_to("a/b/page.txt"),
+        &["there is no folder `a/b`: create it first"],
+    );
+    assert!(folder.files().is_empty(), "{:?}", folder.files());
 }
 
 #[test]

@@ -138,8 +138,8 @@ impl<'b, 'a> Search<'b, 'a> {
                 self.join_components(base, &screen);
             }
         }
-        self.drop_idle();
         self.try_lags();
+        self.drop_idle();
         Ok(true)
     }
 

@@ -120,6 +120,7 @@ impl<'b, 'a> Search<'b, 'a> {
         }
         self.join_quiet(0)?;
         for members in 1..MOST_MEMBERS {
+            self.try_lags(members);
             if !self.betters(members) {
                 break;
             }
@@ -138,7 +139,6 @@ impl<'b, 'a> Search<'b, 'a> {
                 self.join_components(base, &screen);
             }
         }
-        self.try_lags();
         self.drop_idle();
         Ok(true)
     }
@@ -379,17 +379,14 @@ impl<'b, 'a> Search<'b, 'a> {
         }
     }
 
-    /// To first order a lag of a channel is a delay. The best hypotheses with a delay are fitted with a lag in its
-    /// place.
-    fn try_lags(&mut self) {
-        let Some(best) = self.best() else {
+    /// To first order a lag of a channel is a delay. The best hypotheses with a delay and so many members are fitted
+    /// with a lag in its place.
+    fn try_lags(&mut self, members: usize) {
+        let Some(best) = self.best_of(members) else {
             return;
         };
-        let (log, count) = (
-            self.log_posterior(&self.fits[best]),
-            self.fits[best].members.len(),
-        );
-        let tied = self.ranked(count).into_iter();
+        let log = self.log_posterior(&self.fits[best]);
+        let tied = self.ranked(members).into_iter();
         let tied = tied.take_while(|&own| log - self.log_posterior(&self.fits[own]) < TIED);
         for own in tied.collect::<Vec<_>>() {
             let fitted = self.fits[own].clone();

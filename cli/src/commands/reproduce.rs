@@ -85,7 +85,11 @@ impl Reproduce {
         files::make_folder(&self.out)?;
         let sections = match self.paper {
             Paper::Steering => book::steering::book(usize::from(self.grid), making),
-            Paper::Euc => book::euc::book(&self.out.join("rides"), making),
+            Paper::Euc => {
+                let rides = self.out.join("rides");
+                files::make_folder(&rides)?;
+                book::euc::book(&rides, making)
+            }
         };
         bar.finish_and_clear();
         let sections = sections?;

@@ -85,11 +85,7 @@ impl Reproduce {
         files::make_folder(&self.out)?;
         let sections = match self.paper {
             Paper::Steering => book::steering::book(usize::from(self.grid), making),
-            Paper::Euc => {
-                let rides = self.out.join("rides");
-                files::make_folder(&rides)?;
-                book::euc::book(&rides, making)
-            }
+            Paper::Euc => book::euc::book(&self.out.join("rides"), making),
         };
         bar.finish_and_clear();
         let sections = sections?;

@@ -60,6 +60,7 @@ const COLUMNS: [(&str, Kind, &str); 10] = [
 
 /// Writes all rides, a folder for each manoeuvre, and the spatial model as `spatial.toml`.
 pub(super) fn write(laboratory: &Laboratory, folder: &Path) -> Result<(), Error> {
+    files::make_folder(folder)?;
     files::write(&folder.join("spatial.toml"), &spatial()?)?;
     let mut sessions = laboratory.sessions.iter();
     sessions.try_for_each(|session| data_set(laboratory, session, folder))
@@ -81,6 +82,7 @@ fn spatial() -> Result<String, Error> {
 fn data_set(laboratory: &Laboratory, session: &Session, folder: &Path) -> Result<(), Error> {
     let name = session.manoeuvre.name();
     let folder = folder.join(name.replace([' ', '-'], "_"));
+    files::make_folder(&folder)?;
     let mut runs = Vec::new();
     for number in 0..session.motions.len() {
         let file = format!("ride_{}.csv", number + 1);
